@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "tumble/common/time.hpp"
+
+namespace tumble {
+
+/// Where an angular velocity comes from.
+enum class RateSource : std::uint8_t {
+  measured,           ///< no axis of the gyro is clipped
+  recovered_flight,   ///< clipped, recovered from the centripetal specific force of free flight
+  recovered_contact,  ///< clipped, recovered while in contact
+  bounded_only,       ///< clipped, nothing known but the rail and the smoothness of the motion
+};
+
+/// Name as in tables ("recovered_flight").
+const char* to_string(RateSource source);
+
+/// Angular velocity of an IMU in the world, in the IMU's axes, at the time of an IMU sample.
+struct RateState {
+  TimeNs time_ns = 0;
+  Eigen::Vector3d w_WI_I_rad_s = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d covariance_rad2_s2 = Eigen::Matrix3d::Zero();
+  std::uint8_t clipped_axes = 0;  ///< bit j set: gyro axis j was at its rail
+  RateSource source = RateSource::measured;
+};
+
+}  // namespace tumble

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tumble/angular_velocity/rate_state.hpp"
+#include "tumble/common/imu.hpp"
+#include "tumble/common/status.hpp"
+
+namespace tumble {
+
+/// Angular velocity of a tumbling body whose gyro clips, from the centripetal part of the specific force.
+///
+/// The published method (Deschenes et al., "Saturation-Aware Angular Velocity Estimation", ICRA 2024, eqs 5-7) in two
+/// stages. Recursion, per sample: the rotation axis e of the last accepted sample and the lever arm t give the vector
+/// from the IMU to the axis, l = (t.e)e - t; the component of the specific force along l is |l| |w|^2 in free flight,
+/// so the one clipped axis follows from the two others. Then all samples are smoothed by WnojSmoother.
+///
+/// What it does not model: a second clipped axis (the first in x, y, z order is treated, the others are believed),
+/// angular acceleration across the axis, contact, clipped accelerometers, bias.
+class Saave {
+ public:
+  struct Params {
+    /// t: from the centre of mass to the IMU, IMU axes [m]. Needed to about a millimetre.
+    Eigen::Vector3d lever_arm_m = {-0.022, -0.085, 0.055};
+    /// A reading strictly beyond this counts as clipped [rad/s]; bound (0, 1000].
+    double saturation_point_rad_s = 10.5;
+    /// Variance of an unclipped reading [(rad/s)^2]; (0.03 deg/s/sqrt(Hz) * sqrt(100 Hz))^2.
+    double variance_measured_rad2_s2 = 2.741e-5;
+    /// Variance of an accepted estimate [(rad/s)^2]: 0.2741 as in the authors' code, 3.648 as printed in the paper.
+    double variance_estimated_rad2_s2 = 0.2741;
+    /// Variance of the clipped axis when no estimate is possible [(rad/s)^2].
+    double variance_rejected_rad2_s2 = 1e6;
+    /// Power spectral density of the white angular jerk [rad^2/s^5].
+    double jerk_psd_rad2_s5 = 1e6;
+    /// Published sign convention inside the smoother's prior (rate of the world in the body), kept for bit-faithful
+    /// comparison only; see WnojSmoother.
+    bool published_sign = false;
+    /// Longest time between two samples before the run is refused [s].
+    double gap_max_s = 1.0;
+  };
+
+  /// All that the recursion carries from sample to sample.
+  struct State {
+    Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< direction of the last accepted rate
+    TimeNs last_time_ns = 0;
+    bool started = false;
+    bool operator==(const State&) const = default;
+  };
+
+  /// A sample after the recursion, before smoothing.
+  struct Recovered {
+    Eigen::Vector3d rate_rad_s;
+    Eigen::Vector3d variance_rad2_s2;  ///< per axis
+    std::uint8_t clipped_axes = 0;     ///< bits of the axes beyond the saturation point
+    bool accepted = true;              ///< false: the clipped axis could not be recovered
+  };
+
+  /// Throws InvalidParams on a parameter outside of its bound.
+  explicit Saave(const Params& params);
+
+  /// One step of the recursion. O(1), no allocation.
+  Status step(const ImuSample& sample, State& state, Recovered& out) const;
+
+  /// Both stages over a whole recording; one RateState per sample. O(N).
+  /// On trouble nothing is written to `out` and the status names the first offending sample's field and value.
+  Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const;
+
+  const Params& params() const { return params_; }
+
+ private:
+  Params params_;
+};
+
+}  // namespace tumble

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "tumble/common/imu.hpp"
+#include "tumble/common/pose.hpp"
+#include "tumble/common/status.hpp"
+
+namespace tumble {
+
+/// Attitude by integration of the gyro alone: q <- q Exp(w dt), from a start levelled by the accelerometer.
+/// Exact for a rate that is constant in body axes over each sample. No bias, no correction: it drifts.
+class Strapdown {
+ public:
+  struct Params {
+    double gap_max_s = 1.0;  ///< a longer time between samples is a `gap`; bound (0, 1e4]
+  };
+  struct State {
+    Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
+    TimeNs last_time_ns = 0;
+    bool started = false;
+    bool operator==(const State& other) const {
+      return q_WI.coeffs() == other.q_WI.coeffs() && last_time_ns == other.last_time_ns && started == other.started;
+    }
+  };
+
+  explicit Strapdown(const Params& params);
+
+  /// The first sample levels the attitude (yaw 0) by its specific force; each later one integrates.
+  /// On trouble the state is unchanged. O(1), no allocation.
+  Status step(const ImuSample& sample, State& state) const;
+
+ private:
+  Params params_;
+};
+
+/// Attitude with yaw 0 whose z axis (up) agrees with a specific force measured at rest, in sensor axes.
+/// `degenerate` when the force is shorter than 1e-6 m/s^2.
+Status level(const Eigen::Vector3d& specific_force_m_s2, Eigen::Quaterniond& q_WI);
+
+}  // namespace tumble

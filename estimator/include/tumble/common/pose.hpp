@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "tumble/common/time.hpp"
+
+namespace tumble {
+
+/// Attitude of a sensor or body A in the world at one instant.
+struct AttitudeState {
+  TimeNs time_ns = 0;
+  Eigen::Quaterniond q_WA = Eigen::Quaterniond::Identity();
+  /// Covariance of the error phi with q_true = Exp(phi) * q_WA, world axes, rad^2; zero when the method reports none.
+  Eigen::Matrix3d covariance_rad2 = Eigen::Matrix3d::Zero();
+};
+
+/// Pose and velocity of a frame A in the world at one instant.
+struct PoseState {
+  TimeNs time_ns = 0;
+  Eigen::Vector3d p_WA_m = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond q_WA = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d v_WA_m_s = Eigen::Vector3d::Zero();
+  /// Covariance of (position error in W [m], attitude error phi in W [rad]) as in AttitudeState; zero when not reported.
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+};
+
+}  // namespace tumble

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace tumble::so3 {
+
+/// Skew-symmetric matrix [v]x with [v]x w = v x w.
+Eigen::Matrix3d hat(const Eigen::Vector3d& v);
+
+/// Unit quaternion of the rotation by |phi| radians about phi. Accurate to rounding for any |phi|, 0 included.
+Eigen::Quaterniond exp(const Eigen::Vector3d& phi);
+
+/// Rotation vector of shortest length (at most pi) of a unit quaternion; q and -q give the same vector.
+Eigen::Vector3d log(const Eigen::Quaterniond& q);
+
+/// Left Jacobian J_l(phi): Exp(phi + d) = Exp(J_l d) Exp(phi) to first order in d. The right one is its transpose.
+Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& phi);
+
+/// Inverse of left_jacobian; finite for |phi| < 2 pi.
+Eigen::Matrix3d left_jacobian_inverse(const Eigen::Vector3d& phi);
+
+/// Smallest rotation that takes the unit vector `from` to the unit vector `to`; for opposite vectors a half turn about
+/// an axis perpendicular to them.
+Eigen::Quaterniond shortest_arc(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+
+}  // namespace tumble::so3

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+namespace tumble {
+
+/// Time stamp: integer nanoseconds from the start of the recording. Sample k of a stream stands at t0 + k * period.
+using TimeNs = std::int64_t;
+
+/// Length of a span of time in seconds; exact to 2^-53 relative for spans below 104 days.
+constexpr double seconds(TimeNs span_ns) { return static_cast<double>(span_ns) * 1e-9; }
+
+}  // namespace tumble

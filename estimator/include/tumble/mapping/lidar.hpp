@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+namespace tumble {
+
+/// One lidar return in the lidar's axes L, at its own instant: nothing is deskewed.
+struct LidarPoint {
+  Eigen::Vector3f position_L_m = Eigen::Vector3f::Zero();
+  float intensity = 0.0f;         ///< 0..1
+  std::uint32_t offset_ns = 0;    ///< time of firing after the start of the sweep
+  std::uint16_t ring = 0;         ///< channel from bottom to top, or line
+};
+
+/// A point of a map, in the world.
+struct MapPoint {
+  Eigen::Vector3f position_W_m = Eigen::Vector3f::Zero();
+  Eigen::Vector3f normal_W = Eigen::Vector3f::Zero();  ///< unit; zero where no plane could be fitted
+  float sigma_m = 0.0f;                                ///< uncertainty of the position, one standard deviation
+};
+
+}  // namespace tumble

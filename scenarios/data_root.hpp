@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+
+namespace tumble::scenarios {
+
+/// Where the files stand that are read at run time; the caller says where (the program finds it, a test names it).
+struct DataRoot {
+  std::filesystem::path root;
+  std::filesystem::path models() const { return root / "models"; }
+  std::filesystem::path data_sheets() const { return root / "models" / "sensors"; }
+  std::filesystem::path catalogue() const { return root / "scenarios" / "catalogue"; }
+  std::filesystem::path suites() const { return root / "scenarios" / "suites"; }
+};
+
+}  // namespace tumble::scenarios

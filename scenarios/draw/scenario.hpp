@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "scenarios/data_root.hpp"
+#include "sim/situation.hpp"
+
+namespace tumble::scenarios {
+
+/// A number of a scenario: fixed or drawn. Each draws from its own named stream, so adding one leaves the others alone.
+struct Distribution {
+  enum class Shape { constant, uniform, normal, log_uniform, choice };
+  Shape shape = Shape::constant;
+  std::vector<double> numbers;  ///< constant: value; uniform, log_uniform: low, high; normal: mean, sigma[, low, high]; choice: the values
+  int line = 0;                 ///< of the file, for messages
+};
+
+/// A scenario file as read: a family of situations.
+struct Scenario {
+  struct Part {
+    std::string type;
+    std::map<std::string, Distribution> numbers;
+  };
+  struct Sensor {
+    std::string name, kind, device, site;
+    std::map<std::string, Distribution> numbers;
+    std::map<std::string, Distribution> mount_error;
+  };
+  std::string name;
+  std::string doc;
+  Distribution duration_s;
+  Part world, robot, motion;
+  std::vector<Sensor> sensors;
+};
+
+/// Names of the scenarios in the catalogue, sorted.
+std::vector<std::string> scenario_names(const DataRoot& data);
+
+/// Reads scenarios/catalogue/NAME.yaml, or a file when `name` ends in ".yaml". Throws BadInput with file and line; an
+/// unknown name or key names the nearest known one.
+Scenario load_scenario(const DataRoot& data, const std::string& name);
+
+/// Fixes every number: data sheet of each device, the scenario's changes, draws from streams named by the number's place
+/// ("world.slope_rad"). The result is resolved: complete and checked. Throws BadInput.
+sim::Situation draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed);
+
+/// The resolved situation as YAML and back, without loss (doubles round-trip).
+std::string to_yaml(const sim::Situation& situation);
+sim::Situation situation_from_yaml(const std::string& text, const std::string& place);
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/parameters.hpp"
+#include "sim/recording.hpp"
+#include "tumble/angular_velocity/rate_state.hpp"
+#include "tumble/common/pose.hpp"
+#include "tumble/common/status.hpp"
+#include "tumble/mapping/lidar.hpp"
+#include "tumble/mapping/lidar_inertial_odometry.hpp"
+
+namespace tumble::scenarios {
+
+enum class Kind { rate, attitude, position, slam };
+const char* to_string(Kind kind);
+
+/// Frame that an estimate's poses belong to: the primary IMU, the lidar, the body, or the sphere's centre.
+enum class Frame { imu, lidar, body, centre };
+const char* to_string(Frame frame);
+
+/// What a method returns. A kind fills what it is about and leaves the rest empty.
+struct Estimate {
+  Status status;                            ///< trouble of the run as a whole; `ok` when it went through
+  Frame frame = Frame::imu;                 ///< of `attitudes` and `poses`
+  std::vector<RateState> rates;             ///< kind rate (and what a slam method deskewed with)
+  std::vector<AttitudeState> attitudes;     ///< kind attitude
+  std::vector<PoseState> poses;             ///< kinds position and slam, at IMU times
+  std::vector<LidarInertialOdometry::SweepReport> sweeps;  ///< kind slam, one per sweep
+  std::vector<std::int64_t> sweep_end_ns;   ///< parallel to `sweeps`
+  std::vector<MapPoint> map;                ///< kind slam
+  std::map<std::string, double> health;     ///< named counters: "rejected_samples", "sweeps_rejected"
+};
+
+/// What an oracle is given beyond the sensors: the unclipped readings and the true state. Built from the truth by the
+/// harness, for methods that declare `needs_truth` alone.
+struct OracleInput {
+  const sim::Truth* truth = nullptr;
+};
+
+/// A method under test, self-describing. `kind` and `name` together are unique.
+struct MethodInfo {
+  std::string name;
+  Kind kind = Kind::rate;
+  std::string doc;      ///< one sentence: what it is
+  std::string source;   ///< paper or "ours"
+  std::span<const sim::Parameter> parameters;
+  bool needs_truth = false;
+  bool for_robot(const std::string& robot) const;  ///< whether it applies to "rig" or "sphere"
+  std::vector<std::string> robots;                 ///< empty: all
+};
+
+/// Runs a method over a recording. Pure: the same input gives the same bits.
+using RunMethod = std::function<Estimate(const sim::Sensors&, const sim::Values& parameters, const OracleInput&)>;
+
+struct Method {
+  MethodInfo info;
+  RunMethod run;
+};
+
+/// All methods, sorted by kind, then in order of registration.
+std::span<const Method> methods();
+
+/// Every method called `name` ("saave"), or the one of a kind ("rate/oracle"). Throws BadInput naming the nearest.
+std::vector<const Method*> find_methods(const std::string& name);
+
+}  // namespace tumble::scenarios

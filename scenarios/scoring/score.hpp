@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scenarios/methods/method.hpp"
+#include "sim/lidar/surface.hpp"
+#include "sim/recording.hpp"
+
+namespace tumble::scenarios {
+
+/// One number of an outcome; the metric's name ends in its unit (DESIGN.md, "Scores").
+struct Score {
+  std::string metric;
+  double value;
+};
+
+/// What scoring needs of a recording. `surface` may be null: map scores are left out then.
+struct ScoringInput {
+  const sim::Sensors* sensors = nullptr;
+  const sim::Truth* truth = nullptr;
+  const sim::Surface* surface = nullptr;
+};
+
+/// A metric, self-describing; one file and one line of registration each.
+struct Metric {
+  std::string name;
+  Kind kind;
+  std::string unit;
+  std::string doc;
+  /// False when the estimate or recording has nothing to score (no clipped sample, no map).
+  bool (*compute)(const Estimate& estimate, const ScoringInput& input, double& value);
+};
+
+std::span<const Metric> metrics();
+
+/// All metrics of a kind that apply, in order of registration.
+std::vector<Score> score(Kind kind, const Estimate& estimate, const ScoringInput& input);
+
+/// `ok`, or `diverged`: an estimate that is not finite, or ends farther from the truth than the path is long.
+std::string verdict(Kind kind, const Estimate& estimate, const ScoringInput& input);
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "scenarios/methods/method.hpp"
+#include "scenarios/scoring/score.hpp"
+
+namespace tumble::scenarios {
+
+/// One row of the results: what one method did on one draw.
+struct Outcome {
+  std::string scenario;
+  std::uint64_t seed = 0;
+  Kind kind = Kind::rate;
+  std::string method;
+  std::string status;   ///< ok, diverged, failed, crashed, timeout
+  std::string message;  ///< one line when not ok
+  std::vector<Score> scores;
+  std::string recording_digest;
+  std::string estimate_digest;  ///< of the estimate's numbers, 32 hexadecimal digits
+};
+
+/// A draw that could not be simulated is an outcome of its own: kind and method empty in the database.
+struct RejectedDraw {
+  std::string scenario;
+  std::uint64_t seed = 0;
+  std::string message;
+};
+
+/// Digest of all numbers of an estimate (XXH3, 128 bit), costs and health timings excluded.
+std::string digest(const Estimate& estimate);
+
+}  // namespace tumble::scenarios

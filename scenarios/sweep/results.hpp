@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "scenarios/sweep/outcome.hpp"
+
+namespace tumble::scenarios {
+
+/// One row of the view scores(scenario, seed, kind, method, status, metric, value).
+struct ScoreRow {
+  std::string scenario;
+  std::uint64_t seed;
+  std::string kind, method, status, metric;
+  double value;
+};
+
+/// The results database (SQLite). Rows are unique by (scenario, seed, kind, method); storing again replaces. Each store is
+/// one transaction, so that whatever has finished survives a kill.
+class Results {
+ public:
+  enum class Mode { create_or_append, read_only };
+  /// Throws BadInput: absent (read_only), not a results database, written by another build (`build` differs), no room.
+  Results(const std::filesystem::path& path, Mode mode);
+  ~Results();
+  Results(Results&&) noexcept;
+
+  void store(const Outcome& outcome);
+  void store(const RejectedDraw& rejected);
+  /// A free text kept with the results: "suite", "certificate", "build".
+  void set_note(const std::string& key, const std::string& text);
+  std::string note(const std::string& key) const;
+
+  bool has(const std::string& scenario, std::uint64_t seed, Kind kind, const std::string& method) const;
+  std::vector<ScoreRow> scores() const;
+  /// Every outcome without its scores.
+  std::vector<Outcome> outcomes() const;
+  std::vector<RejectedDraw> rejected() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scenarios/data_root.hpp"
+#include "scenarios/draw/scenario.hpp"
+#include "scenarios/sweep/outcome.hpp"
+
+namespace tumble::scenarios {
+
+/// Everything that one situation gave: recording, and per method its estimate and outcome.
+struct RunResult {
+  sim::Situation situation;
+  sim::Recording recording;
+  std::string recording_digest;
+  double simulate_cpu_s = 0;
+  std::vector<const Method*> methods;
+  std::vector<Estimate> estimates;  ///< parallel to methods
+  std::vector<Outcome> outcomes;    ///< parallel to methods
+};
+
+/// Draws, simulates, estimates and scores one situation in this process. Methods that do not apply to the robot are
+/// left out. Throws BadInput, sim::InvalidSituation, sim::SimulationFailure.
+RunResult run_situation(const DataRoot& data, const Scenario& scenario, std::uint64_t seed,
+                        std::span<const Method* const> methods, int threads);
+
+/// Digest of a whole run: recording and every estimate.
+std::string run_digest(const RunResult& result);
+
+}  // namespace tumble::scenarios

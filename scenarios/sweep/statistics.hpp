@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace tumble::scenarios {
+
+/// An estimate with its 95 % interval.
+struct Interval {
+  double value, low, high;
+};
+
+/// Sample quantile (Hyndman and Fan type 7) of finite values; NaN when there is none. `share` in [0, 1].
+double quantile(std::span<const double> values, double share);
+
+/// Median with its distribution-free interval from order statistics (binomial); infinite ends when too few values.
+Interval median_interval(std::span<const double> values);
+
+/// Share of successes with its exact interval (Clopper and Pearson).
+Interval share_interval(std::int64_t count, std::int64_t total);
+
+}  // namespace tumble::scenarios

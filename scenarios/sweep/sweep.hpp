@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "scenarios/data_root.hpp"
+
+namespace tumble::scenarios {
+
+/// A suite file, scenarios/suites/NAME.yaml: scenarios x seeds x methods.
+struct Suite {
+  std::string name;
+  std::string doc;
+  std::vector<std::string> scenarios;
+  std::uint64_t first_seed = 1, last_seed = 1;
+  std::vector<std::string> methods;  ///< names for find_methods
+  double timeout_s = 300;            ///< for one method on one draw
+};
+
+std::vector<std::string> suite_names(const DataRoot& data);
+/// A suite by name, a suite file, or a scenario's name (a suite of that one with all methods). Throws BadInput.
+Suite load_suite(const DataRoot& data, const std::string& name);
+
+struct SweepProgress {
+  std::uint64_t draws_done = 0, draws_total = 0;
+  std::uint64_t outcomes = 0, not_ok = 0, rejected = 0;
+  double elapsed_s = 0, left_s = 0;
+};
+
+struct SweepOptions {
+  int jobs = 1;                           ///< processes
+  const std::atomic<bool>* stop = nullptr;  ///< set it to end after storing what has finished
+  std::function<void(const SweepProgress&)> on_progress;
+};
+
+/// Runs what the database does not hold yet. Each draw is a process of its own, each method in it another: a crash, a
+/// time-out or a memory failure is an outcome (crashed, timeout), never the end of the sweep. Finished outcomes are stored
+/// as they come. Returns the final progress; draws_done < draws_total when stopped.
+SweepProgress sweep(const DataRoot& data, const Suite& suite, const std::filesystem::path& database,
+                    const SweepOptions& options);
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <mujoco/mujoco.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/situation.hpp"
+
+/// Private to sim: the only headers that include mujoco.h are in this folder and beside the sources that need them.
+namespace tumble::sim::engine {
+
+struct ModelDeleter { void operator()(mjModel* model) const { mj_deleteModel(model); } };
+struct DataDeleter { void operator()(mjData* data) const { mj_deleteData(data); } };
+using ModelPtr = std::unique_ptr<mjModel, ModelDeleter>;
+using DataPtr = std::unique_ptr<mjData, DataDeleter>;
+
+/// A rectangle of floor with its own sliding friction; where the robot touches inside of it, it holds.
+struct FrictionPatch {
+  double centre_x_m, centre_y_m, half_x_m, half_y_m, yaw_rad, friction;
+};
+
+/// A compiled situation: world and robot in one model.
+struct World {
+  ModelPtr model;
+  int robot_body = -1;               ///< id of the robot's free body (its frame is B: inertial frame position zero)
+  std::vector<std::string> surfaces; ///< surface id -> name; parallel to `surface_geom`
+  std::vector<int> surface_geom;     ///< surface id -> geom id: the static geoms that a lidar sees and a robot touches
+  std::vector<FrictionPatch> patches;
+  double half_extent_m = 0;          ///< beyond this |x| or |y| the robot has left the world
+};
+
+/// Composes world and robot in memory (mjSpec) and compiles. Throws InvalidSituation with the compiler's message.
+World compose(const Situation& situation, const std::filesystem::path& models);
+
+}  // namespace tumble::sim::engine

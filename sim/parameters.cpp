@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/parameters.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <sstream>
+#include <vector>
+
+namespace tumble::sim {
+
+namespace {
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substituted});
+    }
+  }
+  return row[b.size()];
+}
+
+}  // namespace
+
+double Values::at(std::string_view name) const {
+  const auto found = numbers_.find(std::string(name));
+  if (found == numbers_.end()) throw InvalidSituation("no value named '" + std::string(name) + "'");
+  return found->second;
+}
+
+std::string nearest_name(std::string_view name, std::span<const std::string> known) {
+  std::string best;
+  // half of the letters may differ: farther names would mislead
+  std::size_t best_distance = std::max<std::size_t>(2, name.size() / 2) + 1;
+  for (const std::string& candidate : known) {
+    const std::size_t distance = edit_distance(name, candidate);
+    if (distance < best_distance) {
+      best_distance = distance;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+Values resolve(const std::string& place, const Values& given, std::span<const Parameter> known) {
+  Values out;
+  for (const Parameter& parameter : known) out.set(std::string(parameter.name), parameter.default_value);
+  for (const auto& [name, value] : given.all()) {
+    const auto parameter = std::find_if(known.begin(), known.end(), [&](const Parameter& p) { return p.name == name; });
+    if (parameter == known.end()) {
+      std::vector<std::string> names;
+      for (const Parameter& p : known) names.emplace_back(p.name);
+      const std::string near = nearest_name(name, names);
+      throw InvalidSituation(place + ": unknown key '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+    }
+    if (!(value >= parameter->low && value <= parameter->high)) {
+      std::ostringstream text;
+      text << place << "." << name << " is " << value << " " << parameter->unit << ", must be within [" << parameter->low
+           << ", " << parameter->high << "]";
+      throw InvalidSituation(text.str());
+    }
+    out.set(name, value);
+  }
+  return out;
+}
+
+}  // namespace tumble::sim

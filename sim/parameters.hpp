@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace tumble::sim {
+
+/// A number that a component of a situation takes: its one default, its bounds, unit and meaning.
+/// Switches are numbers too: 0 off, 1 on.
+struct Parameter {
+  std::string_view name;  ///< ends in its unit where it has one: slope_rad, mass_kg
+  double default_value;
+  double low;
+  double high;
+  std::string_view unit;  ///< "1" when dimensionless
+  std::string_view doc;   ///< meaning and source, one sentence
+};
+
+/// Thrown for a value out of bounds, an unknown name or an unknown component; says place, value and bound.
+class InvalidSituation : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Numbers by name, complete and within bounds once `resolve` has returned them.
+class Values {
+ public:
+  void set(const std::string& name, double value) { numbers_[name] = value; }
+  bool has(const std::string& name) const { return numbers_.contains(name); }
+  /// Throws InvalidSituation when the name is absent.
+  double at(std::string_view name) const;
+  const std::map<std::string, double>& all() const { return numbers_; }
+  bool operator==(const Values&) const = default;
+
+ private:
+  std::map<std::string, double> numbers_;
+};
+
+/// Fills defaults, refuses unknown names (naming the nearest known one), NaN and values out of bounds.
+/// `place` begins the message: "world.hill".
+Values resolve(const std::string& place, const Values& given, std::span<const Parameter> known);
+
+/// The known name nearest to `name` by edit distance; empty when nothing is near.
+std::string nearest_name(std::string_view name, std::span<const std::string> known);
+
+/// A kind of world, robot, motion or sensor: one entry of a registry.
+struct ComponentType {
+  std::string name;
+  std::string doc;
+  std::span<const Parameter> parameters;
+};
+
+/// A component of a situation: its type's name and its numbers.
+struct Component {
+  std::string type;
+  Values values;
+  bool operator==(const Component&) const = default;
+};
+
+}  // namespace tumble::sim

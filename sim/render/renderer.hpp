@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "sim/situation.hpp"
+
+namespace tumble::sim {
+
+/// RGB, rows from the top.
+struct Picture {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> rgb;
+};
+
+/// A line through the scene.
+struct DrawnPath {
+  std::vector<Eigen::Vector3d> points_W_m;
+  std::array<float, 4> rgba = {1, 1, 1, 1};
+  double width_m = 0.02;
+};
+
+/// Points drawn as small spheres, each with its own colour (maps by error).
+struct DrawnPoints {
+  std::vector<Eigen::Vector3d> points_W_m;
+  std::vector<std::array<float, 4>> rgba;
+  double radius_m = 0.02;
+};
+
+/// What a picture shows. The camera looks at `look_at_W_m`; NaN there frames all paths and robots by itself.
+struct View {
+  std::vector<Eigen::Isometry3d> robots_T_WB;  ///< the robot is drawn at each of these poses
+  std::vector<DrawnPath> paths;
+  std::vector<DrawnPoints> points;
+  int width = 1280;
+  int height = 720;
+  Eigen::Vector3d look_at_W_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+  double distance_m = 0.0;      ///< 0: chosen to frame the content
+  double azimuth_rad = 1.9;
+  double elevation_rad = -0.45;
+};
+
+/// Pictures of a situation's world without a display (OSMesa).
+class Renderer {
+ public:
+  /// Throws InvalidSituation, or std::runtime_error when no OSMesa context can be made.
+  Renderer(const Situation& situation, const std::filesystem::path& models);
+  ~Renderer();
+  Renderer(Renderer&&) noexcept;
+  Renderer& operator=(Renderer&&) noexcept;
+
+  Picture draw(const View& view);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Pictures side by side, in rows of `columns` (a film strip). All must have the same size.
+Picture film_strip(std::span<const Picture> pictures, int columns);
+
+/// Writes a PNG under a temporary name and renames it; throws std::runtime_error with the path on failure.
+void write_png(const std::filesystem::path& path, const Picture& picture);
+/// The PNG as bytes, for a page that carries its pictures.
+std::vector<std::uint8_t> png_bytes(const Picture& picture);
+
+}  // namespace tumble::sim

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/parameters.hpp"
+
+namespace tumble::sim {
+
+/// A sensor of the robot: where it is mounted, which device it is, and how far the estimator's calibration is off.
+struct SensorSpec {
+  std::string name;    ///< unique in the situation: "imu", "imu_reference", "lidar"
+  std::string kind;    ///< registry entry: "imu", "spinning_lidar", "rosette_lidar"
+  std::string device;  ///< data sheet that the values came from: "mti30"; kept for the record
+  std::string site;    ///< site of the robot's MJCF that carries it
+  Values values;       ///< numbers of the device (data sheet, then the scenario's changes)
+  Values mount_error;  ///< calibration minus truth: x_m y_m z_m (B axes), roll_rad pitch_rad yaw_rad (small angles, I axes)
+  bool operator==(const SensorSpec&) const = default;
+};
+
+/// A draw: one situation with every number fixed. Equal situations give equal recordings, bit for bit.
+struct Situation {
+  std::string scenario;    ///< name of the scenario that it was drawn from
+  std::uint64_t seed = 0;
+  double duration_s = 10.0;
+  Component world;
+  Component robot;
+  Component motion;
+  std::vector<SensorSpec> sensors;
+  bool operator==(const Situation&) const = default;
+};
+
+/// Registries, in the order of registration.
+std::span<const ComponentType> world_types();
+std::span<const ComponentType> robot_types();
+std::span<const ComponentType> motion_types();
+std::span<const ComponentType> sensor_types();
+/// Parameters of SensorSpec::mount_error.
+std::span<const Parameter> mount_error_parameters();
+
+/// Completes every component with its defaults and checks it; throws InvalidSituation with the place.
+Situation resolve(const Situation& situation);
+
+}  // namespace tumble::sim

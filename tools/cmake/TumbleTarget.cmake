@@ -1,0 +1,25 @@
+# tumble_target(TARGET): the language level, warnings and instrumentation that every target of the project is built with.
+# Nothing is set globally, so that a project which embeds this one keeps its own flags.
+include_guard()
+
+option(TUMBLE_EIGEN_NAN "Initialise Eigen matrices to NaN, so that use before assignment shows" OFF)
+option(TUMBLE_WARNINGS_AS_ERRORS "Warnings fail the build" OFF)
+set(TUMBLE_SANITIZE "" CACHE STRING "Sanitizers, comma separated: address,undefined or thread")
+
+function(tumble_target target)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
+  # no contraction into fused multiply-add: the same source gives the same bits on every x86-64
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -ffp-contract=off
+    $<$<CONFIG:Release>:-O3>)
+  if(TUMBLE_WARNINGS_AS_ERRORS)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+  if(TUMBLE_EIGEN_NAN)
+    target_compile_definitions(${target} PUBLIC EIGEN_INITIALIZE_MATRICES_BY_NAN)
+  endif()
+  if(TUMBLE_SANITIZE)
+    target_compile_options(${target} PUBLIC -fsanitize=${TUMBLE_SANITIZE} -fno-omit-frame-pointer)
+    target_link_options(${target} PUBLIC -fsanitize=${TUMBLE_SANITIZE})
+  endif()
+endfunction()
