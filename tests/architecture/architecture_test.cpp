@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Who may use whom: every #include and every link of the tree against the table of the design. The checker is a function of
+// (folder, include), so that its negative controls run beside the real scan.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <regex>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Rule {
+  std::string folder;                  // sources below this folder of the tree
+  std::vector<std::string> forbidden;  // regular expressions on the text of an include
+};
+
+const std::vector<Rule>& rules() {
+  static const std::vector<Rule> all = {
+      {"estimator",
+       {"^sim/", "^scenarios/", "^tools/", "mujoco", "embree", "^fstream$", "^iostream$", "^cstdio$", "^filesystem$", "^thread$",
+        "^hdf5", "^yaml-cpp", "^sqlite", "^SQLiteCpp", "^nlohmann", "^fmt/", "^spdlog", "^tbb/", "^oneapi/"}},
+      {"estimator/include/tumble/common", {"^pcl/", "^tumble/(angular_velocity|attitude|rolling|mapping)/"}},
+      {"estimator/include/tumble/angular_velocity", {"^pcl/", "^tumble/(attitude|rolling|mapping)/"}},
+      {"estimator/include/tumble/attitude", {"^pcl/", "^tumble/(rolling|mapping)/"}},
+      {"estimator/include/tumble/rolling", {"^pcl/", "^tumble/mapping/"}},
+      {"estimator/src/common", {"^pcl/", "^tumble/(angular_velocity|attitude|rolling|mapping)/"}},
+      {"estimator/src/angular_velocity", {"^pcl/", "^tumble/(attitude|rolling|mapping)/"}},
+      {"estimator/src/attitude", {"^pcl/", "^tumble/(rolling|mapping)/"}},
+      {"estimator/src/rolling", {"^pcl/", "^tumble/mapping/"}},
+      {"sim", {"^tumble/", "^estimator/", "^scenarios/", "^tools/", "^hdf5", "^yaml-cpp", "^sqlite", "^SQLiteCpp", "^nlohmann", "^pcl/"}},
+      {"scenarios", {"mujoco", "embree", "^sim/engine/", "^estimator/src/", "^tools/", "osmesa"}},
+      {"tools", {"mujoco", "embree", "^sim/engine/", "^estimator/src/", "osmesa", "^tests/"}},
+  };
+  return all;
+}
+
+/// Headers of sim that others include must not bring mujoco.h, Embree or OSMesa with them.
+const std::vector<std::string> kPublicSimHeaders = {
+    "sim/parameters.hpp", "sim/situation.hpp", "sim/recording.hpp", "sim/simulate.hpp", "sim/random/stream.hpp",
+    "sim/lidar/surface.hpp", "sim/render/renderer.hpp"};
+
+std::vector<std::string> includes_of(const fs::path& file) {
+  static const std::regex pattern(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");
+  std::ifstream stream(file);
+  std::vector<std::string> out;
+  std::string line;
+  std::smatch match;
+  while (std::getline(stream, line)) {
+    if (std::regex_search(line, match, pattern)) out.push_back(match[1]);
+  }
+  return out;
+}
+
+bool is_below(const std::string& path, const std::string& folder) { return path.rfind(folder + "/", 0) == 0; }
+
+/// The rule that a file at `path` breaks by including `include`; empty when it breaks none.
+std::string broken_rule(const std::string& path, const std::string& include) {
+  for (const Rule& rule : rules()) {
+    if (!is_below(path, rule.folder)) continue;
+    for (const std::string& pattern : rule.forbidden) {
+      if (std::regex_search(include, std::regex(pattern, std::regex::icase))) return rule.folder + " must not include " + pattern;
+    }
+  }
+  return "";
+}
+
+std::vector<fs::path> sources() {
+  std::vector<fs::path> out;
+  for (const char* folder : {"estimator", "sim", "scenarios", "tools"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(TUMBLE_SOURCE_DIR) / folder)) {
+      const std::string extension = entry.path().extension().string();
+      if (extension == ".hpp" || extension == ".cpp") out.push_back(entry.path());
+    }
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+std::string relative(const fs::path& path) { return fs::relative(path, TUMBLE_SOURCE_DIR).generic_string(); }
+
+/// Private headers of a module may be reached from inside the module alone: follow the includes of a public header.
+void collect_reachable(const std::string& header, std::vector<std::string>& seen) {
+  if (std::find(seen.begin(), seen.end(), header) != seen.end()) return;
+  seen.push_back(header);
+  const fs::path file = fs::path(TUMBLE_SOURCE_DIR) / header;
+  if (!fs::exists(file)) return;
+  for (const std::string& include : includes_of(file)) collect_reachable(include, seen);
+}
+
+std::string output_of(const std::string& command) {
+  std::array<char, 4096> buffer;
+  std::string out;
+  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), pclose);
+  if (!pipe) return out;
+  while (fgets(buffer.data(), buffer.size(), pipe.get()) != nullptr) out += buffer.data();
+  return out;
+}
+
+TEST(Architecture, EveryIncludeFollowsTheTable) {
+  const std::vector<fs::path> files = sources();
+  ASSERT_GT(files.size(), 40u) << "the scan found too few files to mean anything";
+  for (const fs::path& file : files) {
+    for (const std::string& include : includes_of(file)) {
+      EXPECT_EQ(broken_rule(relative(file), include), "") << relative(file) << " includes " << include;
+    }
+  }
+}
+
+TEST(Architecture, CheckerRefusesForbiddenIncludes) {
+  EXPECT_NE(broken_rule("estimator/src/attitude/madgwick.cpp", "sim/recording.hpp"), "");
+  EXPECT_NE(broken_rule("estimator/include/tumble/common/imu.hpp", "fstream"), "");
+  EXPECT_NE(broken_rule("estimator/src/rolling/x.cpp", "pcl/point_types.h"), "");
+  EXPECT_NE(broken_rule("scenarios/draw/x.cpp", "mujoco/mujoco.h"), "");
+  EXPECT_NE(broken_rule("scenarios/draw/x.cpp", "sim/engine/model.hpp"), "");
+  EXPECT_NE(broken_rule("sim/imu/x.cpp", "tumble/common/imu.hpp"), "");
+  EXPECT_NE(broken_rule("sim/imu/x.cpp", "yaml-cpp/yaml.h"), "");
+  EXPECT_NE(broken_rule("tools/tumble/x.cpp", "embree3/rtcore.h"), "");
+  EXPECT_EQ(broken_rule("scenarios/methods/x.cpp", "tumble/common/imu.hpp"), "");
+  EXPECT_EQ(broken_rule("estimator/src/mapping/x.cpp", "pcl/point_types.h"), "");
+}
+
+TEST(Architecture, PublicSimHeadersDoNotBringTheEngine) {
+  for (const std::string& header : kPublicSimHeaders) {
+    ASSERT_TRUE(fs::exists(fs::path(TUMBLE_SOURCE_DIR) / header)) << header;
+    std::vector<std::string> reachable;
+    collect_reachable(header, reachable);
+    for (const std::string& include : reachable) {
+      EXPECT_EQ(include.find("mujoco"), std::string::npos) << header << " reaches " << include;
+      EXPECT_EQ(include.find("embree"), std::string::npos) << header << " reaches " << include;
+      EXPECT_EQ(include.find("osmesa"), std::string::npos) << header << " reaches " << include;
+    }
+  }
+  std::vector<std::string> private_header;
+  collect_reachable("sim/engine/model.hpp", private_header);
+  EXPECT_NE(std::find(private_header.begin(), private_header.end(), "mujoco/mujoco.h"), private_header.end())
+      << "negative control: the private header does include the engine";
+}
+
+TEST(Architecture, TheEstimatorNeedsNothingOfTheHarness) {
+  const fs::path library = fs::path(TUMBLE_BUILD_DIR) / "estimator" / "libtumble_estimator.a";
+  ASSERT_TRUE(fs::exists(library)) << library;
+  const std::string undefined = output_of("nm -C --undefined-only " + library.string());
+  ASSERT_NE(undefined.find("U "), std::string::npos) << "nm printed nothing to judge";
+  const std::regex forbidden(R"(\b(mj_|rtc[A-Z]|H5[A-Z]|pcl::|YAML::|sqlite3_|std::cout|std::cerr|printf\b|fopen\b|exit\b|pthread_create|tumble::sim|tumble::scenarios))");
+  std::smatch match;
+  EXPECT_FALSE(std::regex_search(undefined, match, forbidden)) << "libtumble_estimator.a uses " << match.str();
+  const std::string control = "                 U mj_step\n";
+  EXPECT_TRUE(std::regex_search(control, forbidden)) << "negative control";
+}
+
+TEST(Architecture, FilesStayBelowTheirCeilings) {
+  for (const fs::path& file : sources()) {
+    std::ifstream stream(file);
+    const auto lines = std::count(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>(), '\n');
+    EXPECT_LE(lines, file.extension() == ".hpp" ? 300 : 400) << relative(file);
+  }
+}
+
+TEST(Architecture, EverySourceCarriesTheLicence) {
+  for (const fs::path& file : sources()) {
+    std::ifstream stream(file);
+    std::string line;
+    std::getline(stream, line);
+    EXPECT_EQ(line, "// SPDX-License-Identifier: BSD-3-Clause") << relative(file);
+  }
+}
+
+}  // namespace
