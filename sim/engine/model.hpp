@@ -3,6 +3,7 @@
 
 #include <mujoco/mujoco.h>
 
+#include <Eigen/Core>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -21,6 +22,7 @@ using DataPtr = std::unique_ptr<mjData, DataDeleter>;
 /// A rectangle of floor with its own sliding friction; where the robot touches inside of it, it holds.
 struct FrictionPatch {
   double centre_x_m, centre_y_m, half_x_m, half_y_m, yaw_rad, friction;
+  bool contains(double x_m, double y_m) const;
 };
 
 /// A compiled situation: world and robot in one model.
@@ -31,6 +33,9 @@ struct World {
   std::vector<int> surface_geom;     ///< surface id -> geom id: the static geoms that a lidar sees and a robot touches
   std::vector<FrictionPatch> patches;
   double half_extent_m = 0;          ///< beyond this |x| or |y| the robot has left the world
+  Eigen::Vector3d start_W_m = Eigen::Vector3d::Zero();       ///< on the ground, where a robot begins; the way leads along +x
+  Eigen::Vector3d com_offset_m = Eigen::Vector3d::Zero();    ///< true centre of mass in the robot's design frame, B axes
+  double sphere_radius_m = 0;        ///< 0 when the robot is not a sphere
 };
 
 /// Composes world and robot in memory (mjSpec) and compiles. Throws InvalidSituation with the compiler's message.

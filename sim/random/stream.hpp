@@ -7,9 +7,9 @@
 
 namespace tumble::sim {
 
-/// An independent stream of random numbers, named: `Stream(seed, "imu.noise")`. Counter-based (Philox 4x32-10, Salmon et
-/// al., SC 2011), so the n-th number can be had without the ones before it, and results depend neither on threads nor on
-/// order. Distributions are our own: the standard library's differ between vendors.
+/// An independent stream of random numbers, named: `Stream(seed, "imu.noise")`. Counter-based (Philox 4x32-10, Salmon
+/// et al., SC 2011), so the n-th number can be had without the ones before it, and results depend neither on threads
+/// nor on order. Distributions are our own: the standard library's differ between vendors.
 class Stream {
  public:
   Stream(std::uint64_t seed, std::string_view name);
@@ -21,9 +21,9 @@ class Stream {
 
   /// Next number of the sequence.
   std::uint64_t bits();
-  double uniform();                        ///< in [0, 1)
+  double uniform();  ///< in [0, 1)
   double uniform(double low, double high);
-  double normal();                         ///< mean 0, standard deviation 1
+  double normal();  ///< mean 0, standard deviation 1
 
  private:
   std::uint32_t key_[2];

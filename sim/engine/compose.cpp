@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+
+#include "sim/engine/model.hpp"
+#include "sim/robot/robot_type.hpp"
+#include "sim/world/world_type.hpp"
+
+namespace tumble::sim::engine {
+
+namespace {
+
+struct SpecDeleter {
+  void operator()(mjSpec* spec) const { mj_deleteSpec(spec); }
+};
+using SpecPtr = std::unique_ptr<mjSpec, SpecDeleter>;
+
+constexpr double kStep_s = 0.0005;
+
+SpecPtr parse(const std::filesystem::path& file) {
+  char error[1000] = "";
+  SpecPtr spec(mj_parseXML(file.string().c_str(), nullptr, error, sizeof error));
+  if (!spec) throw InvalidSituation("model " + file.filename().string() + ": " + error);
+  return spec;
+}
+
+}  // namespace
+
+bool FrictionPatch::contains(double x_m, double y_m) const {
+  const double dx = x_m - centre_x_m, dy = y_m - centre_y_m;
+  const double c = std::cos(yaw_rad), s = std::sin(yaw_rad);
+  return std::abs(c * dx + s * dy) <= half_x_m && std::abs(-s * dx + c * dy) <= half_y_m;
+}
+
+World compose(const Situation& situation, const std::filesystem::path& models) {
+  const WorldType& world_type = find_world_type(situation.world.type);
+  const RobotType& robot_type = find_robot_type(situation.robot.type);
+  const Values world_values =
+      resolve("world." + situation.world.type, situation.world.values, world_type.component.parameters);
+  const Values robot_values =
+      resolve("robot." + situation.robot.type, situation.robot.values, robot_type.component.parameters);
+
+  World world;
+  const SpecPtr spec = parse(models / robot_type.file);
+  spec->option.timestep = kStep_s;
+  spec->option.integrator = mjINT_RK4;  // the only integrator here that keeps energy and momentum of a tumbling body
+  spec->compiler.usethread = 0;
+  robot_type.shape(spec.get(), robot_values, world);
+  world_type.build(spec.get(), world_values, situation.seed, world);
+
+  world.model.reset(mj_compile(spec.get(), nullptr));
+  if (!world.model) throw InvalidSituation(std::string("model: ") + mjs_getError(spec.get()));
+  world.robot_body = mj_name2id(world.model.get(), mjOBJ_BODY, "robot");
+  for (const std::string& name : world.surfaces) {
+    world.surface_geom.push_back(mj_name2id(world.model.get(), mjOBJ_GEOM, name.c_str()));
+  }
+  return world;
+}
+
+}  // namespace tumble::sim::engine

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/lidar/lidar_parameters.hpp"
+
+#include <array>
+
+namespace tumble::sim {
+
+namespace {
+
+constexpr double kRightAngle_rad = 1.5707963267948966;
+
+constexpr Parameter elevation(std::string_view name, double value_rad) {
+  return {name, value_rad, -kRightAngle_rad, kRightAngle_rad, "rad", "elevation of this channel, in firing order"};
+}
+
+// Both kinds share the errors of ranging; the values are the RS-16's and the Mid-100's.
+constexpr Parameter kRangeNoise{
+    "range_noise_m", 0.02, 0.0, 10.0, "m", "standard deviation of a range, white from point to point; 0: off"};
+constexpr Parameter kReferenceReflectivity{"detection_reflectivity", 0.2, 0.001, 1.0, "1",
+                                           "diffuse reflectivity at which detection_range_m holds"};
+constexpr Parameter kSteepness{"detection_steepness", 4.0, 0.1, 100.0, "1",
+                               "k of the share of returns kept, s^k / (1 + s^k), with the signal s = (reflectivity "
+                               "cos(incidence) / detection_reflectivity) (detection_range_m / range)^2"};
+constexpr Parameter kDropout{"dropout_share", 0.0, 0.0, 1.0, "1", "share of returns lost whatever their signal"};
+constexpr Parameter kIntensityQuantum{
+    "intensity_quantum", 1.0 / 255.0, 0.0, 1.0, "1", "step of the reported intensity; 0: off"};
+constexpr Parameter kCage{"sees_own_cage", 1.0, 0.0, 1.0, "1", "1: the robot's own struts give returns; 0: transparent"};
+
+// Elevations: the calibrated ones of the published rig, in radians.
+constexpr std::array kSpinning = {
+    Parameter{"spin_rate_hz", 10.0, 1.0, 50.0, "Hz", "turns per second; one turn is one sweep"},
+    Parameter{"clockwise", 1.0, 0.0, 1.0, "1", "1: the azimuth turns from x towards -y; 0: towards +y"},
+    Parameter{"firing_period_s", 3e-6, 1e-7, 1e-3, "s", "time between two channels of a sequence"},
+    Parameter{"sequence_period_s", 50e-6, 2e-6, 1e-2, "s", "time between two sequences of all channels"},
+    elevation("elevation_01_rad", -0.262371856),
+    elevation("elevation_02_rad", -0.227077808),
+    elevation("elevation_03_rad", -0.192403351),
+    elevation("elevation_04_rad", -0.157254166),
+    elevation("elevation_05_rad", -0.122323146),
+    elevation("elevation_06_rad", -0.087711522),
+    elevation("elevation_07_rad", -0.052888712),
+    elevation("elevation_08_rad", -0.017935003),
+    elevation("elevation_09_rad", 0.261555042),
+    elevation("elevation_10_rad", 0.226840443),
+    elevation("elevation_11_rad", 0.191560357),
+    elevation("elevation_12_rad", 0.157009820),
+    elevation("elevation_13_rad", 0.122077055),
+    elevation("elevation_14_rad", 0.086844093),
+    elevation("elevation_15_rad", 0.052016048),
+    elevation("elevation_16_rad", 0.017060593),
+    Parameter{"mirror_radius_m", 0.04638, 0.0, 1.0, "m", "R1: the beams leave at this distance from the spin axis"},
+    Parameter{"mirror_drop_m", 0.010875, -1.0, 1.0, "m", "R2: and this far below the origin of L"},
+    Parameter{"range_min_m", 0.2, 0.0, 100.0, "m", "nearer returns are lost"},
+    Parameter{"range_max_m", 150.0, 0.1, 10000.0, "m", "farther returns are lost"},
+    kRangeNoise,
+    Parameter{"range_quantum_m", 0.005, 0.0, 1.0, "m", "step of the reported range; 0: off"},
+    Parameter{"detection_range_m", 150.0, 0.0, 10000.0, "m",
+              "range where half of the returns of detection_reflectivity at normal incidence are lost; 0: no such loss"},
+    kReferenceReflectivity,
+    kSteepness,
+    kDropout,
+    kIntensityQuantum,
+    kCage,
+    Parameter{"driver_stamp_fault", 0.0, 0.0, 1.0, "1",
+              "1: time stamps as the published rig's driver wrote them, two sequences to a block of one period, which "
+              "compresses time twofold within packets of 24 sequences"},
+};
+
+constexpr std::array kRosette = {
+    Parameter{"units", 3.0, 1.0, 3.0, "1", "scanning units side by side; a whole number"},
+    Parameter{"unit_spacing_rad", 0.5235987755982988, 0.0, 1.6, "rad", "yaw between neighbouring units"},
+    Parameter{"point_period_s", 10e-6, 1e-7, 1e-3, "s", "time between two points of a unit"},
+    Parameter{"sweep_period_s", 0.1, 1e-3, 10.0, "s", "points are bundled into sweeps of this length"},
+    Parameter{"prism_1_rate_hz", 7294.0 / 60.0, -1000.0, 1000.0, "Hz", "turns per second of the first prism"},
+    Parameter{"prism_2_rate_hz", -4664.0 / 60.0, -1000.0, 1000.0, "Hz", "turns per second of the second prism"},
+    Parameter{"prism_1_amplitude", 0.1713, 0.0, 1.0, "1", "tangent of the first prism's deflection"},
+    Parameter{"prism_2_amplitude", 0.1744, 0.0, 1.0, "1", "tangent of the second prism's deflection"},
+    Parameter{"mixed_amplitude", 0.0022, 0.0, 1.0, "1",
+              "tangent of the deflection at twice the first rate minus the second; 0: off"},
+    Parameter{"range_min_m", 1.0, 0.0, 100.0, "m", "nearer returns are lost"},
+    Parameter{"range_max_m", 260.0, 0.1, 10000.0, "m", "farther returns are lost"},
+    kRangeNoise,
+    Parameter{"range_quantum_m", 0.001, 0.0, 1.0, "m", "step of the reported range; 0: off"},
+    Parameter{"detection_range_m", 130.0, 0.0, 10000.0, "m",
+              "range where half of the returns of detection_reflectivity at normal incidence are lost; 0: no such loss"},
+    kReferenceReflectivity,
+    kSteepness,
+    kDropout,
+    kIntensityQuantum,
+    kCage,
+};
+
+}  // namespace
+
+std::span<const Parameter> spinning_lidar_parameters() { return kSpinning; }
+
+std::span<const Parameter> rosette_lidar_parameters() { return kRosette; }
+
+}  // namespace tumble::sim

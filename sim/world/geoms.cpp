@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/world/geoms.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tumble::sim {
+
+namespace {
+
+mjsGeom* add_geom(mjSpec* spec, mjtGeom type, const Eigen::Vector3d& position_W_m, const Eigen::Vector3d& size_m,
+                  double yaw_rad, const Colour& colour) {
+  mjsGeom* geom = mjs_addGeom(mjs_findBody(spec, "world"), nullptr);
+  geom->type = type;
+  for (int i = 0; i < 3; ++i) {
+    geom->pos[i] = position_W_m[i];
+    geom->size[i] = size_m[i];
+  }
+  geom->quat[0] = std::cos(yaw_rad / 2);
+  geom->quat[3] = std::sin(yaw_rad / 2);
+  std::copy(colour.begin(), colour.end(), geom->rgba);
+  return geom;
+}
+
+}  // namespace
+
+mjsGeom* add_surface(mjSpec* spec, engine::World& world, const std::string& name, mjtGeom type,
+                     const Eigen::Vector3d& position_W_m, const Eigen::Vector3d& size_m, double yaw_rad,
+                     const Colour& colour) {
+  mjsGeom* geom = add_geom(spec, type, position_W_m, size_m, yaw_rad, colour);
+  mjs_setName(geom->element, name.c_str());
+  world.surfaces.push_back(name);
+  return geom;
+}
+
+void add_mark(mjSpec* spec, const engine::FrictionPatch& patch, const Colour& colour) {
+  constexpr double kHalfThickness_m = 0.0005;
+  mjsGeom* geom = add_geom(spec, mjGEOM_BOX, {patch.centre_x_m, patch.centre_y_m, kHalfThickness_m},
+                           {patch.half_x_m, patch.half_y_m, kHalfThickness_m}, patch.yaw_rad, colour);
+  geom->contype = 0;
+  geom->conaffinity = 0;
+  geom->group = 2;
+}
+
+void add_daylight(mjSpec* spec) {
+  mjsLight* sun = mjs_addLight(mjs_findBody(spec, "world"), nullptr);
+  sun->type = mjLIGHT_DIRECTIONAL;
+  const double from[3] = {0, 0, 30}, direction[3] = {0.4, 0.3, -0.86};
+  std::copy(from, from + 3, sun->pos);
+  std::copy(direction, direction + 3, sun->dir);
+  std::fill(sun->diffuse, sun->diffuse + 3, 0.7f);
+  std::fill(sun->ambient, sun->ambient + 3, 0.25f);
+
+  mjsTexture* sky = mjs_addTexture(spec, nullptr);
+  mjs_setName(sky->element, "sky");
+  sky->type = mjTEXTURE_SKYBOX;
+  sky->builtin = mjBUILTIN_GRADIENT;
+  const double high[3] = {0.45, 0.62, 0.85}, low[3] = {0.9, 0.93, 0.96};
+  std::copy(high, high + 3, sky->rgb1);
+  std::copy(low, low + 3, sky->rgb2);
+  sky->width = 64;
+  sky->height = 384;
+}
+
+}  // namespace tumble::sim

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/world/world_type.hpp"
+
+#include <array>
+
+#include "sim/registry.hpp"
+
+namespace tumble::sim {
+
+std::span<const WorldType* const> all_world_types() {
+  static const std::array<const WorldType*, 2> kTypes = {&hill_world(), &floor_world()};
+  return kTypes;
+}
+
+const WorldType& find_world_type(std::string_view name) {
+  return find_entry(all_world_types(), name, "world");
+}
+
+}  // namespace tumble::sim

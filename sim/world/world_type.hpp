@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "sim/engine/model.hpp"
+
+namespace tumble::sim {
+
+/// A kind of world: its parameters and what it adds to a model that is being composed.
+struct WorldType {
+  ComponentType component;
+  /// Adds static geoms to `spec` and fills `world` but for model and ids. `values` are resolved. What is random comes
+  /// from the stream "terrain" of `seed`.
+  void (*build)(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World& world);
+};
+
+/// Grassy hill: flat top, slope, run-out, relief, rocks, trunks.
+const WorldType& hill_world();
+/// Room with a level floor, walls, pillars and patches of other friction.
+const WorldType& floor_world();
+
+/// All kinds, in the order of registration: a new one is a file and a line in world_type.cpp.
+std::span<const WorldType* const> all_world_types();
+/// Throws InvalidSituation, naming the nearest known type.
+const WorldType& find_world_type(std::string_view name);
+
+}  // namespace tumble::sim
