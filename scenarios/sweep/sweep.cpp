@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 #include <sstream>
+#include <tuple>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/sweep/draw_process.hpp"
@@ -21,6 +22,7 @@ namespace {
 
 constexpr int kPollMs = 200;
 constexpr int kJobsMax = 4096;
+constexpr std::uint64_t kSeedsMax = 10'000'000;
 // what the simulation of a draw may take beyond its methods, in units of a method's time-out
 constexpr double kSimulateTimeouts = 2.0;
 
@@ -122,11 +124,13 @@ class Sweep {
   void plan(const std::vector<const Method*>& methods) {
     std::set<std::pair<std::string, std::uint64_t>> rejected;
     for (const RejectedDraw& draw : results_.rejected()) rejected.emplace(draw.scenario, draw.seed);
+    std::set<std::tuple<std::string, std::uint64_t, Kind, std::string>> held;
+    for (const Outcome& row : results_.outcomes()) held.emplace(row.scenario, row.seed, row.kind, row.method);
     for (std::uint64_t seed = suite_.first_seed;; ++seed) {
       for (const Scenario& scenario : scenarios_) {
         Pending draw{&scenario, seed, {}};
         for (const Method* method : applicable(methods, scenario.robot.type)) {
-          if (!results_.has(scenario.name, seed, method->info.kind, method->info.name)) draw.methods.push_back(method);
+          if (!held.contains({scenario.name, seed, method->info.kind, method->info.name})) draw.methods.push_back(method);
         }
         ++progress_.draws_total;
         if (draw.methods.empty() || rejected.contains({scenario.name, seed})) ++progress_.draws_done;
@@ -243,6 +247,9 @@ SweepProgress sweep(const DataRoot& data, const Suite& suite, const std::filesys
     throw BadInput("jobs is " + std::to_string(options.jobs) + ", must be within [1, " + std::to_string(kJobsMax) + "]");
   }
   if (suite.last_seed < suite.first_seed) throw BadInput("suite " + suite.name + ": last seed is below the first");
+  if (suite.last_seed - suite.first_seed >= kSeedsMax) {
+    throw BadInput("suite " + suite.name + ": more than " + std::to_string(kSeedsMax) + " seeds; sweep them in parts");
+  }
   Results results(database, Results::Mode::create_or_append);
   claim(results, data, suite, database);
   return Sweep(data, suite, results, options).run();
