@@ -133,8 +133,8 @@ std::vector<std::pair<std::string, YamlNode>> YamlNode::entries() const {
     const std::string name = key.text();
     if (!seen.insert(name).second) key.fail("key '" + name + "' is given twice");
     YamlNode value(entry.second, file_, join(place_, name));
-    // an alias stands where it is used, not where its anchor was, and an empty value has no mark of its own
-    value.line_ = std::max(value.line_, key.line_);
+    // a block, an alias (marked where its anchor is) and an empty value (marked nowhere) are looked for at their key
+    value.line_ = key.line_;
     out.emplace_back(name, std::move(value));
   }
   return out;

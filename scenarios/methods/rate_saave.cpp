@@ -9,13 +9,12 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::array<sim::Parameter, 4> kParameters = {{
-    {"saturation_point_rad_s", 10.45, 0.001, 1000.0, "rad/s",
+constexpr std::array<sim::Parameter, 3> kParameters = {{
+    {"saturation_point_rad_s", 10.45, 0.01, 1000.0, "rad/s",
      "a reading strictly beyond counts as clipped; slightly below the plateau of 10.5 rad/s seen on the MTi-30"},
     {"variance_estimated_rad2_s2", 0.2741, 1e-9, 1e9, "rad^2/s^2",
      "variance of a recovered axis: 0.2741 as in the authors' code, 3.648 as printed in the paper"},
     {"jerk_psd_rad2_s5", 1e6, 1e-6, 1e12, "rad^2/s^5", "density of the smoother's white angular jerk (paper, sec. IV)"},
-    {"published_sign", 0.0, 0.0, 1.0, "1", "1: the published sign of the rate inside the smoother's prior"},
 }};
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
@@ -38,7 +37,6 @@ Status saave_rates(const sim::Sensors& sensors, std::span<const ImuSample> sampl
   params.saturation_point_rad_s = parameters.at("saturation_point_rad_s");
   params.variance_estimated_rad2_s2 = parameters.at("variance_estimated_rad2_s2");
   params.jerk_psd_rad2_s5 = parameters.at("jerk_psd_rad2_s5");
-  params.published_sign = parameters.at("published_sign") != 0.0;
   out.clear();
   return Saave(params).estimate(samples, out);
 }

@@ -60,7 +60,9 @@ void TableWriter::time_s(std::int64_t time_ns) {
   const std::int64_t magnitude = std::llabs(time_ns);
   std::string fraction = std::to_string(magnitude % kNsPerS);
   fraction.insert(0, 9 - fraction.size(), '0');
-  cell((time_ns < 0 ? "-" : "") + std::to_string(magnitude / kNsPerS) + "." + fraction);
+  std::string text = time_ns < 0 ? "-" : "";
+  text.append(std::to_string(magnitude / kNsPerS)).append(1, '.').append(fraction);
+  cell(text);
 }
 
 void TableWriter::end_row() {
