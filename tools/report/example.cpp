@@ -43,7 +43,7 @@ bool typical_seed(const Summary& summary, const std::string& scenario, std::uint
       const MetricSummary* metric = base->find(name);
       if (metric == nullptr || metric->values.empty()) continue;
       const auto nearest = std::min_element(metric->values.begin(), metric->values.end(), [&](double a, double b) {
-        return std::abs(a - metric->median.value) < std::abs(b - metric->median.value);
+        return std::abs(a - metric->centre.value) < std::abs(b - metric->centre.value);
       });
       seed = metric->seeds[static_cast<std::size_t>(nearest - metric->values.begin())];
       return true;

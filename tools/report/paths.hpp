@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <cstdint>
 #include <vector>
 
@@ -21,9 +20,6 @@ struct Path {
 
 /// The true path, every `stride`-th physics sample and the last one.
 Path true_path(const sim::Sensors& sensors, const sim::Truth& truth, std::size_t stride);
-
-/// True pose of the body at a time, interpolated between physics samples, held at the ends. The truth must not be empty.
-Eigen::Isometry3d true_pose(const sim::Truth& truth, std::int64_t time_ns);
 
 /// The path of an estimate, moved to where the truth is at the estimate's first pose: position and yaw alone, as the scores
 /// align. Empty when the estimate has no poses, or lies in a frame of a sensor that the recording does not have.

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/scoring/truth_track.hpp"
 
 namespace tumble::tools {
 
@@ -68,6 +69,14 @@ double azimuth_across(const sim::Truth& truth) {
   return std::atan2(way.y(), way.x()) + 2.0;
 }
 
+Isometry3d robot_pose(const scenarios::TruthTrack& track, std::int64_t time_ns) {
+  const PoseState state = track.pose(time_ns);
+  Isometry3d T_WB = Isometry3d::Identity();
+  T_WB.linear() = state.q_WA.toRotationMatrix();
+  T_WB.translation() = state.p_WA_m;
+  return T_WB;
+}
+
 }  // namespace
 
 std::array<float, 4> Colour::rgba() const {
@@ -85,9 +94,8 @@ sim::Picture scene_picture(const Scene& scene, int robots, int width, int height
   view.height = height;
   view.paths = drawn_paths(scene);
   if (scene.truth != nullptr && !scene.truth->p_WB_m.empty()) {
-    for (const std::int64_t time_ns : instants_along(*scene.truth, robots)) {
-      view.robots_T_WB.push_back(true_pose(*scene.truth, time_ns));
-    }
+    const scenarios::TruthTrack track(*scene.truth, scenarios::Frame::body);
+    for (const std::int64_t time_ns : instants_along(*scene.truth, robots)) view.robots_T_WB.push_back(robot_pose(track, time_ns));
     view.azimuth_rad = azimuth_across(*scene.truth);
   }
   return sim::Renderer(*scene.situation, scene.models).draw(view);
@@ -97,6 +105,7 @@ sim::Picture film_picture(const Scene& scene, int frames, int columns, int width
   if (scene.truth == nullptr || scene.truth->p_WB_m.empty()) {
     throw scenarios::BadInput("a film strip needs a recording with its truth: it shows where the robot was");
   }
+  const scenarios::TruthTrack track(*scene.truth, scenarios::Frame::body);
   sim::Renderer renderer(*scene.situation, scene.models);
   sim::View view;
   view.width = width;
@@ -106,7 +115,7 @@ sim::Picture film_picture(const Scene& scene, int frames, int columns, int width
   view.distance_m = scene.sensors->sphere_radius_m > 0.0 ? 8.0 * scene.sensors->sphere_radius_m : 3.5;
   std::vector<sim::Picture> pictures;
   for (const std::int64_t time_ns : instants_along(*scene.truth, frames)) {
-    const Isometry3d T_WB = true_pose(*scene.truth, time_ns);
+    const Isometry3d T_WB = robot_pose(track, time_ns);
     view.robots_T_WB = {T_WB};
     view.look_at_W_m = T_WB.translation();
     pictures.push_back(renderer.draw(view));

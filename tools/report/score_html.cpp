@@ -36,8 +36,8 @@ const MethodSummary* best_method(const Section& section, const std::string& metr
   for (const MethodSummary& method : section.methods) {
     const MetricSummary* own = method.find(metric);
     if (own == nullptr || method.method == "oracle" || method.method == section.baseline) continue;
-    const double value = own->median.value;
-    if (best == nullptr || (more ? value > best->find(metric)->median.value : value < best->find(metric)->median.value)) {
+    const double value = own->centre.value;
+    if (best == nullptr || (more ? value > best->find(metric)->centre.value : value < best->find(metric)->centre.value)) {
       best = &method;
     }
   }
@@ -52,8 +52,8 @@ std::string failures_text(const MethodSummary& method) {
 std::string metric_cell(const std::string& name, const MetricSummary* metric, bool is_best) {
   if (metric == nullptr) return html::cell("", "none");
   std::string out = is_best ? "<td class=\"number best\">" : "<td class=\"number\">";
-  out += "<b>" + html::escaped(styled_value(name, metric->median.value, false)) + "</b>";
-  out += "<small>" + html::escaped(styled_interval(name, metric->median)) + "</small>";
+  out += "<b>" + html::escaped(styled_value(name, metric->centre.value, false)) + "</b>";
+  out += "<small>" + html::escaped(styled_interval(name, metric->centre)) + "</small>";
   if (metric->wins.pairs > 0) {
     out += "<small class=\"wins\">" + html::escaped(fmt::format("better in {} of {}", metric->wins.count, metric->wins.pairs)) + "</small>";
   }
@@ -84,14 +84,14 @@ std::vector<Headline> headlines(const Summary& summary) {
     headline.place = section.scenario + " · " + to_string(section.kind);
     const MethodSummary* best = best_method(section, metric);
     if (best == nullptr) {
-      headline.value = styled_value(metric, from->median.value, true);
+      headline.value = styled_value(metric, from->centre.value, true);
       headline.detail = fmt::format("{}: median of {} over {} draws", base->method, metric, from->values.size());
     } else {
       const MetricSummary& to = *best->find(metric);
-      const double change = from->median.value == 0.0 ? NAN : 100.0 * (to.median.value / from->median.value - 1.0);
+      const double change = from->centre.value == 0.0 ? NAN : 100.0 * (to.centre.value / from->centre.value - 1.0);
       headline.value = fmt::format("{}{} %", change < 0.0 ? "−" : "+", plain(std::abs(change)));
       headline.detail = fmt::format("{}: {} beside {} with {}; better in {} of {} draws ({})", best->method,
-                                    styled_value(metric, to.median.value, true), styled_value(metric, from->median.value, true),
+                                    styled_value(metric, to.centre.value, true), styled_value(metric, from->centre.value, true),
                                     base->method, to.wins.count, to.wins.pairs, metric);
     }
     out.push_back(std::move(headline));

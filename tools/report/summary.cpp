@@ -61,8 +61,13 @@ Wins paired_wins(const MetricSummary& own, const MetricSummary& base, Sense sens
   return wins;
 }
 
-void finish(MetricSummary& metric) {
-  metric.median = scenarios::median_interval(metric.values);
+void finish(const std::string& name, MetricSummary& metric) {
+  if (is_verdict(name)) {
+    const auto count = std::count_if(metric.values.begin(), metric.values.end(), [](double v) { return v != 0.0; });
+    metric.centre = scenarios::share_interval(count, static_cast<std::int64_t>(metric.values.size()));
+  } else {
+    metric.centre = scenarios::median_interval(metric.values);
+  }
   metric.quantile_95 = scenarios::quantile(metric.values, 0.95);
 }
 
@@ -74,7 +79,7 @@ void finish(Section& section) {
   for (MethodSummary& method : section.methods) {
     method.not_ok_share = scenarios::share_interval(method.not_ok, method.outcomes);
     for (auto& [name, metric] : method.metrics) {
-      finish(metric);
+      finish(name, metric);
       names.insert(name);
     }
   }
@@ -98,11 +103,10 @@ MetricStyle metric_style(const std::string& metric) {
   for (const char* end : {"_share", "_overlap", "_coverage", "_precision", "_recall", "_3sigma"}) {
     if (metric.ends_with(end)) return {"%", 100.0};
   }
-  if (metric == "map_failed") return {"%", 100.0};
+  if (is_verdict(metric)) return {"%", 100.0};
   // the longer endings first: "_m_s" also ends in "_s"
   const std::pair<const char*, MetricStyle> endings[] = {
       {"_rad_s", {"rad/s", 1.0}}, {"_m_s", {"m/s", 1.0}}, {"_rad", {"°", 180.0 / std::numbers::pi}},
-      {"_rest", {"°", 180.0 / std::numbers::pi}},  // inclination_rmse_rad_rest and its kin
       {"_mib", {"MiB", 1.0}}, {"_s", {"s", 1.0}}, {"_m", {"m", 1.0}}};
   for (const auto& [end, style] : endings) {
     if (metric.ends_with(end)) return style;
@@ -117,6 +121,8 @@ Sense metric_sense(const std::string& metric) {
   }
   return Sense::less;
 }
+
+bool is_verdict(const std::string& metric) { return metric == "map_failed"; }
 
 std::vector<std::string> headline_metrics(Kind kind) {
   switch (kind) {

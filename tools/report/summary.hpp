@@ -25,6 +25,9 @@ MetricStyle metric_style(const std::string& metric);
 enum class Sense { less, more, neither };
 Sense metric_sense(const std::string& metric);
 
+/// Whether a metric is 0 or 1 on each draw ("map_failed"): its share says something, its median does not.
+bool is_verdict(const std::string& metric);
+
 /// The metrics that say most about a kind, best first.
 std::vector<std::string> headline_metrics(scenarios::Kind kind);
 
@@ -36,7 +39,7 @@ struct Wins {
 /// One metric of one method over all draws of a scenario. Only outcomes with status `ok` give values: what failed is
 /// counted, not averaged in.
 struct MetricSummary {
-  scenarios::Interval median{};      ///< with its 95 % interval
+  scenarios::Interval centre{};      ///< median, or for a verdict its share; with the 95 % interval
   double quantile_95 = 0.0;
   std::vector<std::uint64_t> seeds;  ///< rising
   std::vector<double> values;        ///< parallel to `seeds`

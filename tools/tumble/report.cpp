@@ -45,7 +45,7 @@ Table score_table(const Section& section, bool all) {
     for (const MethodSummary& method : section.methods) {
       const MetricSummary* metric = method.find(name);
       if (metric == nullptr) continue;
-      table.add_row({first ? name : "", method.method, number_text(metric->median.value), interval_text(metric->median),
+      table.add_row({first ? name : "", method.method, number_text(metric->centre.value), interval_text(metric->centre),
                      number_text(metric->quantile_95), wins_text(metric->wins),
                      fmt::format("{} of {}", method.not_ok, method.outcomes)});
       first = false;
@@ -67,7 +67,7 @@ json to_json(const Summary& summary) {
                   {"baseline", section.baseline}, {"outcomes", method.outcomes}, {"not_ok", method.not_ok},
                   {"not_ok_share", interval_json(method.not_ok_share)}, {"metrics", json::object()}};
       for (const auto& [name, metric] : method.metrics) {
-        row["metrics"][name] = {{"median", interval_json(metric.median)}, {"quantile_95", finite(metric.quantile_95)},
+        row["metrics"][name] = {{is_verdict(name) ? "share" : "median", interval_json(metric.centre)}, {"quantile_95", finite(metric.quantile_95)},
                                 {"count", metric.values.size()}, {"better_in", metric.wins.count}, {"pairs", metric.wins.pairs}};
       }
       rows.push_back(std::move(row));
