@@ -3,6 +3,7 @@
 
 #include "sim/engine/model.hpp"
 #include "sim/robot/robot_type.hpp"
+#include "sim/simulate.hpp"
 #include "sim/world/world_type.hpp"
 
 namespace tumble::sim::engine {
@@ -15,6 +16,17 @@ struct SpecDeleter {
 using SpecPtr = std::unique_ptr<mjSpec, SpecDeleter>;
 
 constexpr double kStep_s = 0.0005;
+
+/// Without handlers the engine writes a log file beside the program and ends the process on an error. Its warnings are
+/// counted in mjData and checked after every step.
+void install_handlers() {
+  static const bool kInstalled = [] {
+    mju_user_warning = [](const char*) {};
+    mju_user_error = [](const char* message) { throw SimulationFailure(std::string("engine error: ") + message); };
+    return true;
+  }();
+  (void)kInstalled;
+}
 
 SpecPtr parse(const std::filesystem::path& file) {
   char error[1000] = "";
@@ -39,6 +51,7 @@ World compose(const Situation& situation, const std::filesystem::path& models) {
   const Values robot_values =
       resolve("robot." + situation.robot.type, situation.robot.values, robot_type.component.parameters);
 
+  install_handlers();
   World world;
   const SpecPtr spec = parse(models / robot_type.file);
   spec->option.timestep = kStep_s;

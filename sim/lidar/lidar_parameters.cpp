@@ -87,7 +87,8 @@ constexpr std::array kRosette = {
     kSteepness,
     kDropout,
     kIntensityQuantum,
-    kCage,
+    Parameter{"sees_own_cage", 0.0, 0.0, 1.0, "1",
+              "1: the robot's own struts give returns; 0: transparent, as the shell around the lidar of the sphere"},
 };
 
 }  // namespace

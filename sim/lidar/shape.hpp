@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+/// Private to sim: analytic surfaces of MuJoCo's primitive geoms.
+namespace tumble::sim {
+
+enum class ShapeKind : std::uint8_t { plane, sphere, capsule, ellipsoid, cylinder, box };
+
+/// A primitive with its pose in a frame F (world or body); its axes S and `size_m` as MuJoCo defines them:
+/// plane half sizes x, y about the z axis (0: infinite), sphere radius, capsule and cylinder radius and half length
+/// along z, ellipsoid semi-axes, box half sizes.
+struct Shape {
+  ShapeKind kind = ShapeKind::sphere;
+  Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d R_FS = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d p_FS_m = Eigen::Vector3d::Zero();
+};
+
+/// Distance along the unit `direction_F` to the first crossing of the surface, from outside or inside; infinity when
+/// there is none. A plane is met from its front only, as mj_ray has it. `normal_F` is the outward unit normal there.
+double cast_ray(const Shape& shape, const Eigen::Vector3d& origin_F_m, const Eigen::Vector3d& direction_F,
+                Eigen::Vector3d& normal_F);
+
+/// Distance of a point to the surface, whichever side it is on [m]; exact but for the ellipsoid (1e-9 relative).
+double surface_distance(const Shape& shape, const Eigen::Vector3d& point_F_m);
+
+/// Whether a point lies inside; a plane contains nothing.
+bool contains(const Shape& shape, const Eigen::Vector3d& point_F_m);
+
+/// Half sizes of the box along S that holds the shape; infinite along an unbounded plane.
+Eigen::Vector3d half_extent(const Shape& shape);
+
+}  // namespace tumble::sim

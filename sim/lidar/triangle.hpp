@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace tumble::sim {
+
+/// Distance of a point to a triangle, its inside included [m]; a degenerate triangle counts as its edges.
+float triangle_distance(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c,
+                        const Eigen::Vector3f& point);
+
+}  // namespace tumble::sim

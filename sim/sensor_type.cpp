@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/sensor_type.hpp"
+
+#include <array>
+
+#include "sim/imu/imu_simulation.hpp"
+#include "sim/lidar/lidar_parameters.hpp"
+#include "sim/lidar/lidar_simulation.hpp"
+#include "sim/registry.hpp"
+
+namespace tumble::sim {
+
+namespace {
+
+void add_imu(const SensorContext& context, Recording& recording) {
+  ImuRecord& record = recording.sensors.imus.emplace_back();
+  ImuTruth truth;
+  simulate_imu(recording.truth, context.sensor, context.T_BX, context.gravity_m_s2, context.seed, record, truth);
+  record.T_BI = context.given_T_BX;
+  recording.truth.imus.push_back(std::move(truth));
+}
+
+void add_lidar(const SensorContext& context, Recording& recording) {
+  LidarRecord& record = recording.sensors.lidars.emplace_back();
+  LidarTruth truth;
+  const MotionTrack motion{recording.truth.period_ns, recording.truth.p_WB_m, recording.truth.q_WB};
+  simulate_lidar(context.world, context.sensor, context.T_BX, motion, context.seed, context.threads, record, truth);
+  record.T_BL = context.given_T_BX;
+  recording.truth.lidars.push_back(std::move(truth));
+}
+
+const SensorType& imu_sensor() {
+  static const SensorType kType{{"imu", "gyroscope and accelerometer", imu_parameters()}, add_imu};
+  return kType;
+}
+
+const SensorType& spinning_lidar_sensor() {
+  static const SensorType kType{
+      {"spinning_lidar", "column of lasers turning about an axis", spinning_lidar_parameters()}, add_lidar};
+  return kType;
+}
+
+const SensorType& rosette_lidar_sensor() {
+  static const SensorType kType{
+      {"rosette_lidar", "beam that draws a rosette, one or several side by side", rosette_lidar_parameters()},
+      add_lidar};
+  return kType;
+}
+
+}  // namespace
+
+std::span<const SensorType* const> all_sensor_types() {
+  static const std::array<const SensorType*, 3> kTypes = {&imu_sensor(), &spinning_lidar_sensor(),
+                                                          &rosette_lidar_sensor()};
+  return kTypes;
+}
+
+const SensorType& find_sensor_type(std::string_view kind) {
+  return find_entry(all_sensor_types(), kind, "sensors");
+}
+
+}  // namespace tumble::sim

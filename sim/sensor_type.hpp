@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "sim/engine/model.hpp"
+#include "sim/recording.hpp"
+
+namespace tumble::sim {
+
+/// What a sensor is simulated from; all outlive the call.
+struct SensorContext {
+  const engine::World& world;
+  const SensorSpec& sensor;             ///< resolved
+  const Eigen::Isometry3d& T_BX;        ///< true mounting of the sensor's frame X
+  const Eigen::Isometry3d& given_T_BX;  ///< the calibration that an estimator is given
+  double gravity_m_s2;
+  std::uint64_t seed;
+  int threads;
+};
+
+/// A kind of sensor: its parameters, and how its readings and its truth are added to a recording that holds the body's
+/// truth.
+struct SensorType {
+  ComponentType component;
+  void (*simulate)(const SensorContext& context, Recording& recording);
+};
+
+/// All kinds, in the order of registration.
+std::span<const SensorType* const> all_sensor_types();
+/// Throws InvalidSituation, naming the nearest known kind.
+const SensorType& find_sensor_type(std::string_view kind);
+
+}  // namespace tumble::sim
