@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/mapping/deskew.hpp"
 
+#include <cmath>
+
 #include "tumble/common/time.hpp"
 
 namespace tumble {
@@ -23,7 +25,8 @@ PointCounts select_points(std::span<const LidarPoint> points, const PointBounds&
     if (range2 < near2 || range2 > far2 || (has_body && body.contains(point.position_L_m))) continue;
     const double offset_s = seconds(point.offset_ns);
     selected.push_back({R * point.position_L_m + p, static_cast<float>(sweep_start_s + offset_s),
-                        static_cast<float>(offset_s), std::sqrt(range2)});
+                        static_cast<float>(offset_s), std::sqrt(range2), point.ring});
+    counts.rings_differ |= point.ring != selected.front().ring;
   }
   counts.used = selected.size();
   return counts;

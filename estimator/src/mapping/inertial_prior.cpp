@@ -23,11 +23,11 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
   Eigen::Matrix<double, 9, 9> noise = Eigen::Matrix<double, 9, 9>::Zero();
   noise.diagonal().segment<3>(0).setConstant(std::pow(params.prior_sigma_m * span, 2));
   noise.diagonal().segment<3>(3).setConstant(std::pow(params.prior_sigma_rad * span, 2));
-  noise.diagonal().segment<3>(6).setConstant(std::pow(params.prior_sigma_m_s * span, 2));
 
   const TimeNs start_ns = trajectory.start_ns();
   std::size_t hint = 0;
   Eigen::Matrix3d turned = Eigen::Matrix3d::Zero();
+  double pushed_m_s = 0.0;
   for (const MotionSample& sample : samples) {
     const double from = std::max(seconds(sample.from_ns - start_ns), 0.0);
     const double to = std::min(seconds(sample.time_ns - start_ns), trajectory.duration_s());
@@ -37,8 +37,11 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
     for (int axis = 0; axis < 3; ++axis) {
       if (excess_axes >> axis & sample.clipped_axes >> axis & 1) variance[axis] = 0.0;
     }
+    pushed_m_s += (to - from) * sample.f_I_m_s2.norm();
     turned += (to - from) * R * variance.asDiagonal() * R.transpose();
   }
+  noise.diagonal().segment<3>(6).setConstant(std::pow(params.prior_sigma_m_s * span, 2) +
+                                            std::pow(params.force_sigma_share * pushed_m_s, 2));
   noise.block<3, 3>(3, 3) += trajectory.duration_s() * turned;
   return noise;
 }

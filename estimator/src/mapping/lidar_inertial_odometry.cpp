@@ -19,6 +19,8 @@ using Params = LidarInertialOdometry::Params;
 using SweepReport = LidarInertialOdometry::SweepReport;
 
 constexpr std::uint8_t kAllAxes = 7;
+constexpr double kSameLineCosine = 0.9988;  // 0.05 rad, less than the angle between two rings
+constexpr int kRingBits = 16;
 
 void check(const Params& params) {
   require_within("gravity_m_s2", params.gravity_m_s2, 0.0, 100.0);
@@ -32,6 +34,9 @@ void check(const Params& params) {
   require_within("prior_sigma_m", params.prior_sigma_m, 1e-9, 1e3);
   require_within("prior_sigma_rad", params.prior_sigma_rad, 1e-9, 1e3);
   require_within("prior_sigma_m_s", params.prior_sigma_m_s, 1e-9, 1e3);
+  require_within("force_sigma_share", params.force_sigma_share, 0.0, 1.0);
+  require_within("trusted_prior_m", params.trusted_prior_m, 0.0, 1e3);
+  require_within("trusted_prior_rad", params.trusted_prior_rad, 0.0, 1e3);
   require_within("clipped_sigma_rad_s", params.clipped_sigma_rad_s, 0.0, 100.0);
   require_within("rate_sigma_max_rad_s", params.rate_sigma_max_rad_s, 0.0, 100.0);
   require_within("excess_sigma_min_rad_s", params.excess_sigma_min_rad_s, 1e-9, 100.0);
@@ -63,9 +68,11 @@ struct LidarInertialOdometry::Impl {
   Status check_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points) const;
   Status check_selection(TimeNs span_ns, std::span<const LidarPoint> points, const PointCounts& counts) const;
   Registration::Prior prior() const;
+  bool is_trusted(const MotionState& prior) const;
   void choose_points();
   void register_sweep(TimeNs end_ns, SweepReport& report);
-  std::size_t extend_map();
+  std::uint32_t scan_line_base(bool rings_differ);
+  std::size_t extend_map(bool rings_differ);
   void finish(TimeNs end_ns, SweepReport& report);
 
   Params params;
@@ -76,6 +83,8 @@ struct LidarInertialOdometry::Impl {
   std::uint8_t excess_axes_at_end = 0;
   VoxelMap map;
   std::vector<Eigen::Vector3f> seen_from_W_m;  // per sweep that gave points to the map
+  Eigen::Vector3d scan_axis_W = Eigen::Vector3d::Zero();  // of the sweeps that share scan lines
+  std::uint32_t scan_attitude = 0;                        // counts changes of it
 
   // memory kept between sweeps
   Registration registration;
@@ -134,6 +143,12 @@ Registration::Prior LidarInertialOdometry::Impl::prior() const {
   return prior;
 }
 
+bool LidarInertialOdometry::Impl::is_trusted(const MotionState& prior) const {
+  const Eigen::Vector3d m2 = prior.covariance.diagonal().head<3>(), rad2 = prior.covariance.diagonal().segment<3>(3);
+  return m2.maxCoeff() <= params.trusted_prior_m * params.trusted_prior_m &&
+         rad2.maxCoeff() <= params.trusted_prior_rad * params.trusted_prior_rad;
+}
+
 void LidarInertialOdometry::Impl::choose_points() {
   compute_levers(trajectory, points, positions_W_m);
   for (std::size_t i = 0; i < points.size(); ++i) positions_W_m[i] += trajectory.base_m(points[i].t_s).cast<float>();
@@ -144,11 +159,16 @@ void LidarInertialOdometry::Impl::choose_points() {
 
 void LidarInertialOdometry::Impl::register_sweep(TimeNs end_ns, SweepReport& report) {
   Registration::Result result;
+  const Registration::Prior before = prior();
   const Status status =
-      registration.align(prior(), samples, end_ns, params.gravity_m_s2, chosen, map, trajectory, result);
+      registration.align(before, samples, end_ns, params.gravity_m_s2, chosen, map, trajectory, result);
   report.iterations = result.iterations;
   report.inlier_share = result.points == 0 ? 0.0 : double(result.inliers) / double(result.points);
-  if (!status.ok() || result.verdict != RegistrationVerdict::converged) return;
+  if (!status.ok()) return;
+  if (result.verdict == RegistrationVerdict::too_few && chosen.size() >= params.matches_min && is_trusted(before.state)) {
+    report.verdict = SweepVerdict::degenerate;
+  }
+  if (result.verdict != RegistrationVerdict::converged) return;
 
   report.conditioning = result.eigenvalues[5] > 0.0 ? result.eigenvalues[0] / result.eigenvalues[5] : 0.0;
   report.weakest_direction = result.directions.col(0);
@@ -158,13 +178,27 @@ void LidarInertialOdometry::Impl::register_sweep(TimeNs end_ns, SweepReport& rep
   excess_rad_s = result.excess_rad_s;
 }
 
-std::size_t LidarInertialOdometry::Impl::extend_map() {
+/// Sweeps of a sensor that holds its attitude draw the same lines; one that turns draws new ones.
+std::uint32_t LidarInertialOdometry::Impl::scan_line_base(bool rings_differ) {
+  if (!rings_differ) return VoxelMap::kNoLine;
+  const MotionState middle = trajectory.state(0.5 * trajectory.duration_s());
+  const Eigen::Vector3d axis = middle.q_WI * params.T_IL.linear().col(2);
+  if (axis.dot(scan_axis_W) < kSameLineCosine) {
+    scan_axis_W = axis;
+    ++scan_attitude;
+  }
+  return scan_attitude << kRingBits;
+}
+
+std::size_t LidarInertialOdometry::Impl::extend_map(bool rings_differ) {
   compute_levers(trajectory, points, positions_W_m);
   const std::uint32_t sweep = static_cast<std::uint32_t>(seen_from_W_m.size());
+  const std::uint32_t line = scan_line_base(rings_differ);
   std::size_t added = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3f position = positions_W_m[i] + trajectory.base_m(points[i].t_s).cast<float>();
-    added += map.insert(position, static_cast<float>(registration.point_sigma_m(points[i])), sweep);
+    added += map.insert(position, static_cast<float>(registration.point_sigma_m(points[i])), sweep,
+                        line == VoxelMap::kNoLine ? line : line | points[i].ring);
   }
   seen_from_W_m.push_back(trajectory.state(0.5 * trajectory.duration_s()).p_WI_m.cast<float>());
   return added;
@@ -251,7 +285,7 @@ Status LidarInertialOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::spa
     if (!first) loose = my.prior().state;
     if (Status built = my.trajectory.build(loose, my.samples, end_ns, my.params.gravity_m_s2); !built.ok()) return built;
   } else {
-    report.map_points_added = my.extend_map();
+    report.map_points_added = my.extend_map(counts.rings_differ);
   }
   my.finish(end_ns, report);
   return status;

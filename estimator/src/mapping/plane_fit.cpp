@@ -2,13 +2,37 @@
 #include "tumble/mapping/plane_fit.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 
 namespace tumble {
+
+namespace {
+
+/// Largest number of neighbours on one scan line.
+int most_on_one_line(const VoxelMap& map, const Neighbours& neighbours) {
+  std::array<std::uint32_t, Neighbours::kMax> line;
+  for (int i = 0; i < neighbours.count; ++i) line[i] = map.line(neighbours.index[i]);
+  int most = 1;
+  for (int i = 0; i < neighbours.count; ++i) {
+    if (line[i] == VoxelMap::kNoLine) continue;
+    int same = 0;
+    for (int j = i; j < neighbours.count; ++j) same += line[j] == line[i];
+    most = std::max(most, same);
+  }
+  return most;
+}
+
+}  // namespace
 
 PlaneFit fit_plane(const VoxelMap& map, const Neighbours& neighbours, const PlaneBounds& bounds) {
   PlaneFit fit;
   const int n = neighbours.count;
   if (n < bounds.neighbours_min || n < 3) return fit;
+
+  if (n - most_on_one_line(map, neighbours) < bounds.off_line_min) {
+    fit.verdict = PlaneVerdict::one_line;
+    return fit;
+  }
 
   // relative to the nearest neighbour, so that floats keep their digits far from the origin
   const Eigen::Vector3f origin = map.position_W_m(neighbours.index[0]);

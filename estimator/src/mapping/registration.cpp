@@ -221,7 +221,9 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
     now.v_WI_m_s += step.segment<3>(6);
     excess += step.segment<3>(9);
     if (Status status = trajectory.build(now, samples, end_ns, gravity_m_s2, excess); !status.ok()) return status;
-    settled = step.segment<3>(0).norm() < params_.step_m && step.segment<3>(3).norm() < params_.step_rad;
+    const double span = trajectory.duration_s();
+    settled = step.segment<3>(0).norm() < params_.step_m && step.segment<3>(6).norm() * span < params_.step_m &&
+              step.segment<3>(3).norm() < params_.step_rad && step.segment<3>(9).norm() * span < params_.step_rad;
     result.correction_m = (now.p_WI_m - prior.state.p_WI_m).norm();
     result.correction_rad = so3::log(now.q_WI * prior.state.q_WI.conjugate()).norm();
     if (result.correction_m > params_.correction_max_m || result.correction_rad > params_.correction_max_rad) break;

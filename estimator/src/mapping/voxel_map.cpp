@@ -63,7 +63,7 @@ std::uint32_t VoxelMap::first_chunk(const Eigen::Vector3i& cell, std::uint64_t& 
   return groups_[group][inside];
 }
 
-bool VoxelMap::insert(const Eigen::Vector3f& position, float sigma_m, std::uint32_t sweep) {
+bool VoxelMap::insert(const Eigen::Vector3f& position, float sigma_m, std::uint32_t sweep, std::uint32_t line) {
   constexpr int kMask = (1 << kGroupBits) - 1;
   const float finest = params_.spacing_m > 0.0 ? static_cast<float>(1.0 / params_.spacing_m) : cells_per_m_;
   // one margin for cells and cubes of the spacing; also false for NaN
@@ -92,6 +92,7 @@ bool VoxelMap::insert(const Eigen::Vector3f& position, float sigma_m, std::uint3
     chunks_.push_back(chunk);
     sigma_m_.resize(sigma_m_.size() + kChunk, -1.0f);
     sweep_.resize(sweep_.size() + kChunk, 0);
+    line_.resize(line_.size() + kChunk, kNoLine);
     vacant_ += kChunk;
   }
   Chunk& chunk = chunks_[first];
@@ -101,6 +102,7 @@ bool VoxelMap::insert(const Eigen::Vector3f& position, float sigma_m, std::uint3
   chunk.z[place] = position.z();
   sigma_m_[first * kChunk + place] = std::max(sigma_m, 0.0f);
   sweep_[first * kChunk + place] = sweep;
+  line_[first * kChunk + place] = line;
   --vacant_;
   return true;
 }

@@ -71,7 +71,7 @@ INSTANTIATE_TEST_SUITE_P(Densities, NeighbourSearch,
                          testing::Values(Density{4000, 6.0f, 0.5, 1.0f}, Density{300, 10.0f, 0.5, 1.0f},
                                          Density{5000, 2.0f, 0.5, 1.0f}, Density{2000, 6.0f, 1.0, 1.0f},
                                          Density{2000, 6.0f, 0.3, 2.0f}),
-                         [](const auto& info) { return "n" + std::to_string(info.index); });
+                         [](const auto& test) { return "n" + std::to_string(test.index); });
 
 TEST(VoxelMap, KeepsOnePointPerCubeOfTheSpacing) {
   VoxelMap map({0.5, 0.1});

@@ -19,6 +19,7 @@ struct SweepPoint {
   float t_s = 0.0f;       ///< after the start of the trajectory
   float sweep_t_s = 0.0f; ///< after the start of the sweep
   float range_m = 0.0f;   ///< from the lidar
+  std::uint16_t ring = 0;
 };
 
 /// Which returns are used.
@@ -33,6 +34,7 @@ struct PointCounts {
   std::size_t given = 0;
   std::size_t finite = 0;  ///< returns with finite coordinates; misses may be stored as NaN
   std::size_t used = 0;
+  bool rings_differ = false;  ///< false when the device does not tell its rings
 };
 
 /// Takes the usable returns of a sweep into the IMU's axes. `sweep_start_s` is the sweep's start after the trajectory's.

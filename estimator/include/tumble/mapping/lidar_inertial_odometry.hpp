@@ -19,7 +19,7 @@ namespace tumble {
 enum class SweepVerdict : std::uint8_t {
   first,        ///< started the map
   registered,   ///< aligned with the map in all six directions
-  degenerate,   ///< aligned where the surfaces allow it, prior elsewhere
+  degenerate,   ///< aligned where the surfaces allow it, prior elsewhere (everywhere, when conditioning is 0)
   rejected,     ///< too few matches, or a correction beyond the bound: prior kept, map not extended
 };
 const char* to_string(SweepVerdict verdict);
@@ -50,9 +50,12 @@ class LidarInertialOdometry {
     double correction_max_rad = 1.1;  ///< a larger correction of the prior is rejected
     /// What the inertial side may be wrong by after 0.1 s, beside what RateState reports: standard deviations that grow in
     /// proportion to time. Loose in doubt; tight holds a world with few features. Bounds (0, 1e3].
-    double prior_sigma_m = 0.05;
+    double prior_sigma_m = 0.01;
     double prior_sigma_rad = 0.01;
-    double prior_sigma_m_s = 0.3;
+    double prior_sigma_m_s = 0.03;
+    /// Standard deviation of the specific force as a share of its magnitude: velocity is uncertain by this times the
+    /// integral of the force, which counts at impacts; bound [0, 1].
+    double force_sigma_share = 0.03;
     /// Standard deviation assumed for a rate on a clipped axis that the rate method did not recover; bound [0, 100].
     double clipped_sigma_rad_s = 3.0;
     double rate_sigma_max_rad_s = 5.0;  ///< what RateState reports is believed up to this; bound [0, 100]
@@ -65,6 +68,10 @@ class LidarInertialOdometry {
     /// A sweep whose conditioning is below this is `degenerate`; bound [0, 1].
     double degenerate_conditioning = 0.01;
     std::size_t matches_min = 100;    ///< fewer matched points reject a sweep
+    /// A sweep with too few matches still extends the map, as `degenerate`, while the inertial prior is this certain
+    /// (standard deviations): at rest a lidar draws rings only, which give no planes until it turns. Bounds [0, 1e3].
+    double trusted_prior_m = 0.1;
+    double trusted_prior_rad = 0.03;
   };
 
   struct SweepReport {

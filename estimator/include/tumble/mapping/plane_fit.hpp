@@ -8,7 +8,7 @@
 namespace tumble {
 
 /// What a neighbourhood of map points allows.
-enum class PlaneVerdict { plane, too_few, collinear, rough };
+enum class PlaneVerdict { plane, too_few, collinear, one_line, rough };
 
 /// Plane through a neighbourhood: normal . x = normal . centre.
 struct PlaneFit {
@@ -23,7 +23,10 @@ struct PlaneBounds {
   int neighbours_min = 5;
   /// l1 below this share of l2: the neighbours lie on a line (a lidar's ring at rest) and the normal would be false.
   double collinear_share = 0.03;
-  double rough_share = 0.2;  ///< l0 above this share of l1: no plane
+  double rough_share = 0.1;  ///< l0 above this share of l1: no plane
+  /// Fewer neighbours than this beside the most frequent scan line: the plane would be that of the ring, not of the
+  /// surface (a ring around a pillar or through a corner of a room is flat, and its normal is false).
+  int off_line_min = 2;
 };
 
 /// Least-squares plane of a set of map points. Does not allocate.

@@ -26,6 +26,9 @@ struct Neighbours {
 /// one per cube of the spacing. Copies are independent and equal. Coordinates are floats: a map is a few kilometres wide.
 class VoxelMap {
  public:
+  /// Mark of a point that is on no known scan line.
+  static constexpr std::uint32_t kNoLine = 0xffffffffu;
+
   struct Params {
     double voxel_m = 0.5;    ///< edge of a cell; a few times the spacing searches fastest; bound [0.01, 100]
     double spacing_m = 0.1;  ///< at most one point is kept per cube of this edge; 0 keeps all; bound [0, voxel_m]
@@ -33,9 +36,10 @@ class VoxelMap {
 
   explicit VoxelMap(const Params& params);
 
-  /// Adds a point unless its cube is taken. `sigma_m` is the uncertainty of its position, `sweep` a mark that comes back
-  /// from sweep(). Returns whether it was added. Points that are not finite or beyond 2^20 cells are not added.
-  bool insert(const Eigen::Vector3f& position_W_m, float sigma_m, std::uint32_t sweep);
+  /// Adds a point unless its cube is taken. `sigma_m` is the uncertainty of its position; `sweep` and `line` are marks that
+  /// come back from sweep() and line(). Returns whether it was added. Points that are not finite or beyond 2^20 cells are
+  /// not added.
+  bool insert(const Eigen::Vector3f& position_W_m, float sigma_m, std::uint32_t sweep, std::uint32_t line = kNoLine);
 
   /// The k <= Neighbours::kMax nearest points within `radius_m`; equal distances in order of insertion within a cell.
   /// Exact. Does not allocate; cost grows with the number of cells that the final radius touches.
@@ -48,6 +52,8 @@ class VoxelMap {
   Eigen::Vector3f position_W_m(std::uint32_t index) const;
   float sigma_m(std::uint32_t index) const { return sigma_m_[index]; }
   std::uint32_t sweep(std::uint32_t index) const { return sweep_[index]; }
+  /// Scan line of a point: returns of one ring while the sensor holds its attitude share a number.
+  std::uint32_t line(std::uint32_t index) const { return line_[index]; }
 
  private:
   static constexpr int kChunk = 16;
@@ -69,7 +75,7 @@ class VoxelMap {
   std::vector<Group> groups_;
   std::vector<Chunk> chunks_;
   std::vector<float> sigma_m_;  // per place in the chunks; negative: free
-  std::vector<std::uint32_t> sweep_;
+  std::vector<std::uint32_t> sweep_, line_;
   std::size_t vacant_ = 0;
 };
 
