@@ -8,31 +8,27 @@
 #include <vector>
 
 #include "scenarios/data_root.hpp"
+#include "scenarios/draw/distribution.hpp"
 #include "sim/situation.hpp"
 
 namespace tumble::scenarios {
-
-/// A number of a scenario: fixed or drawn. Each draws from its own named stream, so adding one leaves the others alone.
-struct Distribution {
-  enum class Shape { constant, uniform, normal, log_uniform, choice };
-  Shape shape = Shape::constant;
-  std::vector<double> numbers;  ///< constant: value; uniform, log_uniform: low, high; normal: mean, sigma[, low, high]; choice: the values
-  int line = 0;                 ///< of the file, for messages
-};
 
 /// A scenario file as read: a family of situations.
 struct Scenario {
   struct Part {
     std::string type;
     std::map<std::string, Distribution> numbers;
+    int line = 0;  ///< of the file, for messages
   };
   struct Sensor {
     std::string name, kind, device, site;
     std::map<std::string, Distribution> numbers;
     std::map<std::string, Distribution> mount_error;
+    int line = 0;
   };
   std::string name;
   std::string doc;
+  std::string file;  ///< where it was read, for messages
   Distribution duration_s;
   Part world, robot, motion;
   std::vector<Sensor> sensors;
@@ -46,10 +42,11 @@ std::vector<std::string> scenario_names(const DataRoot& data);
 Scenario load_scenario(const DataRoot& data, const std::string& name);
 
 /// Fixes every number: data sheet of each device, the scenario's changes, draws from streams named by the number's place
-/// ("world.slope_rad"). The result is resolved: complete and checked. Throws BadInput.
+/// ("world.slope_rad", "sensors.imu.mount_error.x_m"). The result is resolved: complete and checked. Throws BadInput.
 sim::Situation draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed);
 
-/// The resolved situation as YAML and back, without loss (doubles round-trip).
+/// The resolved situation as YAML and back, without loss (doubles round-trip). Reading is strict, but does not ask whether
+/// this build knows the types and numbers: sim::resolve does. Both throw BadInput; `place` begins the messages.
 std::string to_yaml(const sim::Situation& situation);
 sim::Situation situation_from_yaml(const std::string& text, const std::string& place);
 

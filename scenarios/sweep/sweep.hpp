@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scenarios/data_root.hpp"
+#include "scenarios/methods/method.hpp"
 
 namespace tumble::scenarios {
 

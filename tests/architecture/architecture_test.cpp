@@ -84,7 +84,7 @@ std::vector<fs::path> sources() {
   return out;
 }
 
-std::string relative(const fs::path& path) { return fs::relative(path, TUMBLE_SOURCE_DIR).generic_string(); }
+std::string path_in_tree(const fs::path& path) { return fs::relative(path, TUMBLE_SOURCE_DIR).generic_string(); }
 
 /// Private headers of a module may be reached from inside the module alone: follow the includes of a public header.
 void collect_reachable(const std::string& header, std::vector<std::string>& seen) {
@@ -109,7 +109,7 @@ TEST(Architecture, EveryIncludeFollowsTheTable) {
   ASSERT_GT(files.size(), 40u) << "the scan found too few files to mean anything";
   for (const fs::path& file : files) {
     for (const std::string& include : includes_of(file)) {
-      EXPECT_EQ(broken_rule(relative(file), include), "") << relative(file) << " includes " << include;
+      EXPECT_EQ(broken_rule(path_in_tree(file), include), "") << path_in_tree(file) << " includes " << include;
     }
   }
 }
@@ -160,7 +160,7 @@ TEST(Architecture, FilesStayBelowTheirCeilings) {
   for (const fs::path& file : sources()) {
     std::ifstream stream(file);
     const auto lines = std::count(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>(), '\n');
-    EXPECT_LE(lines, file.extension() == ".hpp" ? 300 : 400) << relative(file);
+    EXPECT_LE(lines, file.extension() == ".hpp" ? 300 : 400) << path_in_tree(file);
   }
 }
 
@@ -169,7 +169,7 @@ TEST(Architecture, EverySourceCarriesTheLicence) {
     std::ifstream stream(file);
     std::string line;
     std::getline(stream, line);
-    EXPECT_EQ(line, "// SPDX-License-Identifier: BSD-3-Clause") << relative(file);
+    EXPECT_EQ(line, "// SPDX-License-Identifier: BSD-3-Clause") << path_in_tree(file);
   }
 }
 

@@ -6,8 +6,30 @@
 namespace tumble::so3 {
 
 namespace {
-// below this angle the series is exact to rounding
+
+// below this angle two terms of the series are exact to rounding
 constexpr double kSmallAngle = 1e-4;
+// below this angle x - sin(x) cancels; six terms of its series are exact to rounding up to here
+constexpr double kCancellingAngle = 0.5;
+
+// (1 - cos x) / x^2, by the half angle because 1 - cos x cancels
+double cosine_term(double angle, double angle2) {
+  if (angle < kSmallAngle) return 0.5 - angle2 / 24.0;
+  const double s = std::sin(0.5 * angle);
+  return 2.0 * s * s / angle2;
+}
+
+// (x - sin x) / x^3
+double sine_term(double angle, double angle2) {
+  if (angle > kCancellingAngle) return (angle - std::sin(angle)) / (angle2 * angle);
+  double term = 1.0 / 6.0, sum = 0.0;
+  for (int n = 5; n <= 17; n += 2) {
+    sum += term;
+    term *= -angle2 / ((n - 1) * n);
+  }
+  return sum;
+}
+
 }  // namespace
 
 Eigen::Matrix3d hat(const Eigen::Vector3d& v) {
@@ -25,9 +47,14 @@ Eigen::Quaterniond exp(const Eigen::Vector3d& phi) {
 }
 
 Eigen::Vector3d log(const Eigen::Quaterniond& q) {
-  const double sign = q.w() < 0.0 ? -1.0 : 1.0;
+  // of the two vectors of a half turn the one whose first non-zero component is positive, so that q and -q agree
+  double sign = q.w() < 0.0 ? -1.0 : 1.0;
+  if (q.w() == 0.0) {
+    const double lead = q.x() != 0.0 ? q.x() : (q.y() != 0.0 ? q.y() : q.z());
+    sign = lead < 0.0 ? -1.0 : 1.0;
+  }
   const Eigen::Vector3d v = sign * q.vec();
-  const double w = sign * q.w();
+  const double w = std::abs(q.w());
   const double n = v.norm();
   const double scale = n < kSmallAngle ? 2.0 / w * (1.0 - n * n / (3.0 * w * w)) : 2.0 * std::atan2(n, w) / n;
   return scale * v;
@@ -36,11 +63,8 @@ Eigen::Vector3d log(const Eigen::Quaterniond& q) {
 Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& phi) {
   const double angle2 = phi.squaredNorm();
   const double angle = std::sqrt(angle2);
-  const bool small = angle < kSmallAngle;
-  const double a = small ? 0.5 - angle2 / 24.0 : (1.0 - std::cos(angle)) / angle2;
-  const double b = small ? 1.0 / 6.0 - angle2 / 120.0 : (angle - std::sin(angle)) / (angle2 * angle);
   const Eigen::Matrix3d k = hat(phi);
-  return Eigen::Matrix3d::Identity() + a * k + b * k * k;
+  return Eigen::Matrix3d::Identity() + cosine_term(angle, angle2) * k + sine_term(angle, angle2) * k * k;
 }
 
 Eigen::Matrix3d left_jacobian_inverse(const Eigen::Vector3d& phi) {
@@ -54,7 +78,16 @@ Eigen::Matrix3d left_jacobian_inverse(const Eigen::Vector3d& phi) {
 }
 
 Eigen::Quaterniond shortest_arc(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-  return Eigen::Quaterniond::FromTwoVectors(from, to);
+  // q = (|h| / 2, from x to / |h|) with h = from + to. from x to = from x h, and h is exact to rounding where the
+  // vectors are nearly opposite, so nothing cancels up to a half turn.
+  const Eigen::Vector3d h = from + to;
+  const double length = h.norm();
+  if (length < 1e-15) {
+    const Eigen::Vector3d axis = from.unitOrthogonal();
+    return {0.0, axis.x(), axis.y(), axis.z()};
+  }
+  const Eigen::Vector3d v = from.cross(h) / length;
+  return Eigen::Quaterniond(0.5 * length, v.x(), v.y(), v.z()).normalized();
 }
 
 }  // namespace tumble::so3

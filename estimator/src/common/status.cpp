@@ -1,9 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/common/status.hpp"
 
-#include <sstream>
+#include <array>
+#include <charconv>
 
 namespace tumble {
+
+namespace {
+
+// shortest text that reads back as the same number, whatever the locale of the program
+std::string number(double value) {
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value);
+  return std::string(text.data(), end.ptr);
+}
+
+}  // namespace
 
 const char* to_string(Trouble trouble) {
   switch (trouble) {
@@ -22,28 +34,15 @@ const char* to_string(Trouble trouble) {
 
 std::string Status::message() const {
   if (ok()) return "ok";
-  std::ostringstream text;
-  text.precision(17);
-  text << to_string(trouble) << ": " << field << " is " << value << ", bound " << bound;
-  return text.str();
+  return std::string(to_string(trouble)) + ": " + field + " is " + number(value) + ", bound " + number(bound);
 }
-
-namespace {
-std::string describe(const std::string& field, double value, const std::string& bound) {
-  std::ostringstream text;
-  text << field << " is " << value << ", must be " << bound;
-  return text.str();
-}
-}  // namespace
 
 InvalidParams::InvalidParams(const std::string& field, double value, const std::string& bound)
-    : std::invalid_argument(describe(field, value, bound)) {}
+    : std::invalid_argument(field + " is " + number(value) + ", must be " + bound) {}
 
 void require_within(const char* field, double value, double low, double high) {
   if (value >= low && value <= high) return;
-  std::ostringstream bound;
-  bound << "within [" << low << ", " << high << "]";
-  throw InvalidParams(field, value, bound.str());
+  throw InvalidParams(field, value, "within [" + number(low) + ", " + number(high) + "]");
 }
 
 }  // namespace tumble

@@ -19,16 +19,19 @@ namespace tumble {
 /// from the IMU to the axis, l = (t.e)e - t; the component of the specific force along l is |l| |w|^2 in free flight,
 /// so the one clipped axis follows from the two others. Then all samples are smoothed by WnojSmoother.
 ///
-/// What it does not model: a second clipped axis (the first in x, y, z order is treated, the others are believed),
-/// angular acceleration across the axis, contact, clipped accelerometers, bias.
+/// What it does not model: a second clipped axis (the first in x, y, z order is treated, the others are believed with
+/// the variance of an unclipped reading), angular acceleration across the axis, contact, clipped accelerometers, bias.
+/// Near r = |l| = 0 the estimate is unguarded (r = 0 exactly rejects). The variance of an estimate depends on nothing.
+/// Smoothed rates are not held to the rail again: they may fall below it. As published, all of it.
 class Saave {
  public:
   struct Params {
-    /// t: from the centre of mass to the IMU, IMU axes [m]. Needed to about a millimetre.
+    /// t: from the centre of mass to the IMU, IMU axes [m]; bound |t_j| <= 10. Needed to about a millimetre.
     Eigen::Vector3d lever_arm_m = {-0.022, -0.085, 0.055};
-    /// A reading strictly beyond this counts as clipped [rad/s]; bound (0, 1000].
+    /// A reading strictly beyond this counts as clipped [rad/s]; bound [0.01, 1000]. Trap, kept as published: a device
+    /// whose plateau is exactly this value never exceeds it and nothing is recovered; pass a value slightly below.
     double saturation_point_rad_s = 10.5;
-    /// Variance of an unclipped reading [(rad/s)^2]; (0.03 deg/s/sqrt(Hz) * sqrt(100 Hz))^2.
+    /// Variance of an unclipped reading [(rad/s)^2]; (0.03 deg/s/sqrt(Hz) * sqrt(100 Hz))^2. Variances: [1e-12, 1e12].
     double variance_measured_rad2_s2 = 2.741e-5;
     /// Variance of an accepted estimate [(rad/s)^2]: 0.2741 as in the authors' code, 3.648 as printed in the paper.
     double variance_estimated_rad2_s2 = 0.2741;
@@ -36,10 +39,7 @@ class Saave {
     double variance_rejected_rad2_s2 = 1e6;
     /// Power spectral density of the white angular jerk [rad^2/s^5].
     double jerk_psd_rad2_s5 = 1e6;
-    /// Published sign convention inside the smoother's prior (rate of the world in the body), kept for bit-faithful
-    /// comparison only; see WnojSmoother.
-    bool published_sign = false;
-    /// Longest time between two samples before the run is refused [s].
+    /// Longest time between two samples before the run is refused [s]; bound [1e-6, 3600].
     double gap_max_s = 1.0;
   };
 
@@ -62,10 +62,11 @@ class Saave {
   /// Throws InvalidParams on a parameter outside of its bound.
   explicit Saave(const Params& params);
 
-  /// One step of the recursion. O(1), no allocation.
+  /// One step of the recursion. On trouble (`non_finite`, `time_order`, `gap`) neither state nor out is touched.
+  /// O(1), no allocation.
   Status step(const ImuSample& sample, State& state, Recovered& out) const;
 
-  /// Both stages over a whole recording; one RateState per sample. O(N).
+  /// Both stages over a whole recording; one RateState per sample. O(N). No sample: `empty`.
   /// On trouble nothing is written to `out` and the status names the first offending sample's field and value.
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const;
 

@@ -14,13 +14,19 @@ namespace tumble {
 ///
 /// Per knot the angle, the rate and the angular acceleration of the body; between knots the prior of Tang, Yoon and
 /// Barfoot (RA-L 2019), Phi and Q of order three with density `jerk_psd`; per knot a measurement of the rate with its
-/// own variance per axis. The angle is unmeasured and locked at the first knot. Three independent axes: what the
-/// commutators of SO(3) would add is about dt^2 |w x alpha| / 4 and is left out.
-/// Gives mean and covariance of the rate at every knot (block-tridiagonal elimination and back-substitution).
+/// own variance per axis. The angle is unmeasured and locked at the first knot, so eliminating it from the last knot
+/// backwards is exact and leaves the prior of the pair (rate, acceleration) with Q = q [dt^3/3, dt^2/2; dt^2/2, dt]:
+/// only that pair is computed. Gives mean and variance of the rate at every knot by orthogonal (square-root
+/// information) elimination and back-substitution; readings with variances many orders of magnitude apart do no harm.
+///
+/// What it does not model: three independent axes; what the commutators of SO(3) would add is about
+/// dt^2 |w x alpha| / 4 and is left out. The sign in which the rate enters the prior (the published code feeds +gyro
+/// where its own convention is -gyro) acts through those commutators alone: negating angle, rate and acceleration
+/// together leaves this linear problem as it is. It therefore has no switch here.
 class WnojSmoother {
  public:
   struct Params {
-    double jerk_psd_rad2_s5 = 1e6;  ///< bound (0, 1e12]; larger follows the readings more closely
+    double jerk_psd_rad2_s5 = 1e6;  ///< bound [1e-12, 1e12]; larger follows the readings more closely
   };
   struct Measurement {
     TimeNs time_ns;
@@ -33,8 +39,12 @@ class WnojSmoother {
     Eigen::Vector3d variance_rad2_s2;  ///< posterior variance of the rate, per axis
   };
 
+  /// Throws InvalidParams when the density is outside of its bound.
   explicit WnojSmoother(const Params& params);
-  /// Time stamps must rise strictly (`time_order`) and all values be finite (`non_finite`).
+
+  /// One result per measurement. No measurement: `empty`; time stamps must rise strictly (`time_order`), values be
+  /// finite (`non_finite`), variances lie in [1e-18, 1e18] (`out_of_range`); on trouble `out` is left as it was. A
+  /// single measurement is returned unchanged, with acceleration zero. O(N) in time and memory.
   Status smooth(std::span<const Measurement> measurements, std::vector<Smoothed>& out) const;
 
  private:

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
+#include "tumble/common/status.hpp"
 #include "tumble/common/time.hpp"
 
 namespace tumble {
@@ -27,5 +28,12 @@ struct ImuSample {
 inline bool is_finite(const ImuSample& sample) {
   return sample.angular_velocity_rad_s.allFinite() && sample.specific_force_m_s2.allFinite();
 }
+
+/// `non_finite` naming the field of the first reading that is not finite; ok otherwise.
+Status check_sample(const ImuSample& sample);
+
+/// `time_order` unless time_ns > previous_ns (value: time_ns, bound: previous_ns), `gap` when more than gap_max_s lies
+/// between them (value: the gap in seconds); ok otherwise.
+Status check_follows(TimeNs time_ns, TimeNs previous_ns, double gap_max_s);
 
 }  // namespace tumble

@@ -9,10 +9,11 @@ namespace tumble::so3 {
 /// Skew-symmetric matrix [v]x with [v]x w = v x w.
 Eigen::Matrix3d hat(const Eigen::Vector3d& v);
 
-/// Unit quaternion of the rotation by |phi| radians about phi. Accurate to rounding for any |phi|, 0 included.
+/// Unit quaternion of the rotation by |phi| radians about phi, exact to the rounding of |phi|; 0 gives the identity.
 Eigen::Quaterniond exp(const Eigen::Vector3d& phi);
 
-/// Rotation vector of shortest length (at most pi) of a unit quaternion; q and -q give the same vector.
+/// Rotation vector of shortest length (at most pi) of a unit quaternion; q and -q give the same vector. Of the two
+/// vectors of a half turn, the one whose first non-zero component is positive.
 Eigen::Vector3d log(const Eigen::Quaterniond& q);
 
 /// Left Jacobian J_l(phi): Exp(phi + d) = Exp(J_l d) Exp(phi) to first order in d. The right one is its transpose.

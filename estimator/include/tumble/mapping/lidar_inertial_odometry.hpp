@@ -19,35 +19,59 @@ namespace tumble {
 enum class SweepVerdict : std::uint8_t {
   first,        ///< started the map
   registered,   ///< aligned with the map in all six directions
-  degenerate,   ///< aligned where the surfaces allow it, prior elsewhere
+  degenerate,   ///< aligned where the surfaces allow it, prior elsewhere (everywhere, when conditioning is 0)
   rejected,     ///< too few matches, or a correction beyond the bound: prior kept, map not extended
 };
 const char* to_string(SweepVerdict verdict);
 
 /// Lidar-inertial odometry and mapping of a body that tumbles: integrates the IMU between sweeps, deskews each point at
-/// its own time, registers the sweep to a voxel map by k-nearest-neighbour point-to-plane, and extends the map.
+/// its own time, registers the sweep to a voxel map by k-nearest-neighbour point-to-plane, and extends the map. Position,
+/// attitude and velocity at the start of a sweep are refined together, so that the deskewing is refined too.
 ///
 /// World: z up, origin and yaw at the IMU at the first sample, levelled by the specific force at rest.
 /// Feed IMU samples in time order, then each sweep once IMU samples reach its end. No threads, no files, no printing.
+/// Not modelled: biases of the IMU, loop closure, moving objects.
 class LidarInertialOdometry {
  public:
   struct Params {
     Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< lidar in IMU axes
-    double gravity_m_s2 = 9.80665;
-    double rest_s = 0.5;              ///< length of rest at the start used to level the attitude; bound (0, 60]
+    double gravity_m_s2 = 9.80665;    ///< bound [0, 100]
+    double rest_s = 0.5;              ///< at most this much of the start is used to level the attitude; bound (0, 60]
     double range_min_m = 0.3;         ///< nearer returns are dropped; bound [0, 10]
-    double range_max_m = 100.0;       ///< farther returns are dropped
+    double range_max_m = 100.0;       ///< farther returns are dropped; bound (range_min_m, 1e4]
     Eigen::AlignedBox3d own_body_L{Eigen::Vector3d(-0.5, -0.4, -0.27), Eigen::Vector3d(0.5, 0.4, 0.23)};  ///< returns inside are the robot's own; an empty box keeps all
-    double sweep_voxel_m = 0.25;      ///< one point per voxel of a sweep is registered; bound (0, 10]
-    double map_voxel_m = 0.5;         ///< cell of the map's hash; bound (0, 10]
-    double map_spacing_m = 0.05;      ///< least distance of two map points; bound [0, 1]
-    int neighbours = 8;               ///< k of the plane fit; bound [3, 32]
-    double match_distance_m = 1.0;    ///< farther map points are no match; bound (0, 10]
+    double sweep_voxel_m = 0.25;      ///< one point per voxel of a sweep is registered; bound [0.01, 10]
+    double map_voxel_m = 0.5;         ///< cell of the map's hash; bound [0.01, 10]
+    double map_spacing_m = 0.1;       ///< at most one map point per cube of this edge; bound [0, map_voxel_m]
+    int neighbours = 12;              ///< k of the plane fit; bound [3, 32]
+    double match_distance_m = 1.0;    ///< farther map points are no match; bound [0.001, 10]
     int iterations_max = 30;          ///< bound [1, 200]
     double correction_max_m = 15.0;   ///< a larger correction of the prior is rejected
     double correction_max_rad = 1.1;  ///< a larger correction of the prior is rejected
-    double prior_sigma_m = 0.3;       ///< prior between sweeps, per sweep
-    double prior_sigma_rad = 0.1;
+    /// What the inertial side may be wrong by after 0.1 s, beside what RateState reports: standard deviations that grow in
+    /// proportion to time. Loose in doubt; tight holds a world with few features. Bounds (0, 1e3].
+    double prior_sigma_m = 0.01;
+    double prior_sigma_rad = 0.01;
+    double prior_sigma_m_s = 0.03;
+    /// Standard deviation of the specific force as a share of its magnitude: velocity is uncertain by this times the
+    /// integral of the force, which counts at impacts; bound [0, 1].
+    double force_sigma_share = 0.03;
+    /// Standard deviation assumed for a rate on a clipped axis that the rate method did not recover; bound [0, 100].
+    double clipped_sigma_rad_s = 3.0;
+    double rate_sigma_max_rad_s = 5.0;  ///< what RateState reports is believed up to this; bound [0, 100]
+    /// Estimate the excess of the rate on clipped axes in the registration, three unknowns a sweep that act on clipped
+    /// samples only; their prior is the rate's reported uncertainty, at least excess_sigma_min_rad_s; bound (0, 100].
+    bool estimate_excess_rate = false;
+    double excess_sigma_min_rad_s = 0.3;
+    /// A point's uncertainty grows over the sweep by this and weighs it down (the published time weighting); bound [0, 1e3].
+    double skew_sigma_m_s = 0.25;
+    /// A sweep whose conditioning is below this is `degenerate`; bound [0, 1].
+    double degenerate_conditioning = 0.01;
+    std::size_t matches_min = 100;    ///< fewer matched points reject a sweep
+    /// A sweep with too few matches still extends the map, as `degenerate`, while the inertial prior is this certain
+    /// (standard deviations): at rest a lidar draws rings only, which give no planes until it turns. Bounds [0, 1e3].
+    double trusted_prior_m = 0.1;
+    double trusted_prior_rad = 0.03;
   };
 
   struct SweepReport {
@@ -57,6 +81,12 @@ class LidarInertialOdometry {
     double inlier_share = 0.0;           ///< of the points registered
     double conditioning = 0.0;           ///< smallest over largest eigenvalue of the scaled normal matrix
     int iterations = 0;
+    /// Direction in which the surfaces hold the pose least: (position, attitude scaled by the rms lever) in W, unit.
+    Eigen::Matrix<double, 6, 1> weakest_direction = Eigen::Matrix<double, 6, 1>::Zero();
+    Eigen::Vector3d excess_rate_rad_s = Eigen::Vector3d::Zero();  ///< added to the clipped axes, along the sign of the rate
+    std::size_t points_used = 0;         ///< finite returns in range that are not the robot's own
+    std::size_t points_registered = 0;   ///< one per voxel of these
+    std::size_t map_points_added = 0;
   };
 
   explicit LidarInertialOdometry(const Params& params);
@@ -67,14 +97,21 @@ class LidarInertialOdometry {
   LidarInertialOdometry(const LidarInertialOdometry&);
   LidarInertialOdometry& operator=(const LidarInertialOdometry&);
 
-  /// Adds a sample with the angular velocity that a rate method gave for it. On trouble the state is unchanged.
+  /// Adds a sample with the angular velocity that a rate method gave for it. On trouble the state is unchanged:
+  /// `non_finite`, `time_order`, or `out_of_range` when `rate` belongs to another time. A gap is bridged by the sample
+  /// after it, and the prior loosened accordingly.
   Status add_imu(const ImuSample& sample, const RateState& rate);
 
-  /// Registers a sweep of points fired in [start_ns, end_ns]. Trouble: `empty` (no points), `time_order`, `too_few`
-  /// (IMU samples do not reach the end), `out_of_range` (an offset beyond the sweep), `non_finite`.
+  /// Registers a sweep of points fired in [start_ns, end_ns]; sweeps do not overlap. Returns that are NaN are misses.
+  ///
+  /// Trouble that leaves the state as it was: `time_order` (end before start, or start before the last sweep's end),
+  /// `too_few` (IMU samples do not cover the sweep), `out_of_range` (an offset beyond the sweep).
+  /// Trouble after which the pose is the inertial prior and the verdict `rejected`: `empty` (no points), `non_finite` (no
+  /// finite point), `too_few` (none in range), `degenerate` (all points bear one time stamp though the sweep lasts).
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, SweepReport& report);
 
-  /// The whole map so far. O(number of points).
+  /// The whole map so far, with normals from the nearest neighbours that look towards where the point was seen from.
+  /// O(number of points).
   std::vector<MapPoint> map() const;
 
  private:

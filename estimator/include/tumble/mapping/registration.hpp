@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tumble/mapping/deskew.hpp"
+#include "tumble/mapping/plane_fit.hpp"
+#include "tumble/mapping/sweep_trajectory.hpp"
+#include "tumble/mapping/voxel_map.hpp"
+
+namespace tumble {
+
+/// How a registration ended.
+enum class RegistrationVerdict : std::uint8_t {
+  converged,
+  too_few,        ///< matches below the bound: the prior is returned
+  diverged,       ///< iterations ran out, or the correction of the prior is beyond the bound: the prior is returned
+};
+
+/// Registers a sweep to a map by point-to-plane distances, together with the motion inside the sweep.
+///
+/// Unknowns: position, attitude (left perturbation in W) and velocity of the IMU at the start of the trajectory, and,
+/// where asked for, the excess rate of clipped axes. A point in the world is X = p + v t + g t^2/2 + Exp(phi) u with the
+/// lever u of SweepTrajectory, so that each iteration deskews anew. Cost: robustly weighted squared distances to planes
+/// through the k nearest map points, plus the prior's Mahalanobis distance; Gauss-Newton, a 12x12 normal matrix at most.
+class Registration {
+ public:
+  struct Params {
+    int neighbours = 8;               ///< k of the plane fit; bound [3, 32]
+    double match_distance_m = 1.0;    ///< farther map points are no match; bound (0, 10]
+    int iterations_max = 30;          ///< bound [1, 200]
+    double step_m = 5e-4;             ///< converged when a step is below this and below step_rad
+    double step_rad = 1e-4;
+    double rematch_m = 0.05;          ///< a point's plane is searched anew once the point has moved by this
+    double range_sigma_m = 0.02;      ///< of a return, at least; grows as range_sigma_share of the range
+    double range_sigma_share = 0.0015;
+    double skew_sigma_m_s = 0.25;     ///< growth of a point's uncertainty over the sweep (time weighting); 0: none
+    double kernel_min_m = 0.1;        ///< least width of the robust kernel (Geman-McClure)
+    /// Weight of a point's information: neighbouring returns share the errors of the map and are not independent.
+    double information_share = 0.1;
+    std::size_t matches_min = 100;    ///< fewer matches are too few
+    double matched_share_min = 0.1;   ///< of the points
+    double correction_max_m = 15.0;
+    double correction_max_rad = 1.1;
+    PlaneBounds plane;
+  };
+
+  /// Start of the trajectory as the inertial side believes it, and of the excess rate.
+  struct Prior {
+    MotionState state;
+    Eigen::Vector3d excess_rad_s = Eigen::Vector3d::Zero();
+    Eigen::Vector3d excess_sigma_rad_s = Eigen::Vector3d::Zero();  ///< an axis with 0 is not estimated
+  };
+
+  struct Result {
+    RegistrationVerdict verdict = RegistrationVerdict::too_few;
+    MotionState state;  ///< at the trajectory's start, covariance after registration (9x9)
+    Eigen::Vector3d excess_rad_s = Eigen::Vector3d::Zero();
+    Eigen::Vector3d excess_sigma_rad_s = Eigen::Vector3d::Zero();
+    std::size_t points = 0, matches = 0, inliers = 0;
+    double correction_m = 0.0;    ///< of the position at the start; where the correction broke its bound, that value
+    double correction_rad = 0.0;
+    int iterations = 0;
+    /// Normal matrix of (position, attitude scaled to metres at the root-mean-square lever) per unit of weight, without the
+    /// prior: eigenvalues ascending, and their directions. The translation part has trace 1.
+    Eigen::Matrix<double, 6, 1> eigenvalues = Eigen::Matrix<double, 6, 1>::Zero();
+    Eigen::Matrix<double, 6, 6> directions = Eigen::Matrix<double, 6, 6>::Identity();
+  };
+
+  explicit Registration(const Params& params);
+
+  /// Aligns `points` (times after the start of the trajectory) with `map`. `trajectory` is rebuilt from `prior` and
+  /// `samples` up to `end_ns` and, on return, stands for the result. Trouble of the trajectory is passed on.
+  Status align(const Prior& prior, std::span<const MotionSample> samples, TimeNs end_ns, double gravity_m_s2,
+               std::span<const SweepPoint> points, const VoxelMap& map, SweepTrajectory& trajectory, Result& result);
+
+  /// Standard deviation of a return along its ray together with the skew left after deskewing.
+  double point_sigma_m(const SweepPoint& point) const;
+
+  static constexpr int kUnknowns = 12;
+  using Vector = Eigen::Matrix<double, kUnknowns, 1>;
+  using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
+
+  /// Distance of a point to a plane and its derivative by (position, attitude, velocity, excess), for one point.
+  /// Public so that it can be checked against differences.
+  static double residual(const SweepTrajectory& trajectory, const SweepPoint& point, const PlaneFit& plane,
+                         std::size_t& hint, Vector& derivative);
+
+ private:
+  struct Match {
+    PlaneFit plane;
+    Eigen::Vector3f searched_at_W_m;
+    float map_variance_m2 = 0.0f;
+    bool searched = false;
+  };
+  struct Normal;
+
+  void find_matches(const VoxelMap& map, std::span<const SweepPoint> points);
+  double kernel_width_m();
+  Normal accumulate(std::span<const SweepPoint> points, const SweepTrajectory& trajectory, bool with_excess, double kernel_m);
+
+  Params params_;
+  // memory kept between sweeps; holds nothing that the next result depends on
+  std::vector<Eigen::Vector3f> levers_, positions_;
+  std::vector<Match> matches_;
+  std::vector<float> distances_, sorted_;
+};
+
+}  // namespace tumble

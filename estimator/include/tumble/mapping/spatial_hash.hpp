@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace tumble {
+
+/// Hash table from the integer coordinates of a cube to a number; open addressing, keys are never removed singly.
+class SpatialHash {
+ public:
+  static constexpr std::uint32_t kAbsent = 0xffffffffu;
+  static constexpr int kLimit = 1 << 20;  ///< coordinates lie within [-kLimit, kLimit)
+
+  /// One number for three coordinates within the limit.
+  static std::uint64_t key(const Eigen::Vector3i& cube) {
+    const auto part = [](int v) { return static_cast<std::uint64_t>(v + kLimit) & 0x1fffffu; };
+    return part(cube.x()) | (part(cube.y()) << 21) | (part(cube.z()) << 42);
+  }
+
+  explicit SpatialHash(std::size_t expected = 64);
+
+  /// Value of a key, or kAbsent.
+  std::uint32_t find(std::uint64_t key) const {
+    for (std::size_t slot = slot_of(key);; slot = (slot + 1) & mask_) {
+      if (keys_[slot] == key) return values_[slot];
+      if (keys_[slot] == kFree) return kAbsent;
+    }
+  }
+
+  /// Enters a key with a value unless it is there; returns the value now in force. Amortised O(1).
+  std::uint32_t insert(std::uint64_t key, std::uint32_t value);
+
+  /// Forgets all keys and keeps the memory.
+  void clear();
+  std::size_t size() const { return size_; }
+
+ private:
+  static constexpr std::uint64_t kFree = ~std::uint64_t{0};
+
+  std::size_t slot_of(std::uint64_t key) const {
+    // Fibonacci hashing of the folded key: neighbouring cubes spread over the table
+    return static_cast<std::size_t>(((key ^ (key >> 29)) * 0x9e3779b97f4a7c15u) >> shift_) & mask_;
+  }
+  void grow();
+
+  std::vector<std::uint64_t> keys_;
+  std::vector<std::uint32_t> values_;
+  std::size_t mask_ = 0;
+  int shift_ = 0;
+  std::size_t size_ = 0;
+};
+
+}  // namespace tumble

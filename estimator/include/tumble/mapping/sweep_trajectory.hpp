@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tumble/common/pose.hpp"
+#include "tumble/common/status.hpp"
+#include "tumble/common/time.hpp"
+
+namespace tumble {
+
+/// One window of an IMU with the angular velocity of a rate method: both are means over (from_ns, time_ns].
+struct MotionSample {
+  TimeNs from_ns = 0;
+  TimeNs time_ns = 0;
+  Eigen::Vector3d w_WI_I_rad_s = Eigen::Vector3d::Zero();
+  Eigen::Vector3d f_I_m_s2 = Eigen::Vector3d::Zero();
+  Eigen::Vector3d rate_sigma_rad_s = Eigen::Vector3d::Zero();  ///< standard deviation of the rate, IMU axes
+  std::uint8_t clipped_axes = 0;                               ///< bit j: the gyro's axis j was at its rail
+};
+
+/// Motion of the IMU at one instant. Errors are ordered (position, attitude, velocity), all in W, the attitude's as in
+/// AttitudeState: q_true = Exp(phi) q.
+struct MotionState {
+  TimeNs time_ns = 0;
+  Eigen::Vector3d p_WI_m = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d v_WI_m_s = Eigen::Vector3d::Zero();
+  Eigen::Matrix<double, 9, 9> covariance = Eigen::Matrix<double, 9, 9>::Zero();
+
+  PoseState pose() const;
+};
+
+/// Motion of the IMU over a stretch of time from a known start, by strapdown integration; can be asked at any instant.
+///
+/// Attitude: R(t) = R_k Exp(w_k (t - t_k)), exact for a rate that is constant in body axes over each sample. Position:
+/// p(t) = p_0 + v_0 t + g t^2 / 2 + S(t) with S the double integral of the specific force in W, whose mean over each
+/// sample is R_k J_l(w_k dt) f_k (exact for a force constant in body axes, as the centripetal force of a spin is).
+///
+/// The excess rate e is a correction of the clipped axes, constant over the stretch: the rate used is w_j + s_j e_j where
+/// axis j was clipped with sign s_j. Not modelled: sculling within a sample, the earth's rotation.
+class SweepTrajectory {
+ public:
+  /// What a lidar point needs of its instant: attitude, and S(t) of the text above.
+  struct Instant {
+    Eigen::Quaterniond q_WI;
+    Eigen::Vector3d thrust_m;
+  };
+  /// Derivatives of an instant with respect to the excess rate: phi = attitude e, dS = thrust e (first order).
+  struct ExcessDerivative {
+    Eigen::Matrix3d attitude_s;
+    Eigen::Matrix3d thrust_m_s;
+  };
+
+  /// Integrates from `start` to `end_ns`. Samples must be in time order and follow each other; the first window must reach
+  /// back to the start. Trouble: `too_few` (no sample, or they end before end_ns), `time_order` (end before start), `gap`
+  /// (the first window begins after the start). Reuses its memory.
+  Status build(const MotionState& start, std::span<const MotionSample> samples, TimeNs end_ns, double gravity_m_s2,
+               const Eigen::Vector3d& excess_rad_s = Eigen::Vector3d::Zero());
+
+  TimeNs start_ns() const { return start_.time_ns; }
+  double duration_s() const { return duration_s_; }
+
+  /// State at `t_s` seconds after the start, clamped to the stretch. `hint` remembers the interval between calls in time
+  /// order and may hold anything in [0, intervals()); any order is right.
+  Instant at(double t_s, std::size_t& hint) const;
+  ExcessDerivative excess_derivative(double t_s, std::size_t& hint) const;
+  std::size_t intervals() const { return intervals_.size(); }
+  /// End of interval i in seconds after the start.
+  double interval_end_s(std::size_t i) const { return intervals_[i].start_s + intervals_[i].length_s; }
+
+  /// Position of a point at lever u(t) = S(t) + R(t) x: p_0 + v_0 t + g t^2 / 2 + u.
+  Eigen::Vector3d base_m(double t_s) const {
+    return start_.p_WI_m + t_s * start_.v_WI_m_s - Eigen::Vector3d(0.0, 0.0, 0.5 * gravity_m_s2_ * t_s * t_s);
+  }
+
+  /// Full state at t_s, its covariance propagated from the start's without noise added.
+  MotionState state(double t_s) const;
+
+  /// Bit j set: axis j was clipped somewhere in the stretch.
+  std::uint8_t clipped_axes() const { return clipped_axes_; }
+
+ private:
+  struct Interval {
+    double start_s, length_s;
+    Eigen::Quaterniond q_WI;
+    Eigen::Vector3d w_I, a_W;             // rate in body axes; mean specific force in W
+    Eigen::Vector3d thrust_v, thrust_p;   // integrals of the specific force up to start_s
+    Eigen::Vector3d excess_sign;          // s_j where axis j is clipped, 0 elsewhere
+    Eigen::Matrix3d excess_attitude, excess_v, excess_p;  // derivatives at start_s
+  };
+  const Interval& interval_at(double t_s, std::size_t& hint) const;
+
+  MotionState start_;
+  double duration_s_ = 0.0;
+  double gravity_m_s2_ = 0.0;
+  std::uint8_t clipped_axes_ = 0;
+  std::vector<Interval> intervals_;
+};
+
+}  // namespace tumble

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "tumble/mapping/spatial_hash.hpp"
+
+namespace tumble {
+
+/// Result of a neighbour search: the nearest points of a map, nearest first.
+struct Neighbours {
+  static constexpr int kMax = 32;
+  int count = 0;
+  std::array<float, kMax> distance2_m2;
+  std::array<std::uint32_t, kMax> index;  ///< of the point in its VoxelMap
+};
+
+/// Points in the world, grown sweep by sweep, searched by position.
+///
+/// Cells of a cubic grid hold their points in chunks of sixteen, coordinate by coordinate, so that distances are computed
+/// over contiguous floats; groups of 8x8x8 cells are found by one look-up in a hash table. Points are thinned to at most
+/// one per cube of the spacing. Copies are independent and equal. Coordinates are floats: a map is a few kilometres wide.
+class VoxelMap {
+ public:
+  /// Mark of a point that is on no known scan line.
+  static constexpr std::uint32_t kNoLine = 0xffffffffu;
+
+  struct Params {
+    double voxel_m = 0.5;    ///< edge of a cell; a few times the spacing searches fastest; bound [0.01, 100]
+    double spacing_m = 0.1;  ///< at most one point is kept per cube of this edge; 0 keeps all; bound [0, voxel_m]
+  };
+
+  explicit VoxelMap(const Params& params);
+
+  /// Adds a point unless its cube is taken. `sigma_m` is the uncertainty of its position; `sweep` and `line` are marks that
+  /// come back from sweep() and line(). Returns whether it was added. Points that are not finite or beyond 2^20 cells are
+  /// not added.
+  bool insert(const Eigen::Vector3f& position_W_m, float sigma_m, std::uint32_t sweep, std::uint32_t line = kNoLine);
+
+  /// The k <= Neighbours::kMax nearest points within `radius_m`; equal distances in order of insertion within a cell.
+  /// Exact. Does not allocate; cost grows with the number of cells that the final radius touches.
+  void nearest(const Eigen::Vector3f& query_W_m, int k, float radius_m, Neighbours& found) const;
+
+  std::size_t size() const { return sigma_m_.size() - vacant_; }
+  /// Indices handed out are below this; those that exists() refuses are free places inside of chunks.
+  std::uint32_t index_end() const { return static_cast<std::uint32_t>(sigma_m_.size()); }
+  bool exists(std::uint32_t index) const { return sigma_m_[index] >= 0.0f; }
+  Eigen::Vector3f position_W_m(std::uint32_t index) const;
+  float sigma_m(std::uint32_t index) const { return sigma_m_[index]; }
+  std::uint32_t sweep(std::uint32_t index) const { return sweep_[index]; }
+  /// Scan line of a point: returns of one ring while the sensor holds its attitude share a number.
+  std::uint32_t line(std::uint32_t index) const { return line_[index]; }
+
+ private:
+  static constexpr int kChunk = 16;
+  static constexpr int kGroupBits = 3;  // 8 cells along each edge of a group
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  struct Chunk {
+    std::array<float, kChunk> x, y, z;
+    std::uint32_t next = kNone;
+    std::uint32_t count = 0;
+  };
+  using Group = std::array<std::uint32_t, 1u << (3 * kGroupBits)>;  // first chunk of each cell
+
+  std::uint32_t first_chunk(const Eigen::Vector3i& cell, std::uint64_t& group_key, std::uint32_t& group) const;
+
+  Params params_;
+  float cells_per_m_ = 0.0f;
+  SpatialHash groups_of_;
+  SpatialHash taken_;
+  std::vector<Group> groups_;
+  std::vector<Chunk> chunks_;
+  std::vector<float> sigma_m_;  // per place in the chunks; negative: free
+  std::vector<std::uint32_t> sweep_, line_;
+  std::size_t vacant_ = 0;
+};
+
+}  // namespace tumble

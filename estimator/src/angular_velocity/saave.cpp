@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/angular_velocity/saave.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tumble/angular_velocity/wnoj_smoother.hpp"
+
+namespace tumble {
+
+namespace {
+
+std::uint8_t axes_beyond(const Eigen::Vector3d& rate, double bound) {
+  std::uint8_t axes = 0;
+  for (int j = 0; j < 3; ++j) {
+    if (std::abs(rate[j]) > bound) axes |= static_cast<std::uint8_t>(1u << j);
+  }
+  return axes;
+}
+
+// |w|^2 from the specific force along the vector from the IMU to the axis; NaN where the IMU lies on the axis
+double squared_rate(const Eigen::Vector3d& lever_arm, const Eigen::Vector3d& axis, const Eigen::Vector3d& force) {
+  const Eigen::Vector3d to_axis = lever_arm.dot(axis) * axis - lever_arm;
+  const double r = to_axis.norm();
+  return (to_axis / r).dot(force) / r;
+}
+
+}  // namespace
+
+Saave::Saave(const Params& params) : params_(params) {
+  for (int j = 0; j < 3; ++j) require_within("lever_arm_m", params.lever_arm_m[j], -10.0, 10.0);
+  require_within("saturation_point_rad_s", params.saturation_point_rad_s, 0.01, 1000.0);
+  require_within("variance_measured_rad2_s2", params.variance_measured_rad2_s2, 1e-12, 1e12);
+  require_within("variance_estimated_rad2_s2", params.variance_estimated_rad2_s2, 1e-12, 1e12);
+  require_within("variance_rejected_rad2_s2", params.variance_rejected_rad2_s2, 1e-12, 1e12);
+  require_within("jerk_psd_rad2_s5", params.jerk_psd_rad2_s5, 1e-12, 1e12);
+  require_within("gap_max_s", params.gap_max_s, 1e-6, 3600.0);
+}
+
+Status Saave::step(const ImuSample& sample, State& state, Recovered& out) const {
+  if (Status status = check_sample(sample); !status.ok()) return status;
+  if (state.started) {
+    Status status = check_follows(sample.time_ns, state.last_time_ns, params_.gap_max_s);
+    if (!status.ok()) return status;
+  }
+  state.started = true;
+  state.last_time_ns = sample.time_ns;
+
+  const Eigen::Vector3d& reading = sample.angular_velocity_rad_s;
+  out.rate_rad_s = reading;
+  out.variance_rad2_s2.setConstant(params_.variance_measured_rad2_s2);
+  out.clipped_axes = axes_beyond(reading, params_.saturation_point_rad_s);
+  out.accepted = true;
+  if (out.clipped_axes != 0) {
+    // as published: one axis at most, the first in x, y, z order
+    int j = 0;
+    while ((out.clipped_axes >> j & 1u) == 0) ++j;
+    Eigen::Vector3d unclipped = reading;
+    unclipped[j] = 0.0;
+    const double others = unclipped.squaredNorm();
+    const double squared = squared_rate(params_.lever_arm_m, state.axis, sample.specific_force_m_s2);
+    // written so that NaN (IMU on the axis) rejects
+    out.accepted = squared > others;
+    if (out.accepted) {
+      const double magnitude = std::max(std::sqrt(squared - others), std::abs(reading[j]));
+      out.rate_rad_s[j] = std::copysign(magnitude, reading[j]);
+      out.variance_rad2_s2[j] = params_.variance_estimated_rad2_s2;
+    } else {
+      out.variance_rad2_s2[j] = params_.variance_rejected_rad2_s2;
+    }
+  }
+  const double norm = out.rate_rad_s.norm();
+  if (out.accepted && norm > 0.0) state.axis = out.rate_rad_s / norm;
+  return {};
+}
+
+Status Saave::estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const {
+  if (samples.empty()) return {Trouble::empty, "samples", 0.0, 1.0};
+  State state;
+  std::vector<Recovered> recovered(samples.size());
+  std::vector<WnojSmoother::Measurement> measurements(samples.size());
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (Status status = step(samples[k], state, recovered[k]); !status.ok()) return status;
+    measurements[k] = {samples[k].time_ns, recovered[k].rate_rad_s, recovered[k].variance_rad2_s2};
+  }
+  std::vector<WnojSmoother::Smoothed> smoothed;
+  const WnojSmoother smoother({params_.jerk_psd_rad2_s5});
+  if (Status status = smoother.smooth(measurements, smoothed); !status.ok()) return status;
+
+  out.resize(samples.size());
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    out[k].time_ns = samples[k].time_ns;
+    out[k].w_WI_I_rad_s = smoothed[k].rate_rad_s;
+    out[k].covariance_rad2_s2 = smoothed[k].variance_rad2_s2.asDiagonal();
+    out[k].clipped_axes = recovered[k].clipped_axes;
+    out[k].source = recovered[k].clipped_axes == 0 ? RateSource::measured
+                    : recovered[k].accepted        ? RateSource::recovered_flight
+                                                   : RateSource::bounded_only;
+  }
+  return {};
+}
+
+}  // namespace tumble

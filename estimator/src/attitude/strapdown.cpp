@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/attitude/strapdown.hpp"
+
+#include <cmath>
+
+#include "tumble/attitude/timing.hpp"
+#include "tumble/common/so3.hpp"
+
+namespace tumble {
+
+namespace {
+constexpr double kForceMin_m_s2 = 1e-6;
+constexpr double kGapSmallest_s = 1e-9;
+}  // namespace
+
+Strapdown::Strapdown(const Params& params) : params_(params) {
+  require_within("gap_max_s", params.gap_max_s, kGapSmallest_s, 1e4);
+}
+
+Status Strapdown::step(const ImuSample& sample, State& state) const {
+  if (const Status bad = check(sample); !bad.ok()) return bad;
+  Eigen::Quaterniond q_WI;
+  if (state.started) {
+    double dt_s = 0.0;
+    if (const Status bad = elapsed(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s); !bad.ok()) return bad;
+    q_WI = (state.q_WI * so3::exp(sample.angular_velocity_rad_s * dt_s)).normalized();
+  } else if (const Status bad = level(sample.specific_force_m_s2, q_WI); !bad.ok()) {
+    return bad;
+  }
+  state = {q_WI, sample.time_ns, true};
+  return {};
+}
+
+Status level(const Eigen::Vector3d& specific_force_m_s2, Eigen::Quaterniond& q_WI) {
+  const Eigen::Vector3d& f = specific_force_m_s2;
+  if (!f.allFinite()) return {Trouble::non_finite, "specific_force_m_s2", f.sum(), kForceMin_m_s2};
+  const double length = f.stableNorm();
+  if (length < kForceMin_m_s2) return {Trouble::degenerate, "specific_force_m_s2", length, kForceMin_m_s2};
+  const double across_x = std::hypot(f.y(), f.z());
+  const double roll = across_x > 0.0 ? std::atan2(f.y(), f.z()) : 0.0;
+  const double pitch = std::atan2(-f.x(), across_x);
+  q_WI = so3::exp({0.0, pitch, 0.0}) * so3::exp({roll, 0.0, 0.0});
+  return {};
+}
+
+}  // namespace tumble

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/mapping/deskew.hpp"
+
+#include <cmath>
+
+#include "tumble/common/time.hpp"
+
+namespace tumble {
+
+PointCounts select_points(std::span<const LidarPoint> points, const PointBounds& bounds, const Eigen::Isometry3d& T_IL,
+                          double sweep_start_s, std::vector<SweepPoint>& selected) {
+  selected.clear();
+  PointCounts counts;
+  counts.given = points.size();
+  const Eigen::Matrix3f R = T_IL.linear().cast<float>();
+  const Eigen::Vector3f p = T_IL.translation().cast<float>();
+  const float near2 = static_cast<float>(bounds.range_min_m * bounds.range_min_m);
+  const float far2 = static_cast<float>(bounds.range_max_m * bounds.range_max_m);
+  const Eigen::AlignedBox3f body(bounds.own_body_L.min().cast<float>(), bounds.own_body_L.max().cast<float>());
+  const bool has_body = !bounds.own_body_L.isEmpty();
+  for (const LidarPoint& point : points) {
+    if (!point.position_L_m.allFinite()) continue;
+    ++counts.finite;
+    const float range2 = point.position_L_m.squaredNorm();
+    if (range2 < near2 || range2 > far2 || (has_body && body.contains(point.position_L_m))) continue;
+    const double offset_s = seconds(point.offset_ns);
+    selected.push_back({R * point.position_L_m + p, static_cast<float>(sweep_start_s + offset_s),
+                        static_cast<float>(offset_s), std::sqrt(range2), point.ring});
+    counts.rings_differ |= point.ring != selected.front().ring;
+  }
+  counts.used = selected.size();
+  return counts;
+}
+
+void compute_levers(const SweepTrajectory& trajectory, std::span<const SweepPoint> points,
+                    std::vector<Eigen::Vector3f>& levers_W_m) {
+  levers_W_m.resize(points.size());
+  std::size_t hint = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const SweepTrajectory::Instant now = trajectory.at(points[i].t_s, hint);
+    levers_W_m[i] = (now.thrust_m + now.q_WI * points[i].x_I_m.cast<double>()).cast<float>();
+  }
+}
+
+void deskew(const SweepTrajectory& trajectory, std::span<const SweepPoint> points, double target_s,
+            std::vector<Eigen::Vector3f>& positions_I_m) {
+  compute_levers(trajectory, points, positions_I_m);
+  std::size_t hint = trajectory.intervals();
+  const SweepTrajectory::Instant target = trajectory.at(target_s, hint);
+  const Eigen::Vector3d origin = trajectory.base_m(target_s) + target.thrust_m;
+  const Eigen::Quaterniond q_IW = target.q_WI.conjugate();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3d world = trajectory.base_m(points[i].t_s) + positions_I_m[i].cast<double>();
+    positions_I_m[i] = (q_IW * (world - origin)).cast<float>();
+  }
+}
+
+void SweepSampler::choose(std::span<const Eigen::Vector3f> positions_W_m, double voxel_m,
+                          std::vector<std::uint32_t>& chosen) {
+  seen_.clear();
+  chosen.clear();
+  const float cubes_per_m = static_cast<float>(1.0 / voxel_m);
+  for (std::uint32_t i = 0; i < positions_W_m.size(); ++i) {
+    const Eigen::Vector3f scaled = positions_W_m[i] * cubes_per_m;
+    if (!(scaled.cwiseAbs().maxCoeff() < static_cast<float>(SpatialHash::kLimit - 2))) continue;
+    const std::size_t before = seen_.size();
+    seen_.insert(SpatialHash::key(scaled.array().floor().cast<int>()), i);
+    if (seen_.size() != before) chosen.push_back(i);
+  }
+}
+
+}  // namespace tumble

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "inertial_prior.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tumble/attitude/strapdown.hpp"
+
+namespace tumble::mapping {
+
+namespace {
+
+constexpr double kReferenceSpan_s = 0.1;  // the prior's standard deviations are stated for this
+constexpr TimeNs kGap_ns = 50'000'000;    // longer windows say nothing about the rate inside of them
+
+// a levelled start: gravity's direction within the accelerometer's bias, speed within what passes for rest
+constexpr double kStartTilt_rad = 0.01;
+constexpr double kStartSpeed_m_s = 0.05;
+
+}  // namespace
+
+Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& params, const SweepTrajectory& trajectory,
+                                           std::span<const MotionSample> samples, unsigned excess_axes) {
+  const double span = trajectory.duration_s() / kReferenceSpan_s;
+  Eigen::Matrix<double, 9, 9> noise = Eigen::Matrix<double, 9, 9>::Zero();
+  noise.diagonal().segment<3>(0).setConstant(std::pow(params.prior_sigma_m * span, 2));
+  noise.diagonal().segment<3>(3).setConstant(std::pow(params.prior_sigma_rad * span, 2));
+
+  const TimeNs start_ns = trajectory.start_ns();
+  std::size_t hint = 0;
+  Eigen::Matrix3d turned = Eigen::Matrix3d::Zero();
+  double pushed_m_s = 0.0;
+  for (const MotionSample& sample : samples) {
+    const double from = std::max(seconds(sample.from_ns - start_ns), 0.0);
+    const double to = std::min(seconds(sample.time_ns - start_ns), trajectory.duration_s());
+    if (to <= from) continue;
+    const Eigen::Matrix3d R = trajectory.at(0.5 * (from + to), hint).q_WI.toRotationMatrix();
+    Eigen::Vector3d variance = sample.rate_sigma_rad_s.cwiseAbs2();
+    for (int axis = 0; axis < 3; ++axis) {
+      if (excess_axes >> axis & sample.clipped_axes >> axis & 1) variance[axis] = 0.0;
+    }
+    pushed_m_s += (to - from) * sample.f_I_m_s2.norm();
+    turned += (to - from) * R * variance.asDiagonal() * R.transpose();
+  }
+  noise.diagonal().segment<3>(6).setConstant(std::pow(params.prior_sigma_m_s * span, 2) +
+                                            std::pow(params.force_sigma_share * pushed_m_s, 2));
+  noise.block<3, 3>(3, 3) += trajectory.duration_s() * turned;
+  return noise;
+}
+
+Status start_at_rest(std::span<const MotionSample> samples, double rest_s, MotionState& state) {
+  if (samples.empty()) return {Trouble::too_few, "imu samples", 0.0, 1.0};
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  double count = 0.0;
+  for (const MotionSample& sample : samples) {
+    if (seconds(sample.time_ns - samples.front().from_ns) > rest_s && count > 0.0) break;
+    force += sample.f_I_m_s2;
+    count += 1.0;
+  }
+  force /= count;
+  if (!(force.norm() >= 1.0)) return {Trouble::degenerate, "specific_force_m_s2", force.norm(), 1.0};
+
+  state = MotionState{};
+  state.time_ns = samples.front().from_ns;
+  if (Status status = level(force, state.q_WI); !status.ok()) return status;
+  state.covariance.diagonal().segment<2>(3).setConstant(kStartTilt_rad * kStartTilt_rad);
+  state.covariance.diagonal().tail<3>().setConstant(kStartSpeed_m_s * kStartSpeed_m_s);
+  return {};
+}
+
+Eigen::Vector3d believed_rate_sigma(const LidarInertialOdometry::Params& params, const RateState& rate, TimeNs window_ns) {
+  Eigen::Vector3d sigma = rate.covariance_rad2_s2.diagonal().cwiseMax(0.0).cwiseSqrt();
+  const bool recovered = rate.source == RateSource::recovered_flight || rate.source == RateSource::recovered_contact;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (rate.clipped_axes >> axis & 1 && !recovered) sigma[axis] = std::max(sigma[axis], params.clipped_sigma_rad_s);
+    if (window_ns > kGap_ns) sigma[axis] = params.rate_sigma_max_rad_s;
+  }
+  return sigma.cwiseMin(params.rate_sigma_max_rad_s);
+}
+
+}  // namespace tumble::mapping

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/mapping/spatial_hash.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace tumble {
+
+SpatialHash::SpatialHash(std::size_t expected) {
+  const std::size_t slots = std::bit_ceil(std::max<std::size_t>(2 * expected, 16));
+  keys_.assign(slots, kFree);
+  values_.assign(slots, 0);
+  mask_ = slots - 1;
+  shift_ = 64 - std::countr_zero(slots);
+}
+
+std::uint32_t SpatialHash::insert(std::uint64_t key, std::uint32_t value) {
+  // at most half full, so that chains of collisions stay short
+  if (2 * (size_ + 1) > keys_.size()) grow();
+  std::size_t slot = slot_of(key);
+  for (; keys_[slot] != kFree; slot = (slot + 1) & mask_) {
+    if (keys_[slot] == key) return values_[slot];
+  }
+  keys_[slot] = key;
+  values_[slot] = value;
+  ++size_;
+  return value;
+}
+
+void SpatialHash::clear() {
+  std::fill(keys_.begin(), keys_.end(), kFree);
+  size_ = 0;
+}
+
+void SpatialHash::grow() {
+  SpatialHash larger(keys_.size());
+  for (std::size_t slot = 0; slot < keys_.size(); ++slot) {
+    if (keys_[slot] != kFree) larger.insert(keys_[slot], values_[slot]);
+  }
+  *this = std::move(larger);
+}
+
+}  // namespace tumble

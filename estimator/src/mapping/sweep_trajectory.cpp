@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/mapping/sweep_trajectory.hpp"
+
+#include <algorithm>
+
+#include "tumble/common/so3.hpp"
+
+namespace tumble {
+
+namespace {
+
+Eigen::Vector3d signs_of_clipped(const MotionSample& sample) {
+  Eigen::Vector3d sign = Eigen::Vector3d::Zero();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (sample.clipped_axes >> axis & 1) sign[axis] = sample.w_WI_I_rad_s[axis] < 0.0 ? -1.0 : 1.0;
+  }
+  return sign;
+}
+
+}  // namespace
+
+PoseState MotionState::pose() const {
+  PoseState pose;
+  pose.time_ns = time_ns;
+  pose.p_WA_m = p_WI_m;
+  pose.q_WA = q_WI;
+  pose.v_WA_m_s = v_WI_m_s;
+  pose.covariance = covariance.topLeftCorner<6, 6>();
+  return pose;
+}
+
+Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSample> samples, TimeNs end_ns,
+                              double gravity_m_s2, const Eigen::Vector3d& excess_rad_s) {
+  start_ = start;
+  gravity_m_s2_ = gravity_m_s2;
+  duration_s_ = seconds(end_ns - start.time_ns);
+  clipped_axes_ = 0;
+  intervals_.clear();
+  if (end_ns < start.time_ns) return {Trouble::time_order, "end_ns", double(end_ns), double(start.time_ns)};
+  if (samples.empty() || samples.back().time_ns < end_ns) {
+    return {Trouble::too_few, "imu time_ns", samples.empty() ? 0.0 : double(samples.back().time_ns), double(end_ns)};
+  }
+  if (samples.front().from_ns > start.time_ns) {
+    return {Trouble::gap, "imu window start", double(samples.front().from_ns), double(start.time_ns)};
+  }
+
+  Interval next{};
+  next.q_WI = start.q_WI;
+  next.thrust_v = next.thrust_p = next.w_I = next.a_W = next.excess_sign = Eigen::Vector3d::Zero();
+  next.excess_attitude = next.excess_v = next.excess_p = Eigen::Matrix3d::Zero();
+  for (const MotionSample& sample : samples) {
+    const TimeNs from = std::max(sample.from_ns, start.time_ns);
+    const TimeNs to = std::min(sample.time_ns, end_ns);
+    // a stretch of no length still gets its one interval, so that it can be asked
+    if (to < from || (to == from && !(end_ns == start.time_ns && intervals_.empty()))) continue;
+    const double dt = seconds(to - from);
+    const Eigen::Vector3d sign = signs_of_clipped(sample);
+    clipped_axes_ |= sample.clipped_axes & 7;
+    Interval& now = intervals_.emplace_back(next);
+    now.start_s = seconds(from - start.time_ns);
+    now.length_s = dt;
+    now.w_I = sample.w_WI_I_rad_s + sign.cwiseProduct(excess_rad_s);
+    now.excess_sign = sign;
+    const Eigen::Matrix3d R = now.q_WI.toRotationMatrix();
+    const Eigen::Matrix3d mean_rotation = R * so3::left_jacobian(now.w_I * dt);
+    now.a_W = mean_rotation * sample.f_I_m_s2;
+
+    next.q_WI = (now.q_WI * so3::exp(now.w_I * dt)).normalized();
+    next.thrust_v = now.thrust_v + now.a_W * dt;
+    next.thrust_p = now.thrust_p + now.thrust_v * dt + now.a_W * (0.5 * dt * dt);
+    next.excess_attitude = now.excess_attitude + mean_rotation * sign.asDiagonal() * dt;
+    // the force turns with the mean attitude error of the interval
+    const Eigen::Matrix3d turn = -so3::hat(now.a_W) * (0.5 * (now.excess_attitude + next.excess_attitude));
+    next.excess_v = now.excess_v + turn * dt;
+    next.excess_p = now.excess_p + now.excess_v * dt + turn * (0.5 * dt * dt);
+  }
+  if (intervals_.empty()) return {Trouble::too_few, "imu samples", 0.0, 1.0};
+  return {};
+}
+
+const SweepTrajectory::Interval& SweepTrajectory::interval_at(double t_s, std::size_t& hint) const {
+  std::size_t i = std::min(hint, intervals_.size() - 1);
+  while (i + 1 < intervals_.size() && t_s >= intervals_[i + 1].start_s) ++i;
+  while (i > 0 && t_s < intervals_[i].start_s) --i;
+  hint = i;
+  return intervals_[i];
+}
+
+SweepTrajectory::Instant SweepTrajectory::at(double t_s, std::size_t& hint) const {
+  const double t = std::clamp(t_s, 0.0, duration_s_);
+  const Interval& now = interval_at(t, hint);
+  const double s = t - now.start_s;
+  return {now.q_WI * so3::exp(now.w_I * s), now.thrust_p + s * now.thrust_v + (0.5 * s * s) * now.a_W};
+}
+
+SweepTrajectory::ExcessDerivative SweepTrajectory::excess_derivative(double t_s, std::size_t& hint) const {
+  const double t = std::clamp(t_s, 0.0, duration_s_);
+  const Interval& now = interval_at(t, hint);
+  const double s = t - now.start_s;
+  const Eigen::Matrix3d gained =
+      now.q_WI.toRotationMatrix() * so3::left_jacobian(now.w_I * s) * now.excess_sign.asDiagonal() * s;
+  const Eigen::Matrix3d turn = -so3::hat(now.a_W) * (now.excess_attitude + 0.5 * gained);
+  return {now.excess_attitude + gained, now.excess_p + s * now.excess_v + turn * (0.5 * s * s)};
+}
+
+MotionState SweepTrajectory::state(double t_s) const {
+  const double t = std::clamp(t_s, 0.0, duration_s_);
+  std::size_t hint = 0;
+  const Interval& now = interval_at(t, hint);
+  const double s = t - now.start_s;
+  MotionState state;
+  state.time_ns = start_.time_ns + static_cast<TimeNs>(std::llround(t * 1e9));
+  const Eigen::Vector3d thrust_p = now.thrust_p + s * now.thrust_v + (0.5 * s * s) * now.a_W;
+  const Eigen::Vector3d thrust_v = now.thrust_v + s * now.a_W;
+  state.q_WI = (now.q_WI * so3::exp(now.w_I * s)).normalized();
+  state.p_WI_m = base_m(t) + thrust_p;
+  state.v_WI_m_s = start_.v_WI_m_s + thrust_v - Eigen::Vector3d(0.0, 0.0, gravity_m_s2_ * t);
+
+  Eigen::Matrix<double, 9, 9> F = Eigen::Matrix<double, 9, 9>::Identity();
+  F.block<3, 3>(0, 3) = -so3::hat(thrust_p);
+  F.block<3, 3>(0, 6) = t * Eigen::Matrix3d::Identity();
+  F.block<3, 3>(6, 3) = -so3::hat(thrust_v);
+  const Eigen::Matrix<double, 9, 9> P = F * start_.covariance * F.transpose();
+  state.covariance = 0.5 * (P + P.transpose());
+  return state;
+}
+
+}  // namespace tumble

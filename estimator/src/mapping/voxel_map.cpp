@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/mapping/voxel_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "tumble/common/status.hpp"
+
+namespace tumble {
+
+namespace {
+
+// coordinates of an empty place: so far that no search radius reaches it
+constexpr float kFar = 1e18f;
+constexpr int kReachMax = 8;  // cells searched to each side
+
+Eigen::Vector3i cube_of(const Eigen::Vector3f& p, float cubes_per_m) {
+  return (p * cubes_per_m).array().floor().cast<int>();
+}
+
+/// Inserts a candidate into the k best so far, nearest first.
+inline void keep(float distance2, std::uint32_t index, int k, Neighbours& best) {
+  int place = best.count < k ? best.count++ : k - 1;
+  while (place > 0 && best.distance2_m2[place - 1] > distance2) {
+    best.distance2_m2[place] = best.distance2_m2[place - 1];
+    best.index[place] = best.index[place - 1];
+    --place;
+  }
+  best.distance2_m2[place] = distance2;
+  best.index[place] = index;
+}
+
+/// Squared distance from a query to the slabs of cells at -reach..reach along one axis; `fraction` is the query's place
+/// inside of its own cell, in cells.
+void slab_distances(float fraction, float voxel_m, int reach, float* distance2) {
+  for (int d = -reach; d <= reach; ++d) {
+    const float cells = d > 0 ? static_cast<float>(d) - fraction : d < 0 ? fraction - static_cast<float>(d + 1) : 0.0f;
+    distance2[d + reach] = cells * cells * voxel_m * voxel_m;
+  }
+}
+
+/// Offsets 0, 1, -1, 2, -2 ...: near cells first, so that the search radius shrinks early.
+inline int alternating(int i) { return (i & 1) ? (i + 1) / 2 : -i / 2; }
+
+}  // namespace
+
+VoxelMap::VoxelMap(const Params& params) : params_(params) {
+  require_within("voxel_m", params.voxel_m, 0.01, 100.0);
+  require_within("spacing_m", params.spacing_m, 0.0, params.voxel_m);
+  cells_per_m_ = static_cast<float>(1.0 / params.voxel_m);
+}
+
+std::uint32_t VoxelMap::first_chunk(const Eigen::Vector3i& cell, std::uint64_t& group_key, std::uint32_t& group) const {
+  constexpr int kMask = (1 << kGroupBits) - 1;
+  const std::uint64_t key = SpatialHash::key({cell.x() >> kGroupBits, cell.y() >> kGroupBits, cell.z() >> kGroupBits});
+  if (key != group_key) {
+    group_key = key;
+    group = groups_of_.find(key);
+  }
+  if (group == SpatialHash::kAbsent) return kNone;
+  const int inside = (cell.x() & kMask) | ((cell.y() & kMask) << kGroupBits) | ((cell.z() & kMask) << (2 * kGroupBits));
+  return groups_[group][inside];
+}
+
+bool VoxelMap::insert(const Eigen::Vector3f& position, float sigma_m, std::uint32_t sweep, std::uint32_t line) {
+  constexpr int kMask = (1 << kGroupBits) - 1;
+  const float finest = params_.spacing_m > 0.0 ? static_cast<float>(1.0 / params_.spacing_m) : cells_per_m_;
+  // one margin for cells and cubes of the spacing; also false for NaN
+  if (!((position * finest).cwiseAbs().maxCoeff() < static_cast<float>(SpatialHash::kLimit - 2))) return false;
+
+  if (params_.spacing_m > 0.0) {
+    const std::size_t before = taken_.size();
+    taken_.insert(SpatialHash::key(cube_of(position, finest)), 0);
+    if (taken_.size() == before) return false;
+  }
+  const Eigen::Vector3i cell = cube_of(position, cells_per_m_);
+  const std::uint64_t key = SpatialHash::key({cell.x() >> kGroupBits, cell.y() >> kGroupBits, cell.z() >> kGroupBits});
+  const std::uint32_t group = groups_of_.insert(key, static_cast<std::uint32_t>(groups_.size()));
+  if (group == groups_.size()) groups_.emplace_back().fill(kNone);
+  const int inside = (cell.x() & kMask) | ((cell.y() & kMask) << kGroupBits) | ((cell.z() & kMask) << (2 * kGroupBits));
+
+  // the newest chunk of a cell stands first and is the only one with room
+  std::uint32_t& first = groups_[group][inside];
+  if (first == kNone || chunks_[first].count == kChunk) {
+    Chunk chunk;
+    chunk.x.fill(kFar);
+    chunk.y.fill(kFar);
+    chunk.z.fill(kFar);
+    chunk.next = first;
+    first = static_cast<std::uint32_t>(chunks_.size());
+    chunks_.push_back(chunk);
+    sigma_m_.resize(sigma_m_.size() + kChunk, -1.0f);
+    sweep_.resize(sweep_.size() + kChunk, 0);
+    line_.resize(line_.size() + kChunk, kNoLine);
+    vacant_ += kChunk;
+  }
+  Chunk& chunk = chunks_[first];
+  const std::uint32_t place = chunk.count++;
+  chunk.x[place] = position.x();
+  chunk.y[place] = position.y();
+  chunk.z[place] = position.z();
+  sigma_m_[first * kChunk + place] = std::max(sigma_m, 0.0f);
+  sweep_[first * kChunk + place] = sweep;
+  line_[first * kChunk + place] = line;
+  --vacant_;
+  return true;
+}
+
+Eigen::Vector3f VoxelMap::position_W_m(std::uint32_t index) const {
+  const Chunk& chunk = chunks_[index / kChunk];
+  const std::uint32_t place = index % kChunk;
+  return {chunk.x[place], chunk.y[place], chunk.z[place]};
+}
+
+void VoxelMap::nearest(const Eigen::Vector3f& query, int k, float radius_m, Neighbours& found) const {
+  found.count = 0;
+  const float voxel_m = static_cast<float>(params_.voxel_m);
+  const float span = query.cwiseAbs().maxCoeff() * cells_per_m_;
+  if (k <= 0 || !(span < static_cast<float>(SpatialHash::kLimit - kReachMax - 2))) return;
+  k = std::min(k, Neighbours::kMax);
+
+  const Eigen::Vector3i cell = cube_of(query, cells_per_m_);
+  const Eigen::Vector3f fraction = query * cells_per_m_ - cell.cast<float>();
+  const int reach = std::min(kReachMax, static_cast<int>(std::ceil(radius_m * cells_per_m_)));
+  float slab[3][2 * kReachMax + 1];
+  for (int axis = 0; axis < 3; ++axis) slab_distances(fraction[axis], voxel_m, reach, slab[axis]);
+
+  float worst = std::min(radius_m, static_cast<float>(reach) * voxel_m);
+  worst *= worst;
+  std::uint64_t group_key = ~std::uint64_t{0};
+  std::uint32_t group = SpatialHash::kAbsent;
+  const int steps = 2 * reach + 1;
+  for (int iz = 0; iz < steps; ++iz) {
+    const int dz = alternating(iz);
+    const float to_z = slab[2][dz + reach];
+    if (to_z > worst) continue;
+    for (int iy = 0; iy < steps; ++iy) {
+      const int dy = alternating(iy);
+      const float to_yz = to_z + slab[1][dy + reach];
+      if (to_yz > worst) continue;
+      for (int ix = 0; ix < steps; ++ix) {
+        const int dx = alternating(ix);
+        if (to_yz + slab[0][dx + reach] > worst) continue;
+        for (std::uint32_t c = first_chunk({cell.x() + dx, cell.y() + dy, cell.z() + dz}, group_key, group); c != kNone;
+             c = chunks_[c].next) {
+          const Chunk& chunk = chunks_[c];
+          float distance2[kChunk];
+          for (int i = 0; i < kChunk; ++i) {
+            const float ex = chunk.x[i] - query.x(), ey = chunk.y[i] - query.y(), ez = chunk.z[i] - query.z();
+            distance2[i] = ex * ex + ey * ey + ez * ez;
+          }
+          for (std::uint32_t i = 0; i < chunk.count; ++i) {
+            if (distance2[i] > worst || (found.count == k && distance2[i] == worst)) continue;
+            keep(distance2[i], c * kChunk + i, k, found);
+            if (found.count == k) worst = found.distance2_m2[k - 1];
+          }
+        }
+      }
+    }
+  }
+}
+
+}  // namespace tumble

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <array>
+#include <sstream>
+
+#include "scenarios/draw/scenario_text.hpp"
+#include "scenarios/draw/strict_yaml.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+DataSheet::Entry parse_entry(const std::string& name, const YamlNode& node, const sim::Parameter& parameter) {
+  static const std::array<std::string, 3> kKeys = {"value", "unit", "source"};
+  const auto fields = node.fields(kKeys);
+  DataSheet::Entry entry{name, fields.at("value").number(), fields.at("unit").text(), fields.at("source").text()};
+  if (entry.unit != parameter.unit) {
+    fields.at("unit").fail("is '" + entry.unit + "', must be '" + std::string(parameter.unit) + "'");
+  }
+  if (!(entry.value >= parameter.low && entry.value <= parameter.high)) {
+    std::ostringstream text;
+    text << "is " << entry.value << " " << parameter.unit << ", must be within [" << parameter.low << ", "
+         << parameter.high << "]";
+    fields.at("value").fail(text.str());
+  }
+  return entry;
+}
+
+}  // namespace
+
+sim::Values DataSheet::values() const {
+  sim::Values out;
+  for (const Entry& entry : entries) out.set(entry.name, entry.value);
+  return out;
+}
+
+DataSheet parse_data_sheet(const std::string& text, const std::string& file, const Registry& registry) {
+  static const std::array<std::string, 4> kKeys = {"device", "title", "kind", "values"};
+  const auto fields = YamlNode::parse(text, file).fields(kKeys);
+  DataSheet sheet;
+  sheet.device = fields.at("device").identifier();
+  sheet.title = fields.at("title").text();
+  sheet.sensor_kind = fields.at("kind").identifier();
+  const sim::ComponentType* const type = find_type(registry.sensors, sheet.sensor_kind);
+  if (type == nullptr) {
+    fields.at("kind").fail("unknown '" + sheet.sensor_kind + "'" + suggestion(sheet.sensor_kind, names_of(registry.sensors)));
+  }
+  for (const auto& [name, node] : fields.at("values").entries()) {
+    const sim::Parameter* const parameter = find_parameter(type->parameters, name);
+    if (parameter == nullptr) {
+      node.fail("unknown key '" + name + "' of kind '" + type->name + "'" + suggestion(name, names_of(type->parameters)));
+    }
+    sheet.entries.push_back(parse_entry(name, node, *parameter));
+  }
+  return sheet;
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/draw/distribution.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "scenarios/errors.hpp"
+#include "sim/random/stream.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+using Shape = Distribution::Shape;
+
+/// Least share of a normal distribution that a truncation may keep.
+constexpr double kLeastKept = 0.01;
+
+double normal_below(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
+
+std::string count_problem(const Distribution& d) {
+  const std::size_t n = d.numbers.size();
+  switch (d.shape) {
+    case Shape::constant: return n == 1 ? "" : "needs one number";
+    case Shape::uniform:
+    case Shape::log_uniform: return n == 2 ? "" : std::string(to_string(d.shape)) + " needs [low, high]";
+    case Shape::normal: return n == 2 || n == 4 ? "" : "normal needs [mean, sigma] or [mean, sigma, low, high]";
+    case Shape::choice: return n >= 1 ? "" : "choice is empty";
+  }
+  return "unknown shape";
+}
+
+std::string range_problem(double low, double high) {
+  if (low <= high) return "";
+  std::ostringstream text;
+  text << "low " << low << " is above high " << high;
+  return text.str();
+}
+
+std::string normal_problem(const std::vector<double>& numbers) {
+  const double mean = numbers[0];
+  const double sigma = numbers[1];
+  std::ostringstream text;
+  if (sigma < 0.0) {
+    text << "sigma " << sigma << " is below 0";
+  } else if (numbers.size() == 4) {
+    const double low = numbers[2];
+    const double high = numbers[3];
+    if (const std::string problem = range_problem(low, high); !problem.empty()) return problem;
+    const double kept = sigma > 0.0 ? normal_below((high - mean) / sigma) - normal_below((low - mean) / sigma)
+                                    : (mean >= low && mean <= high ? 1.0 : 0.0);
+    if (!(kept >= kLeastKept)) text << "[" << low << ", " << high << "] keeps less than 1 % of the normal distribution";
+  }
+  return text.str();
+}
+
+double draw_normal(const std::vector<double>& numbers, sim::Stream& stream) {
+  if (numbers.size() == 2) return numbers[0] + numbers[1] * stream.normal();
+  // find_problem has made sure that at least 1 % is kept: 10000 misses have a chance of 1e-43
+  for (int attempt = 0; attempt < 10000; ++attempt) {
+    const double value = numbers[0] + numbers[1] * stream.normal();
+    if (value >= numbers[2] && value <= numbers[3]) return value;
+  }
+  throw BadInput("truncated normal distribution was missed 10000 times");
+}
+
+}  // namespace
+
+const char* to_string(Distribution::Shape shape) {
+  switch (shape) {
+    case Shape::constant: return "constant";
+    case Shape::uniform: return "uniform";
+    case Shape::normal: return "normal";
+    case Shape::log_uniform: return "log_uniform";
+    case Shape::choice: return "choice";
+  }
+  return "unknown";
+}
+
+std::string find_problem(const Distribution& d) {
+  if (const std::string problem = count_problem(d); !problem.empty()) return problem;
+  if (!std::all_of(d.numbers.begin(), d.numbers.end(), [](double x) { return std::isfinite(x); })) {
+    return "a number is not finite";
+  }
+  switch (d.shape) {
+    case Shape::uniform: return range_problem(d.numbers[0], d.numbers[1]);
+    case Shape::normal: return normal_problem(d.numbers);
+    case Shape::log_uniform: {
+      if (std::min(d.numbers[0], d.numbers[1]) <= 0.0) return "log_uniform needs numbers above 0";
+      return range_problem(d.numbers[0], d.numbers[1]);
+    }
+    case Shape::constant:
+    case Shape::choice: break;
+  }
+  return "";
+}
+
+std::vector<double> support_points(const Distribution& d) {
+  if (d.shape != Shape::normal) return d.numbers;
+  if (d.numbers.size() == 4) return {d.numbers[2], d.numbers[3]};
+  return {d.numbers[0]};
+}
+
+double draw_number(const Distribution& d, std::uint64_t seed, std::string_view place) {
+  const std::string problem = find_problem(d);
+  if (!problem.empty()) throw BadInput(std::string(place) + ": " + problem);
+  if (d.shape == Shape::constant) return d.numbers[0];
+  sim::Stream stream(seed, "draw." + std::string(place));
+  switch (d.shape) {
+    case Shape::uniform: return std::clamp(stream.uniform(d.numbers[0], d.numbers[1]), d.numbers[0], d.numbers[1]);
+    case Shape::log_uniform: {
+      const double value = std::exp(stream.uniform(std::log(d.numbers[0]), std::log(d.numbers[1])));
+      return std::clamp(value, d.numbers[0], d.numbers[1]);  // exp(log(x)) may round past x
+    }
+    case Shape::normal: return draw_normal(d.numbers, stream);
+    case Shape::choice: {
+      const auto count = static_cast<double>(d.numbers.size());
+      const auto index = static_cast<std::size_t>(stream.uniform() * count);
+      return d.numbers[std::min(index, d.numbers.size() - 1)];
+    }
+    case Shape::constant: break;
+  }
+  return d.numbers[0];
+}
+
+}  // namespace tumble::scenarios

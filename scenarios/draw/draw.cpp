@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/draw/scenario.hpp"
+#include "scenarios/draw/scenario_text.hpp"
+#include "scenarios/errors.hpp"
+
+namespace tumble::scenarios {
+
+Registry Registry::of_simulation() {
+  return {sim::world_types(), sim::robot_types(), sim::motion_types(), sim::sensor_types(), sim::mount_error_parameters()};
+}
+
+sim::Situation draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed) {
+  std::vector<DataSheet> sheets;
+  for (const Scenario::Sensor& sensor : scenario.sensors) {
+    try {
+      sheets.push_back(load_data_sheet(data, sensor.device));
+    } catch (const BadInput& error) {
+      throw BadInput(scenario.file + ":" + std::to_string(sensor.line) + ": sensors." + sensor.name + ": " + error.what());
+    }
+  }
+  const sim::Situation given = draw_given(scenario, sheets, seed);
+  try {
+    return sim::resolve(given);
+  } catch (const sim::InvalidSituation& error) {
+    throw BadInput(scenario.file + ": with seed " + std::to_string(seed) + ": " + error.what());
+  }
+}
+
+}  // namespace tumble::scenarios

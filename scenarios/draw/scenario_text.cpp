@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/draw/scenario_text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <sstream>
+
+#include "scenarios/draw/strict_yaml.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+using Shape = Distribution::Shape;
+using Numbers = std::map<std::string, Distribution>;
+
+constexpr double kLongestDuration_s = 3600.0;
+constexpr sim::Parameter kDuration{"duration_s", 10.0, 0.01, kLongestDuration_s, "s", "length of the situation"};
+
+Distribution parse_distribution(const YamlNode& node) {
+  static const std::array<std::string, 4> kShapes = {"uniform", "normal", "log_uniform", "choice"};
+  Distribution out;
+  out.line = node.line();
+  if (node.is_scalar()) {
+    out.numbers = {node.number()};
+    return out;
+  }
+  if (!node.is_map()) node.fail("must be a number or one of {uniform|normal|log_uniform|choice: [...]}");
+  const auto entries = node.entries();
+  if (entries.size() != 1) node.fail("must have exactly one of the keys uniform, normal, log_uniform, choice");
+  const auto& [name, values] = entries[0];
+  const auto shape = std::find(kShapes.begin(), kShapes.end(), name);
+  if (shape == kShapes.end()) values.fail("unknown distribution '" + name + "'" + suggestion(name, kShapes));
+  constexpr std::array<Shape, 4> kOrder = {Shape::uniform, Shape::normal, Shape::log_uniform, Shape::choice};
+  out.shape = kOrder[static_cast<std::size_t>(shape - kShapes.begin())];
+  for (const YamlNode& item : values.items()) out.numbers.push_back(item.number());
+  return out;
+}
+
+Distribution parse_checked(const YamlNode& node, const sim::Parameter& parameter) {
+  const Distribution out = parse_distribution(node);
+  const std::string problem = find_problem(out);
+  if (!problem.empty()) node.fail(problem);
+  for (const double point : support_points(out)) {
+    if (point >= parameter.low && point <= parameter.high) continue;
+    std::ostringstream text;
+    text << (out.shape == Shape::constant ? "is " : "can reach ") << point << " " << parameter.unit
+         << ", must be within [" << parameter.low << ", " << parameter.high << "]";
+    node.fail(text.str());
+  }
+  return out;
+}
+
+/// Numbers by name out of a map's entries; keys in `other` are not numbers and are passed over.
+Numbers parse_numbers(const YamlNode& map, std::span<const std::string> other, std::span<const sim::Parameter> known) {
+  Numbers out;
+  for (const auto& [name, value] : map.entries()) {
+    if (std::find(other.begin(), other.end(), name) != other.end()) continue;
+    const sim::Parameter* const parameter = find_parameter(known, name);
+    if (parameter == nullptr) {
+      std::vector<std::string> names = names_of(known);
+      names.insert(names.end(), other.begin(), other.end());
+      value.fail("unknown key '" + name + "'" + suggestion(name, names));
+    }
+    out.emplace(name, parse_checked(value, *parameter));
+  }
+  return out;
+}
+
+const YamlNode* find_entry(const std::vector<std::pair<std::string, YamlNode>>& entries, const std::string& name) {
+  const auto found = std::find_if(entries.begin(), entries.end(), [&](const auto& entry) { return entry.first == name; });
+  return found == entries.end() ? nullptr : &found->second;
+}
+
+const sim::ComponentType& known_type(const YamlNode& node, std::span<const sim::ComponentType> types) {
+  const std::string name = node.identifier();
+  const sim::ComponentType* const type = find_type(types, name);
+  if (type == nullptr) node.fail("unknown '" + name + "'" + suggestion(name, names_of(types)));
+  return *type;
+}
+
+Scenario::Part parse_part(const YamlNode& node, std::span<const sim::ComponentType> types) {
+  static const std::array<std::string, 1> kOther = {"type"};
+  const auto entries = node.entries();
+  const YamlNode* const type_node = find_entry(entries, "type");
+  if (type_node == nullptr) node.fail("key 'type' is missing");
+  const sim::ComponentType& type = known_type(*type_node, types);
+  return {type.name, parse_numbers(node, kOther, type.parameters), node.line()};
+}
+
+Scenario::Sensor parse_sensor(const YamlNode& node, const Registry& registry) {
+  static const std::array<std::string, 5> kOther = {"name", "kind", "device", "site", "mount_error"};
+  const auto entries = node.entries();
+  for (const char* required : {"name", "kind", "device", "site"}) {
+    if (find_entry(entries, required) == nullptr) node.fail(std::string("key '") + required + "' is missing");
+  }
+  const sim::ComponentType& type = known_type(*find_entry(entries, "kind"), registry.sensors);
+  Scenario::Sensor out;
+  out.line = node.line();
+  out.name = find_entry(entries, "name")->identifier();
+  out.kind = type.name;
+  out.device = find_entry(entries, "device")->identifier();
+  out.site = find_entry(entries, "site")->identifier();
+  out.numbers = parse_numbers(node, kOther, type.parameters);
+  if (const YamlNode* const error = find_entry(entries, "mount_error")) {
+    out.mount_error = parse_numbers(*error, {}, registry.mount_error);
+  }
+  return out;
+}
+
+std::vector<Scenario::Sensor> parse_sensors(const YamlNode& list, const Registry& registry) {
+  std::vector<Scenario::Sensor> out;
+  for (const YamlNode& item : list.items()) {
+    Scenario::Sensor sensor = parse_sensor(item, registry);
+    for (const Scenario::Sensor& other : out) {
+      if (other.name == sensor.name) item.fail("a sensor '" + sensor.name + "' stands already in line " + std::to_string(other.line));
+    }
+    out.push_back(std::move(sensor));
+  }
+  if (out.empty()) list.fail("needs at least one sensor");
+  return out;
+}
+
+}  // namespace
+
+Scenario parse_scenario(const std::string& text, const std::string& file, const Registry& registry) {
+  static const std::array<std::string, 7> kKeys = {"name", "doc", "duration_s", "world", "robot", "motion", "sensors"};
+  const auto fields = YamlNode::parse(text, file).fields(kKeys);
+  Scenario out;
+  out.file = file;
+  out.name = fields.at("name").identifier();
+  out.doc = fields.at("doc").text();
+  out.duration_s = parse_checked(fields.at("duration_s"), kDuration);
+  out.world = parse_part(fields.at("world"), registry.worlds);
+  out.robot = parse_part(fields.at("robot"), registry.robots);
+  out.motion = parse_part(fields.at("motion"), registry.motions);
+  out.sensors = parse_sensors(fields.at("sensors"), registry);
+  return out;
+}
+
+}  // namespace tumble::scenarios

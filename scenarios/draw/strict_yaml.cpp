@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/draw/strict_yaml.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <set>
+#include <sstream>
+#include <system_error>
+
+#include "scenarios/errors.hpp"
+#include "sim/parameters.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr std::uintmax_t kLargestFile = 4u << 20;
+
+std::string join(const std::string& place, const std::string& name) { return place.empty() ? name : place + "." + name; }
+
+const char* kind_of(const YAML::Node& node) {
+  if (node.IsMap()) return "a map";
+  if (node.IsSequence()) return "a list";
+  return node.IsScalar() ? "text" : "nothing";
+}
+
+}  // namespace
+
+std::string read_text_file(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) throw BadInput(path.string() + ": no such file");
+  if (std::filesystem::file_size(path, error) > kLargestFile || error) {
+    throw BadInput(path.string() + ": larger than 4 MiB");
+  }
+  std::ifstream stream(path, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  if (!stream || !text) throw BadInput(path.string() + ": cannot be read");
+  return text.str();
+}
+
+std::string suggestion(const std::string& name, std::span<const std::string> known) {
+  const std::string near = sim::nearest_name(name, known);
+  if (!near.empty()) return "; did you mean '" + near + "'?";
+  if (known.empty()) return "; none is known";
+  std::string text = "; known:";
+  for (const std::string& each : known) text += " " + each;
+  return text;
+}
+
+YamlNode::YamlNode(YAML::Node node, std::string file, std::string place)
+    : node_(std::move(node)), file_(std::move(file)), place_(std::move(place)), line_(node_.Mark().line + 1) {}
+
+YamlNode YamlNode::parse(const std::string& text, const std::string& file) {
+  try {
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.size() > 1) throw BadInput(file + ": holds more than one document");
+    if (documents.empty() || documents[0].IsNull()) throw BadInput(file + ": is empty");
+    return YamlNode(documents[0], file, "");
+  } catch (const YAML::Exception& error) {
+    throw BadInput(file + ":" + std::to_string(error.mark.line + 1) + ": not YAML: " + error.msg);
+  }
+}
+
+void YamlNode::fail(const std::string& what) const {
+  throw BadInput(file_ + ":" + std::to_string(line_) + ": " + (place_.empty() ? "" : place_ + ": ") + what);
+}
+
+std::string YamlNode::any_text() const {
+  if (!node_.IsScalar()) fail(std::string("must be text, is ") + kind_of(node_));
+  return node_.Scalar();
+}
+
+std::string YamlNode::text() const {
+  if (any_text().empty()) fail("must not be empty");
+  return node_.Scalar();
+}
+
+std::string YamlNode::identifier() const {
+  const std::string name = text();
+  const auto lower = [](char c) { return c >= 'a' && c <= 'z'; };
+  const auto allowed = [&](char c) { return lower(c) || (c >= '0' && c <= '9') || c == '_'; };
+  if (!lower(name[0]) || !std::all_of(name.begin(), name.end(), allowed)) {
+    fail("'" + name + "' must be a lower-case letter followed by letters, digits and underscores");
+  }
+  return name;
+}
+
+double YamlNode::number() const { return parse_number(false); }
+double YamlNode::number_or_infinity() const { return parse_number(true); }
+
+double YamlNode::parse_number(bool infinity_allowed) const {
+  if (!node_.IsScalar()) fail(std::string("must be a number, is ") + kind_of(node_));
+  const std::string& written = node_.Scalar();
+  // "!" is the tag that the parser gives to quoted text
+  if (node_.Tag() == "!") fail("must be a number, is the text \"" + written + "\"");
+  if (infinity_allowed && written == ".inf") return std::numeric_limits<double>::infinity();
+  if (infinity_allowed && written == "-.inf") return -std::numeric_limits<double>::infinity();
+  double value = 0.0;
+  const char* const end = written.data() + written.size();
+  const auto [stop, error] = std::from_chars(written.data(), end, value);
+  if (error == std::errc::result_out_of_range) fail("'" + written + "' does not fit a double");
+  if (error != std::errc() || stop != end) fail("must be a number, is '" + written + "'");
+  if (!std::isfinite(value)) fail("must be finite, is '" + written + "'");
+  return value;
+}
+
+std::uint64_t YamlNode::unsigned_integer() const {
+  const std::string written = text();
+  std::uint64_t value = 0;
+  const char* const end = written.data() + written.size();
+  const auto [stop, error] = std::from_chars(written.data(), end, value);
+  if (error != std::errc() || stop != end) fail("must be an integer from 0 to 2^64-1, is '" + written + "'");
+  return value;
+}
+
+std::vector<YamlNode> YamlNode::items() const {
+  if (!node_.IsSequence()) fail(std::string("must be a list, is ") + kind_of(node_));
+  std::vector<YamlNode> out;
+  for (const YAML::Node& item : node_) out.push_back(YamlNode(item, file_, place_ + "[" + std::to_string(out.size()) + "]"));
+  return out;
+}
+
+std::vector<std::pair<std::string, YamlNode>> YamlNode::entries() const {
+  if (!node_.IsMap()) fail(std::string("must be a map of keys and values, is ") + kind_of(node_));
+  std::vector<std::pair<std::string, YamlNode>> out;
+  std::set<std::string> seen;
+  for (const auto& entry : node_) {
+    const YamlNode key(entry.first, file_, place_);
+    const std::string name = key.text();
+    if (!seen.insert(name).second) key.fail("key '" + name + "' is given twice");
+    YamlNode value(entry.second, file_, join(place_, name));
+    // a block, an alias (marked where its anchor is) and an empty value (marked nowhere) are looked for at their key
+    value.line_ = key.line_;
+    out.emplace_back(name, std::move(value));
+  }
+  return out;
+}
+
+std::map<std::string, YamlNode> YamlNode::fields(std::span<const std::string> required,
+                                                 std::span<const std::string> optional) const {
+  std::vector<std::string> known(required.begin(), required.end());
+  known.insert(known.end(), optional.begin(), optional.end());
+  std::map<std::string, YamlNode> out;
+  for (auto& [name, value] : entries()) {
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      value.fail("unknown key '" + name + "'" + suggestion(name, known));
+    }
+    out.emplace(name, value);
+  }
+  for (const std::string& name : required) {
+    if (!out.contains(name)) fail("key '" + name + "' is missing");
+  }
+  return out;
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/methods/bridge.hpp"
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "scenarios/errors.hpp"
+
+namespace tumble::scenarios::bridge {
+
+namespace {
+
+// sim's bit -> the estimator's flag, written out so that neither side can move alone
+constexpr std::array<std::pair<int, ClipFlag>, 6> kClipBits = {
+    {{0, kClipGyroX}, {1, kClipGyroY}, {2, kClipGyroZ}, {3, kClipAccelX}, {4, kClipAccelY}, {5, kClipAccelZ}}};
+
+std::uint8_t clip_flags(std::uint8_t sim_bits) {
+  std::uint8_t flags = 0;
+  for (const auto& [bit, flag] : kClipBits) {
+    if (sim_bits & (1u << bit)) flags = static_cast<std::uint8_t>(flags | flag);
+  }
+  return flags;
+}
+
+void require_length(const std::string& place, const char* field, std::size_t found, std::size_t expected) {
+  if (found == expected) return;
+  throw BadInput(place + "." + field + " has " + std::to_string(found) + " entries, must have " +
+                 std::to_string(expected));
+}
+
+// what every method may rely on: finite, rising, without holes
+Status check_stream(std::span<const ImuSample> samples) {
+  if (samples.empty()) return {Trouble::empty, "imu.time_ns", 0.0, 1.0};
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const ImuSample& sample = samples[k];
+    if (!sample.angular_velocity_rad_s.allFinite()) {
+      return {Trouble::non_finite, "imu.gyro_rad_s", sample.angular_velocity_rad_s.sum(), 0.0};
+    }
+    if (!sample.specific_force_m_s2.allFinite()) {
+      return {Trouble::non_finite, "imu.accel_m_s2", sample.specific_force_m_s2.sum(), 0.0};
+    }
+    if (k == 0) continue;
+    const TimeNs previous = samples[k - 1].time_ns;
+    if (sample.time_ns <= previous) {
+      return {Trouble::time_order, "imu.time_ns", static_cast<double>(sample.time_ns), static_cast<double>(previous)};
+    }
+    if (seconds(sample.time_ns - previous) > kGapMaxS) {
+      return {Trouble::gap, "imu.time_ns", seconds(sample.time_ns - previous), kGapMaxS};
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out) {
+  out.clear();
+  const std::size_t count = record.time_ns.size();
+  const std::string place = "imu '" + record.name + "'";
+  require_length(place, "gyro_rad_s", record.gyro_rad_s.size(), count);
+  require_length(place, "accel_m_s2", record.accel_m_s2.size(), count);
+  if (!record.clip_flags.empty()) require_length(place, "clip_flags", record.clip_flags.size(), count);
+  std::vector<ImuSample> samples(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    samples[k].time_ns = record.time_ns[k];
+    samples[k].angular_velocity_rad_s = record.gyro_rad_s[k];
+    samples[k].specific_force_m_s2 = record.accel_m_s2[k];
+    samples[k].device_clip_flags = record.clip_flags.empty() ? std::uint8_t{0} : clip_flags(record.clip_flags[k]);
+  }
+  const Status status = check_stream(samples);
+  if (status.ok()) out = std::move(samples);
+  return status;
+}
+
+Status primary_imu_samples(const sim::Sensors& sensors, std::vector<ImuSample>& out) {
+  out.clear();
+  if (sensors.imus.empty()) return {Trouble::empty, "imus", 0.0, 1.0};
+  return imu_samples(sensors.imus.front(), out);
+}
+
+Status unclipped_samples(const sim::ImuRecord& record, const sim::ImuTruth& truth, std::vector<ImuSample>& out) {
+  const std::string place = "truth of imu '" + record.name + "'";
+  require_length(place, "gyro_unclipped_rad_s", truth.gyro_unclipped_rad_s.size(), record.time_ns.size());
+  require_length(place, "accel_unclipped_m_s2", truth.accel_unclipped_m_s2.size(), record.time_ns.size());
+  sim::ImuRecord twin = record;
+  twin.gyro_rad_s = truth.gyro_unclipped_rad_s;
+  twin.accel_m_s2 = truth.accel_unclipped_m_s2;
+  twin.clip_flags.clear();
+  return imu_samples(twin, out);
+}
+
+Eigen::Vector3d lever_arm_I_m(const sim::ImuRecord& record) {
+  return record.T_BI.linear().transpose() * record.T_BI.translation();
+}
+
+Eigen::Isometry3d T_IL(const sim::ImuRecord& imu, const sim::LidarRecord& lidar) {
+  return imu.T_BI.inverse(Eigen::Isometry) * lidar.T_BL;
+}
+
+double gyro_variance_rad2_s2(const sim::ImuRecord& record) {
+  const double period_s = seconds(record.period_ns);
+  if (!(period_s > 0.0)) return 0.0;
+  return record.gyro_noise_rad_s_sqrt_hz * record.gyro_noise_rad_s_sqrt_hz / period_s;
+}
+
+std::size_t sweep_count(const sim::LidarRecord& record) {
+  const std::size_t sweeps = record.sweep_start_ns.size();
+  const std::size_t points = record.position_L_m.size();
+  const std::string place = "lidar '" + record.name + "'";
+  // a lidar without sweeps may come without the closing index
+  if (sweeps == 0 && record.sweep_first.empty()) return 0;
+  require_length(place, "sweep_first", record.sweep_first.size(), sweeps + 1);
+  require_length(place, "offset_ns", record.offset_ns.size(), points);
+  require_length(place, "ring", record.ring.size(), points);
+  require_length(place, "intensity", record.intensity.size(), points);
+  for (std::size_t k = 0; k < sweeps; ++k) {
+    if (record.sweep_first[k] > record.sweep_first[k + 1]) {
+      throw BadInput(place + ".sweep_first falls at sweep " + std::to_string(k));
+    }
+  }
+  require_length(place, "position_L_m", points, record.sweep_first[sweeps]);
+  return sweeps;
+}
+
+Sweep sweep(const sim::LidarRecord& record, std::size_t index) {
+  Sweep out;
+  out.start_ns = record.sweep_start_ns.at(index);
+  out.end_ns = out.start_ns + record.sweep_period_ns;
+  const std::size_t first = record.sweep_first.at(index);
+  const std::size_t last = record.sweep_first.at(index + 1);
+  out.points.resize(last - first);
+  for (std::size_t k = first; k < last; ++k) {
+    LidarPoint& point = out.points[k - first];
+    point.position_L_m = record.position_L_m[k];
+    point.intensity = record.intensity[k];
+    point.offset_ns = record.offset_ns[k];
+    point.ring = record.ring[k];
+  }
+  return out;
+}
+
+}  // namespace tumble::scenarios::bridge

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sim/recording.hpp"
+#include "tumble/angular_velocity/rate_state.hpp"
+#include "tumble/common/imu.hpp"
+#include "tumble/common/status.hpp"
+#include "tumble/mapping/lidar.hpp"
+
+/// The one place where the records of `sim` become the messages of the estimator. Both libraries state their conventions
+/// by themselves; here they are compared, field by field:
+///
+/// | quantity       | sim                                        | estimator                                      |
+/// | -------------- | ------------------------------------------ | ---------------------------------------------- |
+/// | time           | ns, end of the sample's window             | ns, the window ends there                      |
+/// | rate           | rad/s, of I in W, I axes                   | w_WI_I, rad/s                                  |
+/// | specific force | m/s^2, I axes, +g up at rest               | f_I, the same sign                             |
+/// | clip flags     | bits 0..5: gyro x y z, accel x y z         | ClipFlag                                       |
+/// | mounting       | T_BI, T_BL: sensor to body, B at the centre of mass | lever arm in I axes from it; T_IL     |
+/// | lidar point    | m in L, offset ns after the sweep's start  | the same, one struct per point                 |
+namespace tumble::scenarios::bridge {
+
+/// Longest time between two IMU samples that a recording may have [s].
+inline constexpr double kGapMaxS = 1.0;
+
+/// Samples of an IMU, in order. Trouble: `empty`, `non_finite`, `time_order`, `gap` (more than kGapMaxS); then `out` is
+/// empty. Throws BadInput when the record's arrays differ in length. O(N).
+Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out);
+
+/// The primary IMU's samples; `empty` when the recording has no IMU.
+Status primary_imu_samples(const sim::Sensors& sensors, std::vector<ImuSample>& out);
+
+/// The same samples with the rail taken away, from the truth's twin of the record. Throws BadInput when the truth does not
+/// belong to the record.
+Status unclipped_samples(const sim::ImuRecord& record, const sim::ImuTruth& truth, std::vector<ImuSample>& out);
+
+/// From the centre of mass to the IMU, in IMU axes [m]: R_BI^T p_BI of the calibration.
+Eigen::Vector3d lever_arm_I_m(const sim::ImuRecord& record);
+
+/// Lidar coordinates to IMU coordinates, from the two calibrations.
+Eigen::Isometry3d T_IL(const sim::ImuRecord& imu, const sim::LidarRecord& lidar);
+
+/// Variance of one reading of the gyro per axis, from the data sheet's density and the sample's length [(rad/s)^2].
+double gyro_variance_rad2_s2(const sim::ImuRecord& record);
+
+/// One sweep of a lidar as the estimator takes it.
+struct Sweep {
+  std::int64_t start_ns = 0;
+  std::int64_t end_ns = 0;
+  std::vector<LidarPoint> points;
+};
+
+/// Number of sweeps. Throws BadInput when the record's arrays do not fit together.
+std::size_t sweep_count(const sim::LidarRecord& record);
+
+/// Sweep `index` < sweep_count(record). O(points of the sweep).
+Sweep sweep(const sim::LidarRecord& record, std::size_t index);
+
+}  // namespace tumble::scenarios::bridge

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/methods/estimate_file.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/methods/map_file.hpp"
+#include "scenarios/methods/table_file.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr int kFormatVersion = 1;
+constexpr const char* kFiles[] = {"estimate.json",  "rates.csv",       "attitude.tum", "trajectory.tum",
+                                  "sweeps.csv",     "sweep_poses.csv", "map.ply"};
+const std::string kRatesHeader = "time_ns,wx_rad_s,wy_rad_s,wz_rad_s,cxx,cxy,cxz,cyy,cyz,czz,clipped_axes,source";
+const std::string kPose = "px_m,py_m,pz_m,qx,qy,qz,qw,vx_m_s,vy_m_s,vz_m_s";
+const std::string kSweepsHeader = "end_ns,verdict,iterations,inlier_share,conditioning,pose_time_ns," + kPose;
+const std::string kSweepPosesHeader = "sweep,time_ns," + kPose;
+
+void write_quaternion(TableWriter& table, const Eigen::Quaterniond& q) {
+  for (int j = 0; j < 4; ++j) table.number(q.coeffs()[j]);
+}
+
+void write_vector(TableWriter& table, const Eigen::Vector3d& v) {
+  for (int j = 0; j < 3; ++j) table.number(v[j]);
+}
+
+Eigen::Vector3d read_vector(const Table& table, const Table::Row& row, std::size_t first) {
+  return {table.number(row, first), table.number(row, first + 1), table.number(row, first + 2)};
+}
+
+// x y z w, as it stands in the file; a zero or non-finite one is refused, since it is no attitude
+Eigen::Quaterniond read_quaternion(const Table& table, const Table::Row& row, std::size_t first, bool normalise) {
+  Eigen::Quaterniond q(table.number(row, first + 3), table.number(row, first), table.number(row, first + 1),
+                       table.number(row, first + 2));
+  const double norm = q.norm();
+  if (std::isfinite(norm) && std::abs(norm - 1.0) > 1e-2) {
+    throw BadInput(table.path.string() + ":" + std::to_string(row.line) + ": quaternion of norm " +
+                   std::to_string(norm) + ", must be 1");
+  }
+  return normalise ? q.normalized() : q;
+}
+
+void write_pose(TableWriter& table, const PoseState& pose) {
+  write_vector(table, pose.p_WA_m);
+  write_quaternion(table, pose.q_WA);
+  write_vector(table, pose.v_WA_m_s);
+}
+
+PoseState read_pose(const Table& table, const Table::Row& row, std::size_t time_column, std::size_t first) {
+  PoseState pose;
+  pose.time_ns = table.integer(row, time_column);
+  pose.p_WA_m = read_vector(table, row, first);
+  pose.q_WA = read_quaternion(table, row, first + 3, false);
+  pose.v_WA_m_s = read_vector(table, row, first + 7);
+  return pose;
+}
+
+void write_rates(const std::filesystem::path& path, const std::vector<RateState>& rates) {
+  TableWriter table(path, ',', kRatesHeader);
+  for (const RateState& rate : rates) {
+    table.integer(rate.time_ns);
+    write_vector(table, rate.w_WI_I_rad_s);
+    for (int i = 0; i < 3; ++i) {
+      for (int j = i; j < 3; ++j) table.number(rate.covariance_rad2_s2(i, j));
+    }
+    table.integer(rate.clipped_axes);
+    table.integer(static_cast<int>(rate.source));
+    table.end_row();
+  }
+  table.close();
+}
+
+void read_rates(const std::filesystem::path& path, std::vector<RateState>& rates) {
+  const Table table = Table::read(path, ',', kRatesHeader, 12);
+  for (const Table::Row& row : table.rows) {
+    RateState rate;
+    rate.time_ns = table.integer(row, 0);
+    rate.w_WI_I_rad_s = read_vector(table, row, 1);
+    std::size_t column = 4;
+    for (int i = 0; i < 3; ++i) {
+      for (int j = i; j < 3; ++j) {
+        rate.covariance_rad2_s2(i, j) = rate.covariance_rad2_s2(j, i) = table.number(row, column++);
+      }
+    }
+    rate.clipped_axes = static_cast<std::uint8_t>(table.integer(row, 10));
+    const std::int64_t source = table.integer(row, 11);
+    if (source < 0 || source > static_cast<int>(RateSource::bounded_only)) {
+      throw BadInput(path.string() + ":" + std::to_string(row.line) + ": unknown source " + std::to_string(source));
+    }
+    rate.source = static_cast<RateSource>(source);
+    rates.push_back(rate);
+  }
+}
+
+void write_sweeps(const std::filesystem::path& folder, const Estimate& estimate) {
+  TableWriter sweeps(folder / "sweeps.csv", ',', kSweepsHeader);
+  TableWriter poses(folder / "sweep_poses.csv", ',', kSweepPosesHeader);
+  for (std::size_t k = 0; k < estimate.sweeps.size(); ++k) {
+    const auto& sweep = estimate.sweeps[k];
+    sweeps.integer(estimate.sweep_end_ns[k]);
+    sweeps.integer(static_cast<int>(sweep.verdict));
+    sweeps.integer(sweep.iterations);
+    sweeps.number(sweep.inlier_share);
+    sweeps.number(sweep.conditioning);
+    sweeps.integer(sweep.pose.time_ns);
+    write_pose(sweeps, sweep.pose);
+    sweeps.end_row();
+    for (const PoseState& pose : sweep.trajectory) {
+      poses.integer(static_cast<std::int64_t>(k));
+      poses.integer(pose.time_ns);
+      write_pose(poses, pose);
+      poses.end_row();
+    }
+  }
+  sweeps.close();
+  poses.close();
+}
+
+void read_sweeps(const std::filesystem::path& folder, Estimate& estimate) {
+  const Table sweeps = Table::read(folder / "sweeps.csv", ',', kSweepsHeader, 16);
+  for (const Table::Row& row : sweeps.rows) {
+    LidarInertialOdometry::SweepReport sweep;
+    const std::int64_t verdict = sweeps.integer(row, 1);
+    if (verdict < 0 || verdict > static_cast<int>(SweepVerdict::rejected)) {
+      throw BadInput(sweeps.path.string() + ":" + std::to_string(row.line) + ": unknown verdict " +
+                     std::to_string(verdict));
+    }
+    sweep.verdict = static_cast<SweepVerdict>(verdict);
+    sweep.iterations = static_cast<int>(sweeps.integer(row, 2));
+    sweep.inlier_share = sweeps.number(row, 3);
+    sweep.conditioning = sweeps.number(row, 4);
+    sweep.pose = read_pose(sweeps, row, 5, 6);
+    estimate.sweep_end_ns.push_back(sweeps.integer(row, 0));
+    estimate.sweeps.push_back(std::move(sweep));
+  }
+  const Table poses = Table::read(folder / "sweep_poses.csv", ',', kSweepPosesHeader, 12);
+  for (const Table::Row& row : poses.rows) {
+    const std::int64_t index = poses.integer(row, 0);
+    if (index < 0 || index >= static_cast<std::int64_t>(estimate.sweeps.size())) {
+      throw BadInput(poses.path.string() + ":" + std::to_string(row.line) + ": no sweep " + std::to_string(index));
+    }
+    estimate.sweeps[static_cast<std::size_t>(index)].trajectory.push_back(read_pose(poses, row, 1, 2));
+  }
+}
+
+void read_tum(const std::filesystem::path& path, std::vector<PoseState>& poses) {
+  const Table table = Table::read(path, ' ', "", 8);
+  for (const Table::Row& row : table.rows) {
+    PoseState pose;
+    pose.time_ns = table.time_ns(row, 0);
+    pose.p_WA_m = read_vector(table, row, 1);
+    pose.q_WA = read_quaternion(table, row, 4, true);
+    if (!poses.empty() && pose.time_ns <= poses.back().time_ns) {
+      throw BadInput(path.string() + ":" + std::to_string(row.line) + ": time stamps must rise");
+    }
+    poses.push_back(pose);
+  }
+}
+
+json header_of(const std::string& method, Kind kind, const Estimate& estimate) {
+  json health = json::object();
+  for (const auto& [name, value] : estimate.health) health[name] = value;
+  return {{"format", kFormatVersion},
+          {"method", method},
+          {"kind", to_string(kind)},
+          {"frame", to_string(estimate.frame)},
+          {"status",
+           {{"trouble", to_string(estimate.status.trouble)},
+            {"field", estimate.status.field},
+            {"message", estimate.status.message()}}},
+          {"health", health}};
+}
+
+template <typename Enum>
+Enum enum_named(const std::string& name, Enum last, const std::filesystem::path& path) {
+  for (int k = 0; k <= static_cast<int>(last); ++k) {
+    if (name == to_string(static_cast<Enum>(k))) return static_cast<Enum>(k);
+  }
+  throw BadInput(path.string() + ": unknown name '" + name + "'");
+}
+
+void read_header(const std::filesystem::path& path, Kind& kind, std::string& method, Estimate& estimate) {
+  std::ifstream file(path);
+  if (!file) throw BadInput(path.string() + ": cannot be read; not a folder of an estimate");
+  try {
+    const json header = json::parse(file);
+    if (header.at("format").get<int>() != kFormatVersion) {
+      throw BadInput(path.string() + ": format " + header.at("format").dump() + ", must be 1");
+    }
+    method = header.at("method").get<std::string>();
+    kind = enum_named(header.at("kind").get<std::string>(), Kind::slam, path);
+    estimate.frame = enum_named(header.at("frame").get<std::string>(), Frame::centre, path);
+    estimate.status.trouble = enum_named(header.at("status").at("trouble").get<std::string>(), Trouble::diverged, path);
+    // a Status holds a static string, so which field it was stays in the file's message
+    if (!estimate.status.ok()) estimate.status.field = "estimate.json";
+    for (const auto& [name, value] : header.at("health").items()) {
+      estimate.health[name] = value.is_number() ? value.get<double>() : std::nan("");
+    }
+  } catch (const json::exception& error) {
+    throw BadInput(path.string() + ": " + error.what());
+  }
+}
+
+}  // namespace
+
+void write_estimate(const std::filesystem::path& folder, const std::string& method, Kind kind,
+                    const Estimate& estimate) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw BadInput(folder.string() + ": cannot be made: " + error.message());
+  // what an earlier estimate left would be read back with this one
+  for (const char* name : kFiles) std::filesystem::remove(folder / name, error);
+  if (!estimate.rates.empty()) write_rates(folder / "rates.csv", estimate.rates);
+  if (!estimate.attitudes.empty()) {
+    TableWriter table(folder / "attitude.tum", ' ', "");
+    for (const AttitudeState& attitude : estimate.attitudes) {
+      table.time_s(attitude.time_ns);
+      write_vector(table, Eigen::Vector3d::Zero());
+      write_quaternion(table, attitude.q_WA);
+      table.end_row();
+    }
+    table.close();
+  }
+  if (!estimate.poses.empty()) {
+    TableWriter table(folder / "trajectory.tum", ' ', "");
+    for (const PoseState& pose : estimate.poses) {
+      table.time_s(pose.time_ns);
+      write_vector(table, pose.p_WA_m);
+      write_quaternion(table, pose.q_WA);
+      table.end_row();
+    }
+    table.close();
+  }
+  if (!estimate.sweeps.empty()) write_sweeps(folder, estimate);
+  if (!estimate.map.empty()) write_map(folder / "map.ply", estimate.map);
+
+  // last: a folder with this file is complete
+  std::ofstream file(folder / "estimate.json");
+  file << header_of(method, kind, estimate).dump(2) << '\n';
+  file.close();
+  if (!file) throw BadInput((folder / "estimate.json").string() + ": cannot be written");
+}
+
+Estimate read_estimate(const std::filesystem::path& path, Kind& kind, std::string& method, Frame tum_frame) {
+  Estimate estimate;
+  if (!std::filesystem::is_directory(path)) {
+    kind = Kind::position;
+    method = path.stem().string();
+    estimate.frame = tum_frame;
+    read_tum(path, estimate.poses);
+    if (estimate.poses.empty()) throw BadInput(path.string() + ": no pose in it");
+    return estimate;
+  }
+  read_header(path / "estimate.json", kind, method, estimate);
+  const auto there = [&](const char* name) { return std::filesystem::exists(path / name); };
+  if (there("rates.csv")) read_rates(path / "rates.csv", estimate.rates);
+  if (there("trajectory.tum")) read_tum(path / "trajectory.tum", estimate.poses);
+  if (there("attitude.tum")) {
+    std::vector<PoseState> poses;
+    read_tum(path / "attitude.tum", poses);
+    for (const PoseState& pose : poses) estimate.attitudes.push_back({pose.time_ns, pose.q_WA, Eigen::Matrix3d::Zero()});
+  }
+  if (there("sweeps.csv")) read_sweeps(path, estimate);
+  if (there("map.ply")) estimate.map = read_map(path / "map.ply");
+  return estimate;
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/methods/map_file.hpp"
+
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cstring>
+#include <fstream>
+#include <string>
+
+#include "scenarios/errors.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "maps are written as they stand in memory");
+
+constexpr std::array<const char*, 7> kProperties = {"x", "y", "z", "nx", "ny", "nz", "sigma"};
+using Row = std::array<float, kProperties.size()>;
+
+std::vector<std::string> header(std::size_t points) {
+  std::vector<std::string> lines = {"ply", "format binary_little_endian 1.0",
+                                    "element vertex " + std::to_string(points)};
+  for (const char* name : kProperties) lines.push_back(std::string("property float ") + name);
+  lines.push_back("end_header");
+  return lines;
+}
+
+// the number of points that a header of ours announces
+std::size_t read_header(std::istream& file, const std::filesystem::path& path) {
+  const std::vector<std::string> expected = header(0);
+  std::size_t points = 0;
+  for (const std::string& line : expected) {
+    std::string found;
+    if (!std::getline(file, found)) throw BadInput(path.string() + ": truncated in its header");
+    const std::string prefix = "element vertex ";
+    if (line.starts_with(prefix) && found.starts_with(prefix)) {
+      const char* end = found.data() + found.size();
+      const auto [stop, error] = std::from_chars(found.data() + prefix.size(), end, points);
+      if (error == std::errc() && stop == end) continue;
+    }
+    if (found != line) throw BadInput(path.string() + ": '" + found + "' in the header, must be '" + line + "'");
+  }
+  return points;
+}
+
+}  // namespace
+
+void write_map(const std::filesystem::path& path, std::span<const MapPoint> map) {
+  std::ofstream file(path, std::ios::binary);
+  for (const std::string& line : header(map.size())) file << line << '\n';
+  for (const MapPoint& point : map) {
+    const Row row = {point.position_W_m.x(), point.position_W_m.y(), point.position_W_m.z(), point.normal_W.x(),
+                     point.normal_W.y(),     point.normal_W.z(),     point.sigma_m};
+    file.write(reinterpret_cast<const char*>(row.data()), sizeof(row));
+  }
+  file.flush();
+  if (!file) throw BadInput(path.string() + ": cannot be written");
+}
+
+std::vector<MapPoint> read_map(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw BadInput(path.string() + ": cannot be read");
+  const std::size_t points = read_header(file, path);
+  const auto data = file.tellg();
+  file.seekg(0, std::ios::end);
+  const auto bytes = static_cast<std::uintmax_t>(file.tellg() - data);
+  if (bytes / sizeof(Row) != points || bytes % sizeof(Row) != 0) {
+    throw BadInput(path.string() + ": truncated: " + std::to_string(bytes) + " bytes of data for " +
+                   std::to_string(points) + " points");
+  }
+  file.seekg(data);
+  std::vector<MapPoint> map(points);
+  for (MapPoint& point : map) {
+    Row row;
+    if (!file.read(reinterpret_cast<char*>(row.data()), sizeof(row))) throw BadInput(path.string() + ": cannot be read");
+    point.position_W_m = {row[0], row[1], row[2]};
+    point.normal_W = {row[3], row[4], row[5]};
+    point.sigma_m = row[6];
+  }
+  return map;
+}
+
+}  // namespace tumble::scenarios

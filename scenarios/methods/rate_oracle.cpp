@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/errors.hpp"
+#include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/registry.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+Estimate run(const sim::Sensors& sensors, const sim::Values&, const OracleInput& oracle) {
+  Estimate estimate;
+  estimate.status = unclipped_rates(sensors, *oracle.truth, estimate.rates);
+  count_sources(estimate.rates, estimate.health);
+  return estimate;
+}
+
+}  // namespace
+
+Status unclipped_rates(const sim::Sensors& sensors, const sim::Truth& truth, std::vector<RateState>& out) {
+  out.clear();
+  // the readings themselves are checked too: an oracle shall not run where no method could
+  std::vector<ImuSample> samples;
+  Status status = bridge::primary_imu_samples(sensors, samples);
+  if (!status.ok()) return status;
+  if (truth.imus.empty()) throw BadInput("the truth holds no IMU");
+  status = bridge::unclipped_samples(sensors.imus.front(), truth.imus.front(), samples);
+  if (!status.ok()) return status;
+  return raw_rates(sensors, samples, out);
+}
+
+Method rate_oracle() {
+  MethodInfo info;
+  info.name = "oracle";
+  info.kind = Kind::rate;
+  info.doc = "The same gyro without its rail: noise, bias and bandwidth as read, nothing clipped. The bound.";
+  info.source = "ours";
+  info.needs_truth = true;
+  return make_method(std::move(info), run);
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/methods/registry.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "scenarios/errors.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+std::string full_name(const MethodInfo& info) { return std::string(to_string(info.kind)) + "/" + info.name; }
+
+std::vector<Method> all_methods() {
+  std::vector<Method> all = {
+      rate_raw(),
+      rate_saave(),
+      rate_oracle(),
+      attitude_integrate(),
+      attitude_madgwick(),
+      position_rolling(),
+      slam_icp(),
+      slam_icp_raw(),
+      slam_oracle(),
+  };
+  std::stable_sort(all.begin(), all.end(), [](const Method& a, const Method& b) { return a.info.kind < b.info.kind; });
+  return all;
+}
+
+}  // namespace
+
+bool MethodInfo::for_robot(const std::string& robot) const {
+  return robots.empty() || std::find(robots.begin(), robots.end(), robot) != robots.end();
+}
+
+Method make_method(MethodInfo info, RunCore run) {
+  const std::string name = full_name(info);
+  const std::span<const sim::Parameter> parameters = info.parameters;
+  const bool needs_truth = info.needs_truth;
+  RunMethod wrapped = [=](const sim::Sensors& sensors, const sim::Values& given, const OracleInput& oracle) {
+    if (needs_truth && oracle.truth == nullptr) {
+      throw BadInput("method " + name + " needs the truth, and this recording has none");
+    }
+    try {
+      const sim::Values resolved = sim::resolve("method " + name, given, parameters);
+      return run(sensors, resolved, needs_truth ? oracle : OracleInput{});
+    } catch (const sim::InvalidSituation& error) {
+      throw BadInput(error.what());
+    } catch (const InvalidParams& error) {
+      throw BadInput("method " + name + ": " + error.what());
+    }
+  };
+  return {std::move(info), std::move(wrapped)};
+}
+
+std::span<const Method> methods() {
+  static const std::vector<Method> all = all_methods();
+  return all;
+}
+
+std::vector<const Method*> find_methods(const std::string& name) {
+  std::vector<const Method*> found;
+  std::vector<std::string> known;
+  for (const Method& method : methods()) {
+    if (name == method.info.name || name == full_name(method.info)) found.push_back(&method);
+    known.push_back(method.info.name);
+    known.push_back(full_name(method.info));
+  }
+  if (found.empty()) {
+    const std::string near = sim::nearest_name(name, known);
+    throw BadInput("unknown method '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+  }
+  return found;
+}
+
+void count_sources(std::span<const RateState> rates, std::map<std::string, double>& health) {
+  for (const RateState& rate : rates) health[std::string("samples_") + to_string(rate.source)] += 1.0;
+}
+
+}  // namespace tumble::scenarios

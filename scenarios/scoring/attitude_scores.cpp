@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+
+#include "scenarios/scoring/families.hpp"
+#include "scenarios/scoring/truth_track.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+// BROAD (Laidig et al., Data 2021): e = q_est (x) q_true*, in W, heading aligned at the first sample
+struct AttitudeError {
+  double inclination_rad;
+  double heading_rad;
+  double total_rad;
+  bool rest;
+};
+
+std::vector<AttitudeError> attitude_errors(const Estimate& estimate, const ScoringInput& input) {
+  const TruthTrack truth(*input.truth, estimate.frame);
+  std::vector<AttitudeError> errors;
+  Eigen::Quaterniond q_align = Eigen::Quaterniond::Identity();
+  for (const AttitudeState& attitude : estimate.attitudes) {
+    if (!truth.covers(attitude.time_ns)) continue;
+    const Eigen::Quaterniond q_true = truth.pose(attitude.time_ns).q_WA;
+    if (errors.empty()) {
+      const double heading = twist_about_z_rad(q_true * attitude.q_WA.conjugate());
+      q_align = Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ());
+    }
+    const Eigen::Quaterniond e = q_align * attitude.q_WA * q_true.conjugate();
+    // equal to 2 acos(sqrt(w^2 + z^2)) and 2 atan|z / w| without the loss of digits
+    errors.push_back({2.0 * std::atan2(std::hypot(e.x(), e.y()), std::hypot(e.w(), e.z())),
+                      2.0 * std::atan2(std::abs(e.z()), std::abs(e.w())), rotation_angle_rad(e),
+                      truth.at_rest(attitude.time_ns)});
+  }
+  return errors;
+}
+
+template <double AttitudeError::*Member, bool Rest>
+bool rmse(const Estimate& estimate, const ScoringInput& input, double& value) {
+  std::vector<double> errors;
+  for (const AttitudeError& error : attitude_errors(estimate, input)) {
+    if (error.rest == Rest) errors.push_back(error.*Member);
+  }
+  if (errors.empty()) return false;
+  value = rms(errors);
+  return true;
+}
+
+bool step_rest_rms(const Estimate& estimate, const ScoringInput& input, double& value) {
+  const TruthTrack truth(*input.truth, estimate.frame);
+  std::vector<double> steps;
+  const AttitudeState* previous = nullptr;
+  for (const AttitudeState& attitude : estimate.attitudes) {
+    const bool rest = truth.covers(attitude.time_ns) && truth.at_rest(attitude.time_ns);
+    if (rest && previous) steps.push_back(rotation_angle_rad(previous->q_WA.conjugate() * attitude.q_WA));
+    previous = rest ? &attitude : nullptr;
+  }
+  if (steps.empty()) return false;
+  value = rms(steps);
+  return true;
+}
+
+}  // namespace
+
+std::vector<Metric> attitude_metrics() {
+  return {
+      {"inclination_rmse_rad", Kind::attitude, "rad", "rms angle between estimated and true vertical, in motion",
+       rmse<&AttitudeError::inclination_rad, false>},
+      {"heading_rmse_rad", Kind::attitude, "rad", "rms error about the vertical, in motion, zero at the start",
+       rmse<&AttitudeError::heading_rad, false>},
+      {"attitude_rmse_rad", Kind::attitude, "rad", "rms angle of the whole attitude error, in motion",
+       rmse<&AttitudeError::total_rad, false>},
+      {"inclination_rmse_rest_rad", Kind::attitude, "rad", "the same as inclination_rmse_rad, at rest",
+       rmse<&AttitudeError::inclination_rad, true>},
+      {"heading_rmse_rest_rad", Kind::attitude, "rad", "the same as heading_rmse_rad, at rest",
+       rmse<&AttitudeError::heading_rad, true>},
+      {"attitude_rmse_rest_rad", Kind::attitude, "rad", "the same as attitude_rmse_rad, at rest",
+       rmse<&AttitudeError::total_rad, true>},
+      {"attitude_step_rest_rms_rad", Kind::attitude, "rad", "rms change from sample to sample at standstill (jitter)",
+       step_rest_rms},
+  };
+}
+
+}  // namespace tumble::scenarios

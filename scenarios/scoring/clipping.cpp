@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/scoring/clipping.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "scenarios/errors.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr double kToleranceMinRadS = 1e-6;
+
+double noise_rad_s(const sim::ImuRecord& record) {
+  return record.period_ns > 0 ? record.gyro_noise_rad_s_sqrt_hz / std::sqrt(1e-9 * static_cast<double>(record.period_ns))
+                              : 0.0;
+}
+
+}  // namespace
+
+ClippingTruth::ClippingTruth(const sim::Sensors& sensors, const sim::Truth& truth) {
+  if (sensors.imus.empty() || truth.imus.empty()) throw BadInput("no IMU to score rates against");
+  record_ = &sensors.imus.front();
+  truth_ = &truth.imus.front();
+  tolerance_rad_s_ = std::max(kToleranceMinRadS, noise_rad_s(*record_));
+  const std::size_t count = record_->time_ns.size();
+  if (record_->gyro_rad_s.size() != count || truth_->rate_rad_s.size() != count ||
+      truth_->gyro_unclipped_rad_s.size() != count) {
+    throw BadInput("imu '" + record_->name + "' and its truth differ in length");
+  }
+}
+
+std::uint8_t ClippingTruth::clipped_axes(std::size_t index) const {
+  std::uint8_t axes = 0;
+  for (int j = 0; j < 3; ++j) {
+    const double lost = std::abs(truth_->gyro_unclipped_rad_s[index][j] - record_->gyro_rad_s[index][j]);
+    // written so that NaN counts as clipped
+    if (!(lost <= tolerance_rad_s_)) axes = static_cast<std::uint8_t>(axes | (1u << j));
+  }
+  return axes;
+}
+
+std::optional<ClippingTruth::Sample> ClippingTruth::at(std::int64_t time_ns) const {
+  const auto& times = record_->time_ns;
+  const auto found = std::lower_bound(times.begin(), times.end(), time_ns);
+  if (found == times.end()) return std::nullopt;
+  const auto index = static_cast<std::size_t>(found - times.begin());
+  if (*found == time_ns) return Sample{truth_->rate_rad_s[index], clipped_axes(index)};
+  if (index == 0) return std::nullopt;
+  const double share = static_cast<double>(time_ns - times[index - 1]) / static_cast<double>(*found - times[index - 1]);
+  return Sample{(1.0 - share) * truth_->rate_rad_s[index - 1] + share * truth_->rate_rad_s[index], clipped_axes(index)};
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+
+#include "sim/recording.hpp"
+
+namespace tumble::scenarios {
+
+/// What the primary gyro should have read, and where its rail took something away.
+///
+/// Definition, used by every score: axis j of a sample is clipped when the reading differs from its unclipped twin (the same
+/// errors, no rail) by more than one standard deviation of the gyro's white noise per sample, sqrt(density^2 / period), or
+/// 1e-6 rad/s if that is larger. What the rail takes away below the noise is nobody's loss.
+class ClippingTruth {
+ public:
+  struct Sample {
+    Eigen::Vector3d rate_rad_s;   ///< true mean rate over the sample's window, true IMU axes
+    std::uint8_t clipped_axes;    ///< bit j: axis j is clipped
+  };
+
+  /// Throws BadInput when sensors and truth do not belong together.
+  ClippingTruth(const sim::Sensors& sensors, const sim::Truth& truth);
+
+  /// The truth at an instant: exactly at a sample's stamp its own; between two stamps the rate is interpolated and the
+  /// axes are those of the sample whose window holds the instant. Nothing outside of the recording. O(log N).
+  std::optional<Sample> at(std::int64_t time_ns) const;
+
+  std::size_t size() const { return record_->time_ns.size(); }
+  std::uint8_t clipped_axes(std::size_t index) const;
+
+ private:
+  const sim::ImuRecord* record_;
+  const sim::ImuTruth* truth_;
+  double tolerance_rad_s_;
+};
+
+}  // namespace tumble::scenarios

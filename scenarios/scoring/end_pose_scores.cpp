@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/scoring/families.hpp"
+#include "scenarios/scoring/registered_sweeps.hpp"
+#include "scenarios/scoring/truth_track.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+// estimated motion from the sixth registered sweep to the last sweep, seen from the true one
+bool end_error(const Estimate& estimate, const ScoringInput& input, Eigen::Vector3d& translation,
+               Eigen::Quaterniond& rotation) {
+  const std::vector<std::size_t> registered = registered_sweeps(estimate);
+  if (registered.size() < kStartSweep || registered[kStartSweep - 1] + 1 >= estimate.sweeps.size()) return false;
+  const PoseState& first = estimate.sweeps[registered[kStartSweep - 1]].pose;
+  const PoseState& last = estimate.sweeps.back().pose;
+  const TruthTrack truth(*input.truth, estimate.frame);
+  if (!truth.covers(first.time_ns) || !truth.covers(last.time_ns)) return false;
+  const PoseState true_first = truth.pose(first.time_ns);
+  const PoseState true_last = truth.pose(last.time_ns);
+  translation = first.q_WA.conjugate() * (last.p_WA_m - first.p_WA_m) -
+                true_first.q_WA.conjugate() * (true_last.p_WA_m - true_first.p_WA_m);
+  rotation = (true_first.q_WA.conjugate() * true_last.q_WA).conjugate() * (first.q_WA.conjugate() * last.q_WA);
+  return true;
+}
+
+bool translation_error_end(const Estimate& estimate, const ScoringInput& input, double& value) {
+  Eigen::Vector3d translation;
+  Eigen::Quaterniond rotation;
+  if (!end_error(estimate, input, translation, rotation)) return false;
+  value = translation.norm();
+  return true;
+}
+
+bool rotation_error_end(const Estimate& estimate, const ScoringInput& input, double& value) {
+  Eigen::Vector3d translation;
+  Eigen::Quaterniond rotation;
+  if (!end_error(estimate, input, translation, rotation)) return false;
+  value = rotation_angle_rad(rotation);
+  return true;
+}
+
+}  // namespace
+
+std::vector<std::size_t> registered_sweeps(const Estimate& estimate) {
+  std::vector<std::size_t> indices;
+  for (std::size_t k = 0; k < estimate.sweeps.size(); ++k) {
+    if (estimate.sweeps[k].verdict != SweepVerdict::rejected) indices.push_back(k);
+  }
+  return indices;
+}
+
+std::vector<Metric> end_pose_metrics() {
+  return {
+      {"translation_error_end_m", Kind::slam, "m",
+       "error of the motion from the sixth registered sweep to the last sweep: translation", translation_error_end},
+      {"rotation_error_end_rad", Kind::slam, "rad", "the same: rotation, up to pi", rotation_error_end},
+  };
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
+#include "scenarios/scoring/families.hpp"
+#include "scenarios/scoring/nearness.hpp"
+#include "scenarios/scoring/truth_track.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr float kToleranceM = 0.25f;   // Deschenes et al.: a map point farther from the surface is an outlier
+constexpr double kOutliersMax = 0.15;  // the same: a larger share of them is a failed map
+constexpr float kSurfaceCellM = 0.1f;  // the seen surface counts once per cell, however often it was hit
+constexpr double kSeenRangeM = 100.0;  // of the frame's start; farther hits nobody maps
+
+// map points in W, by the alignment of position and yaw at the start
+std::vector<Eigen::Vector3f> map_in_world(const Estimate& estimate, const ScoringInput& input) {
+  const TruthTrack truth(*input.truth, estimate.frame);
+  const Eigen::Isometry3d to_world = pair_poses(estimate, truth).alignment.transform();
+  std::vector<Eigen::Vector3f> points;
+  points.reserve(estimate.map.size());
+  for (const MapPoint& point : estimate.map) {
+    points.push_back((to_world * point.position_W_m.cast<double>()).cast<float>());
+  }
+  return points;
+}
+
+// every sweep's true hits of the static world; the robot's own cage has no surface id
+std::vector<Eigen::Vector3f> seen_surface(const sim::Truth& truth) {
+  std::vector<Eigen::Vector3f> hits;
+  const sim::LidarTruth& lidar = truth.lidars.front();
+  const Eigen::Vector3f start = truth.p_WB_m.front().cast<float>();
+  for (std::size_t k = 0; k < lidar.hit_W_m.size() && k < lidar.surface_id.size(); ++k) {
+    if (lidar.surface_id[k] >= 0 && (lidar.hit_W_m[k] - start).norm() <= kSeenRangeM) hits.push_back(lidar.hit_W_m[k]);
+  }
+  return one_per_cell(hits, kSurfaceCellM);
+}
+
+bool overlap(const Estimate& estimate, const ScoringInput& input, double& value) {
+  if (input.surface == nullptr || estimate.map.empty()) return false;
+  const std::vector<Eigen::Vector3f> all = map_in_world(estimate, input);
+  std::vector<Eigen::Vector3f> finite;
+  for (const Eigen::Vector3f& point : all) {
+    if (point.allFinite()) finite.push_back(point);
+  }
+  // the limit lies beyond the tolerance, so that "farther than the limit" is not "within"
+  const std::vector<float> distances = input.surface->distances(finite, 2.0f * kToleranceM);
+  const auto within = std::count_if(distances.begin(), distances.end(), [](float d) { return d <= kToleranceM; });
+  value = static_cast<double>(within) / static_cast<double>(all.size());
+  return true;
+}
+
+bool coverage(const Estimate& estimate, const ScoringInput& input, double& value) {
+  if (estimate.map.empty() || input.truth->lidars.empty()) return false;
+  const std::vector<Eigen::Vector3f> surface = seen_surface(*input.truth);
+  if (surface.empty()) return false;
+  const Nearness map(map_in_world(estimate, input), kToleranceM);
+  const auto covered =
+      std::count_if(surface.begin(), surface.end(), [&](const Eigen::Vector3f& p) { return map.has_neighbour(p); });
+  value = static_cast<double>(covered) / static_cast<double>(surface.size());
+  return true;
+}
+
+// a method that leaves no map has failed to map
+bool failed(const Estimate& estimate, const ScoringInput& input, double& value) {
+  if (input.surface == nullptr) return false;
+  double share = 0.0;
+  const bool has_map = overlap(estimate, input, share);
+  value = has_map && 1.0 - share <= kOutliersMax ? 0.0 : 1.0;
+  return true;
+}
+
+}  // namespace
+
+std::vector<Metric> map_metrics() {
+  return {
+      {"map_overlap", Kind::slam, "1", "share of map points within 0.25 m of the true surface", overlap},
+      {"map_coverage", Kind::slam, "1",
+       "share of the truly seen surface (cells of 0.1 m) within 0.25 m of a map point", coverage},
+      {"map_failed", Kind::slam, "1", "1 when more than 15 % of the map lies off the surface, or there is none", failed},
+  };
+}
+
+}  // namespace tumble::scenarios

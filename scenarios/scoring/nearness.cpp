@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/scoring/nearness.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <unordered_set>
+
+namespace tumble::scenarios {
+
+namespace {
+
+// 21 bits per axis: +-1 million cells, farther ones wrap, which the distance test makes harmless
+std::uint64_t key(std::int64_t x, std::int64_t y, std::int64_t z) {
+  constexpr std::uint64_t kMask = (1u << 21) - 1;
+  return ((static_cast<std::uint64_t>(x) & kMask) << 42) | ((static_cast<std::uint64_t>(y) & kMask) << 21) |
+         (static_cast<std::uint64_t>(z) & kMask);
+}
+
+Eigen::Matrix<std::int64_t, 3, 1> cell_of(const Eigen::Vector3f& point, float cell_m) {
+  return (point.cast<double>() / static_cast<double>(cell_m)).array().floor().cast<std::int64_t>();
+}
+
+std::uint64_t key_of(const Eigen::Vector3f& point, float cell_m) {
+  const auto cell = cell_of(point, cell_m);
+  return key(cell.x(), cell.y(), cell.z());
+}
+
+}  // namespace
+
+Nearness::Nearness(std::span<const Eigen::Vector3f> points_m, float distance_m) : distance_m_(distance_m) {
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
+  order.reserve(points_m.size());
+  for (std::size_t k = 0; k < points_m.size(); ++k) {
+    if (points_m[k].allFinite()) order.emplace_back(key_of(points_m[k], distance_m), static_cast<std::uint32_t>(k));
+  }
+  std::sort(order.begin(), order.end());
+  points_m_.reserve(order.size());
+  for (const auto& [cell, index] : order) {
+    const auto place = static_cast<std::uint32_t>(points_m_.size());
+    auto& range = cells_.try_emplace(cell, place, place).first->second;
+    range.second = place + 1;
+    points_m_.push_back(points_m[index]);
+  }
+}
+
+bool Nearness::has_neighbour(const Eigen::Vector3f& point_m) const {
+  if (!point_m.allFinite()) return false;
+  const auto centre = cell_of(point_m, distance_m_);
+  const float limit2 = distance_m_ * distance_m_;
+  for (std::int64_t x = -1; x <= 1; ++x) {
+    for (std::int64_t y = -1; y <= 1; ++y) {
+      for (std::int64_t z = -1; z <= 1; ++z) {
+        const auto found = cells_.find(key(centre.x() + x, centre.y() + y, centre.z() + z));
+        if (found == cells_.end()) continue;
+        for (std::uint32_t k = found->second.first; k < found->second.second; ++k) {
+          if ((points_m_[k] - point_m).squaredNorm() <= limit2) return true;
+        }
+      }
+    }
+  }
+  return false;
+}
+
+std::vector<Eigen::Vector3f> one_per_cell(std::span<const Eigen::Vector3f> points_m, float cell_m) {
+  std::unordered_set<std::uint64_t> taken;
+  std::vector<Eigen::Vector3f> kept;
+  for (const Eigen::Vector3f& point : points_m) {
+    if (point.allFinite() && taken.insert(key_of(point, cell_m)).second) kept.push_back(point);
+  }
+  return kept;
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/scoring/score.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/scoring/clipping.hpp"
+#include "scenarios/scoring/families.hpp"
+#include "scenarios/scoring/registered_sweeps.hpp"
+#include "scenarios/scoring/truth_track.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+// longest time of the recording that an estimate may leave unanswered, as a share of it
+constexpr double kHoleMaxShare = 0.2;
+// share of the gyro's samples that a rate method must answer
+constexpr double kAnsweredMin = 0.9;
+// an end error below this is never a divergence, however short the path
+constexpr double kEndErrorFloorM = 1.0;
+
+std::vector<Metric> all_metrics() {
+  std::vector<Metric> all;
+  for (const auto& family :
+       {rate_metrics(), attitude_metrics(), position_metrics(), trajectory_metrics(Kind::position), end_pose_metrics(),
+        trajectory_metrics(Kind::slam), map_metrics(), sweep_border_metrics()}) {
+    all.insert(all.end(), family.begin(), family.end());
+  }
+  return all;
+}
+
+void require_complete(const ScoringInput& input) {
+  if (input.sensors == nullptr || input.truth == nullptr) throw BadInput("scoring needs the sensors and the truth");
+}
+
+// whether the states reach over the recording without a long hole
+template <typename State>
+bool reaches(const std::vector<State>& states, std::int64_t end_ns) {
+  const double hole_max = kHoleMaxShare * static_cast<double>(end_ns);
+  std::int64_t previous = 0;
+  for (const State& state : states) {
+    if (static_cast<double>(state.time_ns - previous) > hole_max) return false;
+    previous = state.time_ns;
+  }
+  return !states.empty() && static_cast<double>(end_ns - previous) <= hole_max;
+}
+
+bool rates_hold(const Estimate& estimate, const ScoringInput& input) {
+  const ClippingTruth truth(*input.sensors, *input.truth);
+  std::size_t answered = 0;
+  for (const RateState& rate : estimate.rates) {
+    if (!rate.w_WI_I_rad_s.allFinite() || !rate.covariance_rad2_s2.allFinite()) return false;
+    if (truth.at(rate.time_ns)) ++answered;
+  }
+  return static_cast<double>(answered) >= kAnsweredMin * static_cast<double>(truth.size());
+}
+
+bool attitudes_hold(const Estimate& estimate, const ScoringInput& input) {
+  const TruthTrack truth(*input.truth, estimate.frame);
+  for (const AttitudeState& attitude : estimate.attitudes) {
+    if (!attitude.q_WA.coeffs().allFinite()) return false;
+  }
+  return reaches(estimate.attitudes, truth.last_ns());
+}
+
+bool poses_hold(const Estimate& estimate, const ScoringInput& input) {
+  const TruthTrack truth(*input.truth, estimate.frame);
+  for (const PoseState& pose : estimate.poses) {
+    if (!pose.p_WA_m.allFinite() || !pose.q_WA.coeffs().allFinite()) return false;
+  }
+  if (!reaches(estimate.poses, truth.last_ns())) return false;
+  const PairedTrack track = pair_poses(estimate, truth);
+  if (track.poses.empty()) return false;
+  const PairedPose& end = track.poses.back();
+  const double path_m = end.path_m - track.poses.front().path_m;
+  return (end.estimate.p_WA_m - end.truth.p_WA_m).norm() <= std::max(path_m, kEndErrorFloorM);
+}
+
+// a run long enough for the end error must have sweeps enough for it
+bool sweeps_hold(const Estimate& estimate, const ScoringInput& input) {
+  for (const auto& sweep : estimate.sweeps) {
+    if (!sweep.pose.p_WA_m.allFinite() || !sweep.pose.q_WA.coeffs().allFinite()) return false;
+  }
+  if (input.sensors->lidars.empty()) return true;
+  const std::size_t given = input.sensors->lidars.front().sweep_start_ns.size();
+  return given <= kStartSweep || registered_sweeps(estimate).size() >= kStartSweep;
+}
+
+bool holds(Kind kind, const Estimate& estimate, const ScoringInput& input) {
+  switch (kind) {
+    case Kind::rate: return rates_hold(estimate, input);
+    case Kind::attitude: return attitudes_hold(estimate, input);
+    case Kind::position: return poses_hold(estimate, input);
+    case Kind::slam: return poses_hold(estimate, input) && sweeps_hold(estimate, input);
+  }
+  return false;
+}
+
+}  // namespace
+
+double rms(std::span<const double> values) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  double sum = 0.0;
+  for (const double value : values) sum += value * value;
+  return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+std::span<const Metric> metrics() {
+  static const std::vector<Metric> all = all_metrics();
+  return all;
+}
+
+std::vector<Score> score(Kind kind, const Estimate& estimate, const ScoringInput& input) {
+  require_complete(input);
+  std::vector<Score> scores;
+  for (const Metric& metric : metrics()) {
+    double value = 0.0;
+    if (metric.kind == kind && metric.compute(estimate, input, value)) scores.push_back({metric.name, value});
+  }
+  return scores;
+}
+
+std::string verdict(Kind kind, const Estimate& estimate, const ScoringInput& input) {
+  require_complete(input);
+  return holds(kind, estimate, input) ? "ok" : "diverged";
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/scoring/families.hpp"
+#include "scenarios/scoring/truth_track.hpp"
+#include "tumble/common/so3.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+Eigen::Vector3d mean_rate_rad_s(const PoseState& a, const PoseState& b) {
+  return so3::log(b.q_WA * a.q_WA.conjugate()) / seconds(b.time_ns - a.time_ns);
+}
+
+struct Jumps {
+  std::vector<double> velocity_m_s;
+  std::vector<double> rate_rad_s;
+};
+
+// at each border: how much more the estimate's velocity changes than the true one, from the last pose inside one sweep to
+// the first pose inside the next; rates are those of the first and last step inside the sweeps
+Jumps border_jumps(const Estimate& estimate, const ScoringInput& input) {
+  Jumps jumps;
+  const TruthTrack truth(*input.truth, estimate.frame);
+  const Alignment alignment = pair_poses(estimate, truth).alignment;
+  for (std::size_t k = 1; k < estimate.sweeps.size(); ++k) {
+    const auto& before = estimate.sweeps[k - 1].trajectory;
+    const auto& after = estimate.sweeps[k].trajectory;
+    // a sweep between them may be missing: then this is no border
+    if (before.size() < 2 || after.size() < 2) continue;
+    if (after.front().time_ns - before.back().time_ns > after[1].time_ns - after[0].time_ns) continue;
+    const PoseState poses[4] = {before[before.size() - 2], before.back(), after[0], after[1]};
+    PoseState truths[4];
+    bool covered = true;
+    for (int j = 0; j < 4; ++j) {
+      covered = covered && truth.covers(poses[j].time_ns);
+      if (covered) truths[j] = truth.pose(poses[j].time_ns);
+    }
+    if (!covered) continue;
+    const Eigen::Isometry3d to_world = alignment.transform();
+    const Eigen::Vector3d dv = to_world.linear() * (poses[2].v_WA_m_s - poses[1].v_WA_m_s);
+    const Eigen::Vector3d dw =
+        to_world.linear() * (mean_rate_rad_s(poses[2], poses[3]) - mean_rate_rad_s(poses[0], poses[1]));
+    jumps.velocity_m_s.push_back((dv - (truths[2].v_WA_m_s - truths[1].v_WA_m_s)).norm());
+    jumps.rate_rad_s.push_back(
+        (dw - (mean_rate_rad_s(truths[2], truths[3]) - mean_rate_rad_s(truths[0], truths[1]))).norm());
+  }
+  return jumps;
+}
+
+bool jump_m_s(const Estimate& estimate, const ScoringInput& input, double& value) {
+  const Jumps jumps = border_jumps(estimate, input);
+  if (jumps.velocity_m_s.empty()) return false;
+  value = rms(jumps.velocity_m_s);
+  return true;
+}
+
+bool jump_rad_s(const Estimate& estimate, const ScoringInput& input, double& value) {
+  const Jumps jumps = border_jumps(estimate, input);
+  if (jumps.rate_rad_s.empty()) return false;
+  value = rms(jumps.rate_rad_s);
+  return true;
+}
+
+}  // namespace
+
+std::vector<Metric> sweep_border_metrics() {
+  return {
+      {"sweep_jump_m_s", Kind::slam, "m/s",
+       "rms jump of the estimated velocity at sweep borders, beyond what the true one changes there", jump_m_s},
+      {"sweep_jump_rad_s", Kind::slam, "rad/s", "the same of the rate that the attitudes imply", jump_rad_s},
+  };
+}
+
+}  // namespace tumble::scenarios

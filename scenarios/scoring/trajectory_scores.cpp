@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+
+#include "scenarios/scoring/families.hpp"
+#include "scenarios/scoring/truth_track.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr double kSegmentM = 1.0;
+// segments begin at every such step of the path, so that standing still does not count many times
+constexpr double kSegmentStepM = 0.05;
+
+bool ate(const Estimate& estimate, const ScoringInput& input, double& value) {
+  const PairedTrack track = pair_poses(estimate, TruthTrack(*input.truth, estimate.frame));
+  if (track.poses.empty()) return false;
+  std::vector<double> errors;
+  for (const PairedPose& pose : track.poses) errors.push_back((pose.estimate.p_WA_m - pose.truth.p_WA_m).norm());
+  value = rms(errors);
+  return true;
+}
+
+struct SegmentErrors {
+  std::vector<double> translation_m;
+  std::vector<double> rotation_rad;
+};
+
+// motion from pose a to pose b in the axes of a
+Eigen::Isometry3d relative(const PoseState& a, const PoseState& b) {
+  const Eigen::Quaterniond q_Wa_inverse = a.q_WA.conjugate();
+  return Eigen::Translation3d(q_Wa_inverse * (b.p_WA_m - a.p_WA_m)) * (q_Wa_inverse * b.q_WA);
+}
+
+SegmentErrors segment_errors(const Estimate& estimate, const ScoringInput& input) {
+  const PairedTrack track = pair_poses(estimate, TruthTrack(*input.truth, estimate.frame));
+  SegmentErrors errors;
+  double next_start_m = -1.0;
+  std::size_t j = 0;
+  for (std::size_t i = 0; i < track.poses.size(); ++i) {
+    const PairedPose& start = track.poses[i];
+    if (start.path_m < next_start_m) continue;
+    next_start_m = start.path_m + kSegmentStepM;
+    while (j < track.poses.size() && track.poses[j].path_m < start.path_m + kSegmentM) ++j;
+    if (j == track.poses.size()) break;
+    const Eigen::Isometry3d E = relative(start.truth, track.poses[j].truth).inverse(Eigen::Isometry) *
+                                relative(start.estimate, track.poses[j].estimate);
+    errors.translation_m.push_back(E.translation().norm());
+    errors.rotation_rad.push_back(rotation_angle_rad(Eigen::Quaterniond(E.linear())));
+  }
+  return errors;
+}
+
+bool rpe_m(const Estimate& estimate, const ScoringInput& input, double& value) {
+  const SegmentErrors errors = segment_errors(estimate, input);
+  if (errors.translation_m.empty()) return false;
+  value = rms(errors.translation_m);
+  return true;
+}
+
+bool rpe_rad(const Estimate& estimate, const ScoringInput& input, double& value) {
+  const SegmentErrors errors = segment_errors(estimate, input);
+  if (errors.rotation_rad.empty()) return false;
+  value = rms(errors.rotation_rad);
+  return true;
+}
+
+}  // namespace
+
+std::vector<Metric> trajectory_metrics(Kind kind) {
+  return {
+      {"ate_m", kind, "m", "rms position error, position and yaw aligned at the start only", ate},
+      {"rpe_1m_m", kind, "m", "rms error of the relative motion over 1 m of true path: translation", rpe_m},
+      {"rpe_1m_rad", kind, "rad", "the same: rotation, up to pi", rpe_rad},
+  };
+}
+
+}  // namespace tumble::scenarios

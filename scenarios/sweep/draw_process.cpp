@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/sweep/draw_process.hpp"
+
+#include <poll.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <optional>
+
+#include "scenarios/sweep/message.hpp"
+#include "sim/lidar/surface.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr double kMib = 1024.0 * 1024.0;
+
+// resident size of this process now
+double resident_mib() {
+  std::ifstream file("/proc/self/statm");
+  double pages = 0.0;
+  double resident = 0.0;
+  file >> pages >> resident;
+  return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / kMib;
+}
+
+double peak_mib() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+void run_method_child(const Method& method, const SimulatedDraw& draw, const sim::Surface* surface, int fd) {
+  const double before_mib = resident_mib();
+  Outcome outcome;
+  const Estimate estimate = run_method(method, draw, outcome);
+  outcome.scores.push_back({"estimate_peak_mib", std::max(0.0, peak_mib() - before_mib)});
+  assess(method, draw, surface, estimate, outcome);
+  write_all(fd, to_line({outcome, {}}));
+}
+
+// reads until the process closes its pipe; false at the deadline
+bool read_until(Process& process, double deadline_s, std::string& buffer) {
+  while (true) {
+    const double left_s = deadline_s - now_s();
+    if (left_s <= 0.0) return false;
+    pollfd waiting{process.read_end(), POLLIN, 0};
+    poll(&waiting, 1, static_cast<int>(std::ceil(std::min(left_s, 1.0) * 1e3)));
+    if (!process.read_available(buffer)) return true;
+  }
+}
+
+}  // namespace
+
+Outcome run_isolated(const Method& method, const SimulatedDraw& draw, const sim::Surface* surface, double timeout_s) {
+  const double before_mib = resident_mib();
+  Process process([&](int fd) { run_method_child(method, draw, surface, fd); }, false);
+  std::string text;
+  const bool in_time = read_until(process, now_s() + timeout_s, text);
+  if (!in_time) process.kill();
+  const Process::End end = process.wait();
+  if (!text.empty() && text.back() == '\n') {
+    text.pop_back();
+    const std::optional<Message> message = from_line(text);
+    if (message && message->outcome) return *message->outcome;
+  }
+
+  Outcome outcome;
+  outcome.scenario = draw.scenario;
+  outcome.seed = draw.seed;
+  outcome.kind = method.info.kind;
+  outcome.method = method.info.name;
+  outcome.recording_digest = draw.recording_digest;
+  outcome.status = in_time ? "crashed" : "timeout";
+  outcome.message = in_time ? end.describe() : "no answer within " + std::to_string(timeout_s) + " s";
+  outcome.scores = {{"estimate_cpu_s", end.cpu_s},
+                    {"estimate_peak_mib", std::max(0.0, end.peak_mib - before_mib)},
+                    {"simulate_cpu_s", draw.simulate_cpu_s}};
+  return outcome;
+}
+
+void run_draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed,
+              std::span<const Method* const> methods, double timeout_s, int fd) {
+  std::optional<SimulatedDraw> draw;
+  std::optional<sim::Surface> surface;
+  try {
+    draw = simulate_draw(data, scenario, seed, 1);
+    const bool maps = std::any_of(methods.begin(), methods.end(),
+                                  [](const Method* method) { return method->info.kind == Kind::slam; });
+    if (maps) surface.emplace(draw->situation, data.models());
+  } catch (const std::exception& error) {
+    write_all(fd, to_line({{}, RejectedDraw{scenario.name, seed, one_line(error.what())}}));
+    return;
+  }
+  for (const Method* method : methods) {
+    const Outcome outcome = run_isolated(*method, *draw, surface ? &*surface : nullptr, timeout_s);
+    if (!write_all(fd, to_line({outcome, {}}))) return;
+  }
+  write_all(fd, to_line({}));
+}
+
+}  // namespace tumble::scenarios

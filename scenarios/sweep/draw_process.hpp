@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+
+#include "scenarios/sweep/evaluate.hpp"
+#include "scenarios/sweep/process.hpp"
+
+namespace tumble::scenarios {
+
+/// Simulates one draw and tells `fd` what came of it, one message a line: a rejection, or an outcome per method as each
+/// ends, and an empty message at the end. Runs in a process of its own.
+void run_draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed,
+              std::span<const Method* const> methods, double timeout_s, int fd);
+
+/// Runs one method in a process of its own for at most `timeout_s` of wall time. A crash, a time-out or an exception is an
+/// outcome. Cost: CPU and peak memory of the estimate alone, memory above what the draw's process held.
+Outcome run_isolated(const Method& method, const SimulatedDraw& draw, const sim::Surface* surface, double timeout_s);
+
+}  // namespace tumble::scenarios

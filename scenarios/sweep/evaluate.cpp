@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/sweep/evaluate.hpp"
+
+#include <time.h>
+
+#include <algorithm>
+#include <exception>
+
+#include "scenarios/recordings/recording_file.hpp"
+#include "sim/simulate.hpp"
+
+namespace tumble::scenarios {
+
+SimulatedDraw simulate_draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, int threads) {
+  SimulatedDraw simulated;
+  simulated.scenario = scenario.name;
+  simulated.seed = seed;
+  simulated.situation = draw(data, scenario, seed);
+  const double start_s = process_cpu_s();
+  simulated.recording = sim::simulate(simulated.situation, {data.models(), threads});
+  simulated.simulate_cpu_s = process_cpu_s() - start_s;
+  simulated.recording_digest = digest(simulated.recording.sensors, &simulated.recording.truth);
+  return simulated;
+}
+
+std::vector<const Method*> applicable(std::span<const Method* const> methods, const std::string& robot) {
+  std::vector<const Method*> chosen;
+  std::copy_if(methods.begin(), methods.end(), std::back_inserter(chosen),
+               [&](const Method* method) { return method->info.for_robot(robot); });
+  return chosen;
+}
+
+Estimate run_method(const Method& method, const SimulatedDraw& draw, Outcome& outcome) {
+  outcome.scenario = draw.scenario;
+  outcome.seed = draw.seed;
+  outcome.kind = method.info.kind;
+  outcome.method = method.info.name;
+  outcome.recording_digest = draw.recording_digest;
+  outcome.status = "ok";
+
+  Estimate estimate;
+  const double start_s = process_cpu_s();
+  try {
+    OracleInput oracle;
+    if (method.info.needs_truth) oracle.truth = &draw.recording.truth;
+    estimate = method.run(draw.recording.sensors, {}, oracle);
+    if (!estimate.status.ok()) {
+      outcome.status = "failed";
+      outcome.message = one_line(estimate.status.message());
+    }
+  } catch (const std::exception& error) {
+    estimate = {};
+    outcome.status = "failed";
+    outcome.message = one_line(error.what());
+  }
+  outcome.scores.push_back({"estimate_cpu_s", process_cpu_s() - start_s});
+  outcome.scores.push_back({"simulate_cpu_s", draw.simulate_cpu_s});
+  return estimate;
+}
+
+void assess(const Method& method, const SimulatedDraw& draw, const sim::Surface* surface, const Estimate& estimate,
+            Outcome& outcome) {
+  outcome.estimate_digest = digest(estimate);
+  if (outcome.status != "ok") return;
+  try {
+    const ScoringInput input{&draw.recording.sensors, &draw.recording.truth, surface};
+    outcome.status = verdict(method.info.kind, estimate, input);
+    if (outcome.status == "diverged") outcome.message = "the estimate left the truth, the recording or the numbers";
+    for (Score& score : score(method.info.kind, estimate, input)) outcome.scores.push_back(std::move(score));
+  } catch (const std::exception& error) {
+    outcome.status = "failed";
+    outcome.message = one_line(std::string("not scored: ") + error.what());
+  }
+}
+
+double process_cpu_s() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+std::string one_line(std::string text) {
+  std::replace_if(text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r' || c == '\t'; }, ' ');
+  return text;
+}
+
+}  // namespace tumble::scenarios

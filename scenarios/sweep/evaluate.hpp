@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "scenarios/data_root.hpp"
+#include "scenarios/draw/scenario.hpp"
+#include "scenarios/sweep/outcome.hpp"
+
+namespace tumble::scenarios {
+
+/// One simulated draw, ready for methods: what every outcome of it shares.
+struct SimulatedDraw {
+  std::string scenario;
+  std::uint64_t seed = 0;
+  sim::Situation situation;
+  sim::Recording recording;
+  std::string recording_digest;
+  double simulate_cpu_s = 0;
+};
+
+/// Draws and simulates. Throws BadInput, sim::InvalidSituation, sim::SimulationFailure.
+SimulatedDraw simulate_draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, int threads);
+
+/// The methods that apply to the scenario's robot, in the order given.
+std::vector<const Method*> applicable(std::span<const Method* const> methods, const std::string& robot);
+
+/// Runs a method on the draw. What it throws or reports as trouble makes `outcome` failed; otherwise `outcome` is left ok,
+/// to be scored. CPU time of the estimate is its first score.
+Estimate run_method(const Method& method, const SimulatedDraw& draw, Outcome& outcome);
+
+/// Adds verdict and scores of an estimate that went through. `surface` may be null.
+void assess(const Method& method, const SimulatedDraw& draw, const sim::Surface* surface, const Estimate& estimate,
+            Outcome& outcome);
+
+/// CPU time that this process has used [s].
+double process_cpu_s();
+
+/// A message as it may stand in one line of a table.
+std::string one_line(std::string text);
+
+}  // namespace tumble::scenarios

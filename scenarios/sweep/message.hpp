@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "scenarios/sweep/outcome.hpp"
+
+namespace tumble::scenarios {
+
+/// What the process of a draw tells the sweep, one JSON object a line. Exactly one field is set, or none: the draw is done.
+struct Message {
+  std::optional<Outcome> outcome;
+  std::optional<RejectedDraw> rejected;
+};
+
+/// With the newline. Numbers come back to the bit; what is not finite comes back as NaN.
+std::string to_line(const Message& message);
+
+/// Without the newline. Nothing when the line is no message (a process that died in the middle of it).
+std::optional<Message> from_line(const std::string& line);
+
+}  // namespace tumble::scenarios

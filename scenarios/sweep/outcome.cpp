@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/sweep/outcome.hpp"
+
+#include <xxhash.h>
+
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+#include <type_traits>
+
+namespace tumble::scenarios {
+
+namespace {
+
+// feeds numbers one after the other; no padding of a struct ever enters
+class Hasher {
+ public:
+  Hasher() : state_(XXH3_createState(), &XXH3_freeState) {
+    if (!state_ || XXH3_128bits_reset(state_.get()) == XXH_ERROR) throw std::bad_alloc();
+  }
+
+  template <typename Number>
+  void add(Number value) {
+    static_assert(std::is_arithmetic_v<Number>);
+    XXH3_128bits_update(state_.get(), &value, sizeof(value));
+  }
+
+  template <typename Derived>
+  void add_matrix(const Eigen::MatrixBase<Derived>& matrix) {
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
+      for (Eigen::Index i = 0; i < matrix.rows(); ++i) add(matrix(i, j));
+    }
+  }
+
+  void add_text(const std::string& text) {
+    add(static_cast<std::uint64_t>(text.size()));
+    XXH3_128bits_update(state_.get(), text.data(), text.size());
+  }
+
+  std::string hex() const {
+    const XXH128_hash_t hash = XXH3_128bits_digest(state_.get());
+    char text[33];
+    std::snprintf(text, sizeof(text), "%016llx%016llx", static_cast<unsigned long long>(hash.high64),
+                  static_cast<unsigned long long>(hash.low64));
+    return text;
+  }
+
+ private:
+  std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state_;
+};
+
+void add_pose(Hasher& hasher, const PoseState& pose) {
+  hasher.add(pose.time_ns);
+  hasher.add_matrix(pose.p_WA_m);
+  hasher.add_matrix(pose.q_WA.coeffs());
+  hasher.add_matrix(pose.v_WA_m_s);
+  hasher.add_matrix(pose.covariance);
+}
+
+void add_poses(Hasher& hasher, const std::vector<PoseState>& poses) {
+  hasher.add(static_cast<std::uint64_t>(poses.size()));
+  for (const PoseState& pose : poses) add_pose(hasher, pose);
+}
+
+void add_sweep(Hasher& hasher, const LidarInertialOdometry::SweepReport& sweep) {
+  hasher.add(static_cast<std::int32_t>(sweep.verdict));
+  add_pose(hasher, sweep.pose);
+  add_poses(hasher, sweep.trajectory);
+  hasher.add(sweep.inlier_share);
+  hasher.add(sweep.conditioning);
+  hasher.add(static_cast<std::int32_t>(sweep.iterations));
+  hasher.add_matrix(sweep.weakest_direction);
+  hasher.add_matrix(sweep.excess_rate_rad_s);
+  for (const std::size_t count : {sweep.points_used, sweep.points_registered, sweep.map_points_added}) {
+    hasher.add(static_cast<std::uint64_t>(count));
+  }
+}
+
+}  // namespace
+
+std::string digest(const Estimate& estimate) {
+  Hasher hasher;
+  hasher.add(static_cast<std::int32_t>(estimate.status.trouble));
+  hasher.add_text(estimate.status.field);
+  hasher.add(static_cast<std::int32_t>(estimate.frame));
+  hasher.add(static_cast<std::uint64_t>(estimate.rates.size()));
+  for (const RateState& rate : estimate.rates) {
+    hasher.add(rate.time_ns);
+    hasher.add_matrix(rate.w_WI_I_rad_s);
+    hasher.add_matrix(rate.covariance_rad2_s2);
+    hasher.add(rate.clipped_axes);
+    hasher.add(static_cast<std::int32_t>(rate.source));
+  }
+  hasher.add(static_cast<std::uint64_t>(estimate.attitudes.size()));
+  for (const AttitudeState& attitude : estimate.attitudes) {
+    hasher.add(attitude.time_ns);
+    hasher.add_matrix(attitude.q_WA.coeffs());
+    hasher.add_matrix(attitude.covariance_rad2);
+  }
+  add_poses(hasher, estimate.poses);
+  hasher.add(static_cast<std::uint64_t>(estimate.sweeps.size()));
+  for (const auto& sweep : estimate.sweeps) add_sweep(hasher, sweep);
+  for (const std::int64_t end_ns : estimate.sweep_end_ns) hasher.add(end_ns);
+  hasher.add(static_cast<std::uint64_t>(estimate.map.size()));
+  for (const MapPoint& point : estimate.map) {
+    hasher.add_matrix(point.position_W_m);
+    hasher.add_matrix(point.normal_W);
+    hasher.add(point.sigma_m);
+  }
+  return hasher.hex();
+}
+
+std::string digest_of_texts(std::span<const std::string> texts) {
+  Hasher hasher;
+  for (const std::string& text : texts) hasher.add_text(text);
+  return hasher.hex();
+}
+
+}  // namespace tumble::scenarios

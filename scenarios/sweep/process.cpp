@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/sweep/process.hpp"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+namespace tumble::scenarios {
+
+namespace {
+
+// only what must be: the child is a copy of a program that may hold locks and open files
+[[noreturn]] void run_child(const std::function<void(int)>& work, int fd, pid_t parent, bool own_group) {
+  if (own_group) setpgid(0, 0);
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(1);
+  const rlimit no_core{0, 0};
+  setrlimit(RLIMIT_CORE, &no_core);
+  // the caller's handlers (Ctrl-C) are not the child's business; a vanished reader is an error of write()
+  signal(SIGINT, SIG_IGN);
+  signal(SIGTERM, SIG_DFL);
+  signal(SIGPIPE, SIG_IGN);
+  int code = 0;
+  try {
+    work(fd);
+  } catch (...) {
+    code = 1;
+  }
+  _exit(code);
+}
+
+}  // namespace
+
+std::string Process::End::describe() const {
+  if (signal != 0) return "ended by signal " + std::to_string(signal) + " (" + strsignal(signal) + ")";
+  return "ended with exit status " + std::to_string(exit_code);
+}
+
+Process::Process(const std::function<void(int)>& work, bool own_group) : own_group_(own_group) {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) throw std::system_error(errno, std::generic_category(), "pipe");
+  const pid_t parent = getpid();
+  pid_ = fork();
+  if (pid_ < 0) {
+    const int error = errno;
+    close(ends[0]);
+    close(ends[1]);
+    throw std::system_error(error, std::generic_category(), "fork");
+  }
+  if (pid_ == 0) {
+    close(ends[0]);
+    run_child(work, ends[1], parent, own_group);
+  }
+  // on both sides, so that the group exists whoever runs first
+  if (own_group_) setpgid(pid_, pid_);
+  close(ends[1]);
+  fd_ = ends[0];
+  fcntl(fd_, F_SETFL, O_NONBLOCK);
+}
+
+Process::~Process() {
+  if (pid_ > 0) {
+    kill();
+    wait();
+  }
+  if (fd_ >= 0) close(fd_);
+}
+
+Process::Process(Process&& other) noexcept
+    : pid_(std::exchange(other.pid_, -1)), fd_(std::exchange(other.fd_, -1)), own_group_(other.own_group_) {}
+
+bool Process::read_available(std::string& buffer) {
+  char chunk[8192];
+  while (true) {
+    const ssize_t count = read(fd_, chunk, sizeof(chunk));
+    if (count > 0) buffer.append(chunk, static_cast<std::size_t>(count));
+    else if (count == 0) return false;
+    else if (errno == EINTR) continue;
+    else return errno == EAGAIN || errno == EWOULDBLOCK;
+  }
+}
+
+void Process::kill() {
+  if (pid_ > 0) ::kill(own_group_ ? -pid_ : pid_, SIGKILL);
+}
+
+Process::End Process::wait() {
+  End end;
+  if (pid_ <= 0) return end;
+  int status = 0;
+  rusage usage{};
+  pid_t collected;
+  do collected = wait4(pid_, &status, 0, &usage);
+  while (collected < 0 && errno == EINTR);
+  // nothing may outlive the process of a draw
+  if (own_group_) ::kill(-pid_, SIGKILL);
+  pid_ = -1;
+  end.cpu_s = static_cast<double>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+              1e-6 * static_cast<double>(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
+  end.peak_mib = static_cast<double>(usage.ru_maxrss) / 1024.0;
+  if (collected > 0 && WIFEXITED(status)) end.exit_code = WEXITSTATUS(status);
+  if (collected > 0 && WIFSIGNALED(status)) end.signal = WTERMSIG(status);
+  end.normal = collected > 0 && end.signal == 0 && end.exit_code == 0;
+  return end;
+}
+
+bool write_all(int fd, const std::string& text) {
+  std::size_t done = 0;
+  while (done < text.size()) {
+    const ssize_t count = write(fd, text.data() + done, text.size() - done);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return false;
+    done += static_cast<std::size_t>(count);
+  }
+  return true;
+}
+
+double now_s() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+}  // namespace tumble::scenarios

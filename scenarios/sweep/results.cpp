@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/sweep/results.hpp"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/sweep/build_id.hpp"
+#include "scenarios/sweep/results_schema.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr int kBusyTimeoutMs = 20000;
+constexpr const char* kRejected = "rejected";
+
+std::int64_t stored_seed(std::uint64_t seed) { return std::bit_cast<std::int64_t>(seed); }
+std::uint64_t read_seed(std::int64_t stored) { return std::bit_cast<std::uint64_t>(stored); }
+
+double read_value(const SQLite::Column& column) {
+  return column.isNull() ? std::numeric_limits<double>::quiet_NaN() : column.getDouble();
+}
+
+Kind kind_named(const std::string& name, const std::filesystem::path& path) {
+  for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
+    if (name == to_string(kind)) return kind;
+  }
+  throw BadInput(path.string() + ": unknown kind '" + name + "'");
+}
+
+int open_flags(Results::Mode mode) {
+  return mode == Results::Mode::read_only ? SQLite::OPEN_READONLY : SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE;
+}
+
+}  // namespace
+
+struct Results::Impl {
+  std::filesystem::path path;
+  SQLite::Database database;
+
+  Impl(const std::filesystem::path& file, Mode mode)
+      : path(file), database(file.string(), open_flags(mode), kBusyTimeoutMs) {
+    // a rollback journal: one file, readable from a read-only folder; a store is on the disk before it returns
+    if (mode == Mode::create_or_append) database.exec("PRAGMA foreign_keys = ON; PRAGMA synchronous = FULL;");
+  }
+
+  // SQLite's trouble as one line with the path
+  template <typename Action>
+  auto guarded(Action&& action) const {
+    try {
+      return action();
+    } catch (const SQLite::Exception& error) {
+      throw BadInput(path.string() + ": " + error.what());
+    }
+  }
+
+  int number(const char* pragma) { return database.execAndGet(std::string("PRAGMA ") + pragma).getInt(); }
+
+  bool is_empty() { return database.execAndGet("SELECT count(*) FROM sqlite_master").getInt() == 0; }
+
+  void create() {
+    SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
+    // somebody else may have made it while this one waited for the lock
+    if (is_empty()) {
+      database.exec(kSchema);
+      database.exec("PRAGMA application_id = " + std::to_string(kApplicationId));
+      database.exec("PRAGMA user_version = " + std::to_string(kSchemaVersion));
+      write_note("build", build_id());
+    }
+    transaction.commit();
+  }
+
+  void check(Mode mode) {
+    if (number("application_id") != kApplicationId) throw BadInput(path.string() + ": not a results database");
+    if (number("user_version") != kSchemaVersion) {
+      throw BadInput(path.string() + ": schema version " + std::to_string(number("user_version")) + ", must be " +
+                     std::to_string(kSchemaVersion));
+    }
+    const std::string build = read_note("build");
+    if (mode == Mode::create_or_append && build != build_id()) {
+      throw BadInput(path.string() + ": written by build '" + build + "', this is '" + build_id() +
+                     "'; outcomes of two builds do not mix: name another file");
+    }
+  }
+
+  void write_note(const std::string& key, const std::string& text) {
+    SQLite::Statement insert(database, "INSERT OR REPLACE INTO notes VALUES (?, ?)");
+    insert.bind(1, key);
+    insert.bind(2, text);
+    insert.exec();
+  }
+
+  std::string read_note(const std::string& key) {
+    SQLite::Statement select(database, "SELECT text FROM notes WHERE key = ?");
+    select.bind(1, key);
+    return select.executeStep() ? select.getColumn(0).getString() : std::string();
+  }
+
+  void store(const std::string& kind, const Outcome& outcome) {
+    SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
+    SQLite::Statement insert(database,
+                             "INSERT OR REPLACE INTO outcomes (scenario, seed, kind, method, status, message, "
+                             "recording_digest, estimate_digest) VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
+    insert.bind(1, outcome.scenario);
+    insert.bind(2, stored_seed(outcome.seed));
+    insert.bind(3, kind);
+    insert.bind(4, outcome.method);
+    insert.bind(5, outcome.status);
+    insert.bind(6, outcome.message);
+    insert.bind(7, outcome.recording_digest);
+    insert.bind(8, outcome.estimate_digest);
+    insert.exec();
+    const std::int64_t id = database.getLastInsertRowid();
+    SQLite::Statement value(database, "INSERT OR REPLACE INTO score_values VALUES (?, ?, ?)");
+    for (const Score& score : outcome.scores) {
+      if (score.metric.empty()) continue;
+      value.bind(1, id);
+      value.bind(2, score.metric);
+      // SQLite has no NaN: a score that is not a number is null
+      if (std::isnan(score.value)) value.bind(3);
+      else value.bind(3, score.value);
+      value.exec();
+      value.reset();
+    }
+    transaction.commit();
+  }
+};
+
+Results::Results(const std::filesystem::path& path, Mode mode) {
+  if (mode == Mode::read_only && !std::filesystem::exists(path)) throw BadInput(path.string() + ": no such file");
+  try {
+    impl_ = std::make_unique<Impl>(path, mode);
+    if (mode == Mode::create_or_append && impl_->is_empty()) impl_->create();
+    impl_->check(mode);
+  } catch (const SQLite::Exception& error) {
+    throw BadInput(path.string() + ": not a usable results database: " + error.what());
+  }
+}
+
+Results::~Results() = default;
+Results::Results(Results&&) noexcept = default;
+
+void Results::store(const Outcome& outcome) {
+  impl_->guarded([&] { impl_->store(to_string(outcome.kind), outcome); });
+}
+
+void Results::store(const RejectedDraw& rejected) {
+  Outcome outcome;
+  outcome.scenario = rejected.scenario;
+  outcome.seed = rejected.seed;
+  outcome.status = kRejected;
+  outcome.message = rejected.message;
+  impl_->guarded([&] { impl_->store("", outcome); });
+}
+
+void Results::set_note(const std::string& key, const std::string& text) {
+  impl_->guarded([&] { impl_->write_note(key, text); });
+}
+
+std::string Results::note(const std::string& key) const {
+  return impl_->guarded([&] { return impl_->read_note(key); });
+}
+
+bool Results::has(const std::string& scenario, std::uint64_t seed, Kind kind, const std::string& method) const {
+  return impl_->guarded([&] {
+    SQLite::Statement select(impl_->database,
+                             "SELECT 1 FROM outcomes WHERE scenario = ? AND seed = ? AND kind = ? AND method = ?");
+    select.bind(1, scenario);
+    select.bind(2, stored_seed(seed));
+    select.bind(3, std::string(to_string(kind)));
+    select.bind(4, method);
+    return select.executeStep();
+  });
+}
+
+std::vector<ScoreRow> Results::scores() const {
+  return impl_->guarded([&] {
+    std::vector<ScoreRow> rows;
+    SQLite::Statement select(impl_->database,
+                             "SELECT scenario, seed, kind, method, status, metric, value FROM scores "
+                             "ORDER BY scenario, seed, kind, method, metric");
+    while (select.executeStep()) {
+      rows.push_back({select.getColumn(0).getString(), read_seed(select.getColumn(1).getInt64()),
+                      select.getColumn(2).getString(), select.getColumn(3).getString(), select.getColumn(4).getString(),
+                      select.getColumn(5).isNull() ? std::string() : select.getColumn(5).getString(),
+                      read_value(select.getColumn(6))});
+    }
+    return rows;
+  });
+}
+
+std::vector<Outcome> Results::outcomes() const {
+  return impl_->guarded([&] {
+    std::vector<Outcome> rows;
+    SQLite::Statement select(impl_->database,
+                             "SELECT scenario, seed, kind, method, status, message, recording_digest, estimate_digest "
+                             "FROM outcomes WHERE kind <> '' ORDER BY scenario, seed, kind, method");
+    while (select.executeStep()) {
+      Outcome row;
+      row.scenario = select.getColumn(0).getString();
+      row.seed = read_seed(select.getColumn(1).getInt64());
+      row.kind = kind_named(select.getColumn(2).getString(), impl_->path);
+      row.method = select.getColumn(3).getString();
+      row.status = select.getColumn(4).getString();
+      row.message = select.getColumn(5).getString();
+      row.recording_digest = select.getColumn(6).getString();
+      row.estimate_digest = select.getColumn(7).getString();
+      rows.push_back(std::move(row));
+    }
+    return rows;
+  });
+}
+
+std::vector<RejectedDraw> Results::rejected() const {
+  return impl_->guarded([&] {
+    std::vector<RejectedDraw> rows;
+    SQLite::Statement select(impl_->database,
+                             "SELECT scenario, seed, message FROM outcomes WHERE kind = '' ORDER BY scenario, seed");
+    while (select.executeStep()) {
+      rows.push_back({select.getColumn(0).getString(), read_seed(select.getColumn(1).getInt64()),
+                      select.getColumn(2).getString()});
+    }
+    return rows;
+  });
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+namespace tumble::scenarios {
+
+/// Marks a results database in SQLite's header ("TMBL"), so that another program's file is never written to.
+inline constexpr int kApplicationId = 0x544d424c;
+inline constexpr int kSchemaVersion = 1;
+
+/// Statements that make an empty results database.
+extern const char* const kSchema;
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/sweep/run_situation.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "scenarios/sweep/evaluate.hpp"
+#include "sim/lidar/surface.hpp"
+
+namespace tumble::scenarios {
+
+RunResult run_situation(const DataRoot& data, const Scenario& scenario, std::uint64_t seed,
+                        std::span<const Method* const> methods, int threads) {
+  SimulatedDraw draw = simulate_draw(data, scenario, seed, threads);
+  RunResult result;
+  result.methods = applicable(methods, scenario.robot.type);
+  std::optional<sim::Surface> surface;
+  const bool maps = std::any_of(result.methods.begin(), result.methods.end(),
+                                [](const Method* method) { return method->info.kind == Kind::slam; });
+  if (maps) surface.emplace(draw.situation, data.models());
+  for (const Method* method : result.methods) {
+    Outcome outcome;
+    Estimate estimate = run_method(*method, draw, outcome);
+    assess(*method, draw, surface ? &*surface : nullptr, estimate, outcome);
+    result.estimates.push_back(std::move(estimate));
+    result.outcomes.push_back(std::move(outcome));
+  }
+  result.situation = std::move(draw.situation);
+  result.recording = std::move(draw.recording);
+  result.recording_digest = std::move(draw.recording_digest);
+  result.simulate_cpu_s = draw.simulate_cpu_s;
+  return result;
+}
+
+std::string run_digest(const RunResult& result) {
+  std::vector<std::string> parts = {result.recording_digest};
+  for (std::size_t k = 0; k < result.methods.size(); ++k) {
+    parts.push_back(std::string(to_string(result.methods[k]->info.kind)) + "/" + result.methods[k]->info.name);
+    parts.push_back(digest(result.estimates[k]));
+  }
+  return digest_of_texts(parts);
+}
+
+}  // namespace tumble::scenarios

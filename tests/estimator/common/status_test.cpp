@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/common/status.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string>
+
+#include "tumble/common/imu.hpp"
+
+namespace tumble {
+namespace {
+
+TEST(Status, DefaultIsSuccess) {
+  EXPECT_TRUE(Status{}.ok());
+  EXPECT_EQ(Status{}.message(), "ok");
+}
+
+TEST(Status, MessageNamesFieldValueAndBound) {
+  const Status status{Trouble::time_order, "time_ns", 5.0, 7.0};
+  EXPECT_FALSE(status.ok());
+  EXPECT_EQ(status.message(), "time_order: time_ns is 5, bound 7");
+}
+
+TEST(Status, MessageKeepsEveryDigitAndPrintsNaN) {
+  EXPECT_EQ((Status{Trouble::gap, "dt_s", 0.1, 1e-7}).message(), "gap: dt_s is 0.1, bound 1e-07");
+  EXPECT_EQ((Status{Trouble::time_order, "time_ns", 1753351234567890.0, 0.0}).message(),
+            "time_order: time_ns is 1753351234567890, bound 0");
+  EXPECT_EQ((Status{Trouble::non_finite, "x", std::nan(""), 0.0}).message(), "non_finite: x is nan, bound 0");
+}
+
+TEST(Status, EveryTroubleHasItsOwnName) {
+  std::set<std::string> names;
+  for (int i = 0; i <= static_cast<int>(Trouble::diverged); ++i) names.insert(to_string(static_cast<Trouble>(i)));
+  EXPECT_EQ(names.size(), static_cast<std::size_t>(Trouble::diverged) + 1);
+  EXPECT_EQ(names.count("unknown"), 0u);
+}
+
+TEST(RequireWithin, AcceptsTheBoundsAndNamesWhatIsOutside) {
+  EXPECT_NO_THROW(require_within("gain", 0.0, 0.0, 1.0));
+  EXPECT_NO_THROW(require_within("gain", 1.0, 0.0, 1.0));
+  EXPECT_THROW(require_within("gain", std::nan(""), 0.0, 1.0), InvalidParams);
+  EXPECT_THROW(require_within("gain", -1e-300, 0.0, 1.0), InvalidParams);
+  try {
+    require_within("gain", 1.5, 0.0, 1.0);
+    FAIL() << "1.5 was accepted";
+  } catch (const InvalidParams& error) {
+    EXPECT_STREQ(error.what(), "gain is 1.5, must be within [0, 1]");
+  }
+}
+
+TEST(CheckSample, NamesTheFieldThatIsNotFinite) {
+  ImuSample sample;
+  EXPECT_TRUE(check_sample(sample).ok());
+  sample.specific_force_m_s2.z() = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(check_sample(sample).trouble, Trouble::non_finite);
+  EXPECT_STREQ(check_sample(sample).field, "specific_force_m_s2");
+  EXPECT_TRUE(std::isinf(check_sample(sample).value));
+  sample.angular_velocity_rad_s.y() = std::nan("");
+  EXPECT_STREQ(check_sample(sample).field, "angular_velocity_rad_s");
+  EXPECT_TRUE(std::isnan(check_sample(sample).value));
+}
+
+TEST(CheckFollows, RefusesEqualFallingAndDistantStamps) {
+  EXPECT_TRUE(check_follows(11, 10, 1.0).ok());
+  EXPECT_TRUE(check_follows(1000000010, 10, 1.0).ok());
+  const Status equal = check_follows(10, 10, 1.0), falling = check_follows(9, 10, 1.0);
+  EXPECT_EQ(equal.trouble, Trouble::time_order);
+  EXPECT_EQ(falling.trouble, Trouble::time_order);
+  EXPECT_EQ(falling.value, 9.0);
+  EXPECT_EQ(falling.bound, 10.0);
+  const Status gap = check_follows(2000000010, 10, 1.0);
+  EXPECT_EQ(gap.trouble, Trouble::gap);
+  EXPECT_DOUBLE_EQ(gap.value, 2.0);
+  EXPECT_EQ(gap.bound, 1.0);
+}
+
+}  // namespace
+}  // namespace tumble

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/mapping/voxel_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "tests/estimator/mapping/synthetic_room.hpp"
+#include "tumble/common/status.hpp"
+#include "tumble/mapping/plane_fit.hpp"
+
+namespace tumble {
+namespace {
+
+Eigen::Vector3f random_point(std::uint64_t i, float edge) {
+  return edge * Eigen::Vector3f(static_cast<float>(test::uniform(3 * i)) - 0.5f,
+                                static_cast<float>(test::uniform(3 * i + 1)) - 0.5f,
+                                static_cast<float>(test::uniform(3 * i + 2)) - 0.5f);
+}
+
+std::vector<float> brute_force(const std::vector<Eigen::Vector3f>& points, const Eigen::Vector3f& query, int k, float radius) {
+  std::vector<float> distances;
+  for (const Eigen::Vector3f& p : points) {
+    const float ex = p.x() - query.x(), ey = p.y() - query.y(), ez = p.z() - query.z();
+    const float d2 = ex * ex + ey * ey + ez * ez;
+    if (d2 <= radius * radius) distances.push_back(d2);
+  }
+  std::sort(distances.begin(), distances.end());
+  if (distances.size() > static_cast<std::size_t>(k)) distances.resize(static_cast<std::size_t>(k));
+  return distances;
+}
+
+struct Density {
+  int points;
+  float edge_m;
+  double voxel_m;
+  float radius_m;
+};
+class NeighbourSearch : public testing::TestWithParam<Density> {};
+
+TEST_P(NeighbourSearch, AgreesWithBruteForce) {
+  const Density d = GetParam();
+  VoxelMap map({d.voxel_m, 0.0});
+  std::vector<Eigen::Vector3f> points;
+  for (int i = 0; i < d.points; ++i) {
+    points.push_back(random_point(static_cast<std::uint64_t>(i), d.edge_m));
+    ASSERT_TRUE(map.insert(points.back(), 0.02f, 7));
+  }
+  ASSERT_EQ(map.size(), points.size());
+  Neighbours found;
+  std::size_t seen = 0;
+  for (std::uint64_t q = 0; q < 200; ++q) {
+    const Eigen::Vector3f query = random_point(1'000'000 + q, 1.2f * d.edge_m);
+    const std::vector<float> expected = brute_force(points, query, 8, d.radius_m);
+    map.nearest(query, 8, d.radius_m, found);
+    ASSERT_EQ(static_cast<std::size_t>(found.count), expected.size()) << "query " << q;
+    for (int i = 0; i < found.count; ++i) {
+      // exact: the same three products and two sums in the same order
+      EXPECT_EQ(found.distance2_m2[i], expected[static_cast<std::size_t>(i)]);
+      EXPECT_EQ((map.position_W_m(found.index[i]) - query).squaredNorm() > 2.0f * d.radius_m * d.radius_m, false);
+      EXPECT_EQ(map.sweep(found.index[i]), 7u);
+    }
+    seen += expected.size();
+  }
+  EXPECT_GT(seen, 100u);  // the comparison was about something
+}
+
+INSTANTIATE_TEST_SUITE_P(Densities, NeighbourSearch,
+                         testing::Values(Density{4000, 6.0f, 0.5, 1.0f}, Density{300, 10.0f, 0.5, 1.0f},
+                                         Density{5000, 2.0f, 0.5, 1.0f}, Density{2000, 6.0f, 1.0, 1.0f},
+                                         Density{2000, 6.0f, 0.3, 2.0f}),
+                         [](const auto& test) { return "n" + std::to_string(test.index); });
+
+TEST(VoxelMap, KeepsOnePointPerCubeOfTheSpacing) {
+  VoxelMap map({0.5, 0.1});
+  EXPECT_TRUE(map.insert({0.01f, 0.01f, 0.01f}, 0.1f, 0));
+  EXPECT_FALSE(map.insert({0.09f, 0.09f, 0.09f}, 0.1f, 0));
+  EXPECT_TRUE(map.insert({0.11f, 0.01f, 0.01f}, 0.1f, 0));
+  EXPECT_TRUE(map.insert({-0.01f, 0.01f, 0.01f}, 0.1f, 0));  // cubes do not fold at zero
+  EXPECT_EQ(map.size(), 3u);
+}
+
+TEST(VoxelMap, RefusesWhatIsNotAPosition) {
+  VoxelMap map({0.5, 0.1});
+  EXPECT_FALSE(map.insert({std::numeric_limits<float>::quiet_NaN(), 0, 0}, 0.1f, 0));
+  EXPECT_FALSE(map.insert({0, std::numeric_limits<float>::infinity(), 0}, 0.1f, 0));
+  EXPECT_FALSE(map.insert({0, 0, 1e9f}, 0.1f, 0));
+  EXPECT_EQ(map.size(), 0u);
+  Neighbours found;
+  map.nearest({std::numeric_limits<float>::quiet_NaN(), 0, 0}, 8, 1.0f, found);
+  EXPECT_EQ(found.count, 0);
+}
+
+TEST(VoxelMap, CopiesAreIndependent) {
+  VoxelMap map({0.5, 0.0});
+  ASSERT_TRUE(map.insert({1, 2, 3}, 0.1f, 0));
+  VoxelMap copy = map;
+  ASSERT_TRUE(copy.insert({1, 2, 3.1f}, 0.1f, 0));
+  EXPECT_EQ(map.size(), 1u);
+  EXPECT_EQ(copy.size(), 2u);
+}
+
+TEST(VoxelMap, ThrowsOnBadParams) {
+  EXPECT_THROW(VoxelMap({0.0, 0.0}), InvalidParams);
+  EXPECT_THROW(VoxelMap({0.5, 0.6}), InvalidParams);
+}
+
+Neighbours all_of(const VoxelMap& map, const Eigen::Vector3f& at) {
+  Neighbours found;
+  map.nearest(at, Neighbours::kMax, 2.0f, found);
+  return found;
+}
+
+TEST(PlaneFit, FindsATiltedPlane) {
+  VoxelMap map({0.5, 0.0});
+  const Eigen::Vector3f n = Eigen::Vector3f(0.3f, -0.5f, 0.8f).normalized();
+  const Eigen::Vector3f u = n.unitOrthogonal(), v = n.cross(u), p(3.0f, -2.0f, 1.0f);
+  for (std::uint64_t i = 0; i < 12; ++i) {
+    const Eigen::Vector3f r = random_point(i, 0.6f);
+    ASSERT_TRUE(map.insert(p + r.x() * u + r.y() * v, 0.02f, 0));
+  }
+  const PlaneFit fit = fit_plane(map, all_of(map, p), PlaneBounds{});
+  ASSERT_EQ(fit.verdict, PlaneVerdict::plane);
+  EXPECT_NEAR(std::abs(fit.normal_W.dot(n)), 1.0f, 1e-5f);       // single precision of the input; measured 1e-7
+  EXPECT_NEAR(n.dot(fit.centre_W_m - p), 0.0f, 1e-5f);
+}
+
+TEST(PlaneFit, RefusesALineABlobAndAHandful) {
+  VoxelMap line({0.5, 0.0}), blob({0.5, 0.0}), few({0.5, 0.0});
+  for (std::uint64_t i = 0; i < 12; ++i) {
+    const Eigen::Vector3f r = random_point(i, 1.0f);
+    line.insert({r.x(), 0.02f * r.y(), 0.02f * r.z()}, 0.02f, 0);
+    blob.insert(r, 0.02f, 0);
+    if (i < 4) few.insert({r.x(), r.y(), 0.0f}, 0.02f, 0);
+  }
+  EXPECT_EQ(fit_plane(line, all_of(line, {0, 0, 0}), PlaneBounds{}).verdict, PlaneVerdict::collinear);
+  EXPECT_EQ(fit_plane(blob, all_of(blob, {0, 0, 0}), PlaneBounds{}).verdict, PlaneVerdict::rough);
+  EXPECT_EQ(fit_plane(few, all_of(few, {0, 0, 0}), PlaneBounds{}).verdict, PlaneVerdict::too_few);
+}
+
+TEST(PlaneFit, RefusesPointsThatCoincide) {
+  VoxelMap map({0.5, 0.0});
+  for (int i = 0; i < 8; ++i) map.insert({1.0f, 1.0f, 1.0f}, 0.02f, 0);
+  EXPECT_EQ(fit_plane(map, all_of(map, {1, 1, 1}), PlaneBounds{}).verdict, PlaneVerdict::collinear);
+}
+
+}  // namespace
+}  // namespace tumble

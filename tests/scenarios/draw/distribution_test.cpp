@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/draw/distribution.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <set>
+#include <vector>
+
+#include "scenarios/draw/fixture_registry.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+using Shape = Distribution::Shape;
+
+constexpr int kDraws = 4000;
+
+std::vector<double> draws(const Distribution& distribution) {
+  std::vector<double> out;
+  for (int seed = 0; seed < kDraws; ++seed) out.push_back(draw_number(distribution, seed, "world.slope_rad"));
+  return out;
+}
+
+/// Largest distance between the empirical distribution of `sample` and the one expected (Kolmogorov-Smirnov).
+double ks_distance(std::vector<double> sample, const std::function<double(double)>& below) {
+  std::sort(sample.begin(), sample.end());
+  double distance = 0.0;
+  const auto n = static_cast<double>(sample.size());
+  for (std::size_t i = 0; i < sample.size(); ++i) {
+    const double expected = below(sample[i]);
+    distance = std::max({distance, expected - static_cast<double>(i) / n, static_cast<double>(i + 1) / n - expected});
+  }
+  return distance;
+}
+
+double normal_below(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
+
+/// 1.95 / sqrt(n) is passed by one sample in 1000; seeds are fixed, so a pass stays a pass.
+const double kKsBound = 1.95 / std::sqrt(static_cast<double>(kDraws));
+
+TEST(Distribution, DrawsFollowTheStatedLaw) {
+  EXPECT_LT(ks_distance(draws({Shape::uniform, {2.0, 5.0}}), [](double x) { return (x - 2.0) / 3.0; }), kKsBound);
+  EXPECT_LT(ks_distance(draws({Shape::normal, {1.0, 2.0}}), [](double x) { return normal_below((x - 1.0) / 2.0); }), kKsBound);
+  EXPECT_LT(ks_distance(draws({Shape::log_uniform, {0.01, 100.0}}), [](double x) { return (std::log10(x) + 2.0) / 4.0; }),
+            kKsBound);
+  const double low = normal_below(-0.5);
+  const double kept = normal_below(1.0) - low;
+  EXPECT_LT(ks_distance(draws({Shape::normal, {1.0, 2.0, 0.0, 3.0}}),
+                        [&](double x) { return (normal_below((x - 1.0) / 2.0) - low) / kept; }),
+            kKsBound);
+}
+
+TEST(Distribution, TheLawCheckRefusesAWrongLaw) {
+  EXPECT_GT(ks_distance(draws({Shape::uniform, {2.0, 5.0}}), [](double x) { return (x - 2.0) / 3.2; }), kKsBound);
+  EXPECT_GT(ks_distance(draws({Shape::normal, {1.0, 2.0, 0.0, 3.0}}), [](double x) { return x / 3.0; }), kKsBound);
+}
+
+TEST(Distribution, StaysWithinItsEnds) {
+  for (const Distribution& d : {Distribution{Shape::uniform, {0.1, 0.3}}, Distribution{Shape::log_uniform, {0.1, 0.3}},
+                                Distribution{Shape::normal, {0.2, 1.0, 0.1, 0.3}}}) {
+    const std::vector<double> sample = draws(d);
+    EXPECT_GE(*std::min_element(sample.begin(), sample.end()), 0.1) << to_string(d.shape);
+    EXPECT_LE(*std::max_element(sample.begin(), sample.end()), 0.3) << to_string(d.shape);
+  }
+}
+
+TEST(Distribution, ChoiceTakesEachValueAsOften) {
+  const std::vector<double> sample = draws({Shape::choice, {1.0, 2.0, 4.0, 8.0}});
+  for (const double value : {1.0, 2.0, 4.0, 8.0}) {
+    // binomial: mean 1000, standard deviation 27; four of them
+    EXPECT_NEAR(static_cast<double>(std::count(sample.begin(), sample.end(), value)), 1000.0, 110.0) << value;
+  }
+}
+
+TEST(Distribution, ConstantAndDegenerateGiveTheNumber) {
+  EXPECT_EQ(draw_number({Shape::constant, {0.1}}, 7, "a"), 0.1);
+  EXPECT_EQ(draw_number({Shape::uniform, {0.1, 0.1}}, 7, "a"), 0.1);
+  EXPECT_EQ(draw_number({Shape::log_uniform, {0.1, 0.1}}, 7, "a"), 0.1);
+  EXPECT_EQ(draw_number({Shape::normal, {0.1, 0.0}}, 7, "a"), 0.1);
+}
+
+TEST(Distribution, BelongsToSeedAndPlace) {
+  const Distribution d{Shape::uniform, {0.0, 1.0}};
+  EXPECT_EQ(draw_number(d, 7, "world.slope_rad"), draw_number(d, 7, "world.slope_rad"));
+  EXPECT_NE(draw_number(d, 7, "world.slope_rad"), draw_number(d, 8, "world.slope_rad"));
+  EXPECT_NE(draw_number(d, 7, "world.slope_rad"), draw_number(d, 7, "world.relief_m"));
+}
+
+TEST(Distribution, ImpossibleOnesAreNamed) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const Distribution& d :
+       {Distribution{Shape::constant, {}}, Distribution{Shape::constant, {nan}}, Distribution{Shape::uniform, {2.0, 1.0}},
+        Distribution{Shape::uniform, {0.0, infinity}}, Distribution{Shape::normal, {0.0, -1.0}},
+        Distribution{Shape::normal, {0.0, nan}}, Distribution{Shape::normal, {0.0, 1.0, 5.0, 6.0}},
+        Distribution{Shape::normal, {0.0, 1.0, 1.0, 0.0}}, Distribution{Shape::log_uniform, {0.0, 1.0}},
+        Distribution{Shape::log_uniform, {-1.0, 1.0}}, Distribution{Shape::choice, {}}}) {
+    EXPECT_NE(find_problem(d), "") << to_string(d.shape);
+    EXPECT_THROW(draw_number(d, 1, "a"), BadInput) << to_string(d.shape);
+  }
+}
+
+}  // namespace
+}  // namespace tumble::scenarios

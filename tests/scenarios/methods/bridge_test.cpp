@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/methods/bridge.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/methods/synthetic_recording.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+TEST(Bridge, SamplesKeepTimeRateForceAndOrder) {
+  const sim::Recording recording = testing::synthetic_rig();
+  const sim::ImuRecord& record = recording.sensors.imus.front();
+  std::vector<ImuSample> samples;
+  ASSERT_TRUE(bridge::imu_samples(record, samples).ok());
+  ASSERT_EQ(samples.size(), record.time_ns.size());
+  ASSERT_GT(samples.size(), 1000u);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    EXPECT_EQ(samples[k].time_ns, record.time_ns[k]);
+    EXPECT_EQ(samples[k].angular_velocity_rad_s, record.gyro_rad_s[k]);
+    EXPECT_EQ(samples[k].specific_force_m_s2, record.accel_m_s2[k]);
+  }
+}
+
+TEST(Bridge, SpecificForceAtRestPointsUp) {
+  const sim::Recording recording = testing::synthetic_rig();
+  std::vector<ImuSample> samples;
+  ASSERT_TRUE(bridge::primary_imu_samples(recording.sensors, samples).ok());
+  const Eigen::Matrix3d R_WI = (recording.truth.q_WB.front() * recording.sensors.imus.front().T_BI.linear()).matrix();
+  const Eigen::Vector3d force_W = R_WI * samples.front().specific_force_m_s2;
+  EXPECT_NEAR(force_W.z(), 9.80665, 1e-12);
+  EXPECT_NEAR(force_W.head<2>().norm(), 0.0, 1e-12);
+}
+
+TEST(Bridge, EachClipBitBecomesItsOwnFlag) {
+  const std::vector<std::uint8_t> expected = {kClipGyroX,  kClipGyroY,  kClipGyroZ,
+                                              kClipAccelX, kClipAccelY, kClipAccelZ};
+  for (std::size_t bit = 0; bit < 6; ++bit) {
+    sim::Recording recording = testing::synthetic_rig();
+    sim::ImuRecord& record = recording.sensors.imus.front();
+    record.clip_flags[3] = static_cast<std::uint8_t>(1u << bit);
+    std::vector<ImuSample> samples;
+    ASSERT_TRUE(bridge::imu_samples(record, samples).ok());
+    EXPECT_EQ(samples[3].device_clip_flags, expected[bit]) << "bit " << bit;
+    EXPECT_EQ(samples[4].device_clip_flags, 0);
+  }
+}
+
+// the lever arm's frame and sign together: a body that turns at a steady rate about its centre of mass, weightless, shows
+// the force w x (w x t) at the IMU, which points from the IMU to the axis
+TEST(Bridge, LeverArmGivesTheCentripetalForceInImuAxes) {
+  const sim::Recording recording = testing::synthetic_rig();
+  const sim::ImuRecord& record = recording.sensors.imus.front();
+  const Eigen::Vector3d t = bridge::lever_arm_I_m(record);
+  EXPECT_NEAR((record.T_BI.linear() * t - record.T_BI.translation()).norm(), 0.0, 1e-15);
+  const Eigen::Vector3d w_B(1.0, -12.0, 5.0);
+  const Eigen::Vector3d force_B = w_B.cross(w_B.cross(record.T_BI.translation()));
+  const Eigen::Vector3d force_I = record.T_BI.linear().transpose() * force_B;
+  const Eigen::Vector3d e = record.T_BI.linear().transpose() * w_B.normalized();
+  const Eigen::Vector3d l = t.dot(e) * e - t;
+  EXPECT_NEAR(force_I.dot(l.normalized()), l.norm() * w_B.squaredNorm(), 1e-12);
+  // negative control: the arm left in body axes does not
+  const Eigen::Vector3d wrong = record.T_BI.translation().dot(e) * e - record.T_BI.translation();
+  EXPECT_GT(std::abs(force_I.dot(wrong.normalized()) - wrong.norm() * w_B.squaredNorm()), 0.5);
+}
+
+TEST(Bridge, LidarPointsFallOnTheTrueSurfaceThroughT_IL) {
+  const sim::Recording recording = testing::synthetic_rig();
+  const sim::LidarRecord& lidar = recording.sensors.lidars.front();
+  const sim::ImuRecord& imu = recording.sensors.imus.front();
+  ASSERT_EQ(bridge::sweep_count(lidar), 60u);
+  const testing::SyntheticMotion motion;
+  const Eigen::Isometry3d T_IL = bridge::T_IL(imu, lidar);
+  for (const std::size_t index : {0u, 25u, 59u}) {
+    const bridge::Sweep sweep = bridge::sweep(lidar, index);
+    EXPECT_EQ(sweep.end_ns - sweep.start_ns, 100000000);
+    ASSERT_GT(sweep.points.size(), 500u);
+    for (std::size_t k = 0; k < sweep.points.size(); k += 97) {
+      const double t = 1e-9 * static_cast<double>(sweep.start_ns + sweep.points[k].offset_ns);
+      const Eigen::Isometry3d T_WI = Eigen::Translation3d(motion.position_m(t)) * motion.attitude(t) * imu.T_BI;
+      const Eigen::Vector3d hit = T_WI * T_IL * sweep.points[k].position_L_m.cast<double>();
+      const Eigen::Vector3f truth = recording.truth.lidars.front().hit_W_m[lidar.sweep_first[index] + k];
+      // float32 coordinates of up to 7 m: 5e-7 m
+      EXPECT_NEAR((hit - truth.cast<double>()).norm(), 0.0, 3e-6);
+    }
+  }
+}
+
+TEST(Bridge, NoiseVarianceIsDensitySquaredOverPeriod) {
+  sim::ImuRecord record;
+  record.gyro_noise_rad_s_sqrt_hz = 5.236e-4;  // 0.03 deg/s/sqrt(Hz)
+  record.period_ns = 10000000;
+  EXPECT_NEAR(bridge::gyro_variance_rad2_s2(record), 2.741e-5, 2e-8);
+}
+
+TEST(Bridge, TroubleIsNamedAndLeavesNothing) {
+  const sim::Recording good = testing::synthetic_rig();
+  std::vector<ImuSample> samples;
+  const auto status_of = [&](auto&& spoil) {
+    sim::ImuRecord record = good.sensors.imus.front();
+    spoil(record);
+    const Status status = bridge::imu_samples(record, samples);
+    EXPECT_EQ(samples.size(), 0u);
+    return status;
+  };
+  EXPECT_EQ(status_of([](sim::ImuRecord& r) { r.gyro_rad_s[7].y() = kNaN; }).trouble, Trouble::non_finite);
+  EXPECT_EQ(status_of([](sim::ImuRecord& r) { r.accel_m_s2[7].z() = kNaN; }).trouble, Trouble::non_finite);
+  EXPECT_EQ(status_of([](sim::ImuRecord& r) { r.time_ns[7] = r.time_ns[6]; }).trouble, Trouble::time_order);
+  EXPECT_EQ(status_of([](sim::ImuRecord& r) {
+              for (std::size_t k = 7; k < r.time_ns.size(); ++k) r.time_ns[k] += 1000000001;
+            }).trouble,
+            Trouble::gap);
+  sim::Sensors none;
+  EXPECT_EQ(bridge::primary_imu_samples(none, samples).trouble, Trouble::empty);
+  sim::ImuRecord short_record = good.sensors.imus.front();
+  short_record.gyro_rad_s.pop_back();
+  EXPECT_THROW(bridge::imu_samples(short_record, samples), BadInput);
+  sim::LidarRecord lidar = good.sensors.lidars.front();
+  lidar.offset_ns.pop_back();
+  EXPECT_THROW(bridge::sweep_count(lidar), BadInput);
+}
+
+}  // namespace
+}  // namespace tumble::scenarios

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/methods/estimate_file.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/methods/synthetic_recording.hpp"
+#include "scenarios/scoring/score.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+class EstimateFile : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() /
+              ("tumble_estimate_" + std::to_string(getpid()) + "_" +
+               ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+    return folder_ / name;
+  }
+
+  std::string complaint(const std::filesystem::path& path) const {
+    Kind kind;
+    std::string method;
+    try {
+      read_estimate(path, kind, method, Frame::imu);
+    } catch (const BadInput& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(EstimateFile, ScoresOfWhatIsReadBackAreTheSame) {
+  const sim::Recording rig = testing::synthetic_rig();
+  const sim::Recording sphere = testing::synthetic_sphere();
+  for (const Method& method : methods()) {
+    const sim::Recording& recording = method.info.for_robot("rig") ? rig : sphere;
+    const Estimate estimate = method.run(recording.sensors, {}, {&recording.truth});
+    ASSERT_TRUE(estimate.status.ok()) << method.info.name;
+    write_estimate(folder_, method.info.name, method.info.kind, estimate);
+    Kind kind;
+    std::string name;
+    const Estimate back = read_estimate(folder_, kind, name, Frame::lidar);
+    EXPECT_EQ(kind, method.info.kind);
+    EXPECT_EQ(name, method.info.name);
+    EXPECT_EQ(back.frame, estimate.frame);
+    EXPECT_EQ(back.health, estimate.health);
+    EXPECT_EQ(back.map.size(), estimate.map.size());
+    const ScoringInput input{&recording.sensors, &recording.truth, nullptr};
+    const auto before = score(kind, estimate, input);
+    const auto after = score(kind, back, input);
+    ASSERT_EQ(before.size(), after.size()) << method.info.name;
+    ASSERT_GT(before.size(), 0u);
+    for (std::size_t k = 0; k < before.size(); ++k) {
+      EXPECT_EQ(before[k].metric, after[k].metric);
+      // a quaternion is normalised on reading: its last bit
+      EXPECT_NEAR(before[k].value, after[k].value, 1e-12 * (1.0 + std::abs(before[k].value))) << before[k].metric;
+    }
+  }
+}
+
+TEST_F(EstimateFile, AStatusThatIsNotOkComesBack) {
+  Estimate failed;
+  failed.status = {Trouble::gap, "imu.time_ns", 2.0, 1.0};
+  write_estimate(folder_, "raw", Kind::rate, failed);
+  Kind kind;
+  std::string method;
+  EXPECT_EQ(read_estimate(folder_, kind, method, Frame::imu).status.trouble, Trouble::gap);
+}
+
+TEST_F(EstimateFile, ReadsATumFileOfSomebodyElse) {
+  // comments, several blanks, fewer digits, an epoch stamp that no double holds to the nanosecond
+  const auto path = write("theirs.tum",
+                          "# time x y z qx qy qz qw\n"
+                          "1689175049.435000123 1 2 3 0 0 0 1\n"
+                          "1689175049.440000123  1.5 2 3  0 0 0.7071068 0.7071068\n");
+  Kind kind;
+  std::string method;
+  const Estimate estimate = read_estimate(path, kind, method, Frame::lidar);
+  EXPECT_EQ(kind, Kind::position);
+  EXPECT_EQ(method, "theirs");
+  EXPECT_EQ(estimate.frame, Frame::lidar);
+  ASSERT_EQ(estimate.poses.size(), 2u);
+  EXPECT_EQ(estimate.poses[0].time_ns, 1689175049435000123);
+  EXPECT_EQ(estimate.poses[1].p_WA_m, Eigen::Vector3d(1.5, 2, 3));
+  EXPECT_NEAR(estimate.poses[1].q_WA.norm(), 1.0, 1e-15);
+}
+
+TEST_F(EstimateFile, ComplaintsNameFileAndLine) {
+  EXPECT_NE(complaint(folder_ / "absent.tum").find("absent.tum: cannot be read"), std::string::npos);
+  EXPECT_NE(complaint(write("a.tum", "0 1 2 3 0 0 0 1\n0.1 1 2 3 0 0 0\n")).find("a.tum:2: 7 columns, must be 8"),
+            std::string::npos);
+  EXPECT_NE(complaint(write("b.tum", "0 1 2 x 0 0 0 1\n")).find("b.tum:1: 'x' is not a number"), std::string::npos);
+  EXPECT_NE(complaint(write("c.tum", "0 1 2 3 0 0 0 0\n")).find("c.tum:1: quaternion of norm"), std::string::npos);
+  EXPECT_NE(complaint(write("d.tum", "1 1 2 3 0 0 0 1\n1 1 2 3 0 0 0 1\n")).find("d.tum:2: time stamps must rise"),
+            std::string::npos);
+  EXPECT_NE(complaint(write("e.tum", "")).find("no pose"), std::string::npos);
+  EXPECT_NE(complaint(folder_).find("estimate.json"), std::string::npos);
+  write("estimate.json", "{\"format\": 1, ");
+  EXPECT_NE(complaint(folder_).find("estimate.json"), std::string::npos);
+}
+
+TEST_F(EstimateFile, ATruncatedMapIsRecognised) {
+  Estimate estimate;
+  estimate.map.resize(10);
+  write_estimate(folder_, "icp", Kind::slam, estimate);
+  EXPECT_EQ(complaint(folder_), "");
+  std::filesystem::resize_file(folder_ / "map.ply", std::filesystem::file_size(folder_ / "map.ply") - 5);
+  EXPECT_NE(complaint(folder_).find("map.ply: truncated"), std::string::npos);
+}
+
+TEST_F(EstimateFile, NothingOfAnEarlierEstimateStays) {
+  Estimate with_map;
+  with_map.map.resize(3);
+  write_estimate(folder_, "icp", Kind::slam, with_map);
+  write_estimate(folder_, "icp", Kind::slam, Estimate{});
+  Kind kind;
+  std::string method;
+  EXPECT_EQ(read_estimate(folder_, kind, method, Frame::imu).map.size(), 0u);
+}
+
+TEST_F(EstimateFile, AFolderThatCannotBeMadeIsBadInput) {
+  write("file", "");
+  EXPECT_THROW(write_estimate(folder_ / "file" / "below", "raw", Kind::rate, Estimate{}), BadInput);
+}
+
+}  // namespace
+}  // namespace tumble::scenarios

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include "scenarios/methods/method.hpp"
+#include "scenarios/methods/synthetic_recording.hpp"
+#include "scenarios/scoring/score.hpp"
+
+// methods on motion in closed form, judged by the scores: method, bridge and scoring agree on every convention or this fails
+namespace tumble::scenarios {
+namespace {
+
+std::map<std::string, double> scores_of(const std::string& name, const sim::Recording& recording) {
+  const Method& method = *find_methods(name).at(0);
+  const Estimate estimate = method.run(recording.sensors, {}, {&recording.truth});
+  EXPECT_TRUE(estimate.status.ok()) << estimate.status.message();
+  const ScoringInput input{&recording.sensors, &recording.truth, nullptr};
+  EXPECT_EQ(verdict(method.info.kind, estimate, input), "ok") << name;
+  std::map<std::string, double> values;
+  for (const Score& score : score(method.info.kind, estimate, input)) values[score.metric] = score.value;
+  return values;
+}
+
+TEST(MethodAccuracy, OracleRateIsExactAndRawMissesWhatTheRailTook) {
+  const sim::Recording recording = testing::synthetic_rig();
+  const auto oracle = scores_of("rate/oracle", recording);
+  EXPECT_EQ(oracle.at("rate_error_clipped_p99_rad_s"), 0.0);
+  EXPECT_EQ(oracle.at("rate_coverage_3sigma"), 1.0);
+  const auto raw = scores_of("raw", recording);
+  EXPECT_EQ(raw.at("rate_error_free_median_rad_s"), 0.0);
+  EXPECT_GT(raw.at("rate_error_clipped_median_rad_s"), 0.5);
+  // its sigma is the noise alone: what is within is the brim of the clipped stretch
+  EXPECT_LT(raw.at("rate_coverage_3sigma"), 0.05);
+}
+
+// in free flight about the centre of mass the assumptions of the method hold but for the slow change of the rate
+TEST(MethodAccuracy, SaaveRecoversTheClippedRateOfAFlight) {
+  sim::Recording recording = testing::synthetic_rig();
+  sim::ImuRecord& imu = recording.sensors.imus.front();
+  const Eigen::Vector3d p_B = imu.T_BI.translation();
+  const testing::SyntheticMotion motion;
+  for (std::size_t k = 0; k < imu.time_ns.size(); ++k) {
+    const double middle_s = 1e-9 * static_cast<double>(imu.time_ns[k]) - 0.0025;
+    // without the force of the centre of mass, as in a fall
+    imu.accel_m_s2[k] = imu.T_BI.linear().transpose() * (motion.specific_force_B_m_s2(middle_s, p_B) -
+                                                         motion.specific_force_B_m_s2(middle_s, Eigen::Vector3d::Zero()));
+  }
+  const auto raw = scores_of("raw", recording);
+  const auto saave = scores_of("saave", recording);
+  // measured: see the bound's twentieth
+  EXPECT_LT(saave.at("rate_error_clipped_median_rad_s"), 0.1 * raw.at("rate_error_clipped_median_rad_s"));
+}
+
+TEST(MethodAccuracy, IntegrationFollowsAGyroThatDoesNotClip) {
+  testing::SyntheticMotion motion;
+  motion.rail_rad_s = 100.0;
+  const auto integrate = scores_of("integrate", testing::synthetic_rig(motion));
+  // fixed axis, mid-window rates: the midpoint rule's error, dt^2/24 times the change of acceleration, is below 1e-4 rad
+  EXPECT_LT(integrate.at("attitude_rmse_rad"), 1e-4);
+  EXPECT_LT(integrate.at("attitude_rmse_rest_rad"), 1e-4);
+  // negative control: clipped, the same motion loses a radian or more
+  EXPECT_GT(scores_of("integrate", testing::synthetic_rig()).at("attitude_rmse_rad"), 0.5);
+}
+
+TEST(MethodAccuracy, MadgwickHoldsTheVerticalAtRest) {
+  const auto madgwick = scores_of("madgwick", testing::synthetic_sphere());
+  EXPECT_LT(madgwick.at("inclination_rmse_rad"), 0.05);
+  EXPECT_GT(madgwick.at("attitude_step_rest_rms_rad"), 0.0);
+}
+
+TEST(MethodAccuracy, RollingGivesTheWayOfASphereThatGrips) {
+  for (const double direction_rad : {0.0, 0.6, -2.5}) {
+    const auto rolling = scores_of("rolling", testing::synthetic_sphere(2.0, direction_rad));
+    // measured: below 1e-3 for each direction (trapezoid over window means)
+    EXPECT_LT(rolling.at("position_end_error_share"), 1e-3) << direction_rad;
+    EXPECT_LT(rolling.at("position_height_error_max_m"), 1e-9);
+    EXPECT_LT(rolling.at("position_rest_drift_m"), 1e-9);
+  }
+}
+
+TEST(MethodAccuracy, RollingEstimatesItsGyroBiasAtRest) {
+  sim::Recording recording = testing::synthetic_sphere(2.0);
+  for (auto& rate : recording.sensors.imus.front().gyro_rad_s) rate += Eigen::Vector3d(0.02, -0.01, 0.015);
+  EXPECT_LT(scores_of("rolling", recording).at("position_end_error_share"), 1e-3);
+}
+
+TEST(MethodAccuracy, RollingIsWrongWhenTheSphereSlips) {
+  // negative control: the radius that the method believes is a tenth too large, as if it spun more than it went
+  sim::Recording recording = testing::synthetic_sphere(2.0);
+  recording.sensors.sphere_radius_m *= 1.1;
+  EXPECT_NEAR(scores_of("rolling", recording).at("position_end_error_share"), 0.1, 2e-3);
+}
+
+TEST(MethodAccuracy, SlamOracleEndsWhereTheTruthEnds) {
+  const auto oracle = scores_of("slam/oracle", testing::synthetic_rig());
+  EXPECT_LT(oracle.at("translation_error_end_m"), 0.05);
+  EXPECT_LT(oracle.at("rotation_error_end_rad"), 0.01);
+  EXPECT_LT(oracle.at("ate_m"), 0.05);
+  EXPECT_GT(oracle.at("map_coverage"), 0.8);
+}
+
+}  // namespace
+}  // namespace tumble::scenarios

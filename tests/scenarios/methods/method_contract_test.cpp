@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <ostream>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/methods/method.hpp"
+#include "scenarios/methods/synthetic_recording.hpp"
+#include "scenarios/sweep/outcome.hpp"
+
+// one law for every method: what is registered is held to it without being named here
+namespace tumble::scenarios {
+
+void PrintTo(const Method& method, std::ostream* out) { *out << to_string(method.info.kind) << "/" << method.info.name; }
+
+namespace {
+
+class MethodContract : public ::testing::TestWithParam<Method> {
+ protected:
+  const Method& method() const { return GetParam(); }
+
+  sim::Recording recording() const {
+    return method().info.for_robot("rig") ? testing::synthetic_rig() : testing::synthetic_sphere();
+  }
+
+  Estimate run(const sim::Recording& recording) const {
+    return method().run(recording.sensors, {}, OracleInput{method().info.needs_truth ? &recording.truth : nullptr});
+  }
+
+  // a status that is not ok, or BadInput: anything else lets trouble pass for a result
+  void expect_refused(const sim::Recording& recording) const {
+    try {
+      const Estimate estimate = run(recording);
+      EXPECT_FALSE(estimate.status.ok()) << estimate.status.message();
+      EXPECT_NE(std::string(estimate.status.field), "");
+    } catch (const BadInput& error) {
+      EXPECT_NE(std::string(error.what()), "");
+    }
+  }
+};
+
+TEST_P(MethodContract, DescribesItself) {
+  const MethodInfo& info = method().info;
+  EXPECT_NE(info.name, "");
+  EXPECT_NE(info.doc, "");
+  EXPECT_NE(info.source, "");
+  for (const sim::Parameter& parameter : info.parameters) {
+    EXPECT_NE(parameter.doc, "") << parameter.name;
+    EXPECT_LE(parameter.low, parameter.default_value) << parameter.name;
+    EXPECT_GE(parameter.high, parameter.default_value) << parameter.name;
+  }
+}
+
+TEST_P(MethodContract, GivesAnAnswerOfItsKind) {
+  const Estimate estimate = run(recording());
+  ASSERT_TRUE(estimate.status.ok()) << estimate.status.message();
+  switch (method().info.kind) {
+    case Kind::rate: EXPECT_EQ(estimate.rates.size(), 1200u); break;
+    case Kind::attitude: EXPECT_EQ(estimate.attitudes.size(), 1200u); break;
+    case Kind::position: EXPECT_EQ(estimate.poses.size(), 1200u); break;
+    case Kind::slam:
+      EXPECT_GT(estimate.sweeps.size(), 50u);
+      EXPECT_EQ(estimate.sweep_end_ns.size(), estimate.sweeps.size());
+      EXPECT_GT(estimate.poses.size(), 1000u);
+      EXPECT_GT(estimate.map.size(), 1000u);
+      break;
+  }
+}
+
+TEST_P(MethodContract, SameInputGivesSameBits) {
+  const std::string first = digest(run(recording()));
+  EXPECT_EQ(first, digest(run(recording())));
+  // negative control: the digest sees the data
+  sim::Recording other = recording();
+  for (auto& rate : other.sensors.imus.front().gyro_rad_s) rate *= 1.001;
+  for (auto& rate : other.truth.imus.front().gyro_unclipped_rad_s) rate *= 1.001;
+  EXPECT_NE(first, digest(run(other)));
+}
+
+TEST_P(MethodContract, TruthChangesNothingUnlessDeclared) {
+  if (method().info.needs_truth) {
+    EXPECT_THROW(method().run(recording().sensors, {}, {}), BadInput);
+    return;
+  }
+  const sim::Recording given = recording();
+  EXPECT_EQ(digest(method().run(given.sensors, {}, {})), digest(method().run(given.sensors, {}, {&given.truth})));
+}
+
+TEST_P(MethodContract, RefusesAnEmptyRecording) {
+  sim::Recording empty;
+  empty.sensors.robot = "rig";
+  expect_refused(empty);
+  sim::Recording no_samples = recording();
+  no_samples.sensors.imus.front().time_ns.clear();
+  no_samples.sensors.imus.front().gyro_rad_s.clear();
+  no_samples.sensors.imus.front().accel_m_s2.clear();
+  no_samples.sensors.imus.front().clip_flags.clear();
+  expect_refused(no_samples);
+}
+
+TEST_P(MethodContract, RefusesWhatIsNotFinite) {
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    sim::Recording spoilt = recording();
+    spoilt.sensors.imus.front().gyro_rad_s[600].x() = bad;
+    expect_refused(spoilt);
+    spoilt = recording();
+    spoilt.sensors.imus.front().accel_m_s2[600].x() = bad;
+    expect_refused(spoilt);
+  }
+}
+
+TEST_P(MethodContract, RefusesFallingTimeStamps) {
+  sim::Recording spoilt = recording();
+  std::swap(spoilt.sensors.imus.front().time_ns[600], spoilt.sensors.imus.front().time_ns[601]);
+  expect_refused(spoilt);
+}
+
+TEST_P(MethodContract, RefusesAGap) {
+  sim::Recording spoilt = recording();
+  auto& times = spoilt.sensors.imus.front().time_ns;
+  for (std::size_t k = 600; k < times.size(); ++k) times[k] += 3000000000;
+  expect_refused(spoilt);
+}
+
+TEST_P(MethodContract, RefusesAParameterItDoesNotKnow) {
+  sim::Values values;
+  values.set("no_such_parameter", 1.0);
+  const sim::Recording given = recording();
+  EXPECT_THROW(method().run(given.sensors, values, {&given.truth}), BadInput);
+  for (const sim::Parameter& parameter : method().info.parameters) {
+    sim::Values beyond;
+    beyond.set(std::string(parameter.name), parameter.high * 2.0 + 1.0);
+    EXPECT_THROW(method().run(given.sensors, beyond, {&given.truth}), BadInput) << parameter.name;
+  }
+}
+
+std::string test_name(const ::testing::TestParamInfo<Method>& param) {
+  return std::string(to_string(param.param.info.kind)) + "_" + param.param.info.name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Registered, MethodContract, ::testing::ValuesIn(methods().begin(), methods().end()), test_name);
+
+class SlamContract : public MethodContract {};
+
+TEST_P(SlamContract, RefusesALidarThatNeverSawAnything) {
+  sim::Recording spoilt = recording();
+  for (auto& point : spoilt.sensors.lidars.front().position_L_m) point.setConstant(std::numeric_limits<float>::quiet_NaN());
+  expect_refused(spoilt);
+}
+
+// as an idealised simulator gives them, and a driver that loses the stamps
+TEST_P(SlamContract, RefusesPointsThatAllBearOneTimeStamp) {
+  sim::Recording spoilt = recording();
+  for (auto& offset : spoilt.sensors.lidars.front().offset_ns) offset = 0;
+  expect_refused(spoilt);
+}
+
+TEST_P(SlamContract, RefusesAPointBeyondItsSweep) {
+  sim::Recording spoilt = recording();
+  sim::LidarRecord& lidar = spoilt.sensors.lidars.front();
+  lidar.offset_ns[lidar.sweep_first[30] + 5] = 200000000;
+  expect_refused(spoilt);
+}
+
+TEST_P(SlamContract, TakesAPointThatIsNotANumberForAMiss) {
+  sim::Recording spoilt = recording();
+  sim::LidarRecord& lidar = spoilt.sensors.lidars.front();
+  lidar.position_L_m[lidar.sweep_first[30] + 5].x() = std::numeric_limits<float>::quiet_NaN();
+  const Estimate estimate = run(spoilt);
+  ASSERT_TRUE(estimate.status.ok()) << estimate.status.message();
+  for (const PoseState& pose : estimate.poses) ASSERT_TRUE(pose.p_WA_m.allFinite());
+  for (const MapPoint& point : estimate.map) ASSERT_TRUE(point.position_W_m.allFinite());
+}
+
+TEST_P(SlamContract, RefusesARecordingWithoutLidar) {
+  sim::Recording spoilt = recording();
+  spoilt.sensors.lidars.clear();
+  expect_refused(spoilt);
+}
+
+TEST_P(SlamContract, CountsSweepsWithoutPoints) {
+  // one sweep in the middle of the rest at the end loses all its points
+  sim::Recording covered = recording();
+  sim::LidarRecord& lidar = covered.sensors.lidars.front();
+  const auto first = static_cast<std::ptrdiff_t>(lidar.sweep_first[55]);
+  const auto last = static_cast<std::ptrdiff_t>(lidar.sweep_first[56]);
+  const auto cut = [&](auto& array) { array.erase(array.begin() + first, array.begin() + last); };
+  cut(lidar.position_L_m);
+  cut(lidar.range_m);
+  cut(lidar.intensity);
+  cut(lidar.offset_ns);
+  cut(lidar.ring);
+  for (std::size_t k = 56; k < lidar.sweep_first.size(); ++k) lidar.sweep_first[k] -= static_cast<std::size_t>(last - first);
+  const Estimate estimate = run(covered);
+  ASSERT_TRUE(estimate.status.ok()) << estimate.status.message();
+  EXPECT_EQ(estimate.health.at("sweeps_empty"), 1.0);
+  ASSERT_EQ(estimate.sweeps.size(), 60u);
+  EXPECT_EQ(estimate.sweeps[55].verdict, SweepVerdict::rejected);
+  EXPECT_NE(estimate.sweeps[56].verdict, SweepVerdict::rejected);
+}
+
+std::vector<Method> slam_methods() {
+  std::vector<Method> chosen;
+  std::copy_if(methods().begin(), methods().end(), std::back_inserter(chosen),
+               [](const Method& method) { return method.info.kind == Kind::slam; });
+  return chosen;
+}
+
+INSTANTIATE_TEST_SUITE_P(Registered, SlamContract, ::testing::ValuesIn(slam_methods()), test_name);
+
+TEST(Registry, NamesAreUniqueWithinAKindAndSortedByKind) {
+  const auto all = methods();
+  ASSERT_GE(all.size(), 9u);
+  for (std::size_t k = 1; k < all.size(); ++k) {
+    EXPECT_LE(all[k - 1].info.kind, all[k].info.kind);
+    for (std::size_t j = 0; j < k; ++j) {
+      EXPECT_FALSE(all[j].info.kind == all[k].info.kind && all[j].info.name == all[k].info.name) << all[k].info.name;
+    }
+  }
+}
+
+TEST(Registry, FindsByNameAndByKindAndName) {
+  EXPECT_EQ(find_methods("oracle").size(), 2u);
+  ASSERT_EQ(find_methods("rate/oracle").size(), 1u);
+  EXPECT_EQ(find_methods("rate/oracle").front()->info.kind, Kind::rate);
+  try {
+    find_methods("saav");
+    FAIL() << "an unknown name was found";
+  } catch (const BadInput& error) {
+    EXPECT_EQ(std::string(error.what()), "unknown method 'saav'; did you mean 'saave'?");
+  }
+}
+
+}  // namespace
+}  // namespace tumble::scenarios

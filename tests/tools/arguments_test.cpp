@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/tumble/arguments.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <numeric>
+
+#include "scenarios/errors.hpp"
+
+namespace tumble::tools {
+namespace {
+
+using scenarios::BadInput;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+TEST(ParseSeed, TakesWholeNumbersAlone) {
+  EXPECT_EQ(parse_seed("0"), 0u);
+  EXPECT_EQ(parse_seed("18446744073709551615"), 18446744073709551615u);
+  EXPECT_EQ(parse_seed("010"), 10u) << "decimal, whatever it begins with";
+  for (const char* bad : {"", "-1", "+1", "1.0", "1e3", "0x10", " 1", "1 ", "18446744073709551616", "one"}) {
+    EXPECT_THAT([&] { parse_seed(bad); }, ThrowsMessage<BadInput>(HasSubstr("--seed is '" + std::string(bad) + "'"))) << bad;
+  }
+}
+
+TEST(ParseSeeds, TakesARangeOrOne) {
+  EXPECT_EQ(parse_seeds("3..9"), std::make_pair(std::uint64_t{3}, std::uint64_t{9}));
+  EXPECT_EQ(parse_seeds("7"), std::make_pair(std::uint64_t{7}, std::uint64_t{7}));
+  for (const char* bad : {"", "..", "1..", "..5", "1...5", "1-5", "9..3", "a..b"}) EXPECT_THROW(parse_seeds(bad), BadInput) << bad;
+}
+
+TEST(ParseShard, IsOneOfN) {
+  EXPECT_EQ(parse_shard("2/8").index, 2u);
+  EXPECT_EQ(parse_shard("2/8").count, 8u);
+  for (const char* bad : {"", "0/4", "5/4", "1/0", "1", "1/", "/1", "-1/2", "1/1000001"}) EXPECT_THROW(parse_shard(bad), BadInput) << bad;
+}
+
+TEST(ShardSeeds, PartitionTheRange) {
+  // every seed in exactly one shard, in order, lengths differing by one at most; more shards than seeds leave empty ones
+  for (const std::uint64_t count : {1u, 2u, 3u, 7u, 10u, 13u}) {
+    std::uint64_t next = 5;
+    std::size_t empty = 0;
+    for (std::uint64_t i = 1; i <= count; ++i) {
+      std::uint64_t first = 5, last = 14;
+      if (!shard_seeds({i, count}, first, last)) {
+        ++empty;
+        continue;
+      }
+      EXPECT_EQ(first, next) << i << "/" << count;
+      EXPECT_GE(last - first + 1, 10 / count);
+      EXPECT_LE(last - first + 1, 10 / count + 1);
+      next = last + 1;
+    }
+    EXPECT_EQ(next, 15u) << count << " shards";
+    EXPECT_EQ(empty, count > 10 ? count - 10 : 0);
+  }
+}
+
+TEST(RequireKnown, NamesTheNearestOrAll) {
+  const std::vector<std::string> known = {"run", "record", "sweep"};
+  EXPECT_NO_THROW(require_known("verb", "sweep", known));
+  EXPECT_THAT([&] { require_known("verb", "swep", known); }, ThrowsMessage<BadInput>("unknown verb 'swep'; did you mean 'sweep'?"));
+  EXPECT_THAT([&] { require_known("verb", "qqqqqq", known); }, ThrowsMessage<BadInput>("unknown verb 'qqqqqq'; known: run record sweep"));
+}
+
+TEST(SelectMethods, TakesEachOnceAndRefusesUnknownOnes) {
+  EXPECT_EQ(select_methods({}).size(), scenarios::methods().size());
+  const auto selected = select_methods({"raw", "rate/raw", "saave"});
+  ASSERT_EQ(selected.size(), 2u);
+  EXPECT_EQ(selected[0]->info.name, "raw");
+  EXPECT_EQ(selected[1]->info.name, "saave");
+  EXPECT_THAT([] { select_methods({"saavee"}); }, ThrowsMessage<BadInput>(HasSubstr("saave")));
+}
+
+TEST(WriteFile, LeavesTheWholeFileOrNone) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "tumble_write_file";
+  std::filesystem::remove_all(folder);
+  make_folder(folder);
+  write_file(folder / "a.txt", "content");
+  std::ifstream stream(folder / "a.txt");
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(stream), {}), "content");
+  // a path below a regular file cannot be written, not even by root
+  EXPECT_THAT([&] { write_file(folder / "a.txt" / "b", "x"); }, ThrowsMessage<BadInput>(HasSubstr("a.txt/b: cannot be written")));
+  EXPECT_THAT([&] { make_folder(folder / "a.txt" / "b"); }, ThrowsMessage<BadInput>(HasSubstr("a.txt/b")));
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1) << "no partial file stays";
+}
+
+}  // namespace
+}  // namespace tumble::tools

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/report/summary.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "tools/report/score_html.hpp"
+
+namespace tumble::tools {
+namespace {
+
+using scenarios::Kind;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr const char* kError = "rate_error_clipped_median_rad_s";
+
+/// A results database in the test's folder, empty.
+class SummaryTest : public testing::Test {
+ protected:
+  SummaryTest() : path_(std::filesystem::path(testing::TempDir()) / "tumble_summary_test.db") {
+    std::filesystem::remove(path_);
+    results_.emplace(path_, scenarios::Results::Mode::create_or_append);
+  }
+  void store(std::uint64_t seed, Kind kind, const std::string& method, const std::string& status,
+             std::vector<scenarios::Score> scores) {
+    scenarios::Outcome outcome;
+    outcome.scenario = "hill";
+    outcome.seed = seed;
+    outcome.kind = kind;
+    outcome.method = method;
+    outcome.status = status;
+    outcome.scores = std::move(scores);
+    results_->store(outcome);
+  }
+  const scenarios::Results& results() const { return *results_; }
+  scenarios::Results& results() { return *results_; }
+
+ private:
+  std::filesystem::path path_;
+  std::optional<scenarios::Results> results_;
+};
+
+TEST_F(SummaryTest, PairsDrawByDrawWithTheBaseline) {
+  // saave is better on 2 of the 3 draws that both have; draw 4 failed and pairs with nothing
+  store(2, Kind::rate, "saave", "ok", {{kError, 0.5}});
+  store(1, Kind::rate, "raw", "ok", {{kError, 2.0}});
+  store(2, Kind::rate, "raw", "ok", {{kError, 3.0}});
+  store(3, Kind::rate, "raw", "ok", {{kError, 4.0}});
+  store(4, Kind::rate, "raw", "ok", {{kError, 5.0}});
+  store(3, Kind::rate, "saave", "ok", {{kError, 9.0}});
+  store(1, Kind::rate, "saave", "ok", {{kError, 1.0}});
+  store(4, Kind::rate, "saave", "diverged", {{kError, 0.001}});
+
+  const Summary summary = summarize(results());
+  ASSERT_EQ(summary.sections.size(), 1u);
+  const Section& section = summary.sections.front();
+  EXPECT_EQ(section.baseline, "raw");
+  const MethodSummary* saave = section.find("saave");
+  ASSERT_NE(saave, nullptr);
+  EXPECT_EQ(saave->outcomes, 4);
+  EXPECT_EQ(saave->not_ok, 1);
+  const MetricSummary* metric = saave->find(kError);
+  ASSERT_NE(metric, nullptr);
+  EXPECT_THAT(metric->seeds, ElementsAre(1, 2, 3)) << "by rising seed, without the one that diverged";
+  EXPECT_THAT(metric->values, ElementsAre(1.0, 0.5, 9.0));
+  EXPECT_EQ(metric->centre.value, 1.0);
+  EXPECT_EQ(metric->wins.count, 2);
+  EXPECT_EQ(metric->wins.pairs, 3);
+  EXPECT_EQ(section.find("raw")->find(kError)->wins.pairs, 0) << "the baseline is not paired with itself";
+  EXPECT_EQ(summary.draws.at("hill"), 4);
+}
+
+TEST_F(SummaryTest, MoreIsBetterForOverlapAndNothingForCoverageOfAnInterval) {
+  for (const std::uint64_t seed : {1u, 2u}) {
+    store(seed, Kind::slam, "icp_raw", "ok", {{"map_overlap", 0.5}, {"rate_coverage_3sigma", 0.5}});
+    store(seed, Kind::slam, "icp", "ok", {{"map_overlap", 0.9}, {"rate_coverage_3sigma", 0.9}});
+  }
+  const Summary summary = summarize(results());
+  const MethodSummary* icp = summary.sections.front().find("icp");
+  EXPECT_EQ(summary.sections.front().baseline, "icp_raw");
+  EXPECT_EQ(icp->find("map_overlap")->wins.count, 2);
+  EXPECT_EQ(icp->find("rate_coverage_3sigma")->wins.pairs, 0);
+}
+
+TEST_F(SummaryTest, VerdictsGiveTheirShareAndNotTheirMedian) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) store(seed, Kind::slam, "icp", "ok", {{"map_failed", seed == 3 ? 1.0 : 0.0}});
+  const MetricSummary* metric = summarize(results()).sections.front().find("icp")->find("map_failed");
+  ASSERT_NE(metric, nullptr);
+  EXPECT_NEAR(metric->centre.value, 0.1, 1e-12);
+  // Clopper and Pearson, 1 of 10: [0.0025, 0.4450] (their table)
+  EXPECT_NEAR(metric->centre.low, 0.0025, 1e-4);
+  EXPECT_NEAR(metric->centre.high, 0.4450, 1e-4);
+}
+
+TEST_F(SummaryTest, RejectedDrawsAreCountedApart) {
+  store(1, Kind::rate, "raw", "ok", {{kError, 1.0}});
+  results().store(scenarios::RejectedDraw{"hill", 2, "left the world"});
+  const Summary summary = summarize(results());
+  EXPECT_EQ(summary.draws.at("hill"), 1);
+  EXPECT_EQ(summary.rejected.at("hill"), 1);
+}
+
+TEST_F(SummaryTest, OfAnEmptyDatabaseIsEmpty) {
+  const Summary summary = summarize(results());
+  EXPECT_TRUE(summary.sections.empty());
+  EXPECT_TRUE(summary.scenarios.empty());
+  EXPECT_TRUE(headlines(summary).empty());
+}
+
+TEST_F(SummaryTest, HeadlineIsTheChangeOfTheMedian) {
+  for (std::uint64_t seed = 1; seed <= 9; ++seed) {
+    store(seed, Kind::rate, "raw", "ok", {{kError, 2.0}});
+    store(seed, Kind::rate, "saave", "ok", {{kError, 0.5}});
+    store(seed, Kind::rate, "oracle", "ok", {{kError, 0.01}});
+  }
+  const std::vector<Headline> all = headlines(summarize(results()));
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_EQ(all[0].value, "−75.0 %") << "of saave: the oracle cannot be had";
+  EXPECT_THAT(all[0].detail, HasSubstr("better in 9 of 9"));
+}
+
+TEST_F(SummaryTest, TableEscapesWhatTheDatabaseHolds) {
+  store(1, Kind::rate, "<script>alert(1)</script>", "ok", {{"<b>metric</b>", 1.0}});
+  const Summary summary = summarize(results());
+  const std::string table = score_table_html(summary.sections.front());
+  EXPECT_THAT(table, HasSubstr("&lt;script&gt;"));
+  EXPECT_THAT(table, Not(HasSubstr("<script")));
+  EXPECT_THAT(table, Not(HasSubstr("<b>metric")));
+}
+
+TEST(MetricStyle, FollowsTheUnitInTheName) {
+  EXPECT_EQ(metric_style("rate_error_clipped_median_rad_s").unit, "rad/s");
+  EXPECT_EQ(metric_style("rotation_error_end_rad").unit, "°");
+  EXPECT_NEAR(metric_style("rotation_error_end_rad").factor, 57.29577951308232, 1e-12);
+  EXPECT_EQ(metric_style("sweep_jump_m_s").unit, "m/s");
+  EXPECT_EQ(metric_style("translation_error_end_m").unit, "m");
+  EXPECT_EQ(metric_style("position_end_error_share").unit, "%");
+  EXPECT_EQ(metric_style("map_overlap").factor, 100.0);
+  EXPECT_EQ(metric_style("estimate_cpu_s").unit, "s");
+  EXPECT_EQ(metric_style("estimate_peak_mib").unit, "MiB");
+  EXPECT_EQ(metric_style("unheard_of").unit, "");
+}
+
+TEST(StyledValue, HasThreeDigitsInTheUnitForPeople) {
+  EXPECT_EQ(styled_value("map_overlap", 0.9214, true), "92.1 %");
+  EXPECT_EQ(styled_value("rotation_error_end_rad", 0.1, true), "5.73 °");
+  EXPECT_EQ(styled_value("ate_m", 0.0, true), "0 m");
+  EXPECT_EQ(styled_value("ate_m", 1234.5, false), "1234");
+  EXPECT_EQ(styled_value("ate_m", std::nan(""), false), "–");
+  const double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(styled_interval("ate_m", {1.0, -infinity, infinity}), "[–]");
+  EXPECT_EQ(styled_interval("ate_m", {1.0, 0.5, 2.0}), "[0.500, 2.00]");
+}
+
+}  // namespace
+}  // namespace tumble::tools

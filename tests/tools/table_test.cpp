@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/tumble/table.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "tools/tumble/score_tables.hpp"
+
+namespace tumble::tools {
+namespace {
+
+TEST(Table, ColumnsAreAsWideAsTheirWidestCell) {
+  Table table("title", {"name", "n"});
+  table.add_row({"a", "1"});
+  table.add_row({"longer", "22"});
+  EXPECT_EQ(table.text(),
+            "title\n"
+            "name    n\n"
+            "------  --\n"
+            "a       1\n"
+            "longer  22\n");
+}
+
+TEST(Table, NumbersAreAlignedToTheRight) {
+  Table table("", {"name", "value"});
+  table.align_right_from(1);
+  table.add_row({"a", "1"});
+  table.add_row({"b", "1234567"});
+  EXPECT_EQ(table.text(),
+            "name    value\n"
+            "----  -------\n"
+            "a           1\n"
+            "b     1234567\n");
+}
+
+TEST(Table, CountsCharactersAndNotBytes) {
+  EXPECT_EQ(character_count("20–45°"), 6u);  // nine bytes
+  Table table("", {"x", "y"});
+  table.add_row({"–°", "1"});
+  table.add_row({"ab", "1"});
+  EXPECT_EQ(table.text(), "x   y\n--  -\n–°  1\nab  1\n");
+}
+
+TEST(Table, MissingCellsAreEmptyAndSurplusOnesRefused) {
+  Table table("", {"x", "y"});
+  table.add_row({"a"});
+  EXPECT_EQ(table.text(), "x  y\n-  -\na\n");
+  EXPECT_THROW(table.add_row({"1", "2", "3"}), std::logic_error);
+}
+
+TEST(NumberText, HasFourSignificantDigits) {
+  EXPECT_EQ(number_text(0.0), "0");
+  EXPECT_EQ(number_text(1.0 / 3.0), "0.3333");
+  EXPECT_EQ(number_text(-12345.6), "-1.235e+04");
+  EXPECT_EQ(number_text(std::numeric_limits<double>::quiet_NaN()), "-");
+  EXPECT_EQ(number_text(-std::numeric_limits<double>::infinity()), "-");
+}
+
+scenarios::Outcome outcome(scenarios::Kind kind, const std::string& method, const std::string& status,
+                           std::vector<scenarios::Score> scores) {
+  scenarios::Outcome out;
+  out.scenario = "hill";
+  out.seed = 7;
+  out.kind = kind;
+  out.method = method;
+  out.status = status;
+  out.scores = std::move(scores);
+  return out;
+}
+
+TEST(ScoreTables, HaveARowPerMetricAndAColumnPerMethod) {
+  const std::vector<scenarios::Outcome> outcomes = {
+      outcome(scenarios::Kind::rate, "raw", "ok", {{"error", 2.5}, {"cost", 0.1}}),
+      outcome(scenarios::Kind::rate, "saave", "diverged", {{"error", 0.5}}),
+      outcome(scenarios::Kind::slam, "icp", "ok", {{"overlap", 0.9}})};
+  const std::vector<Table> tables = score_tables("hill, seed 7", outcomes);
+  ASSERT_EQ(tables.size(), 2u);
+  EXPECT_EQ(tables[0].text(),
+            "hill, seed 7: rate\n"
+            "metric  raw     saave\n"
+            "------  ---  --------\n"
+            "status   ok  diverged\n"
+            "error   2.5       0.5\n"
+            "cost    0.1\n");
+  EXPECT_EQ(overall_status(outcomes), "diverged");
+}
+
+TEST(ScoreTables, RowsInJsonCarryWhatTheDatabaseDoes) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<scenarios::Outcome> outcomes = {outcome(scenarios::Kind::rate, "raw", "ok", {{"error", 2.5}, {"bad", nan}})};
+  const nlohmann::json rows = score_rows(outcomes);
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0].dump(),
+            R"({"kind":"rate","method":"raw","metric":"error","scenario":"hill","seed":7,"status":"ok","value":2.5})");
+  EXPECT_TRUE(rows[1]["value"].is_null()) << "JSON has no NaN: " << rows[1].dump();
+}
+
+}  // namespace
+}  // namespace tumble::tools

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+/// Text that goes into a page. Everything that comes from a file or a database passes through `escaped`.
+namespace tumble::tools::html {
+
+/// Replaces & < > " ' by their entities: safe in text and in quoted attributes.
+std::string escaped(const std::string& text);
+
+/// JSON that may stand inside a script element: "<" is written as an escape, so that no "</script>" can end it.
+std::string script_json(const std::string& json);
+
+/// A data: address that carries a PNG.
+std::string png_address(std::span<const std::uint8_t> png);
+
+/// Base64 (RFC 4648, with padding).
+std::string base64(std::span<const std::uint8_t> bytes);
+
+/// "<td class='c'>escaped</td>"
+std::string cell(const std::string& text, const std::string& css_class = "");
+
+}  // namespace tumble::tools::html

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/report/example.hpp"
+#include "tools/report/plots.hpp"
+#include "tools/report/summary.hpp"
+
+namespace tumble::tools {
+
+/// What a report page says; `page_html` adds nothing to it.
+struct PageContent {
+  std::string title;
+  std::vector<std::pair<std::string, std::string>> facts;  ///< suite, draws, versions, date
+  Summary summary;
+  std::vector<Figure> figures;                             ///< of all draws
+  std::vector<Example> examples;                           ///< single draws, with pictures
+  std::vector<std::string> warnings;                       ///< what is missing, and why
+};
+
+/// One self-contained page: styles, plots, pictures and the text of the Plotly bundle inside; it asks the network nothing.
+std::string page_html(const PageContent& content, const std::string& plotly_bundle);
+
+}  // namespace tumble::tools

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/report/score_html.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "scenarios/scoring/score.hpp"
+#include "tools/report/html.hpp"
+
+namespace tumble::tools {
+
+namespace {
+
+using scenarios::Kind;
+
+std::string plain(double value) {
+  if (!std::isfinite(value)) return "–";
+  // no exponents between a thousandth and a million: they are for people
+  if (value != 0.0 && (std::abs(value) < 1e-3 || std::abs(value) >= 1e6)) return fmt::format("{:.2e}", value);
+  const int digits = value == 0.0 ? 0 : std::max(0, 2 - static_cast<int>(std::floor(std::log10(std::abs(value)))));
+  return fmt::format("{:.{}f}", value, digits);
+}
+
+std::string doc_of(Kind kind, const std::string& metric) {
+  for (const scenarios::Metric& known : scenarios::metrics()) {
+    if (known.name == metric && known.kind == kind) return known.doc;
+  }
+  return "";
+}
+
+/// The method shown in a headline: the best median among those that can be had on a real robot and do something.
+const MethodSummary* best_method(const Section& section, const std::string& metric) {
+  const MethodSummary* best = nullptr;
+  const bool more = metric_sense(metric) == Sense::more;
+  for (const MethodSummary& method : section.methods) {
+    const MetricSummary* own = method.find(metric);
+    if (own == nullptr || method.method == "oracle" || method.method == section.baseline) continue;
+    const double value = own->centre.value;
+    if (best == nullptr || (more ? value > best->find(metric)->centre.value : value < best->find(metric)->centre.value)) {
+      best = &method;
+    }
+  }
+  return best;
+}
+
+std::string failures_text(const MethodSummary& method) {
+  return fmt::format("{} of {} [{}–{} %]", method.not_ok, method.outcomes, plain(100.0 * method.not_ok_share.low),
+                     plain(100.0 * method.not_ok_share.high));
+}
+
+std::string metric_cell(const std::string& name, const MetricSummary* metric, bool is_best) {
+  if (metric == nullptr) return html::cell("", "none");
+  std::string out = is_best ? "<td class=\"number best\">" : "<td class=\"number\">";
+  out += "<b>" + html::escaped(styled_value(name, metric->centre.value, false)) + "</b>";
+  out += "<small>" + html::escaped(styled_interval(name, metric->centre)) + "</small>";
+  if (metric->wins.pairs > 0) {
+    out += "<small class=\"wins\">" + html::escaped(fmt::format("better in {} of {}", metric->wins.count, metric->wins.pairs)) + "</small>";
+  }
+  return out + "</td>";
+}
+
+}  // namespace
+
+std::string styled_value(const std::string& metric, double si_value, bool with_unit) {
+  const MetricStyle style = metric_style(metric);
+  const std::string number = plain(si_value * style.factor);
+  return with_unit && !style.unit.empty() ? number + " " + style.unit : number;
+}
+
+std::string styled_interval(const std::string& metric, const scenarios::Interval& interval) {
+  if (!std::isfinite(interval.low) || !std::isfinite(interval.high)) return "[–]";
+  return "[" + styled_value(metric, interval.low, false) + ", " + styled_value(metric, interval.high, false) + "]";
+}
+
+std::vector<Headline> headlines(const Summary& summary) {
+  std::vector<Headline> out;
+  for (const Section& section : summary.sections) {
+    const std::string metric = headline_metrics(section.kind).front();
+    const MethodSummary* base = section.find(section.baseline);
+    const MetricSummary* from = base->find(metric);
+    if (section.kind == Kind::attitude || from == nullptr) continue;
+    Headline headline;
+    headline.place = section.scenario + " · " + to_string(section.kind);
+    const MethodSummary* best = best_method(section, metric);
+    if (best == nullptr) {
+      headline.value = styled_value(metric, from->centre.value, true);
+      headline.detail = fmt::format("{}: median of {} over {} draws", base->method, metric, from->values.size());
+    } else {
+      const MetricSummary& to = *best->find(metric);
+      const double change = from->centre.value == 0.0 ? NAN : 100.0 * (to.centre.value / from->centre.value - 1.0);
+      headline.value = fmt::format("{}{} %", change < 0.0 ? "−" : "+", plain(std::abs(change)));
+      headline.detail = fmt::format("{}: {} beside {} with {}; better in {} of {} draws ({})", best->method,
+                                    styled_value(metric, to.centre.value, true), styled_value(metric, from->centre.value, true),
+                                    base->method, to.wins.count, to.wins.pairs, metric);
+    }
+    out.push_back(std::move(headline));
+  }
+  return out;
+}
+
+std::string score_table_html(const Section& section) {
+  std::string out = "<div class=\"scroll\"><table><thead><tr><th>metric</th><th>unit</th>";
+  for (const MethodSummary& method : section.methods) {
+    out += "<th class=\"number\">" + html::escaped(method.method) + (method.method == section.baseline ? " <small>baseline</small>" : "") + "</th>";
+  }
+  out += "</tr></thead><tbody><tr><td>not ok</td><td></td>";
+  for (const MethodSummary& method : section.methods) {
+    out += html::cell(failures_text(method), method.not_ok > 0 ? "number bad" : "number");
+  }
+  out += "</tr>";
+  for (const std::string& name : section.metrics) {
+    const MethodSummary* best = metric_sense(name) == Sense::neither ? nullptr : best_method(section, name);
+    out += "<tr><td title=\"" + html::escaped(doc_of(section.kind, name)) + "\"><code>" + html::escaped(name) + "</code></td>" +
+           html::cell(metric_style(name).unit, "unit");
+    for (const MethodSummary& method : section.methods) out += metric_cell(name, method.find(name), &method == best);
+    out += "</tr>";
+  }
+  return out + "</tbody></table></div>";
+}
+
+}  // namespace tumble::tools

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/report/summary.hpp"
+
+namespace tumble::tools {
+
+/// "0.42 rad/s": a metric's value in the unit of its style, three significant digits.
+std::string styled_value(const std::string& metric, double si_value, bool with_unit);
+
+/// "0.42 [0.31, 0.60]"; "[-]" for an interval that too few draws leave open.
+std::string styled_interval(const std::string& metric, const scenarios::Interval& interval);
+
+/// One headline of a report: what the best method that can be had reaches beside the baseline.
+struct Headline {
+  std::string place;   ///< "hill, rate"
+  std::string value;   ///< "-83.4 %" or the value itself when there is nothing to compare with
+  std::string detail;  ///< one sentence with both values and the paired count
+};
+std::vector<Headline> headlines(const Summary& summary);
+
+/// The table of one section: a row per metric, a column per method with median, interval and paired wins; failures first.
+std::string score_table_html(const Section& section);
+
+}  // namespace tumble::tools

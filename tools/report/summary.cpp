@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/report/summary.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <tuple>
+
+#include "scenarios/scoring/score.hpp"
+
+namespace tumble::tools {
+
+namespace {
+
+using scenarios::Kind;
+using scenarios::Outcome;
+
+bool contains(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
+
+/// Position in a registry; unknown names stand behind the known ones.
+std::size_t method_rank(Kind kind, const std::string& name) {
+  const auto all = scenarios::methods();
+  const auto found = std::find_if(all.begin(), all.end(),
+                                  [&](const scenarios::Method& m) { return m.info.kind == kind && m.info.name == name; });
+  return static_cast<std::size_t>(found - all.begin());
+}
+
+std::size_t metric_rank(const std::string& name) {
+  const auto all = scenarios::metrics();
+  return static_cast<std::size_t>(
+      std::find_if(all.begin(), all.end(), [&](const scenarios::Metric& m) { return m.name == name; }) - all.begin());
+}
+
+/// `raw` or `..._raw` where there is one: the clipped gyro as it is; else the first method of the registry.
+std::string choose_baseline(const std::vector<MethodSummary>& methods) {
+  for (const MethodSummary& method : methods) {
+    if (method.method == "raw" || method.method.ends_with("_raw")) return method.method;
+  }
+  for (const MethodSummary& method : methods) {
+    if (method.method != "oracle") return method.method;
+  }
+  return methods.front().method;
+}
+
+/// Compares draw by draw; both lists of seeds rise.
+Wins paired_wins(const MetricSummary& own, const MetricSummary& base, Sense sense) {
+  Wins wins;
+  if (sense == Sense::neither) return wins;
+  for (std::size_t i = 0, j = 0; i < own.seeds.size() && j < base.seeds.size();) {
+    if (own.seeds[i] < base.seeds[j]) {
+      ++i;
+    } else if (base.seeds[j] < own.seeds[i]) {
+      ++j;
+    } else {
+      const bool better = sense == Sense::less ? own.values[i] < base.values[j] : own.values[i] > base.values[j];
+      wins.count += better ? 1 : 0;
+      ++wins.pairs, ++i, ++j;
+    }
+  }
+  return wins;
+}
+
+void finish(const std::string& name, MetricSummary& metric) {
+  if (is_verdict(name)) {
+    const auto count = std::count_if(metric.values.begin(), metric.values.end(), [](double v) { return v != 0.0; });
+    metric.centre = scenarios::share_interval(count, static_cast<std::int64_t>(metric.values.size()));
+  } else {
+    metric.centre = scenarios::median_interval(metric.values);
+  }
+  metric.quantile_95 = scenarios::quantile(metric.values, 0.95);
+}
+
+void finish(Section& section) {
+  std::stable_sort(section.methods.begin(), section.methods.end(), [&](const MethodSummary& a, const MethodSummary& b) {
+    return method_rank(section.kind, a.method) < method_rank(section.kind, b.method);
+  });
+  std::set<std::string> names;
+  for (MethodSummary& method : section.methods) {
+    method.not_ok_share = scenarios::share_interval(method.not_ok, method.outcomes);
+    for (auto& [name, metric] : method.metrics) {
+      finish(name, metric);
+      names.insert(name);
+    }
+  }
+  section.metrics.assign(names.begin(), names.end());
+  std::stable_sort(section.metrics.begin(), section.metrics.end(),
+                   [](const std::string& a, const std::string& b) { return metric_rank(a) < metric_rank(b); });
+  section.baseline = choose_baseline(section.methods);
+  const MethodSummary& base = *section.find(section.baseline);
+  for (MethodSummary& method : section.methods) {
+    if (method.method == section.baseline) continue;
+    for (auto& [name, metric] : method.metrics) {
+      const MetricSummary* other = base.find(name);
+      if (other != nullptr) metric.wins = paired_wins(metric, *other, metric_sense(name));
+    }
+  }
+}
+
+}  // namespace
+
+MetricStyle metric_style(const std::string& metric) {
+  for (const char* end : {"_share", "_overlap", "_coverage", "_precision", "_recall", "_3sigma"}) {
+    if (metric.ends_with(end)) return {"%", 100.0};
+  }
+  if (is_verdict(metric)) return {"%", 100.0};
+  // the longer endings first: "_m_s" also ends in "_s"
+  const std::pair<const char*, MetricStyle> endings[] = {
+      {"_rad_s", {"rad/s", 1.0}}, {"_m_s", {"m/s", 1.0}}, {"_rad", {"°", 180.0 / std::numbers::pi}},
+      {"_mib", {"MiB", 1.0}}, {"_s", {"s", 1.0}}, {"_m", {"m", 1.0}}};
+  for (const auto& [end, style] : endings) {
+    if (metric.ends_with(end)) return style;
+  }
+  return {"", 1.0};
+}
+
+Sense metric_sense(const std::string& metric) {
+  if (contains(metric, "coverage_3sigma")) return Sense::neither;
+  for (const char* part : {"overlap", "coverage", "precision", "recall"}) {
+    if (contains(metric, part)) return Sense::more;
+  }
+  return Sense::less;
+}
+
+bool is_verdict(const std::string& metric) { return metric == "map_failed"; }
+
+std::vector<std::string> headline_metrics(Kind kind) {
+  switch (kind) {
+    case Kind::rate: return {"rate_error_clipped_median_rad_s", "rate_error_clipped_p99_rad_s"};
+    case Kind::attitude: return {"inclination_rmse_rad"};
+    case Kind::position: return {"position_end_error_share"};
+    case Kind::slam: return {"translation_error_end_m", "rotation_error_end_rad", "map_overlap"};
+  }
+  return {};
+}
+
+const MetricSummary* MethodSummary::find(const std::string& metric) const {
+  const auto found = metrics.find(metric);
+  return found == metrics.end() ? nullptr : &found->second;
+}
+
+const MethodSummary* Section::find(const std::string& method) const {
+  const auto found = std::find_if(methods.begin(), methods.end(), [&](const MethodSummary& m) { return m.method == method; });
+  return found == methods.end() ? nullptr : &*found;
+}
+
+Summary summarize(const scenarios::Results& results) {
+  std::map<std::pair<std::string, Kind>, Section> sections;
+  std::map<std::string, std::set<std::uint64_t>> seeds;
+  const auto method_of = [&](const std::string& scenario, Kind kind, const std::string& name) -> MethodSummary& {
+    Section& section = sections[{scenario, kind}];
+    section.scenario = scenario;
+    section.kind = kind;
+    for (MethodSummary& method : section.methods) {
+      if (method.method == name) return method;
+    }
+    section.methods.push_back({});
+    section.methods.back().method = name;
+    return section.methods.back();
+  };
+  for (const Outcome& outcome : results.outcomes()) {
+    MethodSummary& method = method_of(outcome.scenario, outcome.kind, outcome.method);
+    ++method.outcomes;
+    if (outcome.status != "ok") ++method.not_ok;
+    seeds[outcome.scenario].insert(outcome.seed);
+  }
+  // values by rising seed, whatever the order in the database
+  std::vector<scenarios::ScoreRow> rows = results.scores();
+  std::stable_sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.seed < b.seed; });
+  for (const scenarios::ScoreRow& row : rows) {
+    if (row.status != "ok" || !std::isfinite(row.value)) continue;
+    for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
+      if (row.kind != to_string(kind)) continue;
+      MetricSummary& metric = method_of(row.scenario, kind, row.method).metrics[row.metric];
+      metric.seeds.push_back(row.seed);
+      metric.values.push_back(row.value);
+    }
+  }
+  Summary summary;
+  for (auto& [key, section] : sections) {
+    finish(section);
+    summary.sections.push_back(std::move(section));
+  }
+  for (const scenarios::RejectedDraw& draw : results.rejected()) {
+    ++summary.rejected[draw.scenario];
+    seeds[draw.scenario];
+  }
+  for (const auto& [scenario, own] : seeds) {
+    summary.scenarios.push_back(scenario);
+    summary.draws[scenario] = static_cast<std::int64_t>(own.size());
+  }
+  return summary;
+}
+
+}  // namespace tumble::tools

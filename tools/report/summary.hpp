@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "scenarios/sweep/outcome.hpp"
+#include "scenarios/sweep/results.hpp"
+#include "scenarios/sweep/statistics.hpp"
+
+namespace tumble::tools {
+
+/// How to show a metric's values: SI values times `factor` in `unit`. Degrees and percent are for people and appear only
+/// where results are shown.
+struct MetricStyle {
+  std::string unit;
+  double factor = 1.0;
+};
+/// From the unit that ends the metric's name: "map_overlap" in %, "rotation_error_end_rad" in degrees, rates in rad/s.
+MetricStyle metric_style(const std::string& metric);
+
+/// Whether less is better (errors, costs), more is (overlap), or neither (coverage of an interval, which has a target).
+enum class Sense { less, more, neither };
+Sense metric_sense(const std::string& metric);
+
+/// Whether a metric is 0 or 1 on each draw ("map_failed"): its share says something, its median does not.
+bool is_verdict(const std::string& metric);
+
+/// The metrics that say most about a kind, best first.
+std::vector<std::string> headline_metrics(scenarios::Kind kind);
+
+/// Draws on which one method was better than the baseline, of those that both have a value for.
+struct Wins {
+  std::int64_t count = 0, pairs = 0;
+};
+
+/// One metric of one method over all draws of a scenario. Only outcomes with status `ok` give values: what failed is
+/// counted, not averaged in.
+struct MetricSummary {
+  scenarios::Interval centre{};      ///< median, or for a verdict its share; with the 95 % interval
+  double quantile_95 = 0.0;
+  std::vector<std::uint64_t> seeds;  ///< rising
+  std::vector<double> values;        ///< parallel to `seeds`
+  Wins wins;                         ///< no pairs for the baseline itself
+};
+
+struct MethodSummary {
+  std::string method;
+  std::int64_t outcomes = 0, not_ok = 0;
+  scenarios::Interval not_ok_share{};  ///< Clopper and Pearson, 95 %
+  std::map<std::string, MetricSummary> metrics;
+  const MetricSummary* find(const std::string& metric) const;
+};
+
+/// All methods of one kind on one scenario.
+struct Section {
+  std::string scenario;
+  scenarios::Kind kind = scenarios::Kind::rate;
+  std::string baseline;               ///< what the others are paired with: the method that does nothing about the problem
+  std::vector<MethodSummary> methods; ///< in the order of the registry
+  std::vector<std::string> metrics;   ///< in the order of the registry, then by name
+  const MethodSummary* find(const std::string& method) const;
+};
+
+struct Summary {
+  std::vector<Section> sections;  ///< by scenario, then by kind
+  std::vector<std::string> scenarios;
+  std::map<std::string, std::int64_t> draws, rejected;  ///< per scenario
+};
+
+/// O(number of scores * log).
+Summary summarize(const scenarios::Results& results);
+
+}  // namespace tumble::tools

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/tumble/arguments.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <cstring>
+
+#include "scenarios/errors.hpp"
+#include "sim/parameters.hpp"
+
+namespace tumble::tools {
+
+namespace {
+
+using scenarios::BadInput;
+
+bool parse_whole(const std::string& text, std::uint64_t& value) {
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  return error == std::errc() && stop == end;
+}
+
+}  // namespace
+
+std::uint64_t parse_seed(const std::string& text) {
+  std::uint64_t seed = 0;
+  if (!parse_whole(text, seed)) throw BadInput("--seed is '" + text + "', must be a whole number from 0 to 2^64 - 1");
+  return seed;
+}
+
+std::pair<std::uint64_t, std::uint64_t> parse_seeds(const std::string& text) {
+  const std::size_t dots = text.find("..");
+  std::uint64_t first = 0, last = 0;
+  const bool read = dots == std::string::npos
+                        ? parse_whole(text, first) && parse_whole(text, last)
+                        : parse_whole(text.substr(0, dots), first) && parse_whole(text.substr(dots + 2), last);
+  if (!read) throw BadInput("--seeds is '" + text + "', must be A..B with whole numbers, as in 1..40");
+  if (last < first) throw BadInput("--seeds is '" + text + "': the first is greater than the last");
+  return {first, last};
+}
+
+Shard parse_shard(const std::string& text) {
+  Shard shard;
+  const std::size_t bar = text.find('/');
+  const bool read = bar != std::string::npos && parse_whole(text.substr(0, bar), shard.index) &&
+                    parse_whole(text.substr(bar + 1), shard.count);
+  if (!read || shard.index < 1 || shard.index > shard.count || shard.count > 1000000) {
+    throw BadInput("--shard is '" + text + "', must be i/n with 1 <= i <= n <= 1000000, as in 2/8");
+  }
+  return shard;
+}
+
+bool shard_seeds(const Shard& shard, std::uint64_t& first, std::uint64_t& last) {
+  const std::uint64_t total = last - first + 1;
+  const std::uint64_t length = total / shard.count, longer = total % shard.count;
+  const std::uint64_t before = shard.index - 1;
+  const std::uint64_t begin = first + before * length + std::min(before, longer);
+  const std::uint64_t own = length + (before < longer ? 1 : 0);
+  if (own == 0) return false;
+  first = begin;
+  last = begin + own - 1;
+  return true;
+}
+
+void require_known(const std::string& what, const std::string& name, std::span<const std::string> known) {
+  if (std::find(known.begin(), known.end(), name) != known.end()) return;
+  const std::string near = sim::nearest_name(name, known);
+  std::string line = "unknown " + what + " '" + name + "'";
+  if (!near.empty()) {
+    line += "; did you mean '" + near + "'?";
+  } else {
+    line += "; known:";
+    for (const std::string& each : known) line += " " + each;
+  }
+  throw BadInput(line);
+}
+
+std::vector<const scenarios::Method*> select_methods(const std::vector<std::string>& names) {
+  std::vector<const scenarios::Method*> selected;
+  if (names.empty()) {
+    for (const scenarios::Method& method : scenarios::methods()) selected.push_back(&method);
+    return selected;
+  }
+  for (const std::string& name : names) {
+    for (const scenarios::Method* method : scenarios::find_methods(name)) {
+      if (std::find(selected.begin(), selected.end(), method) == selected.end()) selected.push_back(method);
+    }
+  }
+  return selected;
+}
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw BadInput(folder.string() + ": cannot make this folder: " + error.message());
+  if (!std::filesystem::is_directory(folder, error)) throw BadInput(folder.string() + ": is not a folder");
+}
+
+void write_file(const std::filesystem::path& path, const std::string& content) {
+  const std::filesystem::path part = path.string() + ".part";
+  const auto fail = [&](int reason) {
+    std::error_code ignored;
+    std::filesystem::remove(part, ignored);
+    throw BadInput(path.string() + ": cannot be written: " + std::strerror(reason));
+  };
+  std::FILE* file = std::fopen(part.c_str(), "wb");
+  if (file == nullptr) fail(errno);
+  const bool whole = std::fwrite(content.data(), 1, content.size(), file) == content.size() && std::fflush(file) == 0;
+  const int reason = errno;
+  if (std::fclose(file) != 0 || !whole) fail(whole ? errno : reason);
+  if (std::rename(part.c_str(), path.c_str()) != 0) fail(errno);
+}
+
+}  // namespace tumble::tools

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scenarios/methods/method.hpp"
+
+/// Reading of command-line words, and files of the program's own. All throw scenarios::BadInput with one clear line.
+namespace tumble::tools {
+
+/// A seed: a whole decimal number below 2^64.
+std::uint64_t parse_seed(const std::string& text);
+/// "7" or "1..40", first to last, both included.
+std::pair<std::uint64_t, std::uint64_t> parse_seeds(const std::string& text);
+
+/// A share of work, "2/8": the second of eight.
+struct Shard {
+  std::uint64_t index = 1, count = 1;
+};
+Shard parse_shard(const std::string& text);
+/// The seeds of one shard: the range is cut into `count` contiguous parts whose lengths differ by one at most.
+/// Returns false when the part is empty.
+bool shard_seeds(const Shard& shard, std::uint64_t& first, std::uint64_t& last);
+
+/// Refuses a name that is not known, naming the nearest: "unknown verb 'rnu'; did you mean 'run'?".
+void require_known(const std::string& what, const std::string& name, std::span<const std::string> known);
+
+/// The methods named, each once, in the order given; all of them when none is named.
+std::vector<const scenarios::Method*> select_methods(const std::vector<std::string>& names);
+
+/// Makes a folder and its parents.
+void make_folder(const std::filesystem::path& folder);
+/// Writes a file under a temporary name and renames it; no partial file stays.
+void write_file(const std::filesystem::path& path, const std::string& content);
+
+}  // namespace tumble::tools

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/recordings/recording_file.hpp"
+#include "scenarios/sweep/outcome.hpp"
+#include "tools/tumble/arguments.hpp"
+#include "tools/tumble/verbs.hpp"
+
+namespace tumble::tools {
+
+namespace {
+
+using scenarios::BadInput;
+
+struct Options {
+  std::filesystem::path recording;
+  std::string method;
+  std::filesystem::path folder;
+};
+
+std::string full_name(const scenarios::Method& method) {
+  return std::string(to_string(method.info.kind)) + "/" + method.info.name;
+}
+
+/// The one method of that name which can run on this recording without the truth.
+const scenarios::Method& choose(const std::string& name, const std::string& robot) {
+  std::vector<const scenarios::Method*> fitting;
+  std::string refused;
+  for (const scenarios::Method* method : scenarios::find_methods(name)) {
+    if (method->info.needs_truth) {
+      refused = "method '" + full_name(*method) + "' needs the truth, which this verb never opens; use 'tumble run'";
+    } else if (!robot.empty() && !method->info.for_robot(robot)) {
+      refused = "method '" + full_name(*method) + "' does not apply to the robot '" + robot + "'";
+    } else {
+      fitting.push_back(method);
+    }
+  }
+  if (fitting.empty()) throw BadInput(refused);
+  if (fitting.size() > 1) {
+    std::string line = "--method " + name + " names several methods; say which:";
+    for (const scenarios::Method* method : fitting) line += " " + full_name(*method);
+    throw BadInput(line);
+  }
+  return *fitting.front();
+}
+
+/// What the estimate holds, and its health.
+Table summary(const scenarios::Estimate& estimate) {
+  Table table("", {"estimate", "value"});
+  table.align_right_from(1);
+  table.add_row({"status", estimate.status.message()});
+  const auto count = [&](const char* what, std::size_t size) {
+    if (size > 0) table.add_row({what, std::to_string(size)});
+  };
+  count("rates", estimate.rates.size());
+  count("attitudes", estimate.attitudes.size());
+  count("poses", estimate.poses.size());
+  count("sweeps", estimate.sweeps.size());
+  count("map points", estimate.map.size());
+  for (const auto& [name, value] : estimate.health) table.add_row({name, number_text(value)});
+  return table;
+}
+
+int run_estimate(const Session& session, const Options& options) {
+  const sim::Sensors sensors = scenarios::read_sensors(options.recording);
+  const scenarios::Method& method = choose(options.method, sensors.robot);
+  make_folder(options.folder);
+
+  const sim::Values parameters = sim::resolve("method." + full_name(method), {}, method.info.parameters);
+  const scenarios::Estimate estimate = method.run(sensors, parameters, {});
+  scenarios::write_estimate(options.folder, method.info.name, method.info.kind, estimate);
+
+  const nlohmann::json document = {{"method", method.info.name}, {"kind", to_string(method.info.kind)},
+                                   {"status", estimate.status.ok() ? "ok" : "failed"},
+                                   {"message", estimate.status.message()}, {"digest", scenarios::digest(estimate)},
+                                   {"health", estimate.health}};
+  session.print({summary(estimate)}, document);
+  if (estimate.status.ok()) return kDone;
+  // the estimate is left for inspection, and its trouble lies in the recording
+  throw BadInput(options.recording.string() + ": " + full_name(method) + " failed: " + estimate.status.message());
+}
+
+}  // namespace
+
+Action declare_estimate(CLI::App& app, const Session& session) {
+  auto options = std::make_shared<Options>();
+  app.add_option("RECORDING", options->recording, "a recording, FILE.h5")->required();
+  app.add_option("--method", options->method, "a method, as 'saave' or 'rate/saave'")->required();
+  app.add_option("-o,--output", options->folder, "folder for the estimate")->required();
+  return [&session, options] { return run_estimate(session, *options); };
+}
+
+}  // namespace tumble::tools

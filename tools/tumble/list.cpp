@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "scenarios/draw/data_sheet.hpp"
+#include "scenarios/draw/scenario.hpp"
+#include "scenarios/methods/method.hpp"
+#include "scenarios/sweep/sweep.hpp"
+#include "sim/situation.hpp"
+#include "tools/tumble/arguments.hpp"
+#include "tools/tumble/verbs.hpp"
+
+namespace tumble::tools {
+
+namespace {
+
+using nlohmann::json;
+
+/// What a listing gives: tables for people and the same as JSON.
+struct Listing {
+  std::vector<Table> tables;
+  json document = json::array();
+};
+
+json parameter_json(const sim::Parameter& p) {
+  return {{"name", p.name}, {"unit", p.unit}, {"default", p.default_value}, {"low", p.low}, {"high", p.high}, {"doc", p.doc}};
+}
+
+std::string bound_text(const sim::Parameter& p) { return "[" + number_text(p.low) + ", " + number_text(p.high) + "]"; }
+
+/// "uniform 0.35 .. 0.78", as the scenario file means it.
+std::string distribution_text(const scenarios::Distribution& d) {
+  using Shape = scenarios::Distribution::Shape;
+  const auto number = [&](std::size_t i) { return i < d.numbers.size() ? number_text(d.numbers[i]) : std::string("?"); };
+  const std::string bounds = d.numbers.size() > 3 ? " within [" + number(2) + ", " + number(3) + "]" : "";
+  switch (d.shape) {
+    case Shape::constant: return number(0);
+    case Shape::uniform: return "uniform " + number(0) + " .. " + number(1);
+    case Shape::log_uniform: return "log-uniform " + number(0) + " .. " + number(1);
+    case Shape::normal: return "normal " + number(0) + " +- " + number(1) + bounds;
+    case Shape::choice: break;
+  }
+  std::string text = "one of";
+  for (std::size_t i = 0; i < d.numbers.size(); ++i) text += (i ? ", " : " ") + number(i);
+  return text;
+}
+
+/// The registry entry called `type`; its parameters say unit, default and bound of a scenario's numbers.
+std::span<const sim::Parameter> parameters_of(std::span<const sim::ComponentType> registry, const std::string& type) {
+  for (const sim::ComponentType& entry : registry) {
+    if (entry.name == type) return entry.parameters;
+  }
+  return {};
+}
+
+/// One table row and one JSON object per number of a part; what the scenario leaves out stands at its default.
+void add_part(Table& table, json& rows, const std::string& place, std::span<const sim::Parameter> known,
+              const std::map<std::string, scenarios::Distribution>& given) {
+  for (const sim::Parameter& p : known) {
+    const auto found = given.find(std::string(p.name));
+    const std::string value = found == given.end() ? "" : distribution_text(found->second);
+    table.add_row({place + "." + std::string(p.name), value, number_text(p.default_value), bound_text(p),
+                   std::string(p.unit), std::string(p.doc)});
+    json row = parameter_json(p);
+    row["place"] = place;
+    row["value"] = value.empty() ? json(p.default_value) : json(value);
+    rows.push_back(std::move(row));
+  }
+}
+
+/// Numbers of one scenario.
+void add_scenario_numbers(const scenarios::Scenario& s, Listing& out, json& entry) {
+  Table table(s.name + ": numbers", {"number", "in this scenario", "default", "bound", "unit", "meaning"});
+  json rows = json::array();
+  add_part(table, rows, "world", parameters_of(sim::world_types(), s.world.type), s.world.numbers);
+  add_part(table, rows, "robot", parameters_of(sim::robot_types(), s.robot.type), s.robot.numbers);
+  add_part(table, rows, "motion", parameters_of(sim::motion_types(), s.motion.type), s.motion.numbers);
+  for (const auto& sensor : s.sensors) {
+    add_part(table, rows, sensor.name, parameters_of(sim::sensor_types(), sensor.kind), sensor.numbers);
+  }
+  out.tables.push_back(std::move(table));
+  entry["numbers"] = std::move(rows);
+}
+
+Listing list_scenarios(const scenarios::DataRoot& data, const std::string& only) {
+  Listing out;
+  const std::vector<std::string> names = scenarios::scenario_names(data);
+  if (!only.empty()) require_known("scenario", only, names);
+  Table table("", {"scenario", "robot", "world", "motion", "sensors", "meaning"});
+  json entries = json::array();
+  for (const std::string& name : names) {
+    if (!only.empty() && name != only) continue;
+    const scenarios::Scenario s = scenarios::load_scenario(data, name);
+    std::string sensors;
+    for (const auto& sensor : s.sensors) sensors += (sensors.empty() ? "" : " ") + sensor.device;
+    table.add_row({name, s.robot.type, s.world.type, s.motion.type, sensors, s.doc});
+    json entry = {{"name", name}, {"doc", s.doc}, {"robot", s.robot.type}, {"world", s.world.type},
+                  {"motion", s.motion.type}, {"duration_s", distribution_text(s.duration_s)}};
+    for (const auto& sensor : s.sensors) {
+      entry["sensors"].push_back({{"name", sensor.name}, {"kind", sensor.kind}, {"device", sensor.device}});
+    }
+    if (!only.empty()) {
+      add_scenario_numbers(s, out, entry);
+    }
+    out.document.push_back(std::move(entry));
+  }
+  out.tables.insert(out.tables.begin(), std::move(table));
+  return out;
+}
+
+Listing list_methods(const std::string& only) {
+  Listing out;
+  const std::vector<const scenarios::Method*> selected =
+      select_methods(only.empty() ? std::vector<std::string>{} : std::vector<std::string>{only});
+  Table table("", {"method", "robots", "needs truth", "source", "meaning"});
+  Table parameters("parameters", {"method", "parameter", "default", "bound", "unit", "meaning"});
+  for (const scenarios::Method* method : selected) {
+    const scenarios::MethodInfo& info = method->info;
+    const std::string name = std::string(to_string(info.kind)) + "/" + info.name;
+    std::string robots;
+    for (const std::string& robot : info.robots) robots += (robots.empty() ? "" : " ") + robot;
+    table.add_row({name, robots.empty() ? "all" : robots, info.needs_truth ? "yes" : "no", info.source, info.doc});
+    json entry = {{"name", info.name}, {"kind", to_string(info.kind)}, {"doc", info.doc}, {"source", info.source},
+                  {"needs_truth", info.needs_truth}, {"robots", info.robots}, {"parameters", json::array()}};
+    for (const sim::Parameter& p : info.parameters) {
+      parameters.add_row({name, std::string(p.name), number_text(p.default_value), bound_text(p), std::string(p.unit),
+                          std::string(p.doc)});
+      entry["parameters"].push_back(parameter_json(p));
+    }
+    out.document.push_back(std::move(entry));
+  }
+  out.tables.push_back(std::move(table));
+  if (!parameters.empty()) out.tables.push_back(std::move(parameters));
+  return out;
+}
+
+Listing list_sensors(const scenarios::DataRoot& data, const std::string& only) {
+  Listing out;
+  const std::vector<std::string> names = scenarios::device_names(data);
+  if (!only.empty()) require_known("sensor", only, names);
+  Table table("", {"device", "kind", "title"});
+  std::vector<Table> sheets;
+  for (const std::string& name : names) {
+    if (!only.empty() && name != only) continue;
+    const scenarios::DataSheet sheet = scenarios::load_data_sheet(data, name);
+    table.add_row({name, sheet.sensor_kind, sheet.title});
+    const auto known = parameters_of(sim::sensor_types(), sheet.sensor_kind);
+    Table numbers(name + ": data sheet", {"number", "value", "unit", "bound", "source"});
+    json entry = {{"device", name}, {"kind", sheet.sensor_kind}, {"title", sheet.title}, {"numbers", json::array()}};
+    for (const auto& number : sheet.entries) {
+      const auto p = std::find_if(known.begin(), known.end(), [&](const sim::Parameter& each) { return each.name == number.name; });
+      numbers.add_row({number.name, number_text(number.value), number.unit, p == known.end() ? "" : bound_text(*p), number.source});
+      json row = {{"name", number.name}, {"value", number.value}, {"unit", number.unit}, {"source", number.source}};
+      if (p != known.end()) row.update({{"default", p->default_value}, {"low", p->low}, {"high", p->high}, {"doc", p->doc}});
+      entry["numbers"].push_back(std::move(row));
+    }
+    sheets.push_back(std::move(numbers));
+    out.document.push_back(std::move(entry));
+  }
+  out.tables.push_back(std::move(table));
+  for (Table& sheet : sheets) out.tables.push_back(std::move(sheet));
+  return out;
+}
+
+Listing list_suites(const scenarios::DataRoot& data, const std::string& only) {
+  Listing out;
+  const std::vector<std::string> names = scenarios::suite_names(data);
+  if (!only.empty()) require_known("suite", only, names);
+  Table table("", {"suite", "scenarios", "seeds", "methods", "time-out of a method", "meaning"});
+  const auto joined = [](const std::vector<std::string>& words) {
+    std::string text;
+    for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
+    return text;
+  };
+  for (const std::string& name : names) {
+    if (!only.empty() && name != only) continue;
+    const scenarios::Suite suite = scenarios::load_suite(data, name);
+    table.add_row({name, joined(suite.scenarios), std::to_string(suite.first_seed) + ".." + std::to_string(suite.last_seed),
+                   joined(suite.methods), number_text(suite.timeout_s) + " s", suite.doc});
+    out.document.push_back({{"name", name}, {"doc", suite.doc}, {"scenarios", suite.scenarios},
+                            {"first_seed", suite.first_seed}, {"last_seed", suite.last_seed},
+                            {"methods", suite.methods}, {"timeout_s", suite.timeout_s}});
+  }
+  out.tables.push_back(std::move(table));
+  return out;
+}
+
+Listing listing(const Session& session, const std::string& what, const std::string& only) {
+  const std::vector<std::string> known = {"scenarios", "methods", "sensors", "suites"};
+  require_known("list", what, known);
+  if (what == "scenarios") return list_scenarios(session.data(), only);
+  if (what == "methods") return list_methods(only);
+  if (what == "sensors") return list_sensors(session.data(), only);
+  return list_suites(session.data(), only);
+}
+
+}  // namespace
+
+Action declare_list(CLI::App& options, const Session& session) {
+  auto what = std::make_shared<std::string>();
+  auto only = std::make_shared<std::string>();
+  options.add_option("WHAT", *what, "scenarios, methods, sensors or suites")->required();
+  options.add_option("NAME", *only, "one of them, with all of its numbers");
+  return [&session, what, only] {
+    const Listing out = listing(session, *what, *only);
+    session.print(out.tables, out.document);
+    return static_cast<int>(kDone);
+  };
+}
+
+}  // namespace tumble::tools

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/tumble/program.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scenarios/errors.hpp"
+#include "sim/parameters.hpp"
+#include "sim/simulate.hpp"
+#include "tools/tumble/arguments.hpp"
+#include "tools/tumble/verbs.hpp"
+
+namespace tumble::tools {
+
+namespace {
+
+using scenarios::BadInput;
+
+/// An unknown verb is met before CLI11 would call it an argument too many.
+void check_verb(int argc, const char* const* argv) {
+  std::vector<std::string> known;
+  for (const Verb& verb : verbs()) known.emplace_back(verb.name);
+  for (int i = 1; i < argc; ++i) {
+    if (argv[i][0] == '-') continue;
+    return require_known("verb", argv[i], known);
+  }
+}
+
+/// The verb being parsed, or the program itself.
+const CLI::App& parsed(const CLI::App& app) {
+  const auto subcommands = app.get_subcommands();
+  return subcommands.empty() ? app : *subcommands.front();
+}
+
+/// What the user can do about a command line that CLI11 refused, on one line.
+std::string usage_line(const CLI::App& app, const CLI::ParseError& error) {
+  const CLI::App& verb = parsed(app);
+  const std::string command = &verb == &app ? "tumble" : "tumble " + verb.get_name();
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !app.remaining(true).empty()) {
+    const std::vector<std::string> extras = app.remaining(true);
+    const auto option = std::find_if(extras.begin(), extras.end(), [](const std::string& e) { return e.rfind('-', 0) == 0; });
+    if (option == extras.end()) return command + ": '" + extras.front() + "' is one argument too many";
+    std::vector<std::string> known;
+    for (const CLI::Option* each : verb.get_options()) {
+      for (const std::string& name : each->get_lnames()) known.push_back("--" + name);
+    }
+    const std::string near = sim::nearest_name(*option, known);
+    return command + ": unknown option '" + *option + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?");
+  }
+  std::string reason = error.what();
+  std::replace(reason.begin(), reason.end(), '\n', ' ');
+  if (&verb == &app) reason = "a verb is missing";
+  return command + ": " + reason + "; see '" + command + " --help'";
+}
+
+int say(const char* prefix, const std::string& line, int status) {
+  std::fprintf(stderr, "tumble: %s%s\n", prefix, line.c_str());
+  return status;
+}
+
+/// Reads the command line and does the verb.
+int dispatch(int argc, const char* const* argv) {
+  CLI::App app("Physics-simulated test harness and estimator for robots that tumble and roll", "tumble");
+  app.set_version_flag("--version", program_version());
+  app.require_subcommand(1);
+  app.footer("Exit status: 0 done, 1 a check failed, 2 wrong use or bad input, 3 a defect of the program.");
+  Session session;
+  Action chosen;
+  for (const Verb& verb : verbs()) {
+    CLI::App* options = app.add_subcommand(verb.name, verb.doc);
+    options->add_flag("--json", session.json, "tables as JSON on standard output");
+    options->add_flag("--quiet", session.quiet, "no notes and no progress on standard error");
+    options->callback([action = verb.declare(*options, session), &chosen] { chosen = action; });
+  }
+  check_verb(argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& done) {  // --help, --version
+    return app.exit(done);
+  } catch (const CLI::ParseError& error) {
+    throw BadInput(usage_line(app, error));
+  }
+  return chosen();
+}
+
+}  // namespace
+
+int run_program(int argc, const char* const* argv) {
+  try {
+    return dispatch(argc, argv);
+  } catch (const BadInput& error) {
+    return say("", error.what(), kBadInput);
+  } catch (const sim::InvalidSituation& error) {
+    return say("", error.what(), kBadInput);
+  } catch (const std::filesystem::filesystem_error& error) {
+    return say("", error.what(), kBadInput);
+  } catch (const sim::SimulationFailure& error) {
+    return say("the draw is rejected: ", error.what(), kCheckFailed);
+  } catch (const std::exception& error) {
+    return say("defect: ", error.what(), kDefect);
+  } catch (...) {
+    return say("defect: ", "unknown exception", kDefect);
+  }
+}
+
+}  // namespace tumble::tools

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/tumble/progress.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tumble::tools {
+
+namespace {
+
+constexpr double kLinePeriodS = 10.0;
+constexpr int kBarWidth = 24;
+
+}  // namespace
+
+std::string duration_text(double seconds) {
+  if (!(seconds >= 0.0) || !std::isfinite(seconds)) return "?";
+  const long whole = std::lround(seconds);
+  if (whole < 60) return fmt::format("{} s", whole);
+  if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
+  return fmt::format("{} h {:02} min", whole / 3600, whole % 3600 / 60);
+}
+
+std::string progress_line(const scenarios::SweepProgress& p, int bar_width) {
+  const double share = p.draws_total == 0 ? 1.0 : static_cast<double>(p.draws_done) / static_cast<double>(p.draws_total);
+  std::string line;
+  if (bar_width > 0) {
+    const int filled = std::clamp(static_cast<int>(share * bar_width), 0, bar_width);
+    line = "[" + std::string(static_cast<std::size_t>(filled), '#') +
+           std::string(static_cast<std::size_t>(bar_width - filled), '-') + "]  ";
+  }
+  line += fmt::format("{}/{} draws  {} %  {} outcomes  {} not ok  {} rejected", p.draws_done, p.draws_total,
+                      static_cast<int>(share * 100.0), p.outcomes, p.not_ok, p.rejected);
+  if (p.draws_done < p.draws_total) {
+    // nothing is known of the time left before the first draw has ended
+    line += "  left " + (p.draws_done == 0 ? "?" : duration_text(p.left_s));
+  } else {
+    line += "  in " + duration_text(p.elapsed_s);
+  }
+  return line;
+}
+
+ProgressDisplay::ProgressDisplay(Write write, bool terminal) : write_(std::move(write)), terminal_(terminal) {}
+
+void ProgressDisplay::show(const scenarios::SweepProgress& progress) {
+  if (terminal_) {
+    write_("\r" + progress_line(progress, kBarWidth) + "\x1b[K");
+  } else if (progress.elapsed_s - shown_at_s_ >= kLinePeriodS) {
+    shown_at_s_ = progress.elapsed_s;
+    write_(progress_line(progress, 0) + "\n");
+  }
+}
+
+void ProgressDisplay::finish(const scenarios::SweepProgress& progress) {
+  write_(terminal_ ? "\r" + progress_line(progress, kBarWidth) + "\x1b[K\n" : progress_line(progress, 0) + "\n");
+}
+
+}  // namespace tumble::tools

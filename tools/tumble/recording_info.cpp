@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/tumble/recording_info.hpp"
+
+#include "scenarios/draw/scenario.hpp"
+#include "tools/tumble/session.hpp"
+
+namespace tumble::tools {
+
+scenarios::RecordingInfo recording_info(const sim::Situation& situation, const std::string& digest) {
+  scenarios::RecordingInfo info;
+  info.scenario = situation.scenario;
+  info.seed = situation.seed;
+  info.situation_yaml = scenarios::to_yaml(situation);
+  info.tumble_version = program_version();
+  info.engine_version = TUMBLE_ENGINE_VERSION;
+  info.digest = digest;
+  info.has_truth = true;
+  return info;
+}
+
+}  // namespace tumble::tools

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "scenarios/draw/scenario.hpp"
+#include "scenarios/errors.hpp"
+#include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/recordings/recording_file.hpp"
+#include "tools/report/pictures.hpp"
+#include "tools/tumble/arguments.hpp"
+#include "tools/tumble/verbs.hpp"
+
+namespace tumble::tools {
+
+namespace {
+
+using scenarios::BadInput;
+
+struct Options {
+  std::string what, seed;
+  std::vector<std::filesystem::path> estimates;
+  std::filesystem::path png;
+  int film = 0;
+  int columns = 4;
+  int robots = 8;
+  int width = 1280, height = 720;
+};
+
+/// All that a scene points to.
+struct Content {
+  sim::Situation situation;
+  sim::Sensors sensors;
+  sim::Truth truth;
+  Scene scene;
+};
+
+bool is_recording(const std::string& what) {
+  // whoever names a file means the file, also when it is not there
+  return std::filesystem::exists(what) ? !what.ends_with(".yaml") : what.ends_with(".h5") || what.ends_with(".hdf5");
+}
+
+void load_recording(const Options& options, Content& content) {
+  const scenarios::RecordingInfo info = scenarios::read_info(options.what);
+  if (info.situation_yaml.empty()) throw BadInput(options.what + ": holds no situation, so there is no world to draw");
+  content.situation = scenarios::situation_from_yaml(info.situation_yaml, options.what);
+  content.sensors = scenarios::read_sensors(options.what);
+  // the truth places the robot and the estimates in a picture for people; no estimate is made here
+  if (!info.has_truth) throw BadInput(options.what + ": holds no truth, so there is no way to draw");
+  content.truth = scenarios::read_truth(options.what);
+  content.scene.sensors = &content.sensors;
+  content.scene.truth = &content.truth;
+  for (const std::filesystem::path& folder : options.estimates) {
+    scenarios::Kind kind;
+    std::string method;
+    const scenarios::Estimate estimate = scenarios::read_estimate(folder, kind, method, scenarios::Frame::imu);
+    Path path = estimated_path(estimate, content.sensors, content.truth);
+    if (path.empty()) throw BadInput(folder.string() + ": holds no poses to draw");
+    content.scene.estimates.push_back(std::move(path));
+  }
+}
+
+void load_draw(const scenarios::DataRoot& data, const Options& options, Content& content) {
+  const scenarios::Scenario scenario = scenarios::load_scenario(data, options.what);
+  if (options.seed.empty()) throw BadInput("--seed is required to draw the scenario '" + options.what + "'");
+  if (!options.estimates.empty()) throw BadInput("estimates are drawn into a recording, not into a scenario");
+  if (options.film > 0) throw BadInput("--film shows the way of a recording; '" + options.what + "' is a scenario");
+  content.situation = scenarios::draw(data, scenario, parse_seed(options.seed));
+}
+
+int render(const Session& session, const Options& options) {
+  const scenarios::DataRoot data = session.data();
+  Content content;
+  if (is_recording(options.what)) {
+    load_recording(options, content);
+  } else {
+    load_draw(data, options, content);
+  }
+  content.scene.situation = &content.situation;
+  content.scene.models = data.models();
+  if (options.png.has_parent_path()) make_folder(options.png.parent_path());
+  save_picture(options.png, options.film > 0 ? film_picture(content.scene, options.film, options.columns, options.width, options.height)
+                                             : scene_picture(content.scene, options.robots, options.width, options.height));
+  Table legend("", {"path", "colour"});
+  nlohmann::json document = {{"picture", options.png.string()}, {"paths", nlohmann::json::array()}};
+  const auto add = [&](const std::string& name, Colour colour) {
+    legend.add_row({name, colour.hex});
+    document["paths"].push_back({{"path", name}, {"colour", colour.hex}});
+  };
+  if (content.scene.truth != nullptr) add("truth", truth_colour());
+  for (std::size_t i = 0; i < options.estimates.size(); ++i) add(options.estimates[i].string(), method_colour(i));
+  session.print(legend.empty() ? std::vector<Table>{} : std::vector<Table>{legend}, document);
+  return kDone;
+}
+
+}  // namespace
+
+Action declare_render(CLI::App& app, const Session& session) {
+  auto options = std::make_shared<Options>();
+  app.add_option("WHAT", options->what, "a recording, FILE.h5, or a scenario (with --seed)")->required();
+  app.add_option("ESTIMATE", options->estimates, "folders of estimates whose paths are drawn");
+  app.add_option("--seed", options->seed, "which draw of the scenario");
+  app.add_option("-o,--output", options->png, "the picture, FILE.png")->required();
+  app.add_option("--film", options->film, "a film strip of so many frames")->check(CLI::Range(1, 64));
+  app.add_option("--columns", options->columns, "frames in a row of the film strip")->check(CLI::Range(1, 64))->capture_default_str();
+  app.add_option("--robots", options->robots, "how often the robot is drawn along its way")->check(CLI::Range(1, 64))->capture_default_str();
+  app.add_option("--width", options->width, "of a picture or frame, pixels")->check(CLI::Range(64, 4096))->capture_default_str();
+  app.add_option("--height", options->height, "of a picture or frame, pixels")->check(CLI::Range(64, 4096))->capture_default_str();
+  return [&session, options] { return render(session, *options); };
+}
+
+}  // namespace tumble::tools

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/report/report.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <memory>
+
+#include "scenarios/errors.hpp"
+#include "tools/tumble/arguments.hpp"
+#include "tools/tumble/verbs.hpp"
+
+namespace tumble::tools {
+
+namespace {
+
+using nlohmann::json;
+
+struct Options {
+  std::filesystem::path database, page;
+  int threads = 1;
+  int examples = 3;
+  bool all = false;
+};
+
+std::string interval_text(const scenarios::Interval& interval) {
+  if (!std::isfinite(interval.low) || !std::isfinite(interval.high)) return "[-]";
+  return "[" + number_text(interval.low) + ", " + number_text(interval.high) + "]";
+}
+
+std::string wins_text(const Wins& wins) { return wins.pairs == 0 ? "" : fmt::format("{} of {}", wins.count, wins.pairs); }
+
+/// A row per method and metric: the headline metrics, or all of them.
+Table score_table(const Section& section, bool all) {
+  Table table(fmt::format("{}: {} (paired with {})", section.scenario, to_string(section.kind), section.baseline),
+              {"metric", "method", "median", "95 % interval", "95 % quantile", "better in", "not ok"});
+  table.align_right_from(2);
+  for (const std::string& name : all ? section.metrics : headline_metrics(section.kind)) {
+    bool first = true;
+    for (const MethodSummary& method : section.methods) {
+      const MetricSummary* metric = method.find(name);
+      if (metric == nullptr) continue;
+      table.add_row({first ? name : "", method.method, number_text(metric->centre.value), interval_text(metric->centre),
+                     number_text(metric->quantile_95), wins_text(metric->wins),
+                     fmt::format("{} of {}", method.not_ok, method.outcomes)});
+      first = false;
+    }
+  }
+  return table;
+}
+
+json finite(double value) { return std::isfinite(value) ? json(value) : json(); }
+
+json interval_json(const scenarios::Interval& i) { return {{"value", finite(i.value)}, {"low", finite(i.low)}, {"high", finite(i.high)}}; }
+
+/// Everything that the page's tables hold, in SI units.
+json to_json(const Summary& summary) {
+  json rows = json::array();
+  for (const Section& section : summary.sections) {
+    for (const MethodSummary& method : section.methods) {
+      json row = {{"scenario", section.scenario}, {"kind", to_string(section.kind)}, {"method", method.method},
+                  {"baseline", section.baseline}, {"outcomes", method.outcomes}, {"not_ok", method.not_ok},
+                  {"not_ok_share", interval_json(method.not_ok_share)}, {"metrics", json::object()}};
+      for (const auto& [name, metric] : method.metrics) {
+        row["metrics"][name] = {{is_verdict(name) ? "share" : "median", interval_json(metric.centre)}, {"quantile_95", finite(metric.quantile_95)},
+                                {"count", metric.values.size()}, {"better_in", metric.wins.count}, {"pairs", metric.wins.pairs}};
+      }
+      rows.push_back(std::move(row));
+    }
+  }
+  return {{"draws", summary.draws}, {"rejected", summary.rejected}, {"scores", std::move(rows)}};
+}
+
+std::string read_text(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  if (!stream.good() && !stream.eof()) throw scenarios::BadInput(path.string() + ": cannot be read");
+  return text;
+}
+
+void write_page(const Session& session, const Options& options, const scenarios::Results& results, const Summary& summary) {
+  // what is missing is said before minutes are spent
+  const std::string plotly = read_text(session.plotly());
+  if (options.page.has_parent_path()) make_folder(options.page.parent_path());
+  ReportOptions report;
+  report.data = session.data();
+  report.version = program_version();
+  report.made_at = fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
+  report.threads = options.threads;
+  report.examples_max = options.examples;
+  report.note = [&](std::string_view line) { session.note(line); };
+  const PageContent content = report_content(results, summary, report);
+  for (const std::string& warning : content.warnings) session.note(warning);
+  write_file(options.page, page_html(content, plotly));
+}
+
+int report(const Session& session, const Options& options) {
+  const scenarios::Results results(options.database, scenarios::Results::Mode::read_only);
+  const Summary summary = summarize(results);
+  if (summary.scenarios.empty()) throw scenarios::BadInput(options.database.string() + ": holds no outcomes to report");
+  std::vector<Table> tables;
+  for (const Section& section : summary.sections) {
+    Table table = score_table(section, options.all);
+    if (!table.empty()) tables.push_back(std::move(table));
+  }
+  session.print(tables, to_json(summary));
+  if (!options.page.empty()) write_page(session, options, results, summary);
+  return kDone;
+}
+
+}  // namespace
+
+Action declare_report(CLI::App& app, const Session& session) {
+  auto options = std::make_shared<Options>();
+  app.add_option("DATABASE", options->database, "a results database, FILE.db")->required();
+  app.add_option("-o,--output", options->page, "the page, FILE.html [tables alone]");
+  app.add_option("--threads", options->threads, "threads for the lidar of the draws shown")->check(CLI::Range(1, 1024))->capture_default_str();
+  app.add_option("--examples", options->examples, "draws simulated again and shown")->check(CLI::Range(0, 3))->capture_default_str();
+  app.add_flag("--all", options->all, "all metrics in the printed tables, not the headline ones alone");
+  return [&session, options] { return report(session, *options); };
+}
+
+}  // namespace tumble::tools

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/recordings/recording_file.hpp"
+#include "scenarios/sweep/run_situation.hpp"
+#include "tools/report/pictures.hpp"
+#include "tools/tumble/arguments.hpp"
+#include "tools/tumble/recording_info.hpp"
+#include "tools/tumble/score_tables.hpp"
+#include "tools/tumble/verbs.hpp"
+
+namespace tumble::tools {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string scenario, seed;
+  std::vector<std::string> methods;
+  int threads = 1;
+  fs::path folder;
+};
+
+/// Recording, situation and every estimate, under the names that the other verbs read.
+void leave_files(const fs::path& folder, const scenarios::RunResult& result) {
+  const scenarios::RecordingInfo info = recording_info(result.situation, result.recording_digest);
+  scenarios::write_recording(folder / "recording.h5", info, result.recording.sensors, &result.recording.truth);
+  write_file(folder / "situation.yaml", info.situation_yaml);
+  for (std::size_t i = 0; i < result.methods.size(); ++i) {
+    const scenarios::MethodInfo& method = result.methods[i]->info;
+    const fs::path own = folder / "estimates" / (std::string(to_string(method.kind)) + "-" + method.name);
+    make_folder(own);
+    scenarios::write_estimate(own, method.name, method.kind, result.estimates[i]);
+  }
+}
+
+/// The whole way and a film strip, with every path that an estimate has.
+void leave_pictures(const fs::path& folder, const fs::path& models, const scenarios::RunResult& result) {
+  Scene scene{&result.situation, models, &result.recording.sensors, &result.recording.truth, {}};
+  for (const scenarios::Estimate& estimate : result.estimates) {
+    Path path = estimated_path(estimate, result.recording.sensors, result.recording.truth);
+    if (!path.empty()) scene.estimates.push_back(std::move(path));
+  }
+  make_folder(folder / "snapshots");
+  save_picture(folder / "snapshots" / "scene.png", scene_picture(scene, 8, 1280, 720));
+  save_picture(folder / "snapshots" / "film.png", film_picture(scene, 8, 4, 480, 360));
+}
+
+int run(const Session& session, const Options& options) {
+  const std::uint64_t seed = parse_seed(options.seed);
+  const scenarios::DataRoot data = session.data();
+  const scenarios::Scenario scenario = scenarios::load_scenario(data, options.scenario);
+  const auto methods = select_methods(options.methods);
+  if (!options.folder.empty()) make_folder(options.folder);
+
+  const scenarios::RunResult result = scenarios::run_situation(data, scenario, seed, methods, options.threads);
+  if (result.methods.empty()) session.note("no method given applies to the robot '" + result.situation.robot.type + "'");
+  if (!options.folder.empty()) {
+    leave_files(options.folder, result);
+    leave_pictures(options.folder, data.models(), result);
+  }
+
+  const std::string digest = scenarios::run_digest(result);
+  const nlohmann::json document = {{"scenario", result.situation.scenario}, {"seed", seed}, {"digest", digest},
+                                   {"recording_digest", result.recording_digest},
+                                   {"status", overall_status(result.outcomes)},
+                                   {"scores", score_rows(result.outcomes)}, {"outcomes", outcome_rows(result.outcomes)}};
+  std::vector<Table> tables = score_tables(fmt::format("{}, seed {}", result.situation.scenario, seed), result.outcomes);
+  Table closing("", {"digest of the run", digest});
+  closing.add_row({"digest of the recording", result.recording_digest});
+  tables.push_back(std::move(closing));
+  session.print(tables, document);
+  for (const scenarios::Outcome& outcome : result.outcomes) {
+    if (outcome.status != "ok") session.note(fmt::format("{}/{}: {}: {}", to_string(outcome.kind), outcome.method, outcome.status, outcome.message));
+  }
+  return kDone;
+}
+
+}  // namespace
+
+Action declare_run(CLI::App& app, const Session& session) {
+  auto options = std::make_shared<Options>();
+  app.add_option("SCENARIO", options->scenario, "a scenario of the catalogue, or a scenario file")->required();
+  app.add_option("--seed", options->seed, "which draw of it")->required();
+  app.add_option("--method", options->methods, "a method, as 'saave' or 'rate/saave'; repeat for more [all that apply]");
+  app.add_option("--threads", options->threads, "threads for the lidar; the result does not depend on them")
+      ->check(CLI::Range(1, 1024))->capture_default_str();
+  app.add_option("-o,--output", options->folder, "folder for recording, estimates and pictures [none are left]");
+  return [&session, options] { return run(session, *options); };
+}
+
+}  // namespace tumble::tools

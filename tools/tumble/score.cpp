@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "scenarios/draw/scenario.hpp"
+#include "scenarios/errors.hpp"
+#include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/recordings/recording_file.hpp"
+#include "scenarios/scoring/score.hpp"
+#include "tools/tumble/arguments.hpp"
+#include "tools/tumble/score_tables.hpp"
+#include "tools/tumble/verbs.hpp"
+
+namespace tumble::tools {
+
+namespace {
+
+using scenarios::Frame;
+
+struct Options {
+  std::filesystem::path estimate, recording;
+  std::string frame = "imu";
+};
+
+Frame parse_frame(const std::string& name) {
+  std::vector<std::string> known;
+  for (const Frame frame : {Frame::imu, Frame::lidar, Frame::body, Frame::centre}) {
+    if (name == to_string(frame)) return frame;
+    known.emplace_back(to_string(frame));
+  }
+  require_known("frame", name, known);
+  return Frame::imu;
+}
+
+int score_estimate(const Session& session, const Options& options) {
+  scenarios::Outcome outcome;
+  const scenarios::Estimate estimate =
+      scenarios::read_estimate(options.estimate, outcome.kind, outcome.method, parse_frame(options.frame));
+  const scenarios::RecordingInfo info = scenarios::read_info(options.recording);
+  if (!info.has_truth) throw scenarios::BadInput(options.recording.string() + ": holds no truth to score against");
+  const sim::Sensors sensors = scenarios::read_sensors(options.recording);
+  const sim::Truth truth = scenarios::read_truth(options.recording);
+
+  // the true surface matters to maps alone, and building it takes a while
+  std::optional<sim::Surface> surface;
+  if (outcome.kind == scenarios::Kind::slam && !info.situation_yaml.empty()) {
+    surface.emplace(scenarios::situation_from_yaml(info.situation_yaml, options.recording.string()), session.data().models());
+  }
+  const scenarios::ScoringInput input{&sensors, &truth, surface ? &*surface : nullptr};
+  outcome.scenario = info.scenario;
+  outcome.seed = info.seed;
+  outcome.status = estimate.status.ok() ? scenarios::verdict(outcome.kind, estimate, input) : "failed";
+  outcome.message = estimate.status.ok() ? "" : estimate.status.message();
+  outcome.scores = scenarios::score(outcome.kind, estimate, input);
+
+  const std::vector<scenarios::Outcome> outcomes = {outcome};
+  const nlohmann::json document = {{"kind", to_string(outcome.kind)}, {"method", outcome.method},
+                                   {"status", outcome.status}, {"scores", score_rows(outcomes)}};
+  session.print(score_tables(options.estimate.string(), outcomes), document);
+  return kDone;
+}
+
+}  // namespace
+
+Action declare_score(CLI::App& app, const Session& session) {
+  auto options = std::make_shared<Options>();
+  app.add_option("ESTIMATE", options->estimate, "folder of an estimate, or a TUM file (t x y z qx qy qz qw)")->required();
+  app.add_option("RECORDING", options->recording, "the recording with its truth, FILE.h5")->required();
+  app.add_option("--frame", options->frame, "whose poses a TUM file holds: imu, lidar, body or centre")->capture_default_str();
+  return [&session, options] { return score_estimate(session, *options); };
+}
+
+}  // namespace tumble::tools

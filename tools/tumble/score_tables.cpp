@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/tumble/score_tables.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace tumble::tools {
+
+namespace {
+
+using nlohmann::json;
+using scenarios::Kind;
+using scenarios::Outcome;
+
+std::string cell(const Outcome& outcome, const std::string& metric) {
+  for (const scenarios::Score& score : outcome.scores) {
+    if (score.metric == metric) return number_text(score.value);
+  }
+  return "";
+}
+
+Table kind_table(const std::string& title, const std::vector<const Outcome*>& outcomes) {
+  std::vector<std::string> header = {"metric"}, status = {"status"}, metrics;
+  for (const Outcome* outcome : outcomes) {
+    header.push_back(outcome->method);
+    status.push_back(outcome->status);
+    for (const scenarios::Score& score : outcome->scores) {
+      if (std::find(metrics.begin(), metrics.end(), score.metric) == metrics.end()) metrics.push_back(score.metric);
+    }
+  }
+  Table table(title, header);
+  table.align_right_from(1);
+  table.add_row(status);
+  for (const std::string& metric : metrics) {
+    std::vector<std::string> row = {metric};
+    for (const Outcome* outcome : outcomes) row.push_back(cell(*outcome, metric));
+    table.add_row(std::move(row));
+  }
+  return table;
+}
+
+}  // namespace
+
+std::vector<Table> score_tables(const std::string& title, std::span<const Outcome> outcomes) {
+  std::vector<Table> tables;
+  for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
+    std::vector<const Outcome*> selected;
+    for (const Outcome& outcome : outcomes) {
+      if (outcome.kind == kind) selected.push_back(&outcome);
+    }
+    if (!selected.empty()) tables.push_back(kind_table(title + ": " + to_string(kind), selected));
+  }
+  return tables;
+}
+
+json score_rows(std::span<const Outcome> outcomes) {
+  json rows = json::array();
+  for (const Outcome& outcome : outcomes) {
+    for (const scenarios::Score& score : outcome.scores) {
+      rows.push_back({{"scenario", outcome.scenario}, {"seed", outcome.seed}, {"kind", to_string(outcome.kind)},
+                      {"method", outcome.method}, {"status", outcome.status}, {"metric", score.metric},
+                      {"value", std::isfinite(score.value) ? json(score.value) : json()}});
+    }
+  }
+  return rows;
+}
+
+json outcome_rows(std::span<const Outcome> outcomes) {
+  json rows = json::array();
+  for (const Outcome& outcome : outcomes) {
+    rows.push_back({{"kind", to_string(outcome.kind)}, {"method", outcome.method}, {"status", outcome.status},
+                    {"message", outcome.message}, {"digest", outcome.estimate_digest}});
+  }
+  return rows;
+}
+
+std::string overall_status(std::span<const Outcome> outcomes) {
+  for (const Outcome& outcome : outcomes) {
+    if (outcome.status != "ok") return outcome.status;
+  }
+  return "ok";
+}
+
+}  // namespace tumble::tools

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/tumble/session.hpp"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "scenarios/errors.hpp"
+
+namespace tumble::tools {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Folders that may hold the project's files, best first.
+std::vector<fs::path> candidate_roots() {
+  std::vector<fs::path> roots;
+  if (const char* given = std::getenv("TUMBLE_DATA"); given != nullptr && *given != '\0') roots.emplace_back(given);
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  if (!error) roots.push_back(program.parent_path().parent_path() / "share" / "tumble");
+  roots.emplace_back(TUMBLE_SOURCE_TREE);
+  return roots;
+}
+
+}  // namespace
+
+scenarios::DataRoot Session::data() const {
+  std::error_code error;
+  const char* given = std::getenv("TUMBLE_DATA");
+  for (const fs::path& root : candidate_roots()) {
+    const scenarios::DataRoot data{root};
+    if (fs::is_directory(data.models(), error)) return data;
+    // a folder that the user has named is taken at its word: falling back would run other models than the ones asked for
+    if (given != nullptr && *given != '\0') throw scenarios::BadInput("TUMBLE_DATA: no folder " + data.models().string());
+  }
+  throw scenarios::BadInput("the models are not found; set TUMBLE_DATA to the folder that holds models/ and scenarios/");
+}
+
+fs::path Session::plotly() const {
+  std::error_code error;
+  for (const fs::path& root : candidate_roots()) {
+    const fs::path bundle = root / "plotly.min.js";
+    if (fs::is_regular_file(bundle, error)) return bundle;
+  }
+  throw scenarios::BadInput(
+      "plotly.min.js is not found, and the report needs it; run tools/setup, then configure and build again");
+}
+
+void Session::note(std::string_view line) const {
+  if (quiet) return;
+  std::fprintf(stderr, "%.*s\n", static_cast<int>(line.size()), line.data());
+}
+
+void Session::print(const std::vector<Table>& tables, const nlohmann::json& document) const {
+  std::string text;
+  if (json) {
+    text = document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  } else {
+    for (const Table& table : tables) {
+      if (!text.empty()) text += "\n";
+      text += table.text();
+    }
+  }
+  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+  if (!written) throw scenarios::BadInput(std::string("standard output: ") + std::strerror(errno));
+}
+
+std::string program_version() { return TUMBLE_VERSION; }
+
+}  // namespace tumble::tools

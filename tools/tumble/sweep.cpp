@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/sweep/sweep.hpp"
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <fmt/format.h>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "scenarios/errors.hpp"
+#include "tools/tumble/arguments.hpp"
+#include "tools/tumble/interrupt.hpp"
+#include "tools/tumble/progress.hpp"
+#include "tools/tumble/verbs.hpp"
+
+namespace tumble::tools {
+
+namespace {
+
+struct Options {
+  std::string suite, seeds, shard;
+  std::vector<std::string> methods;
+  int jobs = 1;
+  std::filesystem::path database;
+};
+
+/// The suite with what the command line changes of it. Returns false when this shard has no seed.
+bool select(const scenarios::DataRoot& data, const Options& options, scenarios::Suite& suite) {
+  suite = scenarios::load_suite(data, options.suite);
+  if (!options.seeds.empty()) std::tie(suite.first_seed, suite.last_seed) = parse_seeds(options.seeds);
+  if (!options.methods.empty()) {
+    for (const std::string& name : options.methods) scenarios::find_methods(name);  // refuses an unknown one now
+    suite.methods = options.methods;
+  }
+  return options.shard.empty() || shard_seeds(parse_shard(options.shard), suite.first_seed, suite.last_seed);
+}
+
+nlohmann::json to_json(const scenarios::SweepProgress& p, const std::string& database) {
+  return {{"database", database}, {"draws_done", p.draws_done}, {"draws_total", p.draws_total}, {"outcomes", p.outcomes},
+          {"not_ok", p.not_ok}, {"rejected", p.rejected}, {"elapsed_s", p.elapsed_s}};
+}
+
+Table to_table(const scenarios::SweepProgress& p, const std::string& database) {
+  Table table("", {"database", "draws done", "draws in all", "outcomes", "not ok", "draws rejected"});
+  table.align_right_from(1);
+  table.add_row({database, std::to_string(p.draws_done), std::to_string(p.draws_total), std::to_string(p.outcomes),
+                 std::to_string(p.not_ok), std::to_string(p.rejected)});
+  return table;
+}
+
+int run_sweep(const Session& session, const Options& options) {
+  const scenarios::DataRoot data = session.data();
+  scenarios::Suite suite;
+  if (!select(data, options, suite)) {
+    session.note("shard " + options.shard + " has no seeds: nothing to do");
+    return kDone;
+  }
+  if (options.database.has_parent_path()) make_folder(options.database.parent_path());
+
+  const auto to_standard_error = [](std::string_view text) {
+    std::fwrite(text.data(), 1, text.size(), stderr);
+    std::fflush(stderr);
+  };
+  ProgressDisplay display(to_standard_error, isatty(STDERR_FILENO) == 1);
+  const InterruptFlag interrupt;
+  scenarios::SweepOptions sweep_options;
+  sweep_options.jobs = options.jobs;
+  sweep_options.stop = &interrupt.raised();
+  if (!session.quiet) sweep_options.on_progress = [&](const scenarios::SweepProgress& p) { display.show(p); };
+  const scenarios::SweepProgress final = scenarios::sweep(data, suite, options.database, sweep_options);
+  if (!session.quiet) display.finish(final);
+
+  session.print({to_table(final, options.database.string())}, to_json(final, options.database.string()));
+  if (final.draws_done >= final.draws_total) return kDone;
+  std::fprintf(stderr, "tumble: stopped: %s\n",
+               fmt::format("{} of {} draws stored, run again to go on", final.draws_done, final.draws_total).c_str());
+  return kCheckFailed;
+}
+
+}  // namespace
+
+Action declare_sweep(CLI::App& app, const Session& session) {
+  auto options = std::make_shared<Options>();
+  app.add_option("SUITE", options->suite, "a suite, a suite file, or a scenario")->required();
+  app.add_option("--seeds", options->seeds, "A..B, both included [the suite's]");
+  app.add_option("--method", options->methods, "a method; repeat for more [the suite's]");
+  app.add_option("--jobs", options->jobs, "processes at a time")->check(CLI::Range(1, 1024))->capture_default_str();
+  app.add_option("--shard", options->shard, "i/n: the i-th of n parts of the seeds");
+  app.add_option("--db", options->database, "the results database; what it holds already is not run again")->required();
+  return [&session, options] { return run_sweep(session, *options); };
+}
+
+}  // namespace tumble::tools

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/tumble/verbs.hpp"
+
+namespace tumble::tools {
+
+std::span<const Verb> verbs() {
+  static constexpr Verb kVerbs[] = {
+      {"list", "names and parameters of scenarios, methods, sensors or suites", declare_list},
+      {"run", "draw, simulate, estimate and score one situation", declare_run},
+      {"record", "draw and simulate one situation", declare_record},
+      {"estimate", "run a method over a recording, real or simulated; never opens the truth", declare_estimate},
+      {"score", "hold an estimate to the truth of a recording", declare_score},
+      {"sweep", "thousands of runs into a results database; run again to resume", declare_sweep},
+      {"merge", "join results databases", declare_merge},
+      {"report", "score tables and one self-contained page from a results database", declare_report},
+      {"render", "pictures of a recording or of a draw", declare_render},
+  };
+  return kVerbs;
+}
+
+}  // namespace tumble::tools
