@@ -101,7 +101,7 @@ void aim_sun(const Framing& framing, mjvScene& scene, mjrContext& engine) {
     for (int axis = 0; axis < 3; ++axis) {
       light.pos[axis] = static_cast<float>(framing.look_at_W_m[axis] - reach_m * light.dir[axis]);
       light.ambient[axis] = 0.1f;
-      light.diffuse[axis] = 0.55f;
+      light.diffuse[axis] = 0.7f;
       light.specular[axis] = 0.1f;
     }
   }
