@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -78,22 +79,26 @@ void run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samp
     }
     LidarInertialOdometry::SweepReport report;
     const Status status = odometry.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, report);
-    // a covered lidar is a fact of life: the chain goes on by inertia
-    if (status.trouble == Trouble::empty) {
-      estimate.health["sweeps_empty"] += 1.0;
-      continue;
-    }
-    if (!status.ok()) {
+    if (!status.ok() && report.trajectory.empty()) {
+      // the IMU begins after the sweep: nothing to place it by
+      if (status.trouble == Trouble::too_few) {
+        estimate.health["sweeps_unfinished"] += 1.0;
+        continue;
+      }
       estimate.status = status;
       return;
     }
+    // a covered lidar is a fact of life: the chain goes on by inertia
+    if (!status.ok()) estimate.health[std::string("sweeps_") + to_string(status.trouble)] += 1.0;
     estimate.health[std::string("sweeps_") + to_string(report.verdict)] += 1.0;
     append_poses(report, estimate.poses);
     estimate.sweeps.push_back(std::move(report));
     estimate.sweep_end_ns.push_back(sweep.end_ns);
   }
   estimate.map = odometry.map();
-  if (estimate.sweeps.empty()) {
+  const bool any = std::any_of(estimate.sweeps.begin(), estimate.sweeps.end(),
+                               [](const auto& sweep) { return sweep.verdict != SweepVerdict::rejected; });
+  if (!any) {
     estimate.status = {Trouble::too_few, "lidar.sweeps_registered", 0.0, 1.0};
   }
 }

@@ -69,6 +69,11 @@ void add_sweep(Hasher& hasher, const LidarInertialOdometry::SweepReport& sweep) 
   hasher.add(sweep.inlier_share);
   hasher.add(sweep.conditioning);
   hasher.add(static_cast<std::int32_t>(sweep.iterations));
+  hasher.add_matrix(sweep.weakest_direction);
+  hasher.add_matrix(sweep.excess_rate_rad_s);
+  for (const std::size_t count : {sweep.points_used, sweep.points_registered, sweep.map_points_added}) {
+    hasher.add(static_cast<std::uint64_t>(count));
+  }
 }
 
 }  // namespace

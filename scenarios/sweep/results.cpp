@@ -118,6 +118,7 @@ struct Results::Impl {
     const std::int64_t id = database.getLastInsertRowid();
     SQLite::Statement value(database, "INSERT OR REPLACE INTO score_values VALUES (?, ?, ?)");
     for (const Score& score : outcome.scores) {
+      if (score.metric.empty()) continue;
       value.bind(1, id);
       value.bind(2, score.metric);
       // SQLite has no NaN: a score that is not a number is null

@@ -11,7 +11,8 @@
 
 namespace tumble::scenarios {
 
-/// One row of the view scores(scenario, seed, kind, method, status, metric, value).
+/// One row of the view scores(scenario, seed, kind, method, status, metric, value). An outcome without any score has one row
+/// with an empty metric and NaN; a rejected draw one with kind and method empty too, status `rejected`.
 struct ScoreRow {
   std::string scenario;
   std::uint64_t seed;
@@ -24,11 +25,13 @@ struct ScoreRow {
 class Results {
  public:
   enum class Mode { create_or_append, read_only };
-  /// Throws BadInput: absent (read_only), not a results database, written by another build (`build` differs), no room.
+  /// Throws BadInput: absent (read_only), not a results database, written by another build (create_or_append; note "build"),
+  /// no room. So do all members, with the path in the message.
   Results(const std::filesystem::path& path, Mode mode);
   ~Results();
   Results(Results&&) noexcept;
 
+  /// A score without a name, as `scores()` has it for an outcome that has none, is left out.
   void store(const Outcome& outcome);
   void store(const RejectedDraw& rejected);
   /// A free text kept with the results: "suite", "certificate", "build".

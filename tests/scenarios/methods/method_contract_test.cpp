@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <ostream>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/method.hpp"
@@ -11,6 +12,9 @@
 
 // one law for every method: what is registered is held to it without being named here
 namespace tumble::scenarios {
+
+void PrintTo(const Method& method, std::ostream* out) { *out << to_string(method.info.kind) << "/" << method.info.name; }
+
 namespace {
 
 class MethodContract : public ::testing::TestWithParam<Method> {
@@ -140,11 +144,34 @@ INSTANTIATE_TEST_SUITE_P(Registered, MethodContract, ::testing::ValuesIn(methods
 
 class SlamContract : public MethodContract {};
 
-TEST_P(SlamContract, RefusesSweepsThatAreNotNumbers) {
+TEST_P(SlamContract, RefusesALidarThatNeverSawAnything) {
   sim::Recording spoilt = recording();
-  const sim::LidarRecord& lidar = spoilt.sensors.lidars.front();
-  spoilt.sensors.lidars.front().position_L_m[lidar.sweep_first[30] + 5].x() = std::numeric_limits<float>::quiet_NaN();
+  for (auto& point : spoilt.sensors.lidars.front().position_L_m) point.setConstant(std::numeric_limits<float>::quiet_NaN());
   expect_refused(spoilt);
+}
+
+// as an idealised simulator gives them, and a driver that loses the stamps
+TEST_P(SlamContract, RefusesPointsThatAllBearOneTimeStamp) {
+  sim::Recording spoilt = recording();
+  for (auto& offset : spoilt.sensors.lidars.front().offset_ns) offset = 0;
+  expect_refused(spoilt);
+}
+
+TEST_P(SlamContract, RefusesAPointBeyondItsSweep) {
+  sim::Recording spoilt = recording();
+  sim::LidarRecord& lidar = spoilt.sensors.lidars.front();
+  lidar.offset_ns[lidar.sweep_first[30] + 5] = 200000000;
+  expect_refused(spoilt);
+}
+
+TEST_P(SlamContract, TakesAPointThatIsNotANumberForAMiss) {
+  sim::Recording spoilt = recording();
+  sim::LidarRecord& lidar = spoilt.sensors.lidars.front();
+  lidar.position_L_m[lidar.sweep_first[30] + 5].x() = std::numeric_limits<float>::quiet_NaN();
+  const Estimate estimate = run(spoilt);
+  ASSERT_TRUE(estimate.status.ok()) << estimate.status.message();
+  for (const PoseState& pose : estimate.poses) ASSERT_TRUE(pose.p_WA_m.allFinite());
+  for (const MapPoint& point : estimate.map) ASSERT_TRUE(point.position_W_m.allFinite());
 }
 
 TEST_P(SlamContract, RefusesARecordingWithoutLidar) {
@@ -169,6 +196,9 @@ TEST_P(SlamContract, CountsSweepsWithoutPoints) {
   const Estimate estimate = run(covered);
   ASSERT_TRUE(estimate.status.ok()) << estimate.status.message();
   EXPECT_EQ(estimate.health.at("sweeps_empty"), 1.0);
+  ASSERT_EQ(estimate.sweeps.size(), 60u);
+  EXPECT_EQ(estimate.sweeps[55].verdict, SweepVerdict::rejected);
+  EXPECT_NE(estimate.sweeps[56].verdict, SweepVerdict::rejected);
 }
 
 std::vector<Method> slam_methods() {

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <limits>
+
+#include "scenarios/recordings/hdf5_file.hpp"
+
+namespace tumble::scenarios::hdf5 {
+
+namespace {
+
+/// No text of ours comes near; a damaged length must not ask for all memory.
+constexpr std::size_t kLongestText = std::size_t{16} << 20;
+
+/// Text of `length` bytes, UTF-8, padded with zeros. The library refuses a length of 0.
+Handle text_type(std::size_t length) {
+  Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type.get(), std::max<std::size_t>(length, 1));
+  H5Tset_strpad(type.get(), H5T_STR_NULLPAD);
+  H5Tset_cset(type.get(), H5T_CSET_UTF8);
+  return type;
+}
+
+std::string until_zero(const char* text, std::size_t length) { return {text, std::find(text, text + length, '\0')}; }
+
+bool is_signed(const Handle& type) { return H5Tget_sign(type.get()) == H5T_SGN_2; }
+
+}  // namespace
+
+void Group::write_attribute(const std::string& name, const std::string& value) const {
+  const Handle type = text_type(value.size());
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Handle attribute(H5Acreate2(group_.get(), name.c_str(), type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  // c_str ends in a zero, which an empty text needs as its one byte
+  if (!attribute.valid() || H5Awrite(attribute.get(), type.get(), value.c_str()) < 0) fail(name, "cannot be written" + last_error());
+}
+
+void Group::write_attribute(const std::string& name, double value) const { write_number(name, Scalar::float64, &value); }
+void Group::write_attribute(const std::string& name, std::int64_t value) const { write_number(name, Scalar::int64, &value); }
+void Group::write_attribute(const std::string& name, std::uint64_t value) const { write_number(name, Scalar::uint64, &value); }
+
+void Group::write_number(const std::string& name, Scalar scalar, const void* value) const {
+  const hid_t type = memory_type(scalar);
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Handle attribute(H5Acreate2(group_.get(), name.c_str(), type, space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  if (!attribute.valid() || H5Awrite(attribute.get(), type, value) < 0) fail(name, "cannot be written" + last_error());
+}
+
+Handle Group::open_attribute(const std::string& name) const {
+  if (!has_attribute(name)) fail(name, "attribute is missing");
+  Handle attribute(H5Aopen(group_.get(), name.c_str(), H5P_DEFAULT), H5Aclose);
+  if (!attribute.valid()) fail(name, "attribute cannot be read" + last_error());
+  const Handle space(H5Aget_space(attribute.get()), H5Sclose);
+  if (H5Sget_simple_extent_npoints(space.get()) != 1) fail(name, "attribute must be a single value");
+  return attribute;
+}
+
+std::string Group::text_attribute(const std::string& name) const {
+  const Handle attribute = open_attribute(name);
+  const Handle type(H5Aget_type(attribute.get()), H5Tclose);
+  if (H5Tget_class(type.get()) != H5T_STRING) fail(name, "attribute must be text");
+  if (H5Tis_variable_str(type.get()) > 0) {  // as h5py writes them
+    char* text = nullptr;
+    if (H5Aread(attribute.get(), type.get(), &text) < 0 || text == nullptr) fail(name, "attribute cannot be read" + last_error());
+    std::string out(text);
+    H5free_memory(text);
+    return out;
+  }
+  std::string text(H5Tget_size(type.get()), '\0');
+  if (text.size() > kLongestText) fail(name, "text is longer than 16 MiB");
+  if (H5Aread(attribute.get(), type.get(), text.data()) < 0) fail(name, "attribute cannot be read" + last_error());
+  return until_zero(text.data(), text.size());
+}
+
+double Group::double_attribute(const std::string& name) const {
+  const Handle attribute = open_attribute(name);
+  const Handle type(H5Aget_type(attribute.get()), H5Tclose);
+  const H5T_class_t kind = H5Tget_class(type.get());
+  if (kind != H5T_FLOAT && kind != H5T_INTEGER) fail(name, "attribute must be a number");
+  double value = 0.0;
+  if (H5Aread(attribute.get(), H5T_NATIVE_DOUBLE, &value) < 0) fail(name, "attribute cannot be read" + last_error());
+  return value;
+}
+
+std::int64_t Group::int_attribute(const std::string& name) const {
+  const Handle attribute = open_attribute(name);
+  const Handle type(H5Aget_type(attribute.get()), H5Tclose);
+  if (H5Tget_class(type.get()) != H5T_INTEGER) fail(name, "attribute must be an integer");
+  std::int64_t value = 0;
+  if (H5Aread(attribute.get(), H5T_NATIVE_INT64, &value) < 0) fail(name, "attribute cannot be read" + last_error());
+  // the library clamps what does not fit
+  if (!is_signed(type) && value == std::numeric_limits<std::int64_t>::max()) fail(name, "attribute is too large");
+  return value;
+}
+
+std::uint64_t Group::uint_attribute(const std::string& name) const {
+  const Handle attribute = open_attribute(name);
+  const Handle type(H5Aget_type(attribute.get()), H5Tclose);
+  if (H5Tget_class(type.get()) != H5T_INTEGER) fail(name, "attribute must be an integer");
+  if (is_signed(type)) {
+    const std::int64_t value = int_attribute(name);
+    if (value < 0) fail(name, "attribute must not be negative");
+    return static_cast<std::uint64_t>(value);
+  }
+  std::uint64_t value = 0;
+  if (H5Aread(attribute.get(), H5T_NATIVE_UINT64, &value) < 0) fail(name, "attribute cannot be read" + last_error());
+  return value;
+}
+
+void Group::write_texts(const std::string& name, const std::vector<std::string>& texts) const {
+  std::size_t longest = 1;
+  for (const std::string& text : texts) longest = std::max(longest, text.size());
+  std::vector<char> block(longest * std::max<std::size_t>(texts.size(), 1), '\0');
+  for (std::size_t i = 0; i < texts.size(); ++i) std::copy(texts[i].begin(), texts[i].end(), block.begin() + static_cast<std::ptrdiff_t>(i * longest));
+  const Handle type = text_type(longest);
+  const hsize_t count = texts.size();
+  const Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose);
+  const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_obj_track_times(creation.get(), false);
+  const Handle dataset(H5Dcreate2(group_.get(), name.c_str(), type.get(), space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT), H5Dclose);
+  if (!dataset.valid() || H5Dwrite(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, block.data()) < 0) {
+    fail(name, "cannot be written" + last_error());
+  }
+}
+
+std::vector<std::string> Group::read_texts(const std::string& name) const {
+  const Handle dataset = open_dataset(name);
+  const Handle type(H5Dget_type(dataset.get()), H5Tclose);
+  const Handle space(H5Dget_space(dataset.get()), H5Sclose);
+  if (H5Tget_class(type.get()) != H5T_STRING) fail(name, "must hold text");
+  if (H5Sget_simple_extent_ndims(space.get()) != 1) fail(name, "must have one dimension");
+  hsize_t count = 0;
+  H5Sget_simple_extent_dims(space.get(), &count, nullptr);
+  std::vector<std::string> texts;
+  if (H5Tis_variable_str(type.get()) > 0) {
+    if (count > kLongestText / sizeof(char*)) fail(name, "has too many rows");
+    std::vector<char*> rows(count, nullptr);
+    if (count > 0 && H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) < 0) {
+      fail(name, "cannot be read" + last_error());
+    }
+    for (const char* row : rows) texts.emplace_back(row == nullptr ? "" : row);
+    H5Dvlen_reclaim(type.get(), space.get(), H5P_DEFAULT, rows.data());
+    return texts;
+  }
+  const std::size_t length = H5Tget_size(type.get());
+  if (length == 0 || count > kLongestText / length) fail(name, "is longer than 16 MiB");
+  std::vector<char> block(length * count);
+  if (count > 0 && H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, block.data()) < 0) {
+    fail(name, "cannot be read" + last_error());
+  }
+  for (std::size_t i = 0; i < count; ++i) texts.push_back(until_zero(block.data() + i * length, length));
+  return texts;
+}
+
+}  // namespace tumble::scenarios::hdf5

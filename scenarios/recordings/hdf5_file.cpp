@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/recordings/hdf5_file.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <system_error>
+
+#include "scenarios/errors.hpp"
+
+namespace tumble::scenarios::hdf5 {
+
+namespace {
+
+Handle open_file(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) throw BadInput(path.string() + ": no such file");
+  if (!std::filesystem::is_regular_file(status)) throw BadInput(path.string() + ": is not a regular file");
+  Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  if (file.valid()) return file;
+  const std::string reason = last_error();
+  if (std::filesystem::file_size(path, error) == 0) throw BadInput(path.string() + ": is empty");
+  throw BadInput(path.string() + ": truncated, damaged or not an HDF5 file" + reason);
+}
+
+/// The driver's memory, which it hands to `*user` when the file closes instead of freeing it: at that point, and not
+/// before, the superblock is complete (H5Fget_file_image of 1.10 leaves it with a stale checksum).
+H5FD_file_image_callbacks_t keep_image_in(void** user) {
+  H5FD_file_image_callbacks_t calls{};
+  calls.image_malloc = [](std::size_t size, H5FD_file_image_op_t, void*) { return std::malloc(size); };
+  calls.image_memcpy = [](void* to, const void* from, std::size_t size, H5FD_file_image_op_t, void*) {
+    return std::memcpy(to, from, size);
+  };
+  calls.image_realloc = [](void* old, std::size_t size, H5FD_file_image_op_t, void*) { return std::realloc(old, size); };
+  calls.image_free = [](void* memory, H5FD_file_image_op_t when, void* keeper) -> herr_t {
+    if (when != H5FD_FILE_IMAGE_OP_FILE_CLOSE) {
+      std::free(memory);
+    } else {
+      *static_cast<void**>(keeper) = memory;
+    }
+    return 0;
+  };
+  calls.udata_copy = [](void* keeper) { return keeper; };
+  calls.udata_free = [](void*) -> herr_t { return 0; };
+  calls.udata = user;
+  return calls;
+}
+
+/// Length that the superblock states (format specification, superblock version 3: byte 28); the driver's memory is longer.
+std::uint64_t stated_length(const void* image) {
+  std::uint64_t length = 0;
+  std::memcpy(&length, static_cast<const char*>(image) + 28, sizeof(length));
+  return length;
+}
+
+Handle create_in_memory(const std::string& name, void** image) {
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  constexpr std::size_t kGrowth = std::size_t{16} << 20;
+  // from 1.10 on every piece of metadata carries a checksum, so that flipped bytes are found by the library itself
+  H5FD_file_image_callbacks_t calls = keep_image_in(image);
+  if (H5Pset_fapl_core(access.get(), kGrowth, false) < 0 || H5Pset_file_image_callbacks(access.get(), &calls) < 0 ||
+      H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG) < 0 ||
+      H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_V110) < 0) {
+    throw BadInput(name + ": cannot be prepared" + last_error());
+  }
+  const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  H5Pset_obj_track_times(creation.get(), false);  // equal recordings give equal files
+  Handle file(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose);
+  if (!file.valid()) throw BadInput(name + ": cannot be prepared" + last_error());
+  return file;
+}
+
+Group root_of(const Handle& file, const std::string& name) {
+  Handle root(H5Gopen2(file.get(), "/", H5P_DEFAULT), H5Gclose);
+  if (!root.valid()) throw BadInput(name + ": has no root group" + last_error());
+  return Group(std::move(root), name, "");
+}
+
+}  // namespace
+
+std::string last_error() {
+  std::string text;
+  const H5E_walk2_t keep_first = [](unsigned level, const H5E_error2_t* error, void* out) -> herr_t {
+    if (level == 0 && error->desc != nullptr) *static_cast<std::string*>(out) = error->desc;
+    return 0;
+  };
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &text);
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text.empty() ? "" : " (" + text + ")";
+}
+
+Handle& Handle::operator=(Handle&& other) noexcept {
+  Handle moved(std::move(other));
+  std::swap(id_, moved.id_);
+  std::swap(close_, moved.close_);
+  return *this;
+}
+
+Handle::~Handle() {
+  if (id_ < 0) return;
+  const Silence silence;
+  close_(id_);
+}
+
+Silence::Silence() {
+  // after some damaged files the library cannot put its lists in order at exit and prints so; files here are closed by
+  // their handles, so nothing is lost without that
+  static const herr_t once = H5dont_atexit();
+  (void)once;
+  H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+Silence::~Silence() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
+
+void Group::fail(const std::string& name, const std::string& what) const {
+  throw BadInput(file_ + ": " + place_ + "/" + name + ": " + what);
+}
+
+Group Group::open(const std::string& name) const {
+  if (!has(name)) fail(name, "is missing");
+  Handle group(H5Gopen2(group_.get(), name.c_str(), H5P_DEFAULT), H5Gclose);
+  if (!group.valid()) fail(name, "is not a readable group" + last_error());
+  return Group(std::move(group), file_, place_ + "/" + name);
+}
+
+Group Group::create(const std::string& name) const {
+  const Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+  H5Pset_obj_track_times(creation.get(), false);
+  Handle group(H5Gcreate2(group_.get(), name.c_str(), H5P_DEFAULT, creation.get(), H5P_DEFAULT), H5Gclose);
+  if (!group.valid()) fail(name, "cannot be created" + last_error());
+  return Group(std::move(group), file_, place_ + "/" + name);
+}
+
+bool Group::has(const std::string& name) const { return H5Lexists(group_.get(), name.c_str(), H5P_DEFAULT) > 0; }
+
+std::size_t Group::count() const {
+  H5G_info_t info;
+  if (H5Gget_info(group_.get(), &info) < 0) fail("", "cannot be listed" + last_error());
+  return info.nlinks;
+}
+
+bool Group::has_attribute(const std::string& name) const { return H5Aexists(group_.get(), name.c_str()) > 0; }
+
+InputFile::InputFile(const std::filesystem::path& path) : file_(open_file(path)), root_(root_of(file_, path.string())) {}
+
+MemoryFile::MemoryFile(const std::string& name)
+    : name_(name), file_(create_in_memory(name, &image_)), root_(root_of(file_, name)) {}
+
+MemoryFile::~MemoryFile() {
+  root_ = Group();
+  file_ = Handle();
+  std::free(image_);
+}
+
+std::span<const std::byte> MemoryFile::close() {
+  root_ = Group();
+  file_ = Handle();
+  if (image_ == nullptr) throw BadInput(name_ + ": cannot be composed");
+  return {static_cast<const std::byte*>(image_), stated_length(image_)};
+}
+
+}  // namespace tumble::scenarios::hdf5

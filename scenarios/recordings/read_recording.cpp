@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/errors.hpp"
+#include "scenarios/recordings/recording_check.hpp"
+#include "scenarios/recordings/recording_fields.hpp"
+#include "scenarios/recordings/recording_file.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+/// Archive that reads every field out of a group.
+class Reader {
+ public:
+  explicit Reader(hdf5::Group group) : group_(std::move(group)) {}
+
+  void value(const char* name, std::string& value) { value = group_.text_attribute(name); }
+  void value(const char* name, double& value) { value = group_.double_attribute(name); }
+  void value(const char* name, std::int64_t& value) { value = group_.int_attribute(name); }
+  void pose(const char* name, Eigen::Isometry3d& pose) {
+    std::vector<Eigen::Vector4d> rows;
+    group_.read(name, rows);
+    if (rows.size() != 4 || rows[3] != Eigen::Vector4d(0.0, 0.0, 0.0, 1.0)) {
+      group_.fail(name, "must be a 4 x 4 matrix that ends in 0 0 0 1");
+    }
+    for (int i = 0; i < 3; ++i) pose.matrix().row(i) = rows[static_cast<std::size_t>(i)].transpose();
+  }
+  void point(const char* name, Eigen::Vector3d& point, const char*) {
+    std::vector<Eigen::Vector3d> rows;
+    group_.read(name, rows);
+    if (rows.size() != 1) group_.fail(name, "must have one row");
+    point = rows[0];
+  }
+  template <class Row>
+  void rows(const char* name, std::vector<Row>& rows, const char*, const char*, Storage) {
+    group_.read(name, rows);
+  }
+  void texts(const char* name, std::vector<std::string>& texts) { texts = group_.read_texts(name); }
+  template <class Record, class Fields>
+  void group(const char* name, Record& record, Fields&& fields) {
+    Reader inner(group_.open(name));
+    fields(inner, record);
+  }
+  template <class Record, class Fields>
+  void list(const char* name, std::vector<Record>& records, Fields&& fields) {
+    const hdf5::Group all = group_.open(name);
+    const std::size_t count = all.count();
+    for (std::size_t i = 0; i < count; ++i) {
+      Reader inner(all.open(std::to_string(i)));
+      fields(inner, records.emplace_back());
+    }
+  }
+
+  /// Absent in files that others wrote.
+  std::string digest_or_empty() const { return group_.has_attribute("digest") ? group_.text_attribute("digest") : ""; }
+
+ private:
+  hdf5::Group group_;
+};
+
+std::vector<sim::ContactTruth> from_columns(const ContactColumns& columns, const std::string& file) {
+  const std::size_t count = columns.time_ns.size();
+  for (const std::size_t other : {columns.point_W_m.size(), columns.normal_W.size(), columns.slip_velocity_W_m_s.size(),
+                                  columns.normal_force_n.size(), columns.surface_id.size()}) {
+    if (other != count) throw BadInput(file + ": truth/contacts: datasets differ in length");
+  }
+  std::vector<sim::ContactTruth> contacts(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    contacts[i] = {columns.time_ns[i],        columns.point_W_m[i],      columns.normal_W[i], columns.slip_velocity_W_m_s[i],
+                   columns.normal_force_n[i], columns.surface_id[i]};
+  }
+  return contacts;
+}
+
+void require_format(const hdf5::Group& root) {
+  if (!root.has_attribute("format") || root.text_attribute("format") != kRecordingFormat) {
+    root.fail("format", std::string("is not a recording: attribute must be '") + kRecordingFormat + "'");
+  }
+  const std::int64_t version = root.int_attribute("format_version");
+  if (version != kRecordingVersion) {
+    root.fail("format_version", "is " + std::to_string(version) + ", this build reads " + std::to_string(kRecordingVersion));
+  }
+}
+
+void require_sound(const std::string& file, const std::string& problem, const std::string& stored, const std::string& found) {
+  if (!problem.empty()) throw BadInput(file + ": " + problem);
+  if (!stored.empty() && stored != found) {
+    throw BadInput(file + ": damaged or changed: the digest of its data is " + found + ", the one stored " + stored);
+  }
+}
+
+}  // namespace
+
+ContactColumns to_columns(const std::vector<sim::ContactTruth>& contacts) {
+  ContactColumns out;
+  for (const sim::ContactTruth& contact : contacts) {
+    out.time_ns.push_back(contact.time_ns);
+    out.point_W_m.push_back(contact.point_W_m);
+    out.normal_W.push_back(contact.normal_W);
+    out.slip_velocity_W_m_s.push_back(contact.slip_velocity_W_m_s);
+    out.normal_force_n.push_back(contact.normal_force_n);
+    out.surface_id.push_back(contact.surface_id);
+  }
+  return out;
+}
+
+RecordingInfo read_info(const std::filesystem::path& path) {
+  const hdf5::InputFile file(path);
+  const hdf5::Group& root = file.root();
+  require_format(root);
+  RecordingInfo info;
+  info.format_version = kRecordingVersion;
+  info.scenario = root.text_attribute("scenario");
+  info.seed = root.uint_attribute("seed");
+  info.situation_yaml = root.text_attribute("situation_yaml");
+  info.tumble_version = root.text_attribute("tumble_version");
+  info.engine_version = root.text_attribute("engine_version");
+  info.attribution = root.text_attribute("attribution");
+  info.digest = root.text_attribute("digest");
+  info.has_truth = root.int_attribute("has_truth") != 0;
+  return info;
+}
+
+sim::Sensors read_sensors(const std::filesystem::path& path) {
+  const hdf5::InputFile file(path);
+  require_format(file.root());
+  Reader reader(file.root().open("sensors"));
+  sim::Sensors sensors;
+  sensors_fields(reader, sensors);
+  require_sound(path.string(), find_problem(sensors), reader.digest_or_empty(), digest(sensors, nullptr));
+  return sensors;
+}
+
+sim::Truth read_truth(const std::filesystem::path& path) {
+  const hdf5::InputFile file(path);
+  require_format(file.root());
+  if (!file.root().has("truth")) throw BadInput(path.string() + ": holds no truth (a real recording?)");
+  Reader reader(file.root().open("truth"));
+  sim::Truth truth;
+  ContactColumns contacts;
+  truth_fields(reader, truth, contacts);
+  truth.contacts = from_columns(contacts, path.string());
+  require_sound(path.string(), find_problem(truth), reader.digest_or_empty(), digest(truth));
+  return truth;
+}
+
+}  // namespace tumble::scenarios

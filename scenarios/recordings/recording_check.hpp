@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "sim/recording.hpp"
+
+namespace tumble::scenarios {
+
+/// What is inconsistent in it, as "sensors/imus/0: gyro has 5 rows, time_ns 6"; empty when all is well. Checks lengths,
+/// periods, calibrations (rotations), the order of sweeps, labels and surface ids. Does not judge readings: their NaN, gaps
+/// and time order are expected trouble that an estimator reports.
+std::string find_problem(const sim::Sensors& sensors);
+std::string find_problem(const sim::Truth& truth);
+
+/// Where the truth does not run parallel to the sensors; empty when it does.
+std::string find_mismatch(const sim::Sensors& sensors, const sim::Truth& truth);
+
+}  // namespace tumble::scenarios

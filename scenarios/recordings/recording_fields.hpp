@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scenarios/recordings/hdf5_file.hpp"
+#include "sim/recording.hpp"
+
+/// The one list of what a recording holds: names, units and columns of FORMAT.md. The writer, the reader and the digest
+/// are archives that visit it, so none of them can forget a field. Private to scenarios/recordings.
+///
+/// An archive has: value(name, text | double | int64), pose(name, isometry), point(name, vector, unit),
+/// rows(name, vector, unit, columns, storage), texts(name, strings), list(name, records, fields), group(name, record, fields).
+namespace tumble::scenarios {
+
+namespace hdf5 {
+template <> struct RowLayout<sim::ContactLabel> : Layout<Scalar::uint8, 1> {};
+}  // namespace hdf5
+
+/// How rows are stored: deflated where measured to pay, plain for the noise-like floats of a lidar (FORMAT.md).
+enum class Storage { plain, deflated };
+
+/// Contacts by column.
+struct ContactColumns {
+  std::vector<std::int64_t> time_ns;
+  std::vector<Eigen::Vector3d> point_W_m, normal_W, slip_velocity_W_m_s;
+  std::vector<double> normal_force_n;
+  std::vector<std::int32_t> surface_id;
+};
+
+inline constexpr const char* kXyz = "x y z";
+
+template <class Archive, class Imu>
+void imu_fields(Archive& archive, Imu& imu) {
+  archive.value("name", imu.name);
+  archive.value("device", imu.device);
+  archive.value("period_ns", imu.period_ns);
+  archive.value("stated_gyro_range_rad_s", imu.stated_gyro_range_rad_s);
+  archive.value("stated_accel_range_m_s2", imu.stated_accel_range_m_s2);
+  archive.value("gyro_noise_rad_s_sqrt_hz", imu.gyro_noise_rad_s_sqrt_hz);
+  archive.value("accel_noise_m_s2_sqrt_hz", imu.accel_noise_m_s2_sqrt_hz);
+  archive.pose("T_BI", imu.T_BI);
+  archive.rows("time_ns", imu.time_ns, "ns", "", Storage::deflated);
+  archive.rows("gyro_I_rad_s", imu.gyro_rad_s, "rad/s", kXyz, Storage::deflated);
+  archive.rows("accel_I_m_s2", imu.accel_m_s2, "m/s^2", kXyz, Storage::deflated);
+  archive.rows("clip_flags", imu.clip_flags, "1", "", Storage::deflated);
+}
+
+template <class Archive, class Lidar>
+void lidar_fields(Archive& archive, Lidar& lidar) {
+  archive.value("name", lidar.name);
+  archive.value("device", lidar.device);
+  archive.value("sweep_period_ns", lidar.sweep_period_ns);
+  archive.pose("T_BL", lidar.T_BL);
+  archive.rows("sweep_start_ns", lidar.sweep_start_ns, "ns", "", Storage::deflated);
+  archive.rows("sweep_first", lidar.sweep_first, "1", "", Storage::deflated);
+  archive.rows("position_L_m", lidar.position_L_m, "m", kXyz, Storage::plain);
+  archive.rows("range_m", lidar.range_m, "m", "", Storage::plain);
+  archive.rows("intensity", lidar.intensity, "1", "", Storage::plain);
+  archive.rows("offset_ns", lidar.offset_ns, "ns", "", Storage::deflated);
+  archive.rows("ring", lidar.ring, "1", "", Storage::deflated);
+}
+
+template <class Archive, class Sensors>
+void sensors_fields(Archive& archive, Sensors& sensors) {
+  archive.value("robot", sensors.robot);
+  archive.value("sphere_radius_m", sensors.sphere_radius_m);
+  archive.value("gravity_m_s2", sensors.gravity_m_s2);
+  archive.list("imus", sensors.imus, [](auto& inner, auto& imu) { imu_fields(inner, imu); });
+  archive.list("lidars", sensors.lidars, [](auto& inner, auto& lidar) { lidar_fields(inner, lidar); });
+}
+
+template <class Archive, class Contacts>
+void contact_fields(Archive& archive, Contacts& contacts) {
+  archive.rows("time_ns", contacts.time_ns, "ns", "", Storage::deflated);
+  archive.rows("point_W_m", contacts.point_W_m, "m", kXyz, Storage::deflated);
+  archive.rows("normal_W", contacts.normal_W, "1", kXyz, Storage::deflated);
+  archive.rows("slip_velocity_W_m_s", contacts.slip_velocity_W_m_s, "m/s", kXyz, Storage::deflated);
+  archive.rows("normal_force_n", contacts.normal_force_n, "N", "", Storage::deflated);
+  archive.rows("surface_id", contacts.surface_id, "1", "", Storage::deflated);
+}
+
+template <class Archive, class Imu>
+void imu_truth_fields(Archive& archive, Imu& imu) {
+  archive.value("name", imu.name);
+  archive.pose("T_BI", imu.T_BI);
+  archive.rows("rate_I_rad_s", imu.rate_rad_s, "rad/s", kXyz, Storage::deflated);
+  archive.rows("specific_force_I_m_s2", imu.specific_force_m_s2, "m/s^2", kXyz, Storage::deflated);
+  archive.rows("gyro_unclipped_I_rad_s", imu.gyro_unclipped_rad_s, "rad/s", kXyz, Storage::deflated);
+  archive.rows("accel_unclipped_I_m_s2", imu.accel_unclipped_m_s2, "m/s^2", kXyz, Storage::deflated);
+  archive.rows("gyro_bias_I_rad_s", imu.gyro_bias_rad_s, "rad/s", kXyz, Storage::deflated);
+  archive.rows("accel_bias_I_m_s2", imu.accel_bias_m_s2, "m/s^2", kXyz, Storage::deflated);
+}
+
+template <class Archive, class Lidar>
+void lidar_truth_fields(Archive& archive, Lidar& lidar) {
+  archive.value("name", lidar.name);
+  archive.pose("T_BL", lidar.T_BL);
+  archive.rows("hit_W_m", lidar.hit_W_m, "m", kXyz, Storage::plain);
+  archive.rows("surface_id", lidar.surface_id, "1", "", Storage::deflated);
+}
+
+/// `contacts` holds truth.contacts by column; truth.contacts itself is not visited.
+template <class Archive, class Truth, class Contacts>
+void truth_fields(Archive& archive, Truth& truth, Contacts& contacts) {
+  archive.value("period_ns", truth.period_ns);
+  archive.rows("p_WB_m", truth.p_WB_m, "m", kXyz, Storage::deflated);
+  archive.rows("q_WB", truth.q_WB, "1", "x y z w", Storage::deflated);
+  archive.rows("v_WB_m_s", truth.v_WB_m_s, "m/s", kXyz, Storage::deflated);
+  archive.rows("w_WB_B_rad_s", truth.w_WB_B_rad_s, "rad/s", kXyz, Storage::deflated);
+  archive.rows("f_B_m_s2", truth.f_B_m_s2, "m/s^2", kXyz, Storage::deflated);
+  archive.rows("label", truth.label, "1", "", Storage::deflated);
+  archive.point("p_BG_m", truth.p_BG_m, "m");
+  archive.texts("surfaces", truth.surfaces);
+  archive.group("contacts", contacts, [](auto& inner, auto& each) { contact_fields(inner, each); });
+  archive.list("imus", truth.imus, [](auto& inner, auto& imu) { imu_truth_fields(inner, imu); });
+  archive.list("lidars", truth.lidars, [](auto& inner, auto& lidar) { lidar_truth_fields(inner, lidar); });
+}
+
+ContactColumns to_columns(const std::vector<sim::ContactTruth>& contacts);
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <stdexcept>
+
+#include "scenarios/recordings/recording_check.hpp"
+#include "scenarios/recordings/recording_fields.hpp"
+#include "scenarios/recordings/recording_file.hpp"
+#include "scenarios/recordings/replace_file.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+/// Archive that writes every field into a group.
+class Writer {
+ public:
+  explicit Writer(hdf5::Group group) : group_(std::move(group)) {}
+
+  template <class Value>
+  void value(const char* name, const Value& value) {
+    group_.write_attribute(name, value);
+  }
+  void pose(const char* name, const Eigen::Isometry3d& pose) {
+    std::vector<Eigen::Vector4d> rows(4);
+    for (int i = 0; i < 3; ++i) rows[static_cast<std::size_t>(i)] = pose.matrix().row(i).transpose();
+    rows[3] = Eigen::Vector4d(0.0, 0.0, 0.0, 1.0);
+    group_.write(name, rows, "1, last column m", "", false);
+  }
+  void point(const char* name, const Eigen::Vector3d& point, const char* unit) {
+    group_.write(name, std::vector<Eigen::Vector3d>{point}, unit, kXyz, false);
+  }
+  template <class Row>
+  void rows(const char* name, const std::vector<Row>& rows, const char* unit, const char* columns, Storage storage) {
+    group_.write(name, rows, unit, columns, storage == Storage::deflated);
+  }
+  void texts(const char* name, const std::vector<std::string>& texts) { group_.write_texts(name, texts); }
+  template <class Record, class Fields>
+  void group(const char* name, const Record& record, Fields&& fields) {
+    Writer inner(group_.create(name));
+    fields(inner, record);
+  }
+  template <class Record, class Fields>
+  void list(const char* name, const std::vector<Record>& records, Fields&& fields) {
+    const hdf5::Group all = group_.create(name);
+    for (std::size_t i = 0; i < records.size(); ++i) {
+      Writer inner(all.create(std::to_string(i)));
+      fields(inner, records[i]);
+    }
+  }
+
+ private:
+  hdf5::Group group_;
+};
+
+void require_consistent(const sim::Sensors& sensors, const sim::Truth* truth) {
+  std::string problem = find_problem(sensors);
+  if (truth != nullptr && problem.empty()) problem = find_problem(*truth);
+  if (truth != nullptr && problem.empty()) problem = find_mismatch(sensors, *truth);
+  if (!problem.empty()) throw std::invalid_argument("recording: " + problem);
+}
+
+void write_info(const hdf5::Group& root, const RecordingInfo& info, const std::string& digest_of_all, bool has_truth) {
+  root.write_attribute("format", kRecordingFormat);
+  root.write_attribute("format_version", std::int64_t{kRecordingVersion});
+  root.write_attribute("scenario", info.scenario);
+  root.write_attribute("seed", info.seed);
+  root.write_attribute("situation_yaml", info.situation_yaml);
+  root.write_attribute("tumble_version", info.tumble_version);
+  root.write_attribute("engine_version", info.engine_version);
+  root.write_attribute("attribution", info.attribution);
+  root.write_attribute("digest", digest_of_all);
+  root.write_attribute("has_truth", std::int64_t{has_truth});
+}
+
+}  // namespace
+
+void write_recording(const std::filesystem::path& path, const RecordingInfo& info, const sim::Sensors& sensors,
+                     const sim::Truth* truth) {
+  require_consistent(sensors, truth);
+  hdf5::MemoryFile file(path.string());
+  write_info(file.root(), info, digest(sensors, truth), truth != nullptr);
+  {
+    Writer writer(file.root().create("sensors"));
+    writer.value("digest", digest(sensors, nullptr));
+    sensors_fields(writer, sensors);
+  }
+  if (truth != nullptr) {
+    Writer writer(file.root().create("truth"));
+    writer.value("digest", digest(*truth));
+    const ContactColumns contacts = to_columns(truth->contacts);
+    truth_fields(writer, *truth, contacts);
+  }
+  replace_file(path, file.close());
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include "sim/render/renderer.hpp"
+
+namespace tumble::sim {
+
+/// Where a camera stands: as MuJoCo's free camera has it.
+struct Framing {
+  Eigen::Vector3d look_at_W_m;
+  double distance_m;
+};
+
+/// The view's own framing, or one that keeps all its paths and robots within the picture.
+/// `robot_radius_m` is the room around a robot's origin, `fovy_rad` the vertical field of view.
+Framing frame(const View& view, double robot_radius_m, double fovy_rad);
+
+}  // namespace tumble::sim

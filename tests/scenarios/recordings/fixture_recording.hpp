@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/recordings/recording_file.hpp"
+
+namespace tumble::scenarios::fixture {
+
+/// Numbers without a pattern that a wrong order or a wrong type could hide behind.
+class Numbers {
+ public:
+  double next() { return std::sin(static_cast<double>(++count_) * 12.9898) * 43.758; }
+  Eigen::Vector3d vector() {
+    const double x = next(), y = next(), z = next();
+    return {x, y, z};
+  }
+  Eigen::Quaterniond quaternion() {
+    const double x = next(), y = next(), z = next(), w = next();
+    return Eigen::Quaterniond(w, x, y, z).normalized();
+  }
+  Eigen::Isometry3d pose() {
+    Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
+    out.linear() = quaternion().toRotationMatrix();
+    out.translation() = vector();
+    return out;
+  }
+
+ private:
+  int count_ = 0;
+};
+
+inline sim::ImuRecord imu_record(Numbers& numbers, const std::string& name, int samples) {
+  sim::ImuRecord imu{name, "mti30", 2500000, 7.854, 49.0, 5e-4, 6e-4, numbers.pose(), {}, {}, {}, {}};
+  for (int i = 0; i < samples; ++i) {
+    imu.time_ns.push_back(2500000 * (i + 1));
+    imu.gyro_rad_s.push_back(numbers.vector());
+    imu.accel_m_s2.push_back(numbers.vector());
+    imu.clip_flags.push_back(static_cast<std::uint8_t>(i % 64));
+  }
+  return imu;
+}
+
+inline sim::ImuTruth imu_truth(Numbers& numbers, const std::string& name, int samples) {
+  sim::ImuTruth truth;
+  truth.name = name;
+  truth.T_BI = numbers.pose();
+  for (auto* rows : {&truth.rate_rad_s, &truth.specific_force_m_s2, &truth.gyro_unclipped_rad_s, &truth.accel_unclipped_m_s2,
+                     &truth.gyro_bias_rad_s, &truth.accel_bias_m_s2}) {
+    for (int i = 0; i < samples; ++i) rows->push_back(numbers.vector());
+  }
+  return truth;
+}
+
+inline void add_lidar(Numbers& numbers, sim::Recording& recording, const std::string& name, int sweeps, int points_per_sweep) {
+  sim::LidarRecord lidar;
+  sim::LidarTruth truth;
+  lidar.name = truth.name = name;
+  lidar.device = "rs16";
+  lidar.T_BL = numbers.pose();
+  truth.T_BL = numbers.pose();
+  lidar.sweep_period_ns = 100000000;
+  lidar.sweep_first.push_back(0);
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    lidar.sweep_start_ns.push_back(100000000 * static_cast<std::int64_t>(sweep));
+    for (int i = 0; i < points_per_sweep; ++i) {
+      lidar.position_L_m.push_back(numbers.vector().cast<float>());
+      lidar.range_m.push_back(lidar.position_L_m.back().norm());
+      lidar.intensity.push_back(static_cast<float>(i % 256) / 255.0f);
+      lidar.offset_ns.push_back(static_cast<std::uint32_t>(i) * 3125u);
+      lidar.ring.push_back(static_cast<std::uint16_t>(i % 16));
+      truth.hit_W_m.push_back(numbers.vector().cast<float>());
+      truth.surface_id.push_back(i % 3 - 1);
+    }
+    lidar.sweep_first.push_back(lidar.position_L_m.size());
+  }
+  recording.sensors.lidars.push_back(lidar);
+  recording.truth.lidars.push_back(truth);
+}
+
+/// A recording with two IMUs, a lidar, contacts and every field different from its default.
+inline sim::Recording recording() {
+  Numbers numbers;
+  sim::Recording out;
+  out.sensors.robot = "sphere";
+  out.sensors.sphere_radius_m = 0.145;
+  out.sensors.gravity_m_s2 = 9.81;
+  sim::Truth& truth = out.truth;
+  truth.period_ns = 1000000;
+  truth.p_BG_m = numbers.vector();
+  truth.surfaces = {"terrain", "rock \xc3\xa9"};
+  for (const char* name : {"imu", "imu_reference"}) {
+    out.sensors.imus.push_back(imu_record(numbers, name, 70));
+    truth.imus.push_back(imu_truth(numbers, name, 70));
+  }
+  add_lidar(numbers, out, "lidar", 3, 50);
+  for (int i = 0; i < 40; ++i) {
+    truth.p_WB_m.push_back(numbers.vector());
+    truth.q_WB.push_back(numbers.quaternion());
+    truth.v_WB_m_s.push_back(numbers.vector());
+    truth.w_WB_B_rad_s.push_back(numbers.vector());
+    truth.f_B_m_s2.push_back(numbers.vector());
+    truth.label.push_back(static_cast<sim::ContactLabel>(i % 4));
+    if (i % 3 == 0) {
+      truth.contacts.push_back({i * 1000000, numbers.vector(), numbers.vector().normalized(), numbers.vector(),
+                                std::abs(numbers.next()), i % 2});
+    }
+  }
+  return out;
+}
+
+inline RecordingInfo info() {
+  RecordingInfo out;
+  out.scenario = "roll";
+  out.seed = 0xffffffffffffffffu;
+  out.situation_yaml = "scenario: roll\nseed: 1\n";
+  out.tumble_version = "0.1.0";
+  out.engine_version = "3.17.0";
+  out.attribution = "nobody, CC BY 4.0";
+  return out;
+}
+
+inline std::string bytes_of(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+inline void put(const std::filesystem::path& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes;
+}
+
+/// A folder of the test's own, gone afterwards.
+class Folder : public testing::Test {
+ protected:
+  Folder() {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = std::filesystem::path(testing::TempDir()) / (std::string("tumble_") + test->test_suite_name() + "_" + test->name());
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+  ~Folder() override { std::filesystem::remove_all(folder_); }
+  std::size_t files() const {
+    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder_), std::filesystem::directory_iterator()));
+  }
+  std::filesystem::path folder_;
+};
+
+/// Message of the BadInput that `call` throws; empty when it throws none.
+template <class Call>
+std::string complaint(Call&& call) {
+  try {
+    call();
+  } catch (const BadInput& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace tumble::scenarios::fixture

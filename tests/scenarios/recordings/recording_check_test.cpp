@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/recordings/recording_check.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "scenarios/recordings/fixture_recording.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(RecordingCheck, AcceptsASoundRecording) {
+  const sim::Recording recording = fixture::recording();
+  EXPECT_EQ(find_problem(recording.sensors), "");
+  EXPECT_EQ(find_problem(recording.truth), "");
+  EXPECT_EQ(find_mismatch(recording.sensors, recording.truth), "");
+  EXPECT_EQ(find_problem(sim::Sensors{}), "");
+  EXPECT_EQ(find_problem(sim::Truth{}), "");
+}
+
+TEST(RecordingCheck, LeavesReadingsToTheEstimator) {
+  sim::Sensors sensors = fixture::recording().sensors;
+  sensors.imus[0].gyro_rad_s[3].setConstant(std::nan(""));
+  sensors.imus[0].time_ns[3] = sensors.imus[0].time_ns[2];
+  EXPECT_EQ(find_problem(sensors), "");
+}
+
+TEST(RecordingCheck, NamesWhatContradicts) {
+  struct Case {
+    std::function<void(sim::Sensors&)> spoil;
+    const char* problem;
+  };
+  const double nan = std::nan("");
+  const std::vector<Case> cases = {
+      {[](auto& s) { s.imus[1].gyro_rad_s.pop_back(); }, "sensors/imus/1: gyro_I_rad_s has 69 rows, time_ns has 70"},
+      {[](auto& s) { s.imus[1].accel_m_s2.clear(); }, "accel_I_m_s2 has 0 rows"},
+      {[](auto& s) { s.imus[1].clip_flags.push_back(0); }, "clip_flags has 71 rows"},
+      {[](auto& s) { s.imus[0].period_ns = 0; }, "sensors/imus/0: period_ns is 0"},
+      {[nan](auto& s) { s.imus[0].stated_gyro_range_rad_s = nan; }, "stated_gyro_range_rad_s is nan"},
+      {[](auto& s) { s.imus[0].T_BI.linear() *= 1.001; }, "T_BI is not a rotation"},
+      {[](auto& s) { s.imus[0].T_BI.linear() *= -1.0; }, "T_BI is not a rotation"},
+      {[nan](auto& s) { s.imus[0].T_BI.translation().x() = nan; }, "T_BI is not finite"},
+      {[nan](auto& s) { s.gravity_m_s2 = nan; }, "gravity_m_s2 is nan"},
+      {[](auto& s) { s.sphere_radius_m = -1; }, "sphere_radius_m"},
+      {[](auto& s) { s.lidars[0].sweep_period_ns = -1; }, "sweep_period_ns is -1"},
+      {[](auto& s) { s.lidars[0].ring.pop_back(); }, "ring has 149 rows"},
+      {[](auto& s) { s.lidars[0].sweep_first.pop_back(); }, "one more than sweep_start_ns (3)"},
+      {[](auto& s) { s.lidars[0].sweep_first = {0, 100, 50, 150}; }, "sweep_first falls"},
+      {[](auto& s) { s.lidars[0].sweep_first.back() = 149; }, "must go from 0 to the number of points, 150"},
+      {[](auto& s) { s.lidars[0].sweep_first.front() = 1; }, "must go from 0"},
+      {[](auto& s) { s.lidars[0].sweep_start_ns[1] = 0; }, "sweep_start_ns does not rise"}};
+  for (const Case& each : cases) {
+    sim::Sensors sensors = fixture::recording().sensors;
+    each.spoil(sensors);
+    EXPECT_THAT(find_problem(sensors), HasSubstr(each.problem));
+  }
+}
+
+TEST(RecordingCheck, NamesWhatContradictsInTheTruth) {
+  struct Case {
+    std::function<void(sim::Truth&)> spoil;
+    const char* problem;
+  };
+  const std::vector<Case> cases = {
+      {[](auto& t) { t.q_WB.pop_back(); }, "truth: q_WB has 39 rows, p_WB_m has 40"},
+      {[](auto& t) { t.label.clear(); }, "label has 0 rows"},
+      {[](auto& t) { t.period_ns = 0; }, "truth: period_ns is 0"},
+      {[](auto& t) { t.q_WB[3].coeffs() *= 1.01; }, "q_WB is not of unit length"},
+      {[](auto& t) { t.q_WB[3].coeffs().setZero(); }, "q_WB is not of unit length"},
+      {[](auto& t) { t.label[3] = static_cast<sim::ContactLabel>(4); }, "label 4 is unknown"},
+      {[](auto& t) { t.contacts[3].time_ns = 0; }, "contacts/time_ns: falls"},
+      {[](auto& t) { t.contacts[3].surface_id = 2; }, "surface_id 2 has no name"},
+      {[](auto& t) { t.lidars[0].surface_id[3] = -2; }, "truth/lidars/0: surface_id -2"},
+      {[](auto& t) { t.lidars[0].hit_W_m.pop_back(); }, "surface_id has 150 rows, hit_W_m has 149"},
+      {[](auto& t) { t.imus[1].gyro_bias_rad_s.clear(); }, "truth/imus/1: gyro_bias_I_rad_s has 0 rows"},
+      {[](auto& t) { t.p_BG_m.x() = std::numeric_limits<double>::infinity(); }, "p_BG_m is not finite"}};
+  for (const Case& each : cases) {
+    sim::Truth truth = fixture::recording().truth;
+    each.spoil(truth);
+    EXPECT_THAT(find_problem(truth), HasSubstr(each.problem));
+  }
+}
+
+TEST(RecordingCheck, TruthMustRunParallelToTheSensors) {
+  sim::Recording recording = fixture::recording();
+  recording.truth.imus.pop_back();
+  EXPECT_THAT(find_mismatch(recording.sensors, recording.truth), HasSubstr("number of IMUs"));
+  recording = fixture::recording();
+  fixture::Numbers numbers;
+  recording.truth.imus[1] = fixture::imu_truth(numbers, "imu_reference", 71);
+  EXPECT_THAT(find_mismatch(recording.sensors, recording.truth), HasSubstr("imus/1: truth rate_I_rad_s has 71 rows"));
+}
+
+}  // namespace
+}  // namespace tumble::scenarios

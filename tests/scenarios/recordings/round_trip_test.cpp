@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <hdf5.h>
+
+#include <limits>
+
+#include "scenarios/recordings/fixture_recording.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+using fixture::info;
+using RoundTrip = fixture::Folder;
+
+// The digest is one check over every field; the fields compared one by one below do not depend on it.
+TEST_F(RoundTrip, EveryFieldComesBackExactly) {
+  const sim::Recording recording = fixture::recording();
+  const std::filesystem::path path = folder_ / "a.h5";
+  write_recording(path, info(), recording.sensors, &recording.truth);
+  EXPECT_EQ(files(), 1u) << "no temporary file stays";
+  const sim::Sensors sensors = read_sensors(path);
+  const sim::Truth truth = read_truth(path);
+  EXPECT_EQ(digest(sensors, &truth), digest(recording.sensors, &recording.truth));
+
+  EXPECT_EQ(sensors.robot, "sphere");
+  EXPECT_EQ(sensors.sphere_radius_m, 0.145);
+  EXPECT_EQ(sensors.gravity_m_s2, 9.81);
+  ASSERT_EQ(sensors.imus.size(), 2u);
+  const sim::ImuRecord& imu = sensors.imus[1];
+  const sim::ImuRecord& given = recording.sensors.imus[1];
+  EXPECT_EQ(imu.name, "imu_reference");
+  EXPECT_EQ(imu.device, given.device);
+  EXPECT_EQ(imu.period_ns, given.period_ns);
+  EXPECT_EQ(imu.stated_gyro_range_rad_s, given.stated_gyro_range_rad_s);
+  EXPECT_EQ(imu.stated_accel_range_m_s2, given.stated_accel_range_m_s2);
+  EXPECT_EQ(imu.gyro_noise_rad_s_sqrt_hz, given.gyro_noise_rad_s_sqrt_hz);
+  EXPECT_EQ(imu.accel_noise_m_s2_sqrt_hz, given.accel_noise_m_s2_sqrt_hz);
+  EXPECT_EQ(imu.T_BI.matrix(), given.T_BI.matrix());
+  EXPECT_EQ(imu.time_ns, given.time_ns);
+  EXPECT_EQ(imu.gyro_rad_s, given.gyro_rad_s);
+  EXPECT_EQ(imu.accel_m_s2, given.accel_m_s2);
+  EXPECT_EQ(imu.clip_flags, given.clip_flags);
+  ASSERT_EQ(sensors.lidars.size(), 1u);
+  const sim::LidarRecord& lidar = sensors.lidars[0];
+  const sim::LidarRecord& given_lidar = recording.sensors.lidars[0];
+  EXPECT_EQ(lidar.T_BL.matrix(), given_lidar.T_BL.matrix());
+  EXPECT_EQ(lidar.sweep_period_ns, given_lidar.sweep_period_ns);
+  EXPECT_EQ(lidar.sweep_start_ns, given_lidar.sweep_start_ns);
+  EXPECT_EQ(lidar.sweep_first, given_lidar.sweep_first);
+  EXPECT_EQ(lidar.position_L_m, given_lidar.position_L_m);
+  EXPECT_EQ(lidar.range_m, given_lidar.range_m);
+  EXPECT_EQ(lidar.intensity, given_lidar.intensity);
+  EXPECT_EQ(lidar.offset_ns, given_lidar.offset_ns);
+  EXPECT_EQ(lidar.ring, given_lidar.ring);
+}
+
+TEST_F(RoundTrip, EveryFieldOfTheTruthComesBackExactly) {
+  const sim::Recording recording = fixture::recording();
+  const std::filesystem::path path = folder_ / "a.h5";
+  write_recording(path, info(), recording.sensors, &recording.truth);
+  const sim::Truth truth = read_truth(path);
+  const sim::Truth& given = recording.truth;
+  EXPECT_EQ(truth.period_ns, given.period_ns);
+  EXPECT_EQ(truth.p_WB_m, given.p_WB_m);
+  ASSERT_EQ(truth.q_WB.size(), given.q_WB.size());
+  EXPECT_EQ(truth.q_WB[7].coeffs(), given.q_WB[7].coeffs());
+  EXPECT_EQ(truth.v_WB_m_s, given.v_WB_m_s);
+  EXPECT_EQ(truth.w_WB_B_rad_s, given.w_WB_B_rad_s);
+  EXPECT_EQ(truth.f_B_m_s2, given.f_B_m_s2);
+  EXPECT_EQ(truth.label, given.label);
+  EXPECT_EQ(truth.p_BG_m, given.p_BG_m);
+  EXPECT_EQ(truth.surfaces, given.surfaces);
+  ASSERT_EQ(truth.contacts.size(), given.contacts.size());
+  EXPECT_EQ(truth.contacts[5].time_ns, given.contacts[5].time_ns);
+  EXPECT_EQ(truth.contacts[5].point_W_m, given.contacts[5].point_W_m);
+  EXPECT_EQ(truth.contacts[5].normal_W, given.contacts[5].normal_W);
+  EXPECT_EQ(truth.contacts[5].slip_velocity_W_m_s, given.contacts[5].slip_velocity_W_m_s);
+  EXPECT_EQ(truth.contacts[5].normal_force_n, given.contacts[5].normal_force_n);
+  EXPECT_EQ(truth.contacts[5].surface_id, given.contacts[5].surface_id);
+  ASSERT_EQ(truth.imus.size(), 2u);
+  EXPECT_EQ(truth.imus[1].name, "imu_reference");
+  EXPECT_EQ(truth.imus[1].T_BI.matrix(), given.imus[1].T_BI.matrix());
+  EXPECT_EQ(truth.imus[1].rate_rad_s, given.imus[1].rate_rad_s);
+  EXPECT_EQ(truth.imus[1].specific_force_m_s2, given.imus[1].specific_force_m_s2);
+  EXPECT_EQ(truth.imus[1].gyro_unclipped_rad_s, given.imus[1].gyro_unclipped_rad_s);
+  EXPECT_EQ(truth.imus[1].accel_unclipped_m_s2, given.imus[1].accel_unclipped_m_s2);
+  EXPECT_EQ(truth.imus[1].gyro_bias_rad_s, given.imus[1].gyro_bias_rad_s);
+  EXPECT_EQ(truth.imus[1].accel_bias_m_s2, given.imus[1].accel_bias_m_s2);
+  ASSERT_EQ(truth.lidars.size(), 1u);
+  EXPECT_EQ(truth.lidars[0].hit_W_m, given.lidars[0].hit_W_m);
+  EXPECT_EQ(truth.lidars[0].surface_id, given.lidars[0].surface_id);
+}
+
+TEST_F(RoundTrip, InfoComesBackAndTheWriterFillsItsOwnPart) {
+  const sim::Recording recording = fixture::recording();
+  RecordingInfo given = info();
+  given.situation_yaml = std::string(200000, 'y');  // larger than an object header holds
+  given.digest = "wrong";
+  write_recording(folder_ / "a.h5", given, recording.sensors, &recording.truth);
+  const RecordingInfo found = read_info(folder_ / "a.h5");
+  EXPECT_EQ(found.format_version, 1);
+  EXPECT_EQ(found.scenario, given.scenario);
+  EXPECT_EQ(found.seed, given.seed);
+  EXPECT_EQ(found.situation_yaml, given.situation_yaml);
+  EXPECT_EQ(found.tumble_version, given.tumble_version);
+  EXPECT_EQ(found.engine_version, given.engine_version);
+  EXPECT_EQ(found.attribution, given.attribution);
+  EXPECT_EQ(found.digest, digest(recording.sensors, &recording.truth));
+  EXPECT_TRUE(found.has_truth);
+}
+
+TEST_F(RoundTrip, ARealRecordingHasNoTruth) {
+  const sim::Recording recording = fixture::recording();
+  const std::filesystem::path path = folder_ / "real.h5";
+  write_recording(path, {}, recording.sensors, nullptr);
+  EXPECT_FALSE(read_info(path).has_truth);
+  EXPECT_EQ(read_info(path).digest, digest(read_sensors(path), nullptr));
+  EXPECT_EQ(fixture::complaint([&] { read_truth(path); }), path.string() + ": holds no truth (a real recording?)");
+}
+
+TEST_F(RoundTrip, EmptyAndOddContentIsKept) {
+  sim::Sensors sensors;
+  write_recording(folder_ / "empty.h5", {}, sensors, nullptr);
+  EXPECT_EQ(digest(read_sensors(folder_ / "empty.h5"), nullptr), digest(sensors, nullptr));
+
+  fixture::Numbers numbers;
+  sensors.imus.push_back(fixture::imu_record(numbers, "", 0));
+  sensors.imus.push_back(fixture::imu_record(numbers, "a/b", 1));
+  sensors.imus[1].gyro_rad_s[0].x() = std::numeric_limits<double>::quiet_NaN();
+  sensors.imus[1].accel_m_s2[0].x() = -0.0;
+  sensors.lidars.emplace_back();
+  sensors.lidars.back().sweep_period_ns = 1;
+  sim::Truth truth;
+  truth.imus.resize(2);
+  truth.imus[1] = fixture::imu_truth(numbers, "a/b", 1);
+  truth.lidars.resize(1);
+  write_recording(folder_ / "odd.h5", {}, sensors, &truth);
+  const sim::Truth truth_back = read_truth(folder_ / "odd.h5");
+  EXPECT_EQ(digest(read_sensors(folder_ / "odd.h5"), &truth_back), digest(sensors, &truth));
+}
+
+TEST_F(RoundTrip, EqualRecordingsGiveEqualFiles) {
+  const sim::Recording recording = fixture::recording();
+  for (const char* name : {"a.h5", "b.h5"}) write_recording(folder_ / name, info(), recording.sensors, &recording.truth);
+  EXPECT_TRUE(fixture::bytes_of(folder_ / "a.h5") == fixture::bytes_of(folder_ / "b.h5"));
+  sim::Sensors other = recording.sensors;
+  other.imus[0].gyro_rad_s[3].x() += 1e-15;
+  write_recording(folder_ / "b.h5", info(), other, &recording.truth);
+  EXPECT_FALSE(fixture::bytes_of(folder_ / "a.h5") == fixture::bytes_of(folder_ / "b.h5"));
+}
+
+TEST_F(RoundTrip, ContradictingDataAreRefusedBeforeAnyFileIsTouched) {
+  sim::Recording recording = fixture::recording();
+  recording.sensors.imus[0].time_ns.pop_back();
+  EXPECT_THROW(write_recording(folder_ / "a.h5", info(), recording.sensors, &recording.truth), std::invalid_argument);
+  EXPECT_EQ(files(), 0u);
+}
+
+/// Names of all datasets under a file's root, with their attribute `unit`.
+herr_t note_dataset(hid_t root, const char* name, const H5O_info_t* object, void* out) {
+  if (object->type == H5O_TYPE_DATASET) {
+    const htri_t has_unit = H5Aexists_by_name(root, name, "unit", H5P_DEFAULT);
+    static_cast<std::vector<std::pair<std::string, bool>>*>(out)->emplace_back(name, has_unit > 0);
+  }
+  return 0;
+}
+
+// FORMAT.md promises a unit on each dataset of numbers and describes each by name.
+TEST_F(RoundTrip, EveryDatasetHasAUnitAndIsDocumented) {
+  const sim::Recording recording = fixture::recording();
+  write_recording(folder_ / "a.h5", info(), recording.sensors, &recording.truth);
+  const std::string page = fixture::bytes_of(std::string(TUMBLE_SOURCE_DIR) + "/scenarios/recordings/FORMAT.md");
+  std::vector<std::pair<std::string, bool>> datasets;
+  const hid_t file = H5Fopen((folder_ / "a.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, note_dataset, &datasets, H5O_INFO_BASIC);
+  H5Fclose(file);
+  EXPECT_EQ(datasets.size(), 2 * 5 + 9 + 8 + 6 + 2 * 7 + 3u);
+  for (const auto& [name, has_unit] : datasets) {
+    EXPECT_TRUE(has_unit || name == "truth/surfaces") << name;
+    EXPECT_THAT(page, testing::HasSubstr("`" + name.substr(name.rfind('/') + 1) + "`"));
+  }
+}
+
+}  // namespace
+}  // namespace tumble::scenarios

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "scenarios/methods/method.hpp"
+#include "scenarios/methods/synthetic_recording.hpp"
+#include "scenarios/scoring/score.hpp"
+#include "scenarios/scoring/truth_track.hpp"
+
+namespace tumble::scenarios::testing {
+
+/// An estimate that is the truth: rates at the samples, attitudes and poses of `frame` at IMU times, sweeps with the truth
+/// inside, a map of the true hits.
+inline Estimate perfect_estimate(const sim::Recording& recording, Frame frame = Frame::imu) {
+  Estimate estimate;
+  estimate.frame = frame;
+  const TruthTrack truth(recording.truth, frame);
+  const sim::ImuRecord& imu = recording.sensors.imus.front();
+  for (std::size_t k = 0; k < imu.time_ns.size(); ++k) {
+    RateState rate;
+    rate.time_ns = imu.time_ns[k];
+    rate.w_WI_I_rad_s = recording.truth.imus.front().rate_rad_s[k];
+    rate.covariance_rad2_s2 = 1e-6 * Eigen::Matrix3d::Identity();
+    estimate.rates.push_back(rate);
+    const PoseState pose = truth.pose(imu.time_ns[k]);
+    estimate.attitudes.push_back({pose.time_ns, pose.q_WA, Eigen::Matrix3d::Zero()});
+    estimate.poses.push_back(pose);
+  }
+  if (recording.sensors.lidars.empty()) return estimate;
+  const sim::LidarRecord& lidar = recording.sensors.lidars.front();
+  for (std::size_t k = 0; k < lidar.sweep_start_ns.size(); ++k) {
+    LidarInertialOdometry::SweepReport sweep;
+    sweep.verdict = k == 0 ? SweepVerdict::first : SweepVerdict::registered;
+    const std::int64_t end_ns = lidar.sweep_start_ns[k] + lidar.sweep_period_ns;
+    for (const PoseState& pose : estimate.poses) {
+      if (pose.time_ns > lidar.sweep_start_ns[k] && pose.time_ns <= end_ns) sweep.trajectory.push_back(pose);
+    }
+    sweep.pose = truth.pose(end_ns);
+    estimate.sweeps.push_back(sweep);
+    estimate.sweep_end_ns.push_back(end_ns);
+  }
+  for (const Eigen::Vector3f& hit : recording.truth.lidars.front().hit_W_m) {
+    MapPoint point;
+    point.position_W_m = hit;
+    estimate.map.push_back(point);
+  }
+  return estimate;
+}
+
+/// The estimate in a world of its own: everything moved and turned by `T`.
+inline void move_world(const Eigen::Isometry3d& T, Estimate& estimate) {
+  const Eigen::Quaterniond q(T.linear());
+  const auto move = [&](PoseState& pose) {
+    pose.p_WA_m = T * pose.p_WA_m;
+    pose.q_WA = q * pose.q_WA;
+    pose.v_WA_m_s = q * pose.v_WA_m_s;
+  };
+  for (AttitudeState& attitude : estimate.attitudes) attitude.q_WA = q * attitude.q_WA;
+  for (PoseState& pose : estimate.poses) move(pose);
+  for (auto& sweep : estimate.sweeps) {
+    move(sweep.pose);
+    for (PoseState& pose : sweep.trajectory) move(pose);
+  }
+  for (MapPoint& point : estimate.map) point.position_W_m = (T * point.position_W_m.cast<double>()).cast<float>();
+}
+
+inline std::map<std::string, double> scores(Kind kind, const Estimate& estimate, const sim::Recording& recording,
+                                            const sim::Surface* surface = nullptr) {
+  std::map<std::string, double> values;
+  for (const Score& one : score(kind, estimate, {&recording.sensors, &recording.truth, surface})) {
+    values[one.metric] = one.value;
+  }
+  return values;
+}
+
+inline std::string verdict_of(Kind kind, const Estimate& estimate, const sim::Recording& recording) {
+  return verdict(kind, estimate, {&recording.sensors, &recording.truth, nullptr});
+}
+
+}  // namespace tumble::scenarios::testing

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/scoring/score.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/scoring/clipping.hpp"
+#include "scenarios/scoring/perfect_estimate.hpp"
+#include "tumble/common/so3.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+using testing::move_world;
+using testing::perfect_estimate;
+using testing::scores;
+using testing::verdict_of;
+
+const sim::Recording& rig() {
+  static const sim::Recording recording = testing::synthetic_rig();
+  return recording;
+}
+
+Eigen::Isometry3d turned_world() {
+  return Eigen::Translation3d(3.0, -7.0, 2.0) * Eigen::AngleAxisd(2.5, Eigen::Vector3d::UnitZ());
+}
+
+Eigen::Isometry3d tilted_world(double tilt_rad) {
+  return Eigen::Isometry3d(Eigen::AngleAxisd(tilt_rad, Eigen::Vector3d::UnitX()));
+}
+
+TEST(Metrics, AreNamedByTheirUnitAndDescribed) {
+  std::set<std::pair<Kind, std::string>> names;
+  ASSERT_GE(metrics().size(), 25u);
+  for (const Metric& metric : metrics()) {
+    EXPECT_TRUE(names.emplace(metric.kind, metric.name).second) << metric.name;
+    EXPECT_NE(metric.doc, "") << metric.name;
+    std::string ending = metric.unit == "1" ? "" : "_" + metric.unit;
+    std::replace(ending.begin(), ending.end(), '/', '_');
+    EXPECT_TRUE(metric.name.ends_with(ending)) << metric.name;
+  }
+}
+
+// every metric of every kind, for an estimate that is the truth in a world of its own
+TEST(Metrics, OfTheTruthAreZeroWhereverItsWorldStands) {
+  const std::set<std::string> shares = {"rate_coverage_3sigma", "map_coverage"};
+  for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
+    Estimate estimate = perfect_estimate(rig());
+    move_world(turned_world(), estimate);
+    const auto values = scores(kind, estimate, rig());
+    ASSERT_GE(values.size(), 4u) << to_string(kind);
+    for (const auto& [name, value] : values) {
+      // rounding, and the truth's own interpolation
+      EXPECT_NEAR(value, shares.contains(name) ? 1.0 : 0.0, 1e-9) << name;
+    }
+    EXPECT_EQ(verdict_of(kind, estimate, rig()), "ok");
+  }
+}
+
+TEST(RateScores, AnOffsetIsItsOwnError) {
+  Estimate estimate = perfect_estimate(rig());
+  const ClippingTruth truth(rig().sensors, rig().truth);
+  for (std::size_t k = 0; k < estimate.rates.size(); ++k) {
+    const double error = truth.clipped_axes(k) ? 5.0 : 0.5;
+    estimate.rates[k].w_WI_I_rad_s += error * Eigen::Vector3d(0.6, 0.0, 0.8);
+  }
+  const auto values = scores(Kind::rate, estimate, rig());
+  EXPECT_NEAR(values.at("rate_error_clipped_median_rad_s"), 5.0, 1e-12);
+  EXPECT_NEAR(values.at("rate_error_clipped_p99_rad_s"), 5.0, 1e-12);
+  EXPECT_NEAR(values.at("rate_error_free_median_rad_s"), 0.5, 1e-12);
+}
+
+TEST(RateScores, CoverageCountsClippedAxesWithinThreeSigma) {
+  Estimate estimate = perfect_estimate(rig());
+  const ClippingTruth truth(rig().sensors, rig().truth);
+  int total = 0;
+  int within = 0;
+  for (std::size_t k = 0; k < estimate.rates.size(); ++k) {
+    estimate.rates[k].covariance_rad2_s2 = 0.04 * Eigen::Matrix3d::Identity();
+    for (int j = 0; j < 3; ++j) {
+      const bool far = k % 3 == 0;
+      // an error on a free axis must not count
+      estimate.rates[k].w_WI_I_rad_s[j] += truth.clipped_axes(k) >> j & 1 ? (far ? 0.61 : 0.59) : 100.0;
+      if (!(truth.clipped_axes(k) >> j & 1)) continue;
+      total += 1;
+      within += far ? 0 : 1;
+    }
+  }
+  ASSERT_GT(total, 50);
+  EXPECT_NEAR(scores(Kind::rate, estimate, rig()).at("rate_coverage_3sigma"), static_cast<double>(within) / total, 1e-15);
+}
+
+TEST(RateScores, WithoutClippingThereIsNothingToScoreClipped) {
+  testing::SyntheticMotion motion;
+  motion.rail_rad_s = 50.0;
+  const sim::Recording recording = testing::synthetic_rig(motion);
+  const auto values = scores(Kind::rate, perfect_estimate(recording), recording);
+  EXPECT_FALSE(values.contains("rate_error_clipped_median_rad_s"));
+  EXPECT_FALSE(values.contains("rate_coverage_3sigma"));
+  EXPECT_TRUE(values.contains("rate_error_free_median_rad_s"));
+}
+
+TEST(RateScores, OneNaNSpoilsTheFigure) {
+  Estimate estimate = perfect_estimate(rig());
+  estimate.rates[600].w_WI_I_rad_s.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(std::isnan(scores(Kind::rate, estimate, rig()).at("rate_error_clipped_median_rad_s")));
+  EXPECT_EQ(verdict_of(Kind::rate, estimate, rig()), "diverged");
+}
+
+TEST(AttitudeScores, SplitTheErrorAsBroadDoes) {
+  // tilt about a horizontal axis after a turn about z: inclination and heading are the two angles
+  const double tilt = 0.1;
+  const double yaw = 0.3;
+  Estimate estimate = perfect_estimate(rig());
+  for (std::size_t k = 1; k < estimate.attitudes.size(); ++k) {
+    estimate.attitudes[k].q_WA = Eigen::AngleAxisd(tilt, Eigen::Vector3d::UnitX()) *
+                                 Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) * estimate.attitudes[k].q_WA;
+  }
+  const auto values = scores(Kind::attitude, estimate, rig());
+  EXPECT_NEAR(values.at("inclination_rmse_rad"), tilt, 1e-9);
+  EXPECT_NEAR(values.at("heading_rmse_rad"), yaw, 1e-9);
+  EXPECT_NEAR(values.at("attitude_rmse_rad"), 2.0 * std::acos(std::cos(tilt / 2) * std::cos(yaw / 2)), 1e-9);
+  // the first sample is right and at rest: sqrt((n - 1) / n) of the others
+  EXPECT_NEAR(values.at("inclination_rmse_rest_rad"), tilt, 1e-3);
+}
+
+TEST(AttitudeScores, AHeadingAtTheStartIsRemovedATiltIsNot) {
+  Estimate estimate = perfect_estimate(rig());
+  move_world(tilted_world(0.05), estimate);
+  const auto values = scores(Kind::attitude, estimate, rig());
+  EXPECT_NEAR(values.at("inclination_rmse_rad"), 0.05, 1e-9);
+  EXPECT_NEAR(values.at("attitude_rmse_rest_rad"), 0.05, 1e-9);
+}
+
+TEST(AttitudeScores, JitterIsTheStepAtStandstillAlone) {
+  Estimate estimate = perfect_estimate(rig());
+  const double step = 1e-3;
+  for (std::size_t k = 0; k < estimate.attitudes.size(); k += 2) {
+    estimate.attitudes[k].q_WA = estimate.attitudes[k].q_WA * so3::exp(Eigen::Vector3d(0, step, 0));
+  }
+  EXPECT_NEAR(scores(Kind::attitude, estimate, rig()).at("attitude_step_rest_rms_rad"), step, 1e-8);
+}
+
+TEST(PositionScores, AGrowingOffsetGivesKnownErrors) {
+  // the estimate goes 10 % too far along the body's straight way, and 3 cm up on the way
+  Estimate estimate = perfect_estimate(rig(), Frame::body);
+  const Eigen::Vector3d start = estimate.poses.front().p_WA_m;
+  for (PoseState& pose : estimate.poses) pose.p_WA_m = start + 1.1 * (pose.p_WA_m - start);
+  const testing::SyntheticMotion motion;
+  const double length = motion.displacement_m.norm();
+  const auto values = scores(Kind::position, estimate, rig());
+  EXPECT_NEAR(values.at("position_end_error_m"), 0.1 * length, 1e-9);
+  EXPECT_NEAR(values.at("position_end_error_share"), 0.1, 1e-9);
+  EXPECT_NEAR(values.at("position_height_error_max_m"), 0.1 * motion.displacement_m.z(), 1e-9);
+  // a straight way: every metre of it is 10 cm too long; segments end at the first sample past the metre
+  EXPECT_NEAR(values.at("rpe_1m_m"), 0.1, 1e-3);
+  EXPECT_NEAR(values.at("rpe_1m_rad"), 0.0, 1e-9);
+}
+
+TEST(PositionScores, DriftAtStandstillIsWithinOneSpell) {
+  Estimate estimate = perfect_estimate(rig(), Frame::body);
+  for (PoseState& pose : estimate.poses) {
+    const double t = 1e-9 * static_cast<double>(pose.time_ns);
+    // a jump in motion is no drift; 2 cm/s at the rest of the end is
+    if (t > 3.0) pose.p_WA_m.x() += 0.5;
+    if (t > 5.0) pose.p_WA_m.y() += 0.02 * (t - 5.0);
+  }
+  EXPECT_NEAR(scores(Kind::position, estimate, rig()).at("position_rest_drift_m"), 0.02, 1e-9);
+}
+
+TEST(TrajectoryScores, AteIsTheRmsOfAConstantShift) {
+  Estimate estimate = perfect_estimate(rig());
+  for (std::size_t k = 1; k < estimate.poses.size(); ++k) estimate.poses[k].p_WA_m += Eigen::Vector3d(0.3, 0.4, 0.0);
+  const double n = static_cast<double>(estimate.poses.size());
+  EXPECT_NEAR(scores(Kind::slam, estimate, rig()).at("ate_m"), 0.5 * std::sqrt((n - 1.0) / n), 1e-9);
+}
+
+TEST(TrajectoryScores, ATiltedStartIsAnError) {
+  Estimate estimate = perfect_estimate(rig(), Frame::body);
+  move_world(tilted_world(0.02), estimate);
+  const testing::SyntheticMotion motion;
+  // the way turned about x by 0.02 rad: the end lies 2 sin(0.01) times its part across x away
+  const double across = std::hypot(motion.displacement_m.y(), motion.displacement_m.z());
+  EXPECT_NEAR(scores(Kind::position, estimate, rig()).at("position_end_error_m"), 2.0 * std::sin(0.01) * across, 1e-9);
+}
+
+TEST(EndPoseScores, CountFromTheSixthRegisteredSweep) {
+  Estimate estimate = perfect_estimate(rig());
+  // wrong until the fifth, right from the sixth on: no error
+  for (std::size_t k = 0; k < 5; ++k) estimate.sweeps[k].pose.p_WA_m += Eigen::Vector3d(1, 1, 1);
+  EXPECT_NEAR(scores(Kind::slam, estimate, rig()).at("translation_error_end_m"), 0.0, 1e-9);
+  // one of them rejected: the sixth registered is the seventh now
+  estimate.sweeps[2].verdict = SweepVerdict::rejected;
+  estimate.sweeps[5].pose.p_WA_m += Eigen::Vector3d(1, 1, 1);
+  EXPECT_NEAR(scores(Kind::slam, estimate, rig()).at("translation_error_end_m"), 0.0, 1e-9);
+  // the last sweep counts, rejected or not
+  estimate.sweeps.back().verdict = SweepVerdict::rejected;
+  estimate.sweeps.back().pose.p_WA_m += Eigen::Vector3d(0.0, 0.0, 0.25);
+  estimate.sweeps.back().pose.q_WA = Eigen::AngleAxisd(2.8, Eigen::Vector3d::UnitY()) * estimate.sweeps.back().pose.q_WA;
+  const auto values = scores(Kind::slam, estimate, rig());
+  EXPECT_NEAR(values.at("translation_error_end_m"), 0.25, 1e-9);
+  // beyond 90 degrees, where a clamped arccos would stop
+  EXPECT_NEAR(values.at("rotation_error_end_rad"), 2.8, 1e-9);
+}
+
+TEST(EndPoseScores, FewerThanSixSweepsAreADivergence) {
+  Estimate estimate = perfect_estimate(rig());
+  for (std::size_t k = 5; k < estimate.sweeps.size(); ++k) estimate.sweeps[k].verdict = SweepVerdict::rejected;
+  EXPECT_FALSE(scores(Kind::slam, estimate, rig()).contains("translation_error_end_m"));
+  EXPECT_EQ(verdict_of(Kind::slam, estimate, rig()), "diverged");
+}
+
+TEST(SweepBorderScores, AJumpAtEveryBorderIsFound) {
+  Estimate estimate = perfect_estimate(rig());
+  for (std::size_t k = 1; k < estimate.sweeps.size(); k += 2) {
+    for (PoseState& pose : estimate.sweeps[k].trajectory) {
+      pose.v_WA_m_s += Eigen::Vector3d(0.0, 0.3, 0.4);
+      const double t = 1e-9 * static_cast<double>(pose.time_ns);
+      pose.q_WA = so3::exp(Eigen::Vector3d(0.0, 0.0, 0.2 * t)) * pose.q_WA;
+    }
+  }
+  const auto values = scores(Kind::slam, estimate, rig());
+  EXPECT_NEAR(values.at("sweep_jump_m_s"), 0.5, 1e-9);
+  EXPECT_NEAR(values.at("sweep_jump_rad_s"), 0.2, 0.01);
+}
+
+TEST(Verdict, AnEndFartherThanThePathIsADivergence) {
+  for (const Kind kind : {Kind::position, Kind::slam}) {
+    Estimate estimate = perfect_estimate(rig(), Frame::body);
+    const double length = testing::SyntheticMotion().displacement_m.norm();
+    estimate.poses.back().p_WA_m.x() += 0.9 * length;
+    EXPECT_EQ(verdict_of(kind, estimate, rig()), "ok");
+    estimate.poses.back().p_WA_m.x() += 0.2 * length;
+    EXPECT_EQ(verdict_of(kind, estimate, rig()), "diverged");
+  }
+}
+
+TEST(Verdict, NumbersThatAreNotFiniteAreADivergence) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  Estimate attitude = perfect_estimate(rig());
+  attitude.attitudes[100].q_WA.x() = nan;
+  EXPECT_EQ(verdict_of(Kind::attitude, attitude, rig()), "diverged");
+  Estimate position = perfect_estimate(rig());
+  position.poses[100].p_WA_m.z() = nan;
+  EXPECT_EQ(verdict_of(Kind::position, position, rig()), "diverged");
+}
+
+TEST(Verdict, AnEstimateThatStopsOrAnswersHalfIsADivergence) {
+  Estimate stopped = perfect_estimate(rig());
+  stopped.poses.resize(stopped.poses.size() / 2);
+  stopped.attitudes.resize(stopped.attitudes.size() / 2);
+  EXPECT_EQ(verdict_of(Kind::position, stopped, rig()), "diverged");
+  EXPECT_EQ(verdict_of(Kind::attitude, stopped, rig()), "diverged");
+  // only the easy half of the rates
+  Estimate picked = perfect_estimate(rig());
+  const ClippingTruth truth(rig().sensors, rig().truth);
+  std::erase_if(picked.rates, [&](const RateState& rate) { return truth.at(rate.time_ns)->clipped_axes != 0; });
+  EXPECT_EQ(verdict_of(Kind::rate, picked, rig()), "diverged");
+  EXPECT_EQ(verdict_of(Kind::rate, Estimate{}, rig()), "diverged");
+}
+
+TEST(Score, NeedsTheTruth) {
+  EXPECT_THROW(score(Kind::rate, Estimate{}, ScoringInput{&rig().sensors, nullptr, nullptr}), BadInput);
+  EXPECT_THROW(verdict(Kind::rate, Estimate{}, ScoringInput{nullptr, &rig().truth, nullptr}), BadInput);
+}
+
+}  // namespace
+}  // namespace tumble::scenarios

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/scoring/truth_track.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/methods/synthetic_recording.hpp"
+#include "scenarios/scoring/clipping.hpp"
+#include "scenarios/scoring/nearness.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+TEST(TruthTrack, InterpolatesBetweenPhysicsSamples) {
+  const testing::SyntheticMotion motion;
+  const sim::Recording recording = testing::synthetic_rig(motion);
+  const TruthTrack track(recording.truth, Frame::imu);
+  const Eigen::Isometry3d T_BI = recording.truth.imus.front().T_BI;
+  for (const std::int64_t time_ns : {0L, 1700000123L, 3000000000L, 3000249999L, 4444444444L, 6000000000L}) {
+    ASSERT_TRUE(track.covers(time_ns));
+    const double t = 1e-9 * static_cast<double>(time_ns);
+    const Eigen::Vector3d p = motion.position_m(t) + motion.attitude(t) * T_BI.translation();
+    const PoseState pose = track.pose(time_ns);
+    // linear between samples: acceleration dt^2 / 8 = 21 m/s^2 x 3.1e-8 s^2
+    EXPECT_NEAR((pose.p_WA_m - p).norm(), 0.0, 1e-6);
+    EXPECT_NEAR(rotation_angle_rad((motion.attitude(t) * Eigen::Quaterniond(T_BI.linear())).conjugate() * pose.q_WA), 0.0,
+                1e-6);
+    // jerk dt^2 / 8 of the IMU on its lever arm of 0.1 m: 14^3 x 0.1 x 3.1e-8
+    const Eigen::Vector3d v =
+        motion.velocity_m_s(t) + motion.attitude(t) * motion.rate_B_rad_s(t).cross(T_BI.translation());
+    EXPECT_NEAR((pose.v_WA_m_s - v).norm(), 0.0, 2e-5);
+  }
+  EXPECT_FALSE(track.covers(-1));
+  EXPECT_FALSE(track.covers(6000000001));
+}
+
+TEST(TruthTrack, PathOfTheBodyIsTheLengthOfItsStraightWay) {
+  const testing::SyntheticMotion motion;
+  const sim::Recording recording = testing::synthetic_rig(motion);
+  EXPECT_NEAR(TruthTrack(recording.truth, Frame::body).path_m(6000000000), motion.displacement_m.norm(), 1e-9);
+  // a point off the axis goes farther
+  EXPECT_GT(TruthTrack(recording.truth, Frame::imu).path_m(6000000000), motion.displacement_m.norm() + 0.1);
+}
+
+TEST(TruthTrack, RestIsWhereNothingMovesAround) {
+  const sim::Recording recording = testing::synthetic_rig();
+  const TruthTrack track(recording.truth, Frame::body);
+  EXPECT_TRUE(track.at_rest(0));
+  EXPECT_TRUE(track.at_rest(1300000000));
+  EXPECT_FALSE(track.at_rest(1700000000));
+  EXPECT_FALSE(track.at_rest(3000000000));
+  EXPECT_TRUE(track.at_rest(5000000000));
+  EXPECT_TRUE(track.at_rest(6000000000));
+}
+
+TEST(TruthTrack, RefusesTruthThatDoesNotFit) {
+  sim::Recording recording = testing::synthetic_rig();
+  recording.truth.q_WB.pop_back();
+  EXPECT_THROW(TruthTrack(recording.truth, Frame::body), BadInput);
+  EXPECT_THROW(TruthTrack(sim::Truth{}, Frame::body), BadInput);
+  EXPECT_THROW(TruthTrack(testing::synthetic_sphere().truth, Frame::lidar), BadInput);
+}
+
+TEST(Alignment, RemovesYawAndPositionAndLeavesTilt) {
+  PoseState truth;
+  truth.p_WA_m = {1, 2, 3};
+  truth.q_WA = Eigen::AngleAxisd(0.8, Eigen::Vector3d(1, -1, 0.5).normalized());
+  for (const double yaw : {-3.0, -0.1, 0.0, 1.0, 3.1}) {
+    for (const double tilt : {0.0, 0.02}) {
+      PoseState estimate;
+      estimate.p_WA_m = {-5, 0, 0};
+      estimate.q_WA = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
+                      Eigen::AngleAxisd(tilt, Eigen::Vector3d::UnitX()) * truth.q_WA;
+      const PoseState aligned = Alignment::at(estimate, truth).apply(estimate);
+      EXPECT_NEAR((aligned.p_WA_m - truth.p_WA_m).norm(), 0.0, 1e-14);
+      EXPECT_NEAR(rotation_angle_rad(aligned.q_WA * truth.q_WA.conjugate()), tilt, 1e-12);
+      EXPECT_NEAR(twist_about_z_rad(aligned.q_WA * truth.q_WA.conjugate()), 0.0, 1e-12);
+    }
+  }
+}
+
+TEST(RotationAngle, IsExactForSmallAndLargeAngles) {
+  for (const double angle : {0.0, 1e-9, 0.3, 1.6, 3.0, std::numbers::pi}) {
+    const Eigen::Quaterniond q(Eigen::AngleAxisd(angle, Eigen::Vector3d(2, -1, 1).normalized()));
+    EXPECT_NEAR(rotation_angle_rad(q), angle, 1e-15 + 1e-15 * angle);
+    EXPECT_NEAR(rotation_angle_rad(Eigen::Quaterniond(-q.w(), -q.x(), -q.y(), -q.z())), angle, 1e-15 + 1e-15 * angle);
+  }
+}
+
+TEST(ClippingTruth, NamesTheAxesThatTheRailTouched) {
+  sim::Recording recording = testing::synthetic_rig();
+  const sim::ImuRecord& imu = recording.sensors.imus.front();
+  const ClippingTruth truth(recording.sensors, recording.truth);
+  std::size_t clipped = 0;
+  for (std::size_t k = 0; k < truth.size(); ++k) {
+    for (int j = 0; j < 3; ++j) {
+      const bool beyond = std::abs(recording.truth.imus.front().rate_rad_s[k][j]) > 10.5 + 1e-4 / std::sqrt(0.005);
+      EXPECT_EQ((truth.clipped_axes(k) >> j) & 1, beyond ? 1 : 0) << k << " " << j;
+      clipped += beyond ? 1 : 0;
+    }
+  }
+  EXPECT_GT(clipped, 50u);
+  // at a stamp its own, between two stamps interpolated, outside nothing
+  EXPECT_EQ(truth.at(imu.time_ns[500])->rate_rad_s, recording.truth.imus.front().rate_rad_s[500]);
+  const Eigen::Vector3d middle =
+      0.5 * (recording.truth.imus.front().rate_rad_s[499] + recording.truth.imus.front().rate_rad_s[500]);
+  EXPECT_NEAR((truth.at((imu.time_ns[499] + imu.time_ns[500]) / 2)->rate_rad_s - middle).norm(), 0.0, 1e-12);
+  EXPECT_FALSE(truth.at(imu.time_ns.front() - 1).has_value());
+  EXPECT_FALSE(truth.at(imu.time_ns.back() + 1).has_value());
+}
+
+TEST(ClippingTruth, DifferencesBelowTheNoiseAreNoClipping) {
+  sim::Recording recording = testing::synthetic_sphere();
+  const double sigma = 1e-4 / std::sqrt(0.005);
+  recording.truth.imus.front().gyro_unclipped_rad_s[10].x() += 0.9 * sigma;
+  recording.truth.imus.front().gyro_unclipped_rad_s[11].y() += 1.1 * sigma;
+  const ClippingTruth truth(recording.sensors, recording.truth);
+  EXPECT_EQ(truth.clipped_axes(10), 0);
+  EXPECT_EQ(truth.clipped_axes(11), 2);
+}
+
+TEST(Nearness, AgreesWithBruteForce) {
+  // a lattice with irrational steps: no distance falls on the limit
+  std::vector<Eigen::Vector3f> points;
+  for (int k = 0; k < 400; ++k) {
+    const auto f = [k](float step) { return std::fmod(static_cast<float>(k) * step, 4.0f) - 2.0f; };
+    points.emplace_back(f(0.7548777f), f(0.5698403f), f(1.3247179f));
+  }
+  points.emplace_back(std::nanf(""), 0.0f, 0.0f);
+  const float distance = 0.3f;
+  const Nearness near(points, distance);
+  int yes = 0;
+  int no = 0;
+  for (int k = 0; k < 1000; ++k) {
+    const auto f = [k](float step) { return std::fmod(static_cast<float>(k) * step, 5.0f) - 2.5f; };
+    const Eigen::Vector3f query(f(0.61803399f), f(1.4142136f), f(0.7320508f));
+    bool brute = false;
+    for (const Eigen::Vector3f& point : points) brute = brute || (point - query).norm() <= distance;
+    EXPECT_EQ(near.has_neighbour(query), brute);
+    (brute ? yes : no) += 1;
+  }
+  EXPECT_GT(yes, 50);
+  EXPECT_GT(no, 50);
+}
+
+TEST(Nearness, OnePerCellKeepsTheFirst) {
+  const std::vector<Eigen::Vector3f> points = {{0.01f, 0, 0}, {0.02f, 0, 0}, {0.15f, 0, 0}, {-0.01f, 0, 0}};
+  const auto kept = one_per_cell(points, 0.1f);
+  ASSERT_EQ(kept.size(), 3u);
+  EXPECT_EQ(kept[0], points[0]);
+  EXPECT_EQ(kept[1], points[2]);
+  EXPECT_EQ(kept[2], points[3]);
+}
+
+}  // namespace
+}  // namespace tumble::scenarios

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/sweep/results.hpp"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <limits>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/sweep/build_id.hpp"
+#include "scenarios/sweep/temporary_folder.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+Outcome sample_outcome(std::uint64_t seed) {
+  Outcome outcome;
+  outcome.scenario = "hill";
+  outcome.seed = seed;
+  outcome.kind = Kind::slam;
+  outcome.method = "icp";
+  outcome.status = "ok";
+  outcome.scores = {{"ate_m", 0.1 + static_cast<double>(seed)}, {"map_failed", 0.0}};
+  outcome.recording_digest = "aa";
+  outcome.estimate_digest = "bb";
+  return outcome;
+}
+
+class ResultsTest : public testing::TemporaryFolder {
+ protected:
+  std::filesystem::path path() const { return folder_ / "results.db"; }
+
+  std::string complaint(Results::Mode mode) const {
+    try {
+      Results results(path(), mode);
+    } catch (const BadInput& error) {
+      return error.what();
+    }
+    return "";
+  }
+};
+
+TEST_F(ResultsTest, WhatIsStoredComesBack) {
+  const std::uint64_t large = std::numeric_limits<std::uint64_t>::max();
+  {
+    Results results(path(), Results::Mode::create_or_append);
+    results.store(sample_outcome(large));
+    Outcome crashed = sample_outcome(7);
+    crashed.status = "crashed";
+    crashed.message = "ended by signal 11";
+    crashed.scores.clear();
+    results.store(crashed);
+    results.store(RejectedDraw{"hill", 9, "left the world"});
+    results.set_note("suite", "demo");
+  }
+  const Results results(path(), Results::Mode::read_only);
+  EXPECT_EQ(results.note("suite"), "demo");
+  EXPECT_EQ(results.note("build"), build_id());
+  EXPECT_EQ(results.note("no such"), "");
+  EXPECT_TRUE(results.has("hill", large, Kind::slam, "icp"));
+  EXPECT_FALSE(results.has("hill", large, Kind::rate, "icp"));
+  ASSERT_EQ(results.outcomes().size(), 2u);
+  ASSERT_EQ(results.rejected().size(), 1u);
+  EXPECT_EQ(results.rejected().front().seed, 9u);
+  EXPECT_EQ(results.rejected().front().message, "left the world");
+
+  // one row per score, one for the outcome without any, one for the rejected draw
+  int ok = 0;
+  int crashed = 0;
+  int rejected = 0;
+  for (const ScoreRow& row : results.scores()) {
+    if (row.status == "ok") {
+      ++ok;
+      EXPECT_EQ(row.seed, large);
+      if (row.metric == "ate_m") EXPECT_EQ(row.value, 0.1 + static_cast<double>(large));
+    } else if (row.status == "crashed") {
+      ++crashed;
+      EXPECT_EQ(row.metric, "");
+      EXPECT_TRUE(std::isnan(row.value));
+    } else {
+      ++rejected;
+      EXPECT_EQ(row.status, "rejected");
+      EXPECT_EQ(row.kind, "");
+    }
+  }
+  EXPECT_EQ(ok, 2);
+  EXPECT_EQ(crashed, 1);
+  EXPECT_EQ(rejected, 1);
+}
+
+TEST_F(ResultsTest, StoringAgainReplacesTheRowAndItsScores) {
+  Results results(path(), Results::Mode::create_or_append);
+  results.store(sample_outcome(1));
+  Outcome again = sample_outcome(1);
+  again.scores = {{"ate_m", 5.0}};
+  results.store(again);
+  ASSERT_EQ(results.outcomes().size(), 1u);
+  ASSERT_EQ(results.scores().size(), 1u);
+  EXPECT_EQ(results.scores().front().value, 5.0);
+  SQLite::Database raw(path().string());
+  EXPECT_EQ(raw.execAndGet("SELECT count(*) FROM score_values").getInt(), 1) << "scores of the replaced row stay behind";
+}
+
+TEST_F(ResultsTest, NaNAndInfinityAreKept) {
+  Results results(path(), Results::Mode::create_or_append);
+  Outcome outcome = sample_outcome(1);
+  outcome.scores = {{"a", std::nan("")}, {"b", std::numeric_limits<double>::infinity()}};
+  results.store(outcome);
+  ASSERT_EQ(results.scores().size(), 2u);
+  EXPECT_TRUE(std::isnan(results.scores()[0].value));
+  EXPECT_EQ(results.scores()[1].value, std::numeric_limits<double>::infinity());
+}
+
+TEST_F(ResultsTest, AnotherBuildMayReadButNotAppend) {
+  {
+    Results results(path(), Results::Mode::create_or_append);
+    results.store(sample_outcome(1));
+    results.set_note("build", "0.0.0 somebody else's");
+  }
+  EXPECT_EQ(complaint(Results::Mode::read_only), "");
+  const std::string text = complaint(Results::Mode::create_or_append);
+  EXPECT_NE(text.find(path().string()), std::string::npos);
+  EXPECT_NE(text.find("written by build '0.0.0 somebody else's'"), std::string::npos) << text;
+}
+
+TEST_F(ResultsTest, OtherFilesAreRefusedAndLeftAlone) {
+  EXPECT_NE(complaint(Results::Mode::read_only).find("no such file"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(path()));
+
+  write("results.db", "this is no database, whatever its name says; it is long enough to have a header of 100 bytes .....");
+  EXPECT_NE(complaint(Results::Mode::read_only).find("not a"), std::string::npos);
+  EXPECT_NE(complaint(Results::Mode::create_or_append).find("not a"), std::string::npos);
+
+  std::filesystem::remove(path());
+  { SQLite::Database(path().string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec("CREATE TABLE theirs (x)"); }
+  EXPECT_NE(complaint(Results::Mode::create_or_append).find("not a results database"), std::string::npos);
+  SQLite::Database theirs(path().string());
+  EXPECT_EQ(theirs.execAndGet("SELECT count(*) FROM sqlite_master").getInt(), 1);
+}
+
+TEST_F(ResultsTest, ATruncatedDatabaseIsBadInput) {
+  {
+    Results results(path(), Results::Mode::create_or_append);
+    for (std::uint64_t seed = 0; seed < 200; ++seed) results.store(sample_outcome(seed));
+  }
+  std::filesystem::resize_file(path(), std::filesystem::file_size(path()) / 2);
+  EXPECT_THROW({
+    const Results results(path(), Results::Mode::read_only);
+    results.scores();
+  }, BadInput);
+}
+
+TEST_F(ResultsTest, AFolderThatIsNotThereIsBadInput) {
+  EXPECT_THROW(Results(folder_ / "no" / "such" / "results.db", Results::Mode::create_or_append), BadInput);
+}
+
+TEST_F(ResultsTest, NoRoomIsBadInputAndWhatWasStoredStays) {
+  Results results(path(), Results::Mode::create_or_append);
+  results.store(sample_outcome(1));
+  // a limit on the size of files stands for a full disk; the signal that comes with it is ignored as the error tells more
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{40960, 40960};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    int code = 1;
+    try {
+      Results full(path(), Results::Mode::create_or_append);
+      for (std::uint64_t seed = 2; seed < 2000; ++seed) full.store(sample_outcome(seed));
+    } catch (const BadInput& error) {
+      code = std::string(error.what()).starts_with(path().string()) ? 0 : 2;
+    }
+    _exit(code);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  EXPECT_TRUE(Results(path(), Results::Mode::read_only).has("hill", 1, Kind::slam, "icp"));
+}
+
+// a writer is killed in the middle of its work: all that it had stored is there and the database is whole
+TEST_F(ResultsTest, WhatHasBeenStoredSurvivesAKill) {
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    close(ends[0]);
+    Results results(path(), Results::Mode::create_or_append);
+    for (std::uint64_t seed = 1;; ++seed) {
+      results.store(sample_outcome(seed));
+      if (::write(ends[1], &seed, sizeof(seed)) != sizeof(seed)) _exit(1);
+    }
+  }
+  close(ends[1]);
+  std::uint64_t stored = 0;
+  while (stored < 20 && read(ends[0], &stored, sizeof(stored)) == sizeof(stored)) continue;
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  while (read(ends[0], &stored, sizeof(stored)) == sizeof(stored)) continue;
+  close(ends[0]);
+  ASSERT_GE(stored, 20u);
+  Results results(path(), Results::Mode::create_or_append);
+  EXPECT_GE(results.outcomes().size(), stored);
+  for (std::uint64_t seed = 1; seed <= stored; ++seed) EXPECT_TRUE(results.has("hill", seed, Kind::slam, "icp")) << seed;
+  EXPECT_EQ(results.scores().size(), 2 * results.outcomes().size());
+}
+
+}  // namespace
+}  // namespace tumble::scenarios

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/sweep/statistics.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+#include "scenarios/errors.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+TEST(Quantile, IsTypeSeven) {
+  const std::vector<double> values = {4.0, 1.0, 3.0, 2.0};
+  EXPECT_EQ(quantile(values, 0.0), 1.0);
+  EXPECT_EQ(quantile(values, 1.0), 4.0);
+  EXPECT_EQ(quantile(values, 0.5), 2.5);
+  EXPECT_NEAR(quantile(values, 0.25), 1.75, 1e-15);
+  EXPECT_NEAR(quantile(values, 0.9), 3.7, 1e-15);
+  EXPECT_TRUE(std::isnan(quantile({}, 0.5)));
+  EXPECT_THROW(quantile(values, 1.1), BadInput);
+}
+
+// ranks of the 95 % interval of the median, as in tables of the sign test (Conover, table A3)
+TEST(MedianInterval, RanksAreThoseOfTheTables) {
+  struct Row { int n; double low, high; };
+  for (const Row& row : {Row{6, 1, 6}, Row{8, 1, 8}, Row{9, 2, 8}, Row{10, 2, 9}, Row{15, 4, 12}, Row{20, 6, 15},
+                         Row{25, 8, 18}, Row{30, 10, 21}, Row{50, 18, 33}, Row{100, 40, 61}}) {
+    std::vector<double> values(static_cast<std::size_t>(row.n));
+    std::iota(values.rbegin(), values.rend(), 1.0);
+    const Interval interval = median_interval(values);
+    EXPECT_EQ(interval.value, 0.5 * (row.n + 1)) << row.n;
+    EXPECT_EQ(interval.low, row.low) << row.n;
+    EXPECT_EQ(interval.high, row.high) << row.n;
+  }
+}
+
+TEST(MedianInterval, TooFewValuesBoundNothing) {
+  const Interval interval = median_interval(std::vector<double>{1, 2, 3, 4, 5});
+  EXPECT_EQ(interval.value, 3.0);
+  EXPECT_EQ(interval.low, -std::numeric_limits<double>::infinity());
+  EXPECT_EQ(interval.high, std::numeric_limits<double>::infinity());
+  EXPECT_TRUE(std::isnan(median_interval({}).value));
+}
+
+// Clopper and Pearson's limits; 0 of n has the closed form 1 - 0.025^(1/n)
+TEST(ShareInterval, AgreesWithPublishedLimits) {
+  struct Row { int count, total; double low, high; };
+  for (const Row& row : {Row{12, 32, 0.2110, 0.5631}, Row{1, 10, 0.0025, 0.4450}, Row{5, 10, 0.1871, 0.8129},
+                         Row{10, 100, 0.0490, 0.1762}, Row{2, 20, 0.0123, 0.3170}, Row{95, 100, 0.8872, 0.9836}}) {
+    const Interval interval = share_interval(row.count, row.total);
+    EXPECT_EQ(interval.value, static_cast<double>(row.count) / row.total);
+    EXPECT_NEAR(interval.low, row.low, 6e-5) << row.count << " of " << row.total;
+    EXPECT_NEAR(interval.high, row.high, 6e-5) << row.count << " of " << row.total;
+  }
+}
+
+TEST(ShareInterval, EndsAreExact) {
+  for (const int n : {1, 12, 32, 1000, 100000}) {
+    const double bound = -std::expm1(std::log(0.025) / n);
+    EXPECT_EQ(share_interval(0, n).low, 0.0);
+    EXPECT_NEAR(share_interval(0, n).high, bound, 1e-12);
+    EXPECT_EQ(share_interval(n, n).high, 1.0);
+    EXPECT_NEAR(share_interval(n, n).low, 1.0 - bound, 1e-12);
+  }
+  EXPECT_NEAR(share_interval(0, 12).high, 0.2646, 1e-4);
+  // negative control: the normal approximation would give 0
+  EXPECT_GT(share_interval(0, 1000).high, 0.003);
+  EXPECT_TRUE(std::isnan(share_interval(0, 0).value));
+  EXPECT_THROW(share_interval(5, 4), BadInput);
+}
+
+// the limits by their definition: the binomial tail beyond the count is 2.5 % there
+TEST(ShareInterval, LimitsLeaveTheirTails) {
+  const int n = 40;
+  for (int count = 1; count < n; ++count) {
+    const Interval interval = share_interval(count, n);
+    const auto tail = [&](double p, int first, int last) {
+      double sum = 0.0;
+      for (int k = first; k <= last; ++k) {
+        sum += std::exp(std::lgamma(n + 1.0) - std::lgamma(k + 1.0) - std::lgamma(n - k + 1.0) + k * std::log(p) +
+                        (n - k) * std::log1p(-p));
+      }
+      return sum;
+    };
+    EXPECT_NEAR(tail(interval.low, count, n), 0.025, 1e-10) << count;
+    EXPECT_NEAR(tail(interval.high, 0, count), 0.025, 1e-10) << count;
+  }
+}
+
+}  // namespace
+}  // namespace tumble::scenarios

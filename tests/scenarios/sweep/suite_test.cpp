@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include "scenarios/draw/scenario.hpp"
+#include "scenarios/errors.hpp"
+#include "scenarios/methods/method.hpp"
+#include "scenarios/sweep/sweep.hpp"
+#include "scenarios/sweep/temporary_folder.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+class SuiteTest : public testing::TemporaryFolder {
+ protected:
+  void SetUp() override {
+    TemporaryFolder::SetUp();
+    // only the names of scenarios are looked at
+    write("scenarios/catalogue/hill.yaml", "");
+    write("scenarios/catalogue/roll.yaml", "");
+  }
+
+  DataRoot data() const { return {folder_}; }
+
+  std::string complaint(const std::string& text) const {
+    write("scenarios/suites/test.yaml", text);
+    try {
+      load_suite(data(), "test");
+    } catch (const BadInput& error) {
+      return error.what();
+    }
+    return "";
+  }
+};
+
+TEST_F(SuiteTest, ReadsWhatIsWritten) {
+  write("scenarios/suites/test.yaml",
+        "name: test\ndoc: Some words.\nscenarios: [hill, roll]\nseeds: {first: 3, last: 18446744073709551615}\n"
+        "methods: [raw, rate/oracle]\ntimeout_s: 12.5\n");
+  const Suite suite = load_suite(data(), "test");
+  EXPECT_EQ(suite.name, "test");
+  EXPECT_EQ(suite.doc, "Some words.");
+  EXPECT_EQ(suite.scenarios, (std::vector<std::string>{"hill", "roll"}));
+  EXPECT_EQ(suite.first_seed, 3u);
+  EXPECT_EQ(suite.last_seed, 18446744073709551615u);
+  EXPECT_EQ(suite.methods, (std::vector<std::string>{"raw", "rate/oracle"}));
+  EXPECT_EQ(suite.timeout_s, 12.5);
+  EXPECT_EQ(suite_names(data()), (std::vector<std::string>{"test"}));
+}
+
+TEST_F(SuiteTest, AScenarioIsASuiteOfItsOwn) {
+  write("scenarios/suites/test.yaml", "");
+  const Suite suite = load_suite(data(), "roll");
+  EXPECT_EQ(suite.scenarios, (std::vector<std::string>{"roll"}));
+  EXPECT_EQ(suite.methods.size(), methods().size());
+}
+
+TEST_F(SuiteTest, ComplaintsNameFileLineAndNearestName) {
+  const std::string head = "name: test\ndoc: d\n";
+  EXPECT_NE(complaint(head + "scenarios: [hil]\nseeds: {first: 1, last: 2}\n").find("test.yaml:3"), std::string::npos);
+  EXPECT_NE(complaint(head + "scenarios: [hil]\nseeds: {first: 1, last: 2}\n").find("did you mean 'hill'"),
+            std::string::npos);
+  EXPECT_NE(complaint(head + "scenarios: [hill]\nseeds: {first: 1, last: 2}\nmethods: [saav]\n").find("'saave'"),
+            std::string::npos);
+  EXPECT_NE(complaint(head + "scenarios: [hill]\nseeds: {first: 2, last: 1}\n").find("last is below first"),
+            std::string::npos);
+  EXPECT_NE(complaint(head + "scenarios: [hill]\nseeds: {first: 1, last: 2}\ntimeout: 5\n").find("timeout"),
+            std::string::npos);
+  EXPECT_NE(complaint(head + "scenarios: [hill]\nseeds: {first: 1, last: 2}\ntimeout_s: -5\n").find("timeout_s"),
+            std::string::npos);
+  EXPECT_NE(complaint(head + "seeds: {first: 1, last: 2}\n"), "");
+  try {
+    load_suite(data(), "tset");
+    FAIL();
+  } catch (const BadInput& error) {
+    EXPECT_NE(std::string(error.what()).find("did you mean 'test'"), std::string::npos) << error.what();
+  }
+}
+
+// the suites that are delivered, on the catalogue that is delivered
+TEST(Suites, OfTheTreeLoad) {
+  const DataRoot data{TUMBLE_SOURCE_DIR};
+  const auto names = suite_names(data);
+  ASSERT_GE(names.size(), 4u);
+  for (const std::string& name : names) EXPECT_NO_THROW(load_suite(data, name)) << name;
+  EXPECT_EQ(load_suite(data, "demo").methods.size(), methods().size());
+}
+
+}  // namespace
+}  // namespace tumble::scenarios

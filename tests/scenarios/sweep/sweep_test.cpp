@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/sweep/sweep.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "scenarios/draw/scenario.hpp"
+#include "scenarios/errors.hpp"
+#include "scenarios/sweep/results.hpp"
+#include "scenarios/sweep/run_situation.hpp"
+#include "scenarios/sweep/temporary_folder.hpp"
+
+// the sweep end to end on the sphere, whose draws are short and have no map to score
+namespace tumble::scenarios {
+namespace {
+
+const DataRoot& data() {
+  static const DataRoot root{TUMBLE_SOURCE_DIR};
+  return root;
+}
+
+Suite small_suite(std::uint64_t last_seed) {
+  Suite suite;
+  suite.name = "small";
+  suite.scenarios = {"roll"};
+  suite.first_seed = 1;
+  suite.last_seed = last_seed;
+  suite.methods = {"rate/raw", "rolling", "icp"};  // icp is not for the sphere: left out
+  suite.timeout_s = 60;
+  return suite;
+}
+
+std::map<std::string, std::string> digests(const std::filesystem::path& database) {
+  std::map<std::string, std::string> found;
+  for (const Outcome& outcome : Results(database, Results::Mode::read_only).outcomes()) {
+    found[std::to_string(outcome.seed) + to_string(outcome.kind)] = outcome.recording_digest + outcome.estimate_digest;
+  }
+  return found;
+}
+
+using SweepTest = testing::TemporaryFolder;
+
+TEST_F(SweepTest, StoresEveryOutcomeResumesAndDoesNotDependOnJobs) {
+  const auto path = folder_ / "a.db";
+  // stopped after the first draw
+  std::atomic<bool> stop = false;
+  SweepOptions options;
+  options.stop = &stop;
+  options.on_progress = [&](const SweepProgress& progress) { stop = progress.draws_done >= 1; };
+  const SweepProgress stopped = sweep(data(), small_suite(2), path, options);
+  EXPECT_EQ(stopped.draws_done, 1u);
+  EXPECT_EQ(stopped.draws_total, 2u);
+  EXPECT_EQ(Results(path, Results::Mode::read_only).outcomes().size(), 2u);
+
+  // resumed: only what is missing runs
+  const SweepProgress resumed = sweep(data(), small_suite(2), path, {});
+  EXPECT_EQ(resumed.draws_done, 2u);
+  EXPECT_EQ(resumed.outcomes, 2u);
+  const Results results(path, Results::Mode::read_only);
+  ASSERT_EQ(results.outcomes().size(), 4u);
+  for (const Outcome& outcome : results.outcomes()) EXPECT_EQ(outcome.status, "ok") << outcome.message;
+  EXPECT_EQ(results.note("suite"), "small");
+  bool cost = false;
+  for (const ScoreRow& row : results.scores()) cost = cost || row.metric == "estimate_peak_mib";
+  EXPECT_TRUE(cost);
+
+  // nothing is left to do
+  EXPECT_EQ(sweep(data(), small_suite(2), path, {}).outcomes, 0u);
+
+  // two processes, another file, the same bits; and the same as in this process
+  SweepOptions two;
+  two.jobs = 2;
+  sweep(data(), small_suite(2), folder_ / "b.db", two);
+  const auto a = digests(path);
+  ASSERT_EQ(a.size(), 4u);
+  EXPECT_EQ(a, digests(folder_ / "b.db"));
+  const std::vector<const Method*> rolling = find_methods("rolling");
+  const RunResult run = run_situation(data(), load_scenario(data(), "roll"), 2, rolling, 2);
+  ASSERT_EQ(run.outcomes.size(), 1u);
+  EXPECT_EQ(a.at("2position"), run.outcomes[0].recording_digest + run.outcomes[0].estimate_digest);
+  EXPECT_EQ(run_digest(run).size(), 32u);
+}
+
+TEST_F(SweepTest, RefusesADatabaseOfOtherScenarios) {
+  const auto path = folder_ / "a.db";
+  Results(path, Results::Mode::create_or_append).set_note("data", "another catalogue");
+  try {
+    sweep(data(), small_suite(1), path, {});
+    FAIL() << "mixed";
+  } catch (const BadInput& error) {
+    EXPECT_NE(std::string(error.what()).find("made from other models or scenarios"), std::string::npos);
+  }
+}
+
+TEST_F(SweepTest, WrongUseIsBadInputBeforeAnythingRuns) {
+  SweepOptions options;
+  options.jobs = 0;
+  EXPECT_THROW(sweep(data(), small_suite(1), folder_ / "a.db", options), BadInput);
+  Suite suite = small_suite(1);
+  suite.methods = {"no_such_method"};
+  EXPECT_THROW(sweep(data(), suite, folder_ / "a.db", {}), BadInput);
+  suite = small_suite(1);
+  suite.scenarios = {"no_such_scenario"};
+  EXPECT_THROW(sweep(data(), suite, folder_ / "a.db", {}), BadInput);
+  suite = small_suite(1);
+  suite.last_seed = 0;
+  EXPECT_THROW(sweep(data(), suite, folder_ / "a.db", {}), BadInput);
+}
+
+}  // namespace
+}  // namespace tumble::scenarios
