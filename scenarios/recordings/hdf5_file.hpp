@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -79,6 +80,7 @@ std::string last_error();
 /// A group of an open file, with its attributes and datasets.
 class Group {
  public:
+  Group() = default;
   Group(Handle group, std::string file, std::string place)
       : group_(std::move(group)), file_(std::move(file)), place_(std::move(place)) {}
 
@@ -146,15 +148,20 @@ class MemoryFile {
  public:
   /// `name` begins the messages.
   explicit MemoryFile(const std::string& name);
+  ~MemoryFile();
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+
   const Group& root() const { return root_; }
-  /// The bytes of the whole file.
-  std::vector<std::byte> image() const;
+  /// Closes the file with all that is open in it; its bytes, valid while this lives. Nothing may be written afterwards.
+  std::span<const std::byte> close();
 
  private:
   Silence silence_;
+  std::string name_;
+  void* image_ = nullptr;  ///< set by the library's driver when the file closes
   Handle file_;
   Group root_;
-  std::string name_;
 };
 
 }  // namespace tumble::scenarios::hdf5

@@ -76,7 +76,7 @@ void write_info(const hdf5::Group& root, const RecordingInfo& info, const std::s
 void write_recording(const std::filesystem::path& path, const RecordingInfo& info, const sim::Sensors& sensors,
                      const sim::Truth* truth) {
   require_consistent(sensors, truth);
-  const hdf5::MemoryFile file(path.string());
+  hdf5::MemoryFile file(path.string());
   write_info(file.root(), info, digest(sensors, truth), truth != nullptr);
   {
     Writer writer(file.root().create("sensors"));
@@ -89,7 +89,7 @@ void write_recording(const std::filesystem::path& path, const RecordingInfo& inf
     const ContactColumns contacts = to_columns(truth->contacts);
     truth_fields(writer, *truth, contacts);
   }
-  replace_file(path, file.image());
+  replace_file(path, file.close());
 }
 
 }  // namespace tumble::scenarios

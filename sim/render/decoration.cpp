@@ -114,7 +114,8 @@ void add_paths(const View& view, mjvScene& scene) {
       if ((to - *from).norm() < path.width_m && &to != &path.points_W_m.back()) continue;
       if (mjvGeom* geom = next_geom(scene, mjGEOM_CAPSULE, path.rgba.data())) {
         mjv_connector(geom, mjGEOM_CAPSULE, 0.5 * path.width_m, from->data(), to.data());
-        geom->emission = 0.5f;  // its own colour in the shade too
+        geom->emission = 0.35f;  // its own colour in the shade too
+        geom->specular = 0.0f;
       }
       from = &to;
     }

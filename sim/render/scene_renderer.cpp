@@ -84,9 +84,26 @@ void set_look(mjModel& model) {
   model.vis.quality.numstacks = 14;
   // soft light from the camera fills the shadows of the sun
   for (int c = 0; c < 3; ++c) {
-    model.vis.headlight.ambient[c] = 0.22f;
-    model.vis.headlight.diffuse[c] = 0.25f;
+    model.vis.headlight.ambient[c] = 0.28f;
+    model.vis.headlight.diffuse[c] = 0.30f;
     model.vis.headlight.specular[c] = 0.0f;
+  }
+}
+
+/// Lets the shadow map cover what the camera looks at and little more, which decides how sharp shadows are; the engine
+/// would spread it over the whole world.
+void aim_sun(const Framing& framing, mjvScene& scene, mjrContext& engine) {
+  const double reach_m = 2.0 + framing.distance_m;
+  engine.shadowClip = static_cast<float>(reach_m);
+  for (int i = 0; i < scene.nlight; ++i) {
+    mjvLight& light = scene.lights[i];
+    if (light.headlight || light.type != mjLIGHT_DIRECTIONAL) continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      light.pos[axis] = static_cast<float>(framing.look_at_W_m[axis] - reach_m * light.dir[axis]);
+      light.ambient[axis] = 0.1f;
+      light.diffuse[axis] = 0.55f;
+      light.specular[axis] = 0.1f;
+    }
   }
 }
 
@@ -190,6 +207,7 @@ Picture SceneRenderer::draw(const View& view) {
 
   const Current current(impl_->context.get());
   mjrContext& engine = impl_->engine_context;
+  aim_sun(framing, scene, engine);
   const mjrRect area = {0, 0, view.width * kOversampling, view.height * kOversampling};
   if (engine.offWidth != area.width || engine.offHeight != area.height) mjr_resizeOffscreen(area.width, area.height, &engine);
   mjr_setBuffer(mjFB_OFFSCREEN, &engine);

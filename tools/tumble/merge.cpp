@@ -35,15 +35,22 @@ std::vector<scenarios::Outcome> complete_outcomes(const Results& results) {
   return outcomes;
 }
 
+/// Outcomes of another program, or of other models and scenarios, are not comparable.
+void require_same_origin(const Results& first, const Results& other, const std::filesystem::path& path) {
+  const std::pair<const char*, const char*> origins[] = {{"build", "written by build"}, {"data", "made from models and scenarios"}};
+  for (const auto& [key, words] : origins) {
+    if (first.note(key) == other.note(key)) continue;
+    throw BadInput(path.string() + ": " + words + " '" + other.note(key) + "', the first database by '" + first.note(key) +
+                   "'; --mixed-builds joins them all the same");
+  }
+}
+
 int merge(const Session& session, const Options& options) {
   std::vector<Results> shards;
   for (const std::filesystem::path& path : options.in) {
     if (path == options.out) throw BadInput(path.string() + ": is both read and written");
     shards.emplace_back(path, Results::Mode::read_only);
-    const std::string first = shards.front().note("build"), own = shards.back().note("build");
-    if (own != first && !options.mixed) {
-      throw BadInput(path.string() + ": written by build '" + own + "', the first by '" + first + "'; --mixed-builds joins them all the same");
-    }
+    if (!options.mixed) require_same_origin(shards.front(), shards.back(), path);
   }
   Results out(options.out, Results::Mode::create_or_append);
   std::size_t outcomes = 0, rejected = 0;
@@ -57,9 +64,10 @@ int merge(const Session& session, const Options& options) {
       ++rejected;
     }
   }
-  for (const char* key : {"suite", "certificate"}) {
+  // the joined database says where its rows come from, not which program has joined them
+  for (const char* key : {"suite", "certificate", "build", "data"}) {
     const std::string text = shards.front().note(key);
-    if (!text.empty()) out.set_note(key, text);
+    if (!text.empty()) out.set_note(key, options.mixed && std::string_view(key) == "build" ? "mixed" : text);
   }
   Table table("", {"database", "databases joined", "outcomes", "draws rejected"});
   table.align_right_from(1);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tumble/attitude/strapdown.hpp"
+
 namespace tumble::mapping {
 
 namespace {
@@ -58,16 +60,9 @@ Status start_at_rest(std::span<const MotionSample> samples, double rest_s, Motio
   force /= count;
   if (!(force.norm() >= 1.0)) return {Trouble::degenerate, "specific_force_m_s2", force.norm(), 1.0};
 
-  // rows of R_WI are the world's axes in the IMU's; yaw 0: the IMU's x axis lies in the x-z plane of W
-  const Eigen::Vector3d up = force.normalized();
-  Eigen::Vector3d left = up.cross(Eigen::Vector3d::UnitX());
-  if (left.norm() < 1e-6) left = up.cross(-Eigen::Vector3d::UnitZ());
-  left.normalize();
-  Eigen::Matrix3d R_WI;
-  R_WI << left.cross(up).transpose(), left.transpose(), up.transpose();
   state = MotionState{};
   state.time_ns = samples.front().from_ns;
-  state.q_WI = Eigen::Quaterniond(R_WI).normalized();
+  if (Status status = level(force, state.q_WI); !status.ok()) return status;
   state.covariance.diagonal().segment<2>(3).setConstant(kStartTilt_rad * kStartTilt_rad);
   state.covariance.diagonal().tail<3>().setConstant(kStartSpeed_m_s * kStartSpeed_m_s);
   return {};

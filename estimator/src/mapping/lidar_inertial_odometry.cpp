@@ -30,7 +30,7 @@ void check(const Params& params) {
   require_within("sweep_voxel_m", params.sweep_voxel_m, 0.01, 10.0);
   require_within("map_voxel_m", params.map_voxel_m, 0.01, 10.0);
   require_within("map_spacing_m", params.map_spacing_m, 0.0, params.map_voxel_m);
-  require_within("neighbours", params.neighbours, 5, Neighbours::kMax);
+  require_within("neighbours", params.neighbours, 3, Neighbours::kMax);
   require_within("prior_sigma_m", params.prior_sigma_m, 1e-9, 1e3);
   require_within("prior_sigma_rad", params.prior_sigma_rad, 1e-9, 1e3);
   require_within("prior_sigma_m_s", params.prior_sigma_m_s, 1e-9, 1e3);
@@ -50,6 +50,7 @@ void check(const Params& params) {
 Registration::Params registration_params(const Params& params) {
   Registration::Params out;
   out.neighbours = params.neighbours;
+  out.plane.neighbours_min = std::min(out.plane.neighbours_min, params.neighbours);
   out.match_distance_m = params.match_distance_m;
   out.iterations_max = params.iterations_max;
   out.skew_sigma_m_s = params.skew_sigma_m_s;
@@ -98,6 +99,7 @@ struct LidarInertialOdometry::Impl {
 Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> given) const {
   if (end_ns < start_ns) return {Trouble::time_order, "end_ns", double(end_ns), double(start_ns)};
   if (started && start_ns < state.time_ns) return {Trouble::time_order, "start_ns", double(start_ns), double(state.time_ns)};
+  if (samples.empty() && given.empty()) return {Trouble::empty, "points", 0.0, 1.0};
   if (samples.empty()) return {Trouble::too_few, "imu samples", 0.0, 1.0};
   if (samples.back().time_ns < end_ns) {
     return {Trouble::too_few, "imu time_ns", double(samples.back().time_ns), double(end_ns)};

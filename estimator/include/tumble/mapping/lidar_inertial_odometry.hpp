@@ -43,7 +43,7 @@ class LidarInertialOdometry {
     double sweep_voxel_m = 0.25;      ///< one point per voxel of a sweep is registered; bound [0.01, 10]
     double map_voxel_m = 0.5;         ///< cell of the map's hash; bound [0.01, 10]
     double map_spacing_m = 0.1;       ///< at most one map point per cube of this edge; bound [0, map_voxel_m]
-    int neighbours = 12;              ///< k of the plane fit; bound [5, 32]
+    int neighbours = 12;              ///< k of the plane fit; bound [3, 32]
     double match_distance_m = 1.0;    ///< farther map points are no match; bound [0.001, 10]
     int iterations_max = 30;          ///< bound [1, 200]
     double correction_max_m = 15.0;   ///< a larger correction of the prior is rejected

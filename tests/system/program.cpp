@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "system/program.hpp"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+
+namespace tumble::system_test {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void redirect(const fs::path& path, int descriptor) {
+  const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  if (file < 0 || dup2(file, descriptor) < 0) _exit(126);
+}
+
+fs::path fresh_folder(const std::string& name) {
+  const fs::path folder = fs::path(testing::TempDir()) / ("tumble_" + std::to_string(getpid())) / name;
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  return folder;
+}
+
+int exit_status(int raw) { return WIFEXITED(raw) ? WEXITSTATUS(raw) : 128 + WTERMSIG(raw); }
+
+}  // namespace
+
+Running::Running(const std::vector<std::string>& arguments, const std::function<void()>& prepare) {
+  static int count = 0;
+  folder_ = fresh_folder("child_" + std::to_string(++count));
+  pid_ = fork();
+  if (pid_ != 0) return;
+  setpgid(0, 0);  // a group of its own, as a shell gives it
+  redirect(folder_ / "out", STDOUT_FILENO);
+  redirect(folder_ / "err", STDERR_FILENO);
+  if (prepare) prepare();
+  std::vector<char*> words = {const_cast<char*>(TUMBLE_PROGRAM)};
+  for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
+  words.push_back(nullptr);
+  execv(TUMBLE_PROGRAM, words.data());
+  _exit(127);
+}
+
+Running::~Running() {
+  if (pid_ > 0 && !reaped_) {
+    kill(-pid_, SIGKILL);
+    waitpid(pid_, nullptr, 0);
+  }
+}
+
+void Running::signal(int number) const { kill(-pid_, number); }
+
+bool Running::has_ended() {
+  if (!reaped_ && waitpid(pid_, &raw_status_, WNOHANG) == pid_) reaped_ = true;
+  return reaped_;
+}
+
+Ended Running::wait() {
+  if (!reaped_) waitpid(pid_, &raw_status_, 0);
+  reaped_ = true;
+  return {exit_status(raw_status_), read_file(folder_ / "out"), read_file(folder_ / "err")};
+}
+
+Ended run_program(const std::vector<std::string>& arguments, const std::function<void()>& prepare) {
+  return Running(arguments, prepare).wait();
+}
+
+fs::path test_folder() {
+  const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+  std::string name = std::string(test->test_suite_name()) + "_" + test->name();
+  std::replace(name.begin(), name.end(), '/', '_');
+  return fresh_folder(name);
+}
+
+fs::path shared_run(const std::string& scenario) {
+  static std::map<std::string, fs::path> made;
+  const auto found = made.find(scenario);
+  if (found != made.end()) return found->second;
+  const fs::path folder = fresh_folder("run_" + scenario);
+  const Ended ended = run_program({"run", scenario, "--seed", "1", "-o", folder.string(), "--json"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  std::ofstream(folder / "out.json") << ended.out;
+  return made[scenario] = folder;
+}
+
+std::string read_file(const fs::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+nlohmann::json json_of(const Ended& ended) {
+  nlohmann::json document = nlohmann::json::parse(ended.out, nullptr, false);
+  EXPECT_FALSE(document.is_discarded()) << "not JSON: " << ended.out << ended.err;
+  return document;
+}
+
+std::size_t line_count(const std::string& text) {
+  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+}  // namespace tumble::system_test

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One situation from end to end, and stage by stage.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <hdf5.h>
+
+#include <cmath>
+#include <map>
+
+#include "system/program.hpp"
+
+namespace tumble::system_test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+class OnRobot : public testing::TestWithParam<const char*> {};
+
+json shared_result(const std::string& scenario) { return json::parse(read_file(shared_run(scenario) / "out.json")); }
+
+/// Metric -> value of one method, without what a run costs.
+std::map<std::string, double> scores_of(const json& document, const std::string& kind, const std::string& method) {
+  std::map<std::string, double> out;
+  for (const json& row : document["scores"]) {
+    const std::string metric = row["metric"];
+    if (row["kind"] != kind || row["method"] != method || row["value"].is_null()) continue;
+    if (metric.find("_cpu_s") == std::string::npos && metric.find("_mib") == std::string::npos) out[metric] = row["value"];
+  }
+  return out;
+}
+
+TEST_P(OnRobot, RunLeavesEverythingAndScoresIt) {
+  const fs::path folder = shared_run(GetParam());
+  const json result = shared_result(GetParam());
+  EXPECT_EQ(result["status"], "ok") << result["outcomes"];
+  EXPECT_EQ(result["digest"].get<std::string>().size(), 32u);
+  EXPECT_GT(result["scores"].size(), 5u);
+  EXPECT_TRUE(fs::exists(folder / "recording.h5"));
+  EXPECT_TRUE(fs::exists(folder / "situation.yaml"));
+  for (const json& outcome : result["outcomes"]) {
+    const fs::path estimate = folder / "estimates" / (outcome["kind"].get<std::string>() + "-" + outcome["method"].get<std::string>());
+    EXPECT_TRUE(fs::exists(estimate / "estimate.json")) << estimate;
+  }
+  for (const char* picture : {"scene.png", "film.png"}) {
+    EXPECT_THAT(read_file(folder / "snapshots" / picture), StartsWith("\x89PNG")) << picture;
+  }
+}
+
+TEST_P(OnRobot, SameSeedGivesTheSameDigestForAnyThreads) {
+  const std::string expected = shared_result(GetParam())["digest"];
+  for (const char* threads : {"1", "2"}) {
+    const Ended ended = run_program({"run", GetParam(), "--seed", "1", "--threads", threads, "--json"});
+    ASSERT_EQ(ended.status, 0) << ended.err;
+    EXPECT_EQ(json_of(ended)["digest"], expected) << threads << " threads";
+  }
+  const Ended other = run_program({"run", GetParam(), "--seed", "2", "--json"});
+  EXPECT_NE(json_of(other)["digest"], expected) << "negative control: another seed is another run";
+}
+
+TEST_P(OnRobot, StagesAgreeWithRun) {
+  const fs::path folder = test_folder();
+  const std::string recording = (folder / "recording.h5").string();
+  const json whole = shared_result(GetParam());
+
+  const Ended recorded = run_program({"record", GetParam(), "--seed", "1", "-o", recording, "--json"});
+  ASSERT_EQ(recorded.status, 0) << recorded.err;
+  EXPECT_EQ(json_of(recorded)["digest"], whole["recording_digest"]);
+
+  std::size_t compared = 0;
+  for (const json& outcome : whole["outcomes"]) {
+    const std::string kind = outcome["kind"], method = outcome["method"];
+    if (method == "oracle") continue;  // needs the truth, which `estimate` never opens
+    const std::string estimate = (folder / kind / method).string();
+    const Ended estimated = run_program({"estimate", recording, "--method", kind + "/" + method, "-o", estimate, "--json"});
+    ASSERT_EQ(estimated.status, 0) << estimated.err;
+    EXPECT_EQ(json_of(estimated)["digest"], outcome["digest"]) << kind << "/" << method;
+
+    const Ended scored = run_program({"score", estimate, recording, "--json"});
+    ASSERT_EQ(scored.status, 0) << scored.err;
+    const auto own = scores_of(json_of(scored), kind, method), expected = scores_of(whole, kind, method);
+    ASSERT_EQ(own.size(), expected.size()) << kind << "/" << method;
+    for (const auto& [metric, value] : expected) {
+      // a quaternion is normalised on reading a TUM file: its last bit may differ
+      EXPECT_NEAR(own.at(metric), value, 1e-9 * (1.0 + std::abs(value))) << kind << "/" << method << " " << metric;
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 5u);
+}
+
+TEST_P(OnRobot, EstimateNeverOpensTheTruth) {
+  const fs::path folder = test_folder();
+  const fs::path blind = folder / "blind.h5";
+  fs::copy_file(shared_run(GetParam()) / "recording.h5", blind);
+  const hid_t file = H5Fopen(blind.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  ASSERT_GE(file, 0);
+  ASSERT_GE(H5Ldelete(file, "/truth", H5P_DEFAULT), 0);
+  ASSERT_GE(H5Fclose(file), 0);
+
+  std::size_t compared = 0;
+  for (const json& outcome : shared_result(GetParam())["outcomes"]) {
+    const std::string name = outcome["kind"].get<std::string>() + "/" + outcome["method"].get<std::string>();
+    if (outcome["method"] == "oracle") continue;
+    const Ended ended = run_program({"estimate", blind.string(), "--method", name, "-o", (folder / name).string(), "--json"});
+    ASSERT_EQ(ended.status, 0) << ended.err;
+    EXPECT_EQ(json_of(ended)["digest"], outcome["digest"]) << name;
+    ++compared;
+  }
+  EXPECT_GE(compared, 3u);
+  const Ended oracle = run_program({"estimate", blind.string(), "--method", "rate/oracle", "-o", (folder / "o").string()});
+  EXPECT_EQ(oracle.status, 2);
+  EXPECT_THAT(oracle.err, HasSubstr("needs the truth"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Program, OnRobot, testing::Values("hill", "roll"));
+
+TEST(Run, PrintsATablePerKind) {
+  const Ended ended = run_program({"run", "roll", "--seed", "1", "--method", "rolling", "--method", "rate/raw"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("roll, seed 1: rate"));
+  EXPECT_THAT(ended.out, HasSubstr("roll, seed 1: position"));
+  EXPECT_THAT(ended.out, HasSubstr("position_end_error_share"));
+  EXPECT_THAT(ended.out, HasSubstr("digest"));
+}
+
+TEST(Render, WritesAPictureOfARecordingWithItsEstimates) {
+  const fs::path run = shared_run("roll");
+  const fs::path png = test_folder() / "roll.png";
+  const Ended ended = run_program({"render", (run / "recording.h5").string(), (run / "estimates" / "position-rolling").string(), "-o", png.string()});
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(read_file(png), StartsWith("\x89PNG"));
+  EXPECT_GT(fs::file_size(png), 10000u) << "an empty picture packs to a few kilobytes";
+  EXPECT_THAT(ended.out, HasSubstr("truth"));
+}
+
+TEST(Render, WritesAFilmStripAndADraw) {
+  const fs::path folder = test_folder();
+  const Ended film = run_program({"render", (shared_run("roll") / "recording.h5").string(), "--film", "4", "--columns", "2", "--width",
+                                  "160", "--height", "120", "-o", (folder / "film.png").string()});
+  ASSERT_EQ(film.status, 0) << film.err;
+  EXPECT_THAT(read_file(folder / "film.png"), StartsWith("\x89PNG"));
+  const Ended draw = run_program({"render", "hill", "--seed", "1", "--width", "320", "--height", "240", "-o", (folder / "draw.png").string()});
+  ASSERT_EQ(draw.status, 0) << draw.err;
+  EXPECT_THAT(read_file(folder / "draw.png"), StartsWith("\x89PNG"));
+}
+
+}  // namespace
+}  // namespace tumble::system_test

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Sweeps that are stopped and resumed, shards and their merge, the report.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <chrono>
+#include <thread>
+
+#include "system/program.hpp"
+
+namespace tumble::system_test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// The sweep that these tests share: fast draws of the sphere.
+std::vector<std::string> sweep_arguments(const fs::path& database, const std::string& seeds) {
+  return {"sweep", "roll", "--seeds", seeds, "--method", "rate/raw", "--method", "rolling", "--db", database.string(), "--json"};
+}
+
+json report_json(const fs::path& database) { return json_of(run_program({"report", database.string(), "--json"})); }
+
+/// The scores of a report without what they cost.
+json comparable(json report) {
+  for (json& row : report["scores"]) {
+    for (const char* cost : {"estimate_cpu_s", "simulate_cpu_s", "estimate_peak_mib"}) row["metrics"].erase(cost);
+  }
+  return report;
+}
+
+TEST(Sweep, InterruptedKeepsWhatIsDoneAndGoesOn) {
+  const fs::path folder = test_folder();
+  const fs::path database = folder / "stopped.db";
+  // far more draws than end before the signal
+  Running running(sweep_arguments(database, "1..500"));
+  // the first draw that is stored gives the signal, however fast the machine is
+  for (int i = 0; i < 1200 && !running.has_ended(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    if (!fs::exists(database)) continue;
+    const Ended report = run_program({"report", database.string(), "--json"});
+    if (report.status == 0) break;
+  }
+  ASSERT_FALSE(running.has_ended()) << running.wait().err;
+  running.signal(SIGINT);
+  const Ended stopped = running.wait();
+  EXPECT_EQ(stopped.status, 1) << stopped.err;
+  EXPECT_THAT(stopped.err, HasSubstr("stopped: "));
+  EXPECT_THAT(stopped.err, HasSubstr(" of 500 draws stored, run again to go on"));
+
+  const std::int64_t kept = report_json(database)["draws"]["roll"];
+  ASSERT_GE(kept, 1);
+  ASSERT_LT(kept, 500);
+
+  // going on over the seeds that are there is no work, and changes nothing
+  const std::int64_t done = json_of(stopped)["draws_done"];
+  ASSERT_GE(done, 1);
+  const Ended resumed = run_program(sweep_arguments(database, "1.." + std::to_string(done + 1)));
+  EXPECT_EQ(resumed.status, 0) << resumed.err;
+  EXPECT_EQ(json_of(resumed)["draws_done"], done + 1);
+  EXPECT_LE(json_of(resumed)["outcomes"], 4) << "what was stored is not run again";
+
+  // the same seeds in one go give the same scores
+  const fs::path whole = folder / "whole.db";
+  ASSERT_EQ(run_program(sweep_arguments(whole, "1.." + std::to_string(done + 1))).status, 0);
+  EXPECT_EQ(comparable(report_json(database)), comparable(report_json(whole)));
+}
+
+TEST(Sweep, ShardsMergeToTheWhole) {
+  const fs::path folder = test_folder();
+  std::vector<std::string> merge = {"merge", (folder / "merged.db").string()};
+  for (const char* shard : {"1/2", "2/2"}) {
+    const fs::path database = folder / (std::string(1, shard[0]) + ".db");
+    std::vector<std::string> arguments = sweep_arguments(database, "1..3");
+    arguments.insert(arguments.end(), {"--shard", shard});
+    ASSERT_EQ(run_program(arguments).status, 0);
+    merge.push_back(database.string());
+  }
+  const Ended merged = run_program(merge);
+  ASSERT_EQ(merged.status, 0) << merged.err;
+  ASSERT_EQ(run_program(sweep_arguments(folder / "whole.db", "1..3")).status, 0);
+  const json report = comparable(report_json(folder / "merged.db"));
+  EXPECT_EQ(report["draws"]["roll"], 3);
+  EXPECT_EQ(report, comparable(report_json(folder / "whole.db")));
+}
+
+TEST(Sweep, OffATerminalWritesNoControlCharacters) {
+  const Ended ended = run_program(sweep_arguments(test_folder() / "x.db", "1"));
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ended.err, Not(HasSubstr("\r")));
+  EXPECT_THAT(ended.err, Not(HasSubstr("\x1b")));
+  EXPECT_THAT(ended.err, HasSubstr("1/1 draws"));
+  std::vector<std::string> quiet = sweep_arguments(test_folder() / "x.db", "1");
+  quiet.push_back("--quiet");
+  EXPECT_EQ(run_program(quiet).err, "");
+}
+
+TEST(Report, IsOnePageThatAsksTheNetworkNothing) {
+  const fs::path folder = test_folder();
+  const fs::path database = folder / "r.db", page = folder / "report.html";
+  ASSERT_EQ(run_program(sweep_arguments(database, "1..2")).status, 0);
+  const Ended ended = run_program({"report", database.string(), "-o", page.string()});
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("position_end_error_share"));
+
+  std::string text = read_file(page);
+  const std::size_t bundle = text.find("<script id=\"plotly\">");
+  ASSERT_NE(bundle, std::string::npos);
+  const std::size_t end = text.find("</script>", bundle);
+  EXPECT_GT(end - bundle, 1000000u) << "the Plotly bundle is inside";
+  text.erase(bundle, end - bundle);
+  // the bundle holds addresses as text; nothing else of the page may, and nothing may be fetched
+  for (const char* outside : {"http:", "https:", "@import", "url(", "<link"}) EXPECT_THAT(text, Not(HasSubstr(outside)));
+  EXPECT_THAT(text, HasSubstr("data:image/png;base64,iVBORw0KGgo")) << "no picture";
+  EXPECT_THAT(text, HasSubstr("rolling"));
+  EXPECT_THAT(text, HasSubstr("id=\"path-roll\""));
+}
+
+TEST(Report, OfAnAbsentDatabaseMakesNone) {
+  const fs::path database = test_folder() / "absent.db";
+  const Ended absent = run_program({"report", database.string()});
+  EXPECT_EQ(absent.status, 2);
+  EXPECT_EQ(line_count(absent.err), 1u) << absent.err;
+  EXPECT_FALSE(fs::exists(database));
+}
+
+}  // namespace
+}  // namespace tumble::system_test

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Damaged files, places that cannot be written, a disk that is full.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <fstream>
+
+#include "system/program.hpp"
+
+namespace tumble::system_test {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+void expect_one_line(const Ended& ended, const std::string& says) {
+  EXPECT_EQ(ended.status, 2) << ended.err;
+  EXPECT_EQ(line_count(ended.err), 1u) << ended.err;
+  EXPECT_THAT(ended.err, HasSubstr(says));
+}
+
+TEST(Trouble, TruncatedRecordingIsRecognised) {
+  const fs::path folder = test_folder();
+  const std::string whole = read_file(shared_run("roll") / "recording.h5");
+  ASSERT_GT(whole.size(), 1000u);
+  for (const double share : {0.0, 0.001, 0.5, 0.999}) {
+    const fs::path cut = folder / "cut.h5";
+    std::ofstream(cut, std::ios::binary) << whole.substr(0, static_cast<std::size_t>(share * static_cast<double>(whole.size())));
+    expect_one_line(run_program({"estimate", cut.string(), "--method", "rate/raw", "-o", (folder / "e").string()}), "cut.h5");
+    expect_one_line(run_program({"render", cut.string(), "-o", (folder / "p.png").string()}), "cut.h5");
+  }
+  EXPECT_FALSE(fs::exists(folder / "e")) << "nothing is left of an estimate that could not begin";
+}
+
+TEST(Trouble, FolderThatCannotBeWritten) {
+  // below a regular file: refused to root too
+  const fs::path folder = test_folder();
+  std::ofstream(folder / "file") << "x";
+  const std::string below = (folder / "file" / "below").string();
+  expect_one_line(run_program({"run", "roll", "--seed", "1", "-o", below}), "file/below");
+  expect_one_line(run_program({"record", "roll", "--seed", "1", "-o", below + "/r.h5"}), "file/below");
+  expect_one_line(run_program({"estimate", (shared_run("roll") / "recording.h5").string(), "--method", "rate/raw", "-o", below}), "file/below");
+  expect_one_line(run_program({"sweep", "roll", "--seeds", "1", "--db", below + "/x.db"}), "file/below");
+  expect_one_line(run_program({"render", (shared_run("roll") / "recording.h5").string(), "-o", below + "/p.png"}), "file/below");
+}
+
+TEST(Trouble, FullDiskLeavesNoPartialRecording) {
+  const fs::path folder = test_folder();
+  // a limit on the size of files stands for the disk that is full; a roll takes more than this
+  const auto full = [] {
+    const rlimit limit = {64 * 1024, 64 * 1024};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  };
+  expect_one_line(run_program({"record", "roll", "--seed", "1", "-o", (folder / "r.h5").string()}, full), "r.h5");
+  EXPECT_TRUE(fs::is_empty(folder)) << "a partial file stayed: " << fs::directory_iterator(folder)->path();
+  expect_one_line(run_program({"sweep", "roll", "--seeds", "1", "--db", (folder / "x.db").string()}, [] {
+                    const rlimit limit = {4096, 4096};
+                    setrlimit(RLIMIT_FSIZE, &limit);
+                  }), "x.db");
+}
+
+TEST(Trouble, FullStandardOutputIsSaid) {
+  const Ended ended = run_program({"list", "methods"}, [] {
+    if (std::freopen("/dev/full", "w", stdout) == nullptr) _exit(126);
+  });
+  expect_one_line(ended, "standard output");
+}
+
+TEST(Trouble, DataThatAreNotThereAreSaid) {
+  const Ended ended = run_program({"list", "scenarios"}, [] { setenv("TUMBLE_DATA", "/nowhere", 1); });
+  expect_one_line(ended, "/nowhere");
+}
+
+TEST(Trouble, ScenarioFileWithAnUnknownKeyNamesItsLineAndTheNearest) {
+  const fs::path file = test_folder() / "bad.yaml";
+  const std::string catalogue = read_file(fs::path(TUMBLE_SOURCE_DIR) / "scenarios" / "catalogue" / "roll.yaml");
+  const std::size_t at = catalogue.find("motion:");
+  ASSERT_NE(at, std::string::npos);
+  std::ofstream(file) << catalogue.substr(0, at) << "motoin:" << catalogue.substr(at + 7);
+  const Ended ended = run_program({"run", file.string(), "--seed", "1"});
+  expect_one_line(ended, "bad.yaml:");
+  EXPECT_THAT(ended.err, HasSubstr("did you mean 'motion'?"));
+}
+
+TEST(Trouble, ForeignFilesAreRefused) {
+  const fs::path folder = test_folder();
+  std::ofstream(folder / "text") << "this is neither HDF5 nor SQLite\n";
+  expect_one_line(run_program({"estimate", (folder / "text").string(), "--method", "rate/raw", "-o", (folder / "e").string()}), "text");
+  expect_one_line(run_program({"report", (folder / "text").string()}), "text");
+  expect_one_line(run_program({"score", (folder / "text").string(), (shared_run("roll") / "recording.h5").string()}), "text");
+}
+
+}  // namespace
+}  // namespace tumble::system_test

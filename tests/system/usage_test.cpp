@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Help, names and listings: what a newcomer types first.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "system/program.hpp"
+
+namespace tumble::system_test {
+namespace {
+
+using ::testing::HasSubstr;
+
+class EachVerb : public testing::TestWithParam<const char*> {};
+
+TEST_P(EachVerb, HasHelp) {
+  const Ended ended = run_program({GetParam(), "--help"});
+  EXPECT_EQ(ended.status, 0);
+  EXPECT_EQ(ended.err, "");
+  EXPECT_THAT(ended.out, HasSubstr("--json"));
+  EXPECT_THAT(ended.out, HasSubstr("--quiet"));
+}
+
+TEST_P(EachVerb, RefusesAnUnknownOptionInOneLine) {
+  const Ended ended = run_program({GetParam(), "--jsno"});
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_EQ(line_count(ended.err), 1u) << ended.err;
+  EXPECT_EQ(ended.out, "");
+}
+
+INSTANTIATE_TEST_SUITE_P(Program, EachVerb,
+                         testing::Values("list", "run", "record", "estimate", "score", "sweep", "merge", "report", "render"));
+
+struct Wrong {
+  const char* what;
+  std::vector<std::string> arguments;
+  const char* says;
+};
+void PrintTo(const Wrong& wrong, std::ostream* stream) { *stream << wrong.what; }
+
+class WrongUse : public testing::TestWithParam<Wrong> {};
+
+TEST_P(WrongUse, EndsWithTwoAndOneClearLine) {
+  const Ended ended = run_program(GetParam().arguments);
+  EXPECT_EQ(ended.status, 2) << ended.err;
+  EXPECT_EQ(line_count(ended.err), 1u) << ended.err;
+  EXPECT_THAT(ended.err, HasSubstr(GetParam().says));
+  EXPECT_EQ(ended.out, "");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Program, WrongUse,
+    testing::Values(Wrong{"no verb", {}, "a verb is missing"}, Wrong{"verb", {"rnu", "hill"}, "did you mean 'run'?"},
+                    Wrong{"scenario", {"run", "hil", "--seed", "1"}, "did you mean 'hill'?"},
+                    Wrong{"method", {"run", "hill", "--seed", "1", "--method", "saavee"}, "saave"},
+                    Wrong{"method of a sweep", {"sweep", "demo", "--method", "saavee", "--db", "/dev/null/x.db"}, "saave"},
+                    Wrong{"suite", {"sweep", "dmeo", "--db", "/dev/null/x.db"}, "demo"},
+                    Wrong{"list", {"list", "scenarois"}, "did you mean 'scenarios'?"},
+                    Wrong{"no seed", {"run", "hill"}, "--seed"}, Wrong{"seed", {"run", "hill", "--seed", "1.5"}, "'1.5'"},
+                    Wrong{"seeds", {"sweep", "demo", "--seeds", "9..3", "--db", "x.db"}, "'9..3'"},
+                    Wrong{"shard", {"sweep", "demo", "--shard", "3/2", "--db", "x.db"}, "'3/2'"},
+                    Wrong{"threads", {"run", "hill", "--seed", "1", "--threads", "0"}, "--threads"},
+                    Wrong{"absent recording", {"estimate", "absent.h5", "--method", "raw", "-o", "x"}, "absent.h5"},
+                    Wrong{"absent database", {"report", "absent.db"}, "absent.db"},
+                    Wrong{"render without seed", {"render", "hill", "-o", "x.png"}, "--seed"}));
+
+TEST(List, NamesWhatThereIs) {
+  const auto names = [](const char* what) {
+    std::vector<std::string> out;
+    for (const auto& entry : json_of(run_program({"list", what, "--json"}))) {
+      out.push_back(entry.value("name", entry.value("device", "")));
+    }
+    return out;
+  };
+  EXPECT_THAT(names("scenarios"), testing::IsSupersetOf({"hill", "roll", "slip"}));
+  EXPECT_THAT(names("methods"), testing::IsSupersetOf({"raw", "saave", "oracle", "integrate", "madgwick", "rolling", "icp"}));
+  EXPECT_THAT(names("sensors"), testing::IsSupersetOf({"mti30", "vn100", "rs16", "phidget1044", "mid100"}));
+  EXPECT_THAT(names("suites"), testing::IsSupersetOf({"hill", "slip", "demo", "gate"}));
+}
+
+TEST(List, EveryNumberOfASensorHasUnitAndSource) {
+  const nlohmann::json sensors = json_of(run_program({"list", "sensors", "--json"}));
+  std::size_t numbers = 0;
+  for (const auto& sensor : sensors) {
+    for (const auto& number : sensor["numbers"]) {
+      EXPECT_NE(number.value("unit", ""), "") << number;
+      EXPECT_NE(number.value("source", ""), "") << number;
+      ++numbers;
+    }
+  }
+  EXPECT_GT(numbers, 20u) << "an empty list would pass the above";
+}
+
+}  // namespace
+}  // namespace tumble::system_test
