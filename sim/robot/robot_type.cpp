@@ -19,11 +19,13 @@ const RobotType& find_robot_type(std::string_view name) {
 void move_parts(mjsBody* body, const Eigen::Vector3d& shift_m) {
   for (mjsElement* e = mjs_firstChild(body, mjOBJ_GEOM, 0); e; e = mjs_nextChild(body, e, 0)) {
     mjsGeom* geom = mjs_asGeom(e);
+    const bool by_ends = geom->fromto[0] == geom->fromto[0];  // NaN where the geom is given by its centre
     for (int i = 0; i < 3; ++i) {
-      geom->pos[i] += shift_m[i];
-      if (geom->fromto[0] == geom->fromto[0]) {  // NaN where the geom is not given by its end points
+      if (by_ends) {
         geom->fromto[i] += shift_m[i];
         geom->fromto[i + 3] += shift_m[i];
+      } else {
+        geom->pos[i] += shift_m[i];
       }
     }
   }

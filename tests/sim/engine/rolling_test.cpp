@@ -73,7 +73,7 @@ TEST(Rolling, SlideTurnsToGripAfterTheTimeOfCoulombsLaw) {
                mass = world.model->body_mass[world.robot_body];
   // v0 - slip left over = mu g t (1 + m r^2 / I)
   const double expected_s = 0.995 / (0.1 * 9.80665 * (1.0 + mass * kRadius_m * kRadius_m / inertia));
-  EXPECT_NEAR(gripped_s, expected_s, 0.02 * expected_s);
+  EXPECT_NEAR(gripped_s, expected_s, 0.005 * expected_s);  // measured 0.2 %
 }
 
 /// One patch across the way, and a burst there.

@@ -83,7 +83,7 @@ TEST(Resolve, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(complaint([](Situation& s) { s.robot.values.set("mass_kg", std::nan("")); }),
               HasSubstr("robot.rig.mass_kg is nan"));
   EXPECT_THAT(complaint([](Situation& s) { s.sensors[0].kind = "lidr"; }), HasSubstr("sensors.imu.kind"));
-  EXPECT_THAT(complaint([](Situation& s) { s.sensors[0].values.set("gyro_rail", 1); }),
+  EXPECT_THAT(complaint([](Situation& s) { s.sensors[0].values.set("gyro_rail_rads", 1); }),
               AllOf(HasSubstr("sensors.imu"), HasSubstr("'gyro_rail_rad_s'")));
   EXPECT_THAT(complaint([](Situation& s) { s.sensors[0].mount_error.set("x", 0); }),
               HasSubstr("sensors.imu.mount_error"));

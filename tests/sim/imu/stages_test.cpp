@@ -102,7 +102,7 @@ TEST(BiasStage, InRunIsStationaryAndDecaysWithItsTime) {
     Stream stream(run, "test");
     Bias bias({.in_run = 1.0, .in_run_s = 1.0}, kPeriod_s, stream);
     const Vector3d first = bias.next(stream);
-    Vector3d last;
+    Vector3d last = first;
     for (int k = 0; k < kLater; ++k) last = bias.next(stream);
     start += first.squaredNorm();
     later += last.squaredNorm();
@@ -121,7 +121,7 @@ TEST(BiasStage, WalkGrowsWithTheRootOfTimeWhateverThePeriod) {
     for (int run = 0; run < kRuns; ++run) {
       Stream stream(run, "test");
       Bias bias({.walk_sqrt_s = 0.1}, period_s, stream);
-      Vector3d last;
+      Vector3d last = Vector3d::Zero();
       for (int k = 0; k <= std::lround(0.25 / period_s); ++k) last = bias.next(stream);
       sum += last.squaredNorm();
     }

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <string>
+
+#include "scenarios/recordings/export.hpp"
+#include "scenarios/recordings/export_folder.hpp"
+#include "scenarios/recordings/number_text.hpp"
+#include "scenarios/recordings/replace_file.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+/// Attitude 0 0 0 1 with a first covariance of -1: sensor_msgs/Imu's way to say that there is none.
+constexpr const char* kNoAttitude = "0,0,0,1,[-1 0 0 0 0 0 0 0 0]";
+
+template <class Vector>
+void append_all(std::string& text, const Vector& vector) {
+  for (const double x : vector) append_number(text += ',', x);
+}
+
+/// White noise of one sample: density squared times the bandwidth of the output rate.
+std::string covariance_text(double density_sqrt_hz, std::int64_t period_ns) {
+  const double variance = density_sqrt_hz * density_sqrt_hz / (static_cast<double>(period_ns) * 1e-9);
+  std::string text = ",[";
+  for (int i = 0; i < 9; ++i) {
+    if (i > 0) text += ' ';
+    append_number(text, i % 4 == 0 ? variance : 0.0);
+  }
+  return text + "]";
+}
+
+std::string imu_text(const sim::ImuRecord& imu, const std::string& frame) {
+  const std::string gyro_covariance = covariance_text(imu.gyro_noise_rad_s_sqrt_hz, imu.period_ns);
+  const std::string accel_covariance = covariance_text(imu.accel_noise_m_s2_sqrt_hz, imu.period_ns);
+  std::string text =
+      "stamp_s,stamp_ns,frame_id,qx,qy,qz,qw,orientation_covariance,wx_rad_s,wy_rad_s,wz_rad_s,angular_velocity_covariance,"
+      "fx_m_s2,fy_m_s2,fz_m_s2,linear_acceleration_covariance\n";
+  for (std::size_t i = 0; i < imu.time_ns.size(); ++i) {
+    append_number(text, imu.time_ns[i] / 1000000000);
+    append_number(text += ',', imu.time_ns[i] % 1000000000);
+    text += "," + frame + "," + kNoAttitude;
+    append_all(text, imu.gyro_rad_s[i]);
+    text += gyro_covariance;
+    append_all(text, imu.accel_m_s2[i]);
+    text += accel_covariance + "\n";
+  }
+  return text;
+}
+
+std::string truth_text(const sim::Truth& truth) {
+  std::string text =
+      "time_ns,x_W_m,y_W_m,z_W_m,qx,qy,qz,qw,vx_W_m_s,vy_W_m_s,vz_W_m_s,wx_B_rad_s,wy_B_rad_s,wz_B_rad_s,"
+      "fx_B_m_s2,fy_B_m_s2,fz_B_m_s2,label\n";
+  for (std::size_t i = 0; i < truth.p_WB_m.size(); ++i) {
+    append_number(text, static_cast<std::int64_t>(i) * truth.period_ns);
+    append_all(text, truth.p_WB_m[i]);
+    append_all(text, truth.q_WB[i].coeffs());
+    append_all(text, truth.v_WB_m_s[i]);
+    append_all(text, truth.w_WB_B_rad_s[i]);
+    append_all(text, truth.f_B_m_s2[i]);
+    append_number(text += ',', static_cast<int>(truth.label[i]));
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace
+
+void export_csv(const sim::Sensors& sensors, const sim::Truth* truth, const std::filesystem::path& folder) {
+  require_folder(folder);
+  for (std::size_t i = 0; i < sensors.imus.size(); ++i) {
+    const std::string stem = file_stem(sensors.imus[i].name, "imu", i);
+    replace_file(folder / (stem + ".csv"), imu_text(sensors.imus[i], stem));
+  }
+  if (truth != nullptr) replace_file(folder / "truth.csv", truth_text(*truth));
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <string>
+
+#include "scenarios/recordings/export.hpp"
+#include "scenarios/recordings/number_text.hpp"
+#include "scenarios/recordings/replace_file.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+/// Seconds with nine decimals, from whole nanoseconds: exact.
+void append_seconds(std::string& text, std::int64_t time_ns) {
+  const std::string nanoseconds = std::to_string(time_ns % 1000000000);
+  text += std::to_string(time_ns / 1000000000) + "." + std::string(9 - nanoseconds.size(), '0') + nanoseconds;
+}
+
+}  // namespace
+
+void export_tum(const sim::Truth& truth, const std::filesystem::path& file) {
+  std::string text = "# t[s] x y z[m] qx qy qz qw: true pose of the body (centre of mass) in the world\n";
+  for (std::size_t i = 0; i < truth.p_WB_m.size(); ++i) {
+    append_seconds(text, static_cast<std::int64_t>(i) * truth.period_ns);
+    for (const double x : truth.p_WB_m[i]) append_number(text += ' ', x);
+    for (const double x : truth.q_WB[i].coeffs()) append_number(text += ' ', x);
+    text += '\n';
+  }
+  replace_file(file, text);
+}
+
+void export_kitti(const sim::Truth& truth, const std::filesystem::path& file) {
+  std::string text;
+  for (std::size_t i = 0; i < truth.p_WB_m.size(); ++i) {
+    const Eigen::Matrix3d R_WB = truth.q_WB[i].toRotationMatrix();
+    for (int row = 0; row < 3; ++row) {
+      if (row > 0) text += ' ';
+      for (int column = 0; column < 3; ++column) {
+        append_number(text, R_WB(row, column));
+        text += ' ';
+      }
+      append_number(text, truth.p_WB_m[i](row));
+    }
+    text += '\n';
+  }
+  replace_file(file, text);
+}
+
+}  // namespace tumble::scenarios
