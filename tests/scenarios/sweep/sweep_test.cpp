@@ -15,10 +15,15 @@
 namespace tumble::scenarios {
 namespace {
 
-const DataRoot& data() {
-  static const DataRoot root{TUMBLE_SOURCE_DIR};
-  return root;
-}
+constexpr const char* kRoll = R"(name: roll
+doc: A short straight way.
+duration_s: 3
+world: {type: floor, room_half_m: 4, pillar_count: 0, box_count: 0}
+robot: {type: sphere}
+motion: {type: hand_roll, rest_s: 1.2, leg_1_m: {uniform: [0.3, 0.5]}, leg_2_m: 0}
+sensors:
+  - {name: imu, kind: imu, device: phidget1044, site: phidget_1}
+)";
 
 Suite small_suite(std::uint64_t last_seed) {
   Suite suite;
@@ -39,7 +44,16 @@ std::map<std::string, std::string> digests(const std::filesystem::path& database
   return found;
 }
 
-using SweepTest = testing::TemporaryFolder;
+// the delivered models under a catalogue of one scenario
+class SweepTest : public testing::TemporaryFolder {
+ protected:
+  void SetUp() override {
+    TemporaryFolder::SetUp();
+    write("scenarios/catalogue/roll.yaml", kRoll);
+    std::filesystem::create_directory_symlink(std::filesystem::path(TUMBLE_SOURCE_DIR) / "models", folder_ / "models");
+  }
+  DataRoot data() const { return {folder_}; }
+};
 
 TEST_F(SweepTest, StoresEveryOutcomeResumesAndDoesNotDependOnJobs) {
   const auto path = folder_ / "a.db";
@@ -80,6 +94,22 @@ TEST_F(SweepTest, StoresEveryOutcomeResumesAndDoesNotDependOnJobs) {
   ASSERT_EQ(run.outcomes.size(), 1u);
   EXPECT_EQ(a.at("2position"), run.outcomes[0].recording_digest + run.outcomes[0].estimate_digest);
   EXPECT_EQ(run_digest(run).size(), 32u);
+}
+
+// a draw that never moves is refused by the simulation, kept as such, and not tried again
+TEST_F(SweepTest, ARejectedDrawIsKept) {
+  std::string still = kRoll;
+  still.replace(still.find("{uniform: [0.3, 0.5]}"), std::string("{uniform: [0.3, 0.5]}").size(), "0");
+  write("scenarios/catalogue/roll.yaml", still);
+  const auto path = folder_ / "a.db";
+  EXPECT_EQ(sweep(data(), small_suite(1), path, {}).rejected, 1u);
+  const Results results(path, Results::Mode::read_only);
+  ASSERT_EQ(results.rejected().size(), 1u);
+  EXPECT_NE(results.rejected().front().message, "");
+  EXPECT_EQ(results.outcomes().size(), 0u);
+  const SweepProgress again = sweep(data(), small_suite(1), path, {});
+  EXPECT_EQ(again.rejected, 0u);
+  EXPECT_EQ(again.draws_done, 1u);
 }
 
 TEST_F(SweepTest, RefusesADatabaseOfOtherScenarios) {
