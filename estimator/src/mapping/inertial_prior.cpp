@@ -16,6 +16,10 @@ constexpr TimeNs kGap_ns = 50'000'000;    // longer windows say nothing about th
 // a levelled start: gravity's direction within the accelerometer's bias, speed within what passes for rest
 constexpr double kStartTilt_rad = 0.01;
 constexpr double kStartSpeed_m_s = 0.05;
+constexpr double kStillSpeed_m_s = 0.01;
+
+constexpr double kRestShare = 0.02;  // of the noise of motion, while at rest
+constexpr double kRestSamples = 10.0;  // fewer teach no bias
 
 }  // namespace
 
@@ -44,8 +48,37 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
   }
   noise.diagonal().segment<3>(6).setConstant(std::pow(params.prior_sigma_m_s * span, 2) +
                                             std::pow(params.force_sigma_share * pushed_m_s, 2));
+  // held still: velocity is zero, and what it would have moved by does not count
+  const auto rests = [&](const MotionSample& sample) {
+    return sample.at_rest || seconds(sample.from_ns - start_ns) >= trajectory.duration_s();
+  };
+  if (std::all_of(samples.begin(), samples.end(), rests)) return kRestShare * kRestShare * noise;
   noise.block<3, 3>(3, 3) += trajectory.duration_s() * turned;
   return noise;
+}
+
+void hold_still(MotionState& state) {
+  state.v_WI_m_s.setZero();
+  state.covariance.rightCols<3>().setZero();
+  state.covariance.bottomRows<3>().setZero();
+  state.covariance.diagonal().tail<3>().setConstant(kStillSpeed_m_s * kStillSpeed_m_s);
+}
+
+bool InitialRest::take(const LidarInertialOdometry::Params& params, const Eigen::Vector3d& rate_rad_s,
+                       const Eigen::Vector3d& force_m_s2) {
+  if (!lasts) return false;
+  const Eigen::Vector3d mean = count > 0.0 ? Eigen::Vector3d(sum_force_m_s2 / count) : force_m_s2;
+  lasts = rate_rad_s.norm() <= params.rest_rate_rad_s && (force_m_s2 - mean).norm() <= params.rest_force_m_s2 &&
+          std::abs(force_m_s2.norm() - params.gravity_m_s2) <= params.rest_force_m_s2;
+  if (!lasts) return false;
+  count += 1.0;
+  sum_rate_rad_s += rate_rad_s;
+  sum_force_m_s2 += force_m_s2;
+  return true;
+}
+
+Eigen::Vector3d InitialRest::rate_bias_rad_s() const {
+  return count >= kRestSamples ? Eigen::Vector3d(sum_rate_rad_s / count) : Eigen::Vector3d::Zero();
 }
 
 Status start_at_rest(std::span<const MotionSample> samples, double rest_s, MotionState& state) {

@@ -25,6 +25,8 @@ constexpr int kRingBits = 16;
 void check(const Params& params) {
   require_within("gravity_m_s2", params.gravity_m_s2, 0.0, 100.0);
   require_within("rest_s", params.rest_s, 1e-9, 60.0);
+  require_within("rest_rate_rad_s", params.rest_rate_rad_s, 0.0, 10.0);
+  require_within("rest_force_m_s2", params.rest_force_m_s2, 0.0, 10.0);
   require_within("range_min_m", params.range_min_m, 0.0, 10.0);
   require_within("range_max_m", params.range_max_m, params.range_min_m, 1e4);
   require_within("sweep_voxel_m", params.sweep_voxel_m, 0.01, 10.0);
@@ -79,6 +81,7 @@ struct LidarInertialOdometry::Impl {
   Params params;
   bool started = false;
   MotionState state;  // at the end of the last sweep
+  mapping::InitialRest rest;
   std::vector<MotionSample> samples;  // from the window that holds state.time_ns on
   Eigen::Vector3d excess_rad_s = Eigen::Vector3d::Zero();
   std::uint8_t excess_axes_at_end = 0;
@@ -131,6 +134,7 @@ Status LidarInertialOdometry::Impl::check_selection(TimeNs span_ns, std::span<co
 Registration::Prior LidarInertialOdometry::Impl::prior() const {
   Registration::Prior prior;
   prior.state = state;
+  if (samples.front().at_rest) mapping::hold_still(prior.state);
   const std::uint8_t axes = params.estimate_excess_rate ? trajectory.clipped_axes() : 0;
   prior.state.covariance += mapping::inertial_noise(params, trajectory, samples, axes);
   for (int axis = 0; axis < 3; ++axis) {
@@ -250,9 +254,12 @@ Status LidarInertialOdometry::add_imu(const ImuSample& sample, const RateState& 
   // the first window's length is that of the second
   if (!my.started && my.samples.size() == 1) my.samples[0].from_ns = 2 * last_ns - sample.time_ns;
   const TimeNs from_ns = follows ? last_ns : sample.time_ns;
-  my.samples.push_back({from_ns, sample.time_ns, rate.w_WI_I_rad_s, sample.specific_force_m_s2,
+  const bool at_rest = my.rest.take(my.params, rate.w_WI_I_rad_s, sample.specific_force_m_s2);
+  const Eigen::Vector3d rate_rad_s =
+      at_rest ? Eigen::Vector3d::Zero() : Eigen::Vector3d(rate.w_WI_I_rad_s - my.rest.rate_bias_rad_s());
+  my.samples.push_back({from_ns, sample.time_ns, rate_rad_s, sample.specific_force_m_s2,
                         mapping::believed_rate_sigma(my.params, rate, sample.time_ns - from_ns),
-                        static_cast<std::uint8_t>(rate.clipped_axes & kAllAxes)});
+                        static_cast<std::uint8_t>(rate.clipped_axes & kAllAxes), at_rest});
   return {};
 }
 

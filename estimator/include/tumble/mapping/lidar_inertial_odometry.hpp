@@ -30,13 +30,17 @@ const char* to_string(SweepVerdict verdict);
 ///
 /// World: z up, origin and yaw at the IMU at the first sample, levelled by the specific force at rest.
 /// Feed IMU samples in time order, then each sweep once IMU samples reach its end. No threads, no files, no printing.
-/// Not modelled: biases of the IMU, loop closure, moving objects.
+/// Not modelled: biases of the IMU but the gyro's at the start, loop closure, moving objects.
 class LidarInertialOdometry {
  public:
   struct Params {
     Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< lidar in IMU axes
     double gravity_m_s2 = 9.80665;    ///< bound [0, 100]
     double rest_s = 0.5;              ///< at most this much of the start is used to level the attitude; bound (0, 60]
+    /// Rest at the start lasts while the rate stays below rest_rate_rad_s and the specific force within rest_force_m_s2 of
+    /// gravity and of its mean. Meanwhile the robot is held still, and the mean rate becomes the gyro's bias. Bounds [0, 10].
+    double rest_rate_rad_s = 0.05;
+    double rest_force_m_s2 = 0.5;
     double range_min_m = 0.3;         ///< nearer returns are dropped; bound [0, 10]
     double range_max_m = 100.0;       ///< farther returns are dropped; bound (range_min_m, 1e4]
     Eigen::AlignedBox3d own_body_L{Eigen::Vector3d(-0.5, -0.4, -0.27), Eigen::Vector3d(0.5, 0.4, 0.23)};  ///< returns inside are the robot's own; an empty box keeps all

@@ -22,6 +22,7 @@ struct MotionSample {
   Eigen::Vector3d f_I_m_s2 = Eigen::Vector3d::Zero();
   Eigen::Vector3d rate_sigma_rad_s = Eigen::Vector3d::Zero();  ///< standard deviation of the rate, IMU axes
   std::uint8_t clipped_axes = 0;                               ///< bit j: the gyro's axis j was at its rail
+  bool at_rest = false;                                        ///< belongs to the rest at the start
 };
 
 /// Motion of the IMU at one instant. Errors are ordered (position, attitude, velocity), all in W, the attitude's as in
