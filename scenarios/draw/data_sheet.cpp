@@ -8,7 +8,9 @@
 
 namespace tumble::scenarios {
 
-std::vector<std::string> device_names(const DataRoot& data) { return yaml_stems(data.data_sheets()); }
+std::vector<std::string> device_names(const DataRoot& data) {
+  return yaml_stems(data.data_sheets());
+}
 
 DataSheet load_data_sheet(const DataRoot& data, const std::string& device) {
   const std::filesystem::path path = find_yaml(data.data_sheets(), "device", device);

@@ -11,7 +11,12 @@ namespace tumble::scenarios {
 
 /// A sensor's data sheet, models/sensors/DEVICE.yaml: each number with value, unit and source.
 struct DataSheet {
-  struct Entry { std::string name; double value; std::string unit; std::string source; };
+  struct Entry {
+    std::string name;
+    double value;
+    std::string unit;
+    std::string source;
+  };
   std::string device;       ///< "mti30"
   std::string title;        ///< "Xsens MTi-30 AHRS"
   std::string sensor_kind;  ///< "imu", "spinning_lidar", "rosette_lidar"
@@ -20,7 +25,8 @@ struct DataSheet {
 };
 
 std::vector<std::string> device_names(const DataRoot& data);
-/// Throws BadInput: unknown device (nearest named), unknown key, a unit that is not the parameter's, a number without source.
+/// Throws BadInput: unknown device (nearest named), unknown key, a unit that is not the parameter's, a number without
+/// source.
 DataSheet load_data_sheet(const DataRoot& data, const std::string& device);
 
 }  // namespace tumble::scenarios

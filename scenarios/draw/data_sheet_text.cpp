@@ -42,12 +42,14 @@ DataSheet parse_data_sheet(const std::string& text, const std::string& file, con
   sheet.sensor_kind = fields.at("kind").identifier();
   const sim::ComponentType* const type = find_type(registry.sensors, sheet.sensor_kind);
   if (type == nullptr) {
-    fields.at("kind").fail("unknown '" + sheet.sensor_kind + "'" + suggestion(sheet.sensor_kind, names_of(registry.sensors)));
+    fields.at("kind").fail("unknown '" + sheet.sensor_kind + "'" +
+                           suggestion(sheet.sensor_kind, names_of(registry.sensors)));
   }
   for (const auto& [name, node] : fields.at("values").entries()) {
     const sim::Parameter* const parameter = find_parameter(type->parameters, name);
     if (parameter == nullptr) {
-      node.fail("unknown key '" + name + "' of kind '" + type->name + "'" + suggestion(name, names_of(type->parameters)));
+      node.fail("unknown key '" + name + "' of kind '" + type->name + "'" +
+                suggestion(name, names_of(type->parameters)));
     }
     sheet.entries.push_back(parse_entry(name, node, *parameter));
   }

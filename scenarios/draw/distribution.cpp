@@ -17,16 +17,22 @@ using Shape = Distribution::Shape;
 /// Least share of a normal distribution that a truncation may keep.
 constexpr double kLeastKept = 0.01;
 
-double normal_below(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
+double normal_below(double x) {
+  return 0.5 * std::erfc(-x / std::sqrt(2.0));
+}
 
 std::string count_problem(const Distribution& d) {
   const std::size_t n = d.numbers.size();
   switch (d.shape) {
-    case Shape::constant: return n == 1 ? "" : "needs one number";
+    case Shape::constant:
+      return n == 1 ? "" : "needs one number";
     case Shape::uniform:
-    case Shape::log_uniform: return n == 2 ? "" : std::string(to_string(d.shape)) + " needs [low, high]";
-    case Shape::normal: return n == 2 || n == 4 ? "" : "normal needs [mean, sigma] or [mean, sigma, low, high]";
-    case Shape::choice: return n >= 1 ? "" : "choice is empty";
+    case Shape::log_uniform:
+      return n == 2 ? "" : std::string(to_string(d.shape)) + " needs [low, high]";
+    case Shape::normal:
+      return n == 2 || n == 4 ? "" : "normal needs [mean, sigma] or [mean, sigma, low, high]";
+    case Shape::choice:
+      return n >= 1 ? "" : "choice is empty";
   }
   return "unknown shape";
 }
@@ -69,11 +75,16 @@ double draw_normal(const std::vector<double>& numbers, sim::Stream& stream) {
 
 const char* to_string(Distribution::Shape shape) {
   switch (shape) {
-    case Shape::constant: return "constant";
-    case Shape::uniform: return "uniform";
-    case Shape::normal: return "normal";
-    case Shape::log_uniform: return "log_uniform";
-    case Shape::choice: return "choice";
+    case Shape::constant:
+      return "constant";
+    case Shape::uniform:
+      return "uniform";
+    case Shape::normal:
+      return "normal";
+    case Shape::log_uniform:
+      return "log_uniform";
+    case Shape::choice:
+      return "choice";
   }
   return "unknown";
 }
@@ -84,14 +95,17 @@ std::string find_problem(const Distribution& d) {
     return "a number is not finite";
   }
   switch (d.shape) {
-    case Shape::uniform: return range_problem(d.numbers[0], d.numbers[1]);
-    case Shape::normal: return normal_problem(d.numbers);
+    case Shape::uniform:
+      return range_problem(d.numbers[0], d.numbers[1]);
+    case Shape::normal:
+      return normal_problem(d.numbers);
     case Shape::log_uniform: {
       if (std::min(d.numbers[0], d.numbers[1]) <= 0.0) return "log_uniform needs numbers above 0";
       return range_problem(d.numbers[0], d.numbers[1]);
     }
     case Shape::constant:
-    case Shape::choice: break;
+    case Shape::choice:
+      break;
   }
   return "";
 }
@@ -108,18 +122,21 @@ double draw_number(const Distribution& d, std::uint64_t seed, std::string_view p
   if (d.shape == Shape::constant) return d.numbers[0];
   sim::Stream stream(seed, "draw." + std::string(place));
   switch (d.shape) {
-    case Shape::uniform: return std::clamp(stream.uniform(d.numbers[0], d.numbers[1]), d.numbers[0], d.numbers[1]);
+    case Shape::uniform:
+      return std::clamp(stream.uniform(d.numbers[0], d.numbers[1]), d.numbers[0], d.numbers[1]);
     case Shape::log_uniform: {
       const double value = std::exp(stream.uniform(std::log(d.numbers[0]), std::log(d.numbers[1])));
       return std::clamp(value, d.numbers[0], d.numbers[1]);  // exp(log(x)) may round past x
     }
-    case Shape::normal: return draw_normal(d.numbers, stream);
+    case Shape::normal:
+      return draw_normal(d.numbers, stream);
     case Shape::choice: {
       const auto count = static_cast<double>(d.numbers.size());
       const auto index = static_cast<std::size_t>(stream.uniform() * count);
       return d.numbers[std::min(index, d.numbers.size() - 1)];
     }
-    case Shape::constant: break;
+    case Shape::constant:
+      break;
   }
   return d.numbers[0];
 }

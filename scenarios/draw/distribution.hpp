@@ -12,7 +12,8 @@ namespace tumble::scenarios {
 struct Distribution {
   enum class Shape { constant, uniform, normal, log_uniform, choice };
   Shape shape = Shape::constant;
-  std::vector<double> numbers;  ///< constant: value; uniform, log_uniform: low, high; normal: mean, sigma[, low, high]; choice: the values
+  std::vector<double> numbers;  ///< constant: value; uniform, log_uniform: low, high; normal: mean, sigma[, low, high];
+                                ///< choice: the values
   int line = 0;                 ///< of the file, for messages
   bool operator==(const Distribution&) const = default;
 };

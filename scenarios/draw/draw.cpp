@@ -6,7 +6,8 @@
 namespace tumble::scenarios {
 
 Registry Registry::of_simulation() {
-  return {sim::world_types(), sim::robot_types(), sim::motion_types(), sim::sensor_types(), sim::mount_error_parameters()};
+  return {sim::world_types(), sim::robot_types(), sim::motion_types(), sim::sensor_types(),
+          sim::mount_error_parameters()};
 }
 
 sim::Situation draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed) {
@@ -15,7 +16,8 @@ sim::Situation draw(const DataRoot& data, const Scenario& scenario, std::uint64_
     try {
       sheets.push_back(load_data_sheet(data, sensor.device));
     } catch (const BadInput& error) {
-      throw BadInput(scenario.file + ":" + std::to_string(sensor.line) + ": sensors." + sensor.name + ": " + error.what());
+      throw BadInput(scenario.file + ":" + std::to_string(sensor.line) + ": sensors." + sensor.name + ": " +
+                     error.what());
     }
   }
   const sim::Situation given = draw_given(scenario, sheets, seed);

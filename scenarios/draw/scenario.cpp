@@ -10,7 +10,9 @@
 
 namespace tumble::scenarios {
 
-std::vector<std::string> scenario_names(const DataRoot& data) { return yaml_stems(data.catalogue()); }
+std::vector<std::string> scenario_names(const DataRoot& data) {
+  return yaml_stems(data.catalogue());
+}
 
 Scenario load_scenario(const DataRoot& data, const std::string& name) {
   const Registry registry = Registry::of_simulation();

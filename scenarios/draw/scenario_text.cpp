@@ -68,7 +68,8 @@ Numbers parse_numbers(const YamlNode& map, std::span<const std::string> other, s
 }
 
 const YamlNode* find_entry(const std::vector<std::pair<std::string, YamlNode>>& entries, const std::string& name) {
-  const auto found = std::find_if(entries.begin(), entries.end(), [&](const auto& entry) { return entry.first == name; });
+  const auto found =
+      std::find_if(entries.begin(), entries.end(), [&](const auto& entry) { return entry.first == name; });
   return found == entries.end() ? nullptr : &found->second;
 }
 
@@ -113,7 +114,8 @@ std::vector<Scenario::Sensor> parse_sensors(const YamlNode& list, const Registry
   for (const YamlNode& item : list.items()) {
     Scenario::Sensor sensor = parse_sensor(item, registry);
     for (const Scenario::Sensor& other : out) {
-      if (other.name == sensor.name) item.fail("a sensor '" + sensor.name + "' stands already in line " + std::to_string(other.line));
+      if (other.name == sensor.name)
+        item.fail("a sensor '" + sensor.name + "' stands already in line " + std::to_string(other.line));
     }
     out.push_back(std::move(sensor));
   }

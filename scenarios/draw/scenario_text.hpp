@@ -9,8 +9,8 @@
 
 namespace tumble::scenarios {
 
-/// The scenario that `text` holds, checked against `registry`: types, numbers, and the reach of each distribution against
-/// the parameter's bounds. `file` begins the messages. Throws BadInput with file, line and place.
+/// The scenario that `text` holds, checked against `registry`: types, numbers, and the reach of each distribution
+/// against the parameter's bounds. `file` begins the messages. Throws BadInput with file, line and place.
 Scenario parse_scenario(const std::string& text, const std::string& file, const Registry& registry);
 
 /// The data sheet that `text` holds, checked against the parameters of its kind of sensor: names, units, bounds.

@@ -24,7 +24,8 @@ std::string number_text(double value, const std::string& place) {
 /// Plain for identifiers, else in double quotes with YAML's escapes.
 std::string quoted(const std::string& text) {
   const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
-  if (!text.empty() && std::isalpha(static_cast<unsigned char>(text[0])) != 0 && std::all_of(text.begin(), text.end(), plain)) {
+  if (!text.empty() && std::isalpha(static_cast<unsigned char>(text[0])) != 0 &&
+      std::all_of(text.begin(), text.end(), plain)) {
     return text;
   }
   constexpr char kDigits[] = "0123456789abcdef";
@@ -80,7 +81,7 @@ sim::Component component_from(const YamlNode& node) {
 sim::SensorSpec sensor_from(const YamlNode& node) {
   static const std::array<std::string, 6> kKeys = {"name", "kind", "device", "site", "values", "mount_error"};
   const auto fields = node.fields(kKeys);
-  return {fields.at("name").any_text(), fields.at("kind").any_text(),         fields.at("device").any_text(),
+  return {fields.at("name").any_text(), fields.at("kind").any_text(),     fields.at("device").any_text(),
           fields.at("site").any_text(), values_from(fields.at("values")), values_from(fields.at("mount_error"))};
 }
 
@@ -98,7 +99,8 @@ std::string to_yaml(const sim::Situation& situation) {
 }
 
 sim::Situation situation_from_yaml(const std::string& text, const std::string& place) {
-  static const std::array<std::string, 7> kKeys = {"scenario", "seed", "duration_s", "world", "robot", "motion", "sensors"};
+  static const std::array<std::string, 7> kKeys = {"scenario", "seed",   "duration_s", "world",
+                                                   "robot",    "motion", "sensors"};
   const auto fields = YamlNode::parse(text, place).fields(kKeys);
   sim::Situation out;
   out.scenario = fields.at("scenario").any_text();

@@ -19,7 +19,9 @@ namespace {
 
 constexpr std::uintmax_t kLargestFile = 4u << 20;
 
-std::string join(const std::string& place, const std::string& name) { return place.empty() ? name : place + "." + name; }
+std::string join(const std::string& place, const std::string& name) {
+  return place.empty() ? name : place + "." + name;
+}
 
 const char* kind_of(const YAML::Node& node) {
   if (node.IsMap()) return "a map";
@@ -89,8 +91,12 @@ std::string YamlNode::identifier() const {
   return name;
 }
 
-double YamlNode::number() const { return parse_number(false); }
-double YamlNode::number_or_infinity() const { return parse_number(true); }
+double YamlNode::number() const {
+  return parse_number(false);
+}
+double YamlNode::number_or_infinity() const {
+  return parse_number(true);
+}
 
 double YamlNode::parse_number(bool infinity_allowed) const {
   if (!node_.IsScalar()) fail(std::string("must be a number, is ") + kind_of(node_));
@@ -120,7 +126,8 @@ std::uint64_t YamlNode::unsigned_integer() const {
 std::vector<YamlNode> YamlNode::items() const {
   if (!node_.IsSequence()) fail(std::string("must be a list, is ") + kind_of(node_));
   std::vector<YamlNode> out;
-  for (const YAML::Node& item : node_) out.push_back(YamlNode(item, file_, place_ + "[" + std::to_string(out.size()) + "]"));
+  for (const YAML::Node& item : node_)
+    out.push_back(YamlNode(item, file_, place_ + "[" + std::to_string(out.size()) + "]"));
   return out;
 }
 

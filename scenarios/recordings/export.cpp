@@ -49,7 +49,8 @@ void export_recording(const path& recording, const std::string& format, const pa
   std::string known;
   for (const std::string& name : export_formats()) known += " " + name;
   const std::string near = sim::nearest_name(format, export_formats());
-  throw BadInput("unknown format '" + format + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") + " (known:" + known + ")");
+  throw BadInput("unknown format '" + format + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") +
+                 " (known:" + known + ")");
 }
 
 }  // namespace tumble::scenarios

@@ -12,20 +12,23 @@ namespace tumble::scenarios {
 /// Names that export_recording takes: csv kitti pcd ply tum.
 std::vector<std::string> export_formats();
 
-/// Writes a recording file in somebody else's format. `tum` and `kitti` write one file, the true poses of the body; `csv`,
-/// `pcd` and `ply` write into a folder, which is made when absent. Files are replaced whole. Throws BadInput: unknown format
-/// (nearest named), a recording without what the format needs, a place that cannot be written.
-void export_recording(const std::filesystem::path& recording, const std::string& format, const std::filesystem::path& out);
+/// Writes a recording file in somebody else's format. `tum` and `kitti` write one file, the true poses of the body;
+/// `csv`, `pcd` and `ply` write into a folder, which is made when absent. Files are replaced whole. Throws BadInput:
+/// unknown format (nearest named), a recording without what the format needs, a place that cannot be written.
+void export_recording(const std::filesystem::path& recording, const std::string& format,
+                      const std::filesystem::path& out);
 
-/// "t x y z qx qy qz qw" per physics sample: T_WB, seconds from the start with nine decimals, numbers that read back exactly.
+/// "t x y z qx qy qz qw" per physics sample: T_WB, seconds from the start with nine decimals, numbers that read back
+/// exactly.
 void export_tum(const sim::Truth& truth, const std::filesystem::path& file);
 
 /// Upper three rows of T_WB, row by row, per physics sample; KITTI's format has no time.
 void export_kitti(const sim::Truth& truth, const std::filesystem::path& file);
 
-/// NAME.csv per IMU in the columns of a sensor_msgs/Imu (stamp s, stamp ns, frame, attitude x y z w, its covariance, rate,
-/// its covariance, specific force, its covariance; covariances in brackets, space separated; rad/s, m/s^2; attitude is
-/// unknown: covariance -1 first, as ROS has it). With a truth also truth.csv: time, T_WB, v_WB_W, w_WB_B, f_B, label.
+/// NAME.csv per IMU in the columns of a sensor_msgs/Imu (stamp s, stamp ns, frame, attitude x y z w, its covariance,
+/// rate, its covariance, specific force, its covariance; covariances in brackets, space separated; rad/s, m/s^2;
+/// attitude is unknown: covariance -1 first, as ROS has it). With a truth also truth.csv: time, T_WB, v_WB_W, w_WB_B,
+/// f_B, label.
 void export_csv(const sim::Sensors& sensors, const sim::Truth* truth, const std::filesystem::path& folder);
 
 /// NAME_000000.ply (or .pcd) per sweep, binary, not deskewed, in L: x y z intensity ring offset_ns.

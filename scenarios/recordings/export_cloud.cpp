@@ -14,7 +14,8 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "both formats are written as the numbers lie in memory");
 
 std::string ply_header(std::size_t points) {
-  return "ply\nformat binary_little_endian 1.0\ncomment one lidar sweep, lidar axes, metres, not deskewed\nelement vertex " +
+  return "ply\nformat binary_little_endian 1.0\ncomment one lidar sweep, lidar axes, metres, not deskewed\nelement "
+         "vertex " +
          std::to_string(points) +
          "\nproperty float x\nproperty float y\nproperty float z\nproperty float intensity\nproperty ushort ring\n"
          "property uint offset_ns\nend_header\n";

@@ -33,7 +33,8 @@ std::string imu_text(const sim::ImuRecord& imu, const std::string& frame) {
   const std::string gyro_covariance = covariance_text(imu.gyro_noise_rad_s_sqrt_hz, imu.period_ns);
   const std::string accel_covariance = covariance_text(imu.accel_noise_m_s2_sqrt_hz, imu.period_ns);
   std::string text =
-      "stamp_s,stamp_ns,frame_id,qx,qy,qz,qw,orientation_covariance,wx_rad_s,wy_rad_s,wz_rad_s,angular_velocity_covariance,"
+      "stamp_s,stamp_ns,frame_id,qx,qy,qz,qw,orientation_covariance,wx_rad_s,wy_rad_s,wz_rad_s,angular_velocity_"
+      "covariance,"
       "fx_m_s2,fy_m_s2,fz_m_s2,linear_acceleration_covariance\n";
   for (std::size_t i = 0; i < imu.time_ns.size(); ++i) {
     append_number(text, imu.time_ns[i] / 1000000000);

@@ -20,23 +20,35 @@ Handle text_type(std::size_t length) {
   return type;
 }
 
-std::string until_zero(const char* text, std::size_t length) { return {text, std::find(text, text + length, '\0')}; }
+std::string until_zero(const char* text, std::size_t length) {
+  return {text, std::find(text, text + length, '\0')};
+}
 
-bool is_signed(const Handle& type) { return H5Tget_sign(type.get()) == H5T_SGN_2; }
+bool is_signed(const Handle& type) {
+  return H5Tget_sign(type.get()) == H5T_SGN_2;
+}
 
 }  // namespace
 
 void Group::write_attribute(const std::string& name, const std::string& value) const {
   const Handle type = text_type(value.size());
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Handle attribute(H5Acreate2(group_.get(), name.c_str(), type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  const Handle attribute(H5Acreate2(group_.get(), name.c_str(), type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT),
+                         H5Aclose);
   // c_str ends in a zero, which an empty text needs as its one byte
-  if (!attribute.valid() || H5Awrite(attribute.get(), type.get(), value.c_str()) < 0) fail(name, "cannot be written" + last_error());
+  if (!attribute.valid() || H5Awrite(attribute.get(), type.get(), value.c_str()) < 0)
+    fail(name, "cannot be written" + last_error());
 }
 
-void Group::write_attribute(const std::string& name, double value) const { write_number(name, Scalar::float64, &value); }
-void Group::write_attribute(const std::string& name, std::int64_t value) const { write_number(name, Scalar::int64, &value); }
-void Group::write_attribute(const std::string& name, std::uint64_t value) const { write_number(name, Scalar::uint64, &value); }
+void Group::write_attribute(const std::string& name, double value) const {
+  write_number(name, Scalar::float64, &value);
+}
+void Group::write_attribute(const std::string& name, std::int64_t value) const {
+  write_number(name, Scalar::int64, &value);
+}
+void Group::write_attribute(const std::string& name, std::uint64_t value) const {
+  write_number(name, Scalar::uint64, &value);
+}
 
 void Group::write_number(const std::string& name, Scalar scalar, const void* value) const {
   const hid_t type = memory_type(scalar);
@@ -60,7 +72,8 @@ std::string Group::text_attribute(const std::string& name) const {
   if (H5Tget_class(type.get()) != H5T_STRING) fail(name, "attribute must be text");
   if (H5Tis_variable_str(type.get()) > 0) {  // as h5py writes them
     char* text = nullptr;
-    if (H5Aread(attribute.get(), type.get(), &text) < 0 || text == nullptr) fail(name, "attribute cannot be read" + last_error());
+    if (H5Aread(attribute.get(), type.get(), &text) < 0 || text == nullptr)
+      fail(name, "attribute cannot be read" + last_error());
     std::string out(text);
     H5free_memory(text);
     return out;
@@ -110,13 +123,16 @@ void Group::write_texts(const std::string& name, const std::vector<std::string>&
   std::size_t longest = 1;
   for (const std::string& text : texts) longest = std::max(longest, text.size());
   std::vector<char> block(longest * std::max<std::size_t>(texts.size(), 1), '\0');
-  for (std::size_t i = 0; i < texts.size(); ++i) std::copy(texts[i].begin(), texts[i].end(), block.begin() + static_cast<std::ptrdiff_t>(i * longest));
+  for (std::size_t i = 0; i < texts.size(); ++i)
+    std::copy(texts[i].begin(), texts[i].end(), block.begin() + static_cast<std::ptrdiff_t>(i * longest));
   const Handle type = text_type(longest);
   const hsize_t count = texts.size();
   const Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose);
   const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_obj_track_times(creation.get(), false);
-  const Handle dataset(H5Dcreate2(group_.get(), name.c_str(), type.get(), space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT), H5Dclose);
+  const Handle dataset(
+      H5Dcreate2(group_.get(), name.c_str(), type.get(), space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT),
+      H5Dclose);
   if (!dataset.valid() || H5Dwrite(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, block.data()) < 0) {
     fail(name, "cannot be written" + last_error());
   }

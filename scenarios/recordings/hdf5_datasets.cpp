@@ -15,11 +15,14 @@ constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
 constexpr std::uint64_t kBestDeflation = 1100;
 
 const char* name_of(Scalar scalar) {
-  constexpr std::array<const char*, 8> kNames = {"float64", "float32", "int64", "int32", "uint64", "uint32", "uint16", "uint8"};
+  constexpr std::array<const char*, 8> kNames = {"float64", "float32", "int64",  "int32",
+                                                 "uint64",  "uint32",  "uint16", "uint8"};
   return kNames[static_cast<std::size_t>(scalar)];
 }
 
-std::size_t size_of(Scalar scalar) { return H5Tget_size(memory_type(scalar)); }
+std::size_t size_of(Scalar scalar) {
+  return H5Tget_size(memory_type(scalar));
+}
 
 /// Same kind, width and sign; the order of bytes may differ, the library converts it.
 bool matches(hid_t type, Scalar scalar) {
@@ -33,7 +36,8 @@ Handle creation_properties(std::size_t rows, std::size_t columns, std::size_t ro
   Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_obj_track_times(properties.get(), false);
   if (!compressed || rows == 0) return properties;
-  const std::array<hsize_t, 2> chunk = {std::min<hsize_t>(rows, std::max<std::size_t>(kChunkBytes / row_bytes, 1)), columns};
+  const std::array<hsize_t, 2> chunk = {std::min<hsize_t>(rows, std::max<std::size_t>(kChunkBytes / row_bytes, 1)),
+                                        columns};
   H5Pset_chunk(properties.get(), columns == 1 ? 1 : 2, chunk.data());
   H5Pset_shuffle(properties.get());
   H5Pset_deflate(properties.get(), 1);
@@ -44,14 +48,22 @@ Handle creation_properties(std::size_t rows, std::size_t columns, std::size_t ro
 
 hid_t memory_type(Scalar scalar) {
   switch (scalar) {
-    case Scalar::float64: return H5T_NATIVE_DOUBLE;
-    case Scalar::float32: return H5T_NATIVE_FLOAT;
-    case Scalar::int64: return H5T_NATIVE_INT64;
-    case Scalar::int32: return H5T_NATIVE_INT32;
-    case Scalar::uint64: return H5T_NATIVE_UINT64;
-    case Scalar::uint32: return H5T_NATIVE_UINT32;
-    case Scalar::uint16: return H5T_NATIVE_UINT16;
-    case Scalar::uint8: return H5T_NATIVE_UINT8;
+    case Scalar::float64:
+      return H5T_NATIVE_DOUBLE;
+    case Scalar::float32:
+      return H5T_NATIVE_FLOAT;
+    case Scalar::int64:
+      return H5T_NATIVE_INT64;
+    case Scalar::int32:
+      return H5T_NATIVE_INT32;
+    case Scalar::uint64:
+      return H5T_NATIVE_UINT64;
+    case Scalar::uint32:
+      return H5T_NATIVE_UINT32;
+    case Scalar::uint16:
+      return H5T_NATIVE_UINT16;
+    case Scalar::uint8:
+      return H5T_NATIVE_UINT8;
   }
   return -1;
 }
@@ -62,7 +74,8 @@ void Group::write_rows(const std::string& name, const void* data, std::size_t ro
   const Handle space(H5Screate_simple(columns == 1 ? 1 : 2, extent.data(), nullptr), H5Sclose);
   const Handle properties = creation_properties(rows, columns, columns * size_of(scalar), compressed);
   const hid_t type = memory_type(scalar);
-  Handle dataset(H5Dcreate2(group_.get(), name.c_str(), type, space.get(), H5P_DEFAULT, properties.get(), H5P_DEFAULT), H5Dclose);
+  Handle dataset(H5Dcreate2(group_.get(), name.c_str(), type, space.get(), H5P_DEFAULT, properties.get(), H5P_DEFAULT),
+                 H5Dclose);
   if (!dataset.valid()) fail(name, "cannot be created" + last_error());
   if (rows > 0 && H5Dwrite(dataset.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) {
     fail(name, "cannot be written" + last_error());
@@ -80,7 +93,8 @@ Handle Group::open_dataset(const std::string& name) const {
   return dataset;
 }
 
-std::size_t Group::count_rows(const Handle& dataset, const std::string& name, std::size_t columns, Scalar scalar) const {
+std::size_t Group::count_rows(const Handle& dataset, const std::string& name, std::size_t columns,
+                              Scalar scalar) const {
   const Handle type(H5Dget_type(dataset.get()), H5Tclose);
   if (!matches(type.get(), scalar)) fail(name, std::string("must hold ") + name_of(scalar));
   const Handle space(H5Dget_space(dataset.get()), H5Sclose);
@@ -99,7 +113,8 @@ std::size_t Group::count_rows(const Handle& dataset, const std::string& name, st
   return extent[0];
 }
 
-void Group::read_rows(const Handle& dataset, const std::string& name, void* data, std::size_t rows, Scalar scalar) const {
+void Group::read_rows(const Handle& dataset, const std::string& name, void* data, std::size_t rows,
+                      Scalar scalar) const {
   if (rows == 0) return;
   if (H5Dread(dataset.get(), memory_type(scalar), H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) {
     fail(name, "cannot be read" + last_error());

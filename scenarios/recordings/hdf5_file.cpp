@@ -32,7 +32,9 @@ H5FD_file_image_callbacks_t keep_image_in(void** user) {
   calls.image_memcpy = [](void* to, const void* from, std::size_t size, H5FD_file_image_op_t, void*) {
     return std::memcpy(to, from, size);
   };
-  calls.image_realloc = [](void* old, std::size_t size, H5FD_file_image_op_t, void*) { return std::realloc(old, size); };
+  calls.image_realloc = [](void* old, std::size_t size, H5FD_file_image_op_t, void*) {
+    return std::realloc(old, size);
+  };
   calls.image_free = [](void* memory, H5FD_file_image_op_t when, void* keeper) -> herr_t {
     if (when != H5FD_FILE_IMAGE_OP_FILE_CLOSE) {
       std::free(memory);
@@ -47,7 +49,8 @@ H5FD_file_image_callbacks_t keep_image_in(void** user) {
   return calls;
 }
 
-/// Length that the superblock states (format specification, superblock version 3: byte 28); the driver's memory is longer.
+/// Length that the superblock states (format specification, superblock version 3: byte 28); the driver's memory is
+/// longer.
 std::uint64_t stated_length(const void* image) {
   std::uint64_t length = 0;
   std::memcpy(&length, static_cast<const char*>(image) + 28, sizeof(length));
@@ -112,7 +115,9 @@ Silence::Silence() {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 
-Silence::~Silence() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
+Silence::~Silence() {
+  H5Eset_auto2(H5E_DEFAULT, function_, data_);
+}
 
 void Group::fail(const std::string& name, const std::string& what) const {
   throw BadInput(file_ + ": " + place_ + "/" + name + ": " + what);
@@ -133,7 +138,9 @@ Group Group::create(const std::string& name) const {
   return Group(std::move(group), file_, place_ + "/" + name);
 }
 
-bool Group::has(const std::string& name) const { return H5Lexists(group_.get(), name.c_str(), H5P_DEFAULT) > 0; }
+bool Group::has(const std::string& name) const {
+  return H5Lexists(group_.get(), name.c_str(), H5P_DEFAULT) > 0;
+}
 
 std::size_t Group::count() const {
   H5G_info_t info;
@@ -141,9 +148,12 @@ std::size_t Group::count() const {
   return info.nlinks;
 }
 
-bool Group::has_attribute(const std::string& name) const { return H5Aexists(group_.get(), name.c_str()) > 0; }
+bool Group::has_attribute(const std::string& name) const {
+  return H5Aexists(group_.get(), name.c_str()) > 0;
+}
 
-InputFile::InputFile(const std::filesystem::path& path) : file_(open_file(path)), root_(root_of(file_, path.string())) {}
+InputFile::InputFile(const std::filesystem::path& path)
+    : file_(open_file(path)), root_(root_of(file_, path.string())) {}
 
 MemoryFile::MemoryFile(const std::string& name)
     : name_(name), file_(create_in_memory(name, &image_)), root_(root_of(file_, name)) {}

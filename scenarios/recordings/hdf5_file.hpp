@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-/// The HDF5 C library behind handles that close themselves. Every failure is BadInput "FILE: PLACE: what"; the library's
-/// own error stack is never printed. Private to scenarios/recordings.
+/// The HDF5 C library behind handles that close themselves. Every failure is BadInput "FILE: PLACE: what"; the
+/// library's own error stack is never printed. Private to scenarios/recordings.
 namespace tumble::scenarios::hdf5 {
 
 /// An identifier of the library and the function that gives it back.
@@ -57,18 +57,30 @@ struct Layout {
   static constexpr Scalar scalar = kScalarOfRow;
   static constexpr std::size_t columns = kColumns;
 };
-template <> struct RowLayout<double> : Layout<Scalar::float64, 1> {};
-template <> struct RowLayout<float> : Layout<Scalar::float32, 1> {};
-template <> struct RowLayout<std::int64_t> : Layout<Scalar::int64, 1> {};
-template <> struct RowLayout<std::int32_t> : Layout<Scalar::int32, 1> {};
-template <> struct RowLayout<std::uint64_t> : Layout<Scalar::uint64, 1> {};
-template <> struct RowLayout<std::uint32_t> : Layout<Scalar::uint32, 1> {};
-template <> struct RowLayout<std::uint16_t> : Layout<Scalar::uint16, 1> {};
-template <> struct RowLayout<std::uint8_t> : Layout<Scalar::uint8, 1> {};
-template <> struct RowLayout<Eigen::Vector3d> : Layout<Scalar::float64, 3> {};
-template <> struct RowLayout<Eigen::Vector3f> : Layout<Scalar::float32, 3> {};
-template <> struct RowLayout<Eigen::Vector4d> : Layout<Scalar::float64, 4> {};
-template <> struct RowLayout<Eigen::Quaterniond> : Layout<Scalar::float64, 4> {};
+template <>
+struct RowLayout<double> : Layout<Scalar::float64, 1> {};
+template <>
+struct RowLayout<float> : Layout<Scalar::float32, 1> {};
+template <>
+struct RowLayout<std::int64_t> : Layout<Scalar::int64, 1> {};
+template <>
+struct RowLayout<std::int32_t> : Layout<Scalar::int32, 1> {};
+template <>
+struct RowLayout<std::uint64_t> : Layout<Scalar::uint64, 1> {};
+template <>
+struct RowLayout<std::uint32_t> : Layout<Scalar::uint32, 1> {};
+template <>
+struct RowLayout<std::uint16_t> : Layout<Scalar::uint16, 1> {};
+template <>
+struct RowLayout<std::uint8_t> : Layout<Scalar::uint8, 1> {};
+template <>
+struct RowLayout<Eigen::Vector3d> : Layout<Scalar::float64, 3> {};
+template <>
+struct RowLayout<Eigen::Vector3f> : Layout<Scalar::float32, 3> {};
+template <>
+struct RowLayout<Eigen::Vector4d> : Layout<Scalar::float64, 4> {};
+template <>
+struct RowLayout<Eigen::Quaterniond> : Layout<Scalar::float64, 4> {};
 static_assert(sizeof(Eigen::Vector3d) == 24 && sizeof(Eigen::Vector3f) == 12 && sizeof(Eigen::Quaterniond) == 32);
 
 /// The library's type for a scalar in memory.
@@ -104,7 +116,8 @@ class Group {
   template <class Row>
   void write(const std::string& name, const std::vector<Row>& rows, const std::string& unit, const std::string& columns,
              bool compressed) const {
-    write_rows(name, rows.data(), rows.size(), RowLayout<Row>::columns, RowLayout<Row>::scalar, unit, columns, compressed);
+    write_rows(name, rows.data(), rows.size(), RowLayout<Row>::columns, RowLayout<Row>::scalar, unit, columns,
+               compressed);
   }
   /// The rows of a dataset of exactly this type of number and these columns.
   template <class Row>

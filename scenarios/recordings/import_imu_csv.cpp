@@ -21,7 +21,9 @@ struct Line {
   std::vector<std::string_view> fields;
 };
 
-[[noreturn]] void fail(const Line& line, const std::string& what) { throw BadInput(line.where + ": " + what); }
+[[noreturn]] void fail(const Line& line, const std::string& what) {
+  throw BadInput(line.where + ": " + what);
+}
 
 std::vector<std::string_view> split(std::string_view text) {
   if (text.ends_with('\r')) text.remove_suffix(1);
@@ -41,7 +43,8 @@ double number(const Line& line, std::size_t column) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   const std::string place = "column " + std::to_string(column) + " ";
-  if (error != std::errc() || end != text.data() + text.size()) fail(line, place + "must be a number, is '" + std::string(text) + "'");
+  if (error != std::errc() || end != text.data() + text.size())
+    fail(line, place + "must be a number, is '" + std::string(text) + "'");
   if (!std::isfinite(value)) fail(line, place + "is not finite");
   return value;
 }
@@ -76,7 +79,8 @@ void append_sample(const Line& line, std::int64_t& first_ns, sim::ImuRecord& imu
   if (imu.time_ns.empty()) first_ns = stamp;
   const std::int64_t time_ns = stamp - first_ns;
   if (!imu.time_ns.empty() && time_ns <= imu.time_ns.back()) {
-    fail(line, "stamp does not rise: " + std::to_string(time_ns) + " ns after the first, the one before " + std::to_string(imu.time_ns.back()));
+    fail(line, "stamp does not rise: " + std::to_string(time_ns) + " ns after the first, the one before " +
+                   std::to_string(imu.time_ns.back()));
   }
   imu.time_ns.push_back(time_ns);
   imu.gyro_rad_s.push_back(vector(line, 8));
@@ -106,10 +110,12 @@ Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord&
     append_sample(line, first_ns, imu);
   }
   if (stream.bad()) throw BadInput(path.string() + ": cannot be read");
-  if (imu.time_ns.size() < 2) throw BadInput(path.string() + ": holds " + std::to_string(imu.time_ns.size()) + " samples, needs 2");
+  if (imu.time_ns.size() < 2)
+    throw BadInput(path.string() + ": holds " + std::to_string(imu.time_ns.size()) + " samples, needs 2");
   imu.period_ns = median_step(imu.time_ns);
   Imported out;
-  out.info.attribution = "imported from " + path.filename().string() + ", first stamp " + std::to_string(first_ns) + " ns";
+  out.info.attribution =
+      "imported from " + path.filename().string() + ", first stamp " + std::to_string(first_ns) + " ns";
   out.sensors.imus.push_back(std::move(imu));
   return out;
 }

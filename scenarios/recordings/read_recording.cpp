@@ -65,7 +65,7 @@ std::vector<sim::ContactTruth> from_columns(const ContactColumns& columns, const
   }
   std::vector<sim::ContactTruth> contacts(count);
   for (std::size_t i = 0; i < count; ++i) {
-    contacts[i] = {columns.time_ns[i],        columns.point_W_m[i],      columns.normal_W[i], columns.slip_velocity_W_m_s[i],
+    contacts[i] = {columns.time_ns[i],        columns.point_W_m[i], columns.normal_W[i], columns.slip_velocity_W_m_s[i],
                    columns.normal_force_n[i], columns.surface_id[i]};
   }
   return contacts;
@@ -77,11 +77,13 @@ void require_format(const hdf5::Group& root) {
   }
   const std::int64_t version = root.int_attribute("format_version");
   if (version != kRecordingVersion) {
-    root.fail("format_version", "is " + std::to_string(version) + ", this build reads " + std::to_string(kRecordingVersion));
+    root.fail("format_version",
+              "is " + std::to_string(version) + ", this build reads " + std::to_string(kRecordingVersion));
   }
 }
 
-void require_sound(const std::string& file, const std::string& problem, const std::string& stored, const std::string& found) {
+void require_sound(const std::string& file, const std::string& problem, const std::string& stored,
+                   const std::string& found) {
   if (!problem.empty()) throw BadInput(file + ": " + problem);
   if (!stored.empty() && stored != found) {
     throw BadInput(file + ": damaged or changed: the digest of its data is " + found + ", the one stored " + stored);

@@ -15,14 +15,17 @@ using Lengths = std::initializer_list<std::pair<const char*, std::size_t>>;
 /// Rotations and quaternions that have been written with few digits pass, a wrong order of components does not.
 constexpr double kUnitTolerance = 1e-6;
 
-std::string in(const std::string& place, const std::string& problem) { return problem.empty() ? "" : place + ": " + problem; }
+std::string in(const std::string& place, const std::string& problem) {
+  return problem.empty() ? "" : place + ": " + problem;
+}
 
 /// All lengths must be the first one's.
 std::string length_problem(const Lengths& lengths) {
   const auto& [first_name, first] = *lengths.begin();
   for (const auto& [name, length] : lengths) {
     if (length == first) continue;
-    return std::string(name) + " has " + std::to_string(length) + " rows, " + first_name + " has " + std::to_string(first);
+    return std::string(name) + " has " + std::to_string(length) + " rows, " + first_name + " has " +
+           std::to_string(first);
   }
   return "";
 }
@@ -31,7 +34,8 @@ std::string pose_problem(const char* name, const Eigen::Isometry3d& pose) {
   const Eigen::Matrix3d rotation = pose.linear();
   if (!pose.matrix().allFinite()) return std::string(name) + " is not finite";
   const double departure = (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (!(departure <= kUnitTolerance) || rotation.determinant() < 0.0) return std::string(name) + " is not a rotation and a shift";
+  if (!(departure <= kUnitTolerance) || rotation.determinant() < 0.0)
+    return std::string(name) + " is not a rotation and a shift";
   return "";
 }
 
@@ -51,14 +55,15 @@ std::string first_of(std::initializer_list<std::string> problems) {
 
 std::string imu_problem(const sim::ImuRecord& imu) {
   const std::size_t n = imu.time_ns.size();
-  return first_of({positive("period_ns", imu.period_ns), at_least("stated_gyro_range_rad_s", imu.stated_gyro_range_rad_s, 0.0),
-                   at_least("stated_accel_range_m_s2", imu.stated_accel_range_m_s2, 0.0),
-                   at_least("gyro_noise_rad_s_sqrt_hz", imu.gyro_noise_rad_s_sqrt_hz, 0.0),
-                   at_least("accel_noise_m_s2_sqrt_hz", imu.accel_noise_m_s2_sqrt_hz, 0.0), pose_problem("T_BI", imu.T_BI),
-                   length_problem({{"time_ns", n},
-                                   {"gyro_I_rad_s", imu.gyro_rad_s.size()},
-                                   {"accel_I_m_s2", imu.accel_m_s2.size()},
-                                   {"clip_flags", imu.clip_flags.size()}})});
+  return first_of(
+      {positive("period_ns", imu.period_ns), at_least("stated_gyro_range_rad_s", imu.stated_gyro_range_rad_s, 0.0),
+       at_least("stated_accel_range_m_s2", imu.stated_accel_range_m_s2, 0.0),
+       at_least("gyro_noise_rad_s_sqrt_hz", imu.gyro_noise_rad_s_sqrt_hz, 0.0),
+       at_least("accel_noise_m_s2_sqrt_hz", imu.accel_noise_m_s2_sqrt_hz, 0.0), pose_problem("T_BI", imu.T_BI),
+       length_problem({{"time_ns", n},
+                       {"gyro_I_rad_s", imu.gyro_rad_s.size()},
+                       {"accel_I_m_s2", imu.accel_m_s2.size()},
+                       {"clip_flags", imu.clip_flags.size()}})});
 }
 
 std::string sweep_problem(const sim::LidarRecord& lidar) {
@@ -66,8 +71,8 @@ std::string sweep_problem(const sim::LidarRecord& lidar) {
   const std::size_t points = lidar.position_L_m.size();
   if (sweeps == 0 && points == 0 && lidar.sweep_first.empty()) return "";
   if (lidar.sweep_first.size() != sweeps + 1) {
-    return "sweep_first has " + std::to_string(lidar.sweep_first.size()) + " rows, must have one more than sweep_start_ns (" +
-           std::to_string(sweeps) + ")";
+    return "sweep_first has " + std::to_string(lidar.sweep_first.size()) +
+           " rows, must have one more than sweep_start_ns (" + std::to_string(sweeps) + ")";
   }
   if (lidar.sweep_first.front() != 0 || lidar.sweep_first.back() != points) {
     return "sweep_first must go from 0 to the number of points, " + std::to_string(points);
@@ -90,12 +95,13 @@ std::string lidar_problem(const sim::LidarRecord& lidar) {
 }
 
 std::string imu_truth_problem(const sim::ImuTruth& imu) {
-  return first_of({pose_problem("T_BI", imu.T_BI), length_problem({{"rate_I_rad_s", imu.rate_rad_s.size()},
-                                                                  {"specific_force_I_m_s2", imu.specific_force_m_s2.size()},
-                                                                  {"gyro_unclipped_I_rad_s", imu.gyro_unclipped_rad_s.size()},
-                                                                  {"accel_unclipped_I_m_s2", imu.accel_unclipped_m_s2.size()},
-                                                                  {"gyro_bias_I_rad_s", imu.gyro_bias_rad_s.size()},
-                                                                  {"accel_bias_I_m_s2", imu.accel_bias_m_s2.size()}})});
+  return first_of(
+      {pose_problem("T_BI", imu.T_BI), length_problem({{"rate_I_rad_s", imu.rate_rad_s.size()},
+                                                       {"specific_force_I_m_s2", imu.specific_force_m_s2.size()},
+                                                       {"gyro_unclipped_I_rad_s", imu.gyro_unclipped_rad_s.size()},
+                                                       {"accel_unclipped_I_m_s2", imu.accel_unclipped_m_s2.size()},
+                                                       {"gyro_bias_I_rad_s", imu.gyro_bias_rad_s.size()},
+                                                       {"accel_bias_I_m_s2", imu.accel_bias_m_s2.size()}})});
 }
 
 std::string surface_problem(std::int32_t id, std::size_t surfaces) {
@@ -105,8 +111,9 @@ std::string surface_problem(std::int32_t id, std::size_t surfaces) {
 }
 
 std::string lidar_truth_problem(const sim::LidarTruth& lidar, std::size_t surfaces) {
-  std::string problem = first_of({pose_problem("T_BL", lidar.T_BL), length_problem({{"hit_W_m", lidar.hit_W_m.size()},
-                                                                                   {"surface_id", lidar.surface_id.size()}})});
+  std::string problem =
+      first_of({pose_problem("T_BL", lidar.T_BL),
+                length_problem({{"hit_W_m", lidar.hit_W_m.size()}, {"surface_id", lidar.surface_id.size()}})});
   for (std::size_t i = 0; i < lidar.surface_id.size() && problem.empty(); ++i) {
     problem = surface_problem(lidar.surface_id[i], surfaces);
   }
@@ -130,7 +137,8 @@ std::string state_problem(const sim::Truth& truth) {
     if (!(std::abs(q.squaredNorm() - 1.0) <= kUnitTolerance)) return "q_WB is not of unit length";
   }
   for (const sim::ContactLabel label : truth.label) {
-    if (label > sim::ContactLabel::slide) return "label " + std::to_string(static_cast<int>(label)) + " is unknown, the largest is 3";
+    if (label > sim::ContactLabel::slide)
+      return "label " + std::to_string(static_cast<int>(label)) + " is unknown, the largest is 3";
   }
   return truth.p_BG_m.allFinite() ? "" : "p_BG_m is not finite";
 }
@@ -172,12 +180,14 @@ std::string find_mismatch(const sim::Sensors& sensors, const sim::Truth& truth) 
   if (truth.lidars.size() != sensors.lidars.size()) return "truth and sensors differ in the number of lidars";
   std::string problem;
   for (std::size_t i = 0; i < truth.imus.size() && problem.empty(); ++i) {
-    problem = in("imus/" + std::to_string(i), length_problem({{"sensors time_ns", sensors.imus[i].time_ns.size()},
-                                                              {"truth rate_I_rad_s", truth.imus[i].rate_rad_s.size()}}));
+    problem =
+        in("imus/" + std::to_string(i), length_problem({{"sensors time_ns", sensors.imus[i].time_ns.size()},
+                                                        {"truth rate_I_rad_s", truth.imus[i].rate_rad_s.size()}}));
   }
   for (std::size_t i = 0; i < truth.lidars.size() && problem.empty(); ++i) {
-    problem = in("lidars/" + std::to_string(i), length_problem({{"sensors position_L_m", sensors.lidars[i].position_L_m.size()},
-                                                                {"truth hit_W_m", truth.lidars[i].hit_W_m.size()}}));
+    problem = in("lidars/" + std::to_string(i),
+                 length_problem({{"sensors position_L_m", sensors.lidars[i].position_L_m.size()},
+                                 {"truth hit_W_m", truth.lidars[i].hit_W_m.size()}}));
   }
   return problem;
 }

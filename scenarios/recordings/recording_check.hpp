@@ -8,8 +8,8 @@
 namespace tumble::scenarios {
 
 /// What is inconsistent in it, as "sensors/imus/0: gyro has 5 rows, time_ns 6"; empty when all is well. Checks lengths,
-/// periods, calibrations (rotations), the order of sweeps, labels and surface ids. Does not judge readings: their NaN, gaps
-/// and time order are expected trouble that an estimator reports.
+/// periods, calibrations (rotations), the order of sweeps, labels and surface ids. Does not judge readings: their NaN,
+/// gaps and time order are expected trouble that an estimator reports.
 std::string find_problem(const sim::Sensors& sensors);
 std::string find_problem(const sim::Truth& truth);
 

@@ -11,11 +11,13 @@
 /// are archives that visit it, so none of them can forget a field. Private to scenarios/recordings.
 ///
 /// An archive has: value(name, text | double | int64), pose(name, isometry), point(name, vector, unit),
-/// rows(name, vector, unit, columns, storage), texts(name, strings), list(name, records, fields), group(name, record, fields).
+/// rows(name, vector, unit, columns, storage), texts(name, strings), list(name, records, fields), group(name, record,
+/// fields).
 namespace tumble::scenarios {
 
 namespace hdf5 {
-template <> struct RowLayout<sim::ContactLabel> : Layout<Scalar::uint8, 1> {};
+template <>
+struct RowLayout<sim::ContactLabel> : Layout<Scalar::uint8, 1> {};
 }  // namespace hdf5
 
 /// How rows are stored: deflated where measured to pay, plain for the noise-like floats of a lidar (FORMAT.md).

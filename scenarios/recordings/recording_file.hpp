@@ -16,13 +16,13 @@ inline constexpr int kRecordingVersion = 1;
 /// What a recording file says of itself.
 struct RecordingInfo {
   int format_version = kRecordingVersion;
-  std::string scenario;         ///< "" for a real recording
+  std::string scenario;  ///< "" for a real recording
   std::uint64_t seed = 0;
-  std::string situation_yaml;   ///< resolved situation; "" for a real recording
+  std::string situation_yaml;  ///< resolved situation; "" for a real recording
   std::string tumble_version;
-  std::string engine_version;   ///< MuJoCo's
-  std::string attribution;      ///< of a real recording: who made it and under which licence; "" for a simulated one
-  std::string digest;           ///< of all sensor and truth data, 32 hexadecimal digits
+  std::string engine_version;  ///< MuJoCo's
+  std::string attribution;     ///< of a real recording: who made it and under which licence; "" for a simulated one
+  std::string digest;          ///< of all sensor and truth data, 32 hexadecimal digits
   bool has_truth = false;
 };
 
@@ -32,14 +32,16 @@ std::string digest(const sim::Sensors& sensors, const sim::Truth* truth);
 std::string digest(const sim::Truth& truth);
 
 /// Writes recording as HDF5 (scenarios/recordings/FORMAT.md) under a temporary name in the same folder, then renames.
-/// `truth` may be null. format_version, digest and has_truth of `info` are the writer's own. The file is composed in memory:
-/// as much again as the recording is needed. Throws BadInput when the folder cannot be written or the disk is full (no
-/// partial file stays), std::invalid_argument when the data contradict themselves (find_problem in recording_check.hpp).
+/// `truth` may be null. format_version, digest and has_truth of `info` are the writer's own. The file is composed in
+/// memory: as much again as the recording is needed. Throws BadInput when the folder cannot be written or the disk is
+/// full (no partial file stays), std::invalid_argument when the data contradict themselves (find_problem in
+/// recording_check.hpp).
 void write_recording(const std::filesystem::path& path, const RecordingInfo& info, const sim::Sensors& sensors,
                      const sim::Truth* truth);
 
-/// Each reader opens only its own group. All throw BadInput with path and reason: absent, not HDF5, truncated, a missing
-/// or mis-shaped dataset, another format version, lengths that contradict each other, data that do not fit their digest.
+/// Each reader opens only its own group. All throw BadInput with path and reason: absent, not HDF5, truncated, a
+/// missing or mis-shaped dataset, another format version, lengths that contradict each other, data that do not fit
+/// their digest.
 RecordingInfo read_info(const std::filesystem::path& path);
 sim::Sensors read_sensors(const std::filesystem::path& path);
 sim::Truth read_truth(const std::filesystem::path& path);

@@ -42,7 +42,8 @@ class TemporaryFile {
 
   void write_all(std::span<const std::byte> bytes) {
     while (!bytes.empty()) {
-      const ssize_t written = write(descriptor_, bytes.data(), std::min<std::size_t>(bytes.size(), std::size_t{1} << 30));
+      const ssize_t written =
+          write(descriptor_, bytes.data(), std::min<std::size_t>(bytes.size(), std::size_t{1} << 30));
       if (written < 0 && errno == EINTR) continue;
       if (written < 0) fail(path_, errno);
       bytes = bytes.subspan(static_cast<std::size_t>(written));

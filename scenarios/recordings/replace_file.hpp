@@ -8,9 +8,9 @@
 
 namespace tumble::scenarios {
 
-/// Puts `bytes` into a file: written under a temporary name in the same folder, flushed to the disk, then renamed, so that
-/// the path holds the old file or the whole new one. Throws BadInput with the path and the system's reason (no such folder,
-/// no permission, disk full); the temporary file is then removed.
+/// Puts `bytes` into a file: written under a temporary name in the same folder, flushed to the disk, then renamed, so
+/// that the path holds the old file or the whole new one. Throws BadInput with the path and the system's reason (no
+/// such folder, no permission, disk full); the temporary file is then removed.
 void replace_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
 void replace_file(const std::filesystem::path& path, std::string_view text);
 

@@ -18,7 +18,8 @@ using testing::HasSubstr;
 
 sim::Situation draw_text(const std::string& text, std::uint64_t seed) {
   const Scenario scenario = parse_scenario(text, "hill.yaml", fixture::registry());
-  const std::vector<DataSheet> sheets(scenario.sensors.size(), parse_data_sheet(kSheet, "mti30.yaml", fixture::registry()));
+  const std::vector<DataSheet> sheets(scenario.sensors.size(),
+                                      parse_data_sheet(kSheet, "mti30.yaml", fixture::registry()));
   return draw_given(scenario, sheets, seed);
 }
 
@@ -45,8 +46,9 @@ TEST(Draw, SeedDecides) {
 TEST(Draw, AddedNumbersAndSensorsLeaveTheOthersAlone) {
   const sim::Situation before = draw_text(kScenario, 3);
   const std::string more_numbers = with(kScenario, "type: hill,", "type: hill, relief_m: {uniform: [0.1, 0.2]},");
-  const std::string more = with(more_numbers, "sensors:\n",
-                                "sensors:\n  - {name: a, kind: imu, device: mti30, site: a, mount_error: {x_m: {normal: [0, 0.01]}}}\n");
+  const std::string more =
+      with(more_numbers, "sensors:\n",
+           "sensors:\n  - {name: a, kind: imu, device: mti30, site: a, mount_error: {x_m: {normal: [0, 0.01]}}}\n");
   const sim::Situation after = draw_text(more, 3);
   EXPECT_EQ(after.world.values.at("slope_rad"), before.world.values.at("slope_rad"));
   EXPECT_EQ(after.robot, before.robot);
@@ -113,7 +115,7 @@ class DrawReal : public DrawFiles {
  protected:
   DrawReal() {
     std::filesystem::copy(DataRoot{TUMBLE_SOURCE_DIR}.data_sheets(), data_.data_sheets(),
-                          std::filesystem::copy_options::overwrite_existing);
+                          std::filesystem::copy_options::recursive);
   }
   std::string draw_complaint(const std::string& from, const std::string& to, std::uint64_t seed) {
     put("slope.yaml", with(kReal, from, to));
@@ -128,7 +130,8 @@ TEST_F(DrawReal, TheSituationIsCompleteAndFromTheDataSheets) {
   EXPECT_FALSE(situation.world.values.all().empty()) << "defaults are filled in";
   ASSERT_EQ(situation.sensors.size(), 2u);
   for (const DataSheet::Entry& entry : load_data_sheet(data_, "rs16").entries) {
-    EXPECT_EQ(situation.sensors[1].values.at(entry.name), entry.name == "range_noise_m" ? 0.01 : entry.value) << entry.name;
+    EXPECT_EQ(situation.sensors[1].values.at(entry.name), entry.name == "range_noise_m" ? 0.01 : entry.value)
+        << entry.name;
   }
   EXPECT_EQ(situation.sensors[0].mount_error.at("y_m"), 0.0);
   EXPECT_NE(situation.sensors[0].mount_error.at("x_m"), 0.0);

@@ -9,12 +9,12 @@
 
 namespace tumble::scenarios::fixture {
 
-inline constexpr std::array<sim::Parameter, 2> kHill = {{{"slope_rad", 0.5, 0.0, 1.2, "rad", "slope"},
-                                                         {"relief_m", 0.1, 0.0, 1.0, "m", "relief"}}};
+inline constexpr std::array<sim::Parameter, 2> kHill = {
+    {{"slope_rad", 0.5, 0.0, 1.2, "rad", "slope"}, {"relief_m", 0.1, 0.0, 1.0, "m", "relief"}}};
 inline constexpr std::array<sim::Parameter, 1> kRig = {{{"mass_kg", 8.0, 1.0, 20.0, "kg", "mass"}}};
 inline constexpr std::array<sim::Parameter, 1> kPush = {{{"force_n", 300.0, 0.0, 5000.0, "N", "force"}}};
-inline constexpr std::array<sim::Parameter, 2> kImu = {{{"gyro_range_rad_s", 7.854, 0.1, 100.0, "rad/s", "rail"},
-                                                        {"output_rate_hz", 100.0, 1.0, 2000.0, "Hz", "rate"}}};
+inline constexpr std::array<sim::Parameter, 2> kImu = {
+    {{"gyro_range_rad_s", 7.854, 0.1, 100.0, "rad/s", "rail"}, {"output_rate_hz", 100.0, 1.0, 2000.0, "Hz", "rate"}}};
 inline constexpr std::array<sim::Parameter, 1> kMount = {{{"x_m", 0.0, -0.1, 0.1, "m", "error along x"}}};
 
 inline const std::array<sim::ComponentType, 2> kWorlds = {{{"hill", "a slope", kHill}, {"bare", "bare slope", kHill}}};
@@ -23,7 +23,9 @@ inline const std::array<sim::ComponentType, 1> kMotions = {{{"push", "a push", k
 inline const std::array<sim::ComponentType, 1> kSensors = {{{"imu", "an IMU", kImu}}};
 
 /// A small registry that stands still while the simulation's grows.
-inline Registry registry() { return {kWorlds, kRobots, kMotions, kSensors, kMount}; }
+inline Registry registry() {
+  return {kWorlds, kRobots, kMotions, kSensors, kMount};
+}
 
 inline const std::string kScenario = R"(name: hill
 doc: a rig is pushed down a hill

@@ -74,12 +74,14 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"450.5", "", "hill.yaml:8: motion.force_n: ", "must be a number or one of"},
         Wrong{"450.5", "6000", "hill.yaml:8: motion.force_n: ", "is 6000 N, must be within [0, 5000]"},
         Wrong{"[0.5, 0.7]", "[0.7, 0.5]", "hill.yaml:4: world.slope_rad: ", "low 0.7 is above high 0.5"},
-        Wrong{"[0.5, 0.7]", "[0.5, 1.3]", "hill.yaml:4: world.slope_rad: ", "can reach 1.3 rad, must be within [0, 1.2]"},
+        Wrong{"[0.5, 0.7]", "[0.5, 1.3]",
+              "hill.yaml:4: world.slope_rad: ", "can reach 1.3 rad, must be within [0, 1.2]"},
         Wrong{"[0.5, 0.7]", "[0.5]", "hill.yaml:4: world.slope_rad: ", "uniform needs [low, high]"},
         Wrong{"[0.5, 0.7]", "[0.5, nan]", "hill.yaml:4: world.slope_rad.uniform[1]: ", "must be finite"},
         Wrong{"[0.5, 0.7]", "0.5", "hill.yaml:4: world.slope_rad.uniform: ", "must be a list"},
         Wrong{"uniform", "unifrom", "hill.yaml:4: world.slope_rad.unifrom: ", "did you mean 'uniform'?"},
-        Wrong{"{uniform: [0.5, 0.7]}", "{uniform: [0.5, 0.7], choice: [1]}", "hill.yaml:4: world.slope_rad: ", "exactly one"},
+        Wrong{"{uniform: [0.5, 0.7]}", "{uniform: [0.5, 0.7], choice: [1]}",
+              "hill.yaml:4: world.slope_rad: ", "exactly one"},
         Wrong{"{uniform: [0.5, 0.7]}", "{choice: []}", "hill.yaml:4: world.slope_rad: ", "choice is empty"},
         Wrong{"{uniform: [0.5, 0.7]}", "{log_uniform: [0, 0.7]}", "hill.yaml:4: world.slope_rad: ", "above 0"},
         Wrong{"{uniform: [0.5, 0.7]}", "[0.5, 0.7]", "hill.yaml:4: world.slope_rad: ", "must be a number or one of"},
@@ -94,11 +96,13 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"name: imu_reference", "name: IMU 2", "hill.yaml:11: sensors[1].name: ", "lower-case"},
         Wrong{"kind: imu, device: mti30, site: vn100", "kind: imo, device: mti30, site: vn100",
               "hill.yaml:11: sensors[1].kind: ", "did you mean 'imu'?"},
-        Wrong{"output_rate_hz", "output_rate", "hill.yaml:10: sensors[0].output_rate: ", "did you mean 'output_rate_hz'?"},
+        Wrong{"output_rate_hz", "output_rate",
+              "hill.yaml:10: sensors[0].output_rate: ", "did you mean 'output_rate_hz'?"},
         Wrong{"x_m:", "q_m:", "hill.yaml:10: sensors[0].mount_error.q_m: ", "did you mean 'x_m'?"},
         Wrong{"duration_s: 11", "duration_s: 0", "hill.yaml:3: duration_s: ", "must be within"},
         Wrong{"duration_s: 11", "duration_s: [11", "hill.yaml:", "not YAML"},
-        Wrong{"world: {type: hill, slope_rad: {uniform: [0.5, 0.7]}}", "world: hill", "hill.yaml:4: world: ", "must be a map"}));
+        Wrong{"world: {type: hill, slope_rad: {uniform: [0.5, 0.7]}}", "world: hill",
+              "hill.yaml:4: world: ", "must be a map"}));
 
 TEST(ScenarioText, RefusesWhatIsNotOneMap) {
   EXPECT_EQ(complaint_of(""), "hill.yaml: is empty");
@@ -111,8 +115,9 @@ TEST(ScenarioText, RefusesWhatIsNotOneMap) {
 }
 
 TEST(ScenarioText, AcceptsEveryDistributionWithinItsBounds) {
-  for (const char* good : {"{uniform: [0, 1.2]}", "{uniform: [0.5, 0.5]}", "{normal: [0.5, 0]}", "{normal: [-0.1, 0.1, 0, 1]}",
-                           "{log_uniform: [1e-3, 1.0]}", "{choice: [0.1]}", "1e-1", "-0"}) {
+  for (const char* good :
+       {"{uniform: [0, 1.2]}", "{uniform: [0.5, 0.5]}", "{normal: [0.5, 0]}", "{normal: [-0.1, 0.1, 0, 1]}",
+        "{log_uniform: [1e-3, 1.0]}", "{choice: [0.1]}", "1e-1", "-0"}) {
     EXPECT_EQ(complaint_of(with(kScenario, "{uniform: [0.5, 0.7]}", good)), "") << good;
   }
 }

@@ -62,7 +62,8 @@ TEST(SituationYaml, RefusesNanAndWhatIsNotASituation) {
     return fixture::complaint([&] { situation_from_yaml(changed, "r.h5"); });
   };
   EXPECT_EQ(complaint_of(text), "");
-  EXPECT_THAT(complaint_of(fixture::with(text, "seed: ", "sed: ")), HasSubstr("r.h5:2: sed: unknown key 'sed'; did you mean 'seed'?"));
+  EXPECT_THAT(complaint_of(fixture::with(text, "seed: ", "sed: ")),
+              HasSubstr("r.h5:2: sed: unknown key 'sed'; did you mean 'seed'?"));
   EXPECT_THAT(complaint_of(fixture::with(text, "seed: 1", "seed: -1")), HasSubstr("must be an integer"));
   EXPECT_THAT(complaint_of(fixture::with(text, "force_n: 450", "force_n: nan")), HasSubstr("must be finite"));
   EXPECT_THAT(complaint_of(text.substr(0, text.size() / 2)), HasSubstr("r.h5:"));

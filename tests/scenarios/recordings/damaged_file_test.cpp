@@ -31,13 +31,16 @@ class DamagedFile : public fixture::Folder {
   std::string digest_;
 };
 
-TEST_F(DamagedFile, TheWholeFileIsReadBack) { EXPECT_EQ(read_all(), digest_); }
+TEST_F(DamagedFile, TheWholeFileIsReadBack) {
+  EXPECT_EQ(read_all(), digest_);
+}
 
 TEST_F(DamagedFile, TruncationIsRecognisedAtEveryLength) {
   ASSERT_GT(bytes_.size(), 10000u);
   int lengths = 0;
   // every length at the start, where the superblock stands, then a prime step, then every length at the end
-  for (std::size_t length = 0; length < bytes_.size(); length += (length < 128 || length + 64 > bytes_.size()) ? 1 : 499) {
+  for (std::size_t length = 0; length < bytes_.size();
+       length += (length < 128 || length + 64 > bytes_.size()) ? 1 : 499) {
     fixture::put(path_, bytes_.substr(0, length));
     for (const std::string& message :
          {fixture::complaint([&] { read_info(path_); }), fixture::complaint([&] { read_sensors(path_); }),
@@ -80,7 +83,8 @@ TEST_F(DamagedFile, ADamagedReadingIsNamedAsSuch) {
   std::string spoiled = bytes_;
   spoiled[at - 8] = static_cast<char>(spoiled[at - 8] ^ 1);  // lowest bit of a double
   fixture::put(path_, spoiled);
-  EXPECT_THAT(fixture::complaint([&] { read_sensors(path_); }), HasSubstr("damaged or changed: the digest of its data is"));
+  EXPECT_THAT(fixture::complaint([&] { read_sensors(path_); }),
+              HasSubstr("damaged or changed: the digest of its data is"));
 }
 
 }  // namespace

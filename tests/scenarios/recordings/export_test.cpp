@@ -53,7 +53,8 @@ TEST_F(Export, KittiHoldsTheMatrixRowByRow) {
   const auto rows = rows_of(folder_ / "truth.txt");
   ASSERT_EQ(rows.size(), 40u);
   ASSERT_EQ(rows[7].size(), 12u);
-  const Eigen::Matrix<double, 3, 4, Eigen::RowMajor> T = Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(rows[7].data());
+  const Eigen::Matrix<double, 3, 4, Eigen::RowMajor> T =
+      Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(rows[7].data());
   EXPECT_EQ((T.leftCols<3>()), recording_.truth.q_WB[7].toRotationMatrix());
   EXPECT_EQ((T.col(3)), recording_.truth.p_WB_m[7]);
 }

@@ -52,14 +52,15 @@ inline sim::ImuTruth imu_truth(Numbers& numbers, const std::string& name, int sa
   sim::ImuTruth truth;
   truth.name = name;
   truth.T_BI = numbers.pose();
-  for (auto* rows : {&truth.rate_rad_s, &truth.specific_force_m_s2, &truth.gyro_unclipped_rad_s, &truth.accel_unclipped_m_s2,
-                     &truth.gyro_bias_rad_s, &truth.accel_bias_m_s2}) {
+  for (auto* rows : {&truth.rate_rad_s, &truth.specific_force_m_s2, &truth.gyro_unclipped_rad_s,
+                     &truth.accel_unclipped_m_s2, &truth.gyro_bias_rad_s, &truth.accel_bias_m_s2}) {
     for (int i = 0; i < samples; ++i) rows->push_back(numbers.vector());
   }
   return truth;
 }
 
-inline void add_lidar(Numbers& numbers, sim::Recording& recording, const std::string& name, int sweeps, int points_per_sweep) {
+inline void add_lidar(Numbers& numbers, sim::Recording& recording, const std::string& name, int sweeps,
+                      int points_per_sweep) {
   sim::LidarRecord lidar;
   sim::LidarTruth truth;
   lidar.name = truth.name = name;
@@ -141,13 +142,15 @@ class Folder : public testing::Test {
  protected:
   Folder() {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::path(testing::TempDir()) / (std::string("tumble_") + test->test_suite_name() + "_" + test->name());
+    folder_ = std::filesystem::path(testing::TempDir()) /
+              (std::string("tumble_") + test->test_suite_name() + "_" + test->name());
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
   }
   ~Folder() override { std::filesystem::remove_all(folder_); }
   std::size_t files() const {
-    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder_), std::filesystem::directory_iterator()));
+    return static_cast<std::size_t>(
+        std::distance(std::filesystem::directory_iterator(folder_), std::filesystem::directory_iterator()));
   }
   std::filesystem::path folder_;
 };

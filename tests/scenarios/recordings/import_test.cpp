@@ -17,7 +17,8 @@ using testing::StartsWith;
 const std::string kHeader = "s,ns,frame,qx,qy,qz,qw,qc,wx,wy,wz,wc,ax,ay,az,ac\n";
 
 std::string line(const std::string& stamp, const std::string& wx = "0.25") {
-  return stamp + ",imu,0,0,0,1,[-1 0 0 0 0 0 0 0 0]," + wx + ",-1e-3,3,[0 0 0 0 0 0 0 0 0],9.5,0,-0.5,[0 0 0 0 0 0 0 0 0]\n";
+  return stamp + ",imu,0,0,0,1,[-1 0 0 0 0 0 0 0 0]," + wx +
+         ",-1e-3,3,[0 0 0 0 0 0 0 0 0],9.5,0,-0.5,[0 0 0 0 0 0 0 0 0]\n";
 }
 
 class ImportCsv : public fixture::Folder {
@@ -37,7 +38,8 @@ class ImportCsv : public fixture::Folder {
 };
 
 TEST_F(ImportCsv, ReadsTheColumnsOfTheLayout) {
-  const Imported imported = import(kHeader + line("1632000000,990000000") + line("1632000001,0") + line("1632000001,10000000"));
+  const Imported imported =
+      import(kHeader + line("1632000000,990000000") + line("1632000001,0") + line("1632000001,10000000"));
   ASSERT_EQ(imported.sensors.imus.size(), 1u);
   const sim::ImuRecord& imu = imported.sensors.imus[0];
   EXPECT_EQ(imu.device, "mti30");
@@ -73,7 +75,8 @@ TEST_F(ImportCsv, AGapDoesNotChangeThePeriod) {
 
 TEST_F(ImportCsv, WindowsLineEndsAreRead) {
   std::string text = kHeader + line("1,0") + line("1,10000000");
-  for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 2)) text.insert(at, 1, '\r');
+  for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 2))
+    text.insert(at, 1, '\r');
   EXPECT_EQ(import(text).sensors.imus[0].time_ns.size(), 2u);
 }
 
@@ -87,14 +90,16 @@ TEST_F(ImportCsv, BadInputHasFileAndLine) {
   EXPECT_THAT(complaint_of(good + line("1,5000000")), HasSubstr("csv:4: stamp does not rise"));
   EXPECT_THAT(complaint_of(good + line("1,20000000", "nan")), HasSubstr("csv:4: column 8 is not finite"));
   EXPECT_THAT(complaint_of(good + line("1,20000000", "")), HasSubstr("csv:4: column 8 must be a number, is ''"));
-  EXPECT_THAT(complaint_of(good + line("1,20000000", "0.5x")), HasSubstr("csv:4: column 8 must be a number, is '0.5x'"));
+  EXPECT_THAT(complaint_of(good + line("1,20000000", "0.5x")),
+              HasSubstr("csv:4: column 8 must be a number, is '0.5x'"));
   EXPECT_THAT(complaint_of(good + line("1.5,0")), HasSubstr("csv:4: column 0 must be a whole number"));
   EXPECT_THAT(complaint_of(good + line("1,1000000000")), HasSubstr("csv:4: column 1 must be a whole number"));
   EXPECT_THAT(complaint_of(good + line("1e30,0")), HasSubstr("csv:4: column 0 must be a whole number"));
   EXPECT_THAT(complaint_of(good + "\n"), HasSubstr("csv:4: has 1 columns"));
   EXPECT_THAT(complaint_of(good + line("1,20000000").substr(0, 60)), HasSubstr("csv:4: has"));
   EXPECT_THAT(complaint_of("a,b\n1,2\n"), HasSubstr("csv:2: has 2 columns"));
-  EXPECT_THAT(fixture::complaint([&] { import_imu_csv(folder_ / "none.csv", {}); }), HasSubstr("none.csv: no such file"));
+  EXPECT_THAT(fixture::complaint([&] { import_imu_csv(folder_ / "none.csv", {}); }),
+              HasSubstr("none.csv: no such file"));
   EXPECT_THAT(fixture::complaint([&] { import_imu_csv(folder_, {}); }), HasSubstr("no such file"));
 }
 
@@ -121,7 +126,8 @@ TEST_F(ImportBroad, ReadsATrialAndKeepsTheAttribution) {
 TEST_F(ImportBroad, OtherFilesAreRefused) {
   const sim::Recording recording = fixture::recording();
   write_recording(folder_ / "a.h5", {}, recording.sensors, nullptr);
-  EXPECT_THAT(fixture::complaint([&] { import_broad(folder_ / "a.h5"); }), HasSubstr("/sampling_rate: attribute is missing"));
+  EXPECT_THAT(fixture::complaint([&] { import_broad(folder_ / "a.h5"); }),
+              HasSubstr("/sampling_rate: attribute is missing"));
   fixture::put(folder_ / "b.h5", "text");
   EXPECT_THAT(fixture::complaint([&] { import_broad(folder_ / "b.h5"); }), StartsWith((folder_ / "b.h5").string()));
 }

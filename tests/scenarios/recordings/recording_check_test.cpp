@@ -52,7 +52,10 @@ TEST(RecordingCheck, NamesWhatContradicts) {
       {[](auto& s) { s.lidars[0].sweep_period_ns = -1; }, "sweep_period_ns is -1"},
       {[](auto& s) { s.lidars[0].ring.pop_back(); }, "ring has 149 rows"},
       {[](auto& s) { s.lidars[0].sweep_first.pop_back(); }, "one more than sweep_start_ns (3)"},
-      {[](auto& s) { s.lidars[0].sweep_first = {0, 100, 50, 150}; }, "sweep_first falls"},
+      {[](auto& s) {
+         s.lidars[0].sweep_first = {0, 100, 50, 150};
+       },
+       "sweep_first falls"},
       {[](auto& s) { s.lidars[0].sweep_first.back() = 149; }, "must go from 0 to the number of points, 150"},
       {[](auto& s) { s.lidars[0].sweep_first.front() = 1; }, "must go from 0"},
       {[](auto& s) { s.lidars[0].sweep_start_ns[1] = 0; }, "sweep_start_ns does not rise"}};

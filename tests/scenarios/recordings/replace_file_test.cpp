@@ -41,13 +41,17 @@ TEST_F(ReplaceFile, FollowsTheUsersMask) {
 }
 
 TEST_F(ReplaceFile, ImpossiblePlacesAreNamed) {
-  const auto complaint_of = [](const std::filesystem::path& path) { return fixture::complaint([&] { replace_file(path, "x"); }); };
-  EXPECT_EQ(complaint_of(folder_ / "none/a"), (folder_ / "none/a").string() + ": cannot be written: No such file or directory");
+  const auto complaint_of = [](const std::filesystem::path& path) {
+    return fixture::complaint([&] { replace_file(path, "x"); });
+  };
+  EXPECT_EQ(complaint_of(folder_ / "none/a"),
+            (folder_ / "none/a").string() + ": cannot be written: No such file or directory");
   replace_file(folder_ / "file", "x");
   EXPECT_THAT(complaint_of(folder_ / "file/a"), HasSubstr("Not a directory"));
   std::filesystem::create_directories(folder_ / "folder/full");
   EXPECT_THAT(complaint_of(folder_ / "folder"), HasSubstr("Is a directory"));
-  EXPECT_THAT(complaint_of("/proc/tumble_recording"), HasSubstr("cannot be written")) << "not even root can write there";
+  EXPECT_THAT(complaint_of("/proc/tumble_recording"), HasSubstr("cannot be written"))
+      << "not even root can write there";
   EXPECT_EQ(files(), 2u) << "no temporary file stays";
 }
 
@@ -78,7 +82,8 @@ TEST_F(ReplaceFile, AFullDiskLeavesTheOldFileAndNoPart) {
   write_recording(folder_ / "a.h5", {}, recording.sensors, nullptr);
   const std::string old_bytes = bytes_of(folder_ / "a.h5");
   ASSERT_GT(old_bytes.size(), 4096u);
-  EXPECT_EXIT(write_with_little_room(folder_, old_bytes), testing::ExitedWithCode(0), "a.h5: cannot be written: File too large");
+  EXPECT_EXIT(write_with_little_room(folder_, old_bytes), testing::ExitedWithCode(0),
+              "a.h5: cannot be written: File too large");
 }
 
 }  // namespace

@@ -141,7 +141,8 @@ TEST_F(RoundTrip, EmptyAndOddContentIsKept) {
 
 TEST_F(RoundTrip, EqualRecordingsGiveEqualFiles) {
   const sim::Recording recording = fixture::recording();
-  for (const char* name : {"a.h5", "b.h5"}) write_recording(folder_ / name, info(), recording.sensors, &recording.truth);
+  for (const char* name : {"a.h5", "b.h5"})
+    write_recording(folder_ / name, info(), recording.sensors, &recording.truth);
   EXPECT_TRUE(fixture::bytes_of(folder_ / "a.h5") == fixture::bytes_of(folder_ / "b.h5"));
   sim::Sensors other = recording.sensors;
   other.imus[0].gyro_rad_s[3].x() += 1e-15;

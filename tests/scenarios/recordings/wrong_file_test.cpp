@@ -74,7 +74,9 @@ TEST_F(WrongFile, AnUntouchedOneIsAccepted) {
 
 TEST_F(WrongFile, AbsentForeignOrFolder) {
   close();
-  const auto complaint_of = [](const std::filesystem::path& path) { return fixture::complaint([&] { read_sensors(path); }); };
+  const auto complaint_of = [](const std::filesystem::path& path) {
+    return fixture::complaint([&] { read_sensors(path); });
+  };
   EXPECT_EQ(complaint_of(folder_ / "none.h5"), (folder_ / "none.h5").string() + ": no such file");
   EXPECT_EQ(complaint_of(folder_), folder_.string() + ": is not a regular file");
   fixture::put(folder_ / "text.h5", "scenario: hill\n");
@@ -189,7 +191,8 @@ TEST_F(WrongFile, TextOfVariableLengthIsRead) {
   const hid_t type = H5Tcopy(H5T_C_S1);
   H5Tset_size(type, H5T_VARIABLE);
   const hid_t space = H5Screate(H5S_SCALAR);
-  const hid_t attribute = H5Acreate_by_name(file_, "sensors", "robot", type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t attribute =
+      H5Acreate_by_name(file_, "sensors", "robot", type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
   const char* const text = "rig";
   H5Awrite(attribute, type, &text);
   H5Aclose(attribute);
