@@ -81,7 +81,7 @@ struct LidarTruth {
   std::string name;
   Eigen::Isometry3d T_BL = Eigen::Isometry3d::Identity();
   std::vector<Eigen::Vector3f> hit_W_m;
-  std::vector<std::int32_t> surface_id;
+  std::vector<std::int32_t> surface_id;  ///< into Truth::surfaces; -2 the robot's own cage
 };
 
 /// What truly happened; physics samples every `period_ns` from time 0.

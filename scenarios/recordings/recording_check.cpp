@@ -99,7 +99,8 @@ std::string imu_truth_problem(const sim::ImuTruth& imu) {
 }
 
 std::string surface_problem(std::int32_t id, std::size_t surfaces) {
-  if (id >= -1 && id < static_cast<std::int64_t>(surfaces)) return "";
+  // -1: unknown, -2: the robot's own cage
+  if (id >= -2 && id < static_cast<std::int64_t>(surfaces)) return "";
   return "surface_id " + std::to_string(id) + " has no name in surfaces (" + std::to_string(surfaces) + ")";
 }
 

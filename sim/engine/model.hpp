@@ -33,8 +33,8 @@ struct World {
   std::vector<int> surface_geom;     ///< surface id -> geom id: the static geoms that a lidar sees and a robot touches
   std::vector<FrictionPatch> patches;
   double half_extent_m = 0;          ///< beyond this |x| or |y| the robot has left the world
-  Eigen::Vector3d start_W_m = Eigen::Vector3d::Zero();       ///< on the ground, where a robot begins; the way leads along +x
-  Eigen::Vector3d com_offset_m = Eigen::Vector3d::Zero();    ///< true centre of mass in the robot's design frame, B axes
+  Eigen::Vector3d start_W_m = Eigen::Vector3d::Zero();     ///< on the ground, where a robot begins; +x leads away
+  Eigen::Vector3d com_offset_m = Eigen::Vector3d::Zero();  ///< true centre of mass in the robot's design frame, B axes
   double sphere_radius_m = 0;        ///< 0 when the robot is not a sphere
 };
 

@@ -12,7 +12,9 @@ namespace {
 
 constexpr double kTurn_rad = 6.283185307179586;
 
-std::int64_t period_ns(const Values& values, const char* name) { return std::llround(values.at(name) * 1e9); }
+std::int64_t period_ns(const Values& values, const char* name) {
+  return std::llround(values.at(name) * 1e9);
+}
 
 }  // namespace
 

@@ -12,9 +12,10 @@ namespace tumble::sim {
 /// Up to sixteen firings in the order of time: when, from where and where to, in the axes of L.
 struct Firings {
   int count = 0;
-  std::int64_t slot = 0;  ///< number of the first slot since the recording's start: unique, the key of the random numbers
-  std::array<std::int64_t, kLanes> time_ns;      ///< true, since the recording's start
-  std::array<std::uint32_t, kLanes> offset_ns;   ///< reported, since the sweep's start
+  std::int64_t slot =
+      0;  ///< number of the first slot since the recording's start: unique, the key of the random numbers
+  std::array<std::int64_t, kLanes> time_ns;     ///< true, since the recording's start
+  std::array<std::uint32_t, kLanes> offset_ns;  ///< reported, since the sweep's start
   std::array<std::uint16_t, kLanes> ring;
   std::array<double, kLanes> origin_x_m, origin_y_m, origin_z_m;
   std::array<double, kLanes> direction_x, direction_y, direction_z;  ///< unit
@@ -30,7 +31,7 @@ class BeamPattern {
   std::int64_t first_slot(std::int64_t sweep) const {
     return (sweep * sweep_period_ns_ + slot_period_ns_ - 1) / slot_period_ns_;
   }
-  int lanes() const { return lanes_; }                 ///< firings of a slot
+  int lanes() const { return lanes_; }  ///< firings of a slot
   int slots_at_once() const { return kLanes / lanes_; }
   /// Longest time from a slot's start to its last firing.
   std::int64_t slot_length_ns() const { return slot_length_ns_; }
@@ -43,9 +44,10 @@ class BeamPattern {
   int lanes_ = kLanes;
 };
 
-/// A column of lasers about the z axis. The azimuth is zero (along x of L) at each sweep's start and grows clockwise seen
-/// from above. Channel c of sequence k fires at k P + c p; its beam leaves the mirror at R1 from the axis and R2 below
-/// the origin. Rings count from the lowest elevation up. (RoboSense RS-16 User's Guide v4.0 and the published driver.)
+/// A column of lasers about the z axis. The azimuth is zero (along x of L) at each sweep's start and grows clockwise
+/// seen from above. Channel c of sequence k fires at k P + c p; its beam leaves the mirror at R1 from the axis and R2
+/// below the origin. Rings count from the lowest elevation up. (RoboSense RS-16 User's Guide v4.0 and the published
+/// driver.)
 class SpinningPattern final : public BeamPattern {
  public:
   explicit SpinningPattern(const Values& values);
@@ -57,7 +59,8 @@ class SpinningPattern final : public BeamPattern {
   double turn_rad_ns_, sense_, mirror_radius_m_, mirror_drop_m_;
   std::int64_t firing_period_ns_;
   bool driver_stamp_fault_;
-  std::array<double, kLanes> cos_elevation_, sin_elevation_, cos_lag_, sin_lag_;  ///< lag: azimuth since the sequence's start
+  std::array<double, kLanes> cos_elevation_, sin_elevation_, cos_lag_,
+      sin_lag_;  ///< lag: azimuth since the sequence's start
   std::array<std::uint16_t, kLanes> ring_;
 };
 

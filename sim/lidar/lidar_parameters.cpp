@@ -16,15 +16,20 @@ constexpr Parameter elevation(std::string_view name, double value_rad) {
 // Both kinds share the errors of ranging; the values are the RS-16's and the Mid-100's.
 constexpr Parameter kRangeNoise{
     "range_noise_m", 0.02, 0.0, 10.0, "m", "standard deviation of a range, white from point to point; 0: off"};
-constexpr Parameter kReferenceReflectivity{"detection_reflectivity", 0.2, 0.001, 1.0, "1",
-                                           "diffuse reflectivity at which detection_range_m holds"};
-constexpr Parameter kSteepness{"detection_steepness", 4.0, 0.1, 100.0, "1",
+constexpr Parameter kReferenceReflectivity{
+    "detection_reflectivity", 0.2, 0.001, 1.0, "1", "diffuse reflectivity at which detection_range_m holds"};
+constexpr Parameter kSteepness{"detection_steepness",
+                               4.0,
+                               0.1,
+                               100.0,
+                               "1",
                                "k of the share of returns kept, s^k / (1 + s^k), with the signal s = (reflectivity "
                                "cos(incidence) / detection_reflectivity) (detection_range_m / range)^2"};
 constexpr Parameter kDropout{"dropout_share", 0.0, 0.0, 1.0, "1", "share of returns lost whatever their signal"};
 constexpr Parameter kIntensityQuantum{
     "intensity_quantum", 1.0 / 255.0, 0.0, 1.0, "1", "step of the reported intensity; 0: off"};
-constexpr Parameter kCage{"sees_own_cage", 1.0, 0.0, 1.0, "1", "1: the robot's own struts give returns; 0: transparent"};
+constexpr Parameter kCage{
+    "sees_own_cage", 1.0, 0.0, 1.0, "1", "1: the robot's own struts give returns; 0: transparent"};
 
 // Elevations: the calibrated ones of the published rig, in radians.
 constexpr std::array kSpinning = {
@@ -54,8 +59,9 @@ constexpr std::array kSpinning = {
     Parameter{"range_max_m", 150.0, 0.1, 10000.0, "m", "farther returns are lost"},
     kRangeNoise,
     Parameter{"range_quantum_m", 0.005, 0.0, 1.0, "m", "step of the reported range; 0: off"},
-    Parameter{"detection_range_m", 150.0, 0.0, 10000.0, "m",
-              "range where half of the returns of detection_reflectivity at normal incidence are lost; 0: no such loss"},
+    Parameter{
+        "detection_range_m", 150.0, 0.0, 10000.0, "m",
+        "range where half of the returns of detection_reflectivity at normal incidence are lost; 0: no such loss"},
     kReferenceReflectivity,
     kSteepness,
     kDropout,
@@ -81,8 +87,9 @@ constexpr std::array kRosette = {
     Parameter{"range_max_m", 260.0, 0.1, 10000.0, "m", "farther returns are lost"},
     kRangeNoise,
     Parameter{"range_quantum_m", 0.001, 0.0, 1.0, "m", "step of the reported range; 0: off"},
-    Parameter{"detection_range_m", 130.0, 0.0, 10000.0, "m",
-              "range where half of the returns of detection_reflectivity at normal incidence are lost; 0: no such loss"},
+    Parameter{
+        "detection_range_m", 130.0, 0.0, 10000.0, "m",
+        "range where half of the returns of detection_reflectivity at normal incidence are lost; 0: no such loss"},
     kReferenceReflectivity,
     kSteepness,
     kDropout,
@@ -93,8 +100,12 @@ constexpr std::array kRosette = {
 
 }  // namespace
 
-std::span<const Parameter> spinning_lidar_parameters() { return kSpinning; }
+std::span<const Parameter> spinning_lidar_parameters() {
+  return kSpinning;
+}
 
-std::span<const Parameter> rosette_lidar_parameters() { return kRosette; }
+std::span<const Parameter> rosette_lidar_parameters() {
+  return kRosette;
+}
 
 }  // namespace tumble::sim

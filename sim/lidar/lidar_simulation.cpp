@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/lidar/lidar_simulation.hpp"
 
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -73,7 +74,8 @@ class Caster {
     Firings firings;
     RayPacket rays;
     for (std::int64_t slot = first; slot < end; slot += pattern_->slots_at_once()) {
-      pattern_->fire(number, slot, static_cast<int>(std::min<std::int64_t>(pattern_->slots_at_once(), end - slot)), firings);
+      pattern_->fire(number, slot, static_cast<int>(std::min<std::int64_t>(pattern_->slots_at_once(), end - slot)),
+                     firings);
       aim(firings, pose, rays);
       world_.cast(rays);
       collect(firings, rays, errors_.apply(rays, firings.slot), sweep);
@@ -85,8 +87,10 @@ class Caster {
   void aim(const Firings& firings, TrackCursor& pose, RayPacket& rays) const {
     rays.count = firings.count;
     for (int i = 0; i < firings.count; ++i) {
-      const Vector3d origin_B = p_BL_m_ + R_BL_ * Vector3d(firings.origin_x_m[i], firings.origin_y_m[i], firings.origin_z_m[i]);
-      const Vector3d direction_B = R_BL_ * Vector3d(firings.direction_x[i], firings.direction_y[i], firings.direction_z[i]);
+      const Vector3d origin_B =
+          p_BL_m_ + R_BL_ * Vector3d(firings.origin_x_m[i], firings.origin_y_m[i], firings.origin_z_m[i]);
+      const Vector3d direction_B =
+          R_BL_ * Vector3d(firings.direction_x[i], firings.direction_y[i], firings.direction_z[i]);
       set_ray(rays, i, origin_B, direction_B);
       rays.range[i] = reach_m_;
       rays.surface_id[i] = kNothing;
@@ -94,8 +98,10 @@ class Caster {
     if (!cage_.empty()) cage_.cast(rays);
     for (int i = 0; i < firings.count; ++i) {
       pose.seek(firings.time_ns[i]);
-      const Vector3d origin_B = p_BL_m_ + R_BL_ * Vector3d(firings.origin_x_m[i], firings.origin_y_m[i], firings.origin_z_m[i]);
-      const Vector3d direction_B = R_BL_ * Vector3d(firings.direction_x[i], firings.direction_y[i], firings.direction_z[i]);
+      const Vector3d origin_B =
+          p_BL_m_ + R_BL_ * Vector3d(firings.origin_x_m[i], firings.origin_y_m[i], firings.origin_z_m[i]);
+      const Vector3d direction_B =
+          R_BL_ * Vector3d(firings.direction_x[i], firings.direction_y[i], firings.direction_z[i]);
       set_ray(rays, i, pose.position_m() + pose.to_world(origin_B), pose.to_world(direction_B));
     }
   }
@@ -164,7 +170,8 @@ std::int64_t whole_sweeps(const MotionTrack& motion, std::int64_t sweep_period_n
 }  // namespace
 
 void simulate_lidar(const engine::World& world, const SensorSpec& sensor, const Isometry3d& T_BL,
-                    const MotionTrack& motion, std::uint64_t seed, int threads, LidarRecord& record, LidarTruth& truth) {
+                    const MotionTrack& motion, std::uint64_t seed, int threads, LidarRecord& record,
+                    LidarTruth& truth) {
   const Caster caster(world, sensor, T_BL, motion, seed);
   const std::int64_t period_ns = caster.pattern().sweep_period_ns();
   const std::int64_t sweeps = whole_sweeps(motion, period_ns);
@@ -180,7 +187,8 @@ void simulate_lidar(const engine::World& world, const SensorSpec& sensor, const 
   record.sweep_first.push_back(0);
 
   // a few sweeps at a time, so that the memory beside the record stays small
-  threads = std::max(1, threads);
+  const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  threads = std::clamp(threads, 1, static_cast<int>(allowed));  // oneTBB prints a warning when asked for more
   const std::int64_t at_once = 2 * threads;
   std::vector<Sweep> done(static_cast<std::size_t>(at_once));
   tbb::task_arena arena(threads);

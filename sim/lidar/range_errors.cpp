@@ -14,9 +14,13 @@ constexpr double kWord = 1.0 / 4294967296.0;
 constexpr double kSure = 0.99;
 
 /// In (0, 1): the middle of the 2^-32 wide cell that the word names.
-double uniform_of(std::uint32_t word) { return (word + 0.5) * kWord; }
+double uniform_of(std::uint32_t word) {
+  return (word + 0.5) * kWord;
+}
 
-double rounded(double value, double quantum) { return quantum > 0.0 ? quantum * std::nearbyint(value / quantum) : value; }
+double rounded(double value, double quantum) {
+  return quantum > 0.0 ? quantum * std::nearbyint(value / quantum) : value;
+}
 
 }  // namespace
 
@@ -39,7 +43,8 @@ bool RangeErrors::is_detected(const RayPacket& hits, int lane, double uniform) c
   // what is left of the uniform number after the random loss is uniform again
   const double u = uniform / kept_share_;
   const double range = hits.range[lane];
-  const double signal = hits.reflectivity[lane] * hits.cosine[lane] / reference_reflectivity_ * detection2_m2_ / (range * range);
+  const double signal =
+      hits.reflectivity[lane] * hits.cosine[lane] / reference_reflectivity_ * detection2_m2_ / (range * range);
   if (u < kSure && signal >= sure_signal_) return true;
   const double odds = std::pow(signal, steepness_);
   return u * (1.0 + odds) < odds;
@@ -49,11 +54,13 @@ Returns RangeErrors::apply(const RayPacket& hits, std::int64_t slot) const {
   Returns out;
   for (int pair = 0; 2 * pair < hits.count; ++pair) {
     const int lane = 2 * pair;
-    const bool any = hits.surface_id[lane] != kNothing || (lane + 1 < hits.count && hits.surface_id[lane + 1] != kNothing);
+    const bool any =
+        hits.surface_id[lane] != kNothing || (lane + 1 < hits.count && hits.surface_id[lane + 1] != kNothing);
     out.kept[lane] = out.kept[lane + 1] = false;
     if (!any) continue;
     // slots start batches at most once, so that (slot, pair) names the block uniquely
-    const auto block = stream_.block(static_cast<std::uint64_t>(slot) * (kLanes / 2) + static_cast<std::uint64_t>(pair));
+    const auto block =
+        stream_.block(static_cast<std::uint64_t>(slot) * (kLanes / 2) + static_cast<std::uint64_t>(pair));
     // Box and Muller 1958
     const double radius = noise_m_ * std::sqrt(-2.0 * std::log(uniform_of(block[0])));
     const double angle = kTurn_rad * uniform_of(block[1]);

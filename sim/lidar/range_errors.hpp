@@ -17,10 +17,10 @@ struct Returns {
   std::array<float, kLanes> intensity;  ///< 0..1
 };
 
-/// Errors of ranging, in this order: loss of weak returns (by range, incidence, reflectivity) and at random, white noise,
-/// limits of range, quantum. Intensity is reflectivity times the cosine of incidence, as a device that compensates
-/// for range reports it, cut to its quantum. Not modelled: divergence of the beam and mixed returns at edges,
-/// range bias by incidence or intensity, cross-talk, several returns of one firing.
+/// Errors of ranging, in this order: loss of weak returns (by range, incidence, reflectivity) and at random, white
+/// noise, limits of range, quantum. Intensity is reflectivity times the cosine of incidence, as a device that
+/// compensates for range reports it, cut to its quantum. Not modelled: divergence of the beam and mixed returns at
+/// edges, range bias by incidence or intensity, cross-talk, several returns of one firing.
 class RangeErrors {
  public:
   RangeErrors(const Values& values, std::uint64_t seed, std::string_view stream_name);

@@ -18,19 +18,27 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-struct DeviceDeleter { void operator()(RTCDevice device) const { rtcReleaseDevice(device); } };
-struct SceneDeleter { void operator()(RTCScene scene) const { rtcReleaseScene(scene); } };
+struct DeviceDeleter {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct SceneDeleter {
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
 using DevicePtr = std::unique_ptr<RTCDeviceTy, DeviceDeleter>;
 using ScenePtr = std::unique_ptr<RTCSceneTy, SceneDeleter>;
 
-struct Label { std::int32_t surface_id; float reflectivity; };
+struct Label {
+  std::int32_t surface_id;
+  float reflectivity;
+};
 
 /// Axis-aligned box of a bounded shape, a little widened because Embree rounds to float.
 void shape_bounds(const RTCBoundsFunctionArguments* args) {
   const Shape& shape = static_cast<const SceneShape*>(args->geometryUserPtr)[args->primID].shape;
   const Vector3d half = shape.R_FS.cwiseAbs() * half_extent(shape);
   const Vector3f margin = Vector3f::Constant(1e-5f) + 1e-6f * (shape.p_FS_m.cwiseAbs() + half).cast<float>();
-  const Vector3f low = (shape.p_FS_m - half).cast<float>() - margin, high = (shape.p_FS_m + half).cast<float>() + margin;
+  const Vector3f low = (shape.p_FS_m - half).cast<float>() - margin,
+                 high = (shape.p_FS_m + half).cast<float>() + margin;
   *args->bounds_o = {low.x(), low.y(), low.z(), 0.0f, high.x(), high.y(), high.z(), 0.0f};
 }
 
@@ -40,7 +48,8 @@ void intersect_shape(const RTCIntersectFunctionNArguments* args) {
   RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, args->N);
   for (unsigned int i = 0; i < args->N; ++i) {
     if (args->valid[i] == 0) continue;
-    const Vector3d origin(RTCRayN_org_x(rays, args->N, i), RTCRayN_org_y(rays, args->N, i), RTCRayN_org_z(rays, args->N, i));
+    const Vector3d origin(RTCRayN_org_x(rays, args->N, i), RTCRayN_org_y(rays, args->N, i),
+                          RTCRayN_org_z(rays, args->N, i));
     const Vector3d direction(RTCRayN_dir_x(rays, args->N, i), RTCRayN_dir_y(rays, args->N, i),
                              RTCRayN_dir_z(rays, args->N, i));
     Vector3d normal;
@@ -70,9 +79,9 @@ bool approach_shape(RTCPointQueryFunctionArguments* args) {
 struct RayScene::Impl {
   DevicePtr device;
   ScenePtr scene;
-  std::vector<SceneShape> bounded;   ///< behind geometry `shape_geometry`, primitive by primitive
-  std::vector<SceneShape> unbounded; ///< planes without edge
-  std::vector<Label> meshes;         ///< by Embree geometry id
+  std::vector<SceneShape> bounded;    ///< behind geometry `shape_geometry`, primitive by primitive
+  std::vector<SceneShape> unbounded;  ///< planes without edge
+  std::vector<Label> meshes;          ///< by Embree geometry id
   unsigned int shape_geometry = RTC_INVALID_GEOMETRY_ID;
 
   void add_mesh(const SceneMesh& mesh);
@@ -103,7 +112,8 @@ void RayScene::Impl::add_shapes() {
   const RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_USER);
   rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned int>(bounded.size()));
   rtcSetGeometryUserData(geometry, bounded.data());
-  rtcSetGeometryBoundsFunction(geometry, [](const RTCBoundsFunctionArguments* args) { shape_bounds(args); }, nullptr);
+  rtcSetGeometryBoundsFunction(
+      geometry, [](const RTCBoundsFunctionArguments* args) { shape_bounds(args); }, nullptr);
   rtcSetGeometryIntersectFunction(geometry, intersect_shape);
   rtcCommitGeometry(geometry);
   shape_geometry = rtcAttachGeometry(scene.get(), geometry);
@@ -131,7 +141,9 @@ RayScene::~RayScene() = default;
 RayScene::RayScene(RayScene&&) noexcept = default;
 RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 
-bool RayScene::empty() const { return impl_->bounded.empty() && impl_->unbounded.empty() && impl_->meshes.empty(); }
+bool RayScene::empty() const {
+  return impl_->bounded.empty() && impl_->unbounded.empty() && impl_->meshes.empty();
+}
 
 void RayScene::Impl::cast_planes(RayPacket& packet) const {
   for (const SceneShape& part : unbounded) {
@@ -206,7 +218,8 @@ bool RayScene::Impl::approach(RTCPointQueryFunctionArguments* args) {
   const RTCGeometry geometry = rtcGetGeometry(impl.scene.get(), args->geomID);
   const auto* vertices = static_cast<const float*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0));
   const auto* corners =
-      static_cast<const std::uint32_t*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_INDEX, 0)) + 3 * args->primID;
+      static_cast<const std::uint32_t*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_INDEX, 0)) +
+      3 * args->primID;
   const auto corner = [&](int i) { return Vector3f(Eigen::Map<const Vector3f>(vertices + 3 * corners[i])); };
   const float distance = triangle_distance(corner(0), corner(1), corner(2), Vector3f(q.x, q.y, q.z));
   if (!(distance < q.radius)) return false;

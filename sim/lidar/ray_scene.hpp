@@ -19,15 +19,15 @@ struct RayPacket {
   alignas(64) float direction_x[kLanes], direction_y[kLanes], direction_z[kLanes];  ///< unit
   /// In: no hit beyond this counts. Out: range of the hit, unchanged when nothing was hit.
   alignas(64) float range[kLanes];
-  alignas(64) float cosine[kLanes];            ///< of the angle of incidence, 0..1
+  alignas(64) float cosine[kLanes];  ///< of the angle of incidence, 0..1
   alignas(64) float reflectivity[kLanes];
-  alignas(64) std::int32_t surface_id[kLanes]; ///< in: kNothing, or what was hit before; out: of the hit
+  alignas(64) std::int32_t surface_id[kLanes];  ///< in: kNothing, or what was hit before; out: of the hit
 };
 
 inline constexpr std::int32_t kNothing = -1;
 
-/// Rays and nearest points against a fixed geometry (Embree; unbounded planes beside it). Building takes about 0.1 s for
-/// 320 000 triangles; a cast is logarithmic in the geometry. Const members may be called from several threads.
+/// Rays and nearest points against a fixed geometry (Embree; unbounded planes beside it). Building takes about 0.1 s
+/// for 320 000 triangles; a cast is logarithmic in the geometry. Const members may be called from several threads.
 /// Coordinates are float: at 50 m from the origin a hit is good to about 1e-5 m.
 class RayScene {
  public:

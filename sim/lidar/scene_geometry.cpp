@@ -29,8 +29,11 @@ bool is_seen(const mjModel& model, int geom) {
 class HeightField {
  public:
   HeightField(const mjModel& model, int geom)
-      : id_(model.geom_dataid[geom]), rows_(model.hfield_nrow[id_]), columns_(model.hfield_ncol[id_]),
-        size_(model.hfield_size + 4 * id_), data_(model.hfield_data + model.hfield_adr[id_]) {}
+      : id_(model.geom_dataid[geom]),
+        rows_(model.hfield_nrow[id_]),
+        columns_(model.hfield_ncol[id_]),
+        size_(model.hfield_size + 4 * id_),
+        data_(model.hfield_data + model.hfield_adr[id_]) {}
 
   int rows() const { return rows_; }
   int columns() const { return columns_; }
@@ -121,18 +124,31 @@ TriangleMesh geom_mesh(const mjModel& model, int geom, const Isometry3d& T_FS) {
 /// Whether the geom is a primitive, and which.
 bool primitive_kind(int type, ShapeKind& kind) {
   switch (type) {
-    case mjGEOM_PLANE: kind = ShapeKind::plane; return true;
-    case mjGEOM_SPHERE: kind = ShapeKind::sphere; return true;
-    case mjGEOM_CAPSULE: kind = ShapeKind::capsule; return true;
-    case mjGEOM_ELLIPSOID: kind = ShapeKind::ellipsoid; return true;
-    case mjGEOM_CYLINDER: kind = ShapeKind::cylinder; return true;
-    case mjGEOM_BOX: kind = ShapeKind::box; return true;
-    default: return false;
+    case mjGEOM_PLANE:
+      kind = ShapeKind::plane;
+      return true;
+    case mjGEOM_SPHERE:
+      kind = ShapeKind::sphere;
+      return true;
+    case mjGEOM_CAPSULE:
+      kind = ShapeKind::capsule;
+      return true;
+    case mjGEOM_ELLIPSOID:
+      kind = ShapeKind::ellipsoid;
+      return true;
+    case mjGEOM_CYLINDER:
+      kind = ShapeKind::cylinder;
+      return true;
+    case mjGEOM_BOX:
+      kind = ShapeKind::box;
+      return true;
+    default:
+      return false;
   }
 }
 
-void append_geom(const mjModel& model, int geom, const Isometry3d& T_FS, std::int32_t surface_id, HeightFieldSides sides,
-                 SceneGeometry& scene) {
+void append_geom(const mjModel& model, int geom, const Isometry3d& T_FS, std::int32_t surface_id,
+                 HeightFieldSides sides, SceneGeometry& scene) {
   const float reflectivity = geom_reflectivity(model, geom);
   const int type = model.geom_type[geom];
   ShapeKind kind;
@@ -198,11 +214,11 @@ SceneGeometry cage_geometry(const engine::World& world, const Vector3d& p_BL_m) 
   const mjModel& model = *world.model;
   const engine::DataPtr data = resting_data(model);
   Isometry3d T_WB = Isometry3d::Identity();
-  T_WB.linear() =
-      Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(data->xmat + 9 * world.robot_body);
+  T_WB.linear() = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(data->xmat + 9 * world.robot_body);
   T_WB.translation() = Eigen::Map<const Vector3d>(data->xpos + 3 * world.robot_body);
   for (int geom = 0; geom < model.ngeom; ++geom) {
-    if (model.body_rootid[model.geom_bodyid[geom]] != model.body_rootid[world.robot_body] || !is_seen(model, geom)) continue;
+    if (model.body_rootid[model.geom_bodyid[geom]] != model.body_rootid[world.robot_body] || !is_seen(model, geom))
+      continue;
     append_geom(model, geom, T_WB.inverse() * geom_pose(*data, geom), kOwnCage, HeightFieldSides::closed, cage);
   }
   std::erase_if(cage.shapes, [&](const SceneShape& s) { return contains(s.shape, p_BL_m); });

@@ -21,8 +21,16 @@ struct TriangleMesh {
 };
 
 /// Everything has a surface id and a diffuse reflectivity (0..1).
-struct SceneShape { Shape shape; std::int32_t surface_id; float reflectivity; };
-struct SceneMesh { TriangleMesh mesh; std::int32_t surface_id; float reflectivity; };
+struct SceneShape {
+  Shape shape;
+  std::int32_t surface_id;
+  float reflectivity;
+};
+struct SceneMesh {
+  TriangleMesh mesh;
+  std::int32_t surface_id;
+  float reflectivity;
+};
 
 struct SceneGeometry {
   std::vector<SceneShape> shapes;

@@ -12,7 +12,9 @@ namespace {
 using Eigen::Vector3d;
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
-struct Roots { double first, second; };
+struct Roots {
+  double first, second;
+};
 
 /// Solutions of a x^2 + 2 b x + c = 0 in rising order; NaN when there are none (comparisons with them fail).
 Roots solve_quadratic(double a, double b, double c) {
@@ -111,8 +113,14 @@ double cast_box(const Vector3d& half, const Vector3d& o, const Vector3d& d, Vect
     }
     double near = (-half[axis] - o[axis]) / d[axis], far = (half[axis] - o[axis]) / d[axis];
     if (near > far) std::swap(near, far);
-    if (near > enter) { enter = near; enter_axis = axis; }
-    if (far < leave) { leave = far; leave_axis = axis; }
+    if (near > enter) {
+      enter = near;
+      enter_axis = axis;
+    }
+    if (far < leave) {
+      leave = far;
+      leave_axis = axis;
+    }
   }
   if (enter > leave || leave < 0.0) return kNone;
   const bool outside = enter >= 0.0;
@@ -136,14 +144,17 @@ double ellipsoid_distance(const Vector3d& size, const Vector3d& point) {
   const double scale = size.maxCoeff();
   const Vector3d a = size / scale, y = point.cwiseAbs() / scale;
   const Vector3d a2 = a.cwiseAbs2();
-  const auto excess = [&](double t) { return a.cwiseProduct(y).cwiseQuotient(a2 + Vector3d::Constant(t)).squaredNorm() - 1; };
+  const auto excess = [&](double t) {
+    return a.cwiseProduct(y).cwiseQuotient(a2 + Vector3d::Constant(t)).squaredNorm() - 1;
+  };
   double low = -a2.minCoeff(), high = a.cwiseProduct(y).norm();
   for (int i = 0; i < 100 && high - low > 1e-15 * (1.0 + std::abs(high)); ++i) {
     const double middle = 0.5 * (low + high);
     (excess(middle) > 0.0 ? low : high) = middle;
   }
   Vector3d nearest = a2.cwiseProduct(y).cwiseQuotient(a2 + Vector3d::Constant(high));
-  // a point on a plane of symmetry, close to the centre: the coordinate of the shortest axis is free, the surface sets it
+  // a point on a plane of symmetry, close to the centre: the coordinate of the shortest axis is free, the surface sets
+  // it
   int shortest = 0;
   a.minCoeff(&shortest);
   if (y[shortest] < 1e-12) {
@@ -162,12 +173,24 @@ double cast_ray(const Shape& shape, const Vector3d& origin_F_m, const Vector3d& 
   Vector3d normal = Vector3d::Zero();
   double range = kNone;
   switch (shape.kind) {
-    case ShapeKind::plane: range = cast_plane(shape.size_m, o, d, normal); break;
-    case ShapeKind::sphere: range = cast_sphere(shape.size_m.x(), o, d, normal); break;
-    case ShapeKind::capsule: range = cast_capsule(shape.size_m.x(), shape.size_m.y(), o, d, normal); break;
-    case ShapeKind::ellipsoid: range = cast_ellipsoid(shape.size_m, o, d, normal); break;
-    case ShapeKind::cylinder: range = cast_cylinder(shape.size_m.x(), shape.size_m.y(), o, d, normal); break;
-    case ShapeKind::box: range = cast_box(shape.size_m, o, d, normal); break;
+    case ShapeKind::plane:
+      range = cast_plane(shape.size_m, o, d, normal);
+      break;
+    case ShapeKind::sphere:
+      range = cast_sphere(shape.size_m.x(), o, d, normal);
+      break;
+    case ShapeKind::capsule:
+      range = cast_capsule(shape.size_m.x(), shape.size_m.y(), o, d, normal);
+      break;
+    case ShapeKind::ellipsoid:
+      range = cast_ellipsoid(shape.size_m, o, d, normal);
+      break;
+    case ShapeKind::cylinder:
+      range = cast_cylinder(shape.size_m.x(), shape.size_m.y(), o, d, normal);
+      break;
+    case ShapeKind::box:
+      range = cast_box(shape.size_m, o, d, normal);
+      break;
   }
   normal_F = shape.R_FS * normal;
   return range;
@@ -182,15 +205,18 @@ double surface_distance(const Shape& shape, const Vector3d& point_F_m) {
       const double dy = size.y() > 0.0 ? std::max(0.0, std::abs(p.y()) - size.y()) : 0.0;
       return std::hypot(dx, dy, p.z());
     }
-    case ShapeKind::sphere: return std::abs(p.norm() - size.x());
+    case ShapeKind::sphere:
+      return std::abs(p.norm() - size.x());
     case ShapeKind::capsule: {
       const double z = p.z() - std::clamp(p.z(), -size.y(), size.y());
       return std::abs(std::hypot(p.x(), p.y(), z) - size.x());
     }
-    case ShapeKind::ellipsoid: return ellipsoid_distance(size, p);
+    case ShapeKind::ellipsoid:
+      return ellipsoid_distance(size, p);
     case ShapeKind::cylinder:
       return std::abs(signed_box_distance<Eigen::Vector2d>({std::hypot(p.x(), p.y()), p.z()}, {size.x(), size.y()}));
-    case ShapeKind::box: return std::abs(signed_box_distance<Vector3d>(p, size));
+    case ShapeKind::box:
+      return std::abs(signed_box_distance<Vector3d>(p, size));
   }
   return kNone;
 }
@@ -199,13 +225,18 @@ bool contains(const Shape& shape, const Vector3d& point_F_m) {
   const Vector3d p = shape.R_FS.transpose() * (point_F_m - shape.p_FS_m);
   const Vector3d& size = shape.size_m;
   switch (shape.kind) {
-    case ShapeKind::plane: return false;
-    case ShapeKind::sphere: return p.norm() < size.x();
+    case ShapeKind::plane:
+      return false;
+    case ShapeKind::sphere:
+      return p.norm() < size.x();
     case ShapeKind::capsule:
       return std::hypot(p.x(), p.y(), p.z() - std::clamp(p.z(), -size.y(), size.y())) < size.x();
-    case ShapeKind::ellipsoid: return p.cwiseQuotient(size).norm() < 1.0;
-    case ShapeKind::cylinder: return std::hypot(p.x(), p.y()) < size.x() && std::abs(p.z()) < size.y();
-    case ShapeKind::box: return (p.cwiseAbs() - size).maxCoeff() < 0.0;
+    case ShapeKind::ellipsoid:
+      return p.cwiseQuotient(size).norm() < 1.0;
+    case ShapeKind::cylinder:
+      return std::hypot(p.x(), p.y()) < size.x() && std::abs(p.z()) < size.y();
+    case ShapeKind::box:
+      return (p.cwiseAbs() - size).maxCoeff() < 0.0;
   }
   return false;
 }
@@ -213,12 +244,17 @@ bool contains(const Shape& shape, const Vector3d& point_F_m) {
 Vector3d half_extent(const Shape& shape) {
   const Vector3d& size = shape.size_m;
   switch (shape.kind) {
-    case ShapeKind::plane: return {size.x() > 0.0 ? size.x() : kNone, size.y() > 0.0 ? size.y() : kNone, 0.0};
-    case ShapeKind::sphere: return Vector3d::Constant(size.x());
-    case ShapeKind::capsule: return {size.x(), size.x(), size.x() + size.y()};
-    case ShapeKind::cylinder: return {size.x(), size.x(), size.y()};
+    case ShapeKind::plane:
+      return {size.x() > 0.0 ? size.x() : kNone, size.y() > 0.0 ? size.y() : kNone, 0.0};
+    case ShapeKind::sphere:
+      return Vector3d::Constant(size.x());
+    case ShapeKind::capsule:
+      return {size.x(), size.x(), size.x() + size.y()};
+    case ShapeKind::cylinder:
+      return {size.x(), size.x(), size.y()};
     case ShapeKind::ellipsoid:
-    case ShapeKind::box: return size;
+    case ShapeKind::box:
+      return size;
   }
   return size;
 }

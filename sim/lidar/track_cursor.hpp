@@ -64,7 +64,8 @@ class TrackCursor {
   MotionTrack motion_;
   std::int64_t start_ns_ = 0, end_ns_ = 0;
   double per_ns_ = 0.0, into_ = 0.0, turn2_ = 0.0, first_ = 0.0, second_ = 0.0;
-  Eigen::Vector3d p_WB_m_ = Eigen::Vector3d::Zero(), step_m_ = Eigen::Vector3d::Zero(), turn_rad_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d p_WB_m_ = Eigen::Vector3d::Zero(), step_m_ = Eigen::Vector3d::Zero(),
+                  turn_rad_ = Eigen::Vector3d::Zero();
   Eigen::Matrix3d R_WB_ = Eigen::Matrix3d::Identity();
 };
 

@@ -44,7 +44,8 @@ double field_height_m(const mjModel& model, int field, double x_m, double y_m) {
   const int column = std::min(static_cast<int>(u), columns - 2), row = std::min(static_cast<int>(v), rows - 2);
   const float* data = model.hfield_data + model.hfield_adr[field] + row * columns + column;
   const double a = u - column, b = v - row;
-  return size[2] * ((1 - b) * ((1 - a) * data[0] + a * data[1]) + b * ((1 - a) * data[columns] + a * data[columns + 1]));
+  return size[2] *
+         ((1 - b) * ((1 - a) * data[0] + a * data[1]) + b * ((1 - a) * data[columns] + a * data[columns + 1]));
 }
 
 /// Lines along both axes of a rectangle, `height(x, y)` above its plane; calls `line(from, to)` for every segment.
@@ -71,13 +72,15 @@ void each_grid_line(const engine::World& world, const Line& line) {
     const mjtNum* size = model.geom_size + 3 * geom;
     if (model.geom_type[geom] == mjGEOM_HFIELD) {
       const int field = model.geom_dataid[geom];
-      drape(model.hfield_size[4 * field], model.hfield_size[4 * field + 1], kFieldGrid_m, kFieldStep_m,
-            [&](double x, double y) { return field_height_m(model, field, x, y); },
-            [&](const Vector3d& from, const Vector3d& to) { line(geom, from, to); });
+      drape(
+          model.hfield_size[4 * field], model.hfield_size[4 * field + 1], kFieldGrid_m, kFieldStep_m,
+          [&](double x, double y) { return field_height_m(model, field, x, y); },
+          [&](const Vector3d& from, const Vector3d& to) { line(geom, from, to); });
     } else if (model.geom_type[geom] == mjGEOM_PLANE) {
       const auto half = [](double s) { return s > 0.0 ? std::min(s, kPlaneHalf_m) : kPlaneHalf_m; };
-      drape(half(size[0]), half(size[1]), kPlaneGrid_m, 2.0 * kPlaneHalf_m, [](double, double) { return 0.0; },
-            [&](const Vector3d& from, const Vector3d& to) { line(geom, from, to); });
+      drape(
+          half(size[0]), half(size[1]), kPlaneGrid_m, 2.0 * kPlaneHalf_m, [](double, double) { return 0.0; },
+          [&](const Vector3d& from, const Vector3d& to) { line(geom, from, to); });
     }
   }
 }

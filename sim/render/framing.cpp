@@ -10,7 +10,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-struct Ball { Vector3d centre_W_m; double radius_m; };
+struct Ball {
+  Vector3d centre_W_m;
+  double radius_m;
+};
 
 std::vector<Ball> content(const View& view, double robot_radius_m) {
   std::vector<Ball> balls;
@@ -31,8 +34,8 @@ std::vector<Ball> content(const View& view, double robot_radius_m) {
 }  // namespace
 
 Framing frame(const View& view, double robot_radius_m, double fovy_rad) {
-  constexpr double kMargin = 0.82;      // share of the picture's half width and height that content may take
-  constexpr double kSmallest_m = 1.2;   // no closer: the surroundings tell what is going on
+  constexpr double kMargin = 0.82;     // share of the picture's half width and height that content may take
+  constexpr double kSmallest_m = 1.2;  // no closer: the surroundings tell what is going on
   constexpr double kOverview_m = 25.0;
   const std::vector<Ball> balls = content(view, robot_radius_m);
 

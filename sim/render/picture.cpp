@@ -20,7 +20,8 @@ void append_bytes(png_structp png, png_bytep data, png_size_t size) {
 }
 
 void check(const Picture& picture) {
-  const auto pixels = static_cast<std::size_t>(std::max(0, picture.width)) * static_cast<std::size_t>(std::max(0, picture.height));
+  const auto pixels =
+      static_cast<std::size_t>(std::max(0, picture.width)) * static_cast<std::size_t>(std::max(0, picture.height));
   if (pixels == 0 || picture.rgb.size() != 3 * pixels) {
     throw std::invalid_argument("picture of " + std::to_string(picture.width) + " x " + std::to_string(picture.height) +
                                 " with " + std::to_string(picture.rgb.size()) + " bytes");
@@ -30,7 +31,8 @@ void check(const Picture& picture) {
 }  // namespace
 
 Picture film_strip(std::span<const Picture> pictures, int columns) {
-  if (pictures.empty() || columns < 1) throw std::invalid_argument("film_strip: needs pictures and at least one column");
+  if (pictures.empty() || columns < 1)
+    throw std::invalid_argument("film_strip: needs pictures and at least one column");
   const int width = pictures[0].width, height = pictures[0].height;
   const int rows = (static_cast<int>(pictures.size()) + columns - 1) / columns;
   columns = std::min(columns, static_cast<int>(pictures.size()));
@@ -40,8 +42,10 @@ Picture film_strip(std::span<const Picture> pictures, int columns) {
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     const Picture& picture = pictures[i];
     check(picture);
-    if (picture.width != width || picture.height != height) throw std::invalid_argument("film_strip: pictures differ in size");
-    const int left = static_cast<int>(i) % columns * (width + kGap), top = static_cast<int>(i) / columns * (height + kGap);
+    if (picture.width != width || picture.height != height)
+      throw std::invalid_argument("film_strip: pictures differ in size");
+    const int left = static_cast<int>(i) % columns * (width + kGap),
+              top = static_cast<int>(i) / columns * (height + kGap);
     for (int row = 0; row < height; ++row) {
       const auto from = picture.rgb.begin() + 3 * static_cast<std::ptrdiff_t>(row) * width;
       std::copy(from, from + 3 * width,
@@ -70,7 +74,8 @@ std::vector<std::uint8_t> png_bytes(const Picture& picture) {
                PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_write_info(png, info);
   for (int row = 0; row < picture.height; ++row) {
-    png_write_row(png, picture.rgb.data() + 3 * static_cast<std::size_t>(row) * static_cast<std::size_t>(picture.width));
+    png_write_row(png,
+                  picture.rgb.data() + 3 * static_cast<std::size_t>(row) * static_cast<std::size_t>(picture.width));
   }
   png_write_end(png, nullptr);
   png_destroy_write_struct(&png, &info);

@@ -16,6 +16,8 @@ Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
-Picture Renderer::draw(const View& view) { return impl_->scene.draw(view); }
+Picture Renderer::draw(const View& view) {
+  return impl_->scene.draw(view);
+}
 
 }  // namespace tumble::sim

@@ -18,7 +18,9 @@ constexpr double kDegree_rad = 0.017453292519943295;
 constexpr int kLargestSide = 4096;
 constexpr int kOversampling = 2;  // rendered at twice the size and averaged: smooth edges without multisampling
 
-struct ContextDeleter { void operator()(OSMesaContext context) const { OSMesaDestroyContext(context); } };
+struct ContextDeleter {
+  void operator()(OSMesaContext context) const { OSMesaDestroyContext(context); }
+};
 using ContextPtr = std::unique_ptr<osmesa_context, ContextDeleter>;
 
 /// Makes a context current for as long as it lives.
@@ -57,7 +59,8 @@ class Scene {
 
 /// Halves a picture in both directions and turns it upside up: OpenGL's rows begin at the bottom.
 Picture averaged(const std::vector<std::uint8_t>& large, int width, int height) {
-  Picture picture{width, height, std::vector<std::uint8_t>(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height))};
+  Picture picture{width, height,
+                  std::vector<std::uint8_t>(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height))};
   const std::size_t stride = 3 * static_cast<std::size_t>(width) * kOversampling;
   auto out = picture.rgb.begin();
   for (int row = height - 1; row >= 0; --row) {
@@ -67,7 +70,8 @@ Picture averaged(const std::vector<std::uint8_t>& large, int width, int height) 
         for (int dy = 0; dy < kOversampling; ++dy) {
           const std::size_t line = static_cast<std::size_t>(row * kOversampling + dy) * stride;
           for (int dx = 0; dx < kOversampling; ++dx) {
-            sum += large[line + 3 * static_cast<std::size_t>(column * kOversampling + dx) + static_cast<std::size_t>(c)];
+            sum +=
+                large[line + 3 * static_cast<std::size_t>(column * kOversampling + dx) + static_cast<std::size_t>(c)];
           }
         }
         *out++ = static_cast<std::uint8_t>((sum + kOversampling * kOversampling / 2) / (kOversampling * kOversampling));
@@ -101,7 +105,7 @@ void aim_sun(const Framing& framing, mjvScene& scene, mjrContext& engine) {
     for (int axis = 0; axis < 3; ++axis) {
       light.pos[axis] = static_cast<float>(framing.look_at_W_m[axis] - reach_m * light.dir[axis]);
       light.ambient[axis] = 0.1f;
-      light.diffuse[axis] = 0.55f;
+      light.diffuse[axis] = 0.7f;
       light.specular[axis] = 0.1f;
     }
   }
@@ -194,7 +198,8 @@ Picture SceneRenderer::draw(const View& view) {
   mjv_defaultOption(&option);
   std::fill(std::begin(option.sitegroup), std::end(option.sitegroup), mjtByte{0});
 
-  const int geoms = model.ngeom * static_cast<int>(view.robots_T_WB.size() + 1) + decoration_size(impl_->world, view) + 100;
+  const int geoms =
+      model.ngeom * static_cast<int>(view.robots_T_WB.size() + 1) + decoration_size(impl_->world, view) + 100;
   Scene holder(model, geoms);
   mjvScene& scene = holder.get();
   mjv_updateScene(&model, impl_->data.get(), &option, nullptr, &camera, mjCAT_STATIC, &scene);
@@ -209,7 +214,8 @@ Picture SceneRenderer::draw(const View& view) {
   mjrContext& engine = impl_->engine_context;
   aim_sun(framing, scene, engine);
   const mjrRect area = {0, 0, view.width * kOversampling, view.height * kOversampling};
-  if (engine.offWidth != area.width || engine.offHeight != area.height) mjr_resizeOffscreen(area.width, area.height, &engine);
+  if (engine.offWidth != area.width || engine.offHeight != area.height)
+    mjr_resizeOffscreen(area.width, area.height, &engine);
   mjr_setBuffer(mjFB_OFFSCREEN, &engine);
   if (engine.currentBuffer != mjFB_OFFSCREEN) throw std::runtime_error("render: no off-screen buffer");
   mjr_render(area, &scene, &engine);

@@ -10,9 +10,9 @@ namespace tumble::sim {
 
 /// Private to sim: pictures of a compiled world (OSMesa, MuJoCo's own renderer).
 ///
-/// Threads: an OSMesa context is current to one thread at a time. The renderer makes its context current for each call and
-/// lets go of it after, so that it may be used from any thread but by one at a time; several renderers may live in one
-/// process. It looks up no display and needs none.
+/// Threads: an OSMesa context is current to one thread at a time. The renderer makes its context current for each call
+/// and lets go of it after, so that it may be used from any thread but by one at a time; several renderers may live in
+/// one process. It looks up no display and needs none.
 class SceneRenderer {
  public:
   /// Takes over the world; changes its colours of sky, light and shadow settings, which nothing else sees.

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::array kParameters = {
     Parameter{"mass_kg", 8.0, 0.5, 100.0, "kg", "whole rig; assumed"},
-    Parameter{"inertia_x_kg_m2", 0.22, 0.005, 20.0, "kg m^2",
+    Parameter{"inertia_x_kg_m2", 0.14, 0.005, 20.0, "kg m^2",
               "moment of inertia about the x axis through the centre of mass; assumed"},
     Parameter{"inertia_ratio_y", 1.15, 0.7, 1.4, "1", "moment about y over moment about x; assumed"},
     Parameter{"inertia_ratio_z", 1.1, 0.7, 1.4, "1", "moment about z over moment about x; assumed"},

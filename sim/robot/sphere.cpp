@@ -16,7 +16,8 @@ constexpr std::array kParameters = {
               "its centre relative to the geometric centre, B axes; up to 12 mm each in slip_study"},
     Parameter{"inner_y_m", 0.0, -0.03, 0.03, "m", "the same along y"},
     Parameter{"inner_z_m", 0.0, -0.03, 0.03, "m", "the same along z; negative: the heavy side is down at the start"},
-    Parameter{"contact_time_s", 0.004, 0.002, 0.1, "s", "time constant of a contact (MuJoCo solref[0]); a hard shell, it sinks 0.02 mm under its weight"},
+    Parameter{"contact_time_s", 0.004, 0.002, 0.1, "s",
+              "time constant of a contact (MuJoCo solref[0]); a hard shell, it sinks 0.02 mm under its weight"},
     Parameter{"contact_damping_ratio", 1.0, 0.05, 1.5, "1", "damping ratio of a contact (MuJoCo solref[1])"},
 };
 

@@ -95,7 +95,8 @@ void build(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World
   world.half_extent_m = values.at("room_half_m");
   mjsGeom* floor = add_surface(spec, world, "floor", mjGEOM_PLANE, {0, 0, 0},
                                {world.half_extent_m, world.half_extent_m, 1.0}, 0.0, {0.62f, 0.6f, 0.57f, 1.0f});
-  floor->solmix = 0.0;  // the softness is the robot's; of the two frictions the larger one counts, and a sphere has none
+  floor->solmix =
+      0.0;  // the softness is the robot's; of the two frictions the larger one counts, and a sphere has none
   floor->condim = 4;
   floor->friction[0] = values.at("friction");
   floor->friction[1] = values.at("spin_friction_m");

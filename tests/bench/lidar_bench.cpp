@@ -75,7 +75,8 @@ void simulate(benchmark::State& state, const char* kind, double cage) {
   for (auto _ : state) {
     LidarRecord record;
     LidarTruth truth;
-    simulate_lidar(world, sensor, Eigen::Isometry3d::Identity(), {500000, motion.p_WB_m, motion.q_WB}, 1, 1, record, truth);
+    simulate_lidar(world, sensor, Eigen::Isometry3d::Identity(), {500000, motion.p_WB_m, motion.q_WB}, 1, 1, record,
+                   truth);
     points += record.range_m.size();
     firings += record.sweep_start_ns.size() * (sensor.kind == "spinning_lidar" ? 32000 : 30000);
   }
@@ -94,7 +95,8 @@ void engine_rays(benchmark::State& state) {
     const double direction[3] = {std::cos(azimuth) * std::cos(elevation), std::sin(azimuth) * std::cos(elevation),
                                  std::sin(elevation)};
     int geom;
-    benchmark::DoNotOptimize(mj_ray(world.model.get(), data.get(), origin, direction, nullptr, 1, world.robot_body, &geom, nullptr));
+    benchmark::DoNotOptimize(
+        mj_ray(world.model.get(), data.get(), origin, direction, nullptr, 1, world.robot_body, &geom, nullptr));
   }
   state.counters["firings"] = benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
 }

@@ -13,7 +13,6 @@ namespace {
 
 constexpr double kGravity = 9.80665;
 constexpr int kRings = 16;
-constexpr int kColumns = 900;
 
 const Room::Plane kFloor{{0, 0, -1.5}, {0, 0, 1}};
 
@@ -145,15 +144,15 @@ RateState believe(const ImuSample& sample) {
 }
 
 std::vector<LidarPoint> make_sweep(const Room& room, const Motion& motion, const Eigen::Isometry3d& T_IL, int sweep,
-                                   double noise_m) {
+                                   double noise_m, int columns) {
   std::vector<LidarPoint> points;
-  points.reserve(kRings * kColumns);
-  for (int column = 0; column < kColumns; ++column) {
+  points.reserve(static_cast<std::size_t>(kRings * columns));
+  for (int column = 0; column < columns; ++column) {
     for (int ring = 0; ring < kRings; ++ring) {
-      const std::int64_t offset_ns = column * (kSweep_ns / kColumns) + ring * 3000;
+      const std::int64_t offset_ns = column * (kSweep_ns / columns) + ring * 3000;
       const double t = 1e-9 * static_cast<double>(sweep * kSweep_ns + offset_ns);
       const double elevation = (-15.0 + 2.0 * ring) * std::numbers::pi / 180.0;
-      const double azimuth = -2.0 * std::numbers::pi * column / kColumns;
+      const double azimuth = -2.0 * std::numbers::pi * column / columns;
       const Eigen::Vector3d d_L(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
                                 std::sin(elevation));
       const Eigen::Isometry3d T_WL = motion.pose(t) * T_IL;

@@ -64,10 +64,10 @@ std::vector<MotionSample> motion_samples(const std::vector<ImuSample>& imu);
 /// A rate as a method would give it that believes the gyro.
 RateState believe(const ImuSample& sample);
 
-/// Sixteen rings by 900 columns in 0.1 s, each ray from the pose of its own instant, noise of the range uniform with
+/// Sixteen rings by `columns` in 0.1 s, each ray from the pose of its own instant, noise of the range uniform with
 /// standard deviation `noise_m`, drawn from (sweep, point) alone.
 std::vector<LidarPoint> make_sweep(const Room& room, const Motion& motion, const Eigen::Isometry3d& T_IL, int sweep,
-                                   double noise_m = 0.0);
+                                   double noise_m = 0.0, int columns = 900);
 constexpr std::int64_t kSweep_ns = 100'000'000;
 
 /// Number in [0, 1) from a 64-bit counter.

@@ -97,5 +97,53 @@ TEST_F(DrawFiles, AbsentOrUnreadableFilesAreNamed) {
   EXPECT_THAT(complaint_of("big"), HasSubstr("larger than 4 MiB"));
 }
 
+/// Written against the simulation's own registries and the project's data sheets.
+const std::string kReal = R"(name: slope
+doc: a rig is pushed down a hill
+duration_s: {uniform: [5, 6]}
+world: {type: hill}
+robot: {type: rig}
+motion: {type: push}
+sensors:
+  - {name: imu, kind: imu, device: mti30, site: mti30, mount_error: {x_m: {normal: [0, 0.003]}}}
+  - {name: lidar, kind: spinning_lidar, device: rs16, site: rs16, range_noise_m: 0.01}
+)";
+
+class DrawReal : public DrawFiles {
+ protected:
+  DrawReal() {
+    std::filesystem::copy(DataRoot{TUMBLE_SOURCE_DIR}.data_sheets(), data_.data_sheets(),
+                          std::filesystem::copy_options::overwrite_existing);
+  }
+  std::string draw_complaint(const std::string& from, const std::string& to, std::uint64_t seed) {
+    put("slope.yaml", with(kReal, from, to));
+    return fixture::complaint([&] { draw(data_, load_scenario(data_, "slope"), seed); });
+  }
+};
+
+TEST_F(DrawReal, TheSituationIsCompleteAndFromTheDataSheets) {
+  put("slope.yaml", kReal);
+  const sim::Situation situation = draw(data_, load_scenario(data_, "slope"), 5);
+  EXPECT_EQ(sim::resolve(situation), situation) << "resolved already";
+  EXPECT_FALSE(situation.world.values.all().empty()) << "defaults are filled in";
+  ASSERT_EQ(situation.sensors.size(), 2u);
+  for (const DataSheet::Entry& entry : load_data_sheet(data_, "rs16").entries) {
+    EXPECT_EQ(situation.sensors[1].values.at(entry.name), entry.name == "range_noise_m" ? 0.01 : entry.value) << entry.name;
+  }
+  EXPECT_EQ(situation.sensors[0].mount_error.at("y_m"), 0.0);
+  EXPECT_NE(situation.sensors[0].mount_error.at("x_m"), 0.0);
+  EXPECT_EQ(situation_from_yaml(to_yaml(situation), "a"), situation);
+  EXPECT_EQ(draw(data_, load_scenario(data_, (data_.catalogue() / "slope.yaml").string()), 5), situation) << "by path";
+}
+
+TEST_F(DrawReal, WhatOnlyShowsWhenDrawnIsNamed) {
+  EXPECT_EQ(draw_complaint("{type: rig}", "{type: rig}", 5), "");
+  EXPECT_THAT(draw_complaint("device: rs16", "device: rs17", 5),
+              HasSubstr("slope.yaml:9: sensors.lidar: unknown device 'rs17'; did you mean 'rs16'?"));
+  EXPECT_THAT(draw_complaint("device: rs16", "device: mti30", 5), HasSubstr("is of kind 'imu', not 'spinning_lidar'"));
+  EXPECT_THAT(draw_complaint("[0, 0.003]", "[0, 1e6]", 5), HasSubstr("slope.yaml: with seed 5: "));
+  EXPECT_THAT(draw_complaint("name: slope", "name: slop", 5), HasSubstr("name is 'slop', must be the file's, 'slope'"));
+}
+
 }  // namespace
 }  // namespace tumble::scenarios

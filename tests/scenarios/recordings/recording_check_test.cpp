@@ -77,7 +77,7 @@ TEST(RecordingCheck, NamesWhatContradictsInTheTruth) {
       {[](auto& t) { t.label[3] = static_cast<sim::ContactLabel>(4); }, "label 4 is unknown"},
       {[](auto& t) { t.contacts[3].time_ns = 0; }, "contacts/time_ns: falls"},
       {[](auto& t) { t.contacts[3].surface_id = 2; }, "surface_id 2 has no name"},
-      {[](auto& t) { t.lidars[0].surface_id[3] = -2; }, "truth/lidars/0: surface_id -2"},
+      {[](auto& t) { t.lidars[0].surface_id[3] = -3; }, "truth/lidars/0: surface_id -3"},
       {[](auto& t) { t.lidars[0].hit_W_m.pop_back(); }, "surface_id has 150 rows, hit_W_m has 149"},
       {[](auto& t) { t.imus[1].gyro_bias_rad_s.clear(); }, "truth/imus/1: gyro_bias_I_rad_s has 0 rows"},
       {[](auto& t) { t.p_BG_m.x() = std::numeric_limits<double>::infinity(); }, "p_BG_m is not finite"}};

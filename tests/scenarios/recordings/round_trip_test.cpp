@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <hdf5.h>
 
@@ -175,10 +174,12 @@ TEST_F(RoundTrip, EveryDatasetHasAUnitAndIsDocumented) {
   const hid_t file = H5Fopen((folder_ / "a.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, note_dataset, &datasets, H5O_INFO_BASIC);
   H5Fclose(file);
-  EXPECT_EQ(datasets.size(), 2 * 5 + 9 + 8 + 6 + 2 * 7 + 3u);
+  EXPECT_EQ(datasets.size(), 2 * 5 + 8 + 8 + 6 + 2 * 7 + 3u);
   for (const auto& [name, has_unit] : datasets) {
     EXPECT_TRUE(has_unit || name == "truth/surfaces") << name;
-    EXPECT_THAT(page, testing::HasSubstr("`" + name.substr(name.rfind('/') + 1) + "`"));
+    std::string quoted(1, '`');
+    quoted.append(name.substr(name.rfind('/') + 1)).append(1, '`');
+    EXPECT_NE(page.find(quoted), std::string::npos) << quoted;
   }
 }
 

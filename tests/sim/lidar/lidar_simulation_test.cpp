@@ -43,7 +43,10 @@ Motion resting(double duration_s, const Vector3d& at_m = Vector3d::Zero()) {
   return moving(duration_s, at_m, Vector3d::Zero(), Vector3d::Zero());
 }
 
-struct Cast { LidarRecord record; LidarTruth truth; };
+struct Cast {
+  LidarRecord record;
+  LidarTruth truth;
+};
 
 Cast cast(const engine::World& world, const SensorSpec& sensor, const Motion& motion, int threads = 1,
           const Isometry3d& T_BL = Isometry3d::Identity(), std::uint64_t seed = 1) {
@@ -69,7 +72,9 @@ double room_range(const Vector3d& origin, const Vector3d& direction) {
   return range;
 }
 
-double distance_to_walls(const Vector3d& p) { return std::abs((p.cwiseAbs() - kRoom).maxCoeff()); }
+double distance_to_walls(const Vector3d& p) {
+  return std::abs((p.cwiseAbs() - kRoom).maxCoeff());
+}
 
 Isometry3d mounting() {
   Isometry3d T_BL = Isometry3d::Identity();
@@ -117,11 +122,13 @@ TEST(SpinningLidar, RestingInARoomIsExact) {
     char name[32];
     std::snprintf(name, sizeof name, "elevation_%02d_rad", channel + 1);
     const double elevation = sensor.values.at(name);
-    const Vector3d direction(std::cos(elevation) * std::cos(azimuth), -std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
+    const Vector3d direction(std::cos(elevation) * std::cos(azimuth), -std::cos(elevation) * std::sin(azimuth),
+                             std::sin(elevation));
     const Vector3d origin(0.04638 * std::cos(azimuth), -0.04638 * std::sin(azimuth), -0.010875);
     const double range = room_range(at + origin, direction);
     worst_m = std::max(worst_m, std::abs(out.record.range_m[i] - range));
-    worst_position_m = std::max(worst_position_m, (out.record.position_L_m[i].cast<double>() - origin - range * direction).norm());
+    worst_position_m =
+        std::max(worst_position_m, (out.record.position_L_m[i].cast<double>() - origin - range * direction).norm());
   }
   // rays in float: 2^-24 of 6 m, a few operations; measured 1.4e-6 and 1.5e-6 m
   EXPECT_LT(worst_m, 5e-6);
@@ -162,7 +169,8 @@ TEST(SpinningLidar, FaultyDriverStampsCompressPackets) {
   const Cast right = cast(room(), testing::exact_lidar_of("spinning_lidar"), resting(0.1));
   EXPECT_EQ(faulty.record.position_L_m, right.record.position_L_m);
   std::uint32_t worst_ns = 0;
-  for (std::size_t i = 0; i < 32000; ++i) worst_ns = std::max(worst_ns, right.record.offset_ns[i] - faulty.record.offset_ns[i]);
+  for (std::size_t i = 0; i < 32000; ++i)
+    worst_ns = std::max(worst_ns, right.record.offset_ns[i] - faulty.record.offset_ns[i]);
   EXPECT_EQ(worst_ns, 600000u);  // the published error: up to 0.6 ms
   EXPECT_EQ(faulty.record.offset_ns[24 * 16], right.record.offset_ns[24 * 16]);
 }
@@ -182,7 +190,8 @@ TEST(RosetteLidar, FollowsTheFormula) {
     EXPECT_EQ(out.record.offset_ns[i] + (i >= 30000 ? 100000000u : 0u), i / 3 * 10000u);
     EXPECT_LT((out.record.position_L_m[i].cast<double>().normalized() - direction).norm(), 1e-6);
     EXPECT_NEAR(out.record.range_m[i], room_range(Vector3d::Zero(), direction), 5e-6);
-    EXPECT_LT(std::acos(direction.dot(Eigen::AngleAxisd(yaw, Vector3d::UnitZ()) * Vector3d::UnitX())), 19.3 * M_PI / 180.0);
+    EXPECT_LT(std::acos(direction.dot(Eigen::AngleAxisd(yaw, Vector3d::UnitZ()) * Vector3d::UnitX())),
+              19.3 * M_PI / 180.0);
   }
 }
 
@@ -252,7 +261,8 @@ TEST(LidarSimulation, RangeNoiseHasItsStatistics) {
     before = z;
   }
   const double count = static_cast<double>(n);
-  // five standard errors of 128 000 samples: mean 1/sqrt(n), variance sqrt(2/n), fourth moment sqrt(96/n), lag 1/sqrt(n)
+  // five standard errors of 128 000 samples: mean 1/sqrt(n), variance sqrt(2/n), fourth moment sqrt(96/n), lag
+  // 1/sqrt(n)
   EXPECT_NEAR(sum / count, 0.0, 5.0 / std::sqrt(count));
   EXPECT_NEAR(sum2 / count, 1.0, 5.0 * std::sqrt(2.0 / count));
   EXPECT_NEAR(sum4 / count, 3.0, 5.0 * std::sqrt(96.0 / count));
@@ -266,7 +276,8 @@ TEST(LidarSimulation, RangesAreWholeQuanta) {
 }
 
 TEST(LidarSimulation, SkyGivesNoPoint) {
-  const engine::World plane = testing::world_of("<mujoco><worldbody><geom type='plane' size='0 0 1'/></worldbody></mujoco>");
+  const engine::World plane =
+      testing::world_of("<mujoco><worldbody><geom type='plane' size='0 0 1'/></worldbody></mujoco>");
   const Cast out = cast(plane, testing::exact_lidar_of("spinning_lidar"), resting(0.1, Vector3d(0, 0, 1)));
   // the eight channels that look down hit the unbounded plane, none of the others does
   EXPECT_EQ(out.record.range_m.size(), 16000u);
@@ -285,8 +296,9 @@ TEST(LidarSimulation, DropOutByRangeAndReflectivity) {
   sensor.values.set("mixed_amplitude", 0.0);
   const auto share_at = [&](double range_m, double grey) {
     const std::string colour = std::to_string(grey) + " " + std::to_string(grey) + " " + std::to_string(grey) + " 1";
-    const engine::World wall = testing::world_of("<mujoco><worldbody><geom type='box' size='1 50 50' pos='" +
-                                                 std::to_string(range_m + 1.0) + " 0 0' rgba='" + colour + "'/></worldbody></mujoco>");
+    const engine::World wall =
+        testing::world_of("<mujoco><worldbody><geom type='box' size='1 50 50' pos='" + std::to_string(range_m + 1.0) +
+                          " 0 0' rgba='" + colour + "'/></worldbody></mujoco>");
     return static_cast<double>(cast(wall, sensor, resting(0.2)).record.range_m.size()) / 20000.0;
   };
   const double tolerance = 5.0 * std::sqrt(0.25 / 20000.0);  // five standard errors
@@ -319,7 +331,8 @@ TEST(LidarSimulation, OwnCageMovesWithTheLidarAndHousingIsTransparent) {
       "<mujoco><worldbody><geom type='box' size='3 5 2'/>"
       "<body name='robot' pos='0 0 7'><freejoint/><geom type='cylinder' size='0.05 0.04' mass='1'/>"
       "<geom type='capsule' size='0.02 0.2' pos='0.3 0 0' mass='0.1'/>"
-      "<geom type='sphere' size='0.05' pos='0 0.3 0' contype='0' conaffinity='0' mass='0.1'/></body></worldbody></mujoco>");
+      "<geom type='sphere' size='0.05' pos='0 0.3 0' contype='0' conaffinity='0' "
+      "mass='0.1'/></body></worldbody></mujoco>");
   SensorSpec sensor = testing::exact_lidar_of("spinning_lidar");
   sensor.values.set("range_min_m", 0.2);
   const Cast still = cast(world, sensor, resting(0.1));

@@ -13,7 +13,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-struct Disagreement { int compared = 0, hits = 0, different_surface = 0, farther_than_1_mm = 0; };
+struct Disagreement {
+  int compared = 0, hits = 0, different_surface = 0, farther_than_1_mm = 0;
+};
 
 Vector3d random_direction(Stream& chance) {
   return Vector3d(chance.normal(), chance.normal(), chance.normal()).normalized();
@@ -46,7 +48,8 @@ Disagreement compare_with_engine(const engine::World& world, const SceneGeometry
       const double direction[3] = {rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]};
       int geom = -1;
       const double expected = mj_ray(world.model.get(), data.get(), origin, direction, nullptr, 1, -1, &geom, nullptr);
-      const int seen = rays.surface_id[i] == kNothing ? -1 : world.surface_geom[static_cast<std::size_t>(rays.surface_id[i])];
+      const int seen =
+          rays.surface_id[i] == kNothing ? -1 : world.surface_geom[static_cast<std::size_t>(rays.surface_id[i])];
       ++out.compared;
       out.hits += expected >= 0.0;
       out.different_surface += seen != geom;
@@ -112,7 +115,8 @@ TEST(RayScene, AnalyticPlaneSphereBox) {
   SceneGeometry geometry;
   Shape plane{ShapeKind::plane, Vector3d::Zero(), Eigen::Matrix3d::Identity(), {0.0, 0.0, -2.0}};
   Shape sphere{ShapeKind::sphere, {1.5, 0, 0}, Eigen::Matrix3d::Identity(), {0.0, 10.0, 0.5}};
-  Shape box{ShapeKind::box, {1.0, 2.0, 3.0}, Eigen::AngleAxisd(0.5, Vector3d::UnitZ()).toRotationMatrix(), {-8.0, 0.0, 0.0}};
+  Shape box{
+      ShapeKind::box, {1.0, 2.0, 3.0}, Eigen::AngleAxisd(0.5, Vector3d::UnitZ()).toRotationMatrix(), {-8.0, 0.0, 0.0}};
   geometry.shapes = {{plane, 0, 0.1f}, {sphere, 1, 0.2f}, {box, 2, 0.3f}};
   const RayScene scene(geometry);
   RayPacket rays;

@@ -22,7 +22,8 @@ std::vector<Vector3d> surface_samples(const Shape& shape, int count) {
   std::vector<Vector3d> out;
   while (static_cast<int>(out.size()) < count) {
     const Vector3d direction = Vector3d(chance.normal(), chance.normal(), chance.normal()).normalized();
-    const Vector3d inside = shape.p_FS_m + shape.R_FS * Vector3d(0.0, 0.0, chance.uniform(-1, 1) * half_extent(shape).z());
+    const Vector3d inside =
+        shape.p_FS_m + shape.R_FS * Vector3d(0.0, 0.0, chance.uniform(-1, 1) * half_extent(shape).z());
     Vector3d normal;
     const double range = cast_ray(shape, inside, direction, normal);
     if (std::isfinite(range)) out.push_back(inside + range * direction);
@@ -33,7 +34,8 @@ std::vector<Vector3d> surface_samples(const Shape& shape, int count) {
 /// No sample of the surface is nearer than the distance, and a dense sampling comes close to it.
 TEST(SurfaceDistance, PrimitivesAgainstDenseSamples) {
   Stream chance(8, "test.shapes");
-  for (const ShapeKind kind : {ShapeKind::sphere, ShapeKind::capsule, ShapeKind::ellipsoid, ShapeKind::cylinder, ShapeKind::box}) {
+  for (const ShapeKind kind :
+       {ShapeKind::sphere, ShapeKind::capsule, ShapeKind::ellipsoid, ShapeKind::cylinder, ShapeKind::box}) {
     Shape shape;
     shape.kind = kind;
     shape.size_m = Vector3d(0.5, 0.9, 0.3);
@@ -80,7 +82,8 @@ TEST(SurfaceDistance, SceneAgainstBruteForce) {
     }
     for (const SceneMesh& m : geometry.meshes) {
       const auto& v = m.mesh.vertices_F_m;
-      for (const auto& t : m.mesh.triangles) nearest = std::min(nearest, triangle_distance(v[t[0]], v[t[1]], v[t[2]], point));
+      for (const auto& t : m.mesh.triangles)
+        nearest = std::min(nearest, triangle_distance(v[t[0]], v[t[1]], v[t[2]], point));
     }
     within += nearest < limit;
     EXPECT_FLOAT_EQ(scene.distance(point, limit), nearest);

@@ -46,9 +46,9 @@ inline engine::World rough_world(int cells, int primitives) {
                      "<geom name='wall' type='plane' size='4 3 0.1' pos='0 12 2' euler='90 0 0'/>";
   for (int i = 0; i < primitives; ++i) {
     const auto number = [&](double low, double high) { return " " + std::to_string(chance.uniform(low, high)); };
-    mjcf += std::string("<geom type='") + kKinds[i % 5] + "' pos='" + number(-15, 15) + number(-15, 15) + number(-1, 4) +
-            "' euler='" + number(-180, 180) + number(-180, 180) + number(-180, 180) + "' size='" + number(0.1, 0.8) +
-            number(0.1, 0.8) + number(0.1, 0.8) + "'/>";
+    mjcf += std::string("<geom type='") + kKinds[i % 5] + "' pos='" + number(-15, 15) + number(-15, 15) +
+            number(-1, 4) + "' euler='" + number(-180, 180) + number(-180, 180) + number(-180, 180) + "' size='" +
+            number(0.1, 0.8) + number(0.1, 0.8) + number(0.1, 0.8) + "'/>";
   }
   engine::World world = world_of(mjcf + "</worldbody></mujoco>");
   for (int i = 0; i < world.model->nhfielddata; ++i) {
@@ -63,7 +63,8 @@ inline SensorSpec lidar_of(const std::string& kind) {
   sensor.name = "lidar";
   sensor.kind = kind;
   sensor.device = kind == "spinning_lidar" ? "rs16" : "mid100";
-  sensor.values = resolve(kind, {}, kind == "spinning_lidar" ? spinning_lidar_parameters() : rosette_lidar_parameters());
+  sensor.values =
+      resolve(kind, {}, kind == "spinning_lidar" ? spinning_lidar_parameters() : rosette_lidar_parameters());
   return sensor;
 }
 

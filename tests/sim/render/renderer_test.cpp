@@ -50,7 +50,8 @@ int magenta_pixels(const Picture& picture) {
 
 std::size_t colours(const Picture& picture) {
   std::set<std::array<std::uint8_t, 3>> seen;
-  for (std::size_t i = 0; i + 2 < picture.rgb.size(); i += 3) seen.insert({picture.rgb[i], picture.rgb[i + 1], picture.rgb[i + 2]});
+  for (std::size_t i = 0; i + 2 < picture.rgb.size(); i += 3)
+    seen.insert({picture.rgb[i], picture.rgb[i + 1], picture.rgb[i + 2]});
   return seen.size();
 }
 
@@ -126,8 +127,8 @@ TEST(Framing, KeepsTheContentInThePicture) {
     view.azimuth_rad = azimuth;
     const double fovy = 0.785;
     const Framing framing = frame(view, 0.4, fovy);
-    const Vector3d forward(std::cos(view.elevation_rad) * std::cos(azimuth), std::cos(view.elevation_rad) * std::sin(azimuth),
-                           std::sin(view.elevation_rad));
+    const Vector3d forward(std::cos(view.elevation_rad) * std::cos(azimuth),
+                           std::cos(view.elevation_rad) * std::sin(azimuth), std::sin(view.elevation_rad));
     const Vector3d right(std::sin(azimuth), -std::cos(azimuth), 0.0);
     const Vector3d eye = framing.look_at_W_m - framing.distance_m * forward;
     double widest = 0.0;
@@ -151,7 +152,9 @@ TEST(Pictures, FilmStripPlacesPicturesRowByRow) {
   const Picture strip = film_strip(pictures, 2);
   EXPECT_EQ(strip.width, 24);
   EXPECT_EQ(strip.height, 16);
-  const auto at = [&](int x, int y) { return static_cast<int>(strip.rgb[static_cast<std::size_t>(3 * (y * strip.width + x))]); };
+  const auto at = [&](int x, int y) {
+    return static_cast<int>(strip.rgb[static_cast<std::size_t>(3 * (y * strip.width + x))]);
+  };
   EXPECT_EQ(at(0, 0), 10);
   EXPECT_EQ(at(23, 5), 20);
   EXPECT_EQ(at(9, 15), 30);

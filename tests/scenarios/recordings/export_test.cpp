@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/recordings/export.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "scenarios/recordings/fixture_recording.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+using testing::HasSubstr;
+
+std::vector<std::vector<double>> rows_of(const std::filesystem::path& path) {
+  std::ifstream stream(path);
+  std::vector<std::vector<double>> rows;
+  for (std::string line; std::getline(stream, line);) {
+    if (line.starts_with('#')) continue;
+    std::istringstream fields(line);
+    rows.emplace_back();
+    for (std::string field; fields >> field;) rows.back().push_back(std::stod(field));
+  }
+  return rows;
+}
+
+class Export : public fixture::Folder {
+ protected:
+  sim::Recording recording_ = fixture::recording();
+};
+
+TEST_F(Export, TumHoldsTimeAndPoseExactly) {
+  export_tum(recording_.truth, folder_ / "truth.tum");
+  const auto rows = rows_of(folder_ / "truth.tum");
+  ASSERT_EQ(rows.size(), 40u);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    ASSERT_EQ(rows[i].size(), 8u);
+    EXPECT_EQ(rows[i][0], static_cast<double>(i) / 1000.0);
+    EXPECT_EQ(Eigen::Vector3d(rows[i][1], rows[i][2], rows[i][3]), recording_.truth.p_WB_m[i]);
+    EXPECT_EQ(Eigen::Vector4d(rows[i][4], rows[i][5], rows[i][6], rows[i][7]), recording_.truth.q_WB[i].coeffs());
+  }
+}
+
+TEST_F(Export, TumTimesStayExactInLongRecordings) {
+  recording_.truth.period_ns = 1234567891;
+  export_tum(recording_.truth, folder_ / "truth.tum");
+  EXPECT_THAT(fixture::bytes_of(folder_ / "truth.tum"), HasSubstr("\n48.148147749 "));
+}
+
+TEST_F(Export, KittiHoldsTheMatrixRowByRow) {
+  export_kitti(recording_.truth, folder_ / "truth.txt");
+  const auto rows = rows_of(folder_ / "truth.txt");
+  ASSERT_EQ(rows.size(), 40u);
+  ASSERT_EQ(rows[7].size(), 12u);
+  const Eigen::Matrix<double, 3, 4, Eigen::RowMajor> T = Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(rows[7].data());
+  EXPECT_EQ((T.leftCols<3>()), recording_.truth.q_WB[7].toRotationMatrix());
+  EXPECT_EQ((T.col(3)), recording_.truth.p_WB_m[7]);
+}
+
+TEST_F(Export, CsvHasAFilePerImuAndOneOfTheTruth) {
+  export_csv(recording_.sensors, &recording_.truth, folder_ / "csv");
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "csv/imu.csv"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "csv/imu_reference.csv"));
+  const std::string truth = fixture::bytes_of(folder_ / "csv/truth.csv");
+  EXPECT_EQ(std::count(truth.begin(), truth.end(), '\n'), 41);
+  export_csv(recording_.sensors, nullptr, folder_ / "real");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "real/truth.csv"));
+}
+
+TEST_F(Export, ANameCannotLeadOutOfTheFolder) {
+  recording_.sensors.imus[0].name = "../outside";
+  export_csv(recording_.sensors, nullptr, folder_ / "csv");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "outside.csv"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "csv/imu_0.csv"));
+}
+
+TEST_F(Export, EveryFormatGoesFromFileToFile) {
+  write_recording(folder_ / "a.h5", fixture::info(), recording_.sensors, &recording_.truth);
+  ASSERT_EQ(export_formats().size(), 5u);
+  for (const std::string& format : export_formats()) {
+    export_recording(folder_ / "a.h5", format, folder_ / format);
+    EXPECT_TRUE(std::filesystem::exists(folder_ / format)) << format;
+  }
+  EXPECT_EQ(rows_of(folder_ / "tum").size(), 40u);
+}
+
+TEST_F(Export, WrongUseIsNamed) {
+  write_recording(folder_ / "real.h5", {}, recording_.sensors, nullptr);
+  const auto complaint_of = [&](const std::string& format, const std::filesystem::path& out) {
+    return fixture::complaint([&] { export_recording(folder_ / "real.h5", format, out); });
+  };
+  EXPECT_THAT(complaint_of("tums", folder_ / "x"), HasSubstr("unknown format 'tums'; did you mean 'tum'?"));
+  EXPECT_THAT(complaint_of("tum", folder_ / "x"), HasSubstr("holds no truth"));
+  EXPECT_THAT(complaint_of("csv", folder_ / "real.h5"), HasSubstr("cannot be written"));
+  sim::Sensors no_lidar = recording_.sensors;
+  no_lidar.lidars.clear();
+  EXPECT_THAT(fixture::complaint([&] { export_ply(no_lidar, folder_ / "x"); }), HasSubstr("no lidar"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "x"));
+}
+
+}  // namespace
+}  // namespace tumble::scenarios
