@@ -70,7 +70,9 @@ Example make_example(const scenarios::DataRoot& data, const scenarios::Results& 
     example.paths.push_back(std::move(path));
   }
   const Scene scene{&example.run.situation, data.models(), &recording.sensors, &recording.truth, example.paths};
-  example.scene_png = sim::png_bytes(scene_picture(scene, example.is_sphere ? 6 : 8, 1280, 640));
+  // spheres that stand close together hide their path
+  const int robots = example.is_sphere ? 3 : 8;
+  example.scene_png = sim::png_bytes(scene_picture(scene, robots, 1280, 640));
   example.film_png = sim::png_bytes(film_picture(scene, 8, 4, 400, 300));
   return example;
 }

@@ -19,7 +19,9 @@ using Eigen::Vector3d;
 constexpr std::array<const char*, 6> kMethodColours = {"#e69f00", "#cc79a7", "#0072b2", "#d55e00", "#56b4e9", "#f0e442"};
 constexpr const char* kTruthColour = "#009e73";
 
-double line_width_m(const Scene& scene) { return scene.sensors != nullptr && scene.sensors->sphere_radius_m > 0 ? 0.012 : 0.03; }
+bool is_sphere(const Scene& scene) { return scene.sensors != nullptr && scene.sensors->sphere_radius_m > 0.0; }
+
+double line_width_m(const Scene& scene) { return is_sphere(scene) ? 0.012 : 0.03; }
 
 /// Instants that cut the moving part of the way into parts of equal length; turning on the spot counts a little too.
 std::vector<std::int64_t> instants_along(const sim::Truth& truth, int count) {
@@ -97,6 +99,8 @@ sim::Picture scene_picture(const Scene& scene, int robots, int width, int height
     const scenarios::TruthTrack track(*scene.truth, scenarios::Frame::body);
     for (const std::int64_t time_ns : instants_along(*scene.truth, robots)) view.robots_T_WB.push_back(robot_pose(track, time_ns));
     view.azimuth_rad = azimuth_across(*scene.truth);
+    // a path on level ground shows best from above
+    if (is_sphere(scene)) view.elevation_rad = -0.85;
   }
   return sim::Renderer(*scene.situation, scene.models).draw(view);
 }
@@ -112,7 +116,7 @@ sim::Picture film_picture(const Scene& scene, int frames, int columns, int width
   view.height = height;
   view.paths = drawn_paths(scene);
   view.azimuth_rad = azimuth_across(*scene.truth);
-  view.distance_m = scene.sensors->sphere_radius_m > 0.0 ? 8.0 * scene.sensors->sphere_radius_m : 3.5;
+  view.distance_m = is_sphere(scene) ? 8.0 * scene.sensors->sphere_radius_m : 3.5;
   std::vector<sim::Picture> pictures;
   for (const std::int64_t time_ns : instants_along(*scene.truth, frames)) {
     const Isometry3d T_WB = robot_pose(track, time_ns);

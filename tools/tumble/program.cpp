@@ -39,22 +39,22 @@ const CLI::App& parsed(const CLI::App& app) {
 /// What the user can do about a command line that CLI11 refused, on one line.
 std::string usage_line(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App& verb = parsed(app);
-  const std::string command = &verb == &app ? "tumble" : "tumble " + verb.get_name();
+  const std::string place = &verb == &app ? "" : verb.get_name() + ": ";
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !app.remaining(true).empty()) {
     const std::vector<std::string> extras = app.remaining(true);
     const auto option = std::find_if(extras.begin(), extras.end(), [](const std::string& e) { return e.rfind('-', 0) == 0; });
-    if (option == extras.end()) return command + ": '" + extras.front() + "' is one argument too many";
+    if (option == extras.end()) return place + "'" + extras.front() + "' is one argument too many";
     std::vector<std::string> known;
     for (const CLI::Option* each : verb.get_options()) {
       for (const std::string& name : each->get_lnames()) known.push_back("--" + name);
     }
     const std::string near = sim::nearest_name(*option, known);
-    return command + ": unknown option '" + *option + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?");
+    return place + "unknown option '" + *option + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?");
   }
   std::string reason = error.what();
   std::replace(reason.begin(), reason.end(), '\n', ' ');
   if (&verb == &app) reason = "a verb is missing";
-  return command + ": " + reason + "; see '" + command + " --help'";
+  return place + reason + "; see 'tumble " + (place.empty() ? "" : verb.get_name() + " ") + "--help'";
 }
 
 int say(const char* prefix, const std::string& line, int status) {

@@ -47,7 +47,7 @@ void leave_pictures(const fs::path& folder, const fs::path& models, const scenar
     if (!path.empty()) scene.estimates.push_back(std::move(path));
   }
   make_folder(folder / "snapshots");
-  save_picture(folder / "snapshots" / "scene.png", scene_picture(scene, 8, 1280, 720));
+  save_picture(folder / "snapshots" / "scene.png", scene_picture(scene, result.recording.sensors.sphere_radius_m > 0.0 ? 3 : 8, 1280, 720));
   save_picture(folder / "snapshots" / "film.png", film_picture(scene, 8, 4, 480, 360));
 }
 
@@ -87,7 +87,8 @@ Action declare_run(CLI::App& app, const Session& session) {
   auto options = std::make_shared<Options>();
   app.add_option("SCENARIO", options->scenario, "a scenario of the catalogue, or a scenario file")->required();
   app.add_option("--seed", options->seed, "which draw of it")->required();
-  app.add_option("--method", options->methods, "a method, as 'saave' or 'rate/saave'; repeat for more [all that apply]");
+  app.add_option("--method", options->methods, "a method, as 'saave' or 'rate/saave'; repeat for more [all that apply]")
+      ->allow_extra_args(false);  // the word after a method is not another one
   app.add_option("--threads", options->threads, "threads for the lidar; the result does not depend on them")
       ->check(CLI::Range(1, 1024))->capture_default_str();
   app.add_option("-o,--output", options->folder, "folder for recording, estimates and pictures [none are left]");

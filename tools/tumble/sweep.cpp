@@ -85,7 +85,8 @@ Action declare_sweep(CLI::App& app, const Session& session) {
   auto options = std::make_shared<Options>();
   app.add_option("SUITE", options->suite, "a suite, a suite file, or a scenario")->required();
   app.add_option("--seeds", options->seeds, "A..B, both included [the suite's]");
-  app.add_option("--method", options->methods, "a method; repeat for more [the suite's]");
+  app.add_option("--method", options->methods, "a method; repeat for more [the suite's]")
+      ->allow_extra_args(false);  // the word after a method is not another one
   app.add_option("--jobs", options->jobs, "processes at a time")->check(CLI::Range(1, 1024))->capture_default_str();
   app.add_option("--shard", options->shard, "i/n: the i-th of n parts of the seeds");
   app.add_option("--db", options->database, "the results database; what it holds already is not run again")->required();
