@@ -11,16 +11,21 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::array<sim::Parameter, 8> kParameters = {{
-    {"sweep_voxel_m", 0.25, 0.01, 10.0, "m", "one point per voxel of a sweep is registered"},
-    {"map_voxel_m", 0.5, 0.05, 10.0, "m", "cell of the map's hash"},
-    {"map_spacing_m", 0.05, 0.0, 1.0, "m", "least distance of two map points (published chain: 0.05)"},
-    {"neighbours", 8.0, 3.0, 32.0, "1", "map points per plane fit (published chain: 8)"},
-    {"match_distance_m", 1.0, 0.01, 10.0, "m", "farther map points are no match (published chain: 1)"},
-    {"prior_sigma_m", 0.3, 1e-4, 100.0, "m", "inertial prior between sweeps"},
-    {"prior_sigma_rad", 0.1, 1e-5, 10.0, "rad", "inertial prior between sweeps"},
-    {"rest_s", 0.5, 0.01, 60.0, "s", "length of the rest at the start that levels the attitude"},
-}};
+// the library's own defaults, so that each stands in one place
+const std::array<sim::Parameter, 8>& parameters_of_the_chain() {
+  static const LidarInertialOdometry::Params library;
+  static const std::array<sim::Parameter, 8> parameters = {{
+      {"sweep_voxel_m", library.sweep_voxel_m, 0.01, 10.0, "m", "one point per voxel of a sweep is registered"},
+      {"map_voxel_m", library.map_voxel_m, 0.05, 10.0, "m", "cell of the map's hash"},
+      {"map_spacing_m", library.map_spacing_m, 0.0, 1.0, "m", "edge of the cube that holds one map point"},
+      {"neighbours", static_cast<double>(library.neighbours), 3.0, 32.0, "1", "map points per plane fit"},
+      {"match_distance_m", library.match_distance_m, 0.01, 10.0, "m", "farther map points are no match"},
+      {"prior_sigma_m", library.prior_sigma_m, 1e-4, 100.0, "m", "inertial prior over 0.1 s: position"},
+      {"prior_sigma_rad", library.prior_sigma_rad, 1e-5, 10.0, "rad", "inertial prior over 0.1 s: attitude"},
+      {"rest_s", library.rest_s, 0.01, 60.0, "s", "at most this much of the rest at the start levels the attitude"},
+  }};
+  return parameters;
+}
 
 LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const sim::Values& parameters) {
   LidarInertialOdometry::Params params;
@@ -46,7 +51,7 @@ void append_poses(const LidarInertialOdometry::SweepReport& report, std::vector<
 
 }  // namespace
 
-std::span<const sim::Parameter> slam_parameters() { return kParameters; }
+std::span<const sim::Parameter> slam_parameters() { return parameters_of_the_chain(); }
 
 void run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples, const sim::Values& parameters,
                     Estimate& estimate) {
