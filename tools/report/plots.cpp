@@ -26,7 +26,7 @@ json axis(const std::string& title) { return {{"title", {{"text", title}}}}; }
 
 json box(const std::string& name, const char* colour) {
   return {{"type", "box"}, {"name", name}, {"boxpoints", "all"}, {"jitter", 0.5}, {"pointpos", 0}, {"whiskerwidth", 0.4},
-          {"marker", {{"color", colour}, {"size", 4}, {"opacity", 0.65}}}, {"line", {{"color", colour}, {"width", 1.5}}},
+          {"marker", {{"color", colour}, {"size", 6}, {"opacity", 0.7}}}, {"fillcolor", "rgba(0,0,0,0)"}, {"line", {{"color", colour}, {"width", 1.5}}},
           {"x", json::array()}, {"y", json::array()}};
 }
 
@@ -114,7 +114,7 @@ Figure box_figure(const Summary& summary, Kind kind, const std::string& metric, 
 Figure cost_figure(const Summary& summary) {
   Figure figure;
   figure.id = "cost";
-  figure.caption = "CPU time of one estimate. Each draw is one point; the scale is logarithmic.";
+  figure.caption = "CPU time of one estimate. One point per draw.";
   std::vector<std::pair<std::string, json>> traces;
   for (const Section& section : summary.sections) {
     for (const MethodSummary& method : section.methods) {

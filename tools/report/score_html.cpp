@@ -29,13 +29,13 @@ std::string doc_of(Kind kind, const std::string& metric) {
   return "";
 }
 
-/// The method shown in a headline: the best median among those that can be had on a real robot and do something.
-const MethodSummary* best_method(const Section& section, const std::string& metric) {
+/// The best median among the methods that can be had on a real robot.
+const MethodSummary* best_method(const Section& section, const std::string& metric, bool with_baseline) {
   const MethodSummary* best = nullptr;
   const bool more = metric_sense(metric) == Sense::more;
   for (const MethodSummary& method : section.methods) {
     const MetricSummary* own = method.find(metric);
-    if (own == nullptr || method.method == "oracle" || method.method == section.baseline) continue;
+    if (own == nullptr || method.method == "oracle" || (!with_baseline && method.method == section.baseline)) continue;
     const double value = own->centre.value;
     if (best == nullptr || (more ? value > best->find(metric)->centre.value : value < best->find(metric)->centre.value)) {
       best = &method;
@@ -82,7 +82,7 @@ std::vector<Headline> headlines(const Summary& summary) {
     if (section.kind == Kind::attitude || from == nullptr) continue;
     Headline headline;
     headline.place = section.scenario + " · " + to_string(section.kind);
-    const MethodSummary* best = best_method(section, metric);
+    const MethodSummary* best = best_method(section, metric, false);
     if (best == nullptr) {
       headline.value = styled_value(metric, from->centre.value, true);
       headline.detail = fmt::format("{}: median of {} over {} draws", base->method, metric, from->values.size());
@@ -110,7 +110,7 @@ std::string score_table_html(const Section& section) {
   }
   out += "</tr>";
   for (const std::string& name : section.metrics) {
-    const MethodSummary* best = metric_sense(name) == Sense::neither ? nullptr : best_method(section, name);
+    const MethodSummary* best = metric_sense(name) == Sense::neither ? nullptr : best_method(section, name, true);
     out += "<tr><td title=\"" + html::escaped(doc_of(section.kind, name)) + "\"><code>" + html::escaped(name) + "</code></td>" +
            html::cell(metric_style(name).unit, "unit");
     for (const MethodSummary& method : section.methods) out += metric_cell(name, method.find(name), &method == best);

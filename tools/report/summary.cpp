@@ -115,7 +115,10 @@ MetricStyle metric_style(const std::string& metric) {
 }
 
 Sense metric_sense(const std::string& metric) {
-  if (contains(metric, "coverage_3sigma")) return Sense::neither;
+  // coverage of an interval has a target; costs are no contest
+  for (const char* part : {"coverage_3sigma", "_cpu_s", "_mib"}) {
+    if (contains(metric, part)) return Sense::neither;
+  }
   for (const char* part : {"overlap", "coverage", "precision", "recall"}) {
     if (contains(metric, part)) return Sense::more;
   }

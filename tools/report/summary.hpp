@@ -21,7 +21,7 @@ struct MetricStyle {
 /// From the unit that ends the metric's name: "map_overlap" in %, "rotation_error_end_rad" in degrees, rates in rad/s.
 MetricStyle metric_style(const std::string& metric);
 
-/// Whether less is better (errors, costs), more is (overlap), or neither (coverage of an interval, which has a target).
+/// Whether less is better (errors), more is (overlap), or neither (coverage of an interval, which has a target; costs).
 enum class Sense { less, more, neither };
 Sense metric_sense(const std::string& metric);
 
