@@ -21,6 +21,7 @@ using SweepReport = LidarInertialOdometry::SweepReport;
 constexpr std::uint8_t kAllAxes = 7;
 constexpr double kSameLineCosine = 0.9988;  // 0.05 rad, less than the angle between two rings
 constexpr int kRingBits = 16;
+constexpr double kExcessTries_rad_s[] = {3.0, 6.0, 9.0};
 
 void check(const Params& params) {
   require_within("gravity_m_s2", params.gravity_m_s2, 0.0, 100.0);
@@ -73,6 +74,7 @@ struct LidarInertialOdometry::Impl {
   Registration::Prior prior() const;
   bool is_trusted(const MotionState& prior) const;
   void choose_points();
+  Status align(Registration::Prior prior, TimeNs end_ns, Registration::Result& result);
   void register_sweep(TimeNs end_ns, SweepReport& report);
   std::uint32_t scan_line_base(bool rings_differ);
   std::size_t extend_map(bool rings_differ);
@@ -146,6 +148,7 @@ Registration::Prior LidarInertialOdometry::Impl::prior() const {
     prior.excess_sigma_rad_s[axis] = sigma;
     if (excess_axes_at_end >> axis & 1) prior.excess_rad_s[axis] = excess_rad_s[axis];
   }
+  prior.excess_start_rad_s = prior.excess_rad_s;
   return prior;
 }
 
@@ -163,11 +166,29 @@ void LidarInertialOdometry::Impl::choose_points() {
   for (const std::uint32_t index : chosen_index) chosen.push_back(points[index]);
 }
 
+/// Registers; where that fails and the rate may be short on a clipped axis, tries again from larger excess rates, since a
+/// rail that is left behind within one sweep may put the start a whole radian off.
+Status LidarInertialOdometry::Impl::align(Registration::Prior prior, TimeNs end_ns, Registration::Result& result) {
+  Status status = registration.align(prior, samples, end_ns, params.gravity_m_s2, chosen, map, trajectory, result);
+  int iterations = result.iterations;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double more : kExcessTries_rad_s) {
+      if (!status.ok() || result.verdict != RegistrationVerdict::diverged) break;
+      if (prior.excess_sigma_rad_s[axis] < more / 3.0) break;
+      prior.excess_start_rad_s = prior.excess_rad_s;
+      prior.excess_start_rad_s[axis] += more;
+      status = registration.align(prior, samples, end_ns, params.gravity_m_s2, chosen, map, trajectory, result);
+      iterations += result.iterations;
+    }
+  }
+  result.iterations = iterations;
+  return status;
+}
+
 void LidarInertialOdometry::Impl::register_sweep(TimeNs end_ns, SweepReport& report) {
   Registration::Result result;
   const Registration::Prior before = prior();
-  const Status status =
-      registration.align(before, samples, end_ns, params.gravity_m_s2, chosen, map, trajectory, result);
+  const Status status = align(before, end_ns, result);
   report.iterations = result.iterations;
   report.inlier_share = result.points == 0 ? 0.0 : double(result.inliers) / double(result.points);
   if (!status.ok()) return;

@@ -175,7 +175,7 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
   result.excess_sigma_rad_s = prior.excess_sigma_rad_s;
   result.points = points.size();
   MotionState now = prior.state;
-  Eigen::Vector3d excess = prior.excess_rad_s;
+  Eigen::Vector3d excess = prior.excess_start_rad_s;
   if (Status status = trajectory.build(now, samples, end_ns, gravity_m_s2, excess); !status.ok()) return status;
 
   Eigen::Matrix<double, kRigid, kRigid> covariance = prior.state.covariance;

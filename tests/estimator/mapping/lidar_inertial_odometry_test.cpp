@@ -144,6 +144,17 @@ TEST(LidarInertialOdometry, IsLostWithAClippedRate) {
   EXPECT_GT(end.m + end.rad, 0.5);  // negative control of the test above
 }
 
+TEST(LidarInertialOdometry, FindsTheExcessOfClippedAxesByItself) {
+  Odometry::Params params = rig_params();
+  params.estimate_excess_rate = true;
+  Odometry odometry(params);
+  const auto reports = run(odometry, 0, 26, 8.0);
+  const Error end = error_of(reports.back().pose);
+  EXPECT_LT(end.m, 0.15);
+  EXPECT_LT(end.rad, 0.02);
+  EXPECT_GT(reports.back().excess_rate_rad_s.maxCoeff(), 1.0);
+}
+
 TEST(LidarInertialOdometry, RestartsBitByBitFromACopy) {
   Odometry whole(rig_params());
   const auto before = run(whole, 0, 9);

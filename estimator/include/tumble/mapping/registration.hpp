@@ -53,6 +53,7 @@ class Registration {
     MotionState state;
     Eigen::Vector3d excess_rad_s = Eigen::Vector3d::Zero();
     Eigen::Vector3d excess_sigma_rad_s = Eigen::Vector3d::Zero();  ///< an axis with 0 is not estimated
+    Eigen::Vector3d excess_start_rad_s = Eigen::Vector3d::Zero();  ///< where the iterations begin
   };
 
   struct Result {
