@@ -16,9 +16,9 @@ constexpr double kTail = 0.025;  // of either side of a 95 % interval
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-std::vector<double> sorted_finite(std::span<const double> values) {
+std::vector<double> sorted_numbers(std::span<const double> values) {
   std::vector<double> sorted;
-  std::copy_if(values.begin(), values.end(), std::back_inserter(sorted), [](double v) { return std::isfinite(v); });
+  std::copy_if(values.begin(), values.end(), std::back_inserter(sorted), [](double v) { return !std::isnan(v); });
   std::sort(sorted.begin(), sorted.end());
   return sorted;
 }
@@ -28,6 +28,8 @@ double quantile_of_sorted(const std::vector<double>& sorted, double share) {
   const double place = share * static_cast<double>(sorted.size() - 1);
   const auto below = static_cast<std::size_t>(place);
   const std::size_t above = std::min(below + 1, sorted.size() - 1);
+  // at or between equal infinities there is nothing to interpolate
+  if (place == static_cast<double>(below) || sorted[below] == sorted[above]) return sorted[below];
   return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
 }
 
@@ -79,11 +81,11 @@ double beta_quantile(double a, double b, double probability) {
 
 double quantile(std::span<const double> values, double share) {
   if (!(share >= 0.0 && share <= 1.0)) throw BadInput("quantile: share is " + std::to_string(share) + ", must be within [0, 1]");
-  return quantile_of_sorted(sorted_finite(values), share);
+  return quantile_of_sorted(sorted_numbers(values), share);
 }
 
 Interval median_interval(std::span<const double> values) {
-  const std::vector<double> sorted = sorted_finite(values);
+  const std::vector<double> sorted = sorted_numbers(values);
   const auto n = static_cast<double>(sorted.size());
   Interval interval{quantile_of_sorted(sorted, 0.5), -kInfinity, kInfinity};
   // largest rank r (from 1) with P(fewer than r of n lie below the median) <= 2.5 %

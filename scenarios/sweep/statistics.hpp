@@ -11,7 +11,8 @@ struct Interval {
   double value, low, high;
 };
 
-/// Sample quantile (Hyndman and Fan type 7) of finite values; NaN when there is none. `share` in [0, 1].
+/// Sample quantile (Hyndman and Fan type 7) of the values that are not NaN; NaN when there is none.
+/// An infinite value ranks as what it is (a failure counts as the worst of all), so a quantile may be infinite. `share` in [0, 1].
 double quantile(std::span<const double> values, double share);
 
 /// Median with its distribution-free interval from order statistics (binomial); infinite ends when too few values.

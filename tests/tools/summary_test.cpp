@@ -47,7 +47,7 @@ class SummaryTest : public testing::Test {
 };
 
 TEST_F(SummaryTest, PairsDrawByDrawWithTheBaseline) {
-  // saave is better on 2 of the 3 draws that both have; draw 4 failed and pairs with nothing
+  // saave is better on 2 of the 4 draws: draw 4 failed and ranks behind every number, whatever it scored
   store(2, Kind::rate, "saave", "ok", {{kError, 0.5}});
   store(1, Kind::rate, "raw", "ok", {{kError, 2.0}});
   store(2, Kind::rate, "raw", "ok", {{kError, 3.0}});
@@ -69,11 +69,25 @@ TEST_F(SummaryTest, PairsDrawByDrawWithTheBaseline) {
   ASSERT_NE(metric, nullptr);
   EXPECT_THAT(metric->seeds, ElementsAre(1, 2, 3)) << "by rising seed, without the one that diverged";
   EXPECT_THAT(metric->values, ElementsAre(1.0, 0.5, 9.0));
-  EXPECT_EQ(metric->centre.value, 1.0);
+  EXPECT_THAT(metric->failed, ElementsAre(4));
+  EXPECT_EQ(metric->centre.value, 5.0) << "median of 0.5, 1, 9 and a failure";
+  EXPECT_TRUE(std::isinf(metric->quantile_95)) << "one failure in four reaches the worst 5 %";
   EXPECT_EQ(metric->wins.count, 2);
-  EXPECT_EQ(metric->wins.pairs, 3);
+  EXPECT_EQ(metric->wins.pairs, 4);
   EXPECT_EQ(section.find("raw")->find(kError)->wins.pairs, 0) << "the baseline is not paired with itself";
   EXPECT_EQ(summary.draws.at("hill"), 4);
+}
+
+TEST_F(SummaryTest, AMedianIsInfiniteOnceMostRunsFail) {
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    store(seed, Kind::slam, "icp_raw", seed == 1 ? "ok" : "crashed", {{"map_overlap", 0.5}, {"ate_m", 1.0}});
+    store(seed, Kind::slam, "icp", "ok", {{"map_overlap", 0.4}, {"ate_m", 2.0}});
+  }
+  const Summary summary = summarize(results());
+  const MethodSummary* raw = summary.sections.front().find("icp_raw");
+  EXPECT_EQ(raw->find("ate_m")->centre.value, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(raw->find("map_overlap")->centre.value, -std::numeric_limits<double>::infinity());
+  EXPECT_EQ(summary.sections.front().find("icp")->find("ate_m")->wins.count, 2) << "beats what failed, loses to what did not";
 }
 
 TEST_F(SummaryTest, MoreIsBetterForOverlapAndNothingForCoverageOfAnInterval) {

@@ -57,7 +57,7 @@ TEST(NumberText, HasFourSignificantDigits) {
   EXPECT_EQ(number_text(1.0 / 3.0), "0.3333");
   EXPECT_EQ(number_text(-12345.6), "-1.235e+04");
   EXPECT_EQ(number_text(std::numeric_limits<double>::quiet_NaN()), "-");
-  EXPECT_EQ(number_text(-std::numeric_limits<double>::infinity()), "-");
+  EXPECT_EQ(number_text(-std::numeric_limits<double>::infinity()), "-inf");
 }
 
 scenarios::Outcome outcome(scenarios::Kind kind, const std::string& method, const std::string& status,

@@ -15,7 +15,8 @@ namespace {
 using scenarios::Kind;
 
 std::string plain(double value) {
-  if (!std::isfinite(value)) return "–";
+  if (std::isnan(value)) return "–";
+  if (std::isinf(value)) return value > 0.0 ? "∞" : "−∞";
   // no exponents between a thousandth and a million: they are for people
   if (value != 0.0 && (std::abs(value) < 1e-3 || std::abs(value) >= 1e6)) return fmt::format("{:.2e}", value);
   const int digits = value == 0.0 ? 0 : std::max(0, 2 - static_cast<int>(std::floor(std::log10(std::abs(value)))));
@@ -69,7 +70,7 @@ std::string styled_value(const std::string& metric, double value_si, bool with_u
 }
 
 std::string styled_interval(const std::string& metric, const scenarios::Interval& interval) {
-  if (!std::isfinite(interval.low) || !std::isfinite(interval.high)) return "[–]";
+  if (!std::isfinite(interval.low) && !std::isfinite(interval.high)) return "[–]";
   return "[" + styled_value(metric, interval.low, false) + ", " + styled_value(metric, interval.high, false) + "]";
 }
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <numbers>
 #include <set>
 #include <tuple>
@@ -43,32 +45,59 @@ std::string choose_baseline(const std::vector<MethodSummary>& methods) {
   return methods.front().method;
 }
 
-/// Compares draw by draw; both lists of seeds rise.
+double worst_value(Sense sense) {
+  return sense == Sense::more ? -std::numeric_limits<double>::infinity() : std::numeric_limits<double>::infinity();
+}
+
+std::map<std::uint64_t, double> by_seed(const MetricSummary& metric, Sense sense) {
+  std::map<std::uint64_t, double> out;
+  for (std::size_t i = 0; i < metric.seeds.size(); ++i) out.emplace(metric.seeds[i], metric.values[i]);
+  for (const std::uint64_t seed : metric.failed) out.emplace(seed, worst_value(sense));
+  return out;
+}
+
+/// Compares draw by draw; where both failed neither is better.
 Wins paired_wins(const MetricSummary& own, const MetricSummary& base, Sense sense) {
   Wins wins;
   if (sense == Sense::neither) return wins;
-  for (std::size_t i = 0, j = 0; i < own.seeds.size() && j < base.seeds.size();) {
-    if (own.seeds[i] < base.seeds[j]) {
-      ++i;
-    } else if (base.seeds[j] < own.seeds[i]) {
-      ++j;
-    } else {
-      const bool better = sense == Sense::less ? own.values[i] < base.values[j] : own.values[i] > base.values[j];
-      wins.count += better ? 1 : 0;
-      ++wins.pairs, ++i, ++j;
-    }
+  const std::map<std::uint64_t, double> others = by_seed(base, sense);
+  for (const auto& [seed, value] : by_seed(own, sense)) {
+    const auto other = others.find(seed);
+    if (other == others.end()) continue;
+    wins.count += (sense == Sense::less ? value < other->second : value > other->second) ? 1 : 0;
+    ++wins.pairs;
   }
   return wins;
 }
 
 void finish(const std::string& name, MetricSummary& metric) {
+  const Sense sense = metric_sense(name);
+  std::vector<double> ranked = metric.values;
+  if (sense != Sense::neither) ranked.insert(ranked.end(), metric.failed.size(), worst_value(sense));
   if (is_verdict(name)) {
-    const auto count = std::count_if(metric.values.begin(), metric.values.end(), [](double v) { return v != 0.0; });
-    metric.centre = scenarios::share_interval(count, static_cast<std::int64_t>(metric.values.size()));
+    const auto count = std::count_if(ranked.begin(), ranked.end(), [](double v) { return v != 0.0; });
+    metric.centre = scenarios::share_interval(count, static_cast<std::int64_t>(ranked.size()));
   } else {
-    metric.centre = scenarios::median_interval(metric.values);
+    metric.centre = scenarios::median_interval(ranked);
   }
-  metric.quantile_95 = scenarios::quantile(metric.values, 0.95);
+  metric.quantile_95 = scenarios::quantile(ranked, sense == Sense::more ? 0.05 : 0.95);
+}
+
+/// Gives each failed outcome its place in every metric that some method has a value of on that draw.
+void place_failures(Section& section, const std::map<std::string, std::set<std::uint64_t>>& failed_seeds) {
+  std::map<std::string, std::set<std::uint64_t>> scored;
+  for (const MethodSummary& method : section.methods) {
+    for (const auto& [name, metric] : method.metrics) scored[name].insert(metric.seeds.begin(), metric.seeds.end());
+  }
+  for (MethodSummary& method : section.methods) {
+    const auto failed = failed_seeds.find(method.method);
+    if (failed == failed_seeds.end()) continue;
+    for (const auto& [name, seeds] : scored) {
+      for (const std::uint64_t seed : failed->second) {
+        if (seeds.contains(seed)) method.metrics[name].failed.push_back(seed);
+      }
+    }
+  }
 }
 
 void finish(Section& section) {
@@ -161,10 +190,14 @@ Summary summarize(const scenarios::Results& results) {
     section.methods.back().method = name;
     return section.methods.back();
   };
+  std::map<std::pair<std::string, Kind>, std::map<std::string, std::set<std::uint64_t>>> failed_seeds;
   for (const Outcome& outcome : results.outcomes()) {
     MethodSummary& method = method_of(outcome.scenario, outcome.kind, outcome.method);
     ++method.outcomes;
-    if (outcome.status != "ok") ++method.not_ok;
+    if (outcome.status != "ok") {
+      ++method.not_ok;
+      failed_seeds[{outcome.scenario, outcome.kind}][outcome.method].insert(outcome.seed);
+    }
     seeds[outcome.scenario].insert(outcome.seed);
   }
   // values by rising seed, whatever the order in the database
@@ -181,6 +214,7 @@ Summary summarize(const scenarios::Results& results) {
   }
   Summary summary;
   for (auto& [key, section] : sections) {
+    place_failures(section, failed_seeds[key]);
     finish(section);
     summary.sections.push_back(std::move(section));
   }

@@ -36,13 +36,15 @@ struct Wins {
   std::int64_t count = 0, pairs = 0;
 };
 
-/// One metric of one method over all draws of a scenario. Only outcomes with status `ok` give values: what failed is
-/// counted, not averaged in.
+/// One metric of one method over all draws of a scenario. Only outcomes with status `ok` give values; an outcome that
+/// failed ranks as the worst value of all in median, quantile and pairs (a draw that gives no method a value of this metric
+/// does not count), so a median is infinite once half of the runs fail.
 struct MetricSummary {
   scenarios::Interval centre{};      ///< median, or for a verdict its share; with the 95 % interval
   double quantile_95 = 0.0;
   std::vector<std::uint64_t> seeds;  ///< rising
   std::vector<double> values;        ///< parallel to `seeds`
+  std::vector<std::uint64_t> failed; ///< seeds of the outcomes that failed, rising
   Wins wins;                         ///< no pairs for the baseline itself
 };
 

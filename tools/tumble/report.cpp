@@ -29,7 +29,7 @@ struct Options {
 };
 
 std::string interval_text(const scenarios::Interval& interval) {
-  if (!std::isfinite(interval.low) || !std::isfinite(interval.high)) return "[-]";
+  if (!std::isfinite(interval.low) && !std::isfinite(interval.high)) return "[-]";
   return "[" + number_text(interval.low) + ", " + number_text(interval.high) + "]";
 }
 
@@ -38,7 +38,7 @@ std::string wins_text(const Wins& wins) { return wins.pairs == 0 ? "" : fmt::for
 /// A row per method and metric: the headline metrics, or all of them.
 Table score_table(const Section& section, bool all) {
   Table table(fmt::format("{}: {} (paired with {})", section.scenario, to_string(section.kind), section.baseline),
-              {"metric", "method", "median", "95 % interval", "95 % quantile", "better in", "not ok"});
+              {"metric", "method", "median", "95 % interval", "worst 5 %", "better in", "not ok"});
   table.align_right_from(2);
   for (const std::string& name : all ? section.metrics : headline_metrics(section.kind)) {
     bool first = true;

@@ -53,7 +53,10 @@ std::string Table::text() const {
   return out;
 }
 
-std::string number_text(double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-"; }
+std::string number_text(double value) {
+  if (std::isinf(value)) return value > 0.0 ? "inf" : "-inf";
+  return std::isnan(value) ? "-" : fmt::format("{:.4g}", value);
+}
 
 std::size_t character_count(const std::string& text) {
   // continuation bytes of UTF-8 begin with the bits 10

@@ -64,7 +64,7 @@ TEST(RayScene, AgreesWithTheEngineOnAllGeomTypes) {
   const Disagreement d = compare_with_engine(world, static_geometry(world, HeightFieldSides::closed), 1250);
   EXPECT_EQ(d.compared, 20000);
   EXPECT_GT(d.hits, 8000);
-  // measured: 0 and 0
+  // measured: 0 and 0 of 20 000; two are left for rays that graze an edge
   EXPECT_LE(d.different_surface, 2);
   EXPECT_LE(d.farther_than_1_mm, 2);
 }
