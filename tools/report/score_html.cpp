@@ -62,9 +62,9 @@ std::string metric_cell(const std::string& name, const MetricSummary* metric, bo
 
 }  // namespace
 
-std::string styled_value(const std::string& metric, double si_value, bool with_unit) {
+std::string styled_value(const std::string& metric, double value_si, bool with_unit) {
   const MetricStyle style = metric_style(metric);
-  const std::string number = plain(si_value * style.factor);
+  const std::string number = plain(value_si * style.factor);
   return with_unit && !style.unit.empty() ? number + " " + style.unit : number;
 }
 

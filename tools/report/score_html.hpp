@@ -9,7 +9,7 @@
 namespace tumble::tools {
 
 /// "0.42 rad/s": a metric's value in the unit of its style, three significant digits.
-std::string styled_value(const std::string& metric, double si_value, bool with_unit);
+std::string styled_value(const std::string& metric, double value_si, bool with_unit);
 
 /// "0.42 [0.31, 0.60]"; "[-]" for an interval that too few draws leave open.
 std::string styled_interval(const std::string& metric, const scenarios::Interval& interval);
