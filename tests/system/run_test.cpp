@@ -101,8 +101,8 @@ TEST_P(OnRobot, EstimateNeverOpensTheTruth) {
   ASSERT_GE(H5Fclose(file), 0);
 
   std::size_t compared = 0;
-  const json result = shared_result(GetParam());
-  for (const json& outcome : result["outcomes"]) {
+  const json whole = shared_result(GetParam());
+  for (const json& outcome : whole["outcomes"]) {
     const std::string name = outcome["kind"].get<std::string>() + "/" + outcome["method"].get<std::string>();
     if (outcome["method"] == "oracle") continue;
     const Ended ended = run_program({"estimate", blind.string(), "--method", name, "-o", (folder / name).string(), "--json"});
