@@ -21,7 +21,7 @@ using SweepReport = LidarInertialOdometry::SweepReport;
 constexpr std::uint8_t kAllAxes = 7;
 constexpr double kSameLineCosine = 0.9988;  // 0.05 rad, less than the angle between two rings
 constexpr int kRingBits = 16;
-constexpr double kExcessTries_rad_s[] = {3.0, 6.0, 9.0};
+constexpr double kExcessTries_rad_s[] = {3.0, 6.0, 9.0, 15.0};
 
 void check(const Params& params) {
   require_within("gravity_m_s2", params.gravity_m_s2, 0.0, 100.0);
@@ -72,7 +72,7 @@ struct LidarInertialOdometry::Impl {
   Status check_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points) const;
   Status check_selection(TimeNs span_ns, std::span<const LidarPoint> points, const PointCounts& counts) const;
   Registration::Prior prior() const;
-  bool is_trusted(const MotionState& prior) const;
+  bool prior_is_trusted() const;
   void choose_points();
   Status align(Registration::Prior prior, TimeNs end_ns, Registration::Result& result);
   void register_sweep(TimeNs end_ns, SweepReport& report);
@@ -152,8 +152,10 @@ Registration::Prior LidarInertialOdometry::Impl::prior() const {
   return prior;
 }
 
-bool LidarInertialOdometry::Impl::is_trusted(const MotionState& prior) const {
-  const Eigen::Vector3d m2 = prior.covariance.diagonal().head<3>(), rad2 = prior.covariance.diagonal().segment<3>(3);
+bool LidarInertialOdometry::Impl::prior_is_trusted() const {
+  // clipped axes count in full here, also where the registration estimates their excess
+  const Eigen::Matrix<double, 9, 9> P = state.covariance + mapping::inertial_noise(params, trajectory, samples, 0);
+  const Eigen::Vector3d m2 = P.diagonal().head<3>(), rad2 = P.diagonal().segment<3>(3);
   return m2.maxCoeff() <= params.trusted_prior_m * params.trusted_prior_m &&
          rad2.maxCoeff() <= params.trusted_prior_rad * params.trusted_prior_rad;
 }
@@ -173,8 +175,8 @@ Status LidarInertialOdometry::Impl::align(Registration::Prior prior, TimeNs end_
   int iterations = result.iterations;
   for (int axis = 0; axis < 3; ++axis) {
     for (const double more : kExcessTries_rad_s) {
-      if (!status.ok() || result.verdict != RegistrationVerdict::diverged) break;
-      if (prior.excess_sigma_rad_s[axis] < more / 3.0) break;
+      if (!status.ok() || result.verdict == RegistrationVerdict::converged) break;
+      if (prior.excess_sigma_rad_s[axis] < more / 5.0) break;
       prior.excess_start_rad_s = prior.excess_rad_s;
       prior.excess_start_rad_s[axis] += more;
       status = registration.align(prior, samples, end_ns, params.gravity_m_s2, chosen, map, trajectory, result);
@@ -187,12 +189,12 @@ Status LidarInertialOdometry::Impl::align(Registration::Prior prior, TimeNs end_
 
 void LidarInertialOdometry::Impl::register_sweep(TimeNs end_ns, SweepReport& report) {
   Registration::Result result;
-  const Registration::Prior before = prior();
-  const Status status = align(before, end_ns, result);
+  const bool prior_trusted = prior_is_trusted();
+  const Status status = align(prior(), end_ns, result);
   report.iterations = result.iterations;
   report.inlier_share = result.points == 0 ? 0.0 : double(result.inliers) / double(result.points);
   if (!status.ok()) return;
-  if (result.verdict == RegistrationVerdict::too_few && chosen.size() >= params.matches_min && is_trusted(before.state)) {
+  if (result.verdict == RegistrationVerdict::too_few && chosen.size() >= params.matches_min && prior_trusted) {
     report.verdict = SweepVerdict::degenerate;
   }
   if (result.verdict != RegistrationVerdict::converged) return;

@@ -71,6 +71,7 @@ Registration::Registration(const Params& params) : params_(params) {
   require_within("kernel_min_m", params.kernel_min_m, 1e-6, 1e3);
   require_within("information_share", params.information_share, 1e-6, 1.0);
   require_within("matched_share_min", params.matched_share_min, 0.0, 1.0);
+  require_within("fitting_share_min", params.fitting_share_min, 0.0, 1.0);
   require_within("correction_max_m", params.correction_max_m, 0.0, 1e6);
   require_within("correction_max_rad", params.correction_max_rad, 0.0, 3.15);
   require_within("plane.neighbours_min", params.plane.neighbours_min, 3, params.neighbours);
@@ -228,7 +229,9 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
     result.correction_rad = so3::log(now.q_WI * prior.state.q_WI.conjugate()).norm();
     if (result.correction_m > params_.correction_max_m || result.correction_rad > params_.correction_max_rad) break;
   }
-  if (!settled) return refuse(RegistrationVerdict::diverged);
+  // a false minimum: most matches lie off their planes
+  const bool fits = static_cast<double>(sum.inliers) >= params_.fitting_share_min * static_cast<double>(sum.matches);
+  if (!settled || !fits) return refuse(RegistrationVerdict::diverged);
 
   const Matrix posterior = H.ldlt().solve(Matrix::Identity());
   now.covariance = 0.5 * (posterior + posterior.transpose()).topLeftCorner<kRigid, kRigid>();

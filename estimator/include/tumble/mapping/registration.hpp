@@ -17,7 +17,8 @@ namespace tumble {
 enum class RegistrationVerdict : std::uint8_t {
   converged,
   too_few,        ///< matches below the bound: the prior is returned
-  diverged,       ///< iterations ran out, or the correction of the prior is beyond the bound: the prior is returned
+  diverged,       ///< iterations ran out, the correction of the prior is beyond the bound, or most matches do not fit:
+                  ///< the prior is returned
 };
 
 /// Registers a sweep to a map by point-to-plane distances, together with the motion inside the sweep.
@@ -43,6 +44,7 @@ class Registration {
     double information_share = 0.1;
     std::size_t matches_min = 100;    ///< fewer matches are too few
     double matched_share_min = 0.1;   ///< of the points
+    double fitting_share_min = 0.6;   ///< of the matches within three standard deviations; below it the result is refused
     double correction_max_m = 15.0;
     double correction_max_rad = 1.1;
     PlaneBounds plane;
