@@ -6,6 +6,7 @@
 
 #include "attitude_check.hpp"
 #include "tumble/attitude/timing.hpp"
+#include "tumble/common/so3.hpp"
 
 namespace tumble {
 
@@ -51,14 +52,16 @@ Eigen::Vector3d AutogainFusion::accelerated(const ImuSample& sample, const Eigen
                                             State& state) const {
   const double length = sample.specific_force_m_s2.norm();
   const double unit = params_.direction_only ? std::max(length, kForceMin_m_s2) : params_.gravity_m_s2;
-  const Eigen::Vector3d up_I = q_WI.conjugate() * Eigen::Vector3d::UnitZ();
+  // the force is a mean over the window, so gravity is taken from it as the body stood in its middle
+  const Eigen::Quaterniond q_mid = q_WI * so3::exp(-0.5 * dt_s * sample.angular_velocity_rad_s);
+  const Eigen::Vector3d up_I = q_mid.conjugate() * Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d linear_g = sample.specific_force_m_s2 / unit - up_I;
   const Eigen::Vector3d a_I = (params_.direction_only ? 1.0 : params_.gravity_m_s2) * linear_g;
   const Eigen::Vector3d scale = coupling(autogain_.gains(sample.angular_velocity_rad_s, dt_s).factor);
 
   // the coupling acts in sensor axes whatever frame the integral is kept in
   const Eigen::Quaterniond q = params_.integrate_in_body ? Eigen::Quaterniond::Identity() : q_WI;
-  state.v_integral_m_s += dt_s * (q * a_I);
+  state.v_integral_m_s += dt_s * (params_.integrate_in_body ? a_I : q_mid * a_I);
   const Eigen::Vector3d gated_I = scale.cwiseProduct(q.conjugate() * state.v_integral_m_s);
   if (params_.recursive_coupling) state.v_integral_m_s = q * gated_I;
   return q_WI * gated_I;
