@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include "tumble/rolling/rolling_filter.hpp"
+
+namespace tumble::rolling_states {
+
+/// First index of each part of RollingFilter's error state.
+inline constexpr int kAttitude = 0, kVelocity = 3, kPosition = 6, kGyroBias = 9, kAccelBias = 12, kAccelScale = 15,
+                     kGyroScale = 24, kDelay = 33, kLeverArm = 34;
+
+inline double squared(double x) {
+  return x * x;
+}
+
+/// Kalman update of one hypothesis by a scalar row: measurement = row x + noise.
+inline void update(const Eigen::Matrix<double, 1, RollingFilter::kStates>& row, double measured, double variance,
+                   RollingFilter::Hypothesis& h) {
+  const RollingFilter::Vector PHt = h.P * row.transpose();
+  const double s = row.dot(PHt) + variance;
+  h.x += PHt * ((measured - row.dot(h.x)) / s);
+  h.P -= PHt * (PHt / s).transpose();
+}
+
+/// The same for a row that picks one state.
+inline void update(int index, double measured, double variance, RollingFilter::Hypothesis& h) {
+  const RollingFilter::Vector column = h.P.col(index);
+  const double s = column[index] + variance;
+  h.x += column * ((measured - h.x[index]) / s);
+  h.P -= column * (column / s).transpose();
+}
+
+}  // namespace tumble::rolling_states
