@@ -138,6 +138,7 @@ void RollingFilter::close_node(const Eigen::Vector3d& next_rate_rad_s, State& st
   } else {
     choose_modes(raw, state);
   }
+  state.position_covariance_m2 = state.hypotheses[0].P.block<3, 3>(kPosition, kPosition) + position_spread(state);
   if (state.count == 1) rebase(state);
   state.R_s.setZero();
   state.f_W_m_s.setZero();
@@ -217,7 +218,6 @@ void RollingFilter::report(State& state) const {
   const Eigen::Vector3d v_error = best.x.segment<3>(kVelocity);
   state.p_WG_m = state.p_WI_m + best.x.segment<3>(kPosition) + since_node_s * v_error - arm_W;
   state.v_WG_m_s = state.v_WI_m_s + v_error - w_W.cross(arm_W);
-  state.position_covariance_m2 = best.P.block<3, 3>(kPosition, kPosition);
   state.mode = best.mode;
 }
 

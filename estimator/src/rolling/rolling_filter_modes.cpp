@@ -171,7 +171,11 @@ void RollingFilter::correct_at_rest(State& state) const {
   }
   std::stable_sort(state.hypotheses.begin(), state.hypotheses.begin() + state.count,
                    [](const Hypothesis& a, const Hypothesis& b) { return a.log_weight > b.log_weight; });
-  // they agree about the present; only the best past is of use from here on once it is clear of the others
+  // they agree about the present, so after a while one is enough; what they disagree in about the past is where they
+  // are
+  if (state.rest_s > kSettled_s && state.count > 1) {
+    state.hypotheses[0].P.block<3, 3>(kPosition, kPosition) += position_spread(state);
+  }
   const double best = state.hypotheses[0].log_weight;
   int kept = 0;
   for (int k = 0; k < state.count; ++k) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 
 #include "tumble/rolling/rolling_filter.hpp"
 
@@ -30,6 +31,21 @@ inline void update(int index, double measured, double variance, RollingFilter::H
   const double s = column[index] + variance;
   h.x += column * ((measured - h.x[index]) / s);
   h.P -= column * (column / s).transpose();
+}
+
+/// What the other hypotheses add to the position's covariance about the best one: sum of w d d^T over the sum of w.
+inline Eigen::Matrix3d position_spread(const RollingFilter::State& state) {
+  const Eigen::Vector3d best = state.hypotheses[0].x.segment<3>(kPosition);
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  double total = 0.0;
+  for (int k = 0; k < state.count; ++k) {
+    const RollingFilter::Hypothesis& h = state.hypotheses[static_cast<std::size_t>(k)];
+    const double weight = std::exp(h.log_weight - state.hypotheses[0].log_weight);
+    const Eigen::Vector3d d = h.x.segment<3>(kPosition) - best;
+    spread += weight * d * d.transpose();
+    total += weight;
+  }
+  return spread / total;
 }
 
 }  // namespace tumble::rolling_states

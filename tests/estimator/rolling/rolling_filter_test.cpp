@@ -162,6 +162,19 @@ TEST(RollingFilter, FindsItsWayThroughSlipAndSlide) {
   }
 }
 
+TEST(RollingFilter, KnowsThatALongSpinIsLessCertain) {
+  double sigma[2] = {0.0, 0.0};
+  for (const int k : {0, 1}) {
+    const Contact contact = event(2.8, k == 0 ? 0.3 : 2.0, {-0.6, 0.1, 0.0});
+    RollingTruth truth = truth_of(l_shape, contact);
+    add_errors(1006, truth);
+    const Result r = run(truth, contact, {.lever_arm_m = kLeverArm});
+    EXPECT_LT(r.end_error_m, 4.0 * r.end_sigma_m) << k;
+    sigma[k] = r.end_sigma_m;
+  }
+  EXPECT_GT(sigma[1], 2.0 * sigma[0]);
+}
+
 TEST(RollingFilter, LateAccelerometerIsFoundOut) {
   const Case slip = cases()[1];
   RollingTruth truth = truth_of(slip.velocity, slip.contact);

@@ -87,7 +87,7 @@ class RollingFilter {
     Eigen::Vector3d p_WG_m = Eigen::Vector3d::Zero();
     Eigen::Vector3d v_WG_m_s = Eigen::Vector3d::Zero();
     Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
-    Eigen::Matrix3d position_covariance_m2 = Eigen::Matrix3d::Zero();  ///< at the last node, given the hypothesis
+    Eigen::Matrix3d position_covariance_m2 = Eigen::Matrix3d::Zero();  ///< at the last node, over all hypotheses
     RollingMode mode = RollingMode::grip;
     bool at_rest = false;
     // The common nominal trajectory and constants, about which the hypotheses hold their errors.
