@@ -20,6 +20,7 @@ constexpr double kRestFloor = -60.0;  // least log likelihood of a node at rest:
 constexpr double kSettled_s = 1.0;    // after so long in one mode it does not matter when it began
 constexpr double kSteady_m_s = 0.01, kJump_m_s = 0.08, kSteadyShare = 0.7;  // change of u per node, horizontal
 constexpr double kRise_m_s = 0.03, kHit_m_s = 0.3;                          // and vertical, on a bump
+constexpr std::int64_t kAgesApart = 4;
 constexpr RollingMode kModes[] = {RollingMode::grip, RollingMode::slip, RollingMode::bump};
 
 double log_normal(double value, double variance) {
@@ -122,7 +123,13 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, State& sta
                    [](const Candidate& a, const Candidate& b) { return a.log_weight > b.log_weight; });
 
   const auto settled = static_cast<std::int64_t>(kSettled_s / state.node_s);
-  const auto since = [&](const Candidate& k) { return std::max(k.switched_node, state.node - settled); };
+  // two beginnings of the same mode are one the sooner, the longer they are past
+  const auto since = [&](const Candidate& k) {
+    const std::int64_t age = std::min(state.node - k.switched_node, settled);
+    std::int64_t width = 1;
+    while (width * kAgesApart < age) width *= 2;
+    return k.switched_node >= state.node - settled ? k.switched_node / width * width : state.node - settled;
+  };
   std::array<Hypothesis, kHypotheses> next;
   std::array<Candidate, kHypotheses> kept;
   std::size_t count = 0;

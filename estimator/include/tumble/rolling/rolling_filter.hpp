@@ -25,11 +25,14 @@ enum class RollingMode : std::uint8_t {
 /// each filter's state, so that the grip after an event mends the way made in it; the newest estimate is as good as a
 /// smoother of the whole run would make it, the older ones are not revised.
 ///
+/// Events of up to a second are resolved; one of two seconds in which the contact velocity seems to pass zero may be
+/// taken for grip in its middle, and the covariance does not always show it. State and stack need 360 KiB each.
+///
 /// Not modelled: slopes (a tilted floor reads as a contact velocity), a wrong radius, a clipped gyro. Heading drifts.
 class RollingFilter {
  public:
   static constexpr int kStates = 37;
-  static constexpr int kHypotheses = 16;
+  static constexpr int kHypotheses = 32;
   using Vector = Eigen::Matrix<double, kStates, 1>;
   using Covariance = Eigen::Matrix<double, kStates, kStates>;
   using Rows39 = Eigen::Matrix<double, 3, 9>;
