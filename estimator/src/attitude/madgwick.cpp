@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "madgwick_step.hpp"
 #include "tumble/attitude/strapdown.hpp"
 #include "tumble/attitude/timing.hpp"
 
@@ -36,6 +37,16 @@ Eigen::Vector4d correction(const Eigen::Quaterniond& q, const Eigen::Vector3d& f
 
 }  // namespace
 
+Eigen::Quaterniond madgwick_step(const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& w_I_rad_s,
+                                 const Eigen::Vector3d& f_I_m_s2, double gain_rad_s, double dt_s) {
+  const Eigen::Quaterniond rate(0.0, w_I_rad_s.x(), w_I_rad_s.y(), w_I_rad_s.z());
+  const Eigen::Vector4d spin = 0.5 * (q_WI * rate).coeffs();
+  const Eigen::Vector4d pull = gain_rad_s * correction(q_WI, f_I_m_s2);
+  Eigen::Quaterniond next;
+  next.coeffs() = (q_WI.coeffs() + dt_s * (spin - pull)).normalized();
+  return next;
+}
+
 Madgwick::Madgwick(const Params& params) : params_(params) {
   require_within("gain_rad_s", params.gain_rad_s, 0.0, 10.0);
   require_within("gap_max_s", params.gap_max_s, 1e-9, 1e4);
@@ -47,10 +58,8 @@ Status Madgwick::step(const ImuSample& sample, State& state) const {
   if (state.started) {
     double dt_s = 0.0;
     if (const Status bad = elapsed(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s); !bad.ok()) return bad;
-    const Eigen::Vector3d& w = sample.angular_velocity_rad_s;
-    const Eigen::Vector4d spin = 0.5 * (state.q_WI * Eigen::Quaterniond(0.0, w.x(), w.y(), w.z())).coeffs();
-    const Eigen::Vector4d pull = params_.gain_rad_s * correction(state.q_WI, sample.specific_force_m_s2);
-    q_WI.coeffs() = (state.q_WI.coeffs() + dt_s * (spin - pull)).normalized();
+    q_WI =
+        madgwick_step(state.q_WI, sample.angular_velocity_rad_s, sample.specific_force_m_s2, params_.gain_rad_s, dt_s);
   } else if (const Status bad = level(sample.specific_force_m_s2, q_WI); !bad.ok()) {
     return bad;
   }

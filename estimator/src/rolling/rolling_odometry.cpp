@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "attitude_check.hpp"
 #include "tumble/attitude/timing.hpp"
 
 namespace tumble {
@@ -15,12 +16,9 @@ constexpr double kRateLargest_rad_s = 1e6;
 Status check_input(const Eigen::Vector3d& w_I_rad_s, const Eigen::Quaterniond& q_WI) {
   // sum(): NaN or infinite when a component is, which stableNorm() alone does not promise
   if (!w_I_rad_s.allFinite()) return {Trouble::non_finite, "w_I_rad_s", w_I_rad_s.sum(), kRateLargest_rad_s};
-  if (!q_WI.coeffs().allFinite()) return {Trouble::non_finite, "q_WI", q_WI.coeffs().sum(), 1.0};
   const double rate = w_I_rad_s.stableNorm();
   if (rate > kRateLargest_rad_s) return {Trouble::out_of_range, "w_I_rad_s", rate, kRateLargest_rad_s};
-  const double length = q_WI.coeffs().stableNorm();
-  if (std::abs(length - 1.0) > kUnitTolerance) return {Trouble::out_of_range, "q_WI", length, 1.0};
-  return {};
+  return check_attitude(q_WI);
 }
 
 }  // namespace

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace tumble {
+
+/// Second-order Butterworth low-pass of a vector, bilinear, corner sqrt(2) / (2 pi tau).
+/// Until tau has passed the output is the mean of what came so far, so that no single sample sets the start.
+/// The state is the output and its slope, not the taps of a biquad: at a constant period the same transfer function,
+/// and a period that changes leaves no transient.
+template <int Rows>
+struct LowPass {
+  using Vector = Eigen::Matrix<double, Rows, 1>;
+
+  Vector value = Vector::Zero();
+  Vector slope = Vector::Zero();  ///< derivative divided by the corner's angular frequency
+  Vector input = Vector::Zero();  ///< the last input
+  double averaged_s = 0.0;
+  double samples = 0.0;
+
+  /// Takes the next input, `dt_s` after the last one. `warp` as low_pass_warp() gives it for tau and dt.
+  void advance(const Vector& next, double tau_s, double dt_s, double warp) {
+    if (averaged_s < tau_s) {
+      samples += 1.0;
+      averaged_s += dt_s;
+      value += (next - value) / samples;
+    } else {
+      const double damping = std::numbers::sqrt2 * warp;
+      const Vector rise =
+          ((1.0 - damping - warp * warp) * slope + warp * (input + next - 2.0 * value)) / (1.0 + damping + warp * warp);
+      value += warp * (slope + rise);
+      slope = rise;
+    }
+    input = next;
+  }
+
+  bool operator==(const LowPass&) const = default;
+};
+
+/// tan(pi f_c dt) for LowPass; bounded where dt is so long against tau that the filter has nothing left to smooth.
+inline double low_pass_warp(double tau_s, double dt_s) {
+  return std::tan(std::min(dt_s / (std::numbers::sqrt2 * tau_s), 1.5));
+}
+
+}  // namespace tumble

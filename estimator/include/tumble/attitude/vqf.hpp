@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "tumble/attitude/low_pass.hpp"
+#include "tumble/common/imu.hpp"
+#include "tumble/common/status.hpp"
+
+namespace tumble {
+
+/// The versatile quaternion filter, gyro and accelerometer (D. Laidig, T. Seel, Information Fusion 91, 2023, "VQF").
+/// The specific force is turned by the gyro alone into a nearly inertial frame N and low-passed there, where the
+/// acceleration of a bounded motion averages out; the result levels N in W by the smallest rotation. A Kalman filter of
+/// three states estimates the gyro's bias: from the low-passed gyro at rest, from the levelling's own rate in motion.
+/// No heading reference, no bias about the vertical in motion, no adaptation to the strength of the acceleration.
+class Vqf {
+ public:
+  struct Params {
+    double tau_s = 3.0;  ///< of the low-pass on the specific force; bound [1e-3, 1e4]
+    bool rest_bias_estimation = true;
+    bool motion_bias_estimation = true;          ///< both off: the basic filter, as its authors call it
+    double bias_sigma_start_rad_s = 8.7266e-3;   ///< 0.5 deg/s; bound (0, 1], as for the other rates
+    double bias_sigma_motion_rad_s = 1.7453e-3;  ///< 0.1 deg/s: what the bias converges to in motion
+    double bias_sigma_rest_rad_s = 5.2360e-4;    ///< 0.03 deg/s: and at rest
+    double bias_forgetting_s = 100.0;            ///< in which the variance grows to (0.1 deg/s)^2; bound (0, 1e6]
+    double bias_clip_rad_s = 3.4907e-2;          ///< 2 deg/s: largest bias that is believed
+    double vertical_forgetting = 1e-4;           ///< pull of the unobservable vertical bias to zero; bound (0, 1]
+    double rest_tau_s = 0.5;                     ///< of the rest detector's low-pass; bound [1e-3, 1e4]
+    double rest_time_s = 1.5;                    ///< bound [0, 1e4]
+    double rest_rate_rad_s = 3.4907e-2;          ///< 2 deg/s from the low-passed gyro
+    double rest_force_m_s2 = 0.5;                ///< from the low-passed force; bound (0, 100]
+    double gap_max_s = 1.0;                      ///< bound (0, 1e4]
+  };
+  struct State {
+    Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();  ///< the estimate, q_WN * q_NI
+    Eigen::Quaterniond q_NI = Eigen::Quaterniond::Identity();  ///< gyro alone, bias removed
+    Eigen::Quaterniond q_WN = Eigen::Quaterniond::Identity();
+    Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d bias_covariance_rad2_s2 = Eigen::Matrix3d::Zero();
+    LowPass<3> f_N_m_s2;
+    LowPass<9> R_WI;          ///< rotation matrix by columns, low-passed as the force is
+    LowPass<2> bias_W_rad_s;  ///< horizontal bias in W, low-passed as the force is
+    LowPass<3> rest_rate_rad_s;
+    LowPass<3> rest_force_m_s2;
+    double rest_s = 0.0;
+    bool at_rest = false;
+    TimeNs last_time_ns = 0;
+    bool started = false;
+    bool operator==(const State&) const = default;
+  };
+
+  explicit Vqf(const Params& params);
+
+  /// The first sample levels the attitude (yaw 0); each later one integrates and corrects. A force below 1e-6 m/s^2
+  /// integrates the gyro alone. On trouble the state is unchanged. O(1), no allocation.
+  Status step(const ImuSample& sample, State& state) const;
+
+ private:
+  void detect_rest(const ImuSample& sample, double dt_s, State& state) const;
+  Eigen::Vector3d level_inertial_frame(const Eigen::Vector3d& f_I_m_s2, double dt_s, State& state) const;
+  void estimate_bias(const Eigen::Vector3d& up_W, double dt_s, State& state) const;
+
+  Params params_;
+};
+
+}  // namespace tumble

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/attitude/tumble_attitude.hpp"
+
+#include <cmath>
+
+#include "tumble/attitude/strapdown.hpp"
+#include "tumble/attitude/timing.hpp"
+#include "tumble/common/so3.hpp"
+
+namespace tumble {
+
+namespace {
+
+constexpr double kSmallest = 1e-12;
+constexpr double kTiltSigmaStart_rad = 0.01;
+constexpr double kVelocitySigmaStart_m_s = 0.1;
+constexpr double kDisplacementSigmaStart_m = 0.1;
+constexpr int kTilt = 0, kBias = 2, kVelocity = 5, kDisplacement = 7;
+
+double squared(double x) {
+  return x * x;
+}
+
+/// Kalman update by one scalar measurement of state `index`: `innovation` is measurement minus estimate.
+void update(int index, double innovation, double variance, TumbleAttitude::State& state) {
+  const Eigen::Matrix<double, TumbleAttitude::kStates, 1> column = state.covariance.col(index);
+  const double s = column[index] + variance;
+  const Eigen::Matrix<double, TumbleAttitude::kStates, 1> correction = column * (innovation / s);
+  state.covariance -= column * (column / s).transpose();
+  state.q_WI = (so3::exp({correction[kTilt], correction[kTilt + 1], 0.0}) * state.q_WI).normalized();
+  state.bias_rad_s += correction.segment<3>(kBias);
+  state.v_W_m_s += correction.segment<2>(kVelocity);
+  state.d_W_m += correction.segment<2>(kDisplacement);
+}
+
+}  // namespace
+
+TumbleAttitude::TumbleAttitude(const Params& p) : params_(p) {
+  require_within("gravity_m_s2", p.gravity_m_s2, kSmallest, 100.0);
+  require_within("gyro_noise_rad_sqrts", p.gyro_noise_rad_sqrts, kSmallest, 1.0);
+  require_within("rate_error_sqrts", p.rate_error_sqrts, 0.0, 1.0);
+  require_within("bias_sigma_start_rad_s", p.bias_sigma_start_rad_s, 0.0, 1.0);
+  require_within("bias_walk_rad_s_sqrts", p.bias_walk_rad_s_sqrts, 0.0, 1.0);
+  require_within("acceleration_noise_m_s_sqrts", p.acceleration_noise_m_s_sqrts, kSmallest, 100.0);
+  require_within("velocity_m_sqrts", p.velocity_m_sqrts, kSmallest, 1e3);
+  require_within("displacement_m_sqrts", p.displacement_m_sqrts, kSmallest, 1e3);
+  require_within("displacement_tau_s", p.displacement_tau_s, 0.1, 1e4);
+  require_within("node_s", p.node_s, 1e-4, 1.0);
+  require_within("rest_tau_s", p.rest_tau_s, 1e-3, 1e4);
+  require_within("rest_time_s", p.rest_time_s, 0.0, 1e4);
+  require_within("rest_rate_rad_s", p.rest_rate_rad_s, kSmallest, 1.0);
+  require_within("rest_force_m_s2", p.rest_force_m_s2, kSmallest, 100.0);
+  require_within("rest_velocity_sigma_m_s", p.rest_velocity_sigma_m_s, kSmallest, 10.0);
+  require_within("rest_rate_sigma_rad_sqrts", p.rest_rate_sigma_rad_sqrts, kSmallest, 1.0);
+  require_within("gap_max_s", p.gap_max_s, 1e-9, 1e4);
+}
+
+Status TumbleAttitude::step(const ImuSample& sample, State& state) const {
+  if (const Status bad = check(sample); !bad.ok()) return bad;
+  if (!state.started) {
+    if (const Status bad = level(sample.specific_force_m_s2, state.q_WI); !bad.ok()) return bad;
+    start(state);
+  } else {
+    double dt_s = 0.0;
+    if (const Status bad = elapsed(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s); !bad.ok()) return bad;
+    detect_rest(sample, dt_s, state);
+    integrate(sample, dt_s, state);
+    if (state.node_s >= params_.node_s - 0.5 * dt_s) {
+      predict_node(state);
+      correct_node(state);
+    }
+  }
+  state.last_time_ns = sample.time_ns;
+  return {};
+}
+
+void TumbleAttitude::start(State& state) const {
+  state.covariance.diagonal().segment<2>(kTilt).setConstant(squared(kTiltSigmaStart_rad));
+  state.covariance.diagonal().segment<3>(kBias).setConstant(squared(params_.bias_sigma_start_rad_s));
+  state.covariance.diagonal().segment<2>(kVelocity).setConstant(squared(kVelocitySigmaStart_m_s));
+  state.covariance.diagonal().segment<2>(kDisplacement).setConstant(squared(kDisplacementSigmaStart_m));
+  state.started = true;
+}
+
+void TumbleAttitude::detect_rest(const ImuSample& sample, double dt_s, State& state) const {
+  const double warp = low_pass_warp(params_.rest_tau_s, dt_s);
+  state.rest_rate_rad_s.advance(sample.angular_velocity_rad_s, params_.rest_tau_s, dt_s, warp);
+  state.rest_force_m_s2.advance(sample.specific_force_m_s2, params_.rest_tau_s, dt_s, warp);
+  const bool quiet = (sample.angular_velocity_rad_s - state.rest_rate_rad_s.value).norm() < params_.rest_rate_rad_s &&
+                     (sample.specific_force_m_s2 - state.rest_force_m_s2.value).norm() < params_.rest_force_m_s2 &&
+                     (state.rest_rate_rad_s.value - state.bias_rad_s).norm() < params_.rest_rate_rad_s;
+  state.rest_s = quiet ? state.rest_s + dt_s : 0.0;
+  state.at_rest = quiet && state.rest_s >= params_.rest_time_s;
+}
+
+void TumbleAttitude::integrate(const ImuSample& sample, double dt_s, State& state) const {
+  Eigen::Vector3d rate = sample.angular_velocity_rad_s - state.bias_rad_s;
+  if (state.at_rest) rate.setZero();
+  const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * rate);
+  const Eigen::Quaterniond q_mid = state.q_WI * half;
+  const Eigen::Matrix3d R_mid = q_mid.toRotationMatrix();
+  state.q_WI = (q_mid * half).normalized();
+  state.R_WI_s += dt_s * R_mid;
+  state.f_W_m_s += dt_s * (R_mid * sample.specific_force_m_s2);
+  state.turned_rad2_s += dt_s * rate.squaredNorm();
+  state.node_s += dt_s;
+}
+
+void TumbleAttitude::predict_node(State& state) const {
+  const double h = state.node_s;
+  const double keep = std::exp(-h / params_.displacement_tau_s);
+  const Eigen::Vector2d gained = state.f_W_m_s.head<2>();  // gravity has no horizontal part
+  state.d_W_m = keep * state.d_W_m + h * (state.v_W_m_s + 0.5 * gained);
+  state.v_W_m_s += gained;
+
+  Covariance F = Covariance::Identity();
+  if (!state.at_rest) F.block<2, 3>(kTilt, kBias) = -state.R_WI_s.topRows<2>();
+  // horizontal part of phi x f; a heading error would turn accelerations, but the velocity is no reference for heading
+  F(kVelocity, kTilt + 1) = state.f_W_m_s.z();
+  F(kVelocity + 1, kTilt) = -state.f_W_m_s.z();
+  F.block<2, 2>(kDisplacement, kVelocity) = h * Eigen::Matrix2d::Identity();
+  F.block<2, 2>(kDisplacement, kDisplacement) = keep * Eigen::Matrix2d::Identity();
+  state.covariance = (F * state.covariance * F.transpose()).eval();
+
+  const double tilt =
+      squared(params_.gyro_noise_rad_sqrts) * h + squared(params_.rate_error_sqrts) * state.turned_rad2_s;
+  state.covariance.diagonal().segment<2>(kTilt).array() += tilt;
+  state.covariance.diagonal().segment<3>(kBias).array() += squared(params_.bias_walk_rad_s_sqrts) * h;
+  state.covariance.diagonal().segment<2>(kVelocity).array() += squared(params_.acceleration_noise_m_s_sqrts) * h;
+}
+
+void TumbleAttitude::correct_node(State& state) const {
+  const double h = state.node_s;
+  const double velocity =
+      state.at_rest ? squared(params_.rest_velocity_sigma_m_s) : squared(params_.velocity_m_sqrts) / h;
+  for (int axis = 0; axis < 2; ++axis) {
+    update(kVelocity + axis, -state.v_W_m_s[axis], velocity, state);
+    update(kDisplacement + axis, -state.d_W_m[axis], squared(params_.displacement_m_sqrts) / h, state);
+  }
+  if (state.at_rest) {
+    for (int axis = 0; axis < 3; ++axis) {
+      update(kBias + axis, state.rest_rate_rad_s.value[axis] - state.bias_rad_s[axis],
+             squared(params_.rest_rate_sigma_rad_sqrts) / h, state);
+    }
+  }
+  state.covariance = (0.5 * (state.covariance + state.covariance.transpose())).eval();
+  state.R_WI_s.setZero();
+  state.f_W_m_s.setZero();
+  state.turned_rad2_s = 0.0;
+  state.node_s = 0.0;
+}
+
+}  // namespace tumble

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/attitude/vqf.hpp"
+
+#include <Eigen/LU>
+#include <cmath>
+
+#include "tumble/attitude/strapdown.hpp"
+#include "tumble/attitude/tilt.hpp"
+#include "tumble/attitude/timing.hpp"
+#include "tumble/common/so3.hpp"
+
+namespace tumble {
+
+namespace {
+
+constexpr double kForceMin_m_s2 = 1e-6;
+constexpr double kSmallest = 1e-9;
+/// The bias variance grows to the square of this in the forgetting time (0.1 deg/s, fixed by the publication).
+constexpr double kForgottenSigma_rad_s = 1.7453292519943295e-3;
+
+/// Measurement variance with which the scalar filter of bias and walk `growth` settles at the variance sigma^2.
+double steady_noise(double sigma, double growth) {
+  const double variance = sigma * sigma;
+  return variance * variance / growth + variance;
+}
+
+}  // namespace
+
+Vqf::Vqf(const Params& p) : params_(p) {
+  require_within("tau_s", p.tau_s, 1e-3, 1e4);
+  require_within("bias_sigma_start_rad_s", p.bias_sigma_start_rad_s, kSmallest, 1.0);
+  require_within("bias_sigma_motion_rad_s", p.bias_sigma_motion_rad_s, kSmallest, 1.0);
+  require_within("bias_sigma_rest_rad_s", p.bias_sigma_rest_rad_s, kSmallest, 1.0);
+  require_within("bias_forgetting_s", p.bias_forgetting_s, kSmallest, 1e6);
+  require_within("bias_clip_rad_s", p.bias_clip_rad_s, kSmallest, 1.0);
+  require_within("vertical_forgetting", p.vertical_forgetting, kSmallest, 1.0);
+  require_within("rest_tau_s", p.rest_tau_s, 1e-3, 1e4);
+  require_within("rest_time_s", p.rest_time_s, 0.0, 1e4);
+  require_within("rest_rate_rad_s", p.rest_rate_rad_s, kSmallest, 1.0);
+  require_within("rest_force_m_s2", p.rest_force_m_s2, kSmallest, 100.0);
+  require_within("gap_max_s", p.gap_max_s, kSmallest, 1e4);
+}
+
+Status Vqf::step(const ImuSample& sample, State& state) const {
+  if (const Status bad = check(sample); !bad.ok()) return bad;
+  double dt_s = 0.0;
+  if (state.started) {
+    if (const Status bad = elapsed(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s); !bad.ok()) return bad;
+  } else {
+    if (const Status bad = level(sample.specific_force_m_s2, state.q_WN); !bad.ok()) return bad;
+    state.bias_covariance_rad2_s2.diagonal().setConstant(params_.bias_sigma_start_rad_s *
+                                                         params_.bias_sigma_start_rad_s);
+  }
+  if (dt_s > 0.0) {
+    detect_rest(sample, dt_s, state);
+    state.q_NI = (state.q_NI * so3::exp((sample.angular_velocity_rad_s - state.bias_rad_s) * dt_s)).normalized();
+    if (sample.specific_force_m_s2.norm() >= kForceMin_m_s2) {
+      const Eigen::Vector3d up_W = level_inertial_frame(sample.specific_force_m_s2, dt_s, state);
+      if (params_.rest_bias_estimation || params_.motion_bias_estimation) estimate_bias(up_W, dt_s, state);
+    }
+  }
+  state.q_WI = (state.q_WN * state.q_NI).normalized();
+  state.last_time_ns = sample.time_ns;
+  state.started = true;
+  return {};
+}
+
+void Vqf::detect_rest(const ImuSample& sample, double dt_s, State& state) const {
+  const double warp = low_pass_warp(params_.rest_tau_s, dt_s);
+  state.rest_rate_rad_s.advance(sample.angular_velocity_rad_s, params_.rest_tau_s, dt_s, warp);
+  state.rest_force_m_s2.advance(sample.specific_force_m_s2, params_.rest_tau_s, dt_s, warp);
+  const bool quiet = (sample.angular_velocity_rad_s - state.rest_rate_rad_s.value).norm() < params_.rest_rate_rad_s &&
+                     (sample.specific_force_m_s2 - state.rest_force_m_s2.value).norm() < params_.rest_force_m_s2 &&
+                     state.rest_rate_rad_s.value.cwiseAbs().maxCoeff() <= params_.bias_clip_rad_s;
+  state.rest_s = quiet ? state.rest_s + dt_s : 0.0;
+  state.at_rest = state.rest_s >= params_.rest_time_s && quiet;
+}
+
+/// Corrects q_WN; returns the unit vector "up" as the force says, in W before the correction.
+Eigen::Vector3d Vqf::level_inertial_frame(const Eigen::Vector3d& f_I_m_s2, double dt_s, State& state) const {
+  state.f_N_m_s2.advance(state.q_NI * f_I_m_s2, params_.tau_s, dt_s, low_pass_warp(params_.tau_s, dt_s));
+  const double length = state.f_N_m_s2.value.norm();
+  if (length < kForceMin_m_s2) return Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d up_W = state.q_WN * (state.f_N_m_s2.value / length);
+  state.q_WN = (levelling(up_W) * state.q_WN).normalized();
+  return up_W;
+}
+
+void Vqf::estimate_bias(const Eigen::Vector3d& up_W, double dt_s, State& state) const {
+  const double warp = low_pass_warp(params_.tau_s, dt_s);
+  Eigen::Matrix3d R = (state.q_WN * state.q_NI).toRotationMatrix();
+  const Eigen::Vector3d& b = state.bias_rad_s;
+  state.bias_W_rad_s.advance((R * b).head<2>(), params_.tau_s, dt_s, warp);
+  state.R_WI.advance(Eigen::Map<const Eigen::Matrix<double, 9, 1>>(R.data()), params_.tau_s, dt_s, warp);
+
+  Eigen::Matrix3d& P = state.bias_covariance_rad2_s2;
+  const double growth = kForgottenSigma_rad_s * kForgottenSigma_rad_s * dt_s / params_.bias_forgetting_s;
+  const double start = params_.bias_sigma_start_rad_s * params_.bias_sigma_start_rad_s;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (P(axis, axis) < start) P(axis, axis) += growth;
+  }
+
+  Eigen::Matrix3d H = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d innovation, noise;
+  if (state.at_rest && params_.rest_bias_estimation) {
+    innovation = state.rest_rate_rad_s.value - b;
+    noise.setConstant(steady_noise(params_.bias_sigma_rest_rad_s, growth));
+  } else if (params_.motion_bias_estimation) {
+    H = Eigen::Map<const Eigen::Matrix3d>(state.R_WI.value.data());
+    // the levelling's rate is what the bias still leaves, plus what the bias removed since the force entered the
+    // low-pass
+    const Eigen::Vector2d low_passed = state.bias_W_rad_s.value;
+    innovation = Eigen::Vector3d(low_passed.x() - up_W.y() / dt_s, low_passed.y() + up_W.x() / dt_s, 0.0) - H * b;
+    const double motion = steady_noise(params_.bias_sigma_motion_rad_s, growth);
+    noise = {motion, motion, motion / params_.vertical_forgetting};
+  } else {
+    return;
+  }
+  const double clip = params_.bias_clip_rad_s;
+  innovation = innovation.cwiseMax(-clip).cwiseMin(clip);
+  const Eigen::Matrix3d S = H * P * H.transpose() + Eigen::Matrix3d(noise.asDiagonal());
+  const Eigen::Matrix3d K = P * H.transpose() * S.inverse();
+  state.bias_rad_s = (b + K * innovation).cwiseMax(-clip).cwiseMin(clip);
+  P -= (K * H * P).eval();
+}
+
+}  // namespace tumble

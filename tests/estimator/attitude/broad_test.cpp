@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <vector>
+
+#include "estimator/attitude/broad_trial.hpp"
+#include "tumble/attitude/autogain.hpp"
+#include "tumble/attitude/complementary.hpp"
+#include "tumble/attitude/eskf.hpp"
+#include "tumble/attitude/madgwick.hpp"
+#include "tumble/attitude/mahony.hpp"
+#include "tumble/attitude/tumble_attitude.hpp"
+#include "tumble/attitude/vqf.hpp"
+#include "tumble/common/so3.hpp"
+
+namespace tumble {
+namespace {
+
+using testing::BroadError;
+using testing::BroadTrial;
+
+constexpr std::array kTrials = {"05", "07", "09", "11", "14", "16", "24", "27"};
+
+class Broad : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    const std::string folder = testing::broad_folder();
+    if (folder.empty()) return;
+    for (const char* number : kTrials) trials().push_back(testing::read_broad_trial(folder, number));
+  }
+  static void TearDownTestSuite() { trials().clear(); }
+  void SetUp() override {
+    if (trials().empty()) GTEST_SKIP() << "no shared data folder at " << TUMBLE_SHARED_DATA;
+  }
+  static std::vector<BroadTrial>& trials() {
+    static std::vector<BroadTrial> all;
+    return all;
+  }
+};
+
+template <typename Filter>
+BroadError run_trial(const Filter& filter, const BroadTrial& trial) {
+  typename Filter::State state;
+  std::vector<Eigen::Quaterniond> q_WI;
+  q_WI.reserve(trial.samples.size());
+  for (const ImuSample& sample : trial.samples) {
+    const Status status = filter.step(sample, state);
+    EXPECT_TRUE(status.ok()) << status.message();
+    q_WI.push_back(state.q_WI);
+  }
+  return testing::score(trial, q_WI);
+}
+
+/// Scores all trials, prints them, appends the mean.
+template <typename Filter>
+std::vector<BroadError> run_trials(const char* name, const Filter& filter, const std::vector<BroadTrial>& trials) {
+  std::vector<BroadError> errors;
+  BroadError mean;
+  const double share = 1.0 / static_cast<double>(trials.size());
+  std::printf("%-14s", name);
+  for (const BroadTrial& trial : trials) {
+    const BroadError e = errors.emplace_back(run_trial(filter, trial));
+    std::printf(" %.2f/%.2f/%.2f", e.inclination_motion_deg, e.heading_motion_deg, e.inclination_rest_deg);
+    mean.inclination_motion_deg += share * e.inclination_motion_deg;
+    mean.heading_motion_deg += share * e.heading_motion_deg;
+    mean.inclination_rest_deg += share * e.inclination_rest_deg;
+  }
+  std::printf("  mean %.3f/%.2f/%.3f\n", mean.inclination_motion_deg, mean.heading_motion_deg,
+              mean.inclination_rest_deg);
+  errors.push_back(mean);
+  return errors;
+}
+
+/// Errors that the published package or an independent program gave on the same files, printed to two digits.
+struct Anchor {
+  double inclination_motion_deg, heading_motion_deg, inclination_rest_deg;
+};
+
+void expect_anchors(const std::vector<BroadError>& errors, const std::array<Anchor, 8>& anchors) {
+  ASSERT_EQ(errors.size(), anchors.size() + 1);
+  for (std::size_t k = 0; k < anchors.size(); ++k) {
+    // measured differences are below the last digit printed (0.005; 0.05 for headings above 10)
+    EXPECT_NEAR(errors[k].inclination_motion_deg, anchors[k].inclination_motion_deg, 0.02) << kTrials[k];
+    EXPECT_NEAR(errors[k].heading_motion_deg, anchors[k].heading_motion_deg, 0.06) << kTrials[k];
+    EXPECT_NEAR(errors[k].inclination_rest_deg, anchors[k].inclination_rest_deg, 0.02) << kTrials[k];
+  }
+}
+
+TEST_F(Broad, MadgwickLandsOnItsAnchors) {
+  expect_anchors(run_trials("madgwick", Madgwick({.gain_rad_s = 0.033}), trials()), {{{0.55, 21.3, 0.19},
+                                                                                      {2.05, 17.7, 0.24},
+                                                                                      {1.36, 20.7, 0.20},
+                                                                                      {1.58, 22.4, 0.27},
+                                                                                      {1.17, 22.5, 0.25},
+                                                                                      {4.22, 20.3, 0.15},
+                                                                                      {1.31, 7.7, 0.07},
+                                                                                      {3.66, 27.7, 0.40}}});
+}
+
+TEST_F(Broad, VqfLandsOnItsAnchors) {
+  expect_anchors(run_trials("vqf", Vqf({}), trials()), {{{0.35, 1.02, 0.20},
+                                                         {1.02, 1.78, 0.25},
+                                                         {0.87, 1.17, 0.22},
+                                                         {0.42, 0.92, 0.29},
+                                                         {0.41, 0.98, 0.26},
+                                                         {0.54, 0.58, 0.16},
+                                                         {0.61, 1.21, 0.10},
+                                                         {0.37, 3.18, 0.12}}});
+}
+
+TEST_F(Broad, BasicVqfLandsOnItsAnchors) {
+  const Vqf basic({.rest_bias_estimation = false, .motion_bias_estimation = false});
+  expect_anchors(run_trials("vqf basic", basic, trials()), {{{0.75, 21.3, 0.56},
+                                                             {1.41, 17.5, 0.51},
+                                                             {1.18, 20.6, 0.70},
+                                                             {1.11, 22.3, 0.49},
+                                                             {1.04, 22.3, 0.50},
+                                                             {1.19, 20.1, 0.67},
+                                                             {1.43, 7.7, 1.48},
+                                                             {1.45, 27.7, 1.48}}});
+}
+
+/// No anchors on these eight trials exist for the others; the bounds hold what is measured today, with a tenth to
+/// spare.
+TEST_F(Broad, OtherFiltersStayWhereTheyAre) {
+  const BroadError complementary = run_trials("complementary", Complementary({}), trials()).back();
+  EXPECT_LT(complementary.inclination_rest_deg, 0.18);  // 0.161
+  EXPECT_GT(complementary.inclination_motion_deg, 5.0) << "it believes accelerations: 8.7";
+  const BroadError mahony = run_trials("mahony", Mahony({}), trials()).back();
+  EXPECT_NEAR(mahony.inclination_motion_deg, 2.48, 0.1);
+  const BroadError eskf = run_trials("eskf", Eskf({}), trials()).back();
+  EXPECT_NEAR(eskf.inclination_motion_deg, 0.72, 0.03);
+}
+
+/// 0.02 per sample at these 285.7 Hz, as the anchors over the whole data set were made.
+constexpr double kTauPerSample_s = 0.17324;
+
+TEST_F(Broad, AutogainIsQuietAtRestAndBelievesAccelerations) {
+  const BroadError paper = run_trials("autogain", Autogain({.tau_s = kTauPerSample_s}), trials()).back();
+  // over all 30 trials 10.8 in motion, 0.17 at rest
+  EXPECT_NEAR(paper.inclination_rest_deg, 0.17, 0.02);
+  EXPECT_NEAR(paper.inclination_motion_deg, 10.8, 3.0);
+  const Autogain code({.profile = AutogainProfile::code2021, .tau_s = kTauPerSample_s, .roll_error_2021 = true});
+  const BroadError published = run_trials("autogain 2021", code, trials()).back();
+  EXPECT_GT(published.inclination_rest_deg, 3.0) << "roll is never corrected: 8.2 over all 30 trials";
+  run_trials("autogain smooth", Autogain({.profile = AutogainProfile::smooth}), trials());
+}
+
+TEST_F(Broad, TumbleIsBetterThanVqfInMotionAndAsGoodAtRest) {
+  const BroadError error = run_trials("tumble", TumbleAttitude({}), trials()).back();
+  EXPECT_LT(error.inclination_motion_deg, 0.575);  // VQF's; measured 0.554, no parameter tuned beyond a factor of two
+  // 0.201: the accelerometer's own error, which a complementary filter meets as well once the bias is taken away
+  // (0.206)
+  EXPECT_LT(error.inclination_rest_deg, 0.205);
+}
+
+/// Rms change from sample to sample, after three seconds without movement, degrees.
+template <typename Filter>
+double jitter_at_rest_deg(const Filter& filter, const BroadTrial& trial) {
+  typename Filter::State state;
+  double sum = 0.0;
+  int count = 0, still = 0;
+  for (std::size_t k = 0; k < trial.samples.size(); ++k) {
+    const Eigen::Quaterniond before = state.q_WI;
+    EXPECT_TRUE(filter.step(trial.samples[k], state).ok());
+    still = trial.moving[k] ? 0 : still + 1;
+    if (still < 858) continue;
+    sum += so3::log(before.conjugate() * state.q_WI).squaredNorm();
+    ++count;
+  }
+  EXPECT_GT(count, 1000);
+  return std::sqrt(sum / count) * 180.0 / std::numbers::pi;
+}
+
+TEST_F(Broad, TumbleIsQuieterAtRestThanTheComplementaryFilter) {
+  double ours = 0.0, complementary = 0.0;
+  for (const BroadTrial& trial : trials()) {
+    ours += jitter_at_rest_deg(TumbleAttitude({}), trial) / 8.0;
+    complementary += jitter_at_rest_deg(Complementary({}), trial) / 8.0;
+  }
+  std::printf("jitter at rest, deg per sample: tumble %.5f, complementary %.5f\n", ours, complementary);
+  EXPECT_LT(ours, 0.5 * complementary);  // measured 0.0009 against 0.0036
+}
+
+/// Negative control of the score: a known tilt is reported as inclination, a known turn is removed by the alignment.
+TEST_F(Broad, ScoreSeesAPlantedTilt) {
+  const BroadTrial& trial = trials().front();
+  std::vector<Eigen::Quaterniond> q_WI;
+  for (const Eigen::Quaterniond& q : trial.q_ref) {
+    q_WI.push_back(so3::exp({0.0, 0.0, 2.0}) * so3::exp({0.03, 0.0, 0.0}) * q);
+  }
+  const BroadError error = testing::score(trial, q_WI);
+  EXPECT_NEAR(error.inclination_motion_deg, 0.03 * 57.29578, 1e-5);
+  EXPECT_NEAR(error.inclination_rest_deg, 0.03 * 57.29578, 1e-5);
+  EXPECT_NEAR(error.heading_motion_deg, 0.0, 1e-5);
+}
+
+}  // namespace
+}  // namespace tumble
