@@ -54,8 +54,14 @@ void RailDetector::observe(const ImuSample& sample, State& state) const {
 std::optional<double> RailDetector::rail(const State& state, int c) const {
   const Channel& channel = state.channels[static_cast<std::size_t>(c)];
   if (channel.rail > 0.0) return channel.rail;
+  const double below = channel.peak / (1.0 + params_.disagreement_share);
+  double sibling = 0.0;
+  for (int i = c / 3 * 3; i < c / 3 * 3 + 3; ++i) {
+    sibling = std::max(sibling, state.channels[static_cast<std::size_t>(i)].rail);
+  }
+  if (sibling > 0.0 && sibling >= below) return sibling;
   const std::optional<double> given = stated(c);
-  if (given && channel.peak <= *given * (1.0 + params_.disagreement_share)) return given;
+  if (given && *given >= below) return given;
   return std::nullopt;
 }
 

@@ -177,6 +177,11 @@ void RateModel::add_rig_prior(const RigConstants& rig, arrow::Corner& corner) co
   corner.gradient -= prior_information_ * (rig.vector() - prior_constants_.vector());
 }
 
+double RateModel::rig_surprise(const RigConstants& rig) const {
+  const RigConstants::Vector moved = rig.vector() - prior_constants_.vector();
+  return std::sqrt(moved.dot(prior_information_ * moved) / RigConstants::kSize);
+}
+
 Eigen::Matrix<double, 6, 1> RateModel::unscaled(const arrow::StateVector& step) const {
   Eigen::Matrix<double, 6, 1> out = step;
   out.tail<3>() /= time_scale_s_;

@@ -200,6 +200,7 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples, std::vector<Ra
     ++health.iterations;
   }
   health.calibration = {rig, rig_covariance};
+  health.rig_surprise = model.rig_surprise(rig);
 
   std::vector<RateState> states(samples.size());
   arrow::Marginal marginal;

@@ -31,7 +31,9 @@ Vector3d direction(oracles::Gaussian& noise) { return noise.vector().normalized(
 class Motion {
  public:
   explicit Motion(const TumbleOptions& options)
-      : options_(options), noise_(options.seed), R_IB_(Eigen::AngleAxisd(3.0 * noise_.uniform(), direction(noise_))) {
+      : options_(options), noise_(options.seed) {
+    oracles::Gaussian mounting(options.mounting_seed);
+    R_IB_ = Eigen::AngleAxisd(3.0 * mounting.uniform(), direction(mounting)).toRotationMatrix();
     still(0.6);
     Vector3d rate = noise_.uniform(options.speed_low_rad_s, options.speed_high_rad_s) * direction(noise_);
     blend(Vector3d::Zero(), rate, 0.2, Phase::push, 8.0 * direction(noise_));

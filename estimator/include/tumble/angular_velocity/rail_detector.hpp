@@ -30,8 +30,8 @@ class RailDetector {
  public:
   struct Params {
     /// Range as stated by the data sheet or the user, if any: gyro [rad/s], (0, 1000]; accelerometer [m/s^2], (0, 1e5].
-    std::optional<double> stated_gyro_rad_s;
-    std::optional<double> stated_accel_m_s2;
+    std::optional<double> stated_gyro_rad_s = std::nullopt;
+    std::optional<double> stated_accel_m_s2 = std::nullopt;
     /// A reading within this share of the rail starts clipping; [0, 0.1].
     double enter_share = 0.003;
     /// A neighbour of a clipped reading within this share of the rail is clipped too; [enter_share, 0.5].
@@ -72,7 +72,8 @@ class RailDetector {
   /// Classifies a whole recording after learning from all of it, edges on both sides of each plateau included. O(N).
   void classify_all(std::span<const ImuSample> samples, State& state, std::span<Clipping> out) const;
 
-  /// Rail in use for channel c (0-5): the plateau found, else the stated range while no reading exceeds it, else none.
+  /// Rail in use for channel c (0-5): the plateau found; else, as long as no reading exceeds it, the largest found on
+  /// another axis of the same sensor; else likewise the stated range; else none.
   std::optional<double> rail(const State& state, int c) const;
   /// True when a stated range exists and a plateau or a larger reading contradicts it.
   bool disagrees(const State& state, int c) const;

@@ -22,7 +22,7 @@ struct RateModelParams {
   double accel_bias_sigma_m_s2 = 0.05;
   double inertia_sigma = 0.3;
   /// What an earlier run has learnt; takes the place of `nominal` and of the four deviations above.
-  std::optional<RigCalibration> calibration;
+  std::optional<RigCalibration> calibration = std::nullopt;
 
   /// Noise density of the gyro [rad/s/sqrt(Hz)] (MTi-30: 0.03 deg/s/sqrt(Hz)); [1e-9, 1].
   double gyro_noise_density = 5.236e-4;
@@ -82,6 +82,9 @@ class RateModel {
 
   /// Adds what was known of the rig beforehand.
   void add_rig_prior(const RigConstants& rig, arrow::Corner& corner) const;
+
+  /// Mahalanobis distance of `rig` from what was known beforehand, over sqrt(RigConstants::kSize).
+  double rig_surprise(const RigConstants& rig) const;
 
   RigConstants prior_constants() const { return prior_constants_; }
   const RigConstants::Matrix& prior_covariance() const { return prior_covariance_; }

@@ -20,6 +20,9 @@ struct RateReport {
   bool converged = false;
   double last_step_rad_s = 0.0;  ///< largest change of a rate in the last iteration
   RigCalibration calibration;    ///< what the run has learnt of the rig: can be given to the next
+  /// How far the constants moved from what was known beforehand, in standard deviations (Mahalanobis distance over
+  /// sqrt(14)); beyond about 3 the prior or the model of motion is wrong and the answer deserves no trust.
+  double rig_surprise = 0.0;
   std::array<std::optional<double>, 6> rail;  ///< in use: gyro [rad/s], accelerometer [m/s^2]; none: not seen
   std::array<bool, 6> rail_disagrees{};       ///< a stated range contradicted by the readings
   bool force_unit_suspect = false;            ///< the median specific force is near 1: perhaps given in g
