@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "tumble/common/status.hpp"
 
@@ -38,6 +39,16 @@ RigConstants::Matrix covariance_of(const RateModelParams& p) {
   variance << Vector3d::Constant(p.lever_arm_sigma_m), Vector3d::Constant(p.gyro_bias_sigma_rad_s),
       Vector3d::Constant(p.accel_bias_sigma_m_s2), Eigen::Matrix<double, 5, 1>::Constant(p.inertia_sigma);
   return variance.cwiseAbs2().asDiagonal();
+}
+
+// precision of a bound before anything is known, (rad/s)^-2
+constexpr double kStartPrecision = 0.25;
+
+// phi(z) / Phi(z) of the normal distribution, by its asymptotic series where both vanish
+double density_over_share(double z) {
+  if (z < -8.0) return -z / (1.0 - 1.0 / (z * z) + 3.0 / (z * z * z * z));
+  const double density = std::exp(-0.5 * z * z) * std::numbers::inv_sqrtpi / std::numbers::sqrt2;
+  return density / (0.5 * std::erfc(-z / std::numbers::sqrt2));
 }
 
 // A clipped accelerometer axis bounds the force from one side: it speaks only where the model stays within the rail.
@@ -101,23 +112,63 @@ void RateModel::weigh(const RateObservation& observation, const RigConstants& ri
   estimate.contact_m_s2 = (1.0 - estimate.flight_weight) * flight.residual.norm();
 }
 
+void RateModel::start_bounds(const RateObservation& observation, const RigConstants& rig, RateEstimate& estimate) const {
+  estimate.soft_bounds = true;
+  for (int j = 0; j < 3; ++j) {
+    if ((observation.clipping.gyro >> j & 1u) == 0) continue;
+    const double reading = observation.sample.angular_velocity_rad_s[j];
+    const double guess = estimate.knot.rate_rad_s[j] + rig.gyro_bias_rad_s[j];
+    const double mean = reading < 0.0 ? std::min(guess, reading) : std::max(guess, reading);
+    estimate.bound_precision[j] = kStartPrecision;
+    estimate.bound_shift[j] = kStartPrecision * mean;
+  }
+}
+
+void RateModel::update_bounds(const RateObservation& observation, const RigConstants& rig,
+                              const arrow::Marginal& marginal, const RigConstants::Matrix& rig_covariance,
+                              double damping, RateEstimate& estimate) const {
+  for (int j = 0; j < 3; ++j) {
+    if ((observation.clipping.gyro >> j & 1u) == 0) continue;
+    const double reading = observation.sample.angular_velocity_rad_s[j], sign = reading < 0.0 ? -1.0 : 1.0;
+    const double variance = marginal.state(j, j) + 2.0 * marginal.cross(j, 3 + j) + rig_covariance(3 + j, 3 + j);
+    // the marginal without this site, mirrored so that the bound lies below
+    const double mean = sign * (estimate.knot.rate_rad_s[j] + rig.gyro_bias_rad_s[j]);
+    const double site_precision = estimate.bound_precision[j], site_shift = sign * estimate.bound_shift[j];
+    const double precision =
+        std::max(1.0 / variance - site_precision, 1.0 / (params_.rate_max_rad_s * params_.rate_max_rad_s));
+    const double cavity_mean = (mean / variance - site_shift) / precision, cavity_variance = 1.0 / precision;
+    const double spread2 = cavity_variance + params_.rail_sigma_rad_s * params_.rail_sigma_rad_s;
+    const double spread = std::sqrt(spread2);
+    const double z = (cavity_mean - std::abs(reading)) / spread, r = density_over_share(z);
+    const double new_mean = cavity_mean + cavity_variance * r / spread;
+    const double new_variance = cavity_variance - cavity_variance * cavity_variance * r * (z + r) / spread2;
+    const double new_precision = std::max(0.0, 1.0 / new_variance - precision);
+    const double new_shift = new_mean / new_variance - precision * cavity_mean;
+    estimate.bound_precision[j] += damping * (new_precision - site_precision);
+    estimate.bound_shift[j] += damping * (sign * new_shift - estimate.bound_shift[j]);
+  }
+}
+
 void RateModel::add_sample(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                            arrow::Block& block, arrow::Corner& corner) const {
   const RateFactor gyro = gyro_factor(estimate.knot, rig, observation.sample.angular_velocity_rad_s);
   for (int j = 0; j < 3; ++j) {
     if ((observation.clipping.void_gyro >> j & 1u) != 0) continue;
-    double sigma = gyro_sigma_rad_s_;
+    double information = 1.0 / (gyro_sigma_rad_s_ * gyro_sigma_rad_s_);
+    double pull = information * gyro.residual[j];
     if ((observation.clipping.gyro >> j & 1u) != 0) {
-      // beyond the reading, on the side of its sign: the bound is kept
-      if (gyro.residual[j] * observation.sample.angular_velocity_rad_s[j] >= 0.0) continue;
-      sigma = params_.rail_sigma_rad_s;
+      const bool kept = gyro.residual[j] * observation.sample.angular_velocity_rad_s[j] >= 0.0;
+      if (kept && !estimate.soft_bounds) continue;
+      information = 1.0 / (params_.rail_sigma_rad_s * params_.rail_sigma_rad_s);
+      pull = information * gyro.residual[j];
+      if (estimate.soft_bounds) information = estimate.bound_precision[j];
+      if (estimate.soft_bounds) pull = information * (estimate.knot.rate_rad_s[j] + rig.gyro_bias_rad_s[j]) - estimate.bound_shift[j];
     }
-    const double information = 1.0 / (sigma * sigma);
     block.diagonal(j, j) += information;
     block.border(j, 3 + j) += information;
-    block.gradient[j] -= information * gyro.residual[j];
+    block.gradient[j] -= pull;
     corner.matrix(3 + j, 3 + j) += information;
-    corner.gradient[3 + j] -= information * gyro.residual[j];
+    corner.gradient[3 + j] -= pull;
   }
 
   const double flight_information = estimate.flight_weight / (accel_sigma_m_s2_ * accel_sigma_m_s2_);

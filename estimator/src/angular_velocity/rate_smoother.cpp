@@ -120,8 +120,17 @@ class Iteration {
     return largest;
   }
 
+  // Marginals of the last factorisation, from the last sample to the first: use(k, marginal).
+  template <typename Use>
+  void for_each_marginal(Use use) const {
+    arrow::Marginal marginal;
+    for (std::size_t k = blocks_.size(); k-- > 0;) {
+      marginal = arrow::back_covariance(blocks_[k], k + 1 == blocks_.size() ? nullptr : &marginal, rig_covariance_);
+      use(k, marginal);
+    }
+  }
+
   const RigConstants::Matrix& rig_covariance() const { return rig_covariance_; }
-  const std::vector<arrow::Block>& blocks() const { return blocks_; }
 
  private:
   std::span<const RateObservation> observations_;
@@ -158,6 +167,8 @@ RateSmoother::RateSmoother(const Params& params) : params_(params), rails_(param
   require_within("step_max_rad_s", params.step_max_rad_s, 1e-3, 1e4);
   require_within("widen_first", params.widen_first, 1.0, 1000.0);
   require_within("recovered_sigma_rad_s", params.recovered_sigma_rad_s, 0.0, 1e4);
+  require_within("bound_iterations", params.bound_iterations, 0, 1000);
+  require_within("bound_damping", params.bound_damping, 0.01, 1.0);
   require_within("gap_max_s", params.gap_max_s, 1e-6, 3600.0);
   (void)RateModel(params.model, 0.01);  // throws on bad parameters
 }
@@ -186,7 +197,8 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples, std::vector<Ra
   RigConstants::Matrix rig_covariance = model.prior_covariance();
   Iteration iteration(observations, model);
   double widen = params_.widen_first;
-  while (health.iterations < params_.iterations_max && !health.converged) {
+  int soft = 0;  // iterations with soft bounds
+  while (health.iterations < params_.iterations_max) {
     for (std::size_t k = 0; k < samples.size(); ++k) {
       model.weigh(observations[k], rig, rig_covariance, widen, estimates[k]);
     }
@@ -194,20 +206,30 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples, std::vector<Ra
       return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
     }
     rig_covariance = iteration.rig_covariance();
-    health.last_step_rad_s = iteration.apply(params_.step_max_rad_s, estimates, rig);
-    health.converged = widen == 1.0 && health.last_step_rad_s < params_.tolerance_rad_s;
-    widen = std::max(1.0, 0.5 * widen);
     ++health.iterations;
+    health.last_step_rad_s = iteration.apply(params_.step_max_rad_s, estimates, rig);
+    const bool settled = widen == 1.0 && health.last_step_rad_s < params_.tolerance_rad_s;
+    const bool softened = soft > 0;
+    if (softened) {
+      iteration.for_each_marginal([&](std::size_t k, const arrow::Marginal& marginal) {
+        model.update_bounds(observations[k], rig, marginal, rig_covariance, params_.bound_damping, estimates[k]);
+      });
+    }
+    if (softened || settled || health.iterations + params_.bound_iterations >= params_.iterations_max) {
+      for (std::size_t k = 0; k < samples.size() && soft == 0; ++k) {
+        if (estimates[k].flight_weight < 0.5) model.start_bounds(observations[k], rig, estimates[k]);
+      }
+      health.converged = settled || health.converged;
+      if (soft++ == params_.bound_iterations) break;
+    }
+    widen = std::max(1.0, 0.5 * widen);
   }
   health.calibration = {rig, rig_covariance};
   health.rig_surprise = model.rig_surprise(rig);
 
   std::vector<RateState> states(samples.size());
-  arrow::Marginal marginal;
   std::size_t in_flight = 0;
-  for (std::size_t k = samples.size(); k-- > 0;) {
-    const bool last = k + 1 == samples.size();
-    marginal = arrow::back_covariance(iteration.blocks()[k], last ? nullptr : &marginal, rig_covariance);
+  iteration.for_each_marginal([&](std::size_t k, const arrow::Marginal& marginal) {
     RateState& state = states[k];
     state.time_ns = samples[k].time_ns;
     state.w_WI_I_rad_s = estimates[k].knot.rate_rad_s;
@@ -217,7 +239,7 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples, std::vector<Ra
     count(state, health);
     health.void_readings += clippings[k].void_gyro != 0;
     in_flight += estimates[k].flight_weight >= 0.5;
-  }
+  });
   health.flight_share = static_cast<double>(in_flight) / static_cast<double>(samples.size());
   out = std::move(states);
   report = health;

@@ -58,6 +58,10 @@ struct RateEstimate {
   RateKnot knot;
   double flight_weight = 0.0;   ///< 0: contact, 1: free flight
   double contact_m_s2 = 0.0;    ///< specific force that the flight model does not explain
+  /// What the bounds of clipped axes amount to, as Gaussian sites on (rate + bias): precision and precision * mean.
+  Eigen::Vector3d bound_precision = Eigen::Vector3d::Zero();
+  Eigen::Vector3d bound_shift = Eigen::Vector3d::Zero();
+  bool soft_bounds = false;  ///< false: bounds are walls that act only when violated (for the first iterations)
 };
 
 /// The factors of one sample and of one step between samples, added to an arrow matrix. Holds derived coefficients only.
@@ -71,6 +75,14 @@ class RateModel {
   /// the rig must not pass for contact. `widen` >= 1 multiplies the threshold while the rates themselves are unknown.
   void weigh(const RateObservation& observation, const RigConstants& rig, const RigConstants::Matrix& rig_covariance,
              double widen, RateEstimate& estimate) const;
+
+  /// Starts the bounds of a sample: near the current estimate or the reading, whichever lies beyond.
+  void start_bounds(const RateObservation& observation, const RigConstants& rig, RateEstimate& estimate) const;
+
+  /// Refines the bounds of a sample by expectation propagation (Minka 2001): the Gaussian site with which the marginal
+  /// has the mean and variance that truncation at the reading gives it. `damping` in (0, 1] is the share of the new.
+  void update_bounds(const RateObservation& observation, const RigConstants& rig, const arrow::Marginal& marginal,
+                     const RigConstants::Matrix& rig_covariance, double damping, RateEstimate& estimate) const;
 
   /// Adds gyro, bound, flight and Euler factors of one sample.
   void add_sample(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,

@@ -52,6 +52,10 @@ class RateSmoother {
     double tolerance_rad_s = 2e-3;    ///< stop when no rate changes by more; [1e-12, 1]
     double step_max_rad_s = 10.0;     ///< longest step of a rate in one iteration; [1e-3, 1e4]
     double widen_first = 8.0;         ///< threshold of contact in the first iteration, halved in each; [1, 1000]
+    /// Iterations after settling in which the bounds of samples in contact are those of a truncated distribution
+    /// instead of walls, which gives them an honest covariance; [0, 1000].
+    int bound_iterations = 3;
+    double bound_damping = 0.5;       ///< share of a new bound taken over in each of them; [0.01, 1]
     double recovered_sigma_rad_s = 0.5;  ///< a clipped axis known better than this is recovered, not only bounded
     double gap_max_s = 1.0;           ///< longest time between samples before the run is refused; [1e-6, 3600]
   };
