@@ -2,6 +2,7 @@
 #include "tumble/angular_velocity/rate_model.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -63,6 +64,14 @@ void drop_satisfied_bounds(const RateObservation& o, RateFactor& flight) {
   }
 }
 
+// Squared residual over its covariance: the sensor's own and what the uncertain rig adds, direction by direction.
+double normalised(const RateFactor& f, const RigConstants::Matrix& rig_covariance, double sigma) {
+  const Eigen::Matrix<double, 3, RigConstants::kSize> spread = f.by_rig.lazyProduct(rig_covariance);
+  Eigen::Matrix3d S = spread.lazyProduct(f.by_rig.transpose());
+  S.diagonal().array() += sigma * sigma;
+  return f.residual.dot(S.inverse() * f.residual);
+}
+
 void add_factor(const RateFactor& f, double information, double time_scale_s, arrow::Block& block,
                 arrow::Corner& corner) {
   Eigen::Matrix<double, 3, 6> A = f.by_knot;
@@ -94,22 +103,25 @@ RateModel::RateModel(const RateModelParams& params, double period_s) : params_(p
 }
 
 void RateModel::weigh(const RateObservation& observation, const RigConstants& rig,
-                      const RigConstants::Matrix& rig_covariance, double widen, RateEstimate& estimate) const {
+                      const RigConstants::Matrix& rig_covariance, double widen, double jump,
+                      RateEstimate& estimate) const {
   RateFactor flight = flight_factor(estimate.knot, rig, observation.sample.specific_force_m_s2);
   drop_satisfied_bounds(observation, flight);
   const RateFactor euler = euler_factor(estimate.knot, rig);
-  // what the uncertain rig does to the residuals, its directions lumped together
-  const double w2 = estimate.knot.rate_rad_s.squaredNorm(), w4 = w2 * w2;
-  const double force_variance = accel_sigma_m_s2_ * accel_sigma_m_s2_ + w4 * rig_covariance.block<3, 3>(0, 0).trace() / 3.0 +
-                                rig_covariance.block<3, 3>(6, 6).trace() / 3.0;
-  const double torque_variance =
-      params_.euler_sigma_rad_s2 * params_.euler_sigma_rad_s2 + w4 * rig_covariance.block<5, 5>(9, 9).trace() / 5.0;
-  const double r2 = flight.residual.squaredNorm() / force_variance + euler.residual.squaredNorm() / torque_variance;
+  const double r2 = normalised(flight, rig_covariance, accel_sigma_m_s2_) +
+                    normalised(euler, rig_covariance, params_.euler_sigma_rad_s2) + jump;
   const double threshold = widen * params_.flight_threshold;
   // Geman-McClure: the pull of an outlier vanishes with the cube of its size, contacts do not drag the rate along
   const double ratio = 1.0 / (1.0 + r2 / (threshold * threshold));
   estimate.flight_weight = ratio * ratio;
   estimate.contact_m_s2 = (1.0 - estimate.flight_weight) * flight.residual.norm();
+}
+
+double RateModel::jump(const RateKnot& from, const RateKnot& to, double dt_s) const {
+  const Vector3d e0 = from.rate_rad_s + dt_s * from.acceleration_rad_s2 - to.rate_rad_s;
+  const Vector3d e1 = dt_s * (from.acceleration_rad_s2 - to.acceleration_rad_s2);
+  const double scale = 1.0 / (params_.jerk_psd_flight * dt_s * dt_s * dt_s);
+  return scale * (12.0 * e0.squaredNorm() - 12.0 * e0.dot(e1) + 4.0 * e1.squaredNorm());
 }
 
 void RateModel::start_bounds(const RateObservation& observation, const RigConstants& rig, RateEstimate& estimate) const {

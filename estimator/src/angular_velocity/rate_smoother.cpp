@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "tumble/angular_velocity/saave.hpp"
 #include "tumble/angular_velocity/wnoj_smoother.hpp"
@@ -141,6 +142,22 @@ class Iteration {
   RigConstants::Matrix rig_covariance_;
 };
 
+void weigh_all(const RateModel& model, std::span<const RateObservation> observations, const RigConstants& rig,
+               const RigConstants::Matrix& rig_covariance, double widen, std::span<RateEstimate> estimates) {
+  double before = std::numeric_limits<double>::max();
+  for (std::size_t k = 0; k < estimates.size(); ++k) {
+    double after = std::numeric_limits<double>::max();
+    if (k + 1 < estimates.size()) {
+      const double dt_s = seconds(observations[k + 1].sample.time_ns - observations[k].sample.time_ns);
+      after = model.jump(estimates[k].knot, estimates[k + 1].knot, dt_s);
+    }
+    // where the gyro reads all axes nothing is unknown that would excuse a residual
+    const int clipped = observations[k].clipping.gyro | observations[k].clipping.void_gyro;
+    model.weigh(observations[k], rig, rig_covariance, clipped != 0 ? widen : 1.0, std::min(before, after), estimates[k]);
+    before = after;
+  }
+}
+
 RateSource source_of(const RateObservation& o, const RateEstimate& e, const Eigen::Matrix3d& covariance, double sigma) {
   const int clipped = o.clipping.gyro | o.clipping.void_gyro;
   if (clipped == 0) return RateSource::measured;
@@ -199,9 +216,7 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples, std::vector<Ra
   double widen = params_.widen_first;
   int soft = 0;  // iterations with soft bounds
   while (health.iterations < params_.iterations_max) {
-    for (std::size_t k = 0; k < samples.size(); ++k) {
-      model.weigh(observations[k], rig, rig_covariance, widen, estimates[k]);
-    }
+    weigh_all(model, observations, rig, rig_covariance, widen, estimates);
     if (!iteration.factorise(estimates, rig)) {
       return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
     }

@@ -73,8 +73,12 @@ class RateModel {
 
   /// Weighs a sample between flight and contact at the current estimate. `rig_covariance`: what is not yet known of
   /// the rig must not pass for contact. `widen` >= 1 multiplies the threshold while the rates themselves are unknown.
+  /// `jump`: the smaller of the jumps to the neighbours, from jump(); flight has at least one smooth side.
   void weigh(const RateObservation& observation, const RigConstants& rig, const RigConstants::Matrix& rig_covariance,
-             double widen, RateEstimate& estimate) const;
+             double widen, double jump, RateEstimate& estimate) const;
+
+  /// How far a step between two samples is from the smoothness of flight: squared, normalised, six degrees of freedom.
+  double jump(const RateKnot& from, const RateKnot& to, double dt_s) const;
 
   /// Starts the bounds of a sample: near the current estimate or the reading, whichever lies beyond.
   void start_bounds(const RateObservation& observation, const RigConstants& rig, RateEstimate& estimate) const;
