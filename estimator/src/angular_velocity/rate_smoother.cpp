@@ -83,20 +83,20 @@ std::vector<RateEstimate> first_guess(std::span<const RateObservation> observati
 // The linear system of one iteration and its solution.
 class Iteration {
  public:
-  Iteration(std::span<const RateObservation> observations, const RateModel& model)
-      : observations_(observations), model_(model), blocks_(observations.size()) {}
+  explicit Iteration(std::span<const RateObservation> observations)
+      : observations_(observations), blocks_(observations.size()) {}
 
-  bool factorise(std::span<const RateEstimate> estimates, const RigConstants& rig) {
+  bool factorise(const RateModel& model, std::span<const RateEstimate> estimates, const RigConstants& rig) {
     corner_ = {};
-    model_.add_rig_prior(rig, corner_);
+    model.add_rig_prior(rig, corner_);
     blocks_[0] = {};
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
-      model_.add_sample(observations_[k], estimates[k], rig, blocks_[k], corner_);
+      model.add_sample(observations_[k], estimates[k], rig, blocks_[k], corner_);
       const bool last = k + 1 == blocks_.size();
       if (!last) {
         blocks_[k + 1] = {};
         const double dt_s = seconds(observations_[k + 1].sample.time_ns - observations_[k].sample.time_ns);
-        model_.add_step(estimates[k], estimates[k + 1], dt_s, blocks_[k], blocks_[k + 1]);
+        model.add_step(estimates[k], estimates[k + 1], dt_s, blocks_[k], blocks_[k + 1]);
       }
       if (!arrow::eliminate(blocks_[k], last ? nullptr : &blocks_[k + 1], corner_)) return false;
     }
@@ -104,13 +104,13 @@ class Iteration {
   }
 
   // Adds the step, cut to step_max; returns the largest change of a rate.
-  double apply(double step_max, std::span<RateEstimate> estimates, RigConstants& rig) const {
+  double apply(const RateModel& model, double step_max, std::span<RateEstimate> estimates, RigConstants& rig) const {
     double largest = 0.0;
     arrow::StateVector step;
     for (std::size_t k = blocks_.size(); k-- > 0;) {
       const bool last = k + 1 == blocks_.size();
       step = arrow::back_substitute(blocks_[k], last ? nullptr : &step, rig_step_);
-      const Eigen::Matrix<double, 6, 1> physical = model_.unscaled(step);
+      const Eigen::Matrix<double, 6, 1> physical = model.unscaled(step);
       const double length = physical.head<3>().norm();
       const double share = length > step_max ? step_max / length : 1.0;
       estimates[k].knot.rate_rad_s += share * physical.head<3>();
@@ -135,7 +135,6 @@ class Iteration {
 
  private:
   std::span<const RateObservation> observations_;
-  const RateModel& model_;
   std::vector<arrow::Block> blocks_;
   arrow::Corner corner_;
   arrow::BorderVector rig_step_;
@@ -176,6 +175,57 @@ void count(const RateState& state, RateReport& report) {
   report.bounded_only += state.source == RateSource::bounded_only;
 }
 
+struct Solution {
+  std::vector<RateEstimate> estimates;
+  RigConstants rig;
+  RigConstants::Matrix rig_covariance;
+  Iteration iteration;
+};
+
+// Gauss-Newton from the first guess; false when a system is not positive definite.
+bool solve(const RateSmoother::Params& params, const RateModel& model, std::span<const RateObservation> observations,
+           Solution& solution, RateReport& health) {
+  solution.estimates = first_guess(observations, params.model, model, params.gap_max_s);
+  solution.rig = model.prior_constants();
+  solution.rig_covariance = model.prior_covariance();
+  std::vector<RateEstimate>& estimates = solution.estimates;
+  double widen = params.widen_first;
+  int soft = 0;  // iterations with soft bounds
+  health.iterations = 0;
+  health.converged = false;
+  while (health.iterations < params.iterations_max) {
+    weigh_all(model, observations, solution.rig, solution.rig_covariance, widen, estimates);
+    if (!solution.iteration.factorise(model, estimates, solution.rig)) return false;
+    solution.rig_covariance = solution.iteration.rig_covariance();
+    health.last_step_rad_s = solution.iteration.apply(model, params.step_max_rad_s, estimates, solution.rig);
+    ++health.iterations;
+
+    const bool settled = widen == 1.0 && health.last_step_rad_s < params.tolerance_rad_s;
+    if (soft > 0) {
+      solution.iteration.for_each_marginal([&](std::size_t k, const arrow::Marginal& marginal) {
+        model.update_bounds(observations[k], solution.rig, marginal, solution.rig_covariance, params.bound_damping,
+                            estimates[k]);
+      });
+    }
+    if (soft > 0 || settled || health.iterations + params.bound_iterations >= params.iterations_max) {
+      for (std::size_t k = 0; k < estimates.size() && soft == 0; ++k) {
+        if (estimates[k].flight_weight < 0.5) model.start_bounds(observations[k], solution.rig, estimates[k]);
+      }
+      health.converged = settled || health.converged;
+      if (soft++ == params.bound_iterations) break;
+    }
+    widen = std::max(1.0, 0.5 * widen);
+  }
+  health.rig_surprise = model.rig_surprise(solution.rig);
+  return true;
+}
+
+RateModelParams held(const RateModelParams& params, const RigConstants& constants) {
+  RateModelParams out = params;
+  out.calibration = RigCalibration{constants, 1e-12 * RigConstants::Matrix::Identity()};
+  return out;
+}
+
 }  // namespace
 
 RateSmoother::RateSmoother(const Params& params) : params_(params), rails_(params.rails) {
@@ -186,6 +236,7 @@ RateSmoother::RateSmoother(const Params& params) : params_(params), rails_(param
   require_within("recovered_sigma_rad_s", params.recovered_sigma_rad_s, 0.0, 1e4);
   require_within("bound_iterations", params.bound_iterations, 0, 1000);
   require_within("bound_damping", params.bound_damping, 0.01, 1.0);
+  require_within("rig_surprise_max", params.rig_surprise_max, 0.1, 1e6);
   require_within("gap_max_s", params.gap_max_s, 1e-6, 3600.0);
   (void)RateModel(params.model, 0.01);  // throws on bad parameters
 }
@@ -205,55 +256,41 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples, std::vector<Ra
   }
   const double force = median_force(samples);
   health.force_unit_suspect = force > 0.5 && force < 2.0;
-
-  const RateModel model(params_.model, median_period_s(samples));
   std::vector<RateObservation> observations(samples.size());
   for (std::size_t k = 0; k < samples.size(); ++k) observations[k] = {samples[k], clippings[k]};
-  std::vector<RateEstimate> estimates = first_guess(observations, params_.model, model, params_.gap_max_s);
-  RigConstants rig = model.prior_constants();
-  RigConstants::Matrix rig_covariance = model.prior_covariance();
-  Iteration iteration(observations, model);
-  double widen = params_.widen_first;
-  int soft = 0;  // iterations with soft bounds
-  while (health.iterations < params_.iterations_max) {
-    weigh_all(model, observations, rig, rig_covariance, widen, estimates);
-    if (!iteration.factorise(estimates, rig)) {
+
+  const double period_s = median_period_s(samples);
+  const RateModel model(params_.model, period_s);
+  Solution solution{{}, {}, {}, Iteration(observations)};
+  if (!solve(params_, model, observations, solution, health)) {
+    return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
+  }
+  health.calibration = {solution.rig, solution.rig_covariance};
+  if (health.rig_surprise > params_.rig_surprise_max) {
+    // contact was taken for flight of another rig: hold the rig to what was known of it
+    const double surprise = health.rig_surprise;
+    const RateModel fixed(held(params_.model, model.prior_constants()), period_s);
+    if (!solve(params_, fixed, observations, solution, health)) {
       return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
     }
-    rig_covariance = iteration.rig_covariance();
-    ++health.iterations;
-    health.last_step_rad_s = iteration.apply(params_.step_max_rad_s, estimates, rig);
-    const bool settled = widen == 1.0 && health.last_step_rad_s < params_.tolerance_rad_s;
-    const bool softened = soft > 0;
-    if (softened) {
-      iteration.for_each_marginal([&](std::size_t k, const arrow::Marginal& marginal) {
-        model.update_bounds(observations[k], rig, marginal, rig_covariance, params_.bound_damping, estimates[k]);
-      });
-    }
-    if (softened || settled || health.iterations + params_.bound_iterations >= params_.iterations_max) {
-      for (std::size_t k = 0; k < samples.size() && soft == 0; ++k) {
-        if (estimates[k].flight_weight < 0.5) model.start_bounds(observations[k], rig, estimates[k]);
-      }
-      health.converged = settled || health.converged;
-      if (soft++ == params_.bound_iterations) break;
-    }
-    widen = std::max(1.0, 0.5 * widen);
+    health.rig_held = true;
+    health.rig_surprise = surprise;
+    health.calibration = {model.prior_constants(), model.prior_covariance()};
   }
-  health.calibration = {rig, rig_covariance};
-  health.rig_surprise = model.rig_surprise(rig);
 
   std::vector<RateState> states(samples.size());
   std::size_t in_flight = 0;
-  iteration.for_each_marginal([&](std::size_t k, const arrow::Marginal& marginal) {
+  solution.iteration.for_each_marginal([&](std::size_t k, const arrow::Marginal& marginal) {
+    const RateEstimate& estimate = solution.estimates[k];
     RateState& state = states[k];
     state.time_ns = samples[k].time_ns;
-    state.w_WI_I_rad_s = estimates[k].knot.rate_rad_s;
+    state.w_WI_I_rad_s = estimate.knot.rate_rad_s;
     state.covariance_rad2_s2 = marginal.state.topLeftCorner<3, 3>();
     state.clipped_axes = clippings[k].gyro | clippings[k].void_gyro;
-    state.source = source_of(observations[k], estimates[k], state.covariance_rad2_s2, params_.recovered_sigma_rad_s);
+    state.source = source_of(observations[k], estimate, state.covariance_rad2_s2, params_.recovered_sigma_rad_s);
     count(state, health);
     health.void_readings += clippings[k].void_gyro != 0;
-    in_flight += estimates[k].flight_weight >= 0.5;
+    in_flight += estimate.flight_weight >= 0.5;
   });
   health.flight_share = static_cast<double>(in_flight) / static_cast<double>(samples.size());
   out = std::move(states);

@@ -36,9 +36,9 @@ struct RateModelParams {
   double jerk_psd_flight = 1e5;
   /// In contact the jerk grows by what the force can do to the angular acceleration: rad/s^2 per m/s^2 of specific
   /// force that the flight model cannot explain; [0, 1e3].
-  double contact_gain_rad_m = 10.0;
+  double contact_gain_rad_m = 4.0;
   /// A sample whose residuals of flight exceed this many standard deviations counts as contact; [1, 100].
-  double flight_threshold = 4.0;
+  double flight_threshold = 5.0;
   /// Softness of the bound that a clipped reading is [rad/s]; [1e-6, 10].
   double rail_sigma_rad_s = 0.05;
   /// Rates and accelerations that no body of this kind has; they bound the answer where nothing else does. The first

@@ -21,8 +21,9 @@ struct RateReport {
   double last_step_rad_s = 0.0;  ///< largest change of a rate in the last iteration
   RigCalibration calibration;    ///< what the run has learnt of the rig: can be given to the next
   /// How far the constants moved from what was known beforehand, in standard deviations (Mahalanobis distance over
-  /// sqrt(14)); beyond about 3 the prior or the model of motion is wrong and the answer deserves no trust.
+  /// sqrt(14)). Far beyond 1 the prior is wrong, or a run without flight was taken for one with flight.
   double rig_surprise = 0.0;
+  bool rig_held = false;  ///< the surprise was too large: nothing was learnt, the constants were held
   std::array<std::optional<double>, 6> rail;  ///< in use: gyro [rad/s], accelerometer [m/s^2]; none: not seen
   std::array<bool, 6> rail_disagrees{};       ///< a stated range contradicted by the readings
   bool force_unit_suspect = false;            ///< the median specific force is near 1: perhaps given in g
@@ -57,6 +58,9 @@ class RateSmoother {
     int bound_iterations = 3;
     double bound_damping = 0.5;       ///< share of a new bound taken over in each of them; [0.01, 1]
     double recovered_sigma_rad_s = 0.5;  ///< a clipped axis known better than this is recovered, not only bounded
+    /// A run whose constants move further than this (RateReport::rig_surprise) is estimated again with the constants
+    /// held to what was known; [0.1, 1e6].
+    double rig_surprise_max = 1.5;
     double gap_max_s = 1.0;           ///< longest time between samples before the run is refused; [1e-6, 3600]
   };
 
