@@ -14,7 +14,9 @@ double reading(const ImuSample& sample, int c) {
   return c < 3 ? sample.angular_velocity_rad_s[c] : sample.specific_force_m_s2[c - 3];
 }
 
-void set_bit(std::uint8_t& bits, int j) { bits = static_cast<std::uint8_t>(bits | 1u << j); }
+void set_bit(std::uint8_t& bits, int j) {
+  bits = static_cast<std::uint8_t>(bits | 1u << j);
+}
 
 }  // namespace
 

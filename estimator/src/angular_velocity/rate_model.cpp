@@ -45,6 +45,10 @@ RigConstants::Matrix covariance_of(const RateModelParams& p) {
 // precision of a bound before anything is known, (rad/s)^-2
 constexpr double kStartPrecision = 0.25;
 
+// Weight below which a sample may still draw a clipped rate towards flight, but says nothing of the rig: what is left
+// of the pull of contact is small for the rate and large for constants that are not known yet.
+constexpr double kRigWeightMin = 0.05;
+
 // phi(z) / Phi(z) of the normal distribution, by its asymptotic series where both vanish
 double density_over_share(double z) {
   if (z < -8.0) return -z / (1.0 - 1.0 / (z * z) + 3.0 / (z * z * z * z));
@@ -70,6 +74,14 @@ double normalised(const RateFactor& f, const RigConstants::Matrix& rig_covarianc
   Eigen::Matrix3d S = spread.lazyProduct(f.by_rig.transpose());
   S.diagonal().array() += sigma * sigma;
   return f.residual.dot(S.inverse() * f.residual);
+}
+
+// Mahalanobis distance of one part of the constants, over the root of its size
+template <int kFirst, int kCount>
+double surprise(const RigConstants::Vector& moved, const RigConstants::Matrix& covariance) {
+  const Eigen::Matrix<double, kCount, 1> part = moved.segment<kCount>(kFirst);
+  const Eigen::Matrix<double, kCount, kCount> spread = covariance.block<kCount, kCount>(kFirst, kFirst);
+  return std::sqrt(part.dot(spread.llt().solve(part)) / kCount);
 }
 
 void add_factor(const RateFactor& f, double information, double time_scale_s, arrow::Block& block,
@@ -124,7 +136,8 @@ double RateModel::jump(const RateKnot& from, const RateKnot& to, double dt_s) co
   return scale * (12.0 * e0.squaredNorm() - 12.0 * e0.dot(e1) + 4.0 * e1.squaredNorm());
 }
 
-void RateModel::start_bounds(const RateObservation& observation, const RigConstants& rig, RateEstimate& estimate) const {
+void RateModel::start_bounds(const RateObservation& observation, const RigConstants& rig,
+                             RateEstimate& estimate) const {
   estimate.soft_bounds = true;
   for (int j = 0; j < 3; ++j) {
     if ((observation.clipping.gyro >> j & 1u) == 0) continue;
@@ -174,7 +187,8 @@ void RateModel::add_sample(const RateObservation& observation, const RateEstimat
       information = 1.0 / (params_.rail_sigma_rad_s * params_.rail_sigma_rad_s);
       pull = information * gyro.residual[j];
       if (estimate.soft_bounds) information = estimate.bound_precision[j];
-      if (estimate.soft_bounds) pull = information * (estimate.knot.rate_rad_s[j] + rig.gyro_bias_rad_s[j]) - estimate.bound_shift[j];
+      if (estimate.soft_bounds)
+        pull = information * (estimate.knot.rate_rad_s[j] + rig.gyro_bias_rad_s[j]) - estimate.bound_shift[j];
     }
     block.diagonal(j, j) += information;
     block.border(j, 3 + j) += information;
@@ -186,10 +200,14 @@ void RateModel::add_sample(const RateObservation& observation, const RateEstimat
   const double flight_information = estimate.flight_weight / (accel_sigma_m_s2_ * accel_sigma_m_s2_);
   RateFactor flight = flight_factor(estimate.knot, rig, observation.sample.specific_force_m_s2);
   drop_satisfied_bounds(observation, flight);
+  RateFactor euler = euler_factor(estimate.knot, rig);
+  if (estimate.flight_weight < kRigWeightMin) {
+    flight.by_rig.setZero();
+    euler.by_rig.setZero();
+  }
   add_factor(flight, flight_information, time_scale_s_, block, corner);
-  const double euler_information =
-      estimate.flight_weight / (params_.euler_sigma_rad_s2 * params_.euler_sigma_rad_s2);
-  add_factor(euler_factor(estimate.knot, rig), euler_information, time_scale_s_, block, corner);
+  const double euler_information = estimate.flight_weight / (params_.euler_sigma_rad_s2 * params_.euler_sigma_rad_s2);
+  add_factor(euler, euler_information, time_scale_s_, block, corner);
 
   const double rate_information = 1.0 / (params_.rate_max_rad_s * params_.rate_max_rad_s);
   const double largest = params_.acceleration_max_rad_s2 * time_scale_s_;
@@ -209,7 +227,8 @@ void RateModel::add_step(const RateEstimate& from, const RateEstimate& to, doubl
   const double change = params_.contact_gain_rad_m * std::max(from.contact_m_s2, to.contact_m_s2);
   const double psd = params_.jerk_psd_flight + change * change / dt_s;
   // inverse of Q = psd [dt^3/3, dt^2 h/2; dt^2 h/2, dt h^2] of the scaled state
-  const double a = 12.0 / (psd * dt_s * dt_s * dt_s), b = -6.0 / (psd * dt_s * dt_s * h), c = 4.0 / (psd * dt_s * h * h);
+  const double a = 12.0 / (psd * dt_s * dt_s * dt_s), b = -6.0 / (psd * dt_s * dt_s * h),
+               c = 4.0 / (psd * dt_s * h * h);
   for (int j = 0; j < 3; ++j) {
     const double e0 = from.knot.rate_rad_s[j] + dt_s * from.knot.acceleration_rad_s2[j] - to.knot.rate_rad_s[j];
     const double e1 = (from.knot.acceleration_rad_s2[j] - to.knot.acceleration_rad_s2[j]) * h;
@@ -242,13 +261,33 @@ void RateModel::add_rig_prior(const RigConstants& rig, arrow::Corner& corner) co
 
 double RateModel::rig_surprise(const RigConstants& rig) const {
   const RigConstants::Vector moved = rig.vector() - prior_constants_.vector();
-  return std::sqrt(moved.dot(prior_information_ * moved) / RigConstants::kSize);
+  const double lever = surprise<0, 3>(moved, prior_covariance_), gyro = surprise<3, 3>(moved, prior_covariance_),
+               accel = surprise<6, 3>(moved, prior_covariance_), inertia = surprise<9, 5>(moved, prior_covariance_);
+  return std::max({lever, gyro, accel, inertia});
 }
 
 Eigen::Matrix<double, 6, 1> RateModel::unscaled(const arrow::StateVector& step) const {
   Eigen::Matrix<double, 6, 1> out = step;
   out.tail<3>() /= time_scale_s_;
   return out;
+}
+
+arrow::StateVector RateModel::scaled(const Eigen::Matrix<double, 6, 1>& difference) const {
+  arrow::StateVector out = difference;
+  out.tail<3>() *= time_scale_s_;
+  return out;
+}
+
+RateSource rate_source(const RateObservation& o, const RateEstimate& e, const Eigen::Matrix3d& covariance,
+                       double sigma) {
+  const int clipped = o.clipping.gyro | o.clipping.void_gyro;
+  if (clipped == 0) return RateSource::measured;
+  if (e.flight_weight >= 0.5) return RateSource::recovered_flight;
+  double largest = 0.0;
+  for (int j = 0; j < 3; ++j) {
+    if ((clipped >> j & 1) != 0) largest = std::max(largest, covariance(j, j));
+  }
+  return largest <= sigma * sigma ? RateSource::recovered_contact : RateSource::bounded_only;
 }
 
 }  // namespace tumble

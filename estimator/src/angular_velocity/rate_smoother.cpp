@@ -152,20 +152,10 @@ void weigh_all(const RateModel& model, std::span<const RateObservation> observat
     }
     // where the gyro reads all axes nothing is unknown that would excuse a residual
     const int clipped = observations[k].clipping.gyro | observations[k].clipping.void_gyro;
-    model.weigh(observations[k], rig, rig_covariance, clipped != 0 ? widen : 1.0, std::min(before, after), estimates[k]);
+    model.weigh(observations[k], rig, rig_covariance, clipped != 0 ? widen : 1.0, std::min(before, after),
+                estimates[k]);
     before = after;
   }
-}
-
-RateSource source_of(const RateObservation& o, const RateEstimate& e, const Eigen::Matrix3d& covariance, double sigma) {
-  const int clipped = o.clipping.gyro | o.clipping.void_gyro;
-  if (clipped == 0) return RateSource::measured;
-  if (e.flight_weight >= 0.5) return RateSource::recovered_flight;
-  double largest = 0.0;
-  for (int j = 0; j < 3; ++j) {
-    if ((clipped >> j & 1) != 0) largest = std::max(largest, covariance(j, j));
-  }
-  return largest <= sigma * sigma ? RateSource::recovered_contact : RateSource::bounded_only;
 }
 
 void count(const RateState& state, RateReport& report) {
@@ -287,7 +277,7 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples, std::vector<Ra
     state.w_WI_I_rad_s = estimate.knot.rate_rad_s;
     state.covariance_rad2_s2 = marginal.state.topLeftCorner<3, 3>();
     state.clipped_axes = clippings[k].gyro | clippings[k].void_gyro;
-    state.source = source_of(observations[k], estimate, state.covariance_rad2_s2, params_.recovered_sigma_rad_s);
+    state.source = rate_source(observations[k], estimate, state.covariance_rad2_s2, params_.recovered_sigma_rad_s);
     count(state, health);
     health.void_readings += clippings[k].void_gyro != 0;
     in_flight += estimate.flight_weight >= 0.5;

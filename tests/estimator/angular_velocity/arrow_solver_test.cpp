@@ -68,7 +68,8 @@ MatrixXd dense_matrix(const System& s) {
 VectorXd dense_gradient(const System& s) {
   const Index n = static_cast<Index>(s.blocks.size()) * kState;
   VectorXd g(n + kBorder);
-  for (std::size_t k = 0; k < s.blocks.size(); ++k) g.segment(static_cast<Index>(k) * kState, kState) = s.blocks[k].gradient;
+  for (std::size_t k = 0; k < s.blocks.size(); ++k)
+    g.segment(static_cast<Index>(k) * kState, kState) = s.blocks[k].gradient;
   g.tail(kBorder) = s.corner.gradient;
   return g;
 }

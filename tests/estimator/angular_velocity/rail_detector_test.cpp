@@ -28,7 +28,8 @@ std::vector<ImuSample> swinging_run(double amplitude, double rail) {
   return run;
 }
 
-std::vector<Clipping> classify(const RailDetector& rails, const std::vector<ImuSample>& run, RailDetector::State& state) {
+std::vector<Clipping> classify(const RailDetector& rails, const std::vector<ImuSample>& run,
+                               RailDetector::State& state) {
   std::vector<Clipping> out(run.size());
   rails.classify_all(run, state, out);
   return out;

@@ -38,7 +38,8 @@ Outcome estimate(const TumbleOptions& options, const RateSmoother::Params& param
 RateSmoother::Params wrong_lever(double error_m, std::uint64_t seed) {
   RateSmoother::Params params;
   const double s = static_cast<double>(seed);
-  params.model.nominal.lever_arm_m += error_m * Vector3d(std::sin(s), std::cos(2.0 * s), std::sin(3.0 * s)).normalized();
+  params.model.nominal.lever_arm_m +=
+      error_m * Vector3d(std::sin(s), std::cos(2.0 * s), std::sin(3.0 * s)).normalized();
   return params;
 }
 

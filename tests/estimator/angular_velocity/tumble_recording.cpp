@@ -25,13 +25,14 @@ struct Moment {
   Phase phase;
 };
 
-Vector3d direction(oracles::Gaussian& noise) { return noise.vector().normalized(); }
+Vector3d direction(oracles::Gaussian& noise) {
+  return noise.vector().normalized();
+}
 
 // The whole motion at 2 kHz.
 class Motion {
  public:
-  explicit Motion(const TumbleOptions& options)
-      : options_(options), noise_(options.seed) {
+  explicit Motion(const TumbleOptions& options) : options_(options), noise_(options.seed) {
     oracles::Gaussian mounting(options.mounting_seed);
     R_IB_ = Eigen::AngleAxisd(3.0 * mounting.uniform(), direction(mounting)).toRotationMatrix();
     still(0.6);
@@ -42,7 +43,8 @@ class Motion {
       if (i + 1 == options.flights) break;
       const double speed = noise_.uniform(options.speed_low_rad_s, options.speed_high_rad_s);
       const Vector3d next = speed * (rate + 5.0 * noise_.vector()).normalized();
-      blend(rate, next, kImpactTime, Phase::impact, noise_.uniform(0.33, 1.0) * options.impact_m_s2 * direction(noise_));
+      blend(rate, next, kImpactTime, Phase::impact,
+            noise_.uniform(0.33, 1.0) * options.impact_m_s2 * direction(noise_));
       rate = next;
     }
     if (options.roll) blend(rate, Vector3d::Zero(), 1.0, Phase::roll, Vector3d::Zero());

@@ -17,7 +17,7 @@ enum class Phase : std::uint8_t { rest, push, flight, impact, roll };
 struct TumbleOptions {
   std::uint64_t seed = 1;
   std::uint64_t mounting_seed = 1;  ///< of the principal axes in the IMU
-  int rate_hz = 100;  ///< divides 2000
+  int rate_hz = 100;                ///< divides 2000
   double gyro_rail_rad_s = 10.5;
   double accel_rail_m_s2 = 196.0;
   Eigen::Vector3d lever_arm_m = {-0.022, -0.085, 0.055};

@@ -7,6 +7,7 @@
 #include "tumble/angular_velocity/arrow_solver.hpp"
 #include "tumble/angular_velocity/rail_detector.hpp"
 #include "tumble/angular_velocity/rate_factors.hpp"
+#include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/angular_velocity/rig_constants.hpp"
 #include "tumble/common/imu.hpp"
 
@@ -56,15 +57,16 @@ struct RateObservation {
 /// What is estimated of one sample.
 struct RateEstimate {
   RateKnot knot;
-  double flight_weight = 0.0;   ///< 0: contact, 1: free flight
-  double contact_m_s2 = 0.0;    ///< specific force that the flight model does not explain
+  double flight_weight = 0.0;  ///< 0: contact, 1: free flight
+  double contact_m_s2 = 0.0;   ///< specific force that the flight model does not explain
   /// What the bounds of clipped axes amount to, as Gaussian sites on (rate + bias): precision and precision * mean.
   Eigen::Vector3d bound_precision = Eigen::Vector3d::Zero();
   Eigen::Vector3d bound_shift = Eigen::Vector3d::Zero();
   bool soft_bounds = false;  ///< false: bounds are walls that act only when violated (for the first iterations)
 };
 
-/// The factors of one sample and of one step between samples, added to an arrow matrix. Holds derived coefficients only.
+/// The factors of one sample and of one step between samples, added to an arrow matrix. Holds derived coefficients
+/// only.
 class RateModel {
  public:
   /// `period_s`: nominal time between samples, from which noise per sample and the scale of the acceleration follow.
@@ -99,7 +101,8 @@ class RateModel {
   /// Adds what was known of the rig beforehand.
   void add_rig_prior(const RigConstants& rig, arrow::Corner& corner) const;
 
-  /// Mahalanobis distance of `rig` from what was known beforehand, over sqrt(RigConstants::kSize).
+  /// How far `rig` is from what was known beforehand: the largest, over lever arm, both biases and inertia, of the
+  /// Mahalanobis distance divided by the root of the number of components. About 1 is expected.
   double rig_surprise(const RigConstants& rig) const;
 
   RigConstants prior_constants() const { return prior_constants_; }
@@ -107,6 +110,8 @@ class RateModel {
 
   /// A step of the solver in physical units.
   Eigen::Matrix<double, 6, 1> unscaled(const arrow::StateVector& step) const;
+  /// A difference in physical units in those of the solver.
+  arrow::StateVector scaled(const Eigen::Matrix<double, 6, 1>& difference) const;
   double gyro_sigma_rad_s() const { return gyro_sigma_rad_s_; }
 
  private:
@@ -118,5 +123,9 @@ class RateModel {
   RigConstants::Matrix prior_covariance_;
   RigConstants::Matrix prior_information_;
 };
+
+/// Where a rate comes from, given its covariance and the deviation below which a clipped axis counts as recovered.
+RateSource rate_source(const RateObservation& observation, const RateEstimate& estimate,
+                       const Eigen::Matrix3d& covariance_rad2_s2, double recovered_sigma_rad_s);
 
 }  // namespace tumble

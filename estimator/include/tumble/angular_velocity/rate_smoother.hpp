@@ -20,8 +20,8 @@ struct RateReport {
   bool converged = false;
   double last_step_rad_s = 0.0;  ///< largest change of a rate in the last iteration
   RigCalibration calibration;    ///< what the run has learnt of the rig: can be given to the next
-  /// How far the constants moved from what was known beforehand, in standard deviations (Mahalanobis distance over
-  /// sqrt(14)). Far beyond 1 the prior is wrong, or a run without flight was taken for one with flight.
+  /// How far the constants moved from what was known beforehand (RateModel::rig_surprise). Far beyond 1 the prior is
+  /// wrong, or a run without flight was taken for one with flight.
   double rig_surprise = 0.0;
   bool rig_held = false;  ///< the surprise was too large: nothing was learnt, the constants were held
   std::array<std::optional<double>, 6> rail;  ///< in use: gyro [rad/s], accelerometer [m/s^2]; none: not seen
@@ -49,19 +49,19 @@ class RateSmoother {
   struct Params {
     RateModelParams model;
     RailDetector::Params rails;
-    int iterations_max = 15;          ///< [1, 1000]
-    double tolerance_rad_s = 2e-3;    ///< stop when no rate changes by more; [1e-12, 1]
-    double step_max_rad_s = 10.0;     ///< longest step of a rate in one iteration; [1e-3, 1e4]
-    double widen_first = 8.0;         ///< threshold of contact in the first iteration, halved in each; [1, 1000]
+    int iterations_max = 15;        ///< [1, 1000]
+    double tolerance_rad_s = 2e-3;  ///< stop when no rate changes by more; [1e-12, 1]
+    double step_max_rad_s = 10.0;   ///< longest step of a rate in one iteration; [1e-3, 1e4]
+    double widen_first = 8.0;       ///< threshold of contact in the first iteration, halved in each; [1, 1000]
     /// Iterations after settling in which the bounds of samples in contact are those of a truncated distribution
     /// instead of walls, which gives them an honest covariance; [0, 1000].
     int bound_iterations = 3;
-    double bound_damping = 0.5;       ///< share of a new bound taken over in each of them; [0.01, 1]
+    double bound_damping = 0.5;          ///< share of a new bound taken over in each of them; [0.01, 1]
     double recovered_sigma_rad_s = 0.5;  ///< a clipped axis known better than this is recovered, not only bounded
     /// A run whose constants move further than this (RateReport::rig_surprise) is estimated again with the constants
     /// held to what was known; [0.1, 1e6].
     double rig_surprise_max = 1.5;
-    double gap_max_s = 1.0;           ///< longest time between samples before the run is refused; [1e-6, 3600]
+    double gap_max_s = 1.0;  ///< longest time between samples before the run is refused; [1e-6, 3600]
   };
 
   /// Throws InvalidParams on a parameter outside of its bound.
