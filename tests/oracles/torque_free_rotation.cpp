@@ -14,8 +14,10 @@ namespace tumble::oracles {
 namespace {
 
 // Gauss-Legendre of order 8 on [-1, 1]
-constexpr std::array<double, 4> kNodes = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
-constexpr std::array<double, 4> kWeights = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
+constexpr std::array<double, 4> kNodes = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
+                                          0.9602898564975363};
+constexpr std::array<double, 4> kWeights = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
+                                            0.1012285362903763};
 // panels per half period; the integrand is smooth, doubling them changes nothing above 1e-14
 constexpr int kPanels = 64;
 

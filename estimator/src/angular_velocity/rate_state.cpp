@@ -5,10 +5,14 @@ namespace tumble {
 
 const char* to_string(RateSource source) {
   switch (source) {
-    case RateSource::measured: return "measured";
-    case RateSource::recovered_flight: return "recovered_flight";
-    case RateSource::recovered_contact: return "recovered_contact";
-    case RateSource::bounded_only: return "bounded_only";
+    case RateSource::measured:
+      return "measured";
+    case RateSource::recovered_flight:
+      return "recovered_flight";
+    case RateSource::recovered_contact:
+      return "recovered_contact";
+    case RateSource::bounded_only:
+      return "bounded_only";
   }
   return "unknown";
 }

@@ -103,8 +103,8 @@ Status check(std::span<const WnojSmoother::Measurement> measurements) {
   return {};
 }
 
-void smooth_axis(std::span<const WnojSmoother::Measurement> measurements, int axis, double psd,
-                 std::vector<Row>& rows, std::vector<WnojSmoother::Smoothed>& out) {
+void smooth_axis(std::span<const WnojSmoother::Measurement> measurements, int axis, double psd, std::vector<Row>& rows,
+                 std::vector<WnojSmoother::Smoothed>& out) {
   const std::size_t count = measurements.size();
   const double time_scale_s =
       seconds(measurements.back().time_ns - measurements.front().time_ns) / static_cast<double>(count - 1);

@@ -70,9 +70,8 @@ Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& phi) {
 Eigen::Matrix3d left_jacobian_inverse(const Eigen::Vector3d& phi) {
   const double angle2 = phi.squaredNorm();
   const double angle = std::sqrt(angle2);
-  const double c = angle < kSmallAngle
-                       ? 1.0 / 12.0 + angle2 / 720.0
-                       : (1.0 - 0.5 * angle * std::cos(0.5 * angle) / std::sin(0.5 * angle)) / angle2;
+  const double c = angle < kSmallAngle ? 1.0 / 12.0 + angle2 / 720.0
+                                       : (1.0 - 0.5 * angle * std::cos(0.5 * angle) / std::sin(0.5 * angle)) / angle2;
   const Eigen::Matrix3d k = hat(phi);
   return Eigen::Matrix3d::Identity() - 0.5 * k + c * k * k;
 }

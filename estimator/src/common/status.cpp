@@ -19,15 +19,24 @@ std::string number(double value) {
 
 const char* to_string(Trouble trouble) {
   switch (trouble) {
-    case Trouble::none: return "ok";
-    case Trouble::empty: return "empty";
-    case Trouble::non_finite: return "non_finite";
-    case Trouble::time_order: return "time_order";
-    case Trouble::gap: return "gap";
-    case Trouble::out_of_range: return "out_of_range";
-    case Trouble::too_few: return "too_few";
-    case Trouble::degenerate: return "degenerate";
-    case Trouble::diverged: return "diverged";
+    case Trouble::none:
+      return "ok";
+    case Trouble::empty:
+      return "empty";
+    case Trouble::non_finite:
+      return "non_finite";
+    case Trouble::time_order:
+      return "time_order";
+    case Trouble::gap:
+      return "gap";
+    case Trouble::out_of_range:
+      return "out_of_range";
+    case Trouble::too_few:
+      return "too_few";
+    case Trouble::degenerate:
+      return "degenerate";
+    case Trouble::diverged:
+      return "diverged";
   }
   return "unknown";
 }

@@ -27,7 +27,9 @@ Saave::Params params_below_rail() {
   return params;
 }
 
-Vector3d clipped(const Vector3d& w) { return w.cwiseMin(kRail).cwiseMax(-kRail); }
+Vector3d clipped(const Vector3d& w) {
+  return w.cwiseMin(kRail).cwiseMax(-kRail);
+}
 
 ImuSample sample_at(std::size_t k, const Vector3d& rate, const Vector3d& force) {
   return {static_cast<TimeNs>(k) * kPeriod, rate, force, 0};
@@ -69,8 +71,9 @@ TEST(Saave, TakesTheSignOfTheReadingAndSubtractsTheOtherAxes) {
 
 TEST(Saave, NeverGoesBelowTheReading) {
   const Vector3d slow = 8.0 * Vector3d::UnitX();
-  const Saave::Recovered out = after_axis(
-      5.0 * Vector3d::UnitX(), sample_at(1, kRail * Vector3d::UnitX(), slow.cross(slow.cross(kLever))), params_below_rail());
+  const Saave::Recovered out =
+      after_axis(5.0 * Vector3d::UnitX(), sample_at(1, kRail * Vector3d::UnitX(), slow.cross(slow.cross(kLever))),
+                 params_below_rail());
   EXPECT_TRUE(out.accepted);
   EXPECT_EQ(out.rate_rad_s.x(), kRail);
 }
@@ -88,8 +91,8 @@ TEST(Saave, RejectsWhenTheForcePointsAwayAndFreezesTheAxis) {
 }
 
 TEST(Saave, ZeroRadicandIsRejectedToo) {
-  const Saave::Recovered out =
-      after_axis(5.0 * Vector3d::UnitX(), sample_at(1, kRail * Vector3d::UnitX(), Vector3d::Zero()), params_below_rail());
+  const Saave::Recovered out = after_axis(
+      5.0 * Vector3d::UnitX(), sample_at(1, kRail * Vector3d::UnitX(), Vector3d::Zero()), params_below_rail());
   EXPECT_FALSE(out.accepted);
 }
 

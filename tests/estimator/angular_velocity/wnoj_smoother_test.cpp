@@ -68,8 +68,8 @@ Dense dense_reference(const std::vector<Measurement>& run, double psd, int axis)
   // symmetric scaling: angle, rate and acceleration differ by many orders of magnitude
   const Eigen::Matrix<Real, Eigen::Dynamic, 1> scale = free.diagonal().cwiseSqrt().cwiseInverse();
   const Matrix scaled = scale.asDiagonal() * free * scale.asDiagonal();
-  const Matrix covariance = scale.asDiagonal() * scaled.ldlt().solve(Matrix::Identity(3 * n - 1, 3 * n - 1)).eval() *
-                            scale.asDiagonal();
+  const Matrix covariance =
+      scale.asDiagonal() * scaled.ldlt().solve(Matrix::Identity(3 * n - 1, 3 * n - 1)).eval() * scale.asDiagonal();
   const Eigen::Matrix<Real, Eigen::Dynamic, 1> x = covariance * g.tail(3 * n - 1);
   Dense out;
   out.rate.resize(n);

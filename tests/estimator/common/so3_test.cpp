@@ -18,13 +18,13 @@ using Wide = Eigen::Matrix<long double, 3, 3>;
 constexpr double kPi = std::numbers::pi;
 
 std::vector<double> angles() {
-  return {0.0,  1e-300, 1e-160, 1e-30, 1e-12,     1e-9,       1e-6,      0.9e-4, 0.99999e-4, 1.00001e-4, 1.1e-4,
-          1e-3, 0.01,   0.1,    0.499, 0.501,     1.0,        2.0,       3.0,    kPi - 1e-3, kPi - 1e-9, kPi,
-          4.0,  6.0};
+  return {0.0,  1e-300, 1e-160, 1e-30, 1e-12, 1e-9, 1e-6, 0.9e-4,     0.99999e-4, 1.00001e-4, 1.1e-4, 1e-3,
+          0.01, 0.1,    0.499,  0.501, 1.0,   2.0,  3.0,  kPi - 1e-3, kPi - 1e-9, kPi,        4.0,    6.0};
 }
 
 std::vector<Vector3d> axes() {
-  return {Vector3d::UnitX(), -Vector3d::UnitZ(), Vector3d(1, 2, 3).normalized(), Vector3d(-0.3, 0.9, -0.1).normalized()};
+  return {Vector3d::UnitX(), -Vector3d::UnitZ(), Vector3d(1, 2, 3).normalized(),
+          Vector3d(-0.3, 0.9, -0.1).normalized()};
 }
 
 // sum of a_n [phi]x^n in long double: exp for a_n = 1 / n!, left Jacobian for a_n = 1 / (n + 1)!
@@ -80,8 +80,8 @@ TEST(So3, LogReturnsTheShortestVector) {
 }
 
 TEST(So3, LogOfBothSignsIsTheSameHalfTurnsIncluded) {
-  std::vector<Quaterniond> rotations = {{0.0, 1.0, 0.0, 0.0}, {0.0, 0.0, -1.0, 0.0}, {0.0, 0.0, 0.6, -0.8},
-                                        {-0.0, 0.6, 0.0, 0.8}, {1.0, 0.0, 0.0, 0.0}, {0.5, 0.5, -0.5, 0.5}};
+  std::vector<Quaterniond> rotations = {{0.0, 1.0, 0.0, 0.0},  {0.0, 0.0, -1.0, 0.0}, {0.0, 0.0, 0.6, -0.8},
+                                        {-0.0, 0.6, 0.0, 0.8}, {1.0, 0.0, 0.0, 0.0},  {0.5, 0.5, -0.5, 0.5}};
   for (const Quaterniond& q : rotations) {
     const Quaterniond opposite(-q.w(), -q.x(), -q.y(), -q.z());
     EXPECT_EQ(log(q), log(opposite)) << q.coeffs().transpose();
@@ -102,8 +102,8 @@ TEST(So3, LeftJacobianAgreesWithItsSeries) {
 TEST(So3, LeftJacobianIsTheDerivativeOfExp) {
   const Vector3d phi(0.4, -1.1, 0.7), d(1e-6, -2e-6, 1.5e-6);
   const Vector3d measured = log(exp(phi + d) * exp(phi).conjugate());
-  EXPECT_LE((measured - left_jacobian(phi) * d).norm(), 1e-11);                 // second order: |d|^2 = 7e-12
-  EXPECT_GT((measured - left_jacobian(phi).transpose() * d).norm(), 1e-7);      // the right Jacobian is another one
+  EXPECT_LE((measured - left_jacobian(phi) * d).norm(), 1e-11);             // second order: |d|^2 = 7e-12
+  EXPECT_GT((measured - left_jacobian(phi).transpose() * d).norm(), 1e-7);  // the right Jacobian is another one
 }
 
 TEST(So3, LeftJacobianInverseIsTheInverse) {

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "tumble/common/imu.hpp"
+
+namespace tumble {
+
+/// Which readings of a sample say less than they show.
+struct Clipping {
+  std::uint8_t gyro = 0;       ///< bit j: axis j at its rail, the truth lies at or beyond the reading
+  std::uint8_t accel = 0;      ///< likewise for the accelerometer
+  std::uint8_t void_gyro = 0;  ///< bit j: the reading of axis j says nothing (sign flipped at the rail: overflow)
+  bool operator==(const Clipping&) const = default;
+};
+
+/// Finds the rails of an IMU in its readings: the level that a channel keeps while it is clipped, which differs from
+/// unit to unit and from the data sheet (an MTi-30 specified for 7.85 rad/s was seen to stay at 10.5).
+///
+/// A plateau is a run of readings of one sign that lie closer together than noise allows, at the largest magnitude
+/// seen so far on that axis. A stated range serves until a plateau is seen, and only as long as no reading exceeds it.
+/// Flags reported by the device count always. Clipping has hysteresis, so that the ragged edge of a plateau belongs
+/// to it. What it does not model: rails that differ between the two signs of an axis, or that drift.
+class RailDetector {
+ public:
+  struct Params {
+    /// Range as stated by the data sheet or the user, if any: gyro [rad/s], (0, 1000]; accelerometer [m/s^2], (0, 1e5].
+    std::optional<double> stated_gyro_rad_s = std::nullopt;
+    std::optional<double> stated_accel_m_s2 = std::nullopt;
+    /// A reading within this share of the rail starts clipping; [0, 0.1].
+    double enter_share = 0.003;
+    /// A neighbour of a clipped reading within this share of the rail is clipped too; [enter_share, 0.5].
+    double leave_share = 0.02;
+    /// Readings in a row that make a plateau; [2, 1000].
+    int plateau_samples = 4;
+    /// Largest spread of a plateau as a share of its level; [0, 0.01]. Below the noise of a free reading.
+    double plateau_spread_share = 2e-5;
+    /// A plateau below this is no rail: gyro [rad/s] and accelerometer [m/s^2] (above gravity); (0, 1000].
+    double plateau_gyro_min_rad_s = 1.0;
+    double plateau_accel_min_m_s2 = 15.0;
+    /// Stated and found rail disagree beyond this share; (0, 1].
+    double disagreement_share = 0.02;
+  };
+
+  /// One channel; gyro x, y, z then accelerometer x, y, z.
+  struct Channel {
+    double rail = 0.0;  ///< found by a plateau; 0: none yet
+    double peak = 0.0;  ///< largest magnitude seen
+    double run_first = 0.0;
+    int run_length = 0;
+    double last = 0.0;
+    bool clipped = false;
+    bool operator==(const Channel&) const = default;
+  };
+  struct State {
+    std::array<Channel, 6> channels;
+    bool operator==(const State&) const = default;
+  };
+
+  /// Throws InvalidParams on a parameter outside of its bound.
+  explicit RailDetector(const Params& params);
+
+  /// Learns from one finite sample. O(1).
+  void observe(const ImuSample& sample, State& state) const;
+  /// Classifies one finite sample with what is known; carries the hysteresis in `state`. O(1).
+  Clipping classify(const ImuSample& sample, State& state) const;
+  /// Classifies a whole recording after learning from all of it, edges on both sides of each plateau included. O(N).
+  void classify_all(std::span<const ImuSample> samples, State& state, std::span<Clipping> out) const;
+
+  /// Rail in use for channel c (0-5): the plateau found; else, as long as no reading exceeds it, the largest found on
+  /// another axis of the same sensor; else likewise the stated range; else none.
+  std::optional<double> rail(const State& state, int c) const;
+  /// True when a stated range exists and a plateau or a larger reading contradicts it.
+  bool disagrees(const State& state, int c) const;
+
+ private:
+  std::optional<double> stated(int c) const;
+  Params params_;
+};
+
+}  // namespace tumble

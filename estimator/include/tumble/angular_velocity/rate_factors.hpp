@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include "tumble/angular_velocity/rig_constants.hpp"
+
+namespace tumble {
+
+/// Unknowns at one sample: rate and angular acceleration of the body, IMU axes.
+struct RateKnot {
+  Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();
+  Eigen::Vector3d acceleration_rad_s2 = Eigen::Vector3d::Zero();
+  bool operator==(const RateKnot&) const = default;
+};
+
+/// A residual of three rows with its derivatives by (rate, acceleration) and by the constants of the rig.
+struct RateFactor {
+  Eigen::Vector3d residual;
+  Eigen::Matrix<double, 3, 6> by_knot;
+  Eigen::Matrix<double, 3, RigConstants::kSize> by_rig;
+};
+
+/// Gyro: rate + bias - reading [rad/s].
+RateFactor gyro_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_rad_s);
+
+/// Free flight seen by the accelerometer, whose specific force vanishes at the centre of mass [m/s^2]:
+/// alpha x t + w x (w x t) + bias - reading.
+RateFactor flight_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_m_s2);
+
+/// Free flight by Euler's equation without torque, with the inertia scaled to trace 3 [rad/s^2]: J alpha + w x J w.
+RateFactor euler_factor(const RateKnot& knot, const RigConstants& rig);
+
+}  // namespace tumble

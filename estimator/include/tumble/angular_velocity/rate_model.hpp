@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "tumble/angular_velocity/arrow_solver.hpp"
+#include "tumble/angular_velocity/rail_detector.hpp"
+#include "tumble/angular_velocity/rate_factors.hpp"
+#include "tumble/angular_velocity/rate_state.hpp"
+#include "tumble/angular_velocity/rig_constants.hpp"
+#include "tumble/common/imu.hpp"
+
+namespace tumble {
+
+/// What is assumed of the sensors, of the body and of its motion; shared by the batch and the streaming smoother.
+struct RateModelParams {
+  /// What is known of the rig beforehand; the shape of the inertia counts about the centre of mass, in IMU axes.
+  RigConstants nominal = {.lever_arm_m = {-0.022, -0.085, 0.055}};
+  /// Standard deviations of `nominal`; [1e-9, 10] each.
+  double lever_arm_sigma_m = 0.02;
+  double gyro_bias_sigma_rad_s = 0.01;
+  double accel_bias_sigma_m_s2 = 0.05;
+  double inertia_sigma = 0.3;
+  /// What an earlier run has learnt; takes the place of `nominal` and of the four deviations above.
+  std::optional<RigCalibration> calibration = std::nullopt;
+
+  /// Noise density of the gyro [rad/s/sqrt(Hz)] (MTi-30: 0.03 deg/s/sqrt(Hz)); [1e-9, 1].
+  double gyro_noise_density = 5.236e-4;
+  /// Noise density of the accelerometer [m/s^2/sqrt(Hz)] (MTi-30: 60 ug/sqrt(Hz)); [1e-9, 10].
+  double accel_noise_density = 5.9e-4;
+  /// What the flight model misses of the specific force (scale errors, drag), besides noise [m/s^2]; [1e-6, 100].
+  double flight_sigma_m_s2 = 0.05;
+  /// What Euler's equation without torque misses of the angular acceleration [rad/s^2]; [1e-6, 1e6].
+  double euler_sigma_rad_s2 = 2.0;
+  /// Density of the white angular jerk in flight [rad^2/s^5]; [1, 1e12].
+  double jerk_psd_flight = 1e5;
+  /// In contact the jerk grows by what the force can do to the angular acceleration: rad/s^2 per m/s^2 of specific
+  /// force that the flight model cannot explain; [0, 1e3].
+  double contact_gain_rad_m = 4.0;
+  /// A sample whose residuals of flight exceed this many standard deviations counts as contact; [1, 100].
+  double flight_threshold = 5.0;
+  /// Softness of the bound that a clipped reading is [rad/s]; [1e-6, 10].
+  double rail_sigma_rad_s = 0.05;
+  /// Rates and accelerations that no body of this kind has; they bound the answer where nothing else does. The first
+  /// in [1, 1e4] rad/s, the second in [1, 1e7] rad/s^2.
+  double rate_max_rad_s = 50.0;
+  double acceleration_max_rad_s2 = 5000.0;
+};
+
+/// One sample as the model sees it.
+struct RateObservation {
+  ImuSample sample;
+  Clipping clipping;
+};
+
+/// What is estimated of one sample.
+struct RateEstimate {
+  RateKnot knot;
+  double flight_weight = 0.0;  ///< 0: contact, 1: free flight
+  double contact_m_s2 = 0.0;   ///< specific force that the flight model does not explain
+  /// What the bounds of clipped axes amount to, as Gaussian sites on (rate + bias): precision and precision * mean.
+  Eigen::Vector3d bound_precision = Eigen::Vector3d::Zero();
+  Eigen::Vector3d bound_shift = Eigen::Vector3d::Zero();
+  bool soft_bounds = false;  ///< false: bounds are walls that act only when violated (for the first iterations)
+};
+
+/// The factors of one sample and of one step between samples, added to an arrow matrix. Holds derived coefficients
+/// only.
+class RateModel {
+ public:
+  /// `period_s`: nominal time between samples, from which noise per sample and the scale of the acceleration follow.
+  /// Throws InvalidParams on a parameter outside of its bound.
+  RateModel(const RateModelParams& params, double period_s);
+
+  /// Weighs a sample between flight and contact at the current estimate. `rig_covariance`: what is not yet known of
+  /// the rig must not pass for contact. `widen` >= 1 multiplies the threshold while the rates themselves are unknown.
+  /// `jump`: the smaller of the jumps to the neighbours, from jump(); flight has at least one smooth side.
+  void weigh(const RateObservation& observation, const RigConstants& rig, const RigConstants::Matrix& rig_covariance,
+             double widen, double jump, RateEstimate& estimate) const;
+
+  /// How far a step between two samples is from the smoothness of flight: squared, normalised, six degrees of freedom.
+  double jump(const RateKnot& from, const RateKnot& to, double dt_s) const;
+
+  /// Starts the bounds of a sample: near the current estimate or the reading, whichever lies beyond.
+  void start_bounds(const RateObservation& observation, const RigConstants& rig, RateEstimate& estimate) const;
+
+  /// Refines the bounds of a sample by expectation propagation (Minka 2001): the Gaussian site with which the marginal
+  /// has the mean and variance that truncation at the reading gives it. `damping` in (0, 1] is the share of the new.
+  void update_bounds(const RateObservation& observation, const RigConstants& rig, const arrow::Marginal& marginal,
+                     const RigConstants::Matrix& rig_covariance, double damping, RateEstimate& estimate) const;
+
+  /// Adds gyro, bound, flight and Euler factors of one sample.
+  void add_sample(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
+                  arrow::Block& block, arrow::Corner& corner) const;
+
+  /// Adds the motion prior between two samples, dt_s apart.
+  void add_step(const RateEstimate& from, const RateEstimate& to, double dt_s, arrow::Block& block,
+                arrow::Block& next) const;
+
+  /// Adds what was known of the rig beforehand.
+  void add_rig_prior(const RigConstants& rig, arrow::Corner& corner) const;
+
+  /// How far `rig` is from what was known beforehand: the largest, over lever arm, both biases and inertia, of the
+  /// Mahalanobis distance divided by the root of the number of components. About 1 is expected.
+  double rig_surprise(const RigConstants& rig) const;
+
+  RigConstants prior_constants() const { return prior_constants_; }
+  const RigConstants::Matrix& prior_covariance() const { return prior_covariance_; }
+
+  /// A step of the solver in physical units.
+  Eigen::Matrix<double, 6, 1> unscaled(const arrow::StateVector& step) const;
+  /// A difference in physical units in those of the solver.
+  arrow::StateVector scaled(const Eigen::Matrix<double, 6, 1>& difference) const;
+  double gyro_sigma_rad_s() const { return gyro_sigma_rad_s_; }
+
+ private:
+  RateModelParams params_;
+  double time_scale_s_;  ///< the solver's acceleration is the acceleration times this
+  double gyro_sigma_rad_s_;
+  double accel_sigma_m_s2_;
+  RigConstants prior_constants_;
+  RigConstants::Matrix prior_covariance_;
+  RigConstants::Matrix prior_information_;
+};
+
+/// Where a rate comes from, given its covariance and the deviation below which a clipped axis counts as recovered.
+RateSource rate_source(const RateObservation& observation, const RateEstimate& estimate,
+                       const Eigen::Matrix3d& covariance_rad2_s2, double recovered_sigma_rad_s);
+
+}  // namespace tumble

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "tumble/angular_velocity/rate_model.hpp"
+#include "tumble/angular_velocity/rate_state.hpp"
+#include "tumble/common/imu.hpp"
+#include "tumble/common/status.hpp"
+
+namespace tumble {
+
+/// What a run tells about its own health.
+struct RateReport {
+  int iterations = 0;
+  bool converged = false;
+  double last_step_rad_s = 0.0;  ///< largest change of a rate in the last iteration
+  RigCalibration calibration;    ///< what the run has learnt of the rig: can be given to the next
+  /// How far the constants moved from what was known beforehand (RateModel::rig_surprise). Far beyond 1 the prior is
+  /// wrong, or a run without flight was taken for one with flight.
+  double rig_surprise = 0.0;
+  bool rig_held = false;  ///< the surprise was too large: nothing was learnt, the constants were held
+  std::array<std::optional<double>, 6> rail;  ///< in use: gyro [rad/s], accelerometer [m/s^2]; none: not seen
+  std::array<bool, 6> rail_disagrees{};       ///< a stated range contradicted by the readings
+  bool force_unit_suspect = false;            ///< the median specific force is near 1: perhaps given in g
+  std::size_t samples = 0, clipped = 0, recovered_flight = 0, recovered_contact = 0, bounded_only = 0;
+  std::size_t void_readings = 0;  ///< samples with an overflow (sign flipped at the rail)
+  double flight_share = 0.0;      ///< share of the samples that count as free flight
+};
+
+/// Angular velocity of a tumbling body through saturation of its gyro: a tightly coupled smoother over a recording.
+///
+/// Unknown per sample: rate and angular acceleration, and for the run the RigConstants. Gauss-Newton on: the gyro where
+/// it is not clipped; the bound that a clipped reading is, for any number of axes; in flight the whole rigid-body
+/// form of the specific force at the lever arm and Euler's equation without torque, both weighed down together where
+/// they do not hold (contact); between samples white noise on jerk, of a density that grows with the force of contact
+/// so that an impact breaks the chain. The normal equations are an arrow matrix: O(N) per iteration, covariance
+/// included. Starts from the published method (Saave), extended to bounds.
+///
+/// What it does not model: resting and rolling contact (such samples are bounded and smoothed only), scale and
+/// misalignment of the sensors, time offset between gyro and accelerometer. The rates are those at which the gyro's
+/// readings stand: means over the window of the sample.
+class RateSmoother {
+ public:
+  struct Params {
+    RateModelParams model;
+    RailDetector::Params rails;
+    int iterations_max = 15;        ///< [1, 1000]
+    double tolerance_rad_s = 2e-3;  ///< stop when no rate changes by more; [1e-12, 1]
+    double step_max_rad_s = 10.0;   ///< longest step of a rate in one iteration; [1e-3, 1e4]
+    double widen_first = 8.0;       ///< threshold of contact in the first iteration, halved in each; [1, 1000]
+    /// Iterations after settling in which the bounds of samples in contact are those of a truncated distribution
+    /// instead of walls, which gives them an honest covariance; [0, 1000].
+    int bound_iterations = 3;
+    double bound_damping = 0.5;          ///< share of a new bound taken over in each of them; [0.01, 1]
+    double recovered_sigma_rad_s = 0.5;  ///< a clipped axis known better than this is recovered, not only bounded
+    /// A run whose constants move further than this (RateReport::rig_surprise) is estimated again with the constants
+    /// held to what was known; [0.1, 1e6].
+    double rig_surprise_max = 1.5;
+    double gap_max_s = 1.0;  ///< longest time between samples before the run is refused; [1e-6, 3600]
+  };
+
+  /// Throws InvalidParams on a parameter outside of its bound.
+  explicit RateSmoother(const Params& params);
+
+  /// One RateState per sample, and what the run tells of itself. On trouble (`empty`, `too_few`: less than two samples,
+  /// `non_finite`, `time_order`, `gap`, `diverged`) nothing is written and the status names field, value and bound.
+  Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out, RateReport& report) const;
+
+  const Params& params() const { return params_; }
+
+ private:
+  Params params_;
+  RailDetector rails_;
+};
+
+}  // namespace tumble

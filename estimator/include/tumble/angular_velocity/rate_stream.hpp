@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "tumble/angular_velocity/arrow_solver.hpp"
+#include "tumble/angular_velocity/rate_model.hpp"
+#include "tumble/angular_velocity/rate_state.hpp"
+#include "tumble/common/imu.hpp"
+#include "tumble/common/status.hpp"
+
+namespace tumble {
+
+/// The streaming form of RateSmoother: the same factors over a window of fixed length, one Gauss-Newton step per
+/// sample; what leaves the window is marginalised into a Gaussian prior on the next sample and on the RigConstants.
+///
+/// An estimate comes out when its sample is `lag_s` old, and a provisional one at once. O(window) per sample; no
+/// allocation after the State is made. Rails are learnt as they show themselves: up to the first plateau the stated
+/// range serves, so the first clipped samples of a device with a wrong or no stated range may be believed.
+/// What it does not model: see RateSmoother.
+class RateStream {
+ public:
+  struct Params {
+    RateModelParams model;
+    RailDetector::Params rails;
+    double period_s = 0.01;        ///< nominal time between samples; [1e-5, 1]
+    double lag_s = 0.2;            ///< length of the window; [2 period_s, 10], at most 4096 samples
+    double widen_first = 8.0;      ///< threshold of contact for a new clipped sample, halved with each step; [1, 1000]
+    double step_max_rad_s = 10.0;  ///< longest step of a rate at one sample; [1e-3, 1e4]
+    int bound_age = 3;             ///< steps after which the bounds of a sample in contact are softened; [0, 4096]
+    double bound_damping = 0.5;    ///< share of a new bound taken over in each step; [0.01, 1]
+    double recovered_sigma_rad_s = 0.5;  ///< as in RateSmoother
+    double rig_surprise_max = 1.5;       ///< beyond this what was learnt of the rig is dropped; [0.1, 1e6]
+    double gap_max_s = 1.0;              ///< longest time between samples; [1e-6, 3600]
+  };
+
+  struct Knot {
+    RateObservation observation;
+    RateEstimate estimate;
+    Eigen::Matrix3d covariance_rad2_s2 = Eigen::Matrix3d::Zero();
+    int age = 0;
+  };
+
+  /// All that evolves; made by start(). Copyable; equal() compares.
+  struct State {
+    RailDetector::State rails;
+    std::vector<Knot> window;  ///< oldest first
+    RigConstants rig;
+    RigConstants::Matrix rig_covariance;
+    // what is known of the oldest sample and of the rig from all that left the window, about a point
+    arrow::Block prior;
+    arrow::Corner prior_corner;
+    RateKnot prior_knot;
+    RigConstants prior_rig;
+    std::size_t samples = 0;
+    std::size_t rig_resets = 0;      ///< times that what was learnt of the rig was dropped
+    std::size_t failures = 0;        ///< steps whose system was not positive definite and was skipped
+    std::vector<arrow::Block> work;  ///< scratch space, no part of the state proper
+  };
+
+  /// Throws InvalidParams on a parameter outside of its bound.
+  explicit RateStream(const Params& params);
+
+  /// A state before the first sample, with all memory that push() needs.
+  State start() const;
+
+  /// Takes one sample; `out` is the estimate of the sample that is lag_s old, empty while the window fills. On trouble
+  /// (`non_finite`, `time_order`, `gap`) the state is left as it was and `out` is empty.
+  Status push(const ImuSample& sample, State& state, std::optional<RateState>& out) const;
+
+  /// Provisional estimate of the newest sample; empty before the first.
+  std::optional<RateState> newest(const State& state) const;
+
+  /// Estimates of the samples still in the window that push() has not given out, oldest first, appended to `out`.
+  void flush(const State& state, std::vector<RateState>& out) const;
+
+  /// What has been learnt of the rig.
+  RigCalibration calibration(const State& state) const { return {state.rig, state.rig_covariance}; }
+
+  /// True when two states will behave alike for ever (scratch space excluded), bit for bit.
+  static bool equal(const State& a, const State& b);
+
+ private:
+  void marginalise_oldest(State& state) const;
+  void append(const ImuSample& sample, State& state) const;
+  void guess(Knot& knot, const Knot& previous, const State& state) const;
+  void weigh(State& state) const;
+  bool step(State& state) const;
+  RateState to_state(const Knot& knot) const;
+
+  Params params_;
+  RailDetector rails_;
+  RateModel model_;
+  std::size_t capacity_;
+};
+
+}  // namespace tumble

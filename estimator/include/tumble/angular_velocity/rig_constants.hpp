@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+namespace tumble {
+
+/// What stays the same during a run and is estimated with the rates: 14 numbers, in this order.
+struct RigConstants {
+  static constexpr int kSize = 14;
+  using Vector = Eigen::Matrix<double, kSize, 1>;
+  using Matrix = Eigen::Matrix<double, kSize, kSize>;
+
+  Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();      ///< t: from the centre of mass to the IMU, IMU axes
+  Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();  ///< reading minus truth
+  Eigen::Vector3d accel_bias_m_s2 = Eigen::Vector3d::Zero();  ///< reading minus truth
+  /// Shape of the inertia about the centre of mass in IMU axes, free of scale: J = 1 + sum_i inertia_i S_i, S_i an
+  /// orthonormal basis of the symmetric matrices without trace. Zero: all moments equal.
+  Eigen::Matrix<double, 5, 1> inertia = Eigen::Matrix<double, 5, 1>::Zero();
+
+  /// J, trace 3.
+  Eigen::Matrix3d inertia_matrix() const;
+  /// Coordinates `inertia` of a symmetric matrix of any positive scale.
+  static Eigen::Matrix<double, 5, 1> inertia_coordinates(const Eigen::Matrix3d& inertia);
+  /// S_i of the basis, i in 0..4.
+  static const Eigen::Matrix3d& inertia_basis(int i);
+
+  Vector vector() const;
+  void add(const Vector& step);
+  bool operator==(const RigConstants&) const = default;
+};
+
+/// What one run has learnt and another may start from.
+struct RigCalibration {
+  RigConstants constants;
+  RigConstants::Matrix covariance = RigConstants::Matrix::Identity();
+};
+
+}  // namespace tumble

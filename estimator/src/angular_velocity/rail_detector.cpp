@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/angular_velocity/rail_detector.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tumble/common/status.hpp"
+
+namespace tumble {
+
+namespace {
+
+double reading(const ImuSample& sample, int c) {
+  return c < 3 ? sample.angular_velocity_rad_s[c] : sample.specific_force_m_s2[c - 3];
+}
+
+void set_bit(std::uint8_t& bits, int j) {
+  bits = static_cast<std::uint8_t>(bits | 1u << j);
+}
+
+}  // namespace
+
+RailDetector::RailDetector(const Params& params) : params_(params) {
+  if (params.stated_gyro_rad_s) require_within("stated_gyro_rad_s", *params.stated_gyro_rad_s, 1e-6, 1000.0);
+  if (params.stated_accel_m_s2) require_within("stated_accel_m_s2", *params.stated_accel_m_s2, 1e-6, 1e5);
+  require_within("enter_share", params.enter_share, 0.0, 0.1);
+  require_within("leave_share", params.leave_share, params.enter_share, 0.5);
+  require_within("plateau_samples", params.plateau_samples, 2, 1000);
+  require_within("plateau_spread_share", params.plateau_spread_share, 0.0, 0.01);
+  require_within("plateau_gyro_min_rad_s", params.plateau_gyro_min_rad_s, 1e-6, 1000.0);
+  require_within("plateau_accel_min_m_s2", params.plateau_accel_min_m_s2, 1e-6, 1000.0);
+  require_within("disagreement_share", params.disagreement_share, 1e-6, 1.0);
+}
+
+std::optional<double> RailDetector::stated(int c) const {
+  return c < 3 ? params_.stated_gyro_rad_s : params_.stated_accel_m_s2;
+}
+
+void RailDetector::observe(const ImuSample& sample, State& state) const {
+  for (int c = 0; c < 6; ++c) {
+    Channel& channel = state.channels[static_cast<std::size_t>(c)];
+    const double value = reading(sample, c), magnitude = std::abs(value);
+    channel.peak = std::max(channel.peak, magnitude);
+    // a larger reading proves that the plateau was none
+    if (channel.rail > 0.0 && channel.peak > channel.rail * (1.0 + params_.disagreement_share)) channel.rail = 0.0;
+    const double spread = params_.plateau_spread_share * magnitude;
+    const bool continues = channel.run_length > 0 && std::abs(value - channel.run_first) <= spread;
+    channel.run_length = continues ? channel.run_length + 1 : 1;
+    if (!continues) channel.run_first = value;
+    const double smallest = c < 3 ? params_.plateau_gyro_min_rad_s : params_.plateau_accel_min_m_s2;
+    const bool on_top = magnitude >= channel.peak * (1.0 - params_.disagreement_share) && magnitude >= smallest;
+    if (channel.run_length >= params_.plateau_samples && on_top) channel.rail = magnitude;
+  }
+}
+
+std::optional<double> RailDetector::rail(const State& state, int c) const {
+  const Channel& channel = state.channels[static_cast<std::size_t>(c)];
+  if (channel.rail > 0.0) return channel.rail;
+  const double below = channel.peak / (1.0 + params_.disagreement_share);
+  double sibling = 0.0;
+  for (int i = c / 3 * 3; i < c / 3 * 3 + 3; ++i) {
+    sibling = std::max(sibling, state.channels[static_cast<std::size_t>(i)].rail);
+  }
+  if (sibling > 0.0 && sibling >= below) return sibling;
+  const std::optional<double> given = stated(c);
+  if (given && *given >= below) return given;
+  return std::nullopt;
+}
+
+bool RailDetector::disagrees(const State& state, int c) const {
+  const std::optional<double> given = stated(c);
+  if (!given) return false;
+  const Channel& channel = state.channels[static_cast<std::size_t>(c)];
+  if (channel.peak > *given * (1.0 + params_.disagreement_share)) return true;
+  return channel.rail > 0.0 && channel.rail < *given * (1.0 - params_.disagreement_share);
+}
+
+Clipping RailDetector::classify(const ImuSample& sample, State& state) const {
+  Clipping out;
+  for (int c = 0; c < 6; ++c) {
+    Channel& channel = state.channels[static_cast<std::size_t>(c)];
+    const double value = reading(sample, c);
+    bool clipped = (sample.device_clip_flags >> c & 1u) != 0;
+    bool flipped = false;
+    if (const std::optional<double> level = rail(state, c)) {
+      const double share = channel.clipped ? params_.leave_share : params_.enter_share;
+      clipped = clipped || std::abs(value) >= *level * (1.0 - share);
+      // from one rail to the other within a sample: an overflow, not a motion
+      flipped = c < 3 && channel.clipped && value * channel.last < 0.0 && std::abs(value) >= 0.9 * *level;
+    }
+    if (flipped) {
+      set_bit(out.void_gyro, c);
+      continue;  // `last` keeps the sign from before the overflow
+    }
+    channel.clipped = clipped;
+    channel.last = value;
+    if (clipped) set_bit(c < 3 ? out.gyro : out.accel, c % 3);
+  }
+  return out;
+}
+
+void RailDetector::classify_all(std::span<const ImuSample> samples, State& state, std::span<Clipping> out) const {
+  for (const ImuSample& sample : samples) observe(sample, state);
+  for (std::size_t k = 0; k < samples.size(); ++k) out[k] = classify(samples[k], state);
+  // the rising edge: what stands before a plateau and as near to it as what stands after it
+  for (std::size_t k = samples.size(); k-- > 1;) {
+    for (int c = 0; c < 6; ++c) {
+      const std::optional<double> level = rail(state, c);
+      if (!level) continue;
+      std::uint8_t& before = c < 3 ? out[k - 1].gyro : out[k - 1].accel;
+      const std::uint8_t after = c < 3 ? out[k].gyro : out[k].accel;
+      const double value = reading(samples[k - 1], c);
+      const bool near = std::abs(value) >= *level * (1.0 - params_.leave_share) && value * reading(samples[k], c) > 0.0;
+      if ((after >> (c % 3) & 1u) != 0 && near) set_bit(before, c % 3);
+    }
+  }
+}
+
+}  // namespace tumble

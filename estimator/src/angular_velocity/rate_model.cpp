@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/angular_velocity/rate_model.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tumble/common/status.hpp"
+
+namespace tumble {
+
+namespace {
+
+using Eigen::Vector3d;
+
+void check(const RateModelParams& p) {
+  require_within("lever_arm_sigma_m", p.lever_arm_sigma_m, 1e-9, 10.0);
+  require_within("gyro_bias_sigma_rad_s", p.gyro_bias_sigma_rad_s, 1e-9, 10.0);
+  require_within("accel_bias_sigma_m_s2", p.accel_bias_sigma_m_s2, 1e-9, 10.0);
+  require_within("inertia_sigma", p.inertia_sigma, 1e-9, 10.0);
+  require_within("gyro_noise_density", p.gyro_noise_density, 1e-9, 1.0);
+  require_within("accel_noise_density", p.accel_noise_density, 1e-9, 10.0);
+  require_within("flight_sigma_m_s2", p.flight_sigma_m_s2, 1e-6, 100.0);
+  require_within("euler_sigma_rad_s2", p.euler_sigma_rad_s2, 1e-6, 1e6);
+  require_within("jerk_psd_flight", p.jerk_psd_flight, 1.0, 1e12);
+  require_within("contact_gain_rad_m", p.contact_gain_rad_m, 0.0, 1e3);
+  require_within("flight_threshold", p.flight_threshold, 1.0, 100.0);
+  require_within("rail_sigma_rad_s", p.rail_sigma_rad_s, 1e-6, 10.0);
+  require_within("rate_max_rad_s", p.rate_max_rad_s, 1.0, 1e4);
+  require_within("acceleration_max_rad_s2", p.acceleration_max_rad_s2, 1.0, 1e7);
+  const RigConstants::Vector nominal = p.calibration ? p.calibration->constants.vector() : p.nominal.vector();
+  for (double value : nominal) require_within("rig constants", value, -10.0, 10.0);
+}
+
+RigConstants::Matrix covariance_of(const RateModelParams& p) {
+  if (p.calibration) return 0.5 * (p.calibration->covariance + p.calibration->covariance.transpose());
+  RigConstants::Vector variance;
+  variance << Vector3d::Constant(p.lever_arm_sigma_m), Vector3d::Constant(p.gyro_bias_sigma_rad_s),
+      Vector3d::Constant(p.accel_bias_sigma_m_s2), Eigen::Matrix<double, 5, 1>::Constant(p.inertia_sigma);
+  return variance.cwiseAbs2().asDiagonal();
+}
+
+// precision of a bound before anything is known, (rad/s)^-2
+constexpr double kStartPrecision = 0.25;
+
+// Weight below which a sample may still draw a clipped rate towards flight, but says nothing of the rig: what is left
+// of the pull of contact is small for the rate and large for constants that are not known yet.
+constexpr double kRigWeightMin = 0.05;
+
+// phi(z) / Phi(z) of the normal distribution, by its asymptotic series where both vanish
+double density_over_share(double z) {
+  if (z < -8.0) return -z / (1.0 - 1.0 / (z * z) + 3.0 / (z * z * z * z));
+  const double density = std::exp(-0.5 * z * z) * std::numbers::inv_sqrtpi / std::numbers::sqrt2;
+  return density / (0.5 * std::erfc(-z / std::numbers::sqrt2));
+}
+
+// A clipped accelerometer axis bounds the force from one side: it speaks only where the model stays within the rail.
+void drop_satisfied_bounds(const RateObservation& o, RateFactor& flight) {
+  for (int j = 0; j < 3; ++j) {
+    if ((o.clipping.accel >> j & 1u) == 0) continue;
+    // residual = model - reading; the truth lies beyond the reading, on the side of its sign
+    if (flight.residual[j] * o.sample.specific_force_m_s2[j] < 0.0) continue;
+    flight.residual[j] = 0.0;
+    flight.by_knot.row(j).setZero();
+    flight.by_rig.row(j).setZero();
+  }
+}
+
+// Squared residual over its covariance: the sensor's own and what the uncertain rig adds, direction by direction.
+double normalised(const RateFactor& f, const RigConstants::Matrix& rig_covariance, double sigma) {
+  const Eigen::Matrix<double, 3, RigConstants::kSize> spread = f.by_rig.lazyProduct(rig_covariance);
+  Eigen::Matrix3d S = spread.lazyProduct(f.by_rig.transpose());
+  S.diagonal().array() += sigma * sigma;
+  return f.residual.dot(S.inverse() * f.residual);
+}
+
+// Mahalanobis distance of one part of the constants, over the root of its size
+template <int kFirst, int kCount>
+double surprise(const RigConstants::Vector& moved, const RigConstants::Matrix& covariance) {
+  const Eigen::Matrix<double, kCount, 1> part = moved.segment<kCount>(kFirst);
+  const Eigen::Matrix<double, kCount, kCount> spread = covariance.block<kCount, kCount>(kFirst, kFirst);
+  return std::sqrt(part.dot(spread.llt().solve(part)) / kCount);
+}
+
+void add_factor(const RateFactor& f, double information, double time_scale_s, arrow::Block& block,
+                arrow::Corner& corner) {
+  Eigen::Matrix<double, 3, 6> A = f.by_knot;
+  A.rightCols<3>() /= time_scale_s;
+  const Eigen::Matrix<double, 6, 3> At = information * A.transpose();
+  const Eigen::Matrix<double, RigConstants::kSize, 3> Bt = information * f.by_rig.transpose();
+  block.diagonal.noalias() += At.lazyProduct(A);
+  block.border.noalias() += At.lazyProduct(f.by_rig);
+  block.gradient.noalias() -= At.lazyProduct(f.residual);
+  corner.matrix.noalias() += Bt.lazyProduct(f.by_rig);
+  corner.gradient.noalias() -= Bt.lazyProduct(f.residual);
+}
+
+}  // namespace
+
+RateModel::RateModel(const RateModelParams& params, double period_s) : params_(params), time_scale_s_(period_s) {
+  check(params);
+  require_within("period_s", period_s, 1e-6, 10.0);
+  const double bandwidth_hz = 1.0 / period_s;
+  gyro_sigma_rad_s_ = params.gyro_noise_density * std::sqrt(bandwidth_hz);
+  accel_sigma_m_s2_ = std::hypot(params.flight_sigma_m_s2, params.accel_noise_density * std::sqrt(bandwidth_hz));
+  prior_constants_ = params.calibration ? params.calibration->constants : params.nominal;
+  prior_covariance_ = covariance_of(params);
+  const Eigen::LLT<RigConstants::Matrix> factor(prior_covariance_);
+  if (factor.info() != Eigen::Success || !prior_covariance_.allFinite()) {
+    throw InvalidParams("calibration covariance", prior_covariance_.trace(), "positive definite");
+  }
+  prior_information_ = factor.solve(RigConstants::Matrix::Identity());
+}
+
+void RateModel::weigh(const RateObservation& observation, const RigConstants& rig,
+                      const RigConstants::Matrix& rig_covariance, double widen, double jump,
+                      RateEstimate& estimate) const {
+  RateFactor flight = flight_factor(estimate.knot, rig, observation.sample.specific_force_m_s2);
+  drop_satisfied_bounds(observation, flight);
+  const RateFactor euler = euler_factor(estimate.knot, rig);
+  const double r2 = normalised(flight, rig_covariance, accel_sigma_m_s2_) +
+                    normalised(euler, rig_covariance, params_.euler_sigma_rad_s2) + jump;
+  const double threshold = widen * params_.flight_threshold;
+  // Geman-McClure: the pull of an outlier vanishes with the cube of its size, contacts do not drag the rate along
+  const double ratio = 1.0 / (1.0 + r2 / (threshold * threshold));
+  estimate.flight_weight = ratio * ratio;
+  estimate.contact_m_s2 = (1.0 - estimate.flight_weight) * flight.residual.norm();
+}
+
+double RateModel::jump(const RateKnot& from, const RateKnot& to, double dt_s) const {
+  const Vector3d e0 = from.rate_rad_s + dt_s * from.acceleration_rad_s2 - to.rate_rad_s;
+  const Vector3d e1 = dt_s * (from.acceleration_rad_s2 - to.acceleration_rad_s2);
+  const double scale = 1.0 / (params_.jerk_psd_flight * dt_s * dt_s * dt_s);
+  return scale * (12.0 * e0.squaredNorm() - 12.0 * e0.dot(e1) + 4.0 * e1.squaredNorm());
+}
+
+void RateModel::start_bounds(const RateObservation& observation, const RigConstants& rig,
+                             RateEstimate& estimate) const {
+  estimate.soft_bounds = true;
+  for (int j = 0; j < 3; ++j) {
+    if ((observation.clipping.gyro >> j & 1u) == 0) continue;
+    const double reading = observation.sample.angular_velocity_rad_s[j];
+    const double guess = estimate.knot.rate_rad_s[j] + rig.gyro_bias_rad_s[j];
+    const double mean = reading < 0.0 ? std::min(guess, reading) : std::max(guess, reading);
+    estimate.bound_precision[j] = kStartPrecision;
+    estimate.bound_shift[j] = kStartPrecision * mean;
+  }
+}
+
+void RateModel::update_bounds(const RateObservation& observation, const RigConstants& rig,
+                              const arrow::Marginal& marginal, const RigConstants::Matrix& rig_covariance,
+                              double damping, RateEstimate& estimate) const {
+  for (int j = 0; j < 3; ++j) {
+    if ((observation.clipping.gyro >> j & 1u) == 0) continue;
+    const double reading = observation.sample.angular_velocity_rad_s[j], sign = reading < 0.0 ? -1.0 : 1.0;
+    const double variance = marginal.state(j, j) + 2.0 * marginal.cross(j, 3 + j) + rig_covariance(3 + j, 3 + j);
+    // the marginal without this site, mirrored so that the bound lies below
+    const double mean = sign * (estimate.knot.rate_rad_s[j] + rig.gyro_bias_rad_s[j]);
+    const double site_precision = estimate.bound_precision[j], site_shift = sign * estimate.bound_shift[j];
+    const double precision =
+        std::max(1.0 / variance - site_precision, 1.0 / (params_.rate_max_rad_s * params_.rate_max_rad_s));
+    const double cavity_mean = (mean / variance - site_shift) / precision, cavity_variance = 1.0 / precision;
+    const double spread2 = cavity_variance + params_.rail_sigma_rad_s * params_.rail_sigma_rad_s;
+    const double spread = std::sqrt(spread2);
+    const double z = (cavity_mean - std::abs(reading)) / spread, r = density_over_share(z);
+    const double new_mean = cavity_mean + cavity_variance * r / spread;
+    const double new_variance = cavity_variance - cavity_variance * cavity_variance * r * (z + r) / spread2;
+    const double new_precision = std::max(0.0, 1.0 / new_variance - precision);
+    const double new_shift = new_mean / new_variance - precision * cavity_mean;
+    estimate.bound_precision[j] += damping * (new_precision - site_precision);
+    estimate.bound_shift[j] += damping * (sign * new_shift - estimate.bound_shift[j]);
+  }
+}
+
+void RateModel::add_sample(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
+                           arrow::Block& block, arrow::Corner& corner) const {
+  const RateFactor gyro = gyro_factor(estimate.knot, rig, observation.sample.angular_velocity_rad_s);
+  for (int j = 0; j < 3; ++j) {
+    if ((observation.clipping.void_gyro >> j & 1u) != 0) continue;
+    double information = 1.0 / (gyro_sigma_rad_s_ * gyro_sigma_rad_s_);
+    double pull = information * gyro.residual[j];
+    if ((observation.clipping.gyro >> j & 1u) != 0) {
+      const bool kept = gyro.residual[j] * observation.sample.angular_velocity_rad_s[j] >= 0.0;
+      if (kept && !estimate.soft_bounds) continue;
+      information = 1.0 / (params_.rail_sigma_rad_s * params_.rail_sigma_rad_s);
+      pull = information * gyro.residual[j];
+      if (estimate.soft_bounds) information = estimate.bound_precision[j];
+      if (estimate.soft_bounds)
+        pull = information * (estimate.knot.rate_rad_s[j] + rig.gyro_bias_rad_s[j]) - estimate.bound_shift[j];
+    }
+    block.diagonal(j, j) += information;
+    block.border(j, 3 + j) += information;
+    block.gradient[j] -= pull;
+    corner.matrix(3 + j, 3 + j) += information;
+    corner.gradient[3 + j] -= pull;
+  }
+
+  const double flight_information = estimate.flight_weight / (accel_sigma_m_s2_ * accel_sigma_m_s2_);
+  RateFactor flight = flight_factor(estimate.knot, rig, observation.sample.specific_force_m_s2);
+  drop_satisfied_bounds(observation, flight);
+  RateFactor euler = euler_factor(estimate.knot, rig);
+  if (estimate.flight_weight < kRigWeightMin) {
+    flight.by_rig.setZero();
+    euler.by_rig.setZero();
+  }
+  add_factor(flight, flight_information, time_scale_s_, block, corner);
+  const double euler_information = estimate.flight_weight / (params_.euler_sigma_rad_s2 * params_.euler_sigma_rad_s2);
+  add_factor(euler, euler_information, time_scale_s_, block, corner);
+
+  const double rate_information = 1.0 / (params_.rate_max_rad_s * params_.rate_max_rad_s);
+  const double largest = params_.acceleration_max_rad_s2 * time_scale_s_;
+  const double acceleration_information = 1.0 / (largest * largest);
+  for (int j = 0; j < 3; ++j) {
+    block.diagonal(j, j) += rate_information;
+    block.gradient[j] -= rate_information * estimate.knot.rate_rad_s[j];
+    block.diagonal(3 + j, 3 + j) += acceleration_information;
+    block.gradient[3 + j] -= acceleration_information * estimate.knot.acceleration_rad_s2[j] * time_scale_s_;
+  }
+}
+
+void RateModel::add_step(const RateEstimate& from, const RateEstimate& to, double dt_s, arrow::Block& block,
+                         arrow::Block& next) const {
+  const double h = time_scale_s_, ratio = dt_s / h;
+  // a contact may change the angular acceleration by gain * force within one step
+  const double change = params_.contact_gain_rad_m * std::max(from.contact_m_s2, to.contact_m_s2);
+  const double psd = params_.jerk_psd_flight + change * change / dt_s;
+  // inverse of Q = psd [dt^3/3, dt^2 h/2; dt^2 h/2, dt h^2] of the scaled state
+  const double a = 12.0 / (psd * dt_s * dt_s * dt_s), b = -6.0 / (psd * dt_s * dt_s * h),
+               c = 4.0 / (psd * dt_s * h * h);
+  for (int j = 0; j < 3; ++j) {
+    const double e0 = from.knot.rate_rad_s[j] + dt_s * from.knot.acceleration_rad_s2[j] - to.knot.rate_rad_s[j];
+    const double e1 = (from.knot.acceleration_rad_s2[j] - to.knot.acceleration_rad_s2[j]) * h;
+    const double g0 = a * e0 + b * e1, g1 = b * e0 + c * e1;
+    const int i = 3 + j;
+    // F = [1, ratio; 0, 1]
+    block.diagonal(j, j) += a;
+    block.diagonal(j, i) += ratio * a + b;
+    block.diagonal(i, j) += ratio * a + b;
+    block.diagonal(i, i) += ratio * ratio * a + 2.0 * ratio * b + c;
+    block.gradient[j] -= g0;
+    block.gradient[i] -= ratio * g0 + g1;
+    block.coupling(j, j) -= a;
+    block.coupling(j, i) -= b;
+    block.coupling(i, j) -= ratio * a + b;
+    block.coupling(i, i) -= ratio * b + c;
+    next.diagonal(j, j) += a;
+    next.diagonal(j, i) += b;
+    next.diagonal(i, j) += b;
+    next.diagonal(i, i) += c;
+    next.gradient[j] += g0;
+    next.gradient[i] += g1;
+  }
+}
+
+void RateModel::add_rig_prior(const RigConstants& rig, arrow::Corner& corner) const {
+  corner.matrix += prior_information_;
+  corner.gradient -= prior_information_ * (rig.vector() - prior_constants_.vector());
+}
+
+double RateModel::rig_surprise(const RigConstants& rig) const {
+  const RigConstants::Vector moved = rig.vector() - prior_constants_.vector();
+  const double lever = surprise<0, 3>(moved, prior_covariance_), gyro = surprise<3, 3>(moved, prior_covariance_),
+               accel = surprise<6, 3>(moved, prior_covariance_), inertia = surprise<9, 5>(moved, prior_covariance_);
+  return std::max({lever, gyro, accel, inertia});
+}
+
+Eigen::Matrix<double, 6, 1> RateModel::unscaled(const arrow::StateVector& step) const {
+  Eigen::Matrix<double, 6, 1> out = step;
+  out.tail<3>() /= time_scale_s_;
+  return out;
+}
+
+arrow::StateVector RateModel::scaled(const Eigen::Matrix<double, 6, 1>& difference) const {
+  arrow::StateVector out = difference;
+  out.tail<3>() *= time_scale_s_;
+  return out;
+}
+
+RateSource rate_source(const RateObservation& o, const RateEstimate& e, const Eigen::Matrix3d& covariance,
+                       double sigma) {
+  const int clipped = o.clipping.gyro | o.clipping.void_gyro;
+  if (clipped == 0) return RateSource::measured;
+  if (e.flight_weight >= 0.5) return RateSource::recovered_flight;
+  double largest = 0.0;
+  for (int j = 0; j < 3; ++j) {
+    if ((clipped >> j & 1) != 0) largest = std::max(largest, covariance(j, j));
+  }
+  return largest <= sigma * sigma ? RateSource::recovered_contact : RateSource::bounded_only;
+}
+
+}  // namespace tumble

@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/angular_velocity/rate_smoother.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "tumble/angular_velocity/saave.hpp"
+#include "tumble/angular_velocity/wnoj_smoother.hpp"
+
+namespace tumble {
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kVarianceUnknown = 100.0;  // of a clipped axis at the start of the iteration, (rad/s)^2
+
+Status check_all(std::span<const ImuSample> samples, double gap_max_s) {
+  if (samples.empty()) return {Trouble::empty, "samples", 0.0, 1.0};
+  if (samples.size() < 2) return {Trouble::too_few, "samples", 1.0, 2.0};
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (Status status = check_sample(samples[k]); !status.ok()) return status;
+    if (k == 0) continue;
+    Status status = check_follows(samples[k].time_ns, samples[k - 1].time_ns, gap_max_s);
+    if (!status.ok()) return status;
+  }
+  return {};
+}
+
+double median_period_s(std::span<const ImuSample> samples) {
+  std::vector<TimeNs> steps(samples.size() - 1);
+  for (std::size_t k = 0; k < steps.size(); ++k) steps[k] = samples[k + 1].time_ns - samples[k].time_ns;
+  std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
+  return std::clamp(seconds(steps[steps.size() / 2]), 1e-6, 10.0);
+}
+
+double median_force(std::span<const ImuSample> samples) {
+  std::vector<double> force(samples.size());
+  for (std::size_t k = 0; k < force.size(); ++k) force[k] = samples[k].specific_force_m_s2.norm();
+  std::nth_element(force.begin(), force.begin() + static_cast<std::ptrdiff_t>(force.size() / 2), force.end());
+  return force[force.size() / 2];
+}
+
+// The published estimate, held to the bounds and smoothed: where the iteration starts.
+std::vector<RateEstimate> first_guess(std::span<const RateObservation> observations, const RateModelParams& model,
+                                      const RateModel& derived, double gap_max_s) {
+  double smallest = model.rate_max_rad_s;
+  for (const RateObservation& o : observations) {
+    for (int j = 0; j < 3; ++j) {
+      const double reading = std::abs(o.sample.angular_velocity_rad_s[j]);
+      if ((o.clipping.gyro >> j & 1u) != 0) smallest = std::min(smallest, std::max(reading, 0.01));
+    }
+  }
+  const Saave saave({.lever_arm_m = derived.prior_constants().lever_arm_m,
+                     .saturation_point_rad_s = std::max(0.01, 0.9999 * smallest),
+                     .gap_max_s = gap_max_s});
+  Saave::State state;
+  Saave::Recovered recovered;
+  const double measured = derived.gyro_sigma_rad_s() * derived.gyro_sigma_rad_s();
+  std::vector<WnojSmoother::Measurement> readings(observations.size());
+  for (std::size_t k = 0; k < observations.size(); ++k) {
+    const RateObservation& o = observations[k];
+    (void)saave.step(o.sample, state, recovered);  // the samples have been checked
+    readings[k] = {o.sample.time_ns, o.sample.angular_velocity_rad_s, Vector3d::Constant(measured)};
+    for (int j = 0; j < 3; ++j) {
+      if ((o.clipping.void_gyro >> j & 1u) != 0) readings[k].variance_rad2_s2[j] = kVarianceUnknown;
+      if ((o.clipping.gyro >> j & 1u) == 0) continue;
+      const double limit = model.rate_max_rad_s;
+      readings[k].rate_rad_s[j] = std::clamp(recovered.rate_rad_s[j], -limit, limit);
+      readings[k].variance_rad2_s2[j] = std::clamp(recovered.variance_rad2_s2[j], 0.25, kVarianceUnknown);
+    }
+  }
+  std::vector<WnojSmoother::Smoothed> smoothed;
+  (void)WnojSmoother({}).smooth(readings, smoothed);
+  std::vector<RateEstimate> out(observations.size());
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    out[k].knot = {smoothed[k].rate_rad_s, smoothed[k].acceleration_rad_s2};
+  }
+  return out;
+}
+
+// The linear system of one iteration and its solution.
+class Iteration {
+ public:
+  explicit Iteration(std::span<const RateObservation> observations)
+      : observations_(observations), blocks_(observations.size()) {}
+
+  bool factorise(const RateModel& model, std::span<const RateEstimate> estimates, const RigConstants& rig) {
+    corner_ = {};
+    model.add_rig_prior(rig, corner_);
+    blocks_[0] = {};
+    for (std::size_t k = 0; k < blocks_.size(); ++k) {
+      model.add_sample(observations_[k], estimates[k], rig, blocks_[k], corner_);
+      const bool last = k + 1 == blocks_.size();
+      if (!last) {
+        blocks_[k + 1] = {};
+        const double dt_s = seconds(observations_[k + 1].sample.time_ns - observations_[k].sample.time_ns);
+        model.add_step(estimates[k], estimates[k + 1], dt_s, blocks_[k], blocks_[k + 1]);
+      }
+      if (!arrow::eliminate(blocks_[k], last ? nullptr : &blocks_[k + 1], corner_)) return false;
+    }
+    return arrow::solve_corner(corner_, rig_step_, rig_covariance_);
+  }
+
+  // Adds the step, cut to step_max; returns the largest change of a rate.
+  double apply(const RateModel& model, double step_max, std::span<RateEstimate> estimates, RigConstants& rig) const {
+    double largest = 0.0;
+    arrow::StateVector step;
+    for (std::size_t k = blocks_.size(); k-- > 0;) {
+      const bool last = k + 1 == blocks_.size();
+      step = arrow::back_substitute(blocks_[k], last ? nullptr : &step, rig_step_);
+      const Eigen::Matrix<double, 6, 1> physical = model.unscaled(step);
+      const double length = physical.head<3>().norm();
+      const double share = length > step_max ? step_max / length : 1.0;
+      estimates[k].knot.rate_rad_s += share * physical.head<3>();
+      estimates[k].knot.acceleration_rad_s2 += share * physical.tail<3>();
+      largest = std::max(largest, length);
+    }
+    rig.add(rig_step_);
+    return largest;
+  }
+
+  // Marginals of the last factorisation, from the last sample to the first: use(k, marginal).
+  template <typename Use>
+  void for_each_marginal(Use use) const {
+    arrow::Marginal marginal;
+    for (std::size_t k = blocks_.size(); k-- > 0;) {
+      marginal = arrow::back_covariance(blocks_[k], k + 1 == blocks_.size() ? nullptr : &marginal, rig_covariance_);
+      use(k, marginal);
+    }
+  }
+
+  const RigConstants::Matrix& rig_covariance() const { return rig_covariance_; }
+
+ private:
+  std::span<const RateObservation> observations_;
+  std::vector<arrow::Block> blocks_;
+  arrow::Corner corner_;
+  arrow::BorderVector rig_step_;
+  RigConstants::Matrix rig_covariance_;
+};
+
+void weigh_all(const RateModel& model, std::span<const RateObservation> observations, const RigConstants& rig,
+               const RigConstants::Matrix& rig_covariance, double widen, std::span<RateEstimate> estimates) {
+  double before = std::numeric_limits<double>::max();
+  for (std::size_t k = 0; k < estimates.size(); ++k) {
+    double after = std::numeric_limits<double>::max();
+    if (k + 1 < estimates.size()) {
+      const double dt_s = seconds(observations[k + 1].sample.time_ns - observations[k].sample.time_ns);
+      after = model.jump(estimates[k].knot, estimates[k + 1].knot, dt_s);
+    }
+    // where the gyro reads all axes nothing is unknown that would excuse a residual
+    const int clipped = observations[k].clipping.gyro | observations[k].clipping.void_gyro;
+    model.weigh(observations[k], rig, rig_covariance, clipped != 0 ? widen : 1.0, std::min(before, after),
+                estimates[k]);
+    before = after;
+  }
+}
+
+void count(const RateState& state, RateReport& report) {
+  report.clipped += state.clipped_axes != 0;
+  report.recovered_flight += state.source == RateSource::recovered_flight;
+  report.recovered_contact += state.source == RateSource::recovered_contact;
+  report.bounded_only += state.source == RateSource::bounded_only;
+}
+
+struct Solution {
+  std::vector<RateEstimate> estimates;
+  RigConstants rig;
+  RigConstants::Matrix rig_covariance;
+  Iteration iteration;
+};
+
+// Gauss-Newton from the first guess; false when a system is not positive definite.
+bool solve(const RateSmoother::Params& params, const RateModel& model, std::span<const RateObservation> observations,
+           Solution& solution, RateReport& health) {
+  solution.estimates = first_guess(observations, params.model, model, params.gap_max_s);
+  solution.rig = model.prior_constants();
+  solution.rig_covariance = model.prior_covariance();
+  std::vector<RateEstimate>& estimates = solution.estimates;
+  double widen = params.widen_first;
+  int soft = 0;  // iterations with soft bounds
+  health.iterations = 0;
+  health.converged = false;
+  while (health.iterations < params.iterations_max) {
+    weigh_all(model, observations, solution.rig, solution.rig_covariance, widen, estimates);
+    if (!solution.iteration.factorise(model, estimates, solution.rig)) return false;
+    solution.rig_covariance = solution.iteration.rig_covariance();
+    health.last_step_rad_s = solution.iteration.apply(model, params.step_max_rad_s, estimates, solution.rig);
+    ++health.iterations;
+
+    const bool settled = widen == 1.0 && health.last_step_rad_s < params.tolerance_rad_s;
+    if (soft > 0) {
+      solution.iteration.for_each_marginal([&](std::size_t k, const arrow::Marginal& marginal) {
+        model.update_bounds(observations[k], solution.rig, marginal, solution.rig_covariance, params.bound_damping,
+                            estimates[k]);
+      });
+    }
+    if (soft > 0 || settled || health.iterations + params.bound_iterations >= params.iterations_max) {
+      for (std::size_t k = 0; k < estimates.size() && soft == 0; ++k) {
+        if (estimates[k].flight_weight < 0.5) model.start_bounds(observations[k], solution.rig, estimates[k]);
+      }
+      health.converged = settled || health.converged;
+      if (soft++ == params.bound_iterations) break;
+    }
+    widen = std::max(1.0, 0.5 * widen);
+  }
+  health.rig_surprise = model.rig_surprise(solution.rig);
+  return true;
+}
+
+RateModelParams held(const RateModelParams& params, const RigConstants& constants) {
+  RateModelParams out = params;
+  out.calibration = RigCalibration{constants, 1e-12 * RigConstants::Matrix::Identity()};
+  return out;
+}
+
+}  // namespace
+
+RateSmoother::RateSmoother(const Params& params) : params_(params), rails_(params.rails) {
+  require_within("iterations_max", params.iterations_max, 1, 1000);
+  require_within("tolerance_rad_s", params.tolerance_rad_s, 1e-12, 1.0);
+  require_within("step_max_rad_s", params.step_max_rad_s, 1e-3, 1e4);
+  require_within("widen_first", params.widen_first, 1.0, 1000.0);
+  require_within("recovered_sigma_rad_s", params.recovered_sigma_rad_s, 0.0, 1e4);
+  require_within("bound_iterations", params.bound_iterations, 0, 1000);
+  require_within("bound_damping", params.bound_damping, 0.01, 1.0);
+  require_within("rig_surprise_max", params.rig_surprise_max, 0.1, 1e6);
+  require_within("gap_max_s", params.gap_max_s, 1e-6, 3600.0);
+  (void)RateModel(params.model, 0.01);  // throws on bad parameters
+}
+
+Status RateSmoother::estimate(std::span<const ImuSample> samples, std::vector<RateState>& out,
+                              RateReport& report) const {
+  if (Status status = check_all(samples, params_.gap_max_s); !status.ok()) return status;
+
+  RateReport health;
+  health.samples = samples.size();
+  std::vector<Clipping> clippings(samples.size());
+  RailDetector::State rail_state;
+  rails_.classify_all(samples, rail_state, clippings);
+  for (int c = 0; c < 6; ++c) {
+    health.rail[static_cast<std::size_t>(c)] = rails_.rail(rail_state, c);
+    health.rail_disagrees[static_cast<std::size_t>(c)] = rails_.disagrees(rail_state, c);
+  }
+  const double force = median_force(samples);
+  health.force_unit_suspect = force > 0.5 && force < 2.0;
+  std::vector<RateObservation> observations(samples.size());
+  for (std::size_t k = 0; k < samples.size(); ++k) observations[k] = {samples[k], clippings[k]};
+
+  const double period_s = median_period_s(samples);
+  const RateModel model(params_.model, period_s);
+  Solution solution{{}, {}, {}, Iteration(observations)};
+  if (!solve(params_, model, observations, solution, health)) {
+    return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
+  }
+  health.calibration = {solution.rig, solution.rig_covariance};
+  if (health.rig_surprise > params_.rig_surprise_max) {
+    // contact was taken for flight of another rig: hold the rig to what was known of it
+    const double surprise = health.rig_surprise;
+    const RateModel fixed(held(params_.model, model.prior_constants()), period_s);
+    if (!solve(params_, fixed, observations, solution, health)) {
+      return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
+    }
+    health.rig_held = true;
+    health.rig_surprise = surprise;
+    health.calibration = {model.prior_constants(), model.prior_covariance()};
+  }
+
+  std::vector<RateState> states(samples.size());
+  std::size_t in_flight = 0;
+  solution.iteration.for_each_marginal([&](std::size_t k, const arrow::Marginal& marginal) {
+    const RateEstimate& estimate = solution.estimates[k];
+    RateState& state = states[k];
+    state.time_ns = samples[k].time_ns;
+    state.w_WI_I_rad_s = estimate.knot.rate_rad_s;
+    state.covariance_rad2_s2 = marginal.state.topLeftCorner<3, 3>();
+    state.clipped_axes = clippings[k].gyro | clippings[k].void_gyro;
+    state.source = rate_source(observations[k], estimate, state.covariance_rad2_s2, params_.recovered_sigma_rad_s);
+    count(state, health);
+    health.void_readings += clippings[k].void_gyro != 0;
+    in_flight += estimate.flight_weight >= 0.5;
+  });
+  health.flight_share = static_cast<double>(in_flight) / static_cast<double>(samples.size());
+  out = std::move(states);
+  report = health;
+  return {};
+}
+
+}  // namespace tumble

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/angular_velocity/rate_stream.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tumble {
+
+namespace {
+
+using Eigen::Vector3d;
+
+int clipped_axes(const RateObservation& o) {
+  return o.clipping.gyro | o.clipping.void_gyro;
+}
+
+double seconds_between(const RateStream::Knot& from, const RateStream::Knot& to) {
+  return seconds(to.observation.sample.time_ns - from.observation.sample.time_ns);
+}
+
+// Beyond the reading on every clipped axis.
+void hold_to_bounds(const RateObservation& o, Vector3d& rate) {
+  for (int j = 0; j < 3; ++j) {
+    if ((o.clipping.gyro >> j & 1u) == 0) continue;
+    const double reading = o.sample.angular_velocity_rad_s[j];
+    rate[j] = reading < 0.0 ? std::min(rate[j], reading) : std::max(rate[j], reading);
+  }
+}
+
+// The prior at another point than the one about which it stands.
+void add_prior(const RateStream::State& state, const RateModel& model, const RateKnot& knot, arrow::Block& block,
+               arrow::Corner& corner) {
+  Eigen::Matrix<double, 6, 1> moved;
+  moved << knot.rate_rad_s - state.prior_knot.rate_rad_s,
+      knot.acceleration_rad_s2 - state.prior_knot.acceleration_rad_s2;
+  const arrow::StateVector x = model.scaled(moved);
+  const arrow::BorderVector c = state.rig.vector() - state.prior_rig.vector();
+  block.diagonal += state.prior.diagonal;
+  block.border += state.prior.border;
+  block.gradient += state.prior.gradient - state.prior.diagonal * x - state.prior.border * c;
+  corner.matrix += state.prior_corner.matrix;
+  corner.gradient += state.prior_corner.gradient - state.prior_corner.matrix * c - state.prior.border.transpose() * x;
+}
+
+}  // namespace
+
+RateStream::RateStream(const Params& params)
+    : params_(params), rails_(params.rails), model_(params.model, params.period_s) {
+  require_within("period_s", params.period_s, 1e-5, 1.0);
+  require_within("lag_s", params.lag_s, 2.0 * params.period_s, std::min(10.0, 4096.0 * params.period_s));
+  require_within("widen_first", params.widen_first, 1.0, 1000.0);
+  require_within("step_max_rad_s", params.step_max_rad_s, 1e-3, 1e4);
+  require_within("bound_age", params.bound_age, 0, 4096);
+  require_within("bound_damping", params.bound_damping, 0.01, 1.0);
+  require_within("recovered_sigma_rad_s", params.recovered_sigma_rad_s, 0.0, 1e4);
+  require_within("rig_surprise_max", params.rig_surprise_max, 0.1, 1e6);
+  require_within("gap_max_s", params.gap_max_s, 1e-6, 3600.0);
+  capacity_ = static_cast<std::size_t>(std::lround(params.lag_s / params.period_s)) + 1;
+}
+
+RateStream::State RateStream::start() const {
+  State state;
+  state.window.reserve(capacity_ + 1);
+  state.work.resize(capacity_ + 1);
+  state.rig = state.prior_rig = model_.prior_constants();
+  state.rig_covariance = model_.prior_covariance();
+  model_.add_rig_prior(state.rig, state.prior_corner);
+  return state;
+}
+
+Status RateStream::push(const ImuSample& sample, State& state, std::optional<RateState>& out) const {
+  out.reset();
+  if (Status status = check_sample(sample); !status.ok()) return status;
+  if (!state.window.empty()) {
+    Status status = check_follows(sample.time_ns, state.window.back().observation.sample.time_ns, params_.gap_max_s);
+    if (!status.ok()) return status;
+  }
+  if (state.window.size() == capacity_) marginalise_oldest(state);
+  append(sample, state);
+  weigh(state);
+  if (!step(state)) ++state.failures;
+  if (state.window.size() == capacity_) out = to_state(state.window.front());
+  return {};
+}
+
+void RateStream::marginalise_oldest(State& state) const {
+  const Knot &oldest = state.window[0], &next = state.window[1];
+  arrow::Block block, after;
+  arrow::Corner corner;
+  add_prior(state, model_, oldest.estimate.knot, block, corner);
+  model_.add_sample(oldest.observation, oldest.estimate, state.rig, block, corner);
+  model_.add_step(oldest.estimate, next.estimate, seconds_between(oldest, next), block, after);
+  if (arrow::eliminate(block, &after, corner)) {
+    state.prior = after;
+    state.prior_corner = corner;
+  } else {
+    // nothing can be said of what left: start from what was known of the rig
+    state.prior = {};
+    state.prior_corner = {};
+    model_.add_rig_prior(state.rig, state.prior_corner);
+    ++state.failures;
+  }
+  state.prior_knot = next.estimate.knot;
+  state.prior_rig = state.rig;
+  state.window.erase(state.window.begin());
+  if (model_.rig_surprise(state.rig) > params_.rig_surprise_max) {
+    // contact was taken for flight of another rig: drop what was learnt of the rig, keep the motion
+    state.rig = state.prior_rig = model_.prior_constants();
+    state.rig_covariance = model_.prior_covariance();
+    state.prior.border.setZero();
+    state.prior_corner = {};
+    model_.add_rig_prior(state.rig, state.prior_corner);
+    ++state.rig_resets;
+  }
+}
+
+void RateStream::append(const ImuSample& sample, State& state) const {
+  rails_.observe(sample, state.rails);
+  Knot knot;
+  knot.observation = {sample, rails_.classify(sample, state.rails)};
+  knot.estimate.knot.rate_rad_s = sample.angular_velocity_rad_s;
+  if (!state.window.empty()) guess(knot, state.window.back(), state);
+  state.window.push_back(knot);
+  ++state.samples;
+}
+
+// Clipped axes of a new sample start from the prediction or from the centripetal force, whichever explains flight
+// better.
+void RateStream::guess(Knot& knot, const Knot& previous, const State& state) const {
+  const double dt_s = seconds_between(previous, knot);
+  const RateKnot& before = previous.estimate.knot;
+  const int clipped = clipped_axes(knot.observation);
+  knot.estimate.knot.acceleration_rad_s2 = before.acceleration_rad_s2;
+  if (clipped == 0) return;
+  Vector3d predicted = before.rate_rad_s + dt_s * before.acceleration_rad_s2;
+  Vector3d shape = predicted, unclipped = knot.observation.sample.angular_velocity_rad_s - state.rig.gyro_bias_rad_s;
+  for (int j = 0; j < 3; ++j) {
+    if ((clipped >> j & 1) == 0) {
+      predicted[j] = unclipped[j];
+      shape[j] = 0.0;
+    } else {
+      unclipped[j] = 0.0;
+    }
+  }
+  hold_to_bounds(knot.observation, predicted);
+  hold_to_bounds(knot.observation, shape);
+  Knot centripetal = knot;
+  knot.estimate.knot.rate_rad_s = predicted;
+  const double speed = predicted.norm();
+  if (!(speed > 0.0) || !(shape.norm() > 0.0)) return;
+  const Vector3d axis = predicted / speed, &t = state.rig.lever_arm_m;
+  const Vector3d to_axis = t.dot(axis) * axis - t;
+  const double squared =
+      to_axis.dot(knot.observation.sample.specific_force_m_s2) / to_axis.squaredNorm() - unclipped.squaredNorm();
+  if (!(squared > 0.0)) return;
+  Vector3d rate = unclipped + std::sqrt(squared) * shape.normalized();
+  hold_to_bounds(knot.observation, rate);
+  const double largest = params_.model.rate_max_rad_s;
+  centripetal.estimate.knot.rate_rad_s = rate.cwiseMin(largest).cwiseMax(-largest);
+  model_.weigh(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, knot.estimate);
+  model_.weigh(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, centripetal.estimate);
+  if (centripetal.estimate.flight_weight > knot.estimate.flight_weight) knot.estimate = centripetal.estimate;
+}
+
+void RateStream::weigh(State& state) const {
+  constexpr double kNone = std::numeric_limits<double>::max();
+  double before = kNone;
+  for (std::size_t k = 0; k < state.window.size(); ++k) {
+    Knot& knot = state.window[k];
+    double after = kNone;
+    if (k + 1 < state.window.size()) {
+      const Knot& next = state.window[k + 1];
+      after = model_.jump(knot.estimate.knot, next.estimate.knot, seconds_between(knot, next));
+    }
+    const bool clipped = clipped_axes(knot.observation) != 0;
+    const double widen = clipped ? std::max(1.0, std::ldexp(params_.widen_first, -knot.age)) : 1.0;
+    model_.weigh(knot.observation, state.rig, state.rig_covariance, widen, std::min(before, after), knot.estimate);
+    const bool soften = knot.age >= params_.bound_age && knot.estimate.flight_weight < 0.5;
+    if (soften && !knot.estimate.soft_bounds) model_.start_bounds(knot.observation, state.rig, knot.estimate);
+    before = after;
+  }
+}
+
+bool RateStream::step(State& state) const {
+  const std::size_t count = state.window.size();
+  std::vector<arrow::Block>& blocks = state.work;
+  arrow::Corner corner;
+  blocks[0] = {};
+  add_prior(state, model_, state.window[0].estimate.knot, blocks[0], corner);
+  for (std::size_t k = 0; k < count; ++k) {
+    const Knot& knot = state.window[k];
+    model_.add_sample(knot.observation, knot.estimate, state.rig, blocks[k], corner);
+    const bool last = k + 1 == count;
+    if (!last) {
+      const Knot& next = state.window[k + 1];
+      blocks[k + 1] = {};
+      model_.add_step(knot.estimate, next.estimate, seconds_between(knot, next), blocks[k], blocks[k + 1]);
+    }
+    if (!arrow::eliminate(blocks[k], last ? nullptr : &blocks[k + 1], corner)) return false;
+  }
+  arrow::BorderVector rig_step;
+  arrow::BorderMatrix rig_covariance;
+  if (!arrow::solve_corner(corner, rig_step, rig_covariance)) return false;
+  state.rig_covariance = rig_covariance;
+  state.rig.add(rig_step);
+  arrow::StateVector x;
+  arrow::Marginal marginal;
+  for (std::size_t k = count; k-- > 0;) {
+    Knot& knot = state.window[k];
+    const bool last = k + 1 == count;
+    x = arrow::back_substitute(blocks[k], last ? nullptr : &x, rig_step);
+    marginal = arrow::back_covariance(blocks[k], last ? nullptr : &marginal, rig_covariance);
+    const Eigen::Matrix<double, 6, 1> physical = model_.unscaled(x);
+    const double share = std::min(1.0, params_.step_max_rad_s / std::max(1e-300, physical.head<3>().norm()));
+    knot.estimate.knot.rate_rad_s += share * physical.head<3>();
+    knot.estimate.knot.acceleration_rad_s2 += share * physical.tail<3>();
+    knot.covariance_rad2_s2 = marginal.state.topLeftCorner<3, 3>();
+    if (knot.estimate.soft_bounds) {
+      model_.update_bounds(knot.observation, state.rig, marginal, rig_covariance, params_.bound_damping, knot.estimate);
+    }
+    ++knot.age;
+  }
+  return true;
+}
+
+RateState RateStream::to_state(const Knot& knot) const {
+  RateState out;
+  out.time_ns = knot.observation.sample.time_ns;
+  out.w_WI_I_rad_s = knot.estimate.knot.rate_rad_s;
+  out.covariance_rad2_s2 = knot.covariance_rad2_s2;
+  out.clipped_axes = static_cast<std::uint8_t>(clipped_axes(knot.observation));
+  out.source = rate_source(knot.observation, knot.estimate, knot.covariance_rad2_s2, params_.recovered_sigma_rad_s);
+  return out;
+}
+
+std::optional<RateState> RateStream::newest(const State& state) const {
+  if (state.window.empty()) return std::nullopt;
+  return to_state(state.window.back());
+}
+
+void RateStream::flush(const State& state, std::vector<RateState>& out) const {
+  const std::size_t given = state.window.size() == capacity_ ? 1 : 0;
+  for (std::size_t k = given; k < state.window.size(); ++k) out.push_back(to_state(state.window[k]));
+}
+
+bool RateStream::equal(const State& a, const State& b) {
+  const auto same = [](const Knot& x, const Knot& y) {
+    const ImuSample &p = x.observation.sample, &q = y.observation.sample;
+    const RateEstimate &e = x.estimate, &f = y.estimate;
+    return p.time_ns == q.time_ns && p.angular_velocity_rad_s == q.angular_velocity_rad_s &&
+           p.specific_force_m_s2 == q.specific_force_m_s2 && p.device_clip_flags == q.device_clip_flags &&
+           x.observation.clipping == y.observation.clipping && e.knot == f.knot && e.flight_weight == f.flight_weight &&
+           e.contact_m_s2 == f.contact_m_s2 && e.bound_precision == f.bound_precision &&
+           e.bound_shift == f.bound_shift && e.soft_bounds == f.soft_bounds &&
+           x.covariance_rad2_s2 == y.covariance_rad2_s2 && x.age == y.age;
+  };
+  return a.rails == b.rails && std::equal(a.window.begin(), a.window.end(), b.window.begin(), b.window.end(), same) &&
+         a.rig == b.rig && a.rig_covariance == b.rig_covariance && a.prior.diagonal == b.prior.diagonal &&
+         a.prior.border == b.prior.border && a.prior.gradient == b.prior.gradient &&
+         a.prior_corner.matrix == b.prior_corner.matrix && a.prior_corner.gradient == b.prior_corner.gradient &&
+         a.prior_knot == b.prior_knot && a.prior_rig == b.prior_rig && a.samples == b.samples &&
+         a.rig_resets == b.rig_resets && a.failures == b.failures;
+}
+
+}  // namespace tumble

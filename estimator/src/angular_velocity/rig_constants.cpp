@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/angular_velocity/rig_constants.hpp"
+
+#include <array>
+#include <cmath>
+
+namespace tumble {
+
+namespace {
+
+std::array<Eigen::Matrix3d, 5> make_basis() {
+  std::array<Eigen::Matrix3d, 5> basis;
+  for (auto& s : basis) s.setZero();
+  const double half = std::sqrt(0.5), sixth = std::sqrt(1.0 / 6.0);
+  basis[0].diagonal() << half, -half, 0.0;
+  basis[1].diagonal() << sixth, sixth, -2.0 * sixth;
+  basis[2](0, 1) = basis[2](1, 0) = half;
+  basis[3](0, 2) = basis[3](2, 0) = half;
+  basis[4](1, 2) = basis[4](2, 1) = half;
+  return basis;
+}
+
+}  // namespace
+
+const Eigen::Matrix3d& RigConstants::inertia_basis(int i) {
+  static const std::array<Eigen::Matrix3d, 5> kBasis = make_basis();
+  return kBasis[static_cast<std::size_t>(i)];
+}
+
+Eigen::Matrix3d RigConstants::inertia_matrix() const {
+  Eigen::Matrix3d J = Eigen::Matrix3d::Identity();
+  for (int i = 0; i < 5; ++i) J += inertia[i] * inertia_basis(i);
+  return J;
+}
+
+Eigen::Matrix<double, 5, 1> RigConstants::inertia_coordinates(const Eigen::Matrix3d& inertia) {
+  const Eigen::Matrix3d J = 3.0 / inertia.trace() * inertia;
+  Eigen::Matrix<double, 5, 1> coordinates;
+  for (int i = 0; i < 5; ++i) coordinates[i] = J.cwiseProduct(inertia_basis(i)).sum();
+  return coordinates;
+}
+
+RigConstants::Vector RigConstants::vector() const {
+  Vector v;
+  v << lever_arm_m, gyro_bias_rad_s, accel_bias_m_s2, inertia;
+  return v;
+}
+
+void RigConstants::add(const Vector& step) {
+  lever_arm_m += step.segment<3>(0);
+  gyro_bias_rad_s += step.segment<3>(3);
+  accel_bias_m_s2 += step.segment<3>(6);
+  inertia += step.segment<5>(9);
+}
+
+}  // namespace tumble

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/angular_velocity/rail_detector.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "oracles/gaussian.hpp"
+#include "tumble/common/status.hpp"
+
+namespace tumble {
+namespace {
+
+using Eigen::Vector3d;
+
+// x swings slowly beyond the rail, y stays inside, z is still; noise of an MTi-30
+std::vector<ImuSample> swinging_run(double amplitude, double rail) {
+  oracles::Gaussian noise(5);
+  std::vector<ImuSample> run(600);
+  for (std::size_t k = 0; k < run.size(); ++k) {
+    const double phase = 0.03 * static_cast<double>(k);
+    const Vector3d w(amplitude * std::sin(phase), 5.0 * std::cos(phase), 0.0);
+    run[k].time_ns = static_cast<TimeNs>(k) * 10'000'000;
+    run[k].angular_velocity_rad_s = (w + 5e-3 * noise.vector()).cwiseMin(rail).cwiseMax(-rail);
+    run[k].specific_force_m_s2 = Vector3d(0.0, 0.0, 9.81) + 6e-3 * noise.vector();
+  }
+  return run;
+}
+
+std::vector<Clipping> classify(const RailDetector& rails, const std::vector<ImuSample>& run,
+                               RailDetector::State& state) {
+  std::vector<Clipping> out(run.size());
+  rails.classify_all(run, state, out);
+  return out;
+}
+
+TEST(RailDetector, FindsAPlateauThatNobodyStatedAndItsRaggedEdges) {
+  const RailDetector rails({});
+  const std::vector<ImuSample> run = swinging_run(15.0, 10.5);
+  RailDetector::State state;
+  const std::vector<Clipping> got = classify(rails, run, state);
+  ASSERT_TRUE(rails.rail(state, 0).has_value());
+  EXPECT_EQ(*rails.rail(state, 0), 10.5);
+  EXPECT_FALSE(rails.rail(state, 3).has_value());
+  std::size_t clipped = 0;
+  for (std::size_t k = 0; k < run.size(); ++k) {
+    const bool at_rail = std::abs(run[k].angular_velocity_rad_s.x()) == 10.5;
+    clipped += at_rail;
+    if (at_rail) {
+      EXPECT_EQ(got[k].gyro, 1) << k;
+    }
+    if (std::abs(run[k].angular_velocity_rad_s.x()) < 0.97 * 10.5) {
+      EXPECT_EQ(got[k].gyro, 0) << k;
+    }
+    EXPECT_EQ(got[k].void_gyro, 0);
+  }
+  EXPECT_GT(clipped, 200u);
+}
+
+TEST(RailDetector, NoisyPeaksAreNoPlateau) {
+  const RailDetector rails({});
+  RailDetector::State state;
+  for (const Clipping& c : classify(rails, swinging_run(9.0, 10.5), state)) EXPECT_EQ(c, Clipping{});
+  for (int c = 0; c < 6; ++c) EXPECT_FALSE(rails.rail(state, c).has_value()) << c;
+}
+
+TEST(RailDetector, ThePlateauOverrulesTheStatedRange) {
+  for (double stated : {7.854, 12.0}) {  // below what was read, and above the plateau
+    const RailDetector rails({.stated_gyro_rad_s = stated});
+    RailDetector::State state;
+    const std::vector<ImuSample> run = swinging_run(15.0, 10.5);
+    classify(rails, run, state);
+    EXPECT_EQ(rails.rail(state, 0).value_or(0.0), 10.5);
+    EXPECT_TRUE(rails.disagrees(state, 0));
+    EXPECT_EQ(rails.rail(state, 2).value_or(0.0), 10.5);  // the still axis goes by its sibling
+    EXPECT_FALSE(rails.disagrees(state, 2));
+  }
+  const RailDetector right({.stated_gyro_rad_s = 10.5});
+  RailDetector::State state;
+  classify(right, swinging_run(15.0, 10.5), state);
+  EXPECT_FALSE(right.disagrees(state, 0));
+}
+
+TEST(RailDetector, TheStatedRangeServesUntilThereIsAPlateau) {
+  const RailDetector rails({.stated_gyro_rad_s = 10.5, .stated_accel_m_s2 = 49.0});
+  RailDetector::State state;
+  EXPECT_EQ(rails.rail(state, 1).value_or(0.0), 10.5);
+  EXPECT_EQ(rails.rail(state, 4).value_or(0.0), 49.0);
+  ImuSample sample;
+  sample.angular_velocity_rad_s = {-10.5, 10.4, 10.48};
+  sample.specific_force_m_s2 = {49.0, -48.9, -48.0};
+  const Clipping got = rails.classify(sample, state);
+  EXPECT_EQ(got.gyro, 1 | 4);
+  EXPECT_EQ(got.accel, 1 | 2);
+}
+
+TEST(RailDetector, BelievesTheFlagsOfTheDevice) {
+  const RailDetector rails({});
+  RailDetector::State state;
+  ImuSample sample;
+  sample.device_clip_flags = kClipGyroY | kClipAccelZ;
+  const Clipping got = rails.classify(sample, state);
+  EXPECT_EQ(got.gyro, 2);
+  EXPECT_EQ(got.accel, 4);
+}
+
+TEST(RailDetector, AFlipFromRailToRailIsAnOverflow) {
+  const RailDetector rails({.stated_gyro_rad_s = 10.5});
+  RailDetector::State state;
+  ImuSample sample;
+  sample.angular_velocity_rad_s.x() = 10.5;
+  EXPECT_EQ(rails.classify(sample, state).gyro, 1);
+  sample.angular_velocity_rad_s.x() = -10.2;
+  EXPECT_EQ(rails.classify(sample, state).void_gyro, 1);
+  EXPECT_EQ(rails.classify(sample, state).gyro, 0);
+  sample.angular_velocity_rad_s.x() = 10.5;
+  EXPECT_EQ(rails.classify(sample, state).gyro, 1);
+}
+
+TEST(RailDetector, RefusesParametersOutsideOfTheirBounds) {
+  EXPECT_THROW(RailDetector({.stated_gyro_rad_s = 0.0}), InvalidParams);
+  EXPECT_THROW(RailDetector({.stated_accel_m_s2 = std::nan("")}), InvalidParams);
+  EXPECT_THROW(RailDetector({.enter_share = 0.2}), InvalidParams);
+  EXPECT_THROW(RailDetector({.enter_share = 0.01, .leave_share = 0.005}), InvalidParams);
+  EXPECT_THROW(RailDetector({.plateau_samples = 1}), InvalidParams);
+  EXPECT_THROW(RailDetector({.plateau_spread_share = -1.0}), InvalidParams);
+  EXPECT_THROW(RailDetector({.disagreement_share = 0.0}), InvalidParams);
+}
+
+}  // namespace
+}  // namespace tumble

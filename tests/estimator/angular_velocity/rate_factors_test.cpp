@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/angular_velocity/rate_factors.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <functional>
+
+#include "oracles/gaussian.hpp"
+#include "oracles/torque_free_rotation.hpp"
+
+namespace tumble {
+namespace {
+
+using Eigen::Vector3d;
+using Derivative = Eigen::Matrix<double, 3, 6 + RigConstants::kSize>;
+using Factor = std::function<RateFactor(const RateKnot&, const RigConstants&)>;
+
+struct Point {
+  RateKnot knot;
+  RigConstants rig;
+};
+
+Point random_point(oracles::Gaussian& noise) {
+  Point p;
+  p.knot = {10.0 * noise.vector(), 100.0 * noise.vector()};
+  RigConstants::Vector v;
+  for (double& x : v) x = 0.1 * noise();
+  p.rig.add(v);
+  return p;
+}
+
+Derivative analytic(const Factor& factor, const Point& p) {
+  const RateFactor f = factor(p.knot, p.rig);
+  Derivative d;
+  d << f.by_knot, f.by_rig;
+  return d;
+}
+
+Derivative numeric(const Factor& factor, const Point& p) {
+  Derivative d;
+  for (int i = 0; i < d.cols(); ++i) {
+    constexpr double kStep = 1e-4;
+    const auto moved = [&](double h) {
+      Point q = p;
+      if (i < 3) q.knot.rate_rad_s[i] += h;
+      if (i >= 3 && i < 6) q.knot.acceleration_rad_s2[i - 3] += h;
+      if (i >= 6) q.rig.add(h * RigConstants::Vector::Unit(i - 6));
+      return factor(q.knot, q.rig).residual;
+    };
+    d.col(i) = (moved(kStep) - moved(-kStep)) / (2.0 * kStep);
+  }
+  return d;
+}
+
+// The checker of the tests below: largest difference relative to the largest entry.
+double disagreement(const Derivative& a, const Derivative& b) {
+  return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff();
+}
+
+const Vector3d kReading = {3.0, -40.0, 7.0};
+
+std::vector<Factor> factors() {
+  return {[](const RateKnot& k, const RigConstants& r) { return gyro_factor(k, r, kReading); },
+          [](const RateKnot& k, const RigConstants& r) { return flight_factor(k, r, kReading); },
+          [](const RateKnot& k, const RigConstants& r) { return euler_factor(k, r); }};
+}
+
+TEST(RateFactors, DerivativesAreThoseOfTheResiduals) {
+  oracles::Gaussian noise(11);
+  for (const Factor& factor : factors()) {
+    for (int i = 0; i < 20; ++i) {
+      const Point p = random_point(noise);
+      // the residuals are quadratic at most in each unknown: central differences are exact but for rounding, 1e-9
+      EXPECT_LT(disagreement(analytic(factor, p), numeric(factor, p)), 1e-7);
+    }
+  }
+}
+
+TEST(RateFactors, TheCheckerSeesAWrongSignInAnyNonZeroEntry) {
+  oracles::Gaussian noise(12);
+  for (const Factor& factor : factors()) {
+    const Point p = random_point(noise);
+    const Derivative right = analytic(factor, p), reference = numeric(factor, p);
+    int checked = 0;
+    for (Eigen::Index i = 0; i < right.size(); ++i) {
+      // entries below a thousandth of the largest hardly matter to the solution
+      if (std::abs(right.reshaped()[i]) < 1e-3 * reference.cwiseAbs().maxCoeff()) continue;
+      Derivative wrong = right;
+      wrong.reshaped()[i] *= -1.0;
+      EXPECT_GT(disagreement(wrong, reference), 1e-4) << i;
+      ++checked;
+    }
+    EXPECT_GT(checked, 5);
+  }
+}
+
+TEST(RateFactors, VanishOnATorqueFreeBody) {
+  const Eigen::Matrix3d R_IB = Eigen::AngleAxisd(0.7, Vector3d(1, 2, -1).normalized()).toRotationMatrix();
+  const Vector3d moments(2.0, 2.4, 3.0);
+  const oracles::TorqueFreeRotation body(moments, {3.0, 12.0, -5.0});
+  RigConstants rig;
+  rig.lever_arm_m = {-0.022, -0.085, 0.055};
+  rig.gyro_bias_rad_s = {0.1, 0.2, 0.3};
+  rig.accel_bias_m_s2 = {0.5, -0.4, 0.3};
+  rig.inertia = RigConstants::inertia_coordinates(R_IB * moments.asDiagonal() * R_IB.transpose());
+  const Vector3d lever_B = R_IB.transpose() * rig.lever_arm_m;
+  for (double t : {0.0, 0.3, 1.7}) {
+    const RateKnot knot{R_IB * body.rate(t), R_IB * body.acceleration(t)};
+    const Vector3d gyro = knot.rate_rad_s + rig.gyro_bias_rad_s;
+    const Vector3d accel = R_IB * body.specific_force(t, lever_B) + rig.accel_bias_m_s2;
+    EXPECT_LT(gyro_factor(knot, rig, gyro).residual.norm(), 1e-12);
+    EXPECT_LT(flight_factor(knot, rig, accel).residual.norm(), 1e-12);
+    EXPECT_LT(euler_factor(knot, rig).residual.norm(), 1e-10);
+    EXPECT_GT(euler_factor(knot, RigConstants{}).residual.norm(), 1.0);  // a sphere would turn otherwise
+  }
+}
+
+TEST(RigConstants, InertiaIsFreeOfScaleAndItsCoordinatesComeBack) {
+  Eigen::Matrix3d J;
+  J << 3.0, 0.1, -0.2, 0.1, 2.5, 0.3, -0.2, 0.3, 2.0;
+  RigConstants rig;
+  rig.inertia = RigConstants::inertia_coordinates(J);
+  EXPECT_LT((rig.inertia_matrix() - 3.0 / J.trace() * J).norm(), 1e-14);
+  EXPECT_LT((RigConstants::inertia_coordinates(7.0 * J) - rig.inertia).norm(), 1e-14);
+  EXPECT_EQ(RigConstants{}.inertia_matrix(), Eigen::Matrix3d::Identity());
+}
+
+}  // namespace
+}  // namespace tumble

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Bad and odd input of the batch smoother: a status, or a finite and bounded answer.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "estimator/angular_velocity/tumble_recording.hpp"
+#include "tumble/angular_velocity/rate_smoother.hpp"
+
+namespace tumble {
+namespace {
+
+using Eigen::Vector3d;
+
+TumbleRecording short_tumble() {
+  TumbleOptions options;
+  options.seed = 2;
+  options.flights = 3;
+  return make_tumble(options);
+}
+
+std::vector<RateState> estimate(const std::vector<ImuSample>& samples, RateReport& report) {
+  std::vector<RateState> out;
+  const Status status = RateSmoother({}).estimate(samples, out, report);
+  EXPECT_TRUE(status.ok()) << status.message();
+  EXPECT_EQ(out.size(), samples.size());
+  for (const RateState& state : out) {
+    EXPECT_TRUE(state.w_WI_I_rad_s.allFinite());
+    EXPECT_LT(state.w_WI_I_rad_s.norm(), 100.0);
+    EXPECT_TRUE(state.covariance_rad2_s2.allFinite());
+    EXPECT_GT(state.covariance_rad2_s2.diagonal().minCoeff(), 0.0);
+    EXPECT_LT(state.covariance_rad2_s2.diagonal().maxCoeff(), 2500.1);  // the bound on rates, squared
+  }
+  return out;
+}
+
+TEST(RateSmootherInput, TroubleNamesFieldValueAndBoundAndWritesNothing) {
+  const RateSmoother smoother({});
+  std::vector<RateState> out(2);
+  RateReport report;
+  report.iterations = 77;
+  const auto expect = [&](const std::vector<ImuSample>& samples, Trouble trouble, const std::string& field) {
+    const Status status = smoother.estimate(samples, out, report);
+    EXPECT_EQ(status.trouble, trouble) << status.message();
+    EXPECT_EQ(status.field, field);
+    EXPECT_EQ(out.size(), 2u);
+    EXPECT_EQ(report.iterations, 77);
+    return status;
+  };
+  const std::vector<ImuSample> good = short_tumble().samples;
+  expect({}, Trouble::empty, "samples");
+  EXPECT_EQ(expect({good[0]}, Trouble::too_few, "samples").bound, 2.0);
+  std::vector<ImuSample> bad = good;
+  bad[50].angular_velocity_rad_s.y() = std::nan("");
+  EXPECT_TRUE(std::isnan(expect(bad, Trouble::non_finite, "angular_velocity_rad_s").value));
+  bad = good;
+  bad[50].specific_force_m_s2.y() = INFINITY;
+  expect(bad, Trouble::non_finite, "specific_force_m_s2");
+  bad = good;
+  bad[50].time_ns = bad[49].time_ns;
+  EXPECT_EQ(expect(bad, Trouble::time_order, "time_ns").bound, 5e8);
+  bad = good;
+  bad[50].time_ns = bad[40].time_ns;
+  expect(bad, Trouble::time_order, "time_ns");
+  bad = good;
+  for (std::size_t k = 50; k < bad.size(); ++k) bad[k].time_ns += 2'000'000'000;
+  EXPECT_DOUBLE_EQ(expect(bad, Trouble::gap, "time_s since the last sample").value, 2.01);
+}
+
+TEST(RateSmootherInput, ShortGapsAreBridged) {
+  TumbleRecording tumble = short_tumble();
+  tumble.samples.erase(tumble.samples.begin() + 100, tumble.samples.begin() + 107);
+  RateReport report;
+  estimate(tumble.samples, report);
+}
+
+TEST(RateSmootherInput, AllAxesClippedForSecondsWithoutFlight) {
+  std::vector<ImuSample> samples(600);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    samples[k].time_ns = static_cast<TimeNs>(k) * 10'000'000;
+    const bool clipped = k >= 100 && k < 500;
+    samples[k].angular_velocity_rad_s = clipped ? Vector3d(10.5, -10.5, 10.5) : Vector3d(1.0, -1.0, 1.0);
+    samples[k].specific_force_m_s2 = {3.0, -40.0, 60.0};  // outwards: no rotation makes that
+  }
+  RateReport report;
+  const std::vector<RateState> out = estimate(samples, report);
+  EXPECT_EQ(report.clipped, 400u);
+  EXPECT_GT(report.bounded_only, 300u);
+  EXPECT_GT(out[300].w_WI_I_rad_s.x(), 10.3);
+  EXPECT_LT(out[300].w_WI_I_rad_s.y(), -10.3);
+  EXPECT_GT(out[300].covariance_rad2_s2(0, 0), 0.1);  // far from the softness of the bound
+}
+
+TEST(RateSmootherInput, ADeadAxis) {
+  TumbleRecording tumble = short_tumble();
+  for (ImuSample& sample : tumble.samples) sample.angular_velocity_rad_s.z() = 0.0;
+  RateReport report;
+  estimate(tumble.samples, report);
+}
+
+TEST(RateSmootherInput, OverflowsAreNotBelieved) {
+  TumbleOptions options;
+  options.seed = 13;
+  options.speed_low_rad_s = 14.0;
+  options.roll = false;
+  TumbleRecording tumble = make_tumble(options);
+  std::size_t flips = 0;
+  for (std::size_t k = 1; k < tumble.samples.size(); ++k) {
+    // every third reading at the rail after another one overflows
+    Vector3d& reading = tumble.samples[k].angular_velocity_rad_s;
+    for (int j = 0; j < 3; ++j) {
+      const double before = tumble.samples[k - 1].angular_velocity_rad_s[j];
+      if (k % 7 == 3 && std::abs(reading[j]) == 10.5 && before == reading[j]) {
+        reading[j] = -reading[j];
+        ++flips;
+      }
+    }
+  }
+  ASSERT_GT(flips, 5u);
+  RateReport report;
+  const std::vector<RateState> out = estimate(tumble.samples, report);
+  EXPECT_GE(report.void_readings, flips / 2);
+  EXPECT_LT(clipped_errors(tumble, rates_of(out), 10.49).median, 0.05);
+}
+
+TEST(RateSmootherInput, TellsWhenTheStatedRangeIsWrongAndWhenForcesLookLikeG) {
+  TumbleOptions options;
+  options.seed = 13;
+  TumbleRecording tumble = make_tumble(options);
+  RateSmoother::Params params;
+  params.rails.stated_gyro_rad_s = 7.854;  // the data sheet of a device that clips at 10.5
+  std::vector<RateState> out;
+  RateReport report;
+  ASSERT_TRUE(RateSmoother(params).estimate(tumble.samples, out, report).ok());
+  EXPECT_TRUE(report.rail_disagrees[0] || report.rail_disagrees[1] || report.rail_disagrees[2]);
+  EXPECT_EQ(report.rail[0].value_or(0.0), 10.5);
+  EXPECT_FALSE(report.force_unit_suspect);
+  for (ImuSample& sample : tumble.samples) sample.specific_force_m_s2 /= 9.81;
+  ASSERT_TRUE(RateSmoother(params).estimate(tumble.samples, out, report).ok());
+  EXPECT_TRUE(report.force_unit_suspect);
+}
+
+TEST(RateSmootherInput, RefusesParametersOutsideOfTheirBounds) {
+  const auto refused = [](auto change) {
+    RateSmoother::Params params;
+    change(params);
+    EXPECT_THROW(RateSmoother{params}, InvalidParams);
+  };
+  refused([](RateSmoother::Params& p) { p.iterations_max = 0; });
+  refused([](RateSmoother::Params& p) { p.tolerance_rad_s = 0.0; });
+  refused([](RateSmoother::Params& p) { p.widen_first = 0.5; });
+  refused([](RateSmoother::Params& p) { p.gap_max_s = -1.0; });
+  refused([](RateSmoother::Params& p) { p.model.nominal.lever_arm_m.x() = std::nan(""); });
+  refused([](RateSmoother::Params& p) { p.model.lever_arm_sigma_m = 0.0; });
+  refused([](RateSmoother::Params& p) { p.model.jerk_psd_flight = 0.0; });
+  refused([](RateSmoother::Params& p) { p.model.flight_threshold = 0.5; });
+  refused([](RateSmoother::Params& p) { p.rails.stated_gyro_rad_s = -1.0; });
+  refused([](RateSmoother::Params& p) { p.model.calibration = RigCalibration{{}, -RigConstants::Matrix::Identity()}; });
+}
+
+}  // namespace
+}  // namespace tumble

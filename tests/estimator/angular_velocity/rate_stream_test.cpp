@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/angular_velocity/rate_stream.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <new>
+#include <vector>
+
+#include "estimator/angular_velocity/tumble_recording.hpp"
+#include "tumble/angular_velocity/rate_smoother.hpp"
+
+namespace {
+// allocations of this program, to show that push() makes none
+thread_local std::size_t allocations = 0;
+}  // namespace
+
+// not inlined, so that the compiler does not take the pair for mismatched
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  ++allocations;
+  void* memory = std::malloc(size);
+  if (memory == nullptr) throw std::bad_alloc();
+  return memory;
+}
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+
+namespace tumble {
+namespace {
+
+using Eigen::Vector3d;
+
+std::vector<RateState> stream(const RateStream& method, const std::vector<ImuSample>& samples,
+                              RateStream::State& state) {
+  std::vector<RateState> out;
+  std::optional<RateState> one;
+  for (const ImuSample& sample : samples) {
+    const Status status = method.push(sample, state, one);
+    EXPECT_TRUE(status.ok()) << status.message();
+    if (one) out.push_back(*one);
+  }
+  method.flush(state, out);
+  return out;
+}
+
+TumbleOptions options_of(std::uint64_t seed) {
+  TumbleOptions options;
+  options.seed = seed;
+  options.mounting_seed = seed;
+  options.roll = false;
+  return options;
+}
+
+RateStream::Params wrong_lever(std::uint64_t seed) {
+  RateStream::Params params;
+  const double s = static_cast<double>(seed);
+  params.model.nominal.lever_arm_m += 0.02 * Vector3d(std::sin(s), std::cos(2.0 * s), std::sin(3.0 * s)).normalized();
+  params.rails.stated_gyro_rad_s = 10.5;
+  return params;
+}
+
+TEST(RateStream, RecoversTumblesNearlyAsWellAsTheBatch) {
+  double batch_sum = 0.0, stream_sum = 0.0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const TumbleRecording recording = make_tumble(options_of(seed));
+    const RateStream method(wrong_lever(seed));
+    RateStream::State state = method.start();
+    const std::vector<RateState> out = stream(method, recording.samples, state);
+    ASSERT_EQ(out.size(), recording.samples.size());
+    const ClippedErrors errors = clipped_errors(recording, rates_of(out), 10.49);
+    const ClippedErrors raw = clipped_errors(recording, readings_of(recording.samples), 10.49);
+    ASSERT_GT(errors.count, 50u);
+    // measured 0.008 to 0.12 rad/s: the first flights pass before the lever arm is known
+    EXPECT_LT(errors.median, 0.2) << seed;
+    EXPECT_LT(errors.median, 0.1 * raw.median) << seed;
+    EXPECT_EQ(state.failures, 0u);
+    for (std::size_t k = 0; k < out.size(); ++k) ASSERT_EQ(out[k].time_ns, recording.samples[k].time_ns);
+
+    RateSmoother::Params batch_params;
+    batch_params.model = wrong_lever(seed).model;
+    std::vector<RateState> batch;
+    RateReport report;
+    ASSERT_TRUE(RateSmoother(batch_params).estimate(recording.samples, batch, report).ok());
+    batch_sum += clipped_errors(recording, rates_of(batch), 10.49).median;
+    stream_sum += errors.median;
+  }
+  EXPECT_LT(batch_sum, stream_sum);         // the batch knows the lever arm from the start
+  EXPECT_LT(stream_sum, 10.0 * batch_sum);  // measured 6 times; with the lever arm known, see below
+}
+
+TEST(RateStream, WithACalibratedRigItComesCloseToTheBatch) {
+  double batch_sum = 0.0, stream_sum = 0.0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const TumbleRecording recording = make_tumble(options_of(seed));
+    RateSmoother::Params batch_params;
+    batch_params.model = wrong_lever(seed).model;
+    std::vector<RateState> batch;
+    RateReport report;
+    ASSERT_TRUE(RateSmoother(batch_params).estimate(recording.samples, batch, report).ok());
+    RateStream::Params params = wrong_lever(seed);
+    params.model.calibration = report.calibration;
+    params.model.calibration->covariance *= 4.0;
+    const RateStream method(params);
+    RateStream::State state = method.start();
+    const std::vector<RateState> out = stream(method, recording.samples, state);
+    batch_sum += clipped_errors(recording, rates_of(batch), 10.49).median;
+    stream_sum += clipped_errors(recording, rates_of(out), 10.49).median;
+  }
+  EXPECT_GT(stream_sum, 0.0);
+  EXPECT_LT(stream_sum, 1.5 * batch_sum);
+}
+
+TEST(RateStream, SplittingAnywhereChangesNothing) {
+  const std::vector<ImuSample> samples = make_tumble(options_of(3)).samples;
+  const RateStream method(wrong_lever(3));
+  RateStream::State whole = method.start();
+  const std::vector<RateState> want = stream(method, samples, whole);
+  std::optional<RateState> one;
+  for (std::size_t split : {std::size_t{0}, std::size_t{1}, std::size_t{7}, std::size_t{21}, samples.size() / 2}) {
+    RateStream::State state = method.start();
+    std::vector<RateState> got;
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+      if (k == split) state = RateStream::State(state);  // carried over as a copy, to another object
+      const RateStream second(wrong_lever(3));
+      ASSERT_TRUE((k < split ? method : second).push(samples[k], state, one).ok());
+      if (one) got.push_back(*one);
+    }
+    method.flush(state, got);
+    EXPECT_TRUE(RateStream::equal(state, whole)) << split;
+    ASSERT_EQ(got.size(), want.size());
+    for (std::size_t k = 0; k < got.size(); ++k) {
+      ASSERT_EQ(got[k].w_WI_I_rad_s, want[k].w_WI_I_rad_s) << k;
+      ASSERT_EQ(got[k].covariance_rad2_s2, want[k].covariance_rad2_s2) << k;
+    }
+  }
+  RateStream::State other = whole;
+  other.window[3].estimate.knot.rate_rad_s.x() += 1e-12;
+  EXPECT_FALSE(RateStream::equal(other, whole));
+}
+
+TEST(RateStream, AllocatesNothingPerSample) {
+  const std::vector<ImuSample> samples = make_tumble(options_of(4)).samples;
+  const RateStream method(wrong_lever(4));
+  RateStream::State state = method.start();
+  std::optional<RateState> one;
+  const std::size_t before = allocations;
+  for (const ImuSample& sample : samples) ASSERT_TRUE(method.push(sample, state, one).ok());
+  EXPECT_EQ(allocations, before);
+  const std::vector<int> control(3);  // the counter does count
+  EXPECT_EQ(allocations, before + control.size() / 3);
+}
+
+TEST(RateStream, ARunWithoutClippingReturnsTheGyro) {
+  TumbleOptions options = options_of(5);
+  options.gyro_rail_rad_s = 1000.0;
+  options.roll = true;
+  const TumbleRecording recording = make_tumble(options);
+  RateStream::Params params = wrong_lever(5);
+  params.rails.stated_gyro_rad_s = 1000.0;
+  const RateStream method(params);
+  RateStream::State state = method.start();
+  const std::vector<RateState> out = stream(method, recording.samples, state);
+  double gyro = 0.0, ours = 0.0;
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    gyro += (recording.samples[k].angular_velocity_rad_s - recording.truth[k]).squaredNorm();
+    ours += (out[k].w_WI_I_rad_s - recording.truth[k]).squaredNorm();
+  }
+  EXPECT_LT(ours, 1.05 * gyro);
+}
+
+TEST(RateStream, BadSamplesGiveAStatusAndLeaveTheStateAlone) {
+  const std::vector<ImuSample> samples = make_tumble(options_of(6)).samples;
+  const RateStream method(wrong_lever(6));
+  RateStream::State state = method.start();
+  std::optional<RateState> one;
+  for (std::size_t k = 0; k < 120; ++k) ASSERT_TRUE(method.push(samples[k], state, one).ok());
+  const RateStream::State before = state;
+  const auto expect = [&](ImuSample sample, Trouble trouble) {
+    const Status status = method.push(sample, state, one);
+    EXPECT_EQ(status.trouble, trouble) << status.message();
+    EXPECT_FALSE(one.has_value());
+    EXPECT_TRUE(RateStream::equal(state, before));
+  };
+  ImuSample bad = samples[120];
+  bad.angular_velocity_rad_s.x() = std::nan("");
+  expect(bad, Trouble::non_finite);
+  bad = samples[120];
+  bad.specific_force_m_s2.z() = INFINITY;
+  expect(bad, Trouble::non_finite);
+  expect(samples[119], Trouble::time_order);
+  expect(samples[100], Trouble::time_order);
+  bad = samples[120];
+  bad.time_ns += 2'000'000'000;
+  expect(bad, Trouble::gap);
+  EXPECT_TRUE(method.push(samples[120], state, one).ok());
+}
+
+TEST(RateStream, AllAxesClippedForSecondsStaysBounded) {
+  const RateStream method(wrong_lever(1));
+  RateStream::State state = method.start();
+  std::optional<RateState> one;
+  for (std::size_t k = 0; k < 600; ++k) {
+    ImuSample sample;
+    sample.time_ns = static_cast<TimeNs>(k) * 10'000'000;
+    const bool clipped = k >= 100 && k < 500;
+    sample.angular_velocity_rad_s = clipped ? Vector3d(10.5, -10.5, 10.5) : Vector3d(1.0, -1.0, 1.0);
+    sample.specific_force_m_s2 = {3.0, -40.0, 60.0};
+    ASSERT_TRUE(method.push(sample, state, one).ok());
+    if (!one) continue;
+    ASSERT_TRUE(one->w_WI_I_rad_s.allFinite()) << k;
+    ASSERT_LT(one->w_WI_I_rad_s.norm(), 150.0) << k;
+    ASSERT_TRUE(one->covariance_rad2_s2.allFinite()) << k;
+    ASSERT_GT(one->covariance_rad2_s2.diagonal().minCoeff(), 0.0) << k;
+  }
+}
+
+TEST(RateStream, RefusesParametersOutsideOfTheirBounds) {
+  const auto refused = [](auto change) {
+    RateStream::Params params;
+    change(params);
+    EXPECT_THROW(RateStream{params}, InvalidParams);
+  };
+  refused([](RateStream::Params& p) { p.period_s = 0.0; });
+  refused([](RateStream::Params& p) { p.lag_s = 0.01; });
+  refused([](RateStream::Params& p) { p.lag_s = 11.0; });
+  refused([](RateStream::Params& p) { p.widen_first = 0.0; });
+  refused([](RateStream::Params& p) { p.bound_damping = 0.0; });
+  refused([](RateStream::Params& p) { p.gap_max_s = std::nan(""); });
+  refused([](RateStream::Params& p) { p.model.rate_max_rad_s = 0.0; });
+}
+
+}  // namespace
+}  // namespace tumble

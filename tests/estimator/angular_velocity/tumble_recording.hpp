@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "tumble/angular_velocity/rate_state.hpp"
+#include "tumble/common/imu.hpp"
+
+namespace tumble {
+
+/// What a body does at a sample of a synthetic tumble.
+enum class Phase : std::uint8_t { rest, push, flight, impact, roll };
+
+struct TumbleOptions {
+  std::uint64_t seed = 1;
+  std::uint64_t mounting_seed = 1;  ///< of the principal axes in the IMU
+  int rate_hz = 100;                ///< divides 2000
+  double gyro_rail_rad_s = 10.5;
+  double accel_rail_m_s2 = 196.0;
+  Eigen::Vector3d lever_arm_m = {-0.022, -0.085, 0.055};
+  Eigen::Vector3d moments = {1.0, 1.15, 1.3};
+  double gyro_sigma_rad_s = 5.236e-3;
+  double accel_sigma_m_s2 = 5.9e-3;
+  Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();
+  Eigen::Vector3d accel_bias_m_s2 = Eigen::Vector3d::Zero();
+  double speed_low_rad_s = 9.0, speed_high_rad_s = 18.0;  ///< of the flights
+  int flights = 8;
+  double impact_m_s2 = 150.0;  ///< peak force of an impact, drawn between a third of it and all of it
+  bool roll = true;            ///< end by a second of rolling to rest
+};
+
+struct TumbleRecording {
+  std::vector<ImuSample> samples;
+  std::vector<Eigen::Vector3d> truth;  ///< mean of w_WI_I over the window of each sample
+  std::vector<Phase> phase;
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< in IMU axes
+};
+
+/// Rest, a push, torque-free flights (in closed form) joined by impacts that change rate and force within 20 ms,
+/// rolling, rest. Readings are means over the window of a sample, with noise, clipped after averaging.
+TumbleRecording make_tumble(const TumbleOptions& options);
+
+/// Quantiles of the error norm over the samples in which at least one gyro axis was clipped.
+struct ClippedErrors {
+  std::size_t count = 0;
+  double median = 0.0, p99 = 0.0, maximum = 0.0;
+};
+ClippedErrors clipped_errors(const TumbleRecording& recording, const std::vector<Eigen::Vector3d>& rates, double rail);
+std::vector<Eigen::Vector3d> rates_of(const std::vector<RateState>& states);
+std::vector<Eigen::Vector3d> readings_of(const std::vector<ImuSample>& samples);
+
+}  // namespace tumble
