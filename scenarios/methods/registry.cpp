@@ -10,12 +10,15 @@ namespace tumble::scenarios {
 
 namespace {
 
-std::string full_name(const MethodInfo& info) { return std::string(to_string(info.kind)) + "/" + info.name; }
+std::string full_name(const MethodInfo& info) {
+  return std::string(to_string(info.kind)) + "/" + info.name;
+}
 
 std::vector<Method> all_methods() {
   std::vector<Method> all = {
       rate_raw(),
       rate_saave(),
+      rate_tumble(),
       rate_oracle(),
       attitude_integrate(),
       attitude_madgwick(),

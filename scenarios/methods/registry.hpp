@@ -1,24 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <map>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "scenarios/methods/method.hpp"
 #include "tumble/common/imu.hpp"
 
-/// How a method enters the registry. Add one: write KIND_NAME.cpp that defines `Method KIND_NAME()`, declare it here and
-/// name it once in registry.cpp.
+/// How a method enters the registry. Add one: write KIND_NAME.cpp that defines `Method KIND_NAME()`, declare it here
+/// and name it once in registry.cpp.
 namespace tumble::scenarios {
 
 /// What a method computes; `parameters` is complete and within bounds, `oracle.truth` is set when the method needs it.
 using RunCore = Estimate (*)(const sim::Sensors&, const sim::Values& parameters, const OracleInput& oracle);
 
-/// Wraps `run` with what all methods have in common: parameters are resolved, truth is demanded from callers of an oracle
-/// and withheld from everybody else. The result throws BadInput on an unknown or out-of-bound parameter and on missing truth.
+/// Wraps `run` with what all methods have in common: parameters are resolved, truth is demanded from callers of an
+/// oracle and withheld from everybody else. The result throws BadInput on an unknown or out-of-bound parameter and on
+/// missing truth.
 Method make_method(MethodInfo info, RunCore run);
 
 Method rate_raw();
 Method rate_saave();
+Method rate_tumble();
 Method rate_oracle();
 Method attitude_integrate();
 Method attitude_madgwick();
@@ -31,10 +36,16 @@ Method slam_oracle();
 Status raw_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<RateState>& out);
 Status saave_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, const sim::Values& parameters,
                    std::vector<RateState>& out);
+/// Adds what the smoother tells of its run to `health`.
+Status tumble_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, const sim::Values& parameters,
+                    std::vector<RateState>& out, std::map<std::string, double>& health);
 Status unclipped_rates(const sim::Sensors& sensors, const sim::Truth& truth, std::vector<RateState>& out);
 
 /// Parameters of `saave_rates`.
 std::span<const sim::Parameter> saave_parameters();
+
+/// Parameters of `tumble_rates`.
+std::span<const sim::Parameter> tumble_rate_parameters();
 
 /// Counters of a rate estimate: samples by source.
 void count_sources(std::span<const RateState> rates, std::map<std::string, double>& health);
