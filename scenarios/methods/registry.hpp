@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scenarios/methods/method.hpp"
+#include "tumble/attitude/autogain.hpp"
 #include "tumble/common/imu.hpp"
 
 /// How a method enters the registry. Add one: write KIND_NAME.cpp that defines `Method KIND_NAME()`, declare it here
@@ -27,6 +28,12 @@ Method rate_tumble();
 Method rate_oracle();
 Method attitude_integrate();
 Method attitude_madgwick();
+Method attitude_complementary();
+Method attitude_mahony();
+Method attitude_eskf();
+Method attitude_autogain();
+Method attitude_vqf();
+Method attitude_tumble();
 Method position_rolling();
 Method slam_icp();
 Method slam_icp_raw();
@@ -49,6 +56,10 @@ std::span<const sim::Parameter> tumble_rate_parameters();
 
 /// Counters of a rate estimate: samples by source.
 void count_sources(std::span<const RateState> rates, std::map<std::string, double>& health);
+
+/// Parameters of the attitude filter of the published sphere, and what they mean to the library.
+std::span<const sim::Parameter> autogain_parameters();
+Autogain::Params autogain_params(const sim::Values& parameters);
 
 /// The lidar-inertial chain behind every registration method: given rates, deskew, register, map.
 void run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples, const sim::Values& parameters,
