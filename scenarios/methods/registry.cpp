@@ -31,6 +31,8 @@ std::vector<Method> all_methods() {
       position_rolling(),
       slam_icp(),
       slam_icp_raw(),
+      slam_tumble(),
+      slam_tumble_gyro_only(),
       slam_oracle(),
   };
   std::stable_sort(all.begin(), all.end(), [](const Method& a, const Method& b) { return a.info.kind < b.info.kind; });
@@ -81,6 +83,12 @@ std::vector<const Method*> find_methods(const std::string& name) {
     throw BadInput("unknown method '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
   }
   return found;
+}
+
+std::vector<sim::Parameter> joined_parameters(std::initializer_list<std::span<const sim::Parameter>> stages) {
+  std::vector<sim::Parameter> joined;
+  for (const std::span<const sim::Parameter> stage : stages) joined.insert(joined.end(), stage.begin(), stage.end());
+  return joined;
 }
 
 void count_sources(std::span<const RateState> rates, std::map<std::string, double>& health) {

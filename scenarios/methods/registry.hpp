@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <initializer_list>
 #include <map>
 #include <span>
 #include <string>
@@ -37,6 +38,8 @@ Method attitude_tumble();
 Method position_rolling();
 Method slam_icp();
 Method slam_icp_raw();
+Method slam_tumble();
+Method slam_tumble_gyro_only();
 Method slam_oracle();
 
 /// Rate stages, shared by the rate methods and the slam chains. One RateState per sample; `out` is empty on trouble.
@@ -61,11 +64,21 @@ void count_sources(std::span<const RateState> rates, std::map<std::string, doubl
 std::span<const sim::Parameter> autogain_parameters();
 Autogain::Params autogain_params(const sim::Values& parameters);
 
+/// Parameters of several stages of one method, in order; their names differ.
+std::vector<sim::Parameter> joined_parameters(std::initializer_list<std::span<const sim::Parameter>> stages);
+
+/// Whether the registration estimates by how much the rates of clipped axes are short.
+enum class ExcessRate { ignored, estimated };
+
 /// The lidar-inertial chain behind every registration method: given rates, deskew, register, map.
+/// With ExcessRate::estimated `parameters` hold those of `excess_parameters` too.
 void run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples, const sim::Values& parameters,
-                    Estimate& estimate);
+                    Estimate& estimate, ExcessRate excess = ExcessRate::ignored);
 
 /// Parameters of `run_slam_chain`.
 std::span<const sim::Parameter> slam_parameters();
+
+/// Parameters of `run_slam_chain` that count where the excess rate is estimated.
+std::span<const sim::Parameter> excess_parameters();
 
 }  // namespace tumble::scenarios
