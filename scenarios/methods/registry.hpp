@@ -36,6 +36,9 @@ Method attitude_autogain();
 Method attitude_vqf();
 Method attitude_tumble();
 Method position_rolling();
+Method position_observer();
+Method position_autogain_fusion();
+Method position_tumble();
 Method slam_icp();
 Method slam_icp_raw();
 Method slam_tumble();
@@ -63,6 +66,9 @@ void count_sources(std::span<const RateState> rates, std::map<std::string, doubl
 /// Parameters of the attitude filter of the published sphere, and what they mean to the library.
 std::span<const sim::Parameter> autogain_parameters();
 Autogain::Params autogain_params(const sim::Values& parameters);
+
+/// Parameters of `sphere_attitude`.
+std::span<const sim::Parameter> sphere_rest_parameters();
 
 /// Parameters of several stages of one method, in order; their names differ.
 std::vector<sim::Parameter> joined_parameters(std::initializer_list<std::span<const sim::Parameter>> stages);
