@@ -24,7 +24,8 @@ std::string header_html(const PageContent& content) {
 std::string cards_html(const Summary& summary) {
   std::string out = "<div class=\"cards\">\n";
   for (const Headline& headline : headlines(summary)) {
-    out += "<div class=\"card\"><div class=\"place\">" + escaped(headline.place) + "</div><div class=\"value\">" +
+    out += "<div class=\"card\"><div class=\"place\">" + escaped(headline.place) + "</div><div class=\"value" +
+           (headline.worse ? " worse" : "") + "\">" +
            escaped(headline.value) + "</div><div class=\"detail\">" + escaped(headline.detail) + "</div></div>\n";
   }
   return out + "</div>\n";

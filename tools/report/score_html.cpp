@@ -91,6 +91,7 @@ std::vector<Headline> headlines(const Summary& summary) {
       const MetricSummary& to = *best->find(metric);
       const double change = from->centre.value == 0.0 ? NAN : 100.0 * (to.centre.value / from->centre.value - 1.0);
       headline.value = fmt::format("{}{} %", change < 0.0 ? "−" : "+", plain(std::abs(change)));
+      headline.worse = (change > 0.0) == (metric_sense(metric) == Sense::less) && change != 0.0;
       headline.detail = fmt::format("{}: {} beside {} with {}; better in {} of {} draws ({})", best->method,
                                     styled_value(metric, to.centre.value, true), styled_value(metric, from->centre.value, true),
                                     base->method, to.wins.count, to.wins.pairs, metric);
