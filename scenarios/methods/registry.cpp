@@ -10,18 +10,32 @@ namespace tumble::scenarios {
 
 namespace {
 
-std::string full_name(const MethodInfo& info) { return std::string(to_string(info.kind)) + "/" + info.name; }
+std::string full_name(const MethodInfo& info) {
+  return std::string(to_string(info.kind)) + "/" + info.name;
+}
 
 std::vector<Method> all_methods() {
   std::vector<Method> all = {
       rate_raw(),
       rate_saave(),
+      rate_tumble(),
       rate_oracle(),
       attitude_integrate(),
       attitude_madgwick(),
+      attitude_complementary(),
+      attitude_mahony(),
+      attitude_eskf(),
+      attitude_autogain(),
+      attitude_vqf(),
+      attitude_tumble(),
       position_rolling(),
+      position_observer(),
+      position_autogain_fusion(),
+      position_tumble(),
       slam_icp(),
       slam_icp_raw(),
+      slam_tumble(),
+      slam_tumble_gyro_only(),
       slam_oracle(),
   };
   std::stable_sort(all.begin(), all.end(), [](const Method& a, const Method& b) { return a.info.kind < b.info.kind; });
@@ -72,6 +86,12 @@ std::vector<const Method*> find_methods(const std::string& name) {
     throw BadInput("unknown method '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
   }
   return found;
+}
+
+std::vector<sim::Parameter> joined_parameters(std::initializer_list<std::span<const sim::Parameter>> stages) {
+  std::vector<sim::Parameter> joined;
+  for (const std::span<const sim::Parameter> stage : stages) joined.insert(joined.end(), stage.begin(), stage.end());
+  return joined;
 }
 
 void count_sources(std::span<const RateState> rates, std::map<std::string, double>& health) {

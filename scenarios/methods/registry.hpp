@@ -1,49 +1,90 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <initializer_list>
+#include <map>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "scenarios/methods/method.hpp"
+#include "tumble/attitude/autogain.hpp"
 #include "tumble/common/imu.hpp"
 
-/// How a method enters the registry. Add one: write KIND_NAME.cpp that defines `Method KIND_NAME()`, declare it here and
-/// name it once in registry.cpp.
+/// How a method enters the registry. Add one: write KIND_NAME.cpp that defines `Method KIND_NAME()`, declare it here
+/// and name it once in registry.cpp.
 namespace tumble::scenarios {
 
 /// What a method computes; `parameters` is complete and within bounds, `oracle.truth` is set when the method needs it.
 using RunCore = Estimate (*)(const sim::Sensors&, const sim::Values& parameters, const OracleInput& oracle);
 
-/// Wraps `run` with what all methods have in common: parameters are resolved, truth is demanded from callers of an oracle
-/// and withheld from everybody else. The result throws BadInput on an unknown or out-of-bound parameter and on missing truth.
+/// Wraps `run` with what all methods have in common: parameters are resolved, truth is demanded from callers of an
+/// oracle and withheld from everybody else. The result throws BadInput on an unknown or out-of-bound parameter and on
+/// missing truth.
 Method make_method(MethodInfo info, RunCore run);
 
 Method rate_raw();
 Method rate_saave();
+Method rate_tumble();
 Method rate_oracle();
 Method attitude_integrate();
 Method attitude_madgwick();
+Method attitude_complementary();
+Method attitude_mahony();
+Method attitude_eskf();
+Method attitude_autogain();
+Method attitude_vqf();
+Method attitude_tumble();
 Method position_rolling();
+Method position_observer();
+Method position_autogain_fusion();
+Method position_tumble();
 Method slam_icp();
 Method slam_icp_raw();
+Method slam_tumble();
+Method slam_tumble_gyro_only();
 Method slam_oracle();
 
 /// Rate stages, shared by the rate methods and the slam chains. One RateState per sample; `out` is empty on trouble.
 Status raw_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<RateState>& out);
 Status saave_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, const sim::Values& parameters,
                    std::vector<RateState>& out);
+/// Adds what the smoother tells of its run to `health`.
+Status tumble_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, const sim::Values& parameters,
+                    std::vector<RateState>& out, std::map<std::string, double>& health);
 Status unclipped_rates(const sim::Sensors& sensors, const sim::Truth& truth, std::vector<RateState>& out);
 
 /// Parameters of `saave_rates`.
 std::span<const sim::Parameter> saave_parameters();
 
+/// Parameters of `tumble_rates`.
+std::span<const sim::Parameter> tumble_rate_parameters();
+
 /// Counters of a rate estimate: samples by source.
 void count_sources(std::span<const RateState> rates, std::map<std::string, double>& health);
 
+/// Parameters of the attitude filter of the published sphere, and what they mean to the library.
+std::span<const sim::Parameter> autogain_parameters();
+Autogain::Params autogain_params(const sim::Values& parameters);
+
+/// Parameters of `sphere_attitude`.
+std::span<const sim::Parameter> sphere_rest_parameters();
+
+/// Parameters of several stages of one method, in order; their names differ.
+std::vector<sim::Parameter> joined_parameters(std::initializer_list<std::span<const sim::Parameter>> stages);
+
+/// Whether the registration estimates by how much the rates of clipped axes are short.
+enum class ExcessRate { ignored, estimated };
+
 /// The lidar-inertial chain behind every registration method: given rates, deskew, register, map.
+/// With ExcessRate::estimated `parameters` hold those of `excess_parameters` too.
 void run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples, const sim::Values& parameters,
-                    Estimate& estimate);
+                    Estimate& estimate, ExcessRate excess = ExcessRate::ignored);
 
 /// Parameters of `run_slam_chain`.
 std::span<const sim::Parameter> slam_parameters();
+
+/// Parameters of `run_slam_chain` that count where the excess rate is estimated.
+std::span<const sim::Parameter> excess_parameters();
 
 }  // namespace tumble::scenarios

@@ -27,7 +27,19 @@ const std::array<sim::Parameter, 8>& parameters_of_the_chain() {
   return parameters;
 }
 
-LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const sim::Values& parameters) {
+const std::array<sim::Parameter, 2>& parameters_of_the_excess() {
+  static const LidarInertialOdometry::Params library;
+  static const std::array<sim::Parameter, 2> parameters = {{
+      {"excess_sigma_min_rad_s", library.excess_sigma_min_rad_s, 1e-9, 100.0, "rad/s",
+       "least prior of the excess rate of a clipped axis, whatever the rate method claims"},
+      {"clipped_sigma_rad_s", library.clipped_sigma_rad_s, 0.0, 100.0, "rad/s",
+       "assumed of a clipped axis that the rate method did not recover"},
+  }};
+  return parameters;
+}
+
+LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const sim::Values& parameters,
+                                              ExcessRate excess) {
   LidarInertialOdometry::Params params;
   params.T_IL = bridge::T_IL(sensors.imus.front(), sensors.lidars.front());
   params.gravity_m_s2 = sensors.gravity_m_s2;
@@ -39,6 +51,11 @@ LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const
   params.match_distance_m = parameters.at("match_distance_m");
   params.prior_sigma_m = parameters.at("prior_sigma_m");
   params.prior_sigma_rad = parameters.at("prior_sigma_rad");
+  if (excess == ExcessRate::estimated) {
+    params.estimate_excess_rate = true;
+    params.excess_sigma_min_rad_s = parameters.at("excess_sigma_min_rad_s");
+    params.clipped_sigma_rad_s = parameters.at("clipped_sigma_rad_s");
+  }
   return params;
 }
 
@@ -51,10 +68,16 @@ void append_poses(const LidarInertialOdometry::SweepReport& report, std::vector<
 
 }  // namespace
 
-std::span<const sim::Parameter> slam_parameters() { return parameters_of_the_chain(); }
+std::span<const sim::Parameter> slam_parameters() {
+  return parameters_of_the_chain();
+}
+
+std::span<const sim::Parameter> excess_parameters() {
+  return parameters_of_the_excess();
+}
 
 void run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples, const sim::Values& parameters,
-                    Estimate& estimate) {
+                    Estimate& estimate, ExcessRate excess) {
   estimate.frame = Frame::imu;
   count_sources(estimate.rates, estimate.health);
   if (sensors.lidars.empty()) {
@@ -68,7 +91,7 @@ void run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samp
     return;
   }
 
-  LidarInertialOdometry odometry(odometry_params(sensors, parameters));
+  LidarInertialOdometry odometry(odometry_params(sensors, parameters, excess));
   std::size_t next = 0;
   for (std::size_t k = 0; k < sweeps; ++k) {
     const bridge::Sweep sweep = bridge::sweep(lidar, k);

@@ -7,11 +7,7 @@ namespace tumble::scenarios {
 namespace {
 
 std::span<const sim::Parameter> parameters_with_saave() {
-  static const std::vector<sim::Parameter> all = [] {
-    std::vector<sim::Parameter> joined(slam_parameters().begin(), slam_parameters().end());
-    joined.insert(joined.end(), saave_parameters().begin(), saave_parameters().end());
-    return joined;
-  }();
+  static const std::vector<sim::Parameter> all = joined_parameters({slam_parameters(), saave_parameters()});
   return all;
 }
 

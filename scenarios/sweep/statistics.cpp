@@ -28,8 +28,8 @@ double quantile_of_sorted(const std::vector<double>& sorted, double share) {
   const double place = share * static_cast<double>(sorted.size() - 1);
   const auto below = static_cast<std::size_t>(place);
   const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  // at or between equal infinities there is nothing to interpolate
-  if (place == static_cast<double>(below) || sorted[below] == sorted[above]) return sorted[below];
+  // an infinity is not interpolated: what lies above minus infinity, or at a place itself, is that value
+  if (place == static_cast<double>(below) || std::isinf(sorted[below])) return sorted[below];
   return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
 }
 

@@ -10,6 +10,8 @@ namespace {
 
 using Eigen::Vector3d;
 
+constexpr double kNear_m = 1.0;  // paths within this and a quarter of the robots' extent are framed with them
+
 struct Ball {
   Vector3d centre_W_m;
   double radius_m;
@@ -17,9 +19,21 @@ struct Ball {
 
 std::vector<Ball> content(const View& view, double robot_radius_m) {
   std::vector<Ball> balls;
-  for (const Eigen::Isometry3d& T_WB : view.robots_T_WB) balls.push_back({T_WB.translation(), robot_radius_m});
+  Eigen::AlignedBox3d near;
+  for (const Eigen::Isometry3d& T_WB : view.robots_T_WB) {
+    if (!T_WB.translation().allFinite()) continue;
+    balls.push_back({T_WB.translation(), robot_radius_m});
+    near.extend(T_WB.translation());
+  }
+  // an estimate that ran away must not shrink the robots to dots: beside robots, what is far from them does not decide
+  if (!near.isEmpty()) {
+    const Vector3d margin = Vector3d::Constant(kNear_m + 0.25 * near.diagonal().norm());
+    near = Eigen::AlignedBox3d(near.min() - margin, near.max() + margin);
+  }
   for (const DrawnPath& path : view.paths) {
-    for (const Vector3d& p : path.points_W_m) balls.push_back({p, path.width_m});
+    for (const Vector3d& p : path.points_W_m) {
+      if (near.isEmpty() || near.contains(p)) balls.push_back({p, path.width_m});
+    }
   }
   // points are maps, far wider than the motion: they decide only when nothing else is shown
   if (balls.empty()) {

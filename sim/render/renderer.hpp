@@ -35,7 +35,8 @@ struct DrawnPoints {
   double radius_m = 0.02;
 };
 
-/// What a picture shows. The camera looks at `look_at_W_m`; NaN there frames all paths and robots by itself.
+/// What a picture shows. The camera looks at `look_at_W_m`; NaN there frames the robots and
+/// the paths near them by itself (all paths when there is no robot).
 struct View {
   std::vector<Eigen::Isometry3d> robots_T_WB;  ///< the robot is drawn at each of these poses
   std::vector<DrawnPath> paths;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One sweep of 28 800 points through the odometry on one core, everything included, in the midst of a tumble at 15 rad/s;
-// and its parts. The odometry is copied from a saved state before each run, outside of the time taken.
+// One sweep of 28 800 points through the odometry on one core, everything included, in the midst of a tumble at 15
+// rad/s; and its parts. The odometry is copied from a saved state before each run, outside of the time taken.
 #include <benchmark/benchmark.h>
 
 #include <memory>
@@ -68,7 +68,8 @@ void nearest_neighbours_and_plane(benchmark::State& state) {
   tumble::VoxelMap map({0.5, 0.1});
   const tumble::test::Motion motion;
   for (int i = 5; i < 15; ++i) {
-    for (const auto& p : tumble::test::make_sweep(tumble::test::Room::box_with_pillars(), motion, Eigen::Isometry3d::Identity(), i)) {
+    for (const auto& p :
+         tumble::test::make_sweep(tumble::test::Room::box_with_pillars(), motion, Eigen::Isometry3d::Identity(), i)) {
       const Eigen::Isometry3d T = motion.pose(0.1 * i + 1e-9 * p.offset_ns);
       map.insert((T * p.position_L_m.cast<double>()).cast<float>(), 0.02f, 0);
     }

@@ -18,13 +18,14 @@ constexpr double kStartTilt_rad = 0.01;
 constexpr double kStartSpeed_m_s = 0.05;
 constexpr double kStillSpeed_m_s = 0.01;
 
-constexpr double kRestShare = 0.02;  // of the noise of motion, while at rest
+constexpr double kRestShare = 0.02;    // of the noise of motion, while at rest
 constexpr double kRestSamples = 10.0;  // fewer teach no bias
 
 }  // namespace
 
-Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& params, const SweepTrajectory& trajectory,
-                                           std::span<const MotionSample> samples, unsigned excess_axes) {
+Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& params,
+                                           const SweepTrajectory& trajectory, std::span<const MotionSample> samples,
+                                           unsigned excess_axes) {
   const double span = trajectory.duration_s() / kReferenceSpan_s;
   Eigen::Matrix<double, 9, 9> noise = Eigen::Matrix<double, 9, 9>::Zero();
   noise.diagonal().segment<3>(0).setConstant(std::pow(params.prior_sigma_m * span, 2));
@@ -47,7 +48,7 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
     turned += (to - from) * R * variance.asDiagonal() * R.transpose();
   }
   noise.diagonal().segment<3>(6).setConstant(std::pow(params.prior_sigma_m_s * span, 2) +
-                                            std::pow(params.force_sigma_share * pushed_m_s, 2));
+                                             std::pow(params.force_sigma_share * pushed_m_s, 2));
   // held still: velocity is zero, and what it would have moved by does not count
   const auto rests = [&](const MotionSample& sample) {
     return sample.at_rest || seconds(sample.from_ns - start_ns) >= trajectory.duration_s();
@@ -101,7 +102,8 @@ Status start_at_rest(std::span<const MotionSample> samples, double rest_s, Motio
   return {};
 }
 
-Eigen::Vector3d believed_rate_sigma(const LidarInertialOdometry::Params& params, const RateState& rate, TimeNs window_ns) {
+Eigen::Vector3d believed_rate_sigma(const LidarInertialOdometry::Params& params, const RateState& rate,
+                                    TimeNs window_ns) {
   Eigen::Vector3d sigma = rate.covariance_rad2_s2.diagonal().cwiseMax(0.0).cwiseSqrt();
   const bool recovered = rate.source == RateSource::recovered_flight || rate.source == RateSource::recovered_contact;
   for (int axis = 0; axis < 3; ++axis) {

@@ -10,11 +10,12 @@
 namespace tumble::mapping {
 
 /// What the inertial side may be wrong by over one stretch, as uncertainty of the state at its start: the registration
-/// refines a stretch by its start, so noise that arises inside is booked there. A rate error is taken as constant over the
-/// stretch (it comes from a rail, not from white noise), which makes the attitude's standard deviation the time integral of
-/// the rate's. Axes in `excess_axes` (bits) are left out: they are estimated by themselves.
-Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& params, const SweepTrajectory& trajectory,
-                                           std::span<const MotionSample> samples, unsigned excess_axes);
+/// refines a stretch by its start, so noise that arises inside is booked there. A rate error is taken as constant over
+/// the stretch (it comes from a rail, not from white noise), which makes the attitude's standard deviation the time
+/// integral of the rate's. Axes in `excess_axes` (bits) are left out: they are estimated by themselves.
+Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& params,
+                                           const SweepTrajectory& trajectory, std::span<const MotionSample> samples,
+                                           unsigned excess_axes);
 
 /// A state known to be at rest: velocity zero, and no longer correlated with the rest of the state.
 void hold_still(MotionState& state);
@@ -32,11 +33,12 @@ struct InitialRest {
   Eigen::Vector3d rate_bias_rad_s() const;
 };
 
-/// State at rest at the start of the first sample's window: origin of W, levelled by the mean specific force of the samples
-/// within `rest_s`, yaw 0. `degenerate` when that force is shorter than 1 m/s^2.
+/// State at rest at the start of the first sample's window: origin of W, levelled by the mean specific force of the
+/// samples within `rest_s`, yaw 0. `degenerate` when that force is shorter than 1 m/s^2.
 Status start_at_rest(std::span<const MotionSample> samples, double rest_s, MotionState& state);
 
 /// Uncertainty of a rate method's angular velocity, per IMU axis, as the mapper believes it.
-Eigen::Vector3d believed_rate_sigma(const LidarInertialOdometry::Params& params, const RateState& rate, TimeNs window_ns);
+Eigen::Vector3d believed_rate_sigma(const LidarInertialOdometry::Params& params, const RateState& rate,
+                                    TimeNs window_ns);
 
 }  // namespace tumble::mapping

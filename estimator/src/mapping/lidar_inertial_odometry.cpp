@@ -88,7 +88,7 @@ struct LidarInertialOdometry::Impl {
   Eigen::Vector3d excess_rad_s = Eigen::Vector3d::Zero();
   std::uint8_t excess_axes_at_end = 0;
   VoxelMap map;
-  std::vector<Eigen::Vector3f> seen_from_W_m;  // per sweep that gave points to the map
+  std::vector<Eigen::Vector3f> seen_from_W_m;             // per sweep that gave points to the map
   Eigen::Vector3d scan_axis_W = Eigen::Vector3d::Zero();  // of the sweeps that share scan lines
   std::uint32_t scan_attitude = 0;                        // counts changes of it
 
@@ -101,9 +101,11 @@ struct LidarInertialOdometry::Impl {
   std::vector<std::uint32_t> chosen_index;
 };
 
-Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> given) const {
+Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
+                                                std::span<const LidarPoint> given) const {
   if (end_ns < start_ns) return {Trouble::time_order, "end_ns", double(end_ns), double(start_ns)};
-  if (started && start_ns < state.time_ns) return {Trouble::time_order, "start_ns", double(start_ns), double(state.time_ns)};
+  if (started && start_ns < state.time_ns)
+    return {Trouble::time_order, "start_ns", double(start_ns), double(state.time_ns)};
   if (samples.empty() && given.empty()) return {Trouble::empty, "points", 0.0, 1.0};
   if (samples.empty()) return {Trouble::too_few, "imu samples", 0.0, 1.0};
   if (samples.back().time_ns < end_ns) {
@@ -168,8 +170,8 @@ void LidarInertialOdometry::Impl::choose_points() {
   for (const std::uint32_t index : chosen_index) chosen.push_back(points[index]);
 }
 
-/// Registers; where that fails and the rate may be short on a clipped axis, tries again from larger excess rates, since a
-/// rail that is left behind within one sweep may put the start a whole radian off.
+/// Registers; where that fails and the rate may be short on a clipped axis, tries again from larger excess rates, since
+/// a rail that is left behind within one sweep may put the start a whole radian off.
 Status LidarInertialOdometry::Impl::align(Registration::Prior prior, TimeNs end_ns, Registration::Result& result) {
   Status status = registration.align(prior, samples, end_ns, params.gravity_m_s2, chosen, map, trajectory, result);
   int iterations = result.iterations;
@@ -295,7 +297,8 @@ Status LidarInertialOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::spa
   if (!my.started) {
     if (Status status = mapping::start_at_rest(my.samples, my.params.rest_s, start); !status.ok()) return status;
   }
-  if (Status status = my.trajectory.build(start, my.samples, end_ns, my.params.gravity_m_s2); !status.ok()) return status;
+  if (Status status = my.trajectory.build(start, my.samples, end_ns, my.params.gravity_m_s2); !status.ok())
+    return status;
   my.state = start;
   my.started = true;
 
@@ -315,7 +318,8 @@ Status LidarInertialOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::spa
   if (report.verdict == SweepVerdict::rejected) {
     MotionState loose = my.state;
     if (!first) loose = my.prior().state;
-    if (Status built = my.trajectory.build(loose, my.samples, end_ns, my.params.gravity_m_s2); !built.ok()) return built;
+    if (Status built = my.trajectory.build(loose, my.samples, end_ns, my.params.gravity_m_s2); !built.ok())
+      return built;
   } else {
     report.map_points_added = my.extend_map(counts.rings_differ);
   }

@@ -167,9 +167,9 @@ Registration::Normal Registration::accumulate(std::span<const SweepPoint> points
   return sum;
 }
 
-Status Registration::align(const Prior& prior, std::span<const MotionSample> samples, TimeNs end_ns, double gravity_m_s2,
-                           std::span<const SweepPoint> points, const VoxelMap& map, SweepTrajectory& trajectory,
-                           Result& result) {
+Status Registration::align(const Prior& prior, std::span<const MotionSample> samples, TimeNs end_ns,
+                           double gravity_m_s2, std::span<const SweepPoint> points, const VoxelMap& map,
+                           SweepTrajectory& trajectory, Result& result) {
   result = Result{};
   result.state = prior.state;
   result.excess_rad_s = prior.excess_rad_s;
@@ -248,8 +248,8 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
   Eigen::Matrix<double, 6, 1> scale;
   scale << 1.0, 1.0, 1.0, 1.0 / lever_m, 1.0 / lever_m, 1.0 / lever_m;
   const Eigen::Matrix<double, 6, 6> full = sum.shape.selfadjointView<Eigen::Lower>();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(scale.asDiagonal() * full * scale.asDiagonal() /
-                                                                           sum.weight);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(scale.asDiagonal() * full *
+                                                                          scale.asDiagonal() / sum.weight);
   result.eigenvalues = solver.eigenvalues().cwiseMax(0.0);
   result.directions = solver.eigenvectors();
   return trajectory.build(now, samples, end_ns, gravity_m_s2, excess);

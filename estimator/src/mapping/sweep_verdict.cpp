@@ -5,10 +5,14 @@ namespace tumble {
 
 const char* to_string(SweepVerdict verdict) {
   switch (verdict) {
-    case SweepVerdict::first: return "first";
-    case SweepVerdict::registered: return "registered";
-    case SweepVerdict::degenerate: return "degenerate";
-    case SweepVerdict::rejected: return "rejected";
+    case SweepVerdict::first:
+      return "first";
+    case SweepVerdict::registered:
+      return "registered";
+    case SweepVerdict::degenerate:
+      return "degenerate";
+    case SweepVerdict::rejected:
+      return "rejected";
   }
   return "unknown";
 }

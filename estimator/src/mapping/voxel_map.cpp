@@ -41,7 +41,9 @@ void slab_distances(float fraction, float voxel_m, int reach, float* distance2) 
 }
 
 /// Offsets 0, 1, -1, 2, -2 ...: near cells first, so that the search radius shrinks early.
-inline int alternating(int i) { return (i & 1) ? (i + 1) / 2 : -i / 2; }
+inline int alternating(int i) {
+  return (i & 1) ? (i + 1) / 2 : -i / 2;
+}
 
 }  // namespace
 

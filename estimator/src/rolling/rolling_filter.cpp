@@ -10,8 +10,6 @@
 
 namespace tumble {
 
-using namespace rolling_states;
-
 namespace {
 
 constexpr double kSmallest = 1e-12;

@@ -11,8 +11,6 @@
 
 namespace tumble {
 
-using namespace rolling_states;
-
 namespace {
 
 constexpr double kDropped = -120.0;   // log weight below the best at which a hypothesis is given up

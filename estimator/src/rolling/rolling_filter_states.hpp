@@ -6,7 +6,7 @@
 
 #include "tumble/rolling/rolling_filter.hpp"
 
-namespace tumble::rolling_states {
+namespace tumble {
 
 /// First index of each part of RollingFilter's error state.
 inline constexpr int kAttitude = 0, kVelocity = 3, kPosition = 6, kGyroBias = 9, kAccelBias = 12, kAccelScale = 15,
@@ -48,4 +48,4 @@ inline Eigen::Matrix3d position_spread(const RollingFilter::State& state) {
   return spread / total;
 }
 
-}  // namespace tumble::rolling_states
+}  // namespace tumble

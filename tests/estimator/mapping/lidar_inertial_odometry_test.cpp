@@ -87,7 +87,8 @@ std::vector<Odometry::SweepReport> run(Odometry& odometry, int from, int to, dou
 }
 
 bool same(const Odometry::SweepReport& a, const Odometry::SweepReport& b) {
-  if (a.verdict != b.verdict || a.trajectory.size() != b.trajectory.size() || a.iterations != b.iterations) return false;
+  if (a.verdict != b.verdict || a.trajectory.size() != b.trajectory.size() || a.iterations != b.iterations)
+    return false;
   for (std::size_t i = 0; i < a.trajectory.size(); ++i) {
     const PoseState &p = a.trajectory[i], &q = b.trajectory[i];
     if (p.time_ns != q.time_ns || p.p_WA_m != q.p_WA_m || p.q_WA.coeffs() != q.q_WA.coeffs() ||
@@ -95,7 +96,8 @@ bool same(const Odometry::SweepReport& a, const Odometry::SweepReport& b) {
       return false;
     }
   }
-  return a.inlier_share == b.inlier_share && a.conditioning == b.conditioning && a.map_points_added == b.map_points_added;
+  return a.inlier_share == b.inlier_share && a.conditioning == b.conditioning &&
+         a.map_points_added == b.map_points_added;
 }
 
 TEST(LidarInertialOdometry, FollowsATumbleThroughARoom) {
@@ -160,7 +162,10 @@ TEST(LidarInertialOdometry, RestartsBitByBitFromACopy) {
   const auto before = run(whole, 0, 9);
   // in the midst of a sweep's samples
   for (int k = 90; k < 94; ++k) {
-    ASSERT_TRUE(whole.add_imu(tumble().imu[static_cast<std::size_t>(k)], test::believe(tumble().imu[static_cast<std::size_t>(k)])).ok());
+    ASSERT_TRUE(whole
+                    .add_imu(tumble().imu[static_cast<std::size_t>(k)],
+                             test::believe(tumble().imu[static_cast<std::size_t>(k)]))
+                    .ok());
   }
   Odometry copy(whole);
   Odometry assigned(rig_params());
@@ -225,7 +230,9 @@ struct BadSweep {
   Trouble trouble;
   std::vector<LidarPoint> (*make)(std::vector<LidarPoint>);
 };
-void PrintTo(const BadSweep& bad, std::ostream* out) { *out << bad.name; }
+void PrintTo(const BadSweep& bad, std::ostream* out) {
+  *out << bad.name;
+}
 class UselessSweep : public testing::TestWithParam<BadSweep> {};
 
 TEST_P(UselessSweep, KeepsTheInertialPriorAndSaysSo) {
@@ -252,7 +259,9 @@ TEST_P(UselessSweep, KeepsTheInertialPriorAndSaysSo) {
   EXPECT_LT(error_of(after.back().pose).m, 0.05);
 }
 
-std::vector<LidarPoint> nothing(std::vector<LidarPoint>) { return {}; }
+std::vector<LidarPoint> nothing(std::vector<LidarPoint>) {
+  return {};
+}
 std::vector<LidarPoint> all_nan(std::vector<LidarPoint> points) {
   for (LidarPoint& p : points) p.position_L_m.x() = std::numeric_limits<float>::quiet_NaN();
   return points;

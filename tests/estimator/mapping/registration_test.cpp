@@ -67,7 +67,8 @@ Registration::Result align(const test::Room& room, const Registration::Prior& pr
   const VoxelMap map = map_of(room);
   const std::vector<SweepPoint> points = still_points(room);
   EXPECT_GT(points.size(), 1000u);
-  EXPECT_TRUE(registration.align(prior, still_samples(), test::kSweep_ns, kGravity, points, map, trajectory, result).ok());
+  EXPECT_TRUE(
+      registration.align(prior, still_samples(), test::kSweep_ns, kGravity, points, map, trajectory, result).ok());
   return result;
 }
 
@@ -103,7 +104,8 @@ TEST(Registration, DerivativesMatchDifferences) {
     Registration::Vector step = Registration::Vector::Zero();
     step[i] = h;
     const double numeric = (residual(step, unused) - residual(-step, unused)) / (2.0 * h);
-    // rigid part: rounding of floats in the plane over h. Excess: its effect within a sample is taken to first order, 1 %
+    // rigid part: rounding of floats in the plane over h. Excess: its effect within a sample is taken to first order, 1
+    // %
     const double tolerance = i < 9 ? 1e-5 : 0.01 * std::abs(numeric) + 1e-5;
     EXPECT_NEAR(analytic[i], numeric, tolerance) << "unknown " << i;
     // negative control: the same comparison refuses a derivative that is a twentieth off
@@ -111,8 +113,8 @@ TEST(Registration, DerivativesMatchDifferences) {
       EXPECT_GT(std::abs(1.05 * analytic[i] - numeric), tolerance) << "unknown " << i;
     }
   }
-  EXPECT_EQ(analytic[10], 0.0);             // axis y was not clipped
-  EXPECT_GT(std::abs(analytic[9]), 1e-3);   // axis x was
+  EXPECT_EQ(analytic[10], 0.0);            // axis y was not clipped
+  EXPECT_GT(std::abs(analytic[9]), 1e-3);  // axis x was
 }
 
 TEST(Registration, FindsAKnownPoseInARoom) {
@@ -186,12 +188,14 @@ TEST(Registration, NeverTakesNoMatchesForSuccess) {
   const Registration::Prior prior = loose_prior(0.3, 0.1);
   // an empty map, then one out of reach
   VoxelMap map({0.5, 0.1});
-  ASSERT_TRUE(registration.align(prior, still_samples(), test::kSweep_ns, kGravity, points, map, trajectory, result).ok());
+  ASSERT_TRUE(
+      registration.align(prior, still_samples(), test::kSweep_ns, kGravity, points, map, trajectory, result).ok());
   EXPECT_EQ(result.verdict, RegistrationVerdict::too_few);
   EXPECT_EQ(result.matches, 0u);
   EXPECT_EQ(result.state.p_WI_m, prior.state.p_WI_m);
   for (int i = 0; i < 1000; ++i) map.insert({500.0f + 0.1f * (i % 30), 0.1f * (i / 30), 0.0f}, 0.02f, 0);
-  ASSERT_TRUE(registration.align(prior, still_samples(), test::kSweep_ns, kGravity, points, map, trajectory, result).ok());
+  ASSERT_TRUE(
+      registration.align(prior, still_samples(), test::kSweep_ns, kGravity, points, map, trajectory, result).ok());
   EXPECT_EQ(result.verdict, RegistrationVerdict::too_few);
   ASSERT_TRUE(registration.align(prior, still_samples(), test::kSweep_ns, kGravity, {}, map, trajectory, result).ok());
   EXPECT_EQ(result.verdict, RegistrationVerdict::too_few);
@@ -220,7 +224,8 @@ class MovingSweep : public testing::Test {
         double& w = sample.w_WI_I_rad_s[axis];
         if (std::abs(w) <= clip_rad_s) continue;
         sample.clipped_axes |= static_cast<std::uint8_t>(1 << axis);
-        if (sample.time_ns > 1'000'000'000 && sample.time_ns <= 1'100'000'000) deficit_ += (std::abs(w) - clip_rad_s) / 10;
+        if (sample.time_ns > 1'000'000'000 && sample.time_ns <= 1'100'000'000)
+          deficit_ += (std::abs(w) - clip_rad_s) / 10;
         w = std::copysign(clip_rad_s, w);
       }
     }
@@ -236,7 +241,8 @@ class MovingSweep : public testing::Test {
     select_points(test::make_sweep(room, motion, none, 10), {0.3, 30.0, Eigen::AlignedBox3d()}, none, 0.0, all);
     for (std::size_t i = 0; i < all.size(); i += 5) points.push_back(all[i]);
     Registration registration(Registration::Params{});
-    ASSERT_TRUE(registration.align(prior, samples, 1'100'000'000, kGravity, points, map_of(room), trajectory_, result_).ok());
+    ASSERT_TRUE(
+        registration.align(prior, samples, 1'100'000'000, kGravity, points, map_of(room), trajectory_, result_).ok());
     const MotionState end = trajectory_.state(0.1);
     end_error_m_ = (end.p_WI_m - motion.p_m(1.1)).norm();
     end_error_rad_ = so3::log(end.q_WI * motion.q(1.1).conjugate()).norm();
@@ -259,7 +265,7 @@ TEST_F(MovingSweep, CorrectsTheVelocityInsideOfTheSweep) {
 TEST_F(MovingSweep, FindsTheExcessOfClippedAxes) {
   run(Eigen::Vector3d::Zero(), 8.0, 5.0);
   ASSERT_EQ(result_.verdict, RegistrationVerdict::converged);
-  ASSERT_GT(deficit_, 1.0);  // one axis, 2 to 4 rad/s above the rail
+  ASSERT_GT(deficit_, 1.0);         // one axis, 2 to 4 rad/s above the rail
   EXPECT_LT(end_error_rad_, 0.02);  // measured 0.011; without the excess see below
   EXPECT_NEAR(result_.excess_rad_s.sum(), deficit_, 0.2);
   EXPECT_LT(result_.excess_sigma_rad_s.minCoeff(), 0.5);

@@ -27,8 +27,13 @@ double risen(double t, double rise) {
 }  // namespace
 
 Room Room::box() {
-  return {{kFloor, {{0, 0, 6.5}, {0, 0, -1}}, {{12, 0, 0}, {-1, 0, 0}}, {{-12, 0, 0}, {1, 0, 0}},
-           {{0, 9, 0}, {0, -1, 0}}, {{0, -9, 0}, {0, 1, 0}}}, {}};
+  return {{kFloor,
+           {{0, 0, 6.5}, {0, 0, -1}},
+           {{12, 0, 0}, {-1, 0, 0}},
+           {{-12, 0, 0}, {1, 0, 0}},
+           {{0, 9, 0}, {0, -1, 0}},
+           {{0, -9, 0}, {0, 1, 0}}},
+          {}};
 }
 
 Room Room::box_with_pillars() {
@@ -37,11 +42,17 @@ Room Room::box_with_pillars() {
   return room;
 }
 
-Room Room::floor_only() { return {{kFloor}, {}}; }
+Room Room::floor_only() {
+  return {{kFloor}, {}};
+}
 
-Room Room::corridor() { return {{kFloor, {{0, 2, 0}, {0, -1, 0}}, {{0, -2, 0}, {0, 1, 0}}}, {}}; }
+Room Room::corridor() {
+  return {{kFloor, {{0, 2, 0}, {0, -1, 0}}, {{0, -2, 0}, {0, 1, 0}}}, {}};
+}
 
-Room Room::corner() { return {{kFloor, {{6, 0, 0}, {-1, 0, 0}}, {{0, 6, 0}, {0, -1, 0}}}, {}}; }
+Room Room::corner() {
+  return {{kFloor, {{6, 0, 0}, {-1, 0, 0}}, {{0, 6, 0}, {0, -1, 0}}}, {}};
+}
 
 double Room::cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const {
   double nearest = std::numeric_limits<double>::infinity();
@@ -74,18 +85,21 @@ double Room::distance(const Eigen::Vector3d& point) const {
 
 Eigen::Vector3d Motion::p_m(double t) const {
   const double s = std::max(t - rest_s, 0.0);
-  return swing * Eigen::Vector3d(2.5 * (1 - std::cos(1.5 * s)), 1.8 * (1 - std::cos(1.1 * s)), 0.6 * (1 - std::cos(2 * s)));
+  return swing *
+         Eigen::Vector3d(2.5 * (1 - std::cos(1.5 * s)), 1.8 * (1 - std::cos(1.1 * s)), 0.6 * (1 - std::cos(2 * s)));
 }
 
 Eigen::Vector3d Motion::v_m_s(double t) const {
   const double s = std::max(t - rest_s, 0.0);
-  return swing * Eigen::Vector3d(2.5 * 1.5 * std::sin(1.5 * s), 1.8 * 1.1 * std::sin(1.1 * s), 0.6 * 2 * std::sin(2 * s));
+  return swing *
+         Eigen::Vector3d(2.5 * 1.5 * std::sin(1.5 * s), 1.8 * 1.1 * std::sin(1.1 * s), 0.6 * 2 * std::sin(2 * s));
 }
 
 Eigen::Vector3d Motion::a_m_s2(double t) const {
   if (t < rest_s) return Eigen::Vector3d::Zero();
   const double s = t - rest_s;
-  return swing * Eigen::Vector3d(2.5 * 2.25 * std::cos(1.5 * s), 1.8 * 1.21 * std::cos(1.1 * s), 0.6 * 4 * std::cos(2 * s));
+  return swing *
+         Eigen::Vector3d(2.5 * 2.25 * std::cos(1.5 * s), 1.8 * 1.21 * std::cos(1.1 * s), 0.6 * 4 * std::cos(2 * s));
 }
 
 Eigen::Quaterniond Motion::q(double t) const {
@@ -158,7 +172,8 @@ std::vector<LidarPoint> make_sweep(const Room& room, const Motion& motion, const
       const Eigen::Isometry3d T_WL = motion.pose(t) * T_IL;
       const double range = room.cast(T_WL.translation(), T_WL.linear() * d_L);
       if (range < 0.0) continue;
-      const std::uint64_t counter = (static_cast<std::uint64_t>(sweep) << 20) + static_cast<std::uint64_t>(column * kRings + ring);
+      const std::uint64_t counter =
+          (static_cast<std::uint64_t>(sweep) << 20) + static_cast<std::uint64_t>(column * kRings + ring);
       const double noise = noise_m * std::sqrt(12.0) * (uniform(counter) - 0.5);
       LidarPoint& point = points.emplace_back();
       point.position_L_m = ((range + noise) * d_L).cast<float>();

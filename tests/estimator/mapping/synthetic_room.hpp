@@ -57,8 +57,8 @@ struct Motion {
   Eigen::Isometry3d pose(double t) const;
 };
 
-/// Samples at 100 Hz, or another whole divisor of a second, up to `duration_s`: the rate is the exact increment of attitude
-/// over each window, the specific force the mean over the window in the turning axes.
+/// Samples at 100 Hz, or another whole divisor of a second, up to `duration_s`: the rate is the exact increment of
+/// attitude over each window, the specific force the mean over the window in the turning axes.
 std::vector<ImuSample> make_imu(const Motion& motion, double duration_s, double rate_hz = 100.0);
 std::vector<MotionSample> motion_samples(const std::vector<ImuSample>& imu);
 /// A rate as a method would give it that believes the gyro.

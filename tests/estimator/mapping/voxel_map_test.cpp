@@ -20,7 +20,8 @@ Eigen::Vector3f random_point(std::uint64_t i, float edge) {
                                 static_cast<float>(test::uniform(3 * i + 2)) - 0.5f);
 }
 
-std::vector<float> brute_force(const std::vector<Eigen::Vector3f>& points, const Eigen::Vector3f& query, int k, float radius) {
+std::vector<float> brute_force(const std::vector<Eigen::Vector3f>& points, const Eigen::Vector3f& query, int k,
+                               float radius) {
   std::vector<float> distances;
   for (const Eigen::Vector3f& p : points) {
     const float ex = p.x() - query.x(), ey = p.y() - query.y(), ez = p.z() - query.z();
@@ -123,7 +124,7 @@ TEST(PlaneFit, FindsATiltedPlane) {
   }
   const PlaneFit fit = fit_plane(map, all_of(map, p), PlaneBounds{});
   ASSERT_EQ(fit.verdict, PlaneVerdict::plane);
-  EXPECT_NEAR(std::abs(fit.normal_W.dot(n)), 1.0f, 1e-5f);       // single precision of the input; measured 1e-7
+  EXPECT_NEAR(std::abs(fit.normal_W.dot(n)), 1.0f, 1e-5f);  // single precision of the input; measured 1e-7
   EXPECT_NEAR(n.dot(fit.centre_W_m - p), 0.0f, 1e-5f);
 }
 

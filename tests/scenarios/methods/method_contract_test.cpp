@@ -198,7 +198,10 @@ TEST_P(SlamContract, CountsSweepsWithoutPoints) {
   EXPECT_EQ(estimate.health.at("sweeps_empty"), 1.0);
   ASSERT_EQ(estimate.sweeps.size(), 60u);
   EXPECT_EQ(estimate.sweeps[55].verdict, SweepVerdict::rejected);
-  EXPECT_NE(estimate.sweeps[56].verdict, SweepVerdict::rejected);
+  // a method that the clipped gyro has led astray may refuse the next sweep, but then not for the one that was covered
+  const Estimate whole = run(recording());
+  ASSERT_EQ(whole.sweeps.size(), 60u);
+  EXPECT_EQ(estimate.sweeps[56].verdict == SweepVerdict::rejected, whole.sweeps[56].verdict == SweepVerdict::rejected);
 }
 
 std::vector<Method> slam_methods() {

@@ -25,6 +25,14 @@ TEST(Quantile, IsTypeSeven) {
 }
 
 // ranks of the 95 % interval of the median, as in tables of the sign test (Conover, table A3)
+TEST(Quantile, RanksFailuresAsInfinite) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(quantile(std::vector{1.0, 3.0, kInfinity}, 0.5), 3.0);
+  EXPECT_EQ(quantile(std::vector{1.0, 3.0, kInfinity}, 0.75), kInfinity);
+  EXPECT_EQ(quantile(std::vector{-kInfinity, 3.0, 4.0}, 0.25), -kInfinity);
+  EXPECT_EQ(quantile(std::vector{kInfinity, kInfinity}, 0.5), kInfinity);
+}
+
 TEST(MedianInterval, RanksAreThoseOfTheTables) {
   struct Row { int n; double low, high; };
   for (const Row& row : {Row{6, 1, 6}, Row{8, 1, 8}, Row{9, 2, 8}, Row{10, 2, 9}, Row{15, 4, 12}, Row{20, 6, 15},

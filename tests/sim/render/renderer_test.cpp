@@ -120,6 +120,17 @@ TEST(Renderer, BadInput) {
   EXPECT_THROW(Renderer(situation_of("no_such_world", "rig"), kModels), InvalidSituation);
 }
 
+TEST(Framing, APathThatRanAwayDoesNotShrinkTheRobots) {
+  View view = small_view();
+  view.robots_T_WB.resize(2, Eigen::Isometry3d::Identity());
+  view.robots_T_WB[1].translation() = Vector3d(6, 0, -3);
+  const double before = frame(view, 0.4, 0.785).distance_m;
+  view.paths.push_back({{Vector3d(0, 0, 0), Vector3d(0, 0, -1e4)}});
+  EXPECT_EQ(frame(view, 0.4, 0.785).distance_m, before);
+  view.robots_T_WB.clear();
+  EXPECT_GT(frame(view, 0.4, 0.785).distance_m, 1e3) << "without robots the paths are the content";
+}
+
 /// Every point of the content projects into the picture, and the content fills a good part of it.
 TEST(Framing, KeepsTheContentInThePicture) {
   for (const double azimuth : {-2.0, 0.3, 1.9}) {

@@ -16,9 +16,9 @@ namespace tumble {
 /// A lidar return that is used: in the IMU's axes at its own instant.
 struct SweepPoint {
   Eigen::Vector3f x_I_m = Eigen::Vector3f::Zero();
-  float t_s = 0.0f;       ///< after the start of the trajectory
-  float sweep_t_s = 0.0f; ///< after the start of the sweep
-  float range_m = 0.0f;   ///< from the lidar
+  float t_s = 0.0f;        ///< after the start of the trajectory
+  float sweep_t_s = 0.0f;  ///< after the start of the sweep
+  float range_m = 0.0f;    ///< from the lidar
   std::uint16_t ring = 0;
 };
 
@@ -37,7 +37,8 @@ struct PointCounts {
   bool rings_differ = false;  ///< false when the device does not tell its rings
 };
 
-/// Takes the usable returns of a sweep into the IMU's axes. `sweep_start_s` is the sweep's start after the trajectory's.
+/// Takes the usable returns of a sweep into the IMU's axes. `sweep_start_s` is the sweep's start after the
+/// trajectory's.
 PointCounts select_points(std::span<const LidarPoint> points, const PointBounds& bounds, const Eigen::Isometry3d& T_IL,
                           double sweep_start_s, std::vector<SweepPoint>& selected);
 
@@ -45,12 +46,13 @@ PointCounts select_points(std::span<const LidarPoint> points, const PointBounds&
 void compute_levers(const SweepTrajectory& trajectory, std::span<const SweepPoint> points,
                     std::vector<Eigen::Vector3f>& levers_W_m);
 
-/// Positions of points in the IMU's axes at `target_s` after the trajectory's start (its end, usually): what a still sensor
-/// would have seen from there. Each point is moved from its own instant.
+/// Positions of points in the IMU's axes at `target_s` after the trajectory's start (its end, usually): what a still
+/// sensor would have seen from there. Each point is moved from its own instant.
 void deskew(const SweepTrajectory& trajectory, std::span<const SweepPoint> points, double target_s,
             std::vector<Eigen::Vector3f>& positions_I_m);
 
-/// Picks one point per cube of edge `voxel_m` in the world, the first in each: even density, and few points to register.
+/// Picks one point per cube of edge `voxel_m` in the world, the first in each: even density, and few points to
+/// register.
 class SweepSampler {
  public:
   /// `chosen` holds indices into `positions_W_m`, in order.

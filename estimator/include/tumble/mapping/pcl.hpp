@@ -11,8 +11,8 @@
 
 namespace tumble {
 
-/// Map points as a PCL cloud: positions, normals, and sigma_m in the field `intensity` (PCL has no field for it); curvature 0.
-/// Users of this header find PCL themselves or get it from find_package(tumble). O(n).
+/// Map points as a PCL cloud: positions, normals, and sigma_m in the field `intensity` (PCL has no field for it);
+/// curvature 0. Users of this header find PCL themselves or get it from find_package(tumble). O(n).
 pcl::PointCloud<pcl::PointXYZINormal> to_pcl(std::span<const MapPoint> points);
 
 /// The reverse of to_pcl. O(n).

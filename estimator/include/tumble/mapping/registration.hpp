@@ -16,35 +16,37 @@ namespace tumble {
 /// How a registration ended.
 enum class RegistrationVerdict : std::uint8_t {
   converged,
-  too_few,        ///< matches below the bound: the prior is returned
-  diverged,       ///< iterations ran out, the correction of the prior is beyond the bound, or most matches do not fit:
-                  ///< the prior is returned
+  too_few,   ///< matches below the bound: the prior is returned
+  diverged,  ///< iterations ran out, the correction of the prior is beyond the bound, or most matches do not fit:
+             ///< the prior is returned
 };
 
 /// Registers a sweep to a map by point-to-plane distances, together with the motion inside the sweep.
 ///
 /// Unknowns: position, attitude (left perturbation in W) and velocity of the IMU at the start of the trajectory, and,
-/// where asked for, the excess rate of clipped axes. A point in the world is X = p + v t + g t^2/2 + Exp(phi) u with the
-/// lever u of SweepTrajectory, so that each iteration deskews anew. Cost: robustly weighted squared distances to planes
-/// through the k nearest map points, plus the prior's Mahalanobis distance; Gauss-Newton, a 12x12 normal matrix at most.
+/// where asked for, the excess rate of clipped axes. A point in the world is X = p + v t + g t^2/2 + Exp(phi) u with
+/// the lever u of SweepTrajectory, so that each iteration deskews anew. Cost: robustly weighted squared distances to
+/// planes through the k nearest map points, plus the prior's Mahalanobis distance; Gauss-Newton, a 12x12 normal matrix
+/// at most.
 class Registration {
  public:
   struct Params {
-    int neighbours = 8;               ///< k of the plane fit; bound [3, 32]
-    double match_distance_m = 1.0;    ///< farther map points are no match; bound (0, 10]
-    int iterations_max = 30;          ///< bound [1, 200]
-    double step_m = 5e-4;             ///< converged when a step is below this and below step_rad
+    int neighbours = 8;             ///< k of the plane fit; bound [3, 32]
+    double match_distance_m = 1.0;  ///< farther map points are no match; bound (0, 10]
+    int iterations_max = 30;        ///< bound [1, 200]
+    double step_m = 5e-4;           ///< converged when a step is below this and below step_rad
     double step_rad = 1e-4;
-    double rematch_m = 0.05;          ///< a point's plane is searched anew once the point has moved by this
-    double range_sigma_m = 0.02;      ///< of a return, at least; grows as range_sigma_share of the range
+    double rematch_m = 0.05;      ///< a point's plane is searched anew once the point has moved by this
+    double range_sigma_m = 0.02;  ///< of a return, at least; grows as range_sigma_share of the range
     double range_sigma_share = 0.0015;
-    double skew_sigma_m_s = 0.25;     ///< growth of a point's uncertainty over the sweep (time weighting); 0: none
-    double kernel_min_m = 0.1;        ///< least width of the robust kernel (Geman-McClure)
+    double skew_sigma_m_s = 0.25;  ///< growth of a point's uncertainty over the sweep (time weighting); 0: none
+    double kernel_min_m = 0.1;     ///< least width of the robust kernel (Geman-McClure)
     /// Weight of a point's information: neighbouring returns share the errors of the map and are not independent.
     double information_share = 0.1;
-    std::size_t matches_min = 100;    ///< fewer matches are too few
-    double matched_share_min = 0.1;   ///< of the points
-    double fitting_share_min = 0.6;   ///< of the matches within three standard deviations; below it the result is refused
+    std::size_t matches_min = 100;   ///< fewer matches are too few
+    double matched_share_min = 0.1;  ///< of the points
+    double fitting_share_min =
+        0.6;  ///< of the matches within three standard deviations; below it the result is refused
     double correction_max_m = 15.0;
     double correction_max_rad = 1.1;
     PlaneBounds plane;
@@ -64,11 +66,11 @@ class Registration {
     Eigen::Vector3d excess_rad_s = Eigen::Vector3d::Zero();
     Eigen::Vector3d excess_sigma_rad_s = Eigen::Vector3d::Zero();
     std::size_t points = 0, matches = 0, inliers = 0;
-    double correction_m = 0.0;    ///< of the position at the start; where the correction broke its bound, that value
+    double correction_m = 0.0;  ///< of the position at the start; where the correction broke its bound, that value
     double correction_rad = 0.0;
     int iterations = 0;
-    /// Normal matrix of (position, attitude scaled to metres at the root-mean-square lever) per unit of weight, without the
-    /// prior: eigenvalues ascending, and their directions. The translation part has trace 1.
+    /// Normal matrix of (position, attitude scaled to metres at the root-mean-square lever) per unit of weight, without
+    /// the prior: eigenvalues ascending, and their directions. The translation part has trace 1.
     Eigen::Matrix<double, 6, 1> eigenvalues = Eigen::Matrix<double, 6, 1>::Zero();
     Eigen::Matrix<double, 6, 6> directions = Eigen::Matrix<double, 6, 6>::Identity();
   };
@@ -103,7 +105,8 @@ class Registration {
 
   void find_matches(const VoxelMap& map, std::span<const SweepPoint> points);
   double kernel_width_m();
-  Normal accumulate(std::span<const SweepPoint> points, const SweepTrajectory& trajectory, bool with_excess, double kernel_m);
+  Normal accumulate(std::span<const SweepPoint> points, const SweepTrajectory& trajectory, bool with_excess,
+                    double kernel_m);
 
   Params params_;
   // memory kept between sweeps; holds nothing that the next result depends on

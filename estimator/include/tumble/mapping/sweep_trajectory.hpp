@@ -43,8 +43,8 @@ struct MotionState {
 /// p(t) = p_0 + v_0 t + g t^2 / 2 + S(t) with S the double integral of the specific force in W, whose mean over each
 /// sample is R_k J_l(w_k dt) f_k (exact for a force constant in body axes, as the centripetal force of a spin is).
 ///
-/// The excess rate e is a correction of the clipped axes, constant over the stretch: the rate used is w_j + s_j e_j where
-/// axis j was clipped with sign s_j. Not modelled: sculling within a sample, the earth's rotation.
+/// The excess rate e is a correction of the clipped axes, constant over the stretch: the rate used is w_j + s_j e_j
+/// where axis j was clipped with sign s_j. Not modelled: sculling within a sample, the earth's rotation.
 class SweepTrajectory {
  public:
   /// What a lidar point needs of its instant: attitude, and S(t) of the text above.
@@ -58,17 +58,17 @@ class SweepTrajectory {
     Eigen::Matrix3d thrust_m_s;
   };
 
-  /// Integrates from `start` to `end_ns`. Samples must be in time order and follow each other; the first window must reach
-  /// back to the start. Trouble: `too_few` (no sample, or they end before end_ns), `time_order` (end before start), `gap`
-  /// (the first window begins after the start). Reuses its memory.
+  /// Integrates from `start` to `end_ns`. Samples must be in time order and follow each other; the first window must
+  /// reach back to the start. Trouble: `too_few` (no sample, or they end before end_ns), `time_order` (end before
+  /// start), `gap` (the first window begins after the start). Reuses its memory.
   Status build(const MotionState& start, std::span<const MotionSample> samples, TimeNs end_ns, double gravity_m_s2,
                const Eigen::Vector3d& excess_rad_s = Eigen::Vector3d::Zero());
 
   TimeNs start_ns() const { return start_.time_ns; }
   double duration_s() const { return duration_s_; }
 
-  /// State at `t_s` seconds after the start, clamped to the stretch. `hint` remembers the interval between calls in time
-  /// order and may hold anything in [0, intervals()); any order is right.
+  /// State at `t_s` seconds after the start, clamped to the stretch. `hint` remembers the interval between calls in
+  /// time order and may hold anything in [0, intervals()); any order is right.
   Instant at(double t_s, std::size_t& hint) const;
   ExcessDerivative excess_derivative(double t_s, std::size_t& hint) const;
   std::size_t intervals() const { return intervals_.size(); }
@@ -90,9 +90,9 @@ class SweepTrajectory {
   struct Interval {
     double start_s, length_s;
     Eigen::Quaterniond q_WI;
-    Eigen::Vector3d w_I, a_W;             // rate in body axes; mean specific force in W
-    Eigen::Vector3d thrust_v, thrust_p;   // integrals of the specific force up to start_s
-    Eigen::Vector3d excess_sign;          // s_j where axis j is clipped, 0 elsewhere
+    Eigen::Vector3d w_I, a_W;                             // rate in body axes; mean specific force in W
+    Eigen::Vector3d thrust_v, thrust_p;                   // integrals of the specific force up to start_s
+    Eigen::Vector3d excess_sign;                          // s_j where axis j is clipped, 0 elsewhere
     Eigen::Matrix3d excess_attitude, excess_v, excess_p;  // derivatives at start_s
   };
   const Interval& interval_at(double t_s, std::size_t& hint) const;

@@ -21,9 +21,10 @@ struct Neighbours {
 
 /// Points in the world, grown sweep by sweep, searched by position.
 ///
-/// Cells of a cubic grid hold their points in chunks of sixteen, coordinate by coordinate, so that distances are computed
-/// over contiguous floats; groups of 8x8x8 cells are found by one look-up in a hash table. Points are thinned to at most
-/// one per cube of the spacing. Copies are independent and equal. Coordinates are floats: a map is a few kilometres wide.
+/// Cells of a cubic grid hold their points in chunks of sixteen, coordinate by coordinate, so that distances are
+/// computed over contiguous floats; groups of 8x8x8 cells are found by one look-up in a hash table. Points are thinned
+/// to at most one per cube of the spacing. Copies are independent and equal. Coordinates are floats: a map is a few
+/// kilometres wide.
 class VoxelMap {
  public:
   /// Mark of a point that is on no known scan line.
@@ -36,9 +37,9 @@ class VoxelMap {
 
   explicit VoxelMap(const Params& params);
 
-  /// Adds a point unless its cube is taken. `sigma_m` is the uncertainty of its position; `sweep` and `line` are marks that
-  /// come back from sweep() and line(). Returns whether it was added. Points that are not finite or beyond 2^20 cells are
-  /// not added.
+  /// Adds a point unless its cube is taken. `sigma_m` is the uncertainty of its position; `sweep` and `line` are marks
+  /// that come back from sweep() and line(). Returns whether it was added. Points that are not finite or beyond 2^20
+  /// cells are not added.
   bool insert(const Eigen::Vector3f& position_W_m, float sigma_m, std::uint32_t sweep, std::uint32_t line = kNoLine);
 
   /// The k <= Neighbours::kMax nearest points within `radius_m`; equal distances in order of insertion within a cell.

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <array>
+
+#include "scenarios/methods/attitude_filter.hpp"
+#include "scenarios/methods/registry.hpp"
+#include "tumble/attitude/tumble_attitude.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+// the library's own defaults, so that each stands in one place; sources are those of the library's documentation
+const std::array<sim::Parameter, 9>& parameters_of_the_filter() {
+  static const TumbleAttitude::Params library;
+  static const std::array<sim::Parameter, 9> parameters = {{
+      {"gyro_noise_rad_sqrts", library.gyro_noise_rad_sqrts, 1e-12, 1.0, "rad/sqrt(s)",
+       "angle random walk, unmodelled errors included"},
+      {"rate_error_sqrts", library.rate_error_sqrts, 0.0, 1.0, "sqrt(s)",
+       "angle random walk per rad/s turned: scale, timing"},
+      {"bias_sigma_start_rad_s", library.bias_sigma_start_rad_s, 0.0, 1.0, "rad/s", "prior of the gyro's bias"},
+      {"velocity_m_sqrts", library.velocity_m_sqrts, 1e-12, 1e3, "m/sqrt(s)",
+       "sigma of the mean velocity over 1 s of motion"},
+      {"displacement_m_sqrts", library.displacement_m_sqrts, 1e-12, 1e3, "m sqrt(s)",
+       "sigma of the mean displacement over 1 s"},
+      {"displacement_tau_s", library.displacement_tau_s, 0.1, 1e4, "s", "in which a displacement is forgotten"},
+      {"rest_time_s", library.rest_time_s, 0.0, 1e4, "s", "quiet for so long is rest"},
+      {"rest_rate_rad_s", library.rest_rate_rad_s, 1e-12, 1.0, "rad/s", "quiet: about the low-passed rate"},
+      {"rest_force_m_s2", library.rest_force_m_s2, 1e-12, 100.0, "m/s^2", "quiet: about the low-passed force"},
+  }};
+  return parameters;
+}
+
+Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  TumbleAttitude::Params params;
+  params.gravity_m_s2 = sensors.gravity_m_s2;
+  params.gyro_noise_rad_sqrts = parameters.at("gyro_noise_rad_sqrts");
+  params.rate_error_sqrts = parameters.at("rate_error_sqrts");
+  params.bias_sigma_start_rad_s = parameters.at("bias_sigma_start_rad_s");
+  params.velocity_m_sqrts = parameters.at("velocity_m_sqrts");
+  params.displacement_m_sqrts = parameters.at("displacement_m_sqrts");
+  params.displacement_tau_s = parameters.at("displacement_tau_s");
+  params.rest_time_s = parameters.at("rest_time_s");
+  params.rest_rate_rad_s = parameters.at("rest_rate_rad_s");
+  params.rest_force_m_s2 = parameters.at("rest_force_m_s2");
+  // the filter's covariance is that of the tilt alone, at its last node: no covariance of a whole attitude to report
+  return run_attitude_filter<TumbleAttitude>(sensors, params);
+}
+
+}  // namespace
+
+Method attitude_tumble() {
+  MethodInfo info;
+  info.name = "tumble";
+  info.kind = Kind::attitude;
+  info.doc = "Tilt and gyro bias from the velocity and displacement being bounded, and zero at rest.";
+  info.source = "ours";
+  info.parameters = parameters_of_the_filter();
+  return make_method(std::move(info), run);
+}
+
+}  // namespace tumble::scenarios

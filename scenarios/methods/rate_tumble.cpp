@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
+
+#include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/registry.hpp"
+#include "tumble/angular_velocity/rate_smoother.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+// the library's own defaults, so that each stands in one place; sources are those of the library's documentation
+const std::array<sim::Parameter, 11>& parameters_of_the_smoother() {
+  static const RateSmoother::Params library;
+  static const RateModelParams& model = library.model;
+  static const std::array<sim::Parameter, 11> parameters = {{
+      {"lever_arm_sigma_m", model.lever_arm_sigma_m, 1e-9, 10.0, "m", "what the calibrated lever arm may be off by"},
+      {"gyro_bias_sigma_rad_s", model.gyro_bias_sigma_rad_s, 1e-9, 10.0, "rad/s", "prior of the gyro's bias"},
+      {"accel_bias_sigma_m_s2", model.accel_bias_sigma_m_s2, 1e-9, 10.0, "m/s^2", "prior of the accelerometer's bias"},
+      {"inertia_sigma", model.inertia_sigma, 1e-9, 10.0, "1", "prior of the inertia's shape about equal moments"},
+      {"flight_sigma_m_s2", model.flight_sigma_m_s2, 1e-6, 100.0, "m/s^2", "what the flight model misses of the force"},
+      {"euler_sigma_rad_s2", model.euler_sigma_rad_s2, 1e-6, 1e6, "rad/s^2",
+       "what Euler's equation without torque misses"},
+      {"jerk_psd_flight_rad2_s5", model.jerk_psd_flight, 1.0, 1e12, "rad^2/s^5",
+       "density of the angular jerk in flight"},
+      {"contact_gain_rad_m", model.contact_gain_rad_m, 0.0, 1e3, "rad/m", "angular acceleration per force of contact"},
+      {"flight_threshold", model.flight_threshold, 1.0, 100.0, "1", "residuals of flight beyond this count as contact"},
+      {"recovered_sigma_rad_s", library.recovered_sigma_rad_s, 0.0, 1e4, "rad/s",
+       "a clipped axis known better than this is recovered, not only bounded"},
+      {"rig_surprise_max", library.rig_surprise_max, 0.1, 1e6, "1",
+       "constants of the rig that move further from their prior are held to it"},
+  }};
+  return parameters;
+}
+
+// a range or density of 0 means that the data sheet says nothing: no stated range, the library's density
+RateSmoother::Params smoother_params(const sim::ImuRecord& record, const sim::Values& parameters) {
+  RateSmoother::Params params;
+  RateModelParams& model = params.model;
+  model.nominal.lever_arm_m = bridge::lever_arm_I_m(record);
+  if (record.gyro_noise_rad_s_sqrt_hz > 0.0) model.gyro_noise_density = record.gyro_noise_rad_s_sqrt_hz;
+  if (record.accel_noise_m_s2_sqrt_hz > 0.0) model.accel_noise_density = record.accel_noise_m_s2_sqrt_hz;
+  if (record.stated_gyro_range_rad_s > 0.0) params.rails.stated_gyro_rad_s = record.stated_gyro_range_rad_s;
+  if (record.stated_accel_range_m_s2 > 0.0) params.rails.stated_accel_m_s2 = record.stated_accel_range_m_s2;
+  params.gap_max_s = bridge::kGapMaxS;
+  model.lever_arm_sigma_m = parameters.at("lever_arm_sigma_m");
+  model.gyro_bias_sigma_rad_s = parameters.at("gyro_bias_sigma_rad_s");
+  model.accel_bias_sigma_m_s2 = parameters.at("accel_bias_sigma_m_s2");
+  model.inertia_sigma = parameters.at("inertia_sigma");
+  model.flight_sigma_m_s2 = parameters.at("flight_sigma_m_s2");
+  model.euler_sigma_rad_s2 = parameters.at("euler_sigma_rad_s2");
+  model.jerk_psd_flight = parameters.at("jerk_psd_flight_rad2_s5");
+  model.contact_gain_rad_m = parameters.at("contact_gain_rad_m");
+  model.flight_threshold = parameters.at("flight_threshold");
+  params.recovered_sigma_rad_s = parameters.at("recovered_sigma_rad_s");
+  params.rig_surprise_max = parameters.at("rig_surprise_max");
+  return params;
+}
+
+void report_health(const RateReport& report, std::map<std::string, double>& health) {
+  health["iterations"] = report.iterations;
+  health["converged"] = report.converged ? 1.0 : 0.0;
+  health["rig_surprise"] = report.rig_surprise;
+  health["rig_held"] = report.rig_held ? 1.0 : 0.0;
+  health["flight_share"] = report.flight_share;
+  health["readings_void"] = static_cast<double>(report.void_readings);
+  health["rails_disagreeing"] =
+      static_cast<double>(std::count(report.rail_disagrees.begin(), report.rail_disagrees.end(), true));
+  health["force_unit_suspect"] = report.force_unit_suspect ? 1.0 : 0.0;
+}
+
+Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  Estimate estimate;
+  std::vector<ImuSample> samples;
+  estimate.status = bridge::primary_imu_samples(sensors, samples);
+  if (estimate.status.ok()) {
+    estimate.status = tumble_rates(sensors, samples, parameters, estimate.rates, estimate.health);
+  }
+  count_sources(estimate.rates, estimate.health);
+  return estimate;
+}
+
+}  // namespace
+
+std::span<const sim::Parameter> tumble_rate_parameters() {
+  return parameters_of_the_smoother();
+}
+
+Status tumble_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, const sim::Values& parameters,
+                    std::vector<RateState>& out, std::map<std::string, double>& health) {
+  out.clear();
+  RateReport report;
+  const RateSmoother smoother(smoother_params(sensors.imus.front(), parameters));
+  const Status status = smoother.estimate(samples, out, report);
+  if (status.ok()) report_health(report, health);
+  return status;
+}
+
+Method rate_tumble() {
+  MethodInfo info;
+  info.name = "tumble";
+  info.kind = Kind::rate;
+  info.doc =
+      "A smoother over the recording: bounds of clipped axes, rigid flight at the lever arm, Euler's equation, "
+      "and the constants of the rig with it.";
+  info.source = "ours, from Deschenes et al., Saturation-Aware Angular Velocity Estimation, ICRA 2024";
+  info.parameters = tumble_rate_parameters();
+  info.robots = {"rig"};
+  return make_method(std::move(info), run);
+}
+
+}  // namespace tumble::scenarios

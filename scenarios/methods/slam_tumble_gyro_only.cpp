@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/registry.hpp"
+#include "tumble/angular_velocity/rail_detector.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+std::span<const sim::Parameter> parameters_with_excess() {
+  static const std::vector<sim::Parameter> all = joined_parameters({slam_parameters(), excess_parameters()});
+  return all;
+}
+
+// the gyro as it is; which axes are at their rail is what the registration must know to estimate their excess
+Status railed_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<RateState>& out) {
+  const sim::ImuRecord& record = sensors.imus.front();
+  RailDetector::Params params;
+  if (record.stated_gyro_range_rad_s > 0.0) params.stated_gyro_rad_s = record.stated_gyro_range_rad_s;
+  if (record.stated_accel_range_m_s2 > 0.0) params.stated_accel_m_s2 = record.stated_accel_range_m_s2;
+  RailDetector::State state;
+  std::vector<Clipping> clipping(samples.size());
+  RailDetector(params).classify_all(samples, state, clipping);
+
+  if (const Status status = raw_rates(sensors, samples, out); !status.ok()) return status;
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    out[k].clipped_axes = clipping[k].gyro;
+    out[k].source = clipping[k].gyro ? RateSource::bounded_only : RateSource::measured;
+  }
+  return {};
+}
+
+Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  Estimate estimate;
+  std::vector<ImuSample> samples;
+  estimate.status = bridge::primary_imu_samples(sensors, samples);
+  if (estimate.status.ok()) estimate.status = railed_rates(sensors, samples, estimate.rates);
+  if (estimate.status.ok()) run_slam_chain(sensors, samples, parameters, estimate, ExcessRate::estimated);
+  return estimate;
+}
+
+}  // namespace
+
+Method slam_tumble_gyro_only() {
+  MethodInfo info;
+  info.name = "tumble_gyro_only";
+  info.kind = Kind::slam;
+  info.doc = "The chain of tumble with the clipped gyro: the excess of clipped axes comes from the registration alone.";
+  info.source = "ours";
+  info.parameters = parameters_with_excess();
+  info.robots = {"rig"};
+  return make_method(std::move(info), run);
+}
+
+}  // namespace tumble::scenarios

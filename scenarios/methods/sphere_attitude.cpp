@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/methods/sphere_attitude.hpp"
+
+#include <string>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/methods/bridge.hpp"
+#include "tumble/attitude/strapdown.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+struct Rest {
+  Eigen::Vector3d gyro_bias_rad_s;
+  Eigen::Vector3d specific_force_m_s2;
+};
+
+Rest mean_over_rest(std::span<const ImuSample> samples, double rest_s) {
+  Rest rest{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  double count = 0.0;
+  for (const ImuSample& sample : samples) {
+    if (seconds(sample.time_ns - samples.front().time_ns) > rest_s) break;
+    rest.gyro_bias_rad_s += sample.angular_velocity_rad_s;
+    rest.specific_force_m_s2 += sample.specific_force_m_s2;
+    count += 1.0;
+  }
+  rest.gyro_bias_rad_s /= count;
+  rest.specific_force_m_s2 /= count;
+  return rest;
+}
+
+}  // namespace
+
+void require_sphere(const char* method, const sim::Sensors& sensors) {
+  if (!(sensors.sphere_radius_m > 0.0)) {
+    throw BadInput(std::string("method ") + method + " needs a sphere: sphere_radius_m is 0");
+  }
+}
+
+Status sphere_attitude(const char* method, const sim::Sensors& sensors, double rest_s, SphereAttitude& out) {
+  out = {};
+  if (Status status = bridge::primary_imu_samples(sensors, out.samples); !status.ok()) return status;
+  require_sphere(method, sensors);
+
+  const Rest rest = mean_over_rest(out.samples, rest_s);
+  const Strapdown strapdown{Strapdown::Params{}};
+  Strapdown::State attitude;
+  if (Status status = level(rest.specific_force_m_s2, attitude.q_WI); !status.ok()) return status;
+  attitude.started = true;
+  attitude.last_time_ns = out.samples.front().time_ns;
+  out.q_WI.reserve(out.samples.size());
+  for (ImuSample& sample : out.samples) {
+    sample.angular_velocity_rad_s -= rest.gyro_bias_rad_s;
+    if (!out.q_WI.empty()) {
+      if (Status status = strapdown.step(sample, attitude); !status.ok()) return status;
+    }
+    out.q_WI.push_back(attitude.q_WI);
+  }
+  return {};
+}
+
+PoseState centre_pose(const sim::Sensors& sensors, TimeNs time_ns, const Eigen::Quaterniond& q_WI,
+                      const Eigen::Vector3d& p_WG_m, const Eigen::Vector3d& v_WG_m_s) {
+  PoseState pose;
+  pose.time_ns = time_ns;
+  pose.p_WA_m = p_WG_m;
+  pose.q_WA = q_WI * Eigen::Quaterniond(sensors.imus.front().T_BI.linear().transpose());
+  pose.v_WA_m_s = v_WG_m_s;
+  return pose;
+}
+
+}  // namespace tumble::scenarios
