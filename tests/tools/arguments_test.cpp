@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -76,7 +77,7 @@ TEST(SelectMethods, TakesEachOnceAndRefusesUnknownOnes) {
 }
 
 TEST(WriteFile, LeavesTheWholeFileOrNone) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "tumble_write_file";
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / ("tumble_write_file_" + std::to_string(getpid()));
   std::filesystem::remove_all(folder);
   make_folder(folder);
   write_file(folder / "a.txt", "content");

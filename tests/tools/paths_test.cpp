@@ -113,6 +113,16 @@ TEST(TruePath, EndsWithTheLastSampleWhateverTheStride) {
   EXPECT_TRUE(true_path({}, sim::Truth(), 10).empty());
 }
 
+TEST(NearTruth, EndsAPathWhereItRunsAway) {
+  const Path truth{{0, 1, 2}, {{0, 0, 0}, {4, 0, 0}, {8, 0, 0}}};  // widened by half of its diagonal: 4 m
+  const Path path{{0, 1, 2, 3}, {{0, 0, 0}, {5, 3.9, 0}, {6, 4.1, 0}, {7, 0, 0}}};
+  const Path shown = near_truth(path, truth);
+  ASSERT_EQ(shown.points_W_m.size(), 2u) << "what comes back is not joined by a line through nowhere";
+  EXPECT_EQ(shown.time_ns.size(), 2u);
+  EXPECT_EQ(near_truth(truth, truth).points_W_m.size(), 3u);
+  EXPECT_EQ(near_truth(path, {}).points_W_m.size(), 4u) << "nothing to be near to";
+}
+
 TEST(MovingSpan, LeavesTheRestsOut) {
   const sim::Truth truth = spiral();
   EXPECT_EQ(moving_span(truth, 0.0).begin_ns, 501 * kPeriodNs);

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -23,10 +24,11 @@ constexpr const char* kError = "rate_error_clipped_median_rad_s";
 /// A results database in the test's folder, empty.
 class SummaryTest : public testing::Test {
  protected:
-  SummaryTest() : path_(std::filesystem::path(testing::TempDir()) / "tumble_summary_test.db") {
+  SummaryTest() : path_(std::filesystem::path(testing::TempDir()) / ("tumble_summary_" + std::to_string(getpid()) + ".db")) {
     std::filesystem::remove(path_);
     results_.emplace(path_, scenarios::Results::Mode::create_or_append);
   }
+  ~SummaryTest() override { std::filesystem::remove(path_); }
   void store(std::uint64_t seed, Kind kind, const std::string& method, const std::string& status,
              std::vector<scenarios::Score> scores) {
     scenarios::Outcome outcome;

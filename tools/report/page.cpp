@@ -24,7 +24,8 @@ std::string header_html(const PageContent& content) {
 std::string cards_html(const Summary& summary) {
   std::string out = "<div class=\"cards\">\n";
   for (const Headline& headline : headlines(summary)) {
-    out += "<div class=\"card\"><div class=\"place\">" + escaped(headline.place) + "</div><div class=\"value\">" +
+    out += "<div class=\"card\"><div class=\"place\">" + escaped(headline.place) + "</div><div class=\"value" +
+           (headline.worse ? " worse" : "") + "\">" +
            escaped(headline.value) + "</div><div class=\"detail\">" + escaped(headline.detail) + "</div></div>\n";
   }
   return out + "</div>\n";
@@ -77,8 +78,8 @@ std::string draws_html(const Summary& summary) {
 }
 
 std::string scores_html(const Summary& summary) {
-  std::string out = "<h2>Scores</h2>\n<p>Median over the draws (of <code>map_failed</code> the share) and, in brackets, its 95 % interval from order statistics; only draws that "
-                    "ended <i>ok</i> count, the others are in the first row with their Clopper–Pearson interval. “Better in” counts the "
+  std::string out = "<h2>Scores</h2>\n<p>Median over the draws (of <code>map_failed</code> the share) and, in brackets, its 95 % interval from order statistics; an estimate that did not end <i>ok</i> ranks as "
+                    "the worst of all (–: half or more of them), and is counted in the first row with its Clopper–Pearson interval. “Better in” counts the "
                     "draws on which a method beat the baseline on the very same recording. The best method that needs no truth is "
                     "marked. Hover over a metric for its definition.</p>\n";
   std::string scenario;

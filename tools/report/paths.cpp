@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/report/paths.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "scenarios/scoring/truth_track.hpp"
@@ -80,6 +81,18 @@ Path estimated_path(const scenarios::Estimate& estimate, const sim::Sensors& sen
     path.points_W_m.push_back(move * (pose_of(state) * point_A));
   }
   return path;
+}
+
+Path near_truth(const Path& path, const Path& truth) {
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& point : truth.points_W_m) box.extend(point);
+  if (box.isEmpty()) return path;
+  const Vector3d margin = Vector3d::Constant(std::max(1.0, 0.5 * box.diagonal().norm()));
+  box.extend(box.min() - margin);
+  box.extend(box.max() + margin);
+  const auto end = std::find_if(path.points_W_m.begin(), path.points_W_m.end(), [&](const Vector3d& p) { return !box.contains(p); });
+  const auto count = end - path.points_W_m.begin();
+  return {{path.time_ns.begin(), path.time_ns.begin() + count}, {path.points_W_m.begin(), end}};
 }
 
 Span moving_span(const sim::Truth& truth, double margin_s) {

@@ -59,8 +59,11 @@ std::vector<sim::DrawnPath> drawn_paths(const Scene& scene) {
     if (path.points_W_m.size() > 1) paths.push_back({thinned(path.points_W_m, 1.5 * width_m), colour.rgba(), width});
   };
   // the truth is a little thicker, so that it shows on both sides of an estimate that lies on it
-  if (scene.truth != nullptr) add(true_path(*scene.sensors, *scene.truth, 10), truth_colour(), 1.5 * width_m);
-  for (std::size_t i = 0; i < scene.estimates.size(); ++i) add(scene.estimates[i], method_colour(i), width_m);
+  const Path truth = scene.truth == nullptr ? Path() : true_path(*scene.sensors, *scene.truth, 10);
+  add(truth, truth_colour(), 1.5 * width_m);
+  for (std::size_t i = 0; i < scene.estimates.size(); ++i) {
+    add(near_truth(scene.estimates[i], truth), method_colour(i), width_m);
+  }
   return paths;
 }
 

@@ -179,15 +179,20 @@ Figure path_figure(const Example& example) {
   figure.id = "path-" + example.run.situation.scenario;
   const sim::Recording& recording = example.run.recording;
   if (recording.truth.p_WB_m.empty()) return figure;
+  const Path way = true_path(recording.sensors, recording.truth, 1);
   json truth = line("truth", truth_colour().hex, 3.5);
-  add_path(truth, true_path(recording.sensors, recording.truth, 1), 600);
+  add_path(truth, way, 600);
   figure.data.push_back(std::move(truth));
+  bool cut = false;
   for (std::size_t i = 0; i < example.paths.size(); ++i) {
     json trace = line(example.path_methods[i], method_colour(i).hex, 1.8);
-    add_path(trace, example.paths[i], 600);
+    const Path shown = near_truth(example.paths[i], way);
+    cut = cut || shown.points_W_m.size() < example.paths[i].points_W_m.size();
+    add_path(trace, shown, 600);
     figure.data.push_back(std::move(trace));
   }
   figure.caption = "The way seen from above, at equal scales. Estimates start where the truth does.";
+  if (cut) figure.caption += " A path that runs away from the truth ends where it leaves the picture.";
   figure.layout = {{"xaxis", axis("x [m]")}, {"yaxis", axis("y [m]")}};
   figure.layout["yaxis"]["scaleanchor"] = "x";
   return figure;

@@ -89,8 +89,12 @@ std::vector<Headline> headlines(const Summary& summary) {
       headline.detail = fmt::format("{}: median of {} over {} draws", base->method, metric, from->values.size());
     } else {
       const MetricSummary& to = *best->find(metric);
-      const double change = from->centre.value == 0.0 ? NAN : 100.0 * (to.centre.value / from->centre.value - 1.0);
-      headline.value = fmt::format("{}{} %", change < 0.0 ? "−" : "+", plain(std::abs(change)));
+      // a median is infinite once half of the runs fail: there is no change to state then
+      const double change = 100.0 * (to.centre.value / from->centre.value - 1.0);
+      const bool comparable = std::isfinite(change) && std::isfinite(from->centre.value);
+      headline.value = comparable ? fmt::format("{}{} %", change < 0.0 ? "−" : "+", plain(std::abs(change)))
+                                  : styled_value(metric, to.centre.value, true);
+      headline.worse = metric_sense(metric) == Sense::less ? to.centre.value > from->centre.value : to.centre.value < from->centre.value;
       headline.detail = fmt::format("{}: {} beside {} with {}; better in {} of {} draws ({})", best->method,
                                     styled_value(metric, to.centre.value, true), styled_value(metric, from->centre.value, true),
                                     base->method, to.wins.count, to.wins.pairs, metric);

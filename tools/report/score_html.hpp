@@ -18,6 +18,7 @@ std::string styled_interval(const std::string& metric, const scenarios::Interval
 struct Headline {
   std::string place;   ///< "hill, rate"
   std::string value;   ///< "-83.4 %" or the value itself when there is nothing to compare with
+  bool worse = false;  ///< the method does worse than the baseline
   std::string detail;  ///< one sentence with both values and the paired count
 };
 std::vector<Headline> headlines(const Summary& summary);
