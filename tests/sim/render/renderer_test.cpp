@@ -2,6 +2,7 @@
 #include "sim/render/renderer.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 #include <png.h>
 
 #include <cmath>
@@ -189,7 +190,7 @@ TEST(Pictures, PngComesBackAsItWas) {
 }
 
 TEST(Pictures, WriteLeavesNoHalfFile) {
-  const auto folder = std::filesystem::temp_directory_path() / "tumble_render_test";
+  const auto folder = std::filesystem::temp_directory_path() / ("tumble_render_test_" + std::to_string(getpid()));
   std::filesystem::create_directories(folder);
   write_png(folder / "a.png", plain(4, 4, 9));
   EXPECT_GT(std::filesystem::file_size(folder / "a.png"), 50u);
