@@ -50,6 +50,13 @@ fs::path Session::plotly() const {
       "plotly.min.js is not found, and the report needs it; run tools/setup, then configure and build again");
 }
 
+fs::path Session::program() const {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  if (error) throw scenarios::BadInput("/proc/self/exe: " + error.message());
+  return program;
+}
+
 void Session::note(std::string_view line) const {
   if (quiet) return;
   std::fprintf(stderr, "%.*s\n", static_cast<int>(line.size()), line.data());

@@ -28,6 +28,9 @@ class Session {
   /// The Plotly bundle, looked for beside the data. Throws BadInput that says how to get it.
   std::filesystem::path plotly() const;
 
+  /// The program's own file, to be started anew. Throws BadInput when the system does not tell.
+  std::filesystem::path program() const;
+
   /// One line to standard error, unless quiet.
   void note(std::string_view line) const;
 

@@ -14,6 +14,7 @@ std::span<const Verb> verbs() {
       {"merge", "join results databases", declare_merge},
       {"report", "score tables and one self-contained page from a results database", declare_report},
       {"render", "pictures of a recording or of a draw", declare_render},
+      {"certify", "measure how far this build is from physics and its data sheets", declare_certify},
   };
   return kVerbs;
 }

@@ -35,5 +35,6 @@ Action declare_sweep(CLI::App& options, const Session& session);
 Action declare_merge(CLI::App& options, const Session& session);
 Action declare_report(CLI::App& options, const Session& session);
 Action declare_render(CLI::App& options, const Session& session);
+Action declare_certify(CLI::App& options, const Session& session);
 
 }  // namespace tumble::tools

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <set>
+
+#include "scenarios/certificate/rows.hpp"
+#include "scenarios/draw/scenario.hpp"
+#include "sim/trial/ray_trial.hpp"
+
+namespace tumble::scenarios {
+
+std::vector<CertificateEntry> certify_lidar_rays(const CertificateInput& input, const LidarRaysSetup& setup) {
+  // a ray that grazes an edge may fall on either side of it
+  constexpr double kOtherSurface = 1e-3;
+  std::vector<CertificateEntry> entries;
+  std::set<std::string> worlds;
+  for (const std::string& name : scenario_names(input.data)) {
+    const Scenario scenario = load_scenario(input.data, name);
+    if (!worlds.insert(scenario.world.type).second) continue;
+    const sim::RayDisagreement d =
+        sim::compare_rays(draw(input.data, scenario, 1), {input.data.models(), setup.rays, 1, setup.mirror_shift_m});
+    entries.push_back({"lidar_range_engine", name, "the lidar's rays are as long as mj_ray's: largest difference", "m",
+                       d.largest_difference_m, 0.0, 1e-3, d.hits > 0 ? "" : "no ray hit anything"});
+    entries.push_back({"lidar_surface_engine", name, "and name the same surface: share of rays that do not", "1",
+                       static_cast<double>(d.other_surface) / static_cast<double>(d.rays), 0.0, kOtherSurface, ""});
+  }
+  return entries;
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/trial/ray_trial.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "sim/engine/model.hpp"
+#include "sim/lidar/ray_scene.hpp"
+#include "sim/random/stream.hpp"
+
+namespace tumble::sim {
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kReach_m = 1e4;
+
+/// Rays of the engine against the static part of a world.
+class EngineRays {
+ public:
+  explicit EngineRays(const engine::World& world) : world_(world), data_(mj_makeData(world.model.get())) {
+    mj_forward(world.model.get(), data_.get());
+  }
+
+  struct Hit {
+    double range_m;  ///< negative when nothing is met
+    int geom;
+  };
+  Hit cast(const Vector3d& origin_m, const Vector3d& direction) const {
+    int geom = -1;
+    const double range_m = mj_ray(world_.model.get(), data_.get(), origin_m.data(), direction.data(), nullptr, 1,
+                                  world_.robot_body, &geom, nullptr);
+    return {range_m, geom};
+  }
+
+ private:
+  const engine::World& world_;
+  engine::DataPtr data_;
+};
+
+/// A place above whatever stands at a random spot of the inner world.
+Vector3d origin_above_ground(const EngineRays& rays, double half_extent_m, Stream& stream) {
+  constexpr double kAbove_m = 50.0;
+  const double reach_m = 0.85 * half_extent_m;
+  Vector3d origin(stream.uniform(-reach_m, reach_m), stream.uniform(-reach_m, reach_m), kAbove_m);
+  const EngineRays::Hit ground = rays.cast(origin, -Vector3d::UnitZ());
+  const double height_m = stream.uniform(0.2, 3.0);
+  origin.z() = (ground.range_m >= 0.0 ? kAbove_m - ground.range_m : 0.0) + height_m;
+  return origin.cast<float>().cast<double>();  // both sides start from the same place
+}
+
+Vector3d random_direction(Stream& stream) {
+  const Vector3d direction = Vector3d(stream.normal(), stream.normal(), stream.normal()).normalized();
+  return direction.cast<float>().cast<double>();
+}
+
+void set_ray(RayPacket& packet, int lane, const Vector3d& origin_m, const Vector3d& direction) {
+  packet.origin_x[lane] = static_cast<float>(origin_m.x());
+  packet.origin_y[lane] = static_cast<float>(origin_m.y());
+  packet.origin_z[lane] = static_cast<float>(origin_m.z());
+  packet.direction_x[lane] = static_cast<float>(direction.x());
+  packet.direction_y[lane] = static_cast<float>(direction.y());
+  packet.direction_z[lane] = static_cast<float>(direction.z());
+  packet.range[lane] = static_cast<float>(kReach_m);
+  packet.surface_id[lane] = kNothing;
+}
+
+void note(const engine::World& world, const EngineRays::Hit& expected, float range_m, std::int32_t surface_id,
+          RayDisagreement& out) {
+  ++out.rays;
+  if (expected.range_m >= 0.0) ++out.hits;
+  const int seen = surface_id < 0 ? -1 : world.surface_geom[static_cast<std::size_t>(surface_id)];
+  if (seen != expected.geom) ++out.other_surface;
+  else if (seen >= 0) out.largest_difference_m = std::max(out.largest_difference_m, std::abs(range_m - expected.range_m));
+}
+
+}  // namespace
+
+RayDisagreement compare_rays(const Situation& situation, const RayTrialOptions& options) {
+  const engine::World world = engine::compose(situation, options.models);
+  const EngineRays engine_rays(world);
+  const RayScene mirror(static_geometry(world, HeightFieldSides::closed));
+  Stream stream(options.seed, "trial.rays");
+  RayDisagreement out;
+  for (int done = 0; done < options.rays; done += kLanes) {
+    RayPacket packet;
+    packet.count = std::min(kLanes, options.rays - done);
+    std::array<EngineRays::Hit, kLanes> expected;
+    for (int i = 0; i < packet.count; ++i) {
+      const Vector3d origin_m = origin_above_ground(engine_rays, world.half_extent_m, stream);
+      const Vector3d direction = random_direction(stream);
+      expected[static_cast<std::size_t>(i)] = engine_rays.cast(origin_m, direction);
+      set_ray(packet, i, origin_m + Vector3d(0, 0, options.mirror_shift_m), direction);
+    }
+    mirror.cast(packet);
+    for (int i = 0; i < packet.count; ++i) {
+      note(world, expected[static_cast<std::size_t>(i)], packet.range[i], packet.surface_id[i], out);
+    }
+  }
+  return out;
+}
+
+}  // namespace tumble::sim
