@@ -64,6 +64,7 @@ std::span<const CertificateRow> certificate_rows() {
       CertificateRow{"impact", "sensitivity of impact peaks to step and softness", as_certified<certify_impact>},
       CertificateRow{"lidar_range", "range error against analytic surfaces", as_certified<certify_lidar_range>},
       CertificateRow{"lidar_rays", "range error against mj_ray", as_certified<certify_lidar_rays>},
+      CertificateRow{"imu_noise", "noise of the IMUs at rest against their data sheets", as_certified<certify_imu_noise>},
       CertificateRow{"digests", "equal digests for threads, order and restart", as_certified<certify_digests>},
   };
   return kRows;

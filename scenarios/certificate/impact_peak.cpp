@@ -46,7 +46,7 @@ double peak_m_s2(const CertificateInput& input, const Eigen::Quaterniond& attitu
     if (now < window) continue;
     const double span_s = static_cast<double>(window) * trial.step_s();
     const Eigen::Vector3d a_W = (v_m_s.back() - v_m_s[static_cast<std::size_t>(now - window)]) / span_s;
-    peak = std::max(peak, (a_W + Eigen::Vector3d(0, 0, trial.gravity_m_s2())).norm());
+    peak = larger(peak, (a_W + Eigen::Vector3d(0, 0, trial.gravity_m_s2())).norm());
   }
   return peak;
 }
@@ -64,7 +64,7 @@ std::vector<CertificateEntry> certify_impact(const CertificateInput& input, cons
   for (const Eigen::Quaterniond& attitude : attitudes()) {
     const double here = peak_m_s2(input, attitude, setup.height_m, step_s, middle_s);
     const double finer = peak_m_s2(input, attitude, setup.height_m, own_step_s(input) / 4.0, middle_s);
-    step_change = std::max(step_change, std::abs(here / finer - 1.0));
+    step_change = larger(step_change, std::abs(here / finer - 1.0));
     const double soft = peak_m_s2(input, attitude, setup.height_m, step_s, setup.soft_s);
     const double hard = peak_m_s2(input, attitude, setup.height_m, step_s, setup.hard_s);
     exponent += std::log(soft / hard) / std::log(setup.soft_s / setup.hard_s) / attitudes().size();

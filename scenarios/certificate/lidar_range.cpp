@@ -67,7 +67,7 @@ Errors against_planes(const sim::Recording& recording, double added_range_m) {
                                        pose.q_WA * longer_L_m + pose.p_WA_m);
       if (off_m < 0.0) continue;
       ++errors.points;
-      errors.largest_m = std::max(errors.largest_m, off_m);
+      errors.largest_m = larger(errors.largest_m, off_m);
     }
   }
   return errors;

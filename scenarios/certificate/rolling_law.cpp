@@ -62,7 +62,7 @@ std::vector<CertificateEntry> certify_rolling(const CertificateInput& input, con
   std::vector<CertificateEntry> entries = {entry(input, setup, plane, "plane", 1e-3)};
   if (!setup.terrains) return entries;
   // the edge of a patch or of an obstacle is crossed within the 10 ms of a label, and the label itself lets 0.02 m/s pass
-  constexpr double kTerrainHigh = 0.02;
+  constexpr double kTerrainHigh = 0.01;
   for (const std::string& name : scenario_names(input.data)) {
     const Scenario scenario = load_scenario(input.data, name);
     if (scenario.robot.type != "sphere") continue;

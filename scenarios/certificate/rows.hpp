@@ -73,6 +73,15 @@ struct LidarRaysSetup {
 };
 std::vector<CertificateEntry> certify_lidar_rays(const CertificateInput& input, const LidarRaysSetup& setup = {});
 
+/// An hour of each IMU at rest against noise and bias of its data sheet. The factors multiply what is simulated.
+struct ImuNoiseSetup {
+  double duration_s = 3600.0;
+  std::uint64_t seed = 1;
+  double noise_factor = 1.0;
+  double bias_factor = 1.0;
+};
+std::vector<CertificateEntry> certify_imu_noise(const CertificateInput& input, const ImuNoiseSetup& setup = {});
+
 /// The digest of a draw with other numbers of threads, in another order, and from a program started anew.
 struct DigestSetup {
   std::string scenario = "hill";

@@ -44,4 +44,8 @@ sim::Truth fly(sim::Trial& trial, double duration_s) {
   return truth;
 }
 
+double larger(double a, double b) {
+  return std::isnan(a) || a > b ? a : b;
+}
+
 }  // namespace tumble::scenarios

@@ -18,4 +18,7 @@ sim::BodyState thrown(double rate_rad_s);
 /// The states of a free flight as the truth of a recording (body alone, no contacts).
 sim::Truth fly(sim::Trial& trial, double duration_s);
 
+/// The larger of two; one that is not a number is the largest, so that it cannot hide.
+double larger(double a, double b);
+
 }  // namespace tumble::scenarios

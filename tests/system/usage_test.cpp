@@ -28,7 +28,7 @@ TEST_P(EachVerb, RefusesAnUnknownOptionInOneLine) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Program, EachVerb,
-                         testing::Values("list", "run", "record", "estimate", "score", "sweep", "merge", "report", "render"));
+                         testing::Values("list", "run", "record", "estimate", "score", "sweep", "merge", "report", "render", "certify"));
 
 struct Wrong {
   const char* what;
@@ -61,6 +61,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Wrong{"threads", {"run", "hill", "--seed", "1", "--threads", "0"}, "--threads"},
                     Wrong{"absent recording", {"estimate", "absent.h5", "--method", "raw", "-o", "x"}, "absent.h5"},
                     Wrong{"absent database", {"report", "absent.db"}, "absent.db"},
+                    Wrong{"row of the certificate", {"certify", "--row", "free_fal"}, "'free_fall'"},
                     Wrong{"render without seed", {"render", "hill", "-o", "x.png"}, "--seed"}));
 
 TEST(List, NamesWhatThereIs) {
