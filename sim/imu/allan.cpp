@@ -22,7 +22,8 @@ std::vector<double> integrate(std::span<const double> samples) {
   return sums;
 }
 
-/// `sums` in units of the period: the second difference over `cluster` samples is the difference of two means, times it.
+/// `sums` in units of the period: the second difference over `cluster` samples is the difference of two means, times
+/// it.
 double deviation_of(const std::vector<double>& sums, std::size_t cluster) {
   const std::size_t count = sums.size() - 2 * cluster;
   double total = 0.0;
@@ -50,11 +51,11 @@ std::vector<AllanPoint> allan_deviation(std::span<const double> samples, double 
   const std::vector<double> sums = integrate(samples);
   const std::size_t largest = samples.size() / kLeastClusters;
   for (int i = 0;; ++i) {
-    const std::size_t cluster = static_cast<std::size_t>(std::llround(std::pow(10.0, static_cast<double>(i) / per_decade)));
+    const std::size_t cluster =
+        static_cast<std::size_t>(std::llround(std::pow(10.0, static_cast<double>(i) / per_decade)));
     if (cluster > largest) break;
     if (!curve.empty() && curve.back().cluster == cluster) continue;
-    curve.push_back(
-        {static_cast<double>(cluster) * period_s, deviation_of(sums, cluster), cluster, samples.size(), 1});
+    curve.push_back({static_cast<double>(cluster) * period_s, deviation_of(sums, cluster), cluster, samples.size(), 1});
   }
   return curve;
 }
@@ -110,9 +111,13 @@ AllanInterval confidence_interval(const AllanPoint& point, AllanNoise noise, dou
           point.deviation * std::sqrt(degrees / chi_squared_quantile(degrees, -sigmas))};
 }
 
-double white_deviation(double density, double tau_s) { return density / std::sqrt(tau_s); }
+double white_deviation(double density, double tau_s) {
+  return density / std::sqrt(tau_s);
+}
 
-double walk_deviation(double walk_sqrt_s, double tau_s) { return walk_sqrt_s * std::sqrt(tau_s / 3.0); }
+double walk_deviation(double walk_sqrt_s, double tau_s) {
+  return walk_sqrt_s * std::sqrt(tau_s / 3.0);
+}
 
 double gauss_markov_deviation(double sigma, double time_s, double tau_s) {
   const double x = tau_s / time_s;

@@ -14,10 +14,10 @@ namespace tumble::sim {
 /// Allan deviation at one averaging time.
 struct AllanPoint {
   double tau_s = 0.0;
-  double deviation = 0.0;       ///< [unit of the series]
-  std::size_t cluster = 0;      ///< samples averaged, tau / period
-  std::size_t samples = 0;      ///< of each series
-  std::size_t series = 1;       ///< independent series that the figure is the mean of
+  double deviation = 0.0;   ///< [unit of the series]
+  std::size_t cluster = 0;  ///< samples averaged, tau / period
+  std::size_t samples = 0;  ///< of each series
+  std::size_t series = 1;   ///< independent series that the figure is the mean of
 };
 
 /// The noise that dominates at an averaging time; it decides how many independent figures the average holds.

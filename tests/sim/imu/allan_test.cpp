@@ -104,8 +104,8 @@ TEST(Allan, MeanOfAxesCountsThemAll) {
   EXPECT_NEAR(std::pow(mean[4].deviation, 2) * 3.0,
               std::pow(axes[0][4].deviation, 2) + std::pow(axes[1][4].deviation, 2) + std::pow(axes[2][4].deviation, 2),
               1e-12);
-  EXPECT_NEAR(degrees_of_freedom(mean[4], AllanNoise::flicker), 3.0 * degrees_of_freedom(axes[0][4], AllanNoise::flicker),
-              1e-9);
+  EXPECT_NEAR(degrees_of_freedom(mean[4], AllanNoise::flicker),
+              3.0 * degrees_of_freedom(axes[0][4], AllanNoise::flicker), 1e-9);
   axes[1].pop_back();
   EXPECT_THROW(mean_deviation(axes), std::invalid_argument);
 }
@@ -128,7 +128,8 @@ TEST(Allan, RefusesWhatMeansNothing) {
   std::vector<double> broken = series;
   broken[50] = std::numeric_limits<double>::infinity();
   EXPECT_THROW(allan_deviation(broken, 1.0), std::invalid_argument);
-  EXPECT_THROW(confidence_interval(allan_deviation(series, 1.0).front(), AllanNoise::white, 0.0), std::invalid_argument);
+  EXPECT_THROW(confidence_interval(allan_deviation(series, 1.0).front(), AllanNoise::white, 0.0),
+               std::invalid_argument);
   EXPECT_THROW(nearest_point({}, 1.0), std::invalid_argument);
 }
 
