@@ -40,6 +40,10 @@ class EngineRays {
   engine::DataPtr data_;
 };
 
+Vector3d as_float(const Vector3d& v) {
+  return v.cast<float>().cast<double>();  // both sides start from the same place
+}
+
 /// A place above whatever stands at a random spot of the inner world.
 Vector3d origin_above_ground(const EngineRays& rays, double half_extent_m, Stream& stream) {
   constexpr double kAbove_m = 50.0;
@@ -48,12 +52,17 @@ Vector3d origin_above_ground(const EngineRays& rays, double half_extent_m, Strea
   const EngineRays::Hit ground = rays.cast(origin, -Vector3d::UnitZ());
   const double height_m = stream.uniform(0.2, 3.0);
   origin.z() = (ground.range_m >= 0.0 ? kAbove_m - ground.range_m : 0.0) + height_m;
-  return origin.cast<float>().cast<double>();  // both sides start from the same place
+  return as_float(origin);
+}
+
+/// A place near where the robot begins: under a ceiling, where there is one.
+Vector3d origin_near_start(const Vector3d& start_W_m, Stream& stream) {
+  return as_float(start_W_m + Vector3d(stream.uniform(-1.5, 1.5), stream.uniform(-1.5, 1.5), stream.uniform(0.1, 1.5)));
 }
 
 Vector3d random_direction(Stream& stream) {
   const Vector3d direction = Vector3d(stream.normal(), stream.normal(), stream.normal()).normalized();
-  return direction.cast<float>().cast<double>();
+  return as_float(direction);
 }
 
 void set_ray(RayPacket& packet, int lane, const Vector3d& origin_m, const Vector3d& direction) {
@@ -89,7 +98,8 @@ RayDisagreement compare_rays(const Situation& situation, const RayTrialOptions& 
     packet.count = std::min(kLanes, options.rays - done);
     std::array<EngineRays::Hit, kLanes> expected;
     for (int i = 0; i < packet.count; ++i) {
-      const Vector3d origin_m = origin_above_ground(engine_rays, world.half_extent_m, stream);
+      const Vector3d origin_m = i % 2 == 0 ? origin_above_ground(engine_rays, world.half_extent_m, stream)
+                                           : origin_near_start(world.start_W_m, stream);
       const Vector3d direction = random_direction(stream);
       expected[static_cast<std::size_t>(i)] = engine_rays.cast(origin_m, direction);
       set_ray(packet, i, origin_m + Vector3d(0, 0, options.mirror_shift_m), direction);

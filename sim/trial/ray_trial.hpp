@@ -23,7 +23,8 @@ struct RayTrialOptions {
   double mirror_shift_m = 0.0;  ///< lifts the rays of the mirror alone: an error, for showing that it is found
 };
 
-/// Casts random rays from 0.2 to 3 m above the ground, in all directions, both ways. The robot is left out. A ray of the
+/// Casts random rays in all directions, both ways: half of them from 0.2 to 3 m above whatever stands anywhere in the
+/// world, half from near the place where the robot begins. The robot is left out. A ray of the
 /// engine costs up to 0.3 ms on a height field. Throws InvalidSituation.
 RayDisagreement compare_rays(const Situation& situation, const RayTrialOptions& options);
 

@@ -2,7 +2,6 @@
 #include "tools/tumble/certificate_table.hpp"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 namespace tumble::tools {
 
@@ -27,17 +26,6 @@ Table certificate_table(const scenarios::Certificate& certificate) {
                    verdict(entry) + (entry.note.empty() ? "" : ": " + entry.note)});
   }
   return table;
-}
-
-nlohmann::json to_json(const scenarios::Certificate& certificate) {
-  const auto finite = [](double value) { return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(); };
-  nlohmann::json entries = nlohmann::json::array();
-  for (const scenarios::CertificateEntry& entry : certificate.entries) {
-    entries.push_back({{"row", entry.row}, {"subject", entry.subject}, {"law", entry.law}, {"unit", entry.unit},
-                       {"value", finite(entry.value)}, {"low", finite(entry.low)}, {"high", finite(entry.high)},
-                       {"verdict", entry.passes() ? "pass" : "fail"}, {"note", entry.note}});
-  }
-  return {{"build", certificate.build}, {"verdict", certificate.passes() ? "pass" : "fail"}, {"entries", entries}};
 }
 
 }  // namespace tumble::tools

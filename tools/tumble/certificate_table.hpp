@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "scenarios/certificate/certificate.hpp"
@@ -11,10 +10,6 @@ namespace tumble::tools {
 
 /// A row per entry: what, on what, value, bound, unit, verdict (the reason when there is no value).
 Table certificate_table(const scenarios::Certificate& certificate);
-
-/// {"build", "verdict": "pass" | "fail", "entries": [{row, subject, law, unit, value, low, high, verdict, note}]}; a value
-/// that is not a number is null.
-nlohmann::json to_json(const scenarios::Certificate& certificate);
 
 /// "<= 1e-08", "0.001 to 0.02": the accepted range of a value; nothing is said of a lower end of 0.
 std::string bound_text(double low, double high);

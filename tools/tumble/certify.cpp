@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <fmt/format.h>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "scenarios/certificate/certificate.hpp"
+#include "scenarios/certificate/certificate_text.hpp"
 #include "tools/tumble/certificate_table.hpp"
 #include "tools/tumble/interrupt.hpp"
 #include "tools/tumble/verbs.hpp"
@@ -23,7 +25,7 @@ int certify(const Session& session, const std::vector<std::string>& rows) {
   };
   const scenarios::Certificate certificate =
       scenarios::measure_certificate({session.data(), session.program()}, options);
-  session.print({certificate_table(certificate)}, to_json(certificate));
+  session.print({certificate_table(certificate)}, nlohmann::json::parse(to_json(certificate)));
   if (interrupt.raised().load()) {
     std::fprintf(stderr, "tumble: stopped: the certificate is not complete\n");
     return kCheckFailed;

@@ -31,6 +31,10 @@ class Session {
   /// The program's own file, to be started anew. Throws BadInput when the system does not tell.
   std::filesystem::path program() const;
 
+  /// Where the program may keep what it has measured: $TUMBLE_CACHE, else $XDG_CACHE_HOME/tumble, else ~/.cache/tumble;
+  /// empty when none of them is set.
+  std::filesystem::path cache() const;
+
   /// One line to standard error, unless quiet.
   void note(std::string_view line) const;
 

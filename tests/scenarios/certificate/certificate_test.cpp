@@ -164,8 +164,8 @@ TEST(Rows, TwiceTheBiasFailsTheImus) {
   setup.bias_factor = 2.0;
   const std::vector<std::string> failed = failures(certify_imu_noise(input(), setup));
   for (const char* device : {"mti30", "vn100", "phidget1044"}) {
-    EXPECT_THAT(failed, testing::Contains("imu_bias (" + std::string(device) + " gyro)"));
-    EXPECT_THAT(failed, testing::Contains("imu_bias (" + std::string(device) + " accel)"));
+    EXPECT_THAT(failed, testing::Contains("imu_bias_instability (" + std::string(device) + " gyro)"));
+    EXPECT_THAT(failed, testing::Contains("imu_bias_instability (" + std::string(device) + " accel)"));
   }
 }
 
