@@ -23,9 +23,9 @@ struct ChannelFirings {
 struct FiringBlock {
   std::int64_t first_slot = 0;  ///< counted from the recording's start: unique, the key of the random numbers
   int slots = 0;
-  std::array<std::int64_t, kLanes> start_ns{};     ///< true, since the recording's start
+  std::array<std::int64_t, kLanes> start_ns{};      ///< true, since the recording's start
   std::array<std::uint32_t, kLanes> reported_ns{};  ///< of the slot's start, since the sweep's start
-  std::array<int, kLanes> cell{};                  ///< of the slot, see BeamPattern::cells()
+  std::array<int, kLanes> cell{};                   ///< of the slot, see BeamPattern::cells()
   std::array<ChannelFirings, kMaxChannels> channel;
 };
 

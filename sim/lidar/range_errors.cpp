@@ -8,8 +8,10 @@ namespace tumble::sim {
 
 namespace {
 
-// a return whose uniform number lies below this is kept from the signal sure_signal_ on, without a power to compute
+// Two bounds that spare most returns the power: below this uniform number a return is kept from sure_signal_ on; from
+// certain_signal_ on, whose odds of loss are below the step of the uniform numbers, whatever the number.
 constexpr double kSure = 0.99;
+constexpr double kCertainOdds = 0x1p25;
 
 /// Nearest whole multiple, ties to even: adding 1.5 * 2^52 leaves no digit behind the point, without a call.
 double rounded(double value, double quantum) {
@@ -30,11 +32,12 @@ RangeErrors::RangeErrors(const Values& values, std::uint64_t seed, std::string_v
       steepness_(values.at("detection_steepness")),
       kept_share_(1.0 - values.at("dropout_share")),
       intensity_quantum_(values.at("intensity_quantum")),
-      sure_signal_(std::pow(kSure / (1.0 - kSure), 1.0 / steepness_)) {}
+      sure_signal_(std::pow(kSure / (1.0 - kSure), 1.0 / steepness_)),
+      certain_signal_(std::pow(kCertainOdds, 1.0 / steepness_)) {}
 
 bool RangeErrors::is_detected(float signal, double uniform) const {
   if (uniform >= kept_share_) return false;
-  if (detection2_m2_ == 0.0) return true;
+  if (detection2_m2_ == 0.0 || signal >= certain_signal_) return true;
   // what is left of the uniform number after the random loss is uniform again
   const double u = uniform / kept_share_;
   if (u < kSure && signal >= sure_signal_) return true;

@@ -32,7 +32,7 @@ class RangeErrors {
 
   LaneNoiseSource noise_;
   double noise_m_, quantum_m_, min_m_, max_m_, detection2_m2_, reference_reflectivity_, steepness_, kept_share_,
-      intensity_quantum_, sure_signal_;
+      intensity_quantum_, sure_signal_, certain_signal_;
 };
 
 }  // namespace tumble::sim

@@ -5,26 +5,13 @@ namespace tumble::sim {
 
 namespace {
 
-using Eigen::Isometry3d;
-using Eigen::Matrix3d;
 using Eigen::Vector3d;
-using Pose = Eigen::Matrix<double, 3, 4>;
 
-Pose lidar_pose(const MovingPose& body, const Isometry3d& T_BL) {
-  Pose out;
-  out << body.R_WB * T_BL.linear(), body.p_WB_m + body.R_WB * T_BL.translation();
-  return out;
-}
-
-Pose lidar_rate(const MovingPose& body, const Isometry3d& T_BL) {
-  Pose out;
-  out << body.dR_WB_s * T_BL.linear(), body.v_WB_m_s + body.dR_WB_s * T_BL.translation();
-  return out;
-}
-
-void set_lane(const Pose& pose, int lane, double (*to)[kLanes]) {
+/// Rotation row by row, then position.
+void set_lane(const Pose34& pose, int lane, double (*to)[kLanes]) {
   for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 4; ++column) to[column < 3 ? 3 * row + column : 9 + row][lane] = pose(row, column);
+    for (int column = 0; column < 3; ++column) to[3 * row + column][lane] = pose(row, column);
+    to[9 + row][lane] = pose(row, 3);
   }
 }
 
@@ -37,25 +24,25 @@ void aim_coordinate(const double (*pose)[kLanes], const double (*rate)[kLanes], 
     const double x = ax[s] + after_s * bx[s], y = ay[s] + after_s * by[s], z = az[s] + after_s * bz[s];
     origin[s] = static_cast<float>(ap[s] + after_s * bp[s] + x * firings.origin_x_m[s] + y * firings.origin_y_m[s] +
                                    z * firings.origin_z_m[s]);
-    direction[s] = static_cast<float>(x * firings.direction_x[s] + y * firings.direction_y[s] +
-                                      z * firings.direction_z[s]);
+    direction[s] =
+        static_cast<float>(x * firings.direction_x[s] + y * firings.direction_y[s] + z * firings.direction_z[s]);
   }
 }
 
 }  // namespace
 
-void BlockPoses::follow(const BeamPattern& pattern, const FiringBlock& block, const Isometry3d& T_BL,
-                        TrackCursor& track) {
+void BlockPoses::follow(const BeamPattern& pattern, const FiringBlock& block, TrackCursor& track) {
   const std::int64_t length_ns = pattern.slot_length_ns();
   broken_count_ = 0;
+  Pose34 pose, rate_s;
   for (int s = 0; s < block.slots; ++s) {
     const std::int64_t start_ns = block.start_ns[s];
-    const MovingPose middle = track.at(start_ns + length_ns / 2);
-    set_lane(lidar_pose(middle, T_BL), s, pose_);
-    set_lane(lidar_rate(middle, T_BL), s, rate_);
+    track.at(start_ns + length_ns / 2, pose, rate_s);
+    set_lane(pose, s, pose_);
+    set_lane(rate_s, s, rate_);
     if (track.is_smooth(start_ns, start_ns + length_ns)) continue;
     for (int c = 0; c < pattern.channels(); ++c) {
-      broken_pose_[broken_count_][c] = lidar_pose(track.at(start_ns + pattern.lag_ns(c)), T_BL);
+      track.at(start_ns + pattern.lag_ns(c), broken_pose_[broken_count_][c], rate_s);
     }
     broken_lane_[broken_count_++] = s;
   }
@@ -80,7 +67,7 @@ void BlockPoses::aim(const BeamPattern& pattern, const FiringBlock& block, const
 
 void BlockPoses::aim_slowly(const ChannelFirings& firings, int broken, int channel, RayPacket& rays) const {
   const int s = broken_lane_[broken];
-  const Pose& pose = broken_pose_[broken][channel];
+  const Pose34& pose = broken_pose_[broken][channel];
   const Vector3d origin =
       pose.leftCols<3>() * Vector3d(firings.origin_x_m[s], firings.origin_y_m[s], firings.origin_z_m[s]) + pose.col(3);
   const Vector3d direction =

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
-
 #include "sim/lidar/beam_pattern.hpp"
 #include "sim/lidar/track_cursor.hpp"
 
@@ -14,7 +11,7 @@ namespace tumble::sim {
 /// 1e-7 rad. A slot in which the motion changes its rate (a sample of the track lies inside) gets a pose per firing.
 class BlockPoses {
  public:
-  void follow(const BeamPattern& pattern, const FiringBlock& block, const Eigen::Isometry3d& T_BL, TrackCursor& track);
+  void follow(const BeamPattern& pattern, const FiringBlock& block, TrackCursor& track);
 
   /// Origins and directions of `rays` from those of a channel; everything else is left alone.
   void aim(const BeamPattern& pattern, const FiringBlock& block, const ChannelFirings& firings, int channel,
@@ -27,8 +24,8 @@ class BlockPoses {
 
   alignas(64) double pose_[kPose][kLanes], rate_[kPose][kLanes];
   int broken_count_ = 0;
-  int broken_lane_[kLanes];                                    ///< slots with a change of rate inside
-  Eigen::Matrix<double, 3, 4> broken_pose_[kLanes][kMaxChannels];
+  int broken_lane_[kLanes];  ///< slots with a change of rate inside
+  Pose34 broken_pose_[kLanes][kMaxChannels];
 };
 
 /// Rays in the axes of L.

@@ -55,7 +55,7 @@ struct SweepCaster::Workspace {
   ChannelFirings bent;
   std::array<RayPacket, kMaxBeamRays> beam;
   std::array<ChannelReturns, kMaxChannels> channel;
-  int active_count = 0;                     ///< channels with any return
+  int active_count = 0;  ///< channels with any return
   std::array<int, kMaxChannels> active;
 };
 
@@ -81,11 +81,11 @@ std::size_t SweepCaster::firings(std::int64_t sweep) const {
 void SweepCaster::cast_sweep(std::int64_t number, SweepPoints& points) const {
   const std::int64_t end = pattern_->first_slot(number + 1);
   points.make_room(firings(number));
-  TrackCursor track(motion_);
+  TrackCursor track(motion_, T_BL_);
   Workspace work;
   for (std::int64_t slot = pattern_->first_slot(number); slot < end; slot += kLanes) {
     pattern_->fire(number, slot, static_cast<int>(std::min<std::int64_t>(kLanes, end - slot)), work.block);
-    work.poses.follow(*pattern_, work.block, T_BL_, track);
+    work.poses.follow(*pattern_, work.block, track);
     cast_block(work);
     append(work, points);
   }
