@@ -103,7 +103,7 @@ TEST(LidarParameters, ResolveAndBounds) {
       EXPECT_FALSE(p.unit.empty()) << p.name;
     }
   }
-  EXPECT_EQ(spinning_lidar_parameters().size(), 33u);
+  EXPECT_EQ(spinning_lidar_parameters().size(), 38u);
 }
 
 /// The published formula of the rig's driver, written out again, for a lidar at rest.
