@@ -8,16 +8,18 @@
 
 /// Events of slip and slide: what a position method claims against the contact labels of the truth.
 ///
-/// An event is a spell of the labels slip and slide; gaps up to kBridge_ns belong to it. A true event counts when it
-/// lasts kShortest_ns and its contact speed reaches kLeastSpeed_m_s somewhere (below, nobody can tell it from grip and
-/// no way is lost). A claimed event is right when at least half of its time lies within true events, weak and short
-/// ones too, each widened by kMargin_ns. A true event is found when right claims cover at least half of its time.
-/// Whether a claim says slip or slide is not asked.
+/// An event is a spell of the labels slip and slide; gaps with up to kBridge_ns of grip in them belong to it (and with
+/// air up to kHop_ns in all: what spins out of balance hops). A true event counts when it lasts kShortest_ns and its
+/// contact speed reaches kLeastSpeed_m_s somewhere (below, nobody can tell it from grip and no way is lost). A claimed
+/// event is right when at least half of its time lies within true events, weak and short ones too, each widened by
+/// kMargin_ns. A true event is found when right claims cover at least half of its time. Whether a claim says slip or
+/// slide is not asked.
 namespace tumble::scenarios {
 
 namespace {
 
 constexpr std::int64_t kBridge_ns = 50'000'000;
+constexpr std::int64_t kHop_ns = 250'000'000;
 constexpr std::int64_t kShortest_ns = 50'000'000;
 constexpr std::int64_t kMargin_ns = 30'000'000;
 constexpr double kLeastSpeed_m_s = 0.05;
@@ -31,25 +33,35 @@ bool moves(sim::ContactLabel label) {
   return label == sim::ContactLabel::slip || label == sim::ContactLabel::slide;
 }
 
-void add_span(Span span, std::vector<Span>& spans) {
-  if (!spans.empty() && span.begin_ns - spans.back().end_ns <= kBridge_ns) {
-    spans.back().end_ns = std::max(spans.back().end_ns, span.end_ns);
-  } else {
-    spans.push_back(span);
+/// Joins the spells of slip and slide to events while it goes through the labels in time order.
+class Events {
+ public:
+  void add(sim::ContactLabel label, std::int64_t begin_ns, std::int64_t end_ns) {
+    if (label == sim::ContactLabel::grip) gripped_ns_ += end_ns - begin_ns;
+    if (!moves(label)) return;
+    const bool goes_on = !spans_.empty() && gripped_ns_ <= kBridge_ns && begin_ns - spans_.back().end_ns <= kHop_ns;
+    if (!goes_on) spans_.push_back({begin_ns, end_ns});
+    spans_.back().end_ns = end_ns;
+    gripped_ns_ = 0;
   }
-}
+  const std::vector<Span>& spans() const { return spans_; }
+
+ private:
+  std::vector<Span> spans_;
+  std::int64_t gripped_ns_ = 0;  ///< since the last spell
+};
 
 std::vector<Span> true_spans(const sim::Truth& truth) {
   if (truth.label.size() != truth.q_WB.size()) {
     throw BadInput("truth.label has " + std::to_string(truth.label.size()) + " entries, must have " +
                    std::to_string(truth.q_WB.size()));
   }
-  std::vector<Span> spans;
+  Events events;
   for (std::size_t k = 0; k < truth.label.size(); ++k) {
     const std::int64_t begin_ns = static_cast<std::int64_t>(k) * truth.period_ns;
-    if (moves(truth.label[k])) add_span({begin_ns, begin_ns + truth.period_ns}, spans);
+    events.add(truth.label[k], begin_ns, begin_ns + truth.period_ns);
   }
-  return spans;
+  return events.spans();
 }
 
 bool counts(const Span& span, const sim::Truth& truth) {
@@ -68,11 +80,11 @@ std::vector<Span> claimed_spans(const Estimate& estimate) {
     throw BadInput("the estimate has " + std::to_string(estimate.contacts.size()) + " contacts for " +
                    std::to_string(estimate.poses.size()) + " poses");
   }
-  std::vector<Span> spans;
+  Events events;
   for (std::size_t k = 0; k + 1 < estimate.contacts.size(); ++k) {
-    if (moves(estimate.contacts[k])) add_span({estimate.poses[k].time_ns, estimate.poses[k + 1].time_ns}, spans);
+    events.add(estimate.contacts[k], estimate.poses[k].time_ns, estimate.poses[k + 1].time_ns);
   }
-  return spans;
+  return events.spans();
 }
 
 std::int64_t covered_ns(const Span& span, const std::vector<Span>& by, std::int64_t margin_ns) {

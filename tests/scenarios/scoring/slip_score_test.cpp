@@ -129,6 +129,20 @@ TEST(SlipScores, AMomentOfGripDoesNotMakeTwoEvents) {
   EXPECT_EQ(values.at("slip_recall"), 1.0);
 }
 
+TEST(SlipScores, HopsBelongToTheEvent) {
+  const auto both = [](ContactLabel between) {
+    return slipping({{2.0, 2.5, 0.5}, {2.5, 2.6, 0.0, between}, {2.6, 3.0, 0.5}});
+  };
+  // the claim holds half of the whole, and less than half of either part
+  const std::vector<std::pair<double, double>> claim = {{2.26, 2.79}};
+  EXPECT_EQ(
+      scores(Kind::position, claims_within(both(ContactLabel::air), claim), both(ContactLabel::air)).at("slip_recall"),
+      1.0);
+  EXPECT_EQ(scores(Kind::position, claims_within(both(ContactLabel::grip), claim), both(ContactLabel::grip))
+                .at("slip_recall"),
+            0.0);
+}
+
 TEST(SlipScores, OnACleanRollAFalseAlarmShows) {
   const sim::Recording recording = slipping({});
   const auto quiet = scores(Kind::position, claims_within(recording, {}), recording);
