@@ -49,6 +49,18 @@ RollingFilter::Params filter_params(const sim::Sensors& sensors, const sim::Valu
   return params;
 }
 
+sim::ContactLabel contact_label(double radius_m, const ImuSample& sample, const RollingFilter::State& state) {
+  switch (state.mode) {
+    case RollingMode::grip:
+      return sim::ContactLabel::grip;
+    case RollingMode::slip:
+      return slip_or_slide(radius_m, state.q_WI, sample.angular_velocity_rad_s, state.v_WG_m_s);
+    case RollingMode::bump:
+      break;
+  }
+  return sim::ContactLabel::air;
+}
+
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   estimate.frame = Frame::centre;
@@ -67,6 +79,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
     PoseState pose = centre_pose(sensors, sample.time_ns, state->q_WI, state->p_WG_m, state->v_WG_m_s);
     pose.covariance.topLeftCorner<3, 3>() = state->position_covariance_m2;
     estimate.poses.push_back(pose);
+    estimate.contacts.push_back(contact_label(sensors.sphere_radius_m, sample, *state));
     if (state->mode == RollingMode::slip) estimate.health["samples_slip"] += 1.0;
     if (state->mode == RollingMode::bump) estimate.health["samples_bump"] += 1.0;
     if (state->at_rest) estimate.health["samples_rest"] += 1.0;
