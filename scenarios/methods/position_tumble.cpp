@@ -51,7 +51,15 @@ PoseState body_pose(TimeNs time_ns, const Eigen::Quaterniond& q_WB, const Eigen:
   return pose;
 }
 
-void count_modes(RollingMode mode, bool at_rest, Estimate& estimate) {
+sim::ContactLabel contact_label(RollingMode mode, double radius_m, const PoseState& pose, const ImuSample& sample) {
+  if (mode == RollingMode::bump) return sim::ContactLabel::air;
+  if (mode != RollingMode::slip) return sim::ContactLabel::grip;
+  return slip_or_slide(radius_m, pose.q_WA, sample.angular_velocity_rad_s, pose.v_WA_m_s);
+}
+
+/// Says what the contact does at the newest pose.
+void add_contact(RollingMode mode, bool at_rest, double radius_m, const ImuSample& sample, Estimate& estimate) {
+  estimate.contacts.push_back(contact_label(mode, radius_m, estimate.poses.back(), sample));
   if (mode == RollingMode::slip) estimate.health["samples_slip"] += 1.0;
   if (mode == RollingMode::bump) estimate.health["samples_bump"] += 1.0;
   if (mode == RollingMode::incline) estimate.health["samples_incline"] += 1.0;
@@ -84,7 +92,7 @@ Estimate run_live(const sim::Sensors& sensors, const sim::Values& parameters, co
     PoseState pose = body_pose(sample.time_ns, state->q_WI, state->p_WG_m, state->v_WG_m_s);
     pose.covariance.topLeftCorner<3, 3>() = state->position_covariance_m2;
     estimate.poses.push_back(pose);
-    count_modes(state->mode, state->at_rest, estimate);
+add_contact(state->mode, state->at_rest, sensors.sphere_radius_m, sample, estimate);
   }
   return estimate;
 }
@@ -155,11 +163,12 @@ void smooth(const RollingSmoother::Params& params, const MergedImus& imus, std::
     smoother.finish(known, *state, out);
   }
   estimate.poses.reserve(out.size());
-  for (const RollingEstimate& e : out) {
+  for (std::size_t k = 0; k < out.size(); ++k) {  // one for each sample
+    const RollingEstimate& e = out[k];
     PoseState pose = body_pose(e.time_ns, e.q_WI, e.p_WG_m, e.v_WG_m_s);
     pose.covariance = e.covariance;
     estimate.poses.push_back(pose);
-    count_modes(e.mode, e.at_rest, estimate);
+    add_contact(e.mode, e.at_rest, params.filter.radius_m, imus.samples[k], estimate);
     if (e.uncertain) estimate.health["samples_uncertain"] += 1.0;
   }
 }
