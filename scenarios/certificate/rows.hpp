@@ -70,6 +70,7 @@ std::vector<CertificateEntry> certify_lidar_range(const CertificateInput& input,
 struct LidarRaysSetup {
   int rays = 2000;             ///< a world
   double mirror_shift_m = 0.0; ///< lifts the mirror's rays
+  int surface_shift = 0;       ///< makes the mirror name other surfaces
 };
 std::vector<CertificateEntry> certify_lidar_rays(const CertificateInput& input, const LidarRaysSetup& setup = {});
 

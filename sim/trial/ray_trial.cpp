@@ -16,6 +16,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kReach_m = 1e4;
+/// Surfaces whose faces lie in one another (the end of a wall within a door's reveal) are hit both: either name is right.
+constexpr double kCoincident_m = 1e-4;
 
 /// Rays of the engine against the static part of a world.
 class EngineRays {
@@ -35,9 +37,25 @@ class EngineRays {
     return {range_m, geom};
   }
 
+  /// Range of this geom alone; negative when the ray misses it.
+  double range_to(int geom, const Vector3d& origin_m, const Vector3d& direction) const {
+    const mjModel* model = world_.model.get();
+    const int type = model->geom_type[geom];
+    if (type == mjGEOM_HFIELD) return mj_rayHfield(model, data_.get(), geom, origin_m.data(), direction.data(), nullptr);
+    if (type == mjGEOM_MESH) return mj_rayMesh(model, data_.get(), geom, origin_m.data(), direction.data(), nullptr);
+    return mju_rayGeom(data_->geom_xpos + 3 * geom, data_->geom_xmat + 9 * geom, model->geom_size + 3 * geom,
+                       origin_m.data(), direction.data(), type, nullptr);
+  }
+
  private:
   const engine::World& world_;
   engine::DataPtr data_;
+};
+
+/// A ray and where the engine says it ends.
+struct Ray {
+  Vector3d origin_m, direction;
+  EngineRays::Hit expected;
 };
 
 Vector3d as_float(const Vector3d& v) {
@@ -76,13 +94,17 @@ void set_ray(RayPacket& packet, int lane, const Vector3d& origin_m, const Vector
   packet.surface_id[lane] = kNothing;
 }
 
-void note(const engine::World& world, const EngineRays::Hit& expected, float range_m, std::int32_t surface_id,
-          RayDisagreement& out) {
+void note(const engine::World& world, const EngineRays& engine_rays, const Ray& ray, float range_m,
+          std::int32_t surface_id, RayDisagreement& out) {
   ++out.rays;
-  if (expected.range_m >= 0.0) ++out.hits;
+  const auto& [engine_range_m, geom] = ray.expected;
+  if (engine_range_m >= 0.0) ++out.hits;
   const int seen = surface_id < 0 ? -1 : world.surface_geom[static_cast<std::size_t>(surface_id)];
-  if (seen != expected.geom) ++out.other_surface;
-  else if (seen >= 0) out.largest_difference_m = std::max(out.largest_difference_m, std::abs(range_m - expected.range_m));
+  const bool both = seen >= 0 && geom >= 0;
+  const bool same = seen == geom || (both && std::abs(engine_rays.range_to(seen, ray.origin_m, ray.direction) -
+                                                      engine_range_m) < kCoincident_m);
+  if (!same) ++out.other_surface;
+  else if (both) out.largest_difference_m = std::max(out.largest_difference_m, std::abs(range_m - engine_range_m));
 }
 
 }  // namespace
@@ -96,17 +118,19 @@ RayDisagreement compare_rays(const Situation& situation, const RayTrialOptions& 
   for (int done = 0; done < options.rays; done += kLanes) {
     RayPacket packet;
     packet.count = std::min(kLanes, options.rays - done);
-    std::array<EngineRays::Hit, kLanes> expected;
+    std::array<Ray, kLanes> rays;
     for (int i = 0; i < packet.count; ++i) {
       const Vector3d origin_m = i % 2 == 0 ? origin_above_ground(engine_rays, world.half_extent_m, stream)
                                            : origin_near_start(world.start_W_m, stream);
       const Vector3d direction = random_direction(stream);
-      expected[static_cast<std::size_t>(i)] = engine_rays.cast(origin_m, direction);
+      rays[static_cast<std::size_t>(i)] = {origin_m, direction, engine_rays.cast(origin_m, direction)};
       set_ray(packet, i, origin_m + Vector3d(0, 0, options.mirror_shift_m), direction);
     }
     mirror.cast(packet);
     for (int i = 0; i < packet.count; ++i) {
-      note(world, expected[static_cast<std::size_t>(i)], packet.range[i], packet.surface_id[i], out);
+      std::int32_t surface = packet.surface_id[i];
+      if (surface >= 0) surface = (surface + options.surface_shift) % static_cast<int>(world.surface_geom.size());
+      note(world, engine_rays, rays[static_cast<std::size_t>(i)], packet.range[i], surface, out);
     }
   }
   return out;

@@ -12,7 +12,7 @@ namespace tumble::sim {
 struct RayDisagreement {
   std::int64_t rays = 0;
   std::int64_t hits = 0;             ///< of the engine's rays
-  std::int64_t other_surface = 0;    ///< the two name different surfaces, or one of them none
+  std::int64_t other_surface = 0;    ///< the mirror names a surface that is not where the engine's ray ends, or one names none
   double largest_difference_m = 0.0; ///< of the ranges, where both name the same surface
 };
 
@@ -21,6 +21,7 @@ struct RayTrialOptions {
   int rays = 2000;
   std::uint64_t seed = 1;
   double mirror_shift_m = 0.0;  ///< lifts the rays of the mirror alone: an error, for showing that it is found
+  int surface_shift = 0;        ///< added to the mirror's surface ids, round the list of surfaces: another error
 };
 
 /// Casts random rays in all directions, both ways: half of them from 0.2 to 3 m above whatever stands anywhere in the

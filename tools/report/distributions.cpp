@@ -35,7 +35,7 @@ constexpr std::array kQuantities = {
     Quantity{"motion_clipped_share", "share of the moving samples with a clipped gyro axis", "%", 100.0, "", kNone, kNone, false},
     Quantity{"motion_several_axes_share", "share of those with two axes or more clipped", "%", 100.0, "aim: 10 to 40", 10.0, 40.0, false},
     Quantity{"motion_path_m", "path", "m", 1.0, "5 to 10", 5.0, 10.0, false},
-    Quantity{"motion_peak_accel_m_s2", "largest specific force", "m/s²", 1.0, "157.8, at the rail of its accelerometer", 157.8, 157.8, false},
+    Quantity{"motion_peak_accel_m_s2", "largest specific force", "m/s²", 1.0, "up to 157.8; a part of 16 g ends at 156.9", 157.8, 157.8, false},
     Quantity{"motion_clips", "draws that clip the gyro", "%", 100.0, "aim: 90", kNone, kNone, true},
 };
 

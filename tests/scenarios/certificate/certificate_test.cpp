@@ -149,6 +149,16 @@ TEST(Rows, AMirrorLiftedByTwoMillimetresFailsTheRays) {
   EXPECT_THAT(failures(certify_lidar_rays(input(), setup)), testing::Contains("lidar_range_engine (hill)"));
 }
 
+TEST(Rows, AMirrorThatNamesOtherSurfacesFailsTheRays) {
+  LidarRaysSetup setup;
+  setup.rays = 320;
+  setup.surface_shift = 1;
+  const std::vector<std::string> failed = failures(certify_lidar_rays(input(), setup));
+  for (const char* world : {"hill", "corridor", "tube"}) {
+    EXPECT_THAT(failed, testing::Contains("lidar_surface_engine (" + std::string(world) + ")"));
+  }
+}
+
 TEST(Rows, FivePerCentMoreNoiseFailsTheImus) {
   ImuNoiseSetup setup;
   setup.noise_factor = 1.05;
