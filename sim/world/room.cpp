@@ -18,9 +18,11 @@ void add_walls(mjSpec* spec, engine::World& world, const Values& values) {
   const std::array<const char*, 4> names = {"wall_front", "wall_left", "wall_back", "wall_right"};
   for (int i = 0; i < 4; ++i) {
     const double yaw = i * std::numbers::pi / 2;
-    add_surface(spec, world, names[i], mjGEOM_BOX,
-                {(half_m + kThickness_m) * std::cos(yaw), (half_m + kThickness_m) * std::sin(yaw), half_height_m},
-                {kThickness_m, half_m, half_height_m}, yaw, {0.85f, 0.84f, 0.8f, 1.0f});
+    mjsGeom* wall =
+        add_surface(spec, world, names[i], mjGEOM_BOX,
+                    {(half_m + kThickness_m) * std::cos(yaw), (half_m + kThickness_m) * std::sin(yaw), half_height_m},
+                    {kThickness_m, half_m, half_height_m}, yaw, {0.85f, 0.84f, 0.8f, 1.0f});
+    if (i == 3 && values.at("ceiling") > 0.5) wall->group = kUnseenInPictures;  // pictures look from the right
   }
 }
 

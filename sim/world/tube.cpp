@@ -66,7 +66,9 @@ void add_shell(mjSpec* spec, engine::World& world, const Values& values, int sid
   for (int ring = 0; ring < rings; ++ring) {
     for (int step = 0; step < kSteps; ++step) {
       const int here = ring * (kSteps + 1) + step, next = here + kSteps + 1;
-      for (const int corner : {here, here + 1, next + 1, here, next + 1, next}) faces.push_back(corner);
+      // pictures show the side of a face from which its corners turn to the left: the inner one
+      const int first = side > 0 ? next : here + 1, second = side > 0 ? here + 1 : next;
+      for (const int corner : {here, first, next + 1, here, next + 1, second}) faces.push_back(corner);
     }
   }
   const std::string name = side > 0 ? "shell_left" : "shell_right";
