@@ -183,8 +183,9 @@ TEST_F(ImportBroad, TheReferenceAgreesWithTheReadings) {
   for (std::size_t k = 0; k < truth.q_WB.size(); ++k) {
     if (!truth.w_WB_B_rad_s[k].allFinite()) continue;
     errors.push_back((truth.w_WB_B_rad_s[k] - imu.gyro_rad_s[k]).norm());
-    if (imu.gyro_rad_s[k].norm() < 0.03) at_rest.push_back(truth.w_WB_B_rad_s[k].norm());
-    if (k < 285) up.push_back((truth.q_WB[k] * imu.accel_m_s2[k]).normalized().z());
+    if (imu.gyro_rad_s[k].norm() >= 0.03) continue;
+    at_rest.push_back(truth.w_WB_B_rad_s[k].norm());
+    up.push_back((truth.q_WB[k] * imu.accel_m_s2[k]).normalized().z());
   }
   ASSERT_GT(errors.size(), 40000u);
   const auto median = [](std::vector<double> values) {
@@ -199,7 +200,8 @@ TEST_F(ImportBroad, TheReferenceAgreesWithTheReadings) {
   write_recording(folder_ / "a.h5", imported.info, imported.sensors, &truth);
   const sim::Truth back = read_truth(folder_ / "a.h5");
   ASSERT_EQ(back.q_WB.size(), truth.q_WB.size());
-  EXPECT_EQ(back.v_WB_m_s[100], truth.v_WB_m_s[100]);
+  EXPECT_EQ(back.p_WB_m.back(), truth.p_WB_m.back());
+  EXPECT_EQ(back.q_WB.front().coeffs().hasNaN(), truth.q_WB.front().coeffs().hasNaN());
 }
 
 TEST_F(ImportBroad, OtherFilesAreRefused) {
