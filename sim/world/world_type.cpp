@@ -8,7 +8,7 @@
 namespace tumble::sim {
 
 std::span<const WorldType* const> all_world_types() {
-  static const std::array<const WorldType*, 2> kTypes = {&hill_world(), &floor_world()};
+  static const std::array kTypes = {&hill_world(), &stairs_world(), &cliff_world(), &floor_world()};
   return kTypes;
 }
 
