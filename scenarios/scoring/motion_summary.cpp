@@ -83,7 +83,7 @@ MotionSummary summarise_motion(const sim::Sensors& sensors, const sim::Truth& tr
   out.flight_share = static_cast<double>(air) / static_cast<double>(steps);
   const sim::ImuRecord& primary = sensors.imus.front();
   for (std::size_t i = 0; i < clipping.size(); ++i) {
-    const auto k = static_cast<std::size_t>(static_cast<std::int64_t>(i + 1) * primary.period_ns / truth.period_ns);
+    const auto k = static_cast<std::size_t>(std::max<std::int64_t>(0, primary.time_ns[i]) / truth.period_ns);
     if (k < span.first || k > span.last) continue;
     const int axes = std::popcount(clipping.clipped_axes(i));
     ++out.samples;

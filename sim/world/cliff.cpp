@@ -9,12 +9,13 @@ namespace tumble::sim {
 
 namespace {
 
-constexpr auto kParameters = hillside::with_cover(std::array{
+constexpr std::array kOwnParameters = {
     Parameter{"drop_count", 2, 1, 6, "1", "drops, one below the other"},
     Parameter{"drop_height_m", 1.2, 0.2, 5.0, "m", "height of each drop; its face is 0.1 m deep, so nearly upright"},
     Parameter{"ledge_length_m", 2.0, 0.3, 8.0, "m", "level length of the ledge below each drop"},
     Parameter{"ledge_slope_rad", 0.35, 0.0, 1.0, "rad", "fall of a ledge along +x"},
-});
+};
+constexpr std::array kParameters = joined(kOwnParameters, hillside::kCoverParameters);
 
 void build(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World& world) {
   const LedgeProfile profile{hillside::kEdge_m,

@@ -9,10 +9,11 @@ namespace tumble::sim {
 
 namespace {
 
-constexpr auto kParameters = hillside::with_cover(std::array{
+constexpr std::array kOwnParameters = {
     Parameter{"slope_rad", 0.6, 0.05, 1.2, "rad", "steepness of the slope between top and run-out"},
     Parameter{"drop_m", 4.0, 0.2, 12.0, "m", "height of the slope: gentler ones are longer"},
-});
+};
+constexpr std::array kParameters = joined(kOwnParameters, hillside::kCoverParameters);
 
 void build(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World& world) {
   const SlopeProfile profile{hillside::kEdge_m, values.at("slope_rad"), values.at("drop_m")};

@@ -36,15 +36,6 @@ inline constexpr std::array kCoverParameters = {
     Parameter{"buildings", 1, 0, 1, "1", "1: a building below and a wall beside the slope, out of reach"},
 };
 
-/// `own` followed by kCoverParameters.
-template <std::size_t N>
-constexpr auto with_cover(const std::array<Parameter, N>& own) {
-  std::array<Parameter, N + kCoverParameters.size()> all{};
-  for (std::size_t i = 0; i < N; ++i) all[i] = own[i];
-  for (std::size_t i = 0; i < kCoverParameters.size(); ++i) all[N + i] = kCoverParameters[i];
-  return all;
-}
-
 /// Share of the relief that is in force at a place, within [0, 1].
 using Share = std::function<double(double x_m, double y_m)>;
 
