@@ -83,9 +83,10 @@ int run(int count, char** words) {
       spread.cpu_s.push_back(scenarios::process_cpu_s() - start_s);
       const MotionSummary m = scenarios::summarise_motion(recording.sensors, recording.truth);
       spread.draws.push_back(m);
-      std::printf("%llu  %5.2f rad/s  %4zu clipped  %4zu several  %6.1f m/s^2  %5.2f m  %4.1f s  flight %.2f\n",
-                  static_cast<unsigned long long>(seed), m.peak_rate_rad_s, m.clipped_samples, m.several_axes_samples,
-                  m.peak_accel_m_s2, m.path_m, m.moving_s, m.flight_share);
+      std::printf("%llu  %5.2f rad/s  %4zu clipped (%3zu %3zu %3zu)  %4zu several  %6.1f m/s^2  %5.2f m  %4.1f s  flight %.2f\n",
+                  static_cast<unsigned long long>(seed), m.peak_rate_rad_s, m.clipped_samples,
+                  m.axis_clipped_samples[0], m.axis_clipped_samples[1], m.axis_clipped_samples[2],
+                  m.several_axes_samples, m.peak_accel_m_s2, m.path_m, m.moving_s, m.flight_share);
     } catch (const sim::SimulationFailure& failure) {
       ++spread.rejected;
       std::printf("%llu  rejected: %s\n", static_cast<unsigned long long>(seed), failure.what());
