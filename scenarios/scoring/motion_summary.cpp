@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdint>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/scoring/clipping.hpp"
@@ -83,11 +84,13 @@ MotionSummary summarise_motion(const sim::Sensors& sensors, const sim::Truth& tr
   out.flight_share = static_cast<double>(air) / static_cast<double>(steps);
   const sim::ImuRecord& primary = sensors.imus.front();
   for (std::size_t i = 0; i < clipping.size(); ++i) {
-    const auto k = static_cast<std::size_t>(static_cast<std::int64_t>(i + 1) * primary.period_ns / truth.period_ns);
+    const auto k = static_cast<std::size_t>(std::max<std::int64_t>(0, primary.time_ns[i]) / truth.period_ns);
     if (k < span.first || k > span.last) continue;
-    const int axes = std::popcount(clipping.clipped_axes(i));
+    const std::uint8_t clipped = clipping.clipped_axes(i);
+    const int axes = std::popcount(clipped);
     ++out.samples;
     if (axes >= 1) ++out.clipped_samples;
+    for (std::size_t j = 0; j < 3; ++j) out.axis_clipped_samples[j] += (clipped >> j) & 1u;
     if (axes >= 2) ++out.several_axes_samples;
     if (accel_clipped(primary, truth.imus.front(), i)) ++out.accel_clipped_samples;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstddef>
 
 #include "sim/recording.hpp"
@@ -18,6 +19,7 @@ struct MotionSummary {
   std::size_t impacts = 0;           ///< onsets above 20 m/s^2 at the centre of mass after 20 ms below it
   std::size_t samples = 0;           ///< of the primary IMU while moving
   std::size_t clipped_samples = 0;   ///< of those with at least one gyro axis clipped (ClippingTruth)
+  std::array<std::size_t, 3> axis_clipped_samples = {};  ///< per axis x, y, z
   std::size_t several_axes_samples = 0;  ///< with two axes or more
   std::size_t accel_clipped_samples = 0;  ///< with a clipped accelerometer axis, by the same tolerance of its own noise
 };
