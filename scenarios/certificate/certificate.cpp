@@ -57,14 +57,16 @@ std::vector<const CertificateRow*> select(const std::vector<std::string>& names)
 std::span<const CertificateRow> certificate_rows() {
   static const std::array kRows = {
       CertificateRow{"free_flight", "energy and angular momentum of a free flight", as_certified<certify_free_flight>},
-      CertificateRow{"flight_force", "specific force at the centre of mass in flight", as_certified<certify_flight_force>},
+      CertificateRow{"flight_force", "specific force at the centre of mass in flight",
+                     as_certified<certify_flight_force>},
       CertificateRow{"free_fall", "time of a free fall", as_certified<certify_free_fall>},
       CertificateRow{"rolling", "rolling law on the plane and on each ground", as_certified<certify_rolling>},
       CertificateRow{"slip_to_grip", "time from slip to grip", as_certified<certify_slip_to_grip>},
       CertificateRow{"impact", "sensitivity of impact peaks to step and softness", as_certified<certify_impact>},
       CertificateRow{"lidar_range", "range error against analytic surfaces", as_certified<certify_lidar_range>},
       CertificateRow{"lidar_rays", "range error against mj_ray", as_certified<certify_lidar_rays>},
-      CertificateRow{"imu_noise", "noise of the IMUs at rest against their data sheets", as_certified<certify_imu_noise>},
+      CertificateRow{"imu_noise", "noise of the IMUs at rest against their data sheets",
+                     as_certified<certify_imu_noise>},
       CertificateRow{"digests", "equal digests for threads, order and restart", as_certified<certify_digests>},
   };
   return kRows;

@@ -20,8 +20,8 @@ struct CertificateEntry {
   std::string unit;     ///< "1" when dimensionless
   double value = 0.0;
   double low = 0.0;
-  double high = 0.0;    ///< both bounds belong to the accepted values
-  std::string note;     ///< why there is no value; empty otherwise
+  double high = 0.0;                                             ///< both bounds belong to the accepted values
+  std::string note;                                              ///< why there is no value; empty otherwise
   bool passes() const { return value >= low && value <= high; }  ///< NaN does not
   bool operator==(const CertificateEntry&) const = default;
 };
@@ -40,8 +40,8 @@ struct CertificateInput {
   std::filesystem::path program;  ///< the program `tumble`, started anew for the digest after a restart
 };
 
-/// A row of the certificate, self-describing; one file and one line of registration each. `measure` with the set-up that
-/// the certificate has; rows.hpp has the same with a set-up of the caller's.
+/// A row of the certificate, self-describing; one file and one line of registration each. `measure` with the set-up
+/// that the certificate has; rows.hpp has the same with a set-up of the caller's.
 struct CertificateRow {
   std::string name;
   std::string doc;

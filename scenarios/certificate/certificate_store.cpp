@@ -63,8 +63,10 @@ void CertificateStore::keep(const Certificate& certificate) const {
     out << to_json(certificate);
     whole = out.flush().good();
   }
-  if (whole) std::filesystem::rename(part, file_, ignored);
-  else std::filesystem::remove(part, ignored);
+  if (whole)
+    std::filesystem::rename(part, file_, ignored);
+  else
+    std::filesystem::remove(part, ignored);
 }
 
 Certificate certify_results(Results& results, const CertificateStore& store, const CertificateInput& input,

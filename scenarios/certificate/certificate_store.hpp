@@ -10,8 +10,8 @@ namespace tumble::scenarios {
 
 class Results;
 
-/// Certificates kept in a folder, one file per build, data and machine (model of the processor), so that each is measured
-/// once. Trouble with the folder is no error: nothing is kept then.
+/// Certificates kept in a folder, one file per build, data and machine (model of the processor), so that each is
+/// measured once. Trouble with the folder is no error: nothing is kept then.
 class CertificateStore {
  public:
   /// An empty path keeps nothing.

@@ -19,8 +19,9 @@ std::vector<CertificateEntry> certify_free_fall(const CertificateInput& input, c
     if (!trial.contacts().empty()) touched_s = trial.state().time_s;
   }
   // the first step that ends in contact ends within one step after the touch; rounding may put it at the touch itself
-  return {{"free_fall_time", "sphere", "a drop of h takes sqrt(2 h / g): first contact less that, in steps of the engine",
-           "1", (touched_s - expected_s) / trial.step_s(), -0.01, 1.01, ""}};
+  return {{"free_fall_time", "sphere",
+           "a drop of h takes sqrt(2 h / g): first contact less that, in steps of the engine", "1",
+           (touched_s - expected_s) / trial.step_s(), -0.01, 1.01, ""}};
 }
 
 }  // namespace tumble::scenarios

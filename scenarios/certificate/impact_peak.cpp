@@ -70,10 +70,11 @@ std::vector<CertificateEntry> certify_impact(const CertificateInput& input, cons
     exponent += std::log(soft / hard) / std::log(setup.soft_s / setup.hard_s) / attitudes().size();
   }
   return {{"impact_peak_step", "rig",
-           "the first impact's peak does not depend on the engine's step: largest relative change at a quarter of it", "1",
-           step_change, 0.0, 0.05, ""},
+           "the first impact's peak does not depend on the engine's step: largest relative change at a quarter of it",
+           "1", step_change, 0.0, 0.05, ""},
           {"impact_peak_softness", "rig",
-           "the peak goes with the time constant of the contact to the power -1, as a spring's: exponent, mean of four landings",
+           "the peak goes with the time constant of the contact to the power -1, as a spring's: exponent, mean of four "
+           "landings",
            "1", exponent, -1.3, -0.7, ""}};
 }
 

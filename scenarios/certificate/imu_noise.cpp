@@ -20,16 +20,17 @@ struct Readings {
   std::vector<Eigen::Vector3d> gyro, accel;
 };
 
-/// The device with its noise and bias alone: filters need a faster rate than this one, and the rest is constant at rest.
+/// The device with its noise and bias alone: filters need a faster rate than this one, and the rest is constant at
+/// rest.
 sim::SensorSpec resting(const DataSheet& sheet) {
   sim::SensorSpec sensor;
   sensor.name = sheet.device;
   sensor.kind = sheet.sensor_kind;
   sensor.device = sheet.device;
   sensor.values = sim::resolve(sheet.device, sheet.values(), sim::imu_parameters());
-  for (const char* off : {"gyro_bandwidth_hz", "accel_bandwidth_hz", "digital_bandwidth_hz", "gyro_quantum_rad_s",
-                          "accel_quantum_m_s2", "gyro_precise_quantum_rad_s", "accel_precise_quantum_m_s2",
-                          "magnetometer", "time_jitter_s", "dropout_share"}) {
+  for (const char* off :
+       {"gyro_bandwidth_hz", "accel_bandwidth_hz", "digital_bandwidth_hz", "gyro_quantum_rad_s", "accel_quantum_m_s2",
+        "gyro_precise_quantum_rad_s", "accel_precise_quantum_m_s2", "magnetometer", "time_jitter_s", "dropout_share"}) {
     sensor.values.set(off, 0.0);
   }
   sensor.values.set("output_rate_hz", kRate_hz);
@@ -88,8 +89,14 @@ CertificateEntry entry(const std::string& row, const std::string& subject, const
                        const sim::AllanPoint& measured, double stated, sim::AllanNoise noise) {
   constexpr double kSigmas = 4.0;  // of some twenty figures none fails by chance
   const sim::AllanInterval interval = sim::confidence_interval(measured, noise, kSigmas);
-  return {row, subject, law, "1", measured.deviation / stated, measured.deviation / interval.high,
-          measured.deviation / interval.low, ""};
+  return {row,
+          subject,
+          law,
+          "1",
+          measured.deviation / stated,
+          measured.deviation / interval.high,
+          measured.deviation / interval.low,
+          ""};
 }
 
 std::vector<CertificateEntry> entries_of(const std::string& subject, const Stated& stated,
@@ -101,9 +108,8 @@ std::vector<CertificateEntry> entries_of(const std::string& subject, const State
   std::vector<CertificateEntry> entries = {
       entry("imu_white_noise", subject, "Allan deviation at 0.1 s of rest over that of the data sheet", white,
             stated.all(white.tau_s), sim::AllanNoise::white),
-      entry("imu_bias_instability", subject,
-            "the same where the bias is flat, a tenth of its correlation time", floor, stated.all(floor.tau_s),
-            sim::AllanNoise::flicker)};
+      entry("imu_bias_instability", subject, "the same where the bias is flat, a tenth of its correlation time", floor,
+            stated.all(floor.tau_s), sim::AllanNoise::flicker)};
   if (stated.bias.walk_sqrt_s > 0.0) {
     const sim::AllanPoint& long_walk = sim::nearest_point(walk, 10.0);
     entries.push_back(entry("imu_bias_walk", subject, "the same of the bias's random walk alone, at 10 s", long_walk,

@@ -46,8 +46,14 @@ CertificateEntry entry(const CertificateInput& input, const RollingSetup& setup,
   const sim::Recording recording = sim::simulate(situation, {input.data.models(), 1});
   const double own_m = recording.sensors.sphere_radius_m;
   const Ways ways = compare(recording.truth, setup.stated_radius_m > 0.0 ? setup.stated_radius_m : own_m);
-  return {"rolling_law", subject, "while the sphere grips its centre moves at r w x n: share of its way by which it does not",
-          "1", ways.missed_m / ways.way_m, 0.0, high, ways.way_m > 0.0 ? "" : "the sphere never rolled"};
+  return {"rolling_law",
+          subject,
+          "while the sphere grips its centre moves at r w x n: share of its way by which it does not",
+          "1",
+          ways.missed_m / ways.way_m,
+          0.0,
+          high,
+          ways.way_m > 0.0 ? "" : "the sphere never rolled"};
 }
 
 }  // namespace
@@ -61,7 +67,8 @@ std::vector<CertificateEntry> certify_rolling(const CertificateInput& input, con
   plane.robot.values.set("inner_z_m", -0.01);
   std::vector<CertificateEntry> entries = {entry(input, setup, plane, "plane", 1e-3)};
   if (!setup.terrains) return entries;
-  // the edge of a patch or of an obstacle is crossed within the 10 ms of a label, and the label itself lets 0.02 m/s pass
+  // the edge of a patch or of an obstacle is crossed within the 10 ms of a label, and the label itself lets 0.02 m/s
+  // pass
   constexpr double kTerrainHigh = 0.01;
   for (const std::string& name : scenario_names(input.data)) {
     const Scenario scenario = load_scenario(input.data, name);

@@ -50,11 +50,12 @@ struct SlipToGripSetup {
 };
 std::vector<CertificateEntry> certify_slip_to_grip(const CertificateInput& input, const SlipToGripSetup& setup = {});
 
-/// First peak of specific force of the rig dropped on its corners, mean over 2 ms: how it changes with the engine's step
-/// (against a quarter of it) and with the softness of the contact (exponent; a spring has -1 in its time constant).
+/// First peak of specific force of the rig dropped on its corners, mean over 2 ms: how it changes with the engine's
+/// step (against a quarter of it) and with the softness of the contact (exponent; a spring has -1 in its time
+/// constant).
 struct ImpactSetup {
   double height_m = 1.0;
-  double step_s = 0.0;  ///< 0: the simulation's own
+  double step_s = 0.0;                  ///< 0: the simulation's own
   double soft_s = 0.05, hard_s = 0.03;  ///< time constants of contact: the range that scenarios draw from
 };
 std::vector<CertificateEntry> certify_impact(const CertificateInput& input, const ImpactSetup& setup = {});
@@ -68,9 +69,9 @@ std::vector<CertificateEntry> certify_lidar_range(const CertificateInput& input,
 
 /// The lidar's mirror of each world against the engine's own rays.
 struct LidarRaysSetup {
-  int rays = 2000;             ///< a world
-  double mirror_shift_m = 0.0; ///< lifts the mirror's rays
-  int surface_shift = 0;       ///< makes the mirror name other surfaces
+  int rays = 2000;              ///< a world
+  double mirror_shift_m = 0.0;  ///< lifts the mirror's rays
+  int surface_shift = 0;        ///< makes the mirror name other surfaces
 };
 std::vector<CertificateEntry> certify_lidar_rays(const CertificateInput& input, const LidarRaysSetup& setup = {});
 

@@ -11,8 +11,8 @@ namespace tumble::scenarios {
 /// A robot ("rig" or "sphere") in a room with nothing in it but floor and walls; no sensors.
 sim::Situation bare_room(const std::string& robot);
 
-/// Thrown up high above the room, so that it stays in the air for seconds, and spun at `rate_rad_s` near the axis of the
-/// rig's middle moment of inertia.
+/// Thrown up high above the room, so that it stays in the air for seconds, and spun at `rate_rad_s` near the axis of
+/// the rig's middle moment of inertia.
 sim::BodyState thrown(double rate_rad_s);
 
 /// The states of a free flight as the truth of a recording (body alone, no contacts).

@@ -34,9 +34,9 @@ std::vector<CertificateEntry> certify_slip_to_grip(const CertificateInput& input
   // soft contact lets the last half per cent of slip die out slowly: the law is taken to where that much is left
   constexpr double kLeftOver = 0.005;
   const double mass_kg = trial.mass_kg(), inertia_kg_m2 = trial.inertia_B_kg_m2()(1, 1);
-  const double expected_s = (1.0 - kLeftOver) * setup.speed_m_s /
-                            (setup.stated_friction * trial.gravity_m_s2() *
-                             (1.0 + mass_kg * radius_m * radius_m / inertia_kg_m2));
+  const double expected_s =
+      (1.0 - kLeftOver) * setup.speed_m_s /
+      (setup.stated_friction * trial.gravity_m_s2() * (1.0 + mass_kg * radius_m * radius_m / inertia_kg_m2));
   double before_m_s = setup.speed_m_s, gripped_s = std::numeric_limits<double>::quiet_NaN();
   while (std::isnan(gripped_s) && trial.state().time_s < 5.0 * expected_s) {
     trial.step();

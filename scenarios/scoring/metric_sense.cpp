@@ -5,7 +5,9 @@ namespace tumble::scenarios {
 
 namespace {
 
-bool contains(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
+bool contains(const std::string& text, const char* part) {
+  return text.find(part) != std::string::npos;
+}
 
 }  // namespace
 
@@ -20,14 +22,20 @@ Sense metric_sense(const std::string& metric) {
   return Sense::less;
 }
 
-bool is_verdict(const std::string& metric) { return metric == "map_failed"; }
+bool is_verdict(const std::string& metric) {
+  return metric == "map_failed";
+}
 
 std::vector<std::string> headline_metrics(Kind kind) {
   switch (kind) {
-    case Kind::rate: return {"rate_error_clipped_median_rad_s", "rate_error_clipped_p99_rad_s"};
-    case Kind::attitude: return {"inclination_rmse_rad"};
-    case Kind::position: return {"position_end_error_share"};
-    case Kind::slam: return {"translation_error_end_m", "rotation_error_end_rad", "map_overlap"};
+    case Kind::rate:
+      return {"rate_error_clipped_median_rad_s", "rate_error_clipped_p99_rad_s"};
+    case Kind::attitude:
+      return {"inclination_rmse_rad"};
+    case Kind::position:
+      return {"position_end_error_share"};
+    case Kind::slam:
+      return {"translation_error_end_m", "rotation_error_end_rad", "map_overlap"};
   }
   return {};
 }

@@ -58,9 +58,15 @@ GateResult hold(const Draws& draws, const GateBound& bound) {
   const Selection selection = draws.select(bound);
   GateResult result{bound, std::nan(""), selection.values.size()};
   switch (bound.statistic) {
-    case Statistic::median: result.value = quantile(selection.values, 0.5); break;
-    case Statistic::quantile_05: result.value = quantile(selection.values, 0.05); break;
-    case Statistic::quantile_95: result.value = quantile(selection.values, 0.95); break;
+    case Statistic::median:
+      result.value = quantile(selection.values, 0.5);
+      break;
+    case Statistic::quantile_05:
+      result.value = quantile(selection.values, 0.05);
+      break;
+    case Statistic::quantile_95:
+      result.value = quantile(selection.values, 0.95);
+      break;
     case Statistic::share_not_ok:
       result.draws = selection.outcomes;
       if (selection.outcomes > 0) {
@@ -80,15 +86,20 @@ std::string place_of(const GateBound& bound) {
 
 const char* to_string(Statistic statistic) {
   switch (statistic) {
-    case Statistic::median: return "median";
-    case Statistic::quantile_05: return "quantile_05";
-    case Statistic::quantile_95: return "quantile_95";
-    case Statistic::share_not_ok: return "share_not_ok";
+    case Statistic::median:
+      return "median";
+    case Statistic::quantile_05:
+      return "quantile_05";
+    case Statistic::quantile_95:
+      return "quantile_95";
+    case Statistic::share_not_ok:
+      return "share_not_ok";
   }
   return "";
 }
 
-std::vector<GateResult> hold_to_gate(const Results& results, const Gate& gate, std::uint64_t first, std::uint64_t last) {
+std::vector<GateResult> hold_to_gate(const Results& results, const Gate& gate, std::uint64_t first,
+                                     std::uint64_t last) {
   const Draws draws(results, first, last);
   std::vector<GateResult> held;
   for (const GateBound& bound : gate.bounds) held.push_back(hold(draws, bound));
@@ -126,7 +137,8 @@ Gate proposed_gate(const Results& results, const std::string& suite) {
   std::set<std::pair<std::string, Kind>> seen;
   for (const Outcome& outcome : results.outcomes()) {
     if (outcome.method != "tumble" || !seen.insert({outcome.scenario, outcome.kind}).second) continue;
-    GateBound bound{outcome.scenario, outcome.kind, outcome.method, Statistic::share_not_ok, "", 0.0, -kInfinity, kInfinity};
+    GateBound bound{outcome.scenario, outcome.kind, outcome.method, Statistic::share_not_ok, "", 0.0,
+                    -kInfinity,       kInfinity};
     gate.bounds.push_back(bound);
     for (const std::string& metric : headline_metrics(outcome.kind)) {
       bound.metric = metric;

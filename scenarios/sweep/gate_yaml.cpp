@@ -44,7 +44,8 @@ void check_names(const YamlNode& node, const GateBound& bound) {
     if (metric.kind == bound.kind) known.push_back(metric.name);
   }
   if (std::find(known.begin(), known.end(), bound.metric) == known.end()) {
-    node.fail("unknown metric '" + bound.metric + "' of kind " + to_string(bound.kind) + suggestion(bound.metric, known));
+    node.fail("unknown metric '" + bound.metric + "' of kind " + to_string(bound.kind) +
+              suggestion(bound.metric, known));
   }
 }
 
@@ -79,10 +80,11 @@ std::vector<std::string> gate_names(const DataRoot& data) {
 }
 
 Gate load_gate(const DataRoot& data, const std::string& name) {
-  const std::filesystem::path path = name.ends_with(".yaml") ? std::filesystem::path(name) : data.gates() / (name + ".yaml");
+  const std::filesystem::path path =
+      name.ends_with(".yaml") ? std::filesystem::path(name) : data.gates() / (name + ".yaml");
   if (!std::filesystem::exists(path)) {
-    throw BadInput("no accepted bounds of '" + name + "'" + suggestion(name, gate_names(data)) +
-                   "; 'tumble gate " + name + " --accept' makes them");
+    throw BadInput("no accepted bounds of '" + name + "'" + suggestion(name, gate_names(data)) + "; 'tumble gate " +
+                   name + " --accept' makes them");
   }
   const YamlNode root = YamlNode::parse(read_text_file(path), path.string());
   const std::array<std::string, 3> required = {"suite", "margin", "bounds"};
@@ -96,8 +98,10 @@ Gate load_gate(const DataRoot& data, const std::string& name) {
 }
 
 std::string to_yaml(const Gate& gate) {
-  std::string text = "# SPDX-License-Identifier: BSD-3-Clause\n"
-                     "# Written by 'tumble gate " + gate.suite + " --accept': what a run reached, and how far a later one may fall behind.\n";
+  std::string text =
+      "# SPDX-License-Identifier: BSD-3-Clause\n"
+      "# Written by 'tumble gate " +
+      gate.suite + " --accept': what a run reached, and how far a later one may fall behind.\n";
   text += "suite: " + gate.suite + "\nmargin: " + number_text(gate.margin) + "\nbounds:\n";
   for (const GateBound& bound : gate.bounds) {
     text += "  - {scenario: " + bound.scenario + ", kind: " + to_string(bound.kind) + ", method: " + bound.method;

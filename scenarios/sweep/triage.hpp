@@ -25,8 +25,8 @@ std::span<const TrueInput> true_inputs();
 /// What makes an outcome a failure: a status that is not ok, a map off the surface (`map_failed`), or a metric beyond a
 /// limit.
 struct Failure {
-  std::string metric;   ///< empty: status and map_failed alone
-  double limit = 0.0;   ///< above it, or below it where more is better (metric_sense)
+  std::string metric;  ///< empty: status and map_failed alone
+  double limit = 0.0;  ///< above it, or below it where more is better (metric_sense)
   bool holds(const Outcome& outcome) const;
 };
 
@@ -43,10 +43,10 @@ struct TriageOptions {
   std::function<void(const std::string& input)> on_run;
 };
 
-/// Runs a method on a draw as it is, then with one input after the other replaced by its truth, each in a process of its
-/// own, all scored against the same truth and the sensors as they were. The first row is the draw as it is. The method
-/// itself is untouched: what an input's truth cannot cure lies in the method or in the scenario. Throws what simulate_draw
-/// throws; BadInput when the method does not apply to the robot.
+/// Runs a method on a draw as it is, then with one input after the other replaced by its truth, each in a process of
+/// its own, all scored against the same truth and the sensors as they were. The first row is the draw as it is. The
+/// method itself is untouched: what an input's truth cannot cure lies in the method or in the scenario. Throws what
+/// simulate_draw throws; BadInput when the method does not apply to the robot.
 std::vector<TriageRow> triage(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
                               const TriageOptions& options);
 

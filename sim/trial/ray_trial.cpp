@@ -16,7 +16,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kReach_m = 1e4;
-/// Surfaces whose faces lie in one another (the end of a wall within a door's reveal) are hit both: either name is right.
+/// Surfaces whose faces lie in one another (the end of a wall within a door's reveal) are hit both: either name is
+/// right.
 constexpr double kCoincident_m = 1e-4;
 
 /// Rays of the engine against the static part of a world.
@@ -41,7 +42,8 @@ class EngineRays {
   double range_to(int geom, const Vector3d& origin_m, const Vector3d& direction) const {
     const mjModel* model = world_.model.get();
     const int type = model->geom_type[geom];
-    if (type == mjGEOM_HFIELD) return mj_rayHfield(model, data_.get(), geom, origin_m.data(), direction.data(), nullptr);
+    if (type == mjGEOM_HFIELD)
+      return mj_rayHfield(model, data_.get(), geom, origin_m.data(), direction.data(), nullptr);
     if (type == mjGEOM_MESH) return mj_rayMesh(model, data_.get(), geom, origin_m.data(), direction.data(), nullptr);
     return mju_rayGeom(data_->geom_xpos + 3 * geom, data_->geom_xmat + 9 * geom, model->geom_size + 3 * geom,
                        origin_m.data(), direction.data(), type, nullptr);
@@ -101,10 +103,13 @@ void note(const engine::World& world, const EngineRays& engine_rays, const Ray& 
   if (engine_range_m >= 0.0) ++out.hits;
   const int seen = surface_id < 0 ? -1 : world.surface_geom[static_cast<std::size_t>(surface_id)];
   const bool both = seen >= 0 && geom >= 0;
-  const bool same = seen == geom || (both && std::abs(engine_rays.range_to(seen, ray.origin_m, ray.direction) -
-                                                      engine_range_m) < kCoincident_m);
-  if (!same) ++out.other_surface;
-  else if (both) out.largest_difference_m = std::max(out.largest_difference_m, std::abs(range_m - engine_range_m));
+  const bool same =
+      seen == geom ||
+      (both && std::abs(engine_rays.range_to(seen, ray.origin_m, ray.direction) - engine_range_m) < kCoincident_m);
+  if (!same)
+    ++out.other_surface;
+  else if (both)
+    out.largest_difference_m = std::max(out.largest_difference_m, std::abs(range_m - engine_range_m));
 }
 
 }  // namespace

@@ -11,9 +11,10 @@ namespace tumble::sim {
 /// The lidar's mirror of a world beside the engine's own rays (mj_ray), ray by ray.
 struct RayDisagreement {
   std::int64_t rays = 0;
-  std::int64_t hits = 0;             ///< of the engine's rays
-  std::int64_t other_surface = 0;    ///< the mirror names a surface that is not where the engine's ray ends, or one names none
-  double largest_difference_m = 0.0; ///< of the ranges, where both name the same surface
+  std::int64_t hits = 0;  ///< of the engine's rays
+  std::int64_t other_surface =
+      0;  ///< the mirror names a surface that is not where the engine's ray ends, or one names none
+  double largest_difference_m = 0.0;  ///< of the ranges, where both name the same surface
 };
 
 struct RayTrialOptions {

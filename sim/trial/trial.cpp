@@ -11,9 +11,12 @@ namespace {
 
 int engine_integrator(Integrator integrator) {
   switch (integrator) {
-    case Integrator::runge_kutta_4: return mjINT_RK4;
-    case Integrator::euler: return mjINT_EULER;
-    case Integrator::implicit: return mjINT_IMPLICIT;
+    case Integrator::runge_kutta_4:
+      return mjINT_RK4;
+    case Integrator::euler:
+      return mjINT_EULER;
+    case Integrator::implicit:
+      return mjINT_IMPLICIT;
   }
   throw InvalidSituation("trial: unknown integrator");
 }

@@ -35,16 +35,18 @@ TEST(Exchange, EveryFormatLeavesItsFiles) {
 TEST(Exchange, WhatIsExportedAsCsvComesBack) {
   const fs::path folder = test_folder();
   const std::string recording = (shared_run("roll") / "recording.h5").string();
-  ASSERT_EQ(run_program({"export", recording, "--format", "csv", "-o", (folder / "csv").string(), "--quiet"}).status, 0);
+  ASSERT_EQ(run_program({"export", recording, "--format", "csv", "-o", (folder / "csv").string(), "--quiet"}).status,
+            0);
   const std::string back = (folder / "back.h5").string();
-  const Ended imported = run_program({"import", (folder / "csv" / "imu.csv").string(), "--device", "phidget1044", "--robot", "sphere",
-                                      "--lever-arm", "0.01", "0", "-0.02", "-o", back, "--json"});
+  const Ended imported = run_program({"import", (folder / "csv" / "imu.csv").string(), "--device", "phidget1044",
+                                      "--robot", "sphere", "--lever-arm", "0.01", "0", "-0.02", "-o", back, "--json"});
   ASSERT_EQ(imported.status, 0) << imported.err;
   const json said = json_of(imported);
   EXPECT_EQ(said["period_ns"], 4000000);
   EXPECT_GT(said["samples"].get<int>(), 3000);
   // it is a recording like any other, without truth
-  const Ended estimate = run_program({"estimate", back, "--method", "attitude/madgwick", "-o", (folder / "estimate").string()});
+  const Ended estimate =
+      run_program({"estimate", back, "--method", "attitude/madgwick", "-o", (folder / "estimate").string()});
   EXPECT_EQ(estimate.status, 0) << estimate.err;
   const Ended export_truth = run_program({"export", back, "--format", "tum", "-o", (folder / "t").string()});
   EXPECT_EQ(export_truth.status, 2);
@@ -61,8 +63,8 @@ TEST(Exchange, ATrialOfBroadIsRead) {
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(json_of(ended)["attribution"].get<std::string>(), HasSubstr("BROAD"));
   EXPECT_EQ(json_of(ended)["has_reference"], true);
-  // its reference is a truth to score attitudes against; published for vqf on this trial: 1.02 degrees while the trial's
-  // own flag says moving, which is not quite where the reference moves
+  // its reference is a truth to score attitudes against; published for vqf on this trial: 1.02 degrees while the
+  // trial's own flag says moving, which is not quite where the reference moves
   const Ended estimated = run_program({"estimate", recording, "--method", "attitude/vqf", "-o", estimate});
   ASSERT_EQ(estimated.status, 0) << estimated.err;
   const json scored = json_of(run_program({"score", estimate, recording, "--json"}));
@@ -84,11 +86,13 @@ TEST(Exchange, TheLogOfARealSphereIsRead) {
   EXPECT_EQ(wrong.status, 2);
   EXPECT_EQ(line_count(wrong.err), 1u) << wrong.err;
   EXPECT_THAT(wrong.err, HasSubstr("is the file in g?"));
-  const Ended ended = run_program({"import", log.string(), "--accel-unit", "g", "--robot", "sphere", "--radius", "0.145", "-o", recording, "--json"});
+  const Ended ended = run_program({"import", log.string(), "--accel-unit", "g", "--robot", "sphere", "--radius",
+                                   "0.145", "-o", recording, "--json"});
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(json_of(ended)["samples"], 7294);
   EXPECT_EQ(json_of(ended)["has_reference"], false);
-  const Ended rolled = run_program({"estimate", recording, "--method", "position/rolling", "-o", (folder / "e").string()});
+  const Ended rolled =
+      run_program({"estimate", recording, "--method", "position/rolling", "-o", (folder / "e").string()});
   EXPECT_EQ(rolled.status, 0) << rolled.err;
 }
 

@@ -16,20 +16,24 @@ using ::testing::HasSubstr;
 
 /// A suite of two draws.
 fs::path small_suite(const fs::path& folder) {
-  std::ofstream(folder / "small.yaml") << "name: small\ndoc: two draws\nscenarios: [roll]\nseeds: {first: 1, last: 2}\n";
+  std::ofstream(folder / "small.yaml")
+      << "name: small\ndoc: two draws\nscenarios: [roll]\nseeds: {first: 1, last: 2}\n";
   return folder / "small.yaml";
 }
 
 std::string bounds_with(double high) {
-  return "suite: small\nmargin: 0\nbounds:\n  - {scenario: roll, kind: position, method: rolling, metric: position_end_error_share, "
-         "statistic: median, accepted: 0, high: " + std::to_string(high) + "}\n";
+  return "suite: small\nmargin: 0\nbounds:\n  - {scenario: roll, kind: position, method: rolling, metric: "
+         "position_end_error_share, "
+         "statistic: median, accepted: 0, high: " +
+         std::to_string(high) + "}\n";
 }
 
 TEST(Gate, HoldsARunToItsBounds) {
   const fs::path folder = test_folder(), suite = small_suite(folder);
   const std::string database = (folder / "g.db").string(), bounds = (folder / "bounds.yaml").string();
   std::ofstream(bounds) << bounds_with(0.1);
-  const std::vector<std::string> arguments = {"gate", suite.string(), "--bounds", bounds, "--db", database, "--json", "--quiet"};
+  const std::vector<std::string> arguments = {"gate", suite.string(), "--bounds", bounds,
+                                              "--db", database,       "--json",   "--quiet"};
   const Ended within = run_program(arguments);
   EXPECT_EQ(within.status, 0) << within.err;
   EXPECT_EQ(within.err, "");

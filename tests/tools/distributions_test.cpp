@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -19,8 +20,12 @@ std::vector<scenarios::DrawValues> draws() {
   std::vector<scenarios::DrawValues> out;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const auto number = static_cast<double>(seed);
-    out.push_back({"hill", seed, {{"motion_peak_rate_rad_s", 10.0 + number}, {"motion_clips", seed > 1 ? 1.0 : 0.0},
-                                  {"motion_several_axes_share", seed > 1 ? 0.1 * number : std::nan("")}}});
+    out.push_back({"hill",
+                   seed,
+                   {{"motion_peak_rate_rad_s", 10.0 + number},
+                    {"motion_clips", seed > 1 ? 1.0 : 0.0},
+                    {"motion_clipped_samples", 10.0 * (number - 1.0)},
+                    {"motion_several_axes_share", seed > 1 ? 0.1 * number : std::nan("")}}});
   }
   out.push_back({"roll", 1, {{"motion_peak_rate_rad_s", 4.0}, {"motion_clips", 0.0}}});
   return out;
@@ -46,6 +51,19 @@ TEST(MotionSpreads, HoldQuantilesPerScenarioAndLeaveOutWhatHasNoValue) {
   EXPECT_TRUE(motion_spreads({}).empty());
 }
 
+TEST(MotionSpreads, PoolsTheClippedSamplesOfAllDraws) {
+  const std::vector<Spread> spreads = motion_spreads(draws());
+  const auto pooled = std::find_if(spreads.begin(), spreads.end(), [](const Spread& spread) {
+    return spread.scenario == "hill" && spread.quantity == "the same over the clipped samples of all draws";
+  });
+  ASSERT_NE(pooled, spreads.end());
+  // 10, 20, 30, 40 samples with shares of 0.2, 0.3, 0.4, 0.5
+  EXPECT_NEAR(pooled->median, 0.4, 1e-12);
+  // residuals -2, -2, 0, 4: 1.96 sqrt(24 x 4 / 3) / 100
+  EXPECT_NEAR(pooled->quantile_95, 0.4 + 1.96 * std::sqrt(32.0) / 100.0, 1e-12);
+  EXPECT_NEAR(pooled->quantile_05, 0.4 - 1.96 * std::sqrt(32.0) / 100.0, 1e-12);
+}
+
 TEST(DistributionFigures, AreHistogramsBesideThePublishedRange) {
   const std::vector<Figure> figures = distribution_figures(motion_spreads(draws()));
   ASSERT_EQ(figures.size(), 2u);
@@ -65,7 +83,9 @@ TEST(DistributionsHtml, ShowsThePublishedFiguresAndIsEmptyWithoutDraws) {
 }
 
 TEST(CertificatesHtml, ShowsValueBoundAndVerdictAndEscapes) {
-  scenarios::Certificate certificate{"build <1>", {{"free_flight_energy", "rig", "law", "1", 1e-3, 0.0, 1e-8, ""}, {"digest_restart", "slip", "law", "1", 0.0, 0.0, 0.0, ""}}};
+  scenarios::Certificate certificate{"build <1>",
+                                     {{"free_flight_energy", "rig", "law", "1", 1e-3, 0.0, 1e-8, ""},
+                                      {"digest_restart", "slip", "law", "1", 0.0, 0.0, 0.0, ""}}};
   const std::string html = certificates_html({&certificate, 1});
   EXPECT_THAT(html, HasSubstr("fail"));
   EXPECT_THAT(html, HasSubstr("&lt;= 1e-08"));

@@ -7,7 +7,9 @@ namespace tumble::tools {
 
 namespace {
 
-std::string verdict(const scenarios::CertificateEntry& entry) { return entry.passes() ? "pass" : "FAIL"; }
+std::string verdict(const scenarios::CertificateEntry& entry) {
+  return entry.passes() ? "pass" : "FAIL";
+}
 
 }  // namespace
 

@@ -22,7 +22,9 @@ int export_as(const Session& session, const Options& options) {
   scenarios::export_recording(options.recording, options.format, options.out);
   Table table("", {"recording", "format", "written to"});
   table.add_row({options.recording.string(), options.format, options.out.string()});
-  session.print({table}, {{"recording", options.recording.string()}, {"format", options.format}, {"output", options.out.string()}});
+  session.print(
+      {table},
+      {{"recording", options.recording.string()}, {"format", options.format}, {"output", options.out.string()}});
   return kDone;
 }
 
@@ -34,7 +36,9 @@ Action declare_export(CLI::App& app, const Session& session) {
   for (const std::string& format : scenarios::export_formats()) known += " " + format;
   app.add_option("RECORDING", options->recording, "a recording, FILE.h5")->required();
   app.add_option("--format", options->format, "one of:" + known)->required();
-  app.add_option("-o,--output", options->out, "a file (kitti, tum: the true poses) or a folder (csv, pcd, ply: the sensors)")->required();
+  app.add_option("-o,--output", options->out,
+                 "a file (kitti, tum: the true poses) or a folder (csv, pcd, ply: the sensors)")
+      ->required();
   return [&session, options] { return export_as(session, *options); };
 }
 

@@ -3,10 +3,10 @@
 
 #include <unistd.h>
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -37,8 +37,10 @@ struct Options {
 class Database {
  public:
   explicit Database(const fs::path& named) : path_(named), own_(named.empty()) {
-    if (own_) path_ = fs::temp_directory_path() / fmt::format("tumble_gate_{}.db", getpid());
-    else if (path_.has_parent_path()) make_folder(path_.parent_path());
+    if (own_)
+      path_ = fs::temp_directory_path() / fmt::format("tumble_gate_{}.db", getpid());
+    else if (path_.has_parent_path())
+      make_folder(path_.parent_path());
   }
   ~Database() {
     std::error_code ignored;
@@ -72,10 +74,11 @@ Table result_table(const std::vector<GateResult>& results) {
   Table table("", {"scenario", "method", "statistic", "draws", "value", "bound", "accepted", "verdict"});
   for (const GateResult& result : results) {
     const scenarios::GateBound& bound = result.bound;
-    const std::string what = std::string(to_string(bound.statistic)) + (bound.metric.empty() ? "" : " of " + bound.metric);
-    table.add_row({bound.scenario, std::string(to_string(bound.kind)) + "/" + bound.method, what, std::to_string(result.draws),
-                   number_text(result.value), bound_text(bound.low, bound.high), number_text(bound.accepted),
-                   result.passes() ? "pass" : "FAIL"});
+    const std::string what =
+        std::string(to_string(bound.statistic)) + (bound.metric.empty() ? "" : " of " + bound.metric);
+    table.add_row({bound.scenario, std::string(to_string(bound.kind)) + "/" + bound.method, what,
+                   std::to_string(result.draws), number_text(result.value), bound_text(bound.low, bound.high),
+                   number_text(bound.accepted), result.passes() ? "pass" : "FAIL"});
   }
   return table;
 }
@@ -85,10 +88,17 @@ json to_json(const std::vector<GateResult>& results, bool passes) {
   json rows = json::array();
   for (const GateResult& result : results) {
     const scenarios::GateBound& bound = result.bound;
-    rows.push_back({{"scenario", bound.scenario}, {"kind", to_string(bound.kind)}, {"method", bound.method},
-                    {"metric", bound.metric}, {"statistic", to_string(bound.statistic)}, {"draws", result.draws},
-                    {"value", finite(result.value)}, {"low", finite(bound.low)}, {"high", finite(bound.high)},
-                    {"accepted", finite(bound.accepted)}, {"verdict", result.passes() ? "pass" : "fail"}});
+    rows.push_back({{"scenario", bound.scenario},
+                    {"kind", to_string(bound.kind)},
+                    {"method", bound.method},
+                    {"metric", bound.metric},
+                    {"statistic", to_string(bound.statistic)},
+                    {"draws", result.draws},
+                    {"value", finite(result.value)},
+                    {"low", finite(bound.low)},
+                    {"high", finite(bound.high)},
+                    {"accepted", finite(bound.accepted)},
+                    {"verdict", result.passes() ? "pass" : "fail"}});
   }
   return {{"verdict", passes ? "pass" : "fail"}, {"bounds", std::move(rows)}};
 }
@@ -108,8 +118,10 @@ int run_gate(const Session& session, const Options& options) {
   const scenarios::DataRoot data = session.data();
   scenarios::Suite suite = scenarios::load_suite(data, options.suite);
   scenarios::Gate gate = load(data, options, suite.name);
-  if (gate.bounds.empty()) suite.methods = {"tumble"};
-  else keep_bounded(gate, suite);
+  if (gate.bounds.empty())
+    suite.methods = {"tumble"};
+  else
+    keep_bounded(gate, suite);
 
   const Database database(options.database);
   const InterruptFlag interrupt;
@@ -128,7 +140,8 @@ int run_gate(const Session& session, const Options& options) {
     session.note("accepted: " + file.string());
     held = scenarios::hold_to_gate(results, gate, suite.first_seed, suite.last_seed);
   }
-  const bool passes = !held.empty() && std::all_of(held.begin(), held.end(), [](const GateResult& r) { return r.passes(); });
+  const bool passes =
+      !held.empty() && std::all_of(held.begin(), held.end(), [](const GateResult& r) { return r.passes(); });
   session.print({result_table(held)}, to_json(held, passes));
   return passes ? kDone : kCheckFailed;
 }
@@ -137,13 +150,16 @@ int run_gate(const Session& session, const Options& options) {
 
 Action declare_gate(CLI::App& app, const Session& session) {
   auto options = std::make_shared<Options>();
-  app.add_option("SUITE", options->suite, "a suite, a suite file, or a scenario: its fixed seeds are swept")->required();
+  app.add_option("SUITE", options->suite, "a suite, a suite file, or a scenario: its fixed seeds are swept")
+      ->required();
   app.add_option("--bounds", options->bounds, "the accepted bounds, FILE.yaml [scenarios/gates/SUITE.yaml]");
   app.add_option("--jobs", options->jobs, "processes at a time")->check(CLI::Range(1, 1024))->capture_default_str();
-  app.add_option("--db", options->database, "keep the results here, and do not run again what it holds [a temporary file]");
+  app.add_option("--db", options->database,
+                 "keep the results here, and do not run again what it holds [a temporary file]");
   app.add_flag("--accept", options->accept, "write the bounds from this run instead of being held to them");
   app.add_option("--margin", options->margin, "how far a later run may fall behind, as a share of the accepted value")
-      ->check(CLI::Range(0.0, 10.0))->capture_default_str();
+      ->check(CLI::Range(0.0, 10.0))
+      ->capture_default_str();
   return [&session, options] { return run_gate(session, *options); };
 }
 

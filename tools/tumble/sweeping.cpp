@@ -29,7 +29,8 @@ scenarios::SweepProgress sweep_with_progress(const Session& session, const scena
 
 int say_stopped(const scenarios::SweepProgress& progress) {
   std::fprintf(stderr, "tumble: stopped: %llu of %llu draws stored, run again to go on\n",
-               static_cast<unsigned long long>(progress.draws_done), static_cast<unsigned long long>(progress.draws_total));
+               static_cast<unsigned long long>(progress.draws_done),
+               static_cast<unsigned long long>(progress.draws_total));
   return kCheckFailed;
 }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/triage.hpp"
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <cmath>
-#include <fmt/format.h>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -29,7 +29,8 @@ const scenarios::Method& choose(const std::string& name) {
   const std::vector<const scenarios::Method*> found = scenarios::find_methods(name);
   if (found.size() == 1) return *found.front();
   std::string line = "--method " + name + " names several methods; say which:";
-  for (const scenarios::Method* method : found) line += std::string(" ") + to_string(method->info.kind) + "/" + method->info.name;
+  for (const scenarios::Method* method : found)
+    line += std::string(" ") + to_string(method->info.kind) + "/" + method->info.name;
   throw BadInput(line);
 }
 
@@ -63,7 +64,8 @@ Table table_of(const std::vector<TriageRow>& rows, const std::string& metric) {
   const double before = value_of(base, metric);
   for (const TriageRow& row : rows) {
     const double now = value_of(row, metric);
-    const std::string change = &row == &base || !(before > 0.0) || !std::isfinite(now) ? "" : fmt::format("{:.2f}", now / before);
+    const std::string change =
+        &row == &base || !(before > 0.0) || !std::isfinite(now) ? "" : fmt::format("{:.2f}", now / before);
     table.add_row({row.input, row.outcome.status, number_text(now), change,
                    &row == &base ? (base.fails ? "fails" : "does not fail") : verdict(row, base), row.doc});
   }
@@ -74,15 +76,20 @@ json to_json(const std::vector<TriageRow>& rows, const std::string& metric) {
   json out = json::array(), cures = json::array();
   for (const TriageRow& row : rows) {
     const double value = value_of(row, metric);
-    out.push_back({{"input", row.input}, {"doc", row.doc}, {"status", row.outcome.status}, {"message", row.outcome.message},
-                   {"value", std::isfinite(value) ? json(value) : json()}, {"fails", row.fails}});
+    out.push_back({{"input", row.input},
+                   {"doc", row.doc},
+                   {"status", row.outcome.status},
+                   {"message", row.outcome.message},
+                   {"value", std::isfinite(value) ? json(value) : json()},
+                   {"fails", row.fails}});
     if (&row != &rows.front() && verdict(row, rows.front()) == "cures") cures.push_back(row.input);
   }
   return {{"metric", metric}, {"fails", rows.front().fails}, {"cures", cures}, {"runs", out}};
 }
 
 std::string conclusion(const std::vector<TriageRow>& rows) {
-  if (!rows.front().fails) return "the run does not fail (see --metric and --limit); the values say what each input is worth";
+  if (!rows.front().fails)
+    return "the run does not fail (see --metric and --limit); the values say what each input is worth";
   std::string cures;
   for (const TriageRow& row : rows) {
     if (&row != &rows.front() && !row.fails) cures += (cures.empty() ? "" : ", ") + row.input;
@@ -96,10 +103,13 @@ int run_triage(const Session& session, const Options& options) {
   const std::uint64_t seed = parse_seed(options.seed);
   const scenarios::Method& method = choose(options.method);
   const std::string metric = metric_of(method, options);
-  if (!options.metric.empty() && std::isnan(options.limit)) throw BadInput("--metric needs --limit: from where on a run fails");
+  if (!options.metric.empty() && std::isnan(options.limit))
+    throw BadInput("--metric needs --limit: from where on a run fails");
   scenarios::TriageOptions triage_options;
   if (!std::isnan(options.limit)) triage_options.failure = {metric, options.limit};
-  triage_options.on_run = [&](const std::string& input) { session.note(input == "none" ? "as it is" : "true: " + input); };
+  triage_options.on_run = [&](const std::string& input) {
+    session.note(input == "none" ? "as it is" : "true: " + input);
+  };
   const std::vector<TriageRow> rows = scenarios::triage(data, scenario, seed, method, triage_options);
   session.print({table_of(rows, metric)}, to_json(rows, metric));
   session.note(conclusion(rows));
@@ -113,7 +123,8 @@ Action declare_triage(CLI::App& app, const Session& session) {
   app.add_option("SCENARIO", options->scenario, "a scenario of the catalogue, or a scenario file")->required();
   app.add_option("--seed", options->seed, "which draw of it")->required();
   app.add_option("--method", options->method, "the method that fails")->required();
-  app.add_option("--metric", options->metric, "what is shown, and with --limit what fails [the first of the method's kind]");
+  app.add_option("--metric", options->metric,
+                 "what is shown, and with --limit what fails [the first of the method's kind]");
   app.add_option("--limit", options->limit, "a run fails beyond this value, SI [on status and map_failed alone]");
   return [&session, options] { return run_triage(session, *options); };
 }

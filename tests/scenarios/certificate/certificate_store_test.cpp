@@ -64,7 +64,8 @@ TEST_F(CertificateStoreTest, ResultsGetItOnceAndKeepIt) {
   const Certificate certificate = certify_results(first, store(), input, options);
   EXPECT_TRUE(certificate.passes());
   EXPECT_EQ(measured, 1);
-  EXPECT_EQ(certify_results(first, CertificateStore({}, input.data), input, options), certificate) << "out of the results";
+  EXPECT_EQ(certify_results(first, CertificateStore({}, input.data), input, options), certificate)
+      << "out of the results";
   Results other(folder_ / "other.db", Results::Mode::create_or_append);
   EXPECT_EQ(certify_results(other, store(), input, options), certificate) << "out of the store";
   EXPECT_EQ(measured, 1);

@@ -15,7 +15,9 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-CertificateInput input() { return {DataRoot{TUMBLE_SOURCE_DIR}, TUMBLE_PROGRAM}; }
+CertificateInput input() {
+  return {DataRoot{TUMBLE_SOURCE_DIR}, TUMBLE_PROGRAM};
+}
 
 /// "row (subject)" of every entry that does not pass.
 std::vector<std::string> failures(const std::vector<CertificateEntry>& entries) {

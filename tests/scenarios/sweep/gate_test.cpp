@@ -101,7 +101,10 @@ TEST_F(GateTest, AcceptedBoundsPassTheirRunAndFailAWorseOne) {
   const Gate proposed = proposed_gate(all, "hill");
   ASSERT_FALSE(proposed.bounds.empty());
   // rotation_error_end_rad has no value here
-  Gate gate{"hill", 0.0, {bound(Statistic::median, kMetric), bound(Statistic::median, "map_overlap"), bound(Statistic::share_not_ok, "")}};
+  Gate gate{
+      "hill",
+      0.0,
+      {bound(Statistic::median, kMetric), bound(Statistic::median, "map_overlap"), bound(Statistic::share_not_ok, "")}};
   gate = accept(gate, hold_to_gate(all, gate, 1, 5), 0.1);
   EXPECT_DOUBLE_EQ(gate.bounds[0].high, 0.33);
   EXPECT_EQ(gate.bounds[0].low, -std::numeric_limits<double>::infinity());
@@ -147,17 +150,25 @@ TEST_F(GateTest, YamlReadsBackExactly) {
 
 TEST_F(GateTest, SaysWhatIsWrongAndWhere) {
   const std::string head = "suite: hill\nmargin: 0.1\nbounds:\n";
-  EXPECT_THAT(complaint(head + "  - {scenario: hill, kind: slm, method: tumble, statistic: median, metric: map_overlap, accepted: 1, low: 0}"),
+  EXPECT_THAT(complaint(head + "  - {scenario: hill, kind: slm, method: tumble, statistic: median, metric: "
+                               "map_overlap, accepted: 1, low: 0}"),
               ::testing::AllOf(HasSubstr("bad.yaml:4"), HasSubstr("'slam'")));
-  EXPECT_THAT(complaint(head + "  - {scenario: hill, kind: slam, method: tumbel, statistic: median, metric: map_overlap, accepted: 1, low: 0}"),
+  EXPECT_THAT(complaint(head + "  - {scenario: hill, kind: slam, method: tumbel, statistic: median, metric: "
+                               "map_overlap, accepted: 1, low: 0}"),
               HasSubstr("tumble"));
-  EXPECT_THAT(complaint(head + "  - {scenario: hill, kind: slam, method: tumble, statistic: median, metric: map_overlp, accepted: 1, low: 0}"),
+  EXPECT_THAT(complaint(head + "  - {scenario: hill, kind: slam, method: tumble, statistic: median, metric: "
+                               "map_overlp, accepted: 1, low: 0}"),
               HasSubstr("'map_overlap'"));
-  EXPECT_THAT(complaint(head + "  - {scenario: hill, kind: slam, method: tumble, statistic: median, metric: map_overlap, accepted: 1}"),
-              HasSubstr("needs low or high"));
-  EXPECT_THAT(complaint(head + "  - {scenario: hill, kind: slam, method: tumble, statistic: median, metric: map_overlap, accepted: 1, low: 2, high: 1}"),
+  EXPECT_THAT(
+      complaint(
+          head +
+          "  - {scenario: hill, kind: slam, method: tumble, statistic: median, metric: map_overlap, accepted: 1}"),
+      HasSubstr("needs low or high"));
+  EXPECT_THAT(complaint(head + "  - {scenario: hill, kind: slam, method: tumble, statistic: median, metric: "
+                               "map_overlap, accepted: 1, low: 2, high: 1}"),
               HasSubstr("high is below low"));
-  EXPECT_THAT(complaint(head + "  - {scenario: hill, kind: slam, method: tumble, statistic: mean, metric: map_overlap, accepted: 1, low: 2}"),
+  EXPECT_THAT(complaint(head + "  - {scenario: hill, kind: slam, method: tumble, statistic: mean, metric: map_overlap, "
+                               "accepted: 1, low: 2}"),
               HasSubstr("'mean'"));
   EXPECT_THAT(complaint("suite: hill\nmargin: 0.1\nbounds: []\n"), HasSubstr("no bound"));
   try {
