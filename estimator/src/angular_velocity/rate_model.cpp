@@ -2,6 +2,7 @@
 #include "tumble/angular_velocity/rate_model.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -26,6 +27,11 @@ void check(const RateModelParams& p) {
   require_within("euler_sigma_rad_s2", p.euler_sigma_rad_s2, 1e-6, 1e6);
   require_within("jerk_psd_flight", p.jerk_psd_flight, 1.0, 1e12);
   require_within("contact_gain_rad_m", p.contact_gain_rad_m, 0.0, 1e3);
+  require_within("accel_scale_error", p.accel_scale_error, 0.0, 1.0);
+  require_within("contact_sigma_factor", p.contact_sigma_factor, 1.0, 10.0);
+  require_within("contact_lever_rad_m", p.contact_lever_rad_m, 0.0, 1e3);
+  require_within("contact_twist_share", p.contact_twist_share, 0.0, 1.0);
+  require_within("contact_force_share", p.contact_force_share, 0.0, 1e3);
   require_within("flight_threshold", p.flight_threshold, 1.0, 100.0);
   require_within("rail_sigma_rad_s", p.rail_sigma_rad_s, 1e-6, 10.0);
   require_within("rate_max_rad_s", p.rate_max_rad_s, 1.0, 1e4);
@@ -44,6 +50,14 @@ RigConstants::Matrix covariance_of(const RateModelParams& p) {
 
 // precision of a bound before anything is known, (rad/s)^-2
 constexpr double kStartPrecision = 0.25;
+
+// What an impact within the window may add to the loss of a partly clipped reading (one standard deviation), rad/s.
+constexpr double kPartialInContact = 0.25;
+
+// Search for a sample of flight between impacts: Newton steps, the longest of them [rad/s], and the share of the
+// reading that a force of contact may have to pass for a gentle one.
+constexpr int kSeekIterations = 6;
+constexpr double kSeekStep = 3.0, kGentleShare = 0.25;
 
 // Weight below which a sample may still draw a clipped rate towards flight, but says nothing of the rig: what is left
 // of the pull of contact is small for the rate and large for constants that are not known yet.
@@ -84,12 +98,12 @@ double surprise(const RigConstants::Vector& moved, const RigConstants::Matrix& c
   return std::sqrt(part.dot(spread.llt().solve(part)) / kCount);
 }
 
-void add_factor(const RateFactor& f, double information, double time_scale_s, arrow::Block& block,
+void add_factor(const RateFactor& f, const Eigen::Matrix3d& information, double time_scale_s, arrow::Block& block,
                 arrow::Corner& corner) {
   Eigen::Matrix<double, 3, 6> A = f.by_knot;
   A.rightCols<3>() /= time_scale_s;
-  const Eigen::Matrix<double, 6, 3> At = information * A.transpose();
-  const Eigen::Matrix<double, RigConstants::kSize, 3> Bt = information * f.by_rig.transpose();
+  const Eigen::Matrix<double, 6, 3> At = A.transpose().lazyProduct(information);
+  const Eigen::Matrix<double, RigConstants::kSize, 3> Bt = f.by_rig.transpose().lazyProduct(information);
   block.diagonal.noalias() += At.lazyProduct(A);
   block.border.noalias() += At.lazyProduct(f.by_rig);
   block.gradient.noalias() -= At.lazyProduct(f.residual);
@@ -120,13 +134,53 @@ void RateModel::weigh(const RateObservation& observation, const RigConstants& ri
   RateFactor flight = flight_factor(estimate.knot, rig, observation.sample.specific_force_m_s2);
   drop_satisfied_bounds(observation, flight);
   const RateFactor euler = euler_factor(estimate.knot, rig);
-  const double r2 = normalised(flight, rig_covariance, accel_sigma_m_s2_) +
+  const double r2 = normalised(flight, rig_covariance, accel_sigma_m_s2(observation)) +
                     normalised(euler, rig_covariance, params_.euler_sigma_rad_s2) + jump;
   const double threshold = widen * params_.flight_threshold;
   // Geman-McClure: the pull of an outlier vanishes with the cube of its size, contacts do not drag the rate along
   const double ratio = 1.0 / (1.0 + r2 / (threshold * threshold));
   estimate.flight_weight = ratio * ratio;
-  estimate.contact_m_s2 = (1.0 - estimate.flight_weight) * flight.residual.norm();
+  // the residual is model minus reading
+  estimate.contact_m_s2 = (estimate.flight_weight - 1.0) * flight.residual;
+}
+
+double RateModel::accel_sigma_m_s2(const RateObservation& observation) const {
+  return std::hypot(accel_sigma_m_s2_, params_.accel_scale_error * observation.sample.specific_force_m_s2.norm());
+}
+
+void RateModel::seek_flight(const RateObservation& observation, const RigConstants& rig,
+                            RateEstimate& estimate) const {
+  const int unseen = observation.unseen();
+  if (unseen == 0 || observation.clipping.accel != 0) return;
+  const Vector3d& reading = observation.sample.angular_velocity_rad_s;
+  RateEstimate flown = estimate;
+  const Eigen::Matrix3d J = rig.inertia_matrix();
+  RateFactor flight;
+  for (int iteration = 0; iteration <= kSeekIterations; ++iteration) {
+    Vector3d& w = flown.knot.rate_rad_s;
+    flown.knot.acceleration_rad_s2 = -J.llt().solve(w.cross(Vector3d(J * w)));
+    flight = flight_factor(flown.knot, rig, observation.sample.specific_force_m_s2);
+    if (iteration == kSeekIterations) break;
+    Eigen::Matrix3d H = 1e-9 * Eigen::Matrix3d::Identity();
+    Vector3d g = Vector3d::Zero();
+    for (int j = 0; j < 3; ++j) {
+      if ((unseen >> j & 1) == 0) continue;
+      g[j] = -flight.by_knot.col(j).dot(flight.residual);
+      for (int i = 0; i < 3; ++i) {
+        if ((unseen >> i & 1) != 0) H(i, j) += flight.by_knot.col(i).dot(flight.by_knot.col(j));
+      }
+    }
+    w += H.llt().solve(g).cwiseMax(-kSeekStep).cwiseMin(kSeekStep);
+    for (int j = 0; j < 3; ++j) {
+      if ((unseen & observation.clipping.gyro & 1 << j) == 0) continue;
+      const double side = std::copysign(1.0, reading[j]), high = std::max(std::abs(reading[j]), params_.rate_max_rad_s);
+      w[j] = side * std::clamp(side * w[j], std::abs(reading[j]), high);
+    }
+  }
+  const double gentle = kGentleShare * observation.sample.specific_force_m_s2.norm();
+  if (flight.residual.norm() > std::min(gentle, 0.5 * estimate.contact_m_s2.norm())) return;
+  estimate.knot = flown.knot;
+  estimate.contact_m_s2 = -flight.residual;
 }
 
 double RateModel::jump(const RateKnot& from, const RateKnot& to, double dt_s) const {
@@ -140,7 +194,7 @@ void RateModel::start_bounds(const RateObservation& observation, const RigConsta
                              RateEstimate& estimate) const {
   estimate.soft_bounds = true;
   for (int j = 0; j < 3; ++j) {
-    if ((observation.clipping.gyro >> j & 1u) == 0) continue;
+    if ((observation.unseen() & observation.clipping.gyro & 1u << j) == 0) continue;
     const double reading = observation.sample.angular_velocity_rad_s[j];
     const double guess = estimate.knot.rate_rad_s[j] + rig.gyro_bias_rad_s[j];
     const double mean = reading < 0.0 ? std::min(guess, reading) : std::max(guess, reading);
@@ -153,7 +207,7 @@ void RateModel::update_bounds(const RateObservation& observation, const RigConst
                               const arrow::Marginal& marginal, const RigConstants::Matrix& rig_covariance,
                               double damping, RateEstimate& estimate) const {
   for (int j = 0; j < 3; ++j) {
-    if ((observation.clipping.gyro >> j & 1u) == 0) continue;
+    if ((observation.unseen() & observation.clipping.gyro & 1u << j) == 0) continue;
     const double reading = observation.sample.angular_velocity_rad_s[j], sign = reading < 0.0 ? -1.0 : 1.0;
     const double variance = marginal.state(j, j) + 2.0 * marginal.cross(j, 3 + j) + rig_covariance(3 + j, 3 + j);
     // the marginal without this site, mirrored so that the bound lies below
@@ -181,7 +235,11 @@ void RateModel::add_sample(const RateObservation& observation, const RateEstimat
     if ((observation.clipping.void_gyro >> j & 1u) != 0) continue;
     double information = 1.0 / (gyro_sigma_rad_s_ * gyro_sigma_rad_s_);
     double pull = information * gyro.residual[j];
-    if ((observation.clipping.gyro >> j & 1u) != 0) {
+    if ((observation.partial >> j & 1u) != 0) {
+      const double impact = kPartialInContact * (1.0 - estimate.flight_weight), lost = observation.lost_sigma_rad_s[j];
+      information = 1.0 / (lost * lost + impact * impact);
+      pull = information * (gyro.residual[j] - observation.lost_rad_s[j]);
+    } else if ((observation.clipping.gyro >> j & 1u) != 0) {
       const bool kept = gyro.residual[j] * observation.sample.angular_velocity_rad_s[j] >= 0.0;
       if (kept && !estimate.soft_bounds) continue;
       information = 1.0 / (params_.rail_sigma_rad_s * params_.rail_sigma_rad_s);
@@ -197,7 +255,11 @@ void RateModel::add_sample(const RateObservation& observation, const RateEstimat
     corner.gradient[3 + j] -= pull;
   }
 
-  const double flight_information = estimate.flight_weight / (accel_sigma_m_s2_ * accel_sigma_m_s2_);
+  // in contact the force is known to be of its own order: of two explanations the gentler one is more likely
+  const double sigma = accel_sigma_m_s2(observation), flight2 = sigma * sigma, share = params_.contact_force_share;
+  const double contact2 = flight2 + share * share * estimate.contact_m_s2.squaredNorm();
+  const double flight_information =
+      estimate.flight_weight / flight2 + (share > 0.0 ? (1.0 - estimate.flight_weight) / contact2 : 0.0);
   RateFactor flight = flight_factor(estimate.knot, rig, observation.sample.specific_force_m_s2);
   drop_satisfied_bounds(observation, flight);
   RateFactor euler = euler_factor(estimate.knot, rig);
@@ -205,9 +267,8 @@ void RateModel::add_sample(const RateObservation& observation, const RateEstimat
     flight.by_rig.setZero();
     euler.by_rig.setZero();
   }
-  add_factor(flight, flight_information, time_scale_s_, block, corner);
-  const double euler_information = estimate.flight_weight / (params_.euler_sigma_rad_s2 * params_.euler_sigma_rad_s2);
-  add_factor(euler, euler_information, time_scale_s_, block, corner);
+  add_factor(flight, flight_information * Eigen::Matrix3d::Identity(), time_scale_s_, block, corner);
+  add_factor(euler, euler_information(estimate), time_scale_s_, block, corner);
 
   const double rate_information = 1.0 / (params_.rate_max_rad_s * params_.rate_max_rad_s);
   const double largest = params_.acceleration_max_rad_s2 * time_scale_s_;
@@ -220,11 +281,22 @@ void RateModel::add_sample(const RateObservation& observation, const RateEstimat
   }
 }
 
+// A force through one point of the body has no torque about its own direction.
+Eigen::Matrix3d RateModel::euler_information(const RateEstimate& estimate) const {
+  const double flight = params_.euler_sigma_rad_s2 * params_.euler_sigma_rad_s2;
+  const double force = estimate.contact_m_s2.norm(), lever = params_.contact_lever_rad_m * force;
+  const double across = 1.0 / (flight + lever * lever);
+  if (!(force > 0.0)) return across * Eigen::Matrix3d::Identity();
+  const double twist = params_.contact_twist_share * lever;
+  const Vector3d n = estimate.contact_m_s2 / force;
+  return across * Eigen::Matrix3d::Identity() + (1.0 / (flight + twist * twist) - across) * n * n.transpose();
+}
+
 void RateModel::add_step(const RateEstimate& from, const RateEstimate& to, double dt_s, arrow::Block& block,
                          arrow::Block& next) const {
   const double h = time_scale_s_, ratio = dt_s / h;
   // a contact may change the angular acceleration by gain * force within one step
-  const double change = params_.contact_gain_rad_m * std::max(from.contact_m_s2, to.contact_m_s2);
+  const double change = params_.contact_gain_rad_m * std::max(from.contact_m_s2.norm(), to.contact_m_s2.norm());
   const double psd = params_.jerk_psd_flight + change * change / dt_s;
   // inverse of Q = psd [dt^3/3, dt^2 h/2; dt^2 h/2, dt h^2] of the scaled state
   const double a = 12.0 / (psd * dt_s * dt_s * dt_s), b = -6.0 / (psd * dt_s * dt_s * h),
@@ -276,6 +348,36 @@ arrow::StateVector RateModel::scaled(const Eigen::Matrix<double, 6, 1>& differen
   arrow::StateVector out = difference;
   out.tail<3>() *= time_scale_s_;
   return out;
+}
+
+Eigen::Matrix3d RateModel::reported(const Eigen::Matrix3d& covariance, const RateObservation& observation,
+                                    const RateEstimate& estimate) const {
+  const double factor = 1.0 + (params_.contact_sigma_factor - 1.0) * (1.0 - estimate.flight_weight);
+  Vector3d wider = Vector3d::Ones();
+  for (int j = 0; j < 3; ++j) {
+    if ((observation.clipping.gyro >> j & 1u) != 0 || (observation.clipping.void_gyro >> j & 1u) != 0) wider[j] = factor;
+  }
+  return wider.asDiagonal() * covariance * wider.asDiagonal();
+}
+
+void mark_partial(const RailDetector& rails, const RailDetector::State& state, double noise_rad_s,
+                  const ImuSample* before, RateObservation& now, const ImuSample* after) {
+  now.partial = 0;
+  for (int j = 0; j < 3; ++j) {
+    const bool flagged = (now.sample.device_clip_flags >> j & 1u) != 0 && (now.clipping.void_gyro >> j & 1u) == 0;
+    const std::optional<double> rail = rails.rail(state, j);
+    if (!flagged || !rail) continue;
+    const double reading = now.sample.angular_velocity_rad_s[j], sign = std::copysign(1.0, reading);
+    double neighbour = *rail;
+    if (before != nullptr) neighbour = std::min(neighbour, sign * before->angular_velocity_rad_s[j]);
+    if (after != nullptr) neighbour = std::min(neighbour, sign * after->angular_velocity_rad_s[j]);
+    if (neighbour > std::abs(reading)) continue;  // a dip in a plateau: how deep it is hidden nobody can say
+    const PartialLoss loss = partial_loss(std::abs(reading), neighbour, *rail, noise_rad_s);
+    if (!loss.partial) continue;
+    now.partial = static_cast<std::uint8_t>(now.partial | 1u << j);
+    now.lost_rad_s[j] = sign * loss.lost_rad_s;
+    now.lost_sigma_rad_s[j] = loss.sigma_rad_s;
+  }
 }
 
 RateSource rate_source(const RateObservation& o, const RateEstimate& e, const Eigen::Matrix3d& covariance,

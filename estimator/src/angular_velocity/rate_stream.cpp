@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3d;
 
 int clipped_axes(const RateObservation& o) {
-  return o.clipping.gyro | o.clipping.void_gyro;
+  return o.unseen();
 }
 
 double seconds_between(const RateStream::Knot& from, const RateStream::Knot& to) {
@@ -23,7 +23,7 @@ double seconds_between(const RateStream::Knot& from, const RateStream::Knot& to)
 // Beyond the reading on every clipped axis.
 void hold_to_bounds(const RateObservation& o, Vector3d& rate) {
   for (int j = 0; j < 3; ++j) {
-    if ((o.clipping.gyro >> j & 1u) == 0) continue;
+    if ((o.unseen() & o.clipping.gyro & 1u << j) == 0) continue;
     const double reading = o.sample.angular_velocity_rad_s[j];
     rate[j] = reading < 0.0 ? std::min(rate[j], reading) : std::max(rate[j], reading);
   }
@@ -120,6 +120,14 @@ void RateStream::append(const ImuSample& sample, State& state) const {
   rails_.observe(sample, state.rails);
   Knot knot;
   knot.observation = {sample, rails_.classify(sample, state.rails)};
+  const double noise = model_.gyro_sigma_rad_s();
+  if (!state.window.empty()) {
+    RateObservation& last = state.window.back().observation;
+    const std::size_t count = state.window.size();
+    const ImuSample* before = count > 1 ? &state.window[count - 2].observation.sample : nullptr;
+    mark_partial(rails_, state.rails, noise, before, last, &sample);
+    mark_partial(rails_, state.rails, noise, &last.sample, knot.observation, nullptr);
+  }
   knot.estimate.knot.rate_rad_s = sample.angular_velocity_rad_s;
   if (!state.window.empty()) guess(knot, state.window.back(), state);
   state.window.push_back(knot);
@@ -178,7 +186,10 @@ void RateStream::weigh(State& state) const {
     const double widen = clipped ? std::max(1.0, std::ldexp(params_.widen_first, -knot.age)) : 1.0;
     model_.weigh(knot.observation, state.rig, state.rig_covariance, widen, std::min(before, after), knot.estimate);
     const bool soften = knot.age >= params_.bound_age && knot.estimate.flight_weight < 0.5;
-    if (soften && !knot.estimate.soft_bounds) model_.start_bounds(knot.observation, state.rig, knot.estimate);
+    if (soften && !knot.estimate.soft_bounds) {
+      model_.seek_flight(knot.observation, state.rig, knot.estimate);
+      model_.start_bounds(knot.observation, state.rig, knot.estimate);
+    }
     before = after;
   }
 }
@@ -229,8 +240,8 @@ RateState RateStream::to_state(const Knot& knot) const {
   RateState out;
   out.time_ns = knot.observation.sample.time_ns;
   out.w_WI_I_rad_s = knot.estimate.knot.rate_rad_s;
-  out.covariance_rad2_s2 = knot.covariance_rad2_s2;
-  out.clipped_axes = static_cast<std::uint8_t>(clipped_axes(knot.observation));
+  out.covariance_rad2_s2 = model_.reported(knot.covariance_rad2_s2, knot.observation, knot.estimate);
+  out.clipped_axes = knot.observation.clipping.gyro | knot.observation.clipping.void_gyro;
   out.source = rate_source(knot.observation, knot.estimate, knot.covariance_rad2_s2, params_.recovered_sigma_rad_s);
   return out;
 }
