@@ -255,8 +255,10 @@ void RateModel::add_sample(const RateObservation& observation, const RateEstimat
     corner.gradient[3 + j] -= pull;
   }
 
-  // in contact the force is known to be of its own order: of two explanations the gentler one is more likely
-  const double sigma = accel_sigma_m_s2(observation), flight2 = sigma * sigma, share = params_.contact_force_share;
+  // in contact the force is known to be of its own order: of two explanations of a rate that is not seen the gentler
+  // one is more likely
+  const double sigma = accel_sigma_m_s2(observation), flight2 = sigma * sigma;
+  const double share = observation.unseen() != 0 ? params_.contact_force_share : 0.0;
   const double contact2 = flight2 + share * share * estimate.contact_m_s2.squaredNorm();
   const double flight_information =
       estimate.flight_weight / flight2 + (share > 0.0 ? (1.0 - estimate.flight_weight) / contact2 : 0.0);
@@ -266,6 +268,10 @@ void RateModel::add_sample(const RateObservation& observation, const RateEstimat
   if (estimate.flight_weight < kRigWeightMin) {
     flight.by_rig.setZero();
     euler.by_rig.setZero();
+    for (int j = 0; j < 3; ++j) {
+      // a rate that is seen would hand the pull on to the gyro's bias
+      if ((observation.unseen() >> j & 1u) == 0) flight.by_knot.col(j).setZero();
+    }
   }
   add_factor(flight, flight_information * Eigen::Matrix3d::Identity(), time_scale_s_, block, corner);
   add_factor(euler, euler_information(estimate), time_scale_s_, block, corner);

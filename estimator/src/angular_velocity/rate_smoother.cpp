@@ -15,6 +15,11 @@ namespace {
 
 using Eigen::Vector3d;
 
+// Other first thresholds of contact, as multiples of the given one, and the share of clipped samples in flight below
+// which they are tried.
+constexpr double kOtherStarts[] = {16.0, 0.25};
+constexpr double kFlightShareExpected = 0.5;
+
 constexpr double kVarianceUnknown = 100.0;  // of a clipped axis at the start of the iteration, (rad/s)^2
 
 double median_force(std::span<const ImuSample> samples) {
@@ -155,13 +160,12 @@ struct Solution {
 };
 
 // Gauss-Newton from the first guess; false when a system is not positive definite.
-bool solve(const RateSmoother::Params& params, const RateModel& model, std::span<const RateObservation> observations,
-           Solution& solution, RateReport& health) {
+bool descend(const RateSmoother::Params& params, const RateModel& model, std::span<const RateObservation> observations,
+             double widen, Solution& solution, RateReport& health) {
   solution.estimates = first_guess(observations, params.model, model, params.gap_max_s);
   solution.rig = model.prior_constants();
   solution.rig_covariance = model.prior_covariance();
   std::vector<RateEstimate>& estimates = solution.estimates;
-  double widen = params.widen_first;
   int soft = 0;  // iterations with soft bounds
   health.iterations = 0;
   health.converged = false;
@@ -191,6 +195,47 @@ bool solve(const RateSmoother::Params& params, const RateModel& model, std::span
     widen = std::max(1.0, 0.5 * widen);
   }
   health.rig_surprise = model.rig_surprise(solution.rig);
+  return true;
+}
+
+// How much of what the gyro does not see is explained as free flight: the part of the robust cost that differs between
+// the minima in which a run may end. `share`: of these samples, those that count as flight.
+double explained(std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
+                 double& share) {
+  double sum = 0.0, unseen = 0.0, flight = 0.0;
+  for (std::size_t k = 0; k < estimates.size(); ++k) {
+    sum += std::sqrt(estimates[k].flight_weight);
+    if (observations[k].unseen() == 0) continue;
+    unseen += 1.0;
+    flight += estimates[k].flight_weight >= 0.5 ? 1.0 : 0.0;
+  }
+  share = unseen > 0.0 ? flight / unseen : 1.0;
+  return sum;
+}
+
+// The descent, again from wider and narrower thresholds of contact where most clipped samples pass for contact: with
+// a lever arm that is far off the first may end in a minimum in which nothing is flight.
+bool solve(const RateSmoother::Params& params, const RateModel& model, std::span<const RateObservation> observations,
+           Solution& solution, RateReport& health) {
+  if (!descend(params, model, observations, params.widen_first, solution, health)) return false;
+  double share = 1.0;
+  double best = explained(observations, solution.estimates, share);
+  for (const double factor : kOtherStarts) {
+    if (share >= kFlightShareExpected) break;
+    Solution other{{}, {}, {}, Iteration(observations)};
+    RateReport other_health = health;
+    const double widen = std::max(1.0, factor * params.widen_first);
+    if (!descend(params, model, observations, widen, other, other_health)) continue;
+    double other_share = 0.0;
+    const double found = explained(observations, other.estimates, other_share);
+    ++health.restarts;
+    if (!(found > best)) continue;
+    best = found;
+    share = other_share;
+    other_health.restarts = health.restarts;
+    health = other_health;
+    solution = std::move(other);
+  }
   return true;
 }
 

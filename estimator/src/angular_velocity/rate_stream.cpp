@@ -86,10 +86,14 @@ Status RateStream::push(const ImuSample& sample, State& state, std::optional<Rat
 }
 
 void RateStream::marginalise_oldest(State& state) const {
-  const Knot &oldest = state.window[0], &next = state.window[1];
+  Knot& oldest = state.window[0];
+  const Knot& next = state.window[1];
   arrow::Block block, after;
   arrow::Corner corner;
   add_prior(state, model_, oldest.estimate.knot, block, corner);
+  // what leaves can never be weighed again: it must be flight of the rig as it is known now, not of one as it might be
+  const double jump = model_.jump(oldest.estimate.knot, next.estimate.knot, seconds_between(oldest, next));
+  model_.weigh(oldest.observation, state.rig, RigConstants::Matrix::Zero(), 1.0, jump, oldest.estimate);
   model_.add_sample(oldest.observation, oldest.estimate, state.rig, block, corner);
   model_.add_step(oldest.estimate, next.estimate, seconds_between(oldest, next), block, after);
   if (arrow::eliminate(block, &after, corner)) {
@@ -106,10 +110,10 @@ void RateStream::marginalise_oldest(State& state) const {
   state.prior_rig = state.rig;
   state.window.erase(state.window.begin());
   if (model_.rig_surprise(state.rig) > params_.rig_surprise_max) {
-    // contact was taken for flight of another rig: drop what was learnt of the rig, keep the motion
+    // contact was taken for flight of another rig: drop what was learnt of the rig and of the motion with it
     state.rig = state.prior_rig = model_.prior_constants();
     state.rig_covariance = model_.prior_covariance();
-    state.prior.border.setZero();
+    state.prior = {};
     state.prior_corner = {};
     model_.add_rig_prior(state.rig, state.prior_corner);
     ++state.rig_resets;
