@@ -13,9 +13,8 @@ constexpr std::array<sim::Parameter, 1> kParameters = {{
 }};
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  return run_clipped_baseline({.kind = ClippedBaseline::Kind::reject,
-                               .acceleration_psd = parameters.at("acceleration_psd_rad2_s3")},
-                              sensors);
+  return run_clipped_baseline(
+      {.kind = ClippedBaseline::Kind::reject, .acceleration_psd = parameters.at("acceleration_psd_rad2_s3")}, sensors);
 }
 
 }  // namespace

@@ -40,7 +40,8 @@ Method rate_zero_velocity() {
   info.name = "zero_velocity";
   info.kind = Kind::rate;
   info.doc =
-      "Inertial navigation smoothed between standstills, where velocity and rate are known to be zero. Made for motions "
+      "Inertial navigation smoothed between standstills, where velocity and rate are known to be zero. Made for "
+      "motions "
       "of a second or two from rest to rest that clip a few samples (steps, hand motion).";
   info.source = "the family of Dang and Suh's smoothers for inertial sensors between zero-velocity intervals";
   info.parameters = kParameters;

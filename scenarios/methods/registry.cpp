@@ -22,6 +22,7 @@ std::vector<Method> all_methods() {
       rate_constant_jerk(),
       rate_accelerometers(),
       rate_zero_velocity(),
+      rate_magnetometer(),
       rate_saave(),
       rate_tumble(),
       rate_oracle(),

@@ -29,6 +29,7 @@ Method rate_reject();
 Method rate_constant_jerk();
 Method rate_accelerometers();
 Method rate_zero_velocity();
+Method rate_magnetometer();
 Method rate_saave();
 Method rate_tumble();
 Method rate_oracle();

@@ -80,7 +80,8 @@ bool in_contact(const ScoringInput& input, std::int64_t time_ns) {
   if (truth.period_ns <= 0 || truth.label.empty()) return false;
   const auto last = static_cast<std::int64_t>(truth.label.size()) - 1;
   const std::int64_t end = std::min(last, time_ns / truth.period_ns);
-  const std::int64_t begin = std::max<std::int64_t>(0, (time_ns - input.sensors->imus.front().period_ns) / truth.period_ns);
+  const std::int64_t begin =
+      std::max<std::int64_t>(0, (time_ns - input.sensors->imus.front().period_ns) / truth.period_ns);
   for (std::int64_t k = begin; k <= end; ++k) {
     if (truth.label[static_cast<std::size_t>(k)] != sim::ContactLabel::air) return true;
   }

@@ -92,8 +92,7 @@ class Chain {
     std::vector<Moment> out = after_;
     for (std::size_t k = out.size() - 1; k-- > 0;) {
       const Moment ahead = predict(after_[k], step_s(k));
-      const Matrix gain =
-          ahead.covariance.ldlt().solve(transition(step_s(k)) * after_[k].covariance).transpose();
+      const Matrix gain = ahead.covariance.ldlt().solve(transition(step_s(k)) * after_[k].covariance).transpose();
       out[k].mean += gain * (out[k + 1].mean - ahead.mean);
       out[k].covariance += gain * (out[k + 1].covariance - ahead.covariance) * gain.transpose();
     }
@@ -101,7 +100,8 @@ class Chain {
   }
 
  private:
-  static constexpr double kUnknown = 1e4;  // variance of a rate before anything is seen; of the next derivatives, powers
+  static constexpr double kUnknown =
+      1e4;  // variance of a rate before anything is seen; of the next derivatives, powers
   struct Moment {
     Vector mean;
     Matrix covariance;

@@ -272,7 +272,8 @@ Eigen::Matrix3d RateModel::reported(const Eigen::Matrix3d& covariance, const Rat
   const double factor = 1.0 + (params_.contact_sigma_factor - 1.0) * (1.0 - estimate.flight_weight);
   Vector3d wider = Vector3d::Ones();
   for (int j = 0; j < 3; ++j) {
-    if ((observation.clipping.gyro >> j & 1u) != 0 || (observation.clipping.void_gyro >> j & 1u) != 0) wider[j] = factor;
+    if ((observation.clipping.gyro >> j & 1u) != 0 || (observation.clipping.void_gyro >> j & 1u) != 0)
+      wider[j] = factor;
   }
   return wider.asDiagonal() * covariance * wider.asDiagonal();
 }

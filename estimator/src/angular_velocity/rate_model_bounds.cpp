@@ -31,8 +31,7 @@ double density_over_share(double z) {
 
 }  // namespace
 
-void RateModel::seek_flight(const RateObservation& observation, const RigConstants& rig,
-                            RateEstimate& estimate) const {
+void RateModel::seek_flight(const RateObservation& observation, const RigConstants& rig, RateEstimate& estimate) const {
   const int unseen = observation.unseen();
   if (unseen == 0 || observation.clipping.accel != 0) return;
   const Vector3d& reading = observation.sample.angular_velocity_rad_s;

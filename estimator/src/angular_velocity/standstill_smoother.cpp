@@ -58,15 +58,17 @@ void predict(const StandstillSmoother::Params& p, const Noise& noise, const ImuS
              Belief& belief, Covariance& F) {
   Navigation& n = belief.mean;
   // the force is a mean over the sample's window, which ends where the step ends
-  const Vector3d turn = dt_s * (n.rate_rad_s + 0.5 * dt_s * n.acceleration_rad_s2);
+  // rates are means over windows too: the body turns by that of the window that ends here
+  const Vector3d turn = dt_s * (n.rate_rad_s + dt_s * n.acceleration_rad_s2);
   const Eigen::Quaterniond middle = n.q_WI * so3::exp(0.5 * turn);
   const Vector3d force_W = middle * sample.specific_force_m_s2;
   const Matrix3d R = middle.toRotationMatrix();
   F.setIdentity();
   F.block<3, 3>(0, 6) = dt_s * R;
-  F.block<3, 3>(0, 9) = 0.5 * dt_s * dt_s * R;
+  F.block<3, 3>(0, 9) = dt_s * dt_s * R;
   F.block<3, 3>(3, 0) = -dt_s * so3::hat(force_W);
   F.block<3, 3>(3, 6) = -0.5 * dt_s * dt_s * so3::hat(force_W) * R;
+  F.block<3, 3>(3, 9) = dt_s * F.block<3, 3>(3, 6);
   F.block<3, 3>(6, 9) = dt_s * Matrix3d::Identity();
   n.q_WI = (n.q_WI * so3::exp(turn)).normalized();
   n.v_W_m_s += dt_s * (force_W - p.gravity_m_s2 * Vector3d::UnitZ());

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/angular_velocity/rate_stream.hpp"
 
-#include <algorithm>
 #include <gtest/gtest.h>
+#include <algorithm>
 
 #include <cmath>
 #include <cstdlib>
@@ -89,8 +89,8 @@ TEST(RateStream, RecoversTumblesNearlyAsWellAsTheBatch) {
     of_batch.push_back(clipped_errors(recording, rates_of(batch), 10.49).median);
     close += errors.median < 0.05 && errors.median < 0.02 * raw.median;
   }
-  // measured 0.008 to 0.02 rad/s, and 0.88 with seed 2: it spins about one axis for two seconds, and all that has passed
-  // until then fits a wrong lever arm as well; the batch looks ahead
+  // measured 0.008 to 0.02 rad/s, and 0.88 with seed 2: it spins about one axis for two seconds, and all that has
+  // passed until then fits a wrong lever arm as well; the batch looks ahead
   EXPECT_GE(close, 5);
   EXPECT_LT(*std::max_element(of_batch.begin(), of_batch.end()), 0.05);
 }
