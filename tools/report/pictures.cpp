@@ -85,8 +85,8 @@ void show_start(const Scene& scene, sim::View& view) {
     view.distance_m = 25.0;
     return;
   }
-  view.look_at_W_m = T_WB.translation() + Vector3d(2.0, 0.0, -0.6);
-  view.distance_m = 8.5;
+  view.look_at_W_m = T_WB.translation() + Vector3d(1.5, 0.0, -0.5);
+  view.distance_m = 6.8;
   view.azimuth_rad = 2.85;
   view.elevation_rad = -0.5;
 }
