@@ -17,6 +17,12 @@ std::string full_name(const MethodInfo& info) {
 std::vector<Method> all_methods() {
   std::vector<Method> all = {
       rate_raw(),
+      rate_interpolate(),
+      rate_reject(),
+      rate_constant_jerk(),
+      rate_accelerometers(),
+      rate_zero_velocity(),
+      rate_magnetometer(),
       rate_saave(),
       rate_tumble(),
       rate_oracle(),
