@@ -34,8 +34,8 @@ std::vector<Method> all_methods() {
       attitude_autogain(),
       attitude_vqf(),
       attitude_tumble(),
+      position_rolling(),  // the first of a kind is what the others are held against, where no raw one is
       position_double_integration(),
-      position_rolling(),
       position_observer(),
       position_autogain_fusion(),
       position_tumble(),
