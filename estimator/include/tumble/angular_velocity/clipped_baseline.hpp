@@ -31,7 +31,7 @@ class ClippedBaseline {
   enum class Kind { interpolate, reject, constant_jerk };
   struct Params {
     Kind kind = Kind::interpolate;
-    RailDetector::Params rails;
+    RailDetector::Params rails = {};
     /// Noise density of the gyro [rad/s/sqrt(Hz)]; [1e-9, 1].
     double gyro_noise_density = 5.236e-4;
     /// Density of the white angular acceleration of `reject` [rad^2/s^3]; [1e-12, 1e12].
