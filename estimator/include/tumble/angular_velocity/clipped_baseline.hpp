@@ -25,6 +25,8 @@ namespace tumble {
 ///   smoothest curve that keeps rate, acceleration and jerk on both sides. Made for swings that pass the rail once,
 ///   without impacts.
 ///
+/// In gaps of a third of a second, as long flights have them, the two smooth ones run away to the largest rate.
+///
 /// What none of them models: impacts inside of a gap, and the coupling of the axes of a tumbling body.
 class ClippedBaseline {
  public:
