@@ -11,7 +11,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (estimate.status.ok()) estimate.status = raw_rates(sensors, samples, estimate.rates);
-  if (estimate.status.ok()) run_slam_chain(sensors, samples, parameters, estimate);
+  if (estimate.status.ok()) run_slam_chain(sensors, samples, parameters, {}, estimate);
   return estimate;
 }
 

@@ -8,7 +8,8 @@ namespace tumble::scenarios {
 namespace {
 
 std::span<const sim::Parameter> parameters_with_excess() {
-  static const std::vector<sim::Parameter> all = joined_parameters({slam_parameters(), excess_parameters()});
+  static const std::vector<sim::Parameter> all = joined_parameters(
+      {slam_parameters(), excess_parameters(), calibration_parameters()});
   return all;
 }
 
@@ -35,7 +36,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (estimate.status.ok()) estimate.status = railed_rates(sensors, samples, estimate.rates);
-  if (estimate.status.ok()) run_slam_chain(sensors, samples, parameters, estimate, ExcessRate::estimated);
+  if (estimate.status.ok()) run_slam_chain(sensors, samples, parameters, {.excess_rate = true, .calibration = true}, estimate);
   return estimate;
 }
 

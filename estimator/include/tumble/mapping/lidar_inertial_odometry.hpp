@@ -11,6 +11,7 @@
 #include "tumble/common/imu.hpp"
 #include "tumble/common/pose.hpp"
 #include "tumble/common/status.hpp"
+#include "tumble/mapping/calibration.hpp"
 #include "tumble/mapping/lidar.hpp"
 
 namespace tumble {
@@ -30,11 +31,24 @@ const char* to_string(SweepVerdict verdict);
 ///
 /// World: z up, origin and yaw at the IMU at the first sample, levelled by the specific force at rest.
 /// Feed IMU samples in time order, then each sweep once IMU samples reach its end. No threads, no files, no printing.
+/// Where their standard deviation is not 0, the lidar's mounting, its clock and gravity are estimated with the motion, as
+/// one state with one covariance (an iterated error-state filter over sweeps). The map stays where it was drawn with what
+/// was known then: a caller that keeps its recording runs a second time from calibration() and gets a map of one piece.
+///
+/// After rejected sweeps the sensor is lost: the inertial prior goes on, with velocity zero while the IMU rests, and each
+/// further sweep is also tried against the map from starts around the prior, coarse to fine.
 /// Not modelled: biases of the IMU but the gyro's at the start, loop closure, moving objects.
 class LidarInertialOdometry {
  public:
   struct Params {
     Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< lidar in IMU axes
+    double time_offset_s = 0.0;       ///< the IMU's clock minus the lidar's; bound [-1, 1]
+    /// Standard deviations of T_IL, of the time offset and of gravity's horizontal part; 0: exact, not estimated.
+    /// Bounds [0, 1], [0, 1], [0, 0.02], [0, 10].
+    double mount_sigma_rad = 0.0;
+    double mount_sigma_m = 0.0;
+    double time_offset_sigma_s = 0.0;
+    double gravity_sigma_m_s2 = 0.0;
     double gravity_m_s2 = 9.80665;    ///< bound [0, 100]
     double rest_s = 0.5;              ///< at most this much of the start is used to level the attitude; bound (0, 60]
     /// Rest at the start lasts while the rate stays below rest_rate_rad_s and the specific force within rest_force_m_s2 of
@@ -76,6 +90,12 @@ class LidarInertialOdometry {
     /// (standard deviations): at rest a lidar draws rings only, which give no planes until it turns. Bounds [0, 1e3].
     double trusted_prior_m = 0.1;
     double trusted_prior_rad = 0.03;
+    /// The map is kept within this of the sensor, to a tenth of it; bound (range_max_m / 10, 1e5].
+    double map_radius_m = 100.0;
+    /// Points that the trajectory places less surely than this are kept out of the map; bound (0, 1e3].
+    double map_sigma_max_m = 0.25;
+    /// After so many rejected sweeps in a row the map goes on from the inertial prior, as `degenerate`; bound [1, 1e6].
+    int lost_sweeps_max = 30;
   };
 
   struct SweepReport {
@@ -85,6 +105,7 @@ class LidarInertialOdometry {
     double inlier_share = 0.0;           ///< of the points registered
     double conditioning = 0.0;           ///< smallest over largest eigenvalue of the scaled normal matrix
     int iterations = 0;
+    int lost_sweeps = 0;                 ///< rejected in a row up to this sweep, this one included
     /// Direction in which the surfaces hold the pose least: (position, attitude scaled by the rms lever) in W, unit.
     Eigen::Matrix<double, 6, 1> weakest_direction = Eigen::Matrix<double, 6, 1>::Zero();
     Eigen::Vector3d excess_rate_rad_s = Eigen::Vector3d::Zero();  ///< added to the clipped axes, along the sign of the rate
@@ -114,7 +135,14 @@ class LidarInertialOdometry {
   /// finite point), `too_few` (none in range), `degenerate` (all points bear one time stamp though the sweep lasts).
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, SweepReport& report);
 
-  /// The whole map so far, with normals from the nearest neighbours that look towards where the point was seen from.
+  /// Calibration as estimated so far, and the covariance of its errors; the given one, and 0, where not estimated.
+  SweepCalibration calibration() const;
+  SweepCalibration::Covariance calibration_covariance() const;
+
+  /// Memory held by the map [bytes].
+  std::size_t map_bytes() const;
+
+  /// The map within map_radius_m, with normals from the nearest neighbours that look towards where the point was seen from.
   /// O(number of points).
   std::vector<MapPoint> map() const;
 
