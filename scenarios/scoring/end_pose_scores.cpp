@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <Eigen/Cholesky>
+
 #include "scenarios/scoring/families.hpp"
 #include "scenarios/scoring/registered_sweeps.hpp"
 #include "scenarios/scoring/truth_track.hpp"
+#include "tumble/common/so3.hpp"
 
 namespace tumble::scenarios {
 
@@ -40,6 +43,27 @@ bool rotation_error_end(const Estimate& estimate, const ScoringInput& input, dou
   return true;
 }
 
+// of the last sweep's pose, aligned at the first pose, against its own reported covariance: mean 1 when that holds
+bool pose_nees(const Estimate& estimate, const ScoringInput& input, double& value) {
+  if (estimate.sweeps.empty() || estimate.poses.empty()) return false;
+  const PoseState& last = estimate.sweeps.back().pose;
+  if (last.covariance.diagonal().minCoeff() <= 0.0) return false;  // none reported
+  const TruthTrack truth(*input.truth, estimate.frame);
+  if (!truth.covers(last.time_ns)) return false;
+  const Alignment alignment = pair_poses(estimate, truth).alignment;
+  const PoseState aligned = alignment.apply(last);
+  const PoseState true_pose = truth.pose(last.time_ns);
+  Eigen::Matrix<double, 6, 1> error;
+  error << true_pose.p_WA_m - aligned.p_WA_m, so3::log((true_pose.q_WA * aligned.q_WA.conjugate()).normalized());
+  // the covariance is in the estimator's world: its error is turned there
+  const Eigen::Matrix3d back = alignment.transform().linear().transpose();
+  error << Eigen::Vector3d(back * error.head<3>()), Eigen::Vector3d(back * error.tail<3>());
+  const Eigen::LLT<Eigen::Matrix<double, 6, 6>> factor(last.covariance);
+  if (factor.info() != Eigen::Success) return false;
+  value = factor.matrixL().solve(error).squaredNorm() / 6.0;
+  return true;
+}
+
 }  // namespace
 
 std::vector<std::size_t> registered_sweeps(const Estimate& estimate) {
@@ -55,6 +79,8 @@ std::vector<Metric> end_pose_metrics() {
       {"translation_error_end_m", Kind::slam, "m",
        "error of the motion from the sixth registered sweep to the last sweep: translation", translation_error_end},
       {"rotation_error_end_rad", Kind::slam, "rad", "the same: rotation, up to pi", rotation_error_end},
+      {"pose_nees", Kind::slam, "1",
+       "squared error of the last sweep's pose over its reported covariance, per degree of freedom", pose_nees},
   };
 }
 

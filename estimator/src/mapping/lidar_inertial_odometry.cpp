@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "odometry_impl.hpp"
+#include "sweep_check.hpp"
 
 namespace tumble {
 
@@ -28,25 +29,7 @@ Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
   if (!started && samples.front().from_ns > start_ns) {
     return {Trouble::too_few, "start_ns", double(start_ns), double(samples.front().from_ns)};
   }
-  for (const LidarPoint& point : given) {
-    if (point.offset_ns > end_ns - start_ns) {
-      return {Trouble::out_of_range, "offset_ns", double(point.offset_ns), double(end_ns - start_ns)};
-    }
-  }
-  return {};
-}
-
-Status LidarInertialOdometry::Impl::check_selection(TimeNs span_ns, std::span<const LidarPoint> given,
-                                                    const PointCounts& counts) const {
-  if (counts.given == 0) return {Trouble::empty, "points", 0.0, 1.0};
-  if (counts.finite == 0) return {Trouble::non_finite, "position_L_m", std::numeric_limits<double>::quiet_NaN(), 0.0};
-  if (counts.used == 0) return {Trouble::too_few, "points in range", 0.0, 1.0};
-  // a driver that lost its time stamps: nothing could be deskewed, and nothing would show it
-  const auto differs = [&](const LidarPoint& point) { return point.offset_ns != given.front().offset_ns; };
-  if (span_ns > 0 && given.size() > 1 && std::none_of(given.begin(), given.end(), differs)) {
-    return {Trouble::degenerate, "spread of offset_ns", 0.0, 1.0};
-  }
-  return {};
+  return mapping::check_offsets(end_ns - start_ns, given);
 }
 
 void LidarInertialOdometry::Impl::finish(TimeNs end_ns, SweepReport& report) {
@@ -133,7 +116,7 @@ Status LidarInertialOdometry::add_sweep(TimeNs lidar_start_ns, TimeNs lidar_end_
       select_points(points, bounds, my.calibration.T_IL,
                     seconds(start_ns - my.state.time_ns) + my.calibration.time_offset_s, my.points);
   report.points_used = counts.used;
-  const Status status = my.check_selection(end_ns - start_ns, points, counts);
+  const Status status = mapping::check_selection(end_ns - start_ns, points, counts);
   const bool first = my.map.size() == 0;
   if (status.ok() && first && counts.used >= my.params.matches_min) {
     report.verdict = SweepVerdict::first;

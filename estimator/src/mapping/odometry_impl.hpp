@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "inertial_prior.hpp"
+#include "tumble/mapping/map_drawing.hpp"
 #include "tumble/mapping/calibration.hpp"
 #include "tumble/mapping/deskew.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
@@ -36,7 +37,6 @@ struct LidarInertialOdometry::Impl {
 
   // lidar_inertial_odometry.cpp
   Status check_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points) const;
-  Status check_selection(TimeNs span_ns, std::span<const LidarPoint> points, const PointCounts& counts) const;
   void finish(TimeNs end_ns, SweepReport& report);
 
   // odometry_calibration.cpp
@@ -56,7 +56,6 @@ struct LidarInertialOdometry::Impl {
   bool imu_rests(TimeNs end_ns) const;
 
   // odometry_map.cpp
-  std::uint32_t scan_line_base(bool rings_differ);
   std::size_t extend_map(bool rings_differ);
   void forget_far_map();
 
@@ -69,6 +68,7 @@ struct LidarInertialOdometry::Impl {
   /// Of the map against the world where the robot is: it was drawn from poses that were uncertain themselves.
   Eigen::Matrix<double, 6, 6> map_covariance = Eigen::Matrix<double, 6, 6>::Zero();
   int lost_sweeps = 0;
+  int failed_searches = 0;  // sweeps in a row that had points and found no place
   mapping::InitialRest rest;
   std::vector<MotionSample> samples;  // from the window that holds state.time_ns on
   Eigen::Vector3d excess_rad_s = Eigen::Vector3d::Zero();
@@ -76,8 +76,7 @@ struct LidarInertialOdometry::Impl {
   VoxelMap map;
   std::vector<Eigen::Vector3f> seen_from_W_m;             // per sweep that gave points to the map
   Eigen::Vector3f pruned_at_W_m = Eigen::Vector3f::Zero();
-  Eigen::Vector3d scan_axis_W = Eigen::Vector3d::Zero();  // of the sweeps that share scan lines
-  std::uint32_t scan_attitude = 0;                        // counts changes of it
+  mapping::ScanLines scan_lines;
 
   // memory kept between sweeps
   Registration registration, coarse;

@@ -2,14 +2,11 @@
 #include <cmath>
 
 #include "odometry_impl.hpp"
-#include "tumble/mapping/plane_fit.hpp"
 
 namespace tumble {
 
 namespace {
 
-constexpr double kSameLineCosine = 0.9988;  // 0.05 rad, less than the angle between two rings
-constexpr int kRingBits = 16;
 constexpr double kPruneShare = 0.1;  // of the map's radius: moved so far, the sensor drops what is out of reach
 
 /// What the trajectory is uncertain by inside of a stretch, as seen at a point: between its start and its end.
@@ -39,18 +36,6 @@ class PoseSigma {
 
 }  // namespace
 
-/// Sweeps of a sensor that holds its attitude draw the same lines; one that turns draws new ones.
-std::uint32_t LidarInertialOdometry::Impl::scan_line_base(bool rings_differ) {
-  if (!rings_differ) return VoxelMap::kNoLine;
-  const MotionState middle = trajectory.state(0.5 * trajectory.duration_s());
-  const Eigen::Vector3d axis = middle.q_WI * params.T_IL.linear().col(2);
-  if (axis.dot(scan_axis_W) < kSameLineCosine) {
-    scan_axis_W = axis;
-    ++scan_attitude;
-  }
-  return scan_attitude << kRingBits;
-}
-
 std::size_t LidarInertialOdometry::Impl::extend_map(bool rings_differ) {
   if (calibration_covariance.diagonal().maxCoeff() > 0.0) {
     std::vector<SweepPoint> moved;
@@ -60,16 +45,17 @@ std::size_t LidarInertialOdometry::Impl::extend_map(bool rings_differ) {
   compute_levers(trajectory, points, positions_W_m);
   const PoseSigma sigma(result.covariance, trajectory);
   const std::uint32_t sweep = static_cast<std::uint32_t>(seen_from_W_m.size());
-  const std::uint32_t line = scan_line_base(rings_differ);
+  const MotionState middle = trajectory.state(0.5 * trajectory.duration_s());
+  const std::uint32_t line = scan_lines.base(middle.q_WI * params.T_IL.linear().col(2), rings_differ);
   std::size_t added = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3f position = positions_W_m[i] + trajectory.base_m(points[i].t_s).cast<float>();
     const double sigma_m = std::hypot(registration.point_sigma_m(points[i]), sigma.at(points[i]));
     if (sigma_m > params.map_sigma_max_m) continue;
     added += map.insert(position, static_cast<float>(sigma_m), sweep,
-                        line == VoxelMap::kNoLine ? line : line | points[i].ring);
+                        mapping::ScanLines::line(line, points[i].ring));
   }
-  seen_from_W_m.push_back(trajectory.state(0.5 * trajectory.duration_s()).p_WI_m.cast<float>());
+  seen_from_W_m.push_back(middle.p_WI_m.cast<float>());
   return added;
 }
 
@@ -86,22 +72,8 @@ void LidarInertialOdometry::Impl::forget_far_map() {
 }
 
 std::vector<MapPoint> LidarInertialOdometry::map() const {
-  const Impl& my = *impl_;
-  std::vector<MapPoint> out;
-  out.reserve(my.map.size());
-  Neighbours found;
-  for (std::uint32_t index = 0; index < my.map.index_end(); ++index) {
-    if (!my.map.exists(index)) continue;
-    MapPoint& point = out.emplace_back();
-    point.position_W_m = my.map.position_W_m(index);
-    point.sigma_m = my.map.sigma_m(index);
-    my.map.nearest(point.position_W_m, my.params.neighbours, static_cast<float>(my.params.match_distance_m), found);
-    const PlaneFit plane = fit_plane(my.map, found, PlaneBounds{});
-    if (plane.verdict != PlaneVerdict::plane) continue;
-    const Eigen::Vector3f towards = my.seen_from_W_m[my.map.sweep(index)] - point.position_W_m;
-    point.normal_W = plane.normal_W.dot(towards) < 0.0f ? Eigen::Vector3f(-plane.normal_W) : plane.normal_W;
-  }
-  return out;
+  return mapping::with_normals(impl_->map, impl_->seen_from_W_m, impl_->params.neighbours,
+                               impl_->params.match_distance_m);
 }
 
 }  // namespace tumble

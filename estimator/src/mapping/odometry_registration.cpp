@@ -128,12 +128,13 @@ void LidarInertialOdometry::Impl::register_sweep(TimeNs end_ns, SweepReport& rep
   if (!status.ok()) return;
   if (result.verdict != RegistrationVerdict::converged) {
     const bool too_few = result.verdict == RegistrationVerdict::too_few;
-    const bool given_up = lost_sweeps + 1 >= params.lost_sweeps_max;
+    const bool given_up = ++failed_searches >= params.lost_sweeps_max;
     if (chosen.size() >= params.matches_min && ((too_few && prior_trusted) || given_up)) {
       report.verdict = SweepVerdict::degenerate;
     }
     return;
   }
+  failed_searches = 0;
   report.conditioning = result.eigenvalues[5] > 0.0 ? result.eigenvalues[0] / result.eigenvalues[5] : 0.0;
   report.weakest_direction = result.directions.col(0);
   report.verdict =

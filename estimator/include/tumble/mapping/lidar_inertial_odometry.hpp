@@ -94,7 +94,7 @@ class LidarInertialOdometry {
     double map_radius_m = 100.0;
     /// Points that the trajectory places less surely than this are kept out of the map; bound (0, 1e3].
     double map_sigma_max_m = 0.25;
-    /// After so many rejected sweeps in a row the map goes on from the inertial prior, as `degenerate`; bound [1, 1e6].
+    /// Sweeps in a row with points but no place in the map, after which it goes on `degenerate` by inertia; bound [1, 1e6].
     int lost_sweeps_max = 30;
   };
 
