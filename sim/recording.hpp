@@ -25,6 +25,8 @@ struct ImuRecord {
   std::vector<Eigen::Vector3d> gyro_rad_s;
   std::vector<Eigen::Vector3d> accel_m_s2; ///< specific force
   std::vector<std::uint8_t> clip_flags;    ///< bits gyro x y z, accel x y z; zero for devices without flags
+  std::vector<Eigen::Vector3d> magnetic_field_t;  ///< flux density in I, one per sample; empty without magnetometer
+  Eigen::Vector3d earth_field_W_t = Eigen::Vector3d::Zero();  ///< the Earth's, undisturbed, from a map; 0: unknown
 };
 
 /// Returns of one lidar, sweep after sweep; misses leave no point.
@@ -68,12 +70,13 @@ struct ContactTruth {
 struct ImuTruth {
   std::string name;
   Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();  ///< true mounting
-  std::vector<Eigen::Vector3d> rate_rad_s;            ///< exact mean rate over the window
-  std::vector<Eigen::Vector3d> specific_force_m_s2;   ///< exact mean specific force over the window
+  std::vector<Eigen::Vector3d> rate_rad_s;            ///< exact: rotation over the window over its length
+  std::vector<Eigen::Vector3d> specific_force_m_s2;   ///< exact: velocity gained less gravity, in half-way axes
   std::vector<Eigen::Vector3d> gyro_unclipped_rad_s;  ///< the reading with all errors but the rail
   std::vector<Eigen::Vector3d> accel_unclipped_m_s2;
   std::vector<Eigen::Vector3d> gyro_bias_rad_s;       ///< bias in force at each sample
   std::vector<Eigen::Vector3d> accel_bias_m_s2;
+  std::vector<Eigen::Vector3d> magnetic_field_t;      ///< true mean over the window, disturbances included
 };
 
 /// Exact lidar: parallel to LidarRecord's points.

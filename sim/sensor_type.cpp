@@ -30,7 +30,9 @@ void add_lidar(const SensorContext& context, Recording& recording) {
 }
 
 const SensorType& imu_sensor() {
-  static const SensorType kType{{"imu", "gyroscope and accelerometer", imu_parameters()}, add_imu};
+  static const SensorType kType{{"imu", "gyroscope and accelerometer, magnetometer where asked for", imu_parameters()},
+                                add_imu,
+                                check_imu_values};
   return kType;
 }
 

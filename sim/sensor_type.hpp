@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "sim/engine/model.hpp"
@@ -22,11 +23,12 @@ struct SensorContext {
   int threads;
 };
 
-/// A kind of sensor: its parameters, and how its readings and its truth are added to a recording that holds the body's
-/// truth.
+/// A kind of sensor: its parameters, how its readings and its truth are added to a recording that holds the body's
+/// truth, and, unless null, what refuses resolved numbers that contradict each other (`place` begins its message).
 struct SensorType {
   ComponentType component;
   void (*simulate)(const SensorContext& context, Recording& recording);
+  void (*check)(const Values& values, const std::string& place) = nullptr;
 };
 
 /// All kinds, in the order of registration.

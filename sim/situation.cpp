@@ -39,8 +39,9 @@ SensorSpec resolve_sensor(const SensorSpec& sensor) {
   const std::string place = "sensors." + sensor.name;
   if (sensor.site.empty()) throw InvalidSituation(place + ": no site given");
   SensorSpec out = sensor;
-  out.values =
-      resolve(place, sensor.values, find_entry(all_sensor_types(), sensor.kind, place + ".kind").component.parameters);
+  const SensorType& type = find_entry(all_sensor_types(), sensor.kind, place + ".kind");
+  out.values = resolve(place, sensor.values, type.component.parameters);
+  if (type.check != nullptr) type.check(out.values, place);
   out.mount_error = resolve(place + ".mount_error", sensor.mount_error, kMountError);
   return out;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/attitude_filter.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "tumble/attitude/strapdown.hpp"
 
@@ -8,20 +8,7 @@ namespace tumble::scenarios {
 namespace {
 
 Estimate run(const sim::Sensors& sensors, const sim::Values&, const OracleInput&) {
-  Estimate estimate;
-  std::vector<ImuSample> samples;
-  estimate.status = bridge::primary_imu_samples(sensors, samples);
-  if (!estimate.status.ok()) return estimate;
-
-  const Strapdown strapdown{Strapdown::Params{}};
-  Strapdown::State state;
-  estimate.attitudes.reserve(samples.size());
-  for (const ImuSample& sample : samples) {
-    estimate.status = strapdown.step(sample, state);
-    if (!estimate.status.ok()) return estimate;
-    estimate.attitudes.push_back({sample.time_ns, state.q_WI, Eigen::Matrix3d::Zero()});
-  }
-  return estimate;
+  return run_attitude_filter<Strapdown>(sensors, Strapdown::Params{});
 }
 
 }  // namespace

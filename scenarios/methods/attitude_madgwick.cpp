@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <array>
 
-#include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/attitude_filter.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "tumble/attitude/madgwick.hpp"
 
@@ -9,27 +9,19 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::array<sim::Parameter, 1> kParameters = {{
-    {"gain_rad_s", 0.033, 0.0, 10.0, "rad/s", "speed of the tilt correction, as a quaternion rate (Madgwick, eq. 33)"},
-}};
+const std::array<sim::Parameter, 1>& parameters_of_the_filter() {
+  static const Madgwick::Params library;
+  static const std::array<sim::Parameter, 1> parameters = {{
+      {"gain_rad_s", library.gain_rad_s, 0.0, 10.0, "rad/s",
+       "speed of the tilt correction, as a quaternion rate (Madgwick, eq. 33)"},
+  }};
+  return parameters;
+}
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  Estimate estimate;
-  std::vector<ImuSample> samples;
-  estimate.status = bridge::primary_imu_samples(sensors, samples);
-  if (!estimate.status.ok()) return estimate;
-
   Madgwick::Params params;
   params.gain_rad_s = parameters.at("gain_rad_s");
-  const Madgwick madgwick(params);
-  Madgwick::State state;
-  estimate.attitudes.reserve(samples.size());
-  for (const ImuSample& sample : samples) {
-    estimate.status = madgwick.step(sample, state);
-    if (!estimate.status.ok()) return estimate;
-    estimate.attitudes.push_back({sample.time_ns, state.q_WI, Eigen::Matrix3d::Zero()});
-  }
-  return estimate;
+  return run_attitude_filter<Madgwick>(sensors, params);
 }
 
 }  // namespace
@@ -40,7 +32,7 @@ Method attitude_madgwick() {
   info.kind = Kind::attitude;
   info.doc = "Madgwick's gradient filter on the primary IMU's gyro and accelerometer.";
   info.source = "S. Madgwick, An efficient orientation filter for inertial and inertial/magnetic sensor arrays, 2010";
-  info.parameters = kParameters;
+  info.parameters = parameters_of_the_filter();
   return make_method(std::move(info), run);
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/map_file.hpp"
@@ -16,10 +17,11 @@ namespace {
 using nlohmann::json;
 
 constexpr int kFormatVersion = 1;
-constexpr const char* kFiles[] = {"estimate.json",  "rates.csv",       "attitude.tum", "trajectory.tum",
-                                  "sweeps.csv",     "sweep_poses.csv", "map.ply"};
+constexpr const char* kFiles[] = {"estimate.json", "rates.csv",  "attitude.tum",    "trajectory.tum",
+                                  "contacts.csv",  "sweeps.csv", "sweep_poses.csv", "map.ply"};
 const std::string kRatesHeader = "time_ns,wx_rad_s,wy_rad_s,wz_rad_s,cxx,cxy,cxz,cyy,cyz,czz,clipped_axes,source";
 const std::string kPose = "px_m,py_m,pz_m,qx,qy,qz,qw,vx_m_s,vy_m_s,vz_m_s";
+const std::string kContactsHeader = "time_ns,label";
 const std::string kSweepsHeader = "end_ns,verdict,iterations,inlier_share,conditioning,pose_time_ns," + kPose;
 const std::string kSweepPosesHeader = "sweep,time_ns," + kPose;
 
@@ -96,6 +98,36 @@ void read_rates(const std::filesystem::path& path, std::vector<RateState>& rates
     }
     rate.source = static_cast<RateSource>(source);
     rates.push_back(rate);
+  }
+}
+
+// 0 air, 1 grip, 2 slip, 3 slide, as in a recording's truth
+void write_contacts(const std::filesystem::path& path, const Estimate& estimate) {
+  TableWriter table(path, ',', kContactsHeader);
+  for (std::size_t k = 0; k < estimate.contacts.size(); ++k) {
+    table.integer(estimate.poses[k].time_ns);
+    table.integer(static_cast<int>(estimate.contacts[k]));
+    table.end_row();
+  }
+  table.close();
+}
+
+void read_contacts(const std::filesystem::path& path, Estimate& estimate) {
+  const Table table = Table::read(path, ',', kContactsHeader, 2);
+  if (table.rows.size() != estimate.poses.size()) {
+    throw BadInput(path.string() + ": " + std::to_string(table.rows.size()) + " rows, must be " +
+                   std::to_string(estimate.poses.size()) + " as there are poses");
+  }
+  for (std::size_t k = 0; k < table.rows.size(); ++k) {
+    const Table::Row& row = table.rows[k];
+    if (table.integer(row, 0) != estimate.poses[k].time_ns) {
+      throw BadInput(path.string() + ":" + std::to_string(row.line) + ": not the time of the pose of the same row");
+    }
+    const std::int64_t label = table.integer(row, 1);
+    if (label < 0 || label > static_cast<int>(sim::ContactLabel::slide)) {
+      throw BadInput(path.string() + ":" + std::to_string(row.line) + ": unknown label " + std::to_string(label));
+    }
+    estimate.contacts.push_back(static_cast<sim::ContactLabel>(label));
   }
 }
 
@@ -238,6 +270,13 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
     }
     table.close();
   }
+  if (!estimate.contacts.empty()) {
+    if (estimate.contacts.size() != estimate.poses.size()) {
+      throw std::invalid_argument("an estimate has " + std::to_string(estimate.contacts.size()) + " contacts for " +
+                                  std::to_string(estimate.poses.size()) + " poses");
+    }
+    write_contacts(folder / "contacts.csv", estimate);
+  }
   if (!estimate.sweeps.empty()) write_sweeps(folder, estimate);
   if (!estimate.map.empty()) write_map(folder / "map.ply", estimate.map);
 
@@ -262,6 +301,7 @@ Estimate read_estimate(const std::filesystem::path& path, Kind& kind, std::strin
   const auto there = [&](const char* name) { return std::filesystem::exists(path / name); };
   if (there("rates.csv")) read_rates(path / "rates.csv", estimate.rates);
   if (there("trajectory.tum")) read_tum(path / "trajectory.tum", estimate.poses);
+  if (there("contacts.csv")) read_contacts(path / "contacts.csv", estimate);
   if (there("attitude.tum")) {
     std::vector<PoseState> poses;
     read_tum(path / "attitude.tum", poses);

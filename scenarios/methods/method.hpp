@@ -33,6 +33,9 @@ struct Estimate {
   std::vector<RateState> rates;             ///< kind rate (and what a slam method deskewed with)
   std::vector<AttitudeState> attitudes;     ///< kind attitude
   std::vector<PoseState> poses;             ///< kinds position and slam, at IMU times
+  /// What the method says of the contact at each pose, parallel to `poses`; empty when it says nothing. `air`: no
+  /// contact, or one whose motion it does not know (a bump).
+  std::vector<sim::ContactLabel> contacts;
   std::vector<LidarInertialOdometry::SweepReport> sweeps;  ///< kind slam, one per sweep
   std::vector<std::int64_t> sweep_end_ns;   ///< parallel to `sweeps`
   std::vector<MapPoint> map;                ///< kind slam

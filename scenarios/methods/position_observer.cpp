@@ -62,6 +62,9 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
     const Eigen::Vector3d p_WG_m(state.p_WG_m.x(), state.p_WG_m.y(), 0.0);
     const Eigen::Vector3d v_WG_m_s(state.v_WG_m_s.x(), state.v_WG_m_s.y(), 0.0);
     estimate.poses.push_back(centre_pose(sensors, attitude.samples[k].time_ns, attitude.q_WI[k], p_WG_m, v_WG_m_s));
+    estimate.contacts.push_back(state.open ? slip_or_slide(sensors.sphere_radius_m, attitude.q_WI[k],
+                                                           attitude.samples[k].angular_velocity_rad_s, v_WG_m_s)
+                                           : sim::ContactLabel::grip);
   }
   return estimate;
 }

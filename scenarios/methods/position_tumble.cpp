@@ -2,89 +2,208 @@
 #include <array>
 #include <memory>
 
-#include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/position_tumble.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/sphere_attitude.hpp"
-#include "tumble/rolling/rolling_filter.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
+constexpr double kCentreSigmaM = 6e-3;
+constexpr double kRangeShare = 0.98;  // of the stated range: the mean of several units at the rail, each a little askew
+
 // the library's own defaults, so that each stands in one place; sources are those of the library's documentation
-const std::array<sim::Parameter, 10>& parameters_of_the_filter() {
+const std::array<sim::Parameter, 12>& parameters_of_the_filter() {
   static const RollingFilter::Params library;
-  static const std::array<sim::Parameter, 10> parameters = {{
+  static const std::array<sim::Parameter, 12> parameters = {{
       {"tilt_sigma_rad", library.tilt_sigma_rad, 0.0, 1e3, "rad", "prior of the levelling by the first sample"},
       {"gyro_bias_sigma_rad_s", library.gyro_bias_sigma_rad_s, 0.0, 1e3, "rad/s", "prior of the gyro's bias"},
       {"accel_bias_sigma_m_s2", library.accel_bias_sigma_m_s2, 0.0, 1e3, "m/s^2", "prior of the accelerometer's bias"},
-      {"lever_arm_sigma_m", library.lever_arm_sigma_m, 0.0, 1e3, "m",
-       "prior of the lever arm from the sphere's centre"},
+      {"lever_arm_sigma_m", kCentreSigmaM, 0.0, 1e3, "m",
+       "prior of the lever arm: the centre of mass, which it is given from, is not the sphere's centre"},
+      {"radius_sigma_m", library.radius_sigma_m, 0.0, 1.0, "m", "prior of the radius; 0: it is known"},
       {"grip_sigma_m_s", library.grip_sigma_m_s, 1e-12, 1e3, "m/s", "of the contact velocity while gripping"},
       {"slip_begins_per_s", library.slip_begins_per_s, 1e-12, 1e3, "1/s", "rate of grip changing to slip"},
       {"slip_ends_per_s", library.slip_ends_per_s, 1e-12, 1e3, "1/s", "and back"},
       {"bump_begins_per_s", library.bump_begins_per_s, 1e-12, 1e3, "1/s", "rate of grip changing to bump"},
       {"bump_ends_per_s", library.bump_ends_per_s, 1e-12, 1e3, "1/s", "and back"},
+      {"incline_begins_per_s", library.incline_begins_per_s, 1e-12, 1e3, "1/s", "rate of a slope beginning"},
       {"event_shortest_s", library.event_shortest_s, 0.0, 10.0, "s", "least stay in slip or bump"},
   }};
   return parameters;
 }
 
-RollingFilter::Params filter_params(const sim::Sensors& sensors, const sim::Values& parameters) {
-  RollingFilter::Params params;
-  params.radius_m = sensors.sphere_radius_m;
-  params.gravity_m_s2 = sensors.gravity_m_s2;
-  // from the centre of mass, which the calibration refers to; what lies between it and the centre is estimated
-  params.lever_arm_m = bridge::lever_arm_I_m(sensors.imus.front());
-  params.tilt_sigma_rad = parameters.at("tilt_sigma_rad");
-  params.gyro_bias_sigma_rad_s = parameters.at("gyro_bias_sigma_rad_s");
-  params.accel_bias_sigma_m_s2 = parameters.at("accel_bias_sigma_m_s2");
-  params.lever_arm_sigma_m = parameters.at("lever_arm_sigma_m");
-  params.grip_sigma_m_s = parameters.at("grip_sigma_m_s");
-  params.slip_begins_per_s = parameters.at("slip_begins_per_s");
-  params.slip_ends_per_s = parameters.at("slip_ends_per_s");
-  params.bump_begins_per_s = parameters.at("bump_begins_per_s");
-  params.bump_ends_per_s = parameters.at("bump_ends_per_s");
-  params.event_shortest_s = parameters.at("event_shortest_s");
-  return params;
+constexpr sim::Parameter kLag = {"lag_s", 1.0, 0.02, 60.0, "s", "how long a pose may wait for what follows"};
+
+std::span<const sim::Parameter> parameters_with_lag() {
+  static const std::vector<sim::Parameter> all = joined_parameters({parameters_of_the_filter(), {&kLag, 1}});
+  return all;
 }
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  Estimate estimate;
-  estimate.frame = Frame::centre;
-  std::vector<ImuSample> samples;
-  estimate.status = bridge::primary_imu_samples(sensors, samples);
-  if (!estimate.status.ok()) return estimate;
-  require_sphere("position/tumble", sensors);
+PoseState body_pose(TimeNs time_ns, const Eigen::Quaterniond& q_WB, const Eigen::Vector3d& p_WG_m,
+                    const Eigen::Vector3d& v_WG_m_s) {
+  PoseState pose;
+  pose.time_ns = time_ns;
+  pose.p_WA_m = p_WG_m;
+  pose.q_WA = q_WB;
+  pose.v_WA_m_s = v_WG_m_s;
+  return pose;
+}
 
-  const RollingFilter filter(filter_params(sensors, parameters));
-  // 360 KiB: not for the stack of a worker
+sim::ContactLabel contact_label(RollingMode mode, double radius_m, const PoseState& pose, const ImuSample& sample) {
+  if (mode == RollingMode::bump) return sim::ContactLabel::air;
+  if (mode != RollingMode::slip) return sim::ContactLabel::grip;
+  return slip_or_slide(radius_m, pose.q_WA, sample.angular_velocity_rad_s, pose.v_WA_m_s);
+}
+
+/// Says what the contact does at the newest pose.
+void add_contact(RollingMode mode, bool at_rest, double radius_m, const ImuSample& sample, Estimate& estimate) {
+  estimate.contacts.push_back(contact_label(mode, radius_m, estimate.poses.back(), sample));
+  if (mode == RollingMode::slip) estimate.health["samples_slip"] += 1.0;
+  if (mode == RollingMode::bump) estimate.health["samples_bump"] += 1.0;
+  if (mode == RollingMode::incline) estimate.health["samples_incline"] += 1.0;
+  if (at_rest) estimate.health["samples_rest"] += 1.0;
+}
+
+/// Merges the IMUs; false when `estimate.status` tells why not.
+bool merged(const char* method, const sim::Sensors& sensors, MergedImus& imus, Estimate& estimate) {
+  estimate.frame = Frame::centre;
+  estimate.status = merge_imus(sensors, imus);
+  if (!estimate.status.ok()) return false;
+  require_sphere(method, sensors);
+  estimate.health["imus"] = imus.units;
+  estimate.health["imu_readings_left_out"] = imus.left_out;
+  estimate.health["imu_offset_max_s"] = imus.offset_max_s;
+  return true;
+}
+
+Estimate run_live(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  Estimate estimate;
+  MergedImus imus;
+  if (!merged("position/tumble_live", sensors, imus, estimate)) return estimate;
+  const RollingFilter filter(rolling_params(sensors, imus, parameters));
+  // 430 KiB: not for the stack of a worker
   const auto state = std::make_unique<RollingFilter::State>();
-  estimate.poses.reserve(samples.size());
-  for (const ImuSample& sample : samples) {
+  estimate.poses.reserve(imus.samples.size());
+  for (const ImuSample& sample : imus.samples) {
     estimate.status = filter.step(sample, *state);
     if (!estimate.status.ok()) return estimate;
-    PoseState pose = centre_pose(sensors, sample.time_ns, state->q_WI, state->p_WG_m, state->v_WG_m_s);
+    PoseState pose = body_pose(sample.time_ns, state->q_WI, state->p_WG_m, state->v_WG_m_s);
     pose.covariance.topLeftCorner<3, 3>() = state->position_covariance_m2;
     estimate.poses.push_back(pose);
-    if (state->mode == RollingMode::slip) estimate.health["samples_slip"] += 1.0;
-    if (state->mode == RollingMode::bump) estimate.health["samples_bump"] += 1.0;
-    if (state->at_rest) estimate.health["samples_rest"] += 1.0;
+add_contact(state->mode, state->at_rest, sensors.sphere_radius_m, sample, estimate);
   }
+  return estimate;
+}
+
+Estimate run_lag(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  Estimate estimate;
+  MergedImus imus;
+  if (!merged("position/tumble_lag", sensors, imus, estimate)) return estimate;
+  RollingSmoother::Params params;
+  params.filter = rolling_params(sensors, imus, parameters);
+  params.lag_s = parameters.at("lag_s");
+  smooth(params, imus, {}, estimate);
+  return estimate;
+}
+
+Estimate run_whole(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  Estimate estimate;
+  MergedImus imus;
+  if (!merged("position/tumble", sensors, imus, estimate)) return estimate;
+  RollingSmoother::Params params;
+  params.filter = rolling_params(sensors, imus, parameters);
+  smooth(params, imus, {}, estimate);
   return estimate;
 }
 
 }  // namespace
 
+std::span<const sim::Parameter> rolling_parameters() {
+  return parameters_of_the_filter();
+}
+
+RollingParams rolling_params(const sim::Sensors& sensors, const MergedImus& imus, const sim::Values& parameters) {
+  RollingParams params;
+  params.radius_m = sensors.sphere_radius_m;
+  params.gravity_m_s2 = sensors.gravity_m_s2;
+  // from the centre of mass, which the calibration refers to; what lies between it and the centre is estimated
+  params.lever_arm_m = imus.lever_arm_m;
+  const double range = sensors.imus.front().stated_gyro_range_rad_s;
+  if (range > 0.0) params.gyro_range_rad_s = kRangeShare * range;
+  params.tilt_sigma_rad = parameters.at("tilt_sigma_rad");
+  params.gyro_bias_sigma_rad_s = parameters.at("gyro_bias_sigma_rad_s");
+  params.accel_bias_sigma_m_s2 = parameters.at("accel_bias_sigma_m_s2");
+  params.lever_arm_sigma_m = parameters.at("lever_arm_sigma_m");
+  params.radius_sigma_m = parameters.at("radius_sigma_m");
+  params.grip_sigma_m_s = parameters.at("grip_sigma_m_s");
+  params.slip_begins_per_s = parameters.at("slip_begins_per_s");
+  params.slip_ends_per_s = parameters.at("slip_ends_per_s");
+  params.bump_begins_per_s = parameters.at("bump_begins_per_s");
+  params.bump_ends_per_s = parameters.at("bump_ends_per_s");
+  params.incline_begins_per_s = parameters.at("incline_begins_per_s");
+  params.event_shortest_s = parameters.at("event_shortest_s");
+  return params;
+}
+
+void smooth(const RollingSmoother::Params& params, const MergedImus& imus, std::span<const RollingMode> known,
+            Estimate& estimate) {
+  const RollingSmoother smoother(params);
+  const auto state = std::make_unique<RollingSmoother::State>();
+  std::vector<RollingEstimate> out;
+  out.reserve(imus.samples.size());
+  for (const ImuSample& sample : imus.samples) {
+    estimate.status = smoother.step(sample, *state, out);
+    if (!estimate.status.ok()) break;
+  }
+  if (known.empty()) {
+    smoother.finish(*state, out);
+  } else {
+    smoother.finish(known, *state, out);
+  }
+  estimate.poses.reserve(out.size());
+  for (std::size_t k = 0; k < out.size(); ++k) {  // one for each sample
+    const RollingEstimate& e = out[k];
+    PoseState pose = body_pose(e.time_ns, e.q_WI, e.p_WG_m, e.v_WG_m_s);
+    pose.covariance = e.covariance;
+    estimate.poses.push_back(pose);
+    add_contact(e.mode, e.at_rest, params.filter.radius_m, imus.samples[k], estimate);
+    if (e.uncertain) estimate.health["samples_uncertain"] += 1.0;
+  }
+}
+
 Method position_tumble() {
   MethodInfo info;
   info.name = "tumble";
   info.kind = Kind::position;
-  info.doc = "Rolling as a velocity measurement in an inertial filter, with grip, slip and bump as hypotheses; live.";
+  info.doc = "Rolling as a velocity measurement in an inertial filter, grip, slip, bump and slope as hypotheses; smoothed over the run.";
   info.source = "ours";
   info.parameters = parameters_of_the_filter();
   info.robots = {"sphere"};
-  return make_method(std::move(info), run);
+  return make_method(std::move(info), run_whole);
+}
+
+Method position_tumble_lag() {
+  MethodInfo info;
+  info.name = "tumble_lag";
+  info.kind = Kind::position;
+  info.doc = "The same, each pose smoothed with what follows within a fixed lag.";
+  info.source = "ours";
+  info.parameters = parameters_with_lag();
+  info.robots = {"sphere"};
+  return make_method(std::move(info), run_lag);
+}
+
+Method position_tumble_live() {
+  MethodInfo info;
+  info.name = "tumble_live";
+  info.kind = Kind::position;
+  info.doc = "The same, live: each pose with what came before it alone.";
+  info.source = "ours";
+  info.parameters = parameters_of_the_filter();
+  info.robots = {"sphere"};
+  return make_method(std::move(info), run_live);
 }
 
 }  // namespace tumble::scenarios

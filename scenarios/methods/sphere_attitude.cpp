@@ -60,6 +60,12 @@ Status sphere_attitude(const char* method, const sim::Sensors& sensors, double r
   return {};
 }
 
+sim::ContactLabel slip_or_slide(double radius_m, const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& w_WI_I_rad_s,
+                                const Eigen::Vector3d& v_WG_m_s) {
+  const Eigen::Vector3d rolling_m_s = radius_m * (q_WI * w_WI_I_rad_s).cross(Eigen::Vector3d::UnitZ());
+  return rolling_m_s.norm() > v_WG_m_s.head<2>().norm() ? sim::ContactLabel::slip : sim::ContactLabel::slide;
+}
+
 PoseState centre_pose(const sim::Sensors& sensors, TimeNs time_ns, const Eigen::Quaterniond& q_WI,
                       const Eigen::Vector3d& p_WG_m, const Eigen::Vector3d& v_WG_m_s) {
   PoseState pose;

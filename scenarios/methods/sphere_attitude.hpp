@@ -26,6 +26,11 @@ Status sphere_attitude(const char* method, const sim::Sensors& sensors, double r
 PoseState centre_pose(const sim::Sensors& sensors, TimeNs time_ns, const Eigen::Quaterniond& q_WI,
                       const Eigen::Vector3d& p_WG_m, const Eigen::Vector3d& v_WG_m_s);
 
+/// `slide` when the centre travels faster than the sphere turns, `slip` when it turns faster: the label of a contact
+/// point that is known to move along the floor.
+sim::ContactLabel slip_or_slide(double radius_m, const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& w_WI_I_rad_s,
+                                const Eigen::Vector3d& v_WG_m_s);
+
 /// Throws BadInput, naming `method`, unless the sensors are those of a sphere.
 void require_sphere(const char* method, const sim::Sensors& sensors);
 

@@ -53,6 +53,14 @@ class Hasher {
     count(rows.size());
     bytes(rows.data(), rows.size() * sizeof(Row));
   }
+  template <class Row>
+  void optional_rows(const char* name, const std::vector<Row>& given, const char* unit, const char* columns,
+                     Storage storage) {
+    if (!given.empty()) rows(name, given, unit, columns, storage);
+  }
+  void optional_point(const char* name, const Eigen::Vector3d& given, const char* unit) {
+    if (!given.isZero(0.0)) point(name, given, unit);
+  }
   void texts(const char* name, const std::vector<std::string>& texts) {
     text(name);
     count(texts.size());

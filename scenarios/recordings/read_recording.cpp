@@ -34,6 +34,13 @@ class Reader {
   void rows(const char* name, std::vector<Row>& rows, const char*, const char*, Storage) {
     group_.read(name, rows);
   }
+  template <class Row>
+  void optional_rows(const char* name, std::vector<Row>& rows, const char*, const char*, Storage) {
+    if (group_.has(name)) group_.read(name, rows);
+  }
+  void optional_point(const char* name, Eigen::Vector3d& given, const char* unit) {
+    if (group_.has(name)) point(name, given, unit);
+  }
   void texts(const char* name, std::vector<std::string>& texts) { texts = group_.read_texts(name); }
   template <class Record, class Fields>
   void group(const char* name, Record& record, Fields&& fields) {

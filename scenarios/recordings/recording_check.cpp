@@ -53,6 +53,13 @@ std::string first_of(std::initializer_list<std::string> problems) {
   return found == problems.end() ? "" : *found;
 }
 
+/// Of rows that a sensor may do without.
+std::string optional_length_problem(const char* name, std::size_t length, std::size_t needed) {
+  if (length == 0 || length == needed) return "";
+  return std::string(name) + " has " + std::to_string(length) + " rows, must have " + std::to_string(needed) +
+         " or none";
+}
+
 std::string imu_problem(const sim::ImuRecord& imu) {
   const std::size_t n = imu.time_ns.size();
   return first_of(
@@ -63,7 +70,9 @@ std::string imu_problem(const sim::ImuRecord& imu) {
        length_problem({{"time_ns", n},
                        {"gyro_I_rad_s", imu.gyro_rad_s.size()},
                        {"accel_I_m_s2", imu.accel_m_s2.size()},
-                       {"clip_flags", imu.clip_flags.size()}})});
+                       {"clip_flags", imu.clip_flags.size()}}),
+       optional_length_problem("magnetic_field_I_t", imu.magnetic_field_t.size(), n),
+       imu.earth_field_W_t.allFinite() ? "" : "earth_field_W_t is not finite"});
 }
 
 std::string sweep_problem(const sim::LidarRecord& lidar) {
@@ -95,13 +104,14 @@ std::string lidar_problem(const sim::LidarRecord& lidar) {
 }
 
 std::string imu_truth_problem(const sim::ImuTruth& imu) {
-  return first_of(
-      {pose_problem("T_BI", imu.T_BI), length_problem({{"rate_I_rad_s", imu.rate_rad_s.size()},
-                                                       {"specific_force_I_m_s2", imu.specific_force_m_s2.size()},
-                                                       {"gyro_unclipped_I_rad_s", imu.gyro_unclipped_rad_s.size()},
-                                                       {"accel_unclipped_I_m_s2", imu.accel_unclipped_m_s2.size()},
-                                                       {"gyro_bias_I_rad_s", imu.gyro_bias_rad_s.size()},
-                                                       {"accel_bias_I_m_s2", imu.accel_bias_m_s2.size()}})});
+  return first_of({pose_problem("T_BI", imu.T_BI),
+                   length_problem({{"rate_I_rad_s", imu.rate_rad_s.size()},
+                                   {"specific_force_I_m_s2", imu.specific_force_m_s2.size()},
+                                   {"gyro_unclipped_I_rad_s", imu.gyro_unclipped_rad_s.size()},
+                                   {"accel_unclipped_I_m_s2", imu.accel_unclipped_m_s2.size()},
+                                   {"gyro_bias_I_rad_s", imu.gyro_bias_rad_s.size()},
+                                   {"accel_bias_I_m_s2", imu.accel_bias_m_s2.size()}}),
+                   optional_length_problem("magnetic_field_I_t", imu.magnetic_field_t.size(), imu.rate_rad_s.size())});
 }
 
 std::string surface_problem(std::int32_t id, std::size_t surfaces) {
@@ -180,9 +190,13 @@ std::string find_mismatch(const sim::Sensors& sensors, const sim::Truth& truth) 
   if (truth.lidars.size() != sensors.lidars.size()) return "truth and sensors differ in the number of lidars";
   std::string problem;
   for (std::size_t i = 0; i < truth.imus.size() && problem.empty(); ++i) {
-    problem =
-        in("imus/" + std::to_string(i), length_problem({{"sensors time_ns", sensors.imus[i].time_ns.size()},
-                                                        {"truth rate_I_rad_s", truth.imus[i].rate_rad_s.size()}}));
+    const sim::ImuRecord& imu = sensors.imus[i];
+    const sim::ImuTruth& imu_truth = truth.imus[i];
+    problem = in("imus/" + std::to_string(i),
+                 first_of({length_problem({{"sensors time_ns", imu.time_ns.size()},
+                                           {"truth rate_I_rad_s", imu_truth.rate_rad_s.size()}}),
+                           optional_length_problem("truth magnetic_field_I_t", imu_truth.magnetic_field_t.size(),
+                                                   imu.magnetic_field_t.size())}));
   }
   for (std::size_t i = 0; i < truth.lidars.size() && problem.empty(); ++i) {
     problem = in("lidars/" + std::to_string(i),

@@ -12,7 +12,8 @@
 ///
 /// An archive has: value(name, text | double | int64), pose(name, isometry), point(name, vector, unit),
 /// rows(name, vector, unit, columns, storage), texts(name, strings), list(name, records, fields), group(name, record,
-/// fields).
+/// fields). optional_rows and optional_point are for what came after the first files: absent when empty or zero, and
+/// then not hashed either, so that older files keep their digests.
 namespace tumble::scenarios {
 
 namespace hdf5 {
@@ -47,6 +48,8 @@ void imu_fields(Archive& archive, Imu& imu) {
   archive.rows("gyro_I_rad_s", imu.gyro_rad_s, "rad/s", kXyz, Storage::deflated);
   archive.rows("accel_I_m_s2", imu.accel_m_s2, "m/s^2", kXyz, Storage::deflated);
   archive.rows("clip_flags", imu.clip_flags, "1", "", Storage::deflated);
+  archive.optional_rows("magnetic_field_I_t", imu.magnetic_field_t, "T", kXyz, Storage::deflated);
+  archive.optional_point("earth_field_W_t", imu.earth_field_W_t, "T");
 }
 
 template <class Archive, class Lidar>
@@ -93,6 +96,7 @@ void imu_truth_fields(Archive& archive, Imu& imu) {
   archive.rows("accel_unclipped_I_m_s2", imu.accel_unclipped_m_s2, "m/s^2", kXyz, Storage::deflated);
   archive.rows("gyro_bias_I_rad_s", imu.gyro_bias_rad_s, "rad/s", kXyz, Storage::deflated);
   archive.rows("accel_bias_I_m_s2", imu.accel_bias_m_s2, "m/s^2", kXyz, Storage::deflated);
+  archive.optional_rows("magnetic_field_I_t", imu.magnetic_field_t, "T", kXyz, Storage::deflated);
 }
 
 template <class Archive, class Lidar>

@@ -32,6 +32,14 @@ class Writer {
   void rows(const char* name, const std::vector<Row>& rows, const char* unit, const char* columns, Storage storage) {
     group_.write(name, rows, unit, columns, storage == Storage::deflated);
   }
+  template <class Row>
+  void optional_rows(const char* name, const std::vector<Row>& given, const char* unit, const char* columns,
+                     Storage storage) {
+    if (!given.empty()) rows(name, given, unit, columns, storage);
+  }
+  void optional_point(const char* name, const Eigen::Vector3d& given, const char* unit) {
+    if (!given.isZero(0.0)) point(name, given, unit);
+  }
   void texts(const char* name, const std::vector<std::string>& texts) { group_.write_texts(name, texts); }
   template <class Record, class Fields>
   void group(const char* name, const Record& record, Fields&& fields) {

@@ -12,6 +12,7 @@ namespace tumble::scenarios {
 std::vector<Metric> rate_metrics();
 std::vector<Metric> attitude_metrics();
 std::vector<Metric> position_metrics();
+std::vector<Metric> slip_metrics();
 std::vector<Metric> trajectory_metrics(Kind kind);  ///< of kinds position and slam
 std::vector<Metric> end_pose_metrics();
 std::vector<Metric> map_metrics();

@@ -111,6 +111,7 @@ class Sweep {
     for (Worker& worker : workers_) {
       worker.process.read_available(worker.buffer);
       take_lines(worker);
+      if (worker.finished) ++progress_.draws_done;
     }
     workers_.clear();
     report();

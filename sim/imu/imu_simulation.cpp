@@ -2,104 +2,110 @@
 #include "sim/imu/imu_simulation.hpp"
 
 #include <cmath>
+#include <optional>
 #include <sstream>
 #include <string>
 
-#include "sim/imu/stages.hpp"
+#include "sim/imu/imu_chain.hpp"
+#include "sim/imu/magnetometer.hpp"
+#include "sim/imu/time_stamps.hpp"
 #include "sim/truth/record_truth.hpp"
 
 namespace tumble::sim {
 
 namespace {
 
-/// One triad's errors up to the rail, at the physics rate.
-class Triad {
- public:
-  Triad(const Values& values, const std::string& prefix, const std::string& unit, double rate_hz, std::uint64_t seed,
-        const std::string& stream_name)
-      : noise_stream_(seed, stream_name + ".noise"),
-        bias_stream_(seed, stream_name + ".bias"),
-        rate_hz_(rate_hz),
-        noise_(values.at(prefix + "_noise_" + unit + "_sqrt_hz")),
-        low_pass_(values.at(prefix + "_bandwidth_hz"), rate_hz),
-        bias_({values.at(prefix + "_bias_turn_on_" + unit), values.at(prefix + "_bias_in_run_" + unit),
-               values.at(prefix + "_bias_in_run_s"), values.at(prefix + "_bias_walk_" + unit + "_sqrt_s")},
-              1.0 / rate_hz, bias_stream_) {
-    Stream axes(seed, stream_name + ".axes");
-    axis_errors_ = draw_axis_errors(axes, values.at(prefix + "_scale_error"), values.at(prefix + "_misalignment_rad"));
-  }
-
-  Eigen::Vector3d operator()(const Eigen::Vector3d& ideal, const Eigen::Vector3d& g_term) {
-    bias_now_ = bias_.next(bias_stream_);
-    return axis_errors_ * low_pass_(ideal) + bias_now_ + g_term + white_noise(noise_stream_, noise_, rate_hz_);
-  }
-  const Eigen::Vector3d& bias() const { return bias_now_; }
-
- private:
-  Stream noise_stream_, bias_stream_;
-  double rate_hz_, noise_;
-  LowPass low_pass_;
-  Bias bias_;
-  Eigen::Matrix3d axis_errors_;
-  Eigen::Vector3d bias_now_ = Eigen::Vector3d::Zero();
+/// Ideal mean rate and specific force over some time, in I.
+struct Ideal {
+  Eigen::Vector3d rate_rad_s, force_m_s2;
 };
 
-/// From the physics rate to one reading per window: rail, digital low-pass, mean, quantum.
-class Output {
+/// Both triads of a device, its stamps, and where the samples go.
+class Device {
  public:
-  struct Params {
-    double rail = 0.0, quantum = 0.0, digital_bandwidth_hz = 0.0;
-    bool rail_after = false;
-    int first_bit = 0;
-  };
-  Output(const Params& params, double rate_hz) : params_(params), low_pass_(params.digital_bandwidth_hz, rate_hz) {}
+  Device(const SensorSpec& sensor, double rate_hz, int steps, std::uint64_t seed, ImuRecord& record, ImuTruth& truth)
+      : record_(record),
+        truth_(truth),
+        gyro_(sensor.values, "gyro", "rad_s", rate_hz, steps, seed, sensor.name + ".gyro"),
+        accel_(sensor.values, "accel", "m_s2", rate_hz, steps, seed, sensor.name + ".accel"),
+        stamps_(sensor.values, "sensors." + sensor.name, record.period_ns, Stream(seed, sensor.name + ".time")),
+        g_sensitivity_(sensor.values.at("gyro_g_sensitivity_s_m")),
+        flagged_(sensor.values.at("clip_flags") > 0.5) {}
 
-  void add(const Eigen::Vector3d& signal) {
-    sum_ += low_pass_(params_.rail_after ? signal : apply_rail(signal, params_.rail, params_.first_bit, flags_));
+  void step(const Ideal& ideal) {
+    gyro_.step(ideal.rate_rad_s, g_sensitivity_ * ideal.force_m_s2);
+    accel_.step(ideal.force_m_s2, Eigen::Vector3d::Zero());
+  }
+
+  /// Ends a window; false when its sample is lost.
+  bool take(const Ideal& exact, std::int64_t end_ns) {
+    std::uint8_t flags = 0;
+    const TriadReading gyro = gyro_.take(exact.rate_rad_s, 0, flags);
+    const TriadReading accel = accel_.take(exact.force_m_s2, 3, flags);
+    const std::optional<std::int64_t> time_ns = stamps_.stamp(end_ns);
+    if (!time_ns) return false;
+    record_.time_ns.push_back(*time_ns);
+    record_.gyro_rad_s.push_back(gyro.delivered);
+    record_.accel_m_s2.push_back(accel.delivered);
+    record_.clip_flags.push_back(flagged_ ? flags : std::uint8_t{0});
+    truth_.rate_rad_s.push_back(exact.rate_rad_s);
+    truth_.specific_force_m_s2.push_back(exact.force_m_s2);
+    truth_.gyro_unclipped_rad_s.push_back(gyro.unclipped);
+    truth_.accel_unclipped_m_s2.push_back(accel.unclipped);
+    truth_.gyro_bias_rad_s.push_back(gyro.bias);
+    truth_.accel_bias_m_s2.push_back(accel.bias);
+    return true;
+  }
+
+ private:
+  ImuRecord& record_;
+  ImuTruth& truth_;
+  TriadChain gyro_, accel_;
+  TimeStamps stamps_;
+  double g_sensitivity_;
+  bool flagged_;
+};
+
+/// The magnetometer of a device, when it has one: true field averaged over each window.
+class Compass {
+ public:
+  Compass(const Truth& truth, const SensorSpec& sensor, const Eigen::Isometry3d& T_BI, std::uint64_t seed)
+      : field_(draw_magnetic_field(sensor.values, truth.p_WB_m, seed)),
+        errors_(sensor.values, seed, sensor.name + ".mag"),
+        truth_(truth),
+        T_BI_(T_BI) {}
+
+  const Eigen::Vector3d& earth_W_t() const { return field_.earth_W_t; }
+  void step(std::size_t k) {
+    const Eigen::Vector3d p_WI_m = truth_.p_WB_m[k] + truth_.q_WB[k] * T_BI_.translation();
+    sum_ += T_BI_.linear().transpose() * (truth_.q_WB[k].conjugate() * field_.at(p_WI_m));
     ++count_;
   }
-
-  /// The reading of the window that ends here; sets the bits of the axes that met the rail in it.
-  Eigen::Vector3d take(std::uint8_t& flags) {
-    Eigen::Vector3d mean = sum_ / count_;
-    if (params_.rail_after) mean = apply_rail(mean, params_.rail, params_.first_bit, flags_);
-    flags = static_cast<std::uint8_t>(flags | flags_);
+  void take(bool kept, ImuRecord& record, ImuTruth& imu_truth) {
+    const Eigen::Vector3d mean = sum_ / count_, reading = errors_.read(mean);
     sum_.setZero();
     count_ = 0;
-    flags_ = 0;
-    return quantise(mean, params_.quantum);
+    if (!kept) return;
+    record.magnetic_field_t.push_back(reading);
+    imu_truth.magnetic_field_t.push_back(mean);
   }
 
  private:
-  Params params_;
-  LowPass low_pass_;
+  MagneticField field_;
+  Magnetometer errors_;
+  const Truth& truth_;
+  const Eigen::Isometry3d& T_BI_;
   Eigen::Vector3d sum_ = Eigen::Vector3d::Zero();
   int count_ = 0;
-  std::uint8_t flags_ = 0;
 };
 
-/// Mean over a window, for the truth.
-struct Mean {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  int count = 0;
-  void add(const Eigen::Vector3d& value) {
-    sum += value;
-    ++count;
-  }
-  Eigen::Vector3d take() {
-    const Eigen::Vector3d mean = sum / count;
-    *this = {};
-    return mean;
-  }
-};
-
-int steps_per_sample(const SensorSpec& sensor, std::int64_t step_ns) {
-  const double steps = 1e9 / (sensor.values.at("output_rate_hz") * static_cast<double>(step_ns));
+int steps_per_sample(const SensorSpec& sensor, double step_ns) {
+  const double steps = 1e9 / (sensor.values.at("output_rate_hz") * step_ns);
   const double whole = std::round(steps);
   if (whole < 1.0 || std::abs(steps - whole) > 1e-9 * whole) {
     std::ostringstream text;
     text << "sensors." << sensor.name << ".output_rate_hz is " << sensor.values.at("output_rate_hz")
-         << " Hz, must divide the physics rate of " << 1e9 / static_cast<double>(step_ns) << " Hz";
+         << " Hz, must divide the physics rate of " << 1e9 / step_ns << " Hz";
     throw InvalidSituation(text.str());
   }
   return static_cast<int>(whole);
@@ -108,6 +114,23 @@ int steps_per_sample(const SensorSpec& sensor, std::int64_t step_ns) {
 BodyState state_at(const Truth& truth, std::size_t k) {
   return {static_cast<double>(k) * static_cast<double>(truth.period_ns) * 1e-9, truth.p_WB_m[k], truth.q_WB[k],
           truth.v_WB_m_s[k], truth.w_WB_B_rad_s[k]};
+}
+
+/// Lever arm and mounting: what the ideal device at T_BI says of the motion from one state to another.
+Ideal ideal_between(const BodyState& before, const BodyState& after, const Eigen::Isometry3d& T_BI,
+                    double gravity_m_s2) {
+  const Eigen::Matrix3d R_IB = T_BI.linear().transpose();
+  return {R_IB * mean_rate_B(before, after), R_IB * specific_force_B(before, after, T_BI.translation(), gravity_m_s2)};
+}
+
+/// The rotation between two attitudes has many vectors, whole turns apart: the one that the steps of the window made.
+/// Below half a turn in a window this is the vector as it is.
+Eigen::Vector3d unwound(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& mean_of_steps_rad_s, double time_s) {
+  constexpr double kTurn_rad = 6.283185307179586;
+  const double norm = rate_rad_s.norm();
+  if (norm == 0.0) return rate_rad_s;
+  const double turns = std::round((mean_of_steps_rad_s.dot(rate_rad_s) / norm - norm) * time_s / kTurn_rad);
+  return turns == 0.0 ? rate_rad_s : Eigen::Vector3d(rate_rad_s * (1.0 + turns * kTurn_rad / (norm * time_s)));
 }
 
 void describe(const SensorSpec& sensor, std::int64_t period_ns, ImuRecord& record) {
@@ -120,61 +143,66 @@ void describe(const SensorSpec& sensor, std::int64_t period_ns, ImuRecord& recor
   record.accel_noise_m_s2_sqrt_hz = sensor.values.at("accel_noise_m_s2_sqrt_hz");
 }
 
+void require_bandwidths_below(const SensorSpec& sensor, double rate_hz) {
+  for (const char* name : {"gyro_bandwidth_hz", "accel_bandwidth_hz", "digital_bandwidth_hz"}) {
+    if (sensor.values.at(name) < 0.5 * rate_hz) continue;
+    std::ostringstream text;
+    text << "sensors." << sensor.name << "." << name << " is " << sensor.values.at(name)
+         << " Hz, must be below half of the chain's rate of " << rate_hz << " Hz";
+    throw InvalidSituation(text.str());
+  }
+}
+
 }  // namespace
 
 void simulate_imu(const Truth& truth, const SensorSpec& sensor, const Eigen::Isometry3d& T_BI, double gravity_m_s2,
                   std::uint64_t seed, ImuRecord& record, ImuTruth& imu_truth) {
-  const Values& values = sensor.values;
-  const int window = steps_per_sample(sensor, truth.period_ns);
-  const double rate_hz = 1e9 / static_cast<double>(truth.period_ns);
-  const std::int64_t offset_ns = std::llround(values.at("time_offset_s") * 1e9);
-  const bool flagged = values.at("clip_flags") > 0.5;
-  describe(sensor, window * truth.period_ns, record);
+  check_imu_values(sensor.values, "sensors." + sensor.name);
+  const int steps = steps_per_sample(sensor, static_cast<double>(truth.period_ns));
+  describe(sensor, steps * truth.period_ns, record);
   imu_truth.name = sensor.name;
   imu_truth.T_BI = T_BI;
+  Device device(sensor, 1e9 / static_cast<double>(truth.period_ns), steps, seed, record, imu_truth);
+  std::optional<Compass> compass;
+  if (sensor.values.at("magnetometer") > 0.5) {
+    compass.emplace(truth, sensor, T_BI, seed);
+    record.earth_field_W_t = compass->earth_W_t();
+  }
 
-  Triad gyro(values, "gyro", "rad_s", rate_hz, seed, sensor.name + ".gyro");
-  Triad accel(values, "accel", "m_s2", rate_hz, seed, sensor.name + ".accel");
-  const Output::Params gyro_params{values.at("gyro_rail_rad_s"), values.at("gyro_quantum_rad_s"),
-                                   values.at("digital_bandwidth_hz"), values.at("clip_after_low_pass") > 0.5, 0};
-  const Output::Params accel_params{values.at("accel_rail_m_s2"), values.at("accel_quantum_m_s2"),
-                                    gyro_params.digital_bandwidth_hz, gyro_params.rail_after, 3};
-  const auto without_rail = [](Output::Params params) {
-    params.rail = 0.0;
-    return params;
-  };
-  Output gyro_output(gyro_params, rate_hz), accel_output(accel_params, rate_hz);
-  Output gyro_twin(without_rail(gyro_params), rate_hz), accel_twin(without_rail(accel_params), rate_hz);
-  Mean true_rate, true_force;
-
-  const Eigen::Matrix3d R_IB = T_BI.linear().transpose();
-  const double g_sensitivity = values.at("gyro_g_sensitivity_s_m");
-  BodyState before = state_at(truth, 0);
+  BodyState window_start = state_at(truth, 0), before = window_start;
+  Eigen::Vector3d sum_of_rates = Eigen::Vector3d::Zero();
   for (std::size_t k = 1; k < truth.q_WB.size(); ++k) {
     const BodyState after = state_at(truth, k);
-    const Eigen::Vector3d w_I = R_IB * mean_rate_B(before, after);
-    const Eigen::Vector3d f_I = R_IB * specific_force_B(before, after, T_BI.translation(), gravity_m_s2);
+    const Ideal step = ideal_between(before, after, T_BI, gravity_m_s2);
     before = after;
-    true_rate.add(w_I);
-    true_force.add(f_I);
-    const Eigen::Vector3d w = gyro(w_I, g_sensitivity * f_I), f = accel(f_I, Eigen::Vector3d::Zero());
-    gyro_output.add(w);
-    gyro_twin.add(w);
-    accel_output.add(f);
-    accel_twin.add(f);
-    if (k % static_cast<std::size_t>(window) != 0) continue;
+    sum_of_rates += step.rate_rad_s;
+    device.step(step);
+    if (compass) compass->step(k);
+    if (k % static_cast<std::size_t>(steps) != 0) continue;
 
-    std::uint8_t flags = 0, none = 0;
-    record.time_ns.push_back(static_cast<std::int64_t>(k) * truth.period_ns + offset_ns);
-    record.gyro_rad_s.push_back(gyro_output.take(flags));
-    record.accel_m_s2.push_back(accel_output.take(flags));
-    record.clip_flags.push_back(flagged ? flags : std::uint8_t{0});
-    imu_truth.rate_rad_s.push_back(true_rate.take());
-    imu_truth.specific_force_m_s2.push_back(true_force.take());
-    imu_truth.gyro_unclipped_rad_s.push_back(gyro_twin.take(none));
-    imu_truth.accel_unclipped_m_s2.push_back(accel_twin.take(none));
-    imu_truth.gyro_bias_rad_s.push_back(gyro.bias());
-    imu_truth.accel_bias_m_s2.push_back(accel.bias());
+    Ideal exact = ideal_between(window_start, after, T_BI, gravity_m_s2);
+    exact.rate_rad_s = unwound(exact.rate_rad_s, sum_of_rates / steps, after.time_s - window_start.time_s);
+    window_start = after;
+    sum_of_rates.setZero();
+    const bool kept = device.take(exact, static_cast<std::int64_t>(k) * truth.period_ns);
+    if (compass) compass->take(kept, record, imu_truth);
+  }
+}
+
+void simulate_imu_at_rest(const SensorSpec& sensor, double duration_s, double chain_rate_hz, double gravity_m_s2,
+                          std::uint64_t seed, ImuRecord& record, ImuTruth& imu_truth) {
+  check_imu_values(sensor.values, "sensors." + sensor.name);
+  require_bandwidths_below(sensor, chain_rate_hz);
+  const int steps = steps_per_sample(sensor, 1e9 / chain_rate_hz);
+  const std::int64_t period_ns = std::llround(1e9 / sensor.values.at("output_rate_hz"));
+  describe(sensor, period_ns, record);
+  imu_truth.name = sensor.name;
+  Device device(sensor, chain_rate_hz, steps, seed, record, imu_truth);
+  const Ideal rest{Eigen::Vector3d::Zero(), Eigen::Vector3d(0.0, 0.0, gravity_m_s2)};
+  const std::int64_t windows = std::llround(duration_s * sensor.values.at("output_rate_hz"));
+  for (std::int64_t window = 1; window <= windows; ++window) {
+    for (int i = 0; i < steps; ++i) device.step(rest);
+    device.take(rest, window * period_ns);
   }
 }
 

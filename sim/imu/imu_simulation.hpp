@@ -3,25 +3,34 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
-#include <span>
 
+#include "sim/imu/imu_parameters.hpp"
 #include "sim/recording.hpp"
 #include "sim/situation.hpp"
 
 namespace tumble::sim {
 
-/// Numbers of an inertial measurement unit; the defaults are those of an ideal one at 100 Hz.
-std::span<const Parameter> imu_parameters();
-
-/// What one IMU says and what truly happened to it, from the body's truth. Signals are exact increments over each
-/// physics step (mean rate, and mean specific force of the site in the axes of the middle attitude), then the device's
-/// errors in the order: low-pass, scale and misalignment, bias, g-sensitivity, white noise, rail, digital low-pass,
-/// mean over the output window, quantum. With `clip_after_low_pass` the rail acts on that mean. A twin with the same
-/// noise and no rail gives ImuTruth's unclipped readings. `sensor.values` are resolved; `T_BI` is the true mounting.
-/// Clip flags mark windows in which an axis met its rail at any moment.
-/// Throws InvalidSituation when the output period is no whole number of physics steps.
-/// Not modelled: jitter, drop-outs, temperature, vibration rectification, coning compensation inside of the device.
+/// What one IMU says and what truly happened to it, from the body's truth. The ideal reading of a window is the exact
+/// increment over it: the rotation between the attitudes at its ends over its length, and the change of the site's
+/// velocity less gravity in the axes of the attitude half-way; their integral is the true motion through impacts too,
+/// at any output rate. The errors of the device come on top, in this order (each stage is documented where it lives):
+///
+///   lever arm and mounting (truth/record_truth.hpp), delay, analogue low-pass, scale and misalignment, bias,
+///   g-sensitivity, white noise of the part in range, rail, quantum, digital low-pass, mean over the window
+///   (imu_chain.hpp), stamps and losses (time_stamps.hpp); magnetometer.hpp for the magnetic field.
+///
+/// A twin with the same noise and no rail gives ImuTruth's unclipped readings. `sensor.values` are resolved; `T_BI` is
+/// the true mounting. Clip flags mark windows in which an axis met its rail at any moment. A lost sample is lost from
+/// the truth too. Throws InvalidSituation when the output period is no whole number of physics steps, or numbers
+/// contradict each other.
+/// What it does not model: temperature, vibration rectification, bending of the mount.
 void simulate_imu(const Truth& truth, const SensorSpec& sensor, const Eigen::Isometry3d& T_BI, double gravity_m_s2,
                   std::uint64_t seed, ImuRecord& record, ImuTruth& imu_truth);
+
+/// The same device at rest, z up, for `duration_s`: no engine, no body, no magnetometer. The chain runs at
+/// `chain_rate_hz` instead of the physics rate (a low one is fast: an hour at 500 Hz takes about a second); the
+/// analogue and digital bandwidths of the device must lie below half of it or be 0. For measuring noise figures.
+void simulate_imu_at_rest(const SensorSpec& sensor, double duration_s, double chain_rate_hz, double gravity_m_s2,
+                          std::uint64_t seed, ImuRecord& record, ImuTruth& imu_truth);
 
 }  // namespace tumble::sim

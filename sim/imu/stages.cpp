@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/imu/stages.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 namespace tumble::sim {
-
-namespace {
 
 Eigen::Vector3d normals(Stream& stream, double sigma) {
   if (sigma == 0.0) return Eigen::Vector3d::Zero();
@@ -14,7 +13,23 @@ Eigen::Vector3d normals(Stream& stream, double sigma) {
   return sigma * Eigen::Vector3d(x, y, z);
 }
 
-}  // namespace
+DelayLine::DelayLine(double delay_s, double rate_hz) {
+  const double samples = delay_s * rate_hz;
+  if (!(samples > 0.0)) return;
+  const double whole = std::floor(samples);
+  fraction_ = samples - whole;
+  past_.resize(static_cast<std::size_t>(whole) + 2);
+}
+
+Eigen::Vector3d DelayLine::operator()(const Eigen::Vector3d& input) {
+  if (past_.empty()) return input;
+  if (!started_) std::fill(past_.begin(), past_.end(), input);
+  started_ = true;
+  past_[next_] = input;
+  next_ = (next_ + 1) % past_.size();  // now the oldest, then the one after it
+  const Eigen::Vector3d &oldest = past_[next_], &newer = past_[(next_ + 1) % past_.size()];
+  return fraction_ * oldest + (1.0 - fraction_) * newer;
+}
 
 LowPass::LowPass(double cutoff_hz, double rate_hz) : on_(cutoff_hz > 0.0) {
   if (!on_) return;
@@ -50,38 +65,30 @@ Eigen::Matrix3d draw_axis_errors(Stream& stream, double scale_sigma, double misa
   return errors;
 }
 
-Bias::Bias(const Params& params, double period_s, Stream& stream)
-    : decay_(std::exp(-period_s / params.in_run_s)),
-      in_run_step_(params.in_run * std::sqrt(1.0 - decay_ * decay_)),
-      walk_step_(params.walk_sqrt_s * std::sqrt(period_s)),
-      constant_(normals(stream, params.turn_on)),
-      in_run_(normals(stream, params.in_run)) {}
-
-Eigen::Vector3d Bias::next(Stream& stream) {
-  const Eigen::Vector3d now = constant_ + in_run_ + walk_;
-  in_run_ = decay_ * in_run_ + normals(stream, in_run_step_);
-  walk_ += normals(stream, walk_step_);
-  return now;
+void RangeChoice::update(const Eigen::Vector3d& signal) {
+  if (handover_ <= 0.0) return;
+  for (int axis = 0; axis < 3; ++axis) {
+    bool& precise = precise_[static_cast<std::size_t>(axis)];
+    const double limit = precise ? handover_ : 0.9 * handover_;
+    precise = std::abs(signal[axis]) <= limit;
+  }
 }
 
-Eigen::Vector3d white_noise(Stream& stream, double density, double rate_hz) {
-  return normals(stream, density * std::sqrt(rate_hz));
+Eigen::Vector3d RangeChoice::pick(double coarse, double precise) const {
+  return {precise_[0] ? precise : coarse, precise_[1] ? precise : coarse, precise_[2] ? precise : coarse};
 }
 
-Eigen::Vector3d apply_rail(const Eigen::Vector3d& input, double rail, int first_bit, std::uint8_t& flags) {
-  if (rail <= 0.0) return input;
+Eigen::Vector3d white_noise(Stream& stream, const Eigen::Vector3d& density, double rate_hz) {
+  if (density.isZero(0.0)) return Eigen::Vector3d::Zero();
+  return (density * std::sqrt(rate_hz)).cwiseProduct(normals(stream, 1.0));
+}
+
+Eigen::Vector3d quantise(const Eigen::Vector3d& input, const Eigen::Vector3d& quantum) {
   Eigen::Vector3d output = input;
   for (int axis = 0; axis < 3; ++axis) {
-    if (std::abs(input[axis]) <= rail) continue;
-    output[axis] = std::copysign(rail, input[axis]);
-    flags = static_cast<std::uint8_t>(flags | (1u << (first_bit + axis)));
+    if (quantum[axis] > 0.0) output[axis] = std::round(input[axis] / quantum[axis]) * quantum[axis];
   }
   return output;
-}
-
-Eigen::Vector3d quantise(const Eigen::Vector3d& input, double quantum) {
-  if (quantum <= 0.0) return input;
-  return (input / quantum).array().round().matrix() * quantum;
 }
 
 }  // namespace tumble::sim

@@ -2,13 +2,31 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
+#include <array>
+#include <vector>
 
 #include "sim/random/stream.hpp"
 
-/// The stages of an inertial sensor's error model, one triad each, in the order in which `simulate_imu` applies them.
-/// Every stage that is off returns its input, bit for bit.
+/// The small stages of an inertial sensor's error model, one triad each (bias.hpp and rail.hpp hold the larger ones).
+/// Every stage that is off returns its input, bit for bit, and draws nothing.
 namespace tumble::sim {
+
+/// Three normal numbers of this standard deviation; zero, and nothing drawn, for 0.
+Eigen::Vector3d normals(Stream& stream, double sigma);
+
+/// A signal that arrives late by `delay_s`, held at its first value until then; between samples it is interpolated
+/// linearly. The whole of it arrives: sums over a long time are kept. A delay of 0 is off.
+class DelayLine {
+ public:
+  DelayLine(double delay_s, double rate_hz);
+  Eigen::Vector3d operator()(const Eigen::Vector3d& input);
+
+ private:
+  double fraction_ = 0.0;              ///< of a sample
+  std::vector<Eigen::Vector3d> past_;  ///< ring of the last samples; empty: off
+  std::size_t next_ = 0;
+  bool started_ = false;
+};
 
 /// Low-pass of second order (Butterworth, bilinear transform with the cutoff prewarped); gain 1 at rest. The first
 /// sample sets the steady state. A cutoff of 0 is off.
@@ -29,33 +47,27 @@ class LowPass {
 /// normal. Exactly the identity where both are 0.
 Eigen::Matrix3d draw_axis_errors(Stream& stream, double scale_sigma, double misalignment_sigma_rad);
 
-/// Bias: a turn-on value (normal), an in-run instability (first-order Gauss-Markov, started in its stationary state)
-/// and a random walk.
-class Bias {
+/// Which of two parts of a device answers for each axis: the precise one up to `handover`, the coarse one beyond, back
+/// to the precise one below `handover` less a tenth. A handover of 0: the coarse one always. The change is seamless:
+/// bias, scale and axes stay, noise and quantum change.
+class RangeChoice {
  public:
-  struct Params {
-    double turn_on = 0.0;      ///< standard deviation [unit of the signal]
-    double in_run = 0.0;       ///< stationary standard deviation
-    double in_run_s = 100.0;   ///< correlation time
-    double walk_sqrt_s = 0.0;  ///< standard deviation after one second
-  };
-  Bias(const Params& params, double period_s, Stream& stream);
-  /// The bias in force now; then advances by one period.
-  Eigen::Vector3d next(Stream& stream);
+  explicit RangeChoice(double handover) : handover_(handover) {}
+  /// Chooses for each axis by its signal before noise and rail.
+  void update(const Eigen::Vector3d& signal);
+  /// One number for each axis: of the part that answers for it.
+  Eigen::Vector3d pick(double coarse, double precise) const;
 
  private:
-  double decay_, in_run_step_, walk_step_;
-  Eigen::Vector3d constant_ = Eigen::Vector3d::Zero(), in_run_ = Eigen::Vector3d::Zero(),
-                  walk_ = Eigen::Vector3d::Zero();
+  double handover_;
+  std::array<bool, 3> precise_ = {false, false, false};
 };
 
-/// White noise of `density` [unit / sqrt(Hz)] sampled at `rate_hz`: standard deviation density * sqrt(rate).
-Eigen::Vector3d white_noise(Stream& stream, double density, double rate_hz);
+/// White noise of `density` [unit / sqrt(Hz)] for each axis, sampled at `rate_hz`: standard deviation density *
+/// sqrt(rate).
+Eigen::Vector3d white_noise(Stream& stream, const Eigen::Vector3d& density, double rate_hz);
 
-/// Clamps each axis to +-rail; sets bit `first_bit + axis` of `flags` where it did. A rail of 0 is off.
-Eigen::Vector3d apply_rail(const Eigen::Vector3d& input, double rail, int first_bit, std::uint8_t& flags);
-
-/// Rounds each axis to the nearest multiple of `quantum`; 0 is off.
-Eigen::Vector3d quantise(const Eigen::Vector3d& input, double quantum);
+/// Rounds each axis to the nearest multiple of its `quantum`; 0 is off.
+Eigen::Vector3d quantise(const Eigen::Vector3d& input, const Eigen::Vector3d& quantum);
 
 }  // namespace tumble::sim

@@ -8,6 +8,7 @@ namespace tumble::sim {
 namespace {
 
 constexpr double kRightAngle_rad = 1.5707963267948966;
+constexpr double kDegree_rad = kRightAngle_rad / 90.0;
 
 constexpr Parameter elevation(std::string_view name, double value_rad) {
   return {name, value_rad, -kRightAngle_rad, kRightAngle_rad, "rad", "elevation of this channel, in firing order"};
@@ -28,6 +29,21 @@ constexpr Parameter kSteepness{"detection_steepness",
 constexpr Parameter kDropout{"dropout_share", 0.0, 0.0, 1.0, "1", "share of returns lost whatever their signal"};
 constexpr Parameter kIntensityQuantum{
     "intensity_quantum", 1.0 / 255.0, 0.0, 1.0, "1", "step of the reported intensity; 0: off"};
+constexpr Parameter kBeamRays{
+    "beam_rays", 1.0, 1.0,
+    16.0,        "1", "rays that sample the width of a beam, a whole number; 1: off, the beam is its axis"};
+constexpr Parameter kEchoLength{"echo_length_m",
+                                0.75,
+                                0.0,
+                                100.0,
+                                "m",
+                                "with beam_rays above 1: echoes nearer to each other than this merge into one mixed "
+                                "return; 0.75 m is a pulse of 5 ns, assumed"};
+
+constexpr Parameter divergence(std::string_view name, double value_rad) {
+  return {name, value_rad, 0.0, 0.1, "rad", "full angle over which beam_rays spread, in this direction of L"};
+}
+
 constexpr Parameter kCage{
     "sees_own_cage", 1.0, 0.0, 1.0, "1", "1: the robot's own struts give returns; 0: transparent"};
 
@@ -37,6 +53,10 @@ constexpr std::array kSpinning = {
     Parameter{"clockwise", 1.0, 0.0, 1.0, "1", "1: the azimuth turns from x towards -y; 0: towards +y"},
     Parameter{"firing_period_s", 3e-6, 1e-7, 1e-3, "s", "time between two channels of a sequence"},
     Parameter{"sequence_period_s", 50e-6, 2e-6, 1e-2, "s", "time between two sequences of all channels"},
+    Parameter{
+        "current_driver_timing", 0.0, 0.0, 1.0, "1",
+        "1: fires as the vendor's current rs_driver times the RS-16, channels 2.8 us and sequences 55.5 us apart, "
+        "whatever firing_period_s and sequence_period_s say"},
     elevation("elevation_01_rad", -0.262371856),
     elevation("elevation_02_rad", -0.227077808),
     elevation("elevation_03_rad", -0.192403351),
@@ -66,6 +86,10 @@ constexpr std::array kSpinning = {
     kSteepness,
     kDropout,
     kIntensityQuantum,
+    kBeamRays,
+    divergence("divergence_horizontal_rad", 3.0e-3),
+    divergence("divergence_vertical_rad", 1.2e-3),
+    kEchoLength,
     kCage,
     Parameter{"driver_stamp_fault", 0.0, 0.0, 1.0, "1",
               "1: time stamps as the published rig's driver wrote them, two sequences to a block of one period, which "
@@ -94,6 +118,10 @@ constexpr std::array kRosette = {
     kSteepness,
     kDropout,
     kIntensityQuantum,
+    kBeamRays,
+    divergence("divergence_horizontal_rad", 0.03 * kDegree_rad),
+    divergence("divergence_vertical_rad", 0.28 * kDegree_rad),
+    kEchoLength,
     Parameter{"sees_own_cage", 0.0, 0.0, 1.0, "1",
               "1: the robot's own struts give returns; 0: transparent, as the shell around the lidar of the sphere"},
 };

@@ -8,24 +8,21 @@ namespace tumble::sim {
 
 namespace {
 
-constexpr double kTurn_rad = 6.283185307179586;
-constexpr double kWord = 1.0 / 4294967296.0;
-// a return whose uniform number lies below this is kept from the signal sure_signal_ on, without a power to compute
+// Two bounds that spare most returns the power: below this uniform number a return is kept from sure_signal_ on; from
+// certain_signal_ on, whose odds of loss are below the step of the uniform numbers, whatever the number.
 constexpr double kSure = 0.99;
+constexpr double kCertainOdds = 0x1p25;
 
-/// In (0, 1): the middle of the 2^-32 wide cell that the word names.
-double uniform_of(std::uint32_t word) {
-  return (word + 0.5) * kWord;
-}
-
+/// Nearest whole multiple, ties to even: adding 1.5 * 2^52 leaves no digit behind the point, without a call.
 double rounded(double value, double quantum) {
-  return quantum > 0.0 ? quantum * std::nearbyint(value / quantum) : value;
+  constexpr double kShift = 0x1.8p52;
+  return quantum * ((value / quantum + kShift) - kShift);
 }
 
 }  // namespace
 
 RangeErrors::RangeErrors(const Values& values, std::uint64_t seed, std::string_view stream_name)
-    : stream_(seed, stream_name),
+    : noise_(Stream(seed, stream_name)),
       noise_m_(values.at("range_noise_m")),
       quantum_m_(values.at("range_quantum_m")),
       min_m_(values.at("range_min_m")),
@@ -35,47 +32,45 @@ RangeErrors::RangeErrors(const Values& values, std::uint64_t seed, std::string_v
       steepness_(values.at("detection_steepness")),
       kept_share_(1.0 - values.at("dropout_share")),
       intensity_quantum_(values.at("intensity_quantum")),
-      sure_signal_(std::pow(kSure / (1.0 - kSure), 1.0 / steepness_)) {}
+      sure_signal_(std::pow(kSure / (1.0 - kSure), 1.0 / steepness_)),
+      certain_signal_(std::pow(kCertainOdds, 1.0 / steepness_)) {}
 
-bool RangeErrors::is_detected(const RayPacket& hits, int lane, double uniform) const {
+bool RangeErrors::is_detected(float signal, double uniform) const {
   if (uniform >= kept_share_) return false;
-  if (detection2_m2_ == 0.0) return true;
+  if (detection2_m2_ == 0.0 || signal >= certain_signal_) return true;
   // what is left of the uniform number after the random loss is uniform again
   const double u = uniform / kept_share_;
-  const double range = hits.range[lane];
-  const double signal =
-      hits.reflectivity[lane] * hits.cosine[lane] / reference_reflectivity_ * detection2_m2_ / (range * range);
   if (u < kSure && signal >= sure_signal_) return true;
   const double odds = std::pow(signal, steepness_);
-  return u * (1.0 + odds) < odds;
+  // odds overflow to infinity where a return cannot be missed
+  return u < 1.0 - 1.0 / (1.0 + odds);
 }
 
-Returns RangeErrors::apply(const RayPacket& hits, std::int64_t slot) const {
-  Returns out;
-  for (int pair = 0; 2 * pair < hits.count; ++pair) {
-    const int lane = 2 * pair;
-    const bool any =
-        hits.surface_id[lane] != kNothing || (lane + 1 < hits.count && hits.surface_id[lane + 1] != kNothing);
-    out.kept[lane] = out.kept[lane + 1] = false;
-    if (!any) continue;
-    // slots start batches at most once, so that (slot, pair) names the block uniquely
-    const auto block =
-        stream_.block(static_cast<std::uint64_t>(slot) * (kLanes / 2) + static_cast<std::uint64_t>(pair));
-    // Box and Muller 1958
-    const double radius = noise_m_ * std::sqrt(-2.0 * std::log(uniform_of(block[0])));
-    const double angle = kTurn_rad * uniform_of(block[1]);
-    const double noise_m[2] = {radius * std::cos(angle), radius * std::sin(angle)};
-    for (int i = 0; i < 2 && lane + i < hits.count; ++i) {
-      const int at = lane + i;
-      if (hits.surface_id[at] == kNothing || !is_detected(hits, at, uniform_of(block[2 + i]))) continue;
-      const double measured = rounded(hits.range[at] + noise_m[i], quantum_m_);
-      out.kept[at] = measured >= min_m_ && measured <= max_m_;
-      out.range_m[at] = static_cast<float>(measured);
-      const double strength = std::clamp<double>(hits.reflectivity[at] * hits.cosine[at], 0.0, 1.0);
-      out.intensity[at] = static_cast<float>(rounded(strength, intensity_quantum_));
+void RangeErrors::apply(const RayPacket& hits, std::uint64_t index, Returns& returns) const {
+  LaneNoise noise;
+  noise_.draw(index, noise);
+  alignas(64) float strength[kLanes], signal[kLanes];
+  alignas(64) double measured_m[kLanes];
+  const auto scale = static_cast<float>(detection2_m2_ / reference_reflectivity_);
+  for (int i = 0; i < kLanes; ++i) {
+    strength[i] = hits.reflectivity[i] * hits.cosine[i];
+    signal[i] = strength[i] * scale / (hits.range[i] * hits.range[i]);
+    measured_m[i] = static_cast<double>(hits.range[i]) + noise_m_ * static_cast<double>(noise.normal[i]);
+    returns.intensity[i] = std::min(1.0f, strength[i]);
+  }
+  if (quantum_m_ > 0.0) {
+    for (int i = 0; i < kLanes; ++i) measured_m[i] = rounded(measured_m[i], quantum_m_);
+  }
+  if (intensity_quantum_ > 0.0) {
+    for (int i = 0; i < kLanes; ++i) {
+      returns.intensity[i] = static_cast<float>(rounded(returns.intensity[i], intensity_quantum_));
     }
   }
-  return out;
+  for (int i = 0; i < kLanes; ++i) {
+    returns.range_m[i] = static_cast<float>(measured_m[i]);
+    returns.kept[i] = hits.surface_id[i] != kNothing && measured_m[i] >= min_m_ && measured_m[i] <= max_m_ &&
+                      is_detected(signal[i], static_cast<double>(noise.uniform[i]));
+  }
 }
 
 }  // namespace tumble::sim

@@ -27,10 +27,27 @@ struct SceneDeleter {
 using DevicePtr = std::unique_ptr<RTCDeviceTy, DeviceDeleter>;
 using ScenePtr = std::unique_ptr<RTCSceneTy, SceneDeleter>;
 
-struct Label {
-  std::int32_t surface_id;
-  float reflectivity;
+struct MeshLabel {
+  std::int32_t surface_id = kNothing;
+  float reflectivity = 0.0f;
+  bool as_quads = false;
 };
+
+/// Triangles (a, b, c), (a, c, d) in pairs throughout, as a height field has them, make quads (b, c, d, a), which
+/// Embree cuts along the same diagonal: half the time to build, a tenth off the time to cast. Empty when they do not
+/// pair.
+std::vector<std::array<std::uint32_t, 4>> paired(const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+  std::vector<std::array<std::uint32_t, 4>> quads;
+  if (triangles.size() % 2 != 0) return quads;
+  quads.reserve(triangles.size() / 2);
+  for (std::size_t i = 0; i < triangles.size(); i += 2) {
+    const auto& first = triangles[i];
+    const auto& second = triangles[i + 1];
+    if (second[0] != first[0] || second[1] != first[2]) return {};
+    quads.push_back({first[1], first[2], second[2], first[0]});
+  }
+  return quads;
+}
 
 /// Axis-aligned box of a bounded shape, a little widened because Embree rounds to float.
 void shape_bounds(const RTCBoundsFunctionArguments* args) {
@@ -81,7 +98,7 @@ struct RayScene::Impl {
   ScenePtr scene;
   std::vector<SceneShape> bounded;    ///< behind geometry `shape_geometry`, primitive by primitive
   std::vector<SceneShape> unbounded;  ///< planes without edge
-  std::vector<Label> meshes;          ///< by Embree geometry id
+  std::vector<MeshLabel> meshes;      ///< by Embree geometry id
   unsigned int shape_geometry = RTC_INVALID_GEOMETRY_ID;
 
   void add_mesh(const SceneMesh& mesh);
@@ -91,20 +108,28 @@ struct RayScene::Impl {
 };
 
 void RayScene::Impl::add_mesh(const SceneMesh& part) {
-  const TriangleMesh& mesh = part.mesh;
-  const RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+  const std::vector<Vector3f>& corners = part.mesh.vertices_F_m;
+  const std::vector<std::array<std::uint32_t, 4>> quads = paired(part.mesh.triangles);
+  const bool as_quads = !quads.empty();
+  const RTCGeometry geometry =
+      rtcNewGeometry(device.get(), as_quads ? RTC_GEOMETRY_TYPE_QUAD : RTC_GEOMETRY_TYPE_TRIANGLE);
   auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                               3 * sizeof(float), mesh.vertices_F_m.size()));
-  auto* triangles = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), mesh.triangles.size()));
-  if (vertices == nullptr || triangles == nullptr) throw std::bad_alloc();
-  for (const Vector3f& v : mesh.vertices_F_m) vertices = std::copy(v.data(), v.data() + 3, vertices);
-  for (const auto& t : mesh.triangles) triangles = std::copy(t.begin(), t.end(), triangles);
+                                                               3 * sizeof(float), corners.size()));
+  const std::size_t sides = as_quads ? 4 : 3;
+  auto* faces = static_cast<std::uint32_t*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, as_quads ? RTC_FORMAT_UINT4 : RTC_FORMAT_UINT3,
+                              sides * sizeof(std::uint32_t), as_quads ? quads.size() : part.mesh.triangles.size()));
+  if (vertices == nullptr || faces == nullptr) throw std::bad_alloc();
+  for (const Vector3f& v : corners) vertices = std::copy(v.data(), v.data() + 3, vertices);
+  for (const auto& q : quads) faces = std::copy(q.begin(), q.end(), faces);
+  if (!as_quads) {
+    for (const auto& t : part.mesh.triangles) faces = std::copy(t.begin(), t.end(), faces);
+  }
   rtcCommitGeometry(geometry);
   const unsigned int id = rtcAttachGeometry(scene.get(), geometry);
   rtcReleaseGeometry(geometry);
-  meshes.resize(std::max<std::size_t>(meshes.size(), id + 1), Label{kNothing, 0.0f});
-  meshes[id] = {part.surface_id, part.reflectivity};
+  meshes.resize(std::max<std::size_t>(meshes.size(), id + 1), MeshLabel{});
+  meshes[id] = {part.surface_id, part.reflectivity, as_quads};
 }
 
 void RayScene::Impl::add_shapes() {
@@ -184,8 +209,9 @@ void RayScene::cast(RayPacket& packet) const {
   }
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  // of single rays, packets and packets marked coherent this is the fastest: 20 % before single rays, 25 % before
-  // coherent ones, whose fan of 30 degrees visits too many nodes in common
+  // measured on a field of 400 x 400 cells: packets of one channel marked coherent 60 ns a ray, not marked 90 ns;
+  // packets of a column of channels 95 ns, marked coherent 170 ns
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   rtcIntersect16(valid, impl_->scene.get(), &context, &rays);
   for (int i = 0; i < packet.count; ++i) {
     if (rays.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
@@ -199,7 +225,7 @@ void RayScene::cast(RayPacket& packet) const {
       packet.surface_id[i] = part.surface_id;
       packet.reflectivity[i] = part.reflectivity;
     } else {
-      const Label& label = impl_->meshes[rays.hit.geomID[i]];
+      const MeshLabel& label = impl_->meshes[rays.hit.geomID[i]];
       packet.surface_id[i] = label.surface_id;
       packet.reflectivity[i] = label.reflectivity;
     }
@@ -217,11 +243,18 @@ bool RayScene::Impl::approach(RTCPointQueryFunctionArguments* args) {
   }
   const RTCGeometry geometry = rtcGetGeometry(impl.scene.get(), args->geomID);
   const auto* vertices = static_cast<const float*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0));
-  const auto* corners =
-      static_cast<const std::uint32_t*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_INDEX, 0)) +
-      3 * args->primID;
-  const auto corner = [&](int i) { return Vector3f(Eigen::Map<const Vector3f>(vertices + 3 * corners[i])); };
-  const float distance = triangle_distance(corner(0), corner(1), corner(2), Vector3f(q.x, q.y, q.z));
+  const auto* faces = static_cast<const std::uint32_t*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_INDEX, 0));
+  const auto corner = [&](std::uint32_t i) { return Vector3f(Eigen::Map<const Vector3f>(vertices + 3 * i)); };
+  const Vector3f point(q.x, q.y, q.z);
+  float distance;
+  if (impl.meshes[args->geomID].as_quads) {
+    const std::uint32_t* f = faces + 4 * args->primID;
+    distance = std::min(triangle_distance(corner(f[3]), corner(f[0]), corner(f[1]), point),
+                        triangle_distance(corner(f[3]), corner(f[1]), corner(f[2]), point));
+  } else {
+    const std::uint32_t* f = faces + 3 * args->primID;
+    distance = triangle_distance(corner(f[0]), corner(f[1]), corner(f[2]), point);
+  }
   if (!(distance < q.radius)) return false;
   q.radius = distance;
   return true;

@@ -9,7 +9,7 @@
 
 namespace tumble::sim {
 
-/// Rays are cast sixteen at a time, a column of a spinning lidar.
+/// Rays are cast sixteen at a time: one channel's in consecutive slots, which look in almost the same direction.
 inline constexpr int kLanes = 16;
 
 /// Sixteen rays and what they hit. Lanes from `count` on are not cast.
@@ -26,7 +26,7 @@ struct RayPacket {
 
 inline constexpr std::int32_t kNothing = -1;
 
-/// Rays and nearest points against a fixed geometry (Embree; unbounded planes beside it). Building takes about 0.1 s
+/// Rays and nearest points against a fixed geometry (Embree; unbounded planes beside it). Building takes about 0.07 s
 /// for 320 000 triangles; a cast is logarithmic in the geometry. Const members may be called from several threads.
 /// Coordinates are float: at 50 m from the origin a hit is good to about 1e-5 m.
 class RayScene {

@@ -208,7 +208,7 @@ SceneGeometry static_geometry(const engine::World& world, HeightFieldSides sides
   return scene;
 }
 
-SceneGeometry cage_geometry(const engine::World& world, const Vector3d& p_BL_m) {
+SceneGeometry cage_geometry(const engine::World& world, const Isometry3d& T_BL) {
   SceneGeometry cage;
   if (world.robot_body < 0) return cage;
   const mjModel& model = *world.model;
@@ -216,12 +216,13 @@ SceneGeometry cage_geometry(const engine::World& world, const Vector3d& p_BL_m) 
   Isometry3d T_WB = Isometry3d::Identity();
   T_WB.linear() = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(data->xmat + 9 * world.robot_body);
   T_WB.translation() = Eigen::Map<const Vector3d>(data->xpos + 3 * world.robot_body);
+  const Isometry3d T_LW = (T_WB * T_BL).inverse();
   for (int geom = 0; geom < model.ngeom; ++geom) {
     if (model.body_rootid[model.geom_bodyid[geom]] != model.body_rootid[world.robot_body] || !is_seen(model, geom))
       continue;
-    append_geom(model, geom, T_WB.inverse() * geom_pose(*data, geom), kOwnCage, HeightFieldSides::closed, cage);
+    append_geom(model, geom, T_LW * geom_pose(*data, geom), kOwnCage, HeightFieldSides::closed, cage);
   }
-  std::erase_if(cage.shapes, [&](const SceneShape& s) { return contains(s.shape, p_BL_m); });
+  std::erase_if(cage.shapes, [&](const SceneShape& s) { return contains(s.shape, Vector3d::Zero()); });
   return cage;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -45,9 +46,9 @@ enum class HeightFieldSides { open, closed };
 /// type that has no surface here (SDF).
 SceneGeometry static_geometry(const engine::World& world, HeightFieldSides sides);
 
-/// The robot's colliding geoms in body axes, with id kOwnCage. A geom that holds `p_BL_m` inside is the lidar's own
-/// housing or a shell around it: transparent.
-SceneGeometry cage_geometry(const engine::World& world, const Eigen::Vector3d& p_BL_m);
+/// The robot's colliding geoms in the axes of a lidar mounted at `T_BL`, with id kOwnCage. A primitive that holds the
+/// origin of L inside is the lidar's own housing or a shell around it: transparent.
+SceneGeometry cage_geometry(const engine::World& world, const Eigen::Isometry3d& T_BL);
 
 /// Diffuse reflectivity of a geom: the luminance (ITU-R BT.709) of its colour times the mean colour of its texture,
 /// within 0.05..0.95. Colour stands for 905 nm here, which real surfaces do not obey.

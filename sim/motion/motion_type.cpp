@@ -8,7 +8,7 @@
 namespace tumble::sim {
 
 std::span<const MotionType* const> all_motion_types() {
-  static const std::array<const MotionType*, 2> kTypes = {&push_motion(), &hand_roll_motion()};
+  static const std::array<const MotionType*, 3> kTypes = {&push_motion(), &hand_roll_motion(), &hand_path_motion()};
   return kTypes;
 }
 

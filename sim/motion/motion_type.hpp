@@ -31,6 +31,8 @@ struct MotionType {
 const MotionType& push_motion();
 /// A hand that leads a sphere along two legs.
 const MotionType& hand_roll_motion();
+/// A hand that leads a sphere along a way of some shape.
+const MotionType& hand_path_motion();
 
 /// All kinds, in the order of registration: a new one is a file and a line in motion_type.cpp.
 std::span<const MotionType* const> all_motion_types();

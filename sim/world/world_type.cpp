@@ -8,7 +8,8 @@
 namespace tumble::sim {
 
 std::span<const WorldType* const> all_world_types() {
-  static const std::array<const WorldType*, 2> kTypes = {&hill_world(), &floor_world()};
+  static const std::array<const WorldType*, 5> kTypes = {&hill_world(), &floor_world(), &ramp_world(), &corridor_world(),
+                                                             &tube_world()};
   return kTypes;
 }
 

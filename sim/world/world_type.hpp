@@ -19,8 +19,14 @@ struct WorldType {
 
 /// Grassy hill: flat top, slope, run-out, relief, rocks, trunks.
 const WorldType& hill_world();
-/// Room with a level floor, walls, pillars and patches of other friction.
+/// Room with a floor, walls, ceiling, furniture, obstacles and patches of other friction.
 const WorldType& floor_world();
+/// Such a room with a ramp up, a plateau and a ramp down.
+const WorldType& ramp_world();
+/// Corridor with doors, niches and pillars.
+const WorldType& corridor_world();
+/// Lava tube, rough inside.
+const WorldType& tube_world();
 
 /// All kinds, in the order of registration: a new one is a file and a line in world_type.cpp.
 std::span<const WorldType* const> all_world_types();

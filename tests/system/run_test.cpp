@@ -32,10 +32,24 @@ std::map<std::string, double> scores_of(const json& document, const std::string&
   return out;
 }
 
+/// Whether the method reads the truth, which the verb `estimate` never opens.
+bool needs_truth(const json& outcome) {
+  static const json methods = json_of(run_program({"list", "methods", "--json"}));
+  for (const json& method : methods) {
+    if (method["kind"] == outcome["kind"] && method["name"] == outcome["method"]) return method["needs_truth"];
+  }
+  ADD_FAILURE() << "not listed: " << outcome;
+  return false;
+}
+
 TEST_P(OnRobot, RunLeavesEverythingAndScoresIt) {
   const fs::path folder = shared_run(GetParam());
   const json result = shared_result(GetParam());
-  EXPECT_EQ(result["status"], "ok") << result["outcomes"];
+  for (const json& outcome : result["outcomes"]) {
+    // the second integral of an accelerometer leaves the bounds of its score within seconds: that it does is right
+    const bool drifts = outcome["method"] == "double_integration";
+    EXPECT_EQ(outcome["status"], drifts ? "diverged" : "ok") << outcome;
+  }
   EXPECT_EQ(result["digest"].get<std::string>().size(), 32u);
   EXPECT_GT(result["scores"].size(), 5u);
   EXPECT_TRUE(fs::exists(folder / "recording.h5"));
@@ -72,7 +86,7 @@ TEST_P(OnRobot, StagesAgreeWithRun) {
   std::size_t compared = 0;
   for (const json& outcome : whole["outcomes"]) {
     const std::string kind = outcome["kind"], method = outcome["method"];
-    if (method == "oracle") continue;  // needs the truth, which `estimate` never opens
+    if (needs_truth(outcome)) continue;
     const std::string estimate = (folder / kind / method).string();
     const Ended estimated = run_program({"estimate", recording, "--method", kind + "/" + method, "-o", estimate, "--json"});
     ASSERT_EQ(estimated.status, 0) << estimated.err;
@@ -104,7 +118,7 @@ TEST_P(OnRobot, EstimateNeverOpensTheTruth) {
   const json whole = shared_result(GetParam());
   for (const json& outcome : whole["outcomes"]) {
     const std::string name = outcome["kind"].get<std::string>() + "/" + outcome["method"].get<std::string>();
-    if (outcome["method"] == "oracle") continue;
+    if (needs_truth(outcome)) continue;
     const Ended ended = run_program({"estimate", blind.string(), "--method", name, "-o", (folder / name).string(), "--json"});
     ASSERT_EQ(ended.status, 0) << ended.err;
     EXPECT_EQ(json_of(ended)["digest"], outcome["digest"]) << name;

@@ -5,13 +5,14 @@
 #include <cmath>
 #include <numbers>
 
-#include "rolling_filter_states.hpp"
-#include "tumble/common/so3.hpp"
+#include "rolling_node.hpp"
 #include "tumble/rolling/rolling_filter.hpp"
 
 namespace tumble {
 
 namespace {
+
+using rolling::squared;
 
 constexpr double kDropped = -120.0;   // log weight below the best at which a hypothesis is given up
 constexpr double kRestFloor = -60.0;  // least log likelihood of a node at rest: one bad node must not decide
@@ -19,7 +20,9 @@ constexpr double kSettled_s = 1.0;    // after so long in one mode it does not m
 constexpr double kSteady_m_s = 0.01, kJump_m_s = 0.08, kSteadyShare = 0.7;  // change of u per node, horizontal
 constexpr double kRise_m_s = 0.03, kHit_m_s = 0.3;                          // and vertical, on a bump
 constexpr std::int64_t kAgesApart = 4;
-constexpr RollingMode kModes[] = {RollingMode::grip, RollingMode::slip, RollingMode::bump};
+constexpr double kInclineAfterBump = 10.0;  // the foot of a ramp is a bump
+constexpr RollingMode kModes[] = {RollingMode::grip, RollingMode::slip, RollingMode::bump, RollingMode::incline};
+static_assert(std::size(kModes) == kRollingModes);
 
 double log_normal(double value, double variance) {
   return -0.5 * (value * value / variance + std::log(2.0 * std::numbers::pi * variance));
@@ -34,14 +37,52 @@ double log_mixture(double square, double narrow, double wide, int dimension) {
   return std::log(kSteadyShare * density(narrow) + (1.0 - kSteadyShare) * density(wide) + 1e-300);
 }
 
-}  // namespace
+/// log density of a contact that stands still, by the hypothesis `h` should it enter `mode`.
+double log_still(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode,
+                 const RollingParams& params) {
+  RollingFilter::Vector x = h.x;
+  Eigen::Matrix<double, 3, rolling::kStates> H = c.H;
+  const bool anew = rolling::forgets_slope(h.mode, mode);
+  if (anew) {
+    x.segment<2>(rolling::kSlope) = -c.slope;
+    H.middleCols<2>(rolling::kSlope).setZero();
+  }
+  Eigen::Matrix3d S = H * h.P * H.transpose();
+  S.diagonal() += Eigen::Vector3d(c.grip_variance, c.grip_variance, squared(params.vertical_sigma_m_s));
+  if (anew && mode == RollingMode::incline) {
+    const Eigen::Matrix<double, 3, 2> by_slope = c.H.middleCols<2>(rolling::kSlope);
+    S += squared(params.slope_sigma) * by_slope * by_slope.transpose();
+  }
+  const Eigen::LLT<Eigen::Matrix3d> factor(S);
+  const double log_det = 2.0 * factor.matrixLLT().diagonal().array().log().sum();
+  return -0.5 *
+         (factor.matrixL().solve(c.velocity(x)).squaredNorm() + log_det + 3.0 * std::log(2.0 * std::numbers::pi));
+}
 
-/// Contact velocity of the nominal trajectory and its derivative by the error state.
-struct RollingFilter::Contact {
-  Eigen::Vector3d u_W_m_s;
-  Eigen::Matrix<double, 3, kStates> H;
-  double grip_variance = 0.0;
-};
+/// log density of a contact velocity `u` that moves, by its change since the last node.
+double log_moving(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode,
+                  const Eigen::Vector3d& u, const RollingParams& params) {
+  const Eigen::Vector3d change = u - h.u_W_m_s;
+  const double horizontal = log_mixture(change.head<2>().squaredNorm(), kSteady_m_s, kJump_m_s, 2);
+  if (mode == RollingMode::bump) return horizontal + log_mixture(squared(change.z()), kRise_m_s, kHit_m_s, 1);
+  const double vertical = c.H.row(2) * h.P * c.H.row(2).transpose() + squared(params.vertical_sigma_m_s);
+  return horizontal + log_normal(u.z(), vertical);
+}
+
+/// The contact point stands still (or, slipping, stays on the floor).
+void measure_contact(const rolling::Contact& c, RollingMode mode, const RollingParams& params,
+                     RollingFilter::Hypothesis& h) {
+  // what the length of the normal adds is no error of the state
+  const Eigen::Vector3d u = c.velocity(h.x) - c.H * h.x;
+  if (!slips(mode)) {
+    for (int axis = 0; axis < 2; ++axis) rolling::update(c.H.row(axis), -u[axis], c.grip_variance, h.x, h.P);
+  }
+  if (mode != RollingMode::bump) {
+    rolling::update(c.H.row(2), -u.z(), squared(params.vertical_sigma_m_s), h.x, h.P);
+  }
+}
+
+}  // namespace
 
 struct RollingFilter::Candidate {
   double log_weight = 0.0;
@@ -50,30 +91,15 @@ struct RollingFilter::Candidate {
   std::int64_t switched_node = 0;
 };
 
-RollingFilter::Contact RollingFilter::contact(const Eigen::Vector3d& rate_I_rad_s, const State& state) const {
-  const Eigen::Matrix3d R = state.q_nominal.toRotationMatrix();
-  const Eigen::Vector3d w_W = R * (rate_I_rad_s - state.gyro_bias_rad_s - state.gyro_scale * rate_I_rad_s);
-  const Eigen::Vector3d arm_W = R * (params_.lever_arm_m + state.lever_arm_error_m);
-  const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
-  const Eigen::Matrix3d rZ = params_.radius_m * so3::hat(z);
-  Contact out;
-  out.u_W_m_s = state.v_WI_m_s - w_W.cross(arm_W) + rZ * w_W;
-  out.H.setZero();
-  out.H.middleCols<3>(kVelocity).setIdentity();
-  out.H.middleCols<3>(kAttitude) = -rZ * so3::hat(w_W);
-  out.H.middleCols<3>(kGyroBias) = -rZ * R;
-  for (int axis = 0; axis < 3; ++axis) out.H.middleCols<3>(kGyroScale + 3 * axis) = -rate_I_rad_s[axis] * rZ * R;
-  out.H.middleCols<3>(kLeverArm) = -so3::hat(w_W) * R;
-  out.grip_variance =
-      squared(params_.grip_sigma_m_s) + squared(params_.grip_sigma_share * params_.radius_m * w_W.norm());
-  return out;
-}
-
 double RollingFilter::log_transition(RollingMode from, RollingMode to, double h_s) const {
   const auto rate = [this](RollingMode a, RollingMode b) {
-    if (a == RollingMode::grip) return b == RollingMode::slip ? params_.slip_begins_per_s : params_.bump_begins_per_s;
-    if (b == RollingMode::grip) return a == RollingMode::slip ? params_.slip_ends_per_s : params_.bump_ends_per_s;
-    return params_.slip_bump_per_s;
+    if (b == RollingMode::incline) {
+      return params_.incline_begins_per_s * (a == RollingMode::bump ? kInclineAfterBump : 1.0);
+    }
+    if (b == RollingMode::slip) return a == RollingMode::bump ? params_.slip_bump_per_s : params_.slip_begins_per_s;
+    if (b == RollingMode::bump) return a == RollingMode::slip ? params_.slip_bump_per_s : params_.bump_begins_per_s;
+    if (a == RollingMode::incline) return params_.incline_ends_per_s;
+    return a == RollingMode::slip ? params_.slip_ends_per_s : params_.bump_ends_per_s;
   };
   if (from != to) return std::log(rate(from, to) * h_s);
   double leaving = 0.0;
@@ -81,46 +107,28 @@ double RollingFilter::log_transition(RollingMode from, RollingMode to, double h_
   return -leaving * h_s;
 }
 
-RollingFilter::Candidate RollingFilter::judge(int parent, RollingMode mode, const Contact& c,
-                                              const State& state) const {
-  const Hypothesis& h = state.hypotheses[static_cast<std::size_t>(parent)];
-  const Eigen::Vector3d u = c.u_W_m_s + c.H * h.x;
-  const Eigen::Vector3d change = u - h.u_W_m_s;
-  const double horizontal = change.head<2>().squaredNorm();
-  double likelihood = 0.0;
-  if (mode == RollingMode::grip) {
-    Eigen::Matrix3d S = c.H * h.P * c.H.transpose();
-    S.diagonal() += Eigen::Vector3d(c.grip_variance, c.grip_variance, squared(params_.vertical_sigma_m_s));
-    const Eigen::LLT<Eigen::Matrix3d> factor(S);
-    const double log_det = 2.0 * factor.matrixLLT().diagonal().array().log().sum();
-    likelihood = -0.5 * (factor.matrixL().solve(u).squaredNorm() + log_det + 3.0 * std::log(2.0 * std::numbers::pi));
-  } else if (mode == RollingMode::slip) {
-    const double vertical = c.H.row(2) * h.P * c.H.row(2).transpose() + squared(params_.vertical_sigma_m_s);
-    likelihood = log_mixture(horizontal, kSteady_m_s, kJump_m_s, 2) + log_normal(u.z(), vertical);
-  } else {
-    likelihood =
-        log_mixture(horizontal, kSteady_m_s, kJump_m_s, 2) + log_mixture(squared(change.z()), kRise_m_s, kHit_m_s, 1);
-  }
-  const double weight = h.log_weight + log_transition(h.mode, mode, state.node_s) + likelihood;
-  return {weight, parent, mode, mode == h.mode ? h.switched_node : state.node};
-}
-
 void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, State& state) const {
-  const Contact c = contact(rate_I_rad_s, state);
-  std::array<Candidate, 3 * kHypotheses> candidates;
+  const rolling::Contact c = rolling::contact(params_, state.nominal, rate_I_rad_s);
+  const double node_s = state.sums.node_s;
+  std::array<Candidate, kRollingModes * kHypotheses> candidates;
   std::size_t total = 0;
-  const auto shortest = static_cast<std::int64_t>(std::ceil(params_.event_shortest_s / state.node_s - 1e-9));
+  const auto shortest = static_cast<std::int64_t>(std::ceil(params_.event_shortest_s / node_s - 1e-9));
   for (int parent = 0; parent < state.count; ++parent) {
     const Hypothesis& h = state.hypotheses[static_cast<std::size_t>(parent)];
+    const Eigen::Vector3d u = c.velocity(h.x);
     for (const RollingMode mode : kModes) {
-      const bool bound = h.mode != RollingMode::grip && state.node - h.switched_node < shortest;
-      if (mode == h.mode || !bound) candidates[total++] = judge(parent, mode, c, state);
+      const bool bound = slips(h.mode) && state.node - h.switched_node < shortest;
+      if (mode != h.mode && bound) continue;
+      const double likelihood =
+          slips(mode) ? log_moving(c, h, mode, u, params_) : log_still(c, h, mode, params_);
+      candidates[total++] = {h.log_weight + log_transition(h.mode, mode, node_s) + likelihood, parent, mode,
+                             mode == h.mode ? h.switched_node : state.node};
     }
   }
   std::stable_sort(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(total),
                    [](const Candidate& a, const Candidate& b) { return a.log_weight > b.log_weight; });
 
-  const auto settled = static_cast<std::int64_t>(kSettled_s / state.node_s);
+  const auto settled = static_cast<std::int64_t>(kSettled_s / node_s);
   // two beginnings of the same mode are one the sooner, the longer they are past
   const auto since = [&](const Candidate& k) {
     const std::int64_t age = std::min(state.node - k.switched_node, settled);
@@ -140,14 +148,13 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, State& sta
     if (std::any_of(kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(count), same)) continue;
     Hypothesis& h = next[count];
     h = state.hypotheses[static_cast<std::size_t>(candidate.parent)];
-    if (candidate.mode == RollingMode::grip) {
-      for (int axis = 0; axis < 2; ++axis) update(c.H.row(axis), -c.u_W_m_s[axis], c.grip_variance, h);
-    }
-    if (candidate.mode != RollingMode::bump) update(c.H.row(2), -c.u_W_m_s.z(), squared(params_.vertical_sigma_m_s), h);
-    h.u_W_m_s = c.u_W_m_s + c.H * h.x;
+    rolling::change_floor(params_, h.mode, candidate.mode, node_s, state.nominal, h.x, h.P);
+    measure_contact(c, candidate.mode, params_, h);
+    h.u_W_m_s = c.velocity(h.x);
     h.log_weight = candidate.log_weight - candidates[0].log_weight;
     h.mode = candidate.mode;
     h.switched_node = candidate.switched_node;
+    h.parent = candidate.parent;
     kept[count++] = candidate;
   }
   for (std::size_t k = 0; k < count; ++k) state.hypotheses[k] = next[k];
@@ -163,30 +170,31 @@ void RollingFilter::correct_at_rest(State& state) const {
     double likelihood = 0.0;
     for (int axis = 0; axis < 3; ++axis) {
       const double variance = squared(params_.rest_velocity_sigma_m_s);
-      const double v = state.v_WI_m_s[axis] + h.x[kVelocity + axis];
-      likelihood += log_normal(v, h.P(kVelocity + axis, kVelocity + axis) + variance);
-      update(kVelocity + axis, -state.v_WI_m_s[axis], variance, h);
-      const double bias = state.w_I_rad[axis] / state.node_s;  // already without the nominal bias
-      update(kGyroBias + axis, bias, squared(params_.rest_rate_sigma_rad_s), h);
+      const int velocity = rolling::kVelocity + axis;
+      const double v = state.nominal.v_WI_m_s[axis] + h.x[velocity];
+      likelihood += log_normal(v, h.P(velocity, velocity) + variance);
+      rolling::update(velocity, -state.nominal.v_WI_m_s[axis], variance, h.x, h.P);
+      const double bias = state.sums.w_I_rad[axis] / state.sums.node_s;  // already without the nominal bias
+      rolling::update(rolling::kGyroBias + axis, bias, squared(params_.rest_rate_sigma_rad_s), h.x, h.P);
     }
     h.log_weight += std::max(likelihood, kRestFloor);
-    if (h.mode != RollingMode::grip) h.switched_node = state.node;
-    h.mode = RollingMode::grip;
+    h.parent = k;
+    if (slips(h.mode)) {
+      h.switched_node = state.node;
+      h.mode = RollingMode::grip;
+    }
     h.u_W_m_s.setZero();
   }
   std::stable_sort(state.hypotheses.begin(), state.hypotheses.begin() + state.count,
                    [](const Hypothesis& a, const Hypothesis& b) { return a.log_weight > b.log_weight; });
-  // they agree about the present, so after a while one is enough; what they disagree in about the past is where they
-  // are
-  if (state.rest_s > kSettled_s && state.count > 1) {
-    state.hypotheses[0].P.block<3, 3>(kPosition, kPosition) += position_spread(state);
-  }
+  // they agree about the present, so after a while one is enough
+  const bool settled = state.rest_s > kSettled_s;
+  if (settled && state.count > 1) state.settled_spread_m2 = position_spread(state);
   const double best = state.hypotheses[0].log_weight;
   int kept = 0;
   for (int k = 0; k < state.count; ++k) {
     Hypothesis& h = state.hypotheses[static_cast<std::size_t>(k)];
     h.log_weight -= best;
-    const bool settled = state.rest_s > kSettled_s;
     if (k == 0 || (!settled && h.log_weight > kDropped)) kept = k + 1;
   }
   for (int k = kept; k < state.count; ++k) state.hypotheses[static_cast<std::size_t>(k)] = Hypothesis{};

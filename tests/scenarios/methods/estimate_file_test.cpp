@@ -122,6 +122,29 @@ TEST_F(EstimateFile, ATruncatedMapIsRecognised) {
   EXPECT_NE(complaint(folder_).find("map.ply: truncated"), std::string::npos);
 }
 
+TEST_F(EstimateFile, ContactsComeBackAndBelongToTheirPoses) {
+  Estimate estimate;
+  for (int k = 0; k < 3; ++k) {
+    PoseState pose;
+    pose.time_ns = 5'000'000 * k;
+    estimate.poses.push_back(pose);
+  }
+  estimate.contacts = {sim::ContactLabel::grip, sim::ContactLabel::slide, sim::ContactLabel::air};
+  write_estimate(folder_, "tumble", Kind::position, estimate);
+  Kind kind;
+  std::string method;
+  EXPECT_EQ(read_estimate(folder_, kind, method, Frame::imu).contacts, estimate.contacts);
+
+  write("contacts.csv", "time_ns,label\n0,1\n5000000,3\n");
+  EXPECT_NE(complaint(folder_).find("contacts.csv: 2 rows, must be 3"), std::string::npos);
+  write("contacts.csv", "time_ns,label\n0,1\n5000000,3\n11000000,0\n");
+  EXPECT_NE(complaint(folder_).find("contacts.csv:4: not the time"), std::string::npos);
+  write("contacts.csv", "time_ns,label\n0,1\n5000000,4\n10000000,0\n");
+  EXPECT_NE(complaint(folder_).find("contacts.csv:3: unknown label 4"), std::string::npos);
+  estimate.contacts.pop_back();
+  EXPECT_THROW(write_estimate(folder_, "tumble", Kind::position, estimate), std::invalid_argument);
+}
+
 TEST_F(EstimateFile, NothingOfAnEarlierEstimateStays) {
   Estimate with_map;
   with_map.map.resize(3);

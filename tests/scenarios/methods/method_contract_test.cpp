@@ -76,6 +76,7 @@ TEST_P(MethodContract, SameInputGivesSameBits) {
   sim::Recording other = recording();
   for (auto& rate : other.sensors.imus.front().gyro_rad_s) rate *= 1.001;
   for (auto& rate : other.truth.imus.front().gyro_unclipped_rad_s) rate *= 1.001;
+  for (auto& force : other.sensors.imus.front().accel_m_s2) force *= 1.001;
   EXPECT_NE(first, digest(run(other)));
 }
 
@@ -224,7 +225,7 @@ TEST(Registry, NamesAreUniqueWithinAKindAndSortedByKind) {
 }
 
 TEST(Registry, FindsByNameAndByKindAndName) {
-  EXPECT_EQ(find_methods("oracle").size(), 2u);
+  EXPECT_EQ(find_methods("oracle").size(), 3u);
   ASSERT_EQ(find_methods("rate/oracle").size(), 1u);
   EXPECT_EQ(find_methods("rate/oracle").front()->info.kind, Kind::rate);
   try {

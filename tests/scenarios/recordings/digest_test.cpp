@@ -21,6 +21,12 @@ TEST(Digest, IsThirtyTwoHexadecimalDigitsAndRepeats) {
   EXPECT_EQ(found, digest_of(fixture::recording()));
   // pinned: a change means that stored digests of older files no longer hold, and asks for a new format version
   EXPECT_EQ(digest(sim::Sensors{}, nullptr), "320fa1dc4c37d86ecef0f4970469eddc");
+  // and the same with an IMU from before there were magnetometers
+  sim::Sensors sensors;
+  sim::Truth truth;
+  sensors.imus.emplace_back().name = truth.imus.emplace_back().name = "imu";
+  EXPECT_EQ(digest(sensors, nullptr), "6093a0fd6559636640d2697aa44bf7a9");
+  EXPECT_EQ(digest(sensors, &truth), "ed580d53149a29ebc7465707bc797da9");
 }
 
 // One change in each field; every digest must differ from all the others.
@@ -45,6 +51,9 @@ TEST(Digest, EveryFieldCounts) {
                                        [](auto& s, auto&) { s.imus[1].gyro_rad_s.back().z() += 1e-9; },
                                        [](auto& s, auto&) { s.imus[1].accel_m_s2.back().z() += 1e-9; },
                                        [](auto& s, auto&) { s.imus[1].clip_flags.back() ^= 1; },
+                                       [](auto& s, auto&) { s.imus[1].magnetic_field_t.back().z() += 1e-12; },
+                                       [](auto& s, auto&) { s.imus[1].magnetic_field_t.clear(); },
+                                       [](auto& s, auto&) { s.imus[1].earth_field_W_t.z() += 1e-12; },
                                        [](auto& s, auto&) { s.lidars[0].name += "x"; },
                                        [](auto& s, auto&) { s.lidars[0].device += "x"; },
                                        [](auto& s, auto&) { s.lidars[0].T_BL.translation().x() += 1e-9; },
@@ -82,6 +91,7 @@ TEST(Digest, EveryFieldCounts) {
                                        [](auto&, auto& t) { t.imus[1].accel_unclipped_m_s2.back().x() += 1e-9; },
                                        [](auto&, auto& t) { t.imus[1].gyro_bias_rad_s.back().x() += 1e-9; },
                                        [](auto&, auto& t) { t.imus[1].accel_bias_m_s2.back().x() += 1e-9; },
+                                       [](auto&, auto& t) { t.imus[1].magnetic_field_t.back().x() += 1e-12; },
                                        [](auto&, auto& t) { t.lidars[0].name += "x"; },
                                        [](auto&, auto& t) { t.lidars[0].T_BL.translation().x() += 1e-9; },
                                        [](auto&, auto& t) { t.lidars[0].hit_W_m.back().x() += 1e-3f; },

@@ -38,12 +38,14 @@ class Numbers {
 };
 
 inline sim::ImuRecord imu_record(Numbers& numbers, const std::string& name, int samples) {
-  sim::ImuRecord imu{name, "mti30", 2500000, 7.854, 49.0, 5e-4, 6e-4, numbers.pose(), {}, {}, {}, {}};
+  sim::ImuRecord imu{name, "mti30", 2500000, 7.854, 49.0, 5e-4, 6e-4, numbers.pose(), {}, {}, {}, {}, {}, {}};
+  imu.earth_field_W_t = 1e-5 * numbers.vector();
   for (int i = 0; i < samples; ++i) {
     imu.time_ns.push_back(2500000 * (i + 1));
     imu.gyro_rad_s.push_back(numbers.vector());
     imu.accel_m_s2.push_back(numbers.vector());
     imu.clip_flags.push_back(static_cast<std::uint8_t>(i % 64));
+    imu.magnetic_field_t.push_back(1e-5 * numbers.vector());
   }
   return imu;
 }
@@ -53,7 +55,8 @@ inline sim::ImuTruth imu_truth(Numbers& numbers, const std::string& name, int sa
   truth.name = name;
   truth.T_BI = numbers.pose();
   for (auto* rows : {&truth.rate_rad_s, &truth.specific_force_m_s2, &truth.gyro_unclipped_rad_s,
-                     &truth.accel_unclipped_m_s2, &truth.gyro_bias_rad_s, &truth.accel_bias_m_s2}) {
+                     &truth.accel_unclipped_m_s2, &truth.gyro_bias_rad_s, &truth.accel_bias_m_s2,
+                     &truth.magnetic_field_t}) {
     for (int i = 0; i < samples; ++i) rows->push_back(numbers.vector());
   }
   return truth;

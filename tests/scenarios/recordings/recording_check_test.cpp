@@ -42,6 +42,8 @@ TEST(RecordingCheck, NamesWhatContradicts) {
       {[](auto& s) { s.imus[1].gyro_rad_s.pop_back(); }, "sensors/imus/1: gyro_I_rad_s has 69 rows, time_ns has 70"},
       {[](auto& s) { s.imus[1].accel_m_s2.clear(); }, "accel_I_m_s2 has 0 rows"},
       {[](auto& s) { s.imus[1].clip_flags.push_back(0); }, "clip_flags has 71 rows"},
+      {[](auto& s) { s.imus[1].magnetic_field_t.pop_back(); }, "magnetic_field_I_t has 69 rows, must have 70 or none"},
+      {[nan](auto& s) { s.imus[0].earth_field_W_t.x() = nan; }, "sensors/imus/0: earth_field_W_t is not finite"},
       {[](auto& s) { s.imus[0].period_ns = 0; }, "sensors/imus/0: period_ns is 0"},
       {[nan](auto& s) { s.imus[0].stated_gyro_range_rad_s = nan; }, "stated_gyro_range_rad_s is nan"},
       {[](auto& s) { s.imus[0].T_BI.linear() *= 1.001; }, "T_BI is not a rotation"},
@@ -82,6 +84,7 @@ TEST(RecordingCheck, NamesWhatContradictsInTheTruth) {
       {[](auto& t) { t.contacts[3].surface_id = 2; }, "surface_id 2 has no name"},
       {[](auto& t) { t.lidars[0].surface_id[3] = -3; }, "truth/lidars/0: surface_id -3"},
       {[](auto& t) { t.lidars[0].hit_W_m.pop_back(); }, "surface_id has 150 rows, hit_W_m has 149"},
+      {[](auto& t) { t.imus[1].magnetic_field_t.pop_back(); }, "truth/imus/1: magnetic_field_I_t has 69 rows"},
       {[](auto& t) { t.imus[1].gyro_bias_rad_s.clear(); }, "truth/imus/1: gyro_bias_I_rad_s has 0 rows"},
       {[](auto& t) { t.p_BG_m.x() = std::numeric_limits<double>::infinity(); }, "p_BG_m is not finite"}};
   for (const Case& each : cases) {

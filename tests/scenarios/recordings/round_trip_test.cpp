@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <hdf5.h>
 
+#include <cmath>
 #include <limits>
 
 #include "scenarios/recordings/fixture_recording.hpp"
@@ -40,6 +41,8 @@ TEST_F(RoundTrip, EveryFieldComesBackExactly) {
   EXPECT_EQ(imu.gyro_rad_s, given.gyro_rad_s);
   EXPECT_EQ(imu.accel_m_s2, given.accel_m_s2);
   EXPECT_EQ(imu.clip_flags, given.clip_flags);
+  EXPECT_EQ(imu.magnetic_field_t, given.magnetic_field_t);
+  EXPECT_EQ(imu.earth_field_W_t, given.earth_field_W_t);
   ASSERT_EQ(sensors.lidars.size(), 1u);
   const sim::LidarRecord& lidar = sensors.lidars[0];
   const sim::LidarRecord& given_lidar = recording.sensors.lidars[0];
@@ -86,9 +89,30 @@ TEST_F(RoundTrip, EveryFieldOfTheTruthComesBackExactly) {
   EXPECT_EQ(truth.imus[1].accel_unclipped_m_s2, given.imus[1].accel_unclipped_m_s2);
   EXPECT_EQ(truth.imus[1].gyro_bias_rad_s, given.imus[1].gyro_bias_rad_s);
   EXPECT_EQ(truth.imus[1].accel_bias_m_s2, given.imus[1].accel_bias_m_s2);
+  EXPECT_EQ(truth.imus[1].magnetic_field_t, given.imus[1].magnetic_field_t);
   ASSERT_EQ(truth.lidars.size(), 1u);
   EXPECT_EQ(truth.lidars[0].hit_W_m, given.lidars[0].hit_W_m);
   EXPECT_EQ(truth.lidars[0].surface_id, given.lidars[0].surface_id);
+}
+
+TEST_F(RoundTrip, AnImuWithoutMagnetometerLeavesNoTraceOfOne) {
+  sim::Recording recording = fixture::recording();
+  for (sim::ImuRecord& imu : recording.sensors.imus) {
+    imu.magnetic_field_t.clear();
+    imu.earth_field_W_t.setZero();
+  }
+  for (sim::ImuTruth& imu : recording.truth.imus) imu.magnetic_field_t.clear();
+  const std::filesystem::path path = folder_ / "a.h5";
+  write_recording(path, info(), recording.sensors, &recording.truth);
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  EXPECT_GT(H5Lexists(file, "sensors/imus/0/clip_flags", H5P_DEFAULT), 0);
+  EXPECT_EQ(H5Lexists(file, "sensors/imus/0/magnetic_field_I_t", H5P_DEFAULT), 0);
+  EXPECT_EQ(H5Lexists(file, "sensors/imus/0/earth_field_W_t", H5P_DEFAULT), 0);
+  EXPECT_EQ(H5Lexists(file, "truth/imus/0/magnetic_field_I_t", H5P_DEFAULT), 0);
+  H5Fclose(file);
+  EXPECT_TRUE(read_sensors(path).imus[0].magnetic_field_t.empty());
+  EXPECT_TRUE(read_truth(path).imus[0].magnetic_field_t.empty());
+  EXPECT_EQ(digest(read_sensors(path), nullptr), digest(recording.sensors, nullptr));
 }
 
 TEST_F(RoundTrip, InfoComesBackAndTheWriterFillsItsOwnPart) {
@@ -145,7 +169,8 @@ TEST_F(RoundTrip, EqualRecordingsGiveEqualFiles) {
     write_recording(folder_ / name, info(), recording.sensors, &recording.truth);
   EXPECT_TRUE(fixture::bytes_of(folder_ / "a.h5") == fixture::bytes_of(folder_ / "b.h5"));
   sim::Sensors other = recording.sensors;
-  other.imus[0].gyro_rad_s[3].x() += 1e-15;
+  double& last_bit = other.imus[0].gyro_rad_s[3].x();
+  last_bit = std::nextafter(last_bit, 1e9);
   write_recording(folder_ / "b.h5", info(), other, &recording.truth);
   EXPECT_FALSE(fixture::bytes_of(folder_ / "a.h5") == fixture::bytes_of(folder_ / "b.h5"));
 }
@@ -175,7 +200,7 @@ TEST_F(RoundTrip, EveryDatasetHasAUnitAndIsDocumented) {
   const hid_t file = H5Fopen((folder_ / "a.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, note_dataset, &datasets, H5O_INFO_BASIC);
   H5Fclose(file);
-  EXPECT_EQ(datasets.size(), 2 * 5 + 8 + 8 + 6 + 2 * 7 + 3u);
+  EXPECT_EQ(datasets.size(), 2 * 7 + 8 + 8 + 6 + 2 * 8 + 3u);
   for (const auto& [name, has_unit] : datasets) {
     EXPECT_TRUE(has_unit || name == "truth/surfaces") << name;
     std::string quoted(1, '`');

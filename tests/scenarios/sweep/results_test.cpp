@@ -77,7 +77,9 @@ TEST_F(ResultsTest, WhatIsStoredComesBack) {
     if (row.status == "ok") {
       ++ok;
       EXPECT_EQ(row.seed, large);
-      if (row.metric == "ate_m") EXPECT_EQ(row.value, 0.1 + static_cast<double>(large));
+      if (row.metric == "ate_m") {
+        EXPECT_EQ(row.value, 0.1 + static_cast<double>(large));
+      }
     } else if (row.status == "crashed") {
       ++crashed;
       EXPECT_EQ(row.metric, "");

@@ -5,6 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <initializer_list>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace tumble::sim {
 namespace {
@@ -22,6 +26,16 @@ Truth turning(double rate_rad_s, double duration_s, double acceleration_m_s2 = 3
     truth.w_WB_B_rad_s.emplace_back(0, 0, rate_rad_s);
     truth.v_WB_m_s.emplace_back(acceleration_m_s2 / kFrequency_rad_s * (1 - std::cos(kFrequency_rad_s * t)), 0, 0);
     truth.p_WB_m.emplace_back(Vector3d::Zero());
+  }
+  return truth;
+}
+
+/// A body that swings about an axis near x with up to 12 rad/s and is shaken along x.
+Truth swinging(double duration_s) {
+  Truth truth = turning(0.0, duration_s, 5.0);
+  for (std::size_t k = 0; k < truth.q_WB.size(); ++k) {
+    const double t = static_cast<double>(k) * 0.0005, angle_rad = 3.0 * (1.0 - std::cos(4.0 * t));
+    truth.q_WB[k] = Eigen::Quaterniond(Eigen::AngleAxisd(angle_rad, Vector3d(0.9, 0.4, 0.174).normalized()));
   }
   return truth;
 }
@@ -65,8 +79,10 @@ TEST(ImuSimulation, LeverArmGivesTheCentripetalForce) {
   Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
   T_BI.translation() = Vector3d(0.1, 0, 0.03);
   const Result r = run(turning(15.0, 0.5, 0.0), ideal(), T_BI);
-  // w^2 r towards the axis; the difference over a step of 7.5 mrad is short of it by (0.0075)^2/24 = 2.3e-6
-  for (const Vector3d& f : r.record.accel_m_s2) ASSERT_NEAR((f - Vector3d(-22.5, 0, kGravity_m_s2)).norm(), 0.0, 1e-4);
+  // w^2 r towards the axis, as a gain of velocity over a turn of 0.15 rad: the chord is shorter than the arc
+  const Vector3d expected(-22.5 * std::sin(0.075) / 0.075, 0, kGravity_m_s2);
+  ASSERT_EQ(r.record.accel_m_s2.size(), 50u);
+  for (const Vector3d& f : r.record.accel_m_s2) ASSERT_NEAR((f - expected).norm(), 0.0, 1e-9);
 }
 
 TEST(ImuSimulation, MountingTurnsTheAxes) {
@@ -93,9 +109,9 @@ TEST(ImuSimulation, RailClipsTheReadingAndNotTheTwin) {
 
 TEST(ImuSimulation, RailBeforeTheMeanCutsAnOscillationThatTheMeanHides) {
   Truth truth = turning(0.0, 0.2, 0.0);
-  for (std::size_t k = 0; k < truth.q_WB.size(); ++k) {                      // 200 Hz, two whole periods in each window
-    truth.v_WB_m_s[k].x() = 0.05 * std::sin(2 * M_PI * 200.0 * k * 0.0005);  // peaks of 63 m/s^2
-    truth.v_WB_m_s[k].x() += 20.0 * k * 0.0005;
+  for (std::size_t k = 0; k < truth.q_WB.size(); ++k) {  // 200 Hz, two whole periods in each window
+    truth.v_WB_m_s[k].x() = 0.05 * std::sin(2 * M_PI * 200.0 * static_cast<double>(k) * 0.0005);  // peaks of 63 m/s^2
+    truth.v_WB_m_s[k].x() += 20.0 * static_cast<double>(k) * 0.0005;
   }
   SensorSpec sensor = ideal();
   sensor.values.set("accel_rail_m_s2", 50.0);
@@ -154,16 +170,191 @@ TEST(ImuSimulation, GyroFeelsTheSpecificForce) {
   EXPECT_NEAR((r.record.gyro_rad_s[0] - Vector3d(0, 0, 1e-3 * kGravity_m_s2)).norm(), 0.0, 1e-12);
 }
 
-TEST(ImuSimulation, ReadingsAreMultiplesOfTheQuantum) {
-  SensorSpec sensor = ideal();
+TEST(ImuSimulation, ReadingsAtTheRateOfTheConverterAreMultiplesOfTheQuantum) {
+  SensorSpec sensor = ideal(2000.0);
   sensor.values.set("accel_quantum_m_s2", 0.25);
   const Result r = run(turning(3.0, 0.5), sensor);
-  ASSERT_EQ(r.record.accel_m_s2.size(), 50u);
-  for (std::size_t k = 0; k < 50; ++k) {
+  ASSERT_EQ(r.record.accel_m_s2.size(), 1000u);
+  for (std::size_t k = 0; k < 1000; ++k) {
     const Vector3d steps = r.record.accel_m_s2[k] / 0.25;
-    ASSERT_EQ(steps, Vector3d(steps.array().round()));
+    ASSERT_NEAR((steps - Vector3d(steps.array().round())).norm(), 0.0, 1e-12);
     ASSERT_LE((r.record.accel_m_s2[k] - r.truth.specific_force_m_s2[k]).cwiseAbs().maxCoeff(), 0.125 + 1e-12);
   }
+}
+
+TEST(ImuSimulation, EachOptionOffIsTheIdealSignalAndOnIsNot) {
+  const Truth motion = swinging(1.0);
+  const Result exact = run(motion, ideal());
+  ASSERT_EQ(exact.record.gyro_rad_s, exact.truth.rate_rad_s);
+  // every number that makes an error, at a size that must show, after those without which it does nothing
+  const std::vector<std::vector<std::pair<const char*, double>>> options = {
+      {{"gyro_rail_rad_s", 8.0}},
+      {{"gyro_rail_rad_s", 8.0}, {"gyro_plateau_axis_spread_rad_s", 0.1}},
+      {{"gyro_rail_rad_s", 8.0}, {"gyro_plateau_event_spread_rad_s", 0.1}},
+      {{"gyro_rail_rad_s", 8.0}, {"gyro_wrap", 1}},
+      {{"gyro_rail_rad_s", 8.0}, {"gyro_slow_recovery_s", 0.1}, {"gyro_slow_recovery_share", 0.2}},
+      {{"gyro_rail_rad_s", 8.0}, {"clip_after_low_pass", 1}},
+      {{"gyro_bandwidth_hz", 10.0}},
+      {{"gyro_delay_s", 0.003}},
+      {{"gyro_noise_rad_s_sqrt_hz", 1e-3}},
+      {{"gyro_bias_turn_on_rad_s", 0.01}},
+      {{"gyro_bias_in_run_rad_s", 0.01}},
+      {{"gyro_bias_walk_rad_s_sqrt_s", 0.01}},
+      {{"gyro_scale_error", 0.01}},
+      {{"gyro_misalignment_rad", 0.01}},
+      {{"gyro_g_sensitivity_s_m", 0.001}},
+      {{"gyro_quantum_rad_s", 0.05}},
+      {{"gyro_handover_rad_s", 20.0}, {"gyro_precise_noise_rad_s_sqrt_hz", 1e-3}},
+      {{"gyro_handover_rad_s", 20.0}, {"gyro_precise_quantum_rad_s", 0.05}},
+      {{"accel_rail_m_s2", 9.0}},
+      {{"accel_rail_m_s2", 9.0}, {"accel_plateau_axis_spread_m_s2", 0.1}},
+      {{"accel_rail_m_s2", 9.0}, {"accel_plateau_event_spread_m_s2", 0.1}},
+      {{"accel_rail_m_s2", 9.0}, {"accel_wrap", 1}},
+      {{"accel_rail_m_s2", 9.0}, {"accel_slow_recovery_s", 0.1}, {"accel_slow_recovery_share", 0.2}},
+      {{"accel_rail_m_s2", 9.0}, {"clip_after_low_pass", 1}},
+      {{"accel_noise_m_s2_sqrt_hz", 1e-3}},
+      {{"accel_bandwidth_hz", 10.0}},
+      {{"accel_delay_s", 0.003}},
+      {{"accel_bias_turn_on_m_s2", 0.01}},
+      {{"accel_bias_in_run_m_s2", 0.01}},
+      {{"accel_bias_walk_m_s2_sqrt_s", 0.01}},
+      {{"accel_scale_error", 0.01}},
+      {{"accel_misalignment_rad", 0.01}},
+      {{"accel_quantum_m_s2", 0.05}},
+      {{"accel_handover_m_s2", 20.0}, {"accel_precise_noise_m_s2_sqrt_hz", 1e-3}},
+      {{"digital_bandwidth_hz", 10.0}},
+      {{"time_offset_s", 0.01}},
+      {{"time_jitter_s", 0.001}},
+      {{"dropout_share", 0.3}}};
+  for (const auto& option : options) {
+    SensorSpec sensor = ideal();
+    for (const auto& [name, value] : option) sensor.values.set(name, value);
+    const Result on = run(motion, sensor);
+    sensor.values.set(option.back().first, resolve("imu", {}, imu_parameters()).at(option.back().first));
+    const Result without = run(motion, sensor);
+    EXPECT_TRUE(on.record.gyro_rad_s != without.record.gyro_rad_s ||
+                on.record.accel_m_s2 != without.record.accel_m_s2 || on.record.time_ns != without.record.time_ns)
+        << option.back().first << " changed nothing";
+    for (const auto& [name, value] : option) sensor.values.set(name, resolve("imu", {}, imu_parameters()).at(name));
+    const Result off = run(motion, sensor);
+    ASSERT_EQ(off.record.gyro_rad_s, exact.record.gyro_rad_s) << option.back().first;
+    ASSERT_EQ(off.record.accel_m_s2, exact.record.accel_m_s2) << option.back().first;
+    ASSERT_EQ(off.record.time_ns, exact.record.time_ns) << option.back().first;
+  }
+}
+
+TEST(ImuSimulation, TwinIsTheReadingWhereverNothingClippedOnThatAxis) {
+  // x swings through the rail while y and z stay below it; noise, bias and axis errors on
+  SensorSpec sensor = ideal(200.0);
+  for (const auto& [name, value] :
+       std::initializer_list<std::pair<const char*, double>>{{"gyro_rail_rad_s", 8.0},
+                                                             {"gyro_noise_rad_s_sqrt_hz", 1e-3},
+                                                             {"gyro_bias_in_run_rad_s", 0.01},
+                                                             {"gyro_misalignment_rad", 0.01},
+                                                             {"gyro_bandwidth_hz", 400.0},
+                                                             {"clip_flags", 1.0}})
+    sensor.values.set(name, value);
+  const Result r = run(swinging(1.0), sensor);
+  int clipped = 0, free = 0;
+  for (std::size_t k = 0; k < r.record.gyro_rad_s.size(); ++k) {
+    for (int j = 0; j < 3; ++j) {
+      if ((r.record.clip_flags[k] >> j & 1) != 0) {
+        EXPECT_GT(std::abs(r.truth.gyro_unclipped_rad_s[k][j]), std::abs(r.record.gyro_rad_s[k][j]));
+        ++clipped;
+      } else {
+        ASSERT_EQ(r.record.gyro_rad_s[k][j], r.truth.gyro_unclipped_rad_s[k][j]) << k;
+        ++free;
+      }
+    }
+  }
+  EXPECT_GT(clipped, 30);
+  EXPECT_GT(free, 400);
+}
+
+TEST(ImuSimulation, WholeWindowsAtTheRailReadExactlyTheRail) {
+  // turning about an axis that turns itself: coning would move a compensated reading off the plateau
+  SensorSpec sensor = ideal();
+  sensor.values.set("gyro_rail_rad_s", 7.5);
+  Truth truth = turning(0.0, 0.5);
+  for (std::size_t k = 0; k < truth.q_WB.size(); ++k) {
+    const double t = static_cast<double>(k) * 0.0005;
+    truth.q_WB[k] = Eigen::AngleAxisd(12.0 * t, Vector3d::UnitZ()) * Eigen::AngleAxisd(5.0 * t, Vector3d::UnitX());
+  }
+  const Result r = run(truth, sensor);
+  int whole = 0;
+  for (std::size_t k = 0; k < r.record.gyro_rad_s.size(); ++k) {
+    for (int j = 0; j < 3; ++j) {
+      if (std::abs(r.truth.gyro_unclipped_rad_s[k][j]) < 9.0) continue;
+      ASSERT_NEAR(std::abs(r.record.gyro_rad_s[k][j]), 7.5, 1e-12);
+      ++whole;
+    }
+  }
+  EXPECT_GT(whole, 20);
+}
+
+TEST(ImuSimulation, AccelerometerComesLateAgainstTheGyroscope) {
+  Truth truth = turning(0.0, 0.2, 0.0);
+  for (std::size_t k = 200; k < truth.q_WB.size(); ++k) truth.v_WB_m_s[k].x() = 0.5;  // an impact at 0.1 s
+  SensorSpec sensor = ideal(1000.0);
+  const Result now = run(truth, sensor);
+  sensor.values.set("accel_delay_s", 0.004);
+  const Result late = run(truth, sensor);
+  EXPECT_NEAR(now.record.accel_m_s2[99].x(), 500.0, 1e-9);
+  EXPECT_NEAR(late.record.accel_m_s2[99].x(), 0.0, 1e-9);
+  EXPECT_NEAR(late.record.accel_m_s2[103].x(), 500.0, 1e-9);
+  EXPECT_EQ(late.record.gyro_rad_s, now.record.gyro_rad_s);
+}
+
+TEST(ImuSimulation, LostSamplesAreLostFromTheTruthToo) {
+  SensorSpec sensor = ideal();
+  sensor.values.set("dropout_share", 0.3);
+  const Result r = run(turning(3.0, 2.0), sensor), all = run(turning(3.0, 2.0), ideal());
+  ASSERT_LT(r.record.time_ns.size(), 180u);
+  ASSERT_GT(r.record.time_ns.size(), 80u);
+  ASSERT_EQ(r.truth.rate_rad_s.size(), r.record.time_ns.size());
+  for (std::size_t k = 0; k < r.record.time_ns.size(); ++k) {
+    const auto i = static_cast<std::size_t>(r.record.time_ns[k] / 10'000'000 - 1);
+    ASSERT_EQ(r.record.accel_m_s2[k], all.record.accel_m_s2[i]);
+    ASSERT_EQ(r.truth.specific_force_m_s2[k], all.truth.specific_force_m_s2[i]);
+  }
+}
+
+TEST(ImuSimulation, HandoverQuietensSlowAxes) {
+  SensorSpec sensor = ideal();
+  for (const auto& [name, value] :
+       std::initializer_list<std::pair<const char*, double>>{{"gyro_noise_rad_s_sqrt_hz", 0.01},
+                                                             {"gyro_handover_rad_s", 1.745},
+                                                             {"gyro_precise_noise_rad_s_sqrt_hz", 0.001}})
+    sensor.values.set(name, value);
+  const Result r = run(turning(5.0, 10.0), sensor);  // z turns fast
+  Vector3d sum = Vector3d::Zero();
+  for (std::size_t k = 0; k < r.record.gyro_rad_s.size(); ++k)
+    sum += (r.record.gyro_rad_s[k] - r.truth.rate_rad_s[k]).cwiseAbs2();
+  const Vector3d sigma = (sum / static_cast<double>(r.record.gyro_rad_s.size())).cwiseSqrt();
+  EXPECT_NEAR(sigma.x(), 0.01, 0.12 * 0.01);  // 5 standard errors of 1000 samples: 11 %
+  EXPECT_NEAR(sigma.y(), 0.01, 0.12 * 0.01);
+  EXPECT_NEAR(sigma.z(), 0.1, 0.12 * 0.1);
+}
+
+TEST(ImuSimulation, RefusesNumbersThatContradictEachOther) {
+  const auto complaint = [](std::initializer_list<std::pair<const char*, double>> numbers) -> std::string {
+    SensorSpec sensor = ideal();
+    for (const auto& [name, value] : numbers) sensor.values.set(name, value);
+    try {
+      run(turning(1.0, 0.1), sensor);
+    } catch (const InvalidSituation& error) {
+      return error.what();
+    }
+    return "";
+  };
+  using testing::HasSubstr;
+  EXPECT_THAT(complaint({{"gyro_wrap", 1}}), HasSubstr("sensors.imu.gyro_wrap needs a rail"));
+  EXPECT_THAT(complaint({{"accel_slow_recovery_s", 1}}), HasSubstr("accel_slow_recovery_s needs a rail"));
+  EXPECT_THAT(complaint({{"gyro_rail_rad_s", 3}, {"gyro_plateau_axis_spread_rad_s", 1}}), HasSubstr("below a third"));
+  EXPECT_THAT(complaint({{"gyro_rail_rad_s", 3}, {"gyro_wrap", 1}, {"gyro_slow_recovery_s", 1}}),
+              HasSubstr("must be 0 with gyro_wrap"));
+  EXPECT_THAT(complaint({{"magnetic_source_farthest_m", 0.1}}), HasSubstr("magnetic_source_farthest_m"));
+  EXPECT_EQ(complaint({{"gyro_rail_rad_s", 3}, {"gyro_wrap", 1}}), "");
 }
 
 TEST(ImuSimulation, TimeOffsetMovesTheStampsAlone) {

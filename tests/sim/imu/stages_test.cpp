@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -75,88 +76,77 @@ TEST(AxisErrorStage, DrawsScaleOnTheDiagonalAndAnglesBesideIt) {
   EXPECT_NEAR(std::sqrt(angle / (6 * kDraws)), 0.01, 0.023 * 0.01);
 }
 
-TEST(BiasStage, OffIsExactlyZero) {
-  Stream stream(1, "test");
-  Bias bias({}, 0.0005, stream);
-  for (int k = 0; k < 10; ++k) ASSERT_EQ(bias.next(stream), Vector3d::Zero());
-}
-
-TEST(BiasStage, TurnOnIsDrawnOnceWithItsSigma) {
-  double sum = 0.0;
-  constexpr int kDraws = 4000;
-  for (int i = 0; i < kDraws; ++i) {
-    Stream stream(i, "test");
-    Bias bias({.turn_on = 0.2}, 0.0005, stream);
-    const Vector3d first = bias.next(stream);
-    ASSERT_EQ(bias.next(stream), first);
-    sum += first.squaredNorm();
-  }
-  EXPECT_NEAR(std::sqrt(sum / (3 * kDraws)), 0.2, 0.032 * 0.2);  // 5 standard errors, false alarm 6e-7
-}
-
-TEST(BiasStage, InRunIsStationaryAndDecaysWithItsTime) {
-  constexpr double kPeriod_s = 0.01;
-  constexpr int kRuns = 2000, kLater = 100;  // 1 s, the correlation time
-  double start = 0.0, later = 0.0, product = 0.0;
-  for (int run = 0; run < kRuns; ++run) {
-    Stream stream(run, "test");
-    Bias bias({.in_run = 1.0, .in_run_s = 1.0}, kPeriod_s, stream);
-    const Vector3d first = bias.next(stream);
-    Vector3d last = first;
-    for (int k = 0; k < kLater; ++k) last = bias.next(stream);
-    start += first.squaredNorm();
-    later += last.squaredNorm();
-    product += first.dot(last);
-  }
-  const double n = 3.0 * kRuns;
-  EXPECT_NEAR(start / n, 1.0, 5.0 * std::sqrt(2.0 / n));
-  EXPECT_NEAR(later / n, 1.0, 5.0 * std::sqrt(2.0 / n));
-  EXPECT_NEAR(product / n, std::exp(-1.0), 5.0 * std::sqrt((1.0 + std::exp(-2.0)) / n));  // false alarm 6e-7 each
-}
-
-TEST(BiasStage, WalkGrowsWithTheRootOfTimeWhateverThePeriod) {
-  for (const double period_s : {0.0005, 0.01}) {
-    double sum = 0.0;
-    constexpr int kRuns = 500;
-    for (int run = 0; run < kRuns; ++run) {
-      Stream stream(run, "test");
-      Bias bias({.walk_sqrt_s = 0.1}, period_s, stream);
-      Vector3d last = Vector3d::Zero();
-      for (int k = 0; k <= std::lround(0.25 / period_s); ++k) last = bias.next(stream);
-      sum += last.squaredNorm();
-    }
-    const double n = 3.0 * kRuns;
-    EXPECT_NEAR(sum / n, 0.25 * 0.01, 5.0 * std::sqrt(2.0 / n) * 0.25 * 0.01)
-        << "period " << period_s;  // false alarm 6e-7
-  }
-}
-
 TEST(NoiseStage, HasItsDensity) {
   Stream stream(1, "test");
   double sum = 0.0;
   constexpr int kDraws = 20000;
-  for (int i = 0; i < kDraws; ++i) sum += white_noise(stream, 0.01, 2000.0).squaredNorm();
+  for (int i = 0; i < kDraws; ++i) sum += white_noise(stream, Vector3d::Constant(0.01), 2000.0).squaredNorm();
   const double variance = 0.01 * 0.01 * 2000.0, n = 3.0 * kDraws;
   EXPECT_NEAR(sum / n, variance, 5.0 * std::sqrt(2.0 / n) * variance);  // false alarm 6e-7
-  EXPECT_EQ(white_noise(stream, 0.0, 2000.0), Vector3d::Zero());
+  EXPECT_EQ(white_noise(stream, Vector3d::Zero(), 2000.0), Vector3d::Zero());
 }
 
-TEST(RailStage, ClampsEachAxisAndFlagsIt) {
-  std::uint8_t flags = 0;
-  EXPECT_EQ(apply_rail({11.0, -10.6, 10.5}, 10.5, 3, flags), Vector3d(10.5, -10.5, 10.5));
-  EXPECT_EQ(flags, 0b011000);  // exactly at the rail is not beyond it
+TEST(NoiseStage, OffDrawsNothing) {
+  Stream used(1, "test"), fresh(1, "test");
+  white_noise(used, Vector3d::Zero(), 2000.0);
+  normals(used, 0.0);
+  EXPECT_EQ(used.normal(), fresh.normal());
 }
 
-TEST(RailStage, OffPassesEverything) {
-  std::uint8_t flags = 0;
-  EXPECT_EQ(apply_rail({1e6, -1e6, 0}, 0.0, 0, flags), Vector3d(1e6, -1e6, 0));
-  EXPECT_EQ(flags, 0);
+TEST(NoiseStage, EachAxisHasItsOwnDensityOfOneRealisation) {
+  Stream a(1, "test"), b(1, "test");
+  const Vector3d coarse = white_noise(a, Vector3d::Constant(0.6), 100.0);
+  const Vector3d mixed = white_noise(b, Vector3d(0.6, 0.06, 0.6), 100.0);
+  EXPECT_EQ(mixed.x(), coarse.x());
+  EXPECT_NEAR(mixed.y(), 0.1 * coarse.y(), 1e-15);
+}
+
+TEST(RangeStage, ChangesEachAxisWithHysteresis) {
+  RangeChoice range(2.0);
+  const auto after = [&](const Vector3d& signal) {
+    range.update(signal);
+    return range.pick(1.0, 0.1);
+  };
+  EXPECT_EQ(after({1.0, 3.0, -2.5}), Vector3d(0.1, 1.0, 1.0));
+  EXPECT_EQ(after({1.95, 1.95, -1.7}), Vector3d(0.1, 1.0, 0.1));  // y: not yet below 1.8; z is
+  EXPECT_EQ(after({-2.01, 1.79, -1.95}), Vector3d(1.0, 0.1, 0.1));
+}
+
+TEST(RangeStage, OffIsTheCoarsePartAlways) {
+  RangeChoice range(0.0);
+  range.update(Vector3d::Zero());
+  EXPECT_EQ(range.pick(1.0, 0.1), Vector3d(1.0, 1.0, 1.0));
+}
+
+TEST(DelayStage, OffReturnsTheInputBitForBit) {
+  DelayLine off(0.0, 2000.0);
+  const Vector3d input(0.1, 1.0 / 3.0, -1e9);
+  EXPECT_EQ(off(input), input);
+  EXPECT_EQ(off(-input), -input);
+}
+
+TEST(DelayStage, WholeSamplesComeLateUnchanged) {
+  DelayLine delay(0.0015, 2000.0);  // three samples
+  for (int k = 0; k < 20; ++k) ASSERT_EQ(delay(Vector3d(k, -k, 1.0)).x(), std::max(0, k - 3)) << k;
+}
+
+TEST(DelayStage, PartsOfASampleAreInterpolatedAndNothingIsLost) {
+  DelayLine delay(0.0026, 1000.0);
+  double area = 0.0, moment = 0.0;
+  for (int k = 0; k < 40; ++k) {
+    const double out = delay(Vector3d(k == 10 ? 300.0 : 0.0, 0, 0)).x();
+    area += out;
+    moment += k * out;
+  }
+  EXPECT_NEAR(area, 300.0, 1e-10);
+  EXPECT_NEAR(moment / area, 12.6, 1e-10);
 }
 
 TEST(QuantumStage, RoundsToMultiples) {
-  EXPECT_TRUE(quantise({0.26, -0.26, 0.24}, 0.5).isApprox(Vector3d(0.5, -0.5, 0.0), 1e-15));
+  EXPECT_TRUE(quantise({0.26, -0.26, 0.24}, Vector3d::Constant(0.5)).isApprox(Vector3d(0.5, -0.5, 0.0), 1e-15));
+  EXPECT_TRUE(quantise({0.26, 0.26, 0.26}, {0.5, 0.0, 0.1}).isApprox(Vector3d(0.5, 0.26, 0.3), 1e-15));
   const Vector3d input(0.1, 1.0 / 3.0, -7.0);
-  EXPECT_EQ(quantise(input, 0.0), input);
+  EXPECT_EQ(quantise(input, Vector3d::Zero()), input);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "sim/lidar/casting.hpp"
 #include "sim/lidar/scene_geometry.hpp"
 #include "sim/lidar/test_worlds.hpp"
 
@@ -14,86 +15,19 @@ namespace tumble::sim {
 namespace {
 
 using Eigen::Isometry3d;
-using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr std::int64_t kPeriod_ns = 500000;
-
-struct Motion {
-  std::vector<Vector3d> p_WB_m;
-  std::vector<Quaterniond> q_WB;
-  MotionTrack track() const { return {kPeriod_ns, p_WB_m, q_WB}; }
-};
-
-/// Constant velocity and constant rate about a fixed axis, which the interpolation follows exactly.
-Motion moving(double duration_s, const Vector3d& start_m, const Vector3d& velocity_m_s, const Vector3d& rate_rad_s) {
-  Motion motion;
-  const auto samples = static_cast<int>(std::lround(duration_s * 1e9 / kPeriod_ns)) + 1;
-  for (int i = 0; i < samples; ++i) {
-    const double t = i * kPeriod_ns * 1e-9;
-    const double angle = rate_rad_s.norm() * t;
-    motion.p_WB_m.push_back(start_m + t * velocity_m_s);
-    motion.q_WB.push_back(angle > 0.0 ? Quaterniond(Eigen::AngleAxisd(angle, rate_rad_s.normalized()))
-                                      : Quaterniond::Identity());
-  }
-  return motion;
-}
-
-Motion resting(double duration_s, const Vector3d& at_m = Vector3d::Zero()) {
-  return moving(duration_s, at_m, Vector3d::Zero(), Vector3d::Zero());
-}
-
-struct Cast {
-  LidarRecord record;
-  LidarTruth truth;
-};
-
-Cast cast(const engine::World& world, const SensorSpec& sensor, const Motion& motion, int threads = 1,
-          const Isometry3d& T_BL = Isometry3d::Identity(), std::uint64_t seed = 1) {
-  Cast out;
-  simulate_lidar(world, sensor, T_BL, motion.track(), seed, threads, out.record, out.truth);
-  return out;
-}
-
-/// A closed room seen from its inside: 6 m x 10 m x 4 m.
-const Vector3d kRoom(3.0, 5.0, 2.0);
-engine::World room() {
-  return testing::world_of("<mujoco><worldbody><geom name='room' type='box' size='3 5 2'/></worldbody></mujoco>");
-}
-
-/// Closed form of the range inside of the room.
-double room_range(const Vector3d& origin, const Vector3d& direction) {
-  double range = 1e9;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (direction[axis] != 0.0) {
-      range = std::min(range, (std::copysign(kRoom[axis], direction[axis]) - origin[axis]) / direction[axis]);
-    }
-  }
-  return range;
-}
-
-double distance_to_walls(const Vector3d& p) {
-  return std::abs((p.cwiseAbs() - kRoom).maxCoeff());
-}
-
-Isometry3d mounting() {
-  Isometry3d T_BL = Isometry3d::Identity();
-  T_BL.linear() = Eigen::AngleAxisd(-1.2, Vector3d(0.1, 0.2, 1.0).normalized()).toRotationMatrix();
-  T_BL.translation() = Vector3d(0.05, -0.1, 0.09);
-  return T_BL;
-}
-
-void expect_same(const Cast& a, const Cast& b) {
-  EXPECT_EQ(a.record.sweep_start_ns, b.record.sweep_start_ns);
-  EXPECT_EQ(a.record.sweep_first, b.record.sweep_first);
-  EXPECT_EQ(a.record.position_L_m, b.record.position_L_m);
-  EXPECT_EQ(a.record.range_m, b.record.range_m);
-  EXPECT_EQ(a.record.intensity, b.record.intensity);
-  EXPECT_EQ(a.record.offset_ns, b.record.offset_ns);
-  EXPECT_EQ(a.record.ring, b.record.ring);
-  EXPECT_EQ(a.truth.hit_W_m, b.truth.hit_W_m);
-  EXPECT_EQ(a.truth.surface_id, b.truth.surface_id);
-}
+using testing::Cast;
+using testing::cast;
+using testing::distance_to_walls;
+using testing::expect_same;
+using testing::kPeriod_ns;
+using testing::Motion;
+using testing::mounting;
+using testing::moving;
+using testing::resting;
+using testing::room;
+using testing::room_range;
 
 TEST(LidarParameters, ResolveAndBounds) {
   for (const auto known : {spinning_lidar_parameters(), rosette_lidar_parameters()}) {
@@ -103,7 +37,7 @@ TEST(LidarParameters, ResolveAndBounds) {
       EXPECT_FALSE(p.unit.empty()) << p.name;
     }
   }
-  EXPECT_EQ(spinning_lidar_parameters().size(), 33u);
+  EXPECT_EQ(spinning_lidar_parameters().size(), 38u);
 }
 
 /// The published formula of the rig's driver, written out again, for a lidar at rest.
@@ -135,6 +69,24 @@ TEST(SpinningLidar, RestingInARoomIsExact) {
   EXPECT_LT(worst_position_m, 5e-6);
 }
 
+/// Negative control of the test above: other published mirror offsets, turning the other way, are seen.
+TEST(SpinningLidar, AnotherMirrorOrSenseIsFound) {
+  const Cast right = cast(room(), testing::exact_lidar_of("spinning_lidar"), resting(0.1, Vector3d(0.4, -1.3, 0.2)));
+  const auto shift_m = [&](const char* name, double value) {
+    SensorSpec sensor = testing::exact_lidar_of("spinning_lidar");
+    sensor.values.set(name, value);
+    const Cast other = cast(room(), sensor, resting(0.1, Vector3d(0.4, -1.3, 0.2)));
+    double worst_m = 0.0;
+    for (std::size_t i = 0; i < 32000; ++i) {
+      worst_m = std::max<double>(worst_m, (right.record.position_L_m.at(i) - other.record.position_L_m.at(i)).norm());
+    }
+    return worst_m;
+  };
+  EXPECT_GT(shift_m("mirror_radius_m", 0.03825), 1e-3);
+  EXPECT_GT(shift_m("mirror_drop_m", -0.010875), 1e-3);
+  EXPECT_GT(shift_m("clockwise", 0.0), 1.0);
+}
+
 TEST(SpinningLidar, RingsCountFromBottomToTop) {
   const Cast out = cast(room(), testing::exact_lidar_of("spinning_lidar"), resting(0.1));
   ASSERT_EQ(out.record.ring.size(), 32000u);
@@ -152,9 +104,12 @@ TEST(SpinningLidar, RingsCountFromBottomToTop) {
 
 TEST(SpinningLidar, CurrentVendorTimingKeepsItsClockAcrossSweeps) {
   SensorSpec sensor = testing::exact_lidar_of("spinning_lidar");
-  sensor.values.set("firing_period_s", 2.8e-6);
-  sensor.values.set("sequence_period_s", 55.5e-6);
+  sensor.values.set("current_driver_timing", 1.0);
   const Cast out = cast(room(), sensor, resting(0.3));
+  SensorSpec spelled = testing::exact_lidar_of("spinning_lidar");
+  spelled.values.set("firing_period_s", 2.8e-6);
+  spelled.values.set("sequence_period_s", 55.5e-6);
+  expect_same(out, cast(room(), spelled, resting(0.3)));
   ASSERT_EQ(out.record.sweep_start_ns.size(), 3u);
   // sequences start at multiples of 55.5 us: 1802 of them start within the first 0.1 s, the next at 100.011 ms
   EXPECT_EQ(out.record.sweep_first[1], 1802u * 16u);

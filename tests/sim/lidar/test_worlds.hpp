@@ -73,6 +73,7 @@ inline SensorSpec exact_lidar_of(const std::string& kind) {
   SensorSpec sensor = lidar_of(kind);
   sensor.values.set("range_noise_m", 0.0);
   sensor.values.set("range_quantum_m", 0.0);
+  sensor.values.set("intensity_quantum", 0.0);
   sensor.values.set("detection_range_m", 0.0);
   sensor.values.set("range_min_m", 0.0);
   sensor.values.set("range_max_m", 1000.0);

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tumble/common/imu.hpp"
+#include "tumble/common/status.hpp"
+#include "tumble/rolling/rolling_filter.hpp"
+
+namespace tumble {
+
+/// Pose of a rolling sphere's centre G at one sample, with what is known of the contact.
+struct RollingEstimate {
+  TimeNs time_ns = 0;
+  Eigen::Vector3d p_WG_m = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d v_WG_m_s = Eigen::Vector3d::Zero();
+  /// Of (position error [m], attitude error [rad]), W, at the node that follows.
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  RollingMode mode = RollingMode::grip;
+  bool at_rest = false;
+  bool uncertain = false;  ///< in an event that the position's sigma grew by more than Params::uncertain_m in
+};
+
+/// RollingFilter with what came after taken into account: with a fixed lag, or over the whole run.
+///
+/// The modes are those of the live filter's best hypothesis at the time of smoothing; with them frozen, one Kalman
+/// filter runs over the stored samples again, and the modified Bryson-Fraser smoother (Bierman 1977) back: it needs no
+/// inverse and no more than the filter's own gains. A sample between two nodes takes the errors of both, in
+/// proportion to time.
+///
+/// Source: the reference study of this project on slip; the smoother as G. J. Bierman, Factorization Methods for
+/// Discrete Sequential Estimation, 1977. Not modelled: doubt about the modes, other than the spread of positions that
+/// the live filter gives up at rest.
+class RollingSmoother {
+ public:
+  static constexpr double kWholeRun = 1e9;
+
+  struct Params {
+    RollingParams filter = {};
+    double path_noise = 0.65;   ///< noise of the last pass, as a share of the filter's; bound (0, 1]
+    double lag_s = kWholeRun;   ///< how long an estimate may wait for what follows; bound [node_s, 1e9]
+    double block_s = 0.2;       ///< estimates are given out in blocks of this length; bound [node_s, 1e3]
+    double uncertain_m = 0.03;  ///< bound (0, 1e3]
+    double rate_max_hz = 500.0;  ///< of the samples: storage set aside for the lag; bound (0, 1e5]
+  };
+
+  /// The modes of all hypotheses at a node, and which of the node before each came from.
+  struct Step {
+    std::array<std::uint8_t, RollingFilter::kHypotheses> parent{};
+    std::array<RollingMode, RollingFilter::kHypotheses> mode{};
+    Eigen::Matrix3d spread_m2 = Eigen::Matrix3d::Zero();
+    bool at_rest = false;
+    bool operator==(const Step&) const = default;
+  };
+  /// The last pass at the node up to which estimates are out.
+  struct Committed {
+    RollingNominal nominal;
+    RollingFilter::Covariance P = RollingFilter::Covariance::Zero();
+    RollingMode mode = RollingMode::grip;
+    double event_variance_m2 = 0.0;  ///< of the position, when the event began
+    TimeNs last_time_ns = 0;
+    bool started = false;
+    bool operator==(const Committed&) const = default;
+  };
+  struct State {
+    RollingFilter::State live;
+    Committed committed;
+    std::vector<ImuSample> samples;  ///< after the committed node
+    std::vector<Step> steps;
+    bool operator==(const State& other) const;
+  };
+
+  explicit RollingSmoother(const Params& params);
+
+  /// Takes a sample; appends estimates that are old enough to `out`, if any. On trouble the state is unchanged. Storage
+  /// for the lag is set aside with the first sample; no allocation later but by `out` and, beyond rate_max_hz or with
+  /// kWholeRun, as the run grows (11 KiB per node). The work of a block is done in the sample that ends it.
+  Status step(const ImuSample& sample, State& state, std::vector<RollingEstimate>& out) const;
+
+  /// Appends the estimates that are still owed, all smoothed with what there is. The run has ended.
+  void finish(State& state, std::vector<RollingEstimate>& out) const;
+
+  /// The same with modes known from elsewhere, one per sample of a whole run that `state` took with kWholeRun.
+  void finish(std::span<const RollingMode> known, State& state, std::vector<RollingEstimate>& out) const;
+
+ private:
+  struct PathNode;
+  struct Window;
+
+  std::vector<PathNode> best_path(const State& state) const;
+  void run_window(const std::vector<PathNode>& path, std::size_t emitted, State& state,
+                  std::vector<RollingEstimate>& out) const;
+
+  Params params_;
+  RollingParams path_params_;
+  RollingFilter filter_;
+  std::size_t lag_nodes_ = 0, block_nodes_ = 0;
+};
+
+}  // namespace tumble

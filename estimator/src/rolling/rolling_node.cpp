@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rolling_node.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tumble/common/so3.hpp"
+
+namespace tumble::rolling {
+
+namespace {
+
+constexpr double kSteepest = 0.95;       // of the sine of a slope: keeps the normal upward
+constexpr double kLevelSlopeSigma = 1e-3;
+
+double upward(const Eigen::Vector2d& slope) {
+  return std::sqrt(1.0 - std::min(slope.squaredNorm(), squared(kSteepest)));
+}
+
+Eigen::Vector3d normal(const Eigen::Vector2d& slope) {
+  return {slope.x(), slope.y(), upward(slope)};
+}
+
+constexpr double kSmallest = 1e-12;
+
+void require_sigmas(const RollingParams& p) {
+  require_within("tilt_sigma_rad", p.tilt_sigma_rad, 0.0, 1e3);
+  require_within("velocity_sigma_m_s", p.velocity_sigma_m_s, 0.0, 1e3);
+  require_within("gyro_bias_sigma_rad_s", p.gyro_bias_sigma_rad_s, 0.0, 1e3);
+  require_within("accel_bias_sigma_m_s2", p.accel_bias_sigma_m_s2, 0.0, 1e3);
+  require_within("accel_scale_sigma", p.accel_scale_sigma, 0.0, 1e3);
+  require_within("gyro_scale_sigma", p.gyro_scale_sigma, 0.0, 1e3);
+  require_within("accel_delay_sigma_s", p.accel_delay_sigma_s, 0.0, 1e3);
+  require_within("lever_arm_sigma_m", p.lever_arm_sigma_m, 0.0, 1e3);
+  require_within("radius_sigma_m", p.radius_sigma_m, 0.0, 1e3);
+  require_within("slope_sigma", p.slope_sigma, 0.0, 1e3);
+}
+
+void require_noise(const RollingParams& p) {
+  require_within("attitude_walk_rad_sqrts", p.attitude_walk_rad_sqrts, kSmallest, 1e3);
+  require_within("rate_error_sqrts", p.rate_error_sqrts, kSmallest, 1e3);
+  require_within("velocity_walk_m_s_sqrts", p.velocity_walk_m_s_sqrts, kSmallest, 1e3);
+  require_within("gyro_bias_walk_rad_s_sqrts", p.gyro_bias_walk_rad_s_sqrts, kSmallest, 1e3);
+  require_within("accel_bias_walk_m_s2_sqrts", p.accel_bias_walk_m_s2_sqrts, kSmallest, 1e3);
+  require_within("grip_sigma_m_s", p.grip_sigma_m_s, kSmallest, 1e3);
+  require_within("grip_sigma_share", p.grip_sigma_share, kSmallest, 1e3);
+  require_within("vertical_sigma_m_s", p.vertical_sigma_m_s, kSmallest, 1e3);
+  require_within("slope_walk_sqrts", p.slope_walk_sqrts, kSmallest, 1e3);
+  require_within("rest_velocity_sigma_m_s", p.rest_velocity_sigma_m_s, kSmallest, 1e3);
+  require_within("rest_rate_sigma_rad_s", p.rest_rate_sigma_rad_s, kSmallest, 1e3);
+  require_within("gyro_range_rad_s", p.gyro_range_rad_s, kSmallest, 1e3);
+  require_within("clipped_rate_sigma_rad_s", p.clipped_rate_sigma_rad_s, kSmallest, 1e3);
+}
+
+void require_modes(const RollingParams& p) {
+  require_within("slip_begins_per_s", p.slip_begins_per_s, kSmallest, 1e3);
+  require_within("slip_ends_per_s", p.slip_ends_per_s, kSmallest, 1e3);
+  require_within("bump_begins_per_s", p.bump_begins_per_s, kSmallest, 1e3);
+  require_within("bump_ends_per_s", p.bump_ends_per_s, kSmallest, 1e3);
+  require_within("slip_bump_per_s", p.slip_bump_per_s, kSmallest, 1e3);
+  require_within("incline_begins_per_s", p.incline_begins_per_s, kSmallest, 1e3);
+  require_within("incline_ends_per_s", p.incline_ends_per_s, kSmallest, 1e3);
+  require_within("event_shortest_s", p.event_shortest_s, 0.0, 10.0);
+  require_within("rest_rate_rad_s", p.rest_rate_rad_s, kSmallest, 10.0);
+  require_within("rest_force_m_s2", p.rest_force_m_s2, kSmallest, 100.0);
+  require_within("rest_time_s", p.rest_time_s, 0.0, 100.0);
+}
+
+}  // namespace
+
+Eigen::Vector3d Contact::velocity(const Vector& x) const {
+  const Eigen::Vector2d change = x.segment<2>(kSlope);
+  const double curved = upward(slope + change) - upward(slope) + slope.dot(change) / upward(slope);
+  return u_W_m_s + H * x + curved * lift_W;
+}
+
+RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaterniond& q_WI) {
+  RollingNominal nominal;
+  nominal.q_WI = q_WI;
+  nominal.p_WI_m = q_WI * params.lever_arm_m;
+  return nominal;
+}
+
+Covariance prior_covariance(const RollingParams& params) {
+  Covariance P = Covariance::Zero();
+  auto prior = P.diagonal();
+  prior.segment<2>(kAttitude).setConstant(squared(params.tilt_sigma_rad));  // the heading defines the world's x axis
+  prior.segment<3>(kVelocity).setConstant(squared(params.velocity_sigma_m_s));
+  prior.segment<3>(kGyroBias).setConstant(squared(params.gyro_bias_sigma_rad_s));
+  prior.segment<3>(kAccelBias).setConstant(squared(params.accel_bias_sigma_m_s2));
+  prior.segment<9>(kAccelScale).setConstant(squared(params.accel_scale_sigma));
+  prior.segment<9>(kGyroScale).setConstant(squared(params.gyro_scale_sigma));
+  prior[kDelay] = squared(params.accel_delay_sigma_s);
+  prior.segment<3>(kLeverArm).setConstant(squared(params.lever_arm_sigma_m));
+  prior.segment<2>(kSlope).setConstant(squared(kLevelSlopeSigma));
+  prior[kRadius] = squared(params.radius_sigma_m);
+  return P;
+}
+
+void integrate(const RollingParams& params, const ImuSample& sample, double dt_s, RollingNominal& nominal,
+               RollingSums& sums) {
+  const Eigen::Vector3d& w_raw = sample.angular_velocity_rad_s;
+  const Eigen::Vector3d& f_raw = sample.specific_force_m_s2;
+  const Eigen::Vector3d w = w_raw - nominal.gyro_bias_rad_s - nominal.gyro_scale * w_raw;
+  Eigen::Vector3d f =
+      f_raw - nominal.accel_bias_m_s2 - nominal.accel_scale * f_raw - nominal.accel_delay_s * w.cross(f_raw);
+  // the mean of a force that turns in the sensor over the window is shorter across the axis by (|w| dt)^2 / 24
+  f -= dt_s * dt_s / 24.0 * w.cross(w.cross(f));
+  const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * w);
+  const Eigen::Quaterniond q_mid = nominal.q_WI * half;
+  const Eigen::Matrix3d R_T = dt_s * q_mid.toRotationMatrix();
+  nominal.q_WI = (q_mid * half).normalized();
+  const Eigen::Vector3d pushed = R_T * f;
+  const Eigen::Vector3d gained = pushed - dt_s * params.gravity_m_s2 * Eigen::Vector3d::UnitZ();
+  nominal.p_WI_m += dt_s * (nominal.v_WI_m_s + 0.5 * gained);
+  nominal.v_WI_m_s += gained;
+  sums.R_s += R_T;
+  sums.f_W_m_s += pushed;
+  for (int axis = 0; axis < 3; ++axis) {
+    sums.R_f.middleCols<3>(3 * axis) += f_raw[axis] * R_T;
+    sums.R_w.middleCols<3>(3 * axis) += w_raw[axis] * R_T;
+  }
+  sums.R_wxf += R_T * w.cross(f_raw);
+  sums.w_I_rad += dt_s * w;
+  sums.f_I_m_s += dt_s * f_raw;
+  sums.turned_rad2_s += dt_s * w.squaredNorm();
+  if (w_raw.cwiseAbs().maxCoeff() >= params.gyro_range_rad_s) sums.clipped_s += dt_s;
+  sums.node_s += dt_s;
+}
+
+Moving transition(const RollingSums& sums) {
+  Moving B = Moving::Zero();
+  B.block<3, 3>(kAttitude, kGyroBias) = -sums.R_s;
+  B.block<3, 9>(kAttitude, kGyroScale) = -sums.R_w;
+  B.block<3, 3>(kVelocity, kAttitude) = -so3::hat(sums.f_W_m_s);
+  B.block<3, 3>(kVelocity, kAccelBias) = -sums.R_s;
+  B.block<3, 9>(kVelocity, kAccelScale) = -sums.R_f;
+  B.block<3, 1>(kVelocity, kDelay) = -sums.R_wxf;
+  B.middleRows<3>(kPosition) = 0.5 * sums.node_s * B.middleRows<3>(kVelocity);
+  B.block<3, 3>(kPosition, kVelocity) += sums.node_s * Eigen::Matrix3d::Identity();
+  return B;
+}
+
+void predict(const RollingParams& params, const RollingSums& sums, const Moving& B, Vector& x, Covariance& P) {
+  const double h = sums.node_s;
+  x.head<9>() += (B * x).eval();
+  P.topRows<9>() += (B * P).eval();
+  P.leftCols<9>() += (P * B.transpose()).eval();
+  P = (0.5 * (P + P.transpose())).eval();
+  const double attitude = squared(params.attitude_walk_rad_sqrts) * h +
+                          squared(params.rate_error_sqrts) * sums.turned_rad2_s +
+                          squared(params.clipped_rate_sigma_rad_s * sums.clipped_s);
+  const double velocity = squared(params.velocity_walk_m_s_sqrts) * h;
+  auto diagonal = P.diagonal();
+  diagonal.segment<3>(kAttitude).array() += attitude;
+  diagonal.segment<3>(kVelocity).array() += velocity;
+  diagonal.segment<3>(kPosition).array() += velocity * h * h / 3.0;
+  diagonal.segment<3>(kGyroBias).array() += squared(params.gyro_bias_walk_rad_s_sqrts) * h;
+  diagonal.segment<3>(kAccelBias).array() += squared(params.accel_bias_walk_m_s2_sqrts) * h;
+}
+
+Contact contact(const RollingParams& params, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s) {
+  const Eigen::Matrix3d R = nominal.q_WI.toRotationMatrix();
+  const Eigen::Vector3d w_W = R * (rate_I_rad_s - nominal.gyro_bias_rad_s - nominal.gyro_scale * rate_I_rad_s);
+  const Eigen::Vector3d arm_W = R * (params.lever_arm_m + nominal.lever_arm_error_m);
+  const Eigen::Vector3d n = normal(nominal.slope);
+  const double r = params.radius_m + nominal.radius_error_m;
+  // from the IMU to the contact point: u = v + w x (-arm - r n)
+  const Eigen::Matrix3d reach = so3::hat(arm_W + r * n);
+  Contact out;
+  out.u_W_m_s = nominal.v_WI_m_s + reach * w_W;
+  out.H.setZero();
+  out.H.middleCols<3>(kVelocity).setIdentity();
+  // an attitude error turns w and the arm, but not the normal
+  out.H.middleCols<3>(kAttitude) = so3::hat(w_W.cross(arm_W)) - r * so3::hat(n) * so3::hat(w_W);
+  out.H.middleCols<3>(kGyroBias) = -reach * R;
+  for (int axis = 0; axis < 3; ++axis) {
+    out.H.middleCols<3>(kGyroScale + 3 * axis) = -rate_I_rad_s[axis] * reach * R;
+  }
+  out.H.middleCols<3>(kLeverArm) = -so3::hat(w_W) * R;
+  const Eigen::Matrix3d by_normal = -r * so3::hat(w_W);
+  out.lift_W = by_normal.col(2);
+  out.slope = nominal.slope;
+  out.H.middleCols<2>(kSlope) = by_normal.leftCols<2>() - out.lift_W * nominal.slope.transpose() / n.z();
+  out.H.col(kRadius) = -w_W.cross(n);
+  out.grip_variance = squared(params.grip_sigma_m_s) + squared(params.grip_sigma_share * r * w_W.norm());
+  if (rate_I_rad_s.cwiseAbs().maxCoeff() >= params.gyro_range_rad_s) {
+    out.grip_variance += squared(r * params.clipped_rate_sigma_rad_s);
+  }
+  return out;
+}
+
+bool forgets_slope(RollingMode from, RollingMode to) {
+  return from != to && !slips(to);
+}
+
+void change_floor(const RollingParams& params, RollingMode from, RollingMode to, double h_s,
+                  const RollingNominal& nominal, Vector& x, Covariance& P) {
+  if (from == RollingMode::incline && to == from) {
+    P.diagonal().segment<2>(kSlope).array() += squared(params.slope_walk_sqrts) * h_s;
+  }
+  if (!forgets_slope(from, to)) return;
+  P.middleRows<2>(kSlope).setZero();
+  P.middleCols<2>(kSlope).setZero();
+  const double sigma = to == RollingMode::incline ? params.slope_sigma : kLevelSlopeSigma;
+  P.diagonal().segment<2>(kSlope).setConstant(squared(sigma));
+  x.segment<2>(kSlope) = -nominal.slope;
+}
+
+void update(const Row& row, double measured, double variance, Vector& x, Covariance& P) {
+  const Vector PHt = P * row.transpose();
+  const double s = row.dot(PHt) + variance;
+  x += PHt * ((measured - row.dot(x)) / s);
+  P -= PHt * (PHt / s).transpose();
+}
+
+void update(int index, double measured, double variance, Vector& x, Covariance& P) {
+  const Vector column = P.col(index);
+  const double s = column[index] + variance;
+  x += column * ((measured - x[index]) / s);
+  P -= column * (column / s).transpose();
+}
+
+void rebase(const Vector& x, RollingNominal& nominal) {
+  nominal.q_WI = (so3::exp(x.segment<3>(kAttitude)) * nominal.q_WI).normalized();
+  nominal.v_WI_m_s += x.segment<3>(kVelocity);
+  nominal.p_WI_m += x.segment<3>(kPosition);
+  nominal.gyro_bias_rad_s += x.segment<3>(kGyroBias);
+  nominal.accel_bias_m_s2 += x.segment<3>(kAccelBias);
+  nominal.accel_scale += Eigen::Map<const Eigen::Matrix3d>(x.data() + kAccelScale);
+  nominal.gyro_scale += Eigen::Map<const Eigen::Matrix3d>(x.data() + kGyroScale);
+  nominal.accel_delay_s += x[kDelay];
+  nominal.lever_arm_error_m += x.segment<3>(kLeverArm);
+  nominal.slope += x.segment<2>(kSlope);
+  nominal.radius_error_m += x[kRadius];
+}
+
+}  // namespace tumble::rolling
+
+namespace tumble {
+
+void require_valid(const RollingParams& p) {
+  require_within("radius_m", p.radius_m, rolling::kSmallest, 10.0);
+  require_within("gravity_m_s2", p.gravity_m_s2, rolling::kSmallest, 100.0);
+  require_within("lever_arm_m", p.lever_arm_m.norm(), 0.0, 10.0);
+  if (p.q_WI_start) require_within("q_WI_start", p.q_WI_start->norm(), 1.0 - 1e-6, 1.0 + 1e-6);
+  require_within("node_s", p.node_s, 1e-3, 0.1);
+  require_within("gap_max_s", p.gap_max_s, 1e-9, 1.0);
+  rolling::require_sigmas(p);
+  rolling::require_noise(p);
+  rolling::require_modes(p);
+}
+
+}  // namespace tumble

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include "tumble/rolling/rolling_model.hpp"
+
+namespace tumble::rolling {
+
+/// Error state: attitude (W), velocity and position of the IMU (W), then constants; first index of each part.
+inline constexpr int kAttitude = 0, kVelocity = 3, kPosition = 6, kGyroBias = 9, kAccelBias = 12, kAccelScale = 15,
+                     kGyroScale = 24, kDelay = 33, kLeverArm = 34, kSlope = 37, kRadius = 39;
+inline constexpr int kStates = 40;
+
+using Vector = Eigen::Matrix<double, kStates, 1>;
+using Row = Eigen::Matrix<double, 1, kStates>;
+using Covariance = Eigen::Matrix<double, kStates, kStates>;
+using Moving = Eigen::Matrix<double, 9, kStates>;
+
+inline double squared(double x) {
+  return x * x;
+}
+
+/// Contact velocity of the nominal trajectory and its derivative by the error state.
+struct Contact {
+  Eigen::Vector3d u_W_m_s;
+  Eigen::Matrix<double, 3, kStates> H;
+  double grip_variance = 0.0;
+  Eigen::Vector3d lift_W;  ///< change of u for a change of the normal's third component
+  Eigen::Vector2d slope;   ///< nominal
+
+  /// Contact velocity for an error `x`: linear but for the length of the normal.
+  Eigen::Vector3d velocity(const Vector& x) const;
+};
+
+/// Levelled (or given) attitude, centre at the origin, at rest.
+RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaterniond& q_WI);
+Covariance prior_covariance(const RollingParams& params);
+
+/// Takes a sample of length `dt_s` into the nominal trajectory and the sums.
+void integrate(const RollingParams& params, const ImuSample& sample, double dt_s, RollingNominal& nominal,
+               RollingSums& sums);
+
+/// Transition of the error over the node: x <- x + (B x on top).
+Moving transition(const RollingSums& sums);
+void predict(const RollingParams& params, const RollingSums& sums, const Moving& B, Vector& x, Covariance& P);
+
+/// `rate_I_rad_s` is the raw reading at the node.
+Contact contact(const RollingParams& params, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s);
+
+/// What a change of mode does to the floor's slope: it walks while the slope lasts, and becomes level or unknown when
+/// the contact stands still anew. `h_s` is the length of the node.
+void change_floor(const RollingParams& params, RollingMode from, RollingMode to, double h_s,
+                  const RollingNominal& nominal, Vector& x, Covariance& P);
+
+/// Whether the slope is forgotten on this change: what is known of it before says nothing about it after.
+bool forgets_slope(RollingMode from, RollingMode to);
+
+/// Kalman update by a scalar row: measurement = row x + noise.
+void update(const Row& row, double measured, double variance, Vector& x, Covariance& P);
+
+/// The same for a row that picks one state.
+void update(int index, double measured, double variance, Vector& x, Covariance& P);
+
+/// Moves the error `x` into the nominal trajectory and constants.
+void rebase(const Vector& x, RollingNominal& nominal);
+
+}  // namespace tumble::rolling

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/rolling/rolling_smoother.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "rolling_window.hpp"
+#include "tumble/attitude/strapdown.hpp"
+#include "tumble/common/so3.hpp"
+
+namespace tumble {
+
+namespace {
+
+RollingParams quieter(RollingParams params, double share) {
+  params.grip_sigma_m_s *= share;
+  params.grip_sigma_share *= share;
+  params.velocity_walk_m_s_sqrts *= share;
+  params.rate_error_sqrts *= share;
+  return params;
+}
+
+/// The one of two modes that says less about the contact.
+RollingMode looser(RollingMode a, RollingMode b) {
+  const auto rank = [](RollingMode mode) {
+    return mode == RollingMode::bump ? 3 : mode == RollingMode::slip ? 2 : mode == RollingMode::incline ? 1 : 0;
+  };
+  return rank(a) >= rank(b) ? a : b;
+}
+
+bool equal(const ImuSample& a, const ImuSample& b) {
+  return a.time_ns == b.time_ns && a.angular_velocity_rad_s == b.angular_velocity_rad_s &&
+         a.specific_force_m_s2 == b.specific_force_m_s2;
+}
+
+double horizontal_variance(const rolling::NodeRecord& node) {
+  return node.smoothed_P(6, 6) + node.smoothed_P(7, 7);
+}
+
+/// Covariance of (centre, attitude) from that of the reported states.
+Eigen::Matrix<double, 6, 6> pose_covariance(const rolling::NodeRecord& node, const Eigen::Vector3d& arm_W) {
+  Eigen::Matrix<double, 6, rolling::kReported> J = Eigen::Matrix<double, 6, rolling::kReported>::Zero();
+  J.block<3, 3>(0, 0) = so3::hat(arm_W);
+  J.block<3, 3>(0, 6).setIdentity();
+  J.block<3, 3>(0, 9) = -node.nominal.q_WI.toRotationMatrix();
+  J.block<3, 3>(3, 0).setIdentity();
+  return J * node.smoothed_P * J.transpose();
+}
+
+}  // namespace
+
+struct RollingSmoother::PathNode : rolling::PathNode {};
+
+/// The last pass over the stored samples.
+struct RollingSmoother::Window {
+  rolling::PathFilter start;
+  std::vector<rolling::NodeRecord> nodes;
+  std::vector<rolling::SamplePoint> points;
+  rolling::Reported smoothed_start;
+  // at the end of the block that is given out
+  rolling::PathFilter committed;
+};
+
+bool RollingSmoother::State::operator==(const State& other) const {
+  return live == other.live && committed == other.committed && steps == other.steps &&
+         std::equal(samples.begin(), samples.end(), other.samples.begin(), other.samples.end(), equal);
+}
+
+RollingSmoother::RollingSmoother(const Params& p) : params_(p), filter_(p.filter) {
+  require_within("path_noise", p.path_noise, 1e-6, 1.0);
+  require_within("lag_s", p.lag_s, p.filter.node_s, kWholeRun);
+  require_within("block_s", p.block_s, p.filter.node_s, 1e3);
+  require_within("uncertain_m", p.uncertain_m, 1e-12, 1e3);
+  require_within("rate_max_hz", p.rate_max_hz, 1e-3, 1e5);
+  path_params_ = quieter(p.filter, p.path_noise);
+  lag_nodes_ = static_cast<std::size_t>(std::ceil(p.lag_s / p.filter.node_s - 1e-9));
+  block_nodes_ = static_cast<std::size_t>(std::ceil(p.block_s / p.filter.node_s - 1e-9));
+}
+
+Status RollingSmoother::step(const ImuSample& sample, State& state, std::vector<RollingEstimate>& out) const {
+  const std::int64_t node = state.live.node;
+  if (!state.live.started && params_.lag_s < kWholeRun) {
+    state.steps.reserve(lag_nodes_ + block_nodes_ + 1);
+    state.samples.reserve(
+        static_cast<std::size_t>(std::ceil((params_.lag_s + params_.block_s + 1.0) * params_.rate_max_hz)));
+  }
+  if (const Status bad = filter_.step(sample, state.live); !bad.ok()) return bad;
+  if (state.live.node > node) {
+    Step step;
+    for (std::size_t k = 0; k < RollingFilter::kHypotheses; ++k) {
+      step.parent[k] = static_cast<std::uint8_t>(state.live.hypotheses[k].parent);
+      step.mode[k] = state.live.hypotheses[k].mode;
+    }
+    step.spread_m2 = state.live.settled_spread_m2;
+    step.at_rest = state.live.at_rest;
+    state.steps.push_back(step);
+  }
+  state.samples.push_back(sample);
+  if (state.live.node > node && state.steps.size() >= lag_nodes_ + block_nodes_) {
+    run_window(best_path(state), block_nodes_, state, out);
+  }
+  return {};
+}
+
+void RollingSmoother::finish(State& state, std::vector<RollingEstimate>& out) const {
+  run_window(best_path(state), state.steps.size() + 1, state, out);
+}
+
+void RollingSmoother::finish(std::span<const RollingMode> known, State& state,
+                             std::vector<RollingEstimate>& out) const {
+  std::vector<PathNode> path = best_path(state);
+  std::size_t n = 0;
+  double node_s = 0.0;
+  RollingMode mode = RollingMode::grip;
+  for (std::size_t k = 1; k < std::min(known.size(), state.samples.size()) && n < path.size(); ++k) {
+    const double dt_s = seconds(state.samples[k].time_ns - state.samples[k - 1].time_ns);
+    if (node_s >= params_.filter.node_s - 0.5 * dt_s) {
+      path[n++].mode = looser(mode, known[k]);
+      mode = RollingMode::grip;
+      node_s = 0.0;
+    }
+    mode = looser(mode, known[k]);
+    node_s += dt_s;
+  }
+  run_window(path, path.size() + 1, state, out);
+}
+
+/// Modes of the hypothesis that is best now, back to the committed node.
+std::vector<RollingSmoother::PathNode> RollingSmoother::best_path(const State& state) const {
+  std::vector<PathNode> path(state.steps.size());
+  std::size_t which = 0;
+  for (std::size_t n = path.size(); n-- > 0;) {
+    const Step& step = state.steps[n];
+    path[n].mode = step.mode[which];
+    path[n].at_rest = step.at_rest;
+    path[n].spread_m2 = step.spread_m2;
+    which = step.parent[which];
+  }
+  return path;
+}
+
+void RollingSmoother::run_window(const std::vector<PathNode>& path, std::size_t emitted, State& state,
+                                 std::vector<RollingEstimate>& out) const {
+  if (state.samples.empty()) return;
+  Window window;
+  window.nodes.reserve(path.size());
+  window.points.reserve(state.samples.size());
+  rolling::PathFilter& filter = window.start;
+  filter = {state.committed.nominal, state.committed.P, state.committed.mode};
+  TimeNs last_ns = state.committed.last_time_ns;
+  std::size_t first = 0;
+  if (!state.committed.started) {
+    Eigen::Quaterniond q_WI = params_.filter.q_WI_start.value_or(Eigen::Quaterniond::Identity());
+    if (!params_.filter.q_WI_start) (void)level(state.samples[0].specific_force_m_s2, q_WI);  // went well in the filter
+    filter.nominal = rolling::start_nominal(path_params_, q_WI);
+    filter.P = rolling::prior_covariance(path_params_);
+    last_ns = state.samples[0].time_ns;
+    first = 1;
+  }
+  const rolling::PathFilter start = filter;
+  const TimeNs start_ns = last_ns;
+  std::size_t taken = state.samples.size();  // samples up to the node that becomes the committed one
+  const auto remember = [&](const ImuSample& sample) {
+    window.points.push_back({sample.time_ns, filter.nominal.q_WI, filter.nominal.v_WI_m_s, filter.nominal.p_WI_m,
+                             sample.angular_velocity_rad_s, window.nodes.size()});
+  };
+  if (first == 1) remember(state.samples[0]);
+  RollingSums sums;
+  for (std::size_t k = first; k < state.samples.size(); ++k) {
+    const ImuSample& sample = state.samples[k];
+    const double dt_s = seconds(sample.time_ns - last_ns);
+    if (sums.node_s >= path_params_.node_s - 0.5 * dt_s && window.nodes.size() < path.size()) {
+      const Eigen::Vector3d& before = k > 0 ? state.samples[k - 1].angular_velocity_rad_s : sample.angular_velocity_rad_s;
+      window.nodes.push_back(rolling::close_node(path_params_, sums, 0.5 * (before + sample.angular_velocity_rad_s),
+                                                 path[window.nodes.size()], filter));
+      window.nodes.back().time_ns = last_ns;
+      sums = {};
+      if (window.nodes.size() == emitted) {
+        window.committed = filter;
+        taken = k;
+      }
+    }
+    rolling::integrate(path_params_, sample, dt_s, filter.nominal, sums);
+    last_ns = sample.time_ns;
+    remember(sample);
+  }
+  window.smoothed_start = rolling::smooth_back(rolling::reported_rows(start.P), window.nodes);
+  window.start = start;
+
+  // events whose way became uncertain
+  std::vector<bool> uncertain(window.nodes.size(), false);
+  double before_m2 = state.committed.event_variance_m2, committed_m2 = 0.0;
+  for (std::size_t a = 0; a < window.nodes.size();) {
+    if (!slips(window.nodes[a].path.mode)) {
+      before_m2 = horizontal_variance(window.nodes[a]);
+      if (a + 1 == emitted) committed_m2 = before_m2;
+      ++a;
+      continue;
+    }
+    std::size_t b = a;
+    while (b < window.nodes.size() && slips(window.nodes[b].path.mode)) {
+      if (b + 1 == emitted) committed_m2 = before_m2;
+      ++b;
+    }
+    const double after_m2 = horizontal_variance(window.nodes[std::min(b, window.nodes.size() - 1)]);
+    const bool grew = after_m2 - before_m2 > params_.uncertain_m * params_.uncertain_m;
+    for (std::size_t n = a; n < b; ++n) uncertain[n] = grew;
+    a = b;
+  }
+
+  for (const rolling::SamplePoint& point : window.points) {
+    if (point.node >= emitted) break;
+    const bool inside = point.node < window.nodes.size();
+    const bool at_start = point.node == 0;
+    const RollingNominal& nominal = at_start ? window.start.nominal : window.nodes[point.node - 1].nominal;
+    const rolling::Reported from = at_start ? window.smoothed_start : window.nodes[point.node - 1].smoothed;
+    rolling::Reported error = from;
+    if (inside) {
+      const rolling::NodeRecord& next = window.nodes[point.node];
+      const TimeNs from_ns = at_start ? start_ns : window.nodes[point.node - 1].time_ns;
+      const double share = next.time_ns > from_ns ? seconds(point.time_ns - from_ns) / seconds(next.time_ns - from_ns) : 1.0;
+      error += share * (next.smoothed + next.correction - from);
+    }
+    RollingEstimate estimate;
+    estimate.time_ns = point.time_ns;
+    estimate.q_WI = (so3::exp(error.head<3>()) * point.q_WI).normalized();
+    const Eigen::Vector3d arm_W =
+        estimate.q_WI * (params_.filter.lever_arm_m + nominal.lever_arm_error_m + error.tail<3>());
+    const Eigen::Vector3d w_W = estimate.q_WI * (point.rate_I_rad_s - nominal.gyro_bias_rad_s);
+    estimate.p_WG_m = point.p_WI_m + error.segment<3>(6) - arm_W;
+    estimate.v_WG_m_s = point.v_WI_m_s + error.segment<3>(3) - w_W.cross(arm_W);
+    if (!window.nodes.empty()) {
+      const std::size_t n = std::min(point.node, window.nodes.size() - 1);
+      estimate.covariance = pose_covariance(window.nodes[n], arm_W);
+      estimate.mode = window.nodes[n].path.mode;
+      estimate.at_rest = window.nodes[n].path.at_rest;
+      estimate.uncertain = uncertain[n];
+    }
+    out.push_back(estimate);
+  }
+
+  if (emitted <= window.nodes.size()) {
+    state.committed = {window.committed.nominal, window.committed.P, window.committed.mode, committed_m2,
+                       window.nodes[emitted - 1].time_ns, true};
+    state.samples.erase(state.samples.begin(), state.samples.begin() + static_cast<std::ptrdiff_t>(taken));
+    state.steps.erase(state.steps.begin(), state.steps.begin() + static_cast<std::ptrdiff_t>(emitted));
+  } else {
+    state.samples.clear();
+    state.steps.clear();
+  }
+}
+
+}  // namespace tumble

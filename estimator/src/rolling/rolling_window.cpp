@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rolling_window.hpp"
+
+namespace tumble::rolling {
+
+namespace {
+
+void measure(const Row& H, double measured, double variance, NodeRecord& record, Vector& x, Covariance& P) {
+  const auto k = static_cast<std::size_t>(record.rows++);
+  const Vector PHt = P * H.transpose();
+  record.H[k] = H;
+  record.variance[k] = H.dot(PHt) + variance;
+  record.innovation[k] = measured - H.dot(x);
+  record.gain[k] = PHt / record.variance[k];
+  x += record.gain[k] * record.innovation[k];
+  P -= PHt * record.gain[k].transpose();
+}
+
+void measure_rest(const RollingParams& params, const RollingSums& sums, const RollingNominal& nominal,
+                  NodeRecord& record, Vector& x, Covariance& P) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const Row velocity = Vector::Unit(kVelocity + axis).transpose(), bias = Vector::Unit(kGyroBias + axis).transpose();
+    measure(velocity, -nominal.v_WI_m_s[axis], squared(params.rest_velocity_sigma_m_s), record, x, P);
+    measure(bias, sums.w_I_rad[axis] / sums.node_s, squared(params.rest_rate_sigma_rad_s), record, x, P);
+  }
+}
+
+void measure_contact(const RollingParams& params, const Contact& c, NodeRecord& record, Vector& x, Covariance& P) {
+  const Eigen::Vector3d u = c.velocity(x) - c.H * x;
+  if (!slips(record.path.mode)) {
+    for (int axis = 0; axis < 2; ++axis) measure(c.H.row(axis), -u[axis], c.grip_variance, record, x, P);
+  }
+  if (record.path.mode != RollingMode::bump) {
+    measure(c.H.row(2), -u.z(), squared(params.vertical_sigma_m_s), record, x, P);
+  }
+}
+
+Reported reported(const Vector& x) {
+  Reported out;
+  out << x.head<9>(), x.segment<3>(kLeverArm);
+  return out;
+}
+
+}  // namespace
+
+Eigen::Matrix<double, kReported, kStates> reported_rows(const Covariance& P) {
+  Eigen::Matrix<double, kReported, kStates> out;
+  out << P.topRows<9>(), P.middleRows<3>(kLeverArm);
+  return out;
+}
+
+NodeRecord close_node(const RollingParams& params, const RollingSums& sums, const Eigen::Vector3d& rate_I_rad_s,
+                      const PathNode& path, PathFilter& filter) {
+  NodeRecord record;
+  record.path = path;
+  record.B = transition(sums);
+  Vector x = Vector::Zero();
+  predict(params, sums, record.B, x, filter.P);
+  record.forgets_slope = forgets_slope(filter.mode, path.mode);
+  change_floor(params, filter.mode, path.mode, sums.node_s, filter.nominal, x, filter.P);
+  if (path.at_rest) {
+    measure_rest(params, sums, filter.nominal, record, x, filter.P);
+  } else {
+    measure_contact(params, contact(params, filter.nominal, rate_I_rad_s), record, x, filter.P);
+  }
+  filter.P = (0.5 * (filter.P + filter.P.transpose())).eval();
+  filter.P.block<3, 3>(kPosition, kPosition) += path.spread_m2;
+  rebase(x, filter.nominal);
+  filter.mode = path.mode;
+  record.correction = reported(x);
+  record.P_rows = reported_rows(filter.P);
+  record.nominal = filter.nominal;
+  return record;
+}
+
+Reported smooth_back(const Eigen::Matrix<double, kReported, kStates>& P_rows, std::span<NodeRecord> nodes) {
+  Vector lambda = Vector::Zero();
+  Covariance Lambda = Covariance::Zero();
+  for (std::size_t n = nodes.size(); n-- > 0;) {
+    NodeRecord& node = nodes[n];
+    const auto own = (Eigen::Matrix<double, kReported, kReported>() << node.P_rows.leftCols<9>(),
+                      node.P_rows.middleCols<3>(kLeverArm)).finished();
+    node.smoothed = -node.P_rows * lambda;
+    node.smoothed_P = own - node.P_rows * Lambda * node.P_rows.transpose();
+    for (std::size_t k = static_cast<std::size_t>(node.rows); k-- > 0;) {
+      const Row& H = node.H[k];
+      const Vector& K = node.gain[k];
+      const Vector through = Lambda * K;
+      lambda -= H.transpose() * (K.dot(lambda) + node.innovation[k] / node.variance[k]);
+      Lambda += H.transpose() * (H * (K.dot(through) + 1.0 / node.variance[k])) - H.transpose() * through.transpose() -
+                through * H;
+    }
+    if (node.forgets_slope) {
+      lambda.segment<2>(kSlope).setZero();
+      Lambda.middleRows<2>(kSlope).setZero();
+      Lambda.middleCols<2>(kSlope).setZero();
+    }
+    lambda += (node.B.transpose() * lambda.head<9>()).eval();
+    Lambda += (node.B.transpose() * Lambda.topRows<9>()).eval();
+    Lambda += (Lambda.leftCols<9>() * node.B).eval();
+  }
+  return -P_rows * lambda;
+}
+
+}  // namespace tumble::rolling

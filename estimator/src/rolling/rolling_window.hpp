@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "rolling_node.hpp"
+#include "tumble/common/imu.hpp"
+
+namespace tumble::rolling {
+
+/// Mode of a node, decided.
+struct PathNode {
+  RollingMode mode = RollingMode::grip;
+  bool at_rest = false;
+  Eigen::Matrix3d spread_m2 = Eigen::Matrix3d::Zero();
+};
+
+inline constexpr int kReported = 12;  ///< attitude, velocity, position, lever arm: states that a pose needs
+using Reported = Eigen::Matrix<double, kReported, 1>;
+
+/// A node of the last pass, with all that the way back needs.
+struct NodeRecord {
+  static constexpr int kRowsMax = 6;
+  Moving B;
+  std::array<Row, kRowsMax> H;
+  std::array<Vector, kRowsMax> gain;
+  std::array<double, kRowsMax> innovation{}, variance{};
+  int rows = 0;
+  bool forgets_slope = false;
+  Eigen::Matrix<double, kReported, kStates> P_rows;  ///< after the update
+  Reported correction;                               ///< by which the update moved the nominal
+  RollingNominal nominal;                            ///< after the update
+  PathNode path;
+  TimeNs time_ns = 0;
+  // the way back
+  Reported smoothed;
+  Eigen::Matrix<double, kReported, kReported> smoothed_P;
+};
+
+/// Nominal trajectory at a sample.
+struct SamplePoint {
+  TimeNs time_ns = 0;
+  Eigen::Quaterniond q_WI;
+  Eigen::Vector3d v_WI_m_s, p_WI_m;
+  Eigen::Vector3d rate_I_rad_s;
+  std::size_t node = 0;  ///< the one that closes after it
+};
+
+/// State of the last pass between two nodes.
+struct PathFilter {
+  RollingNominal nominal;
+  Covariance P = Covariance::Zero();
+  RollingMode mode = RollingMode::grip;
+};
+
+Eigen::Matrix<double, kReported, kStates> reported_rows(const Covariance& P);
+
+/// Closes a node: predicts, measures, rebases.
+NodeRecord close_node(const RollingParams& params, const RollingSums& sums, const Eigen::Vector3d& rate_I_rad_s,
+                      const PathNode& path, PathFilter& filter);
+
+/// Modified Bryson-Fraser: fills `smoothed` and `smoothed_P` of all nodes. Returns the same for the state before the
+/// first node, whose rows of the covariance are `P_rows`.
+Reported smooth_back(const Eigen::Matrix<double, kReported, kStates>& P_rows, std::span<NodeRecord> nodes);
+
+}  // namespace tumble::rolling

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/sphere_attitude.hpp"
+#include "tumble/rolling/double_integration.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  Estimate estimate;
+  estimate.frame = Frame::centre;
+  SphereAttitude attitude;
+  estimate.status =
+      sphere_attitude("position/double_integration", sensors, parameters.at("rest_s"), attitude);
+  if (!estimate.status.ok()) return estimate;
+
+  DoubleIntegration::Params params;
+  params.gravity_m_s2 = sensors.gravity_m_s2;
+  const DoubleIntegration integration(params);
+  DoubleIntegration::State state;
+  const Eigen::Vector3d arm_I_m = bridge::lever_arm_I_m(sensors.imus.front());
+  const Eigen::Vector3d start_W_m = attitude.q_WI.front() * arm_I_m;
+  estimate.poses.reserve(attitude.samples.size());
+  for (std::size_t k = 0; k < attitude.samples.size(); ++k) {
+    const ImuSample& sample = attitude.samples[k];
+    const Eigen::Quaterniond& q_WI = attitude.q_WI[k];
+    estimate.status = integration.step(sample, q_WI, state);
+    if (!estimate.status.ok()) return estimate;
+    const Eigen::Vector3d arm_W_m = q_WI * arm_I_m;
+    const Eigen::Vector3d w_W_rad_s = q_WI * sample.angular_velocity_rad_s;
+    estimate.poses.push_back(centre_pose(sensors, sample.time_ns, q_WI, start_W_m + state.p_WI_m - arm_W_m,
+                                         state.v_WI_m_s - w_W_rad_s.cross(arm_W_m)));
+  }
+  return estimate;
+}
+
+}  // namespace
+
+Method position_double_integration() {
+  MethodInfo info;
+  info.name = "double_integration";
+  info.kind = Kind::position;
+  info.doc = "The accelerometer integrated twice with the integrated attitude: nothing bounds its drift.";
+  info.source = "textbook strapdown inertial navigation";
+  info.parameters = sphere_rest_parameters();
+  info.robots = {"sphere"};
+  return make_method(std::move(info), run);
+}
+
+}  // namespace tumble::scenarios

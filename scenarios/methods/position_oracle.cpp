@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/methods/position_tumble.hpp"
+#include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/sphere_attitude.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr double kLevelTiltRad = 0.005;  // a floor tilted by less is level
+
+bool prepare(const char* method, const sim::Sensors& sensors, MergedImus& imus, Estimate& estimate) {
+  estimate.frame = Frame::centre;
+  estimate.status = merge_imus(sensors, imus);
+  if (!estimate.status.ok()) return false;
+  require_sphere(method, sensors);
+  return true;
+}
+
+std::size_t physics_index(const sim::Truth& truth, std::int64_t time_ns, std::size_t count) {
+  return std::min(static_cast<std::size_t>(std::max<std::int64_t>(time_ns, 0) / truth.period_ns), count - 1);
+}
+
+Estimate run_exact_attitude(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& oracle) {
+  Estimate estimate;
+  MergedImus imus;
+  if (!prepare("position/oracle", sensors, imus, estimate)) return estimate;
+  const sim::Truth& truth = *oracle.truth;
+  if (truth.imus.empty() || truth.imus.front().rate_rad_s.size() != imus.samples.size() || truth.q_WB.empty()) {
+    throw BadInput("the truth does not belong to the recording: rates of the primary IMU are missing");
+  }
+  const Eigen::Matrix3d R_BI = truth.imus.front().T_BI.linear();
+  for (std::size_t k = 0; k < imus.samples.size(); ++k) {
+    imus.samples[k].angular_velocity_rad_s = R_BI * truth.imus.front().rate_rad_s[k];
+  }
+  RollingSmoother::Params params;
+  params.filter = rolling_params(sensors, imus, parameters);
+  params.filter.q_WI_start =
+      truth.q_WB[physics_index(truth, imus.samples.front().time_ns, truth.q_WB.size())].normalized();
+  params.filter.gyro_range_rad_s = 1e3;
+  params.filter.tilt_sigma_rad = 0.0;
+  params.filter.gyro_bias_sigma_rad_s = 0.0;
+  params.filter.gyro_scale_sigma = 0.0;
+  params.filter.attitude_walk_rad_sqrts = 1e-9;
+  params.filter.rate_error_sqrts = 1e-9;
+  params.filter.gyro_bias_walk_rad_s_sqrts = 1e-9;
+  smooth(params, imus, {}, estimate);
+  return estimate;
+}
+
+/// Modes at the samples, by the labels and normals of the truth.
+std::vector<RollingMode> true_modes(const sim::Truth& truth, const std::vector<ImuSample>& samples) {
+  std::vector<RollingMode> at_step(truth.label.size(), RollingMode::grip);
+  for (const sim::ContactTruth& contact : truth.contacts) {
+    if (contact.normal_W.z() < std::cos(kLevelTiltRad)) {
+      at_step[physics_index(truth, contact.time_ns, at_step.size())] = RollingMode::incline;
+    }
+  }
+  for (std::size_t k = 0; k < at_step.size(); ++k) {
+    if (truth.label[k] == sim::ContactLabel::air) at_step[k] = RollingMode::bump;
+    if (truth.label[k] == sim::ContactLabel::slip || truth.label[k] == sim::ContactLabel::slide) {
+      at_step[k] = RollingMode::slip;
+    }
+  }
+  std::vector<RollingMode> modes;
+  modes.reserve(samples.size());
+  for (const ImuSample& sample : samples) modes.push_back(at_step[physics_index(truth, sample.time_ns, at_step.size())]);
+  return modes;
+}
+
+Estimate run_exact_contact(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& oracle) {
+  Estimate estimate;
+  MergedImus imus;
+  if (!prepare("position/oracle_contact", sensors, imus, estimate)) return estimate;
+  if (oracle.truth->label.empty()) throw BadInput("the truth holds no state of contact");
+  RollingSmoother::Params params;
+  params.filter = rolling_params(sensors, imus, parameters);
+  smooth(params, imus, true_modes(*oracle.truth, imus.samples), estimate);
+  return estimate;
+}
+
+}  // namespace
+
+Method position_oracle() {
+  MethodInfo info;
+  info.name = "oracle";
+  info.kind = Kind::position;
+  info.doc = "Our smoother given the exact attitude at all times: what the other sensors and the contact leave.";
+  info.source = "ours";
+  info.parameters = rolling_parameters();
+  info.needs_truth = true;
+  info.robots = {"sphere"};
+  return make_method(std::move(info), run_exact_attitude);
+}
+
+Method position_oracle_contact() {
+  MethodInfo info;
+  info.name = "oracle_contact";
+  info.kind = Kind::position;
+  info.doc = "Our smoother told at each instant whether the contact grips, slips or is lost: what the sensors leave.";
+  info.source = "ours";
+  info.parameters = rolling_parameters();
+  info.needs_truth = true;
+  info.robots = {"sphere"};
+  return make_method(std::move(info), run_exact_contact);
+}
+
+}  // namespace tumble::scenarios

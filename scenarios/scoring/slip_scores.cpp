@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <optional>
+#include <string>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/scoring/families.hpp"
+
+/// Events of slip and slide: what a position method claims against the contact labels of the truth.
+///
+/// An event is a spell of the labels slip and slide; gaps with up to kBridge_ns of grip in them belong to it (and with
+/// air up to kHop_ns in all: what spins out of balance hops). A true event counts when it lasts kShortest_ns and its
+/// contact speed reaches kLeastSpeed_m_s somewhere (below, nobody can tell it from grip and no way is lost). A claimed
+/// event is right when at least half of its time lies within true events, weak and short ones too, each widened by
+/// kMargin_ns. A true event is found when right claims cover at least half of its time. Whether a claim says slip or
+/// slide is not asked.
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr std::int64_t kBridge_ns = 50'000'000;
+constexpr std::int64_t kHop_ns = 250'000'000;
+constexpr std::int64_t kShortest_ns = 50'000'000;
+constexpr std::int64_t kMargin_ns = 30'000'000;
+constexpr double kLeastSpeed_m_s = 0.05;
+constexpr double kHalf = 0.5;
+
+struct Span {
+  std::int64_t begin_ns, end_ns;
+};
+
+bool moves(sim::ContactLabel label) {
+  return label == sim::ContactLabel::slip || label == sim::ContactLabel::slide;
+}
+
+/// Joins the spells of slip and slide to events while it goes through the labels in time order.
+class Events {
+ public:
+  void add(sim::ContactLabel label, std::int64_t begin_ns, std::int64_t end_ns) {
+    if (label == sim::ContactLabel::grip) gripped_ns_ += end_ns - begin_ns;
+    if (!moves(label)) return;
+    const bool goes_on = !spans_.empty() && gripped_ns_ <= kBridge_ns && begin_ns - spans_.back().end_ns <= kHop_ns;
+    if (!goes_on) spans_.push_back({begin_ns, end_ns});
+    spans_.back().end_ns = end_ns;
+    gripped_ns_ = 0;
+  }
+  const std::vector<Span>& spans() const { return spans_; }
+
+ private:
+  std::vector<Span> spans_;
+  std::int64_t gripped_ns_ = 0;  ///< since the last spell
+};
+
+std::vector<Span> true_spans(const sim::Truth& truth) {
+  if (truth.label.size() != truth.q_WB.size()) {
+    throw BadInput("truth.label has " + std::to_string(truth.label.size()) + " entries, must have " +
+                   std::to_string(truth.q_WB.size()));
+  }
+  Events events;
+  for (std::size_t k = 0; k < truth.label.size(); ++k) {
+    const std::int64_t begin_ns = static_cast<std::int64_t>(k) * truth.period_ns;
+    events.add(truth.label[k], begin_ns, begin_ns + truth.period_ns);
+  }
+  return events.spans();
+}
+
+bool counts(const Span& span, const sim::Truth& truth) {
+  if (span.end_ns - span.begin_ns < kShortest_ns) return false;
+  const auto before = [](const sim::ContactTruth& contact, std::int64_t time_ns) { return contact.time_ns < time_ns; };
+  auto contact = std::lower_bound(truth.contacts.begin(), truth.contacts.end(), span.begin_ns, before);
+  for (; contact != truth.contacts.end() && contact->time_ns < span.end_ns; ++contact) {
+    if (contact->slip_velocity_W_m_s.norm() >= kLeastSpeed_m_s) return true;
+  }
+  return false;
+}
+
+/// A label holds from its own instant to the next one's.
+std::vector<Span> claimed_spans(const Estimate& estimate) {
+  if (estimate.contacts.size() != estimate.poses.size()) {
+    throw BadInput("the estimate has " + std::to_string(estimate.contacts.size()) + " contacts for " +
+                   std::to_string(estimate.poses.size()) + " poses");
+  }
+  Events events;
+  for (std::size_t k = 0; k + 1 < estimate.contacts.size(); ++k) {
+    events.add(estimate.contacts[k], estimate.poses[k].time_ns, estimate.poses[k + 1].time_ns);
+  }
+  return events.spans();
+}
+
+std::int64_t covered_ns(const Span& span, const std::vector<Span>& by, std::int64_t margin_ns) {
+  std::int64_t sum_ns = 0, done_ns = span.begin_ns;  // widened spans may overlap
+  for (const Span& one : by) {
+    const std::int64_t begin_ns = std::max(done_ns, one.begin_ns - margin_ns);
+    const std::int64_t end_ns = std::min(span.end_ns, one.end_ns + margin_ns);
+    if (end_ns <= begin_ns) continue;
+    sum_ns += end_ns - begin_ns;
+    done_ns = end_ns;
+  }
+  return sum_ns;
+}
+
+bool half_covered(const Span& span, const std::vector<Span>& by, std::int64_t margin_ns) {
+  return static_cast<double>(covered_ns(span, by, margin_ns)) >=
+         kHalf * static_cast<double>(span.end_ns - span.begin_ns);
+}
+
+struct Comparison {
+  std::vector<Span> events;  ///< true ones that count
+  std::vector<Span> claimed;
+  std::vector<Span> right;  ///< claimed ones that are right
+};
+
+std::optional<Comparison> compare(const Estimate& estimate, const ScoringInput& input) {
+  if (estimate.contacts.empty()) return std::nullopt;
+  const std::vector<Span> all = true_spans(*input.truth);
+  Comparison out;
+  for (const Span& span : all) {
+    if (counts(span, *input.truth)) out.events.push_back(span);
+  }
+  out.claimed = claimed_spans(estimate);
+  for (const Span& span : out.claimed) {
+    if (half_covered(span, all, kMargin_ns)) out.right.push_back(span);
+  }
+  return out;
+}
+
+bool precision(const Estimate& estimate, const ScoringInput& input, double& value) {
+  const auto found = compare(estimate, input);
+  if (!found) return false;
+  value = found->claimed.empty()
+              ? 1.0
+              : static_cast<double>(found->right.size()) / static_cast<double>(found->claimed.size());
+  return true;
+}
+
+bool recall(const Estimate& estimate, const ScoringInput& input, double& value) {
+  const auto found = compare(estimate, input);
+  if (!found || found->events.empty()) return false;
+  const auto count = std::count_if(found->events.begin(), found->events.end(),
+                                   [&](const Span& event) { return half_covered(event, found->right, 0); });
+  value = static_cast<double>(count) / static_cast<double>(found->events.size());
+  return true;
+}
+
+bool delay(const Estimate& estimate, const ScoringInput& input, double& value) {
+  const auto found = compare(estimate, input);
+  if (!found) return false;
+  std::vector<double> delays_s;
+  for (const Span& event : found->events) {
+    if (!half_covered(event, found->right, 0)) continue;
+    const auto first = std::find_if(found->right.begin(), found->right.end(),
+                                    [&](const Span& span) { return span.end_ns > event.begin_ns; });
+    delays_s.push_back(1e-9 * static_cast<double>(std::max<std::int64_t>(first->begin_ns - event.begin_ns, 0)));
+  }
+  if (delays_s.empty()) return false;
+  const auto middle = delays_s.begin() + static_cast<std::ptrdiff_t>(delays_s.size() / 2);
+  std::nth_element(delays_s.begin(), middle, delays_s.end());
+  value = *middle;
+  return true;
+}
+
+}  // namespace
+
+std::vector<Metric> slip_metrics() {
+  return {
+      {"slip_precision", Kind::position, "1",
+       "share of the claimed events of slip and slide that are right; 1 when none is claimed", precision},
+      {"slip_recall", Kind::position, "1", "share of the true events that are found", recall},
+      {"slip_delay_s", Kind::position, "s",
+       "median over the found events: from their true begin until they are claimed, 0 when claimed before", delay},
+  };
+}
+
+}  // namespace tumble::scenarios

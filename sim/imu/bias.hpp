@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+#include "sim/random/stream.hpp"
+
+namespace tumble::sim {
+
+/// Bias of a triad: a turn-on value (normal, drawn once), an in-run instability and a random walk, each axis on its
+/// own.
+///
+/// The instability is flicker noise over three decades: four first-order Gauss-Markov processes of equal size, their
+/// correlation times a factor of ten apart, started in their stationary state. It is bounded (standard deviation 2.58
+/// times the floor), and its Allan deviation is flat at `in_run` from 1/200 to 1/2 of `in_run_s` within 5 %, which is
+/// what a data sheet's "in-run bias stability" states (IEEE Std 952-1997, annex C; the sum of Gauss-Markov processes as
+/// flicker: Keshner, "1/f noise", Proc. IEEE 70, 1982).
+/// What it does not model: temperature, and any dependence on what the device went through.
+class Bias {
+ public:
+  struct Params {
+    double turn_on = 0.0;      ///< standard deviation [unit of the signal]
+    double in_run = 0.0;       ///< floor of the Allan deviation
+    double in_run_s = 1000.0;  ///< longest correlation time of the instability
+    double walk_sqrt_s = 0.0;  ///< standard deviation of the walk after one second
+  };
+  /// Advances in steps of `period_s`. Draws nothing from `stream` for what is 0.
+  Bias(const Params& params, double period_s, const Stream& stream);
+  /// The bias in force now; then advances by one period.
+  Eigen::Vector3d next();
+
+  /// Allan deviation of the instability alone, in closed form.
+  static double in_run_deviation(const Params& params, double tau_s);
+
+ private:
+  struct Process {
+    double decay = 0.0, step = 0.0;
+    Eigen::Vector3d value = Eigen::Vector3d::Zero();
+  };
+  Stream stream_;
+  double walk_step_;
+  Eigen::Vector3d constant_, walk_ = Eigen::Vector3d::Zero();
+  std::array<Process, 4> in_run_;
+};
+
+}  // namespace tumble::sim

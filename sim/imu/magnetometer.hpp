@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/parameters.hpp"
+#include "sim/random/stream.hpp"
+
+namespace tumble::sim {
+
+/// A small magnet or piece of iron that stands in the world.
+struct MagneticDipole {
+  Eigen::Vector3d p_W_m;
+  Eigen::Vector3d moment_W_a_m2;
+};
+
+/// Magnetic flux density in the world [T]: the Earth's field, the same everywhere, and point dipoles,
+/// B = mu_0 / (4 pi) (3 (m r) r - m r^2) / r^5 (Jackson, Classical Electrodynamics, equation 5.56).
+/// What it does not model: iron that turns with the field, currents, anything that moves.
+struct MagneticField {
+  Eigen::Vector3d earth_W_t = Eigen::Vector3d::Zero();
+  std::vector<MagneticDipole> dipoles;
+  Eigen::Vector3d at(const Eigen::Vector3d& p_W_m) const;
+};
+
+/// The field of one draw: earth_field_t, dipping by earth_inclination_rad, its horizontal part earth_north_rad from the
+/// world's x axis towards y; magnetic_sources dipoles around the way `p_W_m`, none nearer to it than
+/// magnetic_source_nearest_m, each beside a random place of it by at most magnetic_source_farthest_m, their moments
+/// log-uniform within a factor of 3 of magnetic_source_moment_a_m2, in random directions. Equal numbers and seed give
+/// the same field to every magnetometer.
+MagneticField draw_magnetic_field(const Values& values, std::span<const Eigen::Vector3d> p_W_m, std::uint64_t seed);
+
+/// Error model of a magnetometer triad: soft iron (scale and misalignment), hard iron (an offset in the sensor's axes,
+/// drawn once), white noise of each sample, rail, quantum. With every number 0 the reading is the true field, bit for
+/// bit. What it does not model: bandwidth and delay, temperature.
+class Magnetometer {
+ public:
+  Magnetometer(const Values& values, std::uint64_t seed, const std::string& stream_name);
+  Eigen::Vector3d read(const Eigen::Vector3d& true_I_t);
+
+ private:
+  Stream stream_;
+  double noise_t_, rail_t_, quantum_t_;
+  Eigen::Matrix3d soft_iron_;
+  Eigen::Vector3d hard_iron_t_;
+};
+
+}  // namespace tumble::sim

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <limits>
+#include <vector>
+
+#include "sim/motion/motion_type.hpp"
+#include "sim/motion/tremor.hpp"
+
+namespace tumble::sim {
+
+/// Where a hand wants the geometric centre of a sphere to be.
+struct Reference {
+  Eigen::Vector3d p_m = Eigen::Vector3d::Zero(), v_m_s = Eigen::Vector3d::Zero(), a_m_s2 = Eigen::Vector3d::Zero();
+};
+
+/// Numbers that every motion by hand takes.
+inline constexpr std::array kHandParameters = {
+    Parameter{"stiffness_n_m", 400.0, 1.0, 5000.0, "N/m", "of the hand about its way, level; assumed"},
+    Parameter{"damping_n_s_m", 90.0, 0.0, 1000.0, "N s/m", "of the hand, level; assumed"},
+    Parameter{"twist_damping_nm_s", 0.03, 0.0, 10.0, "N m s", "of the hand against spin about the vertical; assumed"},
+    Parameter{"tremor_n", 0.0, 0.0, 20.0, "N",
+              "root mean square of the hand's unsteady force per level axis while it leads, 0.7 to 9 Hz; assumed"},
+    Parameter{"tremor_nm", 0.0, 0.0, 1.0, "N m", "the same of its torque, per axis; fingers rub the shell; assumed"},
+    Parameter{"hand_seed", 0.0, 0.0, 1e9, "1", "what is random about the hand belongs to this number, rounded down"},
+    Parameter{"torque_limit_nm", 3.0, 0.0, 50.0, "N m", "largest torque of a burst"},
+    Parameter{"burst_time_s", 0.04, 0.005, 1.0, "s", "time constant with which a burst reaches its rate"},
+    Parameter{"burst_s", 1.0, 0.0, 30.0, "s", "longest burst; it ends earlier where the patch ends"},
+    Parameter{"patch_1_spin_ratio", 1.0, -3.0, 15.0, "1",
+              "rate over the rate of pure rolling that a burst aims at on patch 1: above 1 it spins, below 1 it "
+              "slides; 1: no burst"},
+    Parameter{"patch_1_axis_rad", 0.0, -1.6, 1.6, "rad",
+              "turn of the burst's axis about the vertical against that of rolling"},
+    Parameter{"patch_2_spin_ratio", 1.0, -3.0, 15.0, "1", "as patch 1"},
+    Parameter{"patch_2_axis_rad", 0.0, -1.6, 1.6, "rad", "as patch 1"},
+    Parameter{"patch_3_spin_ratio", 1.0, -3.0, 15.0, "1", "as patch 1"},
+    Parameter{"patch_3_axis_rad", 0.0, -1.6, 1.6, "rad", "as patch 1"},
+};
+inline constexpr std::size_t kHandPatches = 3;
+
+/// The hand's numbers and a motion's own, as one table.
+template <std::size_t N>
+constexpr std::array<Parameter, kHandParameters.size() + N> with_hand(const std::array<Parameter, N>& own) {
+  std::array<Parameter, kHandParameters.size() + N> all{};
+  for (std::size_t i = 0; i < N; ++i) all[i] = own[i];
+  for (std::size_t i = 0; i < kHandParameters.size(); ++i) all[N + i] = kHandParameters[i];
+  return all;
+}
+
+/// A hand on a sphere: a level force at its centre that follows a reference (spring, damper, and the force that rolling
+/// takes), unsteady as hands are, and bursts of torque on patches of other friction. It neither lifts nor presses.
+/// The hand is no body: nothing of it touches the sphere.
+class Hand {
+ public:
+  /// `motion` begins messages. Throws InvalidSituation when the robot is not a sphere. `world` outlives the hand.
+  Hand(const std::string& motion, const Values& values, const engine::World& world);
+
+  double radius_m() const { return radius_m_; }
+  /// At rest with the centre at `p_G_m`; the heavy side points down, so that gravity holds the sphere.
+  BodyState at_rest(const Eigen::Vector3d& p_G_m) const;
+  /// Remembers when a burst began; call it with rising times.
+  Wrench wrench(const BodyState& state, const Reference& reference);
+
+ private:
+  Eigen::Vector3d burst(double time_s, const Eigen::Vector3d& p_G_m, const Eigen::Vector3d& v_m_s,
+                        const Eigen::Vector3d& w_W_rad_s);
+
+  struct Burst {
+    double spin_ratio, axis_rad;
+    double end_s = std::numeric_limits<double>::infinity();
+  };
+  const engine::World& world_;
+  Values values_;
+  double radius_m_ = 0.0, mass_kg_ = 0.0, inertia_kg_m2_ = 0.0;
+  Eigen::Vector3d p_BG_m_;
+  std::array<Burst, kHandPatches> bursts_;
+  std::vector<Tremor> force_, torque_;
+};
+
+}  // namespace tumble::sim

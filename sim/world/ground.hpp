@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <functional>
+
+#include "sim/random/stream.hpp"
+#include "sim/world/geoms.hpp"
+
+namespace tumble::sim {
+
+/// Numbers of the ground that a sphere rolls on, for every world that has one.
+inline constexpr std::array kGroundParameters = {
+    Parameter{"friction", 0.6, 0.0, 2.0, "1", "sliding friction of the floor outside of the patches"},
+    Parameter{"spin_friction_m", 0.0005, 0.0, 0.1, "m",
+              "friction moment about the normal over normal force (MuJoCo's torsional friction)"},
+    Parameter{
+        "soft_time_s", 0.0, 0.0, 0.1, "s",
+        "time constant of a contact with the ground (MuJoCo solref[0]); 0: as hard as the robot. A sphere of 29 cm "
+        "sinks 0.02 mm at 4 ms, 0.5 mm at 20 ms"},
+    Parameter{"soft_damping_ratio", 1.0, 0.05, 1.5, "1", "damping ratio of that contact (MuJoCo solref[1])"},
+    Parameter{"roughness_m", 0.0, 0.0, 0.03, "m", "root mean square of the ground's unevenness; 0: a perfect plane"},
+    Parameter{"roughness_shortest_m", 0.15, 0.1, 5.0, "m", "shortest wavelength of the unevenness"},
+    Parameter{"roughness_longest_m", 1.0, 0.1, 10.0, "m", "longest one; the height goes with the wavelength"},
+};
+
+/// Two tables of parameters as one.
+template <std::size_t M, std::size_t N>
+constexpr std::array<Parameter, M + N> joined(const std::array<Parameter, M>& first,
+                                              const std::array<Parameter, N>& second) {
+  std::array<Parameter, M + N> all{};
+  for (std::size_t i = 0; i < M; ++i) all[i] = first[i];
+  for (std::size_t i = 0; i < N; ++i) all[M + i] = second[i];
+  return all;
+}
+
+/// Friction and softness of the ground for `geom`. Of two frictions MuJoCo takes the larger one, and a sphere has none;
+/// hard ground leaves the softness to the robot, soft ground decides it alone.
+void set_ground_contact(mjsGeom* geom, const Values& values);
+
+/// Adds the surface "floor" over |x| <= half_x_m, |y| <= half_y_m: a plane at height 0, or a height field (nodes 5 cm
+/// apart) when it is rough or has a `profile_m` (height over x, y; may be empty). The unevenness never rises above the
+/// profile, so that nothing starts inside of it. Returns false when it is a plane.
+bool add_ground(mjSpec* spec, engine::World& world, const Values& values, double half_x_m, double half_y_m,
+                const std::function<double(double, double)>& profile_m, const Colour& colour, Stream& stream);
+
+}  // namespace tumble::sim

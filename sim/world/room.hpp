@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+
+#include "sim/random/stream.hpp"
+#include "sim/world/geoms.hpp"
+
+namespace tumble::sim {
+
+/// Numbers of the square room around a level floor: something for the lidar to see.
+inline constexpr std::array kRoomParameters = {
+    Parameter{"room_half_m", 5.0, 2.5, 30.0, "m", "half width of the square room"},
+    Parameter{"wall_height_m", 2.5, 0.2, 10.0, "m", "height of the four walls"},
+    Parameter{"ceiling", 0.0, 0.0, 1.0, "1", "1: the room is closed above (pictures look through it)"},
+    Parameter{"pillar_count", 6, 0, 100, "1", "upright pillars, for the lidar"},
+    Parameter{"box_count", 8, 0, 100, "1", "boxes on the floor, for the lidar"},
+    Parameter{"shelf_count", 0, 0, 100, "1", "tall cupboards along the walls, for the lidar"},
+    Parameter{"clear_radius_m", 2.4, 0.5, 20.0, "m", "neither pillar nor box comes closer to the middle than this"},
+};
+
+/// Walls, ceiling, pillars, boxes and cupboards; sets the world's extent. What is random comes from `stream`.
+void add_room(mjSpec* spec, engine::World& world, const Values& values, Stream& stream);
+
+/// Adds a ceiling at `height_m` that pictures look through.
+void add_ceiling(mjSpec* spec, engine::World& world, double half_x_m, double half_y_m, double height_m);
+
+/// Group of geoms that a lidar sees and pictures do not show.
+inline constexpr int kUnseenInPictures = 3;
+
+}  // namespace tumble::sim

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "sim/world/ground.hpp"
+#include "sim/world/relief.hpp"
+#include "sim/world/room.hpp"
+#include "sim/world/world_type.hpp"
+
+namespace tumble::sim {
+
+namespace {
+
+constexpr std::array kOwnParameters = {
+    Parameter{"length_m", 16.0, 4.0, 60.0, "m", "of the tube along x, its middle at the origin"},
+    Parameter{"half_width_m", 1.9, 0.8, 10.0, "m", "half width at the ground"},
+    Parameter{"height_m", 2.2, 1.0, 10.0, "m", "from the ground to the crown"},
+    Parameter{"gutter_m", 0.1, 0.0, 1.0, "m", "by how much the ground rises from the middle to the walls"},
+    Parameter{"wall_roughness_m", 0.08, 0.0, 0.5, "m", "root mean square of the walls' unevenness, 0.3 to 3 m long"},
+    Parameter{"bend_m", 0.3, 0.0, 3.0, "m", "amplitude with which the tube winds from side to side"},
+    Parameter{"bend_length_m", 9.0, 2.0, 60.0, "m", "wavelength of the winding"},
+    Parameter{"rock_count", 24, 0, 200, "1", "rocks on the ground, out of the way"},
+    Parameter{"clear_half_width_m", 0.7, 0.2, 5.0, "m", "no rock comes closer to the x axis than this"},
+};
+constexpr std::array kParameters = joined(kGroundParameters, kOwnParameters);
+constexpr Colour kRock = {0.42f, 0.36f, 0.33f, 1.0f};
+constexpr double kOver_m = 0.5;  // the ground reaches beyond the walls: no gap between the two
+
+/// Where the middle of the tube lies.
+double middle_m(const Values& values, double x_m) {
+  return values.at("bend_m") * std::sin(2.0 * std::numbers::pi * x_m / values.at("bend_length_m"));
+}
+
+double ground_m(const Values& values, double x_m, double y_m) {
+  const double u = (y_m - middle_m(values, x_m)) / values.at("half_width_m");
+  return values.at("gutter_m") * u * u;
+}
+
+/// Half of the shell: rings along x, from the foot of one wall to the crown. Nothing touches it (a mesh would be
+/// touched as its convex hull); the ground and the ends hold the robot.
+void add_shell(mjSpec* spec, engine::World& world, const Values& values, int side, const Undulation& rough) {
+  constexpr double kRing_m = 0.1;
+  constexpr int kSteps = 28;
+  constexpr double kBelow_rad = 0.25;  // the wall goes on below the ground
+  const int rings = static_cast<int>(std::ceil(values.at("length_m") / kRing_m));
+  std::vector<float> vertices;
+  for (int ring = 0; ring <= rings; ++ring) {
+    const double x_m = values.at("length_m") * (static_cast<double>(ring) / rings - 0.5);
+    for (int step = 0; step <= kSteps; ++step) {
+      const double angle = -kBelow_rad + (std::numbers::pi / 2 + kBelow_rad) * step / kSteps;
+      // arc length stands for the second coordinate of the unevenness; both halves meet at the crown, where it is 0
+      const double arc_m = side * (std::numbers::pi / 2 - angle) * values.at("half_width_m");
+      const double scale = 1.0 + rough.height_m(x_m, arc_m) / values.at("half_width_m");
+      vertices.push_back(static_cast<float>(x_m));
+      vertices.push_back(
+          static_cast<float>(middle_m(values, x_m) + side * scale * values.at("half_width_m") * std::cos(angle)));
+      vertices.push_back(static_cast<float>(values.at("gutter_m") +
+                                            scale * (values.at("height_m") - values.at("gutter_m")) * std::sin(angle)));
+    }
+  }
+  std::vector<int> faces;
+  for (int ring = 0; ring < rings; ++ring) {
+    for (int step = 0; step < kSteps; ++step) {
+      const int here = ring * (kSteps + 1) + step, next = here + kSteps + 1;
+      // pictures show the side of a face from which its corners turn to the left: the inner one
+      const int first = side > 0 ? next : here + 1, second = side > 0 ? here + 1 : next;
+      for (const int corner : {here, first, next + 1, here, next + 1, second}) faces.push_back(corner);
+    }
+  }
+  const std::string name = side > 0 ? "shell_left" : "shell_right";
+  mjsMesh* mesh = mjs_addMesh(spec, nullptr);
+  mjs_setName(mesh->element, name.c_str());
+  mesh->inertia = mjMESH_INERTIA_SHELL;  // it is open: it has no volume
+  mjs_setFloat(mesh->uservert, vertices.data(), static_cast<int>(vertices.size()));
+  mjs_setInt(mesh->userface, faces.data(), static_cast<int>(faces.size()));
+  mjsGeom* geom = add_surface(spec, world, name, mjGEOM_MESH, {0, 0, 0}, {0, 0, 0}, 0.0, kRock);
+  mjs_setString(geom->meshname, name.c_str());
+  geom->contype = 2;  // a lidar sees what could be touched; the robot is asked for 1
+  geom->conaffinity = 0;
+  if (side < 0) geom->group = kUnseenInPictures;  // pictures look from the right
+}
+
+void add_ends(mjSpec* spec, engine::World& world, const Values& values, double half_y_m) {
+  const double half_height_m = 0.75 * values.at("height_m"), x_m = values.at("length_m") / 2;
+  for (const int sign : {1, -1}) {
+    // closes the tube; a little askew, as debris is
+    add_surface(spec, world, sign > 0 ? "end_front" : "end_back", mjGEOM_BOX, {sign * (x_m + 0.05), 0, half_height_m},
+                {0.2, half_y_m, half_height_m}, 0.1, kRock);
+  }
+}
+
+void add_rocks(mjSpec* spec, engine::World& world, const Values& values, Stream& stream) {
+  const double half_m = values.at("length_m") / 2 - 0.5, clear_m = values.at("clear_half_width_m");
+  for (int i = 0; i < static_cast<int>(values.at("rock_count")); ++i) {
+    const Eigen::Vector3d size(stream.uniform(0.08, 0.3), stream.uniform(0.08, 0.3), stream.uniform(0.06, 0.22));
+    const double x_m = stream.uniform(-half_m, half_m);
+    const double side = stream.uniform() < 0.5 ? -1.0 : 1.0;
+    const double widest_m = std::max(values.at("half_width_m"), clear_m + 0.4);
+    const double y_m = side * (stream.uniform(clear_m, widest_m) + size.head<2>().maxCoeff());
+    add_surface(spec, world, "rock_" + std::to_string(i), mjGEOM_ELLIPSOID,
+                {x_m, y_m, ground_m(values, x_m, y_m) + 0.2 * size.z()}, size, stream.uniform(0.0, std::numbers::pi),
+                {0.5f, 0.44f, 0.4f, 1.0f});
+  }
+}
+
+void build(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World& world) {
+  Stream stream(seed, "terrain");
+  Stream uneven(seed, "terrain.unevenness");
+  const double half_x_m = values.at("length_m") / 2;
+  const double half_y_m = values.at("half_width_m") + values.at("bend_m") + kOver_m;
+  world.half_extent_m = std::max(half_x_m, half_y_m);
+  add_ground(
+      spec, world, values, half_x_m, half_y_m, [&](double x_m, double y_m) { return ground_m(values, x_m, y_m); },
+      {0.38f, 0.34f, 0.32f, 1.0f}, uneven);
+  const Undulation rough(stream, values.at("wall_roughness_m"), 0.3, 3.0);
+  add_shell(spec, world, values, 1, rough);
+  add_shell(spec, world, values, -1, rough);
+  add_ends(spec, world, values, half_y_m);
+  add_rocks(spec, world, values, stream);
+  add_daylight(spec);
+}
+
+}  // namespace
+
+const WorldType& tube_world() {
+  static const WorldType kType{
+      {"tube", "lava tube along x: rough ground that rises to the sides, rough vault, rocks", kParameters}, build};
+  return kType;
+}
+
+}  // namespace tumble::sim

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "scenarios/draw/scenario.hpp"
+#include "scenarios/sweep/sweep.hpp"
+#include "sim/simulate.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+const DataRoot kData{TUMBLE_SOURCE_DIR};
+// a seed of the range that development looks at
+constexpr std::uint64_t kSeed = 1001;
+
+TEST(SlipSuite, HoldsEveryScenarioOfTheSphereAndNoOther) {
+  const Suite suite = load_suite(kData, "slip");
+  const std::set<std::string> listed(suite.scenarios.begin(), suite.scenarios.end());
+  std::size_t spheres = 0;
+  for (const std::string& name : scenario_names(kData)) {
+    const bool sphere = load_scenario(kData, name).robot.type == "sphere";
+    EXPECT_EQ(listed.contains(name), sphere) << name;
+    spheres += sphere ? 1 : 0;
+  }
+  EXPECT_GE(spheres, 10u);
+}
+
+TEST(SlipSuite, DrawsOnThirtySeeds) {
+  for (const std::string& name : load_suite(kData, "slip").scenarios) {
+    const Scenario scenario = load_scenario(kData, name);
+    for (std::uint64_t seed = kSeed; seed < kSeed + 30; ++seed) EXPECT_NO_THROW(draw(kData, scenario, seed)) << name;
+  }
+}
+
+/// What a scenario is about, in seconds of its labels.
+struct Expected {
+  const char* scenario;
+  double slip_least_s, slip_most_s, slide_least_s, slide_most_s;
+};
+
+class SphereScenario : public testing::TestWithParam<Expected> {};
+
+// ramps and obstacles may scrape for some hundredths of a second
+TEST_P(SphereScenario, ShowsWhatItIsAboutAndEndsAtRest) {
+  sim::Situation situation = draw(kData, load_scenario(kData, GetParam().scenario), kSeed);
+  std::erase_if(situation.sensors, [](const sim::SensorSpec& sensor) { return sensor.kind != "imu"; });
+  const sim::Truth truth = sim::simulate(situation, {kData.models(), 1}).truth;
+  const auto seconds = [&](sim::ContactLabel label) {
+    return 1e-9 * static_cast<double>(truth.period_ns) *
+           static_cast<double>(std::count(truth.label.begin(), truth.label.end(), label));
+  };
+  EXPECT_GE(seconds(sim::ContactLabel::slip), GetParam().slip_least_s);
+  EXPECT_LE(seconds(sim::ContactLabel::slip), GetParam().slip_most_s);
+  EXPECT_GE(seconds(sim::ContactLabel::slide), GetParam().slide_least_s);
+  EXPECT_LE(seconds(sim::ContactLabel::slide), GetParam().slide_most_s);
+  for (const std::size_t k : {std::size_t{0}, truth.q_WB.size() - 1}) {
+    EXPECT_LT(truth.v_WB_m_s[k].norm(), 0.01);
+    EXPECT_LT(truth.w_WB_B_rad_s[k].norm(), 0.05);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Catalogue, SphereScenario,
+    testing::Values(Expected{"roll", 0.0, 0.0, 0.0, 0.0}, Expected{"slip", 0.2, 2.5, 0.0, 0.1},
+                    Expected{"slip_long", 1.2, 3.0, 0.0, 0.1}, Expected{"slide", 0.0, 0.3, 0.2, 2.2},
+                    Expected{"slide_long", 0.0, 0.1, 1.2, 3.0}, Expected{"slide_then_roll", 0.0, 0.1, 0.2, 1.5},
+                    Expected{"bump", 0.0, 0.1, 0.0, 0.1}, Expected{"ramp", 0.0, 0.1, 0.0, 0.1},
+                    Expected{"corridor", 0.0, 0.0, 0.0, 0.0}, Expected{"tube", 0.0, 0.1, 0.0, 0.1}),
+    [](const auto& info) { return std::string(info.param.scenario); });
+
+}  // namespace
+}  // namespace tumble::scenarios
