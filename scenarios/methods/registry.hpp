@@ -81,13 +81,13 @@ std::vector<sim::Parameter> joined_parameters(std::initializer_list<std::span<co
 /// What the lidar-inertial chain estimates beside the motion.
 struct SlamChain {
   bool excess_rate = false;  ///< by how much the rates of clipped axes are short; `excess_parameters`
-  /// Mounting and clock of the lidar, and gravity; `calibration_parameters`. The recording is run through twice: what the
-  /// first run learns of the calibration is the start of the second.
+  /// Mounting and clock of the lidar, and gravity; `calibration_parameters`. The recording is run through twice: what
+  /// the first run learns of the calibration is the start of the second.
   bool calibration = false;
 };
 
-/// The lidar-inertial chain behind every registration method: given rates, deskew, register, map. `parameters` hold those
-/// of every part that `chain` asks for.
+/// The lidar-inertial chain behind every registration method: given rates, deskew, register, map. `parameters` hold
+/// those of every part that `chain` asks for.
 void run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples, const sim::Values& parameters,
                     const SlamChain& chain, Estimate& estimate);
 

@@ -78,8 +78,7 @@ std::vector<MotionSample> imu_motion(std::span<const ImuSample> samples, std::sp
       sample.from_ns = start + (end - start) * part / parts;
       sample.time_ns = start + (end - start) * (part + 1) / parts;
       sample.w_WI_I_rad_s = (1.0 - share) * rates[k].w_WI_I_rad_s + share * rates[other].w_WI_I_rad_s - bias_rad_s;
-      sample.f_I_m_s2 =
-          (1.0 - share) * samples[k].specific_force_m_s2 + share * samples[other].specific_force_m_s2;
+      sample.f_I_m_s2 = (1.0 - share) * samples[k].specific_force_m_s2 + share * samples[other].specific_force_m_s2;
       sample.clipped_axes = rates[k].clipped_axes;
     }
   });
@@ -125,7 +124,8 @@ void run_rigid_chain(const sim::Sensors& sensors, std::span<const ImuSample> sam
   for (std::size_t k = 0; k < sweeps; ++k) {
     const bridge::Sweep sweep = bridge::sweep(lidar, k);
     if (!started) from_ns = sweep.start_ns;
-    if (samples.back().time_ns < sweep.end_ns || window_start(samples, 0) > sweep.start_ns || sweep.start_ns < from_ns) {
+    if (samples.back().time_ns < sweep.end_ns || window_start(samples, 0) > sweep.start_ns ||
+        sweep.start_ns < from_ns) {
       estimate.health["sweeps_unfinished"] += 1.0;
       continue;
     }

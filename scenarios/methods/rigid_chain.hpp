@@ -9,8 +9,8 @@
 #include "tumble/common/imu.hpp"
 #include "tumble/mapping/rigid_odometry.hpp"
 
-/// The seams of the rigid registration methods: a rate method gives Estimate::rates, a trajectory model the motion inside
-/// of a sweep, RigidOdometry the registration. Each method file puts its own together.
+/// The seams of the rigid registration methods: a rate method gives Estimate::rates, a trajectory model the motion
+/// inside of a sweep, RigidOdometry the registration. Each method file puts its own together.
 namespace tumble::scenarios {
 
 /// What a method expects the motion to be, sweep after sweep, and learns from what the registration made of it.

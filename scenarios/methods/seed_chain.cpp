@@ -29,7 +29,8 @@ constexpr double kRangeSigmaM = 0.02, kRangeSigmaShare = 0.0015;
 const Eigen::AlignedBox3f kOwnBody{Eigen::Vector3f(-0.5f, -0.4f, -0.27f), Eigen::Vector3f(0.5f, 0.4f, 0.23f)};
 
 constexpr std::array<sim::Parameter, 6> kParameters = {{
-    {"skew_sigma_m_s", 0.25, 0.0, 100.0, "m/s", "growth of a point's uncertainty over the sweep (time weighting); 0: none"},
+    {"skew_sigma_m_s", 0.25, 0.0, 100.0, "m/s",
+     "growth of a point's uncertainty over the sweep (time weighting); 0: none"},
     {"match_distance_m", 1.0, 0.01, 4.0, "m", "farther map points are no match"},
     {"late_velocity", 1.0, 0.0, 1.0, "1",
      "1: velocity fed back is the mean since the last sweep taken for the present one, half a sweep late, as launched"},
@@ -65,8 +66,8 @@ class ImuOdometry {
     while (p_m_.size() < samples_.size() && samples_[p_m_.size() - 1].time_ns < to_ns) {
       const std::size_t k = p_m_.size();
       const double step_s = seconds(samples_[k].time_ns - samples_[k - 1].time_ns);
-      const Eigen::Vector3d change = fed_back_ ? Eigen::Vector3d(0.5 * (force(k - 1) + force(k)) * step_s)
-                                               : Eigen::Vector3d::Zero();
+      const Eigen::Vector3d change =
+          fed_back_ ? Eigen::Vector3d(0.5 * (force(k - 1) + force(k)) * step_s) : Eigen::Vector3d::Zero();
       p_m_.push_back(p_m_.back() + step_s * (velocity_m_s_ + 0.5 * change));
       velocity_m_s_ += change;
       v_m_s_.push_back(velocity_m_s_);
@@ -95,7 +96,8 @@ class ImuOdometry {
       return T;
     }
     const double share = std::clamp(static_cast<double>(time_ns - samples_[k - 1].time_ns) /
-                                        static_cast<double>(samples_[k].time_ns - samples_[k - 1].time_ns), 0.0, 1.0);
+                                        static_cast<double>(samples_[k].time_ns - samples_[k - 1].time_ns),
+                                    0.0, 1.0);
     T.linear() = attitude_[k - 1].slerp(share, attitude_[k]).toRotationMatrix();
     T.translation() = (1.0 - share) * p_m_[k - 1] + share * p_m_[k];
     return T;
@@ -175,7 +177,10 @@ std::vector<TrimmedIcp::Point> prepare(const bridge::Sweep& sweep, const ImuOdom
 class SeedMapper {
  public:
   SeedMapper(const sim::Values& parameters, const Eigen::Isometry3d& T_IL, const ImuOdometry& odometry)
-      : ends_on_abort_(parameters.at("abort_ends_mapping") > 0.5), T_IL_(T_IL), odometry_(odometry), icp_(icp_params(parameters)) {}
+      : ends_on_abort_(parameters.at("abort_ends_mapping") > 0.5),
+        T_IL_(T_IL),
+        odometry_(odometry),
+        icp_(icp_params(parameters)) {}
 
   bool add(const bridge::Sweep& sweep, std::span<const TrimmedIcp::Point> points, SweepReport& report) {
     report.points_used = sweep.points.size();
@@ -281,7 +286,8 @@ void run_seed_chain(const sim::Sensors& sensors, std::span<const ImuSample> samp
     }
     for (const LidarPoint& point : sweep.points) {
       if (point.offset_ns <= sweep.end_ns - sweep.start_ns) continue;
-      estimate.status = {Trouble::out_of_range, "offset_ns", double(point.offset_ns), double(sweep.end_ns - sweep.start_ns)};
+      estimate.status = {Trouble::out_of_range, "offset_ns", double(point.offset_ns),
+                         double(sweep.end_ns - sweep.start_ns)};
       return;
     }
     odometry.advance(sweep.end_ns);
@@ -299,10 +305,11 @@ void run_seed_chain(const sim::Sensors& sensors, std::span<const ImuSample> samp
     const Eigen::Isometry3d& T = mapper.T_map_odom();
     for (const ImuSample& sample : samples) {
       if (sample.time_ns <= sweep.start_ns || sample.time_ns > sweep.end_ns) continue;
-      report.trajectory.push_back(
-          pose_state(T * odometry.pose(sample.time_ns), T.linear() * odometry.velocity_m_s(sample.time_ns), sample.time_ns));
+      report.trajectory.push_back(pose_state(T * odometry.pose(sample.time_ns),
+                                             T.linear() * odometry.velocity_m_s(sample.time_ns), sample.time_ns));
     }
-    report.pose = pose_state(T * odometry.pose(sweep.end_ns), T.linear() * odometry.velocity_m_s(sweep.end_ns), sweep.end_ns);
+    report.pose =
+        pose_state(T * odometry.pose(sweep.end_ns), T.linear() * odometry.velocity_m_s(sweep.end_ns), sweep.end_ns);
     if (report.trajectory.empty()) report.trajectory.push_back(report.pose);
     for (const PoseState& pose : report.trajectory) estimate.poses.push_back(pose);
     estimate.sweep_end_ns.push_back(sweep.end_ns);
@@ -323,6 +330,8 @@ void run_seed_chain(const sim::Sensors& sensors, std::span<const ImuSample> samp
   if (!any) estimate.status = {Trouble::too_few, "lidar.sweeps_registered", 0.0, 1.0};
 }
 
-std::span<const sim::Parameter> seed_parameters() { return kParameters; }
+std::span<const sim::Parameter> seed_parameters() {
+  return kParameters;
+}
 
 }  // namespace tumble::scenarios

@@ -85,6 +85,18 @@ void append_poses(const LidarInertialOdometry::SweepReport& report, std::vector<
   }
 }
 
+/// Cuts a sweep where the IMU ends, if that leaves most of it: clocks that disagree must not cost the last sweep.
+bool shorten(std::int64_t end_ns, bridge::Sweep& sweep) {
+  if (end_ns >= sweep.end_ns) return true;
+  const std::int64_t left_ns = end_ns - sweep.start_ns;
+  if (2 * left_ns < sweep.end_ns - sweep.start_ns) return false;
+  // those beyond the sweep itself stay: they are a fault of the recording and shall be told
+  const std::int64_t length_ns = sweep.end_ns - sweep.start_ns;
+  std::erase_if(sweep.points, [&](const LidarPoint& p) { return p.offset_ns > left_ns && p.offset_ns <= length_ns; });
+  sweep.end_ns = end_ns;
+  return true;
+}
+
 /// Feeds the whole recording; `estimate` gets what came of it but the map.
 void run_sweeps(const sim::LidarRecord& lidar, std::span<const ImuSample> samples, LidarInertialOdometry& odometry,
                 double time_offset_s, Estimate& estimate) {
@@ -92,7 +104,7 @@ void run_sweeps(const sim::LidarRecord& lidar, std::span<const ImuSample> sample
   const std::size_t sweeps = bridge::sweep_count(lidar);
   std::size_t next = 0;
   for (std::size_t k = 0; k < sweeps; ++k) {
-    const bridge::Sweep sweep = bridge::sweep(lidar, k);
+    bridge::Sweep sweep = bridge::sweep(lidar, k);
     const std::int64_t needed_ns = sweep.end_ns + offset_ns;
     // the IMU up to the first sample at or after the sweep's end
     while (next < samples.size() && (next == 0 || samples[next - 1].time_ns < needed_ns)) {
@@ -100,7 +112,7 @@ void run_sweeps(const sim::LidarRecord& lidar, std::span<const ImuSample> sample
       if (!estimate.status.ok()) return;
       ++next;
     }
-    if (samples.back().time_ns < needed_ns) {
+    if (!shorten(samples.back().time_ns - offset_ns, sweep)) {
       estimate.health["sweeps_unfinished"] += 1.0;
       continue;
     }
@@ -124,6 +136,14 @@ void run_sweeps(const sim::LidarRecord& lidar, std::span<const ImuSample> sample
   }
 }
 
+/// How sure the chain is of where it ended; a world that does not hold it shows here.
+void report_end(Estimate& estimate) {
+  if (estimate.sweeps.empty()) return;
+  const Eigen::Matrix<double, 6, 6>& P = estimate.sweeps.back().pose.covariance;
+  estimate.health["end_sigma_m"] = std::sqrt(P.topLeftCorner<3, 3>().trace());
+  estimate.health["end_sigma_rad"] = std::sqrt(P.bottomRightCorner<3, 3>().trace());
+}
+
 /// How far the calibration moved from what was given.
 void report_calibration(const LidarInertialOdometry& odometry, const sim::Sensors& sensors,
                         std::map<std::string, double>& health) {
@@ -143,7 +163,8 @@ bool learn(const LidarInertialOdometry& odometry, const Estimate& first, LidarIn
   const auto moved = learnt.minus(given);
   const auto rejected = std::count_if(first.sweeps.begin(), first.sweeps.end(),
                                       [](const auto& sweep) { return sweep.verdict == SweepVerdict::rejected; });
-  if (moved.head<3>().norm() > kBelieved * params.mount_sigma_rad || moved.segment<3>(3).norm() > kBelieved * params.mount_sigma_m ||
+  if (moved.head<3>().norm() > kBelieved * params.mount_sigma_rad ||
+      moved.segment<3>(3).norm() > kBelieved * params.mount_sigma_m ||
       std::abs(moved[6]) > kBelieved * params.time_offset_sigma_s ||
       5 * static_cast<std::size_t>(rejected) > first.sweeps.size()) {
     return false;
@@ -198,6 +219,7 @@ void run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samp
   estimate = std::move(run);
   if (!estimate.status.ok()) return;
   if (chain.calibration) report_calibration(odometry, sensors, estimate.health);
+  report_end(estimate);
   estimate.map = odometry.map();
   const bool any = std::any_of(estimate.sweeps.begin(), estimate.sweeps.end(),
                                [](const auto& sweep) { return sweep.verdict != SweepVerdict::rejected; });

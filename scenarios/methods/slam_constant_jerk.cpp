@@ -22,8 +22,8 @@ constexpr int kParts = 4;         // of a sample, between which rate and force r
 constexpr double kPriorM = 0.5;
 constexpr double kPriorRad = 0.2;
 
-/// Strapdown with rate and specific force linear in time (constant jerk and angular acceleration), corrected by a geometric
-/// observer: what the registration moved the pose by feeds back into position, velocity, attitude and biases.
+/// Strapdown with rate and specific force linear in time (constant jerk and angular acceleration), corrected by a
+/// geometric observer: what the registration moved the pose by feeds back into position, velocity, attitude and biases.
 class ConstantJerk : public TrajectoryModel {
  public:
   ConstantJerk(std::span<const ImuSample> samples, std::span<const RateState> rates, const StartAtRest& start,
@@ -56,8 +56,9 @@ class ConstantJerk : public TrajectoryModel {
     last_.v_WI_m_s += span_s * kGainVelocity * moved;
     last_.q_WI = (expected.q_WI * so3::exp(span_s * kGainAttitude * turned_I)).normalized();
     gyro_bias_ = (gyro_bias_ - span_s * kGainGyroBias * turned_I).cwiseMax(-kBiasMax).cwiseMin(kBiasMax);
-    accel_bias_ =
-        (accel_bias_ - span_s * kGainAccelBias * (found.q_WI.conjugate() * moved)).cwiseMax(-kBiasMax).cwiseMin(kBiasMax);
+    accel_bias_ = (accel_bias_ - span_s * kGainAccelBias * (found.q_WI.conjugate() * moved))
+                      .cwiseMax(-kBiasMax)
+                      .cwiseMin(kBiasMax);
   }
 
  private:
@@ -89,7 +90,8 @@ Method slam_constant_jerk() {
   info.name = "constant_jerk";
   info.kind = Kind::slam;
   info.doc =
-      "Clipped gyro and accelerometer integrated with constant jerk inside of each sweep, rigid registration, geometric "
+      "Clipped gyro and accelerometer integrated with constant jerk inside of each sweep, rigid registration, "
+      "geometric "
       "observer for velocity and biases. Not modelled: keyframes and the plane-to-plane distance of the original.";
   info.source = "the family of DLIO, Chen et al., ICRA 2023";
   info.parameters = rigid_parameters();

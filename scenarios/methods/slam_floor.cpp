@@ -47,9 +47,7 @@ class TrueMotion : public TrajectoryModel {
   }
 
  private:
-  Eigen::Quaterniond attitude(std::size_t k) const {
-    return truth_.q_WB[k] * Eigen::Quaterniond(T_BI_.linear());
-  }
+  Eigen::Quaterniond attitude(std::size_t k) const { return truth_.q_WB[k] * Eigen::Quaterniond(T_BI_.linear()); }
   Eigen::Vector3d velocity(std::size_t k) const {
     return truth_.v_WB_m_s[k] + truth_.q_WB[k] * truth_.w_WB_B_rad_s[k].cross(T_BI_.translation());
   }
@@ -83,7 +81,8 @@ Method slam_floor() {
   info.name = "floor";
   info.kind = Kind::slam;
   info.doc =
-      "Registration with the true motion inside of each sweep and the true mounting: what is left is the registration's own "
+      "Registration with the true motion inside of each sweep and the true mounting: what is left is the "
+      "registration's own "
       "error and the map's.";
   info.source = "ours";
   info.parameters = rigid_parameters();

@@ -11,13 +11,13 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kRailShare = 0.99;           // of the stated range: a reading beyond is sick
-constexpr double kDisagreementRad = 0.3;      // between gyro and registration over one sweep
+constexpr double kRailShare = 0.99;       // of the stated range: a reading beyond is sick
+constexpr double kDisagreementRad = 0.3;  // between gyro and registration over one sweep
 constexpr double kPriorM = 0.5;
 constexpr double kPriorRad = 0.3;
 
-/// Rotation from the gyro while it is healthy, else the last rotation goes on; translation at constant velocity. The gyro
-/// is sick while a reading is at its rail, and for a sweep after the registration has contradicted it.
+/// Rotation from the gyro while it is healthy, else the last rotation goes on; translation at constant velocity. The
+/// gyro is sick while a reading is at its rail, and for a sweep after the registration has contradicted it.
 class HealthSwitch : public TrajectoryModel {
  public:
   HealthSwitch(std::span<const ImuSample> samples, std::span<const RateState> rates, const StartAtRest& start,
@@ -88,7 +88,8 @@ Method slam_health_switch() {
   info.name = "health_switch";
   info.kind = Kind::slam;
   info.doc =
-      "Rotation from the gyro while a monitor finds it healthy, else the last rotation goes on; constant velocity; rigid "
+      "Rotation from the gyro while a monitor finds it healthy, else the last rotation goes on; constant velocity; "
+      "rigid "
       "registration. Not modelled: wheel and visual odometry, the other sources of the original's switch.";
   info.source = "the family of LOCUS, Palieri et al., RA-L 2021";
   info.parameters = rigid_parameters();

@@ -22,8 +22,7 @@ Method slam_icp_raw() {
   MethodInfo info;
   info.name = "icp_raw";
   info.kind = Kind::slam;
-  info.doc =
-      "The chain of seed with the gyro as it is, clipped where it clips.";
+  info.doc = "The chain of seed with the gyro as it is, clipped where it clips.";
   info.source = "baseline of Deschenes et al., ICRA 2024";
   info.parameters = seed_parameters();
   info.robots = {"rig"};

@@ -83,8 +83,10 @@ Method slam_iterated_filter() {
   info.name = "iterated_filter";
   info.kind = Kind::slam;
   info.doc =
-      "Iterated error-state filter with the clipped gyro: back-propagation deskews to the sweep's end, all planes update "
-      "position, attitude and velocity. Not modelled: biases after the rest at the start, gravity and mounting as states.";
+      "Iterated error-state filter with the clipped gyro: back-propagation deskews to the sweep's end, all planes "
+      "update "
+      "position, attitude and velocity. Not modelled: biases after the rest at the start, gravity and mounting as "
+      "states.";
   info.source = "the family of FAST-LIO2, Xu et al., T-RO 2022";
   info.parameters = rigid_parameters();
   info.robots = {"rig"};

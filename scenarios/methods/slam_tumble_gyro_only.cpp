@@ -9,8 +9,8 @@ namespace tumble::scenarios {
 namespace {
 
 std::span<const sim::Parameter> parameters_with_excess() {
-  static const std::vector<sim::Parameter> all = joined_parameters(
-      {slam_parameters(), excess_parameters(), calibration_parameters()});
+  static const std::vector<sim::Parameter> all =
+      joined_parameters({slam_parameters(), excess_parameters(), calibration_parameters()});
   return all;
 }
 
@@ -19,7 +19,8 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (estimate.status.ok()) estimate.status = railed_rates(sensors, samples, estimate.rates);
-  if (estimate.status.ok()) run_slam_chain(sensors, samples, parameters, {.excess_rate = true, .calibration = true}, estimate);
+  if (estimate.status.ok())
+    run_slam_chain(sensors, samples, parameters, {.excess_rate = true, .calibration = true}, estimate);
   return estimate;
 }
 

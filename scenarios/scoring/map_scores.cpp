@@ -9,11 +9,11 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr float kToleranceM = 0.25f;   // Deschenes et al.: a map point farther from the surface is an outlier
+constexpr float kToleranceM = 0.25f;     // Deschenes et al.: a map point farther from the surface is an outlier
 constexpr float kFineToleranceM = 0.1f;  // of a map that is sharp, not only whole
-constexpr double kOutliersMax = 0.15;  // the same: a larger share of them is a failed map
-constexpr float kSurfaceCellM = 0.1f;  // the seen surface counts once per cell, however often it was hit
-constexpr double kSeenRangeM = 100.0;  // of the frame's start; farther hits nobody maps
+constexpr double kOutliersMax = 0.15;    // the same: a larger share of them is a failed map
+constexpr float kSurfaceCellM = 0.1f;    // the seen surface counts once per cell, however often it was hit
+constexpr double kSeenRangeM = 100.0;    // of the frame's start; farther hits nobody maps
 
 // map points in W, by the alignment of position and yaw at the start
 std::vector<Eigen::Vector3f> map_in_world(const Estimate& estimate, const ScoringInput& input) {
@@ -86,9 +86,10 @@ std::vector<Metric> map_metrics() {
   return {
       {"map_overlap", Kind::slam, "1", "share of map points within 0.25 m of the true surface", overlap},
       {"map_overlap_0_10", Kind::slam, "1", "the same within 0.10 m", fine_overlap},
-      {"map_coverage", Kind::slam, "1",
-       "share of the truly seen surface (cells of 0.1 m) within 0.25 m of a map point", coverage},
-      {"map_failed", Kind::slam, "1", "1 when more than 15 % of the map lies off the surface, or there is none", failed},
+      {"map_coverage", Kind::slam, "1", "share of the truly seen surface (cells of 0.1 m) within 0.25 m of a map point",
+       coverage},
+      {"map_failed", Kind::slam, "1", "1 when more than 15 % of the map lies off the surface, or there is none",
+       failed},
   };
 }
 

@@ -6,8 +6,7 @@
 namespace tumble {
 
 void SweepCalibration::add(const Eigen::Matrix<double, kErrors, 1>& error) {
-  const Eigen::Quaterniond turned =
-      (so3::exp(error.segment<3>(0)) * Eigen::Quaterniond(T_IL.linear())).normalized();
+  const Eigen::Quaterniond turned = (so3::exp(error.segment<3>(0)) * Eigen::Quaterniond(T_IL.linear())).normalized();
   T_IL.linear() = turned.toRotationMatrix();
   T_IL.translation() += error.segment<3>(3);
   time_offset_s += error[6];

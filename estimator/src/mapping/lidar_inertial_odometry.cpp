@@ -37,18 +37,18 @@ void LidarInertialOdometry::Impl::finish(TimeNs end_ns, SweepReport& report) {
   lost_sweeps = report.verdict == SweepVerdict::rejected ? lost_sweeps + 1 : 0;
   report.lost_sweeps = lost_sweeps;
   for (std::size_t i = 0; i < trajectory.intervals(); ++i) {
-    PoseState pose = trajectory.state(trajectory.interval_end_s(i)).pose();
-    pose.covariance = reported_covariance(pose.covariance, pose.p_WA_m);
+    const double t_s = std::min(trajectory.interval_end_s(i), trajectory.duration_s());
+    PoseState pose = trajectory.state(t_s).pose();
+    pose.covariance = reported_covariance(joint_covariance(t_s), pose.p_WA_m);
     report.trajectory.push_back(pose);
   }
   carry_covariance(end_ns);
   // new parts of the map inherit what the pose that drew them was off by
   const double drawn = report.points_used == 0 ? 0.0 : double(report.map_points_added) / double(report.points_used);
-  if (report.verdict != SweepVerdict::first) map_covariance += drawn * state.covariance.topLeftCorner<6, 6>();
+  if (report.verdict != SweepVerdict::first) map_covariance += drawn * drawing_covariance();
   report.trajectory.back().time_ns = end_ns;
   report.pose = state.pose();
-  report.pose.covariance = reported_covariance(report.pose.covariance, state.p_WI_m);
-  report.trajectory.back().covariance = report.pose.covariance;
+  report.pose.covariance = report.trajectory.back().covariance;
 
   excess_axes_at_end = 0;
   const auto after = std::find_if(samples.begin(), samples.end(), [&](const auto& s) { return s.time_ns > end_ns; });
@@ -90,7 +90,8 @@ Status LidarInertialOdometry::add_imu(const ImuSample& sample, const RateState& 
       at_rest ? Eigen::Vector3d::Zero() : Eigen::Vector3d(rate.w_WI_I_rad_s - my.rest.rate_bias_rad_s());
   my.samples.push_back({from_ns, sample.time_ns, rate_rad_s, sample.specific_force_m_s2,
                         mapping::believed_rate_sigma(my.params, rate, sample.time_ns - from_ns),
-                        static_cast<std::uint8_t>(rate.clipped_axes & kAllAxes), at_rest});
+                        static_cast<std::uint8_t>(rate.clipped_axes & kAllAxes), at_rest,
+                        sample.time_ns - from_ns > mapping::kGap_ns});
   return {};
 }
 

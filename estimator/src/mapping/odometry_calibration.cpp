@@ -8,10 +8,30 @@ namespace {
 
 constexpr double kStartTilt_rad = 0.003;  // of a levelled start: an accelerometer's bias of 0.03 m/s^2
 
+/// Pose errors of the IMU by errors of the mounting, at this attitude of it, while the lidar's pose is certain.
+Eigen::Matrix<double, 6, 6> pose_by_mounting(const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& p_IL_m) {
+  const Eigen::Matrix3d R = q_WI.toRotationMatrix();
+  Eigen::Matrix<double, 6, 6> B = Eigen::Matrix<double, 6, 6>::Zero();
+  B.topLeftCorner<3, 3>() = -R * so3::hat(p_IL_m);
+  B.topRightCorner<3, 3>() = -R;
+  B.bottomLeftCorner<3, 3>() = -R;
+  return B;
+}
+
+/// Covariance of (error of the pose) - by_mounting (error of the mounting).
+Eigen::Matrix<double, 6, 6> less_mounting(const Registration::Matrix& joint,
+                                          const Eigen::Matrix<double, 6, 6>& by_mounting) {
+  Eigen::Matrix<double, 6, Registration::kUnknowns> G = Eigen::Matrix<double, 6, Registration::kUnknowns>::Zero();
+  G.leftCols<6>().setIdentity();
+  G.middleCols<6>(Registration::kCalibration) = -by_mounting;
+  const Eigen::Matrix<double, 6, 6> P = G * joint * G.transpose();
+  return 0.5 * (P + P.transpose());
+}
+
 }  // namespace
 
-/// The map hangs on the lidar: at the start the lidar's pose is certain by definition, and an error of its mounting is one
-/// of the IMU's pose, of gravity as seen from the map too.
+/// The map hangs on the lidar: at the start the lidar's pose is certain by definition, and an error of its mounting is
+/// one of the IMU's pose, of gravity as seen from the map too.
 void LidarInertialOdometry::Impl::start_calibration() {
   calibration.T_IL = params.T_IL;
   calibration.time_offset_s = 0.0;  // the given offset is applied to the stamps
@@ -24,10 +44,9 @@ void LidarInertialOdometry::Impl::start_calibration() {
   diagonal[6] = params.time_offset_sigma_s * params.time_offset_sigma_s;
 
   const Eigen::Matrix3d R = state.q_WI.toRotationMatrix();
+  start_by_mounting = pose_by_mounting(state.q_WI, params.T_IL.translation());
   Eigen::Matrix<double, 9, 6> by_mounting = Eigen::Matrix<double, 9, 6>::Zero();
-  by_mounting.block<3, 3>(0, 0) = -R * so3::hat(params.T_IL.translation());
-  by_mounting.block<3, 3>(0, 3) = -R;
-  by_mounting.block<3, 3>(3, 0) = -R;
+  by_mounting.topRows<6>() = start_by_mounting;
   const Eigen::Matrix<double, 6, 6> mounting = calibration_covariance.topLeftCorner<6, 6>();
   state.covariance += by_mounting * mounting * by_mounting.transpose();
   motion_calibration.leftCols<6>() = by_mounting * mounting;
@@ -44,31 +63,47 @@ void LidarInertialOdometry::Impl::start_calibration() {
   motion_calibration.rightCols<3>() = by_mounting * mounting * gravity_by_mounting.transpose();
 }
 
-/// Takes the joint covariance of the present sweep's start to its end.
+/// Of all unknowns, the motion taken from the present sweep's start to `t_s` after it.
+Registration::Matrix LidarInertialOdometry::Impl::joint_covariance(double t_s) const {
+  const SweepTrajectory::Transition step = trajectory.transition(t_s);
+  Registration::Matrix F = Registration::Matrix::Identity();
+  F.topLeftCorner<9, 9>() = step.by_start;
+  F.block<9, 3>(0, Registration::kExcess) = step.by_excess_s;
+  F.topRightCorner<9, 3>() = step.by_gravity;
+  return F * result.covariance * F.transpose();
+}
+
 void LidarInertialOdometry::Impl::carry_covariance(TimeNs end_ns) {
-  const SweepTrajectory::Transition step = trajectory.transition(trajectory.duration_s());
-  Eigen::Matrix<double, 9, Registration::kUnknowns> F = Eigen::Matrix<double, 9, Registration::kUnknowns>::Zero();
-  F.leftCols<9>() = step.by_start;
-  F.middleCols<3>(Registration::kExcess) = step.by_excess_s;
-  F.rightCols<3>() = step.by_gravity;
-  const Eigen::Matrix<double, 9, Registration::kUnknowns> FP = F * result.covariance;
-  const Eigen::Matrix<double, 9, 9> P = FP * F.transpose();
+  const Registration::Matrix P = joint_covariance(trajectory.duration_s());
+  constexpr int kErrors = SweepCalibration::kErrors;
   state = trajectory.state(trajectory.duration_s());
   state.time_ns = end_ns;
-  state.covariance = 0.5 * (P + P.transpose());
-  motion_calibration = FP.rightCols<SweepCalibration::kErrors>();
-  calibration_covariance =
-      result.covariance.bottomRightCorner<SweepCalibration::kErrors, SweepCalibration::kErrors>();
+  state.covariance = 0.5 * (P.topLeftCorner<9, 9>() + P.topLeftCorner<9, 9>().transpose());
+  motion_calibration = P.block<9, kErrors>(0, Registration::kCalibration);
+  calibration_covariance = P.bottomRightCorner<kErrors, kErrors>();
   calibration = result.calibration;
 }
 
-/// Pose against the world rather than against the map: what the map is off by here, and its tilt.
-Eigen::Matrix<double, 6, 6> LidarInertialOdometry::Impl::reported_covariance(const Eigen::Matrix<double, 6, 6>& in_map,
+/// Pose against the world rather than against the map: the world is held by the IMU's first pose, which the mounting
+/// parts from the map; added what the map is off by here, and the tilt of the start.
+Eigen::Matrix<double, 6, 6> LidarInertialOdometry::Impl::reported_covariance(const Registration::Matrix& joint,
                                                                              const Eigen::Vector3d& p_WI_m) const {
+  // a map that is turned about the start moves what is far from it
+  Eigen::Matrix<double, 6, 6> start = start_by_mounting;
+  start.topRows<3>() -= so3::hat(p_WI_m) * start_by_mounting.bottomRows<3>();
   Eigen::Matrix<double, 6, 2> by_tilt = Eigen::Matrix<double, 6, 2>::Zero();
   by_tilt.topRows<3>() = -so3::hat(p_WI_m).leftCols<2>();
   by_tilt.block<2, 2>(3, 0).setIdentity();
-  return in_map + map_covariance + (kStartTilt_rad * kStartTilt_rad) * by_tilt * by_tilt.transpose();
+  return less_mounting(joint, start) + map_covariance +
+         (kStartTilt_rad * kStartTilt_rad) * by_tilt * by_tilt.transpose();
+}
+
+/// Of the lidar's pose in the map in the middle of the sweep, which is what draws it: an error of the mounting is none
+/// of the map, and at its ends a sweep is known less well than as a whole.
+Eigen::Matrix<double, 6, 6> LidarInertialOdometry::Impl::drawing_covariance() const {
+  const double middle_s = 0.5 * trajectory.duration_s();
+  return less_mounting(joint_covariance(middle_s),
+                       pose_by_mounting(trajectory.state(middle_s).q_WI, calibration.T_IL.translation()));
 }
 
 }  // namespace tumble

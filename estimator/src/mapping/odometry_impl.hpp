@@ -5,10 +5,10 @@
 #include <limits>
 
 #include "inertial_prior.hpp"
-#include "tumble/mapping/map_drawing.hpp"
 #include "tumble/mapping/calibration.hpp"
 #include "tumble/mapping/deskew.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
+#include "tumble/mapping/map_drawing.hpp"
 #include "tumble/mapping/registration.hpp"
 #include "tumble/mapping/sweep_trajectory.hpp"
 #include "tumble/mapping/voxel_map.hpp"
@@ -42,8 +42,10 @@ struct LidarInertialOdometry::Impl {
   // odometry_calibration.cpp
   void start_calibration();
   void carry_covariance(TimeNs end_ns);
-  Eigen::Matrix<double, 6, 6> reported_covariance(const Eigen::Matrix<double, 6, 6>& in_map,
+  Registration::Matrix joint_covariance(double t_s) const;
+  Eigen::Matrix<double, 6, 6> reported_covariance(const Registration::Matrix& joint,
                                                   const Eigen::Vector3d& p_WI_m) const;
+  Eigen::Matrix<double, 6, 6> drawing_covariance() const;
 
   // odometry_registration.cpp
   Registration::Prior prior() const;
@@ -65,6 +67,8 @@ struct LidarInertialOdometry::Impl {
   SweepCalibration calibration;
   SweepCalibration::Covariance calibration_covariance = SweepCalibration::Covariance::Zero();
   Registration::Cross motion_calibration = Registration::Cross::Zero();
+  /// Pose errors of the IMU by errors of the mounting while the lidar's pose is certain: at the start.
+  Eigen::Matrix<double, 6, 6> start_by_mounting = Eigen::Matrix<double, 6, 6>::Zero();
   /// Of the map against the world where the robot is: it was drawn from poses that were uncertain themselves.
   Eigen::Matrix<double, 6, 6> map_covariance = Eigen::Matrix<double, 6, 6>::Zero();
   int lost_sweeps = 0;
@@ -74,7 +78,7 @@ struct LidarInertialOdometry::Impl {
   Eigen::Vector3d excess_rad_s = Eigen::Vector3d::Zero();
   std::uint8_t excess_axes_at_end = 0;
   VoxelMap map;
-  std::vector<Eigen::Vector3f> seen_from_W_m;             // per sweep that gave points to the map
+  std::vector<Eigen::Vector3f> seen_from_W_m;  // per sweep that gave points to the map
   Eigen::Vector3f pruned_at_W_m = Eigen::Vector3f::Zero();
   mapping::ScanLines scan_lines;
 

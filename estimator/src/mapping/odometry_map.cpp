@@ -52,8 +52,7 @@ std::size_t LidarInertialOdometry::Impl::extend_map(bool rings_differ) {
     const Eigen::Vector3f position = positions_W_m[i] + trajectory.base_m(points[i].t_s).cast<float>();
     const double sigma_m = std::hypot(registration.point_sigma_m(points[i]), sigma.at(points[i]));
     if (sigma_m > params.map_sigma_max_m) continue;
-    added += map.insert(position, static_cast<float>(sigma_m), sweep,
-                        mapping::ScanLines::line(line, points[i].ring));
+    added += map.insert(position, static_cast<float>(sigma_m), sweep, mapping::ScanLines::line(line, points[i].ring));
   }
   seen_from_W_m.push_back(middle.p_WI_m.cast<float>());
   return added;

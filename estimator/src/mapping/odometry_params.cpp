@@ -23,7 +23,7 @@ void check_params(const LidarInertialOdometry::Params& params) {
   require_within("clipped_sigma_rad_s", params.clipped_sigma_rad_s, 0.0, 100.0);
   require_within("rate_sigma_max_rad_s", params.rate_sigma_max_rad_s, 0.0, 100.0);
   require_within("excess_sigma_min_rad_s", params.excess_sigma_min_rad_s, 1e-9, 100.0);
-  require_within("degenerate_conditioning", params.degenerate_conditioning, 0.0, 1.0);
+  require_within("degenerate_sigma_m", params.degenerate_sigma_m, 1e-6, 1e3);
   require_within("time_offset_s", params.time_offset_s, -1.0, 1.0);
   require_within("mount_sigma_rad", params.mount_sigma_rad, 0.0, 1.0);
   require_within("mount_sigma_m", params.mount_sigma_m, 0.0, 1.0);

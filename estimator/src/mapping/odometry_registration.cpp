@@ -9,26 +9,29 @@ namespace tumble {
 namespace {
 
 constexpr double kExcessTries_rad_s[] = {3.0, 6.0, 9.0, 15.0};
-constexpr int kStartsPerSweep = 4;      // a search goes on with the next sweep, so that no sweep costs too much
-constexpr double kSearchTurn_rad = 0.3;  // starts of a search reach so far at most, in attitude
-constexpr double kSearchShift_m = 2.0;   // and so far in position
+constexpr int kStartsPerSweep = 4;       // a search goes on with the next sweep, so that no sweep costs too much
+constexpr double kSearchTurn_rad = 0.3;  // starts of a search reach so far at first, in attitude
+constexpr double kSearchShift_m = 1.0;   // and so far in position
+constexpr int kSearchRounds = 3;         // each reaches that much further than the last
 constexpr double kRestSpeed_m_s = 0.05;  // of an IMU that says nothing but gravity
 
-/// Start number `index` of a search: the prior itself, then moved along each axis by what it may be off by.
+/// Start number `index` of a search: the prior itself, then moved along each axis by what it may be off by, nearer ones
+/// first.
 Registration::Prior moved_start(Registration::Prior prior, int index) {
   if (index == 0) return prior;
+  const double reach = 1.0 + (index - 1) / 12;
   const int axis = (index - 1) / 2 % 6;
   const double sign = (index - 1) % 2 == 0 ? 1.0 : -1.0;
   const double sigma = std::sqrt(prior.state.covariance(axis, axis));
   if (axis < 3) {
-    prior.state.p_WI_m[axis] += sign * std::clamp(1.5 * sigma, 0.3, kSearchShift_m);
+    prior.state.p_WI_m[axis] += sign * std::clamp(1.5 * sigma, 0.3, reach * kSearchShift_m);
   } else {
-    const double angle = sign * std::clamp(1.5 * sigma, 0.1, kSearchTurn_rad);
+    const double angle = sign * std::clamp(1.5 * sigma, 0.1, reach * kSearchTurn_rad);
     prior.state.q_WI = so3::exp(angle * Eigen::Vector3d::Unit(axis - 3)) * prior.state.q_WI;
   }
   return prior;
 }
-constexpr int kStarts = 13;
+constexpr int kStarts = 1 + 12 * kSearchRounds;
 
 }  // namespace
 
@@ -101,7 +104,8 @@ Status LidarInertialOdometry::Impl::search(const Registration::Prior& prior, Tim
   for (std::size_t i = 0; i < chosen.size(); i += mapping::kCoarseEvery) few.push_back(chosen[i]);
   Status status;
   for (int k = 0; k < kStartsPerSweep; ++k) {
-    const int index = k == 0 ? 0 : (lost_sweeps * (kStartsPerSweep - 1) + k) % kStarts;
+    // a covered lidar tries nothing: only sweeps with points count
+    const int index = k == 0 ? 0 : 1 + (failed_searches * (kStartsPerSweep - 1) + k - 1) % (kStarts - 1);
     Registration::Result rough;
     Registration::Prior start = moved_start(prior, index);
     status = coarse.align(start, samples, end_ns, few, map, trajectory, rough);
@@ -137,8 +141,9 @@ void LidarInertialOdometry::Impl::register_sweep(TimeNs end_ns, SweepReport& rep
   failed_searches = 0;
   report.conditioning = result.eigenvalues[5] > 0.0 ? result.eigenvalues[0] / result.eigenvalues[5] : 0.0;
   report.weakest_direction = result.directions.col(0);
+  report.weakest_sigma_m = result.weakest_sigma_m;
   report.verdict =
-      report.conditioning < params.degenerate_conditioning ? SweepVerdict::degenerate : SweepVerdict::registered;
+      report.weakest_sigma_m > params.degenerate_sigma_m ? SweepVerdict::degenerate : SweepVerdict::registered;
   report.excess_rate_rad_s = result.excess_rad_s;
   excess_rad_s = result.excess_rad_s;
 }

@@ -26,7 +26,7 @@ struct JointPrior {
   Matrix covariance = Matrix::Zero();
   Matrix information = Matrix::Zero();
   std::array<bool, kUnknowns> held{};
-  bool rigid = true;       // neither excess nor calibration is free
+  bool rigid = true;  // neither excess nor calibration is free
   bool calibrates = false;
 
   explicit JointPrior(const Registration::Prior& prior) {
@@ -85,7 +85,8 @@ void add_prior(const Registration::Prior& prior, const JointPrior& joint, const 
 
 bool is_small(const Vector& step, double span_s, const Registration::Params& params) {
   constexpr int kCal = Registration::kCalibration;
-  const bool lengths = step.segment<3>(0).norm() < params.step_m && step.segment<3>(6).norm() * span_s < params.step_m &&
+  const bool lengths = step.segment<3>(0).norm() < params.step_m &&
+                       step.segment<3>(6).norm() * span_s < params.step_m &&
                        step.segment<3>(kCal + 3).norm() < params.step_m &&
                        step.segment<3>(kCal + 7).norm() * span_s * span_s < params.step_m;
   return lengths && step.segment<3>(3).norm() < params.step_rad &&
@@ -253,7 +254,8 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
   while (!settled && result.iterations < params_.iterations_max) {
     ++result.iterations;
     if (joint.calibrates && result.iterations > 1) {
-      apply_calibration(now.calibration, now.calibration.time_offset_s - prior.calibration.time_offset_s, given, moved_);
+      apply_calibration(now.calibration, now.calibration.time_offset_s - prior.calibration.time_offset_s, given,
+                        moved_);
       points = moved_;
     }
     compute_levers(trajectory, points, levers_);
@@ -309,6 +311,9 @@ void Registration::describe_shape(const Normal& sum, Result& result) {
                                                                           scale.asDiagonal() / sum.weight);
   result.eigenvalues = solver.eigenvalues().cwiseMax(0.0);
   result.directions = solver.eigenvectors();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> information(
+      scale.asDiagonal() * sum.H.topLeftCorner<6, 6>() * scale.asDiagonal(), Eigen::EigenvaluesOnly);
+  result.weakest_sigma_m = 1.0 / std::sqrt(std::max(information.eigenvalues()[0], 1e-12));
 }
 
 }  // namespace tumble

@@ -25,7 +25,7 @@ RigidOdometry::RigidOdometry(const Params& params)
   require_within("range_min_m", params.range_min_m, 0.0, 10.0);
   require_within("range_max_m", params.range_max_m, params.range_min_m, 1e4);
   require_within("sweep_voxel_m", params.sweep_voxel_m, 0.01, 10.0);
-  require_within("degenerate_conditioning", params.degenerate_conditioning, 0.0, 1.0);
+  require_within("degenerate_sigma_m", params.degenerate_sigma_m, 1e-6, 1e3);
 }
 
 Status RigidOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
@@ -89,8 +89,7 @@ void RigidOdometry::register_points(SweepReport& report) {
   prior.state = predicted_;
   SweepTrajectory still;
   Registration::Result result;
-  const Status status =
-      registration_.align(prior, {&instant, 1}, predicted_.time_ns, chosen_, map_, still, result);
+  const Status status = registration_.align(prior, {&instant, 1}, predicted_.time_ns, chosen_, map_, still, result);
   report.iterations = result.iterations;
   report.inlier_share = result.points == 0 ? 0.0 : double(result.inliers) / double(result.points);
   if (!status.ok()) return;
@@ -101,8 +100,9 @@ void RigidOdometry::register_points(SweepReport& report) {
   state_ = result.state;
   report.conditioning = result.eigenvalues[5] > 0.0 ? result.eigenvalues[0] / result.eigenvalues[5] : 0.0;
   report.weakest_direction = result.directions.col(0);
-  report.verdict = report.conditioning < params_.degenerate_conditioning ? SweepVerdict::degenerate
-                                                                         : SweepVerdict::registered;
+  report.weakest_sigma_m = result.weakest_sigma_m;
+  report.verdict =
+      report.weakest_sigma_m > params_.degenerate_sigma_m ? SweepVerdict::degenerate : SweepVerdict::registered;
 }
 
 void RigidOdometry::extend_map(bool rings_differ, SweepReport& report) {

@@ -8,7 +8,8 @@ namespace tumble::mapping {
 
 Status check_offsets(TimeNs span_ns, std::span<const LidarPoint> points) {
   for (const LidarPoint& point : points) {
-    if (point.offset_ns > span_ns) return {Trouble::out_of_range, "offset_ns", double(point.offset_ns), double(span_ns)};
+    if (point.offset_ns > span_ns)
+      return {Trouble::out_of_range, "offset_ns", double(point.offset_ns), double(span_ns)};
   }
   return {};
 }

@@ -14,8 +14,8 @@ namespace tumble::mapping {
 Status check_offsets(TimeNs span_ns, std::span<const LidarPoint> points);
 
 /// What makes a sweep useless: `empty` (no points), `non_finite` (no finite point), `too_few` (none in range),
-/// `degenerate` (all points bear one time stamp though the sweep lasts: a driver that lost its time stamps, nothing could
-/// be deskewed, and nothing would show it).
+/// `degenerate` (all points bear one time stamp though the sweep lasts: a driver that lost its time stamps, nothing
+/// could be deskewed, and nothing would show it).
 Status check_selection(TimeNs span_ns, std::span<const LidarPoint> points, const PointCounts& counts);
 
 }  // namespace tumble::mapping

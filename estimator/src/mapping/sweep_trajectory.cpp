@@ -63,7 +63,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     now.excess_sign = sign;
     const Eigen::Matrix3d R = now.q_WI.toRotationMatrix();
     const Eigen::Matrix3d mean_rotation = R * so3::left_jacobian(now.w_I * dt);
-    now.a_W = mean_rotation * sample.f_I_m_s2;
+    now.a_W = sample.bridges_gap ? Eigen::Vector3d(-gravity_W_m_s2) : Eigen::Vector3d(mean_rotation * sample.f_I_m_s2);
 
     next.q_WI = (now.q_WI * so3::exp(now.w_I * dt)).normalized();
     next.thrust_v = now.thrust_v + now.a_W * dt;

@@ -102,9 +102,8 @@ TrimmedIcp::Result TrimmedIcp::align(std::span<const Point> points, const Eigen:
     sorted_.clear();
     for (const Match& match : matches_) sorted_.push_back(match.distance2_m2);
     std::sort(sorted_.begin(), sorted_.end());
-    const std::size_t slots = params_.count_unmatched_slots
-                                  ? points.size() * static_cast<std::size_t>(params_.neighbours)
-                                  : matches_.size();
+    const std::size_t slots =
+        params_.count_unmatched_slots ? points.size() * static_cast<std::size_t>(params_.neighbours) : matches_.size();
     const std::size_t kept = trim(sorted_, slots, params_);
     const float limit = sorted_[kept - 1];
     result.kept_share = static_cast<double>(kept) / static_cast<double>(matches_.size());

@@ -43,7 +43,8 @@ TEST(TrimmedIcp, FindsAKnownPose) {
   TrimmedIcp icp(TrimmedIcp::Params{});
   Eigen::Isometry3d prior(so3::exp({0.02, -0.02, 0.03}));
   prior.translation() = Eigen::Vector3d(0.15, -0.1, 0.08);
-  const auto result = icp.align(sweep_of(test::Room::box_with_pillars()), prior, map_of(test::Room::box_with_pillars()));
+  const auto result =
+      icp.align(sweep_of(test::Room::box_with_pillars()), prior, map_of(test::Room::box_with_pillars()));
   ASSERT_EQ(result.verdict, RegistrationVerdict::converged);
   // stops at steps of a centimetre and a milliradian
   EXPECT_LT(result.T.translation().norm(), 0.02);
@@ -53,8 +54,10 @@ TEST(TrimmedIcp, FindsAKnownPose) {
 TEST(TrimmedIcp, NoMatchesAndFarCorrectionsAreNoSuccess) {
   TrimmedIcp icp(TrimmedIcp::Params{});
   const auto points = sweep_of(test::Room::box());
-  EXPECT_EQ(icp.align(points, Eigen::Isometry3d::Identity(), VoxelMap({0.5, 0.1})).verdict, RegistrationVerdict::too_few);
-  EXPECT_EQ(icp.align({}, Eigen::Isometry3d::Identity(), map_of(test::Room::box())).verdict, RegistrationVerdict::too_few);
+  EXPECT_EQ(icp.align(points, Eigen::Isometry3d::Identity(), VoxelMap({0.5, 0.1})).verdict,
+            RegistrationVerdict::too_few);
+  EXPECT_EQ(icp.align({}, Eigen::Isometry3d::Identity(), map_of(test::Room::box())).verdict,
+            RegistrationVerdict::too_few);
   TrimmedIcp::Params strict;
   strict.correction_max_m = 0.05;
   Eigen::Isometry3d prior = Eigen::Isometry3d::Identity();

@@ -18,9 +18,9 @@ namespace tumble {
 struct SweepPoint {
   Eigen::Vector3f x_I_m = Eigen::Vector3f::Zero();
   Eigen::Vector3f x_L_m = Eigen::Vector3f::Zero();  ///< as measured, so that the mounting can be refined
-  float t_s = 0.0f;        ///< after the start of the trajectory, by the IMU's clock
-  float sweep_t_s = 0.0f;  ///< after the start of the sweep
-  float range_m = 0.0f;    ///< from the lidar
+  float t_s = 0.0f;                                 ///< after the start of the trajectory, by the IMU's clock
+  float sweep_t_s = 0.0f;                           ///< after the start of the sweep
+  float range_m = 0.0f;                             ///< from the lidar
   std::uint16_t ring = 0;
 };
 

@@ -11,8 +11,8 @@
 
 namespace tumble::mapping {
 
-/// Numbers the scan lines of a map: sweeps of a sensor that holds its attitude draw the same lines, one that turns draws
-/// new ones.
+/// Numbers the scan lines of a map: sweeps of a sensor that holds its attitude draw the same lines, one that turns
+/// draws new ones.
 class ScanLines {
  public:
   /// Number of ring 0 of a sweep whose spin axis stands so, or VoxelMap::kNoLine where rings are not told apart.

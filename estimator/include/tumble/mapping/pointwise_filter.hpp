@@ -16,13 +16,13 @@
 
 namespace tumble {
 
-/// Lidar-inertial filter that takes each point at its own instant (the family of Point-LIO, He et al., 2023): the motion is
-/// a random walk of angular velocity and specific force, the IMU a measurement of both, a point one of its distance to a
-/// plane of the map. Readings on a clipped axis are left out; nothing else is known of them.
+/// Lidar-inertial filter that takes each point at its own instant (the family of Point-LIO, He et al., 2023): the
+/// motion is a random walk of angular velocity and specific force, the IMU a measurement of both, a point one of its
+/// distance to a plane of the map. Readings on a clipped axis are left out; nothing else is known of them.
 ///
 /// State errors: (position, attitude in W, velocity in W, angular velocity, specific force), the last two in IMU axes.
-/// IMU readings count at the middle of their window. Not modelled: biases (subtract what is known), gravity, mounting and
-/// clock as states, iteration of an update.
+/// IMU readings count at the middle of their window. Not modelled: biases (subtract what is known), gravity, mounting
+/// and clock as states, iteration of an update.
 class PointwiseFilter {
  public:
   struct Params {
@@ -39,10 +39,10 @@ class PointwiseFilter {
     /// Densities of the random walks; the square roots of the authors' 1000 and 500. Bounds (0, 1e6].
     double rate_walk_rad_s_sqrt_s = 31.6;
     double force_walk_m_s2_sqrt_s = 22.4;
-    double gyro_sigma_rad_s = 0.02;    ///< of one reading; bound (0, 1e3]
-    double accel_sigma_m_s2 = 0.1;     ///< of one reading; bound (0, 1e3]
-    double plane_sigma_m = 0.03;       ///< of a point's distance; bound (0, 10]
-    std::size_t updates_min = 50;      ///< points accepted; fewer reject a sweep
+    double gyro_sigma_rad_s = 0.02;  ///< of one reading; bound (0, 1e3]
+    double accel_sigma_m_s2 = 0.1;   ///< of one reading; bound (0, 1e3]
+    double plane_sigma_m = 0.03;     ///< of a point's distance; bound (0, 10]
+    std::size_t updates_min = 50;    ///< points accepted; fewer reject a sweep
   };
   static constexpr int kErrors = 15;
 

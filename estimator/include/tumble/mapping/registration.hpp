@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -53,9 +54,9 @@ class Registration {
     PlaneBounds plane;
   };
 
-  static constexpr int kMotion = 9;                                ///< position, attitude, velocity
-  static constexpr int kExcess = kMotion;                          ///< first unknown of the excess rate
-  static constexpr int kCalibration = kExcess + 3;                 ///< first unknown of the calibration
+  static constexpr int kMotion = 9;                 ///< position, attitude, velocity
+  static constexpr int kExcess = kMotion;           ///< first unknown of the excess rate
+  static constexpr int kCalibration = kExcess + 3;  ///< first unknown of the calibration
   static constexpr int kUnknowns = kCalibration + SweepCalibration::kErrors;
   using Vector = Eigen::Matrix<double, kUnknowns, 1>;
   using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
@@ -65,7 +66,8 @@ class Registration {
   struct Prior {
     MotionState state;  ///< with its covariance
     SweepCalibration calibration;
-    SweepCalibration::Covariance calibration_covariance = SweepCalibration::Covariance::Zero();  ///< a row of 0 is not estimated
+    SweepCalibration::Covariance calibration_covariance =
+        SweepCalibration::Covariance::Zero();  ///< a row of 0 is not estimated
     Cross motion_calibration = Cross::Zero();  ///< covariance of the state's errors with the calibration's
     Eigen::Vector3d excess_rad_s = Eigen::Vector3d::Zero();
     Eigen::Vector3d excess_sigma_rad_s = Eigen::Vector3d::Zero();  ///< an axis with 0 is not estimated
@@ -87,12 +89,14 @@ class Registration {
     /// the prior: eigenvalues ascending, and their directions. The translation part has trace 1.
     Eigen::Matrix<double, 6, 1> eigenvalues = Eigen::Matrix<double, 6, 1>::Zero();
     Eigen::Matrix<double, 6, 6> directions = Eigen::Matrix<double, 6, 6>::Identity();
+    /// Standard deviation of the pose in the direction that the surfaces hold least, from the surfaces alone.
+    double weakest_sigma_m = std::numeric_limits<double>::infinity();
   };
 
   explicit Registration(const Params& params);
 
-  /// Aligns `points` (taken with the prior's calibration) with `map`. `trajectory` is rebuilt from `prior` and `samples`
-  /// up to `end_ns` and, on return, stands for the result. Trouble of the trajectory is passed on.
+  /// Aligns `points` (taken with the prior's calibration) with `map`. `trajectory` is rebuilt from `prior` and
+  /// `samples` up to `end_ns` and, on return, stands for the result. Trouble of the trajectory is passed on.
   Status align(const Prior& prior, std::span<const MotionSample> samples, TimeNs end_ns,
                std::span<const SweepPoint> points, const VoxelMap& map, SweepTrajectory& trajectory, Result& result);
 

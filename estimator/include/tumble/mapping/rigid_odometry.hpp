@@ -15,9 +15,9 @@
 
 namespace tumble {
 
-/// Scan-to-map odometry under a motion that the caller believes in: the sweep is deskewed once, to its end, and its pose
-/// at the end corrected as a rigid body. The family of most lidar odometries; what differs between them is the motion
-/// model, which is the caller's (`Motion`), and what a caller makes of the result.
+/// Scan-to-map odometry under a motion that the caller believes in: the sweep is deskewed once, to its end, and its
+/// pose at the end corrected as a rigid body. The family of most lidar odometries; what differs between them is the
+/// motion model, which is the caller's (`Motion`), and what a caller makes of the result.
 ///
 /// Not modelled: errors of the motion inside of the sweep, of the mounting, of the clocks; recovery after a loss.
 class RigidOdometry {
@@ -32,15 +32,15 @@ class RigidOdometry {
     double map_spacing_m = 0.1;   ///< bound [0, map_voxel_m]
     /// Whether a sweep that could not be registered still extends the map at the pose believed, as most peers do.
     bool extend_always = true;
-    double degenerate_conditioning = 0.01;  ///< as in LidarInertialOdometry
+    double degenerate_sigma_m = 0.15;  ///< as in LidarInertialOdometry
     Registration::Params registration;
   };
 
   /// Motion over a stretch as a model expects it, and how sure it is of the state at the end of it.
   struct Motion {
-    MotionState start;                              ///< time_ns at or before the sweep's start
-    std::vector<MotionSample> samples;              ///< reach from the start to the sweep's end
-    double gravity_m_s2 = 0.0;                      ///< of the samples' specific force
+    MotionState start;                  ///< time_ns at or before the sweep's start
+    std::vector<MotionSample> samples;  ///< reach from the start to the sweep's end
+    double gravity_m_s2 = 0.0;          ///< of the samples' specific force
     Eigen::Matrix<double, 9, 9> end_covariance = Eigen::Matrix<double, 9, 9>::Zero();
   };
 

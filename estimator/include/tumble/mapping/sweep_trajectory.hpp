@@ -23,6 +23,7 @@ struct MotionSample {
   Eigen::Vector3d rate_sigma_rad_s = Eigen::Vector3d::Zero();  ///< standard deviation of the rate, IMU axes
   std::uint8_t clipped_axes = 0;                               ///< bit j: the gyro's axis j was at its rail
   bool at_rest = false;                                        ///< belongs to the rest at the start
+  bool bridges_gap = false;  ///< longer than a sample: the force is not known inside, and the velocity goes on
 };
 
 /// Motion of the IMU at one instant. Errors are ordered (position, attitude, velocity), all in W, the attitude's as in
@@ -72,9 +73,9 @@ class SweepTrajectory {
   TimeNs start_ns() const { return start_.time_ns; }
   double duration_s() const { return duration_s_; }
 
-  /// State at `t_s` seconds after the start. Up to kBeyond_s before the start and after the end the motion of the first or
-  /// last sample goes on (a clock may be that wrong); t_s is clamped there. `hint` remembers the interval between calls in
-  /// time order and may hold anything in [0, intervals()); any order is right.
+  /// State at `t_s` seconds after the start. Up to kBeyond_s before the start and after the end the motion of the first
+  /// or last sample goes on (a clock may be that wrong); t_s is clamped there. `hint` remembers the interval between
+  /// calls in time order and may hold anything in [0, intervals()); any order is right.
   static constexpr double kBeyond_s = 0.02;
   Instant at(double t_s, std::size_t& hint) const;
   ExcessDerivative excess_derivative(double t_s, std::size_t& hint) const;
@@ -93,8 +94,8 @@ class SweepTrajectory {
   /// Full state at t_s within the stretch, its covariance propagated from the start's without noise added.
   MotionState state(double t_s) const;
 
-  /// First-order effect on the state (position, attitude, velocity) at t_s of the state at the start, of the excess rate,
-  /// and of gravity.
+  /// First-order effect on the state (position, attitude, velocity) at t_s of the state at the start, of the excess
+  /// rate, and of gravity.
   struct Transition {
     Eigen::Matrix<double, 9, 9> by_start;
     Eigen::Matrix<double, 9, 3> by_excess_s;

@@ -13,9 +13,9 @@
 
 namespace tumble {
 
-/// The registration of the published chain: point-to-plane with k matches per point, matches trimmed to a share that the
-/// data choose (D. Chetverikov et al., 2005; J. Phillips et al., 2007, with lambda), the rest weighted by the inverse of
-/// both points' variances, small-angle normal equations.
+/// The registration of the published chain: point-to-plane with k matches per point, matches trimmed to a share that
+/// the data choose (D. Chetverikov et al., 2005; J. Phillips et al., 2007, with lambda), the rest weighted by the
+/// inverse of both points' variances, small-angle normal equations.
 ///
 /// It hands back a pose and says nothing of how well it is determined; a corridor looks like a success. Registration is
 /// the one that knows. Cost per iteration: points times k.
@@ -32,7 +32,7 @@ class TrimmedIcp {
     /// There it read past its end; here the index stops at the end.
     bool count_unmatched_slots = false;
     int iterations_max = 40;
-    double step_m = 0.01;    ///< both means over two increments must fall below their bound
+    double step_m = 0.01;  ///< both means over two increments must fall below their bound
     double step_rad = 0.001;
     double correction_max_m = 15.0;
     double correction_max_rad = 1.1;
@@ -51,8 +51,8 @@ class TrimmedIcp {
 
   explicit TrimmedIcp(const Params& params);
 
-  /// Takes `points` to `map` from `prior`. Running out of iterations is no failure, as in the original; no matches, and a
-  /// correction beyond its bound, are.
+  /// Takes `points` to `map` from `prior`. Running out of iterations is no failure, as in the original; no matches, and
+  /// a correction beyond its bound, are.
   Result align(std::span<const Point> points, const Eigen::Isometry3d& prior, const VoxelMap& map);
 
   /// Share of the sorted squared distances to keep: minimises sum(d^2 up to f) / (f n f^(2 lambda)) over f in
