@@ -3,6 +3,7 @@
 
 #include "scenarios/methods/attitude_filter.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/sphere_imus.hpp"
 #include "tumble/attitude/tumble_attitude.hpp"
 
 namespace tumble::scenarios {
@@ -30,6 +31,27 @@ const std::array<sim::Parameter, 9>& parameters_of_the_filter() {
   return parameters;
 }
 
+/// All IMUs as one, in body axes, and rolling as what the velocity is.
+Estimate run_sphere(const sim::Sensors& sensors, TumbleAttitude::Params params) {
+  Estimate estimate;
+  estimate.frame = Frame::body;
+  MergedImus imus;
+  estimate.status = merge_imus(sensors, imus);
+  if (!estimate.status.ok()) return estimate;
+  params.radius_m = sensors.sphere_radius_m;
+  params.lever_arm_m = imus.lever_arm_m;
+  const TumbleAttitude filter(params);
+  TumbleAttitude::State state;
+  estimate.attitudes.reserve(imus.samples.size());
+  for (const ImuSample& sample : imus.samples) {
+    estimate.status = filter.step(sample, state);
+    if (!estimate.status.ok()) return estimate;
+    estimate.attitudes.push_back({sample.time_ns, state.q_WI, Eigen::Matrix3d::Zero()});
+    if (state.slipping) estimate.health["samples_slip"] += 1.0;
+  }
+  return estimate;
+}
+
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   TumbleAttitude::Params params;
   params.gravity_m_s2 = sensors.gravity_m_s2;
@@ -43,7 +65,8 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   params.rest_rate_rad_s = parameters.at("rest_rate_rad_s");
   params.rest_force_m_s2 = parameters.at("rest_force_m_s2");
   // the filter's covariance is that of the tilt alone, at its last node: no covariance of a whole attitude to report
-  return run_attitude_filter<TumbleAttitude>(sensors, params);
+  if (!(sensors.sphere_radius_m > 0.0)) return run_attitude_filter<TumbleAttitude>(sensors, params);
+  return run_sphere(sensors, params);
 }
 
 }  // namespace
@@ -52,7 +75,7 @@ Method attitude_tumble() {
   MethodInfo info;
   info.name = "tumble";
   info.kind = Kind::attitude;
-  info.doc = "Tilt and gyro bias from the velocity and displacement being bounded, and zero at rest.";
+  info.doc = "Tilt and gyro bias from the velocity being bounded, that of rolling on a sphere, and zero at rest.";
   info.source = "ours";
   info.parameters = parameters_of_the_filter();
   return make_method(std::move(info), run);

@@ -92,7 +92,7 @@ Estimate run_live(const sim::Sensors& sensors, const sim::Values& parameters, co
     PoseState pose = body_pose(sample.time_ns, state->q_WI, state->p_WG_m, state->v_WG_m_s);
     pose.covariance.topLeftCorner<3, 3>() = state->position_covariance_m2;
     estimate.poses.push_back(pose);
-add_contact(state->mode, state->at_rest, sensors.sphere_radius_m, sample, estimate);
+    add_contact(state->mode, state->at_rest, sensors.sphere_radius_m, sample, estimate);
   }
   return estimate;
 }
@@ -132,6 +132,8 @@ RollingParams rolling_params(const sim::Sensors& sensors, const MergedImus& imus
   params.lever_arm_m = imus.lever_arm_m;
   const double range = sensors.imus.front().stated_gyro_range_rad_s;
   if (range > 0.0) params.gyro_range_rad_s = kRangeShare * range;
+  const double force_range = sensors.imus.front().stated_accel_range_m_s2;
+  if (force_range > 0.0) params.accel_range_m_s2 = kRangeShare * force_range;
   params.tilt_sigma_rad = parameters.at("tilt_sigma_rad");
   params.gyro_bias_sigma_rad_s = parameters.at("gyro_bias_sigma_rad_s");
   params.accel_bias_sigma_m_s2 = parameters.at("accel_bias_sigma_m_s2");

@@ -52,6 +52,12 @@ TumbleAttitude::TumbleAttitude(const Params& p) : params_(p) {
   require_within("rest_force_m_s2", p.rest_force_m_s2, kSmallest, 100.0);
   require_within("rest_velocity_sigma_m_s", p.rest_velocity_sigma_m_s, kSmallest, 10.0);
   require_within("rest_rate_sigma_rad_sqrts", p.rest_rate_sigma_rad_sqrts, kSmallest, 1.0);
+  require_within("radius_m", p.radius_m, 0.0, 10.0);
+  require_within("lever_arm_m", p.lever_arm_m.norm(), 0.0, 10.0);
+  require_within("rolling_velocity_sigma_m_s", p.rolling_velocity_sigma_m_s, kSmallest, 10.0);
+  require_within("slip_velocity_m_s", p.slip_velocity_m_s, kSmallest, 10.0);
+  require_within("slip_quiet_s", p.slip_quiet_s, 0.0, 10.0);
+  require_within("slip_timeout_s", p.slip_timeout_s, kSmallest, 1e3);
   require_within("gap_max_s", p.gap_max_s, 1e-9, 1e4);
 }
 
@@ -103,6 +109,7 @@ void TumbleAttitude::integrate(const ImuSample& sample, double dt_s, State& stat
   state.R_WI_s += dt_s * R_mid;
   state.f_W_m_s += dt_s * (R_mid * sample.specific_force_m_s2);
   state.turned_rad2_s += dt_s * rate.squaredNorm();
+  state.rate_rad_s = rate;
   state.node_s += dt_s;
 }
 
@@ -129,13 +136,49 @@ void TumbleAttitude::predict_node(State& state) const {
   state.covariance.diagonal().segment<2>(kVelocity).array() += squared(params_.acceleration_noise_m_s_sqrts) * h;
 }
 
+/// Whether rolling is not to be believed at this node.
+bool TumbleAttitude::watch_slip(const Eigen::Vector2d& misfit_m_s, State& state) const {
+  const double misfit = misfit_m_s.norm();
+  state.slip_s = state.slipping ? state.slip_s + state.node_s : 0.0;
+  state.fits_s = misfit < 0.5 * params_.slip_velocity_m_s ? state.fits_s + state.node_s : 0.0;
+  if (state.slipping) {
+    state.slipping = !state.at_rest && state.fits_s <= params_.slip_quiet_s;
+    if (state.slip_s > params_.slip_timeout_s) {
+      // what the integral says by now is worth less than rolling
+      state.covariance.diagonal().segment<2>(kVelocity).array() += squared(misfit);
+      state.slipping = false;
+    }
+  } else {
+    state.slipping = !state.at_rest && misfit > params_.slip_velocity_m_s;
+  }
+  return state.slipping;
+}
+
 void TumbleAttitude::correct_node(State& state) const {
   const double h = state.node_s;
-  const double velocity =
-      state.at_rest ? squared(params_.rest_velocity_sigma_m_s) : squared(params_.velocity_m_sqrts) / h;
-  for (int axis = 0; axis < 2; ++axis) {
-    update(kVelocity + axis, -state.v_W_m_s[axis], velocity, state);
-    update(kDisplacement + axis, -state.d_W_m[axis], squared(params_.displacement_m_sqrts) / h, state);
+  // velocity of the IMU by the turning of the body: about the centre, and of the centre that rolls
+  const Eigen::Vector3d w_W = state.q_WI * state.rate_rad_s;
+  const Eigen::Vector3d arm_W = state.q_WI * params_.lever_arm_m + params_.radius_m * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector2d turned = w_W.cross(arm_W).head<2>();
+  const bool rolls = params_.radius_m > 0.0;
+  if (state.at_rest) {
+    if (rolls) watch_slip(turned - state.v_W_m_s, state);
+    for (int axis = 0; axis < 2; ++axis) {
+      update(kVelocity + axis, -state.v_W_m_s[axis], squared(params_.rest_velocity_sigma_m_s), state);
+    }
+  } else if (!rolls) {
+    for (int axis = 0; axis < 2; ++axis) {
+      update(kVelocity + axis, turned[axis] - state.v_W_m_s[axis], squared(params_.velocity_m_sqrts) / h, state);
+    }
+  } else if (!watch_slip(turned - state.v_W_m_s, state)) {
+    for (int axis = 0; axis < 2; ++axis) {
+      update(kVelocity + axis, turned[axis] - state.v_W_m_s[axis], squared(params_.rolling_velocity_sigma_m_s), state);
+    }
+  }
+  if (!rolls) {
+    for (int axis = 0; axis < 2; ++axis) {
+      update(kDisplacement + axis, -state.d_W_m[axis], squared(params_.displacement_m_sqrts) / h, state);
+    }
   }
   if (state.at_rest) {
     for (int axis = 0; axis < 3; ++axis) {

@@ -20,7 +20,7 @@ constexpr double kSettled_s = 1.0;    // after so long in one mode it does not m
 constexpr double kSteady_m_s = 0.01, kJump_m_s = 0.08, kSteadyShare = 0.7;  // change of u per node, horizontal
 constexpr double kRise_m_s = 0.03, kHit_m_s = 0.3;                          // and vertical, on a bump
 constexpr std::int64_t kAgesApart = 4;
-constexpr double kInclineAfterBump = 10.0;  // the foot of a ramp is a bump
+constexpr double kInclineAfterBump = 4.0;  // the foot of a ramp is a bump
 constexpr RollingMode kModes[] = {RollingMode::grip, RollingMode::slip, RollingMode::bump, RollingMode::incline};
 static_assert(std::size(kModes) == kRollingModes);
 

@@ -22,6 +22,11 @@ Eigen::Vector3d normal(const Eigen::Vector2d& slope) {
 }
 
 constexpr double kSmallest = 1e-12;
+constexpr double kUsual_m_s2 = 3.0;      // what a force differs from gravity by, without a shock
+constexpr double kLostTilt_rad = 0.5;    // a tilt as uncertain as this is no tilt to integrate forces with
+constexpr double kDoubtfulTilt_rad = 0.1;  // and as this, no better than the direction of the force at rest
+constexpr double kForceTilt_rad = 0.35;  // of the direction of a force in motion
+constexpr double kLostSpeed_m_s = 1.0;
 
 void require_sigmas(const RollingParams& p) {
   require_within("tilt_sigma_rad", p.tilt_sigma_rad, 0.0, 1e3);
@@ -49,6 +54,9 @@ void require_noise(const RollingParams& p) {
   require_within("rest_velocity_sigma_m_s", p.rest_velocity_sigma_m_s, kSmallest, 1e3);
   require_within("rest_rate_sigma_rad_s", p.rest_rate_sigma_rad_s, kSmallest, 1e3);
   require_within("gyro_range_rad_s", p.gyro_range_rad_s, kSmallest, 1e3);
+  require_within("shock_share", p.shock_share, 0.0, 1e3);
+  require_within("accel_range_m_s2", p.accel_range_m_s2, kSmallest, 1e5);
+  require_within("clipped_force_sigma_m_s2", p.clipped_force_sigma_m_s2, kSmallest, 1e3);
   require_within("clipped_rate_sigma_rad_s", p.clipped_rate_sigma_rad_s, kSmallest, 1e3);
 }
 
@@ -110,8 +118,12 @@ void integrate(const RollingParams& params, const ImuSample& sample, double dt_s
   const Eigen::Quaterniond q_mid = nominal.q_WI * half;
   const Eigen::Matrix3d R_T = dt_s * q_mid.toRotationMatrix();
   nominal.q_WI = (q_mid * half).normalized();
-  const Eigen::Vector3d pushed = R_T * f;
-  const Eigen::Vector3d gained = pushed - dt_s * params.gravity_m_s2 * Eigen::Vector3d::UnitZ();
+  const double gravity = params.gravity_m_s2;
+  const bool clipped = w_raw.cwiseAbs().maxCoeff() >= params.gyro_range_rad_s ||
+                       f_raw.cwiseAbs().maxCoeff() >= params.accel_range_m_s2;
+  // a force that is clipped, or turned by a rate that is, says nothing: the velocity is kept
+  const Eigen::Vector3d pushed = clipped ? Eigen::Vector3d(dt_s * gravity * Eigen::Vector3d::UnitZ()) : R_T * f;
+  const Eigen::Vector3d gained = pushed - dt_s * gravity * Eigen::Vector3d::UnitZ();
   nominal.p_WI_m += dt_s * (nominal.v_WI_m_s + 0.5 * gained);
   nominal.v_WI_m_s += gained;
   sums.R_s += R_T;
@@ -124,7 +136,8 @@ void integrate(const RollingParams& params, const ImuSample& sample, double dt_s
   sums.w_I_rad += dt_s * w;
   sums.f_I_m_s += dt_s * f_raw;
   sums.turned_rad2_s += dt_s * w.squaredNorm();
-  if (w_raw.cwiseAbs().maxCoeff() >= params.gyro_range_rad_s) sums.clipped_s += dt_s;
+  sums.shock_m_s += dt_s * std::max(0.0, std::abs(f.norm() - gravity) - kUsual_m_s2);
+  if (clipped) sums.clipped_s += dt_s;
   sums.node_s += dt_s;
 }
 
@@ -150,7 +163,8 @@ void predict(const RollingParams& params, const RollingSums& sums, const Moving&
   const double attitude = squared(params.attitude_walk_rad_sqrts) * h +
                           squared(params.rate_error_sqrts) * sums.turned_rad2_s +
                           squared(params.clipped_rate_sigma_rad_s * sums.clipped_s);
-  const double velocity = squared(params.velocity_walk_m_s_sqrts) * h;
+  const double velocity = squared(params.velocity_walk_m_s_sqrts) * h + squared(params.shock_share * sums.shock_m_s) +
+                          squared(params.clipped_force_sigma_m_s2 * sums.clipped_s);
   auto diagonal = P.diagonal();
   diagonal.segment<3>(kAttitude).array() += attitude;
   diagonal.segment<3>(kVelocity).array() += velocity;
@@ -205,6 +219,23 @@ void change_floor(const RollingParams& params, RollingMode from, RollingMode to,
   const double sigma = to == RollingMode::incline ? params.slope_sigma : kLevelSlopeSigma;
   P.diagonal().segment<2>(kSlope).setConstant(squared(sigma));
   x.segment<2>(kSlope) = -nominal.slope;
+}
+
+bool relevel(const RollingParams& params, const Eigen::Vector3d& f_I_m_s2, bool at_rest, RollingNominal& nominal,
+             Covariance& P) {
+  const double tilt_variance = std::max(P(kAttitude, kAttitude), P(kAttitude + 1, kAttitude + 1));
+  if (tilt_variance < squared(at_rest ? kDoubtfulTilt_rad : kLostTilt_rad)) return false;
+  const double force = f_I_m_s2.norm();
+  if (!(force > 0.1 * params.gravity_m_s2)) return false;
+  const Eigen::Vector3d up_W = nominal.q_WI * (f_I_m_s2 / force);
+  nominal.q_WI = (so3::shortest_arc(up_W, Eigen::Vector3d::UnitZ()) * nominal.q_WI).normalized();
+  nominal.v_WI_m_s.setZero();
+  P.topRows<6>().setZero();
+  P.leftCols<6>().setZero();
+  P.diagonal().segment<2>(kAttitude).setConstant(squared(at_rest ? std::max(params.tilt_sigma_rad, 5e-3) : kForceTilt_rad));
+  P(kAttitude + 2, kAttitude + 2) = squared(kLostSpeed_m_s);  // as good as unknown, and small enough to be linear in
+  P.diagonal().segment<3>(kVelocity).setConstant(squared(at_rest ? params.rest_velocity_sigma_m_s : kLostSpeed_m_s));
+  return true;
 }
 
 void update(const Row& row, double measured, double variance, Vector& x, Covariance& P) {

@@ -56,6 +56,9 @@ NodeRecord close_node(const RollingParams& params, const RollingSums& sums, cons
   record.B = transition(sums);
   Vector x = Vector::Zero();
   predict(params, sums, record.B, x, filter.P);
+  if (sums.clipped_s < sums.node_s) {
+    record.relevelled = relevel(params, sums.f_I_m_s / sums.node_s, path.at_rest, filter.nominal, filter.P);
+  }
   record.forgets_slope = forgets_slope(filter.mode, path.mode);
   change_floor(params, filter.mode, path.mode, sums.node_s, filter.nominal, x, filter.P);
   if (path.at_rest) {
@@ -94,6 +97,11 @@ Reported smooth_back(const Eigen::Matrix<double, kReported, kStates>& P_rows, st
       lambda.segment<2>(kSlope).setZero();
       Lambda.middleRows<2>(kSlope).setZero();
       Lambda.middleCols<2>(kSlope).setZero();
+    }
+    if (node.relevelled) {
+      lambda.head<6>().setZero();
+      Lambda.topRows<6>().setZero();
+      Lambda.leftCols<6>().setZero();
     }
     lambda += (node.B.transpose() * lambda.head<9>()).eval();
     Lambda += (node.B.transpose() * Lambda.topRows<9>()).eval();

@@ -29,6 +29,7 @@ struct NodeRecord {
   std::array<double, kRowsMax> innovation{}, variance{};
   int rows = 0;
   bool forgets_slope = false;
+  bool relevelled = false;
   Eigen::Matrix<double, kReported, kStates> P_rows;  ///< after the update
   Reported correction;                               ///< by which the update moved the nominal
   RollingNominal nominal;                            ///< after the update

@@ -18,6 +18,10 @@ namespace tumble {
 /// with the corner that the sensor's errors ask for at each time. At rest the velocity and the rate are zero to within
 /// noise: the bias is measured and the attitude held, so that noise moves neither tilt nor heading.
 ///
+/// A rolling sphere (radius_m > 0) tells more: its velocity is r w x n, and that of the IMU w x (R rho) more, so the
+/// specific force is explained by rolling but for tilt and bias, without a derivative of the rate. A velocity that
+/// does not fit opens a slip: corrections are frozen until it fits again, for slip_timeout_s at the most.
+///
 /// Not modelled: accelerometer bias and scale (they are the tilt error that is left at rest), heading reference.
 class TumbleAttitude {
  public:
@@ -41,7 +45,13 @@ class TumbleAttitude {
     double rest_force_m_s2 = 0.5;        ///< quiet about the low-passed force; bound (0, 100]
     double rest_velocity_sigma_m_s = 0.005;   ///< per node at rest; bound (0, 10]
     double rest_rate_sigma_rad_sqrts = 2e-3;  ///< of the rate measured at rest, mean over 1 s; bound (0, 1]
-    double gap_max_s = 1.0;                   ///< bound (0, 1e4]
+    double radius_m = 0.0;  ///< of a rolling sphere on a level floor; 0: no such thing; bound [0, 10]
+    Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< centre to IMU, sensor axes; length up to 10
+    double rolling_velocity_sigma_m_s = 0.03;               ///< per node while it grips; bound (0, 10]
+    double slip_velocity_m_s = 0.12;  ///< misfit that opens a slip, half of it closes it; bound (0, 10]
+    double slip_quiet_s = 0.2;        ///< and for so long; bound [0, 10]
+    double slip_timeout_s = 3.0;      ///< then rolling is believed again; bound (0, 1e3]
+    double gap_max_s = 1.0;           ///< bound (0, 1e4]
   };
   struct State {
     Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
@@ -60,6 +70,10 @@ class TumbleAttitude {
     LowPass<3> rest_force_m_s2;
     double rest_s = 0.0;
     bool at_rest = false;
+    // rolling
+    Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();  ///< of the last sample, without bias
+    double slip_s = 0.0, fits_s = 0.0;
+    bool slipping = false;
     TimeNs last_time_ns = 0;
     bool started = false;
     bool operator==(const State&) const = default;
@@ -77,6 +91,7 @@ class TumbleAttitude {
   void integrate(const ImuSample& sample, double dt_s, State& state) const;
   void predict_node(State& state) const;
   void correct_node(State& state) const;
+  bool watch_slip(const Eigen::Vector2d& misfit_m_s, State& state) const;
 
   Params params_;
 };

@@ -51,16 +51,19 @@ struct RollingParams {
   double grip_sigma_share = 1.5e-3;  ///< more, as a share of the rolling speed
   double vertical_sigma_m_s = 8e-3;
   double slope_walk_sqrts = 0.02;
+  double shock_share = 0.06;  ///< of the velocity that a shock gives: error of its timing and direction
   double rest_velocity_sigma_m_s = 2e-3;
   double rest_rate_sigma_rad_s = 3e-3;  ///< of a node's mean rate at rest
-  // A clipped gyro: how far beyond the rail the rate may be.
-  double gyro_range_rad_s = 1e3;          ///< readings of this size say no more than that; bound (0, 1e3]
-  double clipped_rate_sigma_rad_s = 5.0;  ///< bound (0, 1e3]
+  // Clipped readings: from this size on they say no more than that, and by how much they may be short.
+  double gyro_range_rad_s = 1e3;           ///< bound (0, 1e3]
+  double accel_range_m_s2 = 1e5;           ///< bound (0, 1e5]
+  double clipped_rate_sigma_rad_s = 5.0;   ///< bound (0, 1e3]
+  double clipped_force_sigma_m_s2 = 10.0;  ///< bound (0, 1e3]
   // Change of mode, per second; bounds (0, 1e3].
   double slip_begins_per_s = 0.5, slip_ends_per_s = 2.0;
   double bump_begins_per_s = 0.3, bump_ends_per_s = 5.0;
   double slip_bump_per_s = 0.2;                                ///< slip to bump and back
-  double incline_begins_per_s = 0.02, incline_ends_per_s = 0.1;  ///< from and to the level
+  double incline_begins_per_s = 0.005, incline_ends_per_s = 0.1;  ///< from and to the level
   double event_shortest_s = 0.06;                              ///< least stay in slip or bump; bound [0, 10]
   // Rest.
   double rest_rate_rad_s = 0.02;  ///< bound (0, 10]
@@ -96,7 +99,8 @@ struct RollingSums {
   Eigen::Vector3d R_wxf = Eigen::Vector3d::Zero();
   Eigen::Vector3d w_I_rad = Eigen::Vector3d::Zero(), f_I_m_s = Eigen::Vector3d::Zero();
   double turned_rad2_s = 0.0;
-  double clipped_s = 0.0;  ///< with the gyro at its rail
+  double clipped_s = 0.0;  ///< with a reading at its rail
+  double shock_m_s = 0.0;  ///< of | |f| - g | beyond the usual
   double node_s = 0.0;
   bool operator==(const RollingSums&) const = default;
 };
