@@ -36,10 +36,11 @@ void LidarInertialOdometry::Impl::finish(TimeNs end_ns, SweepReport& report) {
   const bool aligned = report.conditioning > 0.0;
   lost_sweeps = report.verdict == SweepVerdict::rejected ? lost_sweeps + 1 : 0;
   report.lost_sweeps = lost_sweeps;
+  count_drift(report);
   for (std::size_t i = 0; i < trajectory.intervals(); ++i) {
     const double t_s = std::min(trajectory.interval_end_s(i), trajectory.duration_s());
     PoseState pose = trajectory.state(t_s).pose();
-    pose.covariance = reported_covariance(joint_covariance(t_s), pose.p_WA_m);
+    pose.covariance = reported_covariance(joint_covariance(t_s), pose.p_WA_m, aligned);
     report.trajectory.push_back(pose);
   }
   carry_covariance(end_ns);
@@ -111,6 +112,7 @@ Status LidarInertialOdometry::add_sweep(TimeNs lidar_start_ns, TimeNs lidar_end_
   if (Status status = my.trajectory.build(my.state, my.samples, end_ns, my.calibration.gravity_W_m_s2); !status.ok())
     return status;
   my.started = true;
+  my.resting_sweeps = my.imu_rests(end_ns) ? my.resting_sweeps + 1 : 0;
 
   const PointBounds bounds{my.params.range_min_m, my.params.range_max_m, my.params.own_body_L};
   const PointCounts counts =

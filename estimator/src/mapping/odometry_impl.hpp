@@ -43,8 +43,9 @@ struct LidarInertialOdometry::Impl {
   void start_calibration();
   void carry_covariance(TimeNs end_ns);
   Registration::Matrix joint_covariance(double t_s) const;
-  Eigen::Matrix<double, 6, 6> reported_covariance(const Registration::Matrix& joint,
-                                                  const Eigen::Vector3d& p_WI_m) const;
+  Eigen::Matrix<double, 6, 6> reported_covariance(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m,
+                                                  bool aligned) const;
+  void count_drift(const SweepReport& report);
   Eigen::Matrix<double, 6, 6> drawing_covariance() const;
 
   // odometry_registration.cpp
@@ -71,6 +72,9 @@ struct LidarInertialOdometry::Impl {
   Eigen::Matrix<double, 6, 6> start_by_mounting = Eigen::Matrix<double, 6, 6>::Zero();
   /// Of the map against the world where the robot is: it was drawn from poses that were uncertain themselves.
   Eigen::Matrix<double, 6, 6> map_covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  /// Of the position, in directions that no surface held while the robot moved.
+  Eigen::Matrix3d drift_covariance_m2 = Eigen::Matrix3d::Zero();
+  int resting_sweeps = 0;  // in a row, by the IMU
   int lost_sweeps = 0;
   int failed_searches = 0;  // sweeps in a row that had points and found no place
   mapping::InitialRest rest;

@@ -14,6 +14,9 @@ constexpr double kSearchTurn_rad = 0.3;  // starts of a search reach so far at f
 constexpr double kSearchShift_m = 1.0;   // and so far in position
 constexpr int kSearchRounds = 3;         // each reaches that much further than the last
 constexpr double kRestSpeed_m_s = 0.05;  // of an IMU that says nothing but gravity
+constexpr double kCreepSpeed_m_s =
+    0.5;                        // below it, such an IMU is believed to rest: a world that holds nothing lets creep
+constexpr int kRestSweeps = 3;  // after so many in a row
 
 /// Start number `index` of a search: the prior itself, then moved along each axis by what it may be off by, nearer ones
 /// first.
@@ -43,6 +46,11 @@ Registration::Prior LidarInertialOdometry::Impl::prior() const {
   prior.motion_calibration = motion_calibration;
   if (samples.front().at_rest) {
     mapping::hold_still(prior.state);
+    prior.motion_calibration.bottomRows<3>().setZero();
+  }
+  if (resting_sweeps >= kRestSweeps && prior.state.v_WI_m_s.norm() < kCreepSpeed_m_s) {
+    mapping::hold_still(prior.state);
+    prior.state.covariance.diagonal().tail<3>().setConstant(kRestSpeed_m_s * kRestSpeed_m_s);
     prior.motion_calibration.bottomRows<3>().setZero();
   }
   const std::uint8_t axes = params.estimate_excess_rate ? trajectory.clipped_axes() : 0;
