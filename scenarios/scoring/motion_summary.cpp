@@ -78,7 +78,9 @@ MotionSummary summarise_motion(const sim::Sensors& sensors, const sim::Truth& tr
   const Span span = moving_span(truth);
   if (span.first > span.last) return out;
   const std::size_t steps = span.last - span.first + 1;
-  out.moving_s = 1e-9 * static_cast<double>(truth.period_ns) * static_cast<double>(steps);
+  const double period_s = 1e-9 * static_cast<double>(truth.period_ns);
+  out.moving_s = period_s * static_cast<double>(steps);
+  out.rest_at_end_s = period_s * static_cast<double>(truth.v_WB_m_s.size() - 1 - span.last);
   const auto begin = truth.label.begin() + static_cast<std::ptrdiff_t>(span.first);
   const auto air = std::count(begin, begin + static_cast<std::ptrdiff_t>(steps), sim::ContactLabel::air);
   out.flight_share = static_cast<double>(air) / static_cast<double>(steps);

@@ -60,9 +60,18 @@ void print(const Spread& spread) {
   print_quantiles("peak acceleration, m/s^2", column(spread, [](const MotionSummary& m) { return m.peak_accel_m_s2; }));
   print_quantiles("path, m", column(spread, [](const MotionSummary& m) { return m.path_m; }));
   print_quantiles("moving, s", column(spread, [](const MotionSummary& m) { return m.moving_s; }));
+  print_quantiles("rest at the end, s", column(spread, [](const MotionSummary& m) { return m.rest_at_end_s; }));
   print_quantiles("flight share", column(spread, [](const MotionSummary& m) { return m.flight_share; }));
   print_quantiles("impacts", column(spread, [](const MotionSummary& m) { return m.impacts; }));
   print_quantiles("simulation, s of one core", spread.cpu_s);
+}
+
+void print(std::uint64_t seed, const MotionSummary& m) {
+  std::printf("%llu  %5.2f rad/s  %4zu clipped (%3zu %3zu %3zu)  %4zu several  ", static_cast<unsigned long long>(seed),
+              m.peak_rate_rad_s, m.clipped_samples, m.axis_clipped_samples[0], m.axis_clipped_samples[1],
+              m.axis_clipped_samples[2], m.several_axes_samples);
+  std::printf("%6.1f m/s^2  %5.2f m  %4.1f s  flight %.2f  rest %.1f s\n", m.peak_accel_m_s2, m.path_m, m.moving_s,
+              m.flight_share, m.rest_at_end_s);
 }
 
 int run(int count, char** words) {
@@ -83,10 +92,7 @@ int run(int count, char** words) {
       spread.cpu_s.push_back(scenarios::process_cpu_s() - start_s);
       const MotionSummary m = scenarios::summarise_motion(recording.sensors, recording.truth);
       spread.draws.push_back(m);
-      std::printf("%llu  %5.2f rad/s  %4zu clipped (%3zu %3zu %3zu)  %4zu several  %6.1f m/s^2  %5.2f m  %4.1f s  flight %.2f\n",
-                  static_cast<unsigned long long>(seed), m.peak_rate_rad_s, m.clipped_samples,
-                  m.axis_clipped_samples[0], m.axis_clipped_samples[1], m.axis_clipped_samples[2],
-                  m.several_axes_samples, m.peak_accel_m_s2, m.path_m, m.moving_s, m.flight_share);
+      print(seed, m);
     } catch (const sim::SimulationFailure& failure) {
       ++spread.rejected;
       std::printf("%llu  rejected: %s\n", static_cast<unsigned long long>(seed), failure.what());

@@ -26,7 +26,7 @@ class Ground {
   double node_m(int row, int column) const { return heights_m_[static_cast<std::size_t>(row) * side_ + column]; }
 
   /// Height between the nodes, bilinear; beyond the edge that of the edge. The engine's triangles differ from it by the
-  /// twist of a cell: 1 mm per 10 cm cell at 0.4 /m.
+  /// twist of a cell: 4 mm per 20 cm cell at 0.4 /m.
   double height_m(double x_m, double y_m) const;
 
   /// Replaces each height by f(x_m, y_m, height_m).

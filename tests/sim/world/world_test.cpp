@@ -91,13 +91,18 @@ TEST(Stairs, TheRobotMeetsStepsAndNotTheGroundUnderThem) {
   EXPECT_NEAR(top_m(world, -8.0 + 10 * 0.3 + 0.5, 0.0), -2.0, 0.02);
 }
 
-TEST(Cliff, DropsAreNearlyUpright) {
+TEST(Cliff, FacesAreOneCellDeepAtEveryDrop) {
   Values values;
   for (const char* flat : {"relief_m", "bump_height_m", "rock_count"}) values.set(flat, 0);
   values.set("drop_height_m", 1.5);
+  values.set("drop_count", 2);
+  values.set("ledge_length_m", 1.53);  // rounded to 1.6
+  values.set("ledge_slope_rad", 0.0);
   const engine::World world = compose_world("cliff", 1, values);
   EXPECT_NEAR(top_m(world, -8.0, 0.3), 0.0, 1e-3);
-  EXPECT_NEAR(top_m(world, -7.9, 0.3), -1.5, 1e-3);
+  EXPECT_NEAR(top_m(world, -7.8, 0.3), -1.5, 1e-3);
+  EXPECT_NEAR(top_m(world, -6.2, 0.3), -1.5, 1e-3);
+  EXPECT_NEAR(top_m(world, -6.0, 0.3), -3.0, 1e-3);
 }
 
 TEST(Hill, RuledReliefLeavesStraightContourLines) {
