@@ -10,7 +10,7 @@ constexpr double kStartTilt_rad = 0.003;  // of a levelled start: an acceleromet
 // Registration counts a point for a tenth of what its noise says, so that it bears with outliers and with neighbours
 // that are no independent witnesses. Errors measured over tumbles (covariance_test) are smaller by this share of
 // variance.
-constexpr double kMeasuredShare = 0.1;
+constexpr double kMeasuredShare = 0.06;
 // Of the weakest direction's standard deviation, per sweep, where the surfaces do not hold it: measured on `bare`.
 constexpr double kDriftShare = 0.1;
 constexpr double kDriftMax_m = 3.0;
