@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/methods/slam_registry.hpp"
 
 namespace tumble::scenarios {
 
@@ -43,11 +44,18 @@ std::vector<Method> all_methods() {
       position_tumble_live(),
       position_oracle(),
       position_oracle_contact(),
+      slam_seed(),
       slam_icp(),
       slam_icp_raw(),
       slam_tumble(),
       slam_tumble_gyro_only(),
       slam_oracle(),
+      slam_constant_velocity(),
+      slam_constant_jerk(),
+      slam_iterated_filter(),
+      slam_pointwise_reject(),
+      slam_health_switch(),
+      slam_floor(),
   };
   std::stable_sort(all.begin(), all.end(), [](const Method& a, const Method& b) { return a.info.kind < b.info.kind; });
   return all;
