@@ -11,7 +11,8 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kCentreSigmaM = 6e-3;
-constexpr double kRangeShare = 0.98;  // of the stated range: the mean of several units at the rail, each a little askew
+constexpr int kRecoveringUnits = 3;        // so many IMUs tell a rate beyond the range
+constexpr double kRecoveredSigmaRadS = 1.0;
 
 // the library's own defaults, so that each stands in one place; sources are those of the library's documentation
 const std::array<sim::Parameter, 12>& parameters_of_the_filter() {
@@ -130,10 +131,9 @@ RollingParams rolling_params(const sim::Sensors& sensors, const MergedImus& imus
   params.gravity_m_s2 = sensors.gravity_m_s2;
   // from the centre of mass, which the calibration refers to; what lies between it and the centre is estimated
   params.lever_arm_m = imus.lever_arm_m;
-  const double range = sensors.imus.front().stated_gyro_range_rad_s;
-  if (range > 0.0) params.gyro_range_rad_s = kRangeShare * range;
-  const double force_range = sensors.imus.front().stated_accel_range_m_s2;
-  if (force_range > 0.0) params.accel_range_m_s2 = kRangeShare * force_range;
+  params.gyro_range_rad_s = imus.gyro_range_rad_s;
+  params.accel_range_m_s2 = imus.accel_range_m_s2;
+  if (imus.units >= kRecoveringUnits) params.recovered_rate_sigma_rad_s = kRecoveredSigmaRadS;
   params.tilt_sigma_rad = parameters.at("tilt_sigma_rad");
   params.gyro_bias_sigma_rad_s = parameters.at("gyro_bias_sigma_rad_s");
   params.accel_bias_sigma_m_s2 = parameters.at("accel_bias_sigma_m_s2");

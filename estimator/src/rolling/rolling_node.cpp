@@ -23,6 +23,7 @@ Eigen::Vector3d normal(const Eigen::Vector2d& slope) {
 
 constexpr double kSmallest = 1e-12;
 constexpr double kUsual_m_s2 = 3.0;      // what a force differs from gravity by, without a shock
+constexpr double kHiddenFrom = 0.3, kHiddenTo = 0.6;  // of the accelerometer's range
 constexpr double kLostTilt_rad = 0.5;    // a tilt as uncertain as this is no tilt to integrate forces with
 constexpr double kDoubtfulTilt_rad = 0.1;  // and as this, no better than the direction of the force at rest
 constexpr double kForceTilt_rad = 0.35;  // of the direction of a force in motion
@@ -54,9 +55,11 @@ void require_noise(const RollingParams& p) {
   require_within("rest_velocity_sigma_m_s", p.rest_velocity_sigma_m_s, kSmallest, 1e3);
   require_within("rest_rate_sigma_rad_s", p.rest_rate_sigma_rad_s, kSmallest, 1e3);
   require_within("gyro_range_rad_s", p.gyro_range_rad_s, kSmallest, 1e3);
+  require_within("hidden_clip_share", p.hidden_clip_share, 0.0, 10.0);
   require_within("shock_share", p.shock_share, 0.0, 1e3);
   require_within("accel_range_m_s2", p.accel_range_m_s2, kSmallest, 1e5);
   require_within("clipped_force_sigma_m_s2", p.clipped_force_sigma_m_s2, kSmallest, 1e3);
+  require_within("recovered_rate_sigma_rad_s", p.recovered_rate_sigma_rad_s, 0.0, 1e3);
   require_within("clipped_rate_sigma_rad_s", p.clipped_rate_sigma_rad_s, kSmallest, 1e3);
 }
 
@@ -119,7 +122,9 @@ void integrate(const RollingParams& params, const ImuSample& sample, double dt_s
   const Eigen::Matrix3d R_T = dt_s * q_mid.toRotationMatrix();
   nominal.q_WI = (q_mid * half).normalized();
   const double gravity = params.gravity_m_s2;
-  const bool clipped = w_raw.cwiseAbs().maxCoeff() >= params.gyro_range_rad_s ||
+  const bool beyond = w_raw.cwiseAbs().maxCoeff() >= params.gyro_range_rad_s;
+  const bool recovered = beyond && params.recovered_rate_sigma_rad_s > 0.0 && sample.device_clip_flags == 0;
+  const bool clipped = (beyond && !recovered) || sample.device_clip_flags != 0 ||
                        f_raw.cwiseAbs().maxCoeff() >= params.accel_range_m_s2;
   // a force that is clipped, or turned by a rate that is, says nothing: the velocity is kept
   const Eigen::Vector3d pushed = clipped ? Eigen::Vector3d(dt_s * gravity * Eigen::Vector3d::UnitZ()) : R_T * f;
@@ -137,7 +142,11 @@ void integrate(const RollingParams& params, const ImuSample& sample, double dt_s
   sums.f_I_m_s += dt_s * f_raw;
   sums.turned_rad2_s += dt_s * w.squaredNorm();
   sums.shock_m_s += dt_s * std::max(0.0, std::abs(f.norm() - gravity) - kUsual_m_s2);
+  const double peak = f_raw.cwiseAbs().maxCoeff() / params.accel_range_m_s2;
+  const double hidden = std::clamp((peak - kHiddenFrom) / (kHiddenTo - kHiddenFrom), 0.0, 1.0);
+  if (!clipped && hidden > 0.0) sums.hidden_W_m_s += params.hidden_clip_share * hidden * (R_T * f);
   if (clipped) sums.clipped_s += dt_s;
+  if (recovered) sums.recovered_s += dt_s;
   sums.node_s += dt_s;
 }
 
@@ -162,9 +171,11 @@ void predict(const RollingParams& params, const RollingSums& sums, const Moving&
   P = (0.5 * (P + P.transpose())).eval();
   const double attitude = squared(params.attitude_walk_rad_sqrts) * h +
                           squared(params.rate_error_sqrts) * sums.turned_rad2_s +
-                          squared(params.clipped_rate_sigma_rad_s * sums.clipped_s);
+                          squared(params.clipped_rate_sigma_rad_s * sums.clipped_s) +
+                          squared(params.recovered_rate_sigma_rad_s * sums.recovered_s);
   const double velocity = squared(params.velocity_walk_m_s_sqrts) * h + squared(params.shock_share * sums.shock_m_s) +
                           squared(params.clipped_force_sigma_m_s2 * sums.clipped_s);
+  P.block<3, 3>(kVelocity, kVelocity) += sums.hidden_W_m_s * sums.hidden_W_m_s.transpose();
   auto diagonal = P.diagonal();
   diagonal.segment<3>(kAttitude).array() += attitude;
   diagonal.segment<3>(kVelocity).array() += velocity;
@@ -199,7 +210,8 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
   out.H.col(kRadius) = -w_W.cross(n);
   out.grip_variance = squared(params.grip_sigma_m_s) + squared(params.grip_sigma_share * r * w_W.norm());
   if (rate_I_rad_s.cwiseAbs().maxCoeff() >= params.gyro_range_rad_s) {
-    out.grip_variance += squared(r * params.clipped_rate_sigma_rad_s);
+    const bool recovered = params.recovered_rate_sigma_rad_s > 0.0;
+    out.grip_variance += squared(r * (recovered ? params.recovered_rate_sigma_rad_s : params.clipped_rate_sigma_rad_s));
   }
   return out;
 }

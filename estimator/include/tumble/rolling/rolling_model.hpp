@@ -54,11 +54,16 @@ struct RollingParams {
   double shock_share = 0.06;  ///< of the velocity that a shock gives: error of its timing and direction
   double rest_velocity_sigma_m_s = 2e-3;
   double rest_rate_sigma_rad_s = 3e-3;  ///< of a node's mean rate at rest
-  // Clipped readings: from this size on they say no more than that, and by how much they may be short.
+  // Clipped readings, by the device's flags or from this size on: they say no more than that; how short they may be.
   double gyro_range_rad_s = 1e3;           ///< bound (0, 1e3]
   double accel_range_m_s2 = 1e5;           ///< bound (0, 1e5]
   double clipped_rate_sigma_rad_s = 5.0;   ///< bound (0, 1e3]
+  /// Above zero: a rate beyond the range that no flag calls clipped was recovered (ImuMerge) to so much; bound [0, 1e3].
+  double recovered_rate_sigma_rad_s = 0.0;
   double clipped_force_sigma_m_s2 = 10.0;  ///< bound (0, 1e3]
+  /// A blow within one sample may have met the accelerometer's rail though its mean did not: sigma of what is missing
+  /// along the force, as a share of it; full from 0.6 of the range on, none up to 0.3; bound [0, 10].
+  double hidden_clip_share = 0.25;
   // Change of mode, per second; bounds (0, 1e3].
   double slip_begins_per_s = 0.5, slip_ends_per_s = 2.0;
   double bump_begins_per_s = 0.3, bump_ends_per_s = 5.0;
@@ -99,8 +104,10 @@ struct RollingSums {
   Eigen::Vector3d R_wxf = Eigen::Vector3d::Zero();
   Eigen::Vector3d w_I_rad = Eigen::Vector3d::Zero(), f_I_m_s = Eigen::Vector3d::Zero();
   double turned_rad2_s = 0.0;
-  double clipped_s = 0.0;  ///< with a reading at its rail
+  double clipped_s = 0.0;    ///< with a reading at its rail
+  double recovered_s = 0.0;  ///< with a rate that was recovered
   double shock_m_s = 0.0;  ///< of | |f| - g | beyond the usual
+  Eigen::Vector3d hidden_W_m_s = Eigen::Vector3d::Zero();  ///< sigma of what a rail took unseen, along the force
   double node_s = 0.0;
   bool operator==(const RollingSums&) const = default;
 };
