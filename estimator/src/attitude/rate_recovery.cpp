@@ -77,6 +77,11 @@ void RateRecovery::step(std::span<const ImuSample> units, double dt_s, State& st
   }
   // the mean of the units in use was moved to the mean place with a rate that may be wrong
   if (rate_clipped || force_clipped) merged.specific_force_m_s2 = state.x.segment<3>(kForce);
+  // rails are met when gravity and the turning add up: what is left is off in one direction of W
+  if (force_clipped) {
+    merged.device_clip_flags =
+        static_cast<std::uint8_t>(merged.device_clip_flags | kClipAccelX | kClipAccelY | kClipAccelZ);
+  }
 }
 
 void RateRecovery::start(const ImuSample& merged, State& state) const {

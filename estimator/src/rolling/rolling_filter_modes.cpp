@@ -69,9 +69,9 @@ double log_moving(const rolling::Contact& c, const RollingFilter::Hypothesis& h,
   return horizontal + log_normal(u.z(), vertical);
 }
 
-/// The contact point stands still (or, slipping, stays on the floor).
-void measure_contact(const rolling::Contact& c, RollingMode mode, const RollingParams& params,
-                     RollingFilter::Hypothesis& h) {
+/// The contact point stands still (or, slipping, stays on the floor), and a velocity that is lost is no great one.
+void measure_contact(const rolling::Contact& c, RollingMode mode, double node_s, const Eigen::Vector3d& v_WI_m_s,
+                     const RollingParams& params, RollingFilter::Hypothesis& h) {
   // what the length of the normal adds is no error of the state
   const Eigen::Vector3d u = c.velocity(h.x) - c.H * h.x;
   if (!slips(mode)) {
@@ -79,6 +79,11 @@ void measure_contact(const rolling::Contact& c, RollingMode mode, const RollingP
   }
   if (mode != RollingMode::bump) {
     rolling::update(c.H.row(2), -u.z(), squared(params.vertical_sigma_m_s), h.x, h.P);
+  }
+  if (const auto variance = rolling::lost_velocity_variance(params, node_s, h.P)) {
+    for (int axis = 0; axis < 2; ++axis) {
+      rolling::update(rolling::kVelocity + axis, -v_WI_m_s[axis], *variance, h.x, h.P);
+    }
   }
 }
 
@@ -110,6 +115,7 @@ double RollingFilter::log_transition(RollingMode from, RollingMode to, double h_
 void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, State& state) const {
   const rolling::Contact c = rolling::contact(params_, state.nominal, rate_I_rad_s);
   const double node_s = state.sums.node_s;
+  const bool too_fast = c.rolling_speed_m_s > params_.speed_max_m_s;
   std::array<Candidate, kRollingModes * kHypotheses> candidates;
   std::size_t total = 0;
   const auto shortest = static_cast<std::int64_t>(std::ceil(params_.event_shortest_s / node_s - 1e-9));
@@ -119,6 +125,7 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, State& sta
     for (const RollingMode mode : kModes) {
       const bool bound = slips(h.mode) && state.node - h.switched_node < shortest;
       if (mode != h.mode && bound) continue;
+      if (too_fast && !slips(mode)) continue;
       const double likelihood =
           slips(mode) ? log_moving(c, h, mode, u, params_) : log_still(c, h, mode, params_);
       candidates[total++] = {h.log_weight + log_transition(h.mode, mode, node_s) + likelihood, parent, mode,
@@ -149,7 +156,7 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, State& sta
     Hypothesis& h = next[count];
     h = state.hypotheses[static_cast<std::size_t>(candidate.parent)];
     rolling::change_floor(params_, h.mode, candidate.mode, node_s, state.nominal, h.x, h.P);
-    measure_contact(c, candidate.mode, params_, h);
+    measure_contact(c, candidate.mode, node_s, state.nominal.v_WI_m_s, params_, h);
     h.u_W_m_s = c.velocity(h.x);
     h.log_weight = candidate.log_weight - candidates[0].log_weight;
     h.mode = candidate.mode;

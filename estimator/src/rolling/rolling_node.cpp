@@ -28,6 +28,7 @@ constexpr double kLostTilt_rad = 0.5;    // a tilt as uncertain as this is no ti
 constexpr double kDoubtfulTilt_rad = 0.1;  // and as this, no better than the direction of the force at rest
 constexpr double kForceTilt_rad = 0.35;  // of the direction of a force in motion
 constexpr double kLostSpeed_m_s = 1.0;
+constexpr double kUnsureSpeed_m_s = 0.1, kSpeedWindow_s = 1.0;
 
 void require_sigmas(const RollingParams& p) {
   require_within("tilt_sigma_rad", p.tilt_sigma_rad, 0.0, 1e3);
@@ -60,6 +61,8 @@ void require_noise(const RollingParams& p) {
   require_within("accel_range_m_s2", p.accel_range_m_s2, kSmallest, 1e5);
   require_within("clipped_force_sigma_m_s2", p.clipped_force_sigma_m_s2, kSmallest, 1e3);
   require_within("recovered_rate_sigma_rad_s", p.recovered_rate_sigma_rad_s, 0.0, 1e3);
+  require_within("speed_max_m_s", p.speed_max_m_s, kSmallest, 1e3);
+  require_within("speed_sigma_m_s", p.speed_sigma_m_s, kSmallest, 1e3);
   require_within("clipped_rate_sigma_rad_s", p.clipped_rate_sigma_rad_s, kSmallest, 1e3);
 }
 
@@ -122,9 +125,10 @@ void integrate(const RollingParams& params, const ImuSample& sample, double dt_s
   const Eigen::Matrix3d R_T = dt_s * q_mid.toRotationMatrix();
   nominal.q_WI = (q_mid * half).normalized();
   const double gravity = params.gravity_m_s2;
+  constexpr std::uint8_t kGyro = kClipGyroX | kClipGyroY | kClipGyroZ, kAccel = kClipAccelX | kClipAccelY | kClipAccelZ;
   const bool beyond = w_raw.cwiseAbs().maxCoeff() >= params.gyro_range_rad_s;
-  const bool recovered = beyond && params.recovered_rate_sigma_rad_s > 0.0 && sample.device_clip_flags == 0;
-  const bool clipped = (beyond && !recovered) || sample.device_clip_flags != 0 ||
+  const bool lost = (sample.device_clip_flags & kGyro) != 0 || (beyond && !(params.recovered_rate_sigma_rad_s > 0.0));
+  const bool clipped = lost || (sample.device_clip_flags & kAccel) != 0 ||
                        f_raw.cwiseAbs().maxCoeff() >= params.accel_range_m_s2;
   // a force that is clipped, or turned by a rate that is, says nothing: the velocity is kept
   const Eigen::Vector3d pushed = clipped ? Eigen::Vector3d(dt_s * gravity * Eigen::Vector3d::UnitZ()) : R_T * f;
@@ -145,8 +149,9 @@ void integrate(const RollingParams& params, const ImuSample& sample, double dt_s
   const double peak = f_raw.cwiseAbs().maxCoeff() / params.accel_range_m_s2;
   const double hidden = std::clamp((peak - kHiddenFrom) / (kHiddenTo - kHiddenFrom), 0.0, 1.0);
   if (!clipped && hidden > 0.0) sums.hidden_W_m_s += params.hidden_clip_share * hidden * (R_T * f);
-  if (clipped) sums.clipped_s += dt_s;
-  if (recovered) sums.recovered_s += dt_s;
+  if (clipped) sums.force_clipped_s += dt_s;
+  if (lost) sums.rate_clipped_s += dt_s;
+  if (beyond && !lost) sums.recovered_s += dt_s;
   sums.node_s += dt_s;
 }
 
@@ -171,10 +176,10 @@ void predict(const RollingParams& params, const RollingSums& sums, const Moving&
   P = (0.5 * (P + P.transpose())).eval();
   const double attitude = squared(params.attitude_walk_rad_sqrts) * h +
                           squared(params.rate_error_sqrts) * sums.turned_rad2_s +
-                          squared(params.clipped_rate_sigma_rad_s * sums.clipped_s) +
+                          squared(params.clipped_rate_sigma_rad_s * sums.rate_clipped_s) +
                           squared(params.recovered_rate_sigma_rad_s * sums.recovered_s);
   const double velocity = squared(params.velocity_walk_m_s_sqrts) * h + squared(params.shock_share * sums.shock_m_s) +
-                          squared(params.clipped_force_sigma_m_s2 * sums.clipped_s);
+                          squared(params.clipped_force_sigma_m_s2 * sums.force_clipped_s);
   P.block<3, 3>(kVelocity, kVelocity) += sums.hidden_W_m_s * sums.hidden_W_m_s.transpose();
   auto diagonal = P.diagonal();
   diagonal.segment<3>(kAttitude).array() += attitude;
@@ -208,12 +213,18 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
   out.slope = nominal.slope;
   out.H.middleCols<2>(kSlope) = by_normal.leftCols<2>() - out.lift_W * nominal.slope.transpose() / n.z();
   out.H.col(kRadius) = -w_W.cross(n);
+  out.rolling_speed_m_s = r * w_W.cross(n).norm();
   out.grip_variance = squared(params.grip_sigma_m_s) + squared(params.grip_sigma_share * r * w_W.norm());
   if (rate_I_rad_s.cwiseAbs().maxCoeff() >= params.gyro_range_rad_s) {
     const bool recovered = params.recovered_rate_sigma_rad_s > 0.0;
     out.grip_variance += squared(r * (recovered ? params.recovered_rate_sigma_rad_s : params.clipped_rate_sigma_rad_s));
   }
   return out;
+}
+
+std::optional<double> lost_velocity_variance(const RollingParams& params, double node_s, const Covariance& P) {
+  if (P(kVelocity, kVelocity) + P(kVelocity + 1, kVelocity + 1) < squared(kUnsureSpeed_m_s)) return std::nullopt;
+  return squared(params.speed_sigma_m_s) * kSpeedWindow_s / node_s;
 }
 
 bool forgets_slope(RollingMode from, RollingMode to) {

@@ -60,10 +60,14 @@ struct RollingParams {
   double clipped_rate_sigma_rad_s = 5.0;   ///< bound (0, 1e3]
   /// Above zero: a rate beyond the range that no flag calls clipped was recovered (ImuMerge) to so much; bound [0, 1e3].
   double recovered_rate_sigma_rad_s = 0.0;
-  double clipped_force_sigma_m_s2 = 10.0;  ///< bound (0, 1e3]
+  double clipped_force_sigma_m_s2 = 4.0;   ///< bound (0, 1e3]
   /// A blow within one sample may have met the accelerometer's rail though its mean did not: sigma of what is missing
   /// along the force, as a share of it; full from 0.6 of the range on, none up to 0.3; bound [0, 10].
   double hidden_clip_share = 0.25;
+  // What the sphere is able to: no grip is believed that would make it roll faster; where the velocity is lost it is
+  // about zero, with this sigma of its mean over a second.
+  double speed_max_m_s = 2.5;    ///< bound (0, 1e3]
+  double speed_sigma_m_s = 1.0;  ///< bound (0, 1e3]
   // Change of mode, per second; bounds (0, 1e3].
   double slip_begins_per_s = 0.5, slip_ends_per_s = 2.0;
   double bump_begins_per_s = 0.3, bump_ends_per_s = 5.0;
@@ -104,8 +108,8 @@ struct RollingSums {
   Eigen::Vector3d R_wxf = Eigen::Vector3d::Zero();
   Eigen::Vector3d w_I_rad = Eigen::Vector3d::Zero(), f_I_m_s = Eigen::Vector3d::Zero();
   double turned_rad2_s = 0.0;
-  double clipped_s = 0.0;    ///< with a reading at its rail
-  double recovered_s = 0.0;  ///< with a rate that was recovered
+  double rate_clipped_s = 0.0, force_clipped_s = 0.0;  ///< with a reading that says nothing
+  double recovered_s = 0.0;                            ///< with a rate that was recovered
   double shock_m_s = 0.0;  ///< of | |f| - g | beyond the usual
   Eigen::Vector3d hidden_W_m_s = Eigen::Vector3d::Zero();  ///< sigma of what a rail took unseen, along the force
   double node_s = 0.0;
