@@ -23,6 +23,7 @@ Eigen::Vector3d normal(const Eigen::Vector2d& slope) {
 
 constexpr double kSmallest = 1e-12;
 constexpr double kUsual_m_s2 = 3.0;      // what a force differs from gravity by, without a shock
+constexpr double kOffCentre_m = 0.02;    // of an IMU: makes forces in fast turns
 constexpr double kHiddenFrom = 0.3, kHiddenTo = 0.6;  // of the accelerometer's range
 constexpr double kLostTilt_rad = 0.5;    // a tilt as uncertain as this is no tilt to integrate forces with
 constexpr double kDoubtfulTilt_rad = 0.1;  // and as this, no better than the direction of the force at rest
@@ -61,6 +62,7 @@ void require_noise(const RollingParams& p) {
   require_within("accel_range_m_s2", p.accel_range_m_s2, kSmallest, 1e5);
   require_within("clipped_force_sigma_m_s2", p.clipped_force_sigma_m_s2, kSmallest, 1e3);
   require_within("recovered_rate_sigma_rad_s", p.recovered_rate_sigma_rad_s, 0.0, 1e3);
+  require_within("blow_m_s", p.blow_m_s, kSmallest, 1e3);
   require_within("speed_max_m_s", p.speed_max_m_s, kSmallest, 1e3);
   require_within("speed_sigma_m_s", p.speed_sigma_m_s, kSmallest, 1e3);
   require_within("clipped_rate_sigma_rad_s", p.clipped_rate_sigma_rad_s, kSmallest, 1e3);
@@ -145,7 +147,9 @@ void integrate(const RollingParams& params, const ImuSample& sample, double dt_s
   sums.w_I_rad += dt_s * w;
   sums.f_I_m_s += dt_s * f_raw;
   sums.turned_rad2_s += dt_s * w.squaredNorm();
-  sums.shock_m_s += dt_s * std::max(0.0, std::abs(f.norm() - gravity) - kUsual_m_s2);
+  const double about_gravity = std::abs(f.norm() - gravity) - kUsual_m_s2;
+  sums.shock_m_s += dt_s * std::max(0.0, about_gravity);
+  sums.blow_m_s += dt_s * std::max(0.0, about_gravity - kOffCentre_m * w.squaredNorm());
   const double peak = f_raw.cwiseAbs().maxCoeff() / params.accel_range_m_s2;
   const double hidden = std::clamp((peak - kHiddenFrom) / (kHiddenTo - kHiddenFrom), 0.0, 1.0);
   if (!clipped && hidden > 0.0) sums.hidden_W_m_s += params.hidden_clip_share * hidden * (R_T * f);

@@ -68,6 +68,8 @@ struct RollingParams {
   // about zero, with this sigma of its mean over a second.
   double speed_max_m_s = 2.5;    ///< bound (0, 1e3]
   double speed_sigma_m_s = 1.0;  ///< bound (0, 1e3]
+  /// A wheel that stays on the floor meets no blows: mean of what one may give in a node; bound (0, 1e3].
+  double blow_m_s = 0.03;
   // Change of mode, per second; bounds (0, 1e3].
   double slip_begins_per_s = 0.5, slip_ends_per_s = 2.0;
   double bump_begins_per_s = 0.3, bump_ends_per_s = 5.0;
@@ -111,6 +113,7 @@ struct RollingSums {
   double rate_clipped_s = 0.0, force_clipped_s = 0.0;  ///< with a reading that says nothing
   double recovered_s = 0.0;                            ///< with a rate that was recovered
   double shock_m_s = 0.0;  ///< of | |f| - g | beyond the usual
+  double blow_m_s = 0.0;   ///< the same without what the turning may explain
   Eigen::Vector3d hidden_W_m_s = Eigen::Vector3d::Zero();  ///< sigma of what a rail took unseen, along the force
   double node_s = 0.0;
   bool operator==(const RollingSums&) const = default;
