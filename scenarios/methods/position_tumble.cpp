@@ -15,9 +15,9 @@ constexpr int kRecoveringUnits = 3;        // so many IMUs tell a rate beyond th
 constexpr double kRecoveredSigmaRadS = 1.0;
 
 // the library's own defaults, so that each stands in one place; sources are those of the library's documentation
-const std::array<sim::Parameter, 12>& parameters_of_the_filter() {
+const std::array<sim::Parameter, 13>& parameters_of_the_filter() {
   static const RollingFilter::Params library;
-  static const std::array<sim::Parameter, 12> parameters = {{
+  static const std::array<sim::Parameter, 13> parameters = {{
       {"tilt_sigma_rad", library.tilt_sigma_rad, 0.0, 1e3, "rad", "prior of the levelling by the first sample"},
       {"gyro_bias_sigma_rad_s", library.gyro_bias_sigma_rad_s, 0.0, 1e3, "rad/s", "prior of the gyro's bias"},
       {"accel_bias_sigma_m_s2", library.accel_bias_sigma_m_s2, 0.0, 1e3, "m/s^2", "prior of the accelerometer's bias"},
@@ -30,6 +30,8 @@ const std::array<sim::Parameter, 12>& parameters_of_the_filter() {
       {"bump_begins_per_s", library.bump_begins_per_s, 1e-12, 1e3, "1/s", "rate of grip changing to bump"},
       {"bump_ends_per_s", library.bump_ends_per_s, 1e-12, 1e3, "1/s", "and back"},
       {"incline_begins_per_s", library.incline_begins_per_s, 1e-12, 1e3, "1/s", "rate of a slope beginning"},
+      {"rough_share", library.rough_share, 1e-12, 1e3, "1",
+       "of the rolling speed: how fast a rough floor goes up and down"},
       {"event_shortest_s", library.event_shortest_s, 0.0, 10.0, "s", "least stay in slip or bump"},
   }};
   return parameters;
@@ -64,6 +66,7 @@ void add_contact(RollingMode mode, bool at_rest, double radius_m, const ImuSampl
   if (mode == RollingMode::slip) estimate.health["samples_slip"] += 1.0;
   if (mode == RollingMode::bump) estimate.health["samples_bump"] += 1.0;
   if (mode == RollingMode::incline) estimate.health["samples_incline"] += 1.0;
+  if (mode == RollingMode::rough) estimate.health["samples_rough"] += 1.0;
   if (at_rest) estimate.health["samples_rest"] += 1.0;
 }
 
@@ -145,6 +148,7 @@ RollingParams rolling_params(const sim::Sensors& sensors, const MergedImus& imus
   params.bump_begins_per_s = parameters.at("bump_begins_per_s");
   params.bump_ends_per_s = parameters.at("bump_ends_per_s");
   params.incline_begins_per_s = parameters.at("incline_begins_per_s");
+  params.rough_share = parameters.at("rough_share");
   params.event_shortest_s = parameters.at("event_shortest_s");
   return params;
 }

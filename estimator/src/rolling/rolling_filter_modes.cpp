@@ -20,8 +20,10 @@ constexpr double kSettled_s = 1.0;    // after so long in one mode it does not m
 constexpr double kSteady_m_s = 0.01, kJump_m_s = 0.08, kSteadyShare = 0.7;  // change of u per node, horizontal
 constexpr double kRise_m_s = 0.03, kHit_m_s = 0.3;                          // and vertical, on a bump
 constexpr std::int64_t kAgesApart = 4;
+constexpr double kRoughCost = 0.2;  // per node: less than what a slope leaves over there, more than grip on a plane
 constexpr double kInclineAfterBump = 4.0;  // the foot of a ramp is a bump
-constexpr RollingMode kModes[] = {RollingMode::grip, RollingMode::slip, RollingMode::bump, RollingMode::incline};
+constexpr RollingMode kModes[] = {RollingMode::grip, RollingMode::slip, RollingMode::bump, RollingMode::incline,
+                                  RollingMode::rough};
 static_assert(std::size(kModes) == kRollingModes);
 
 double log_normal(double value, double variance) {
@@ -48,15 +50,25 @@ double log_still(const rolling::Contact& c, const RollingFilter::Hypothesis& h, 
     H.middleCols<2>(rolling::kSlope).setZero();
   }
   Eigen::Matrix3d S = H * h.P * H.transpose();
-  S.diagonal() += Eigen::Vector3d(c.grip_variance, c.grip_variance, squared(params.vertical_sigma_m_s));
   if (anew && mode == RollingMode::incline) {
     const Eigen::Matrix<double, 3, 2> by_slope = c.H.middleCols<2>(rolling::kSlope);
     S += squared(params.slope_sigma) * by_slope * by_slope.transpose();
   }
-  const Eigen::LLT<Eigen::Matrix3d> factor(S);
-  const double log_det = 2.0 * factor.matrixLLT().diagonal().array().log().sum();
-  return -0.5 *
-         (factor.matrixL().solve(c.velocity(x)).squaredNorm() + log_det + 3.0 * std::log(2.0 * std::numbers::pi));
+  const auto log_det_with = [&](const Eigen::Vector3d& variance, Eigen::LLT<Eigen::Matrix3d>& factor) {
+    factor.compute(S + Eigen::Matrix3d(variance.asDiagonal()));
+    return 2.0 * factor.matrixLLT().diagonal().array().log().sum();
+  };
+  Eigen::LLT<Eigen::Matrix3d> factor;
+  double log_det = 0.0, cost = 0.0;
+  if (mode == RollingMode::rough) {
+    // ups and downs last many nodes: each must not be charged with their width anew
+    log_det = log_det_with(rolling::contact_variance(params, c, RollingMode::grip), factor);
+    cost = kRoughCost;
+  }
+  const double own = log_det_with(rolling::contact_variance(params, c, mode), factor);
+  if (mode != RollingMode::rough) log_det = own;
+  const double square = factor.matrixL().solve(c.velocity(x)).squaredNorm();
+  return -cost - 0.5 * (square + log_det + 3.0 * std::log(2.0 * std::numbers::pi));
 }
 
 /// log density of a contact velocity `u` that moves, by its change since the last node.
@@ -73,16 +85,16 @@ double log_moving(const rolling::Contact& c, const RollingFilter::Hypothesis& h,
 void measure_contact(const rolling::Contact& c, RollingMode mode, double node_s, const Eigen::Vector3d& v_WI_m_s,
                      const RollingParams& params, RollingFilter::Hypothesis& h) {
   // what the length of the normal adds is no error of the state
-  const Eigen::Vector3d u = c.velocity(h.x) - c.H * h.x;
+  const Eigen::Vector3d u = c.velocity(h.x) - c.H * h.x, variance = rolling::contact_variance(params, c, mode);
   if (!slips(mode)) {
-    for (int axis = 0; axis < 2; ++axis) rolling::update(c.H.row(axis), -u[axis], c.grip_variance, h.x, h.P);
+    for (int axis = 0; axis < 2; ++axis) rolling::update(c.H.row(axis), -u[axis], variance[axis], h.x, h.P);
   }
   if (mode != RollingMode::bump) {
-    rolling::update(c.H.row(2), -u.z(), squared(params.vertical_sigma_m_s), h.x, h.P);
+    rolling::update(c.H.row(2), -u.z(), variance.z(), h.x, h.P);
   }
-  if (const auto variance = rolling::lost_velocity_variance(params, node_s, h.P)) {
+  if (const auto lost = rolling::lost_velocity_variance(params, node_s, h.P)) {
     for (int axis = 0; axis < 2; ++axis) {
-      rolling::update(rolling::kVelocity + axis, -v_WI_m_s[axis], *variance, h.x, h.P);
+      rolling::update(rolling::kVelocity + axis, -v_WI_m_s[axis], *lost, h.x, h.P);
     }
   }
 }
@@ -101,9 +113,11 @@ double RollingFilter::log_transition(RollingMode from, RollingMode to, double h_
     if (b == RollingMode::incline) {
       return params_.incline_begins_per_s * (a == RollingMode::bump ? kInclineAfterBump : 1.0);
     }
+    if (b == RollingMode::rough) return params_.rough_begins_per_s;
     if (b == RollingMode::slip) return a == RollingMode::bump ? params_.slip_bump_per_s : params_.slip_begins_per_s;
     if (b == RollingMode::bump) return a == RollingMode::slip ? params_.slip_bump_per_s : params_.bump_begins_per_s;
     if (a == RollingMode::incline) return params_.incline_ends_per_s;
+    if (a == RollingMode::rough) return params_.rough_ends_per_s;
     return a == RollingMode::slip ? params_.slip_ends_per_s : params_.bump_ends_per_s;
   };
   if (from != to) return std::log(rate(from, to) * h_s);

@@ -53,6 +53,7 @@ void require_noise(const RollingParams& p) {
   require_within("grip_sigma_m_s", p.grip_sigma_m_s, kSmallest, 1e3);
   require_within("grip_sigma_share", p.grip_sigma_share, kSmallest, 1e3);
   require_within("vertical_sigma_m_s", p.vertical_sigma_m_s, kSmallest, 1e3);
+  require_within("rough_share", p.rough_share, kSmallest, 1e3);
   require_within("slope_walk_sqrts", p.slope_walk_sqrts, kSmallest, 1e3);
   require_within("rest_velocity_sigma_m_s", p.rest_velocity_sigma_m_s, kSmallest, 1e3);
   require_within("rest_rate_sigma_rad_s", p.rest_rate_sigma_rad_s, kSmallest, 1e3);
@@ -76,6 +77,8 @@ void require_modes(const RollingParams& p) {
   require_within("slip_bump_per_s", p.slip_bump_per_s, kSmallest, 1e3);
   require_within("incline_begins_per_s", p.incline_begins_per_s, kSmallest, 1e3);
   require_within("incline_ends_per_s", p.incline_ends_per_s, kSmallest, 1e3);
+  require_within("rough_begins_per_s", p.rough_begins_per_s, kSmallest, 1e3);
+  require_within("rough_ends_per_s", p.rough_ends_per_s, kSmallest, 1e3);
   require_within("event_shortest_s", p.event_shortest_s, 0.0, 10.0);
   require_within("rest_rate_rad_s", p.rest_rate_rad_s, kSmallest, 10.0);
   require_within("rest_force_m_s2", p.rest_force_m_s2, kSmallest, 100.0);
@@ -83,6 +86,11 @@ void require_modes(const RollingParams& p) {
 }
 
 }  // namespace
+
+Eigen::Vector3d contact_variance(const RollingParams& params, const Contact& c, RollingMode mode) {
+  const double rough = mode == RollingMode::rough ? squared(params.rough_share * c.rolling_speed_m_s) : 0.0;
+  return {c.grip_variance, c.grip_variance, squared(params.vertical_sigma_m_s) + rough};
+}
 
 Eigen::Vector3d Contact::velocity(const Vector& x) const {
   const Eigen::Vector2d change = x.segment<2>(kSlope);

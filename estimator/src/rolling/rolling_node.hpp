@@ -35,6 +35,9 @@ struct Contact {
   Eigen::Vector3d velocity(const Vector& x) const;
 };
 
+/// Of the contact velocity while the contact stands still; slipping, its vertical part alone counts.
+Eigen::Vector3d contact_variance(const RollingParams& params, const Contact& c, RollingMode mode);
+
 /// Levelled (or given) attitude, centre at the origin, at rest.
 RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaterniond& q_WI);
 Covariance prior_covariance(const RollingParams& params);

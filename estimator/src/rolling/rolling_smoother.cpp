@@ -23,7 +23,8 @@ RollingParams quieter(RollingParams params, double share) {
 /// The one of two modes that says less about the contact.
 RollingMode looser(RollingMode a, RollingMode b) {
   const auto rank = [](RollingMode mode) {
-    return mode == RollingMode::bump ? 3 : mode == RollingMode::slip ? 2 : mode == RollingMode::incline ? 1 : 0;
+    if (slips(mode)) return mode == RollingMode::bump ? 3 : 2;
+    return mode == RollingMode::grip ? 0 : 1;
   };
   return rank(a) >= rank(b) ? a : b;
 }

@@ -27,17 +27,17 @@ void measure_rest(const RollingParams& params, const RollingSums& sums, const Ro
 
 void measure_contact(const RollingParams& params, const Contact& c, double node_s, const Eigen::Vector3d& v_WI_m_s,
                      NodeRecord& record, Vector& x, Covariance& P) {
-  const Eigen::Vector3d u = c.velocity(x) - c.H * x;
+  const Eigen::Vector3d u = c.velocity(x) - c.H * x, variance = contact_variance(params, c, record.path.mode);
   if (!slips(record.path.mode)) {
-    for (int axis = 0; axis < 2; ++axis) measure(c.H.row(axis), -u[axis], c.grip_variance, record, x, P);
+    for (int axis = 0; axis < 2; ++axis) measure(c.H.row(axis), -u[axis], variance[axis], record, x, P);
   }
   if (record.path.mode != RollingMode::bump) {
-    measure(c.H.row(2), -u.z(), squared(params.vertical_sigma_m_s), record, x, P);
+    measure(c.H.row(2), -u.z(), variance.z(), record, x, P);
   }
-  if (const auto variance = lost_velocity_variance(params, node_s, P)) {
+  if (const auto lost = lost_velocity_variance(params, node_s, P)) {
     for (int axis = 0; axis < 2; ++axis) {
       const Row velocity = Vector::Unit(kVelocity + axis).transpose();
-      measure(velocity, -v_WI_m_s[axis], *variance, record, x, P);
+      measure(velocity, -v_WI_m_s[axis], *lost, record, x, P);
     }
   }
 }

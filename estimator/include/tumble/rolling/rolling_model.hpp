@@ -15,8 +15,9 @@ enum class RollingMode : std::uint8_t {
   slip,     ///< it moves along the floor: spinning too fast or sliding
   bump,     ///< it also rises or falls: an obstacle, or the air
   incline,  ///< it stands still on a slope, which is estimated
+  rough,    ///< it stands still, the floor goes up and down about the level
 };
-inline constexpr int kRollingModes = 4;
+inline constexpr int kRollingModes = 5;
 
 /// Whether the contact point may move in this mode.
 inline bool slips(RollingMode mode) {
@@ -50,6 +51,7 @@ struct RollingParams {
   double grip_sigma_m_s = 3e-3;      ///< of the contact velocity while gripping
   double grip_sigma_share = 1.5e-3;  ///< more, as a share of the rolling speed
   double vertical_sigma_m_s = 8e-3;
+  double rough_share = 0.04;  ///< more on a rough floor, as a share of the rolling speed
   double slope_walk_sqrts = 0.02;
   double shock_share = 0.06;  ///< of the velocity that a shock gives: error of its timing and direction
   double rest_velocity_sigma_m_s = 2e-3;
@@ -74,7 +76,8 @@ struct RollingParams {
   double slip_begins_per_s = 0.5, slip_ends_per_s = 2.0;
   double bump_begins_per_s = 0.3, bump_ends_per_s = 5.0;
   double slip_bump_per_s = 0.2;                                ///< slip to bump and back
-  double incline_begins_per_s = 0.005, incline_ends_per_s = 0.1;  ///< from and to the level
+  double incline_begins_per_s = 0.001, incline_ends_per_s = 0.1;  ///< from and to the level
+  double rough_begins_per_s = 0.02, rough_ends_per_s = 0.1;
   double event_shortest_s = 0.06;                              ///< least stay in slip or bump; bound [0, 10]
   // Rest.
   double rest_rate_rad_s = 0.02;  ///< bound (0, 10]
