@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <tuple>
+#include <utility>
 
 #include "rolling_node.hpp"
 #include "tumble/rolling/rolling_filter.hpp"
@@ -17,8 +19,9 @@ using rolling::squared;
 constexpr double kDropped = -120.0;   // log weight below the best at which a hypothesis is given up
 constexpr double kRestFloor = -60.0;  // least log likelihood of a node at rest: one bad node must not decide
 constexpr double kSettled_s = 1.0;    // after so long in one mode it does not matter when it began
-constexpr double kSteady_m_s = 0.01, kJump_m_s = 0.08, kSteadyShare = 0.7;  // change of u per node, horizontal
-constexpr double kRise_m_s = 0.03, kHit_m_s = 0.3;                          // and vertical, on a bump
+// change of u per node, horizontal; a plateau as narrow as grip, or each plateau would look like grip
+constexpr double kPlateau_m_s = 0.004, kSteady_m_s = 0.01, kJump_m_s = 0.08, kPlateauShare = 0.4, kSteadyShare = 0.35;
+constexpr double kRise_m_s = 0.03, kHit_m_s = 0.3, kRiseShare = 0.7;  // and vertical, on a bump
 constexpr std::int64_t kAgesApart = 4;
 constexpr double kRoughCost = 0.2;  // per node: less than what a slope leaves over there, more than grip on a plane
 constexpr double kInclineAfterBump = 4.0;  // the foot of a ramp is a bump
@@ -30,13 +33,22 @@ double log_normal(double value, double variance) {
   return -0.5 * (value * value / variance + std::log(2.0 * std::numbers::pi * variance));
 }
 
-/// log of a mixture of two isotropic normal densities of `dimension` components with squared length `square`.
-double log_mixture(double square, double narrow, double wide, int dimension) {
+/// log density of a rise or fall of u per node on a bump: rolling over it, or hitting it.
+double log_rise(double change) {
   const auto density = [&](double sigma) {
-    return std::exp(-0.5 * square / (sigma * sigma)) *
-           std::pow(2.0 * std::numbers::pi * sigma * sigma, -0.5 * dimension);
+    return std::exp(-0.5 * change * change / (sigma * sigma)) / (sigma * std::sqrt(2.0 * std::numbers::pi));
   };
-  return std::log(kSteadyShare * density(narrow) + (1.0 - kSteadyShare) * density(wide) + 1e-300);
+  return std::log(kRiseShare * density(kRise_m_s) + (1.0 - kRiseShare) * density(kHit_m_s) + 1e-300);
+}
+
+/// log density of a change of u per node, horizontal, with squared length `square`: a plateau, a drift, or a jump.
+double log_change(double square) {
+  double density = 0.0;
+  for (const auto& [share, sigma] : {std::pair(kPlateauShare, kPlateau_m_s), std::pair(kSteadyShare, kSteady_m_s),
+                                     std::pair(1.0 - kPlateauShare - kSteadyShare, kJump_m_s)}) {
+    density += share * std::exp(-0.5 * square / (sigma * sigma)) / (2.0 * std::numbers::pi * sigma * sigma);
+  }
+  return std::log(density + 1e-300);
 }
 
 /// log density of a contact that stands still, by the hypothesis `h` should it enter `mode`.
@@ -75,8 +87,8 @@ double log_still(const rolling::Contact& c, const RollingFilter::Hypothesis& h, 
 double log_moving(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode,
                   const Eigen::Vector3d& u, const RollingParams& params) {
   const Eigen::Vector3d change = u - h.u_W_m_s;
-  const double horizontal = log_mixture(change.head<2>().squaredNorm(), kSteady_m_s, kJump_m_s, 2);
-  if (mode == RollingMode::bump) return horizontal + log_mixture(squared(change.z()), kRise_m_s, kHit_m_s, 1);
+  const double horizontal = log_change(change.head<2>().squaredNorm());
+  if (mode == RollingMode::bump) return horizontal + log_rise(change.z());
   const double vertical = c.H.row(2) * h.P * c.H.row(2).transpose() + squared(params.vertical_sigma_m_s);
   return horizontal + log_normal(u.z(), vertical);
 }
@@ -147,8 +159,11 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, State& sta
                              mode == h.mode ? h.switched_node : state.node};
     }
   }
-  std::stable_sort(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(total),
-                   [](const Candidate& a, const Candidate& b) { return a.log_weight > b.log_weight; });
+  // std::stable_sort would allocate; ties go by origin, so that the order is one
+  std::sort(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(total),
+            [](const Candidate& a, const Candidate& b) {
+              return std::tuple(-a.log_weight, a.parent, a.mode) < std::tuple(-b.log_weight, b.parent, b.mode);
+            });
 
   const auto settled = static_cast<std::int64_t>(kSettled_s / node_s);
   // two beginnings of the same mode are one the sooner, the longer they are past
@@ -207,8 +222,10 @@ void RollingFilter::correct_at_rest(State& state) const {
     }
     h.u_W_m_s.setZero();
   }
-  std::stable_sort(state.hypotheses.begin(), state.hypotheses.begin() + state.count,
-                   [](const Hypothesis& a, const Hypothesis& b) { return a.log_weight > b.log_weight; });
+  std::sort(state.hypotheses.begin(), state.hypotheses.begin() + state.count,
+            [](const Hypothesis& a, const Hypothesis& b) {
+              return std::tuple(-a.log_weight, a.parent) < std::tuple(-b.log_weight, b.parent);
+            });
   // they agree about the present, so after a while one is enough
   const bool settled = state.rest_s > kSettled_s;
   if (settled && state.count > 1) state.settled_spread_m2 = position_spread(state);
