@@ -65,4 +65,14 @@ Recording simulate(const Situation& given, const SimulateOptions& options) {
   return recording;
 }
 
+Eigen::Isometry3d start_pose(const Situation& given, const std::filesystem::path& models) {
+  const Situation situation = resolve(given);
+  const engine::World world = engine::compose(situation, models);
+  const BodyState start = find_motion_type(situation.motion.type).make(situation.motion.values, world)->start();
+  Eigen::Isometry3d T_WB = Eigen::Isometry3d::Identity();
+  T_WB.translation() = start.p_WB_m;
+  T_WB.linear() = start.q_WB.toRotationMatrix();
+  return T_WB;
+}
+
 }  // namespace tumble::sim

@@ -3,7 +3,7 @@
 #include <array>
 
 #include "scenarios/methods/bridge.hpp"
-#include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/rate_baseline.hpp"
 #include "tumble/angular_velocity/rate_smoother.hpp"
 
 namespace tumble::scenarios {
@@ -41,8 +41,7 @@ RateSmoother::Params smoother_params(const sim::ImuRecord& record, const sim::Va
   model.nominal.lever_arm_m = bridge::lever_arm_I_m(record);
   if (record.gyro_noise_rad_s_sqrt_hz > 0.0) model.gyro_noise_density = record.gyro_noise_rad_s_sqrt_hz;
   if (record.accel_noise_m_s2_sqrt_hz > 0.0) model.accel_noise_density = record.accel_noise_m_s2_sqrt_hz;
-  if (record.stated_gyro_range_rad_s > 0.0) params.rails.stated_gyro_rad_s = record.stated_gyro_range_rad_s;
-  if (record.stated_accel_range_m_s2 > 0.0) params.rails.stated_accel_m_s2 = record.stated_accel_range_m_s2;
+  params.rails = stated_rails(record);
   params.gap_max_s = bridge::kGapMaxS;
   model.lever_arm_sigma_m = parameters.at("lever_arm_sigma_m");
   model.gyro_bias_sigma_rad_s = parameters.at("gyro_bias_sigma_rad_s");

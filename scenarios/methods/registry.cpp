@@ -17,6 +17,12 @@ std::string full_name(const MethodInfo& info) {
 std::vector<Method> all_methods() {
   std::vector<Method> all = {
       rate_raw(),
+      rate_interpolate(),
+      rate_reject(),
+      rate_constant_jerk(),
+      rate_accelerometers(),
+      rate_zero_velocity(),
+      rate_magnetometer(),
       rate_saave(),
       rate_tumble(),
       rate_oracle(),
@@ -28,8 +34,8 @@ std::vector<Method> all_methods() {
       attitude_autogain(),
       attitude_vqf(),
       attitude_tumble(),
+      position_rolling(),  // the first of a kind is what the others are held against, where no raw one is
       position_double_integration(),
-      position_rolling(),
       position_observer(),
       position_autogain_fusion(),
       position_tumble(),

@@ -24,6 +24,12 @@ using RunCore = Estimate (*)(const sim::Sensors&, const sim::Values& parameters,
 Method make_method(MethodInfo info, RunCore run);
 
 Method rate_raw();
+Method rate_interpolate();
+Method rate_reject();
+Method rate_constant_jerk();
+Method rate_accelerometers();
+Method rate_zero_velocity();
+Method rate_magnetometer();
 Method rate_saave();
 Method rate_tumble();
 Method rate_oracle();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <string>
 
+#include "scenarios/errors.hpp"
 #include "scenarios/recordings/export.hpp"
 #include "scenarios/recordings/number_text.hpp"
 #include "scenarios/recordings/replace_file.hpp"
@@ -15,11 +16,17 @@ void append_seconds(std::string& text, std::int64_t time_ns) {
   text += std::to_string(time_ns / 1000000000) + "." + std::string(9 - nanoseconds.size(), '0') + nanoseconds;
 }
 
+/// A reference has gaps.
+bool known(const sim::Truth& truth, std::size_t i) {
+  return truth.q_WB[i].coeffs().allFinite() && truth.p_WB_m[i].allFinite();
+}
+
 }  // namespace
 
 void export_tum(const sim::Truth& truth, const std::filesystem::path& file) {
   std::string text = "# t[s] x y z[m] qx qy qz qw: true pose of the body (centre of mass) in the world\n";
   for (std::size_t i = 0; i < truth.p_WB_m.size(); ++i) {
+    if (!known(truth, i)) continue;
     append_seconds(text, static_cast<std::int64_t>(i) * truth.period_ns);
     for (const double x : truth.p_WB_m[i]) append_number(text += ' ', x);
     for (const double x : truth.q_WB[i].coeffs()) append_number(text += ' ', x);
@@ -31,6 +38,7 @@ void export_tum(const sim::Truth& truth, const std::filesystem::path& file) {
 void export_kitti(const sim::Truth& truth, const std::filesystem::path& file) {
   std::string text;
   for (std::size_t i = 0; i < truth.p_WB_m.size(); ++i) {
+    if (!known(truth, i)) throw BadInput("the reference has gaps, and KITTI's format has no time to leave them out; use tum");
     const Eigen::Matrix3d R_WB = truth.q_WB[i].toRotationMatrix();
     for (int row = 0; row < 3; ++row) {
       if (row > 0) text += ' ';

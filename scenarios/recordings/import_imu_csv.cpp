@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <optional>
 #include <string_view>
 
 #include "scenarios/errors.hpp"
@@ -12,8 +15,18 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::size_t kLeastColumns = 15;
 constexpr std::int64_t kSecond_ns = 1000000000;
+constexpr double kG_m_s2 = 9.80665;
+/// At rest and while rolling or carried the median is near g; in g, mg or raw counts it is not.
+constexpr double kLeastMedian_m_s2 = 3.0, kLargestMedian_m_s2 = 30.0;
+
+/// Where the columns stand.
+struct Layout {
+  std::size_t stamp = 0;
+  bool decimal_stamp = false;  ///< "1617333602.223639727"; else whole seconds, and nanoseconds in the next column
+  std::array<std::size_t, 3> rate = {8, 9, 10}, force = {12, 13, 14};
+  std::size_t least = 15;  ///< columns that a line must have
+};
 
 /// One line of the file and where it stands.
 struct Line {
@@ -23,6 +36,40 @@ struct Line {
 
 [[noreturn]] void fail(const Line& line, const std::string& what) {
   throw BadInput(line.where + ": " + what);
+}
+
+/// The column whose name ends in `name`; a second one would be another sensor's.
+std::optional<std::size_t> find_column(const Line& header, const std::string& name) {
+  std::optional<std::size_t> found;
+  for (std::size_t i = 0; i < header.fields.size(); ++i) {
+    if (!header.fields[i].ends_with(name)) continue;
+    if (found) fail(header, "two columns are called " + name);
+    found = i;
+  }
+  return found;
+}
+
+/// By name when one of them is there, and then all must be; else the places of a plain sensor_msgs/Imu.
+Layout layout_of(const Line& header) {
+  Layout layout;
+  std::size_t found = 0;
+  std::string missing;
+  const auto take = [&](const std::string& name, std::size_t& column) {
+    const std::optional<std::size_t> place = find_column(header, name);
+    if (place) column = *place, ++found;
+    else missing += " " + name;
+  };
+  take("header/stamp", layout.stamp);
+  const std::array<std::string, 3> axes = {"x", "y", "z"};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    take("angular_velocity/" + axes[axis], layout.rate[axis]);
+    take("linear_acceleration/" + axes[axis], layout.force[axis]);
+  }
+  if (found == 0) return {};
+  if (!missing.empty()) fail(header, "columns are missing:" + missing);
+  layout.decimal_stamp = true;
+  layout.least = header.fields.size();
+  return layout;
 }
 
 std::vector<std::string_view> split(std::string_view text) {
@@ -57,13 +104,33 @@ std::int64_t whole_number(const Line& line, std::size_t column, std::int64_t lar
   return static_cast<std::int64_t>(value);
 }
 
-Eigen::Vector3d vector(const Line& line, std::size_t column) {
-  return {number(line, column), number(line, column + 1), number(line, column + 2)};
+Eigen::Vector3d vector(const Line& line, const std::array<std::size_t, 3>& columns) {
+  return {number(line, columns[0]), number(line, columns[1]), number(line, columns[2])};
 }
 
-/// Since the epoch; stamps up to the year 2262 fit.
-std::int64_t stamp_ns(const Line& line) {
-  return whole_number(line, 0, 9'000'000'000) * kSecond_ns + whole_number(line, 1, kSecond_ns - 1);
+/// A decimal number of seconds, without the rounding of a double.
+std::int64_t decimal_ns(const Line& line, std::size_t column) {
+  const std::string_view text = line.fields[column];
+  const std::size_t point = std::min(text.find('.'), text.size());
+  const std::string_view part = text.substr(std::min(point + 1, text.size()));
+  std::int64_t seconds = 0, fraction_ns = 0;
+  const auto all_digits = [](std::string_view digits) {
+    return std::all_of(digits.begin(), digits.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+  };
+  if (point == 0 || point > 10 || part.size() > 9 || !all_digits(text.substr(0, point)) || !all_digits(part)) {
+    fail(line, "column " + std::to_string(column) + " must be seconds with at most nine decimals, is '" + std::string(text) + "'");
+  }
+  std::from_chars(text.data(), text.data() + point, seconds);
+  std::string digits(part);
+  digits.resize(9, '0');
+  std::from_chars(digits.data(), digits.data() + digits.size(), fraction_ns);
+  return seconds * kSecond_ns + fraction_ns;
+}
+
+/// Since the epoch; stamps up to the year 2255 fit.
+std::int64_t stamp_ns(const Line& line, const Layout& layout) {
+  if (layout.decimal_stamp) return decimal_ns(line, layout.stamp);
+  return whole_number(line, layout.stamp, 9'000'000'000) * kSecond_ns + whole_number(line, layout.stamp + 1, kSecond_ns - 1);
 }
 
 std::int64_t median_step(const std::vector<std::int64_t>& times) {
@@ -74,8 +141,8 @@ std::int64_t median_step(const std::vector<std::int64_t>& times) {
   return *middle;
 }
 
-void append_sample(const Line& line, std::int64_t& first_ns, sim::ImuRecord& imu) {
-  const std::int64_t stamp = stamp_ns(line);
+void append_sample(const Line& line, const Layout& layout, double scale, std::int64_t& first_ns, sim::ImuRecord& imu) {
+  const std::int64_t stamp = stamp_ns(line, layout);
   if (imu.time_ns.empty()) first_ns = stamp;
   const std::int64_t time_ns = stamp - first_ns;
   if (!imu.time_ns.empty() && time_ns <= imu.time_ns.back()) {
@@ -83,19 +150,34 @@ void append_sample(const Line& line, std::int64_t& first_ns, sim::ImuRecord& imu
                    std::to_string(imu.time_ns.back()));
   }
   imu.time_ns.push_back(time_ns);
-  imu.gyro_rad_s.push_back(vector(line, 8));
-  imu.accel_m_s2.push_back(vector(line, 12));
+  imu.gyro_rad_s.push_back(vector(line, layout.rate));
+  imu.accel_m_s2.push_back(scale * vector(line, layout.force));
   imu.clip_flags.push_back(0);
+}
+
+void require_plausible_force(const std::string& path, const sim::ImuRecord& imu, AccelUnit unit) {
+  std::vector<double> norms;
+  for (const Eigen::Vector3d& force : imu.accel_m_s2) norms.push_back(force.norm());
+  const auto middle = norms.begin() + static_cast<std::ptrdiff_t>(norms.size() / 2);
+  std::nth_element(norms.begin(), middle, norms.end());
+  if (*middle >= kLeastMedian_m_s2 && *middle <= kLargestMedian_m_s2) return;
+  const char* read_as = unit == AccelUnit::g ? "g" : "m/s^2";
+  throw BadInput(path + ": read in " + read_as + " the median specific force is " + std::to_string(*middle) +
+                 " m/s^2, must be within 3 and 30: is the file in " + (unit == AccelUnit::g ? "m/s^2" : "g") + "?");
 }
 
 }  // namespace
 
-Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord& device) {
+Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord& device, AccelUnit unit) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream || !std::filesystem::is_regular_file(path)) throw BadInput(path.string() + ": no such file");
   std::string text;
   if (!std::getline(stream, text)) throw BadInput(path.string() + ": is empty");
-  const std::size_t columns = split(text).size();
+  const std::string header_text = text;
+  const Line header{path.string() + ":1", split(header_text)};
+  const Layout layout = layout_of(header);
+  const std::size_t columns = header.fields.size();
+  const double scale = unit == AccelUnit::g ? kG_m_s2 : 1.0;
   sim::ImuRecord imu = device;
   for (auto* rows : {&imu.gyro_rad_s, &imu.accel_m_s2}) rows->clear();
   imu.time_ns.clear();
@@ -103,15 +185,16 @@ Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord&
   std::int64_t first_ns = 0;
   for (int number_of_line = 2; std::getline(stream, text); ++number_of_line) {
     const Line line{path.string() + ":" + std::to_string(number_of_line), split(text)};
-    if (line.fields.size() < kLeastColumns || line.fields.size() != columns) {
+    if (line.fields.size() < layout.least || line.fields.size() != columns) {
       fail(line, "has " + std::to_string(line.fields.size()) + " columns, the header " + std::to_string(columns) +
-                     "; must be equal and at least " + std::to_string(kLeastColumns));
+                     "; must be equal and at least " + std::to_string(layout.least));
     }
-    append_sample(line, first_ns, imu);
+    append_sample(line, layout, scale, first_ns, imu);
   }
   if (stream.bad()) throw BadInput(path.string() + ": cannot be read");
   if (imu.time_ns.size() < 2)
     throw BadInput(path.string() + ": holds " + std::to_string(imu.time_ns.size()) + " samples, needs 2");
+  require_plausible_force(path.string(), imu, unit);
   imu.period_ns = median_step(imu.time_ns);
   Imported out;
   out.info.attribution =

@@ -26,6 +26,7 @@ ClippingTruth::ClippingTruth(const sim::Sensors& sensors, const sim::Truth& trut
   truth_ = &truth.imus.front();
   tolerance_rad_s_ = std::max(kToleranceMinRadS, noise_rad_s(*record_));
   const std::size_t count = record_->time_ns.size();
+  if (truth_->rate_rad_s.empty() && count > 0) throw BadInput("the truth holds no rates of imu '" + record_->name + "': a reference of poses?");
   if (record_->gyro_rad_s.size() != count || truth_->rate_rad_s.size() != count ||
       truth_->gyro_unclipped_rad_s.size() != count) {
     throw BadInput("imu '" + record_->name + "' and its truth differ in length");

@@ -62,8 +62,20 @@ TruthTrack::TruthTrack(const sim::Truth& truth, Frame frame) : truth_(&truth), T
   require_length("w_WB_B_rad_s", truth.w_WB_B_rad_s.size(), count);
   last_ns_ = static_cast<std::int64_t>(count - 1) * truth.period_ns;
   path_m_.resize(count, 0.0);
-  for (std::size_t k = 1; k < count; ++k) path_m_[k] = path_m_[k - 1] + (position(k) - position(k - 1)).norm();
+  for (std::size_t k = 1; k < count; ++k) {
+    path_m_[k] = path_m_[k - 1] + (known(k - 1) && known(k) ? (position(k) - position(k - 1)).norm() : 0.0);
+  }
   rest_ = rest_mask(truth);
+}
+
+bool TruthTrack::known(std::size_t index) const {
+  return truth_->q_WB[index].coeffs().allFinite() && truth_->p_WB_m[index].allFinite();
+}
+
+bool TruthTrack::covers(std::int64_t time_ns) const {
+  if (time_ns < 0 || time_ns > last_ns_) return false;
+  const auto index = static_cast<std::size_t>(time_ns / truth_->period_ns);
+  return known(index) && (time_ns % truth_->period_ns == 0 || known(index + 1));
 }
 
 Eigen::Vector3d TruthTrack::position(std::size_t index) const {
@@ -72,8 +84,9 @@ Eigen::Vector3d TruthTrack::position(std::size_t index) const {
 
 PoseState TruthTrack::pose(std::int64_t time_ns) const {
   const auto index = static_cast<std::size_t>(time_ns / truth_->period_ns);
-  const std::size_t next = std::min(index + 1, truth_->p_WB_m.size() - 1);
   const double share = static_cast<double>(time_ns % truth_->period_ns) / static_cast<double>(truth_->period_ns);
+  // at a sample the next one has no part, and may be unknown
+  const std::size_t next = share > 0.0 ? std::min(index + 1, truth_->p_WB_m.size() - 1) : index;
 
   const Eigen::Quaterniond q_WB = truth_->q_WB[index].slerp(share, truth_->q_WB[next]);
   const Eigen::Vector3d p_WB = (1.0 - share) * truth_->p_WB_m[index] + share * truth_->p_WB_m[next];

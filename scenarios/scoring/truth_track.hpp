@@ -26,7 +26,8 @@ class TruthTrack {
   TruthTrack(const sim::Truth& truth, Frame frame);
 
   std::int64_t last_ns() const { return last_ns_; }
-  bool covers(std::int64_t time_ns) const { return time_ns >= 0 && time_ns <= last_ns_; }
+  /// Within the truth, and where it is known: a reference has gaps.
+  bool covers(std::int64_t time_ns) const;
 
   /// Pose of the frame in W and velocity of its origin; `time_ns` must be covered. O(1).
   PoseState pose(std::int64_t time_ns) const;
@@ -36,6 +37,7 @@ class TruthTrack {
   bool at_rest(std::int64_t time_ns) const;
 
  private:
+  bool known(std::size_t index) const;
   Eigen::Vector3d position(std::size_t index) const;
 
   const sim::Truth* truth_;

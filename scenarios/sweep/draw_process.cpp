@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "scenarios/sweep/message.hpp"
+#include "scenarios/sweep/motion_values.hpp"
 #include "sim/lidar/surface.hpp"
 
 namespace tumble::scenarios {
@@ -34,12 +35,13 @@ double peak_mib() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-void run_method_child(const Method& method, const SimulatedDraw& draw, const sim::Surface* surface, int fd) {
+void run_method_child(const Method& method, const SimulatedDraw& draw, const SimulatedDraw& scored,
+                      const sim::Surface* surface, int fd) {
   const double before_mib = resident_mib();
   Outcome outcome;
   const Estimate estimate = run_method(method, draw, outcome);
   outcome.scores.push_back({"estimate_peak_mib", std::max(0.0, peak_mib() - before_mib)});
-  assess(method, draw, surface, estimate, outcome);
+  assess(method, scored, surface, estimate, outcome);
   write_all(fd, to_line({outcome, {}}));
 }
 
@@ -56,9 +58,10 @@ bool read_until(Process& process, double deadline_s, std::string& buffer) {
 
 }  // namespace
 
-Outcome run_isolated(const Method& method, const SimulatedDraw& draw, const sim::Surface* surface, double timeout_s) {
+Outcome run_isolated(const Method& method, const SimulatedDraw& draw, const SimulatedDraw& scored,
+                     const sim::Surface* surface, double timeout_s) {
   const double before_mib = resident_mib();
-  Process process([&](int fd) { run_method_child(method, draw, surface, fd); }, false);
+  Process process([&](int fd) { run_method_child(method, draw, scored, surface, fd); }, false);
   std::string text;
   const bool in_time = read_until(process, now_s() + timeout_s, text);
   if (!in_time) process.kill();
@@ -92,12 +95,13 @@ void run_draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed
     const bool maps = std::any_of(methods.begin(), methods.end(),
                                   [](const Method* method) { return method->info.kind == Kind::slam; });
     if (maps) surface.emplace(draw->situation, data.models());
+    write_all(fd, to_line({{}, {}, motion_values(scenario.name, seed, draw->recording)}));
   } catch (const std::exception& error) {
     write_all(fd, to_line({{}, RejectedDraw{scenario.name, seed, one_line(error.what())}}));
     return;
   }
   for (const Method* method : methods) {
-    const Outcome outcome = run_isolated(*method, *draw, surface ? &*surface : nullptr, timeout_s);
+    const Outcome outcome = run_isolated(*method, *draw, *draw, surface ? &*surface : nullptr, timeout_s);
     if (!write_all(fd, to_line({outcome, {}}))) return;
   }
   write_all(fd, to_line({}));

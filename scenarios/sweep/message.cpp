@@ -10,16 +10,30 @@ namespace {
 
 using nlohmann::json;
 
+json to_json(const std::vector<Score>& scores) {
+  json pairs = json::array();
+  for (const Score& score : scores) pairs.push_back({score.metric, score.value});
+  return pairs;
+}
+
+std::vector<Score> scores_from(const json& pairs) {
+  std::vector<Score> scores;
+  for (const json& pair : pairs) {
+    const json& value = pair.at(1);
+    scores.push_back({pair.at(0).get<std::string>(),
+                      value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>()});
+  }
+  return scores;
+}
+
 json to_json(const Outcome& outcome) {
-  json scores = json::array();
-  for (const Score& score : outcome.scores) scores.push_back({score.metric, score.value});
   return {{"scenario", outcome.scenario},
           {"seed", outcome.seed},
           {"kind", static_cast<int>(outcome.kind)},
           {"method", outcome.method},
           {"status", outcome.status},
           {"message", outcome.message},
-          {"scores", scores},
+          {"scores", to_json(outcome.scores)},
           {"recording_digest", outcome.recording_digest},
           {"estimate_digest", outcome.estimate_digest}};
 }
@@ -34,11 +48,7 @@ Outcome outcome_from(const json& object) {
   outcome.message = object.at("message").get<std::string>();
   outcome.recording_digest = object.at("recording_digest").get<std::string>();
   outcome.estimate_digest = object.at("estimate_digest").get<std::string>();
-  for (const json& score : object.at("scores")) {
-    const json& value = score.at(1);
-    outcome.scores.push_back({score.at(0).get<std::string>(),
-                              value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>()});
-  }
+  outcome.scores = scores_from(object.at("scores"));
   return outcome;
 }
 
@@ -51,6 +61,11 @@ std::string to_line(const Message& message) {
     object["rejected"] = {{"scenario", message.rejected->scenario},
                           {"seed", message.rejected->seed},
                           {"message", message.rejected->message}};
+  }
+  if (message.draw) {
+    object["draw"] = {{"scenario", message.draw->scenario},
+                      {"seed", message.draw->seed},
+                      {"values", to_json(message.draw->values)}};
   }
   // text that is not UTF-8 must not stop an outcome
   return object.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
@@ -67,6 +82,11 @@ std::optional<Message> from_line(const std::string& line) {
       message.rejected = RejectedDraw{rejected.at("scenario").get<std::string>(),
                                       rejected.at("seed").get<std::uint64_t>(),
                                       rejected.at("message").get<std::string>()};
+    }
+    if (object.contains("draw")) {
+      const json& draw = object.at("draw");
+      message.draw = DrawValues{draw.at("scenario").get<std::string>(), draw.at("seed").get<std::uint64_t>(),
+                                scores_from(draw.at("values"))};
     }
     return message;
   } catch (const json::exception&) {

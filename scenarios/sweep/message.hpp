@@ -8,10 +8,12 @@
 
 namespace tumble::scenarios {
 
-/// What the process of a draw tells the sweep, one JSON object a line. Exactly one field is set, or none: the draw is done.
+/// What the process of a draw tells the sweep, one JSON object a line. At most one field is set; none: the draw is
+/// done.
 struct Message {
   std::optional<Outcome> outcome;
   std::optional<RejectedDraw> rejected;
+  std::optional<DrawValues> draw = std::nullopt;
 };
 
 /// With the newline. Numbers come back to the bit; what is not finite comes back as NaN.

@@ -24,6 +24,13 @@ struct Outcome {
   std::string estimate_digest;  ///< of the estimate's numbers, 32 hexadecimal digits
 };
 
+/// What the motion of one draw was like, whatever the methods make of it (scenarios/scoring/motion_summary.hpp).
+struct DrawValues {
+  std::string scenario;
+  std::uint64_t seed = 0;
+  std::vector<Score> values;
+};
+
 /// A draw that could not be simulated is an outcome of its own: kind and method empty in the database.
 struct RejectedDraw {
   std::string scenario;

@@ -26,6 +26,12 @@ double read_value(const SQLite::Column& column) {
   return column.isNull() ? std::numeric_limits<double>::quiet_NaN() : column.getDouble();
 }
 
+// SQLite has no NaN: a number that is none is null
+void bind_value(SQLite::Statement& statement, int index, double value) {
+  if (std::isnan(value)) statement.bind(index);
+  else statement.bind(index, value);
+}
+
 Kind kind_named(const std::string& name, const std::filesystem::path& path) {
   for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
     if (name == to_string(kind)) return kind;
@@ -121,9 +127,7 @@ struct Results::Impl {
       if (score.metric.empty()) continue;
       value.bind(1, id);
       value.bind(2, score.metric);
-      // SQLite has no NaN: a score that is not a number is null
-      if (std::isnan(score.value)) value.bind(3);
-      else value.bind(3, score.value);
+      bind_value(value, 3, score.value);
       value.exec();
       value.reset();
     }
@@ -156,6 +160,48 @@ void Results::store(const RejectedDraw& rejected) {
   outcome.status = kRejected;
   outcome.message = rejected.message;
   impl_->guarded([&] { impl_->store("", outcome); });
+}
+
+void Results::store(const DrawValues& draw) {
+  impl_->guarded([&] {
+    SQLite::Transaction transaction(impl_->database, SQLite::TransactionBehavior::IMMEDIATE);
+    SQLite::Statement insert(impl_->database, "INSERT OR REPLACE INTO draw_values VALUES (?, ?, ?, ?)");
+    for (const Score& score : draw.values) {
+      insert.bind(1, draw.scenario);
+      insert.bind(2, stored_seed(draw.seed));
+      insert.bind(3, score.metric);
+      bind_value(insert, 4, score.value);
+      insert.exec();
+      insert.reset();
+    }
+    transaction.commit();
+  });
+}
+
+void Results::store(const Certificate& certificate) {
+  impl_->guarded([&] {
+    SQLite::Transaction transaction(impl_->database, SQLite::TransactionBehavior::IMMEDIATE);
+    SQLite::Statement remove(impl_->database, "DELETE FROM certificates WHERE build = ?");
+    remove.bind(1, certificate.build);
+    remove.exec();
+    SQLite::Statement insert(impl_->database, "INSERT INTO certificates VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+    for (std::size_t i = 0; i < certificate.entries.size(); ++i) {
+      const CertificateEntry& entry = certificate.entries[i];
+      insert.bind(1, certificate.build);
+      insert.bind(2, static_cast<std::int64_t>(i));
+      insert.bind(3, entry.row);
+      insert.bind(4, entry.subject);
+      insert.bind(5, entry.law);
+      insert.bind(6, entry.unit);
+      bind_value(insert, 7, entry.value);
+      bind_value(insert, 8, entry.low);
+      bind_value(insert, 9, entry.high);
+      insert.bind(10, entry.note);
+      insert.exec();
+      insert.reset();
+    }
+    transaction.commit();
+  });
 }
 
 void Results::set_note(const std::string& key, const std::string& text) {
@@ -226,6 +272,40 @@ std::vector<RejectedDraw> Results::rejected() const {
                       select.getColumn(2).getString()});
     }
     return rows;
+  });
+}
+
+std::vector<DrawValues> Results::draws() const {
+  return impl_->guarded([&] {
+    std::vector<DrawValues> draws;
+    SQLite::Statement select(impl_->database,
+                             "SELECT scenario, seed, metric, value FROM draw_values ORDER BY scenario, seed, metric");
+    while (select.executeStep()) {
+      const std::string scenario = select.getColumn(0).getString();
+      const std::uint64_t seed = read_seed(select.getColumn(1).getInt64());
+      if (draws.empty() || draws.back().scenario != scenario || draws.back().seed != seed) {
+        draws.push_back({scenario, seed, {}});
+      }
+      draws.back().values.push_back({select.getColumn(2).getString(), read_value(select.getColumn(3))});
+    }
+    return draws;
+  });
+}
+
+std::vector<Certificate> Results::certificates() const {
+  return impl_->guarded([&] {
+    std::vector<Certificate> certificates;
+    SQLite::Statement select(impl_->database,
+                             "SELECT build, row, subject, law, unit, value, low, high, note FROM certificates "
+                             "ORDER BY build, number");
+    while (select.executeStep()) {
+      const std::string build = select.getColumn(0).getString();
+      if (certificates.empty() || certificates.back().build != build) certificates.push_back({build, {}});
+      const auto text = [&](int column) { return select.getColumn(column).getString(); };
+      certificates.back().entries.push_back({text(1), text(2), text(3), text(4), read_value(select.getColumn(5)),
+                                             read_value(select.getColumn(6)), read_value(select.getColumn(7)), text(8)});
+    }
+    return certificates;
   });
 }
 

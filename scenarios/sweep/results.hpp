@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/certificate/certificate.hpp"
 #include "scenarios/sweep/outcome.hpp"
 
 namespace tumble::scenarios {
@@ -34,7 +35,10 @@ class Results {
   /// A score without a name, as `scores()` has it for an outcome that has none, is left out.
   void store(const Outcome& outcome);
   void store(const RejectedDraw& rejected);
-  /// A free text kept with the results: "suite", "certificate", "build".
+  void store(const DrawValues& draw);
+  /// Replaces what was known of its build.
+  void store(const Certificate& certificate);
+  /// A free text kept with the results: "suite", "build", "data".
   void set_note(const std::string& key, const std::string& text);
   std::string note(const std::string& key) const;
 
@@ -43,6 +47,9 @@ class Results {
   /// Every outcome without its scores.
   std::vector<Outcome> outcomes() const;
   std::vector<RejectedDraw> rejected() const;
+  std::vector<DrawValues> draws() const;
+  /// One per build, its entries in their order; a database that was merged may hold several.
+  std::vector<Certificate> certificates() const;
 
  private:
   struct Impl;

@@ -34,6 +34,28 @@ CREATE TABLE score_values (
 CREATE VIEW scores AS
   SELECT o.scenario, o.seed, o.kind, o.method, o.status, s.metric, s.value
   FROM outcomes AS o LEFT JOIN score_values AS s ON s.outcome = o.id;
+
+CREATE TABLE draw_values (
+  scenario TEXT NOT NULL,
+  seed INTEGER NOT NULL,
+  metric TEXT NOT NULL,
+  value REAL,
+  PRIMARY KEY (scenario, seed, metric)
+) WITHOUT ROWID;
+
+CREATE TABLE certificates (
+  build TEXT NOT NULL,
+  number INTEGER NOT NULL,
+  row TEXT NOT NULL,
+  subject TEXT NOT NULL,
+  law TEXT NOT NULL,
+  unit TEXT NOT NULL,
+  value REAL,
+  low REAL,
+  high REAL,
+  note TEXT NOT NULL,
+  PRIMARY KEY (build, number)
+) WITHOUT ROWID;
 )sql";
 
 }  // namespace tumble::scenarios

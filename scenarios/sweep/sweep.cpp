@@ -4,14 +4,13 @@
 #include <poll.h>
 
 #include <algorithm>
-#include <fstream>
 #include <list>
 #include <optional>
 #include <set>
-#include <sstream>
 #include <tuple>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/sweep/data_digest.hpp"
 #include "scenarios/sweep/draw_process.hpp"
 #include "scenarios/sweep/message.hpp"
 #include "scenarios/sweep/results.hpp"
@@ -50,28 +49,6 @@ std::vector<const Method*> chosen_methods(const Suite& suite) {
     }
   }
   return chosen;
-}
-
-// digest of every file that a draw is made of; outcomes of two catalogues do not mix in one database
-std::string data_digest(const DataRoot& data) {
-  std::vector<std::filesystem::path> files;
-  for (const std::filesystem::path& folder : {data.models(), data.catalogue()}) {
-    std::error_code error;
-    for (std::filesystem::recursive_directory_iterator entry(folder, error), end; !error && entry != end;
-         entry.increment(error)) {
-      if (entry->is_regular_file()) files.push_back(entry->path());
-    }
-  }
-  std::sort(files.begin(), files.end());
-  std::vector<std::string> texts;
-  for (const std::filesystem::path& path : files) {
-    std::ifstream file(path, std::ios::binary);
-    std::ostringstream text;
-    text << file.rdbuf();
-    texts.push_back(std::filesystem::relative(path, data.root).string());
-    texts.push_back(text.str());
-  }
-  return digest_of_texts(texts);
 }
 
 void claim(Results& results, const DataRoot& data, const Suite& suite, const std::filesystem::path& database) {
@@ -181,6 +158,8 @@ class Sweep {
         std::erase_if(worker.draw.methods, [&](const Method* method) {
           return method->info.kind == message->outcome->kind && method->info.name == message->outcome->method;
         });
+      } else if (message->draw) {
+        results_.store(*message->draw);
       } else if (message->rejected) {
         keep(*message->rejected);
         worker.finished = true;

@@ -29,6 +29,10 @@ struct MotionType {
 
 /// A push by force and torque over a short time, then free.
 const MotionType& push_motion();
+/// Held above the ground, swung and let go.
+const MotionType& throw_motion();
+/// Held above the ground and let go.
+const MotionType& drop_motion();
 /// A hand that leads a sphere along two legs.
 const MotionType& hand_roll_motion();
 /// A hand that leads a sphere along a way of some shape.

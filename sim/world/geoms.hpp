@@ -3,13 +3,25 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <string>
 
 #include "sim/engine/model.hpp"
+#include "sim/parameters.hpp"
 
 namespace tumble::sim {
 
 using Colour = std::array<float, 4>;
+
+/// Two tables of parameters as one.
+template <std::size_t M, std::size_t N>
+constexpr std::array<Parameter, M + N> joined(const std::array<Parameter, M>& first,
+                                              const std::array<Parameter, N>& second) {
+  std::array<Parameter, M + N> all{};
+  for (std::size_t i = 0; i < M; ++i) all[i] = first[i];
+  for (std::size_t i = 0; i < N; ++i) all[M + i] = second[i];
+  return all;
+}
 
 /// Adds a static geom that a robot touches and a lidar sees, and registers it as a surface of `world`. `size` as MuJoCo
 /// has it for the type (half widths, radius and half height); `yaw_rad` about z. The caller may set more on what is

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "sim/world/relief.hpp"
+#include "sim/world/terrain/relief.hpp"
 
 namespace tumble::sim {
 
@@ -24,12 +24,13 @@ struct Grid {
 std::vector<double> unevenness_m(const Grid& grid, const Values& values, Stream& stream) {
   std::vector<double> heights_m(static_cast<std::size_t>(grid.rows) * grid.columns, 0.0);
   if (values.at("roughness_m") <= 0.0) return heights_m;
-  const Undulation undulation(stream, values.at("roughness_m"), values.at("roughness_shortest_m"),
-                              std::max(values.at("roughness_longest_m"), values.at("roughness_shortest_m")));
+  const double shortest_m = values.at("roughness_shortest_m");
+  const Relief unevenness(stream, {values.at("roughness_m"), shortest_m,
+                                   std::max(values.at("roughness_longest_m"), shortest_m)});
   std::size_t i = 0;
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column)
-      heights_m[i++] = undulation.height_m(grid.x_m(column), grid.y_m(row));
+      heights_m[i++] = unevenness.height_m(grid.x_m(column), grid.y_m(row));
   }
   const double highest_m = *std::max_element(heights_m.begin(), heights_m.end());
   for (double& height_m : heights_m) height_m -= highest_m;

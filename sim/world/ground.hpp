@@ -24,16 +24,6 @@ inline constexpr std::array kGroundParameters = {
     Parameter{"roughness_longest_m", 1.0, 0.1, 10.0, "m", "longest one; the height goes with the wavelength"},
 };
 
-/// Two tables of parameters as one.
-template <std::size_t M, std::size_t N>
-constexpr std::array<Parameter, M + N> joined(const std::array<Parameter, M>& first,
-                                              const std::array<Parameter, N>& second) {
-  std::array<Parameter, M + N> all{};
-  for (std::size_t i = 0; i < M; ++i) all[i] = first[i];
-  for (std::size_t i = 0; i < N; ++i) all[M + i] = second[i];
-  return all;
-}
-
 /// Friction and softness of the ground for `geom`. Of two frictions MuJoCo takes the larger one, and a sphere has none;
 /// hard ground leaves the softness to the robot, soft ground decides it alone.
 void set_ground_contact(mjsGeom* geom, const Values& values);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim/world/ground.hpp"
-#include "sim/world/relief.hpp"
+#include "sim/world/terrain/relief.hpp"
 #include "sim/world/room.hpp"
 #include "sim/world/world_type.hpp"
 
@@ -42,7 +42,7 @@ double ground_m(const Values& values, double x_m, double y_m) {
 
 /// Half of the shell: rings along x, from the foot of one wall to the crown. Nothing touches it (a mesh would be
 /// touched as its convex hull); the ground and the ends hold the robot.
-void add_shell(mjSpec* spec, engine::World& world, const Values& values, int side, const Undulation& rough) {
+void add_shell(mjSpec* spec, engine::World& world, const Values& values, int side, const Relief& rough) {
   constexpr double kRing_m = 0.1;
   constexpr int kSteps = 28;
   constexpr double kBelow_rad = 0.25;  // the wall goes on below the ground
@@ -116,7 +116,7 @@ void build(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World
   add_ground(
       spec, world, values, half_x_m, half_y_m, [&](double x_m, double y_m) { return ground_m(values, x_m, y_m); },
       {0.38f, 0.34f, 0.32f, 1.0f}, uneven);
-  const Undulation rough(stream, values.at("wall_roughness_m"), 0.3, 3.0);
+  const Relief rough(stream, {values.at("wall_roughness_m"), 0.3, 3.0});
   add_shell(spec, world, values, 1, rough);
   add_shell(spec, world, values, -1, rough);
   add_ends(spec, world, values, half_y_m);

@@ -13,12 +13,16 @@ namespace tumble::sim {
 struct WorldType {
   ComponentType component;
   /// Adds static geoms to `spec` and fills `world` but for model and ids. `values` are resolved. What is random comes
-  /// from the stream "terrain" of `seed`.
+  /// from streams of `seed` that are named "terrain" or "terrain.*".
   void (*build)(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World& world);
 };
 
-/// Grassy hill: flat top, slope, run-out, relief, rocks, trunks.
+/// Hill: flat top, slope, run-out, relief, rocks, trunks.
 const WorldType& hill_world();
+/// A flight of steps down a grassy slope.
+const WorldType& stairs_world();
+/// Drops of a metre and more with ledges between them.
+const WorldType& cliff_world();
 /// Room with a floor, walls, ceiling, furniture, obstacles and patches of other friction.
 const WorldType& floor_world();
 /// Such a room with a ramp up, a plateau and a ramp down.

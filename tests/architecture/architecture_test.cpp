@@ -45,7 +45,8 @@ const std::vector<Rule>& rules() {
 /// Headers of sim that others include must not bring mujoco.h, Embree or OSMesa with them.
 const std::vector<std::string> kPublicSimHeaders = {
     "sim/parameters.hpp", "sim/situation.hpp", "sim/recording.hpp", "sim/simulate.hpp", "sim/random/stream.hpp",
-    "sim/lidar/surface.hpp", "sim/render/renderer.hpp"};
+    "sim/lidar/surface.hpp", "sim/render/renderer.hpp", "sim/trial/trial.hpp", "sim/trial/ray_trial.hpp", "sim/imu/allan.hpp",
+    "sim/imu/imu_simulation.hpp"};
 
 std::vector<std::string> includes_of(const fs::path& file) {
   static const std::regex pattern(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");

@@ -42,6 +42,8 @@ Running::Running(const std::vector<std::string>& arguments, const std::function<
   setpgid(0, 0);  // a group of its own, as a shell gives it
   redirect(folder_ / "out", STDOUT_FILENO);
   redirect(folder_ / "err", STDERR_FILENO);
+  // a certificate measured by one test serves the others, and nothing is left in the home of whoever runs them
+  setenv("TUMBLE_CACHE", (fs::path(TUMBLE_PROGRAM).parent_path().parent_path() / "Testing" / "cache").c_str(), 1);
   if (prepare) prepare();
   std::vector<char*> words = {const_cast<char*>(TUMBLE_PROGRAM)};
   for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));

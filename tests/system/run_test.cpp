@@ -42,13 +42,20 @@ bool needs_truth(const json& outcome) {
   return false;
 }
 
+/// Ours, the oracles and the filters must come through; published mapping may lose a hard tumble, and the second
+/// integral of an accelerometer leaves the bounds of its score within seconds.
+bool must_hold(const json& outcome) {
+  const std::string method = outcome["method"];
+  if (method.starts_with("tumble") || method.starts_with("oracle")) return true;
+  return outcome["kind"] != "slam" && method != "double_integration";
+}
+
 TEST_P(OnRobot, RunLeavesEverythingAndScoresIt) {
   const fs::path folder = shared_run(GetParam());
   const json result = shared_result(GetParam());
   for (const json& outcome : result["outcomes"]) {
-    // the second integral of an accelerometer leaves the bounds of its score within seconds: that it does is right
-    const bool drifts = outcome["method"] == "double_integration";
-    EXPECT_EQ(outcome["status"], drifts ? "diverged" : "ok") << outcome;
+    if (!must_hold(outcome) && outcome["status"] == "diverged") continue;  // a finding, scored as such
+    EXPECT_EQ(outcome["status"], "ok") << outcome;
   }
   EXPECT_EQ(result["digest"].get<std::string>().size(), 32u);
   EXPECT_GT(result["scores"].size(), 5u);

@@ -119,6 +119,13 @@ TEST(Report, IsOnePageThatAsksTheNetworkNothing) {
   EXPECT_THAT(text, HasSubstr("data:image/png;base64,iVBORw0KGgo")) << "no picture";
   EXPECT_THAT(text, HasSubstr("rolling"));
   EXPECT_THAT(text, HasSubstr("id=\"path-roll\""));
+  for (const char* part : {"id=\"certificate\"", "free_flight_energy", "id=\"distributions\"", "distribution-motion_path_m"}) {
+    EXPECT_THAT(text, HasSubstr(part));
+  }
+  const json document = report_json(database);
+  ASSERT_EQ(document["certificates"].size(), 1u);
+  EXPECT_EQ(document["certificates"][0]["verdict"], "pass");
+  EXPECT_FALSE(document["motions"].empty());
 }
 
 TEST(Report, OfAnAbsentDatabaseMakesNone) {

@@ -28,7 +28,8 @@ TEST_P(EachVerb, RefusesAnUnknownOptionInOneLine) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Program, EachVerb,
-                         testing::Values("list", "run", "record", "estimate", "score", "sweep", "merge", "report", "render"));
+                         testing::Values("list", "run", "record", "estimate", "score", "sweep", "merge", "report", "render", "certify", "gate",
+                                         "triage", "export", "import"));
 
 struct Wrong {
   const char* what;
@@ -61,6 +62,16 @@ INSTANTIATE_TEST_SUITE_P(
                     Wrong{"threads", {"run", "hill", "--seed", "1", "--threads", "0"}, "--threads"},
                     Wrong{"absent recording", {"estimate", "absent.h5", "--method", "raw", "-o", "x"}, "absent.h5"},
                     Wrong{"absent database", {"report", "absent.db"}, "absent.db"},
+                    Wrong{"row of the certificate", {"certify", "--row", "free_fal"}, "'free_fall'"},
+                    Wrong{"suite of a gate", {"gate", "gaet"}, "gate"},
+                    Wrong{"margin of a gate", {"gate", "gate", "--accept", "--margin", "-1"}, "--margin"},
+                    Wrong{"format of an export", {"export", "absent.h5", "--format", "tmu", "-o", "x"}, "'tum'"},
+                    Wrong{"export of nothing", {"export", "absent.h5", "--format", "tum", "-o", "x"}, "absent.h5"},
+                    Wrong{"import of nothing", {"import", "absent.csv", "-o", "x.h5"}, "absent.csv"},
+                    Wrong{"import without format", {"import", "absent.bag", "-o", "x.h5"}, "--format"},
+                    Wrong{"device of an import", {"import", "absent.csv", "--device", "mti3", "-o", "x.h5"}, "mti30"},
+                    Wrong{"triage of many methods", {"triage", "hill", "--seed", "1", "--method", "tumble"}, "rate/tumble"},
+                    Wrong{"metric of a triage", {"triage", "hill", "--seed", "1", "--method", "rate/raw", "--metric", "rate_error", "--limit", "1"}, "metric"},
                     Wrong{"render without seed", {"render", "hill", "-o", "x.png"}, "--seed"}));
 
 TEST(List, NamesWhatThereIs) {

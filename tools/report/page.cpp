@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <map>
+
 #include "report/embedded.hpp"
+#include "tools/report/certificate_html.hpp"
 #include "tools/report/html.hpp"
 #include "tools/report/pictures.hpp"
 #include "tools/report/score_html.hpp"
@@ -77,6 +80,21 @@ std::string draws_html(const Summary& summary) {
   return out + "</tbody></table></div>\n";
 }
 
+/// Why draws were rejected: the instant at the end of a reason is left out, so that equal reasons count together.
+std::string rejected_html(const std::vector<scenarios::RejectedDraw>& rejected) {
+  std::map<std::pair<std::string, std::string>, std::vector<std::uint64_t>> reasons;
+  for (const scenarios::RejectedDraw& draw : rejected) {
+    const std::size_t instant = draw.message.rfind(" at ");
+    reasons[{draw.scenario, draw.message.substr(0, instant)}].push_back(draw.seed);
+  }
+  std::string out;
+  for (const auto& [key, seeds] : reasons) {
+    out += fmt::format("<li>{}: {} of <code>{}</code>, the first at seed {}</li>", escaped(key.second), seeds.size(),
+                       escaped(key.first), seeds.front());
+  }
+  return out.empty() ? "" : "<p>Rejected, and why:</p><ul>" + out + "</ul>\n";
+}
+
 std::string scores_html(const Summary& summary) {
   std::string out = "<h2>Scores</h2>\n<p>Median over the draws (of <code>map_failed</code> the share) and, in brackets, its 95 % interval from order statistics; an estimate that did not end <i>ok</i> ranks as "
                     "the worst of all (–: half or more of them), and is counted in the first row with its Clopper–Pearson interval. “Better in” counts the "
@@ -107,7 +125,11 @@ std::string page_html(const PageContent& content, const std::string& plotly_bund
   body += "<h2>All draws</h2>\n<p>Each point is one draw, each box the quartiles of one method.</p>\n";
   for (const Figure& figure : content.figures) body += plot_html(figure);
   body += scores_html(content.summary);
-  body += "<h2>Draws</h2>\n" + draws_html(content.summary);
+  body += "<h2>Draws</h2>\n" + draws_html(content.summary) + rejected_html(content.rejected);
+  const std::vector<Figure> motions = distribution_figures(content.motions);
+  body += distributions_html(content.motions, motions);
+  figures.insert(figures.end(), motions.begin(), motions.end());
+  body += certificates_html(content.certificates);
   body += "<footer>Angles are in degrees on this page alone; the database holds SI units and radians. Plots by Plotly.js (MIT licence), "
           "carried inside this page.</footer>\n</main>\n";
   return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/certificate/certificate.hpp"
+#include "tools/report/distributions.hpp"
 #include "tools/report/example.hpp"
 #include "tools/report/plots.hpp"
 #include "tools/report/summary.hpp"
@@ -17,6 +19,9 @@ struct PageContent {
   Summary summary;
   std::vector<Figure> figures;                             ///< of all draws
   std::vector<Example> examples;                           ///< single draws, with pictures
+  std::vector<Spread> motions;                             ///< of all draws
+  std::vector<scenarios::RejectedDraw> rejected;
+  std::vector<scenarios::Certificate> certificates;
   std::vector<std::string> warnings;                       ///< what is missing, and why
 };
 

@@ -7,6 +7,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/scoring/truth_track.hpp"
+#include "sim/simulate.hpp"
 
 namespace tumble::tools {
 
@@ -74,6 +75,22 @@ double azimuth_across(const sim::Truth& truth) {
   return std::atan2(way.y(), way.x()) + 2.0;
 }
 
+/// The robot where a draw begins: a rig seen from down the slope, out of the lane that trunks keep off; a sphere with all
+/// of its room.
+void show_start(const Scene& scene, sim::View& view) {
+  const Isometry3d T_WB = sim::start_pose(*scene.situation, scene.models);
+  view.robots_T_WB = {T_WB};
+  if (scene.situation->robot.type == "sphere") {
+    view.look_at_W_m = Vector3d::Zero();
+    view.distance_m = 25.0;
+    return;
+  }
+  view.look_at_W_m = T_WB.translation() + Vector3d(1.5, 0.0, -0.5);
+  view.distance_m = 6.8;
+  view.azimuth_rad = 2.85;
+  view.elevation_rad = -0.5;
+}
+
 Isometry3d robot_pose(const scenarios::TruthTrack& track, std::int64_t time_ns) {
   const PoseState state = track.pose(time_ns);
   Isometry3d T_WB = Isometry3d::Identity();
@@ -104,6 +121,8 @@ sim::Picture scene_picture(const Scene& scene, int robots, int width, int height
     view.azimuth_rad = azimuth_across(*scene.truth);
     // a path on level ground shows best from above
     if (is_sphere(scene)) view.elevation_rad = -0.85;
+  } else {
+    show_start(scene, view);
   }
   return sim::Renderer(*scene.situation, scene.models).draw(view);
 }

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <map>
 
+#include "tools/report/certificate_html.hpp"
+
 namespace tumble::tools {
 
 namespace {
@@ -76,6 +78,14 @@ PageContent report_content(const scenarios::Results& results, const Summary& sum
   content.facts = facts(results, summary, options);
   content.summary = summary;
   content.figures = figures_of_all_draws(summary);
+  content.motions = motion_spreads(results.draws());
+  content.rejected = results.rejected();
+  content.certificates = results.certificates();
+  if (content.certificates.empty()) content.warnings.push_back("These results hold no certificate of their build.");
+  for (const scenarios::Certificate& certificate : content.certificates) {
+    content.facts.emplace_back("certificate", certificate_summary(certificate));
+    if (!certificate.passes()) content.warnings.push_back("The certificate of build " + certificate.build + " fails.");
+  }
   for (const std::string& scenario : scenarios_to_show(summary, options.examples_max)) {
     std::uint64_t seed = 0;
     if (!typical_seed(summary, scenario, seed)) continue;

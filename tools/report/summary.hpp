@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/scoring/metric_sense.hpp"
 #include "scenarios/sweep/outcome.hpp"
 #include "scenarios/sweep/results.hpp"
 #include "scenarios/sweep/statistics.hpp"
@@ -21,15 +22,10 @@ struct MetricStyle {
 /// From the unit that ends the metric's name: "map_overlap" in %, "rotation_error_end_rad" in degrees, rates in rad/s.
 MetricStyle metric_style(const std::string& metric);
 
-/// Whether less is better (errors), more is (overlap), or neither (coverage of an interval, which has a target; costs).
-enum class Sense { less, more, neither };
-Sense metric_sense(const std::string& metric);
-
-/// Whether a metric is 0 or 1 on each draw ("map_failed"): its share says something, its median does not.
-bool is_verdict(const std::string& metric);
-
-/// The metrics that say most about a kind, best first.
-std::vector<std::string> headline_metrics(scenarios::Kind kind);
+using scenarios::headline_metrics;
+using scenarios::is_verdict;
+using scenarios::metric_sense;
+using scenarios::Sense;
 
 /// Draws on which one method was better than the baseline, of those that both have a value for.
 struct Wins {

@@ -59,13 +59,15 @@ int merge(const Session& session, const Options& options) {
       out.store(outcome);
       ++outcomes;
     }
+    for (const scenarios::DrawValues& draw : shard.draws()) out.store(draw);
+    for (const scenarios::Certificate& certificate : shard.certificates()) out.store(certificate);
     for (const scenarios::RejectedDraw& draw : shard.rejected()) {
       out.store(draw);
       ++rejected;
     }
   }
   // the joined database says where its rows come from, not which program has joined them
-  for (const char* key : {"suite", "certificate", "build", "data"}) {
+  for (const char* key : {"suite", "build", "data"}) {
     const std::string text = shards.front().note(key);
     if (!text.empty()) out.set_note(key, options.mixed && std::string_view(key) == "build" ? "mixed" : text);
   }

@@ -11,7 +11,9 @@
 #include <iterator>
 #include <memory>
 
+#include "scenarios/certificate/certificate_text.hpp"
 #include "scenarios/errors.hpp"
+#include "tools/report/distributions.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/verbs.hpp"
 
@@ -50,6 +52,17 @@ Table score_table(const Section& section, bool all) {
                      fmt::format("{} of {}", method.not_ok, method.outcomes)});
       first = false;
     }
+  }
+  return table;
+}
+
+Table draws_table(const Summary& summary) {
+  Table table("draws", {"scenario", "scored", "rejected"});
+  table.align_right_from(1);
+  for (const std::string& scenario : summary.scenarios) {
+    const auto rejected = summary.rejected.find(scenario);
+    table.add_row({scenario, std::to_string(summary.draws.at(scenario)),
+                   std::to_string(rejected == summary.rejected.end() ? 0 : rejected->second)});
   }
   return table;
 }
@@ -108,7 +121,17 @@ int report(const Session& session, const Options& options) {
     Table table = score_table(section, options.all);
     if (!table.empty()) tables.push_back(std::move(table));
   }
-  session.print(tables, to_json(summary));
+  const std::vector<scenarios::DrawValues> draws = results.draws();
+  const std::vector<Spread> motions = motion_spreads(draws);
+  if (!motions.empty()) tables.push_back(distribution_table(motions));
+  tables.push_back(draws_table(summary));
+  json document = to_json(summary);
+  document["motions"] = distributions_json(motions);
+  document["certificates"] = json::array();
+  for (const scenarios::Certificate& certificate : results.certificates()) {
+    document["certificates"].push_back(json::parse(to_json(certificate)));
+  }
+  session.print(tables, document);
   if (!options.page.empty()) write_page(session, options, results, summary);
   return kDone;
 }

@@ -50,6 +50,24 @@ fs::path Session::plotly() const {
       "plotly.min.js is not found, and the report needs it; run tools/setup, then configure and build again");
 }
 
+fs::path Session::program() const {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  if (error) throw scenarios::BadInput("/proc/self/exe: " + error.message());
+  return program;
+}
+
+fs::path Session::cache() const {
+  const auto given = [](const char* name) {
+    const char* value = std::getenv(name);
+    return fs::path(value != nullptr ? value : "");
+  };
+  if (const fs::path own = given("TUMBLE_CACHE"); !own.empty()) return own;
+  if (const fs::path common = given("XDG_CACHE_HOME"); !common.empty()) return common / "tumble";
+  const fs::path home = given("HOME");
+  return home.empty() ? fs::path() : home / ".cache" / "tumble";
+}
+
 void Session::note(std::string_view line) const {
   if (quiet) return;
   std::fprintf(stderr, "%.*s\n", static_cast<int>(line.size()), line.data());

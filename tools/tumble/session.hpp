@@ -28,6 +28,13 @@ class Session {
   /// The Plotly bundle, looked for beside the data. Throws BadInput that says how to get it.
   std::filesystem::path plotly() const;
 
+  /// The program's own file, to be started anew. Throws BadInput when the system does not tell.
+  std::filesystem::path program() const;
+
+  /// Where the program may keep what it has measured: $TUMBLE_CACHE, else $XDG_CACHE_HOME/tumble, else ~/.cache/tumble;
+  /// empty when none of them is set.
+  std::filesystem::path cache() const;
+
   /// One line to standard error, unless quiet.
   void note(std::string_view line) const;
 

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/sweep.hpp"
 
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
-#include <cstdio>
-#include <fmt/format.h>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "scenarios/certificate/certificate_store.hpp"
 #include "scenarios/errors.hpp"
+#include "scenarios/sweep/results.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/interrupt.hpp"
-#include "tools/tumble/progress.hpp"
+#include "tools/tumble/sweeping.hpp"
 #include "tools/tumble/verbs.hpp"
 
 namespace tumble::tools {
@@ -37,6 +35,24 @@ bool select(const scenarios::DataRoot& data, const Options& options, scenarios::
   return options.shard.empty() || shard_seeds(parse_shard(options.shard), suite.first_seed, suite.last_seed);
 }
 
+/// The certificate of this build goes with its results; measured at most once per build and machine.
+void certify(const Session& session, const scenarios::DataRoot& data, const std::filesystem::path& database,
+             const std::atomic<bool>& stop) {
+  scenarios::Results results(database, scenarios::Results::Mode::create_or_append);
+  bool announced = false;
+  scenarios::CertifyOptions options;
+  options.stop = &stop;
+  options.on_row = [&](const scenarios::CertificateRow&, double) {
+    if (!announced) session.note("measuring the certificate of this build, once: about half a minute");
+    announced = true;
+  };
+  const scenarios::Certificate certificate = scenarios::certify_results(
+      results, scenarios::CertificateStore(session.cache(), data), {data, session.program()}, options);
+  if (!stop.load() && !certificate.passes()) {
+    session.note("the certificate of this build has rows that fail: see 'tumble certify'");
+  }
+}
+
 nlohmann::json to_json(const scenarios::SweepProgress& p, const std::string& database) {
   return {{"database", database}, {"draws_done", p.draws_done}, {"draws_total", p.draws_total}, {"outcomes", p.outcomes},
           {"not_ok", p.not_ok}, {"rejected", p.rejected}, {"elapsed_s", p.elapsed_s}};
@@ -59,24 +75,13 @@ int run_sweep(const Session& session, const Options& options) {
   }
   if (options.database.has_parent_path()) make_folder(options.database.parent_path());
 
-  const auto to_standard_error = [](std::string_view text) {
-    std::fwrite(text.data(), 1, text.size(), stderr);
-    std::fflush(stderr);
-  };
-  ProgressDisplay display(to_standard_error, isatty(STDERR_FILENO) == 1);
   const InterruptFlag interrupt;
-  scenarios::SweepOptions sweep_options;
-  sweep_options.jobs = options.jobs;
-  sweep_options.stop = &interrupt.raised();
-  if (!session.quiet) sweep_options.on_progress = [&](const scenarios::SweepProgress& p) { display.show(p); };
-  const scenarios::SweepProgress final = scenarios::sweep(data, suite, options.database, sweep_options);
-  if (!session.quiet) display.finish(final);
+  certify(session, data, options.database, interrupt.raised());
+  const scenarios::SweepProgress final =
+      sweep_with_progress(session, data, suite, options.database, options.jobs, interrupt.raised());
 
   session.print({to_table(final, options.database.string())}, to_json(final, options.database.string()));
-  if (final.draws_done >= final.draws_total) return kDone;
-  std::fprintf(stderr, "tumble: stopped: %s\n",
-               fmt::format("{} of {} draws stored, run again to go on", final.draws_done, final.draws_total).c_str());
-  return kCheckFailed;
+  return final.draws_done >= final.draws_total ? kDone : say_stopped(final);
 }
 
 }  // namespace

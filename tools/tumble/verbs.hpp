@@ -35,5 +35,10 @@ Action declare_sweep(CLI::App& options, const Session& session);
 Action declare_merge(CLI::App& options, const Session& session);
 Action declare_report(CLI::App& options, const Session& session);
 Action declare_render(CLI::App& options, const Session& session);
+Action declare_gate(CLI::App& options, const Session& session);
+Action declare_triage(CLI::App& options, const Session& session);
+Action declare_export(CLI::App& options, const Session& session);
+Action declare_import(CLI::App& options, const Session& session);
+Action declare_certify(CLI::App& options, const Session& session);
 
 }  // namespace tumble::tools

@@ -2,10 +2,10 @@
 #include "tumble/angular_velocity/rate_model.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "tumble/common/status.hpp"
 
@@ -26,6 +26,11 @@ void check(const RateModelParams& p) {
   require_within("euler_sigma_rad_s2", p.euler_sigma_rad_s2, 1e-6, 1e6);
   require_within("jerk_psd_flight", p.jerk_psd_flight, 1.0, 1e12);
   require_within("contact_gain_rad_m", p.contact_gain_rad_m, 0.0, 1e3);
+  require_within("accel_scale_error", p.accel_scale_error, 0.0, 1.0);
+  require_within("contact_sigma_factor", p.contact_sigma_factor, 1.0, 10.0);
+  require_within("contact_lever_rad_m", p.contact_lever_rad_m, 0.0, 1e3);
+  require_within("contact_twist_share", p.contact_twist_share, 0.0, 1.0);
+  require_within("contact_force_share", p.contact_force_share, 0.0, 1e3);
   require_within("flight_threshold", p.flight_threshold, 1.0, 100.0);
   require_within("rail_sigma_rad_s", p.rail_sigma_rad_s, 1e-6, 10.0);
   require_within("rate_max_rad_s", p.rate_max_rad_s, 1.0, 1e4);
@@ -42,19 +47,12 @@ RigConstants::Matrix covariance_of(const RateModelParams& p) {
   return variance.cwiseAbs2().asDiagonal();
 }
 
-// precision of a bound before anything is known, (rad/s)^-2
-constexpr double kStartPrecision = 0.25;
+// What an impact within the window may add to the loss of a partly clipped reading (one standard deviation), rad/s.
+constexpr double kPartialInContact = 0.25;
 
 // Weight below which a sample may still draw a clipped rate towards flight, but says nothing of the rig: what is left
 // of the pull of contact is small for the rate and large for constants that are not known yet.
 constexpr double kRigWeightMin = 0.05;
-
-// phi(z) / Phi(z) of the normal distribution, by its asymptotic series where both vanish
-double density_over_share(double z) {
-  if (z < -8.0) return -z / (1.0 - 1.0 / (z * z) + 3.0 / (z * z * z * z));
-  const double density = std::exp(-0.5 * z * z) * std::numbers::inv_sqrtpi / std::numbers::sqrt2;
-  return density / (0.5 * std::erfc(-z / std::numbers::sqrt2));
-}
 
 // A clipped accelerometer axis bounds the force from one side: it speaks only where the model stays within the rail.
 void drop_satisfied_bounds(const RateObservation& o, RateFactor& flight) {
@@ -84,12 +82,12 @@ double surprise(const RigConstants::Vector& moved, const RigConstants::Matrix& c
   return std::sqrt(part.dot(spread.llt().solve(part)) / kCount);
 }
 
-void add_factor(const RateFactor& f, double information, double time_scale_s, arrow::Block& block,
+void add_factor(const RateFactor& f, const Eigen::Matrix3d& information, double time_scale_s, arrow::Block& block,
                 arrow::Corner& corner) {
   Eigen::Matrix<double, 3, 6> A = f.by_knot;
   A.rightCols<3>() /= time_scale_s;
-  const Eigen::Matrix<double, 6, 3> At = information * A.transpose();
-  const Eigen::Matrix<double, RigConstants::kSize, 3> Bt = information * f.by_rig.transpose();
+  const Eigen::Matrix<double, 6, 3> At = A.transpose().lazyProduct(information);
+  const Eigen::Matrix<double, RigConstants::kSize, 3> Bt = f.by_rig.transpose().lazyProduct(information);
   block.diagonal.noalias() += At.lazyProduct(A);
   block.border.noalias() += At.lazyProduct(f.by_rig);
   block.gradient.noalias() -= At.lazyProduct(f.residual);
@@ -120,13 +118,18 @@ void RateModel::weigh(const RateObservation& observation, const RigConstants& ri
   RateFactor flight = flight_factor(estimate.knot, rig, observation.sample.specific_force_m_s2);
   drop_satisfied_bounds(observation, flight);
   const RateFactor euler = euler_factor(estimate.knot, rig);
-  const double r2 = normalised(flight, rig_covariance, accel_sigma_m_s2_) +
+  const double r2 = normalised(flight, rig_covariance, accel_sigma_m_s2(observation)) +
                     normalised(euler, rig_covariance, params_.euler_sigma_rad_s2) + jump;
   const double threshold = widen * params_.flight_threshold;
   // Geman-McClure: the pull of an outlier vanishes with the cube of its size, contacts do not drag the rate along
   const double ratio = 1.0 / (1.0 + r2 / (threshold * threshold));
   estimate.flight_weight = ratio * ratio;
-  estimate.contact_m_s2 = (1.0 - estimate.flight_weight) * flight.residual.norm();
+  // the residual is model minus reading
+  estimate.contact_m_s2 = (estimate.flight_weight - 1.0) * flight.residual;
+}
+
+double RateModel::accel_sigma_m_s2(const RateObservation& observation) const {
+  return std::hypot(accel_sigma_m_s2_, params_.accel_scale_error * observation.sample.specific_force_m_s2.norm());
 }
 
 double RateModel::jump(const RateKnot& from, const RateKnot& to, double dt_s) const {
@@ -136,44 +139,6 @@ double RateModel::jump(const RateKnot& from, const RateKnot& to, double dt_s) co
   return scale * (12.0 * e0.squaredNorm() - 12.0 * e0.dot(e1) + 4.0 * e1.squaredNorm());
 }
 
-void RateModel::start_bounds(const RateObservation& observation, const RigConstants& rig,
-                             RateEstimate& estimate) const {
-  estimate.soft_bounds = true;
-  for (int j = 0; j < 3; ++j) {
-    if ((observation.clipping.gyro >> j & 1u) == 0) continue;
-    const double reading = observation.sample.angular_velocity_rad_s[j];
-    const double guess = estimate.knot.rate_rad_s[j] + rig.gyro_bias_rad_s[j];
-    const double mean = reading < 0.0 ? std::min(guess, reading) : std::max(guess, reading);
-    estimate.bound_precision[j] = kStartPrecision;
-    estimate.bound_shift[j] = kStartPrecision * mean;
-  }
-}
-
-void RateModel::update_bounds(const RateObservation& observation, const RigConstants& rig,
-                              const arrow::Marginal& marginal, const RigConstants::Matrix& rig_covariance,
-                              double damping, RateEstimate& estimate) const {
-  for (int j = 0; j < 3; ++j) {
-    if ((observation.clipping.gyro >> j & 1u) == 0) continue;
-    const double reading = observation.sample.angular_velocity_rad_s[j], sign = reading < 0.0 ? -1.0 : 1.0;
-    const double variance = marginal.state(j, j) + 2.0 * marginal.cross(j, 3 + j) + rig_covariance(3 + j, 3 + j);
-    // the marginal without this site, mirrored so that the bound lies below
-    const double mean = sign * (estimate.knot.rate_rad_s[j] + rig.gyro_bias_rad_s[j]);
-    const double site_precision = estimate.bound_precision[j], site_shift = sign * estimate.bound_shift[j];
-    const double precision =
-        std::max(1.0 / variance - site_precision, 1.0 / (params_.rate_max_rad_s * params_.rate_max_rad_s));
-    const double cavity_mean = (mean / variance - site_shift) / precision, cavity_variance = 1.0 / precision;
-    const double spread2 = cavity_variance + params_.rail_sigma_rad_s * params_.rail_sigma_rad_s;
-    const double spread = std::sqrt(spread2);
-    const double z = (cavity_mean - std::abs(reading)) / spread, r = density_over_share(z);
-    const double new_mean = cavity_mean + cavity_variance * r / spread;
-    const double new_variance = cavity_variance - cavity_variance * cavity_variance * r * (z + r) / spread2;
-    const double new_precision = std::max(0.0, 1.0 / new_variance - precision);
-    const double new_shift = new_mean / new_variance - precision * cavity_mean;
-    estimate.bound_precision[j] += damping * (new_precision - site_precision);
-    estimate.bound_shift[j] += damping * (sign * new_shift - estimate.bound_shift[j]);
-  }
-}
-
 void RateModel::add_sample(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                            arrow::Block& block, arrow::Corner& corner) const {
   const RateFactor gyro = gyro_factor(estimate.knot, rig, observation.sample.angular_velocity_rad_s);
@@ -181,7 +146,11 @@ void RateModel::add_sample(const RateObservation& observation, const RateEstimat
     if ((observation.clipping.void_gyro >> j & 1u) != 0) continue;
     double information = 1.0 / (gyro_sigma_rad_s_ * gyro_sigma_rad_s_);
     double pull = information * gyro.residual[j];
-    if ((observation.clipping.gyro >> j & 1u) != 0) {
+    if ((observation.partial >> j & 1u) != 0) {
+      const double impact = kPartialInContact * (1.0 - estimate.flight_weight), lost = observation.lost_sigma_rad_s[j];
+      information = 1.0 / (lost * lost + impact * impact);
+      pull = information * (gyro.residual[j] - observation.lost_rad_s[j]);
+    } else if ((observation.clipping.gyro >> j & 1u) != 0) {
       const bool kept = gyro.residual[j] * observation.sample.angular_velocity_rad_s[j] >= 0.0;
       if (kept && !estimate.soft_bounds) continue;
       information = 1.0 / (params_.rail_sigma_rad_s * params_.rail_sigma_rad_s);
@@ -197,17 +166,26 @@ void RateModel::add_sample(const RateObservation& observation, const RateEstimat
     corner.gradient[3 + j] -= pull;
   }
 
-  const double flight_information = estimate.flight_weight / (accel_sigma_m_s2_ * accel_sigma_m_s2_);
+  // in contact the force is known to be of its own order: of two explanations of a rate that is not seen the gentler
+  // one is more likely
+  const double sigma = accel_sigma_m_s2(observation), flight2 = sigma * sigma;
+  const double share = observation.unseen() != 0 ? params_.contact_force_share : 0.0;
+  const double contact2 = flight2 + share * share * estimate.contact_m_s2.squaredNorm();
+  const double flight_information =
+      estimate.flight_weight / flight2 + (share > 0.0 ? (1.0 - estimate.flight_weight) / contact2 : 0.0);
   RateFactor flight = flight_factor(estimate.knot, rig, observation.sample.specific_force_m_s2);
   drop_satisfied_bounds(observation, flight);
   RateFactor euler = euler_factor(estimate.knot, rig);
   if (estimate.flight_weight < kRigWeightMin) {
     flight.by_rig.setZero();
     euler.by_rig.setZero();
+    for (int j = 0; j < 3; ++j) {
+      // a rate that is seen would hand the pull on to the gyro's bias
+      if ((observation.unseen() >> j & 1u) == 0) flight.by_knot.col(j).setZero();
+    }
   }
-  add_factor(flight, flight_information, time_scale_s_, block, corner);
-  const double euler_information = estimate.flight_weight / (params_.euler_sigma_rad_s2 * params_.euler_sigma_rad_s2);
-  add_factor(euler, euler_information, time_scale_s_, block, corner);
+  add_factor(flight, flight_information * Eigen::Matrix3d::Identity(), time_scale_s_, block, corner);
+  add_factor(euler, euler_information(estimate), time_scale_s_, block, corner);
 
   const double rate_information = 1.0 / (params_.rate_max_rad_s * params_.rate_max_rad_s);
   const double largest = params_.acceleration_max_rad_s2 * time_scale_s_;
@@ -220,11 +198,22 @@ void RateModel::add_sample(const RateObservation& observation, const RateEstimat
   }
 }
 
+// A force through one point of the body has no torque about its own direction.
+Eigen::Matrix3d RateModel::euler_information(const RateEstimate& estimate) const {
+  const double flight = params_.euler_sigma_rad_s2 * params_.euler_sigma_rad_s2;
+  const double force = estimate.contact_m_s2.norm(), lever = params_.contact_lever_rad_m * force;
+  const double across = 1.0 / (flight + lever * lever);
+  if (!(force > 0.0)) return across * Eigen::Matrix3d::Identity();
+  const double twist = params_.contact_twist_share * lever;
+  const Vector3d n = estimate.contact_m_s2 / force;
+  return across * Eigen::Matrix3d::Identity() + (1.0 / (flight + twist * twist) - across) * n * n.transpose();
+}
+
 void RateModel::add_step(const RateEstimate& from, const RateEstimate& to, double dt_s, arrow::Block& block,
                          arrow::Block& next) const {
   const double h = time_scale_s_, ratio = dt_s / h;
   // a contact may change the angular acceleration by gain * force within one step
-  const double change = params_.contact_gain_rad_m * std::max(from.contact_m_s2, to.contact_m_s2);
+  const double change = params_.contact_gain_rad_m * std::max(from.contact_m_s2.norm(), to.contact_m_s2.norm());
   const double psd = params_.jerk_psd_flight + change * change / dt_s;
   // inverse of Q = psd [dt^3/3, dt^2 h/2; dt^2 h/2, dt h^2] of the scaled state
   const double a = 12.0 / (psd * dt_s * dt_s * dt_s), b = -6.0 / (psd * dt_s * dt_s * h),
@@ -276,6 +265,37 @@ arrow::StateVector RateModel::scaled(const Eigen::Matrix<double, 6, 1>& differen
   arrow::StateVector out = difference;
   out.tail<3>() *= time_scale_s_;
   return out;
+}
+
+Eigen::Matrix3d RateModel::reported(const Eigen::Matrix3d& covariance, const RateObservation& observation,
+                                    const RateEstimate& estimate) const {
+  const double factor = 1.0 + (params_.contact_sigma_factor - 1.0) * (1.0 - estimate.flight_weight);
+  Vector3d wider = Vector3d::Ones();
+  for (int j = 0; j < 3; ++j) {
+    if ((observation.clipping.gyro >> j & 1u) != 0 || (observation.clipping.void_gyro >> j & 1u) != 0)
+      wider[j] = factor;
+  }
+  return wider.asDiagonal() * covariance * wider.asDiagonal();
+}
+
+void mark_partial(const RailDetector& rails, const RailDetector::State& state, double noise_rad_s,
+                  const ImuSample* before, RateObservation& now, const ImuSample* after) {
+  now.partial = 0;
+  for (int j = 0; j < 3; ++j) {
+    const bool flagged = (now.sample.device_clip_flags >> j & 1u) != 0 && (now.clipping.void_gyro >> j & 1u) == 0;
+    const std::optional<double> rail = rails.rail(state, j);
+    if (!flagged || !rail) continue;
+    const double reading = now.sample.angular_velocity_rad_s[j], sign = std::copysign(1.0, reading);
+    double neighbour = *rail;
+    if (before != nullptr) neighbour = std::min(neighbour, sign * before->angular_velocity_rad_s[j]);
+    if (after != nullptr) neighbour = std::min(neighbour, sign * after->angular_velocity_rad_s[j]);
+    if (neighbour > std::abs(reading)) continue;  // a dip in a plateau: how deep it is hidden nobody can say
+    const PartialLoss loss = partial_loss(std::abs(reading), neighbour, *rail, noise_rad_s);
+    if (!loss.partial) continue;
+    now.partial = static_cast<std::uint8_t>(now.partial | 1u << j);
+    now.lost_rad_s[j] = sign * loss.lost_rad_s;
+    now.lost_sigma_rad_s[j] = loss.sigma_rad_s;
+  }
 }
 
 RateSource rate_source(const RateObservation& o, const RateEstimate& e, const Eigen::Matrix3d& covariance,

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "recording_check.hpp"
 #include "tumble/angular_velocity/saave.hpp"
 #include "tumble/angular_velocity/wnoj_smoother.hpp"
 
@@ -14,26 +15,12 @@ namespace {
 
 using Eigen::Vector3d;
 
+// Other first thresholds of contact, as multiples of the given one, and the share of clipped samples in flight below
+// which they are tried.
+constexpr double kOtherStarts[] = {16.0, 0.25};
+constexpr double kFlightShareExpected = 0.5;
+
 constexpr double kVarianceUnknown = 100.0;  // of a clipped axis at the start of the iteration, (rad/s)^2
-
-Status check_all(std::span<const ImuSample> samples, double gap_max_s) {
-  if (samples.empty()) return {Trouble::empty, "samples", 0.0, 1.0};
-  if (samples.size() < 2) return {Trouble::too_few, "samples", 1.0, 2.0};
-  for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (Status status = check_sample(samples[k]); !status.ok()) return status;
-    if (k == 0) continue;
-    Status status = check_follows(samples[k].time_ns, samples[k - 1].time_ns, gap_max_s);
-    if (!status.ok()) return status;
-  }
-  return {};
-}
-
-double median_period_s(std::span<const ImuSample> samples) {
-  std::vector<TimeNs> steps(samples.size() - 1);
-  for (std::size_t k = 0; k < steps.size(); ++k) steps[k] = samples[k + 1].time_ns - samples[k].time_ns;
-  std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
-  return std::clamp(seconds(steps[steps.size() / 2]), 1e-6, 10.0);
-}
 
 double median_force(std::span<const ImuSample> samples) {
   std::vector<double> force(samples.size());
@@ -65,7 +52,7 @@ std::vector<RateEstimate> first_guess(std::span<const RateObservation> observati
     readings[k] = {o.sample.time_ns, o.sample.angular_velocity_rad_s, Vector3d::Constant(measured)};
     for (int j = 0; j < 3; ++j) {
       if ((o.clipping.void_gyro >> j & 1u) != 0) readings[k].variance_rad2_s2[j] = kVarianceUnknown;
-      if ((o.clipping.gyro >> j & 1u) == 0) continue;
+      if ((o.unseen() & o.clipping.gyro & 1u << j) == 0) continue;
       const double limit = model.rate_max_rad_s;
       readings[k].rate_rad_s[j] = std::clamp(recovered.rate_rad_s[j], -limit, limit);
       readings[k].variance_rad2_s2[j] = std::clamp(recovered.variance_rad2_s2[j], 0.25, kVarianceUnknown);
@@ -151,7 +138,7 @@ void weigh_all(const RateModel& model, std::span<const RateObservation> observat
       after = model.jump(estimates[k].knot, estimates[k + 1].knot, dt_s);
     }
     // where the gyro reads all axes nothing is unknown that would excuse a residual
-    const int clipped = observations[k].clipping.gyro | observations[k].clipping.void_gyro;
+    const int clipped = observations[k].unseen();
     model.weigh(observations[k], rig, rig_covariance, clipped != 0 ? widen : 1.0, std::min(before, after),
                 estimates[k]);
     before = after;
@@ -173,13 +160,12 @@ struct Solution {
 };
 
 // Gauss-Newton from the first guess; false when a system is not positive definite.
-bool solve(const RateSmoother::Params& params, const RateModel& model, std::span<const RateObservation> observations,
-           Solution& solution, RateReport& health) {
+bool descend(const RateSmoother::Params& params, const RateModel& model, std::span<const RateObservation> observations,
+             double widen, Solution& solution, RateReport& health) {
   solution.estimates = first_guess(observations, params.model, model, params.gap_max_s);
   solution.rig = model.prior_constants();
   solution.rig_covariance = model.prior_covariance();
   std::vector<RateEstimate>& estimates = solution.estimates;
-  double widen = params.widen_first;
   int soft = 0;  // iterations with soft bounds
   health.iterations = 0;
   health.converged = false;
@@ -199,7 +185,9 @@ bool solve(const RateSmoother::Params& params, const RateModel& model, std::span
     }
     if (soft > 0 || settled || health.iterations + params.bound_iterations >= params.iterations_max) {
       for (std::size_t k = 0; k < estimates.size() && soft == 0; ++k) {
-        if (estimates[k].flight_weight < 0.5) model.start_bounds(observations[k], solution.rig, estimates[k]);
+        if (estimates[k].flight_weight >= 0.5) continue;
+        model.seek_flight(observations[k], solution.rig, estimates[k]);
+        model.start_bounds(observations[k], solution.rig, estimates[k]);
       }
       health.converged = settled || health.converged;
       if (soft++ == params.bound_iterations) break;
@@ -207,6 +195,47 @@ bool solve(const RateSmoother::Params& params, const RateModel& model, std::span
     widen = std::max(1.0, 0.5 * widen);
   }
   health.rig_surprise = model.rig_surprise(solution.rig);
+  return true;
+}
+
+// How much of what the gyro does not see is explained as free flight: the part of the robust cost that differs between
+// the minima in which a run may end. `share`: of these samples, those that count as flight.
+double explained(std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
+                 double& share) {
+  double sum = 0.0, unseen = 0.0, flight = 0.0;
+  for (std::size_t k = 0; k < estimates.size(); ++k) {
+    sum += std::sqrt(estimates[k].flight_weight);
+    if (observations[k].unseen() == 0) continue;
+    unseen += 1.0;
+    flight += estimates[k].flight_weight >= 0.5 ? 1.0 : 0.0;
+  }
+  share = unseen > 0.0 ? flight / unseen : 1.0;
+  return sum;
+}
+
+// The descent, again from wider and narrower thresholds of contact where most clipped samples pass for contact: with
+// a lever arm that is far off the first may end in a minimum in which nothing is flight.
+bool solve(const RateSmoother::Params& params, const RateModel& model, std::span<const RateObservation> observations,
+           Solution& solution, RateReport& health) {
+  if (!descend(params, model, observations, params.widen_first, solution, health)) return false;
+  double share = 1.0;
+  double best = explained(observations, solution.estimates, share);
+  for (const double factor : kOtherStarts) {
+    if (share >= kFlightShareExpected) break;
+    Solution other{{}, {}, {}, Iteration(observations)};
+    RateReport other_health = health;
+    const double widen = std::max(1.0, factor * params.widen_first);
+    if (!descend(params, model, observations, widen, other, other_health)) continue;
+    double other_share = 0.0;
+    const double found = explained(observations, other.estimates, other_share);
+    ++health.restarts;
+    if (!(found > best)) continue;
+    best = found;
+    share = other_share;
+    other_health.restarts = health.restarts;
+    health = other_health;
+    solution = std::move(other);
+  }
   return true;
 }
 
@@ -233,7 +262,7 @@ RateSmoother::RateSmoother(const Params& params) : params_(params), rails_(param
 
 Status RateSmoother::estimate(std::span<const ImuSample> samples, std::vector<RateState>& out,
                               RateReport& report) const {
-  if (Status status = check_all(samples, params_.gap_max_s); !status.ok()) return status;
+  if (Status status = check_recording(samples, 2, params_.gap_max_s); !status.ok()) return status;
 
   RateReport health;
   health.samples = samples.size();
@@ -247,10 +276,13 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples, std::vector<Ra
   const double force = median_force(samples);
   health.force_unit_suspect = force > 0.5 && force < 2.0;
   std::vector<RateObservation> observations(samples.size());
-  for (std::size_t k = 0; k < samples.size(); ++k) observations[k] = {samples[k], clippings[k]};
-
   const double period_s = median_period_s(samples);
   const RateModel model(params_.model, period_s);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    observations[k] = {samples[k], clippings[k]};
+    mark_partial(rails_, rail_state, model.gyro_sigma_rad_s(), k > 0 ? &samples[k - 1] : nullptr, observations[k],
+                 k + 1 < samples.size() ? &samples[k + 1] : nullptr);
+  }
   Solution solution{{}, {}, {}, Iteration(observations)};
   if (!solve(params_, model, observations, solution, health)) {
     return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
@@ -275,7 +307,7 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples, std::vector<Ra
     RateState& state = states[k];
     state.time_ns = samples[k].time_ns;
     state.w_WI_I_rad_s = estimate.knot.rate_rad_s;
-    state.covariance_rad2_s2 = marginal.state.topLeftCorner<3, 3>();
+    state.covariance_rad2_s2 = model.reported(marginal.state.topLeftCorner<3, 3>(), observations[k], estimate);
     state.clipped_axes = clippings[k].gyro | clippings[k].void_gyro;
     state.source = rate_source(observations[k], estimate, state.covariance_rad2_s2, params_.recovered_sigma_rad_s);
     count(state, health);

@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3d;
 
 int clipped_axes(const RateObservation& o) {
-  return o.clipping.gyro | o.clipping.void_gyro;
+  return o.unseen();
 }
 
 double seconds_between(const RateStream::Knot& from, const RateStream::Knot& to) {
@@ -23,7 +23,7 @@ double seconds_between(const RateStream::Knot& from, const RateStream::Knot& to)
 // Beyond the reading on every clipped axis.
 void hold_to_bounds(const RateObservation& o, Vector3d& rate) {
   for (int j = 0; j < 3; ++j) {
-    if ((o.clipping.gyro >> j & 1u) == 0) continue;
+    if ((o.unseen() & o.clipping.gyro & 1u << j) == 0) continue;
     const double reading = o.sample.angular_velocity_rad_s[j];
     rate[j] = reading < 0.0 ? std::min(rate[j], reading) : std::max(rate[j], reading);
   }
@@ -86,10 +86,14 @@ Status RateStream::push(const ImuSample& sample, State& state, std::optional<Rat
 }
 
 void RateStream::marginalise_oldest(State& state) const {
-  const Knot &oldest = state.window[0], &next = state.window[1];
+  Knot& oldest = state.window[0];
+  const Knot& next = state.window[1];
   arrow::Block block, after;
   arrow::Corner corner;
   add_prior(state, model_, oldest.estimate.knot, block, corner);
+  // what leaves can never be weighed again: it must be flight of the rig as it is known now, not of one as it might be
+  const double jump = model_.jump(oldest.estimate.knot, next.estimate.knot, seconds_between(oldest, next));
+  model_.weigh(oldest.observation, state.rig, RigConstants::Matrix::Zero(), 1.0, jump, oldest.estimate);
   model_.add_sample(oldest.observation, oldest.estimate, state.rig, block, corner);
   model_.add_step(oldest.estimate, next.estimate, seconds_between(oldest, next), block, after);
   if (arrow::eliminate(block, &after, corner)) {
@@ -106,10 +110,10 @@ void RateStream::marginalise_oldest(State& state) const {
   state.prior_rig = state.rig;
   state.window.erase(state.window.begin());
   if (model_.rig_surprise(state.rig) > params_.rig_surprise_max) {
-    // contact was taken for flight of another rig: drop what was learnt of the rig, keep the motion
+    // contact was taken for flight of another rig: drop what was learnt of the rig and of the motion with it
     state.rig = state.prior_rig = model_.prior_constants();
     state.rig_covariance = model_.prior_covariance();
-    state.prior.border.setZero();
+    state.prior = {};
     state.prior_corner = {};
     model_.add_rig_prior(state.rig, state.prior_corner);
     ++state.rig_resets;
@@ -120,6 +124,14 @@ void RateStream::append(const ImuSample& sample, State& state) const {
   rails_.observe(sample, state.rails);
   Knot knot;
   knot.observation = {sample, rails_.classify(sample, state.rails)};
+  const double noise = model_.gyro_sigma_rad_s();
+  if (!state.window.empty()) {
+    RateObservation& last = state.window.back().observation;
+    const std::size_t count = state.window.size();
+    const ImuSample* before = count > 1 ? &state.window[count - 2].observation.sample : nullptr;
+    mark_partial(rails_, state.rails, noise, before, last, &sample);
+    mark_partial(rails_, state.rails, noise, &last.sample, knot.observation, nullptr);
+  }
   knot.estimate.knot.rate_rad_s = sample.angular_velocity_rad_s;
   if (!state.window.empty()) guess(knot, state.window.back(), state);
   state.window.push_back(knot);
@@ -178,7 +190,10 @@ void RateStream::weigh(State& state) const {
     const double widen = clipped ? std::max(1.0, std::ldexp(params_.widen_first, -knot.age)) : 1.0;
     model_.weigh(knot.observation, state.rig, state.rig_covariance, widen, std::min(before, after), knot.estimate);
     const bool soften = knot.age >= params_.bound_age && knot.estimate.flight_weight < 0.5;
-    if (soften && !knot.estimate.soft_bounds) model_.start_bounds(knot.observation, state.rig, knot.estimate);
+    if (soften && !knot.estimate.soft_bounds) {
+      model_.seek_flight(knot.observation, state.rig, knot.estimate);
+      model_.start_bounds(knot.observation, state.rig, knot.estimate);
+    }
     before = after;
   }
 }
@@ -229,8 +244,8 @@ RateState RateStream::to_state(const Knot& knot) const {
   RateState out;
   out.time_ns = knot.observation.sample.time_ns;
   out.w_WI_I_rad_s = knot.estimate.knot.rate_rad_s;
-  out.covariance_rad2_s2 = knot.covariance_rad2_s2;
-  out.clipped_axes = static_cast<std::uint8_t>(clipped_axes(knot.observation));
+  out.covariance_rad2_s2 = model_.reported(knot.covariance_rad2_s2, knot.observation, knot.estimate);
+  out.clipped_axes = knot.observation.clipping.gyro | knot.observation.clipping.void_gyro;
   out.source = rate_source(knot.observation, knot.estimate, knot.covariance_rad2_s2, params_.recovered_sigma_rad_s);
   return out;
 }

@@ -19,6 +19,7 @@ using Eigen::Vector3d;
 constexpr double kStep = 5e-4;
 constexpr double kGravity = 9.81;
 constexpr double kImpactTime = 0.02;
+constexpr double kLeverMax = 8.0;  // rad/m: mass times distance of the contact over a third of the trace of the inertia
 
 struct Moment {
   Vector3d rate, force_at_centre;  // IMU axes; the force of contact at the centre of mass
@@ -41,10 +42,9 @@ class Motion {
     for (int i = 0; i < options.flights; ++i) {
       rate = fly(rate, noise_.uniform(0.2, 0.5));
       if (i + 1 == options.flights) break;
-      const double speed = noise_.uniform(options.speed_low_rad_s, options.speed_high_rad_s);
-      const Vector3d next = speed * (rate + 5.0 * noise_.vector()).normalized();
-      blend(rate, next, kImpactTime, Phase::impact,
-            noise_.uniform(0.33, 1.0) * options.impact_m_s2 * direction(noise_));
+      Vector3d force;
+      const Vector3d next = after_impact(rate, force);
+      blend(rate, next, kImpactTime, Phase::impact, force);
       rate = next;
     }
     if (options.roll) blend(rate, Vector3d::Zero(), 1.0, Phase::roll, Vector3d::Zero());
@@ -61,6 +61,19 @@ class Motion {
     if (turn.norm() > 0.0) q_WI_ = q_WI_ * Quaterniond(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
   }
   Vector3d support() const { return q_WI_.conjugate() * Vector3d(0.0, 0.0, kGravity); }
+
+  // A force through one point of the body, a half sine in time: the rate after it, within the range of the options.
+  Vector3d after_impact(const Vector3d& rate, Vector3d& peak_force) {
+    Vector3d next;
+    do {
+      peak_force = noise_.uniform(0.33, 1.0) * options_.impact_m_s2 * direction(noise_);
+      const Vector3d lever = noise_.uniform(0.0, kLeverMax) * direction(noise_);
+      // trace of the inertia over three is the unit in which the lever is given
+      const Eigen::Matrix3d J = inertia() * 3.0 / options_.moments.sum();
+      next = rate + J.inverse() * lever.cross(peak_force) * kImpactTime * 2.0 / std::numbers::pi;
+    } while (next.norm() < options_.speed_low_rad_s || next.norm() > options_.speed_high_rad_s);
+    return next;
+  }
 
   void still(double duration) {
     for (int k = 0; k < static_cast<int>(duration / kStep); ++k) add(Vector3d::Zero(), support(), Phase::rest);

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "scenarios/recordings/export.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"
 
@@ -55,7 +57,8 @@ TEST_F(ImportCsv, ReadsTheColumnsOfTheLayout) {
 }
 
 TEST_F(ImportCsv, TakesBackWhatExportWrote) {
-  const sim::Recording recording = fixture::recording();
+  sim::Recording recording = fixture::recording();
+  for (Eigen::Vector3d& force : recording.sensors.imus[1].accel_m_s2) force *= 0.2;  // to a plausible median
   export_csv(recording.sensors, nullptr, folder_);
   const sim::ImuRecord& given = recording.sensors.imus[1];
   const Imported imported = import_imu_csv(folder_ / "imu_reference.csv", given);
@@ -65,6 +68,46 @@ TEST_F(ImportCsv, TakesBackWhatExportWrote) {
   EXPECT_EQ(imu.period_ns, given.period_ns);
   ASSERT_EQ(imu.time_ns.size(), given.time_ns.size());
   EXPECT_EQ(imu.time_ns.back(), given.time_ns.back() - given.time_ns.front());
+}
+
+const std::string kNamed =
+    "__time,/imu/angular_velocity/x,/imu/angular_velocity/y,/imu/angular_velocity/z,/imu/header/seq,/imu/header/stamp,"
+    "/imu/linear_acceleration/x,/imu/linear_acceleration/y,/imu/linear_acceleration/z\n";
+
+TEST_F(ImportCsv, FindsColumnsByNameAndReadsStampsToTheNanosecond) {
+  fixture::put(folder_ / "a.csv", kNamed + "1.5,0.1,0.2,0.3,7,1617333602.223639727,-0.5,0,1\n" +
+                                      "1.6,0.1,0.2,0.4,8,1617333602.2316,-0.5,0,1\n");
+  const Imported imported = import_imu_csv(folder_ / "a.csv", {}, AccelUnit::g);
+  const sim::ImuRecord& imu = imported.sensors.imus.at(0);
+  EXPECT_THAT(imu.time_ns, ElementsAre(0, 231600000 - 223639727));
+  EXPECT_EQ(imu.gyro_rad_s[1], Eigen::Vector3d(0.1, 0.2, 0.4));
+  EXPECT_EQ(imu.accel_m_s2[0], 9.80665 * Eigen::Vector3d(-0.5, 0.0, 1.0));
+  EXPECT_THAT(imported.info.attribution, HasSubstr("first stamp 1617333602223639727 ns"));
+}
+
+TEST_F(ImportCsv, AnotherUnitOrAMissingColumnIsSaid) {
+  const std::string rows = "1.5,0.1,0.2,0.3,7,1617333602.223639727,-0.5,0,1\n1.6,0.1,0.2,0.4,8,1617333602.24,-0.5,0,1\n";
+  EXPECT_THAT(complaint_of(kNamed + rows), HasSubstr("median specific force is 1.118034 m/s^2, must be within 3 and 30"));
+  std::string without = kNamed;
+  without.replace(without.find("velocity/y"), 10, "velocity_y");
+  EXPECT_THAT(complaint_of(without + rows), HasSubstr("csv:1: columns are missing: angular_velocity/y"));
+  std::string twice = kNamed;
+  twice.replace(twice.find("__time"), 6, "/b/header/stamp");
+  EXPECT_THAT(complaint_of(twice + rows), HasSubstr("csv:1: two columns are called header/stamp"));
+  for (const char* stamp : {"", ".5", "-1.5", "1.5e3", "1.0123456789", "12345678901.5"}) {
+    EXPECT_THAT(complaint_of(kNamed + "1.5,0.1,0.2,0.3,7," + stamp + ",-0.5,0,9\n"), HasSubstr("csv:2: column 5 must be seconds"))
+        << stamp;
+  }
+}
+
+TEST_F(ImportCsv, ReadsTheLogOfARealSphere) {
+  const std::filesystem::path log = std::filesystem::path(TUMBLE_SHARED_DATA) / "sphere_log/orientation_all.csv";
+  if (!std::filesystem::exists(log)) GTEST_SKIP() << "the log of the sphere is not at " << log;
+  const sim::ImuRecord imu = import_imu_csv(log, {}, AccelUnit::g).sensors.imus.at(0);
+  ASSERT_EQ(imu.time_ns.size(), 7294u);
+  EXPECT_NEAR(static_cast<double>(imu.period_ns), 8e6, 1e5) << "125 Hz";
+  EXPECT_NEAR(static_cast<double>(imu.time_ns.back()) * 1e-9, 58.34, 0.01);
+  EXPECT_NEAR(imu.accel_m_s2[0].norm(), 9.81, 0.1) << "at rest at the start";
 }
 
 TEST_F(ImportCsv, AGapDoesNotChangeThePeriod) {
@@ -117,10 +160,48 @@ TEST_F(ImportBroad, ReadsATrialAndKeepsTheAttribution) {
   // at rest at the start: gravity, +9.8 up, and hardly a rate
   EXPECT_NEAR(imu.accel_m_s2[0].norm(), 9.81, 0.1);
   EXPECT_LT(imu.gyro_rad_s[0].norm(), 0.05);
+  // the Earth's field at the place of recording has 49 uT; the room bends it
+  ASSERT_EQ(imu.magnetic_field_t.size(), imu.time_ns.size());
+  EXPECT_NEAR(imu.magnetic_field_t[0].norm(), 49e-6, 15e-6);
   EXPECT_THAT(imported.info.attribution, HasSubstr("Laidig"));
   EXPECT_THAT(imported.info.attribution, HasSubstr("CC BY 4.0; trial 24_disturbed_tapping_A"));
   write_recording(folder_ / "a.h5", imported.info, imported.sensors, nullptr);
   EXPECT_EQ(read_info(folder_ / "a.h5").attribution, imported.info.attribution);
+}
+
+TEST_F(ImportBroad, TheReferenceAgreesWithTheReadings) {
+  const std::filesystem::path trial = std::filesystem::path(TUMBLE_SHARED_DATA) / "broad/05_undisturbed_slow_rotation_with_breaks_B.hdf5";
+  if (!std::filesystem::exists(trial)) GTEST_SKIP() << "the BROAD trials are not at " << trial;
+  const Imported imported = import_broad(trial);
+  ASSERT_TRUE(imported.reference.has_value());
+  const sim::Truth& truth = *imported.reference;
+  const sim::ImuRecord& imu = imported.sensors.imus[0];
+  ASSERT_EQ(truth.q_WB.size(), imu.time_ns.size());
+  EXPECT_TRUE(truth.label.empty());
+  // where the rate is known it is the gyro's, and at rest gravity stands upright in the world
+  std::vector<double> errors, at_rest, up;
+  for (std::size_t k = 0; k < truth.q_WB.size(); ++k) {
+    if (!truth.w_WB_B_rad_s[k].allFinite()) continue;
+    errors.push_back((truth.w_WB_B_rad_s[k] - imu.gyro_rad_s[k]).norm());
+    if (imu.gyro_rad_s[k].norm() >= 0.03) continue;
+    at_rest.push_back(truth.w_WB_B_rad_s[k].norm());
+    up.push_back((truth.q_WB[k] * imu.accel_m_s2[k]).normalized().z());
+  }
+  ASSERT_GT(errors.size(), 40000u);
+  const auto median = [](std::vector<double> values) {
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+    return values[values.size() / 2];
+  };
+  EXPECT_LT(median(errors), 0.06) << "measured 0.042; another frame or a wrong order of components gives 1";
+  ASSERT_GT(at_rest.size(), 1000u);
+  EXPECT_LT(median(at_rest), 0.01) << "measured 0.0062: below TruthTrack's bound of rest";
+  EXPECT_GT(median(up), 0.999);
+  // gaps and what the cameras do not know pass through the file
+  write_recording(folder_ / "a.h5", imported.info, imported.sensors, &truth);
+  const sim::Truth back = read_truth(folder_ / "a.h5");
+  ASSERT_EQ(back.q_WB.size(), truth.q_WB.size());
+  EXPECT_EQ(back.p_WB_m.back(), truth.p_WB_m.back());
+  EXPECT_EQ(back.q_WB.front().coeffs().hasNaN(), truth.q_WB.front().coeffs().hasNaN());
 }
 
 TEST_F(ImportBroad, OtherFilesAreRefused) {

@@ -75,7 +75,9 @@ TEST(RecordingCheck, NamesWhatContradictsInTheTruth) {
   };
   const std::vector<Case> cases = {
       {[](auto& t) { t.q_WB.pop_back(); }, "truth: q_WB has 39 rows, p_WB_m has 40"},
-      {[](auto& t) { t.label.clear(); }, "label has 0 rows"},
+      {[](auto& t) { t.label.pop_back(); }, "label has 39 rows, must have 40 or none"},
+      {[](auto& t) { t.f_B_m_s2.pop_back(); }, "f_B_m_s2 has 39 rows, must have 40 or none"},
+      {[](auto& t) { t.q_WB[3].w() = std::numeric_limits<double>::quiet_NaN(); }, "q_WB is not of unit length"},
       {[](auto& t) { t.period_ns = 0; }, "truth: period_ns is 0"},
       {[](auto& t) { t.q_WB[3].coeffs() *= 1.01; }, "q_WB is not of unit length"},
       {[](auto& t) { t.q_WB[3].coeffs().setZero(); }, "q_WB is not of unit length"},
@@ -92,6 +94,18 @@ TEST(RecordingCheck, NamesWhatContradictsInTheTruth) {
     each.spoil(truth);
     EXPECT_THAT(find_problem(truth), HasSubstr(each.problem));
   }
+}
+
+TEST(RecordingCheck, AReferenceMayKnowPosesAlone) {
+  sim::Recording recording = fixture::recording();
+  sim::Truth& truth = recording.truth;
+  truth.f_B_m_s2.clear();
+  truth.label.clear();
+  truth.contacts.clear();
+  truth.q_WB[3].coeffs().setConstant(std::numeric_limits<double>::quiet_NaN());
+  for (sim::ImuTruth& imu : truth.imus) imu = {imu.name, imu.T_BI, {}, {}, {}, {}, {}, {}, {}};
+  EXPECT_EQ(find_problem(truth), "");
+  EXPECT_EQ(find_mismatch(recording.sensors, truth), "");
 }
 
 TEST(RecordingCheck, TruthMustRunParallelToTheSensors) {

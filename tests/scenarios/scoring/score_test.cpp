@@ -48,7 +48,8 @@ TEST(Metrics, AreNamedByTheirUnitAndDescribed) {
 
 // every metric of every kind, for an estimate that is the truth in a world of its own
 TEST(Metrics, OfTheTruthAreZeroWhereverItsWorldStands) {
-  const std::set<std::string> shares = {"rate_coverage_3sigma", "map_coverage"};
+  const std::set<std::string> shares = {"rate_coverage_3sigma", "rate_coverage_3sigma_flight",
+                                        "rate_coverage_3sigma_impact", "map_coverage"};
   for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
     Estimate estimate = perfect_estimate(rig());
     move_world(turned_world(), estimate);
@@ -73,6 +74,37 @@ TEST(RateScores, AnOffsetIsItsOwnError) {
   EXPECT_NEAR(values.at("rate_error_clipped_median_rad_s"), 5.0, 1e-12);
   EXPECT_NEAR(values.at("rate_error_clipped_p99_rad_s"), 5.0, 1e-12);
   EXPECT_NEAR(values.at("rate_error_free_median_rad_s"), 0.5, 1e-12);
+}
+
+TEST(RateScores, AStretchIsJudgedByItsMeanAndTheWorstSampleByItself) {
+  Estimate alternating = perfect_estimate(rig()), offset = alternating;
+  const ClippingTruth truth(rig().sensors, rig().truth);
+  for (std::size_t k = 0; k < alternating.rates.size(); ++k) {
+    if (truth.clipped_axes(k) == 0) continue;
+    alternating.rates[k].w_WI_I_rad_s.x() += k % 2 == 0 ? 2.0 : -2.0;
+    offset.rates[k].w_WI_I_rad_s.x() += 2.0;
+  }
+  const auto wild = scores(Kind::rate, alternating, rig()), shifted = scores(Kind::rate, offset, rig());
+  EXPECT_NEAR(wild.at("rate_error_clipped_max_rad_s"), 2.0, 1e-12);
+  EXPECT_LT(wild.at("rate_error_stretch_max_rad_s"), 0.1);  // one sample more of a sign, over at least twenty
+  EXPECT_NEAR(shifted.at("rate_error_stretch_max_rad_s"), 2.0, 1e-12);
+}
+
+TEST(RateScores, CoverageAndNormalisedErrorApartForFlightAndContact) {
+  sim::Recording recording = rig();
+  const std::size_t half = recording.truth.label.size() / 2;
+  for (std::size_t k = half; k < recording.truth.label.size(); ++k) recording.truth.label[k] = sim::ContactLabel::grip;
+  const std::int64_t border_ns = static_cast<std::int64_t>(half) * recording.truth.period_ns;
+  Estimate estimate = perfect_estimate(recording);
+  for (RateState& rate : estimate.rates) {
+    rate.covariance_rad2_s2 = 0.01 * Eigen::Matrix3d::Identity();
+    rate.w_WI_I_rad_s += Eigen::Vector3d::Constant(rate.time_ns < border_ns ? 0.1 : 0.4);
+  }
+  const auto values = scores(Kind::rate, estimate, recording);
+  EXPECT_EQ(values.at("rate_coverage_3sigma_flight"), 1.0);
+  EXPECT_EQ(values.at("rate_coverage_3sigma_impact"), 0.0);
+  EXPECT_NEAR(values.at("rate_nees_flight"), 1.0, 1e-9);
+  EXPECT_NEAR(values.at("rate_nees_impact"), 16.0, 1e-9);
 }
 
 TEST(RateScores, CoverageCountsClippedAxesWithinThreeSigma) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "scenarios/errors.hpp"
@@ -54,6 +55,29 @@ TEST(TruthTrack, RestIsWhereNothingMovesAround) {
   EXPECT_FALSE(track.at_rest(3000000000));
   EXPECT_TRUE(track.at_rest(5000000000));
   EXPECT_TRUE(track.at_rest(6000000000));
+}
+
+TEST(TruthTrack, DoesNotCoverWhatAReferenceDidNotSee) {
+  sim::Recording recording = testing::synthetic_rig();
+  sim::Truth& truth = recording.truth;
+  const TruthTrack whole(recording.truth, Frame::body);
+  const std::int64_t period_ns = truth.period_ns;
+  const PoseState before = whole.pose(3999 * period_ns);
+  const double path_m = whole.path_m(whole.last_ns());
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  truth.q_WB[4000].coeffs().setConstant(nan);
+  truth.p_WB_m[4000].setConstant(nan);
+  truth.v_WB_m_s[4000].setConstant(nan);
+  const TruthTrack track(truth, Frame::body);
+  EXPECT_FALSE(track.covers(4000 * period_ns));
+  EXPECT_FALSE(track.covers(3999 * period_ns + 1));
+  EXPECT_FALSE(track.covers(4000 * period_ns + 1));
+  ASSERT_TRUE(track.covers(3999 * period_ns));
+  EXPECT_TRUE(track.covers(4001 * period_ns));
+  EXPECT_EQ(track.pose(3999 * period_ns).p_WA_m, before.p_WA_m) << "the unknown neighbour has no part in it";
+  EXPECT_EQ(track.pose(3999 * period_ns).q_WA.coeffs(), before.q_WA.coeffs());
+  // two steps of at most 1 m/s are missing from the way
+  EXPECT_NEAR(track.path_m(track.last_ns()), path_m, 1e-3);
 }
 
 TEST(TruthTrack, RefusesTruthThatDoesNotFit) {

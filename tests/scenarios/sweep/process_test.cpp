@@ -113,7 +113,7 @@ class RunIsolated : public ::testing::Test {
     method.info.name = "test";
     method.info.kind = Kind::rate;
     method.run = [body](const sim::Sensors& sensors, const sim::Values&, const OracleInput&) { return body(sensors); };
-    return run_isolated(method, draw(), nullptr, timeout_s);
+    return run_isolated(method, draw(), draw(), nullptr, timeout_s);
   }
 
   static double score_named(const Outcome& outcome, const std::string& name) {
@@ -126,7 +126,7 @@ class RunIsolated : public ::testing::Test {
 };
 
 TEST_F(RunIsolated, AGoodMethodIsScoredWithItsCost) {
-  const Outcome outcome = run_isolated(*find_methods("raw").front(), draw(), nullptr, 60.0);
+  const Outcome outcome = run_isolated(*find_methods("raw").front(), draw(), draw(), nullptr, 60.0);
   EXPECT_EQ(outcome.status, "ok") << outcome.message;
   EXPECT_EQ(outcome.scenario, "synthetic");
   EXPECT_EQ(outcome.seed, 3u);

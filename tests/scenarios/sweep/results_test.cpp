@@ -45,6 +45,26 @@ class ResultsTest : public testing::TemporaryFolder {
   }
 };
 
+TEST_F(ResultsTest, DrawsAndCertificatesComeBack) {
+  const Certificate certificate{build_id(), {{"row", "b", "law", "m", 0.5, 0.0, 1.0, ""}, {"row", "a", "law", "1", 2.0, 0.0, 1.0, "why"}}};
+  {
+    Results results(path(), Results::Mode::create_or_append);
+    results.store(DrawValues{"hill", 3, {{"motion_path_m", 7.5}, {"motion_several_axes_share", std::nan("")}}});
+    results.store(DrawValues{"hill", 3, {{"motion_path_m", 8.5}}});
+    results.store(certificate);
+    results.store(certificate);  // replaces itself
+  }
+  const Results results(path(), Results::Mode::read_only);
+  const std::vector<DrawValues> draws = results.draws();
+  ASSERT_EQ(draws.size(), 1u);
+  EXPECT_EQ(draws[0].seed, 3u);
+  ASSERT_EQ(draws[0].values.size(), 2u);
+  EXPECT_EQ(draws[0].values[0].value, 8.5);
+  EXPECT_TRUE(std::isnan(draws[0].values[1].value));
+  ASSERT_EQ(results.certificates().size(), 1u);
+  EXPECT_EQ(results.certificates()[0], certificate);
+}
+
 TEST_F(ResultsTest, WhatIsStoredComesBack) {
   const std::uint64_t large = std::numeric_limits<std::uint64_t>::max();
   {

@@ -42,7 +42,8 @@ struct Expected {
 
 class SphereScenario : public testing::TestWithParam<Expected> {};
 
-// ramps and obstacles may scrape for some hundredths of a second
+// Where a scenario is not about slip it may still scrape: at the edge of an obstacle the sphere has two contacts, of which
+// one must slip. Over seeds 1001-1020 bump does so for 0.000-0.135 s, ramp and tube never.
 TEST_P(SphereScenario, ShowsWhatItIsAboutAndEndsAtRest) {
   sim::Situation situation = draw(kData, load_scenario(kData, GetParam().scenario), kSeed);
   std::erase_if(situation.sensors, [](const sim::SensorSpec& sensor) { return sensor.kind != "imu"; });
@@ -66,7 +67,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Expected{"roll", 0.0, 0.0, 0.0, 0.0}, Expected{"slip", 0.2, 2.5, 0.0, 0.1},
                     Expected{"slip_long", 1.2, 3.0, 0.0, 0.1}, Expected{"slide", 0.0, 0.3, 0.2, 2.2},
                     Expected{"slide_long", 0.0, 0.1, 1.2, 3.0}, Expected{"slide_then_roll", 0.0, 0.1, 0.2, 1.5},
-                    Expected{"bump", 0.0, 0.1, 0.0, 0.1}, Expected{"ramp", 0.0, 0.1, 0.0, 0.1},
+                    Expected{"bump", 0.0, 0.2, 0.0, 0.1}, Expected{"ramp", 0.0, 0.1, 0.0, 0.1},
                     Expected{"corridor", 0.0, 0.0, 0.0, 0.0}, Expected{"tube", 0.0, 0.1, 0.0, 0.1}),
     [](const auto& info) { return std::string(info.param.scenario); });
 

@@ -158,6 +158,15 @@ TEST(Simulate, NeverMovingFailsTheDraw) {
   EXPECT_THROW(simulate(situation, {models_folder(), 1}), SimulationFailure);
 }
 
+TEST(Simulate, StartPoseIsWhereTheTruthBegins) {
+  const Situation situation = tumble_down(3.0, 100.0);
+  const Truth truth = simulate(situation, {models_folder(), 1}).truth;
+  const Eigen::Isometry3d T_WB = start_pose(situation, models_folder());
+  // it settles by the contacts' give under its weight and 3 mm of gap (measured: 8 mm)
+  EXPECT_LT((T_WB.translation() - truth.p_WB_m.front()).norm(), 0.03);
+  EXPECT_LT(Eigen::Quaterniond(T_WB.linear()).angularDistance(truth.q_WB.front()), 0.05);
+}
+
 TEST(Simulate, AnUnknownSiteNamesTheNearest) {
   Situation situation = tumble_down(1.0, 100.0);
   situation.sensors[0].site = "mti3";

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "tumble/angular_velocity/arrow_solver.hpp"
+#include "tumble/angular_velocity/partial_clipping.hpp"
 #include "tumble/angular_velocity/rail_detector.hpp"
 #include "tumble/angular_velocity/rate_factors.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
@@ -29,15 +30,27 @@ struct RateModelParams {
   double gyro_noise_density = 5.236e-4;
   /// Noise density of the accelerometer [m/s^2/sqrt(Hz)] (MTi-30: 60 ug/sqrt(Hz)); [1e-9, 10].
   double accel_noise_density = 5.9e-4;
-  /// What the flight model misses of the specific force (scale errors, drag), besides noise [m/s^2]; [1e-6, 100].
-  double flight_sigma_m_s2 = 0.05;
+  /// What the flight model misses of the specific force (drag, bias in motion), besides noise [m/s^2]; [1e-6, 100].
+  double flight_sigma_m_s2 = 0.02;
+  /// Scale and misalignment of the accelerometer, as a share of the force; [0, 1].
+  double accel_scale_error = 1e-3;
   /// What Euler's equation without torque misses of the angular acceleration [rad/s^2]; [1e-6, 1e6].
-  double euler_sigma_rad_s2 = 2.0;
+  double euler_sigma_rad_s2 = 0.5;
   /// Density of the white angular jerk in flight [rad^2/s^5]; [1, 1e12].
-  double jerk_psd_flight = 1e5;
+  double jerk_psd_flight = 1e4;
   /// In contact the jerk grows by what the force can do to the angular acceleration: rad/s^2 per m/s^2 of specific
   /// force that the flight model cannot explain; [0, 1e3].
   double contact_gain_rad_m = 4.0;
+  /// Impacts are no Gaussian noise: what a fit through one claims to know is widened by this factor; [1, 10].
+  double contact_sigma_factor = 1.3;
+  /// Euler's equation in contact: a force F turns the body across itself, by up to about this times |F| (mass times
+  /// distance of the contact over a third of the trace of the inertia) ...; [0, 1e3].
+  double contact_lever_rad_m = 5.0;
+  /// ... and about its own direction by a share of that (several contacts, a contact that moves in a window); [0, 1].
+  double contact_twist_share = 0.3;
+  /// In contact the unknown force is taken for zero with a standard deviation of this times itself (a prior that is
+  /// flat in its logarithm has 0.58); 0: nothing is assumed of it; [0, 1e3].
+  double contact_force_share = 1.0;
   /// A sample whose residuals of flight exceed this many standard deviations counts as contact; [1, 100].
   double flight_threshold = 5.0;
   /// Softness of the bound that a clipped reading is [rad/s]; [1e-6, 10].
@@ -52,13 +65,26 @@ struct RateModelParams {
 struct RateObservation {
   ImuSample sample;
   Clipping clipping;
+  std::uint8_t partial = 0;  ///< bit j: axis j met the rail in a part of its window only, see PartialLoss
+  Eigen::Vector3d lost_rad_s = Eigen::Vector3d::Zero();        ///< of partial axes, signed as the reading
+  Eigen::Vector3d lost_sigma_rad_s = Eigen::Vector3d::Zero();
+
+  /// Axes whose rate is not read: bound at most.
+  std::uint8_t unseen() const {
+    return static_cast<std::uint8_t>((clipping.gyro | clipping.void_gyro) & ~(partial & ~clipping.void_gyro));
+  }
 };
+
+/// Finds the partial axes of `now` from the samples beside it (null where there is none).
+void mark_partial(const RailDetector& rails, const RailDetector::State& state, double noise_rad_s,
+                  const ImuSample* before, RateObservation& now, const ImuSample* after);
 
 /// What is estimated of one sample.
 struct RateEstimate {
   RateKnot knot;
   double flight_weight = 0.0;  ///< 0: contact, 1: free flight
-  double contact_m_s2 = 0.0;   ///< specific force that the flight model does not explain
+  /// Specific force of contact at the centre of mass: what the flight model does not explain.
+  Eigen::Vector3d contact_m_s2 = Eigen::Vector3d::Zero();
   /// What the bounds of clipped axes amount to, as Gaussian sites on (rate + bias): precision and precision * mean.
   Eigen::Vector3d bound_precision = Eigen::Vector3d::Zero();
   Eigen::Vector3d bound_shift = Eigen::Vector3d::Zero();
@@ -81,6 +107,10 @@ class RateModel {
 
   /// How far a step between two samples is from the smoothness of flight: squared, normalised, six degrees of freedom.
   double jump(const RateKnot& from, const RateKnot& to, double dt_s) const;
+
+  /// Moves the unseen rates of a sample in contact to where its force is smallest, when that is far smaller than at the
+  /// current estimate: between two impacts a body may fly for a single sample, which no local step finds.
+  void seek_flight(const RateObservation& observation, const RigConstants& rig, RateEstimate& estimate) const;
 
   /// Starts the bounds of a sample: near the current estimate or the reading, whichever lies beyond.
   void start_bounds(const RateObservation& observation, const RigConstants& rig, RateEstimate& estimate) const;
@@ -112,9 +142,15 @@ class RateModel {
   Eigen::Matrix<double, 6, 1> unscaled(const arrow::StateVector& step) const;
   /// A difference in physical units in those of the solver.
   arrow::StateVector scaled(const Eigen::Matrix<double, 6, 1>& difference) const;
+  /// Covariance of a rate as it is reported: of the fit, wider in contact.
+  Eigen::Matrix3d reported(const Eigen::Matrix3d& covariance_rad2_s2, const RateObservation& observation,
+                           const RateEstimate& estimate) const;
   double gyro_sigma_rad_s() const { return gyro_sigma_rad_s_; }
 
  private:
+  Eigen::Matrix3d euler_information(const RateEstimate& estimate) const;
+  double accel_sigma_m_s2(const RateObservation& observation) const;
+
   RateModelParams params_;
   double time_scale_s_;  ///< the solver's acceleration is the acceleration times this
   double gyro_sigma_rad_s_;

@@ -18,6 +18,7 @@ namespace tumble {
 struct RateReport {
   int iterations = 0;
   bool converged = false;
+  int restarts = 0;              ///< descents from another start, where the first found hardly any flight
   double last_step_rad_s = 0.0;  ///< largest change of a rate in the last iteration
   RigCalibration calibration;    ///< what the run has learnt of the rig: can be given to the next
   /// How far the constants moved from what was known beforehand (RateModel::rig_surprise). Far beyond 1 the prior is

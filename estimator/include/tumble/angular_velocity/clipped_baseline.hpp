@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "tumble/angular_velocity/rail_detector.hpp"
+#include "tumble/angular_velocity/rate_state.hpp"
+#include "tumble/common/imu.hpp"
+#include "tumble/common/status.hpp"
+
+namespace tumble {
+
+/// What can be done about clipped rates with the gyro alone: three models of how a rate goes on while it is not seen.
+///
+/// Each axis stands by itself. Readings at the rail are left out; the answer is held between the reading that was
+/// clipped and a largest rate. The accelerometer is not used.
+///
+/// - `interpolate`: a cubic over each clipped gap that meets value and slope on both sides. Made for gaps that are
+///   short beside the motion: a brush against the rail.
+/// - `reject`: a causal Kalman filter whose rate is a random walk, so that it stands still over a gap. What Point-LIO
+///   does with saturated rows while nothing else (no lidar) speaks: made for gaps shorter than the time between two
+///   corrections by another sensor.
+/// - `constant_jerk`: a smoother whose jerk is a random walk (white noise on snap), so that a gap is bridged by the
+///   smoothest curve that keeps rate, acceleration and jerk on both sides. Made for swings that pass the rail once,
+///   without impacts.
+///
+/// What none of them models: impacts inside of a gap, and the coupling of the axes of a tumbling body.
+class ClippedBaseline {
+ public:
+  enum class Kind { interpolate, reject, constant_jerk };
+  struct Params {
+    Kind kind = Kind::interpolate;
+    RailDetector::Params rails;
+    /// Noise density of the gyro [rad/s/sqrt(Hz)]; [1e-9, 1].
+    double gyro_noise_density = 5.236e-4;
+    /// Density of the white angular acceleration of `reject` [rad^2/s^3]; [1e-12, 1e12].
+    double acceleration_psd = 1e3;
+    /// Density of the white angular snap of `constant_jerk` [rad^2/s^7]; [1e-12, 1e15].
+    double snap_psd = 1e10;
+    double rate_max_rad_s = 50.0;  ///< no answer to a gap lies beyond; [1, 1e4]
+    double gap_max_s = 1.0;        ///< longest time between samples before the run is refused; [1e-6, 3600]
+  };
+
+  /// Throws InvalidParams on a parameter outside of its bound.
+  explicit ClippedBaseline(const Params& params);
+
+  /// One RateState per sample. On trouble (`empty`, `too_few`: less than two samples, `non_finite`, `time_order`,
+  /// `gap`) nothing is written. O(N).
+  Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const;
+
+ private:
+  Params params_;
+  RailDetector rails_;
+};
+
+}  // namespace tumble

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a clipped reading says of its rate: the part of RateModel that deals with bounds.
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tumble/angular_velocity/rate_model.hpp"
+
+namespace tumble {
+
+namespace {
+
+using Eigen::Vector3d;
+
+// precision of a bound before anything is known, (rad/s)^-2
+constexpr double kStartPrecision = 0.25;
+
+// Search for a sample of flight between impacts: Newton steps, the longest of them [rad/s], and the share of the
+// reading that a force of contact may have to pass for a gentle one.
+constexpr int kSeekIterations = 6;
+constexpr double kSeekStep = 3.0, kGentleShare = 0.25;
+
+// phi(z) / Phi(z) of the normal distribution, by its asymptotic series where both vanish
+double density_over_share(double z) {
+  if (z < -8.0) return -z / (1.0 - 1.0 / (z * z) + 3.0 / (z * z * z * z));
+  const double density = std::exp(-0.5 * z * z) * std::numbers::inv_sqrtpi / std::numbers::sqrt2;
+  return density / (0.5 * std::erfc(-z / std::numbers::sqrt2));
+}
+
+}  // namespace
+
+void RateModel::seek_flight(const RateObservation& observation, const RigConstants& rig, RateEstimate& estimate) const {
+  const int unseen = observation.unseen();
+  if (unseen == 0 || observation.clipping.accel != 0) return;
+  const Vector3d& reading = observation.sample.angular_velocity_rad_s;
+  RateEstimate flown = estimate;
+  const Eigen::Matrix3d J = rig.inertia_matrix();
+  RateFactor flight;
+  for (int iteration = 0; iteration <= kSeekIterations; ++iteration) {
+    Vector3d& w = flown.knot.rate_rad_s;
+    flown.knot.acceleration_rad_s2 = -J.llt().solve(w.cross(Vector3d(J * w)));
+    flight = flight_factor(flown.knot, rig, observation.sample.specific_force_m_s2);
+    if (iteration == kSeekIterations) break;
+    Eigen::Matrix3d H = 1e-9 * Eigen::Matrix3d::Identity();
+    Vector3d g = Vector3d::Zero();
+    for (int j = 0; j < 3; ++j) {
+      if ((unseen >> j & 1) == 0) continue;
+      g[j] = -flight.by_knot.col(j).dot(flight.residual);
+      for (int i = 0; i < 3; ++i) {
+        if ((unseen >> i & 1) != 0) H(i, j) += flight.by_knot.col(i).dot(flight.by_knot.col(j));
+      }
+    }
+    w += H.llt().solve(g).cwiseMax(-kSeekStep).cwiseMin(kSeekStep);
+    for (int j = 0; j < 3; ++j) {
+      if ((unseen & observation.clipping.gyro & 1 << j) == 0) continue;
+      const double side = std::copysign(1.0, reading[j]), high = std::max(std::abs(reading[j]), params_.rate_max_rad_s);
+      w[j] = side * std::clamp(side * w[j], std::abs(reading[j]), high);
+    }
+  }
+  const double gentle = kGentleShare * observation.sample.specific_force_m_s2.norm();
+  if (flight.residual.norm() > std::min(gentle, 0.5 * estimate.contact_m_s2.norm())) return;
+  estimate.knot = flown.knot;
+  estimate.contact_m_s2 = -flight.residual;
+}
+
+void RateModel::start_bounds(const RateObservation& observation, const RigConstants& rig,
+                             RateEstimate& estimate) const {
+  estimate.soft_bounds = true;
+  for (int j = 0; j < 3; ++j) {
+    if ((observation.unseen() & observation.clipping.gyro & 1u << j) == 0) continue;
+    const double reading = observation.sample.angular_velocity_rad_s[j];
+    const double guess = estimate.knot.rate_rad_s[j] + rig.gyro_bias_rad_s[j];
+    const double mean = reading < 0.0 ? std::min(guess, reading) : std::max(guess, reading);
+    estimate.bound_precision[j] = kStartPrecision;
+    estimate.bound_shift[j] = kStartPrecision * mean;
+  }
+}
+
+void RateModel::update_bounds(const RateObservation& observation, const RigConstants& rig,
+                              const arrow::Marginal& marginal, const RigConstants::Matrix& rig_covariance,
+                              double damping, RateEstimate& estimate) const {
+  for (int j = 0; j < 3; ++j) {
+    if ((observation.unseen() & observation.clipping.gyro & 1u << j) == 0) continue;
+    const double reading = observation.sample.angular_velocity_rad_s[j], sign = reading < 0.0 ? -1.0 : 1.0;
+    const double variance = marginal.state(j, j) + 2.0 * marginal.cross(j, 3 + j) + rig_covariance(3 + j, 3 + j);
+    // the marginal without this site, mirrored so that the bound lies below
+    const double mean = sign * (estimate.knot.rate_rad_s[j] + rig.gyro_bias_rad_s[j]);
+    const double site_precision = estimate.bound_precision[j], site_shift = sign * estimate.bound_shift[j];
+    const double precision =
+        std::max(1.0 / variance - site_precision, 1.0 / (params_.rate_max_rad_s * params_.rate_max_rad_s));
+    const double cavity_mean = (mean / variance - site_shift) / precision, cavity_variance = 1.0 / precision;
+    const double spread2 = cavity_variance + params_.rail_sigma_rad_s * params_.rail_sigma_rad_s;
+    const double spread = std::sqrt(spread2);
+    const double z = (cavity_mean - std::abs(reading)) / spread, r = density_over_share(z);
+    const double new_mean = cavity_mean + cavity_variance * r / spread;
+    const double new_variance = cavity_variance - cavity_variance * cavity_variance * r * (z + r) / spread2;
+    const double new_precision = std::max(0.0, 1.0 / new_variance - precision);
+    const double new_shift = new_mean / new_variance - precision * cavity_mean;
+    estimate.bound_precision[j] += damping * (new_precision - site_precision);
+    estimate.bound_shift[j] += damping * (sign * new_shift - estimate.bound_shift[j]);
+  }
+}
+
+}  // namespace tumble

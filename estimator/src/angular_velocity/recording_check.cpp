@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "recording_check.hpp"
+
+#include <algorithm>
+#include <vector>
+
+namespace tumble {
+
+Status check_recording(std::span<const ImuSample> samples, std::size_t count_min, double gap_max_s) {
+  if (samples.empty()) return {Trouble::empty, "samples", 0.0, 1.0};
+  if (samples.size() < count_min) {
+    return {Trouble::too_few, "samples", static_cast<double>(samples.size()), static_cast<double>(count_min)};
+  }
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (Status status = check_sample(samples[k]); !status.ok()) return status;
+    if (k == 0) continue;
+    Status status = check_follows(samples[k].time_ns, samples[k - 1].time_ns, gap_max_s);
+    if (!status.ok()) return status;
+  }
+  return {};
+}
+
+double median_period_s(std::span<const ImuSample> samples) {
+  std::vector<TimeNs> steps(samples.size() - 1);
+  for (std::size_t k = 0; k < steps.size(); ++k) steps[k] = samples[k + 1].time_ns - samples[k].time_ns;
+  std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
+  return std::clamp(seconds(steps[steps.size() / 2]), 1e-6, 10.0);
+}
+
+}  // namespace tumble

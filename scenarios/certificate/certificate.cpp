@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/certificate/certificate.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "scenarios/certificate/rows.hpp"
+#include "scenarios/draw/strict_yaml.hpp"
+#include "scenarios/errors.hpp"
+#include "scenarios/sweep/build_id.hpp"
+#include "scenarios/sweep/process.hpp"
+#include "sim/parameters.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+/// A row with the certificate's own set-up.
+template <auto kMeasure>
+std::vector<CertificateEntry> as_certified(const CertificateInput& input) {
+  return kMeasure(input, {});
+}
+
+std::vector<CertificateEntry> measure_row(const CertificateRow& row, const CertificateInput& input) {
+  std::string reason = "no entry";
+  try {
+    std::vector<CertificateEntry> entries = row.measure(input);
+    if (!entries.empty()) return entries;
+  } catch (const BadInput&) {
+    throw;
+  } catch (const sim::InvalidSituation&) {
+    throw;
+  } catch (const std::exception& error) {  // a simulation that fails is what a certificate is to find out
+    reason = error.what();
+  }
+  return {{row.name, "", row.doc, "1", std::nan(""), 0.0, 0.0, reason}};
+}
+
+std::vector<const CertificateRow*> select(const std::vector<std::string>& names) {
+  std::vector<const CertificateRow*> selected;
+  std::vector<std::string> known;
+  for (const CertificateRow& row : certificate_rows()) {
+    known.push_back(row.name);
+    if (names.empty() || std::find(names.begin(), names.end(), row.name) != names.end()) selected.push_back(&row);
+  }
+  for (const std::string& name : names) {
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      throw BadInput("unknown row '" + name + "' of the certificate" + suggestion(name, known));
+    }
+  }
+  return selected;
+}
+
+}  // namespace
+
+std::span<const CertificateRow> certificate_rows() {
+  static const std::array kRows = {
+      CertificateRow{"free_flight", "energy and angular momentum of a free flight", as_certified<certify_free_flight>},
+      CertificateRow{"flight_force", "specific force at the centre of mass in flight",
+                     as_certified<certify_flight_force>},
+      CertificateRow{"free_fall", "time of a free fall", as_certified<certify_free_fall>},
+      CertificateRow{"rolling", "rolling law on the plane and on each ground", as_certified<certify_rolling>},
+      CertificateRow{"slip_to_grip", "time from slip to grip", as_certified<certify_slip_to_grip>},
+      CertificateRow{"impact", "sensitivity of impact peaks to step and softness", as_certified<certify_impact>},
+      CertificateRow{"lidar_range", "range error against analytic surfaces", as_certified<certify_lidar_range>},
+      CertificateRow{"lidar_rays", "range error against mj_ray", as_certified<certify_lidar_rays>},
+      CertificateRow{"imu_noise", "noise of the IMUs at rest against their data sheets",
+                     as_certified<certify_imu_noise>},
+      CertificateRow{"digests", "equal digests for threads, order and restart", as_certified<certify_digests>},
+  };
+  return kRows;
+}
+
+bool Certificate::passes() const {
+  return !entries.empty() &&
+         std::all_of(entries.begin(), entries.end(), [](const CertificateEntry& entry) { return entry.passes(); });
+}
+
+Certificate measure_certificate(const CertificateInput& input, const CertifyOptions& options) {
+  Certificate certificate;
+  certificate.build = build_id();
+  const double start_s = now_s();
+  for (const CertificateRow* row : select(options.rows)) {
+    if (options.stop != nullptr && options.stop->load()) break;
+    if (options.on_row) options.on_row(*row, now_s() - start_s);
+    for (CertificateEntry& entry : measure_row(*row, input)) certificate.entries.push_back(std::move(entry));
+  }
+  return certificate;
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "scenarios/certificate/rows.hpp"
+#include "scenarios/certificate/set_up.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr double kWindow_s = 0.002;  // about the bandwidth of the devices
+constexpr double kAfterTouch_s = 0.06;
+
+/// Attitudes in which the cage lands on a corner, on an edge and askew.
+const std::array<Eigen::Quaterniond, 4>& attitudes() {
+  using Eigen::AngleAxisd;
+  using Eigen::Vector3d;
+  static const std::array<Eigen::Quaterniond, 4> kAll = {
+      Eigen::Quaterniond(AngleAxisd(0.8, Vector3d(1, 1, 0).normalized())),
+      Eigen::Quaterniond(AngleAxisd(0.7, Vector3d::UnitX())), Eigen::Quaterniond(AngleAxisd(0.4, Vector3d::UnitY())),
+      Eigen::Quaterniond(AngleAxisd(2.1, Vector3d(1, -2, 0.5).normalized()))};
+  return kAll;
+}
+
+/// Largest mean specific force at the centre of mass over a window, from the drop to shortly after the first contact.
+double peak_m_s2(const CertificateInput& input, const Eigen::Quaterniond& attitude, double height_m, double step_s,
+                 double contact_time_s) {
+  sim::Situation situation = bare_room("rig");
+  situation.robot.values.set("contact_time_s", contact_time_s);
+  sim::Trial trial(situation, {input.data.models(), step_s});
+  sim::BodyState start;
+  start.p_WB_m.z() = height_m;
+  start.q_WB = attitude;
+  trial.set_state(start);
+  const std::int64_t window = std::max<std::int64_t>(1, std::llround(kWindow_s / trial.step_s()));
+  std::vector<Eigen::Vector3d> v_m_s = {start.v_WB_m_s};
+  double peak = 0.0, end_s = 5.0;
+  while (trial.state().time_s < end_s) {
+    trial.step();
+    v_m_s.push_back(trial.state().v_WB_m_s);
+    if (end_s == 5.0 && !trial.contacts().empty()) end_s = trial.state().time_s + kAfterTouch_s;
+    const auto now = static_cast<std::int64_t>(v_m_s.size()) - 1;
+    if (now < window) continue;
+    const double span_s = static_cast<double>(window) * trial.step_s();
+    const Eigen::Vector3d a_W = (v_m_s.back() - v_m_s[static_cast<std::size_t>(now - window)]) / span_s;
+    peak = larger(peak, (a_W + Eigen::Vector3d(0, 0, trial.gravity_m_s2())).norm());
+  }
+  return peak;
+}
+
+double own_step_s(const CertificateInput& input) {
+  return sim::Trial(bare_room("rig"), {input.data.models()}).step_s();
+}
+
+}  // namespace
+
+std::vector<CertificateEntry> certify_impact(const CertificateInput& input, const ImpactSetup& setup) {
+  const double middle_s = std::sqrt(setup.soft_s * setup.hard_s);
+  const double step_s = setup.step_s > 0.0 ? setup.step_s : own_step_s(input);
+  double step_change = 0.0, exponent = 0.0;
+  for (const Eigen::Quaterniond& attitude : attitudes()) {
+    const double here = peak_m_s2(input, attitude, setup.height_m, step_s, middle_s);
+    const double finer = peak_m_s2(input, attitude, setup.height_m, own_step_s(input) / 4.0, middle_s);
+    step_change = larger(step_change, std::abs(here / finer - 1.0));
+    const double soft = peak_m_s2(input, attitude, setup.height_m, step_s, setup.soft_s);
+    const double hard = peak_m_s2(input, attitude, setup.height_m, step_s, setup.hard_s);
+    exponent += std::log(soft / hard) / std::log(setup.soft_s / setup.hard_s) / attitudes().size();
+  }
+  return {{"impact_peak_step", "rig",
+           "the first impact's peak does not depend on the engine's step: largest relative change at a quarter of it",
+           "1", step_change, 0.0, 0.05, ""},
+          {"impact_peak_softness", "rig",
+           "the peak goes with the time constant of the contact to the power -1, as a spring's: exponent, mean of four "
+           "landings",
+           "1", exponent, -1.3, -0.7, ""}};
+}
+
+}  // namespace tumble::scenarios

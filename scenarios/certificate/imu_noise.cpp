@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+#include <initializer_list>
+
+#include "scenarios/certificate/rows.hpp"
+#include "scenarios/draw/data_sheet.hpp"
+#include "sim/imu/allan.hpp"
+#include "sim/imu/bias.hpp"
+#include "sim/imu/imu_simulation.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr double kRate_hz = 100.0;
+constexpr double kGravity_m_s2 = 9.80665;
+
+/// Rates of a device's readings at rest [rad/s] and its specific forces [m/s^2].
+struct Readings {
+  std::vector<Eigen::Vector3d> gyro, accel;
+};
+
+/// The device with its noise and bias alone: filters need a faster rate than this one, and the rest is constant at
+/// rest.
+sim::SensorSpec resting(const DataSheet& sheet) {
+  sim::SensorSpec sensor;
+  sensor.name = sheet.device;
+  sensor.kind = sheet.sensor_kind;
+  sensor.device = sheet.device;
+  sensor.values = sim::resolve(sheet.device, sheet.values(), sim::imu_parameters());
+  for (const char* off :
+       {"gyro_bandwidth_hz", "accel_bandwidth_hz", "digital_bandwidth_hz", "gyro_quantum_rad_s", "accel_quantum_m_s2",
+        "gyro_precise_quantum_rad_s", "accel_precise_quantum_m_s2", "magnetometer", "time_jitter_s", "dropout_share"}) {
+    sensor.values.set(off, 0.0);
+  }
+  sensor.values.set("output_rate_hz", kRate_hz);
+  return sensor;
+}
+
+void multiply(sim::SensorSpec& sensor, std::initializer_list<const char*> names, double factor) {
+  for (const char* name : names) sensor.values.set(name, factor * sensor.values.at(name));
+}
+
+constexpr std::initializer_list<const char*> kNoises = {"gyro_noise_rad_s_sqrt_hz", "gyro_precise_noise_rad_s_sqrt_hz",
+                                                        "accel_noise_m_s2_sqrt_hz", "accel_precise_noise_m_s2_sqrt_hz"};
+constexpr std::initializer_list<const char*> kInstabilities = {"gyro_bias_in_run_rad_s", "accel_bias_in_run_m_s2"};
+constexpr std::initializer_list<const char*> kWalks = {"gyro_bias_walk_rad_s_sqrt_s", "accel_bias_walk_m_s2_sqrt_s"};
+
+Readings rest(const sim::SensorSpec& sensor, double duration_s, std::uint64_t seed) {
+  sim::ImuRecord record;
+  sim::ImuTruth truth;
+  sim::simulate_imu_at_rest(sensor, duration_s, kRate_hz, kGravity_m_s2, seed, record, truth);
+  return {std::move(record.gyro_rad_s), std::move(record.accel_m_s2)};
+}
+
+std::vector<sim::AllanPoint> curve_of(const std::vector<Eigen::Vector3d>& samples) {
+  std::vector<std::vector<sim::AllanPoint>> axes;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> series;
+    series.reserve(samples.size());
+    for (const Eigen::Vector3d& sample : samples) series.push_back(sample[axis]);
+    axes.push_back(sim::allan_deviation(series, 1.0 / kRate_hz));
+  }
+  return sim::mean_deviation(axes);
+}
+
+/// What the data sheet states of one triad, by the part of it that answers at rest.
+struct Stated {
+  double noise;
+  sim::Bias::Params bias;
+
+  Stated(const sim::Values& sheet, const std::string& prefix, const std::string& unit) {
+    const auto value = [&](const std::string& name) { return sheet.at(prefix + "_" + name); };
+    const double signal = prefix == "accel" ? kGravity_m_s2 : 0.0;
+    const bool precise = value("handover_" + unit) > signal;
+    noise = value((precise ? "precise_noise_" : "noise_") + unit + "_sqrt_hz");
+    bias.in_run = value("bias_in_run_" + unit);
+    bias.in_run_s = value("bias_in_run_s");
+    bias.walk_sqrt_s = value("bias_walk_" + unit + "_sqrt_s");
+  }
+  double walk(double tau_s) const { return sim::walk_deviation(bias.walk_sqrt_s, tau_s); }
+  double all(double tau_s) const {
+    return std::hypot(sim::white_deviation(noise, tau_s), sim::Bias::in_run_deviation(bias, tau_s), walk(tau_s));
+  }
+};
+
+/// Measured over stated deviation at an averaging time; the bound is the statistical interval of three axes.
+CertificateEntry entry(const std::string& row, const std::string& subject, const std::string& law,
+                       const sim::AllanPoint& measured, double stated, sim::AllanNoise noise) {
+  constexpr double kSigmas = 4.0;  // of some twenty figures none fails by chance
+  const sim::AllanInterval interval = sim::confidence_interval(measured, noise, kSigmas);
+  return {row,
+          subject,
+          law,
+          "1",
+          measured.deviation / stated,
+          measured.deviation / interval.high,
+          measured.deviation / interval.low,
+          ""};
+}
+
+std::vector<CertificateEntry> entries_of(const std::string& subject, const Stated& stated,
+                                         const std::vector<sim::AllanPoint>& curve,
+                                         const std::vector<sim::AllanPoint>& walk) {
+  const sim::AllanPoint& white = sim::nearest_point(curve, 0.1);
+  // the instability is flat up to half of its longest correlation time
+  const sim::AllanPoint& floor = sim::nearest_point(curve, stated.bias.in_run_s / 10.0);
+  std::vector<CertificateEntry> entries = {
+      entry("imu_white_noise", subject, "Allan deviation at 0.1 s of rest over that of the data sheet", white,
+            stated.all(white.tau_s), sim::AllanNoise::white),
+      entry("imu_bias_instability", subject, "the same where the bias is flat, a tenth of its correlation time", floor,
+            stated.all(floor.tau_s), sim::AllanNoise::flicker)};
+  if (stated.bias.walk_sqrt_s > 0.0) {
+    const sim::AllanPoint& long_walk = sim::nearest_point(walk, 10.0);
+    entries.push_back(entry("imu_bias_walk", subject, "the same of the bias's random walk alone, at 10 s", long_walk,
+                            stated.walk(long_walk.tau_s), sim::AllanNoise::walk));
+  }
+  return entries;
+}
+
+}  // namespace
+
+std::vector<CertificateEntry> certify_imu_noise(const CertificateInput& input, const ImuNoiseSetup& setup) {
+  std::vector<CertificateEntry> entries;
+  for (const std::string& device : device_names(input.data)) {
+    const DataSheet sheet = load_data_sheet(input.data, device);
+    if (sheet.sensor_kind != "imu") continue;
+    sim::SensorSpec sensor = resting(sheet);
+    const Stated gyro(sensor.values, "gyro", "rad_s"), accel(sensor.values, "accel", "m_s2");
+    multiply(sensor, kNoises, setup.noise_factor);
+    multiply(sensor, kInstabilities, setup.bias_factor);
+    multiply(sensor, kWalks, setup.bias_factor);
+    const Readings all = rest(sensor, setup.duration_s, setup.seed);
+    multiply(sensor, kNoises, 0.0);
+    multiply(sensor, kInstabilities, 0.0);
+    const Readings walk = rest(sensor, setup.duration_s / 2.0, setup.seed);
+    for (CertificateEntry& each : entries_of(device + " gyro", gyro, curve_of(all.gyro), curve_of(walk.gyro))) {
+      entries.push_back(std::move(each));
+    }
+    for (CertificateEntry& each : entries_of(device + " accel", accel, curve_of(all.accel), curve_of(walk.accel))) {
+      entries.push_back(std::move(each));
+    }
+  }
+  return entries;
+}
+
+}  // namespace tumble::scenarios

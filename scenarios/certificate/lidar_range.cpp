@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+
+#include "scenarios/certificate/rows.hpp"
+#include "scenarios/certificate/set_up.hpp"
+#include "scenarios/draw/data_sheet.hpp"
+#include "scenarios/scoring/truth_track.hpp"
+#include "sim/simulate.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr double kRoomHalf_m = 6.0;
+
+/// A robot that moves through a bare room with a lidar that makes no error of range.
+sim::Situation moving_lidar(const CertificateInput& input, const std::string& robot, const std::string& device) {
+  sim::Situation situation = bare_room(robot);
+  situation.duration_s = 2.0;
+  situation.world.values.set("room_half_m", kRoomHalf_m);
+  situation.world.values.set("wall_height_m", 6.0);
+  situation.motion.values.set("rest_s", 0.3);
+  const DataSheet sheet = load_data_sheet(input.data, device);
+  sim::SensorSpec lidar;
+  lidar.name = "lidar";
+  lidar.kind = sheet.sensor_kind;
+  lidar.device = device;
+  lidar.site = device;
+  lidar.values = sheet.values();
+  for (const char* off : {"range_noise_m", "range_quantum_m", "detection_range_m", "dropout_share"}) {
+    lidar.values.set(off, 0.0);
+  }
+  situation.sensors = {lidar};
+  return situation;
+}
+
+/// Distance of a point from the plane that its surface lies in; negative when the surface is no plane of the room.
+double off_plane_m(const std::string& surface, const Eigen::Vector3d& p_W_m) {
+  if (surface == "floor") return std::abs(p_W_m.z());
+  if (surface == "wall_front") return std::abs(p_W_m.x() - kRoomHalf_m);
+  if (surface == "wall_back") return std::abs(p_W_m.x() + kRoomHalf_m);
+  if (surface == "wall_left") return std::abs(p_W_m.y() - kRoomHalf_m);
+  if (surface == "wall_right") return std::abs(p_W_m.y() + kRoomHalf_m);
+  return -1.0;
+}
+
+struct Errors {
+  double largest_m = 0.0;
+  std::int64_t points = 0;
+};
+
+/// What the lidar reports, carried to the world by the true pose at the firing.
+Errors against_planes(const sim::Recording& recording, double added_range_m) {
+  const sim::LidarRecord& record = recording.sensors.lidars.at(0);
+  const sim::LidarTruth& truth = recording.truth.lidars.at(0);
+  const TruthTrack track(recording.truth, Frame::lidar);
+  Errors errors;
+  for (std::size_t sweep = 0; sweep < record.sweep_start_ns.size(); ++sweep) {
+    for (std::uint64_t i = record.sweep_first[sweep]; i < record.sweep_first[sweep + 1]; ++i) {
+      const std::int64_t time_ns = record.sweep_start_ns[sweep] + record.offset_ns[i];
+      if (truth.surface_id[i] < 0 || !track.covers(time_ns)) continue;
+      const Eigen::Vector3d p_L_m = record.position_L_m[i].cast<double>();
+      const Eigen::Vector3d longer_L_m = p_L_m * (1.0 + added_range_m / p_L_m.norm());
+      const PoseState pose = track.pose(time_ns);
+      const double off_m = off_plane_m(recording.truth.surfaces[static_cast<std::size_t>(truth.surface_id[i])],
+                                       pose.q_WA * longer_L_m + pose.p_WA_m);
+      if (off_m < 0.0) continue;
+      ++errors.points;
+      errors.largest_m = larger(errors.largest_m, off_m);
+    }
+  }
+  return errors;
+}
+
+}  // namespace
+
+std::vector<CertificateEntry> certify_lidar_range(const CertificateInput& input, const LidarRangeSetup& setup) {
+  std::vector<CertificateEntry> entries;
+  for (const auto& [robot, device] : {std::pair{"rig", "rs16"}, std::pair{"sphere", "mid100"}}) {
+    const sim::Recording recording = sim::simulate(moving_lidar(input, robot, device), {input.data.models(), 1});
+    const Errors errors = against_planes(recording, setup.added_range_m);
+    CertificateEntry entry{"lidar_range_analytic",
+                           device,
+                           "each point of a moving lidar without noise lies on the plane that it hit: largest distance",
+                           "m",
+                           errors.largest_m,
+                           0.0,
+                           1e-3,
+                           ""};
+    if (errors.points < 10000) {
+      entry.value = std::nan("");
+      entry.note = "only " + std::to_string(errors.points) + " points";
+    }
+    entries.push_back(std::move(entry));
+  }
+  return entries;
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+
+#include "scenarios/certificate/rows.hpp"
+#include "scenarios/certificate/set_up.hpp"
+#include "scenarios/draw/scenario.hpp"
+#include "sim/simulate.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr double kMoving_m_s = 0.05;
+
+/// Way of the centre while the sphere grips and moves, and by how much r w x n misses it.
+struct Ways {
+  double way_m = 0.0, missed_m = 0.0;
+};
+
+/// `n` is the normal of the contact that carries most at the sample; a sample without contact (they chatter) says
+/// nothing.
+Ways compare(const sim::Truth& truth, double radius_m) {
+  Ways ways;
+  const double dt_s = static_cast<double>(truth.period_ns) * 1e-9;
+  for (std::size_t i = 0; i < truth.contacts.size();) {
+    const std::int64_t time_ns = truth.contacts[i].time_ns;
+    const sim::ContactTruth* strongest = &truth.contacts[i];
+    for (; i < truth.contacts.size() && truth.contacts[i].time_ns == time_ns; ++i) {
+      if (truth.contacts[i].normal_force_n > strongest->normal_force_n) strongest = &truth.contacts[i];
+    }
+    const auto k = static_cast<std::size_t>(time_ns / truth.period_ns);
+    if (truth.label[k] != sim::ContactLabel::grip) continue;
+    const Eigen::Vector3d w_W = truth.q_WB[k] * truth.w_WB_B_rad_s[k];
+    const Eigen::Vector3d v_G_m_s = truth.v_WB_m_s[k] + w_W.cross(truth.q_WB[k] * truth.p_BG_m);
+    const Eigen::Vector3d along = v_G_m_s - v_G_m_s.dot(strongest->normal_W) * strongest->normal_W;
+    if (along.norm() < kMoving_m_s) continue;
+    ways.way_m += along.norm() * dt_s;
+    ways.missed_m += (along - radius_m * w_W.cross(strongest->normal_W)).norm() * dt_s;
+  }
+  return ways;
+}
+
+CertificateEntry entry(const CertificateInput& input, const RollingSetup& setup, sim::Situation situation,
+                       const std::string& subject, double high) {
+  situation.sensors.clear();
+  const sim::Recording recording = sim::simulate(situation, {input.data.models(), 1});
+  const double own_m = recording.sensors.sphere_radius_m;
+  const Ways ways = compare(recording.truth, setup.stated_radius_m > 0.0 ? setup.stated_radius_m : own_m);
+  return {"rolling_law",
+          subject,
+          "while the sphere grips its centre moves at r w x n: share of its way by which it does not",
+          "1",
+          ways.missed_m / ways.way_m,
+          0.0,
+          high,
+          ways.way_m > 0.0 ? "" : "the sphere never rolled"};
+}
+
+}  // namespace
+
+std::vector<CertificateEntry> certify_rolling(const CertificateInput& input, const RollingSetup& setup) {
+  sim::Situation plane = bare_room("sphere");
+  plane.duration_s = 4.5;
+  plane.motion.values.set("rest_s", 0.5);
+  plane.motion.values.set("leg_2_m", 0.0);
+  plane.robot.values.set("inner_x_m", 0.008);
+  plane.robot.values.set("inner_z_m", -0.01);
+  std::vector<CertificateEntry> entries = {entry(input, setup, plane, "plane", 1e-3)};
+  if (!setup.terrains) return entries;
+  // the edge of a patch or of an obstacle is crossed within the 10 ms of a label, and the label itself lets 0.02 m/s
+  // pass
+  constexpr double kTerrainHigh = 0.01;
+  for (const std::string& name : scenario_names(input.data)) {
+    const Scenario scenario = load_scenario(input.data, name);
+    if (scenario.robot.type != "sphere") continue;
+    entries.push_back(entry(input, setup, draw(input.data, scenario, 1), name, kTerrainHigh));
+  }
+  return entries;
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "sim/recording.hpp"
+#include "sim/situation.hpp"
+#include "sim/trial/trial.hpp"
+
+/// Situations and motions that several rows measure on.
+namespace tumble::scenarios {
+
+/// A robot ("rig" or "sphere") in a room with nothing in it but floor and walls; no sensors.
+sim::Situation bare_room(const std::string& robot);
+
+/// Thrown up high above the room, so that it stays in the air for seconds, and spun at `rate_rad_s` near the axis of
+/// the rig's middle moment of inertia.
+sim::BodyState thrown(double rate_rad_s);
+
+/// The states of a free flight as the truth of a recording (body alone, no contacts).
+sim::Truth fly(sim::Trial& trial, double duration_s);
+
+/// The larger of two; one that is not a number is the largest, so that it cannot hide.
+double larger(double a, double b);
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/rate_baseline.hpp"
+#include "tumble/angular_velocity/accelerometer_rate.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr std::array<sim::Parameter, 2> kParameters = {{
+    {"use_gyro", 1.0, 0.0, 1.0, "1", "1: axes of the primary gyro that are not clipped are read too; 0: none"},
+    {"jerk_psd_rad2_s5", 1e7, 1.0, 1e12, "rad^2/s^5", "density of the white angular jerk"},
+}};
+
+// The specific force of `other` at the stamps of the primary, in its axes; NaN before, after and at a rail. The gyro of
+// `other` is never read.
+Status companion(const sim::ImuRecord& primary, const sim::ImuRecord& other, Companion& out) {
+  std::vector<ImuSample> there;
+  if (Status status = bridge::imu_samples(other, there); !status.ok()) return status;
+  const Eigen::Isometry3d T_IO = primary.T_BI.inverse(Eigen::Isometry) * other.T_BI;
+  out.p_I_m = T_IO.translation();
+  out.specific_force_m_s2.assign(primary.time_ns.size(),
+                                 Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
+  const double rail = other.stated_accel_range_m_s2 > 0.0 ? 0.99 * other.stated_accel_range_m_s2
+                                                          : std::numeric_limits<double>::infinity();
+  std::size_t after = 1;
+  for (std::size_t k = 0; k < primary.time_ns.size(); ++k) {
+    const std::int64_t time_ns = primary.time_ns[k];
+    while (after + 1 < there.size() && there[after].time_ns < time_ns) ++after;
+    if (after >= there.size()) break;
+    const ImuSample &a = there[after - 1], &b = there[after];
+    if (time_ns < a.time_ns || time_ns > b.time_ns) continue;
+    const double share = static_cast<double>(time_ns - a.time_ns) / static_cast<double>(b.time_ns - a.time_ns);
+    const Eigen::Vector3d force = (1.0 - share) * a.specific_force_m_s2 + share * b.specific_force_m_s2;
+    if (std::max(a.specific_force_m_s2.cwiseAbs().maxCoeff(), b.specific_force_m_s2.cwiseAbs().maxCoeff()) >= rail) {
+      continue;
+    }
+    out.specific_force_m_s2[k] = T_IO.linear() * force;
+  }
+  return {};
+}
+
+Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  Estimate estimate;
+  std::vector<ImuSample> samples;
+  estimate.status = bridge::primary_imu_samples(sensors, samples);
+  if (!estimate.status.ok()) return estimate;
+  const sim::ImuRecord& record = sensors.imus.front();
+  std::vector<Companion> companions(sensors.imus.size() - 1);
+  AccelerometerRate::Params params;
+  params.accel_noise_density = record.accel_noise_m_s2_sqrt_hz;
+  for (std::size_t i = 0; i < companions.size(); ++i) {
+    estimate.status = companion(record, sensors.imus[i + 1], companions[i]);
+    if (!estimate.status.ok()) return estimate;
+    params.accel_noise_density = std::max(params.accel_noise_density, sensors.imus[i + 1].accel_noise_m_s2_sqrt_hz);
+  }
+  if (!(params.accel_noise_density > 0.0)) params.accel_noise_density = AccelerometerRate::Params{}.accel_noise_density;
+  params.rails = stated_rails(record);
+  if (record.gyro_noise_rad_s_sqrt_hz > 0.0) params.gyro_noise_density = record.gyro_noise_rad_s_sqrt_hz;
+  params.use_gyro = parameters.at("use_gyro") > 0.5;
+  params.jerk_psd = parameters.at("jerk_psd_rad2_s5");
+  params.gap_max_s = bridge::kGapMaxS;
+  estimate.status = AccelerometerRate(params).estimate(samples, companions, estimate.rates);
+  estimate.health["accelerometers"] = static_cast<double>(sensors.imus.size());
+  count_sources(estimate.rates, estimate.health);
+  return estimate;
+}
+
+}  // namespace
+
+Method rate_accelerometers() {
+  MethodInfo info;
+  info.name = "accelerometers";
+  info.kind = Kind::rate;
+  info.doc =
+      "Gyro-free: an extended Kalman filter on the differences of all accelerometers, the reference's too (never its "
+      "gyro), and on the gyro's free axes. Made for long fast rotation with a wide spread of accelerometers.";
+  info.source = "the family of Pachter's and Lee's gyro-free inertial systems";
+  info.parameters = kParameters;
+  return make_method(std::move(info), run);
+}
+
+}  // namespace tumble::scenarios

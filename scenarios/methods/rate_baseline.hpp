@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "scenarios/methods/registry.hpp"
+#include "tumble/angular_velocity/clipped_baseline.hpp"
+
+namespace tumble::scenarios {
+
+/// The rails of a record as its data sheet states them; a range of 0 says nothing.
+RailDetector::Params stated_rails(const sim::ImuRecord& record);
+
+/// Runs one of the library's baselines on the primary IMU, with its data sheet's noise and ranges.
+Estimate run_clipped_baseline(ClippedBaseline::Params params, const sim::Sensors& sensors);
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/methods/rate_baseline.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+Estimate run(const sim::Sensors& sensors, const sim::Values&, const OracleInput&) {
+  return run_clipped_baseline({.kind = ClippedBaseline::Kind::interpolate}, sensors);
+}
+
+}  // namespace
+
+Method rate_interpolate() {
+  MethodInfo info;
+  info.name = "interpolate";
+  info.kind = Kind::rate;
+  info.doc =
+      "A cubic over each clipped gap, value and slope continued from both sides and held beyond the rail. Made for "
+      "gaps "
+      "that are short beside the motion, without impacts in them.";
+  info.source = "textbook: cubic interpolation";
+  return make_method(std::move(info), run);
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <array>
+
+#include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/rate_baseline.hpp"
+#include "tumble/angular_velocity/standstill_smoother.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr std::array<sim::Parameter, 2> kParameters = {{
+    {"jerk_psd_rad2_s5", 1e6, 1.0, 1e12, "rad^2/s^5", "density of the white angular jerk"},
+    {"accel_error_m_s2", 0.05, 0.0, 100.0, "m/s^2", "scale and bias of the specific force, taken as noise per sample"},
+}};
+
+Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  Estimate estimate;
+  std::vector<ImuSample> samples;
+  estimate.status = bridge::primary_imu_samples(sensors, samples);
+  if (!estimate.status.ok()) return estimate;
+  const sim::ImuRecord& record = sensors.imus.front();
+  StandstillSmoother::Params params;
+  params.rails = stated_rails(record);
+  params.gravity_m_s2 = sensors.gravity_m_s2;
+  if (record.gyro_noise_rad_s_sqrt_hz > 0.0) params.gyro_noise_density = record.gyro_noise_rad_s_sqrt_hz;
+  if (record.accel_noise_m_s2_sqrt_hz > 0.0) params.accel_noise_density = record.accel_noise_m_s2_sqrt_hz;
+  params.jerk_psd = parameters.at("jerk_psd_rad2_s5");
+  params.accel_error_m_s2 = parameters.at("accel_error_m_s2");
+  params.gap_max_s = bridge::kGapMaxS;
+  estimate.status = StandstillSmoother(params).estimate(samples, estimate.rates);
+  count_sources(estimate.rates, estimate.health);
+  return estimate;
+}
+
+}  // namespace
+
+Method rate_zero_velocity() {
+  MethodInfo info;
+  info.name = "zero_velocity";
+  info.kind = Kind::rate;
+  info.doc =
+      "Inertial navigation smoothed between standstills, where velocity and rate are known to be zero. Made for "
+      "motions "
+      "of a second or two from rest to rest that clip a few samples (steps, hand motion).";
+  info.source = "the family of Dang and Suh's smoothers for inertial sensors between zero-velocity intervals";
+  info.parameters = kParameters;
+  return make_method(std::move(info), run);
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/sweep/motion_values.hpp"
+
+#include <cmath>
+
+#include "scenarios/scoring/motion_summary.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+double share(std::size_t part, std::size_t whole) {
+  return whole == 0 ? std::nan("") : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+}  // namespace
+
+DrawValues motion_values(const std::string& scenario, std::uint64_t seed, const sim::Recording& recording) {
+  DrawValues draw{scenario, seed, {}};
+  if (recording.sensors.imus.empty()) return draw;
+  const MotionSummary motion = summarise_motion(recording.sensors, recording.truth);
+  draw.values = {{"motion_moving_s", motion.moving_s},
+                 {"motion_path_m", motion.path_m},
+                 {"motion_peak_rate_rad_s", motion.peak_rate_rad_s},
+                 {"motion_peak_accel_m_s2", motion.peak_accel_m_s2},
+                 {"motion_flight_share", motion.flight_share},
+                 {"motion_impacts", static_cast<double>(motion.impacts)},
+                 {"motion_clips", motion.clipped_samples > 0 ? 1.0 : 0.0},
+                 {"motion_clipped_share", share(motion.clipped_samples, motion.samples)},
+                 {"motion_clipped_samples", static_cast<double>(motion.clipped_samples)},
+                 {"motion_several_axes_share", share(motion.several_axes_samples, motion.clipped_samples)},
+                 {"motion_accel_clipped_share", share(motion.accel_clipped_samples, motion.samples)}};
+  return draw;
+}
+
+}  // namespace tumble::scenarios

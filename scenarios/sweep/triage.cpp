@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/sweep/triage.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/scoring/metric_sense.hpp"
+#include "scenarios/sweep/draw_process.hpp"
+#include "sim/lidar/surface.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+const Score* find_score(const Outcome& outcome, const std::string& metric) {
+  const auto found = std::find_if(outcome.scores.begin(), outcome.scores.end(),
+                                  [&](const Score& score) { return score.metric == metric; });
+  return found == outcome.scores.end() ? nullptr : &*found;
+}
+
+TriageRow row_of(const std::string& input, const std::string& doc, Outcome outcome, const Failure& failure) {
+  TriageRow row{input, doc, std::move(outcome), false};
+  row.fails = failure.holds(row.outcome);
+  return row;
+}
+
+}  // namespace
+
+bool Failure::holds(const Outcome& outcome) const {
+  if (outcome.status != "ok") return true;
+  const Score* map_failed = find_score(outcome, "map_failed");
+  if (map_failed != nullptr && map_failed->value != 0.0) return true;
+  if (metric.empty()) return false;
+  const Score* score = find_score(outcome, metric);
+  if (score == nullptr || std::isnan(score->value)) return true;  // a run without the number has not shown it
+  return metric_sense(metric) == Sense::more ? score->value < limit : score->value > limit;
+}
+
+std::vector<TriageRow> triage(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
+                              const TriageOptions& options) {
+  if (!method.info.for_robot(scenario.robot.type)) {
+    throw BadInput("method '" + method.info.name + "' does not apply to the robot '" + scenario.robot.type + "' of " +
+                   scenario.name);
+  }
+  const SimulatedDraw draw = simulate_draw(data, scenario, seed, 1);
+  std::optional<sim::Surface> surface;
+  if (method.info.kind == Kind::slam) surface.emplace(draw.situation, data.models());
+  const sim::Surface* true_surface = surface ? &*surface : nullptr;
+
+  if (options.on_run) options.on_run("none");
+  std::vector<TriageRow> rows = {row_of("none", "the recording as it is",
+                                        run_isolated(method, draw, draw, true_surface, options.timeout_s),
+                                        options.failure)};
+  for (const TrueInput& input : true_inputs()) {
+    SimulatedDraw cured = draw;
+    if (!input.replace(cured.recording.sensors, draw.recording.truth)) continue;
+    if (options.on_run) options.on_run(input.name);
+    rows.push_back(row_of(input.name, input.doc, run_isolated(method, cured, draw, true_surface, options.timeout_s),
+                          options.failure));
+  }
+  return rows;
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "scenarios/scoring/truth_track.hpp"
+#include "scenarios/sweep/triage.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+using Readings = std::vector<Eigen::Vector3d>;
+
+constexpr std::uint8_t kGyroFlags = 0b000111, kAccelFlags = 0b111000;
+
+double largest(const Readings& readings) {
+  double largest = 0.0;
+  for (const Eigen::Vector3d& reading : readings) largest = std::max(largest, reading.lpNorm<Eigen::Infinity>());
+  return largest;
+}
+
+/// A range beyond every reading, so that none of the true ones is taken for clipped.
+double beyond(double stated, const Readings& readings) {
+  return stated > 0.0 ? std::max(stated, 1.1 * largest(readings)) : stated;
+}
+
+bool replace_gyro(sim::ImuRecord& imu, const Readings& readings) {
+  if (readings.size() != imu.gyro_rad_s.size() || readings == imu.gyro_rad_s) return false;
+  imu.gyro_rad_s = readings;
+  imu.stated_gyro_range_rad_s = beyond(imu.stated_gyro_range_rad_s, readings);
+  for (std::uint8_t& flags : imu.clip_flags) flags = static_cast<std::uint8_t>(flags & ~kGyroFlags);
+  return true;
+}
+
+bool replace_accel(sim::ImuRecord& imu, const Readings& readings) {
+  if (readings.size() != imu.accel_m_s2.size() || readings == imu.accel_m_s2) return false;
+  imu.accel_m_s2 = readings;
+  imu.stated_accel_range_m_s2 = beyond(imu.stated_accel_range_m_s2, readings);
+  for (std::uint8_t& flags : imu.clip_flags) flags = static_cast<std::uint8_t>(flags & ~kAccelFlags);
+  return true;
+}
+
+/// Applies `replace(record, truth)` to each IMU; true when one of them did something.
+template <typename Replace>
+bool each_imu(sim::Sensors& sensors, const sim::Truth& truth, Replace&& replace) {
+  bool changed = false;
+  for (std::size_t i = 0; i < std::min(sensors.imus.size(), truth.imus.size()); ++i) {
+    changed = replace(sensors.imus[i], truth.imus[i]) || changed;
+  }
+  return changed;
+}
+
+bool unclipped_gyro(sim::Sensors& sensors, const sim::Truth& truth) {
+  return each_imu(sensors, truth, [](sim::ImuRecord& imu, const sim::ImuTruth& own) {
+    return replace_gyro(imu, own.gyro_unclipped_rad_s);
+  });
+}
+
+bool exact_gyro(sim::Sensors& sensors, const sim::Truth& truth) {
+  return each_imu(sensors, truth,
+                  [](sim::ImuRecord& imu, const sim::ImuTruth& own) { return replace_gyro(imu, own.rate_rad_s); });
+}
+
+bool unclipped_accel(sim::Sensors& sensors, const sim::Truth& truth) {
+  return each_imu(sensors, truth, [](sim::ImuRecord& imu, const sim::ImuTruth& own) {
+    return replace_accel(imu, own.accel_unclipped_m_s2);
+  });
+}
+
+bool exact_accel(sim::Sensors& sensors, const sim::Truth& truth) {
+  return each_imu(sensors, truth, [](sim::ImuRecord& imu, const sim::ImuTruth& own) {
+    return replace_accel(imu, own.specific_force_m_s2);
+  });
+}
+
+bool exact_mounting(sim::Sensors& sensors, const sim::Truth& truth) {
+  bool changed = each_imu(sensors, truth, [](sim::ImuRecord& imu, const sim::ImuTruth& own) {
+    const bool differs = imu.T_BI.matrix() != own.T_BI.matrix();
+    imu.T_BI = own.T_BI;
+    return differs;
+  });
+  for (std::size_t i = 0; i < std::min(sensors.lidars.size(), truth.lidars.size()); ++i) {
+    changed = changed || sensors.lidars[i].T_BL.matrix() != truth.lidars[i].T_BL.matrix();
+    sensors.lidars[i].T_BL = truth.lidars[i].T_BL;
+  }
+  return changed;
+}
+
+/// The end of each sample's window, when the recording has every sample.
+bool exact_stamps(sim::Sensors& sensors, const sim::Truth& truth) {
+  bool changed = false;
+  const std::int64_t end_ns = static_cast<std::int64_t>(truth.q_WB.size() - 1) * truth.period_ns;
+  for (sim::ImuRecord& imu : sensors.imus) {
+    if (imu.period_ns <= 0 || static_cast<std::int64_t>(imu.time_ns.size()) != end_ns / imu.period_ns) continue;
+    for (std::size_t i = 0; i < imu.time_ns.size(); ++i) {
+      const std::int64_t exact_ns = static_cast<std::int64_t>(i + 1) * imu.period_ns;
+      changed = changed || imu.time_ns[i] != exact_ns;
+      imu.time_ns[i] = exact_ns;
+    }
+  }
+  return changed;
+}
+
+/// The lidar's poses; `lidar` must be the first one, whose frame a track knows.
+Eigen::Isometry3d pose_of(const TruthTrack& track, std::int64_t time_ns) {
+  const PoseState pose = track.pose(std::min(time_ns, track.last_ns()));
+  Eigen::Isometry3d T_WL = Eigen::Isometry3d::Identity();
+  T_WL.linear() = pose.q_WA.toRotationMatrix();
+  T_WL.translation() = pose.p_WA_m;
+  return T_WL;
+}
+
+/// Each return where the beam truly hit.
+bool exact_ranges(sim::Sensors& sensors, const sim::Truth& truth) {
+  if (sensors.lidars.empty() || truth.lidars.empty()) return false;
+  sim::LidarRecord& lidar = sensors.lidars.front();
+  const TruthTrack track(truth, Frame::lidar);
+  for (std::size_t sweep = 0; sweep < lidar.sweep_start_ns.size(); ++sweep) {
+    for (std::uint64_t i = lidar.sweep_first[sweep]; i < lidar.sweep_first[sweep + 1]; ++i) {
+      const Eigen::Isometry3d T_WL = pose_of(track, lidar.sweep_start_ns[sweep] + lidar.offset_ns[i]);
+      const Eigen::Vector3f exact_L_m = (T_WL.inverse() * truth.lidars.front().hit_W_m[i].cast<double>()).cast<float>();
+      lidar.range_m[i] += exact_L_m.norm() - lidar.position_L_m[i].norm();
+      lidar.position_L_m[i] = exact_L_m;
+    }
+  }
+  return !lidar.range_m.empty();
+}
+
+/// Every sweep as if it had been cast at the instant of its last point; errors of range stay.
+bool unbent_sweeps(sim::Sensors& sensors, const sim::Truth& truth) {
+  if (sensors.lidars.empty() || truth.lidars.empty()) return false;
+  sim::LidarRecord& lidar = sensors.lidars.front();
+  const TruthTrack track(truth, Frame::lidar);
+  for (std::size_t sweep = 0; sweep < lidar.sweep_start_ns.size(); ++sweep) {
+    const std::uint64_t first = lidar.sweep_first[sweep], end = lidar.sweep_first[sweep + 1];
+    if (first == end) continue;
+    const std::uint32_t last_ns = *std::max_element(lidar.offset_ns.begin() + static_cast<std::ptrdiff_t>(first),
+                                                    lidar.offset_ns.begin() + static_cast<std::ptrdiff_t>(end));
+    const Eigen::Isometry3d T_LW = pose_of(track, lidar.sweep_start_ns[sweep] + last_ns).inverse();
+    for (std::uint64_t i = first; i < end; ++i) {
+      const Eigen::Isometry3d T_WL = pose_of(track, lidar.sweep_start_ns[sweep] + lidar.offset_ns[i]);
+      lidar.position_L_m[i] = (T_LW * (T_WL * lidar.position_L_m[i].cast<double>())).cast<float>();
+      lidar.offset_ns[i] = last_ns;
+    }
+  }
+  return !lidar.range_m.empty();
+}
+
+/// Errors of ranges first: they are undone at each point's own time, which unbending takes away.
+bool everything(sim::Sensors& sensors, const sim::Truth& truth) {
+  bool changed = false;
+  for (const auto& replace : {exact_gyro, exact_accel, exact_mounting, exact_stamps, exact_ranges, unbent_sweeps}) {
+    changed = replace(sensors, truth) || changed;
+  }
+  return changed;
+}
+
+}  // namespace
+
+std::span<const TrueInput> true_inputs() {
+  static const std::array kInputs = {
+      TrueInput{"gyro_unclipped", "gyros without their rail, all other errors kept", unclipped_gyro},
+      TrueInput{"gyro_exact", "the true mean rate of each window", exact_gyro},
+      TrueInput{"accel_unclipped", "accelerometers without their rail, all other errors kept", unclipped_accel},
+      TrueInput{"accel_exact", "the true mean specific force of each window", exact_accel},
+      TrueInput{"mounting_exact", "true lever arms and orientations of IMUs and lidar", exact_mounting},
+      TrueInput{"stamps_exact", "true times of the IMU samples", exact_stamps},
+      TrueInput{"lidar_ranges_exact", "returns where the beams truly hit", exact_ranges},
+      TrueInput{"lidar_unbent", "sweeps as if cast in an instant, ranges as measured", unbent_sweeps},
+      TrueInput{"all", "all of these at once", everything},
+  };
+  return kInputs;
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "sim/body_state.hpp"
+#include "sim/engine/model.hpp"
+
+namespace tumble::sim {
+
+/// A hand that holds a robot still in the air: a critically damped spring and a turning spring about the place of
+/// holding, and the weight. The force acts at the centre of mass.
+class HoldingHand {
+ public:
+  /// Holds the robot turned by `q_WB`, `offset_W_m` from the world's start, its lowest point `height_m` above the
+  /// start's ground. Throws InvalidSituation for a height of 0 or less.
+  HoldingHand(const engine::World& world, const Eigen::Quaterniond& q_WB, const Eigen::Vector3d& offset_W_m,
+              double height_m);
+
+  BodyState start() const { return start_; }
+  Wrench hold(const BodyState& state) const;
+  Eigen::Vector3d weight_n() const { return weight_n_; }  ///< force that carries the robot
+  double mass_kg() const { return mass_kg_; }
+  const Eigen::Matrix3d& inertia_W_kg_m2() const { return inertia_W_kg_m2_; }  ///< as it is held
+
+ private:
+  BodyState start_;
+  double mass_kg_;
+  Eigen::Matrix3d inertia_W_kg_m2_;
+  Eigen::Vector3d weight_n_;
+};
+
+}  // namespace tumble::sim

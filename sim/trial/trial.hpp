@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "sim/body_state.hpp"
+#include "sim/recording.hpp"
+#include "sim/situation.hpp"
+
+namespace tumble::sim {
+
+/// How the engine integrates. The simulation uses `runge_kutta_4`; the others are there to be shown wrong.
+enum class Integrator { runge_kutta_4, euler, implicit };
+
+struct TrialOptions {
+  std::filesystem::path models;  ///< folder of the MJCF files
+  double step_s = 0.0;           ///< 0: the simulation's own
+  Integrator integrator = Integrator::runge_kutta_4;
+};
+
+/// A robot in its world, moved by hand, step by step: the very model and engine of `simulate`, open to measurement.
+/// No motion, no sensors, no settling; the motion and sensors of the situation are ignored.
+class Trial {
+ public:
+  /// Throws InvalidSituation.
+  Trial(const Situation& situation, const TrialOptions& options);
+  ~Trial();
+  Trial(Trial&&) noexcept;
+
+  double step_s() const;
+  double mass_kg() const;
+  double gravity_m_s2() const;
+  Eigen::Matrix3d inertia_B_kg_m2() const;  ///< about the centre of mass
+  double sphere_radius_m() const;           ///< 0 when the robot is not a sphere
+  Eigen::Vector3d p_BG_m() const;           ///< geometric centre (design origin) in B
+  double half_extent_m() const;             ///< beyond this |x| or |y| the robot has left its world
+
+  BodyState state() const;
+  void set_state(const BodyState& state);
+  /// One step under gravity, contacts and `wrench`. Throws SimulationFailure.
+  void step(const Wrench& wrench = {});
+  /// Contacts that the last step ended with; their time is the state's, rounded to nanoseconds.
+  std::vector<ContactTruth> contacts() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace tumble::sim

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include "sim/parameters.hpp"
+#include "sim/random/stream.hpp"
+
+namespace tumble::sim {
+
+/// A level rectangle along the axes.
+struct Rectangle {
+  double low_x_m = 0.0, high_x_m = 0.0, low_y_m = 0.0, high_y_m = 0.0;
+};
+
+/// A level disc.
+struct Disc {
+  Eigen::Vector2d centre_m = Eigen::Vector2d::Zero();
+  double radius_m = 0.0;
+};
+
+/// A place drawn evenly from the area until `fits` takes it. Throws InvalidSituation after 1000 refusals, naming `what`.
+template <typename Fits>
+Eigen::Vector2d draw_place(Stream& stream, const Rectangle& area, const char* what, Fits fits) {
+  constexpr int kAttempts = 1000;
+  for (int i = 0; i < kAttempts; ++i) {
+    const double x_m = stream.uniform(area.low_x_m, area.high_x_m);
+    const Eigen::Vector2d at(x_m, stream.uniform(area.low_y_m, area.high_y_m));
+    if (fits(at)) return at;
+  }
+  throw InvalidSituation(std::string("world: no room for another ") + what);
+}
+
+}  // namespace tumble::sim

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "sim/random/stream.hpp"
+#include "sim/world/terrain/ground.hpp"
+#include "sim/world/terrain/place.hpp"
+
+namespace tumble::sim {
+
+/// Where trees stand.
+struct Stand {
+  int count = 0;
+  double largest_radius_m = 0.15;  ///< radii are uniform in [0.4, 1] of it
+  double spacing_m = 0.8;          ///< least distance between two axes
+  double lane_half_width_m = 0.0;  ///< none stands within this of y = 0
+  Rectangle area;
+  Disc clear;                      ///< none stands in it
+};
+
+/// An upright cylinder, its foot half a metre under the ground.
+struct Trunk {
+  Eigen::Vector3d centre_W_m;
+  double radius_m;
+  double half_height_m;  ///< uniform in [1.5, 3] m
+};
+
+/// Trunks on the ground. Throws InvalidSituation when spacing, lane and clear disc leave no room for them. O(count^2).
+std::vector<Trunk> plant_trunks(Stream& stream, const Stand& stand, const Ground& ground);
+/// Adds them as surfaces "trunk_0", "trunk_1", ...
+void add_trunks(mjSpec* spec, engine::World& world, const std::vector<Trunk>& trunks);
+
+}  // namespace tumble::sim

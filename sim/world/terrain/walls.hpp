@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "sim/world/terrain/ground.hpp"
+
+namespace tumble::sim {
+
+/// An upright block on the ground, for a wall or a house.
+struct Block {
+  double x_m = 0.0, y_m = 0.0;
+  double half_x_m = 1.0, half_y_m = 1.0;  ///< along its own axes
+  double height_m = 2.0;                  ///< above the lowest ground at its corners and centre; 1 m more is buried
+  double yaw_rad = 0.0;
+};
+
+/// Adds the block as the surface `name`.
+void add_block(mjSpec* spec, engine::World& world, const std::string& name, const Block& block, const Ground& ground,
+               const Colour& colour);
+
+}  // namespace tumble::sim

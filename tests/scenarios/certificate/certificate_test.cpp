@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Every row of the certificate passes on this build, and fails when one thing of its set-up is wrong.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "scenarios/certificate/rows.hpp"
+#include "scenarios/errors.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+CertificateInput input() {
+  return {DataRoot{TUMBLE_SOURCE_DIR}, TUMBLE_PROGRAM};
+}
+
+/// "row (subject)" of every entry that does not pass.
+std::vector<std::string> failures(const std::vector<CertificateEntry>& entries) {
+  std::vector<std::string> names;
+  for (const CertificateEntry& entry : entries) {
+    if (!entry.passes()) names.push_back(entry.row + " (" + entry.subject + ")");
+  }
+  return names;
+}
+
+TEST(Certificate, OfThisBuildPassesAndSaysWhatItMeasured) {
+  std::vector<std::string> announced;
+  CertifyOptions options;
+  options.on_row = [&](const CertificateRow& row, double) { announced.push_back(row.name); };
+  const Certificate certificate = measure_certificate(input(), options);
+  EXPECT_EQ(announced.size(), certificate_rows().size());
+  EXPECT_THAT(failures(certificate.entries), IsEmpty());
+  EXPECT_TRUE(certificate.passes());
+  EXPECT_FALSE(certificate.build.empty());
+  std::set<std::pair<std::string, std::string>> keys;
+  for (const CertificateEntry& entry : certificate.entries) {
+    EXPECT_TRUE(keys.insert({entry.row, entry.subject}).second) << entry.row << " " << entry.subject << " twice";
+    EXPECT_TRUE(std::isfinite(entry.value)) << entry.row << ": " << entry.note;
+    EXPECT_FALSE(entry.law.empty()) << entry.row;
+    EXPECT_FALSE(entry.unit.empty()) << entry.row;
+    EXPECT_LE(entry.low, entry.high) << entry.row;
+  }
+}
+
+TEST(Certificate, WithoutEntriesDoesNotPass) {
+  EXPECT_FALSE(Certificate{}.passes());
+  CertificateEntry entry{"row", "subject", "law", "1", std::nan(""), 0.0, 1.0, ""};
+  EXPECT_FALSE(entry.passes());
+  entry.value = 1.0;
+  EXPECT_TRUE(entry.passes());
+}
+
+TEST(Certificate, UnknownRowNamesTheNearest) {
+  CertifyOptions options;
+  options.rows = {"free_fligth"};
+  try {
+    measure_certificate(input(), options);
+    FAIL() << "an unknown row was accepted";
+  } catch (const BadInput& error) {
+    EXPECT_THAT(error.what(), HasSubstr("'free_flight'"));
+  }
+}
+
+TEST(Certificate, StopsBetweenRows) {
+  std::atomic<bool> stop = false;
+  CertifyOptions options;
+  options.rows = {"flight_force", "free_fall"};
+  options.stop = &stop;
+  options.on_row = [&](const CertificateRow&, double) { stop = true; };
+  EXPECT_EQ(measure_certificate(input(), options).entries.size(), 1u);
+}
+
+TEST(Rows, EulerAndImplicitIntegrationFailEnergyAndMomentum) {
+  FreeFlightSetup setup;
+  for (const sim::Integrator integrator : {sim::Integrator::euler, sim::Integrator::implicit}) {
+    setup.integrator = integrator;
+    EXPECT_THAT(failures(certify_free_flight(input(), setup)),
+                testing::ElementsAre("free_flight_energy (rig)", "free_flight_momentum (rig)"));
+  }
+}
+
+TEST(Rows, ALeverArmOfOneMillimetreFailsTheSpecificForce) {
+  FlightForceSetup setup;
+  setup.lever_arm_m = 0.001;
+  const std::vector<CertificateEntry> entries = certify_flight_force(input(), setup);
+  ASSERT_EQ(entries.size(), 1u);
+  EXPECT_FALSE(entries[0].passes());
+  EXPECT_NEAR(entries[0].value, 18.0 * 18.0 * 0.001, 0.02);  // w^2 r; the small rates beside it change little
+}
+
+TEST(Rows, ADropFromElsewhereFailsTheFreeFall) {
+  FreeFallSetup setup;
+  setup.stated_height_m = 0.99;  // 2.3 ms sooner, 4.5 steps
+  EXPECT_THAT(failures(certify_free_fall(input(), setup)), testing::SizeIs(1));
+}
+
+TEST(Rows, AnotherRadiusFailsTheRollingLawOnThePlane) {
+  RollingSetup setup;
+  setup.terrains = false;
+  setup.stated_radius_m = 0.1455;  // 0.3 % too large
+  const std::vector<CertificateEntry> entries = certify_rolling(input(), setup);
+  EXPECT_THAT(failures(entries), testing::ElementsAre("rolling_law (plane)"));
+  EXPECT_NEAR(entries.at(0).value, 0.0005 / 0.145, 5e-4);
+}
+
+TEST(Rows, AnotherRadiusFailsTheRollingLawOnEachGround) {
+  RollingSetup setup;
+  setup.stated_radius_m = 0.148;  // 2 %
+  const std::vector<CertificateEntry> entries = certify_rolling(input(), setup);
+  ASSERT_GT(entries.size(), 2u);
+  EXPECT_EQ(failures(entries).size(), entries.size());
+}
+
+TEST(Rows, AnotherFrictionFailsTheSlipToGripTime) {
+  SlipToGripSetup setup;
+  setup.friction = 0.102;
+  EXPECT_THAT(failures(certify_slip_to_grip(input(), setup)), testing::SizeIs(1));
+}
+
+TEST(Rows, ALongStepFailsTheImpactPeak) {
+  ImpactSetup setup;
+  setup.step_s = 0.008;
+  EXPECT_THAT(failures(certify_impact(input(), setup)), testing::Contains("impact_peak_step (rig)"));
+}
+
+TEST(Rows, SoftnessThatTheEngineCannotFollowFailsItsExponent) {
+  ImpactSetup setup;
+  // the engine keeps the time constant of a contact above two steps: below, nothing changes any more
+  setup.soft_s = 0.008;
+  setup.hard_s = 0.005;
+  setup.step_s = 0.004;
+  EXPECT_THAT(failures(certify_impact(input(), setup)), testing::Contains("impact_peak_softness (rig)"));
+}
+
+TEST(Rows, TwoMillimetresOfRangeFailTheLidar) {
+  LidarRangeSetup setup;
+  setup.added_range_m = 0.002;
+  EXPECT_THAT(failures(certify_lidar_range(input(), setup)),
+              testing::ElementsAre("lidar_range_analytic (rs16)", "lidar_range_analytic (mid100)"));
+}
+
+TEST(Rows, AMirrorLiftedByTwoMillimetresFailsTheRays) {
+  LidarRaysSetup setup;
+  setup.rays = 320;
+  setup.mirror_shift_m = 0.002;
+  EXPECT_THAT(failures(certify_lidar_rays(input(), setup)), testing::Contains("lidar_range_engine (hill)"));
+}
+
+TEST(Rows, AMirrorThatNamesOtherSurfacesFailsTheRays) {
+  LidarRaysSetup setup;
+  setup.rays = 320;
+  setup.surface_shift = 1;
+  const std::vector<std::string> failed = failures(certify_lidar_rays(input(), setup));
+  for (const char* world : {"hill", "corridor", "tube"}) {
+    EXPECT_THAT(failed, testing::Contains("lidar_surface_engine (" + std::string(world) + ")"));
+  }
+}
+
+TEST(Rows, FivePerCentMoreNoiseFailsTheImus) {
+  ImuNoiseSetup setup;
+  setup.noise_factor = 1.05;
+  const std::vector<std::string> failed = failures(certify_imu_noise(input(), setup));
+  for (const char* device : {"mti30", "vn100", "phidget1044"}) {
+    EXPECT_THAT(failed, testing::Contains("imu_white_noise (" + std::string(device) + " gyro)"));
+    EXPECT_THAT(failed, testing::Contains("imu_white_noise (" + std::string(device) + " accel)"));
+  }
+}
+
+TEST(Rows, TwiceTheBiasFailsTheImus) {
+  ImuNoiseSetup setup;
+  setup.bias_factor = 2.0;
+  const std::vector<std::string> failed = failures(certify_imu_noise(input(), setup));
+  for (const char* device : {"mti30", "vn100", "phidget1044"}) {
+    EXPECT_THAT(failed, testing::Contains("imu_bias_instability (" + std::string(device) + " gyro)"));
+    EXPECT_THAT(failed, testing::Contains("imu_bias_instability (" + std::string(device) + " accel)"));
+  }
+}
+
+TEST(Rows, OtherDrawsFailTheDigests) {
+  DigestSetup setup;
+  setup.duration_s = 2.5;
+  setup.disturbance = 0.1;
+  setup.restart_seed = 2;
+  EXPECT_THAT(failures(certify_digests(input(), setup)),
+              testing::ElementsAre("digest_threads (hill)", "digest_order (hill, slip)", "digest_restart (slip)"));
+}
+
+TEST(Rows, AProgramThatCannotBeStartedFailsTheRestart) {
+  CertificateInput without = input();
+  without.program = "/nowhere/tumble";
+  DigestSetup setup;
+  setup.duration_s = 2.5;
+  const std::vector<CertificateEntry> entries = certify_digests(without, setup);
+  EXPECT_THAT(failures(entries), testing::ElementsAre("digest_restart (slip)"));
+  EXPECT_THAT(entries.back().note, HasSubstr("/nowhere/tumble"));
+}
+
+}  // namespace
+}  // namespace tumble::scenarios

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+#include <string>
+
+#include "scenarios/draw/scenario.hpp"
+#include "scenarios/draw/without_lidars.hpp"
+#include "scenarios/scoring/motion_summary.hpp"
+#include "scenarios/sweep/sweep.hpp"
+#include "sim/simulate.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+const DataRoot kData{TUMBLE_SOURCE_DIR};
+// a seed of the range that development looks at
+constexpr std::uint64_t kSeed = 1001;
+
+TEST(HillSuite, HoldsEveryScenarioOfTheRigAndNoOther) {
+  const Suite suite = load_suite(kData, "hill");
+  const std::set<std::string> listed(suite.scenarios.begin(), suite.scenarios.end());
+  std::size_t rigs = 0;
+  for (const std::string& name : scenario_names(kData)) {
+    const bool rig = load_scenario(kData, name).robot.type == "rig";
+    EXPECT_EQ(listed.contains(name), rig) << name;
+    rigs += rig ? 1 : 0;
+  }
+  EXPECT_GE(rigs, 7u);
+}
+
+TEST(HillSuite, DrawsOnThirtySeeds) {
+  for (const std::string& name : load_suite(kData, "hill").scenarios) {
+    const Scenario scenario = load_scenario(kData, name);
+    for (std::uint64_t seed = kSeed; seed < kSeed + 30; ++seed) EXPECT_NO_THROW(draw(kData, scenario, seed)) << name;
+  }
+}
+
+/// What a scenario is about.
+struct Expected {
+  const char* scenario;
+  const char* touched;  ///< beginning of the name of a surface that the rig meets, the ground apart; "" for none
+  double fall_least_m;  ///< from the highest point to the end
+  double flight_least_s;
+};
+
+void PrintTo(const Expected& expected, std::ostream* out) { *out << expected.scenario; }
+
+double fall_m(const sim::Truth& truth) {
+  double highest_m = truth.p_WB_m.front().z();
+  for (const Eigen::Vector3d& p : truth.p_WB_m) highest_m = std::max(highest_m, p.z());
+  return highest_m - truth.p_WB_m.back().z();
+}
+
+double longest_flight_s(const sim::Truth& truth) {
+  std::size_t longest = 0, run = 0;
+  for (const sim::ContactLabel label : truth.label) {
+    run = label == sim::ContactLabel::air ? run + 1 : 0;
+    longest = std::max(longest, run);
+  }
+  return 1e-9 * static_cast<double>(truth.period_ns) * static_cast<double>(longest);
+}
+
+class RigScenario : public testing::TestWithParam<Expected> {};
+
+// a simulation that meets a warning of the engine throws
+TEST_P(RigScenario, ShowsWhatItIsAboutClipsTheGyroAndEndsAtRest) {
+  const Expected& expected = GetParam();
+  const sim::Situation situation = without_lidars(draw(kData, load_scenario(kData, expected.scenario), kSeed));
+  const sim::Recording recording = sim::simulate(situation, {kData.models(), 1});
+  const sim::Truth& truth = recording.truth;
+  for (const std::size_t k : {std::size_t{0}, truth.q_WB.size() - 1}) {
+    EXPECT_LT(truth.v_WB_m_s[k].norm(), 0.02);
+    EXPECT_LT(truth.w_WB_B_rad_s[k].norm(), 0.05);
+  }
+  const MotionSummary motion = summarise_motion(recording.sensors, truth);
+  EXPECT_GT(motion.clipped_samples, 0u);
+  EXPECT_LT(motion.peak_rate_rad_s, 30.0);
+  EXPECT_GT(motion.path_m, 2.0);
+  EXPECT_LT(motion.path_m, 20.0);
+  EXPECT_GE(fall_m(truth), expected.fall_least_m);
+  EXPECT_GE(longest_flight_s(truth), expected.flight_least_s);
+  const auto named = [&](const std::string& surface) { return surface.starts_with(expected.touched); };
+  if (*expected.touched == '\0') {
+    // nothing but the ground is there at all
+    EXPECT_EQ(truth.surfaces.size(), 1u);
+  } else {
+    EXPECT_GT(std::count_if(truth.contacts.begin(), truth.contacts.end(),
+                            [&](const sim::ContactTruth& contact) {
+                              return contact.surface_id >= 0 && named(truth.surfaces[contact.surface_id]);
+                            }),
+              0);
+  }
+}
+
+// falls and flights: about half of what the gentlest draw of the scenario gives
+INSTANTIATE_TEST_SUITE_P(Catalogue, RigScenario,
+                         testing::Values(Expected{"hill", "terrain", 0.7, 0.2}, Expected{"bare", "", 0.7, 0.2},
+                                         Expected{"scree", "rock_", 0.7, 0.2}, Expected{"forest", "terrain", 0.7, 0.2},
+                                         Expected{"stairs", "step_", 0.7, 0.2}, Expected{"cliff", "terrain", 0.7, 0.3},
+                                         Expected{"throw", "terrain", 1.0, 0.9}),
+                         [](const auto& info) { return std::string(info.param.scenario); });
+
+}  // namespace
+}  // namespace tumble::scenarios

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/sweep/triage.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/scoring/truth_track.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+DataRoot data() {
+  return DataRoot{TUMBLE_SOURCE_DIR};
+}
+
+/// A tumble with all sensors, once for all tests.
+const SimulatedDraw& tumble() {
+  static const SimulatedDraw kDraw = [] {
+    Scenario scenario = load_scenario(data(), "hill");
+    scenario.duration_s.shape = Distribution::Shape::constant;
+    scenario.duration_s.numbers = {5.0};
+    return simulate_draw(data(), scenario, 1, 1);
+  }();
+  return kDraw;
+}
+
+const TrueInput& input_named(const std::string& name) {
+  const auto all = true_inputs();
+  return *std::find_if(all.begin(), all.end(), [&](const TrueInput& input) { return input.name == name; });
+}
+
+TEST(TrueInputs, EachReplacesItsOwnAndDoingItTwiceChangesNothing) {
+  const sim::Recording& recording = tumble().recording;
+  for (const TrueInput& input : true_inputs()) {
+    if (input.name == "stamps_exact" || input.name == "accel_unclipped" || input.name == "all") continue;
+    sim::Sensors sensors = recording.sensors;
+    EXPECT_TRUE(input.replace(sensors, recording.truth)) << input.name;
+    EXPECT_FALSE(input.doc.empty()) << input.name;
+  }
+  sim::Sensors sensors = recording.sensors;
+  EXPECT_TRUE(input_named("gyro_exact").replace(sensors, recording.truth));
+  EXPECT_EQ(sensors.imus[0].gyro_rad_s, recording.truth.imus[0].rate_rad_s);
+  EXPECT_EQ(sensors.imus[0].accel_m_s2, recording.sensors.imus[0].accel_m_s2);
+  EXPECT_GT(sensors.imus[0].stated_gyro_range_rad_s, 10.0);
+  EXPECT_FALSE(input_named("gyro_exact").replace(sensors, recording.truth));
+  EXPECT_TRUE(input_named("mounting_exact").replace(sensors, recording.truth));
+  EXPECT_FALSE(input_named("mounting_exact").replace(sensors, recording.truth));
+}
+
+TEST(TrueInputs, ExactStampsTakeAnOffsetAway) {
+  sim::Sensors sensors = tumble().recording.sensors;
+  const sim::ImuRecord& imu = sensors.imus[0];
+  for (std::int64_t& time : sensors.imus[0].time_ns) time += 3'000'000;
+  EXPECT_TRUE(input_named("stamps_exact").replace(sensors, tumble().recording.truth));
+  for (std::size_t k = 0; k < imu.time_ns.size(); ++k) {
+    ASSERT_EQ(imu.time_ns[k], static_cast<std::int64_t>(k + 1) * imu.period_ns);
+  }
+  EXPECT_FALSE(input_named("stamps_exact").replace(sensors, tumble().recording.truth));
+}
+
+/// Points of all sweeps at their own times, carried to the world by the true pose.
+double largest_miss_m(const sim::Sensors& sensors, const sim::Truth& truth, std::size_t stride) {
+  const TruthTrack track(truth, Frame::lidar);
+  const sim::LidarRecord& lidar = sensors.lidars[0];
+  double largest = 0.0;
+  for (std::size_t sweep = 0; sweep < lidar.sweep_start_ns.size(); ++sweep) {
+    for (std::uint64_t i = lidar.sweep_first[sweep]; i < lidar.sweep_first[sweep + 1]; i += stride) {
+      const std::int64_t time_ns = lidar.sweep_start_ns[sweep] + lidar.offset_ns[i];
+      if (!track.covers(time_ns)) continue;
+      const PoseState pose = track.pose(time_ns);
+      const Eigen::Vector3d p_W_m = pose.q_WA * lidar.position_L_m[i].cast<double>() + pose.p_WA_m;
+      largest = std::max(largest, (p_W_m - truth.lidars[0].hit_W_m[i].cast<double>()).norm());
+    }
+  }
+  return largest;
+}
+
+TEST(TrueInputs, ExactRangesLieWhereTheBeamsHit) {
+  const sim::Recording& recording = tumble().recording;
+  EXPECT_GT(largest_miss_m(recording.sensors, recording.truth, 17), 0.03) << "the device errs by 2 cm, one sigma";
+  sim::Sensors sensors = recording.sensors;
+  ASSERT_TRUE(input_named("lidar_ranges_exact").replace(sensors, recording.truth));
+  EXPECT_LT(largest_miss_m(sensors, recording.truth, 17), 1e-4);  // floats at 40 m
+}
+
+TEST(TrueInputs, UnbentSweepsLieRightAtOneInstant) {
+  const sim::Recording& recording = tumble().recording;
+  sim::Sensors sensors = recording.sensors;
+  ASSERT_TRUE(input_named("all").replace(sensors, recording.truth));
+  EXPECT_LT(largest_miss_m(sensors, recording.truth, 17), 1e-4);
+  const sim::LidarRecord& lidar = sensors.lidars[0];
+  for (std::size_t sweep = 0; sweep < lidar.sweep_start_ns.size(); ++sweep) {
+    for (std::uint64_t i = lidar.sweep_first[sweep] + 1; i < lidar.sweep_first[sweep + 1]; i += 101) {
+      ASSERT_EQ(lidar.offset_ns[i], lidar.offset_ns[lidar.sweep_first[sweep]]);
+    }
+  }
+}
+
+TEST(Failure, IsAStatusAMapOrAMetricBeyondItsLimit) {
+  Outcome outcome;
+  outcome.status = "ok";
+  outcome.scores = {{"map_failed", 0.0}, {"map_overlap", 0.7}, {"translation_error_end_m", 2.0}};
+  EXPECT_FALSE(Failure{}.holds(outcome));
+  EXPECT_TRUE((Failure{"translation_error_end_m", 1.0}.holds(outcome)));
+  EXPECT_FALSE((Failure{"translation_error_end_m", 3.0}.holds(outcome)));
+  EXPECT_TRUE((Failure{"map_overlap", 0.8}.holds(outcome))) << "of an overlap more is better";
+  EXPECT_FALSE((Failure{"map_overlap", 0.6}.holds(outcome)));
+  EXPECT_TRUE((Failure{"ate_m", 1.0}.holds(outcome))) << "a run without the number has not shown it";
+  outcome.scores[0].value = 1.0;
+  EXPECT_TRUE(Failure{}.holds(outcome));
+  outcome.scores.clear();
+  outcome.status = "diverged";
+  EXPECT_TRUE(Failure{}.holds(outcome));
+}
+
+/// The rate that raw gives fails where the gyro clips: the unclipped gyro cures it, the accelerometer does not.
+TEST(Triage, TheClippedGyroIsTheCauseOfRawsError) {
+  Scenario scenario = load_scenario(data(), "hill");
+  scenario.duration_s.shape = Distribution::Shape::constant;
+  scenario.duration_s.numbers = {5.0};
+  std::erase_if(scenario.sensors, [](const Scenario::Sensor& sensor) { return sensor.name == "lidar"; });
+  TriageOptions options;
+  options.failure = {"rate_error_clipped_median_rad_s", 0.1};
+  const std::vector<TriageRow> rows = triage(data(), scenario, 1, *find_methods("rate/raw").front(), options);
+  ASSERT_GT(rows.size(), 4u);
+  EXPECT_EQ(rows[0].input, "none");
+  EXPECT_TRUE(rows[0].fails) << "seed 1 clips";
+  std::vector<std::string> cures;
+  for (const TriageRow& row : rows) {
+    if (!row.fails) cures.push_back(row.input);
+  }
+  EXPECT_THAT(cures, ::testing::ElementsAre("gyro_unclipped", "gyro_exact", "all"));
+}
+
+TEST(Triage, AMethodOfAnotherRobotIsRefused) {
+  EXPECT_THROW(triage(data(), load_scenario(data(), "hill"), 1, *find_methods("position/rolling").front(), {}),
+               BadInput);
+}
+
+}  // namespace
+}  // namespace tumble::scenarios

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/motion/motion_type.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/motion/rigid_body.hpp"
+#include "sim/simulate.hpp"
+#include "tests/sim/engine/worlds.hpp"
+
+namespace tumble::sim {
+namespace {
+
+using Eigen::Vector3d;
+
+Situation moved_by(const std::string& type, double duration_s) {
+  Situation situation = tumble_down(duration_s, 2000.0);
+  situation.world.values.set("relief_m", 0.0);
+  situation.world.values.set("bump_height_m", 0.0);
+  situation.world.values.set("drop_m", 0.2);
+  situation.world.values.set("slope_rad", 0.1);
+  situation.motion = {type, {}};
+  situation.motion.values.set("rest_s", 0.5);
+  return situation;
+}
+
+double largest_step_m_s(const Truth& truth) {
+  double largest = 0.0;
+  for (std::size_t k = 1; k < truth.v_WB_m_s.size(); ++k)
+    largest = std::max(largest, (truth.v_WB_m_s[k] - truth.v_WB_m_s[k - 1]).norm());
+  return largest;
+}
+
+TEST(RaisedCosine, HasUnitIntegralAndVanishesOutside) {
+  double sum = 0.0;
+  for (int i = 0; i <= 1000; ++i) sum += raised_cosine(i / 1000.0) / 1000.0;
+  EXPECT_NEAR(sum, 1.0, 1e-9);
+  EXPECT_EQ(raised_cosine(-0.1), 0.0);
+  EXPECT_EQ(raised_cosine(1.1), 0.0);
+}
+
+TEST(Throw, LeavesTheHandWithTheStatedVelocityAndSpin) {
+  Situation situation = moved_by("throw", 1.6);
+  situation.motion.values.set("velocity_m_s", 3.0);
+  situation.motion.values.set("lift_m_s", 4.0);
+  situation.motion.values.set("direction_rad", 0.2);
+  situation.motion.values.set("spin_forward_rad_s", 0.0);
+  situation.motion.values.set("spin_up_rad_s", 9.0);
+  const Truth truth = simulate(situation, {models_folder(), 1}).truth;
+  const std::size_t released = 1601;  // 0.5 s of rest and 0.3 s of throw
+  const Vector3d expected(3.0 * std::cos(0.2), 3.0 * std::sin(0.2), 4.0);
+  EXPECT_NEAR((truth.v_WB_m_s[released] - expected).norm(), 0.0, 0.02);  // 1 mm of sag of the hand; one step of gravity
+  EXPECT_NEAR((truth.w_WB_B_rad_s[released] - Vector3d(0, 0, 9.0)).norm(), 0.0, 0.02);
+  // then a parabola: no force at the centre of mass until it lands, 0.8 s later
+  EXPECT_NEAR(truth.f_B_m_s2[released + 1000].norm(), 0.0, 1e-6);
+  EXPECT_EQ(truth.label[released + 1000], ContactLabel::air);
+}
+
+TEST(Throw, HoldsStillBeforeAndNeverJumps) {
+  Situation situation = moved_by("throw", 1.2);
+  situation.motion.values.set("height_m", 1.3);
+  const Truth truth = simulate(situation, {models_folder(), 1}).truth;
+  for (std::size_t k = 0; k <= 1000; k += 50) {
+    ASSERT_LT(truth.v_WB_m_s[k].norm(), 1e-3) << k;
+    ASSERT_NEAR(truth.f_B_m_s2[k].norm(), 9.80665, 0.05) << k;
+  }
+  EXPECT_EQ(truth.contacts.size(), 0u) << "it is in the air until it lands";
+  EXPECT_LT(largest_step_m_s(truth), 0.05);  // 5.7 m/s over 0.3 s as a raised cosine: 0.019 m/s a step
+}
+
+TEST(Drop, FallsFreelyFromTheStatedHeight) {
+  Situation situation = moved_by("drop", 1.4);
+  situation.motion.values.set("height_m", 1.5);
+  situation.motion.values.set("roll_rad", 0.6);
+  situation.motion.values.set("pitch_rad", -0.4);
+  situation.motion.values.set("release_s", 0.0);
+  const Truth truth = simulate(situation, {models_folder(), 1}).truth;
+  ASSERT_FALSE(truth.contacts.empty());
+  const double landed_s = static_cast<double>(truth.contacts.front().time_ns) * 1e-9;
+  EXPECT_NEAR(landed_s - 0.5, std::sqrt(2.0 * 1.5 / 9.80665), 0.005);
+  EXPECT_LT(truth.w_WB_B_rad_s[1500].norm(), 1e-6) << "nothing turns it in the air";
+}
+
+TEST(Drop, MayBeHeldAwayFromTheStart) {
+  Situation situation = moved_by("drop", 1.0);
+  situation.motion.values.set("forward_m", 2.0);
+  const Truth away = simulate(situation, {models_folder(), 1}).truth;
+  situation.motion.values.set("forward_m", 0.0);
+  const Truth near = simulate(situation, {models_folder(), 1}).truth;
+  EXPECT_NEAR((away.p_WB_m[0] - near.p_WB_m[0] - Vector3d(2, 0, 0)).norm(), 0.0, 1e-9);
+}
+
+TEST(Clearance, IsThatOfTheTurnedRobot) {
+  const engine::World world = engine::compose(tumble_down(1.0, 100.0), models_folder());
+  const Eigen::Quaterniond upright = Eigen::Quaterniond::Identity();
+  const Eigen::Quaterniond head_down(Eigen::AngleAxisd(3.141592653589793, Vector3d::UnitX()));
+  const double low_m = clearance_m(*world.model, world.robot_body, upright, 0.0);
+  const double high_m = clearance_m(*world.model, world.robot_body, head_down, 0.0);
+  double lowest_m = 0.0, highest_m = 0.0;  // of the struts' axes, by the compiled model
+  for (int g = 0; g < world.model->ngeom; ++g) {
+    if (world.model->geom_type[g] != mjGEOM_CAPSULE) continue;
+    const double radius_m = world.model->geom_size[3 * g], z_m = world.model->geom_pos[3 * g + 2];
+    const mjtNum* q = world.model->geom_quat + 4 * g;
+    const double half_m = std::abs(1 - 2 * (q[1] * q[1] + q[2] * q[2])) * world.model->geom_size[3 * g + 1];
+    lowest_m = std::min(lowest_m, z_m - half_m - radius_m);
+    highest_m = std::max(highest_m, z_m + half_m + radius_m);
+  }
+  EXPECT_NEAR(low_m, -lowest_m, 1e-9);
+  EXPECT_NEAR(high_m, highest_m, 1e-9);
+  EXPECT_GT(std::abs(low_m - high_m), 0.01) << "the cage is not symmetric about its centre of mass";
+}
+
+}  // namespace
+}  // namespace tumble::sim

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The certificate as the program prints it. What the rows measure is tested beside them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "system/program.hpp"
+
+namespace tumble::system_test {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+TEST(Certify, PrintsRowsWithBoundAndVerdict) {
+  const Ended ended = run_program({"certify", "--row", "free_fall", "--row", "flight_force"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  for (const char* word : {"free_fall_time", "flight_specific_force", "<= 1e-06", "m/s^2", "pass"}) {
+    EXPECT_THAT(ended.out, HasSubstr(word));
+  }
+  EXPECT_THAT(ended.err, HasSubstr("time of a free fall"));
+  EXPECT_EQ(run_program({"certify", "--row", "free_fall", "--quiet"}).err, "");
+}
+
+TEST(Certify, IsJsonOnDemand) {
+  const json certificate = json_of(run_program({"certify", "--row", "free_flight", "--json"}));
+  EXPECT_EQ(certificate["verdict"], "pass");
+  EXPECT_NE(certificate.value("build", ""), "");
+  ASSERT_EQ(certificate["entries"].size(), 2u);
+  for (const json& entry : certificate["entries"]) {
+    EXPECT_EQ(entry["verdict"], "pass");
+    EXPECT_LE(entry["value"].get<double>(), entry["high"].get<double>());
+  }
+}
+
+}  // namespace
+}  // namespace tumble::system_test

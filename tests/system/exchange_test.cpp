@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Recordings to and from other people's formats. The formats themselves are tested beside the library.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include "system/program.hpp"
+
+namespace tumble::system_test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+TEST(Exchange, EveryFormatLeavesItsFiles) {
+  const fs::path folder = test_folder();
+  const std::string recording = (shared_run("roll") / "recording.h5").string();
+  const std::pair<const char*, const char*> formats[] = {
+      {"tum", ""}, {"kitti", ""}, {"csv", "imu.csv"}, {"ply", "lidar_000000.ply"}, {"pcd", "lidar_000000.pcd"}};
+  for (const auto& [format, file] : formats) {
+    const fs::path out = folder / format;
+    const Ended ended = run_program({"export", recording, "--format", format, "-o", out.string(), "--json"});
+    ASSERT_EQ(ended.status, 0) << ended.err;
+    EXPECT_EQ(json_of(ended)["format"], format);
+    const fs::path written = *file == '\0' ? out : out / file;
+    ASSERT_TRUE(fs::exists(written)) << written;
+    EXPECT_GT(fs::file_size(written), 1000u) << written;
+  }
+}
+
+TEST(Exchange, WhatIsExportedAsCsvComesBack) {
+  const fs::path folder = test_folder();
+  const std::string recording = (shared_run("roll") / "recording.h5").string();
+  ASSERT_EQ(run_program({"export", recording, "--format", "csv", "-o", (folder / "csv").string(), "--quiet"}).status,
+            0);
+  const std::string back = (folder / "back.h5").string();
+  const Ended imported = run_program({"import", (folder / "csv" / "imu.csv").string(), "--device", "phidget1044",
+                                      "--robot", "sphere", "--lever-arm", "0.01", "0", "-0.02", "-o", back, "--json"});
+  ASSERT_EQ(imported.status, 0) << imported.err;
+  const json said = json_of(imported);
+  EXPECT_EQ(said["period_ns"], 4000000);
+  EXPECT_GT(said["samples"].get<int>(), 3000);
+  // it is a recording like any other, without truth
+  const Ended estimate =
+      run_program({"estimate", back, "--method", "attitude/madgwick", "-o", (folder / "estimate").string()});
+  EXPECT_EQ(estimate.status, 0) << estimate.err;
+  const Ended export_truth = run_program({"export", back, "--format", "tum", "-o", (folder / "t").string()});
+  EXPECT_EQ(export_truth.status, 2);
+  EXPECT_EQ(line_count(export_truth.err), 1u) << export_truth.err;
+}
+
+TEST(Exchange, ATrialOfBroadIsRead) {
+  const fs::path trials = fs::path(TUMBLE_SHARED_DATA) / "broad";
+  if (!fs::is_directory(trials)) GTEST_SKIP() << "the trials are not beside this tree";
+  const fs::path trial = trials / "07_undisturbed_fast_rotation_B.hdf5";
+  const fs::path folder = test_folder();
+  const std::string recording = (folder / "b.h5").string(), estimate = (folder / "e").string();
+  const Ended ended = run_program({"import", trial.string(), "-o", recording, "--json"});
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(json_of(ended)["attribution"].get<std::string>(), HasSubstr("BROAD"));
+  EXPECT_EQ(json_of(ended)["has_reference"], true);
+  // its reference is a truth to score attitudes against; published for vqf on this trial: 1.02 degrees while the
+  // trial's own flag says moving, which is not quite where the reference moves
+  const Ended estimated = run_program({"estimate", recording, "--method", "attitude/vqf", "-o", estimate});
+  ASSERT_EQ(estimated.status, 0) << estimated.err;
+  const json scored = json_of(run_program({"score", estimate, recording, "--json"}));
+  EXPECT_EQ(scored["status"], "ok");
+  double inclination_deg = -1.0;
+  for (const json& row : scored["scores"]) {
+    if (row["metric"] == "inclination_rmse_rad") inclination_deg = row["value"].get<double>() * 180.0 / M_PI;
+  }
+  EXPECT_NEAR(inclination_deg, 1.02, 0.2);
+  EXPECT_EQ(run_program({"export", recording, "--format", "tum", "-o", (folder / "reference.tum").string()}).status, 0);
+}
+
+TEST(Exchange, TheLogOfARealSphereIsRead) {
+  const fs::path log = fs::path(TUMBLE_SHARED_DATA) / "sphere_log" / "orientation_all.csv";
+  if (!fs::exists(log)) GTEST_SKIP() << "the log is not beside this tree";
+  const fs::path folder = test_folder();
+  const std::string recording = (folder / "s.h5").string();
+  const Ended wrong = run_program({"import", log.string(), "-o", recording});
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_EQ(line_count(wrong.err), 1u) << wrong.err;
+  EXPECT_THAT(wrong.err, HasSubstr("is the file in g?"));
+  const Ended ended = run_program({"import", log.string(), "--accel-unit", "g", "--robot", "sphere", "--radius",
+                                   "0.145", "-o", recording, "--json"});
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(json_of(ended)["samples"], 7294);
+  EXPECT_EQ(json_of(ended)["has_reference"], false);
+  const Ended rolled =
+      run_program({"estimate", recording, "--method", "position/rolling", "-o", (folder / "e").string()});
+  EXPECT_EQ(rolled.status, 0) << rolled.err;
+}
+
+TEST(Exchange, ADamagedCsvIsOneLine) {
+  const fs::path folder = test_folder();
+  std::ofstream(folder / "bad.csv") << "header\n1,2,3\n";
+  const Ended ended = run_program({"import", (folder / "bad.csv").string(), "-o", (folder / "x.h5").string()});
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_EQ(line_count(ended.err), 1u) << ended.err;
+  EXPECT_THAT(ended.err, HasSubstr("bad.csv:2"));
+  EXPECT_FALSE(fs::exists(folder / "x.h5"));
+}
+
+}  // namespace
+}  // namespace tumble::system_test

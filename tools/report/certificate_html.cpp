@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/report/certificate_html.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "tools/report/html.hpp"
+#include "tools/tumble/certificate_table.hpp"
+#include "tools/tumble/table.hpp"
+
+namespace tumble::tools {
+
+namespace {
+
+using html::cell;
+using html::escaped;
+
+std::string row_html(const scenarios::CertificateEntry& entry) {
+  const std::string unit = entry.unit == "1" ? "" : entry.unit;
+  const std::string verdict = (entry.passes() ? "pass" : "fail") + (entry.note.empty() ? "" : ": " + entry.note);
+  return "<tr><td>" + escaped(entry.row) + "</td>" + cell(entry.subject) + cell(number_text(entry.value), "number") +
+         cell(bound_text(entry.low, entry.high), "number") + cell(unit, "unit") +
+         cell(verdict, entry.passes() ? "" : "bad") + cell(entry.law, "law") + "</tr>\n";
+}
+
+}  // namespace
+
+std::string certificate_summary(const scenarios::Certificate& certificate) {
+  if (certificate.entries.empty()) return "none";
+  const auto passed = std::count_if(certificate.entries.begin(), certificate.entries.end(),
+                                    [](const scenarios::CertificateEntry& entry) { return entry.passes(); });
+  return fmt::format("{} of {} figures within their bounds", passed, certificate.entries.size());
+}
+
+std::string certificates_html(std::span<const scenarios::Certificate> certificates) {
+  std::string out =
+      "<h2 id=\"certificate\">Certificate</h2>\n<p>How far the simulation behind these scores is from physics and "
+      "from its data sheets, measured on the build that made them (<code>tumble certify</code>).</p>\n";
+  if (certificates.empty()) out += "<p class=\"warning\">These results hold no certificate.</p>\n";
+  for (const scenarios::Certificate& certificate : certificates) {
+    out += "<p>Build <code>" + escaped(certificate.build) + "</code>: " + escaped(certificate_summary(certificate)) +
+           ".</p>\n";
+    out +=
+        "<div class=\"scroll\"><table><thead><tr><th>figure</th><th>on</th><th class=\"number\">value</th>"
+        "<th class=\"number\">bound</th><th>unit</th><th>verdict</th><th>held to</th></tr></thead><tbody>\n";
+    for (const scenarios::CertificateEntry& entry : certificate.entries) out += row_html(entry);
+    out += "</tbody></table></div>\n";
+  }
+  return out;
+}
+
+}  // namespace tumble::tools
