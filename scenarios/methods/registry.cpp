@@ -48,6 +48,10 @@ std::vector<Method> all_methods() {
       slam_tumble(),
       slam_tumble_gyro_only(),
       slam_oracle(),
+      slam_poses_rolling(),
+      slam_poses_autogain_fusion(),
+      slam_poses_tumble(),
+      slam_rolling_prior(),
   };
   std::stable_sort(all.begin(), all.end(), [](const Method& a, const Method& b) { return a.info.kind < b.info.kind; });
   return all;
