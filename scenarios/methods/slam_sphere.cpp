@@ -26,6 +26,21 @@ const std::array<sim::Parameter, 2>& parameters_of_the_map() {
   return parameters;
 }
 
+constexpr double kPriorSigmaM = 1e-3, kPriorSigmaRad = 5e-4;  // over 0.1 s: rolling tells that much
+
+/// Those of the chain, with a prior as tight as rolling makes it: sweep after sweep looks where no map is yet.
+std::span<const sim::Parameter> parameters_of_the_prior() {
+  static const std::vector<sim::Parameter> all = [] {
+    std::vector<sim::Parameter> own(slam_parameters().begin(), slam_parameters().end());
+    for (sim::Parameter& parameter : own) {
+      if (parameter.name == "prior_sigma_m") parameter.default_value = kPriorSigmaM;
+      if (parameter.name == "prior_sigma_rad") parameter.default_value = kPriorSigmaRad;
+    }
+    return own;
+  }();
+  return all;
+}
+
 /// Runs the position method `name` with its defaults.
 Estimate positions(const char* name, const sim::Sensors& sensors) {
   return find_methods(std::string("position/") + name).front()->run(sensors, {}, {});
@@ -184,7 +199,7 @@ Method slam_rolling_prior() {
   info.kind = Kind::slam;
   info.doc = "The registration of the rig, with the poses of our position method as its prior between two sweeps.";
   info.source = "ours";
-  info.parameters = slam_parameters();
+  info.parameters = parameters_of_the_prior();
   info.robots = {"sphere"};
   return make_method(std::move(info), run_rolling_prior);
 }
