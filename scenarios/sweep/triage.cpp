@@ -26,6 +26,15 @@ TriageRow row_of(const std::string& input, const std::string& doc, Outcome outco
   return row;
 }
 
+/// The draw as it was, but with the stamps that the method was given: an estimate is held to the truth of the sample
+/// whose stamp it bears.
+SimulatedDraw scored_by(const SimulatedDraw& draw, const SimulatedDraw& cured) {
+  SimulatedDraw scored = draw;
+  std::vector<sim::ImuRecord>& imus = scored.recording.sensors.imus;
+  for (std::size_t i = 0; i < imus.size(); ++i) imus[i].time_ns = cured.recording.sensors.imus[i].time_ns;
+  return scored;
+}
+
 }  // namespace
 
 bool Failure::holds(const Outcome& outcome) const {
@@ -57,7 +66,8 @@ std::vector<TriageRow> triage(const DataRoot& data, const Scenario& scenario, st
     SimulatedDraw cured = draw;
     if (!input.replace(cured.recording.sensors, draw.recording.truth)) continue;
     if (options.on_run) options.on_run(input.name);
-    rows.push_back(row_of(input.name, input.doc, run_isolated(method, cured, draw, true_surface, options.timeout_s),
+    rows.push_back(row_of(input.name, input.doc,
+                          run_isolated(method, cured, scored_by(draw, cured), true_surface, options.timeout_s),
                           options.failure));
   }
   return rows;

@@ -100,7 +100,7 @@ INSTANTIATE_TEST_SUITE_P(Catalogue, RigScenario,
                                          Expected{"scree", "rock_", 0.7, 0.2}, Expected{"forest", "terrain", 0.7, 0.2},
                                          Expected{"stairs", "step_", 0.7, 0.2}, Expected{"cliff", "terrain", 0.7, 0.3},
                                          Expected{"throw", "terrain", 1.0, 0.9}),
-                         [](const auto& info) { return std::string(info.param.scenario); });
+                         [](const auto& test) { return std::string(test.param.scenario); });
 
 }  // namespace
 }  // namespace tumble::scenarios

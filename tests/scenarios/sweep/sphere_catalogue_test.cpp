@@ -69,7 +69,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Expected{"slide_long", 0.0, 0.1, 1.2, 3.0}, Expected{"slide_then_roll", 0.0, 0.1, 0.2, 1.5},
                     Expected{"bump", 0.0, 0.2, 0.0, 0.1}, Expected{"ramp", 0.0, 0.1, 0.0, 0.1},
                     Expected{"corridor", 0.0, 0.0, 0.0, 0.0}, Expected{"tube", 0.0, 0.1, 0.0, 0.1}),
-    [](const auto& info) { return std::string(info.param.scenario); });
+    [](const auto& test) { return std::string(test.param.scenario); });
 
 }  // namespace
 }  // namespace tumble::scenarios
