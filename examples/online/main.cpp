@@ -21,7 +21,7 @@ bool read(const char* text, double& value) {
 
 bool read_arguments(int count, char** arguments, tumble::RollingParams& params) {
   if (count != 2 && count != 5 && count != 6 && count != 7) return false;
-  double* const targets[] = {&params.radius_m,          &params.lever_arm_m.x(),   &params.lever_arm_m.y(),
+  double* const targets[] = {&params.radius_m,        &params.lever_arm_m.x(),  &params.lever_arm_m.y(),
                              &params.lever_arm_m.z(), &params.gyro_range_rad_s, &params.accel_range_m_s2};
   for (int k = 1; k < count; ++k) {
     if (!read(arguments[k], *targets[k - 1])) return false;

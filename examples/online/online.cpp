@@ -25,11 +25,16 @@ bool next_number(std::string_view& rest, Number& value) {
 
 const char* name(tumble::RollingMode mode) {
   switch (mode) {
-    case tumble::RollingMode::grip: return "grip";
-    case tumble::RollingMode::slip: return "slip";
-    case tumble::RollingMode::bump: return "bump";
-    case tumble::RollingMode::incline: return "incline";
-    case tumble::RollingMode::rough: return "rough";
+    case tumble::RollingMode::grip:
+      return "grip";
+    case tumble::RollingMode::slip:
+      return "slip";
+    case tumble::RollingMode::bump:
+      return "bump";
+    case tumble::RollingMode::incline:
+      return "incline";
+    case tumble::RollingMode::rough:
+      return "rough";
   }
   return "?";
 }
@@ -46,7 +51,8 @@ std::string_view Online::take(std::string_view line) {
   tumble::ImuSample sample;
   if (!next_number(line, sample.time_ns)) return trouble("time_ns: not a whole number");
   for (int axis = 0; axis < 3; ++axis) {
-    if (!next_number(line, sample.angular_velocity_rad_s[axis])) return trouble("angular velocity: three numbers needed");
+    if (!next_number(line, sample.angular_velocity_rad_s[axis]))
+      return trouble("angular velocity: three numbers needed");
   }
   for (int axis = 0; axis < 3; ++axis) {
     if (!next_number(line, sample.specific_force_m_s2[axis])) return trouble("specific force: three numbers needed");

@@ -92,8 +92,8 @@ Estimate map_from_poses(const char* name, const sim::Sensors& sensors, const sim
     for (const LidarPoint& point : sweep.points) {
       if (!point.position_L_m.allFinite() || point.position_L_m.norm() < kNearestM) continue;
       const Eigen::Isometry3d T_WL = track.at(sweep.start_ns + point.offset_ns) * lidar.T_BL;
-      report.map_points_added += map.insert((T_WL * point.position_L_m.cast<double>()).cast<float>(), 0.0f,
-                                            static_cast<std::uint32_t>(k));
+      report.map_points_added +=
+          map.insert((T_WL * point.position_L_m.cast<double>()).cast<float>(), 0.0f, static_cast<std::uint32_t>(k));
       ++report.points_used;
     }
     while (first_pose < estimate.poses.size() && estimate.poses[first_pose].time_ns < sweep.start_ns) ++first_pose;
@@ -105,7 +105,8 @@ Estimate map_from_poses(const char* name, const sim::Sensors& sensors, const sim
     estimate.sweep_end_ns.push_back(sweep.end_ns);
   }
   for (std::uint32_t index = 0; index < map.index_end(); ++index) {
-    if (map.exists(index)) estimate.map.push_back({map.position_W_m(index), Eigen::Vector3f::Zero(), map.sigma_m(index)});
+    if (map.exists(index))
+      estimate.map.push_back({map.position_W_m(index), Eigen::Vector3f::Zero(), map.sigma_m(index)});
   }
   return estimate;
 }
@@ -179,13 +180,14 @@ Method posed(const char* name, const char* doc, const char* source, RunCore run)
 }  // namespace
 
 Method slam_poses_rolling() {
-  return posed("poses_rolling", "A map from the poses of rolling; nothing is registered.", "textbook rolling constraint",
-               run_poses_rolling);
+  return posed("poses_rolling", "A map from the poses of rolling; nothing is registered.",
+               "textbook rolling constraint", run_poses_rolling);
 }
 
 Method slam_poses_autogain_fusion() {
   return posed("poses_autogain_fusion", "A map from the poses of autogain_fusion, as published; nothing is registered.",
-               "Zevering et al., IMU-based pose-estimation for spherical robots, IEEE MFI 2021", run_poses_autogain_fusion);
+               "Zevering et al., IMU-based pose-estimation for spherical robots, IEEE MFI 2021",
+               run_poses_autogain_fusion);
 }
 
 Method slam_poses_tumble() {

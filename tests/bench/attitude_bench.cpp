@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Attitude filters, one sample on one core [ns]: a body that turns, shakes and rests, 250 Hz. Bounds of the project: 200
-// for the simple filters, 2000 for tumble. Where the reference C++ of VQF was found (VQF_SOURCE_DIR), it runs beside.
+// Attitude filters, one sample on one core [ns]: a body that turns, shakes and rests, 250 Hz. Bounds of the project:
+// 200 for the simple filters, 2000 for tumble. Where the reference C++ of VQF was found (VQF_SOURCE_DIR), it runs
+// beside.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -31,7 +32,8 @@ const std::vector<tumble::ImuSample>& samples() {
       const double t = 0.004 * static_cast<double>(k);
       const double moves = t < 15.0 ? 1.0 : 0.0;
       all[k].time_ns = static_cast<tumble::TimeNs>(k) * kPeriod_ns;
-      all[k].angular_velocity_rad_s = moves * Eigen::Vector3d(std::sin(t), 2.0 * std::cos(1.7 * t), 0.5 * std::sin(3.1 * t));
+      all[k].angular_velocity_rad_s =
+          moves * Eigen::Vector3d(std::sin(t), 2.0 * std::cos(1.7 * t), 0.5 * std::sin(3.1 * t));
       all[k].specific_force_m_s2 = Eigen::Vector3d(moves * std::sin(2.3 * t), moves * std::cos(1.1 * t), 9.81);
     }
     return all;

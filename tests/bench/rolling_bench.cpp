@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Position of a rolling sphere, one sample on one core, 250 Hz, along an L with a spell of slip: the live filter, the
-// same as the online example runs it (text in, text out), and the smoother with a lag. `held_bytes` is what one instance
-// holds once it runs, `allocations` what the samples after the first asked for.
+// same as the online example runs it (text in, text out), and the smoother with a lag. `held_bytes` is what one
+// instance holds once it runs, `allocations` what the samples after the first asked for.
 #include <benchmark/benchmark.h>
 
 #include <cstdio>
@@ -28,7 +28,9 @@ std::size_t allocations = 0, held = 0;
   if (memory == nullptr) throw std::bad_alloc();
   return memory;
 }
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
 [[gnu::noinline]] void operator delete(void* memory, std::size_t size) noexcept {
   held -= size;
   std::free(memory);
@@ -82,8 +84,8 @@ void online_example(benchmark::State& state) {
   char text[256];
   for (const tumble::ImuSample& s : truth().samples) {
     const Eigen::Vector3d &w = s.angular_velocity_rad_s, &f = s.specific_force_m_s2;
-    std::snprintf(text, sizeof text, "%lld %.9g %.9g %.9g %.9g %.9g %.9g", static_cast<long long>(s.time_ns), w.x(), w.y(),
-                  w.z(), f.x(), f.y(), f.z());
+    std::snprintf(text, sizeof text, "%lld %.9g %.9g %.9g %.9g %.9g %.9g", static_cast<long long>(s.time_ns), w.x(),
+                  w.y(), w.z(), f.x(), f.y(), f.z());
     lines.emplace_back(text);
   }
   std::size_t asked = 0, bytes = 0;

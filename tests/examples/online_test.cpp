@@ -30,8 +30,12 @@ std::size_t allocations = 0;
   if (memory == nullptr) throw std::bad_alloc();
   return memory;
 }
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
 
 namespace tumble {
 namespace {
@@ -40,12 +44,12 @@ const Eigen::Vector3d kLeverArm(0.02, -0.01, 0.03);
 
 /// The sphere along an L of 2 m with a spell of slip, as ideal sensors see it.
 const testing::RollingTruth& truth() {
-  static const testing::RollingTruth out = testing::roll(
-      {.velocity_m_s = testing::l_shape,
-       .contact_velocity_m_s = [](double t) -> Eigen::Vector3d {
-         return {-testing::minimum_jerk_speed(t, 2.8, 0.8, 0.25), 0.0, 0.0};
-       },
-       .lever_arm_m = kLeverArm});
+  static const testing::RollingTruth out =
+      testing::roll({.velocity_m_s = testing::l_shape,
+                     .contact_velocity_m_s = [](double t) -> Eigen::Vector3d {
+                       return {-testing::minimum_jerk_speed(t, 2.8, 0.8, 0.25), 0.0, 0.0};
+                     },
+                     .lever_arm_m = kLeverArm});
   return out;
 }
 
@@ -54,8 +58,8 @@ std::vector<std::string> lines() {
   char text[256];
   for (const ImuSample& s : truth().samples) {
     const Eigen::Vector3d &w = s.angular_velocity_rad_s, &f = s.specific_force_m_s2;
-    std::snprintf(text, sizeof text, "%lld %.17g %.17g %.17g %.17g %.17g %.17g", static_cast<long long>(s.time_ns), w.x(),
-                  w.y(), w.z(), f.x(), f.y(), f.z());
+    std::snprintf(text, sizeof text, "%lld %.17g %.17g %.17g %.17g %.17g %.17g", static_cast<long long>(s.time_ns),
+                  w.x(), w.y(), w.z(), f.x(), f.y(), f.z());
     out.emplace_back(text);
   }
   return out;
@@ -101,7 +105,7 @@ TEST(Online, SaysWhatTheFilterSaysAndAllocatesNothing) {
   for (const ImuSample& sample : truth().samples) ASSERT_TRUE(filter.step(sample, *state).ok());
   const Pose pose = parse(last);
   EXPECT_EQ(pose.time_ns, truth().samples.back().time_ns);
-  EXPECT_LT((pose.p_m - state->p_WG_m).norm(), 2e-6);  // six digits are written
+  EXPECT_LT((pose.p_m - state->p_WG_m).norm(), 2e-6);          // six digits are written
   EXPECT_LT((pose.p_m - truth().p_WG_m.back()).norm(), 0.01);  // 0.5 % of the path; ideal sensors
   EXPECT_EQ(program.samples(), in.size());
 }

@@ -27,6 +27,7 @@ constexpr double kOffCentre_m = 0.02;    // of an IMU: makes forces in fast turn
 constexpr double kHiddenFrom = 0.3, kHiddenTo = 0.6;  // of the accelerometer's range
 constexpr double kLostTilt_rad = 0.5;    // a tilt as uncertain as this is no tilt to integrate forces with
 constexpr double kDoubtfulTilt_rad = 0.1;  // and as this, no better than the direction of the force at rest
+constexpr double kRestTilt_rad = 5e-3;
 constexpr double kForceTilt_rad = 0.35;  // of the direction of a force in motion
 constexpr double kLostSpeed_m_s = 1.0;
 constexpr double kUnsureSpeed_m_s = 0.1, kSpeedWindow_s = 1.0;
@@ -267,7 +268,8 @@ bool relevel(const RollingParams& params, const Eigen::Vector3d& f_I_m_s2, bool 
   nominal.v_WI_m_s.setZero();
   P.topRows<6>().setZero();
   P.leftCols<6>().setZero();
-  P.diagonal().segment<2>(kAttitude).setConstant(squared(at_rest ? std::max(params.tilt_sigma_rad, 5e-3) : kForceTilt_rad));
+  const double tilt_sigma_rad = at_rest ? std::max(params.tilt_sigma_rad, kRestTilt_rad) : kForceTilt_rad;
+  P.diagonal().segment<2>(kAttitude).setConstant(squared(tilt_sigma_rad));
   P(kAttitude + 2, kAttitude + 2) = squared(kLostSpeed_m_s);  // as good as unknown, and small enough to be linear in
   P.diagonal().segment<3>(kVelocity).setConstant(squared(at_rest ? params.rest_velocity_sigma_m_s : kLostSpeed_m_s));
   return true;

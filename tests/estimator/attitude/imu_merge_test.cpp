@@ -51,7 +51,7 @@ ImuMerge::Params params(const Spin& spin, const Eigen::Vector3d& first_arm_error
 }
 
 struct Outcome {
-  double rate_error_rad_s = 0.0;   ///< largest after 0.1 s at the rail
+  double rate_error_rad_s = 0.0;     ///< largest after 0.1 s at the rail
   double clipped_error_rad_s = 0.0;  ///< of a gyro alone
   int railed = 0, flagged = 0;
 };
@@ -75,8 +75,7 @@ Outcome run(const Spin& spin, const ImuMerge::Params& p, double top) {
     out.flagged += merged.device_clip_flags != 0;
     if (since <= 25) continue;
     out.rate_error_rad_s = std::max(out.rate_error_rad_s, (merged.angular_velocity_rad_s - truth).norm());
-    out.clipped_error_rad_s =
-        std::max(out.clipped_error_rad_s, (now[0].angular_velocity_rad_s - truth).norm());
+    out.clipped_error_rad_s = std::max(out.clipped_error_rad_s, (now[0].angular_velocity_rad_s - truth).norm());
   }
   return out;
 }

@@ -16,13 +16,13 @@ const Eigen::Vector3d kLeverArm(0.02, -0.01, 0.03);
 
 /// An L of 2 m with a spell of slip of 0.8 s; gyro and accelerometer with constant errors of the Phidget class.
 testing::RollingTruth slipping() {
-  testing::RollingTruth truth = testing::roll(
-      {.velocity_m_s = testing::l_shape,
-       .contact_velocity_m_s = [](double t) -> Eigen::Vector3d {
-         return {-testing::minimum_jerk_speed(t, 2.8, 0.8, 0.25), 0.05 * testing::minimum_jerk_speed(t, 2.8, 0.8, 0.25), 0.0};
-       },
-       .lever_arm_m = kLeverArm,
-       .q_start = so3::exp({0.1, -0.2, 0.0})});
+  testing::RollingTruth truth = testing::roll({.velocity_m_s = testing::l_shape,
+                                               .contact_velocity_m_s = [](double t) -> Eigen::Vector3d {
+                                                 return {-testing::minimum_jerk_speed(t, 2.8, 0.8, 0.25),
+                                                         0.05 * testing::minimum_jerk_speed(t, 2.8, 0.8, 0.25), 0.0};
+                                               },
+                                               .lever_arm_m = kLeverArm,
+                                               .q_start = so3::exp({0.1, -0.2, 0.0})});
   for (ImuSample& sample : truth.samples) {
     sample.angular_velocity_rad_s += Eigen::Vector3d(3e-4, -2e-4, 4e-4) + 2e-3 * sample.angular_velocity_rad_s;
     sample.specific_force_m_s2 += Eigen::Vector3d(0.03, -0.02, 0.04);
@@ -83,7 +83,8 @@ TEST(RollingSmoother, ErrorsLieWithinItsCovariance) {
     int inside = 0, total = 0;
     for (std::size_t k = 600; k < out.size(); ++k) {
       const Eigen::Vector3d error = out[k].p_WG_m - truth.p_WG_m[k];
-      for (int axis = 0; axis < 3; ++axis) inside += std::abs(error[axis]) <= 3.0 * std::sqrt(out[k].covariance(axis, axis));
+      for (int axis = 0; axis < 3; ++axis)
+        inside += std::abs(error[axis]) <= 3.0 * std::sqrt(out[k].covariance(axis, axis));
       total += 3;
     }
     EXPECT_GE(inside, 0.99 * total) << lag_s;

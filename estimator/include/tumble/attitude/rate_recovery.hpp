@@ -28,7 +28,7 @@ class RateRecovery {
   using Covariance = Eigen::Matrix<double, kStates, kStates>;
 
   struct Params {
-    std::array<Eigen::Isometry3d, kUnits> T_CI{};  ///< mountings of the units, about their mean place
+    std::array<Eigen::Isometry3d, kUnits> T_CI{};   ///< mountings of the units, about their mean place
     int count = 1;                                  ///< bound [1, kUnits]
     double gyro_range_rad_s = 1e3;                  ///< from here on a reading is at its rail; bound (0, 1e3]
     double accel_range_m_s2 = 1e5;                  ///< bound (0, 1e5]
@@ -52,9 +52,10 @@ class RateRecovery {
   /// Throws InvalidParams when a parameter is outside of its bound.
   explicit RateRecovery(const Params& params);
 
-  /// Takes the units' readings, each in its own axes, `dt_s` after the last ones; `merged` (C) holds the mean of those in
-  /// use and gets rate and force of the filter where a rail made them wrong. Its clip flags of the gyro are set when the
-  /// rate could not be recovered, those of the accelerometer when a unit's was at its rail; else cleared. O(count), no allocation; little to do while the body turns slowly.
+  /// Takes the units' readings, each in its own axes, `dt_s` after the last ones; `merged` (C) holds the mean of those
+  /// in use and gets rate and force of the filter where a rail made them wrong. Its clip flags of the gyro are set when
+  /// the rate could not be recovered, those of the accelerometer when a unit's was at its rail; else cleared. O(count),
+  /// no allocation; little to do while the body turns slowly.
   void step(std::span<const ImuSample> units, double dt_s, State& state, ImuSample& merged) const;
 
  private:

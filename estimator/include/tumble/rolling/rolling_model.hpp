@@ -56,11 +56,11 @@ struct RollingParams {
   double shock_share = 0.06;  ///< of the velocity that a shock gives: error of its timing and direction
   double rest_velocity_sigma_m_s = 2e-3;
   double rest_rate_sigma_rad_s = 3e-3;  ///< of a node's mean rate at rest
-  // Clipped readings, by the device's flags or from this size on: they say no more than that; how short they may be.
+  // Clipped readings, by the device's flags or from this size on, say no more than that; how short they may be.
   double gyro_range_rad_s = 1e3;           ///< bound (0, 1e3]
   double accel_range_m_s2 = 1e5;           ///< bound (0, 1e5]
   double clipped_rate_sigma_rad_s = 5.0;   ///< bound (0, 1e3]
-  /// Above zero: a rate beyond the range that no flag calls clipped was recovered (ImuMerge) to so much; bound [0, 1e3].
+  /// Above zero: a rate beyond the range that no flag calls clipped was recovered (ImuMerge) to this; bound [0, 1e3].
   double recovered_rate_sigma_rad_s = 0.0;
   double clipped_force_sigma_m_s2 = 4.0;   ///< bound (0, 1e3]
   /// A blow within one sample may have met the accelerometer's rail though its mean did not: sigma of what is missing
