@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/estimate_file.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -18,14 +19,20 @@ using nlohmann::json;
 
 constexpr int kFormatVersion = 1;
 constexpr const char* kFiles[] = {"estimate.json", "rates.csv",  "attitude.tum",    "trajectory.tum",
-                                  "contacts.csv",  "sweeps.csv", "sweep_poses.csv", "map.ply"};
+                                  "contacts.csv",  "sweeps.csv", "sweep_poses.csv", "map.ply",
+                                  "position_covariance.csv"};
 const std::string kRatesHeader = "time_ns,wx_rad_s,wy_rad_s,wz_rad_s,cxx,cxy,cxz,cyy,cyz,czz,clipped_axes,source";
 const std::string kPose = "px_m,py_m,pz_m,qx,qy,qz,qw,vx_m_s,vy_m_s,vz_m_s";
 const std::string kContactsHeader = "time_ns,label";
+<<<<<<< HEAD
 constexpr std::size_t kCovarianceColumn = 16;  // of a sweep's pose: upper triangle by rows, position before attitude
 const std::string kSweepsHeader =
     "end_ns,verdict,iterations,inlier_share,conditioning,pose_time_ns," + kPose +
     ",c00,c01,c02,c03,c04,c05,c11,c12,c13,c14,c15,c22,c23,c24,c25,c33,c34,c35,c44,c45,c55";
+=======
+const std::string kCovarianceHeader = "time_ns,cxx,cxy,cxz,cyy,cyz,czz";
+const std::string kSweepsHeader = "end_ns,verdict,iterations,inlier_share,conditioning,pose_time_ns," + kPose;
+>>>>>>> sphere
 const std::string kSweepPosesHeader = "sweep,time_ns," + kPose;
 
 void write_quaternion(TableWriter& table, const Eigen::Quaterniond& q) {
@@ -115,17 +122,48 @@ void write_contacts(const std::filesystem::path& path, const Estimate& estimate)
   table.close();
 }
 
-void read_contacts(const std::filesystem::path& path, Estimate& estimate) {
-  const Table table = Table::read(path, ',', kContactsHeader, 2);
-  if (table.rows.size() != estimate.poses.size()) {
-    throw BadInput(path.string() + ": " + std::to_string(table.rows.size()) + " rows, must be " +
-                   std::to_string(estimate.poses.size()) + " as there are poses");
+void require_row_per_pose(const Table& table, const std::vector<PoseState>& poses) {
+  if (table.rows.size() != poses.size()) {
+    throw BadInput(table.path.string() + ": " + std::to_string(table.rows.size()) + " rows, must be " +
+                   std::to_string(poses.size()) + " as there are poses");
   }
   for (std::size_t k = 0; k < table.rows.size(); ++k) {
-    const Table::Row& row = table.rows[k];
-    if (table.integer(row, 0) != estimate.poses[k].time_ns) {
-      throw BadInput(path.string() + ":" + std::to_string(row.line) + ": not the time of the pose of the same row");
+    if (table.integer(table.rows[k], 0) != poses[k].time_ns) {
+      throw BadInput(table.path.string() + ":" + std::to_string(table.rows[k].line) +
+                     ": not the time of the pose of the same row");
     }
+  }
+}
+
+void write_covariances(const std::filesystem::path& path, const std::vector<PoseState>& poses) {
+  TableWriter table(path, ',', kCovarianceHeader);
+  for (const PoseState& pose : poses) {
+    table.integer(pose.time_ns);
+    for (int i = 0; i < 3; ++i) {
+      for (int j = i; j < 3; ++j) table.number(pose.covariance(i, j));
+    }
+    table.end_row();
+  }
+  table.close();
+}
+
+void read_covariances(const std::filesystem::path& path, std::vector<PoseState>& poses) {
+  const Table table = Table::read(path, ',', kCovarianceHeader, 7);
+  require_row_per_pose(table, poses);
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    std::size_t column = 1;
+    for (int i = 0; i < 3; ++i) {
+      for (int j = i; j < 3; ++j) {
+        poses[k].covariance(i, j) = poses[k].covariance(j, i) = table.number(table.rows[k], column++);
+      }
+    }
+  }
+}
+
+void read_contacts(const std::filesystem::path& path, Estimate& estimate) {
+  const Table table = Table::read(path, ',', kContactsHeader, 2);
+  require_row_per_pose(table, estimate.poses);
+  for (const Table::Row& row : table.rows) {
     const std::int64_t label = table.integer(row, 1);
     if (label < 0 || label > static_cast<int>(sim::ContactLabel::slide)) {
       throw BadInput(path.string() + ":" + std::to_string(row.line) + ": unknown label " + std::to_string(label));
@@ -282,6 +320,10 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
     }
     table.close();
   }
+  const bool stated = std::any_of(estimate.poses.begin(), estimate.poses.end(), [](const PoseState& pose) {
+    return !pose.covariance.topLeftCorner<3, 3>().isZero(0.0);
+  });
+  if (stated) write_covariances(folder / "position_covariance.csv", estimate.poses);
   if (!estimate.contacts.empty()) {
     if (estimate.contacts.size() != estimate.poses.size()) {
       throw std::invalid_argument("an estimate has " + std::to_string(estimate.contacts.size()) + " contacts for " +
@@ -313,6 +355,7 @@ Estimate read_estimate(const std::filesystem::path& path, Kind& kind, std::strin
   const auto there = [&](const char* name) { return std::filesystem::exists(path / name); };
   if (there("rates.csv")) read_rates(path / "rates.csv", estimate.rates);
   if (there("trajectory.tum")) read_tum(path / "trajectory.tum", estimate.poses);
+  if (there("position_covariance.csv")) read_covariances(path / "position_covariance.csv", estimate.poses);
   if (there("contacts.csv")) read_contacts(path / "contacts.csv", estimate);
   if (there("attitude.tum")) {
     std::vector<PoseState> poses;

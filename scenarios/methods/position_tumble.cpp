@@ -11,12 +11,13 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kCentreSigmaM = 6e-3;
-constexpr double kRangeShare = 0.98;  // of the stated range: the mean of several units at the rail, each a little askew
+constexpr int kRecoveringUnits = 3;        // so many IMUs tell a rate beyond the range
+constexpr double kRecoveredSigmaRadS = 1.0;
 
 // the library's own defaults, so that each stands in one place; sources are those of the library's documentation
-const std::array<sim::Parameter, 12>& parameters_of_the_filter() {
+const std::array<sim::Parameter, 13>& parameters_of_the_filter() {
   static const RollingFilter::Params library;
-  static const std::array<sim::Parameter, 12> parameters = {{
+  static const std::array<sim::Parameter, 13> parameters = {{
       {"tilt_sigma_rad", library.tilt_sigma_rad, 0.0, 1e3, "rad", "prior of the levelling by the first sample"},
       {"gyro_bias_sigma_rad_s", library.gyro_bias_sigma_rad_s, 0.0, 1e3, "rad/s", "prior of the gyro's bias"},
       {"accel_bias_sigma_m_s2", library.accel_bias_sigma_m_s2, 0.0, 1e3, "m/s^2", "prior of the accelerometer's bias"},
@@ -29,6 +30,8 @@ const std::array<sim::Parameter, 12>& parameters_of_the_filter() {
       {"bump_begins_per_s", library.bump_begins_per_s, 1e-12, 1e3, "1/s", "rate of grip changing to bump"},
       {"bump_ends_per_s", library.bump_ends_per_s, 1e-12, 1e3, "1/s", "and back"},
       {"incline_begins_per_s", library.incline_begins_per_s, 1e-12, 1e3, "1/s", "rate of a slope beginning"},
+      {"rough_share", library.rough_share, 1e-12, 1e3, "1",
+       "of the rolling speed: how fast a rough floor goes up and down"},
       {"event_shortest_s", library.event_shortest_s, 0.0, 10.0, "s", "least stay in slip or bump"},
   }};
   return parameters;
@@ -63,6 +66,7 @@ void add_contact(RollingMode mode, bool at_rest, double radius_m, const ImuSampl
   if (mode == RollingMode::slip) estimate.health["samples_slip"] += 1.0;
   if (mode == RollingMode::bump) estimate.health["samples_bump"] += 1.0;
   if (mode == RollingMode::incline) estimate.health["samples_incline"] += 1.0;
+  if (mode == RollingMode::rough) estimate.health["samples_rough"] += 1.0;
   if (at_rest) estimate.health["samples_rest"] += 1.0;
 }
 
@@ -130,10 +134,9 @@ RollingParams rolling_params(const sim::Sensors& sensors, const MergedImus& imus
   params.gravity_m_s2 = sensors.gravity_m_s2;
   // from the centre of mass, which the calibration refers to; what lies between it and the centre is estimated
   params.lever_arm_m = imus.lever_arm_m;
-  const double range = sensors.imus.front().stated_gyro_range_rad_s;
-  if (range > 0.0) params.gyro_range_rad_s = kRangeShare * range;
-  const double force_range = sensors.imus.front().stated_accel_range_m_s2;
-  if (force_range > 0.0) params.accel_range_m_s2 = kRangeShare * force_range;
+  params.gyro_range_rad_s = imus.gyro_range_rad_s;
+  params.accel_range_m_s2 = imus.accel_range_m_s2;
+  if (imus.units >= kRecoveringUnits) params.recovered_rate_sigma_rad_s = kRecoveredSigmaRadS;
   params.tilt_sigma_rad = parameters.at("tilt_sigma_rad");
   params.gyro_bias_sigma_rad_s = parameters.at("gyro_bias_sigma_rad_s");
   params.accel_bias_sigma_m_s2 = parameters.at("accel_bias_sigma_m_s2");
@@ -145,6 +148,7 @@ RollingParams rolling_params(const sim::Sensors& sensors, const MergedImus& imus
   params.bump_begins_per_s = parameters.at("bump_begins_per_s");
   params.bump_ends_per_s = parameters.at("bump_ends_per_s");
   params.incline_begins_per_s = parameters.at("incline_begins_per_s");
+  params.rough_share = parameters.at("rough_share");
   params.event_shortest_s = parameters.at("event_shortest_s");
   return params;
 }

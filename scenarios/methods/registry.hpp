@@ -55,6 +55,10 @@ Method slam_icp_raw();
 Method slam_tumble();
 Method slam_tumble_gyro_only();
 Method slam_oracle();
+Method slam_poses_rolling();
+Method slam_poses_autogain_fusion();
+Method slam_poses_tumble();
+Method slam_rolling_prior();
 
 /// Rate stages, shared by the rate methods and the slam chains. One RateState per sample; `out` is empty on trouble.
 Status raw_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<RateState>& out);

@@ -9,6 +9,12 @@
 
 namespace tumble::scenarios {
 
+namespace {
+
+constexpr double kRangeShare = 0.98;  // of the stated range: calibration moves a rail by its error of scale
+
+}  // namespace
+
 Status merge_imus(const sim::Sensors& sensors, MergedImus& out) {
   out = {};
   std::vector<std::vector<ImuSample>> units(1);
@@ -16,6 +22,11 @@ Status merge_imus(const sim::Sensors& sensors, MergedImus& out) {
   ImuMerge::Params params;
   params.T_CI[0] = sensors.imus.front().T_BI;
   params.gap_max_s = bridge::kGapMaxS;
+  const sim::ImuRecord& primary = sensors.imus.front();
+  if (primary.stated_gyro_range_rad_s > 0.0) out.gyro_range_rad_s = kRangeShare * primary.stated_gyro_range_rad_s;
+  if (primary.stated_accel_range_m_s2 > 0.0) out.accel_range_m_s2 = kRangeShare * primary.stated_accel_range_m_s2;
+  params.gyro_range_rad_s = out.gyro_range_rad_s;
+  params.accel_range_m_s2 = out.accel_range_m_s2;
   for (std::size_t k = 1; k < sensors.imus.size() && params.count < ImuMerge::kImus; ++k) {
     const sim::ImuRecord& record = sensors.imus[k];
     std::vector<ImuSample> samples;

@@ -15,6 +15,7 @@ constexpr double kSmallest = 1e-12;
 constexpr double kBiasSigma_rad_s = 0.01, kScaleSigma = 0.01;
 constexpr double kTurning_rad_s2 = 1.0;  // an angular acceleration that tells a time offset from noise
 constexpr double kBeyondDoubt = 4.0;     // sigmas
+constexpr int kRecovering = 3;           // so many units tell the rate by their accelerometers
 constexpr int kOffset = ImuMerge::kErrors - 1;
 
 using Vectors = std::array<Eigen::Vector3d, ImuMerge::kImus>;
@@ -33,13 +34,31 @@ Eigen::Vector3d median(const Vectors& values, int count) {
 
 }  // namespace
 
-ImuMerge::ImuMerge(const Params& p) : params_(p) {
+/// About the mean place of the units.
+RateRecovery::Params ImuMerge::recovery_params(const Params& p) {
+  RateRecovery::Params out;
+  out.count = p.count;
+  out.gyro_range_rad_s = p.gyro_range_rad_s;
+  out.accel_range_m_s2 = p.accel_range_m_s2;
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  const auto count = static_cast<std::size_t>(std::clamp(p.count, 0, kImus));
+  for (std::size_t k = 0; k < count; ++k) mean += p.T_CI[k].translation() / p.count;
+  for (std::size_t k = 0; k < count; ++k) {
+    out.T_CI[k] = p.T_CI[k];
+    out.T_CI[k].translation() -= mean;
+  }
+  return out;
+}
+
+ImuMerge::ImuMerge(const Params& p) : params_(p), recovery_(recovery_params(p)) {
   require_within("count", p.count, 1, kImus);
   require_within("rate_tolerance_rad_s", p.rate_tolerance_rad_s, kSmallest, 1e3);
   require_within("rate_tolerance_share", p.rate_tolerance_share, 0.0, 1.0);
   require_within("force_tolerance_m_s2", p.force_tolerance_m_s2, kSmallest, 1e4);
   require_within("rate_noise_rad_s", p.rate_noise_rad_s, kSmallest, 10.0);
   require_within("offset_sigma_s", p.offset_sigma_s, 0.0, 0.1);
+  require_within("gyro_range_rad_s", p.gyro_range_rad_s, kSmallest, 1e3);
+  require_within("accel_range_m_s2", p.accel_range_m_s2, kSmallest, 1e5);
   require_within("gap_max_s", p.gap_max_s, 1e-9, 1e4);
   for (int k = 0; k < p.count; ++k) {
     const Eigen::Isometry3d& T = p.T_CI[static_cast<std::size_t>(k)];
@@ -97,9 +116,10 @@ Status ImuMerge::step(std::span<const ImuSample> samples, State& state, ImuSampl
         (params_.T_CI[i].translation() - p_C_m_).norm() * middle_rate.squaredNorm() * 2.0;
     used[i] = count < 3 || ((rates[i] - middle_rate).norm() < rate_tolerance &&
                             (forces[i] - middle_force).norm() < params_.force_tolerance_m_s2 + turned);
+    used[i] = used[i] && samples[i].specific_force_m_s2.cwiseAbs().maxCoeff() < params_.accel_range_m_s2;
     kept += used[i];
   }
-  if (2 * kept <= count) {  // no majority: nobody is to blame
+  if (2 * kept <= count && kept < count) {  // no majority: nobody is to blame
     used.fill(true);
     kept = count;
   }
@@ -126,6 +146,7 @@ Status ImuMerge::step(std::span<const ImuSample> samples, State& state, ImuSampl
   merged.angular_velocity_rad_s = rate;
   merged.specific_force_m_s2 = force;
   merged.device_clip_flags = 0;
+  if (count >= kRecovering) recovery_.step(samples, dt_s, state.recovery, merged);
   state.rate_before_rad_s = state.rate_rad_s;
   state.rate_rad_s = rate;
   state.last_time_ns = samples[0].time_ns;

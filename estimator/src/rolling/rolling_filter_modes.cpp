@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <tuple>
+#include <utility>
 
 #include "rolling_node.hpp"
 #include "tumble/rolling/rolling_filter.hpp"
@@ -17,24 +19,36 @@ using rolling::squared;
 constexpr double kDropped = -120.0;   // log weight below the best at which a hypothesis is given up
 constexpr double kRestFloor = -60.0;  // least log likelihood of a node at rest: one bad node must not decide
 constexpr double kSettled_s = 1.0;    // after so long in one mode it does not matter when it began
-constexpr double kSteady_m_s = 0.01, kJump_m_s = 0.08, kSteadyShare = 0.7;  // change of u per node, horizontal
-constexpr double kRise_m_s = 0.03, kHit_m_s = 0.3;                          // and vertical, on a bump
+// change of u per node, horizontal; a plateau as narrow as grip, or each plateau would look like grip
+constexpr double kPlateau_m_s = 0.004, kSteady_m_s = 0.01, kJump_m_s = 0.08, kPlateauShare = 0.4, kSteadyShare = 0.35;
+constexpr double kRise_m_s = 0.03, kHit_m_s = 0.3, kRiseShare = 0.7;  // and vertical, on a bump
 constexpr std::int64_t kAgesApart = 4;
+constexpr double kRoughCost = 0.2;  // per node: less than what a slope leaves over there, more than grip on a plane
 constexpr double kInclineAfterBump = 4.0;  // the foot of a ramp is a bump
-constexpr RollingMode kModes[] = {RollingMode::grip, RollingMode::slip, RollingMode::bump, RollingMode::incline};
+constexpr RollingMode kModes[] = {RollingMode::grip, RollingMode::slip, RollingMode::bump, RollingMode::incline,
+                                  RollingMode::rough};
 static_assert(std::size(kModes) == kRollingModes);
 
 double log_normal(double value, double variance) {
   return -0.5 * (value * value / variance + std::log(2.0 * std::numbers::pi * variance));
 }
 
-/// log of a mixture of two isotropic normal densities of `dimension` components with squared length `square`.
-double log_mixture(double square, double narrow, double wide, int dimension) {
+/// log density of a rise or fall of u per node on a bump: rolling over it, or hitting it.
+double log_rise(double change) {
   const auto density = [&](double sigma) {
-    return std::exp(-0.5 * square / (sigma * sigma)) *
-           std::pow(2.0 * std::numbers::pi * sigma * sigma, -0.5 * dimension);
+    return std::exp(-0.5 * change * change / (sigma * sigma)) / (sigma * std::sqrt(2.0 * std::numbers::pi));
   };
-  return std::log(kSteadyShare * density(narrow) + (1.0 - kSteadyShare) * density(wide) + 1e-300);
+  return std::log(kRiseShare * density(kRise_m_s) + (1.0 - kRiseShare) * density(kHit_m_s) + 1e-300);
+}
+
+/// log density of a change of u per node, horizontal, with squared length `square`: a plateau, a drift, or a jump.
+double log_change(double square) {
+  double density = 0.0;
+  for (const auto& [share, sigma] : {std::pair(kPlateauShare, kPlateau_m_s), std::pair(kSteadyShare, kSteady_m_s),
+                                     std::pair(1.0 - kPlateauShare - kSteadyShare, kJump_m_s)}) {
+    density += share * std::exp(-0.5 * square / (sigma * sigma)) / (2.0 * std::numbers::pi * sigma * sigma);
+  }
+  return std::log(density + 1e-300);
 }
 
 /// log density of a contact that stands still, by the hypothesis `h` should it enter `mode`.
@@ -48,37 +62,52 @@ double log_still(const rolling::Contact& c, const RollingFilter::Hypothesis& h, 
     H.middleCols<2>(rolling::kSlope).setZero();
   }
   Eigen::Matrix3d S = H * h.P * H.transpose();
-  S.diagonal() += Eigen::Vector3d(c.grip_variance, c.grip_variance, squared(params.vertical_sigma_m_s));
   if (anew && mode == RollingMode::incline) {
     const Eigen::Matrix<double, 3, 2> by_slope = c.H.middleCols<2>(rolling::kSlope);
     S += squared(params.slope_sigma) * by_slope * by_slope.transpose();
   }
-  const Eigen::LLT<Eigen::Matrix3d> factor(S);
-  const double log_det = 2.0 * factor.matrixLLT().diagonal().array().log().sum();
-  return -0.5 *
-         (factor.matrixL().solve(c.velocity(x)).squaredNorm() + log_det + 3.0 * std::log(2.0 * std::numbers::pi));
+  const auto log_det_with = [&](const Eigen::Vector3d& variance, Eigen::LLT<Eigen::Matrix3d>& factor) {
+    factor.compute(S + Eigen::Matrix3d(variance.asDiagonal()));
+    return 2.0 * factor.matrixLLT().diagonal().array().log().sum();
+  };
+  Eigen::LLT<Eigen::Matrix3d> factor;
+  double log_det = 0.0, cost = 0.0;
+  if (mode == RollingMode::rough) {
+    // ups and downs last many nodes: each must not be charged with their width anew
+    log_det = log_det_with(rolling::contact_variance(params, c, RollingMode::grip), factor);
+    cost = kRoughCost;
+  }
+  const double own = log_det_with(rolling::contact_variance(params, c, mode), factor);
+  if (mode != RollingMode::rough) log_det = own;
+  const double square = factor.matrixL().solve(c.velocity(x)).squaredNorm();
+  return -cost - 0.5 * (square + log_det + 3.0 * std::log(2.0 * std::numbers::pi));
 }
 
 /// log density of a contact velocity `u` that moves, by its change since the last node.
 double log_moving(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode,
                   const Eigen::Vector3d& u, const RollingParams& params) {
   const Eigen::Vector3d change = u - h.u_W_m_s;
-  const double horizontal = log_mixture(change.head<2>().squaredNorm(), kSteady_m_s, kJump_m_s, 2);
-  if (mode == RollingMode::bump) return horizontal + log_mixture(squared(change.z()), kRise_m_s, kHit_m_s, 1);
+  const double horizontal = log_change(change.head<2>().squaredNorm());
+  if (mode == RollingMode::bump) return horizontal + log_rise(change.z());
   const double vertical = c.H.row(2) * h.P * c.H.row(2).transpose() + squared(params.vertical_sigma_m_s);
   return horizontal + log_normal(u.z(), vertical);
 }
 
-/// The contact point stands still (or, slipping, stays on the floor).
-void measure_contact(const rolling::Contact& c, RollingMode mode, const RollingParams& params,
-                     RollingFilter::Hypothesis& h) {
+/// The contact point stands still (or, slipping, stays on the floor), and a velocity that is lost is no great one.
+void measure_contact(const rolling::Contact& c, RollingMode mode, double node_s, const Eigen::Vector3d& v_WI_m_s,
+                     const RollingParams& params, RollingFilter::Hypothesis& h) {
   // what the length of the normal adds is no error of the state
-  const Eigen::Vector3d u = c.velocity(h.x) - c.H * h.x;
+  const Eigen::Vector3d u = c.velocity(h.x) - c.H * h.x, variance = rolling::contact_variance(params, c, mode);
   if (!slips(mode)) {
-    for (int axis = 0; axis < 2; ++axis) rolling::update(c.H.row(axis), -u[axis], c.grip_variance, h.x, h.P);
+    for (int axis = 0; axis < 2; ++axis) rolling::update(c.H.row(axis), -u[axis], variance[axis], h.x, h.P);
   }
   if (mode != RollingMode::bump) {
-    rolling::update(c.H.row(2), -u.z(), squared(params.vertical_sigma_m_s), h.x, h.P);
+    rolling::update(c.H.row(2), -u.z(), variance.z(), h.x, h.P);
+  }
+  if (const auto lost = rolling::lost_velocity_variance(params, node_s, h.P)) {
+    for (int axis = 0; axis < 2; ++axis) {
+      rolling::update(rolling::kVelocity + axis, -v_WI_m_s[axis], *lost, h.x, h.P);
+    }
   }
 }
 
@@ -96,9 +125,11 @@ double RollingFilter::log_transition(RollingMode from, RollingMode to, double h_
     if (b == RollingMode::incline) {
       return params_.incline_begins_per_s * (a == RollingMode::bump ? kInclineAfterBump : 1.0);
     }
+    if (b == RollingMode::rough) return params_.rough_begins_per_s;
     if (b == RollingMode::slip) return a == RollingMode::bump ? params_.slip_bump_per_s : params_.slip_begins_per_s;
     if (b == RollingMode::bump) return a == RollingMode::slip ? params_.slip_bump_per_s : params_.bump_begins_per_s;
     if (a == RollingMode::incline) return params_.incline_ends_per_s;
+    if (a == RollingMode::rough) return params_.rough_ends_per_s;
     return a == RollingMode::slip ? params_.slip_ends_per_s : params_.bump_ends_per_s;
   };
   if (from != to) return std::log(rate(from, to) * h_s);
@@ -110,6 +141,7 @@ double RollingFilter::log_transition(RollingMode from, RollingMode to, double h_
 void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, State& state) const {
   const rolling::Contact c = rolling::contact(params_, state.nominal, rate_I_rad_s);
   const double node_s = state.sums.node_s;
+  const bool too_fast = c.rolling_speed_m_s > params_.speed_max_m_s;
   std::array<Candidate, kRollingModes * kHypotheses> candidates;
   std::size_t total = 0;
   const auto shortest = static_cast<std::int64_t>(std::ceil(params_.event_shortest_s / node_s - 1e-9));
@@ -119,14 +151,19 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, State& sta
     for (const RollingMode mode : kModes) {
       const bool bound = slips(h.mode) && state.node - h.switched_node < shortest;
       if (mode != h.mode && bound) continue;
+      if (too_fast && !slips(mode)) continue;
       const double likelihood =
           slips(mode) ? log_moving(c, h, mode, u, params_) : log_still(c, h, mode, params_);
-      candidates[total++] = {h.log_weight + log_transition(h.mode, mode, node_s) + likelihood, parent, mode,
+      const double blow = mode == RollingMode::bump ? 0.0 : state.sums.blow_m_s / params_.blow_m_s;
+      candidates[total++] = {h.log_weight + log_transition(h.mode, mode, node_s) + likelihood - blow, parent, mode,
                              mode == h.mode ? h.switched_node : state.node};
     }
   }
-  std::stable_sort(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(total),
-                   [](const Candidate& a, const Candidate& b) { return a.log_weight > b.log_weight; });
+  // std::stable_sort would allocate; ties go by origin, so that the order is one
+  std::sort(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(total),
+            [](const Candidate& a, const Candidate& b) {
+              return std::tuple(-a.log_weight, a.parent, a.mode) < std::tuple(-b.log_weight, b.parent, b.mode);
+            });
 
   const auto settled = static_cast<std::int64_t>(kSettled_s / node_s);
   // two beginnings of the same mode are one the sooner, the longer they are past
@@ -149,7 +186,7 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, State& sta
     Hypothesis& h = next[count];
     h = state.hypotheses[static_cast<std::size_t>(candidate.parent)];
     rolling::change_floor(params_, h.mode, candidate.mode, node_s, state.nominal, h.x, h.P);
-    measure_contact(c, candidate.mode, params_, h);
+    measure_contact(c, candidate.mode, node_s, state.nominal.v_WI_m_s, params_, h);
     h.u_W_m_s = c.velocity(h.x);
     h.log_weight = candidate.log_weight - candidates[0].log_weight;
     h.mode = candidate.mode;
@@ -185,8 +222,10 @@ void RollingFilter::correct_at_rest(State& state) const {
     }
     h.u_W_m_s.setZero();
   }
-  std::stable_sort(state.hypotheses.begin(), state.hypotheses.begin() + state.count,
-                   [](const Hypothesis& a, const Hypothesis& b) { return a.log_weight > b.log_weight; });
+  std::sort(state.hypotheses.begin(), state.hypotheses.begin() + state.count,
+            [](const Hypothesis& a, const Hypothesis& b) {
+              return std::tuple(-a.log_weight, a.parent) < std::tuple(-b.log_weight, b.parent);
+            });
   // they agree about the present, so after a while one is enough
   const bool settled = state.rest_s > kSettled_s;
   if (settled && state.count > 1) state.settled_spread_m2 = position_spread(state);

@@ -23,10 +23,14 @@ Eigen::Vector3d normal(const Eigen::Vector2d& slope) {
 
 constexpr double kSmallest = 1e-12;
 constexpr double kUsual_m_s2 = 3.0;      // what a force differs from gravity by, without a shock
+constexpr double kOffCentre_m = 0.02;    // of an IMU: makes forces in fast turns
+constexpr double kHiddenFrom = 0.3, kHiddenTo = 0.6;  // of the accelerometer's range
 constexpr double kLostTilt_rad = 0.5;    // a tilt as uncertain as this is no tilt to integrate forces with
 constexpr double kDoubtfulTilt_rad = 0.1;  // and as this, no better than the direction of the force at rest
+constexpr double kRestTilt_rad = 5e-3;
 constexpr double kForceTilt_rad = 0.35;  // of the direction of a force in motion
 constexpr double kLostSpeed_m_s = 1.0;
+constexpr double kUnsureSpeed_m_s = 0.1, kSpeedWindow_s = 1.0;
 
 void require_sigmas(const RollingParams& p) {
   require_within("tilt_sigma_rad", p.tilt_sigma_rad, 0.0, 1e3);
@@ -50,13 +54,19 @@ void require_noise(const RollingParams& p) {
   require_within("grip_sigma_m_s", p.grip_sigma_m_s, kSmallest, 1e3);
   require_within("grip_sigma_share", p.grip_sigma_share, kSmallest, 1e3);
   require_within("vertical_sigma_m_s", p.vertical_sigma_m_s, kSmallest, 1e3);
+  require_within("rough_share", p.rough_share, kSmallest, 1e3);
   require_within("slope_walk_sqrts", p.slope_walk_sqrts, kSmallest, 1e3);
   require_within("rest_velocity_sigma_m_s", p.rest_velocity_sigma_m_s, kSmallest, 1e3);
   require_within("rest_rate_sigma_rad_s", p.rest_rate_sigma_rad_s, kSmallest, 1e3);
   require_within("gyro_range_rad_s", p.gyro_range_rad_s, kSmallest, 1e3);
+  require_within("hidden_clip_share", p.hidden_clip_share, 0.0, 10.0);
   require_within("shock_share", p.shock_share, 0.0, 1e3);
   require_within("accel_range_m_s2", p.accel_range_m_s2, kSmallest, 1e5);
   require_within("clipped_force_sigma_m_s2", p.clipped_force_sigma_m_s2, kSmallest, 1e3);
+  require_within("recovered_rate_sigma_rad_s", p.recovered_rate_sigma_rad_s, 0.0, 1e3);
+  require_within("blow_m_s", p.blow_m_s, kSmallest, 1e3);
+  require_within("speed_max_m_s", p.speed_max_m_s, kSmallest, 1e3);
+  require_within("speed_sigma_m_s", p.speed_sigma_m_s, kSmallest, 1e3);
   require_within("clipped_rate_sigma_rad_s", p.clipped_rate_sigma_rad_s, kSmallest, 1e3);
 }
 
@@ -68,6 +78,8 @@ void require_modes(const RollingParams& p) {
   require_within("slip_bump_per_s", p.slip_bump_per_s, kSmallest, 1e3);
   require_within("incline_begins_per_s", p.incline_begins_per_s, kSmallest, 1e3);
   require_within("incline_ends_per_s", p.incline_ends_per_s, kSmallest, 1e3);
+  require_within("rough_begins_per_s", p.rough_begins_per_s, kSmallest, 1e3);
+  require_within("rough_ends_per_s", p.rough_ends_per_s, kSmallest, 1e3);
   require_within("event_shortest_s", p.event_shortest_s, 0.0, 10.0);
   require_within("rest_rate_rad_s", p.rest_rate_rad_s, kSmallest, 10.0);
   require_within("rest_force_m_s2", p.rest_force_m_s2, kSmallest, 100.0);
@@ -75,6 +87,11 @@ void require_modes(const RollingParams& p) {
 }
 
 }  // namespace
+
+Eigen::Vector3d contact_variance(const RollingParams& params, const Contact& c, RollingMode mode) {
+  const double rough = mode == RollingMode::rough ? squared(params.rough_share * c.rolling_speed_m_s) : 0.0;
+  return {c.grip_variance, c.grip_variance, squared(params.vertical_sigma_m_s) + rough};
+}
 
 Eigen::Vector3d Contact::velocity(const Vector& x) const {
   const Eigen::Vector2d change = x.segment<2>(kSlope);
@@ -119,7 +136,10 @@ void integrate(const RollingParams& params, const ImuSample& sample, double dt_s
   const Eigen::Matrix3d R_T = dt_s * q_mid.toRotationMatrix();
   nominal.q_WI = (q_mid * half).normalized();
   const double gravity = params.gravity_m_s2;
-  const bool clipped = w_raw.cwiseAbs().maxCoeff() >= params.gyro_range_rad_s ||
+  constexpr std::uint8_t kGyro = kClipGyroX | kClipGyroY | kClipGyroZ, kAccel = kClipAccelX | kClipAccelY | kClipAccelZ;
+  const bool beyond = w_raw.cwiseAbs().maxCoeff() >= params.gyro_range_rad_s;
+  const bool lost = (sample.device_clip_flags & kGyro) != 0 || (beyond && !(params.recovered_rate_sigma_rad_s > 0.0));
+  const bool clipped = lost || (sample.device_clip_flags & kAccel) != 0 ||
                        f_raw.cwiseAbs().maxCoeff() >= params.accel_range_m_s2;
   // a force that is clipped, or turned by a rate that is, says nothing: the velocity is kept
   const Eigen::Vector3d pushed = clipped ? Eigen::Vector3d(dt_s * gravity * Eigen::Vector3d::UnitZ()) : R_T * f;
@@ -136,8 +156,15 @@ void integrate(const RollingParams& params, const ImuSample& sample, double dt_s
   sums.w_I_rad += dt_s * w;
   sums.f_I_m_s += dt_s * f_raw;
   sums.turned_rad2_s += dt_s * w.squaredNorm();
-  sums.shock_m_s += dt_s * std::max(0.0, std::abs(f.norm() - gravity) - kUsual_m_s2);
-  if (clipped) sums.clipped_s += dt_s;
+  const double about_gravity = std::abs(f.norm() - gravity) - kUsual_m_s2;
+  sums.shock_m_s += dt_s * std::max(0.0, about_gravity);
+  sums.blow_m_s += dt_s * std::max(0.0, about_gravity - kOffCentre_m * w.squaredNorm());
+  const double peak = f_raw.cwiseAbs().maxCoeff() / params.accel_range_m_s2;
+  const double hidden = std::clamp((peak - kHiddenFrom) / (kHiddenTo - kHiddenFrom), 0.0, 1.0);
+  if (!clipped && hidden > 0.0) sums.hidden_W_m_s += params.hidden_clip_share * hidden * (R_T * f);
+  if (clipped) sums.force_clipped_s += dt_s;
+  if (lost) sums.rate_clipped_s += dt_s;
+  if (beyond && !lost) sums.recovered_s += dt_s;
   sums.node_s += dt_s;
 }
 
@@ -162,9 +189,11 @@ void predict(const RollingParams& params, const RollingSums& sums, const Moving&
   P = (0.5 * (P + P.transpose())).eval();
   const double attitude = squared(params.attitude_walk_rad_sqrts) * h +
                           squared(params.rate_error_sqrts) * sums.turned_rad2_s +
-                          squared(params.clipped_rate_sigma_rad_s * sums.clipped_s);
+                          squared(params.clipped_rate_sigma_rad_s * sums.rate_clipped_s) +
+                          squared(params.recovered_rate_sigma_rad_s * sums.recovered_s);
   const double velocity = squared(params.velocity_walk_m_s_sqrts) * h + squared(params.shock_share * sums.shock_m_s) +
-                          squared(params.clipped_force_sigma_m_s2 * sums.clipped_s);
+                          squared(params.clipped_force_sigma_m_s2 * sums.force_clipped_s);
+  P.block<3, 3>(kVelocity, kVelocity) += sums.hidden_W_m_s * sums.hidden_W_m_s.transpose();
   auto diagonal = P.diagonal();
   diagonal.segment<3>(kAttitude).array() += attitude;
   diagonal.segment<3>(kVelocity).array() += velocity;
@@ -197,11 +226,18 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
   out.slope = nominal.slope;
   out.H.middleCols<2>(kSlope) = by_normal.leftCols<2>() - out.lift_W * nominal.slope.transpose() / n.z();
   out.H.col(kRadius) = -w_W.cross(n);
+  out.rolling_speed_m_s = r * w_W.cross(n).norm();
   out.grip_variance = squared(params.grip_sigma_m_s) + squared(params.grip_sigma_share * r * w_W.norm());
   if (rate_I_rad_s.cwiseAbs().maxCoeff() >= params.gyro_range_rad_s) {
-    out.grip_variance += squared(r * params.clipped_rate_sigma_rad_s);
+    const bool recovered = params.recovered_rate_sigma_rad_s > 0.0;
+    out.grip_variance += squared(r * (recovered ? params.recovered_rate_sigma_rad_s : params.clipped_rate_sigma_rad_s));
   }
   return out;
+}
+
+std::optional<double> lost_velocity_variance(const RollingParams& params, double node_s, const Covariance& P) {
+  if (P(kVelocity, kVelocity) + P(kVelocity + 1, kVelocity + 1) < squared(kUnsureSpeed_m_s)) return std::nullopt;
+  return squared(params.speed_sigma_m_s) * kSpeedWindow_s / node_s;
 }
 
 bool forgets_slope(RollingMode from, RollingMode to) {
@@ -232,7 +268,8 @@ bool relevel(const RollingParams& params, const Eigen::Vector3d& f_I_m_s2, bool 
   nominal.v_WI_m_s.setZero();
   P.topRows<6>().setZero();
   P.leftCols<6>().setZero();
-  P.diagonal().segment<2>(kAttitude).setConstant(squared(at_rest ? std::max(params.tilt_sigma_rad, 5e-3) : kForceTilt_rad));
+  const double tilt_sigma_rad = at_rest ? std::max(params.tilt_sigma_rad, kRestTilt_rad) : kForceTilt_rad;
+  P.diagonal().segment<2>(kAttitude).setConstant(squared(tilt_sigma_rad));
   P(kAttitude + 2, kAttitude + 2) = squared(kLostSpeed_m_s);  // as good as unknown, and small enough to be linear in
   P.diagonal().segment<3>(kVelocity).setConstant(squared(at_rest ? params.rest_velocity_sigma_m_s : kLostSpeed_m_s));
   return true;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "tumble/rolling/rolling_model.hpp"
 
@@ -26,12 +27,16 @@ struct Contact {
   Eigen::Vector3d u_W_m_s;
   Eigen::Matrix<double, 3, kStates> H;
   double grip_variance = 0.0;
+  double rolling_speed_m_s = 0.0;  ///< of the centre, should it grip
   Eigen::Vector3d lift_W;  ///< change of u for a change of the normal's third component
   Eigen::Vector2d slope;   ///< nominal
 
   /// Contact velocity for an error `x`: linear but for the length of the normal.
   Eigen::Vector3d velocity(const Vector& x) const;
 };
+
+/// Of the contact velocity while the contact stands still; slipping, its vertical part alone counts.
+Eigen::Vector3d contact_variance(const RollingParams& params, const Contact& c, RollingMode mode);
 
 /// Levelled (or given) attitude, centre at the origin, at rest.
 RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaterniond& q_WI);
@@ -52,6 +57,9 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
 /// the contact stands still anew. `h_s` is the length of the node.
 void change_floor(const RollingParams& params, RollingMode from, RollingMode to, double h_s,
                   const RollingNominal& nominal, Vector& x, Covariance& P);
+
+/// Variance of the zero that the velocity is taken for at a node, where it is lost; none where it is known.
+std::optional<double> lost_velocity_variance(const RollingParams& params, double node_s, const Covariance& P);
 
 /// Whether the slope is forgotten on this change: what is known of it before says nothing about it after.
 bool forgets_slope(RollingMode from, RollingMode to);

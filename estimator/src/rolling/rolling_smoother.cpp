@@ -23,7 +23,8 @@ RollingParams quieter(RollingParams params, double share) {
 /// The one of two modes that says less about the contact.
 RollingMode looser(RollingMode a, RollingMode b) {
   const auto rank = [](RollingMode mode) {
-    return mode == RollingMode::bump ? 3 : mode == RollingMode::slip ? 2 : mode == RollingMode::incline ? 1 : 0;
+    if (slips(mode)) return mode == RollingMode::bump ? 3 : 2;
+    return mode == RollingMode::grip ? 0 : 1;
   };
   return rank(a) >= rank(b) ? a : b;
 }
@@ -170,7 +171,7 @@ void RollingSmoother::run_window(const std::vector<PathNode>& path, std::size_t 
     const ImuSample& sample = state.samples[k];
     const double dt_s = seconds(sample.time_ns - last_ns);
     if (sums.node_s >= path_params_.node_s - 0.5 * dt_s && window.nodes.size() < path.size()) {
-      const Eigen::Vector3d& before = k > 0 ? state.samples[k - 1].angular_velocity_rad_s : sample.angular_velocity_rad_s;
+      const Eigen::Vector3d& before = state.samples[k > 0 ? k - 1 : k].angular_velocity_rad_s;
       window.nodes.push_back(rolling::close_node(path_params_, sums, 0.5 * (before + sample.angular_velocity_rad_s),
                                                  path[window.nodes.size()], filter));
       window.nodes.back().time_ns = last_ns;
@@ -218,7 +219,8 @@ void RollingSmoother::run_window(const std::vector<PathNode>& path, std::size_t 
     if (inside) {
       const rolling::NodeRecord& next = window.nodes[point.node];
       const TimeNs from_ns = at_start ? start_ns : window.nodes[point.node - 1].time_ns;
-      const double share = next.time_ns > from_ns ? seconds(point.time_ns - from_ns) / seconds(next.time_ns - from_ns) : 1.0;
+      const double length_s = seconds(next.time_ns - from_ns);
+      const double share = length_s > 0.0 ? seconds(point.time_ns - from_ns) / length_s : 1.0;
       error += share * (next.smoothed + next.correction - from);
     }
     RollingEstimate estimate;

@@ -25,13 +25,20 @@ void measure_rest(const RollingParams& params, const RollingSums& sums, const Ro
   }
 }
 
-void measure_contact(const RollingParams& params, const Contact& c, NodeRecord& record, Vector& x, Covariance& P) {
-  const Eigen::Vector3d u = c.velocity(x) - c.H * x;
+void measure_contact(const RollingParams& params, const Contact& c, double node_s, const Eigen::Vector3d& v_WI_m_s,
+                     NodeRecord& record, Vector& x, Covariance& P) {
+  const Eigen::Vector3d u = c.velocity(x) - c.H * x, variance = contact_variance(params, c, record.path.mode);
   if (!slips(record.path.mode)) {
-    for (int axis = 0; axis < 2; ++axis) measure(c.H.row(axis), -u[axis], c.grip_variance, record, x, P);
+    for (int axis = 0; axis < 2; ++axis) measure(c.H.row(axis), -u[axis], variance[axis], record, x, P);
   }
   if (record.path.mode != RollingMode::bump) {
-    measure(c.H.row(2), -u.z(), squared(params.vertical_sigma_m_s), record, x, P);
+    measure(c.H.row(2), -u.z(), variance.z(), record, x, P);
+  }
+  if (const auto lost = lost_velocity_variance(params, node_s, P)) {
+    for (int axis = 0; axis < 2; ++axis) {
+      const Row velocity = Vector::Unit(kVelocity + axis).transpose();
+      measure(velocity, -v_WI_m_s[axis], *lost, record, x, P);
+    }
   }
 }
 
@@ -56,7 +63,7 @@ NodeRecord close_node(const RollingParams& params, const RollingSums& sums, cons
   record.B = transition(sums);
   Vector x = Vector::Zero();
   predict(params, sums, record.B, x, filter.P);
-  if (sums.clipped_s < sums.node_s) {
+  if (sums.force_clipped_s < sums.node_s) {
     record.relevelled = relevel(params, sums.f_I_m_s / sums.node_s, path.at_rest, filter.nominal, filter.P);
   }
   record.forgets_slope = forgets_slope(filter.mode, path.mode);
@@ -64,7 +71,8 @@ NodeRecord close_node(const RollingParams& params, const RollingSums& sums, cons
   if (path.at_rest) {
     measure_rest(params, sums, filter.nominal, record, x, filter.P);
   } else {
-    measure_contact(params, contact(params, filter.nominal, rate_I_rad_s), record, x, filter.P);
+    measure_contact(params, contact(params, filter.nominal, rate_I_rad_s), sums.node_s, filter.nominal.v_WI_m_s, record,
+                    x, filter.P);
   }
   filter.P = (0.5 * (filter.P + filter.P.transpose())).eval();
   filter.P.block<3, 3>(kPosition, kPosition) += path.spread_m2;

@@ -205,7 +205,7 @@ TEST_P(SlamContract, CountsSweepsWithoutPoints) {
 std::vector<Method> slam_methods() {
   std::vector<Method> chosen;
   std::copy_if(methods().begin(), methods().end(), std::back_inserter(chosen),
-               [](const Method& method) { return method.info.kind == Kind::slam; });
+               [](const Method& method) { return method.info.kind == Kind::slam && method.info.for_robot("rig"); });
   return chosen;
 }
 

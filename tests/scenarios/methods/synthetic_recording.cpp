@@ -184,6 +184,7 @@ sim::Recording synthetic_sphere(double distance_m, double direction_rad) {
   T_BI.translation() = Eigen::Vector3d(0.03, 0.01, -0.02);
   add_truth(motion, recording);
   add_imu(motion, T_BI, recording);
+  add_lidar(motion, Eigen::Isometry3d::Identity(), recording);
   return recording;
 }
 

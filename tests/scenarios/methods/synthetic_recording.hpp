@@ -41,7 +41,7 @@ inline constexpr double kRoomHeightM = 2.5;
 /// A rig with one IMU (200 Hz) and a lidar (10 Hz, 16 rings, 150 columns) turning above the floor of the room.
 sim::Recording synthetic_rig(const SyntheticMotion& motion = {});
 
-/// A sphere that rolls along `direction_rad` by `distance_m` without slip, with one IMU off its centre and no lidar.
+/// A sphere that rolls along `direction_rad` by `distance_m` without slip, with one IMU off its centre and a lidar in it.
 sim::Recording synthetic_sphere(double distance_m = 1.0, double direction_rad = 0.6);
 
 }  // namespace tumble::scenarios::testing

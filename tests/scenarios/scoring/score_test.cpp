@@ -194,6 +194,21 @@ TEST(PositionScores, AGrowingOffsetGivesKnownErrors) {
   EXPECT_NEAR(values.at("rpe_1m_rad"), 0.0, 1e-9);
 }
 
+TEST(PositionScores, CoverageCountsErrorsWithinThreeSigmas) {
+  Estimate estimate = perfect_estimate(rig(), Frame::body);
+  EXPECT_FALSE(scores(Kind::position, estimate, rig()).contains("position_coverage_3sigma")) << "nothing is stated";
+  const std::size_t half = estimate.poses.size() / 2;
+  for (std::size_t k = 0; k < estimate.poses.size(); ++k) {
+    estimate.poses[k].covariance.diagonal().head<3>().setConstant(0.01 * 0.01);
+    if (k > 0) estimate.poses[k].p_WA_m.x() += 0.029;  // the first pose aligns the two
+  }
+  EXPECT_EQ(scores(Kind::position, estimate, rig()).at("position_coverage_3sigma"), 1.0);
+  for (std::size_t k = 1; k < estimate.poses.size(); ++k) estimate.poses[k].p_WA_m.x() += 0.002;
+  EXPECT_NEAR(scores(Kind::position, estimate, rig()).at("position_coverage_3sigma"), 2.0 / 3.0, 1e-12);
+  for (std::size_t k = half; k < estimate.poses.size(); ++k) estimate.poses[k].p_WA_m.y() += 1.0;
+  EXPECT_LT(scores(Kind::position, estimate, rig()).at("position_coverage_3sigma"), 0.66);
+}
+
 TEST(PositionScores, DriftAtStandstillIsWithinOneSpell) {
   Estimate estimate = perfect_estimate(rig(), Frame::body);
   for (PoseState& pose : estimate.poses) {

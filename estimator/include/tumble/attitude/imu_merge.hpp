@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "tumble/attitude/rate_recovery.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
 
@@ -18,6 +19,10 @@ namespace tumble {
 /// and what its place would have added is made up for with the rate of the others. Each unit's own bias, scale,
 /// misalignment and time offset about the mean are estimated by a small Kalman filter while the body turns; the time
 /// offset is taken out when it is beyond doubt, the others average out.
+///
+/// A unit whose accelerometer stands at its rail is left out of the force. Where the gyros do, three units or more tell
+/// the rate by what the turning does to their accelerometers (RateRecovery); the merged sample's clip flags say when
+/// they could not.
 ///
 /// Not modelled: lever arms in error (the mean's is), clocks of different rates, an error that all units share.
 class ImuMerge {
@@ -33,6 +38,8 @@ class ImuMerge {
     double force_tolerance_m_s2 = 3.0;            ///< bound (0, 1e4]
     double rate_noise_rad_s = 0.01;               ///< of one reading; bound (0, 10]
     double offset_sigma_s = 3e-3;                 ///< prior of a unit's time offset; zero: none; bound [0, 0.1]
+    double gyro_range_rad_s = 1e3;                ///< readings from here on are at the rail; bound (0, 1e3]
+    double accel_range_m_s2 = 1e5;                ///< bound (0, 1e5]
     double gap_max_s = 1.0;                       ///< bound (0, 1e4]
   };
 
@@ -47,6 +54,7 @@ class ImuMerge {
   };
   struct State {
     std::array<Unit, kImus> units{};
+    RateRecovery::State recovery;
     Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();         ///< merged, last sample
     Eigen::Vector3d rate_before_rad_s = Eigen::Vector3d::Zero();  ///< and the one before
     std::int64_t samples = 0;
@@ -65,9 +73,11 @@ class ImuMerge {
 
  private:
   void learn(std::span<const Eigen::Vector3d> rates, double dt_s, State& state) const;
+  static RateRecovery::Params recovery_params(const Params& params);
 
   Params params_;
   Eigen::Vector3d p_C_m_ = Eigen::Vector3d::Zero();
+  RateRecovery recovery_;
 };
 
 }  // namespace tumble

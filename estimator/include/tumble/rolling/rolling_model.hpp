@@ -15,8 +15,9 @@ enum class RollingMode : std::uint8_t {
   slip,     ///< it moves along the floor: spinning too fast or sliding
   bump,     ///< it also rises or falls: an obstacle, or the air
   incline,  ///< it stands still on a slope, which is estimated
+  rough,    ///< it stands still, the floor goes up and down about the level
 };
-inline constexpr int kRollingModes = 4;
+inline constexpr int kRollingModes = 5;
 
 /// Whether the contact point may move in this mode.
 inline bool slips(RollingMode mode) {
@@ -50,20 +51,33 @@ struct RollingParams {
   double grip_sigma_m_s = 3e-3;      ///< of the contact velocity while gripping
   double grip_sigma_share = 1.5e-3;  ///< more, as a share of the rolling speed
   double vertical_sigma_m_s = 8e-3;
+  double rough_share = 0.04;  ///< more on a rough floor, as a share of the rolling speed
   double slope_walk_sqrts = 0.02;
   double shock_share = 0.06;  ///< of the velocity that a shock gives: error of its timing and direction
   double rest_velocity_sigma_m_s = 2e-3;
   double rest_rate_sigma_rad_s = 3e-3;  ///< of a node's mean rate at rest
-  // Clipped readings: from this size on they say no more than that, and by how much they may be short.
+  // Clipped readings, by the device's flags or from this size on, say no more than that; how short they may be.
   double gyro_range_rad_s = 1e3;           ///< bound (0, 1e3]
   double accel_range_m_s2 = 1e5;           ///< bound (0, 1e5]
   double clipped_rate_sigma_rad_s = 5.0;   ///< bound (0, 1e3]
-  double clipped_force_sigma_m_s2 = 10.0;  ///< bound (0, 1e3]
+  /// Above zero: a rate beyond the range that no flag calls clipped was recovered (ImuMerge) to this; bound [0, 1e3].
+  double recovered_rate_sigma_rad_s = 0.0;
+  double clipped_force_sigma_m_s2 = 4.0;   ///< bound (0, 1e3]
+  /// A blow within one sample may have met the accelerometer's rail though its mean did not: sigma of what is missing
+  /// along the force, as a share of it; full from 0.6 of the range on, none up to 0.3; bound [0, 10].
+  double hidden_clip_share = 0.25;
+  // What the sphere is able to: no grip is believed that would make it roll faster; where the velocity is lost it is
+  // about zero, with this sigma of its mean over a second.
+  double speed_max_m_s = 2.5;    ///< bound (0, 1e3]
+  double speed_sigma_m_s = 1.0;  ///< bound (0, 1e3]
+  /// A wheel that stays on the floor meets no blows: mean of what one may give in a node; bound (0, 1e3].
+  double blow_m_s = 0.03;
   // Change of mode, per second; bounds (0, 1e3].
   double slip_begins_per_s = 0.5, slip_ends_per_s = 2.0;
   double bump_begins_per_s = 0.3, bump_ends_per_s = 5.0;
   double slip_bump_per_s = 0.2;                                ///< slip to bump and back
-  double incline_begins_per_s = 0.005, incline_ends_per_s = 0.1;  ///< from and to the level
+  double incline_begins_per_s = 0.001, incline_ends_per_s = 0.1;  ///< from and to the level
+  double rough_begins_per_s = 0.02, rough_ends_per_s = 0.1;
   double event_shortest_s = 0.06;                              ///< least stay in slip or bump; bound [0, 10]
   // Rest.
   double rest_rate_rad_s = 0.02;  ///< bound (0, 10]
@@ -99,8 +113,11 @@ struct RollingSums {
   Eigen::Vector3d R_wxf = Eigen::Vector3d::Zero();
   Eigen::Vector3d w_I_rad = Eigen::Vector3d::Zero(), f_I_m_s = Eigen::Vector3d::Zero();
   double turned_rad2_s = 0.0;
-  double clipped_s = 0.0;  ///< with a reading at its rail
+  double rate_clipped_s = 0.0, force_clipped_s = 0.0;  ///< with a reading that says nothing
+  double recovered_s = 0.0;                            ///< with a rate that was recovered
   double shock_m_s = 0.0;  ///< of | |f| - g | beyond the usual
+  double blow_m_s = 0.0;   ///< the same without what the turning may explain
+  Eigen::Vector3d hidden_W_m_s = Eigen::Vector3d::Zero();  ///< sigma of what a rail took unseen, along the force
   double node_s = 0.0;
   bool operator==(const RollingSums&) const = default;
 };

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "tumble/common/imu.hpp"
+
+namespace tumble {
+
+/// The rate of a body beyond the range of its gyros, from what the turning does to several accelerometers on it.
+///
+/// An extended Kalman filter of rate, angular acceleration and the specific force at the units' mean place, which turns
+/// in the body as gravity does, with the error of each unit's lever arm: f_k = c + a x r_k + w x (w x r_k). It runs
+/// while a gyro reads more than kFast of its range, so that the lever arms are learnt before the gyro stands at its
+/// rail; readings at a rail, of gyro or accelerometer, are bounds and no measurements.
+///
+/// Not modelled: errors of scale (the gyro's is what the lever arms are learnt with), units that share a place, which
+/// tell nothing. A blow on the body reads as a spell of doubt, not as a rate.
+class RateRecovery {
+ public:
+  static constexpr int kUnits = 4;
+  static constexpr int kStates = 9 + 3 * kUnits;
+  static constexpr double kFast = 0.5;  ///< share of the gyro's range from which on the filter runs
+  using Vector = Eigen::Matrix<double, kStates, 1>;
+  using Covariance = Eigen::Matrix<double, kStates, kStates>;
+
+  struct Params {
+    std::array<Eigen::Isometry3d, kUnits> T_CI{};   ///< mountings of the units, about their mean place
+    int count = 1;                                  ///< bound [1, kUnits]
+    double gyro_range_rad_s = 1e3;                  ///< from here on a reading is at its rail; bound (0, 1e3]
+    double accel_range_m_s2 = 1e5;                  ///< bound (0, 1e5]
+    double lever_arm_sigma_m = 1.5e-3;              ///< prior; bound (0, 10]
+    double rate_noise_rad_s = 0.03;                 ///< of one reading; bound (0, 10]
+    double rate_noise_share = 0.003;                ///< more, as a share of the reading; bound [0, 1]
+    double force_noise_m_s2 = 0.3;                  ///< of one reading; bound (0, 1e3]
+    double force_noise_share = 0.004;               ///< more, as a share of the reading; bound [0, 1]
+    double acceleration_walk_rad_s2_sqrts = 200.0;  ///< of the angular acceleration; bound (0, 1e6]
+    double force_walk_m_s2_sqrts = 25.0;            ///< of the common force; bound (0, 1e6]
+    double recovered_sigma_rad_s = 1.0;             ///< a rate known no better than this stays clipped; bound (0, 1e3]
+  };
+  struct State {
+    Vector x = Vector::Zero();  ///< rate, angular acceleration, force (C), lever arms of the units in error
+    Covariance P = Covariance::Zero();
+    bool started = false;  ///< lever arms have their prior
+    bool running = false;
+    bool operator==(const State&) const = default;
+  };
+
+  /// Throws InvalidParams when a parameter is outside of its bound.
+  explicit RateRecovery(const Params& params);
+
+  /// Takes the units' readings, each in its own axes, `dt_s` after the last ones; `merged` (C) holds the mean of those
+  /// in use and gets rate and force of the filter where a rail made them wrong. Its clip flags of the gyro are set when
+  /// the rate could not be recovered, those of the accelerometer when a unit's was at its rail; else cleared. O(count),
+  /// no allocation; little to do while the body turns slowly.
+  void step(std::span<const ImuSample> units, double dt_s, State& state, ImuSample& merged) const;
+
+ private:
+  void start(const ImuSample& merged, State& state) const;
+  void predict(double dt_s, State& state) const;
+  void measure_rates(std::span<const ImuSample> units, State& state) const;
+  void measure_forces(std::span<const ImuSample> units, State& state) const;
+
+  Params params_;
+};
+
+}  // namespace tumble

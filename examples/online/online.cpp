@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "online.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <system_error>
+
+namespace online {
+
+namespace {
+
+/// The next number of `rest`, which is moved behind it; false when there is none.
+template <typename Number>
+bool next_number(std::string_view& rest, Number& value) {
+  const std::size_t begin = rest.find_first_not_of(" \t,");
+  if (begin == std::string_view::npos) return false;
+  rest.remove_prefix(begin);
+  const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
+  if (error != std::errc()) return false;
+  rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
+  return rest.empty() || rest.front() == ' ' || rest.front() == '\t' || rest.front() == ',';
+}
+
+const char* name(tumble::RollingMode mode) {
+  switch (mode) {
+    case tumble::RollingMode::grip:
+      return "grip";
+    case tumble::RollingMode::slip:
+      return "slip";
+    case tumble::RollingMode::bump:
+      return "bump";
+    case tumble::RollingMode::incline:
+      return "incline";
+    case tumble::RollingMode::rough:
+      return "rough";
+  }
+  return "?";
+}
+
+}  // namespace
+
+Online::Online(const tumble::RollingParams& params)
+    : filter_(params), state_(std::make_unique<tumble::RollingFilter::State>()) {}
+
+std::string_view Online::take(std::string_view line) {
+  ok_ = true;
+  while (!line.empty() && (line.back() == '\n' || line.back() == '\r' || line.back() == ' ')) line.remove_suffix(1);
+  if (line.empty() || line.front() == '#') return {};
+  tumble::ImuSample sample;
+  if (!next_number(line, sample.time_ns)) return trouble("time_ns: not a whole number");
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!next_number(line, sample.angular_velocity_rad_s[axis]))
+      return trouble("angular velocity: three numbers needed");
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!next_number(line, sample.specific_force_m_s2[axis])) return trouble("specific force: three numbers needed");
+  }
+  if (line.find_first_not_of(" \t,") != std::string_view::npos) return trouble("more than seven numbers");
+  const tumble::Status status = filter_.step(sample, *state_);
+  if (!status.ok()) {
+    ok_ = false;
+    const int length = std::snprintf(text_, kLineMax, "%s: %s is %g, bound %g", tumble::to_string(status.trouble),
+                                     status.field, status.value, status.bound);
+    return {text_, std::min(static_cast<std::size_t>(std::max(length, 0)), kLineMax - 1)};
+  }
+  ++samples_;
+  return pose();
+}
+
+std::string_view Online::pose() {
+  const tumble::RollingFilter::State& s = *state_;
+  const double sigma_m = std::sqrt(s.position_covariance_m2.topLeftCorner<2, 2>().trace());
+  const int length = std::snprintf(text_, kLineMax, "%lld %.6f %.6f %.6f %.9f %.9f %.9f %.9f %s %.6f",
+                                   static_cast<long long>(s.last_time_ns), s.p_WG_m.x(), s.p_WG_m.y(), s.p_WG_m.z(),
+                                   s.q_WI.x(), s.q_WI.y(), s.q_WI.z(), s.q_WI.w(), name(s.mode), sigma_m);
+  return {text_, std::min(static_cast<std::size_t>(std::max(length, 0)), kLineMax - 1)};
+}
+
+std::string_view Online::trouble(std::string_view what) {
+  ok_ = false;
+  const std::size_t length = what.copy(text_, kLineMax);
+  return {text_, length};
+}
+
+}  // namespace online

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/sphere_attitude.hpp"
+#include "tumble/common/so3.hpp"
+#include "tumble/mapping/voxel_map.hpp"
+
+/// Maps of the rolling sphere: from the poses of a position method, as published, and by the registration of the rig
+/// with rolling odometry as its prior.
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr double kNearestM = 0.3;  // nearer returns are the sphere's own
+
+const std::array<sim::Parameter, 2>& parameters_of_the_map() {
+  static const VoxelMap::Params library;
+  static const std::array<sim::Parameter, 2> parameters = {{
+      {"map_voxel_m", library.voxel_m, 0.05, 10.0, "m", "cell of the map's hash"},
+      {"map_spacing_m", library.spacing_m, 0.0, 1.0, "m", "edge of the cube that holds one map point"},
+  }};
+  return parameters;
+}
+
+constexpr double kPriorSigmaM = 1e-3, kPriorSigmaRad = 5e-4;  // over 0.1 s: rolling tells that much
+
+/// Those of the chain, with a prior as tight as rolling makes it: sweep after sweep looks where no map is yet.
+std::span<const sim::Parameter> parameters_of_the_prior() {
+  static const std::vector<sim::Parameter> all = [] {
+    std::vector<sim::Parameter> own(slam_parameters().begin(), slam_parameters().end());
+    for (sim::Parameter& parameter : own) {
+      if (parameter.name == "prior_sigma_m") parameter.default_value = kPriorSigmaM;
+      if (parameter.name == "prior_sigma_rad") parameter.default_value = kPriorSigmaRad;
+    }
+    return own;
+  }();
+  return all;
+}
+
+/// Runs the position method `name` with its defaults.
+Estimate positions(const char* name, const sim::Sensors& sensors) {
+  return find_methods(std::string("position/") + name).front()->run(sensors, {}, {});
+}
+
+/// Poses in time order, asked for in time order too.
+class Track {
+ public:
+  explicit Track(const std::vector<PoseState>& poses) : poses_(poses) {}
+  bool covers(std::int64_t time_ns) const {
+    return !poses_.empty() && time_ns >= poses_.front().time_ns && time_ns <= poses_.back().time_ns;
+  }
+  /// Interpolated; O(1) for times near the last one asked for.
+  Eigen::Isometry3d at(std::int64_t time_ns) {
+    while (next_ > 1 && poses_[next_ - 1].time_ns > time_ns) --next_;
+    while (next_ + 1 < poses_.size() && poses_[next_].time_ns < time_ns) ++next_;
+    const PoseState &a = poses_[next_ - 1], &b = poses_[next_];
+    const double share = seconds(time_ns - a.time_ns) / std::max(seconds(b.time_ns - a.time_ns), 1e-9);
+    const Eigen::Vector3d p = a.p_WA_m + share * (b.p_WA_m - a.p_WA_m);
+    return Eigen::Translation3d(p) * a.q_WA.slerp(share, b.q_WA);
+  }
+
+ private:
+  const std::vector<PoseState>& poses_;
+  std::size_t next_ = 1;
+};
+
+// the centre and the centre of mass, from which the lidar's place is known, are some mm apart, and taken for one
+Estimate map_from_poses(const char* name, const sim::Sensors& sensors, const sim::Values& parameters) {
+  Estimate estimate = positions(name, sensors);
+  estimate.contacts.clear();
+  if (!estimate.status.ok()) return estimate;
+  if (sensors.lidars.empty() || estimate.poses.size() < 2) {
+    estimate.status = {Trouble::empty, "lidars", 0.0, 1.0};
+    return estimate;
+  }
+  const sim::LidarRecord& lidar = sensors.lidars.front();
+  VoxelMap map({parameters.at("map_voxel_m"), parameters.at("map_spacing_m")});
+  Track track(estimate.poses);
+  std::size_t first_pose = 0;
+  for (std::size_t k = 0; k < bridge::sweep_count(lidar); ++k) {
+    const bridge::Sweep sweep = bridge::sweep(lidar, k);
+    if (!track.covers(sweep.start_ns) || !track.covers(sweep.end_ns)) {
+      estimate.health["sweeps_unfinished"] += 1.0;
+      continue;
+    }
+    LidarInertialOdometry::SweepReport report;
+    report.verdict = estimate.sweeps.empty() ? SweepVerdict::first : SweepVerdict::registered;
+    for (const LidarPoint& point : sweep.points) {
+      if (!point.position_L_m.allFinite() || point.position_L_m.norm() < kNearestM) continue;
+      const Eigen::Isometry3d T_WL = track.at(sweep.start_ns + point.offset_ns) * lidar.T_BL;
+      report.map_points_added +=
+          map.insert((T_WL * point.position_L_m.cast<double>()).cast<float>(), 0.0f, static_cast<std::uint32_t>(k));
+      ++report.points_used;
+    }
+    while (first_pose < estimate.poses.size() && estimate.poses[first_pose].time_ns < sweep.start_ns) ++first_pose;
+    for (std::size_t j = first_pose; j < estimate.poses.size() && estimate.poses[j].time_ns <= sweep.end_ns; ++j) {
+      report.trajectory.push_back(estimate.poses[j]);
+    }
+    report.pose = report.trajectory.empty() ? estimate.poses[first_pose] : report.trajectory.back();
+    estimate.sweeps.push_back(std::move(report));
+    estimate.sweep_end_ns.push_back(sweep.end_ns);
+  }
+  for (std::uint32_t index = 0; index < map.index_end(); ++index) {
+    if (map.exists(index))
+      estimate.map.push_back({map.position_W_m(index), Eigen::Vector3f::Zero(), map.sigma_m(index)});
+  }
+  return estimate;
+}
+
+Estimate run_poses_rolling(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  return map_from_poses("rolling", sensors, parameters);
+}
+Estimate run_poses_autogain_fusion(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  return map_from_poses("autogain_fusion", sensors, parameters);
+}
+Estimate run_poses_tumble(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  return map_from_poses("tumble", sensors, parameters);
+}
+
+/// Readings that an IMU would have had along the poses of the position method: the mapper, which integrates them
+/// between two sweeps, then follows the rolling odometry.
+std::vector<ImuSample> samples_along(const Estimate& poses, const sim::Sensors& sensors,
+                                     std::span<const ImuSample> raw) {
+  const Eigen::Isometry3d& T_BI = sensors.imus.front().T_BI;
+  const Eigen::Vector3d gravity_W(0.0, 0.0, sensors.gravity_m_s2);
+  std::vector<ImuSample> out(raw.begin(), raw.end());
+  Eigen::Vector3d v_before = Eigen::Vector3d::Zero();
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    const PoseState& pose = poses.poses[k];
+    const Eigen::Quaterniond q_WI = pose.q_WA * Eigen::Quaterniond(T_BI.linear());
+    const double dt_s = k > 0 ? seconds(out[k].time_ns - out[k - 1].time_ns) : 0.0;
+    if (k > 0) {
+      const Eigen::Quaterniond q_before = poses.poses[k - 1].q_WA * Eigen::Quaterniond(T_BI.linear());
+      out[k].angular_velocity_rad_s = so3::log(q_before.conjugate() * q_WI) / dt_s;
+    } else {
+      out[k].angular_velocity_rad_s.setZero();
+    }
+    const Eigen::Vector3d w_W = q_WI * out[k].angular_velocity_rad_s;
+    const Eigen::Vector3d v = pose.v_WA_m_s + w_W.cross(pose.q_WA * T_BI.translation());
+    const Eigen::Vector3d a = k > 0 ? Eigen::Vector3d((v - v_before) / dt_s) : Eigen::Vector3d::Zero();
+    const Eigen::Quaterniond q_mid = q_WI * so3::exp(-0.5 * dt_s * out[k].angular_velocity_rad_s);
+    out[k].specific_force_m_s2 = q_mid.conjugate() * (a + gravity_W);
+    out[k].device_clip_flags = 0;
+    v_before = v;
+  }
+  return out;
+}
+
+Estimate run_rolling_prior(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  Estimate estimate;
+  estimate.frame = Frame::imu;
+  std::vector<ImuSample> raw;
+  estimate.status = bridge::primary_imu_samples(sensors, raw);
+  if (!estimate.status.ok()) return estimate;
+  require_sphere("slam/rolling_prior", sensors);
+  const Estimate poses = positions("tumble", sensors);
+  estimate.status = poses.status;
+  if (!estimate.status.ok()) return estimate;
+  const std::vector<ImuSample> samples = samples_along(poses, sensors, raw);
+  estimate.status = raw_rates(sensors, samples, estimate.rates);
+  if (estimate.status.ok()) run_slam_chain(sensors, samples, parameters, estimate);
+  return estimate;
+}
+
+Method posed(const char* name, const char* doc, const char* source, RunCore run) {
+  MethodInfo info;
+  info.name = name;
+  info.kind = Kind::slam;
+  info.doc = doc;
+  info.source = source;
+  info.parameters = parameters_of_the_map();
+  info.robots = {"sphere"};
+  return make_method(std::move(info), run);
+}
+
+}  // namespace
+
+Method slam_poses_rolling() {
+  return posed("poses_rolling", "A map from the poses of rolling; nothing is registered.",
+               "textbook rolling constraint", run_poses_rolling);
+}
+
+Method slam_poses_autogain_fusion() {
+  return posed("poses_autogain_fusion", "A map from the poses of autogain_fusion, as published; nothing is registered.",
+               "Zevering et al., IMU-based pose-estimation for spherical robots, IEEE MFI 2021",
+               run_poses_autogain_fusion);
+}
+
+Method slam_poses_tumble() {
+  return posed("poses_tumble", "A map from the poses of our position method; nothing is registered.", "ours",
+               run_poses_tumble);
+}
+
+Method slam_rolling_prior() {
+  MethodInfo info;
+  info.name = "rolling_prior";
+  info.kind = Kind::slam;
+  info.doc = "The registration of the rig, with the poses of our position method as its prior between two sweeps.";
+  info.source = "ours";
+  info.parameters = parameters_of_the_prior();
+  info.robots = {"sphere"};
+  return make_method(std::move(info), run_rolling_prior);
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Position of a rolling sphere, one sample on one core, 250 Hz, along an L with a spell of slip: the live filter, the
+// same as the online example runs it (text in, text out), and the smoother with a lag. `held_bytes` is what one
+// instance holds once it runs, `allocations` what the samples after the first asked for.
+#include <benchmark/benchmark.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "examples/online/online.hpp"
+#include "tests/estimator/rolling/rolling_truth.hpp"
+#include "tumble/rolling/rolling_odometry.hpp"
+#include "tumble/rolling/rolling_smoother.hpp"
+
+namespace {
+std::size_t allocations = 0, held = 0;
+}  // namespace
+
+// not inlined, so that the compiler does not take the pair for mismatched
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  ++allocations;
+  held += size;
+  void* memory = std::malloc(size);
+  if (memory == nullptr) throw std::bad_alloc();
+  return memory;
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+[[gnu::noinline]] void operator delete(void* memory, std::size_t size) noexcept {
+  held -= size;
+  std::free(memory);
+}
+
+namespace {
+
+const tumble::testing::RollingTruth& truth() {
+  static const tumble::testing::RollingTruth out = tumble::testing::roll(
+      {.velocity_m_s = tumble::testing::l_shape, .contact_velocity_m_s = [](double t) -> Eigen::Vector3d {
+         return {-tumble::testing::minimum_jerk_speed(t, 2.8, 0.8, 0.25), 0.0, 0.0};
+       }});
+  return out;
+}
+
+void report(benchmark::State& state, std::size_t bytes, std::size_t asked) {
+  const auto count = static_cast<double>(state.iterations()) * static_cast<double>(truth().samples.size());
+  state.counters["per_sample"] = benchmark::Counter(count, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  state.counters["held_bytes"] = static_cast<double>(bytes);
+  state.counters["allocations"] = static_cast<double>(asked);
+}
+
+void rolling_odometry(benchmark::State& state) {
+  const tumble::RollingOdometry odometry{tumble::RollingOdometry::Params{}};
+  for (auto _ : state) {
+    tumble::RollingOdometry::State s;
+    for (std::size_t k = 0; k < truth().samples.size(); ++k) {
+      const tumble::ImuSample& sample = truth().samples[k];
+      benchmark::DoNotOptimize(odometry.step(sample.time_ns, sample.angular_velocity_rad_s, truth().q_WI[k], s));
+    }
+  }
+  report(state, sizeof(tumble::RollingOdometry::State), 0);
+}
+BENCHMARK(rolling_odometry);
+
+void live_filter(benchmark::State& state) {
+  const tumble::RollingFilter filter{tumble::RollingParams{}};
+  std::size_t asked = 0;
+  for (auto _ : state) {
+    const auto s = std::make_unique<tumble::RollingFilter::State>();
+    const std::size_t before = allocations;
+    for (const tumble::ImuSample& sample : truth().samples) benchmark::DoNotOptimize(filter.step(sample, *s));
+    asked = allocations - before;
+  }
+  report(state, sizeof(tumble::RollingFilter::State), asked);
+}
+BENCHMARK(live_filter)->Unit(benchmark::kMillisecond);
+
+void online_example(benchmark::State& state) {
+  std::vector<std::string> lines;
+  char text[256];
+  for (const tumble::ImuSample& s : truth().samples) {
+    const Eigen::Vector3d &w = s.angular_velocity_rad_s, &f = s.specific_force_m_s2;
+    std::snprintf(text, sizeof text, "%lld %.9g %.9g %.9g %.9g %.9g %.9g", static_cast<long long>(s.time_ns), w.x(),
+                  w.y(), w.z(), f.x(), f.y(), f.z());
+    lines.emplace_back(text);
+  }
+  std::size_t asked = 0, bytes = 0;
+  for (auto _ : state) {
+    const std::size_t held_before = held;
+    online::Online program{tumble::RollingParams{}};
+    bytes = held - held_before + sizeof program;
+    const std::size_t before = allocations;
+    for (const std::string& line : lines) benchmark::DoNotOptimize(program.take(line));
+    asked = allocations - before;
+  }
+  report(state, bytes, asked);
+}
+BENCHMARK(online_example)->Unit(benchmark::kMillisecond);
+
+void smoother_with_lag(benchmark::State& state) {
+  tumble::RollingSmoother::Params params;
+  params.lag_s = 1.0;
+  const tumble::RollingSmoother smoother(params);
+  std::vector<tumble::RollingEstimate> out;
+  out.reserve(truth().samples.size());
+  std::size_t bytes = 0;
+  for (auto _ : state) {
+    const std::size_t held_before = held;
+    const auto s = std::make_unique<tumble::RollingSmoother::State>();
+    out.clear();
+    for (const tumble::ImuSample& sample : truth().samples) benchmark::DoNotOptimize(smoother.step(sample, *s, out));
+    bytes = held - held_before;
+    smoother.finish(*s, out);
+  }
+  report(state, bytes, 0);
+}
+BENCHMARK(smoother_with_lag)->Unit(benchmark::kMillisecond);
+
+}  // namespace

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/rolling/rolling_smoother.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "estimator/rolling/rolling_truth.hpp"
+
+namespace tumble {
+namespace {
+
+const Eigen::Vector3d kLeverArm(0.02, -0.01, 0.03);
+
+/// An L of 2 m with a spell of slip of 0.8 s; gyro and accelerometer with constant errors of the Phidget class.
+testing::RollingTruth slipping() {
+  testing::RollingTruth truth = testing::roll({.velocity_m_s = testing::l_shape,
+                                               .contact_velocity_m_s = [](double t) -> Eigen::Vector3d {
+                                                 return {-testing::minimum_jerk_speed(t, 2.8, 0.8, 0.25),
+                                                         0.05 * testing::minimum_jerk_speed(t, 2.8, 0.8, 0.25), 0.0};
+                                               },
+                                               .lever_arm_m = kLeverArm,
+                                               .q_start = so3::exp({0.1, -0.2, 0.0})});
+  for (ImuSample& sample : truth.samples) {
+    sample.angular_velocity_rad_s += Eigen::Vector3d(3e-4, -2e-4, 4e-4) + 2e-3 * sample.angular_velocity_rad_s;
+    sample.specific_force_m_s2 += Eigen::Vector3d(0.03, -0.02, 0.04);
+  }
+  return truth;
+}
+
+RollingSmoother::Params params(double lag_s) {
+  RollingSmoother::Params out;
+  out.filter.lever_arm_m = kLeverArm;
+  out.lag_s = lag_s;
+  return out;
+}
+
+std::vector<RollingEstimate> run(const testing::RollingTruth& truth, double lag_s) {
+  const RollingSmoother smoother(params(lag_s));
+  const auto state = std::make_unique<RollingSmoother::State>();
+  std::vector<RollingEstimate> out;
+  for (const ImuSample& sample : truth.samples) EXPECT_TRUE(smoother.step(sample, *state, out).ok());
+  smoother.finish(*state, out);
+  return out;
+}
+
+TEST(RollingSmoother, OneEstimateForEachSampleWithWholeRunAndWithLag) {
+  const testing::RollingTruth truth = slipping();
+  for (const double lag_s : {RollingSmoother::kWholeRun, 2.0, 0.5}) {
+    const std::vector<RollingEstimate> out = run(truth, lag_s);
+    ASSERT_EQ(out.size(), truth.samples.size()) << lag_s;
+    for (std::size_t k = 0; k < out.size(); ++k) ASSERT_EQ(out[k].time_ns, truth.samples[k].time_ns) << lag_s;
+    // 1 % of the path; measured 0.6 %: the error of scale alone is 0.2 %
+    EXPECT_LT((out.back().p_WG_m - truth.p_WG_m.back()).norm(), 0.02) << lag_s;
+  }
+}
+
+TEST(RollingSmoother, MendsTheWayInsideAnEvent) {
+  const testing::RollingTruth truth = slipping();
+  const std::vector<RollingEstimate> whole = run(truth, RollingSmoother::kWholeRun);
+  const RollingFilter filter(params(1.0).filter);
+  const auto state = std::make_unique<RollingFilter::State>();
+  double live = 0.0, smoothed = 0.0, in_event = 0.0;
+  ASSERT_EQ(whole.size(), truth.samples.size());
+  for (std::size_t k = 0; k < truth.samples.size(); ++k) {
+    ASSERT_TRUE(filter.step(truth.samples[k], *state).ok());
+    if (truth.gripping[k]) continue;
+    live = std::max(live, (state->p_WG_m - truth.p_WG_m[k]).norm());
+    smoothed = std::max(smoothed, (whole[k].p_WG_m - truth.p_WG_m[k]).norm());
+    in_event += slips(whole[k].mode);
+  }
+  EXPECT_LT(smoothed, live);
+  EXPECT_LT(smoothed, 0.01);
+  EXPECT_GT(in_event, 0.5 * 0.8 / 0.004) << "the event was not seen at all";
+}
+
+TEST(RollingSmoother, ErrorsLieWithinItsCovariance) {
+  const testing::RollingTruth truth = slipping();
+  for (const double lag_s : {RollingSmoother::kWholeRun, 1.0}) {
+    const std::vector<RollingEstimate> out = run(truth, lag_s);
+    int inside = 0, total = 0;
+    for (std::size_t k = 600; k < out.size(); ++k) {
+      const Eigen::Vector3d error = out[k].p_WG_m - truth.p_WG_m[k];
+      for (int axis = 0; axis < 3; ++axis)
+        inside += std::abs(error[axis]) <= 3.0 * std::sqrt(out[k].covariance(axis, axis));
+      total += 3;
+    }
+    EXPECT_GE(inside, 0.99 * total) << lag_s;
+  }
+}
+
+TEST(RollingSmoother, SplitRunsEqual) {
+  const testing::RollingTruth truth = slipping();
+  const RollingSmoother smoother(params(0.5));
+  const auto whole = std::make_unique<RollingSmoother::State>();
+  std::vector<RollingEstimate> out_whole, out_split;
+  constexpr std::size_t kCut = 901, kEnd = 1200;
+  for (std::size_t k = 0; k < kEnd; ++k) ASSERT_TRUE(smoother.step(truth.samples[k], *whole, out_whole).ok());
+  const auto first = std::make_unique<RollingSmoother::State>();
+  for (std::size_t k = 0; k < kCut; ++k) ASSERT_TRUE(smoother.step(truth.samples[k], *first, out_split).ok());
+  EXPECT_FALSE(*first == *whole);
+  const auto second = std::make_unique<RollingSmoother::State>(*first);
+  for (std::size_t k = kCut; k < kEnd; ++k) ASSERT_TRUE(smoother.step(truth.samples[k], *second, out_split).ok());
+  EXPECT_TRUE(*second == *whole);
+  ASSERT_EQ(out_split.size(), out_whole.size());
+  ASSERT_FALSE(out_whole.empty());
+  for (std::size_t k = 0; k < out_whole.size(); ++k) ASSERT_EQ(out_split[k].p_WG_m, out_whole[k].p_WG_m) << k;
+}
+
+TEST(RollingSmoother, RefusesBadParamsAndBadSamples) {
+  EXPECT_THROW(RollingSmoother(params(0.0)), InvalidParams);
+  RollingSmoother::Params bad = params(1.0);
+  bad.path_noise = 0.0;
+  EXPECT_THROW(RollingSmoother{bad}, InvalidParams);
+  const testing::RollingTruth truth = slipping();
+  const RollingSmoother smoother(params(1.0));
+  const auto state = std::make_unique<RollingSmoother::State>();
+  std::vector<RollingEstimate> out;
+  for (std::size_t k = 0; k < 10; ++k) ASSERT_TRUE(smoother.step(truth.samples[k], *state, out).ok());
+  const auto before = std::make_unique<RollingSmoother::State>(*state);
+  EXPECT_EQ(smoother.step(truth.samples[5], *state, out).trouble, Trouble::time_order);
+  ImuSample nan = truth.samples[10];
+  nan.specific_force_m_s2.x() = std::nan("");
+  EXPECT_EQ(smoother.step(nan, *state, out).trouble, Trouble::non_finite);
+  EXPECT_TRUE(*state == *before);
+}
+
+}  // namespace
+}  // namespace tumble
