@@ -24,15 +24,11 @@ constexpr const char* kFiles[] = {"estimate.json", "rates.csv",  "attitude.tum",
 const std::string kRatesHeader = "time_ns,wx_rad_s,wy_rad_s,wz_rad_s,cxx,cxy,cxz,cyy,cyz,czz,clipped_axes,source";
 const std::string kPose = "px_m,py_m,pz_m,qx,qy,qz,qw,vx_m_s,vy_m_s,vz_m_s";
 const std::string kContactsHeader = "time_ns,label";
-<<<<<<< HEAD
+const std::string kCovarianceHeader = "time_ns,cxx,cxy,cxz,cyy,cyz,czz";
 constexpr std::size_t kCovarianceColumn = 16;  // of a sweep's pose: upper triangle by rows, position before attitude
 const std::string kSweepsHeader =
     "end_ns,verdict,iterations,inlier_share,conditioning,pose_time_ns," + kPose +
     ",c00,c01,c02,c03,c04,c05,c11,c12,c13,c14,c15,c22,c23,c24,c25,c33,c34,c35,c44,c45,c55";
-=======
-const std::string kCovarianceHeader = "time_ns,cxx,cxy,cxz,cyy,cyz,czz";
-const std::string kSweepsHeader = "end_ns,verdict,iterations,inlier_share,conditioning,pose_time_ns," + kPose;
->>>>>>> sphere
 const std::string kSweepPosesHeader = "sweep,time_ns," + kPose;
 
 void write_quaternion(TableWriter& table, const Eigen::Quaterniond& q) {
