@@ -26,7 +26,9 @@ Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
   if (samples.back().time_ns < end_ns) {
     return {Trouble::too_few, "imu time_ns", double(samples.back().time_ns), double(end_ns)};
   }
-  if (!started && samples.front().from_ns > start_ns) {
+  // a clock known to be off may place the first sweep before the first sample: the rest at the start reaches back
+  const double early_s = seconds(samples.front().from_ns - start_ns);
+  if (!started && early_s > (params.time_offset_s != 0.0 ? SweepTrajectory::kBeyond_s : 0.0)) {
     return {Trouble::too_few, "start_ns", double(start_ns), double(samples.front().from_ns)};
   }
   return mapping::check_offsets(end_ns - start_ns, given);
