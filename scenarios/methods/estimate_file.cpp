@@ -24,8 +24,11 @@ constexpr const char* kFiles[] = {"estimate.json", "rates.csv",  "attitude.tum",
 const std::string kRatesHeader = "time_ns,wx_rad_s,wy_rad_s,wz_rad_s,cxx,cxy,cxz,cyy,cyz,czz,clipped_axes,source";
 const std::string kPose = "px_m,py_m,pz_m,qx,qy,qz,qw,vx_m_s,vy_m_s,vz_m_s";
 const std::string kContactsHeader = "time_ns,label";
-const std::string kCovarianceHeader = "time_ns,cxx,cxy,cxz,cyy,cyz,czz";
-const std::string kSweepsHeader = "end_ns,verdict,iterations,inlier_share,conditioning,pose_time_ns," + kPose;
+const std::string kPositionCovarianceHeader = "time_ns,cxx,cxy,cxz,cyy,cyz,czz";
+constexpr std::size_t kCovarianceColumn = 16;  // of a sweep's pose: upper triangle by rows, position before attitude
+const std::string kSweepsHeader =
+    "end_ns,verdict,iterations,inlier_share,conditioning,pose_time_ns," + kPose +
+    ",c00,c01,c02,c03,c04,c05,c11,c12,c13,c14,c15,c22,c23,c24,c25,c33,c34,c35,c44,c45,c55";
 const std::string kSweepPosesHeader = "sweep,time_ns," + kPose;
 
 void write_quaternion(TableWriter& table, const Eigen::Quaterniond& q) {
@@ -129,7 +132,7 @@ void require_row_per_pose(const Table& table, const std::vector<PoseState>& pose
 }
 
 void write_covariances(const std::filesystem::path& path, const std::vector<PoseState>& poses) {
-  TableWriter table(path, ',', kCovarianceHeader);
+  TableWriter table(path, ',', kPositionCovarianceHeader);
   for (const PoseState& pose : poses) {
     table.integer(pose.time_ns);
     for (int i = 0; i < 3; ++i) {
@@ -141,7 +144,7 @@ void write_covariances(const std::filesystem::path& path, const std::vector<Pose
 }
 
 void read_covariances(const std::filesystem::path& path, std::vector<PoseState>& poses) {
-  const Table table = Table::read(path, ',', kCovarianceHeader, 7);
+  const Table table = Table::read(path, ',', kPositionCovarianceHeader, 7);
   require_row_per_pose(table, poses);
   for (std::size_t k = 0; k < poses.size(); ++k) {
     std::size_t column = 1;
@@ -177,6 +180,9 @@ void write_sweeps(const std::filesystem::path& folder, const Estimate& estimate)
     sweeps.number(sweep.conditioning);
     sweeps.integer(sweep.pose.time_ns);
     write_pose(sweeps, sweep.pose);
+    for (int i = 0; i < 6; ++i) {
+      for (int j = i; j < 6; ++j) sweeps.number(sweep.pose.covariance(i, j));
+    }
     sweeps.end_row();
     for (const PoseState& pose : sweep.trajectory) {
       poses.integer(static_cast<std::int64_t>(k));
@@ -190,7 +196,7 @@ void write_sweeps(const std::filesystem::path& folder, const Estimate& estimate)
 }
 
 void read_sweeps(const std::filesystem::path& folder, Estimate& estimate) {
-  const Table sweeps = Table::read(folder / "sweeps.csv", ',', kSweepsHeader, 16);
+  const Table sweeps = Table::read(folder / "sweeps.csv", ',', kSweepsHeader, kCovarianceColumn + 21);
   for (const Table::Row& row : sweeps.rows) {
     LidarInertialOdometry::SweepReport sweep;
     const std::int64_t verdict = sweeps.integer(row, 1);
@@ -203,6 +209,12 @@ void read_sweeps(const std::filesystem::path& folder, Estimate& estimate) {
     sweep.inlier_share = sweeps.number(row, 3);
     sweep.conditioning = sweeps.number(row, 4);
     sweep.pose = read_pose(sweeps, row, 5, 6);
+    std::size_t column = kCovarianceColumn;
+    for (int i = 0; i < 6; ++i) {
+      for (int j = i; j < 6; ++j) {
+        sweep.pose.covariance(i, j) = sweep.pose.covariance(j, i) = sweeps.number(row, column++);
+      }
+    }
     estimate.sweep_end_ns.push_back(sweeps.integer(row, 0));
     estimate.sweeps.push_back(std::move(sweep));
   }
@@ -344,7 +356,8 @@ Estimate read_estimate(const std::filesystem::path& path, Kind& kind, std::strin
   if (there("attitude.tum")) {
     std::vector<PoseState> poses;
     read_tum(path / "attitude.tum", poses);
-    for (const PoseState& pose : poses) estimate.attitudes.push_back({pose.time_ns, pose.q_WA, Eigen::Matrix3d::Zero()});
+    for (const PoseState& pose : poses)
+      estimate.attitudes.push_back({pose.time_ns, pose.q_WA, Eigen::Matrix3d::Zero()});
   }
   if (there("sweeps.csv")) read_sweeps(path, estimate);
   if (there("map.ply")) estimate.map = read_map(path / "map.ply");

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <optional>
+#include <string>
 
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/rate_baseline.hpp"
@@ -60,6 +63,7 @@ RateSmoother::Params smoother_params(const sim::ImuRecord& record, const sim::Va
 void report_health(const RateReport& report, std::map<std::string, double>& health) {
   health["iterations"] = report.iterations;
   health["converged"] = report.converged ? 1.0 : 0.0;
+  health["restarts"] = report.restarts;
   health["rig_surprise"] = report.rig_surprise;
   health["rig_held"] = report.rig_held ? 1.0 : 0.0;
   health["flight_share"] = report.flight_share;
@@ -67,6 +71,14 @@ void report_health(const RateReport& report, std::map<std::string, double>& heal
   health["rails_disagreeing"] =
       static_cast<double>(std::count(report.rail_disagrees.begin(), report.rail_disagrees.end(), true));
   health["force_unit_suspect"] = report.force_unit_suspect ? 1.0 : 0.0;
+  const char* const names[] = {"x", "y", "z"};
+  for (int j = 0; j < 3; ++j) {
+    const std::string axis = names[j];
+    health["learnt_lever_arm_" + axis + "_m"] = report.calibration.constants.lever_arm_m[j];
+    health["learnt_lever_arm_sigma_" + axis + "_m"] = std::sqrt(report.calibration.covariance(j, j));
+    const std::optional<double>& rail = report.rail[static_cast<std::size_t>(j)];
+    if (rail) health["learnt_gyro_rail_" + axis + "_rad_s"] = *rail;
+  }
 }
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/methods/slam_registry.hpp"
 
 namespace tumble::scenarios {
 
@@ -43,6 +44,7 @@ std::vector<Method> all_methods() {
       position_tumble_live(),
       position_oracle(),
       position_oracle_contact(),
+      slam_seed(),
       slam_icp(),
       slam_icp_raw(),
       slam_tumble(),
@@ -52,6 +54,12 @@ std::vector<Method> all_methods() {
       slam_poses_autogain_fusion(),
       slam_poses_tumble(),
       slam_rolling_prior(),
+      slam_constant_velocity(),
+      slam_constant_jerk(),
+      slam_iterated_filter(),
+      slam_pointwise_reject(),
+      slam_health_switch(),
+      slam_floor(),
   };
   std::stable_sort(all.begin(), all.end(), [](const Method& a, const Method& b) { return a.info.kind < b.info.kind; });
   return all;

@@ -88,18 +88,26 @@ std::span<const sim::Parameter> sphere_rest_parameters();
 /// Parameters of several stages of one method, in order; their names differ.
 std::vector<sim::Parameter> joined_parameters(std::initializer_list<std::span<const sim::Parameter>> stages);
 
-/// Whether the registration estimates by how much the rates of clipped axes are short.
-enum class ExcessRate { ignored, estimated };
+/// What the lidar-inertial chain estimates beside the motion.
+struct SlamChain {
+  bool excess_rate = false;  ///< by how much the rates of clipped axes are short; `excess_parameters`
+  /// Mounting and clock of the lidar, and gravity; `calibration_parameters`. The recording is run through twice: what
+  /// the first run learns of the calibration is the start of the second.
+  bool calibration = false;
+};
 
-/// The lidar-inertial chain behind every registration method: given rates, deskew, register, map.
-/// With ExcessRate::estimated `parameters` hold those of `excess_parameters` too.
+/// The lidar-inertial chain behind every registration method: given rates, deskew, register, map. `parameters` hold
+/// those of every part that `chain` asks for.
 void run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples, const sim::Values& parameters,
-                    Estimate& estimate, ExcessRate excess = ExcessRate::ignored);
+                    const SlamChain& chain, Estimate& estimate);
 
 /// Parameters of `run_slam_chain`.
 std::span<const sim::Parameter> slam_parameters();
 
 /// Parameters of `run_slam_chain` that count where the excess rate is estimated.
 std::span<const sim::Parameter> excess_parameters();
+
+/// Parameters of `run_slam_chain` that count where the calibration is estimated.
+std::span<const sim::Parameter> calibration_parameters();
 
 }  // namespace tumble::scenarios

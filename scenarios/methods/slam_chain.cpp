@@ -11,6 +11,8 @@ namespace tumble::scenarios {
 
 namespace {
 
+constexpr double kBelieved = 5.0;  // standard deviations that a calibration may move by
+
 // the library's own defaults, so that each stands in one place
 const std::array<sim::Parameter, 8>& parameters_of_the_chain() {
   static const LidarInertialOdometry::Params library;
@@ -38,8 +40,19 @@ const std::array<sim::Parameter, 2>& parameters_of_the_excess() {
   return parameters;
 }
 
+// what calibrations of a rig that was put together by hand may be off by
+const std::array<sim::Parameter, 4>& parameters_of_the_calibration() {
+  static const std::array<sim::Parameter, 4> parameters = {{
+      {"mount_sigma_rad", 0.01, 0.0, 1.0, "rad", "the lidar's attitude on the IMU as given; 0: exact"},
+      {"mount_sigma_m", 0.006, 0.0, 1.0, "m", "the lidar's position on the IMU as given; 0: exact"},
+      {"time_offset_sigma_s", 0.003, 0.0, 0.02, "s", "offset between the clocks of lidar and IMU; 0: none"},
+      {"gravity_sigma_m_s2", 0.03, 0.0, 10.0, "m/s^2", "gravity's direction as levelled at the start; 0: exact"},
+  }};
+  return parameters;
+}
+
 LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const sim::Values& parameters,
-                                              ExcessRate excess) {
+                                              const SlamChain& chain) {
   LidarInertialOdometry::Params params;
   params.T_IL = bridge::T_IL(sensors.imus.front(), sensors.lidars.front());
   params.gravity_m_s2 = sensors.gravity_m_s2;
@@ -51,10 +64,16 @@ LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const
   params.match_distance_m = parameters.at("match_distance_m");
   params.prior_sigma_m = parameters.at("prior_sigma_m");
   params.prior_sigma_rad = parameters.at("prior_sigma_rad");
-  if (excess == ExcessRate::estimated) {
+  if (chain.excess_rate) {
     params.estimate_excess_rate = true;
     params.excess_sigma_min_rad_s = parameters.at("excess_sigma_min_rad_s");
     params.clipped_sigma_rad_s = parameters.at("clipped_sigma_rad_s");
+  }
+  if (chain.calibration) {
+    params.mount_sigma_rad = parameters.at("mount_sigma_rad");
+    params.mount_sigma_m = parameters.at("mount_sigma_m");
+    params.time_offset_sigma_s = parameters.at("time_offset_sigma_s");
+    params.gravity_sigma_m_s2 = parameters.at("gravity_sigma_m_s2");
   }
   return params;
 }
@@ -66,42 +85,34 @@ void append_poses(const LidarInertialOdometry::SweepReport& report, std::vector<
   }
 }
 
-}  // namespace
-
-std::span<const sim::Parameter> slam_parameters() {
-  return parameters_of_the_chain();
+/// Cuts a sweep where the IMU ends, if that leaves most of it: clocks that disagree must not cost the last sweep.
+bool shorten(std::int64_t end_ns, bridge::Sweep& sweep) {
+  if (end_ns >= sweep.end_ns) return true;
+  const std::int64_t left_ns = end_ns - sweep.start_ns;
+  if (2 * left_ns < sweep.end_ns - sweep.start_ns) return false;
+  // those beyond the sweep itself stay: they are a fault of the recording and shall be told
+  const std::int64_t length_ns = sweep.end_ns - sweep.start_ns;
+  std::erase_if(sweep.points, [&](const LidarPoint& p) { return p.offset_ns > left_ns && p.offset_ns <= length_ns; });
+  sweep.end_ns = end_ns;
+  return true;
 }
 
-std::span<const sim::Parameter> excess_parameters() {
-  return parameters_of_the_excess();
-}
-
-void run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples, const sim::Values& parameters,
-                    Estimate& estimate, ExcessRate excess) {
-  estimate.frame = Frame::imu;
-  count_sources(estimate.rates, estimate.health);
-  if (sensors.lidars.empty()) {
-    estimate.status = {Trouble::empty, "lidars", 0.0, 1.0};
-    return;
-  }
-  const sim::LidarRecord& lidar = sensors.lidars.front();
+/// Feeds the whole recording; `estimate` gets what came of it but the map.
+void run_sweeps(const sim::LidarRecord& lidar, std::span<const ImuSample> samples, LidarInertialOdometry& odometry,
+                double time_offset_s, Estimate& estimate) {
+  const auto offset_ns = static_cast<std::int64_t>(std::llround(time_offset_s * 1e9));
   const std::size_t sweeps = bridge::sweep_count(lidar);
-  if (sweeps == 0) {
-    estimate.status = {Trouble::empty, "lidar.sweep_start_ns", 0.0, 1.0};
-    return;
-  }
-
-  LidarInertialOdometry odometry(odometry_params(sensors, parameters, excess));
   std::size_t next = 0;
   for (std::size_t k = 0; k < sweeps; ++k) {
-    const bridge::Sweep sweep = bridge::sweep(lidar, k);
+    bridge::Sweep sweep = bridge::sweep(lidar, k);
+    const std::int64_t needed_ns = sweep.end_ns + offset_ns;
     // the IMU up to the first sample at or after the sweep's end
-    while (next < samples.size() && (next == 0 || samples[next - 1].time_ns < sweep.end_ns)) {
+    while (next < samples.size() && (next == 0 || samples[next - 1].time_ns < needed_ns)) {
       estimate.status = odometry.add_imu(samples[next], estimate.rates[next]);
       if (!estimate.status.ok()) return;
       ++next;
     }
-    if (samples.back().time_ns < sweep.end_ns) {
+    if (!shorten(samples.back().time_ns - offset_ns, sweep)) {
       estimate.health["sweeps_unfinished"] += 1.0;
       continue;
     }
@@ -120,15 +131,99 @@ void run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samp
     if (!status.ok()) estimate.health[std::string("sweeps_") + to_string(status.trouble)] += 1.0;
     estimate.health[std::string("sweeps_") + to_string(report.verdict)] += 1.0;
     append_poses(report, estimate.poses);
+    estimate.sweep_end_ns.push_back(report.pose.time_ns);
     estimate.sweeps.push_back(std::move(report));
-    estimate.sweep_end_ns.push_back(sweep.end_ns);
   }
+}
+
+/// How sure the chain is of where it ended; a world that does not hold it shows here.
+void report_end(Estimate& estimate) {
+  if (estimate.sweeps.empty()) return;
+  const Eigen::Matrix<double, 6, 6>& P = estimate.sweeps.back().pose.covariance;
+  estimate.health["end_sigma_m"] = std::sqrt(P.topLeftCorner<3, 3>().trace());
+  estimate.health["end_sigma_rad"] = std::sqrt(P.bottomRightCorner<3, 3>().trace());
+}
+
+/// How far the calibration moved from what was given.
+void report_calibration(const LidarInertialOdometry& odometry, const sim::Sensors& sensors,
+                        std::map<std::string, double>& health) {
+  SweepCalibration given;
+  given.T_IL = bridge::T_IL(sensors.imus.front(), sensors.lidars.front());
+  const auto moved = odometry.calibration().minus(given);
+  health["calibration_rotation_rad"] = moved.head<3>().norm();
+  health["calibration_translation_m"] = moved.segment<3>(3).norm();
+  health["calibration_time_offset_s"] = moved[6];
+}
+
+/// Starts again from what the first run learnt of the calibration, unless that is beyond belief.
+bool learn(const LidarInertialOdometry& odometry, const Estimate& first, LidarInertialOdometry::Params& params) {
+  const SweepCalibration learnt = odometry.calibration();
+  SweepCalibration given;
+  given.T_IL = params.T_IL;
+  const auto moved = learnt.minus(given);
+  const auto rejected = std::count_if(first.sweeps.begin(), first.sweeps.end(),
+                                      [](const auto& sweep) { return sweep.verdict == SweepVerdict::rejected; });
+  if (moved.head<3>().norm() > kBelieved * params.mount_sigma_rad ||
+      moved.segment<3>(3).norm() > kBelieved * params.mount_sigma_m ||
+      std::abs(moved[6]) > kBelieved * params.time_offset_sigma_s ||
+      5 * static_cast<std::size_t>(rejected) > first.sweeps.size()) {
+    return false;
+  }
+  const auto sigma = odometry.calibration_covariance().diagonal().cwiseSqrt().eval();
+  params.T_IL = learnt.T_IL;
+  params.time_offset_s = learnt.time_offset_s;
+  params.mount_sigma_rad = sigma.head<3>().maxCoeff();
+  params.mount_sigma_m = sigma.segment<3>(3).maxCoeff();
+  params.time_offset_sigma_s = sigma[6];
+  return true;
+}
+
+}  // namespace
+
+std::span<const sim::Parameter> slam_parameters() {
+  return parameters_of_the_chain();
+}
+
+std::span<const sim::Parameter> excess_parameters() {
+  return parameters_of_the_excess();
+}
+
+std::span<const sim::Parameter> calibration_parameters() {
+  return parameters_of_the_calibration();
+}
+
+void run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples, const sim::Values& parameters,
+                    const SlamChain& chain, Estimate& estimate) {
+  estimate.frame = Frame::imu;
+  count_sources(estimate.rates, estimate.health);
+  if (sensors.lidars.empty()) {
+    estimate.status = {Trouble::empty, "lidars", 0.0, 1.0};
+    return;
+  }
+  const sim::LidarRecord& lidar = sensors.lidars.front();
+  if (bridge::sweep_count(lidar) == 0) {
+    estimate.status = {Trouble::empty, "lidar.sweep_start_ns", 0.0, 1.0};
+    return;
+  }
+
+  LidarInertialOdometry::Params params = odometry_params(sensors, parameters, chain);
+  Estimate run = estimate;
+  LidarInertialOdometry odometry(params);
+  run_sweeps(lidar, samples, odometry, params.time_offset_s, run);
+  if (chain.calibration && run.status.ok() && learn(odometry, run, params)) {
+    run = estimate;
+    odometry = LidarInertialOdometry(params);
+    run_sweeps(lidar, samples, odometry, params.time_offset_s, run);
+    run.health["passes"] = 2.0;
+  }
+  estimate = std::move(run);
+  if (!estimate.status.ok()) return;
+  if (chain.calibration) report_calibration(odometry, sensors, estimate.health);
+  report_end(estimate);
   estimate.map = odometry.map();
   const bool any = std::any_of(estimate.sweeps.begin(), estimate.sweeps.end(),
                                [](const auto& sweep) { return sweep.verdict != SweepVerdict::rejected; });
-  if (!any) {
-    estimate.status = {Trouble::too_few, "lidar.sweeps_registered", 0.0, 1.0};
-  }
+  if (!any) estimate.status = {Trouble::too_few, "lidar.sweeps_registered", 0.0, 1.0};
 }
 
 }  // namespace tumble::scenarios

@@ -16,7 +16,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (estimate.status.ok()) estimate.status = saave_rates(sensors, samples, parameters, estimate.rates);
-  if (estimate.status.ok()) run_slam_chain(sensors, samples, parameters, estimate);
+  if (estimate.status.ok()) run_slam_chain(sensors, samples, parameters, {}, estimate);
   return estimate;
 }
 

@@ -8,7 +8,7 @@ namespace {
 
 std::span<const sim::Parameter> parameters_with_rates() {
   static const std::vector<sim::Parameter> all =
-      joined_parameters({slam_parameters(), excess_parameters(), tumble_rate_parameters()});
+      joined_parameters({slam_parameters(), excess_parameters(), calibration_parameters(), tumble_rate_parameters()});
   return all;
 }
 
@@ -19,7 +19,8 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   if (estimate.status.ok()) {
     estimate.status = tumble_rates(sensors, samples, parameters, estimate.rates, estimate.health);
   }
-  if (estimate.status.ok()) run_slam_chain(sensors, samples, parameters, estimate, ExcessRate::estimated);
+  if (estimate.status.ok())
+    run_slam_chain(sensors, samples, parameters, {.excess_rate = true, .calibration = true}, estimate);
   return estimate;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/slam_registry.hpp"
 #include "tumble/angular_velocity/rail_detector.hpp"
 
 namespace tumble::scenarios {
@@ -8,11 +9,23 @@ namespace tumble::scenarios {
 namespace {
 
 std::span<const sim::Parameter> parameters_with_excess() {
-  static const std::vector<sim::Parameter> all = joined_parameters({slam_parameters(), excess_parameters()});
+  static const std::vector<sim::Parameter> all =
+      joined_parameters({slam_parameters(), excess_parameters(), calibration_parameters()});
   return all;
 }
 
-// the gyro as it is; which axes are at their rail is what the registration must know to estimate their excess
+Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  Estimate estimate;
+  std::vector<ImuSample> samples;
+  estimate.status = bridge::primary_imu_samples(sensors, samples);
+  if (estimate.status.ok()) estimate.status = railed_rates(sensors, samples, estimate.rates);
+  if (estimate.status.ok())
+    run_slam_chain(sensors, samples, parameters, {.excess_rate = true, .calibration = true}, estimate);
+  return estimate;
+}
+
+}  // namespace
+
 Status railed_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<RateState>& out) {
   const sim::ImuRecord& record = sensors.imus.front();
   RailDetector::Params params;
@@ -29,17 +42,6 @@ Status railed_rates(const sim::Sensors& sensors, std::span<const ImuSample> samp
   }
   return {};
 }
-
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  Estimate estimate;
-  std::vector<ImuSample> samples;
-  estimate.status = bridge::primary_imu_samples(sensors, samples);
-  if (estimate.status.ok()) estimate.status = railed_rates(sensors, samples, estimate.rates);
-  if (estimate.status.ok()) run_slam_chain(sensors, samples, parameters, estimate, ExcessRate::estimated);
-  return estimate;
-}
-
-}  // namespace
 
 Method slam_tumble_gyro_only() {
   MethodInfo info;

@@ -1,11 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <Eigen/Cholesky>
+#include <algorithm>
+
 #include "scenarios/scoring/families.hpp"
 #include "scenarios/scoring/registered_sweeps.hpp"
 #include "scenarios/scoring/truth_track.hpp"
+#include "tumble/common/so3.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
+
+// the last sweep that the truth reaches: clocks that are late stamp the end of a recording beyond it
+const LidarInertialOdometry::SweepReport* last_covered(const Estimate& estimate, const TruthTrack& truth) {
+  const auto covered = [&](const auto& sweep) { return truth.covers(sweep.pose.time_ns); };
+  const auto last = std::find_if(estimate.sweeps.rbegin(), estimate.sweeps.rend(), covered);
+  return last == estimate.sweeps.rend() ? nullptr : &*last;
+}
 
 // estimated motion from the sixth registered sweep to the last sweep, seen from the true one
 bool end_error(const Estimate& estimate, const ScoringInput& input, Eigen::Vector3d& translation,
@@ -13,9 +24,10 @@ bool end_error(const Estimate& estimate, const ScoringInput& input, Eigen::Vecto
   const std::vector<std::size_t> registered = registered_sweeps(estimate);
   if (registered.size() < kStartSweep || registered[kStartSweep - 1] + 1 >= estimate.sweeps.size()) return false;
   const PoseState& first = estimate.sweeps[registered[kStartSweep - 1]].pose;
-  const PoseState& last = estimate.sweeps.back().pose;
   const TruthTrack truth(*input.truth, estimate.frame);
-  if (!truth.covers(first.time_ns) || !truth.covers(last.time_ns)) return false;
+  const auto* last_sweep = last_covered(estimate, truth);
+  if (last_sweep == nullptr || last_sweep->pose.time_ns <= first.time_ns) return false;
+  const PoseState& last = last_sweep->pose;
   const PoseState true_first = truth.pose(first.time_ns);
   const PoseState true_last = truth.pose(last.time_ns);
   translation = first.q_WA.conjugate() * (last.p_WA_m - first.p_WA_m) -
@@ -40,6 +52,28 @@ bool rotation_error_end(const Estimate& estimate, const ScoringInput& input, dou
   return true;
 }
 
+// of the last sweep's pose, aligned at the first pose, against its own reported covariance: mean 1 when that holds
+bool pose_nees(const Estimate& estimate, const ScoringInput& input, double& value) {
+  if (estimate.sweeps.empty() || estimate.poses.empty()) return false;
+  const TruthTrack truth(*input.truth, estimate.frame);
+  const auto* last_sweep = last_covered(estimate, truth);
+  if (last_sweep == nullptr) return false;
+  const PoseState& last = last_sweep->pose;
+  if (last.covariance.diagonal().minCoeff() <= 0.0) return false;  // none reported
+  const Alignment alignment = pair_poses(estimate, truth).alignment;
+  const PoseState aligned = alignment.apply(last);
+  const PoseState true_pose = truth.pose(last.time_ns);
+  Eigen::Matrix<double, 6, 1> error;
+  error << true_pose.p_WA_m - aligned.p_WA_m, so3::log((true_pose.q_WA * aligned.q_WA.conjugate()).normalized());
+  // the covariance is in the estimator's world: its error is turned there
+  const Eigen::Matrix3d back = alignment.transform().linear().transpose();
+  error << Eigen::Vector3d(back * error.head<3>()), Eigen::Vector3d(back * error.tail<3>());
+  const Eigen::LLT<Eigen::Matrix<double, 6, 6>> factor(last.covariance);
+  if (factor.info() != Eigen::Success) return false;
+  value = factor.matrixL().solve(error).squaredNorm() / 6.0;
+  return true;
+}
+
 }  // namespace
 
 std::vector<std::size_t> registered_sweeps(const Estimate& estimate) {
@@ -55,6 +89,8 @@ std::vector<Metric> end_pose_metrics() {
       {"translation_error_end_m", Kind::slam, "m",
        "error of the motion from the sixth registered sweep to the last sweep: translation", translation_error_end},
       {"rotation_error_end_rad", Kind::slam, "rad", "the same: rotation, up to pi", rotation_error_end},
+      {"pose_nees", Kind::slam, "1",
+       "squared error of the last sweep's pose over its reported covariance, per degree of freedom", pose_nees},
   };
 }
 

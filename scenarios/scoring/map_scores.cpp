@@ -9,10 +9,11 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr float kToleranceM = 0.25f;   // Deschenes et al.: a map point farther from the surface is an outlier
-constexpr double kOutliersMax = 0.15;  // the same: a larger share of them is a failed map
-constexpr float kSurfaceCellM = 0.1f;  // the seen surface counts once per cell, however often it was hit
-constexpr double kSeenRangeM = 100.0;  // of the frame's start; farther hits nobody maps
+constexpr float kToleranceM = 0.25f;     // Deschenes et al.: a map point farther from the surface is an outlier
+constexpr float kFineToleranceM = 0.1f;  // of a map that is sharp, not only whole
+constexpr double kOutliersMax = 0.15;    // the same: a larger share of them is a failed map
+constexpr float kSurfaceCellM = 0.1f;    // the seen surface counts once per cell, however often it was hit
+constexpr double kSeenRangeM = 100.0;    // of the frame's start; farther hits nobody maps
 
 // map points in W, by the alignment of position and yaw at the start
 std::vector<Eigen::Vector3f> map_in_world(const Estimate& estimate, const ScoringInput& input) {
@@ -37,7 +38,7 @@ std::vector<Eigen::Vector3f> seen_surface(const sim::Truth& truth) {
   return one_per_cell(hits, kSurfaceCellM);
 }
 
-bool overlap(const Estimate& estimate, const ScoringInput& input, double& value) {
+bool overlap_within(const Estimate& estimate, const ScoringInput& input, float tolerance_m, double& value) {
   if (input.surface == nullptr || estimate.map.empty()) return false;
   const std::vector<Eigen::Vector3f> all = map_in_world(estimate, input);
   std::vector<Eigen::Vector3f> finite;
@@ -45,10 +46,18 @@ bool overlap(const Estimate& estimate, const ScoringInput& input, double& value)
     if (point.allFinite()) finite.push_back(point);
   }
   // the limit lies beyond the tolerance, so that "farther than the limit" is not "within"
-  const std::vector<float> distances = input.surface->distances(finite, 2.0f * kToleranceM);
-  const auto within = std::count_if(distances.begin(), distances.end(), [](float d) { return d <= kToleranceM; });
+  const std::vector<float> distances = input.surface->distances(finite, 2.0f * tolerance_m);
+  const auto within = std::count_if(distances.begin(), distances.end(), [&](float d) { return d <= tolerance_m; });
   value = static_cast<double>(within) / static_cast<double>(all.size());
   return true;
+}
+
+bool overlap(const Estimate& estimate, const ScoringInput& input, double& value) {
+  return overlap_within(estimate, input, kToleranceM, value);
+}
+
+bool fine_overlap(const Estimate& estimate, const ScoringInput& input, double& value) {
+  return overlap_within(estimate, input, kFineToleranceM, value);
 }
 
 bool coverage(const Estimate& estimate, const ScoringInput& input, double& value) {
@@ -76,9 +85,11 @@ bool failed(const Estimate& estimate, const ScoringInput& input, double& value) 
 std::vector<Metric> map_metrics() {
   return {
       {"map_overlap", Kind::slam, "1", "share of map points within 0.25 m of the true surface", overlap},
-      {"map_coverage", Kind::slam, "1",
-       "share of the truly seen surface (cells of 0.1 m) within 0.25 m of a map point", coverage},
-      {"map_failed", Kind::slam, "1", "1 when more than 15 % of the map lies off the surface, or there is none", failed},
+      {"map_overlap_0_10", Kind::slam, "1", "the same within 0.10 m", fine_overlap},
+      {"map_coverage", Kind::slam, "1", "share of the truly seen surface (cells of 0.1 m) within 0.25 m of a map point",
+       coverage},
+      {"map_failed", Kind::slam, "1", "1 when more than 15 % of the map lies off the surface, or there is none",
+       failed},
   };
 }
 

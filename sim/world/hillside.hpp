@@ -13,8 +13,8 @@
 namespace tumble::sim::hillside {
 
 inline constexpr double kHalfExtent_m = 20.0;
-/// Nodes along a side: cells of 20 cm. In cells of 10 cm a strut that an impact drives in by some centimetres is pushed out
-/// sideways and stays wedged for seconds.
+/// Nodes along a side: cells of 20 cm. In cells of 10 cm a strut that an impact drives in by some centimetres is pushed
+/// out sideways and stays wedged for seconds.
 inline constexpr int kSide = 201;
 inline constexpr double kEdge_m = -8.0;    ///< x of the upper edge
 inline constexpr double kSetBack_m = 0.8;  ///< the robot starts this far behind the edge

@@ -50,7 +50,8 @@ TEST_P(WrongUse, EndsWithTwoAndOneClearLine) {
 
 INSTANTIATE_TEST_SUITE_P(
     Program, WrongUse,
-    testing::Values(Wrong{"no verb", {}, "a verb is missing"}, Wrong{"verb", {"rnu", "hill"}, "did you mean 'run'?"},
+    testing::Values(Wrong{"no verb", {}, "a verb is missing"},
+                    Wrong{"option before the verb", {"--quiet", "list", "methods"}, "goes behind the verb"}, Wrong{"verb", {"rnu", "hill"}, "did you mean 'run'?"},
                     Wrong{"scenario", {"run", "hil", "--seed", "1"}, "did you mean 'hill'?"},
                     Wrong{"method", {"run", "hill", "--seed", "1", "--method", "saavee"}, "saave"},
                     Wrong{"method of a sweep", {"sweep", "demo", "--method", "saavee", "--db", "/dev/null/x.db"}, "saave"},

@@ -49,6 +49,7 @@ std::string usage_line(const CLI::App& app, const CLI::ParseError& error) {
       for (const std::string& name : each->get_lnames()) known.push_back("--" + name);
     }
     const std::string near = sim::nearest_name(*option, known);
+    if (near == *option) return place + "'" + near + "' goes behind the verb: tumble " + verb.get_name() + " " + near;
     return place + "unknown option '" + *option + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?");
   }
   std::string reason = error.what();

@@ -24,12 +24,23 @@ PointCounts select_points(std::span<const LidarPoint> points, const PointBounds&
     const float range2 = point.position_L_m.squaredNorm();
     if (range2 < near2 || range2 > far2 || (has_body && body.contains(point.position_L_m))) continue;
     const double offset_s = seconds(point.offset_ns);
-    selected.push_back({R * point.position_L_m + p, static_cast<float>(sweep_start_s + offset_s),
+    selected.push_back({R * point.position_L_m + p, point.position_L_m, static_cast<float>(sweep_start_s + offset_s),
                         static_cast<float>(offset_s), std::sqrt(range2), point.ring});
     counts.rings_differ |= point.ring != selected.front().ring;
   }
   counts.used = selected.size();
   return counts;
+}
+
+void apply_calibration(const SweepCalibration& calibration, double later_s, std::span<const SweepPoint> points,
+                       std::vector<SweepPoint>& moved) {
+  moved.assign(points.begin(), points.end());
+  const Eigen::Matrix3f R = calibration.T_IL.linear().cast<float>();
+  const Eigen::Vector3f p = calibration.T_IL.translation().cast<float>();
+  for (SweepPoint& point : moved) {
+    point.x_I_m = R * point.x_L_m + p;
+    point.t_s += static_cast<float>(later_s);
+  }
 }
 
 void compute_levers(const SweepTrajectory& trajectory, std::span<const SweepPoint> points,

@@ -11,7 +11,7 @@ namespace tumble::mapping {
 namespace {
 
 constexpr double kReferenceSpan_s = 0.1;  // the prior's standard deviations are stated for this
-constexpr TimeNs kGap_ns = 50'000'000;    // longer windows say nothing about the rate inside of them
+constexpr double kGapForce_m_s2 = 5.0;    // what a velocity that goes on through a gap may be off by, per second
 
 // a levelled start: gravity's direction within the accelerometer's bias, speed within what passes for rest
 constexpr double kStartTilt_rad = 0.01;
@@ -34,7 +34,7 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
   const TimeNs start_ns = trajectory.start_ns();
   std::size_t hint = 0;
   Eigen::Matrix3d turned = Eigen::Matrix3d::Zero();
-  double pushed_m_s = 0.0;
+  double pushed_m_s = 0.0, gap_m_s = 0.0, gap_m = 0.0;
   for (const MotionSample& sample : samples) {
     const double from = std::max(seconds(sample.from_ns - start_ns), 0.0);
     const double to = std::min(seconds(sample.time_ns - start_ns), trajectory.duration_s());
@@ -44,11 +44,17 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
     for (int axis = 0; axis < 3; ++axis) {
       if (excess_axes >> axis & sample.clipped_axes >> axis & 1) variance[axis] = 0.0;
     }
-    pushed_m_s += (to - from) * sample.f_I_m_s2.norm();
+    if (sample.bridges_gap) {
+      gap_m += gap_m_s * (to - from) + 0.5 * kGapForce_m_s2 * (to - from) * (to - from);
+      gap_m_s += kGapForce_m_s2 * (to - from);
+    } else {
+      pushed_m_s += (to - from) * sample.f_I_m_s2.norm();
+    }
     turned += (to - from) * R * variance.asDiagonal() * R.transpose();
   }
   noise.diagonal().segment<3>(6).setConstant(std::pow(params.prior_sigma_m_s * span, 2) +
-                                             std::pow(params.force_sigma_share * pushed_m_s, 2));
+                                             std::pow(params.force_sigma_share * pushed_m_s, 2) + gap_m_s * gap_m_s);
+  noise.diagonal().segment<3>(0).array() += gap_m * gap_m;
   // held still: velocity is zero, and what it would have moved by does not count
   const auto rests = [&](const MotionSample& sample) {
     return sample.at_rest || seconds(sample.from_ns - start_ns) >= trajectory.duration_s();

@@ -9,6 +9,9 @@
 
 namespace tumble::mapping {
 
+/// Longer windows say nothing about what the motion was inside of them.
+inline constexpr TimeNs kGap_ns = 50'000'000;
+
 /// What the inertial side may be wrong by over one stretch, as uncertainty of the state at its start: the registration
 /// refines a stretch by its start, so noise that arises inside is booked there. A rate error is taken as constant over
 /// the stretch (it comes from a rail, not from white noise), which makes the attitude's standard deviation the time

@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "tumble/common/so3.hpp"
@@ -15,34 +16,82 @@ namespace {
 using Vector = Registration::Vector;
 using Matrix = Registration::Matrix;
 
-constexpr int kRigid = 9;  // unknowns without the excess rate
+constexpr int kRigid = Registration::kMotion;
+constexpr int kUnknowns = Registration::kUnknowns;
 // variance given to an unknown whose prior claims none, so that the prior can be inverted
 constexpr double kLeastVariance = 1e-12;
 
-/// Pulls the estimate towards the prior: adds its information and gradient to the normal equations.
-void add_prior(const Registration::Prior& prior, const Eigen::Matrix<double, kRigid, kRigid>& information,
-               const MotionState& now, const Eigen::Vector3d& excess, Matrix& H, Vector& g) {
-  const Eigen::Vector3d turned = so3::log(now.q_WI * prior.state.q_WI.conjugate());
-  Eigen::Matrix<double, kRigid, 1> away;
-  away << now.p_WI_m - prior.state.p_WI_m, turned, now.v_WI_m_s - prior.state.v_WI_m_s;
-  Eigen::Matrix<double, kRigid, kRigid> J = Eigen::Matrix<double, kRigid, kRigid>::Identity();
-  J.block<3, 3>(3, 3) = so3::left_jacobian_inverse(turned);
-  H.topLeftCorner<kRigid, kRigid>() += J.transpose() * information * J;
-  g.head<kRigid>() += J.transpose() * information * away;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double sigma = prior.excess_sigma_rad_s[axis];
-    const int row = kRigid + axis;
-    if (sigma > 0.0) {
-      H(row, row) += 1.0 / (sigma * sigma);
-      g[row] += (excess[axis] - prior.excess_rad_s[axis]) / (sigma * sigma);
-    } else {
-      // not estimated: its row and column are cut, its step is zero
-      H.row(row).setZero();
-      H.col(row).setZero();
-      H(row, row) = 1.0;
-      g[row] = 0.0;
+/// The prior as one normal distribution; unknowns that are not estimated are marked.
+struct JointPrior {
+  Matrix covariance = Matrix::Zero();
+  Matrix information = Matrix::Zero();
+  std::array<bool, kUnknowns> held{};
+  bool rigid = true;  // neither excess nor calibration is free
+  bool calibrates = false;
+
+  explicit JointPrior(const Registration::Prior& prior) {
+    constexpr int kCal = Registration::kCalibration;
+    covariance.topLeftCorner<kRigid, kRigid>() = prior.state.covariance;
+    covariance.diagonal().segment<3>(Registration::kExcess) = prior.excess_sigma_rad_s.cwiseAbs2();
+    covariance.bottomRightCorner<SweepCalibration::kErrors, SweepCalibration::kErrors>() = prior.calibration_covariance;
+    covariance.block<kRigid, SweepCalibration::kErrors>(0, kCal) = prior.motion_calibration;
+    covariance.block<SweepCalibration::kErrors, kRigid>(kCal, 0) = prior.motion_calibration.transpose();
+    for (int i = kRigid; i < kUnknowns; ++i) {
+      held[static_cast<std::size_t>(i)] = covariance(i, i) <= 0.0;
+      if (covariance(i, i) <= 0.0) continue;
+      rigid = false;
+      calibrates = calibrates || i >= kCal;
     }
+    Matrix positive = covariance;
+    positive.diagonal().array() += kLeastVariance;
+    information = positive.llt().solve(Matrix::Identity());
   }
+};
+
+/// Where the iterations stand.
+struct Estimate {
+  MotionState state;
+  Eigen::Vector3d excess_rad_s;
+  SweepCalibration calibration;
+
+  void add(const Vector& step) {
+    state.p_WI_m += step.segment<3>(0);
+    state.q_WI = (so3::exp(step.segment<3>(3)) * state.q_WI).normalized();
+    state.v_WI_m_s += step.segment<3>(6);
+    excess_rad_s += step.segment<3>(Registration::kExcess);
+    calibration.add(step.tail<SweepCalibration::kErrors>());
+  }
+};
+
+/// Pulls the estimate towards the prior: adds its information and gradient to the normal equations.
+void add_prior(const Registration::Prior& prior, const JointPrior& joint, const Estimate& now, Matrix& H, Vector& g) {
+  const Eigen::Vector3d turned = so3::log(now.state.q_WI * prior.state.q_WI.conjugate());
+  Vector away;
+  away << now.state.p_WI_m - prior.state.p_WI_m, turned, now.state.v_WI_m_s - prior.state.v_WI_m_s,
+      now.excess_rad_s - prior.excess_rad_s, now.calibration.minus(prior.calibration);
+  Matrix J = Matrix::Identity();
+  J.block<3, 3>(3, 3) = so3::left_jacobian_inverse(turned);
+  H += J.transpose() * joint.information * J;
+  g += J.transpose() * (joint.information * away);
+  for (int i = 0; i < kUnknowns; ++i) {
+    if (!joint.held[static_cast<std::size_t>(i)]) continue;
+    // not estimated: its row and column are cut, its step is zero
+    H.row(i).setZero();
+    H.col(i).setZero();
+    H(i, i) = 1.0;
+    g[i] = 0.0;
+  }
+}
+
+bool is_small(const Vector& step, double span_s, const Registration::Params& params) {
+  constexpr int kCal = Registration::kCalibration;
+  const bool lengths = step.segment<3>(0).norm() < params.step_m &&
+                       step.segment<3>(6).norm() * span_s < params.step_m &&
+                       step.segment<3>(kCal + 3).norm() < params.step_m &&
+                       step.segment<3>(kCal + 7).norm() * span_s * span_s < params.step_m;
+  return lengths && step.segment<3>(3).norm() < params.step_rad &&
+         step.segment<3>(Registration::kExcess).norm() * span_s < params.step_rad &&
+         step.segment<3>(kCal).norm() < params.step_rad && std::abs(step[kCal + 6]) < 1e-5;
 }
 
 }  // namespace
@@ -85,16 +134,21 @@ double Registration::point_sigma_m(const SweepPoint& point) const {
   return std::sqrt(range * range + skew * skew);
 }
 
-double Registration::residual(const SweepTrajectory& trajectory, const SweepPoint& point, const PlaneFit& plane,
-                              std::size_t& hint, Vector& derivative) {
+double Registration::residual(const SweepTrajectory& trajectory, const SweepCalibration& calibration,
+                              const SweepPoint& point, const PlaneFit& plane, std::size_t& hint, Vector& derivative) {
   const SweepTrajectory::Instant now = trajectory.at(point.t_s, hint);
-  const Eigen::Vector3d turned = now.q_WI * point.x_I_m.cast<double>();
+  const Eigen::Vector3d x_I = point.x_I_m.cast<double>();
+  const Eigen::Vector3d turned = now.q_WI * x_I;
   const Eigen::Vector3d lever = now.thrust_m + turned;
   const Eigen::Vector3d n = plane.normal_W.cast<double>();
+  const Eigen::Vector3d n_I = now.q_WI.conjugate() * n;
   const SweepTrajectory::ExcessDerivative by_excess = trajectory.excess_derivative(point.t_s, hint);
-  derivative << n, lever.cross(n), point.t_s * n,
-      (by_excess.thrust_m_s - so3::hat(turned) * by_excess.attitude_s).transpose() * n;
-  return n.dot(trajectory.base_m(point.t_s) + lever - plane.centre_W_m.cast<double>());
+  const double t = point.t_s;
+  derivative << n, lever.cross(n), t * n,
+      (by_excess.thrust_m_s - so3::hat(turned) * by_excess.attitude_s).transpose() * n,
+      (x_I - calibration.T_IL.translation()).cross(n_I), n_I, n.dot(trajectory.velocity_m_s(t, x_I, hint)),
+      (0.5 * t * t) * n;
+  return n.dot(trajectory.base_m(t) + lever - plane.centre_W_m.cast<double>());
 }
 
 void Registration::find_matches(const VoxelMap& map, std::span<const SweepPoint> points) {
@@ -130,7 +184,7 @@ double Registration::kernel_width_m() {
 }
 
 Registration::Normal Registration::accumulate(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
-                                              bool with_excess, double kernel_m) {
+                                              const SweepCalibration& calibration, bool rigid, double kernel_m) {
   Normal sum;
   std::size_t hint = 0;
   const double kernel2 = kernel_m * kernel_m;
@@ -147,9 +201,9 @@ Registration::Normal Registration::accumulate(std::span<const SweepPoint> points
     const Eigen::Vector3d lever = levers_[i].cast<double>();
     Eigen::Matrix<double, kRigid, 1> j;
     j << n, lever.cross(n), static_cast<double>(points[i].t_s) * n;
-    if (with_excess) {
+    if (!rigid) {
       Vector full;
-      residual(trajectory, points[i], match.plane, hint, full);
+      residual(trajectory, calibration, points[i], match.plane, hint, full);
       sum.H.selfadjointView<Eigen::Lower>().rankUpdate(full, w);
       sum.g += (w * r) * full;
     } else {
@@ -168,23 +222,23 @@ Registration::Normal Registration::accumulate(std::span<const SweepPoint> points
 }
 
 Status Registration::align(const Prior& prior, std::span<const MotionSample> samples, TimeNs end_ns,
-                           double gravity_m_s2, std::span<const SweepPoint> points, const VoxelMap& map,
-                           SweepTrajectory& trajectory, Result& result) {
+                           std::span<const SweepPoint> given, const VoxelMap& map, SweepTrajectory& trajectory,
+                           Result& result) {
+  const JointPrior joint(prior);
   result = Result{};
   result.state = prior.state;
+  result.calibration = prior.calibration;
   result.excess_rad_s = prior.excess_rad_s;
   result.excess_sigma_rad_s = prior.excess_sigma_rad_s;
-  result.points = points.size();
-  MotionState now = prior.state;
-  Eigen::Vector3d excess = prior.excess_start_rad_s;
-  if (Status status = trajectory.build(now, samples, end_ns, gravity_m_s2, excess); !status.ok()) return status;
+  result.covariance = joint.covariance;
+  result.points = given.size();
+  Estimate now{prior.state, prior.excess_start_rad_s, prior.calibration};
+  const auto build = [&](const Estimate& from) {
+    return trajectory.build(from.state, samples, end_ns, from.calibration.gravity_W_m_s2, from.excess_rad_s);
+  };
+  if (Status status = build(now); !status.ok()) return status;
 
-  Eigen::Matrix<double, kRigid, kRigid> covariance = prior.state.covariance;
-  covariance.diagonal().array() += kLeastVariance;
-  const Eigen::Matrix<double, kRigid, kRigid> information =
-      covariance.llt().solve(Eigen::Matrix<double, kRigid, kRigid>::Identity());
-  const bool with_excess = (prior.excess_sigma_rad_s.array() > 0.0).any();
-
+  std::span<const SweepPoint> points = given;
   matches_.assign(points.size(), Match{});
   positions_.resize(points.size());
   distances_.resize(points.size());
@@ -194,11 +248,16 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
   Matrix H = Matrix::Zero();
   const auto refuse = [&](RegistrationVerdict verdict) {
     result.verdict = verdict;
-    return trajectory.build(prior.state, samples, end_ns, gravity_m_s2, prior.excess_rad_s);
+    return build({prior.state, prior.excess_rad_s, prior.calibration});
   };
   bool settled = false;
   while (!settled && result.iterations < params_.iterations_max) {
     ++result.iterations;
+    if (joint.calibrates && result.iterations > 1) {
+      apply_calibration(now.calibration, now.calibration.time_offset_s - prior.calibration.time_offset_s, given,
+                        moved_);
+      points = moved_;
+    }
     compute_levers(trajectory, points, levers_);
     for (std::size_t i = 0; i < points.size(); ++i) {
       positions_[i] = (trajectory.base_m(points[i].t_s) + levers_[i].cast<double>()).cast<float>();
@@ -207,26 +266,21 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
     for (std::size_t i = 0; i < points.size(); ++i) {
       distances_[i] = matches_[i].plane.normal_W.dot(positions_[i] - matches_[i].plane.centre_W_m);
     }
-    sum = accumulate(points, trajectory, with_excess, kernel_width_m());
+    sum = accumulate(points, trajectory, now.calibration, joint.rigid, kernel_width_m());
     result.matches = sum.matches;
     result.inliers = sum.inliers;
     if (sum.matches < matches_needed) return refuse(RegistrationVerdict::too_few);
 
     H = sum.H;
     Vector g = sum.g;
-    add_prior(prior, information, now, excess, H, g);
+    add_prior(prior, joint, now, H, g);
     const Vector step = -H.ldlt().solve(g);
     if (!step.allFinite()) return refuse(RegistrationVerdict::diverged);
-    now.p_WI_m += step.segment<3>(0);
-    now.q_WI = (so3::exp(step.segment<3>(3)) * now.q_WI).normalized();
-    now.v_WI_m_s += step.segment<3>(6);
-    excess += step.segment<3>(9);
-    if (Status status = trajectory.build(now, samples, end_ns, gravity_m_s2, excess); !status.ok()) return status;
-    const double span = trajectory.duration_s();
-    settled = step.segment<3>(0).norm() < params_.step_m && step.segment<3>(6).norm() * span < params_.step_m &&
-              step.segment<3>(3).norm() < params_.step_rad && step.segment<3>(9).norm() * span < params_.step_rad;
-    result.correction_m = (now.p_WI_m - prior.state.p_WI_m).norm();
-    result.correction_rad = so3::log(now.q_WI * prior.state.q_WI.conjugate()).norm();
+    now.add(step);
+    if (Status status = build(now); !status.ok()) return status;
+    settled = is_small(step, trajectory.duration_s(), params_);
+    result.correction_m = (now.state.p_WI_m - prior.state.p_WI_m).norm();
+    result.correction_rad = so3::log(now.state.q_WI * prior.state.q_WI.conjugate()).norm();
     if (result.correction_m > params_.correction_max_m || result.correction_rad > params_.correction_max_rad) break;
   }
   // a false minimum: most matches lie off their planes
@@ -234,16 +288,21 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
   if (!settled || !fits) return refuse(RegistrationVerdict::diverged);
 
   const Matrix posterior = H.ldlt().solve(Matrix::Identity());
-  now.covariance = 0.5 * (posterior + posterior.transpose()).topLeftCorner<kRigid, kRigid>();
-  result.state = now;
-  result.excess_rad_s = excess;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (prior.excess_sigma_rad_s[axis] > 0.0) {
-      result.excess_sigma_rad_s[axis] = std::sqrt(posterior(kRigid + axis, kRigid + axis));
-    }
+  result.covariance = 0.5 * (posterior + posterior.transpose());
+  for (int i = 0; i < kUnknowns; ++i) {
+    if (joint.held[static_cast<std::size_t>(i)]) result.covariance(i, i) = 0.0;
   }
+  result.state = now.state;
+  result.state.covariance = result.covariance.topLeftCorner<kRigid, kRigid>();
+  result.excess_rad_s = now.excess_rad_s;
+  result.excess_sigma_rad_s = result.covariance.diagonal().segment<3>(kExcess).cwiseMax(0.0).cwiseSqrt();
+  result.calibration = now.calibration;
   result.verdict = RegistrationVerdict::converged;
+  describe_shape(sum, result);
+  return build({result.state, result.excess_rad_s, result.calibration});
+}
 
+void Registration::describe_shape(const Normal& sum, Result& result) {
   const double lever_m = std::sqrt(std::max(sum.lever2 / sum.weight, 1e-12));
   Eigen::Matrix<double, 6, 1> scale;
   scale << 1.0, 1.0, 1.0, 1.0 / lever_m, 1.0 / lever_m, 1.0 / lever_m;
@@ -252,7 +311,9 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
                                                                           scale.asDiagonal() / sum.weight);
   result.eigenvalues = solver.eigenvalues().cwiseMax(0.0);
   result.directions = solver.eigenvectors();
-  return trajectory.build(now, samples, end_ns, gravity_m_s2, excess);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> information(
+      scale.asDiagonal() * sum.H.topLeftCorner<6, 6>() * scale.asDiagonal(), Eigen::EigenvaluesOnly);
+  result.weakest_sigma_m = 1.0 / std::sqrt(std::max(information.eigenvalues()[0], 1e-12));
 }
 
 }  // namespace tumble

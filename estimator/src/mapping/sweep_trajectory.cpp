@@ -30,9 +30,9 @@ PoseState MotionState::pose() const {
 }
 
 Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSample> samples, TimeNs end_ns,
-                              double gravity_m_s2, const Eigen::Vector3d& excess_rad_s) {
+                              const Eigen::Vector3d& gravity_W_m_s2, const Eigen::Vector3d& excess_rad_s) {
   start_ = start;
-  gravity_m_s2_ = gravity_m_s2;
+  gravity_W_m_s2_ = gravity_W_m_s2;
   duration_s_ = seconds(end_ns - start.time_ns);
   clipped_axes_ = 0;
   intervals_.clear();
@@ -63,7 +63,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     now.excess_sign = sign;
     const Eigen::Matrix3d R = now.q_WI.toRotationMatrix();
     const Eigen::Matrix3d mean_rotation = R * so3::left_jacobian(now.w_I * dt);
-    now.a_W = mean_rotation * sample.f_I_m_s2;
+    now.a_W = sample.bridges_gap ? Eigen::Vector3d(-gravity_W_m_s2) : Eigen::Vector3d(mean_rotation * sample.f_I_m_s2);
 
     next.q_WI = (now.q_WI * so3::exp(now.w_I * dt)).normalized();
     next.thrust_v = now.thrust_v + now.a_W * dt;
@@ -87,10 +87,18 @@ const SweepTrajectory::Interval& SweepTrajectory::interval_at(double t_s, std::s
 }
 
 SweepTrajectory::Instant SweepTrajectory::at(double t_s, std::size_t& hint) const {
-  const double t = std::clamp(t_s, 0.0, duration_s_);
+  const double t = std::clamp(t_s, -kBeyond_s, duration_s_ + kBeyond_s);
   const Interval& now = interval_at(t, hint);
   const double s = t - now.start_s;
   return {now.q_WI * so3::exp(now.w_I * s), now.thrust_p + s * now.thrust_v + (0.5 * s * s) * now.a_W};
+}
+
+Eigen::Vector3d SweepTrajectory::velocity_m_s(double t_s, const Eigen::Vector3d& x_I_m, std::size_t& hint) const {
+  const double t = std::clamp(t_s, -kBeyond_s, duration_s_ + kBeyond_s);
+  const Interval& now = interval_at(t, hint);
+  const double s = t - now.start_s;
+  return start_.v_WI_m_s + t * gravity_W_m_s2_ + now.thrust_v + s * now.a_W +
+         now.q_WI * (so3::exp(now.w_I * s) * now.w_I.cross(x_I_m));
 }
 
 SweepTrajectory::ExcessDerivative SweepTrajectory::excess_derivative(double t_s, std::size_t& hint) const {
@@ -110,19 +118,31 @@ MotionState SweepTrajectory::state(double t_s) const {
   const double s = t - now.start_s;
   MotionState state;
   state.time_ns = start_.time_ns + static_cast<TimeNs>(std::llround(t * 1e9));
-  const Eigen::Vector3d thrust_p = now.thrust_p + s * now.thrust_v + (0.5 * s * s) * now.a_W;
-  const Eigen::Vector3d thrust_v = now.thrust_v + s * now.a_W;
   state.q_WI = (now.q_WI * so3::exp(now.w_I * s)).normalized();
-  state.p_WI_m = base_m(t) + thrust_p;
-  state.v_WI_m_s = start_.v_WI_m_s + thrust_v - Eigen::Vector3d(0.0, 0.0, gravity_m_s2_ * t);
-
-  Eigen::Matrix<double, 9, 9> F = Eigen::Matrix<double, 9, 9>::Identity();
-  F.block<3, 3>(0, 3) = -so3::hat(thrust_p);
-  F.block<3, 3>(0, 6) = t * Eigen::Matrix3d::Identity();
-  F.block<3, 3>(6, 3) = -so3::hat(thrust_v);
+  state.p_WI_m = base_m(t) + now.thrust_p + s * now.thrust_v + (0.5 * s * s) * now.a_W;
+  state.v_WI_m_s = start_.v_WI_m_s + now.thrust_v + s * now.a_W + t * gravity_W_m_s2_;
+  const Eigen::Matrix<double, 9, 9> F = transition(t).by_start;
   const Eigen::Matrix<double, 9, 9> P = F * start_.covariance * F.transpose();
   state.covariance = 0.5 * (P + P.transpose());
   return state;
+}
+
+SweepTrajectory::Transition SweepTrajectory::transition(double t_s) const {
+  const double t = std::clamp(t_s, 0.0, duration_s_);
+  std::size_t hint = 0;
+  const Interval& now = interval_at(t, hint);
+  const double s = t - now.start_s;
+  Transition out;
+  out.by_start.setIdentity();
+  out.by_start.block<3, 3>(0, 3) = -so3::hat(now.thrust_p + s * now.thrust_v + (0.5 * s * s) * now.a_W);
+  out.by_start.block<3, 3>(0, 6) = t * Eigen::Matrix3d::Identity();
+  out.by_start.block<3, 3>(6, 3) = -so3::hat(now.thrust_v + s * now.a_W);
+
+  const ExcessDerivative excess = excess_derivative(t, hint);
+  const Eigen::Matrix3d mean_attitude = 0.5 * (now.excess_attitude + excess.attitude_s);
+  out.by_excess_s << excess.thrust_m_s, excess.attitude_s, now.excess_v - so3::hat(now.a_W) * mean_attitude * s;
+  out.by_gravity << 0.5 * t * t * Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Zero(), t * Eigen::Matrix3d::Identity();
+  return out;
 }
 
 }  // namespace tumble

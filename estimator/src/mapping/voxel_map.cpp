@@ -115,6 +115,32 @@ Eigen::Vector3f VoxelMap::position_W_m(std::uint32_t index) const {
   return {chunk.x[place], chunk.y[place], chunk.z[place]};
 }
 
+std::vector<std::uint32_t> VoxelMap::keep_within(const Eigen::Vector3f& centre, float radius_m) {
+  const auto stays = [&](std::uint32_t index) {
+    return exists(index) && (position_W_m(index) - centre).squaredNorm() <= radius_m * radius_m;
+  };
+  std::vector<std::uint32_t> kept;
+  for (std::uint32_t index = 0; index < index_end(); ++index) {
+    if (stays(index)) kept.push_back(sweep_[index]);
+  }
+  std::sort(kept.begin(), kept.end());
+  kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
+
+  VoxelMap near(params_);
+  for (std::uint32_t index = 0; index < index_end(); ++index) {
+    if (!stays(index)) continue;
+    const auto number = std::lower_bound(kept.begin(), kept.end(), sweep_[index]) - kept.begin();
+    near.insert(position_W_m(index), sigma_m_[index], static_cast<std::uint32_t>(number), line_[index]);
+  }
+  *this = std::move(near);
+  return kept;
+}
+
+std::size_t VoxelMap::bytes() const {
+  return groups_of_.bytes() + taken_.bytes() + groups_.capacity() * sizeof(Group) + chunks_.capacity() * sizeof(Chunk) +
+         sigma_m_.capacity() * sizeof(float) + (sweep_.capacity() + line_.capacity()) * sizeof(std::uint32_t);
+}
+
 void VoxelMap::nearest(const Eigen::Vector3f& query, int k, float radius_m, Neighbours& found) const {
   found.count = 0;
   const float voxel_m = static_cast<float>(params_.voxel_m);

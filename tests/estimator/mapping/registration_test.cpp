@@ -67,8 +67,7 @@ Registration::Result align(const test::Room& room, const Registration::Prior& pr
   const VoxelMap map = map_of(room);
   const std::vector<SweepPoint> points = still_points(room);
   EXPECT_GT(points.size(), 1000u);
-  EXPECT_TRUE(
-      registration.align(prior, still_samples(), test::kSweep_ns, kGravity, points, map, trajectory, result).ok());
+  EXPECT_TRUE(registration.align(prior, still_samples(), test::kSweep_ns, points, map, trajectory, result).ok());
   return result;
 }
 
@@ -81,9 +80,12 @@ TEST(Registration, DerivativesMatchDifferences) {
   start.q_WI = so3::exp({0.3, -0.2, 0.9});
   start.v_WI_m_s = Eigen::Vector3d(2, -1, 0.5);
   const Eigen::Vector3d excess(0.4, 0.0, -0.2);
-  SweepPoint point;
-  point.x_I_m = Eigen::Vector3f(7.0f, -3.0f, 2.0f);
-  point.t_s = 0.073f;
+  SweepPoint measured;
+  measured.x_L_m = Eigen::Vector3f(7.0f, -3.0f, 2.0f);
+  measured.t_s = 0.073f;
+  SweepCalibration nominal;
+  nominal.T_IL.linear() = so3::exp({0.2, -0.1, -1.4}).toRotationMatrix();
+  nominal.T_IL.translation() = Eigen::Vector3d(0.02, 0.09, 0.04);
   PlaneFit plane;
   plane.normal_W = Eigen::Vector3f(0.5f, -0.3f, 0.8f).normalized();
 
@@ -92,10 +94,20 @@ TEST(Registration, DerivativesMatchDifferences) {
     moved.p_WI_m += d.segment<3>(0);
     moved.q_WI = so3::exp(d.segment<3>(3)) * moved.q_WI;
     moved.v_WI_m_s += d.segment<3>(6);
+    SweepCalibration calibration = nominal;
+    calibration.add(d.tail<SweepCalibration::kErrors>());
+    // in doubles: the floats of a SweepPoint would hide steps this small
+    const Eigen::Vector3d x_I = calibration.T_IL * measured.x_L_m.cast<double>();
     SweepTrajectory trajectory;
-    EXPECT_TRUE(trajectory.build(moved, samples, 1'100'000'000, kGravity, excess + d.segment<3>(9)).ok());
+    EXPECT_TRUE(
+        trajectory.build(moved, samples, 1'100'000'000, calibration.gravity_W_m_s2, excess + d.segment<3>(9)).ok());
     std::size_t hint = 0;
-    return Registration::residual(trajectory, point, plane, hint, derivative);
+    const double t = static_cast<double>(measured.t_s) + calibration.time_offset_s;
+    const SweepTrajectory::Instant now = trajectory.at(t, hint);
+    SweepPoint point = measured;
+    point.x_I_m = x_I.cast<float>();
+    Registration::residual(trajectory, calibration, point, plane, hint, derivative);
+    return plane.normal_W.cast<double>().dot(trajectory.base_m(t) + now.thrust_m + now.q_WI * x_I);
   };
   Registration::Vector analytic, unused;
   residual(Registration::Vector::Zero(), analytic);
@@ -104,9 +116,10 @@ TEST(Registration, DerivativesMatchDifferences) {
     Registration::Vector step = Registration::Vector::Zero();
     step[i] = h;
     const double numeric = (residual(step, unused) - residual(-step, unused)) / (2.0 * h);
-    // rigid part: rounding of floats in the plane over h. Excess: its effect within a sample is taken to first order, 1
-    // %
-    const double tolerance = i < 9 ? 1e-5 : 0.01 * std::abs(numeric) + 1e-5;
+    // floats of the point and the plane over the lever: 1e-6 of it. Excess: its effect within a sample is taken to
+    // first order, 1 %
+    const bool of_excess = i >= Registration::kExcess && i < Registration::kCalibration;
+    const double tolerance = (of_excess ? 0.01 : 1e-5) * std::abs(numeric) + 1e-5;
     EXPECT_NEAR(analytic[i], numeric, tolerance) << "unknown " << i;
     // negative control: the same comparison refuses a derivative that is a twentieth off
     if (std::abs(numeric) > 1e-3) {
@@ -188,16 +201,14 @@ TEST(Registration, NeverTakesNoMatchesForSuccess) {
   const Registration::Prior prior = loose_prior(0.3, 0.1);
   // an empty map, then one out of reach
   VoxelMap map({0.5, 0.1});
-  ASSERT_TRUE(
-      registration.align(prior, still_samples(), test::kSweep_ns, kGravity, points, map, trajectory, result).ok());
+  ASSERT_TRUE(registration.align(prior, still_samples(), test::kSweep_ns, points, map, trajectory, result).ok());
   EXPECT_EQ(result.verdict, RegistrationVerdict::too_few);
   EXPECT_EQ(result.matches, 0u);
   EXPECT_EQ(result.state.p_WI_m, prior.state.p_WI_m);
   for (int i = 0; i < 1000; ++i) map.insert({500.0f + 0.1f * (i % 30), 0.1f * (i / 30), 0.0f}, 0.02f, 0);
-  ASSERT_TRUE(
-      registration.align(prior, still_samples(), test::kSweep_ns, kGravity, points, map, trajectory, result).ok());
+  ASSERT_TRUE(registration.align(prior, still_samples(), test::kSweep_ns, points, map, trajectory, result).ok());
   EXPECT_EQ(result.verdict, RegistrationVerdict::too_few);
-  ASSERT_TRUE(registration.align(prior, still_samples(), test::kSweep_ns, kGravity, {}, map, trajectory, result).ok());
+  ASSERT_TRUE(registration.align(prior, still_samples(), test::kSweep_ns, {}, map, trajectory, result).ok());
   EXPECT_EQ(result.verdict, RegistrationVerdict::too_few);
 }
 
@@ -241,8 +252,7 @@ class MovingSweep : public testing::Test {
     select_points(test::make_sweep(room, motion, none, 10), {0.3, 30.0, Eigen::AlignedBox3d()}, none, 0.0, all);
     for (std::size_t i = 0; i < all.size(); i += 5) points.push_back(all[i]);
     Registration registration(Registration::Params{});
-    ASSERT_TRUE(
-        registration.align(prior, samples, 1'100'000'000, kGravity, points, map_of(room), trajectory_, result_).ok());
+    ASSERT_TRUE(registration.align(prior, samples, 1'100'000'000, points, map_of(room), trajectory_, result_).ok());
     const MotionState end = trajectory_.state(0.1);
     end_error_m_ = (end.p_WI_m - motion.p_m(1.1)).norm();
     end_error_rad_ = so3::log(end.q_WI * motion.q(1.1).conjugate()).norm();

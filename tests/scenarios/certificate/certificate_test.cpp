@@ -179,6 +179,9 @@ TEST(Rows, TwiceTheBiasFailsTheImus) {
     EXPECT_THAT(failed, testing::Contains("imu_bias_instability (" + std::string(device) + " gyro)"));
     EXPECT_THAT(failed, testing::Contains("imu_bias_instability (" + std::string(device) + " accel)"));
   }
+  for (const char* walking : {"mti30 gyro", "mti30 accel", "vn100 gyro", "vn100 accel"}) {
+    EXPECT_THAT(failed, testing::Contains("imu_bias_walk (" + std::string(walking) + ")"));
+  }
 }
 
 TEST(Rows, OtherDrawsFailTheDigests) {

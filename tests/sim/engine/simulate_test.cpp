@@ -162,9 +162,9 @@ TEST(Simulate, StartPoseIsWhereTheTruthBegins) {
   const Situation situation = tumble_down(3.0, 100.0);
   const Truth truth = simulate(situation, {models_folder(), 1}).truth;
   const Eigen::Isometry3d T_WB = start_pose(situation, models_folder());
-  // it settles by the contacts' give under its weight and 3 mm of gap (measured: 8 mm)
+  // it settles through 3 mm of gap into the give of its contacts and leans on uneven ground (measured: 7 mm, 0.040 rad)
   EXPECT_LT((T_WB.translation() - truth.p_WB_m.front()).norm(), 0.03);
-  EXPECT_LT(Eigen::Quaterniond(T_WB.linear()).angularDistance(truth.q_WB.front()), 0.05);
+  EXPECT_LT(Eigen::Quaterniond(T_WB.linear()).angularDistance(truth.q_WB.front()), 0.1);
 }
 
 TEST(Simulate, AnUnknownSiteNamesTheNearest) {

@@ -27,7 +27,7 @@ namespace tumble {
 class AccelerometerRate {
  public:
   struct Params {
-    RailDetector::Params rails;
+    RailDetector::Params rails = {};
     bool use_gyro = true;
     double gyro_noise_density = 5.236e-4;  ///< [rad/s/sqrt(Hz)]; [1e-9, 1]
     double accel_noise_density = 1.5e-3;   ///< the worst of the accelerometers [m/s^2/sqrt(Hz)]; [1e-9, 10]

@@ -25,13 +25,15 @@ namespace tumble {
 ///   smoothest curve that keeps rate, acceleration and jerk on both sides. Made for swings that pass the rail once,
 ///   without impacts.
 ///
+/// In gaps of a third of a second, as long flights have them, the two smooth ones run away to the largest rate.
+///
 /// What none of them models: impacts inside of a gap, and the coupling of the axes of a tumbling body.
 class ClippedBaseline {
  public:
   enum class Kind { interpolate, reject, constant_jerk };
   struct Params {
     Kind kind = Kind::interpolate;
-    RailDetector::Params rails;
+    RailDetector::Params rails = {};
     /// Noise density of the gyro [rad/s/sqrt(Hz)]; [1e-9, 1].
     double gyro_noise_density = 5.236e-4;
     /// Density of the white angular acceleration of `reject` [rad^2/s^3]; [1e-12, 1e12].

@@ -27,7 +27,7 @@ namespace tumble {
 class MagnetometerRate {
  public:
   struct Params {
-    RailDetector::Params rails;
+    RailDetector::Params rails = {};
     double gyro_noise_density = 5.236e-4;  ///< [rad/s/sqrt(Hz)]; [1e-9, 1]
     double field_noise_t = 5e-8;           ///< of one reading, one standard deviation [T]; [1e-12, 1e-3]
     double hard_iron_t = 1e-6;             ///< offset of the sensor, one standard deviation [T]; [0, 1e-3]

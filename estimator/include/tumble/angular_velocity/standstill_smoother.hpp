@@ -23,7 +23,7 @@ namespace tumble {
 class StandstillSmoother {
  public:
   struct Params {
-    RailDetector::Params rails;
+    RailDetector::Params rails = {};
     double gravity_m_s2 = 9.80665;          ///< [0.1, 100]
     double gyro_noise_density = 5.236e-4;   ///< [rad/s/sqrt(Hz)]; [1e-9, 1]
     double accel_noise_density = 5.9e-4;    ///< [m/s^2/sqrt(Hz)]; [1e-9, 10]

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "tumble/mapping/calibration.hpp"
 #include "tumble/mapping/lidar.hpp"
 #include "tumble/mapping/spatial_hash.hpp"
 #include "tumble/mapping/sweep_trajectory.hpp"
@@ -16,9 +17,10 @@ namespace tumble {
 /// A lidar return that is used: in the IMU's axes at its own instant.
 struct SweepPoint {
   Eigen::Vector3f x_I_m = Eigen::Vector3f::Zero();
-  float t_s = 0.0f;        ///< after the start of the trajectory
-  float sweep_t_s = 0.0f;  ///< after the start of the sweep
-  float range_m = 0.0f;    ///< from the lidar
+  Eigen::Vector3f x_L_m = Eigen::Vector3f::Zero();  ///< as measured, so that the mounting can be refined
+  float t_s = 0.0f;                                 ///< after the start of the trajectory, by the IMU's clock
+  float sweep_t_s = 0.0f;                           ///< after the start of the sweep
+  float range_m = 0.0f;                             ///< from the lidar
   std::uint16_t ring = 0;
 };
 
@@ -41,6 +43,10 @@ struct PointCounts {
 /// trajectory's.
 PointCounts select_points(std::span<const LidarPoint> points, const PointBounds& bounds, const Eigen::Isometry3d& T_IL,
                           double sweep_start_s, std::vector<SweepPoint>& selected);
+
+/// The same points under another calibration, `later_s` later by the IMU's clock. `moved` may not be `points`. O(n).
+void apply_calibration(const SweepCalibration& calibration, double later_s, std::span<const SweepPoint> points,
+                       std::vector<SweepPoint>& moved);
 
 /// Levers u_i = S(t_i) + R(t_i) x_i of SweepTrajectory: the point in the world is trajectory.base_m(t_i) + u_i. O(n).
 void compute_levers(const SweepTrajectory& trajectory, std::span<const SweepPoint> points,

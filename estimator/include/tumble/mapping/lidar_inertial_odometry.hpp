@@ -11,49 +11,67 @@
 #include "tumble/common/imu.hpp"
 #include "tumble/common/pose.hpp"
 #include "tumble/common/status.hpp"
+#include "tumble/mapping/calibration.hpp"
 #include "tumble/mapping/lidar.hpp"
 
 namespace tumble {
 
 /// What became of a sweep. Anything but `registered` means that the pose rests on the inertial prior.
 enum class SweepVerdict : std::uint8_t {
-  first,        ///< started the map
-  registered,   ///< aligned with the map in all six directions
-  degenerate,   ///< aligned where the surfaces allow it, prior elsewhere (everywhere, when conditioning is 0)
-  rejected,     ///< too few matches, or a correction beyond the bound: prior kept, map not extended
+  first,       ///< started the map
+  registered,  ///< aligned with the map in all six directions
+  degenerate,  ///< aligned where the surfaces allow it, prior elsewhere (everywhere, when conditioning is 0)
+  rejected,    ///< too few matches, or a correction beyond the bound: prior kept, map not extended
 };
 const char* to_string(SweepVerdict verdict);
 
 /// Lidar-inertial odometry and mapping of a body that tumbles: integrates the IMU between sweeps, deskews each point at
-/// its own time, registers the sweep to a voxel map by k-nearest-neighbour point-to-plane, and extends the map. Position,
-/// attitude and velocity at the start of a sweep are refined together, so that the deskewing is refined too.
+/// its own time, registers the sweep to a voxel map by k-nearest-neighbour point-to-plane, and extends the map.
+/// Position, attitude and velocity at the start of a sweep are refined together, so that the deskewing is refined too.
 ///
 /// World: z up, origin and yaw at the IMU at the first sample, levelled by the specific force at rest.
 /// Feed IMU samples in time order, then each sweep once IMU samples reach its end. No threads, no files, no printing.
-/// Not modelled: biases of the IMU but the gyro's at the start, loop closure, moving objects.
+/// Where their standard deviation is not 0, the lidar's mounting, its clock and gravity are estimated with the motion,
+/// as one state with one covariance (an iterated error-state filter over sweeps). The map stays where it was drawn with
+/// what was known then: a caller that keeps its recording runs a second time from calibration() and gets a map of one
+/// piece.
+///
+/// After rejected sweeps the sensor is lost: the inertial prior goes on, with velocity zero while the IMU rests, and
+/// each further sweep is also tried against the map from starts around the prior, coarse to fine. Not modelled: biases
+/// of the IMU but the gyro's at the start, loop closure, moving objects.
 class LidarInertialOdometry {
  public:
   struct Params {
     Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< lidar in IMU axes
-    double gravity_m_s2 = 9.80665;    ///< bound [0, 100]
-    double rest_s = 0.5;              ///< at most this much of the start is used to level the attitude; bound (0, 60]
-    /// Rest at the start lasts while the rate stays below rest_rate_rad_s and the specific force within rest_force_m_s2 of
-    /// gravity and of its mean. Meanwhile the robot is held still, and the mean rate becomes the gyro's bias. Bounds [0, 10].
+    double time_offset_s = 0.0;                              ///< the IMU's clock minus the lidar's; bound [-1, 1]
+    /// Standard deviations of T_IL, of the time offset and of gravity's horizontal part; 0: exact, not estimated.
+    /// Bounds [0, 1], [0, 1], [0, 0.02], [0, 10].
+    double mount_sigma_rad = 0.0;
+    double mount_sigma_m = 0.0;
+    double time_offset_sigma_s = 0.0;
+    double gravity_sigma_m_s2 = 0.0;
+    double gravity_m_s2 = 9.80665;  ///< bound [0, 100]
+    double rest_s = 0.5;            ///< at most this much of the start is used to level the attitude; bound (0, 60]
+    /// Rest at the start lasts while the rate stays below rest_rate_rad_s and the specific force within rest_force_m_s2
+    /// of gravity and of its mean. Meanwhile the robot is held still, and the mean rate becomes the gyro's bias. Bounds
+    /// [0, 10].
     double rest_rate_rad_s = 0.05;
     double rest_force_m_s2 = 0.5;
-    double range_min_m = 0.3;         ///< nearer returns are dropped; bound [0, 10]
-    double range_max_m = 100.0;       ///< farther returns are dropped; bound (range_min_m, 1e4]
-    Eigen::AlignedBox3d own_body_L{Eigen::Vector3d(-0.5, -0.4, -0.27), Eigen::Vector3d(0.5, 0.4, 0.23)};  ///< returns inside are the robot's own; an empty box keeps all
-    double sweep_voxel_m = 0.25;      ///< one point per voxel of a sweep is registered; bound [0.01, 10]
-    double map_voxel_m = 0.5;         ///< cell of the map's hash; bound [0.01, 10]
-    double map_spacing_m = 0.1;       ///< at most one map point per cube of this edge; bound [0, map_voxel_m]
-    int neighbours = 12;              ///< k of the plane fit; bound [3, 32]
-    double match_distance_m = 1.0;    ///< farther map points are no match; bound [0.001, 10]
-    int iterations_max = 30;          ///< bound [1, 200]
-    double correction_max_m = 15.0;   ///< a larger correction of the prior is rejected
-    double correction_max_rad = 1.1;  ///< a larger correction of the prior is rejected
-    /// What the inertial side may be wrong by after 0.1 s, beside what RateState reports: standard deviations that grow in
-    /// proportion to time. Loose in doubt; tight holds a world with few features. Bounds (0, 1e3].
+    double range_min_m = 0.3;    ///< nearer returns are dropped; bound [0, 10]
+    double range_max_m = 100.0;  ///< farther returns are dropped; bound (range_min_m, 1e4]
+    Eigen::AlignedBox3d own_body_L{
+        Eigen::Vector3d(-0.5, -0.4, -0.27),
+        Eigen::Vector3d(0.5, 0.4, 0.23)};  ///< returns inside are the robot's own; an empty box keeps all
+    double sweep_voxel_m = 0.25;           ///< one point per voxel of a sweep is registered; bound [0.01, 10]
+    double map_voxel_m = 0.5;              ///< cell of the map's hash; bound [0.01, 10]
+    double map_spacing_m = 0.1;            ///< at most one map point per cube of this edge; bound [0, map_voxel_m]
+    int neighbours = 12;                   ///< k of the plane fit; bound [3, 32]
+    double match_distance_m = 1.0;         ///< farther map points are no match; bound [0.001, 10]
+    int iterations_max = 30;               ///< bound [1, 200]
+    double correction_max_m = 15.0;        ///< a larger correction of the prior is rejected
+    double correction_max_rad = 1.1;       ///< a larger correction of the prior is rejected
+    /// What the inertial side may be wrong by after 0.1 s, beside what RateState reports: standard deviations that grow
+    /// in proportion to time. Loose in doubt; tight holds a world with few features. Bounds (0, 1e3].
     double prior_sigma_m = 0.01;
     double prior_sigma_rad = 0.01;
     double prior_sigma_m_s = 0.03;
@@ -67,29 +85,43 @@ class LidarInertialOdometry {
     /// samples only; their prior is the rate's reported uncertainty, at least excess_sigma_min_rad_s; bound (0, 100].
     bool estimate_excess_rate = false;
     double excess_sigma_min_rad_s = 0.3;
-    /// A point's uncertainty grows over the sweep by this and weighs it down (the published time weighting); bound [0, 1e3].
+    /// A point's uncertainty grows over the sweep by this and weighs it down (the published time weighting); bound [0,
+    /// 1e3].
     double skew_sigma_m_s = 0.25;
-    /// A sweep whose conditioning is below this is `degenerate`; bound [0, 1].
-    double degenerate_conditioning = 0.01;
-    std::size_t matches_min = 100;    ///< fewer matched points reject a sweep
+    /// A sweep that its surfaces alone hold less surely than this in some direction is `degenerate` (standard
+    /// deviation, attitude counted at the rms lever); bound (0, 1e3].
+    double degenerate_sigma_m = 0.15;
+    std::size_t matches_min = 100;  ///< fewer matched points reject a sweep
     /// A sweep with too few matches still extends the map, as `degenerate`, while the inertial prior is this certain
     /// (standard deviations): at rest a lidar draws rings only, which give no planes until it turns. Bounds [0, 1e3].
     double trusted_prior_m = 0.1;
     double trusted_prior_rad = 0.03;
+    /// The map is kept within this of the sensor, to a tenth of it; bound (range_max_m / 10, 1e5].
+    double map_radius_m = 100.0;
+    /// Points that the trajectory places less surely than this are kept out of the map; bound (0, 1e3].
+    double map_sigma_max_m = 0.25;
+    /// Sweeps in a row with points but no place in the map, after which it goes on `degenerate` by inertia; bound [1,
+    /// 1e6].
+    int lost_sweeps_max = 30;
   };
 
   struct SweepReport {
     SweepVerdict verdict = SweepVerdict::rejected;
-    PoseState pose;                      ///< pose and velocity of the IMU at the end of the sweep, with covariance
-    std::vector<PoseState> trajectory;   ///< IMU poses inside the sweep at IMU times, corrected by the registration
-    double inlier_share = 0.0;           ///< of the points registered
-    double conditioning = 0.0;           ///< smallest over largest eigenvalue of the scaled normal matrix
+    PoseState pose;                     ///< pose and velocity of the IMU at the end of the sweep, with covariance
+    std::vector<PoseState> trajectory;  ///< IMU poses inside the sweep at IMU times, corrected by the registration
+    double inlier_share = 0.0;          ///< of the points registered
+    double conditioning = 0.0;          ///< smallest over largest eigenvalue of the scaled normal matrix
+    /// Standard deviation in the direction that the surfaces hold least, by this sweep's surfaces alone; 0: not
+    /// aligned.
+    double weakest_sigma_m = 0.0;
     int iterations = 0;
+    int lost_sweeps = 0;  ///< rejected in a row up to this sweep, this one included
     /// Direction in which the surfaces hold the pose least: (position, attitude scaled by the rms lever) in W, unit.
     Eigen::Matrix<double, 6, 1> weakest_direction = Eigen::Matrix<double, 6, 1>::Zero();
-    Eigen::Vector3d excess_rate_rad_s = Eigen::Vector3d::Zero();  ///< added to the clipped axes, along the sign of the rate
-    std::size_t points_used = 0;         ///< finite returns in range that are not the robot's own
-    std::size_t points_registered = 0;   ///< one per voxel of these
+    Eigen::Vector3d excess_rate_rad_s =
+        Eigen::Vector3d::Zero();        ///< added to the clipped axes, along the sign of the rate
+    std::size_t points_used = 0;        ///< finite returns in range that are not the robot's own
+    std::size_t points_registered = 0;  ///< one per voxel of these
     std::size_t map_points_added = 0;
   };
 
@@ -110,12 +142,20 @@ class LidarInertialOdometry {
   ///
   /// Trouble that leaves the state as it was: `time_order` (end before start, or start before the last sweep's end),
   /// `too_few` (IMU samples do not cover the sweep), `out_of_range` (an offset beyond the sweep).
-  /// Trouble after which the pose is the inertial prior and the verdict `rejected`: `empty` (no points), `non_finite` (no
-  /// finite point), `too_few` (none in range), `degenerate` (all points bear one time stamp though the sweep lasts).
+  /// Trouble after which the pose is the inertial prior and the verdict `rejected`: `empty` (no points), `non_finite`
+  /// (no finite point), `too_few` (none in range), `degenerate` (all points bear one time stamp though the sweep
+  /// lasts).
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, SweepReport& report);
 
-  /// The whole map so far, with normals from the nearest neighbours that look towards where the point was seen from.
-  /// O(number of points).
+  /// Calibration as estimated so far, and the covariance of its errors; the given one, and 0, where not estimated.
+  SweepCalibration calibration() const;
+  SweepCalibration::Covariance calibration_covariance() const;
+
+  /// Memory held by the map [bytes].
+  std::size_t map_bytes() const;
+
+  /// The map within map_radius_m, with normals from the nearest neighbours that look towards where the point was seen
+  /// from. O(number of points).
   std::vector<MapPoint> map() const;
 
  private:

@@ -3,9 +3,11 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
+#include "tumble/mapping/calibration.hpp"
 #include "tumble/mapping/deskew.hpp"
 #include "tumble/mapping/plane_fit.hpp"
 #include "tumble/mapping/sweep_trajectory.hpp"
@@ -24,10 +26,10 @@ enum class RegistrationVerdict : std::uint8_t {
 /// Registers a sweep to a map by point-to-plane distances, together with the motion inside the sweep.
 ///
 /// Unknowns: position, attitude (left perturbation in W) and velocity of the IMU at the start of the trajectory, and,
-/// where asked for, the excess rate of clipped axes. A point in the world is X = p + v t + g t^2/2 + Exp(phi) u with
-/// the lever u of SweepTrajectory, so that each iteration deskews anew. Cost: robustly weighted squared distances to
-/// planes through the k nearest map points, plus the prior's Mahalanobis distance; Gauss-Newton, a 12x12 normal matrix
-/// at most.
+/// where their prior leaves them free, the excess rate of clipped axes and the calibration. A point in the world is
+/// X = p + v t + g t^2/2 + Exp(phi) u with the lever u of SweepTrajectory, so that each iteration deskews anew. Cost:
+/// robustly weighted squared distances to planes through the k nearest map points, plus the prior's Mahalanobis
+/// distance; Gauss-Newton, a 22x22 normal matrix at most. In directions that no surface holds the prior stands.
 class Registration {
  public:
   struct Params {
@@ -52,9 +54,21 @@ class Registration {
     PlaneBounds plane;
   };
 
-  /// Start of the trajectory as the inertial side believes it, and of the excess rate.
+  static constexpr int kMotion = 9;                 ///< position, attitude, velocity
+  static constexpr int kExcess = kMotion;           ///< first unknown of the excess rate
+  static constexpr int kCalibration = kExcess + 3;  ///< first unknown of the calibration
+  static constexpr int kUnknowns = kCalibration + SweepCalibration::kErrors;
+  using Vector = Eigen::Matrix<double, kUnknowns, 1>;
+  using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
+  using Cross = Eigen::Matrix<double, kMotion, SweepCalibration::kErrors>;
+
+  /// Start of the trajectory as the inertial side believes it, of the excess rate, and of the calibration.
   struct Prior {
-    MotionState state;
+    MotionState state;  ///< with its covariance
+    SweepCalibration calibration;
+    SweepCalibration::Covariance calibration_covariance =
+        SweepCalibration::Covariance::Zero();  ///< a row of 0 is not estimated
+    Cross motion_calibration = Cross::Zero();  ///< covariance of the state's errors with the calibration's
     Eigen::Vector3d excess_rad_s = Eigen::Vector3d::Zero();
     Eigen::Vector3d excess_sigma_rad_s = Eigen::Vector3d::Zero();  ///< an axis with 0 is not estimated
     Eigen::Vector3d excess_start_rad_s = Eigen::Vector3d::Zero();  ///< where the iterations begin
@@ -63,6 +77,8 @@ class Registration {
   struct Result {
     RegistrationVerdict verdict = RegistrationVerdict::too_few;
     MotionState state;  ///< at the trajectory's start, covariance after registration (9x9)
+    SweepCalibration calibration;
+    Matrix covariance = Matrix::Zero();  ///< of all unknowns, in order; the prior's where nothing was registered
     Eigen::Vector3d excess_rad_s = Eigen::Vector3d::Zero();
     Eigen::Vector3d excess_sigma_rad_s = Eigen::Vector3d::Zero();
     std::size_t points = 0, matches = 0, inliers = 0;
@@ -73,26 +89,24 @@ class Registration {
     /// the prior: eigenvalues ascending, and their directions. The translation part has trace 1.
     Eigen::Matrix<double, 6, 1> eigenvalues = Eigen::Matrix<double, 6, 1>::Zero();
     Eigen::Matrix<double, 6, 6> directions = Eigen::Matrix<double, 6, 6>::Identity();
+    /// Standard deviation of the pose in the direction that the surfaces hold least, from the surfaces alone.
+    double weakest_sigma_m = std::numeric_limits<double>::infinity();
   };
 
   explicit Registration(const Params& params);
 
-  /// Aligns `points` (times after the start of the trajectory) with `map`. `trajectory` is rebuilt from `prior` and
+  /// Aligns `points` (taken with the prior's calibration) with `map`. `trajectory` is rebuilt from `prior` and
   /// `samples` up to `end_ns` and, on return, stands for the result. Trouble of the trajectory is passed on.
-  Status align(const Prior& prior, std::span<const MotionSample> samples, TimeNs end_ns, double gravity_m_s2,
+  Status align(const Prior& prior, std::span<const MotionSample> samples, TimeNs end_ns,
                std::span<const SweepPoint> points, const VoxelMap& map, SweepTrajectory& trajectory, Result& result);
 
   /// Standard deviation of a return along its ray together with the skew left after deskewing.
   double point_sigma_m(const SweepPoint& point) const;
 
-  static constexpr int kUnknowns = 12;
-  using Vector = Eigen::Matrix<double, kUnknowns, 1>;
-  using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
-
-  /// Distance of a point to a plane and its derivative by (position, attitude, velocity, excess), for one point.
-  /// Public so that it can be checked against differences.
-  static double residual(const SweepTrajectory& trajectory, const SweepPoint& point, const PlaneFit& plane,
-                         std::size_t& hint, Vector& derivative);
+  /// Distance of a point to a plane and its derivative by all unknowns, for one point. Public so that it can be checked
+  /// against differences.
+  static double residual(const SweepTrajectory& trajectory, const SweepCalibration& calibration,
+                         const SweepPoint& point, const PlaneFit& plane, std::size_t& hint, Vector& derivative);
 
  private:
   struct Match {
@@ -105,12 +119,14 @@ class Registration {
 
   void find_matches(const VoxelMap& map, std::span<const SweepPoint> points);
   double kernel_width_m();
-  Normal accumulate(std::span<const SweepPoint> points, const SweepTrajectory& trajectory, bool with_excess,
-                    double kernel_m);
+  static void describe_shape(const Normal& sum, Result& result);
+  Normal accumulate(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
+                    const SweepCalibration& calibration, bool rigid, double kernel_m);
 
   Params params_;
   // memory kept between sweeps; holds nothing that the next result depends on
   std::vector<Eigen::Vector3f> levers_, positions_;
+  std::vector<SweepPoint> moved_;
   std::vector<Match> matches_;
   std::vector<float> distances_, sorted_;
 };

@@ -36,6 +36,10 @@ class SpatialHash {
   /// Forgets all keys and keeps the memory.
   void clear();
   std::size_t size() const { return size_; }
+  /// Memory held.
+  std::size_t bytes() const {
+    return keys_.capacity() * sizeof(std::uint64_t) + values_.capacity() * sizeof(std::uint32_t);
+  }
 
  private:
   static constexpr std::uint64_t kFree = ~std::uint64_t{0};

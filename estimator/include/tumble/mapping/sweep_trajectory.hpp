@@ -23,6 +23,7 @@ struct MotionSample {
   Eigen::Vector3d rate_sigma_rad_s = Eigen::Vector3d::Zero();  ///< standard deviation of the rate, IMU axes
   std::uint8_t clipped_axes = 0;                               ///< bit j: the gyro's axis j was at its rail
   bool at_rest = false;                                        ///< belongs to the rest at the start
+  bool bridges_gap = false;  ///< longer than a sample: the force is not known inside, and the velocity goes on
 };
 
 /// Motion of the IMU at one instant. Errors are ordered (position, attitude, velocity), all in W, the attitude's as in
@@ -61,14 +62,21 @@ class SweepTrajectory {
   /// Integrates from `start` to `end_ns`. Samples must be in time order and follow each other; the first window must
   /// reach back to the start. Trouble: `too_few` (no sample, or they end before end_ns), `time_order` (end before
   /// start), `gap` (the first window begins after the start). Reuses its memory.
+  Status build(const MotionState& start, std::span<const MotionSample> samples, TimeNs end_ns,
+               const Eigen::Vector3d& gravity_W_m_s2, const Eigen::Vector3d& excess_rad_s = Eigen::Vector3d::Zero());
+  /// The same with gravity of this magnitude along -z.
   Status build(const MotionState& start, std::span<const MotionSample> samples, TimeNs end_ns, double gravity_m_s2,
-               const Eigen::Vector3d& excess_rad_s = Eigen::Vector3d::Zero());
+               const Eigen::Vector3d& excess_rad_s = Eigen::Vector3d::Zero()) {
+    return build(start, samples, end_ns, Eigen::Vector3d(0.0, 0.0, -gravity_m_s2), excess_rad_s);
+  }
 
   TimeNs start_ns() const { return start_.time_ns; }
   double duration_s() const { return duration_s_; }
 
-  /// State at `t_s` seconds after the start, clamped to the stretch. `hint` remembers the interval between calls in
-  /// time order and may hold anything in [0, intervals()); any order is right.
+  /// State at `t_s` seconds after the start. Up to kBeyond_s before the start and after the end the motion of the first
+  /// or last sample goes on (a clock may be that wrong); t_s is clamped there. `hint` remembers the interval between
+  /// calls in time order and may hold anything in [0, intervals()); any order is right.
+  static constexpr double kBeyond_s = 0.02;
   Instant at(double t_s, std::size_t& hint) const;
   ExcessDerivative excess_derivative(double t_s, std::size_t& hint) const;
   std::size_t intervals() const { return intervals_.size(); }
@@ -77,11 +85,23 @@ class SweepTrajectory {
 
   /// Position of a point at lever u(t) = S(t) + R(t) x: p_0 + v_0 t + g t^2 / 2 + u.
   Eigen::Vector3d base_m(double t_s) const {
-    return start_.p_WI_m + t_s * start_.v_WI_m_s - Eigen::Vector3d(0.0, 0.0, 0.5 * gravity_m_s2_ * t_s * t_s);
+    return start_.p_WI_m + t_s * start_.v_WI_m_s + (0.5 * t_s * t_s) * gravity_W_m_s2_;
   }
 
-  /// Full state at t_s, its covariance propagated from the start's without noise added.
+  /// Velocity in W of a point that is fixed at x_I in the IMU's axes.
+  Eigen::Vector3d velocity_m_s(double t_s, const Eigen::Vector3d& x_I_m, std::size_t& hint) const;
+
+  /// Full state at t_s within the stretch, its covariance propagated from the start's without noise added.
   MotionState state(double t_s) const;
+
+  /// First-order effect on the state (position, attitude, velocity) at t_s of the state at the start, of the excess
+  /// rate, and of gravity.
+  struct Transition {
+    Eigen::Matrix<double, 9, 9> by_start;
+    Eigen::Matrix<double, 9, 3> by_excess_s;
+    Eigen::Matrix<double, 9, 3> by_gravity;
+  };
+  Transition transition(double t_s) const;
 
   /// Bit j set: axis j was clipped somewhere in the stretch.
   std::uint8_t clipped_axes() const { return clipped_axes_; }
@@ -99,7 +119,7 @@ class SweepTrajectory {
 
   MotionState start_;
   double duration_s_ = 0.0;
-  double gravity_m_s2_ = 0.0;
+  Eigen::Vector3d gravity_W_m_s2_ = Eigen::Vector3d::Zero();
   std::uint8_t clipped_axes_ = 0;
   std::vector<Interval> intervals_;
 };

@@ -46,6 +46,13 @@ class VoxelMap {
   /// Exact. Does not allocate; cost grows with the number of cells that the final radius touches.
   void nearest(const Eigen::Vector3f& query_W_m, int k, float radius_m, Neighbours& found) const;
 
+  /// Forgets the points farther than `radius_m` from `centre` and gives their memory back. Indices change; the sweeps
+  /// that remain are renumbered in order, and the old number of each is returned. O(number of points).
+  std::vector<std::uint32_t> keep_within(const Eigen::Vector3f& centre_W_m, float radius_m);
+
+  /// Memory held [bytes].
+  std::size_t bytes() const;
+
   std::size_t size() const { return sigma_m_.size() - vacant_; }
   /// Indices handed out are below this; those that exists() refuses are free places inside of chunks.
   std::uint32_t index_end() const { return static_cast<std::uint32_t>(sigma_m_.size()); }

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace tumble {
+
+/// What ties a lidar to an IMU and both to the world, known to a calibration's accuracy only and refined with the
+/// motion. Errors are ordered (rotation of T_IL, left perturbation in IMU axes: R_true = Exp(phi) R; translation of
+/// T_IL; time offset; gravity).
+struct SweepCalibration {
+  static constexpr int kErrors = 10;
+  using Covariance = Eigen::Matrix<double, kErrors, kErrors>;
+
+  Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< lidar in IMU axes
+  double time_offset_s = 0.0;                              ///< the IMU's clock minus the lidar's
+  Eigen::Vector3d gravity_W_m_s2 = Eigen::Vector3d(0.0, 0.0, -9.80665);
+
+  /// Adds a small error in the order above.
+  void add(const Eigen::Matrix<double, kErrors, 1>& error);
+  /// The error that takes `other` to this, first order in the rotation's difference.
+  Eigen::Matrix<double, kErrors, 1> minus(const SweepCalibration& other) const;
+};
+
+}  // namespace tumble

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/mapping/calibration.hpp"
+
+#include "tumble/common/so3.hpp"
+
+namespace tumble {
+
+void SweepCalibration::add(const Eigen::Matrix<double, kErrors, 1>& error) {
+  const Eigen::Quaterniond turned = (so3::exp(error.segment<3>(0)) * Eigen::Quaterniond(T_IL.linear())).normalized();
+  T_IL.linear() = turned.toRotationMatrix();
+  T_IL.translation() += error.segment<3>(3);
+  time_offset_s += error[6];
+  gravity_W_m_s2 += error.segment<3>(7);
+}
+
+Eigen::Matrix<double, SweepCalibration::kErrors, 1> SweepCalibration::minus(const SweepCalibration& other) const {
+  Eigen::Matrix<double, kErrors, 1> error;
+  error << so3::log(Eigen::Quaterniond(T_IL.linear() * other.T_IL.linear().transpose()).normalized()),
+      T_IL.translation() - other.T_IL.translation(), time_offset_s - other.time_offset_s,
+      gravity_W_m_s2 - other.gravity_W_m_s2;
+  return error;
+}
+
+}  // namespace tumble

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/mapping/map_drawing.hpp"
+
+#include "tumble/mapping/plane_fit.hpp"
+
+namespace tumble::mapping {
+
+namespace {
+
+constexpr double kSameLineCosine = 0.9988;  // 0.05 rad, less than the angle between two rings
+constexpr int kRingBits = 16;
+
+}  // namespace
+
+std::uint32_t ScanLines::base(const Eigen::Vector3d& spin_axis_W, bool rings_differ) {
+  if (!rings_differ) return VoxelMap::kNoLine;
+  if (spin_axis_W.dot(axis_W_) < kSameLineCosine) {
+    axis_W_ = spin_axis_W;
+    ++attitude_;
+  }
+  return attitude_ << kRingBits;
+}
+
+std::vector<MapPoint> with_normals(const VoxelMap& map, std::span<const Eigen::Vector3f> seen_from_W_m, int neighbours,
+                                   double match_distance_m) {
+  std::vector<MapPoint> out;
+  out.reserve(map.size());
+  Neighbours found;
+  for (std::uint32_t index = 0; index < map.index_end(); ++index) {
+    if (!map.exists(index)) continue;
+    MapPoint& point = out.emplace_back();
+    point.position_W_m = map.position_W_m(index);
+    point.sigma_m = map.sigma_m(index);
+    map.nearest(point.position_W_m, neighbours, static_cast<float>(match_distance_m), found);
+    const PlaneFit plane = fit_plane(map, found, PlaneBounds{});
+    if (plane.verdict != PlaneVerdict::plane) continue;
+    const Eigen::Vector3f towards = seen_from_W_m[map.sweep(index)] - point.position_W_m;
+    point.normal_W = plane.normal_W.dot(towards) < 0.0f ? Eigen::Vector3f(-plane.normal_W) : plane.normal_W;
+  }
+  return out;
+}
+
+}  // namespace tumble::mapping

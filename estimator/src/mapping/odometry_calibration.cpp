@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "odometry_impl.hpp"
+#include "tumble/common/so3.hpp"
+
+namespace tumble {
+
+namespace {
+
+constexpr double kStartTilt_rad = 0.003;  // of a levelled start: an accelerometer's bias of 0.03 m/s^2
+// Registration counts a point for a tenth of what its noise says, so that it bears with outliers and with neighbours
+// that are no independent witnesses. Errors measured over tumbles (covariance_test) are smaller by this share of
+// variance.
+constexpr double kMeasuredShare = 0.06;
+// Of the weakest direction's standard deviation, per sweep, where the surfaces do not hold it: measured on `bare`.
+constexpr double kDriftShare = 0.1;
+constexpr double kDriftMax_m = 3.0;
+
+/// Pose errors of the IMU by errors of the mounting, at this attitude of it, while the lidar's pose is certain.
+Eigen::Matrix<double, 6, 6> pose_by_mounting(const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& p_IL_m) {
+  const Eigen::Matrix3d R = q_WI.toRotationMatrix();
+  Eigen::Matrix<double, 6, 6> B = Eigen::Matrix<double, 6, 6>::Zero();
+  B.topLeftCorner<3, 3>() = -R * so3::hat(p_IL_m);
+  B.topRightCorner<3, 3>() = -R;
+  B.bottomLeftCorner<3, 3>() = -R;
+  return B;
+}
+
+/// Covariance of (error of the pose) - by_mounting (error of the mounting).
+Eigen::Matrix<double, 6, 6> less_mounting(const Registration::Matrix& joint,
+                                          const Eigen::Matrix<double, 6, 6>& by_mounting) {
+  Eigen::Matrix<double, 6, Registration::kUnknowns> G = Eigen::Matrix<double, 6, Registration::kUnknowns>::Zero();
+  G.leftCols<6>().setIdentity();
+  G.middleCols<6>(Registration::kCalibration) = -by_mounting;
+  const Eigen::Matrix<double, 6, 6> P = G * joint * G.transpose();
+  return 0.5 * (P + P.transpose());
+}
+
+}  // namespace
+
+/// The map hangs on the lidar: at the start the lidar's pose is certain by definition, and an error of its mounting is
+/// one of the IMU's pose, of gravity as seen from the map too.
+void LidarInertialOdometry::Impl::start_calibration() {
+  calibration.T_IL = params.T_IL;
+  calibration.time_offset_s = 0.0;  // the given offset is applied to the stamps
+  calibration.gravity_W_m_s2 = Eigen::Vector3d(0.0, 0.0, -params.gravity_m_s2);
+  calibration_covariance.setZero();
+  motion_calibration.setZero();
+  auto diagonal = calibration_covariance.diagonal();
+  diagonal.segment<3>(0).setConstant(params.mount_sigma_rad * params.mount_sigma_rad);
+  diagonal.segment<3>(3).setConstant(params.mount_sigma_m * params.mount_sigma_m);
+  diagonal[6] = params.time_offset_sigma_s * params.time_offset_sigma_s;
+
+  const Eigen::Matrix3d R = state.q_WI.toRotationMatrix();
+  start_by_mounting = pose_by_mounting(state.q_WI, params.T_IL.translation());
+  Eigen::Matrix<double, 9, 6> by_mounting = Eigen::Matrix<double, 9, 6>::Zero();
+  by_mounting.topRows<6>() = start_by_mounting;
+  const Eigen::Matrix<double, 6, 6> mounting = calibration_covariance.topLeftCorner<6, 6>();
+  state.covariance += by_mounting * mounting * by_mounting.transpose();
+  motion_calibration.leftCols<6>() = by_mounting * mounting;
+  if (params.gravity_sigma_m_s2 <= 0.0) return;
+
+  Eigen::Matrix<double, 3, 6> gravity_by_mounting = Eigen::Matrix<double, 3, 6>::Zero();
+  gravity_by_mounting.leftCols<3>() = so3::hat(calibration.gravity_W_m_s2) * R;
+  calibration_covariance.block<3, 6>(7, 0) = gravity_by_mounting * mounting;
+  calibration_covariance.block<6, 3>(0, 7) = calibration_covariance.block<3, 6>(7, 0).transpose();
+  calibration_covariance.bottomRightCorner<3, 3>() = gravity_by_mounting * mounting * gravity_by_mounting.transpose();
+  const double sigma2 = params.gravity_sigma_m_s2 * params.gravity_sigma_m_s2;
+  // the magnitude is known much better than the direction
+  diagonal.segment<3>(7) += Eigen::Vector3d(sigma2, sigma2, 0.01 * sigma2);
+  motion_calibration.rightCols<3>() = by_mounting * mounting * gravity_by_mounting.transpose();
+}
+
+/// Of all unknowns, the motion taken from the present sweep's start to `t_s` after it.
+Registration::Matrix LidarInertialOdometry::Impl::joint_covariance(double t_s) const {
+  const SweepTrajectory::Transition step = trajectory.transition(t_s);
+  Registration::Matrix F = Registration::Matrix::Identity();
+  F.topLeftCorner<9, 9>() = step.by_start;
+  F.block<9, 3>(0, Registration::kExcess) = step.by_excess_s;
+  F.topRightCorner<9, 3>() = step.by_gravity;
+  return F * result.covariance * F.transpose();
+}
+
+void LidarInertialOdometry::Impl::carry_covariance(TimeNs end_ns) {
+  const Registration::Matrix P = joint_covariance(trajectory.duration_s());
+  constexpr int kErrors = SweepCalibration::kErrors;
+  state = trajectory.state(trajectory.duration_s());
+  state.time_ns = end_ns;
+  state.covariance = 0.5 * (P.topLeftCorner<9, 9>() + P.topLeftCorner<9, 9>().transpose());
+  motion_calibration = P.block<9, kErrors>(0, Registration::kCalibration);
+  calibration_covariance = P.bottomRightCorner<kErrors, kErrors>();
+  calibration = result.calibration;
+}
+
+/// Pose against the world rather than against the map: the world is held by the IMU's first pose, which the mounting
+/// parts from the map; added what the map is off by here, and the tilt of the start.
+Eigen::Matrix<double, 6, 6> LidarInertialOdometry::Impl::reported_covariance(const Registration::Matrix& joint,
+                                                                             const Eigen::Vector3d& p_WI_m,
+                                                                             bool aligned) const {
+  // a map that is turned about the start moves what is far from it
+  Eigen::Matrix<double, 6, 6> start = start_by_mounting;
+  start.topRows<3>() -= so3::hat(p_WI_m) * start_by_mounting.bottomRows<3>();
+  Eigen::Matrix<double, 6, 2> by_tilt = Eigen::Matrix<double, 6, 2>::Zero();
+  by_tilt.topRows<3>() = -so3::hat(p_WI_m).leftCols<2>();
+  by_tilt.block<2, 2>(3, 0).setIdentity();
+  Eigen::Matrix<double, 6, 6> P = (aligned ? kMeasuredShare : 1.0) * less_mounting(joint, start);
+  P += kMeasuredShare * map_covariance + (kStartTilt_rad * kStartTilt_rad) * by_tilt * by_tilt.transpose();
+  P.topLeftCorner<3, 3>() += drift_covariance_m2;
+  return P;
+}
+
+void LidarInertialOdometry::Impl::count_drift(const SweepReport& report) {
+  if (report.verdict != SweepVerdict::degenerate || report.conditioning <= 0.0 || resting_sweeps > 0) return;
+  const double sigma_m = kDriftShare * std::min(report.weakest_sigma_m, kDriftMax_m);
+  const Eigen::Vector3d direction = report.weakest_direction.head<3>();
+  drift_covariance_m2 += (sigma_m * sigma_m) * direction * direction.transpose();
+}
+
+/// Of the lidar's pose in the map in the middle of the sweep, which is what draws it: an error of the mounting is none
+/// of the map, and at its ends a sweep is known less well than as a whole.
+Eigen::Matrix<double, 6, 6> LidarInertialOdometry::Impl::drawing_covariance() const {
+  const double middle_s = 0.5 * trajectory.duration_s();
+  return less_mounting(joint_covariance(middle_s),
+                       pose_by_mounting(trajectory.state(middle_s).q_WI, calibration.T_IL.translation()));
+}
+
+}  // namespace tumble

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <limits>
+
+#include "inertial_prior.hpp"
+#include "tumble/mapping/calibration.hpp"
+#include "tumble/mapping/deskew.hpp"
+#include "tumble/mapping/lidar_inertial_odometry.hpp"
+#include "tumble/mapping/map_drawing.hpp"
+#include "tumble/mapping/registration.hpp"
+#include "tumble/mapping/sweep_trajectory.hpp"
+#include "tumble/mapping/voxel_map.hpp"
+
+namespace tumble {
+
+namespace mapping {
+
+/// Of the points registered, one in so many serves the search after a loss.
+inline constexpr int kCoarseEvery = 4;
+
+void check_params(const LidarInertialOdometry::Params& params);
+Registration::Params registration_params(const LidarInertialOdometry::Params& params);
+/// Wider in every respect: finds the neighbourhood of the answer, not the answer.
+Registration::Params coarse_registration_params(const LidarInertialOdometry::Params& params);
+
+}  // namespace mapping
+
+/// All that the odometry remembers; its parts lie in odometry_*.cpp.
+struct LidarInertialOdometry::Impl {
+  explicit Impl(const Params& p)
+      : params((mapping::check_params(p), p)),
+        map({p.map_voxel_m, p.map_spacing_m}),
+        registration(mapping::registration_params(p)),
+        coarse(mapping::coarse_registration_params(p)) {}
+
+  // lidar_inertial_odometry.cpp
+  Status check_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points) const;
+  void finish(TimeNs end_ns, SweepReport& report);
+
+  // odometry_calibration.cpp
+  void start_calibration();
+  void carry_covariance(TimeNs end_ns);
+  Registration::Matrix joint_covariance(double t_s) const;
+  Eigen::Matrix<double, 6, 6> reported_covariance(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m,
+                                                  bool aligned) const;
+  void count_drift(const SweepReport& report);
+  Eigen::Matrix<double, 6, 6> drawing_covariance() const;
+
+  // odometry_registration.cpp
+  Registration::Prior prior() const;
+  bool prior_is_trusted() const;
+  void choose_points();
+  Status align(const Registration::Prior& prior, TimeNs end_ns, Registration::Result& result);
+  Status search(const Registration::Prior& prior, TimeNs end_ns, Registration::Result& result);
+  void register_sweep(TimeNs end_ns, SweepReport& report);
+  Status fall_back_on_inertia(TimeNs end_ns);
+  bool imu_rests(TimeNs end_ns) const;
+
+  // odometry_map.cpp
+  std::size_t extend_map(bool rings_differ);
+  void forget_far_map();
+
+  Params params;
+  bool started = false;
+  MotionState state;  // at the end of the last sweep
+  SweepCalibration calibration;
+  SweepCalibration::Covariance calibration_covariance = SweepCalibration::Covariance::Zero();
+  Registration::Cross motion_calibration = Registration::Cross::Zero();
+  /// Pose errors of the IMU by errors of the mounting while the lidar's pose is certain: at the start.
+  Eigen::Matrix<double, 6, 6> start_by_mounting = Eigen::Matrix<double, 6, 6>::Zero();
+  /// Of the map against the world where the robot is: it was drawn from poses that were uncertain themselves.
+  Eigen::Matrix<double, 6, 6> map_covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  /// Of the position, in directions that no surface held while the robot moved.
+  Eigen::Matrix3d drift_covariance_m2 = Eigen::Matrix3d::Zero();
+  int resting_sweeps = 0;  // in a row, by the IMU
+  int lost_sweeps = 0;
+  int failed_searches = 0;  // sweeps in a row that had points and found no place
+  mapping::InitialRest rest;
+  std::vector<MotionSample> samples;  // from the window that holds state.time_ns on
+  Eigen::Vector3d excess_rad_s = Eigen::Vector3d::Zero();
+  std::uint8_t excess_axes_at_end = 0;
+  VoxelMap map;
+  std::vector<Eigen::Vector3f> seen_from_W_m;  // per sweep that gave points to the map
+  Eigen::Vector3f pruned_at_W_m = Eigen::Vector3f::Zero();
+  mapping::ScanLines scan_lines;
+
+  // memory kept between sweeps
+  Registration registration, coarse;
+  Registration::Result result;  // of the present sweep
+  SweepTrajectory trajectory;
+  SweepSampler sampler;
+  std::vector<SweepPoint> points, chosen;
+  std::vector<Eigen::Vector3f> positions_W_m;
+  std::vector<std::uint32_t> chosen_index;
+};
+
+}  // namespace tumble

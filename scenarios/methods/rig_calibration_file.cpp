@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/methods/rig_calibration_file.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+
+#include "scenarios/errors.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kKeys[] = {"lever_arm_m", "gyro_bias_rad_s", "accel_bias_m_s2", "inertia",
+                                 "covariance",  "gyro_rail_rad_s", "accel_rail_m_s2"};
+
+template <typename Array>
+json numbers(const Array& values) {
+  json out = json::array();
+  for (Eigen::Index i = 0; i < values.size(); ++i) out.push_back(values.data()[i]);
+  return out;
+}
+
+json rails(const LearntRig& rig, std::size_t first) {
+  json out = json::array();
+  for (std::size_t j = 0; j < 3; ++j) out.push_back(rig.rail[first + j] ? json(*rig.rail[first + j]) : json());
+  return out;
+}
+
+// Reads arrays and says what is wrong where.
+class Reader {
+ public:
+  Reader(const std::filesystem::path& path, const json& object) : path_(path), object_(object) {}
+
+  [[noreturn]] void complain(const std::string& key, const std::string& what) const {
+    throw BadInput(path_.string() + ": " + key + ": " + what);
+  }
+
+  const json& array(const char* key, std::size_t count) const {
+    const json& values = object_.at(key);
+    if (!values.is_array() || values.size() != count) complain(key, "needs " + std::to_string(count) + " numbers");
+    return values;
+  }
+
+  template <typename Array>
+  void read(const char* key, Array& into) const {
+    const json& values = array(key, static_cast<std::size_t>(into.size()));
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (!values[i].is_number() || !std::isfinite(values[i].get<double>())) complain(key, "not a number");
+      into.data()[i] = values[i].get<double>();
+    }
+  }
+
+  void read_rails(const char* key, std::size_t first, LearntRig& rig) const {
+    const json& values = array(key, 3);
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (values[j].is_null()) continue;
+      if (!values[j].is_number() || !(values[j].get<double>() > 0.0)) complain(key, "a rail is positive, or null");
+      rig.rail[first + j] = values[j].get<double>();
+    }
+  }
+
+ private:
+  const std::filesystem::path& path_;
+  const json& object_;
+};
+
+std::optional<double> lowest(const LearntRig& rig, std::size_t first) {
+  std::optional<double> out;
+  for (std::size_t j = first; j < first + 3; ++j) {
+    if (rig.rail[j] && (!out || *rig.rail[j] < *out)) out = rig.rail[j];
+  }
+  return out;
+}
+
+}  // namespace
+
+LearntRig learnt(const RateReport& report) {
+  return {report.calibration, report.rail};
+}
+
+void start_from(const LearntRig& rig, double trust, RateSmoother::Params& params) {
+  if (!(trust >= 1.0)) throw std::invalid_argument("trust is " + std::to_string(trust) + ", bound [1, inf)");
+  params.model.calibration = rig.calibration;
+  params.model.calibration->covariance *= trust;
+  if (const auto rail = lowest(rig, 0)) params.rails.stated_gyro_rad_s = rail;
+  if (const auto rail = lowest(rig, 3)) params.rails.stated_accel_m_s2 = rail;
+}
+
+void write_learnt_rig(const std::filesystem::path& path, const LearntRig& rig) {
+  const RigConstants& constants = rig.calibration.constants;
+  json object;
+  object["lever_arm_m"] = numbers(constants.lever_arm_m);
+  object["gyro_bias_rad_s"] = numbers(constants.gyro_bias_rad_s);
+  object["accel_bias_m_s2"] = numbers(constants.accel_bias_m_s2);
+  object["inertia"] = numbers(constants.inertia);
+  object["covariance"] = numbers(rig.calibration.covariance);
+  object["gyro_rail_rad_s"] = rails(rig, 0);
+  object["accel_rail_m_s2"] = rails(rig, 3);
+  const std::filesystem::path temporary = path.string() + ".part";
+  std::ofstream file(temporary);
+  file << object.dump(1) << '\n';
+  file.close();
+  std::error_code failed;
+  if (file) std::filesystem::rename(temporary, path, failed);
+  if (!file || failed) {
+    std::filesystem::remove(temporary, failed);
+    throw BadInput(path.string() + ": cannot be written");
+  }
+}
+
+LearntRig read_learnt_rig(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  if (!file) throw BadInput(path.string() + ": cannot be read");
+  const json object = json::parse(file, nullptr, false);
+  if (!object.is_object()) throw BadInput(path.string() + ": not a JSON object");
+  const Reader reader(path, object);
+  for (const char* key : kKeys) {
+    if (!object.contains(key)) reader.complain(key, "missing");
+  }
+  for (const auto& [key, value] : object.items()) {
+    if (std::find(std::begin(kKeys), std::end(kKeys), key) == std::end(kKeys)) reader.complain(key, "unknown key");
+  }
+  LearntRig rig;
+  reader.read("lever_arm_m", rig.calibration.constants.lever_arm_m);
+  reader.read("gyro_bias_rad_s", rig.calibration.constants.gyro_bias_rad_s);
+  reader.read("accel_bias_m_s2", rig.calibration.constants.accel_bias_m_s2);
+  reader.read("inertia", rig.calibration.constants.inertia);
+  reader.read("covariance", rig.calibration.covariance);
+  const RigConstants::Matrix& covariance = rig.calibration.covariance;
+  const double asymmetry = (covariance - covariance.transpose()).cwiseAbs().maxCoeff();
+  if (asymmetry > 1e-9 * covariance.cwiseAbs().maxCoeff() ||
+      Eigen::LLT<RigConstants::Matrix>(covariance).info() != Eigen::Success) {
+    reader.complain("covariance", "not symmetric and positive definite");
+  }
+  reader.read_rails("gyro_rail_rad_s", 0, rig);
+  reader.read_rails("accel_rail_m_s2", 3, rig);
+  return rig;
+}
+
+}  // namespace tumble::scenarios

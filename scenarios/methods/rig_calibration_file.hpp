@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+
+#include "tumble/angular_velocity/rate_smoother.hpp"
+
+namespace tumble::scenarios {
+
+/// What one run of the smoother learns and the next may start from.
+struct LearntRig {
+  RigCalibration calibration;
+  std::array<std::optional<double>, 6> rail;  ///< gyro x y z [rad/s], accelerometer x y z [m/s^2]; none: not seen
+};
+
+/// What a run has learnt. When the run held its constants (RateReport::rig_held) that is what it was given.
+LearntRig learnt(const RateReport& report);
+
+/// Gives it to the next run: constants with their covariance times `trust` (>= 1: rigs are taken apart and put together
+/// again), and the lowest rail of a sensor as its stated range. Throws std::invalid_argument on `trust` below 1.
+void start_from(const LearntRig& rig, double trust, RateSmoother::Params& params);
+
+/// JSON, a few lines: lever arm, biases, inertia, covariance row by row, rails. Numbers come back to the bit. Throws
+/// BadInput when it cannot write; nothing is left half written.
+void write_learnt_rig(const std::filesystem::path& path, const LearntRig& rig);
+
+/// Throws BadInput with path and key on a missing, misspelt or extra key, on a number that is none or of the wrong
+/// count, and on a covariance that is not symmetric and positive definite.
+LearntRig read_learnt_rig(const std::filesystem::path& path);
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/methods/rigid_chain.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "scenarios/methods/bridge.hpp"
+#include "tumble/attitude/strapdown.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr double kRestMaxS = 1.0;
+constexpr double kRestRateRadS = 0.05;
+constexpr double kVelocitySigmaMS = 1e-4;  // the registration of a rigid sweep says nothing of velocity
+
+const std::array<sim::Parameter, 5>& parameters_of_the_chain() {
+  static const RigidOdometry::Params library;
+  static const std::array<sim::Parameter, 5> parameters = {{
+      {"sweep_voxel_m", library.sweep_voxel_m, 0.01, 10.0, "m", "one point per voxel of a sweep is registered"},
+      {"map_voxel_m", library.map_voxel_m, 0.05, 10.0, "m", "cell of the map's hash"},
+      {"map_spacing_m", library.map_spacing_m, 0.0, 1.0, "m", "edge of the cube that holds one map point"},
+      {"neighbours", 12.0, 3.0, 32.0, "1", "map points per plane fit"},
+      {"match_distance_m", 1.0, 0.01, 10.0, "m", "farther map points are no match"},
+  }};
+  return parameters;
+}
+
+TimeNs window_start(std::span<const ImuSample> samples, std::size_t k) {
+  if (k > 0) return samples[k - 1].time_ns;
+  return samples.size() > 1 ? 2 * samples[0].time_ns - samples[1].time_ns : samples[0].time_ns;
+}
+
+/// Calls `add(k, from, to)` for each window that touches the stretch; the first is stretched back to its start.
+template <typename Add>
+void for_windows(std::span<const ImuSample> samples, TimeNs from_ns, TimeNs to_ns, Add add) {
+  const auto first = std::upper_bound(samples.begin(), samples.end(), from_ns,
+                                      [](TimeNs t, const ImuSample& sample) { return t < sample.time_ns; });
+  for (auto it = first; it != samples.end(); ++it) {
+    const auto k = static_cast<std::size_t>(it - samples.begin());
+    const TimeNs start = window_start(samples, k);
+    if (it != first && start >= to_ns) break;
+    add(k, it == first ? std::min(start, from_ns) : start, it->time_ns);
+  }
+}
+
+}  // namespace
+
+Status start_at_rest(std::span<const ImuSample> samples, StartAtRest& out) {
+  if (samples.empty()) return {Trouble::too_few, "imu samples", 0.0, 1.0};
+  Eigen::Vector3d force = samples.front().specific_force_m_s2;
+  Eigen::Vector3d rate = Eigen::Vector3d::Zero();
+  double count = 1.0;
+  for (const ImuSample& sample : samples) {
+    if (seconds(sample.time_ns - samples.front().time_ns) > kRestMaxS) break;
+    if (sample.angular_velocity_rad_s.norm() > kRestRateRadS) break;
+    force += sample.specific_force_m_s2;
+    rate += sample.angular_velocity_rad_s;
+    count += 1.0;
+  }
+  out.gyro_bias_rad_s = rate / count;
+  return level(force / count, out.q_WI);
+}
+
+std::vector<MotionSample> imu_motion(std::span<const ImuSample> samples, std::span<const RateState> rates,
+                                     const Eigen::Vector3d& bias_rad_s, TimeNs from_ns, TimeNs to_ns, int parts) {
+  std::vector<MotionSample> motion;
+  for_windows(samples, from_ns, to_ns, [&](std::size_t k, TimeNs start, TimeNs end) {
+    const std::size_t before = k > 0 ? k - 1 : k, after = std::min(k + 1, samples.size() - 1);
+    for (int part = 0; part < parts; ++part) {
+      // means of windows stand at their middle; a part lies up to half a window away from it
+      const double place = (part + 0.5) / parts - 0.5;
+      const std::size_t other = place < 0.0 ? before : after;
+      const double share = std::abs(place);
+      MotionSample& sample = motion.emplace_back();
+      sample.from_ns = start + (end - start) * part / parts;
+      sample.time_ns = start + (end - start) * (part + 1) / parts;
+      sample.w_WI_I_rad_s = (1.0 - share) * rates[k].w_WI_I_rad_s + share * rates[other].w_WI_I_rad_s - bias_rad_s;
+      sample.f_I_m_s2 = (1.0 - share) * samples[k].specific_force_m_s2 + share * samples[other].specific_force_m_s2;
+      sample.clipped_axes = rates[k].clipped_axes;
+    }
+  });
+  return motion;
+}
+
+std::vector<MotionSample> steady_motion(std::span<const ImuSample> samples, const Eigen::Vector3d& rate_I_rad_s,
+                                        const Eigen::Vector3d& force_I_m_s2, TimeNs from_ns, TimeNs to_ns) {
+  std::vector<MotionSample> motion;
+  for_windows(samples, from_ns, to_ns, [&](std::size_t, TimeNs start, TimeNs end) {
+    MotionSample& sample = motion.emplace_back();
+    sample.from_ns = start;
+    sample.time_ns = end;
+    sample.w_WI_I_rad_s = rate_I_rad_s;
+    sample.f_I_m_s2 = force_I_m_s2;
+  });
+  return motion;
+}
+
+Eigen::Matrix<double, 9, 9> loose_covariance(double sigma_m, double sigma_rad) {
+  Eigen::Matrix<double, 9, 9> covariance = Eigen::Matrix<double, 9, 9>::Zero();
+  covariance.diagonal().head<3>().setConstant(sigma_m * sigma_m);
+  covariance.diagonal().segment<3>(3).setConstant(sigma_rad * sigma_rad);
+  covariance.diagonal().tail<3>().setConstant(kVelocitySigmaMS * kVelocitySigmaMS);
+  return covariance;
+}
+
+void run_rigid_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples,
+                     const RigidOdometry::Params& params, TrajectoryModel& model, Estimate& estimate) {
+  if (sensors.lidars.empty()) {
+    estimate.status = {Trouble::empty, "lidars", 0.0, 1.0};
+    return;
+  }
+  const sim::LidarRecord& lidar = sensors.lidars.front();
+  const std::size_t sweeps = bridge::sweep_count(lidar);
+  if (sweeps == 0) {
+    estimate.status = {Trouble::empty, "lidar.sweep_start_ns", 0.0, 1.0};
+    return;
+  }
+  RigidOdometry odometry(params);
+  bool started = false, any = false;
+  TimeNs from_ns = 0;
+  for (std::size_t k = 0; k < sweeps; ++k) {
+    const bridge::Sweep sweep = bridge::sweep(lidar, k);
+    if (!started) from_ns = sweep.start_ns;
+    if (samples.back().time_ns < sweep.end_ns || window_start(samples, 0) > sweep.start_ns ||
+        sweep.start_ns < from_ns) {
+      estimate.health["sweeps_unfinished"] += 1.0;
+      continue;
+    }
+    LidarInertialOdometry::SweepReport report;
+    const Status status =
+        odometry.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, model.expect(from_ns, sweep.end_ns), report);
+    if (!status.ok() && report.trajectory.empty()) {
+      estimate.status = status;
+      return;
+    }
+    if (!status.ok()) estimate.health[std::string("sweeps_") + to_string(status.trouble)] += 1.0;
+    estimate.health[std::string("sweeps_") + to_string(report.verdict)] += 1.0;
+    any = any || report.verdict != SweepVerdict::rejected;
+    model.learn(odometry, report);
+    started = true;
+    from_ns = sweep.end_ns;
+    for (const PoseState& pose : report.trajectory) {
+      if (estimate.poses.empty() || pose.time_ns > estimate.poses.back().time_ns) estimate.poses.push_back(pose);
+    }
+    estimate.sweep_end_ns.push_back(sweep.end_ns);
+    estimate.sweeps.push_back(std::move(report));
+  }
+  estimate.map = odometry.map();
+  if (!any) estimate.status = {Trouble::too_few, "lidar.sweeps_registered", 0.0, 1.0};
+}
+
+std::span<const sim::Parameter> rigid_parameters() {
+  return parameters_of_the_chain();
+}
+
+RigidOdometry::Params rigid_params(const sim::Sensors& sensors, const sim::Values& parameters) {
+  RigidOdometry::Params params;
+  if (!sensors.lidars.empty()) params.T_IL = bridge::T_IL(sensors.imus.front(), sensors.lidars.front());
+  params.sweep_voxel_m = parameters.at("sweep_voxel_m");
+  params.map_voxel_m = parameters.at("map_voxel_m");
+  params.map_spacing_m = parameters.at("map_spacing_m");
+  params.registration.neighbours = static_cast<int>(std::lround(parameters.at("neighbours")));
+  params.registration.plane.neighbours_min =
+      std::min(params.registration.plane.neighbours_min, params.registration.neighbours);
+  params.registration.match_distance_m = parameters.at("match_distance_m");
+  params.registration.skew_sigma_m_s = 0.0;
+  return params;
+}
+
+}  // namespace tumble::scenarios

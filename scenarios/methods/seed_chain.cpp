@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/methods/seed_chain.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <unordered_map>
+
+#include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/registry.hpp"
+#include "tumble/attitude/madgwick.hpp"
+#include "tumble/mapping/map_drawing.hpp"
+#include "tumble/mapping/spatial_hash.hpp"
+#include "tumble/mapping/trimmed_icp.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+using SweepReport = LidarInertialOdometry::SweepReport;
+
+constexpr double kMadgwickGain = 0.01;
+constexpr TimeNs kBucketNs = 50000;  // times of points are rounded down to this before the look-up
+constexpr double kRangeMaxM = 100.0;
+constexpr double kSweepVoxelM = 0.15;
+constexpr double kMapSpacingM = 0.05;  // a point enters the map where the old map has none within this
+constexpr double kRangeSigmaM = 0.02, kRangeSigmaShare = 0.0015;
+const Eigen::AlignedBox3f kOwnBody{Eigen::Vector3f(-0.5f, -0.4f, -0.27f), Eigen::Vector3f(0.5f, 0.4f, 0.23f)};
+
+constexpr std::array<sim::Parameter, 6> kParameters = {{
+    {"skew_sigma_m_s", 0.25, 0.0, 100.0, "m/s",
+     "growth of a point's uncertainty over the sweep (time weighting); 0: none"},
+    {"match_distance_m", 1.0, 0.01, 4.0, "m", "farther map points are no match"},
+    {"late_velocity", 1.0, 0.0, 1.0, "1",
+     "1: velocity fed back is the mean since the last sweep taken for the present one, half a sweep late, as launched"},
+    {"voxel_averages_time", 1.0, 0.0, 1.0, "1",
+     "1: points of a voxel share their mean time, also across the seam of the sweep, as launched; 0: mean variance"},
+    {"trim_counts_unmatched", 0.0, 0.0, 1.0, "1",
+     "1: the share kept is one of all slots, unmatched ones too (as launched, where it read past the end)"},
+    {"abort_ends_mapping", 0.0, 0.0, 1.0, "1",
+     "1: a registration that aborts ends the mapper, as launched; 0: odometry goes on alone for that sweep"},
+}};
+
+/// Attitude by Madgwick's filter and position by the accelerometer, in a frame of its own ("odom").
+class ImuOdometry {
+ public:
+  ImuOdometry(std::span<const ImuSample> samples, std::span<const RateState> rates) : samples_(samples) {
+    Madgwick::Params params;
+    params.gain_rad_s = kMadgwickGain;
+    const Madgwick madgwick(params);
+    Madgwick::State state;
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+      ImuSample sample = samples[k];
+      sample.angular_velocity_rad_s = rates[k].w_WI_I_rad_s;
+      (void)madgwick.step(sample, state);
+      attitude_.push_back(state.q_WI);
+    }
+    p_m_.assign(1, Eigen::Vector3d::Zero());
+    v_m_s_.assign(1, Eigen::Vector3d::Zero());
+    gravity_m_s2_ = (attitude_[0] * samples[0].specific_force_m_s2).z();
+  }
+
+  /// Integrates up to the sample at or after `to_ns`.
+  void advance(TimeNs to_ns) {
+    while (p_m_.size() < samples_.size() && samples_[p_m_.size() - 1].time_ns < to_ns) {
+      const std::size_t k = p_m_.size();
+      const double step_s = seconds(samples_[k].time_ns - samples_[k - 1].time_ns);
+      const Eigen::Vector3d change =
+          fed_back_ ? Eigen::Vector3d(0.5 * (force(k - 1) + force(k)) * step_s) : Eigen::Vector3d::Zero();
+      p_m_.push_back(p_m_.back() + step_s * (velocity_m_s_ + 0.5 * change));
+      velocity_m_s_ += change;
+      v_m_s_.push_back(velocity_m_s_);
+      changes_.push_back({samples_[k].time_ns, change});
+    }
+  }
+
+  /// Velocity by registration, valid at `time_ns`: what the accelerometer has added since is added again.
+  void feed_back(const Eigen::Vector3d& velocity_m_s, TimeNs time_ns) {
+    fed_back_ = true;
+    velocity_m_s_ = velocity_m_s;
+    for (const auto& [time, change] : changes_) {
+      if (time > time_ns) velocity_m_s_ += change;
+    }
+    std::erase_if(changes_, [&](const auto& entry) { return entry.first <= time_ns; });
+  }
+
+  /// Pose of the IMU, linear and slerp between samples, constant before the first.
+  Eigen::Isometry3d pose(TimeNs time_ns) const {
+    const auto next = std::lower_bound(samples_.begin(), samples_.begin() + static_cast<std::ptrdiff_t>(p_m_.size()),
+                                       time_ns, [](const ImuSample& s, TimeNs t) { return s.time_ns < t; });
+    const auto k = std::min(static_cast<std::size_t>(next - samples_.begin()), p_m_.size() - 1);
+    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+    if (k == 0) {
+      T.linear() = attitude_[0].toRotationMatrix();
+      return T;
+    }
+    const double share = std::clamp(static_cast<double>(time_ns - samples_[k - 1].time_ns) /
+                                        static_cast<double>(samples_[k].time_ns - samples_[k - 1].time_ns),
+                                    0.0, 1.0);
+    T.linear() = attitude_[k - 1].slerp(share, attitude_[k]).toRotationMatrix();
+    T.translation() = (1.0 - share) * p_m_[k - 1] + share * p_m_[k];
+    return T;
+  }
+  /// As it was believed when the sample was integrated, nearest at or after the time.
+  const Eigen::Vector3d& velocity_m_s(TimeNs time_ns) const {
+    const auto next = std::lower_bound(samples_.begin(), samples_.begin() + static_cast<std::ptrdiff_t>(v_m_s_.size()),
+                                       time_ns, [](const ImuSample& s, TimeNs t) { return s.time_ns < t; });
+    return v_m_s_[std::min(static_cast<std::size_t>(next - samples_.begin()), v_m_s_.size() - 1)];
+  }
+
+ private:
+  Eigen::Vector3d force(std::size_t k) const {
+    return attitude_[k] * samples_[k].specific_force_m_s2 - gravity_m_s2_ * Eigen::Vector3d::UnitZ();
+  }
+
+  std::span<const ImuSample> samples_;
+  std::vector<Eigen::Quaterniond> attitude_;
+  std::vector<Eigen::Vector3d> p_m_, v_m_s_;  // of the samples integrated so far
+  std::vector<std::pair<TimeNs, Eigen::Vector3d>> changes_;
+  Eigen::Vector3d velocity_m_s_ = Eigen::Vector3d::Zero();
+  double gravity_m_s2_ = 0.0;
+  bool fed_back_ = false;
+};
+
+struct Cell {
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  double time_s = 0.0, skew_variance = 0.0;
+  float count = 0.0f;
+};
+
+/// Returns of a sweep in the lidar's axes at its start, voxelised, with their variances.
+std::vector<TrimmedIcp::Point> prepare(const bridge::Sweep& sweep, const ImuOdometry& odometry,
+                                       const Eigen::Isometry3d& T_IL, const sim::Values& parameters) {
+  const double rate = parameters.at("skew_sigma_m_s");
+  const Eigen::Isometry3d from_odom = (odometry.pose(sweep.start_ns) * T_IL).inverse(Eigen::Isometry);
+  std::unordered_map<std::uint64_t, std::size_t> index_of;
+  std::vector<Cell> cells;
+  TimeNs bucket = -1;
+  Eigen::Isometry3f move = Eigen::Isometry3f::Identity();
+  double first_s = std::numeric_limits<double>::infinity();
+  for (const LidarPoint& point : sweep.points) {
+    if (!point.position_L_m.allFinite() || point.position_L_m.norm() > kRangeMaxM) continue;
+    if (kOwnBody.contains(point.position_L_m) || point.position_L_m.norm() < 0.2f) continue;
+    const TimeNs rounded = static_cast<TimeNs>(point.offset_ns) / kBucketNs * kBucketNs;
+    if (rounded != bucket) {
+      bucket = rounded;
+      move = (from_odom * odometry.pose(sweep.start_ns + rounded) * T_IL).cast<float>();
+    }
+    const Eigen::Vector3f x = move * point.position_L_m;
+    const double t_s = seconds(static_cast<TimeNs>(point.offset_ns));
+    first_s = std::min(first_s, t_s);
+    const Eigen::Vector3i cube = (x / static_cast<float>(kSweepVoxelM)).array().floor().cast<int>();
+    const auto [it, added] = index_of.try_emplace(SpatialHash::key(cube), cells.size());
+    if (added) cells.emplace_back();
+    Cell& cell = cells[it->second];
+    cell.sum += x;
+    cell.time_s += t_s;
+    cell.skew_variance += rate * rate * t_s * t_s;
+    cell.count += 1.0f;
+  }
+  std::vector<TrimmedIcp::Point> points;
+  points.reserve(cells.size());
+  for (const Cell& cell : cells) {
+    TrimmedIcp::Point& point = points.emplace_back();
+    point.position_m = cell.sum / cell.count;
+    const double count = static_cast<double>(cell.count);
+    const double range = std::max(kRangeSigmaM, kRangeSigmaShare * static_cast<double>(point.position_m.norm()));
+    const double skew = rate * (cell.time_s / count - first_s);
+    const double variance = parameters.at("voxel_averages_time") > 0.5 ? skew * skew : cell.skew_variance / count;
+    point.variance_m2 = static_cast<float>(range * range + variance);
+  }
+  return points;
+}
+
+/// The mapper: registers at the sweep's start, keeps what lies between the map's frame and the odometry's.
+class SeedMapper {
+ public:
+  SeedMapper(const sim::Values& parameters, const Eigen::Isometry3d& T_IL, const ImuOdometry& odometry)
+      : ends_on_abort_(parameters.at("abort_ends_mapping") > 0.5),
+        T_IL_(T_IL),
+        odometry_(odometry),
+        icp_(icp_params(parameters)) {}
+
+  bool add(const bridge::Sweep& sweep, std::span<const TrimmedIcp::Point> points, SweepReport& report) {
+    report.points_used = sweep.points.size();
+    report.points_registered = points.size();
+    if (dead_ || points.empty()) return false;
+    const Eigen::Isometry3d in_odom = odometry_.pose(sweep.start_ns) * T_IL_;
+    Eigen::Isometry3d T = T_map_odom_ * in_odom;
+    if (map_.size() == 0) {
+      report.verdict = SweepVerdict::first;
+    } else {
+      const TrimmedIcp::Result result = icp_.align(points, T, map_);
+      report.iterations = result.iterations;
+      report.inlier_share = result.kept_share;
+      dead_ = result.verdict != RegistrationVerdict::converged && ends_on_abort_;
+      if (result.verdict != RegistrationVerdict::converged) return false;
+      report.verdict = SweepVerdict::registered;
+      T = result.T;
+    }
+    T_map_odom_ = T * in_odom.inverse(Eigen::Isometry);
+    extend(points, T, report);
+    return true;
+  }
+
+  const Eigen::Isometry3d& T_map_odom() const { return T_map_odom_; }
+  std::vector<MapPoint> map() const { return mapping::with_normals(map_, seen_from_, 20, 1.0); }
+
+ private:
+  static TrimmedIcp::Params icp_params(const sim::Values& parameters) {
+    TrimmedIcp::Params params;
+    params.match_distance_m = parameters.at("match_distance_m");
+    params.count_unmatched_slots = parameters.at("trim_counts_unmatched") > 0.5;
+    return params;
+  }
+
+  // compared with the old map only, not with each other
+  void extend(std::span<const TrimmedIcp::Point> points, const Eigen::Isometry3d& T, SweepReport& report) {
+    const Eigen::Isometry3f place = T.cast<float>();
+    std::vector<std::uint32_t> fresh;
+    Neighbours found;
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+      map_.nearest(place * points[i].position_m, 1, static_cast<float>(kMapSpacingM), found);
+      if (found.count == 0) fresh.push_back(i);
+    }
+    for (const std::uint32_t i : fresh) {
+      report.map_points_added += map_.insert(place * points[i].position_m, std::sqrt(points[i].variance_m2),
+                                             static_cast<std::uint32_t>(seen_from_.size()));
+    }
+    seen_from_.push_back(place.translation());
+    icp_.forget_normals();
+  }
+
+  bool ends_on_abort_, dead_ = false;
+  Eigen::Isometry3d T_IL_;
+  const ImuOdometry& odometry_;
+  TrimmedIcp icp_;
+  VoxelMap map_{{0.5, 0.0}};
+  std::vector<Eigen::Vector3f> seen_from_;
+  Eigen::Isometry3d T_map_odom_ = Eigen::Isometry3d::Identity();
+};
+
+PoseState pose_state(const Eigen::Isometry3d& T, const Eigen::Vector3d& v_m_s, TimeNs time_ns) {
+  PoseState pose;
+  pose.time_ns = time_ns;
+  pose.p_WA_m = T.translation();
+  pose.q_WA = Eigen::Quaterniond(T.linear()).normalized();
+  pose.v_WA_m_s = v_m_s;
+  return pose;
+}
+
+Status sweep_trouble(const bridge::Sweep& sweep, std::size_t prepared) {
+  if (sweep.points.empty()) return {Trouble::empty, "points", 0.0, 1.0};
+  const auto differs = [&](const LidarPoint& p) { return p.offset_ns != sweep.points.front().offset_ns; };
+  if (std::none_of(sweep.points.begin(), sweep.points.end(), differs)) {
+    return {Trouble::degenerate, "spread of offset_ns", 0.0, 1.0};
+  }
+  if (prepared == 0) return {Trouble::too_few, "points in range", 0.0, 1.0};
+  return {};
+}
+
+}  // namespace
+
+void run_seed_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples, const sim::Values& parameters,
+                    Estimate& estimate) {
+  estimate.frame = Frame::imu;
+  count_sources(estimate.rates, estimate.health);
+  if (sensors.lidars.empty()) {
+    estimate.status = {Trouble::empty, "lidars", 0.0, 1.0};
+    return;
+  }
+  const sim::LidarRecord& lidar = sensors.lidars.front();
+  const std::size_t sweeps = bridge::sweep_count(lidar);
+  const Eigen::Isometry3d T_IL = bridge::T_IL(sensors.imus.front(), lidar);
+  ImuOdometry odometry(samples, estimate.rates);
+  SeedMapper mapper(parameters, T_IL, odometry);
+  bool any = false, has_last = false;
+  TimeNs last_ns = 0;
+  Eigen::Vector3d last_m = Eigen::Vector3d::Zero();
+  for (std::size_t k = 0; k < sweeps; ++k) {
+    const bridge::Sweep sweep = bridge::sweep(lidar, k);
+    if (samples.back().time_ns < sweep.end_ns || samples.front().time_ns > sweep.end_ns) {
+      estimate.health["sweeps_unfinished"] += 1.0;
+      continue;
+    }
+    for (const LidarPoint& point : sweep.points) {
+      if (point.offset_ns <= sweep.end_ns - sweep.start_ns) continue;
+      estimate.status = {Trouble::out_of_range, "offset_ns", double(point.offset_ns),
+                         double(sweep.end_ns - sweep.start_ns)};
+      return;
+    }
+    odometry.advance(sweep.end_ns);
+    SweepReport report;
+    std::vector<TrimmedIcp::Point> points = prepare(sweep, odometry, T_IL, parameters);
+    const Status trouble = sweep_trouble(sweep, points.size());
+    if (!trouble.ok()) {
+      estimate.health[std::string("sweeps_") + to_string(trouble.trouble)] += 1.0;
+      points.clear();
+    }
+    const bool registered = mapper.add(sweep, points, report);
+    any = any || registered;
+    estimate.health[std::string("sweeps_") + to_string(report.verdict)] += 1.0;
+
+    const Eigen::Isometry3d& T = mapper.T_map_odom();
+    for (const ImuSample& sample : samples) {
+      if (sample.time_ns <= sweep.start_ns || sample.time_ns > sweep.end_ns) continue;
+      report.trajectory.push_back(pose_state(T * odometry.pose(sample.time_ns),
+                                             T.linear() * odometry.velocity_m_s(sample.time_ns), sample.time_ns));
+    }
+    report.pose =
+        pose_state(T * odometry.pose(sweep.end_ns), T.linear() * odometry.velocity_m_s(sweep.end_ns), sweep.end_ns);
+    if (report.trajectory.empty()) report.trajectory.push_back(report.pose);
+    for (const PoseState& pose : report.trajectory) estimate.poses.push_back(pose);
+    estimate.sweep_end_ns.push_back(sweep.end_ns);
+    estimate.sweeps.push_back(std::move(report));
+
+    if (!registered) continue;
+    const Eigen::Vector3d here_m = (T * odometry.pose(sweep.start_ns)).translation();
+    if (has_last) {
+      const Eigen::Vector3d mean = (here_m - last_m) / seconds(sweep.start_ns - last_ns);
+      const TimeNs valid_ns = parameters.at("late_velocity") > 0.5 ? sweep.start_ns : (sweep.start_ns + last_ns) / 2;
+      odometry.feed_back(T.linear().transpose() * mean, valid_ns);
+    }
+    has_last = true;
+    last_ns = sweep.start_ns;
+    last_m = here_m;
+  }
+  estimate.map = mapper.map();
+  if (!any) estimate.status = {Trouble::too_few, "lidar.sweeps_registered", 0.0, 1.0};
+}
+
+std::span<const sim::Parameter> seed_parameters() {
+  return kParameters;
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
+#include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/rigid_chain.hpp"
+#include "scenarios/methods/slam_registry.hpp"
+#include "tumble/common/so3.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+// gains of the observer, from the authors' settings (Chen et al., sec. IV-D), per second
+constexpr double kGainPosition = 4.5;
+constexpr double kGainVelocity = 11.25;
+constexpr double kGainAttitude = 4.0;
+constexpr double kGainGyroBias = 1.0;
+constexpr double kGainAccelBias = 2.25;
+constexpr double kBiasMax = 0.5;  // both biases are bounded, as in the authors' code
+constexpr int kParts = 4;         // of a sample, between which rate and force run linearly
+constexpr double kPriorM = 0.5;
+constexpr double kPriorRad = 0.2;
+
+/// Strapdown with rate and specific force linear in time (constant jerk and angular acceleration), corrected by a
+/// geometric observer: what the registration moved the pose by feeds back into position, velocity, attitude and biases.
+class ConstantJerk : public TrajectoryModel {
+ public:
+  ConstantJerk(std::span<const ImuSample> samples, std::span<const RateState> rates, const StartAtRest& start,
+               double gravity_m_s2)
+      : samples_(samples), rates_(rates), gyro_bias_(start.gyro_bias_rad_s), gravity_m_s2_(gravity_m_s2) {
+    last_.q_WI = start.q_WI;
+  }
+
+  RigidOdometry::Motion expect(TimeNs from_ns, TimeNs to_ns) override {
+    RigidOdometry::Motion motion;
+    motion.start = last_;
+    motion.start.time_ns = from_ns;
+    motion.samples = imu_motion(samples_, rates_, gyro_bias_, from_ns, to_ns, kParts);
+    for (MotionSample& sample : motion.samples) sample.f_I_m_s2 -= accel_bias_;
+    motion.gravity_m_s2 = gravity_m_s2_;
+    motion.end_covariance = loose_covariance(kPriorM, kPriorRad);
+    from_ns_ = from_ns;
+    return motion;
+  }
+
+  void learn(const RigidOdometry& odometry, const LidarInertialOdometry::SweepReport& report) override {
+    const MotionState& expected = odometry.predicted();
+    const MotionState& found = odometry.state();
+    last_ = expected;
+    if (report.verdict == SweepVerdict::rejected) return;
+    const double span_s = std::min(seconds(found.time_ns - from_ns_), 0.2);
+    const Eigen::Vector3d moved = found.p_WI_m - expected.p_WI_m;
+    const Eigen::Vector3d turned_I = so3::log(expected.q_WI.conjugate() * found.q_WI);
+    last_.p_WI_m += span_s * kGainPosition * moved;
+    last_.v_WI_m_s += span_s * kGainVelocity * moved;
+    last_.q_WI = (expected.q_WI * so3::exp(span_s * kGainAttitude * turned_I)).normalized();
+    gyro_bias_ = (gyro_bias_ - span_s * kGainGyroBias * turned_I).cwiseMax(-kBiasMax).cwiseMin(kBiasMax);
+    accel_bias_ = (accel_bias_ - span_s * kGainAccelBias * (found.q_WI.conjugate() * moved))
+                      .cwiseMax(-kBiasMax)
+                      .cwiseMin(kBiasMax);
+  }
+
+ private:
+  std::span<const ImuSample> samples_;
+  std::span<const RateState> rates_;
+  MotionState last_;
+  Eigen::Vector3d gyro_bias_, accel_bias_ = Eigen::Vector3d::Zero();
+  double gravity_m_s2_;
+  TimeNs from_ns_ = 0;
+};
+
+Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  Estimate estimate;
+  std::vector<ImuSample> samples;
+  StartAtRest start;
+  estimate.status = bridge::primary_imu_samples(sensors, samples);
+  if (estimate.status.ok()) estimate.status = start_at_rest(samples, start);
+  if (estimate.status.ok()) estimate.status = raw_rates(sensors, samples, estimate.rates);
+  if (!estimate.status.ok()) return estimate;
+  ConstantJerk model(samples, estimate.rates, start, sensors.gravity_m_s2);
+  run_rigid_chain(sensors, samples, rigid_params(sensors, parameters), model, estimate);
+  return estimate;
+}
+
+}  // namespace
+
+Method slam_constant_jerk() {
+  MethodInfo info;
+  info.name = "constant_jerk";
+  info.kind = Kind::slam;
+  info.doc =
+      "Clipped gyro and accelerometer integrated with constant jerk inside of each sweep, rigid registration, "
+      "geometric "
+      "observer for velocity and biases. Not modelled: keyframes and the plane-to-plane distance of the original.";
+  info.source = "the family of DLIO, Chen et al., ICRA 2023";
+  info.parameters = rigid_parameters();
+  info.robots = {"rig"};
+  return make_method(std::move(info), run);
+}
+
+}  // namespace tumble::scenarios

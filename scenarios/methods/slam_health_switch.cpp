@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
+#include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/rigid_chain.hpp"
+#include "scenarios/methods/slam_registry.hpp"
+#include "tumble/common/so3.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr double kRailShare = 0.99;       // of the stated range: a reading beyond is sick
+constexpr double kDisagreementRad = 0.3;  // between gyro and registration over one sweep
+constexpr double kPriorM = 0.5;
+constexpr double kPriorRad = 0.3;
+
+/// Rotation from the gyro while it is healthy, else the last rotation goes on; translation at constant velocity. The
+/// gyro is sick while a reading is at its rail, and for a sweep after the registration has contradicted it.
+class HealthSwitch : public TrajectoryModel {
+ public:
+  HealthSwitch(std::span<const ImuSample> samples, std::span<const RateState> rates, const StartAtRest& start,
+               double range_rad_s)
+      : samples_(samples), rates_(rates), bias_(start.gyro_bias_rad_s), rail_rad_s_(kRailShare * range_rad_s) {
+    last_.q_WI = start.q_WI;
+  }
+
+  RigidOdometry::Motion expect(TimeNs from_ns, TimeNs to_ns) override {
+    RigidOdometry::Motion motion;
+    motion.start = last_;
+    motion.start.time_ns = from_ns;
+    motion.samples = imu_motion(samples_, rates_, bias_, from_ns, to_ns);
+    const bool railed = std::any_of(motion.samples.begin(), motion.samples.end(), [&](const MotionSample& sample) {
+      return rail_rad_s_ > 0.0 && sample.w_WI_I_rad_s.cwiseAbs().maxCoeff() >= rail_rad_s_;
+    });
+    healthy_ = !railed && !contradicted_;
+    if (!healthy_) motion.samples = steady_motion(samples_, rate_rad_s_, Eigen::Vector3d::Zero(), from_ns, to_ns);
+    for (MotionSample& sample : motion.samples) sample.f_I_m_s2.setZero();
+    motion.end_covariance = loose_covariance(kPriorM, kPriorRad);
+    from_ns_ = from_ns;
+    return motion;
+  }
+
+  void learn(const RigidOdometry& odometry, const LidarInertialOdometry::SweepReport& report) override {
+    const MotionState before = last_;
+    last_ = odometry.state();
+    const double span_s = seconds(last_.time_ns - from_ns_);
+    if (!(span_s > 0.0)) return;
+    rate_rad_s_ = so3::log(before.q_WI.conjugate() * last_.q_WI) / span_s;
+    last_.v_WI_m_s = (last_.p_WI_m - before.p_WI_m) / span_s;
+    const double apart = so3::log(odometry.predicted().q_WI.conjugate() * last_.q_WI).norm();
+    contradicted_ = healthy_ && report.conditioning > 0.0 && apart > kDisagreementRad;
+    if (!healthy_) ++sick_sweeps_;
+  }
+
+  int sick_sweeps() const { return sick_sweeps_; }
+
+ private:
+  std::span<const ImuSample> samples_;
+  std::span<const RateState> rates_;
+  MotionState last_;
+  Eigen::Vector3d bias_, rate_rad_s_ = Eigen::Vector3d::Zero();
+  double rail_rad_s_;
+  bool healthy_ = true, contradicted_ = false;
+  int sick_sweeps_ = 0;
+  TimeNs from_ns_ = 0;
+};
+
+Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  Estimate estimate;
+  std::vector<ImuSample> samples;
+  StartAtRest start;
+  estimate.status = bridge::primary_imu_samples(sensors, samples);
+  if (estimate.status.ok()) estimate.status = start_at_rest(samples, start);
+  if (estimate.status.ok()) estimate.status = raw_rates(sensors, samples, estimate.rates);
+  if (!estimate.status.ok()) return estimate;
+  HealthSwitch model(samples, estimate.rates, start, sensors.imus.front().stated_gyro_range_rad_s);
+  run_rigid_chain(sensors, samples, rigid_params(sensors, parameters), model, estimate);
+  estimate.health["sweeps_gyro_sick"] = model.sick_sweeps();
+  return estimate;
+}
+
+}  // namespace
+
+Method slam_health_switch() {
+  MethodInfo info;
+  info.name = "health_switch";
+  info.kind = Kind::slam;
+  info.doc =
+      "Rotation from the gyro while a monitor finds it healthy, else the last rotation goes on; constant velocity; "
+      "rigid "
+      "registration. Not modelled: wheel and visual odometry, the other sources of the original's switch.";
+  info.source = "the family of LOCUS, Palieri et al., RA-L 2021";
+  info.parameters = rigid_parameters();
+  info.robots = {"rig"};
+  return make_method(std::move(info), run);
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <array>
+#include <cmath>
+
+#include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/rigid_chain.hpp"
+#include "scenarios/methods/slam_registry.hpp"
+#include "tumble/mapping/pointwise_filter.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr double kAccelRailShare = 0.99;  // of the stated range: beyond, a reading is left out
+
+const std::array<sim::Parameter, 6>& parameters_of_the_filter() {
+  static const PointwiseFilter::Params library;
+  static const std::array<sim::Parameter, 6> parameters = {{
+      {"sweep_voxel_m", library.sweep_voxel_m, 0.01, 10.0, "m", "one point per voxel of a sweep updates the state"},
+      {"rate_walk_rad_s_sqrt_s", library.rate_walk_rad_s_sqrt_s, 1e-3, 1e6, "rad/s/sqrt(s)", "random walk of the rate"},
+      {"force_walk_m_s2_sqrt_s", library.force_walk_m_s2_sqrt_s, 1e-3, 1e6, "m/s^2/sqrt(s)",
+       "random walk of the specific force"},
+      {"gyro_sigma_rad_s", library.gyro_sigma_rad_s, 1e-6, 1e3, "rad/s", "of one reading"},
+      {"accel_sigma_m_s2", library.accel_sigma_m_s2, 1e-6, 1e3, "m/s^2", "of one reading"},
+      {"plane_sigma_m", library.plane_sigma_m, 1e-6, 10.0, "m", "of a point's distance to its plane"},
+  }};
+  return parameters;
+}
+
+void run_filter(const sim::Sensors& sensors, std::span<const ImuSample> samples, PointwiseFilter& filter,
+                Estimate& estimate) {
+  const sim::LidarRecord& lidar = sensors.lidars.front();
+  const double rail = kAccelRailShare * sensors.imus.front().stated_accel_range_m_s2;
+  bool any = false;
+  std::size_t next = 0;
+  for (std::size_t k = 0; k < bridge::sweep_count(lidar); ++k) {
+    const bridge::Sweep sweep = bridge::sweep(lidar, k);
+    while (next < samples.size() && (next == 0 || samples[next - 1].time_ns < sweep.end_ns)) {
+      unsigned clipped = estimate.rates[next].clipped_axes;
+      for (int axis = 0; axis < 3; ++axis) {
+        if (rail > 0.0 && std::abs(samples[next].specific_force_m_s2[axis]) >= rail) clipped |= 8u << axis;
+      }
+      ImuSample sample = samples[next];
+      sample.angular_velocity_rad_s = estimate.rates[next].w_WI_I_rad_s;
+      estimate.status = filter.add_imu(sample, clipped);
+      if (!estimate.status.ok()) return;
+      ++next;
+    }
+    if (samples.back().time_ns < sweep.end_ns || samples.front().time_ns > sweep.end_ns) {
+      estimate.health["sweeps_unfinished"] += 1.0;
+      continue;
+    }
+    LidarInertialOdometry::SweepReport report;
+    const Status status = filter.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, report);
+    if (!status.ok() && report.trajectory.empty()) {
+      estimate.status = status;
+      return;
+    }
+    if (!status.ok()) estimate.health[std::string("sweeps_") + to_string(status.trouble)] += 1.0;
+    estimate.health[std::string("sweeps_") + to_string(report.verdict)] += 1.0;
+    any = any || report.verdict != SweepVerdict::rejected;
+    estimate.poses.insert(estimate.poses.end(), report.trajectory.begin(), report.trajectory.end());
+    estimate.sweep_end_ns.push_back(sweep.end_ns);
+    estimate.sweeps.push_back(std::move(report));
+  }
+  estimate.map = filter.map();
+  if (!any) estimate.status = {Trouble::too_few, "lidar.sweeps_registered", 0.0, 1.0};
+}
+
+Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  Estimate estimate;
+  std::vector<ImuSample> samples;
+  StartAtRest start;
+  estimate.status = bridge::primary_imu_samples(sensors, samples);
+  if (estimate.status.ok()) estimate.status = start_at_rest(samples, start);
+  if (estimate.status.ok()) estimate.status = railed_rates(sensors, samples, estimate.rates);
+  if (!estimate.status.ok()) return estimate;
+  if (sensors.lidars.empty() || bridge::sweep_count(sensors.lidars.front()) == 0) {
+    estimate.status = {Trouble::empty, "lidars", 0.0, 1.0};
+    return estimate;
+  }
+  for (RateState& rate : estimate.rates) rate.w_WI_I_rad_s -= start.gyro_bias_rad_s;
+
+  PointwiseFilter::Params params;
+  params.T_IL = bridge::T_IL(sensors.imus.front(), sensors.lidars.front());
+  params.gravity_m_s2 = sensors.gravity_m_s2;
+  params.sweep_voxel_m = parameters.at("sweep_voxel_m");
+  params.rate_walk_rad_s_sqrt_s = parameters.at("rate_walk_rad_s_sqrt_s");
+  params.force_walk_m_s2_sqrt_s = parameters.at("force_walk_m_s2_sqrt_s");
+  params.gyro_sigma_rad_s = parameters.at("gyro_sigma_rad_s");
+  params.accel_sigma_m_s2 = parameters.at("accel_sigma_m_s2");
+  params.plane_sigma_m = parameters.at("plane_sigma_m");
+  PointwiseFilter filter(params, start.q_WI);
+  run_filter(sensors, samples, filter, estimate);
+  return estimate;
+}
+
+}  // namespace
+
+Method slam_pointwise_reject() {
+  MethodInfo info;
+  info.name = "pointwise_reject";
+  info.kind = Kind::slam;
+  info.doc =
+      "A filter that takes each point at its own instant and each IMU reading as a measurement of a random motion, "
+      "clipped "
+      "axes left out. Not modelled: biases after the rest at the start, gravity and mounting as states.";
+  info.source = "the family of Point-LIO, He et al., Advanced Intelligent Systems 2023";
+  info.parameters = parameters_of_the_filter();
+  info.robots = {"rig"};
+  return make_method(std::move(info), run);
+}
+
+}  // namespace tumble::scenarios

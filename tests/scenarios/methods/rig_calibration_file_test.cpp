@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/methods/rig_calibration_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/sweep/temporary_folder.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+class RigCalibrationFile : public testing::TemporaryFolder {
+ protected:
+  static LearntRig example() {
+    LearntRig rig;
+    rig.calibration.constants.lever_arm_m = {-0.0213, -0.0851, 1.0 / 3.0};
+    rig.calibration.constants.gyro_bias_rad_s = {1e-3, -2e-17, 0.1};
+    rig.calibration.constants.inertia << 0.1, -0.2, 0.3, 1e-9, 0.0;
+    rig.calibration.covariance = 0.7e-4 * RigConstants::Matrix::Identity();
+    rig.calibration.covariance(0, 4) = rig.calibration.covariance(4, 0) = 2e-7;
+    rig.rail = {10.5, std::nullopt, 10.4, std::nullopt, std::nullopt, std::nullopt};
+    return rig;
+  }
+
+  std::filesystem::path path() const { return folder_ / "learnt.json"; }
+
+  std::string text() const {
+    std::stringstream stream;
+    stream << std::ifstream(path()).rdbuf();
+    return stream.str();
+  }
+
+  std::string complaint(const std::string& from, const std::string& to) const {
+    write_learnt_rig(path(), example());
+    std::string spoilt = text();
+    const std::size_t at = spoilt.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    if (at != std::string::npos) spoilt.replace(at, from.size(), to);
+    std::ofstream(path()) << spoilt;
+    try {
+      read_learnt_rig(path());
+    } catch (const BadInput& error) {
+      return error.what();
+    }
+    return "";
+  }
+};
+
+TEST_F(RigCalibrationFile, ComesBackTheSameToTheBit) {
+  write_learnt_rig(path(), example());
+  const LearntRig back = read_learnt_rig(path());
+  EXPECT_TRUE(back.calibration.constants == example().calibration.constants);
+  EXPECT_EQ(back.calibration.covariance, example().calibration.covariance);
+  EXPECT_EQ(back.rail, example().rail);
+}
+
+TEST_F(RigCalibrationFile, ComplaintsNameTheKey) {
+  EXPECT_NE(complaint("lever_arm_m", "lever_arm").find("lever_arm_m: missing"), std::string::npos);
+  EXPECT_NE(complaint("\"inertia\"", "\"spare\": 1, \"inertia\"").find("spare: unknown key"), std::string::npos);
+  EXPECT_NE(complaint("10.4", "-10.4").find("gyro_rail_rad_s"), std::string::npos);
+  EXPECT_NE(complaint("10.4", "10.4, 3").find("needs 3 numbers"), std::string::npos);
+  EXPECT_NE(complaint("2e-07", "1.0").find("covariance"), std::string::npos);
+  EXPECT_NE(complaint("{", "").find("not a JSON object"), std::string::npos);
+  EXPECT_EQ(complaint("10.4", "10.3"), "");  // negative control: a sound change is taken
+}
+
+TEST_F(RigCalibrationFile, MissingFilesAndFoldersAreBadInput) {
+  EXPECT_THROW(read_learnt_rig(folder_ / "nothing.json"), BadInput);
+  EXPECT_THROW(write_learnt_rig(folder_ / "no" / "folder.json", example()), BadInput);
+}
+
+TEST_F(RigCalibrationFile, TheNextRunStartsFromIt) {
+  RateSmoother::Params params;
+  start_from(example(), 4.0, params);
+  ASSERT_TRUE(params.model.calibration.has_value());
+  EXPECT_TRUE(params.model.calibration->constants == example().calibration.constants);
+  EXPECT_DOUBLE_EQ(params.model.calibration->covariance(3, 3), 2.8e-4);
+  EXPECT_EQ(params.rails.stated_gyro_rad_s.value_or(0.0), 10.4);
+  EXPECT_FALSE(params.rails.stated_accel_m_s2.has_value());
+  EXPECT_NO_THROW(RateSmoother{params});
+  EXPECT_THROW(start_from(example(), 0.5, params), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace tumble::scenarios
