@@ -24,7 +24,7 @@ constexpr const char* kFiles[] = {"estimate.json", "rates.csv",  "attitude.tum",
 const std::string kRatesHeader = "time_ns,wx_rad_s,wy_rad_s,wz_rad_s,cxx,cxy,cxz,cyy,cyz,czz,clipped_axes,source";
 const std::string kPose = "px_m,py_m,pz_m,qx,qy,qz,qw,vx_m_s,vy_m_s,vz_m_s";
 const std::string kContactsHeader = "time_ns,label";
-const std::string kCovarianceHeader = "time_ns,cxx,cxy,cxz,cyy,cyz,czz";
+const std::string kPositionCovarianceHeader = "time_ns,cxx,cxy,cxz,cyy,cyz,czz";
 constexpr std::size_t kCovarianceColumn = 16;  // of a sweep's pose: upper triangle by rows, position before attitude
 const std::string kSweepsHeader =
     "end_ns,verdict,iterations,inlier_share,conditioning,pose_time_ns," + kPose +
@@ -132,7 +132,7 @@ void require_row_per_pose(const Table& table, const std::vector<PoseState>& pose
 }
 
 void write_covariances(const std::filesystem::path& path, const std::vector<PoseState>& poses) {
-  TableWriter table(path, ',', kCovarianceHeader);
+  TableWriter table(path, ',', kPositionCovarianceHeader);
   for (const PoseState& pose : poses) {
     table.integer(pose.time_ns);
     for (int i = 0; i < 3; ++i) {
@@ -144,7 +144,7 @@ void write_covariances(const std::filesystem::path& path, const std::vector<Pose
 }
 
 void read_covariances(const std::filesystem::path& path, std::vector<PoseState>& poses) {
-  const Table table = Table::read(path, ',', kCovarianceHeader, 7);
+  const Table table = Table::read(path, ',', kPositionCovarianceHeader, 7);
   require_row_per_pose(table, poses);
   for (std::size_t k = 0; k < poses.size(); ++k) {
     std::size_t column = 1;

@@ -50,16 +50,16 @@ std::vector<Method> all_methods() {
       slam_tumble(),
       slam_tumble_gyro_only(),
       slam_oracle(),
+      slam_poses_rolling(),
+      slam_poses_autogain_fusion(),
+      slam_poses_tumble(),
+      slam_rolling_prior(),
       slam_constant_velocity(),
       slam_constant_jerk(),
       slam_iterated_filter(),
       slam_pointwise_reject(),
       slam_health_switch(),
       slam_floor(),
-      slam_poses_rolling(),
-      slam_poses_autogain_fusion(),
-      slam_poses_tumble(),
-      slam_rolling_prior(),
   };
   std::stable_sort(all.begin(), all.end(), [](const Method& a, const Method& b) { return a.info.kind < b.info.kind; });
   return all;
