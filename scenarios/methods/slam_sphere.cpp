@@ -162,7 +162,7 @@ Estimate run_rolling_prior(const sim::Sensors& sensors, const sim::Values& param
   if (!estimate.status.ok()) return estimate;
   const std::vector<ImuSample> samples = samples_along(poses, sensors, raw);
   estimate.status = raw_rates(sensors, samples, estimate.rates);
-  if (estimate.status.ok()) run_slam_chain(sensors, samples, parameters, estimate);
+  if (estimate.status.ok()) run_slam_chain(sensors, samples, parameters, {}, estimate);
   return estimate;
 }
 
