@@ -5,8 +5,8 @@
 
 namespace tumble::scenarios {
 
-/// Wrong use or bad input: an unknown name, a file that is not there or truncated, a value out of bounds. The message is
-/// one line that says what, where and which bound. The program ends with status 2.
+/// Wrong use or bad input: an unknown name, a file that is not there or truncated, a value out of bounds. The message
+/// is one line that says what, where and which bound. The program ends with status 2.
 class BadInput : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -57,12 +57,13 @@ Values resolve(const std::string& place, const Values& given, std::span<const Pa
       std::vector<std::string> names;
       for (const Parameter& p : known) names.emplace_back(p.name);
       const std::string near = nearest_name(name, names);
-      throw InvalidSituation(place + ": unknown key '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+      throw InvalidSituation(place + ": unknown key '" + name + "'" +
+                             (near.empty() ? "" : "; did you mean '" + near + "'?"));
     }
     if (!(value >= parameter->low && value <= parameter->high)) {
       std::ostringstream text;
-      text << place << "." << name << " is " << value << " " << parameter->unit << ", must be within [" << parameter->low
-           << ", " << parameter->high << "]";
+      text << place << "." << name << " is " << value << " " << parameter->unit << ", must be within ["
+           << parameter->low << ", " << parameter->high << "]";
       throw InvalidSituation(text.str());
     }
     out.set(name, value);

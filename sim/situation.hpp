@@ -17,15 +17,15 @@ struct SensorSpec {
   std::string device;  ///< data sheet that the values came from: "mti30"; kept for the record
   std::string site;    ///< site of the robot's MJCF that carries it
   Values values;       ///< numbers of the device (data sheet, then the scenario's changes)
-  /// Calibration minus design: x_m y_m z_m (B axes), roll_rad pitch_rad yaw_rad (small angles, I axes). A centre of mass
-  /// off its nominal place adds to it what nobody calibrates.
+  /// Calibration minus design: x_m y_m z_m (B axes), roll_rad pitch_rad yaw_rad (small angles, I axes). A centre of
+  /// mass off its nominal place adds to it what nobody calibrates.
   Values mount_error;
   bool operator==(const SensorSpec&) const = default;
 };
 
 /// A draw: one situation with every number fixed. Equal situations give equal recordings, bit for bit.
 struct Situation {
-  std::string scenario;    ///< name of the scenario that it was drawn from
+  std::string scenario;  ///< name of the scenario that it was drawn from
   std::uint64_t seed = 0;
   double duration_s = 10.0;
   Component world;

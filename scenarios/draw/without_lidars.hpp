@@ -5,8 +5,8 @@
 
 namespace tumble::scenarios {
 
-/// The situation without its lidars, which cost most of a simulation's memory and a good part of its time. Motion and IMU
-/// readings stay the same, bit for bit: each sensor draws from streams of its own.
+/// The situation without its lidars, which cost most of a simulation's memory and a good part of its time. Motion and
+/// IMU readings stay the same, bit for bit: each sensor draws from streams of its own.
 sim::Situation without_lidars(sim::Situation situation);
 
 }  // namespace tumble::scenarios

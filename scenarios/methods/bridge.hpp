@@ -13,8 +13,8 @@
 #include "tumble/common/status.hpp"
 #include "tumble/mapping/lidar.hpp"
 
-/// The one place where the records of `sim` become the messages of the estimator. Both libraries state their conventions
-/// by themselves; here they are compared, field by field:
+/// The one place where the records of `sim` become the messages of the estimator. Both libraries state their
+/// conventions by themselves; here they are compared, field by field:
 ///
 /// | quantity       | sim                                        | estimator                                      |
 /// | -------------- | ------------------------------------------ | ---------------------------------------------- |
@@ -36,8 +36,8 @@ Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out);
 /// The primary IMU's samples; `empty` when the recording has no IMU.
 Status primary_imu_samples(const sim::Sensors& sensors, std::vector<ImuSample>& out);
 
-/// The same samples with the rail taken away, from the truth's twin of the record. Throws BadInput when the truth does not
-/// belong to the record.
+/// The same samples with the rail taken away, from the truth's twin of the record. Throws BadInput when the truth does
+/// not belong to the record.
 Status unclipped_samples(const sim::ImuRecord& record, const sim::ImuTruth& truth, std::vector<ImuSample>& out);
 
 /// From the centre of mass to the IMU, in IMU axes [m]: R_BI^T p_BI of the calibration.

@@ -9,12 +9,13 @@
 namespace tumble::scenarios {
 
 /// Leaves an estimate in a folder: estimate.json (method, kind, frame, status, health), rates.csv, attitude.tum,
-/// trajectory.tum (t x y z qx qy qz qw), position_covariance.csv, contacts.csv, sweeps.csv, sweep_poses.csv, map.ply; only
-/// the files that apply, estimate.json last.
-/// Everything that is scored comes back the same to the bit, but for the last bit of a quaternion in a TUM file (it is
-/// normalised on reading). Covariances of attitudes, those of poses but for the position, and the velocities of `poses` are not written.
-/// Throws BadInput when it cannot write, std::invalid_argument when `contacts` is not as long as `poses`.
-void write_estimate(const std::filesystem::path& folder, const std::string& method, Kind kind, const Estimate& estimate);
+/// trajectory.tum (t x y z qx qy qz qw), position_covariance.csv, contacts.csv, sweeps.csv, sweep_poses.csv, map.ply;
+/// only the files that apply, estimate.json last. Everything that is scored comes back the same to the bit, but for the
+/// last bit of a quaternion in a TUM file (it is normalised on reading). Covariances of attitudes, those of poses but
+/// for the position, and the velocities of `poses` are not written. Throws BadInput when it cannot write,
+/// std::invalid_argument when `contacts` is not as long as `poses`.
+void write_estimate(const std::filesystem::path& folder, const std::string& method, Kind kind,
+                    const Estimate& estimate);
 
 /// Reads such a folder back, or a single TUM file of somebody else's (kind position, poses of `tum_frame`, named after
 /// the file). Throws BadInput with path, line and reason.

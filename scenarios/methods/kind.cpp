@@ -5,20 +5,28 @@ namespace tumble::scenarios {
 
 const char* to_string(Kind kind) {
   switch (kind) {
-    case Kind::rate: return "rate";
-    case Kind::attitude: return "attitude";
-    case Kind::position: return "position";
-    case Kind::slam: return "slam";
+    case Kind::rate:
+      return "rate";
+    case Kind::attitude:
+      return "attitude";
+    case Kind::position:
+      return "position";
+    case Kind::slam:
+      return "slam";
   }
   return "unknown";
 }
 
 const char* to_string(Frame frame) {
   switch (frame) {
-    case Frame::imu: return "imu";
-    case Frame::lidar: return "lidar";
-    case Frame::body: return "body";
-    case Frame::centre: return "centre";
+    case Frame::imu:
+      return "imu";
+    case Frame::lidar:
+      return "lidar";
+    case Frame::body:
+      return "body";
+    case Frame::centre:
+      return "centre";
   }
   return "unknown";
 }

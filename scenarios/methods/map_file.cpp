@@ -74,7 +74,8 @@ std::vector<MapPoint> read_map(const std::filesystem::path& path) {
   std::vector<MapPoint> map(points);
   for (MapPoint& point : map) {
     Row row;
-    if (!file.read(reinterpret_cast<char*>(row.data()), sizeof(row))) throw BadInput(path.string() + ": cannot be read");
+    if (!file.read(reinterpret_cast<char*>(row.data()), sizeof(row)))
+      throw BadInput(path.string() + ": cannot be read");
     point.position_W_m = {row[0], row[1], row[2]};
     point.normal_W = {row[3], row[4], row[5]};
     point.sigma_m = row[6];

@@ -28,18 +28,18 @@ const char* to_string(Frame frame);
 
 /// What a method returns. A kind fills what it is about and leaves the rest empty.
 struct Estimate {
-  Status status;                            ///< trouble of the run as a whole; `ok` when it went through
-  Frame frame = Frame::imu;                 ///< of `attitudes` and `poses`
-  std::vector<RateState> rates;             ///< kind rate (and what a slam method deskewed with)
-  std::vector<AttitudeState> attitudes;     ///< kind attitude
-  std::vector<PoseState> poses;             ///< kinds position and slam, at IMU times
+  Status status;                         ///< trouble of the run as a whole; `ok` when it went through
+  Frame frame = Frame::imu;              ///< of `attitudes` and `poses`
+  std::vector<RateState> rates;          ///< kind rate (and what a slam method deskewed with)
+  std::vector<AttitudeState> attitudes;  ///< kind attitude
+  std::vector<PoseState> poses;          ///< kinds position and slam, at IMU times
   /// What the method says of the contact at each pose, parallel to `poses`; empty when it says nothing. `air`: no
   /// contact, or one whose motion it does not know (a bump).
   std::vector<sim::ContactLabel> contacts;
   std::vector<LidarInertialOdometry::SweepReport> sweeps;  ///< kind slam, one per sweep
-  std::vector<std::int64_t> sweep_end_ns;   ///< parallel to `sweeps`
-  std::vector<MapPoint> map;                ///< kind slam
-  std::map<std::string, double> health;     ///< named counters: "rejected_samples", "sweeps_rejected"
+  std::vector<std::int64_t> sweep_end_ns;                  ///< parallel to `sweeps`
+  std::vector<MapPoint> map;                               ///< kind slam
+  std::map<std::string, double> health;                    ///< named counters: "rejected_samples", "sweeps_rejected"
 };
 
 /// What an oracle is given beyond the sensors: the unclipped readings and the true state. Built from the truth by the
@@ -52,8 +52,8 @@ struct OracleInput {
 struct MethodInfo {
   std::string name;
   Kind kind = Kind::rate;
-  std::string doc;      ///< one sentence: what it is
-  std::string source;   ///< paper or "ours"
+  std::string doc;     ///< one sentence: what it is
+  std::string source;  ///< paper or "ours"
   std::span<const sim::Parameter> parameters;
   bool needs_truth = false;
   bool for_robot(const std::string& robot) const;  ///< whether it applies to "rig" or "sphere"

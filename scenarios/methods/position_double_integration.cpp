@@ -12,8 +12,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   Estimate estimate;
   estimate.frame = Frame::centre;
   SphereAttitude attitude;
-  estimate.status =
-      sphere_attitude("position/double_integration", sensors, parameters.at("rest_s"), attitude);
+  estimate.status = sphere_attitude("position/double_integration", sensors, parameters.at("rest_s"), attitude);
   if (!estimate.status.ok()) return estimate;
 
   DoubleIntegration::Params params;

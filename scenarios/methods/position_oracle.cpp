@@ -68,7 +68,8 @@ std::vector<RollingMode> true_modes(const sim::Truth& truth, const std::vector<I
   }
   std::vector<RollingMode> modes;
   modes.reserve(samples.size());
-  for (const ImuSample& sample : samples) modes.push_back(at_step[physics_index(truth, sample.time_ns, at_step.size())]);
+  for (const ImuSample& sample : samples)
+    modes.push_back(at_step[physics_index(truth, sample.time_ns, at_step.size())]);
   return modes;
 }
 

@@ -11,7 +11,7 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kCentreSigmaM = 6e-3;
-constexpr int kRecoveringUnits = 3;        // so many IMUs tell a rate beyond the range
+constexpr int kRecoveringUnits = 3;  // so many IMUs tell a rate beyond the range
 constexpr double kRecoveredSigmaRadS = 1.0;
 
 // the library's own defaults, so that each stands in one place; sources are those of the library's documentation
@@ -183,7 +183,9 @@ Method position_tumble() {
   MethodInfo info;
   info.name = "tumble";
   info.kind = Kind::position;
-  info.doc = "Rolling as a velocity measurement in an inertial filter, grip, slip, bump and slope as hypotheses; smoothed over the run.";
+  info.doc =
+      "Rolling as a velocity measurement in an inertial filter, grip, slip, bump and slope as hypotheses; smoothed "
+      "over the run.";
   info.source = "ours";
   info.parameters = parameters_of_the_filter();
   info.robots = {"sphere"};

@@ -28,7 +28,9 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
 
 }  // namespace
 
-std::span<const sim::Parameter> saave_parameters() { return kParameters; }
+std::span<const sim::Parameter> saave_parameters() {
+  return kParameters;
+}
 
 Status saave_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, const sim::Values& parameters,
                    std::vector<RateState>& out) {
@@ -45,7 +47,8 @@ Method rate_saave() {
   MethodInfo info;
   info.name = "saave";
   info.kind = Kind::rate;
-  info.doc = "The clipped axis from the centripetal specific force of free flight, then a white-noise-on-jerk smoother.";
+  info.doc =
+      "The clipped axis from the centripetal specific force of free flight, then a white-noise-on-jerk smoother.";
   info.source = "Deschenes et al., Saturation-Aware Angular Velocity Estimation, ICRA 2024";
   info.parameters = kParameters;
   info.robots = {"rig"};

@@ -12,7 +12,7 @@
 namespace tumble::scenarios {
 
 struct MergedImus {
-  std::vector<ImuSample> samples;  ///< body axes
+  std::vector<ImuSample> samples;                         ///< body axes
   Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< from the centre of mass, body axes
   double gyro_range_rad_s = 1e3, accel_range_m_s2 = 1e5;  ///< readings from here on are taken to be at the rail
   int units = 0;

@@ -48,7 +48,9 @@ void TableWriter::cell(const std::string& text) {
   row_empty_ = false;
 }
 
-void TableWriter::integer(std::int64_t value) { cell(std::to_string(value)); }
+void TableWriter::integer(std::int64_t value) {
+  cell(std::to_string(value));
+}
 
 void TableWriter::number(double value) {
   char text[40];

@@ -10,8 +10,9 @@
 
 namespace tumble::scenarios {
 
-/// A text file of numbers, one row a line: TUM (blanks, no header) or CSV (commas, one header line). Numbers are written
-/// with as many digits as a double needs to come back the same; time stamps as seconds with nine decimals or as integers.
+/// A text file of numbers, one row a line: TUM (blanks, no header) or CSV (commas, one header line). Numbers are
+/// written with as many digits as a double needs to come back the same; time stamps as seconds with nine decimals or as
+/// integers.
 class TableWriter {
  public:
   /// `header` empty: none is written. Throws BadInput when the file cannot be opened.
@@ -45,7 +46,8 @@ struct Table {
 
   double number(const Row& row, std::size_t column) const;  ///< any double, "nan" too
   std::int64_t integer(const Row& row, std::size_t column) const;
-  std::int64_t time_ns(const Row& row, std::size_t column) const;  ///< decimal seconds, rounded to nanoseconds without a detour
+  std::int64_t time_ns(const Row& row,
+                       std::size_t column) const;  ///< decimal seconds, rounded to nanoseconds without a detour
 };
 
 }  // namespace tumble::scenarios

@@ -22,7 +22,8 @@ void export_recording(const std::filesystem::path& recording, const std::string&
 /// exactly. Without the instants that a reference does not know.
 void export_tum(const sim::Truth& truth, const std::filesystem::path& file);
 
-/// Upper three rows of T_WB, row by row, per physics sample; KITTI's format has no time: throws BadInput for a reference with gaps.
+/// Upper three rows of T_WB, row by row, per physics sample; KITTI's format has no time: throws BadInput for a
+/// reference with gaps.
 void export_kitti(const sim::Truth& truth, const std::filesystem::path& file);
 
 /// NAME.csv per IMU in the columns of a sensor_msgs/Imu (stamp s, stamp ns, frame, attitude x y z w, its covariance,

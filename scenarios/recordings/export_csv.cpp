@@ -58,8 +58,10 @@ std::string truth_text(const sim::Truth& truth) {
     append_all(text, truth.q_WB[i].coeffs());
     append_all(text, truth.v_WB_m_s[i]);
     append_all(text, truth.w_WB_B_rad_s[i]);
-    if (truth.f_B_m_s2.empty()) text += ",,,";  // what a reference does not know stays empty
-    else append_all(text, truth.f_B_m_s2[i]);
+    if (truth.f_B_m_s2.empty())
+      text += ",,,";  // what a reference does not know stays empty
+    else
+      append_all(text, truth.f_B_m_s2[i]);
     text += ',';
     if (!truth.label.empty()) append_number(text, static_cast<int>(truth.label[i]));
     text += '\n';

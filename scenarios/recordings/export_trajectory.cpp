@@ -38,7 +38,8 @@ void export_tum(const sim::Truth& truth, const std::filesystem::path& file) {
 void export_kitti(const sim::Truth& truth, const std::filesystem::path& file) {
   std::string text;
   for (std::size_t i = 0; i < truth.p_WB_m.size(); ++i) {
-    if (!known(truth, i)) throw BadInput("the reference has gaps, and KITTI's format has no time to leave them out; use tum");
+    if (!known(truth, i))
+      throw BadInput("the reference has gaps, and KITTI's format has no time to leave them out; use tum");
     const Eigen::Matrix3d R_WB = truth.q_WB[i].toRotationMatrix();
     for (int row = 0; row < 3; ++row) {
       if (row > 0) text += ' ';

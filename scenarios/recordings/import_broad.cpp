@@ -17,8 +17,8 @@ constexpr const char* kAttribution =
     "Data 2021, 6(7), 72; CC BY 4.0; trial ";
 
 constexpr double kTeslaPerMicrotesla = 1e-6;
-/// Half the span over which the reference is differentiated: 70 ms, so that its noise at rest stays below the bounds by which
-/// scores tell rest from motion (measured: 0.022 rad/s at half of this); fast turns are blurred.
+/// Half the span over which the reference is differentiated: 70 ms, so that its noise at rest stays below the bounds by
+/// which scores tell rest from motion (measured: 0.022 rad/s at half of this); fast turns are blurred.
 constexpr std::size_t kReach = 20;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -47,7 +47,8 @@ std::vector<Eigen::Quaterniond> attitudes(const hdf5::Group& root) {
   for (const Eigen::Vector4d& row : rows) {
     Eigen::Quaterniond q(row[0], row[1], row[2], row[3]);
     if (row.allFinite()) {
-      if (std::abs(q.norm() - 1.0) > 1e-2) root.fail("opt_quat", "row " + std::to_string(q_WB.size()) + " is not of unit length");
+      if (std::abs(q.norm() - 1.0) > 1e-2)
+        root.fail("opt_quat", "row " + std::to_string(q_WB.size()) + " is not of unit length");
       q.normalize();
     } else {
       q.coeffs().setConstant(kNaN);
@@ -84,7 +85,8 @@ std::optional<sim::Truth> read_reference(const hdf5::Group& root, const sim::Imu
   truth.period_ns = imu.period_ns;
   truth.q_WB = attitudes(root);
   root.read("opt_pos", truth.p_WB_m);
-  for (const auto& [name, rows] : {std::pair{"opt_quat", truth.q_WB.size()}, std::pair{"opt_pos", truth.p_WB_m.size()}}) {
+  for (const auto& [name, rows] :
+       {std::pair{"opt_quat", truth.q_WB.size()}, std::pair{"opt_pos", truth.p_WB_m.size()}}) {
     if (rows != imu.time_ns.size()) {
       root.fail(name, "has " + std::to_string(rows) + " rows, imu_gyr has " + std::to_string(imu.time_ns.size()));
     }

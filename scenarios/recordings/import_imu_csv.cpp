@@ -56,8 +56,10 @@ Layout layout_of(const Line& header) {
   std::string missing;
   const auto take = [&](const std::string& name, std::size_t& column) {
     const std::optional<std::size_t> place = find_column(header, name);
-    if (place) column = *place, ++found;
-    else missing += " " + name;
+    if (place)
+      column = *place, ++found;
+    else
+      missing += " " + name;
   };
   take("header/stamp", layout.stamp);
   const std::array<std::string, 3> axes = {"x", "y", "z"};
@@ -118,7 +120,8 @@ std::int64_t decimal_ns(const Line& line, std::size_t column) {
     return std::all_of(digits.begin(), digits.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
   };
   if (point == 0 || point > 10 || part.size() > 9 || !all_digits(text.substr(0, point)) || !all_digits(part)) {
-    fail(line, "column " + std::to_string(column) + " must be seconds with at most nine decimals, is '" + std::string(text) + "'");
+    fail(line, "column " + std::to_string(column) + " must be seconds with at most nine decimals, is '" +
+                   std::string(text) + "'");
   }
   std::from_chars(text.data(), text.data() + point, seconds);
   std::string digits(part);
@@ -130,7 +133,8 @@ std::int64_t decimal_ns(const Line& line, std::size_t column) {
 /// Since the epoch; stamps up to the year 2255 fit.
 std::int64_t stamp_ns(const Line& line, const Layout& layout) {
   if (layout.decimal_stamp) return decimal_ns(line, layout.stamp);
-  return whole_number(line, layout.stamp, 9'000'000'000) * kSecond_ns + whole_number(line, layout.stamp + 1, kSecond_ns - 1);
+  return whole_number(line, layout.stamp, 9'000'000'000) * kSecond_ns +
+         whole_number(line, layout.stamp + 1, kSecond_ns - 1);
 }
 
 std::int64_t median_step(const std::vector<std::int64_t>& times) {

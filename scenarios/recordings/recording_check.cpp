@@ -170,14 +170,15 @@ std::string find_problem(const sim::Sensors& sensors) {
 }
 
 std::string find_problem(const sim::Truth& truth) {
-  std::string problem = in("truth", first_of({positive("period_ns", truth.period_ns),
-                                              length_problem({{"p_WB_m", truth.p_WB_m.size()},
-                                                              {"q_WB", truth.q_WB.size()},
-                                                              {"v_WB_m_s", truth.v_WB_m_s.size()},
-                                                              {"w_WB_B_rad_s", truth.w_WB_B_rad_s.size()}}),
-                                              optional_length_problem("f_B_m_s2", truth.f_B_m_s2.size(), truth.p_WB_m.size()),
-                                              optional_length_problem("label", truth.label.size(), truth.p_WB_m.size()),
-                                              state_problem(truth), contacts_problem(truth)}));
+  std::string problem =
+      in("truth", first_of({positive("period_ns", truth.period_ns),
+                            length_problem({{"p_WB_m", truth.p_WB_m.size()},
+                                            {"q_WB", truth.q_WB.size()},
+                                            {"v_WB_m_s", truth.v_WB_m_s.size()},
+                                            {"w_WB_B_rad_s", truth.w_WB_B_rad_s.size()}}),
+                            optional_length_problem("f_B_m_s2", truth.f_B_m_s2.size(), truth.p_WB_m.size()),
+                            optional_length_problem("label", truth.label.size(), truth.p_WB_m.size()),
+                            state_problem(truth), contacts_problem(truth)}));
   for (std::size_t i = 0; i < truth.imus.size() && problem.empty(); ++i) {
     problem = in("truth/imus/" + std::to_string(i), imu_truth_problem(truth.imus[i]));
   }
@@ -194,10 +195,11 @@ std::string find_mismatch(const sim::Sensors& sensors, const sim::Truth& truth) 
   for (std::size_t i = 0; i < truth.imus.size() && problem.empty(); ++i) {
     const sim::ImuRecord& imu = sensors.imus[i];
     const sim::ImuTruth& imu_truth = truth.imus[i];
-    problem = in("imus/" + std::to_string(i),
-                 first_of({optional_length_problem("truth rate_I_rad_s", imu_truth.rate_rad_s.size(), imu.time_ns.size()),
-                           optional_length_problem("truth magnetic_field_I_t", imu_truth.magnetic_field_t.size(),
-                                                   imu.magnetic_field_t.size())}));
+    problem =
+        in("imus/" + std::to_string(i),
+           first_of({optional_length_problem("truth rate_I_rad_s", imu_truth.rate_rad_s.size(), imu.time_ns.size()),
+                     optional_length_problem("truth magnetic_field_I_t", imu_truth.magnetic_field_t.size(),
+                                             imu.magnetic_field_t.size())}));
   }
   for (std::size_t i = 0; i < truth.lidars.size() && problem.empty(); ++i) {
     problem = in("lidars/" + std::to_string(i),

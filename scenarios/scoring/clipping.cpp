@@ -14,8 +14,9 @@ namespace {
 constexpr double kToleranceMinRadS = 1e-6;
 
 double noise_rad_s(const sim::ImuRecord& record) {
-  return record.period_ns > 0 ? record.gyro_noise_rad_s_sqrt_hz / std::sqrt(1e-9 * static_cast<double>(record.period_ns))
-                              : 0.0;
+  return record.period_ns > 0
+             ? record.gyro_noise_rad_s_sqrt_hz / std::sqrt(1e-9 * static_cast<double>(record.period_ns))
+             : 0.0;
 }
 
 }  // namespace
@@ -26,7 +27,8 @@ ClippingTruth::ClippingTruth(const sim::Sensors& sensors, const sim::Truth& trut
   truth_ = &truth.imus.front();
   tolerance_rad_s_ = std::max(kToleranceMinRadS, noise_rad_s(*record_));
   const std::size_t count = record_->time_ns.size();
-  if (truth_->rate_rad_s.empty() && count > 0) throw BadInput("the truth holds no rates of imu '" + record_->name + "': a reference of poses?");
+  if (truth_->rate_rad_s.empty() && count > 0)
+    throw BadInput("the truth holds no rates of imu '" + record_->name + "': a reference of poses?");
   if (record_->gyro_rad_s.size() != count || truth_->rate_rad_s.size() != count ||
       truth_->gyro_unclipped_rad_s.size() != count) {
     throw BadInput("imu '" + record_->name + "' and its truth differ in length");

@@ -11,14 +11,14 @@ namespace tumble::scenarios {
 
 /// What the primary gyro should have read, and where its rail took something away.
 ///
-/// Definition, used by every score: axis j of a sample is clipped when the reading differs from its unclipped twin (the same
-/// errors, no rail) by more than one standard deviation of the gyro's white noise per sample, sqrt(density^2 / period), or
-/// 1e-6 rad/s if that is larger. What the rail takes away below the noise is nobody's loss.
+/// Definition, used by every score: axis j of a sample is clipped when the reading differs from its unclipped twin (the
+/// same errors, no rail) by more than one standard deviation of the gyro's white noise per sample, sqrt(density^2 /
+/// period), or 1e-6 rad/s if that is larger. What the rail takes away below the noise is nobody's loss.
 class ClippingTruth {
  public:
   struct Sample {
-    Eigen::Vector3d rate_rad_s;   ///< true mean rate over the sample's window, true IMU axes
-    std::uint8_t clipped_axes;    ///< bit j: axis j is clipped
+    Eigen::Vector3d rate_rad_s;  ///< true mean rate over the sample's window, true IMU axes
+    std::uint8_t clipped_axes;   ///< bit j: axis j is clipped
   };
 
   /// Throws BadInput when sensors and truth do not belong together.

@@ -5,8 +5,8 @@
 
 #include "scenarios/scoring/score.hpp"
 
-/// The metrics, one source file per family. Add one: write its function in the family's file and name it in the list there;
-/// a new family is declared here and joined once in score.cpp.
+/// The metrics, one source file per family. Add one: write its function in the family's file and name it in the list
+/// there; a new family is declared here and joined once in score.cpp.
 namespace tumble::scenarios {
 
 std::vector<Metric> rate_metrics();

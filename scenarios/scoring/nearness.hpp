@@ -18,7 +18,7 @@ class Nearness {
 
  private:
   float distance_m_;
-  std::vector<Eigen::Vector3f> points_m_;  ///< sorted by cell
+  std::vector<Eigen::Vector3f> points_m_;                                             ///< sorted by cell
   std::unordered_map<std::uint64_t, std::pair<std::uint32_t, std::uint32_t>> cells_;  ///< key -> range of points_m_
 };
 

@@ -90,8 +90,8 @@ bool coverage_3sigma(const Estimate& estimate, const ScoringInput& input, double
 
 std::vector<Metric> position_metrics() {
   return {
-      {"position_end_error_m", Kind::position, "m", "distance to the truth at the end, position and yaw aligned at the start",
-       end_error},
+      {"position_end_error_m", Kind::position, "m",
+       "distance to the truth at the end, position and yaw aligned at the start", end_error},
       {"position_end_error_share", Kind::position, "1", "the same as a share of the true path", end_error_share},
       {"position_height_error_max_m", Kind::position, "m", "largest error of height", height_error_max},
       {"position_coverage_3sigma", Kind::position, "1",

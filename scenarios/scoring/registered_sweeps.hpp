@@ -8,7 +8,8 @@
 
 namespace tumble::scenarios {
 
-/// The end error starts here: the sixth sweep that was registered (Deschenes et al.), counted from 1. The first is the map's.
+/// The end error starts here: the sixth sweep that was registered (Deschenes et al.), counted from 1. The first is the
+/// map's.
 inline constexpr std::size_t kStartSweep = 6;
 
 /// Indices of the sweeps that were not rejected.

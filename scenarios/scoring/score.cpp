@@ -91,10 +91,14 @@ bool sweeps_hold(const Estimate& estimate, const ScoringInput& input) {
 
 bool holds(Kind kind, const Estimate& estimate, const ScoringInput& input) {
   switch (kind) {
-    case Kind::rate: return rates_hold(estimate, input);
-    case Kind::attitude: return attitudes_hold(estimate, input);
-    case Kind::position: return poses_hold(estimate, input);
-    case Kind::slam: return poses_hold(estimate, input) && sweeps_hold(estimate, input);
+    case Kind::rate:
+      return rates_hold(estimate, input);
+    case Kind::attitude:
+      return attitudes_hold(estimate, input);
+    case Kind::position:
+      return poses_hold(estimate, input);
+    case Kind::slam:
+      return poses_hold(estimate, input) && sweeps_hold(estimate, input);
   }
   return false;
 }

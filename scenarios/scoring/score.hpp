@@ -39,9 +39,9 @@ std::span<const Metric> metrics();
 /// All metrics of a kind that apply, in order of registration.
 std::vector<Score> score(Kind kind, const Estimate& estimate, const ScoringInput& input);
 
-/// `ok`, or `diverged`: an estimate that is not finite, that leaves more than a fifth of the recording in one piece (rates:
-/// more than a tenth of the samples) unanswered, that ends farther from the truth than the path is long (1 m at least), or
-/// that registers fewer than six sweeps.
+/// `ok`, or `diverged`: an estimate that is not finite, that leaves more than a fifth of the recording in one piece
+/// (rates: more than a tenth of the samples) unanswered, that ends farther from the truth than the path is long (1 m at
+/// least), or that registers fewer than six sweeps.
 std::string verdict(Kind kind, const Estimate& estimate, const ScoringInput& input);
 
 }  // namespace tumble::scenarios

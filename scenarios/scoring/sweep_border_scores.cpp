@@ -16,8 +16,8 @@ struct Jumps {
   std::vector<double> rate_rad_s;
 };
 
-// at each border: how much more the estimate's velocity changes than the true one, from the last pose inside one sweep to
-// the first pose inside the next; rates are those of the first and last step inside the sweeps
+// at each border: how much more the estimate's velocity changes than the true one, from the last pose inside one sweep
+// to the first pose inside the next; rates are those of the first and last step inside the sweeps
 Jumps border_jumps(const Estimate& estimate, const ScoringInput& input) {
   Jumps jumps;
   const TruthTrack truth(*input.truth, estimate.frame);

@@ -25,8 +25,10 @@ Eigen::Isometry3d mounting(const sim::Truth& truth, Frame frame) {
     case Frame::lidar:
       if (truth.lidars.empty()) throw BadInput("the truth holds no lidar to score poses of frame lidar");
       return truth.lidars.front().T_BL;
-    case Frame::body: break;
-    case Frame::centre: return Eigen::Isometry3d(Eigen::Translation3d(truth.p_BG_m));
+    case Frame::body:
+      break;
+    case Frame::centre:
+      return Eigen::Isometry3d(Eigen::Translation3d(truth.p_BG_m));
   }
   return Eigen::Isometry3d::Identity();
 }
@@ -36,12 +38,12 @@ std::vector<bool> rest_mask(const sim::Truth& truth) {
   const std::size_t count = truth.p_WB_m.size();
   std::vector<std::size_t> moving_before(count + 1, 0);
   for (std::size_t k = 0; k < count; ++k) {
-    const bool slow = truth.v_WB_m_s[k].norm() < TruthTrack::kRestSpeedMS &&
-                      truth.w_WB_B_rad_s[k].norm() < TruthTrack::kRestRateRadS;
+    const bool slow =
+        truth.v_WB_m_s[k].norm() < TruthTrack::kRestSpeedMS && truth.w_WB_B_rad_s[k].norm() < TruthTrack::kRestRateRadS;
     moving_before[k + 1] = moving_before[k] + (slow ? 0 : 1);
   }
-  const auto reach = static_cast<std::size_t>(
-      std::llround(TruthTrack::kRestWindowS * 1e9 / static_cast<double>(truth.period_ns)));
+  const auto reach =
+      static_cast<std::size_t>(std::llround(TruthTrack::kRestWindowS * 1e9 / static_cast<double>(truth.period_ns)));
   std::vector<bool> rest(count);
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t first = k > reach ? k - reach : 0;
@@ -117,7 +119,9 @@ double twist_about_z_rad(const Eigen::Quaterniond& q) {
   return 2.0 * std::atan2(sign * q.z(), sign * q.w());
 }
 
-double rotation_angle_rad(const Eigen::Quaterniond& q) { return 2.0 * std::atan2(q.vec().norm(), std::abs(q.w())); }
+double rotation_angle_rad(const Eigen::Quaterniond& q) {
+  return 2.0 * std::atan2(q.vec().norm(), std::abs(q.w()));
+}
 
 Alignment Alignment::at(const PoseState& estimate, const PoseState& truth) {
   Alignment alignment;

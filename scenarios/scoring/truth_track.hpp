@@ -12,8 +12,9 @@ namespace tumble::scenarios {
 
 /// The true motion of one frame of the robot, at any instant of the recording.
 ///
-/// Position is interpolated linearly and attitude by slerp between physics samples (0.5 ms: at 400 m/s^2 and 25 rad/s the
-/// error is below 13 um and 1 urad). The frame is a true mounting: calibration errors of the estimator count as errors.
+/// Position is interpolated linearly and attitude by slerp between physics samples (0.5 ms: at 400 m/s^2 and 25 rad/s
+/// the error is below 13 um and 1 urad). The frame is a true mounting: calibration errors of the estimator count as
+/// errors.
 class TruthTrack {
  public:
   /// Rest: everywhere within this time around the instant the body moves slower than both bounds.

@@ -13,9 +13,10 @@ namespace tumble::scenarios {
 void run_draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed,
               std::span<const Method* const> methods, double timeout_s, int fd);
 
-/// Runs one method in a process of its own for at most `timeout_s` of wall time. A crash, a time-out or an exception is an
-/// outcome. Cost: CPU and peak memory of the estimate alone, memory above what the draw's process held. The estimate is
-/// scored against the sensors and the truth of `scored`, which is `draw` unless its sensors have been changed (triage).
+/// Runs one method in a process of its own for at most `timeout_s` of wall time. A crash, a time-out or an exception is
+/// an outcome. Cost: CPU and peak memory of the estimate alone, memory above what the draw's process held. The estimate
+/// is scored against the sensors and the truth of `scored`, which is `draw` unless its sensors have been changed
+/// (triage).
 Outcome run_isolated(const Method& method, const SimulatedDraw& draw, const SimulatedDraw& scored,
                      const sim::Surface* surface, double timeout_s);
 

@@ -25,8 +25,8 @@ SimulatedDraw simulate_draw(const DataRoot& data, const Scenario& scenario, std:
 /// The methods that apply to the scenario's robot, in the order given.
 std::vector<const Method*> applicable(std::span<const Method* const> methods, const std::string& robot);
 
-/// Runs a method on the draw. What it throws or reports as trouble makes `outcome` failed; otherwise `outcome` is left ok,
-/// to be scored. CPU time of the estimate is its first score.
+/// Runs a method on the draw. What it throws or reports as trouble makes `outcome` failed; otherwise `outcome` is left
+/// ok, to be scored. CPU time of the estimate is its first score.
 Estimate run_method(const Method& method, const SimulatedDraw& draw, Outcome& outcome);
 
 /// Adds verdict and scores of an estimate that went through. `surface` may be null.

@@ -63,9 +63,8 @@ std::string to_line(const Message& message) {
                           {"message", message.rejected->message}};
   }
   if (message.draw) {
-    object["draw"] = {{"scenario", message.draw->scenario},
-                      {"seed", message.draw->seed},
-                      {"values", to_json(message.draw->values)}};
+    object["draw"] = {
+        {"scenario", message.draw->scenario}, {"seed", message.draw->seed}, {"values", to_json(message.draw->values)}};
   }
   // text that is not UTF-8 must not stop an outcome
   return object.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
@@ -79,9 +78,9 @@ std::optional<Message> from_line(const std::string& line) {
     if (object.contains("outcome")) message.outcome = outcome_from(object.at("outcome"));
     if (object.contains("rejected")) {
       const json& rejected = object.at("rejected");
-      message.rejected = RejectedDraw{rejected.at("scenario").get<std::string>(),
-                                      rejected.at("seed").get<std::uint64_t>(),
-                                      rejected.at("message").get<std::string>()};
+      message.rejected =
+          RejectedDraw{rejected.at("scenario").get<std::string>(), rejected.at("seed").get<std::uint64_t>(),
+                       rejected.at("message").get<std::string>()};
     }
     if (object.contains("draw")) {
       const json& draw = object.at("draw");

@@ -82,10 +82,14 @@ bool Process::read_available(std::string& buffer) {
   char chunk[8192];
   while (true) {
     const ssize_t count = read(fd_, chunk, sizeof(chunk));
-    if (count > 0) buffer.append(chunk, static_cast<std::size_t>(count));
-    else if (count == 0) return false;
-    else if (errno == EINTR) continue;
-    else return errno == EAGAIN || errno == EWOULDBLOCK;
+    if (count > 0)
+      buffer.append(chunk, static_cast<std::size_t>(count));
+    else if (count == 0)
+      return false;
+    else if (errno == EINTR)
+      continue;
+    else
+      return errno == EAGAIN || errno == EWOULDBLOCK;
   }
 }
 

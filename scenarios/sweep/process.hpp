@@ -8,21 +8,21 @@
 
 namespace tumble::scenarios {
 
-/// A child process that writes to a pipe. The child dies with its parent, leaves no core file, and never returns into the
-/// caller's code. Linux only.
+/// A child process that writes to a pipe. The child dies with its parent, leaves no core file, and never returns into
+/// the caller's code. Linux only.
 class Process {
  public:
   struct End {
-    bool normal = false;   ///< exit status 0
-    int signal = 0;        ///< that ended it, 0 when none did
+    bool normal = false;  ///< exit status 0
+    int signal = 0;       ///< that ended it, 0 when none did
     int exit_code = 0;
-    double cpu_s = 0;      ///< used by the child, its own children not counted
-    double peak_mib = 0;   ///< largest resident size
+    double cpu_s = 0;              ///< used by the child, its own children not counted
+    double peak_mib = 0;           ///< largest resident size
     std::string describe() const;  ///< "ended by signal 11 (Segmentation fault)"
   };
 
-  /// Forks and runs `work(write_end)` in the child, in a process group of its own when `own_group`. What `work` throws ends
-  /// the child with exit status 1. Throws std::system_error when no process can be made.
+  /// Forks and runs `work(write_end)` in the child, in a process group of its own when `own_group`. What `work` throws
+  /// ends the child with exit status 1. Throws std::system_error when no process can be made.
   explicit Process(const std::function<void(int)>& work, bool own_group);
   /// Kills (the whole group) and collects what still runs.
   ~Process();

@@ -19,8 +19,12 @@ namespace {
 constexpr int kBusyTimeoutMs = 20000;
 constexpr const char* kRejected = "rejected";
 
-std::int64_t stored_seed(std::uint64_t seed) { return std::bit_cast<std::int64_t>(seed); }
-std::uint64_t read_seed(std::int64_t stored) { return std::bit_cast<std::uint64_t>(stored); }
+std::int64_t stored_seed(std::uint64_t seed) {
+  return std::bit_cast<std::int64_t>(seed);
+}
+std::uint64_t read_seed(std::int64_t stored) {
+  return std::bit_cast<std::uint64_t>(stored);
+}
 
 double read_value(const SQLite::Column& column) {
   return column.isNull() ? std::numeric_limits<double>::quiet_NaN() : column.getDouble();
@@ -28,8 +32,10 @@ double read_value(const SQLite::Column& column) {
 
 // SQLite has no NaN: a number that is none is null
 void bind_value(SQLite::Statement& statement, int index, double value) {
-  if (std::isnan(value)) statement.bind(index);
-  else statement.bind(index, value);
+  if (std::isnan(value))
+    statement.bind(index);
+  else
+    statement.bind(index, value);
 }
 
 Kind kind_named(const std::string& name, const std::filesystem::path& path) {
@@ -303,7 +309,8 @@ std::vector<Certificate> Results::certificates() const {
       if (certificates.empty() || certificates.back().build != build) certificates.push_back({build, {}});
       const auto text = [&](int column) { return select.getColumn(column).getString(); };
       certificates.back().entries.push_back({text(1), text(2), text(3), text(4), read_value(select.getColumn(5)),
-                                             read_value(select.getColumn(6)), read_value(select.getColumn(7)), text(8)});
+                                             read_value(select.getColumn(6)), read_value(select.getColumn(7)),
+                                             text(8)});
     }
     return certificates;
   });

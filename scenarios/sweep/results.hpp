@@ -12,8 +12,8 @@
 
 namespace tumble::scenarios {
 
-/// One row of the view scores(scenario, seed, kind, method, status, metric, value). An outcome without any score has one row
-/// with an empty metric and NaN; a rejected draw one with kind and method empty too, status `rejected`.
+/// One row of the view scores(scenario, seed, kind, method, status, metric, value). An outcome without any score has
+/// one row with an empty metric and NaN; a rejected draw one with kind and method empty too, status `rejected`.
 struct ScoreRow {
   std::string scenario;
   std::uint64_t seed;
@@ -21,13 +21,13 @@ struct ScoreRow {
   double value;
 };
 
-/// The results database (SQLite). Rows are unique by (scenario, seed, kind, method); storing again replaces. Each store is
-/// one transaction, so that whatever has finished survives a kill.
+/// The results database (SQLite). Rows are unique by (scenario, seed, kind, method); storing again replaces. Each store
+/// is one transaction, so that whatever has finished survives a kill.
 class Results {
  public:
   enum class Mode { create_or_append, read_only };
-  /// Throws BadInput: absent (read_only), not a results database, written by another build (create_or_append; note "build"),
-  /// no room. So do all members, with the path in the message.
+  /// Throws BadInput: absent (read_only), not a results database, written by another build (create_or_append; note
+  /// "build"), no room. So do all members, with the path in the message.
   Results(const std::filesystem::path& path, Mode mode);
   ~Results();
   Results(Results&&) noexcept;

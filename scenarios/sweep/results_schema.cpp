@@ -3,8 +3,9 @@
 
 namespace tumble::scenarios {
 
-// seeds are 64 bit unsigned, kept as the signed number of the same bits. A rejected draw is an outcome with kind and method
-// empty and status 'rejected'. The view has a row for each score, and one with a null metric for an outcome without any.
+// seeds are 64 bit unsigned, kept as the signed number of the same bits. A rejected draw is an outcome with kind and
+// method empty and status 'rejected'. The view has a row for each score, and one with a null metric for an outcome
+// without any.
 const char* const kSchema = R"sql(
 CREATE TABLE notes (
   key TEXT PRIMARY KEY NOT NULL,

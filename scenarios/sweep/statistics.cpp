@@ -80,7 +80,8 @@ double beta_quantile(double a, double b, double probability) {
 }  // namespace
 
 double quantile(std::span<const double> values, double share) {
-  if (!(share >= 0.0 && share <= 1.0)) throw BadInput("quantile: share is " + std::to_string(share) + ", must be within [0, 1]");
+  if (!(share >= 0.0 && share <= 1.0))
+    throw BadInput("quantile: share is " + std::to_string(share) + ", must be within [0, 1]");
   return quantile_of_sorted(sorted_numbers(values), share);
 }
 
@@ -93,7 +94,8 @@ Interval median_interval(std::span<const double> values) {
   double cumulative = 0.0;
   for (std::size_t k = 0; k < sorted.size(); ++k) {
     const auto count = static_cast<double>(k);
-    cumulative += std::exp(std::lgamma(n + 1) - std::lgamma(count + 1) - std::lgamma(n - count + 1) - n * std::log(2.0));
+    cumulative +=
+        std::exp(std::lgamma(n + 1) - std::lgamma(count + 1) - std::lgamma(n - count + 1) - n * std::log(2.0));
     if (cumulative > kTail) break;
     rank = k + 1;
   }
@@ -106,7 +108,8 @@ Interval median_interval(std::span<const double> values) {
 Interval share_interval(std::int64_t count, std::int64_t total) {
   if (total <= 0) return {kNaN, 0.0, 1.0};
   if (count < 0 || count > total) {
-    throw BadInput("share_interval: count is " + std::to_string(count) + ", must be within [0, " + std::to_string(total) + "]");
+    throw BadInput("share_interval: count is " + std::to_string(count) + ", must be within [0, " +
+                   std::to_string(total) + "]");
   }
   const auto k = static_cast<double>(count);
   const auto n = static_cast<double>(total);

@@ -12,7 +12,8 @@ struct Interval {
 };
 
 /// Sample quantile (Hyndman and Fan type 7) of the values that are not NaN; NaN when there is none.
-/// An infinite value ranks as what it is (a failure counts as the worst of all), so a quantile may be infinite. `share` in [0, 1].
+/// An infinite value ranks as what it is (a failure counts as the worst of all), so a quantile may be infinite. `share`
+/// in [0, 1].
 double quantile(std::span<const double> values, double share);
 
 /// Median with its distribution-free interval from order statistics (binomial); infinite ends when too few values.

@@ -16,7 +16,8 @@ constexpr double kTimeoutMaxS = 1e6;
 
 std::vector<std::string> every_method() {
   std::vector<std::string> names;
-  for (const Method& method : methods()) names.push_back(std::string(to_string(method.info.kind)) + "/" + method.info.name);
+  for (const Method& method : methods())
+    names.push_back(std::string(to_string(method.info.kind)) + "/" + method.info.name);
   return names;
 }
 
@@ -71,7 +72,9 @@ Suite read_suite(const DataRoot& data, const std::filesystem::path& path) {
 
 }  // namespace
 
-std::vector<std::string> suite_names(const DataRoot& data) { return yaml_stems(data.suites()); }
+std::vector<std::string> suite_names(const DataRoot& data) {
+  return yaml_stems(data.suites());
+}
 
 Suite load_suite(const DataRoot& data, const std::string& name) {
   if (name.ends_with(".yaml")) return read_suite(data, name);
@@ -79,7 +82,8 @@ Suite load_suite(const DataRoot& data, const std::string& name) {
   if (std::binary_search(suites.begin(), suites.end(), name)) {
     const std::filesystem::path path = data.suites() / (name + ".yaml");
     Suite suite = read_suite(data, path);
-    if (suite.name != name) throw BadInput(path.string() + ": name is '" + suite.name + "', must be the file's, '" + name + "'");
+    if (suite.name != name)
+      throw BadInput(path.string() + ": name is '" + suite.name + "', must be the file's, '" + name + "'");
     return suite;
   }
   const std::vector<std::string> scenarios = scenario_names(data);

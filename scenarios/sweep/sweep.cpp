@@ -108,11 +108,14 @@ class Sweep {
       for (const Scenario& scenario : scenarios_) {
         Pending draw{&scenario, seed, {}};
         for (const Method* method : applicable(methods, scenario.robot.type)) {
-          if (!held.contains({scenario.name, seed, method->info.kind, method->info.name})) draw.methods.push_back(method);
+          if (!held.contains({scenario.name, seed, method->info.kind, method->info.name}))
+            draw.methods.push_back(method);
         }
         ++progress_.draws_total;
-        if (draw.methods.empty() || rejected.contains({scenario.name, seed})) ++progress_.draws_done;
-        else pending_.push_back(std::move(draw));
+        if (draw.methods.empty() || rejected.contains({scenario.name, seed}))
+          ++progress_.draws_done;
+        else
+          pending_.push_back(std::move(draw));
       }
       if (seed == suite_.last_seed) break;
     }
@@ -224,7 +227,8 @@ class Sweep {
 SweepProgress sweep(const DataRoot& data, const Suite& suite, const std::filesystem::path& database,
                     const SweepOptions& options) {
   if (options.jobs < 1 || options.jobs > kJobsMax) {
-    throw BadInput("jobs is " + std::to_string(options.jobs) + ", must be within [1, " + std::to_string(kJobsMax) + "]");
+    throw BadInput("jobs is " + std::to_string(options.jobs) + ", must be within [1, " + std::to_string(kJobsMax) +
+                   "]");
   }
   if (suite.last_seed < suite.first_seed) throw BadInput("suite " + suite.name + ": last seed is below the first");
   if (suite.last_seed - suite.first_seed >= kSeedsMax) {

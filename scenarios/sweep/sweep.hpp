@@ -34,14 +34,14 @@ struct SweepProgress {
 };
 
 struct SweepOptions {
-  int jobs = 1;                           ///< processes
+  int jobs = 1;                             ///< processes
   const std::atomic<bool>* stop = nullptr;  ///< set it to end after storing what has finished
   std::function<void(const SweepProgress&)> on_progress;
 };
 
 /// Runs what the database does not hold yet. Each draw is a process of its own, each method in it another: a crash, a
-/// time-out or a memory failure is an outcome (crashed, timeout), never the end of the sweep. Finished outcomes are stored
-/// as they come. Returns the final progress; draws_done < draws_total when stopped.
+/// time-out or a memory failure is an outcome (crashed, timeout), never the end of the sweep. Finished outcomes are
+/// stored as they come. Returns the final progress; draws_done < draws_total when stopped.
 SweepProgress sweep(const DataRoot& data, const Suite& suite, const std::filesystem::path& database,
                     const SweepOptions& options);
 

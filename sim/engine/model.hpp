@@ -14,8 +14,12 @@
 /// Private to sim: the only headers that include mujoco.h are in this folder and beside the sources that need them.
 namespace tumble::sim::engine {
 
-struct ModelDeleter { void operator()(mjModel* model) const { mj_deleteModel(model); } };
-struct DataDeleter { void operator()(mjData* data) const { mj_deleteData(data); } };
+struct ModelDeleter {
+  void operator()(mjModel* model) const { mj_deleteModel(model); }
+};
+struct DataDeleter {
+  void operator()(mjData* data) const { mj_deleteData(data); }
+};
 using ModelPtr = std::unique_ptr<mjModel, ModelDeleter>;
 using DataPtr = std::unique_ptr<mjData, DataDeleter>;
 
@@ -28,14 +32,14 @@ struct FrictionPatch {
 /// A compiled situation: world and robot in one model.
 struct World {
   ModelPtr model;
-  int robot_body = -1;               ///< id of the robot's free body (its frame is B: inertial frame position zero)
-  std::vector<std::string> surfaces; ///< surface id -> name; parallel to `surface_geom`
-  std::vector<int> surface_geom;     ///< surface id -> geom id: the static geoms that a lidar sees and a robot touches
+  int robot_body = -1;                ///< id of the robot's free body (its frame is B: inertial frame position zero)
+  std::vector<std::string> surfaces;  ///< surface id -> name; parallel to `surface_geom`
+  std::vector<int> surface_geom;      ///< surface id -> geom id: the static geoms that a lidar sees and a robot touches
   std::vector<FrictionPatch> patches;
-  double half_extent_m = 0;          ///< beyond this |x| or |y| the robot has left the world
+  double half_extent_m = 0;                                ///< beyond this |x| or |y| the robot has left the world
   Eigen::Vector3d start_W_m = Eigen::Vector3d::Zero();     ///< on the ground, where a robot begins; +x leads away
   Eigen::Vector3d com_offset_m = Eigen::Vector3d::Zero();  ///< true centre of mass in the robot's design frame, B axes
-  double sphere_radius_m = 0;        ///< 0 when the robot is not a sphere
+  double sphere_radius_m = 0;                              ///< 0 when the robot is not a sphere
 };
 
 /// Composes world and robot in memory (mjSpec) and compiles. Throws InvalidSituation with the compiler's message.

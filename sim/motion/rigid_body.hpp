@@ -8,8 +8,8 @@
 
 namespace tumble::sim {
 
-/// Height of the centre of mass that puts every touching capsule and sphere of a body, turned by `q_WB`, `gap_m` above a
-/// level ground at height 0.
+/// Height of the centre of mass that puts every touching capsule and sphere of a body, turned by `q_WB`, `gap_m` above
+/// a level ground at height 0.
 double clearance_m(const mjModel& model, int body, const Eigen::Quaterniond& q_WB, double gap_m);
 
 /// Moment of inertia about the centre of mass in world axes of a body turned by `q_WB` [kg m^2].

@@ -25,8 +25,8 @@ std::vector<double> unevenness_m(const Grid& grid, const Values& values, Stream&
   std::vector<double> heights_m(static_cast<std::size_t>(grid.rows) * grid.columns, 0.0);
   if (values.at("roughness_m") <= 0.0) return heights_m;
   const double shortest_m = values.at("roughness_shortest_m");
-  const Relief unevenness(stream, {values.at("roughness_m"), shortest_m,
-                                   std::max(values.at("roughness_longest_m"), shortest_m)});
+  const Relief unevenness(
+      stream, {values.at("roughness_m"), shortest_m, std::max(values.at("roughness_longest_m"), shortest_m)});
   std::size_t i = 0;
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column)

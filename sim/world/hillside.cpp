@@ -15,7 +15,9 @@ namespace {
 
 constexpr double kReach_m = 18.0;  // what stands on the ground keeps off its rim
 
-double from_start_m(double x_m, double y_m) { return std::hypot(x_m - kStart_x_m, y_m); }
+double from_start_m(double x_m, double y_m) {
+  return std::hypot(x_m - kStart_x_m, y_m);
+}
 
 }  // namespace
 
@@ -26,8 +28,7 @@ void roughen(Ground& ground, const Values& values, std::uint64_t seed, const Sha
   const Relief relief(relief_stream,
                       {values.at("relief_m"), shortest_m, std::max(shortest_m, values.at("relief_longest_m")),
                        values.at("relief_exponent"), values.at("relief_ruled") > 0.5});
-  if (values.at("relief_m") > 0.0)
-    rough.transform([&](double x, double y, double) { return relief.height_m(x, y); });
+  if (values.at("relief_m") > 0.0) rough.transform([&](double x, double y, double) { return relief.height_m(x, y); });
   if (values.at("bump_height_m") > 0.0)
     add_bumps(rough, bump_stream, static_cast<int>(values.at("bump_count")), values.at("bump_height_m"));
   // the fade is a disc, or on ruled ground a strip: a disc would be a feature

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "sim/world/ground.hpp"
-#include "sim/world/terrain/relief.hpp"
 #include "sim/world/room.hpp"
+#include "sim/world/terrain/relief.hpp"
 #include "sim/world/world_type.hpp"
 
 namespace tumble::sim {

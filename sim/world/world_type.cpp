@@ -8,7 +8,7 @@
 namespace tumble::sim {
 
 std::span<const WorldType* const> all_world_types() {
-  static const std::array kTypes = {&hill_world(),  &stairs_world(), &cliff_world(), &floor_world(),
+  static const std::array kTypes = {&hill_world(), &stairs_world(),   &cliff_world(), &floor_world(),
                                     &ramp_world(), &corridor_world(), &tube_world()};
   return kTypes;
 }

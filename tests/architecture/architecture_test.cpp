@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Who may use whom: every #include and every link of the tree against the table of the design. The checker is a function of
-// (folder, include), so that its negative controls run beside the real scan.
+// Who may use whom: every #include and every link of the tree against the table of the design. The checker is a
+// function of (folder, include), so that its negative controls run beside the real scan.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,8 +25,9 @@ struct Rule {
 const std::vector<Rule>& rules() {
   static const std::vector<Rule> all = {
       {"estimator",
-       {"^sim/", "^scenarios/", "^tools/", "mujoco", "embree", "^fstream$", "^iostream$", "^cstdio$", "^filesystem$", "^thread$",
-        "^hdf5", "^yaml-cpp", "^sqlite", "^SQLiteCpp", "^nlohmann", "^fmt/", "^spdlog", "^tbb/", "^oneapi/"}},
+       {"^sim/", "^scenarios/", "^tools/", "mujoco", "embree", "^fstream$", "^iostream$", "^cstdio$", "^filesystem$",
+        "^thread$", "^hdf5", "^yaml-cpp", "^sqlite", "^SQLiteCpp", "^nlohmann", "^fmt/", "^spdlog", "^tbb/",
+        "^oneapi/"}},
       {"estimator/include/tumble/common", {"^pcl/", "^tumble/(angular_velocity|attitude|rolling|mapping)/"}},
       {"estimator/include/tumble/angular_velocity", {"^pcl/", "^tumble/(attitude|rolling|mapping)/"}},
       {"estimator/include/tumble/attitude", {"^pcl/", "^tumble/(rolling|mapping)/"}},
@@ -35,7 +36,9 @@ const std::vector<Rule>& rules() {
       {"estimator/src/angular_velocity", {"^pcl/", "^tumble/(attitude|rolling|mapping)/"}},
       {"estimator/src/attitude", {"^pcl/", "^tumble/(rolling|mapping)/"}},
       {"estimator/src/rolling", {"^pcl/", "^tumble/mapping/"}},
-      {"sim", {"^tumble/", "^estimator/", "^scenarios/", "^tools/", "^hdf5", "^yaml-cpp", "^sqlite", "^SQLiteCpp", "^nlohmann", "^pcl/"}},
+      {"sim",
+       {"^tumble/", "^estimator/", "^scenarios/", "^tools/", "^hdf5", "^yaml-cpp", "^sqlite", "^SQLiteCpp", "^nlohmann",
+        "^pcl/"}},
       {"scenarios", {"mujoco", "embree", "^sim/engine/", "^estimator/src/", "^tools/", "osmesa"}},
       {"tools", {"mujoco", "embree", "^sim/engine/", "^estimator/src/", "osmesa", "^tests/"}},
   };
@@ -44,9 +47,9 @@ const std::vector<Rule>& rules() {
 
 /// Headers of sim that others include must not bring mujoco.h, Embree or OSMesa with them.
 const std::vector<std::string> kPublicSimHeaders = {
-    "sim/parameters.hpp", "sim/situation.hpp", "sim/recording.hpp", "sim/simulate.hpp", "sim/random/stream.hpp",
-    "sim/lidar/surface.hpp", "sim/render/renderer.hpp", "sim/trial/trial.hpp", "sim/trial/ray_trial.hpp", "sim/imu/allan.hpp",
-    "sim/imu/imu_simulation.hpp"};
+    "sim/parameters.hpp",      "sim/situation.hpp",     "sim/recording.hpp",         "sim/simulate.hpp",
+    "sim/random/stream.hpp",   "sim/lidar/surface.hpp", "sim/render/renderer.hpp",   "sim/trial/trial.hpp",
+    "sim/trial/ray_trial.hpp", "sim/imu/allan.hpp",     "sim/imu/imu_simulation.hpp"};
 
 std::vector<std::string> includes_of(const fs::path& file) {
   static const std::regex pattern(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");
@@ -60,14 +63,17 @@ std::vector<std::string> includes_of(const fs::path& file) {
   return out;
 }
 
-bool is_below(const std::string& path, const std::string& folder) { return path.rfind(folder + "/", 0) == 0; }
+bool is_below(const std::string& path, const std::string& folder) {
+  return path.rfind(folder + "/", 0) == 0;
+}
 
 /// The rule that a file at `path` breaks by including `include`; empty when it breaks none.
 std::string broken_rule(const std::string& path, const std::string& include) {
   for (const Rule& rule : rules()) {
     if (!is_below(path, rule.folder)) continue;
     for (const std::string& pattern : rule.forbidden) {
-      if (std::regex_search(include, std::regex(pattern, std::regex::icase))) return rule.folder + " must not include " + pattern;
+      if (std::regex_search(include, std::regex(pattern, std::regex::icase)))
+        return rule.folder + " must not include " + pattern;
     }
   }
   return "";
@@ -85,7 +91,9 @@ std::vector<fs::path> sources() {
   return out;
 }
 
-std::string path_in_tree(const fs::path& path) { return fs::relative(path, TUMBLE_SOURCE_DIR).generic_string(); }
+std::string path_in_tree(const fs::path& path) {
+  return fs::relative(path, TUMBLE_SOURCE_DIR).generic_string();
+}
 
 /// Private headers of a module may be reached from inside the module alone: follow the includes of a public header.
 void collect_reachable(const std::string& header, std::vector<std::string>& seen) {
@@ -150,7 +158,8 @@ TEST(Architecture, TheEstimatorNeedsNothingOfTheHarness) {
   ASSERT_TRUE(fs::exists(library)) << library;
   const std::string undefined = output_of("nm -C --undefined-only " + library.string());
   ASSERT_NE(undefined.find("U "), std::string::npos) << "nm printed nothing to judge";
-  const std::regex forbidden(R"(\b(mj_|rtc[A-Z]|H5[A-Z]|pcl::|YAML::|sqlite3_|std::cout|std::cerr|printf\b|fopen\b|exit\b|pthread_create|tumble::sim|tumble::scenarios))");
+  const std::regex forbidden(
+      R"(\b(mj_|rtc[A-Z]|H5[A-Z]|pcl::|YAML::|sqlite3_|std::cout|std::cerr|printf\b|fopen\b|exit\b|pthread_create|tumble::sim|tumble::scenarios))");
   std::smatch match;
   EXPECT_FALSE(std::regex_search(undefined, match, forbidden)) << "libtumble_estimator.a uses " << match.str();
   const std::string control = "                 U mj_step\n";

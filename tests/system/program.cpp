@@ -30,7 +30,9 @@ fs::path fresh_folder(const std::string& name) {
   return folder;
 }
 
-int exit_status(int raw) { return WIFEXITED(raw) ? WEXITSTATUS(raw) : 128 + WTERMSIG(raw); }
+int exit_status(int raw) {
+  return WIFEXITED(raw) ? WEXITSTATUS(raw) : 128 + WTERMSIG(raw);
+}
 
 }  // namespace
 
@@ -59,7 +61,9 @@ Running::~Running() {
   }
 }
 
-void Running::signal(int number) const { kill(-pid_, number); }
+void Running::signal(int number) const {
+  kill(-pid_, number);
+}
 
 bool Running::has_ended() {
   if (!reaped_ && waitpid(pid_, &raw_status_, WNOHANG) == pid_) reaped_ = true;

@@ -19,7 +19,9 @@ using ::testing::StartsWith;
 
 class OnRobot : public testing::TestWithParam<const char*> {};
 
-json shared_result(const std::string& scenario) { return json::parse(read_file(shared_run(scenario) / "out.json")); }
+json shared_result(const std::string& scenario) {
+  return json::parse(read_file(shared_run(scenario) / "out.json"));
+}
 
 /// Metric -> value of one method, without what a run costs.
 std::map<std::string, double> scores_of(const json& document, const std::string& kind, const std::string& method) {
@@ -27,7 +29,8 @@ std::map<std::string, double> scores_of(const json& document, const std::string&
   for (const json& row : document["scores"]) {
     const std::string metric = row["metric"];
     if (row["kind"] != kind || row["method"] != method || row["value"].is_null()) continue;
-    if (metric.find("_cpu_s") == std::string::npos && metric.find("_mib") == std::string::npos) out[metric] = row["value"];
+    if (metric.find("_cpu_s") == std::string::npos && metric.find("_mib") == std::string::npos)
+      out[metric] = row["value"];
   }
   return out;
 }
@@ -62,7 +65,8 @@ TEST_P(OnRobot, RunLeavesEverythingAndScoresIt) {
   EXPECT_TRUE(fs::exists(folder / "recording.h5"));
   EXPECT_TRUE(fs::exists(folder / "situation.yaml"));
   for (const json& outcome : result["outcomes"]) {
-    const fs::path estimate = folder / "estimates" / (outcome["kind"].get<std::string>() + "-" + outcome["method"].get<std::string>());
+    const fs::path estimate =
+        folder / "estimates" / (outcome["kind"].get<std::string>() + "-" + outcome["method"].get<std::string>());
     EXPECT_TRUE(fs::exists(estimate / "estimate.json")) << estimate;
   }
   for (const char* picture : {"scene.png", "film.png"}) {
@@ -95,7 +99,8 @@ TEST_P(OnRobot, StagesAgreeWithRun) {
     const std::string kind = outcome["kind"], method = outcome["method"];
     if (needs_truth(outcome)) continue;
     const std::string estimate = (folder / kind / method).string();
-    const Ended estimated = run_program({"estimate", recording, "--method", kind + "/" + method, "-o", estimate, "--json"});
+    const Ended estimated =
+        run_program({"estimate", recording, "--method", kind + "/" + method, "-o", estimate, "--json"});
     ASSERT_EQ(estimated.status, 0) << estimated.err;
     EXPECT_EQ(json_of(estimated)["digest"], outcome["digest"]) << kind << "/" << method;
 
@@ -126,13 +131,15 @@ TEST_P(OnRobot, EstimateNeverOpensTheTruth) {
   for (const json& outcome : whole["outcomes"]) {
     const std::string name = outcome["kind"].get<std::string>() + "/" + outcome["method"].get<std::string>();
     if (needs_truth(outcome)) continue;
-    const Ended ended = run_program({"estimate", blind.string(), "--method", name, "-o", (folder / name).string(), "--json"});
+    const Ended ended =
+        run_program({"estimate", blind.string(), "--method", name, "-o", (folder / name).string(), "--json"});
     ASSERT_EQ(ended.status, 0) << ended.err;
     EXPECT_EQ(json_of(ended)["digest"], outcome["digest"]) << name;
     ++compared;
   }
   EXPECT_GE(compared, 3u);
-  const Ended oracle = run_program({"estimate", blind.string(), "--method", "rate/oracle", "-o", (folder / "o").string()});
+  const Ended oracle =
+      run_program({"estimate", blind.string(), "--method", "rate/oracle", "-o", (folder / "o").string()});
   EXPECT_EQ(oracle.status, 2);
   EXPECT_THAT(oracle.err, HasSubstr("needs the truth"));
 }
@@ -151,7 +158,8 @@ TEST(Run, PrintsATablePerKind) {
 TEST(Render, WritesAPictureOfARecordingWithItsEstimates) {
   const fs::path run = shared_run("roll");
   const fs::path png = test_folder() / "roll.png";
-  const Ended ended = run_program({"render", (run / "recording.h5").string(), (run / "estimates" / "position-rolling").string(), "-o", png.string()});
+  const Ended ended = run_program({"render", (run / "recording.h5").string(),
+                                   (run / "estimates" / "position-rolling").string(), "-o", png.string()});
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(read_file(png), StartsWith("\x89PNG"));
   EXPECT_GT(fs::file_size(png), 10000u) << "an empty picture packs to a few kilobytes";
@@ -160,11 +168,12 @@ TEST(Render, WritesAPictureOfARecordingWithItsEstimates) {
 
 TEST(Render, WritesAFilmStripAndADraw) {
   const fs::path folder = test_folder();
-  const Ended film = run_program({"render", (shared_run("roll") / "recording.h5").string(), "--film", "4", "--columns", "2", "--width",
-                                  "160", "--height", "120", "-o", (folder / "film.png").string()});
+  const Ended film = run_program({"render", (shared_run("roll") / "recording.h5").string(), "--film", "4", "--columns",
+                                  "2", "--width", "160", "--height", "120", "-o", (folder / "film.png").string()});
   ASSERT_EQ(film.status, 0) << film.err;
   EXPECT_THAT(read_file(folder / "film.png"), StartsWith("\x89PNG"));
-  const Ended draw = run_program({"render", "hill", "--seed", "1", "--width", "320", "--height", "240", "-o", (folder / "draw.png").string()});
+  const Ended draw = run_program(
+      {"render", "hill", "--seed", "1", "--width", "320", "--height", "240", "-o", (folder / "draw.png").string()});
   ASSERT_EQ(draw.status, 0) << draw.err;
   EXPECT_THAT(read_file(folder / "draw.png"), StartsWith("\x89PNG"));
 }

@@ -19,10 +19,13 @@ using ::testing::Not;
 
 /// The sweep that these tests share: fast draws of the sphere.
 std::vector<std::string> sweep_arguments(const fs::path& database, const std::string& seeds) {
-  return {"sweep", "roll", "--seeds", seeds, "--method", "rate/raw", "--method", "rolling", "--db", database.string(), "--json"};
+  return {"sweep",   "roll", "--seeds",         seeds,   "--method", "rate/raw", "--method",
+          "rolling", "--db", database.string(), "--json"};
 }
 
-json report_json(const fs::path& database) { return json_of(run_program({"report", database.string(), "--json"})); }
+json report_json(const fs::path& database) {
+  return json_of(run_program({"report", database.string(), "--json"}));
+}
 
 /// The scores of a report without what they cost.
 json comparable(json report) {
@@ -39,7 +42,8 @@ TEST(Sweep, InterruptedKeepsWhatIsDoneAndGoesOn) {
   std::vector<std::string> arguments = sweep_arguments(database, "1..500");
   arguments.insert(arguments.end(), {"--jobs", "1"});
   Running running(arguments);
-  // one draw at a time: outcomes of a second draw say that the first is complete; they give the signal, however fast the machine is
+  // one draw at a time: outcomes of a second draw say that the first is complete; they give the signal, however fast
+  // the machine is
   for (int i = 0; i < 1200 && !running.has_ended(); ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     if (!fs::exists(database)) continue;
@@ -115,11 +119,13 @@ TEST(Report, IsOnePageThatAsksTheNetworkNothing) {
   EXPECT_GT(end - bundle, 1000000u) << "the Plotly bundle is inside";
   text.erase(bundle, end - bundle);
   // the bundle holds addresses as text; nothing else of the page may, and nothing may be fetched
-  for (const char* outside : {"http:", "https:", "@import", "url(", "<link"}) EXPECT_THAT(text, Not(HasSubstr(outside)));
+  for (const char* outside : {"http:", "https:", "@import", "url(", "<link"})
+    EXPECT_THAT(text, Not(HasSubstr(outside)));
   EXPECT_THAT(text, HasSubstr("data:image/png;base64,iVBORw0KGgo")) << "no picture";
   EXPECT_THAT(text, HasSubstr("rolling"));
   EXPECT_THAT(text, HasSubstr("id=\"path-roll\""));
-  for (const char* part : {"id=\"certificate\"", "free_flight_energy", "id=\"distributions\"", "distribution-motion_path_m"}) {
+  for (const char* part :
+       {"id=\"certificate\"", "free_flight_energy", "id=\"distributions\"", "distribution-motion_path_m"}) {
     EXPECT_THAT(text, HasSubstr(part));
   }
   const json document = report_json(database);

@@ -26,8 +26,10 @@ TEST(Trouble, TruncatedRecordingIsRecognised) {
   ASSERT_GT(whole.size(), 1000u);
   for (const double share : {0.0, 0.001, 0.5, 0.999}) {
     const fs::path cut = folder / "cut.h5";
-    std::ofstream(cut, std::ios::binary) << whole.substr(0, static_cast<std::size_t>(share * static_cast<double>(whole.size())));
-    expect_one_line(run_program({"estimate", cut.string(), "--method", "rate/raw", "-o", (folder / "e").string()}), "cut.h5");
+    std::ofstream(cut, std::ios::binary) << whole.substr(
+        0, static_cast<std::size_t>(share * static_cast<double>(whole.size())));
+    expect_one_line(run_program({"estimate", cut.string(), "--method", "rate/raw", "-o", (folder / "e").string()}),
+                    "cut.h5");
     expect_one_line(run_program({"render", cut.string(), "-o", (folder / "p.png").string()}), "cut.h5");
   }
   EXPECT_FALSE(fs::exists(folder / "e")) << "nothing is left of an estimate that could not begin";
@@ -40,9 +42,12 @@ TEST(Trouble, FolderThatCannotBeWritten) {
   const std::string below = (folder / "file" / "below").string();
   expect_one_line(run_program({"run", "roll", "--seed", "1", "-o", below}), "file/below");
   expect_one_line(run_program({"record", "roll", "--seed", "1", "-o", below + "/r.h5"}), "file/below");
-  expect_one_line(run_program({"estimate", (shared_run("roll") / "recording.h5").string(), "--method", "rate/raw", "-o", below}), "file/below");
+  expect_one_line(
+      run_program({"estimate", (shared_run("roll") / "recording.h5").string(), "--method", "rate/raw", "-o", below}),
+      "file/below");
   expect_one_line(run_program({"sweep", "roll", "--seeds", "1", "--db", below + "/x.db"}), "file/below");
-  expect_one_line(run_program({"render", (shared_run("roll") / "recording.h5").string(), "-o", below + "/p.png"}), "file/below");
+  expect_one_line(run_program({"render", (shared_run("roll") / "recording.h5").string(), "-o", below + "/p.png"}),
+                  "file/below");
 }
 
 TEST(Trouble, FullDiskLeavesNoPartialRecording) {
@@ -54,10 +59,12 @@ TEST(Trouble, FullDiskLeavesNoPartialRecording) {
   };
   expect_one_line(run_program({"record", "roll", "--seed", "1", "-o", (folder / "r.h5").string()}, full), "r.h5");
   EXPECT_TRUE(fs::is_empty(folder)) << "a partial file stayed: " << fs::directory_iterator(folder)->path();
-  expect_one_line(run_program({"sweep", "roll", "--seeds", "1", "--db", (folder / "x.db").string()}, [] {
-                    const rlimit limit = {4096, 4096};
-                    setrlimit(RLIMIT_FSIZE, &limit);
-                  }), "x.db");
+  expect_one_line(run_program({"sweep", "roll", "--seeds", "1", "--db", (folder / "x.db").string()},
+                              [] {
+                                const rlimit limit = {4096, 4096};
+                                setrlimit(RLIMIT_FSIZE, &limit);
+                              }),
+                  "x.db");
 }
 
 TEST(Trouble, FullStandardOutputIsSaid) {
@@ -86,9 +93,12 @@ TEST(Trouble, ScenarioFileWithAnUnknownKeyNamesItsLineAndTheNearest) {
 TEST(Trouble, ForeignFilesAreRefused) {
   const fs::path folder = test_folder();
   std::ofstream(folder / "text") << "this is neither HDF5 nor SQLite\n";
-  expect_one_line(run_program({"estimate", (folder / "text").string(), "--method", "rate/raw", "-o", (folder / "e").string()}), "text");
+  expect_one_line(
+      run_program({"estimate", (folder / "text").string(), "--method", "rate/raw", "-o", (folder / "e").string()}),
+      "text");
   expect_one_line(run_program({"report", (folder / "text").string()}), "text");
-  expect_one_line(run_program({"score", (folder / "text").string(), (shared_run("roll") / "recording.h5").string()}), "text");
+  expect_one_line(run_program({"score", (folder / "text").string(), (shared_run("roll") / "recording.h5").string()}),
+                  "text");
 }
 
 }  // namespace

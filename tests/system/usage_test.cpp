@@ -28,15 +28,17 @@ TEST_P(EachVerb, RefusesAnUnknownOptionInOneLine) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Program, EachVerb,
-                         testing::Values("list", "run", "record", "estimate", "score", "sweep", "merge", "report", "render", "certify", "gate",
-                                         "triage", "export", "import"));
+                         testing::Values("list", "run", "record", "estimate", "score", "sweep", "merge", "report",
+                                         "render", "certify", "gate", "triage", "export", "import"));
 
 struct Wrong {
   const char* what;
   std::vector<std::string> arguments;
   const char* says;
 };
-void PrintTo(const Wrong& wrong, std::ostream* stream) { *stream << wrong.what; }
+void PrintTo(const Wrong& wrong, std::ostream* stream) {
+  *stream << wrong.what;
+}
 
 class WrongUse : public testing::TestWithParam<Wrong> {};
 
@@ -50,30 +52,34 @@ TEST_P(WrongUse, EndsWithTwoAndOneClearLine) {
 
 INSTANTIATE_TEST_SUITE_P(
     Program, WrongUse,
-    testing::Values(Wrong{"no verb", {}, "a verb is missing"},
-                    Wrong{"option before the verb", {"--quiet", "list", "methods"}, "goes behind the verb"}, Wrong{"verb", {"rnu", "hill"}, "did you mean 'run'?"},
-                    Wrong{"scenario", {"run", "hil", "--seed", "1"}, "did you mean 'hill'?"},
-                    Wrong{"method", {"run", "hill", "--seed", "1", "--method", "saavee"}, "saave"},
-                    Wrong{"method of a sweep", {"sweep", "demo", "--method", "saavee", "--db", "/dev/null/x.db"}, "saave"},
-                    Wrong{"suite", {"sweep", "dmeo", "--db", "/dev/null/x.db"}, "demo"},
-                    Wrong{"list", {"list", "scenarois"}, "did you mean 'scenarios'?"},
-                    Wrong{"no seed", {"run", "hill"}, "--seed"}, Wrong{"seed", {"run", "hill", "--seed", "1.5"}, "'1.5'"},
-                    Wrong{"seeds", {"sweep", "demo", "--seeds", "9..3", "--db", "x.db"}, "'9..3'"},
-                    Wrong{"shard", {"sweep", "demo", "--shard", "3/2", "--db", "x.db"}, "'3/2'"},
-                    Wrong{"threads", {"run", "hill", "--seed", "1", "--threads", "0"}, "--threads"},
-                    Wrong{"absent recording", {"estimate", "absent.h5", "--method", "raw", "-o", "x"}, "absent.h5"},
-                    Wrong{"absent database", {"report", "absent.db"}, "absent.db"},
-                    Wrong{"row of the certificate", {"certify", "--row", "free_fal"}, "'free_fall'"},
-                    Wrong{"suite of a gate", {"gate", "gaet"}, "gate"},
-                    Wrong{"margin of a gate", {"gate", "gate", "--accept", "--margin", "-1"}, "--margin"},
-                    Wrong{"format of an export", {"export", "absent.h5", "--format", "tmu", "-o", "x"}, "'tum'"},
-                    Wrong{"export of nothing", {"export", "absent.h5", "--format", "tum", "-o", "x"}, "absent.h5"},
-                    Wrong{"import of nothing", {"import", "absent.csv", "-o", "x.h5"}, "absent.csv"},
-                    Wrong{"import without format", {"import", "absent.bag", "-o", "x.h5"}, "--format"},
-                    Wrong{"device of an import", {"import", "absent.csv", "--device", "mti3", "-o", "x.h5"}, "mti30"},
-                    Wrong{"triage of many methods", {"triage", "hill", "--seed", "1", "--method", "tumble"}, "rate/tumble"},
-                    Wrong{"metric of a triage", {"triage", "hill", "--seed", "1", "--method", "rate/raw", "--metric", "rate_error", "--limit", "1"}, "metric"},
-                    Wrong{"render without seed", {"render", "hill", "-o", "x.png"}, "--seed"}));
+    testing::Values(
+        Wrong{"no verb", {}, "a verb is missing"},
+        Wrong{"option before the verb", {"--quiet", "list", "methods"}, "goes behind the verb"},
+        Wrong{"verb", {"rnu", "hill"}, "did you mean 'run'?"},
+        Wrong{"scenario", {"run", "hil", "--seed", "1"}, "did you mean 'hill'?"},
+        Wrong{"method", {"run", "hill", "--seed", "1", "--method", "saavee"}, "saave"},
+        Wrong{"method of a sweep", {"sweep", "demo", "--method", "saavee", "--db", "/dev/null/x.db"}, "saave"},
+        Wrong{"suite", {"sweep", "dmeo", "--db", "/dev/null/x.db"}, "demo"},
+        Wrong{"list", {"list", "scenarois"}, "did you mean 'scenarios'?"}, Wrong{"no seed", {"run", "hill"}, "--seed"},
+        Wrong{"seed", {"run", "hill", "--seed", "1.5"}, "'1.5'"},
+        Wrong{"seeds", {"sweep", "demo", "--seeds", "9..3", "--db", "x.db"}, "'9..3'"},
+        Wrong{"shard", {"sweep", "demo", "--shard", "3/2", "--db", "x.db"}, "'3/2'"},
+        Wrong{"threads", {"run", "hill", "--seed", "1", "--threads", "0"}, "--threads"},
+        Wrong{"absent recording", {"estimate", "absent.h5", "--method", "raw", "-o", "x"}, "absent.h5"},
+        Wrong{"absent database", {"report", "absent.db"}, "absent.db"},
+        Wrong{"row of the certificate", {"certify", "--row", "free_fal"}, "'free_fall'"},
+        Wrong{"suite of a gate", {"gate", "gaet"}, "gate"},
+        Wrong{"margin of a gate", {"gate", "gate", "--accept", "--margin", "-1"}, "--margin"},
+        Wrong{"format of an export", {"export", "absent.h5", "--format", "tmu", "-o", "x"}, "'tum'"},
+        Wrong{"export of nothing", {"export", "absent.h5", "--format", "tum", "-o", "x"}, "absent.h5"},
+        Wrong{"import of nothing", {"import", "absent.csv", "-o", "x.h5"}, "absent.csv"},
+        Wrong{"import without format", {"import", "absent.bag", "-o", "x.h5"}, "--format"},
+        Wrong{"device of an import", {"import", "absent.csv", "--device", "mti3", "-o", "x.h5"}, "mti30"},
+        Wrong{"triage of many methods", {"triage", "hill", "--seed", "1", "--method", "tumble"}, "rate/tumble"},
+        Wrong{"metric of a triage",
+              {"triage", "hill", "--seed", "1", "--method", "rate/raw", "--metric", "rate_error", "--limit", "1"},
+              "metric"},
+        Wrong{"render without seed", {"render", "hill", "-o", "x.png"}, "--seed"}));
 
 TEST(List, NamesWhatThereIs) {
   const auto names = [](const char* what) {
@@ -84,7 +90,8 @@ TEST(List, NamesWhatThereIs) {
     return out;
   };
   EXPECT_THAT(names("scenarios"), testing::IsSupersetOf({"hill", "roll", "slip"}));
-  EXPECT_THAT(names("methods"), testing::IsSupersetOf({"raw", "saave", "oracle", "integrate", "madgwick", "rolling", "icp"}));
+  EXPECT_THAT(names("methods"),
+              testing::IsSupersetOf({"raw", "saave", "oracle", "integrate", "madgwick", "rolling", "icp"}));
   EXPECT_THAT(names("sensors"), testing::IsSupersetOf({"mti30", "vn100", "rs16", "phidget1044", "mid100"}));
   EXPECT_THAT(names("suites"), testing::IsSupersetOf({"hill", "slip", "demo", "gate"}));
 }

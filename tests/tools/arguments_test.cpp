@@ -23,24 +23,28 @@ TEST(ParseSeed, TakesWholeNumbersAlone) {
   EXPECT_EQ(parse_seed("18446744073709551615"), 18446744073709551615u);
   EXPECT_EQ(parse_seed("010"), 10u) << "decimal, whatever it begins with";
   for (const char* bad : {"", "-1", "+1", "1.0", "1e3", "0x10", " 1", "1 ", "18446744073709551616", "one"}) {
-    EXPECT_THAT([&] { parse_seed(bad); }, ThrowsMessage<BadInput>(HasSubstr("--seed is '" + std::string(bad) + "'"))) << bad;
+    EXPECT_THAT([&] { parse_seed(bad); }, ThrowsMessage<BadInput>(HasSubstr("--seed is '" + std::string(bad) + "'")))
+        << bad;
   }
 }
 
 TEST(ParseSeeds, TakesARangeOrOne) {
   EXPECT_EQ(parse_seeds("3..9"), std::make_pair(std::uint64_t{3}, std::uint64_t{9}));
   EXPECT_EQ(parse_seeds("7"), std::make_pair(std::uint64_t{7}, std::uint64_t{7}));
-  for (const char* bad : {"", "..", "1..", "..5", "1...5", "1-5", "9..3", "a..b"}) EXPECT_THROW(parse_seeds(bad), BadInput) << bad;
+  for (const char* bad : {"", "..", "1..", "..5", "1...5", "1-5", "9..3", "a..b"})
+    EXPECT_THROW(parse_seeds(bad), BadInput) << bad;
 }
 
 TEST(ParseShard, IsOneOfN) {
   EXPECT_EQ(parse_shard("2/8").index, 2u);
   EXPECT_EQ(parse_shard("2/8").count, 8u);
-  for (const char* bad : {"", "0/4", "5/4", "1/0", "1", "1/", "/1", "-1/2", "1/1000001"}) EXPECT_THROW(parse_shard(bad), BadInput) << bad;
+  for (const char* bad : {"", "0/4", "5/4", "1/0", "1", "1/", "/1", "-1/2", "1/1000001"})
+    EXPECT_THROW(parse_shard(bad), BadInput) << bad;
 }
 
 TEST(ShardSeeds, PartitionTheRange) {
-  // every seed in exactly one shard, in order, lengths differing by one at most; more shards than seeds leave empty ones
+  // every seed in exactly one shard, in order, lengths differing by one at most; more shards than seeds leave empty
+  // ones
   for (const std::uint64_t count : {1u, 2u, 3u, 7u, 10u, 13u}) {
     std::uint64_t next = 5;
     std::size_t empty = 0;
@@ -63,8 +67,10 @@ TEST(ShardSeeds, PartitionTheRange) {
 TEST(RequireKnown, NamesTheNearestOrAll) {
   const std::vector<std::string> known = {"run", "record", "sweep"};
   EXPECT_NO_THROW(require_known("verb", "sweep", known));
-  EXPECT_THAT([&] { require_known("verb", "swep", known); }, ThrowsMessage<BadInput>("unknown verb 'swep'; did you mean 'sweep'?"));
-  EXPECT_THAT([&] { require_known("verb", "qqqqqq", known); }, ThrowsMessage<BadInput>("unknown verb 'qqqqqq'; known: run record sweep"));
+  EXPECT_THAT([&] { require_known("verb", "swep", known); },
+              ThrowsMessage<BadInput>("unknown verb 'swep'; did you mean 'sweep'?"));
+  EXPECT_THAT([&] { require_known("verb", "qqqqqq", known); },
+              ThrowsMessage<BadInput>("unknown verb 'qqqqqq'; known: run record sweep"));
 }
 
 TEST(SelectMethods, TakesEachOnceAndRefusesUnknownOnes) {
@@ -77,14 +83,16 @@ TEST(SelectMethods, TakesEachOnceAndRefusesUnknownOnes) {
 }
 
 TEST(WriteFile, LeavesTheWholeFileOrNone) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / ("tumble_write_file_" + std::to_string(getpid()));
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) / ("tumble_write_file_" + std::to_string(getpid()));
   std::filesystem::remove_all(folder);
   make_folder(folder);
   write_file(folder / "a.txt", "content");
   std::ifstream stream(folder / "a.txt");
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(stream), {}), "content");
   // a path below a regular file cannot be written, not even by root
-  EXPECT_THAT([&] { write_file(folder / "a.txt" / "b", "x"); }, ThrowsMessage<BadInput>(HasSubstr("a.txt/b: cannot be written")));
+  EXPECT_THAT([&] { write_file(folder / "a.txt" / "b", "x"); },
+              ThrowsMessage<BadInput>(HasSubstr("a.txt/b: cannot be written")));
   EXPECT_THAT([&] { make_folder(folder / "a.txt" / "b"); }, ThrowsMessage<BadInput>(HasSubstr("a.txt/b")));
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1) << "no partial file stays";
 }

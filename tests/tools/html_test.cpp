@@ -14,7 +14,8 @@ std::string base64_of(const std::string& text) {
 }
 
 TEST(Escaped, LeavesNoMarkup) {
-  EXPECT_EQ(escaped("<img src=\"x\" onerror='alert(1)'> & co"), "&lt;img src=&quot;x&quot; onerror=&#39;alert(1)&#39;&gt; &amp; co");
+  EXPECT_EQ(escaped("<img src=\"x\" onerror='alert(1)'> & co"),
+            "&lt;img src=&quot;x&quot; onerror=&#39;alert(1)&#39;&gt; &amp; co");
   EXPECT_EQ(escaped("20–45°"), "20–45°");
 }
 
@@ -36,7 +37,9 @@ TEST(Base64, AgreesWithTheVectorsOfRfc4648) {
   EXPECT_EQ(base64(std::vector<std::uint8_t>{0xFB, 0xFF, 0xFE}), "+//+");
 }
 
-TEST(Cell, EscapesTextAndClass) { EXPECT_EQ(cell("<b>", "a\"b"), "<td class=\"a&quot;b\">&lt;b&gt;</td>"); }
+TEST(Cell, EscapesTextAndClass) {
+  EXPECT_EQ(cell("<b>", "a\"b"), "<td class=\"a&quot;b\">&lt;b&gt;</td>");
+}
 
 }  // namespace
 }  // namespace tumble::tools::html

@@ -46,7 +46,8 @@ TEST(Page, AsksTheNetworkNothing) {
   content.summary = summary_of("hill");
   content.figures = {box_figure(content.summary, Kind::rate, "rate_error_clipped_median_rad_s", "caption")};
   const std::string page = page_html(content, "/* bundle */");
-  for (const char* outside : {"http:", "https:", "src=\"/", "@import", "url(", "<link"}) EXPECT_THAT(page, Not(HasSubstr(outside)));
+  for (const char* outside : {"http:", "https:", "src=\"/", "@import", "url(", "<link"})
+    EXPECT_THAT(page, Not(HasSubstr(outside)));
   EXPECT_THAT(page, HasSubstr("/* bundle */"));
   EXPECT_THAT(page, HasSubstr("prefers-color-scheme"));
 }

@@ -26,7 +26,8 @@ sim::Truth spiral() {
     const bool moves = k > 500 && k <= 1500;
     truth.p_WB_m.emplace_back(2.0 * std::cos(3.0 * t), 2.0 * std::sin(3.0 * t), 0.5 * t);
     truth.q_WB.emplace_back(AngleAxisd(2.0 * t, axis));
-    truth.v_WB_m_s.push_back(moves ? Vector3d(-6.0 * std::sin(3.0 * t), 6.0 * std::cos(3.0 * t), 0.5) : Vector3d::Zero());
+    truth.v_WB_m_s.push_back(moves ? Vector3d(-6.0 * std::sin(3.0 * t), 6.0 * std::cos(3.0 * t), 0.5)
+                                   : Vector3d::Zero());
     truth.w_WB_B_rad_s.push_back(moves ? Vector3d(2.0 * axis) : Vector3d::Zero());
   }
   sim::ImuTruth imu;

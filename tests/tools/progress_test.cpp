@@ -44,7 +44,8 @@ TEST(ProgressLine, ShowsShareCountsAndTimeLeft) {
 }
 
 TEST(ProgressLine, OfNothingToDoIsComplete) {
-  EXPECT_EQ(progress_line(progress(0, 0, 0.0, 0.0), 4), "[####]  0/0 draws  100 %  0 outcomes  1 not ok  0 rejected  in 0 s");
+  EXPECT_EQ(progress_line(progress(0, 0, 0.0, 0.0), 4),
+            "[####]  0/0 draws  100 %  0 outcomes  1 not ok  0 rejected  in 0 s");
 }
 
 TEST(ProgressDisplay, OffATerminalWritesALineEveryTenSeconds) {

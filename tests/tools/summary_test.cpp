@@ -24,7 +24,8 @@ constexpr const char* kError = "rate_error_clipped_median_rad_s";
 /// A results database in the test's folder, empty.
 class SummaryTest : public testing::Test {
  protected:
-  SummaryTest() : path_(std::filesystem::path(testing::TempDir()) / ("tumble_summary_" + std::to_string(getpid()) + ".db")) {
+  SummaryTest()
+      : path_(std::filesystem::path(testing::TempDir()) / ("tumble_summary_" + std::to_string(getpid()) + ".db")) {
     std::filesystem::remove(path_);
     results_.emplace(path_, scenarios::Results::Mode::create_or_append);
   }
@@ -89,7 +90,8 @@ TEST_F(SummaryTest, AMedianIsInfiniteOnceMostRunsFail) {
   const MethodSummary* raw = summary.sections.front().find("icp_raw");
   EXPECT_EQ(raw->find("ate_m")->centre.value, std::numeric_limits<double>::infinity());
   EXPECT_EQ(raw->find("map_overlap")->centre.value, -std::numeric_limits<double>::infinity());
-  EXPECT_EQ(summary.sections.front().find("icp")->find("ate_m")->wins.count, 2) << "beats what failed, loses to what did not";
+  EXPECT_EQ(summary.sections.front().find("icp")->find("ate_m")->wins.count, 2)
+      << "beats what failed, loses to what did not";
 }
 
 TEST_F(SummaryTest, MoreIsBetterForOverlapAndNothingForCoverageOfAnInterval) {
@@ -105,7 +107,8 @@ TEST_F(SummaryTest, MoreIsBetterForOverlapAndNothingForCoverageOfAnInterval) {
 }
 
 TEST_F(SummaryTest, VerdictsGiveTheirShareAndNotTheirMedian) {
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) store(seed, Kind::slam, "icp", "ok", {{"map_failed", seed == 3 ? 1.0 : 0.0}});
+  for (std::uint64_t seed = 1; seed <= 10; ++seed)
+    store(seed, Kind::slam, "icp", "ok", {{"map_failed", seed == 3 ? 1.0 : 0.0}});
   const MetricSummary* metric = summarize(results()).sections.front().find("icp")->find("map_failed");
   ASSERT_NE(metric, nullptr);
   EXPECT_NEAR(metric->centre.value, 0.1, 1e-12);

@@ -91,7 +91,8 @@ TEST(ScoreTables, HaveARowPerMetricAndAColumnPerMethod) {
 
 TEST(ScoreTables, RowsInJsonCarryWhatTheDatabaseDoes) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const std::vector<scenarios::Outcome> outcomes = {outcome(scenarios::Kind::rate, "raw", "ok", {{"error", 2.5}, {"bad", nan}})};
+  const std::vector<scenarios::Outcome> outcomes = {
+      outcome(scenarios::Kind::rate, "raw", "ok", {{"error", 2.5}, {"bad", nan}})};
   const nlohmann::json rows = score_rows(outcomes);
   ASSERT_EQ(rows.size(), 2u);
   EXPECT_EQ(rows[0].dump(),

@@ -16,7 +16,8 @@ std::vector<const scenarios::Method*> methods_of(const Summary& summary, const s
   std::vector<const scenarios::Method*> methods;
   for (const scenarios::Method& method : scenarios::methods()) {
     for (const Section& section : summary.sections) {
-      if (section.scenario == scenario && section.kind == method.info.kind && section.find(method.info.name) != nullptr) {
+      if (section.scenario == scenario && section.kind == method.info.kind &&
+          section.find(method.info.name) != nullptr) {
         methods.push_back(&method);
       }
     }

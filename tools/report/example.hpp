@@ -17,14 +17,14 @@ namespace tumble::tools {
 struct Example {
   scenarios::RunResult run;
   bool is_sphere = false;
-  bool same_as_stored = false;              ///< the recording's digest is the one that the database holds
-  std::vector<std::string> path_methods;    ///< "slam/icp": what the pictures draw
-  std::vector<Path> paths;                  ///< parallel
+  bool same_as_stored = false;            ///< the recording's digest is the one that the database holds
+  std::vector<std::string> path_methods;  ///< "slam/icp": what the pictures draw
+  std::vector<Path> paths;                ///< parallel
   std::vector<std::uint8_t> scene_png, film_png;
 };
 
-/// The draw whose headline score under `kind`'s baseline is the median one of its scenario: neither the best nor the worst.
-/// Returns false when the results have no such score.
+/// The draw whose headline score under `kind`'s baseline is the median one of its scenario: neither the best nor the
+/// worst. Returns false when the results have no such score.
 bool typical_seed(const Summary& summary, const std::string& scenario, std::uint64_t& seed);
 
 /// Runs it with all methods that the results hold for the scenario. Throws what run_situation throws.

@@ -8,12 +8,23 @@ std::string escaped(const std::string& text) {
   out.reserve(text.size());
   for (const char c : text) {
     switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      case '\'': out += "&#39;"; break;
-      default: out += c;
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      case '\'':
+        out += "&#39;";
+        break;
+      default:
+        out += c;
     }
   }
   return out;
@@ -46,7 +57,9 @@ std::string base64(std::span<const std::uint8_t> bytes) {
   return out;
 }
 
-std::string png_address(std::span<const std::uint8_t> png) { return "data:image/png;base64," + base64(png); }
+std::string png_address(std::span<const std::uint8_t> png) {
+  return "data:image/png;base64," + base64(png);
+}
 
 std::string cell(const std::string& text, const std::string& css_class) {
   return (css_class.empty() ? "<td>" : "<td class=\"" + escaped(css_class) + "\">") + escaped(text) + "</td>";

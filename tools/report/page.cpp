@@ -18,7 +18,8 @@ namespace {
 using html::escaped;
 
 std::string header_html(const PageContent& content) {
-  std::string out = "<header><h1>" + escaped(content.title) + "</h1>\n<p class=\"lead\">Robots that tumble and roll, simulated with exact "
+  std::string out = "<header><h1>" + escaped(content.title) +
+                    "</h1>\n<p class=\"lead\">Robots that tumble and roll, simulated with exact "
                     "truth; estimates made from their sensors alone.</p>\n<ul class=\"meta\">";
   for (const auto& [name, value] : content.facts) out += "<li>" + escaped(name) + " <b>" + escaped(value) + "</b></li>";
   return out + "</ul></header>\n";
@@ -28,8 +29,8 @@ std::string cards_html(const Summary& summary) {
   std::string out = "<div class=\"cards\">\n";
   for (const Headline& headline : headlines(summary)) {
     out += "<div class=\"card\"><div class=\"place\">" + escaped(headline.place) + "</div><div class=\"value" +
-           (headline.worse ? " worse" : "") + "\">" +
-           escaped(headline.value) + "</div><div class=\"detail\">" + escaped(headline.detail) + "</div></div>\n";
+           (headline.worse ? " worse" : "") + "\">" + escaped(headline.value) + "</div><div class=\"detail\">" +
+           escaped(headline.detail) + "</div></div>\n";
   }
   return out + "</div>\n";
 }
@@ -43,9 +44,10 @@ std::string plot_html(const Figure& figure, bool tall = false) {
          "\"></div><figcaption>" + escaped(figure.caption) + "</figcaption></figure>\n";
 }
 
-std::string picture_html(const std::vector<std::uint8_t>& png, const std::string& alternative, const std::string& caption_html) {
-  return "<figure><img alt=\"" + escaped(alternative) + "\" src=\"" + html::png_address(png) + "\"><figcaption>" + caption_html +
-         "</figcaption></figure>\n";
+std::string picture_html(const std::vector<std::uint8_t>& png, const std::string& alternative,
+                         const std::string& caption_html) {
+  return "<figure><img alt=\"" + escaped(alternative) + "\" src=\"" + html::png_address(png) + "\"><figcaption>" +
+         caption_html + "</figcaption></figure>\n";
 }
 
 std::string example_html(const Example& example, std::vector<Figure>& figures) {
@@ -56,10 +58,12 @@ std::string example_html(const Example& example, std::vector<Figure>& figures) {
   out += example.same_as_stored ? "; its recording has the same digest as in the sweep.</p>\n"
                                 : ". Its digest differs from the sweep's: this is another build.</p>\n";
   std::string legend = swatch("truth", truth_colour());
-  for (std::size_t i = 0; i < example.path_methods.size(); ++i) legend += swatch(example.path_methods[i], method_colour(i));
+  for (std::size_t i = 0; i < example.path_methods.size(); ++i)
+    legend += swatch(example.path_methods[i], method_colour(i));
   out += picture_html(example.scene_png, "the robot along its way, with true and estimated paths",
                       "The robot at instants equally far apart along its way." + legend);
-  out += picture_html(example.film_png, "film strip of the same motion", "The same motion close by, left to right and down.");
+  out += picture_html(example.film_png, "film strip of the same motion",
+                      "The same motion close by, left to right and down.");
   Figure rate = rate_figure(example), path = path_figure(example);
   for (Figure* figure : {&rate, &path}) {
     if (figure->empty()) continue;
@@ -70,8 +74,9 @@ std::string example_html(const Example& example, std::vector<Figure>& figures) {
 }
 
 std::string draws_html(const Summary& summary) {
-  std::string out = "<div class=\"scroll\"><table><thead><tr><th>scenario</th><th class=\"number\">draws scored</th>"
-                    "<th class=\"number\">draws rejected by the simulation</th></tr></thead><tbody>";
+  std::string out =
+      "<div class=\"scroll\"><table><thead><tr><th>scenario</th><th class=\"number\">draws scored</th>"
+      "<th class=\"number\">draws rejected by the simulation</th></tr></thead><tbody>";
   for (const std::string& scenario : summary.scenarios) {
     const auto rejected = summary.rejected.find(scenario);
     out += "<tr>" + html::cell(scenario) + html::cell(std::to_string(summary.draws.at(scenario)), "number") +
@@ -96,21 +101,26 @@ std::string rejected_html(const std::vector<scenarios::RejectedDraw>& rejected) 
 }
 
 std::string scores_html(const Summary& summary) {
-  std::string out = "<h2>Scores</h2>\n<p>Median over the draws (of <code>map_failed</code> the share) and, in brackets, its 95 % interval from order statistics; an estimate that did not end <i>ok</i> ranks as "
-                    "the worst of all (–: half or more of them), and is counted in the first row with its Clopper–Pearson interval. “Better in” counts the "
-                    "draws on which a method beat the baseline on the very same recording. The best method that needs no truth is "
-                    "marked. Hover over a metric for its definition.</p>\n";
+  std::string out =
+      "<h2>Scores</h2>\n<p>Median over the draws (of <code>map_failed</code> the share) and, in brackets, its 95 % "
+      "interval from order statistics; an estimate that did not end <i>ok</i> ranks as "
+      "the worst of all (–: half or more of them), and is counted in the first row with its Clopper–Pearson interval. "
+      "“Better in” counts the "
+      "draws on which a method beat the baseline on the very same recording. The best method that needs no truth is "
+      "marked. Hover over a metric for its definition.</p>\n";
   std::string scenario;
   for (const Section& section : summary.sections) {
     scenario = section.scenario;
-    out += "<h3>" + escaped(section.scenario) + " · " + escaped(to_string(section.kind)) + "</h3>\n" + score_table_html(section) + "\n";
+    out += "<h3>" + escaped(section.scenario) + " · " + escaped(to_string(section.kind)) + "</h3>\n" +
+           score_table_html(section) + "\n";
   }
   return out;
 }
 
 std::string figures_json(const std::vector<Figure>& figures) {
   nlohmann::json all = nlohmann::json::array();
-  for (const Figure& figure : figures) all.push_back({{"id", figure.id}, {"data", figure.data}, {"layout", figure.layout}});
+  for (const Figure& figure : figures)
+    all.push_back({{"id", figure.id}, {"data", figure.data}, {"layout", figure.layout}});
   return html::script_json(all.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
@@ -130,12 +140,15 @@ std::string page_html(const PageContent& content, const std::string& plotly_bund
   body += distributions_html(content.motions, motions);
   figures.insert(figures.end(), motions.begin(), motions.end());
   body += certificates_html(content.certificates);
-  body += "<footer>Angles are in degrees on this page alone; the database holds SI units and radians. Plots by Plotly.js (MIT licence), "
-          "carried inside this page.</footer>\n</main>\n";
+  body +=
+      "<footer>Angles are in degrees on this page alone; the database holds SI units and radians. Plots by Plotly.js "
+      "(MIT licence), "
+      "carried inside this page.</footer>\n</main>\n";
   return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"><title>" + escaped(content.title) +
-         "</title>\n<style>\n" + kPageCss + "</style></head>\n<body>\n" + body + "<script type=\"application/json\" id=\"figures\">" +
-         figures_json(figures) + "</script>\n<script id=\"plotly\">" + plotly_bundle + "</script>\n<script>\n" + kPageJs +
+         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"><title>" +
+         escaped(content.title) + "</title>\n<style>\n" + kPageCss + "</style></head>\n<body>\n" + body +
+         "<script type=\"application/json\" id=\"figures\">" + figures_json(figures) +
+         "</script>\n<script id=\"plotly\">" + plotly_bundle + "</script>\n<script>\n" + kPageJs +
          "</script>\n</body></html>\n";
 }
 

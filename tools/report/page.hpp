@@ -17,15 +17,16 @@ struct PageContent {
   std::string title;
   std::vector<std::pair<std::string, std::string>> facts;  ///< suite, draws, versions, date
   Summary summary;
-  std::vector<Figure> figures;                             ///< of all draws
-  std::vector<Example> examples;                           ///< single draws, with pictures
-  std::vector<Spread> motions;                             ///< of all draws
+  std::vector<Figure> figures;    ///< of all draws
+  std::vector<Example> examples;  ///< single draws, with pictures
+  std::vector<Spread> motions;    ///< of all draws
   std::vector<scenarios::RejectedDraw> rejected;
   std::vector<scenarios::Certificate> certificates;
-  std::vector<std::string> warnings;                       ///< what is missing, and why
+  std::vector<std::string> warnings;  ///< what is missing, and why
 };
 
-/// One self-contained page: styles, plots, pictures and the text of the Plotly bundle inside; it asks the network nothing.
+/// One self-contained page: styles, plots, pictures and the text of the Plotly bundle inside; it asks the network
+/// nothing.
 std::string page_html(const PageContent& content, const std::string& plotly_bundle);
 
 }  // namespace tumble::tools

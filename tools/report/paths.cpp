@@ -23,8 +23,11 @@ Vector3d drawn_point_B(const sim::Sensors& sensors, const sim::Truth& truth) {
 bool given_mounting(Frame frame, const sim::Sensors& sensors, const sim::Truth& truth, Isometry3d& T_BA) {
   T_BA = Isometry3d::Identity();
   switch (frame) {
-    case Frame::body: return true;
-    case Frame::centre: T_BA.translation() = truth.p_BG_m; return true;
+    case Frame::body:
+      return true;
+    case Frame::centre:
+      T_BA.translation() = truth.p_BG_m;
+      return true;
     case Frame::imu:
       if (sensors.imus.empty() || truth.imus.empty()) return false;
       T_BA = sensors.imus.front().T_BI;
@@ -90,7 +93,8 @@ Path near_truth(const Path& path, const Path& truth) {
   const Vector3d margin = Vector3d::Constant(std::max(1.0, 0.5 * box.diagonal().norm()));
   box.extend(box.min() - margin);
   box.extend(box.max() + margin);
-  const auto end = std::find_if(path.points_W_m.begin(), path.points_W_m.end(), [&](const Vector3d& p) { return !box.contains(p); });
+  const auto end =
+      std::find_if(path.points_W_m.begin(), path.points_W_m.end(), [&](const Vector3d& p) { return !box.contains(p); });
   const auto count = end - path.points_W_m.begin();
   return {{path.time_ns.begin(), path.time_ns.begin() + count}, {path.points_W_m.begin(), end}};
 }

@@ -21,16 +21,16 @@ struct Path {
 /// The true path, every `stride`-th physics sample and the last one.
 Path true_path(const sim::Sensors& sensors, const sim::Truth& truth, std::size_t stride);
 
-/// The path of an estimate, moved to where the truth is at the estimate's first pose: position and yaw alone, as the scores
-/// align. Empty when the estimate has no poses, or lies in a frame of a sensor that the recording does not have.
+/// The path of an estimate, moved to where the truth is at the estimate's first pose: position and yaw alone, as the
+/// scores align. Empty when the estimate has no poses, or lies in a frame of a sensor that the recording does not have.
 Path estimated_path(const scenarios::Estimate& estimate, const sim::Sensors& sensors, const sim::Truth& truth);
 
-/// `path` up to where it first leaves the surroundings of `truth`: its bounding box, widened on every side by half of its
-/// diagonal and 1 m at least. A picture that had to hold an estimate which has run away would show nothing else.
+/// `path` up to where it first leaves the surroundings of `truth`: its bounding box, widened on every side by half of
+/// its diagonal and 1 m at least. A picture that had to hold an estimate which has run away would show nothing else.
 Path near_truth(const Path& path, const Path& truth);
 
-/// First and last instant at which the body moves (faster than 0.1 m/s or 0.2 rad/s), widened by `margin_s` on either side
-/// and kept within the truth; the whole of it when nothing moves.
+/// First and last instant at which the body moves (faster than 0.1 m/s or 0.2 rad/s), widened by `margin_s` on either
+/// side and kept within the truth; the whole of it when nothing moves.
 struct Span {
   std::int64_t begin_ns = 0, end_ns = 0;
 };

@@ -17,12 +17,17 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
 // chosen to stay apart for colour-blind readers (Okabe and Ito) on grass, stone and floor
-constexpr std::array<const char*, 6> kMethodColours = {"#e69f00", "#cc79a7", "#0072b2", "#d55e00", "#56b4e9", "#f0e442"};
+constexpr std::array<const char*, 6> kMethodColours = {"#e69f00", "#cc79a7", "#0072b2",
+                                                       "#d55e00", "#56b4e9", "#f0e442"};
 constexpr const char* kTruthColour = "#009e73";
 
-bool is_sphere(const Scene& scene) { return scene.sensors != nullptr && scene.sensors->sphere_radius_m > 0.0; }
+bool is_sphere(const Scene& scene) {
+  return scene.sensors != nullptr && scene.sensors->sphere_radius_m > 0.0;
+}
 
-double line_width_m(const Scene& scene) { return is_sphere(scene) ? 0.012 : 0.03; }
+double line_width_m(const Scene& scene) {
+  return is_sphere(scene) ? 0.012 : 0.03;
+}
 
 /// Instants that cut the moving part of the way into parts of equal length; turning on the spot counts a little too.
 std::vector<std::int64_t> instants_along(const sim::Truth& truth, int count) {
@@ -75,8 +80,8 @@ double azimuth_across(const sim::Truth& truth) {
   return std::atan2(way.y(), way.x()) + 2.0;
 }
 
-/// The robot where a draw begins: a rig seen from down the slope, out of the lane that trunks keep off; a sphere with all
-/// of its room.
+/// The robot where a draw begins: a rig seen from down the slope, out of the lane that trunks keep off; a sphere with
+/// all of its room.
 void show_start(const Scene& scene, sim::View& view) {
   const Isometry3d T_WB = sim::start_pose(*scene.situation, scene.models);
   view.robots_T_WB = {T_WB};
@@ -107,8 +112,12 @@ std::array<float, 4> Colour::rgba() const {
   return {channel(16), channel(8), channel(0), 1.0f};
 }
 
-Colour truth_colour() { return {kTruthColour}; }
-Colour method_colour(std::size_t index) { return {kMethodColours[index % kMethodColours.size()]}; }
+Colour truth_colour() {
+  return {kTruthColour};
+}
+Colour method_colour(std::size_t index) {
+  return {kMethodColours[index % kMethodColours.size()]};
+}
 
 sim::Picture scene_picture(const Scene& scene, int robots, int width, int height) {
   sim::View view;
@@ -117,7 +126,8 @@ sim::Picture scene_picture(const Scene& scene, int robots, int width, int height
   view.paths = drawn_paths(scene);
   if (scene.truth != nullptr && !scene.truth->p_WB_m.empty()) {
     const scenarios::TruthTrack track(*scene.truth, scenarios::Frame::body);
-    for (const std::int64_t time_ns : instants_along(*scene.truth, robots)) view.robots_T_WB.push_back(robot_pose(track, time_ns));
+    for (const std::int64_t time_ns : instants_along(*scene.truth, robots))
+      view.robots_T_WB.push_back(robot_pose(track, time_ns));
     view.azimuth_rad = azimuth_across(*scene.truth);
     // a path on level ground shows best from above
     if (is_sphere(scene)) view.elevation_rad = -0.85;

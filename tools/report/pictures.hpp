@@ -28,11 +28,11 @@ struct Scene {
   std::filesystem::path models;
   const sim::Sensors* sensors = nullptr;  ///< with `truth`: the robot along its way and the true path
   const sim::Truth* truth = nullptr;
-  std::vector<Path> estimates;            ///< drawn in method_colour(0), (1), ...
+  std::vector<Path> estimates;  ///< drawn in method_colour(0), (1), ...
 };
 
-/// The whole way in one picture: world, robot at `robots` instants equally far apart along it, true and estimated paths.
-/// Without truth the world and the estimates alone.
+/// The whole way in one picture: world, robot at `robots` instants equally far apart along it, true and estimated
+/// paths. Without truth the world and the estimates alone.
 sim::Picture scene_picture(const Scene& scene, int robots, int width, int height);
 
 /// `frames` close-ups at instants equally far apart along the way, in rows of `columns`. Needs the truth.

@@ -22,12 +22,22 @@ double rounded(double value) {
   return std::round(value * scale) / scale;
 }
 
-json axis(const std::string& title) { return {{"title", {{"text", title}}}}; }
+json axis(const std::string& title) {
+  return {{"title", {{"text", title}}}};
+}
 
 json box(const std::string& name, const char* colour) {
-  return {{"type", "box"}, {"name", name}, {"boxpoints", "all"}, {"jitter", 0.5}, {"pointpos", 0}, {"whiskerwidth", 0.4},
-          {"marker", {{"color", colour}, {"size", 6}, {"opacity", 0.7}}}, {"fillcolor", "rgba(0,0,0,0)"}, {"line", {{"color", colour}, {"width", 1.5}}},
-          {"x", json::array()}, {"y", json::array()}};
+  return {{"type", "box"},
+          {"name", name},
+          {"boxpoints", "all"},
+          {"jitter", 0.5},
+          {"pointpos", 0},
+          {"whiskerwidth", 0.4},
+          {"marker", {{"color", colour}, {"size", 6}, {"opacity", 0.7}}},
+          {"fillcolor", "rgba(0,0,0,0)"},
+          {"line", {{"color", colour}, {"width", 1.5}}},
+          {"x", json::array()},
+          {"y", json::array()}};
 }
 
 void add_values(json& trace, const std::string& group, const MetricSummary& metric, double factor) {
@@ -49,7 +59,8 @@ bool wants_log(const json& traces) {
 }
 
 json line(const std::string& name, const char* colour, double width, const char* dash = "solid") {
-  return {{"type", "scatter"}, {"mode", "lines"}, {"name", name}, {"line", {{"color", colour}, {"width", width}, {"dash", dash}}},
+  return {{"type", "scatter"},  {"mode", "lines"},
+          {"name", name},       {"line", {{"color", colour}, {"width", width}, {"dash", dash}}},
           {"x", json::array()}, {"y", json::array()}};
 }
 
@@ -102,7 +113,9 @@ Figure box_figure(const Summary& summary, Kind kind, const std::string& metric, 
     }
   }
   for (auto& [name, trace] : traces) figure.data.push_back(std::move(trace));
-  figure.layout = {{"boxmode", "group"}, {"xaxis", {{"type", "category"}}}, {"yaxis", axis(metric + (style.unit.empty() ? "" : " [" + style.unit + "]"))}};
+  figure.layout = {{"boxmode", "group"},
+                   {"xaxis", {{"type", "category"}}},
+                   {"yaxis", axis(metric + (style.unit.empty() ? "" : " [" + style.unit + "]"))}};
   if (wants_log(figure.data)) {
     figure.layout["yaxis"]["type"] = "log";
   } else {
@@ -168,8 +181,9 @@ Figure rate_figure(const Example& example) {
     }
     figure.data.push_back(std::move(trace));
   }
-  figure.caption = std::string("Angular velocity about the sensor's ") + axis_name +
-                   " axis, the one that clips most. Where the gyro is flat it is at its rail; drag to zoom, double-click to return.";
+  figure.caption =
+      std::string("Angular velocity about the sensor's ") + axis_name +
+      " axis, the one that clips most. Where the gyro is flat it is at its rail; drag to zoom, double-click to return.";
   figure.layout = {{"xaxis", axis("time [s]")}, {"yaxis", axis("rate [rad/s]")}, {"hovermode", "x unified"}};
   return figure;
 }

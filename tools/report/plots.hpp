@@ -19,15 +19,15 @@ struct Figure {
   bool empty() const { return data.empty(); }
 };
 
-/// Every draw as a point beside a box of quartiles: one box per method and scenario. Logarithmic where values are positive
-/// and span more than a decade.
+/// Every draw as a point beside a box of quartiles: one box per method and scenario. Logarithmic where values are
+/// positive and span more than a decade.
 Figure box_figure(const Summary& summary, scenarios::Kind kind, const std::string& metric, const std::string& caption);
 
 /// CPU time of every method, one box per method and scenario, logarithmic.
 Figure cost_figure(const Summary& summary);
 
-/// Rate about the sensor axis that clips most, over the moving part: the truth, the gyro, and each rate method's answer.
-/// Empty when the recording has no clipped sample.
+/// Rate about the sensor axis that clips most, over the moving part: the truth, the gyro, and each rate method's
+/// answer. Empty when the recording has no clipped sample.
 Figure rate_figure(const Example& example);
 
 /// The way seen from above, at equal scales: the truth and each method's path.

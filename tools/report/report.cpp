@@ -35,19 +35,21 @@ std::vector<std::pair<std::string, std::string>> facts(const scenarios::Results&
 
 std::vector<Figure> figures_of_all_draws(const Summary& summary) {
   std::vector<Figure> figures = {
-      box_figure(summary, Kind::rate, "rate_error_clipped_median_rad_s",
-                 "Error of the angular velocity at samples where at least one gyro axis is clipped, median of each draw."),
+      box_figure(
+          summary, Kind::rate, "rate_error_clipped_median_rad_s",
+          "Error of the angular velocity at samples where at least one gyro axis is clipped, median of each draw."),
       box_figure(summary, Kind::slam, "translation_error_end_m",
                  "Error of the last registered pose against the sixth, as the published evaluation takes it."),
       box_figure(summary, Kind::slam, "map_overlap", "Share of map points within 0.25 m of the true surface."),
-      box_figure(summary, Kind::position, "position_end_error_share", "Position error at the end as a share of the path."),
+      box_figure(summary, Kind::position, "position_end_error_share",
+                 "Position error at the end as a share of the path."),
       cost_figure(summary)};
   std::erase_if(figures, [](const Figure& figure) { return figure.empty(); });
   return figures;
 }
 
-/// Scenarios to show single draws of: the first of each kind of motion first. A rig's results have kind slam or rates that
-/// clip, a sphere's have kind position.
+/// Scenarios to show single draws of: the first of each kind of motion first. A rig's results have kind slam or rates
+/// that clip, a sphere's have kind position.
 std::vector<std::string> scenarios_to_show(const Summary& summary, int count) {
   std::vector<std::string> tumbles, rolls, out;
   for (const std::string& scenario : summary.scenarios) {

@@ -14,10 +14,10 @@ namespace tumble::tools {
 
 struct ReportOptions {
   scenarios::DataRoot data;
-  std::string version;    ///< of the program
-  std::string made_at;    ///< date and time, as the page shall show it
-  int threads = 1;        ///< for the examples' lidar
-  int examples_max = 3;   ///< draws run again for pictures; 0 for none
+  std::string version;                         ///< of the program
+  std::string made_at;                         ///< date and time, as the page shall show it
+  int threads = 1;                             ///< for the examples' lidar
+  int examples_max = 3;                        ///< draws run again for pictures; 0 for none
   std::function<void(std::string_view)> note;  ///< what is being done; may be empty
 };
 

@@ -38,7 +38,8 @@ const MethodSummary* best_method(const Section& section, const std::string& metr
     const MetricSummary* own = method.find(metric);
     if (own == nullptr || method.method == "oracle" || (!with_baseline && method.method == section.baseline)) continue;
     const double value = own->centre.value;
-    if (best == nullptr || (more ? value > best->find(metric)->centre.value : value < best->find(metric)->centre.value)) {
+    if (best == nullptr ||
+        (more ? value > best->find(metric)->centre.value : value < best->find(metric)->centre.value)) {
       best = &method;
     }
   }
@@ -56,7 +57,8 @@ std::string metric_cell(const std::string& name, const MetricSummary* metric, bo
   out += "<b>" + html::escaped(styled_value(name, metric->centre.value, false)) + "</b>";
   out += "<small>" + html::escaped(styled_interval(name, metric->centre)) + "</small>";
   if (metric->wins.pairs > 0) {
-    out += "<small class=\"wins\">" + html::escaped(fmt::format("better in {} of {}", metric->wins.count, metric->wins.pairs)) + "</small>";
+    out += "<small class=\"wins\">" +
+           html::escaped(fmt::format("better in {} of {}", metric->wins.count, metric->wins.pairs)) + "</small>";
   }
   return out + "</td>";
 }
@@ -94,10 +96,12 @@ std::vector<Headline> headlines(const Summary& summary) {
       const bool comparable = std::isfinite(change) && std::isfinite(from->centre.value);
       headline.value = comparable ? fmt::format("{}{} %", change < 0.0 ? "−" : "+", plain(std::abs(change)))
                                   : styled_value(metric, to.centre.value, true);
-      headline.worse = metric_sense(metric) == Sense::less ? to.centre.value > from->centre.value : to.centre.value < from->centre.value;
-      headline.detail = fmt::format("{}: {} beside {} with {}; better in {} of {} draws ({})", best->method,
-                                    styled_value(metric, to.centre.value, true), styled_value(metric, from->centre.value, true),
-                                    base->method, to.wins.count, to.wins.pairs, metric);
+      headline.worse = metric_sense(metric) == Sense::less ? to.centre.value > from->centre.value
+                                                           : to.centre.value < from->centre.value;
+      headline.detail =
+          fmt::format("{}: {} beside {} with {}; better in {} of {} draws ({})", best->method,
+                      styled_value(metric, to.centre.value, true), styled_value(metric, from->centre.value, true),
+                      base->method, to.wins.count, to.wins.pairs, metric);
     }
     out.push_back(std::move(headline));
   }
@@ -107,7 +111,8 @@ std::vector<Headline> headlines(const Summary& summary) {
 std::string score_table_html(const Section& section) {
   std::string out = "<div class=\"scroll\"><table><thead><tr><th>metric</th><th>unit</th>";
   for (const MethodSummary& method : section.methods) {
-    out += "<th class=\"number\">" + html::escaped(method.method) + (method.method == section.baseline ? " <small>baseline</small>" : "") + "</th>";
+    out += "<th class=\"number\">" + html::escaped(method.method) +
+           (method.method == section.baseline ? " <small>baseline</small>" : "") + "</th>";
   }
   out += "</tr></thead><tbody><tr><td>not ok</td><td></td>";
   for (const MethodSummary& method : section.methods) {
@@ -116,8 +121,8 @@ std::string score_table_html(const Section& section) {
   out += "</tr>";
   for (const std::string& name : section.metrics) {
     const MethodSummary* best = metric_sense(name) == Sense::neither ? nullptr : best_method(section, name, true);
-    out += "<tr><td title=\"" + html::escaped(doc_of(section.kind, name)) + "\"><code>" + html::escaped(name) + "</code></td>" +
-           html::cell(metric_style(name).unit, "unit");
+    out += "<tr><td title=\"" + html::escaped(doc_of(section.kind, name)) + "\"><code>" + html::escaped(name) +
+           "</code></td>" + html::cell(metric_style(name).unit, "unit");
     for (const MethodSummary& method : section.methods) out += metric_cell(name, method.find(name), &method == best);
     out += "</tr>";
   }

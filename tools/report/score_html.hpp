@@ -23,7 +23,8 @@ struct Headline {
 };
 std::vector<Headline> headlines(const Summary& summary);
 
-/// The table of one section: a row per metric, a column per method with median, interval and paired wins; failures first.
+/// The table of one section: a row per metric, a column per method with median, interval and paired wins; failures
+/// first.
 std::string score_table_html(const Section& section);
 
 }  // namespace tumble::tools

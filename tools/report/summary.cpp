@@ -21,8 +21,8 @@ using scenarios::Outcome;
 /// Position in a registry; unknown names stand behind the known ones.
 std::size_t method_rank(Kind kind, const std::string& name) {
   const auto all = scenarios::methods();
-  const auto found = std::find_if(all.begin(), all.end(),
-                                  [&](const scenarios::Method& m) { return m.info.kind == kind && m.info.name == name; });
+  const auto found = std::find_if(
+      all.begin(), all.end(), [&](const scenarios::Method& m) { return m.info.kind == kind && m.info.name == name; });
   return static_cast<std::size_t>(found - all.begin());
 }
 
@@ -134,7 +134,7 @@ MetricStyle metric_style(const std::string& metric) {
   // the longer endings first: "_m_s" also ends in "_s"
   const std::pair<const char*, MetricStyle> endings[] = {
       {"_rad_s", {"rad/s", 1.0}}, {"_m_s", {"m/s", 1.0}}, {"_rad", {"°", 180.0 / std::numbers::pi}},
-      {"_mib", {"MiB", 1.0}}, {"_s", {"s", 1.0}}, {"_m", {"m", 1.0}}};
+      {"_mib", {"MiB", 1.0}},     {"_s", {"s", 1.0}},     {"_m", {"m", 1.0}}};
   for (const auto& [end, style] : endings) {
     if (metric.ends_with(end)) return style;
   }
@@ -147,7 +147,8 @@ const MetricSummary* MethodSummary::find(const std::string& metric) const {
 }
 
 const MethodSummary* Section::find(const std::string& method) const {
-  const auto found = std::find_if(methods.begin(), methods.end(), [&](const MethodSummary& m) { return m.method == method; });
+  const auto found =
+      std::find_if(methods.begin(), methods.end(), [&](const MethodSummary& m) { return m.method == method; });
   return found == methods.end() ? nullptr : &*found;
 }
 

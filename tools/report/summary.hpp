@@ -13,8 +13,8 @@
 
 namespace tumble::tools {
 
-/// How to show a metric's values: SI values times `factor` in `unit`. Degrees and percent are for people and appear only
-/// where results are shown.
+/// How to show a metric's values: SI values times `factor` in `unit`. Degrees and percent are for people and appear
+/// only where results are shown.
 struct MetricStyle {
   std::string unit;
   double factor = 1.0;
@@ -33,15 +33,15 @@ struct Wins {
 };
 
 /// One metric of one method over all draws of a scenario. Only outcomes with status `ok` give values; an outcome that
-/// failed ranks as the worst value of all in median, quantile and pairs (a draw that gives no method a value of this metric
-/// does not count), so a median is infinite once half of the runs fail.
+/// failed ranks as the worst value of all in median, quantile and pairs (a draw that gives no method a value of this
+/// metric does not count), so a median is infinite once half of the runs fail.
 struct MetricSummary {
-  scenarios::Interval centre{};      ///< median, or for a verdict its share; with the 95 % interval
+  scenarios::Interval centre{};  ///< median, or for a verdict its share; with the 95 % interval
   double quantile_95 = 0.0;
-  std::vector<std::uint64_t> seeds;  ///< rising
-  std::vector<double> values;        ///< parallel to `seeds`
-  std::vector<std::uint64_t> failed; ///< seeds of the outcomes that failed, rising
-  Wins wins;                         ///< no pairs for the baseline itself
+  std::vector<std::uint64_t> seeds;   ///< rising
+  std::vector<double> values;         ///< parallel to `seeds`
+  std::vector<std::uint64_t> failed;  ///< seeds of the outcomes that failed, rising
+  Wins wins;                          ///< no pairs for the baseline itself
 };
 
 struct MethodSummary {
@@ -56,9 +56,9 @@ struct MethodSummary {
 struct Section {
   std::string scenario;
   scenarios::Kind kind = scenarios::Kind::rate;
-  std::string baseline;               ///< what the others are paired with: the method that does nothing about the problem
-  std::vector<MethodSummary> methods; ///< in the order of the registry
-  std::vector<std::string> metrics;   ///< in the order of the registry, then by name
+  std::string baseline;  ///< what the others are paired with: the method that does nothing about the problem
+  std::vector<MethodSummary> methods;  ///< in the order of the registry
+  std::vector<std::string> metrics;    ///< in the order of the registry, then by name
   const MethodSummary* find(const std::string& method) const;
 };
 

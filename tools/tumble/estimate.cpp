@@ -74,9 +74,11 @@ int run_estimate(const Session& session, const Options& options) {
   const scenarios::Estimate estimate = method.run(sensors, parameters, {});
   scenarios::write_estimate(options.folder, method.info.name, method.info.kind, estimate);
 
-  const nlohmann::json document = {{"method", method.info.name}, {"kind", to_string(method.info.kind)},
+  const nlohmann::json document = {{"method", method.info.name},
+                                   {"kind", to_string(method.info.kind)},
                                    {"status", estimate.status.ok() ? "ok" : "failed"},
-                                   {"message", estimate.status.message()}, {"digest", scenarios::digest(estimate)},
+                                   {"message", estimate.status.message()},
+                                   {"digest", scenarios::digest(estimate)},
                                    {"health", estimate.health}};
   session.print({summary(estimate)}, document);
   if (estimate.status.ok()) return kDone;

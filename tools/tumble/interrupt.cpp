@@ -11,7 +11,9 @@ namespace {
 std::atomic<bool> raised_by_signal{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not lock");
 
-extern "C" void raise_flag(int) { raised_by_signal.store(true); }
+extern "C" void raise_flag(int) {
+  raised_by_signal.store(true);
+}
 
 }  // namespace
 
@@ -30,6 +32,8 @@ InterruptFlag::~InterruptFlag() {
   std::signal(SIGTERM, SIG_DFL);
 }
 
-const std::atomic<bool>& InterruptFlag::raised() const { return raised_by_signal; }
+const std::atomic<bool>& InterruptFlag::raised() const {
+  return raised_by_signal;
+}
 
 }  // namespace tumble::tools

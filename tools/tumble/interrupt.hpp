@@ -5,8 +5,8 @@
 
 namespace tumble::tools {
 
-/// While it lives, the first Ctrl-C (SIGINT) or SIGTERM sets a flag instead of ending the program; the second one ends it.
-/// One at a time.
+/// While it lives, the first Ctrl-C (SIGINT) or SIGTERM sets a flag instead of ending the program; the second one ends
+/// it. One at a time.
 class InterruptFlag {
  public:
   InterruptFlag();

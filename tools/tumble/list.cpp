@@ -24,22 +24,32 @@ struct Listing {
 };
 
 json parameter_json(const sim::Parameter& p) {
-  return {{"name", p.name}, {"unit", p.unit}, {"default", p.default_value}, {"low", p.low}, {"high", p.high}, {"doc", p.doc}};
+  return {{"name", p.name}, {"unit", p.unit}, {"default", p.default_value},
+          {"low", p.low},   {"high", p.high}, {"doc", p.doc}};
 }
 
-std::string bound_text(const sim::Parameter& p) { return "[" + number_text(p.low) + ", " + number_text(p.high) + "]"; }
+std::string bound_text(const sim::Parameter& p) {
+  return "[" + number_text(p.low) + ", " + number_text(p.high) + "]";
+}
 
 /// "uniform 0.35 .. 0.78", as the scenario file means it.
 std::string distribution_text(const scenarios::Distribution& d) {
   using Shape = scenarios::Distribution::Shape;
-  const auto number = [&](std::size_t i) { return i < d.numbers.size() ? number_text(d.numbers[i]) : std::string("?"); };
+  const auto number = [&](std::size_t i) {
+    return i < d.numbers.size() ? number_text(d.numbers[i]) : std::string("?");
+  };
   const std::string bounds = d.numbers.size() > 3 ? " within [" + number(2) + ", " + number(3) + "]" : "";
   switch (d.shape) {
-    case Shape::constant: return number(0);
-    case Shape::uniform: return "uniform " + number(0) + " .. " + number(1);
-    case Shape::log_uniform: return "log-uniform " + number(0) + " .. " + number(1);
-    case Shape::normal: return "normal " + number(0) + " +- " + number(1) + bounds;
-    case Shape::choice: break;
+    case Shape::constant:
+      return number(0);
+    case Shape::uniform:
+      return "uniform " + number(0) + " .. " + number(1);
+    case Shape::log_uniform:
+      return "log-uniform " + number(0) + " .. " + number(1);
+    case Shape::normal:
+      return "normal " + number(0) + " +- " + number(1) + bounds;
+    case Shape::choice:
+      break;
   }
   std::string text = "one of";
   for (std::size_t i = 0; i < d.numbers.size(); ++i) text += (i ? ", " : " ") + number(i);
@@ -95,8 +105,12 @@ Listing list_scenarios(const scenarios::DataRoot& data, const std::string& only)
     std::string sensors;
     for (const auto& sensor : s.sensors) sensors += (sensors.empty() ? "" : " ") + sensor.device;
     table.add_row({name, s.robot.type, s.world.type, s.motion.type, sensors, s.doc});
-    json entry = {{"name", name}, {"doc", s.doc}, {"robot", s.robot.type}, {"world", s.world.type},
-                  {"motion", s.motion.type}, {"duration_s", distribution_text(s.duration_s)}};
+    json entry = {{"name", name},
+                  {"doc", s.doc},
+                  {"robot", s.robot.type},
+                  {"world", s.world.type},
+                  {"motion", s.motion.type},
+                  {"duration_s", distribution_text(s.duration_s)}};
     for (const auto& sensor : s.sensors) {
       entry["sensors"].push_back({{"name", sensor.name}, {"kind", sensor.kind}, {"device", sensor.device}});
     }
@@ -121,8 +135,9 @@ Listing list_methods(const std::string& only) {
     std::string robots;
     for (const std::string& robot : info.robots) robots += (robots.empty() ? "" : " ") + robot;
     table.add_row({name, robots.empty() ? "all" : robots, info.needs_truth ? "yes" : "no", info.source, info.doc});
-    json entry = {{"name", info.name}, {"kind", to_string(info.kind)}, {"doc", info.doc}, {"source", info.source},
-                  {"needs_truth", info.needs_truth}, {"robots", info.robots}, {"parameters", json::array()}};
+    json entry = {{"name", info.name},          {"kind", to_string(info.kind)},    {"doc", info.doc},
+                  {"source", info.source},      {"needs_truth", info.needs_truth}, {"robots", info.robots},
+                  {"parameters", json::array()}};
     for (const sim::Parameter& p : info.parameters) {
       parameters.add_row({name, std::string(p.name), number_text(p.default_value), bound_text(p), std::string(p.unit),
                           std::string(p.doc)});
@@ -149,10 +164,13 @@ Listing list_sensors(const scenarios::DataRoot& data, const std::string& only) {
     Table numbers(name + ": data sheet", {"number", "value", "unit", "bound", "source"});
     json entry = {{"device", name}, {"kind", sheet.sensor_kind}, {"title", sheet.title}, {"numbers", json::array()}};
     for (const auto& number : sheet.entries) {
-      const auto p = std::find_if(known.begin(), known.end(), [&](const sim::Parameter& each) { return each.name == number.name; });
-      numbers.add_row({number.name, number_text(number.value), number.unit, p == known.end() ? "" : bound_text(*p), number.source});
+      const auto p = std::find_if(known.begin(), known.end(),
+                                  [&](const sim::Parameter& each) { return each.name == number.name; });
+      numbers.add_row(
+          {number.name, number_text(number.value), number.unit, p == known.end() ? "" : bound_text(*p), number.source});
       json row = {{"name", number.name}, {"value", number.value}, {"unit", number.unit}, {"source", number.source}};
-      if (p != known.end()) row.update({{"default", p->default_value}, {"low", p->low}, {"high", p->high}, {"doc", p->doc}});
+      if (p != known.end())
+        row.update({{"default", p->default_value}, {"low", p->low}, {"high", p->high}, {"doc", p->doc}});
       entry["numbers"].push_back(std::move(row));
     }
     sheets.push_back(std::move(numbers));
@@ -176,11 +194,16 @@ Listing list_suites(const scenarios::DataRoot& data, const std::string& only) {
   for (const std::string& name : names) {
     if (!only.empty() && name != only) continue;
     const scenarios::Suite suite = scenarios::load_suite(data, name);
-    table.add_row({name, joined(suite.scenarios), std::to_string(suite.first_seed) + ".." + std::to_string(suite.last_seed),
-                   joined(suite.methods), number_text(suite.timeout_s) + " s", suite.doc});
-    out.document.push_back({{"name", name}, {"doc", suite.doc}, {"scenarios", suite.scenarios},
-                            {"first_seed", suite.first_seed}, {"last_seed", suite.last_seed},
-                            {"methods", suite.methods}, {"timeout_s", suite.timeout_s}});
+    table.add_row({name, joined(suite.scenarios),
+                   std::to_string(suite.first_seed) + ".." + std::to_string(suite.last_seed), joined(suite.methods),
+                   number_text(suite.timeout_s) + " s", suite.doc});
+    out.document.push_back({{"name", name},
+                            {"doc", suite.doc},
+                            {"scenarios", suite.scenarios},
+                            {"first_seed", suite.first_seed},
+                            {"last_seed", suite.last_seed},
+                            {"methods", suite.methods},
+                            {"timeout_s", suite.timeout_s}});
   }
   out.tables.push_back(std::move(table));
   return out;

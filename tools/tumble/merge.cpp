@@ -37,11 +37,12 @@ std::vector<scenarios::Outcome> complete_outcomes(const Results& results) {
 
 /// Outcomes of another program, or of other models and scenarios, are not comparable.
 void require_same_origin(const Results& first, const Results& other, const std::filesystem::path& path) {
-  const std::pair<const char*, const char*> origins[] = {{"build", "written by build"}, {"data", "made from models and scenarios"}};
+  const std::pair<const char*, const char*> origins[] = {{"build", "written by build"},
+                                                         {"data", "made from models and scenarios"}};
   for (const auto& [key, words] : origins) {
     if (first.note(key) == other.note(key)) continue;
-    throw BadInput(path.string() + ": " + words + " '" + other.note(key) + "', the first database by '" + first.note(key) +
-                   "'; --mixed-builds joins them all the same");
+    throw BadInput(path.string() + ": " + words + " '" + other.note(key) + "', the first database by '" +
+                   first.note(key) + "'; --mixed-builds joins them all the same");
   }
 }
 
@@ -73,8 +74,11 @@ int merge(const Session& session, const Options& options) {
   }
   Table table("", {"database", "databases joined", "outcomes", "draws rejected"});
   table.align_right_from(1);
-  table.add_row({options.out.string(), std::to_string(shards.size()), std::to_string(outcomes), std::to_string(rejected)});
-  session.print({table}, {{"database", options.out.string()}, {"joined", shards.size()}, {"outcomes", outcomes}, {"rejected", rejected}});
+  table.add_row(
+      {options.out.string(), std::to_string(shards.size()), std::to_string(outcomes), std::to_string(rejected)});
+  session.print(
+      {table},
+      {{"database", options.out.string()}, {"joined", shards.size()}, {"outcomes", outcomes}, {"rejected", rejected}});
   return kDone;
 }
 

@@ -42,7 +42,8 @@ std::string usage_line(const CLI::App& app, const CLI::ParseError& error) {
   const std::string place = &verb == &app ? "" : verb.get_name() + ": ";
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !app.remaining(true).empty()) {
     const std::vector<std::string> extras = app.remaining(true);
-    const auto option = std::find_if(extras.begin(), extras.end(), [](const std::string& e) { return e.rfind('-', 0) == 0; });
+    const auto option =
+        std::find_if(extras.begin(), extras.end(), [](const std::string& e) { return e.rfind('-', 0) == 0; });
     if (option == extras.end()) return place + "'" + extras.front() + "' is one argument too many";
     std::vector<std::string> known;
     for (const CLI::Option* each : verb.get_options()) {

@@ -24,7 +24,8 @@ std::string duration_text(double seconds) {
 }
 
 std::string progress_line(const scenarios::SweepProgress& p, int bar_width) {
-  const double share = p.draws_total == 0 ? 1.0 : static_cast<double>(p.draws_done) / static_cast<double>(p.draws_total);
+  const double share =
+      p.draws_total == 0 ? 1.0 : static_cast<double>(p.draws_done) / static_cast<double>(p.draws_total);
   std::string line;
   if (bar_width > 0) {
     const int filled = std::clamp(static_cast<int>(share * bar_width), 0, bar_width);

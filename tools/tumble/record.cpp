@@ -24,9 +24,11 @@ struct Options {
 Table contents(const sim::Sensors& sensors) {
   Table table("", {"sensor", "device", "samples", "points"});
   table.align_right_from(2);
-  for (const sim::ImuRecord& imu : sensors.imus) table.add_row({imu.name, imu.device, std::to_string(imu.time_ns.size())});
+  for (const sim::ImuRecord& imu : sensors.imus)
+    table.add_row({imu.name, imu.device, std::to_string(imu.time_ns.size())});
   for (const sim::LidarRecord& lidar : sensors.lidars) {
-    table.add_row({lidar.name, lidar.device, std::to_string(lidar.sweep_start_ns.size()), std::to_string(lidar.range_m.size())});
+    table.add_row(
+        {lidar.name, lidar.device, std::to_string(lidar.sweep_start_ns.size()), std::to_string(lidar.range_m.size())});
   }
   return table;
 }
@@ -38,11 +40,13 @@ int record(const Session& session, const Options& options) {
   if (options.file.has_parent_path()) make_folder(options.file.parent_path());
 
   const sim::Recording recording = sim::simulate(situation, {data.models(), options.threads});
-  const scenarios::RecordingInfo info = recording_info(situation, scenarios::digest(recording.sensors, &recording.truth));
+  const scenarios::RecordingInfo info =
+      recording_info(situation, scenarios::digest(recording.sensors, &recording.truth));
   scenarios::write_recording(options.file, info, recording.sensors, &recording.truth);
 
-  session.print({contents(recording.sensors)}, {{"scenario", info.scenario}, {"seed", seed}, {"digest", info.digest},
-                                                {"recording", options.file.string()}});
+  session.print(
+      {contents(recording.sensors)},
+      {{"scenario", info.scenario}, {"seed", seed}, {"digest", info.digest}, {"recording", options.file.string()}});
   session.note("digest " + info.digest);
   return kDone;
 }
@@ -54,7 +58,8 @@ Action declare_record(CLI::App& app, const Session& session) {
   app.add_option("SCENARIO", options->scenario, "a scenario of the catalogue, or a scenario file")->required();
   app.add_option("--seed", options->seed, "which draw of it")->required();
   app.add_option("--threads", options->threads, "threads for the lidar; the result does not depend on them")
-      ->check(CLI::Range(1, 1024))->capture_default_str();
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
   app.add_option("-o,--output", options->file, "the recording, FILE.h5")->required();
   return [&session, options] { return record(session, *options); };
 }

@@ -79,8 +79,10 @@ int render(const Session& session, const Options& options) {
   content.scene.situation = &content.situation;
   content.scene.models = data.models();
   if (options.png.has_parent_path()) make_folder(options.png.parent_path());
-  save_picture(options.png, options.film > 0 ? film_picture(content.scene, options.film, options.columns, options.width, options.height)
-                                             : scene_picture(content.scene, options.robots, options.width, options.height));
+  save_picture(options.png,
+               options.film > 0
+                   ? film_picture(content.scene, options.film, options.columns, options.width, options.height)
+                   : scene_picture(content.scene, options.robots, options.width, options.height));
   Table legend("", {"path", "colour"});
   nlohmann::json document = {{"picture", options.png.string()}, {"paths", nlohmann::json::array()}};
   const auto add = [&](const std::string& name, Colour colour) {
@@ -102,10 +104,18 @@ Action declare_render(CLI::App& app, const Session& session) {
   app.add_option("--seed", options->seed, "which draw of the scenario");
   app.add_option("-o,--output", options->png, "the picture, FILE.png")->required();
   app.add_option("--film", options->film, "a film strip of so many frames")->check(CLI::Range(1, 64));
-  app.add_option("--columns", options->columns, "frames in a row of the film strip")->check(CLI::Range(1, 64))->capture_default_str();
-  app.add_option("--robots", options->robots, "how often the robot is drawn along its way")->check(CLI::Range(1, 64))->capture_default_str();
-  app.add_option("--width", options->width, "of a picture or frame, pixels")->check(CLI::Range(64, 4096))->capture_default_str();
-  app.add_option("--height", options->height, "of a picture or frame, pixels")->check(CLI::Range(64, 4096))->capture_default_str();
+  app.add_option("--columns", options->columns, "frames in a row of the film strip")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  app.add_option("--robots", options->robots, "how often the robot is drawn along its way")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  app.add_option("--width", options->width, "of a picture or frame, pixels")
+      ->check(CLI::Range(64, 4096))
+      ->capture_default_str();
+  app.add_option("--height", options->height, "of a picture or frame, pixels")
+      ->check(CLI::Range(64, 4096))
+      ->capture_default_str();
   return [&session, options] { return render(session, *options); };
 }
 

@@ -35,7 +35,9 @@ std::string interval_text(const scenarios::Interval& interval) {
   return "[" + number_text(interval.low) + ", " + number_text(interval.high) + "]";
 }
 
-std::string wins_text(const Wins& wins) { return wins.pairs == 0 ? "" : fmt::format("{} of {}", wins.count, wins.pairs); }
+std::string wins_text(const Wins& wins) {
+  return wins.pairs == 0 ? "" : fmt::format("{} of {}", wins.count, wins.pairs);
+}
 
 /// A row per method and metric: the headline metrics, or all of them.
 Table score_table(const Section& section, bool all) {
@@ -67,21 +69,33 @@ Table draws_table(const Summary& summary) {
   return table;
 }
 
-json finite(double value) { return std::isfinite(value) ? json(value) : json(); }
+json finite(double value) {
+  return std::isfinite(value) ? json(value) : json();
+}
 
-json interval_json(const scenarios::Interval& i) { return {{"value", finite(i.value)}, {"low", finite(i.low)}, {"high", finite(i.high)}}; }
+json interval_json(const scenarios::Interval& i) {
+  return {{"value", finite(i.value)}, {"low", finite(i.low)}, {"high", finite(i.high)}};
+}
 
 /// Everything that the page's tables hold, in SI units.
 json to_json(const Summary& summary) {
   json rows = json::array();
   for (const Section& section : summary.sections) {
     for (const MethodSummary& method : section.methods) {
-      json row = {{"scenario", section.scenario}, {"kind", to_string(section.kind)}, {"method", method.method},
-                  {"baseline", section.baseline}, {"outcomes", method.outcomes}, {"not_ok", method.not_ok},
-                  {"not_ok_share", interval_json(method.not_ok_share)}, {"metrics", json::object()}};
+      json row = {{"scenario", section.scenario},
+                  {"kind", to_string(section.kind)},
+                  {"method", method.method},
+                  {"baseline", section.baseline},
+                  {"outcomes", method.outcomes},
+                  {"not_ok", method.not_ok},
+                  {"not_ok_share", interval_json(method.not_ok_share)},
+                  {"metrics", json::object()}};
       for (const auto& [name, metric] : method.metrics) {
-        row["metrics"][name] = {{is_verdict(name) ? "share" : "median", interval_json(metric.centre)}, {"quantile_95", finite(metric.quantile_95)},
-                                {"count", metric.values.size()}, {"better_in", metric.wins.count}, {"pairs", metric.wins.pairs}};
+        row["metrics"][name] = {{is_verdict(name) ? "share" : "median", interval_json(metric.centre)},
+                                {"quantile_95", finite(metric.quantile_95)},
+                                {"count", metric.values.size()},
+                                {"better_in", metric.wins.count},
+                                {"pairs", metric.wins.pairs}};
       }
       rows.push_back(std::move(row));
     }
@@ -96,14 +110,16 @@ std::string read_text(const std::filesystem::path& path) {
   return text;
 }
 
-void write_page(const Session& session, const Options& options, const scenarios::Results& results, const Summary& summary) {
+void write_page(const Session& session, const Options& options, const scenarios::Results& results,
+                const Summary& summary) {
   // what is missing is said before minutes are spent
   const std::string plotly = read_text(session.plotly());
   if (options.page.has_parent_path()) make_folder(options.page.parent_path());
   ReportOptions report;
   report.data = session.data();
   report.version = program_version();
-  report.made_at = fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
+  report.made_at = fmt::format("{:%Y-%m-%d %H:%M} UTC",
+                               fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
   report.threads = options.threads;
   report.examples_max = options.examples;
   report.note = [&](std::string_view line) { session.note(line); };
@@ -142,8 +158,12 @@ Action declare_report(CLI::App& app, const Session& session) {
   auto options = std::make_shared<Options>();
   app.add_option("DATABASE", options->database, "a results database, FILE.db")->required();
   app.add_option("-o,--output", options->page, "the page, FILE.html [tables alone]");
-  app.add_option("--threads", options->threads, "threads for the lidar of the draws shown")->check(CLI::Range(1, 1024))->capture_default_str();
-  app.add_option("--examples", options->examples, "draws simulated again and shown")->check(CLI::Range(0, 3))->capture_default_str();
+  app.add_option("--threads", options->threads, "threads for the lidar of the draws shown")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  app.add_option("--examples", options->examples, "draws simulated again and shown")
+      ->check(CLI::Range(0, 3))
+      ->capture_default_str();
   app.add_flag("--all", options->all, "all metrics in the printed tables, not the headline ones alone");
   return [&session, options] { return report(session, *options); };
 }

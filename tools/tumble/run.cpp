@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -47,7 +47,8 @@ void leave_pictures(const fs::path& folder, const fs::path& models, const scenar
     if (!path.empty()) scene.estimates.push_back(std::move(path));
   }
   make_folder(folder / "snapshots");
-  save_picture(folder / "snapshots" / "scene.png", scene_picture(scene, result.recording.sensors.sphere_radius_m > 0.0 ? 3 : 8, 1280, 720));
+  save_picture(folder / "snapshots" / "scene.png",
+               scene_picture(scene, result.recording.sensors.sphere_radius_m > 0.0 ? 3 : 8, 1280, 720));
   save_picture(folder / "snapshots" / "film.png", film_picture(scene, 8, 4, 480, 360));
 }
 
@@ -59,24 +60,31 @@ int run(const Session& session, const Options& options) {
   if (!options.folder.empty()) make_folder(options.folder);
 
   const scenarios::RunResult result = scenarios::run_situation(data, scenario, seed, methods, options.threads);
-  if (result.methods.empty()) session.note("no method given applies to the robot '" + result.situation.robot.type + "'");
+  if (result.methods.empty())
+    session.note("no method given applies to the robot '" + result.situation.robot.type + "'");
   if (!options.folder.empty()) {
     leave_files(options.folder, result);
     leave_pictures(options.folder, data.models(), result);
   }
 
   const std::string digest = scenarios::run_digest(result);
-  const nlohmann::json document = {{"scenario", result.situation.scenario}, {"seed", seed}, {"digest", digest},
+  const nlohmann::json document = {{"scenario", result.situation.scenario},
+                                   {"seed", seed},
+                                   {"digest", digest},
                                    {"recording_digest", result.recording_digest},
                                    {"status", overall_status(result.outcomes)},
-                                   {"scores", score_rows(result.outcomes)}, {"outcomes", outcome_rows(result.outcomes)}};
-  std::vector<Table> tables = score_tables(fmt::format("{}, seed {}", result.situation.scenario, seed), result.outcomes);
+                                   {"scores", score_rows(result.outcomes)},
+                                   {"outcomes", outcome_rows(result.outcomes)}};
+  std::vector<Table> tables =
+      score_tables(fmt::format("{}, seed {}", result.situation.scenario, seed), result.outcomes);
   Table closing("", {"digest of the run", digest});
   closing.add_row({"digest of the recording", result.recording_digest});
   tables.push_back(std::move(closing));
   session.print(tables, document);
   for (const scenarios::Outcome& outcome : result.outcomes) {
-    if (outcome.status != "ok") session.note(fmt::format("{}/{}: {}: {}", to_string(outcome.kind), outcome.method, outcome.status, outcome.message));
+    if (outcome.status != "ok")
+      session.note(
+          fmt::format("{}/{}: {}: {}", to_string(outcome.kind), outcome.method, outcome.status, outcome.message));
   }
   return kDone;
 }
@@ -90,7 +98,8 @@ Action declare_run(CLI::App& app, const Session& session) {
   app.add_option("--method", options->methods, "a method, as 'saave' or 'rate/saave'; repeat for more [all that apply]")
       ->allow_extra_args(false);  // the word after a method is not another one
   app.add_option("--threads", options->threads, "threads for the lidar; the result does not depend on them")
-      ->check(CLI::Range(1, 1024))->capture_default_str();
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
   app.add_option("-o,--output", options->folder, "folder for recording, estimates and pictures [none are left]");
   return [&session, options] { return run(session, *options); };
 }

@@ -46,7 +46,8 @@ int score_estimate(const Session& session, const Options& options) {
   // the true surface matters to maps alone, and building it takes a while
   std::optional<sim::Surface> surface;
   if (outcome.kind == scenarios::Kind::slam && !info.situation_yaml.empty()) {
-    surface.emplace(scenarios::situation_from_yaml(info.situation_yaml, options.recording.string()), session.data().models());
+    surface.emplace(scenarios::situation_from_yaml(info.situation_yaml, options.recording.string()),
+                    session.data().models());
   }
   const scenarios::ScoringInput input{&sensors, &truth, surface ? &*surface : nullptr};
   outcome.scenario = info.scenario;
@@ -56,8 +57,10 @@ int score_estimate(const Session& session, const Options& options) {
   outcome.scores = scenarios::score(outcome.kind, estimate, input);
 
   const std::vector<scenarios::Outcome> outcomes = {outcome};
-  const nlohmann::json document = {{"kind", to_string(outcome.kind)}, {"method", outcome.method},
-                                   {"status", outcome.status}, {"scores", score_rows(outcomes)}};
+  const nlohmann::json document = {{"kind", to_string(outcome.kind)},
+                                   {"method", outcome.method},
+                                   {"status", outcome.status},
+                                   {"scores", score_rows(outcomes)}};
   session.print(score_tables(options.estimate.string(), outcomes), document);
   return kDone;
 }
@@ -66,9 +69,11 @@ int score_estimate(const Session& session, const Options& options) {
 
 Action declare_score(CLI::App& app, const Session& session) {
   auto options = std::make_shared<Options>();
-  app.add_option("ESTIMATE", options->estimate, "folder of an estimate, or a TUM file (t x y z qx qy qz qw)")->required();
+  app.add_option("ESTIMATE", options->estimate, "folder of an estimate, or a TUM file (t x y z qx qy qz qw)")
+      ->required();
   app.add_option("RECORDING", options->recording, "the recording with its truth, FILE.h5")->required();
-  app.add_option("--frame", options->frame, "whose poses a TUM file holds: imu, lidar, body or centre")->capture_default_str();
+  app.add_option("--frame", options->frame, "whose poses a TUM file holds: imu, lidar, body or centre")
+      ->capture_default_str();
   return [&session, options] { return score_estimate(session, *options); };
 }
 

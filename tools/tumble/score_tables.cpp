@@ -58,8 +58,12 @@ json score_rows(std::span<const Outcome> outcomes) {
   json rows = json::array();
   for (const Outcome& outcome : outcomes) {
     for (const scenarios::Score& score : outcome.scores) {
-      rows.push_back({{"scenario", outcome.scenario}, {"seed", outcome.seed}, {"kind", to_string(outcome.kind)},
-                      {"method", outcome.method}, {"status", outcome.status}, {"metric", score.metric},
+      rows.push_back({{"scenario", outcome.scenario},
+                      {"seed", outcome.seed},
+                      {"kind", to_string(outcome.kind)},
+                      {"method", outcome.method},
+                      {"status", outcome.status},
+                      {"metric", score.metric},
                       {"value", std::isfinite(score.value) ? json(score.value) : json()}});
     }
   }
@@ -69,8 +73,11 @@ json score_rows(std::span<const Outcome> outcomes) {
 json outcome_rows(std::span<const Outcome> outcomes) {
   json rows = json::array();
   for (const Outcome& outcome : outcomes) {
-    rows.push_back({{"kind", to_string(outcome.kind)}, {"method", outcome.method}, {"status", outcome.status},
-                    {"message", outcome.message}, {"digest", outcome.estimate_digest}});
+    rows.push_back({{"kind", to_string(outcome.kind)},
+                    {"method", outcome.method},
+                    {"status", outcome.status},
+                    {"message", outcome.message},
+                    {"digest", outcome.estimate_digest}});
   }
   return rows;
 }

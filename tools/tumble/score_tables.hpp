@@ -11,7 +11,8 @@
 
 namespace tumble::tools {
 
-/// One table per kind: a row per metric, a column per method, the status first. Metrics in the order in which they come.
+/// One table per kind: a row per metric, a column per method, the status first. Metrics in the order in which they
+/// come.
 std::vector<Table> score_tables(const std::string& title, std::span<const scenarios::Outcome> outcomes);
 
 /// The outcomes' numbers as rows (scenario, seed, kind, method, status, metric, value), as in the results database.

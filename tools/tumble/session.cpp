@@ -34,10 +34,13 @@ scenarios::DataRoot Session::data() const {
   for (const fs::path& root : candidate_roots()) {
     const scenarios::DataRoot data{root};
     if (fs::is_directory(data.models(), error)) return data;
-    // a folder that the user has named is taken at its word: falling back would run other models than the ones asked for
-    if (given != nullptr && *given != '\0') throw scenarios::BadInput("TUMBLE_DATA: no folder " + data.models().string());
+    // a folder that the user has named is taken at its word: falling back would run other models than the ones asked
+    // for
+    if (given != nullptr && *given != '\0')
+      throw scenarios::BadInput("TUMBLE_DATA: no folder " + data.models().string());
   }
-  throw scenarios::BadInput("the models are not found; set TUMBLE_DATA to the folder that holds models/ and scenarios/");
+  throw scenarios::BadInput(
+      "the models are not found; set TUMBLE_DATA to the folder that holds models/ and scenarios/");
 }
 
 fs::path Session::plotly() const {
@@ -87,6 +90,8 @@ void Session::print(const std::vector<Table>& tables, const nlohmann::json& docu
   if (!written) throw scenarios::BadInput(std::string("standard output: ") + std::strerror(errno));
 }
 
-std::string program_version() { return TUMBLE_VERSION; }
+std::string program_version() {
+  return TUMBLE_VERSION;
+}
 
 }  // namespace tumble::tools

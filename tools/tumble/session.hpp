@@ -21,8 +21,8 @@ class Session {
   bool json = false;   ///< tables as JSON
   bool quiet = false;  ///< no notes and no progress
 
-  /// Models, catalogue and suites: $TUMBLE_DATA, else share/tumble beside the program's folder, else the source tree that
-  /// it was built from. Throws BadInput when none of them holds models.
+  /// Models, catalogue and suites: $TUMBLE_DATA, else share/tumble beside the program's folder, else the source tree
+  /// that it was built from. Throws BadInput when none of them holds models.
   scenarios::DataRoot data() const;
 
   /// The Plotly bundle, looked for beside the data. Throws BadInput that says how to get it.

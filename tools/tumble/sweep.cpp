@@ -54,8 +54,9 @@ void certify(const Session& session, const scenarios::DataRoot& data, const std:
 }
 
 nlohmann::json to_json(const scenarios::SweepProgress& p, const std::string& database) {
-  return {{"database", database}, {"draws_done", p.draws_done}, {"draws_total", p.draws_total}, {"outcomes", p.outcomes},
-          {"not_ok", p.not_ok}, {"rejected", p.rejected}, {"elapsed_s", p.elapsed_s}};
+  return {{"database", database},    {"draws_done", p.draws_done}, {"draws_total", p.draws_total},
+          {"outcomes", p.outcomes},  {"not_ok", p.not_ok},         {"rejected", p.rejected},
+          {"elapsed_s", p.elapsed_s}};
 }
 
 Table to_table(const scenarios::SweepProgress& p, const std::string& database) {

@@ -40,7 +40,8 @@ std::string Table::text() const {
   }
   const auto line = [&](const std::vector<std::string>& cells) {
     std::string joined;
-    for (std::size_t i = 0; i < cells.size(); ++i) joined += (i ? "  " : "") + padded(cells[i], width[i], i >= right_from_);
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      joined += (i ? "  " : "") + padded(cells[i], width[i], i >= right_from_);
     return joined;
   };
   std::string out;

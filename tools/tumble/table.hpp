@@ -6,8 +6,8 @@
 
 namespace tumble::tools {
 
-/// A table for people: a title, a header and rows of text, in columns as wide as their widest cell (counted in characters,
-/// not in bytes). Columns are left-aligned unless named otherwise; nothing is cut.
+/// A table for people: a title, a header and rows of text, in columns as wide as their widest cell (counted in
+/// characters, not in bytes). Columns are left-aligned unless named otherwise; nothing is cut.
 class Table {
  public:
   Table(std::string title, std::vector<std::string> header);

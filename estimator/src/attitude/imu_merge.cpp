@@ -112,8 +112,7 @@ Status ImuMerge::step(std::span<const ImuSample> samples, State& state, ImuSampl
   int kept = 0;
   for (int k = 0; k < count; ++k) {
     const auto i = static_cast<std::size_t>(k);
-    const double turned =
-        (params_.T_CI[i].translation() - p_C_m_).norm() * middle_rate.squaredNorm() * 2.0;
+    const double turned = (params_.T_CI[i].translation() - p_C_m_).norm() * middle_rate.squaredNorm() * 2.0;
     used[i] = count < 3 || ((rates[i] - middle_rate).norm() < rate_tolerance &&
                             (forces[i] - middle_force).norm() < params_.force_tolerance_m_s2 + turned);
     used[i] = used[i] && samples[i].specific_force_m_s2.cwiseAbs().maxCoeff() < params_.accel_range_m_s2;
@@ -139,7 +138,8 @@ Status ImuMerge::step(std::span<const ImuSample> samples, State& state, ImuSampl
     const Eigen::Vector3d d = p_C_m_ - place;
     force += ((rate - state.rate_rad_s) / dt_s).cross(d) + rate.cross(rate.cross(d));
   }
-  if (kept == count && count > 1 && dt_s > 0.0 && state.samples > 1) learn({raw_rates.data(), samples.size()}, dt_s, state);
+  if (kept == count && count > 1 && dt_s > 0.0 && state.samples > 1)
+    learn({raw_rates.data(), samples.size()}, dt_s, state);
   for (std::size_t k = 0; k < samples.size(); ++k) state.units[k].last_rate_rad_s = raw_rates[k];
 
   merged.time_ns = samples[0].time_ns;

@@ -152,8 +152,7 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, State& sta
       const bool bound = slips(h.mode) && state.node - h.switched_node < shortest;
       if (mode != h.mode && bound) continue;
       if (too_fast && !slips(mode)) continue;
-      const double likelihood =
-          slips(mode) ? log_moving(c, h, mode, u, params_) : log_still(c, h, mode, params_);
+      const double likelihood = slips(mode) ? log_moving(c, h, mode, u, params_) : log_still(c, h, mode, params_);
       const double blow = mode == RollingMode::bump ? 0.0 : state.sums.blow_m_s / params_.blow_m_s;
       candidates[total++] = {h.log_weight + log_transition(h.mode, mode, node_s) + likelihood - blow, parent, mode,
                              mode == h.mode ? h.switched_node : state.node};

@@ -10,7 +10,7 @@ namespace tumble::rolling {
 
 namespace {
 
-constexpr double kSteepest = 0.95;       // of the sine of a slope: keeps the normal upward
+constexpr double kSteepest = 0.95;  // of the sine of a slope: keeps the normal upward
 constexpr double kLevelSlopeSigma = 1e-3;
 
 double upward(const Eigen::Vector2d& slope) {
@@ -22,11 +22,11 @@ Eigen::Vector3d normal(const Eigen::Vector2d& slope) {
 }
 
 constexpr double kSmallest = 1e-12;
-constexpr double kUsual_m_s2 = 3.0;      // what a force differs from gravity by, without a shock
-constexpr double kOffCentre_m = 0.02;    // of an IMU: makes forces in fast turns
+constexpr double kUsual_m_s2 = 3.0;                   // what a force differs from gravity by, without a shock
+constexpr double kOffCentre_m = 0.02;                 // of an IMU: makes forces in fast turns
 constexpr double kHiddenFrom = 0.3, kHiddenTo = 0.6;  // of the accelerometer's range
-constexpr double kLostTilt_rad = 0.5;    // a tilt as uncertain as this is no tilt to integrate forces with
-constexpr double kDoubtfulTilt_rad = 0.1;  // and as this, no better than the direction of the force at rest
+constexpr double kLostTilt_rad = 0.5;                 // a tilt as uncertain as this is no tilt to integrate forces with
+constexpr double kDoubtfulTilt_rad = 0.1;             // and as this, no better than the direction of the force at rest
 constexpr double kRestTilt_rad = 5e-3;
 constexpr double kForceTilt_rad = 0.35;  // of the direction of a force in motion
 constexpr double kLostSpeed_m_s = 1.0;
@@ -139,8 +139,8 @@ void integrate(const RollingParams& params, const ImuSample& sample, double dt_s
   constexpr std::uint8_t kGyro = kClipGyroX | kClipGyroY | kClipGyroZ, kAccel = kClipAccelX | kClipAccelY | kClipAccelZ;
   const bool beyond = w_raw.cwiseAbs().maxCoeff() >= params.gyro_range_rad_s;
   const bool lost = (sample.device_clip_flags & kGyro) != 0 || (beyond && !(params.recovered_rate_sigma_rad_s > 0.0));
-  const bool clipped = lost || (sample.device_clip_flags & kAccel) != 0 ||
-                       f_raw.cwiseAbs().maxCoeff() >= params.accel_range_m_s2;
+  const bool clipped =
+      lost || (sample.device_clip_flags & kAccel) != 0 || f_raw.cwiseAbs().maxCoeff() >= params.accel_range_m_s2;
   // a force that is clipped, or turned by a rate that is, says nothing: the velocity is kept
   const Eigen::Vector3d pushed = clipped ? Eigen::Vector3d(dt_s * gravity * Eigen::Vector3d::UnitZ()) : R_T * f;
   const Eigen::Vector3d gained = pushed - dt_s * gravity * Eigen::Vector3d::UnitZ();

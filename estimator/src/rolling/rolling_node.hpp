@@ -28,8 +28,8 @@ struct Contact {
   Eigen::Matrix<double, 3, kStates> H;
   double grip_variance = 0.0;
   double rolling_speed_m_s = 0.0;  ///< of the centre, should it grip
-  Eigen::Vector3d lift_W;  ///< change of u for a change of the normal's third component
-  Eigen::Vector2d slope;   ///< nominal
+  Eigen::Vector3d lift_W;          ///< change of u for a change of the normal's third component
+  Eigen::Vector2d slope;           ///< nominal
 
   /// Contact velocity for an error `x`: linear but for the length of the normal.
   Eigen::Vector3d velocity(const Vector& x) const;
@@ -64,8 +64,8 @@ std::optional<double> lost_velocity_variance(const RollingParams& params, double
 /// Whether the slope is forgotten on this change: what is known of it before says nothing about it after.
 bool forgets_slope(RollingMode from, RollingMode to);
 
-/// After clipping the attitude may be lost: levels it anew by the mean force `f_I_m_s2`, at rest or not, and forgets the
-/// velocity. False when there was no need.
+/// After clipping the attitude may be lost: levels it anew by the mean force `f_I_m_s2`, at rest or not, and forgets
+/// the velocity. False when there was no need.
 bool relevel(const RollingParams& params, const Eigen::Vector3d& f_I_m_s2, bool at_rest, RollingNominal& nominal,
              Covariance& P);
 

@@ -242,8 +242,12 @@ void RollingSmoother::run_window(const std::vector<PathNode>& path, std::size_t 
   }
 
   if (emitted <= window.nodes.size()) {
-    state.committed = {window.committed.nominal, window.committed.P, window.committed.mode, committed_m2,
-                       window.nodes[emitted - 1].time_ns, true};
+    state.committed = {window.committed.nominal,
+                       window.committed.P,
+                       window.committed.mode,
+                       committed_m2,
+                       window.nodes[emitted - 1].time_ns,
+                       true};
     state.samples.erase(state.samples.begin(), state.samples.begin() + static_cast<std::ptrdiff_t>(taken));
     state.steps.erase(state.steps.begin(), state.steps.begin() + static_cast<std::ptrdiff_t>(emitted));
   } else {

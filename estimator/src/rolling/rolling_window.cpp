@@ -90,7 +90,8 @@ Reported smooth_back(const Eigen::Matrix<double, kReported, kStates>& P_rows, st
   for (std::size_t n = nodes.size(); n-- > 0;) {
     NodeRecord& node = nodes[n];
     const auto own = (Eigen::Matrix<double, kReported, kReported>() << node.P_rows.leftCols<9>(),
-                      node.P_rows.middleCols<3>(kLeverArm)).finished();
+                      node.P_rows.middleCols<3>(kLeverArm))
+                         .finished();
     node.smoothed = -node.P_rows * lambda;
     node.smoothed_P = own - node.P_rows * Lambda * node.P_rows.transpose();
     for (std::size_t k = static_cast<std::size_t>(node.rows); k-- > 0;) {

@@ -19,7 +19,8 @@ struct Disc {
   double radius_m = 0.0;
 };
 
-/// A place drawn evenly from the area until `fits` takes it. Throws InvalidSituation after 1000 refusals, naming `what`.
+/// A place drawn evenly from the area until `fits` takes it. Throws InvalidSituation after 1000 refusals, naming
+/// `what`.
 template <typename Fits>
 Eigen::Vector2d draw_place(Stream& stream, const Rectangle& area, const char* what, Fits fits) {
   constexpr int kAttempts = 1000;

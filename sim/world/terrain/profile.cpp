@@ -6,7 +6,9 @@
 
 namespace tumble::sim {
 
-double SlopeProfile::length_m() const { return drop_m / std::tan(slope_rad); }
+double SlopeProfile::length_m() const {
+  return drop_m / std::tan(slope_rad);
+}
 
 double SlopeProfile::height_m(double x_m) const {
   const auto ramp = [&](double u) {
@@ -15,7 +17,9 @@ double SlopeProfile::height_m(double x_m) const {
   return -std::tan(slope_rad) * (ramp(x_m - edge_x_m) - ramp(x_m - edge_x_m - length_m()));
 }
 
-double LedgeProfile::end_x_m() const { return edge_x_m + drops * (face_m + ledge_length_m); }
+double LedgeProfile::end_x_m() const {
+  return edge_x_m + drops * (face_m + ledge_length_m);
+}
 
 double LedgeProfile::height_m(double x_m) const {
   const double step_m = face_m + ledge_length_m;

@@ -16,8 +16,8 @@ Relief::Relief(Stream& stream, const ReliefSpectrum& spectrum) {
     const double k = 2.0 * std::numbers::pi / length_m;
     // log-uniform wavelengths have a density of 1/k already: the squared amplitude adds k^(1 - exponent)
     const double amplitude_m = std::pow(length_m, 0.5 * (spectrum.exponent - 1.0));
-    waves_.push_back({k * std::cos(direction), k * std::sin(direction), stream.uniform(0.0, 2.0 * std::numbers::pi),
-                      amplitude_m});
+    waves_.push_back(
+        {k * std::cos(direction), k * std::sin(direction), stream.uniform(0.0, 2.0 * std::numbers::pi), amplitude_m});
     power_m2 += amplitude_m * amplitude_m / 2.0;
   }
   for (Wave& wave : waves_) wave.amplitude_m *= spectrum.rms_m / std::sqrt(power_m2);

@@ -13,11 +13,11 @@ namespace tumble::sim {
 /// Where rocks lie and how large they are.
 struct RockField {
   int count = 0;
-  double largest_m = 0.3;  ///< largest half axis
+  double largest_m = 0.3;       ///< largest half axis
   double smallest_share = 0.4;  ///< half axes along the ground are uniform in [smallest_share, 1] * largest_m, heights
                                 ///< in [0.75 smallest_share, 0.7] * largest_m
   Rectangle area;
-  Disc clear;              ///< no rock reaches into it
+  Disc clear;  ///< no rock reaches into it
 };
 
 /// An ellipsoid, more than a third of it buried.

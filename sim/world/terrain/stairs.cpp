@@ -6,7 +6,9 @@
 
 namespace tumble::sim {
 
-double Flight::slope_rad() const { return std::atan2(rise_m, tread_m); }
+double Flight::slope_rad() const {
+  return std::atan2(rise_m, tread_m);
+}
 
 std::vector<Step> lay_steps(const Flight& flight, double depth_m) {
   std::vector<Step> steps;

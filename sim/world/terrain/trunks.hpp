@@ -17,7 +17,7 @@ struct Stand {
   double spacing_m = 0.8;          ///< least distance between two axes
   double lane_half_width_m = 0.0;  ///< none stands within this of y = 0
   Rectangle area;
-  Disc clear;                      ///< none stands in it
+  Disc clear;  ///< none stands in it
 };
 
 /// An upright cylinder, its foot half a metre under the ground.

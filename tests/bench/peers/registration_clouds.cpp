@@ -34,7 +34,9 @@ std::vector<LidarPoint> still_sweep(const Eigen::Isometry3d& T, int number) {
   return tumble::test::make_sweep(tumble::test::Room::box_with_pillars(), still, T, number, kNoise_m, kColumns);
 }
 
-void write_pose(std::ofstream& file, const Eigen::Isometry3d& T) { file << T.matrix() << '\n'; }
+void write_pose(std::ofstream& file, const Eigen::Isometry3d& T) {
+  file << T.matrix() << '\n';
+}
 
 /// Best of some runs of the registration of one still sweep [ms]; the result in `found`.
 double time_ms(Registration& registration, const Registration::Prior& prior, const std::vector<SweepPoint>& points,
@@ -76,8 +78,8 @@ int main(int argc, char** argv) {
     const Eigen::Isometry3d truth(Eigen::Translation3d(0.3 * (k % 4), -0.2 * (k % 3), 0.1) *
                                   tumble::so3::exp(0.37 * k * Eigen::Vector3d(0.3, -1.0, 0.5)));
     std::vector<SweepPoint> all, points;
-    tumble::select_points(still_sweep(truth, 100 + k), {0.3, 100.0, Eigen::AlignedBox3d()}, Eigen::Isometry3d::Identity(),
-                          0.0, all);
+    tumble::select_points(still_sweep(truth, 100 + k), {0.3, 100.0, Eigen::AlignedBox3d()},
+                          Eigen::Isometry3d::Identity(), 0.0, all);
     std::vector<Eigen::Vector3f> positions;
     for (const SweepPoint& point : all) positions.push_back(point.x_I_m);
     tumble::SweepSampler sampler;
@@ -103,8 +105,7 @@ int main(int argc, char** argv) {
     Registration::Result found;
     times.push_back(time_ms(registration, prior, points, map, found));
     errors_m.push_back((found.state.p_WI_m - truth.translation()).norm());
-    errors_rad.push_back(
-        tumble::so3::log(found.state.q_WI * Eigen::Quaterniond(truth.linear()).conjugate()).norm());
+    errors_rad.push_back(tumble::so3::log(found.state.q_WI * Eigen::Quaterniond(truth.linear()).conjugate()).norm());
   }
   std::sort(times.begin(), times.end());
   std::sort(errors_m.begin(), errors_m.end());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A robot's board: one quarter turn of a 29 cm sphere about y, seen by its gyro, is a quarter of its circumference along x.
+// A robot's board: one quarter turn of a 29 cm sphere about y, seen by its gyro, is a quarter of its circumference
+// along x.
 #include <cmath>
 #include <cstdio>
 #include <tumble/attitude/strapdown.hpp>

@@ -51,8 +51,8 @@ TEST(Bridge, EachClipBitBecomesItsOwnFlag) {
   }
 }
 
-// the lever arm's frame and sign together: a body that turns at a steady rate about its centre of mass, weightless, shows
-// the force w x (w x t) at the IMU, which points from the IMU to the axis
+// the lever arm's frame and sign together: a body that turns at a steady rate about its centre of mass, weightless,
+// shows the force w x (w x t) at the IMU, which points from the IMU to the axis
 TEST(Bridge, LeverArmGivesTheCentripetalForceInImuAxes) {
   const sim::Recording recording = testing::synthetic_rig();
   const sim::ImuRecord& record = recording.sensors.imus.front();

@@ -13,7 +13,9 @@
 // one law for every method: what is registered is held to it without being named here
 namespace tumble::scenarios {
 
-void PrintTo(const Method& method, std::ostream* out) { *out << to_string(method.info.kind) << "/" << method.info.name; }
+void PrintTo(const Method& method, std::ostream* out) {
+  *out << to_string(method.info.kind) << "/" << method.info.name;
+}
 
 namespace {
 
@@ -57,9 +59,15 @@ TEST_P(MethodContract, GivesAnAnswerOfItsKind) {
   const Estimate estimate = run(recording());
   ASSERT_TRUE(estimate.status.ok()) << estimate.status.message();
   switch (method().info.kind) {
-    case Kind::rate: EXPECT_EQ(estimate.rates.size(), 1200u); break;
-    case Kind::attitude: EXPECT_EQ(estimate.attitudes.size(), 1200u); break;
-    case Kind::position: EXPECT_EQ(estimate.poses.size(), 1200u); break;
+    case Kind::rate:
+      EXPECT_EQ(estimate.rates.size(), 1200u);
+      break;
+    case Kind::attitude:
+      EXPECT_EQ(estimate.attitudes.size(), 1200u);
+      break;
+    case Kind::position:
+      EXPECT_EQ(estimate.poses.size(), 1200u);
+      break;
     case Kind::slam:
       EXPECT_GT(estimate.sweeps.size(), 50u);
       EXPECT_EQ(estimate.sweep_end_ns.size(), estimate.sweeps.size());
@@ -141,13 +149,15 @@ std::string test_name(const ::testing::TestParamInfo<Method>& param) {
   return std::string(to_string(param.param.info.kind)) + "_" + param.param.info.name;
 }
 
-INSTANTIATE_TEST_SUITE_P(Registered, MethodContract, ::testing::ValuesIn(methods().begin(), methods().end()), test_name);
+INSTANTIATE_TEST_SUITE_P(Registered, MethodContract, ::testing::ValuesIn(methods().begin(), methods().end()),
+                         test_name);
 
 class SlamContract : public MethodContract {};
 
 TEST_P(SlamContract, RefusesALidarThatNeverSawAnything) {
   sim::Recording spoilt = recording();
-  for (auto& point : spoilt.sensors.lidars.front().position_L_m) point.setConstant(std::numeric_limits<float>::quiet_NaN());
+  for (auto& point : spoilt.sensors.lidars.front().position_L_m)
+    point.setConstant(std::numeric_limits<float>::quiet_NaN());
   expect_refused(spoilt);
 }
 
@@ -193,7 +203,8 @@ TEST_P(SlamContract, CountsSweepsWithoutPoints) {
   cut(lidar.intensity);
   cut(lidar.offset_ns);
   cut(lidar.ring);
-  for (std::size_t k = 56; k < lidar.sweep_first.size(); ++k) lidar.sweep_first[k] -= static_cast<std::size_t>(last - first);
+  for (std::size_t k = 56; k < lidar.sweep_first.size(); ++k)
+    lidar.sweep_first[k] -= static_cast<std::size_t>(last - first);
   const Estimate estimate = run(covered);
   ASSERT_TRUE(estimate.status.ok()) << estimate.status.message();
   EXPECT_EQ(estimate.health.at("sweeps_empty"), 1.0);

@@ -70,7 +70,8 @@ double range_in_room(const Eigen::Vector3d& from, const Eigen::Vector3d& directi
   double range = 1e9;
   if (direction.z() < 0.0) range = -from.z() / direction.z();
   for (int j = 0; j < 2; ++j) {
-    if (direction[j] != 0.0) range = std::min(range, (std::copysign(kRoomHalfM, direction[j]) - from[j]) / direction[j]);
+    if (direction[j] != 0.0)
+      range = std::min(range, (std::copysign(kRoomHalfM, direction[j]) - from[j]) / direction[j]);
   }
   return from.z() + range * direction.z() > kRoomHeightM ? -1.0 : range;
 }
@@ -133,13 +134,17 @@ double SyntheticMotion::phase_acceleration(double time_s) const {
   return 60.0 * u * (1.0 - u) * (1.0 - 2.0 * u) / (length_s * length_s);
 }
 
-Eigen::Vector3d SyntheticMotion::position_m(double time_s) const { return start_m + phase(time_s) * displacement_m; }
+Eigen::Vector3d SyntheticMotion::position_m(double time_s) const {
+  return start_m + phase(time_s) * displacement_m;
+}
 
 Eigen::Quaterniond SyntheticMotion::attitude(double time_s) const {
   return Eigen::AngleAxisd(angle_rad * phase(time_s), axis_W) * q_start;
 }
 
-Eigen::Vector3d SyntheticMotion::velocity_m_s(double time_s) const { return phase_rate(time_s) * displacement_m; }
+Eigen::Vector3d SyntheticMotion::velocity_m_s(double time_s) const {
+  return phase_rate(time_s) * displacement_m;
+}
 
 Eigen::Vector3d SyntheticMotion::rate_B_rad_s(double time_s) const {
   return q_start.conjugate() * (angle_rad * phase_rate(time_s) * axis_W);

@@ -7,9 +7,9 @@
 
 namespace tumble::scenarios::testing {
 
-/// A recording in closed form, without the simulator: the body rests, then turns about one fixed axis by `angle_rad` while
-/// its centre of mass moves by `displacement_m`, both along the same smooth step (quintic), then rests again.
-/// The readings are exact at the middle of their window, without noise, the gyro held at `rail_rad_s`.
+/// A recording in closed form, without the simulator: the body rests, then turns about one fixed axis by `angle_rad`
+/// while its centre of mass moves by `displacement_m`, both along the same smooth step (quintic), then rests again. The
+/// readings are exact at the middle of their window, without noise, the gyro held at `rail_rad_s`.
 struct SyntheticMotion {
   Eigen::Vector3d axis_W = Eigen::Vector3d(0.3, 0.9, -0.2).normalized();
   double angle_rad = 22.4;  ///< peak rate 1.875 angle / (end - start) = 14 rad/s
@@ -41,7 +41,8 @@ inline constexpr double kRoomHeightM = 2.5;
 /// A rig with one IMU (200 Hz) and a lidar (10 Hz, 16 rings, 150 columns) turning above the floor of the room.
 sim::Recording synthetic_rig(const SyntheticMotion& motion = {});
 
-/// A sphere that rolls along `direction_rad` by `distance_m` without slip, with one IMU off its centre and a lidar in it.
+/// A sphere that rolls along `direction_rad` by `distance_m` without slip, with one IMU off its centre and a lidar in
+/// it.
 sim::Recording synthetic_sphere(double distance_m = 1.0, double direction_rad = 0.6);
 
 }  // namespace tumble::scenarios::testing

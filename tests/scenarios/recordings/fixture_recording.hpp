@@ -54,9 +54,9 @@ inline sim::ImuTruth imu_truth(Numbers& numbers, const std::string& name, int sa
   sim::ImuTruth truth;
   truth.name = name;
   truth.T_BI = numbers.pose();
-  for (auto* rows : {&truth.rate_rad_s, &truth.specific_force_m_s2, &truth.gyro_unclipped_rad_s,
-                     &truth.accel_unclipped_m_s2, &truth.gyro_bias_rad_s, &truth.accel_bias_m_s2,
-                     &truth.magnetic_field_t}) {
+  for (auto* rows :
+       {&truth.rate_rad_s, &truth.specific_force_m_s2, &truth.gyro_unclipped_rad_s, &truth.accel_unclipped_m_s2,
+        &truth.gyro_bias_rad_s, &truth.accel_bias_m_s2, &truth.magnetic_field_t}) {
     for (int i = 0; i < samples; ++i) rows->push_back(numbers.vector());
   }
   return truth;

@@ -86,8 +86,10 @@ TEST_F(ImportCsv, FindsColumnsByNameAndReadsStampsToTheNanosecond) {
 }
 
 TEST_F(ImportCsv, AnotherUnitOrAMissingColumnIsSaid) {
-  const std::string rows = "1.5,0.1,0.2,0.3,7,1617333602.223639727,-0.5,0,1\n1.6,0.1,0.2,0.4,8,1617333602.24,-0.5,0,1\n";
-  EXPECT_THAT(complaint_of(kNamed + rows), HasSubstr("median specific force is 1.118034 m/s^2, must be within 3 and 30"));
+  const std::string rows =
+      "1.5,0.1,0.2,0.3,7,1617333602.223639727,-0.5,0,1\n1.6,0.1,0.2,0.4,8,1617333602.24,-0.5,0,1\n";
+  EXPECT_THAT(complaint_of(kNamed + rows),
+              HasSubstr("median specific force is 1.118034 m/s^2, must be within 3 and 30"));
   std::string without = kNamed;
   without.replace(without.find("velocity/y"), 10, "velocity_y");
   EXPECT_THAT(complaint_of(without + rows), HasSubstr("csv:1: columns are missing: angular_velocity/y"));
@@ -95,7 +97,8 @@ TEST_F(ImportCsv, AnotherUnitOrAMissingColumnIsSaid) {
   twice.replace(twice.find("__time"), 6, "/b/header/stamp");
   EXPECT_THAT(complaint_of(twice + rows), HasSubstr("csv:1: two columns are called header/stamp"));
   for (const char* stamp : {"", ".5", "-1.5", "1.5e3", "1.0123456789", "12345678901.5"}) {
-    EXPECT_THAT(complaint_of(kNamed + "1.5,0.1,0.2,0.3,7," + stamp + ",-0.5,0,9\n"), HasSubstr("csv:2: column 5 must be seconds"))
+    EXPECT_THAT(complaint_of(kNamed + "1.5,0.1,0.2,0.3,7," + stamp + ",-0.5,0,9\n"),
+                HasSubstr("csv:2: column 5 must be seconds"))
         << stamp;
   }
 }
@@ -170,7 +173,8 @@ TEST_F(ImportBroad, ReadsATrialAndKeepsTheAttribution) {
 }
 
 TEST_F(ImportBroad, TheReferenceAgreesWithTheReadings) {
-  const std::filesystem::path trial = std::filesystem::path(TUMBLE_SHARED_DATA) / "broad/05_undisturbed_slow_rotation_with_breaks_B.hdf5";
+  const std::filesystem::path trial =
+      std::filesystem::path(TUMBLE_SHARED_DATA) / "broad/05_undisturbed_slow_rotation_with_breaks_B.hdf5";
   if (!std::filesystem::exists(trial)) GTEST_SKIP() << "the BROAD trials are not at " << trial;
   const Imported imported = import_broad(trial);
   ASSERT_TRUE(imported.reference.has_value());

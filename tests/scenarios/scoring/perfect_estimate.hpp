@@ -11,8 +11,8 @@
 
 namespace tumble::scenarios::testing {
 
-/// An estimate that is the truth: rates at the samples, attitudes and poses of `frame` at IMU times, sweeps with the truth
-/// inside, a map of the true hits.
+/// An estimate that is the truth: rates at the samples, attitudes and poses of `frame` at IMU times, sweeps with the
+/// truth inside, a map of the true hits.
 inline Estimate perfect_estimate(const sim::Recording& recording, Frame frame = Frame::imu) {
   Estimate estimate;
   estimate.frame = frame;

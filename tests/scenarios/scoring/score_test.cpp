@@ -124,7 +124,8 @@ TEST(RateScores, CoverageCountsClippedAxesWithinThreeSigma) {
     }
   }
   ASSERT_GT(total, 50);
-  EXPECT_NEAR(scores(Kind::rate, estimate, rig()).at("rate_coverage_3sigma"), static_cast<double>(within) / total, 1e-15);
+  EXPECT_NEAR(scores(Kind::rate, estimate, rig()).at("rate_coverage_3sigma"), static_cast<double>(within) / total,
+              1e-15);
 }
 
 TEST(RateScores, WithoutClippingThereIsNothingToScoreClipped) {
@@ -248,7 +249,8 @@ TEST(EndPoseScores, CountFromTheSixthRegisteredSweep) {
   // the last sweep counts, rejected or not
   estimate.sweeps.back().verdict = SweepVerdict::rejected;
   estimate.sweeps.back().pose.p_WA_m += Eigen::Vector3d(0.0, 0.0, 0.25);
-  estimate.sweeps.back().pose.q_WA = Eigen::AngleAxisd(2.8, Eigen::Vector3d::UnitY()) * estimate.sweeps.back().pose.q_WA;
+  estimate.sweeps.back().pose.q_WA =
+      Eigen::AngleAxisd(2.8, Eigen::Vector3d::UnitY()) * estimate.sweeps.back().pose.q_WA;
   const auto values = scores(Kind::slam, estimate, rig());
   EXPECT_NEAR(values.at("translation_error_end_m"), 0.25, 1e-9);
   // beyond 90 degrees, where a clamped arccos would stop

@@ -27,8 +27,8 @@ TEST(TruthTrack, InterpolatesBetweenPhysicsSamples) {
     const PoseState pose = track.pose(time_ns);
     // linear between samples: acceleration dt^2 / 8 = 21 m/s^2 x 3.1e-8 s^2
     EXPECT_NEAR((pose.p_WA_m - p).norm(), 0.0, 1e-6);
-    EXPECT_NEAR(rotation_angle_rad((motion.attitude(t) * Eigen::Quaterniond(T_BI.linear())).conjugate() * pose.q_WA), 0.0,
-                1e-6);
+    EXPECT_NEAR(rotation_angle_rad((motion.attitude(t) * Eigen::Quaterniond(T_BI.linear())).conjugate() * pose.q_WA),
+                0.0, 1e-6);
     // jerk dt^2 / 8 of the IMU on its lever arm of 0.1 m: 14^3 x 0.1 x 3.1e-8
     const Eigen::Vector3d v =
         motion.velocity_m_s(t) + motion.attitude(t) * motion.rate_B_rad_s(t).cross(T_BI.translation());

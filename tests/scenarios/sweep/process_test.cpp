@@ -164,7 +164,11 @@ TEST_F(RunIsolated, AnExitInsideAMethodIsACrash) {
 }
 
 TEST_F(RunIsolated, EndlessWorkIsATimeout) {
-  const Outcome outcome = run([](const sim::Sensors&) -> Estimate { while (true) pause(); }, 0.3);
+  const Outcome outcome = run(
+      [](const sim::Sensors&) -> Estimate {
+        while (true) pause();
+      },
+      0.3);
   EXPECT_EQ(outcome.status, "timeout");
   EXPECT_NE(outcome.message.find("0.3"), std::string::npos);
 }

@@ -46,7 +46,8 @@ class ResultsTest : public testing::TemporaryFolder {
 };
 
 TEST_F(ResultsTest, DrawsAndCertificatesComeBack) {
-  const Certificate certificate{build_id(), {{"row", "b", "law", "m", 0.5, 0.0, 1.0, ""}, {"row", "a", "law", "1", 2.0, 0.0, 1.0, "why"}}};
+  const Certificate certificate{
+      build_id(), {{"row", "b", "law", "m", 0.5, 0.0, 1.0, ""}, {"row", "a", "law", "1", 2.0, 0.0, 1.0, "why"}}};
   {
     Results results(path(), Results::Mode::create_or_append);
     results.store(DrawValues{"hill", 3, {{"motion_path_m", 7.5}, {"motion_several_axes_share", std::nan("")}}});
@@ -125,7 +126,8 @@ TEST_F(ResultsTest, StoringAgainReplacesTheRowAndItsScores) {
   ASSERT_EQ(results.scores().size(), 1u);
   EXPECT_EQ(results.scores().front().value, 5.0);
   SQLite::Database raw(path().string());
-  EXPECT_EQ(raw.execAndGet("SELECT count(*) FROM score_values").getInt(), 1) << "scores of the replaced row stay behind";
+  EXPECT_EQ(raw.execAndGet("SELECT count(*) FROM score_values").getInt(), 1)
+      << "scores of the replaced row stay behind";
 }
 
 TEST_F(ResultsTest, NaNAndInfinityAreKept) {
@@ -154,7 +156,8 @@ TEST_F(ResultsTest, OtherFilesAreRefusedAndLeftAlone) {
   EXPECT_NE(complaint(Results::Mode::read_only).find("no such file"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(path()));
 
-  write("results.db", "this is no database, whatever its name says; it is long enough to have a header of 100 bytes .....");
+  write("results.db",
+        "this is no database, whatever its name says; it is long enough to have a header of 100 bytes .....");
   EXPECT_NE(complaint(Results::Mode::read_only).find("not a"), std::string::npos);
   EXPECT_NE(complaint(Results::Mode::create_or_append).find("not a"), std::string::npos);
 
@@ -171,10 +174,12 @@ TEST_F(ResultsTest, ATruncatedDatabaseIsBadInput) {
     for (std::uint64_t seed = 0; seed < 200; ++seed) results.store(sample_outcome(seed));
   }
   std::filesystem::resize_file(path(), std::filesystem::file_size(path()) / 2);
-  EXPECT_THROW({
-    const Results results(path(), Results::Mode::read_only);
-    results.scores();
-  }, BadInput);
+  EXPECT_THROW(
+      {
+        const Results results(path(), Results::Mode::read_only);
+        results.scores();
+      },
+      BadInput);
 }
 
 TEST_F(ResultsTest, AFolderThatIsNotThereIsBadInput) {
@@ -184,7 +189,8 @@ TEST_F(ResultsTest, AFolderThatIsNotThereIsBadInput) {
 TEST_F(ResultsTest, NoRoomIsBadInputAndWhatWasStoredStays) {
   Results results(path(), Results::Mode::create_or_append);
   results.store(sample_outcome(1));
-  // a limit on the size of files stands for a full disk; the signal that comes with it is ignored as the error tells more
+  // a limit on the size of files stands for a full disk; the signal that comes with it is ignored as the error tells
+  // more
   const pid_t child = fork();
   ASSERT_GE(child, 0);
   if (child == 0) {
@@ -231,7 +237,8 @@ TEST_F(ResultsTest, WhatHasBeenStoredSurvivesAKill) {
   ASSERT_GE(stored, 20u);
   Results results(path(), Results::Mode::create_or_append);
   EXPECT_GE(results.outcomes().size(), stored);
-  for (std::uint64_t seed = 1; seed <= stored; ++seed) EXPECT_TRUE(results.has("hill", seed, Kind::slam, "icp")) << seed;
+  for (std::uint64_t seed = 1; seed <= stored; ++seed)
+    EXPECT_TRUE(results.has("hill", seed, Kind::slam, "icp")) << seed;
   EXPECT_EQ(results.scores().size(), 2 * results.outcomes().size());
 }
 

@@ -45,7 +45,9 @@ struct Expected {
   double flight_least_s;
 };
 
-void PrintTo(const Expected& expected, std::ostream* out) { *out << expected.scenario; }
+void PrintTo(const Expected& expected, std::ostream* out) {
+  *out << expected.scenario;
+}
 
 double fall_m(const sim::Truth& truth) {
   double highest_m = truth.p_WB_m.front().z();

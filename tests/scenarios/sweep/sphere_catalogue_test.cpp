@@ -42,8 +42,8 @@ struct Expected {
 
 class SphereScenario : public testing::TestWithParam<Expected> {};
 
-// Where a scenario is not about slip it may still scrape: at the edge of an obstacle the sphere has two contacts, of which
-// one must slip. Over seeds 1001-1020 bump does so for 0.000-0.135 s, ramp and tube never.
+// Where a scenario is not about slip it may still scrape: at the edge of an obstacle the sphere has two contacts, of
+// which one must slip. Over seeds 1001-1020 bump does so for 0.000-0.135 s, ramp and tube never.
 TEST_P(SphereScenario, ShowsWhatItIsAboutAndEndsAtRest) {
   sim::Situation situation = draw(kData, load_scenario(kData, GetParam().scenario), kSeed);
   std::erase_if(situation.sensors, [](const sim::SensorSpec& sensor) { return sensor.kind != "imu"; });

@@ -34,7 +34,10 @@ TEST(Quantile, RanksFailuresAsInfinite) {
 }
 
 TEST(MedianInterval, RanksAreThoseOfTheTables) {
-  struct Row { int n; double low, high; };
+  struct Row {
+    int n;
+    double low, high;
+  };
   for (const Row& row : {Row{6, 1, 6}, Row{8, 1, 8}, Row{9, 2, 8}, Row{10, 2, 9}, Row{15, 4, 12}, Row{20, 6, 15},
                          Row{25, 8, 18}, Row{30, 10, 21}, Row{50, 18, 33}, Row{100, 40, 61}}) {
     std::vector<double> values(static_cast<std::size_t>(row.n));
@@ -56,7 +59,10 @@ TEST(MedianInterval, TooFewValuesBoundNothing) {
 
 // Clopper and Pearson's limits; 0 of n has the closed form 1 - 0.025^(1/n)
 TEST(ShareInterval, AgreesWithPublishedLimits) {
-  struct Row { int count, total; double low, high; };
+  struct Row {
+    int count, total;
+    double low, high;
+  };
   for (const Row& row : {Row{12, 32, 0.2110, 0.5631}, Row{1, 10, 0.0025, 0.4450}, Row{5, 10, 0.1871, 0.8129},
                          Row{10, 100, 0.0490, 0.1762}, Row{2, 20, 0.0123, 0.3170}, Row{95, 100, 0.8872, 0.9836}}) {
     const Interval interval = share_interval(row.count, row.total);

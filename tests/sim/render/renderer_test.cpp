@@ -2,8 +2,8 @@
 #include "sim/render/renderer.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 #include <png.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstdlib>

@@ -11,8 +11,8 @@ namespace {
 using Eigen::Vector3d;
 
 /// The contact point of a sphere that is launched with slip speed u0 stands still after T = u0 / k, with
-/// k = mu g (1 + m r^2 / I). The label is grip once the mean of k (T - t) over 10 ms before and after is below 0.02 m/s:
-/// the window, not the threshold, sets the border.
+/// k = mu g (1 + m r^2 / I). The label is grip once the mean of k (T - t) over 10 ms before and after is below 0.02
+/// m/s: the window, not the threshold, sets the border.
 double slide_time_s(double u0_m_s, double friction, double mass_ratio) {
   constexpr double kWindow_s = 0.01, kGrip_m_s = 0.02;
   const double k = friction * kGravity_m_s2 * (1.0 + mass_ratio);

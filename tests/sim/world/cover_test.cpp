@@ -30,8 +30,8 @@ TEST(Rocks, KeepOffTheStartAndWithinTheirArea) {
     const std::vector<Rock> rocks = strew_rocks(stream, rock_field(100), sloping_ground());
     ASSERT_EQ(rocks.size(), 100u);
     for (const Rock& rock : rocks) {
-      const double edge_m = (rock.centre_W_m.head<2>() - Eigen::Vector2d(-6.0, 0.0)).norm() -
-                            rock.half_axes_m.head<2>().maxCoeff();
+      const double edge_m =
+          (rock.centre_W_m.head<2>() - Eigen::Vector2d(-6.0, 0.0)).norm() - rock.half_axes_m.head<2>().maxCoeff();
       ASSERT_GE(edge_m, 1.2 - 1e-12);
       ASSERT_LE(std::abs(rock.centre_W_m.y()), 3.0);
       ASSERT_LE(std::abs(rock.centre_W_m.x()), 8.0);

@@ -56,7 +56,8 @@ TEST_P(RigWorld, HoldsWhatItSaysAndStartsOnTheGround) {
 }
 
 TEST_P(RigWorld, BelongsToTheSeed) {
-  const engine::World a = compose_world(GetParam(), 3), b = compose_world(GetParam(), 3), c = compose_world(GetParam(), 4);
+  const engine::World a = compose_world(GetParam(), 3), b = compose_world(GetParam(), 3),
+                      c = compose_world(GetParam(), 4);
   ASSERT_EQ(a.model->nhfielddata, b.model->nhfielddata);
   ASSERT_GT(a.model->nhfielddata, 0);
   EXPECT_TRUE(std::equal(a.model->hfield_data, a.model->hfield_data + a.model->nhfielddata, b.model->hfield_data));

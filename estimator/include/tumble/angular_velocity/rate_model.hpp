@@ -66,7 +66,7 @@ struct RateObservation {
   ImuSample sample;
   Clipping clipping;
   std::uint8_t partial = 0;  ///< bit j: axis j met the rail in a part of its window only, see PartialLoss
-  Eigen::Vector3d lost_rad_s = Eigen::Vector3d::Zero();        ///< of partial axes, signed as the reading
+  Eigen::Vector3d lost_rad_s = Eigen::Vector3d::Zero();  ///< of partial axes, signed as the reading
   Eigen::Vector3d lost_sigma_rad_s = Eigen::Vector3d::Zero();
 
   /// Axes whose rate is not read: bound at most.

@@ -21,9 +21,9 @@ namespace tumble {
 /// allocation after the State is made. Rails are learnt as they show themselves: up to the first plateau the stated
 /// range serves, so the first clipped samples of a device with a wrong or no stated range may be believed.
 /// Give it the calibration of an earlier run: what leaves the window is linearised for good, and while the lever arm is
-/// off by centimetres that makes the covariance of clipped axes too small (on tumbles of the rig 88 to 92 % within three
-/// deviations in flight, 1.5 times the error of the batch; with a calibration 99.7 % and 1.1 times).
-/// What it does not model: see RateSmoother.
+/// off by centimetres that makes the covariance of clipped axes too small (on tumbles of the rig 88 to 92 % within
+/// three deviations in flight, 1.5 times the error of the batch; with a calibration 99.7 % and 1.1 times). What it does
+/// not model: see RateSmoother.
 class RateStream {
  public:
   struct Params {

@@ -45,7 +45,7 @@ class TumbleAttitude {
     double rest_force_m_s2 = 0.5;        ///< quiet about the low-passed force; bound (0, 100]
     double rest_velocity_sigma_m_s = 0.005;   ///< per node at rest; bound (0, 10]
     double rest_rate_sigma_rad_sqrts = 2e-3;  ///< of the rate measured at rest, mean over 1 s; bound (0, 1]
-    double radius_m = 0.0;  ///< of a rolling sphere on a level floor; 0: no such thing; bound [0, 10]
+    double radius_m = 0.0;                    ///< of a rolling sphere on a level floor; 0: no such thing; bound [0, 10]
     Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< centre to IMU, sensor axes; length up to 10
     double rolling_velocity_sigma_m_s = 0.03;               ///< per node while it grips; bound (0, 10]
     double slip_velocity_m_s = 0.12;  ///< misfit that opens a slip, half of it closes it; bound (0, 10]

@@ -11,8 +11,12 @@ namespace tumble {
 
 /// Bits of ImuSample::device_clip_flags, set by devices that report clipping themselves.
 enum ClipFlag : std::uint8_t {
-  kClipGyroX = 1, kClipGyroY = 2, kClipGyroZ = 4,
-  kClipAccelX = 8, kClipAccelY = 16, kClipAccelZ = 32,
+  kClipGyroX = 1,
+  kClipGyroY = 2,
+  kClipGyroZ = 4,
+  kClipAccelX = 8,
+  kClipAccelY = 16,
+  kClipAccelZ = 32,
 };
 
 /// One reading of an inertial measurement unit, in the unit's own axes I.
@@ -20,8 +24,9 @@ enum ClipFlag : std::uint8_t {
 struct ImuSample {
   TimeNs time_ns = 0;
   Eigen::Vector3d angular_velocity_rad_s = Eigen::Vector3d::Zero();  ///< w_WI_I as measured
-  Eigen::Vector3d specific_force_m_s2 = Eigen::Vector3d::Zero();     ///< f_I: acceleration minus gravity, +9.8 "up" at rest
-  std::uint8_t device_clip_flags = 0;                                ///< ClipFlag bits; 0 when the device reports none
+  Eigen::Vector3d specific_force_m_s2 =
+      Eigen::Vector3d::Zero();         ///< f_I: acceleration minus gravity, +9.8 "up" at rest
+  std::uint8_t device_clip_flags = 0;  ///< ClipFlag bits; 0 when the device reports none
 };
 
 /// True when the rates and forces of a sample are all finite.

@@ -22,7 +22,8 @@ struct PoseState {
   Eigen::Vector3d p_WA_m = Eigen::Vector3d::Zero();
   Eigen::Quaterniond q_WA = Eigen::Quaterniond::Identity();
   Eigen::Vector3d v_WA_m_s = Eigen::Vector3d::Zero();
-  /// Covariance of (position error in W [m], attitude error phi in W [rad]) as in AttitudeState; zero when not reported.
+  /// Covariance of (position error in W [m], attitude error phi in W [rad]) as in AttitudeState; zero when not
+  /// reported.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
 

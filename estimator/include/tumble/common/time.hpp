@@ -9,6 +9,8 @@ namespace tumble {
 using TimeNs = std::int64_t;
 
 /// Length of a span of time in seconds; exact to 2^-53 relative for spans below 104 days.
-constexpr double seconds(TimeNs span_ns) { return static_cast<double>(span_ns) * 1e-9; }
+constexpr double seconds(TimeNs span_ns) {
+  return static_cast<double>(span_ns) * 1e-9;
+}
 
 }  // namespace tumble

@@ -10,9 +10,9 @@ namespace tumble {
 /// One lidar return in the lidar's axes L, at its own instant: nothing is deskewed.
 struct LidarPoint {
   Eigen::Vector3f position_L_m = Eigen::Vector3f::Zero();
-  float intensity = 0.0f;         ///< 0..1
-  std::uint32_t offset_ns = 0;    ///< time of firing after the start of the sweep
-  std::uint16_t ring = 0;         ///< channel from bottom to top, or line
+  float intensity = 0.0f;       ///< 0..1
+  std::uint32_t offset_ns = 0;  ///< time of firing after the start of the sweep
+  std::uint16_t ring = 0;       ///< channel from bottom to top, or line
 };
 
 /// A point of a map, in the world.

@@ -57,12 +57,12 @@ struct RollingParams {
   double rest_velocity_sigma_m_s = 2e-3;
   double rest_rate_sigma_rad_s = 3e-3;  ///< of a node's mean rate at rest
   // Clipped readings, by the device's flags or from this size on, say no more than that; how short they may be.
-  double gyro_range_rad_s = 1e3;           ///< bound (0, 1e3]
-  double accel_range_m_s2 = 1e5;           ///< bound (0, 1e5]
-  double clipped_rate_sigma_rad_s = 5.0;   ///< bound (0, 1e3]
+  double gyro_range_rad_s = 1e3;          ///< bound (0, 1e3]
+  double accel_range_m_s2 = 1e5;          ///< bound (0, 1e5]
+  double clipped_rate_sigma_rad_s = 5.0;  ///< bound (0, 1e3]
   /// Above zero: a rate beyond the range that no flag calls clipped was recovered (ImuMerge) to this; bound [0, 1e3].
   double recovered_rate_sigma_rad_s = 0.0;
-  double clipped_force_sigma_m_s2 = 4.0;   ///< bound (0, 1e3]
+  double clipped_force_sigma_m_s2 = 4.0;  ///< bound (0, 1e3]
   /// A blow within one sample may have met the accelerometer's rail though its mean did not: sigma of what is missing
   /// along the force, as a share of it; full from 0.6 of the range on, none up to 0.3; bound [0, 10].
   double hidden_clip_share = 0.25;
@@ -75,10 +75,10 @@ struct RollingParams {
   // Change of mode, per second; bounds (0, 1e3].
   double slip_begins_per_s = 0.5, slip_ends_per_s = 2.0;
   double bump_begins_per_s = 0.3, bump_ends_per_s = 5.0;
-  double slip_bump_per_s = 0.2;                                ///< slip to bump and back
+  double slip_bump_per_s = 0.2;                                   ///< slip to bump and back
   double incline_begins_per_s = 0.001, incline_ends_per_s = 0.1;  ///< from and to the level
   double rough_begins_per_s = 0.02, rough_ends_per_s = 0.1;
-  double event_shortest_s = 0.06;                              ///< least stay in slip or bump; bound [0, 10]
+  double event_shortest_s = 0.06;  ///< least stay in slip or bump; bound [0, 10]
   // Rest.
   double rest_rate_rad_s = 0.02;  ///< bound (0, 10]
   double rest_force_m_s2 = 0.15;  ///< of a node's mean about its slow mean; bound (0, 100]
@@ -113,10 +113,10 @@ struct RollingSums {
   Eigen::Vector3d R_wxf = Eigen::Vector3d::Zero();
   Eigen::Vector3d w_I_rad = Eigen::Vector3d::Zero(), f_I_m_s = Eigen::Vector3d::Zero();
   double turned_rad2_s = 0.0;
-  double rate_clipped_s = 0.0, force_clipped_s = 0.0;  ///< with a reading that says nothing
-  double recovered_s = 0.0;                            ///< with a rate that was recovered
-  double shock_m_s = 0.0;  ///< of | |f| - g | beyond the usual
-  double blow_m_s = 0.0;   ///< the same without what the turning may explain
+  double rate_clipped_s = 0.0, force_clipped_s = 0.0;      ///< with a reading that says nothing
+  double recovered_s = 0.0;                                ///< with a rate that was recovered
+  double shock_m_s = 0.0;                                  ///< of | |f| - g | beyond the usual
+  double blow_m_s = 0.0;                                   ///< the same without what the turning may explain
   Eigen::Vector3d hidden_W_m_s = Eigen::Vector3d::Zero();  ///< sigma of what a rail took unseen, along the force
   double node_s = 0.0;
   bool operator==(const RollingSums&) const = default;
