@@ -186,6 +186,7 @@ Listing list_suites(const scenarios::DataRoot& data, const std::string& only) {
   const std::vector<std::string> names = scenarios::suite_names(data);
   if (!only.empty()) require_known("suite", only, names);
   Table table("", {"suite", "scenarios", "seeds", "methods", "time-out of a method", "meaning"});
+  const std::size_t all = scenarios::methods().size();
   const auto joined = [](const std::vector<std::string>& words) {
     std::string text;
     for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
@@ -194,9 +195,10 @@ Listing list_suites(const scenarios::DataRoot& data, const std::string& only) {
   for (const std::string& name : names) {
     if (!only.empty() && name != only) continue;
     const scenarios::Suite suite = scenarios::load_suite(data, name);
-    table.add_row({name, joined(suite.scenarios),
-                   std::to_string(suite.first_seed) + ".." + std::to_string(suite.last_seed), joined(suite.methods),
-                   number_text(suite.timeout_s) + " s", suite.doc});
+    table.add_row(
+        {name, joined(suite.scenarios), std::to_string(suite.first_seed) + ".." + std::to_string(suite.last_seed),
+         suite.methods.size() == all ? "all" : std::to_string(suite.methods.size()) + " of " + std::to_string(all),
+         number_text(suite.timeout_s) + " s", suite.doc});
     out.document.push_back({{"name", name},
                             {"doc", suite.doc},
                             {"scenarios", suite.scenarios},
