@@ -13,6 +13,7 @@ namespace {
 using Readings = std::vector<Eigen::Vector3d>;
 
 constexpr std::uint8_t kGyroFlags = 0b000111, kAccelFlags = 0b111000;
+constexpr std::uint32_t kInstant_ns = 1000;  // nothing moves in it, yet stamps still differ, as mappers ask for
 
 double largest(const Readings& readings) {
   double largest = 0.0;
@@ -127,7 +128,7 @@ bool exact_ranges(sim::Sensors& sensors, const sim::Truth& truth) {
   return !lidar.range_m.empty();
 }
 
-/// Every sweep as if it had been cast at the instant of its last point; errors of range stay.
+/// Every sweep as if it had been cast within a microsecond, at its last point; errors of range stay.
 bool unbent_sweeps(sim::Sensors& sensors, const sim::Truth& truth) {
   if (sensors.lidars.empty() || truth.lidars.empty()) return false;
   sim::LidarRecord& lidar = sensors.lidars.front();
@@ -137,11 +138,12 @@ bool unbent_sweeps(sim::Sensors& sensors, const sim::Truth& truth) {
     if (first == end) continue;
     const std::uint32_t last_ns = *std::max_element(lidar.offset_ns.begin() + static_cast<std::ptrdiff_t>(first),
                                                     lidar.offset_ns.begin() + static_cast<std::ptrdiff_t>(end));
+    const std::uint32_t span_ns = std::min(last_ns, kInstant_ns);
     const Eigen::Isometry3d T_LW = pose_of(track, lidar.sweep_start_ns[sweep] + last_ns).inverse();
     for (std::uint64_t i = first; i < end; ++i) {
       const Eigen::Isometry3d T_WL = pose_of(track, lidar.sweep_start_ns[sweep] + lidar.offset_ns[i]);
       lidar.position_L_m[i] = (T_LW * (T_WL * lidar.position_L_m[i].cast<double>())).cast<float>();
-      lidar.offset_ns[i] = last_ns;
+      lidar.offset_ns[i] = last_ns - span_ns + static_cast<std::uint32_t>(span_ns * (i - first) / (end - first));
     }
   }
   return !lidar.range_m.empty();
@@ -167,7 +169,7 @@ std::span<const TrueInput> true_inputs() {
       TrueInput{"mounting_exact", "true lever arms and orientations of IMUs and lidar", exact_mounting},
       TrueInput{"stamps_exact", "true times of the IMU samples", exact_stamps},
       TrueInput{"lidar_ranges_exact", "returns where the beams truly hit", exact_ranges},
-      TrueInput{"lidar_unbent", "sweeps as if cast in an instant, ranges as measured", unbent_sweeps},
+      TrueInput{"lidar_unbent", "sweeps as if cast within a microsecond, ranges as measured", unbent_sweeps},
       TrueInput{"all", "all of these at once", everything},
   };
   return kInputs;
