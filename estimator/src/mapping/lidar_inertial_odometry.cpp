@@ -121,6 +121,7 @@ Status LidarInertialOdometry::add_sweep(TimeNs lidar_start_ns, TimeNs lidar_end_
       select_points(points, bounds, my.calibration.T_IL,
                     seconds(start_ns - my.state.time_ns) + my.calibration.time_offset_s, my.points);
   report.points_used = counts.used;
+  my.unmatched = false;
   const Status status = mapping::check_selection(end_ns - start_ns, points, counts);
   const bool first = my.map.size() == 0;
   if (status.ok() && first && counts.used >= my.params.matches_min) {
@@ -133,7 +134,9 @@ Status LidarInertialOdometry::add_sweep(TimeNs lidar_start_ns, TimeNs lidar_end_
   if (report.conditioning == 0.0) {
     if (Status built = my.fall_back_on_inertia(end_ns); !built.ok()) return built;
   }
-  if (report.verdict != SweepVerdict::rejected) report.map_points_added = my.extend_map(counts.rings_differ);
+  // where the map had nothing to say the prior draws on: points that it leaves too uncertain stay out by themselves
+  if (report.verdict != SweepVerdict::rejected || my.unmatched)
+    report.map_points_added = my.extend_map(counts.rings_differ);
   my.finish(end_ns, report);
   return status;
 }

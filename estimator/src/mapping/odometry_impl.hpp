@@ -75,6 +75,7 @@ struct LidarInertialOdometry::Impl {
   /// Of the position, in directions that no surface held while the robot moved.
   Eigen::Matrix3d drift_covariance_m2 = Eigen::Matrix3d::Zero();
   int resting_sweeps = 0;  // in a row, by the IMU
+  bool unmatched = false;  ///< the present sweep has points, but the map too few of them
   int lost_sweeps = 0;
   int failed_searches = 0;  // sweeps in a row that had points and found no place
   mapping::InitialRest rest;

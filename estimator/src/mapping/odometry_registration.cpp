@@ -140,6 +140,7 @@ void LidarInertialOdometry::Impl::register_sweep(TimeNs end_ns, SweepReport& rep
   if (!status.ok()) return;
   if (result.verdict != RegistrationVerdict::converged) {
     const bool too_few = result.verdict == RegistrationVerdict::too_few;
+    unmatched = too_few && chosen.size() >= params.matches_min;
     const bool given_up = ++failed_searches >= params.lost_sweeps_max;
     if (chosen.size() >= params.matches_min && ((too_few && prior_trusted) || given_up)) {
       report.verdict = SweepVerdict::degenerate;

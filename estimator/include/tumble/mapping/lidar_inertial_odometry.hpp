@@ -21,7 +21,7 @@ enum class SweepVerdict : std::uint8_t {
   first,       ///< started the map
   registered,  ///< aligned with the map in all six directions
   degenerate,  ///< aligned where the surfaces allow it, prior elsewhere (everywhere, when conditioning is 0)
-  rejected,    ///< too few matches, or a correction beyond the bound: prior kept, map not extended
+  rejected,    ///< too few matches, or a correction beyond the bound: prior kept; the map grows where it had too few
 };
 const char* to_string(SweepVerdict verdict);
 
