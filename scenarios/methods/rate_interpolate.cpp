@@ -17,8 +17,7 @@ Method rate_interpolate() {
   info.kind = Kind::rate;
   info.doc =
       "A cubic over each clipped gap, value and slope continued from both sides and held beyond the rail. Made for "
-      "gaps "
-      "that are short beside the motion, without impacts in them.";
+      "gaps that are short beside the motion, without impacts in them.";
   info.source = "textbook: cubic interpolation";
   return make_method(std::move(info), run);
 }

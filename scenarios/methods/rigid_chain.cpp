@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/registry.hpp"
 #include "tumble/attitude/strapdown.hpp"
 
 namespace tumble::scenarios {
@@ -62,6 +63,14 @@ Status start_at_rest(std::span<const ImuSample> samples, StartAtRest& out) {
   }
   out.gyro_bias_rad_s = rate / count;
   return level(force / count, out.q_WI);
+}
+
+Status raw_start(const sim::Sensors& sensors, std::vector<ImuSample>& samples, std::vector<RateState>& rates,
+                 StartAtRest& start) {
+  Status status = bridge::primary_imu_samples(sensors, samples);
+  if (status.ok()) status = start_at_rest(samples, start);
+  if (status.ok()) status = raw_rates(sensors, samples, rates);
+  return status;
 }
 
 std::vector<MotionSample> imu_motion(std::span<const ImuSample> samples, std::span<const RateState> rates,

@@ -32,6 +32,10 @@ struct StartAtRest {
 /// `degenerate` where that is no attitude.
 Status start_at_rest(std::span<const ImuSample> samples, StartAtRest& out);
 
+/// What the methods with the gyro as it says begin with: samples of the first IMU, its rates, and the start.
+Status raw_start(const sim::Sensors& sensors, std::vector<ImuSample>& samples, std::vector<RateState>& rates,
+                 StartAtRest& start);
+
 /// Windows of the IMU that touch (from_ns, to_ns], rates and forces as given, less the bias; each split in `parts`,
 /// between whose means rate and force run linearly. The first window reaches back to from_ns at least.
 std::vector<MotionSample> imu_motion(std::span<const ImuSample> samples, std::span<const RateState> rates,

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
-#include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/rigid_chain.hpp"
 #include "scenarios/methods/slam_registry.hpp"
@@ -74,9 +73,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   Estimate estimate;
   std::vector<ImuSample> samples;
   StartAtRest start;
-  estimate.status = bridge::primary_imu_samples(sensors, samples);
-  if (estimate.status.ok()) estimate.status = start_at_rest(samples, start);
-  if (estimate.status.ok()) estimate.status = raw_rates(sensors, samples, estimate.rates);
+  estimate.status = raw_start(sensors, samples, estimate.rates, start);
   if (!estimate.status.ok()) return estimate;
   ConstantJerk model(samples, estimate.rates, start, sensors.gravity_m_s2);
   run_rigid_chain(sensors, samples, rigid_params(sensors, parameters), model, estimate);
@@ -91,8 +88,8 @@ Method slam_constant_jerk() {
   info.kind = Kind::slam;
   info.doc =
       "Clipped gyro and accelerometer integrated with constant jerk inside of each sweep, rigid registration, "
-      "geometric "
-      "observer for velocity and biases. Not modelled: keyframes and the plane-to-plane distance of the original.";
+      "geometric observer for velocity and biases. Not modelled: keyframes and the plane-to-plane distance of the "
+      "original.";
   info.source = "the family of DLIO, Chen et al., ICRA 2023";
   info.parameters = rigid_parameters();
   info.robots = {"rig"};

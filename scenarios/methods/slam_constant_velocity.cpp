@@ -69,9 +69,8 @@ Method slam_constant_velocity() {
   info.name = "constant_velocity";
   info.kind = Kind::slam;
   info.doc =
-      "Lidar alone: the last change of pose goes on, the sweep is deskewed with it once and registered point to plane "
-      "as a "
-      "rigid body. Not modelled: the adaptive threshold and the point-to-point distance of the original.";
+      "Lidar alone: the last change of pose goes on, the sweep is deskewed with it once and registered point to "
+      "plane as a rigid body. Not modelled: the adaptive threshold and the point-to-point distance of the original.";
   info.source = "the family of KISS-ICP, Vizzo et al., RA-L 2023";
   info.parameters = rigid_parameters();
   info.robots = {"rig"};

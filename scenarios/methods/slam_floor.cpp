@@ -82,8 +82,7 @@ Method slam_floor() {
   info.kind = Kind::slam;
   info.doc =
       "Registration with the true motion inside of each sweep and the true mounting: what is left is the "
-      "registration's own "
-      "error and the map's.";
+      "registration's own error and the map's.";
   info.source = "ours";
   info.parameters = rigid_parameters();
   info.needs_truth = true;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
-#include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/rigid_chain.hpp"
 #include "scenarios/methods/slam_registry.hpp"
@@ -71,9 +70,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   Estimate estimate;
   std::vector<ImuSample> samples;
   StartAtRest start;
-  estimate.status = bridge::primary_imu_samples(sensors, samples);
-  if (estimate.status.ok()) estimate.status = start_at_rest(samples, start);
-  if (estimate.status.ok()) estimate.status = raw_rates(sensors, samples, estimate.rates);
+  estimate.status = raw_start(sensors, samples, estimate.rates, start);
   if (!estimate.status.ok()) return estimate;
   HealthSwitch model(samples, estimate.rates, start, sensors.imus.front().stated_gyro_range_rad_s);
   run_rigid_chain(sensors, samples, rigid_params(sensors, parameters), model, estimate);
@@ -89,8 +86,7 @@ Method slam_health_switch() {
   info.kind = Kind::slam;
   info.doc =
       "Rotation from the gyro while a monitor finds it healthy, else the last rotation goes on; constant velocity; "
-      "rigid "
-      "registration. Not modelled: wheel and visual odometry, the other sources of the original's switch.";
+      "rigid registration. Not modelled: wheel and visual odometry, the other sources of the original's switch.";
   info.source = "the family of LOCUS, Palieri et al., RA-L 2021";
   info.parameters = rigid_parameters();
   info.robots = {"rig"};

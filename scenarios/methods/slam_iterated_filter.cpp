@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
-#include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/rigid_chain.hpp"
 #include "scenarios/methods/slam_registry.hpp"
@@ -67,9 +66,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   Estimate estimate;
   std::vector<ImuSample> samples;
   StartAtRest start;
-  estimate.status = bridge::primary_imu_samples(sensors, samples);
-  if (estimate.status.ok()) estimate.status = start_at_rest(samples, start);
-  if (estimate.status.ok()) estimate.status = raw_rates(sensors, samples, estimate.rates);
+  estimate.status = raw_start(sensors, samples, estimate.rates, start);
   if (!estimate.status.ok()) return estimate;
   IteratedFilter model(samples, estimate.rates, start, sensors.gravity_m_s2);
   run_rigid_chain(sensors, samples, rigid_params(sensors, parameters), model, estimate);
@@ -84,9 +81,8 @@ Method slam_iterated_filter() {
   info.kind = Kind::slam;
   info.doc =
       "Iterated error-state filter with the clipped gyro: back-propagation deskews to the sweep's end, all planes "
-      "update "
-      "position, attitude and velocity. Not modelled: biases after the rest at the start, gravity and mounting as "
-      "states.";
+      "update position, attitude and velocity. Not modelled: biases after the rest at the start, gravity and "
+      "mounting as states.";
   info.source = "the family of FAST-LIO2, Xu et al., T-RO 2022";
   info.parameters = rigid_parameters();
   info.robots = {"rig"};

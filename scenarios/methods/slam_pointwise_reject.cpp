@@ -104,8 +104,7 @@ Method slam_pointwise_reject() {
   info.kind = Kind::slam;
   info.doc =
       "A filter that takes each point at its own instant and each IMU reading as a measurement of a random motion, "
-      "clipped "
-      "axes left out. Not modelled: biases after the rest at the start, gravity and mounting as states.";
+      "clipped axes left out. Not modelled: biases after the rest at the start, gravity and mounting as states.";
   info.source = "the family of Point-LIO, He et al., Advanced Intelligent Systems 2023";
   info.parameters = parameters_of_the_filter();
   info.robots = {"rig"};

@@ -29,10 +29,9 @@ Method slam_seed() {
   info.name = "seed";
   info.kind = Kind::slam;
   info.doc =
-      "The published chain with the constants as launched: rates of saave, Madgwick's attitude, accelerometer odometry "
-      "fed "
-      "back by the registration, time weighting, trimmed point to plane; its errors are parameters. Map in memory "
-      "whole.";
+      "The published chain with the constants as launched: rates of saave, Madgwick's attitude, accelerometer "
+      "odometry fed back by the registration, time weighting, trimmed point to plane; its errors are parameters. Map "
+      "in memory whole.";
   info.source = "Deschenes et al., ICRA 2024, and the authors' launch files";
   info.parameters = parameters_with_saave();
   info.robots = {"rig"};
