@@ -139,11 +139,12 @@ bool unbent_sweeps(sim::Sensors& sensors, const sim::Truth& truth) {
     const std::uint32_t last_ns = *std::max_element(lidar.offset_ns.begin() + static_cast<std::ptrdiff_t>(first),
                                                     lidar.offset_ns.begin() + static_cast<std::ptrdiff_t>(end));
     const std::uint32_t span_ns = std::min(last_ns, kInstant_ns);
-    const Eigen::Isometry3d T_LW = pose_of(track, lidar.sweep_start_ns[sweep] + last_ns).inverse();
+    const std::int64_t start_ns = lidar.sweep_start_ns[sweep];
     for (std::uint64_t i = first; i < end; ++i) {
-      const Eigen::Isometry3d T_WL = pose_of(track, lidar.sweep_start_ns[sweep] + lidar.offset_ns[i]);
-      lidar.position_L_m[i] = (T_LW * (T_WL * lidar.position_L_m[i].cast<double>())).cast<float>();
+      const Eigen::Isometry3d T_WL = pose_of(track, start_ns + lidar.offset_ns[i]);
       lidar.offset_ns[i] = last_ns - span_ns + static_cast<std::uint32_t>(span_ns * (i - first) / (end - first));
+      const Eigen::Isometry3d T_LW = pose_of(track, start_ns + lidar.offset_ns[i]).inverse();
+      lidar.position_L_m[i] = (T_LW * (T_WL * lidar.position_L_m[i].cast<double>())).cast<float>();
     }
   }
   return !lidar.range_m.empty();
