@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <map>
 #include <span>
 #include <stdexcept>
@@ -19,6 +21,16 @@ struct Parameter {
   std::string_view unit;  ///< "1" when dimensionless
   std::string_view doc;   ///< meaning and source, one sentence
 };
+
+/// Two tables of parameters as one.
+template <std::size_t M, std::size_t N>
+constexpr std::array<Parameter, M + N> joined(const std::array<Parameter, M>& first,
+                                              const std::array<Parameter, N>& second) {
+  std::array<Parameter, M + N> all{};
+  for (std::size_t i = 0; i < M; ++i) all[i] = first[i];
+  for (std::size_t i = 0; i < N; ++i) all[M + i] = second[i];
+  return all;
+}
 
 /// Thrown for a value out of bounds, an unknown name or an unknown component; says place, value and bound.
 class InvalidSituation : public std::runtime_error {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <array>
-#include <cmath>
 
 #include "sim/motion/held.hpp"
+#include "sim/motion/impulse.hpp"
 #include "sim/motion/motion_type.hpp"
 #include "sim/motion/rigid_body.hpp"
 
@@ -10,19 +10,15 @@ namespace tumble::sim {
 
 namespace {
 
-constexpr std::array kParameters = {
+constexpr std::array kOwnParameters = {
     Parameter{"rest_s", 1.75, 0.5, 30.0, "s", "held still before the throw"},
     Parameter{"throw_s", 0.3, 0.05, 2.0, "s", "length of the swing; force and torque rise and fall as a raised cosine"},
     Parameter{"height_m", 1.0, 0.1, 10.0, "m", "of the lowest point of the held robot above the ground at the start"},
     Parameter{"yaw_rad", 0.0, -3.2, 3.2, "rad", "heading of the held robot; 0: its x axis points down the slope"},
-    Parameter{"direction_rad", 0.0, -3.2, 3.2, "rad", "direction of the throw about z; 0: down the slope"},
     Parameter{"velocity_m_s", 4.0, 0.0, 15.0, "m/s", "level velocity when it leaves the hand"},
     Parameter{"lift_m_s", 4.0, 0.0, 15.0, "m/s", "upward velocity when it leaves the hand"},
-    Parameter{"spin_forward_rad_s", 10.0, -30.0, 30.0, "rad/s",
-              "angular impulse over inertia about the axis of forward rolling"},
-    Parameter{"spin_side_rad_s", 0.0, -30.0, 30.0, "rad/s", "the same about the direction of the throw"},
-    Parameter{"spin_up_rad_s", 0.0, -30.0, 30.0, "rad/s", "the same about the vertical"},
 };
+constexpr std::array kParameters = joined(kOwnParameters, kImpulseParameters);
 
 /// Held by a stiff hand, swung, let go.
 class Throw : public Motion {
@@ -31,15 +27,8 @@ class Throw : public Motion {
       : hand_(world, Eigen::AngleAxisd(values.at("yaw_rad"), Eigen::Vector3d::UnitZ()) * Eigen::Quaterniond::Identity(),
               Eigen::Vector3d::Zero(), values.at("height_m")),
         rest_s_(values.at("rest_s")),
-        throw_s_(values.at("throw_s")) {
-    const double direction = values.at("direction_rad");
-    const Eigen::Vector3d forward(std::cos(direction), std::sin(direction), 0.0);
-    const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
-    impulse_.force_W_n = hand_.mass_kg() * (values.at("velocity_m_s") * forward + values.at("lift_m_s") * up);
-    const Eigen::Vector3d spin_W_rad_s = values.at("spin_forward_rad_s") * up.cross(forward) +
-                                         values.at("spin_side_rad_s") * forward + values.at("spin_up_rad_s") * up;
-    impulse_.torque_W_nm = hand_.inertia_W_kg_m2() * spin_W_rad_s;
-  }
+        throw_s_(values.at("throw_s")),
+        impulse_(whole_impulse(values, hand_.mass_kg(), hand_.inertia_W_kg_m2())) {}
 
   BodyState start() const override { return hand_.start(); }
 

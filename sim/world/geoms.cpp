@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace tumble::sim {
 
@@ -30,6 +31,27 @@ mjsGeom* add_surface(mjSpec* spec, engine::World& world, const std::string& name
   mjsGeom* geom = add_geom(spec, type, position_W_m, size_m, yaw_rad, colour);
   mjs_setName(geom->element, name.c_str());
   world.surfaces.push_back(name);
+  return geom;
+}
+
+mjsGeom* add_height_field(mjSpec* spec, engine::World& world, const std::string& name, const HeightGrid& grid,
+                          double base_m, double least_span_m, const Colour& colour) {
+  const auto [low, high] = std::minmax_element(grid.heights_m.begin(), grid.heights_m.end());
+  const double low_m = *low, span_m = std::max(*high - *low, least_span_m);
+  std::vector<float> unit(grid.heights_m.size());
+  std::transform(grid.heights_m.begin(), grid.heights_m.end(), unit.begin(),
+                 [&](double h) { return static_cast<float>((h - low_m) / span_m); });
+  mjsHField* field = mjs_addHField(spec);
+  mjs_setName(field->element, name.c_str());
+  field->nrow = grid.rows;
+  field->ncol = grid.columns;
+  field->size[0] = grid.half_x_m;
+  field->size[1] = grid.half_y_m;
+  field->size[2] = span_m;
+  field->size[3] = base_m;
+  mjs_setFloat(field->userdata, unit.data(), static_cast<int>(unit.size()));
+  mjsGeom* geom = add_surface(spec, world, name, mjGEOM_HFIELD, {0, 0, low_m}, {0, 0, 0}, 0.0, colour);
+  mjs_setString(geom->hfieldname, name.c_str());
   return geom;
 }
 

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kCell_m = 0.05;
 constexpr double kBase_m = 0.5;
+constexpr double kLeastSpan_m = 1e-6;
 
 struct Grid {
   int rows, columns;  ///< along y, along x
@@ -35,27 +36,6 @@ std::vector<double> unevenness_m(const Grid& grid, const Values& values, Stream&
   const double highest_m = *std::max_element(heights_m.begin(), heights_m.end());
   for (double& height_m : heights_m) height_m -= highest_m;
   return heights_m;
-}
-
-mjsGeom* add_field(mjSpec* spec, engine::World& world, const Grid& grid, const std::vector<double>& heights_m,
-                   const Colour& colour) {
-  const auto [low, high] = std::minmax_element(heights_m.begin(), heights_m.end());
-  const double low_m = *low, span_m = std::max(*high - *low, 1e-6);
-  std::vector<float> unit(heights_m.size());
-  std::transform(heights_m.begin(), heights_m.end(), unit.begin(),
-                 [&](double h) { return static_cast<float>((h - low_m) / span_m); });
-  mjsHField* field = mjs_addHField(spec);
-  mjs_setName(field->element, "floor");
-  field->nrow = grid.rows;
-  field->ncol = grid.columns;
-  field->size[0] = grid.half_x_m;
-  field->size[1] = grid.half_y_m;
-  field->size[2] = span_m;
-  field->size[3] = kBase_m;
-  mjs_setFloat(field->userdata, unit.data(), static_cast<int>(unit.size()));
-  mjsGeom* geom = add_surface(spec, world, "floor", mjGEOM_HFIELD, {0, 0, low_m}, {0, 0, 0}, 0.0, colour);
-  mjs_setString(geom->hfieldname, "floor");
-  return geom;
 }
 
 }  // namespace
@@ -89,7 +69,9 @@ bool add_ground(mjSpec* spec, engine::World& world, const Values& values, double
         heights_m[i++] += profile_m(grid.x_m(column), grid.y_m(row));
     }
   }
-  set_ground_contact(add_field(spec, world, grid, heights_m, colour), values);
+  mjsGeom* field = add_height_field(spec, world, "floor", {grid.rows, grid.columns, half_x_m, half_y_m, heights_m},
+                                    kBase_m, kLeastSpan_m, colour);
+  set_ground_contact(field, values);
   return true;
 }
 

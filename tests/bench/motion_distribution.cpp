@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -22,8 +24,20 @@ using tumble::scenarios::MotionSummary;
 struct Spread {
   std::vector<MotionSummary> draws;
   std::vector<double> cpu_s;
+  std::map<std::string, int> touching;  ///< draws that touch a kind of surface
   int rejected = 0;
 };
+
+/// Kinds of the surfaces that were touched: their names without the number.
+std::set<std::string> touched(const tumble::sim::Truth& truth) {
+  std::set<std::string> kinds;
+  for (const tumble::sim::ContactTruth& contact : truth.contacts) {
+    if (contact.surface_id < 0) continue;
+    const std::string& name = truth.surfaces[static_cast<std::size_t>(contact.surface_id)];
+    kinds.insert(name.substr(0, name.find('_')));
+  }
+  return kinds;
+}
 
 void print_quantiles(const char* what, std::vector<double> values) {
   std::printf("%-34s", what);
@@ -55,6 +69,7 @@ void print(const Spread& spread) {
   std::printf("clipped share of moving samples    %8.3g\n", clipped / std::max(1.0, samples));
   std::printf("two axes or more, of clipped       %8.3g\n", several / std::max(1.0, clipped));
   std::printf("accelerometer clipped, of moving   %8.3g\n", accel / std::max(1.0, samples));
+  for (const auto& [kind, draws] : spread.touching) std::printf("touch %-28s %8.3g\n", kind.c_str(), draws / count);
   std::printf("%-34s %8s %8s %8s %8s %8s %8s %8s\n", "", "min", "5 %", "25 %", "median", "75 %", "95 %", "max");
   print_quantiles("peak rate, rad/s", column(spread, [](const MotionSummary& m) { return m.peak_rate_rad_s; }));
   print_quantiles("peak acceleration, m/s^2", column(spread, [](const MotionSummary& m) { return m.peak_accel_m_s2; }));
@@ -92,6 +107,7 @@ int run(int count, char** words) {
       spread.cpu_s.push_back(scenarios::process_cpu_s() - start_s);
       const MotionSummary m = scenarios::summarise_motion(recording.sensors, recording.truth);
       spread.draws.push_back(m);
+      for (const std::string& kind : touched(recording.truth)) ++spread.touching[kind];
       print(seed, m);
     } catch (const sim::SimulationFailure& failure) {
       ++spread.rejected;

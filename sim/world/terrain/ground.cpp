@@ -17,21 +17,7 @@ double Ground::height_m(double x_m, double y_m) const {
 }
 
 void Ground::add_to(mjSpec* spec, engine::World& world, const std::string& name, const Colour& colour) const {
-  const auto [low, high] = std::minmax_element(heights_m_.begin(), heights_m_.end());
-  const double span_m = std::max(*high - *low, 1e-3);
-  std::vector<float> unit(heights_m_.size());
-  std::transform(heights_m_.begin(), heights_m_.end(), unit.begin(),
-                 [&, bottom_m = *low](double h) { return static_cast<float>((h - bottom_m) / span_m); });
-  mjsHField* field = mjs_addHField(spec);
-  mjs_setName(field->element, name.c_str());
-  field->nrow = side_;
-  field->ncol = side_;
-  field->size[0] = field->size[1] = half_extent_m_;
-  field->size[2] = span_m;
-  field->size[3] = 1.0;
-  mjs_setFloat(field->userdata, unit.data(), static_cast<int>(unit.size()));
-  mjsGeom* geom = add_surface(spec, world, name, mjGEOM_HFIELD, {0, 0, *low}, {0, 0, 0}, 0.0, colour);
-  mjs_setString(geom->hfieldname, name.c_str());
+  add_height_field(spec, world, name, {side_, side_, half_extent_m_, half_extent_m_, heights_m_}, 1.0, 1e-3, colour);
 }
 
 double fade(double distance_m, double inner_m, double outer_m) {
