@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+
+#include "sim/motion/motion_type.hpp"
+#include "sim/parameters.hpp"
+
+namespace tumble::sim {
+
+/// Where an impulse goes and how it spins what it hits, for every motion that begins with one.
+inline constexpr std::array kImpulseParameters = {
+    Parameter{"direction_rad", 0.0, -3.2, 3.2, "rad", "direction of the impulse about z; 0: down the slope"},
+    Parameter{"spin_forward_rad_s", 4.0, -30.0, 30.0, "rad/s",
+              "angular impulse over inertia about the axis of forward rolling"},
+    Parameter{"spin_side_rad_s", 0.0, -30.0, 30.0, "rad/s", "the same about the direction of the impulse"},
+    Parameter{"spin_up_rad_s", 0.0, -30.0, 30.0, "rad/s", "the same about the vertical"},
+};
+
+/// Linear and angular impulse, in world axes [N s, N m s], that gives a body at rest the level velocity `velocity_m_s`
+/// and the upward one `lift_m_s` of the values, and the three spins.
+Wrench whole_impulse(const Values& values, double mass_kg, const Eigen::Matrix3d& inertia_W_kg_m2);
+
+}  // namespace tumble::sim
