@@ -61,7 +61,8 @@ void cover(mjSpec* spec, engine::World& world, const Ground& ground, const Value
   stand.count = static_cast<int>(values.at("trunk_count"));
   stand.largest_radius_m = values.at("trunk_radius_m");
   stand.lane_half_width_m = values.at("clear_half_width_m");
-  stand.area = {-kReach_m, kReach_m, -kReach_m, kReach_m};
+  const double stand_half_width_m = values.at("trunk_half_width_m");
+  stand.area = {-kReach_m, kReach_m, -stand_half_width_m, stand_half_width_m};
   stand.clear = {world.start_W_m.head<2>(), 1.8};
   add_trunks(spec, world, plant_trunks(trunk_stream, stand, ground));
 

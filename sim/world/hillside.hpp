@@ -34,6 +34,7 @@ inline constexpr std::array kCoverParameters = {
     Parameter{"rock_half_width_m", 18.0, 1.0, 18.0, "m", "rocks lie within this distance of the fall line"},
     Parameter{"trunk_count", 40, 0, 300, "1", "tree trunks, upright cylinders"},
     Parameter{"trunk_radius_m", 0.15, 0.03, 0.6, "m", "largest radius of a trunk"},
+    Parameter{"trunk_half_width_m", 18.0, 2.0, 18.0, "m", "trunks stand within this distance of the fall line"},
     Parameter{"clear_half_width_m", 2.5, 0.0, 15.0, "m", "no trunk stands within this distance of the fall line"},
     Parameter{"buildings", 1, 0, 1, "1", "1: a building below and a wall beside the slope, out of reach"},
 };

@@ -99,7 +99,7 @@ TEST_P(RigScenario, ShowsWhatItIsAboutClipsTheGyroAndEndsAtRest) {
 // falls and flights: about half of what the gentlest draw of the scenario gives
 INSTANTIATE_TEST_SUITE_P(Catalogue, RigScenario,
                          testing::Values(Expected{"hill", "terrain", 0.7, 0.2}, Expected{"bare", "", 0.7, 0.2},
-                                         Expected{"scree", "rock_", 0.7, 0.2}, Expected{"forest", "terrain", 0.7, 0.2},
+                                         Expected{"scree", "rock_", 0.7, 0.2}, Expected{"forest", "trunk_", 0.7, 0.2},
                                          Expected{"stairs", "step_", 0.7, 0.2}, Expected{"cliff", "terrain", 0.7, 0.3},
                                          Expected{"throw", "terrain", 1.0, 0.9}),
                          [](const auto& test) { return std::string(test.param.scenario); });
