@@ -83,17 +83,15 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
 }  // namespace
 
 Method slam_constant_jerk() {
-  MethodInfo info;
-  info.name = "constant_jerk";
-  info.kind = Kind::slam;
-  info.doc =
-      "Clipped gyro and accelerometer integrated with constant jerk inside of each sweep, rigid registration, "
-      "geometric observer for velocity and biases. Not modelled: keyframes and the plane-to-plane distance of the "
-      "original.";
-  info.source = "the family of DLIO, Chen et al., ICRA 2023";
-  info.parameters = rigid_parameters();
-  info.robots = {"rig"};
-  return make_method(std::move(info), run);
+  return rig_slam(
+      {.name = "constant_jerk",
+       .doc =
+           "Clipped gyro and accelerometer integrated with constant jerk inside of each sweep, rigid registration, "
+           "geometric observer for velocity and biases. Not modelled: keyframes and the plane-to-plane distance of the "
+           "original.",
+       .source = "the family of DLIO, Chen et al., ICRA 2023",
+       .parameters = rigid_parameters()},
+      run);
 }
 
 }  // namespace tumble::scenarios

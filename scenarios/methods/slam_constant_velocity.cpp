@@ -65,16 +65,15 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
 }  // namespace
 
 Method slam_constant_velocity() {
-  MethodInfo info;
-  info.name = "constant_velocity";
-  info.kind = Kind::slam;
-  info.doc =
-      "Lidar alone: the last change of pose goes on, the sweep is deskewed with it once and registered point to "
-      "plane as a rigid body. Not modelled: the adaptive threshold and the point-to-point distance of the original.";
-  info.source = "the family of KISS-ICP, Vizzo et al., RA-L 2023";
-  info.parameters = rigid_parameters();
-  info.robots = {"rig"};
-  return make_method(std::move(info), run);
+  return rig_slam(
+      {.name = "constant_velocity",
+       .doc =
+           "Lidar alone: the last change of pose goes on, the sweep is deskewed with it once and registered point to "
+           "plane as a rigid body. Not modelled: the adaptive threshold and the point-to-point distance of the "
+           "original.",
+       .source = "the family of KISS-ICP, Vizzo et al., RA-L 2023",
+       .parameters = rigid_parameters()},
+      run);
 }
 
 }  // namespace tumble::scenarios

@@ -77,17 +77,14 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
 }  // namespace
 
 Method slam_floor() {
-  MethodInfo info;
-  info.name = "floor";
-  info.kind = Kind::slam;
-  info.doc =
-      "Registration with the true motion inside of each sweep and the true mounting: what is left is the "
-      "registration's own error and the map's.";
-  info.source = "ours";
-  info.parameters = rigid_parameters();
-  info.needs_truth = true;
-  info.robots = {"rig"};
-  return make_method(std::move(info), run);
+  return rig_slam(
+      {.name = "floor",
+       .doc = "Registration with the true motion inside of each sweep and the true mounting: what is left is the "
+              "registration's own error and the map's.",
+       .source = "ours",
+       .parameters = rigid_parameters(),
+       .needs_truth = true},
+      run);
 }
 
 }  // namespace tumble::scenarios

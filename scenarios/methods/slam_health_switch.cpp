@@ -81,16 +81,15 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
 }  // namespace
 
 Method slam_health_switch() {
-  MethodInfo info;
-  info.name = "health_switch";
-  info.kind = Kind::slam;
-  info.doc =
-      "Rotation from the gyro while a monitor finds it healthy, else the last rotation goes on; constant velocity; "
-      "rigid registration. Not modelled: wheel and visual odometry, the other sources of the original's switch.";
-  info.source = "the family of LOCUS, Palieri et al., RA-L 2021";
-  info.parameters = rigid_parameters();
-  info.robots = {"rig"};
-  return make_method(std::move(info), run);
+  return rig_slam(
+      {.name = "health_switch",
+       .doc =
+           "Rotation from the gyro while a monitor finds it healthy, else the last rotation goes on; constant "
+           "velocity; "
+           "rigid registration. Not modelled: wheel and visual odometry, the other sources of the original's switch.",
+       .source = "the family of LOCUS, Palieri et al., RA-L 2021",
+       .parameters = rigid_parameters()},
+      run);
 }
 
 }  // namespace tumble::scenarios

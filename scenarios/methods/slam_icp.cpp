@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/slam_registry.hpp"
 
 namespace tumble::scenarios {
 
@@ -12,10 +13,9 @@ std::span<const sim::Parameter> parameters_with_saave() {
 }
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  Estimate estimate;
   std::vector<ImuSample> samples;
-  estimate.status = bridge::primary_imu_samples(sensors, samples);
-  if (estimate.status.ok()) estimate.status = saave_rates(sensors, samples, parameters, estimate.rates);
+  Estimate estimate = begin_with_rates(
+      sensors, samples, [&](Estimate& out) { return saave_rates(sensors, samples, parameters, out.rates); });
   if (estimate.status.ok()) run_slam_chain(sensors, samples, parameters, {}, estimate);
   return estimate;
 }
@@ -23,14 +23,11 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
 }  // namespace
 
 Method slam_icp() {
-  MethodInfo info;
-  info.name = "icp";
-  info.kind = Kind::slam;
-  info.doc = "Sweeps deskewed with the rates of saave, registered point-to-plane to a voxel map.";
-  info.source = "after Deschenes et al., ICRA 2024, with a registration of our own";
-  info.parameters = parameters_with_saave();
-  info.robots = {"rig"};
-  return make_method(std::move(info), run);
+  return rig_slam({.name = "icp",
+                   .doc = "Sweeps deskewed with the rates of saave, registered point-to-plane to a voxel map.",
+                   .source = "after Deschenes et al., ICRA 2024, with a registration of our own",
+                   .parameters = parameters_with_saave()},
+                  run);
 }
 
 }  // namespace tumble::scenarios

@@ -2,16 +2,16 @@
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/seed_chain.hpp"
+#include "scenarios/methods/slam_registry.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  Estimate estimate;
   std::vector<ImuSample> samples;
-  estimate.status = bridge::primary_imu_samples(sensors, samples);
-  if (estimate.status.ok()) estimate.status = raw_rates(sensors, samples, estimate.rates);
+  Estimate estimate =
+      begin_with_rates(sensors, samples, [&](Estimate& out) { return raw_rates(sensors, samples, out.rates); });
   if (estimate.status.ok()) run_seed_chain(sensors, samples, parameters, estimate);
   return estimate;
 }
@@ -19,14 +19,11 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
 }  // namespace
 
 Method slam_icp_raw() {
-  MethodInfo info;
-  info.name = "icp_raw";
-  info.kind = Kind::slam;
-  info.doc = "The chain of seed with the gyro as it is, clipped where it clips.";
-  info.source = "baseline of Deschenes et al., ICRA 2024";
-  info.parameters = seed_parameters();
-  info.robots = {"rig"};
-  return make_method(std::move(info), run);
+  return rig_slam({.name = "icp_raw",
+                   .doc = "The chain of seed with the gyro as it is, clipped where it clips.",
+                   .source = "baseline of Deschenes et al., ICRA 2024",
+                   .parameters = seed_parameters()},
+                  run);
 }
 
 }  // namespace tumble::scenarios

@@ -76,17 +76,15 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
 }  // namespace
 
 Method slam_iterated_filter() {
-  MethodInfo info;
-  info.name = "iterated_filter";
-  info.kind = Kind::slam;
-  info.doc =
-      "Iterated error-state filter with the clipped gyro: back-propagation deskews to the sweep's end, all planes "
-      "update position, attitude and velocity. Not modelled: biases after the rest at the start, gravity and "
-      "mounting as states.";
-  info.source = "the family of FAST-LIO2, Xu et al., T-RO 2022";
-  info.parameters = rigid_parameters();
-  info.robots = {"rig"};
-  return make_method(std::move(info), run);
+  return rig_slam(
+      {.name = "iterated_filter",
+       .doc =
+           "Iterated error-state filter with the clipped gyro: back-propagation deskews to the sweep's end, all planes "
+           "update position, attitude and velocity. Not modelled: biases after the rest at the start, gravity and "
+           "mounting as states.",
+       .source = "the family of FAST-LIO2, Xu et al., T-RO 2022",
+       .parameters = rigid_parameters()},
+      run);
 }
 
 }  // namespace tumble::scenarios

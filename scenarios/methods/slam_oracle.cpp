@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/slam_registry.hpp"
 
 namespace tumble::scenarios {
 
@@ -12,10 +13,9 @@ std::span<const sim::Parameter> parameters_with_calibration() {
 }
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& oracle) {
-  Estimate estimate;
   std::vector<ImuSample> samples;
-  estimate.status = bridge::primary_imu_samples(sensors, samples);
-  if (estimate.status.ok()) estimate.status = unclipped_rates(sensors, *oracle.truth, estimate.rates);
+  Estimate estimate = begin_with_rates(
+      sensors, samples, [&](Estimate& out) { return unclipped_rates(sensors, *oracle.truth, out.rates); });
   if (estimate.status.ok()) run_slam_chain(sensors, samples, parameters, {.calibration = true}, estimate);
   return estimate;
 }
@@ -23,15 +23,13 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
 }  // namespace
 
 Method slam_oracle() {
-  MethodInfo info;
-  info.name = "oracle";
-  info.kind = Kind::slam;
-  info.doc = "The chain of tumble with the gyro's unclipped twin; the accelerometer stays as read. The bound.";
-  info.source = "ours";
-  info.parameters = parameters_with_calibration();
-  info.needs_truth = true;
-  info.robots = {"rig"};
-  return make_method(std::move(info), run);
+  return rig_slam(
+      {.name = "oracle",
+       .doc = "The chain of tumble with the gyro's unclipped twin; the accelerometer stays as read. The bound.",
+       .source = "ours",
+       .parameters = parameters_with_calibration(),
+       .needs_truth = true},
+      run);
 }
 
 }  // namespace tumble::scenarios

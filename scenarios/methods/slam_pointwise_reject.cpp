@@ -99,16 +99,15 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
 }  // namespace
 
 Method slam_pointwise_reject() {
-  MethodInfo info;
-  info.name = "pointwise_reject";
-  info.kind = Kind::slam;
-  info.doc =
-      "A filter that takes each point at its own instant and each IMU reading as a measurement of a random motion, "
-      "clipped axes left out. Not modelled: biases after the rest at the start, gravity and mounting as states.";
-  info.source = "the family of Point-LIO, He et al., Advanced Intelligent Systems 2023";
-  info.parameters = parameters_of_the_filter();
-  info.robots = {"rig"};
-  return make_method(std::move(info), run);
+  return rig_slam(
+      {.name = "pointwise_reject",
+       .doc =
+           "A filter that takes each point at its own instant and each IMU reading as a measurement of a random "
+           "motion, "
+           "clipped axes left out. Not modelled: biases after the rest at the start, gravity and mounting as states.",
+       .source = "the family of Point-LIO, He et al., Advanced Intelligent Systems 2023",
+       .parameters = parameters_of_the_filter()},
+      run);
 }
 
 }  // namespace tumble::scenarios

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "scenarios/methods/method.hpp"
+#include "scenarios/methods/registry.hpp"
 #include "tumble/common/imu.hpp"
 
 /// Slam methods beside those of registry.hpp, and what several of them share.
@@ -17,6 +20,18 @@ Method slam_iterated_filter();
 Method slam_pointwise_reject();
 Method slam_health_switch();
 Method slam_floor();
+
+/// What tells one slam method of the rig from another.
+struct RigSlam {
+  std::string name, doc, source;
+  std::span<const sim::Parameter> parameters;
+  bool needs_truth = false;
+};
+Method rig_slam(RigSlam what, RunCore run);
+
+/// An estimate that holds what `rates` made of the primary IMU's `samples`, or the trouble on the way.
+Estimate begin_with_rates(const sim::Sensors& sensors, std::vector<ImuSample>& samples,
+                          const std::function<Status(Estimate&)>& rates);
 
 /// The gyro as it is, with the axes named that are at their rail. One RateState per sample.
 Status railed_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<RateState>& out);

@@ -14,10 +14,9 @@ std::span<const sim::Parameter> parameters_with_saave() {
 }
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  Estimate estimate;
   std::vector<ImuSample> samples;
-  estimate.status = bridge::primary_imu_samples(sensors, samples);
-  if (estimate.status.ok()) estimate.status = saave_rates(sensors, samples, parameters, estimate.rates);
+  Estimate estimate = begin_with_rates(
+      sensors, samples, [&](Estimate& out) { return saave_rates(sensors, samples, parameters, out.rates); });
   if (estimate.status.ok()) run_seed_chain(sensors, samples, parameters, estimate);
   return estimate;
 }
@@ -25,17 +24,15 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
 }  // namespace
 
 Method slam_seed() {
-  MethodInfo info;
-  info.name = "seed";
-  info.kind = Kind::slam;
-  info.doc =
-      "The published chain with the constants as launched: rates of saave, Madgwick's attitude, accelerometer "
-      "odometry fed back by the registration, time weighting, trimmed point to plane; its errors are parameters. Map "
-      "in memory whole.";
-  info.source = "Deschenes et al., ICRA 2024, and the authors' launch files";
-  info.parameters = parameters_with_saave();
-  info.robots = {"rig"};
-  return make_method(std::move(info), run);
+  return rig_slam(
+      {.name = "seed",
+       .doc = "The published chain with the constants as launched: rates of saave, Madgwick's attitude, accelerometer "
+              "odometry fed back by the registration, time weighting, trimmed point to plane; its errors are "
+              "parameters. Map "
+              "in memory whole.",
+       .source = "Deschenes et al., ICRA 2024, and the authors' launch files",
+       .parameters = parameters_with_saave()},
+      run);
 }
 
 }  // namespace tumble::scenarios

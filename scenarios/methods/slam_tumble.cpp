@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/slam_registry.hpp"
 
 namespace tumble::scenarios {
 
@@ -13,12 +14,10 @@ std::span<const sim::Parameter> parameters_with_rates() {
 }
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  Estimate estimate;
   std::vector<ImuSample> samples;
-  estimate.status = bridge::primary_imu_samples(sensors, samples);
-  if (estimate.status.ok()) {
-    estimate.status = tumble_rates(sensors, samples, parameters, estimate.rates, estimate.health);
-  }
+  Estimate estimate = begin_with_rates(sensors, samples, [&](Estimate& out) {
+    return tumble_rates(sensors, samples, parameters, out.rates, out.health);
+  });
   if (estimate.status.ok())
     run_slam_chain(sensors, samples, parameters, {.excess_rate = true, .calibration = true}, estimate);
   return estimate;
@@ -27,15 +26,13 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
 }  // namespace
 
 Method slam_tumble() {
-  MethodInfo info;
-  info.name = "tumble";
-  info.kind = Kind::slam;
-  info.doc =
-      "The chain of icp with the rates of rate/tumble, the excess of clipped axes estimated in the registration.";
-  info.source = "ours";
-  info.parameters = parameters_with_rates();
-  info.robots = {"rig"};
-  return make_method(std::move(info), run);
+  return rig_slam(
+      {.name = "tumble",
+       .doc =
+           "The chain of icp with the rates of rate/tumble, the excess of clipped axes estimated in the registration.",
+       .source = "ours",
+       .parameters = parameters_with_rates()},
+      run);
 }
 
 }  // namespace tumble::scenarios

@@ -15,10 +15,9 @@ std::span<const sim::Parameter> parameters_with_excess() {
 }
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  Estimate estimate;
   std::vector<ImuSample> samples;
-  estimate.status = bridge::primary_imu_samples(sensors, samples);
-  if (estimate.status.ok()) estimate.status = railed_rates(sensors, samples, estimate.rates);
+  Estimate estimate =
+      begin_with_rates(sensors, samples, [&](Estimate& out) { return railed_rates(sensors, samples, out.rates); });
   if (estimate.status.ok())
     run_slam_chain(sensors, samples, parameters, {.excess_rate = true, .calibration = true}, estimate);
   return estimate;
@@ -44,14 +43,13 @@ Status railed_rates(const sim::Sensors& sensors, std::span<const ImuSample> samp
 }
 
 Method slam_tumble_gyro_only() {
-  MethodInfo info;
-  info.name = "tumble_gyro_only";
-  info.kind = Kind::slam;
-  info.doc = "The chain of tumble with the clipped gyro: the excess of clipped axes comes from the registration alone.";
-  info.source = "ours";
-  info.parameters = parameters_with_excess();
-  info.robots = {"rig"};
-  return make_method(std::move(info), run);
+  return rig_slam(
+      {.name = "tumble_gyro_only",
+       .doc =
+           "The chain of tumble with the clipped gyro: the excess of clipped axes comes from the registration alone.",
+       .source = "ours",
+       .parameters = parameters_with_excess()},
+      run);
 }
 
 }  // namespace tumble::scenarios

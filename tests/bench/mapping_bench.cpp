@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One sweep of 28 800 points through the odometry on one core, everything included, in the midst of a tumble at 15
-// rad/s; and its parts. The odometry is copied from a saved state before each run, outside of the time taken.
+// Sweeps of 28 800 points through the odometry on one core, everything included, in a tumble at 15 rad/s: one of them
+// again and again (the odometry is copied from a saved state before each run, outside of the time taken), all of them
+// with median and worst; the parts; and ten minutes of small sweeps, whose cost and memory must not grow.
 #include <benchmark/benchmark.h>
 
-#include <memory>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <ctime>
 #include <vector>
 
+#include "tests/estimator/mapping/endless_corridor.hpp"
 #include "tests/estimator/mapping/synthetic_room.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/mapping/plane_fit.hpp"
@@ -63,6 +68,103 @@ void sweep_of_28800_points(benchmark::State& state) {
   state.counters["added"] = static_cast<double>(report.map_points_added);
 }
 BENCHMARK(sweep_of_28800_points)->Arg(25)->Arg(50)->Unit(benchmark::kMillisecond)->ArgName("voxel_cm");
+
+/// Of the processor, which a busy machine does not lengthen.
+double since_ms(std::clock_t start) {
+  return 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+}
+
+/// Median of all, for a copy that it may reorder.
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// The method's own setting: excess rates of clipped axes and the calibration are unknowns too.
+LidarInertialOdometry::Params all_unknowns() {
+  LidarInertialOdometry::Params params;
+  params.estimate_excess_rate = true;
+  params.mount_sigma_rad = 0.01;
+  params.mount_sigma_m = 0.006;
+  params.time_offset_sigma_s = 0.003;
+  params.gravity_sigma_m_s2 = 0.03;
+  return params;
+}
+
+tumble::RateState on_the_rail(const tumble::ImuSample& sample) {
+  constexpr double kRail_rad_s = 10.5;
+  tumble::RateState rate = tumble::test::believe(sample);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::abs(rate.w_WI_I_rad_s[axis]) >= kRail_rad_s) rate.clipped_axes |= static_cast<std::uint8_t>(1 << axis);
+  }
+  return rate;
+}
+
+void tumble_of_28800_points_a_sweep(benchmark::State& state) {
+  constexpr int kCount = 30;
+  const LidarInertialOdometry::Params params = state.range(0) != 0 ? all_unknowns() : LidarInertialOdometry::Params{};
+  const tumble::test::Motion motion;
+  const tumble::test::Room room = tumble::test::Room::box_with_pillars();
+  const std::vector<tumble::ImuSample> imu = tumble::test::make_imu(motion, 0.1 * kCount);
+  std::vector<std::vector<tumble::LidarPoint>> sweeps;
+  for (int i = 0; i < kCount; ++i) {
+    sweeps.push_back(tumble::test::make_sweep(room, motion, params.T_IL, i, 0.02, kColumns));
+  }
+  std::vector<double> times_ms;
+  for (auto _ : state) {
+    LidarInertialOdometry odometry(params);
+    for (int i = 0; i < kCount; ++i) {
+      LidarInertialOdometry::SweepReport report;
+      const std::clock_t start = std::clock();
+      for (int k = 10 * i; k < 10 * (i + 1); ++k) {
+        (void)odometry.add_imu(imu[static_cast<std::size_t>(k)], on_the_rail(imu[static_cast<std::size_t>(k)]));
+      }
+      const tumble::Status status = odometry.add_sweep(i * tumble::test::kSweep_ns, (i + 1) * tumble::test::kSweep_ns,
+                                                       sweeps[static_cast<std::size_t>(i)], report);
+      times_ms.push_back(since_ms(start));
+      if (!status.ok() || report.verdict == tumble::SweepVerdict::rejected) {
+        state.SkipWithError("a sweep was not registered");
+        return;
+      }
+    }
+  }
+  state.counters["median_ms"] = median(times_ms);
+  state.counters["worst_ms"] = *std::max_element(times_ms.begin(), times_ms.end());
+}
+BENCHMARK(tumble_of_28800_points_a_sweep)->Arg(0)->Arg(1)->Iterations(2)->Unit(benchmark::kMillisecond)->ArgName("all");
+
+void ten_minutes_of_small_sweeps(benchmark::State& state) {
+  constexpr int kCount = 6000, kMinute = 600, kSettled = 500;
+  for (auto _ : state) {
+    LidarInertialOdometry odometry(tumble::test::corridor_params());
+    tumble::test::EndlessCorridor corridor(400);
+    std::vector<double> first_ms, last_ms;
+    std::size_t first_bytes = 0, last_bytes = 0;
+    for (int i = 0; i < kCount; ++i) {
+      for (const tumble::ImuSample& sample : corridor.advance()) {
+        (void)odometry.add_imu(sample, tumble::test::believe(sample));
+      }
+      const std::vector<tumble::LidarPoint> points = corridor.points();
+      LidarInertialOdometry::SweepReport report;
+      const std::clock_t start = std::clock();
+      (void)odometry.add_sweep(corridor.start_ns(), corridor.end_ns(), points, report);
+      const double taken_ms = since_ms(start);
+      if (i >= kSettled && i < kSettled + kMinute) {
+        first_ms.push_back(taken_ms);
+        first_bytes = std::max(first_bytes, odometry.map_bytes());
+      } else if (i >= kCount - kMinute) {
+        last_ms.push_back(taken_ms);
+        last_bytes = std::max(last_bytes, odometry.map_bytes());
+      }
+    }
+    state.counters["first_minute_ms"] = median(first_ms);
+    state.counters["last_minute_ms"] = median(last_ms);
+    state.counters["first_minute_bytes"] = static_cast<double>(first_bytes);
+    state.counters["last_minute_bytes"] = static_cast<double>(last_bytes);
+  }
+}
+BENCHMARK(ten_minutes_of_small_sweeps)->Iterations(1)->Unit(benchmark::kMillisecond);
 
 void nearest_neighbours_and_plane(benchmark::State& state) {
   tumble::VoxelMap map({0.5, 0.1});

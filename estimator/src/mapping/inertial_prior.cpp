@@ -34,7 +34,7 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
   const TimeNs start_ns = trajectory.start_ns();
   std::size_t hint = 0;
   Eigen::Matrix3d turned = Eigen::Matrix3d::Zero();
-  double pushed_m_s = 0.0, gap_m_s = 0.0, gap_m = 0.0;
+  double turned_rad = 0.0, pushed_m_s = 0.0, gap_m_s = 0.0, gap_m = 0.0;
   for (const MotionSample& sample : samples) {
     const double from = std::max(seconds(sample.from_ns - start_ns), 0.0);
     const double to = std::min(seconds(sample.time_ns - start_ns), trajectory.duration_s());
@@ -50,6 +50,7 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
     } else {
       pushed_m_s += (to - from) * sample.f_I_m_s2.norm();
     }
+    turned_rad += (to - from) * sample.w_WI_I_rad_s.norm();
     turned += (to - from) * R * variance.asDiagonal() * R.transpose();
   }
   noise.diagonal().segment<3>(6).setConstant(std::pow(params.prior_sigma_m_s * span, 2) +
@@ -61,6 +62,7 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
   };
   if (std::all_of(samples.begin(), samples.end(), rests)) return kRestShare * kRestShare * noise;
   noise.block<3, 3>(3, 3) += trajectory.duration_s() * turned;
+  noise.diagonal().segment<3>(3).array() += std::pow(params.turn_sigma_share * turned_rad, 2);
   return noise;
 }
 

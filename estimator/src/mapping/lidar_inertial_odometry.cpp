@@ -53,9 +53,9 @@ void LidarInertialOdometry::Impl::finish(TimeNs end_ns, SweepReport& report) {
   report.pose = state.pose();
   report.pose.covariance = report.trajectory.back().covariance;
 
-  excess_axes_at_end = 0;
+  excess_at_end_rad_s.setZero();
+  if (aligned) excess_at_end_rad_s = trajectory.excess_share_at_end().cwiseProduct(result.excess_rad_s);
   const auto after = std::find_if(samples.begin(), samples.end(), [&](const auto& s) { return s.time_ns > end_ns; });
-  if (aligned && after != samples.begin()) excess_axes_at_end = std::prev(after)->clipped_axes & kAllAxes;
   samples.erase(samples.begin(), after);
   forget_far_map();
 }
@@ -114,7 +114,7 @@ Status LidarInertialOdometry::add_sweep(TimeNs lidar_start_ns, TimeNs lidar_end_
   if (Status status = my.trajectory.build(my.state, my.samples, end_ns, my.calibration.gravity_W_m_s2); !status.ok())
     return status;
   my.started = true;
-  my.resting_sweeps = my.imu_rests(end_ns) ? my.resting_sweeps + 1 : 0;
+  my.resting_sweeps = my.imu_rests(end_ns) && !my.trajectory_speeds_up() ? my.resting_sweeps + 1 : 0;
 
   const PointBounds bounds{my.params.range_min_m, my.params.range_max_m, my.params.own_body_L};
   const PointCounts counts =

@@ -57,6 +57,7 @@ struct LidarInertialOdometry::Impl {
   void register_sweep(TimeNs end_ns, SweepReport& report);
   Status fall_back_on_inertia(TimeNs end_ns);
   bool imu_rests(TimeNs end_ns) const;
+  bool trajectory_speeds_up() const;
 
   // odometry_map.cpp
   std::size_t extend_map(bool rings_differ);
@@ -79,9 +80,8 @@ struct LidarInertialOdometry::Impl {
   int lost_sweeps = 0;
   int failed_searches = 0;  // sweeps in a row that had points and found no place
   mapping::InitialRest rest;
-  std::vector<MotionSample> samples;  // from the window that holds state.time_ns on
-  Eigen::Vector3d excess_rad_s = Eigen::Vector3d::Zero();
-  std::uint8_t excess_axes_at_end = 0;
+  std::vector<MotionSample> samples;                              // from the window that holds state.time_ns on
+  Eigen::Vector3d excess_at_end_rad_s = Eigen::Vector3d::Zero();  // goes on where the next sweep begins on the rail
   VoxelMap map;
   std::vector<Eigen::Vector3f> seen_from_W_m;  // per sweep that gave points to the map
   Eigen::Vector3f pruned_at_W_m = Eigen::Vector3f::Zero();

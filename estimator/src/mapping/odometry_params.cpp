@@ -17,6 +17,7 @@ void check_params(const LidarInertialOdometry::Params& params) {
   require_within("prior_sigma_m", params.prior_sigma_m, 1e-9, 1e3);
   require_within("prior_sigma_rad", params.prior_sigma_rad, 1e-9, 1e3);
   require_within("prior_sigma_m_s", params.prior_sigma_m_s, 1e-9, 1e3);
+  require_within("turn_sigma_share", params.turn_sigma_share, 0.0, 1.0);
   require_within("force_sigma_share", params.force_sigma_share, 0.0, 1.0);
   require_within("trusted_prior_m", params.trusted_prior_m, 0.0, 1e3);
   require_within("trusted_prior_rad", params.trusted_prior_rad, 0.0, 1e3);

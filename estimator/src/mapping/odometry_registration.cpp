@@ -48,7 +48,10 @@ Registration::Prior LidarInertialOdometry::Impl::prior() const {
     mapping::hold_still(prior.state);
     prior.motion_calibration.bottomRows<3>().setZero();
   }
-  if (resting_sweeps >= kRestSweeps && prior.state.v_WI_m_s.norm() < kCreepSpeed_m_s) {
+  // surfaces that hold the sensor tell a slow drive from a rest by themselves; `result` is still the last sweep's
+  const bool held =
+      result.verdict == RegistrationVerdict::converged && result.weakest_sigma_m <= params.degenerate_sigma_m;
+  if (resting_sweeps >= kRestSweeps && !held && prior.state.v_WI_m_s.norm() < kCreepSpeed_m_s) {
     mapping::hold_still(prior.state);
     prior.state.covariance.diagonal().tail<3>().setConstant(kRestSpeed_m_s * kRestSpeed_m_s);
     prior.motion_calibration.bottomRows<3>().setZero();
@@ -62,7 +65,7 @@ Registration::Prior LidarInertialOdometry::Impl::prior() const {
       if (sample.clipped_axes >> axis & 1) sigma = std::max(sigma, sample.rate_sigma_rad_s[axis]);
     }
     prior.excess_sigma_rad_s[axis] = sigma;
-    if (excess_axes_at_end >> axis & 1) prior.excess_rad_s[axis] = excess_rad_s[axis];
+    prior.excess_rad_s[axis] = excess_at_end_rad_s[axis];
   }
   prior.excess_start_rad_s = prior.excess_rad_s;
   return prior;
@@ -154,7 +157,6 @@ void LidarInertialOdometry::Impl::register_sweep(TimeNs end_ns, SweepReport& rep
   report.verdict =
       report.weakest_sigma_m > params.degenerate_sigma_m ? SweepVerdict::degenerate : SweepVerdict::registered;
   report.excess_rate_rad_s = result.excess_rad_s;
-  excess_rad_s = result.excess_rad_s;
 }
 
 /// Whether the IMU has nothing to say but gravity over the present stretch.
@@ -165,6 +167,12 @@ bool LidarInertialOdometry::Impl::imu_rests(TimeNs end_ns) const {
             std::abs(sample.f_I_m_s2.norm() - params.gravity_m_s2) <= params.rest_force_m_s2);
   };
   return std::all_of(samples.begin(), samples.end(), rests);
+}
+
+/// Whether the specific force is more than gravity over the present stretch, by the attitude as it is believed.
+bool LidarInertialOdometry::Impl::trajectory_speeds_up() const {
+  const Eigen::Vector3d gained_m_s = trajectory.state(trajectory.duration_s()).v_WI_m_s - state.v_WI_m_s;
+  return gained_m_s.norm() > params.rest_force_m_s2 * trajectory.duration_s();
 }
 
 /// The inertial prior stands for the sweep; an IMU at rest stops the drift of its velocity.

@@ -9,12 +9,26 @@ namespace tumble {
 
 namespace {
 
-Eigen::Vector3d signs_of_clipped(const MotionSample& sample) {
-  Eigen::Vector3d sign = Eigen::Vector3d::Zero();
-  for (int axis = 0; axis < 3; ++axis) {
-    if (sample.clipped_axes >> axis & 1) sign[axis] = sample.w_WI_I_rad_s[axis] < 0.0 ? -1.0 : 1.0;
+/// Largest standard deviation of each axis among the samples in which it was clipped.
+Eigen::Vector3d least_known(std::span<const MotionSample> samples) {
+  Eigen::Vector3d sigma = Eigen::Vector3d::Zero();
+  for (const MotionSample& sample : samples) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (sample.clipped_axes >> axis & 1) sigma[axis] = std::max(sigma[axis], sample.rate_sigma_rad_s[axis]);
+    }
   }
-  return sign;
+  return sigma;
+}
+
+/// What an excess rate of one does to a sample: signed, in proportion to how little is known of the sample.
+Eigen::Vector3d signed_shares(const MotionSample& sample, const Eigen::Vector3d& least_known_rad_s) {
+  Eigen::Vector3d share = Eigen::Vector3d::Zero();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(sample.clipped_axes >> axis & 1)) continue;
+    share[axis] = least_known_rad_s[axis] > 0.0 ? sample.rate_sigma_rad_s[axis] / least_known_rad_s[axis] : 1.0;
+    if (sample.w_WI_I_rad_s[axis] < 0.0) share[axis] = -share[axis];
+  }
+  return share;
 }
 
 }  // namespace
@@ -44,9 +58,10 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     return {Trouble::gap, "imu window start", double(samples.front().from_ns), double(start.time_ns)};
   }
 
+  const Eigen::Vector3d sigma = least_known(samples);
   Interval next{};
   next.q_WI = start.q_WI;
-  next.thrust_v = next.thrust_p = next.w_I = next.a_W = next.excess_sign = Eigen::Vector3d::Zero();
+  next.thrust_v = next.thrust_p = next.w_I = next.a_W = next.excess_share = Eigen::Vector3d::Zero();
   next.excess_attitude = next.excess_v = next.excess_p = Eigen::Matrix3d::Zero();
   for (const MotionSample& sample : samples) {
     const TimeNs from = std::max(sample.from_ns, start.time_ns);
@@ -54,13 +69,13 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     // a stretch of no length still gets its one interval, so that it can be asked
     if (to < from || (to == from && !(end_ns == start.time_ns && intervals_.empty()))) continue;
     const double dt = seconds(to - from);
-    const Eigen::Vector3d sign = signs_of_clipped(sample);
+    const Eigen::Vector3d share = signed_shares(sample, sigma);
     clipped_axes_ |= sample.clipped_axes & 7;
     Interval& now = intervals_.emplace_back(next);
     now.start_s = seconds(from - start.time_ns);
     now.length_s = dt;
-    now.w_I = sample.w_WI_I_rad_s + sign.cwiseProduct(excess_rad_s);
-    now.excess_sign = sign;
+    now.w_I = sample.w_WI_I_rad_s + share.cwiseProduct(excess_rad_s);
+    now.excess_share = share;
     const Eigen::Matrix3d R = now.q_WI.toRotationMatrix();
     const Eigen::Matrix3d mean_rotation = R * so3::left_jacobian(now.w_I * dt);
     now.a_W = sample.bridges_gap ? Eigen::Vector3d(-gravity_W_m_s2) : Eigen::Vector3d(mean_rotation * sample.f_I_m_s2);
@@ -68,7 +83,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     next.q_WI = (now.q_WI * so3::exp(now.w_I * dt)).normalized();
     next.thrust_v = now.thrust_v + now.a_W * dt;
     next.thrust_p = now.thrust_p + now.thrust_v * dt + now.a_W * (0.5 * dt * dt);
-    next.excess_attitude = now.excess_attitude + mean_rotation * sign.asDiagonal() * dt;
+    next.excess_attitude = now.excess_attitude + mean_rotation * share.asDiagonal() * dt;
     // the force turns with the mean attitude error of the interval
     const Eigen::Matrix3d turn = -so3::hat(now.a_W) * (0.5 * (now.excess_attitude + next.excess_attitude));
     next.excess_v = now.excess_v + turn * dt;
@@ -106,7 +121,7 @@ SweepTrajectory::ExcessDerivative SweepTrajectory::excess_derivative(double t_s,
   const Interval& now = interval_at(t, hint);
   const double s = t - now.start_s;
   const Eigen::Matrix3d gained =
-      now.q_WI.toRotationMatrix() * so3::left_jacobian(now.w_I * s) * now.excess_sign.asDiagonal() * s;
+      now.q_WI.toRotationMatrix() * so3::left_jacobian(now.w_I * s) * now.excess_share.asDiagonal() * s;
   const Eigen::Matrix3d turn = -so3::hat(now.a_W) * (now.excess_attitude + 0.5 * gained);
   return {now.excess_attitude + gained, now.excess_p + s * now.excess_v + turn * (0.5 * s * s)};
 }

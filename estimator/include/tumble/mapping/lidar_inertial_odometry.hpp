@@ -72,9 +72,12 @@ class LidarInertialOdometry {
     double correction_max_rad = 1.1;       ///< a larger correction of the prior is rejected
     /// What the inertial side may be wrong by after 0.1 s, beside what RateState reports: standard deviations that grow
     /// in proportion to time. Loose in doubt; tight holds a world with few features. Bounds (0, 1e3].
-    double prior_sigma_m = 0.01;
-    double prior_sigma_rad = 0.01;
-    double prior_sigma_m_s = 0.03;
+    double prior_sigma_m = 0.003;
+    double prior_sigma_rad = 0.002;
+    double prior_sigma_m_s = 0.01;
+    /// Standard deviation of the angle turned as a share of it: scale, misalignment, and a rate that changes within a
+    /// sample; bound [0, 1].
+    double turn_sigma_share = 0.001;
     /// Standard deviation of the specific force as a share of its magnitude: velocity is uncertain by this times the
     /// integral of the force, which counts at impacts; bound [0, 1].
     double force_sigma_share = 0.03;
@@ -82,9 +85,10 @@ class LidarInertialOdometry {
     double clipped_sigma_rad_s = 3.0;
     double rate_sigma_max_rad_s = 5.0;  ///< what RateState reports is believed up to this; bound [0, 100]
     /// Estimate the excess of the rate on clipped axes in the registration, three unknowns a sweep that act on clipped
-    /// samples only; their prior is the rate's reported uncertainty, at least excess_sigma_min_rad_s; bound (0, 100].
+    /// samples only, there in proportion to the rate's reported uncertainty; their prior is the rate's reported
+    /// uncertainty, at least excess_sigma_min_rad_s; bound (0, 100].
     bool estimate_excess_rate = false;
-    double excess_sigma_min_rad_s = 0.3;
+    double excess_sigma_min_rad_s = 1.0;
     /// A point's uncertainty grows over the sweep by this and weighs it down (the published time weighting); bound [0,
     /// 1e3].
     double skew_sigma_m_s = 0.25;

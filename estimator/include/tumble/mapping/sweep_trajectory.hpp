@@ -44,8 +44,10 @@ struct MotionState {
 /// p(t) = p_0 + v_0 t + g t^2 / 2 + S(t) with S the double integral of the specific force in W, whose mean over each
 /// sample is R_k J_l(w_k dt) f_k (exact for a force constant in body axes, as the centripetal force of a spin is).
 ///
-/// The excess rate e is a correction of the clipped axes, constant over the stretch: the rate used is w_j + s_j e_j
-/// where axis j was clipped with sign s_j. Not modelled: sculling within a sample, the earth's rotation.
+/// The excess rate e is a correction of the clipped axes: the rate used is w_j + s_j e_j where axis j was clipped, with
+/// the sign of w_j and the magnitude sigma_j / (largest sigma_j among the stretch's clipped samples), so that what is
+/// known well moves little; 1 where nothing is known of any. Not modelled: sculling within a sample, the earth's
+/// rotation.
 class SweepTrajectory {
  public:
   /// What a lidar point needs of its instant: attitude, and S(t) of the text above.
@@ -103,6 +105,9 @@ class SweepTrajectory {
   };
   Transition transition(double t_s) const;
 
+  /// Magnitude of the excess rate's share in the last interval, 0 on axes that were not clipped there.
+  Eigen::Vector3d excess_share_at_end() const { return intervals_.back().excess_share.cwiseAbs(); }
+
   /// Bit j set: axis j was clipped somewhere in the stretch.
   std::uint8_t clipped_axes() const { return clipped_axes_; }
 
@@ -112,7 +117,7 @@ class SweepTrajectory {
     Eigen::Quaterniond q_WI;
     Eigen::Vector3d w_I, a_W;                             // rate in body axes; mean specific force in W
     Eigen::Vector3d thrust_v, thrust_p;                   // integrals of the specific force up to start_s
-    Eigen::Vector3d excess_sign;                          // s_j where axis j is clipped, 0 elsewhere
+    Eigen::Vector3d excess_share;                         // s_j where axis j is clipped, 0 elsewhere
     Eigen::Matrix3d excess_attitude, excess_v, excess_p;  // derivatives at start_s
   };
   const Interval& interval_at(double t_s, std::size_t& hint) const;

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/estimator/mapping/endless_corridor.hpp"
+
+// memory over a long way: what lies behind is forgotten
+namespace tumble {
+namespace {
+
+TEST(LocalMap, StaysFlatOverTenMinutes) {
+  constexpr int kSweeps = 6000;  // 10 min, 599 m
+  constexpr int kSettled = 500;  // 49 m: the map has left its start behind
+  const LidarInertialOdometry::Params params = test::corridor_params();
+  LidarInertialOdometry odometry(params);
+  test::EndlessCorridor corridor(400);
+  LidarInertialOdometry::SweepReport report;
+  std::size_t bytes_early = 0, bytes_late = 0, points_early = 0, lost = 0;
+  for (int k = 0; k < kSweeps; ++k) {
+    for (const ImuSample& sample : corridor.advance()) {
+      ASSERT_TRUE(odometry.add_imu(sample, test::believe(sample)).ok());
+    }
+    ASSERT_TRUE(odometry.add_sweep(corridor.start_ns(), corridor.end_ns(), corridor.points(), report).ok());
+    lost += report.verdict == SweepVerdict::rejected;
+    if (k < kSettled) {
+      bytes_early = std::max(bytes_early, odometry.map_bytes());
+    } else {
+      bytes_late = std::max(bytes_late, odometry.map_bytes());
+    }
+    if (k == kSettled) points_early = odometry.map().size();
+  }
+  EXPECT_GT(corridor.x_m(), 590.0);
+  EXPECT_EQ(lost, 0u);
+  EXPECT_NEAR(report.pose.p_WA_m.x(), corridor.x_m(), 0.02 * corridor.x_m());
+  ASSERT_GT(points_early, 500u);
+  // it breathes by what comes between two prunings
+  EXPECT_LT(static_cast<double>(odometry.map().size()), 1.3 * static_cast<double>(points_early));
+  EXPECT_LT(static_cast<double>(bytes_late), 2.1 * static_cast<double>(bytes_early));
+  for (const MapPoint& point : odometry.map()) {
+    ASSERT_LT((point.position_W_m.cast<double>() - report.pose.p_WA_m).norm(), 1.2 * params.map_radius_m);
+  }
+}
+
+// negative control: with a map that reaches farther than the way, memory grows with it
+TEST(LocalMap, GrowsWhereItForgetsNothing) {
+  LidarInertialOdometry::Params params = test::corridor_params();
+  params.map_radius_m = 1e4;
+  LidarInertialOdometry odometry(params);
+  test::EndlessCorridor corridor(400);
+  LidarInertialOdometry::SweepReport report;
+  std::size_t bytes_early = 0;
+  for (int k = 0; k < 1500; ++k) {
+    for (const ImuSample& sample : corridor.advance()) {
+      ASSERT_TRUE(odometry.add_imu(sample, test::believe(sample)).ok());
+    }
+    ASSERT_TRUE(odometry.add_sweep(corridor.start_ns(), corridor.end_ns(), corridor.points(), report).ok());
+    if (k == 500) bytes_early = odometry.map_bytes();
+  }
+  EXPECT_GT(static_cast<double>(odometry.map_bytes()), 2.1 * static_cast<double>(bytes_early));
+}
+
+}  // namespace
+}  // namespace tumble

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/methods/method.hpp"
+#include "scenarios/methods/synthetic_recording.hpp"
+
+// errors of the published chain as cases: reproduced where they are a switch of slam/seed, impossible elsewhere. The
+// trim that counts unmatched slots stands in the library's trimmed_icp_test, angles beyond 90 degrees in score_test.
+namespace tumble::scenarios {
+namespace {
+
+/// A swift translation that hardly turns, so that nothing but the velocity fed back differs.
+testing::SyntheticMotion dash() {
+  testing::SyntheticMotion motion;
+  motion.angle_rad = 0.5;
+  motion.displacement_m = {2.5, -2.0, 0.0};
+  motion.start_m = {-1.0, 1.0, 1.0};
+  motion.rail_rad_s = 100.0;
+  return motion;
+}
+
+/// Median error of the seed's velocity while the acceleration is large.
+double velocity_error_m_s(double late_velocity) {
+  const testing::SyntheticMotion motion = dash();
+  const sim::Recording recording = testing::synthetic_rig(motion);
+  sim::Values values;
+  values.set("late_velocity", late_velocity);
+  const Estimate estimate = find_methods("slam/seed").at(0)->run(recording.sensors, values, {});
+  EXPECT_TRUE(estimate.status.ok()) << estimate.status.message();
+  std::vector<double> errors;
+  for (const auto& sweep : estimate.sweeps) {
+    const double t = 1e-9 * static_cast<double>(sweep.pose.time_ns);
+    if (t < motion.start_s + 0.5 || t > motion.end_s - 0.5) continue;
+    // the speed alone: the estimate's world is turned against the true one
+    errors.push_back(std::abs(sweep.pose.v_WA_m_s.norm() - motion.velocity_m_s(t).norm()));
+  }
+  EXPECT_GT(errors.size(), 10u);
+  if (errors.empty()) return 0.0;
+  std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2), errors.end());
+  return errors[errors.size() / 2];
+}
+
+TEST(PublishedTraps, VelocityIsHalfASweepLateAsLaunched) {
+  const double late = velocity_error_m_s(1.0), in_time = velocity_error_m_s(0.0);
+  // half a sweep of 0.1 s at 0.5 to 2 m/s^2
+  EXPECT_GT(late, 0.03);
+  EXPECT_LT(in_time, 0.5 * late);
+}
+
+// a misspelt parameter ("fixed_frame_for_laser" where the node reads "fixed_frame_for_lidar") was silently ignored
+TEST(PublishedTraps, AMisspeltParameterIsRefusedByEverySlamMethod) {
+  const sim::Recording recording = testing::synthetic_rig();
+  int tried = 0;
+  for (const Method& method : methods()) {
+    if (method.info.kind != Kind::slam || !method.info.for_robot("rig")) continue;
+    sim::Values values;
+    values.set("sweep_voxel_mm", 0.2);
+    EXPECT_THROW(method.run(recording.sensors, values, {&recording.truth}), BadInput) << method.info.name;
+    ++tried;
+  }
+  EXPECT_GE(tried, 10);
+}
+
+}  // namespace
+}  // namespace tumble::scenarios
