@@ -69,8 +69,8 @@ Method slam_constant_velocity() {
       {.name = "constant_velocity",
        .doc =
            "Lidar alone: the last change of pose goes on, the sweep is deskewed with it once and registered point to "
-           "plane as a rigid body. Not modelled: the adaptive threshold and the point-to-point distance of the "
-           "original.",
+           "plane as a rigid body. A tumble's rate changes by radians per second from sweep to sweep, which this "
+           "cannot know. Not modelled: the adaptive threshold and the point-to-point distance of the original.",
        .source = "the family of KISS-ICP, Vizzo et al., RA-L 2023",
        .parameters = rigid_parameters()},
       run);

@@ -83,10 +83,9 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
 Method slam_health_switch() {
   return rig_slam(
       {.name = "health_switch",
-       .doc =
-           "Rotation from the gyro while a monitor finds it healthy, else the last rotation goes on; constant "
-           "velocity; "
-           "rigid registration. Not modelled: wheel and visual odometry, the other sources of the original's switch.",
+       .doc = "Rotation from the gyro while a monitor finds it healthy, else the last rotation goes on; constant "
+              "velocity; rigid registration. A tumble leaves the monitor nothing healthy to switch to. Not modelled: "
+              "wheel and visual odometry, the other sources of the original's switch.",
        .source = "the family of LOCUS, Palieri et al., RA-L 2021",
        .parameters = rigid_parameters()},
       run);

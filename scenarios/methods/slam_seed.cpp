@@ -28,8 +28,7 @@ Method slam_seed() {
       {.name = "seed",
        .doc = "The published chain with the constants as launched: rates of saave, Madgwick's attitude, accelerometer "
               "odometry fed back by the registration, time weighting, trimmed point to plane; its errors are "
-              "parameters. Map "
-              "in memory whole.",
+              "parameters. Map in memory whole.",
        .source = "Deschenes et al., ICRA 2024, and the authors' launch files",
        .parameters = parameters_with_saave()},
       run);

@@ -9,8 +9,9 @@
 
 namespace tumble::test {
 
-/// A straight drive along a corridor without end, with a rib across its floor every few metres: rest for half a second, then a
-/// second of acceleration, then 1 m/s. Sensor data sweep by sweep, so that a drive of any length needs no memory.
+/// A straight drive along a corridor without end, with a rib across its floor every few metres: rest for half a second,
+/// then a second of acceleration, then 1 m/s. Sensor data sweep by sweep, so that a drive of any length needs no
+/// memory.
 class EndlessCorridor {
  public:
   explicit EndlessCorridor(int points_per_sweep) : points_per_sweep_(points_per_sweep) {}
