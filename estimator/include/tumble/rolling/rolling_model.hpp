@@ -46,6 +46,7 @@ struct RollingParams {
   double attitude_walk_rad_sqrts = 1e-4;  ///< 0.006 deg/sqrt(s)
   double rate_error_sqrts = 6e-4;         ///< per rad/s turned
   double velocity_walk_m_s_sqrts = 6e-3;
+  double spin_force_sqrts = 4e-5;  ///< velocity walk more, per (rad/s)^2 turned: what errors make of large forces
   double gyro_bias_walk_rad_s_sqrts = 1.7e-5;
   double accel_bias_walk_m_s2_sqrts = 2e-3;
   double grip_sigma_m_s = 3e-3;      ///< of the contact velocity while gripping
