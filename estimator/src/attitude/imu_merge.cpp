@@ -166,6 +166,11 @@ Status ImuMerge::step(std::span<const ImuSample> samples, State& state, ImuSampl
   merged.specific_force_m_s2 = force;
   merged.device_clip_flags = 0;
   if (count >= kRecovering) recover(samples, dt_s, state, merged);
+  const auto suspect = [](const Unit& unit) { return unit.suspect_s > 0.0; };
+  if (2 * std::count_if(state.units.begin(), state.units.begin() + count, suspect) > count) {
+    merged.device_clip_flags =
+        static_cast<std::uint8_t>(merged.device_clip_flags | kClipAccelX | kClipAccelY | kClipAccelZ);
+  }
   state.rate_before_rad_s = state.rate_rad_s;
   state.rate_rad_s = rate;
   state.last_time_ns = samples[0].time_ns;
@@ -173,13 +178,16 @@ Status ImuMerge::step(std::span<const ImuSample> samples, State& state, ImuSampl
   return {};
 }
 
-/// A blow may take a unit to its rail for less than a sample. The one that feels least is believed: on a rigid body it
-/// tells what the others feel, along the line between two units without the angular acceleration.
+/// A blow may take a unit to its rail for less than a sample. The one whose force changes least is believed: on a rigid
+/// body it tells what the others feel, along the line between two units without the angular acceleration.
 void ImuMerge::leave_out_hidden(std::span<const ImuSample> samples, const Vectors& forces, const Eigen::Vector3d& rate,
                                 double dt_s, State& state, std::array<bool, kImus>& used) const {
   const auto peak = [&](std::size_t k) { return samples[k].specific_force_m_s2.cwiseAbs().maxCoeff(); };
+  const auto change = [&](std::size_t k) {
+    return (params_.T_CI[k].linear() * samples[k].specific_force_m_s2 - state.units[k].last_force_m_s2).norm();
+  };
   std::size_t least = 0;
-  for (std::size_t k = 1; k < samples.size(); ++k) least = peak(k) < peak(least) ? k : least;
+  for (std::size_t k = 1; k < samples.size(); ++k) least = change(k) < change(least) ? k : least;
   const Eigen::Vector3d acceleration = (rate - state.rate_rad_s) / dt_s;
   const Eigen::Vector3d before = (state.rate_rad_s - state.rate_before_rad_s) / dt_s;
   const auto place = [&](std::size_t k) -> Eigen::Vector3d {

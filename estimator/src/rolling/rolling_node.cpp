@@ -58,6 +58,7 @@ void require_noise(const RollingParams& p) {
   require_within("grip_sigma_share", p.grip_sigma_share, kSmallest, 1e3);
   require_within("vertical_sigma_m_s", p.vertical_sigma_m_s, kSmallest, 1e3);
   require_within("rough_share", p.rough_share, kSmallest, 1e3);
+  require_within("rough_radius_walk_m_sqrts", p.rough_radius_walk_m_sqrts, 0.0, 1.0);
   require_within("slope_walk_sqrts", p.slope_walk_sqrts, kSmallest, 1e3);
   require_within("rest_velocity_sigma_m_s", p.rest_velocity_sigma_m_s, kSmallest, 1e3);
   require_within("rest_rate_sigma_rad_s", p.rest_rate_sigma_rad_s, kSmallest, 1e3);
@@ -254,6 +255,8 @@ void change_floor(const RollingParams& params, RollingMode from, RollingMode to,
   if (from == RollingMode::incline && to == from) {
     P.diagonal().segment<2>(kSlope).array() += squared(params.slope_walk_sqrts) * h_s;
   }
+  // what rolls over ups and downs goes less far than it turns, by as much as they are steep
+  if (to == RollingMode::rough) P(kRadius, kRadius) += squared(params.rough_radius_walk_m_sqrts) * h_s;
   if (!forgets_slope(from, to)) return;
   P.middleRows<2>(kSlope).setZero();
   P.middleCols<2>(kSlope).setZero();

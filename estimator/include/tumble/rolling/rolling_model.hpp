@@ -52,7 +52,8 @@ struct RollingParams {
   double grip_sigma_m_s = 3e-3;      ///< of the contact velocity while gripping
   double grip_sigma_share = 1.5e-3;  ///< more, as a share of the rolling speed
   double vertical_sigma_m_s = 8e-3;
-  double rough_share = 0.04;  ///< more on a rough floor, as a share of the rolling speed
+  double rough_share = 0.055;               ///< more on a rough floor, as a share of the rolling speed
+  double rough_radius_walk_m_sqrts = 1e-4;  ///< of the radius that it rolls with there; bound [0, 1]
   double slope_walk_sqrts = 0.02;
   double shock_share = 0.06;  ///< of the velocity that a shock gives: error of its timing and direction
   double rest_velocity_sigma_m_s = 2e-3;
