@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "tumble/attitude/timing.hpp"
 
@@ -178,34 +179,45 @@ Status ImuMerge::step(std::span<const ImuSample> samples, State& state, ImuSampl
   return {};
 }
 
-/// A blow may take a unit to its rail for less than a sample. The one whose force changes least is believed: on a rigid
-/// body it tells what the others feel, along the line between two units without the angular acceleration.
+/// A blow may take a unit to its rail for less than a sample. On a rigid body one unit tells what the others feel,
+/// along the line between the two without the angular acceleration. The one that most others agree with is believed,
+/// among equals the one whose force changed least.
 void ImuMerge::leave_out_hidden(std::span<const ImuSample> samples, const Vectors& forces, const Eigen::Vector3d& rate,
                                 double dt_s, State& state, std::array<bool, kImus>& used) const {
+  const Eigen::Vector3d acceleration = (rate - state.rate_rad_s) / dt_s;
+  const Eigen::Vector3d before = (state.rate_rad_s - state.rate_before_rad_s) / dt_s;
   const auto peak = [&](std::size_t k) { return samples[k].specific_force_m_s2.cwiseAbs().maxCoeff(); };
   const auto change = [&](std::size_t k) {
     return (params_.T_CI[k].linear() * samples[k].specific_force_m_s2 - state.units[k].last_force_m_s2).norm();
   };
-  std::size_t least = 0;
-  for (std::size_t k = 1; k < samples.size(); ++k) least = change(k) < change(least) ? k : least;
-  const Eigen::Vector3d acceleration = (rate - state.rate_rad_s) / dt_s;
-  const Eigen::Vector3d before = (state.rate_rad_s - state.rate_before_rad_s) / dt_s;
   const auto place = [&](std::size_t k) -> Eigen::Vector3d {
     return params_.T_CI[k].translation() + ForceErrors::place_error_m(static_cast<int>(k), state.forces);
   };
+  const auto agree = [&](std::size_t k, std::size_t j) {
+    if (std::max(peak(k), peak(j)) < params_.hidden_share * params_.accel_range_m_s2) return true;
+    const Eigen::Vector3d d = place(k) - place(j);
+    const Eigen::Vector3d misfit = forces[k] - forces[j] - acceleration.cross(d) - rate.cross(rate.cross(d));
+    const double doubt = kAccelerationShare * (acceleration - before).norm() * d.norm();
+    return std::abs(misfit.dot(d)) <= params_.hidden_force_m_s2 * d.norm() &&
+           misfit.norm() <= params_.hidden_force_m_s2 + doubt;
+  };
+  std::size_t believed = 0;
+  std::pair<int, double> most(-1, 0.0);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    int others = 0;
+    for (std::size_t j = 0; j < samples.size(); ++j) others += j != k && agree(k, j);
+    const std::pair<int, double> rank(others, -change(k));
+    if (rank > most) {
+      most = rank;
+      believed = k;
+    }
+  }
   for (std::size_t k = 0; k < samples.size(); ++k) {
     double& suspect_s = state.units[k].suspect_s;
-    suspect_s = std::max(0.0, suspect_s - dt_s);
-    if (k != least && peak(k) >= params_.hidden_share * params_.accel_range_m_s2) {
-      const Eigen::Vector3d d = place(k) - place(least);
-      const Eigen::Vector3d misfit = forces[k] - forces[least] - acceleration.cross(d) - rate.cross(rate.cross(d));
-      const double doubt = kAccelerationShare * (acceleration - before).norm() * d.norm();
-      const bool along = d.norm() > 0.0 && std::abs(misfit.dot(d)) > params_.hidden_force_m_s2 * d.norm();
-      if (along || misfit.norm() > params_.hidden_force_m_s2 + doubt) suspect_s = kSuspect_s;
-    }
+    suspect_s = k == believed || agree(k, believed) ? std::max(0.0, suspect_s - dt_s) : kSuspect_s;
     used[k] = suspect_s == 0.0;
   }
-  if (std::none_of(used.begin(), used.begin() + params_.count, [](bool one) { return one; })) used[least] = true;
+  if (std::none_of(used.begin(), used.begin() + params_.count, [](bool one) { return one; })) used[believed] = true;
 }
 
 void ImuMerge::recover(std::span<const ImuSample> samples, double dt_s, State& state, ImuSample& merged) const {

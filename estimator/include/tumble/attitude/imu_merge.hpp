@@ -23,7 +23,7 @@ namespace tumble {
 /// large forces cancel in the mean: they are told apart and taken out (ForceErrors).
 ///
 /// A unit whose accelerometer stands at its rail is left out of the force, and one that may have met it within a sample
-/// and disagrees with the unit whose force changes least; where most do, the merged force is flagged as clipped. Where
+/// and disagrees with the others; where most are doubtful, the merged force is flagged as clipped. Where
 /// the gyros do, three units or more tell the rate by what the turning does to their accelerometers (RateRecovery); the
 /// merged sample's clip flags say when they could not.
 ///
@@ -45,7 +45,7 @@ class ImuMerge {
     double accel_range_m_s2 = 1e5;                ///< bound (0, 1e5]
     /// A reading from this share of the range on may hide a rail met within its sample; bound (0, 1].
     double hidden_share = 0.15;
-    double hidden_force_m_s2 = 3.0;  ///< by which it then may disagree with that one; bound (0, 1e4]
+    double hidden_force_m_s2 = 3.0;  ///< by which it then may disagree with another; bound (0, 1e4]
     double gap_max_s = 1.0;          ///< bound (0, 1e4]
   };
 
