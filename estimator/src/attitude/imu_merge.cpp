@@ -134,7 +134,7 @@ Status ImuMerge::step(std::span<const ImuSample> samples, State& state, ImuSampl
     used.fill(true);
     kept = count;
   }
-  if (kept == count && dt_s > 0.0) {
+  if (count >= kRecovering && dt_s > 0.0 && middle_rate.cwiseAbs().maxCoeff() < params_.gyro_range_rad_s) {
     leave_out_hidden(samples, forces, middle_rate, dt_s, state, used);
     kept = static_cast<int>(std::count(used.begin(), used.begin() + count, true));
   }
@@ -215,7 +215,7 @@ void ImuMerge::leave_out_hidden(std::span<const ImuSample> samples, const Vector
   for (std::size_t k = 0; k < samples.size(); ++k) {
     double& suspect_s = state.units[k].suspect_s;
     suspect_s = k == believed || agree(k, believed) ? std::max(0.0, suspect_s - dt_s) : kSuspect_s;
-    used[k] = suspect_s == 0.0;
+    used[k] = used[k] && suspect_s == 0.0;
   }
   if (std::none_of(used.begin(), used.begin() + params_.count, [](bool one) { return one; })) used[believed] = true;
 }

@@ -20,7 +20,7 @@ constexpr double kDropped = -120.0;   // log weight below the best at which a hy
 constexpr double kRestFloor = -60.0;  // least log likelihood of a node at rest: one bad node must not decide
 constexpr double kSettled_s = 1.0;    // after so long in one mode it does not matter when it began
 // change of u per node, horizontal; a plateau as narrow as grip, or each plateau would look like grip
-constexpr double kPlateau_m_s = 0.0033, kSteady_m_s = 0.01, kJump_m_s = 0.08, kPlateauShare = 0.45, kSteadyShare = 0.32;
+constexpr double kPlateau_m_s = 0.004, kSteady_m_s = 0.01, kJump_m_s = 0.08, kPlateauShare = 0.4, kSteadyShare = 0.35;
 constexpr double kRise_m_s = 0.03, kHit_m_s = 0.3, kRiseShare = 0.7;  // and vertical, on a bump
 constexpr std::int64_t kAgesApart = 4;
 constexpr double kRoughCost = 0.2;  // per node: less than what a slope leaves over there, more than grip on a plane
