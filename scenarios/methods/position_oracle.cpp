@@ -11,6 +11,7 @@ namespace tumble::scenarios {
 
 namespace {
 
+constexpr std::int64_t kEdgeNs = 400'000'000;
 constexpr double kLevelTiltRad = 0.005;  // a floor tilted by less is level
 
 bool prepare(const char* method, const sim::Sensors& sensors, MergedImus& imus, Estimate& estimate) {
@@ -52,6 +53,19 @@ Estimate run_exact_attitude(const sim::Sensors& sensors, const sim::Values& para
   return estimate;
 }
 
+/// An edge tilts the normal for a moment, a slope for longer: short spells of `incline` are bumps.
+void edges_are_bumps(std::int64_t period_ns, std::vector<RollingMode>& modes) {
+  for (std::size_t begin = 0; begin < modes.size();) {
+    std::size_t end = begin;
+    while (end < modes.size() && modes[end] == RollingMode::incline) ++end;
+    if (static_cast<std::int64_t>(end - begin) * period_ns < kEdgeNs) {
+      std::fill(modes.begin() + static_cast<std::ptrdiff_t>(begin), modes.begin() + static_cast<std::ptrdiff_t>(end),
+                RollingMode::bump);
+    }
+    begin = std::max(end, begin + 1);
+  }
+}
+
 /// Modes at the samples, by the labels and normals of the truth.
 std::vector<RollingMode> true_modes(const sim::Truth& truth, const std::vector<ImuSample>& samples) {
   std::vector<RollingMode> at_step(truth.label.size(), RollingMode::grip);
@@ -66,6 +80,7 @@ std::vector<RollingMode> true_modes(const sim::Truth& truth, const std::vector<I
       at_step[k] = RollingMode::slip;
     }
   }
+  edges_are_bumps(truth.period_ns, at_step);
   std::vector<RollingMode> modes;
   modes.reserve(samples.size());
   for (const ImuSample& sample : samples)

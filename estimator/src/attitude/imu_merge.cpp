@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "tumble/attitude/timing.hpp"
 
@@ -16,11 +17,13 @@ constexpr double kBiasSigma_rad_s = 0.01, kScaleSigma = 0.01;
 constexpr double kTurning_rad_s2 = 1.0;  // an angular acceleration that tells a time offset from noise
 constexpr double kBeyondDoubt = 4.0;     // sigmas
 constexpr int kRecovering = 3;           // so many units tell the rate by their accelerometers
+constexpr double kUnharmed = 0.8;        // of the accelerometer's range, up to which its errors are learnt
 constexpr int kOffset = ImuMerge::kErrors - 1;
 
-using Vectors = std::array<Eigen::Vector3d, ImuMerge::kImus>;
+constexpr double kSuspect_s = 0.04;         // blows come in rows, and what one takes a filter gives back later
+constexpr double kAccelerationShare = 0.3;  // of its change from sample to sample, that an acceleration is in doubt by
 
-Eigen::Vector3d median(const Vectors& values, int count) {
+Eigen::Vector3d median(const std::array<Eigen::Vector3d, ImuMerge::kImus>& values, int count) {
   Eigen::Vector3d out;
   for (int axis = 0; axis < 3; ++axis) {
     std::array<double, ImuMerge::kImus> sorted;
@@ -33,6 +36,13 @@ Eigen::Vector3d median(const Vectors& values, int count) {
 }
 
 }  // namespace
+
+ForceErrors::Params ImuMerge::force_params(const Params& p) {
+  ForceErrors::Params out;
+  out.count = std::clamp(p.count, 1, kImus);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(out.count); ++k) out.p_C_m[k] = p.T_CI[k].translation();
+  return out;
+}
 
 /// About the mean place of the units.
 RateRecovery::Params ImuMerge::recovery_params(const Params& p) {
@@ -50,7 +60,7 @@ RateRecovery::Params ImuMerge::recovery_params(const Params& p) {
   return out;
 }
 
-ImuMerge::ImuMerge(const Params& p) : params_(p), recovery_(recovery_params(p)) {
+ImuMerge::ImuMerge(const Params& p) : params_(p), forces_(force_params(p)), recovery_(recovery_params(p)) {
   require_within("count", p.count, 1, kImus);
   require_within("rate_tolerance_rad_s", p.rate_tolerance_rad_s, kSmallest, 1e3);
   require_within("rate_tolerance_share", p.rate_tolerance_share, 0.0, 1.0);
@@ -59,6 +69,8 @@ ImuMerge::ImuMerge(const Params& p) : params_(p), recovery_(recovery_params(p)) 
   require_within("offset_sigma_s", p.offset_sigma_s, 0.0, 0.1);
   require_within("gyro_range_rad_s", p.gyro_range_rad_s, kSmallest, 1e3);
   require_within("accel_range_m_s2", p.accel_range_m_s2, kSmallest, 1e5);
+  require_within("hidden_share", p.hidden_share, kSmallest, 1.0);
+  require_within("hidden_force_m_s2", p.hidden_force_m_s2, kSmallest, 1e4);
   require_within("gap_max_s", p.gap_max_s, 1e-9, 1e4);
   for (int k = 0; k < p.count; ++k) {
     const Eigen::Isometry3d& T = p.T_CI[static_cast<std::size_t>(k)];
@@ -88,21 +100,21 @@ Status ImuMerge::step(std::span<const ImuSample> samples, State& state, ImuSampl
     }
   }
 
-  Vectors rates{}, raw_rates{}, forces{};
+  Vectors rates{}, raw_rates{}, raw_forces{}, forces{};
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const Eigen::Matrix3d R_CI = params_.T_CI[k].linear();
     Unit& unit = state.units[k];
     raw_rates[k] = R_CI * samples[k].angular_velocity_rad_s;
-    const Eigen::Vector3d force = R_CI * samples[k].specific_force_m_s2;
+    raw_forces[k] = R_CI * samples[k].specific_force_m_s2;
     rates[k] = raw_rates[k];
-    forces[k] = force;
+    forces[k] = raw_forces[k];
     const double offset_s = unit.offset_s();
     const bool late = offset_s * offset_s > kBeyondDoubt * kBeyondDoubt * unit.P(kOffset, kOffset);
     if (dt_s > 0.0 && late) {
       rates[k] -= offset_s / dt_s * (raw_rates[k] - unit.last_rate_rad_s);
-      forces[k] -= offset_s / dt_s * (force - unit.last_force_m_s2);
+      forces[k] -= offset_s / dt_s * (raw_forces[k] - unit.last_force_m_s2);
     }
-    unit.last_force_m_s2 = force;
+    forces[k] = ForceErrors::corrected(static_cast<int>(k), forces[k], state.forces);
   }
 
   // the places differ, so forces may by what the rate makes of it; the tolerance has to bear that
@@ -122,6 +134,10 @@ Status ImuMerge::step(std::span<const ImuSample> samples, State& state, ImuSampl
     used.fill(true);
     kept = count;
   }
+  if (count >= kRecovering && dt_s > 0.0 && middle_rate.cwiseAbs().maxCoeff() < params_.gyro_range_rad_s) {
+    leave_out_hidden(samples, forces, middle_rate, dt_s, state, used);
+    kept = static_cast<int>(std::count(used.begin(), used.begin() + count, true));
+  }
 
   Eigen::Vector3d rate = Eigen::Vector3d::Zero(), force = Eigen::Vector3d::Zero(), place = Eigen::Vector3d::Zero();
   for (int k = 0; k < count; ++k) {
@@ -133,6 +149,7 @@ Status ImuMerge::step(std::span<const ImuSample> samples, State& state, ImuSampl
     rate += rates[i] / kept;
     force += forces[i] / kept;
     place += params_.T_CI[i].translation() / kept;
+    if (kept < count) place += ForceErrors::place_error_m(k, state.forces) / kept;
   }
   if (kept < count && dt_s > 0.0) {
     const Eigen::Vector3d d = p_C_m_ - place;
@@ -140,18 +157,80 @@ Status ImuMerge::step(std::span<const ImuSample> samples, State& state, ImuSampl
   }
   if (kept == count && count > 1 && dt_s > 0.0 && state.samples > 1)
     learn({raw_rates.data(), samples.size()}, dt_s, state);
-  for (std::size_t k = 0; k < samples.size(); ++k) state.units[k].last_rate_rad_s = raw_rates[k];
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    state.units[k].last_rate_rad_s = raw_rates[k];
+    state.units[k].last_force_m_s2 = raw_forces[k];
+  }
 
   merged.time_ns = samples[0].time_ns;
   merged.angular_velocity_rad_s = rate;
   merged.specific_force_m_s2 = force;
   merged.device_clip_flags = 0;
-  if (count >= kRecovering) recovery_.step(samples, dt_s, state.recovery, merged);
+  if (count >= kRecovering) recover(samples, dt_s, state, merged);
+  const auto suspect = [](const Unit& unit) { return unit.suspect_s > 0.0; };
+  if (2 * std::count_if(state.units.begin(), state.units.begin() + count, suspect) > count) {
+    merged.device_clip_flags =
+        static_cast<std::uint8_t>(merged.device_clip_flags | kClipAccelX | kClipAccelY | kClipAccelZ);
+  }
   state.rate_before_rad_s = state.rate_rad_s;
   state.rate_rad_s = rate;
   state.last_time_ns = samples[0].time_ns;
   ++state.samples;
   return {};
+}
+
+/// A blow may take a unit to its rail for less than a sample. On a rigid body one unit tells what the others feel,
+/// along the line between the two without the angular acceleration. The one that most others agree with is believed,
+/// among equals the one whose force changed least.
+void ImuMerge::leave_out_hidden(std::span<const ImuSample> samples, const Vectors& forces, const Eigen::Vector3d& rate,
+                                double dt_s, State& state, std::array<bool, kImus>& used) const {
+  const Eigen::Vector3d acceleration = (rate - state.rate_rad_s) / dt_s;
+  const Eigen::Vector3d before = (state.rate_rad_s - state.rate_before_rad_s) / dt_s;
+  const auto peak = [&](std::size_t k) { return samples[k].specific_force_m_s2.cwiseAbs().maxCoeff(); };
+  const auto change = [&](std::size_t k) {
+    return (params_.T_CI[k].linear() * samples[k].specific_force_m_s2 - state.units[k].last_force_m_s2).norm();
+  };
+  const auto place = [&](std::size_t k) -> Eigen::Vector3d {
+    return params_.T_CI[k].translation() + ForceErrors::place_error_m(static_cast<int>(k), state.forces);
+  };
+  const auto agree = [&](std::size_t k, std::size_t j) {
+    if (std::max(peak(k), peak(j)) < params_.hidden_share * params_.accel_range_m_s2) return true;
+    const Eigen::Vector3d d = place(k) - place(j);
+    const Eigen::Vector3d misfit = forces[k] - forces[j] - acceleration.cross(d) - rate.cross(rate.cross(d));
+    const double doubt = kAccelerationShare * (acceleration - before).norm() * d.norm();
+    return std::abs(misfit.dot(d)) <= params_.hidden_force_m_s2 * d.norm() &&
+           misfit.norm() <= params_.hidden_force_m_s2 + doubt;
+  };
+  std::size_t believed = 0;
+  std::pair<int, double> most(-1, 0.0);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    int others = 0;
+    for (std::size_t j = 0; j < samples.size(); ++j) others += j != k && agree(k, j);
+    const std::pair<int, double> rank(others, -change(k));
+    if (rank > most) {
+      most = rank;
+      believed = k;
+    }
+  }
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    double& suspect_s = state.units[k].suspect_s;
+    suspect_s = k == believed || agree(k, believed) ? std::max(0.0, suspect_s - dt_s) : kSuspect_s;
+    used[k] = used[k] && suspect_s == 0.0;
+  }
+  if (std::none_of(used.begin(), used.begin() + params_.count, [](bool one) { return one; })) used[believed] = true;
+}
+
+void ImuMerge::recover(std::span<const ImuSample> samples, double dt_s, State& state, ImuSample& merged) const {
+  std::array<ImuSample, kImus> corrected{};
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    corrected[k] = samples[k];
+    if (samples[k].specific_force_m_s2.cwiseAbs().maxCoeff() >= params_.accel_range_m_s2) continue;
+    const Eigen::Matrix3d R_CI = params_.T_CI[k].linear();
+    const Eigen::Vector3d force = R_CI * samples[k].specific_force_m_s2;
+    corrected[k].specific_force_m_s2 =
+        R_CI.transpose() * ForceErrors::corrected(static_cast<int>(k), force, state.forces);
+  }
+  recovery_.step({corrected.data(), samples.size()}, dt_s, state.recovery, merged);
 }
 
 /// A unit's rate at the last sample less the mean of all, explained by bias, scale and time offset; the angular
@@ -163,6 +242,16 @@ void ImuMerge::learn(std::span<const Eigen::Vector3d> rates, double dt_s, State&
     mean += state.units[k].last_rate_rad_s / static_cast<double>(rates.size());
   }
   const Eigen::Vector3d acceleration = (now - state.rate_before_rad_s) / (2.0 * dt_s);
+  Vectors forces{};
+  double peak = 0.0;
+  for (std::size_t k = 0; k < rates.size(); ++k) {
+    forces[k] = state.units[k].last_force_m_s2;
+    peak = std::max(peak, forces[k].cwiseAbs().maxCoeff());
+  }
+  const bool railed = mean.cwiseAbs().maxCoeff() >= params_.gyro_range_rad_s;
+  if (!railed && peak < kUnharmed * params_.accel_range_m_s2) {
+    forces_.learn({forces.data(), rates.size()}, mean, acceleration, state.forces);
+  }
   if (acceleration.norm() < kTurning_rad_s2) return;
   const double variance = params_.rate_noise_rad_s * params_.rate_noise_rad_s;
   for (std::size_t k = 0; k < rates.size(); ++k) {

@@ -56,8 +56,7 @@ void RollingFilter::close_node(const Eigen::Vector3d& next_rate_rad_s, State& st
   state.settled_spread_m2.setZero();
   detect_rest(state);
   Hypothesis& best = state.hypotheses[0];
-  if (state.sums.force_clipped_s < state.sums.node_s &&
-      rolling::relevel(params_, state.sums.f_I_m_s / state.sums.node_s, state.at_rest, state.nominal, best.P)) {
+  if (rolling::relevel(params_, state.sums, state.at_rest, state.nominal, best.P)) {
     best.x.setZero();
     for (int k = 1; k < state.count; ++k) state.hypotheses[static_cast<std::size_t>(k)] = Hypothesis{};
     state.count = 1;

@@ -30,6 +30,8 @@ constexpr double kDoubtfulTilt_rad = 0.1;             // and as this, no better 
 constexpr double kRestTilt_rad = 5e-3;
 constexpr double kForceTilt_rad = 0.35;  // of the direction of a force in motion
 constexpr double kLostSpeed_m_s = 1.0;
+constexpr double kRecoveredTau_s = 0.1;  // a recovered rate stays off for so long: what it is off by is no noise
+constexpr double kFastTurn_rad_s = 6.0;  // a force turns too far within a node to level by, and is not gravity
 constexpr double kUnsureSpeed_m_s = 0.1, kSpeedWindow_s = 1.0;
 
 void require_sigmas(const RollingParams& p) {
@@ -49,12 +51,14 @@ void require_noise(const RollingParams& p) {
   require_within("attitude_walk_rad_sqrts", p.attitude_walk_rad_sqrts, kSmallest, 1e3);
   require_within("rate_error_sqrts", p.rate_error_sqrts, kSmallest, 1e3);
   require_within("velocity_walk_m_s_sqrts", p.velocity_walk_m_s_sqrts, kSmallest, 1e3);
+  require_within("spin_force_sqrts", p.spin_force_sqrts, 0.0, 1e3);
   require_within("gyro_bias_walk_rad_s_sqrts", p.gyro_bias_walk_rad_s_sqrts, kSmallest, 1e3);
   require_within("accel_bias_walk_m_s2_sqrts", p.accel_bias_walk_m_s2_sqrts, kSmallest, 1e3);
   require_within("grip_sigma_m_s", p.grip_sigma_m_s, kSmallest, 1e3);
   require_within("grip_sigma_share", p.grip_sigma_share, kSmallest, 1e3);
   require_within("vertical_sigma_m_s", p.vertical_sigma_m_s, kSmallest, 1e3);
   require_within("rough_share", p.rough_share, kSmallest, 1e3);
+  require_within("rough_radius_walk_m_sqrts", p.rough_radius_walk_m_sqrts, 0.0, 1.0);
   require_within("slope_walk_sqrts", p.slope_walk_sqrts, kSmallest, 1e3);
   require_within("rest_velocity_sigma_m_s", p.rest_velocity_sigma_m_s, kSmallest, 1e3);
   require_within("rest_rate_sigma_rad_s", p.rest_rate_sigma_rad_s, kSmallest, 1e3);
@@ -139,20 +143,21 @@ void integrate(const RollingParams& params, const ImuSample& sample, double dt_s
   constexpr std::uint8_t kGyro = kClipGyroX | kClipGyroY | kClipGyroZ, kAccel = kClipAccelX | kClipAccelY | kClipAccelZ;
   const bool beyond = w_raw.cwiseAbs().maxCoeff() >= params.gyro_range_rad_s;
   const bool lost = (sample.device_clip_flags & kGyro) != 0 || (beyond && !(params.recovered_rate_sigma_rad_s > 0.0));
-  const bool clipped =
-      lost || (sample.device_clip_flags & kAccel) != 0 || f_raw.cwiseAbs().maxCoeff() >= params.accel_range_m_s2;
-  // a force that is clipped, or turned by a rate that is, says nothing: the velocity is kept
-  const Eigen::Vector3d pushed = clipped ? Eigen::Vector3d(dt_s * gravity * Eigen::Vector3d::UnitZ()) : R_T * f;
-  const Eigen::Vector3d gained = pushed - dt_s * gravity * Eigen::Vector3d::UnitZ();
+  const bool clipped = lost || beyond || (sample.device_clip_flags & kAccel) != 0 ||
+                       f_raw.cwiseAbs().maxCoeff() >= params.accel_range_m_s2;
+  // a force that is clipped, or turned by a rate that is, says nothing: the velocity of the centre is kept
+  const Eigen::Vector3d arm = params.lever_arm_m + nominal.lever_arm_error_m;
+  const Eigen::Vector3d gained = clipped ? Eigen::Vector3d(R_T * w.cross(w.cross(arm)))
+                                         : Eigen::Vector3d(R_T * f - dt_s * gravity * Eigen::Vector3d::UnitZ());
   nominal.p_WI_m += dt_s * (nominal.v_WI_m_s + 0.5 * gained);
   nominal.v_WI_m_s += gained;
   sums.R_s += R_T;
-  sums.f_W_m_s += pushed;
-  for (int axis = 0; axis < 3; ++axis) {
-    sums.R_f.middleCols<3>(3 * axis) += f_raw[axis] * R_T;
-    sums.R_w.middleCols<3>(3 * axis) += w_raw[axis] * R_T;
+  for (int axis = 0; axis < 3; ++axis) sums.R_w.middleCols<3>(3 * axis) += w_raw[axis] * R_T;
+  if (!clipped) {  // else no error of the force or of the attitude gets into the velocity
+    sums.f_W_m_s += R_T * f;
+    for (int axis = 0; axis < 3; ++axis) sums.R_f.middleCols<3>(3 * axis) += f_raw[axis] * R_T;
+    sums.R_wxf += R_T * w.cross(f_raw);
   }
-  sums.R_wxf += R_T * w.cross(f_raw);
   sums.w_I_rad += dt_s * w;
   sums.f_I_m_s += dt_s * f_raw;
   sums.turned_rad2_s += dt_s * w.squaredNorm();
@@ -190,8 +195,9 @@ void predict(const RollingParams& params, const RollingSums& sums, const Moving&
   const double attitude = squared(params.attitude_walk_rad_sqrts) * h +
                           squared(params.rate_error_sqrts) * sums.turned_rad2_s +
                           squared(params.clipped_rate_sigma_rad_s * sums.rate_clipped_s) +
-                          squared(params.recovered_rate_sigma_rad_s * sums.recovered_s);
+                          squared(params.recovered_rate_sigma_rad_s) * 2.0 * kRecoveredTau_s * sums.recovered_s;
   const double velocity = squared(params.velocity_walk_m_s_sqrts) * h + squared(params.shock_share * sums.shock_m_s) +
+                          squared(params.spin_force_sqrts * sums.turned_rad2_s) / h +
                           squared(params.clipped_force_sigma_m_s2 * sums.force_clipped_s);
   P.block<3, 3>(kVelocity, kVelocity) += sums.hidden_W_m_s * sums.hidden_W_m_s.transpose();
   auto diagonal = P.diagonal();
@@ -249,6 +255,8 @@ void change_floor(const RollingParams& params, RollingMode from, RollingMode to,
   if (from == RollingMode::incline && to == from) {
     P.diagonal().segment<2>(kSlope).array() += squared(params.slope_walk_sqrts) * h_s;
   }
+  // what rolls over ups and downs goes less far than it turns, by as much as they are steep
+  if (to == RollingMode::rough) P(kRadius, kRadius) += squared(params.rough_radius_walk_m_sqrts) * h_s;
   if (!forgets_slope(from, to)) return;
   P.middleRows<2>(kSlope).setZero();
   P.middleCols<2>(kSlope).setZero();
@@ -257,8 +265,11 @@ void change_floor(const RollingParams& params, RollingMode from, RollingMode to,
   x.segment<2>(kSlope) = -nominal.slope;
 }
 
-bool relevel(const RollingParams& params, const Eigen::Vector3d& f_I_m_s2, bool at_rest, RollingNominal& nominal,
+bool relevel(const RollingParams& params, const RollingSums& sums, bool at_rest, RollingNominal& nominal,
              Covariance& P) {
+  if (sums.force_clipped_s >= sums.node_s) return false;
+  if (sums.turned_rad2_s > squared(kFastTurn_rad_s) * sums.node_s) return false;
+  const Eigen::Vector3d f_I_m_s2 = sums.f_I_m_s / sums.node_s;
   const double tilt_variance = std::max(P(kAttitude, kAttitude), P(kAttitude + 1, kAttitude + 1));
   if (tilt_variance < squared(at_rest ? kDoubtfulTilt_rad : kLostTilt_rad)) return false;
   const double force = f_I_m_s2.norm();

@@ -64,9 +64,9 @@ std::optional<double> lost_velocity_variance(const RollingParams& params, double
 /// Whether the slope is forgotten on this change: what is known of it before says nothing about it after.
 bool forgets_slope(RollingMode from, RollingMode to);
 
-/// After clipping the attitude may be lost: levels it anew by the mean force `f_I_m_s2`, at rest or not, and forgets
-/// the velocity. False when there was no need.
-bool relevel(const RollingParams& params, const Eigen::Vector3d& f_I_m_s2, bool at_rest, RollingNominal& nominal,
+/// After clipping the attitude may be lost: levels it anew by the node's mean force, at rest or not, and forgets the
+/// velocity. False when there was no need, or the node's force tells nothing.
+bool relevel(const RollingParams& params, const RollingSums& sums, bool at_rest, RollingNominal& nominal,
              Covariance& P);
 
 /// Kalman update by a scalar row: measurement = row x + noise.

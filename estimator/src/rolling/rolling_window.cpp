@@ -1,16 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rolling_window.hpp"
 
+#include <algorithm>
+
 namespace tumble::rolling {
 
 namespace {
 
+constexpr double kBelieved = 5.0;  // sigmas
+
+/// A measurement further off than kBelieved is taken for a coarser one, by as much: linear corrections as large as that
+/// would bend the whole run.
 void measure(const Row& H, double measured, double variance, NodeRecord& record, Vector& x, Covariance& P) {
   const auto k = static_cast<std::size_t>(record.rows++);
   const Vector PHt = P * H.transpose();
   record.H[k] = H;
-  record.variance[k] = H.dot(PHt) + variance;
   record.innovation[k] = measured - H.dot(x);
+  record.variance[k] = std::max(H.dot(PHt) + variance, squared(record.innovation[k] / kBelieved));
   record.gain[k] = PHt / record.variance[k];
   x += record.gain[k] * record.innovation[k];
   P -= PHt * record.gain[k].transpose();
@@ -63,9 +69,7 @@ NodeRecord close_node(const RollingParams& params, const RollingSums& sums, cons
   record.B = transition(sums);
   Vector x = Vector::Zero();
   predict(params, sums, record.B, x, filter.P);
-  if (sums.force_clipped_s < sums.node_s) {
-    record.relevelled = relevel(params, sums.f_I_m_s / sums.node_s, path.at_rest, filter.nominal, filter.P);
-  }
+  record.relevelled = relevel(params, sums, path.at_rest, filter.nominal, filter.P);
   record.forgets_slope = forgets_slope(filter.mode, path.mode);
   change_floor(params, filter.mode, path.mode, sums.node_s, filter.nominal, x, filter.P);
   if (path.at_rest) {

@@ -127,6 +127,64 @@ TEST(ImuMerge, LeavesOutTheOneThatDisagrees) {
   EXPECT_EQ(state.units[0].left_out, 0);
 }
 
+/// What the mean of all units should read, at their mean place.
+Eigen::Vector3d exact_force(const Spin& spin, int k, double angle, double top) {
+  const double t = seconds(k * kPeriod_ns);
+  const Eigen::Vector3d w = spin.rate(t, top) * spin.axis, a = spin.acceleration(t, top) * spin.axis;
+  const Eigen::Vector3d p = (spin.place_m[0] + spin.place_m[1] + spin.place_m[2]) / 3.0;
+  return kGravity * (so3::exp(-angle * spin.axis) * Eigen::Vector3d::UnitZ()) + a.cross(p) + w.cross(w.cross(p));
+}
+
+TEST(ImuMerge, TakesOutMisalignmentsThatLargeForcesShow) {
+  const Spin spin;
+  const ImuMerge merge(params(spin));
+  ImuMerge::State state;
+  std::array<Eigen::Matrix3d, 3> errors;  // together nothing, as what all share cannot be told
+  errors[0] << 3e-3, -2e-3, 1e-3, 2e-3, -1e-3, 3e-3, -3e-3, 1e-3, 2e-3;
+  errors[1] << -1e-3, 3e-3, 2e-3, -3e-3, 2e-3, -1e-3, 1e-3, 2e-3, -3e-3;
+  errors[2] = -errors[0] - errors[1];
+  double angle = 0.0, plain = 0.0, corrected = 0.0;
+  for (int k = 0; k <= 500; ++k) {
+    angle += seconds(kPeriod_ns) * spin.rate(seconds(k * kPeriod_ns), 25.0);
+    std::array<ImuSample, 3> now;
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (std::size_t unit = 0; unit < 3; ++unit) {
+      now[unit] = spin.sample(unit, k, angle, 25.0);
+      now[unit].specific_force_m_s2 += (errors[unit] * now[unit].specific_force_m_s2).eval();
+      mean += now[unit].specific_force_m_s2 / 3.0;
+    }
+    ImuSample merged;
+    ASSERT_TRUE(merge.step(now, state, merged).ok());
+    if (k < 250 || k >= 395) continue;  // the rate is constant from 0.4 to 1.6 s
+    const Eigen::Vector3d exact = exact_force(spin, k, angle, 25.0);
+    plain = std::max(plain, (mean - exact).norm());
+    corrected = std::max(corrected, (merged.specific_force_m_s2 - exact).norm());
+  }
+  EXPECT_GT(plain, 0.1);  // or the test shows nothing
+  EXPECT_LT(corrected, 0.3 * plain);
+}
+
+TEST(ImuMerge, LeavesOutARailThatABlowHides) {
+  const Spin spin;
+  const ImuMerge merge(params(spin));
+  ImuMerge::State state;
+  for (int k = 0; k < 50; ++k) {
+    std::array<ImuSample, 3> now = {spin.sample(0, 0, 0.0, 0.0), spin.sample(1, 0, 0.0, 0.0),
+                                    spin.sample(2, 0, 0.0, 0.0)};
+    const bool blow = k == 25;
+    for (std::size_t unit = 0; unit < 3; ++unit) {
+      now[unit].time_ns = k * kPeriod_ns;
+      if (blow) now[unit].specific_force_m_s2.x() += unit == 1 ? 20.0 : 50.0;  // far from the rail, as a mean
+    }
+    ImuSample merged;
+    ASSERT_TRUE(merge.step(now, state, merged).ok());
+    EXPECT_NEAR(merged.specific_force_m_s2.x(), blow ? 50.0 : 0.0, 1e-6) << k;
+    EXPECT_EQ(merged.device_clip_flags, 0) << k;
+  }
+  EXPECT_EQ(state.units[1].left_out, 10);  // for 40 ms, as blows come in rows
+  EXPECT_EQ(state.units[0].left_out, 0);
+}
+
 TEST(ImuMerge, RefusesBadInput) {
   const Spin spin;
   ImuMerge::Params bad = params(spin);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "tumble/attitude/force_errors.hpp"
 #include "tumble/attitude/rate_recovery.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
@@ -18,13 +19,15 @@ namespace tumble {
 /// place: no angular acceleration is needed. Where three or more agree but for one, that one is left out of the sample,
 /// and what its place would have added is made up for with the rate of the others. Each unit's own bias, scale,
 /// misalignment and time offset about the mean are estimated by a small Kalman filter while the body turns; the time
-/// offset is taken out when it is beyond doubt, the others average out.
+/// offset is taken out when it is beyond doubt, the others average out. The accelerometers' do not in fast turns, where
+/// large forces cancel in the mean: they are told apart and taken out (ForceErrors).
 ///
-/// A unit whose accelerometer stands at its rail is left out of the force. Where the gyros do, three units or more tell
-/// the rate by what the turning does to their accelerometers (RateRecovery); the merged sample's clip flags say when
-/// they could not.
+/// A unit whose accelerometer stands at its rail is left out of the force, and one that may have met it within a sample
+/// and disagrees with the others; where most are doubtful, the merged force is flagged as clipped. Where
+/// the gyros do, three units or more tell the rate by what the turning does to their accelerometers (RateRecovery); the
+/// merged sample's clip flags say when they could not.
 ///
-/// Not modelled: lever arms in error (the mean's is), clocks of different rates, an error that all units share.
+/// Not modelled: clocks of different rates, an error that all units share.
 class ImuMerge {
  public:
   static constexpr int kImus = 4;
@@ -40,7 +43,10 @@ class ImuMerge {
     double offset_sigma_s = 3e-3;                 ///< prior of a unit's time offset; zero: none; bound [0, 0.1]
     double gyro_range_rad_s = 1e3;                ///< readings from here on are at the rail; bound (0, 1e3]
     double accel_range_m_s2 = 1e5;                ///< bound (0, 1e5]
-    double gap_max_s = 1.0;                       ///< bound (0, 1e4]
+    /// A reading from this share of the range on may hide a rail met within its sample; bound (0, 1].
+    double hidden_share = 0.15;
+    double hidden_force_m_s2 = 3.0;  ///< by which it then may disagree with another; bound (0, 1e4]
+    double gap_max_s = 1.0;          ///< bound (0, 1e4]
   };
 
   /// Errors of one unit's rate about the mean of all.
@@ -48,12 +54,14 @@ class ImuMerge {
     Eigen::Matrix<double, kErrors, 1> x = Eigen::Matrix<double, kErrors, 1>::Zero();
     Eigen::Matrix<double, kErrors, kErrors> P = Eigen::Matrix<double, kErrors, kErrors>::Zero();
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero(), last_force_m_s2 = Eigen::Vector3d::Zero();
+    double suspect_s = 0.0;     ///< for so long it is still left out of the force
     std::int64_t left_out = 0;  ///< samples
     double offset_s() const { return x[kErrors - 1]; }
     bool operator==(const Unit&) const = default;
   };
   struct State {
     std::array<Unit, kImus> units{};
+    ForceErrors::State forces;
     RateRecovery::State recovery;
     Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();         ///< merged, last sample
     Eigen::Vector3d rate_before_rad_s = Eigen::Vector3d::Zero();  ///< and the one before
@@ -72,11 +80,18 @@ class ImuMerge {
   Status step(std::span<const ImuSample> samples, State& state, ImuSample& merged) const;
 
  private:
+  using Vectors = std::array<Eigen::Vector3d, kImus>;
+
   void learn(std::span<const Eigen::Vector3d> rates, double dt_s, State& state) const;
+  void leave_out_hidden(std::span<const ImuSample> samples, const Vectors& forces, const Eigen::Vector3d& rate,
+                        double dt_s, State& state, std::array<bool, kImus>& used) const;
+  void recover(std::span<const ImuSample> samples, double dt_s, State& state, ImuSample& merged) const;
+  static ForceErrors::Params force_params(const Params& params);
   static RateRecovery::Params recovery_params(const Params& params);
 
   Params params_;
   Eigen::Vector3d p_C_m_ = Eigen::Vector3d::Zero();
+  ForceErrors forces_;
   RateRecovery recovery_;
 };
 

@@ -46,12 +46,14 @@ struct RollingParams {
   double attitude_walk_rad_sqrts = 1e-4;  ///< 0.006 deg/sqrt(s)
   double rate_error_sqrts = 6e-4;         ///< per rad/s turned
   double velocity_walk_m_s_sqrts = 6e-3;
+  double spin_force_sqrts = 4e-5;  ///< velocity walk more, per (rad/s)^2 turned: what errors make of large forces
   double gyro_bias_walk_rad_s_sqrts = 1.7e-5;
   double accel_bias_walk_m_s2_sqrts = 2e-3;
   double grip_sigma_m_s = 3e-3;      ///< of the contact velocity while gripping
   double grip_sigma_share = 1.5e-3;  ///< more, as a share of the rolling speed
   double vertical_sigma_m_s = 8e-3;
-  double rough_share = 0.04;  ///< more on a rough floor, as a share of the rolling speed
+  double rough_share = 0.055;               ///< more on a rough floor, as a share of the rolling speed
+  double rough_radius_walk_m_sqrts = 1e-4;  ///< of the radius that it rolls with there; bound [0, 1]
   double slope_walk_sqrts = 0.02;
   double shock_share = 0.06;  ///< of the velocity that a shock gives: error of its timing and direction
   double rest_velocity_sigma_m_s = 2e-3;

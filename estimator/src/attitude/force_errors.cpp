@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/attitude/force_errors.hpp"
+
+#include <algorithm>
+
+#include "tumble/common/so3.hpp"
+#include "tumble/common/status.hpp"
+
+namespace tumble {
+
+namespace {
+
+constexpr int kBias = 0, kScale = 3, kPlace = 12;
+
+double squared(double x) {
+  return x * x;
+}
+
+}  // namespace
+
+ForceErrors::ForceErrors(const Params& p) : params_(p) {
+  require_within("count", p.count, 1, kUnits);
+  require_within("bias_sigma_m_s2", p.bias_sigma_m_s2, 0.0, 1e3);
+  require_within("scale_sigma", p.scale_sigma, 0.0, 1.0);
+  require_within("place_sigma_m", p.place_sigma_m, 0.0, 10.0);
+  require_within("noise_m_s2", p.noise_m_s2, 1e-12, 1e3);
+  require_within("acceleration_share", p.acceleration_share, 0.0, 1.0);
+  require_within("doubt", p.doubt, 1e-12, 1e3);
+}
+
+void ForceErrors::learn(std::span<const Eigen::Vector3d> forces, const Eigen::Vector3d& rate,
+                        const Eigen::Vector3d& acceleration, State& state) const {
+  const auto count = static_cast<std::size_t>(params_.count);
+  if (!state.started) {
+    for (int k = 0; k < params_.count; ++k) {
+      auto prior = state.P.diagonal().segment<kPerUnit>(kPerUnit * k);
+      prior.segment<3>(kBias).setConstant(squared(params_.bias_sigma_m_s2));
+      prior.segment<9>(kScale).setConstant(squared(params_.scale_sigma));
+      prior.segment<3>(kPlace).setConstant(squared(params_.place_sigma_m));
+    }
+    state.started = true;
+  }
+  const Eigen::Matrix3d by_place = so3::hat(acceleration) + so3::hat(rate) * so3::hat(rate);
+  Eigen::Vector3d mean_force = Eigen::Vector3d::Zero(), mean_place = Eigen::Vector3d::Zero();
+  for (std::size_t k = 0; k < count; ++k) {
+    mean_force += forces[k] / params_.count;
+    mean_place += params_.p_C_m[k] / params_.count;
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto column = static_cast<Eigen::Index>(k);
+    state.difference_m_s2.col(column) += forces[k] - mean_force - by_place * (params_.p_C_m[k] - mean_place);
+    state.force_m_s2.col(column) += forces[k];
+  }
+  state.by_place += by_place;
+  state.acceleration_rad_s2 += acceleration.norm();
+  if (++state.samples == kSpan) update(state);
+}
+
+void ForceErrors::update(State& state) const {
+  const double share = 1.0 / params_.count;
+  double reach_m = 0.0;
+  for (int k = 1; k < params_.count; ++k) {
+    reach_m = std::max(reach_m, (params_.p_C_m[static_cast<std::size_t>(k)] - params_.p_C_m[0]).norm());
+  }
+  const double variance =
+      squared(params_.noise_m_s2) + squared(params_.acceleration_share * reach_m * state.acceleration_rad_s2 / kSpan);
+  const Eigen::Index used = kPerUnit * params_.count;
+  auto P = state.P.topLeftCorner(used, used);
+  for (int k = 0; k < params_.count; ++k) {
+    for (int axis = 0; axis < 3; ++axis) {
+      Vector row = Vector::Zero();
+      for (int j = 0; j < params_.count; ++j) {
+        const double weight = (j == k ? 1.0 : 0.0) - share;
+        auto own = row.segment<kPerUnit>(kPerUnit * j);
+        own[kBias + axis] = weight;
+        own.segment<3>(kScale + 3 * axis) = weight / kSpan * state.force_m_s2.col(j);
+        own.segment<3>(kPlace) = weight / kSpan * state.by_place.row(axis).transpose();
+      }
+      Vector PHt = Vector::Zero();
+      PHt.head(used).noalias() = P * row.head(used);
+      const double s = row.dot(PHt) + variance;
+      const double innovation = state.difference_m_s2(axis, k) / kSpan - row.dot(state.x);
+      if (squared(innovation) > squared(params_.doubt) * s) continue;  // a blow within the samples
+      state.x += PHt * (innovation / s);
+      P.noalias() -= PHt.head(used) * (PHt.head(used) / s).transpose();
+    }
+  }
+  state.P = (0.5 * (state.P + state.P.transpose())).eval();
+  state.difference_m_s2.setZero();
+  state.force_m_s2.setZero();
+  state.by_place.setZero();
+  state.acceleration_rad_s2 = 0.0;
+  state.samples = 0;
+}
+
+Eigen::Vector3d ForceErrors::corrected(int k, const Eigen::Vector3d& force, const State& state) {
+  if (!state.started) return force;
+  const auto own = state.x.segment<kPerUnit>(kPerUnit * k);
+  Eigen::Vector3d out = force - own.segment<3>(kBias);
+  for (int axis = 0; axis < 3; ++axis) out[axis] -= own.segment<3>(kScale + 3 * axis).dot(force);
+  return out;
+}
+
+}  // namespace tumble
