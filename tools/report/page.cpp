@@ -135,6 +135,7 @@ std::string page_html(const PageContent& content, const std::string& plotly_bund
   body += "<h2>All draws</h2>\n<p>Each point is one draw, each box the quartiles of one method.</p>\n";
   for (const Figure& figure : content.figures) body += plot_html(figure);
   body += scores_html(content.summary);
+  body += curves_html(content.curves, figures);
   body += "<h2>Draws</h2>\n" + draws_html(content.summary) + rejected_html(content.rejected);
   const std::vector<Figure> motions = distribution_figures(content.motions);
   body += distributions_html(content.motions, motions);

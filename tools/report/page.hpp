@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "scenarios/certificate/certificate.hpp"
+#include "tools/report/curves.hpp"
 #include "tools/report/distributions.hpp"
 #include "tools/report/example.hpp"
 #include "tools/report/plots.hpp"
@@ -20,6 +21,7 @@ struct PageContent {
   std::vector<Figure> figures;    ///< of all draws
   std::vector<Example> examples;  ///< single draws, with pictures
   std::vector<Spread> motions;    ///< of all draws
+  std::vector<Curve> curves;
   std::vector<scenarios::RejectedDraw> rejected;
   std::vector<scenarios::Certificate> certificates;
   std::vector<std::string> warnings;  ///< what is missing, and why

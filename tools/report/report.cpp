@@ -81,6 +81,7 @@ PageContent report_content(const scenarios::Results& results, const Summary& sum
   content.summary = summary;
   content.figures = figures_of_all_draws(summary);
   content.motions = motion_spreads(results.draws());
+  content.curves = find_curves(results);
   content.rejected = results.rejected();
   content.certificates = results.certificates();
   if (content.certificates.empty()) content.warnings.push_back("These results hold no certificate of their build.");
