@@ -9,6 +9,7 @@
 #include "tools/report/distributions.hpp"
 #include "tools/report/example.hpp"
 #include "tools/report/plots.hpp"
+#include "tools/report/sphere_figures.hpp"
 #include "tools/report/summary.hpp"
 
 namespace tumble::tools {
@@ -20,6 +21,7 @@ struct PageContent {
   Summary summary;
   std::vector<Figure> figures;    ///< of all draws
   std::vector<Example> examples;  ///< single draws, with pictures
+  std::vector<SphereRoll> rolls;  ///< single draws of a sphere, as plots
   std::vector<Spread> motions;    ///< of all draws
   std::vector<Curve> curves;
   std::vector<scenarios::RejectedDraw> rejected;
