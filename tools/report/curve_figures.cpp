@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 
 #include "tools/report/curves.hpp"
 #include "tools/report/html.hpp"

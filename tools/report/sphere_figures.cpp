@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -117,7 +119,18 @@ std::optional<Span> longest_rest(const scenarios::TruthTrack& track, std::int64_
   return longest;
 }
 
-/// Tilt of attitudes within a span against their mean, along one direction [degrees].
+/// The direction in which unit vectors vary most about their mean.
+Eigen::Vector3d liveliest(const std::vector<std::pair<std::int64_t, Eigen::Vector3d>>& up,
+                          const Eigen::Vector3d& mean) {
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const auto& [time_ns, direction] : up) {
+    const Eigen::Vector3d off = direction - mean;
+    spread += off * off.transpose();
+  }
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(2);
+}
+
+/// Tilt of attitudes within a span against their mean, along the direction in which it varies most [degrees].
 void add_tilt(const std::vector<AttitudeState>& attitudes, const Span& span, json& trace) {
   std::vector<std::pair<std::int64_t, Eigen::Vector3d>> up;
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -128,10 +141,11 @@ void add_tilt(const std::vector<AttitudeState>& attitudes, const Span& span, jso
   }
   if (up.empty()) return;
   mean.normalize();
-  const Eigen::Vector3d across = mean.unitOrthogonal();
+  const Eigen::Vector3d across = liveliest(up, mean);
   for (const auto& [time_ns, direction] : up) {
     trace["x"].push_back(rounded(seconds(time_ns)));
-    trace["y"].push_back(rounded(std::asin(std::clamp(across.dot(direction), -1.0, 1.0)) * 180.0 / std::numbers::pi));
+    trace["y"].push_back(
+        rounded(std::asin(std::clamp(across.dot(direction - mean), -1.0, 1.0)) * 180.0 / std::numbers::pi));
   }
 }
 

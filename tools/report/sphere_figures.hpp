@@ -34,7 +34,8 @@ Figure sphere_track_figure(const SphereRoll& roll);
 Figure sphere_speed_figure(const SphereRoll& roll);
 /// Height of the centre above where it started, over time.
 Figure sphere_height_figure(const SphereRoll& roll);
-/// Tilt at standstill against its mean over the longest rest, in one direction: jitter and drift. Without attitude
+/// Tilt at standstill against its mean over the longest rest, in the direction in which it varies most: jitter and
+/// drift. Without attitude
 /// methods or a rest: empty.
 Figure sphere_standstill_figure(const SphereRoll& roll);
 
