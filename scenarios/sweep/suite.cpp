@@ -33,7 +33,7 @@ void read_seeds(const YamlNode& node, Suite& suite) {
 /// "a + b" as its keys.
 std::vector<std::string> keys_of(const std::string& text, const YamlNode& node) {
   std::vector<std::string> keys;
-  std::stringstream stream(text);
+  std::stringstream stream(text + "+");  // what ends in a separator has an empty key behind it
   for (std::string key; std::getline(stream, key, '+');) {
     std::erase(key, ' ');
     if (key.empty() || std::find(keys.begin(), keys.end(), key) != keys.end()) {

@@ -171,7 +171,9 @@ Figure curve_figure(const Curve& curve) {
   for (json& each : lines) figure.data.push_back(std::move(each));
   figure.layout = {
       {"xaxis", x_axis(curve, with_unit(curve.axis, x_style.unit))},
-      {"yaxis", {{"title", {{"text", with_unit(curve.metric, y_style.unit)}}}, {"domain", {kMetricDomainLow, 1.0}}}},
+      {"yaxis",
+       {{"title", {{"text", y_style.unit.empty() ? curve.metric : y_style.unit}}},
+        {"domain", {kMetricDomainLow, 1.0}}}},
       {"yaxis2", {{"title", {{"text", "failed [%]"}}}, {"domain", {0.0, kFailureDomainHigh}}, {"range", {-4, 104}}}}};
   if (wants_log(curve))
     figure.layout["yaxis"]["type"] = "log";

@@ -55,11 +55,11 @@ class CurveSuiteTest : public testing::TemporaryFolder {
 };
 
 TEST_F(CurveSuiteTest, ReadsKeysAndValues) {
-  const Suite read = suite("  given.time_offset_s: [0, 0.01]\n  world.room_half_m + world.clear_radius_m: [2, 3.5]\n");
+  const Suite read = suite("  given.time_offset_s: [0, 0.01]\n  world.room_half_m + world.wall_height_m: [2.6, 3.5]\n");
   ASSERT_EQ(read.curves.size(), 2u);
   EXPECT_EQ(read.curves[0].key(), "given.time_offset_s");
   EXPECT_EQ(read.curves[0].values, (std::vector<double>{0.0, 0.01}));
-  EXPECT_EQ(read.curves[1].key(), "world.room_half_m+world.clear_radius_m");
+  EXPECT_EQ(read.curves[1].key(), "world.room_half_m+world.wall_height_m");
   EXPECT_EQ(read.curves[1].keys.size(), 2u);
 }
 
