@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/synthetic_recording.hpp"
 #include "scenarios/scoring/clipping.hpp"
