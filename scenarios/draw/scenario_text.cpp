@@ -125,6 +125,10 @@ std::vector<Scenario::Sensor> parse_sensors(const YamlNode& list, const Registry
 
 }  // namespace
 
+const sim::Parameter& duration_parameter() {
+  return kDuration;
+}
+
 Scenario parse_scenario(const std::string& text, const std::string& file, const Registry& registry) {
   static const std::array<std::string, 7> kKeys = {"name", "doc", "duration_s", "world", "robot", "motion", "sensors"};
   const auto fields = YamlNode::parse(text, file).fields(kKeys);

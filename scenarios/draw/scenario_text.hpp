@@ -13,6 +13,9 @@ namespace tumble::scenarios {
 /// against the parameter's bounds. `file` begins the messages. Throws BadInput with file, line and place.
 Scenario parse_scenario(const std::string& text, const std::string& file, const Registry& registry);
 
+/// Bounds of a scenario's duration, which belongs to no component.
+const sim::Parameter& duration_parameter();
+
 /// The data sheet that `text` holds, checked against the parameters of its kind of sensor: names, units, bounds.
 DataSheet parse_data_sheet(const std::string& text, const std::string& file, const Registry& registry);
 

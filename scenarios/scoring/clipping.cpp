@@ -45,14 +45,25 @@ std::uint8_t ClippingTruth::clipped_axes(std::size_t index) const {
   return axes;
 }
 
-std::optional<ClippingTruth::Sample> ClippingTruth::at(std::int64_t time_ns) const {
+double ClippingTruth::depth_rad_s(std::size_t index) const {
+  return (truth_->gyro_unclipped_rad_s[index] - record_->gyro_rad_s[index]).lpNorm<Eigen::Infinity>();
+}
+
+std::optional<std::size_t> ClippingTruth::index_at(std::int64_t time_ns) const {
   const auto& times = record_->time_ns;
   const auto found = std::lower_bound(times.begin(), times.end(), time_ns);
-  if (found == times.end()) return std::nullopt;
-  const auto index = static_cast<std::size_t>(found - times.begin());
-  if (*found == time_ns) return Sample{truth_->rate_rad_s[index], clipped_axes(index)};
-  if (index == 0) return std::nullopt;
-  const double share = static_cast<double>(time_ns - times[index - 1]) / static_cast<double>(*found - times[index - 1]);
+  if (found == times.end() || (found == times.begin() && *found != time_ns)) return std::nullopt;
+  return static_cast<std::size_t>(found - times.begin());
+}
+
+std::optional<ClippingTruth::Sample> ClippingTruth::at(std::int64_t time_ns) const {
+  const auto& times = record_->time_ns;
+  const std::optional<std::size_t> found = index_at(time_ns);
+  if (!found) return std::nullopt;
+  const std::size_t index = *found;
+  if (times[index] == time_ns) return Sample{truth_->rate_rad_s[index], clipped_axes(index)};
+  const double share =
+      static_cast<double>(time_ns - times[index - 1]) / static_cast<double>(times[index] - times[index - 1]);
   return Sample{(1.0 - share) * truth_->rate_rad_s[index - 1] + share * truth_->rate_rad_s[index], clipped_axes(index)};
 }
 

@@ -28,8 +28,13 @@ class ClippingTruth {
   /// axes are those of the sample whose window holds the instant. Nothing outside of the recording. O(log N).
   std::optional<Sample> at(std::int64_t time_ns) const;
 
+  /// The sample whose window holds the instant. Nothing outside of the recording. O(log N).
+  std::optional<std::size_t> index_at(std::int64_t time_ns) const;
+
   std::size_t size() const { return record_->time_ns.size(); }
   std::uint8_t clipped_axes(std::size_t index) const;
+  /// What the rail took from the axis that lost most, against the unclipped twin.
+  double depth_rad_s(std::size_t index) const;
 
  private:
   const sim::ImuRecord* record_;

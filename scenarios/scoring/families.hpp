@@ -10,6 +10,7 @@
 namespace tumble::scenarios {
 
 std::vector<Metric> rate_metrics();
+std::vector<Metric> binned_rate_metrics();
 std::vector<Metric> attitude_metrics();
 std::vector<Metric> position_metrics();
 std::vector<Metric> slip_metrics();

@@ -85,13 +85,20 @@ MotionSummary summarise_motion(const sim::Sensors& sensors, const sim::Truth& tr
   const auto air = std::count(begin, begin + static_cast<std::ptrdiff_t>(steps), sim::ContactLabel::air);
   out.flight_share = static_cast<double>(air) / static_cast<double>(steps);
   const sim::ImuRecord& primary = sensors.imus.front();
+  std::size_t in_a_row = 0;
   for (std::size_t i = 0; i < clipping.size(); ++i) {
     const auto k = static_cast<std::size_t>(std::max<std::int64_t>(0, primary.time_ns[i]) / truth.period_ns);
     if (k < span.first || k > span.last) continue;
     const std::uint8_t clipped = clipping.clipped_axes(i);
     const int axes = std::popcount(clipped);
     ++out.samples;
-    if (axes >= 1) ++out.clipped_samples;
+    in_a_row = axes >= 1 ? in_a_row + 1 : 0;
+    if (axes >= 1) {
+      ++out.clipped_samples;
+      out.clip_depth_max_rad_s = std::max(out.clip_depth_max_rad_s, clipping.depth_rad_s(i));
+      out.clip_length_max_s = std::max(out.clip_length_max_s,
+                                       1e-9 * static_cast<double>(primary.period_ns) * static_cast<double>(in_a_row));
+    }
     for (std::size_t j = 0; j < 3; ++j) out.axis_clipped_samples[j] += (clipped >> j) & 1u;
     if (axes >= 2) ++out.several_axes_samples;
     if (accel_clipped(primary, truth.imus.front(), i)) ++out.accel_clipped_samples;

@@ -12,6 +12,7 @@
 
 #include "scenarios/sweep/message.hpp"
 #include "scenarios/sweep/motion_values.hpp"
+#include "scenarios/sweep/variation.hpp"
 #include "sim/lidar/surface.hpp"
 
 namespace tumble::scenarios {
@@ -56,6 +57,20 @@ bool read_until(Process& process, double deadline_s, std::string& buffer) {
   }
 }
 
+/// A draw as a setting changes it for the methods; empty where it does not.
+struct Given {
+  Setting setting;
+  std::optional<SimulatedDraw> draw, scored;
+};
+
+Given changed(const SimulatedDraw& draw, const Setting& setting) {
+  Given given{setting, {}, {}};
+  if (reach(setting) != Reach::input) return given;
+  given.draw = with_setting(draw, setting);
+  given.scored = scored_by(draw, *given.draw);
+  return given;
+}
+
 }  // namespace
 
 Outcome run_isolated(const Method& method, const SimulatedDraw& draw, const SimulatedDraw& scored,
@@ -86,22 +101,28 @@ Outcome run_isolated(const Method& method, const SimulatedDraw& draw, const Simu
   return outcome;
 }
 
-void run_draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed,
-              std::span<const Method* const> methods, double timeout_s, int fd) {
+void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int fd) {
   std::optional<SimulatedDraw> draw;
   std::optional<sim::Surface> surface;
+  const std::string& name = task.scenario->name;
   try {
-    draw = simulate_draw(data, scenario, seed, 1);
-    const bool maps = std::any_of(methods.begin(), methods.end(),
-                                  [](const Method* method) { return method->info.kind == Kind::slam; });
+    draw = simulate_draw(data, with_setting(*task.scenario, task.setting), task.seed, 1);
+    const bool maps = std::any_of(task.runs.begin(), task.runs.end(),
+                                  [](const DrawTask::Run& run) { return run.method->info.kind == Kind::slam; });
     if (maps) surface.emplace(draw->situation, data.models());
-    write_all(fd, to_line({{}, {}, motion_values(scenario.name, seed, draw->recording)}));
+    DrawValues values = motion_values(name, task.seed, draw->recording);
+    values.setting = task.setting;
+    write_all(fd, to_line({{}, {}, std::move(values)}));
   } catch (const std::exception& error) {
-    write_all(fd, to_line({{}, RejectedDraw{scenario.name, seed, one_line(error.what())}}));
+    write_all(fd, to_line({{}, RejectedDraw{name, task.seed, one_line(error.what()), task.setting}}));
     return;
   }
-  for (const Method* method : methods) {
-    const Outcome outcome = run_isolated(*method, *draw, *draw, surface ? &*surface : nullptr, timeout_s);
+  Given given;
+  for (const DrawTask::Run& run : task.runs) {
+    if (run.setting != given.setting) given = changed(*draw, run.setting);
+    Outcome outcome = run_isolated(with_setting(*run.method, run.setting), given.draw ? *given.draw : *draw,
+                                   given.scored ? *given.scored : *draw, surface ? &*surface : nullptr, timeout_s);
+    outcome.setting = run.setting;
     if (!write_all(fd, to_line({outcome, {}}))) return;
   }
   write_all(fd, to_line({}));

@@ -3,15 +3,28 @@
 
 #include <span>
 
+#include <vector>
+
 #include "scenarios/sweep/evaluate.hpp"
 #include "scenarios/sweep/process.hpp"
 
 namespace tumble::scenarios {
 
-/// Simulates one draw and tells `fd` what came of it, one message a line: a rejection, or an outcome per method as each
+/// One simulation and what is run on it.
+struct DrawTask {
+  const Scenario* scenario = nullptr;
+  std::uint64_t seed = 0;
+  Setting setting;  ///< that the simulation is made with
+  struct Run {
+    const Method* method;
+    Setting setting;  ///< the simulation's, or one that leaves the simulation alone
+  };
+  std::vector<Run> runs;
+};
+
+/// Simulates one draw and tells `fd` what came of it, one message a line: a rejection, or an outcome per run as each
 /// ends, and an empty message at the end. Runs in a process of its own.
-void run_draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed,
-              std::span<const Method* const> methods, double timeout_s, int fd);
+void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int fd);
 
 /// Runs one method in a process of its own for at most `timeout_s` of wall time. A crash, a time-out or an exception is
 /// an outcome. Cost: CPU and peak memory of the estimate alone, memory above what the draw's process held. The estimate

@@ -73,6 +73,13 @@ void assess(const Method& method, const SimulatedDraw& draw, const sim::Surface*
   }
 }
 
+SimulatedDraw scored_by(const SimulatedDraw& draw, const SimulatedDraw& given) {
+  SimulatedDraw scored = draw;
+  std::vector<sim::ImuRecord>& imus = scored.recording.sensors.imus;
+  for (std::size_t i = 0; i < imus.size(); ++i) imus[i].time_ns = given.recording.sensors.imus[i].time_ns;
+  return scored;
+}
+
 double process_cpu_s() {
   timespec now{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);

@@ -33,6 +33,10 @@ Estimate run_method(const Method& method, const SimulatedDraw& draw, Outcome& ou
 void assess(const Method& method, const SimulatedDraw& draw, const sim::Surface* surface, const Estimate& estimate,
             Outcome& outcome);
 
+/// The draw as it was, but with the stamps of `given`'s IMUs: an estimate is held to the truth of the sample whose
+/// stamp it bears, also where the sensors that a method was given have been changed.
+SimulatedDraw scored_by(const SimulatedDraw& draw, const SimulatedDraw& given);
+
 /// CPU time that this process has used [s].
 double process_cpu_s();
 

@@ -26,6 +26,14 @@ std::vector<Score> scores_from(const json& pairs) {
   return scores;
 }
 
+json to_json(const Setting& setting) {
+  return json::array({setting.key, setting.value});
+}
+
+Setting setting_from(const json& pair) {
+  return {pair.at(0).get<std::string>(), pair.at(1).get<double>()};
+}
+
 json to_json(const Outcome& outcome) {
   return {{"scenario", outcome.scenario},
           {"seed", outcome.seed},
@@ -35,7 +43,8 @@ json to_json(const Outcome& outcome) {
           {"message", outcome.message},
           {"scores", to_json(outcome.scores)},
           {"recording_digest", outcome.recording_digest},
-          {"estimate_digest", outcome.estimate_digest}};
+          {"estimate_digest", outcome.estimate_digest},
+          {"setting", to_json(outcome.setting)}};
 }
 
 Outcome outcome_from(const json& object) {
@@ -49,6 +58,7 @@ Outcome outcome_from(const json& object) {
   outcome.recording_digest = object.at("recording_digest").get<std::string>();
   outcome.estimate_digest = object.at("estimate_digest").get<std::string>();
   outcome.scores = scores_from(object.at("scores"));
+  outcome.setting = setting_from(object.at("setting"));
   return outcome;
 }
 
@@ -60,11 +70,14 @@ std::string to_line(const Message& message) {
   if (message.rejected) {
     object["rejected"] = {{"scenario", message.rejected->scenario},
                           {"seed", message.rejected->seed},
-                          {"message", message.rejected->message}};
+                          {"message", message.rejected->message},
+                          {"setting", to_json(message.rejected->setting)}};
   }
   if (message.draw) {
-    object["draw"] = {
-        {"scenario", message.draw->scenario}, {"seed", message.draw->seed}, {"values", to_json(message.draw->values)}};
+    object["draw"] = {{"scenario", message.draw->scenario},
+                      {"seed", message.draw->seed},
+                      {"values", to_json(message.draw->values)},
+                      {"setting", to_json(message.draw->setting)}};
   }
   // text that is not UTF-8 must not stop an outcome
   return object.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
@@ -80,12 +93,12 @@ std::optional<Message> from_line(const std::string& line) {
       const json& rejected = object.at("rejected");
       message.rejected =
           RejectedDraw{rejected.at("scenario").get<std::string>(), rejected.at("seed").get<std::uint64_t>(),
-                       rejected.at("message").get<std::string>()};
+                       rejected.at("message").get<std::string>(), setting_from(rejected.at("setting"))};
     }
     if (object.contains("draw")) {
       const json& draw = object.at("draw");
       message.draw = DrawValues{draw.at("scenario").get<std::string>(), draw.at("seed").get<std::uint64_t>(),
-                                scores_from(draw.at("values"))};
+                                scores_from(draw.at("values")), setting_from(draw.at("setting"))};
     }
     return message;
   } catch (const json::exception&) {

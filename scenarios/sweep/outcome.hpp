@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -10,6 +11,15 @@
 #include "scenarios/scoring/score.hpp"
 
 namespace tumble::scenarios {
+
+/// The point of a curve that a row belongs to (variation.hpp): what was varied, and its value. Without a key: the
+/// scenario and the methods as they are.
+struct Setting {
+  std::string key;
+  double value = 0.0;
+  bool is_plain() const { return key.empty(); }
+  auto operator<=>(const Setting&) const = default;
+};
 
 /// One row of the results: what one method did on one draw.
 struct Outcome {
@@ -22,6 +32,7 @@ struct Outcome {
   std::vector<Score> scores;
   std::string recording_digest;
   std::string estimate_digest;  ///< of the estimate's numbers, 32 hexadecimal digits
+  Setting setting = {};
 };
 
 /// What the motion of one draw was like, whatever the methods make of it (scenarios/scoring/motion_summary.hpp).
@@ -29,6 +40,7 @@ struct DrawValues {
   std::string scenario;
   std::uint64_t seed = 0;
   std::vector<Score> values;
+  Setting setting = {};
 };
 
 /// A draw that could not be simulated is an outcome of its own: kind and method empty in the database.
@@ -36,6 +48,7 @@ struct RejectedDraw {
   std::string scenario;
   std::uint64_t seed = 0;
   std::string message;
+  Setting setting = {};
 };
 
 /// Digest of all numbers of an estimate (XXH3, 128 bit), costs and health timings excluded.

@@ -45,6 +45,19 @@ Kind kind_named(const std::string& name, const std::filesystem::path& path) {
   throw BadInput(path.string() + ": unknown kind '" + name + "'");
 }
 
+/// The condition that picks `rows`, for a table or a join with the column `varied`.
+const char* picked(Rows rows) {
+  switch (rows) {
+    case Rows::plain:
+      return "varied = ''";
+    case Rows::curves:
+      return "varied <> ''";
+    case Rows::all:
+      return "1";
+  }
+  return "0";
+}
+
 int open_flags(Results::Mode mode) {
   return mode == Results::Mode::read_only ? SQLite::OPEN_READONLY : SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE;
 }
@@ -115,9 +128,10 @@ struct Results::Impl {
 
   void store(const std::string& kind, const Outcome& outcome) {
     SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
-    SQLite::Statement insert(database,
-                             "INSERT OR REPLACE INTO outcomes (scenario, seed, kind, method, status, message, "
-                             "recording_digest, estimate_digest) VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
+    SQLite::Statement insert(
+        database,
+        "INSERT OR REPLACE INTO outcomes (scenario, seed, kind, method, status, message, "
+        "recording_digest, estimate_digest, varied, setting) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     insert.bind(1, outcome.scenario);
     insert.bind(2, stored_seed(outcome.seed));
     insert.bind(3, kind);
@@ -126,6 +140,8 @@ struct Results::Impl {
     insert.bind(6, outcome.message);
     insert.bind(7, outcome.recording_digest);
     insert.bind(8, outcome.estimate_digest);
+    insert.bind(9, outcome.setting.key);
+    insert.bind(10, outcome.setting.value);
     insert.exec();
     const std::int64_t id = database.getLastInsertRowid();
     SQLite::Statement value(database, "INSERT OR REPLACE INTO score_values VALUES (?, ?, ?)");
@@ -165,18 +181,21 @@ void Results::store(const RejectedDraw& rejected) {
   outcome.seed = rejected.seed;
   outcome.status = kRejected;
   outcome.message = rejected.message;
+  outcome.setting = rejected.setting;
   impl_->guarded([&] { impl_->store("", outcome); });
 }
 
 void Results::store(const DrawValues& draw) {
   impl_->guarded([&] {
     SQLite::Transaction transaction(impl_->database, SQLite::TransactionBehavior::IMMEDIATE);
-    SQLite::Statement insert(impl_->database, "INSERT OR REPLACE INTO draw_values VALUES (?, ?, ?, ?)");
+    SQLite::Statement insert(impl_->database, "INSERT OR REPLACE INTO draw_values VALUES (?, ?, ?, ?, ?, ?)");
     for (const Score& score : draw.values) {
       insert.bind(1, draw.scenario);
       insert.bind(2, stored_seed(draw.seed));
       insert.bind(3, score.metric);
       bind_value(insert, 4, score.value);
+      insert.bind(5, draw.setting.key);
+      insert.bind(6, draw.setting.value);
       insert.exec();
       insert.reset();
     }
@@ -221,7 +240,8 @@ std::string Results::note(const std::string& key) const {
 bool Results::has(const std::string& scenario, std::uint64_t seed, Kind kind, const std::string& method) const {
   return impl_->guarded([&] {
     SQLite::Statement select(impl_->database,
-                             "SELECT 1 FROM outcomes WHERE scenario = ? AND seed = ? AND kind = ? AND method = ?");
+                             "SELECT 1 FROM outcomes WHERE scenario = ? AND seed = ? AND kind = ? AND method = ? "
+                             "AND varied = ''");
     select.bind(1, scenario);
     select.bind(2, stored_seed(seed));
     select.bind(3, std::string(to_string(kind)));
@@ -230,28 +250,36 @@ bool Results::has(const std::string& scenario, std::uint64_t seed, Kind kind, co
   });
 }
 
-std::vector<ScoreRow> Results::scores() const {
+std::vector<ScoreRow> Results::scores(Rows rows) const {
   return impl_->guarded([&] {
-    std::vector<ScoreRow> rows;
+    std::vector<ScoreRow> found;
     SQLite::Statement select(impl_->database,
-                             "SELECT scenario, seed, kind, method, status, metric, value FROM scores "
-                             "ORDER BY scenario, seed, kind, method, metric");
+                             std::string("SELECT o.scenario, o.seed, o.kind, o.method, o.status, s.metric, s.value, "
+                                         "o.varied, o.setting FROM outcomes AS o LEFT JOIN score_values AS s "
+                                         "ON s.outcome = o.id WHERE ") +
+                                 picked(rows) +
+                                 " ORDER BY o.varied, o.setting, o.scenario, o.seed, o.kind, o.method, s.metric");
     while (select.executeStep()) {
-      rows.push_back({select.getColumn(0).getString(), read_seed(select.getColumn(1).getInt64()),
-                      select.getColumn(2).getString(), select.getColumn(3).getString(), select.getColumn(4).getString(),
-                      select.getColumn(5).isNull() ? std::string() : select.getColumn(5).getString(),
-                      read_value(select.getColumn(6))});
+      found.push_back({select.getColumn(0).getString(),
+                       read_seed(select.getColumn(1).getInt64()),
+                       select.getColumn(2).getString(),
+                       select.getColumn(3).getString(),
+                       select.getColumn(4).getString(),
+                       select.getColumn(5).isNull() ? std::string() : select.getColumn(5).getString(),
+                       read_value(select.getColumn(6)),
+                       {select.getColumn(7).getString(), select.getColumn(8).getDouble()}});
     }
-    return rows;
+    return found;
   });
 }
 
-std::vector<Outcome> Results::outcomes() const {
+std::vector<Outcome> Results::outcomes(Rows rows) const {
   return impl_->guarded([&] {
-    std::vector<Outcome> rows;
+    std::vector<Outcome> found;
     SQLite::Statement select(impl_->database,
-                             "SELECT scenario, seed, kind, method, status, message, recording_digest, estimate_digest "
-                             "FROM outcomes WHERE kind <> '' ORDER BY scenario, seed, kind, method");
+                             std::string("SELECT scenario, seed, kind, method, status, message, recording_digest, "
+                                         "estimate_digest, varied, setting FROM outcomes WHERE kind <> '' AND ") +
+                                 picked(rows) + " ORDER BY varied, setting, scenario, seed, kind, method");
     while (select.executeStep()) {
       Outcome row;
       row.scenario = select.getColumn(0).getString();
@@ -262,35 +290,43 @@ std::vector<Outcome> Results::outcomes() const {
       row.message = select.getColumn(5).getString();
       row.recording_digest = select.getColumn(6).getString();
       row.estimate_digest = select.getColumn(7).getString();
-      rows.push_back(std::move(row));
+      row.setting = {select.getColumn(8).getString(), select.getColumn(9).getDouble()};
+      found.push_back(std::move(row));
     }
-    return rows;
+    return found;
   });
 }
 
-std::vector<RejectedDraw> Results::rejected() const {
+std::vector<RejectedDraw> Results::rejected(Rows rows) const {
   return impl_->guarded([&] {
-    std::vector<RejectedDraw> rows;
-    SQLite::Statement select(impl_->database,
-                             "SELECT scenario, seed, message FROM outcomes WHERE kind = '' ORDER BY scenario, seed");
+    std::vector<RejectedDraw> found;
+    SQLite::Statement select(
+        impl_->database,
+        std::string("SELECT scenario, seed, message, varied, setting FROM outcomes WHERE kind = '' AND ") +
+            picked(rows) + " ORDER BY varied, setting, scenario, seed");
     while (select.executeStep()) {
-      rows.push_back({select.getColumn(0).getString(), read_seed(select.getColumn(1).getInt64()),
-                      select.getColumn(2).getString()});
+      found.push_back({select.getColumn(0).getString(),
+                       read_seed(select.getColumn(1).getInt64()),
+                       select.getColumn(2).getString(),
+                       {select.getColumn(3).getString(), select.getColumn(4).getDouble()}});
     }
-    return rows;
+    return found;
   });
 }
 
-std::vector<DrawValues> Results::draws() const {
+std::vector<DrawValues> Results::draws(Rows rows) const {
   return impl_->guarded([&] {
     std::vector<DrawValues> draws;
-    SQLite::Statement select(impl_->database,
-                             "SELECT scenario, seed, metric, value FROM draw_values ORDER BY scenario, seed, metric");
+    SQLite::Statement select(
+        impl_->database, std::string("SELECT scenario, seed, metric, value, varied, setting FROM draw_values WHERE ") +
+                             picked(rows) + " ORDER BY varied, setting, scenario, seed, metric");
     while (select.executeStep()) {
       const std::string scenario = select.getColumn(0).getString();
       const std::uint64_t seed = read_seed(select.getColumn(1).getInt64());
-      if (draws.empty() || draws.back().scenario != scenario || draws.back().seed != seed) {
-        draws.push_back({scenario, seed, {}});
+      const Setting setting{select.getColumn(4).getString(), select.getColumn(5).getDouble()};
+      if (draws.empty() || draws.back().scenario != scenario || draws.back().seed != seed ||
+          draws.back().setting != setting) {
+        draws.push_back({scenario, seed, {}, setting});
       }
       draws.back().values.push_back({select.getColumn(2).getString(), read_value(select.getColumn(3))});
     }

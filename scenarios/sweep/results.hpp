@@ -19,10 +19,14 @@ struct ScoreRow {
   std::uint64_t seed;
   std::string kind, method, status, metric;
   double value;
+  Setting setting = {};
 };
 
-/// The results database (SQLite). Rows are unique by (scenario, seed, kind, method); storing again replaces. Each store
-/// is one transaction, so that whatever has finished survives a kill.
+/// Which rows are asked for: those of the scenarios and methods as they are, those that belong to a curve, or both.
+enum class Rows { plain, curves, all };
+
+/// The results database (SQLite). Rows are unique by (scenario, seed, kind, method, setting); storing again replaces.
+/// Each store is one transaction, so that whatever has finished survives a kill.
 class Results {
  public:
   enum class Mode { create_or_append, read_only };
@@ -42,12 +46,13 @@ class Results {
   void set_note(const std::string& key, const std::string& text);
   std::string note(const std::string& key) const;
 
+  /// Of a plain outcome.
   bool has(const std::string& scenario, std::uint64_t seed, Kind kind, const std::string& method) const;
-  std::vector<ScoreRow> scores() const;
+  std::vector<ScoreRow> scores(Rows rows = Rows::plain) const;
   /// Every outcome without its scores.
-  std::vector<Outcome> outcomes() const;
-  std::vector<RejectedDraw> rejected() const;
-  std::vector<DrawValues> draws() const;
+  std::vector<Outcome> outcomes(Rows rows = Rows::plain) const;
+  std::vector<RejectedDraw> rejected(Rows rows = Rows::plain) const;
+  std::vector<DrawValues> draws(Rows rows = Rows::plain) const;
   /// One per build, its entries in their order; a database that was merged may hold several.
   std::vector<Certificate> certificates() const;
 

@@ -5,7 +5,8 @@ namespace tumble::scenarios {
 
 // seeds are 64 bit unsigned, kept as the signed number of the same bits. A rejected draw is an outcome with kind and
 // method empty and status 'rejected'. The view has a row for each score, and one with a null metric for an outcome
-// without any.
+// without any. A point of a curve carries in `varied` the keys and in `setting` their value; `varied` is empty for the
+// scenario and the methods as they are, and only those are in the view `scores`: points of curves are in `curves`.
 const char* const kSchema = R"sql(
 CREATE TABLE notes (
   key TEXT PRIMARY KEY NOT NULL,
@@ -22,7 +23,9 @@ CREATE TABLE outcomes (
   message TEXT NOT NULL,
   recording_digest TEXT NOT NULL,
   estimate_digest TEXT NOT NULL,
-  UNIQUE (scenario, seed, kind, method)
+  varied TEXT NOT NULL,
+  setting REAL NOT NULL,
+  UNIQUE (scenario, seed, kind, method, varied, setting)
 );
 
 CREATE TABLE score_values (
@@ -34,14 +37,20 @@ CREATE TABLE score_values (
 
 CREATE VIEW scores AS
   SELECT o.scenario, o.seed, o.kind, o.method, o.status, s.metric, s.value
-  FROM outcomes AS o LEFT JOIN score_values AS s ON s.outcome = o.id;
+  FROM outcomes AS o LEFT JOIN score_values AS s ON s.outcome = o.id WHERE o.varied = '';
+
+CREATE VIEW curves AS
+  SELECT o.varied, o.setting, o.scenario, o.seed, o.kind, o.method, o.status, s.metric, s.value
+  FROM outcomes AS o LEFT JOIN score_values AS s ON s.outcome = o.id WHERE o.varied <> '';
 
 CREATE TABLE draw_values (
   scenario TEXT NOT NULL,
   seed INTEGER NOT NULL,
   metric TEXT NOT NULL,
   value REAL,
-  PRIMARY KEY (scenario, seed, metric)
+  varied TEXT NOT NULL,
+  setting REAL NOT NULL,
+  PRIMARY KEY (scenario, seed, varied, setting, metric)
 ) WITHOUT ROWID;
 
 CREATE TABLE certificates (

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <array>
+#include <sstream>
 
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/draw/strict_yaml.hpp"
@@ -29,11 +30,54 @@ void read_seeds(const YamlNode& node, Suite& suite) {
   if (suite.last_seed < suite.first_seed) node.fail("last is below first");
 }
 
+/// "a + b" as its keys.
+std::vector<std::string> keys_of(const std::string& text, const YamlNode& node) {
+  std::vector<std::string> keys;
+  std::stringstream stream(text + "+");  // what ends in a separator has an empty key behind it
+  for (std::string key; std::getline(stream, key, '+');) {
+    std::erase(key, ' ');
+    if (key.empty() || std::find(keys.begin(), keys.end(), key) != keys.end()) {
+      node.fail("a key is empty or stands twice in '" + text + "'");
+    }
+    keys.push_back(key);
+  }
+  return keys;
+}
+
+Variation read_variation(const DataRoot& data, const Suite& suite, const std::string& text, const YamlNode& node) {
+  Variation curve{keys_of(text, node), {}};
+  for (const YamlNode& item : node.items()) {
+    const double value = item.number();
+    if (std::find(curve.values.begin(), curve.values.end(), value) != curve.values.end()) {
+      item.fail("a value stands twice");
+    }
+    curve.values.push_back(value);
+  }
+  if (curve.values.empty()) node.fail("no value to vary '" + text + "' over");
+  try {
+    check(curve, data, suite.scenarios, suite.first_seed);
+  } catch (const BadInput& error) {
+    node.fail(error.what());
+  }
+  return curve;
+}
+
+void read_curves(const DataRoot& data, const YamlNode& node, Suite& suite) {
+  for (const auto& [text, values] : node.entries()) {
+    Variation curve = read_variation(data, suite, text, values);
+    for (const Variation& other : suite.curves) {
+      if (other.key() == curve.key()) values.fail("a curve over '" + curve.key() + "' stands already");
+    }
+    suite.curves.push_back(std::move(curve));
+  }
+  if (suite.curves.empty()) node.fail("no curve");
+}
+
 // names are checked here, so that a suite with a slip of the pen does not begin
 Suite read_suite(const DataRoot& data, const std::filesystem::path& path) {
   const YamlNode root = YamlNode::parse(read_text_file(path), path.string());
   const std::array<std::string, 4> required = {"name", "doc", "scenarios", "seeds"};
-  const std::array<std::string, 2> optional = {"methods", "timeout_s"};
+  const std::array<std::string, 3> optional = {"methods", "timeout_s", "vary"};
   const auto fields = root.fields(required, optional);
   Suite suite;
   suite.name = fields.at("name").identifier();
@@ -67,6 +111,7 @@ Suite read_suite(const DataRoot& data, const std::filesystem::path& path) {
       fields.at("timeout_s").fail("must be within (0, 1e6] s");
     }
   }
+  if (fields.contains("vary")) read_curves(data, fields.at("vary"), suite);
   return suite;
 }
 

@@ -25,15 +25,8 @@ constexpr std::uint64_t kSeedsMax = 10'000'000;
 // what the simulation of a draw may take beyond its methods, in units of a method's time-out
 constexpr double kSimulateTimeouts = 2.0;
 
-/// A draw that the database does not hold in full: what is missing of it.
-struct Pending {
-  const Scenario* scenario;
-  std::uint64_t seed;
-  std::vector<const Method*> methods;
-};
-
 struct Worker {
-  Pending draw;
+  DrawTask draw;
   Process process;
   double deadline_s;
   std::string buffer;
@@ -49,6 +42,22 @@ std::vector<const Method*> chosen_methods(const Suite& suite) {
     }
   }
   return chosen;
+}
+
+/// Of the plain draw and of each one that a curve simulates anew; and what is run on the plain one besides.
+struct Settings {
+  std::vector<Setting> simulated = {Setting{}};
+  std::vector<Setting> shared;
+};
+
+Settings settings_of(const Suite& suite) {
+  Settings settings;
+  for (const Variation& curve : suite.curves) {
+    for (const Setting& setting : curve.settings()) {
+      (reach(setting) == Reach::simulation ? settings.simulated : settings.shared).push_back(setting);
+    }
+  }
+  return settings;
 }
 
 void claim(Results& results, const DataRoot& data, const Suite& suite, const std::filesystem::path& database) {
@@ -98,35 +107,47 @@ class Sweep {
  private:
   bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
 
-  // seeds outermost, so that a sweep that is stopped has all scenarios in it
+  // seeds outermost, so that a sweep that is stopped has all scenarios and all points of the curves in it
   void plan(const std::vector<const Method*>& methods) {
-    std::set<std::pair<std::string, std::uint64_t>> rejected;
-    for (const RejectedDraw& draw : results_.rejected()) rejected.emplace(draw.scenario, draw.seed);
-    std::set<std::tuple<std::string, std::uint64_t, Kind, std::string>> held;
-    for (const Outcome& row : results_.outcomes()) held.emplace(row.scenario, row.seed, row.kind, row.method);
+    std::set<std::tuple<std::string, std::uint64_t, Setting>> rejected;
+    for (const RejectedDraw& draw : results_.rejected(Rows::all)) {
+      rejected.emplace(draw.scenario, draw.seed, draw.setting);
+    }
+    std::set<std::tuple<std::string, std::uint64_t, Kind, std::string, Setting>> held;
+    for (const Outcome& row : results_.outcomes(Rows::all)) {
+      held.emplace(row.scenario, row.seed, row.kind, row.method, row.setting);
+    }
+    const Settings settings = settings_of(suite_);
     for (std::uint64_t seed = suite_.first_seed;; ++seed) {
       for (const Scenario& scenario : scenarios_) {
-        Pending draw{&scenario, seed, {}};
-        for (const Method* method : applicable(methods, scenario.robot.type)) {
-          if (!held.contains({scenario.name, seed, method->info.kind, method->info.name}))
-            draw.methods.push_back(method);
+        const std::vector<const Method*> own = applicable(methods, scenario.robot.type);
+        for (const Setting& simulated : settings.simulated) {
+          DrawTask draw{&scenario, seed, simulated, {}};
+          const auto add = [&](const Setting& setting) {
+            for (const Method* method : own) {
+              const MethodInfo& info = method->info;
+              const bool missing = !held.contains({scenario.name, seed, info.kind, info.name, setting});
+              if (missing && concerns(setting, info)) draw.runs.push_back({method, setting});
+            }
+          };
+          add(simulated);
+          if (simulated.is_plain()) std::for_each(settings.shared.begin(), settings.shared.end(), add);
+          ++progress_.draws_total;
+          if (draw.runs.empty() || rejected.contains({scenario.name, seed, simulated}))
+            ++progress_.draws_done;
+          else
+            pending_.push_back(std::move(draw));
         }
-        ++progress_.draws_total;
-        if (draw.methods.empty() || rejected.contains({scenario.name, seed}))
-          ++progress_.draws_done;
-        else
-          pending_.push_back(std::move(draw));
       }
       if (seed == suite_.last_seed) break;
     }
   }
 
   void start() {
-    Pending draw = std::move(pending_.front());
+    DrawTask draw = std::move(pending_.front());
     pending_.pop_front();
-    const double limit_s = suite_.timeout_s * (static_cast<double>(draw.methods.size()) + kSimulateTimeouts);
-    Process process([&](int fd) { run_draw(data_, *draw.scenario, draw.seed, draw.methods, suite_.timeout_s, fd); },
-                    true);
+    const double limit_s = suite_.timeout_s * (static_cast<double>(draw.runs.size()) + kSimulateTimeouts);
+    Process process([&](int fd) { run_draw(data_, draw, suite_.timeout_s, fd); }, true);
     workers_.push_back({std::move(draw), std::move(process), now_s() + limit_s, {}, false, false});
   }
 
@@ -158,8 +179,10 @@ class Sweep {
       if (message->outcome) {
         keep(*message->outcome);
         worker.simulated = true;
-        std::erase_if(worker.draw.methods, [&](const Method* method) {
-          return method->info.kind == message->outcome->kind && method->info.name == message->outcome->method;
+        std::erase_if(worker.draw.runs, [&](const DrawTask::Run& run) {
+          const MethodInfo& info = run.method->info;
+          return info.kind == message->outcome->kind && info.name == message->outcome->method &&
+                 run.setting == message->outcome->setting;
         });
       } else if (message->draw) {
         results_.store(*message->draw);
@@ -176,15 +199,16 @@ class Sweep {
   void account_for_death(const Worker& worker, bool late, const Process::End& end) {
     const std::string what = late ? "the draw did not end in time" : "the draw's process " + end.describe();
     if (!worker.simulated) {
-      keep(RejectedDraw{worker.draw.scenario->name, worker.draw.seed, what});
+      keep(RejectedDraw{worker.draw.scenario->name, worker.draw.seed, what, worker.draw.setting});
       return;
     }
-    for (const Method* method : worker.draw.methods) {
+    for (const DrawTask::Run& run : worker.draw.runs) {
       Outcome outcome;
       outcome.scenario = worker.draw.scenario->name;
       outcome.seed = worker.draw.seed;
-      outcome.kind = method->info.kind;
-      outcome.method = method->info.name;
+      outcome.kind = run.method->info.kind;
+      outcome.method = run.method->info.name;
+      outcome.setting = run.setting;
       outcome.status = late ? "timeout" : "crashed";
       outcome.message = what;
       keep(outcome);
@@ -216,7 +240,7 @@ class Sweep {
   const SweepOptions& options_;
   double started_s_;
   std::vector<Scenario> scenarios_;
-  std::list<Pending> pending_;
+  std::list<DrawTask> pending_;
   std::list<Worker> workers_;
   SweepProgress progress_;
   std::uint64_t done_before_ = 0;

@@ -10,10 +10,11 @@
 
 #include "scenarios/data_root.hpp"
 #include "scenarios/methods/method.hpp"
+#include "scenarios/sweep/variation.hpp"
 
 namespace tumble::scenarios {
 
-/// A suite file, scenarios/suites/NAME.yaml: scenarios x seeds x methods.
+/// A suite file, scenarios/suites/NAME.yaml: scenarios x seeds x methods, and once more for each point of each curve.
 struct Suite {
   std::string name;
   std::string doc;
@@ -21,6 +22,7 @@ struct Suite {
   std::uint64_t first_seed = 1, last_seed = 1;
   std::vector<std::string> methods;  ///< names for find_methods
   double timeout_s = 300;            ///< for one method on one draw
+  std::vector<Variation> curves;     ///< key `vary`: {KEY: [values]}, keys that move together joined by "+"
 };
 
 std::vector<std::string> suite_names(const DataRoot& data);

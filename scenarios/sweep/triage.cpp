@@ -26,15 +26,6 @@ TriageRow row_of(const std::string& input, const std::string& doc, Outcome outco
   return row;
 }
 
-/// The draw as it was, but with the stamps that the method was given: an estimate is held to the truth of the sample
-/// whose stamp it bears.
-SimulatedDraw scored_by(const SimulatedDraw& draw, const SimulatedDraw& cured) {
-  SimulatedDraw scored = draw;
-  std::vector<sim::ImuRecord>& imus = scored.recording.sensors.imus;
-  for (std::size_t i = 0; i < imus.size(); ++i) imus[i].time_ns = cured.recording.sensors.imus[i].time_ns;
-  return scored;
-}
-
 }  // namespace
 
 bool Failure::holds(const Outcome& outcome) const {

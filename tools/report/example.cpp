@@ -32,6 +32,21 @@ std::string stored_digest(const scenarios::Results& results, const std::string& 
   return "";
 }
 
+/// What the clipped gyro makes of the map, beside what ours makes of it.
+void add_maps(const scenarios::DataRoot& data, Example& example) {
+  const sim::Surface surface(example.run.situation, data.models());
+  for (const char* wanted : {"icp_raw", "tumble"}) {
+    for (std::size_t i = 0; i < example.run.methods.size(); ++i) {
+      const scenarios::MethodInfo& info = example.run.methods[i]->info;
+      if (info.kind != scenarios::Kind::slam || info.name != wanted) continue;
+      ErrorMap map = map_by_error("slam/" + info.name, example.run.estimates[i], example.run.recording.truth, surface);
+      if (!map.points_W_m.empty()) example.maps.push_back(std::move(map));
+    }
+  }
+  if (!example.maps.empty())
+    example.map_png = sim::png_bytes(map_picture(example.maps, example.run.recording.truth, 640, 480));
+}
+
 }  // namespace
 
 bool typical_seed(const Summary& summary, const std::string& scenario, std::uint64_t& seed) {
@@ -75,6 +90,7 @@ Example make_example(const scenarios::DataRoot& data, const scenarios::Results& 
   const int robots = example.is_sphere ? 3 : 8;
   example.scene_png = sim::png_bytes(scene_picture(scene, robots, 1280, 640));
   example.film_png = sim::png_bytes(film_picture(scene, 8, 4, 400, 300));
+  add_maps(data, example);
   return example;
 }
 

@@ -8,6 +8,7 @@
 #include "scenarios/data_root.hpp"
 #include "scenarios/sweep/results.hpp"
 #include "scenarios/sweep/run_situation.hpp"
+#include "tools/report/map_pictures.hpp"
 #include "tools/report/paths.hpp"
 #include "tools/report/summary.hpp"
 
@@ -21,6 +22,8 @@ struct Example {
   std::vector<std::string> path_methods;  ///< "slam/icp": what the pictures draw
   std::vector<Path> paths;                ///< parallel
   std::vector<std::uint8_t> scene_png, film_png;
+  std::vector<ErrorMap> maps;         ///< of the clipped gyro and of ours, as far as the results hold them
+  std::vector<std::uint8_t> map_png;  ///< empty without maps
 };
 
 /// The draw whose headline score under `kind`'s baseline is the median one of its scenario: neither the best nor the

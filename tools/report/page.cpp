@@ -64,6 +64,17 @@ std::string example_html(const Example& example, std::vector<Figure>& figures) {
                       "The robot at instants equally far apart along its way." + legend);
   out += picture_html(example.film_png, "film strip of the same motion",
                       "The same motion close by, left to right and down.");
+  if (!example.map_png.empty()) {
+    std::string names;
+    for (const ErrorMap& map : example.maps) {
+      names += fmt::format("{}{} ({:.1f} % of its points within 0.1 m)", names.empty() ? "" : ", ", map.name,
+                           100.0 * map.share_within(0.1f));
+    }
+    out += picture_html(example.map_png, "maps side by side, coloured by error",
+                        "Maps, left to right: " + escaped(names) +
+                            ". Each point has the colour of its distance from the true surface, from 0 (blue) to 1 m "
+                            "and more (red).");
+  }
   Figure rate = rate_figure(example), path = path_figure(example);
   for (Figure* figure : {&rate, &path}) {
     if (figure->empty()) continue;
@@ -132,9 +143,11 @@ std::string page_html(const PageContent& content, const std::string& plotly_bund
   for (const std::string& warning : content.warnings) body += "<p class=\"warning\">" + escaped(warning) + "</p>\n";
   body += cards_html(content.summary);
   for (const Example& example : content.examples) body += example_html(example, figures);
+  body += sphere_html(content.rolls, figures);
   body += "<h2>All draws</h2>\n<p>Each point is one draw, each box the quartiles of one method.</p>\n";
   for (const Figure& figure : content.figures) body += plot_html(figure);
   body += scores_html(content.summary);
+  body += curves_html(content.curves, figures);
   body += "<h2>Draws</h2>\n" + draws_html(content.summary) + rejected_html(content.rejected);
   const std::vector<Figure> motions = distribution_figures(content.motions);
   body += distributions_html(content.motions, motions);

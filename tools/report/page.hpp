@@ -5,9 +5,11 @@
 #include <vector>
 
 #include "scenarios/certificate/certificate.hpp"
+#include "tools/report/curves.hpp"
 #include "tools/report/distributions.hpp"
 #include "tools/report/example.hpp"
 #include "tools/report/plots.hpp"
+#include "tools/report/sphere_figures.hpp"
 #include "tools/report/summary.hpp"
 
 namespace tumble::tools {
@@ -19,7 +21,9 @@ struct PageContent {
   Summary summary;
   std::vector<Figure> figures;    ///< of all draws
   std::vector<Example> examples;  ///< single draws, with pictures
+  std::vector<SphereRoll> rolls;  ///< single draws of a sphere, as plots
   std::vector<Spread> motions;    ///< of all draws
+  std::vector<Curve> curves;
   std::vector<scenarios::RejectedDraw> rejected;
   std::vector<scenarios::Certificate> certificates;
   std::vector<std::string> warnings;  ///< what is missing, and why

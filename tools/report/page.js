@@ -12,7 +12,10 @@
       font: { family: getComputedStyle(document.body).fontFamily, size: 13, color: colour('--ink') },
       legend: { orientation: 'h', y: 1.0, yanchor: 'bottom', x: 0 },
     };
-    return Object.assign(base, layout, { xaxis: Object.assign({}, axis, layout.xaxis), yaxis: Object.assign({}, axis, layout.yaxis) });
+    const axes = { xaxis: {}, yaxis: {} };
+    for (const name of Object.keys(layout)) if (/^[xy]axis/.test(name)) axes[name] = layout[name];
+    for (const name of Object.keys(axes)) axes[name] = Object.assign({}, axis, axes[name]);
+    return Object.assign(base, layout, axes);
   }
 
   function draw() {

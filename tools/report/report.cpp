@@ -71,6 +71,19 @@ std::vector<std::string> scenarios_to_show(const Summary& summary, int count) {
   return out;
 }
 
+void add_sphere_rolls(const Summary& summary, const ReportOptions& options, PageContent& content) {
+  for (const std::string& scenario : sphere_scenarios(summary)) {
+    std::uint64_t seed = 0;
+    if (!typical_seed(summary, scenario, seed)) continue;
+    if (options.note) options.note(fmt::format("simulating {}, seed {}, again for its plots", scenario, seed));
+    try {
+      content.rolls.push_back(make_sphere_roll(options.data, summary, scenario, seed));
+    } catch (const std::exception& error) {
+      content.warnings.push_back(fmt::format("No plots of {}, seed {}: {}", scenario, seed, error.what()));
+    }
+  }
+}
+
 }  // namespace
 
 PageContent report_content(const scenarios::Results& results, const Summary& summary, const ReportOptions& options) {
@@ -81,6 +94,7 @@ PageContent report_content(const scenarios::Results& results, const Summary& sum
   content.summary = summary;
   content.figures = figures_of_all_draws(summary);
   content.motions = motion_spreads(results.draws());
+  content.curves = find_curves(results);
   content.rejected = results.rejected();
   content.certificates = results.certificates();
   if (content.certificates.empty()) content.warnings.push_back("These results hold no certificate of their build.");
@@ -99,6 +113,7 @@ PageContent report_content(const scenarios::Results& results, const Summary& sum
       content.warnings.push_back(fmt::format("No pictures of {}, seed {}: {}", scenario, seed, error.what()));
     }
   }
+  if (options.examples_max > 0) add_sphere_rolls(summary, options, content);
   return content;
 }
 

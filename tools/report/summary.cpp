@@ -9,6 +9,7 @@
 #include <set>
 #include <tuple>
 
+#include "scenarios/scoring/binned_metric.hpp"
 #include "scenarios/scoring/score.hpp"
 
 namespace tumble::tools {
@@ -18,14 +19,7 @@ namespace {
 using scenarios::Kind;
 using scenarios::Outcome;
 
-/// Position in a registry; unknown names stand behind the known ones.
-std::size_t method_rank(Kind kind, const std::string& name) {
-  const auto all = scenarios::methods();
-  const auto found = std::find_if(
-      all.begin(), all.end(), [&](const scenarios::Method& m) { return m.info.kind == kind && m.info.name == name; });
-  return static_cast<std::size_t>(found - all.begin());
-}
-
+/// Position in the registry; unknown names stand behind the known ones.
 std::size_t metric_rank(const std::string& name) {
   const auto all = scenarios::metrics();
   return static_cast<std::size_t>(
@@ -107,7 +101,7 @@ void finish(Section& section) {
     method.not_ok_share = scenarios::share_interval(method.not_ok, method.outcomes);
     for (auto& [name, metric] : method.metrics) {
       finish(name, metric);
-      names.insert(name);
+      if (!scenarios::parse_binned(name)) names.insert(name);  // those are drawn as curves
     }
   }
   section.metrics.assign(names.begin(), names.end());
@@ -126,7 +120,15 @@ void finish(Section& section) {
 
 }  // namespace
 
+std::size_t method_rank(Kind kind, const std::string& name) {
+  const auto all = scenarios::methods();
+  const auto found = std::find_if(
+      all.begin(), all.end(), [&](const scenarios::Method& m) { return m.info.kind == kind && m.info.name == name; });
+  return static_cast<std::size_t>(found - all.begin());
+}
+
 MetricStyle metric_style(const std::string& metric) {
+  if (const auto binned = scenarios::parse_binned(metric)) return metric_style(binned->base);
   for (const char* end : {"_share", "_overlap", "_coverage", "_precision", "_recall", "_3sigma"}) {
     if (metric.ends_with(end)) return {"%", 100.0};
   }

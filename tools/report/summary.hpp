@@ -27,6 +27,9 @@ using scenarios::is_verdict;
 using scenarios::metric_sense;
 using scenarios::Sense;
 
+/// Position of a method in the registry; unknown names stand behind the known ones.
+std::size_t method_rank(scenarios::Kind kind, const std::string& name);
+
 /// Draws on which one method was better than the baseline, of those that both have a value for.
 struct Wins {
   std::int64_t count = 0, pairs = 0;

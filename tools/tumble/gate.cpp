@@ -10,7 +10,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "scenarios/certificate/certificate_store.hpp"
 #include "scenarios/errors.hpp"
+#include "tools/report/certificate_html.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/certificate_table.hpp"
 #include "tools/tumble/interrupt.hpp"
@@ -114,9 +116,19 @@ scenarios::Gate load(const scenarios::DataRoot& data, const Options& options, co
   return scenarios::load_gate(data, suite);
 }
 
+/// The certificate that is known of this build goes with what is kept; it is not measured here: a gate is run often.
+/// Says how it stands.
+std::string certificate_text(const Session& session, const scenarios::DataRoot& data, const fs::path& database) {
+  scenarios::Results results(database, scenarios::Results::Mode::create_or_append);
+  const auto certificate = scenarios::known_certificate(results, scenarios::CertificateStore(session.cache(), data));
+  return certificate ? certificate_summary(*certificate)
+                     : "not measured of this build on this machine ('tumble certify' and 'tumble sweep' do)";
+}
+
 int run_gate(const Session& session, const Options& options) {
   const scenarios::DataRoot data = session.data();
   scenarios::Suite suite = scenarios::load_suite(data, options.suite);
+  suite.curves.clear();  // bounds speak of the scenarios as they are
   scenarios::Gate gate = load(data, options, suite.name);
   if (gate.bounds.empty())
     suite.methods = {"tumble"};
@@ -129,6 +141,7 @@ int run_gate(const Session& session, const Options& options) {
       sweep_with_progress(session, data, suite, database.path(), options.jobs, interrupt.raised());
   if (progress.draws_done < progress.draws_total) return say_stopped(progress);
 
+  const std::string certificate = certificate_text(session, data, database.path());
   const scenarios::Results results(database.path(), scenarios::Results::Mode::read_only);
   if (gate.bounds.empty()) gate = scenarios::proposed_gate(results, suite.name);
   std::vector<GateResult> held = scenarios::hold_to_gate(results, gate, suite.first_seed, suite.last_seed);
@@ -142,7 +155,10 @@ int run_gate(const Session& session, const Options& options) {
   }
   const bool passes =
       !held.empty() && std::all_of(held.begin(), held.end(), [](const GateResult& r) { return r.passes(); });
-  session.print({result_table(held)}, to_json(held, passes));
+  json document = to_json(held, passes);
+  document["certificate"] = certificate;
+  session.print({result_table(held)}, document);
+  session.note("certificate: " + certificate);
   return passes ? kDone : kCheckFailed;
 }
 

@@ -185,7 +185,7 @@ Listing list_suites(const scenarios::DataRoot& data, const std::string& only) {
   Listing out;
   const std::vector<std::string> names = scenarios::suite_names(data);
   if (!only.empty()) require_known("suite", only, names);
-  Table table("", {"suite", "scenarios", "seeds", "methods", "time-out of a method", "meaning"});
+  Table table("", {"suite", "scenarios", "seeds", "methods", "varies", "time-out of a method", "meaning"});
   const std::size_t all = scenarios::methods().size();
   const auto joined = [](const std::vector<std::string>& words) {
     std::string text;
@@ -195,16 +195,23 @@ Listing list_suites(const scenarios::DataRoot& data, const std::string& only) {
   for (const std::string& name : names) {
     if (!only.empty() && name != only) continue;
     const scenarios::Suite suite = scenarios::load_suite(data, name);
+    std::vector<std::string> varied;
+    json curves = json::array();
+    for (const scenarios::Variation& curve : suite.curves) {
+      varied.push_back(curve.key());
+      curves.push_back({{"keys", curve.keys}, {"values", curve.values}});
+    }
     table.add_row(
         {name, joined(suite.scenarios), std::to_string(suite.first_seed) + ".." + std::to_string(suite.last_seed),
          suite.methods.size() == all ? "all" : std::to_string(suite.methods.size()) + " of " + std::to_string(all),
-         number_text(suite.timeout_s) + " s", suite.doc});
+         joined(varied), number_text(suite.timeout_s) + " s", suite.doc});
     out.document.push_back({{"name", name},
                             {"doc", suite.doc},
                             {"scenarios", suite.scenarios},
                             {"first_seed", suite.first_seed},
                             {"last_seed", suite.last_seed},
                             {"methods", suite.methods},
+                            {"vary", std::move(curves)},
                             {"timeout_s", suite.timeout_s}});
   }
   out.tables.push_back(std::move(table));

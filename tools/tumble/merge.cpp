@@ -15,6 +15,7 @@ namespace {
 
 using scenarios::BadInput;
 using scenarios::Results;
+using scenarios::Rows;
 
 struct Options {
   std::filesystem::path out;
@@ -24,13 +25,14 @@ struct Options {
 
 /// Every outcome of a database, complete with its scores.
 std::vector<scenarios::Outcome> complete_outcomes(const Results& results) {
-  std::map<std::tuple<std::string, std::uint64_t, std::string, std::string>, std::vector<scenarios::Score>> scores;
-  for (const scenarios::ScoreRow& row : results.scores()) {
-    scores[{row.scenario, row.seed, row.kind, row.method}].push_back({row.metric, row.value});
+  using Key = std::tuple<std::string, std::uint64_t, std::string, std::string, scenarios::Setting>;
+  std::map<Key, std::vector<scenarios::Score>> scores;
+  for (const scenarios::ScoreRow& row : results.scores(Rows::all)) {
+    scores[{row.scenario, row.seed, row.kind, row.method, row.setting}].push_back({row.metric, row.value});
   }
-  std::vector<scenarios::Outcome> outcomes = results.outcomes();
+  std::vector<scenarios::Outcome> outcomes = results.outcomes(Rows::all);
   for (scenarios::Outcome& outcome : outcomes) {
-    outcome.scores = scores[{outcome.scenario, outcome.seed, to_string(outcome.kind), outcome.method}];
+    outcome.scores = scores[{outcome.scenario, outcome.seed, to_string(outcome.kind), outcome.method, outcome.setting}];
   }
   return outcomes;
 }
@@ -60,9 +62,9 @@ int merge(const Session& session, const Options& options) {
       out.store(outcome);
       ++outcomes;
     }
-    for (const scenarios::DrawValues& draw : shard.draws()) out.store(draw);
+    for (const scenarios::DrawValues& draw : shard.draws(Rows::all)) out.store(draw);
     for (const scenarios::Certificate& certificate : shard.certificates()) out.store(certificate);
-    for (const scenarios::RejectedDraw& draw : shard.rejected()) {
+    for (const scenarios::RejectedDraw& draw : shard.rejected(Rows::all)) {
       out.store(draw);
       ++rejected;
     }

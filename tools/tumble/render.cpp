@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -7,6 +9,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/estimate_file.hpp"
 #include "scenarios/recordings/recording_file.hpp"
+#include "tools/report/map_pictures.hpp"
 #include "tools/report/pictures.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/verbs.hpp"
@@ -22,6 +25,7 @@ struct Options {
   std::vector<std::filesystem::path> estimates;
   std::filesystem::path png;
   int film = 0;
+  bool map = false;
   int columns = 4;
   int robots = 8;
   int width = 1280, height = 720;
@@ -40,7 +44,8 @@ bool is_recording(const std::string& what) {
   return std::filesystem::exists(what) ? !what.ends_with(".yaml") : what.ends_with(".h5") || what.ends_with(".hdf5");
 }
 
-void load_recording(const Options& options, Content& content) {
+/// Situation, sensors and truth of a recording.
+void load_situation(const Options& options, Content& content) {
   const scenarios::RecordingInfo info = scenarios::read_info(options.what);
   if (info.situation_yaml.empty()) throw BadInput(options.what + ": holds no situation, so there is no world to draw");
   content.situation = scenarios::situation_from_yaml(info.situation_yaml, options.what);
@@ -48,6 +53,10 @@ void load_recording(const Options& options, Content& content) {
   // the truth places the robot and the estimates in a picture for people; no estimate is made here
   if (!info.has_truth) throw BadInput(options.what + ": holds no truth, so there is no way to draw");
   content.truth = scenarios::read_truth(options.what);
+}
+
+void load_recording(const Options& options, Content& content) {
+  load_situation(options, content);
   content.scene.sensors = &content.sensors;
   content.scene.truth = &content.truth;
   for (const std::filesystem::path& folder : options.estimates) {
@@ -68,8 +77,40 @@ void load_draw(const scenarios::DataRoot& data, const Options& options, Content&
   content.situation = scenarios::draw(data, scenario, parse_seed(options.seed));
 }
 
+/// Maps of the estimates side by side, coloured by error.
+int render_maps(const Session& session, const Options& options, const scenarios::DataRoot& data) {
+  if (!is_recording(options.what) || options.estimates.empty()) {
+    throw BadInput("--map shows the maps of estimates of a recording: FILE.h5 ESTIMATE...");
+  }
+  Content content;
+  load_situation(options, content);
+  const sim::Surface surface(content.situation, data.models());
+  std::vector<ErrorMap> maps;
+  Table table("", {"map", "points", "within 0.1 m", "within 0.25 m"});
+  table.align_right_from(1);
+  nlohmann::json rows = nlohmann::json::array();
+  for (const std::filesystem::path& folder : options.estimates) {
+    scenarios::Kind kind;
+    std::string method;
+    const scenarios::Estimate estimate = scenarios::read_estimate(folder, kind, method, scenarios::Frame::imu);
+    maps.push_back(map_by_error(std::string(to_string(kind)) + "/" + method, estimate, content.truth, surface));
+    const ErrorMap& map = maps.back();
+    if (map.points_W_m.empty()) throw BadInput(folder.string() + ": holds no map to draw");
+    const double fine = map.share_within(0.1f), coarse = map.share_within(0.25f);
+    table.add_row({map.name, std::to_string(map.points_W_m.size()), fmt::format("{:.1f} %", 100.0 * fine),
+                   fmt::format("{:.1f} %", 100.0 * coarse)});
+    rows.push_back(
+        {{"map", map.name}, {"points", map.points_W_m.size()}, {"within_0_10", fine}, {"within_0_25", coarse}});
+  }
+  if (options.png.has_parent_path()) make_folder(options.png.parent_path());
+  save_picture(options.png, map_picture(maps, content.truth, options.width, options.height));
+  session.print({table}, {{"picture", options.png.string()}, {"maps", rows}});
+  return kDone;
+}
+
 int render(const Session& session, const Options& options) {
   const scenarios::DataRoot data = session.data();
+  if (options.map) return render_maps(session, options, data);
   Content content;
   if (is_recording(options.what)) {
     load_recording(options, content);
@@ -104,6 +145,7 @@ Action declare_render(CLI::App& app, const Session& session) {
   app.add_option("--seed", options->seed, "which draw of the scenario");
   app.add_option("-o,--output", options->png, "the picture, FILE.png")->required();
   app.add_option("--film", options->film, "a film strip of so many frames")->check(CLI::Range(1, 64));
+  app.add_flag("--map", options->map, "the estimates' maps side by side, coloured by error from 0 (blue) to 1 m (red)");
   app.add_option("--columns", options->columns, "frames in a row of the film strip")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();

@@ -13,6 +13,7 @@
 
 #include "scenarios/certificate/certificate_text.hpp"
 #include "scenarios/errors.hpp"
+#include "tools/report/curves.hpp"
 #include "tools/report/distributions.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/verbs.hpp"
@@ -41,17 +42,19 @@ std::string wins_text(const Wins& wins) {
 
 /// A row per method and metric: the headline metrics, or all of them.
 Table score_table(const Section& section, bool all) {
-  Table table(fmt::format("{}: {} (paired with {})", section.scenario, to_string(section.kind), section.baseline),
-              {"metric", "method", "median", "95 % interval", "worst 5 %", "better in", "not ok"});
+  Table table(
+      fmt::format("{}: {} (paired with {})", section.scenario, to_string(section.kind), section.baseline),
+      {"metric", "method", "draws", "median", "95 % interval", "worst 5 %", "better in", "not ok", "at most (95 %)"});
   table.align_right_from(2);
   for (const std::string& name : all ? section.metrics : headline_metrics(section.kind)) {
     bool first = true;
     for (const MethodSummary& method : section.methods) {
       const MetricSummary* metric = method.find(name);
       if (metric == nullptr) continue;
-      table.add_row({first ? name : "", method.method, number_text(metric->centre.value), interval_text(metric->centre),
-                     number_text(metric->quantile_95), wins_text(metric->wins),
-                     fmt::format("{} of {}", method.not_ok, method.outcomes)});
+      table.add_row({first ? name : "", method.method, std::to_string(metric->values.size() + metric->failed.size()),
+                     number_text(metric->centre.value), interval_text(metric->centre), number_text(metric->quantile_95),
+                     wins_text(metric->wins), fmt::format("{} of {}", method.not_ok, method.outcomes),
+                     fmt::format("{:.1f} %", 100.0 * method.not_ok_share.high)});
       first = false;
     }
   }
@@ -131,17 +134,23 @@ void write_page(const Session& session, const Options& options, const scenarios:
 int report(const Session& session, const Options& options) {
   const scenarios::Results results(options.database, scenarios::Results::Mode::read_only);
   const Summary summary = summarize(results);
-  if (summary.scenarios.empty()) throw scenarios::BadInput(options.database.string() + ": holds no outcomes to report");
+  const std::vector<Curve> curves = find_curves(results);
+  if (summary.scenarios.empty() && curves.empty())
+    throw scenarios::BadInput(options.database.string() + ": holds no outcomes to report");
   std::vector<Table> tables;
   for (const Section& section : summary.sections) {
     Table table = score_table(section, options.all);
     if (!table.empty()) tables.push_back(std::move(table));
+  }
+  for (const Curve& curve : curves) {
+    if (options.all || curve.source == Curve::Source::set) tables.push_back(curve_table(curve));
   }
   const std::vector<scenarios::DrawValues> draws = results.draws();
   const std::vector<Spread> motions = motion_spreads(draws);
   if (!motions.empty()) tables.push_back(distribution_table(motions));
   tables.push_back(draws_table(summary));
   json document = to_json(summary);
+  document["curves"] = curves_json(curves);
   document["motions"] = distributions_json(motions);
   document["certificates"] = json::array();
   for (const scenarios::Certificate& certificate : results.certificates()) {
@@ -164,7 +173,8 @@ Action declare_report(CLI::App& app, const Session& session) {
   app.add_option("--examples", options->examples, "draws simulated again and shown")
       ->check(CLI::Range(0, 3))
       ->capture_default_str();
-  app.add_flag("--all", options->all, "all metrics in the printed tables, not the headline ones alone");
+  app.add_flag("--all", options->all,
+               "all metrics in the printed tables, not the headline ones alone, and the curves over bins");
   return [&session, options] { return report(session, *options); };
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "scenarios/scoring/binned_metric.hpp"
+
 namespace tumble::tools {
 
 namespace {
@@ -26,6 +28,7 @@ Table kind_table(const std::string& title, const std::vector<const Outcome*>& ou
     header.push_back(outcome->method);
     status.push_back(outcome->status);
     for (const scenarios::Score& score : outcome->scores) {
+      if (scenarios::parse_binned(score.metric)) continue;  // of use over many draws
       if (std::find(metrics.begin(), metrics.end(), score.metric) == metrics.end()) metrics.push_back(score.metric);
     }
   }

@@ -73,6 +73,18 @@ TEST_F(CertificateStoreTest, ResultsGetItOnceAndKeepIt) {
   EXPECT_EQ(other.certificates().front(), certificate);
 }
 
+TEST_F(CertificateStoreTest, WhatIsKnownIsFoundAndNothingIsMeasured) {
+  Results all = results();
+  EXPECT_FALSE(known_certificate(all, store()).has_value());
+  EXPECT_TRUE(all.certificates().empty());
+  const Certificate certificate{build_id(), {{"row", "a", "law", "m", 0.5, 0.0, 1.0, ""}}};
+  store().keep(certificate);
+  ASSERT_TRUE(known_certificate(all, store()).has_value());
+  ASSERT_EQ(all.certificates().size(), 1u) << "it goes with the results";
+  EXPECT_EQ(all.certificates().front(), certificate);
+  EXPECT_EQ(known_certificate(all, CertificateStore({}, DataRoot{TUMBLE_SOURCE_DIR})), certificate);
+}
+
 TEST_F(CertificateStoreTest, AStoppedMeasuringIsKeptNowhere) {
   std::atomic<bool> stop = true;
   CertifyOptions options;

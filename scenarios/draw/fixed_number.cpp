@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/draw/fixed_number.hpp"
+
+#include <algorithm>
+#include <sstream>
+
+#include "scenarios/draw/registry.hpp"
+#include "scenarios/draw/scenario_text.hpp"
+#include "scenarios/draw/strict_yaml.hpp"
+#include "scenarios/errors.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+using Numbers = std::map<std::string, Distribution>;
+
+[[noreturn]] void fail(const Scenario& scenario, const std::string& key, const std::string& what) {
+  throw BadInput("'" + key + "' of scenario " + scenario.name + ": " + what);
+}
+
+Distribution constant(const Scenario& scenario, const std::string& key, double value, const sim::Parameter& parameter) {
+  if (!(value >= parameter.low && value <= parameter.high)) {
+    std::ostringstream text;
+    text << "is " << value << " " << parameter.unit << ", must be within [" << parameter.low << ", " << parameter.high
+         << "]";
+    fail(scenario, key, text.str());
+  }
+  return {Distribution::Shape::constant, {value}, 0};
+}
+
+void fix(const Scenario& scenario, const std::string& key, const std::string& name, double value,
+         std::span<const sim::Parameter> known, Numbers& numbers) {
+  const sim::Parameter* const parameter = find_parameter(known, name);
+  if (parameter == nullptr) fail(scenario, key, "unknown number '" + name + "'" + suggestion(name, names_of(known)));
+  numbers[name] = constant(scenario, key, value, *parameter);
+}
+
+void fix(const Scenario& scenario, const std::string& key, const std::string& name, double value,
+         std::span<const sim::ComponentType> types, Scenario::Part& part) {
+  fix(scenario, key, name, value, find_type(types, part.type)->parameters, part.numbers);
+}
+
+/// `rest` is what follows "sensors.": "imu.output_rate_hz".
+void fix_of_sensor(Scenario& scenario, const std::string& key, const std::string& rest, double value,
+                   const Registry& registry) {
+  const std::size_t dot = rest.find('.');
+  const std::string name = rest.substr(0, dot);
+  std::vector<std::string> names;
+  for (const Scenario::Sensor& sensor : scenario.sensors) names.push_back(sensor.name);
+  const auto at = std::find(names.begin(), names.end(), name);
+  if (at == names.end()) fail(scenario, key, "unknown sensor '" + name + "'" + suggestion(name, names));
+  if (dot == std::string::npos) fail(scenario, key, "names no number of the sensor");
+  Scenario::Sensor& sensor = scenario.sensors[static_cast<std::size_t>(at - names.begin())];
+  const std::string number = rest.substr(dot + 1);
+  const std::string mount = "mount_error.";
+  if (number.starts_with(mount)) {
+    fix(scenario, key, number.substr(mount.size()), value, registry.mount_error, sensor.mount_error);
+  } else {
+    fix(scenario, key, number, value, find_type(registry.sensors, sensor.kind)->parameters, sensor.numbers);
+  }
+}
+
+}  // namespace
+
+void fix_number(Scenario& scenario, const std::string& key, double value) {
+  static const std::vector<std::string> kPlaces = {"duration_s", "world", "robot", "motion", "sensors"};
+  const Registry registry = Registry::of_simulation();
+  const std::size_t dot = key.find('.');
+  const std::string place = key.substr(0, dot), rest = dot == std::string::npos ? "" : key.substr(dot + 1);
+  if (key == "duration_s") {
+    scenario.duration_s = constant(scenario, key, value, duration_parameter());
+  } else if (place == "world") {
+    fix(scenario, key, rest, value, registry.worlds, scenario.world);
+  } else if (place == "robot") {
+    fix(scenario, key, rest, value, registry.robots, scenario.robot);
+  } else if (place == "motion") {
+    fix(scenario, key, rest, value, registry.motions, scenario.motion);
+  } else if (place == "sensors") {
+    fix_of_sensor(scenario, key, rest, value, registry);
+  } else {
+    fail(scenario, key, "no number stands at '" + place + "'" + suggestion(place, kPlaces));
+  }
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace tumble::scenarios {
+
+/// Name of a metric over those samples of a draw whose measure `axis` lies in [low, high):
+/// "rate_error_median_rad_s@clip_depth_rad_s:1:2". `high` may be infinite. Such metrics are drawn as a curve over the
+/// measure, and stand in no table of their own.
+struct BinnedMetric {
+  std::string base;  ///< "rate_error_median_rad_s"
+  std::string axis;  ///< "clip_depth_rad_s"; ends in its unit, as metrics do
+  double low = 0.0, high = 0.0;
+  std::string name() const;
+};
+
+/// Nothing when `metric` is not the name of one.
+std::optional<BinnedMetric> parse_binned(const std::string& metric);
+
+}  // namespace tumble::scenarios

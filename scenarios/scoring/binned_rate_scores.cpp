@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "scenarios/scoring/binned_metric.hpp"
+#include "scenarios/scoring/clipping.hpp"
+#include "scenarios/scoring/families.hpp"
+#include "scenarios/sweep/statistics.hpp"
+
+/// Errors of the rate over clipped samples that are alike: as deep, as long or with as many axes clipped.
+namespace tumble::scenarios {
+
+namespace {
+
+enum class Axis { depth, length, count };
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::array kDepthEdges = {0.0, 0.5, 1.0, 2.0, 4.0, 8.0, kInfinity};  // rad/s
+constexpr std::array kLengthEdges = {0.0,   0.025, 0.055,    0.105,
+                                     0.205, 0.405, kInfinity};  // s, between samples at 100 Hz
+constexpr std::array kCountEdges = {1.0, 2.0, 3.0, 4.0};
+
+template <Axis kAxis>
+constexpr const auto& edges() {
+  if constexpr (kAxis == Axis::depth) return kDepthEdges;
+  if constexpr (kAxis == Axis::length) return kLengthEdges;
+  if constexpr (kAxis == Axis::count) return kCountEdges;
+}
+
+/// Of each sample: how long the stretch of clipped samples is that it belongs to; 0 where it is not clipped.
+std::vector<double> stretch_lengths_s(const ClippingTruth& truth, double period_s) {
+  std::vector<double> lengths(truth.size(), 0.0);
+  for (std::size_t begin = 0; begin < lengths.size();) {
+    std::size_t end = begin;
+    while (end < lengths.size() && truth.clipped_axes(end) != 0) ++end;
+    const double length_s = period_s * static_cast<double>(end - begin);
+    std::fill(lengths.begin() + static_cast<std::ptrdiff_t>(begin), lengths.begin() + static_cast<std::ptrdiff_t>(end),
+              length_s);
+    begin = std::max(end, begin + 1);
+  }
+  return lengths;
+}
+
+/// The measure by which the clipped sample `index` is sorted.
+template <Axis kAxis>
+double measure(const ClippingTruth& truth, const std::vector<double>& lengths_s, std::size_t index) {
+  if constexpr (kAxis == Axis::depth) return truth.depth_rad_s(index);
+  if constexpr (kAxis == Axis::length) return lengths_s[index];
+  if constexpr (kAxis == Axis::count) return static_cast<double>(std::popcount(truth.clipped_axes(index)));
+}
+
+template <Axis kAxis, std::size_t kBin, int kPercent>
+bool error_in_bin(const Estimate& estimate, const ScoringInput& input, double& value) {
+  const ClippingTruth truth(*input.sensors, *input.truth);
+  const double period_s = 1e-9 * static_cast<double>(input.sensors->imus.front().period_ns);
+  const std::vector<double> lengths_s =
+      kAxis == Axis::length ? stretch_lengths_s(truth, period_s) : std::vector<double>();
+  std::vector<double> norms;
+  for (const RateState& rate : estimate.rates) {
+    const auto index = truth.index_at(rate.time_ns);
+    if (!index || truth.clipped_axes(*index) == 0) continue;
+    const double own = measure<kAxis>(truth, lengths_s, *index);
+    if (!(own >= edges<kAxis>()[kBin] && own < edges<kAxis>()[kBin + 1])) continue;
+    norms.push_back((rate.w_WI_I_rad_s - truth.at(rate.time_ns)->rate_rad_s).norm());
+  }
+  if (norms.empty()) return false;
+  // one NaN spoils the figure instead of leaving it
+  const bool finite = std::all_of(norms.begin(), norms.end(), [](double v) { return std::isfinite(v); });
+  value = finite ? quantile(norms, kPercent / 100.0) : std::numeric_limits<double>::quiet_NaN();
+  return true;
+}
+
+template <Axis kAxis, std::size_t kBin>
+void add_bin(const char* axis, const std::string& words, std::vector<Metric>& all) {
+  const auto name = [&](const char* base) {
+    return BinnedMetric{base, axis, edges<kAxis>()[kBin], edges<kAxis>()[kBin + 1]}.name();
+  };
+  all.push_back({name("rate_error_median_rad_s"), Kind::rate, "rad/s",
+                 "median norm of the rate error over clipped samples " + words, error_in_bin<kAxis, kBin, 50>});
+  all.push_back({name("rate_error_p99_rad_s"), Kind::rate, "rad/s", "99th percentile of the same",
+                 error_in_bin<kAxis, kBin, 99>});
+}
+
+template <Axis kAxis, std::size_t... kBins>
+void add_bins(const char* axis, const std::string& words, std::vector<Metric>& all, std::index_sequence<kBins...>) {
+  (add_bin<kAxis, kBins>(axis, words, all), ...);
+}
+
+}  // namespace
+
+std::vector<Metric> binned_rate_metrics() {
+  std::vector<Metric> all;
+  add_bins<Axis::depth>("clip_depth_rad_s", "whose axis with the largest loss lost so much to the rail", all,
+                        std::make_index_sequence<kDepthEdges.size() - 1>());
+  add_bins<Axis::length>("clip_length_s", "in stretches of such length", all,
+                         std::make_index_sequence<kLengthEdges.size() - 1>());
+  add_bins<Axis::count>("clipped_axes", "with so many axes clipped", all,
+                        std::make_index_sequence<kCountEdges.size() - 1>());
+  return all;
+}
+
+}  // namespace tumble::scenarios

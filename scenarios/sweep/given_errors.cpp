@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/sweep/given_errors.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/scoring/clipping.hpp"
+#include "sim/random/stream.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr std::uint8_t kGyroFlags = 0b000111;
+
+Eigen::Vector3d direction(sim::Stream& stream) {
+  const Eigen::Vector3d vector(stream.normal(), stream.normal(), stream.normal());
+  return vector.normalized();
+}
+
+Eigen::Vector3d direction(const sim::Situation& situation, const char* name) {
+  sim::Stream stream(situation.seed, std::string("given.") + name);
+  return direction(stream);
+}
+
+sim::ImuRecord& primary(sim::Sensors& sensors, const sim::Truth& truth) {
+  if (sensors.imus.empty() || truth.imus.empty()) throw BadInput("the recording has no IMU to put an error into");
+  return sensors.imus.front();
+}
+
+/// The centre of mass lies elsewhere than the calibration says, and with it every sensor's lever arm; sensors among
+/// each other stay as they are given. In place of the scenario's own error of the primary IMU's lever arm.
+void lever_arm(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
+  const Eigen::Vector3d given_m = primary(sensors, truth).T_BI.translation();
+  const Eigen::Vector3d shift_m =
+      truth.imus.front().T_BI.translation() + size * direction(situation, "lever_arm") - given_m;
+  for (sim::ImuRecord& imu : sensors.imus) imu.T_BI.translation() += shift_m;
+  for (sim::LidarRecord& lidar : sensors.lidars) lidar.T_BL.translation() += shift_m;
+}
+
+/// Between primary IMU and lidar, in place of the scenario's own.
+void extrinsic_rotation(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
+  const Eigen::Matrix3d R_BI_given = primary(sensors, truth).T_BI.linear();
+  if (sensors.lidars.empty() || truth.lidars.empty()) throw BadInput("the recording has no lidar");
+  const Eigen::Matrix3d R_IL_true = truth.imus.front().T_BI.linear().transpose() * truth.lidars.front().T_BL.linear();
+  const Eigen::AngleAxisd error(size, direction(situation, "extrinsic_rotation"));
+  sensors.lidars.front().T_BL.linear() = R_BI_given * R_IL_true * error.toRotationMatrix();
+}
+
+/// Of the primary IMU's clock, in place of the scenario's own; jitter stays.
+void time_offset(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
+  const double own_s = situation.sensors.front().values.at("time_offset_s");
+  const auto shift_ns = static_cast<std::int64_t>(std::llround((size - own_s) * 1e9));
+  for (std::int64_t& time_ns : primary(sensors, truth).time_ns) time_ns += shift_ns;
+}
+
+/// A range beyond every reading, so that none is taken for clipped.
+void state_no_rail(sim::ImuRecord& imu) {
+  double largest = 0.0;
+  for (const Eigen::Vector3d& reading : imu.gyro_rad_s) largest = std::max(largest, reading.lpNorm<Eigen::Infinity>());
+  imu.stated_gyro_range_rad_s = std::max(imu.stated_gyro_range_rad_s, 1.1 * largest);
+  for (std::uint8_t& flags : imu.clip_flags) flags = static_cast<std::uint8_t>(flags & ~kGyroFlags);
+}
+
+/// Clipped readings give way to the unclipped ones with a constant error per stretch of clipping: what a rate method
+/// with that error would hand to a mapper. Nothing says any more that the gyro has clipped.
+void rate_error(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
+  const ClippingTruth clipping(sensors, truth);
+  sim::ImuRecord& imu = primary(sensors, truth);
+  sim::Stream stream(situation.seed, "given.rate_error");
+  std::vector<std::uint8_t> axes(clipping.size());
+  for (std::size_t i = 0; i < axes.size(); ++i) axes[i] = clipping.clipped_axes(i);
+  Eigen::Vector3d error_rad_s = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    if (axes[i] == 0) continue;
+    if (i == 0 || axes[i - 1] == 0) error_rad_s = size * direction(stream);
+    imu.gyro_rad_s[i] = truth.imus.front().gyro_unclipped_rad_s[i] + error_rad_s;
+  }
+  state_no_rail(imu);
+}
+
+/// The stated range against the rail itself, without the flags of the device, which would tell the truth.
+void stated_rail(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
+  sim::ImuRecord& imu = primary(sensors, truth);
+  imu.stated_gyro_range_rad_s = situation.sensors.front().values.at("gyro_rail_rad_s") * (1.0 + size);
+  for (std::uint8_t& flags : imu.clip_flags) flags = static_cast<std::uint8_t>(flags & ~kGyroFlags);
+}
+
+/// Methods that are told the rail by a parameter of their own.
+void tell_rail(std::span<const sim::Parameter> known, double size, sim::Values& given) {
+  for (const sim::Parameter& parameter : known) {
+    if (parameter.name != "saturation_point_rad_s") continue;
+    given.set(std::string(parameter.name), parameter.default_value * (1.0 + size));
+  }
+}
+
+}  // namespace
+
+std::span<const GivenError> given_errors() {
+  static const std::array kErrors = {
+      GivenError{{"lever_arm_error_m", 0.0, 0.0, 1.0, "m",
+                  "the lever arm is off by this, in a direction drawn once per draw; at 0 it is exact"},
+                 false,
+                 lever_arm},
+      GivenError{{"extrinsic_rotation_rad", 0.0, 0.0, 3.14, "rad",
+                  "the rotation between IMU and lidar is off by this, about an axis drawn once per draw"},
+                 true,
+                 extrinsic_rotation},
+      GivenError{
+          {"time_offset_s", 0.0, -1.0, 1.0, "s", "the stamps of the primary IMU are late by this"}, false, time_offset},
+      GivenError{{"rate_error_rad_s", 0.0, 0.0, 1000.0, "rad/s",
+                  "clipped readings give way to unclipped ones with an error of this size, constant over each stretch "
+                  "of clipping; every method takes them for readings"},
+                 false,
+                 rate_error},
+      GivenError{{"stated_rail_error", 0.0, -0.9, 9.0, "1",
+                  "the stated range is off the gyro's rail by this share of it, and the device's flags are kept back"},
+                 false,
+                 stated_rail,
+                 tell_rail},
+  };
+  return kErrors;
+}
+
+const GivenError* find_given_error(const std::string& name) {
+  const auto all = given_errors();
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const GivenError& e) { return e.parameter.name == name; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "tools/report/curves.hpp"
+#include "tools/report/html.hpp"
+#include "tools/report/pictures.hpp"
+#include "tools/report/summary.hpp"
+
+namespace tumble::tools {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr double kMetricDomainLow = 0.36, kFailureDomainHigh = 0.24;
+
+std::string with_unit(const std::string& name, const std::string& unit) {
+  return unit.empty() ? name : name + " [" + unit + "]";
+}
+
+/// Five significant digits; null where there is no number, which leaves a gap.
+json shown(double value) {
+  if (!std::isfinite(value)) return json();
+  if (value == 0.0) return json(0.0);
+  const double scale = std::pow(10.0, 4 - static_cast<int>(std::floor(std::log10(std::abs(value)))));
+  return json(std::round(value * scale) / scale);
+}
+
+std::string transparent(const char* hex) {
+  const auto colour = Colour{hex}.rgba();
+  return fmt::format("rgba({:.0f},{:.0f},{:.0f},0.14)", 255 * colour[0], 255 * colour[1], 255 * colour[2]);
+}
+
+/// What every trace of a method has in common: one entry of the legend switches all of them.
+json trace(const std::string& method, bool in_legend) {
+  return {{"type", "scatter"}, {"name", method}, {"legendgroup", method}, {"showlegend", in_legend}};
+}
+
+/// The band between the quartiles, a polygon for each run of places where both are finite.
+void add_bands(const CurveLine& line, double x_factor, double y_factor, const char* colour, json& data) {
+  const auto finite = [](const CurvePoint& p) { return std::isfinite(p.quantile_25) && std::isfinite(p.quantile_75); };
+  for (auto begin = line.points.begin(); begin != line.points.end();) {
+    begin = std::find_if(begin, line.points.end(), finite);
+    const auto end = std::find_if_not(begin, line.points.end(), finite);
+    if (begin == end) break;
+    json band = trace(line.method, false);
+    band.update({{"mode", "lines"},
+                 {"fill", "toself"},
+                 {"fillcolor", transparent(colour)},
+                 {"line", {{"width", 0}}},
+                 {"hoverinfo", "skip"},
+                 {"x", json::array()},
+                 {"y", json::array()}});
+    for (auto point = begin; point != end; ++point) {
+      band["x"].push_back(shown(point->x * x_factor));
+      band["y"].push_back(shown(point->quantile_25 * y_factor));
+    }
+    for (auto point = end; point != begin;) {
+      --point;
+      band["x"].push_back(shown(point->x * x_factor));
+      band["y"].push_back(shown(point->quantile_75 * y_factor));
+    }
+    data.push_back(std::move(band));
+    begin = end;
+  }
+}
+
+json line_trace(const CurveLine& line, double x_factor, double y_factor, double CurvePoint::*value, bool in_legend) {
+  json out = trace(line.method, in_legend);
+  out["x"] = json::array();
+  out["y"] = json::array();
+  for (const CurvePoint& point : line.points) {
+    out["x"].push_back(shown(point.x * x_factor));
+    out["y"].push_back(shown(point.*value * y_factor));
+  }
+  return out;
+}
+
+json failures_trace(const CurveLine& line, double x_factor, const char* colour) {
+  json out = trace(line.method, false);
+  json above = json::array(), below = json::array();
+  out.update({{"mode", "lines+markers"},
+              {"yaxis", "y2"},
+              {"line", {{"color", colour}, {"width", 1.5}}},
+              {"marker", {{"color", colour}, {"size", 5}}},
+              {"x", json::array()},
+              {"y", json::array()}});
+  for (const CurvePoint& point : line.points) {
+    out["x"].push_back(shown(point.x * x_factor));
+    out["y"].push_back(shown(100.0 * point.failed_share.value));
+    above.push_back(shown(100.0 * (point.failed_share.high - point.failed_share.value)));
+    below.push_back(shown(100.0 * (point.failed_share.value - point.failed_share.low)));
+  }
+  out["error_y"] = {{"type", "data"}, {"array", above},  {"arrayminus", below}, {"thickness", 0.8},
+                    {"width", 2},     {"color", colour}, {"symmetric", false}};
+  return out;
+}
+
+bool wants_log(const Curve& curve) {
+  double low = std::numeric_limits<double>::infinity(), high = 0.0;
+  for (const CurveLine& line : curve.lines) {
+    for (const CurvePoint& point : line.points) {
+      for (const double value : {point.quantile_25, point.median, point.worst_5}) {
+        if (!std::isfinite(value)) continue;
+        low = std::min(low, value);
+        high = std::max(high, value);
+      }
+    }
+  }
+  return low > 0.0 && high > 10.0 * low;
+}
+
+json x_axis(const Curve& curve, const std::string& title) {
+  json axis = {{"title", {{"text", title}}}, {"anchor", "y2"}};
+  if (curve.source != Curve::Source::samples) return axis;
+  std::map<double, std::string> labels;
+  for (const CurveLine& line : curve.lines) {
+    for (const CurvePoint& point : line.points) labels.emplace(point.x, point.label);
+  }
+  axis["tickvals"] = json::array();
+  axis["ticktext"] = json::array();
+  for (const auto& [x, label] : labels) {
+    axis["tickvals"].push_back(x);
+    axis["ticktext"].push_back(label);
+  }
+  return axis;
+}
+
+std::string caption_of(const Curve& curve) {
+  const std::string what = fmt::format("{}, {}: ", curve.scenario, to_string(curve.kind));
+  switch (curve.source) {
+    case Curve::Source::set:
+      return what + curve.metric + " against " + curve.axis + ", set to each value in every draw.";
+    case Curve::Source::samples:
+      return what + curve.metric + " over the clipped samples of a draw that lie in each bin of " + curve.axis + ".";
+    case Curve::Source::draws:
+      return what + curve.metric + " against " + curve.axis + " of the draw, in bins of equally many draws.";
+  }
+  return what;
+}
+
+}  // namespace
+
+Figure curve_figure(const Curve& curve) {
+  Figure figure;
+  figure.id = "curve-" + curve.scenario + "-" + to_string(curve.kind) + "-" + curve.axis + "-" + curve.metric;
+  figure.caption = caption_of(curve);
+  const MetricStyle x_style = metric_style(curve.axis), y_style = metric_style(curve.metric);
+  // bins stand at their ranks, labelled in the unit
+  const double x_factor = curve.source == Curve::Source::samples ? 1.0 : x_style.factor;
+  json lines = json::array();
+  for (std::size_t i = 0; i < curve.lines.size(); ++i) {
+    const CurveLine& line = curve.lines[i];
+    const char* colour = method_colour(i).hex;
+    add_bands(line, x_factor, y_style.factor, colour, figure.data);
+    json median = line_trace(line, x_factor, y_style.factor, &CurvePoint::median, true);
+    median.update({{"mode", "lines+markers"},
+                   {"line", {{"color", colour}, {"width", 2.2}}},
+                   {"marker", {{"color", colour}, {"size", 6}}}});
+    json worst = line_trace(line, x_factor, y_style.factor, &CurvePoint::worst_5, false);
+    worst.update({{"mode", "lines"}, {"line", {{"color", colour}, {"width", 1.2}, {"dash", "dot"}}}});
+    lines.push_back(std::move(median));
+    lines.push_back(std::move(worst));
+    lines.push_back(failures_trace(line, x_factor, colour));
+  }
+  for (json& each : lines) figure.data.push_back(std::move(each));
+  figure.layout = {
+      {"xaxis", x_axis(curve, with_unit(curve.axis, x_style.unit))},
+      {"yaxis",
+       {{"title", {{"text", y_style.unit.empty() ? curve.metric : y_style.unit}}},
+        {"domain", {kMetricDomainLow, 1.0}}}},
+      {"yaxis2", {{"title", {{"text", "failed [%]"}}}, {"domain", {0.0, kFailureDomainHigh}}, {"range", {-4, 104}}}}};
+  if (wants_log(curve))
+    figure.layout["yaxis"]["type"] = "log";
+  else
+    figure.layout["yaxis"]["rangemode"] = "tozero";
+  return figure;
+}
+
+std::string curves_html(std::span<const Curve> curves, std::vector<Figure>& figures) {
+  if (curves.empty()) return "";
+  std::string out =
+      "<h2 id=\"curves\">Curves</h2>\n<p>Line: median over the draws; band: between the quartiles; dotted: the worst "
+      "5 %. A run that failed ranks as the worst of all, so a line ends where half of the runs fail. Below: the share "
+      "of runs that did not end <i>ok</i> or whose map failed, with its 95 % Clopper–Pearson interval.</p>\n"
+      "<div class=\"pair\">";
+  for (const Curve& curve : curves) {
+    Figure figure = curve_figure(curve);
+    out += "<figure><div class=\"plot\" id=\"" + html::escaped(figure.id) + "\"></div><figcaption>" +
+           html::escaped(figure.caption) + "</figcaption></figure>\n";
+    figures.push_back(std::move(figure));
+  }
+  return out + "</div>\n";
+}
+
+}  // namespace tumble::tools
