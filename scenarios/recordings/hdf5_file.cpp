@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <system_error>
+#include <utility>
 
 #include "scenarios/errors.hpp"
 
@@ -39,7 +40,7 @@ H5FD_file_image_callbacks_t keep_image_in(void** user) {
     if (when != H5FD_FILE_IMAGE_OP_FILE_CLOSE) {
       std::free(memory);
     } else {
-      *static_cast<void**>(keeper) = memory;
+      std::free(std::exchange(*static_cast<void**>(keeper), memory));
     }
     return 0;
   };
@@ -69,7 +70,9 @@ Handle create_in_memory(const std::string& name, void** image) {
   }
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_obj_track_times(creation.get(), false);  // equal recordings give equal files
-  Handle file(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose);
+  // a name that is no file's: the library would read that file into memory first
+  const std::string label = name + " in memory";
+  Handle file(H5Fcreate(label.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose);
   if (!file.valid()) throw BadInput(name + ": cannot be prepared" + last_error());
   return file;
 }

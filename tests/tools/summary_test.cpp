@@ -109,7 +109,8 @@ TEST_F(SummaryTest, MoreIsBetterForOverlapAndNothingForCoverageOfAnInterval) {
 TEST_F(SummaryTest, VerdictsGiveTheirShareAndNotTheirMedian) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed)
     store(seed, Kind::slam, "icp", "ok", {{"map_failed", seed == 3 ? 1.0 : 0.0}});
-  const MetricSummary* metric = summarize(results()).sections.front().find("icp")->find("map_failed");
+  const auto summary = summarize(results());
+  const MetricSummary* metric = summary.sections.front().find("icp")->find("map_failed");
   ASSERT_NE(metric, nullptr);
   EXPECT_NEAR(metric->centre.value, 0.1, 1e-12);
   // Clopper and Pearson, 1 of 10: [0.0025, 0.4450] (their table)
