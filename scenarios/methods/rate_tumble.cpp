@@ -7,7 +7,7 @@
 
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/rate_baseline.hpp"
-#include "tumble/angular_velocity/rate_smoother.hpp"
+#include "scenarios/methods/rate_tumble.hpp"
 
 namespace tumble::scenarios {
 
@@ -37,6 +37,8 @@ const std::array<sim::Parameter, 11>& parameters_of_the_smoother() {
   return parameters;
 }
 
+}  // namespace
+
 // a range or density of 0 means that the data sheet says nothing: no stated range, the library's density
 RateSmoother::Params smoother_params(const sim::ImuRecord& record, const sim::Values& parameters) {
   RateSmoother::Params params;
@@ -59,6 +61,8 @@ RateSmoother::Params smoother_params(const sim::ImuRecord& record, const sim::Va
   params.rig_surprise_max = parameters.at("rig_surprise_max");
   return params;
 }
+
+namespace {
 
 void report_health(const RateReport& report, std::map<std::string, double>& health) {
   health["iterations"] = report.iterations;

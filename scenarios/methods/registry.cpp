@@ -26,6 +26,7 @@ std::vector<Method> all_methods() {
       rate_magnetometer(),
       rate_saave(),
       rate_tumble(),
+      rate_tumble_lag(),
       rate_oracle(),
       attitude_integrate(),
       attitude_madgwick(),
