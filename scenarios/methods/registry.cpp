@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/methods/rate_tumble.hpp"
 #include "scenarios/methods/slam_registry.hpp"
 
 namespace tumble::scenarios {

@@ -32,7 +32,6 @@ Method rate_zero_velocity();
 Method rate_magnetometer();
 Method rate_saave();
 Method rate_tumble();
-Method rate_tumble_lag();
 Method rate_oracle();
 Method attitude_integrate();
 Method attitude_madgwick();
