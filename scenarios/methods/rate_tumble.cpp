@@ -74,6 +74,7 @@ void report_health(const RateReport& report, std::map<std::string, double>& heal
   health["readings_void"] = static_cast<double>(report.void_readings);
   health["rails_disagreeing"] =
       static_cast<double>(std::count(report.rail_disagrees.begin(), report.rail_disagrees.end(), true));
+  health["rate_unit_suspect"] = report.rate_unit_suspect ? 1.0 : 0.0;
   health["force_unit_suspect"] = report.force_unit_suspect ? 1.0 : 0.0;
   const char* const names[] = {"x", "y", "z"};
   for (int j = 0; j < 3; ++j) {

@@ -274,6 +274,9 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples, std::vector<Ra
     health.rail_disagrees[static_cast<std::size_t>(c)] = rails_.disagrees(rail_state, c);
   }
   const double force = median_force(samples);
+  health.rate_unit_suspect = std::any_of(samples.begin(), samples.end(), [&](const ImuSample& sample) {
+    return sample.angular_velocity_rad_s.cwiseAbs().maxCoeff() > params_.model.rate_max_rad_s;
+  });
   health.force_unit_suspect = force > 0.5 && force < 2.0;
   std::vector<RateObservation> observations(samples.size());
   const double period_s = median_period_s(samples);

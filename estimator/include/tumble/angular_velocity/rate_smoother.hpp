@@ -28,6 +28,7 @@ struct RateReport {
   bool rig_held = false;  ///< the surprise was too large: nothing was learnt, the constants were held
   std::array<std::optional<double>, 6> rail;  ///< in use: gyro [rad/s], accelerometer [m/s^2]; none: not seen
   std::array<bool, 6> rail_disagrees{};       ///< a stated range contradicted by the readings
+  bool rate_unit_suspect = false;             ///< a reading beyond RateModelParams::rate_max_rad_s: perhaps degrees
   bool force_unit_suspect = false;            ///< the median specific force is near 1: perhaps given in g
   std::size_t samples = 0, clipped = 0, recovered_flight = 0, recovered_contact = 0, bounded_only = 0;
   std::size_t void_readings = 0;  ///< samples with an overflow (sign flipped at the rail)
