@@ -31,13 +31,13 @@ struct RateModelParams {
   /// Noise density of the accelerometer [m/s^2/sqrt(Hz)] (MTi-30: 60 ug/sqrt(Hz)); [1e-9, 10].
   double accel_noise_density = 5.9e-4;
   /// What the flight model misses of the specific force (drag, bias in motion), besides noise [m/s^2]; [1e-6, 100].
-  double flight_sigma_m_s2 = 0.02;
+  double flight_sigma_m_s2 = 0.012;
   /// Scale and misalignment of the accelerometer, as a share of the force; [0, 1].
   double accel_scale_error = 1e-3;
   /// What Euler's equation without torque misses of the angular acceleration [rad/s^2]; [1e-6, 1e6].
-  double euler_sigma_rad_s2 = 0.5;
+  double euler_sigma_rad_s2 = 0.3;
   /// Density of the white angular jerk in flight [rad^2/s^5]; [1, 1e12].
-  double jerk_psd_flight = 1e4;
+  double jerk_psd_flight = 3e3;
   /// In contact the jerk grows by what the force can do to the angular acceleration: rad/s^2 per m/s^2 of specific
   /// force that the flight model cannot explain; [0, 1e3].
   double contact_gain_rad_m = 4.0;
