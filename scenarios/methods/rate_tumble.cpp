@@ -86,21 +86,33 @@ void report_health(const RateReport& report, std::map<std::string, double>& heal
   }
 }
 
+constexpr double kTrust = 4.0;
+
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  Estimate estimate;
-  std::vector<ImuSample> samples;
-  estimate.status = bridge::primary_imu_samples(sensors, samples);
-  if (estimate.status.ok()) {
-    estimate.status = tumble_rates(sensors, samples, parameters, estimate.rates, estimate.health);
-  }
-  count_sources(estimate.rates, estimate.health);
-  return estimate;
+  return run_rate_tumble(sensors, parameters, nullptr, nullptr);
 }
 
 }  // namespace
 
 std::span<const sim::Parameter> tumble_rate_parameters() {
   return parameters_of_the_smoother();
+}
+
+Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
+                         LearntRig* found) {
+  Estimate estimate;
+  std::vector<ImuSample> samples;
+  estimate.status = bridge::primary_imu_samples(sensors, samples);
+  if (estimate.status.ok()) {
+    RateSmoother::Params params = smoother_params(sensors.imus.front(), parameters);
+    if (given != nullptr) start_from(*given, kTrust, params);
+    RateReport report;
+    estimate.status = RateSmoother(params).estimate(samples, estimate.rates, report);
+    if (estimate.status.ok()) report_health(report, estimate.health);
+    if (estimate.status.ok() && found != nullptr) *found = learnt(report);
+  }
+  count_sources(estimate.rates, estimate.health);
+  return estimate;
 }
 
 Status tumble_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, const sim::Values& parameters,

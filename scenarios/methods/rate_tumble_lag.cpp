@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <array>
-#include <cmath>
 #include <optional>
 
 #include "scenarios/methods/bridge.hpp"
@@ -30,7 +30,7 @@ RateStream::Params stream_params(const sim::ImuRecord& record, const sim::Values
   params.rig_surprise_max = batch.rig_surprise_max;
   params.gap_max_s = batch.gap_max_s;
   if (record.period_ns > 0) params.period_s = seconds(record.period_ns);
-  params.lag_s = parameters.at("lag_s");
+  params.lag_s = std::max(parameters.at("lag_s"), 2.0 * params.period_s);
   return params;
 }
 
