@@ -31,7 +31,7 @@ struct RateModelParams {
   /// Noise density of the accelerometer [m/s^2/sqrt(Hz)] (MTi-30: 60 ug/sqrt(Hz)); [1e-9, 10].
   double accel_noise_density = 5.9e-4;
   /// What the flight model misses of the specific force (drag, bias in motion), besides noise [m/s^2]; [1e-6, 100].
-  double flight_sigma_m_s2 = 0.012;
+  double flight_sigma_m_s2 = 0.02;
   /// Scale and misalignment of the accelerometer, as a share of the force; [0, 1].
   double accel_scale_error = 1e-3;
   /// What Euler's equation without torque misses of the angular acceleration [rad/s^2]; [1e-6, 1e6].
