@@ -109,7 +109,8 @@ Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& paramet
     RateReport report;
     estimate.status = RateSmoother(params).estimate(samples, estimate.rates, report);
     if (estimate.status.ok()) report_health(report, estimate.health);
-    if (estimate.status.ok() && found != nullptr) *found = learnt(report);
+    const bool nothing_new = given != nullptr && report.rig_held;
+    if (estimate.status.ok() && found != nullptr) *found = nothing_new ? *given : learnt(report);
   }
   count_sources(estimate.rates, estimate.health);
   return estimate;
