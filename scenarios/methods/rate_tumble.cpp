@@ -109,8 +109,7 @@ Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& paramet
     RateReport report;
     estimate.status = RateSmoother(params).estimate(samples, estimate.rates, report);
     if (estimate.status.ok()) report_health(report, estimate.health);
-    const bool nothing_new = given != nullptr && report.rig_held;
-    if (estimate.status.ok() && found != nullptr) *found = nothing_new ? *given : learnt(report);
+    if (estimate.status.ok() && !report.rig_held && found != nullptr) *found = learnt(report);
   }
   count_sources(estimate.rates, estimate.health);
   return estimate;

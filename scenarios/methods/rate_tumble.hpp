@@ -14,9 +14,9 @@ namespace tumble::scenarios {
 RateSmoother::Params smoother_params(const sim::ImuRecord& record, const sim::Values& parameters);
 
 /// The method `tumble` that starts from what an earlier run has learnt of the rig (null: nothing) and leaves in `found`
-/// (may be null) what this run has learnt, or `given` when it learnt nothing; `found` stays as it is when the status is
-/// not ok. What was learnt counts
-/// with four times its covariance, since rigs are handled between runs.
+/// (may be null) what this run has learnt; `found` stays as it is when the status is not ok and when the run learnt
+/// nothing (health counter `rig_held`). What was learnt counts with four times its covariance, since rigs are handled
+/// between runs.
 Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
                          LearntRig* found);
 

@@ -61,7 +61,7 @@ scenarios::Estimate run_learning(const scenarios::Method& method, const sim::Sen
   if (given) rig = scenarios::read_learnt_rig(file);
   const scenarios::LearntRig before = rig;
   scenarios::Estimate estimate = scenarios::run_rate_tumble(sensors, parameters, given ? &before : nullptr, &rig);
-  if (estimate.status.ok()) scenarios::write_learnt_rig(file, rig);
+  if (estimate.status.ok() && estimate.health.at("rig_held") == 0.0) scenarios::write_learnt_rig(file, rig);
   return estimate;
 }
 
