@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -105,7 +106,14 @@ Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& paramet
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (estimate.status.ok()) {
     RateSmoother::Params params = smoother_params(sensors.imus.front(), parameters);
-    if (given != nullptr) start_from(*given, kTrust, params);
+    if (given != nullptr) {
+      const RigConstants::Matrix prior = RateModel(params.model, 0.01).prior_covariance();
+      start_from(*given, kTrust, params);
+      // never wider than before anything was learnt
+      RigConstants::Matrix& covariance = params.model.calibration->covariance;
+      const RigConstants::Matrix information = covariance.inverse() + (1.0 - 1.0 / kTrust) * prior.inverse();
+      covariance = information.inverse();
+    }
     RateReport report;
     estimate.status = RateSmoother(params).estimate(samples, estimate.rates, report);
     if (estimate.status.ok()) report_health(report, estimate.health);

@@ -16,7 +16,7 @@ RateSmoother::Params smoother_params(const sim::ImuRecord& record, const sim::Va
 /// The method `tumble` that starts from what an earlier run has learnt of the rig (null: nothing) and leaves in `found`
 /// (may be null) what this run has learnt; `found` stays as it is when the status is not ok and when the run learnt
 /// nothing (health counter `rig_held`). What was learnt counts with four times its covariance, since rigs are handled
-/// between runs.
+/// between runs, yet not more than what is assumed without it.
 Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
                          LearntRig* found);
 
