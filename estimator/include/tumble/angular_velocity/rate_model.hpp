@@ -37,7 +37,7 @@ struct RateModelParams {
   /// What Euler's equation without torque misses of the angular acceleration [rad/s^2]; [1e-6, 1e6].
   double euler_sigma_rad_s2 = 0.3;
   /// Density of the white angular jerk in flight [rad^2/s^5]; [1, 1e12].
-  double jerk_psd_flight = 3e3;
+  double jerk_psd_flight = 1e4;
   /// In contact the jerk grows by what the force can do to the angular acceleration: rad/s^2 per m/s^2 of specific
   /// force that the flight model cannot explain; [0, 1e3].
   double contact_gain_rad_m = 4.0;

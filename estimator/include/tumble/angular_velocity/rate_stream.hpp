@@ -23,7 +23,7 @@ namespace tumble {
 /// range serves, so the first clipped samples of a device with a wrong or no stated range may be believed.
 /// Give it the calibration of an earlier run: what leaves the window is linearised for good, and while the lever arm is
 /// off by centimetres that makes the covariance of clipped axes too small: on 70 tumbles of the rig 90 % within three
-/// deviations in flight and 1.3 times the error of the batch over the whole recording. That is no worse than the batch
+/// deviations in flight and 1.5 times the error of the batch over the whole recording. That is no worse than the batch
 /// over all that is known lag_s after a sample (1.6 times): the rig is learnt in the tumble that needs it. With a
 /// calibration all are within, and the error is that of the batch. What it does not model: see RateSmoother.
 class RateStream {
