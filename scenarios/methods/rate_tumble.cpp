@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,7 +8,7 @@
 
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/rate_baseline.hpp"
-#include "tumble/angular_velocity/rate_smoother.hpp"
+#include "scenarios/methods/rate_tumble.hpp"
 
 namespace tumble::scenarios {
 
@@ -37,6 +38,8 @@ const std::array<sim::Parameter, 11>& parameters_of_the_smoother() {
   return parameters;
 }
 
+}  // namespace
+
 // a range or density of 0 means that the data sheet says nothing: no stated range, the library's density
 RateSmoother::Params smoother_params(const sim::ImuRecord& record, const sim::Values& parameters) {
   RateSmoother::Params params;
@@ -60,6 +63,8 @@ RateSmoother::Params smoother_params(const sim::ImuRecord& record, const sim::Va
   return params;
 }
 
+namespace {
+
 void report_health(const RateReport& report, std::map<std::string, double>& health) {
   health["iterations"] = report.iterations;
   health["converged"] = report.converged ? 1.0 : 0.0;
@@ -70,6 +75,7 @@ void report_health(const RateReport& report, std::map<std::string, double>& heal
   health["readings_void"] = static_cast<double>(report.void_readings);
   health["rails_disagreeing"] =
       static_cast<double>(std::count(report.rail_disagrees.begin(), report.rail_disagrees.end(), true));
+  health["rate_unit_suspect"] = report.rate_unit_suspect ? 1.0 : 0.0;
   health["force_unit_suspect"] = report.force_unit_suspect ? 1.0 : 0.0;
   const char* const names[] = {"x", "y", "z"};
   for (int j = 0; j < 3; ++j) {
@@ -81,21 +87,40 @@ void report_health(const RateReport& report, std::map<std::string, double>& heal
   }
 }
 
+constexpr double kTrust = 4.0;
+
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  Estimate estimate;
-  std::vector<ImuSample> samples;
-  estimate.status = bridge::primary_imu_samples(sensors, samples);
-  if (estimate.status.ok()) {
-    estimate.status = tumble_rates(sensors, samples, parameters, estimate.rates, estimate.health);
-  }
-  count_sources(estimate.rates, estimate.health);
-  return estimate;
+  return run_rate_tumble(sensors, parameters, nullptr, nullptr);
 }
 
 }  // namespace
 
 std::span<const sim::Parameter> tumble_rate_parameters() {
   return parameters_of_the_smoother();
+}
+
+Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
+                         LearntRig* found) {
+  Estimate estimate;
+  std::vector<ImuSample> samples;
+  estimate.status = bridge::primary_imu_samples(sensors, samples);
+  if (estimate.status.ok()) {
+    RateSmoother::Params params = smoother_params(sensors.imus.front(), parameters);
+    if (given != nullptr) {
+      const RigConstants::Matrix prior = RateModel(params.model, 0.01).prior_covariance();
+      start_from(*given, kTrust, params);
+      // never wider than before anything was learnt
+      RigConstants::Matrix& covariance = params.model.calibration->covariance;
+      const RigConstants::Matrix information = covariance.inverse() + (1.0 - 1.0 / kTrust) * prior.inverse();
+      covariance = information.inverse();
+    }
+    RateReport report;
+    estimate.status = RateSmoother(params).estimate(samples, estimate.rates, report);
+    if (estimate.status.ok()) report_health(report, estimate.health);
+    if (estimate.status.ok() && !report.rig_held && found != nullptr) *found = learnt(report);
+  }
+  count_sources(estimate.rates, estimate.health);
+  return estimate;
 }
 
 Status tumble_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, const sim::Values& parameters,

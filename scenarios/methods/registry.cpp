@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/methods/rate_tumble.hpp"
 #include "scenarios/methods/slam_registry.hpp"
 
 namespace tumble::scenarios {
@@ -26,6 +27,7 @@ std::vector<Method> all_methods() {
       rate_magnetometer(),
       rate_saave(),
       rate_tumble(),
+      rate_tumble_lag(),
       rate_oracle(),
       attitude_integrate(),
       attitude_madgwick(),

@@ -8,46 +8,54 @@ namespace tumble::arrow {
 
 namespace {
 
-// Plain loops over columns: Eigen's general triangular solvers are several times slower at these sizes.
-bool cholesky(StateMatrix& a) {
+// L^-1 of a = L L', lower, in place of a. Plain loops over columns: Eigen's general triangular solvers are several
+// times slower at these sizes. One division a column.
+bool invert_factor(StateMatrix& a) {
+  StateMatrix L = a;
+  StateVector over_pivot;
   for (int j = 0; j < kState; ++j) {
-    double pivot = a(j, j);
-    for (int k = 0; k < j; ++k) pivot -= a(j, k) * a(j, k);
+    double pivot = L(j, j);
+    for (int k = 0; k < j; ++k) pivot -= L(j, k) * L(j, k);
     if (!(pivot > 0.0) || !std::isfinite(pivot)) return false;
-    pivot = std::sqrt(pivot);
-    a(j, j) = pivot;
+    over_pivot[j] = 1.0 / std::sqrt(pivot);
     for (int i = j + 1; i < kState; ++i) {
-      double sum = a(i, j);
-      for (int k = 0; k < j; ++k) sum -= a(i, k) * a(j, k);
-      a(i, j) = sum / pivot;
+      double sum = L(i, j);
+      for (int k = 0; k < j; ++k) sum -= L(i, k) * L(j, k);
+      L(i, j) = sum * over_pivot[j];
     }
-    for (int i = 0; i < j; ++i) a(i, j) = 0.0;
+  }
+  a.setZero();
+  for (int j = 0; j < kState; ++j) {
+    a(j, j) = over_pivot[j];
+    for (int i = j + 1; i < kState; ++i) {
+      double sum = 0.0;
+      for (int k = j; k < i; ++k) sum -= L(i, k) * a(k, j);
+      a(i, j) = sum * over_pivot[i];
+    }
   }
   return true;
 }
 
-StateMatrix inverse_lower(const StateMatrix& L) {
-  StateMatrix inverse = StateMatrix::Zero();
-  for (int j = 0; j < kState; ++j) {
-    inverse(j, j) = 1.0 / L(j, j);
-    for (int i = j + 1; i < kState; ++i) {
-      double sum = 0.0;
-      for (int k = j; k < i; ++k) sum -= L(i, k) * inverse(k, j);
-      inverse(i, j) = sum / L(i, i);
-    }
-  }
-  return inverse;
+// corner -= border' border, of which the upper right part is the mirror of the lower left
+void subtract_square(const CrossMatrix& border, BorderMatrix& corner) {
+  constexpr int kHead = 8, kTail = kBorder - kHead;
+  const auto head = border.leftCols<kHead>();
+  const auto tail = border.rightCols<kTail>();
+  corner.topLeftCorner<kHead, kHead>().noalias() -= head.transpose().lazyProduct(head);
+  corner.bottomRightCorner<kTail, kTail>().noalias() -= tail.transpose().lazyProduct(tail);
+  corner.bottomLeftCorner<kTail, kHead>().noalias() -= tail.transpose().lazyProduct(head);
+  corner.topRightCorner<kHead, kTail>() = corner.bottomLeftCorner<kTail, kHead>().transpose();
 }
 
 }  // namespace
 
 bool eliminate(Block& block, Block* next, Corner& corner) {
-  if (!cholesky(block.diagonal)) return false;
+  if (!invert_factor(block.diagonal)) return false;
   // products with the inverse factor: fixed sizes, which the compiler unrolls and vectorises
-  const StateMatrix L_inv = inverse_lower(block.diagonal);
+  const StateMatrix& L_inv = block.diagonal;
   block.border = (L_inv.lazyProduct(block.border)).eval();
   block.gradient = (L_inv.lazyProduct(block.gradient)).eval();
-  corner.matrix.noalias() -= block.border.transpose().lazyProduct(block.border);
+  subtract_square(block.border, corner.matrix);
   corner.gradient.noalias() -= block.border.transpose().lazyProduct(block.gradient);
   if (next == nullptr) {
     block.coupling.setZero();
@@ -71,29 +79,39 @@ bool solve_corner(const Corner& corner, BorderVector& step, BorderMatrix& covari
 StateVector back_substitute(const Block& block, const StateVector* next_step, const BorderVector& border_step) {
   StateVector right = block.gradient - block.border.lazyProduct(border_step);
   if (next_step != nullptr) right.noalias() -= block.coupling.lazyProduct(*next_step);
-  for (int i = kState - 1; i >= 0; --i) {
-    for (int k = i + 1; k < kState; ++k) right[i] -= block.diagonal(k, i) * right[k];
-    right[i] /= block.diagonal(i, i);
-  }
-  return right;
+  return block.diagonal.transpose().lazyProduct(right);
 }
 
-Marginal back_covariance(const Block& block, const Marginal* next, const BorderMatrix& border_covariance) {
-  const StateMatrix L_inv = inverse_lower(block.diagonal);
-  const CrossMatrix G = L_inv.transpose().lazyProduct(block.border);
-  Marginal out;
-  const CrossMatrix G_covariance = G.lazyProduct(border_covariance);
-  out.cross = -G_covariance;
+Conditional back_conditional(const Block& block, const Conditional* next) {
+  const StateMatrix& L_inv = block.diagonal;
+  Conditional out;
   out.state = L_inv.transpose().lazyProduct(L_inv);
-  out.state.noalias() += G_covariance.lazyProduct(G.transpose());
-  if (next == nullptr) return out;
+  if (next == nullptr) {
+    out.by_border = -L_inv.transpose().lazyProduct(block.border);
+    return out;
+  }
+  CrossMatrix pull = block.border;
+  pull.noalias() += block.coupling.lazyProduct(next->by_border);
+  out.by_border = -L_inv.transpose().lazyProduct(pull);
   const StateMatrix A = L_inv.transpose().lazyProduct(block.coupling);
-  const CrossMatrix A_cross = A.lazyProduct(next->cross);
-  out.cross -= A_cross;
-  const StateMatrix mixed = A_cross.lazyProduct(G.transpose());
   const StateMatrix A_state = A.lazyProduct(next->state);
   out.state.noalias() += A_state.lazyProduct(A.transpose());
-  out.state += mixed + mixed.transpose();
+  return out;
+}
+
+Marginal marginal(const Conditional& conditional, const BorderMatrix& border_covariance) {
+  Marginal out;
+  out.cross = conditional.by_border.lazyProduct(border_covariance);
+  out.state = conditional.state;
+  out.state.noalias() += out.cross.lazyProduct(conditional.by_border.transpose());
+  return out;
+}
+
+Eigen::Matrix3d rate_covariance(const Conditional& conditional, const BorderMatrix& border_covariance) {
+  const Eigen::Matrix<double, 3, kBorder> rows = conditional.by_border.topRows<3>();
+  const Eigen::Matrix<double, 3, kBorder> cross = rows.lazyProduct(border_covariance);
+  Eigen::Matrix3d out = conditional.state.topLeftCorner<3, 3>();
+  out.noalias() += cross.lazyProduct(rows.transpose());
   return out;
 }
 

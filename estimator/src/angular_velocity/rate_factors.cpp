@@ -2,6 +2,7 @@
 #include "tumble/angular_velocity/rate_factors.hpp"
 
 #include <Eigen/Geometry>
+#include <numbers>
 
 #include "tumble/common/so3.hpp"
 
@@ -9,6 +10,20 @@ namespace tumble {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
+
+namespace {
+
+// S_i v for each matrix of RigConstants::inertia_basis, as columns; written out, because it is asked for each sample.
+Eigen::Matrix<double, 3, 5> basis_times(const Vector3d& v) {
+  constexpr double kHalf = 0.5 * std::numbers::sqrt2, kSixth = std::numbers::inv_sqrt3 * kHalf;
+  Eigen::Matrix<double, 3, 5> out;
+  out << kHalf * v[0], kSixth * v[0], kHalf * v[1], kHalf * v[2], 0.0,  //
+      -kHalf * v[1], kSixth * v[1], kHalf * v[0], 0.0, kHalf * v[2],    //
+      0.0, -2.0 * kSixth * v[2], 0.0, kHalf * v[0], kHalf * v[1];
+  return out;
+}
+
+}  // namespace
 
 RateFactor gyro_factor(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_rad_s) {
   RateFactor f;
@@ -39,10 +54,8 @@ RateFactor euler_factor(const RateKnot& knot, const RigConstants& rig) {
   f.residual = J * alpha + w.cross(momentum);
   f.by_knot << so3::hat(w) * J - so3::hat(momentum), J;
   f.by_rig.setZero();
-  for (int i = 0; i < 5; ++i) {
-    const Matrix3d& S = RigConstants::inertia_basis(i);
-    f.by_rig.col(9 + i) = S * alpha + w.cross(Vector3d(S * w));
-  }
+  f.by_rig.middleCols<5>(9) = basis_times(alpha);
+  f.by_rig.middleCols<5>(9).noalias() += so3::hat(w).lazyProduct(basis_times(w));
   return f;
 }
 

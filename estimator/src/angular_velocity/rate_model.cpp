@@ -33,6 +33,7 @@ void check(const RateModelParams& p) {
   require_within("contact_force_share", p.contact_force_share, 0.0, 1e3);
   require_within("flight_threshold", p.flight_threshold, 1.0, 100.0);
   require_within("rail_sigma_rad_s", p.rail_sigma_rad_s, 1e-6, 10.0);
+  require_within("rest_sigma_rad_s", p.rest_sigma_rad_s, 1e-9, 10.0);
   require_within("rate_max_rad_s", p.rate_max_rad_s, 1.0, 1e4);
   require_within("acceleration_max_rad_s2", p.acceleration_max_rad_s2, 1.0, 1e7);
   const RigConstants::Vector nominal = p.calibration ? p.calibration->constants.vector() : p.nominal.vector();
@@ -66,12 +67,32 @@ void drop_satisfied_bounds(const RateObservation& o, RateFactor& flight) {
   }
 }
 
+// The constants that a factor depends on: lever arm and accelerometer's bias in flight, inertia in Euler's equation.
+constexpr int kLever = 0, kAccelBias = 6, kInertia = 9;
+
+// What the uncertain rig adds to a residual.
+Eigen::Matrix3d flight_spread(const RateFactor& f, const RigConstants::Matrix& rig) {
+  const Eigen::Matrix3d T = f.by_rig.middleCols<3>(kLever), B = f.by_rig.middleCols<3>(kAccelBias);
+  const Eigen::Matrix3d between = rig.block<3, 3>(kLever, kAccelBias);
+  const Eigen::Matrix3d TC = T.lazyProduct(rig.block<3, 3>(kLever, kLever)), TM = T.lazyProduct(between);
+  const Eigen::Matrix3d BC = B.lazyProduct(rig.block<3, 3>(kAccelBias, kAccelBias));
+  const Eigen::Matrix3d mixed = TM.lazyProduct(B.transpose());
+  Eigen::Matrix3d S = mixed + mixed.transpose();
+  S.noalias() += TC.lazyProduct(T.transpose());
+  S.noalias() += BC.lazyProduct(B.transpose());
+  return S;
+}
+
+Eigen::Matrix3d euler_spread(const RateFactor& f, const RigConstants::Matrix& rig) {
+  const Eigen::Matrix<double, 3, 5> I = f.by_rig.middleCols<5>(kInertia);
+  const Eigen::Matrix<double, 3, 5> IC = I.lazyProduct(rig.block<5, 5>(kInertia, kInertia));
+  return IC.lazyProduct(I.transpose());
+}
+
 // Squared residual over its covariance: the sensor's own and what the uncertain rig adds, direction by direction.
-double normalised(const RateFactor& f, const RigConstants::Matrix& rig_covariance, double sigma) {
-  const Eigen::Matrix<double, 3, RigConstants::kSize> spread = f.by_rig.lazyProduct(rig_covariance);
-  Eigen::Matrix3d S = spread.lazyProduct(f.by_rig.transpose());
-  S.diagonal().array() += sigma * sigma;
-  return f.residual.dot(S.inverse() * f.residual);
+double normalised(const RateFactor& f, Eigen::Matrix3d spread, double sigma) {
+  spread.diagonal().array() += sigma * sigma;
+  return f.residual.dot(spread.inverse() * f.residual);
 }
 
 // Mahalanobis distance of one part of the constants, over the root of its size
@@ -82,17 +103,48 @@ double surprise(const RigConstants::Vector& moved, const RigConstants::Matrix& c
   return std::sqrt(part.dot(spread.llt().solve(part)) / kCount);
 }
 
-void add_factor(const RateFactor& f, const Eigen::Matrix3d& information, double time_scale_s, arrow::Block& block,
-                arrow::Corner& corner) {
+// Part of a factor that belongs to the sample alone; returns A' * information.
+Eigen::Matrix<double, 6, 3> add_to_knot(const RateFactor& f, const Eigen::Matrix3d& information, double time_scale_s,
+                                        arrow::Block& block) {
   Eigen::Matrix<double, 3, 6> A = f.by_knot;
   A.rightCols<3>() /= time_scale_s;
   const Eigen::Matrix<double, 6, 3> At = A.transpose().lazyProduct(information);
-  const Eigen::Matrix<double, RigConstants::kSize, 3> Bt = f.by_rig.transpose().lazyProduct(information);
   block.diagonal.noalias() += At.lazyProduct(A);
-  block.border.noalias() += At.lazyProduct(f.by_rig);
   block.gradient.noalias() -= At.lazyProduct(f.residual);
-  corner.matrix.noalias() += Bt.lazyProduct(f.by_rig);
-  corner.gradient.noalias() -= Bt.lazyProduct(f.residual);
+  return At;
+}
+
+// Part of a factor that belongs to kCount constants from kFirst on.
+template <int kFirst, int kCount>
+void add_to_rig(const RateFactor& f, const Eigen::Matrix3d& information, const Eigen::Matrix<double, 6, 3>& At,
+                arrow::Block& block, arrow::Corner& corner) {
+  const Eigen::Matrix<double, 3, kCount> B = f.by_rig.middleCols<kCount>(kFirst);
+  const Eigen::Matrix<double, kCount, 3> Bt = B.transpose().lazyProduct(information);
+  block.border.middleCols<kCount>(kFirst).noalias() += At.lazyProduct(B);
+  corner.matrix.block<kCount, kCount>(kFirst, kFirst).noalias() += Bt.lazyProduct(B);
+  corner.gradient.segment<kCount>(kFirst).noalias() -= Bt.lazyProduct(f.residual);
+}
+
+void add_flight(const RateFactor& f, const Eigen::Matrix3d& information, double time_scale_s, arrow::Block& block,
+                arrow::Corner& corner) {
+  const Eigen::Matrix<double, 6, 3> At = add_to_knot(f, information, time_scale_s, block);
+  add_to_rig<kLever, 3>(f, information, At, block, corner);
+  add_to_rig<kAccelBias, 3>(f, information, At, block, corner);
+  const Eigen::Matrix3d T = f.by_rig.middleCols<3>(kLever), B = f.by_rig.middleCols<3>(kAccelBias);
+  const Eigen::Matrix3d weighted = information.lazyProduct(B), mixed = T.transpose().lazyProduct(weighted);
+  corner.matrix.block<3, 3>(kLever, kAccelBias) += mixed;
+  corner.matrix.block<3, 3>(kAccelBias, kLever) += mixed.transpose();
+}
+
+void add_euler(const RateFactor& f, const Eigen::Matrix3d& information, double time_scale_s, arrow::Block& block,
+               arrow::Corner& corner) {
+  const Eigen::Matrix<double, 6, 3> At = add_to_knot(f, information, time_scale_s, block);
+  add_to_rig<kInertia, 5>(f, information, At, block, corner);
+}
+
+// Information of a residual whose covariance is wider than by its own inverse.
+Eigen::Matrix3d with_doubt(const Eigen::Matrix3d& information, const Eigen::Matrix3d& spread) {
+  return (Eigen::Matrix3d::Identity() + information * spread).inverse() * information;
 }
 
 }  // namespace
@@ -118,8 +170,8 @@ void RateModel::weigh(const RateObservation& observation, const RigConstants& ri
   RateFactor flight = flight_factor(estimate.knot, rig, observation.sample.specific_force_m_s2);
   drop_satisfied_bounds(observation, flight);
   const RateFactor euler = euler_factor(estimate.knot, rig);
-  const double r2 = normalised(flight, rig_covariance, accel_sigma_m_s2(observation)) +
-                    normalised(euler, rig_covariance, params_.euler_sigma_rad_s2) + jump;
+  const double r2 = normalised(flight, flight_spread(flight, rig_covariance), accel_sigma_m_s2(observation)) +
+                    normalised(euler, euler_spread(euler, rig_covariance), params_.euler_sigma_rad_s2) + jump;
   const double threshold = widen * params_.flight_threshold;
   // Geman-McClure: the pull of an outlier vanishes with the cube of its size, contacts do not drag the rate along
   const double ratio = 1.0 / (1.0 + r2 / (threshold * threshold));
@@ -140,7 +192,7 @@ double RateModel::jump(const RateKnot& from, const RateKnot& to, double dt_s) co
 }
 
 void RateModel::add_sample(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
-                           arrow::Block& block, arrow::Corner& corner) const {
+                           arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* doubted) const {
   const RateFactor gyro = gyro_factor(estimate.knot, rig, observation.sample.angular_velocity_rad_s);
   for (int j = 0; j < 3; ++j) {
     if ((observation.clipping.void_gyro >> j & 1u) != 0) continue;
@@ -176,7 +228,13 @@ void RateModel::add_sample(const RateObservation& observation, const RateEstimat
   RateFactor flight = flight_factor(estimate.knot, rig, observation.sample.specific_force_m_s2);
   drop_satisfied_bounds(observation, flight);
   RateFactor euler = euler_factor(estimate.knot, rig);
-  if (estimate.flight_weight < kRigWeightMin) {
+  Eigen::Matrix3d of_flight = flight_information * Eigen::Matrix3d::Identity(), of_euler = euler_information(estimate);
+  if (doubted != nullptr) {
+    of_flight = with_doubt(of_flight, flight_spread(flight, *doubted));
+    of_euler = with_doubt(of_euler, euler_spread(euler, *doubted));
+    flight.by_rig.setZero();
+    euler.by_rig.setZero();
+  } else if (estimate.flight_weight < kRigWeightMin) {
     flight.by_rig.setZero();
     euler.by_rig.setZero();
     for (int j = 0; j < 3; ++j) {
@@ -184,10 +242,11 @@ void RateModel::add_sample(const RateObservation& observation, const RateEstimat
       if ((observation.unseen() >> j & 1u) == 0) flight.by_knot.col(j).setZero();
     }
   }
-  add_factor(flight, flight_information * Eigen::Matrix3d::Identity(), time_scale_s_, block, corner);
-  add_factor(euler, euler_information(estimate), time_scale_s_, block, corner);
+  add_flight(flight, of_flight, time_scale_s_, block, corner);
+  add_euler(euler, of_euler, time_scale_s_, block, corner);
 
-  const double rate_information = 1.0 / (params_.rate_max_rad_s * params_.rate_max_rad_s);
+  const double rate_sigma = observation.at_rest ? params_.rest_sigma_rad_s : params_.rate_max_rad_s;
+  const double rate_information = 1.0 / (rate_sigma * rate_sigma);
   const double largest = params_.acceleration_max_rad_s2 * time_scale_s_;
   const double acceleration_information = 1.0 / (largest * largest);
   for (int j = 0; j < 3; ++j) {

@@ -79,12 +79,15 @@ void RateModel::start_bounds(const RateObservation& observation, const RigConsta
 }
 
 void RateModel::update_bounds(const RateObservation& observation, const RigConstants& rig,
-                              const arrow::Marginal& marginal, const RigConstants::Matrix& rig_covariance,
+                              const arrow::Conditional& conditional, const RigConstants::Matrix& rig_covariance,
                               double damping, RateEstimate& estimate) const {
   for (int j = 0; j < 3; ++j) {
     if ((observation.unseen() & observation.clipping.gyro & 1u << j) == 0) continue;
     const double reading = observation.sample.angular_velocity_rad_s[j], sign = reading < 0.0 ? -1.0 : 1.0;
-    const double variance = marginal.state(j, j) + 2.0 * marginal.cross(j, 3 + j) + rig_covariance(3 + j, 3 + j);
+    const Eigen::Matrix<double, 1, RigConstants::kSize> by_rig = conditional.by_border.row(j);
+    const Eigen::Matrix<double, 1, RigConstants::kSize> cross = by_rig.lazyProduct(rig_covariance);
+    const double variance =
+        conditional.state(j, j) + cross.dot(by_rig) + 2.0 * cross[3 + j] + rig_covariance(3 + j, 3 + j);
     // the marginal without this site, mirrored so that the bound lies below
     const double mean = sign * (estimate.knot.rate_rad_s[j] + rig.gyro_bias_rad_s[j]);
     const double site_precision = estimate.bound_precision[j], site_shift = sign * estimate.bound_shift[j];

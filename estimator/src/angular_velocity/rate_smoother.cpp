@@ -108,13 +108,13 @@ class Iteration {
     return largest;
   }
 
-  // Marginals of the last factorisation, from the last sample to the first: use(k, marginal).
+  // Of the last factorisation, from the last sample to the first: use(k, conditional).
   template <typename Use>
-  void for_each_marginal(Use use) const {
-    arrow::Marginal marginal;
+  void for_each_conditional(Use use) const {
+    arrow::Conditional conditional;
     for (std::size_t k = blocks_.size(); k-- > 0;) {
-      marginal = arrow::back_covariance(blocks_[k], k + 1 == blocks_.size() ? nullptr : &marginal, rig_covariance_);
-      use(k, marginal);
+      conditional = arrow::back_conditional(blocks_[k], k + 1 == blocks_.size() ? nullptr : &conditional);
+      use(k, conditional);
     }
   }
 
@@ -178,8 +178,8 @@ bool descend(const RateSmoother::Params& params, const RateModel& model, std::sp
 
     const bool settled = widen == 1.0 && health.last_step_rad_s < params.tolerance_rad_s;
     if (soft > 0) {
-      solution.iteration.for_each_marginal([&](std::size_t k, const arrow::Marginal& marginal) {
-        model.update_bounds(observations[k], solution.rig, marginal, solution.rig_covariance, params.bound_damping,
+      solution.iteration.for_each_conditional([&](std::size_t k, const arrow::Conditional& conditional) {
+        model.update_bounds(observations[k], solution.rig, conditional, solution.rig_covariance, params.bound_damping,
                             estimates[k]);
       });
     }
@@ -247,7 +247,7 @@ RateModelParams held(const RateModelParams& params, const RigConstants& constant
 
 }  // namespace
 
-RateSmoother::RateSmoother(const Params& params) : params_(params), rails_(params.rails) {
+RateSmoother::RateSmoother(const Params& params) : params_(params), rails_(params.rails), rests_(params.rests) {
   require_within("iterations_max", params.iterations_max, 1, 1000);
   require_within("tolerance_rad_s", params.tolerance_rad_s, 1e-12, 1.0);
   require_within("step_max_rad_s", params.step_max_rad_s, 1e-3, 1e4);
@@ -274,12 +274,16 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples, std::vector<Ra
     health.rail_disagrees[static_cast<std::size_t>(c)] = rails_.disagrees(rail_state, c);
   }
   const double force = median_force(samples);
+  health.rate_unit_suspect = std::any_of(samples.begin(), samples.end(), [&](const ImuSample& sample) {
+    return sample.angular_velocity_rad_s.cwiseAbs().maxCoeff() > params_.model.rate_max_rad_s;
+  });
   health.force_unit_suspect = force > 0.5 && force < 2.0;
   std::vector<RateObservation> observations(samples.size());
   const double period_s = median_period_s(samples);
   const RateModel model(params_.model, period_s);
+  const std::vector<bool> rest = rests_.find(samples);
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    observations[k] = {samples[k], clippings[k]};
+    observations[k] = {samples[k], clippings[k], rest[k]};
     mark_partial(rails_, rail_state, model.gyro_sigma_rad_s(), k > 0 ? &samples[k - 1] : nullptr, observations[k],
                  k + 1 < samples.size() ? &samples[k + 1] : nullptr);
   }
@@ -302,12 +306,13 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples, std::vector<Ra
 
   std::vector<RateState> states(samples.size());
   std::size_t in_flight = 0;
-  solution.iteration.for_each_marginal([&](std::size_t k, const arrow::Marginal& marginal) {
+  solution.iteration.for_each_conditional([&](std::size_t k, const arrow::Conditional& conditional) {
     const RateEstimate& estimate = solution.estimates[k];
     RateState& state = states[k];
     state.time_ns = samples[k].time_ns;
     state.w_WI_I_rad_s = estimate.knot.rate_rad_s;
-    state.covariance_rad2_s2 = model.reported(marginal.state.topLeftCorner<3, 3>(), observations[k], estimate);
+    state.covariance_rad2_s2 =
+        model.reported(arrow::rate_covariance(conditional, solution.rig_covariance), observations[k], estimate);
     state.clipped_axes = clippings[k].gyro | clippings[k].void_gyro;
     state.source = rate_source(observations[k], estimate, state.covariance_rad2_s2, params_.recovered_sigma_rad_s);
     count(state, health);

@@ -47,12 +47,13 @@ void add_prior(const RateStream::State& state, const RateModel& model, const Rat
 }  // namespace
 
 RateStream::RateStream(const Params& params)
-    : params_(params), rails_(params.rails), model_(params.model, params.period_s) {
+    : params_(params), rails_(params.rails), rests_(params.rests), model_(params.model, params.period_s) {
   require_within("period_s", params.period_s, 1e-5, 1.0);
   require_within("lag_s", params.lag_s, 2.0 * params.period_s, std::min(10.0, 4096.0 * params.period_s));
   require_within("widen_first", params.widen_first, 1.0, 1000.0);
   require_within("step_max_rad_s", params.step_max_rad_s, 1e-3, 1e4);
   require_within("bound_age", params.bound_age, 0, 4096);
+  require_within("flight_run_min", params.flight_run_min, 0, 4096);
   require_within("bound_damping", params.bound_damping, 0.01, 1.0);
   require_within("recovered_sigma_rad_s", params.recovered_sigma_rad_s, 0.0, 1e4);
   require_within("rig_surprise_max", params.rig_surprise_max, 0.1, 1e6);
@@ -94,7 +95,13 @@ void RateStream::marginalise_oldest(State& state) const {
   // what leaves can never be weighed again: it must be flight of the rig as it is known now, not of one as it might be
   const double jump = model_.jump(oldest.estimate.knot, next.estimate.knot, seconds_between(oldest, next));
   model_.weigh(oldest.observation, state.rig, RigConstants::Matrix::Zero(), 1.0, jump, oldest.estimate);
-  model_.add_sample(oldest.observation, oldest.estimate, state.rig, block, corner);
+  // 14 constants explain any short contact as a flight: what they say is believed after some more of it
+  std::size_t run = state.flight_run;
+  for (std::size_t k = 0; k < state.window.size() && state.window[k].estimate.flight_weight >= 0.5; ++k) ++run;
+  const bool short_flight = run < static_cast<std::size_t>(params_.flight_run_min);
+  state.flight_run = oldest.estimate.flight_weight >= 0.5 ? state.flight_run + 1 : 0;
+  model_.add_sample(oldest.observation, oldest.estimate, state.rig, block, corner,
+                    short_flight ? &state.rig_covariance : nullptr);
   model_.add_step(oldest.estimate, next.estimate, seconds_between(oldest, next), block, after);
   if (arrow::eliminate(block, &after, corner)) {
     state.prior = after;
@@ -123,7 +130,7 @@ void RateStream::marginalise_oldest(State& state) const {
 void RateStream::append(const ImuSample& sample, State& state) const {
   rails_.observe(sample, state.rails);
   Knot knot;
-  knot.observation = {sample, rails_.classify(sample, state.rails)};
+  knot.observation = {sample, rails_.classify(sample, state.rails), rests_.observe(sample, state.rests)};
   const double noise = model_.gyro_sigma_rad_s();
   if (!state.window.empty()) {
     RateObservation& last = state.window.back().observation;
@@ -221,19 +228,20 @@ bool RateStream::step(State& state) const {
   state.rig_covariance = rig_covariance;
   state.rig.add(rig_step);
   arrow::StateVector x;
-  arrow::Marginal marginal;
+  arrow::Conditional conditional;
   for (std::size_t k = count; k-- > 0;) {
     Knot& knot = state.window[k];
     const bool last = k + 1 == count;
     x = arrow::back_substitute(blocks[k], last ? nullptr : &x, rig_step);
-    marginal = arrow::back_covariance(blocks[k], last ? nullptr : &marginal, rig_covariance);
+    conditional = arrow::back_conditional(blocks[k], last ? nullptr : &conditional);
     const Eigen::Matrix<double, 6, 1> physical = model_.unscaled(x);
     const double share = std::min(1.0, params_.step_max_rad_s / std::max(1e-300, physical.head<3>().norm()));
     knot.estimate.knot.rate_rad_s += share * physical.head<3>();
     knot.estimate.knot.acceleration_rad_s2 += share * physical.tail<3>();
-    knot.covariance_rad2_s2 = marginal.state.topLeftCorner<3, 3>();
+    knot.covariance_rad2_s2 = arrow::rate_covariance(conditional, rig_covariance);
     if (knot.estimate.soft_bounds) {
-      model_.update_bounds(knot.observation, state.rig, marginal, rig_covariance, params_.bound_damping, knot.estimate);
+      model_.update_bounds(knot.observation, state.rig, conditional, rig_covariance, params_.bound_damping,
+                           knot.estimate);
     }
     ++knot.age;
   }
@@ -266,17 +274,18 @@ bool RateStream::equal(const State& a, const State& b) {
     const RateEstimate &e = x.estimate, &f = y.estimate;
     return p.time_ns == q.time_ns && p.angular_velocity_rad_s == q.angular_velocity_rad_s &&
            p.specific_force_m_s2 == q.specific_force_m_s2 && p.device_clip_flags == q.device_clip_flags &&
-           x.observation.clipping == y.observation.clipping && e.knot == f.knot && e.flight_weight == f.flight_weight &&
-           e.contact_m_s2 == f.contact_m_s2 && e.bound_precision == f.bound_precision &&
-           e.bound_shift == f.bound_shift && e.soft_bounds == f.soft_bounds &&
+           x.observation.clipping == y.observation.clipping && x.observation.at_rest == y.observation.at_rest &&
+           e.knot == f.knot && e.flight_weight == f.flight_weight && e.contact_m_s2 == f.contact_m_s2 &&
+           e.bound_precision == f.bound_precision && e.bound_shift == f.bound_shift && e.soft_bounds == f.soft_bounds &&
            x.covariance_rad2_s2 == y.covariance_rad2_s2 && x.age == y.age;
   };
-  return a.rails == b.rails && std::equal(a.window.begin(), a.window.end(), b.window.begin(), b.window.end(), same) &&
-         a.rig == b.rig && a.rig_covariance == b.rig_covariance && a.prior.diagonal == b.prior.diagonal &&
+  return a.rails == b.rails && a.rests == b.rests &&
+         std::equal(a.window.begin(), a.window.end(), b.window.begin(), b.window.end(), same) && a.rig == b.rig &&
+         a.rig_covariance == b.rig_covariance && a.prior.diagonal == b.prior.diagonal &&
          a.prior.border == b.prior.border && a.prior.gradient == b.prior.gradient &&
          a.prior_corner.matrix == b.prior_corner.matrix && a.prior_corner.gradient == b.prior_corner.gradient &&
          a.prior_knot == b.prior_knot && a.prior_rig == b.prior_rig && a.samples == b.samples &&
-         a.rig_resets == b.rig_resets && a.failures == b.failures;
+         a.rig_resets == b.rig_resets && a.flight_run == b.flight_run && a.failures == b.failures;
 }
 
 }  // namespace tumble

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace tumble {
 
@@ -28,8 +29,11 @@ const Eigen::Matrix3d& RigConstants::inertia_basis(int i) {
 }
 
 Eigen::Matrix3d RigConstants::inertia_matrix() const {
-  Eigen::Matrix3d J = Eigen::Matrix3d::Identity();
-  for (int i = 0; i < 5; ++i) J += inertia[i] * inertia_basis(i);
+  const double half = 0.5 * std::numbers::sqrt2, sixth = std::numbers::inv_sqrt3 * half;
+  const double a = half * inertia[0], b = sixth * inertia[1];
+  const double xy = half * inertia[2], xz = half * inertia[3], yz = half * inertia[4];
+  Eigen::Matrix3d J;
+  J << 1.0 + a + b, xy, xz, xy, 1.0 - a + b, yz, xz, yz, 1.0 - 2.0 * b;
   return J;
 }
 

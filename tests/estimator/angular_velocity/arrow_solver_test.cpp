@@ -93,15 +93,19 @@ TEST(ArrowSolver, SolutionAndCovarianceAreThoseOfTheDenseSystem) {
     EXPECT_LE((border_covariance - covariance.bottomRightCorner(kBorder, kBorder)).norm(), 1e-9 * covariance.norm());
 
     StateVector step;
-    Marginal marginal;
+    Conditional conditional;
     for (std::size_t k = count; k-- > 0;) {
       const Index i = static_cast<Index>(k) * kState;
       const bool last = k + 1 == count;
       step = back_substitute(s.blocks[k], last ? nullptr : &step, border);
-      marginal = back_covariance(s.blocks[k], last ? nullptr : &marginal, border_covariance);
+      conditional = back_conditional(s.blocks[k], last ? nullptr : &conditional);
+      const Marginal found = marginal(conditional, border_covariance);
       EXPECT_LE((step - want.segment(i, kState)).norm(), 1e-9 * want.norm()) << k;
-      EXPECT_LE((marginal.state - covariance.block(i, i, kState, kState)).norm(), 1e-9 * covariance.norm()) << k;
-      EXPECT_LE((marginal.cross - covariance.block(i, n, kState, kBorder)).norm(), 1e-9 * covariance.norm()) << k;
+      EXPECT_LE((found.state - covariance.block(i, i, kState, kState)).norm(), 1e-9 * covariance.norm()) << k;
+      EXPECT_LE((found.cross - covariance.block(i, n, kState, kBorder)).norm(), 1e-9 * covariance.norm()) << k;
+      EXPECT_LE((rate_covariance(conditional, border_covariance) - found.state.topLeftCorner<3, 3>()).norm(),
+                1e-12 * covariance.norm())
+          << k;
     }
   }
 }

@@ -24,7 +24,7 @@ using CrossMatrix = Eigen::Matrix<double, kState, kBorder>;
 using BorderMatrix = Eigen::Matrix<double, kBorder, kBorder>;
 using BorderVector = Eigen::Matrix<double, kBorder, 1>;
 
-/// One block row: before elimination D, E, B, g; afterwards L, L^-1 E, L^-1 B, L^-1 g with D = L L' (lower).
+/// One block row: before elimination D, E, B, g; afterwards L^-1, L^-1 E, L^-1 B, L^-1 g with D = L L' (lower).
 struct Block {
   StateMatrix diagonal = StateMatrix::Zero();
   StateMatrix coupling = StateMatrix::Zero();  ///< to the next block, as (this, next)
@@ -36,6 +36,12 @@ struct Block {
 struct Corner {
   BorderMatrix matrix = BorderMatrix::Zero();
   BorderVector gradient = BorderVector::Zero();
+};
+
+/// A block given the border: its covariance, and how far its mean moves with the border.
+struct Conditional {
+  StateMatrix state;
+  CrossMatrix by_border;
 };
 
 /// Posterior covariance of a block and of its product with the border.
@@ -54,8 +60,13 @@ bool solve_corner(const Corner& corner, BorderVector& step, BorderMatrix& covari
 /// Step of an eliminated block, given those of the next block (null for the last) and of the border.
 StateVector back_substitute(const Block& block, const StateVector* next_step, const BorderVector& border_step);
 
-/// Covariance of an eliminated block, given that of the next block (null for the last) and of the border.
-Marginal back_covariance(const Block& block, const Marginal* next, const BorderMatrix& border_covariance);
+/// Conditional of an eliminated block, given that of the next block (null for the last).
+Conditional back_conditional(const Block& block, const Conditional* next);
+
+/// The border's own uncertainty brought in.
+Marginal marginal(const Conditional& conditional, const BorderMatrix& border_covariance);
+/// The rates' part (the first three rows and columns) of marginal().state, at less cost.
+Eigen::Matrix3d rate_covariance(const Conditional& conditional, const BorderMatrix& border_covariance);
 
 }  // namespace arrow
 }  // namespace tumble

@@ -19,7 +19,7 @@ struct RateModelParams {
   /// What is known of the rig beforehand; the shape of the inertia counts about the centre of mass, in IMU axes.
   RigConstants nominal = {.lever_arm_m = {-0.022, -0.085, 0.055}};
   /// Standard deviations of `nominal`; [1e-9, 10] each.
-  double lever_arm_sigma_m = 0.02;
+  double lever_arm_sigma_m = 0.01;
   double gyro_bias_sigma_rad_s = 0.01;
   double accel_bias_sigma_m_s2 = 0.05;
   double inertia_sigma = 0.3;
@@ -35,7 +35,7 @@ struct RateModelParams {
   /// Scale and misalignment of the accelerometer, as a share of the force; [0, 1].
   double accel_scale_error = 1e-3;
   /// What Euler's equation without torque misses of the angular acceleration [rad/s^2]; [1e-6, 1e6].
-  double euler_sigma_rad_s2 = 0.5;
+  double euler_sigma_rad_s2 = 0.3;
   /// Density of the white angular jerk in flight [rad^2/s^5]; [1, 1e12].
   double jerk_psd_flight = 1e4;
   /// In contact the jerk grows by what the force can do to the angular acceleration: rad/s^2 per m/s^2 of specific
@@ -55,6 +55,9 @@ struct RateModelParams {
   double flight_threshold = 5.0;
   /// Softness of the bound that a clipped reading is [rad/s]; [1e-6, 10].
   double rail_sigma_rad_s = 0.05;
+  /// A body at rest still trembles, and rest may be found where there is none: deviation of its rate from zero, taken
+  /// anew with each sample [rad/s]; [1e-9, 10].
+  double rest_sigma_rad_s = 0.01;
   /// Rates and accelerations that no body of this kind has; they bound the answer where nothing else does. The first
   /// in [1, 1e4] rad/s, the second in [1, 1e7] rad/s^2.
   double rate_max_rad_s = 50.0;
@@ -65,6 +68,7 @@ struct RateModelParams {
 struct RateObservation {
   ImuSample sample;
   Clipping clipping;
+  bool at_rest = false;      ///< standstill: the rate is zero, see RestDetector
   std::uint8_t partial = 0;  ///< bit j: axis j met the rail in a part of its window only, see PartialLoss
   Eigen::Vector3d lost_rad_s = Eigen::Vector3d::Zero();  ///< of partial axes, signed as the reading
   Eigen::Vector3d lost_sigma_rad_s = Eigen::Vector3d::Zero();
@@ -117,12 +121,14 @@ class RateModel {
 
   /// Refines the bounds of a sample by expectation propagation (Minka 2001): the Gaussian site with which the marginal
   /// has the mean and variance that truncation at the reading gives it. `damping` in (0, 1] is the share of the new.
-  void update_bounds(const RateObservation& observation, const RigConstants& rig, const arrow::Marginal& marginal,
+  void update_bounds(const RateObservation& observation, const RigConstants& rig, const arrow::Conditional& conditional,
                      const RigConstants::Matrix& rig_covariance, double damping, RateEstimate& estimate) const;
 
-  /// Adds gyro, bound, flight and Euler factors of one sample.
+  /// Adds gyro, bound, flight and Euler factors of one sample. `doubted`: null, or what is not known of the rig, where
+  /// the sample shall say nothing of the rig and count for as little as that leaves it (a flight too short to be told
+  /// from contact of another rig).
   void add_sample(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
-                  arrow::Block& block, arrow::Corner& corner) const;
+                  arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* doubted = nullptr) const;
 
   /// Adds the motion prior between two samples, dt_s apart.
   void add_step(const RateEstimate& from, const RateEstimate& to, double dt_s, arrow::Block& block,

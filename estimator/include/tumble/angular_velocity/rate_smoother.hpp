@@ -9,6 +9,7 @@
 
 #include "tumble/angular_velocity/rate_model.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
+#include "tumble/angular_velocity/rest_detector.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
 
@@ -27,6 +28,7 @@ struct RateReport {
   bool rig_held = false;  ///< the surprise was too large: nothing was learnt, the constants were held
   std::array<std::optional<double>, 6> rail;  ///< in use: gyro [rad/s], accelerometer [m/s^2]; none: not seen
   std::array<bool, 6> rail_disagrees{};       ///< a stated range contradicted by the readings
+  bool rate_unit_suspect = false;             ///< a reading beyond RateModelParams::rate_max_rad_s: perhaps degrees
   bool force_unit_suspect = false;            ///< the median specific force is near 1: perhaps given in g
   std::size_t samples = 0, clipped = 0, recovered_flight = 0, recovered_contact = 0, bounded_only = 0;
   std::size_t void_readings = 0;  ///< samples with an overflow (sign flipped at the rail)
@@ -39,17 +41,19 @@ struct RateReport {
 /// it is not clipped; the bound that a clipped reading is, for any number of axes; in flight the whole rigid-body
 /// form of the specific force at the lever arm and Euler's equation without torque, both weighed down together where
 /// they do not hold (contact); between samples white noise on jerk, of a density that grows with the force of contact
-/// so that an impact breaks the chain. The normal equations are an arrow matrix: O(N) per iteration, covariance
-/// included. Starts from the published method (Saave), extended to bounds.
+/// so that an impact breaks the chain; at standstill (RestDetector) the rate is zero, which tells the gyro's bias. The
+/// normal equations are an arrow matrix: O(N) per iteration, covariance included. Starts from the published method
+/// (Saave), extended to bounds.
 ///
-/// What it does not model: resting and rolling contact (such samples are bounded and smoothed only), scale and
-/// misalignment of the sensors, time offset between gyro and accelerometer. The rates are those at which the gyro's
-/// readings stand: means over the window of the sample.
+/// What it does not model: rolling contact (such samples are bounded and smoothed only), scale and misalignment of the
+/// sensors, time offset between gyro and accelerometer. The rates are those at which the gyro's readings stand: means
+/// over the window of the sample.
 class RateSmoother {
  public:
   struct Params {
     RateModelParams model;
     RailDetector::Params rails;
+    RestDetector::Params rests;
     int iterations_max = 15;        ///< [1, 1000]
     double tolerance_rad_s = 2e-3;  ///< stop when no rate changes by more; [1e-12, 1]
     double step_max_rad_s = 10.0;   ///< longest step of a rate in one iteration; [1e-3, 1e4]
@@ -77,6 +81,7 @@ class RateSmoother {
  private:
   Params params_;
   RailDetector rails_;
+  RestDetector rests_;
 };
 
 }  // namespace tumble

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "tumble/common/imu.hpp"
+
+namespace tumble {
+
+/// Finds standstill in the readings of an IMU: rates that are small and force that is large enough to be gravity, both
+/// constant up to noise for a while. There the gyro reads its bias. What it does not tell apart from standstill: a
+/// steady turn about the vertical, slower than `rate_max_rad_s`.
+class RestDetector {
+ public:
+  struct Params {
+    double rate_max_rad_s = 0.05;     ///< a bias at most; [1e-6, 10]
+    double rate_spread_rad_s = 0.03;  ///< largest distance of a reading from the mean of the run, per axis; [1e-6, 10]
+    double force_min_m_s2 = 5.0;      ///< flight is no rest; [0, 100]
+    double force_spread_m_s2 = 0.15;  ///< likewise for the force; [1e-6, 100]
+    double rest_s = 0.4;              ///< the shortest run that is rest; [0, 60]
+  };
+  struct State {
+    Eigen::Vector3d rate_sum_rad_s = Eigen::Vector3d::Zero();
+    Eigen::Vector3d force_sum_m_s2 = Eigen::Vector3d::Zero();
+    std::size_t count = 0;
+    TimeNs first_ns = 0;
+    bool operator==(const State&) const = default;
+  };
+
+  /// Throws InvalidParams on a parameter outside of its bound.
+  explicit RestDetector(const Params& params);
+
+  /// Takes the next finite sample; true when it ends a run that is rest. O(1).
+  bool observe(const ImuSample& sample, State& state) const;
+
+  /// For each sample of a recording whether it belongs to a rest, also those with which one begins. O(N).
+  std::vector<bool> find(std::span<const ImuSample> samples) const;
+
+ private:
+  Params params_;
+};
+
+}  // namespace tumble

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/angular_velocity/rest_detector.hpp"
+
+#include "tumble/common/status.hpp"
+
+namespace tumble {
+
+RestDetector::RestDetector(const Params& params) : params_(params) {
+  require_within("rate_max_rad_s", params.rate_max_rad_s, 1e-6, 10.0);
+  require_within("rate_spread_rad_s", params.rate_spread_rad_s, 1e-6, 10.0);
+  require_within("force_min_m_s2", params.force_min_m_s2, 0.0, 100.0);
+  require_within("force_spread_m_s2", params.force_spread_m_s2, 1e-6, 100.0);
+  require_within("rest_s", params.rest_s, 0.0, 60.0);
+}
+
+bool RestDetector::observe(const ImuSample& sample, State& state) const {
+  const Eigen::Vector3d &rate = sample.angular_velocity_rad_s, &force = sample.specific_force_m_s2;
+  if (state.count > 0) {
+    const double share = 1.0 / static_cast<double>(state.count);
+    const double rate_off = (rate - share * state.rate_sum_rad_s).cwiseAbs().maxCoeff();
+    const double force_off = (force - share * state.force_sum_m_s2).cwiseAbs().maxCoeff();
+    if (rate_off > params_.rate_spread_rad_s || force_off > params_.force_spread_m_s2) state = {};
+  }
+  if (rate.cwiseAbs().maxCoeff() > params_.rate_max_rad_s + params_.rate_spread_rad_s ||
+      force.norm() < params_.force_min_m_s2) {
+    state = {};
+    return false;
+  }
+  if (state.count == 0) state.first_ns = sample.time_ns;
+  state.rate_sum_rad_s += rate;
+  state.force_sum_m_s2 += force;
+  ++state.count;
+  const double mean = state.rate_sum_rad_s.cwiseAbs().maxCoeff() / static_cast<double>(state.count);
+  return seconds(sample.time_ns - state.first_ns) >= params_.rest_s && mean <= params_.rate_max_rad_s;
+}
+
+std::vector<bool> RestDetector::find(std::span<const ImuSample> samples) const {
+  std::vector<bool> rest(samples.size(), false);
+  State state;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (!observe(samples[k], state)) continue;
+    // the samples of the run so far are rest with it
+    for (std::size_t i = k + 1; i-- > 0 && samples[i].time_ns >= state.first_ns && !rest[i];) rest[i] = true;
+  }
+  return rest;
+}
+
+}  // namespace tumble

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/rate_tumble.hpp"
+#include "scenarios/methods/registry.hpp"
+#include "tumble/angular_velocity/rate_stream.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr std::array<sim::Parameter, 1> kLag = {{
+    {"lag_s", 0.2, 0.02, 10.0, "s", "how old a sample is when its estimate is given out"},
+}};
+
+const std::vector<sim::Parameter>& parameters_of_the_stream() {
+  static const std::vector<sim::Parameter> parameters = joined_parameters({kLag, tumble_rate_parameters()});
+  return parameters;
+}
+
+RateStream::Params stream_params(const sim::ImuRecord& record, const sim::Values& parameters) {
+  const RateSmoother::Params batch = smoother_params(record, parameters);
+  RateStream::Params params;
+  params.model = batch.model;
+  params.rails = batch.rails;
+  params.recovered_sigma_rad_s = batch.recovered_sigma_rad_s;
+  params.rig_surprise_max = batch.rig_surprise_max;
+  params.gap_max_s = batch.gap_max_s;
+  if (record.period_ns > 0) params.period_s = seconds(record.period_ns);
+  params.lag_s = std::max(parameters.at("lag_s"), 2.0 * params.period_s);
+  return params;
+}
+
+Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  Estimate estimate;
+  std::vector<ImuSample> samples;
+  estimate.status = bridge::primary_imu_samples(sensors, samples);
+  if (!estimate.status.ok()) return estimate;
+  const RateStream stream(stream_params(sensors.imus.front(), parameters));
+  RateStream::State state = stream.start();
+  estimate.rates.reserve(samples.size());
+  std::optional<RateState> out;
+  for (const ImuSample& sample : samples) {
+    estimate.status = stream.push(sample, state, out);
+    if (!estimate.status.ok()) break;
+    if (out) estimate.rates.push_back(*out);
+  }
+  stream.flush(state, estimate.rates);
+  estimate.health["rig_resets"] = static_cast<double>(state.rig_resets);
+  estimate.health["steps_skipped"] = static_cast<double>(state.failures);
+  count_sources(estimate.rates, estimate.health);
+  return estimate;
+}
+
+}  // namespace
+
+Method rate_tumble_lag() {
+  MethodInfo info;
+  info.name = "tumble_lag";
+  info.kind = Kind::rate;
+  info.doc =
+      "The smoother `tumble` as a stream: the same factors in a sliding window, estimates given out at a fixed age.";
+  info.source = "ours";
+  info.parameters = parameters_of_the_stream();
+  info.robots = {"rig"};
+  return make_method(std::move(info), run);
+}
+
+}  // namespace tumble::scenarios

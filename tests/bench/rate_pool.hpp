@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scenarios/methods/method.hpp"
+#include "sim/recording.hpp"
+
+namespace tumble::bench {
+
+/// Errors of one method of kind `rate`, over many runs. Clipped, stretch and contact as the scores define them
+/// (ClippingTruth; samples in a row with a clipped axis; any contact within the window of the sample).
+class RatePool {
+ public:
+  struct Stretch {
+    std::uint64_t seed = 0;
+    double end_s = 0.0;
+    std::size_t samples = 0;
+    double mean_rad_s = 0.0;     ///< norm of the mean error vector
+    double largest_rad_s = 0.0;  ///< norm of the largest error
+    double contact_share = 0.0;
+    double accel_clipped_share = 0.0;
+    double sigma_rad_s = 0.0;  ///< root mean trace of the reported covariance
+  };
+  struct Run {
+    std::uint64_t seed = 0;
+    double clipped_mean_rad_s = 0.0, free_mean_rad_s = 0.0, noise_rad_s = 0.0;
+    std::size_t clipped = 0;
+  };
+
+  explicit RatePool(std::string name) : name_(std::move(name)) {}
+
+  /// Adds a run; samples that the estimate leaves out count as failed, with an infinite error.
+  void add(std::uint64_t seed, const sim::Recording& recording, const scenarios::Estimate& estimate, double cpu_s);
+
+  const std::string& name() const { return name_; }
+  std::span<const double> clipped_rad_s() const { return clipped_; }
+  std::span<const double> free_rad_s() const { return free_; }
+  /// Squared errors of clipped axes over their reported variances.
+  std::span<const double> normalised_flight() const { return normalised_flight_; }
+  std::span<const double> normalised_contact() const { return normalised_contact_; }
+  std::span<const Stretch> stretches() const { return stretches_; }
+  std::span<const Run> runs() const { return runs_; }
+  double cpu_us_per_sample() const { return 1e6 * cpu_s_ / static_cast<double>(clipped_.size() + free_.size()); }
+
+ private:
+  std::string name_;
+  std::vector<double> clipped_, free_, normalised_flight_, normalised_contact_;
+  std::vector<Stretch> stretches_;
+  std::vector<Run> runs_;
+  double cpu_s_ = 0.0;
+};
+
+/// Quantiles of the pooled errors, and the median against that of the first pool.
+void print_errors(std::span<const RatePool> pools);
+/// Coverage of three standard deviations with its 95 % interval, and the mean normalised squared error.
+void print_honesty(std::span<const RatePool> pools);
+/// Runs worse than the first pool by more than the gyro's noise, offsets of stretches, and every error as a multiple
+/// of that of the pool `tumble`.
+void print_runs(std::span<const RatePool> pools);
+/// The stretches with the largest offsets.
+void print_worst(const RatePool& pool, std::size_t count);
+
+}  // namespace tumble::bench

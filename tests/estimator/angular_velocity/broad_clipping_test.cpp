@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A real recording without tumbles must not be made worse: trials of BROAD (a sensor moved by hand), of which the gyro
+// is clipped at a third of its peak. A hand-held sensor is not in flight, so physics gives little back: the bounds and
+// the smoothness of the motion, no more.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "estimator/attitude/broad_trial.hpp"
+#include "tumble/angular_velocity/rate_smoother.hpp"
+#include "tumble/angular_velocity/saave.hpp"
+
+namespace tumble {
+namespace {
+
+constexpr double kWindowS = 20.0;  // about the peak of the trial, so that the test takes seconds
+
+struct Clipped {
+  std::vector<ImuSample> samples;
+  std::vector<Eigen::Vector3d> truth_rad_s;  // the readings before the clipping
+  std::vector<bool> clipped;
+  double rail_rad_s = 0.0;
+};
+
+Clipped clip_at_a_third(const std::vector<ImuSample>& samples) {
+  const auto size = [](const ImuSample& s) { return s.angular_velocity_rad_s.cwiseAbs().maxCoeff(); };
+  const auto peak = std::max_element(samples.begin(), samples.end(),
+                                     [&](const ImuSample& a, const ImuSample& b) { return size(a) < size(b); });
+  Clipped out;
+  out.rail_rad_s = size(*peak) / 3.0;
+  for (const ImuSample& sample : samples) {
+    if (std::abs(seconds(sample.time_ns - peak->time_ns)) > 0.5 * kWindowS) continue;
+    ImuSample held = sample;
+    Eigen::Vector3d& w = held.angular_velocity_rad_s;
+    w = w.cwiseMin(out.rail_rad_s).cwiseMax(-out.rail_rad_s);
+    out.samples.push_back(held);
+    out.truth_rad_s.push_back(sample.angular_velocity_rad_s);
+    out.clipped.push_back(w != sample.angular_velocity_rad_s);
+  }
+  return out;
+}
+
+struct Errors {
+  double median = 0.0, mean = 0.0, largest = 0.0;
+};
+
+template <typename RateOf>
+Errors errors(const Clipped& trial, bool clipped, RateOf rate_of) {
+  std::vector<double> norms;
+  Errors out;
+  for (std::size_t k = 0; k < trial.samples.size(); ++k) {
+    if (trial.clipped[k] != clipped) continue;
+    norms.push_back((rate_of(k) - trial.truth_rad_s[k]).norm());
+    out.mean += norms.back();
+    out.largest = std::max(out.largest, norms.back());
+  }
+  if (norms.empty()) return out;
+  out.mean /= static_cast<double>(norms.size());
+  std::nth_element(norms.begin(), norms.begin() + static_cast<std::ptrdiff_t>(norms.size() / 2), norms.end());
+  out.median = norms[norms.size() / 2];
+  return out;
+}
+
+class BroadClipping : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(BroadClipping, IsNeverWorseThanTheClippedGyro) {
+  const std::string folder = testing::broad_folder();
+  if (folder.empty()) GTEST_SKIP() << "shared data not present";
+  const Clipped trial = clip_at_a_third(testing::read_broad_trial(folder, GetParam()).samples);
+  ASSERT_GT(std::count(trial.clipped.begin(), trial.clipped.end(), true), 20);
+
+  RateSmoother::Params params;
+  params.model.nominal = {};  // nobody knows a centre of mass of a sensor in a hand
+  std::vector<RateState> ours, theirs;
+  RateReport report;
+  ASSERT_TRUE(RateSmoother(params).estimate(trial.samples, ours, report).ok());
+  ASSERT_EQ(ours.size(), trial.samples.size());
+  Saave::Params published;
+  published.saturation_point_rad_s = 0.999 * trial.rail_rad_s;
+  ASSERT_TRUE(Saave(published).estimate(trial.samples, theirs).ok());
+
+  const auto raw = [&](std::size_t k) { return trial.samples[k].angular_velocity_rad_s; };
+  const auto tumble = [&](std::size_t k) { return ours[k].w_WI_I_rad_s; };
+  const auto saave = [&](std::size_t k) { return theirs[k].w_WI_I_rad_s; };
+  const Errors raw_clipped = errors(trial, true, raw), clipped = errors(trial, true, tumble);
+  const Errors free = errors(trial, false, tumble);
+  for (const auto& [name, e, f] :
+       {std::tuple("raw", raw_clipped, errors(trial, false, raw)), std::tuple("tumble", clipped, free),
+        std::tuple("saave", errors(trial, true, saave), errors(trial, false, saave))}) {
+    std::printf("%s %-7s clipped %.3f median %.3f mean %.3f max, others %.4f median %.4f mean rad/s\n", GetParam(),
+                name, e.median, e.mean, e.largest, f.median, f.mean);
+  }
+
+  // the noise of that gyro, three axes: what "worse" must exceed
+  const double noise = params.model.gyro_noise_density * std::sqrt(3.0 * 285.714);
+  EXPECT_LT(clipped.median, raw_clipped.median + noise);
+  EXPECT_LT(clipped.mean, raw_clipped.mean + noise);
+  EXPECT_LT(clipped.largest, 1.5 * raw_clipped.largest);
+  // against the reading itself: the bias that is taken away (0.01 rad/s, as the prior has it) and the noise
+  EXPECT_LT(free.median, 0.01 + noise);
+  EXPECT_LT(free.mean, 0.02 + noise);
+}
+
+INSTANTIATE_TEST_SUITE_P(Trials, BroadClipping, ::testing::Values("05", "07", "09", "11", "14", "16", "24", "27"));
+
+}  // namespace
+}  // namespace tumble

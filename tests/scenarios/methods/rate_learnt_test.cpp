@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/rate_tumble.hpp"
+#include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/synthetic_recording.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+sim::Values defaults() {
+  return sim::resolve("method.rate/tumble", {}, tumble_rate_parameters());
+}
+
+// the synthetic rig never flies: runs that learn nothing must not make the next ones know less than nothing
+TEST(RateLearnt, RunsThatLearnNothingDoNotWearOutThePrior) {
+  const sim::Recording recording = testing::synthetic_rig();
+  LearntRig rig, next;
+  ASSERT_TRUE(run_rate_tumble(recording.sensors, defaults(), nullptr, &rig).status.ok());
+  ASSERT_TRUE(run_rate_tumble(recording.sensors, defaults(), &rig, &next).status.ok());
+  for (int j = 0; j < 3; ++j) {
+    EXPECT_LT(next.calibration.covariance(j, j), 1.01 * rig.calibration.covariance(j, j)) << j;
+    EXPECT_GT(next.calibration.covariance(j, j), 0.0) << j;
+  }
+}
+
+TEST(RateLearnt, TheNextRunStartsFromWhatItIsGiven) {
+  const sim::Recording recording = testing::synthetic_rig();
+  LearntRig given, found;
+  given.calibration.constants.lever_arm_m = {0.4, 0.1, -0.2};
+  given.calibration.covariance = 1e-12 * RigConstants::Matrix::Identity();
+  ASSERT_TRUE(run_rate_tumble(recording.sensors, defaults(), &given, &found).status.ok());
+  // a deviation of 2e-6 after four times the covariance
+  EXPECT_NEAR((found.calibration.constants.lever_arm_m - given.calibration.constants.lever_arm_m).norm(), 0.0, 1e-5);
+}
+
+TEST(RateLearnt, WithoutAStartItIsTheMethodOfTheRegistry) {
+  const sim::Recording recording = testing::synthetic_rig();
+  const Estimate registered = find_methods("rate/tumble").front()->run(recording.sensors, {}, {});
+  const Estimate here = run_rate_tumble(recording.sensors, defaults(), nullptr, nullptr);
+  ASSERT_EQ(here.rates.size(), registered.rates.size());
+  ASSERT_GT(here.rates.size(), 0u);
+  for (std::size_t k = 0; k < here.rates.size(); ++k) {
+    ASSERT_EQ(here.rates[k].w_WI_I_rad_s, registered.rates[k].w_WI_I_rad_s) << k;
+  }
+}
+
+TEST(RateLearnt, AFailedRunLeavesWhatWasLearnt) {
+  sim::Recording recording = testing::synthetic_rig();
+  recording.sensors.imus.front().gyro_rad_s.front().x() = std::numeric_limits<double>::quiet_NaN();
+  LearntRig rig;
+  rig.calibration.constants.lever_arm_m = {1.0, 2.0, 3.0};
+  EXPECT_FALSE(run_rate_tumble(recording.sensors, defaults(), nullptr, &rig).status.ok());
+  EXPECT_EQ(rig.calibration.constants.lever_arm_m, Eigen::Vector3d(1.0, 2.0, 3.0));
+}
+
+}  // namespace
+}  // namespace tumble::scenarios
