@@ -94,6 +94,15 @@ void run_miscalibrated(Odometry& odometry, const test::Motion& motion, int sweep
   }
 }
 
+/// A motion that a second without readings does not lose.
+test::Motion gentle() {
+  test::Motion motion;
+  motion.spin_rad_s = 0.8;
+  motion.second_spin_rad_s = 0.3;
+  motion.swing = 0.5;
+  return motion;
+}
+
 TEST(Calibration, FindsMountingAndClock) {
   Odometry::Params params = true_params();
   params.T_IL.linear() = so3::exp({0.010, -0.012, 0.008}).toRotationMatrix() * params.T_IL.linear();
@@ -155,11 +164,7 @@ TEST(Recovery, FindsItselfAfterThreeSecondsUnderACover) {
 }
 
 TEST(Recovery, BridgesAGapOfASecondInBothSensors) {
-  test::Motion gentle;
-  gentle.spin_rad_s = 0.8;
-  gentle.second_spin_rad_s = 0.3;
-  gentle.swing = 0.5;
-  Rig rig(true_params(), gentle);
+  Rig rig(true_params(), gentle());
   rig.run(0, 20);
   rig.run(30, 39);  // sweeps and samples of a second are missing; the sample after it bridges the gap
   EXPECT_NE(rig.report.verdict, SweepVerdict::rejected);
@@ -259,11 +264,7 @@ TEST(Recovery, ASweepOfUnknownGroundExtendsTheMapWhereThePriorIsNotTrusted) {
 }
 
 TEST(Recovery, SaysAndSurvivesAGapOfASecondInTheImuAlone) {
-  test::Motion gentle;
-  gentle.spin_rad_s = 0.8;
-  gentle.second_spin_rad_s = 0.3;
-  gentle.swing = 0.5;
-  Rig rig(true_params(), gentle);
+  Rig rig(true_params(), gentle());
   rig.run(0, 20);
   const double sigma_before = std::sqrt(rig.report.pose.covariance(0, 0));
   for (int k = 20; k < 30; ++k) {
