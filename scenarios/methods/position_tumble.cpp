@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <array>
 #include <memory>
 
@@ -13,6 +14,10 @@ namespace {
 constexpr double kCentreSigmaM = 6e-3;
 constexpr int kRecoveringUnits = 3;  // so many IMUs tell a rate beyond the range
 constexpr double kRecoveredSigmaRadS = 1.0;
+constexpr double kUnknownRadiusShare = 0.05;  // prior of a radius that a known distance is to tell
+// priors of a device that no data sheet is named for, put anywhere in the sphere
+constexpr double kUnknownGyroBiasRadS = 5e-3, kUnknownAccelBiasMS2 = 0.4, kUnknownScale = 0.01, kUnknownDelayS = 5e-3,
+                 kUnknownPlaceM = 0.05;
 
 // the library's own defaults, so that each stands in one place; sources are those of the library's documentation
 const std::array<sim::Parameter, 13>& parameters_of_the_filter() {
@@ -37,7 +42,18 @@ const std::array<sim::Parameter, 13>& parameters_of_the_filter() {
   return parameters;
 }
 
+constexpr std::array<sim::Parameter, 2> kDistance = {{
+    {"known_distance_m", 0.0, 0.0, 1e6, "m",
+     "horizontal distance from start to end, known from elsewhere: tells the radius; 0: not known"},
+    {"known_distance_sigma_m", 5e-3, 1e-9, 1e3, "m", "its sigma"},
+}};
+
 constexpr sim::Parameter kLag = {"lag_s", 1.0, 0.02, 60.0, "s", "how long a pose may wait for what follows"};
+
+std::span<const sim::Parameter> parameters_with_distance() {
+  static const std::vector<sim::Parameter> all = joined_parameters({parameters_of_the_filter(), kDistance});
+  return all;
+}
 
 std::span<const sim::Parameter> parameters_with_lag() {
   static const std::vector<sim::Parameter> all = joined_parameters({parameters_of_the_filter(), {&kLag, 1}});
@@ -61,8 +77,11 @@ sim::ContactLabel contact_label(RollingMode mode, double radius_m, const PoseSta
 }
 
 /// Says what the contact does at the newest pose.
-void add_contact(RollingMode mode, bool at_rest, double radius_m, const ImuSample& sample, Estimate& estimate) {
+void add_contact(RollingMode mode, bool at_rest, bool uncertain, double radius_m, const ImuSample& sample,
+                 Estimate& estimate) {
   estimate.contacts.push_back(contact_label(mode, radius_m, estimate.poses.back(), sample));
+  estimate.uncertain.push_back(uncertain ? 1 : 0);
+  if (uncertain) estimate.health["samples_uncertain"] += 1.0;
   if (mode == RollingMode::slip) estimate.health["samples_slip"] += 1.0;
   if (mode == RollingMode::bump) estimate.health["samples_bump"] += 1.0;
   if (mode == RollingMode::incline) estimate.health["samples_incline"] += 1.0;
@@ -79,6 +98,12 @@ bool merged(const char* method, const sim::Sensors& sensors, MergedImus& imus, E
   estimate.health["imus"] = imus.units;
   estimate.health["imu_readings_left_out"] = imus.left_out;
   estimate.health["imu_offset_max_s"] = imus.offset_max_s;
+  estimate.health["imus_at_other_times"] = imus.resampled;
+  for (const MergedImus::Unit& unit : imus.each) {
+    estimate.health[unit.name + "_time_offset_s"] = unit.time_offset_s;
+    estimate.health[unit.name + "_time_offset_sigma_s"] = unit.time_offset_sigma_s;
+    estimate.health[unit.name + "_rate_bias_rad_s"] = unit.rate_bias_rad_s;
+  }
   return true;
 }
 
@@ -96,7 +121,7 @@ Estimate run_live(const sim::Sensors& sensors, const sim::Values& parameters, co
     PoseState pose = body_pose(sample.time_ns, state->q_WI, state->p_WG_m, state->v_WG_m_s);
     pose.covariance.topLeftCorner<3, 3>() = state->position_covariance_m2;
     estimate.poses.push_back(pose);
-    add_contact(state->mode, state->at_rest, sensors.sphere_radius_m, sample, estimate);
+    add_contact(state->mode, state->at_rest, state->uncertain, sensors.sphere_radius_m, sample, estimate);
   }
   return estimate;
 }
@@ -118,8 +143,24 @@ Estimate run_whole(const sim::Sensors& sensors, const sim::Values& parameters, c
   if (!merged("position/tumble", sensors, imus, estimate)) return estimate;
   RollingSmoother::Params params;
   params.filter = rolling_params(sensors, imus, parameters);
+  params.known_distance_m = parameters.at("known_distance_m");
+  params.known_distance_sigma_m = parameters.at("known_distance_sigma_m");
+  if (params.known_distance_m > 0.0 && params.filter.radius_sigma_m == 0.0) {
+    params.filter.radius_sigma_m = kUnknownRadiusShare * params.filter.radius_m;
+  }
   smooth(params, imus, {}, estimate);
   return estimate;
+}
+
+/// What a device may have that nobody has described.
+void widen(RollingParams& params) {
+  params.gyro_bias_sigma_rad_s = std::max(params.gyro_bias_sigma_rad_s, kUnknownGyroBiasRadS);
+  params.accel_bias_sigma_m_s2 = std::max(params.accel_bias_sigma_m_s2, kUnknownAccelBiasMS2);
+  params.tilt_sigma_rad = std::max(params.tilt_sigma_rad, kUnknownAccelBiasMS2 / params.gravity_m_s2);
+  params.accel_scale_sigma = std::max(params.accel_scale_sigma, kUnknownScale);
+  params.gyro_scale_sigma = std::max(params.gyro_scale_sigma, kUnknownScale);
+  params.accel_delay_sigma_s = std::max(params.accel_delay_sigma_s, kUnknownDelayS);
+  params.lever_arm_sigma_m = std::max(params.lever_arm_sigma_m, kUnknownPlaceM);
 }
 
 }  // namespace
@@ -150,6 +191,7 @@ RollingParams rolling_params(const sim::Sensors& sensors, const MergedImus& imus
   params.incline_begins_per_s = parameters.at("incline_begins_per_s");
   params.rough_share = parameters.at("rough_share");
   params.event_shortest_s = parameters.at("event_shortest_s");
+  if (sensors.imus.front().device.empty()) widen(params);
   return params;
 }
 
@@ -174,8 +216,11 @@ void smooth(const RollingSmoother::Params& params, const MergedImus& imus, std::
     PoseState pose = body_pose(e.time_ns, e.q_WI, e.p_WG_m, e.v_WG_m_s);
     pose.covariance = e.covariance;
     estimate.poses.push_back(pose);
-    add_contact(e.mode, e.at_rest, params.filter.radius_m, imus.samples[k], estimate);
-    if (e.uncertain) estimate.health["samples_uncertain"] += 1.0;
+    add_contact(e.mode, e.at_rest, e.uncertain, params.filter.radius_m, imus.samples[k], estimate);
+  }
+  if (params.filter.radius_sigma_m > 0.0) {
+    estimate.health["radius_m"] = params.filter.radius_m + state->learnt.radius_error_m;
+    estimate.health["radius_sigma_m"] = state->radius_sigma_m;
   }
 }
 
@@ -187,7 +232,7 @@ Method position_tumble() {
       "Rolling as a velocity measurement in an inertial filter, grip, slip, bump and slope as hypotheses; smoothed "
       "over the run.";
   info.source = "ours";
-  info.parameters = parameters_of_the_filter();
+  info.parameters = parameters_with_distance();
   info.robots = {"sphere"};
   return make_method(std::move(info), run_whole);
 }

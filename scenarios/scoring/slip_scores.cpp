@@ -5,6 +5,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/scoring/families.hpp"
+#include "scenarios/scoring/truth_track.hpp"
 
 /// Events of slip and slide: what a position method claims against the contact labels of the truth.
 ///
@@ -13,7 +14,8 @@
 /// contact speed reaches kLeastSpeed_m_s somewhere (below, nobody can tell it from grip and no way is lost). A claimed
 /// event is right when at least half of its time lies within true events, weak and short ones too, each widened by
 /// kMargin_ns. A true event is found when right claims cover at least half of its time. Whether a claim says slip or
-/// slide is not asked.
+/// slide is not asked. The way of a true event is lost when the horizontal error grows by more than kLost_m from its
+/// begin to its end; it is flagged when a pose within it, or kMargin_ns about it, is called uncertain.
 namespace tumble::scenarios {
 
 namespace {
@@ -24,6 +26,7 @@ constexpr std::int64_t kShortest_ns = 50'000'000;
 constexpr std::int64_t kMargin_ns = 30'000'000;
 constexpr double kLeastSpeed_m_s = 0.05;
 constexpr double kHalf = 0.5;
+constexpr double kLost_m = 0.1;
 
 struct Span {
   std::int64_t begin_ns, end_ns;
@@ -159,6 +162,60 @@ bool delay(const Estimate& estimate, const ScoringInput& input, double& value) {
   return true;
 }
 
+/// A true event with what became of the position in it.
+struct Passed {
+  bool lost = false, flagged = false;
+};
+
+/// The true events that count and that the estimate covers; none when it says nothing of its uncertainty.
+std::vector<Passed> passed_events(const Estimate& estimate, const ScoringInput& input) {
+  std::vector<Passed> out;
+  if (estimate.uncertain.empty()) return out;
+  if (estimate.uncertain.size() != estimate.poses.size()) {
+    throw BadInput("the estimate has " + std::to_string(estimate.uncertain.size()) + " flags of uncertainty for " +
+                   std::to_string(estimate.poses.size()) + " poses");
+  }
+  const std::vector<PairedPose> poses = pair_poses(estimate, TruthTrack(*input.truth, estimate.frame)).poses;
+  const auto error_at = [&](std::int64_t time_ns) -> std::optional<Eigen::Vector2d> {
+    const auto pose = std::lower_bound(poses.begin(), poses.end(), time_ns,
+                                       [](const PairedPose& one, std::int64_t at) { return one.time_ns < at; });
+    if (pose == poses.end()) return std::nullopt;
+    return (pose->estimate.p_WA_m - pose->truth.p_WA_m).head<2>();
+  };
+  for (const Span& span : true_spans(*input.truth)) {
+    if (!counts(span, *input.truth)) continue;
+    const auto before = error_at(span.begin_ns), after = error_at(span.end_ns);
+    if (!before || !after) continue;
+    Passed passed;
+    passed.lost = !((*after - *before).norm() <= kLost_m);  // what is not finite is lost
+    for (std::size_t k = 0; k < estimate.poses.size(); ++k) {
+      const std::int64_t time_ns = estimate.poses[k].time_ns;
+      passed.flagged |= estimate.uncertain[k] != 0 && time_ns >= span.begin_ns - kMargin_ns &&
+                        time_ns < span.end_ns + kMargin_ns;
+    }
+    out.push_back(passed);
+  }
+  return out;
+}
+
+bool flag_recall(const Estimate& estimate, const ScoringInput& input, double& value) {
+  const std::vector<Passed> events = passed_events(estimate, input);
+  const auto lost = std::count_if(events.begin(), events.end(), [](const Passed& one) { return one.lost; });
+  if (lost == 0) return false;
+  const auto both =
+      std::count_if(events.begin(), events.end(), [](const Passed& one) { return one.lost && one.flagged; });
+  value = static_cast<double>(both) / static_cast<double>(lost);
+  return true;
+}
+
+bool flagged_share(const Estimate& estimate, const ScoringInput& input, double& value) {
+  const std::vector<Passed> events = passed_events(estimate, input);
+  if (events.empty()) return false;
+  const auto flagged = std::count_if(events.begin(), events.end(), [](const Passed& one) { return one.flagged; });
+  value = static_cast<double>(flagged) / static_cast<double>(events.size());
+  return true;
+}
+
 }  // namespace
 
 std::vector<Metric> slip_metrics() {
@@ -168,6 +225,10 @@ std::vector<Metric> slip_metrics() {
       {"slip_recall", Kind::position, "1", "share of the true events that are found", recall},
       {"slip_delay_s", Kind::position, "s",
        "median over the found events: from their true begin until they are claimed, 0 when claimed before", delay},
+      {"slip_flag_recall", Kind::position, "1",
+       "share of the true events that lose the position by more than 0.1 m which the method flags as uncertain",
+       flag_recall},
+      {"slip_flagged_share", Kind::position, "1", "share of all true events that it flags so", flagged_share},
   };
 }
 

@@ -73,6 +73,7 @@ void RollingFilter::close_node(const Eigen::Vector3d& next_rate_rad_s, State& st
     state.hypotheses[0].P.block<3, 3>(rolling::kPosition, rolling::kPosition) += state.settled_spread_m2;
     state.position_covariance_m2 += state.settled_spread_m2;
   }
+  call_uncertain(state);
   rebase(state);
   state.sums = {};
   ++state.node;
@@ -101,6 +102,13 @@ Eigen::Matrix3d RollingFilter::position_spread(const State& state) {
     total += weight;
   }
   return spread / total;
+}
+
+void RollingFilter::call_uncertain(State& state) const {
+  const double variance_m2 = state.position_covariance_m2(0, 0) + state.position_covariance_m2(1, 1);
+  const bool event = slips(state.hypotheses[0].mode);
+  if (!event) state.before_event_m2 = variance_m2;
+  state.uncertain = event && variance_m2 - state.before_event_m2 > rolling::squared(params_.uncertain_m);
 }
 
 /// Moves the errors of the best hypothesis into the nominal trajectory and constants; the others are held about it.

@@ -88,6 +88,7 @@ void require_modes(const RollingParams& p) {
   require_within("rest_rate_rad_s", p.rest_rate_rad_s, kSmallest, 10.0);
   require_within("rest_force_m_s2", p.rest_force_m_s2, kSmallest, 100.0);
   require_within("rest_time_s", p.rest_time_s, 0.0, 100.0);
+  require_within("uncertain_m", p.uncertain_m, kSmallest, 1e3);
 }
 
 }  // namespace

@@ -63,7 +63,8 @@ struct RollingSmoother::Window {
 };
 
 bool RollingSmoother::State::operator==(const State& other) const {
-  return live == other.live && committed == other.committed && steps == other.steps &&
+  return live == other.live && committed == other.committed && steps == other.steps && learnt == other.learnt &&
+         radius_sigma_m == other.radius_sigma_m &&
          std::equal(samples.begin(), samples.end(), other.samples.begin(), other.samples.end(), equal);
 }
 
@@ -71,7 +72,8 @@ RollingSmoother::RollingSmoother(const Params& p) : params_(p), filter_(p.filter
   require_within("path_noise", p.path_noise, 1e-6, 1.0);
   require_within("lag_s", p.lag_s, p.filter.node_s, kWholeRun);
   require_within("block_s", p.block_s, p.filter.node_s, 1e3);
-  require_within("uncertain_m", p.uncertain_m, 1e-12, 1e3);
+  require_within("known_distance_m", p.known_distance_m, 0.0, 1e6);
+  require_within("known_distance_sigma_m", p.known_distance_sigma_m, 1e-12, 1e3);
   require_within("rate_max_hz", p.rate_max_hz, 1e-3, 1e5);
   path_params_ = quieter(p.filter, p.path_noise);
   lag_nodes_ = static_cast<std::size_t>(std::ceil(p.lag_s / p.filter.node_s - 1e-9));
@@ -185,6 +187,14 @@ void RollingSmoother::run_window(const std::vector<PathNode>& path, std::size_t 
     last_ns = sample.time_ns;
     remember(sample);
   }
+  const bool ended = emitted > window.nodes.size();
+  rolling::Reported moved_at_end = rolling::Reported::Zero();
+  if (ended && !window.nodes.empty() && params_.known_distance_m > 0.0) {
+    moved_at_end = rolling::measure_distance(path_params_, params_.known_distance_m, params_.known_distance_sigma_m,
+                              window.nodes.back(), filter);
+  }
+  state.learnt = filter.nominal;
+  state.radius_sigma_m = std::sqrt(std::max(0.0, filter.P(rolling::kRadius, rolling::kRadius)));
   window.smoothed_start = rolling::smooth_back(rolling::reported_rows(start.P), window.nodes);
   window.start = start;
 
@@ -204,7 +214,7 @@ void RollingSmoother::run_window(const std::vector<PathNode>& path, std::size_t 
       ++b;
     }
     const double after_m2 = horizontal_variance(window.nodes[std::min(b, window.nodes.size() - 1)]);
-    const bool grew = after_m2 - before_m2 > params_.uncertain_m * params_.uncertain_m;
+    const bool grew = after_m2 - before_m2 > params_.filter.uncertain_m * params_.filter.uncertain_m;
     for (std::size_t n = a; n < b; ++n) uncertain[n] = grew;
     a = b;
   }
@@ -215,7 +225,7 @@ void RollingSmoother::run_window(const std::vector<PathNode>& path, std::size_t 
     const bool at_start = point.node == 0;
     const RollingNominal& nominal = at_start ? window.start.nominal : window.nodes[point.node - 1].nominal;
     const rolling::Reported from = at_start ? window.smoothed_start : window.nodes[point.node - 1].smoothed;
-    rolling::Reported error = from;
+    rolling::Reported error = inside ? from : rolling::Reported(from + moved_at_end);
     if (inside) {
       const rolling::NodeRecord& next = window.nodes[point.node];
       const TimeNs from_ns = at_start ? start_ns : window.nodes[point.node - 1].time_ns;

@@ -3,11 +3,14 @@
 
 #include <algorithm>
 
+#include "tumble/common/so3.hpp"
+
 namespace tumble::rolling {
 
 namespace {
 
-constexpr double kBelieved = 5.0;  // sigmas
+constexpr double kBelieved = 5.0;       // sigmas
+constexpr double kNoDirection_m = 0.05;  // between two places nearer than this
 
 /// A measurement further off than kBelieved is taken for a coarser one, by as much: linear corrections as large as that
 /// would bend the whole run.
@@ -86,6 +89,30 @@ NodeRecord close_node(const RollingParams& params, const RollingSums& sums, cons
   record.P_rows = reported_rows(filter.P);
   record.nominal = filter.nominal;
   return record;
+}
+
+Reported measure_distance(const RollingParams& params, double distance_m, double sigma_m, NodeRecord& last,
+                          PathFilter& filter) {
+  const RollingNominal& nominal = filter.nominal;
+  const Eigen::Matrix3d R = nominal.q_WI.toRotationMatrix();
+  const Eigen::Vector3d arm_W = R * (params.lever_arm_m + nominal.lever_arm_error_m);
+  Eigen::Vector3d way = nominal.p_WI_m - arm_W;
+  way.z() = 0.0;
+  const double length_m = way.norm();
+  if (length_m < kNoDirection_m) return Reported::Zero();
+  const Eigen::RowVector3d along = (way / length_m).transpose();
+  Row H = Row::Zero();
+  H.segment<3>(kAttitude) = along * so3::hat(arm_W);
+  H.segment<3>(kPosition) = along;
+  H.segment<3>(kLeverArm) = -along * R;
+  Vector x = Vector::Zero();
+  measure(H, distance_m - length_m, sigma_m * sigma_m, last, x, filter.P);
+  filter.P = (0.5 * (filter.P + filter.P.transpose())).eval();
+  rebase(x, filter.nominal);
+  last.correction += reported(x);
+  last.P_rows = reported_rows(filter.P);
+  last.nominal = filter.nominal;
+  return reported(x);
 }
 
 Reported smooth_back(const Eigen::Matrix<double, kReported, kStates>& P_rows, std::span<NodeRecord> nodes) {

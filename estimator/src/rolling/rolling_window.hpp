@@ -22,7 +22,7 @@ using Reported = Eigen::Matrix<double, kReported, 1>;
 
 /// A node of the last pass, with all that the way back needs.
 struct NodeRecord {
-  static constexpr int kRowsMax = 6;
+  static constexpr int kRowsMax = 7;  ///< at rest, and a known distance
   Moving B;
   std::array<Row, kRowsMax> H;
   std::array<Vector, kRowsMax> gain;
@@ -61,6 +61,11 @@ Eigen::Matrix<double, kReported, kStates> reported_rows(const Covariance& P);
 /// Closes a node: predicts, measures, rebases.
 NodeRecord close_node(const RollingParams& params, const RollingSums& sums, const Eigen::Vector3d& rate_I_rad_s,
                       const PathNode& path, PathFilter& filter);
+
+/// The centre of `filter`, at or just after the last node, stands `distance_m` from the start, horizontally. Returns by
+/// what the nominal was moved; nothing where start and end are as good as one, and the distance has no direction.
+Reported measure_distance(const RollingParams& params, double distance_m, double sigma_m, NodeRecord& last,
+                      PathFilter& filter);
 
 /// Modified Bryson-Fraser: fills `smoothed` and `smoothed_P` of all nodes. Returns the same for the state before the
 /// first node, whose rows of the covariance are `P_rows`.

@@ -52,12 +52,14 @@ class RollingFilter {
     Eigen::Vector3d contact_velocity_m_s = Eigen::Vector3d::Zero();    ///< at the last node, W
     RollingMode mode = RollingMode::grip;
     bool at_rest = false;
+    bool uncertain = false;  ///< in an event in which the position's sigma has grown by more than uncertain_m
     // What the hypotheses have in common: they hold their errors about it.
     RollingNominal nominal;
     RollingSums sums;
     Eigen::Matrix3d settled_spread_m2 = Eigen::Matrix3d::Zero();  ///< of hypotheses given up at the last node
     Eigen::Vector3d slow_force_m_s2 = Eigen::Vector3d::Zero();
     double rest_s = 0.0;
+    double before_event_m2 = 0.0;  ///< horizontal variance of the position at the last node without an event
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
     std::array<Hypothesis, kHypotheses> hypotheses{};
     int count = 0;
@@ -84,6 +86,7 @@ class RollingFilter {
   double log_transition(RollingMode from, RollingMode to, double h_s) const;
   void rebase(State& state) const;
   void report(State& state) const;
+  void call_uncertain(State& state) const;
   static Eigen::Matrix3d position_spread(const State& state);
 
   Params params_;

@@ -86,6 +86,8 @@ struct RollingParams {
   double rest_force_m_s2 = 0.15;  ///< of a node's mean about its slow mean; bound (0, 100]
   double rest_time_s = 0.4;       ///< quiet for so long; bound [0, 100]
   double gap_max_s = 0.1;         ///< bound (0, 1]
+  /// By how much more than this the horizontal sigma grows in an event that is called uncertain; bound (0, 1e3].
+  double uncertain_m = 0.03;
 };
 
 /// Throws InvalidParams when a parameter is outside of its bound.

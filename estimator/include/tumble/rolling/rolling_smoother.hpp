@@ -23,7 +23,7 @@ struct RollingEstimate {
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   RollingMode mode = RollingMode::grip;
   bool at_rest = false;
-  bool uncertain = false;  ///< in an event that the position's sigma grew by more than Params::uncertain_m in
+  bool uncertain = false;  ///< in an event that the position's sigma grew by more than RollingParams::uncertain_m in
 };
 
 /// RollingFilter with what came after taken into account: with a fixed lag, or over the whole run.
@@ -45,8 +45,10 @@ class RollingSmoother {
     double path_noise = 0.65;    ///< noise of the last pass, as a share of the filter's; bound (0, 1]
     double lag_s = kWholeRun;    ///< how long an estimate may wait for what follows; bound [node_s, 1e9]
     double block_s = 0.2;        ///< estimates are given out in blocks of this length; bound [node_s, 1e3]
-    double uncertain_m = 0.03;   ///< bound (0, 1e3]
     double rate_max_hz = 500.0;  ///< of the samples: storage set aside for the lag; bound (0, 1e5]
+    /// Above zero: horizontal distance of the centre from the start to the end of the run, known from elsewhere, and
+    /// its sigma. With a prior on the radius it tells the radius. Bounds [0, 1e6], (0, 1e3].
+    double known_distance_m = 0.0, known_distance_sigma_m = 5e-3;
   };
 
   /// The modes of all hypotheses at a node, and which of the node before each came from.
@@ -72,6 +74,8 @@ class RollingSmoother {
     Committed committed;
     std::vector<ImuSample> samples;  ///< after the committed node
     std::vector<Step> steps;
+    RollingNominal learnt;        ///< constants as known at the newest node that was smoothed
+    double radius_sigma_m = 0.0;  ///< of the radius there
     bool operator==(const State& other) const;
   };
 

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/methods/sphere_imus.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "tumble/common/so3.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+constexpr std::int64_t kPeriod_ns = 4'000'000;
+constexpr int kSamples = 2500;
+
+Eigen::Vector3d rate_at(double time_s) {
+  return {2.0 * std::sin(3.0 * time_s), 1.5 * std::cos(4.1 * time_s), std::sin(2.3 * time_s)};
+}
+
+/// A unit at the centre of a body that turns about it. Its stamps are `stamped_late_s` after the times that its readings
+/// are of; they begin at `first_ns`.
+sim::ImuRecord unit(const char* name, std::int64_t first_ns, double stamped_late_s) {
+  sim::ImuRecord record;
+  record.name = name;
+  record.device = "phidget1044";
+  record.period_ns = kPeriod_ns;
+  for (int k = 0; k < kSamples; ++k) {
+    record.time_ns.push_back(first_ns + k * kPeriod_ns);
+    const double time_s = 1e-9 * static_cast<double>(record.time_ns.back()) - stamped_late_s;
+    record.gyro_rad_s.push_back(rate_at(time_s));
+    record.accel_m_s2.push_back({std::sin(time_s), 0.0, 9.80665});
+    record.clip_flags.push_back(0);
+  }
+  return record;
+}
+
+sim::Sensors three(const sim::ImuRecord& second, const sim::ImuRecord& third) {
+  sim::Sensors sensors;
+  sensors.robot = "sphere";
+  sensors.sphere_radius_m = 0.145;
+  sensors.imus = {unit("imu", 0, 0.0), second, third};
+  return sensors;
+}
+
+double worst_rate_error(const MergedImus& merged) {
+  double worst = 0.0;
+  for (std::size_t k = 10; k + 10 < merged.samples.size(); ++k) {
+    const double time_s = 1e-9 * static_cast<double>(merged.samples[k].time_ns);
+    worst = std::max(worst, (merged.samples[k].angular_velocity_rad_s - rate_at(time_s)).norm());
+  }
+  return worst;
+}
+
+TEST(SphereImus, UnitsWithStampsOfTheirOwnAreReadAtThePrimaryOnes) {
+  const sim::Sensors sensors = three(unit("imu_2", 1'300'000, 0.0), unit("imu_3", -2'700'000, 0.0));
+  MergedImus merged;
+  ASSERT_TRUE(merge_imus(sensors, merged).ok());
+  EXPECT_EQ(merged.units, 3);
+  EXPECT_EQ(merged.resampled, 2);
+  ASSERT_EQ(merged.samples.size(), static_cast<std::size_t>(kSamples));
+  // between two samples a line departs from w by w'' T^2 / 8 = 30 rad/s^3 * 2e-6 s^2, a third of it in the mean of three
+  EXPECT_LT(worst_rate_error(merged), 1e-4);
+  // taken as they come, sample by sample, they would be off by their stamps' distance times the acceleration of 9 rad/s^2
+  EXPECT_GT((rate_at(1.0013) - rate_at(1.0)).norm() / 3.0, 1e-3);
+}
+
+TEST(SphereImus, ATimeOffsetOfOneUnitIsLearntAndTold) {
+  constexpr double kLate_s = 2e-3;
+  const sim::Sensors sensors = three(unit("imu_2", 0, 0.0), unit("imu_3", 0, kLate_s));
+  MergedImus merged;
+  ASSERT_TRUE(merge_imus(sensors, merged).ok());
+  ASSERT_EQ(merged.each.size(), 3U);
+  EXPECT_EQ(merged.each[2].name, "imu_3");
+  // about the mean of the three, which is a third of it late itself
+  EXPECT_NEAR(merged.each[2].time_offset_s, -2.0 / 3.0 * kLate_s, 1e-4);
+  EXPECT_NEAR(merged.each[0].time_offset_s, 1.0 / 3.0 * kLate_s, 1e-4);
+  EXPECT_GT(merged.each[2].time_offset_sigma_s, 0.0);
+  EXPECT_LT(merged.each[2].time_offset_sigma_s, 1e-4);
+  EXPECT_NEAR(merged.offset_max_s, 2.0 / 3.0 * kLate_s, 1e-4);
+}
+
+TEST(SphereImus, AUnitThatEndsEarlyOrHasTroubleIsLeftOut) {
+  sim::ImuRecord ends = unit("imu_2", 1'000'000, 0.0);
+  for (auto* rows : {&ends.gyro_rad_s, &ends.accel_m_s2}) rows->resize(kSamples / 2);
+  ends.time_ns.resize(kSamples / 2);
+  ends.clip_flags.resize(kSamples / 2);
+  sim::ImuRecord nan = unit("imu_3", 0, 0.0);
+  nan.gyro_rad_s[7].x() = std::nan("");
+  MergedImus merged;
+  ASSERT_TRUE(merge_imus(three(ends, nan), merged).ok());
+  EXPECT_EQ(merged.units, 1);
+  EXPECT_TRUE(merged.each.empty()) << "there is no mean that it could be off from";
+}
+
+}  // namespace
+}  // namespace tumble::scenarios
