@@ -12,6 +12,7 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kCentreSigmaM = 6e-3;
+constexpr double kSpinsM_s = 0.2, kSpinsShare = 0.3;  // by which a hop that turns too fast differs from one that grips
 constexpr int kRecoveringUnits = 3;  // so many IMUs tell a rate beyond the range
 constexpr double kRecoveredSigmaRadS = 1.0;
 constexpr double kUnknownRadiusShare = 0.05;  // prior of a radius that a known distance is to tell
@@ -48,10 +49,18 @@ constexpr std::array<sim::Parameter, 2> kDistance = {{
     {"known_distance_sigma_m", 5e-3, 1e-9, 1e3, "m", "its sigma"},
 }};
 
+constexpr sim::Parameter kClaim = {"slip_claimed_from", 0.5, 0.0, 1.0, "1",
+                                   "probability of slip, over all hypotheses, from which on it is claimed"};
+
 constexpr sim::Parameter kLag = {"lag_s", 1.0, 0.02, 60.0, "s", "how long a pose may wait for what follows"};
 
 std::span<const sim::Parameter> parameters_with_distance() {
   static const std::vector<sim::Parameter> all = joined_parameters({parameters_of_the_filter(), kDistance});
+  return all;
+}
+
+std::span<const sim::Parameter> parameters_with_claim() {
+  static const std::vector<sim::Parameter> all = joined_parameters({parameters_of_the_filter(), {&kClaim, 1}});
   return all;
 }
 
@@ -70,9 +79,16 @@ PoseState body_pose(TimeNs time_ns, const Eigen::Quaterniond& q_WB, const Eigen:
   return pose;
 }
 
+/// What grips goes as fast as it turns, whatever it rolls over: a hop in which it does not is part of a slip.
+bool spins(double radius_m, const PoseState& pose, const ImuSample& sample) {
+  const double rolling_m_s = radius_m * (pose.q_WA * sample.angular_velocity_rad_s).head<2>().norm();
+  const double speed_m_s = pose.v_WA_m_s.norm();
+  return std::abs(rolling_m_s - speed_m_s) > std::max(kSpinsM_s, kSpinsShare * std::max(rolling_m_s, speed_m_s));
+}
+
 sim::ContactLabel contact_label(RollingMode mode, double radius_m, const PoseState& pose, const ImuSample& sample) {
-  if (mode == RollingMode::bump) return sim::ContactLabel::air;
-  if (mode != RollingMode::slip) return sim::ContactLabel::grip;
+  if (!slips(mode)) return sim::ContactLabel::grip;
+  if (mode == RollingMode::bump && !spins(radius_m, pose, sample)) return sim::ContactLabel::air;
   return slip_or_slide(radius_m, pose.q_WA, sample.angular_velocity_rad_s, pose.v_WA_m_s);
 }
 
@@ -107,11 +123,19 @@ bool merged(const char* method, const sim::Sensors& sensors, MergedImus& imus, E
   return true;
 }
 
+/// What the live filter says of the contact, all its hypotheses heard.
+RollingMode claimed_mode(const RollingFilter::State& state, double claimed_from) {
+  const bool claimed = state.slip_probability >= claimed_from;
+  if (claimed == slips(state.mode)) return state.mode;
+  return claimed ? RollingMode::slip : RollingMode::grip;
+}
+
 Estimate run_live(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   MergedImus imus;
   if (!merged("position/tumble_live", sensors, imus, estimate)) return estimate;
   const RollingFilter filter(rolling_params(sensors, imus, parameters));
+  const double claimed_from = parameters.at("slip_claimed_from");
   // 430 KiB: not for the stack of a worker
   const auto state = std::make_unique<RollingFilter::State>();
   estimate.poses.reserve(imus.samples.size());
@@ -121,7 +145,7 @@ Estimate run_live(const sim::Sensors& sensors, const sim::Values& parameters, co
     PoseState pose = body_pose(sample.time_ns, state->q_WI, state->p_WG_m, state->v_WG_m_s);
     pose.covariance.topLeftCorner<3, 3>() = state->position_covariance_m2;
     estimate.poses.push_back(pose);
-    add_contact(state->mode, state->at_rest, state->uncertain, sensors.sphere_radius_m, sample, estimate);
+    add_contact(claimed_mode(*state, claimed_from), state->at_rest, state->uncertain, sensors.sphere_radius_m, sample, estimate);
   }
   return estimate;
 }
@@ -254,7 +278,7 @@ Method position_tumble_live() {
   info.kind = Kind::position;
   info.doc = "The same, live: each pose with what came before it alone.";
   info.source = "ours";
-  info.parameters = parameters_of_the_filter();
+  info.parameters = parameters_with_claim();
   info.robots = {"sphere"};
   return make_method(std::move(info), run_live);
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <optional>
 #include <string>
 
 #include "scenarios/methods/bridge.hpp"
@@ -151,6 +153,71 @@ std::vector<ImuSample> samples_along(const Estimate& poses, const sim::Sensors& 
   return out;
 }
 
+constexpr double kStretchM = 0.5;         // of rolled way, over which the lidar measures the radius
+constexpr double kStretchSigmaM = 6e-3;  // at the least: the centre of mass is not the sphere's centre
+constexpr double kBeyondDoubt = 4.0;     // sigmas
+
+struct Radius {
+  double m = 0.0, sigma_m = 0.0;
+};
+
+/// The radius by which rolling goes as far as the registered sweeps do, over stretches on which the contact held. None
+/// when there are too few.
+std::optional<Radius> radius_by_lidar(const Estimate& rolled, const Estimate& registered, const sim::Sensors& sensors) {
+  const Eigen::Isometry3d T_IB = sensors.imus.front().T_BI.inverse(Eigen::Isometry);
+  double squares = 0.0, products = 0.0;
+  std::vector<Eigen::Vector2d> stretches;  // rolled, registered
+  std::optional<Eigen::Vector3d> from_rolled, from_registered;
+  std::size_t k = 0;
+  for (const LidarInertialOdometry::SweepReport& sweep : registered.sweeps) {
+    bool held = sweep.verdict == SweepVerdict::registered;
+    for (; k + 1 < rolled.poses.size() && rolled.poses[k].time_ns < sweep.pose.time_ns; ++k) {
+      held = held && rolled.contacts[k] == sim::ContactLabel::grip;
+    }
+    const Eigen::Vector3d p_rolled = rolled.poses[k].p_WA_m;
+    const Eigen::Vector3d p_registered =
+        (Eigen::Translation3d(sweep.pose.p_WA_m) * sweep.pose.q_WA * T_IB).translation();
+    if (!held) from_rolled.reset();
+    if (from_rolled && (p_rolled - *from_rolled).norm() < kStretchM) continue;
+    if (from_rolled) {
+      const Eigen::Vector2d stretch((p_rolled - *from_rolled).norm(), (p_registered - *from_registered).norm());
+      squares += stretch.x() * stretch.x();
+      products += stretch.x() * stretch.y();
+      stretches.push_back(stretch);
+    }
+    from_rolled = p_rolled;
+    from_registered = p_registered;
+  }
+  if (stretches.size() < 2) return std::nullopt;
+  const double ratio = products / squares;
+  double residuals = 0.0;
+  for (const Eigen::Vector2d& stretch : stretches) {
+    residuals += (stretch.y() - ratio * stretch.x()) * (stretch.y() - ratio * stretch.x());
+  }
+  const double scatter_m = std::sqrt(residuals / static_cast<double>(stretches.size() - 1));
+  const double radius_m = sensors.sphere_radius_m;
+  return Radius{radius_m * ratio, radius_m * std::max(scatter_m, kStretchSigmaM) / std::sqrt(squares)};
+}
+
+/// Registers with the rolling odometry of a sphere of `radius_m` as its prior; `rolled` are its poses.
+Estimate register_with_rolling(const sim::Sensors& sensors, std::span<const ImuSample> raw, double radius_m,
+                               const sim::Values& parameters, Estimate& rolled) {
+  sim::Sensors own;
+  own.robot = sensors.robot;
+  own.gravity_m_s2 = sensors.gravity_m_s2;
+  own.imus = sensors.imus;
+  own.sphere_radius_m = radius_m;
+  rolled = positions("tumble", own);
+  Estimate estimate;
+  estimate.frame = Frame::imu;
+  estimate.status = rolled.status;
+  if (!estimate.status.ok()) return estimate;
+  const std::vector<ImuSample> samples = samples_along(rolled, sensors, raw);
+  estimate.status = raw_rates(sensors, samples, estimate.rates);
+  if (estimate.status.ok()) run_slam_chain(sensors, samples, parameters, {}, estimate);
+  return estimate;
+}
+
 Estimate run_rolling_prior(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   estimate.frame = Frame::imu;
@@ -158,12 +225,18 @@ Estimate run_rolling_prior(const sim::Sensors& sensors, const sim::Values& param
   estimate.status = bridge::primary_imu_samples(sensors, raw);
   if (!estimate.status.ok()) return estimate;
   require_sphere("slam/rolling_prior", sensors);
-  const Estimate poses = positions("tumble", sensors);
-  estimate.status = poses.status;
+  Estimate rolled;
+  estimate = register_with_rolling(sensors, raw, sensors.sphere_radius_m, parameters, rolled);
   if (!estimate.status.ok()) return estimate;
-  const std::vector<ImuSample> samples = samples_along(poses, sensors, raw);
-  estimate.status = raw_rates(sensors, samples, estimate.rates);
-  if (estimate.status.ok()) run_slam_chain(sensors, samples, parameters, {}, estimate);
+  const std::optional<Radius> radius = radius_by_lidar(rolled, estimate, sensors);
+  if (!radius) return estimate;
+  const double off_m = std::abs(radius->m - sensors.sphere_radius_m);
+  if (off_m > kBeyondDoubt * radius->sigma_m && radius->m > 0.0) {
+    estimate = register_with_rolling(sensors, raw, radius->m, parameters, rolled);
+    estimate.health["radius_mended"] = 1.0;
+  }
+  estimate.health["radius_m"] = radius->m;
+  estimate.health["radius_sigma_m"] = radius->sigma_m;
   return estimate;
 }
 

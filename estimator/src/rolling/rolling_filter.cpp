@@ -13,6 +13,7 @@ namespace tumble {
 namespace {
 
 constexpr double kSlowForceTau_s = 0.1;
+constexpr double kHeldAfter_s = 0.1, kHeldSpeed_m_s = 0.02;  // quiet for so long, and no faster: it stands still
 
 static_assert(RollingFilter::kStates == rolling::kStates);
 
@@ -74,7 +75,9 @@ void RollingFilter::close_node(const Eigen::Vector3d& next_rate_rad_s, State& st
     state.position_covariance_m2 += state.settled_spread_m2;
   }
   call_uncertain(state);
+  state.slip_probability = slip_probability(state);
   rebase(state);
+  hold(state);
   state.sums = {};
   ++state.node;
 }
@@ -111,6 +114,29 @@ void RollingFilter::call_uncertain(State& state) const {
   state.uncertain = event && variance_m2 - state.before_event_m2 > rolling::squared(params_.uncertain_m);
 }
 
+double RollingFilter::slip_probability(const State& state) {
+  double slipping = 0.0, total = 0.0;
+  for (int k = 0; k < state.count; ++k) {
+    const Hypothesis& h = state.hypotheses[static_cast<std::size_t>(k)];
+    const double weight = std::exp(h.log_weight - state.hypotheses[0].log_weight);
+    total += weight;
+    if (slips(h.mode)) slipping += weight;
+  }
+  return slipping / total;
+}
+
+/// Whether the position that is given out stands still until the next node.
+void RollingFilter::hold(State& state) const {
+  const bool quiet = state.rest_s >= std::min(kHeldAfter_s, params_.rest_time_s) && !slips(state.hypotheses[0].mode);
+  const bool revised = state.hypotheses[0].parent != 0;
+  const bool stands = quiet && !revised && state.v_WG_m_s.norm() < kHeldSpeed_m_s;
+  if (!stands || !state.held) {
+    state.held = false;
+    report(state);
+  }
+  state.held = stands;
+}
+
 /// Moves the errors of the best hypothesis into the nominal trajectory and constants; the others are held about it.
 void RollingFilter::rebase(State& state) const {
   const Vector x = state.hypotheses[0].x;
@@ -123,7 +149,7 @@ void RollingFilter::report(State& state) const {
   const Eigen::Vector3d arm_W = nominal.q_WI * (params_.lever_arm_m + nominal.lever_arm_error_m);
   const Eigen::Vector3d w_W = nominal.q_WI * (state.last_rate_rad_s - nominal.gyro_bias_rad_s);
   state.q_WI = nominal.q_WI;
-  state.p_WG_m = nominal.p_WI_m - arm_W;
+  if (!state.held) state.p_WG_m = nominal.p_WI_m - arm_W;
   state.v_WG_m_s = nominal.v_WI_m_s - w_W.cross(arm_W);
   state.mode = state.hypotheses[0].mode;
   state.contact_velocity_m_s = state.hypotheses[0].u_W_m_s;

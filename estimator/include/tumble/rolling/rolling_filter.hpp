@@ -17,7 +17,8 @@ namespace tumble {
 /// and lever arm of the IMU, so that the seconds without grip can be integrated. Whether it grips is inferred: a Kalman
 /// filter of the errors per hypothesis about the past modes, kept until what follows decides. The position is part of
 /// each filter's state, so that the grip after an event mends the way made in it; older estimates are not revised
-/// (RollingSmoother does that).
+/// (RollingSmoother does that). While it stands still the position that is given out does too: what rest teaches of the
+/// way before is taken up when the motion goes on, or at once where another hypothesis becomes the best.
 ///
 /// While the gyro stands at its rail the attitude is unknown to that extent, and rolling says nothing: the position is
 /// then bounded by the covariance alone. State and stack need 430 KiB each.
@@ -51,6 +52,7 @@ class RollingFilter {
     Eigen::Matrix3d position_covariance_m2 = Eigen::Matrix3d::Zero();  ///< at the last node, over all hypotheses
     Eigen::Vector3d contact_velocity_m_s = Eigen::Vector3d::Zero();    ///< at the last node, W
     RollingMode mode = RollingMode::grip;
+    double slip_probability = 0.0;  ///< that the contact moves, over all hypotheses, at the last node
     bool at_rest = false;
     bool uncertain = false;  ///< in an event in which the position's sigma has grown by more than uncertain_m
     // What the hypotheses have in common: they hold their errors about it.
@@ -59,6 +61,7 @@ class RollingFilter {
     Eigen::Matrix3d settled_spread_m2 = Eigen::Matrix3d::Zero();  ///< of hypotheses given up at the last node
     Eigen::Vector3d slow_force_m_s2 = Eigen::Vector3d::Zero();
     double rest_s = 0.0;
+    bool held = false;  ///< it stands still, and so does the position that is given out
     double before_event_m2 = 0.0;  ///< horizontal variance of the position at the last node without an event
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
     std::array<Hypothesis, kHypotheses> hypotheses{};
@@ -87,7 +90,9 @@ class RollingFilter {
   void rebase(State& state) const;
   void report(State& state) const;
   void call_uncertain(State& state) const;
+  void hold(State& state) const;
   static Eigen::Matrix3d position_spread(const State& state);
+  static double slip_probability(const State& state);
 
   Params params_;
 };
