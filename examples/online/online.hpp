@@ -20,9 +20,9 @@ class Online {
   explicit Online(const tumble::RollingParams& params);
 
   /// Takes a line "time_ns wx wy wz fx fy fz" (rad/s, m/s^2, sensor axes) and gives "time_ns x y z qx qy qz qw mode
-  /// sigma_m [uncertain]" (centre of the sphere in W, sensor axes to W, horizontal sigma), or what was wrong with the line, when
-  /// ok() is false: then the sample is left out and the next may follow. Empty for an empty line and for a comment (#).
-  /// The view is into this object and good until the next call.
+  /// sigma_m [uncertain]" (centre of the sphere in W, sensor axes to W, horizontal sigma), or what was wrong with the
+  /// line, when ok() is false: then the sample is left out and the next may follow. Empty for an empty line and for a
+  /// comment (#). The view is into this object and good until the next call.
   std::string_view take(std::string_view line);
   bool ok() const { return ok_; }
   std::uint64_t samples() const { return samples_; }

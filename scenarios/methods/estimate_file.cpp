@@ -18,10 +18,9 @@ namespace {
 using nlohmann::json;
 
 constexpr int kFormatVersion = 1;
-constexpr const char* kFiles[] = {"estimate.json",   "rates.csv",    "attitude.tum",
-                                  "trajectory.tum",  "contacts.csv", "sweeps.csv",
-                                  "sweep_poses.csv", "map.ply",      "position_covariance.csv",
-                                  "uncertain.csv"};
+constexpr const char* kFiles[] = {
+    "estimate.json", "rates.csv",       "attitude.tum", "trajectory.tum",          "contacts.csv",
+    "sweeps.csv",    "sweep_poses.csv", "map.ply",      "position_covariance.csv", "uncertain.csv"};
 const std::string kRatesHeader = "time_ns,wx_rad_s,wy_rad_s,wz_rad_s,cxx,cxy,cxz,cyy,cyz,czz,clipped_axes,source";
 const std::string kPose = "px_m,py_m,pz_m,qx,qy,qz,qw,vx_m_s,vy_m_s,vz_m_s";
 const std::string kContactsHeader = "time_ns,label";

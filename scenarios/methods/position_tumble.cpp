@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kCentreSigmaM = 6e-3;
 constexpr double kSpinsM_s = 0.2, kSpinsShare = 0.3;  // by which a hop that turns too fast differs from one that grips
-constexpr int kRecoveringUnits = 3;  // so many IMUs tell a rate beyond the range
+constexpr int kRecoveringUnits = 3;                   // so many IMUs tell a rate beyond the range
 constexpr double kRecoveredSigmaRadS = 1.0;
 constexpr double kUnknownRadiusShare = 0.05;  // prior of a radius that a known distance is to tell
 // priors of a device that no data sheet is named for, put anywhere in the sphere
@@ -49,8 +49,8 @@ constexpr std::array<sim::Parameter, 2> kDistance = {{
     {"known_distance_sigma_m", 5e-3, 1e-9, 1e3, "m", "its sigma"},
 }};
 
-constexpr sim::Parameter kClaim = {"slip_claimed_from", 0.5, 0.0, 1.0, "1",
-                                   "probability of slip, over all hypotheses, from which on it is claimed"};
+constexpr sim::Parameter kClaim = {
+    "slip_claimed_from", 0.5, 0.0, 1.0, "1", "probability of slip, over all hypotheses, from which on it is claimed"};
 
 constexpr sim::Parameter kLag = {"lag_s", 1.0, 0.02, 60.0, "s", "how long a pose may wait for what follows"};
 
@@ -145,7 +145,8 @@ Estimate run_live(const sim::Sensors& sensors, const sim::Values& parameters, co
     PoseState pose = body_pose(sample.time_ns, state->q_WI, state->p_WG_m, state->v_WG_m_s);
     pose.covariance.topLeftCorner<3, 3>() = state->position_covariance_m2;
     estimate.poses.push_back(pose);
-    add_contact(claimed_mode(*state, claimed_from), state->at_rest, state->uncertain, sensors.sphere_radius_m, sample, estimate);
+    add_contact(claimed_mode(*state, claimed_from), state->at_rest, state->uncertain, sensors.sphere_radius_m, sample,
+                estimate);
   }
   return estimate;
 }
@@ -242,6 +243,11 @@ void smooth(const RollingSmoother::Params& params, const MergedImus& imus, std::
     estimate.poses.push_back(pose);
     add_contact(e.mode, e.at_rest, e.uncertain, params.filter.radius_m, imus.samples[k], estimate);
   }
+  // the lever arm was given from the centre of mass: what it was off by says where that is
+  const Eigen::Vector3d centre_B_m = -state->learnt.lever_arm_error_m;
+  estimate.health["centre_x_m"] = centre_B_m.x();
+  estimate.health["centre_y_m"] = centre_B_m.y();
+  estimate.health["centre_z_m"] = centre_B_m.z();
   if (params.filter.radius_sigma_m > 0.0) {
     estimate.health["radius_m"] = params.filter.radius_m + state->learnt.radius_error_m;
     estimate.health["radius_sigma_m"] = state->radius_sigma_m;

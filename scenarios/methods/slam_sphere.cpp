@@ -48,10 +48,20 @@ Estimate positions(const char* name, const sim::Sensors& sensors) {
   return find_methods(std::string("position/") + name).front()->run(sensors, {}, {});
 }
 
-/// Poses in time order, asked for in time order too.
+/// The sphere's centre in body axes, from the centre of mass, by what a position method has learnt of it; else zero.
+Eigen::Vector3d centre_B_m(const Estimate& estimate) {
+  const auto value = [&](const char* name) {
+    const auto found = estimate.health.find(name);
+    return found == estimate.health.end() ? 0.0 : found->second;
+  };
+  return {value("centre_x_m"), value("centre_y_m"), value("centre_z_m")};
+}
+
+/// Poses of the body in time order, asked for in time order too.
 class Track {
  public:
-  explicit Track(const std::vector<PoseState>& poses) : poses_(poses) {}
+  Track(const std::vector<PoseState>& poses, const Eigen::Vector3d& centre_B_m)
+      : poses_(poses), centre_B_m_(centre_B_m) {}
   bool covers(std::int64_t time_ns) const {
     return !poses_.empty() && time_ns >= poses_.front().time_ns && time_ns <= poses_.back().time_ns;
   }
@@ -62,15 +72,17 @@ class Track {
     const PoseState &a = poses_[next_ - 1], &b = poses_[next_];
     const double share = seconds(time_ns - a.time_ns) / std::max(seconds(b.time_ns - a.time_ns), 1e-9);
     const Eigen::Vector3d p = a.p_WA_m + share * (b.p_WA_m - a.p_WA_m);
-    return Eigen::Translation3d(p) * a.q_WA.slerp(share, b.q_WA);
+    return Eigen::Translation3d(p) * a.q_WA.slerp(share, b.q_WA) * Eigen::Translation3d(-centre_B_m_);
   }
 
  private:
   const std::vector<PoseState>& poses_;
+  Eigen::Vector3d centre_B_m_;
   std::size_t next_ = 1;
 };
 
-// the centre and the centre of mass, from which the lidar's place is known, are some mm apart, and taken for one
+// the lidar's place is known from the centre of mass, some mm from the centre; methods that do not say where take them
+// for one
 Estimate map_from_poses(const char* name, const sim::Sensors& sensors, const sim::Values& parameters) {
   Estimate estimate = positions(name, sensors);
   estimate.contacts.clear();
@@ -82,7 +94,7 @@ Estimate map_from_poses(const char* name, const sim::Sensors& sensors, const sim
   }
   const sim::LidarRecord& lidar = sensors.lidars.front();
   VoxelMap map({parameters.at("map_voxel_m"), parameters.at("map_spacing_m")});
-  Track track(estimate.poses);
+  Track track(estimate.poses, centre_B_m(estimate));
   std::size_t first_pose = 0;
   for (std::size_t k = 0; k < bridge::sweep_count(lidar); ++k) {
     const bridge::Sweep sweep = bridge::sweep(lidar, k);
@@ -129,6 +141,7 @@ Estimate run_poses_tumble(const sim::Sensors& sensors, const sim::Values& parame
 std::vector<ImuSample> samples_along(const Estimate& poses, const sim::Sensors& sensors,
                                      std::span<const ImuSample> raw) {
   const Eigen::Isometry3d& T_BI = sensors.imus.front().T_BI;
+  const Eigen::Vector3d arm_B = T_BI.translation() - centre_B_m(poses);  // from the centre
   const Eigen::Vector3d gravity_W(0.0, 0.0, sensors.gravity_m_s2);
   std::vector<ImuSample> out(raw.begin(), raw.end());
   Eigen::Vector3d v_before = Eigen::Vector3d::Zero();
@@ -143,7 +156,7 @@ std::vector<ImuSample> samples_along(const Estimate& poses, const sim::Sensors& 
       out[k].angular_velocity_rad_s.setZero();
     }
     const Eigen::Vector3d w_W = q_WI * out[k].angular_velocity_rad_s;
-    const Eigen::Vector3d v = pose.v_WA_m_s + w_W.cross(pose.q_WA * T_BI.translation());
+    const Eigen::Vector3d v = pose.v_WA_m_s + w_W.cross(pose.q_WA * arm_B);
     const Eigen::Vector3d a = k > 0 ? Eigen::Vector3d((v - v_before) / dt_s) : Eigen::Vector3d::Zero();
     const Eigen::Quaterniond q_mid = q_WI * so3::exp(-0.5 * dt_s * out[k].angular_velocity_rad_s);
     out[k].specific_force_m_s2 = q_mid.conjugate() * (a + gravity_W);
@@ -153,8 +166,8 @@ std::vector<ImuSample> samples_along(const Estimate& poses, const sim::Sensors& 
   return out;
 }
 
-constexpr double kStretchM = 0.5;         // of rolled way, over which the lidar measures the radius
-constexpr double kStretchSigmaM = 6e-3;  // at the least: the centre of mass is not the sphere's centre
+constexpr double kStretchM = 0.5;        // of rolled way, over which the lidar measures the radius
+constexpr double kStretchSigmaM = 3e-3;  // at the least: neither the centre nor the registration is better known
 constexpr double kBeyondDoubt = 4.0;     // sigmas
 
 struct Radius {
@@ -164,7 +177,8 @@ struct Radius {
 /// The radius by which rolling goes as far as the registered sweeps do, over stretches on which the contact held. None
 /// when there are too few.
 std::optional<Radius> radius_by_lidar(const Estimate& rolled, const Estimate& registered, const sim::Sensors& sensors) {
-  const Eigen::Isometry3d T_IB = sensors.imus.front().T_BI.inverse(Eigen::Isometry);
+  const Eigen::Isometry3d T_IG =
+      sensors.imus.front().T_BI.inverse(Eigen::Isometry) * Eigen::Translation3d(centre_B_m(rolled));
   double squares = 0.0, products = 0.0;
   std::vector<Eigen::Vector2d> stretches;  // rolled, registered
   std::optional<Eigen::Vector3d> from_rolled, from_registered;
@@ -176,7 +190,7 @@ std::optional<Radius> radius_by_lidar(const Estimate& rolled, const Estimate& re
     }
     const Eigen::Vector3d p_rolled = rolled.poses[k].p_WA_m;
     const Eigen::Vector3d p_registered =
-        (Eigen::Translation3d(sweep.pose.p_WA_m) * sweep.pose.q_WA * T_IB).translation();
+        (Eigen::Translation3d(sweep.pose.p_WA_m) * sweep.pose.q_WA * T_IG).translation();
     if (!held) from_rolled.reset();
     if (from_rolled && (p_rolled - *from_rolled).norm() < kStretchM) continue;
     if (from_rolled) {

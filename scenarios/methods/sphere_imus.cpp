@@ -11,7 +11,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kRangeShare = 0.98;  // of the stated range: calibration moves a rail by its error of scale
+constexpr double kRangeShare = 0.98;     // of the stated range: calibration moves a rail by its error of scale
 constexpr double kUncoveredMaxS = 0.05;  // at either end, where the nearest reading stands in
 
 /// Readings of a unit at the times of another, linearly between two: stamps are ends of windows, so both are means over

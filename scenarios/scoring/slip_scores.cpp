@@ -190,8 +190,8 @@ std::vector<Passed> passed_events(const Estimate& estimate, const ScoringInput& 
     passed.lost = !((*after - *before).norm() <= kLost_m);  // what is not finite is lost
     for (std::size_t k = 0; k < estimate.poses.size(); ++k) {
       const std::int64_t time_ns = estimate.poses[k].time_ns;
-      passed.flagged |= estimate.uncertain[k] != 0 && time_ns >= span.begin_ns - kMargin_ns &&
-                        time_ns < span.end_ns + kMargin_ns;
+      passed.flagged |=
+          estimate.uncertain[k] != 0 && time_ns >= span.begin_ns - kMargin_ns && time_ns < span.end_ns + kMargin_ns;
     }
     out.push_back(passed);
   }

@@ -57,6 +57,13 @@ void time_offset(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situ
   for (std::int64_t& time_ns : primary(sensors, truth).time_ns) time_ns += shift_ns;
 }
 
+/// The sphere is larger than the truth by this.
+void radius(sim::Sensors& sensors, const sim::Truth&, const sim::Situation&, double size) {
+  if (!(sensors.sphere_radius_m > 0.0)) throw BadInput("the recording is not one of a sphere: it has no radius");
+  if (!(sensors.sphere_radius_m + size > 0.0)) throw BadInput("radius_error_m leaves no radius");
+  sensors.sphere_radius_m += size;
+}
+
 /// A range beyond every reading, so that none is taken for clipped.
 void state_no_rail(sim::ImuRecord& imu) {
   double largest = 0.0;
@@ -111,6 +118,9 @@ std::span<const GivenError> given_errors() {
                  extrinsic_rotation},
       GivenError{
           {"time_offset_s", 0.0, -1.0, 1.0, "s", "the stamps of the primary IMU are late by this"}, false, time_offset},
+      GivenError{{"radius_error_m", 0.0, -1.0, 1.0, "m", "the radius of the sphere is given too large by this"},
+                 false,
+                 radius},
       GivenError{{"rate_error_rad_s", 0.0, 0.0, 1000.0, "rad/s",
                   "clipped readings give way to unclipped ones with an error of this size, constant over each stretch "
                   "of clipping; every method takes them for readings"},

@@ -191,7 +191,7 @@ void RollingSmoother::run_window(const std::vector<PathNode>& path, std::size_t 
   rolling::Reported moved_at_end = rolling::Reported::Zero();
   if (ended && !window.nodes.empty() && params_.known_distance_m > 0.0) {
     moved_at_end = rolling::measure_distance(path_params_, params_.known_distance_m, params_.known_distance_sigma_m,
-                              window.nodes.back(), filter);
+                                             window.nodes.back(), filter);
   }
   state.learnt = filter.nominal;
   state.radius_sigma_m = std::sqrt(std::max(0.0, filter.P(rolling::kRadius, rolling::kRadius)));

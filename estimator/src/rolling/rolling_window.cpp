@@ -9,7 +9,7 @@ namespace tumble::rolling {
 
 namespace {
 
-constexpr double kBelieved = 5.0;       // sigmas
+constexpr double kBelieved = 5.0;        // sigmas
 constexpr double kNoDirection_m = 0.05;  // between two places nearer than this
 
 /// A measurement further off than kBelieved is taken for a coarser one, by as much: linear corrections as large as that

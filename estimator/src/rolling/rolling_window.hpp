@@ -65,7 +65,7 @@ NodeRecord close_node(const RollingParams& params, const RollingSums& sums, cons
 /// The centre of `filter`, at or just after the last node, stands `distance_m` from the start, horizontally. Returns by
 /// what the nominal was moved; nothing where start and end are as good as one, and the distance has no direction.
 Reported measure_distance(const RollingParams& params, double distance_m, double sigma_m, NodeRecord& last,
-                      PathFilter& filter);
+                          PathFilter& filter);
 
 /// Modified Bryson-Fraser: fills `smoothed` and `smoothed_P` of all nodes. Returns the same for the state before the
 /// first node, whose rows of the covariance are `P_rows`.

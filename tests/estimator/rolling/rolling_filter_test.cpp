@@ -9,6 +9,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "estimator/rolling/rolling_truth.hpp"
@@ -143,6 +144,68 @@ TEST(RollingFilter, PerfectSensorsLeaveLittle) {
     EXPECT_GE(rolling_error(truth), c.rolling_at_least_m) << c.name;
     EXPECT_LT(run(truth, c.contact, {.lever_arm_m = kLeverArm}).end_error_m, 0.004) << c.name;  // measured 0 to 2.4 mm
   }
+}
+
+TEST(RollingFilter, StandsStillWhereTheSphereDoes) {
+  const Contact slip = event(2.8, 0.8, {-0.6, 0.1, 0.0});
+  RollingTruth truth = truth_of(l_shape, slip);
+  add_errors(1001, truth);
+  const RollingFilter filter({.lever_arm_m = kLeverArm});
+  const auto state = std::make_unique<RollingFilter::State>();
+  double drift_m = 0.0;
+  int still = 0;
+  Eigen::Vector3d first = Eigen::Vector3d::Zero();
+  for (std::size_t k = 0; k < truth.samples.size(); ++k) {
+    ASSERT_TRUE(filter.step(truth.samples[k], *state).ok());
+    const double time_s = seconds(truth.samples[k].time_ns);
+    if (time_s < 8.3) continue;  // the way ends at 8.0 s
+    if (still++ == 0) first = state->p_WG_m;
+    drift_m = std::max(drift_m, (state->p_WG_m - first).norm());
+  }
+  EXPECT_EQ(still, 426);
+  EXPECT_EQ(drift_m, 0.0);
+  EXPECT_LT((first - truth.p_WG_m.back()).norm(), 0.02);  // and not before the way was mended
+}
+
+TEST(RollingFilter, ProbabilityOfSlipIsThatOfAllHypotheses) {
+  const Contact slip = event(2.8, 0.8, {-0.6, 0.1, 0.0});
+  RollingTruth truth = truth_of(l_shape, slip);
+  add_errors(1002, truth);
+  const RollingFilter filter({.lever_arm_m = kLeverArm});
+  const auto state = std::make_unique<RollingFilter::State>();
+  double deepest = 0.0, before = 0.0;
+  for (std::size_t k = 0; k < truth.samples.size(); ++k) {
+    ASSERT_TRUE(filter.step(truth.samples[k], *state).ok());
+    ASSERT_GE(state->slip_probability, 0.0);
+    ASSERT_LE(state->slip_probability, 1.0);
+    const double time_s = seconds(truth.samples[k].time_ns);
+    if (time_s > 2.0 && time_s < 2.78) before = std::max(before, state->slip_probability);
+    if (time_s > 3.1 && time_s < 3.3) deepest = std::max(deepest, 1.0 - state->slip_probability);
+  }
+  EXPECT_LT(before, 0.2);
+  EXPECT_LT(deepest, 1e-3);
+}
+
+/// With a bound as low as this every event is uncertain, with a high one none is; without an event never.
+TEST(RollingFilter, CallsAnEventUncertainByHowMuchItsSigmaGrows) {
+  const Contact slip = event(2.8, 0.8, {-0.6, 0.1, 0.0});
+  const auto called = [&](const Contact& contact, double uncertain_m) {
+    RollingTruth truth = truth_of(l_shape, contact);
+    add_errors(1003, truth);
+    const RollingFilter filter({.lever_arm_m = kLeverArm, .uncertain_m = uncertain_m});
+    const auto state = std::make_unique<RollingFilter::State>();
+    int inside = 0, outside = 0;
+    for (std::size_t k = 0; k < truth.samples.size(); ++k) {
+      EXPECT_TRUE(filter.step(truth.samples[k], *state).ok());
+      const double time_s = seconds(truth.samples[k].time_ns);
+      (time_s > 2.78 && time_s < 3.75 ? inside : outside) += state->uncertain;
+    }
+    return std::pair(inside, outside);
+  };
+  EXPECT_GT(called(slip, 5e-4).first, 50);
+  EXPECT_EQ(called(slip, 5e-4).second, 0);
+  EXPECT_EQ(called(slip, 1.0), std::pair(0, 0));
+  EXPECT_EQ(called(no_slip, 5e-4), std::pair(0, 0));
 }
 
 TEST(RollingFilter, FindsItsWayThroughSlipAndSlide) {

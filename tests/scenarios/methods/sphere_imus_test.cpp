@@ -19,8 +19,8 @@ Eigen::Vector3d rate_at(double time_s) {
   return {2.0 * std::sin(3.0 * time_s), 1.5 * std::cos(4.1 * time_s), std::sin(2.3 * time_s)};
 }
 
-/// A unit at the centre of a body that turns about it. Its stamps are `stamped_late_s` after the times that its readings
-/// are of; they begin at `first_ns`.
+/// A unit at the centre of a body that turns about it. Its stamps are `stamped_late_s` after the times that its
+/// readings are of; they begin at `first_ns`.
 sim::ImuRecord unit(const char* name, std::int64_t first_ns, double stamped_late_s) {
   sim::ImuRecord record;
   record.name = name;
@@ -60,9 +60,11 @@ TEST(SphereImus, UnitsWithStampsOfTheirOwnAreReadAtThePrimaryOnes) {
   EXPECT_EQ(merged.units, 3);
   EXPECT_EQ(merged.resampled, 2);
   ASSERT_EQ(merged.samples.size(), static_cast<std::size_t>(kSamples));
-  // between two samples a line departs from w by w'' T^2 / 8 = 30 rad/s^3 * 2e-6 s^2, a third of it in the mean of three
+  // between two samples a line departs from w by w'' T^2 / 8 = 30 rad/s^3 * 2e-6 s^2, a third of it in the mean of
+  // three
   EXPECT_LT(worst_rate_error(merged), 1e-4);
-  // taken as they come, sample by sample, they would be off by their stamps' distance times the acceleration of 9 rad/s^2
+  // taken as they come, sample by sample, they would be off by their stamps' distance times the acceleration of 9
+  // rad/s^2
   EXPECT_GT((rate_at(1.0013) - rate_at(1.0)).norm() / 3.0, 1e-3);
 }
 

@@ -164,9 +164,7 @@ Estimate astray(const sim::Recording& recording, double lost_m, const std::vecto
   for (PoseState& pose : estimate.poses) {
     const double time_s = 1e-9 * static_cast<double>(pose.time_ns);
     pose.p_WA_m.y() += lost_m * std::clamp(time_s - 2.0, 0.0, 1.0);
-    const auto in = [&](const std::pair<double, double>& span) {
-      return time_s >= span.first && time_s < span.second;
-    };
+    const auto in = [&](const std::pair<double, double>& span) { return time_s >= span.first && time_s < span.second; };
     estimate.uncertain.push_back(std::any_of(flagged.begin(), flagged.end(), in) ? 1 : 0);
   }
   return estimate;

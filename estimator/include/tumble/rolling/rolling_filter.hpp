@@ -61,7 +61,7 @@ class RollingFilter {
     Eigen::Matrix3d settled_spread_m2 = Eigen::Matrix3d::Zero();  ///< of hypotheses given up at the last node
     Eigen::Vector3d slow_force_m_s2 = Eigen::Vector3d::Zero();
     double rest_s = 0.0;
-    bool held = false;  ///< it stands still, and so does the position that is given out
+    bool held = false;             ///< it stands still, and so does the position that is given out
     double before_event_m2 = 0.0;  ///< horizontal variance of the position at the last node without an event
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
     std::array<Hypothesis, kHypotheses> hypotheses{};
