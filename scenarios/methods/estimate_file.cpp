@@ -18,13 +18,12 @@ namespace {
 using nlohmann::json;
 
 constexpr int kFormatVersion = 1;
-constexpr const char* kFiles[] = {
-    "estimate.json", "rates.csv",       "attitude.tum", "trajectory.tum",          "contacts.csv",
-    "sweeps.csv",    "sweep_poses.csv", "map.ply",      "position_covariance.csv", "uncertain.csv"};
+constexpr const char* kFiles[] = {"estimate.json",   "rates.csv",    "attitude.tum",
+                                  "trajectory.tum",  "contacts.csv", "sweeps.csv",
+                                  "sweep_poses.csv", "map.ply",      "position_covariance.csv"};
 const std::string kRatesHeader = "time_ns,wx_rad_s,wy_rad_s,wz_rad_s,cxx,cxy,cxz,cyy,cyz,czz,clipped_axes,source";
 const std::string kPose = "px_m,py_m,pz_m,qx,qy,qz,qw,vx_m_s,vy_m_s,vz_m_s";
 const std::string kContactsHeader = "time_ns,label";
-const std::string kUncertainHeader = "time_ns,uncertain";
 const std::string kPositionCovarianceHeader = "time_ns,cxx,cxy,cxz,cyy,cyz,czz";
 constexpr std::size_t kCovarianceColumn = 16;  // of a sweep's pose: upper triangle by rows, position before attitude
 const std::string kSweepsHeader =
@@ -119,22 +118,6 @@ void write_contacts(const std::filesystem::path& path, const Estimate& estimate)
   table.close();
 }
 
-void write_uncertain(const std::filesystem::path& path, const Estimate& estimate) {
-  TableWriter table(path, ',', kUncertainHeader);
-  for (std::size_t k = 0; k < estimate.uncertain.size(); ++k) {
-    table.integer(estimate.poses[k].time_ns);
-    table.integer(estimate.uncertain[k]);
-    table.end_row();
-  }
-  table.close();
-}
-
-void require_entry_per_pose(const char* what, std::size_t entries, const Estimate& estimate) {
-  if (entries == 0 || entries == estimate.poses.size()) return;
-  throw std::invalid_argument("an estimate has " + std::to_string(entries) + " " + what + " for " +
-                              std::to_string(estimate.poses.size()) + " poses");
-}
-
 void require_row_per_pose(const Table& table, const std::vector<PoseState>& poses) {
   if (table.rows.size() != poses.size()) {
     throw BadInput(table.path.string() + ": " + std::to_string(table.rows.size()) + " rows, must be " +
@@ -182,18 +165,6 @@ void read_contacts(const std::filesystem::path& path, Estimate& estimate) {
       throw BadInput(path.string() + ":" + std::to_string(row.line) + ": unknown label " + std::to_string(label));
     }
     estimate.contacts.push_back(static_cast<sim::ContactLabel>(label));
-  }
-}
-
-void read_uncertain(const std::filesystem::path& path, Estimate& estimate) {
-  const Table table = Table::read(path, ',', kUncertainHeader, 2);
-  require_row_per_pose(table, estimate.poses);
-  for (const Table::Row& row : table.rows) {
-    const std::int64_t flag = table.integer(row, 1);
-    if (flag != 0 && flag != 1) {
-      throw BadInput(path.string() + ":" + std::to_string(row.line) + ": must be 0 or 1, is " + std::to_string(flag));
-    }
-    estimate.uncertain.push_back(static_cast<std::uint8_t>(flag));
   }
 }
 
@@ -349,10 +320,13 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
     return !pose.covariance.topLeftCorner<3, 3>().isZero(0.0);
   });
   if (stated) write_covariances(folder / "position_covariance.csv", estimate.poses);
-  require_entry_per_pose("contacts", estimate.contacts.size(), estimate);
-  require_entry_per_pose("flags of uncertainty", estimate.uncertain.size(), estimate);
-  if (!estimate.contacts.empty()) write_contacts(folder / "contacts.csv", estimate);
-  if (!estimate.uncertain.empty()) write_uncertain(folder / "uncertain.csv", estimate);
+  if (!estimate.contacts.empty()) {
+    if (estimate.contacts.size() != estimate.poses.size()) {
+      throw std::invalid_argument("an estimate has " + std::to_string(estimate.contacts.size()) + " contacts for " +
+                                  std::to_string(estimate.poses.size()) + " poses");
+    }
+    write_contacts(folder / "contacts.csv", estimate);
+  }
   if (!estimate.sweeps.empty()) write_sweeps(folder, estimate);
   if (!estimate.map.empty()) write_map(folder / "map.ply", estimate.map);
 
@@ -379,7 +353,6 @@ Estimate read_estimate(const std::filesystem::path& path, Kind& kind, std::strin
   if (there("trajectory.tum")) read_tum(path / "trajectory.tum", estimate.poses);
   if (there("position_covariance.csv")) read_covariances(path / "position_covariance.csv", estimate.poses);
   if (there("contacts.csv")) read_contacts(path / "contacts.csv", estimate);
-  if (there("uncertain.csv")) read_uncertain(path / "uncertain.csv", estimate);
   if (there("attitude.tum")) {
     std::vector<PoseState> poses;
     read_tum(path / "attitude.tum", poses);

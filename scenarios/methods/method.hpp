@@ -36,9 +36,6 @@ struct Estimate {
   /// What the method says of the contact at each pose, parallel to `poses`; empty when it says nothing. `air`: no
   /// contact, or one whose motion it does not know (a bump).
   std::vector<sim::ContactLabel> contacts;
-  /// 1 at poses within an event whose way the method itself calls uncertain, else 0; parallel to `poses`; empty when it
-  /// says nothing.
-  std::vector<std::uint8_t> uncertain;
   std::vector<LidarInertialOdometry::SweepReport> sweeps;  ///< kind slam, one per sweep
   std::vector<std::int64_t> sweep_end_ns;                  ///< parallel to `sweeps`
   std::vector<MapPoint> map;                               ///< kind slam

@@ -86,7 +86,6 @@ class Track {
 Estimate map_from_poses(const char* name, const sim::Sensors& sensors, const sim::Values& parameters) {
   Estimate estimate = positions(name, sensors);
   estimate.contacts.clear();
-  estimate.uncertain.clear();
   if (!estimate.status.ok()) return estimate;
   if (sensors.lidars.empty() || estimate.poses.size() < 2) {
     estimate.status = {Trouble::empty, "lidars", 0.0, 1.0};

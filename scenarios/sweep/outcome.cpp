@@ -100,7 +100,6 @@ std::string digest(const Estimate& estimate) {
   add_poses(hasher, estimate.poses);
   hasher.add(static_cast<std::uint64_t>(estimate.contacts.size()));
   for (const sim::ContactLabel label : estimate.contacts) hasher.add(static_cast<std::int32_t>(label));
-  for (const std::uint8_t uncertain : estimate.uncertain) hasher.add(uncertain);
   hasher.add(static_cast<std::uint64_t>(estimate.sweeps.size()));
   for (const auto& sweep : estimate.sweeps) add_sweep(hasher, sweep);
   for (const std::int64_t end_ns : estimate.sweep_end_ns) hasher.add(end_ns);

@@ -145,27 +145,6 @@ TEST_F(EstimateFile, ContactsComeBackAndBelongToTheirPoses) {
   EXPECT_THROW(write_estimate(folder_, "tumble", Kind::position, estimate), std::invalid_argument);
 }
 
-TEST_F(EstimateFile, FlagsOfUncertaintyComeBackAndBelongToTheirPoses) {
-  Estimate estimate;
-  for (int k = 0; k < 3; ++k) {
-    PoseState pose;
-    pose.time_ns = 5'000'000 * k;
-    estimate.poses.push_back(pose);
-  }
-  estimate.uncertain = {0, 1, 0};
-  write_estimate(folder_, "tumble", Kind::position, estimate);
-  Kind kind;
-  std::string method;
-  EXPECT_EQ(read_estimate(folder_, kind, method, Frame::imu).uncertain, estimate.uncertain);
-
-  write("uncertain.csv", "time_ns,uncertain\n0,1\n5000000,0\n");
-  EXPECT_NE(complaint(folder_).find("uncertain.csv: 2 rows, must be 3"), std::string::npos);
-  write("uncertain.csv", "time_ns,uncertain\n0,0\n5000000,2\n10000000,0\n");
-  EXPECT_NE(complaint(folder_).find("uncertain.csv:3: must be 0 or 1, is 2"), std::string::npos);
-  estimate.uncertain.pop_back();
-  EXPECT_THROW(write_estimate(folder_, "tumble", Kind::position, estimate), std::invalid_argument);
-}
-
 TEST_F(EstimateFile, NothingOfAnEarlierEstimateStays) {
   Estimate with_map;
   with_map.map.resize(3);

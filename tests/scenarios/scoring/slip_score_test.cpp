@@ -158,39 +158,36 @@ TEST(SlipScores, ABumpIsNoClaim) {
   EXPECT_EQ(scores(Kind::position, estimate, recording).at("slip_precision"), 1.0);
 }
 
-/// The estimate of kTwo goes astray by `lost_m` over the first event; poses within the spans are called uncertain.
-Estimate astray(const sim::Recording& recording, double lost_m, const std::vector<std::pair<double, double>>& flagged) {
+/// The estimate of kTwo goes astray by `lost_m` over the first event; its sigma is 1 mm, and 5 cm from `sigma_from_s`.
+Estimate astray(const sim::Recording& recording, double lost_m, double sigma_from_s) {
   Estimate estimate = claims_within(recording, {{2.0, 3.0}, {5.0, 5.4}});
   for (PoseState& pose : estimate.poses) {
     const double time_s = 1e-9 * static_cast<double>(pose.time_ns);
     pose.p_WA_m.y() += lost_m * std::clamp(time_s - 2.0, 0.0, 1.0);
-    const auto in = [&](const std::pair<double, double>& span) { return time_s >= span.first && time_s < span.second; };
-    estimate.uncertain.push_back(std::any_of(flagged.begin(), flagged.end(), in) ? 1 : 0);
+    const double sigma_m = time_s < sigma_from_s ? 1e-3 : 0.05;
+    pose.covariance.topLeftCorner<3, 3>() = sigma_m * sigma_m * Eigen::Matrix3d::Identity();
   }
   return estimate;
 }
 
 TEST(SlipScores, AnEventThatLosesTheWayIsToBeFlagged) {
   const sim::Recording recording = slipping(kTwo);
-  const auto right = scores(Kind::position, astray(recording, 0.2, {{2.5, 2.6}}), recording);
+  const auto right = scores(Kind::position, astray(recording, 0.2, 2.5), recording);
   EXPECT_EQ(right.at("slip_flag_recall"), 1.0);
   EXPECT_EQ(right.at("slip_flagged_share"), 0.5);
   // the other event is flagged, the lost one is not
-  const auto wrong = scores(Kind::position, astray(recording, 0.2, {{5.1, 5.2}}), recording);
+  const auto wrong = scores(Kind::position, astray(recording, 0.2, 5.1), recording);
   EXPECT_EQ(wrong.at("slip_flag_recall"), 0.0);
   EXPECT_EQ(wrong.at("slip_flagged_share"), 0.5);
-  const auto kept = scores(Kind::position, astray(recording, 0.05, {}), recording);
+  const auto kept = scores(Kind::position, astray(recording, 0.05, 9.0), recording);
   EXPECT_FALSE(kept.contains("slip_flag_recall")) << "nothing was lost";
   EXPECT_EQ(kept.at("slip_flagged_share"), 0.0);
 }
 
-TEST(SlipScores, FlagsAreLeftOutOfAnEstimateThatSetsNoneAndMustBeOnePerPose) {
+TEST(SlipScores, FlagsAreLeftOutOfAnEstimateWithoutCovariance) {
   const sim::Recording recording = slipping(kTwo);
-  Estimate estimate = astray(recording, 0.2, {});
-  estimate.uncertain.pop_back();
-  EXPECT_THROW(scores(Kind::position, estimate, recording), BadInput);
-  estimate.uncertain.clear();
-  const auto values = scores(Kind::position, estimate, recording);
+  const auto values = scores(Kind::position, claims_within(recording, {{2.0, 3.0}}), recording);
+  EXPECT_EQ(values.at("slip_recall"), 0.5);
   EXPECT_FALSE(values.contains("slip_flag_recall"));
   EXPECT_FALSE(values.contains("slip_flagged_share"));
 }
