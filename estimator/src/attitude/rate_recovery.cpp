@@ -65,11 +65,15 @@ void RateRecovery::step(std::span<const ImuSample> units, double dt_s, State& st
   measure_forces(units, state);
   state.P = (0.5 * (state.P + state.P.transpose())).eval();
 
-  bool rate_clipped = false, force_clipped = false;
+  bool rate_clipped = false;
+  std::size_t forces_clipped = 0;
   for (const ImuSample& unit : units) {
     rate_clipped |= unit.angular_velocity_rad_s.cwiseAbs().maxCoeff() >= params_.gyro_range_rad_s;
-    force_clipped |= unit.specific_force_m_s2.cwiseAbs().maxCoeff() >= params_.accel_range_m_s2;
+    forces_clipped += unit.specific_force_m_s2.cwiseAbs().maxCoeff() >= params_.accel_range_m_s2;
   }
+  // with a rate that is right, the units that are left tell the force better than the filter: only where they are few
+  // does it count as clipped
+  const bool force_clipped = forces_clipped > 0 && (rate_clipped || 2 * forces_clipped > units.size());
   if (rate_clipped && state.P.diagonal().segment<3>(kRate).maxCoeff() < squared(params_.recovered_sigma_rad_s)) {
     merged.angular_velocity_rad_s = state.x.segment<3>(kRate);
   } else if (rate_clipped) {
