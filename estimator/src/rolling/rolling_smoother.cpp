@@ -34,8 +34,13 @@ bool equal(const ImuSample& a, const ImuSample& b) {
          a.specific_force_m_s2 == b.specific_force_m_s2;
 }
 
-double horizontal_variance(const rolling::NodeRecord& node) {
-  return node.smoothed_P(6, 6) + node.smoothed_P(7, 7);
+/// The last pass is quieter than it believes, for the estimate's sake; what it states of itself is not.
+double stated(const RollingSmoother::Params& params) {
+  return 1.0 / (params.path_noise * params.path_noise);
+}
+
+double horizontal_variance(const RollingSmoother::Params& params, const rolling::NodeRecord& node) {
+  return stated(params) * (node.smoothed_P(6, 6) + node.smoothed_P(7, 7));
 }
 
 /// Covariance of (centre, attitude) from that of the reported states.
@@ -203,7 +208,7 @@ void RollingSmoother::run_window(const std::vector<PathNode>& path, std::size_t 
   double before_m2 = state.committed.event_variance_m2, committed_m2 = 0.0;
   for (std::size_t a = 0; a < window.nodes.size();) {
     if (!slips(window.nodes[a].path.mode)) {
-      before_m2 = horizontal_variance(window.nodes[a]);
+      before_m2 = horizontal_variance(params_, window.nodes[a]);
       if (a + 1 == emitted) committed_m2 = before_m2;
       ++a;
       continue;
@@ -213,7 +218,7 @@ void RollingSmoother::run_window(const std::vector<PathNode>& path, std::size_t 
       if (b + 1 == emitted) committed_m2 = before_m2;
       ++b;
     }
-    const double after_m2 = horizontal_variance(window.nodes[std::min(b, window.nodes.size() - 1)]);
+    const double after_m2 = horizontal_variance(params_, window.nodes[std::min(b, window.nodes.size() - 1)]);
     const bool grew = after_m2 - before_m2 > params_.filter.uncertain_m * params_.filter.uncertain_m;
     for (std::size_t n = a; n < b; ++n) uncertain[n] = grew;
     a = b;
@@ -243,7 +248,7 @@ void RollingSmoother::run_window(const std::vector<PathNode>& path, std::size_t 
     estimate.v_WG_m_s = point.v_WI_m_s + error.segment<3>(3) - w_W.cross(arm_W);
     if (!window.nodes.empty()) {
       const std::size_t n = std::min(point.node, window.nodes.size() - 1);
-      estimate.covariance = pose_covariance(window.nodes[n], arm_W);
+      estimate.covariance = stated(params_) * pose_covariance(window.nodes[n], arm_W);
       estimate.mode = window.nodes[n].path.mode;
       estimate.at_rest = window.nodes[n].path.at_rest;
       estimate.uncertain = uncertain[n];

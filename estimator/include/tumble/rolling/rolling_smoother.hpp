@@ -42,7 +42,9 @@ class RollingSmoother {
 
   struct Params {
     RollingParams filter = {};
-    double path_noise = 0.65;    ///< noise of the last pass, as a share of the filter's; bound (0, 1]
+    /// Noise of the last pass, as a share of the filter's; the covariance that it states is of the filter's; bound (0,
+    /// 1].
+    double path_noise = 0.65;
     double lag_s = kWholeRun;    ///< how long an estimate may wait for what follows; bound [node_s, 1e9]
     double block_s = 0.2;        ///< estimates are given out in blocks of this length; bound [node_s, 1e3]
     double rate_max_hz = 500.0;  ///< of the samples: storage set aside for the lag; bound (0, 1e5]
