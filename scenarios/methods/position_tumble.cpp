@@ -19,6 +19,7 @@ constexpr double kUnknownRadiusShare = 0.05;  // prior of a radius that a known 
 // priors of a device that no data sheet is named for, put anywhere in the sphere
 constexpr double kUnknownGyroBiasRadS = 5e-3, kUnknownAccelBiasMS2 = 0.4, kUnknownScale = 0.01, kUnknownDelayS = 5e-3,
                  kUnknownPlaceM = 0.05;
+constexpr double kUnknownInclinePerS = 1e-9;  // its bias passes for a slope: the floor is taken for level
 
 // the library's own defaults, so that each stands in one place; sources are those of the library's documentation
 const std::array<sim::Parameter, 13>& parameters_of_the_filter() {
@@ -185,6 +186,7 @@ void widen(RollingParams& params) {
   params.gyro_scale_sigma = std::max(params.gyro_scale_sigma, kUnknownScale);
   params.accel_delay_sigma_s = std::max(params.accel_delay_sigma_s, kUnknownDelayS);
   params.lever_arm_sigma_m = std::max(params.lever_arm_sigma_m, kUnknownPlaceM);
+  params.incline_begins_per_s = std::min(params.incline_begins_per_s, kUnknownInclinePerS);
 }
 
 }  // namespace
