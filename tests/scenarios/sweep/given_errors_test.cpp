@@ -55,6 +55,16 @@ TEST(GivenErrors, OfTheLeverArmHaveTheirSizeAndOneDirection) {
       << "each draw has a direction of its own";
 }
 
+TEST(GivenErrors, OfTheRadiusIsAddedAndNeedsASphere) {
+  SimulatedDraw draw = sample_draw();
+  draw.recording.sensors.sphere_radius_m = 0.145;
+  EXPECT_NEAR(with_setting(draw, {"given.radius_error_m", 0.003}).recording.sensors.sphere_radius_m, 0.148, 1e-15);
+  EXPECT_NEAR(with_setting(draw, {"given.radius_error_m", -0.003}).recording.sensors.sphere_radius_m, 0.142, 1e-15);
+  EXPECT_THROW(with_setting(draw, {"given.radius_error_m", -0.5}), BadInput);
+  draw.recording.sensors.sphere_radius_m = 0.0;
+  EXPECT_THROW(with_setting(draw, {"given.radius_error_m", 0.003}), BadInput);
+}
+
 TEST(GivenErrors, OfTheExtrinsicRotationHaveTheirSize) {
   const SimulatedDraw draw = sample_draw();
   ASSERT_GT(extrinsic_angle_rad(draw), 0.019);
