@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "scenarios/errors.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/rate_baseline.hpp"
 #include "scenarios/methods/rate_tumble.hpp"
@@ -99,6 +100,47 @@ std::span<const sim::Parameter> tumble_rate_parameters() {
   return parameters_of_the_smoother();
 }
 
+void start_from_learnt(const LearntRig& rig, RateSmoother::Params& params) {
+  const RigConstants::Matrix prior = RateModel(params.model, 0.01).prior_covariance();
+  start_from(rig, kTrust, params);
+  // never wider than before anything was learnt
+  RigConstants::Matrix& covariance = params.model.calibration->covariance;
+  const RigConstants::Matrix information = covariance.inverse() + (1.0 - 1.0 / kTrust) * prior.inverse();
+  covariance = information.inverse();
+}
+
+const LearntRig* Learning::found() const {
+  if (of_batch) return &*of_batch;
+  return of_stream ? &*of_stream : nullptr;
+}
+
+Method learning_method(const Method& method, Learning& learning) {
+  const std::string name = std::string(to_string(method.info.kind)) + "/" + method.info.name;
+  const bool batch = name == "rate/tumble";
+  if (!batch && name != "rate/tumble_lag") {
+    throw BadInput("'" + name + "' learns nothing of the rig; 'rate/tumble' and 'rate/tumble_lag' do");
+  }
+  Method out = method;
+  out.run = [name, batch, info = method.info, &learning](const sim::Sensors& sensors, const sim::Values& given,
+                                                         const OracleInput&) {
+    const LearntRig* const start = learning.given ? &*learning.given : nullptr;
+    LearntRig rig;
+    try {
+      const sim::Values parameters = sim::resolve("method " + name, given, info.parameters);
+      Estimate estimate = (batch ? run_rate_tumble : run_rate_tumble_lag)(sensors, parameters, start, &rig);
+      if (estimate.status.ok() && estimate.health.at("rig_held") == 0.0) {
+        (batch ? learning.of_batch : learning.of_stream) = rig;
+      }
+      return estimate;
+    } catch (const sim::InvalidSituation& error) {
+      throw BadInput(error.what());
+    } catch (const InvalidParams& error) {
+      throw BadInput("method " + name + ": " + error.what());
+    }
+  };
+  return out;
+}
+
 Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
                          LearntRig* found) {
   Estimate estimate;
@@ -106,14 +148,7 @@ Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& paramet
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (estimate.status.ok()) {
     RateSmoother::Params params = smoother_params(sensors.imus.front(), parameters);
-    if (given != nullptr) {
-      const RigConstants::Matrix prior = RateModel(params.model, 0.01).prior_covariance();
-      start_from(*given, kTrust, params);
-      // never wider than before anything was learnt
-      RigConstants::Matrix& covariance = params.model.calibration->covariance;
-      const RigConstants::Matrix information = covariance.inverse() + (1.0 - 1.0 / kTrust) * prior.inverse();
-      covariance = information.inverse();
-    }
+    if (given != nullptr) start_from_learnt(*given, params);
     RateReport report;
     estimate.status = RateSmoother(params).estimate(samples, estimate.rates, report);
     if (estimate.status.ok()) report_health(report, estimate.health);

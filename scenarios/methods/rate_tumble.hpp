@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
+
 #include "scenarios/methods/method.hpp"
 #include "scenarios/methods/rig_calibration_file.hpp"
 #include "sim/parameters.hpp"
@@ -19,6 +21,25 @@ RateSmoother::Params smoother_params(const sim::ImuRecord& record, const sim::Va
 /// between runs, yet not more than what is assumed without it.
 Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
                          LearntRig* found);
+
+/// The same for the stream `tumble_lag`. It has learnt something where the constants are better known than before.
+Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
+                             LearntRig* found);
+
+/// Makes what was learnt of the rig the start of a smoother: constants with four times their covariance, see above.
+void start_from_learnt(const LearntRig& rig, RateSmoother::Params& params);
+
+/// What several runs on one rig start from and what they have learnt.
+struct Learning {
+  std::optional<LearntRig> given;  ///< none: they start from nothing
+  std::optional<LearntRig> of_batch, of_stream;
+  /// What is to be kept: of the batch where it ran, since it saw all of the recording at once; null: nothing.
+  const LearntRig* found() const;
+};
+
+/// `method` as a method that starts from and adds to `learning`, which must outlive it. Throws BadInput for a method
+/// that learns nothing of the rig: all but rate/tumble and rate/tumble_lag.
+Method learning_method(const Method& method, Learning& learning);
 
 Method rate_tumble_lag();
 

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <string>
 
+#include "scenarios/errors.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/rate_tumble.hpp"
 #include "scenarios/methods/registry.hpp"
@@ -55,6 +58,55 @@ TEST(RateLearnt, AFailedRunLeavesWhatWasLearnt) {
   rig.calibration.constants.lever_arm_m = {1.0, 2.0, 3.0};
   EXPECT_FALSE(run_rate_tumble(recording.sensors, defaults(), nullptr, &rig).status.ok());
   EXPECT_EQ(rig.calibration.constants.lever_arm_m, Eigen::Vector3d(1.0, 2.0, 3.0));
+}
+
+// a fall about the centre of mass: the force of the synthetic rig without that of its centre
+sim::Recording fall() {
+  sim::Recording recording = testing::synthetic_rig();
+  sim::ImuRecord& imu = recording.sensors.imus.front();
+  const testing::SyntheticMotion motion;
+  const Eigen::Vector3d p_B = imu.T_BI.translation();
+  for (std::size_t k = 0; k < imu.time_ns.size(); ++k) {
+    const double middle_s = 1e-9 * static_cast<double>(imu.time_ns[k]) - 0.0025;
+    imu.accel_m_s2[k] =
+        imu.T_BI.linear().transpose() *
+        (motion.specific_force_B_m_s2(middle_s, p_B) - motion.specific_force_B_m_s2(middle_s, Eigen::Vector3d::Zero()));
+  }
+  return recording;
+}
+
+TEST(RateLearnt, BatchAndStreamStartFromWhatEitherHasLearnt) {
+  const sim::Recording recording = fall();
+  for (const char* const first : {"rate/tumble", "rate/tumble_lag"}) {
+    Learning learning;
+    ASSERT_TRUE(learning_method(*find_methods(first).front(), learning).run(recording.sensors, {}, {}).status.ok());
+    ASSERT_NE(learning.found(), nullptr) << first;
+    for (const char* const second : {"rate/tumble", "rate/tumble_lag"}) {
+      const Method& method = *find_methods(second).front();
+      Learning next{*learning.found(), {}, {}};
+      const Estimate informed = learning_method(method, next).run(recording.sensors, {}, {});
+      const Estimate fresh = method.run(recording.sensors, {}, {});
+      ASSERT_EQ(informed.rates.size(), fresh.rates.size());
+      double moved = 0.0;
+      for (std::size_t k = 0; k < fresh.rates.size(); ++k) {
+        moved = std::max(moved, (informed.rates[k].w_WI_I_rad_s - fresh.rates[k].w_WI_I_rad_s).norm());
+      }
+      EXPECT_GT(moved, 1e-4) << first << " then " << second;  // the file counts
+      ASSERT_NE(next.found(), nullptr);
+      EXPECT_EQ(next.of_batch.has_value(), std::string(second) == "rate/tumble");
+    }
+  }
+}
+
+TEST(RateLearnt, TheBatchOverridesTheStreamAndOtherMethodsAreRefused) {
+  Learning learning;
+  EXPECT_EQ(learning.found(), nullptr);
+  learning.of_stream = LearntRig{};
+  EXPECT_EQ(learning.found(), &*learning.of_stream);
+  learning.of_batch = LearntRig{};
+  EXPECT_EQ(learning.found(), &*learning.of_batch);
+  EXPECT_THROW(learning_method(*find_methods("rate/saave").front(), learning), BadInput);
+  EXPECT_THROW(learning_method(*find_methods("attitude/tumble").front(), learning), BadInput);
 }
 
 }  // namespace
