@@ -5,6 +5,8 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/bridge.hpp"
@@ -62,6 +64,29 @@ RateSmoother::Params smoother_params(const sim::ImuRecord& record, const sim::Va
   params.recovered_sigma_rad_s = parameters.at("recovered_sigma_rad_s");
   params.rig_surprise_max = parameters.at("rig_surprise_max");
   return params;
+}
+
+Status companion_readings(const sim::Sensors& sensors, std::span<const ImuSample> samples, RateModelParams& model,
+                          std::vector<std::vector<CompanionReading>>& out) {
+  out.clear();
+  const sim::ImuRecord& primary = sensors.imus.front();
+  for (std::size_t i = 1; i < sensors.imus.size() && out.size() < kCompanionsMax; ++i) {
+    const sim::ImuRecord& record = sensors.imus[i];
+    if (record.name == "imu_reference") continue;  // for comparison only
+    std::vector<ImuSample> readings;
+    if (Status status = bridge::imu_samples(record, readings); !status.ok()) return status;
+    CompanionImu companion;
+    companion.T_IC = primary.T_BI.inverse(Eigen::Isometry) * record.T_BI;
+    if (record.gyro_noise_rad_s_sqrt_hz > 0.0) companion.gyro_noise_density = record.gyro_noise_rad_s_sqrt_hz;
+    if (record.accel_noise_m_s2_sqrt_hz > 0.0) companion.accel_noise_density = record.accel_noise_m_s2_sqrt_hz;
+    std::vector<CompanionReading> aligned;
+    const RailDetector rails(stated_rails(record));
+    const Status status = align(companion, readings, rails, samples, bridge::kGapMaxS, aligned);
+    if (!status.ok()) return status;
+    model.companions.push_back(companion);
+    out.push_back(std::move(aligned));
+  }
+  return {};
 }
 
 namespace {
@@ -149,9 +174,14 @@ Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& paramet
   if (estimate.status.ok()) {
     RateSmoother::Params params = smoother_params(sensors.imus.front(), parameters);
     if (given != nullptr) start_from_learnt(*given, params);
+    std::vector<std::vector<CompanionReading>> companions;
     RateReport report;
-    estimate.status = RateSmoother(params).estimate(samples, estimate.rates, report);
+    estimate.status = companion_readings(sensors, samples, params.model, companions);
+    if (estimate.status.ok()) {
+      estimate.status = RateSmoother(params).estimate(samples, companions, estimate.rates, report);
+    }
     if (estimate.status.ok()) report_health(report, estimate.health);
+    estimate.health["imus"] = 1.0 + static_cast<double>(companions.size());
     if (estimate.status.ok() && !report.rig_held && found != nullptr) *found = learnt(report);
   }
   count_sources(estimate.rates, estimate.health);
@@ -162,8 +192,10 @@ Status tumble_rates(const sim::Sensors& sensors, std::span<const ImuSample> samp
                     std::vector<RateState>& out, std::map<std::string, double>& health) {
   out.clear();
   RateReport report;
-  const RateSmoother smoother(smoother_params(sensors.imus.front(), parameters));
-  const Status status = smoother.estimate(samples, out, report);
+  RateSmoother::Params params = smoother_params(sensors.imus.front(), parameters);
+  std::vector<std::vector<CompanionReading>> companions;
+  Status status = companion_readings(sensors, samples, params.model, companions);
+  if (status.ok()) status = RateSmoother(params).estimate(samples, companions, out, report);
   if (status.ok()) report_health(report, health);
   return status;
 }
@@ -174,7 +206,7 @@ Method rate_tumble() {
   info.kind = Kind::rate;
   info.doc =
       "A smoother over the recording: bounds of clipped axes, rigid flight at the lever arm, Euler's equation, "
-      "and the constants of the rig with it.";
+      "and the constants of the rig with it; further IMUs on the body where there are any (not imu_reference).";
   info.source = "ours, from Deschenes et al., Saturation-Aware Angular Velocity Estimation, ICRA 2024";
   info.parameters = tumble_rate_parameters();
   info.robots = {"rig"};

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "scenarios/methods/method.hpp"
 #include "scenarios/methods/rig_calibration_file.hpp"
@@ -14,6 +16,12 @@ namespace tumble::scenarios {
 /// Parameters of the smoother for an IMU: what its record states (lever arm, noise, ranges) and `parameters`, which
 /// hold those of tumble_rate_parameters().
 RateSmoother::Params smoother_params(const sim::ImuRecord& record, const sim::Values& parameters);
+
+/// The other IMUs of a recording on the same body, at the stamps of `samples`: those of its first further IMUs that are
+/// not `imu_reference`, at most kCompanionsMax. Adds their mountings, as calibrated, to `model`. Trouble: that of a
+/// record.
+Status companion_readings(const sim::Sensors& sensors, std::span<const ImuSample> samples, RateModelParams& model,
+                          std::vector<std::vector<CompanionReading>>& out);
 
 /// The method `tumble` that starts from what an earlier run has learnt of the rig (null: nothing) and leaves in `found`
 /// (may be null) what this run has learnt; `found` stays as it is when the status is not ok and when the run learnt

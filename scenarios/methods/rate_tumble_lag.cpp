@@ -54,13 +54,18 @@ Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& par
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
-  const RateStream::Params params = stream_params(sensors.imus.front(), parameters, given);
+  RateStream::Params params = stream_params(sensors.imus.front(), parameters, given);
+  std::vector<std::vector<CompanionReading>> companions;
+  estimate.status = companion_readings(sensors, samples, params.model, companions);
+  if (!estimate.status.ok()) return estimate;
   const RateStream stream(params);
   RateStream::State state = stream.start();
   estimate.rates.reserve(samples.size());
   std::optional<RateState> out;
-  for (const ImuSample& sample : samples) {
-    estimate.status = stream.push(sample, state, out);
+  std::vector<CompanionReading> beside(companions.size());
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    for (std::size_t i = 0; i < beside.size(); ++i) beside[i] = companions[i][k];
+    estimate.status = stream.push(samples[k], beside, state, out);
     if (!estimate.status.ok()) break;
     if (out) estimate.rates.push_back(*out);
   }

@@ -41,8 +41,8 @@ Method rate_zero_velocity() {
   info.kind = Kind::rate;
   info.doc =
       "Inertial navigation smoothed between standstills, where velocity and rate are known to be zero. Made for "
-      "motions of a second or two from rest to rest that clip a few samples (steps, hand motion); runs away over the "
-      "long gaps of a tumble.";
+      "motions of a second or two from rest to rest that clip a few samples (steps, hand motion); after the turns of a "
+      "tumble tilt and velocity no longer tell what was lost, and bounds and smoothness are left.";
   info.source = "the family of Dang and Suh's smoothers for inertial sensors between zero-velocity intervals";
   info.parameters = kParameters;
   return make_method(std::move(info), run);

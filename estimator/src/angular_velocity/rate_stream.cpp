@@ -71,15 +71,20 @@ RateStream::State RateStream::start() const {
   return state;
 }
 
-Status RateStream::push(const ImuSample& sample, State& state, std::optional<RateState>& out) const {
+Status RateStream::push(const ImuSample& sample, std::span<const CompanionReading> companions, State& state,
+                        std::optional<RateState>& out) const {
   out.reset();
+  if (!companions.empty() && companions.size() != params_.model.companions.size()) {
+    return {Trouble::too_few, "companions", static_cast<double>(companions.size()),
+            static_cast<double>(params_.model.companions.size())};
+  }
   if (Status status = check_sample(sample); !status.ok()) return status;
   if (!state.window.empty()) {
     Status status = check_follows(sample.time_ns, state.window.back().observation.sample.time_ns, params_.gap_max_s);
     if (!status.ok()) return status;
   }
   if (state.window.size() == capacity_) marginalise_oldest(state);
-  append(sample, state);
+  append(sample, companions, state);
   weigh(state);
   if (!step(state)) ++state.failures;
   if (state.window.size() == capacity_) out = to_state(state.window.front());
@@ -127,10 +132,11 @@ void RateStream::marginalise_oldest(State& state) const {
   }
 }
 
-void RateStream::append(const ImuSample& sample, State& state) const {
+void RateStream::append(const ImuSample& sample, std::span<const CompanionReading> companions, State& state) const {
   rails_.observe(sample, state.rails);
   Knot knot;
   knot.observation = {sample, rails_.classify(sample, state.rails), rests_.observe(sample, state.rests)};
+  std::copy(companions.begin(), companions.end(), knot.observation.companions.begin());
   const double noise = model_.gyro_sigma_rad_s();
   if (!state.window.empty()) {
     RateObservation& last = state.window.back().observation;
@@ -277,7 +283,10 @@ bool RateStream::equal(const State& a, const State& b) {
            x.observation.clipping == y.observation.clipping && x.observation.at_rest == y.observation.at_rest &&
            e.knot == f.knot && e.flight_weight == f.flight_weight && e.contact_m_s2 == f.contact_m_s2 &&
            e.bound_precision == f.bound_precision && e.bound_shift == f.bound_shift && e.soft_bounds == f.soft_bounds &&
-           x.covariance_rad2_s2 == y.covariance_rad2_s2 && x.age == y.age;
+           x.covariance_rad2_s2 == y.covariance_rad2_s2 && x.age == y.age &&
+           std::equal(x.observation.companions.begin(), x.observation.companions.end(),
+                      y.observation.companions.begin(),
+                      [](const CompanionReading& r, const CompanionReading& s) { return r.same(s); });
   };
   return a.rails == b.rails && a.rests == b.rests &&
          std::equal(a.window.begin(), a.window.end(), b.window.begin(), b.window.end(), same) && a.rig == b.rig &&

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "tumble/angular_velocity/arrow_solver.hpp"
@@ -78,7 +79,13 @@ class RateStream {
 
   /// Takes one sample; `out` is the estimate of the sample that is lag_s old, empty while the window fills. On trouble
   /// (`non_finite`, `time_order`, `gap`) the state is left as it was and `out` is empty.
-  Status push(const ImuSample& sample, State& state, std::optional<RateState>& out) const;
+  Status push(const ImuSample& sample, State& state, std::optional<RateState>& out) const {
+    return push(sample, {}, state, out);
+  }
+  /// The same with what other IMUs on the body read at that time, one per RateModelParams::companions or none at all;
+  /// else `too_few`.
+  Status push(const ImuSample& sample, std::span<const CompanionReading> companions, State& state,
+              std::optional<RateState>& out) const;
 
   /// Provisional estimate of the newest sample; empty before the first.
   std::optional<RateState> newest(const State& state) const;
@@ -94,7 +101,7 @@ class RateStream {
 
  private:
   void marginalise_oldest(State& state) const;
-  void append(const ImuSample& sample, State& state) const;
+  void append(const ImuSample& sample, std::span<const CompanionReading> companions, State& state) const;
   void guess(Knot& knot, const Knot& previous, const State& state) const;
   void weigh(State& state) const;
   bool step(State& state) const;
