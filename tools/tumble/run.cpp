@@ -62,8 +62,8 @@ int run(const Session& session, const Options& options) {
   const scenarios::Scenario scenario = scenarios::load_scenario(data, options.scenario);
   const auto selected = select_methods(options.methods);
   LearntFile learnt(options.learnt);
-  if (!options.learnt.empty() && std::none_of(selected.begin(), selected.end(),
-                                              [](const auto* method) { return LearntFile::learns(*method); })) {
+  if (!options.learnt.empty() &&
+      std::none_of(selected.begin(), selected.end(), [](const auto* method) { return LearntFile::learns(*method); })) {
     throw scenarios::BadInput("--learnt is for 'rate/tumble' and 'rate/tumble_lag', of which none is to run");
   }
   std::vector<scenarios::Method> copies;

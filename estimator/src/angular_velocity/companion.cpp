@@ -76,7 +76,7 @@ Status align(const CompanionImu& companion, std::span<const ImuSample> samples, 
     const Clipping &c = clippings[after - 1], &d = clippings[after];
     for (int j = 0; j < 3; ++j) {
       // a reading on which the other has no part says nothing of it
-      const bool left = share < 1.0, right = share > 0.0;
+      const bool left = share<1.0, right = share> 0.0;
       const unsigned gyro = (left ? c.gyro | c.void_gyro : 0u) | (right ? d.gyro | d.void_gyro : 0u);
       const unsigned accel = (left ? c.accel : 0u) | (right ? d.accel : 0u);
       if ((gyro >> j & 1u) == 0) {

@@ -38,8 +38,8 @@ void RateModel::add_companions(const RateObservation& observation, const RateEst
     const RateFactor rotation =
         flight_factor(estimate.knot, {.lever_arm_m = mount.T_IC.translation()}, Vector3d::Zero());
     const Vector3d force = observation.sample.specific_force_m_s2 - rig.accel_bias_m_s2 + rotation.residual;
-    const double misplaced = mount.place_error_m * (estimate.knot.rate_rad_s.squaredNorm() +
-                                                    estimate.knot.acceleration_rad_s2.norm());
+    const double misplaced =
+        mount.place_error_m * (estimate.knot.rate_rad_s.squaredNorm() + estimate.knot.acceleration_rad_s2.norm());
     for (int j = 0; j < 3; ++j) {
       const Eigen::RowVector3d axis = R_CI.row(j);
       if (std::isfinite(reading.rate_rad_s[j])) {

@@ -25,11 +25,11 @@ struct CompanionImu {
   Eigen::Isometry3d T_IC = Eigen::Isometry3d::Identity();  ///< its axes to those of the primary IMU
   double gyro_noise_density = 5.236e-4;                    ///< [rad/s/sqrt(Hz)]; [1e-9, 1]
   double accel_noise_density = 5.9e-4;                     ///< [m/s^2/sqrt(Hz)]; [1e-9, 10]
-  double gyro_error_rad_s = 0.01;   ///< bias, and of the scale and the mounting what does not grow; [1e-9, 10]
-  double accel_error_m_s2 = 0.07;   ///< difference of the two biases; [1e-9, 10]
-  double share_error = 2e-3;        ///< scale and misalignment, as a share of the reading; [0, 1]
-  double place_error_m = 2e-3;      ///< of p_IC; [1e-9, 1]
-  double clock_error_s = 1e-3;      ///< between the clocks of the two; [0, 0.1]
+  double gyro_error_rad_s = 0.01;  ///< bias, and of the scale and the mounting what does not grow; [1e-9, 10]
+  double accel_error_m_s2 = 0.07;  ///< difference of the two biases; [1e-9, 10]
+  double share_error = 2e-3;       ///< scale and misalignment, as a share of the reading; [0, 1]
+  double place_error_m = 2e-3;     ///< of p_IC; [1e-9, 1]
+  double clock_error_s = 1e-3;     ///< between the clocks of the two; [0, 0.1]
 };
 
 /// What a companion read at the time of a sample of the primary IMU, its own axes; NaN where an axis says nothing.

@@ -24,9 +24,10 @@ struct Clipping {
 ///
 /// A plateau is a run of readings of one sign that lie closer together than noise allows, at the largest magnitude
 /// seen so far on that axis. Low ones must be longer and be entered or left by a jump of many digits of the device: the
-/// round top of a slow motion, read in coarse digits, and an axis that stands still are flat too. A stated range serves until a plateau is seen, and only as long as no reading exceeds it.
-/// Flags reported by the device count always. Clipping has hysteresis, so that the ragged edge of a plateau belongs
-/// to it. What it does not model: rails that differ between the two signs of an axis, or that drift.
+/// round top of a slow motion, read in coarse digits, and an axis that stands still are flat too. A stated range serves
+/// until a plateau is seen, and only as long as no reading exceeds it. Flags reported by the device count always.
+/// Clipping has hysteresis, so that the ragged edge of a plateau belongs to it. What it does not model: rails that
+/// differ between the two signs of an axis, or that drift.
 class RailDetector {
  public:
   struct Params {
@@ -60,8 +61,8 @@ class RailDetector {
     double run_first = 0.0;
     int run_length = 0;
     double before = 0.0;  ///< the last reading
-    double entry = 0.0;  ///< change with which the run began; 0: with the recording
-    double digit = 0.0;  ///< smallest change seen between two readings; 0: none yet
+    double entry = 0.0;   ///< change with which the run began; 0: with the recording
+    double digit = 0.0;   ///< smallest change seen between two readings; 0: none yet
     double last = 0.0;
     bool clipped = false;
     bool operator==(const Channel&) const = default;

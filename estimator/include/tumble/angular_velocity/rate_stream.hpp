@@ -22,11 +22,10 @@ namespace tumble {
 /// An estimate comes out when its sample is `lag_s` old, and a provisional one at once. O(window) per sample; no
 /// allocation after the State is made. Rails are learnt as they show themselves: up to the first plateau the stated
 /// range serves, so the first clipped samples of a device with a wrong or no stated range may be believed.
-/// Give it the calibration of an earlier run: what leaves the window is linearised for good, and while the lever arm is
-/// off by centimetres that makes the covariance of clipped axes too small: on 70 tumbles of the rig 90 % within three
-/// deviations in flight and 1.5 times the error of the batch over the whole recording. That is no worse than the batch
-/// over all that is known lag_s after a sample (1.6 times): the rig is learnt in the tumble that needs it. With a
-/// calibration all are within, and the error is that of the batch. What it does not model: see RateSmoother.
+/// While the rig is not known yet, what left the window was linearised about constants that were off by centimetres;
+/// believed for good it would make the covariance too small. Therefore the last `history_s` are kept as they were read:
+/// as soon as the constants have moved by a share of their deviation, all of it is weighed and linearised anew with the
+/// window, one iteration of the batch. What it does not model: see RateSmoother.
 class RateStream {
  public:
   struct Params {
@@ -43,6 +42,17 @@ class RateStream {
     double recovered_sigma_rad_s = 0.5;  ///< as in RateSmoother
     double rig_surprise_max = 1.5;       ///< beyond this what was learnt of the rig is dropped; [0.1, 1e6]
     double gap_max_s = 1.0;              ///< longest time between samples; [1e-6, 3600]
+    double history_s = 3.0;              ///< kept to be linearised anew; 0: nothing; [0, 60], at most 6000 samples
+    int refresh_samples = 10;            ///< at least so many samples from one such iteration to the next; [1, 1000]
+    double refresh_moved = 0.3;  ///< ... and only when a constant has moved by this share of its deviation; [0, 100]
+  };
+
+  /// What is known of one sample and of the rig from all before it, about the point at which that was linearised.
+  struct Prior {
+    arrow::Block block;
+    arrow::Corner corner;
+    RateKnot knot;
+    RigConstants rig;
   };
 
   struct Knot {
@@ -59,11 +69,11 @@ class RateStream {
     std::vector<Knot> window;  ///< oldest first
     RigConstants rig;
     RigConstants::Matrix rig_covariance;
-    // what is known of the oldest sample and of the rig from all that left the window, about a point
-    arrow::Block prior;
-    arrow::Corner prior_corner;
-    RateKnot prior_knot;
-    RigConstants prior_rig;
+    Prior prior;                ///< of the oldest sample in the window
+    std::vector<Knot> history;  ///< what left the window, oldest first
+    Prior base;                 ///< of the oldest sample of the history
+    RigConstants history_rig;   ///< at which the history was linearised
+    int since_refresh = 0;
     std::size_t samples = 0;
     std::size_t flight_run = 0;      ///< samples of flight in a row that left the window last
     std::size_t rig_resets = 0;      ///< times that what was learnt of the rig was dropped
@@ -101,17 +111,23 @@ class RateStream {
 
  private:
   void marginalise_oldest(State& state) const;
+  bool absorb(const Knot& oldest, const Knot& next, bool doubted, const State& state, Prior& prior) const;
+  void forget_rig(State& state) const;
+  bool refresh_due(const State& state) const;
+  bool refresh(State& state) const;
+  void shorten_history(State& state) const;
   void append(const ImuSample& sample, std::span<const CompanionReading> companions, State& state) const;
   void guess(Knot& knot, const Knot& previous, const State& state) const;
   void weigh(State& state) const;
   bool step(State& state) const;
+  void apply(const arrow::StateVector& x, const arrow::Conditional& conditional, const State& state, Knot& knot) const;
   RateState to_state(const Knot& knot) const;
 
   Params params_;
   RailDetector rails_;
   RestDetector rests_;
   RateModel model_;
-  std::size_t capacity_;
+  std::size_t capacity_, history_capacity_ = 0;
 };
 
 }  // namespace tumble
