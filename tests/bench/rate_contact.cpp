@@ -6,6 +6,7 @@
 // whole impact. Prints what is left of the torque as a share of it, and how long contacts last. Not a test: 2 s a draw.
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenarios/sweep/evaluate.hpp"
 #include "sim/render/renderer.hpp"
 #include "tools/report/pictures.hpp"
 

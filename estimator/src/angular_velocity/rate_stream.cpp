@@ -6,8 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "rate_stream_prior.hpp"
-
 namespace tumble {
 
 namespace {
@@ -18,6 +16,10 @@ int clipped_axes(const RateObservation& o) {
   return o.unseen();
 }
 
+double seconds_between(const RateStream::Knot& from, const RateStream::Knot& to) {
+  return seconds(to.observation.sample.time_ns - from.observation.sample.time_ns);
+}
+
 // Beyond the reading on every clipped axis.
 void hold_to_bounds(const RateObservation& o, Vector3d& rate) {
   for (int j = 0; j < 3; ++j) {
@@ -25,6 +27,21 @@ void hold_to_bounds(const RateObservation& o, Vector3d& rate) {
     const double reading = o.sample.angular_velocity_rad_s[j];
     rate[j] = reading < 0.0 ? std::min(rate[j], reading) : std::max(rate[j], reading);
   }
+}
+
+// The prior at another point than the one about which it stands.
+void add_prior(const RateStream::State& state, const RateModel& model, const RateKnot& knot, arrow::Block& block,
+               arrow::Corner& corner) {
+  Eigen::Matrix<double, 6, 1> moved;
+  moved << knot.rate_rad_s - state.prior_knot.rate_rad_s,
+      knot.acceleration_rad_s2 - state.prior_knot.acceleration_rad_s2;
+  const arrow::StateVector x = model.scaled(moved);
+  const arrow::BorderVector c = state.rig.vector() - state.prior_rig.vector();
+  block.diagonal += state.prior.diagonal;
+  block.border += state.prior.border;
+  block.gradient += state.prior.gradient - state.prior.diagonal * x - state.prior.border * c;
+  corner.matrix += state.prior_corner.matrix;
+  corner.gradient += state.prior_corner.gradient - state.prior_corner.matrix * c - state.prior.border.transpose() * x;
 }
 
 }  // namespace
@@ -37,24 +54,22 @@ RateStream::RateStream(const Params& params)
   require_within("step_max_rad_s", params.step_max_rad_s, 1e-3, 1e4);
   require_within("bound_age", params.bound_age, 0, 4096);
   require_within("flight_run_min", params.flight_run_min, 0, 4096);
+  require_within("rig_doubt", params.rig_doubt, 0.0, 1e3);
+  require_within("rig_doubt_samples", params.rig_doubt_samples, 1.0, 1e6);
   require_within("bound_damping", params.bound_damping, 0.01, 1.0);
   require_within("recovered_sigma_rad_s", params.recovered_sigma_rad_s, 0.0, 1e4);
   require_within("rig_surprise_max", params.rig_surprise_max, 0.1, 1e6);
   require_within("gap_max_s", params.gap_max_s, 1e-6, 3600.0);
-  require_within("history_s", params.history_s, 0.0, std::min(60.0, 6000.0 * params.period_s));
-  require_within("refresh_samples", params.refresh_samples, 1, 1000);
-  require_within("refresh_moved", params.refresh_moved, 0.0, 100.0);
   capacity_ = static_cast<std::size_t>(std::lround(params.lag_s / params.period_s)) + 1;
-  history_capacity_ = static_cast<std::size_t>(std::lround(params.history_s / params.period_s));
 }
 
 RateStream::State RateStream::start() const {
   State state;
   state.window.reserve(capacity_ + 1);
-  const std::size_t longest = history_capacity_ > 0 ? history_capacity_ + kSurplus : 0;
-  state.history.reserve(longest + 1);
-  state.work.resize(capacity_ + longest + 2);
-  forget_rig(state);
+  state.work.resize(capacity_ + 1);
+  state.rig = state.prior_rig = model_.prior_constants();
+  state.rig_covariance = model_.prior_covariance();
+  model_.add_rig_prior(state.rig, state.prior_corner);
   return state;
 }
 
@@ -73,8 +88,7 @@ Status RateStream::push(const ImuSample& sample, std::span<const CompanionReadin
   if (state.window.size() == capacity_) marginalise_oldest(state);
   append(sample, companions, state);
   weigh(state);
-  ++state.since_refresh;
-  if (!(refresh_due(state) ? refresh(state) : step(state))) ++state.failures;
+  if (!step(state)) ++state.failures;
   if (state.window.size() == capacity_) out = to_state(state.window.front());
   return {};
 }
@@ -82,7 +96,10 @@ Status RateStream::push(const ImuSample& sample, std::span<const CompanionReadin
 void RateStream::marginalise_oldest(State& state) const {
   Knot& oldest = state.window[0];
   const Knot& next = state.window[1];
-  // what leaves can hardly be weighed again: it must be flight of the rig as it is known now, not of one as it might be
+  arrow::Block block, after;
+  arrow::Corner corner;
+  add_prior(state, model_, oldest.estimate.knot, block, corner);
+  // what leaves can never be weighed again: it must be flight of the rig as it is known now, not of one as it might be
   const double jump = model_.jump(oldest.estimate.knot, next.estimate.knot, seconds_between(oldest, next));
   model_.weigh(oldest.observation, state.rig, RigConstants::Matrix::Zero(), 1.0, jump, oldest.estimate);
   // 14 constants explain any short contact as a flight: what they say is believed after some more of it
@@ -90,28 +107,33 @@ void RateStream::marginalise_oldest(State& state) const {
   for (std::size_t k = 0; k < state.window.size() && state.window[k].estimate.flight_weight >= 0.5; ++k) ++run;
   const bool short_flight = run < static_cast<std::size_t>(params_.flight_run_min);
   state.flight_run = oldest.estimate.flight_weight >= 0.5 ? state.flight_run + 1 : 0;
-  if (!absorb(oldest, next, short_flight, state, state.prior)) ++state.failures;
-  if (history_capacity_ > 0) {
-    state.history.push_back(oldest);
-    if (state.history.size() >= history_capacity_ + kSurplus) shorten_history(state);
+  if (!short_flight && oldest.estimate.flight_weight >= 0.5) ++state.learnt_from;
+  model_.add_sample(oldest.observation, oldest.estimate, state.rig, block, corner,
+                    short_flight ? &state.rig_covariance : nullptr);
+  model_.add_step(oldest.estimate, next.estimate, seconds_between(oldest, next), block, after);
+  if (arrow::eliminate(block, &after, corner)) {
+    state.prior = after;
+    state.prior_corner = corner;
+  } else {
+    // nothing can be said of what left: start from what was known of the rig
+    state.prior = {};
+    state.prior_corner = {};
+    model_.add_rig_prior(state.rig, state.prior_corner);
+    ++state.failures;
   }
+  state.prior_knot = next.estimate.knot;
+  state.prior_rig = state.rig;
   state.window.erase(state.window.begin());
   if (model_.rig_surprise(state.rig) > params_.rig_surprise_max) {
     // contact was taken for flight of another rig: drop what was learnt of the rig and of the motion with it
-    forget_rig(state);
-    state.prior.knot = state.window.front().estimate.knot;
+    state.rig = state.prior_rig = model_.prior_constants();
+    state.rig_covariance = model_.prior_covariance();
+    state.prior = {};
+    state.prior_corner = {};
+    model_.add_rig_prior(state.rig, state.prior_corner);
+    state.learnt_from = 0;
     ++state.rig_resets;
   }
-}
-
-void RateStream::forget_rig(State& state) const {
-  state.rig = state.history_rig = model_.prior_constants();
-  state.rig_covariance = model_.prior_covariance();
-  state.prior = {};
-  state.prior.rig = state.rig;
-  model_.add_rig_prior(state.rig, state.prior.corner);
-  state.base = state.prior;
-  state.history.clear();
 }
 
 void RateStream::append(const ImuSample& sample, std::span<const CompanionReading> companions, State& state) const {
@@ -198,7 +220,7 @@ bool RateStream::step(State& state) const {
   std::vector<arrow::Block>& blocks = state.work;
   arrow::Corner corner;
   blocks[0] = {};
-  add_prior(state.prior, model_, state.window[0].estimate.knot, state.rig, blocks[0], corner);
+  add_prior(state, model_, state.window[0].estimate.knot, blocks[0], corner);
   for (std::size_t k = 0; k < count; ++k) {
     const Knot& knot = state.window[k];
     model_.add_sample(knot.observation, knot.estimate, state.rig, blocks[k], corner);
@@ -215,6 +237,7 @@ bool RateStream::step(State& state) const {
   if (!arrow::solve_corner(corner, rig_step, rig_covariance)) return false;
   state.rig_covariance = rig_covariance;
   state.rig.add(rig_step);
+  const arrow::BorderMatrix doubted = widening(state) * rig_covariance;
   arrow::StateVector x;
   arrow::Conditional conditional;
   for (std::size_t k = count; k-- > 0;) {
@@ -222,23 +245,23 @@ bool RateStream::step(State& state) const {
     const bool last = k + 1 == count;
     x = arrow::back_substitute(blocks[k], last ? nullptr : &x, rig_step);
     conditional = arrow::back_conditional(blocks[k], last ? nullptr : &conditional);
-    apply(x, conditional, state, knot);
+    const Eigen::Matrix<double, 6, 1> physical = model_.unscaled(x);
+    const double share = std::min(1.0, params_.step_max_rad_s / std::max(1e-300, physical.head<3>().norm()));
+    knot.estimate.knot.rate_rad_s += share * physical.head<3>();
+    knot.estimate.knot.acceleration_rad_s2 += share * physical.tail<3>();
+    knot.covariance_rad2_s2 = arrow::rate_covariance(conditional, doubted);
+    if (knot.estimate.soft_bounds) {
+      model_.update_bounds(knot.observation, state.rig, conditional, rig_covariance, params_.bound_damping,
+                           knot.estimate);
+    }
     ++knot.age;
   }
   return true;
 }
 
-void RateStream::apply(const arrow::StateVector& x, const arrow::Conditional& conditional, const State& state,
-                       Knot& knot) const {
-  const Eigen::Matrix<double, 6, 1> physical = model_.unscaled(x);
-  const double share = std::min(1.0, params_.step_max_rad_s / std::max(1e-300, physical.head<3>().norm()));
-  knot.estimate.knot.rate_rad_s += share * physical.head<3>();
-  knot.estimate.knot.acceleration_rad_s2 += share * physical.tail<3>();
-  knot.covariance_rad2_s2 = arrow::rate_covariance(conditional, state.rig_covariance);
-  if (knot.estimate.soft_bounds) {
-    model_.update_bounds(knot.observation, state.rig, conditional, state.rig_covariance, params_.bound_damping,
-                         knot.estimate);
-  }
+double RateStream::widening(const State& state) const {
+  if (params_.model.calibration) return 1.0;
+  return 1.0 + params_.rig_doubt / (1.0 + static_cast<double>(state.learnt_from) / params_.rig_doubt_samples);
 }
 
 RateState RateStream::to_state(const Knot& knot) const {
@@ -275,17 +298,14 @@ bool RateStream::equal(const State& a, const State& b) {
                       y.observation.companions.begin(),
                       [](const CompanionReading& r, const CompanionReading& s) { return r.same(s); });
   };
-  const auto same_prior = [](const Prior& x, const Prior& y) {
-    return x.block.diagonal == y.block.diagonal && x.block.border == y.block.border &&
-           x.block.gradient == y.block.gradient && x.corner.matrix == y.corner.matrix &&
-           x.corner.gradient == y.corner.gradient && x.knot == y.knot && x.rig == y.rig;
-  };
   return a.rails == b.rails && a.rests == b.rests &&
          std::equal(a.window.begin(), a.window.end(), b.window.begin(), b.window.end(), same) && a.rig == b.rig &&
-         std::equal(a.history.begin(), a.history.end(), b.history.begin(), b.history.end(), same) &&
-         a.rig_covariance == b.rig_covariance && same_prior(a.prior, b.prior) && same_prior(a.base, b.base) &&
-         a.history_rig == b.history_rig && a.since_refresh == b.since_refresh && a.samples == b.samples &&
-         a.rig_resets == b.rig_resets && a.flight_run == b.flight_run && a.failures == b.failures;
+         a.rig_covariance == b.rig_covariance && a.prior.diagonal == b.prior.diagonal &&
+         a.prior.border == b.prior.border && a.prior.gradient == b.prior.gradient &&
+         a.prior_corner.matrix == b.prior_corner.matrix && a.prior_corner.gradient == b.prior_corner.gradient &&
+         a.prior_knot == b.prior_knot && a.prior_rig == b.prior_rig && a.samples == b.samples &&
+         a.rig_resets == b.rig_resets && a.flight_run == b.flight_run && a.learnt_from == b.learnt_from &&
+         a.failures == b.failures;
 }
 
 }  // namespace tumble
