@@ -237,7 +237,7 @@ bool RateStream::step(State& state) const {
   if (!arrow::solve_corner(corner, rig_step, rig_covariance)) return false;
   state.rig_covariance = rig_covariance;
   state.rig.add(rig_step);
-  const arrow::BorderMatrix doubted = widening(state) * rig_covariance;
+  const arrow::BorderMatrix doubted = widened(state);
   arrow::StateVector x;
   arrow::Conditional conditional;
   for (std::size_t k = count; k-- > 0;) {
@@ -259,9 +259,18 @@ bool RateStream::step(State& state) const {
   return true;
 }
 
-double RateStream::widening(const State& state) const {
-  if (params_.model.calibration) return 1.0;
-  return 1.0 + params_.rig_doubt / (1.0 + static_cast<double>(state.learnt_from) / params_.rig_doubt_samples);
+RigConstants::Matrix RateStream::widened(const State& state) const {
+  if (params_.model.calibration) return state.rig_covariance;
+  const double samples = static_cast<double>(state.learnt_from) / params_.rig_doubt_samples;
+  const double largest = std::sqrt(1.0 + params_.rig_doubt / (1.0 + samples));
+  RigConstants::Vector factor;
+  for (int i = 0; i < RigConstants::kSize; ++i) {
+    // nothing is known less than beforehand; the gyro's bias is told by rest, not by flight
+    const bool of_gyro = i >= 3 && i < 6;
+    const double before = std::sqrt(model_.prior_covariance()(i, i) / state.rig_covariance(i, i));
+    factor[i] = of_gyro ? 1.0 : std::clamp(before, 1.0, largest);
+  }
+  return factor.asDiagonal() * state.rig_covariance * factor.asDiagonal();
 }
 
 RateState RateStream::to_state(const Knot& knot) const {

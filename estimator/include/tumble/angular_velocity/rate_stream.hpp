@@ -42,8 +42,9 @@ class RateStream {
     double step_max_rad_s = 10.0;  ///< longest step of a rate at one sample; [1e-3, 1e4]
     int bound_age = 3;             ///< steps after which the bounds of a sample in contact are softened; [0, 4096]
     int flight_run_min = 6;        ///< a flight of fewer samples in a row says nothing of the rig; [0, 4096]
-    /// Of a rig without calibration: its covariance counts 1 + rig_doubt / (1 + n / rig_doubt_samples) times, n being
-    /// the samples of flight that have been learnt from; [0, 1e3] and [1, 1e6].
+    /// Of a rig without calibration: its covariance, but for the gyro's bias and never beyond that beforehand, counts 1
+    /// + rig_doubt / (1 + n / rig_doubt_samples) times, n being the samples of flight that have been learnt from; [0,
+    /// 1e3] and [1, 1e6].
     double rig_doubt = 8.0;
     double rig_doubt_samples = 10.0;
     double bound_damping = 0.5;          ///< share of a new bound taken over in each step; [0.01, 1]
@@ -102,7 +103,7 @@ class RateStream {
   void flush(const State& state, std::vector<RateState>& out) const;
 
   /// What has been learnt of the rig.
-  RigCalibration calibration(const State& state) const { return {state.rig, widening(state) * state.rig_covariance}; }
+  RigCalibration calibration(const State& state) const { return {state.rig, widened(state)}; }
 
   /// True when two states will behave alike for ever (scratch space excluded), bit for bit.
   static bool equal(const State& a, const State& b);
@@ -113,7 +114,7 @@ class RateStream {
   void guess(Knot& knot, const Knot& previous, const State& state) const;
   void weigh(State& state) const;
   bool step(State& state) const;
-  double widening(const State& state) const;
+  RigConstants::Matrix widened(const State& state) const;
   RateState to_state(const Knot& knot) const;
 
   Params params_;
