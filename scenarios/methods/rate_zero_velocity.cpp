@@ -10,7 +10,7 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::array<sim::Parameter, 2> kParameters = {{
-    {"jerk_psd_rad2_s5", 1e6, 1.0, 1e12, "rad^2/s^5", "density of the white angular jerk"},
+    {"jerk_psd_rad2_s5", 1e5, 1.0, 1e12, "rad^2/s^5", "density of the white angular jerk"},
     {"accel_error_m_s2", 0.05, 0.0, 100.0, "m/s^2", "scale and bias of the specific force, taken as noise per sample"},
 }};
 

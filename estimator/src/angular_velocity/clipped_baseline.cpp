@@ -176,24 +176,35 @@ class Chain {
   std::vector<Moment> after_;
 };
 
-// Smoothed with each clipped reading as the bound that it is: a few rounds of expectation propagation.
+// The most likely curve that passes no clipped reading on the wrong side: walls where the smoothed curve violates them,
+// found in rounds. The variance is that of the curve without walls, cut at the reading.
 std::vector<Value> smooth_with_bounds(const Axis& axis, const ClippedBaseline::Params& params) {
   constexpr int kRounds = 8;
-  constexpr double kShare = 0.5;  // damping, since neighbouring bounds lean on each other
   const BoundedJerk process(params.snap_psd, params.rate_sigma_rad_s);
-  std::vector<NormalSite> bounds(axis.samples.size());
-  std::vector<Value> values = Chain<BoundedJerk>(axis, process, bounds).smoothed();
-  for (int round = 0; round < kRounds; ++round) {
-    for (std::size_t k = 0; k < bounds.size(); ++k) {
-      if (!axis.clipped[k] || axis.overflown[k]) continue;
-      const double side = std::copysign(1.0, axis.reading(k));
-      const NormalSite site =
-          refined_bound({side * values[k].rate, values[k].variance}, {bounds[k].precision, side * bounds[k].shift},
-                        std::abs(axis.reading(k)), axis.variance, process.variance, kShare);
-      bounds[k] = {site.precision, side * site.shift};
-    }
-    values = Chain<BoundedJerk>(axis, process, bounds).smoothed();
+  std::vector<NormalSite> walls(axis.samples.size());
+  std::vector<Value> values = Chain<BoundedJerk>(axis, process, walls).smoothed();
+  std::vector<double> variances(values.size());
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const double side = std::copysign(1.0, axis.reading(k));
+    const NormalMoments free{side * values[k].rate, values[k].variance};
+    const bool bound = axis.clipped[k] && !axis.overflown[k];
+    variances[k] =
+        bound ? truncated_below(free, std::abs(axis.reading(k)), axis.variance).variance : values[k].variance;
   }
+  for (int round = 0; round < kRounds; ++round) {
+    bool moved = false;
+    for (std::size_t k = 0; k < walls.size(); ++k) {
+      if (!axis.clipped[k] || axis.overflown[k]) continue;
+      const double beyond = std::copysign(1.0, axis.reading(k)) * (values[k].rate - axis.reading(k));
+      const bool standing = walls[k].precision > 0.0;
+      if (standing ? beyond <= 0.0 : beyond >= 0.0) continue;
+      walls[k] = standing ? NormalSite{} : NormalSite{1.0 / axis.variance, axis.reading(k) / axis.variance};
+      moved = true;
+    }
+    if (!moved) break;
+    values = Chain<BoundedJerk>(axis, process, walls).smoothed();
+  }
+  for (std::size_t k = 0; k < values.size(); ++k) values[k].variance = std::max(variances[k], 1e-3 * axis.variance);
   return values;
 }
 
