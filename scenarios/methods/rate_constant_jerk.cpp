@@ -7,13 +7,16 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::array<sim::Parameter, 1> kParameters = {{
-    {"snap_psd_rad2_s7", 1e10, 1e-12, 1e15, "rad^2/s^7", "density of the white angular snap that drives the jerk"},
+constexpr std::array<sim::Parameter, 2> kParameters = {{
+    {"snap_psd_rad2_s7", 1e8, 1e-12, 1e15, "rad^2/s^7", "density of the white angular snap that drives the jerk"},
+    {"rate_sigma_rad_s", 20.0, 1e-3, 1e4, "rad/s", "deviation of the rate in the long run, which bounds long gaps"},
 }};
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  return run_clipped_baseline(
-      {.kind = ClippedBaseline::Kind::constant_jerk, .snap_psd = parameters.at("snap_psd_rad2_s7")}, sensors);
+  return run_clipped_baseline({.kind = ClippedBaseline::Kind::constant_jerk,
+                               .snap_psd = parameters.at("snap_psd_rad2_s7"),
+                               .rate_sigma_rad_s = parameters.at("rate_sigma_rad_s")},
+                              sensors);
 }
 
 }  // namespace
@@ -23,9 +26,9 @@ Method rate_constant_jerk() {
   info.name = "constant_jerk";
   info.kind = Kind::rate;
   info.doc =
-      "A smoother per axis whose angular jerk is a random walk, clipped readings left out and held as bounds. Made for "
-      "swings that pass the rail once, without impacts while they are clipped.";
-  info.source = "textbook: Rauch, Tung and Striebel 1965 with a constant-jerk model";
+      "A smoother per axis whose angular jerk is a random walk and whose rate stays bounded, clipped readings as "
+      "bounds. Made for swings that pass the rail once, without impacts while they are clipped.";
+  info.source = "textbook: Rauch, Tung and Striebel 1965 with a constant-jerk model (Matern 5/2)";
   info.parameters = kParameters;
   return make_method(std::move(info), run);
 }

@@ -5,7 +5,10 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "scenarios/errors.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/rate_baseline.hpp"
 #include "scenarios/methods/rate_tumble.hpp"
@@ -63,6 +66,29 @@ RateSmoother::Params smoother_params(const sim::ImuRecord& record, const sim::Va
   return params;
 }
 
+Status companion_readings(const sim::Sensors& sensors, std::span<const ImuSample> samples, RateModelParams& model,
+                          std::vector<std::vector<CompanionReading>>& out) {
+  out.clear();
+  const sim::ImuRecord& primary = sensors.imus.front();
+  for (std::size_t i = 1; i < sensors.imus.size() && out.size() < kCompanionsMax; ++i) {
+    const sim::ImuRecord& record = sensors.imus[i];
+    if (record.name == "imu_reference") continue;  // for comparison only
+    std::vector<ImuSample> readings;
+    if (Status status = bridge::imu_samples(record, readings); !status.ok()) return status;
+    CompanionImu companion;
+    companion.T_IC = primary.T_BI.inverse(Eigen::Isometry) * record.T_BI;
+    if (record.gyro_noise_rad_s_sqrt_hz > 0.0) companion.gyro_noise_density = record.gyro_noise_rad_s_sqrt_hz;
+    if (record.accel_noise_m_s2_sqrt_hz > 0.0) companion.accel_noise_density = record.accel_noise_m_s2_sqrt_hz;
+    std::vector<CompanionReading> aligned;
+    const RailDetector rails(stated_rails(record));
+    const Status status = align(companion, readings, rails, samples, bridge::kGapMaxS, aligned);
+    if (!status.ok()) return status;
+    model.companions.push_back(companion);
+    out.push_back(std::move(aligned));
+  }
+  return {};
+}
+
 namespace {
 
 void report_health(const RateReport& report, std::map<std::string, double>& health) {
@@ -99,6 +125,47 @@ std::span<const sim::Parameter> tumble_rate_parameters() {
   return parameters_of_the_smoother();
 }
 
+void start_from_learnt(const LearntRig& rig, RateSmoother::Params& params) {
+  const RigConstants::Matrix prior = RateModel(params.model, 0.01).prior_covariance();
+  start_from(rig, kTrust, params);
+  // never wider than before anything was learnt
+  RigConstants::Matrix& covariance = params.model.calibration->covariance;
+  const RigConstants::Matrix information = covariance.inverse() + (1.0 - 1.0 / kTrust) * prior.inverse();
+  covariance = information.inverse();
+}
+
+const LearntRig* Learning::found() const {
+  if (of_batch) return &*of_batch;
+  return of_stream ? &*of_stream : nullptr;
+}
+
+Method learning_method(const Method& method, Learning& learning) {
+  const std::string name = std::string(to_string(method.info.kind)) + "/" + method.info.name;
+  const bool batch = name == "rate/tumble";
+  if (!batch && name != "rate/tumble_lag") {
+    throw BadInput("'" + name + "' learns nothing of the rig; 'rate/tumble' and 'rate/tumble_lag' do");
+  }
+  Method out = method;
+  out.run = [name, batch, info = method.info, &learning](const sim::Sensors& sensors, const sim::Values& given,
+                                                         const OracleInput&) {
+    const LearntRig* const start = learning.given ? &*learning.given : nullptr;
+    LearntRig rig;
+    try {
+      const sim::Values parameters = sim::resolve("method " + name, given, info.parameters);
+      Estimate estimate = (batch ? run_rate_tumble : run_rate_tumble_lag)(sensors, parameters, start, &rig);
+      if (estimate.status.ok() && estimate.health.at("rig_held") == 0.0) {
+        (batch ? learning.of_batch : learning.of_stream) = rig;
+      }
+      return estimate;
+    } catch (const sim::InvalidSituation& error) {
+      throw BadInput(error.what());
+    } catch (const InvalidParams& error) {
+      throw BadInput("method " + name + ": " + error.what());
+    }
+  };
+  return out;
+}
+
 Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
                          LearntRig* found) {
   Estimate estimate;
@@ -106,17 +173,15 @@ Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& paramet
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (estimate.status.ok()) {
     RateSmoother::Params params = smoother_params(sensors.imus.front(), parameters);
-    if (given != nullptr) {
-      const RigConstants::Matrix prior = RateModel(params.model, 0.01).prior_covariance();
-      start_from(*given, kTrust, params);
-      // never wider than before anything was learnt
-      RigConstants::Matrix& covariance = params.model.calibration->covariance;
-      const RigConstants::Matrix information = covariance.inverse() + (1.0 - 1.0 / kTrust) * prior.inverse();
-      covariance = information.inverse();
-    }
+    if (given != nullptr) start_from_learnt(*given, params);
+    std::vector<std::vector<CompanionReading>> companions;
     RateReport report;
-    estimate.status = RateSmoother(params).estimate(samples, estimate.rates, report);
+    estimate.status = companion_readings(sensors, samples, params.model, companions);
+    if (estimate.status.ok()) {
+      estimate.status = RateSmoother(params).estimate(samples, companions, estimate.rates, report);
+    }
     if (estimate.status.ok()) report_health(report, estimate.health);
+    estimate.health["imus"] = 1.0 + static_cast<double>(companions.size());
     if (estimate.status.ok() && !report.rig_held && found != nullptr) *found = learnt(report);
   }
   count_sources(estimate.rates, estimate.health);
@@ -127,8 +192,10 @@ Status tumble_rates(const sim::Sensors& sensors, std::span<const ImuSample> samp
                     std::vector<RateState>& out, std::map<std::string, double>& health) {
   out.clear();
   RateReport report;
-  const RateSmoother smoother(smoother_params(sensors.imus.front(), parameters));
-  const Status status = smoother.estimate(samples, out, report);
+  RateSmoother::Params params = smoother_params(sensors.imus.front(), parameters);
+  std::vector<std::vector<CompanionReading>> companions;
+  Status status = companion_readings(sensors, samples, params.model, companions);
+  if (status.ok()) status = RateSmoother(params).estimate(samples, companions, out, report);
   if (status.ok()) report_health(report, health);
   return status;
 }
@@ -139,7 +206,7 @@ Method rate_tumble() {
   info.kind = Kind::rate;
   info.doc =
       "A smoother over the recording: bounds of clipped axes, rigid flight at the lever arm, Euler's equation, "
-      "and the constants of the rig with it.";
+      "and the constants of the rig with it; further IMUs on the body where there are any (not imu_reference).";
   info.source = "ours, from Deschenes et al., Saturation-Aware Angular Velocity Estimation, ICRA 2024";
   info.parameters = tumble_rate_parameters();
   info.robots = {"rig"};

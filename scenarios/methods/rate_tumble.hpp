@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
+#include <span>
+#include <vector>
+
 #include "scenarios/methods/method.hpp"
 #include "scenarios/methods/rig_calibration_file.hpp"
 #include "sim/parameters.hpp"
@@ -13,12 +17,37 @@ namespace tumble::scenarios {
 /// hold those of tumble_rate_parameters().
 RateSmoother::Params smoother_params(const sim::ImuRecord& record, const sim::Values& parameters);
 
+/// The other IMUs of a recording on the same body, at the stamps of `samples`: those of its first further IMUs that are
+/// not `imu_reference`, at most kCompanionsMax. Adds their mountings, as calibrated, to `model`. Trouble: that of a
+/// record.
+Status companion_readings(const sim::Sensors& sensors, std::span<const ImuSample> samples, RateModelParams& model,
+                          std::vector<std::vector<CompanionReading>>& out);
+
 /// The method `tumble` that starts from what an earlier run has learnt of the rig (null: nothing) and leaves in `found`
 /// (may be null) what this run has learnt; `found` stays as it is when the status is not ok and when the run learnt
 /// nothing (health counter `rig_held`). What was learnt counts with four times its covariance, since rigs are handled
 /// between runs, yet not more than what is assumed without it.
 Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
                          LearntRig* found);
+
+/// The same for the stream `tumble_lag`. It has learnt something where the constants are better known than before.
+Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
+                             LearntRig* found);
+
+/// Makes what was learnt of the rig the start of a smoother: constants with four times their covariance, see above.
+void start_from_learnt(const LearntRig& rig, RateSmoother::Params& params);
+
+/// What several runs on one rig start from and what they have learnt.
+struct Learning {
+  std::optional<LearntRig> given;  ///< none: they start from nothing
+  std::optional<LearntRig> of_batch, of_stream;
+  /// What is to be kept: of the batch where it ran, since it saw all of the recording at once; null: nothing.
+  const LearntRig* found() const;
+};
+
+/// `method` as a method that starts from and adds to `learning`, which must outlive it. Throws BadInput for a method
+/// that learns nothing of the rig: all but rate/tumble and rate/tumble_lag.
+Method learning_method(const Method& method, Learning& learning);
 
 Method rate_tumble_lag();
 

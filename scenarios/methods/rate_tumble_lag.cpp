@@ -21,8 +21,9 @@ const std::vector<sim::Parameter>& parameters_of_the_stream() {
   return parameters;
 }
 
-RateStream::Params stream_params(const sim::ImuRecord& record, const sim::Values& parameters) {
-  const RateSmoother::Params batch = smoother_params(record, parameters);
+RateStream::Params stream_params(const sim::ImuRecord& record, const sim::Values& parameters, const LearntRig* given) {
+  RateSmoother::Params batch = smoother_params(record, parameters);
+  if (given != nullptr) start_from_learnt(*given, batch);
   RateStream::Params params;
   params.model = batch.model;
   params.rails = batch.rails;
@@ -34,28 +35,51 @@ RateStream::Params stream_params(const sim::ImuRecord& record, const sim::Values
   return params;
 }
 
+LearntRig learnt_by(const RateStream& stream, const RateStream::Params& params, const RateStream::State& state) {
+  LearntRig rig{stream.calibration(state), {}};
+  const RailDetector rails(params.rails);
+  for (int c = 0; c < 6; ++c) rig.rail[static_cast<std::size_t>(c)] = rails.rail(state.rails, c);
+  return rig;
+}
+
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  return run_rate_tumble_lag(sensors, parameters, nullptr, nullptr);
+}
+
+}  // namespace
+
+Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
+                             LearntRig* found) {
   Estimate estimate;
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
-  const RateStream stream(stream_params(sensors.imus.front(), parameters));
+  RateStream::Params params = stream_params(sensors.imus.front(), parameters, given);
+  std::vector<std::vector<CompanionReading>> companions;
+  estimate.status = companion_readings(sensors, samples, params.model, companions);
+  if (!estimate.status.ok()) return estimate;
+  const RateStream stream(params);
   RateStream::State state = stream.start();
   estimate.rates.reserve(samples.size());
   std::optional<RateState> out;
-  for (const ImuSample& sample : samples) {
-    estimate.status = stream.push(sample, state, out);
+  std::vector<CompanionReading> beside(companions.size());
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    for (std::size_t i = 0; i < beside.size(); ++i) beside[i] = companions[i][k];
+    estimate.status = stream.push(samples[k], beside, state, out);
     if (!estimate.status.ok()) break;
     if (out) estimate.rates.push_back(*out);
   }
   stream.flush(state, estimate.rates);
+  // one whose constants were dropped may not have learnt anything since
+  const RigConstants::Matrix before = stream.start().rig_covariance;
+  const bool held = !(state.rig_covariance.topLeftCorner<3, 3>().trace() < before.topLeftCorner<3, 3>().trace());
+  estimate.health["rig_held"] = held ? 1.0 : 0.0;
   estimate.health["rig_resets"] = static_cast<double>(state.rig_resets);
   estimate.health["steps_skipped"] = static_cast<double>(state.failures);
+  if (estimate.status.ok() && !held && found != nullptr) *found = learnt_by(stream, params, state);
   count_sources(estimate.rates, estimate.health);
   return estimate;
 }
-
-}  // namespace
 
 Method rate_tumble_lag() {
   MethodInfo info;

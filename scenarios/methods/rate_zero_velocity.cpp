@@ -10,7 +10,7 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::array<sim::Parameter, 2> kParameters = {{
-    {"jerk_psd_rad2_s5", 1e6, 1.0, 1e12, "rad^2/s^5", "density of the white angular jerk"},
+    {"jerk_psd_rad2_s5", 1e5, 1.0, 1e12, "rad^2/s^5", "density of the white angular jerk"},
     {"accel_error_m_s2", 0.05, 0.0, 100.0, "m/s^2", "scale and bias of the specific force, taken as noise per sample"},
 }};
 
@@ -41,8 +41,8 @@ Method rate_zero_velocity() {
   info.kind = Kind::rate;
   info.doc =
       "Inertial navigation smoothed between standstills, where velocity and rate are known to be zero. Made for "
-      "motions of a second or two from rest to rest that clip a few samples (steps, hand motion); runs away over the "
-      "long gaps of a tumble.";
+      "motions of a second or two from rest to rest that clip a few samples (steps, hand motion); after the turns of a "
+      "tumble tilt and velocity no longer tell what was lost, and bounds and smoothness are left.";
   info.source = "the family of Dang and Suh's smoothers for inertial sensors between zero-velocity intervals";
   info.parameters = kParameters;
   return make_method(std::move(info), run);

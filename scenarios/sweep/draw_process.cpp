@@ -57,6 +57,14 @@ bool read_until(Process& process, double deadline_s, std::string& buffer) {
   }
 }
 
+/// Methods of kind `rate` read no lidar.
+Lidars lidars_for(const DrawTask& task) {
+  const bool read = std::any_of(task.runs.begin(), task.runs.end(), [](const DrawTask::Run& run) {
+    return run.method->info.kind != Kind::rate || needs_lidar(run.setting);
+  });
+  return read ? Lidars::simulated : Lidars::left_out;
+}
+
 /// A draw as a setting changes it for the methods; empty where it does not.
 struct Given {
   Setting setting;
@@ -106,7 +114,7 @@ void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int 
   std::optional<sim::Surface> surface;
   const std::string& name = task.scenario->name;
   try {
-    draw = simulate_draw(data, with_setting(*task.scenario, task.setting), task.seed, 1);
+    draw = simulate_draw(data, with_setting(*task.scenario, task.setting), task.seed, 1, lidars_for(task));
     const bool maps = std::any_of(task.runs.begin(), task.runs.end(),
                                   [](const DrawTask::Run& run) { return run.method->info.kind == Kind::slam; });
     if (maps) surface.emplace(draw->situation, data.models());

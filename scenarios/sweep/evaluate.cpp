@@ -5,22 +5,33 @@
 
 #include <algorithm>
 #include <exception>
+#include <utility>
 
+#include "scenarios/draw/without_lidars.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "sim/simulate.hpp"
 
 namespace tumble::scenarios {
 
-SimulatedDraw simulate_draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, int threads) {
+SimulatedDraw simulate_draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, int threads,
+                            Lidars lidars) {
   SimulatedDraw simulated;
   simulated.scenario = scenario.name;
   simulated.seed = seed;
   simulated.situation = draw(data, scenario, seed);
+  if (lidars == Lidars::left_out) simulated.situation = without_lidars(std::move(simulated.situation));
   const double start_s = process_cpu_s();
   simulated.recording = sim::simulate(simulated.situation, {data.models(), threads});
   simulated.simulate_cpu_s = process_cpu_s() - start_s;
   simulated.recording_digest = digest(simulated.recording.sensors, &simulated.recording.truth);
   return simulated;
+}
+
+std::string digest_without_lidars(const sim::Recording& recording) {
+  sim::Recording bare = recording;
+  bare.sensors.lidars.clear();
+  bare.truth.lidars.clear();
+  return digest(bare.sensors, &bare.truth);
 }
 
 std::vector<const Method*> applicable(std::span<const Method* const> methods, const std::string& robot) {

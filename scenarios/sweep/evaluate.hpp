@@ -19,8 +19,16 @@ struct SimulatedDraw {
   double simulate_cpu_s = 0;
 };
 
-/// Draws and simulates. Throws BadInput, sim::InvalidSituation, sim::SimulationFailure.
-SimulatedDraw simulate_draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, int threads);
+/// Whether the lidars of a draw are simulated: they cost a good part of the time, and methods of kind `rate` read none.
+enum class Lidars { simulated, left_out };
+
+/// Draws and simulates. Motion and IMUs are the same to the bit without lidars, the digest is another. Throws BadInput,
+/// sim::InvalidSituation, sim::SimulationFailure.
+SimulatedDraw simulate_draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, int threads,
+                            Lidars lidars = Lidars::simulated);
+
+/// Digest of the recording as it is without its lidars.
+std::string digest_without_lidars(const sim::Recording& recording);
 
 /// The methods that apply to the scenario's robot, in the order given.
 std::vector<const Method*> applicable(std::span<const Method* const> methods, const std::string& robot);

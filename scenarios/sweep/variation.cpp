@@ -110,6 +110,13 @@ Reach reach(const Setting& setting) {
   return reach_of(setting.key);
 }
 
+bool needs_lidar(const Setting& setting) {
+  const std::vector<std::string> keys = keys_of(setting.key);
+  return std::any_of(keys.begin(), keys.end(), [](const std::string& key) {
+    return reach_of(key) == Reach::input && given_error(key).needs_lidar;
+  });
+}
+
 void check(const Variation& variation, const DataRoot& data, std::span<const std::string> scenarios,
            std::uint64_t seed) {
   for (const std::string& key : variation.keys) {

@@ -31,6 +31,9 @@ struct Variation {
 enum class Reach { nothing, simulation, input, method };
 Reach reach(const Setting& setting);
 
+/// Whether the setting is an error of a lidar in what methods are given.
+bool needs_lidar(const Setting& setting);
+
 /// Throws BadInput when a key is unknown (the nearest named), is not of one sort with the others, or does not apply to
 /// one of the scenarios, or when no situation with seed `seed` can be drawn with one of the values.
 void check(const Variation& variation, const DataRoot& data, std::span<const std::string> scenarios,

@@ -98,6 +98,7 @@ void RatePool::add(std::uint64_t seed, const sim::Recording& recording, const sc
     run.clipped_mean_rad_s += error.norm();
     ++run.clipped;
     const bool contact = in_contact(recording, record.time_ns[k]);
+    (contact ? contact_ : flight_).push_back(error.norm());
     if (sum.stretch.samples++ == 0) sum.stretch.seed = seed;
     sum.stretch.end_s = 1e-9 * static_cast<double>(record.time_ns[k]);
     sum.stretch.largest_rad_s = std::max(sum.stretch.largest_rad_s, error.norm());
@@ -131,6 +132,18 @@ void print_errors(std::span<const RatePool> pools) {
     std::printf("%-16s %9.4f %+8.2f%% %9.4f %9.3f %9.3f %9td %12.5f %10.2f\n", pool.name().c_str(), median,
                 100.0 * (median / first - 1.0), mean(e), quantile(e, 0.99), quantile(e, 1.0), beyond,
                 quantile(pool.free_rad_s(), 0.5), pool.cpu_us_per_sample());
+  }
+}
+
+void print_contact(std::span<const RatePool> pools) {
+  std::printf("\nerror norm of clipped samples [rad/s] in flight (%zu) and in contact (%zu)\n",
+              pools.front().flight_rad_s().size(), pools.front().contact_rad_s().size());
+  std::printf("%-16s %9s %9s %9s | %9s %9s %9s %9s\n", "method", "median", "p99", "max", "median", "p90", "p99", "max");
+  for (const RatePool& pool : pools) {
+    const std::span<const double> f = pool.flight_rad_s(), c = pool.contact_rad_s();
+    std::printf("%-16s %9.4f %9.3f %9.3f | %9.4f %9.3f %9.3f %9.3f\n", pool.name().c_str(), quantile(f, 0.5),
+                quantile(f, 0.99), quantile(f, 1.0), quantile(c, 0.5), quantile(c, 0.9), quantile(c, 0.99),
+                quantile(c, 1.0));
   }
 }
 

@@ -41,6 +41,9 @@ class RatePool {
   const std::string& name() const { return name_; }
   std::span<const double> clipped_rad_s() const { return clipped_; }
   std::span<const double> free_rad_s() const { return free_; }
+  /// The same, parted by whether the body touches the ground within the window of the sample.
+  std::span<const double> flight_rad_s() const { return flight_; }
+  std::span<const double> contact_rad_s() const { return contact_; }
   /// Squared errors of clipped axes over their reported variances.
   std::span<const double> normalised_flight() const { return normalised_flight_; }
   std::span<const double> normalised_contact() const { return normalised_contact_; }
@@ -50,7 +53,7 @@ class RatePool {
 
  private:
   std::string name_;
-  std::vector<double> clipped_, free_, normalised_flight_, normalised_contact_;
+  std::vector<double> clipped_, free_, flight_, contact_, normalised_flight_, normalised_contact_;
   std::vector<Stretch> stretches_;
   std::vector<Run> runs_;
   double cpu_s_ = 0.0;
@@ -58,6 +61,8 @@ class RatePool {
 
 /// Quantiles of the pooled errors, and the median against that of the first pool.
 void print_errors(std::span<const RatePool> pools);
+/// Errors of clipped samples in flight and in contact.
+void print_contact(std::span<const RatePool> pools);
 /// Coverage of three standard deviations with its 95 % interval, and the mean normalised squared error.
 void print_honesty(std::span<const RatePool> pools);
 /// Runs worse than the first pool by more than the gyro's noise, offsets of stretches, and every error as a multiple

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rate_statistics SCENARIO FIRST LAST [--method NAME]... [--keep FOLDER] [--worst N]: simulates the draws without
+// rate_statistics SCENARIO FIRST LAST [--method NAME]... [--keep FOLDER] [--worst N] [--exact-mounting] [--learnt]:
+// simulates the draws without
 // lidar, runs methods of kind `rate` and prints their errors pooled over all clipped samples of all draws, coverage and
 // normalised squared error in flight and in contact, and the worst clipped stretches. The first method is what the
 // others are held against; where `tumble` is among them, the last part holds all to it. FOLDER keeps recordings, so
-// that a second call need not simulate. Not a test: 2 to 3 s of one core a draw.
+// that a second call need not simulate. With --exact-mounting methods are given the true lever arm; with --learnt
+// `tumble` and `tumble_lag` start from what `tumble` learns in another tumble of the same rig. Not a test: 2 to 3 s of
+// one core a draw.
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -18,7 +21,7 @@
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/draw/without_lidars.hpp"
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/method.hpp"
+#include "scenarios/methods/rate_tumble.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/scoring/clipping.hpp"
 #include "scenarios/sweep/evaluate.hpp"
@@ -39,6 +42,7 @@ struct Request {
   std::vector<std::string> methods;
   std::filesystem::path keep;
   std::size_t worst = 5;
+  bool exact_mounting = false, learnt = false;
 };
 
 bool parse(int count, char** words, Request& request) {
@@ -53,6 +57,10 @@ bool parse(int count, char** words, Request& request) {
       request.keep = words[++i];
     } else if (word == "--worst") {
       request.worst = std::strtoull(words[++i], nullptr, 10);
+    } else if (word == "--exact-mounting") {
+      request.exact_mounting = true;
+    } else if (word == "--learnt") {
+      request.learnt = true;
     } else {
       plain.push_back(word);
     }
@@ -65,13 +73,21 @@ bool parse(int count, char** words, Request& request) {
   return true;
 }
 
+// Draw `seed`; with `other`, its rig on the way of another draw.
 sim::Recording recording_of(const scenarios::DataRoot& data, const scenarios::Scenario& scenario, std::uint64_t seed,
-                            const std::filesystem::path& keep) {
-  const std::filesystem::path file = keep / (scenario.name + "_" + std::to_string(seed) + ".h5");
+                            const std::filesystem::path& keep, bool other = false) {
+  constexpr std::uint64_t kOther = 1'000'000;
+  const std::string name = scenario.name + "_" + std::to_string(seed) + (other ? "_other.h5" : ".h5");
+  const std::filesystem::path file = keep / name;
   if (!keep.empty() && std::filesystem::exists(file)) {
     return {scenarios::read_sensors(file), scenarios::read_truth(file)};
   }
-  const sim::Situation situation = scenarios::without_lidars(scenarios::draw(data, scenario, seed));
+  sim::Situation situation = scenarios::without_lidars(scenarios::draw(data, scenario, seed + (other ? kOther : 0)));
+  if (other) {
+    const sim::Situation own = scenarios::without_lidars(scenarios::draw(data, scenario, seed));
+    situation.robot = own.robot;
+    situation.sensors = own.sensors;
+  }
   sim::Recording recording = sim::simulate(situation, {data.models(), 1});
   if (!keep.empty()) {
     std::filesystem::create_directories(keep);
@@ -88,6 +104,14 @@ const scenarios::Method& method_of(const std::string& name) {
   return *scenarios::find_methods("rate/" + name).front();
 }
 
+// What the batch learns of a rig in one recording.
+scenarios::Learning learn(const sim::Recording& recording) {
+  scenarios::Learning learning;
+  (void)scenarios::learning_method(method_of("tumble"), learning).run(recording.sensors, {}, {});
+  learning.given = learning.of_batch;
+  return learning;
+}
+
 int run(const Request& request) {
   const scenarios::DataRoot data{TUMBLE_SOURCE_DIR};
   const scenarios::Scenario scenario = scenarios::load_scenario(data, request.scenario);
@@ -96,14 +120,22 @@ int run(const Request& request) {
   int rejected = 0;
   for (std::uint64_t seed = request.first; seed <= request.last; ++seed) {
     sim::Recording recording;
+    scenarios::Learning given;
     try {
       recording = recording_of(data, scenario, seed, request.keep);
+      if (request.learnt) given = learn(recording_of(data, scenario, seed, request.keep, true));
     } catch (const sim::SimulationFailure&) {
       ++rejected;
       continue;
     }
+    for (std::size_t i = 0; request.exact_mounting && i < recording.sensors.imus.size(); ++i) {
+      recording.sensors.imus[i].T_BI = recording.truth.imus[i].T_BI;
+    }
     for (RatePool& pool : pools) {
-      const scenarios::Method& method = method_of(pool.name());
+      scenarios::Learning learning = given;
+      const bool learns = request.learnt && pool.name().starts_with("tumble");
+      const scenarios::Method method =
+          learns ? scenarios::learning_method(method_of(pool.name()), learning) : method_of(pool.name());
       const double start_s = scenarios::process_cpu_s();
       const scenarios::Estimate estimate =
           method.run(recording.sensors, {}, {method.info.needs_truth ? &recording.truth : nullptr});
@@ -113,6 +145,7 @@ int run(const Request& request) {
   std::printf("%s, draws %llu to %llu, %d rejected\n", scenario.name.c_str(),
               static_cast<unsigned long long>(request.first), static_cast<unsigned long long>(request.last), rejected);
   bench::print_errors(pools);
+  bench::print_contact(pools);
   bench::print_honesty(pools);
   bench::print_runs(pools);
   for (const RatePool& pool : pools) {
@@ -126,9 +159,9 @@ int run(const Request& request) {
 int main(int count, char** words) {
   Request request;
   if (!parse(count, words, request)) {
-    std::fprintf(
-        stderr,
-        "usage: rate_statistics SCENARIO|FILE.yaml FIRST LAST [--method NAME]... [--keep FOLDER] [--worst N]\n");
+    std::fprintf(stderr,
+                 "usage: rate_statistics SCENARIO|FILE.yaml FIRST LAST [--method NAME]... [--keep FOLDER] [--worst N] "
+                 "[--exact-mounting] [--learnt]\n");
     return 2;
   }
   try {

@@ -155,6 +155,22 @@ TEST(Run, PrintsATablePerKind) {
   EXPECT_THAT(ended.out, HasSubstr("digest"));
 }
 
+TEST(Run, WhatIsLearntOfTheRigIsCarriedOn) {
+  const fs::path file = test_folder() / "rig.json";
+  const auto run_with = [&](const std::string& method) {
+    const Ended ended = run_program(
+        {"run", "hill", "--seed", "1", "--method", "rate/" + method, "--learnt", file.string(), "--json"});
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    return json_of(ended)["outcomes"][0]["digest"].get<std::string>();
+  };
+  const std::string fresh = run_with("tumble_lag");
+  ASSERT_TRUE(fs::exists(file));
+  const std::string of_stream = read_file(file);
+  EXPECT_NE(run_with("tumble_lag"), fresh) << "the file counts";
+  EXPECT_NE(read_file(file), of_stream) << "written anew";
+  EXPECT_EQ(run_program({"run", "hill", "--seed", "1", "--method", "rate/saave", "--learnt", file.string()}).status, 2);
+}
+
 TEST(Render, WritesAPictureOfARecordingWithItsEstimates) {
   const fs::path run = shared_run("roll");
   const fs::path png = test_folder() / "roll.png";

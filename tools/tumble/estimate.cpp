@@ -5,10 +5,10 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/estimate_file.hpp"
-#include "scenarios/methods/rate_tumble.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/sweep/outcome.hpp"
 #include "tools/tumble/arguments.hpp"
+#include "tools/tumble/learnt_file.hpp"
 #include "tools/tumble/verbs.hpp"
 
 namespace tumble::tools {
@@ -50,21 +50,6 @@ const scenarios::Method& choose(const std::string& name, const std::string& robo
   return *fitting.front();
 }
 
-/// The method `rate/tumble`, from what FILE holds of the rig, if it is there; afterwards FILE holds what was learnt.
-scenarios::Estimate run_learning(const scenarios::Method& method, const sim::Sensors& sensors,
-                                 const sim::Values& parameters, const std::filesystem::path& file) {
-  if (full_name(method) != "rate/tumble") {
-    throw BadInput("--learnt is for 'rate/tumble' alone; '" + full_name(method) + "' learns nothing of the rig");
-  }
-  scenarios::LearntRig rig;
-  const bool given = std::filesystem::exists(file);
-  if (given) rig = scenarios::read_learnt_rig(file);
-  const scenarios::LearntRig before = rig;
-  scenarios::Estimate estimate = scenarios::run_rate_tumble(sensors, parameters, given ? &before : nullptr, &rig);
-  if (estimate.status.ok() && estimate.health.at("rig_held") == 0.0) scenarios::write_learnt_rig(file, rig);
-  return estimate;
-}
-
 /// What the estimate holds, and its health.
 Table summary(const scenarios::Estimate& estimate) {
   Table table("", {"estimate", "value"});
@@ -85,12 +70,15 @@ Table summary(const scenarios::Estimate& estimate) {
 int run_estimate(const Session& session, const Options& options) {
   const sim::Sensors sensors = scenarios::read_sensors(options.recording);
   const scenarios::Method& method = choose(options.method, sensors.robot);
+  if (!options.learnt.empty() && !LearntFile::learns(method)) {
+    throw BadInput("--learnt is for 'rate/tumble' and 'rate/tumble_lag'; '" + full_name(method) +
+                   "' learns nothing of the rig");
+  }
   make_folder(options.folder);
 
-  const sim::Values parameters = sim::resolve("method." + full_name(method), {}, method.info.parameters);
-  const scenarios::Estimate estimate = options.learnt.empty()
-                                           ? method.run(sensors, parameters, {})
-                                           : run_learning(method, sensors, parameters, options.learnt);
+  LearntFile learnt(options.learnt);
+  const scenarios::Estimate estimate = learnt.wrap(method).run(sensors, {}, {});
+  learnt.keep();
   scenarios::write_estimate(options.folder, method.info.name, method.info.kind, estimate);
 
   const nlohmann::json document = {{"method", method.info.name},
@@ -113,7 +101,8 @@ Action declare_estimate(CLI::App& app, const Session& session) {
   app.add_option("--method", options->method, "a method, as 'saave' or 'rate/saave'")->required();
   app.add_option("-o,--output", options->folder, "folder for the estimate")->required();
   app.add_option("--learnt", options->learnt,
-                 "FILE.json: what an earlier run of 'rate/tumble' has learnt of the rig, if it exists; written anew");
+                 "FILE.json: what an earlier run of 'rate/tumble' or 'rate/tumble_lag' has learnt of the rig, if it "
+                 "exists; written anew");
   return [&session, options] { return run_estimate(session, *options); };
 }
 

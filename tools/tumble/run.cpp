@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "scenarios/errors.hpp"
 #include "scenarios/methods/estimate_file.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/sweep/run_situation.hpp"
 #include "tools/report/pictures.hpp"
 #include "tools/tumble/arguments.hpp"
+#include "tools/tumble/learnt_file.hpp"
 #include "tools/tumble/recording_info.hpp"
 #include "tools/tumble/score_tables.hpp"
 #include "tools/tumble/verbs.hpp"
@@ -24,6 +27,7 @@ struct Options {
   std::vector<std::string> methods;
   int threads = 1;
   fs::path folder;
+  fs::path learnt;
 };
 
 /// Recording, situation and every estimate, under the names that the other verbs read.
@@ -56,10 +60,20 @@ int run(const Session& session, const Options& options) {
   const std::uint64_t seed = parse_seed(options.seed);
   const scenarios::DataRoot data = session.data();
   const scenarios::Scenario scenario = scenarios::load_scenario(data, options.scenario);
-  const auto methods = select_methods(options.methods);
+  const auto selected = select_methods(options.methods);
+  LearntFile learnt(options.learnt);
+  if (!options.learnt.empty() &&
+      std::none_of(selected.begin(), selected.end(), [](const auto* method) { return LearntFile::learns(*method); })) {
+    throw scenarios::BadInput("--learnt is for 'rate/tumble' and 'rate/tumble_lag', of which none is to run");
+  }
+  std::vector<scenarios::Method> copies;
+  for (const scenarios::Method* method : selected) copies.push_back(learnt.wrap(*method));
+  std::vector<const scenarios::Method*> methods;
+  for (const scenarios::Method& method : copies) methods.push_back(&method);
   if (!options.folder.empty()) make_folder(options.folder);
 
   const scenarios::RunResult result = scenarios::run_situation(data, scenario, seed, methods, options.threads);
+  learnt.keep();
   if (result.methods.empty())
     session.note("no method given applies to the robot '" + result.situation.robot.type + "'");
   if (!options.folder.empty()) {
@@ -101,6 +115,9 @@ Action declare_run(CLI::App& app, const Session& session) {
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
   app.add_option("-o,--output", options->folder, "folder for recording, estimates and pictures [none are left]");
+  app.add_option("--learnt", options->learnt,
+                 "FILE.json: what 'rate/tumble' and 'rate/tumble_lag' start from, if it exists; written anew with what "
+                 "the run has learnt of the rig");
   return [&session, options] { return run(session, *options); };
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "recording_check.hpp"
+#include "truncated_normal.hpp"
 
 namespace tumble {
 
@@ -15,7 +16,8 @@ namespace {
 // One axis of a recording: what was read, what of it is clipped, what comes out.
 struct Axis {
   std::span<const ImuSample> samples;
-  std::vector<bool> clipped;
+  std::vector<bool> clipped;    ///< at the rail or beyond it
+  std::vector<bool> overflown;  ///< of these, the readings that say nothing
   int index = 0;
   double variance = 0.0;  ///< of a free reading
 
@@ -67,19 +69,60 @@ std::vector<Value> interpolate(const Axis& axis) {
   return out;
 }
 
-// White noise on derivative N of the rate: state (rate, ..., derivative N - 1).
-template <int N>
+// A rate that is a random walk.
+struct RandomWalk {
+  static constexpr int kSize = 1;
+  using Matrix = Eigen::Matrix<double, 1, 1>;
+  double psd = 0.0;
+
+  Matrix start() const { return Matrix(1e4); }
+  Matrix transition(double) const { return Matrix(1.0); }
+  Matrix noise(double dt_s, const Matrix&) const { return Matrix(psd * dt_s); }
+};
+
+// A rate whose snap is white and that stays bounded in the long run: the stationary process with the Matern 5/2
+// covariance, state rate, acceleration, jerk (Hartikainen and Saerkkae 2010, section 4).
+struct BoundedJerk {
+  static constexpr int kSize = 3;
+  using Matrix = Eigen::Matrix3d;
+  double lambda = 1.0, variance = 1.0;
+
+  BoundedJerk(double psd, double sigma)
+      : lambda(std::pow(3.0 * psd / (16.0 * sigma * sigma), 0.2)), variance(sigma * sigma) {}
+
+  Matrix start() const {
+    const double middle = lambda * lambda * variance / 3.0;
+    Matrix P;
+    P << variance, 0.0, -middle, 0.0, middle, 0.0, -middle, 0.0, lambda * lambda * lambda * lambda * variance;
+    return P;
+  }
+  // exp(A t) of the companion matrix A, whose three eigenvalues are -lambda
+  Matrix transition(double dt_s) const {
+    Matrix N;
+    N << lambda, 1.0, 0.0, 0.0, lambda, 1.0, -lambda * lambda * lambda, -3.0 * lambda * lambda, -2.0 * lambda;
+    return std::exp(-lambda * dt_s) * (Matrix::Identity() + dt_s * N + 0.5 * dt_s * dt_s * N * N);
+  }
+  Matrix noise(double, const Matrix& F) const { return start() - F * start() * F.transpose(); }
+};
+
+// One axis as a linear process. Clipped readings are left out but for `bounds`, one Gaussian factor per sample.
+template <typename Process>
 class Chain {
  public:
+  static constexpr int N = Process::kSize;
   using Matrix = Eigen::Matrix<double, N, N>;
   using Vector = Eigen::Matrix<double, N, 1>;
 
-  Chain(const Axis& axis, double psd) : axis_(axis), psd_(psd), after_(axis.samples.size()) {
-    Moment now{Vector::Zero(), Matrix::Identity() * kUnknown};
-    for (int i = 1; i < N; ++i) now.covariance(i, i) *= std::pow(kUnknown, i);
+  Chain(const Axis& axis, const Process& process, std::span<const NormalSite> bounds)
+      : axis_(axis), process_(process), after_(axis.samples.size()) {
+    Moment now{Vector::Zero(), process.start()};
     for (std::size_t k = 0; k < after_.size(); ++k) {
       if (k > 0) now = predict(now, step_s(k - 1));
-      if (!axis.clipped[k]) update(now, axis.reading(k));
+      if (!axis.clipped[k]) {
+        update(now, axis.reading(k), axis.variance);
+      } else if (!bounds.empty() && bounds[k].precision > 0.0) {
+        update(now, bounds[k].shift / bounds[k].precision, 1.0 / bounds[k].precision);
+      }
       after_[k] = now;
     }
   }
@@ -91,8 +134,9 @@ class Chain {
   std::vector<Value> smoothed() const {
     std::vector<Moment> out = after_;
     for (std::size_t k = out.size() - 1; k-- > 0;) {
+      const Matrix F = process_.transition(step_s(k));
       const Moment ahead = predict(after_[k], step_s(k));
-      const Matrix gain = ahead.covariance.ldlt().solve(transition(step_s(k)) * after_[k].covariance).transpose();
+      const Matrix gain = ahead.covariance.ldlt().solve(F * after_[k].covariance).transpose();
       out[k].mean += gain * (out[k + 1].mean - ahead.mean);
       out[k].covariance += gain * (out[k + 1].covariance - ahead.covariance) * gain.transpose();
     }
@@ -100,8 +144,6 @@ class Chain {
   }
 
  private:
-  static constexpr double kUnknown =
-      1e4;  // variance of a rate before anything is seen; of the next derivatives, powers
   struct Moment {
     Vector mean;
     Matrix covariance;
@@ -109,29 +151,14 @@ class Chain {
 
   double step_s(std::size_t k) const { return axis_.time_s(k + 1) - axis_.time_s(k); }
 
-  static Matrix transition(double dt_s) {
-    Matrix F = Matrix::Identity();
-    for (int i = 0; i < N; ++i) {
-      for (int j = i + 1; j < N; ++j) F(i, j) = F(i, j - 1) * dt_s / (j - i);
-    }
-    return F;
-  }
-
   Moment predict(const Moment& from, double dt_s) const {
-    const Matrix F = transition(dt_s);
-    Matrix Q;
-    for (int i = 0; i < N; ++i) {
-      for (int j = 0; j < N; ++j) {
-        const int power = 2 * N - 1 - i - j;
-        Q(i, j) = psd_ * std::pow(dt_s, power) / (std::tgamma(N - i) * std::tgamma(N - j) * power);
-      }
-    }
-    return {F * from.mean, F * from.covariance * F.transpose() + Q};
+    const Matrix F = process_.transition(dt_s);
+    return {F * from.mean, F * from.covariance * F.transpose() + process_.noise(dt_s, F)};
   }
 
-  void update(Moment& now, double reading) const {
+  void update(Moment& now, double reading, double variance) const {
     const Vector column = now.covariance.col(0);
-    const double spread = column[0] + axis_.variance;
+    const double spread = column[0] + variance;
     now.mean += column * ((reading - now.mean[0]) / spread);
     now.covariance -= column * column.transpose() / spread;
   }
@@ -145,18 +172,50 @@ class Chain {
   }
 
   const Axis& axis_;
-  double psd_;
+  const Process& process_;
   std::vector<Moment> after_;
 };
+
+// The most likely curve that passes no clipped reading on the wrong side: walls where the smoothed curve violates them,
+// found in rounds. The variance is that of the curve without walls, cut at the reading.
+std::vector<Value> smooth_with_bounds(const Axis& axis, const ClippedBaseline::Params& params) {
+  constexpr int kRounds = 8;
+  const BoundedJerk process(params.snap_psd, params.rate_sigma_rad_s);
+  std::vector<NormalSite> walls(axis.samples.size());
+  std::vector<Value> values = Chain<BoundedJerk>(axis, process, walls).smoothed();
+  std::vector<double> variances(values.size());
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const double side = std::copysign(1.0, axis.reading(k));
+    const NormalMoments free{side * values[k].rate, values[k].variance};
+    const bool bound = axis.clipped[k] && !axis.overflown[k];
+    variances[k] =
+        bound ? truncated_below(free, std::abs(axis.reading(k)), axis.variance).variance : values[k].variance;
+  }
+  for (int round = 0; round < kRounds; ++round) {
+    bool moved = false;
+    for (std::size_t k = 0; k < walls.size(); ++k) {
+      if (!axis.clipped[k] || axis.overflown[k]) continue;
+      const double beyond = std::copysign(1.0, axis.reading(k)) * (values[k].rate - axis.reading(k));
+      const bool standing = walls[k].precision > 0.0;
+      if (standing ? beyond <= 0.0 : beyond >= 0.0) continue;
+      walls[k] = standing ? NormalSite{} : NormalSite{1.0 / axis.variance, axis.reading(k) / axis.variance};
+      moved = true;
+    }
+    if (!moved) break;
+    values = Chain<BoundedJerk>(axis, process, walls).smoothed();
+  }
+  for (std::size_t k = 0; k < values.size(); ++k) values[k].variance = std::max(variances[k], 1e-3 * axis.variance);
+  return values;
+}
 
 std::vector<Value> bridge(const Axis& axis, const ClippedBaseline::Params& params) {
   switch (params.kind) {
     case ClippedBaseline::Kind::interpolate:
       return interpolate(axis);
     case ClippedBaseline::Kind::reject:
-      return Chain<1>(axis, params.acceleration_psd).filtered();
+      return Chain<RandomWalk>(axis, {params.acceleration_psd}, {}).filtered();
     case ClippedBaseline::Kind::constant_jerk:
-      return Chain<3>(axis, params.snap_psd).smoothed();
+      return smooth_with_bounds(axis, params);
   }
   return {};
 }
@@ -167,6 +226,7 @@ ClippedBaseline::ClippedBaseline(const Params& params) : params_(params), rails_
   require_within("gyro_noise_density", params.gyro_noise_density, 1e-9, 1.0);
   require_within("acceleration_psd", params.acceleration_psd, 1e-12, 1e12);
   require_within("snap_psd", params.snap_psd, 1e-12, 1e15);
+  require_within("rate_sigma_rad_s", params.rate_sigma_rad_s, 1e-3, 1e4);
   require_within("rate_max_rad_s", params.rate_max_rad_s, 1.0, 1e4);
   require_within("gap_max_s", params.gap_max_s, 1e-6, 3600.0);
 }
@@ -179,12 +239,13 @@ Status ClippedBaseline::estimate(std::span<const ImuSample> samples, std::vector
   rails_.classify_all(samples, rails, clippings);
 
   out.assign(count, {});
-  Axis axis{samples, std::vector<bool>(count), 0,
+  Axis axis{samples, std::vector<bool>(count), std::vector<bool>(count), 0,
             params_.gyro_noise_density * params_.gyro_noise_density / median_period_s(samples)};
   for (axis.index = 0; axis.index < 3; ++axis.index) {
     const int bit = 1 << axis.index;
     for (std::size_t k = 0; k < count; ++k) {
-      axis.clipped[k] = ((clippings[k].gyro | clippings[k].void_gyro) & bit) != 0;
+      axis.overflown[k] = (clippings[k].void_gyro & bit) != 0;
+      axis.clipped[k] = axis.overflown[k] || (clippings[k].gyro & bit) != 0;
     }
     const std::vector<Value> values = bridge(axis, params_);
     for (std::size_t k = 0; k < count; ++k) {

@@ -27,7 +27,9 @@ RailDetector::RailDetector(const Params& params) : params_(params) {
   require_within("leave_share", params.leave_share, params.enter_share, 0.5);
   require_within("plateau_samples", params.plateau_samples, 2, 1000);
   require_within("plateau_spread_share", params.plateau_spread_share, 0.0, 0.01);
+  require_within("plateau_gyro_low_rad_s", params.plateau_gyro_low_rad_s, 1e-6, 1000.0);
   require_within("plateau_gyro_min_rad_s", params.plateau_gyro_min_rad_s, 1e-6, 1000.0);
+  require_within("plateau_jump_digits", params.plateau_jump_digits, 1.0, 1000.0);
   require_within("plateau_accel_min_m_s2", params.plateau_accel_min_m_s2, 1e-6, 1000.0);
   require_within("disagreement_share", params.disagreement_share, 1e-6, 1.0);
 }
@@ -40,17 +42,35 @@ void RailDetector::observe(const ImuSample& sample, State& state) const {
   for (int c = 0; c < 6; ++c) {
     Channel& channel = state.channels[static_cast<std::size_t>(c)];
     const double value = reading(sample, c), magnitude = std::abs(value);
+    const double spread = params_.plateau_spread_share * magnitude;
+    const double change = std::abs(value - channel.before);
+    const bool continues = channel.run_length > 0 && std::abs(value - channel.run_first) <= spread;
+    if (channel.run_length > 0 && !continues) {
+      if (channel.digit == 0.0 || change < channel.digit) channel.digit = change;
+      // a plateau ends with smaller readings
+      if (magnitude < channel.peak && plateau(c, channel, change)) channel.rail = std::abs(channel.run_first);
+    }
     channel.peak = std::max(channel.peak, magnitude);
     // a larger reading proves that the plateau was none
     if (channel.rail > 0.0 && channel.peak > channel.rail * (1.0 + params_.disagreement_share)) channel.rail = 0.0;
-    const double spread = params_.plateau_spread_share * magnitude;
-    const bool continues = channel.run_length > 0 && std::abs(value - channel.run_first) <= spread;
+    if (!continues) {
+      channel.entry = channel.run_length > 0 ? change : 0.0;
+      channel.run_first = value;
+    }
     channel.run_length = continues ? channel.run_length + 1 : 1;
-    if (!continues) channel.run_first = value;
-    const double smallest = c < 3 ? params_.plateau_gyro_min_rad_s : params_.plateau_accel_min_m_s2;
-    const bool on_top = magnitude >= channel.peak * (1.0 - params_.disagreement_share) && magnitude >= smallest;
-    if (channel.run_length >= params_.plateau_samples && on_top) channel.rail = magnitude;
+    channel.before = value;
+    if (plateau(c, channel, channel.entry)) channel.rail = std::abs(channel.run_first);
   }
+}
+
+bool RailDetector::plateau(int c, const Channel& channel, double jump) const {
+  const double magnitude = std::abs(channel.run_first);
+  if (magnitude < channel.peak * (1.0 - params_.disagreement_share)) return false;
+  if (channel.run_length < params_.plateau_samples) return false;
+  if (c >= 3) return magnitude >= params_.plateau_accel_min_m_s2;
+  if (magnitude >= params_.plateau_gyro_low_rad_s) return true;
+  return magnitude >= params_.plateau_gyro_min_rad_s && channel.run_length >= 2 * params_.plateau_samples &&
+         jump > params_.plateau_jump_digits * channel.digit;
 }
 
 std::optional<double> RailDetector::rail(const State& state, int c) const {

@@ -15,6 +15,17 @@ namespace {
 
 using Eigen::Vector3d;
 
+void check(const CompanionImu& p) {
+  require_within("companion gyro_noise_density", p.gyro_noise_density, 1e-9, 1.0);
+  require_within("companion accel_noise_density", p.accel_noise_density, 1e-9, 10.0);
+  require_within("companion gyro_error_rad_s", p.gyro_error_rad_s, 1e-9, 10.0);
+  require_within("companion accel_error_m_s2", p.accel_error_m_s2, 1e-9, 10.0);
+  require_within("companion share_error", p.share_error, 0.0, 1.0);
+  require_within("companion place_error_m", p.place_error_m, 1e-9, 1.0);
+  require_within("companion clock_error_s", p.clock_error_s, 0.0, 0.1);
+  for (const double value : p.T_IC.matrix().reshaped()) require_within("companion T_IC", value, -100.0, 100.0);
+}
+
 void check(const RateModelParams& p) {
   require_within("lever_arm_sigma_m", p.lever_arm_sigma_m, 1e-9, 10.0);
   require_within("gyro_bias_sigma_rad_s", p.gyro_bias_sigma_rad_s, 1e-9, 10.0);
@@ -36,6 +47,8 @@ void check(const RateModelParams& p) {
   require_within("rest_sigma_rad_s", p.rest_sigma_rad_s, 1e-9, 10.0);
   require_within("rate_max_rad_s", p.rate_max_rad_s, 1.0, 1e4);
   require_within("acceleration_max_rad_s2", p.acceleration_max_rad_s2, 1.0, 1e7);
+  require_within("companions", p.companions.size(), 0, kCompanionsMax);
+  for (const CompanionImu& companion : p.companions) check(companion);
   const RigConstants::Vector nominal = p.calibration ? p.calibration->constants.vector() : p.nominal.vector();
   for (double value : nominal) require_within("rig constants", value, -10.0, 10.0);
 }
@@ -244,6 +257,8 @@ void RateModel::add_sample(const RateObservation& observation, const RateEstimat
   }
   add_flight(flight, of_flight, time_scale_s_, block, corner);
   add_euler(euler, of_euler, time_scale_s_, block, corner);
+
+  add_companions(observation, estimate, rig, block);
 
   const double rate_sigma = observation.at_rest ? params_.rest_sigma_rad_s : params_.rate_max_rad_s;
   const double rate_information = 1.0 / (rate_sigma * rate_sigma);

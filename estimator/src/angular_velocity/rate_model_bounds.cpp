@@ -4,8 +4,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "truncated_normal.hpp"
 #include "tumble/angular_velocity/rate_model.hpp"
 
 namespace tumble {
@@ -21,13 +21,6 @@ constexpr double kStartPrecision = 0.25;
 // reading that a force of contact may have to pass for a gentle one.
 constexpr int kSeekIterations = 6;
 constexpr double kSeekStep = 3.0, kGentleShare = 0.25;
-
-// phi(z) / Phi(z) of the normal distribution, by its asymptotic series where both vanish
-double density_over_share(double z) {
-  if (z < -8.0) return -z / (1.0 - 1.0 / (z * z) + 3.0 / (z * z * z * z));
-  const double density = std::exp(-0.5 * z * z) * std::numbers::inv_sqrtpi / std::numbers::sqrt2;
-  return density / (0.5 * std::erfc(-z / std::numbers::sqrt2));
-}
 
 }  // namespace
 
@@ -88,21 +81,13 @@ void RateModel::update_bounds(const RateObservation& observation, const RigConst
     const Eigen::Matrix<double, 1, RigConstants::kSize> cross = by_rig.lazyProduct(rig_covariance);
     const double variance =
         conditional.state(j, j) + cross.dot(by_rig) + 2.0 * cross[3 + j] + rig_covariance(3 + j, 3 + j);
-    // the marginal without this site, mirrored so that the bound lies below
-    const double mean = sign * (estimate.knot.rate_rad_s[j] + rig.gyro_bias_rad_s[j]);
-    const double site_precision = estimate.bound_precision[j], site_shift = sign * estimate.bound_shift[j];
-    const double precision =
-        std::max(1.0 / variance - site_precision, 1.0 / (params_.rate_max_rad_s * params_.rate_max_rad_s));
-    const double cavity_mean = (mean / variance - site_shift) / precision, cavity_variance = 1.0 / precision;
-    const double spread2 = cavity_variance + params_.rail_sigma_rad_s * params_.rail_sigma_rad_s;
-    const double spread = std::sqrt(spread2);
-    const double z = (cavity_mean - std::abs(reading)) / spread, r = density_over_share(z);
-    const double new_mean = cavity_mean + cavity_variance * r / spread;
-    const double new_variance = cavity_variance - cavity_variance * cavity_variance * r * (z + r) / spread2;
-    const double new_precision = std::max(0.0, 1.0 / new_variance - precision);
-    const double new_shift = new_mean / new_variance - precision * cavity_mean;
-    estimate.bound_precision[j] += damping * (new_precision - site_precision);
-    estimate.bound_shift[j] += damping * (sign * new_shift - estimate.bound_shift[j]);
+    // mirrored so that the bound lies below
+    const NormalMoments marginal{sign * (estimate.knot.rate_rad_s[j] + rig.gyro_bias_rad_s[j]), variance};
+    const NormalSite site = refined_bound(marginal, {estimate.bound_precision[j], sign * estimate.bound_shift[j]},
+                                          std::abs(reading), params_.rail_sigma_rad_s * params_.rail_sigma_rad_s,
+                                          params_.rate_max_rad_s * params_.rate_max_rad_s, damping);
+    estimate.bound_precision[j] = site.precision;
+    estimate.bound_shift[j] = sign * site.shift;
   }
 }
 

@@ -239,6 +239,20 @@ bool solve(const RateSmoother::Params& params, const RateModel& model, std::span
   return true;
 }
 
+Status check_companions(const RateModelParams& params, std::span<const std::vector<CompanionReading>> companions,
+                        std::size_t count) {
+  const auto needed = static_cast<double>(params.companions.size());
+  if (companions.size() != params.companions.size()) {
+    return {Trouble::too_few, "companions", static_cast<double>(companions.size()), needed};
+  }
+  for (const std::vector<CompanionReading>& readings : companions) {
+    if (readings.size() == count) continue;
+    return {Trouble::too_few, "readings of a companion", static_cast<double>(readings.size()),
+            static_cast<double>(count)};
+  }
+  return {};
+}
+
 RateModelParams held(const RateModelParams& params, const RigConstants& constants) {
   RateModelParams out = params;
   out.calibration = RigCalibration{constants, 1e-12 * RigConstants::Matrix::Identity()};
@@ -260,9 +274,11 @@ RateSmoother::RateSmoother(const Params& params) : params_(params), rails_(param
   (void)RateModel(params.model, 0.01);  // throws on bad parameters
 }
 
-Status RateSmoother::estimate(std::span<const ImuSample> samples, std::vector<RateState>& out,
+Status RateSmoother::estimate(std::span<const ImuSample> samples,
+                              std::span<const std::vector<CompanionReading>> companions, std::vector<RateState>& out,
                               RateReport& report) const {
   if (Status status = check_recording(samples, 2, params_.gap_max_s); !status.ok()) return status;
+  if (Status status = check_companions(params_.model, companions, samples.size()); !status.ok()) return status;
 
   RateReport health;
   health.samples = samples.size();
@@ -284,6 +300,7 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples, std::vector<Ra
   const std::vector<bool> rest = rests_.find(samples);
   for (std::size_t k = 0; k < samples.size(); ++k) {
     observations[k] = {samples[k], clippings[k], rest[k]};
+    for (std::size_t i = 0; i < companions.size(); ++i) observations[k].companions[i] = companions[i][k];
     mark_partial(rails_, rail_state, model.gyro_sigma_rad_s(), k > 0 ? &samples[k - 1] : nullptr, observations[k],
                  k + 1 < samples.size() ? &samples[k + 1] : nullptr);
   }

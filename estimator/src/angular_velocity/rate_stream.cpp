@@ -54,6 +54,8 @@ RateStream::RateStream(const Params& params)
   require_within("step_max_rad_s", params.step_max_rad_s, 1e-3, 1e4);
   require_within("bound_age", params.bound_age, 0, 4096);
   require_within("flight_run_min", params.flight_run_min, 0, 4096);
+  require_within("rig_doubt", params.rig_doubt, 0.0, 1e3);
+  require_within("rig_doubt_samples", params.rig_doubt_samples, 1.0, 1e6);
   require_within("bound_damping", params.bound_damping, 0.01, 1.0);
   require_within("recovered_sigma_rad_s", params.recovered_sigma_rad_s, 0.0, 1e4);
   require_within("rig_surprise_max", params.rig_surprise_max, 0.1, 1e6);
@@ -71,15 +73,20 @@ RateStream::State RateStream::start() const {
   return state;
 }
 
-Status RateStream::push(const ImuSample& sample, State& state, std::optional<RateState>& out) const {
+Status RateStream::push(const ImuSample& sample, std::span<const CompanionReading> companions, State& state,
+                        std::optional<RateState>& out) const {
   out.reset();
+  if (!companions.empty() && companions.size() != params_.model.companions.size()) {
+    return {Trouble::too_few, "companions", static_cast<double>(companions.size()),
+            static_cast<double>(params_.model.companions.size())};
+  }
   if (Status status = check_sample(sample); !status.ok()) return status;
   if (!state.window.empty()) {
     Status status = check_follows(sample.time_ns, state.window.back().observation.sample.time_ns, params_.gap_max_s);
     if (!status.ok()) return status;
   }
   if (state.window.size() == capacity_) marginalise_oldest(state);
-  append(sample, state);
+  append(sample, companions, state);
   weigh(state);
   if (!step(state)) ++state.failures;
   if (state.window.size() == capacity_) out = to_state(state.window.front());
@@ -100,6 +107,7 @@ void RateStream::marginalise_oldest(State& state) const {
   for (std::size_t k = 0; k < state.window.size() && state.window[k].estimate.flight_weight >= 0.5; ++k) ++run;
   const bool short_flight = run < static_cast<std::size_t>(params_.flight_run_min);
   state.flight_run = oldest.estimate.flight_weight >= 0.5 ? state.flight_run + 1 : 0;
+  if (!short_flight && oldest.estimate.flight_weight >= 0.5) ++state.learnt_from;
   model_.add_sample(oldest.observation, oldest.estimate, state.rig, block, corner,
                     short_flight ? &state.rig_covariance : nullptr);
   model_.add_step(oldest.estimate, next.estimate, seconds_between(oldest, next), block, after);
@@ -123,14 +131,16 @@ void RateStream::marginalise_oldest(State& state) const {
     state.prior = {};
     state.prior_corner = {};
     model_.add_rig_prior(state.rig, state.prior_corner);
+    state.learnt_from = 0;
     ++state.rig_resets;
   }
 }
 
-void RateStream::append(const ImuSample& sample, State& state) const {
+void RateStream::append(const ImuSample& sample, std::span<const CompanionReading> companions, State& state) const {
   rails_.observe(sample, state.rails);
   Knot knot;
   knot.observation = {sample, rails_.classify(sample, state.rails), rests_.observe(sample, state.rests)};
+  std::copy(companions.begin(), companions.end(), knot.observation.companions.begin());
   const double noise = model_.gyro_sigma_rad_s();
   if (!state.window.empty()) {
     RateObservation& last = state.window.back().observation;
@@ -227,6 +237,7 @@ bool RateStream::step(State& state) const {
   if (!arrow::solve_corner(corner, rig_step, rig_covariance)) return false;
   state.rig_covariance = rig_covariance;
   state.rig.add(rig_step);
+  const arrow::BorderMatrix doubted = widened(state);
   arrow::StateVector x;
   arrow::Conditional conditional;
   for (std::size_t k = count; k-- > 0;) {
@@ -238,7 +249,7 @@ bool RateStream::step(State& state) const {
     const double share = std::min(1.0, params_.step_max_rad_s / std::max(1e-300, physical.head<3>().norm()));
     knot.estimate.knot.rate_rad_s += share * physical.head<3>();
     knot.estimate.knot.acceleration_rad_s2 += share * physical.tail<3>();
-    knot.covariance_rad2_s2 = arrow::rate_covariance(conditional, rig_covariance);
+    knot.covariance_rad2_s2 = arrow::rate_covariance(conditional, doubted);
     if (knot.estimate.soft_bounds) {
       model_.update_bounds(knot.observation, state.rig, conditional, rig_covariance, params_.bound_damping,
                            knot.estimate);
@@ -246,6 +257,20 @@ bool RateStream::step(State& state) const {
     ++knot.age;
   }
   return true;
+}
+
+RigConstants::Matrix RateStream::widened(const State& state) const {
+  if (params_.model.calibration) return state.rig_covariance;
+  const double samples = static_cast<double>(state.learnt_from) / params_.rig_doubt_samples;
+  const double largest = std::sqrt(1.0 + params_.rig_doubt / (1.0 + samples));
+  RigConstants::Vector factor;
+  for (int i = 0; i < RigConstants::kSize; ++i) {
+    // nothing is known less than beforehand; the gyro's bias is told by rest, not by flight
+    const bool of_gyro = i >= 3 && i < 6;
+    const double before = std::sqrt(model_.prior_covariance()(i, i) / state.rig_covariance(i, i));
+    factor[i] = of_gyro ? 1.0 : std::clamp(before, 1.0, largest);
+  }
+  return factor.asDiagonal() * state.rig_covariance * factor.asDiagonal();
 }
 
 RateState RateStream::to_state(const Knot& knot) const {
@@ -277,7 +302,10 @@ bool RateStream::equal(const State& a, const State& b) {
            x.observation.clipping == y.observation.clipping && x.observation.at_rest == y.observation.at_rest &&
            e.knot == f.knot && e.flight_weight == f.flight_weight && e.contact_m_s2 == f.contact_m_s2 &&
            e.bound_precision == f.bound_precision && e.bound_shift == f.bound_shift && e.soft_bounds == f.soft_bounds &&
-           x.covariance_rad2_s2 == y.covariance_rad2_s2 && x.age == y.age;
+           x.covariance_rad2_s2 == y.covariance_rad2_s2 && x.age == y.age &&
+           std::equal(x.observation.companions.begin(), x.observation.companions.end(),
+                      y.observation.companions.begin(),
+                      [](const CompanionReading& r, const CompanionReading& s) { return r.same(s); });
   };
   return a.rails == b.rails && a.rests == b.rests &&
          std::equal(a.window.begin(), a.window.end(), b.window.begin(), b.window.end(), same) && a.rig == b.rig &&
@@ -285,7 +313,8 @@ bool RateStream::equal(const State& a, const State& b) {
          a.prior.border == b.prior.border && a.prior.gradient == b.prior.gradient &&
          a.prior_corner.matrix == b.prior_corner.matrix && a.prior_corner.gradient == b.prior_corner.gradient &&
          a.prior_knot == b.prior_knot && a.prior_rig == b.prior_rig && a.samples == b.samples &&
-         a.rig_resets == b.rig_resets && a.flight_run == b.flight_run && a.failures == b.failures;
+         a.rig_resets == b.rig_resets && a.flight_run == b.flight_run && a.learnt_from == b.learnt_from &&
+         a.failures == b.failures;
 }
 
 }  // namespace tumble

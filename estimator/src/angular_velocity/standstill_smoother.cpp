@@ -54,30 +54,51 @@ struct Noise {
   double gyro_variance = 0.0, accel_variance = 0.0;
 };
 
-void predict(const StandstillSmoother::Params& p, const Noise& noise, const ImuSample& sample, double dt_s,
-             Belief& belief, Covariance& F) {
+// The rate of one axis: white jerk over short times, bounded in the long run. The stationary process with the Matern
+// 3/2 covariance, state rate and acceleration.
+struct BoundedAcceleration {
+  double lambda = 1.0, variance = 1.0;
+
+  BoundedAcceleration(double psd, double sigma)
+      : lambda(std::cbrt(psd / (4.0 * sigma * sigma))), variance(sigma * sigma) {}
+  Eigen::Matrix2d start() const { return Eigen::Vector2d(variance, lambda * lambda * variance).asDiagonal(); }
+  Eigen::Matrix2d transition(double dt_s) const {
+    Eigen::Matrix2d F;
+    F << 1.0 + lambda * dt_s, dt_s, -lambda * lambda * dt_s, 1.0 - lambda * dt_s;
+    return std::exp(-lambda * dt_s) * F;
+  }
+  Eigen::Matrix2d noise(const Eigen::Matrix2d& F) const { return start() - F * start() * F.transpose(); }
+};
+
+void predict(const StandstillSmoother::Params& p, const BoundedAcceleration& process, const Noise& noise,
+             const ImuSample& sample, double dt_s, Belief& belief, Covariance& F) {
   Navigation& n = belief.mean;
   // the force is a mean over the sample's window, which ends where the step ends
   // rates are means over windows too: the body turns by that of the window that ends here
-  const Vector3d turn = dt_s * (n.rate_rad_s + dt_s * n.acceleration_rad_s2);
+  const Eigen::Matrix2d motion = process.transition(dt_s);
+  const Vector3d turn = dt_s * (motion(0, 0) * n.rate_rad_s + motion(0, 1) * n.acceleration_rad_s2);
   const Eigen::Quaterniond middle = n.q_WI * so3::exp(0.5 * turn);
   const Vector3d force_W = middle * sample.specific_force_m_s2;
   const Matrix3d R = middle.toRotationMatrix();
   F.setIdentity();
-  F.block<3, 3>(0, 6) = dt_s * R;
-  F.block<3, 3>(0, 9) = dt_s * dt_s * R;
+  const Matrix3d arm = -0.5 * dt_s * so3::hat(force_W) * R;  // of a turn on the velocity, per window
+  for (int i = 0; i < 2; ++i) {
+    F.block<3, 3>(0, 6 + 3 * i) = dt_s * motion(0, i) * R;
+    F.block<3, 3>(3, 6 + 3 * i) = dt_s * motion(0, i) * arm;
+    for (int j = 0; j < 2; ++j) F.block<3, 3>(6 + 3 * i, 6 + 3 * j) = motion(i, j) * Matrix3d::Identity();
+  }
   F.block<3, 3>(3, 0) = -dt_s * so3::hat(force_W);
-  F.block<3, 3>(3, 6) = -0.5 * dt_s * dt_s * so3::hat(force_W) * R;
-  F.block<3, 3>(3, 9) = dt_s * F.block<3, 3>(3, 6);
-  F.block<3, 3>(6, 9) = dt_s * Matrix3d::Identity();
   n.q_WI = (n.q_WI * so3::exp(turn)).normalized();
   n.v_W_m_s += dt_s * (force_W - p.gravity_m_s2 * Vector3d::UnitZ());
-  n.rate_rad_s += dt_s * n.acceleration_rad_s2;
+  const Vector3d rate = n.rate_rad_s;
+  n.rate_rad_s = motion(0, 0) * rate + motion(0, 1) * n.acceleration_rad_s2;
+  n.acceleration_rad_s2 = motion(1, 0) * rate + motion(1, 1) * n.acceleration_rad_s2;
   Covariance Q = Covariance::Zero();
-  Q.diagonal() << Vector3d::Constant(1e-12), Vector3d::Constant(noise.accel_variance * dt_s * dt_s),
-      Vector3d::Constant(p.jerk_psd * dt_s * dt_s * dt_s / 3.0), Vector3d::Constant(p.jerk_psd * dt_s);
-  Q.block<3, 3>(6, 9).diagonal().setConstant(p.jerk_psd * dt_s * dt_s / 2.0);
-  Q.block<3, 3>(9, 6) = Q.block<3, 3>(6, 9);
+  Q.diagonal().head<6>() << Vector3d::Constant(1e-12), Vector3d::Constant(noise.accel_variance * dt_s * dt_s);
+  const Eigen::Matrix2d change = process.noise(motion);
+  for (int i = 0; i < 2; ++i) {
+    for (int j = 0; j < 2; ++j) Q.block<3, 3>(6 + 3 * i, 6 + 3 * j).diagonal().setConstant(change(i, j));
+  }
   belief.covariance = (F * belief.covariance * F.transpose() + Q).eval();
 }
 
@@ -93,6 +114,39 @@ void measure_component(int index, double residual, double variance, Belief& beli
   Eigen::Matrix<double, 1, kSize> row = Eigen::Matrix<double, 1, kSize>::Zero();
   row[index] = 1.0;
   measure(row, residual, variance, belief);
+}
+
+// A clipped rate lies at its reading or beyond, and below the largest.
+void hold(const StandstillSmoother::Params& p, double reading, int axis, Belief& belief) {
+  constexpr double kSoftness = 0.05;  // rad/s
+  const double side = std::copysign(1.0, reading), rate = side * belief.mean.rate_rad_s[axis];
+  const double low = std::min(std::abs(reading), p.rate_max_rad_s);
+  const double held = std::clamp(rate, low, p.rate_max_rad_s);
+  if (held != rate) measure_component(6 + axis, side * (held - rate), kSoftness * kSoftness, belief);
+}
+
+// Whether what gravity and standstill say of a body that has come to rest lies beyond what the linear filter can spread
+// over the way there.
+bool is_lost(const StandstillSmoother::Params& p, const ImuSample& sample, const Belief& belief) {
+  const Vector3d up = belief.mean.q_WI * sample.specific_force_m_s2.normalized();
+  if (std::atan2(up.head<2>().norm(), up.z()) > p.tilt_max_rad) return true;
+  Matrix3d spread = belief.covariance.block<3, 3>(3, 3);
+  spread.diagonal().array() += p.rest_velocity_sigma_m_s * p.rest_velocity_sigma_m_s;
+  const Vector3d& v = belief.mean.v_W_m_s;
+  return v.dot(spread.ldlt().solve(v)) > p.velocity_gate * p.velocity_gate;
+}
+
+// Attitude and velocity start anew and take nothing back to what lies before; the rate goes on.
+void start_anew(const ImuSample& sample, Belief& belief, Covariance& F) {
+  constexpr double kAnyTilt = 10.0, kAnyVelocity = 1e4;  // variances
+  Navigation& n = belief.mean;
+  const Vector3d up = (n.q_WI * sample.specific_force_m_s2).normalized();
+  n.q_WI = (so3::shortest_arc(up, Vector3d::UnitZ()) * n.q_WI).normalized();
+  n.v_W_m_s.setZero();
+  F.topRows<6>().setZero();
+  belief.covariance.topRows<6>().setZero();
+  belief.covariance.leftCols<6>().setZero();
+  belief.covariance.diagonal().head<6>() << Vector3d::Constant(kAnyTilt), Vector3d::Constant(kAnyVelocity);
 }
 
 void measure_rest(const StandstillSmoother::Params& p, const ImuSample& sample, Belief& belief) {
@@ -140,6 +194,9 @@ StandstillSmoother::StandstillSmoother(const Params& params) : params_(params), 
   require_within("rest_force_m_s2", params.rest_force_m_s2, 1e-6, 10.0);
   require_within("rest_s", params.rest_s, 0.0, 60.0);
   require_within("rest_velocity_sigma_m_s", params.rest_velocity_sigma_m_s, 1e-6, 10.0);
+  require_within("rate_sigma_rad_s", params.rate_sigma_rad_s, 1e-3, 1e4);
+  require_within("tilt_max_rad", params.tilt_max_rad, 0.0, 4.0);
+  require_within("velocity_gate", params.velocity_gate, 0.0, 1e6);
   require_within("rate_max_rad_s", params.rate_max_rad_s, 1.0, 1e4);
   require_within("gap_max_s", params.gap_max_s, 1e-6, 3600.0);
 }
@@ -162,15 +219,20 @@ Status StandstillSmoother::estimate(std::span<const ImuSample> samples, std::vec
       so3::shortest_arc(samples.front().specific_force_m_s2.stableNormalized(), Vector3d::UnitZ()).normalized();
   if (!belief.mean.q_WI.coeffs().allFinite()) belief.mean.q_WI.setIdentity();
   belief.mean.rate_rad_s = samples.front().angular_velocity_rad_s;
-  belief.covariance.diagonal() << Vector3d::Constant(0.1), Vector3d::Constant(1.0), Vector3d::Constant(1.0),
-      Vector3d::Constant(100.0);
+  const BoundedAcceleration process(params_.jerk_psd, params_.rate_sigma_rad_s);
+  belief.covariance.diagonal() << Vector3d::Constant(0.1), Vector3d::Constant(1.0),
+      Vector3d::Constant(process.start()(0, 0)), Vector3d::Constant(process.start()(1, 1));
   for (std::size_t k = 0; k < count; ++k) {
     Step& step = steps[k];
     const double dt_s = k == 0 ? 0.0 : seconds(samples[k].time_ns - samples[k - 1].time_ns);
-    if (k > 0) predict(params_, noise, samples[k], dt_s, belief, step.transition);
+    if (k > 0) predict(params_, process, noise, samples[k], dt_s, belief, step.transition);
+    if (k > 0 && rest[k] && !rest[k - 1] && is_lost(params_, samples[k], belief)) {
+      start_anew(samples[k], belief, step.transition);
+    }
     step.before = belief;
     const int clipped = clippings[k].gyro | clippings[k].void_gyro;
     for (int j = 0; j < 3; ++j) {
+      if ((clippings[k].gyro >> j & 1) != 0) hold(params_, samples[k].angular_velocity_rad_s[j], j, belief);
       if ((clipped >> j & 1) != 0) continue;
       const double residual = samples[k].angular_velocity_rad_s[j] - belief.mean.rate_rad_s[j];
       measure_component(6 + j, residual, noise.gyro_variance, belief);

@@ -95,6 +95,15 @@ TEST_P(BroadClipping, IsNeverWorseThanTheClippedGyro) {
                 name, e.median, e.mean, e.largest, f.median, f.mean);
   }
 
+  // the rail is found without anybody stating it, down to a third of the slowest peak, and none where nothing clips
+  double found = 0.0;
+  for (int j = 0; j < 3; ++j) found = std::max(found, report.rail[static_cast<std::size_t>(j)].value_or(0.0));
+  EXPECT_NEAR(found, trial.rail_rad_s, 1e-9);
+  const RailDetector rails(params.rails);
+  RailDetector::State whole;
+  for (const ImuSample& sample : testing::read_broad_trial(folder, GetParam()).samples) rails.observe(sample, whole);
+  for (int c = 0; c < 6; ++c) EXPECT_FALSE(rails.rail(whole, c).has_value()) << c;
+
   // the noise of that gyro, three axes: what "worse" must exceed
   const double noise = params.model.gyro_noise_density * std::sqrt(3.0 * 285.714);
   EXPECT_LT(clipped.median, raw_clipped.median + noise);

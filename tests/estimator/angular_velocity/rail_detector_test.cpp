@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "oracles/gaussian.hpp"
@@ -62,6 +64,48 @@ TEST(RailDetector, NoisyPeaksAreNoPlateau) {
   const RailDetector rails({});
   RailDetector::State state;
   for (const Clipping& c : classify(rails, swinging_run(9.0, 10.5), state)) EXPECT_EQ(c, Clipping{});
+  for (int c = 0; c < 6; ++c) EXPECT_FALSE(rails.rail(state, c).has_value()) << c;
+}
+
+// of the swing with the noise and the digits of a device
+std::optional<double> rail_of(double amplitude, double rail, double noise_rad_s, double digit_rad_s) {
+  oracles::Gaussian noise(7);
+  const RailDetector rails({});
+  RailDetector::State state;
+  for (std::size_t k = 0; k < 3000; ++k) {
+    ImuSample sample;
+    sample.time_ns = static_cast<TimeNs>(k) * 10'000'000;
+    sample.specific_force_m_s2 = {0.0, 0.0, 9.81};
+    double rate = amplitude * std::sin(0.05 * static_cast<double>(k)) + noise_rad_s * noise.vector().x();
+    if (digit_rad_s > 0.0) rate = digit_rad_s * std::round(rate / digit_rad_s);
+    sample.angular_velocity_rad_s.x() = std::clamp(rate, -rail, rail);
+    rails.observe(sample, state);
+  }
+  return rails.rail(state, 0);
+}
+
+TEST(RailDetector, FindsAPlateauAtAnyLevel) {
+  for (const double rail : {0.05, 0.1, 0.3, 0.9, 3.0}) {
+    for (const double digit : {0.0, 1e-4}) {
+      EXPECT_NEAR(rail_of(3.0 * rail, rail, 0.01 * rail, digit).value_or(0.0), rail, 1e-12) << rail << " " << digit;
+    }
+  }
+}
+
+// the tops of slow swings are flat in coarse digits, and an axis that stands still is flat all along
+TEST(RailDetector, WhatIsFlatByNatureIsNoPlateau) {
+  for (const double amplitude : {0.03, 0.1, 0.5, 0.95}) {
+    for (const double digit : {0.0, 1e-3, 5e-3}) {
+      for (const double noise : {0.0, 1e-3, 5e-3}) {
+        EXPECT_FALSE(rail_of(amplitude, 100.0, noise, digit).has_value()) << amplitude << " " << digit << " " << noise;
+      }
+    }
+  }
+  const RailDetector rails({});
+  RailDetector::State state;
+  ImuSample dead;
+  dead.angular_velocity_rad_s = {0.3, -0.04, 0.0};
+  for (int k = 0; k < 100; ++k) rails.observe(dead, state);
   for (int c = 0; c < 6; ++c) EXPECT_FALSE(rails.rail(state, c).has_value()) << c;
 }
 

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <string>
 
+#include "scenarios/errors.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/rate_tumble.hpp"
 #include "scenarios/methods/registry.hpp"
@@ -55,6 +57,38 @@ TEST(RateLearnt, AFailedRunLeavesWhatWasLearnt) {
   rig.calibration.constants.lever_arm_m = {1.0, 2.0, 3.0};
   EXPECT_FALSE(run_rate_tumble(recording.sensors, defaults(), nullptr, &rig).status.ok());
   EXPECT_EQ(rig.calibration.constants.lever_arm_m, Eigen::Vector3d(1.0, 2.0, 3.0));
+}
+
+TEST(RateLearnt, BatchAndStreamStartFromWhatEitherHasLearnt) {
+  const sim::Recording recording = testing::synthetic_rig();
+  LearntRig rig;
+  rig.calibration.constants.gyro_bias_rad_s = {0.01, -0.02, 0.005};
+  rig.calibration.covariance = 1e-12 * RigConstants::Matrix::Identity();
+  for (const char* const name : {"rate/tumble", "rate/tumble_lag"}) {
+    const Method& method = *find_methods(name).front();
+    Learning learning{rig, {}, {}};
+    const Estimate informed = learning_method(method, learning).run(recording.sensors, {}, {});
+    const Estimate fresh = method.run(recording.sensors, {}, {});
+    ASSERT_TRUE(informed.status.ok()) << name;
+    ASSERT_EQ(informed.rates.size(), fresh.rates.size());
+    // in the middle of the first rest the rate is the reading less the bias: zero or what the file makes of it
+    EXPECT_LT(fresh.rates[150].w_WI_I_rad_s.norm(), 1e-3) << name;
+    EXPECT_GT((informed.rates[150].w_WI_I_rad_s - fresh.rates[150].w_WI_I_rad_s).norm(), 1e-3) << name;
+    const bool held = informed.health.at("rig_held") > 0.5, batch = std::string(name) == "rate/tumble";
+    EXPECT_EQ((batch ? learning.of_batch : learning.of_stream).has_value(), !held) << name;
+    EXPECT_FALSE((batch ? learning.of_stream : learning.of_batch).has_value()) << name;
+  }
+}
+
+TEST(RateLearnt, TheBatchOverridesTheStreamAndOtherMethodsAreRefused) {
+  Learning learning;
+  EXPECT_EQ(learning.found(), nullptr);
+  learning.of_stream = LearntRig{};
+  EXPECT_EQ(learning.found(), &*learning.of_stream);
+  learning.of_batch = LearntRig{};
+  EXPECT_EQ(learning.found(), &*learning.of_batch);
+  EXPECT_THROW(learning_method(*find_methods("rate/saave").front(), learning), BadInput);
+  EXPECT_THROW(learning_method(*find_methods("attitude/tumble").front(), learning), BadInput);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/errors.hpp"
+#include "scenarios/sweep/evaluate.hpp"
 #include "scenarios/sweep/results.hpp"
 #include "scenarios/sweep/run_situation.hpp"
 #include "scenarios/sweep/temporary_folder.hpp"
@@ -94,6 +95,25 @@ TEST_F(SweepTest, StoresEveryOutcomeResumesAndDoesNotDependOnJobs) {
   ASSERT_EQ(run.outcomes.size(), 1u);
   EXPECT_EQ(a.at("2position"), run.outcomes[0].recording_digest + run.outcomes[0].estimate_digest);
   EXPECT_EQ(run_digest(run).size(), 32u);
+}
+
+// nothing reads a lidar then; motion and IMUs are the same, which the estimate's digest shows
+TEST_F(SweepTest, RateMethodsAloneAreRunWithoutLidar) {
+  write("scenarios/catalogue/roll.yaml",
+        std::string(kRoll) + "  - {name: lidar, kind: rosette_lidar, device: mid100, site: mid100}\n");
+  Suite suite = small_suite(1);
+  suite.methods = {"rate/raw"};
+  sweep(data(), suite, folder_ / "rate.db", {});
+  sweep(data(), small_suite(1), folder_ / "all.db", {});
+  const Scenario scenario = load_scenario(data(), "roll");
+  const SimulatedDraw whole = simulate_draw(data(), scenario, 1, 1);
+  ASSERT_EQ(whole.recording.sensors.lidars.size(), 1u);
+  const std::string bare = digest_without_lidars(whole.recording);
+  EXPECT_NE(bare, whole.recording_digest);
+  EXPECT_EQ(simulate_draw(data(), scenario, 1, 1, Lidars::left_out).recording_digest, bare);
+  const RunResult run = run_situation(data(), scenario, 1, find_methods("rate/raw"), 1);
+  EXPECT_EQ(digests(folder_ / "rate.db").at("1rate"), bare + run.outcomes[0].estimate_digest);
+  EXPECT_EQ(digests(folder_ / "all.db").at("1rate"), whole.recording_digest + run.outcomes[0].estimate_digest);
 }
 
 // a draw that never moves is refused by the simulation, kept as such, and not tried again

@@ -21,11 +21,13 @@ namespace tumble {
 /// - `reject`: a causal Kalman filter whose rate is a random walk, so that it stands still over a gap. What Point-LIO
 ///   does with saturated rows while nothing else (no lidar) speaks: made for gaps shorter than the time between two
 ///   corrections by another sensor.
-/// - `constant_jerk`: a smoother whose jerk is a random walk (white noise on snap), so that a gap is bridged by the
-///   smoothest curve that keeps rate, acceleration and jerk on both sides. Made for swings that pass the rail once,
-///   without impacts.
+/// - `constant_jerk`: a smoother whose jerk is a random walk (white noise on snap) over short times and whose rate is
+///   bounded in the long run: the stationary process of Matern 5/2 with deviation `rate_sigma_rad_s`. A clipped reading
+///   is a wall that the curve leans on instead of being cut there. Works for swings that pass the rail without impacts
+///   and for gaps up to about 2 / lambda, lambda = (3 psd / (16 sigma^2))^(1/5), 0.2 s; over longer ones it falls back
+///   towards the rail, with the variance of a curve that is known to lie beyond it.
 ///
-/// In gaps of a third of a second, as long flights have them, the two smooth ones run away to the largest rate.
+/// In gaps of a third of a second, as long flights have them, `interpolate` runs away to the largest rate.
 ///
 /// What none of them models: impacts inside of a gap, and the coupling of the axes of a tumbling body.
 class ClippedBaseline {
@@ -39,7 +41,9 @@ class ClippedBaseline {
     /// Density of the white angular acceleration of `reject` [rad^2/s^3]; [1e-12, 1e12].
     double acceleration_psd = 1e3;
     /// Density of the white angular snap of `constant_jerk` [rad^2/s^7]; [1e-12, 1e15].
-    double snap_psd = 1e10;
+    double snap_psd = 1e8;
+    /// How fast the body turns as a rule, one axis, `constant_jerk` [rad/s]; [1e-3, 1e4].
+    double rate_sigma_rad_s = 20.0;
     double rate_max_rad_s = 50.0;  ///< no answer to a gap lies beyond; [1, 1e4]
     double gap_max_s = 1.0;        ///< longest time between samples before the run is refused; [1e-6, 3600]
   };

@@ -2,7 +2,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <span>
 #include <vector>
+
+#include "tumble/angular_velocity/rail_detector.hpp"
+#include "tumble/common/imu.hpp"
+#include "tumble/common/status.hpp"
 
 namespace tumble {
 
@@ -12,5 +18,35 @@ struct Companion {
   Eigen::Vector3d p_I_m = Eigen::Vector3d::Zero();   ///< from the primary IMU to it, primary IMU's axes
   std::vector<Eigen::Vector3d> specific_force_m_s2;  ///< one per sample of the primary; NaN where it says nothing
 };
+
+/// Another whole IMU C on the same rigid body, as it is mounted and how well it reads. Its biases are not estimated:
+/// they are part of the deviations, as are the errors of the mounting.
+struct CompanionImu {
+  Eigen::Isometry3d T_IC = Eigen::Isometry3d::Identity();  ///< its axes to those of the primary IMU
+  double gyro_noise_density = 5.236e-4;                    ///< [rad/s/sqrt(Hz)]; [1e-9, 1]
+  double accel_noise_density = 5.9e-4;                     ///< [m/s^2/sqrt(Hz)]; [1e-9, 10]
+  double gyro_error_rad_s = 0.01;  ///< bias, and of the scale and the mounting what does not grow; [1e-9, 10]
+  double accel_error_m_s2 = 0.07;  ///< difference of the two biases; [1e-9, 10]
+  double share_error = 2e-3;       ///< scale and misalignment, as a share of the reading; [0, 1]
+  double place_error_m = 2e-3;     ///< of p_IC; [1e-9, 1]
+  double clock_error_s = 1e-3;     ///< between the clocks of the two; [0, 0.1]
+};
+
+/// What a companion read at the time of a sample of the primary IMU, its own axes; NaN where an axis says nothing.
+struct CompanionReading {
+  Eigen::Vector3d rate_rad_s, force_m_s2;
+  Eigen::Vector3d rate_sigma_rad_s, force_sigma_m_s2;
+  /// Nothing.
+  CompanionReading();
+  bool sees_all_rates() const { return rate_rad_s.allFinite(); }
+  /// Bit for bit, NaN being equal to NaN.
+  bool same(const CompanionReading& other) const;
+};
+
+/// Readings of a companion at the stamps of the primary, by linear interpolation between neighbours no further apart
+/// than `gap_max_s`; clipped axes are left out (what does not know: the bound that they are). Trouble of its samples
+/// (`non_finite`, `time_order`): nothing is written. No samples: no reading says anything. O(N).
+Status align(const CompanionImu& companion, std::span<const ImuSample> samples, const RailDetector& rails,
+             std::span<const ImuSample> primary, double gap_max_s, std::vector<CompanionReading>& out);
 
 }  // namespace tumble

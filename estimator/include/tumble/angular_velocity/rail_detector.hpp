@@ -23,9 +23,11 @@ struct Clipping {
 /// unit to unit and from the data sheet (an MTi-30 specified for 7.85 rad/s was seen to stay at 10.5).
 ///
 /// A plateau is a run of readings of one sign that lie closer together than noise allows, at the largest magnitude
-/// seen so far on that axis. A stated range serves until a plateau is seen, and only as long as no reading exceeds it.
-/// Flags reported by the device count always. Clipping has hysteresis, so that the ragged edge of a plateau belongs
-/// to it. What it does not model: rails that differ between the two signs of an axis, or that drift.
+/// seen so far on that axis. Low ones must be longer and be entered or left by a jump of many digits of the device: the
+/// round top of a slow motion, read in coarse digits, and an axis that stands still are flat too. A stated range serves
+/// until a plateau is seen, and only as long as no reading exceeds it. Flags reported by the device count always.
+/// Clipping has hysteresis, so that the ragged edge of a plateau belongs to it. What it does not model: rails that
+/// differ between the two signs of an axis, or that drift.
 class RailDetector {
  public:
   struct Params {
@@ -40,9 +42,14 @@ class RailDetector {
     int plateau_samples = 4;
     /// Largest spread of a plateau as a share of its level; [0, 0.01]. Below the noise of a free reading.
     double plateau_spread_share = 2e-5;
+    /// A plateau of the gyro below this is a low one, which needs twice as many readings and a jump [rad/s]; (0, 1000].
+    double plateau_gyro_low_rad_s = 1.0;
     /// A plateau below this is no rail: gyro [rad/s] and accelerometer [m/s^2] (above gravity); (0, 1000].
-    double plateau_gyro_min_rad_s = 1.0;
+    double plateau_gyro_min_rad_s = 0.02;
     double plateau_accel_min_m_s2 = 15.0;
+    /// Digits (smallest changes seen between two readings) of the jump with which a low plateau begins or ends;
+    /// [1, 1000].
+    double plateau_jump_digits = 8.0;
     /// Stated and found rail disagree beyond this share; (0, 1].
     double disagreement_share = 0.02;
   };
@@ -53,6 +60,9 @@ class RailDetector {
     double peak = 0.0;  ///< largest magnitude seen
     double run_first = 0.0;
     int run_length = 0;
+    double before = 0.0;  ///< the last reading
+    double entry = 0.0;   ///< change with which the run began; 0: with the recording
+    double digit = 0.0;   ///< smallest change seen between two readings; 0: none yet
     double last = 0.0;
     bool clipped = false;
     bool operator==(const Channel&) const = default;
@@ -80,6 +90,8 @@ class RailDetector {
 
  private:
   std::optional<double> stated(int c) const;
+  /// Whether the run of readings at hand is a plateau that began or ended with `jump`.
+  bool plateau(int c, const Channel& channel, double jump) const;
   Params params_;
 };
 

@@ -2,9 +2,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstddef>
 #include <optional>
+#include <vector>
 
 #include "tumble/angular_velocity/arrow_solver.hpp"
+#include "tumble/angular_velocity/companion.hpp"
 #include "tumble/angular_velocity/partial_clipping.hpp"
 #include "tumble/angular_velocity/rail_detector.hpp"
 #include "tumble/angular_velocity/rate_factors.hpp"
@@ -25,6 +29,9 @@ struct RateModelParams {
   double inertia_sigma = 0.3;
   /// What an earlier run has learnt; takes the place of `nominal` and of the four deviations above.
   std::optional<RigCalibration> calibration = std::nullopt;
+
+  /// Other IMUs on the body, at most kCompanionsMax; their readings come with each sample.
+  std::vector<CompanionImu> companions = {};
 
   /// Noise density of the gyro [rad/s/sqrt(Hz)] (MTi-30: 0.03 deg/s/sqrt(Hz)); [1e-9, 1].
   double gyro_noise_density = 5.236e-4;
@@ -64,6 +71,8 @@ struct RateModelParams {
   double acceleration_max_rad_s2 = 5000.0;
 };
 
+inline constexpr std::size_t kCompanionsMax = 2;
+
 /// One sample as the model sees it.
 struct RateObservation {
   ImuSample sample;
@@ -72,9 +81,13 @@ struct RateObservation {
   std::uint8_t partial = 0;  ///< bit j: axis j met the rail in a part of its window only, see PartialLoss
   Eigen::Vector3d lost_rad_s = Eigen::Vector3d::Zero();  ///< of partial axes, signed as the reading
   Eigen::Vector3d lost_sigma_rad_s = Eigen::Vector3d::Zero();
+  std::array<CompanionReading, kCompanionsMax> companions = {};  ///< in the order of RateModelParams::companions
 
   /// Axes whose rate is not read: bound at most.
   std::uint8_t unseen() const {
+    for (const CompanionReading& companion : companions) {
+      if (companion.sees_all_rates()) return 0;
+    }
     return static_cast<std::uint8_t>((clipping.gyro | clipping.void_gyro) & ~(partial & ~clipping.void_gyro));
   }
 };
@@ -154,6 +167,8 @@ class RateModel {
   double gyro_sigma_rad_s() const { return gyro_sigma_rad_s_; }
 
  private:
+  void add_companions(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
+                      arrow::Block& block) const;
   Eigen::Matrix3d euler_information(const RateEstimate& estimate) const;
   double accel_sigma_m_s2(const RateObservation& observation) const;
 

@@ -74,7 +74,13 @@ class RateSmoother {
 
   /// One RateState per sample, and what the run tells of itself. On trouble (`empty`, `too_few`: less than two samples,
   /// `non_finite`, `time_order`, `gap`, `diverged`) nothing is written and the status names field, value and bound.
-  Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out, RateReport& report) const;
+  Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out, RateReport& report) const {
+    return estimate(samples, {}, out, report);
+  }
+  /// The same with other IMUs on the body: `companions` holds one list per RateModelParams::companions, one reading
+  /// per sample each (see align()); `too_few` when the numbers differ.
+  Status estimate(std::span<const ImuSample> samples, std::span<const std::vector<CompanionReading>> companions,
+                  std::vector<RateState>& out, RateReport& report) const;
 
   const Params& params() const { return params_; }
 

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "tumble/angular_velocity/arrow_solver.hpp"
@@ -21,11 +22,14 @@ namespace tumble {
 /// An estimate comes out when its sample is `lag_s` old, and a provisional one at once. O(window) per sample; no
 /// allocation after the State is made. Rails are learnt as they show themselves: up to the first plateau the stated
 /// range serves, so the first clipped samples of a device with a wrong or no stated range may be believed.
-/// Give it the calibration of an earlier run: what leaves the window is linearised for good, and while the lever arm is
-/// off by centimetres that makes the covariance of clipped axes too small: on 70 tumbles of the rig 90 % within three
-/// deviations in flight and 1.5 times the error of the batch over the whole recording. That is no worse than the batch
-/// over all that is known lag_s after a sample (1.6 times): the rig is learnt in the tumble that needs it. With a
-/// calibration all are within, and the error is that of the batch. What it does not model: see RateSmoother.
+/// Give it the calibration of an earlier run where there is one. Without it the rig is learnt in the tumble that needs
+/// it, from the first flight on, and what leaves the window is linearised and weighed for good while the constants are
+/// off by millimetres. The samples of a flight err together (its edges, an impact that was taken for flight), so that
+/// their formal covariance is too small: on 48 tumbles of the rig the lever arm was off by 5 of its deviations after 10
+/// samples of flight, by 3 after 40, by 1.5 after 70. The covariance of the rig is therefore widened while few samples
+/// have been learnt from (`rig_doubt`), and the covariance of the rates contains it so. Linearising 3 s of the past
+/// anew whenever the constants had moved was tried: it did not help, since it is not the linearisation that is wrong.
+/// What it does not model: see RateSmoother.
 class RateStream {
  public:
   struct Params {
@@ -38,7 +42,12 @@ class RateStream {
     double step_max_rad_s = 10.0;  ///< longest step of a rate at one sample; [1e-3, 1e4]
     int bound_age = 3;             ///< steps after which the bounds of a sample in contact are softened; [0, 4096]
     int flight_run_min = 6;        ///< a flight of fewer samples in a row says nothing of the rig; [0, 4096]
-    double bound_damping = 0.5;    ///< share of a new bound taken over in each step; [0.01, 1]
+    /// Of a rig without calibration: its covariance, but for the gyro's bias and never beyond that beforehand, counts 1
+    /// + rig_doubt / (1 + n / rig_doubt_samples) times, n being the samples of flight that have been learnt from; [0,
+    /// 1e3] and [1, 1e6].
+    double rig_doubt = 8.0;
+    double rig_doubt_samples = 10.0;
+    double bound_damping = 0.5;          ///< share of a new bound taken over in each step; [0.01, 1]
     double recovered_sigma_rad_s = 0.5;  ///< as in RateSmoother
     double rig_surprise_max = 1.5;       ///< beyond this what was learnt of the rig is dropped; [0.1, 1e6]
     double gap_max_s = 1.0;              ///< longest time between samples; [1e-6, 3600]
@@ -64,6 +73,7 @@ class RateStream {
     RateKnot prior_knot;
     RigConstants prior_rig;
     std::size_t samples = 0;
+    std::size_t learnt_from = 0;     ///< samples of flight that left the window and told of the rig
     std::size_t flight_run = 0;      ///< samples of flight in a row that left the window last
     std::size_t rig_resets = 0;      ///< times that what was learnt of the rig was dropped
     std::size_t failures = 0;        ///< steps whose system was not positive definite and was skipped
@@ -78,7 +88,13 @@ class RateStream {
 
   /// Takes one sample; `out` is the estimate of the sample that is lag_s old, empty while the window fills. On trouble
   /// (`non_finite`, `time_order`, `gap`) the state is left as it was and `out` is empty.
-  Status push(const ImuSample& sample, State& state, std::optional<RateState>& out) const;
+  Status push(const ImuSample& sample, State& state, std::optional<RateState>& out) const {
+    return push(sample, {}, state, out);
+  }
+  /// The same with what other IMUs on the body read at that time, one per RateModelParams::companions or none at all;
+  /// else `too_few`.
+  Status push(const ImuSample& sample, std::span<const CompanionReading> companions, State& state,
+              std::optional<RateState>& out) const;
 
   /// Provisional estimate of the newest sample; empty before the first.
   std::optional<RateState> newest(const State& state) const;
@@ -87,17 +103,18 @@ class RateStream {
   void flush(const State& state, std::vector<RateState>& out) const;
 
   /// What has been learnt of the rig.
-  RigCalibration calibration(const State& state) const { return {state.rig, state.rig_covariance}; }
+  RigCalibration calibration(const State& state) const { return {state.rig, widened(state)}; }
 
   /// True when two states will behave alike for ever (scratch space excluded), bit for bit.
   static bool equal(const State& a, const State& b);
 
  private:
   void marginalise_oldest(State& state) const;
-  void append(const ImuSample& sample, State& state) const;
+  void append(const ImuSample& sample, std::span<const CompanionReading> companions, State& state) const;
   void guess(Knot& knot, const Knot& previous, const State& state) const;
   void weigh(State& state) const;
   bool step(State& state) const;
+  RigConstants::Matrix widened(const State& state) const;
   RateState to_state(const Knot& knot) const;
 
   Params params_;

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/angular_velocity/companion.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "recording_check.hpp"
+
+namespace tumble {
+
+namespace {
+
+using Eigen::Vector3d;
+
+Vector3d nothing() {
+  return Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+}
+
+// Value between two readings and its deviation.
+struct Between {
+  Vector3d value, sigma;
+};
+
+Between between(const Vector3d& a, const Vector3d& b, double share, double dt_s, double noise, double error,
+                const CompanionImu& companion) {
+  const Vector3d change = (b - a).cwiseAbs();
+  // the chord misses a curve by up to a share (1 - share) of the change, and the clocks differ
+  const double crooked = share * (1.0 - share) + companion.clock_error_s / dt_s;
+  Between out;
+  out.value = (1.0 - share) * a + share * b;
+  const double scaled = companion.share_error * out.value.norm();
+  out.sigma = (Vector3d::Constant(noise * noise + error * error + scaled * scaled) + (crooked * change).cwiseAbs2())
+                  .cwiseSqrt();
+  return out;
+}
+
+}  // namespace
+
+CompanionReading::CompanionReading()
+    : rate_rad_s(nothing()), force_m_s2(nothing()), rate_sigma_rad_s(nothing()), force_sigma_m_s2(nothing()) {}
+
+bool CompanionReading::same(const CompanionReading& other) const {
+  const auto equal = [](const Vector3d& a, const Vector3d& b) {
+    return ((a.array() == b.array()) || (a.array().isNaN() && b.array().isNaN())).all();
+  };
+  return equal(rate_rad_s, other.rate_rad_s) && equal(force_m_s2, other.force_m_s2) &&
+         equal(rate_sigma_rad_s, other.rate_sigma_rad_s) && equal(force_sigma_m_s2, other.force_sigma_m_s2);
+}
+
+Status align(const CompanionImu& companion, std::span<const ImuSample> samples, const RailDetector& rails,
+             std::span<const ImuSample> primary, double gap_max_s, std::vector<CompanionReading>& out) {
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (Status status = check_sample(samples[k]); !status.ok()) return status;
+    if (k == 0) continue;
+    Status status = check_follows(samples[k].time_ns, samples[k - 1].time_ns, std::numeric_limits<double>::max());
+    if (!status.ok()) return status;
+  }
+  out.assign(primary.size(), {});
+  if (samples.size() < 2) return {};
+  std::vector<Clipping> clippings(samples.size());
+  RailDetector::State state;
+  rails.classify_all(samples, state, clippings);
+  const double root_rate = 1.0 / std::sqrt(median_period_s(samples));
+  std::size_t after = 1;
+  for (std::size_t k = 0; k < primary.size(); ++k) {
+    const TimeNs time_ns = primary[k].time_ns;
+    while (after + 1 < samples.size() && samples[after].time_ns < time_ns) ++after;
+    const ImuSample &a = samples[after - 1], &b = samples[after];
+    const double dt_s = seconds(b.time_ns - a.time_ns);
+    if (time_ns < a.time_ns || time_ns > b.time_ns || dt_s > gap_max_s) continue;
+    const double share = seconds(time_ns - a.time_ns) / dt_s;
+    const Between rate = between(a.angular_velocity_rad_s, b.angular_velocity_rad_s, share, dt_s,
+                                 companion.gyro_noise_density * root_rate, companion.gyro_error_rad_s, companion);
+    const Between force = between(a.specific_force_m_s2, b.specific_force_m_s2, share, dt_s,
+                                  companion.accel_noise_density * root_rate, companion.accel_error_m_s2, companion);
+    const Clipping &c = clippings[after - 1], &d = clippings[after];
+    for (int j = 0; j < 3; ++j) {
+      // a reading on which the other has no part says nothing of it
+      const bool left = share<1.0, right = share> 0.0;
+      const unsigned gyro = (left ? c.gyro | c.void_gyro : 0u) | (right ? d.gyro | d.void_gyro : 0u);
+      const unsigned accel = (left ? c.accel : 0u) | (right ? d.accel : 0u);
+      if ((gyro >> j & 1u) == 0) {
+        out[k].rate_rad_s[j] = rate.value[j];
+        out[k].rate_sigma_rad_s[j] = rate.sigma[j];
+      }
+      if ((accel >> j & 1u) == 0) {
+        out[k].force_m_s2[j] = force.value[j];
+        out[k].force_sigma_m_s2[j] = force.sigma[j];
+      }
+    }
+  }
+  return {};
+}
+
+}  // namespace tumble

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What other IMUs on the body say: the part of RateModel that deals with companions.
+#include <cmath>
+
+#include "tumble/angular_velocity/rate_model.hpp"
+
+namespace tumble {
+
+namespace {
+
+using Eigen::Vector3d;
+using Row = Eigen::Matrix<double, 1, 6>;  // by rate and scaled acceleration
+
+void add_row(const Row& row, double residual, double sigma, arrow::Block& block) {
+  const double information = 1.0 / (sigma * sigma);
+  block.diagonal.noalias() += information * row.transpose() * row;
+  block.gradient.noalias() -= information * residual * row.transpose();
+}
+
+// The part of the primary's force that a companion's axis sees, where none of it is clipped.
+bool sees_free_axes(const Eigen::RowVector3d& axis, const Clipping& clipping) {
+  constexpr double kSlight = 0.02;
+  for (int i = 0; i < 3; ++i) {
+    if ((clipping.accel >> i & 1u) != 0 && std::abs(axis[i]) > kSlight) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+void RateModel::add_companions(const RateObservation& observation, const RateEstimate& estimate,
+                               const RigConstants& rig, arrow::Block& block) const {
+  for (std::size_t i = 0; i < params_.companions.size(); ++i) {
+    const CompanionImu& mount = params_.companions[i];
+    const CompanionReading& reading = observation.companions[i];
+    const Eigen::Matrix3d R_CI = mount.T_IC.linear().transpose();
+    // the lever from the primary takes the place of that from the centre of mass: the forces differ by the rest
+    const RateFactor rotation =
+        flight_factor(estimate.knot, {.lever_arm_m = mount.T_IC.translation()}, Vector3d::Zero());
+    const Vector3d force = observation.sample.specific_force_m_s2 - rig.accel_bias_m_s2 + rotation.residual;
+    const double misplaced =
+        mount.place_error_m * (estimate.knot.rate_rad_s.squaredNorm() + estimate.knot.acceleration_rad_s2.norm());
+    for (int j = 0; j < 3; ++j) {
+      const Eigen::RowVector3d axis = R_CI.row(j);
+      if (std::isfinite(reading.rate_rad_s[j])) {
+        Row row = Row::Zero();
+        row.head<3>() = axis;
+        add_row(row, axis.dot(estimate.knot.rate_rad_s) - reading.rate_rad_s[j], reading.rate_sigma_rad_s[j], block);
+      }
+      if (!std::isfinite(reading.force_m_s2[j]) || !sees_free_axes(axis, observation.clipping)) continue;
+      Row row = axis * rotation.by_knot;
+      row.tail<3>() /= time_scale_s_;
+      const double sigma = std::hypot(reading.force_sigma_m_s2[j], misplaced, accel_sigma_m_s2(observation));
+      add_row(row, axis.dot(force) - reading.force_m_s2[j], sigma, block);
+    }
+  }
+}
+
+}  // namespace tumble

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "truncated_normal.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace tumble {
+
+namespace {
+
+// phi(z) / Phi(z) of the normal distribution, by its asymptotic series where both vanish
+double density_over_share(double z) {
+  if (z < -8.0) return -z / (1.0 - 1.0 / (z * z) + 3.0 / (z * z * z * z));
+  const double density = std::exp(-0.5 * z * z) * std::numbers::inv_sqrtpi / std::numbers::sqrt2;
+  return density / (0.5 * std::erfc(-z / std::numbers::sqrt2));
+}
+
+}  // namespace
+
+NormalMoments truncated_below(const NormalMoments& from, double bound, double softness2) {
+  const double spread2 = from.variance + softness2, spread = std::sqrt(spread2);
+  const double z = (from.mean - bound) / spread, r = density_over_share(z);
+  return {from.mean + from.variance * r / spread,
+          from.variance - from.variance * from.variance * r * (z + r) / spread2};
+}
+
+NormalSite refined_bound(const NormalMoments& marginal, const NormalSite& now, double bound, double softness2,
+                         double widest2, double share) {
+  const double precision = std::max(1.0 / marginal.variance - now.precision, 1.0 / widest2);
+  const NormalMoments cavity{(marginal.mean / marginal.variance - now.shift) / precision, 1.0 / precision};
+  const NormalMoments wanted = truncated_below(cavity, bound, softness2);
+  const double found = std::max(0.0, 1.0 / wanted.variance - precision);
+  const double shift = wanted.mean / wanted.variance - precision * cavity.mean;
+  return {now.precision + share * (found - now.precision), now.shift + share * (shift - now.shift)};
+}
+
+}  // namespace tumble

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a recording says beside the primary IMU's readings reaches the methods `tumble` and `tumble_lag`: further IMUs,
+// clip flags of the device, stated ranges, rails of the accelerometer; and what looks wrong in it is told.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "scenarios/methods/method.hpp"
+#include "scenarios/methods/synthetic_recording.hpp"
+#include "scenarios/scoring/score.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+Estimate run(const std::string& method, const sim::Recording& recording) {
+  Estimate estimate = find_methods("rate/" + method).front()->run(recording.sensors, {}, {&recording.truth});
+  EXPECT_TRUE(estimate.status.ok()) << estimate.status.message();
+  EXPECT_EQ(estimate.rates.size(), recording.sensors.imus.front().time_ns.size());
+  return estimate;
+}
+
+double clipped_median(const std::string& method, const sim::Recording& recording) {
+  const ScoringInput input{&recording.sensors, &recording.truth, nullptr};
+  for (const Score& score : score(Kind::rate, run(method, recording), input)) {
+    if (score.metric == "rate_error_clipped_median_rad_s") return score.value;
+  }
+  ADD_FAILURE() << "no score";
+  return NAN;
+}
+
+// a second IMU of the same kind elsewhere on the body, turned, half a period late
+void add_imu(const std::string& name, const Eigen::Vector3d& p_B_m, bool with_gyro, sim::Recording& recording) {
+  const testing::SyntheticMotion motion;
+  sim::ImuRecord record = recording.sensors.imus.front();
+  sim::ImuTruth truth = recording.truth.imus.front();
+  record.name = truth.name = name;
+  record.T_BI.translation() = p_B_m;
+  record.T_BI.linear() = Eigen::AngleAxisd(1.1, Eigen::Vector3d(-2, 1, 1).normalized()).toRotationMatrix();
+  truth.T_BI = record.T_BI;
+  for (std::size_t k = 0; k < record.time_ns.size(); ++k) {
+    record.time_ns[k] += record.period_ns / 2;
+    const double middle_s = 1e-9 * static_cast<double>(record.time_ns[k] - record.period_ns / 2);
+    const Eigen::Matrix3d R_IB = record.T_BI.linear().transpose();
+    const Eigen::Vector3d rate = R_IB * motion.rate_B_rad_s(middle_s);
+    record.gyro_rad_s[k] = rate.cwiseMax(-motion.rail_rad_s).cwiseMin(motion.rail_rad_s);
+    if (!with_gyro) record.gyro_rad_s[k] = Eigen::Vector3d::Constant(motion.rail_rad_s);
+    record.accel_m_s2[k] = R_IB * motion.specific_force_B_m_s2(middle_s, p_B_m);
+  }
+  recording.sensors.imus.push_back(record);
+  recording.truth.imus.push_back(truth);
+}
+
+// the turn is forced: no torque-free flight, so that one IMU cannot tell the clipped rate
+TEST(RateRecording, FurtherImusAreUsedAndTheReferenceIsNot) {
+  const sim::Recording alone = testing::synthetic_rig();
+  sim::Recording reference = alone, gyro = alone, accelerometers = alone;
+  add_imu("imu_reference", {0.2, 0.1, -0.1}, true, reference);
+  add_imu("imu_2", {0.2, 0.1, -0.1}, true, gyro);
+  add_imu("imu_2", {0.2, 0.1, -0.1}, false, accelerometers);
+  add_imu("imu_3", {-0.1, 0.2, 0.15}, false, accelerometers);
+  for (const std::string method : {"tumble", "tumble_lag"}) {
+    const double one = clipped_median(method, alone);
+    EXPECT_EQ(clipped_median(method, reference), one) << method;
+    EXPECT_LT(clipped_median(method, gyro), 0.1 * one) << method;
+    EXPECT_LT(clipped_median(method, accelerometers), 0.25 * one) << method;
+  }
+  EXPECT_EQ(run("tumble", reference).health.at("imus"), 1.0);
+  EXPECT_EQ(run("tumble", accelerometers).health.at("imus"), 3.0);
+}
+
+// a rail that shivers: no plateau and no stated range, the flags alone tell
+TEST(RateRecording, FlagsOfTheDeviceAreBelieved) {
+  sim::Recording recording = testing::synthetic_rig();
+  sim::ImuRecord& imu = recording.sensors.imus.front();
+  imu.stated_gyro_range_rad_s = 0.0;
+  std::size_t flagged = 0;
+  for (std::size_t k = 0; k < imu.time_ns.size(); ++k) {
+    for (int j = 0; j < 3; ++j) {
+      double& reading = imu.gyro_rad_s[k][j];
+      if (std::abs(reading) < 10.5) continue;
+      reading *= 1.0 - 0.03 * std::abs(std::sin(0.7 * static_cast<double>(k)));
+      imu.clip_flags[k] = static_cast<std::uint8_t>(imu.clip_flags[k] | 1u << j);
+      ++flagged;
+    }
+  }
+  ASSERT_GT(flagged, 50u);
+  sim::Recording unflagged = recording;
+  for (std::uint8_t& flags : unflagged.sensors.imus.front().clip_flags) flags = 0;
+  for (const std::string method : {"tumble", "tumble_lag"}) {
+    const Estimate with = run(method, recording), without = run(method, unflagged);
+    std::size_t told = 0, guessed = 0;
+    for (std::size_t k = 0; k < with.rates.size(); ++k) {
+      if (imu.clip_flags[k] == 0) continue;
+      told += with.rates[k].clipped_axes == imu.clip_flags[k];
+      guessed += without.rates[k].clipped_axes == imu.clip_flags[k];
+    }
+    EXPECT_EQ(told, flagged) << method;
+    EXPECT_LT(guessed, flagged / 2) << method;
+  }
+}
+
+TEST(RateRecording, AStatedRangeThatTheDataContradictIsTold) {
+  sim::Recording recording = testing::synthetic_rig();
+  EXPECT_EQ(run("tumble", recording).health.at("rails_disagreeing"), 0.0);
+  const double right = clipped_median("tumble", recording);
+  for (const double stated : {7.854, 14.0}) {
+    recording.sensors.imus.front().stated_gyro_range_rad_s = stated;
+    const Estimate estimate = run("tumble", recording);
+    EXPECT_GE(estimate.health.at("rails_disagreeing"), 1.0) << stated;
+    EXPECT_EQ(estimate.health.at("learnt_gyro_rail_y_rad_s"), 10.5) << stated;
+    EXPECT_EQ(clipped_median("tumble", recording), right) << stated;  // the plateau counts
+  }
+}
+
+TEST(RateRecording, UnitsThatLookWrongAreTold) {
+  sim::Recording recording = testing::synthetic_rig();
+  const Estimate right = run("tumble", recording);
+  EXPECT_EQ(right.health.at("rate_unit_suspect"), 0.0);
+  EXPECT_EQ(right.health.at("force_unit_suspect"), 0.0);
+  sim::Recording degrees = recording, in_g = recording;
+  for (Eigen::Vector3d& rate : degrees.sensors.imus.front().gyro_rad_s) rate *= 57.29578;
+  for (Eigen::Vector3d& force : in_g.sensors.imus.front().accel_m_s2) force /= 9.80665;
+  EXPECT_EQ(run("tumble", degrees).health.at("rate_unit_suspect"), 1.0);
+  EXPECT_EQ(run("tumble", in_g).health.at("force_unit_suspect"), 1.0);
+}
+
+// a fall about the centre of mass of which an accelerometer axis clips: stated, it is a bound; taken for a reading it
+// misleads
+TEST(RateRecording, ClippedAxesOfTheAccelerometerAreBounds) {
+  sim::Recording recording = testing::synthetic_rig();
+  sim::ImuRecord& imu = recording.sensors.imus.front();
+  const testing::SyntheticMotion motion;
+  const Eigen::Vector3d p_B = imu.T_BI.translation();
+  double largest = 0.0;
+  for (std::size_t k = 0; k < imu.time_ns.size(); ++k) {
+    const double middle_s = 1e-9 * static_cast<double>(imu.time_ns[k]) - 0.0025;
+    imu.accel_m_s2[k] =
+        imu.T_BI.linear().transpose() *
+        (motion.specific_force_B_m_s2(middle_s, p_B) - motion.specific_force_B_m_s2(middle_s, Eigen::Vector3d::Zero()));
+    largest = std::max(largest, imu.accel_m_s2[k].cwiseAbs().maxCoeff());
+  }
+  const double free = clipped_median("tumble", recording);
+  const double rail = 0.85 * largest;
+  std::size_t clipped = 0;
+  for (Eigen::Vector3d& force : imu.accel_m_s2) {
+    clipped += force.cwiseAbs().maxCoeff() > rail;
+    force = force.cwiseMax(-rail).cwiseMin(rail);
+  }
+  ASSERT_GT(clipped, 20u);
+  // shivering a little, so that no plateau gives it away
+  for (std::size_t k = 0; k < imu.accel_m_s2.size(); ++k) {
+    imu.accel_m_s2[k] *= 1.0 - 1e-3 * std::abs(std::sin(0.9 * static_cast<double>(k)));
+  }
+  imu.stated_accel_range_m_s2 = rail;
+  const double stated = clipped_median("tumble", recording);
+  imu.stated_accel_range_m_s2 = 1000.0;
+  const double hidden = clipped_median("tumble", recording);
+  EXPECT_LT(stated, 0.8 * hidden) << "without a rail " << free;
+}
+
+}  // namespace
+}  // namespace tumble::scenarios

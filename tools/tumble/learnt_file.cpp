@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/tumble/learnt_file.hpp"
+
+#include <utility>
+
+namespace tumble::tools {
+
+LearntFile::LearntFile(std::filesystem::path path) : path_(std::move(path)) {
+  if (!path_.empty() && std::filesystem::exists(path_)) learning_.given = scenarios::read_learnt_rig(path_);
+}
+
+bool LearntFile::learns(const scenarios::Method& method) {
+  return method.info.kind == scenarios::Kind::rate &&
+         (method.info.name == "tumble" || method.info.name == "tumble_lag");
+}
+
+scenarios::Method LearntFile::wrap(const scenarios::Method& method) {
+  return path_.empty() || !learns(method) ? method : scenarios::learning_method(method, learning_);
+}
+
+void LearntFile::keep() const {
+  if (!path_.empty() && learning_.found() != nullptr) scenarios::write_learnt_rig(path_, *learning_.found());
+}
+
+}  // namespace tumble::tools
