@@ -25,7 +25,7 @@ namespace tumble {
 /// Give it the calibration of an earlier run where there is one. Without it the rig is learnt in the tumble that needs
 /// it, from the first flight on, and what leaves the window is linearised and weighed for good while the constants are
 /// off by millimetres. The samples of a flight err together (its edges, an impact that was taken for flight), so that
-/// their formal covariance is too small: on 48 tumbles of the rig the lever arm was off by 5 of its deviations after 10
+/// their formal covariance is too small: on tumbles of the rig the lever arm was off by 5 of its deviations after 10
 /// samples of flight, by 3 after 40, by 1.5 after 70. The covariance of the rig is therefore widened while few samples
 /// have been learnt from (`rig_doubt`), and the covariance of the rates contains it so. Linearising 3 s of the past
 /// anew whenever the constants had moved was tried: it did not help, since it is not the linearisation that is wrong.
