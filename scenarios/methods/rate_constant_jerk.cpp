@@ -8,7 +8,7 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::array<sim::Parameter, 2> kParameters = {{
-    {"snap_psd_rad2_s7", 1e8, 1e-12, 1e15, "rad^2/s^7", "density of the white angular snap that drives the jerk"},
+    {"snap_psd_rad2_s7", 1e9, 1e-12, 1e15, "rad^2/s^7", "density of the white angular snap that drives the jerk"},
     {"rate_sigma_rad_s", 20.0, 1e-3, 1e4, "rad/s", "deviation of the rate in the long run, which bounds long gaps"},
 }};
 

@@ -128,9 +128,20 @@ std::span<const sim::Parameter> tumble_rate_parameters() {
 void start_from_learnt(const LearntRig& rig, RateSmoother::Params& params) {
   const RigConstants::Matrix prior = RateModel(params.model, 0.01).prior_covariance();
   start_from(rig, kTrust, params);
-  // never wider than before anything was learnt
+  // biases are of one switch-on: the next run begins with what is assumed without any other
+  constexpr int kBias = 3, kBiases = 6;
+  RigConstants& constants = params.model.calibration->constants;
+  constants.gyro_bias_rad_s = params.model.nominal.gyro_bias_rad_s;
+  constants.accel_bias_m_s2 = params.model.nominal.accel_bias_m_s2;
   RigConstants::Matrix& covariance = params.model.calibration->covariance;
-  const RigConstants::Matrix information = covariance.inverse() + (1.0 - 1.0 / kTrust) * prior.inverse();
+  covariance.middleRows<kBiases>(kBias).setZero();
+  covariance.middleCols<kBiases>(kBias).setZero();
+  // never wider than before anything was learnt
+  const RigConstants::Matrix floor = (1.0 - 1.0 / kTrust) * prior.inverse();
+  RigConstants::Matrix filled = covariance;
+  filled.block<kBiases, kBiases>(kBias, kBias).setIdentity();
+  RigConstants::Matrix information = filled.inverse() + floor;
+  information.block<kBiases, kBiases>(kBias, kBias) = prior.block<kBiases, kBiases>(kBias, kBias).inverse();
   covariance = information.inverse();
 }
 

@@ -34,7 +34,8 @@ Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& paramet
 Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
                              LearntRig* found);
 
-/// Makes what was learnt of the rig the start of a smoother: constants with four times their covariance, see above.
+/// Makes what was learnt of the rig the start of a smoother: lever arm and inertia with four times their covariance,
+/// see above, and the rails. Biases are of one switch-on and start anew.
 void start_from_learnt(const LearntRig& rig, RateSmoother::Params& params);
 
 /// What several runs on one rig start from and what they have learnt.

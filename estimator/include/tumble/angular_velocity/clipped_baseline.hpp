@@ -24,10 +24,11 @@ namespace tumble {
 /// - `constant_jerk`: a smoother whose jerk is a random walk (white noise on snap) over short times and whose rate is
 ///   bounded in the long run: the stationary process of Matern 5/2 with deviation `rate_sigma_rad_s`. A clipped reading
 ///   is a wall that the curve leans on instead of being cut there. Works for swings that pass the rail without impacts
-///   and for gaps up to about 2 / lambda, lambda = (3 psd / (16 sigma^2))^(1/5), 0.2 s; over longer ones it falls back
+///   and for gaps up to about 2 / lambda, lambda = (3 psd / (16 sigma^2))^(1/5), 0.15 s; over longer ones it falls back
 ///   towards the rail, with the variance of a curve that is known to lie beyond it.
 ///
-/// In gaps of a third of a second, as long flights have them, `interpolate` runs away to the largest rate.
+/// Where a gap begins or ends with an impact its slope is carried into the gap, and both smooth ones leave the truth:
+/// on tumbles of the rig their means are worse than the clipped reading.
 ///
 /// What none of them models: impacts inside of a gap, and the coupling of the axes of a tumbling body.
 class ClippedBaseline {
@@ -41,7 +42,7 @@ class ClippedBaseline {
     /// Density of the white angular acceleration of `reject` [rad^2/s^3]; [1e-12, 1e12].
     double acceleration_psd = 1e3;
     /// Density of the white angular snap of `constant_jerk` [rad^2/s^7]; [1e-12, 1e15].
-    double snap_psd = 1e8;
+    double snap_psd = 1e9;
     /// How fast the body turns as a rule, one axis, `constant_jerk` [rad/s]; [1e-3, 1e4].
     double rate_sigma_rad_s = 20.0;
     double rate_max_rad_s = 50.0;  ///< no answer to a gap lies beyond; [1, 1e4]
