@@ -32,7 +32,8 @@ void export_kitti(const sim::Truth& truth, const std::filesystem::path& file);
 /// f_B, label.
 void export_csv(const sim::Sensors& sensors, const sim::Truth* truth, const std::filesystem::path& folder);
 
-/// NAME_000000.ply (or .pcd) per sweep, binary, not deskewed, in L: x y z intensity ring offset_ns.
+/// NAME_000000.ply (or .pcd) per sweep, binary, not deskewed, in L: x y z intensity ring, and offset_ns where points have
+/// times of their own; the sweeps' starts in NAME_times.txt, seconds. import_sweeps takes them back to the bit.
 void export_ply(const sim::Sensors& sensors, const std::filesystem::path& folder);
 void export_pcd(const sim::Sensors& sensors, const std::filesystem::path& folder);
 

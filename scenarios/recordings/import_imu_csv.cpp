@@ -10,6 +10,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/import.hpp"
+#include "scenarios/recordings/sweep_stamps.hpp"
 
 namespace tumble::scenarios {
 
@@ -137,14 +138,6 @@ std::int64_t stamp_ns(const Line& line, const Layout& layout) {
          whole_number(line, layout.stamp + 1, kSecond_ns - 1);
 }
 
-std::int64_t median_step(const std::vector<std::int64_t>& times) {
-  std::vector<std::int64_t> steps;
-  for (std::size_t i = 1; i < times.size(); ++i) steps.push_back(times[i] - times[i - 1]);
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
-}
-
 void append_sample(const Line& line, const Layout& layout, double scale, std::int64_t& first_ns, sim::ImuRecord& imu) {
   const std::int64_t stamp = stamp_ns(line, layout);
   if (imu.time_ns.empty()) first_ns = stamp;
@@ -199,10 +192,11 @@ Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord&
   if (imu.time_ns.size() < 2)
     throw BadInput(path.string() + ": holds " + std::to_string(imu.time_ns.size()) + " samples, needs 2");
   require_plausible_force(path.string(), imu, unit);
-  imu.period_ns = median_step(imu.time_ns);
+  imu.period_ns = median_step_ns(imu.time_ns);
   Imported out;
   out.info.attribution =
       "imported from " + path.filename().string() + ", first stamp " + std::to_string(first_ns) + " ns";
+  out.info.origin_ns = first_ns;
   out.sensors.imus.push_back(std::move(imu));
   return out;
 }

@@ -133,6 +133,7 @@ RecordingInfo read_info(const std::filesystem::path& path) {
   info.tumble_version = root.text_attribute("tumble_version");
   info.engine_version = root.text_attribute("engine_version");
   info.attribution = root.text_attribute("attribution");
+  if (root.has_attribute("origin_ns")) info.origin_ns = root.int_attribute("origin_ns");
   info.digest = root.text_attribute("digest");
   info.has_truth = root.int_attribute("has_truth") != 0;
   return info;

@@ -78,6 +78,7 @@ void write_info(const hdf5::Group& root, const RecordingInfo& info, const std::s
   root.write_attribute("tumble_version", info.tumble_version);
   root.write_attribute("engine_version", info.engine_version);
   root.write_attribute("attribution", info.attribution);
+  if (info.origin_ns != 0) root.write_attribute("origin_ns", info.origin_ns);
   root.write_attribute("digest", digest_of_all);
   root.write_attribute("has_truth", std::int64_t{has_truth});
 }
