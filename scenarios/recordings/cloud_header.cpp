@@ -78,9 +78,9 @@ class HeaderLines {
 /// Bytes of a PLY type; 0 when it is none.
 std::uint64_t ply_bytes(const std::string& type) {
   static const std::map<std::string, std::uint64_t> known = {
-      {"char", 1},  {"int8", 1},  {"uchar", 1}, {"uint8", 1},  {"short", 2},   {"int16", 2},  {"ushort", 2}, {"uint16", 2},
-      {"int", 4},   {"int32", 4}, {"uint", 4},  {"uint32", 4}, {"float", 4},   {"float32", 4},
-      {"double", 8}, {"float64", 8}};
+      {"char", 1},   {"int8", 1},    {"uchar", 1},  {"uint8", 1},  {"short", 2}, {"int16", 2},
+      {"ushort", 2}, {"uint16", 2},  {"int", 4},    {"int32", 4},  {"uint", 4},  {"uint32", 4},
+      {"float", 4},  {"float32", 4}, {"double", 8}, {"float64", 8}};
   const auto found = known.find(type);
   return found == known.end() ? 0 : found->second;
 }

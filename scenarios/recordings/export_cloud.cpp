@@ -24,8 +24,9 @@ std::string ply_header(std::size_t points, bool timed) {
 
 std::string pcd_header(std::size_t points, bool timed) {
   const std::string count = std::to_string(points);
-  const char* fields = timed ? "FIELDS x y z intensity ring offset_ns\nSIZE 4 4 4 4 2 4\nTYPE F F F F U U\nCOUNT 1 1 1 1 1 1"
-                             : "FIELDS x y z intensity ring\nSIZE 4 4 4 4 2\nTYPE F F F F U\nCOUNT 1 1 1 1 1";
+  const char* fields =
+      timed ? "FIELDS x y z intensity ring offset_ns\nSIZE 4 4 4 4 2 4\nTYPE F F F F U U\nCOUNT 1 1 1 1 1 1"
+            : "FIELDS x y z intensity ring\nSIZE 4 4 4 4 2\nTYPE F F F F U\nCOUNT 1 1 1 1 1";
   return std::string("# .PCD v0.7 - one lidar sweep, lidar axes, metres, not deskewed\nVERSION 0.7\n") + fields +
          "\nWIDTH " + count + "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + count + "\nDATA binary\n";
 }

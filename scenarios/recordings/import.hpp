@@ -48,17 +48,17 @@ struct SweepSource {
 
 /// Reads the sweeps of a lidar, a file each, in natural order of their names (sweep_stamps.hpp, cloud_file.hpp,
 /// sweep_builder.hpp). The stamp of a sweep is taken from `times`, else from the names, else from the absolute times of
-/// its points, else from `steady_ns`. Time 0 is the first sweep's start, or the clock's own zero when that is less than a
-/// second before. Throws BadInput with the file: what those say; another number of stamps than of files, files of
+/// its points, else from `steady_ns`. Time 0 is the first sweep's start, or the clock's own zero when that is less than
+/// a second before. Throws BadInput with the file: what those say; another number of stamps than of files, files of
 /// several lidars, sweeps without times.
 Imported import_sweeps(const SweepSource& source);
 
 /// A pose file of somebody else.
 struct ReferenceSource {
   std::filesystem::path file;
-  std::string format;   ///< "tum" or "kitti"
-  bool of_body = false;  ///< poses of the body; else of the first lidar, by its T_BL
-  bool sorted = false;   ///< lines may be in any order: read_tum_poses
+  std::string format;           ///< "tum" or "kitti"
+  bool of_body = false;         ///< poses of the body; else of the first lidar, by its T_BL
+  bool sorted = false;          ///< lines may be in any order: read_tum_poses
   std::filesystem::path times;  ///< of a KITTI file without sweeps
   std::int64_t steady_ns = 0;   ///< the same: poses follow each other by this
 };
@@ -67,8 +67,9 @@ struct ReferenceSource {
 /// of. Time 0 as above. Throws BadInput.
 Imported import_trajectory(const ReferenceSource& source);
 
-/// Makes the poses the truth of `recording`, in the clock of its source (`origin_ns`); a KITTI file has a pose per sweep.
-/// The truth ends with the sensors. Throws BadInput: what the reader says, no lidar for poses of one, no overlap.
+/// Makes the poses the truth of `recording`, in the clock of its source (`origin_ns`); a KITTI file has a pose per
+/// sweep. The truth ends with the sensors. Throws BadInput: what the reader says, no lidar for poses of one, no
+/// overlap.
 void attach_reference(Imported& recording, const ReferenceSource& source);
 
 /// Puts the IMUs of `imu`, in the same clock, beside the sensors of `recording`; the earlier time 0 holds. Throws

@@ -22,8 +22,7 @@ std::vector<std::int64_t> own_times(const ReferenceSource& source) {
 
 std::vector<ReferencePose> poses_of(const ReferenceSource& source, const std::vector<std::int64_t>& sweeps_ns) {
   if (source.format == "tum") return read_tum_poses(source.file, source.sorted);
-  if (source.format == "kitti")
-    return read_kitti_poses(source.file, sweeps_ns.empty() ? own_times(source) : sweeps_ns);
+  if (source.format == "kitti") return read_kitti_poses(source.file, sweeps_ns.empty() ? own_times(source) : sweeps_ns);
   throw BadInput("poses of format '" + source.format + "' are not read: tum or kitti");
 }
 
@@ -37,11 +36,11 @@ void move_to(std::vector<ReferencePose>& poses, const Eigen::Isometry3d& T_AB) {
   }
 }
 
-sim::Truth named(const std::filesystem::path& file, const std::vector<ReferencePose>& poses, std::int64_t end_ns) {
+sim::Truth named(const std::string& where, const std::vector<ReferencePose>& poses, std::int64_t end_ns) {
   try {
     return reference_truth(poses, end_ns);
   } catch (const BadInput& error) {
-    throw BadInput(file.string() + ": " + error.what());
+    throw BadInput(where + ": " + error.what());
   }
 }
 
@@ -53,27 +52,30 @@ Imported import_trajectory(const ReferenceSource& source) {
   Imported out;
   out.info.origin_ns = origin_of(poses.front().time_ns);
   for (ReferencePose& pose : poses) pose.time_ns -= out.info.origin_ns;
-  out.reference = named(source.file, poses, poses.back().time_ns);
+  out.reference = named(source.file.string(), poses, poses.back().time_ns);
   out.info.attribution = "imported from " + source.file.filename().string();
   return out;
 }
 
-void attach_reference(Imported& recording, const ReferenceSource& source) {
+void attach_poses(Imported& recording, std::vector<ReferencePose> poses, bool of_body, const std::string& where) {
   const sim::Sensors& sensors = recording.sensors;
-  if (sensors.lidars.empty() && (source.format == "kitti" || !source.of_body)) {
-    throw BadInput(source.file.string() + ": a KITTI file, and poses of a lidar, need a recording with a lidar");
-  }
-  std::vector<std::int64_t> sweeps_ns;
-  if (!sensors.lidars.empty()) sweeps_ns = sensors.lidars.front().sweep_start_ns;
-  std::vector<ReferencePose> poses = poses_of(source, sweeps_ns);
-  if (source.format == "tum") {
-    for (ReferencePose& pose : poses) pose.time_ns -= recording.info.origin_ns;
-  }
-  if (!source.of_body) move_to(poses, sensors.lidars.front().T_BL.inverse(Eigen::Isometry));
-  sim::Truth truth = named(source.file, poses, span_of(sensors).second);
+  if (sensors.lidars.empty() && !of_body) throw BadInput(where + ": poses of a lidar, and the recording has none");
+  for (ReferencePose& pose : poses) pose.time_ns -= recording.info.origin_ns;
+  if (!of_body) move_to(poses, sensors.lidars.front().T_BL.inverse(Eigen::Isometry));
+  sim::Truth truth = named(where, poses, span_of(sensors).second);
   for (const sim::ImuRecord& imu : sensors.imus) truth.imus.push_back({imu.name, imu.T_BI, {}, {}, {}, {}, {}, {}, {}});
   for (const sim::LidarRecord& lidar : sensors.lidars) truth.lidars.push_back({lidar.name, lidar.T_BL, {}, {}});
   recording.reference = std::move(truth);
+}
+
+void attach_reference(Imported& recording, const ReferenceSource& source) {
+  const sim::Sensors& sensors = recording.sensors;
+  if (sensors.lidars.empty() && source.format == "kitti")
+    throw BadInput(source.file.string() + ": a KITTI file has a pose per sweep, and the recording has no lidar");
+  std::vector<std::int64_t> sweeps_ns;
+  if (!sensors.lidars.empty()) sweeps_ns = sensors.lidars.front().sweep_start_ns;
+  for (std::int64_t& time : sweeps_ns) time += recording.info.origin_ns;
+  attach_poses(recording, poses_of(source, sweeps_ns), source.of_body, source.file.string());
   recording.info.attribution += "; reference from " + source.file.filename().string();
 }
 

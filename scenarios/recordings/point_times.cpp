@@ -19,8 +19,8 @@ struct Unit {
   double ns;
 };
 constexpr std::array<Unit, 4> kUnits = {{{"s", 1e9}, {"ms", 1e6}, {"us", 1e3}, {"ns", 1.0}}};
-constexpr std::array<const char*, 8> kNames = {"t",           "time",        "timestamp",   "timestamps",
-                                               "time_stamp",  "offset_time", "time_offset", "offset"};
+constexpr std::array<const char*, 8> kNames = {"t",          "time",        "timestamp",   "timestamps",
+                                               "time_stamp", "offset_time", "time_offset", "offset"};
 /// Share of the sweep period that the times of a sweep span: a sector of 7 degrees at least, and some overlap at most.
 /// Units that follow each other differ by a thousand: one fits at most.
 constexpr double kSpanMin = 0.02, kSpanMax = 1.5;
@@ -57,7 +57,8 @@ std::string choose_field(const Cloud& cloud, const SweepReading& reading, const 
   std::string found;
   for (const std::string& name : cloud.names) {
     if (!is_time(name)) continue;
-    if (!found.empty()) throw BadInput(where + ": the fields '" + found + "' and '" + name + "' may both be times; say which");
+    if (!found.empty())
+      throw BadInput(where + ": the fields '" + found + "' and '" + name + "' may both be times; say which");
     found = name;
   }
   return found;
@@ -120,10 +121,11 @@ PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t per
   const std::string unit = reading.time_unit;
   const auto* named = std::find_if(kUnits.begin(), kUnits.end(), [&](const Unit& each) { return unit == each.name; });
   const double span = middle(spans), period = static_cast<double>(period_ns);
-  if (!unit.empty() && named == kUnits.end()) throw BadInput("the unit of times is '" + unit + "', must be s, ms, us or ns");
+  if (!unit.empty() && named == kUnits.end())
+    throw BadInput("the unit of times is '" + unit + "', must be s, ms, us or ns");
   if (unit.empty()) named = unit_of_name(lower(rule.field));
-  rule.unit_ns = named != nullptr && named != kUnits.end() ? named->ns
-                                                           : unit_by_size(span, largest, period, rule.field, where);
+  rule.unit_ns =
+      named != nullptr && named != kUnits.end() ? named->ns : unit_by_size(span, largest, period, rule.field, where);
   for (const Cloud& cloud : first) {
     const auto [begin, end] = reach(cloud, rule.field);
     const double bound = period_ns > 0 ? 2.0 * period : kEpochMin_s * 1e9;

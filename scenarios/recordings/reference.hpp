@@ -19,16 +19,20 @@ struct ReferencePose {
   Eigen::Quaterniond q_WA = Eigen::Quaterniond::Identity();
 };
 
+/// What is wrong with a pose that follows another one (or none): not finite, a quaternion whose norm is off by more
+/// than a percent, a stamp that does not rise; "" when nothing is. A quaternion that passes is made of unit length.
+std::string problem_of(ReferencePose& pose, const ReferencePose* before);
+
 /// "tum" or "kitti", by the numbers in the first line that holds some (8 or 12). Throws BadInput.
 std::string pose_format(const std::filesystem::path& file);
 
-/// Poses of a TUM file: "t x y z qx qy qz qw" a line, seconds, '#' begins a remark. `sorted` puts the lines in the order
-/// of time and keeps the first of equal stamps. Throws BadInput with file and line: not eight finite numbers, a
+/// Poses of a TUM file: "t x y z qx qy qz qw" a line, seconds, '#' begins a remark. `sorted` puts the lines in the
+/// order of time and keeps the first of equal stamps. Throws BadInput with file and line: not eight finite numbers, a
 /// quaternion whose norm is off by more than a percent, a stamp that does not rise (unless sorted), fewer than two.
 std::vector<ReferencePose> read_tum_poses(const std::filesystem::path& file, bool sorted);
 
-/// Poses of a KITTI file, the upper three rows of a matrix a line, at these times. Throws BadInput with file and line: not
-/// twelve finite numbers, no rotation (to 1e-3), another number of poses than of times.
+/// Poses of a KITTI file, the upper three rows of a matrix a line, at these times. Throws BadInput with file and line:
+/// not twelve finite numbers, no rotation (to 1e-3), another number of poses than of times.
 std::vector<ReferencePose> read_kitti_poses(const std::filesystem::path& file,
                                             const std::vector<std::int64_t>& times_ns);
 

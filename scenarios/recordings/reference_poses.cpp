@@ -31,14 +31,8 @@ double finite(const Table& table, const Table::Row& row, std::size_t column) {
 ReferencePose tum_pose(const Table& table, const Table::Row& row) {
   ReferencePose pose;
   pose.time_ns = table.time_ns(row, 0);
-  for (int i = 0; i < 3; ++i) pose.p_WA_m[i] = finite(table, row, static_cast<std::size_t>(1 + i));
-  for (int i = 0; i < 4; ++i) pose.q_WA.coeffs()[i] = finite(table, row, static_cast<std::size_t>(4 + i));
-  const double norm = pose.q_WA.norm();
-  if (!(std::abs(norm - 1.0) <= kNormTolerance)) {
-    fail(table, row, "quaternion of norm " + std::to_string(norm) + ", must be 1 within a percent");
-  }
-  // what is of unit length to the last bits stays as it is
-  if (std::abs(norm - 1.0) > 1e-12) pose.q_WA.normalize();
+  for (int i = 0; i < 3; ++i) pose.p_WA_m[i] = table.number(row, static_cast<std::size_t>(1 + i));
+  for (int i = 0; i < 4; ++i) pose.q_WA.coeffs()[i] = table.number(row, static_cast<std::size_t>(4 + i));
   return pose;
 }
 
@@ -50,13 +44,26 @@ Eigen::Matrix<double, 3, 4> kitti_matrix(const Table& table, const Table::Row& r
   const Eigen::Matrix3d R = T.leftCols<3>();
   const double departure = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (!(departure <= kRotationTolerance) || R.determinant() < 0.0) {
-    fail(table, row, "the first three columns are off a rotation by " + std::to_string(departure) +
-                         ", must be within " + std::to_string(kRotationTolerance));
+    fail(table, row,
+         "the first three columns are off a rotation by " + std::to_string(departure) + ", must be within " +
+             std::to_string(kRotationTolerance));
   }
   return T;
 }
 
 }  // namespace
+
+std::string problem_of(ReferencePose& pose, const ReferencePose* before) {
+  if (!pose.p_WA_m.allFinite() || !pose.q_WA.coeffs().allFinite()) return "the pose is not finite";
+  const double norm = pose.q_WA.norm();
+  if (!(std::abs(norm - 1.0) <= kNormTolerance))
+    return "quaternion of norm " + std::to_string(norm) + ", must be 1 within a percent";
+  // what is of unit length to the last bits stays as it is
+  if (std::abs(norm - 1.0) > 1e-12) pose.q_WA.normalize();
+  if (before == nullptr || pose.time_ns > before->time_ns) return "";
+  return "stamp " + std::to_string(pose.time_ns) + " ns does not rise, the one before is " +
+         std::to_string(before->time_ns) + " ns; a file of poses is sorted when asked for";
+}
 
 std::string pose_format(const std::filesystem::path& file) {
   std::ifstream stream(file);
@@ -76,11 +83,9 @@ std::vector<ReferencePose> read_tum_poses(const std::filesystem::path& file, boo
   const Table table = Table::read(file, ' ', "", 8);
   std::vector<ReferencePose> poses;
   for (const Table::Row& row : table.rows) {
-    const ReferencePose pose = tum_pose(table, row);
-    if (!sorted && !poses.empty() && pose.time_ns <= poses.back().time_ns) {
-      fail(table, row, "stamp " + std::to_string(pose.time_ns) + " ns does not rise, the one before is " +
-                           std::to_string(poses.back().time_ns) + " ns; they can be sorted when asked for");
-    }
+    ReferencePose pose = tum_pose(table, row);
+    const std::string problem = problem_of(pose, sorted || poses.empty() ? nullptr : &poses.back());
+    if (!problem.empty()) fail(table, row, problem);
     poses.push_back(pose);
   }
   if (sorted) {

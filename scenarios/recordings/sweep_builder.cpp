@@ -43,7 +43,7 @@ const std::vector<double>* first_of(const Cloud& cloud, const std::array<const c
 /// Points that the lidar saw.
 std::vector<std::size_t> hits(const Cloud& cloud, const std::string& where) {
   const std::vector<double>&x = coordinate(cloud, "x", where), &y = coordinate(cloud, "y", where),
-                          &z = coordinate(cloud, "z", where);
+        &z = coordinate(cloud, "z", where);
   std::vector<std::size_t> kept;
   for (std::size_t i = 0; i < cloud.points; ++i) {
     const bool within = std::abs(x[i]) <= kFar_m && std::abs(y[i]) <= kFar_m && std::abs(z[i]) <= kFar_m;
@@ -205,7 +205,8 @@ sim::LidarRecord SweepBuilder::finish(std::vector<std::string>& notes) {
   record_.sweep_period_ns =
       reading_.device.sweep_period_ns > 0 ? reading_.device.sweep_period_ns : median_step_ns(record_.sweep_start_ns);
   if (record_.sweep_period_ns <= 0) throw BadInput("of a single sweep the period must be given");
-  if (misses_ > 0) notes.push_back(std::to_string(misses_) + " points are misses (not finite, beyond 1000 km, or at the origin)");
+  if (misses_ > 0)
+    notes.push_back(std::to_string(misses_) + " points are misses (not finite, beyond 1000 km, or at the origin)");
   if (skipped_ > 0) notes.push_back(std::to_string(skipped_) + " sweeps without a point and a time are left out");
   if (dark_ > 0) notes.push_back(std::to_string(dark_) + " points have no intensity: stored as 0");
   if (record_.point_times == sim::PointTimes::unknown)

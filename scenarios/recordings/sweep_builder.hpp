@@ -14,11 +14,11 @@ namespace tumble::scenarios {
 
 /// How the points of a sweep are to be read, where the file does not say.
 struct SweepReading {
-  sim::LidarRecord device;   ///< name, device, T_BL; sweep_period_ns, 0: the median step of the sweeps' starts
-  std::string time_field;    ///< "": the one that is called as one of them usually is
-  std::string time_unit;     ///< s ms us ns; "": told by the field's name ("offset_ns") or its size
-  bool not_skewed = false;   ///< the points were deskewed, or fired at once: their times mean nothing
-  bool assumed = false;      ///< the stamps are a guess: absolute times of points replace them
+  sim::LidarRecord device;  ///< name, device, T_BL; sweep_period_ns, 0: the median step of the sweeps' starts
+  std::string time_field;   ///< "": the one that is called as one of them usually is
+  std::string time_unit;    ///< s ms us ns; "": told by the field's name ("offset_ns") or its size
+  bool not_skewed = false;  ///< the points were deskewed, or fired at once: their times mean nothing
+  bool assumed = false;     ///< the stamps are a guess: absolute times of points replace them
 };
 
 /// Unit and name of the points' times in a sequence of clouds.
@@ -32,17 +32,17 @@ struct PointTimeRule {
 /// timestamps time_stamp offset_time time_offset offset_ns; a name that ends in _s _ms _us _ns tells the unit. Else the
 /// unit is the one in which the times of a sweep (median over the clouds) span 2 to 150 % of `period_ns`; where that is
 /// not known (0), stamps since the epoch tell it by their size. Times that begin more than two periods from 0 in any of
-/// the clouds are absolute. Throws BadInput beginning with `where`: a field that is not there, two of them, no unit that
-/// fits.
+/// the clouds are absolute. Throws BadInput beginning with `where`: a field that is not there, two of them, no unit
+/// that fits.
 PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t period_ns, const SweepReading& reading,
                                const std::string& where);
 
 /// Makes the record of a lidar from clouds in the order of time.
 ///
-/// A point that is not finite, farther than 1000 km or at the origin is a miss. Intensity ("intensity", "reflectivity") up to 1 stays as
-/// it is; up to 255 it is divided by that, else by the largest. Ring ("ring", "line", "channel") is a whole number up to
-/// 65535. A sweep starts at its stamp, or, where its first point is earlier or a period later, at that point; so that no offset is
-/// negative. No column is needed but x, y and z.
+/// A point that is not finite, farther than 1000 km or at the origin is a miss. Intensity ("intensity", "reflectivity")
+/// up to 1 stays as it is; up to 255 it is divided by that, else by the largest. Ring ("ring", "line", "channel") is a
+/// whole number up to 65535. A sweep starts at its stamp, or, where its first point is earlier or a period later, at
+/// that point; so that no offset is negative. No column is needed but x, y and z.
 class SweepBuilder {
  public:
   /// `period_ns` is what find_point_times is given: of the device, or the median step of the stamps.

@@ -89,7 +89,8 @@ std::optional<std::int64_t> stamp_in_name(const std::filesystem::path& file) {
 
 std::string stem_of(const std::filesystem::path& file) {
   std::string stem = file.stem().string();
-  while (!stem.empty() && (is_digit(stem.back()) || std::string_view("._-").find(stem.back()) != std::string_view::npos))
+  while (!stem.empty() &&
+         (is_digit(stem.back()) || std::string_view("._-").find(stem.back()) != std::string_view::npos))
     stem.pop_back();
   return stem;
 }
@@ -121,8 +122,10 @@ std::vector<std::int64_t> stamps_in_names(const std::vector<std::filesystem::pat
   const std::filesystem::path* without = nullptr;
   for (const std::filesystem::path& file : files) {
     const std::optional<std::int64_t> stamp = stamp_in_name(file);
-    if (stamp) stamps.push_back(*stamp);
-    else without = &file;
+    if (stamp)
+      stamps.push_back(*stamp);
+    else
+      without = &file;
   }
   if (stamps.empty() || without == nullptr) return stamps;
   throw BadInput(without->string() + ": its name holds no stamp, those of " + std::to_string(stamps.size()) +

@@ -9,8 +9,9 @@
 namespace tumble::scenarios {
 
 /// Files of a folder with this ending (".ply"), in natural order: "9" before "10", leading zeros do not matter; hidden
-/// files are left out. The stem of a name is what stands before its last numbers ("lidar" of "lidar_000012"): it must be
-/// `stem`, or, when that is empty, the same in all names. Throws BadInput: no folder, no such file in it, several stems.
+/// files are left out. The stem of a name is what stands before its last numbers ("lidar" of "lidar_000012"): it must
+/// be `stem`, or, when that is empty, the same in all names. Throws BadInput: no folder, no such file in it, several
+/// stems.
 std::vector<std::filesystem::path> sweep_files(const std::filesystem::path& folder, const std::string& ending,
                                                const std::string& stem);
 
@@ -23,8 +24,8 @@ std::string stem_of(const std::filesystem::path& file);
 /// do not.
 std::vector<std::int64_t> stamps_in_names(const std::vector<std::filesystem::path>& files);
 
-/// Stamps of a text file, one a line, '#' begins a remark: seconds with decimals, or whole numbers of 16 or 19 digits (us,
-/// ns). Throws BadInput with file and line: not a number, a stamp that does not rise.
+/// Stamps of a text file, one a line, '#' begins a remark: seconds with decimals, or whole numbers of 16 or 19 digits
+/// (us, ns). Throws BadInput with file and line: not a number, a stamp that does not rise.
 std::vector<std::int64_t> read_stamps(const std::filesystem::path& file);
 
 /// The middle one of the steps between rising times; 0 for fewer than two.

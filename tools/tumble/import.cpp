@@ -25,6 +25,8 @@ Imported import_format(const Session& session, const ImportOptions& options, con
     complete(imu_sheet(session, options), imported.sensors.imus.front());
     return imported;
   }
+  if (format == "rosbag1") return scenarios::import_ros1_bag(options.path, bag_reading(session, options));
+  if (format == "rosbag2") return scenarios::import_ros2_bag(options.path, bag_reading(session, options));
   if (format == "tum" || (format == "kitti" && !std::filesystem::is_directory(options.path)))
     return scenarios::import_trajectory(trajectory_source(options, format));
   return scenarios::import_sweeps(sweep_source(session, options, format));
@@ -63,14 +65,16 @@ Table table_of(const Imported& imported) {
     table.add_row({"imu", imu.name, std::to_string(imu.time_ns.size()), ms(imu.period_ns), span(imu.time_ns), ""});
   }
   for (const sim::LidarRecord& lidar : imported.sensors.lidars) {
-    table.add_row({"lidar", lidar.name, std::to_string(lidar.sweep_start_ns.size()), ms(lidar.sweep_period_ns),
-                   span(lidar.sweep_start_ns),
-                   std::to_string(lidar.position_L_m.size()) + " points, times " + point_times_word(lidar.point_times)});
+    table.add_row(
+        {"lidar", lidar.name, std::to_string(lidar.sweep_start_ns.size()), ms(lidar.sweep_period_ns),
+         span(lidar.sweep_start_ns),
+         std::to_string(lidar.position_L_m.size()) + " points, times " + point_times_word(lidar.point_times)});
   }
   if (imported.reference) {
     const sim::Truth& truth = *imported.reference;
     const auto seconds = static_cast<double>(truth.p_WB_m.size() - 1) * static_cast<double>(truth.period_ns) * 1e-9;
-    table.add_row({"reference", "", std::to_string(truth.p_WB_m.size()), ms(truth.period_ns), number_text(seconds), ""});
+    table.add_row(
+        {"reference", "", std::to_string(truth.p_WB_m.size()), ms(truth.period_ns), number_text(seconds), ""});
   }
   return table;
 }

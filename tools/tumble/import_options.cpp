@@ -16,11 +16,12 @@ namespace {
 
 using scenarios::BadInput;
 
-const std::vector<std::string> kFormats = {"broad", "csv", "kitti", "pcd", "ply", "tum"};
+const std::vector<std::string> kFormats = {"broad", "csv", "kitti", "pcd", "ply", "rosbag1", "rosbag2", "tum"};
 
 /// What the files in a folder are.
 std::string format_of_folder(const std::filesystem::path& folder) {
   const std::map<std::string, std::string> known = {{".ply", "ply"}, {".pcd", "pcd"}, {".bin", "kitti"}};
+  if (std::filesystem::exists(folder / "metadata.yaml")) return "rosbag2";
   std::string found;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const auto format = known.find(entry.path().extension().string());
@@ -31,8 +32,13 @@ std::string format_of_folder(const std::filesystem::path& folder) {
     }
     found = format->second;
   }
-  if (found.empty()) throw BadInput(folder.string() + ": holds no .ply, .pcd or .bin file");
+  if (found.empty())
+    throw BadInput(folder.string() + ": holds no .ply, .pcd or .bin file and no metadata.yaml of a bag");
   return found;
+}
+
+bool is_bag(const std::string& format) {
+  return format.starts_with("rosbag");
 }
 
 bool is_sweeps(const std::string& format) {
@@ -87,6 +93,15 @@ sim::LidarRecord lidar_sheet(const Session& session, const ImportOptions& option
   return lidar;
 }
 
+scenarios::SweepReading sweep_reading(const Session& session, const ImportOptions& options) {
+  scenarios::SweepReading reading;
+  reading.device = lidar_sheet(session, options);
+  reading.time_field = options.time_field;
+  reading.time_unit = options.time_unit;
+  reading.not_skewed = options.not_skewed;
+  return reading;
+}
+
 void declare_lidar(CLI::App& app, ImportOptions& options) {
   app.add_option("--lidar", options.lidar, "of sweeps: the lidar's data sheet [unknown]");
   app.add_option("--T-body-lidar", options.T_body_lidar,
@@ -99,28 +114,35 @@ void declare_lidar(CLI::App& app, ImportOptions& options) {
   app.add_option("--sweep-period", options.sweep_period_s,
                  "length of a sweep, s; where nothing tells their times, also their distance [median step]")
       ->check(CLI::Range(1e-4, 1000.0));
-  app.add_option("--time-field", options.time_field, "that holds the points' times [t, time, timestamp, offset_time ...]");
+  app.add_option("--time-field", options.time_field,
+                 "that holds the points' times [t, time, timestamp, offset_time ...]");
   app.add_option("--time-unit", options.time_unit, "of that field: s, ms, us or ns [by its size]");
   app.add_flag("--not-skewed", options.not_skewed, "the sweeps are deskewed: their points belong to one instant");
   app.add_option("--imu", options.imu, "FILE.csv: readings of an IMU in the same clock, beside the sweeps");
 }
 
 void declare_reference(CLI::App& app, ImportOptions& options) {
-  app.add_option("--reference", options.reference,
-                 "poses that become the truth: a TUM file in the clock of the sweeps, or a KITTI file with a pose per sweep");
+  app.add_option(
+      "--reference", options.reference,
+      "poses that become the truth: a TUM file in the clock of the sweeps, or a KITTI file with a pose per sweep");
   app.add_option("--reference-frame", options.reference_frame, "whose poses they are: lidar or body")
       ->capture_default_str();
+  app.add_option("--reference-topic", options.reference_topic,
+                 "of a bag: nav_msgs/Odometry or geometry_msgs/PoseStamped, poses that become the truth [none]");
   app.add_flag("--sort", options.sorted, "a TUM file's lines may be in any order; of equal stamps the first counts");
 }
 
 }  // namespace
 
 void declare(CLI::App& app, ImportOptions& options) {
-  app.add_option("PATH", options.path,
-                 "a folder of lidar sweeps (PLY, PCD, KITTI .bin); readings of an IMU: CSV with the columns of a "
-                 "sensor_msgs/Imu, or a trial of BROAD (HDF5), with its optical reference; or poses (TUM, KITTI)")
+  app.add_option(
+         "PATH", options.path,
+         "a folder of lidar sweeps (PLY, PCD, KITTI .bin); readings of an IMU: CSV with the columns of a "
+         "sensor_msgs/Imu, or a trial of BROAD (HDF5), with its optical reference; a bag (ROS 1 file, ROS 2 folder); "
+         "or poses (TUM, KITTI)")
       ->required();
-  app.add_option("--format", options.format, "broad, csv, kitti, pcd, ply or tum [by the path's ending or content]");
+  app.add_option("--format", options.format,
+                 "broad, csv, kitti, pcd, ply, rosbag1, rosbag2 or tum [by the path's ending or content]");
   app.add_option("--device", options.device,
                  "the IMU's data sheet, for ranges and noise: see 'tumble list sensors' [unknown]");
   app.add_option("--accel-unit", options.accel_unit, "of a CSV: m/s^2 or g [m/s^2]");
@@ -129,6 +151,8 @@ void declare(CLI::App& app, ImportOptions& options) {
   app.add_option("--robot", options.robot, "rig or sphere, for methods that ask [unknown]");
   app.add_option("--radius", options.radius_m, "of the sphere, m, for methods of position [unknown]")
       ->check(CLI::Range(1e-3, 10.0));
+  app.add_option("--imu-topic", options.imu_topics, "of a bag: sensor_msgs/Imu; the first is the primary one [all]");
+  app.add_option("--lidar-topic", options.lidar_topics, "of a bag: sensor_msgs/PointCloud2 [all]");
   declare_lidar(app, options);
   declare_reference(app, options);
   app.add_option("-o,--output", options.out, "the recording, FILE.h5")->required();
@@ -142,31 +166,44 @@ std::string format_of(const ImportOptions& options) {
   if (std::filesystem::is_directory(options.path)) return format_of_folder(options.path);
   const std::string ending = options.path.extension().string();
   if (ending == ".csv") return "csv";
+  if (ending == ".bag") return "rosbag1";
+  if (ending == ".db3") return "rosbag2";
   if (ending == ".hdf5" || ending == ".h5") return "broad";
   if (ending == ".tum" || ending == ".txt" || ending == ".kitti") return scenarios::pose_format(options.path);
-  throw BadInput(options.path.string() + ": --format is needed for a file named so (broad, csv, kitti or tum)");
+  throw BadInput(options.path.string() +
+                 ": --format is needed for a file named so (broad, csv, kitti, rosbag1, rosbag2 or tum)");
 }
 
 void require_fitting(const ImportOptions& options, const std::string& format) {
-  const bool csv = format == "csv" || !options.imu.empty();
+  const bool bag = is_bag(format), csv = format == "csv" || !options.imu.empty();
   const bool sweeps = is_sweeps(format) && (format != "kitti" || std::filesystem::is_directory(options.path));
   const auto refuse = [&](bool given, const std::string& option, const std::string& why) {
     if (given) throw BadInput(option + ": " + why);
   };
-  refuse(!options.accel_unit.empty() && !csv, "--accel-unit", "is of the readings of an IMU in a CSV file");
-  refuse(!options.lever_arm_m.empty() && !csv, "--lever-arm",
-         format == "broad" ? "the body of a trial of BROAD is the IMU itself" : "is of an IMU in a CSV file");
-  refuse(!options.device.empty() && !csv && format != "broad", "--device", "is of an IMU; of a lidar it is --lidar");
-  const bool lidar = !options.lidar.empty() || !options.T_body_lidar.empty() || !options.stem.empty() ||
-                     !options.time_field.empty() || !options.time_unit.empty() || options.not_skewed ||
-                     !options.imu.empty();
-  refuse(lidar && !sweeps, "--lidar --T-body-lidar --stem --time-field --time-unit --not-skewed --imu",
-         "are for a folder of sweeps");
-  refuse((!options.times.empty() || options.sweep_period_s > 0.0) && !sweeps && format != "kitti",
-         "--times --sweep-period", "are for a folder of sweeps or poses of KITTI");
-  refuse(!options.reference.empty() && !sweeps && format != "csv", "--reference",
-         "is for a folder of sweeps or readings of an IMU");
-  refuse(options.radius_m != 0.0 && options.robot != "sphere", "--radius", "is the sphere's: --robot sphere is missing");
+  refuse(!options.accel_unit.empty() && !csv && !bag, "--accel-unit",
+         "is of the readings of an IMU in a CSV file or bag");
+  refuse(!options.lever_arm_m.empty() && !csv && !bag, "--lever-arm",
+         format == "broad" ? "the body of a trial of BROAD is the IMU itself" : "is of an IMU in a CSV file or bag");
+  refuse(!options.device.empty() && !csv && !bag && format != "broad", "--device",
+         "is of an IMU; of a lidar it is --lidar");
+  refuse(!options.imu.empty() && !sweeps, "--imu", "is for a folder of sweeps");
+  refuse(!options.stem.empty() && !sweeps, "--stem", "is for a folder of sweeps");
+  const bool lidar = !options.lidar.empty() || !options.T_body_lidar.empty() || !options.time_field.empty() ||
+                     !options.time_unit.empty() || options.not_skewed;
+  refuse(lidar && !sweeps && !bag, "--lidar --T-body-lidar --time-field --time-unit --not-skewed",
+         "are for a folder of sweeps or a bag");
+  refuse(!options.times.empty() && !sweeps && format != "kitti", "--times",
+         "is for a folder of sweeps or poses of KITTI");
+  refuse(options.sweep_period_s > 0.0 && !sweeps && !bag && format != "kitti", "--sweep-period",
+         "is for sweeps or poses of KITTI");
+  refuse(!options.reference.empty() && !sweeps && !bag && format != "csv", "--reference",
+         "is for sweeps, a bag or readings of an IMU");
+  const bool topics = !options.imu_topics.empty() || !options.lidar_topics.empty() || !options.reference_topic.empty();
+  refuse(topics && !bag, "--imu-topic --lidar-topic --reference-topic", "are for a bag");
+  refuse(!options.reference.empty() && !options.reference_topic.empty(), "--reference",
+         "and --reference-topic exclude each other");
+  refuse(options.radius_m != 0.0 && options.robot != "sphere", "--radius",
+         "is the sphere's: --robot sphere is missing");
   if (!options.robot.empty()) require_known("robot", options.robot, std::vector<std::string>{"rig", "sphere"});
   require_known("frame", options.reference_frame, std::vector<std::string>{"lidar", "body"});
 }
@@ -198,8 +235,7 @@ void complete(const sim::ImuRecord& sheet, sim::ImuRecord& imu) {
 }
 
 scenarios::AccelUnit accel_unit(const ImportOptions& options) {
-  if (!options.accel_unit.empty())
-    require_known("unit", options.accel_unit, std::vector<std::string>{"g", "m/s^2"});
+  if (!options.accel_unit.empty()) require_known("unit", options.accel_unit, std::vector<std::string>{"g", "m/s^2"});
   return options.accel_unit == "g" ? scenarios::AccelUnit::g : scenarios::AccelUnit::m_s2;
 }
 
@@ -210,10 +246,7 @@ scenarios::SweepSource sweep_source(const Session& session, const ImportOptions&
   source.stem = options.stem;
   source.times = options.times;
   source.steady_ns = period_ns(options.sweep_period_s);
-  source.reading.device = lidar_sheet(session, options);
-  source.reading.time_field = options.time_field;
-  source.reading.time_unit = options.time_unit;
-  source.reading.not_skewed = options.not_skewed;
+  source.reading = sweep_reading(session, options);
   return source;
 }
 
@@ -235,6 +268,18 @@ scenarios::ReferenceSource trajectory_source(const ImportOptions& options, const
   source.times = options.times;
   source.steady_ns = period_ns(options.sweep_period_s);
   return source;
+}
+
+scenarios::BagReading bag_reading(const Session& session, const ImportOptions& options) {
+  scenarios::BagReading reading;
+  reading.imu_topics = options.imu_topics;
+  reading.lidar_topics = options.lidar_topics;
+  reading.reference_topic = options.reference_topic;
+  reading.reference_of_body = options.reference_frame == "body";
+  reading.imu = imu_sheet(session, options);
+  reading.accel_unit = accel_unit(options);
+  reading.sweeps = sweep_reading(session, options);
+  return reading;
 }
 
 const char* point_times_word(sim::PointTimes times) {

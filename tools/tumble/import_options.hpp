@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/recordings/bag.hpp"
 #include "scenarios/recordings/import.hpp"
 #include "tools/tumble/session.hpp"
 
@@ -33,6 +34,9 @@ struct ImportOptions {
   std::filesystem::path reference;
   std::string reference_frame = "lidar";
   bool sorted = false;
+  // of a bag
+  std::vector<std::string> imu_topics, lidar_topics;
+  std::string reference_topic;
 };
 
 void declare(CLI::App& app, ImportOptions& options);
@@ -52,6 +56,8 @@ scenarios::AccelUnit accel_unit(const ImportOptions& options);
 scenarios::SweepSource sweep_source(const Session& session, const ImportOptions& options, const std::string& format);
 scenarios::ReferenceSource reference_source(const ImportOptions& options);
 scenarios::ReferenceSource trajectory_source(const ImportOptions& options, const std::string& format);
+
+scenarios::BagReading bag_reading(const Session& session, const ImportOptions& options);
 
 const char* point_times_word(sim::PointTimes times);
 
