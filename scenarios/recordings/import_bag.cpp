@@ -153,11 +153,7 @@ sim::LidarRecord read_lidar(const Bag& bag, const std::string& topic, const BagR
   bag.read<ros::PointCloud2>(topic, [&](const ros::PointCloud2& message, const std::string& where) {
     builder.add(stamp_of(message.header), cloud_of(message, where), where);
   });
-  try {
-    return builder.finish(notes);
-  } catch (const BadInput& error) {
-    throw BadInput(bag.place + ": topic " + topic + ": " + error.what());
-  }
+  return builder.finish(bag.place + ": topic " + topic, notes);
 }
 
 template <class Message>

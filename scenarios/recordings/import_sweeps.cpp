@@ -63,11 +63,7 @@ Imported import_sweeps(const SweepSource& source) {
     const std::optional<std::int64_t> stamp = stamps.empty() ? std::nullopt : std::optional(stamps[k]);
     builder.add(stamp, read_cloud(files[k]), files[k].string());
   }
-  try {
-    out.sensors.lidars.push_back(builder.finish(out.notes));
-  } catch (const BadInput& error) {
-    throw BadInput(source.folder.string() + ": " + error.what());
-  }
+  out.sensors.lidars.push_back(builder.finish(source.folder.string(), out.notes));
   out.info.attribution = "imported from " + source.folder.filename().string() + ", " + std::to_string(files.size()) +
                          " sweeps of format " + source.format;
   start_clock(out);

@@ -45,9 +45,9 @@ class Ros1Writer {
     (*this)(static_cast<std::uint32_t>(text.size()));
     append(text.data(), text.size());
   }
-  void operator()(const Bytes& bytes) {
-    (*this)(static_cast<std::uint32_t>(bytes.size()));
-    append(bytes.data(), bytes.size());
+  void operator()(const Bytes& blob) {
+    (*this)(static_cast<std::uint32_t>(blob.size()));
+    append(blob.data(), blob.size());
   }
   void ros1_only(std::uint32_t number) { (*this)(number); }
   template <class Entry, class Fields>

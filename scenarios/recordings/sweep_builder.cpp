@@ -195,16 +195,16 @@ void SweepBuilder::scale_intensity(std::vector<std::string>& notes) {
   notes.push_back("intensities go beyond 1: divided by " + std::to_string(full));
 }
 
-sim::LidarRecord SweepBuilder::finish(std::vector<std::string>& notes) {
+sim::LidarRecord SweepBuilder::finish(const std::string& where, std::vector<std::string>& notes) {
   if (!rule_ && !waiting_.empty()) settle();
-  if (record_.position_L_m.empty()) throw BadInput("no sweep holds a point");
+  if (record_.position_L_m.empty()) throw BadInput(where + ": no sweep holds a point");
   record_.sweep_first.push_back(record_.position_L_m.size());
   record_.name = reading_.device.name;
   record_.device = reading_.device.device;
   record_.T_BL = reading_.device.T_BL;
   record_.sweep_period_ns =
       reading_.device.sweep_period_ns > 0 ? reading_.device.sweep_period_ns : median_step_ns(record_.sweep_start_ns);
-  if (record_.sweep_period_ns <= 0) throw BadInput("of a single sweep the period must be given");
+  if (record_.sweep_period_ns <= 0) throw BadInput(where + ": of a single sweep the period must be given");
   if (misses_ > 0)
     notes.push_back(std::to_string(misses_) + " points are misses (not finite, beyond 1000 km, or at the origin)");
   if (skipped_ > 0) notes.push_back(std::to_string(skipped_) + " sweeps without a point and a time are left out");

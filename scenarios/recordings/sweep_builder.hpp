@@ -52,9 +52,9 @@ class SweepBuilder {
   /// two sweep periods, a ring that is none.
   void add(std::optional<std::int64_t> stamp_ns, Cloud cloud, std::string where);
 
-  /// The record, in the clock of the stamps, and remarks for the user. Throws BadInput: no point in any sweep, a single
-  /// sweep of unknown length.
-  sim::LidarRecord finish(std::vector<std::string>& notes);
+  /// The record, in the clock of the stamps, and remarks for the user. Throws BadInput beginning with `where`: no point
+  /// in any sweep, a single sweep of unknown length.
+  sim::LidarRecord finish(const std::string& where, std::vector<std::string>& notes);
 
  private:
   struct Waiting {
