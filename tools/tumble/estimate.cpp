@@ -65,6 +65,14 @@ scenarios::Estimate run_learning(const scenarios::Method& method, const sim::Sen
   return estimate;
 }
 
+/// Why a run failed; a sensor that the recording does not have is called by its name.
+std::string reason(const Status& status) {
+  const std::string field = status.field;
+  if (status.trouble == Trouble::empty && field == "imus") return "it needs an IMU, and the recording has none";
+  if (status.trouble == Trouble::empty && field == "lidars") return "it needs a lidar, and the recording has none";
+  return status.message();
+}
+
 /// What the estimate holds, and its health.
 Table summary(const scenarios::Estimate& estimate) {
   Table table("", {"estimate", "value"});
@@ -102,7 +110,7 @@ int run_estimate(const Session& session, const Options& options) {
   session.print({summary(estimate)}, document);
   if (estimate.status.ok()) return kDone;
   // the estimate is left for inspection, and its trouble lies in the recording
-  throw BadInput(options.recording.string() + ": " + full_name(method) + " failed: " + estimate.status.message());
+  throw BadInput(options.recording.string() + ": " + full_name(method) + " failed: " + reason(estimate.status));
 }
 
 }  // namespace
