@@ -87,7 +87,9 @@ int import_from(const Session& session, const ImportOptions& options) {
     scenarios::attach_imus(imported,
                            scenarios::import_imu_csv(options.imu, imu_sheet(session, options), accel_unit(options)));
   }
-  if (!options.reference.empty()) scenarios::attach_reference(imported, reference_source(options));
+  if (!options.reference.empty()) {
+    scenarios::attach_reference(imported, reference_source(options, !imported.sensors.lidars.empty()));
+  }
   imported.sensors.robot = options.robot;
   imported.sensors.sphere_radius_m = options.radius_m;
   imported.info.tumble_version = program_version();

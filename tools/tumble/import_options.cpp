@@ -125,8 +125,8 @@ void declare_reference(CLI::App& app, ImportOptions& options) {
   app.add_option(
       "--reference", options.reference,
       "poses that become the truth: a TUM file in the clock of the sweeps, or a KITTI file with a pose per sweep");
-  app.add_option("--reference-frame", options.reference_frame, "whose poses they are: lidar or body")
-      ->capture_default_str();
+  app.add_option("--reference-frame", options.reference_frame,
+                 "whose poses they are: lidar or body [of a file: the lidar, if there is one; of a topic: the body]");
   app.add_option("--reference-topic", options.reference_topic,
                  "of a bag: nav_msgs/Odometry or geometry_msgs/PoseStamped, poses that become the truth [none]");
   app.add_flag("--sort", options.sorted, "a TUM file's lines may be in any order; of equal stamps the first counts");
@@ -205,7 +205,8 @@ void require_fitting(const ImportOptions& options, const std::string& format) {
   refuse(options.radius_m != 0.0 && options.robot != "sphere", "--radius",
          "is the sphere's: --robot sphere is missing");
   if (!options.robot.empty()) require_known("robot", options.robot, std::vector<std::string>{"rig", "sphere"});
-  require_known("frame", options.reference_frame, std::vector<std::string>{"lidar", "body"});
+  if (!options.reference_frame.empty())
+    require_known("frame", options.reference_frame, std::vector<std::string>{"lidar", "body"});
 }
 
 sim::ImuRecord imu_sheet(const Session& session, const ImportOptions& options) {
@@ -250,11 +251,11 @@ scenarios::SweepSource sweep_source(const Session& session, const ImportOptions&
   return source;
 }
 
-scenarios::ReferenceSource reference_source(const ImportOptions& options) {
+scenarios::ReferenceSource reference_source(const ImportOptions& options, bool has_lidar) {
   scenarios::ReferenceSource source;
   source.file = options.reference;
   source.format = scenarios::pose_format(options.reference);
-  source.of_body = options.reference_frame == "body";
+  source.of_body = options.reference_frame.empty() ? !has_lidar : options.reference_frame == "body";
   source.sorted = options.sorted;
   return source;
 }
@@ -275,7 +276,7 @@ scenarios::BagReading bag_reading(const Session& session, const ImportOptions& o
   reading.imu_topics = options.imu_topics;
   reading.lidar_topics = options.lidar_topics;
   reading.reference_topic = options.reference_topic;
-  reading.reference_of_body = options.reference_frame == "body";
+  reading.reference_of_body = options.reference_frame != "lidar";
   reading.imu = imu_sheet(session, options);
   reading.accel_unit = accel_unit(options);
   reading.sweeps = sweep_reading(session, options);

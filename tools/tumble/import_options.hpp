@@ -32,7 +32,7 @@ struct ImportOptions {
   bool not_skewed = false;
   // of the reference
   std::filesystem::path reference;
-  std::string reference_frame = "lidar";
+  std::string reference_frame;
   bool sorted = false;
   // of a bag
   std::vector<std::string> imu_topics, lidar_topics;
@@ -54,7 +54,8 @@ void complete(const sim::ImuRecord& sheet, sim::ImuRecord& imu);
 scenarios::AccelUnit accel_unit(const ImportOptions& options);
 
 scenarios::SweepSource sweep_source(const Session& session, const ImportOptions& options, const std::string& format);
-scenarios::ReferenceSource reference_source(const ImportOptions& options);
+/// Poses are of the lidar where the recording has one and nothing else is said.
+scenarios::ReferenceSource reference_source(const ImportOptions& options, bool has_lidar);
 scenarios::ReferenceSource trajectory_source(const ImportOptions& options, const std::string& format);
 
 scenarios::BagReading bag_reading(const Session& session, const ImportOptions& options);
