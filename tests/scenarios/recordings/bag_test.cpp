@@ -149,7 +149,7 @@ TEST_F(HostileBag, ChangedBytesOfARos1BagNeverCrash) {
   export_ros1_bag(small_sensors(), {}, folder_ / "a.bag");
   const std::string whole = fixture::bytes_of(folder_ / "a.bag");
   int refused = 0, read = 0;
-  for (std::size_t at = 0; at < whole.size(); at += 151) {
+  for (std::size_t at = 0; at < whole.size(); at += 61) {
     std::string bytes = whole;
     bytes[at] = static_cast<char>(bytes[at] ^ 0xff);
     fixture::put(folder_ / "b.bag", bytes);
@@ -157,7 +157,7 @@ TEST_F(HostileBag, ChangedBytesOfARos1BagNeverCrash) {
     EXPECT_THAT(complaint, testing::Not(HasSubstr("\n")));
     complaint.empty() ? ++read : ++refused;
   }
-  EXPECT_GT(refused, 20);
+  EXPECT_GT(refused, 10);
   EXPECT_GT(read, 20) << "a reading or a text may change without harm";
 }
 
