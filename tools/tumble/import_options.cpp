@@ -88,7 +88,7 @@ sim::LidarRecord lidar_sheet(const Session& session, const ImportOptions& option
   const sim::Values values = sheet_of(session, "--lidar", options.lidar, "lidar").values();
   lidar.device = options.lidar;
   if (lidar.sweep_period_ns > 0) return lidar;
-  const bool spins = values.contains("spin_rate_hz");
+  const bool spins = values.has("spin_rate_hz");
   lidar.sweep_period_ns = period_ns(spins ? 1.0 / values.at("spin_rate_hz") : values.at("sweep_period_s"));
   return lidar;
 }
