@@ -28,6 +28,14 @@ std::string full_name(const scenarios::Method& method) {
   return std::string(to_string(method.info.kind)) + "/" + method.info.name;
 }
 
+/// Why a run failed; a sensor that the recording does not have is called by its name.
+std::string reason(const Status& status) {
+  const std::string field = status.field;
+  if (status.trouble == Trouble::empty && field == "imus") return "it needs an IMU, and the recording has none";
+  if (status.trouble == Trouble::empty && field == "lidars") return "it needs a lidar, and the recording has none";
+  return status.message();
+}
+
 /// The one method of that name which can run on this recording without the truth.
 const scenarios::Method& choose(const std::string& name, const std::string& robot) {
   std::vector<const scenarios::Method*> fitting;
@@ -63,14 +71,6 @@ scenarios::Estimate run_learning(const scenarios::Method& method, const sim::Sen
   scenarios::Estimate estimate = scenarios::run_rate_tumble(sensors, parameters, given ? &before : nullptr, &rig);
   if (estimate.status.ok() && estimate.health.at("rig_held") == 0.0) scenarios::write_learnt_rig(file, rig);
   return estimate;
-}
-
-/// Why a run failed; a sensor that the recording does not have is called by its name.
-std::string reason(const Status& status) {
-  const std::string field = status.field;
-  if (status.trouble == Trouble::empty && field == "imus") return "it needs an IMU, and the recording has none";
-  if (status.trouble == Trouble::empty && field == "lidars") return "it needs a lidar, and the recording has none";
-  return status.message();
 }
 
 /// What the estimate holds, and its health.
