@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pcl/console/print.h>
 #include <pcl/io/pcd_io.h>
 
 #include <algorithm>
@@ -7,25 +6,10 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/map_file.hpp"
+#include "scenarios/recordings/quiet_pcl.hpp"
 #include "tumble/mapping/pcl.hpp"
 
 namespace tumble::scenarios {
-
-namespace {
-
-/// PCL tells its troubles to the console: it is kept from that for a while, the caller hears of them by exception.
-class QuietPcl {
- public:
-  QuietPcl() { pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS); }
-  ~QuietPcl() { pcl::console::setVerbosityLevel(before_); }
-  QuietPcl(const QuietPcl&) = delete;
-  QuietPcl& operator=(const QuietPcl&) = delete;
-
- private:
-  pcl::console::VERBOSITY_LEVEL before_ = pcl::console::getVerbosityLevel();
-};
-
-}  // namespace
 
 void write_pcd_map(const std::filesystem::path& path, std::span<const MapPoint> map) {
   if (map.empty()) throw BadInput(path.string() + ": a PCD file holds one point at least");

@@ -2,8 +2,10 @@
 #include "scenarios/recordings/export.hpp"
 
 #include <array>
+#include <optional>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/recordings/bag.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "sim/parameters.hpp"
 
@@ -15,23 +17,42 @@ using std::filesystem::path;
 
 struct Format {
   const char* name;
-  void (*write)(const path& recording, const path& out);
+  void (*write)(const path& recording, const path& out, bool with_truth);
 };
 
-void write_csv(const path& recording, const path& out) {
+void write_csv(const path& recording, const path& out, bool) {
   const sim::Sensors sensors = read_sensors(recording);
   if (!read_info(recording).has_truth) return export_csv(sensors, nullptr, out);
   const sim::Truth truth = read_truth(recording);
   export_csv(sensors, &truth, out);
 }
 
+template <void (*kExport)(const sim::Sensors&, const BagWriting&, const path&)>
+void write_bag(const path& recording, const path& out, bool with_truth) {
+  std::optional<sim::Truth> truth;
+  if (with_truth) truth = read_truth(recording);
+  kExport(read_sensors(recording), {read_info(recording).origin_ns, truth ? &*truth : nullptr}, out);
+}
+
+template <void (*kExport)(const sim::Truth&, const path&)>
+void write_truth(const path& recording, const path& out, bool) {
+  kExport(read_truth(recording), out);
+}
+
+template <void (*kExport)(const sim::Sensors&, const path&)>
+void write_sensors(const path& recording, const path& out, bool) {
+  kExport(read_sensors(recording), out);
+}
+
 /// Sorted by name.
-const std::array<Format, 5> kFormats = {{
+const std::array<Format, 7> kFormats = {{
     {"csv", write_csv},
-    {"kitti", [](const path& recording, const path& out) { export_kitti(read_truth(recording), out); }},
-    {"pcd", [](const path& recording, const path& out) { export_pcd(read_sensors(recording), out); }},
-    {"ply", [](const path& recording, const path& out) { export_ply(read_sensors(recording), out); }},
-    {"tum", [](const path& recording, const path& out) { export_tum(read_truth(recording), out); }},
+    {"kitti", write_truth<export_kitti>},
+    {"pcd", write_sensors<export_pcd>},
+    {"ply", write_sensors<export_ply>},
+    {"rosbag1", write_bag<export_ros1_bag>},
+    {"rosbag2", write_bag<export_ros2_bag>},
+    {"tum", write_truth<export_tum>},
 }};
 
 }  // namespace
@@ -42,9 +63,9 @@ std::vector<std::string> export_formats() {
   return names;
 }
 
-void export_recording(const path& recording, const std::string& format, const path& out) {
+void export_recording(const path& recording, const std::string& format, const path& out, bool with_truth) {
   for (const Format& each : kFormats) {
-    if (format == each.name) return each.write(recording, out);
+    if (format == each.name) return each.write(recording, out, with_truth);
   }
   std::string known;
   for (const std::string& name : export_formats()) known += " " + name;

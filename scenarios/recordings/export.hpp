@@ -9,14 +9,15 @@
 
 namespace tumble::scenarios {
 
-/// Names that export_recording takes: csv kitti pcd ply tum.
+/// Names that export_recording takes: csv kitti pcd ply rosbag1 rosbag2 tum.
 std::vector<std::string> export_formats();
 
 /// Writes a recording file in somebody else's format. `tum` and `kitti` write one file, the true poses of the body;
-/// `csv`, `pcd` and `ply` write into a folder, which is made when absent. Files are replaced whole. Throws BadInput:
+/// `rosbag1` writes one file, the sensors; `csv`, `pcd`, `ply` and `rosbag2` write into a folder, which is made when
+/// absent. A bag holds the truth only `with_truth` (bag.hpp has its topics). Files are replaced whole. Throws BadInput:
 /// unknown format (nearest named), a recording without what the format needs, a place that cannot be written.
 void export_recording(const std::filesystem::path& recording, const std::string& format,
-                      const std::filesystem::path& out);
+                      const std::filesystem::path& out, bool with_truth = false);
 
 /// "t x y z qx qy qz qw" per physics sample: T_WB, seconds from the start with nine decimals, numbers that read back
 /// exactly. Without the instants that a reference does not know.
@@ -32,7 +33,8 @@ void export_kitti(const sim::Truth& truth, const std::filesystem::path& file);
 /// f_B, label.
 void export_csv(const sim::Sensors& sensors, const sim::Truth* truth, const std::filesystem::path& folder);
 
-/// NAME_000000.ply (or .pcd) per sweep, binary, not deskewed, in L: x y z intensity ring offset_ns.
+/// NAME_000000.ply (or .pcd) per sweep, binary, not deskewed, in L: x y z intensity ring, and offset_ns where points
+/// have times of their own; the sweeps' starts in NAME_times.txt, seconds. import_sweeps takes them back to the bit.
 void export_ply(const sim::Sensors& sensors, const std::filesystem::path& folder);
 void export_pcd(const sim::Sensors& sensors, const std::filesystem::path& folder);
 

@@ -10,12 +10,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Seconds with nine decimals, from whole nanoseconds: exact.
-void append_seconds(std::string& text, std::int64_t time_ns) {
-  const std::string nanoseconds = std::to_string(time_ns % 1000000000);
-  text += std::to_string(time_ns / 1000000000) + "." + std::string(9 - nanoseconds.size(), '0') + nanoseconds;
-}
-
 /// A reference has gaps.
 bool known(const sim::Truth& truth, std::size_t i) {
   return truth.q_WB[i].coeffs().allFinite() && truth.p_WB_m[i].allFinite();

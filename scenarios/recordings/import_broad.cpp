@@ -7,6 +7,7 @@
 #include "scenarios/recordings/hdf5_file.hpp"
 #include "scenarios/recordings/import.hpp"
 #include "scenarios/recordings/recording_check.hpp"
+#include "scenarios/recordings/reference.hpp"
 
 namespace tumble::scenarios {
 
@@ -58,26 +59,6 @@ std::vector<Eigen::Quaterniond> attitudes(const hdf5::Group& root) {
   return q_WB;
 }
 
-Eigen::Vector3d rotation_vector(const Eigen::Quaterniond& q) {
-  const Eigen::AngleAxisd turn(q);
-  return turn.angle() * turn.axis();
-}
-
-/// Rates and velocities by central differences; NaN follows from NaN.
-void differentiate(sim::Truth& truth) {
-  const Eigen::Vector3d unknown = Eigen::Vector3d::Constant(kNaN);
-  const std::size_t count = truth.q_WB.size();
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::size_t before = k > kReach ? k - kReach : 0, after = std::min(k + kReach, count - 1);
-    const double span_s = static_cast<double>(after - before) * static_cast<double>(truth.period_ns) * 1e-9;
-    const Eigen::Quaterniond turn = truth.q_WB[before].conjugate() * truth.q_WB[after];
-    const Eigen::Quaterniond to_here = truth.q_WB[k].conjugate() * truth.q_WB[before];
-    const bool known = turn.coeffs().allFinite() && to_here.coeffs().allFinite() && after > before;
-    truth.w_WB_B_rad_s.push_back(known ? Eigen::Vector3d(to_here * rotation_vector(turn) / span_s) : unknown);
-    truth.v_WB_m_s.push_back(known ? Eigen::Vector3d((truth.p_WB_m[after] - truth.p_WB_m[before]) / span_s) : unknown);
-  }
-}
-
 /// The optical reference. The body's axes are the IMU's, the world's are east, north and up.
 std::optional<sim::Truth> read_reference(const hdf5::Group& root, const sim::ImuRecord& imu) {
   if (!root.has("opt_quat") || !root.has("opt_pos")) return std::nullopt;
@@ -91,7 +72,7 @@ std::optional<sim::Truth> read_reference(const hdf5::Group& root, const sim::Imu
       root.fail(name, "has " + std::to_string(rows) + " rows, imu_gyr has " + std::to_string(imu.time_ns.size()));
     }
   }
-  differentiate(truth);
+  differentiate(truth, kReach);
   truth.imus.push_back({imu.name, Eigen::Isometry3d::Identity(), {}, {}, {}, {}, {}, {}, {}});
   return truth;
 }

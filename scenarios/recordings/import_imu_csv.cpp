@@ -10,15 +10,13 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/import.hpp"
+#include "scenarios/recordings/imu_readings.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
 constexpr std::int64_t kSecond_ns = 1000000000;
-constexpr double kG_m_s2 = 9.80665;
-/// At rest and while rolling or carried the median is near g; in g, mg or raw counts it is not.
-constexpr double kLeastMedian_m_s2 = 3.0, kLargestMedian_m_s2 = 30.0;
 
 /// Where the columns stand.
 struct Layout {
@@ -137,39 +135,6 @@ std::int64_t stamp_ns(const Line& line, const Layout& layout) {
          whole_number(line, layout.stamp + 1, kSecond_ns - 1);
 }
 
-std::int64_t median_step(const std::vector<std::int64_t>& times) {
-  std::vector<std::int64_t> steps;
-  for (std::size_t i = 1; i < times.size(); ++i) steps.push_back(times[i] - times[i - 1]);
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
-}
-
-void append_sample(const Line& line, const Layout& layout, double scale, std::int64_t& first_ns, sim::ImuRecord& imu) {
-  const std::int64_t stamp = stamp_ns(line, layout);
-  if (imu.time_ns.empty()) first_ns = stamp;
-  const std::int64_t time_ns = stamp - first_ns;
-  if (!imu.time_ns.empty() && time_ns <= imu.time_ns.back()) {
-    fail(line, "stamp does not rise: " + std::to_string(time_ns) + " ns after the first, the one before " +
-                   std::to_string(imu.time_ns.back()));
-  }
-  imu.time_ns.push_back(time_ns);
-  imu.gyro_rad_s.push_back(vector(line, layout.rate));
-  imu.accel_m_s2.push_back(scale * vector(line, layout.force));
-  imu.clip_flags.push_back(0);
-}
-
-void require_plausible_force(const std::string& path, const sim::ImuRecord& imu, AccelUnit unit) {
-  std::vector<double> norms;
-  for (const Eigen::Vector3d& force : imu.accel_m_s2) norms.push_back(force.norm());
-  const auto middle = norms.begin() + static_cast<std::ptrdiff_t>(norms.size() / 2);
-  std::nth_element(norms.begin(), middle, norms.end());
-  if (*middle >= kLeastMedian_m_s2 && *middle <= kLargestMedian_m_s2) return;
-  const char* read_as = unit == AccelUnit::g ? "g" : "m/s^2";
-  throw BadInput(path + ": read in " + read_as + " the median specific force is " + std::to_string(*middle) +
-                 " m/s^2, must be within 3 and 30: is the file in " + (unit == AccelUnit::g ? "m/s^2" : "g") + "?");
-}
-
 }  // namespace
 
 Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord& device, AccelUnit unit) {
@@ -181,28 +146,24 @@ Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord&
   const Line header{path.string() + ":1", split(header_text)};
   const Layout layout = layout_of(header);
   const std::size_t columns = header.fields.size();
-  const double scale = unit == AccelUnit::g ? kG_m_s2 : 1.0;
-  sim::ImuRecord imu = device;
-  for (auto* rows : {&imu.gyro_rad_s, &imu.accel_m_s2}) rows->clear();
-  imu.time_ns.clear();
-  imu.clip_flags.clear();
-  std::int64_t first_ns = 0;
+  sim::ImuRecord imu = without_readings(device);
   for (int number_of_line = 2; std::getline(stream, text); ++number_of_line) {
     const Line line{path.string() + ":" + std::to_string(number_of_line), split(text)};
     if (line.fields.size() < layout.least || line.fields.size() != columns) {
       fail(line, "has " + std::to_string(line.fields.size()) + " columns, the header " + std::to_string(columns) +
                      "; must be equal and at least " + std::to_string(layout.least));
     }
-    append_sample(line, layout, scale, first_ns, imu);
+    add_reading(line.where, stamp_ns(line, layout), vector(line, layout.rate),
+                scale_of(unit) * vector(line, layout.force), imu);
   }
   if (stream.bad()) throw BadInput(path.string() + ": cannot be read");
-  if (imu.time_ns.size() < 2)
-    throw BadInput(path.string() + ": holds " + std::to_string(imu.time_ns.size()) + " samples, needs 2");
-  require_plausible_force(path.string(), imu, unit);
-  imu.period_ns = median_step(imu.time_ns);
+  finish_readings(path.string(), unit, imu);
+  const std::int64_t first_ns = imu.time_ns.front();
+  for (std::int64_t& time : imu.time_ns) time -= first_ns;
   Imported out;
   out.info.attribution =
       "imported from " + path.filename().string() + ", first stamp " + std::to_string(first_ns) + " ns";
+  out.info.origin_ns = first_ns;
   out.sensors.imus.push_back(std::move(imu));
   return out;
 }

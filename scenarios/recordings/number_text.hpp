@@ -3,6 +3,7 @@
 
 #include <array>
 #include <charconv>
+#include <cstdint>
 #include <string>
 
 namespace tumble::scenarios {
@@ -13,6 +14,15 @@ void append_number(std::string& text, Number value) {
   std::array<char, 32> digits;
   const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
   text.append(digits.data(), end);
+}
+
+/// Appends seconds with nine decimals, from whole nanoseconds: exact.
+inline void append_seconds(std::string& text, std::int64_t time_ns) {
+  const std::uint64_t size =
+      time_ns < 0 ? 0 - static_cast<std::uint64_t>(time_ns) : static_cast<std::uint64_t>(time_ns);
+  const std::string nanoseconds = std::to_string(size % 1000000000);
+  text += time_ns < 0 ? "-" : "";
+  text += std::to_string(size / 1000000000) + "." + std::string(9 - nanoseconds.size(), '0') + nanoseconds;
 }
 
 }  // namespace tumble::scenarios

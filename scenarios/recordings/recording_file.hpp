@@ -22,6 +22,7 @@ struct RecordingInfo {
   std::string tumble_version;
   std::string engine_version;  ///< MuJoCo's
   std::string attribution;     ///< of a real recording: who made it and under which licence; "" for a simulated one
+  std::int64_t origin_ns = 0;  ///< of a real recording: stamp of its time 0 in the clock of its source; 0: not known
   std::string digest;          ///< of all sensor and truth data, 32 hexadecimal digits
   bool has_truth = false;
 };

@@ -40,6 +40,9 @@ class Writer {
   void optional_point(const char* name, const Eigen::Vector3d& given, const char* unit) {
     if (!given.isZero(0.0)) point(name, given, unit);
   }
+  void point_times(const char* name, sim::PointTimes given) {
+    if (given != sim::PointTimes::measured) value(name, std::string(kPointTimes[static_cast<std::size_t>(given)]));
+  }
   void texts(const char* name, const std::vector<std::string>& texts) { group_.write_texts(name, texts); }
   template <class Record, class Fields>
   void group(const char* name, const Record& record, Fields&& fields) {
@@ -75,6 +78,7 @@ void write_info(const hdf5::Group& root, const RecordingInfo& info, const std::s
   root.write_attribute("tumble_version", info.tumble_version);
   root.write_attribute("engine_version", info.engine_version);
   root.write_attribute("attribution", info.attribution);
+  if (info.origin_ns != 0) root.write_attribute("origin_ns", info.origin_ns);
   root.write_attribute("digest", digest_of_all);
   root.write_attribute("has_truth", std::int64_t{has_truth});
 }

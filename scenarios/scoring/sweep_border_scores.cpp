@@ -34,6 +34,7 @@ Jumps border_jumps(const Estimate& estimate, const ScoringInput& input) {
     for (int j = 0; j < 4; ++j) {
       covered = covered && truth.covers(poses[j].time_ns);
       if (covered) truths[j] = truth.pose(poses[j].time_ns);
+      covered = covered && truths[j].v_WA_m_s.allFinite();  // a reference does not know it beside its gaps
     }
     if (!covered) continue;
     const Eigen::Isometry3d to_world = alignment.transform();

@@ -19,8 +19,13 @@ using ::testing::HasSubstr;
 TEST(Exchange, EveryFormatLeavesItsFiles) {
   const fs::path folder = test_folder();
   const std::string recording = (shared_run("roll") / "recording.h5").string();
-  const std::pair<const char*, const char*> formats[] = {
-      {"tum", ""}, {"kitti", ""}, {"csv", "imu.csv"}, {"ply", "lidar_000000.ply"}, {"pcd", "lidar_000000.pcd"}};
+  const std::pair<const char*, const char*> formats[] = {{"tum", ""},
+                                                         {"kitti", ""},
+                                                         {"csv", "imu.csv"},
+                                                         {"ply", "lidar_000000.ply"},
+                                                         {"pcd", "lidar_000000.pcd"},
+                                                         {"rosbag1", ""},
+                                                         {"rosbag2", "metadata.yaml"}};
   for (const auto& [format, file] : formats) {
     const fs::path out = folder / format;
     const Ended ended = run_program({"export", recording, "--format", format, "-o", out.string(), "--json"});
@@ -51,6 +56,105 @@ TEST(Exchange, WhatIsExportedAsCsvComesBack) {
   const Ended export_truth = run_program({"export", back, "--format", "tum", "-o", (folder / "t").string()});
   EXPECT_EQ(export_truth.status, 2);
   EXPECT_EQ(line_count(export_truth.err), 1u) << export_truth.err;
+}
+
+/// Value of a metric in the answer of `score --json`; NaN when it is not there.
+double metric(const json& scored, const std::string& name) {
+  for (const json& row : scored["scores"]) {
+    if (row["metric"] == name) return row["value"].get<double>();
+  }
+  return std::nan("");
+}
+
+// the way of somebody else's data: sweeps, an IMU and reference poses in files, and back to scores
+TEST(Exchange, SweepsWithAnImuAndReferencePosesAreScored) {
+  const fs::path folder = test_folder();
+  const std::string recording = (shared_run("roll") / "recording.h5").string(), back = (folder / "back.h5").string();
+  for (const auto& [format, out] : {std::pair{"ply", "ply"}, {"csv", "csv"}, {"tum", "truth.txt"}}) {
+    ASSERT_EQ(run_program({"export", recording, "--format", format, "-o", (folder / out).string(), "--quiet"}).status,
+              0);
+  }
+  const Ended imported =
+      run_program({"import", (folder / "ply").string(), "--imu", (folder / "csv" / "imu.csv").string(), "--device",
+                   "phidget1044", "--lidar", "mid100", "--robot", "sphere", "--radius", "0.145", "--reference",
+                   (folder / "truth.txt").string(), "--reference-frame", "body", "-o", back, "--json"});
+  ASSERT_EQ(imported.status, 0) << imported.err;
+  const json said = json_of(imported);
+  EXPECT_EQ(said["has_reference"], true);
+  EXPECT_EQ(said["point_times"], "measured");
+  EXPECT_EQ(said["sweep_period_ns"], 100000000);
+  EXPECT_EQ(said["origin_ns"], 0);
+  // the truth as somebody's estimate has no error, and one shifted in time has
+  const std::vector<std::string> score = {"score", (folder / "truth.txt").string(), back, "--frame", "body", "--json"};
+  const Ended scored = run_program(score);
+  ASSERT_EQ(scored.status, 0) << scored.err;
+  EXPECT_EQ(json_of(scored)["status"], "ok");
+  EXPECT_LT(metric(json_of(scored), "ate_m"), 1e-9);
+  const Ended of_lidar =
+      run_program({"score", (folder / "truth.txt").string(), recording, "--frame", "centre", "--json"});
+  EXPECT_GE(metric(json_of(of_lidar), "ate_m"), 0.0) << of_lidar.err;
+  // an estimate from these files is scored like any other
+  const Ended estimate = run_program({"estimate", back, "--method", "position/rolling", "-o", (folder / "e").string()});
+  ASSERT_EQ(estimate.status, 0) << estimate.err;
+  const Ended rolled = run_program({"score", (folder / "e").string(), back, "--json"});
+  ASSERT_EQ(rolled.status, 0) << rolled.err;
+  EXPECT_LT(metric(json_of(rolled), "position_end_error_m"), 1.0);
+}
+
+TEST(Exchange, BagsComeBack) {
+  const fs::path folder = test_folder();
+  const std::string recording = (shared_run("roll") / "recording.h5").string();
+  for (const auto& [format, out] : {std::pair{"rosbag1", "a.bag"}, {"rosbag2", "bag"}}) {
+    const std::string bag = (folder / out).string(), back = (folder / (std::string(format) + ".h5")).string();
+    ASSERT_EQ(run_program({"export", recording, "--format", format, "--with-truth", "-o", bag, "--quiet"}).status, 0);
+    const Ended imported =
+        run_program({"import", bag, "--device", "phidget1044", "--robot", "sphere", "--radius", "0.145",
+                     "--reference-topic", "/truth", "--reference-frame", "body", "-o", back, "--json"});
+    ASSERT_EQ(imported.status, 0) << imported.err;
+    EXPECT_EQ(json_of(imported)["period_ns"], 4000000);
+    EXPECT_EQ(json_of(imported)["has_reference"], true);
+    EXPECT_EQ(json_of(imported)["point_times"], "measured");
+  }
+  const Ended unknown = run_program({"import", (folder / "a.bag").string(), "--imu-topic", "/imo", "-o", "x.h5"});
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_EQ(line_count(unknown.err), 1u) << unknown.err;
+}
+
+TEST(Exchange, ATrajectoryAloneIsARecordingToScoreAgainst) {
+  const fs::path folder = test_folder();
+  std::ofstream(folder / "reference.txt") << "1617333602.0 0 0 0 0 0 0 1\n1617333602.1 1 0 0 0 0 0 1\n"
+                                             "1617333602.2 2 0 0 0 0 0 1\n1617333602.3 3 0 0 0 0 0 1\n";
+  std::ofstream(folder / "estimate.tum") << "1617333602.0 5 0 0 0 0 0 1\n1617333602.1 6 0 0 0 0 0 1\n"
+                                            "1617333602.2 7 0 0 0 0 0 1\n1617333602.3 8 0.5 0 0 0 0 1\n";
+  const std::string recording = (folder / "r.h5").string();
+  const Ended imported = run_program({"import", (folder / "reference.txt").string(), "-o", recording, "--json"});
+  ASSERT_EQ(imported.status, 0) << imported.err;
+  EXPECT_EQ(json_of(imported)["origin_ns"], 1617333602000000000);
+  const Ended scored = run_program({"score", (folder / "estimate.tum").string(), recording, "--json"});
+  ASSERT_EQ(scored.status, 0) << scored.err;
+  EXPECT_NEAR(metric(json_of(scored), "position_end_error_m"), 0.5, 1e-9);
+  const Ended drawn = run_program({"render", recording, "-o", (folder / "x.png").string()});
+  EXPECT_EQ(drawn.status, 2);
+  EXPECT_THAT(drawn.err, HasSubstr("no world to draw"));
+  const Ended estimated =
+      run_program({"estimate", recording, "--method", "attitude/vqf", "-o", (folder / "e").string()});
+  EXPECT_EQ(estimated.status, 2);
+  EXPECT_THAT(estimated.err, HasSubstr("it needs an IMU, and the recording has none"));
+}
+
+TEST(Exchange, HostileSweepsAreOneLine) {
+  const fs::path folder = test_folder();
+  fs::create_directories(folder / "empty");
+  fs::create_directories(folder / "cut");
+  std::ofstream(folder / "cut" / "1.ply") << "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\n"
+                                             "property float x\nproperty float y\nproperty float z\nend_header\n";
+  for (const auto& [path, complaint] :
+       {std::pair{"empty", "holds no .ply, .pcd or .bin file"}, {"cut", "1.ply:7: promises 4000000000 points"}}) {
+    const Ended ended = run_program({"import", (folder / path).string(), "-o", (folder / "x.h5").string()});
+    EXPECT_EQ(ended.status, 2);
+    EXPECT_EQ(line_count(ended.err), 1u) << ended.err;
+    EXPECT_THAT(ended.err, HasSubstr(complaint));
+  }
 }
 
 TEST(Exchange, ATrialOfBroadIsRead) {

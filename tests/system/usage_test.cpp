@@ -73,7 +73,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"format of an export", {"export", "absent.h5", "--format", "tmu", "-o", "x"}, "'tum'"},
         Wrong{"export of nothing", {"export", "absent.h5", "--format", "tum", "-o", "x"}, "absent.h5"},
         Wrong{"import of nothing", {"import", "absent.csv", "-o", "x.h5"}, "absent.csv"},
-        Wrong{"import without format", {"import", "absent.bag", "-o", "x.h5"}, "--format"},
+        Wrong{"import without format", {"import", "absent.dat", "-o", "x.h5"}, "--format"},
         Wrong{"device of an import", {"import", "absent.csv", "--device", "mti3", "-o", "x.h5"}, "mti30"},
         Wrong{"triage of many methods", {"triage", "hill", "--seed", "1", "--method", "tumble"}, "rate/tumble"},
         Wrong{"metric of a triage",

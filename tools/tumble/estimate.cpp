@@ -28,6 +28,14 @@ std::string full_name(const scenarios::Method& method) {
   return std::string(to_string(method.info.kind)) + "/" + method.info.name;
 }
 
+/// Why a run failed; a sensor that the recording does not have is called by its name.
+std::string reason(const Status& status) {
+  const std::string field = status.field;
+  if (status.trouble == Trouble::empty && field == "imus") return "it needs an IMU, and the recording has none";
+  if (status.trouble == Trouble::empty && field == "lidars") return "it needs a lidar, and the recording has none";
+  return status.message();
+}
+
 /// The one method of that name which can run on this recording without the truth.
 const scenarios::Method& choose(const std::string& name, const std::string& robot) {
   std::vector<const scenarios::Method*> fitting;
@@ -90,7 +98,7 @@ int run_estimate(const Session& session, const Options& options) {
   session.print({summary(estimate)}, document);
   if (estimate.status.ok()) return kDone;
   // the estimate is left for inspection, and its trouble lies in the recording
-  throw BadInput(options.recording.string() + ": " + full_name(method) + " failed: " + estimate.status.message());
+  throw BadInput(options.recording.string() + ": " + full_name(method) + " failed: " + reason(estimate.status));
 }
 
 }  // namespace

@@ -2,14 +2,12 @@
 #include "scenarios/recordings/import.hpp"
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "scenarios/draw/data_sheet.hpp"
 #include "scenarios/errors.hpp"
 #include "tools/tumble/arguments.hpp"
+#include "tools/tumble/import_options.hpp"
 #include "tools/tumble/verbs.hpp"
 
 namespace tumble::tools {
@@ -17,120 +15,97 @@ namespace tumble::tools {
 namespace {
 
 using scenarios::BadInput;
+using scenarios::Imported;
 
-struct Options {
-  std::filesystem::path file, out;
-  std::string format, device, robot, accel_unit;
-  std::vector<double> lever_arm_m;
-  double radius_m = 0.0;
-};
-
-const std::vector<std::string> kFormats = {"csv", "broad"};
-
-std::string format_of(const Options& options) {
-  if (!options.format.empty()) {
-    require_known("format", options.format, kFormats);
-    return options.format;
+/// One format, and how its files become a recording.
+Imported import_format(const Session& session, const ImportOptions& options, const std::string& format) {
+  if (format == "csv") return scenarios::import_imu_csv(options.path, imu_sheet(session, options), accel_unit(options));
+  if (format == "broad") {
+    Imported imported = scenarios::import_broad(options.path);
+    complete(imu_sheet(session, options), imported.sensors.imus.front());
+    return imported;
   }
-  const std::string extension = options.file.extension().string();
-  if (extension == ".csv") return "csv";
-  if (extension == ".hdf5" || extension == ".h5") return "broad";
-  throw BadInput(options.file.string() + ": --format is needed for a file named so (csv or broad)");
+  if (format == "rosbag1") return scenarios::import_ros1_bag(options.path, bag_reading(session, options));
+  if (format == "rosbag2") return scenarios::import_ros2_bag(options.path, bag_reading(session, options));
+  if (format == "tum" || (format == "kitti" && !std::filesystem::is_directory(options.path)))
+    return scenarios::import_trajectory(trajectory_source(options, format));
+  return scenarios::import_sweeps(sweep_source(session, options, format));
 }
 
-/// What the data sheet states, for a file that does not.
-sim::ImuRecord described(const scenarios::DataRoot& data, const Options& options) {
-  sim::ImuRecord imu;
-  imu.name = "imu";
-  if (!options.device.empty()) {
-    const scenarios::DataSheet sheet = scenarios::load_data_sheet(data, options.device);
-    if (sheet.sensor_kind != "imu")
-      throw BadInput("--device " + options.device + ": is no IMU but a " + sheet.sensor_kind);
-    const sim::Values values = sheet.values();
-    imu.device = options.device;
-    imu.stated_gyro_range_rad_s = values.at("gyro_range_rad_s");
-    imu.stated_accel_range_m_s2 = values.at("accel_range_m_s2");
-    imu.gyro_noise_rad_s_sqrt_hz = values.at("gyro_noise_rad_s_sqrt_hz");
-    imu.accel_noise_m_s2_sqrt_hz = values.at("accel_noise_m_s2_sqrt_hz");
+nlohmann::json document_of(const ImportOptions& options, const std::string& format, const Imported& imported) {
+  nlohmann::json document = {{"recording", options.out.string()},
+                             {"format", format},
+                             {"digest", scenarios::read_info(options.out).digest},
+                             {"has_reference", imported.reference.has_value()},
+                             {"attribution", imported.info.attribution},
+                             {"origin_ns", imported.info.origin_ns},
+                             {"notes", imported.notes}};
+  if (!imported.sensors.imus.empty()) {
+    document["samples"] = imported.sensors.imus.front().time_ns.size();
+    document["period_ns"] = imported.sensors.imus.front().period_ns;
   }
-  if (!options.lever_arm_m.empty()) {
-    const bool finite = std::all_of(options.lever_arm_m.begin(), options.lever_arm_m.end(),
-                                    [](double x) { return std::isfinite(x) && std::abs(x) <= 10.0; });
-    if (!finite) throw BadInput("--lever-arm must be three numbers within +-10 m");
-    imu.T_BI.translation() = Eigen::Vector3d::Map(options.lever_arm_m.data());
+  if (!imported.sensors.lidars.empty()) {
+    const sim::LidarRecord& lidar = imported.sensors.lidars.front();
+    document["sweeps"] = lidar.sweep_start_ns.size();
+    document["points"] = lidar.position_L_m.size();
+    document["sweep_period_ns"] = lidar.sweep_period_ns;
+    document["point_times"] = point_times_word(lidar.point_times);
   }
-  return imu;
+  return document;
 }
 
-/// A file that states less than the data sheet is completed from it.
-void complete(const sim::ImuRecord& known, sim::ImuRecord& imu) {
-  imu.device = known.device;
-  imu.stated_gyro_range_rad_s = known.stated_gyro_range_rad_s;
-  imu.stated_accel_range_m_s2 = known.stated_accel_range_m_s2;
-  imu.gyro_noise_rad_s_sqrt_hz = known.gyro_noise_rad_s_sqrt_hz;
-  imu.accel_noise_m_s2_sqrt_hz = known.accel_noise_m_s2_sqrt_hz;
+/// A row per sensor, and one for the reference.
+Table table_of(const Imported& imported) {
+  Table table("", {"what", "name", "readings", "period [ms]", "seconds", "remark"});
+  const auto ms = [](std::int64_t ns) { return number_text(static_cast<double>(ns) * 1e-6); };
+  const auto span = [](const std::vector<std::int64_t>& times) {
+    return times.empty() ? "0" : number_text(static_cast<double>(times.back() - times.front()) * 1e-9);
+  };
+  for (const sim::ImuRecord& imu : imported.sensors.imus) {
+    table.add_row({"imu", imu.name, std::to_string(imu.time_ns.size()), ms(imu.period_ns), span(imu.time_ns), ""});
+  }
+  for (const sim::LidarRecord& lidar : imported.sensors.lidars) {
+    table.add_row(
+        {"lidar", lidar.name, std::to_string(lidar.sweep_start_ns.size()), ms(lidar.sweep_period_ns),
+         span(lidar.sweep_start_ns),
+         std::to_string(lidar.position_L_m.size()) + " points, times " + point_times_word(lidar.point_times)});
+  }
+  if (imported.reference) {
+    const sim::Truth& truth = *imported.reference;
+    const auto seconds = static_cast<double>(truth.p_WB_m.size() - 1) * static_cast<double>(truth.period_ns) * 1e-9;
+    table.add_row(
+        {"reference", "", std::to_string(truth.p_WB_m.size()), ms(truth.period_ns), number_text(seconds), ""});
+  }
+  return table;
 }
 
-int import_from(const Session& session, const Options& options) {
+int import_from(const Session& session, const ImportOptions& options) {
   const std::string format = format_of(options);
-  const sim::ImuRecord known = described(session.data(), options);
-  if (!options.accel_unit.empty()) {
-    if (format != "csv") throw BadInput("--accel-unit: a trial of BROAD is in m/s^2");
-    require_known("unit", options.accel_unit, std::vector<std::string>{"g", "m/s^2"});
+  require_fitting(options, format);
+  Imported imported = import_format(session, options, format);
+  if (!options.imu.empty()) {
+    scenarios::attach_imus(imported,
+                           scenarios::import_imu_csv(options.imu, imu_sheet(session, options), accel_unit(options)));
   }
-  if (!options.lever_arm_m.empty() && format != "csv")
-    throw BadInput("--lever-arm: the body of a trial of BROAD is the IMU itself");
-  if (options.radius_m != 0.0 && options.robot != "sphere")
-    throw BadInput("--radius is the sphere's: --robot sphere is missing");
-  if (!options.robot.empty()) require_known("robot", options.robot, std::vector<std::string>{"rig", "sphere"});
-  scenarios::Imported imported =
-      format == "csv"
-          ? scenarios::import_imu_csv(options.file, known,
-                                      options.accel_unit == "g" ? scenarios::AccelUnit::g : scenarios::AccelUnit::m_s2)
-          : scenarios::import_broad(options.file);
-  sim::ImuRecord& imu = imported.sensors.imus.front();
-  if (format == "broad") complete(known, imu);
+  if (!options.reference.empty()) {
+    scenarios::attach_reference(imported, reference_source(options, !imported.sensors.lidars.empty()));
+  }
   imported.sensors.robot = options.robot;
   imported.sensors.sphere_radius_m = options.radius_m;
   imported.info.tumble_version = program_version();
   if (options.out.has_parent_path()) make_folder(options.out.parent_path());
   scenarios::write_recording(options.out, imported.info, imported.sensors,
                              imported.reference ? &*imported.reference : nullptr);
-
-  const std::string digest = scenarios::read_info(options.out).digest;
-  Table table("", {"recording", "samples", "period [ms]", "seconds", "attribution"});
-  const double seconds = static_cast<double>(imu.time_ns.back() - imu.time_ns.front()) * 1e-9;
-  table.add_row({options.out.string(), std::to_string(imu.time_ns.size()),
-                 number_text(static_cast<double>(imu.period_ns) * 1e-6), number_text(seconds),
-                 imported.info.attribution});
-  session.print({table}, {{"recording", options.out.string()},
-                          {"format", format},
-                          {"samples", imu.time_ns.size()},
-                          {"period_ns", imu.period_ns},
-                          {"digest", digest},
-                          {"has_reference", imported.reference.has_value()},
-                          {"attribution", imported.info.attribution}});
+  for (const std::string& note : imported.notes) session.note(note);
+  session.print({table_of(imported)}, document_of(options, format, imported));
   return kDone;
 }
 
 }  // namespace
 
 Action declare_import(CLI::App& app, const Session& session) {
-  auto options = std::make_shared<Options>();
-  app.add_option("FILE", options->file,
-                 "readings of an IMU: CSV with the columns of a sensor_msgs/Imu, or a trial of BROAD (HDF5), with its "
-                 "optical reference")
-      ->required();
-  app.add_option("--format", options->format, "csv or broad [by the file's ending]");
-  app.add_option("--device", options->device,
-                 "its data sheet, for ranges and noise: see 'tumble list sensors' [unknown]");
-  app.add_option("--accel-unit", options->accel_unit, "of a CSV: m/s^2 or g [m/s^2]");
-  app.add_option("--lever-arm", options->lever_arm_m, "X Y Z: from the robot's centre of mass to the IMU, m [0 0 0]")
-      ->expected(3);
-  app.add_option("--robot", options->robot, "rig or sphere, for methods that ask [unknown]");
-  app.add_option("--radius", options->radius_m, "of the sphere, m, for methods of position [unknown]")
-      ->check(CLI::Range(1e-3, 10.0));
-  app.add_option("-o,--output", options->out, "the recording, FILE.h5")->required();
+  auto options = std::make_shared<ImportOptions>();
+  declare(app, *options);
   return [&session, options] { return import_from(session, *options); };
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <CLI/CLI.hpp>
+#include <cstdlib>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -21,10 +22,12 @@ using scenarios::Frame;
 
 struct Options {
   std::filesystem::path estimate, recording;
-  std::string frame = "imu";
+  std::string frame;
 };
 
-Frame parse_frame(const std::string& name) {
+/// Of the poses in a TUM file: as named, else of the first IMU, of the body where the recording has none.
+Frame frame_of(const std::string& name, const sim::Truth& truth) {
+  if (name.empty()) return truth.imus.empty() ? Frame::body : Frame::imu;
   std::vector<std::string> known;
   for (const Frame frame : {Frame::imu, Frame::lidar, Frame::body, Frame::centre}) {
     if (name == to_string(frame)) return frame;
@@ -34,14 +37,23 @@ Frame parse_frame(const std::string& name) {
   return Frame::imu;
 }
 
+/// Somebody else's poses may bear the stamps of the recording's source: they are moved to the recording's own clock
+/// when its origin is nearer to them than its zero.
+void move_to_clock(std::int64_t origin_ns, scenarios::Estimate& estimate) {
+  const std::int64_t first = estimate.poses.empty() ? 0 : estimate.poses.front().time_ns;
+  if (std::abs(first - origin_ns) >= std::abs(first)) return;
+  for (PoseState& pose : estimate.poses) pose.time_ns -= origin_ns;
+}
+
 int score_estimate(const Session& session, const Options& options) {
-  scenarios::Outcome outcome;
-  const scenarios::Estimate estimate =
-      scenarios::read_estimate(options.estimate, outcome.kind, outcome.method, parse_frame(options.frame));
   const scenarios::RecordingInfo info = scenarios::read_info(options.recording);
   if (!info.has_truth) throw scenarios::BadInput(options.recording.string() + ": holds no truth to score against");
   const sim::Sensors sensors = scenarios::read_sensors(options.recording);
   const sim::Truth truth = scenarios::read_truth(options.recording);
+  scenarios::Outcome outcome;
+  scenarios::Estimate estimate =
+      scenarios::read_estimate(options.estimate, outcome.kind, outcome.method, frame_of(options.frame, truth));
+  if (!std::filesystem::is_directory(options.estimate)) move_to_clock(info.origin_ns, estimate);
 
   // the true surface matters to maps alone, and building it takes a while
   std::optional<sim::Surface> surface;
@@ -72,8 +84,8 @@ Action declare_score(CLI::App& app, const Session& session) {
   app.add_option("ESTIMATE", options->estimate, "folder of an estimate, or a TUM file (t x y z qx qy qz qw)")
       ->required();
   app.add_option("RECORDING", options->recording, "the recording with its truth, FILE.h5")->required();
-  app.add_option("--frame", options->frame, "whose poses a TUM file holds: imu, lidar, body or centre")
-      ->capture_default_str();
+  app.add_option("--frame", options->frame,
+                 "whose poses a TUM file holds: imu, lidar, body or centre [imu; body where the recording has none]");
   return [&session, options] { return score_estimate(session, *options); };
 }
 

@@ -44,7 +44,7 @@ void expect_second_sweep(const pcl::PCLPointCloud2& cloud) {
 // An independent reader of both formats.
 TEST_F(PclReadsSweeps, Pcd) {
   export_pcd(fixture::recording().sensors, folder_);
-  EXPECT_EQ(files(), 3u);
+  EXPECT_EQ(files(), 4u) << "three sweeps and their stamps";
   pcl::PCLPointCloud2 cloud;
   ASSERT_EQ(pcl::io::loadPCDFile((folder_ / "lidar_000001.pcd").string(), cloud), 0);
   expect_second_sweep(cloud);

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "scenarios/recordings/ros_bytes.hpp"
+
+/// The two kinds of bags behind one face: topics, and messages as bytes in order of time. Private to
+/// scenarios/recordings.
+namespace tumble::scenarios {
+
+/// Types by ROS 1's names ("sensor_msgs/Imu"); ROS 2 has "sensor_msgs/msg/Imu".
+struct BagTopic {
+  std::string name, type;
+};
+
+class BagWriter {
+ public:
+  virtual ~BagWriter() = default;
+  /// Messages must come in order of time. All throw BadInput.
+  virtual void write(const BagTopic& topic, std::int64_t stamp_ns, const ros::Imu& message) = 0;
+  virtual void write(const BagTopic& topic, std::int64_t stamp_ns, const ros::PointCloud2& message) = 0;
+  virtual void write(const BagTopic& topic, std::int64_t stamp_ns, const ros::Odometry& message) = 0;
+  /// Nothing is left of a bag that was not finished.
+  virtual void finish() = 0;
+};
+
+class BagReader {
+ public:
+  virtual ~BagReader() = default;
+  virtual std::vector<BagTopic> topics() = 0;
+  /// Calls `take(bytes)` for each message of the topic in order of time. Throws BadInput.
+  virtual void read(const std::string& topic, const std::function<void(ros::Bytes&)>& take) = 0;
+  /// Messages of this bag are CDR, else ROS 1's layout.
+  virtual bool cdr() const = 0;
+};
+
+std::unique_ptr<BagWriter> make_ros1_writer(const std::filesystem::path& file);
+std::unique_ptr<BagWriter> make_ros2_writer(const std::filesystem::path& folder);
+std::unique_ptr<BagReader> open_ros1_bag(const std::filesystem::path& file);
+std::unique_ptr<BagReader> open_ros2_bag(const std::filesystem::path& path);
+
+/// Walks the records of a ROS 1 bag and holds every length, position and offset in them against the file, since the
+/// library trusts them; what is inside compressed chunks is left to it. Throws BadInput with the offset in the file.
+void check_ros1_bag(const std::filesystem::path& file);
+
+}  // namespace tumble::scenarios

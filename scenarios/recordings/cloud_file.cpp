@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/recordings/cloud_file.hpp"
+
+#include <pcl/PCLPointCloud2.h>
+#include <pcl/exceptions.h>
+#include <pcl/io/pcd_io.h>
+#include <pcl/io/ply_io.h>
+
+#include <algorithm>
+#include <cstring>
+#include <exception>
+#include <fstream>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/recordings/quiet_pcl.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+/// KITTI's .bin: x y z intensity.
+constexpr std::size_t kKittiColumns = 4;
+
+template <class Number>
+void take_column(const pcl::PCLPointCloud2& cloud, std::size_t offset, std::vector<double>& out) {
+  const std::size_t points = out.size();
+  for (std::size_t i = 0; i < points; ++i) {
+    Number value;
+    std::memcpy(&value, cloud.data.data() + i * cloud.point_step + offset, sizeof(value));
+    out[i] = static_cast<double>(value);
+  }
+}
+
+/// False for a type that is no number.
+bool take_field(const pcl::PCLPointCloud2& cloud, const pcl::PCLPointField& field, std::vector<double>& out) {
+  using Field = pcl::PCLPointField;
+  switch (field.datatype) {
+    case Field::INT8:
+      return take_column<std::int8_t>(cloud, field.offset, out), true;
+    case Field::UINT8:
+      return take_column<std::uint8_t>(cloud, field.offset, out), true;
+    case Field::INT16:
+      return take_column<std::int16_t>(cloud, field.offset, out), true;
+    case Field::UINT16:
+      return take_column<std::uint16_t>(cloud, field.offset, out), true;
+    case Field::INT32:
+      return take_column<std::int32_t>(cloud, field.offset, out), true;
+    case Field::UINT32:
+      return take_column<std::uint32_t>(cloud, field.offset, out), true;
+    case Field::INT64:
+      return take_column<std::int64_t>(cloud, field.offset, out), true;
+    case Field::UINT64:
+      return take_column<std::uint64_t>(cloud, field.offset, out), true;
+    case Field::FLOAT32:
+      return take_column<float>(cloud, field.offset, out), true;
+    case Field::FLOAT64:
+      return take_column<double>(cloud, field.offset, out), true;
+    default:
+      return false;
+  }
+}
+
+std::string plain_name(const std::string& name) {
+  constexpr std::string_view kPrefix = "scalar_";
+  return name.starts_with(kPrefix) ? name.substr(kPrefix.size()) : name;
+}
+
+Cloud to_columns(const pcl::PCLPointCloud2& cloud, std::size_t points) {
+  Cloud out;
+  out.points = points;
+  for (const pcl::PCLPointField& field : cloud.fields) {
+    std::vector<double> column(points);
+    // several numbers in one field, and bytes without meaning ("_"), are nothing that a sweep knows
+    if (field.count > 1 || field.name == "_" || !take_field(cloud, field, column)) continue;
+    out.names.push_back(plain_name(field.name));
+    out.columns.push_back(std::move(column));
+  }
+  return out;
+}
+
+template <class Reader>
+Cloud read_by_pcl(const std::filesystem::path& path, const CloudHeader& header, const char* format) {
+  if (header.points == 0) return {};
+  const QuietPcl quiet;
+  pcl::PCLPointCloud2 cloud;
+  int status = -1;
+  try {
+    status = Reader().read(path.string(), cloud);
+  } catch (const std::exception&) {  // the status says so
+  }
+  const std::size_t found = std::size_t{cloud.width} * cloud.height;
+  if (status < 0 || found != header.points || cloud.data.size() < found * cloud.point_step) {
+    throw BadInput(path.string() + ": cannot be read as " + format + " after its header of " +
+                   std::to_string(header.header_bytes) + " bytes: damaged or truncated");
+  }
+  return to_columns(cloud, found);
+}
+
+Cloud read_kitti(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream || !std::filesystem::is_regular_file(path)) throw BadInput(path.string() + ": no such file");
+  const std::uint64_t bytes = std::filesystem::file_size(path);
+  constexpr std::uint64_t kPointBytes = kKittiColumns * sizeof(float);
+  if (bytes % kPointBytes != 0) {
+    throw BadInput(path.string() + ": has " + std::to_string(bytes) +
+                   " bytes, must be a multiple of 16 (float32 x y z intensity): truncated?");
+  }
+  std::vector<float> numbers(bytes / sizeof(float));
+  stream.read(reinterpret_cast<char*>(numbers.data()), static_cast<std::streamsize>(bytes));
+  if (static_cast<std::uint64_t>(stream.gcount()) != bytes) throw BadInput(path.string() + ": cannot be read");
+  Cloud out;
+  out.points = bytes / kPointBytes;
+  out.names = {"x", "y", "z", "intensity"};
+  out.columns.assign(kKittiColumns, std::vector<double>(out.points));
+  for (std::size_t i = 0; i < numbers.size(); ++i) out.columns[i % kKittiColumns][i / kKittiColumns] = numbers[i];
+  return out;
+}
+
+}  // namespace
+
+const std::vector<double>* Cloud::find(const std::string& name) const {
+  const auto found = std::find(names.begin(), names.end(), name);
+  return found == names.end() ? nullptr : &columns[static_cast<std::size_t>(found - names.begin())];
+}
+
+Cloud read_cloud(const std::filesystem::path& path) {
+  const std::string ending = path.extension().string();
+  if (ending == ".ply") return read_by_pcl<pcl::PLYReader>(path, read_ply_header(path), "PLY");
+  if (ending == ".pcd") return read_by_pcl<pcl::PCDReader>(path, read_pcd_header(path), "PCD");
+  if (ending == ".bin") return read_kitti(path);
+  throw BadInput(path.string() + ": must end in .ply, .pcd or .bin");
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace tumble::scenarios {
+
+/// Points as a file or a message holds them: named columns of numbers, none of them interpreted. A 64 bit integer keeps
+/// the 53 leading bits: stamps since the epoch in nanoseconds come to within 256 ns.
+struct Cloud {
+  std::vector<std::string> names;            ///< as written, but for a prefix "scalar_", which CloudCompare adds
+  std::vector<std::vector<double>> columns;  ///< parallel to `names`, one number per point
+  std::size_t points = 0;
+
+  /// The column of that name; null when there is none.
+  const std::vector<double>* find(const std::string& name) const;
+};
+
+/// Reads the points of a PLY or PCD file of any encoding (by PCL), or of a KITTI .bin file (float32 x y z intensity);
+/// the file's ending tells which. A file without points is a cloud without points. What the header promises is held
+/// against the file's size before anything is allocated. Throws BadInput with file and place: absent, another format,
+/// a damaged header, truncated, more than 2^26 points.
+Cloud read_cloud(const std::filesystem::path& path);
+
+/// What the header of a PLY or PCD file promises.
+struct CloudHeader {
+  std::uint64_t points = 0;
+  std::uint64_t point_bytes = 0;  ///< 0 when written as text
+  std::uint64_t header_bytes = 0;
+  std::size_t fields = 0;
+};
+
+/// Reads and checks a header alone; the same errors.
+CloudHeader read_ply_header(const std::filesystem::path& path);
+CloudHeader read_pcd_header(const std::filesystem::path& path);
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/recordings/cloud_file.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr std::uint64_t kPointsMax = std::uint64_t{1} << 26;
+/// LZF makes at most 264 bytes of 3.
+constexpr std::uint64_t kLzfMost = 88;
+/// A header longer than this is none.
+constexpr std::size_t kHeaderMax = 65536;
+
+/// The lines of a header, with their place.
+class HeaderLines {
+ public:
+  explicit HeaderLines(const std::filesystem::path& path) : path_(path), stream_(path, std::ios::binary) {
+    if (!stream_ || !std::filesystem::is_regular_file(path)) throw BadInput(path.string() + ": no such file");
+    bytes_in_file_ = std::filesystem::file_size(path);
+  }
+
+  /// The words of the next line. The header must end in a line, not in the file.
+  std::vector<std::string> next() {
+    std::string line;
+    if (!std::getline(stream_, line) || stream_.eof()) fail("the header does not end: truncated?");
+    ++number_;
+    bytes_ += line.size() + 1;
+    if (bytes_ > kHeaderMax) fail("the header is longer than " + std::to_string(kHeaderMax) + " bytes");
+    std::istringstream words(line);
+    std::vector<std::string> out;
+    for (std::string word; words >> word;) out.push_back(word);
+    return out;
+  }
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw BadInput(path_.string() + ":" + std::to_string(number_) + ": " + what);
+  }
+
+  std::uint64_t whole(const std::string& what, const std::string& text) const {
+    std::uint64_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size()) fail(what + " is '" + text + "', no whole number");
+    return value;
+  }
+
+  std::uint64_t bytes() const { return bytes_; }
+
+  /// Holds a promise of points against what follows the header, of which a byte makes so many at most.
+  void require_room(const CloudHeader& header, std::uint64_t made_of_a_byte = 1) const {
+    if (header.points > kPointsMax) {
+      fail("promises " + std::to_string(header.points) + " points, at most " + std::to_string(kPointsMax) +
+           " are read from a file");
+    }
+    // a number written as text has a digit and a blank or line end at least; the last one may lack it
+    const std::uint64_t point_bytes = header.point_bytes > 0 ? header.point_bytes : 2 * header.fields;
+    const std::uint64_t slack = header.point_bytes > 0 ? 0 : 1;
+    const std::uint64_t rest = bytes_in_file_ - std::min(bytes_, bytes_in_file_) + slack;
+    if (header.points * point_bytes > rest * made_of_a_byte) {
+      fail("promises " + std::to_string(header.points) + " points of " + std::to_string(point_bytes) +
+           " bytes at least, but " + std::to_string(rest) + " bytes follow: truncated?");
+    }
+  }
+
+ private:
+  std::filesystem::path path_;
+  std::ifstream stream_;
+  int number_ = 0;
+  std::uint64_t bytes_ = 0, bytes_in_file_ = 0;
+};
+
+/// Bytes of a PLY type; 0 when it is none.
+std::uint64_t ply_bytes(const std::string& type) {
+  static const std::map<std::string, std::uint64_t> known = {
+      {"char", 1},   {"int8", 1},    {"uchar", 1},  {"uint8", 1},  {"short", 2}, {"int16", 2},
+      {"ushort", 2}, {"uint16", 2},  {"int", 4},    {"int32", 4},  {"uint", 4},  {"uint32", 4},
+      {"float", 4},  {"float32", 4}, {"double", 8}, {"float64", 8}};
+  const auto found = known.find(type);
+  return found == known.end() ? 0 : found->second;
+}
+
+/// One line of a PLY's header that describes the points.
+void take_property(const HeaderLines& lines, const std::vector<std::string>& words, CloudHeader& header) {
+  if (words.size() == 5 && words[1] == "list") lines.fail("the points hold a list: such files are not read");
+  if (words.size() != 3) lines.fail("must be 'property TYPE NAME'");
+  const std::uint64_t bytes = ply_bytes(words[1]);
+  if (bytes == 0) lines.fail("unknown type '" + words[1] + "'");
+  header.point_bytes += bytes;
+  ++header.fields;
+}
+
+using Words = std::vector<std::string>;
+
+/// The lines of a PCD's header by their first words.
+std::map<std::string, Words> pcd_lines(HeaderLines& lines) {
+  std::map<std::string, Words> found;
+  while (!found.contains("DATA")) {
+    const Words words = lines.next();
+    if (words.empty() || words.front().starts_with("#")) continue;
+    found[words.front()] = Words(words.begin() + 1, words.end());
+  }
+  for (const char* needed : {"FIELDS", "SIZE", "TYPE", "WIDTH", "HEIGHT"}) {
+    if (!found.contains(needed)) lines.fail(std::string("no line ") + needed + " before DATA: not a PCD file?");
+  }
+  return found;
+}
+
+std::uint64_t single(const HeaderLines& lines, const std::string& name, const Words& words) {
+  if (words.size() != 1) lines.fail(name + " has " + std::to_string(words.size()) + " numbers, must have 1");
+  const std::uint64_t value = lines.whole(name, words.front());
+  if (value > kPointsMax) {
+    lines.fail(name + " is " + std::to_string(value) + ", must be at most " + std::to_string(kPointsMax));
+  }
+  return value;
+}
+
+}  // namespace
+
+CloudHeader read_ply_header(const std::filesystem::path& path) {
+  HeaderLines lines(path);
+  CloudHeader header;
+  if (lines.next() != Words{"ply"}) lines.fail("does not begin with 'ply': not a PLY file?");
+  bool text = false, in_points = false, before_points = true;
+  for (Words words = lines.next(); words != Words{"end_header"}; words = lines.next()) {
+    if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
+    if (words[0] == "format") {
+      text = words.size() > 1 && words[1] == "ascii";
+    } else if (words[0] == "element") {
+      if (words.size() != 3) lines.fail("must be 'element NAME COUNT'");
+      in_points = words[1] == "vertex";
+      const std::uint64_t count = lines.whole("count of " + words[1], words[2]);
+      if (in_points) header.points = count, before_points = false;
+      if (!in_points && before_points && count > 0) lines.fail("the points must be the file's first element");
+      if (!in_points && count > kPointsMax) lines.fail("promises " + words[2] + " of " + words[1]);
+    } else if (words[0] == "property") {
+      if (in_points) take_property(lines, words, header);
+    } else {
+      lines.fail("unknown line '" + words[0] + "'");
+    }
+  }
+  if (header.fields == 0) lines.fail("no 'element vertex' with properties: there are no points");
+  if (text) header.point_bytes = 0;
+  header.header_bytes = lines.bytes();
+  lines.require_room(header);
+  return header;
+}
+
+CloudHeader read_pcd_header(const std::filesystem::path& path) {
+  HeaderLines lines(path);
+  std::map<std::string, Words> found = pcd_lines(lines);
+  CloudHeader header;
+  header.fields = found["FIELDS"].size();
+  if (header.fields == 0) lines.fail("FIELDS names nothing");
+  if (!found.contains("COUNT")) found["COUNT"] = Words(header.fields, "1");
+  for (const char* name : {"SIZE", "TYPE", "COUNT"}) {
+    if (found[name].size() != header.fields) {
+      lines.fail(std::string(name) + " has " + std::to_string(found[name].size()) + " words, FIELDS " +
+                 std::to_string(header.fields));
+    }
+  }
+  for (std::size_t i = 0; i < header.fields; ++i) {
+    const std::uint64_t size = lines.whole("SIZE", found["SIZE"][i]), count = lines.whole("COUNT", found["COUNT"][i]);
+    if (size == 0 || size > 8 || count == 0 || count > 4096) {
+      lines.fail("field " + found["FIELDS"][i] + " has " + std::to_string(count) + " numbers of " +
+                 std::to_string(size) + " bytes: 1 to 4096 of 1 to 8 are read");
+    }
+    header.point_bytes += size * count;
+  }
+  const std::uint64_t width = single(lines, "WIDTH", found["WIDTH"]), height = single(lines, "HEIGHT", found["HEIGHT"]);
+  header.points = width * height;
+  if (found.contains("POINTS") && single(lines, "POINTS", found["POINTS"]) != header.points) {
+    lines.fail("POINTS is " + found["POINTS"].front() + ", WIDTH times HEIGHT " + std::to_string(header.points));
+  }
+  const std::string encoding = found["DATA"].empty() ? "" : found["DATA"].front();
+  header.header_bytes = lines.bytes();
+  if (encoding == "ascii") {
+    header.point_bytes = 0;
+  } else if (encoding != "binary" && encoding != "binary_compressed") {
+    lines.fail("DATA is '" + encoding + "', must be ascii, binary or binary_compressed");
+  }
+  lines.require_room(header, encoding == "binary_compressed" ? kLzfMost : 1);
+  return header;
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/errors.hpp"
+#include "scenarios/recordings/import.hpp"
+#include "scenarios/recordings/recording_clock.hpp"
+#include "scenarios/recordings/sweep_stamps.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+/// Times of a KITTI file's poses when there are no sweeps to give them.
+std::vector<std::int64_t> own_times(const ReferenceSource& source) {
+  if (!source.times.empty()) return read_stamps(source.times);
+  if (source.steady_ns <= 0) {
+    throw BadInput(source.file.string() + ": KITTI's format has no times: a file of stamps or a period is needed");
+  }
+  const std::size_t poses = count_kitti_poses(source.file);
+  std::vector<std::int64_t> times;
+  for (std::size_t k = 0; k < poses; ++k) times.push_back(static_cast<std::int64_t>(k) * source.steady_ns);
+  return times;
+}
+
+std::vector<ReferencePose> poses_of(const ReferenceSource& source, const std::vector<std::int64_t>& sweeps_ns) {
+  if (source.format == "tum") return read_tum_poses(source.file, source.sorted);
+  if (source.format == "kitti") return read_kitti_poses(source.file, sweeps_ns.empty() ? own_times(source) : sweeps_ns);
+  throw BadInput("poses of format '" + source.format + "' are not read: tum or kitti");
+}
+
+/// From poses of A to poses of B.
+void move_to(std::vector<ReferencePose>& poses, const Eigen::Isometry3d& T_AB) {
+  if (T_AB.matrix().isIdentity(0.0)) return;
+  const Eigen::Quaterniond q_AB(T_AB.linear());
+  for (ReferencePose& pose : poses) {
+    pose.p_WA_m += pose.q_WA * T_AB.translation();
+    pose.q_WA = (pose.q_WA * q_AB).normalized();
+  }
+}
+
+sim::Truth named(const std::string& where, const std::vector<ReferencePose>& poses, std::int64_t end_ns) {
+  try {
+    return reference_truth(poses, end_ns);
+  } catch (const BadInput& error) {
+    throw BadInput(where + ": " + error.what());
+  }
+}
+
+}  // namespace
+
+Imported import_trajectory(const ReferenceSource& source) {
+  std::vector<ReferencePose> poses = poses_of(source, {});
+  if (poses.empty()) throw BadInput(source.file.string() + ": holds no pose");
+  Imported out;
+  out.info.origin_ns = origin_of(poses.front().time_ns);
+  for (ReferencePose& pose : poses) pose.time_ns -= out.info.origin_ns;
+  out.reference = named(source.file.string(), poses, poses.back().time_ns);
+  out.info.attribution = "imported from " + source.file.filename().string();
+  return out;
+}
+
+void attach_poses(Imported& recording, std::vector<ReferencePose> poses, bool of_body, const std::string& where) {
+  const sim::Sensors& sensors = recording.sensors;
+  if (sensors.lidars.empty() && !of_body) throw BadInput(where + ": poses of a lidar, and the recording has none");
+  for (ReferencePose& pose : poses) pose.time_ns -= recording.info.origin_ns;
+  if (!of_body) move_to(poses, sensors.lidars.front().T_BL.inverse(Eigen::Isometry));
+  sim::Truth truth = named(where, poses, span_of(sensors).second);
+  for (const sim::ImuRecord& imu : sensors.imus) truth.imus.push_back({imu.name, imu.T_BI, {}, {}, {}, {}, {}, {}, {}});
+  for (const sim::LidarRecord& lidar : sensors.lidars) truth.lidars.push_back({lidar.name, lidar.T_BL, {}, {}});
+  recording.reference = std::move(truth);
+}
+
+void attach_reference(Imported& recording, const ReferenceSource& source) {
+  const sim::Sensors& sensors = recording.sensors;
+  if (sensors.lidars.empty() && source.format == "kitti")
+    throw BadInput(source.file.string() + ": a KITTI file has a pose per sweep, and the recording has no lidar");
+  std::vector<std::int64_t> sweeps_ns;
+  if (!sensors.lidars.empty()) sweeps_ns = sensors.lidars.front().sweep_start_ns;
+  for (std::int64_t& time : sweeps_ns) time += recording.info.origin_ns;
+  attach_poses(recording, poses_of(source, sweeps_ns), source.of_body, source.file.string());
+  recording.info.attribution += "; reference from " + source.file.filename().string();
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/recordings/import.hpp"
+#include "scenarios/recordings/recording_clock.hpp"
+#include "scenarios/recordings/sweep_stamps.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+using std::filesystem::path;
+
+std::string ending_of(const std::string& format) {
+  if (format == "ply" || format == "pcd") return "." + format;
+  if (format == "kitti") return ".bin";
+  throw BadInput("sweeps of format '" + format + "' are not read: ply, pcd or kitti");
+}
+
+/// The file of stamps that is asked for, or lies beside the sweeps; empty when there is none.
+path times_file(const SweepSource& source, const std::vector<path>& files) {
+  if (!source.times.empty()) return source.times;
+  for (const std::string& name : {stem_of(files.front()) + "_times.txt", std::string("times.txt")}) {
+    if (std::filesystem::is_regular_file(source.folder / name)) return source.folder / name;
+  }
+  return {};
+}
+
+/// A stamp per file; empty when nothing tells them.
+std::vector<std::int64_t> stamps_of(const SweepSource& source, const std::vector<path>& files) {
+  const path file = times_file(source, files);
+  if (file.empty()) return stamps_in_names(files);
+  std::vector<std::int64_t> stamps = read_stamps(file);
+  if (stamps.size() != files.size()) {
+    throw BadInput(file.string() + ": holds " + std::to_string(stamps.size()) + " stamps, there are " +
+                   std::to_string(files.size()) + " sweeps in " + source.folder.string() + "; must be equal");
+  }
+  return stamps;
+}
+
+std::vector<std::int64_t> steady_stamps(std::size_t count, std::int64_t step_ns) {
+  std::vector<std::int64_t> stamps;
+  for (std::size_t k = 0; k < count; ++k) stamps.push_back(static_cast<std::int64_t>(k) * step_ns);
+  return stamps;
+}
+
+}  // namespace
+
+Imported import_sweeps(const SweepSource& source) {
+  const std::vector<path> files = sweep_files(source.folder, ending_of(source.format), source.stem);
+  std::vector<std::int64_t> stamps = stamps_of(source, files);
+  SweepReading reading = source.reading;
+  Imported out;
+  if (stamps.empty() && source.steady_ns > 0) {
+    stamps = steady_stamps(files.size(), source.steady_ns);
+    reading.assumed = true;
+    out.notes.push_back("nothing tells the times of the sweeps but the period given");
+  }
+  const std::int64_t given_ns = reading.device.sweep_period_ns;
+  SweepBuilder builder(std::move(reading), given_ns > 0 ? given_ns : median_step_ns(stamps));
+  for (std::size_t k = 0; k < files.size(); ++k) {
+    const std::optional<std::int64_t> stamp = stamps.empty() ? std::nullopt : std::optional(stamps[k]);
+    builder.add(stamp, read_cloud(files[k]), files[k].string());
+  }
+  out.sensors.lidars.push_back(builder.finish(source.folder.string(), out.notes));
+  out.info.attribution = "imported from " + source.folder.filename().string() + ", " + std::to_string(files.size()) +
+                         " sweeps of format " + source.format;
+  start_clock(out);
+  return out;
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <utility>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/recordings/number_text.hpp"
+#include "scenarios/recordings/sweep_builder.hpp"
+#include "sim/parameters.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+struct Unit {
+  const char* name;
+  double ns;
+};
+constexpr std::array<Unit, 4> kUnits = {{{"s", 1e9}, {"ms", 1e6}, {"us", 1e3}, {"ns", 1.0}}};
+constexpr std::array<const char*, 8> kNames = {"t",          "time",        "timestamp",   "timestamps",
+                                               "time_stamp", "offset_time", "time_offset", "offset"};
+/// Share of the sweep period that the times of a sweep span: a sector of 7 degrees at least, and some overlap at most.
+/// Units that follow each other differ by a thousand: one fits at most.
+constexpr double kSpanMin = 0.02, kSpanMax = 1.5;
+/// Stamps since 1973 in seconds are above this, whatever their unit then by its factor.
+constexpr double kEpochMin_s = 1e8;
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+/// The unit that a name ends in; null when in none.
+const Unit* unit_of_name(const std::string& name) {
+  const auto ends = [&](const Unit& unit) { return name.ends_with(std::string("_") + unit.name); };
+  const auto* found = std::find_if(kUnits.begin(), kUnits.end(), ends);
+  return found == kUnits.end() ? nullptr : found;
+}
+
+bool is_time(const std::string& field) {
+  std::string name = lower(field);
+  if (const Unit* unit = unit_of_name(name)) name.resize(name.size() - std::string(unit->name).size() - 1);
+  return std::find(kNames.begin(), kNames.end(), name) != kNames.end();
+}
+
+std::string choose_field(const Cloud& cloud, const SweepReading& reading, const std::string& where) {
+  if (!reading.time_field.empty()) {
+    if (cloud.find(reading.time_field) != nullptr) return reading.time_field;
+    std::string all;
+    for (const std::string& name : cloud.names) all += " " + name;
+    const std::string near = sim::nearest_name(reading.time_field, cloud.names);
+    throw BadInput(where + ": no field '" + reading.time_field + "'" +
+                   (near.empty() ? "" : "; did you mean '" + near + "'?") + " (there are:" + all + ")");
+  }
+  std::string found;
+  for (const std::string& name : cloud.names) {
+    if (!is_time(name)) continue;
+    if (!found.empty())
+      throw BadInput(where + ": the fields '" + found + "' and '" + name + "' may both be times; say which");
+    found = name;
+  }
+  return found;
+}
+
+/// First and last time of the points that are there.
+std::pair<double, double> reach(const Cloud& cloud, const std::string& field) {
+  std::pair<double, double> out(INFINITY, -INFINITY);
+  const std::vector<double>* times = cloud.find(field);
+  if (times == nullptr) return out;
+  for (const double time : *times) {
+    if (!std::isfinite(time)) continue;
+    out.first = std::min(out.first, time);
+    out.second = std::max(out.second, time);
+  }
+  return out;
+}
+
+double middle(std::vector<double> values) {
+  const auto place = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
+/// The unit by the size of the numbers.
+double unit_by_size(double span, double largest, double period_ns, const std::string& field, const std::string& where) {
+  for (const Unit& unit : kUnits) {
+    if (period_ns > 0.0 && span * unit.ns > kSpanMin * period_ns && span * unit.ns <= kSpanMax * period_ns)
+      return unit.ns;
+    // of stamps since the epoch the largest unit that makes them old enough
+    if (!(period_ns > 0.0) && largest >= kEpochMin_s * 1e9 / unit.ns && largest < kEpochMin_s * 1e12 / unit.ns)
+      return unit.ns;
+  }
+  std::string line = where + ": the field '" + field + "' spans ";
+  append_number(line, span);
+  line += " in a sweep";
+  if (!(period_ns > 0.0)) throw BadInput(line + ", which no stamps since the epoch do: give the times of the sweeps");
+  line += ": in none of s, ms, us, ns is that 2 to 150 % of the sweep period of ";
+  append_number(line, period_ns * 1e-6);
+  throw BadInput(line + " ms; say its unit");
+}
+
+}  // namespace
+
+PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t period_ns, const SweepReading& reading,
+                               const std::string& where) {
+  PointTimeRule rule;
+  if (reading.not_skewed) return rule;
+  std::vector<double> spans;
+  double largest = 0.0;
+  for (const Cloud& cloud : first) {
+    if (cloud.points == 0) continue;
+    if (rule.field.empty()) rule.field = choose_field(cloud, reading, where);
+    const auto [begin, end] = reach(cloud, rule.field);
+    if (!(end >= begin)) continue;
+    spans.push_back(end - begin);
+    largest = std::max({largest, std::abs(begin), std::abs(end)});
+  }
+  if (rule.field.empty() || spans.empty()) return {};
+  const std::string unit = reading.time_unit;
+  const auto* named = std::find_if(kUnits.begin(), kUnits.end(), [&](const Unit& each) { return unit == each.name; });
+  const double span = middle(spans), period = static_cast<double>(period_ns);
+  if (!unit.empty() && named == kUnits.end())
+    throw BadInput("the unit of times is '" + unit + "', must be s, ms, us or ns");
+  if (unit.empty()) named = unit_of_name(lower(rule.field));
+  rule.unit_ns =
+      named != nullptr && named != kUnits.end() ? named->ns : unit_by_size(span, largest, period, rule.field, where);
+  for (const Cloud& cloud : first) {
+    const auto [begin, end] = reach(cloud, rule.field);
+    const double bound = period_ns > 0 ? 2.0 * period : kEpochMin_s * 1e9;
+    if (end >= begin && std::abs(begin) * rule.unit_ns > bound) rule.absolute = true;
+  }
+  return rule;
+}
+
+}  // namespace tumble::scenarios

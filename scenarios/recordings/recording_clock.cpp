@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/recordings/recording_clock.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "scenarios/errors.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+/// A clock that began so shortly before the first stamp is the recording's own.
+constexpr std::int64_t kOwnZero_ns = 1000000000;
+
+void shift(sim::Sensors& sensors, std::int64_t by_ns) {
+  for (sim::ImuRecord& imu : sensors.imus) {
+    for (std::int64_t& time : imu.time_ns) time += by_ns;
+  }
+  for (sim::LidarRecord& lidar : sensors.lidars) {
+    for (std::int64_t& time : lidar.sweep_start_ns) time += by_ns;
+  }
+}
+
+}  // namespace
+
+std::pair<std::int64_t, std::int64_t> span_of(const sim::Sensors& sensors) {
+  std::int64_t first = std::numeric_limits<std::int64_t>::max(), last = std::numeric_limits<std::int64_t>::min();
+  for (const sim::ImuRecord& imu : sensors.imus) {
+    if (imu.time_ns.empty()) continue;
+    first = std::min(first, imu.time_ns.front());
+    last = std::max(last, imu.time_ns.back());
+  }
+  for (const sim::LidarRecord& lidar : sensors.lidars) {
+    if (lidar.sweep_start_ns.empty()) continue;
+    first = std::min(first, lidar.sweep_start_ns.front());
+    last = std::max(last, lidar.sweep_start_ns.back() + lidar.sweep_period_ns);
+  }
+  if (first > last) throw BadInput("the recording holds no reading");
+  return {first, last};
+}
+
+std::int64_t origin_of(std::int64_t first_ns) {
+  return first_ns >= 0 && first_ns < kOwnZero_ns ? 0 : first_ns;
+}
+
+void start_clock(Imported& recording) {
+  recording.info.origin_ns = origin_of(span_of(recording.sensors).first);
+  shift(recording.sensors, -recording.info.origin_ns);
+}
+
+void attach_imus(Imported& recording, Imported imu) {
+  const std::int64_t origin_ns = std::min(recording.info.origin_ns, imu.info.origin_ns);
+  const auto [first, last] = span_of(recording.sensors);
+  const auto [imu_first, imu_last] = span_of(imu.sensors);
+  const std::int64_t ahead_ns = imu.info.origin_ns - recording.info.origin_ns;
+  if (imu_first + ahead_ns > last || imu_last + ahead_ns < first) {
+    throw BadInput("the IMU's readings reach from " + std::to_string(imu_first + ahead_ns) + " to " +
+                   std::to_string(imu_last + ahead_ns) + " ns of the sweeps' clock, the sweeps from " +
+                   std::to_string(first) + " to " + std::to_string(last) + " ns: another clock?");
+  }
+  shift(recording.sensors, recording.info.origin_ns - origin_ns);
+  shift(imu.sensors, imu.info.origin_ns - origin_ns);
+  recording.info.origin_ns = origin_ns;
+  recording.info.attribution += "; " + imu.info.attribution;
+  for (sim::ImuRecord& each : imu.sensors.imus) recording.sensors.imus.push_back(std::move(each));
+}
+
+}  // namespace tumble::scenarios

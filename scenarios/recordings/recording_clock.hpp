@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scenarios/recordings/import.hpp"
+
+/// The clock of an imported recording. Private to scenarios/recordings.
+namespace tumble::scenarios {
+
+/// First and last instant of the sensors: of the IMUs' samples and of the sweeps, each of which lasts its period.
+/// Throws BadInput when there is none.
+std::pair<std::int64_t, std::int64_t> span_of(const sim::Sensors& sensors);
+
+/// Where a recording whose first stamp is this begins: there, or at the clock's own zero, less than a second before.
+std::int64_t origin_of(std::int64_t first_ns);
+
+/// Moves the sensors, stamped in the clock of their source, to the clock of a recording, and notes its origin.
+void start_clock(Imported& recording);
+
+/// Makes poses of the body, or of the first lidar, the truth of a recording; stamps are of its source's clock. Messages
+/// begin with `where`. Throws BadInput.
+void attach_poses(Imported& recording, std::vector<ReferencePose> poses, bool of_body, const std::string& where);
+
+}  // namespace tumble::scenarios

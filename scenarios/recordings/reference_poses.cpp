@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <string>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/methods/table_file.hpp"
+#include "scenarios/recordings/reference.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr double kNormTolerance = 1e-2;
+/// KITTI's matrices are written with seven digits.
+constexpr double kRotationTolerance = 1e-3;
+
+[[noreturn]] void fail(const Table& table, const Table::Row& row, const std::string& what) {
+  throw BadInput(table.path.string() + ":" + std::to_string(row.line) + ": " + what);
+}
+
+double finite(const Table& table, const Table::Row& row, std::size_t column) {
+  const double value = table.number(row, column);
+  if (!std::isfinite(value)) fail(table, row, "column " + std::to_string(column) + " is not finite");
+  return value;
+}
+
+ReferencePose tum_pose(const Table& table, const Table::Row& row) {
+  ReferencePose pose;
+  pose.time_ns = table.time_ns(row, 0);
+  for (int i = 0; i < 3; ++i) pose.p_WA_m[i] = table.number(row, static_cast<std::size_t>(1 + i));
+  for (int i = 0; i < 4; ++i) pose.q_WA.coeffs()[i] = table.number(row, static_cast<std::size_t>(4 + i));
+  return pose;
+}
+
+Eigen::Matrix<double, 3, 4> kitti_matrix(const Table& table, const Table::Row& row) {
+  Eigen::Matrix<double, 3, 4> T;
+  for (std::size_t i = 0; i < 12; ++i) {
+    T(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)) = finite(table, row, i);
+  }
+  const Eigen::Matrix3d R = T.leftCols<3>();
+  const double departure = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  if (!(departure <= kRotationTolerance) || R.determinant() < 0.0) {
+    fail(table, row,
+         "the first three columns are off a rotation by " + std::to_string(departure) + ", must be within " +
+             std::to_string(kRotationTolerance));
+  }
+  return T;
+}
+
+}  // namespace
+
+std::string problem_of(ReferencePose& pose, const ReferencePose* before) {
+  if (!pose.p_WA_m.allFinite() || !pose.q_WA.coeffs().allFinite()) return "the pose is not finite";
+  const double norm = pose.q_WA.norm();
+  if (!(std::abs(norm - 1.0) <= kNormTolerance))
+    return "quaternion of norm " + std::to_string(norm) + ", must be 1 within a percent";
+  // what is of unit length to the last bits stays as it is
+  if (std::abs(norm - 1.0) > 1e-12) pose.q_WA.normalize();
+  if (before == nullptr || pose.time_ns > before->time_ns) return "";
+  return "stamp " + std::to_string(pose.time_ns) + " ns does not rise, the one before is " +
+         std::to_string(before->time_ns) + " ns; a file of poses is sorted when asked for";
+}
+
+std::string pose_format(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  if (!stream || !std::filesystem::is_regular_file(file)) throw BadInput(file.string() + ": no such file");
+  std::string line;
+  while (std::getline(stream, line) && (line.empty() || line.front() == '#' || line.front() == '\r')) {
+  }
+  std::istringstream words(line);
+  const auto count = std::distance(std::istream_iterator<std::string>(words), std::istream_iterator<std::string>());
+  if (count == 8) return "tum";
+  if (count == 12) return "kitti";
+  throw BadInput(file.string() + ": its first line has " + std::to_string(count) +
+                 " numbers, must be 8 (TUM: t x y z qx qy qz qw) or 12 (KITTI: rows of a matrix)");
+}
+
+std::vector<ReferencePose> read_tum_poses(const std::filesystem::path& file, bool sorted) {
+  const Table table = Table::read(file, ' ', "", 8);
+  std::vector<ReferencePose> poses;
+  for (const Table::Row& row : table.rows) {
+    ReferencePose pose = tum_pose(table, row);
+    const std::string problem = problem_of(pose, sorted || poses.empty() ? nullptr : &poses.back());
+    if (!problem.empty()) fail(table, row, problem);
+    poses.push_back(pose);
+  }
+  if (sorted) {
+    const auto before = [](const ReferencePose& a, const ReferencePose& b) { return a.time_ns < b.time_ns; };
+    const auto same = [](const ReferencePose& a, const ReferencePose& b) { return a.time_ns == b.time_ns; };
+    std::stable_sort(poses.begin(), poses.end(), before);
+    poses.erase(std::unique(poses.begin(), poses.end(), same), poses.end());
+  }
+  if (poses.size() < 2)
+    throw BadInput(file.string() + ": holds " + std::to_string(poses.size()) + " poses, needs 2 at least");
+  return poses;
+}
+
+std::size_t count_kitti_poses(const std::filesystem::path& file) {
+  const Table table = Table::read(file, ' ', "", 12);
+  for (const Table::Row& row : table.rows) kitti_matrix(table, row);
+  return table.rows.size();
+}
+
+std::vector<ReferencePose> read_kitti_poses(const std::filesystem::path& file,
+                                            const std::vector<std::int64_t>& times_ns) {
+  const Table table = Table::read(file, ' ', "", 12);
+  if (table.rows.size() != times_ns.size()) {
+    throw BadInput(file.string() + ": holds " + std::to_string(table.rows.size()) + " poses, there are " +
+                   std::to_string(times_ns.size()) + " times for them; must be equal");
+  }
+  std::vector<ReferencePose> poses;
+  for (std::size_t k = 0; k < times_ns.size(); ++k) {
+    const Eigen::Matrix<double, 3, 4> T = kitti_matrix(table, table.rows[k]);
+    const Eigen::Quaterniond q(Eigen::Matrix3d(T.leftCols<3>()));
+    poses.push_back({times_ns[k], T.col(3), q.normalized()});
+  }
+  return poses;
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <console_bridge/console.h>
+#include <nav_msgs/Odometry.h>
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+#include <sensor_msgs/Imu.h>
+#include <sensor_msgs/PointCloud2.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <exception>
+#include <string>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/recordings/bag_storage.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+/// Bytes with what a bag says of their type, as the library takes messages.
+struct TypedBytes {
+  std::string type, md5sum, definition;
+  ros::Bytes bytes;
+};
+
+}  // namespace
+
+}  // namespace tumble::scenarios
+
+// what the library asks of a message
+namespace ros {
+using tumble::scenarios::TypedBytes;
+namespace message_traits {
+template <>
+struct MD5Sum<TypedBytes> {
+  static const char* value(const TypedBytes& message) { return message.md5sum.c_str(); }
+};
+template <>
+struct DataType<TypedBytes> {
+  static const char* value(const TypedBytes& message) { return message.type.c_str(); }
+};
+template <>
+struct Definition<TypedBytes> {
+  static const char* value(const TypedBytes& message) { return message.definition.c_str(); }
+};
+}  // namespace message_traits
+namespace serialization {
+template <>
+struct Serializer<TypedBytes> {
+  template <class Stream>
+  static void write(Stream& stream, const TypedBytes& message) {
+    std::copy(message.bytes.begin(), message.bytes.end(), stream.advance(serializedLength(message)));
+  }
+  static std::uint32_t serializedLength(const TypedBytes& message) {
+    return static_cast<std::uint32_t>(message.bytes.size());
+  }
+};
+}  // namespace serialization
+}  // namespace ros
+
+namespace tumble::scenarios {
+
+namespace {
+
+/// While one lives, the library prints nothing.
+class QuietBag {
+ public:
+  QuietBag() { console_bridge::noOutputHandler(); }
+  ~QuietBag() { console_bridge::restorePreviousOutputHandler(); }
+  QuietBag(const QuietBag&) = delete;
+  QuietBag& operator=(const QuietBag&) = delete;
+};
+
+std::string one_line(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+/// Runs what the library may throw in.
+template <class Call>
+auto guarded(const std::filesystem::path& path, const char* what, Call&& call) {
+  const QuietBag quiet;
+  try {
+    return call();
+  } catch (const BadInput&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw BadInput(path.string() + ": " + what + ": " + one_line(error.what()));
+  }
+}
+
+template <class RosMessage, class Message>
+TypedBytes typed(const Message& message) {
+  namespace traits = ::ros::message_traits;
+  return {traits::DataType<RosMessage>::value(), traits::MD5Sum<RosMessage>::value(),
+          traits::Definition<RosMessage>::value(), ros::to_ros1(message)};
+}
+
+class Ros1BagWriter : public BagWriter {
+ public:
+  explicit Ros1BagWriter(const std::filesystem::path& file)
+      : file_(file), part_(file.string() + "." + std::to_string(getpid()) + ".part") {
+    guarded(file_, "cannot be written", [&] { bag_.open(part_.string(), rosbag::bagmode::Write); });
+  }
+  ~Ros1BagWriter() override {
+    const QuietBag quiet;
+    try {
+      bag_.close();
+    } catch (const std::exception&) {  // it is thrown away
+    }
+    std::error_code ignored;
+    std::filesystem::remove(part_, ignored);
+  }
+  void write(const BagTopic& topic, std::int64_t stamp_ns, const ros::Imu& message) override {
+    write(topic, stamp_ns, typed<sensor_msgs::Imu>(message));
+  }
+  void write(const BagTopic& topic, std::int64_t stamp_ns, const ros::PointCloud2& message) override {
+    write(topic, stamp_ns, typed<sensor_msgs::PointCloud2>(message));
+  }
+  void write(const BagTopic& topic, std::int64_t stamp_ns, const ros::Odometry& message) override {
+    write(topic, stamp_ns, typed<nav_msgs::Odometry>(message));
+  }
+  void finish() override {
+    guarded(file_, "cannot be written", [&] {
+      bag_.close();
+      std::filesystem::rename(part_, file_);
+    });
+  }
+
+ private:
+  void write(const BagTopic& topic, std::int64_t stamp_ns, const TypedBytes& message) {
+    ::ros::Time time;
+    time.fromNSec(static_cast<std::uint64_t>(stamp_ns));
+    guarded(file_, "cannot be written", [&] { bag_.write(topic.name, time, message); });
+  }
+
+  std::filesystem::path file_, part_;
+  rosbag::Bag bag_;
+};
+
+class Ros1BagReader : public BagReader {
+ public:
+  explicit Ros1BagReader(const std::filesystem::path& file) : file_(file) {
+    check_ros1_bag(file);
+    guarded(file_, kUnreadable, [&] { bag_.open(file.string(), rosbag::bagmode::Read); });
+  }
+
+  std::vector<BagTopic> topics() override {
+    return guarded(file_, kUnreadable, [&] {
+      rosbag::View view(bag_);
+      std::vector<const rosbag::ConnectionInfo*> connections = view.getConnections();
+      std::sort(connections.begin(), connections.end(), [](const auto* a, const auto* b) { return a->id < b->id; });
+      std::vector<BagTopic> topics;
+      for (const rosbag::ConnectionInfo* each : connections) {
+        const auto same = [&](const BagTopic& topic) { return topic.name == each->topic; };
+        if (std::none_of(topics.begin(), topics.end(), same)) topics.push_back({each->topic, each->datatype});
+      }
+      return topics;
+    });
+  }
+
+  void read(const std::string& topic, const std::function<void(ros::Bytes&)>& take) override {
+    guarded(file_, kUnreadable, [&] {
+      rosbag::View view(bag_, rosbag::TopicQuery(topic));
+      ros::Bytes bytes;
+      for (const rosbag::MessageInstance& message : view) {
+        bytes.resize(message.size());
+        ::ros::serialization::OStream stream(bytes.data(), message.size());
+        message.write(stream);
+        take(bytes);
+      }
+    });
+  }
+
+  bool cdr() const override { return false; }
+
+ private:
+  static constexpr const char* kUnreadable = "cannot be read as a ROS 1 bag";
+  std::filesystem::path file_;
+  rosbag::Bag bag_;
+};
+
+}  // namespace
+
+std::unique_ptr<BagWriter> make_ros1_writer(const std::filesystem::path& file) {
+  return std::make_unique<Ros1BagWriter>(file);
+}
+
+std::unique_ptr<BagReader> open_ros1_bag(const std::filesystem::path& file) {
+  return std::make_unique<Ros1BagReader>(file);
+}
+
+}  // namespace tumble::scenarios

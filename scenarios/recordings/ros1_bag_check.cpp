@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <set>
+#include <string_view>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/recordings/bag_storage.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
+constexpr std::uint32_t kHeaderMax = 1u << 20, kChunkMax = 1u << 30;
+enum Op : std::uint8_t { kMessage = 2, kFile = 3, kIndex = 4, kChunk = 5, kChunkInfo = 6, kConnection = 7 };
+
+/// One record: its header's fields, and where its data lie.
+struct Record {
+  std::uint64_t at = 0, data_at = 0;
+  std::uint32_t data_bytes = 0;
+  std::map<std::string, std::string> fields;
+  std::uint64_t end() const { return data_at + data_bytes; }
+};
+
+/// A file that is asked for stretches of itself; nothing beyond its end is read.
+class Walk {
+ public:
+  explicit Walk(const std::filesystem::path& path) : path_(path), stream_(path, std::ios::binary) {
+    if (!stream_ || !std::filesystem::is_regular_file(path)) throw BadInput(path.string() + ": no such file");
+    bytes_ = std::filesystem::file_size(path);
+  }
+
+  void all() {
+    if (bytes_ < kMagic.size() || text(0, kMagic.size()) != kMagic)
+      fail(0, "does not begin with '#ROSBAG V2.0': no ROS 1 bag of version 2.0");
+    std::uint64_t at = kMagic.size();
+    const Record file = record(at, bytes_);
+    if (op(file) != kFile) fail(at, "the first record is no bag header");
+    if (number<std::uint64_t>(file, "index_pos") == 0)
+      fail(at, "the bag was not closed: it has no index ('rosbag reindex' makes one)");
+    if (number<std::uint64_t>(file, "index_pos") >= bytes_) fail(at, "the index lies beyond the end: truncated?");
+    for (at = file.end(); at < bytes_;) {
+      const Record next = record(at, bytes_);
+      step(next);
+      at = next.end();
+    }
+    for (const auto& [info_at, chunk_at] : infos_) {
+      if (!chunks_.contains(chunk_at))
+        fail(info_at, "names a chunk at " + std::to_string(chunk_at) + ": there is none");
+    }
+  }
+
+ private:
+  [[noreturn]] void fail(std::uint64_t at, const std::string& what) const {
+    throw BadInput(path_.string() + ": at byte " + std::to_string(at) + ": " + what);
+  }
+
+  std::string text(std::uint64_t at, std::uint64_t size) {
+    std::string out(size, '\0');
+    stream_.seekg(static_cast<std::streamoff>(at));
+    stream_.read(out.data(), static_cast<std::streamsize>(size));
+    if (static_cast<std::uint64_t>(stream_.gcount()) != size) fail(at, "cannot be read");
+    return out;
+  }
+
+  /// The length that stands at `at`, of something that must end before `end`.
+  std::uint32_t length(std::uint64_t at, std::uint64_t end, const char* what, std::uint32_t most) {
+    if (end - at < sizeof(std::uint32_t)) fail(at, std::string("ends in the length of ") + what + ": truncated?");
+    std::uint32_t value = 0;
+    std::memcpy(&value, text(at, sizeof(value)).data(), sizeof(value));
+    const std::uint64_t left = end - at - sizeof(value);
+    if (value > left || value > most) {
+      fail(at, std::string(what) + " of " + std::to_string(value) + " bytes, must be at most " +
+                   std::to_string(std::min<std::uint64_t>(left, most)) + ": damaged or truncated");
+    }
+    return value;
+  }
+
+  Record record(std::uint64_t at, std::uint64_t end) {
+    Record out;
+    out.at = at;
+    const std::uint32_t header = length(at, end, "a record's header", kHeaderMax);
+    const std::string bytes = text(at + 4, header);
+    for (std::size_t place = 0; place < bytes.size();) {
+      std::uint32_t size = 0;
+      if (bytes.size() - place < 4) fail(at, "a field of the record's header is cut");
+      std::memcpy(&size, bytes.data() + place, 4);
+      if (size > bytes.size() - place - 4) fail(at, "a field of the record's header is cut");
+      const std::string field = bytes.substr(place + 4, size);
+      const std::size_t equals = field.find('=');
+      if (equals == std::string::npos) fail(at, "a field of the record's header has no '='");
+      out.fields[field.substr(0, equals)] = field.substr(equals + 1);
+      place += 4 + size;
+    }
+    out.data_at = at + 4 + header + 4;
+    out.data_bytes = length(at + 4 + header, end, "a record's data", ~0u);
+    return out;
+  }
+
+  template <class Number>
+  Number number(const Record& record, const char* name) const {
+    const auto found = record.fields.find(name);
+    if (found == record.fields.end() || found->second.size() != sizeof(Number)) {
+      fail(record.at,
+           std::string("the record has no field '") + name + "' of " + std::to_string(sizeof(Number)) + " bytes");
+    }
+    Number value;
+    std::memcpy(&value, found->second.data(), sizeof(value));
+    return value;
+  }
+
+  std::uint8_t op(const Record& record) const { return number<std::uint8_t>(record, "op"); }
+
+  /// Takes note of a record of the file and checks what it says of others.
+  void step(const Record& record) {
+    switch (op(record)) {
+      case kChunk:
+        chunk(record);
+        break;
+      case kIndex:
+        index(record);
+        break;
+      case kConnection:
+        connection(record);
+        break;
+      case kChunkInfo:
+        infos_[record.at] = number<std::uint64_t>(record, "chunk_pos");
+        entries(record, 8);
+        break;
+      default:
+        fail(record.at, "a record of kind " + std::to_string(op(record)) + " has no place here");
+    }
+  }
+
+  void connection(const Record& record) {
+    connections_.insert(number<std::uint32_t>(record, "conn"));
+    if (!record.fields.contains("topic")) fail(record.at, "a connection without topic");
+  }
+
+  void chunk(const Record& record) {
+    const std::uint32_t size = number<std::uint32_t>(record, "size");
+    const auto found = record.fields.find("compression");
+    const std::string compression = found == record.fields.end() ? "" : found->second;
+    chunks_.insert(record.at);
+    messages_.reset();
+    chunk_bytes_ = size;
+    if (size > kChunkMax) fail(record.at, "a chunk of " + std::to_string(size) + " bytes, at most 1 GiB is read");
+    if (compression == "bz2" || compression == "lz4") return;
+    if (compression != "none")
+      fail(record.at, "a chunk of compression '" + compression + "': none, bz2 or lz4 are read");
+    if (size != record.data_bytes) {
+      fail(record.at,
+           "a plain chunk of " + std::to_string(record.data_bytes) + " bytes says that it has " + std::to_string(size));
+    }
+    messages_.emplace();
+    for (std::uint64_t at = record.data_at; at < record.end();) {
+      const Record inner = this->record(at, record.end());
+      if (op(inner) == kConnection)
+        connection(inner);
+      else if (op(inner) == kMessage)
+        message(inner, at - record.data_at);
+      else
+        fail(at, "a record of kind " + std::to_string(op(inner)) + " has no place in a chunk");
+      at = inner.end();
+    }
+  }
+
+  void message(const Record& record, std::uint64_t offset) {
+    if (!connections_.contains(number<std::uint32_t>(record, "conn"))) fail(record.at, "a message of no connection");
+    number<std::uint64_t>(record, "time");
+    messages_->insert(offset);
+  }
+
+  std::uint32_t entries(const Record& record, std::uint32_t each) const {
+    const std::uint32_t count = number<std::uint32_t>(record, "count");
+    if (std::uint64_t{count} * each != record.data_bytes) {
+      fail(record.at, "promises " + std::to_string(count) + " entries of " + std::to_string(each) + " bytes in " +
+                          std::to_string(record.data_bytes));
+    }
+    return count;
+  }
+
+  /// Offsets of messages in the chunk before.
+  void index(const Record& record) {
+    constexpr std::uint32_t kEntry = 12, kPlace = 8;
+    if (chunks_.empty()) fail(record.at, "an index before any chunk");
+    const std::uint32_t count = entries(record, kEntry);
+    const std::string bytes = text(record.data_at, record.data_bytes);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      std::uint32_t offset = 0;
+      std::memcpy(&offset, bytes.data() + i * kEntry + kPlace, sizeof(offset));
+      if (messages_ ? messages_->contains(offset) : offset < chunk_bytes_) continue;
+      fail(record.at, "entry " + std::to_string(i) + " of the index points to " + std::to_string(offset) +
+                          " in its chunk, where no message begins");
+    }
+  }
+
+  std::filesystem::path path_;
+  std::ifstream stream_;
+  std::uint64_t bytes_ = 0;
+  std::set<std::uint64_t> chunks_;
+  std::map<std::uint64_t, std::uint64_t> infos_;  ///< place of the record, chunk that it names
+  std::set<std::uint32_t> connections_;
+  std::optional<std::set<std::uint64_t>> messages_;  ///< offsets in the chunk before; nothing of a compressed one
+  std::uint32_t chunk_bytes_ = 0;
+};
+
+}  // namespace
+
+void check_ros1_bag(const std::filesystem::path& file) {
+  Walk(file).all();
+}
+
+}  // namespace tumble::scenarios

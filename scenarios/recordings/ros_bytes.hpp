@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <fastcdr/Cdr.h>
+#include <fastcdr/FastBuffer.h>
+#include <fastcdr/exceptions/Exception.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scenarios/recordings/ros_messages.hpp"
+
+/// Messages to and from bytes: ROS 1's plain little-endian layout, and ROS 2's CDR by Fast-CDR. Readers trust no
+/// length: what a message promises is held against what is left of it before anything is allocated. Private to
+/// scenarios/recordings.
+namespace tumble::scenarios::ros {
+
+using Bytes = std::vector<std::uint8_t>;
+static_assert(std::endian::native == std::endian::little, "ROS 1's layout is written as the numbers lie in memory");
+
+/// A message that ends before its fields do, or promises more than it holds.
+struct BadMessage : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+inline void require_left(std::size_t left, std::size_t count, std::size_t each) {
+  if (count <= left / each) return;
+  throw BadMessage("promises " + std::to_string(count) + " entries of " + std::to_string(each) + " bytes, has " +
+                   std::to_string(left) + " bytes left");
+}
+
+class Ros1Writer {
+ public:
+  template <class Number>
+  void operator()(const Number& number) {
+    append(&number, sizeof(number));
+  }
+  void operator()(const std::string& text) {
+    (*this)(static_cast<std::uint32_t>(text.size()));
+    append(text.data(), text.size());
+  }
+  void operator()(const Bytes& blob) {
+    (*this)(static_cast<std::uint32_t>(blob.size()));
+    append(blob.data(), blob.size());
+  }
+  void ros1_only(std::uint32_t number) { (*this)(number); }
+  template <class Entry, class Fields>
+  void list(std::vector<Entry>& entries, std::size_t, Fields&& each) {
+    (*this)(static_cast<std::uint32_t>(entries.size()));
+    for (Entry& entry : entries) each(*this, entry);
+  }
+  Bytes bytes;
+
+ private:
+  void append(const void* data, std::size_t size) {
+    const auto* first = static_cast<const std::uint8_t*>(data);
+    bytes.insert(bytes.end(), first, first + size);
+  }
+};
+
+class Ros1Reader {
+ public:
+  explicit Ros1Reader(const Bytes& bytes) : at_(bytes.data()), left_(bytes.size()) {}
+
+  template <class Number>
+  void operator()(Number& number) {
+    take(&number, sizeof(number));
+  }
+  void operator()(std::string& text) {
+    text.resize(count(1));
+    take(text.data(), text.size());
+  }
+  void operator()(Bytes& bytes) {
+    bytes.resize(count(1));
+    take(bytes.data(), bytes.size());
+  }
+  void ros1_only(std::uint32_t& number) { (*this)(number); }
+  template <class Entry, class Fields>
+  void list(std::vector<Entry>& entries, std::size_t least, Fields&& each) {
+    entries.resize(count(least));
+    for (Entry& entry : entries) each(*this, entry);
+  }
+
+ private:
+  std::size_t count(std::size_t each) {
+    std::uint32_t number = 0;
+    (*this)(number);
+    require_left(left_, number, each);
+    return number;
+  }
+  void take(void* out, std::size_t size) {
+    if (size > left_) throw BadMessage("ends in the middle of a field");
+    if (size > 0) std::memcpy(out, at_, size);
+    at_ += size;
+    left_ -= size;
+  }
+  const std::uint8_t* at_;
+  std::size_t left_;
+};
+
+class CdrWriter {
+ public:
+  CdrWriter() : cdr_(buffer_, eprosima::fastcdr::Cdr::LITTLE_ENDIANNESS, eprosima::fastcdr::Cdr::DDS_CDR) {
+    cdr_.serialize_encapsulation();
+  }
+  void operator()(std::uint8_t number) { cdr_ << number; }
+  void operator()(std::uint32_t number) { cdr_ << number; }
+  void operator()(const std::string& text) { cdr_ << text; }
+  template <std::size_t kCount>
+  void operator()(const std::array<double, kCount>& numbers) {
+    cdr_.serializeArray(numbers.data(), kCount);
+  }
+  void operator()(const Bytes& bytes) {
+    cdr_ << static_cast<std::uint32_t>(bytes.size());
+    cdr_.serializeArray(bytes.data(), bytes.size());
+  }
+  void ros1_only(std::uint32_t) {}
+  template <class Entry, class Fields>
+  void list(std::vector<Entry>& entries, std::size_t, Fields&& each) {
+    cdr_ << static_cast<std::uint32_t>(entries.size());
+    for (Entry& entry : entries) each(*this, entry);
+  }
+  Bytes bytes() const {
+    const auto* first = reinterpret_cast<const std::uint8_t*>(buffer_.getBuffer());
+    return {first, first + cdr_.getSerializedDataLength()};
+  }
+
+ private:
+  eprosima::fastcdr::FastBuffer buffer_;
+  eprosima::fastcdr::Cdr cdr_;
+};
+
+class CdrReader {
+ public:
+  explicit CdrReader(Bytes& bytes)
+      : size_(bytes.size()),
+        buffer_(reinterpret_cast<char*>(bytes.data()), bytes.size()),
+        cdr_(buffer_, eprosima::fastcdr::Cdr::DEFAULT_ENDIAN, eprosima::fastcdr::Cdr::DDS_CDR) {
+    if (size_ < 4) throw BadMessage("has " + std::to_string(size_) + " bytes, needs 4 at least");
+    cdr_.read_encapsulation();
+  }
+  void operator()(std::uint8_t& number) { cdr_ >> number; }
+  void operator()(std::uint32_t& number) { cdr_ >> number; }
+  void operator()(std::string& text) { cdr_ >> text; }
+  template <std::size_t kCount>
+  void operator()(std::array<double, kCount>& numbers) {
+    cdr_.deserializeArray(numbers.data(), kCount);
+  }
+  void operator()(Bytes& bytes) {
+    bytes.resize(count(1));
+    cdr_.deserializeArray(bytes.data(), bytes.size());
+  }
+  void ros1_only(std::uint32_t&) {}
+  template <class Entry, class Fields>
+  void list(std::vector<Entry>& entries, std::size_t least, Fields&& each) {
+    entries.resize(count(least));
+    for (Entry& entry : entries) each(*this, entry);
+  }
+
+ private:
+  std::size_t count(std::size_t each) {
+    std::uint32_t number = 0;
+    cdr_ >> number;
+    require_left(size_ - std::min(size_, cdr_.getSerializedDataLength()), number, each);
+    return number;
+  }
+  std::size_t size_;
+  eprosima::fastcdr::FastBuffer buffer_;
+  eprosima::fastcdr::Cdr cdr_;
+};
+
+/// The bytes of a message, and back. The readers throw BadMessage.
+template <class Message>
+Bytes to_ros1(Message message) {
+  Ros1Writer writer;
+  fields(writer, message);
+  return std::move(writer.bytes);
+}
+template <class Message>
+Bytes to_cdr(Message message) {
+  CdrWriter writer;
+  fields(writer, message);
+  return writer.bytes();
+}
+template <class Message>
+Message from_ros1(const Bytes& bytes) {
+  Message message;
+  Ros1Reader reader(bytes);
+  fields(reader, message);
+  return message;
+}
+template <class Message>
+Message from_cdr(Bytes& bytes) {
+  Message message;
+  try {
+    CdrReader reader(bytes);
+    fields(reader, message);
+  } catch (const eprosima::fastcdr::exception::Exception& error) {
+    throw BadMessage(error.what());
+  }
+  return message;
+}
+
+}  // namespace tumble::scenarios::ros

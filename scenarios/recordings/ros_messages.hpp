@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+/// The messages that a recording becomes in a bag, and the one list of their fields in the order of their definitions.
+/// ROS 1 and ROS 2 lay out the same fields differently: ros1_bytes.hpp and cdr_bytes.hpp are archives that visit them.
+/// Private to scenarios/recordings.
+///
+/// An archive has: operator()(uint8 | uint32 | double | text | array of doubles | bytes), ros1_only(uint32) for the
+/// field that ROS 2 gave up, and list(vector, least bytes of an entry, fields).
+namespace tumble::scenarios::ros {
+
+struct Header {
+  std::uint32_t seq = 0;
+  std::uint32_t sec = 0, nanosec = 0;
+  std::string frame_id;
+};
+
+struct Imu {
+  Header header;
+  std::array<double, 4> orientation_xyzw = {0, 0, 0, 1};
+  std::array<double, 9> orientation_covariance = {-1};  ///< -1 first: there is no attitude
+  std::array<double, 3> angular_velocity = {};
+  std::array<double, 9> angular_velocity_covariance = {};
+  std::array<double, 3> linear_acceleration = {};
+  std::array<double, 9> linear_acceleration_covariance = {};
+};
+
+struct PointField {
+  enum Type : std::uint8_t { int8 = 1, uint8, int16, uint16, int32, uint32, float32, float64 };
+  std::string name;
+  std::uint32_t offset = 0;
+  std::uint8_t datatype = 0;
+  std::uint32_t count = 1;
+};
+
+struct PointCloud2 {
+  Header header;
+  std::uint32_t height = 1, width = 0;
+  std::vector<PointField> fields;
+  std::uint8_t is_bigendian = 0;
+  std::uint32_t point_step = 0, row_step = 0;
+  std::vector<std::uint8_t> data;
+  std::uint8_t is_dense = 1;
+};
+
+struct PoseStamped {
+  Header header;
+  std::array<double, 3> position = {};
+  std::array<double, 4> orientation_xyzw = {0, 0, 0, 1};
+};
+
+struct Odometry {
+  Header header;
+  std::string child_frame_id;
+  std::array<double, 3> position = {};
+  std::array<double, 4> orientation_xyzw = {0, 0, 0, 1};
+  std::array<double, 36> pose_covariance = {};
+  std::array<double, 3> linear_velocity = {}, angular_velocity = {};  ///< in the child's frame
+  std::array<double, 36> twist_covariance = {};
+};
+
+template <class Archive, class Message>
+void header_fields(Archive& archive, Message& header) {
+  archive.ros1_only(header.seq);
+  archive(header.sec);
+  archive(header.nanosec);
+  archive(header.frame_id);
+}
+
+template <class Archive>
+void fields(Archive& archive, Imu& imu) {
+  header_fields(archive, imu.header);
+  archive(imu.orientation_xyzw);
+  archive(imu.orientation_covariance);
+  archive(imu.angular_velocity);
+  archive(imu.angular_velocity_covariance);
+  archive(imu.linear_acceleration);
+  archive(imu.linear_acceleration_covariance);
+}
+
+template <class Archive>
+void fields(Archive& archive, PointCloud2& cloud) {
+  header_fields(archive, cloud.header);
+  archive(cloud.height);
+  archive(cloud.width);
+  constexpr std::size_t kFieldBytes = 13;
+  archive.list(cloud.fields, kFieldBytes, [](auto& inner, PointField& field) {
+    inner(field.name);
+    inner(field.offset);
+    inner(field.datatype);
+    inner(field.count);
+  });
+  archive(cloud.is_bigendian);
+  archive(cloud.point_step);
+  archive(cloud.row_step);
+  archive(cloud.data);
+  archive(cloud.is_dense);
+}
+
+template <class Archive>
+void fields(Archive& archive, PoseStamped& pose) {
+  header_fields(archive, pose.header);
+  archive(pose.position);
+  archive(pose.orientation_xyzw);
+}
+
+template <class Archive>
+void fields(Archive& archive, Odometry& odometry) {
+  header_fields(archive, odometry.header);
+  archive(odometry.child_frame_id);
+  archive(odometry.position);
+  archive(odometry.orientation_xyzw);
+  archive(odometry.pose_covariance);
+  archive(odometry.linear_velocity);
+  archive(odometry.angular_velocity);
+  archive(odometry.twist_covariance);
+}
+
+}  // namespace tumble::scenarios::ros

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/recordings/sweep_builder.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/recordings/sweep_stamps.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+/// So many clouds tell the unit of the times: one may be cut.
+constexpr std::ptrdiff_t kProbe = 10;
+constexpr double kByte = 255.0;
+constexpr double kFar_m = 1e6;
+/// The longest offset that a sweep may hold where its period is not known yet.
+constexpr std::int64_t kOffsetMax_ns = 1000000000;
+
+constexpr std::array<const char*, 3> kRingNames = {"ring", "line", "channel"};
+constexpr std::array<const char*, 3> kIntensityNames = {"intensity", "Intensity", "reflectivity"};
+
+const std::vector<double>& coordinate(const Cloud& cloud, const char* name, const std::string& where) {
+  const std::vector<double>* found = cloud.find(name);
+  if (found != nullptr) return *found;
+  std::string all;
+  for (const std::string& each : cloud.names) all += " " + each;
+  throw BadInput(where + ": no field '" + name + "' (there are:" + all + ")");
+}
+
+template <std::size_t kCount>
+const std::vector<double>* first_of(const Cloud& cloud, const std::array<const char*, kCount>& names) {
+  for (const char* name : names) {
+    if (const std::vector<double>* found = cloud.find(name)) return found;
+  }
+  return nullptr;
+}
+
+/// Points that the lidar saw.
+std::vector<std::size_t> hits(const Cloud& cloud, const std::string& where) {
+  const std::vector<double>&x = coordinate(cloud, "x", where), &y = coordinate(cloud, "y", where),
+        &z = coordinate(cloud, "z", where);
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < cloud.points; ++i) {
+    const bool within = std::abs(x[i]) <= kFar_m && std::abs(y[i]) <= kFar_m && std::abs(z[i]) <= kFar_m;
+    if (within && (x[i] != 0.0 || y[i] != 0.0 || z[i] != 0.0)) kept.push_back(i);
+  }
+  return kept;
+}
+
+std::string in_ns(std::int64_t time_ns) {
+  return std::to_string(time_ns) + " ns";
+}
+
+/// The field's numbers as whole nanoseconds.
+std::vector<std::int64_t> whole_times(const std::vector<double>& numbers, const std::vector<std::size_t>& kept,
+                                      double unit_ns, const std::string& where) {
+  constexpr double kBound = 9.2e18;
+  std::vector<std::int64_t> times;
+  for (const std::size_t i : kept) {
+    const double time = numbers[i] * unit_ns;
+    if (!(std::abs(time) < kBound)) {
+      throw BadInput(where + ": point " + std::to_string(i) + ": time is " + std::to_string(numbers[i]) +
+                     ", must be finite and within 292 years");
+    }
+    times.push_back(std::llround(time));
+  }
+  return times;
+}
+
+}  // namespace
+
+void SweepBuilder::add(std::optional<std::int64_t> stamp_ns, Cloud cloud, std::string where) {
+  Waiting sweep{stamp_ns, std::move(cloud), std::move(where)};
+  if (rule_) return take(sweep);
+  waiting_.push_back(std::move(sweep));
+  const auto holds_points = [](const Waiting& each) { return each.cloud.points > 0; };
+  if (std::count_if(waiting_.begin(), waiting_.end(), holds_points) >= kProbe) settle();
+}
+
+void SweepBuilder::settle() {
+  std::vector<Cloud> first;
+  for (Waiting& sweep : waiting_) first.push_back(std::move(sweep.cloud));
+  rule_ = find_point_times(first, period_ns_, reading_, waiting_.front().where);
+  if (rule_->field.empty()) {
+    record_.point_times = reading_.not_skewed ? sim::PointTimes::not_skewed : sim::PointTimes::unknown;
+  }
+  for (std::size_t k = 0; k < waiting_.size(); ++k) {
+    waiting_[k].cloud = std::move(first[k]);
+    take(waiting_[k]);
+  }
+  waiting_.clear();
+}
+
+void SweepBuilder::take(Waiting& sweep) {
+  if (reading_.assumed && rule_->absolute) sweep.stamp_ns.reset();
+  const std::vector<std::size_t> kept =
+      sweep.cloud.points > 0 ? hits(sweep.cloud, sweep.where) : std::vector<std::size_t>{};
+  misses_ += sweep.cloud.points - kept.size();
+  if (kept.empty() && !sweep.stamp_ns) {
+    ++skipped_;
+    return;
+  }
+  const std::int64_t start_ns = take_times(sweep, kept);
+  std::vector<std::int64_t>& starts = record_.sweep_start_ns;
+  if (!starts.empty() && start_ns <= starts.back()) {
+    throw BadInput(sweep.where + ": the sweep starts at " + in_ns(start_ns) + ", must be after the one before, at " +
+                   in_ns(starts.back()));
+  }
+  starts.push_back(start_ns);
+  record_.sweep_first.push_back(record_.position_L_m.size());
+  take_points(sweep, kept);
+  take_rings(sweep, kept);
+}
+
+/// The start of the sweep; the points' offsets from it are stored.
+std::int64_t SweepBuilder::take_times(const Waiting& sweep, const std::vector<std::size_t>& kept) {
+  const auto no_offsets = [&] { record_.offset_ns.resize(record_.offset_ns.size() + kept.size(), 0); };
+  if (rule_->field.empty() || kept.empty()) {
+    if (!sweep.stamp_ns) throw BadInput(sweep.where + ": neither the sweep nor its points have a time");
+    no_offsets();
+    return *sweep.stamp_ns;
+  }
+  const std::vector<double>* numbers = sweep.cloud.find(rule_->field);
+  if (numbers == nullptr) throw BadInput(sweep.where + ": no field '" + rule_->field + "', which other sweeps have");
+  std::vector<std::int64_t> times = whole_times(*numbers, kept, rule_->unit_ns, sweep.where);
+  if (!rule_->absolute) {
+    if (!sweep.stamp_ns)
+      throw BadInput(sweep.where + ": the times of its points are relative, and the sweep itself has none");
+    for (std::int64_t& time : times) time += *sweep.stamp_ns;
+  }
+  const std::int64_t first = *std::min_element(times.begin(), times.end());
+  const std::int64_t bound = period_ns_ > 0 ? 2 * period_ns_ : kOffsetMax_ns;
+  std::int64_t start = sweep.stamp_ns.value_or(first);
+  if (start - first > bound || first - start > bound) {
+    throw BadInput(sweep.where + ": its first point is at " + in_ns(first) + ", its stamp " + in_ns(start) +
+                   "; must be within " + in_ns(bound) + ": another clock or another unit?");
+  }
+  if (start > first || first - start >= bound / 2) start = first;
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    const std::int64_t offset = times[k] - start;
+    if (offset > bound || offset > std::numeric_limits<std::uint32_t>::max()) {
+      throw BadInput(sweep.where + ": point " + std::to_string(kept[k]) + " is " + in_ns(offset) +
+                     " after the sweep's start, must be at most " + in_ns(bound));
+    }
+    record_.offset_ns.push_back(static_cast<std::uint32_t>(offset));
+  }
+  return start;
+}
+
+void SweepBuilder::take_points(const Waiting& sweep, const std::vector<std::size_t>& kept) {
+  if (kept.empty()) return;
+  const Cloud& cloud = sweep.cloud;
+  const std::vector<double>&x = *cloud.find("x"), &y = *cloud.find("y"), &z = *cloud.find("z");
+  const std::vector<double>* intensity = first_of(cloud, kIntensityNames);
+  for (const std::size_t i : kept) {
+    const Eigen::Vector3d position(x[i], y[i], z[i]);
+    record_.position_L_m.push_back(position.cast<float>());
+    record_.range_m.push_back(record_.position_L_m.back().norm());
+    const bool lit = intensity != nullptr && std::isfinite((*intensity)[i]) && (*intensity)[i] >= 0.0;
+    record_.intensity.push_back(lit ? static_cast<float>((*intensity)[i]) : 0.0f);
+    if (!lit) ++dark_;
+  }
+  const std::set<std::string> used = {"x", "y", "z", rule_->field};
+  for (const std::string& name : cloud.names) {
+    const auto is = [&](const char* each) { return name == each; };
+    if (used.contains(name) || std::any_of(kRingNames.begin(), kRingNames.end(), is) ||
+        std::any_of(kIntensityNames.begin(), kIntensityNames.end(), is))
+      continue;
+    ++ignored_[name];
+  }
+}
+
+void SweepBuilder::take_rings(const Waiting& sweep, const std::vector<std::size_t>& kept) {
+  const std::vector<double>* rings = first_of(sweep.cloud, kRingNames);
+  for (const std::size_t i : kept) {
+    const double ring = rings != nullptr ? (*rings)[i] : 0.0;
+    if (!(ring >= 0.0 && ring <= 65535.0 && ring == std::floor(ring))) {
+      throw BadInput(sweep.where + ": point " + std::to_string(i) + ": ring is " + std::to_string(ring) +
+                     ", must be a whole number from 0 to 65535");
+    }
+    record_.ring.push_back(static_cast<std::uint16_t>(ring));
+  }
+}
+
+void SweepBuilder::scale_intensity(std::vector<std::string>& notes) {
+  const auto largest = std::max_element(record_.intensity.begin(), record_.intensity.end());
+  if (largest == record_.intensity.end() || *largest <= 1.0f) return;
+  const double full = *largest <= kByte ? kByte : static_cast<double>(*largest);
+  for (float& each : record_.intensity) each = static_cast<float>(each / full);
+  notes.push_back("intensities go beyond 1: divided by " + std::to_string(full));
+}
+
+sim::LidarRecord SweepBuilder::finish(const std::string& where, std::vector<std::string>& notes) {
+  if (!rule_ && !waiting_.empty()) settle();
+  if (record_.position_L_m.empty()) throw BadInput(where + ": no sweep holds a point");
+  record_.sweep_first.push_back(record_.position_L_m.size());
+  record_.name = reading_.device.name;
+  record_.device = reading_.device.device;
+  record_.T_BL = reading_.device.T_BL;
+  record_.sweep_period_ns =
+      reading_.device.sweep_period_ns > 0 ? reading_.device.sweep_period_ns : median_step_ns(record_.sweep_start_ns);
+  if (record_.sweep_period_ns <= 0) throw BadInput(where + ": of a single sweep the period must be given");
+  if (misses_ > 0)
+    notes.push_back(std::to_string(misses_) + " points are misses (not finite, beyond 1000 km, or at the origin)");
+  if (skipped_ > 0) notes.push_back(std::to_string(skipped_) + " sweeps without a point and a time are left out");
+  if (dark_ > 0) notes.push_back(std::to_string(dark_) + " points have no intensity: stored as 0");
+  if (record_.point_times == sim::PointTimes::unknown)
+    notes.push_back("the points have no times: sweeps cannot be deskewed");
+  std::string names;
+  for (const auto& [name, sweeps] : ignored_) names += " " + name;
+  if (!names.empty()) notes.push_back("fields that are not read:" + names);
+  scale_intensity(notes);
+  return std::move(record_);
+}
+
+}  // namespace tumble::scenarios

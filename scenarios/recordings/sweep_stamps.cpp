@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/recordings/sweep_stamps.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <optional>
+#include <string_view>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/methods/table_file.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr std::int64_t kSecond_ns = 1000000000;
+
+bool is_digit(char c) {
+  return std::isdigit(static_cast<unsigned char>(c)) != 0;
+}
+
+/// Numbers within names count by value.
+bool natural_less(const std::filesystem::path& left, const std::filesystem::path& right) {
+  const std::string a = left.filename().string(), b = right.filename().string();
+  std::size_t i = 0, j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (!is_digit(a[i]) || !is_digit(b[j])) {
+      if (a[i] != b[j]) return a[i] < b[j];
+      ++i, ++j;
+      continue;
+    }
+    while (i < a.size() && a[i] == '0') ++i;
+    while (j < b.size() && b[j] == '0') ++j;
+    const std::size_t from_i = i, from_j = j;
+    while (i < a.size() && is_digit(a[i])) ++i;
+    while (j < b.size() && is_digit(b[j])) ++j;
+    if (i - from_i != j - from_j) return i - from_i < j - from_j;
+    const int order = a.compare(from_i, i - from_i, b, from_j, j - from_j);
+    if (order != 0) return order < 0;
+  }
+  if (a.size() - i != b.size() - j) return a.size() - i < b.size() - j;
+  return a < b;  // the same but for leading zeros
+}
+
+/// The digits that `text` ends in, cut off from it.
+std::string_view take_digits(std::string_view& text) {
+  std::size_t begin = text.size();
+  while (begin > 0 && is_digit(text[begin - 1])) --begin;
+  const std::string_view digits = text.substr(begin);
+  text = text.substr(0, begin);
+  return digits;
+}
+
+std::int64_t value_of(std::string_view digits) {
+  std::int64_t value = 0;
+  std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  return value;
+}
+
+/// Nanoseconds since the epoch of a number whose digits tell its unit; nothing for another number of digits.
+std::optional<std::int64_t> epoch_ns(std::string_view digits) {
+  if (digits.size() == 13) return value_of(digits) * 1000000;
+  if (digits.size() == 16) return value_of(digits) * 1000;
+  if (digits.size() == 19 && digits <= "9223372036854775807") return value_of(digits);
+  return std::nullopt;
+}
+
+std::optional<std::int64_t> stamp_in_name(const std::filesystem::path& file) {
+  const std::string stem = file.stem().string();
+  std::string_view rest = stem;
+  const std::string_view last = take_digits(rest);
+  if (last.empty()) return std::nullopt;
+  if (rest.ends_with('.') || rest.ends_with('_')) {
+    const bool decimals = rest.ends_with('.');
+    rest.remove_suffix(1);
+    const std::string_view seconds = take_digits(rest);
+    const bool whole = !seconds.empty() && seconds.size() <= 10;
+    if (whole && (decimals ? last.size() <= 9 : last.size() == 9 && seconds.size() >= 9)) {
+      std::string fraction(last);
+      fraction.resize(9, '0');
+      return value_of(seconds) * kSecond_ns + value_of(fraction);
+    }
+  }
+  return epoch_ns(last);
+}
+
+}  // namespace
+
+std::string stem_of(const std::filesystem::path& file) {
+  std::string stem = file.stem().string();
+  while (!stem.empty() &&
+         (is_digit(stem.back()) || std::string_view("._-").find(stem.back()) != std::string_view::npos))
+    stem.pop_back();
+  return stem;
+}
+
+std::vector<std::filesystem::path> sweep_files(const std::filesystem::path& folder, const std::string& ending,
+                                               const std::string& stem) {
+  std::error_code error;
+  if (!std::filesystem::is_directory(folder, error)) throw BadInput(folder.string() + ": is not a folder");
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::filesystem::path& path = entry.path();
+    const bool fits = path.extension() == ending && !path.filename().string().starts_with('.');
+    if (fits && (stem.empty() || stem_of(path) == stem)) files.push_back(path);
+  }
+  if (files.empty()) {
+    throw BadInput(folder.string() + ": holds no file that ends in " + ending +
+                   (stem.empty() ? "" : " and begins with '" + stem + "'"));
+  }
+  std::sort(files.begin(), files.end(), natural_less);
+  if (stem_of(files.front()) != stem_of(files.back())) {
+    throw BadInput(folder.string() + ": holds files of several lidars, '" + stem_of(files.front()) + "' and '" +
+                   stem_of(files.back()) + "': say which stem");
+  }
+  return files;
+}
+
+std::vector<std::int64_t> stamps_in_names(const std::vector<std::filesystem::path>& files) {
+  std::vector<std::int64_t> stamps;
+  const std::filesystem::path* without = nullptr;
+  for (const std::filesystem::path& file : files) {
+    const std::optional<std::int64_t> stamp = stamp_in_name(file);
+    if (stamp)
+      stamps.push_back(*stamp);
+    else
+      without = &file;
+  }
+  if (stamps.empty() || without == nullptr) return stamps;
+  throw BadInput(without->string() + ": its name holds no stamp, those of " + std::to_string(stamps.size()) +
+                 " other files do");
+}
+
+std::vector<std::int64_t> read_stamps(const std::filesystem::path& file) {
+  const Table table = Table::read(file, ' ', "", 1);
+  std::vector<std::int64_t> stamps;
+  for (const Table::Row& row : table.rows) {
+    const std::string& text = row.cells[0];
+    const bool digits = std::all_of(text.begin(), text.end(), is_digit);
+    const std::optional<std::int64_t> whole = digits ? epoch_ns(text) : std::nullopt;
+    const std::int64_t stamp = whole ? *whole : table.time_ns(row, 0);
+    if (!stamps.empty() && stamp <= stamps.back()) {
+      throw BadInput(file.string() + ":" + std::to_string(row.line) + ": stamp " + std::to_string(stamp) +
+                     " ns does not rise, the one before is " + std::to_string(stamps.back()) + " ns");
+    }
+    stamps.push_back(stamp);
+  }
+  return stamps;
+}
+
+std::int64_t median_step_ns(const std::vector<std::int64_t>& times_ns) {
+  if (times_ns.size() < 2) return 0;
+  std::vector<std::int64_t> steps;
+  for (std::size_t i = 1; i < times_ns.size(); ++i) steps.push_back(times_ns[i] - times_ns[i - 1]);
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return *middle;
+}
+
+}  // namespace tumble::scenarios

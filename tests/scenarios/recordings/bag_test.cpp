@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/recordings/bag.hpp"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scenarios/recordings/bag_storage.hpp"
+#include "scenarios/recordings/export.hpp"
+#include "scenarios/recordings/fixture_recording.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+using testing::HasSubstr;
+
+/// The two kinds of bags, tested alike.
+struct Kind {
+  const char* name;
+  void (*write)(const sim::Sensors&, const BagWriting&, const std::filesystem::path&);
+  Imported (*read)(const std::filesystem::path&, const BagReading&);
+};
+
+class Bag : public fixture::Folder, public testing::WithParamInterface<Kind> {
+ protected:
+  Bag() {
+    for (sim::ImuRecord& imu : recording_.sensors.imus) {
+      for (Eigen::Vector3d& force : imu.accel_m_s2) force *= 0.2;  // to a plausible median
+    }
+    for (std::uint32_t& offset : recording_.sensors.lidars[0].offset_ns) offset *= 600;  // over most of a sweep
+    reading_.imu.device = "mti30";
+    path_ = folder_ / "a.bag";
+  }
+  void write() { GetParam().write(recording_.sensors, {}, path_); }
+  Imported read() { return GetParam().read(path_, reading_); }
+  std::string complaint_of() {
+    return fixture::complaint([&] { read(); });
+  }
+  sim::Recording recording_ = fixture::recording();
+  BagReading reading_;
+  std::filesystem::path path_;
+};
+
+TEST_P(Bag, SensorsComeBackToTheFormatsPrecision) {
+  write();
+  const Imported imported = read();
+  EXPECT_EQ(imported.info.origin_ns, 1000000000000000000) << "stamps of simulated recordings begin in 2001";
+  ASSERT_EQ(imported.sensors.imus.size(), 2u);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const sim::ImuRecord &imu = imported.sensors.imus[k], &given = recording_.sensors.imus[k];
+    EXPECT_EQ(imu.name, given.name);
+    EXPECT_EQ(imu.device, "mti30");
+    EXPECT_EQ(imu.time_ns, given.time_ns);
+    EXPECT_EQ(imu.gyro_rad_s, given.gyro_rad_s);
+    EXPECT_EQ(imu.accel_m_s2, given.accel_m_s2);
+    EXPECT_EQ(imu.period_ns, given.period_ns);
+  }
+  ASSERT_EQ(imported.sensors.lidars.size(), 1u);
+  const sim::LidarRecord &lidar = imported.sensors.lidars[0], &given = recording_.sensors.lidars[0];
+  EXPECT_EQ(lidar.name, given.name);
+  EXPECT_EQ(lidar.sweep_start_ns, given.sweep_start_ns);
+  EXPECT_EQ(lidar.sweep_first, given.sweep_first);
+  EXPECT_EQ(lidar.sweep_period_ns, given.sweep_period_ns);
+  EXPECT_EQ(lidar.position_L_m, given.position_L_m);
+  EXPECT_EQ(lidar.intensity, given.intensity);
+  EXPECT_EQ(lidar.ring, given.ring);
+  ASSERT_EQ(lidar.offset_ns.size(), given.offset_ns.size());
+  // float32 seconds below 0.125 s have steps of 7.5 ns
+  for (std::size_t i = 0; i < lidar.offset_ns.size(); ++i)
+    EXPECT_NEAR(lidar.offset_ns[i], given.offset_ns[i], 4.0) << i;
+  EXPECT_FALSE(imported.reference.has_value());
+}
+
+TEST_P(Bag, SweepsWithoutPointTimesStaySo) {
+  sim::LidarRecord& lidar = recording_.sensors.lidars[0];
+  lidar.point_times = sim::PointTimes::unknown;
+  lidar.offset_ns.assign(lidar.offset_ns.size(), 0);
+  write();
+  EXPECT_EQ(read().sensors.lidars.at(0).point_times, sim::PointTimes::unknown);
+}
+
+TEST_P(Bag, TheTruthIsLeftOutUnlessAskedFor) {
+  reading_.reference_topic = "/truth";
+  write();
+  EXPECT_THAT(complaint_of(), HasSubstr("no topic '/truth'"));
+  GetParam().write(recording_.sensors, {0, &recording_.truth}, path_);
+  const Imported imported = read();
+  ASSERT_TRUE(imported.reference.has_value());
+  EXPECT_EQ(imported.reference->period_ns, 5000000);
+  ASSERT_EQ(imported.reference->p_WB_m.size(), 8u);
+  for (std::size_t k = 0; k < 8; ++k) {
+    EXPECT_EQ(imported.reference->p_WB_m[k], recording_.truth.p_WB_m[5 * k]);
+    EXPECT_EQ(imported.reference->q_WB[k].coeffs(), recording_.truth.q_WB[5 * k].coeffs());
+  }
+  reading_.reference_topic = "/imu";
+  EXPECT_THAT(complaint_of(), HasSubstr("topic '/imu' is of type sensor_msgs/Imu, must be nav_msgs/Odometry"));
+}
+
+TEST_P(Bag, TopicsAreChosenByName) {
+  write();
+  reading_.imu_topics = {"/imu_reference"};
+  ASSERT_EQ(read().sensors.imus.size(), 1u);
+  EXPECT_EQ(read().sensors.imus[0].gyro_rad_s, recording_.sensors.imus[1].gyro_rad_s);
+  reading_.imu_topics = {"/imu_referense"};
+  EXPECT_THAT(complaint_of(), HasSubstr("did you mean '/imu_reference'?"));
+  reading_.imu_topics = {"/lidar/points"};
+  EXPECT_THAT(complaint_of(), HasSubstr("of type sensor_msgs/PointCloud2, must be sensor_msgs/Imu"));
+}
+
+TEST_P(Bag, AnotherUnitIsSaid) {
+  for (Eigen::Vector3d& force : recording_.sensors.imus[0].accel_m_s2) force /= 9.80665;
+  write();
+  EXPECT_THAT(complaint_of(), HasSubstr("topic /imu: read in m/s^2 the median specific force is"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, Bag,
+                         testing::Values(Kind{"Ros1", export_ros1_bag, import_ros1_bag},
+                                         Kind{"Ros2", export_ros2_bag, import_ros2_bag}),
+                         [](const auto& kind) { return std::string(kind.param.name); });
+
+using HostileBag = fixture::Folder;
+
+sim::Sensors small_sensors() {
+  sim::Recording recording = fixture::recording();
+  for (std::uint32_t& offset : recording.sensors.lidars[0].offset_ns) offset *= 600;
+  recording.sensors.imus.resize(1);
+  recording.sensors.imus[0].time_ns.resize(3);
+  for (auto* rows : {&recording.sensors.imus[0].gyro_rad_s, &recording.sensors.imus[0].accel_m_s2}) {
+    rows->assign(3, Eigen::Vector3d(0, 0, 9.8));
+  }
+  return recording.sensors;
+}
+
+// a bag is refused, or read: it never ends the program, whatever byte of it is gone or changed
+TEST_F(HostileBag, EveryCutOfARos1BagIsOneLine) {
+  export_ros1_bag(small_sensors(), {}, folder_ / "a.bag");
+  const std::string whole = fixture::bytes_of(folder_ / "a.bag");
+  ASSERT_GT(whole.size(), 5000u);
+  for (std::size_t size = 0; size < whole.size(); size += size < 100 ? 7 : 499) {
+    fixture::put(folder_ / "cut.bag", whole.substr(0, size));
+    EXPECT_THAT(fixture::complaint([&] { import_ros1_bag(folder_ / "cut.bag", {}); }), HasSubstr("cut.bag: at byte "))
+        << size;
+  }
+}
+
+TEST_F(HostileBag, ChangedBytesOfARos1BagNeverCrash) {
+  export_ros1_bag(small_sensors(), {}, folder_ / "a.bag");
+  const std::string whole = fixture::bytes_of(folder_ / "a.bag");
+  int refused = 0, read = 0;
+  for (std::size_t at = 0; at < whole.size(); at += 61) {
+    std::string bytes = whole;
+    bytes[at] = static_cast<char>(bytes[at] ^ 0xff);
+    fixture::put(folder_ / "b.bag", bytes);
+    const std::string complaint = fixture::complaint([&] { import_ros1_bag(folder_ / "b.bag", {}); });
+    EXPECT_THAT(complaint, testing::Not(HasSubstr("\n")));
+    complaint.empty() ? ++read : ++refused;
+  }
+  EXPECT_GT(refused, 10);
+  EXPECT_GT(read, 20) << "a reading or a text may change without harm";
+}
+
+TEST_F(HostileBag, DamagedRos2BagsAreOneLine) {
+  const std::filesystem::path bag = folder_ / "bag";
+  export_ros2_bag(small_sensors(), {}, bag);
+  const auto complaint = [&] { return fixture::complaint([&] { import_ros2_bag(bag, {}); }); };
+  ASSERT_EQ(complaint(), "");
+  const std::string database = fixture::bytes_of(bag / "bag_0.db3"),
+                    metadata = fixture::bytes_of(bag / "metadata.yaml");
+  EXPECT_EQ(fixture::complaint([&] { import_ros2_bag(bag / "bag_0.db3", {}); }), "") << "the file alone is read too";
+  for (const std::size_t size : {std::size_t{0}, std::size_t{100}, std::size_t{5000}, database.size() / 2}) {
+    fixture::put(bag / "bag_0.db3", database.substr(0, size));
+    EXPECT_THAT(complaint(), HasSubstr("bag_0.db3: cannot be read as a ROS 2 bag")) << size;
+  }
+  std::filesystem::remove(bag / "bag_0.db3");
+  EXPECT_THAT(complaint(), HasSubstr("bag_0.db3: no such file"));
+  fixture::put(bag / "bag_0.db3", database);
+  fixture::put(bag / "metadata.yaml", metadata.substr(0, metadata.size() / 2));
+  EXPECT_THAT(complaint(), HasSubstr("metadata.yaml"));
+  std::string mcap = metadata;
+  mcap.replace(mcap.find("sqlite3"), 7, "mcap");
+  fixture::put(bag / "metadata.yaml", mcap);
+  EXPECT_THAT(complaint(), HasSubstr("the storage is 'mcap', must be sqlite3"));
+  std::filesystem::remove(bag / "metadata.yaml");
+  EXPECT_THAT(complaint(), HasSubstr("no metadata.yaml"));
+}
+
+TEST_F(HostileBag, AMessageThatPromisesTooMuchAllocatesNothing) {
+  const std::filesystem::path bag = folder_ / "bag";
+  for (const bool field_count : {false, true}) {
+    export_ros2_bag(small_sensors(), {}, bag);
+    SQLite::Database database((bag / "bag_0.db3").string(), SQLite::OPEN_READWRITE);
+    SQLite::Statement query(database, "SELECT id, data FROM messages WHERE topic_id = 2 ORDER BY timestamp");
+    ASSERT_TRUE(query.executeStep());
+    const SQLite::Column blob = query.getColumn(1);
+    std::string bytes(static_cast<const char*>(blob.getBlob()), static_cast<std::size_t>(blob.getBytes()));
+    // header: 4 encapsulation, 8 stamp, 4 + 6 frame; then at 24 height and width, at 32 the number of fields
+    const std::uint32_t absurd = 0xfffffff0u;
+    const std::size_t at = field_count ? 32 : 28;
+    std::copy_n(reinterpret_cast<const char*>(&absurd), 4, bytes.begin() + static_cast<std::ptrdiff_t>(at));
+    SQLite::Statement update(database, "UPDATE messages SET data = ? WHERE id = ?");
+    update.bind(1, bytes.data(), static_cast<int>(bytes.size()));
+    update.bind(2, query.getColumn(0).getInt());
+    query.reset();
+    update.exec();
+    EXPECT_THAT(fixture::complaint([&] { import_ros2_bag(bag, {}); }),
+                field_count ? HasSubstr("message 0 of /lidar/points: promises 4294967280 entries of 13 bytes")
+                            : HasSubstr("message 0 of /lidar/points: 1 x 4294967280 points of 22 bytes do not fit"));
+  }
+}
+
+TEST_F(HostileBag, WhatIsNoBagIsSaid) {
+  fixture::put(folder_ / "a.bag", "hello");
+  EXPECT_THAT(fixture::complaint([&] { import_ros1_bag(folder_ / "a.bag", {}); }), HasSubstr("no ROS 1 bag"));
+  EXPECT_THAT(fixture::complaint([&] { import_ros1_bag(folder_ / "none.bag", {}); }), HasSubstr("no such file"));
+  EXPECT_THAT(fixture::complaint([&] { export_ros1_bag(small_sensors(), {}, folder_ / "none" / "a.bag"); }),
+              HasSubstr("cannot be written"));
+  EXPECT_EQ(files(), 1u) << "nothing is left of it";
+}
+
+}  // namespace
+}  // namespace tumble::scenarios

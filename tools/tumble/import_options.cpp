@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/tumble/import_options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "scenarios/draw/data_sheet.hpp"
+#include "scenarios/errors.hpp"
+#include "tools/tumble/arguments.hpp"
+
+namespace tumble::tools {
+
+namespace {
+
+using scenarios::BadInput;
+
+const std::vector<std::string> kFormats = {"broad", "csv", "kitti", "pcd", "ply", "rosbag1", "rosbag2", "tum"};
+
+/// What the files in a folder are.
+std::string format_of_folder(const std::filesystem::path& folder) {
+  const std::map<std::string, std::string> known = {{".ply", "ply"}, {".pcd", "pcd"}, {".bin", "kitti"}};
+  if (std::filesystem::exists(folder / "metadata.yaml")) return "rosbag2";
+  std::string found;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const auto format = known.find(entry.path().extension().string());
+    if (format == known.end() || format->second == found) continue;
+    if (!found.empty()) {
+      throw BadInput(folder.string() + ": holds files of format " + found + " and " + format->second +
+                     ": --format is needed");
+    }
+    found = format->second;
+  }
+  if (found.empty())
+    throw BadInput(folder.string() + ": holds no .ply, .pcd or .bin file and no metadata.yaml of a bag");
+  return found;
+}
+
+bool is_bag(const std::string& format) {
+  return format.starts_with("rosbag");
+}
+
+bool is_sweeps(const std::string& format) {
+  return format == "ply" || format == "pcd" || format == "kitti";
+}
+
+void require_numbers(const std::string& option, const std::vector<double>& numbers, double bound) {
+  for (const double x : numbers) {
+    if (!(std::abs(x) <= bound)) {
+      throw BadInput(option + ": " + number_text(x) + " must be within +-" + number_text(bound));
+    }
+  }
+}
+
+/// x y z qx qy qz qw.
+Eigen::Isometry3d pose_of(const std::string& option, const std::vector<double>& numbers) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  if (numbers.empty()) return pose;
+  require_numbers(option, numbers, 100.0);
+  const Eigen::Quaterniond q(numbers[6], numbers[3], numbers[4], numbers[5]);
+  if (!(std::abs(q.norm() - 1.0) <= 1e-2)) {
+    throw BadInput(option + ": the quaternion (qx qy qz qw) has norm " + number_text(q.norm()) + ", must be 1");
+  }
+  pose.linear() = q.normalized().toRotationMatrix();
+  pose.translation() = Eigen::Vector3d(numbers[0], numbers[1], numbers[2]);
+  return pose;
+}
+
+std::int64_t period_ns(double period_s) {
+  return std::llround(period_s * 1e9);
+}
+
+scenarios::DataSheet sheet_of(const Session& session, const std::string& option, const std::string& device,
+                              const std::string& ending) {
+  scenarios::DataSheet sheet = scenarios::load_data_sheet(session.data(), device);
+  if (!sheet.sensor_kind.ends_with(ending))
+    throw BadInput(option + " " + device + ": is no " + ending + " but a " + sheet.sensor_kind);
+  return sheet;
+}
+
+sim::LidarRecord lidar_sheet(const Session& session, const ImportOptions& options) {
+  sim::LidarRecord lidar;
+  lidar.name = "lidar";
+  lidar.T_BL = pose_of("--T-body-lidar", options.T_body_lidar);
+  lidar.sweep_period_ns = period_ns(options.sweep_period_s);
+  if (options.lidar.empty()) return lidar;
+  const sim::Values values = sheet_of(session, "--lidar", options.lidar, "lidar").values();
+  lidar.device = options.lidar;
+  if (lidar.sweep_period_ns > 0) return lidar;
+  const bool spins = values.has("spin_rate_hz");
+  lidar.sweep_period_ns = period_ns(spins ? 1.0 / values.at("spin_rate_hz") : values.at("sweep_period_s"));
+  return lidar;
+}
+
+scenarios::SweepReading sweep_reading(const Session& session, const ImportOptions& options) {
+  scenarios::SweepReading reading;
+  reading.device = lidar_sheet(session, options);
+  reading.time_field = options.time_field;
+  reading.time_unit = options.time_unit;
+  reading.not_skewed = options.not_skewed;
+  return reading;
+}
+
+void declare_lidar(CLI::App& app, ImportOptions& options) {
+  app.add_option("--lidar", options.lidar, "of sweeps: the lidar's data sheet [unknown]");
+  app.add_option("--T-body-lidar", options.T_body_lidar,
+                 "X Y Z QX QY QZ QW: pose of the lidar in the body, m [the body is the lidar]")
+      ->expected(7);
+  app.add_option("--stem", options.stem, "of the files' names, before their number, when there are several");
+  app.add_option("--times", options.times,
+                 "a stamp per sweep or pose, a line each, s [STEM_times.txt or times.txt beside the sweeps, else the "
+                 "files' names, else the points' times]");
+  app.add_option("--sweep-period", options.sweep_period_s,
+                 "length of a sweep, s; where nothing tells their times, also their distance [median step]")
+      ->check(CLI::Range(1e-4, 1000.0));
+  app.add_option("--time-field", options.time_field,
+                 "that holds the points' times [t, time, timestamp, offset_time ...]");
+  app.add_option("--time-unit", options.time_unit, "of that field: s, ms, us or ns [by its size]");
+  app.add_flag("--not-skewed", options.not_skewed, "the sweeps are deskewed: their points belong to one instant");
+  app.add_option("--imu", options.imu, "FILE.csv: readings of an IMU in the same clock, beside the sweeps");
+}
+
+void declare_reference(CLI::App& app, ImportOptions& options) {
+  app.add_option(
+      "--reference", options.reference,
+      "poses that become the truth: a TUM file in the clock of the sweeps, or a KITTI file with a pose per sweep");
+  app.add_option("--reference-frame", options.reference_frame,
+                 "whose poses they are: lidar or body [of a file: the lidar, if there is one; of a topic: the body]");
+  app.add_option("--reference-topic", options.reference_topic,
+                 "of a bag: nav_msgs/Odometry or geometry_msgs/PoseStamped, poses that become the truth [none]");
+  app.add_flag("--sort", options.sorted, "a TUM file's lines may be in any order; of equal stamps the first counts");
+}
+
+}  // namespace
+
+void declare(CLI::App& app, ImportOptions& options) {
+  app.add_option(
+         "PATH", options.path,
+         "a folder of lidar sweeps (PLY, PCD, KITTI .bin); readings of an IMU: CSV with the columns of a "
+         "sensor_msgs/Imu, or a trial of BROAD (HDF5), with its optical reference; a bag (ROS 1 file, ROS 2 folder); "
+         "or poses (TUM, KITTI)")
+      ->required();
+  app.add_option("--format", options.format,
+                 "broad, csv, kitti, pcd, ply, rosbag1, rosbag2 or tum [by the path's ending or content]");
+  app.add_option("--device", options.device,
+                 "the IMU's data sheet, for ranges and noise: see 'tumble list sensors' [unknown]");
+  app.add_option("--accel-unit", options.accel_unit, "of a CSV: m/s^2 or g [m/s^2]");
+  app.add_option("--lever-arm", options.lever_arm_m, "X Y Z: from the robot's centre of mass to the IMU, m [0 0 0]")
+      ->expected(3);
+  app.add_option("--robot", options.robot, "rig or sphere, for methods that ask [unknown]");
+  app.add_option("--radius", options.radius_m, "of the sphere, m, for methods of position [unknown]")
+      ->check(CLI::Range(1e-3, 10.0));
+  app.add_option("--imu-topic", options.imu_topics, "of a bag: sensor_msgs/Imu; the first is the primary one [all]");
+  app.add_option("--lidar-topic", options.lidar_topics, "of a bag: sensor_msgs/PointCloud2 [all]");
+  declare_lidar(app, options);
+  declare_reference(app, options);
+  app.add_option("-o,--output", options.out, "the recording, FILE.h5")->required();
+}
+
+std::string format_of(const ImportOptions& options) {
+  if (!options.format.empty()) {
+    require_known("format", options.format, kFormats);
+    return options.format;
+  }
+  if (std::filesystem::is_directory(options.path)) return format_of_folder(options.path);
+  const std::string ending = options.path.extension().string();
+  if (ending == ".csv") return "csv";
+  if (ending == ".bag") return "rosbag1";
+  if (ending == ".db3") return "rosbag2";
+  if (ending == ".hdf5" || ending == ".h5") return "broad";
+  if (ending == ".tum" || ending == ".txt" || ending == ".kitti") return scenarios::pose_format(options.path);
+  throw BadInput(options.path.string() +
+                 ": --format is needed for a file named so (broad, csv, kitti, rosbag1, rosbag2 or tum)");
+}
+
+void require_fitting(const ImportOptions& options, const std::string& format) {
+  const bool bag = is_bag(format), csv = format == "csv" || !options.imu.empty();
+  const bool sweeps = is_sweeps(format) && (format != "kitti" || std::filesystem::is_directory(options.path));
+  const auto refuse = [&](bool given, const std::string& option, const std::string& why) {
+    if (given) throw BadInput(option + ": " + why);
+  };
+  refuse(!options.accel_unit.empty() && !csv && !bag, "--accel-unit",
+         "is of the readings of an IMU in a CSV file or bag");
+  refuse(!options.lever_arm_m.empty() && !csv && !bag, "--lever-arm",
+         format == "broad" ? "the body of a trial of BROAD is the IMU itself" : "is of an IMU in a CSV file or bag");
+  refuse(!options.device.empty() && !csv && !bag && format != "broad", "--device",
+         "is of an IMU; of a lidar it is --lidar");
+  refuse(!options.imu.empty() && !sweeps, "--imu", "is for a folder of sweeps");
+  refuse(!options.stem.empty() && !sweeps, "--stem", "is for a folder of sweeps");
+  const bool lidar = !options.lidar.empty() || !options.T_body_lidar.empty() || !options.time_field.empty() ||
+                     !options.time_unit.empty() || options.not_skewed;
+  refuse(lidar && !sweeps && !bag, "--lidar --T-body-lidar --time-field --time-unit --not-skewed",
+         "are for a folder of sweeps or a bag");
+  refuse(!options.times.empty() && !sweeps && format != "kitti", "--times",
+         "is for a folder of sweeps or poses of KITTI");
+  refuse(options.sweep_period_s > 0.0 && !sweeps && !bag && format != "kitti", "--sweep-period",
+         "is for sweeps or poses of KITTI");
+  refuse(!options.reference.empty() && !sweeps && !bag && format != "csv", "--reference",
+         "is for sweeps, a bag or readings of an IMU");
+  const bool topics = !options.imu_topics.empty() || !options.lidar_topics.empty() || !options.reference_topic.empty();
+  refuse(topics && !bag, "--imu-topic --lidar-topic --reference-topic", "are for a bag");
+  refuse(!options.reference.empty() && !options.reference_topic.empty(), "--reference",
+         "and --reference-topic exclude each other");
+  refuse(options.radius_m != 0.0 && options.robot != "sphere", "--radius",
+         "is the sphere's: --robot sphere is missing");
+  if (!options.robot.empty()) require_known("robot", options.robot, std::vector<std::string>{"rig", "sphere"});
+  if (!options.reference_frame.empty())
+    require_known("frame", options.reference_frame, std::vector<std::string>{"lidar", "body"});
+}
+
+sim::ImuRecord imu_sheet(const Session& session, const ImportOptions& options) {
+  sim::ImuRecord imu;
+  imu.name = "imu";
+  if (!options.device.empty()) {
+    const sim::Values values = sheet_of(session, "--device", options.device, "imu").values();
+    imu.device = options.device;
+    imu.stated_gyro_range_rad_s = values.at("gyro_range_rad_s");
+    imu.stated_accel_range_m_s2 = values.at("accel_range_m_s2");
+    imu.gyro_noise_rad_s_sqrt_hz = values.at("gyro_noise_rad_s_sqrt_hz");
+    imu.accel_noise_m_s2_sqrt_hz = values.at("accel_noise_m_s2_sqrt_hz");
+  }
+  if (!options.lever_arm_m.empty()) {
+    require_numbers("--lever-arm", options.lever_arm_m, 10.0);
+    imu.T_BI.translation() = Eigen::Vector3d::Map(options.lever_arm_m.data());
+  }
+  return imu;
+}
+
+void complete(const sim::ImuRecord& sheet, sim::ImuRecord& imu) {
+  imu.device = sheet.device;
+  imu.stated_gyro_range_rad_s = sheet.stated_gyro_range_rad_s;
+  imu.stated_accel_range_m_s2 = sheet.stated_accel_range_m_s2;
+  imu.gyro_noise_rad_s_sqrt_hz = sheet.gyro_noise_rad_s_sqrt_hz;
+  imu.accel_noise_m_s2_sqrt_hz = sheet.accel_noise_m_s2_sqrt_hz;
+}
+
+scenarios::AccelUnit accel_unit(const ImportOptions& options) {
+  if (!options.accel_unit.empty()) require_known("unit", options.accel_unit, std::vector<std::string>{"g", "m/s^2"});
+  return options.accel_unit == "g" ? scenarios::AccelUnit::g : scenarios::AccelUnit::m_s2;
+}
+
+scenarios::SweepSource sweep_source(const Session& session, const ImportOptions& options, const std::string& format) {
+  scenarios::SweepSource source;
+  source.folder = options.path;
+  source.format = format;
+  source.stem = options.stem;
+  source.times = options.times;
+  source.steady_ns = period_ns(options.sweep_period_s);
+  source.reading = sweep_reading(session, options);
+  return source;
+}
+
+scenarios::ReferenceSource reference_source(const ImportOptions& options, bool has_lidar) {
+  scenarios::ReferenceSource source;
+  source.file = options.reference;
+  source.format = scenarios::pose_format(options.reference);
+  source.of_body = options.reference_frame.empty() ? !has_lidar : options.reference_frame == "body";
+  source.sorted = options.sorted;
+  return source;
+}
+
+scenarios::ReferenceSource trajectory_source(const ImportOptions& options, const std::string& format) {
+  scenarios::ReferenceSource source;
+  source.file = options.path;
+  source.format = format;
+  source.of_body = true;
+  source.sorted = options.sorted;
+  source.times = options.times;
+  source.steady_ns = period_ns(options.sweep_period_s);
+  return source;
+}
+
+scenarios::BagReading bag_reading(const Session& session, const ImportOptions& options) {
+  scenarios::BagReading reading;
+  reading.imu_topics = options.imu_topics;
+  reading.lidar_topics = options.lidar_topics;
+  reading.reference_topic = options.reference_topic;
+  reading.reference_of_body = options.reference_frame != "lidar";
+  reading.imu = imu_sheet(session, options);
+  reading.accel_unit = accel_unit(options);
+  reading.sweeps = sweep_reading(session, options);
+  return reading;
+}
+
+const char* point_times_word(sim::PointTimes times) {
+  return times == sim::PointTimes::measured ? "measured" : times == sim::PointTimes::unknown ? "unknown" : "not_skewed";
+}
+
+}  // namespace tumble::tools
