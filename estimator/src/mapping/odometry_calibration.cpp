@@ -38,15 +38,25 @@ Eigen::Matrix<double, 6, 6> less_mounting(const Registration::Matrix& joint,
 
 }  // namespace
 
+Registration::Matrix mapping::unknowns_at(const SweepTrajectory& trajectory, double t_s) {
+  const SweepTrajectory::Transition step = trajectory.transition(t_s);
+  Registration::Matrix F = Registration::Matrix::Identity();
+  F.topLeftCorner<9, 9>() = step.by_start;
+  F.block<9, SweepTrajectory::kExcess>(0, Registration::kExcess) = step.by_excess_s;
+  F.topRightCorner<9, 3>() = step.by_gravity;
+  return F;
+}
+
 /// The map hangs on the lidar: at the start the lidar's pose is certain by definition, and an error of its mounting is
 /// one of the IMU's pose, of gravity as seen from the map too.
 void LidarInertialOdometry::Impl::start_calibration() {
   calibration.T_IL = params.T_IL;
   calibration.time_offset_s = 0.0;  // the given offset is applied to the stamps
   calibration.gravity_W_m_s2 = Eigen::Vector3d(0.0, 0.0, -params.gravity_m_s2);
-  calibration_covariance.setZero();
-  motion_calibration.setZero();
-  auto diagonal = calibration_covariance.diagonal();
+  constexpr int kCal = Registration::kCalibration;
+  covariance.setZero();
+  auto of_calibration = covariance.bottomRightCorner<SweepCalibration::kErrors, SweepCalibration::kErrors>();
+  auto diagonal = covariance.diagonal().tail<SweepCalibration::kErrors>();
   diagonal.segment<3>(0).setConstant(params.mount_sigma_rad * params.mount_sigma_rad);
   diagonal.segment<3>(3).setConstant(params.mount_sigma_m * params.mount_sigma_m);
   diagonal[6] = params.time_offset_sigma_s * params.time_offset_sigma_s;
@@ -55,41 +65,54 @@ void LidarInertialOdometry::Impl::start_calibration() {
   start_by_mounting = pose_by_mounting(state.q_WI, params.T_IL.translation());
   Eigen::Matrix<double, 9, 6> by_mounting = Eigen::Matrix<double, 9, 6>::Zero();
   by_mounting.topRows<6>() = start_by_mounting;
-  const Eigen::Matrix<double, 6, 6> mounting = calibration_covariance.topLeftCorner<6, 6>();
-  state.covariance += by_mounting * mounting * by_mounting.transpose();
-  motion_calibration.leftCols<6>() = by_mounting * mounting;
-  if (params.gravity_sigma_m_s2 <= 0.0) return;
-
-  Eigen::Matrix<double, 3, 6> gravity_by_mounting = Eigen::Matrix<double, 3, 6>::Zero();
-  gravity_by_mounting.leftCols<3>() = so3::hat(calibration.gravity_W_m_s2) * R;
-  calibration_covariance.block<3, 6>(7, 0) = gravity_by_mounting * mounting;
-  calibration_covariance.block<6, 3>(0, 7) = calibration_covariance.block<3, 6>(7, 0).transpose();
-  calibration_covariance.bottomRightCorner<3, 3>() = gravity_by_mounting * mounting * gravity_by_mounting.transpose();
-  const double sigma2 = params.gravity_sigma_m_s2 * params.gravity_sigma_m_s2;
-  // the magnitude is known much better than the direction
-  diagonal.segment<3>(7) += Eigen::Vector3d(sigma2, sigma2, 0.01 * sigma2);
-  motion_calibration.rightCols<3>() = by_mounting * mounting * gravity_by_mounting.transpose();
+  const Eigen::Matrix<double, 6, 6> mounting = of_calibration.topLeftCorner<6, 6>();
+  covariance.topLeftCorner<9, 9>() = state.covariance + by_mounting * mounting * by_mounting.transpose();
+  covariance.block<9, 6>(0, kCal) = by_mounting * mounting;
+  if (params.gravity_sigma_m_s2 > 0.0) {
+    Eigen::Matrix<double, 3, 6> gravity_by_mounting = Eigen::Matrix<double, 3, 6>::Zero();
+    gravity_by_mounting.leftCols<3>() = so3::hat(calibration.gravity_W_m_s2) * R;
+    of_calibration.block<3, 6>(7, 0) = gravity_by_mounting * mounting;
+    of_calibration.block<6, 3>(0, 7) = of_calibration.block<3, 6>(7, 0).transpose();
+    of_calibration.bottomRightCorner<3, 3>() = gravity_by_mounting * mounting * gravity_by_mounting.transpose();
+    const double sigma2 = params.gravity_sigma_m_s2 * params.gravity_sigma_m_s2;
+    // the magnitude is known much better than the direction
+    diagonal.segment<3>(7) += Eigen::Vector3d(sigma2, sigma2, 0.01 * sigma2);
+    covariance.block<9, 3>(0, kCal + 7) = by_mounting * mounting * gravity_by_mounting.transpose();
+  }
+  covariance.bottomLeftCorner<SweepCalibration::kErrors, 9>() =
+      covariance.topRightCorner<9, SweepCalibration::kErrors>().transpose();
+  state.covariance = covariance.topLeftCorner<9, 9>();
 }
 
 /// Of all unknowns, the motion taken from the present sweep's start to `t_s` after it.
 Registration::Matrix LidarInertialOdometry::Impl::joint_covariance(double t_s) const {
-  const SweepTrajectory::Transition step = trajectory.transition(t_s);
-  Registration::Matrix F = Registration::Matrix::Identity();
-  F.topLeftCorner<9, 9>() = step.by_start;
-  F.block<9, 3>(0, Registration::kExcess) = step.by_excess_s;
-  F.topRightCorner<9, 3>() = step.by_gravity;
+  const Registration::Matrix F = mapping::unknowns_at(trajectory, t_s);
   return F * result.covariance * F.transpose();
 }
 
 void LidarInertialOdometry::Impl::carry_covariance(TimeNs end_ns) {
-  const Registration::Matrix P = joint_covariance(trajectory.duration_s());
-  constexpr int kErrors = SweepCalibration::kErrors;
+  end_by_start = mapping::unknowns_at(trajectory, trajectory.duration_s());
+  const Registration::Matrix P = end_by_start * result.covariance * end_by_start.transpose();
+  covariance = 0.5 * (P + P.transpose());
   state = trajectory.state(trajectory.duration_s());
   state.time_ns = end_ns;
-  state.covariance = 0.5 * (P.topLeftCorner<9, 9>() + P.topLeftCorner<9, 9>().transpose());
-  motion_calibration = P.block<9, kErrors>(0, Registration::kCalibration);
-  calibration_covariance = P.bottomRightCorner<kErrors, kErrors>();
-  calibration = result.calibration;
+  state.covariance = covariance.topLeftCorner<9, 9>();
+  calibration = result.mean.calibration;
+  excess_rad_s = result.mean.excess_rad_s;
+}
+
+/// Poses at the ends of the IMU's windows.
+std::vector<PoseState> LidarInertialOdometry::Impl::describe(const SweepTrajectory& motion,
+                                                             const Registration::Matrix& at_start, bool aligned) const {
+  std::vector<PoseState> poses;
+  for (std::size_t i = 0; i < motion.intervals(); ++i) {
+    const double t_s = std::min(motion.interval_end_s(i), motion.duration_s());
+    const Registration::Matrix F = mapping::unknowns_at(motion, t_s);
+    PoseState pose = motion.state(t_s).pose();
+    pose.covariance = reported_covariance(F * at_start * F.transpose(), pose.p_WA_m, aligned);
+    poses.push_back(pose);
+  }
+  return poses;
 }
 
 /// Pose against the world rather than against the map: the world is held by the IMU's first pose, which the mounting
