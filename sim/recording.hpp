@@ -29,12 +29,20 @@ struct ImuRecord {
   Eigen::Vector3d earth_field_W_t = Eigen::Vector3d::Zero();  ///< the Earth's, undisturbed, from a map; 0: unknown
 };
 
+/// What a recording knows of the instants within a sweep.
+enum class PointTimes : std::uint8_t {
+  measured,    ///< each point has its own, in offset_ns
+  not_skewed,  ///< the points belong to one instant, the sweep's start: a flash, or deskewed before; offset_ns is 0
+  unknown      ///< the sweep is skewed, nobody says how: offset_ns is 0
+};
+
 /// Returns of one lidar, sweep after sweep; misses leave no point.
 struct LidarRecord {
   std::string name;
   std::string device;
   Eigen::Isometry3d T_BL = Eigen::Isometry3d::Identity();  ///< calibration given, errors included
   std::int64_t sweep_period_ns = 0;
+  PointTimes point_times = PointTimes::measured;
   std::vector<std::int64_t> sweep_start_ns;
   std::vector<std::uint64_t>
       sweep_first;  ///< index of each sweep's first point, and one past the last point at the end

@@ -61,6 +61,9 @@ class Hasher {
   void optional_point(const char* name, const Eigen::Vector3d& given, const char* unit) {
     if (!given.isZero(0.0)) point(name, given, unit);
   }
+  void point_times(const char* name, sim::PointTimes given) {
+    if (given != sim::PointTimes::measured) value(name, std::string(kPointTimes[static_cast<std::size_t>(given)]));
+  }
   void texts(const char* name, const std::vector<std::string>& texts) {
     text(name);
     count(texts.size());

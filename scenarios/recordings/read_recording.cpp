@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/recording_check.hpp"
 #include "scenarios/recordings/recording_fields.hpp"
@@ -40,6 +42,13 @@ class Reader {
   }
   void optional_point(const char* name, Eigen::Vector3d& given, const char* unit) {
     if (group_.has(name)) point(name, given, unit);
+  }
+  void point_times(const char* name, sim::PointTimes& given) {
+    if (!group_.has_attribute(name)) return;
+    const std::string word = group_.text_attribute(name);
+    const auto* found = std::find(kPointTimes.begin(), kPointTimes.end(), word);
+    if (found == kPointTimes.end()) group_.fail(name, "is '" + word + "', must be measured, not_skewed or unknown");
+    given = static_cast<sim::PointTimes>(found - kPointTimes.begin());
   }
   void texts(const char* name, std::vector<std::string>& texts) { texts = group_.read_texts(name); }
   template <class Record, class Fields>

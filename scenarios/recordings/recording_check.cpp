@@ -93,6 +93,16 @@ std::string sweep_problem(const sim::LidarRecord& lidar) {
   return "";
 }
 
+std::string point_times_problem(const sim::LidarRecord& lidar) {
+  if (lidar.point_times > sim::PointTimes::unknown) return "point_times is none of measured, not_skewed, unknown";
+  if (lidar.point_times == sim::PointTimes::measured) return "";
+  const auto& offsets = lidar.offset_ns;
+  const auto own = std::find_if(offsets.begin(), offsets.end(), [](std::uint32_t offset) { return offset != 0; });
+  if (own == offsets.end()) return "";
+  return "offset_ns is " + std::to_string(*own) + " at point " + std::to_string(own - offsets.begin()) +
+         ", must be 0 where points have no times of their own";
+}
+
 std::string lidar_problem(const sim::LidarRecord& lidar) {
   return first_of({positive("sweep_period_ns", lidar.sweep_period_ns), pose_problem("T_BL", lidar.T_BL),
                    length_problem({{"position_L_m", lidar.position_L_m.size()},
@@ -100,7 +110,7 @@ std::string lidar_problem(const sim::LidarRecord& lidar) {
                                    {"intensity", lidar.intensity.size()},
                                    {"offset_ns", lidar.offset_ns.size()},
                                    {"ring", lidar.ring.size()}}),
-                   sweep_problem(lidar)});
+                   sweep_problem(lidar), point_times_problem(lidar)});
 }
 
 std::string imu_truth_problem(const sim::ImuTruth& imu) {
@@ -202,9 +212,8 @@ std::string find_mismatch(const sim::Sensors& sensors, const sim::Truth& truth) 
                                              imu.magnetic_field_t.size())}));
   }
   for (std::size_t i = 0; i < truth.lidars.size() && problem.empty(); ++i) {
-    problem = in("lidars/" + std::to_string(i),
-                 length_problem({{"sensors position_L_m", sensors.lidars[i].position_L_m.size()},
-                                 {"truth hit_W_m", truth.lidars[i].hit_W_m.size()}}));
+    problem = in("lidars/" + std::to_string(i), optional_length_problem("truth hit_W_m", truth.lidars[i].hit_W_m.size(),
+                                                                        sensors.lidars[i].position_L_m.size()));
   }
   return problem;
 }

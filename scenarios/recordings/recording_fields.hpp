@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -12,8 +13,8 @@
 ///
 /// An archive has: value(name, text | double | int64), pose(name, isometry), point(name, vector, unit),
 /// rows(name, vector, unit, columns, storage), texts(name, strings), list(name, records, fields), group(name, record,
-/// fields). optional_rows and optional_point are for what came after the first files: absent when empty or zero, and
-/// then not hashed either, so that older files keep their digests.
+/// fields). optional_rows, optional_point and point_times are for what came after the first files: absent when empty,
+/// zero or measured, and then not hashed either, so that older files keep their digests.
 namespace tumble::scenarios {
 
 namespace hdf5 {
@@ -33,6 +34,9 @@ struct ContactColumns {
 };
 
 inline constexpr const char* kXyz = "x y z";
+
+/// Words of the attribute `point_times`, in the order of the enumeration.
+inline constexpr std::array<const char*, 3> kPointTimes = {"measured", "not_skewed", "unknown"};
 
 template <class Archive, class Imu>
 void imu_fields(Archive& archive, Imu& imu) {
@@ -57,6 +61,7 @@ void lidar_fields(Archive& archive, Lidar& lidar) {
   archive.value("name", lidar.name);
   archive.value("device", lidar.device);
   archive.value("sweep_period_ns", lidar.sweep_period_ns);
+  archive.point_times("point_times", lidar.point_times);
   archive.pose("T_BL", lidar.T_BL);
   archive.rows("sweep_start_ns", lidar.sweep_start_ns, "ns", "", Storage::deflated);
   archive.rows("sweep_first", lidar.sweep_first, "1", "", Storage::deflated);

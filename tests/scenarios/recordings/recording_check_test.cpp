@@ -60,6 +60,9 @@ TEST(RecordingCheck, NamesWhatContradicts) {
        "sweep_first falls"},
       {[](auto& s) { s.lidars[0].sweep_first.back() = 149; }, "must go from 0 to the number of points, 150"},
       {[](auto& s) { s.lidars[0].sweep_first.front() = 1; }, "must go from 0"},
+      {[](auto& s) { s.lidars[0].point_times = sim::PointTimes::unknown; },
+       "offset_ns is 3125 at point 1, must be 0 where points have no times"},
+      {[](auto& s) { s.lidars[0].point_times = static_cast<sim::PointTimes>(3); }, "point_times is none of"},
       {[](auto& s) { s.lidars[0].sweep_start_ns[1] = 0; }, "sweep_start_ns does not rise"}};
   for (const Case& each : cases) {
     sim::Sensors sensors = fixture::recording().sensors;
@@ -104,6 +107,7 @@ TEST(RecordingCheck, AReferenceMayKnowPosesAlone) {
   truth.contacts.clear();
   truth.q_WB[3].coeffs().setConstant(std::numeric_limits<double>::quiet_NaN());
   for (sim::ImuTruth& imu : truth.imus) imu = {imu.name, imu.T_BI, {}, {}, {}, {}, {}, {}, {}};
+  for (sim::LidarTruth& lidar : truth.lidars) lidar = {lidar.name, lidar.T_BL, {}, {}};
   EXPECT_EQ(find_problem(truth), "");
   EXPECT_EQ(find_mismatch(recording.sensors, truth), "");
 }

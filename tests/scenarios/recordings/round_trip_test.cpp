@@ -95,6 +95,30 @@ TEST_F(RoundTrip, EveryFieldOfTheTruthComesBackExactly) {
   EXPECT_EQ(truth.lidars[0].surface_id, given.lidars[0].surface_id);
 }
 
+TEST_F(RoundTrip, WhatIsKnownOfPointTimesComesBackAndTheUsualLeavesNoTrace) {
+  sim::Recording recording = fixture::recording();
+  const std::filesystem::path path = folder_ / "a.h5";
+  const std::string measured = digest(recording.sensors, nullptr);
+  const auto has_attribute = [&] {
+    const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+    const htri_t has = H5Aexists_by_name(file, "sensors/lidars/0", "point_times", H5P_DEFAULT);
+    H5Fclose(file);
+    return has;
+  };
+  write_recording(path, info(), recording.sensors, nullptr);
+  EXPECT_EQ(has_attribute(), 0);
+  EXPECT_EQ(read_sensors(path).lidars[0].point_times, sim::PointTimes::measured);
+  sim::LidarRecord& lidar = recording.sensors.lidars[0];
+  lidar.offset_ns.assign(lidar.offset_ns.size(), 0);
+  for (const sim::PointTimes times : {sim::PointTimes::not_skewed, sim::PointTimes::unknown}) {
+    lidar.point_times = times;
+    write_recording(path, info(), recording.sensors, nullptr);
+    EXPECT_GT(has_attribute(), 0);
+    EXPECT_EQ(read_sensors(path).lidars[0].point_times, times);
+    EXPECT_NE(digest(recording.sensors, nullptr), measured);
+  }
+}
+
 TEST_F(RoundTrip, AnImuWithoutMagnetometerLeavesNoTraceOfOne) {
   sim::Recording recording = fixture::recording();
   for (sim::ImuRecord& imu : recording.sensors.imus) {
