@@ -10,12 +10,6 @@
 
 namespace tumble {
 
-namespace {
-
-constexpr std::uint8_t kAllAxes = 7;
-
-}  // namespace
-
 Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
                                                 std::span<const LidarPoint> given) const {
   if (end_ns < start_ns) return {Trouble::time_order, "end_ns", double(end_ns), double(start_ns)};
@@ -82,16 +76,7 @@ Status LidarInertialOdometry::add_imu(const ImuSample& sample, const RateState& 
   if (follows && sample.time_ns <= last_ns) {
     return {Trouble::time_order, "time_ns", double(sample.time_ns), double(last_ns)};
   }
-  // the first window's length is that of the second
-  if (!my.started && my.samples.size() == 1) my.samples[0].from_ns = 2 * last_ns - sample.time_ns;
-  const TimeNs from_ns = follows ? last_ns : sample.time_ns;
-  const bool at_rest = my.rest.take(my.params, rate.w_WI_I_rad_s, sample.specific_force_m_s2);
-  const Eigen::Vector3d rate_rad_s =
-      at_rest ? Eigen::Vector3d::Zero() : Eigen::Vector3d(rate.w_WI_I_rad_s - my.rest.rate_bias_rad_s());
-  my.samples.push_back({from_ns, sample.time_ns, rate_rad_s, sample.specific_force_m_s2,
-                        mapping::believed_rate_sigma(my.params, rate, sample.time_ns - from_ns),
-                        static_cast<std::uint8_t>(rate.clipped_axes & kAllAxes), at_rest,
-                        sample.time_ns - from_ns > mapping::kGap_ns});
+  my.take(sample, rate);
   return {};
 }
 

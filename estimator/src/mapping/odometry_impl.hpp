@@ -31,8 +31,8 @@ struct Prediction {
 struct WindowSweep {
   Registration::Estimate filtered, smoothed;
   Registration::Matrix filtered_covariance, smoothed_covariance;
-  Registration::Prior prior;         ///< that it was registered with
-  Registration::Matrix by_before;    ///< of the prior's means by the unknowns of the sweep before
+  Registration::Prior prior;       ///< that it was registered with
+  Registration::Matrix by_before;  ///< of the prior's means by the unknowns of the sweep before
   std::vector<MotionSample> samples;
   TimeNs end_ns = 0;
   bool aligned = false;
@@ -63,6 +63,10 @@ struct LidarInertialOdometry::Impl {
         map({p.map_voxel_m, p.map_spacing_m}),
         registration(mapping::registration_params(p)),
         coarse(mapping::coarse_registration_params(p)) {}
+
+  // odometry_imu.cpp
+  void take(const ImuSample& sample, const RateState& rate);
+  bool settle_force(const MotionSample& next);
 
   // lidar_inertial_odometry.cpp
   Status check_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points) const;
@@ -125,6 +129,11 @@ struct LidarInertialOdometry::Impl {
   int failed_searches = 0;  // sweeps in a row that had points and found no place
   mapping::InitialRest rest;
   std::vector<MotionSample> samples;  // from the window that holds state.time_ns on
+  struct {
+    Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();
+    TimeNs middle_ns = 0;
+    bool known = false;
+  } before_newest, newest;  // windows of the IMU
   std::deque<mapping::WindowSweep> window;
   std::vector<mapping::WindowSweep::Drawn> drawn;  // by the present sweep
   VoxelMap map;

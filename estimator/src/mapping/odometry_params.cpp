@@ -38,6 +38,8 @@ void check_params(const LidarInertialOdometry::Params& params) {
   require_within("rate_sigma_max_rad_s", params.rate_sigma_max_rad_s, 0.0, 100.0);
   require_within("excess_sigma_min_rad_s", params.excess_sigma_min_rad_s, 1e-9, 100.0);
   require_within("excess_time_s", params.excess_time_s, 1e-3, 1e3);
+  require_within("flight_force_m_s2", params.flight_force_m_s2, 0.0, 100.0);
+  if (params.body) require_within("body.p_IB_I_m", params.body->p_IB_I_m.norm(), 0.0, 1e3);
   require_within("window_sweeps", params.window_sweeps, 1, 8);
   require_within("degenerate_sigma_m", params.degenerate_sigma_m, 1e-6, 1e3);
   require_within("time_offset_s", params.time_offset_s, -1.0, 1.0);

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "tumble/common/status.hpp"
 #include "tumble/mapping/calibration.hpp"
 #include "tumble/mapping/executor.hpp"
+#include "tumble/mapping/flight_arc.hpp"
 #include "tumble/mapping/lidar.hpp"
 
 namespace tumble {
@@ -85,8 +87,8 @@ class LidarInertialOdometry {
     /// Standard deviation assumed for a rate on a clipped axis that the rate method did not recover; bound [0, 100].
     double clipped_sigma_rad_s = 3.0;
     double rate_sigma_max_rad_s = 5.0;  ///< what RateState reports is believed up to this; bound [0, 100]
-    /// Estimate the excess of the rate on clipped axes in the registration, at SweepTrajectory::kKnots knots a sweep; it
-    /// acts on clipped samples only, there in proportion to the rate's reported uncertainty. Its prior is the rate's
+    /// Estimate the excess of the rate on clipped axes in the registration, at SweepTrajectory::kKnots knots a sweep;
+    /// it acts on clipped samples only, there in proportion to the rate's reported uncertainty. Its prior is the rate's
     /// reported uncertainty, at least excess_sigma_min_rad_s, bound (0, 100], correlated over excess_time_s, bound
     /// [1e-3, 1e3]; on a rail that lasts over the border of two sweeps it goes on from where it was.
     bool estimate_excess_rate = false;
@@ -95,6 +97,11 @@ class LidarInertialOdometry {
     /// Sweeps that are refined together: the newest, and so many less one before it by what it teaches (see settled).
     /// 1: none is refined later. Bound [1, 8].
     int window_sweeps = 2;
+    /// Given the body, its flight is told by the ballistic arc: where the specific force at the centre of mass is below
+    /// flight_force_m_s2, bound [0, 100], the accelerometer's reading gives way to what flight makes it, and a gap of
+    /// the IMU that begins in flight is bridged by the arc. Empty: the accelerometer throughout.
+    std::optional<FlyingBody> body;
+    double flight_force_m_s2 = 4.0;
     /// A point's uncertainty grows over the sweep by this and weighs it down (the published time weighting); bound [0,
     /// 1e3].
     double skew_sigma_m_s = 0.25;
@@ -124,8 +131,8 @@ class LidarInertialOdometry {
     /// The same of the sweep that left the window with this one, refined by those after it: its last word. Empty while
     /// the window fills.
     std::vector<PoseState> settled;
-    double inlier_share = 0.0;          ///< of the points registered
-    double conditioning = 0.0;          ///< smallest over largest eigenvalue of the scaled normal matrix
+    double inlier_share = 0.0;  ///< of the points registered
+    double conditioning = 0.0;  ///< smallest over largest eigenvalue of the scaled normal matrix
     /// Standard deviation in the direction that the surfaces hold least, by this sweep's surfaces alone; 0: not
     /// aligned.
     double weakest_sigma_m = 0.0;

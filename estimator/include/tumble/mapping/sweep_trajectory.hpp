@@ -23,6 +23,7 @@ struct MotionSample {
   Eigen::Vector3d rate_sigma_rad_s = Eigen::Vector3d::Zero();  ///< standard deviation of the rate, IMU axes
   std::uint8_t clipped_axes = 0;                               ///< bit j: the gyro's axis j was at its rail
   bool at_rest = false;                                        ///< belongs to the rest at the start
+  bool in_flight = false;    ///< f_I_m_s2 is that of free flight, not the accelerometer's
   bool bridges_gap = false;  ///< longer than a sample: the force is not known inside, and the velocity goes on
 };
 
@@ -45,8 +46,8 @@ struct MotionState {
 /// sample is R_k J_l(w_k dt) f_k (exact for a force constant in body axes, as the centripetal force of a spin is).
 ///
 /// The excess rate e is a correction of the clipped axes, linear in time between kKnots knots at equal steps from the
-/// start to the end of the stretch: the rate used is w_j + s_j e_j(t) where axis j was clipped, with the sign of w_j and
-/// the magnitude sigma_j / (largest sigma_j among the stretch's clipped samples), so that what is known well moves
+/// start to the end of the stretch: the rate used is w_j + s_j e_j(t) where axis j was clipped, with the sign of w_j
+/// and the magnitude sigma_j / (largest sigma_j among the stretch's clipped samples), so that what is known well moves
 /// little; 1 where nothing is known of any. Over a sample e is what it is in the middle of it. Not modelled: sculling
 /// within a sample, the earth's rotation.
 class SweepTrajectory {
@@ -122,7 +123,7 @@ class SweepTrajectory {
   struct Interval {
     double start_s, length_s;
     Eigen::Quaterniond q_WI;
-    Eigen::Vector3d w_I, a_W;                             // rate in body axes; mean specific force in W
+    Eigen::Vector3d w_I, a_W;                      // rate in body axes; mean specific force in W
     Eigen::Vector3d thrust_v, thrust_p;            // integrals of the specific force up to start_s
     Eigen::Vector3d excess_share;                  // s_j where axis j is clipped, 0 elsewhere
     Eigen::Matrix<double, kKnots, 1> knot_weight;  // of each knot's excess in this interval
