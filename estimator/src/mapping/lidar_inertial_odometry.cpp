@@ -33,7 +33,8 @@ void LidarInertialOdometry::Impl::finish(TimeNs end_ns, SweepReport& report) {
   lost_sweeps = report.verdict == SweepVerdict::rejected ? lost_sweeps + 1 : 0;
   report.lost_sweeps = lost_sweeps;
   count_drift(report);
-  report.trajectory = describe(trajectory, result.covariance, aligned);
+  count_errors();
+  report.trajectory = describe(trajectory, errors);
   enter_window(end_ns, aligned, report);
   carry_covariance(end_ns);
   // new parts of the map inherit what the pose that drew them was off by

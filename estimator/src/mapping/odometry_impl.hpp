@@ -22,8 +22,12 @@ namespace mapping {
 struct Prediction {
   Registration::Prior prior;
   Registration::Matrix by_last = Registration::Matrix::Identity();  ///< of its means by the unknowns at the last's end
+  Registration::Matrix noise = Registration::Matrix::Zero();        ///< that arises in between
+  Registration::Matrix errors = Registration::Matrix::Zero();       ///< covariance of the means' errors, as reported
 
-  /// Known to be at rest: velocity zero, and no longer correlated with the rest.
+  /// From the weight and the errors of the unknowns at the last sweep's end.
+  void compose(const Registration::Matrix& covariance, const Registration::Matrix& error_covariance);
+  /// Known to be at rest: velocity zero, and no longer correlated with the rest. Before compose().
   void hold_still(double sigma_m_s);
 };
 
@@ -35,7 +39,6 @@ struct WindowSweep {
   Registration::Matrix by_before;  ///< of the prior's means by the unknowns of the sweep before
   std::vector<MotionSample> samples;
   TimeNs end_ns = 0;
-  bool aligned = false;
   struct Drawn {
     std::uint32_t index;  ///< in the map
     SweepPoint point;     ///< by the filtered calibration
@@ -74,19 +77,18 @@ struct LidarInertialOdometry::Impl {
 
   // odometry_calibration.cpp
   void start_calibration();
+  void count_errors();
   void carry_covariance(TimeNs end_ns);
-  Registration::Matrix joint_covariance(double t_s) const;
-  std::vector<PoseState> describe(const SweepTrajectory& motion, const Registration::Matrix& at_start,
-                                  bool aligned) const;
-  Eigen::Matrix<double, 6, 6> reported_covariance(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m,
-                                                  bool aligned) const;
+  std::vector<PoseState> describe(const SweepTrajectory& motion, const Registration::Matrix& at_start) const;
+  Eigen::Matrix<double, 6, 6> reported_covariance(const Registration::Matrix& joint,
+                                                  const Eigen::Vector3d& p_WI_m) const;
   void count_drift(const SweepReport& report);
   Eigen::Matrix<double, 6, 6> drawing_covariance() const;
 
   // odometry_registration.cpp
   mapping::Prediction predict() const;
   void carry_excess(mapping::Prediction& next) const;
-  void add_excess_noise(Registration::Prior& prior) const;
+  void add_excess_noise(mapping::Prediction& next) const;
   bool prior_is_trusted() const;
   void choose_points();
   void choose_few();
@@ -114,8 +116,12 @@ struct LidarInertialOdometry::Impl {
   MotionState state;  // at the end of the last sweep, as the next three
   SweepCalibration calibration;
   Registration::Excess excess_rad_s = Registration::Excess::Zero();
-  Registration::Matrix covariance = Registration::Matrix::Zero();  // of all three
-  Eigen::Vector3d excess_share_at_end = Eigen::Vector3d::Zero();   // on the rail there; 0 where it was not aligned
+  /// Of all three: what weighs them against the next sweep, and what they are thought to be off by. The first counts a
+  /// point for less than it tells, so that it bears with outliers; the second follows the errors through what the first
+  /// made of them.
+  Registration::Matrix covariance = Registration::Matrix::Zero();
+  Registration::Matrix error_covariance = Registration::Matrix::Zero();
+  Eigen::Vector3d excess_share_at_end = Eigen::Vector3d::Zero();  // on the rail there; 0 where it was not aligned
   Registration::Matrix end_by_start = Registration::Matrix::Identity();  // of the last sweep's unknowns
   /// Pose errors of the IMU by errors of the mounting while the lidar's pose is certain: at the start.
   Eigen::Matrix<double, 6, 6> start_by_mounting = Eigen::Matrix<double, 6, 6>::Zero();
@@ -143,8 +149,9 @@ struct LidarInertialOdometry::Impl {
 
   // memory kept between sweeps
   Registration registration, coarse;
-  mapping::Prediction prediction;  // of the present sweep
-  Registration::Result result;     // of the present sweep
+  mapping::Prediction prediction;                              // of the present sweep
+  Registration::Result result;                                 // of the present sweep
+  Registration::Matrix errors = Registration::Matrix::Zero();  // of its unknowns: covariance
   SweepTrajectory trajectory;
   SweepSampler sampler;
   std::vector<SweepPoint> points, chosen, few;

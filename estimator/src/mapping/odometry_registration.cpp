@@ -9,16 +9,16 @@ namespace tumble {
 namespace {
 
 constexpr double kExcessTries_rad_s[] = {3.0, 6.0, 9.0, 15.0};
-constexpr int kStartsPerSweep = 4;       // of a search, the prior itself among them
-constexpr std::size_t kFewPoints = 500;  // serve a start that may be far off
-constexpr double kSearchTurn_rad = 0.3;  // starts of a search reach so far at first, in attitude
-constexpr double kSearchShift_m = 1.0;   // and so far in position
-constexpr int kSearchRounds = 3;         // each reaches that much further than the last
+constexpr int kStartsPerSweep = 4;        // of a search, the prior itself among them
+constexpr std::size_t kFewPoints = 500;   // serve a start that may be far off
+constexpr double kSearchTurn_rad = 0.3;   // starts of a search reach so far at first, in attitude
+constexpr double kSearchShift_m = 1.0;    // and so far in position
+constexpr int kSearchRounds = 3;          // each reaches that much further than the last
 constexpr double kStillSpeed_m_s = 0.01;  // during the rest at the start
-constexpr double kRestSpeed_m_s = 0.05;  // of an IMU that says nothing but gravity
+constexpr double kRestSpeed_m_s = 0.05;   // of an IMU that says nothing but gravity
 constexpr double kCreepSpeed_m_s =
-    0.5;                        // below it, such an IMU is believed to rest: a world that holds nothing lets creep
-constexpr int kRestSweeps = 3;  // after so many in a row
+    0.5;                             // below it, such an IMU is believed to rest: a world that holds nothing lets creep
+constexpr int kRestSweeps = 3;       // after so many in a row
 constexpr double kCarryMax = 3.0;    // an excess carried over a border grows by no more where less is known after it
 constexpr double kKnotFloor = 0.05;  // of the prior's standard deviation: a knot differs from its neighbours by this
 
@@ -43,12 +43,18 @@ constexpr int kStarts = 1 + 12 * kSearchRounds;
 
 }  // namespace
 
+void mapping::Prediction::compose(const Registration::Matrix& covariance,
+                                  const Registration::Matrix& error_covariance) {
+  prior.covariance = by_last * covariance * by_last.transpose() + noise;
+  errors = by_last * error_covariance * by_last.transpose() + noise;
+}
+
 void mapping::Prediction::hold_still(double sigma_m_s) {
   prior.mean.state.v_WI_m_s.setZero();
   by_last.middleRows<3>(6).setZero();
-  prior.covariance.middleRows<3>(6).setZero();
-  prior.covariance.middleCols<3>(6).setZero();
-  prior.covariance.diagonal().segment<3>(6).setConstant(sigma_m_s * sigma_m_s);
+  noise.middleRows<3>(6).setZero();
+  noise.middleCols<3>(6).setZero();
+  noise.diagonal().segment<3>(6).setConstant(sigma_m_s * sigma_m_s);
 }
 
 mapping::Prediction LidarInertialOdometry::Impl::predict() const {
@@ -56,7 +62,6 @@ mapping::Prediction LidarInertialOdometry::Impl::predict() const {
   next.prior.mean.state = state;
   next.prior.mean.calibration = calibration;
   carry_excess(next);
-  next.prior.covariance = next.by_last * covariance * next.by_last.transpose();
   if (samples.front().at_rest) next.hold_still(kStillSpeed_m_s);
   // surfaces that hold the sensor tell a slow drive from a rest by themselves; `result` is still the last sweep's
   const bool held =
@@ -65,9 +70,10 @@ mapping::Prediction LidarInertialOdometry::Impl::predict() const {
     next.hold_still(kRestSpeed_m_s);
   }
   const std::uint8_t axes = params.estimate_excess_rate ? trajectory.clipped_axes() : 0;
-  next.prior.covariance.topLeftCorner<9, 9>() += mapping::inertial_noise(params, trajectory, samples, axes);
-  add_excess_noise(next.prior);
+  next.noise.topLeftCorner<9, 9>() += mapping::inertial_noise(params, trajectory, samples, axes);
+  add_excess_noise(next);
   next.prior.excess_start_rad_s = next.prior.mean.excess_rad_s;
+  next.compose(covariance, error_covariance);
   return next;
 }
 
@@ -89,7 +95,7 @@ void LidarInertialOdometry::Impl::carry_excess(mapping::Prediction& next) const 
 }
 
 /// Knots as samples of a process that forgets: of the reported standard deviation, correlated from knot to knot.
-void LidarInertialOdometry::Impl::add_excess_noise(Registration::Prior& prior) const {
+void LidarInertialOdometry::Impl::add_excess_noise(mapping::Prediction& next) const {
   if (!params.estimate_excess_rate) return;
   const double rho = mapping::knot_correlation(params, trajectory);
   for (int axis = 0; axis < 3; ++axis) {
@@ -99,13 +105,13 @@ void LidarInertialOdometry::Impl::add_excess_noise(Registration::Prior& prior) c
       if (sample.clipped_axes >> axis & 1) sigma = std::max(sigma, sample.rate_sigma_rad_s[axis]);
     }
     const int first = Registration::kExcess + axis;
-    const bool carried = prior.covariance(first, first) > 0.0;
+    const bool carried = next.by_last.row(first).squaredNorm() > 0.0;
     for (int a = 0; a < SweepTrajectory::kKnots; ++a) {
       for (int b = 0; b < SweepTrajectory::kKnots; ++b) {
         const double known = carried ? std::pow(rho, a + b) : 0.0;
-        prior.covariance(first + 3 * a, first + 3 * b) += sigma * sigma * (std::pow(rho, std::abs(a - b)) - known);
+        next.noise(first + 3 * a, first + 3 * b) += sigma * sigma * (std::pow(rho, std::abs(a - b)) - known);
       }
-      prior.covariance(first + 3 * a, first + 3 * a) += kKnotFloor * kKnotFloor * sigma * sigma;
+      next.noise(first + 3 * a, first + 3 * a) += kKnotFloor * kKnotFloor * sigma * sigma;
     }
   }
 }
@@ -228,7 +234,10 @@ bool LidarInertialOdometry::Impl::trajectory_speeds_up() const {
 
 /// The inertial prior stands for the sweep; an IMU at rest stops the drift of its velocity.
 Status LidarInertialOdometry::Impl::fall_back_on_inertia(TimeNs end_ns) {
-  if (lost_sweeps > 0 && imu_rests(end_ns)) prediction.hold_still(kRestSpeed_m_s);
+  if (lost_sweeps > 0 && imu_rests(end_ns)) {
+    prediction.hold_still(kRestSpeed_m_s);
+    prediction.compose(covariance, error_covariance);
+  }
   result = Registration::Result{};
   result.mean = prediction.prior.mean;
   result.mean.state.covariance = prediction.prior.covariance.topLeftCorner<9, 9>();

@@ -16,12 +16,12 @@ constexpr double kLeastVariance = 1e-12;
 void LidarInertialOdometry::Impl::enter_window(TimeNs end_ns, bool aligned, SweepReport& report) {
   mapping::WindowSweep& sweep = window.emplace_back();
   sweep.filtered = sweep.smoothed = result.mean;
-  sweep.filtered_covariance = sweep.smoothed_covariance = result.covariance;
-  sweep.prior = prediction.prior;
+  sweep.filtered_errors = sweep.smoothed_errors = errors;
+  sweep.predicted = prediction.prior.mean;
+  sweep.predicted_errors = prediction.errors;
   sweep.by_before = prediction.by_last * end_by_start;
   sweep.samples = samples;
   sweep.end_ns = end_ns;
-  sweep.aligned = aligned;
   sweep.drawn.swap(drawn);
   if (window.size() > static_cast<std::size_t>(params.window_sweeps)) {
     report.settled = describe(window.front());
@@ -36,19 +36,18 @@ void LidarInertialOdometry::Impl::enter_window(TimeNs end_ns, bool aligned, Swee
 /// measurement that it settled on: the maximum a posteriori of all sweeps' unknowns together, to first order.
 void LidarInertialOdometry::Impl::smooth() {
   window.back().smoothed = window.back().filtered;
-  window.back().smoothed_covariance = window.back().filtered_covariance;
+  window.back().smoothed_errors = window.back().filtered_errors;
   for (std::size_t k = window.size() - 1; k-- > 0;) {
     mapping::WindowSweep& sweep = window[k];
     const mapping::WindowSweep& next = window[k + 1];
-    Registration::Matrix predicted = next.prior.covariance;
+    Registration::Matrix predicted = next.predicted_errors;
     predicted.diagonal().array() += kLeastVariance;
-    const Registration::Matrix gain =
-        predicted.ldlt().solve(next.by_before * sweep.filtered_covariance).transpose();
+    const Registration::Matrix gain = predicted.ldlt().solve(next.by_before * sweep.filtered_errors).transpose();
     sweep.smoothed = sweep.filtered;
-    sweep.smoothed.add(gain * next.smoothed.minus(next.prior.mean));
+    sweep.smoothed.add(gain * next.smoothed.minus(next.predicted));
     const Registration::Matrix P =
-        sweep.filtered_covariance + gain * (next.smoothed_covariance - next.prior.covariance) * gain.transpose();
-    sweep.smoothed_covariance = 0.5 * (P + P.transpose());
+        sweep.filtered_errors + gain * (next.smoothed_errors - next.predicted_errors) * gain.transpose();
+    sweep.smoothed_errors = 0.5 * (P + P.transpose());
   }
 }
 
@@ -78,7 +77,7 @@ std::vector<PoseState> LidarInertialOdometry::Impl::describe(const mapping::Wind
   if (!motion.build(now.state, sweep.samples, sweep.end_ns, now.calibration.gravity_W_m_s2, now.excess_rad_s).ok()) {
     return {};
   }
-  std::vector<PoseState> poses = describe(motion, sweep.smoothed_covariance, sweep.aligned);
+  std::vector<PoseState> poses = describe(motion, sweep.smoothed_errors);
   poses.back().time_ns = sweep.end_ns;
   return poses;
 }
@@ -99,8 +98,8 @@ Status LidarInertialOdometry::pose_at(TimeNs time_ns, PoseState& pose) const {
   if (sweep == window.end()) return {Trouble::out_of_range, "time_ns", double(time_ns), double(window.back().end_ns)};
   SweepTrajectory motion;
   const Registration::Estimate& now = sweep->smoothed;
-  if (Status status = motion.build(now.state, sweep->samples, sweep->end_ns, now.calibration.gravity_W_m_s2,
-                                   now.excess_rad_s);
+  if (Status status =
+          motion.build(now.state, sweep->samples, sweep->end_ns, now.calibration.gravity_W_m_s2, now.excess_rad_s);
       !status.ok()) {
     return status;
   }
@@ -108,8 +107,7 @@ Status LidarInertialOdometry::pose_at(TimeNs time_ns, PoseState& pose) const {
   const Registration::Matrix F = mapping::unknowns_at(motion, t_s);
   pose = motion.state(t_s).pose();
   pose.time_ns = time_ns;
-  pose.covariance = impl_->reported_covariance(F * sweep->smoothed_covariance * F.transpose(), pose.p_WA_m,
-                                               sweep->aligned);
+  pose.covariance = impl_->reported_covariance(F * sweep->smoothed_errors * F.transpose(), pose.p_WA_m);
   return {};
 }
 

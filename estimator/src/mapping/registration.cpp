@@ -78,6 +78,7 @@ Registration::Registration(const Params& params) : params_(params) {
   require_within("skew_sigma_m_s", params.skew_sigma_m_s, 0.0, 1e3);
   require_within("kernel_min_m", params.kernel_min_m, 1e-6, 1e3);
   require_within("information_share", params.information_share, 1e-6, 1.0);
+  require_within("cluster_m", params.cluster_m, 0.01, 100.0);
   require_within("matched_share_min", params.matched_share_min, 0.0, 1.0);
   require_within("fitting_share_min", params.fitting_share_min, 0.0, 1.0);
   require_within("correction_max_m", params.correction_max_m, 0.0, 1e6);
@@ -109,6 +110,7 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
       params_.matches_min, static_cast<std::size_t>(params_.matched_share_min * static_cast<double>(points.size())));
   Sums sum;
   Matrix H = Matrix::Zero();
+  double kernel_m = params_.kernel_min_m;
   const auto refuse = [&](RegistrationVerdict verdict) {
     result.verdict = verdict;
     return build(prior.mean);
@@ -122,7 +124,8 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
       points = moved_;
     }
     place(trajectory, points, map);
-    sum = accumulate(points, trajectory, now.calibration, unknowns, kernel_width_m());
+    kernel_m = kernel_width_m();
+    sum = accumulate(points, trajectory, now.calibration, unknowns, kernel_m);
     result.matches = sum.matches;
     result.inliers = sum.inliers;
     if (sum.matches < matches_needed) return refuse(RegistrationVerdict::too_few);
@@ -151,7 +154,9 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
   result.mean.state.covariance = result.covariance.topLeftCorner<kMotion, kMotion>();
   result.verdict = RegistrationVerdict::converged;
   describe_shape(sum, result);
-  return build(result.mean);
+  if (Status status = build(result.mean); !status.ok()) return status;
+  result.scatter = scatter(points, trajectory, now.calibration, unknowns, kernel_m);
+  return {};
 }
 
 void Registration::describe_shape(const Sums& sum, Result& result) {

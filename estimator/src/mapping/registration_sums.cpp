@@ -48,6 +48,14 @@ void Registration::Unknowns::hold(Matrix& H, Vector& g) const {
   }
 }
 
+void Registration::Unknowns::cut_held(Matrix& M) const {
+  for (int i = 0; i < kUnknowns; ++i) {
+    if (is_free(i)) continue;
+    M.row(i).setZero();
+    M.col(i).setZero();
+  }
+}
+
 void Registration::Unknowns::clear_held(Matrix& covariance) const {
   for (int i = 0; i < kUnknowns; ++i) {
     if (!is_free(i)) covariance(i, i) = 0.0;
@@ -111,6 +119,16 @@ void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours
   match.map_variance_m2 = variance / static_cast<float>(found.count) + match.plane.thickness2_m2;
 }
 
+/// What a match counts for: its information, as far as it fits (D. Geman, D. McClure, 1987).
+Registration::Weight Registration::weigh(const SweepPoint& point, const Match& match, double distance_m,
+                                         double kernel_m) const {
+  const double sigma = point_sigma_m(point);
+  const double variance = sigma * sigma + match.map_variance_m2;
+  const double soft = 1.0 + distance_m * distance_m / (kernel_m * kernel_m);
+  const double robust = 1.0 / (soft * soft);
+  return {variance, robust, robust * params_.information_share / variance};
+}
+
 /// Where the points lie in the world by this trajectory, the planes that they belong to, and how far they are from
 /// them.
 void Registration::place(const SweepTrajectory& trajectory, std::span<const SweepPoint> points, const VoxelMap& map) {
@@ -150,7 +168,6 @@ void Registration::accumulate_block(std::span<const SweepPoint> points, std::siz
   Eigen::Matrix<double, kUnknowns, static_cast<int>(kBlock)> rows;
   Eigen::Matrix<double, static_cast<int>(kBlock), 1> weighted;
   const bool rigid = !unknowns.excess && !unknowns.calibration;
-  const double kernel2 = kernel_m * kernel_m;
   std::size_t hint = 0;
   int count = 0;
   const std::size_t end = std::min(points.size(), (block + 1) * kBlock);
@@ -158,11 +175,8 @@ void Registration::accumulate_block(std::span<const SweepPoint> points, std::siz
     const Match& match = matches_[i];
     if (match.plane.verdict != PlaneVerdict::plane) continue;
     const double r = distances_[i];
-    const double sigma = point_sigma_m(points[i]);
-    const double variance = sigma * sigma + match.map_variance_m2;
-    const double soft = 1.0 + r * r / kernel2;
-    const double robust = 1.0 / (soft * soft);
-    const double root = std::sqrt(robust * params_.information_share / variance);
+    const Weight weight = weigh(points[i], match, r, kernel_m);
+    const double root = std::sqrt(weight.information);
     const Eigen::Vector3d n = match.plane.normal_W.cast<double>();
     const Eigen::Vector3d lever = levers_[i].cast<double>();
     Eigen::Matrix<double, kRigid, 1> j;
@@ -177,11 +191,11 @@ void Registration::accumulate_block(std::span<const SweepPoint> points, std::siz
       }
     }
     weighted[count++] = root * r;
-    sum.shape.selfadjointView<Eigen::Lower>().rankUpdate(j.head<6>(), robust);
-    sum.weight += robust;
-    sum.lever2 += robust * lever.squaredNorm();
+    sum.shape.selfadjointView<Eigen::Lower>().rankUpdate(j.head<6>(), weight.robust);
+    sum.weight += weight.robust;
+    sum.lever2 += weight.robust * lever.squaredNorm();
     ++sum.matches;
-    if (r * r <= 9.0 * variance) ++sum.inliers;
+    if (r * r <= 9.0 * weight.variance_m2) ++sum.inliers;
   }
   const int n = unknowns.count;
   sum.H.topLeftCorner(n, n).selfadjointView<Eigen::Lower>().rankUpdate(rows.topLeftCorner(n, count));
@@ -200,6 +214,33 @@ Registration::Sums Registration::accumulate(std::span<const SweepPoint> points, 
   const Matrix lower = sum.H;
   sum.H = lower.selfadjointView<Eigen::Lower>();
   return sum;
+}
+
+Registration::Matrix Registration::scatter(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
+                                           const SweepCalibration& calibration, const Unknowns& unknowns,
+                                           double kernel_m) {
+  cluster_of_.clear();
+  pulls_.clear();
+  const float cubes_per_m = static_cast<float>(1.0 / params_.cluster_m);
+  std::size_t hint = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Match& match = matches_[i];
+    if (match.plane.verdict != PlaneVerdict::plane) continue;
+    const Eigen::Vector3f cube = (positions_[i] * cubes_per_m).array().floor();
+    if (!(cube.cwiseAbs().maxCoeff() < static_cast<float>(SpatialHash::kLimit - 2))) continue;
+    const std::uint32_t cluster =
+        cluster_of_.insert(SpatialHash::key(cube.cast<int>()), static_cast<std::uint32_t>(pulls_.size()));
+    if (cluster == pulls_.size()) pulls_.emplace_back(Vector::Zero());
+    Vector derivative;
+    residual(trajectory, calibration, points[i], match.plane, hint, derivative);
+    const double r = distances_[i];
+    pulls_[cluster] += (weigh(points[i], match, r, kernel_m).information * r) * derivative;
+  }
+  Matrix lower = Matrix::Zero();
+  for (const Vector& pull : pulls_) lower.selfadjointView<Eigen::Lower>().rankUpdate(pull);
+  Matrix out = lower.selfadjointView<Eigen::Lower>();
+  unknowns.cut_held(out);
+  return out;
 }
 
 }  // namespace tumble

@@ -21,10 +21,13 @@ struct Registration::Unknowns {
   void expand(const Sums& sum, Matrix& H, Vector& g) const;
   /// Cuts the held ones off: their step is 0.
   void hold(Matrix& H, Vector& g) const;
+  void cut_held(Matrix& M) const;
   void clear_held(Matrix& covariance) const;
 
  private:
-  bool is_free(int unknown) const { return std::find(free.begin(), free.begin() + count, unknown) != free.begin() + count; }
+  bool is_free(int unknown) const {
+    return std::find(free.begin(), free.begin() + count, unknown) != free.begin() + count;
+  }
 };
 
 /// Sums over the matches of one iteration, over the free unknowns alone.

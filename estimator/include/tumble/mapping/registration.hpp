@@ -46,6 +46,7 @@ class Registration {
     double kernel_min_m = 0.1;     ///< least width of the robust kernel (Geman-McClure)
     /// Weight of a point's information: neighbouring returns share the errors of the map and are not independent.
     double information_share = 0.1;
+    double cluster_m = 1.0;          ///< points of one cube of this edge are not independent; bound [0.01, 100]
     std::size_t matches_min = 100;   ///< fewer matches are too few
     double matched_share_min = 0.1;  ///< of the points
     double fitting_share_min =
@@ -94,6 +95,11 @@ class Registration {
     RegistrationVerdict verdict = RegistrationVerdict::too_few;
     Estimate mean;
     Matrix covariance = Matrix::Zero();  ///< of all unknowns, in order; the prior's where nothing was registered
+    /// Covariance of the pull of the surfaces on the unknowns (the gradient of their cost), measured from the
+    /// residuals: points within cluster_m of each other share the errors of the map, those farther apart do not
+    /// (cluster-robust covariance, K. Liang, S. Zeger, 1986). In units of the covariance: that of independent points
+    /// would be the information_share times what they add to the normal matrix.
+    Matrix scatter = Matrix::Zero();
     std::size_t points = 0, matches = 0, inliers = 0;
     double correction_m = 0.0;  ///< of the position at the start; where the correction broke its bound, that value
     double correction_rad = 0.0;
@@ -140,12 +146,21 @@ class Registration {
   void accumulate_block(std::span<const SweepPoint> points, std::size_t block, const SweepTrajectory& trajectory,
                         const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m, Sums& sum);
 
+  Matrix scatter(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
+                 const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m);
+  struct Weight {
+    double variance_m2, robust, information;
+  };
+  Weight weigh(const SweepPoint& point, const Match& match, double distance_m, double kernel_m) const;
+
   Params params_;
   // memory kept between sweeps; holds nothing that the next result depends on
   std::vector<Eigen::Vector3f> levers_, positions_;
   std::vector<SweepPoint> moved_;
   std::vector<Match> matches_;
   std::vector<float> distances_, sorted_;
+  SpatialHash cluster_of_{1 << 10};
+  std::vector<Vector> pulls_;  // of the clusters
 };
 
 }  // namespace tumble

@@ -49,7 +49,8 @@ class VoxelMap {
   /// The same; returns the point's index, or kNoPoint where it was not added.
   std::uint32_t add(const Eigen::Vector3f& position_W_m, float sigma_m, std::uint32_t sweep, std::uint32_t line);
 
-  /// Moves a point that is now known better. Where it would leave its cell it stays where it was, and false is returned.
+  /// Moves a point that is now known better. Where it would leave its cell it stays where it was, and false is
+  /// returned.
   bool move(std::uint32_t index, const Eigen::Vector3f& position_W_m);
 
   /// The k <= Neighbours::kMax nearest points within `radius_m`; equal distances in order of insertion within a cell.
