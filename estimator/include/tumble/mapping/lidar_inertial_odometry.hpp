@@ -33,11 +33,15 @@ const char* to_string(SweepVerdict verdict);
 /// Position, attitude and velocity at the start of a sweep are refined together, so that the deskewing is refined too.
 ///
 /// World: z up, origin and yaw at the IMU at the first sample, levelled by the specific force at rest.
-/// Feed IMU samples in time order, then each sweep once IMU samples reach its end. No threads, no files, no printing.
-/// Where their standard deviation is not 0, the lidar's mounting, its clock and gravity are estimated with the motion,
-/// as one state with one covariance (an iterated error-state filter over sweeps). The map stays where it was drawn with
-/// what was known then: a caller that keeps its recording runs a second time from calibration() and gets a map of one
+/// Feed IMU samples in time order, then each sweep once IMU samples reach its end. No threads of its own, no files, no
+/// printing. Where their standard deviation is not 0, the lidar's mounting, its clock and gravity are estimated with
+/// the motion, as one state with one covariance: an iterated error-state filter over sweeps, whose last window_sweeps
+/// are smoothed by those that follow (fixed lag), with what they drew into the map. Beyond the window the map stays
+/// where it was drawn: a caller that keeps its recording runs a second time from calibration() and gets a map of one
 /// piece.
+///
+/// Covariances reported follow the errors through the filter's weights, the registration's share as measured from its
+/// residuals (Registration::Result::scatter).
 ///
 /// After rejected sweeps the sensor is lost: the inertial prior goes on, with velocity zero while the IMU rests, and
 /// each further sweep is also tried against the map from starts around the prior, coarse to fine. Not modelled: biases
