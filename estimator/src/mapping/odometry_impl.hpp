@@ -34,9 +34,10 @@ struct Prediction {
 /// A sweep that those after it still refine. Unknowns are those of its start.
 struct WindowSweep {
   Registration::Estimate filtered, smoothed;
-  Registration::Matrix filtered_covariance, smoothed_covariance;
-  Registration::Prior prior;       ///< that it was registered with
-  Registration::Matrix by_before;  ///< of the prior's means by the unknowns of the sweep before
+  Registration::Matrix filtered_errors, smoothed_errors;  ///< covariances
+  Registration::Estimate predicted;
+  Registration::Matrix predicted_errors;
+  Registration::Matrix by_before;  ///< of the predicted by the unknowns of the sweep before
   std::vector<MotionSample> samples;
   TimeNs end_ns = 0;
   struct Drawn {
