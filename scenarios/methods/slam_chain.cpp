@@ -81,7 +81,7 @@ LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const
   params.force_sigma_share = parameters.at("force_sigma_share");
   params.window_sweeps = static_cast<int>(std::lround(parameters.at("window_sweeps")));
   if (parameters.at("flight_arc") > 0.5) {
-    params.body = FlyingBody{.p_IB_I_m = -bridge::lever_arm_I_m(sensors.imus.front())};
+    params.body.emplace().p_IB_I_m = -bridge::lever_arm_I_m(sensors.imus.front());
   }
   if (chain.excess_rate) {
     params.estimate_excess_rate = true;

@@ -37,10 +37,10 @@ void LidarInertialOdometry::Impl::finish(TimeNs end_ns, SweepReport& report) {
   report.trajectory = describe(trajectory, errors);
   enter_window(end_ns, aligned, report);
   carry_covariance(end_ns);
-  // new parts of the map inherit what the pose that drew them was off by
+  // what the sweep adds to the map is off by what the pose was: by so much of it the map moves where the robot is
   const double drawn_share =
       report.points_used == 0 ? 0.0 : double(report.map_points_added) / double(report.points_used);
-  if (report.verdict != SweepVerdict::first) map_covariance += drawn_share * drawing_covariance();
+  if (report.verdict != SweepVerdict::first) map_covariance += drawn_share * drawn_share * drawing_covariance();
   report.trajectory.back().time_ns = end_ns;
   report.pose = state.pose();
   report.pose.covariance = report.trajectory.back().covariance;
