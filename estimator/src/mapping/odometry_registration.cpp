@@ -9,8 +9,9 @@ namespace tumble {
 namespace {
 
 constexpr double kExcessTries_rad_s[] = {3.0, 6.0, 9.0, 15.0};
-constexpr int kStartsPerSweep = 4;        // of a search, the prior itself among them
-constexpr std::size_t kFewPoints = 500;   // serve a start that may be far off
+constexpr int kExcessTriesMax = 5;        // of these for one sweep, all axes together
+constexpr int kStartsPerSweep = 3;        // of a search, the prior itself among them
+constexpr std::size_t kFewPoints = 300;   // serve a start that may be far off
 constexpr double kSearchTurn_rad = 0.3;   // starts of a search reach so far at first, in attitude
 constexpr double kSearchShift_m = 1.0;    // and so far in position
 constexpr int kSearchRounds = 3;          // each reaches that much further than the last
@@ -158,15 +159,17 @@ Status LidarInertialOdometry::Impl::try_start(const Registration::Prior& start, 
 Status LidarInertialOdometry::Impl::align(const Registration::Prior& prior, TimeNs end_ns,
                                           Registration::Result& found) {
   Status status = registration.align(prior, samples, end_ns, chosen, map, trajectory, found);
-  int iterations = found.iterations;
-  for (int axis = 0; axis < 3; ++axis) {
-    for (const double more : kExcessTries_rad_s) {
-      if (!status.ok() || found.verdict == RegistrationVerdict::converged) break;
-      if (std::sqrt(prior.covariance(Registration::kExcess + axis, Registration::kExcess + axis)) < more / 5.0) break;
+  int iterations = found.iterations, tries = 0;
+  for (const double more : kExcessTries_rad_s) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!status.ok() || found.verdict == RegistrationVerdict::converged || tries == kExcessTriesMax) break;
+      const int first = Registration::kExcess + axis;
+      if (std::sqrt(prior.covariance(first, first)) < more / 5.0) continue;
       Registration::Prior start = prior;
       start.excess_start_rad_s.row(axis).array() += more;
       status = try_start(start, prior, end_ns, found);
       iterations += found.iterations;
+      ++tries;
     }
   }
   found.iterations = iterations;

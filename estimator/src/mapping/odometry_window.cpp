@@ -33,7 +33,9 @@ void LidarInertialOdometry::Impl::enter_window(TimeNs end_ns, bool aligned, Swee
 }
 
 /// Backward pass over the window (H. Rauch, F. Tung, C. Striebel, 1965), each sweep's registration being the linear
-/// measurement that it settled on: the maximum a posteriori of all sweeps' unknowns together, to first order.
+/// measurement that it settled on: the maximum a posteriori of all sweeps' unknowns together, to first order. What it
+/// is for is a sweep that saw little: where all see much, as on `hill` 1002 to 1007, the end error is the same within
+/// its noise (1.0 to 1.9 cm for windows of 1, 2 and 3).
 void LidarInertialOdometry::Impl::smooth() {
   window.back().smoothed = window.back().filtered;
   window.back().smoothed_errors = window.back().filtered_errors;
