@@ -127,7 +127,8 @@ std::size_t sweep_count(const sim::LidarRecord& record) {
 Sweep sweep(const sim::LidarRecord& record, std::size_t index) {
   Sweep out;
   out.start_ns = record.sweep_start_ns.at(index);
-  out.end_ns = out.start_ns + record.sweep_period_ns;
+  const bool spread = record.point_times == sim::PointTimes::measured;
+  out.end_ns = out.start_ns + (spread ? record.sweep_period_ns : 0);
   const std::size_t first = record.sweep_first.at(index);
   const std::size_t last = record.sweep_first.at(index + 1);
   out.points.resize(last - first);

@@ -59,7 +59,8 @@ struct Sweep {
 /// Number of sweeps. Throws BadInput when the record's arrays do not fit together.
 std::size_t sweep_count(const sim::LidarRecord& record);
 
-/// Sweep `index` < sweep_count(record). O(points of the sweep).
+/// Sweep `index` < sweep_count(record). Where the points have no times of their own the sweep has no length: all belong
+/// to its start, and there is nothing to deskew. O(points of the sweep).
 Sweep sweep(const sim::LidarRecord& record, std::size_t index);
 
 }  // namespace tumble::scenarios::bridge

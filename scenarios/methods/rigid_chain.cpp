@@ -7,6 +7,7 @@
 
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/slam_registry.hpp"
 #include "tumble/attitude/strapdown.hpp"
 
 namespace tumble::scenarios {
@@ -69,7 +70,7 @@ Status raw_start(const sim::Sensors& sensors, std::vector<ImuSample>& samples, s
                  StartAtRest& start) {
   Status status = bridge::primary_imu_samples(sensors, samples);
   if (status.ok()) status = start_at_rest(samples, start);
-  if (status.ok()) status = raw_rates(sensors, samples, rates);
+  if (status.ok()) status = railed_rates(sensors, samples, rates);
   return status;
 }
 
@@ -167,7 +168,8 @@ std::span<const sim::Parameter> rigid_parameters() {
 
 RigidOdometry::Params rigid_params(const sim::Sensors& sensors, const sim::Values& parameters) {
   RigidOdometry::Params params;
-  if (!sensors.lidars.empty()) params.T_IL = bridge::T_IL(sensors.imus.front(), sensors.lidars.front());
+  if (!sensors.lidars.empty() && !sensors.imus.empty())
+    params.T_IL = bridge::T_IL(sensors.imus.front(), sensors.lidars.front());
   params.sweep_voxel_m = parameters.at("sweep_voxel_m");
   params.map_voxel_m = parameters.at("map_voxel_m");
   params.map_spacing_m = parameters.at("map_spacing_m");

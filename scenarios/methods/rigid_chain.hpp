@@ -32,7 +32,8 @@ struct StartAtRest {
 /// `degenerate` where that is no attitude.
 Status start_at_rest(std::span<const ImuSample> samples, StartAtRest& out);
 
-/// What the methods with the gyro as it says begin with: samples of the first IMU, its rates, and the start.
+/// What the methods with the gyro as it says begin with: samples of the first IMU, its rates with the axes named that
+/// are at their rail, and the start.
 Status raw_start(const sim::Sensors& sensors, std::vector<ImuSample>& samples, std::vector<RateState>& rates,
                  StartAtRest& start);
 

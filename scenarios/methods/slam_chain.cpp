@@ -18,9 +18,9 @@ constexpr double kLocalisedShare = 0.2;
 constexpr double kBelieved = 5.0;  // standard deviations that a calibration may move by
 
 // the library's own defaults, so that each stands in one place
-const std::array<sim::Parameter, 11>& parameters_of_the_chain() {
+const std::array<sim::Parameter, 13>& parameters_of_the_chain() {
   static const LidarInertialOdometry::Params library;
-  static const std::array<sim::Parameter, 11> parameters = {{
+  static const std::array<sim::Parameter, 13> parameters = {{
       {"sweep_voxel_m", library.sweep_voxel_m, 0.01, 10.0, "m", "one point per voxel of a sweep is registered"},
       {"map_voxel_m", library.map_voxel_m, 0.05, 10.0, "m", "cell of the map's hash"},
       {"map_spacing_m", library.map_spacing_m, 0.0, 1.0, "m", "edge of the cube that holds one map point"},
@@ -31,16 +31,21 @@ const std::array<sim::Parameter, 11>& parameters_of_the_chain() {
       {"prior_sigma_m_s", library.prior_sigma_m_s, 1e-4, 100.0, "m/s", "inertial prior over 0.1 s: velocity"},
       {"turn_sigma_share", library.turn_sigma_share, 0.0, 1.0, "1", "inertial prior: of the angle turned"},
       {"force_sigma_share", library.force_sigma_share, 0.0, 1.0, "1", "inertial prior: of the force's integral"},
+      {"window_sweeps", static_cast<double>(library.window_sweeps), 1.0, 8.0, "1",
+       "sweeps refined together: so many less one by what comes after them"},
+      {"flight_arc", 0.0, 0.0, 1.0, "1",
+       "1: in flight the ballistic arc of the centre of mass, as calibrated, gives the position; 0: the accelerometer"},
       {"rest_s", library.rest_s, 0.01, 60.0, "s", "at most this much of the rest at the start levels the attitude"},
   }};
   return parameters;
 }
 
-const std::array<sim::Parameter, 2>& parameters_of_the_excess() {
+const std::array<sim::Parameter, 3>& parameters_of_the_excess() {
   static const LidarInertialOdometry::Params library;
-  static const std::array<sim::Parameter, 2> parameters = {{
+  static const std::array<sim::Parameter, 3> parameters = {{
       {"excess_sigma_min_rad_s", library.excess_sigma_min_rad_s, 1e-9, 100.0, "rad/s",
        "least prior of the excess rate of a clipped axis, whatever the rate method claims"},
+      {"excess_time_s", library.excess_time_s, 1e-3, 1e3, "s", "over which the excess rate forgets what it was"},
       {"clipped_sigma_rad_s", library.clipped_sigma_rad_s, 0.0, 100.0, "rad/s",
        "assumed of a clipped axis that the rate method did not recover"},
   }};
@@ -74,9 +79,14 @@ LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const
   params.prior_sigma_m_s = parameters.at("prior_sigma_m_s");
   params.turn_sigma_share = parameters.at("turn_sigma_share");
   params.force_sigma_share = parameters.at("force_sigma_share");
+  params.window_sweeps = static_cast<int>(std::lround(parameters.at("window_sweeps")));
+  if (parameters.at("flight_arc") > 0.5) {
+    params.body.emplace().p_IB_I_m = -bridge::lever_arm_I_m(sensors.imus.front());
+  }
   if (chain.excess_rate) {
     params.estimate_excess_rate = true;
     params.excess_sigma_min_rad_s = parameters.at("excess_sigma_min_rad_s");
+    params.excess_time_s = parameters.at("excess_time_s");
     params.clipped_sigma_rad_s = parameters.at("clipped_sigma_rad_s");
   }
   if (chain.calibration) {
@@ -88,10 +98,19 @@ LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const
   return params;
 }
 
+/// A sweep's last word takes the place of its first.
+void settle(std::vector<PoseState> settled, LidarInertialOdometry::SweepReport& sweep) {
+  if (settled.empty()) return;
+  sweep.trajectory = std::move(settled);
+  sweep.pose = sweep.trajectory.back();
+}
+
 // sweeps share the IMU time at their border: the later sweep's pose of it is left out
-void append_poses(const LidarInertialOdometry::SweepReport& report, std::vector<PoseState>& poses) {
-  for (const PoseState& pose : report.trajectory) {
-    if (poses.empty() || pose.time_ns > poses.back().time_ns) poses.push_back(pose);
+void gather_poses(Estimate& estimate) {
+  for (const auto& sweep : estimate.sweeps) {
+    for (const PoseState& pose : sweep.trajectory) {
+      if (estimate.poses.empty() || pose.time_ns > estimate.poses.back().time_ns) estimate.poses.push_back(pose);
+    }
   }
 }
 
@@ -112,7 +131,7 @@ void run_sweeps(const sim::LidarRecord& lidar, std::span<const ImuSample> sample
                 double time_offset_s, Estimate& estimate) {
   const auto offset_ns = static_cast<std::int64_t>(std::llround(time_offset_s * 1e9));
   const std::size_t sweeps = bridge::sweep_count(lidar);
-  std::size_t next = 0;
+  std::size_t next = 0, settled = 0;
   for (std::size_t k = 0; k < sweeps; ++k) {
     bridge::Sweep sweep = bridge::sweep(lidar, k);
     const std::int64_t needed_ns = sweep.end_ns + offset_ns;
@@ -140,10 +159,16 @@ void run_sweeps(const sim::LidarRecord& lidar, std::span<const ImuSample> sample
     // a covered lidar is a fact of life: the chain goes on by inertia
     if (!status.ok()) estimate.health[std::string("sweeps_") + to_string(status.trouble)] += 1.0;
     estimate.health[std::string("sweeps_") + to_string(report.verdict)] += 1.0;
-    append_poses(report, estimate.poses);
     estimate.sweep_end_ns.push_back(report.pose.time_ns);
+    const bool left_the_window = !report.settled.empty();
+    std::vector<PoseState> last_word = std::move(report.settled);
     estimate.sweeps.push_back(std::move(report));
+    if (left_the_window) settle(std::move(last_word), estimate.sweeps[settled++]);
   }
+  for (std::vector<PoseState>& open : odometry.open_trajectories()) {
+    settle(std::move(open), estimate.sweeps[settled++]);
+  }
+  gather_poses(estimate);
 }
 
 /// How sure the chain is of where it ended; a world that does not hold it shows here.

@@ -16,46 +16,52 @@ constexpr double kGainVelocity = 11.25;
 constexpr double kGainAttitude = 4.0;
 constexpr double kGainGyroBias = 1.0;
 constexpr double kGainAccelBias = 2.25;
-constexpr double kBiasMax = 0.5;  // both biases are bounded, as in the authors' code
-constexpr int kParts = 4;         // of a sample, between which rate and force run linearly
+constexpr double kBiasMax = 0.5;   // both biases are bounded, as in the authors' code
+constexpr double kSpanMaxS = 0.2;  // of a correction: the gains are for sweeps, not for gaps
+constexpr int kParts = 4;          // of a sample, between which rate and force run linearly
 constexpr double kPriorM = 0.5;
 constexpr double kPriorRad = 0.2;
 
-/// Strapdown with rate and specific force linear in time (constant jerk and angular acceleration), corrected by a
-/// geometric observer: what the registration moved the pose by feeds back into position, velocity, attitude and biases.
+/// Strapdown with rate and specific force linear in time (constant jerk and angular acceleration) from the last
+/// registered pose, with velocity and biases of a geometric observer: what the registration finds feeds back into the
+/// observer's own position, attitude, velocity and biases.
 class ConstantJerk : public TrajectoryModel {
  public:
   ConstantJerk(std::span<const ImuSample> samples, std::span<const RateState> rates, const StartAtRest& start,
                double gravity_m_s2)
       : samples_(samples), rates_(rates), gyro_bias_(start.gyro_bias_rad_s), gravity_m_s2_(gravity_m_s2) {
-    last_.q_WI = start.q_WI;
+    registered_.q_WI = observer_.q_WI = start.q_WI;
   }
 
   RigidOdometry::Motion expect(TimeNs from_ns, TimeNs to_ns) override {
     RigidOdometry::Motion motion;
-    motion.start = last_;
+    motion.start = registered_;
+    motion.start.v_WI_m_s = observer_.v_WI_m_s;
     motion.start.time_ns = from_ns;
     motion.samples = imu_motion(samples_, rates_, gyro_bias_, from_ns, to_ns, kParts);
     for (MotionSample& sample : motion.samples) sample.f_I_m_s2 -= accel_bias_;
     motion.gravity_m_s2 = gravity_m_s2_;
     motion.end_covariance = loose_covariance(kPriorM, kPriorRad);
     from_ns_ = from_ns;
+    observer_.time_ns = from_ns;
+    SweepTrajectory trajectory;
+    if (trajectory.build(observer_, motion.samples, to_ns, gravity_m_s2_).ok()) {
+      observer_ = trajectory.state(trajectory.duration_s());
+    }
     return motion;
   }
 
   void learn(const RigidOdometry& odometry, const LidarInertialOdometry::SweepReport& report) override {
-    const MotionState& expected = odometry.predicted();
-    const MotionState& found = odometry.state();
-    last_ = expected;
+    registered_ = odometry.state();
     if (report.verdict == SweepVerdict::rejected) return;
-    const double span_s = std::min(seconds(found.time_ns - from_ns_), 0.2);
-    const Eigen::Vector3d moved = found.p_WI_m - expected.p_WI_m;
-    const Eigen::Vector3d turned_I = so3::log(expected.q_WI.conjugate() * found.q_WI);
-    last_.p_WI_m += span_s * kGainPosition * moved;
-    last_.v_WI_m_s += span_s * kGainVelocity * moved;
-    last_.q_WI = (expected.q_WI * so3::exp(span_s * kGainAttitude * turned_I)).normalized();
+    const double span_s = std::min(seconds(registered_.time_ns - from_ns_), kSpanMaxS);
+    const Eigen::Vector3d away = registered_.p_WI_m - observer_.p_WI_m;
+    const Eigen::Vector3d turned_I = so3::log(observer_.q_WI.conjugate() * registered_.q_WI);
+    observer_.p_WI_m += span_s * kGainPosition * away;
+    observer_.v_WI_m_s += span_s * kGainVelocity * away;
+    observer_.q_WI = (observer_.q_WI * so3::exp(span_s * kGainAttitude * turned_I)).normalized();
     gyro_bias_ = (gyro_bias_ - span_s * kGainGyroBias * turned_I).cwiseMax(-kBiasMax).cwiseMin(kBiasMax);
-    accel_bias_ = (accel_bias_ - span_s * kGainAccelBias * (found.q_WI.conjugate() * moved))
+    accel_bias_ = (accel_bias_ - span_s * kGainAccelBias * (registered_.q_WI.conjugate() * away))
                       .cwiseMax(-kBiasMax)
                       .cwiseMin(kBiasMax);
   }
@@ -63,7 +69,7 @@ class ConstantJerk : public TrajectoryModel {
  private:
   std::span<const ImuSample> samples_;
   std::span<const RateState> rates_;
-  MotionState last_;
+  MotionState registered_, observer_;
   Eigen::Vector3d gyro_bias_, accel_bias_ = Eigen::Vector3d::Zero();
   double gravity_m_s2_;
   TimeNs from_ns_ = 0;

@@ -9,12 +9,15 @@ namespace tumble::scenarios {
 
 namespace {
 
+constexpr int kPosesPerSweep = 10;  // told where no IMU says when
+
 // No prior worth the name: the registration alone decides, as in the family.
 constexpr double kPriorM = 1.0;
 constexpr double kPriorRad = 0.5;
 
 /// The last change of pose goes on, in translation and in rotation. Nothing of the IMU is used but the times of its
 /// samples, at which poses are told, and the vertical at the start, which the scores need and a lidar does not know.
+/// Without IMU the body stands upright at the start.
 class ConstantVelocity : public TrajectoryModel {
  public:
   ConstantVelocity(std::span<const ImuSample> samples, const Eigen::Quaterniond& q_WL) : samples_(samples) {
@@ -47,16 +50,39 @@ class ConstantVelocity : public TrajectoryModel {
   TimeNs from_ns_ = 0;
 };
 
+/// Instants at which poses are told of a recording without IMU: those between the sweeps' starts and their ends,
+/// evenly.
+std::vector<ImuSample> instants(const sim::LidarRecord& lidar) {
+  std::vector<ImuSample> out;
+  const std::size_t sweeps = bridge::sweep_count(lidar);
+  const auto step_to = [&](TimeNs from_ns, TimeNs to_ns) {
+    for (int k = 1; k <= kPosesPerSweep; ++k) {
+      const TimeNs at_ns = from_ns + (to_ns - from_ns) * k / kPosesPerSweep;
+      if (out.empty() || at_ns > out.back().time_ns) out.emplace_back().time_ns = at_ns;
+    }
+  };
+  for (std::size_t k = 0; k + 1 < sweeps; ++k) step_to(lidar.sweep_start_ns[k], lidar.sweep_start_ns[k + 1]);
+  if (sweeps > 0) step_to(lidar.sweep_start_ns.back(), lidar.sweep_start_ns.back() + lidar.sweep_period_ns);
+  return out;
+}
+
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   estimate.frame = Frame::lidar;
-  std::vector<ImuSample> samples;
-  StartAtRest start;
-  estimate.status = bridge::primary_imu_samples(sensors, samples);
-  if (estimate.status.ok()) estimate.status = start_at_rest(samples, start);
-  if (!estimate.status.ok()) return estimate;
   RigidOdometry::Params params = rigid_params(sensors, parameters);
-  ConstantVelocity model(samples, start.q_WI * Eigen::Quaterniond(params.T_IL.linear()));
+  std::vector<ImuSample> samples;
+  Eigen::Quaterniond q_WL = Eigen::Quaterniond::Identity();
+  if (!sensors.imus.empty()) {
+    StartAtRest start;
+    estimate.status = bridge::primary_imu_samples(sensors, samples);
+    if (estimate.status.ok()) estimate.status = start_at_rest(samples, start);
+    q_WL = start.q_WI * Eigen::Quaterniond(params.T_IL.linear());
+  } else if (!sensors.lidars.empty()) {
+    samples = instants(sensors.lidars.front());
+    q_WL = Eigen::Quaterniond(sensors.lidars.front().T_BL.linear());
+  }
+  if (!estimate.status.ok()) return estimate;
+  ConstantVelocity model(samples, q_WL);
   params.T_IL = Eigen::Isometry3d::Identity();
   run_rigid_chain(sensors, samples, params, model, estimate);
   return estimate;
@@ -70,7 +96,8 @@ Method slam_constant_velocity() {
        .doc =
            "Lidar alone: the last change of pose goes on, the sweep is deskewed with it once and registered point to "
            "plane as a rigid body. A tumble's rate changes by radians per second from sweep to sweep, which this "
-           "cannot know. Not modelled: the adaptive threshold and the point-to-point distance of the original.",
+           "cannot know. Needs no IMU, nor times of the points: then nothing is deskewed. Not modelled: the adaptive "
+           "threshold and the point-to-point distance of the original.",
        .source = "the family of KISS-ICP, Vizzo et al., RA-L 2023",
        .parameters = rigid_parameters()},
       run);

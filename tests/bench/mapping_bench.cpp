@@ -134,6 +134,40 @@ void tumble_of_28800_points_a_sweep(benchmark::State& state) {
 }
 BENCHMARK(tumble_of_28800_points_a_sweep)->Arg(0)->Arg(1)->Iterations(2)->Unit(benchmark::kMillisecond)->ArgName("all");
 
+/// A sensor that was taken elsewhere in the middle of a tumble: every sweep is searched for in the map, in vain.
+void search_of_28800_points_a_sweep(benchmark::State& state) {
+  constexpr int kKnown = 12, kCount = 32;
+  const LidarInertialOdometry::Params params = all_unknowns();
+  const tumble::test::Motion motion;
+  tumble::test::Motion elsewhere = motion;
+  elsewhere.spin_rad_s = 11.0;
+  const std::vector<tumble::ImuSample> imu = tumble::test::make_imu(motion, 0.1 * kCount);
+  std::vector<double> times_ms;
+  for (auto _ : state) {
+    LidarInertialOdometry odometry(params);
+    for (int i = 0; i < kCount; ++i) {
+      const bool known = i < kKnown;
+      const auto points = tumble::test::make_sweep(tumble::test::Room::box_with_pillars(), known ? motion : elsewhere,
+                                                   params.T_IL, i, 0.02, kColumns);
+      LidarInertialOdometry::SweepReport report;
+      for (int k = 10 * i; k < 10 * (i + 1); ++k) {
+        (void)odometry.add_imu(imu[static_cast<std::size_t>(k)], on_the_rail(imu[static_cast<std::size_t>(k)]));
+      }
+      const std::clock_t start = std::clock();
+      (void)odometry.add_sweep(i * tumble::test::kSweep_ns, (i + 1) * tumble::test::kSweep_ns, points, report);
+      if (!known && report.verdict == tumble::SweepVerdict::rejected) times_ms.push_back(since_ms(start));
+    }
+  }
+  if (times_ms.empty()) {
+    state.SkipWithError("no sweep was lost");
+    return;
+  }
+  state.counters["lost"] = static_cast<double>(times_ms.size());
+  state.counters["median_ms"] = median(times_ms);
+  state.counters["worst_ms"] = *std::max_element(times_ms.begin(), times_ms.end());
+}
+BENCHMARK(search_of_28800_points_a_sweep)->Iterations(1)->Unit(benchmark::kMillisecond);
+
 void ten_minutes_of_small_sweeps(benchmark::State& state) {
   constexpr int kCount = 6000, kMinute = 600, kSettled = 500;
   for (auto _ : state) {

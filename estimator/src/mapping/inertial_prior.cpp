@@ -16,7 +16,6 @@ constexpr double kGapForce_m_s2 = 5.0;    // what a velocity that goes on throug
 // a levelled start: gravity's direction within the accelerometer's bias, speed within what passes for rest
 constexpr double kStartTilt_rad = 0.01;
 constexpr double kStartSpeed_m_s = 0.05;
-constexpr double kStillSpeed_m_s = 0.01;
 
 constexpr double kRestShare = 0.02;    // of the noise of motion, while at rest
 constexpr double kRestSamples = 10.0;  // fewer teach no bias
@@ -64,13 +63,6 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
   noise.block<3, 3>(3, 3) += trajectory.duration_s() * turned;
   noise.diagonal().segment<3>(3).array() += std::pow(params.turn_sigma_share * turned_rad, 2);
   return noise;
-}
-
-void hold_still(MotionState& state) {
-  state.v_WI_m_s.setZero();
-  state.covariance.rightCols<3>().setZero();
-  state.covariance.bottomRows<3>().setZero();
-  state.covariance.diagonal().tail<3>().setConstant(kStillSpeed_m_s * kStillSpeed_m_s);
 }
 
 bool InitialRest::take(const LidarInertialOdometry::Params& params, const Eigen::Vector3d& rate_rad_s,

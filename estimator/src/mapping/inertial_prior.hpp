@@ -20,9 +20,6 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
                                            const SweepTrajectory& trajectory, std::span<const MotionSample> samples,
                                            unsigned excess_axes);
 
-/// A state known to be at rest: velocity zero, and no longer correlated with the rest of the state.
-void hold_still(MotionState& state);
-
 /// Rest at the start of a recording, and what it teaches: once left it does not come back.
 struct InitialRest {
   bool lasts = true;

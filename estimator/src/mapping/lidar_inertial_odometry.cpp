@@ -10,12 +10,6 @@
 
 namespace tumble {
 
-namespace {
-
-constexpr std::uint8_t kAllAxes = 7;
-
-}  // namespace
-
 Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
                                                 std::span<const LidarPoint> given) const {
   if (end_ns < start_ns) return {Trouble::time_order, "end_ns", double(end_ns), double(start_ns)};
@@ -39,22 +33,20 @@ void LidarInertialOdometry::Impl::finish(TimeNs end_ns, SweepReport& report) {
   lost_sweeps = report.verdict == SweepVerdict::rejected ? lost_sweeps + 1 : 0;
   report.lost_sweeps = lost_sweeps;
   count_drift(report);
-  for (std::size_t i = 0; i < trajectory.intervals(); ++i) {
-    const double t_s = std::min(trajectory.interval_end_s(i), trajectory.duration_s());
-    PoseState pose = trajectory.state(t_s).pose();
-    pose.covariance = reported_covariance(joint_covariance(t_s), pose.p_WA_m, aligned);
-    report.trajectory.push_back(pose);
-  }
+  count_errors();
+  report.trajectory = describe(trajectory, errors);
+  enter_window(end_ns, aligned, report);
   carry_covariance(end_ns);
-  // new parts of the map inherit what the pose that drew them was off by
-  const double drawn = report.points_used == 0 ? 0.0 : double(report.map_points_added) / double(report.points_used);
-  if (report.verdict != SweepVerdict::first) map_covariance += drawn * drawing_covariance();
+  // what the sweep adds to the map is off by what the pose was: by so much of it the map moves where the robot is
+  const double drawn_share =
+      report.points_used == 0 ? 0.0 : double(report.map_points_added) / double(report.points_used);
+  if (report.verdict != SweepVerdict::first) map_covariance += drawn_share * drawn_share * drawing_covariance();
   report.trajectory.back().time_ns = end_ns;
   report.pose = state.pose();
   report.pose.covariance = report.trajectory.back().covariance;
 
-  excess_at_end_rad_s.setZero();
-  if (aligned) excess_at_end_rad_s = trajectory.excess_share_at_end().cwiseProduct(result.excess_rad_s);
+  excess_share_at_end.setZero();
+  if (aligned) excess_share_at_end = trajectory.excess_share_at_end();
   const auto after = std::find_if(samples.begin(), samples.end(), [&](const auto& s) { return s.time_ns > end_ns; });
   samples.erase(samples.begin(), after);
   forget_far_map();
@@ -85,16 +77,7 @@ Status LidarInertialOdometry::add_imu(const ImuSample& sample, const RateState& 
   if (follows && sample.time_ns <= last_ns) {
     return {Trouble::time_order, "time_ns", double(sample.time_ns), double(last_ns)};
   }
-  // the first window's length is that of the second
-  if (!my.started && my.samples.size() == 1) my.samples[0].from_ns = 2 * last_ns - sample.time_ns;
-  const TimeNs from_ns = follows ? last_ns : sample.time_ns;
-  const bool at_rest = my.rest.take(my.params, rate.w_WI_I_rad_s, sample.specific_force_m_s2);
-  const Eigen::Vector3d rate_rad_s =
-      at_rest ? Eigen::Vector3d::Zero() : Eigen::Vector3d(rate.w_WI_I_rad_s - my.rest.rate_bias_rad_s());
-  my.samples.push_back({from_ns, sample.time_ns, rate_rad_s, sample.specific_force_m_s2,
-                        mapping::believed_rate_sigma(my.params, rate, sample.time_ns - from_ns),
-                        static_cast<std::uint8_t>(rate.clipped_axes & kAllAxes), at_rest,
-                        sample.time_ns - from_ns > mapping::kGap_ns});
+  my.take(sample, rate);
   return {};
 }
 
@@ -114,8 +97,10 @@ Status LidarInertialOdometry::add_sweep(TimeNs lidar_start_ns, TimeNs lidar_end_
   if (Status status = my.trajectory.build(my.state, my.samples, end_ns, my.calibration.gravity_W_m_s2); !status.ok())
     return status;
   my.started = true;
+  my.drawn.clear();
   my.resting_sweeps = my.imu_rests(end_ns) && !my.trajectory_speeds_up() ? my.resting_sweeps + 1 : 0;
 
+  my.prediction = my.predict();
   const PointBounds bounds{my.params.range_min_m, my.params.range_max_m, my.params.own_body_L};
   const PointCounts counts =
       select_points(points, bounds, my.calibration.T_IL,
@@ -149,7 +134,7 @@ SweepCalibration LidarInertialOdometry::calibration() const {
 }
 
 SweepCalibration::Covariance LidarInertialOdometry::calibration_covariance() const {
-  return impl_->calibration_covariance;
+  return impl_->covariance.bottomRightCorner<SweepCalibration::kErrors, SweepCalibration::kErrors>();
 }
 
 std::size_t LidarInertialOdometry::map_bytes() const {

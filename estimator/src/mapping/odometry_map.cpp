@@ -15,9 +15,10 @@ class PoseSigma {
   PoseSigma(const Registration::Matrix& covariance, const SweepTrajectory& trajectory)
       : duration_s_(std::max(trajectory.duration_s(), 1e-9)) {
     const SweepTrajectory::Transition step = trajectory.transition(trajectory.duration_s());
-    Eigen::Matrix<double, 9, 12> F;
+    constexpr int kMoving = Registration::kCalibration;
+    Eigen::Matrix<double, 9, kMoving> F;
     F << step.by_start, step.by_excess_s;
-    const Eigen::Matrix<double, 9, 9> end = F * covariance.topLeftCorner<12, 12>() * F.transpose();
+    const Eigen::Matrix<double, 9, 9> end = F * covariance.topLeftCorner<kMoving, kMoving>() * F.transpose();
     start_m2_ = covariance.diagonal().head<3>().mean();
     start_rad2_ = covariance.diagonal().segment<3>(3).mean();
     end_m2_ = end.diagonal().head<3>().mean();
@@ -37,9 +38,10 @@ class PoseSigma {
 }  // namespace
 
 std::size_t LidarInertialOdometry::Impl::extend_map(bool rings_differ) {
-  if (calibration_covariance.diagonal().maxCoeff() > 0.0) {
+  if (covariance.diagonal().tail<SweepCalibration::kErrors>().maxCoeff() > 0.0) {
     std::vector<SweepPoint> moved;
-    apply_calibration(result.calibration, result.calibration.time_offset_s - calibration.time_offset_s, points, moved);
+    const SweepCalibration& now = result.mean.calibration;
+    apply_calibration(now, now.time_offset_s - calibration.time_offset_s, points, moved);
     points.swap(moved);
   }
   compute_levers(trajectory, points, positions_W_m);
@@ -52,7 +54,11 @@ std::size_t LidarInertialOdometry::Impl::extend_map(bool rings_differ) {
     const Eigen::Vector3f position = positions_W_m[i] + trajectory.base_m(points[i].t_s).cast<float>();
     const double sigma_m = std::hypot(registration.point_sigma_m(points[i]), sigma.at(points[i]));
     if (sigma_m > params.map_sigma_max_m) continue;
-    added += map.insert(position, static_cast<float>(sigma_m), sweep, mapping::ScanLines::line(line, points[i].ring));
+    const std::uint32_t index =
+        map.add(position, static_cast<float>(sigma_m), sweep, mapping::ScanLines::line(line, points[i].ring));
+    if (index == VoxelMap::kNoPoint) continue;
+    ++added;
+    if (params.window_sweeps > 1) drawn.push_back({index, points[i]});
   }
   seen_from_W_m.push_back(middle.p_WI_m.cast<float>());
   return added;
@@ -64,6 +70,7 @@ void LidarInertialOdometry::Impl::forget_far_map() {
   const float moved = (here - pruned_at_W_m).norm();
   if (moved < static_cast<float>(kPruneShare * params.map_radius_m)) return;
   pruned_at_W_m = here;
+  for (mapping::WindowSweep& sweep : window) sweep.drawn.clear();  // indices change
   const std::vector<std::uint32_t> kept = map.keep_within(here, static_cast<float>(params.map_radius_m));
   std::vector<Eigen::Vector3f> from(kept.size());
   for (std::size_t i = 0; i < kept.size(); ++i) from[i] = seen_from_W_m[kept[i]];

@@ -1,7 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+
 #include "odometry_impl.hpp"
 
 namespace tumble::mapping {
+
+namespace {
+
+constexpr int kCoarseIterations = 15;
+constexpr std::size_t kCoarseMatches = 50;
+
+}  // namespace
+
+double knot_correlation(const LidarInertialOdometry::Params& params, const SweepTrajectory& trajectory) {
+  return std::exp(-trajectory.duration_s() / (SweepTrajectory::kKnots - 1) / params.excess_time_s);
+}
 
 void check_params(const LidarInertialOdometry::Params& params) {
   require_within("gravity_m_s2", params.gravity_m_s2, 0.0, 100.0);
@@ -24,6 +37,10 @@ void check_params(const LidarInertialOdometry::Params& params) {
   require_within("clipped_sigma_rad_s", params.clipped_sigma_rad_s, 0.0, 100.0);
   require_within("rate_sigma_max_rad_s", params.rate_sigma_max_rad_s, 0.0, 100.0);
   require_within("excess_sigma_min_rad_s", params.excess_sigma_min_rad_s, 1e-9, 100.0);
+  require_within("excess_time_s", params.excess_time_s, 1e-3, 1e3);
+  require_within("flight_force_m_s2", params.flight_force_m_s2, 0.0, 100.0);
+  if (params.body) require_within("body.p_IB_I_m", params.body->p_IB_I_m.norm(), 0.0, 1e3);
+  require_within("window_sweeps", params.window_sweeps, 1, 8);
   require_within("degenerate_sigma_m", params.degenerate_sigma_m, 1e-6, 1e3);
   require_within("time_offset_s", params.time_offset_s, -1.0, 1.0);
   require_within("mount_sigma_rad", params.mount_sigma_rad, 0.0, 1.0);
@@ -49,17 +66,19 @@ Registration::Params registration_params(const LidarInertialOdometry::Params& pa
   out.correction_max_m = params.correction_max_m;
   out.correction_max_rad = params.correction_max_rad;
   out.matches_min = params.matches_min;
+  out.parallel_for = params.parallel_for;
   return out;
 }
 
 Registration::Params coarse_registration_params(const LidarInertialOdometry::Params& params) {
   Registration::Params out = registration_params(params);
-  out.match_distance_m = std::min(3.0 * params.match_distance_m, 10.0);
+  out.match_distance_m = std::min(2.0 * params.match_distance_m, 10.0);
+  out.iterations_max = std::min(params.iterations_max, kCoarseIterations);
   out.kernel_min_m = 0.5;
   out.rematch_m = 0.2;
   out.step_m = 5e-3;
   out.step_rad = 2e-3;
-  out.matches_min = params.matches_min / kCoarseEvery;
+  out.matches_min = std::min<std::size_t>(params.matches_min, kCoarseMatches);
   out.fitting_share_min = 0.2;
   return out;
 }

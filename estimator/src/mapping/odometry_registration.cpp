@@ -9,14 +9,19 @@ namespace tumble {
 namespace {
 
 constexpr double kExcessTries_rad_s[] = {3.0, 6.0, 9.0, 15.0};
-constexpr int kStartsPerSweep = 4;       // a search goes on with the next sweep, so that no sweep costs too much
-constexpr double kSearchTurn_rad = 0.3;  // starts of a search reach so far at first, in attitude
-constexpr double kSearchShift_m = 1.0;   // and so far in position
-constexpr int kSearchRounds = 3;         // each reaches that much further than the last
-constexpr double kRestSpeed_m_s = 0.05;  // of an IMU that says nothing but gravity
+constexpr int kExcessTriesMax = 5;        // of these for one sweep, all axes together
+constexpr int kStartsPerSweep = 3;        // of a search, the prior itself among them
+constexpr std::size_t kFewPoints = 300;   // serve a start that may be far off
+constexpr double kSearchTurn_rad = 0.3;   // starts of a search reach so far at first, in attitude
+constexpr double kSearchShift_m = 1.0;    // and so far in position
+constexpr int kSearchRounds = 3;          // each reaches that much further than the last
+constexpr double kStillSpeed_m_s = 0.01;  // during the rest at the start
+constexpr double kRestSpeed_m_s = 0.05;   // of an IMU that says nothing but gravity
 constexpr double kCreepSpeed_m_s =
-    0.5;                        // below it, such an IMU is believed to rest: a world that holds nothing lets creep
-constexpr int kRestSweeps = 3;  // after so many in a row
+    0.5;                             // below it, such an IMU is believed to rest: a world that holds nothing lets creep
+constexpr int kRestSweeps = 3;       // after so many in a row
+constexpr double kCarryMax = 3.0;    // an excess carried over a border grows by no more where less is known after it
+constexpr double kKnotFloor = 0.05;  // of the prior's standard deviation: a knot differs from its neighbours by this
 
 /// Start number `index` of a search: the prior itself, then moved along each axis by what it may be off by, nearer ones
 /// first.
@@ -25,12 +30,13 @@ Registration::Prior moved_start(Registration::Prior prior, int index) {
   const double reach = 1.0 + (index - 1) / 12;
   const int axis = (index - 1) / 2 % 6;
   const double sign = (index - 1) % 2 == 0 ? 1.0 : -1.0;
-  const double sigma = std::sqrt(prior.state.covariance(axis, axis));
+  const double sigma = std::sqrt(prior.covariance(axis, axis));
+  MotionState& state = prior.mean.state;
   if (axis < 3) {
-    prior.state.p_WI_m[axis] += sign * std::clamp(1.5 * sigma, 0.3, reach * kSearchShift_m);
+    state.p_WI_m[axis] += sign * std::clamp(1.5 * sigma, 0.3, reach * kSearchShift_m);
   } else {
     const double angle = sign * std::clamp(1.5 * sigma, 0.1, reach * kSearchTurn_rad);
-    prior.state.q_WI = so3::exp(angle * Eigen::Vector3d::Unit(axis - 3)) * prior.state.q_WI;
+    state.q_WI = so3::exp(angle * Eigen::Vector3d::Unit(axis - 3)) * state.q_WI;
   }
   return prior;
 }
@@ -38,37 +44,77 @@ constexpr int kStarts = 1 + 12 * kSearchRounds;
 
 }  // namespace
 
-Registration::Prior LidarInertialOdometry::Impl::prior() const {
-  Registration::Prior prior;
-  prior.state = state;
-  prior.calibration = calibration;
-  prior.calibration_covariance = calibration_covariance;
-  prior.motion_calibration = motion_calibration;
-  if (samples.front().at_rest) {
-    mapping::hold_still(prior.state);
-    prior.motion_calibration.bottomRows<3>().setZero();
-  }
+void mapping::Prediction::compose(const Registration::Matrix& covariance,
+                                  const Registration::Matrix& error_covariance) {
+  prior.covariance = by_last * covariance * by_last.transpose() + noise;
+  errors = by_last * error_covariance * by_last.transpose() + noise;
+}
+
+void mapping::Prediction::hold_still(double sigma_m_s) {
+  prior.mean.state.v_WI_m_s.setZero();
+  by_last.middleRows<3>(6).setZero();
+  noise.middleRows<3>(6).setZero();
+  noise.middleCols<3>(6).setZero();
+  noise.diagonal().segment<3>(6).setConstant(sigma_m_s * sigma_m_s);
+}
+
+mapping::Prediction LidarInertialOdometry::Impl::predict() const {
+  mapping::Prediction next;
+  next.prior.mean.state = state;
+  next.prior.mean.calibration = calibration;
+  carry_excess(next);
+  if (samples.front().at_rest) next.hold_still(kStillSpeed_m_s);
   // surfaces that hold the sensor tell a slow drive from a rest by themselves; `result` is still the last sweep's
   const bool held =
       result.verdict == RegistrationVerdict::converged && result.weakest_sigma_m <= params.degenerate_sigma_m;
-  if (resting_sweeps >= kRestSweeps && !held && prior.state.v_WI_m_s.norm() < kCreepSpeed_m_s) {
-    mapping::hold_still(prior.state);
-    prior.state.covariance.diagonal().tail<3>().setConstant(kRestSpeed_m_s * kRestSpeed_m_s);
-    prior.motion_calibration.bottomRows<3>().setZero();
+  if (resting_sweeps >= kRestSweeps && !held && state.v_WI_m_s.norm() < kCreepSpeed_m_s) {
+    next.hold_still(kRestSpeed_m_s);
   }
   const std::uint8_t axes = params.estimate_excess_rate ? trajectory.clipped_axes() : 0;
-  prior.state.covariance += mapping::inertial_noise(params, trajectory, samples, axes);
+  next.noise.topLeftCorner<9, 9>() += mapping::inertial_noise(params, trajectory, samples, axes);
+  add_excess_noise(next);
+  next.prior.excess_start_rad_s = next.prior.mean.excess_rad_s;
+  next.compose(covariance, error_covariance);
+  return next;
+}
+
+/// The excess of a clipped axis that is on the rail at the border goes on from where it was, and forgets as time goes.
+void LidarInertialOdometry::Impl::carry_excess(mapping::Prediction& next) const {
+  constexpr int kLast = SweepTrajectory::kKnots - 1;
+  next.by_last.middleRows<SweepTrajectory::kExcess>(Registration::kExcess).setZero();
+  if (!params.estimate_excess_rate) return;
+  const Eigen::Vector3d share_at_start = trajectory.excess_share_at_start();
   for (int axis = 0; axis < 3; ++axis) {
-    if (!(axes >> axis & 1)) continue;
+    if (!(share_at_start[axis] > 0.0 && excess_share_at_end[axis] > 0.0)) continue;
+    double remains = std::clamp(excess_share_at_end[axis] / share_at_start[axis], 0.0, kCarryMax);
+    for (int knot = 0; knot <= kLast; ++knot) {
+      next.prior.mean.excess_rad_s(axis, knot) = remains * excess_rad_s(axis, kLast);
+      next.by_last(Registration::kExcess + 3 * knot + axis, Registration::kExcess + 3 * kLast + axis) = remains;
+      remains *= mapping::knot_correlation(params, trajectory);
+    }
+  }
+}
+
+/// Knots as samples of a process that forgets: of the reported standard deviation, correlated from knot to knot.
+void LidarInertialOdometry::Impl::add_excess_noise(mapping::Prediction& next) const {
+  if (!params.estimate_excess_rate) return;
+  const double rho = mapping::knot_correlation(params, trajectory);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(trajectory.clipped_axes() >> axis & 1)) continue;
     double sigma = params.excess_sigma_min_rad_s;
     for (const MotionSample& sample : samples) {
       if (sample.clipped_axes >> axis & 1) sigma = std::max(sigma, sample.rate_sigma_rad_s[axis]);
     }
-    prior.excess_sigma_rad_s[axis] = sigma;
-    prior.excess_rad_s[axis] = excess_at_end_rad_s[axis];
+    const int first = Registration::kExcess + axis;
+    const bool carried = next.by_last.row(first).squaredNorm() > 0.0;
+    for (int a = 0; a < SweepTrajectory::kKnots; ++a) {
+      for (int b = 0; b < SweepTrajectory::kKnots; ++b) {
+        const double known = carried ? std::pow(rho, a + b) : 0.0;
+        next.noise(first + 3 * a, first + 3 * b) += sigma * sigma * (std::pow(rho, std::abs(a - b)) - known);
+      }
+      next.noise(first + 3 * a, first + 3 * a) += kKnotFloor * kKnotFloor * sigma * sigma;
+    }
   }
-  prior.excess_start_rad_s = prior.excess_rad_s;
-  return prior;
 }
 
 bool LidarInertialOdometry::Impl::prior_is_trusted() const {
@@ -87,57 +133,71 @@ void LidarInertialOdometry::Impl::choose_points() {
   for (const std::uint32_t index : chosen_index) chosen.push_back(points[index]);
 }
 
+/// At most kFewPoints of the chosen, evenly.
+void LidarInertialOdometry::Impl::choose_few() {
+  few.clear();
+  const std::size_t every = std::max<std::size_t>(1, (chosen.size() + kFewPoints - 1) / kFewPoints);
+  for (std::size_t i = 0; i < chosen.size(); i += every) few.push_back(chosen[i]);
+}
+
+/// From a start that may be far off: first coarsely and with few points, and in full where that leads somewhere.
+Status LidarInertialOdometry::Impl::try_start(const Registration::Prior& start, const Registration::Prior& prior,
+                                              TimeNs end_ns, Registration::Result& found) {
+  Registration::Result rough;
+  Status status = coarse.align(start, samples, end_ns, few, map, trajectory, rough);
+  found.verdict = rough.verdict;
+  if (!status.ok() || rough.verdict != RegistrationVerdict::converged) return status;
+  Registration::Prior fine = start;
+  fine.mean.state = rough.mean.state;
+  fine.covariance = prior.covariance;
+  fine.excess_start_rad_s = rough.mean.excess_rad_s;
+  return registration.align(fine, samples, end_ns, chosen, map, trajectory, found);
+}
+
 /// Registers; where that fails and the rate may be short on a clipped axis, tries again from larger excess rates, since
 /// a rail that is left behind within one sweep may put the start a whole radian off.
-Status LidarInertialOdometry::Impl::align(const Registration::Prior& given, TimeNs end_ns,
+Status LidarInertialOdometry::Impl::align(const Registration::Prior& prior, TimeNs end_ns,
                                           Registration::Result& found) {
-  Registration::Prior prior = given;
   Status status = registration.align(prior, samples, end_ns, chosen, map, trajectory, found);
-  int iterations = found.iterations;
-  for (int axis = 0; axis < 3; ++axis) {
-    for (const double more : kExcessTries_rad_s) {
-      if (!status.ok() || found.verdict == RegistrationVerdict::converged) break;
-      if (prior.excess_sigma_rad_s[axis] < more / 5.0) break;
-      prior.excess_start_rad_s = prior.excess_rad_s;
-      prior.excess_start_rad_s[axis] += more;
-      status = registration.align(prior, samples, end_ns, chosen, map, trajectory, found);
+  int iterations = found.iterations, tries = 0;
+  for (const double more : kExcessTries_rad_s) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!status.ok() || found.verdict == RegistrationVerdict::converged || tries == kExcessTriesMax) break;
+      const int first = Registration::kExcess + axis;
+      if (std::sqrt(prior.covariance(first, first)) < more / 5.0) continue;
+      Registration::Prior start = prior;
+      start.excess_start_rad_s.row(axis).array() += more;
+      status = try_start(start, prior, end_ns, found);
       iterations += found.iterations;
+      ++tries;
     }
   }
   found.iterations = iterations;
   return status;
 }
 
-/// Looks for the sensor around the prior, a few starts per sweep: coarsely on few points, then as always.
+/// Looks for the way back: from the prior and from starts around it. A search goes on with the next sweep where this
+/// one ended, so that no sweep costs too much.
 Status LidarInertialOdometry::Impl::search(const Registration::Prior& prior, TimeNs end_ns,
                                            Registration::Result& found) {
-  std::vector<SweepPoint> few;
-  for (std::size_t i = 0; i < chosen.size(); i += mapping::kCoarseEvery) few.push_back(chosen[i]);
-  Status status;
-  for (int k = 0; k < kStartsPerSweep; ++k) {
-    // a covered lidar tries nothing: only sweeps with points count
-    const int index = k == 0 ? 0 : 1 + (failed_searches * (kStartsPerSweep - 1) + k - 1) % (kStarts - 1);
-    Registration::Result rough;
-    Registration::Prior start = moved_start(prior, index);
-    status = coarse.align(start, samples, end_ns, few, map, trajectory, rough);
-    if (!status.ok()) return status;
-    if (rough.verdict != RegistrationVerdict::converged) continue;
-    start.state = rough.state;
-    start.state.covariance = prior.state.covariance;
-    start.excess_start_rad_s = rough.excess_rad_s;
-    status = registration.align(start, samples, end_ns, chosen, map, trajectory, found);
+  Status status = try_start(prior, prior, end_ns, found);
+  const RegistrationVerdict verdict = found.verdict;  // of the sweep where nothing is found
+  for (int k = 0; k + 1 < kStartsPerSweep; ++k) {
     if (!status.ok() || found.verdict == RegistrationVerdict::converged) return status;
+    const int index = 1 + (failed_searches * (kStartsPerSweep - 1) + k) % (kStarts - 1);
+    status = try_start(moved_start(prior, index), prior, end_ns, found);
   }
+  if (found.verdict != RegistrationVerdict::converged) found.verdict = verdict;
   return status;
 }
 
 void LidarInertialOdometry::Impl::register_sweep(TimeNs end_ns, SweepReport& report) {
   const bool prior_trusted = prior_is_trusted();
-  const Registration::Prior before = prior();
-  Status status = align(before, end_ns, result);
-  if (status.ok() && result.verdict != RegistrationVerdict::converged && lost_sweeps > 0) {
-    status = search(before, end_ns, result);
-  }
+  result = Registration::Result{};
+  result.points = chosen.size();
+  choose_few();
+  const Status status =
+      lost_sweeps == 0 ? align(prediction.prior, end_ns, result) : search(prediction.prior, end_ns, result);
   report.iterations = result.iterations;
   report.inlier_share = result.points == 0 ? 0.0 : double(result.inliers) / double(result.points);
   if (!status.ok()) return;
@@ -156,7 +216,7 @@ void LidarInertialOdometry::Impl::register_sweep(TimeNs end_ns, SweepReport& rep
   report.weakest_sigma_m = result.weakest_sigma_m;
   report.verdict =
       report.weakest_sigma_m > params.degenerate_sigma_m ? SweepVerdict::degenerate : SweepVerdict::registered;
-  report.excess_rate_rad_s = result.excess_rad_s;
+  report.excess_rate_rad_s = result.mean.excess_rad_s.rowwise().mean();
 }
 
 /// Whether the IMU has nothing to say but gravity over the present stretch.
@@ -177,23 +237,16 @@ bool LidarInertialOdometry::Impl::trajectory_speeds_up() const {
 
 /// The inertial prior stands for the sweep; an IMU at rest stops the drift of its velocity.
 Status LidarInertialOdometry::Impl::fall_back_on_inertia(TimeNs end_ns) {
-  Registration::Prior loose = prior();
   if (lost_sweeps > 0 && imu_rests(end_ns)) {
-    mapping::hold_still(loose.state);
-    loose.state.covariance.diagonal().tail<3>().setConstant(kRestSpeed_m_s * kRestSpeed_m_s);
-    loose.motion_calibration.bottomRows<3>().setZero();
+    prediction.hold_still(kRestSpeed_m_s);
+    prediction.compose(covariance, error_covariance);
   }
   result = Registration::Result{};
-  result.state = loose.state;
-  result.calibration = loose.calibration;
-  constexpr int kCal = Registration::kCalibration;
-  constexpr int kErrors = SweepCalibration::kErrors;
-  result.covariance.topLeftCorner<9, 9>() = loose.state.covariance;
-  result.covariance.diagonal().segment<3>(Registration::kExcess) = loose.excess_sigma_rad_s.cwiseAbs2();
-  result.covariance.block<9, kErrors>(0, kCal) = loose.motion_calibration;
-  result.covariance.block<kErrors, 9>(kCal, 0) = loose.motion_calibration.transpose();
-  result.covariance.bottomRightCorner<kErrors, kErrors>() = loose.calibration_covariance;
-  return trajectory.build(loose.state, samples, end_ns, loose.calibration.gravity_W_m_s2, loose.excess_rad_s);
+  result.mean = prediction.prior.mean;
+  result.mean.state.covariance = prediction.prior.covariance.topLeftCorner<9, 9>();
+  result.covariance = prediction.prior.covariance;
+  return trajectory.build(result.mean.state, samples, end_ns, result.mean.calibration.gravity_W_m_s2,
+                          result.mean.excess_rad_s);
 }
 
 }  // namespace tumble

@@ -85,8 +85,7 @@ void RigidOdometry::register_points(SweepReport& report) {
   MotionSample instant;
   instant.from_ns = predicted_.time_ns - 1;
   instant.time_ns = predicted_.time_ns;
-  Registration::Prior prior;
-  prior.state = predicted_;
+  const Registration::Prior prior(predicted_);
   SweepTrajectory still;
   Registration::Result result;
   const Status status = registration_.align(prior, {&instant, 1}, predicted_.time_ns, chosen_, map_, still, result);
@@ -97,7 +96,7 @@ void RigidOdometry::register_points(SweepReport& report) {
     report.verdict = SweepVerdict::degenerate;  // nothing to hold on to: the motion model stands
   }
   if (result.verdict != RegistrationVerdict::converged) return;
-  state_ = result.state;
+  state_ = result.mean.state;
   report.conditioning = result.eigenvalues[5] > 0.0 ? result.eigenvalues[0] / result.eigenvalues[5] : 0.0;
   report.weakest_direction = result.directions.col(0);
   report.weakest_sigma_m = result.weakest_sigma_m;

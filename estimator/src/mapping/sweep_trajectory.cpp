@@ -31,6 +31,14 @@ Eigen::Vector3d signed_shares(const MotionSample& sample, const Eigen::Vector3d&
   return share;
 }
 
+/// Weights of the knots at a share of the stretch: linear between neighbours.
+Eigen::Matrix<double, SweepTrajectory::kKnots, 1> knot_weights(double share) {
+  Eigen::Matrix<double, SweepTrajectory::kKnots, 1> weights;
+  const double place = std::clamp(share, 0.0, 1.0) * (SweepTrajectory::kKnots - 1);
+  for (int k = 0; k < SweepTrajectory::kKnots; ++k) weights[k] = std::max(0.0, 1.0 - std::abs(place - k));
+  return weights;
+}
+
 }  // namespace
 
 PoseState MotionState::pose() const {
@@ -44,7 +52,7 @@ PoseState MotionState::pose() const {
 }
 
 Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSample> samples, TimeNs end_ns,
-                              const Eigen::Vector3d& gravity_W_m_s2, const Eigen::Vector3d& excess_rad_s) {
+                              const Eigen::Vector3d& gravity_W_m_s2, const Excess& excess_rad_s) {
   start_ = start;
   gravity_W_m_s2_ = gravity_W_m_s2;
   duration_s_ = seconds(end_ns - start.time_ns);
@@ -62,7 +70,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
   Interval next{};
   next.q_WI = start.q_WI;
   next.thrust_v = next.thrust_p = next.w_I = next.a_W = next.excess_share = Eigen::Vector3d::Zero();
-  next.excess_attitude = next.excess_v = next.excess_p = Eigen::Matrix3d::Zero();
+  next.excess_attitude = next.excess_v = next.excess_p = ByExcess::Zero();
   for (const MotionSample& sample : samples) {
     const TimeNs from = std::max(sample.from_ns, start.time_ns);
     const TimeNs to = std::min(sample.time_ns, end_ns);
@@ -74,8 +82,9 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     Interval& now = intervals_.emplace_back(next);
     now.start_s = seconds(from - start.time_ns);
     now.length_s = dt;
-    now.w_I = sample.w_WI_I_rad_s + share.cwiseProduct(excess_rad_s);
     now.excess_share = share;
+    now.knot_weight = knot_weights(duration_s_ > 0.0 ? (now.start_s + 0.5 * dt) / duration_s_ : 0.0);
+    now.w_I = sample.w_WI_I_rad_s + share.cwiseProduct(excess_rad_s * now.knot_weight);
     const Eigen::Matrix3d R = now.q_WI.toRotationMatrix();
     const Eigen::Matrix3d mean_rotation = R * so3::left_jacobian(now.w_I * dt);
     now.a_W = sample.bridges_gap ? Eigen::Vector3d(-gravity_W_m_s2) : Eigen::Vector3d(mean_rotation * sample.f_I_m_s2);
@@ -83,9 +92,10 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     next.q_WI = (now.q_WI * so3::exp(now.w_I * dt)).normalized();
     next.thrust_v = now.thrust_v + now.a_W * dt;
     next.thrust_p = now.thrust_p + now.thrust_v * dt + now.a_W * (0.5 * dt * dt);
-    next.excess_attitude = now.excess_attitude + mean_rotation * share.asDiagonal() * dt;
+    if (clipped_axes_ == 0) continue;
+    next.excess_attitude = now.excess_attitude + gained_by_excess(now, dt);
     // the force turns with the mean attitude error of the interval
-    const Eigen::Matrix3d turn = -so3::hat(now.a_W) * (0.5 * (now.excess_attitude + next.excess_attitude));
+    const ByExcess turn = -so3::hat(now.a_W) * (0.5 * (now.excess_attitude + next.excess_attitude));
     next.excess_v = now.excess_v + turn * dt;
     next.excess_p = now.excess_p + now.excess_v * dt + turn * (0.5 * dt * dt);
   }
@@ -116,13 +126,21 @@ Eigen::Vector3d SweepTrajectory::velocity_m_s(double t_s, const Eigen::Vector3d&
          now.q_WI * (so3::exp(now.w_I * s) * now.w_I.cross(x_I_m));
 }
 
+/// Attitude that the excess adds up to `s` seconds into an interval, per unit of each knot's axes.
+SweepTrajectory::ByExcess SweepTrajectory::gained_by_excess(const Interval& now, double s) {
+  const Eigen::Matrix3d gained =
+      now.q_WI.toRotationMatrix() * so3::left_jacobian(now.w_I * s) * now.excess_share.asDiagonal() * s;
+  ByExcess out;
+  for (int k = 0; k < kKnots; ++k) out.middleCols<3>(3 * k) = now.knot_weight[k] * gained;
+  return out;
+}
+
 SweepTrajectory::ExcessDerivative SweepTrajectory::excess_derivative(double t_s, std::size_t& hint) const {
   const double t = std::clamp(t_s, 0.0, duration_s_);
   const Interval& now = interval_at(t, hint);
   const double s = t - now.start_s;
-  const Eigen::Matrix3d gained =
-      now.q_WI.toRotationMatrix() * so3::left_jacobian(now.w_I * s) * now.excess_share.asDiagonal() * s;
-  const Eigen::Matrix3d turn = -so3::hat(now.a_W) * (now.excess_attitude + 0.5 * gained);
+  const ByExcess gained = gained_by_excess(now, s);
+  const ByExcess turn = -so3::hat(now.a_W) * (now.excess_attitude + 0.5 * gained);
   return {now.excess_attitude + gained, now.excess_p + s * now.excess_v + turn * (0.5 * s * s)};
 }
 
@@ -154,7 +172,7 @@ SweepTrajectory::Transition SweepTrajectory::transition(double t_s) const {
   out.by_start.block<3, 3>(6, 3) = -so3::hat(now.thrust_v + s * now.a_W);
 
   const ExcessDerivative excess = excess_derivative(t, hint);
-  const Eigen::Matrix3d mean_attitude = 0.5 * (now.excess_attitude + excess.attitude_s);
+  const ByExcess mean_attitude = 0.5 * (now.excess_attitude + excess.attitude_s);
   out.by_excess_s << excess.thrust_m_s, excess.attitude_s, now.excess_v - so3::hat(now.a_W) * mean_attitude * s;
   out.by_gravity << 0.5 * t * t * Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Zero(), t * Eigen::Matrix3d::Identity();
   return out;

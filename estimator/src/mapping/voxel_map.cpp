@@ -65,16 +65,16 @@ std::uint32_t VoxelMap::first_chunk(const Eigen::Vector3i& cell, std::uint64_t& 
   return groups_[group][inside];
 }
 
-bool VoxelMap::insert(const Eigen::Vector3f& position, float sigma_m, std::uint32_t sweep, std::uint32_t line) {
+std::uint32_t VoxelMap::add(const Eigen::Vector3f& position, float sigma_m, std::uint32_t sweep, std::uint32_t line) {
   constexpr int kMask = (1 << kGroupBits) - 1;
   const float finest = params_.spacing_m > 0.0 ? static_cast<float>(1.0 / params_.spacing_m) : cells_per_m_;
   // one margin for cells and cubes of the spacing; also false for NaN
-  if (!((position * finest).cwiseAbs().maxCoeff() < static_cast<float>(SpatialHash::kLimit - 2))) return false;
+  if (!((position * finest).cwiseAbs().maxCoeff() < static_cast<float>(SpatialHash::kLimit - 2))) return kNoPoint;
 
   if (params_.spacing_m > 0.0) {
     const std::size_t before = taken_.size();
     taken_.insert(SpatialHash::key(cube_of(position, finest)), 0);
-    if (taken_.size() == before) return false;
+    if (taken_.size() == before) return kNoPoint;
   }
   const Eigen::Vector3i cell = cube_of(position, cells_per_m_);
   const std::uint64_t key = SpatialHash::key({cell.x() >> kGroupBits, cell.y() >> kGroupBits, cell.z() >> kGroupBits});
@@ -106,6 +106,18 @@ bool VoxelMap::insert(const Eigen::Vector3f& position, float sigma_m, std::uint3
   sweep_[first * kChunk + place] = sweep;
   line_[first * kChunk + place] = line;
   --vacant_;
+  return first * kChunk + place;
+}
+
+bool VoxelMap::move(std::uint32_t index, const Eigen::Vector3f& position) {
+  if (!position.allFinite() || cube_of(position, cells_per_m_) != cube_of(position_W_m(index), cells_per_m_)) {
+    return false;
+  }
+  Chunk& chunk = chunks_[index / kChunk];
+  const std::uint32_t place = index % kChunk;
+  chunk.x[place] = position.x();
+  chunk.y[place] = position.y();
+  chunk.z[place] = position.z();
   return true;
 }
 

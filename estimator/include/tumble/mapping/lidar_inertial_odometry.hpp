@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,6 +13,8 @@
 #include "tumble/common/pose.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/mapping/calibration.hpp"
+#include "tumble/mapping/executor.hpp"
+#include "tumble/mapping/flight_arc.hpp"
 #include "tumble/mapping/lidar.hpp"
 
 namespace tumble {
@@ -30,11 +33,15 @@ const char* to_string(SweepVerdict verdict);
 /// Position, attitude and velocity at the start of a sweep are refined together, so that the deskewing is refined too.
 ///
 /// World: z up, origin and yaw at the IMU at the first sample, levelled by the specific force at rest.
-/// Feed IMU samples in time order, then each sweep once IMU samples reach its end. No threads, no files, no printing.
-/// Where their standard deviation is not 0, the lidar's mounting, its clock and gravity are estimated with the motion,
-/// as one state with one covariance (an iterated error-state filter over sweeps). The map stays where it was drawn with
-/// what was known then: a caller that keeps its recording runs a second time from calibration() and gets a map of one
+/// Feed IMU samples in time order, then each sweep once IMU samples reach its end. No threads of its own, no files, no
+/// printing. Where their standard deviation is not 0, the lidar's mounting, its clock and gravity are estimated with
+/// the motion, as one state with one covariance: an iterated error-state filter over sweeps, whose last window_sweeps
+/// are smoothed by those that follow (fixed lag), with what they drew into the map. Beyond the window the map stays
+/// where it was drawn: a caller that keeps its recording runs a second time from calibration() and gets a map of one
 /// piece.
+///
+/// Covariances reported follow the errors through the filter's weights, the registration's share as measured from its
+/// residuals (Registration::Result::scatter).
 ///
 /// After rejected sweeps the sensor is lost: the inertial prior goes on, with velocity zero while the IMU rests, and
 /// each further sweep is also tried against the map from starts around the prior, coarse to fine. Not modelled: biases
@@ -84,11 +91,21 @@ class LidarInertialOdometry {
     /// Standard deviation assumed for a rate on a clipped axis that the rate method did not recover; bound [0, 100].
     double clipped_sigma_rad_s = 3.0;
     double rate_sigma_max_rad_s = 5.0;  ///< what RateState reports is believed up to this; bound [0, 100]
-    /// Estimate the excess of the rate on clipped axes in the registration, three unknowns a sweep that act on clipped
-    /// samples only, there in proportion to the rate's reported uncertainty; their prior is the rate's reported
-    /// uncertainty, at least excess_sigma_min_rad_s; bound (0, 100].
+    /// Estimate the excess of the rate on clipped axes in the registration, at SweepTrajectory::kKnots knots a sweep;
+    /// it acts on clipped samples only, there in proportion to the rate's reported uncertainty. Its prior is the rate's
+    /// reported uncertainty, at least excess_sigma_min_rad_s, bound (0, 100], correlated over excess_time_s, bound
+    /// [1e-3, 1e3]; on a rail that lasts over the border of two sweeps it goes on from where it was.
     bool estimate_excess_rate = false;
     double excess_sigma_min_rad_s = 1.0;
+    double excess_time_s = 0.3;
+    /// Sweeps that are refined together: the newest, and so many less one before it by what it teaches (see settled).
+    /// 1: none is refined later. Bound [1, 8].
+    int window_sweeps = 2;
+    /// Given the body, its flight is told by the ballistic arc: where the specific force at the centre of mass is below
+    /// flight_force_m_s2, bound [0, 100], the accelerometer's reading gives way to what flight makes it, and a gap of
+    /// the IMU that begins in flight is bridged by the arc. Empty: the accelerometer throughout.
+    std::optional<FlyingBody> body;
+    double flight_force_m_s2 = 4.0;
     /// A point's uncertainty grows over the sweep by this and weighs it down (the published time weighting); bound [0,
     /// 1e3].
     double skew_sigma_m_s = 0.25;
@@ -107,14 +124,19 @@ class LidarInertialOdometry {
     /// Sweeps in a row with points but no place in the map, after which it goes on `degenerate` by inertia; bound [1,
     /// 1e6].
     int lost_sweeps_max = 30;
+    /// Threads, if any, that the registration may use; results do not depend on it.
+    ParallelFor parallel_for;
   };
 
   struct SweepReport {
     SweepVerdict verdict = SweepVerdict::rejected;
     PoseState pose;                     ///< pose and velocity of the IMU at the end of the sweep, with covariance
     std::vector<PoseState> trajectory;  ///< IMU poses inside the sweep at IMU times, corrected by the registration
-    double inlier_share = 0.0;          ///< of the points registered
-    double conditioning = 0.0;          ///< smallest over largest eigenvalue of the scaled normal matrix
+    /// The same of the sweep that left the window with this one, refined by those after it: its last word. Empty while
+    /// the window fills.
+    std::vector<PoseState> settled;
+    double inlier_share = 0.0;  ///< of the points registered
+    double conditioning = 0.0;  ///< smallest over largest eigenvalue of the scaled normal matrix
     /// Standard deviation in the direction that the surfaces hold least, by this sweep's surfaces alone; 0: not
     /// aligned.
     double weakest_sigma_m = 0.0;
@@ -123,7 +145,7 @@ class LidarInertialOdometry {
     /// Direction in which the surfaces hold the pose least: (position, attitude scaled by the rms lever) in W, unit.
     Eigen::Matrix<double, 6, 1> weakest_direction = Eigen::Matrix<double, 6, 1>::Zero();
     Eigen::Vector3d excess_rate_rad_s =
-        Eigen::Vector3d::Zero();        ///< added to the clipped axes, along the sign of the rate
+        Eigen::Vector3d::Zero();        ///< added to the clipped axes, along the sign of the rate; mean of the knots
     std::size_t points_used = 0;        ///< finite returns in range that are not the robot's own
     std::size_t points_registered = 0;  ///< one per voxel of these
     std::size_t map_points_added = 0;
@@ -154,6 +176,12 @@ class LidarInertialOdometry {
   /// Calibration as estimated so far, and the covariance of its errors; the given one, and 0, where not estimated.
   SweepCalibration calibration() const;
   SweepCalibration::Covariance calibration_covariance() const;
+
+  /// Pose at any time within the window of sweeps, by all that has been seen. `out_of_range` outside of it.
+  Status pose_at(TimeNs time_ns, PoseState& pose) const;
+
+  /// Poses of the sweeps in the window as they stand, oldest first: with SweepReport::settled, the whole trajectory.
+  std::vector<std::vector<PoseState>> open_trajectories() const;
 
   /// Memory held by the map [bytes].
   std::size_t map_bytes() const;

@@ -9,6 +9,7 @@
 
 #include "tumble/mapping/calibration.hpp"
 #include "tumble/mapping/deskew.hpp"
+#include "tumble/mapping/executor.hpp"
 #include "tumble/mapping/plane_fit.hpp"
 #include "tumble/mapping/sweep_trajectory.hpp"
 #include "tumble/mapping/voxel_map.hpp"
@@ -29,7 +30,7 @@ enum class RegistrationVerdict : std::uint8_t {
 /// where their prior leaves them free, the excess rate of clipped axes and the calibration. A point in the world is
 /// X = p + v t + g t^2/2 + Exp(phi) u with the lever u of SweepTrajectory, so that each iteration deskews anew. Cost:
 /// robustly weighted squared distances to planes through the k nearest map points, plus the prior's Mahalanobis
-/// distance; Gauss-Newton, a 22x22 normal matrix at most. In directions that no surface holds the prior stands.
+/// distance; Gauss-Newton, a 28x28 normal matrix at most. In directions that no surface holds the prior stands.
 class Registration {
  public:
   struct Params {
@@ -45,6 +46,7 @@ class Registration {
     double kernel_min_m = 0.1;     ///< least width of the robust kernel (Geman-McClure)
     /// Weight of a point's information: neighbouring returns share the errors of the map and are not independent.
     double information_share = 0.1;
+    double cluster_m = 1.0;          ///< points of one cube of this edge are not independent; bound [0.01, 100]
     std::size_t matches_min = 100;   ///< fewer matches are too few
     double matched_share_min = 0.1;  ///< of the points
     double fitting_share_min =
@@ -52,35 +54,52 @@ class Registration {
     double correction_max_m = 15.0;
     double correction_max_rad = 1.1;
     PlaneBounds plane;
+    ParallelFor parallel_for;  ///< for the search of neighbours and the sums; empty: the calling thread
   };
 
-  static constexpr int kMotion = 9;                 ///< position, attitude, velocity
-  static constexpr int kExcess = kMotion;           ///< first unknown of the excess rate
-  static constexpr int kCalibration = kExcess + 3;  ///< first unknown of the calibration
+  static constexpr int kMotion = 9;        ///< position, attitude, velocity
+  static constexpr int kExcess = kMotion;  ///< first unknown of the excess rate, knot after knot
+  static constexpr int kCalibration = kExcess + SweepTrajectory::kExcess;  ///< first unknown of the calibration
   static constexpr int kUnknowns = kCalibration + SweepCalibration::kErrors;
   using Vector = Eigen::Matrix<double, kUnknowns, 1>;
   using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
-  using Cross = Eigen::Matrix<double, kMotion, SweepCalibration::kErrors>;
+  using Excess = SweepTrajectory::Excess;
 
-  /// Start of the trajectory as the inertial side believes it, of the excess rate, and of the calibration.
-  struct Prior {
-    MotionState state;  ///< with its covariance
+  /// Where the unknowns stand: motion at the start of the trajectory, excess rate, calibration.
+  struct Estimate {
+    MotionState state;  ///< its covariance is not used
     SweepCalibration calibration;
-    SweepCalibration::Covariance calibration_covariance =
-        SweepCalibration::Covariance::Zero();  ///< a row of 0 is not estimated
-    Cross motion_calibration = Cross::Zero();  ///< covariance of the state's errors with the calibration's
-    Eigen::Vector3d excess_rad_s = Eigen::Vector3d::Zero();
-    Eigen::Vector3d excess_sigma_rad_s = Eigen::Vector3d::Zero();  ///< an axis with 0 is not estimated
-    Eigen::Vector3d excess_start_rad_s = Eigen::Vector3d::Zero();  ///< where the iterations begin
+    Excess excess_rad_s = Excess::Zero();
+
+    /// Adds small errors in the order of the unknowns.
+    void add(const Vector& error);
+    /// The errors that take `other` to this.
+    Vector minus(const Estimate& other) const;
+  };
+
+  /// What the inertial side believes, and how surely; an unknown of the excess or the calibration with variance 0 is
+  /// not estimated.
+  struct Prior {
+    Estimate mean;
+    Matrix covariance = Matrix::Zero();
+    Excess excess_start_rad_s = Excess::Zero();  ///< where the iterations begin
+
+    Prior() = default;
+    /// The state with its covariance, nothing else to be estimated.
+    explicit Prior(const MotionState& state) : mean{state, {}, Excess::Zero()} {
+      covariance.topLeftCorner<kMotion, kMotion>() = state.covariance;
+    }
   };
 
   struct Result {
     RegistrationVerdict verdict = RegistrationVerdict::too_few;
-    MotionState state;  ///< at the trajectory's start, covariance after registration (9x9)
-    SweepCalibration calibration;
+    Estimate mean;
     Matrix covariance = Matrix::Zero();  ///< of all unknowns, in order; the prior's where nothing was registered
-    Eigen::Vector3d excess_rad_s = Eigen::Vector3d::Zero();
-    Eigen::Vector3d excess_sigma_rad_s = Eigen::Vector3d::Zero();
+    /// Covariance of the pull of the surfaces on the unknowns (the gradient of their cost), measured from the
+    /// residuals: points within cluster_m of each other share the errors of the map, those farther apart do not
+    /// (cluster-robust covariance, K. Liang, S. Zeger, 1986). In units of the covariance: that of independent points
+    /// would be the information_share times what they add to the normal matrix.
+    Matrix scatter = Matrix::Zero();
     std::size_t points = 0, matches = 0, inliers = 0;
     double correction_m = 0.0;  ///< of the position at the start; where the correction broke its bound, that value
     double correction_rad = 0.0;
@@ -115,13 +134,24 @@ class Registration {
     float map_variance_m2 = 0.0f;
     bool searched = false;
   };
-  struct Normal;
+  struct Sums;
+  struct Unknowns;
 
-  void find_matches(const VoxelMap& map, std::span<const SweepPoint> points);
+  void place(const SweepTrajectory& trajectory, std::span<const SweepPoint> points, const VoxelMap& map);
+  void find_match(const VoxelMap& map, std::size_t point, Neighbours& found);
   double kernel_width_m();
-  static void describe_shape(const Normal& sum, Result& result);
-  Normal accumulate(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
-                    const SweepCalibration& calibration, bool rigid, double kernel_m);
+  static void describe_shape(const Sums& sum, Result& result);
+  Sums accumulate(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
+                  const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m);
+  void accumulate_block(std::span<const SweepPoint> points, std::size_t block, const SweepTrajectory& trajectory,
+                        const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m, Sums& sum);
+
+  Matrix scatter(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
+                 const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m);
+  struct Weight {
+    double variance_m2, robust, information;
+  };
+  Weight weigh(const SweepPoint& point, const Match& match, double distance_m, double kernel_m) const;
 
   Params params_;
   // memory kept between sweeps; holds nothing that the next result depends on
@@ -129,6 +159,8 @@ class Registration {
   std::vector<SweepPoint> moved_;
   std::vector<Match> matches_;
   std::vector<float> distances_, sorted_;
+  SpatialHash cluster_of_{1 << 10};
+  std::vector<Vector> pulls_;  // of the clusters
 };
 
 }  // namespace tumble

@@ -23,6 +23,7 @@ struct MotionSample {
   Eigen::Vector3d rate_sigma_rad_s = Eigen::Vector3d::Zero();  ///< standard deviation of the rate, IMU axes
   std::uint8_t clipped_axes = 0;                               ///< bit j: the gyro's axis j was at its rail
   bool at_rest = false;                                        ///< belongs to the rest at the start
+  bool in_flight = false;    ///< f_I_m_s2 is that of free flight, not the accelerometer's
   bool bridges_gap = false;  ///< longer than a sample: the force is not known inside, and the velocity goes on
 };
 
@@ -44,12 +45,18 @@ struct MotionState {
 /// p(t) = p_0 + v_0 t + g t^2 / 2 + S(t) with S the double integral of the specific force in W, whose mean over each
 /// sample is R_k J_l(w_k dt) f_k (exact for a force constant in body axes, as the centripetal force of a spin is).
 ///
-/// The excess rate e is a correction of the clipped axes: the rate used is w_j + s_j e_j where axis j was clipped, with
-/// the sign of w_j and the magnitude sigma_j / (largest sigma_j among the stretch's clipped samples), so that what is
-/// known well moves little; 1 where nothing is known of any. Not modelled: sculling within a sample, the earth's
-/// rotation.
+/// The excess rate e is a correction of the clipped axes, linear in time between kKnots knots at equal steps from the
+/// start to the end of the stretch: the rate used is w_j + s_j e_j(t) where axis j was clipped, with the sign of w_j
+/// and the magnitude sigma_j / (largest sigma_j among the stretch's clipped samples), so that what is known well moves
+/// little; 1 where nothing is known of any. Over a sample e is what it is in the middle of it. Not modelled: sculling
+/// within a sample, the earth's rotation.
 class SweepTrajectory {
  public:
+  static constexpr int kKnots = 3;
+  static constexpr int kExcess = 3 * kKnots;  ///< unknowns: axis by axis within a knot
+  using Excess = Eigen::Matrix<double, 3, kKnots>;
+  using ByExcess = Eigen::Matrix<double, 3, kExcess>;
+
   /// What a lidar point needs of its instant: attitude, and S(t) of the text above.
   struct Instant {
     Eigen::Quaterniond q_WI;
@@ -57,18 +64,18 @@ class SweepTrajectory {
   };
   /// Derivatives of an instant with respect to the excess rate: phi = attitude e, dS = thrust e (first order).
   struct ExcessDerivative {
-    Eigen::Matrix3d attitude_s;
-    Eigen::Matrix3d thrust_m_s;
+    ByExcess attitude_s;
+    ByExcess thrust_m_s;
   };
 
   /// Integrates from `start` to `end_ns`. Samples must be in time order and follow each other; the first window must
   /// reach back to the start. Trouble: `too_few` (no sample, or they end before end_ns), `time_order` (end before
   /// start), `gap` (the first window begins after the start). Reuses its memory.
   Status build(const MotionState& start, std::span<const MotionSample> samples, TimeNs end_ns,
-               const Eigen::Vector3d& gravity_W_m_s2, const Eigen::Vector3d& excess_rad_s = Eigen::Vector3d::Zero());
+               const Eigen::Vector3d& gravity_W_m_s2, const Excess& excess_rad_s = Excess::Zero());
   /// The same with gravity of this magnitude along -z.
   Status build(const MotionState& start, std::span<const MotionSample> samples, TimeNs end_ns, double gravity_m_s2,
-               const Eigen::Vector3d& excess_rad_s = Eigen::Vector3d::Zero()) {
+               const Excess& excess_rad_s = Excess::Zero()) {
     return build(start, samples, end_ns, Eigen::Vector3d(0.0, 0.0, -gravity_m_s2), excess_rad_s);
   }
 
@@ -100,12 +107,13 @@ class SweepTrajectory {
   /// rate, and of gravity.
   struct Transition {
     Eigen::Matrix<double, 9, 9> by_start;
-    Eigen::Matrix<double, 9, 3> by_excess_s;
+    Eigen::Matrix<double, 9, kExcess> by_excess_s;
     Eigen::Matrix<double, 9, 3> by_gravity;
   };
   Transition transition(double t_s) const;
 
-  /// Magnitude of the excess rate's share in the last interval, 0 on axes that were not clipped there.
+  /// Magnitude of the excess rate's share in the first and the last interval, 0 on axes that were not clipped there.
+  Eigen::Vector3d excess_share_at_start() const { return intervals_.front().excess_share.cwiseAbs(); }
   Eigen::Vector3d excess_share_at_end() const { return intervals_.back().excess_share.cwiseAbs(); }
 
   /// Bit j set: axis j was clipped somewhere in the stretch.
@@ -115,12 +123,14 @@ class SweepTrajectory {
   struct Interval {
     double start_s, length_s;
     Eigen::Quaterniond q_WI;
-    Eigen::Vector3d w_I, a_W;                             // rate in body axes; mean specific force in W
-    Eigen::Vector3d thrust_v, thrust_p;                   // integrals of the specific force up to start_s
-    Eigen::Vector3d excess_share;                         // s_j where axis j is clipped, 0 elsewhere
-    Eigen::Matrix3d excess_attitude, excess_v, excess_p;  // derivatives at start_s
+    Eigen::Vector3d w_I, a_W;                      // rate in body axes; mean specific force in W
+    Eigen::Vector3d thrust_v, thrust_p;            // integrals of the specific force up to start_s
+    Eigen::Vector3d excess_share;                  // s_j where axis j is clipped, 0 elsewhere
+    Eigen::Matrix<double, kKnots, 1> knot_weight;  // of each knot's excess in this interval
+    ByExcess excess_attitude, excess_v, excess_p;  // derivatives at start_s
   };
   const Interval& interval_at(double t_s, std::size_t& hint) const;
+  static ByExcess gained_by_excess(const Interval& now, double s);
 
   MotionState start_;
   double duration_s_ = 0.0;

@@ -29,6 +29,8 @@ class VoxelMap {
  public:
   /// Mark of a point that is on no known scan line.
   static constexpr std::uint32_t kNoLine = 0xffffffffu;
+  /// Mark of no point.
+  static constexpr std::uint32_t kNoPoint = 0xffffffffu;
 
   struct Params {
     double voxel_m = 0.5;    ///< edge of a cell; a few times the spacing searches fastest; bound [0.01, 100]
@@ -40,7 +42,16 @@ class VoxelMap {
   /// Adds a point unless its cube is taken. `sigma_m` is the uncertainty of its position; `sweep` and `line` are marks
   /// that come back from sweep() and line(). Returns whether it was added. Points that are not finite or beyond 2^20
   /// cells are not added.
-  bool insert(const Eigen::Vector3f& position_W_m, float sigma_m, std::uint32_t sweep, std::uint32_t line = kNoLine);
+  bool insert(const Eigen::Vector3f& position_W_m, float sigma_m, std::uint32_t sweep, std::uint32_t line = kNoLine) {
+    return add(position_W_m, sigma_m, sweep, line) != kNoPoint;
+  }
+
+  /// The same; returns the point's index, or kNoPoint where it was not added.
+  std::uint32_t add(const Eigen::Vector3f& position_W_m, float sigma_m, std::uint32_t sweep, std::uint32_t line);
+
+  /// Moves a point that is now known better. Where it would leave its cell it stays where it was, and false is
+  /// returned.
+  bool move(std::uint32_t index, const Eigen::Vector3f& position_W_m);
 
   /// The k <= Neighbours::kMax nearest points within `radius_m`; equal distances in order of insertion within a cell.
   /// Exact. Does not allocate; cost grows with the number of cells that the final radius touches.

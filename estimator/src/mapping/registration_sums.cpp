@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "registration_sums.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tumble/common/so3.hpp"
+
+namespace tumble {
+
+namespace {
+
+constexpr int kRigid = Registration::kMotion;
+constexpr std::size_t kBlock = 128;  // points whose sums are formed together; however many threads there are
+
+std::size_t block_count(std::size_t points) {
+  return (points + kBlock - 1) / kBlock;
+}
+
+}  // namespace
+
+Registration::Unknowns::Unknowns(const Matrix& covariance) {
+  for (int i = 0; i < kUnknowns; ++i) {
+    if (i >= kRigid && covariance(i, i) <= 0.0) continue;
+    free[static_cast<std::size_t>(count++)] = i;
+    excess = excess || (i >= kExcess && i < kCalibration);
+    calibration = calibration || i >= kCalibration;
+  }
+}
+
+void Registration::Unknowns::expand(const Sums& sum, Matrix& H, Vector& g) const {
+  H.setZero();
+  g.setZero();
+  for (int a = 0; a < count; ++a) {
+    const int i = free[static_cast<std::size_t>(a)];
+    g[i] = sum.g[a];
+    for (int b = 0; b < count; ++b) H(i, free[static_cast<std::size_t>(b)]) = sum.H(a, b);
+  }
+}
+
+void Registration::Unknowns::hold(Matrix& H, Vector& g) const {
+  for (int i = 0; i < kUnknowns; ++i) {
+    if (is_free(i)) continue;
+    H.row(i).setZero();
+    H.col(i).setZero();
+    H(i, i) = 1.0;
+    g[i] = 0.0;
+  }
+}
+
+void Registration::Unknowns::cut_held(Matrix& M) const {
+  for (int i = 0; i < kUnknowns; ++i) {
+    if (is_free(i)) continue;
+    M.row(i).setZero();
+    M.col(i).setZero();
+  }
+}
+
+void Registration::Unknowns::clear_held(Matrix& covariance) const {
+  for (int i = 0; i < kUnknowns; ++i) {
+    if (!is_free(i)) covariance(i, i) = 0.0;
+  }
+}
+
+void Registration::Sums::add(const Sums& other) {
+  H += other.H;
+  g += other.g;
+  shape += other.shape;
+  weight += other.weight;
+  lever2 += other.lever2;
+  matches += other.matches;
+  inliers += other.inliers;
+}
+
+double Registration::point_sigma_m(const SweepPoint& point) const {
+  const double range = std::max(params_.range_sigma_m, params_.range_sigma_share * point.range_m);
+  const double skew = params_.skew_sigma_m_s * point.sweep_t_s;
+  return std::sqrt(range * range + skew * skew);
+}
+
+double Registration::residual(const SweepTrajectory& trajectory, const SweepCalibration& calibration,
+                              const SweepPoint& point, const PlaneFit& plane, std::size_t& hint, Vector& derivative) {
+  const SweepTrajectory::Instant now = trajectory.at(point.t_s, hint);
+  const Eigen::Vector3d x_I = point.x_I_m.cast<double>();
+  const Eigen::Vector3d turned = now.q_WI * x_I;
+  const Eigen::Vector3d lever = now.thrust_m + turned;
+  const Eigen::Vector3d n = plane.normal_W.cast<double>();
+  const Eigen::Vector3d n_I = now.q_WI.conjugate() * n;
+  const double t = point.t_s;
+  derivative.segment<3>(0) = n;
+  derivative.segment<3>(3) = lever.cross(n);
+  derivative.segment<3>(6) = t * n;
+  if (trajectory.clipped_axes() != 0) {
+    const SweepTrajectory::ExcessDerivative by_excess = trajectory.excess_derivative(t, hint);
+    derivative.segment<SweepTrajectory::kExcess>(kExcess) =
+        by_excess.thrust_m_s.transpose() * n + by_excess.attitude_s.transpose() * turned.cross(n);
+  } else {
+    derivative.segment<SweepTrajectory::kExcess>(kExcess).setZero();
+  }
+  derivative.tail<SweepCalibration::kErrors>() << (x_I - calibration.T_IL.translation()).cross(n_I), n_I,
+      n.dot(trajectory.velocity_m_s(t, x_I, hint)), (0.5 * t * t) * n;
+  return n.dot(trajectory.base_m(t) + lever - plane.centre_W_m.cast<double>());
+}
+
+void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours& found) {
+  Match& match = matches_[point];
+  const float rematch2 = static_cast<float>(params_.rematch_m * params_.rematch_m);
+  if (match.searched && (positions_[point] - match.searched_at_W_m).squaredNorm() <= rematch2) return;
+  match.searched = true;
+  match.searched_at_W_m = positions_[point];
+  map.nearest(positions_[point], params_.neighbours, static_cast<float>(params_.match_distance_m), found);
+  match.plane = fit_plane(map, found, params_.plane);
+  if (match.plane.verdict != PlaneVerdict::plane) return;
+  float variance = 0.0f;
+  for (int k = 0; k < found.count; ++k) {
+    const float sigma = map.sigma_m(found.index[k]);
+    variance += sigma * sigma;
+  }
+  match.map_variance_m2 = variance / static_cast<float>(found.count) + match.plane.thickness2_m2;
+}
+
+/// What a match counts for: its information, as far as it fits (D. Geman, D. McClure, 1987).
+Registration::Weight Registration::weigh(const SweepPoint& point, const Match& match, double distance_m,
+                                         double kernel_m) const {
+  const double sigma = point_sigma_m(point);
+  const double variance = sigma * sigma + match.map_variance_m2;
+  const double soft = 1.0 + distance_m * distance_m / (kernel_m * kernel_m);
+  const double robust = 1.0 / (soft * soft);
+  return {variance, robust, robust * params_.information_share / variance};
+}
+
+/// Where the points lie in the world by this trajectory, the planes that they belong to, and how far they are from
+/// them.
+void Registration::place(const SweepTrajectory& trajectory, std::span<const SweepPoint> points, const VoxelMap& map) {
+  levers_.resize(points.size());
+  positions_.resize(points.size());
+  distances_.resize(points.size());
+  run_parallel(params_.parallel_for, block_count(points.size()), [&](std::size_t block) {
+    std::size_t hint = 0;
+    Neighbours found;
+    const std::size_t end = std::min(points.size(), (block + 1) * kBlock);
+    for (std::size_t i = block * kBlock; i < end; ++i) {
+      const SweepTrajectory::Instant now = trajectory.at(points[i].t_s, hint);
+      levers_[i] = (now.thrust_m + now.q_WI * points[i].x_I_m.cast<double>()).cast<float>();
+      positions_[i] = (trajectory.base_m(points[i].t_s) + levers_[i].cast<double>()).cast<float>();
+      find_match(map, i, found);
+      distances_[i] = matches_[i].plane.normal_W.dot(positions_[i] - matches_[i].plane.centre_W_m);
+    }
+  });
+}
+
+double Registration::kernel_width_m() {
+  sorted_.clear();
+  for (std::size_t i = 0; i < matches_.size(); ++i) {
+    if (matches_[i].plane.verdict == PlaneVerdict::plane) sorted_.push_back(std::abs(distances_[i]));
+  }
+  if (sorted_.empty()) return params_.kernel_min_m;
+  const auto middle = sorted_.begin() + static_cast<std::ptrdiff_t>(sorted_.size() / 2);
+  std::nth_element(sorted_.begin(), middle, sorted_.end());
+  // three standard deviations of a normal distribution with this median of the absolute value
+  return std::max(params_.kernel_min_m, 3.0 * 1.4826 * static_cast<double>(*middle));
+}
+
+void Registration::accumulate_block(std::span<const SweepPoint> points, std::size_t block,
+                                    const SweepTrajectory& trajectory, const SweepCalibration& calibration,
+                                    const Unknowns& unknowns, double kernel_m, Sums& sum) {
+  // a column per match: derivatives by the free unknowns, then the distance, all times the square root of the weight
+  Eigen::Matrix<double, kUnknowns, static_cast<int>(kBlock)> rows;
+  Eigen::Matrix<double, static_cast<int>(kBlock), 1> weighted;
+  const bool rigid = !unknowns.excess && !unknowns.calibration;
+  std::size_t hint = 0;
+  int count = 0;
+  const std::size_t end = std::min(points.size(), (block + 1) * kBlock);
+  for (std::size_t i = block * kBlock; i < end; ++i) {
+    const Match& match = matches_[i];
+    if (match.plane.verdict != PlaneVerdict::plane) continue;
+    const double r = distances_[i];
+    const Weight weight = weigh(points[i], match, r, kernel_m);
+    const double root = std::sqrt(weight.information);
+    const Eigen::Vector3d n = match.plane.normal_W.cast<double>();
+    const Eigen::Vector3d lever = levers_[i].cast<double>();
+    Eigen::Matrix<double, kRigid, 1> j;
+    j << n, lever.cross(n), static_cast<double>(points[i].t_s) * n;
+    if (rigid) {
+      rows.col(count).head<kRigid>() = root * j;
+    } else {
+      Vector full;
+      residual(trajectory, calibration, points[i], match.plane, hint, full);
+      for (int k = 0; k < unknowns.count; ++k) {
+        rows(k, count) = root * full[unknowns.free[static_cast<std::size_t>(k)]];
+      }
+    }
+    weighted[count++] = root * r;
+    sum.shape.selfadjointView<Eigen::Lower>().rankUpdate(j.head<6>(), weight.robust);
+    sum.weight += weight.robust;
+    sum.lever2 += weight.robust * lever.squaredNorm();
+    ++sum.matches;
+    if (r * r <= 9.0 * weight.variance_m2) ++sum.inliers;
+  }
+  const int n = unknowns.count;
+  sum.H.topLeftCorner(n, n).selfadjointView<Eigen::Lower>().rankUpdate(rows.topLeftCorner(n, count));
+  sum.g.head(n) = rows.topLeftCorner(n, count) * weighted.head(count);
+}
+
+Registration::Sums Registration::accumulate(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
+                                            const SweepCalibration& calibration, const Unknowns& unknowns,
+                                            double kernel_m) {
+  std::vector<Sums> parts(block_count(points.size()));
+  run_parallel(params_.parallel_for, parts.size(), [&](std::size_t block) {
+    accumulate_block(points, block, trajectory, calibration, unknowns, kernel_m, parts[block]);
+  });
+  Sums sum;
+  for (const Sums& part : parts) sum.add(part);
+  const Matrix lower = sum.H;
+  sum.H = lower.selfadjointView<Eigen::Lower>();
+  return sum;
+}
+
+Registration::Matrix Registration::scatter(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
+                                           const SweepCalibration& calibration, const Unknowns& unknowns,
+                                           double kernel_m) {
+  cluster_of_.clear();
+  pulls_.clear();
+  const float cubes_per_m = static_cast<float>(1.0 / params_.cluster_m);
+  std::size_t hint = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Match& match = matches_[i];
+    if (match.plane.verdict != PlaneVerdict::plane) continue;
+    const Eigen::Vector3f cube = (positions_[i] * cubes_per_m).array().floor();
+    if (!(cube.cwiseAbs().maxCoeff() < static_cast<float>(SpatialHash::kLimit - 2))) continue;
+    const std::uint32_t cluster =
+        cluster_of_.insert(SpatialHash::key(cube.cast<int>()), static_cast<std::uint32_t>(pulls_.size()));
+    if (cluster == pulls_.size()) pulls_.emplace_back(Vector::Zero());
+    Vector derivative;
+    residual(trajectory, calibration, points[i], match.plane, hint, derivative);
+    const double r = distances_[i];
+    pulls_[cluster] += (weigh(points[i], match, r, kernel_m).information * r) * derivative;
+  }
+  Matrix lower = Matrix::Zero();
+  for (const Vector& pull : pulls_) lower.selfadjointView<Eigen::Lower>().rankUpdate(pull);
+  Matrix out = lower.selfadjointView<Eigen::Lower>();
+  unknowns.cut_held(out);
+  return out;
+}
+
+}  // namespace tumble

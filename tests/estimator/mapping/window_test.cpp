@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "tests/estimator/mapping/synthetic_room.hpp"
+#include "tumble/common/so3.hpp"
+#include "tumble/mapping/lidar_inertial_odometry.hpp"
+
+// sweeps refined together with those after them, the trajectory that can be asked at any time, and the caller's threads
+namespace tumble {
+namespace {
+
+using Odometry = LidarInertialOdometry;
+
+constexpr double kNoise_m = 0.01, kRail_rad_s = 8.0;
+constexpr int kSamplesPerSweep = 10, kColumns = 450;
+
+Odometry::Params given() {
+  Odometry::Params params;
+  params.T_IL.translation() = Eigen::Vector3d(0.02, 0.087, 0.04);
+  params.T_IL.linear() = so3::exp({0.0, 0.0, -1.5707963267948966}).toRotationMatrix();
+  params.estimate_excess_rate = true;
+  return params;
+}
+
+/// A gyro on its rail, and what is known of it: nothing.
+RateState railed(const ImuSample& sample) {
+  RateState rate = test::believe(sample);
+  for (int axis = 0; axis < 3; ++axis) {
+    double& w = rate.w_WI_I_rad_s[axis];
+    if (std::abs(w) < kRail_rad_s) continue;
+    w = std::copysign(kRail_rad_s, w);
+    rate.clipped_axes |= static_cast<std::uint8_t>(1 << axis);
+    rate.source = RateSource::bounded_only;
+  }
+  return rate;
+}
+
+struct Drive {
+  explicit Drive(const Odometry::Params& params) : odometry(params) {}
+
+  /// Sweeps [from, to); those in [covered_from, covered_to) see nothing.
+  void sweeps(int from, int to, int covered_from = 0, int covered_to = 0) {
+    for (int k = from; k < to; ++k) {
+      const bool covered = k >= covered_from && k < covered_to;
+      for (int j = k * kSamplesPerSweep; j < (k + 1) * kSamplesPerSweep; ++j) {
+        const ImuSample& sample = imu[static_cast<std::size_t>(j)];
+        ASSERT_TRUE(odometry.add_imu(sample, railed(sample)).ok());
+      }
+      std::vector<LidarPoint> points;
+      if (!covered) {
+        points = test::make_sweep(test::Room::box_with_pillars(), motion, given().T_IL, k, kNoise_m, kColumns);
+      }
+      const Status status = odometry.add_sweep(k * test::kSweep_ns, (k + 1) * test::kSweep_ns, points, report);
+      ASSERT_EQ(status.trouble, covered ? Trouble::empty : Trouble::none) << status.message();
+      reports.push_back(report);
+    }
+  }
+  double error_m(const PoseState& pose) const {
+    return (pose.p_WA_m - motion.p_m(1e-9 * static_cast<double>(pose.time_ns))).norm();
+  }
+
+  double error_rad(const PoseState& pose) const {
+    return so3::log(pose.q_WA * motion.q(1e-9 * static_cast<double>(pose.time_ns)).conjugate()).norm();
+  }
+
+  Odometry odometry;
+  Odometry::SweepReport report;
+  std::vector<Odometry::SweepReport> reports;
+  test::Motion motion;
+  std::vector<ImuSample> imu = test::make_imu(motion, 3.0);
+};
+
+TEST(Window, TheSweepsAfterItPlaceASweepThatSawNothing) {
+  Odometry::Params params = given();
+  params.window_sweeps = 3;
+  Drive run(params);
+  run.sweeps(0, 15);
+  run.sweeps(15, 18, 15, 16);  // nothing but a gyro on its rail
+  run.sweeps(18, 19);
+  const PoseState& at_once = run.reports[15].trajectory.back();
+  const PoseState& settled = run.reports[18].settled.back();
+  ASSERT_EQ(at_once.time_ns, settled.time_ns);
+  EXPECT_LT(run.error_rad(settled), 0.5 * run.error_rad(at_once));
+  EXPECT_LT(settled.covariance.diagonal().tail<3>().sum(), at_once.covariance.diagonal().tail<3>().sum());
+  EXPECT_LT(run.error_m(run.report.pose), 0.05);
+}
+
+TEST(Window, OfOneLeavesASweepAsItWas) {
+  Odometry::Params params = given();
+  params.window_sweeps = 1;
+  Drive run(params);
+  run.sweeps(0, 12);
+  for (std::size_t k = 1; k < run.reports.size(); ++k) {
+    const std::vector<PoseState>& settled = run.reports[k].settled;
+    const std::vector<PoseState>& before = run.reports[k - 1].trajectory;
+    ASSERT_EQ(settled.size(), before.size());
+    for (std::size_t i = 0; i < settled.size(); ++i) {
+      EXPECT_EQ(settled[i].time_ns, before[i].time_ns);
+      EXPECT_EQ(settled[i].p_WA_m, before[i].p_WA_m);
+    }
+  }
+}
+
+TEST(Window, SettledAndOpenSweepsAreTheWholeTrajectory) {
+  Odometry::Params params = given();
+  params.window_sweeps = 4;
+  Drive run(params);
+  run.sweeps(0, 12);
+  std::vector<PoseState> all;
+  for (const Odometry::SweepReport& report : run.reports) {
+    all.insert(all.end(), report.settled.begin(), report.settled.end());
+  }
+  EXPECT_EQ(all.back().time_ns, 8 * test::kSweep_ns);
+  const auto open = run.odometry.open_trajectories();
+  ASSERT_EQ(open.size(), 4u);
+  for (const auto& sweep : open) all.insert(all.end(), sweep.begin(), sweep.end());
+  ASSERT_EQ(all.size(), 120u);
+  for (std::size_t i = 1; i < all.size(); ++i) EXPECT_EQ(all[i].time_ns - all[i - 1].time_ns, 10'000'000) << i;
+  // the newest is the filter's own
+  EXPECT_EQ(open.back().back().p_WA_m, run.report.trajectory.back().p_WA_m);
+}
+
+TEST(Window, PosesCanBeAskedAtAnyTimeWithin) {
+  Odometry::Params params = given();
+  params.window_sweeps = 3;
+  Drive run(params);
+  PoseState pose;
+  EXPECT_EQ(run.odometry.pose_at(0, pose).trouble, Trouble::empty);
+  run.sweeps(0, 12);
+  EXPECT_EQ(run.odometry.pose_at(9 * test::kSweep_ns - 1, pose).trouble, Trouble::out_of_range);
+  EXPECT_EQ(run.odometry.pose_at(12 * test::kSweep_ns + 1, pose).trouble, Trouble::out_of_range);
+  const auto open = run.odometry.open_trajectories();
+  for (const auto& sweep : open) {
+    ASSERT_TRUE(run.odometry.pose_at(sweep[4].time_ns, pose).ok());
+    EXPECT_LT((pose.p_WA_m - sweep[4].p_WA_m).norm(), 1e-9);
+    EXPECT_LT((pose.covariance - sweep[4].covariance).norm(), 1e-9);
+  }
+  for (TimeNs t = 9 * test::kSweep_ns + 3'456'789; t < 12 * test::kSweep_ns; t += 7'654'321) {
+    ASSERT_TRUE(run.odometry.pose_at(t, pose).ok());
+    EXPECT_EQ(pose.time_ns, t);
+    // between samples of the IMU too; at 15 rad/s and metres a second. Measured: 12 mm
+    EXPECT_LT(run.error_m(pose), 0.03);
+    EXPECT_LT(so3::log(pose.q_WA * run.motion.q(1e-9 * static_cast<double>(t)).conjugate()).norm(), 0.02);
+    EXPECT_GT(pose.covariance.diagonal().minCoeff(), 0.0);
+  }
+}
+
+void run_on_threads(std::size_t threads, std::size_t count, const std::function<void(std::size_t)>& body) {
+  std::vector<std::thread> workers;
+  for (std::size_t t = 0; t < threads; ++t) {
+    workers.emplace_back([&, t] {
+      for (std::size_t i = t; i < count; i += threads) body(i);
+    });
+  }
+  for (std::thread& worker : workers) worker.join();
+}
+
+TEST(Executor, BitsDoNotDependOnTheThreadsThatTheCallerGives) {
+  Drive alone(given());
+  alone.sweeps(0, 8);
+  const std::vector<MapPoint> expected = alone.odometry.map();
+  for (const std::size_t threads : {1u, 2u, 3u, 7u}) {
+    Odometry::Params params = given();
+    std::size_t calls = 0;
+    params.parallel_for = [&](std::size_t count, const std::function<void(std::size_t)>& body) {
+      ++calls;
+      run_on_threads(threads, count, body);
+    };
+    Drive run(params);
+    run.sweeps(0, 8);
+    EXPECT_GT(calls, 20u);  // it was asked
+    EXPECT_EQ(run.report.pose.p_WA_m, alone.report.pose.p_WA_m);
+    EXPECT_EQ(run.report.pose.q_WA.coeffs(), alone.report.pose.q_WA.coeffs());
+    EXPECT_EQ(run.report.pose.covariance, alone.report.pose.covariance);
+    const std::vector<MapPoint> map = run.odometry.map();
+    ASSERT_EQ(map.size(), expected.size());
+    for (std::size_t i = 0; i < map.size(); ++i) ASSERT_EQ(map[i].position_W_m, expected[i].position_W_m);
+  }
+}
+
+TEST(Executor, OrderDoesNotMatterEither) {
+  Drive alone(given());
+  alone.sweeps(0, 8);
+  Odometry::Params params = given();
+  params.parallel_for = [](std::size_t count, const std::function<void(std::size_t)>& body) {
+    for (std::size_t i = count; i-- > 0;) body(i);
+  };
+  Drive run(params);
+  run.sweeps(0, 8);
+  EXPECT_EQ(run.report.pose.p_WA_m, alone.report.pose.p_WA_m);
+}
+
+}  // namespace
+}  // namespace tumble

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "scenarios/methods/method.hpp"
+#include "scenarios/methods/synthetic_recording.hpp"
+#include "scenarios/scoring/score.hpp"
+
+// the peers must be honest: on a motion that asks nothing of a gyro each of them works
+namespace tumble::scenarios {
+namespace {
+
+/// Half a turn in three seconds, a metre and a half of way; the rail is far off.
+testing::SyntheticMotion gentle() {
+  testing::SyntheticMotion motion;
+  motion.angle_rad = 3.0;
+  motion.rail_rad_s = 100.0;
+  return motion;
+}
+
+struct Outcome {
+  Estimate estimate;
+  double end_error_m = 0.0, end_error_rad = 0.0;
+};
+
+Outcome outcome_of(const std::string& name, const sim::Recording& recording) {
+  const Method& method = *find_methods(name).at(0);
+  Outcome out;
+  out.estimate = method.run(recording.sensors, {}, {&recording.truth});
+  EXPECT_TRUE(out.estimate.status.ok()) << name << ": " << out.estimate.status.message();
+  const ScoringInput input{&recording.sensors, &recording.truth, nullptr};
+  bool any = false;
+  for (const Score& score : score(method.info.kind, out.estimate, input)) {
+    if (score.metric == "translation_error_end_m") out.end_error_m = score.value, any = true;
+    if (score.metric == "rotation_error_end_rad") out.end_error_rad = score.value;
+  }
+  EXPECT_TRUE(any) << name;
+  return out;
+}
+
+class SlamPeer : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(SlamPeer, EndsWhereAGentleMotionEnds) {
+  const Outcome outcome = outcome_of(GetParam(), testing::synthetic_rig(gentle()));
+  EXPECT_LT(outcome.end_error_m, 0.05);
+  EXPECT_LT(outcome.end_error_rad, 0.02);
+}
+
+/// Those that believe the gyro.
+class SlamPeerWithGyro : public SlamPeer {};
+
+// negative control: the measure sees what a clipped gyro does to them
+TEST_P(SlamPeerWithGyro, EndsElsewhereWhereItClips) {
+  testing::SyntheticMotion wild;
+  wild.angle_rad = 40.0;  // 25 rad/s
+  const Outcome outcome = outcome_of(GetParam(), testing::synthetic_rig(wild));
+  EXPECT_GT(std::max(outcome.end_error_m, outcome.end_error_rad), 0.1);
+}
+
+std::string test_name(const ::testing::TestParamInfo<const char*>& param) {
+  const std::string name = param.param;
+  return name.substr(name.find('/') + 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, SlamPeer,
+                         ::testing::Values("slam/constant_velocity", "slam/constant_jerk", "slam/iterated_filter",
+                                           "slam/pointwise_reject", "slam/health_switch", "slam/icp_raw", "slam/seed"),
+                         test_name);
+
+INSTANTIATE_TEST_SUITE_P(Some, SlamPeerWithGyro,
+                         ::testing::Values("slam/constant_jerk", "slam/iterated_filter", "slam/health_switch",
+                                           "slam/icp_raw", "slam/seed"),
+                         test_name);
+
+// the data sheet's range is not where the gyro clips: a reading beyond it that is not on a plateau is healthy
+TEST(HealthSwitch, AGyroBeyondItsStatedRangeIsNotSick) {
+  testing::SyntheticMotion swift;
+  swift.angle_rad = 12.0;  // 7.5 rad/s
+  swift.rail_rad_s = 100.0;
+  sim::Recording recording = testing::synthetic_rig(swift);
+  recording.sensors.imus.front().stated_gyro_range_rad_s = 5.0;
+  const Outcome outcome = outcome_of("slam/health_switch", recording);
+  EXPECT_EQ(outcome.estimate.health.at("sweeps_gyro_sick"), 0.0);
+  EXPECT_LT(outcome.end_error_m, 0.1);
+  // negative control: where it clips it is
+  EXPECT_GT(outcome_of("slam/health_switch", testing::synthetic_rig()).estimate.health.at("sweeps_gyro_sick"), 3.0);
+}
+
+TEST(ConstantVelocity, NeedsNoImu) {
+  sim::Recording recording = testing::synthetic_rig(gentle());
+  const Outcome with = outcome_of("slam/constant_velocity", recording);
+  recording.sensors.imus.clear();
+  const Outcome without = outcome_of("slam/constant_velocity", recording);
+  EXPECT_EQ(without.estimate.sweeps.size(), 60u);
+  EXPECT_GT(without.estimate.poses.size(), 500u);
+  EXPECT_LT(without.end_error_m, 0.05);
+  EXPECT_NEAR(without.end_error_m, with.end_error_m, 0.02);
+}
+
+TEST(ConstantVelocity, NeedsNoTimesOfThePointsWhereTheRecordingSaysSo) {
+  // hardly any skew: the points of a sweep within a millimetre of where they were at its start
+  testing::SyntheticMotion slow;
+  slow.angle_rad = 0.02;
+  slow.displacement_m = {0.05, -0.03, 0.0};
+  slow.rail_rad_s = 100.0;
+  sim::Recording recording = testing::synthetic_rig(slow);
+  recording.sensors.imus.clear();
+  sim::LidarRecord& lidar = recording.sensors.lidars.front();
+  std::fill(lidar.offset_ns.begin(), lidar.offset_ns.end(), 0u);
+  // not said: a driver that lost the stamps
+  const Estimate refused = find_methods("slam/constant_velocity").at(0)->run(recording.sensors, {}, {});
+  EXPECT_FALSE(refused.status.ok());
+  for (const sim::PointTimes times : {sim::PointTimes::not_skewed, sim::PointTimes::unknown}) {
+    lidar.point_times = times;
+    const Outcome outcome = outcome_of("slam/constant_velocity", recording);
+    EXPECT_EQ(outcome.estimate.sweeps.size(), 60u);
+    // without a prior a sweep creeps where its rings lie on those of the map; measured 0.04
+    EXPECT_LT(outcome.end_error_m, 0.06);
+    // a pose belongs to the sweep's only instant
+    EXPECT_EQ(outcome.estimate.sweeps[30].pose.time_ns, lidar.sweep_start_ns[30]);
+  }
+}
+
+TEST(SlamMethods, SayThatTheyNeedAnImu) {
+  sim::Recording recording = testing::synthetic_rig(gentle());
+  recording.sensors.imus.clear();
+  recording.truth.imus.clear();
+  int tried = 0;
+  for (const Method& method : methods()) {
+    if (method.info.kind != Kind::slam || method.info.name == "constant_velocity") continue;
+    if (!method.info.for_robot("rig")) continue;
+    const Estimate estimate = method.run(recording.sensors, {}, {&recording.truth});
+    EXPECT_EQ(estimate.status.trouble, Trouble::empty) << method.info.name;
+    EXPECT_EQ(std::string(estimate.status.field), "imus") << method.info.name;
+    ++tried;
+  }
+  EXPECT_GE(tried, 9);
+}
+
+}  // namespace
+}  // namespace tumble::scenarios
