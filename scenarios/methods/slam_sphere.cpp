@@ -168,6 +168,7 @@ std::vector<ImuSample> samples_along(const Estimate& poses, const sim::Sensors& 
 constexpr double kStretchM = 0.5;        // of rolled way, over which the lidar measures the radius
 constexpr double kStretchSigmaM = 3e-3;  // at the least: neither the centre nor the registration is better known
 constexpr double kBeyondDoubt = 4.0;     // sigmas
+constexpr double kMendedShare = 0.01;    // of the radius: registration has an error of scale of its own
 
 struct Radius {
   double m = 0.0, sigma_m = 0.0;
@@ -183,14 +184,13 @@ std::optional<Radius> radius_by_lidar(const Estimate& rolled, const Estimate& re
   std::optional<Eigen::Vector3d> from_rolled, from_registered;
   std::size_t k = 0;
   for (const LidarInertialOdometry::SweepReport& sweep : registered.sweeps) {
-    bool held = sweep.verdict == SweepVerdict::registered;
     for (; k + 1 < rolled.poses.size() && rolled.poses[k].time_ns < sweep.pose.time_ns; ++k) {
-      held = held && rolled.contacts[k] == sim::ContactLabel::grip;
+      if (rolled.contacts[k] != sim::ContactLabel::grip) from_rolled.reset();
     }
+    if (sweep.verdict != SweepVerdict::registered) continue;  // placed by inertia, which is the rolling itself
     const Eigen::Vector3d p_rolled = rolled.poses[k].p_WA_m;
     const Eigen::Vector3d p_registered =
         (Eigen::Translation3d(sweep.pose.p_WA_m) * sweep.pose.q_WA * T_IG).translation();
-    if (!held) from_rolled.reset();
     if (from_rolled && (p_rolled - *from_rolled).norm() < kStretchM) continue;
     if (from_rolled) {
       const Eigen::Vector2d stretch((p_rolled - *from_rolled).norm(), (p_registered - *from_registered).norm());
@@ -244,7 +244,7 @@ Estimate run_rolling_prior(const sim::Sensors& sensors, const sim::Values& param
   const std::optional<Radius> radius = radius_by_lidar(rolled, estimate, sensors);
   if (!radius) return estimate;
   const double off_m = std::abs(radius->m - sensors.sphere_radius_m);
-  if (off_m > kBeyondDoubt * radius->sigma_m && radius->m > 0.0) {
+  if (off_m > std::max(kBeyondDoubt * radius->sigma_m, kMendedShare * sensors.sphere_radius_m) && radius->m > 0.0) {
     estimate = register_with_rolling(sensors, raw, radius->m, parameters, rolled);
     estimate.health["radius_mended"] = 1.0;
   }
