@@ -181,23 +181,25 @@ std::optional<Radius> radius_by_lidar(const Estimate& rolled, const Estimate& re
       sensors.imus.front().T_BI.inverse(Eigen::Isometry) * Eigen::Translation3d(centre_B_m(rolled));
   double squares = 0.0, products = 0.0;
   std::vector<Eigen::Vector2d> stretches;  // rolled, registered
-  std::optional<Eigen::Vector3d> from_rolled, from_registered;
+  bool open = false;                       // a stretch has begun there:
+  Eigen::Vector3d from_rolled = Eigen::Vector3d::Zero(), from_registered = Eigen::Vector3d::Zero();
   std::size_t k = 0;
   for (const LidarInertialOdometry::SweepReport& sweep : registered.sweeps) {
     for (; k + 1 < rolled.poses.size() && rolled.poses[k].time_ns < sweep.pose.time_ns; ++k) {
-      if (rolled.contacts[k] != sim::ContactLabel::grip) from_rolled.reset();
+      if (rolled.contacts[k] != sim::ContactLabel::grip) open = false;
     }
     if (sweep.verdict != SweepVerdict::registered) continue;  // placed by inertia, which is the rolling itself
     const Eigen::Vector3d p_rolled = rolled.poses[k].p_WA_m;
     const Eigen::Vector3d p_registered =
         (Eigen::Translation3d(sweep.pose.p_WA_m) * sweep.pose.q_WA * T_IG).translation();
-    if (from_rolled && (p_rolled - *from_rolled).norm() < kStretchM) continue;
-    if (from_rolled) {
-      const Eigen::Vector2d stretch((p_rolled - *from_rolled).norm(), (p_registered - *from_registered).norm());
+    if (open && (p_rolled - from_rolled).norm() < kStretchM) continue;
+    if (open) {
+      const Eigen::Vector2d stretch((p_rolled - from_rolled).norm(), (p_registered - from_registered).norm());
       squares += stretch.x() * stretch.x();
       products += stretch.x() * stretch.y();
       stretches.push_back(stretch);
     }
+    open = true;
     from_rolled = p_rolled;
     from_registered = p_registered;
   }
