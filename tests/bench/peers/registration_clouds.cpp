@@ -43,7 +43,7 @@ double time_ms(Registration& registration, const Registration::Prior& prior, con
                const tumble::VoxelMap& map, Registration::Result& found) {
   tumble::MotionSample still;
   still.time_ns = tumble::test::kSweep_ns;
-  still.f_I_m_s2 = prior.state.q_WI.conjugate() * Eigen::Vector3d(0.0, 0.0, 9.80665);
+  still.f_I_m_s2 = prior.mean.state.q_WI.conjugate() * Eigen::Vector3d(0.0, 0.0, 9.80665);
   double best = 1e9;
   for (int i = 0; i < kRepeats; ++i) {
     tumble::SweepTrajectory trajectory;
@@ -87,14 +87,15 @@ int main(int argc, char** argv) {
     sampler.choose(positions, kVoxel_m, chosen);
     for (const std::uint32_t index : chosen) points.push_back(all[index]);
 
-    Registration::Prior prior;
-    prior.state.p_WI_m = truth.translation() + Eigen::Vector3d(0.1, -0.08, 0.06);
-    prior.state.q_WI = tumble::so3::exp({0.02, -0.015, 0.02}) * Eigen::Quaterniond(truth.linear());
-    prior.state.covariance.diagonal() << Eigen::Vector3d::Constant(1.0), Eigen::Vector3d::Constant(0.1),
+    tumble::MotionState believed;
+    believed.p_WI_m = truth.translation() + Eigen::Vector3d(0.1, -0.08, 0.06);
+    believed.q_WI = tumble::so3::exp({0.02, -0.015, 0.02}) * Eigen::Quaterniond(truth.linear());
+    believed.covariance.diagonal() << Eigen::Vector3d::Constant(1.0), Eigen::Vector3d::Constant(0.1),
         Eigen::Vector3d::Constant(1e-8);
+    const Registration::Prior prior(believed);
     Eigen::Isometry3d start = Eigen::Isometry3d::Identity();
-    start.linear() = prior.state.q_WI.toRotationMatrix();
-    start.translation() = prior.state.p_WI_m;
+    start.linear() = prior.mean.state.q_WI.toRotationMatrix();
+    start.translation() = prior.mean.state.p_WI_m;
     char name[32];
     std::snprintf(name, sizeof(name), "sweep_%02d", k);
     std::ofstream cloud(folder / (std::string(name) + ".txt")), pose(folder / (std::string(name) + ".pose"));
@@ -104,8 +105,9 @@ int main(int argc, char** argv) {
 
     Registration::Result found;
     times.push_back(time_ms(registration, prior, points, map, found));
-    errors_m.push_back((found.state.p_WI_m - truth.translation()).norm());
-    errors_rad.push_back(tumble::so3::log(found.state.q_WI * Eigen::Quaterniond(truth.linear()).conjugate()).norm());
+    errors_m.push_back((found.mean.state.p_WI_m - truth.translation()).norm());
+    errors_rad.push_back(
+        tumble::so3::log(found.mean.state.q_WI * Eigen::Quaterniond(truth.linear()).conjugate()).norm());
   }
   std::sort(times.begin(), times.end());
   std::sort(errors_m.begin(), errors_m.end());
