@@ -123,10 +123,11 @@ class SweepTrajectory {
   struct Interval {
     double start_s, length_s;
     Eigen::Quaterniond q_WI;
-    Eigen::Vector3d w_I, a_W;                      // rate in body axes; mean specific force in W
-    Eigen::Vector3d thrust_v, thrust_p;            // integrals of the specific force up to start_s
-    Eigen::Vector3d excess_share;                  // s_j where axis j is clipped, 0 elsewhere
-    Eigen::Matrix<double, kKnots, 1> knot_weight;  // of each knot's excess in this interval
+    Eigen::Vector3d w_I, a_W;            // rate in body axes; mean specific force in W
+    Eigen::Vector3d thrust_v, thrust_p;  // integrals of the specific force up to start_s
+    Eigen::Vector3d excess_share;        // s_j where axis j is clipped, 0 elsewhere
+    Eigen::Matrix<double, kKnots, 1> knot_weight =
+        Eigen::Matrix<double, kKnots, 1>::Zero();  // of each knot's excess in this interval
     ByExcess excess_attitude, excess_v, excess_p;  // derivatives at start_s
   };
   const Interval& interval_at(double t_s, std::size_t& hint) const;
