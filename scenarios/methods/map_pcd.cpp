@@ -6,7 +6,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/map_file.hpp"
-#include "scenarios/recordings/quiet_pcl.hpp"
+#include "scenarios/recordings/clouds/quiet_pcl.hpp"
 #include "tumble/mapping/pcl.hpp"
 
 namespace tumble::scenarios {

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/recordings/bag.hpp"
+#include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "sim/parameters.hpp"
 

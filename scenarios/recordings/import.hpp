@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/recordings/clouds/sweep_builder.hpp"
 #include "scenarios/recordings/recording_file.hpp"
-#include "scenarios/recordings/reference.hpp"
-#include "scenarios/recordings/sweep_builder.hpp"
+#include "scenarios/recordings/trajectories/reference.hpp"
 #include "sim/recording.hpp"
 
 namespace tumble::scenarios {

@@ -17,7 +17,8 @@ file(COPY ${SOURCE}/tests/install/consumer DESTINATION ${WORK})
 set(common -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_BUILD_TYPE=Release)
 
 run(fails ${CMAKE_COMMAND} -S ${WORK}/consumer -B ${WORK}/absent ${common} -DCMAKE_PREFIX_PATH=${WORK}/prefix)
-run(passes ${CMAKE_COMMAND} -S ${SOURCE}/estimator -B ${WORK}/estimator ${common} -DCMAKE_INSTALL_PREFIX=${WORK}/prefix)
+run(passes ${CMAKE_COMMAND} -S ${SOURCE}/estimator -B ${WORK}/estimator ${common} -DTUMBLE_PRECOMPILE=ON
+    -DCMAKE_INSTALL_PREFIX=${WORK}/prefix)
 run(passes ${CMAKE_COMMAND} --build ${WORK}/estimator --parallel --target install)
 run(passes ${CMAKE_COMMAND} -S ${WORK}/consumer -B ${WORK}/present ${common} -DCMAKE_PREFIX_PATH=${WORK}/prefix)
 run(passes ${CMAKE_COMMAND} --build ${WORK}/present)

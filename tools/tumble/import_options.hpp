@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/recordings/bag.hpp"
+#include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/import.hpp"
 #include "tools/tumble/session.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/recordings/bag.hpp"
+#include "scenarios/recordings/bags/bag.hpp"
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "scenarios/recordings/bag_storage.hpp"
+#include "scenarios/recordings/bags/bag_storage.hpp"
 #include "scenarios/recordings/export.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/recordings/cloud_file.hpp"
+#include "scenarios/recordings/clouds/cloud_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -4,10 +4,10 @@
 
 #include <cmath>
 
+#include "scenarios/recordings/clouds/sweep_stamps.hpp"
 #include "scenarios/recordings/export.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"
 #include "scenarios/recordings/import.hpp"
-#include "scenarios/recordings/sweep_stamps.hpp"
 
 namespace tumble::scenarios {
 namespace {

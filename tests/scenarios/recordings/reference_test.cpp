@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/recordings/reference.hpp"
+#include "scenarios/recordings/trajectories/reference.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

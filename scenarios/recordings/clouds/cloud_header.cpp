@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/recordings/cloud_file.hpp"
+#include "scenarios/recordings/clouds/cloud_file.hpp"
 
 namespace tumble::scenarios {
 

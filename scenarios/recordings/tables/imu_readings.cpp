@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/recordings/imu_readings.hpp"
+#include "scenarios/recordings/tables/imu_readings.hpp"
 
 #include <algorithm>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/recordings/sweep_stamps.hpp"
+#include "scenarios/recordings/clouds/sweep_stamps.hpp"
 
 namespace tumble::scenarios {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/recordings/sweep_builder.hpp"
+#include "scenarios/recordings/clouds/sweep_builder.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <set>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/recordings/sweep_stamps.hpp"
+#include "scenarios/recordings/clouds/sweep_stamps.hpp"
 
 namespace tumble::scenarios {
 

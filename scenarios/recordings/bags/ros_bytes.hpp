@@ -14,11 +14,11 @@
 #include <utility>
 #include <vector>
 
-#include "scenarios/recordings/ros_messages.hpp"
+#include "scenarios/recordings/bags/ros_messages.hpp"
 
 /// Messages to and from bytes: ROS 1's plain little-endian layout, and ROS 2's CDR by Fast-CDR. Readers trust no
 /// length: what a message promises is held against what is left of it before anything is allocated. Private to
-/// scenarios/recordings.
+/// scenarios/recordings/bags.
 namespace tumble::scenarios::ros {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -39,29 +39,19 @@ class Ros1Writer {
  public:
   template <class Number>
   void operator()(const Number& number) {
-    append(&number, sizeof(number));
+    raw(reinterpret_cast<const std::uint8_t*>(&number), sizeof(number));
   }
   void operator()(const std::string& text) {
-    (*this)(static_cast<std::uint32_t>(text.size()));
-    append(text.data(), text.size());
-  }
-  void operator()(const Bytes& blob) {
-    (*this)(static_cast<std::uint32_t>(blob.size()));
-    append(blob.data(), blob.size());
+    count(text.size(), 1);
+    raw(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
   }
   void ros1_only(std::uint32_t number) { (*this)(number); }
-  template <class Entry, class Fields>
-  void list(std::vector<Entry>& entries, std::size_t, Fields&& each) {
-    (*this)(static_cast<std::uint32_t>(entries.size()));
-    for (Entry& entry : entries) each(*this, entry);
+  std::size_t count(std::size_t entries, std::size_t) {
+    (*this)(static_cast<std::uint32_t>(entries));
+    return entries;
   }
+  void raw(const std::uint8_t* first, std::size_t size) { bytes.insert(bytes.end(), first, first + size); }
   Bytes bytes;
-
- private:
-  void append(const void* data, std::size_t size) {
-    const auto* first = static_cast<const std::uint8_t*>(data);
-    bytes.insert(bytes.end(), first, first + size);
-  }
 };
 
 class Ros1Reader {
@@ -70,36 +60,27 @@ class Ros1Reader {
 
   template <class Number>
   void operator()(Number& number) {
-    take(&number, sizeof(number));
+    raw(reinterpret_cast<std::uint8_t*>(&number), sizeof(number));
   }
   void operator()(std::string& text) {
-    text.resize(count(1));
-    take(text.data(), text.size());
-  }
-  void operator()(Bytes& bytes) {
-    bytes.resize(count(1));
-    take(bytes.data(), bytes.size());
+    text.resize(count(0, 1));
+    raw(reinterpret_cast<std::uint8_t*>(text.data()), text.size());
   }
   void ros1_only(std::uint32_t& number) { (*this)(number); }
-  template <class Entry, class Fields>
-  void list(std::vector<Entry>& entries, std::size_t least, Fields&& each) {
-    entries.resize(count(least));
-    for (Entry& entry : entries) each(*this, entry);
+  std::size_t count(std::size_t, std::size_t least_bytes) {
+    std::uint32_t entries = 0;
+    (*this)(entries);
+    require_left(left_, entries, least_bytes);
+    return entries;
   }
-
- private:
-  std::size_t count(std::size_t each) {
-    std::uint32_t number = 0;
-    (*this)(number);
-    require_left(left_, number, each);
-    return number;
-  }
-  void take(void* out, std::size_t size) {
+  void raw(std::uint8_t* out, std::size_t size) {
     if (size > left_) throw BadMessage("ends in the middle of a field");
     if (size > 0) std::memcpy(out, at_, size);
     at_ += size;
     left_ -= size;
   }
+
+ private:
   const std::uint8_t* at_;
   std::size_t left_;
 };
@@ -116,16 +97,12 @@ class CdrWriter {
   void operator()(const std::array<double, kCount>& numbers) {
     cdr_.serializeArray(numbers.data(), kCount);
   }
-  void operator()(const Bytes& bytes) {
-    cdr_ << static_cast<std::uint32_t>(bytes.size());
-    cdr_.serializeArray(bytes.data(), bytes.size());
-  }
   void ros1_only(std::uint32_t) {}
-  template <class Entry, class Fields>
-  void list(std::vector<Entry>& entries, std::size_t, Fields&& each) {
-    cdr_ << static_cast<std::uint32_t>(entries.size());
-    for (Entry& entry : entries) each(*this, entry);
+  std::size_t count(std::size_t entries, std::size_t) {
+    cdr_ << static_cast<std::uint32_t>(entries);
+    return entries;
   }
+  void raw(const std::uint8_t* first, std::size_t size) { cdr_.serializeArray(first, size); }
   Bytes bytes() const {
     const auto* first = reinterpret_cast<const std::uint8_t*>(buffer_.getBuffer());
     return {first, first + cdr_.getSerializedDataLength()};
@@ -152,24 +129,16 @@ class CdrReader {
   void operator()(std::array<double, kCount>& numbers) {
     cdr_.deserializeArray(numbers.data(), kCount);
   }
-  void operator()(Bytes& bytes) {
-    bytes.resize(count(1));
-    cdr_.deserializeArray(bytes.data(), bytes.size());
-  }
   void ros1_only(std::uint32_t&) {}
-  template <class Entry, class Fields>
-  void list(std::vector<Entry>& entries, std::size_t least, Fields&& each) {
-    entries.resize(count(least));
-    for (Entry& entry : entries) each(*this, entry);
+  std::size_t count(std::size_t, std::size_t least_bytes) {
+    std::uint32_t entries = 0;
+    cdr_ >> entries;
+    require_left(size_ - std::min(size_, cdr_.getSerializedDataLength()), entries, least_bytes);
+    return entries;
   }
+  void raw(std::uint8_t* out, std::size_t size) { cdr_.deserializeArray(out, size); }
 
  private:
-  std::size_t count(std::size_t each) {
-    std::uint32_t number = 0;
-    cdr_ >> number;
-    require_left(size_ - std::min(size_, cdr_.getSerializedDataLength()), number, each);
-    return number;
-  }
   std::size_t size_;
   eprosima::fastcdr::FastBuffer buffer_;
   eprosima::fastcdr::Cdr cdr_;

@@ -2,16 +2,18 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 /// The messages that a recording becomes in a bag, and the one list of their fields in the order of their definitions.
-/// ROS 1 and ROS 2 lay out the same fields differently: ros1_bytes.hpp and cdr_bytes.hpp are archives that visit them.
-/// Private to scenarios/recordings.
+/// ROS 1 and ROS 2 lay out the same fields differently: ros_bytes.hpp has the archives that visit them. Private to
+/// scenarios/recordings/bags.
 ///
-/// An archive has: operator()(uint8 | uint32 | double | text | array of doubles | bytes), ros1_only(uint32) for the
-/// field that ROS 2 gave up, and list(vector, least bytes of an entry, fields).
+/// An archive has: operator()(uint8 | uint32 | text | array of doubles), ros1_only(uint32) for the field that ROS 2
+/// gave up, count(entries there are, least bytes of one) for the length before a list (a reader returns the length
+/// that it finds), and raw(first byte, bytes).
 namespace tumble::scenarios::ros {
 
 struct Header {
@@ -64,8 +66,20 @@ struct Odometry {
   std::array<double, 36> twist_covariance = {};
 };
 
-template <class Archive, class Message>
-void header_fields(Archive& archive, Message& header) {
+template <class Archive, class Entry, class Fields>
+void list(Archive& archive, std::vector<Entry>& entries, std::size_t least_bytes, Fields&& fields_of) {
+  entries.resize(archive.count(entries.size(), least_bytes));
+  for (Entry& entry : entries) fields_of(entry);
+}
+
+template <class Archive>
+void blob(Archive& archive, std::vector<std::uint8_t>& bytes) {
+  bytes.resize(archive.count(bytes.size(), 1));
+  archive.raw(bytes.data(), bytes.size());
+}
+
+template <class Archive>
+void header_fields(Archive& archive, Header& header) {
   archive.ros1_only(header.seq);
   archive(header.sec);
   archive(header.nanosec);
@@ -89,16 +103,16 @@ void fields(Archive& archive, PointCloud2& cloud) {
   archive(cloud.height);
   archive(cloud.width);
   constexpr std::size_t kFieldBytes = 13;
-  archive.list(cloud.fields, kFieldBytes, [](auto& inner, PointField& field) {
-    inner(field.name);
-    inner(field.offset);
-    inner(field.datatype);
-    inner(field.count);
+  list(archive, cloud.fields, kFieldBytes, [&](PointField& field) {
+    archive(field.name);
+    archive(field.offset);
+    archive(field.datatype);
+    archive(field.count);
   });
   archive(cloud.is_bigendian);
   archive(cloud.point_step);
   archive(cloud.row_step);
-  archive(cloud.data);
+  blob(archive, cloud.data);
   archive(cloud.is_dense);
 }
 

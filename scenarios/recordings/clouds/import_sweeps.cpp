@@ -2,9 +2,9 @@
 #include <algorithm>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/recordings/clouds/sweep_stamps.hpp"
 #include "scenarios/recordings/import.hpp"
 #include "scenarios/recordings/recording_clock.hpp"
-#include "scenarios/recordings/sweep_stamps.hpp"
 
 namespace tumble::scenarios {
 

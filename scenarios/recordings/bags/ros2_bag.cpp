@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/recordings/bag_storage.hpp"
+#include "scenarios/recordings/bags/bag_storage.hpp"
 #include "scenarios/recordings/export_folder.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 

@@ -12,7 +12,7 @@
 #include <string>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/recordings/bag_storage.hpp"
+#include "scenarios/recordings/bags/bag_storage.hpp"
 
 namespace tumble::scenarios {
 

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/recordings/bag_storage.hpp"
+#include "scenarios/recordings/bags/bag_storage.hpp"
 
 namespace tumble::scenarios {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/recordings/cloud_file.hpp"
+#include "scenarios/recordings/clouds/cloud_file.hpp"
 
 #include <pcl/PCLPointCloud2.h>
 #include <pcl/exceptions.h>
@@ -12,7 +12,7 @@
 #include <fstream>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/recordings/quiet_pcl.hpp"
+#include "scenarios/recordings/clouds/quiet_pcl.hpp"
 
 namespace tumble::scenarios {
 

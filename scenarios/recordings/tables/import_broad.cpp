@@ -7,7 +7,7 @@
 #include "scenarios/recordings/hdf5_file.hpp"
 #include "scenarios/recordings/import.hpp"
 #include "scenarios/recordings/recording_check.hpp"
-#include "scenarios/recordings/reference.hpp"
+#include "scenarios/recordings/trajectories/reference.hpp"
 
 namespace tumble::scenarios {
 

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/recordings/reference.hpp"
-#include "scenarios/recordings/sweep_stamps.hpp"
+#include "scenarios/recordings/clouds/sweep_stamps.hpp"
+#include "scenarios/recordings/trajectories/reference.hpp"
 
 namespace tumble::scenarios {
 

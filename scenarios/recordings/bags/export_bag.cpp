@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/recordings/bag.hpp"
-#include "scenarios/recordings/bag_storage.hpp"
+#include "scenarios/recordings/bags/bag.hpp"
+#include "scenarios/recordings/bags/bag_storage.hpp"
 #include "scenarios/recordings/export_folder.hpp"
 
 namespace tumble::scenarios {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/recordings/cloud_file.hpp"
+#include "scenarios/recordings/clouds/cloud_file.hpp"
 #include "sim/recording.hpp"
 
 namespace tumble::scenarios {

@@ -10,7 +10,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/import.hpp"
-#include "scenarios/recordings/imu_readings.hpp"
+#include "scenarios/recordings/tables/imu_readings.hpp"
 
 namespace tumble::scenarios {
 

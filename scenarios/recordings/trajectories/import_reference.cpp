@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/errors.hpp"
+#include "scenarios/recordings/clouds/sweep_stamps.hpp"
 #include "scenarios/recordings/import.hpp"
 #include "scenarios/recordings/recording_clock.hpp"
-#include "scenarios/recordings/sweep_stamps.hpp"
 
 namespace tumble::scenarios {
 

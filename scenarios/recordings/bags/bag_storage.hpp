@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/recordings/ros_bytes.hpp"
+#include "scenarios/recordings/bags/ros_bytes.hpp"
 
 /// The two kinds of bags behind one face: topics, and messages as bytes in order of time. Private to
-/// scenarios/recordings.
+/// scenarios/recordings/bags.
 namespace tumble::scenarios {
 
 /// Types by ROS 1's names ("sensor_msgs/Imu"); ROS 2 has "sensor_msgs/msg/Imu".

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/recordings/sweep_stamps.hpp"
+#include "scenarios/recordings/clouds/sweep_stamps.hpp"
 
 #include <algorithm>
 #include <cctype>

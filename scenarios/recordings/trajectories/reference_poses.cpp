@@ -8,7 +8,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/table_file.hpp"
-#include "scenarios/recordings/reference.hpp"
+#include "scenarios/recordings/trajectories/reference.hpp"
 
 namespace tumble::scenarios {
 

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/recordings/clouds/sweep_builder.hpp"
 #include "scenarios/recordings/number_text.hpp"
-#include "scenarios/recordings/sweep_builder.hpp"
 #include "sim/parameters.hpp"
 
 namespace tumble::scenarios {

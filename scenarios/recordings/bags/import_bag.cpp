@@ -3,11 +3,11 @@
 #include <cstring>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/recordings/bag.hpp"
-#include "scenarios/recordings/bag_storage.hpp"
-#include "scenarios/recordings/imu_readings.hpp"
+#include "scenarios/recordings/bags/bag.hpp"
+#include "scenarios/recordings/bags/bag_storage.hpp"
+#include "scenarios/recordings/clouds/sweep_stamps.hpp"
 #include "scenarios/recordings/recording_clock.hpp"
-#include "scenarios/recordings/sweep_stamps.hpp"
+#include "scenarios/recordings/tables/imu_readings.hpp"
 #include "sim/parameters.hpp"
 
 namespace tumble::scenarios {
