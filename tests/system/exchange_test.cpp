@@ -101,6 +101,53 @@ TEST(Exchange, SweepsWithAnImuAndReferencePosesAreScored) {
   EXPECT_LT(metric(json_of(rolled), "position_end_error_m"), 1.0);
 }
 
+/// Copies some sweeps of an exported folder, with their stamps (one line each, after a line of comment).
+void copy_sweeps(const fs::path& from, const fs::path& to, int first, int count) {
+  fs::create_directories(to);
+  std::ifstream stamps(from / "lidar_times.txt");
+  std::ofstream kept(to / "lidar_times.txt");
+  std::string line;
+  std::getline(stamps, line);
+  for (int k = 0; std::getline(stamps, line) && k < first + count; ++k) {
+    if (k < first) continue;
+    const std::string number = std::to_string(k);
+    const std::string name = "lidar_" + std::string(6 - number.size(), '0') + number + ".ply";
+    fs::copy_file(from / name, to / name);
+    kept << line << '\n';
+  }
+}
+
+// sweeps and reference poses alone, no IMU: what a lidar by itself makes of them is mapped and scored
+TEST(Exchange, SweepsAloneAreMappedAndScored) {
+  const fs::path folder = test_folder();
+  const std::string recording = (folder / "hill.h5").string(), truth = (folder / "truth.txt").string();
+  ASSERT_EQ(run_program({"record", "hill", "--seed", "1001", "-o", recording, "--quiet"}).status, 0);
+  ASSERT_EQ(run_program({"export", recording, "--format", "ply", "-o", (folder / "all").string(), "--quiet"}).status,
+            0);
+  ASSERT_EQ(run_program({"export", recording, "--format", "tum", "-o", truth, "--quiet"}).status, 0);
+  copy_sweeps(folder / "all", folder / "some", 48, 12);  // the rig has come down and rocks
+  const std::string back = (folder / "back.h5").string(), estimate = (folder / "e").string();
+  const Ended imported = run_program({"import", (folder / "some").string(), "--lidar", "rs16", "--robot", "rig",
+                                      "--reference", truth, "--reference-frame", "body", "-o", back, "--json"});
+  ASSERT_EQ(imported.status, 0) << imported.err;
+  EXPECT_EQ(json_of(imported)["sweeps"], 12);
+  EXPECT_EQ(json_of(imported)["has_reference"], true);
+  EXPECT_FALSE(json_of(imported).contains("samples"));
+  const Ended estimated =
+      run_program({"estimate", back, "--method", "slam/constant_velocity", "-o", estimate, "--json"});
+  ASSERT_EQ(estimated.status, 0) << estimated.err;
+  EXPECT_EQ(json_of(estimated)["health"]["sweeps_registered"], 11.0);
+  const Ended scored = run_program({"score", estimate, back, "--json"});
+  ASSERT_EQ(scored.status, 0) << scored.err;
+  EXPECT_EQ(json_of(scored)["status"], "ok");
+  EXPECT_LT(metric(json_of(scored), "ate_m"), 0.3);  // measured 0.14, without IMU in a rocking rig
+  EXPECT_LT(metric(json_of(scored), "rotation_error_end_rad"), 0.05);
+  // a method that needs an IMU says so
+  const Ended refused = run_program({"estimate", back, "--method", "slam/tumble", "-o", (folder / "x").string()});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("it needs an IMU"));
+}
+
 TEST(Exchange, BagsComeBack) {
   const fs::path folder = test_folder();
   const std::string recording = (shared_run("roll") / "recording.h5").string();
