@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "odometry_impl.hpp"
-#include "tumble/common/so3.hpp"
 
 namespace tumble {
 
