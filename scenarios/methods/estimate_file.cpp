@@ -24,6 +24,7 @@ constexpr const char* kFiles[] = {"estimate.json",   "rates.csv",    "attitude.t
 const std::string kRatesHeader = "time_ns,wx_rad_s,wy_rad_s,wz_rad_s,cxx,cxy,cxz,cyy,cyz,czz,clipped_axes,source";
 const std::string kPose = "px_m,py_m,pz_m,qx,qy,qz,qw,vx_m_s,vy_m_s,vz_m_s";
 const std::string kContactsHeader = "time_ns,label";
+const std::string kFlaggedContactsHeader = kContactsHeader + ",uncertain";
 const std::string kPositionCovarianceHeader = "time_ns,cxx,cxy,cxz,cyy,cyz,czz";
 constexpr std::size_t kCovarianceColumn = 16;  // of a sweep's pose: upper triangle by rows, position before attitude
 const std::string kSweepsHeader =
@@ -109,10 +110,12 @@ void read_rates(const std::filesystem::path& path, std::vector<RateState>& rates
 
 // 0 air, 1 grip, 2 slip, 3 slide, as in a recording's truth
 void write_contacts(const std::filesystem::path& path, const Estimate& estimate) {
-  TableWriter table(path, ',', kContactsHeader);
+  const bool flagged = !estimate.uncertain.empty();
+  TableWriter table(path, ',', flagged ? kFlaggedContactsHeader : kContactsHeader);
   for (std::size_t k = 0; k < estimate.contacts.size(); ++k) {
     table.integer(estimate.poses[k].time_ns);
     table.integer(static_cast<int>(estimate.contacts[k]));
+    if (flagged) table.integer(estimate.uncertain[k] ? 1 : 0);
     table.end_row();
   }
   table.close();
@@ -156,8 +159,18 @@ void read_covariances(const std::filesystem::path& path, std::vector<PoseState>&
   }
 }
 
+bool begins_with(const std::filesystem::path& path, const std::string& header) {
+  std::ifstream file(path);
+  std::string line;
+  std::getline(file, line);
+  if (!line.empty() && line.back() == '\r') line.pop_back();
+  return line == header;
+}
+
 void read_contacts(const std::filesystem::path& path, Estimate& estimate) {
-  const Table table = Table::read(path, ',', kContactsHeader, 2);
+  const bool flagged = begins_with(path, kFlaggedContactsHeader);
+  const Table table =
+      flagged ? Table::read(path, ',', kFlaggedContactsHeader, 3) : Table::read(path, ',', kContactsHeader, 2);
   require_row_per_pose(table, estimate.poses);
   for (const Table::Row& row : table.rows) {
     const std::int64_t label = table.integer(row, 1);
@@ -165,6 +178,13 @@ void read_contacts(const std::filesystem::path& path, Estimate& estimate) {
       throw BadInput(path.string() + ":" + std::to_string(row.line) + ": unknown label " + std::to_string(label));
     }
     estimate.contacts.push_back(static_cast<sim::ContactLabel>(label));
+    if (!flagged) continue;
+    const std::int64_t uncertain = table.integer(row, 2);
+    if (uncertain != 0 && uncertain != 1) {
+      throw BadInput(path.string() + ":" + std::to_string(row.line) + ": uncertain is " + std::to_string(uncertain) +
+                     ", must be 0 or 1");
+    }
+    estimate.uncertain.push_back(uncertain == 1);
   }
 }
 
@@ -320,6 +340,10 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
     return !pose.covariance.topLeftCorner<3, 3>().isZero(0.0);
   });
   if (stated) write_covariances(folder / "position_covariance.csv", estimate.poses);
+  if (!estimate.uncertain.empty() && estimate.uncertain.size() != estimate.contacts.size()) {
+    throw std::invalid_argument("an estimate has " + std::to_string(estimate.uncertain.size()) +
+                                " flags of uncertainty for " + std::to_string(estimate.contacts.size()) + " contacts");
+  }
   if (!estimate.contacts.empty()) {
     if (estimate.contacts.size() != estimate.poses.size()) {
       throw std::invalid_argument("an estimate has " + std::to_string(estimate.contacts.size()) + " contacts for " +

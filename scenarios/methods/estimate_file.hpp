@@ -13,7 +13,8 @@ namespace tumble::scenarios {
 /// only the files that apply, estimate.json last. Everything that is scored comes back the same to the bit, but for the
 /// last bit of a quaternion in a TUM file (it is normalised on reading). Covariances of attitudes, those of poses but
 /// for the position, and the velocities of `poses` are not written. Throws BadInput when it cannot write,
-/// std::invalid_argument when `contacts` is not as long as `poses`.
+/// std::invalid_argument when `contacts` is not as long as `poses`, or `uncertain` neither empty nor as long. Columns:
+/// ESTIMATE.md.
 void write_estimate(const std::filesystem::path& folder, const std::string& method, Kind kind,
                     const Estimate& estimate);
 

@@ -36,6 +36,9 @@ struct Estimate {
   /// What the method says of the contact at each pose, parallel to `poses`; empty when it says nothing. `air`: no
   /// contact, or one whose motion it does not know (a bump).
   std::vector<sim::ContactLabel> contacts;
+  /// Whether each pose lies in an event whose way the method calls uncertain, parallel to `contacts`; empty when it
+  /// does not say.
+  std::vector<bool> uncertain;
   std::vector<LidarInertialOdometry::SweepReport> sweeps;  ///< kind slam, one per sweep
   std::vector<std::int64_t> sweep_end_ns;                  ///< parallel to `sweeps`
   std::vector<MapPoint> map;                               ///< kind slam

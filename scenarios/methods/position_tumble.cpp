@@ -97,6 +97,7 @@ sim::ContactLabel contact_label(RollingMode mode, double radius_m, const PoseSta
 void add_contact(RollingMode mode, bool at_rest, bool uncertain, double radius_m, const ImuSample& sample,
                  Estimate& estimate) {
   estimate.contacts.push_back(contact_label(mode, radius_m, estimate.poses.back(), sample));
+  estimate.uncertain.push_back(uncertain);
   if (uncertain) estimate.health["samples_uncertain"] += 1.0;
   if (mode == RollingMode::slip) estimate.health["samples_slip"] += 1.0;
   if (mode == RollingMode::bump) estimate.health["samples_bump"] += 1.0;

@@ -88,12 +88,25 @@ std::span<const sim::Parameter> sphere_rest_parameters();
 /// Parameters of several stages of one method, in order; their names differ.
 std::vector<sim::Parameter> joined_parameters(std::initializer_list<std::span<const sim::Parameter>> stages);
 
+/// A motion known from elsewhere, one velocity per sample of the IMU along it.
+struct KnownMotion {
+  struct Velocity {
+    Eigen::Vector3d v_WI_I_m_s = Eigen::Vector3d::Zero();
+    double sigma_m_s = 0.0;
+  };
+  std::vector<Velocity> velocities;
+  double gravity_m_s2 = 0.0;      ///< what of gravity is in the samples, which were made along the motion
+  double correction_max_m = 1.0;  ///< a registration that asks for more is a wrong one
+  double correction_max_rad = 1.0;
+};
+
 /// What the lidar-inertial chain estimates beside the motion.
 struct SlamChain {
   bool excess_rate = false;  ///< by how much the rates of clipped axes are short; `excess_parameters`
   /// Mounting and clock of the lidar, and gravity; `calibration_parameters`. The recording is run through twice: what
   /// the first run learns of the calibration is the start of the second.
   bool calibration = false;
+  const KnownMotion* along = nullptr;  ///< the samples were made along it
 };
 
 /// The lidar-inertial chain behind every registration method: given rates, deskew, register, map. `parameters` hold

@@ -95,6 +95,11 @@ LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const
     params.time_offset_sigma_s = parameters.at("time_offset_sigma_s");
     params.gravity_sigma_m_s2 = parameters.at("gravity_sigma_m_s2");
   }
+  if (chain.along) {
+    params.gravity_m_s2 = chain.along->gravity_m_s2;
+    params.correction_max_m = chain.along->correction_max_m;
+    params.correction_max_rad = chain.along->correction_max_rad;
+  }
   return params;
 }
 
@@ -126,9 +131,20 @@ bool shorten(std::int64_t end_ns, bridge::Sweep& sweep) {
   return true;
 }
 
+/// Velocity at `time_ns`, between the samples about it; `next` is the first sample after it or a little more.
+KnownMotion::Velocity velocity_at(std::int64_t time_ns, std::span<const ImuSample> samples, const KnownMotion& motion,
+                                  std::size_t next) {
+  while (next > 0 && samples[next - 1].time_ns >= time_ns) --next;
+  if (next == 0 || next == samples.size()) return motion.velocities[next == 0 ? 0 : next - 1];
+  const KnownMotion::Velocity &a = motion.velocities[next - 1], &b = motion.velocities[next];
+  const double share =
+      seconds(time_ns - samples[next - 1].time_ns) / seconds(samples[next].time_ns - samples[next - 1].time_ns);
+  return {a.v_WI_I_m_s + share * (b.v_WI_I_m_s - a.v_WI_I_m_s), std::max(a.sigma_m_s, b.sigma_m_s)};
+}
+
 /// Feeds the whole recording; `estimate` gets what came of it but the map.
 void run_sweeps(const sim::LidarRecord& lidar, std::span<const ImuSample> samples, LidarInertialOdometry& odometry,
-                double time_offset_s, Estimate& estimate) {
+                double time_offset_s, const KnownMotion* along, Estimate& estimate) {
   const auto offset_ns = static_cast<std::int64_t>(std::llround(time_offset_s * 1e9));
   const std::size_t sweeps = bridge::sweep_count(lidar);
   std::size_t next = 0, settled = 0;
@@ -144,6 +160,11 @@ void run_sweeps(const sim::LidarRecord& lidar, std::span<const ImuSample> sample
     if (!shorten(samples.back().time_ns - offset_ns, sweep)) {
       estimate.health["sweeps_unfinished"] += 1.0;
       continue;
+    }
+    if (along && !estimate.sweeps.empty()) {
+      const KnownMotion::Velocity velocity = velocity_at(estimate.sweeps.back().pose.time_ns, samples, *along, next);
+      estimate.status = odometry.add_velocity(velocity.v_WI_I_m_s, velocity.sigma_m_s);
+      if (!estimate.status.ok()) return;
     }
     LidarInertialOdometry::SweepReport report;
     const Status status = odometry.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, report);
@@ -269,11 +290,11 @@ void run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samp
   LidarInertialOdometry::Params params = odometry_params(sensors, parameters, chain);
   Estimate run = estimate;
   LidarInertialOdometry odometry(params);
-  run_sweeps(lidar, samples, odometry, params.time_offset_s, run);
+  run_sweeps(lidar, samples, odometry, params.time_offset_s, chain.along, run);
   if (chain.calibration && run.status.ok() && learn(odometry, run, params)) {
     run = estimate;
     odometry = LidarInertialOdometry(params);
-    run_sweeps(lidar, samples, odometry, params.time_offset_s, run);
+    run_sweeps(lidar, samples, odometry, params.time_offset_s, chain.along, run);
     run.health["passes"] = 2.0;
   }
   estimate = std::move(run);

@@ -28,7 +28,8 @@ const std::array<sim::Parameter, 2>& parameters_of_the_map() {
   return parameters;
 }
 
-constexpr double kPriorSigmaM = 1e-3, kPriorSigmaRad = 5e-4;  // over 0.1 s: rolling tells that much
+// Of the sweep's start by the last one's end, over 0.1 s, beside what the velocity is off by.
+constexpr double kPriorSigmaM = 1e-4, kPriorSigmaRad = 2e-5, kPriorSigmaMS = 1e-4, kForceSigmaShare = 2e-3;
 
 /// Those of the chain, with a prior as tight as rolling makes it: sweep after sweep looks where no map is yet.
 std::span<const sim::Parameter> parameters_of_the_prior() {
@@ -37,6 +38,8 @@ std::span<const sim::Parameter> parameters_of_the_prior() {
     for (sim::Parameter& parameter : own) {
       if (parameter.name == "prior_sigma_m") parameter.default_value = kPriorSigmaM;
       if (parameter.name == "prior_sigma_rad") parameter.default_value = kPriorSigmaRad;
+      if (parameter.name == "prior_sigma_m_s") parameter.default_value = kPriorSigmaMS;
+      if (parameter.name == "force_sigma_share") parameter.default_value = kForceSigmaShare;
     }
     return own;
   }();
@@ -86,6 +89,7 @@ class Track {
 Estimate map_from_poses(const char* name, const sim::Sensors& sensors, const sim::Values& parameters) {
   Estimate estimate = positions(name, sensors);
   estimate.contacts.clear();
+  estimate.uncertain.clear();
   if (!estimate.status.ok()) return estimate;
   if (sensors.lidars.empty() || estimate.poses.size() < 2) {
     estimate.status = {Trouble::empty, "lidars", 0.0, 1.0};
@@ -135,13 +139,17 @@ Estimate run_poses_tumble(const sim::Sensors& sensors, const sim::Values& parame
   return map_from_poses("tumble", sensors, parameters);
 }
 
-/// Readings that an IMU would have had along the poses of the position method: the mapper, which integrates them
-/// between two sweeps, then follows the rolling odometry.
+/// Enough to level by, and little: readings along a known motion are made from it, and gravity in them answers each
+/// correction of the attitude with an acceleration that is not there.
+constexpr double kHintOfGravityMS2 = 1.2;
+
+/// Readings that an IMU would have had along the poses of the position method, in a world all but free of gravity: the
+/// mapper, which integrates them between two sweeps, then follows the rolling odometry.
 std::vector<ImuSample> samples_along(const Estimate& poses, const sim::Sensors& sensors,
                                      std::span<const ImuSample> raw) {
   const Eigen::Isometry3d& T_BI = sensors.imus.front().T_BI;
   const Eigen::Vector3d arm_B = T_BI.translation() - centre_B_m(poses);  // from the centre
-  const Eigen::Vector3d gravity_W(0.0, 0.0, sensors.gravity_m_s2);
+  const Eigen::Vector3d gravity_W(0.0, 0.0, kHintOfGravityMS2);
   std::vector<ImuSample> out(raw.begin(), raw.end());
   Eigen::Vector3d v_before = Eigen::Vector3d::Zero();
   for (std::size_t k = 0; k < out.size(); ++k) {
@@ -214,25 +222,69 @@ std::optional<Radius> radius_by_lidar(const Estimate& rolled, const Estimate& re
   return Radius{radius_m * ratio, radius_m * std::max(scatter_m, kStretchSigmaM) / std::sqrt(squares)};
 }
 
-/// Registers with the rolling odometry of a sphere of `radius_m` as its prior; `rolled` are its poses.
-Estimate register_with_rolling(const sim::Sensors& sensors, std::span<const ImuSample> raw, double radius_m,
-                               const sim::Values& parameters, Estimate& rolled) {
+/// Poses by the rolling of a sphere of `radius_m`, without the lidar.
+Estimate roll(const sim::Sensors& sensors, double radius_m) {
   sim::Sensors own;
   own.robot = sensors.robot;
   own.gravity_m_s2 = sensors.gravity_m_s2;
   own.imus = sensors.imus;
   own.sphere_radius_m = radius_m;
-  rolled = positions("tumble", own);
+  return positions("tumble", own);
+}
+
+// Of the velocity by rolling: of scale while it grips, next to nothing at rest; in an event, and while the radius is in
+// doubt, loose enough to go where the surfaces lead.
+constexpr double kGripSigmaShare = 4e-3, kStillSigmaMS = 3e-4, kLooseSigmaMS = 0.03, kLooseSigmaShare = 0.1;
+// A registration that asks for more than this is a false one: from sweep to sweep rolling errs by less than a
+// millimetre. More where the radius is in doubt, and by three standard deviations where an event lost the way.
+constexpr double kCorrectionMaxM = 0.03, kCorrectionMaxRad = 0.015, kLooseCorrectionM = 0.1;
+constexpr double kMovingMS = 0.03;
+
+/// What the poses say of the velocity of the primary IMU. `loosely`: of a radius that may be another.
+KnownMotion motion_of(const Estimate& rolled, std::span<const ImuSample> samples, const sim::Sensors& sensors,
+                      bool loosely) {
+  const Eigen::Isometry3d& T_BI = sensors.imus.front().T_BI;
+  const Eigen::Vector3d arm_I = T_BI.linear().transpose() * (T_BI.translation() - centre_B_m(rolled));
+  KnownMotion motion;
+  motion.gravity_m_s2 = kHintOfGravityMS2;
+  double variance_m2 = 0.0;
+  motion.velocities.resize(samples.size());
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const PoseState& pose = rolled.poses[k];
+    variance_m2 = std::max(variance_m2, pose.covariance.topLeftCorner<3, 3>().trace());
+    const Eigen::Quaterniond q_WI = pose.q_WA * Eigen::Quaterniond(T_BI.linear());
+    const double speed_m_s = pose.v_WA_m_s.norm();
+    KnownMotion::Velocity& velocity = motion.velocities[k];
+    velocity.v_WI_I_m_s = q_WI.conjugate() * pose.v_WA_m_s + samples[k].angular_velocity_rad_s.cross(arm_I);
+    const bool loose = loosely || rolled.contacts[k] != sim::ContactLabel::grip;
+    velocity.sigma_m_s = kStillSigmaMS + (loose ? kLooseSigmaShare : kGripSigmaShare) * speed_m_s;
+    if (loose && speed_m_s > kMovingMS) velocity.sigma_m_s = std::max(velocity.sigma_m_s, kLooseSigmaMS);
+  }
+  const double lost_m = rolled.health.contains("samples_uncertain") ? 3.0 * std::sqrt(variance_m2) : 0.0;
+  motion.correction_max_m = kCorrectionMaxM + (loosely ? kLooseCorrectionM : 0.0) + lost_m;
+  motion.correction_max_rad = kCorrectionMaxRad;
+  return motion;
+}
+
+/// Registers with `rolled` as the prior between two sweeps.
+Estimate register_along(const Estimate& rolled, const sim::Sensors& sensors, std::span<const ImuSample> raw,
+                        const sim::Values& parameters, bool loosely) {
   Estimate estimate;
   estimate.frame = Frame::imu;
   estimate.status = rolled.status;
   if (!estimate.status.ok()) return estimate;
   const std::vector<ImuSample> samples = samples_along(rolled, sensors, raw);
   estimate.status = raw_rates(sensors, samples, estimate.rates);
-  if (estimate.status.ok()) run_slam_chain(sensors, samples, parameters, {}, estimate);
+  // what the gyro's noise did to the poses is in the prior
+  for (RateState& rate : estimate.rates) rate.covariance_rad2_s2.setZero();
+  const KnownMotion motion = motion_of(rolled, samples, sensors, loosely);
+  SlamChain chain;
+  chain.along = &motion;
+  if (estimate.status.ok()) run_slam_chain(sensors, samples, parameters, chain, estimate);
   return estimate;
 }
 
+/// Twice: loosely, which tells the radius, and then as tightly as rolling of that radius is sure.
 Estimate run_rolling_prior(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   estimate.frame = Frame::imu;
@@ -240,18 +292,20 @@ Estimate run_rolling_prior(const sim::Sensors& sensors, const sim::Values& param
   estimate.status = bridge::primary_imu_samples(sensors, raw);
   if (!estimate.status.ok()) return estimate;
   require_sphere("slam/rolling_prior", sensors);
-  Estimate rolled;
-  estimate = register_with_rolling(sensors, raw, sensors.sphere_radius_m, parameters, rolled);
+  Estimate rolled = roll(sensors, sensors.sphere_radius_m);
+  estimate = register_along(rolled, sensors, raw, parameters, true);
   if (!estimate.status.ok()) return estimate;
   const std::optional<Radius> radius = radius_by_lidar(rolled, estimate, sensors);
-  if (!radius) return estimate;
-  const double off_m = std::abs(radius->m - sensors.sphere_radius_m);
-  if (off_m > std::max(kBeyondDoubt * radius->sigma_m, kMendedShare * sensors.sphere_radius_m) && radius->m > 0.0) {
-    estimate = register_with_rolling(sensors, raw, radius->m, parameters, rolled);
-    estimate.health["radius_mended"] = 1.0;
+  const double off_m = radius ? std::abs(radius->m - sensors.sphere_radius_m) : 0.0;
+  const bool mended = radius && radius->m > 0.0 &&
+                      off_m > std::max(kBeyondDoubt * radius->sigma_m, kMendedShare * sensors.sphere_radius_m);
+  if (mended) rolled = roll(sensors, radius->m);
+  estimate = register_along(rolled, sensors, raw, parameters, false);
+  if (mended) estimate.health["radius_mended"] = 1.0;
+  if (radius) {
+    estimate.health["radius_m"] = radius->m;
+    estimate.health["radius_sigma_m"] = radius->sigma_m;
   }
-  estimate.health["radius_m"] = radius->m;
-  estimate.health["radius_sigma_m"] = radius->sigma_m;
   return estimate;
 }
 

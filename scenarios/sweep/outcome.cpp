@@ -100,6 +100,8 @@ std::string digest(const Estimate& estimate) {
   add_poses(hasher, estimate.poses);
   hasher.add(static_cast<std::uint64_t>(estimate.contacts.size()));
   for (const sim::ContactLabel label : estimate.contacts) hasher.add(static_cast<std::int32_t>(label));
+  hasher.add(static_cast<std::uint64_t>(estimate.uncertain.size()));
+  for (const bool uncertain : estimate.uncertain) hasher.add(static_cast<std::int32_t>(uncertain));
   hasher.add(static_cast<std::uint64_t>(estimate.sweeps.size()));
   for (const auto& sweep : estimate.sweeps) add_sweep(hasher, sweep);
   for (const std::int64_t end_ns : estimate.sweep_end_ns) hasher.add(end_ns);

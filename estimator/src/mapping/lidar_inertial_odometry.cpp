@@ -45,6 +45,7 @@ void LidarInertialOdometry::Impl::finish(TimeNs end_ns, SweepReport& report) {
   report.pose = state.pose();
   report.pose.covariance = report.trajectory.back().covariance;
 
+  odometer.known = false;
   excess_share_at_end.setZero();
   if (aligned) excess_share_at_end = trajectory.excess_share_at_end();
   const auto after = std::find_if(samples.begin(), samples.end(), [&](const auto& s) { return s.time_ns > end_ns; });
@@ -78,6 +79,15 @@ Status LidarInertialOdometry::add_imu(const ImuSample& sample, const RateState& 
     return {Trouble::time_order, "time_ns", double(sample.time_ns), double(last_ns)};
   }
   my.take(sample, rate);
+  return {};
+}
+
+Status LidarInertialOdometry::add_velocity(const Eigen::Vector3d& v_WI_I_m_s, double sigma_m_s) {
+  if (!v_WI_I_m_s.allFinite() || !std::isfinite(sigma_m_s)) {
+    return {Trouble::non_finite, "velocity", std::numeric_limits<double>::quiet_NaN(), 0.0};
+  }
+  if (!(sigma_m_s > 0.0)) return {Trouble::out_of_range, "sigma_m_s", sigma_m_s, 0.0};
+  impl_->odometer = {v_WI_I_m_s, sigma_m_s, true};
   return {};
 }
 

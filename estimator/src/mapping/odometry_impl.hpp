@@ -29,6 +29,8 @@ struct Prediction {
   void compose(const Registration::Matrix& covariance, const Registration::Matrix& error_covariance);
   /// Known to be at rest: velocity zero, and no longer correlated with the rest. Before compose().
   void hold_still(double sigma_m_s);
+  /// Known velocity in IMU axes, which turns with the attitude. Before compose().
+  void follow(const Eigen::Vector3d& v_WI_I_m_s, double sigma_m_s);
 };
 
 /// A sweep that those after it still refine. Unknowns are those of its start.
@@ -168,6 +170,12 @@ struct LidarInertialOdometry::Impl {
   std::size_t searches = 0;                // of neighbours, by its registrations
   std::vector<Eigen::Vector3f> positions_W_m;
   std::vector<std::uint32_t> chosen_index;
+
+  struct Odometer {
+    Eigen::Vector3d v_WI_I_m_s = Eigen::Vector3d::Zero();
+    double sigma_m_s = 0.0;
+    bool known = false;
+  } odometer;  // of the next sweep
 };
 
 }  // namespace tumble

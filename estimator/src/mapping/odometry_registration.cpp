@@ -31,6 +31,13 @@ void mapping::Prediction::hold_still(double sigma_m_s) {
   noise.diagonal().segment<3>(6).setConstant(sigma_m_s * sigma_m_s);
 }
 
+void mapping::Prediction::follow(const Eigen::Vector3d& v_WI_I_m_s, double sigma_m_s) {
+  hold_still(sigma_m_s);
+  const Eigen::Vector3d v_WI_m_s = prior.mean.state.q_WI * v_WI_I_m_s;
+  prior.mean.state.v_WI_m_s = v_WI_m_s;
+  by_last.middleRows<3>(6) = -so3::hat(v_WI_m_s) * by_last.middleRows<3>(3);
+}
+
 mapping::Prediction LidarInertialOdometry::Impl::predict() const {
   mapping::Prediction next;
   next.prior.mean.state = state;
@@ -43,6 +50,7 @@ mapping::Prediction LidarInertialOdometry::Impl::predict() const {
   if (resting_sweeps >= kRestSweeps && !held && state.v_WI_m_s.norm() < kCreepSpeed_m_s) {
     next.hold_still(kRestSpeed_m_s);
   }
+  if (odometer.known) next.follow(odometer.v_WI_I_m_s, odometer.sigma_m_s);
   const std::uint8_t axes = params.estimate_excess_rate ? trajectory.clipped_axes() : 0;
   next.noise.topLeftCorner<9, 9>() += mapping::inertial_noise(params, trajectory, samples, axes);
   add_excess_noise(next);
@@ -152,7 +160,7 @@ bool LidarInertialOdometry::Impl::trajectory_speeds_up() const {
 
 /// The inertial prior stands for the sweep; an IMU at rest stops the drift of its velocity.
 Status LidarInertialOdometry::Impl::fall_back_on_inertia(TimeNs end_ns) {
-  if (lost_sweeps > 0 && imu_rests(end_ns)) {
+  if (lost_sweeps > 0 && imu_rests(end_ns) && !odometer.known) {
     prediction.hold_still(kRestSpeed_m_s);
     prediction.compose(covariance, error_covariance);
   }

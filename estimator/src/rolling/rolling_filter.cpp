@@ -13,7 +13,6 @@ namespace tumble {
 namespace {
 
 constexpr double kSlowForceTau_s = 0.1;
-constexpr double kHeldAfter_s = 0.1, kHeldSpeed_m_s = 0.02;  // quiet for so long, and no faster: it stands still
 
 static_assert(RollingFilter::kStates == rolling::kStates);
 
@@ -127,9 +126,10 @@ double RollingFilter::slip_probability(const State& state) {
 
 /// Whether the position that is given out stands still until the next node.
 void RollingFilter::hold(State& state) const {
-  const bool quiet = state.rest_s >= std::min(kHeldAfter_s, params_.rest_time_s) && !slips(state.hypotheses[0].mode);
+  const bool quiet =
+      state.rest_s >= std::min(rolling::kHeldAfter_s, params_.rest_time_s) && !slips(state.hypotheses[0].mode);
   const bool revised = state.hypotheses[0].parent != 0;
-  const bool stands = quiet && !revised && state.v_WG_m_s.norm() < kHeldSpeed_m_s;
+  const bool stands = quiet && !revised && state.v_WG_m_s.norm() < rolling::kHeldSpeed_m_s;
   if (!stands || !state.held) {
     state.held = false;
     report(state);

@@ -22,6 +22,9 @@ inline double squared(double x) {
   return x * x;
 }
 
+/// Quiet for so long, and no faster: it stands still, and so does the position that is given out.
+inline constexpr double kHeldAfter_s = 0.1, kHeldSpeed_m_s = 0.02;
+
 /// Contact velocity of the nominal trajectory and its derivative by the error state.
 struct Contact {
   Eigen::Vector3d u_W_m_s;

@@ -53,6 +53,14 @@ Eigen::Matrix<double, 6, 6> pose_covariance(const rolling::NodeRecord& node, con
   return J * node.smoothed_P * J.transpose();
 }
 
+/// The position that is given out stands still while the sphere does.
+void hold(const rolling::PathNode& node, RollingSmoother::Committed& committed, RollingEstimate& estimate) {
+  const bool stands = node.stands && !slips(node.mode) && estimate.v_WG_m_s.norm() < rolling::kHeldSpeed_m_s;
+  if (stands && !committed.held) committed.held_p_WG_m = estimate.p_WG_m;
+  if (stands) estimate.p_WG_m = committed.held_p_WG_m;
+  committed.held = stands;
+}
+
 }  // namespace
 
 struct RollingSmoother::PathNode : rolling::PathNode {};
@@ -100,6 +108,7 @@ Status RollingSmoother::step(const ImuSample& sample, State& state, std::vector<
       step.mode[k] = state.live.hypotheses[k].mode;
     }
     step.spread_m2 = state.live.settled_spread_m2;
+    step.rest_s = state.live.rest_s;
     step.at_rest = state.live.at_rest;
     state.steps.push_back(step);
   }
@@ -136,9 +145,13 @@ void RollingSmoother::finish(std::span<const RollingMode> known, State& state,
 /// Modes of the hypothesis that is best now, back to the committed node.
 std::vector<RollingSmoother::PathNode> RollingSmoother::best_path(const State& state) const {
   std::vector<PathNode> path(state.steps.size());
+  const double stands_after_s = std::min(rolling::kHeldAfter_s, params_.filter.rest_time_s);
   std::size_t which = 0;
+  double lasts_s = 0.0;  // of the quiet that a node lies in
   for (std::size_t n = path.size(); n-- > 0;) {
     const Step& step = state.steps[n];
+    lasts_s = step.rest_s > 0.0 ? std::max(lasts_s, step.rest_s) : 0.0;
+    path[n].stands = lasts_s > 0.0 && lasts_s >= stands_after_s;
     path[n].mode = step.mode[which];
     path[n].at_rest = step.at_rest;
     path[n].spread_m2 = step.spread_m2;
@@ -252,6 +265,7 @@ void RollingSmoother::run_window(const std::vector<PathNode>& path, std::size_t 
       estimate.mode = window.nodes[n].path.mode;
       estimate.at_rest = window.nodes[n].path.at_rest;
       estimate.uncertain = uncertain[n];
+      if (params_.lag_s < kWholeRun) hold(window.nodes[n].path, state.committed, estimate);
     }
     out.push_back(estimate);
   }
@@ -261,6 +275,8 @@ void RollingSmoother::run_window(const std::vector<PathNode>& path, std::size_t 
                        window.committed.P,
                        window.committed.mode,
                        committed_m2,
+                       state.committed.held_p_WG_m,
+                       state.committed.held,
                        window.nodes[emitted - 1].time_ns,
                        true};
     state.samples.erase(state.samples.begin(), state.samples.begin() + static_cast<std::ptrdiff_t>(taken));

@@ -318,6 +318,42 @@ TEST(LidarInertialOdometry, SaysThatAFloorAloneDoesNotHoldIt) {
   EXPECT_GT(degenerate, 3);  // at rest its rings give no plane at all
 }
 
+/// Above a floor alone, which leaves two directions open, and with an accelerometer that is off by 0.5 m/s^2 once the
+/// rest is over: integrated it goes astray, a velocity that is told at every sweep holds it.
+TEST(LidarInertialOdometry, AVelocityThatIsToldHoldsWhatTheSurfacesDoNot) {
+  const test::Motion& motion = tumble().motion;
+  const auto end_error_m = [&](bool told) {
+    Odometry odometry(rig_params());
+    Odometry::SweepReport report;
+    for (int i = 0; i < 12; ++i) {
+      for (int k = i * kSamplesPerSweep; k < (i + 1) * kSamplesPerSweep; ++k) {
+        ImuSample sample = tumble().imu[static_cast<std::size_t>(k)];
+        const double t = seconds(sample.time_ns);
+        if (t > motion.rest_s) sample.specific_force_m_s2 += motion.q(t).conjugate() * Eigen::Vector3d(0.5, 0.0, 0.0);
+        EXPECT_TRUE(odometry.add_imu(sample, test::believe(sample)).ok());
+      }
+      const double start_s = 0.1 * i;
+      const Eigen::Vector3d v_I_m_s = motion.q(start_s).conjugate() * motion.v_m_s(start_s);
+      if (told) {
+        EXPECT_TRUE(odometry.add_velocity(v_I_m_s, 0.01).ok());
+      }
+      const auto points = test::make_sweep(test::Room::floor_only(), motion, rig_params().T_IL, i, kNoise_m);
+      EXPECT_TRUE(add_sweep(odometry, i, points, report).ok());
+    }
+    return error_of(report.pose).m;
+  };
+  EXPECT_LT(end_error_m(true), 0.1);
+  EXPECT_GT(end_error_m(false), 0.15);
+}
+
+TEST(LidarInertialOdometry, RefusesAVelocityThatSaysNothing) {
+  Odometry odometry(rig_params());
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(odometry.add_velocity({nan, 0.0, 0.0}, 0.01).trouble, Trouble::non_finite);
+  EXPECT_EQ(odometry.add_velocity({0.0, 0.0, 0.0}, nan).trouble, Trouble::non_finite);
+  EXPECT_EQ(odometry.add_velocity({0.0, 0.0, 0.0}, 0.0).trouble, Trouble::out_of_range);
+}
+
 TEST(LidarInertialOdometry, MissingImuIsATroubleNotAGuess) {
   Odometry odometry(rig_params());
   Odometry::SweepReport report;

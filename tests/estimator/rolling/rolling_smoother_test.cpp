@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "estimator/rolling/rolling_truth.hpp"
@@ -88,6 +89,22 @@ TEST(RollingSmoother, ErrorsLieWithinItsCovariance) {
       total += 3;
     }
     EXPECT_GE(inside, 0.99 * total) << lag_s;
+  }
+}
+
+/// With a lag the way before a rest is out: what rest teaches of it must not move a sphere that stands still. The way
+/// stops from 4.5 to 5.5 s and from 8 s on.
+TEST(RollingSmoother, WithALagAStandstillHasNoDrift) {
+  const testing::RollingTruth truth = slipping();
+  for (const double lag_s : {0.3, 1.0}) {
+    const std::vector<RollingEstimate> out = run(truth, lag_s);
+    ASSERT_EQ(out.size(), truth.samples.size());
+    for (const auto& [from_s, to_s] : {std::pair(0.5, 1.9), std::pair(4.6, 5.4), std::pair(8.1, 10.0)}) {
+      const auto first = static_cast<std::size_t>(from_s / 0.004), end = static_cast<std::size_t>(to_s / 0.004);
+      for (std::size_t k = first; k < end; ++k) ASSERT_EQ(out[k].p_WG_m, out[first].p_WG_m) << lag_s << " " << k;
+    }
+    // and it goes on when the motion does
+    for (std::size_t k = 0; k < out.size(); ++k) ASSERT_LT((out[k].p_WG_m - truth.p_WG_m[k]).norm(), 0.03) << k;
   }
 }
 

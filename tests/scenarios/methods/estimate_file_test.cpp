@@ -145,6 +145,34 @@ TEST_F(EstimateFile, ContactsComeBackAndBelongToTheirPoses) {
   EXPECT_THROW(write_estimate(folder_, "tumble", Kind::position, estimate), std::invalid_argument);
 }
 
+TEST_F(EstimateFile, UncertainEventsComeBackWithTheirContacts) {
+  Estimate estimate;
+  for (int k = 0; k < 3; ++k) {
+    PoseState pose;
+    pose.time_ns = 5'000'000 * k;
+    estimate.poses.push_back(pose);
+  }
+  estimate.contacts = {sim::ContactLabel::grip, sim::ContactLabel::slip, sim::ContactLabel::slip};
+  estimate.uncertain = {false, true, true};
+  write_estimate(folder_, "tumble", Kind::position, estimate);
+  Kind kind;
+  std::string method;
+  const Estimate back = read_estimate(folder_, kind, method, Frame::imu);
+  EXPECT_EQ(back.uncertain, estimate.uncertain);
+  EXPECT_EQ(back.contacts, estimate.contacts);
+  std::ifstream file(folder_ / "contacts.csv");
+  std::string header, first, second;
+  std::getline(std::getline(std::getline(file, header), first), second);
+  EXPECT_EQ(header, "time_ns,label,uncertain");
+  EXPECT_EQ(first, "0,1,0");
+  EXPECT_EQ(second, "5000000,2,1");
+
+  write("contacts.csv", "time_ns,label,uncertain\n0,1,0\n5000000,2,2\n10000000,2,1\n");
+  EXPECT_NE(complaint(folder_).find("contacts.csv:3: uncertain is 2, must be 0 or 1"), std::string::npos);
+  estimate.uncertain.pop_back();
+  EXPECT_THROW(write_estimate(folder_, "tumble", Kind::position, estimate), std::invalid_argument);
+}
+
 TEST_F(EstimateFile, NothingOfAnEarlierEstimateStays) {
   Estimate with_map;
   with_map.map.resize(3);

@@ -164,6 +164,11 @@ class LidarInertialOdometry {
   /// after it, and the prior loosened accordingly.
   Status add_imu(const ImuSample& sample, const RateState& rate);
 
+  /// What an odometer says of the velocity at the start of the next sweep, which is where the last one ended: in IMU
+  /// axes, and its standard deviation per axis. It takes the place of the velocity that the last sweep ended with, for
+  /// that one sweep. `non_finite`, or `out_of_range` where the standard deviation is not above 0; nothing is changed.
+  Status add_velocity(const Eigen::Vector3d& v_WI_I_m_s, double sigma_m_s);
+
   /// Registers a sweep of points fired in [start_ns, end_ns]; sweeps do not overlap. Returns that are NaN are misses.
   ///
   /// Trouble that leaves the state as it was: `time_order` (end before start, or start before the last sweep's end),

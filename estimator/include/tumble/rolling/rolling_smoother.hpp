@@ -33,6 +33,9 @@ struct RollingEstimate {
 /// inverse and no more than the filter's own gains. A sample between two nodes takes the errors of both, in
 /// proportion to time.
 ///
+/// With a fixed lag the position stands still while the sphere does: what rest teaches of the way before is taken up
+/// when the motion goes on, since the estimates of that way are out. Over the whole run the way itself is mended.
+///
 /// Source: the reference study of this project on slip; the smoother as G. J. Bierman, Factorization Methods for
 /// Discrete Sequential Estimation, 1977. Not modelled: doubt about the modes, other than the spread of positions that
 /// the live filter gives up at rest.
@@ -58,6 +61,7 @@ class RollingSmoother {
     std::array<std::uint8_t, RollingFilter::kHypotheses> parent{};
     std::array<RollingMode, RollingFilter::kHypotheses> mode{};
     Eigen::Matrix3d spread_m2 = Eigen::Matrix3d::Zero();
+    double rest_s = 0.0;  ///< quiet for so long
     bool at_rest = false;
     bool operator==(const Step&) const = default;
   };
@@ -66,7 +70,9 @@ class RollingSmoother {
     RollingNominal nominal;
     RollingFilter::Covariance P = RollingFilter::Covariance::Zero();
     RollingMode mode = RollingMode::grip;
-    double event_variance_m2 = 0.0;  ///< of the position, when the event began
+    double event_variance_m2 = 0.0;                         ///< of the position, when the event began
+    Eigen::Vector3d held_p_WG_m = Eigen::Vector3d::Zero();  ///< while `held`
+    bool held = false;                                      ///< it stands still, and so does the position given out
     TimeNs last_time_ns = 0;
     bool started = false;
     bool operator==(const Committed&) const = default;
