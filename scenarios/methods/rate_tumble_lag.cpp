@@ -17,7 +17,15 @@ constexpr std::array<sim::Parameter, 1> kLag = {{
 }};
 
 const std::vector<sim::Parameter>& parameters_of_the_stream() {
-  static const std::vector<sim::Parameter> parameters = joined_parameters({kLag, tumble_rate_parameters()});
+  static const std::vector<sim::Parameter> parameters = [] {
+    const RateModelParams own = RateStream::Params().model;  // where its priors differ from those of the batch
+    std::vector<sim::Parameter> joined = joined_parameters({kLag, tumble_rate_parameters()});
+    for (sim::Parameter& parameter : joined) {
+      if (parameter.name == "accel_bias_sigma_m_s2") parameter.default_value = own.accel_bias_sigma_m_s2;
+      if (parameter.name == "inertia_sigma") parameter.default_value = own.inertia_sigma;
+    }
+    return joined;
+  }();
   return parameters;
 }
 

@@ -117,6 +117,19 @@ TEST(RateStream, WithACalibratedRigItComesCloseToTheBatch) {
   EXPECT_LT(stream_sum, 1.8 * batch_sum);  // measured 1.58
 }
 
+TEST(RateStream, TheShapeOfABoxIsExpectedAndThatOfARodIsNot) {
+  const RateStream::Params params;
+  const RateModel model(params.model, params.period_s);
+  const auto surprise = [&](const Vector3d& moments) {
+    RigConstants rig = model.prior_constants();
+    rig.inertia = RigConstants::inertia_coordinates(moments.asDiagonal());
+    return model.rig_surprise(rig);
+  };
+  EXPECT_NEAR(surprise({8.0, 13.0, 13.0}), 1.07, 0.01);  // sides 3 : 2 : 2
+  EXPECT_GT(surprise({1.0, 1.0, 2.0}), params.rig_surprise_max);
+  EXPECT_NEAR(surprise({0.0, 1.0, 1.0}), 3.65, 0.01);
+}
+
 TEST(RateStream, SplittingAnywhereChangesNothing) {
   const std::vector<ImuSample> samples = make_tumble(options_of(3)).samples;
   const RateStream method(wrong_lever(3));
