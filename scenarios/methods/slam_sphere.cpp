@@ -143,8 +143,8 @@ Estimate run_poses_tumble(const sim::Sensors& sensors, const sim::Values& parame
 /// correction of the attitude with an acceleration that is not there.
 constexpr double kHintOfGravityMS2 = 1.2;
 
-/// Readings that an IMU would have had along the poses of the position method, in a world all but free of gravity: the
-/// mapper, which integrates them between two sweeps, then follows the rolling odometry.
+/// Readings that an IMU would have had along the poses of the position method, in a world of little gravity: the
+/// mapper, which integrates them within a sweep, then follows the rolling odometry.
 std::vector<ImuSample> samples_along(const Estimate& poses, const sim::Sensors& sensors,
                                      std::span<const ImuSample> raw) {
   const Eigen::Isometry3d& T_BI = sensors.imus.front().T_BI;
