@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "odometry_impl.hpp"
+#include "tumble/common/so3.hpp"
 
 namespace tumble {
 
