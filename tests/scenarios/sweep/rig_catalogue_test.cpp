@@ -101,7 +101,7 @@ INSTANTIATE_TEST_SUITE_P(Catalogue, RigScenario,
                          testing::Values(Expected{"hill", "terrain", 0.7, 0.2}, Expected{"bare", "", 0.7, 0.2},
                                          Expected{"scree", "rock_", 0.7, 0.2}, Expected{"forest", "trunk_", 0.7, 0.2},
                                          Expected{"stairs", "step_", 0.7, 0.2}, Expected{"cliff", "terrain", 0.7, 0.3},
-                                         Expected{"throw", "terrain", 1.0, 0.9}),
+                                         Expected{"throw", "terrain", 1.0, 0.9}, Expected{"drop", "terrain", 1.5, 0.3}),
                          [](const auto& test) { return std::string(test.param.scenario); });
 
 }  // namespace
