@@ -49,12 +49,6 @@ struct WindowSweep {
   std::vector<Drawn> drawn;
 };
 
-/// Where a start that may be far off led to.
-struct Landing {
-  Registration::Prior start;  ///< with its means there
-  std::size_t inliers = 0;    ///< of the few points
-};
-
 /// First-order effect on the unknowns, their motion taken `t_s` after the start, of the unknowns at the start.
 Registration::Matrix unknowns_at(const SweepTrajectory& trajectory, double t_s);
 
@@ -100,17 +94,15 @@ struct LidarInertialOdometry::Impl {
   void add_excess_noise(mapping::Prediction& next) const;
   bool prior_is_trusted() const;
   void choose_points();
+  void choose_few();
+  Status align(const Registration::Prior& prior, TimeNs end_ns, Registration::Result& result);
+  Status try_start(const Registration::Prior& start, const Registration::Prior& prior, TimeNs end_ns,
+                   Registration::Result& result);
+  Status search(const Registration::Prior& prior, TimeNs end_ns, Registration::Result& result);
   void register_sweep(TimeNs end_ns, SweepReport& report);
   Status fall_back_on_inertia(TimeNs end_ns);
   bool imu_rests(TimeNs end_ns) const;
   bool trajectory_speeds_up() const;
-
-  // odometry_search.cpp
-  void choose_few();
-  Status explore(const Registration::Prior& start, TimeNs end_ns, Registration::Result& found);
-  Status refine(TimeNs end_ns, Registration::Result& found);
-  Status align(const Registration::Prior& prior, TimeNs end_ns, Registration::Result& found);
-  Status search(const Registration::Prior& prior, TimeNs end_ns, Registration::Result& found);
 
   // odometry_window.cpp
   void enter_window(TimeNs end_ns, bool aligned, SweepReport& report);
@@ -166,8 +158,6 @@ struct LidarInertialOdometry::Impl {
   SweepTrajectory trajectory;
   SweepSampler sampler;
   std::vector<SweepPoint> points, chosen, few;
-  std::vector<mapping::Landing> landings;  // of the present sweep's starts
-  std::size_t searches = 0;                // of neighbours, by its registrations
   std::vector<Eigen::Vector3f> positions_W_m;
   std::vector<std::uint32_t> chosen_index;
 

@@ -8,6 +8,13 @@ namespace tumble {
 
 namespace {
 
+constexpr double kExcessTries_rad_s[] = {3.0, 6.0, 9.0, 15.0};
+constexpr int kExcessTriesMax = 5;        // of these for one sweep, all axes together
+constexpr int kStartsPerSweep = 3;        // of a search, the prior itself among them
+constexpr std::size_t kFewPoints = 300;   // serve a start that may be far off
+constexpr double kSearchTurn_rad = 0.3;   // starts of a search reach so far at first, in attitude
+constexpr double kSearchShift_m = 1.0;    // and so far in position
+constexpr int kSearchRounds = 3;          // each reaches that much further than the last
 constexpr double kStillSpeed_m_s = 0.01;  // during the rest at the start
 constexpr double kRestSpeed_m_s = 0.05;   // of an IMU that says nothing but gravity
 constexpr double kCreepSpeed_m_s =
@@ -15,6 +22,25 @@ constexpr double kCreepSpeed_m_s =
 constexpr int kRestSweeps = 3;       // after so many in a row
 constexpr double kCarryMax = 3.0;    // an excess carried over a border grows by no more where less is known after it
 constexpr double kKnotFloor = 0.05;  // of the prior's standard deviation: a knot differs from its neighbours by this
+
+/// Start number `index` of a search: the prior itself, then moved along each axis by what it may be off by, nearer ones
+/// first.
+Registration::Prior moved_start(Registration::Prior prior, int index) {
+  if (index == 0) return prior;
+  const double reach = 1.0 + (index - 1) / 12;
+  const int axis = (index - 1) / 2 % 6;
+  const double sign = (index - 1) % 2 == 0 ? 1.0 : -1.0;
+  const double sigma = std::sqrt(prior.covariance(axis, axis));
+  MotionState& state = prior.mean.state;
+  if (axis < 3) {
+    state.p_WI_m[axis] += sign * std::clamp(1.5 * sigma, 0.3, reach * kSearchShift_m);
+  } else {
+    const double angle = sign * std::clamp(1.5 * sigma, 0.1, reach * kSearchTurn_rad);
+    state.q_WI = so3::exp(angle * Eigen::Vector3d::Unit(axis - 3)) * state.q_WI;
+  }
+  return prior;
+}
+constexpr int kStarts = 1 + 12 * kSearchRounds;
 
 }  // namespace
 
@@ -113,6 +139,64 @@ void LidarInertialOdometry::Impl::choose_points() {
   sampler.choose(positions_W_m, params.sweep_voxel_m, chosen_index);
   chosen.clear();
   for (const std::uint32_t index : chosen_index) chosen.push_back(points[index]);
+}
+
+/// At most kFewPoints of the chosen, evenly.
+void LidarInertialOdometry::Impl::choose_few() {
+  few.clear();
+  const std::size_t every = std::max<std::size_t>(1, (chosen.size() + kFewPoints - 1) / kFewPoints);
+  for (std::size_t i = 0; i < chosen.size(); i += every) few.push_back(chosen[i]);
+}
+
+/// From a start that may be far off: first coarsely and with few points, and in full where that leads somewhere.
+Status LidarInertialOdometry::Impl::try_start(const Registration::Prior& start, const Registration::Prior& prior,
+                                              TimeNs end_ns, Registration::Result& found) {
+  Registration::Result rough;
+  Status status = coarse.align(start, samples, end_ns, few, map, trajectory, rough);
+  found.verdict = rough.verdict;
+  if (!status.ok() || rough.verdict != RegistrationVerdict::converged) return status;
+  Registration::Prior fine = start;
+  fine.mean.state = rough.mean.state;
+  fine.covariance = prior.covariance;
+  fine.excess_start_rad_s = rough.mean.excess_rad_s;
+  return registration.align(fine, samples, end_ns, chosen, map, trajectory, found);
+}
+
+/// Registers; where that fails and the rate may be short on a clipped axis, tries again from larger excess rates, since
+/// a rail that is left behind within one sweep may put the start a whole radian off.
+Status LidarInertialOdometry::Impl::align(const Registration::Prior& prior, TimeNs end_ns,
+                                          Registration::Result& found) {
+  Status status = registration.align(prior, samples, end_ns, chosen, map, trajectory, found);
+  int iterations = found.iterations, tries = 0;
+  for (const double more : kExcessTries_rad_s) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!status.ok() || found.verdict == RegistrationVerdict::converged || tries == kExcessTriesMax) break;
+      const int first = Registration::kExcess + axis;
+      if (std::sqrt(prior.covariance(first, first)) < more / 5.0) continue;
+      Registration::Prior start = prior;
+      start.excess_start_rad_s.row(axis).array() += more;
+      status = try_start(start, prior, end_ns, found);
+      iterations += found.iterations;
+      ++tries;
+    }
+  }
+  found.iterations = iterations;
+  return status;
+}
+
+/// Looks for the way back: from the prior and from starts around it. A search goes on with the next sweep where this
+/// one ended, so that no sweep costs too much.
+Status LidarInertialOdometry::Impl::search(const Registration::Prior& prior, TimeNs end_ns,
+                                           Registration::Result& found) {
+  Status status = try_start(prior, prior, end_ns, found);
+  const RegistrationVerdict verdict = found.verdict;  // of the sweep where nothing is found
+  for (int k = 0; k + 1 < kStartsPerSweep; ++k) {
+    if (!status.ok() || found.verdict == RegistrationVerdict::converged) return status;
+    const int index = 1 + (failed_searches * (kStartsPerSweep - 1) + k) % (kStarts - 1);
+    status = try_start(moved_start(prior, index), prior, end_ns, found);
+  }
+  if (found.verdict != RegistrationVerdict::converged) found.verdict = verdict;
+  return status;
 }
 
 void LidarInertialOdometry::Impl::register_sweep(TimeNs end_ns, SweepReport& report) {

@@ -19,7 +19,6 @@ using Matrix = Registration::Matrix;
 
 // variance given to an unknown whose prior claims none, so that the prior can be inverted
 constexpr double kLeastVariance = 1e-12;
-constexpr std::size_t kCountedPoints = 8;  // one in so many tells what an iteration would cost
 
 Matrix information_of(const Matrix& covariance) {
   Matrix positive = covariance;
@@ -91,7 +90,7 @@ Registration::Registration(const Params& params) : params_(params) {
 
 Status Registration::align(const Prior& prior, std::span<const MotionSample> samples, TimeNs end_ns,
                            std::span<const SweepPoint> given, const VoxelMap& map, SweepTrajectory& trajectory,
-                           Result& result, std::size_t searches_max) {
+                           Result& result) {
   const Unknowns unknowns(prior.covariance);
   const Matrix information = information_of(prior.covariance);
   result = Result{};
@@ -116,29 +115,17 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
     result.verdict = verdict;
     return build(prior.mean);
   };
-  // how many of the matches no longer hold, by one point in kCountedPoints
-  const auto searches_ahead = [&] {
-    std::size_t lost = 0, hint = 0;
-    for (std::size_t i = 0; i < points.size(); i += kCountedPoints) {
-      const SweepTrajectory::Instant at = trajectory.at(points[i].t_s, hint);
-      const Eigen::Vector3d position =
-          trajectory.base_m(points[i].t_s) + at.thrust_m + at.q_WI * points[i].x_I_m.cast<double>();
-      lost += (position.cast<float>() - matches_[i].searched_at_W_m).norm() > params_.rematch_m;
-    }
-    return kCountedPoints * lost;
-  };
-  const auto affordable = [&] { return result.iterations == 0 || result.searches + searches_ahead() <= searches_max; };
   bool settled = false;
-  while (!settled && result.iterations < params_.iterations_max && affordable()) {
+  while (!settled && result.iterations < params_.iterations_max) {
     ++result.iterations;
     if (unknowns.calibration && result.iterations > 1) {
       apply_calibration(now.calibration, now.calibration.time_offset_s - prior.mean.calibration.time_offset_s, given,
                         moved_);
       points = moved_;
     }
-    result.searches += place(trajectory, points, map);
+    place(trajectory, points, map);
     kernel_m = kernel_width_m();
-    accumulate(points, trajectory, now.calibration, unknowns, kernel_m, sum);
+    sum = accumulate(points, trajectory, now.calibration, unknowns, kernel_m);
     result.matches = sum.matches;
     result.inliers = sum.inliers;
     if (sum.matches < matches_needed) return refuse(RegistrationVerdict::too_few);
@@ -166,31 +153,19 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
   result.mean = now;
   result.mean.state.covariance = result.covariance.topLeftCorner<kMotion, kMotion>();
   result.verdict = RegistrationVerdict::converged;
-  describe_shape(points, kernel_m, sum, result);
+  describe_shape(sum, result);
   if (Status status = build(result.mean); !status.ok()) return status;
   result.scatter = scatter(points, trajectory, now.calibration, unknowns, kernel_m);
   return {};
 }
 
-void Registration::describe_shape(std::span<const SweepPoint> points, double kernel_m, const Sums& sum,
-                                  Result& result) const {
-  Eigen::Matrix<double, 6, 6> shape = Eigen::Matrix<double, 6, 6>::Zero();  // robustly weighted, without variances
-  double weight = 0.0, lever2 = 0.0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (matches_[i].plane.verdict != PlaneVerdict::plane) continue;
-    const double robust = weigh(points[i], matches_[i], distances_[i], kernel_m).robust;
-    const Eigen::Vector3d n = matches_[i].plane.normal_W.cast<double>(), lever = levers_[i].cast<double>();
-    Eigen::Matrix<double, 6, 1> j;
-    j << n, lever.cross(n);
-    shape += robust * j * j.transpose();
-    weight += robust;
-    lever2 += robust * lever.squaredNorm();
-  }
-  const double lever_m = std::sqrt(std::max(lever2 / weight, 1e-12));
+void Registration::describe_shape(const Sums& sum, Result& result) {
+  const double lever_m = std::sqrt(std::max(sum.lever2 / sum.weight, 1e-12));
   Eigen::Matrix<double, 6, 1> scale;
   scale << 1.0, 1.0, 1.0, 1.0 / lever_m, 1.0 / lever_m, 1.0 / lever_m;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(scale.asDiagonal() * shape *
-                                                                          scale.asDiagonal() / weight);
+  const Eigen::Matrix<double, 6, 6> full = sum.shape.selfadjointView<Eigen::Lower>();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(scale.asDiagonal() * full *
+                                                                          scale.asDiagonal() / sum.weight);
   result.eigenvalues = solver.eigenvalues().cwiseMax(0.0);
   result.directions = solver.eigenvectors();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> information(

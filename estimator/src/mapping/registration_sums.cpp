@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "tumble/common/so3.hpp"
 
@@ -66,14 +65,17 @@ void Registration::Unknowns::clear_held(Matrix& covariance) const {
 void Registration::Sums::add(const Sums& other) {
   H += other.H;
   g += other.g;
+  shape += other.shape;
+  weight += other.weight;
+  lever2 += other.lever2;
   matches += other.matches;
   inliers += other.inliers;
 }
 
-double Registration::point_variance_m2(const SweepPoint& point) const {
+double Registration::point_sigma_m(const SweepPoint& point) const {
   const double range = std::max(params_.range_sigma_m, params_.range_sigma_share * point.range_m);
   const double skew = params_.skew_sigma_m_s * point.sweep_t_s;
-  return range * range + skew * skew;
+  return std::sqrt(range * range + skew * skew);
 }
 
 double Registration::residual(const SweepTrajectory& trajectory, const SweepCalibration& calibration,
@@ -100,42 +102,39 @@ double Registration::residual(const SweepTrajectory& trajectory, const SweepCali
   return n.dot(trajectory.base_m(t) + lever - plane.centre_W_m.cast<double>());
 }
 
-/// Whether it had to search the map.
-bool Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours& found) {
+void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours& found) {
   Match& match = matches_[point];
   const float rematch2 = static_cast<float>(params_.rematch_m * params_.rematch_m);
-  if (match.searched && (positions_[point] - match.searched_at_W_m).squaredNorm() <= rematch2) return false;
+  if (match.searched && (positions_[point] - match.searched_at_W_m).squaredNorm() <= rematch2) return;
   match.searched = true;
   match.searched_at_W_m = positions_[point];
   map.nearest(positions_[point], params_.neighbours, static_cast<float>(params_.match_distance_m), found);
   match.plane = fit_plane(map, found, params_.plane);
-  if (match.plane.verdict != PlaneVerdict::plane) return true;
+  if (match.plane.verdict != PlaneVerdict::plane) return;
   float variance = 0.0f;
   for (int k = 0; k < found.count; ++k) {
     const float sigma = map.sigma_m(found.index[k]);
     variance += sigma * sigma;
   }
   match.map_variance_m2 = variance / static_cast<float>(found.count) + match.plane.thickness2_m2;
-  return true;
 }
 
 /// What a match counts for: its information, as far as it fits (D. Geman, D. McClure, 1987).
 Registration::Weight Registration::weigh(const SweepPoint& point, const Match& match, double distance_m,
                                          double kernel_m) const {
-  const double variance = point_variance_m2(point) + match.map_variance_m2;
+  const double sigma = point_sigma_m(point);
+  const double variance = sigma * sigma + match.map_variance_m2;
   const double soft = 1.0 + distance_m * distance_m / (kernel_m * kernel_m);
   const double robust = 1.0 / (soft * soft);
   return {variance, robust, robust * params_.information_share / variance};
 }
 
 /// Where the points lie in the world by this trajectory, the planes that they belong to, and how far they are from
-/// them. Returns how many of them had to be searched for.
-std::size_t Registration::place(const SweepTrajectory& trajectory, std::span<const SweepPoint> points,
-                                const VoxelMap& map) {
+/// them.
+void Registration::place(const SweepTrajectory& trajectory, std::span<const SweepPoint> points, const VoxelMap& map) {
   levers_.resize(points.size());
   positions_.resize(points.size());
   distances_.resize(points.size());
-  searched_.assign(block_count(points.size()), 0);
   run_parallel(params_.parallel_for, block_count(points.size()), [&](std::size_t block) {
     std::size_t hint = 0;
     Neighbours found;
@@ -144,11 +143,10 @@ std::size_t Registration::place(const SweepTrajectory& trajectory, std::span<con
       const SweepTrajectory::Instant now = trajectory.at(points[i].t_s, hint);
       levers_[i] = (now.thrust_m + now.q_WI * points[i].x_I_m.cast<double>()).cast<float>();
       positions_[i] = (trajectory.base_m(points[i].t_s) + levers_[i].cast<double>()).cast<float>();
-      searched_[block] += find_match(map, i, found);
+      find_match(map, i, found);
       distances_[i] = matches_[i].plane.normal_W.dot(positions_[i] - matches_[i].plane.centre_W_m);
     }
   });
-  return std::accumulate(searched_.begin(), searched_.end(), std::size_t{0});
 }
 
 double Registration::kernel_width_m() {
@@ -193,6 +191,9 @@ void Registration::accumulate_block(std::span<const SweepPoint> points, std::siz
       }
     }
     weighted[count++] = root * r;
+    sum.shape.selfadjointView<Eigen::Lower>().rankUpdate(j.head<6>(), weight.robust);
+    sum.weight += weight.robust;
+    sum.lever2 += weight.robust * lever.squaredNorm();
     ++sum.matches;
     if (r * r <= 9.0 * weight.variance_m2) ++sum.inliers;
   }
@@ -201,17 +202,18 @@ void Registration::accumulate_block(std::span<const SweepPoint> points, std::siz
   sum.g.head(n) = rows.topLeftCorner(n, count) * weighted.head(count);
 }
 
-void Registration::accumulate(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
-                              const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m,
-                              Sums& sum) {
-  parts_.assign(block_count(points.size()), Sums{});
-  run_parallel(params_.parallel_for, parts_.size(), [&](std::size_t block) {
-    accumulate_block(points, block, trajectory, calibration, unknowns, kernel_m, parts_[block]);
+Registration::Sums Registration::accumulate(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
+                                            const SweepCalibration& calibration, const Unknowns& unknowns,
+                                            double kernel_m) {
+  std::vector<Sums> parts(block_count(points.size()));
+  run_parallel(params_.parallel_for, parts.size(), [&](std::size_t block) {
+    accumulate_block(points, block, trajectory, calibration, unknowns, kernel_m, parts[block]);
   });
-  sum = Sums{};
-  for (const Sums& part : parts_) sum.add(part);
+  Sums sum;
+  for (const Sums& part : parts) sum.add(part);
   const Matrix lower = sum.H;
   sum.H = lower.selfadjointView<Eigen::Lower>();
+  return sum;
 }
 
 Registration::Matrix Registration::scatter(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,

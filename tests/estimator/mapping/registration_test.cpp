@@ -225,30 +225,6 @@ TEST(Registration, RefusesACorrectionBeyondItsBound) {
   EXPECT_GT(result.correction_m, 0.1);
 }
 
-TEST(Registration, GivesUpWhereItSearchesTooMuch) {
-  Registration registration(Registration::Params{});
-  SweepTrajectory trajectory;
-  Registration::Result free, bounded;
-  const test::Room room = test::Room::box_with_pillars();
-  const VoxelMap map = map_of(room);
-  const std::vector<SweepPoint> points = still_points(room);
-  Registration::Prior prior = loose_prior(0.3, 0.1);
-  prior.mean.state.p_WI_m = Eigen::Vector3d(0.25, -0.2, 0.1);
-  const auto align = [&](Registration::Result& result, std::size_t searches_max) {
-    return registration.align(prior, still_samples(), test::kSweep_ns, points, map, trajectory, result, searches_max);
-  };
-  ASSERT_TRUE(align(free, points.size() * 100).ok());
-  ASSERT_EQ(free.verdict, RegistrationVerdict::converged);
-  ASSERT_GT(free.searches, points.size());  // it moved by more than a match holds for
-  ASSERT_TRUE(align(bounded, 2 * free.searches).ok());
-  EXPECT_EQ(bounded.mean.state.p_WI_m, free.mean.state.p_WI_m);  // a bound that is not met changes nothing
-  ASSERT_TRUE(align(bounded, points.size() - 1).ok());
-  EXPECT_EQ(bounded.verdict, RegistrationVerdict::diverged);
-  EXPECT_EQ(bounded.searches, points.size());  // of the first iteration, and no other
-  EXPECT_EQ(bounded.iterations, 1);
-  EXPECT_EQ(bounded.mean.state.p_WI_m, prior.mean.state.p_WI_m);
-}
-
 /// A sweep in a spin, registered to the true map with a wrong prior of the motion inside the sweep.
 class MovingSweep : public testing::Test {
  protected:

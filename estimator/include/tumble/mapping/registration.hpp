@@ -104,7 +104,6 @@ class Registration {
     double correction_m = 0.0;  ///< of the position at the start; where the correction broke its bound, that value
     double correction_rad = 0.0;
     int iterations = 0;
-    std::size_t searches = 0;  ///< of a point's neighbours: what the cost goes by
     /// Normal matrix of (position, attitude scaled to metres at the root-mean-square lever) per unit of weight, without
     /// the prior: eigenvalues ascending, and their directions. The translation part has trace 1.
     Eigen::Matrix<double, 6, 1> eigenvalues = Eigen::Matrix<double, 6, 1>::Zero();
@@ -116,14 +115,12 @@ class Registration {
   explicit Registration(const Params& params);
 
   /// Aligns `points` (taken with the prior's calibration) with `map`. `trajectory` is rebuilt from `prior` and
-  /// `samples` up to `end_ns` and, on return, stands for the result. Trouble of the trajectory is passed on. An
-  /// iteration, but the first, that would take the searches beyond `searches_max` is not made: `diverged`.
+  /// `samples` up to `end_ns` and, on return, stands for the result. Trouble of the trajectory is passed on.
   Status align(const Prior& prior, std::span<const MotionSample> samples, TimeNs end_ns,
-               std::span<const SweepPoint> points, const VoxelMap& map, SweepTrajectory& trajectory, Result& result,
-               std::size_t searches_max = std::numeric_limits<std::size_t>::max());
+               std::span<const SweepPoint> points, const VoxelMap& map, SweepTrajectory& trajectory, Result& result);
 
-  /// Variance of a return along its ray together with the skew left after deskewing.
-  double point_variance_m2(const SweepPoint& point) const;
+  /// Standard deviation of a return along its ray together with the skew left after deskewing.
+  double point_sigma_m(const SweepPoint& point) const;
 
   /// Distance of a point to a plane and its derivative by all unknowns, for one point. Public so that it can be checked
   /// against differences.
@@ -137,22 +134,15 @@ class Registration {
     float map_variance_m2 = 0.0f;
     bool searched = false;
   };
-  /// Over the matches of one iteration, of the free unknowns alone.
-  struct Sums {
-    Matrix H = Matrix::Zero();
-    Vector g = Vector::Zero();
-    std::size_t matches = 0, inliers = 0;
-
-    void add(const Sums& other);
-  };
+  struct Sums;
   struct Unknowns;
 
-  std::size_t place(const SweepTrajectory& trajectory, std::span<const SweepPoint> points, const VoxelMap& map);
-  bool find_match(const VoxelMap& map, std::size_t point, Neighbours& found);
+  void place(const SweepTrajectory& trajectory, std::span<const SweepPoint> points, const VoxelMap& map);
+  void find_match(const VoxelMap& map, std::size_t point, Neighbours& found);
   double kernel_width_m();
-  void describe_shape(std::span<const SweepPoint> points, double kernel_m, const Sums& sum, Result& result) const;
-  void accumulate(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
-                  const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m, Sums& sum);
+  static void describe_shape(const Sums& sum, Result& result);
+  Sums accumulate(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
+                  const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m);
   void accumulate_block(std::span<const SweepPoint> points, std::size_t block, const SweepTrajectory& trajectory,
                         const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m, Sums& sum);
 
@@ -169,8 +159,6 @@ class Registration {
   std::vector<SweepPoint> moved_;
   std::vector<Match> matches_;
   std::vector<float> distances_, sorted_;
-  std::vector<std::uint32_t> searched_;  // per block of points
-  std::vector<Sums> parts_;              // likewise
   SpatialHash cluster_of_{1 << 10};
   std::vector<Vector> pulls_;  // of the clusters
 };
