@@ -82,6 +82,19 @@ StateVector back_substitute(const Block& block, const StateVector* next_step, co
   return block.diagonal.transpose().lazyProduct(right);
 }
 
+void eliminate_errors(const Block& block, ErrorMatrix& errors, ErrorMatrix* next, BorderErrors& border) {
+  errors = (block.diagonal.lazyProduct(errors)).eval();
+  border.noalias() -= block.border.transpose().lazyProduct(errors);
+  if (next != nullptr) next->noalias() -= block.coupling.transpose().lazyProduct(errors);
+}
+
+ErrorMatrix back_substitute_errors(const Block& block, const ErrorMatrix& errors, const ErrorMatrix* next_moved,
+                                   const BorderErrors& border_moved) {
+  ErrorMatrix right = errors - block.border.lazyProduct(border_moved);
+  if (next_moved != nullptr) right.noalias() -= block.coupling.lazyProduct(*next_moved);
+  return block.diagonal.transpose().lazyProduct(right);
+}
+
 Conditional back_conditional(const Block& block, const Conditional* next) {
   const StateMatrix& L_inv = block.diagonal;
   Conditional out;

@@ -34,6 +34,8 @@ void check(const RateModelParams& p) {
   require_within("gyro_noise_density", p.gyro_noise_density, 1e-9, 1.0);
   require_within("accel_noise_density", p.accel_noise_density, 1e-9, 10.0);
   require_within("flight_sigma_m_s2", p.flight_sigma_m_s2, 1e-6, 100.0);
+  require_within("gyro_matrix_sigma", p.gyro_matrix_sigma, 0.0, 0.1);
+  require_within("accel_matrix_sigma", p.accel_matrix_sigma, 0.0, 0.1);
   require_within("euler_sigma_rad_s2", p.euler_sigma_rad_s2, 1e-6, 1e6);
   require_within("jerk_psd_flight", p.jerk_psd_flight, 1.0, 1e12);
   require_within("contact_gain_rad_m", p.contact_gain_rad_m, 0.0, 1e3);
@@ -63,10 +65,6 @@ RigConstants::Matrix covariance_of(const RateModelParams& p) {
 
 // What an impact within the window may add to the loss of a partly clipped reading (one standard deviation), rad/s.
 constexpr double kPartialInContact = 0.25;
-
-// Weight below which a sample may still draw a clipped rate towards flight, but says nothing of the rig: what is left
-// of the pull of contact is small for the rate and large for constants that are not known yet.
-constexpr double kRigWeightMin = 0.05;
 
 // A clipped accelerometer axis bounds the force from one side: it speaks only where the model stays within the rail.
 void drop_satisfied_bounds(const RateObservation& o, RateFactor& flight) {
@@ -204,16 +202,34 @@ double RateModel::jump(const RateKnot& from, const RateKnot& to, double dt_s) co
   return scale * (12.0 * e0.squaredNorm() - 12.0 * e0.dot(e1) + 4.0 * e1.squaredNorm());
 }
 
+double RateModel::gyro_information(const RateObservation& observation, const RateEstimate& estimate, int axis) const {
+  if ((observation.partial >> axis & 1u) == 0) return 1.0 / (gyro_sigma_rad_s_ * gyro_sigma_rad_s_);
+  const double impact = kPartialInContact * (1.0 - estimate.flight_weight), lost = observation.lost_sigma_rad_s[axis];
+  return 1.0 / (lost * lost + impact * impact);
+}
+
+// In contact the force is known to be of its own order: of two explanations of a rate that is not seen the gentler one
+// is more likely.
+RateModel::ForceFactor RateModel::force_factor(const RateObservation& observation, const RateEstimate& estimate,
+                                               const RigConstants& rig) const {
+  const double sigma = accel_sigma_m_s2(observation), flight2 = sigma * sigma;
+  const double share = observation.unseen() != 0 ? params_.contact_force_share : 0.0;
+  const double contact2 = flight2 + share * share * estimate.contact_m_s2.squaredNorm();
+  ForceFactor out;
+  out.information = estimate.flight_weight / flight2 + (share > 0.0 ? (1.0 - estimate.flight_weight) / contact2 : 0.0);
+  out.factor = flight_factor(estimate.knot, rig, observation.sample.specific_force_m_s2);
+  drop_satisfied_bounds(observation, out.factor);
+  return out;
+}
+
 void RateModel::add_sample(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                            arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* doubted) const {
   const RateFactor gyro = gyro_factor(estimate.knot, rig, observation.sample.angular_velocity_rad_s);
   for (int j = 0; j < 3; ++j) {
     if ((observation.clipping.void_gyro >> j & 1u) != 0) continue;
-    double information = 1.0 / (gyro_sigma_rad_s_ * gyro_sigma_rad_s_);
+    double information = gyro_information(observation, estimate, j);
     double pull = information * gyro.residual[j];
     if ((observation.partial >> j & 1u) != 0) {
-      const double impact = kPartialInContact * (1.0 - estimate.flight_weight), lost = observation.lost_sigma_rad_s[j];
-      information = 1.0 / (lost * lost + impact * impact);
       pull = information * (gyro.residual[j] - observation.lost_rad_s[j]);
     } else if ((observation.clipping.gyro >> j & 1u) != 0) {
       const bool kept = gyro.residual[j] * observation.sample.angular_velocity_rad_s[j] >= 0.0;
@@ -231,15 +247,7 @@ void RateModel::add_sample(const RateObservation& observation, const RateEstimat
     corner.gradient[3 + j] -= pull;
   }
 
-  // in contact the force is known to be of its own order: of two explanations of a rate that is not seen the gentler
-  // one is more likely
-  const double sigma = accel_sigma_m_s2(observation), flight2 = sigma * sigma;
-  const double share = observation.unseen() != 0 ? params_.contact_force_share : 0.0;
-  const double contact2 = flight2 + share * share * estimate.contact_m_s2.squaredNorm();
-  const double flight_information =
-      estimate.flight_weight / flight2 + (share > 0.0 ? (1.0 - estimate.flight_weight) / contact2 : 0.0);
-  RateFactor flight = flight_factor(estimate.knot, rig, observation.sample.specific_force_m_s2);
-  drop_satisfied_bounds(observation, flight);
+  auto [flight, flight_information] = force_factor(observation, estimate, rig);
   RateFactor euler = euler_factor(estimate.knot, rig);
   Eigen::Matrix3d of_flight = flight_information * Eigen::Matrix3d::Identity(), of_euler = euler_information(estimate);
   if (doubted != nullptr) {
@@ -247,13 +255,9 @@ void RateModel::add_sample(const RateObservation& observation, const RateEstimat
     of_euler = with_doubt(of_euler, euler_spread(euler, *doubted));
     flight.by_rig.setZero();
     euler.by_rig.setZero();
-  } else if (estimate.flight_weight < kRigWeightMin) {
-    flight.by_rig.setZero();
+  } else if (says_nothing_of_rig(estimate)) {
+    keep_from_rig(observation, flight);
     euler.by_rig.setZero();
-    for (int j = 0; j < 3; ++j) {
-      // a rate that is seen would hand the pull on to the gyro's bias
-      if ((observation.unseen() >> j & 1u) == 0) flight.by_knot.col(j).setZero();
-    }
   }
   add_flight(flight, of_flight, time_scale_s_, block, corner);
   add_euler(euler, of_euler, time_scale_s_, block, corner);
@@ -350,26 +354,6 @@ Eigen::Matrix3d RateModel::reported(const Eigen::Matrix3d& covariance, const Rat
       wider[j] = factor;
   }
   return wider.asDiagonal() * covariance * wider.asDiagonal();
-}
-
-void mark_partial(const RailDetector& rails, const RailDetector::State& state, double noise_rad_s,
-                  const ImuSample* before, RateObservation& now, const ImuSample* after) {
-  now.partial = 0;
-  for (int j = 0; j < 3; ++j) {
-    const bool flagged = (now.sample.device_clip_flags >> j & 1u) != 0 && (now.clipping.void_gyro >> j & 1u) == 0;
-    const std::optional<double> rail = rails.rail(state, j);
-    if (!flagged || !rail) continue;
-    const double reading = now.sample.angular_velocity_rad_s[j], sign = std::copysign(1.0, reading);
-    double neighbour = *rail;
-    if (before != nullptr) neighbour = std::min(neighbour, sign * before->angular_velocity_rad_s[j]);
-    if (after != nullptr) neighbour = std::min(neighbour, sign * after->angular_velocity_rad_s[j]);
-    if (neighbour > std::abs(reading)) continue;  // a dip in a plateau: how deep it is hidden nobody can say
-    const PartialLoss loss = partial_loss(std::abs(reading), neighbour, *rail, noise_rad_s);
-    if (!loss.partial) continue;
-    now.partial = static_cast<std::uint8_t>(now.partial | 1u << j);
-    now.lost_rad_s[j] = sign * loss.lost_rad_s;
-    now.lost_sigma_rad_s[j] = loss.sigma_rad_s;
-  }
 }
 
 RateSource rate_source(const RateObservation& o, const RateEstimate& e, const Eigen::Matrix3d& covariance,

@@ -91,4 +91,24 @@ void RateModel::update_bounds(const RateObservation& observation, const RigConst
   }
 }
 
+void mark_partial(const RailDetector& rails, const RailDetector::State& state, double noise_rad_s,
+                  const ImuSample* before, RateObservation& now, const ImuSample* after) {
+  now.partial = 0;
+  for (int j = 0; j < 3; ++j) {
+    const bool flagged = (now.sample.device_clip_flags >> j & 1u) != 0 && (now.clipping.void_gyro >> j & 1u) == 0;
+    const std::optional<double> rail = rails.rail(state, j);
+    if (!flagged || !rail) continue;
+    const double reading = now.sample.angular_velocity_rad_s[j], sign = std::copysign(1.0, reading);
+    double neighbour = *rail;
+    if (before != nullptr) neighbour = std::min(neighbour, sign * before->angular_velocity_rad_s[j]);
+    if (after != nullptr) neighbour = std::min(neighbour, sign * after->angular_velocity_rad_s[j]);
+    if (neighbour > std::abs(reading)) continue;  // a dip in a plateau: how deep it is hidden nobody can say
+    const PartialLoss loss = partial_loss(std::abs(reading), neighbour, *rail, noise_rad_s);
+    if (!loss.partial) continue;
+    now.partial = static_cast<std::uint8_t>(now.partial | 1u << j);
+    now.lost_rad_s[j] = sign * loss.lost_rad_s;
+    now.lost_sigma_rad_s[j] = loss.sigma_rad_s;
+  }
+}
+
 }  // namespace tumble

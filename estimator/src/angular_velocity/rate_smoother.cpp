@@ -118,6 +118,25 @@ class Iteration {
     }
   }
 
+  // Of the last factorisation, how far sample k moves with each of kErrors common errors: use(k, moved). `add` gives
+  // what they do to the gradient: add(k, of the sample, of the border). Returns how far the border moves.
+  template <typename Add, typename Use>
+  arrow::BorderErrors for_each_moved(Add add, Use use) const {
+    std::vector<arrow::ErrorMatrix> errors(blocks_.size(), arrow::ErrorMatrix::Zero());
+    arrow::BorderErrors border = arrow::BorderErrors::Zero();
+    for (std::size_t k = 0; k < blocks_.size(); ++k) {
+      add(k, errors[k], border);
+      arrow::eliminate_errors(blocks_[k], errors[k], k + 1 == blocks_.size() ? nullptr : &errors[k + 1], border);
+    }
+    border = (rig_covariance_ * border).eval();
+    arrow::ErrorMatrix moved;
+    for (std::size_t k = blocks_.size(); k-- > 0;) {
+      moved = arrow::back_substitute_errors(blocks_[k], errors[k], k + 1 == blocks_.size() ? nullptr : &moved, border);
+      use(k, moved);
+    }
+    return border;
+  }
+
   const RigConstants::Matrix& rig_covariance() const { return rig_covariance_; }
 
  private:
@@ -239,6 +258,30 @@ bool solve(const RateSmoother::Params& params, const RateModel& model, std::span
   return true;
 }
 
+// What the scale and misalignment of gyro and accelerometer, which no run can tell from the rig's constants, add to the
+// covariance of each rate and, returned, of the constants (S. F. Schmidt, 1966: parameters considered, not estimated).
+RigConstants::Matrix consider_matrices(const RateModelParams& params, const RateModel& model,
+                                       std::span<const RateObservation> observations, const Solution& solution,
+                                       std::span<Eigen::Matrix3d> spread_rad2_s2) {
+  RigConstants::Matrix of_rig = RigConstants::Matrix::Zero();
+  const auto consider = [&](double sigma, auto add) {
+    if (!(sigma > 0.0)) return;
+    const arrow::BorderErrors moved =
+        sigma * solution.iteration.for_each_moved(add, [&](std::size_t k, const arrow::ErrorMatrix& by_error) {
+          const Eigen::Matrix<double, 3, arrow::kErrors> rates = sigma * by_error.topRows<3>();
+          spread_rad2_s2[k].noalias() += rates.lazyProduct(rates.transpose());
+        });
+    of_rig += moved * moved.transpose();
+  };
+  consider(params.gyro_matrix_sigma, [&](std::size_t k, arrow::ErrorMatrix& block, arrow::BorderErrors& border) {
+    model.add_gyro_errors(observations[k], solution.estimates[k], block, border);
+  });
+  consider(params.accel_matrix_sigma, [&](std::size_t k, arrow::ErrorMatrix& block, arrow::BorderErrors& border) {
+    model.add_accel_errors(observations[k], solution.estimates[k], solution.rig, block, border);
+  });
+  return of_rig;
+}
+
 Status check_companions(const RateModelParams& params, std::span<const std::vector<CompanionReading>> companions,
                         std::size_t count) {
   const auto needed = static_cast<double>(params.companions.size());
@@ -321,6 +364,10 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
     health.calibration = {model.prior_constants(), model.prior_covariance()};
   }
 
+  std::vector<Eigen::Matrix3d> considered(samples.size(), Eigen::Matrix3d::Zero());
+  const RigConstants::Matrix of_rig = consider_matrices(params_.model, model, observations, solution, considered);
+  if (!health.rig_held) health.calibration.covariance += of_rig;
+
   std::vector<RateState> states(samples.size());
   std::size_t in_flight = 0;
   solution.iteration.for_each_conditional([&](std::size_t k, const arrow::Conditional& conditional) {
@@ -328,8 +375,8 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
     RateState& state = states[k];
     state.time_ns = samples[k].time_ns;
     state.w_WI_I_rad_s = estimate.knot.rate_rad_s;
-    state.covariance_rad2_s2 =
-        model.reported(arrow::rate_covariance(conditional, solution.rig_covariance), observations[k], estimate);
+    state.covariance_rad2_s2 = model.reported(
+        arrow::rate_covariance(conditional, solution.rig_covariance) + considered[k], observations[k], estimate);
     state.clipped_axes = clippings[k].gyro | clippings[k].void_gyro;
     state.source = rate_source(observations[k], estimate, state.covariance_rad2_s2, params_.recovered_sigma_rad_s);
     count(state, health);

@@ -110,6 +110,36 @@ TEST(ArrowSolver, SolutionAndCovarianceAreThoseOfTheDenseSystem) {
   }
 }
 
+TEST(ArrowSolver, ErrorsMoveTheSolutionAsInTheDenseSystem) {
+  for (std::size_t count : {1u, 2u, 17u}) {
+    System s = random_system(count, count);
+    const Index n = static_cast<Index>(count) * kState;
+    oracles::Gaussian noise(100 + count);
+    MatrixXd gained(n + kBorder, kErrors);
+    for (double& x : gained.reshaped()) x = noise();
+    const MatrixXd want = dense_matrix(s).ldlt().solve(gained);
+
+    BorderErrors border = gained.bottomRows(kBorder);
+    std::vector<ErrorMatrix> errors(count);
+    for (std::size_t k = 0; k < count; ++k) errors[k] = gained.middleRows<kState>(static_cast<Index>(k) * kState);
+    for (std::size_t k = 0; k < count; ++k) {
+      const bool last = k + 1 == count;
+      ASSERT_TRUE(eliminate(s.blocks[k], last ? nullptr : &s.blocks[k + 1], s.corner));
+      eliminate_errors(s.blocks[k], errors[k], last ? nullptr : &errors[k + 1], border);
+    }
+    BorderVector step;
+    BorderMatrix border_covariance;
+    ASSERT_TRUE(solve_corner(s.corner, step, border_covariance));
+    const BorderErrors border_moved = border_covariance * border;
+    EXPECT_LE((border_moved - want.bottomRows(kBorder)).norm(), 1e-9 * want.norm());
+    ErrorMatrix moved;
+    for (std::size_t k = count; k-- > 0;) {
+      moved = back_substitute_errors(s.blocks[k], errors[k], k + 1 == count ? nullptr : &moved, border_moved);
+      EXPECT_LE((moved - want.middleRows<kState>(static_cast<Index>(k) * kState)).norm(), 1e-9 * want.norm()) << k;
+    }
+  }
+}
+
 TEST(ArrowSolver, EliminatingTheFirstBlockIsItsMarginalisation) {
   System s = random_system(4, 9);
   const MatrixXd want = dense_matrix(s).inverse().bottomRightCorner(3 * kState + kBorder, 3 * kState + kBorder);

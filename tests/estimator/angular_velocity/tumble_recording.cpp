@@ -130,12 +130,14 @@ TumbleRecording make_tumble(const TumbleOptions& options) {
     const Vector3d gyro_noise = noise.vector(), accel_noise = noise.vector();
     ImuSample sample;
     sample.time_ns = static_cast<TimeNs>(k + 1) * (1'000'000'000 / options.rate_hz);
-    sample.angular_velocity_rad_s = (rate + options.gyro_bias_rad_s + options.gyro_sigma_rad_s * gyro_noise)
-                                        .cwiseMin(options.gyro_rail_rad_s)
-                                        .cwiseMax(-options.gyro_rail_rad_s);
-    sample.specific_force_m_s2 = (force + options.accel_bias_m_s2 + options.accel_sigma_m_s2 * accel_noise)
-                                     .cwiseMin(options.accel_rail_m_s2)
-                                     .cwiseMax(-options.accel_rail_m_s2);
+    sample.angular_velocity_rad_s =
+        (rate + options.gyro_error * rate + options.gyro_bias_rad_s + options.gyro_sigma_rad_s * gyro_noise)
+            .cwiseMin(options.gyro_rail_rad_s)
+            .cwiseMax(-options.gyro_rail_rad_s);
+    sample.specific_force_m_s2 =
+        (force + options.accel_error * force + options.accel_bias_m_s2 + options.accel_sigma_m_s2 * accel_noise)
+            .cwiseMin(options.accel_rail_m_s2)
+            .cwiseMax(-options.accel_rail_m_s2);
     out.samples.push_back(sample);
     out.truth.push_back(rate);
     out.phase.push_back(phase);

@@ -26,6 +26,8 @@ struct TumbleOptions {
   double accel_sigma_m_s2 = 5.9e-3;
   Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d accel_bias_m_s2 = Eigen::Vector3d::Zero();
+  /// Scale and misalignment: readings before noise are (1 + this) times the truth.
+  Eigen::Matrix3d gyro_error = Eigen::Matrix3d::Zero(), accel_error = Eigen::Matrix3d::Zero();
   double speed_low_rad_s = 9.0, speed_high_rad_s = 18.0;  ///< of the flights
   int flights = 8;
   double impact_m_s2 = 150.0;  ///< peak force of an impact, drawn between a third of it and all of it

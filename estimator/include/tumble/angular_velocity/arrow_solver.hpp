@@ -38,6 +38,12 @@ struct Corner {
   BorderVector gradient = BorderVector::Zero();
 };
 
+inline constexpr int kErrors = 9;  ///< errors considered at once: the entries of a matrix of scale and misalignment
+
+/// What each of kErrors common errors adds to the gradient of a block, of the border; once solved, to their steps.
+using ErrorMatrix = Eigen::Matrix<double, kState, kErrors>;
+using BorderErrors = Eigen::Matrix<double, kBorder, kErrors>;
+
 /// A block given the border: its covariance, and how far its mean moves with the border.
 struct Conditional {
   StateMatrix state;
@@ -59,6 +65,14 @@ bool solve_corner(const Corner& corner, BorderVector& step, BorderMatrix& covari
 
 /// Step of an eliminated block, given those of the next block (null for the last) and of the border.
 StateVector back_substitute(const Block& block, const StateVector* next_step, const BorderVector& border_step);
+
+/// The same for errors: takes those of an eliminated `block` forward, to the next (null for the last) and the border.
+void eliminate_errors(const Block& block, ErrorMatrix& errors, ErrorMatrix* next, BorderErrors& border);
+
+/// How an eliminated block moves with each error, from eliminate_errors(), given the same of the next block (null for
+/// the last) and of the border.
+ErrorMatrix back_substitute_errors(const Block& block, const ErrorMatrix& errors, const ErrorMatrix* next_moved,
+                                   const BorderErrors& border_moved);
 
 /// Conditional of an eliminated block, given that of the next block (null for the last).
 Conditional back_conditional(const Block& block, const Conditional* next);
