@@ -35,9 +35,13 @@ PointCounts select_points(std::span<const LidarPoint> points, const PointBounds&
 void apply_calibration(const SweepCalibration& calibration, double later_s, std::span<const SweepPoint> points,
                        std::vector<SweepPoint>& moved) {
   moved.assign(points.begin(), points.end());
+  apply_calibration(calibration, later_s, moved);
+}
+
+void apply_calibration(const SweepCalibration& calibration, double later_s, std::span<SweepPoint> points) {
   const Eigen::Matrix3f R = calibration.T_IL.linear().cast<float>();
   const Eigen::Vector3f p = calibration.T_IL.translation().cast<float>();
-  for (SweepPoint& point : moved) {
+  for (SweepPoint& point : points) {
     point.x_I_m = R * point.x_L_m + p;
     point.t_s += static_cast<float>(later_s);
   }
@@ -74,9 +78,7 @@ void SweepSampler::choose(std::span<const Eigen::Vector3f> positions_W_m, double
   for (std::uint32_t i = 0; i < positions_W_m.size(); ++i) {
     const Eigen::Vector3f scaled = positions_W_m[i] * cubes_per_m;
     if (!(scaled.cwiseAbs().maxCoeff() < static_cast<float>(SpatialHash::kLimit - 2))) continue;
-    const std::size_t before = seen_.size();
-    seen_.insert(SpatialHash::key(scaled.array().floor().cast<int>()), i);
-    if (seen_.size() != before) chosen.push_back(i);
+    if (seen_.add(SpatialHash::key(scaled.array().floor().cast<int>()))) chosen.push_back(i);
   }
 }
 

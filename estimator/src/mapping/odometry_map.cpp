@@ -10,9 +10,9 @@ namespace {
 constexpr double kPruneShare = 0.1;  // of the map's radius: moved so far, the sensor drops what is out of reach
 
 /// What the trajectory is uncertain by inside of a stretch, as seen at a point: between its start and its end.
-class PoseSigma {
+class PoseVariance {
  public:
-  PoseSigma(const Registration::Matrix& covariance, const SweepTrajectory& trajectory)
+  PoseVariance(const Registration::Matrix& covariance, const SweepTrajectory& trajectory)
       : duration_s_(std::max(trajectory.duration_s(), 1e-9)) {
     const SweepTrajectory::Transition step = trajectory.transition(trajectory.duration_s());
     constexpr int kMoving = Registration::kCalibration;
@@ -24,11 +24,11 @@ class PoseSigma {
     end_m2_ = end.diagonal().head<3>().mean();
     end_rad2_ = end.diagonal().segment<3>(3).mean();
   }
-  double at(const SweepPoint& point) const {
+  double at_m2(const SweepPoint& point) const {
     const double share = std::clamp(point.t_s / duration_s_, 0.0, 1.0);
     const double m2 = start_m2_ + share * (end_m2_ - start_m2_);
     const double rad2 = start_rad2_ + share * (end_rad2_ - start_rad2_);
-    return std::sqrt(std::max(m2 + rad2 * point.range_m * point.range_m, 0.0));
+    return std::max(m2 + rad2 * point.range_m * point.range_m, 0.0);
   }
 
  private:
@@ -39,20 +39,18 @@ class PoseSigma {
 
 std::size_t LidarInertialOdometry::Impl::extend_map(bool rings_differ) {
   if (covariance.diagonal().tail<SweepCalibration::kErrors>().maxCoeff() > 0.0) {
-    std::vector<SweepPoint> moved;
     const SweepCalibration& now = result.mean.calibration;
-    apply_calibration(now, now.time_offset_s - calibration.time_offset_s, points, moved);
-    points.swap(moved);
+    apply_calibration(now, now.time_offset_s - calibration.time_offset_s, points);
   }
   compute_levers(trajectory, points, positions_W_m);
-  const PoseSigma sigma(result.covariance, trajectory);
+  const PoseVariance of_pose(result.covariance, trajectory);
   const std::uint32_t sweep = static_cast<std::uint32_t>(seen_from_W_m.size());
   const MotionState middle = trajectory.state(0.5 * trajectory.duration_s());
   const std::uint32_t line = scan_lines.base(middle.q_WI * params.T_IL.linear().col(2), rings_differ);
   std::size_t added = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3f position = positions_W_m[i] + trajectory.base_m(points[i].t_s).cast<float>();
-    const double sigma_m = std::hypot(registration.point_sigma_m(points[i]), sigma.at(points[i]));
+    const double sigma_m = std::sqrt(registration.point_variance_m2(points[i]) + of_pose.at_m2(points[i]));
     if (sigma_m > params.map_sigma_max_m) continue;
     const std::uint32_t index =
         map.add(position, static_cast<float>(sigma_m), sweep, mapping::ScanLines::line(line, points[i].ring));

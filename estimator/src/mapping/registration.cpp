@@ -125,7 +125,7 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
     }
     place(trajectory, points, map);
     kernel_m = kernel_width_m();
-    sum = accumulate(points, trajectory, now.calibration, unknowns, kernel_m);
+    accumulate(points, trajectory, now.calibration, unknowns, kernel_m, sum);
     result.matches = sum.matches;
     result.inliers = sum.inliers;
     if (sum.matches < matches_needed) return refuse(RegistrationVerdict::too_few);
@@ -153,19 +153,31 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
   result.mean = now;
   result.mean.state.covariance = result.covariance.topLeftCorner<kMotion, kMotion>();
   result.verdict = RegistrationVerdict::converged;
-  describe_shape(sum, result);
+  describe_shape(points, kernel_m, sum, result);
   if (Status status = build(result.mean); !status.ok()) return status;
   result.scatter = scatter(points, trajectory, now.calibration, unknowns, kernel_m);
   return {};
 }
 
-void Registration::describe_shape(const Sums& sum, Result& result) {
-  const double lever_m = std::sqrt(std::max(sum.lever2 / sum.weight, 1e-12));
+void Registration::describe_shape(std::span<const SweepPoint> points, double kernel_m, const Sums& sum,
+                                  Result& result) const {
+  Eigen::Matrix<double, 6, 6> shape = Eigen::Matrix<double, 6, 6>::Zero();  // robustly weighted, without variances
+  double weight = 0.0, lever2 = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (matches_[i].plane.verdict != PlaneVerdict::plane) continue;
+    const double robust = weigh(points[i], matches_[i], distances_[i], kernel_m).robust;
+    const Eigen::Vector3d n = matches_[i].plane.normal_W.cast<double>(), lever = levers_[i].cast<double>();
+    Eigen::Matrix<double, 6, 1> j;
+    j << n, lever.cross(n);
+    shape += robust * j * j.transpose();
+    weight += robust;
+    lever2 += robust * lever.squaredNorm();
+  }
+  const double lever_m = std::sqrt(std::max(lever2 / weight, 1e-12));
   Eigen::Matrix<double, 6, 1> scale;
   scale << 1.0, 1.0, 1.0, 1.0 / lever_m, 1.0 / lever_m, 1.0 / lever_m;
-  const Eigen::Matrix<double, 6, 6> full = sum.shape.selfadjointView<Eigen::Lower>();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(scale.asDiagonal() * full *
-                                                                          scale.asDiagonal() / sum.weight);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(scale.asDiagonal() * shape *
+                                                                          scale.asDiagonal() / weight);
   result.eigenvalues = solver.eigenvalues().cwiseMax(0.0);
   result.directions = solver.eigenvectors();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> information(

@@ -65,17 +65,14 @@ void Registration::Unknowns::clear_held(Matrix& covariance) const {
 void Registration::Sums::add(const Sums& other) {
   H += other.H;
   g += other.g;
-  shape += other.shape;
-  weight += other.weight;
-  lever2 += other.lever2;
   matches += other.matches;
   inliers += other.inliers;
 }
 
-double Registration::point_sigma_m(const SweepPoint& point) const {
+double Registration::point_variance_m2(const SweepPoint& point) const {
   const double range = std::max(params_.range_sigma_m, params_.range_sigma_share * point.range_m);
   const double skew = params_.skew_sigma_m_s * point.sweep_t_s;
-  return std::sqrt(range * range + skew * skew);
+  return range * range + skew * skew;
 }
 
 double Registration::residual(const SweepTrajectory& trajectory, const SweepCalibration& calibration,
@@ -122,8 +119,7 @@ void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours
 /// What a match counts for: its information, as far as it fits (D. Geman, D. McClure, 1987).
 Registration::Weight Registration::weigh(const SweepPoint& point, const Match& match, double distance_m,
                                          double kernel_m) const {
-  const double sigma = point_sigma_m(point);
-  const double variance = sigma * sigma + match.map_variance_m2;
+  const double variance = point_variance_m2(point) + match.map_variance_m2;
   const double soft = 1.0 + distance_m * distance_m / (kernel_m * kernel_m);
   const double robust = 1.0 / (soft * soft);
   return {variance, robust, robust * params_.information_share / variance};
@@ -191,9 +187,6 @@ void Registration::accumulate_block(std::span<const SweepPoint> points, std::siz
       }
     }
     weighted[count++] = root * r;
-    sum.shape.selfadjointView<Eigen::Lower>().rankUpdate(j.head<6>(), weight.robust);
-    sum.weight += weight.robust;
-    sum.lever2 += weight.robust * lever.squaredNorm();
     ++sum.matches;
     if (r * r <= 9.0 * weight.variance_m2) ++sum.inliers;
   }
@@ -202,18 +195,17 @@ void Registration::accumulate_block(std::span<const SweepPoint> points, std::siz
   sum.g.head(n) = rows.topLeftCorner(n, count) * weighted.head(count);
 }
 
-Registration::Sums Registration::accumulate(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
-                                            const SweepCalibration& calibration, const Unknowns& unknowns,
-                                            double kernel_m) {
-  std::vector<Sums> parts(block_count(points.size()));
-  run_parallel(params_.parallel_for, parts.size(), [&](std::size_t block) {
-    accumulate_block(points, block, trajectory, calibration, unknowns, kernel_m, parts[block]);
+void Registration::accumulate(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
+                              const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m,
+                              Sums& sum) {
+  parts_.assign(block_count(points.size()), Sums{});
+  run_parallel(params_.parallel_for, parts_.size(), [&](std::size_t block) {
+    accumulate_block(points, block, trajectory, calibration, unknowns, kernel_m, parts_[block]);
   });
-  Sums sum;
-  for (const Sums& part : parts) sum.add(part);
+  sum = Sums{};
+  for (const Sums& part : parts_) sum.add(part);
   const Matrix lower = sum.H;
   sum.H = lower.selfadjointView<Eigen::Lower>();
-  return sum;
 }
 
 Registration::Matrix Registration::scatter(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,

@@ -30,17 +30,4 @@ struct Registration::Unknowns {
   }
 };
 
-/// Sums over the matches of one iteration, over the free unknowns alone.
-struct Registration::Sums {
-  Matrix H = Matrix::Zero();
-  Vector g = Vector::Zero();
-  Eigen::Matrix<double, 6, 6> shape = Eigen::Matrix<double, 6, 6>::Zero();  // robustly weighted, without variances
-  double weight = 0.0;
-  double lever2 = 0.0;
-  std::size_t matches = 0;
-  std::size_t inliers = 0;
-
-  void add(const Sums& other);
-};
-
 }  // namespace tumble

@@ -110,7 +110,7 @@ void RigidOdometry::extend_map(bool rings_differ, SweepReport& report) {
   const std::uint32_t base = scan_lines_.base((T_WI.linear() * params_.T_IL.linear()).col(2), rings_differ);
   const auto sweep = static_cast<std::uint32_t>(seen_from_W_m_.size());
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    const auto sigma = static_cast<float>(registration_.point_sigma_m(points_[i]));
+    const auto sigma = static_cast<float>(std::sqrt(registration_.point_variance_m2(points_[i])));
     report.map_points_added +=
         map_.insert(positions_m_[i], sigma, sweep, mapping::ScanLines::line(base, points_[i].ring));
   }

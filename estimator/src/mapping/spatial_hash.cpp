@@ -27,6 +27,18 @@ std::uint32_t SpatialHash::insert(std::uint64_t key, std::uint32_t value) {
   return value;
 }
 
+bool SpatialHash::add(std::uint64_t key) {
+  if (2 * (size_ + 1) > keys_.size()) grow();
+  std::size_t slot = slot_of(key);
+  for (; keys_[slot] != kFree; slot = (slot + 1) & mask_) {
+    if (keys_[slot] == key) return false;
+  }
+  keys_[slot] = key;
+  values_[slot] = 0;
+  ++size_;
+  return true;
+}
+
 void SpatialHash::clear() {
   std::fill(keys_.begin(), keys_.end(), kFree);
   size_ = 0;

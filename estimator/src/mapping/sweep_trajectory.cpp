@@ -2,6 +2,7 @@
 #include "tumble/mapping/sweep_trajectory.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "tumble/common/so3.hpp"
 
@@ -37,6 +38,28 @@ Eigen::Matrix<double, SweepTrajectory::kKnots, 1> knot_weights(double share) {
   const double place = std::clamp(share, 0.0, 1.0) * (SweepTrajectory::kKnots - 1);
   for (int k = 0; k < SweepTrajectory::kKnots; ++k) weights[k] = std::max(0.0, 1.0 - std::abs(place - k));
   return weights;
+}
+
+// Beyond it the series below would need more terms.
+constexpr double kSeriesAngle_rad = 1.0;
+// ratios of successive terms of cos and of sin(x) / x, last first
+constexpr std::pair<double, double> kTurnSeries[] = {
+    {1.0 / 182, 1.0 / 210}, {1.0 / 132, 1.0 / 156}, {1.0 / 90, 1.0 / 110}, {1.0 / 56, 1.0 / 72},
+    {1.0 / 30, 1.0 / 42},   {1.0 / 12, 1.0 / 20},   {1.0 / 2, 1.0 / 6}};
+
+/// so3::exp(rate_rad_s * s) by its series, exact to rounding: each point of a sweep asks for it, at the small angles
+/// that a body turns by within a sample.
+Eigen::Quaterniond turned_by(const Eigen::Vector3d& rate_rad_s, double s) {
+  const double angle2 = s * s * rate_rad_s.squaredNorm();
+  if (!(angle2 <= kSeriesAngle_rad * kSeriesAngle_rad)) return so3::exp(rate_rad_s * s);
+  const double h = 0.25 * angle2;  // half the angle, squared
+  double cosine = 1.0, sinc = 1.0;
+  for (const auto& [of_cosine, of_sinc] : kTurnSeries) {
+    cosine = 1.0 - (h * of_cosine) * cosine;
+    sinc = 1.0 - (h * of_sinc) * sinc;
+  }
+  const Eigen::Vector3d v = (0.5 * s * sinc) * rate_rad_s;
+  return {cosine, v.x(), v.y(), v.z()};
 }
 
 }  // namespace
@@ -115,7 +138,7 @@ SweepTrajectory::Instant SweepTrajectory::at(double t_s, std::size_t& hint) cons
   const double t = std::clamp(t_s, -kBeyond_s, duration_s_ + kBeyond_s);
   const Interval& now = interval_at(t, hint);
   const double s = t - now.start_s;
-  return {now.q_WI * so3::exp(now.w_I * s), now.thrust_p + s * now.thrust_v + (0.5 * s * s) * now.a_W};
+  return {now.q_WI * turned_by(now.w_I, s), now.thrust_p + s * now.thrust_v + (0.5 * s * s) * now.a_W};
 }
 
 Eigen::Vector3d SweepTrajectory::velocity_m_s(double t_s, const Eigen::Vector3d& x_I_m, std::size_t& hint) const {
@@ -123,11 +146,12 @@ Eigen::Vector3d SweepTrajectory::velocity_m_s(double t_s, const Eigen::Vector3d&
   const Interval& now = interval_at(t, hint);
   const double s = t - now.start_s;
   return start_.v_WI_m_s + t * gravity_W_m_s2_ + now.thrust_v + s * now.a_W +
-         now.q_WI * (so3::exp(now.w_I * s) * now.w_I.cross(x_I_m));
+         now.q_WI * (turned_by(now.w_I, s) * now.w_I.cross(x_I_m));
 }
 
 /// Attitude that the excess adds up to `s` seconds into an interval, per unit of each knot's axes.
 SweepTrajectory::ByExcess SweepTrajectory::gained_by_excess(const Interval& now, double s) {
+  if (now.excess_share.isZero(0.0)) return ByExcess::Zero();
   const Eigen::Matrix3d gained =
       now.q_WI.toRotationMatrix() * so3::left_jacobian(now.w_I * s) * now.excess_share.asDiagonal() * s;
   ByExcess out;

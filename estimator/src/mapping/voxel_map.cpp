@@ -71,11 +71,7 @@ std::uint32_t VoxelMap::add(const Eigen::Vector3f& position, float sigma_m, std:
   // one margin for cells and cubes of the spacing; also false for NaN
   if (!((position * finest).cwiseAbs().maxCoeff() < static_cast<float>(SpatialHash::kLimit - 2))) return kNoPoint;
 
-  if (params_.spacing_m > 0.0) {
-    const std::size_t before = taken_.size();
-    taken_.insert(SpatialHash::key(cube_of(position, finest)), 0);
-    if (taken_.size() == before) return kNoPoint;
-  }
+  if (params_.spacing_m > 0.0 && !taken_.add(SpatialHash::key(cube_of(position, finest)))) return kNoPoint;
   const Eigen::Vector3i cell = cube_of(position, cells_per_m_);
   const std::uint64_t key = SpatialHash::key({cell.x() >> kGroupBits, cell.y() >> kGroupBits, cell.z() >> kGroupBits});
   const std::uint32_t group = groups_of_.insert(key, static_cast<std::uint32_t>(groups_.size()));

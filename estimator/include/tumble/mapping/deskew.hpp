@@ -47,6 +47,8 @@ PointCounts select_points(std::span<const LidarPoint> points, const PointBounds&
 /// The same points under another calibration, `later_s` later by the IMU's clock. `moved` may not be `points`. O(n).
 void apply_calibration(const SweepCalibration& calibration, double later_s, std::span<const SweepPoint> points,
                        std::vector<SweepPoint>& moved);
+/// The same in place.
+void apply_calibration(const SweepCalibration& calibration, double later_s, std::span<SweepPoint> points);
 
 /// Levers u_i = S(t_i) + R(t_i) x_i of SweepTrajectory: the point in the world is trajectory.base_m(t_i) + u_i. O(n).
 void compute_levers(const SweepTrajectory& trajectory, std::span<const SweepPoint> points,

@@ -119,8 +119,8 @@ class Registration {
   Status align(const Prior& prior, std::span<const MotionSample> samples, TimeNs end_ns,
                std::span<const SweepPoint> points, const VoxelMap& map, SweepTrajectory& trajectory, Result& result);
 
-  /// Standard deviation of a return along its ray together with the skew left after deskewing.
-  double point_sigma_m(const SweepPoint& point) const;
+  /// Variance of a return along its ray together with the skew left after deskewing.
+  double point_variance_m2(const SweepPoint& point) const;
 
   /// Distance of a point to a plane and its derivative by all unknowns, for one point. Public so that it can be checked
   /// against differences.
@@ -134,15 +134,22 @@ class Registration {
     float map_variance_m2 = 0.0f;
     bool searched = false;
   };
-  struct Sums;
+  /// Over the matches of one iteration, of the free unknowns alone.
+  struct Sums {
+    Matrix H = Matrix::Zero();
+    Vector g = Vector::Zero();
+    std::size_t matches = 0, inliers = 0;
+
+    void add(const Sums& other);
+  };
   struct Unknowns;
 
   void place(const SweepTrajectory& trajectory, std::span<const SweepPoint> points, const VoxelMap& map);
   void find_match(const VoxelMap& map, std::size_t point, Neighbours& found);
   double kernel_width_m();
-  static void describe_shape(const Sums& sum, Result& result);
-  Sums accumulate(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
-                  const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m);
+  void describe_shape(std::span<const SweepPoint> points, double kernel_m, const Sums& sum, Result& result) const;
+  void accumulate(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
+                  const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m, Sums& sum);
   void accumulate_block(std::span<const SweepPoint> points, std::size_t block, const SweepTrajectory& trajectory,
                         const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m, Sums& sum);
 
@@ -159,6 +166,7 @@ class Registration {
   std::vector<SweepPoint> moved_;
   std::vector<Match> matches_;
   std::vector<float> distances_, sorted_;
+  std::vector<Sums> parts_;  // per block of points
   SpatialHash cluster_of_{1 << 10};
   std::vector<Vector> pulls_;  // of the clusters
 };

@@ -33,6 +33,9 @@ class SpatialHash {
   /// Enters a key with a value unless it is there; returns the value now in force. Amortised O(1).
   std::uint32_t insert(std::uint64_t key, std::uint32_t value);
 
+  /// Enters a key whose value is of no interest; returns whether it was new. Amortised O(1).
+  bool add(std::uint64_t key);
+
   /// Forgets all keys and keeps the memory.
   void clear();
   std::size_t size() const { return size_; }
