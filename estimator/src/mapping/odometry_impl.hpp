@@ -57,6 +57,8 @@ double knot_correlation(const LidarInertialOdometry::Params& params, const Sweep
 
 void check_params(const LidarInertialOdometry::Params& params);
 Registration::Params registration_params(const LidarInertialOdometry::Params& params);
+/// For all points of a sweep: what has not settled by then is cheaper settled with some of them.
+Registration::Params brief_registration_params(const LidarInertialOdometry::Params& params);
 /// Wider in every respect: finds the neighbourhood of the answer, not the answer.
 Registration::Params coarse_registration_params(const LidarInertialOdometry::Params& params);
 
@@ -67,7 +69,8 @@ struct LidarInertialOdometry::Impl {
   explicit Impl(const Params& p)
       : params((mapping::check_params(p), p)),
         map({p.map_voxel_m, p.map_spacing_m}),
-        registration(mapping::registration_params(p)),
+        registration(mapping::brief_registration_params(p)),
+        patient(mapping::registration_params(p)),
         coarse(mapping::coarse_registration_params(p)) {}
 
   // odometry_imu.cpp
@@ -98,6 +101,7 @@ struct LidarInertialOdometry::Impl {
   Status align(const Registration::Prior& prior, TimeNs end_ns, Registration::Result& result);
   Status try_start(const Registration::Prior& start, const Registration::Prior& prior, TimeNs end_ns,
                    Registration::Result& result);
+  Status align_patiently(const Registration::Prior& prior, TimeNs end_ns, Registration::Result& result);
   Status search(const Registration::Prior& prior, TimeNs end_ns, Registration::Result& result);
   void register_sweep(TimeNs end_ns, SweepReport& report);
   Status fall_back_on_inertia(TimeNs end_ns);
@@ -151,13 +155,13 @@ struct LidarInertialOdometry::Impl {
   mapping::ScanLines scan_lines;
 
   // memory kept between sweeps
-  Registration registration, coarse;
+  Registration registration, patient, coarse;
   mapping::Prediction prediction;                              // of the present sweep
   Registration::Result result;                                 // of the present sweep
   Registration::Matrix errors = Registration::Matrix::Zero();  // of its unknowns: covariance
   SweepTrajectory trajectory;
   SweepSampler sampler;
-  std::vector<SweepPoint> points, chosen, few;
+  std::vector<SweepPoint> points, chosen, few, some;
   std::vector<Eigen::Vector3f> positions_W_m;
   std::vector<std::uint32_t> chosen_index;
 

@@ -7,6 +7,7 @@ namespace tumble::mapping {
 
 namespace {
 
+constexpr int kBriefIterations = 8;
 constexpr int kCoarseIterations = 15;
 constexpr std::size_t kCoarseMatches = 50;
 
@@ -67,6 +68,12 @@ Registration::Params registration_params(const LidarInertialOdometry::Params& pa
   out.correction_max_rad = params.correction_max_rad;
   out.matches_min = params.matches_min;
   out.parallel_for = params.parallel_for;
+  return out;
+}
+
+Registration::Params brief_registration_params(const LidarInertialOdometry::Params& params) {
+  Registration::Params out = registration_params(params);
+  out.iterations_max = std::min(params.iterations_max, kBriefIterations);
   return out;
 }
 

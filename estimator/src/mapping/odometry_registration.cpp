@@ -9,14 +9,15 @@ namespace tumble {
 namespace {
 
 constexpr double kExcessTries_rad_s[] = {3.0, 6.0, 9.0, 15.0};
-constexpr int kExcessTriesMax = 5;        // of these for one sweep, all axes together
-constexpr int kStartsPerSweep = 3;        // of a search, the prior itself among them
-constexpr std::size_t kFewPoints = 300;   // serve a start that may be far off
-constexpr double kSearchTurn_rad = 0.3;   // starts of a search reach so far at first, in attitude
-constexpr double kSearchShift_m = 1.0;    // and so far in position
-constexpr int kSearchRounds = 3;          // each reaches that much further than the last
-constexpr double kStillSpeed_m_s = 0.01;  // during the rest at the start
-constexpr double kRestSpeed_m_s = 0.05;   // of an IMU that says nothing but gravity
+constexpr int kExcessTriesMax = 5;         // of these for one sweep, all axes together
+constexpr int kStartsPerSweep = 3;         // of a search, the prior itself among them
+constexpr std::size_t kFewPoints = 300;    // serve a start that may be far off
+constexpr std::size_t kSomePoints = 1000;  // tell whether it leads somewhere
+constexpr double kSearchTurn_rad = 0.3;    // starts of a search reach so far at first, in attitude
+constexpr double kSearchShift_m = 1.0;     // and so far in position
+constexpr int kSearchRounds = 3;           // each reaches that much further than the last
+constexpr double kStillSpeed_m_s = 0.01;   // during the rest at the start
+constexpr double kRestSpeed_m_s = 0.05;    // of an IMU that says nothing but gravity
 constexpr double kCreepSpeed_m_s =
     0.5;                             // below it, such an IMU is believed to rest: a world that holds nothing lets creep
 constexpr int kRestSweeps = 3;       // after so many in a row
@@ -41,6 +42,13 @@ Registration::Prior moved_start(Registration::Prior prior, int index) {
   return prior;
 }
 constexpr int kStarts = 1 + 12 * kSearchRounds;
+
+/// At most `count` of the points, evenly.
+void thin(const std::vector<SweepPoint>& points, std::size_t count, std::vector<SweepPoint>& out) {
+  out.clear();
+  const std::size_t every = std::max<std::size_t>(1, (points.size() + count - 1) / count);
+  for (std::size_t i = 0; i < points.size(); i += every) out.push_back(points[i]);
+}
 
 }  // namespace
 
@@ -141,14 +149,14 @@ void LidarInertialOdometry::Impl::choose_points() {
   for (const std::uint32_t index : chosen_index) chosen.push_back(points[index]);
 }
 
-/// At most kFewPoints of the chosen, evenly.
+/// At most kFewPoints and kSomePoints of the chosen, evenly.
 void LidarInertialOdometry::Impl::choose_few() {
-  few.clear();
-  const std::size_t every = std::max<std::size_t>(1, (chosen.size() + kFewPoints - 1) / kFewPoints);
-  for (std::size_t i = 0; i < chosen.size(); i += every) few.push_back(chosen[i]);
+  thin(chosen, kFewPoints, few);
+  thin(chosen, kSomePoints, some);
 }
 
-/// From a start that may be far off: first coarsely and with few points, and in full where that leads somewhere.
+/// From a start that may be far off: first coarsely and with few points, then with some, and in full where these lead
+/// somewhere, so that a start in vain costs a fraction of a registration.
 Status LidarInertialOdometry::Impl::try_start(const Registration::Prior& start, const Registration::Prior& prior,
                                               TimeNs end_ns, Registration::Result& found) {
   Registration::Result rough;
@@ -159,7 +167,21 @@ Status LidarInertialOdometry::Impl::try_start(const Registration::Prior& start, 
   fine.mean.state = rough.mean.state;
   fine.covariance = prior.covariance;
   fine.excess_start_rad_s = rough.mean.excess_rad_s;
-  return registration.align(fine, samples, end_ns, chosen, map, trajectory, found);
+  return align_patiently(fine, end_ns, found);
+}
+
+/// With some of the points for as long as it takes, and in full from where these lead.
+Status LidarInertialOdometry::Impl::align_patiently(const Registration::Prior& prior, TimeNs end_ns,
+                                                    Registration::Result& found) {
+  Status status = patient.align(prior, samples, end_ns, some, map, trajectory, found);
+  if (!status.ok() || found.verdict != RegistrationVerdict::converged) return status;
+  Registration::Prior near = prior;
+  near.mean.state = found.mean.state;
+  near.excess_start_rad_s = found.mean.excess_rad_s;
+  const int iterations = found.iterations;
+  status = registration.align(near, samples, end_ns, chosen, map, trajectory, found);
+  found.iterations += iterations;
+  return status;
 }
 
 /// Registers; where that fails and the rate may be short on a clipped axis, tries again from larger excess rates, since
@@ -168,6 +190,10 @@ Status LidarInertialOdometry::Impl::align(const Registration::Prior& prior, Time
                                           Registration::Result& found) {
   Status status = registration.align(prior, samples, end_ns, chosen, map, trajectory, found);
   int iterations = found.iterations, tries = 0;
+  if (status.ok() && found.verdict == RegistrationVerdict::diverged) {
+    status = align_patiently(prior, end_ns, found);
+    iterations += found.iterations;
+  }
   for (const double more : kExcessTries_rad_s) {
     for (int axis = 0; axis < 3; ++axis) {
       if (!status.ok() || found.verdict == RegistrationVerdict::converged || tries == kExcessTriesMax) break;
