@@ -74,9 +74,11 @@ class LidarInertialOdometry {
     double map_spacing_m = 0.1;            ///< at most one map point per cube of this edge; bound [0, map_voxel_m]
     int neighbours = 12;                   ///< k of the plane fit; bound [3, 32]
     double match_distance_m = 1.0;         ///< farther map points are no match; bound [0.001, 10]
-    int iterations_max = 30;               ///< bound [1, 200]
-    double correction_max_m = 15.0;        ///< a larger correction of the prior is rejected
-    double correction_max_rad = 1.1;       ///< a larger correction of the prior is rejected
+    /// Of a registration; one with all points has at most eight, what has not settled goes on with a thousand of them;
+    /// [1, 200].
+    int iterations_max = 30;
+    double correction_max_m = 15.0;   ///< a larger correction of the prior is rejected
+    double correction_max_rad = 1.1;  ///< a larger correction of the prior is rejected
     /// What the inertial side may be wrong by after 0.1 s, beside what RateState reports: standard deviations that grow
     /// in proportion to time. Loose in doubt; tight holds a world with few features. Bounds (0, 1e3].
     double prior_sigma_m = 0.003;
