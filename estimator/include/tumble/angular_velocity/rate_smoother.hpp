@@ -54,9 +54,8 @@ struct RateReport {
 /// Rest is zero rate (RestDetector).
 ///
 /// Scale and misalignment of the sensors look like other constants of the rig and are not estimated; what they may do
-/// to rates and constants is in both covariances (parameters considered, S. F. Schmidt, 1966). 0.6 s of flight at 18.6
-/// rad/s (tests/bench/rate_statistics hill 4304 4304) err by up to 0.074 rad/s where the fit alone claims 0.022: 54 %
-/// of its axes lie within three of those deviations, all within three of the reported ones.
+/// to rates and constants is in both covariances (parameters considered, S. F. Schmidt, 1966), else the fit takes it
+/// for noise and averages it away: the test ScaleAndMisalignmentAreInTheCovariance.
 ///
 /// What it does not model: a contact point that persists, time offset between gyro and accelerometer. The rates are
 /// those at which the gyro's readings stand: means over the window of the sample.
