@@ -51,7 +51,12 @@ constexpr std::array<sim::Parameter, 2> kDistance = {{
 }};
 
 constexpr sim::Parameter kClaim = {
-    "slip_claimed_from", 0.5, 0.0, 1.0, "1", "probability of slip, over all hypotheses, from which on it is claimed"};
+    "slip_claimed_from",
+    0.5,
+    0.0,
+    1.0,
+    "1",
+    "probability of slip or bump, over all hypotheses, from which on the likelier of them is claimed"};
 
 constexpr sim::Parameter kLag = {"lag_s", 1.0, 0.02, 60.0, "s", "how long a pose may wait for what follows"};
 
@@ -128,7 +133,8 @@ bool merged(const char* method, const sim::Sensors& sensors, MergedImus& imus, E
 RollingMode claimed_mode(const RollingFilter::State& state, double claimed_from) {
   const bool claimed = state.slip_probability >= claimed_from;
   if (claimed == slips(state.mode)) return state.mode;
-  return claimed ? RollingMode::slip : RollingMode::grip;
+  if (!claimed) return RollingMode::grip;
+  return 2.0 * state.bump_probability > state.slip_probability ? RollingMode::bump : RollingMode::slip;
 }
 
 Estimate run_live(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {

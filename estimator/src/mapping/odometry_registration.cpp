@@ -190,7 +190,10 @@ Status LidarInertialOdometry::Impl::align(const Registration::Prior& prior, Time
                                           Registration::Result& found) {
   Status status = registration.align(prior, samples, end_ns, chosen, map, trajectory, found);
   int iterations = found.iterations, tries = 0;
-  if (status.ok() && found.verdict == RegistrationVerdict::diverged) {
+  // one that ran beyond its bound would do so again
+  const bool out_of_bounds =
+      found.correction_m > params.correction_max_m || found.correction_rad > params.correction_max_rad;
+  if (status.ok() && found.verdict == RegistrationVerdict::diverged && !out_of_bounds) {
     status = align_patiently(prior, end_ns, found);
     iterations += found.iterations;
   }

@@ -141,7 +141,9 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
     settled = is_small(step, trajectory.duration_s(), params_);
     result.correction_m = (now.state.p_WI_m - prior.mean.state.p_WI_m).norm();
     result.correction_rad = so3::log(now.state.q_WI * prior.mean.state.q_WI.conjugate()).norm();
-    if (result.correction_m > params_.correction_max_m || result.correction_rad > params_.correction_max_rad) break;
+    if (result.correction_m > params_.correction_max_m || result.correction_rad > params_.correction_max_rad) {
+      return refuse(RegistrationVerdict::diverged);
+    }
   }
   // a false minimum: most matches lie off their planes
   const bool fits = static_cast<double>(sum.inliers) >= params_.fitting_share_min * static_cast<double>(sum.matches);

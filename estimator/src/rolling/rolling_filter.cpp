@@ -13,6 +13,8 @@ namespace tumble {
 namespace {
 
 constexpr double kSlowForceTau_s = 0.1;
+constexpr double kSlowRateTau_s = 0.3;
+constexpr double kPivots = 4.0;  // sigmas by which a rate at rest is no bias
 
 static_assert(RollingFilter::kStates == rolling::kStates);
 
@@ -74,7 +76,7 @@ void RollingFilter::close_node(const Eigen::Vector3d& next_rate_rad_s, State& st
     state.position_covariance_m2 += state.settled_spread_m2;
   }
   call_uncertain(state);
-  state.slip_probability = slip_probability(state);
+  weigh_events(state);
   rebase(state);
   hold(state);
   state.sums = {};
@@ -89,6 +91,20 @@ void RollingFilter::detect_rest(State& state) const {
   state.slow_force_m_s2 += -std::expm1(-h / kSlowForceTau_s) * (f_mean - state.slow_force_m_s2);
   state.rest_s = quiet ? state.rest_s + h : 0.0;
   state.at_rest = quiet && state.rest_s >= params_.rest_time_s;
+  const Eigen::Vector3d w_mean = state.sums.w_I_rad / h + state.nominal.gyro_bias_rad_s;
+  state.slow_rate_rad_s += -std::expm1(-h / kSlowRateTau_s) * (w_mean - state.slow_rate_rad_s);
+  state.pivots = state.at_rest && pivots(state);
+}
+
+/// Whether a sphere that stands still turns about its contact: so slowly that only what is known of the bias tells.
+bool RollingFilter::pivots(const State& state) const {
+  const double averaged = params_.node_s / (2.0 * kSlowRateTau_s);
+  const Hypothesis& best = state.hypotheses[0];
+  const Eigen::Array3d variance = best.P.diagonal().segment<3>(rolling::kGyroBias).array() +
+                                  rolling::squared(params_.rest_rate_sigma_rad_s) * averaged;
+  const Eigen::Array3d off =
+      (state.slow_rate_rad_s - state.nominal.gyro_bias_rad_s - best.x.segment<3>(rolling::kGyroBias)).array();
+  return (off.square() > kPivots * kPivots * variance).any();
 }
 
 /// What the other hypotheses add to the position's covariance about the best one: sum of w d d^T over the sum of w.
@@ -113,15 +129,18 @@ void RollingFilter::call_uncertain(State& state) const {
   state.uncertain = event && variance_m2 - state.before_event_m2 > rolling::squared(params_.uncertain_m);
 }
 
-double RollingFilter::slip_probability(const State& state) {
-  double slipping = 0.0, total = 0.0;
+/// Probabilities of slip and bump over all hypotheses.
+void RollingFilter::weigh_events(State& state) {
+  double slipping = 0.0, hopping = 0.0, total = 0.0;
   for (int k = 0; k < state.count; ++k) {
     const Hypothesis& h = state.hypotheses[static_cast<std::size_t>(k)];
     const double weight = std::exp(h.log_weight - state.hypotheses[0].log_weight);
     total += weight;
     if (slips(h.mode)) slipping += weight;
+    if (h.mode == RollingMode::bump) hopping += weight;
   }
-  return slipping / total;
+  state.slip_probability = slipping / total;
+  state.bump_probability = hopping / total;
 }
 
 /// Whether the position that is given out stands still until the next node.

@@ -23,6 +23,9 @@ constexpr double kSettled_s = 1.0;    // after so long in one mode it does not m
 constexpr double kPlateau_m_s = 0.004, kSteady_m_s = 0.01, kJump_m_s = 0.08, kPlateauShare = 0.4, kSteadyShare = 0.35;
 constexpr double kRise_m_s = 0.03, kHit_m_s = 0.3, kRiseShare = 0.7;  // and vertical, on a bump
 constexpr std::int64_t kAgesApart = 4;
+// Places kept for hypotheses that deny the best one's last change between slip and grip: a slip whose spin is held
+// looks like grip until it ends, and by then a hundred variants of the last few nodes are better.
+constexpr std::size_t kDoubters = 6;
 constexpr double kRoughCost = 0.2;  // per node: less than what a slope leaves over there, more than grip on a plane
 constexpr double kInclineAfterBump = 4.0;  // the foot of a ramp is a bump
 constexpr RollingMode kModes[] = {RollingMode::grip, RollingMode::slip, RollingMode::bump, RollingMode::incline,
@@ -172,12 +175,16 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, State& sta
     while (width * kAgesApart < age) width *= 2;
     return k.switched_node >= state.node - settled ? k.switched_node / width * width : state.node - settled;
   };
+  const auto doubts = [&](const Candidate& k) {
+    return slips(k.mode) != slips(candidates[0].mode) && k.switched_node < candidates[0].switched_node;
+  };
   std::array<Hypothesis, kHypotheses> next;
   std::array<Candidate, kHypotheses> kept;
   std::size_t count = 0;
   for (std::size_t k = 0; k < total && count < kHypotheses; ++k) {
     const Candidate& candidate = candidates[k];
     if (candidate.log_weight < candidates[0].log_weight + kDropped) break;
+    if (count + kDoubters >= kHypotheses && !doubts(candidate)) continue;
     const auto same = [&](const Candidate& other) {
       return other.mode == candidate.mode && since(other) == since(candidate);
     };
@@ -199,7 +206,7 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, State& sta
   state.count = static_cast<int>(count);
 }
 
-/// Every hypothesis stands still: velocity and rate are zero, the contact grips.
+/// Every hypothesis stands still: velocity and, unless it pivots, rate are zero, the contact grips.
 void RollingFilter::correct_at_rest(State& state) const {
   for (int k = 0; k < state.count; ++k) {
     Hypothesis& h = state.hypotheses[static_cast<std::size_t>(k)];
@@ -210,6 +217,7 @@ void RollingFilter::correct_at_rest(State& state) const {
       const double v = state.nominal.v_WI_m_s[axis] + h.x[velocity];
       likelihood += log_normal(v, h.P(velocity, velocity) + variance);
       rolling::update(velocity, -state.nominal.v_WI_m_s[axis], variance, h.x, h.P);
+      if (state.pivots) continue;
       const double bias = state.sums.w_I_rad[axis] / state.sums.node_s;  // already without the nominal bias
       rolling::update(rolling::kGyroBias + axis, bias, squared(params_.rest_rate_sigma_rad_s), h.x, h.P);
     }

@@ -110,6 +110,7 @@ Status RollingSmoother::step(const ImuSample& sample, State& state, std::vector<
     step.spread_m2 = state.live.settled_spread_m2;
     step.rest_s = state.live.rest_s;
     step.at_rest = state.live.at_rest;
+    step.pivots = state.live.pivots;
     state.steps.push_back(step);
   }
   state.samples.push_back(sample);
@@ -154,6 +155,7 @@ std::vector<RollingSmoother::PathNode> RollingSmoother::best_path(const State& s
     path[n].stands = lasts_s > 0.0 && lasts_s >= stands_after_s;
     path[n].mode = step.mode[which];
     path[n].at_rest = step.at_rest;
+    path[n].pivots = step.pivots;
     path[n].spread_m2 = step.spread_m2;
     which = step.parent[which];
   }

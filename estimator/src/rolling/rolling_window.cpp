@@ -30,6 +30,7 @@ void measure_rest(const RollingParams& params, const RollingSums& sums, const Ro
   for (int axis = 0; axis < 3; ++axis) {
     const Row velocity = Vector::Unit(kVelocity + axis).transpose(), bias = Vector::Unit(kGyroBias + axis).transpose();
     measure(velocity, -nominal.v_WI_m_s[axis], squared(params.rest_velocity_sigma_m_s), record, x, P);
+    if (record.path.pivots) continue;
     measure(bias, sums.w_I_rad[axis] / sums.node_s, squared(params.rest_rate_sigma_rad_s), record, x, P);
   }
 }

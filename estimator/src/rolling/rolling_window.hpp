@@ -14,6 +14,7 @@ namespace tumble::rolling {
 struct PathNode {
   RollingMode mode = RollingMode::grip;
   bool at_rest = false;
+  bool pivots = false;  ///< at rest, yet it turns about its contact
   bool stands = false;  ///< quiet, and for so long about it that it may be standing still
   Eigen::Matrix3d spread_m2 = Eigen::Matrix3d::Zero();
 };

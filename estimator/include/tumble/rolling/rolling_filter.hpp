@@ -53,13 +53,16 @@ class RollingFilter {
     Eigen::Vector3d contact_velocity_m_s = Eigen::Vector3d::Zero();    ///< at the last node, W
     RollingMode mode = RollingMode::grip;
     double slip_probability = 0.0;  ///< that the contact moves, over all hypotheses, at the last node
+    double bump_probability = 0.0;  ///< the part of it in which the sphere hops
     bool at_rest = false;
+    bool pivots = false;     ///< at rest but for a slow turn about the contact, which says nothing of the gyro's bias
     bool uncertain = false;  ///< in an event in which the position's sigma has grown by more than uncertain_m
     // What the hypotheses have in common: they hold their errors about it.
     RollingNominal nominal;
     RollingSums sums;
     Eigen::Matrix3d settled_spread_m2 = Eigen::Matrix3d::Zero();  ///< of hypotheses given up at the last node
     Eigen::Vector3d slow_force_m_s2 = Eigen::Vector3d::Zero();
+    Eigen::Vector3d slow_rate_rad_s = Eigen::Vector3d::Zero();
     double rest_s = 0.0;
     bool held = false;             ///< it stands still, and so does the position that is given out
     double before_event_m2 = 0.0;  ///< horizontal variance of the position at the last node without an event
@@ -84,6 +87,7 @@ class RollingFilter {
 
   void close_node(const Eigen::Vector3d& next_rate_rad_s, State& state) const;
   void detect_rest(State& state) const;
+  bool pivots(const State& state) const;
   void correct_at_rest(State& state) const;
   void choose_modes(const Eigen::Vector3d& rate_I_rad_s, State& state) const;
   double log_transition(RollingMode from, RollingMode to, double h_s) const;
@@ -92,7 +96,7 @@ class RollingFilter {
   void call_uncertain(State& state) const;
   void hold(State& state) const;
   static Eigen::Matrix3d position_spread(const State& state);
-  static double slip_probability(const State& state);
+  static void weigh_events(State& state);
 
   Params params_;
 };
