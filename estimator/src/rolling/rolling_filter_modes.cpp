@@ -23,8 +23,8 @@ constexpr double kSettled_s = 1.0;    // after so long in one mode it does not m
 constexpr double kPlateau_m_s = 0.004, kSteady_m_s = 0.01, kJump_m_s = 0.08, kPlateauShare = 0.4, kSteadyShare = 0.35;
 constexpr double kRise_m_s = 0.03, kHit_m_s = 0.3, kRiseShare = 0.7;  // and vertical, on a bump
 constexpr std::int64_t kAgesApart = 4;
-// Places kept for hypotheses that deny the best one's last change between slip and grip: a slip whose spin is held
-// looks like grip until it ends, and by then a hundred variants of the last few nodes are better.
+// Places kept for hypotheses that deny the best one's last change of mode: a slip whose spin is held looks like grip
+// until it ends, and by then a hundred variants of the last few nodes are better.
 constexpr std::size_t kDoubters = 6;
 constexpr double kRoughCost = 0.2;  // per node: less than what a slope leaves over there, more than grip on a plane
 constexpr double kInclineAfterBump = 4.0;  // the foot of a ramp is a bump
@@ -175,9 +175,7 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, State& sta
     while (width * kAgesApart < age) width *= 2;
     return k.switched_node >= state.node - settled ? k.switched_node / width * width : state.node - settled;
   };
-  const auto doubts = [&](const Candidate& k) {
-    return slips(k.mode) != slips(candidates[0].mode) && k.switched_node < candidates[0].switched_node;
-  };
+  const auto doubts = [&](const Candidate& k) { return k.switched_node < candidates[0].switched_node; };
   std::array<Hypothesis, kHypotheses> next;
   std::array<Candidate, kHypotheses> kept;
   std::size_t count = 0;

@@ -108,6 +108,23 @@ TEST(RollingSmoother, WithALagAStandstillHasNoDrift) {
   }
 }
 
+/// A sphere that stands still but goes on turning about its contact, by less than what passes for rest: its rate is no
+/// bias, or the whole way would turn with it.
+TEST(RollingSmoother, ASlowTurnAtTheEndIsNoBias) {
+  const testing::RollingTruth still = slipping();
+  testing::RollingTruth turning = still;
+  for (std::size_t k = 0; k < turning.samples.size(); ++k) {
+    if (seconds(turning.samples[k].time_ns) < 8.2) continue;  // the way ends at 8.0 s
+    turning.samples[k].angular_velocity_rad_s += turning.q_WI[k].conjugate() * Eigen::Vector3d(0.0, 0.0, 0.014);
+  }
+  const std::vector<RollingEstimate> without = run(still, RollingSmoother::kWholeRun);
+  const std::vector<RollingEstimate> with = run(turning, RollingSmoother::kWholeRun);
+  ASSERT_EQ(with.size(), without.size());
+  EXPECT_TRUE(with.back().at_rest) << "the turn was not taken for rest at all";
+  EXPECT_LT((with.back().p_WG_m - without.back().p_WG_m).norm(), 0.002);
+  EXPECT_LT((with.back().p_WG_m - turning.p_WG_m.back()).norm(), 0.02);
+}
+
 /// A sphere 2 % larger than believed, over a way whose ends are known: the radius comes out, and the way with it.
 TEST(RollingSmoother, AKnownDistanceTellsTheRadius) {
   constexpr double kBelieved_m = 0.148, kTrue_m = 0.145;
