@@ -25,10 +25,12 @@ constexpr double kSmallest = 1e-12;
 constexpr double kUsual_m_s2 = 3.0;                   // what a force differs from gravity by, without a shock
 constexpr double kOffCentre_m = 0.02;                 // of an IMU: makes forces in fast turns
 constexpr double kHiddenFrom = 0.3, kHiddenTo = 0.6;  // of the accelerometer's range
-constexpr double kLostTilt_rad = 0.5;                 // a tilt as uncertain as this is no tilt to integrate forces with
+constexpr double kForceTilt_rad = 0.35;               // of the direction of a force in motion
+constexpr double kLostTilt_rad = 0.35;                // a tilt less sure than that is no tilt to integrate forces with
 constexpr double kDoubtfulTilt_rad = 0.1;             // and as this, no better than the direction of the force at rest
 constexpr double kRestTilt_rad = 5e-3;
-constexpr double kForceTilt_rad = 0.35;  // of the direction of a force in motion
+constexpr double kPush =
+    0.15;  // of gravity: a force that differs by more shows a push or a fast turn, not the vertical
 constexpr double kLostSpeed_m_s = 1.0;
 constexpr double kRecoveredTau_s = 0.1;  // a recovered rate stays off for so long: what it is off by is no noise
 constexpr double kFastTurn_rad_s = 6.0;  // a force turns too far within a node to level by, and is not gravity
@@ -275,6 +277,7 @@ bool relevel(const RollingParams& params, const RollingSums& sums, bool at_rest,
   if (tilt_variance < squared(at_rest ? kDoubtfulTilt_rad : kLostTilt_rad)) return false;
   const double force = f_I_m_s2.norm();
   if (!(force > 0.1 * params.gravity_m_s2)) return false;
+  if (!at_rest && std::abs(force - params.gravity_m_s2) > kPush * params.gravity_m_s2) return false;
   const Eigen::Vector3d up_W = nominal.q_WI * (f_I_m_s2 / force);
   nominal.q_WI = (so3::shortest_arc(up_W, Eigen::Vector3d::UnitZ()) * nominal.q_WI).normalized();
   nominal.v_WI_m_s.setZero();
