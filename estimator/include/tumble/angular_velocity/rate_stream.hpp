@@ -53,7 +53,7 @@ class RateStream {
     /// Of a rig without calibration: its covariance, but for the gyro's bias and never beyond that beforehand, counts 1
     /// + rig_doubt / (1 + n / rig_doubt_samples) times, n being the samples of flight that have been learnt from; [0,
     /// 1e3] and [1, 1e6].
-    double rig_doubt = 8.0;
+    double rig_doubt = 30.0;
     double rig_doubt_samples = 10.0;
     double bound_damping = 0.5;          ///< share of a new bound taken over in each step; [0.01, 1]
     double recovered_sigma_rad_s = 0.5;  ///< as in RateSmoother
