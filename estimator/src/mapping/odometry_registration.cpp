@@ -163,9 +163,8 @@ Status LidarInertialOdometry::Impl::try_start(const Registration::Prior& start, 
   Status status = coarse.align(start, samples, end_ns, few, map, trajectory, rough);
   found.verdict = rough.verdict;
   if (!status.ok() || rough.verdict != RegistrationVerdict::converged) return status;
-  Registration::Prior fine = start;
-  fine.mean.state = rough.mean.state;
-  fine.covariance = prior.covariance;
+  Registration::Prior fine = prior;
+  fine.start = rough.mean.state;
   fine.excess_start_rad_s = rough.mean.excess_rad_s;
   return align_patiently(fine, end_ns, found);
 }
@@ -176,7 +175,7 @@ Status LidarInertialOdometry::Impl::align_patiently(const Registration::Prior& p
   Status status = patient.align(prior, samples, end_ns, some, map, trajectory, found);
   if (!status.ok() || found.verdict != RegistrationVerdict::converged) return status;
   Registration::Prior near = prior;
-  near.mean.state = found.mean.state;
+  near.start = found.mean.state;
   near.excess_start_rad_s = found.mean.excess_rad_s;
   const int iterations = found.iterations;
   status = registration.align(near, samples, end_ns, chosen, map, trajectory, found);

@@ -99,6 +99,7 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
   result.points = given.size();
   Estimate now = prior.mean;
   now.excess_rad_s = prior.excess_start_rad_s;
+  if (prior.start) now.state = *prior.start;
   const auto build = [&](const Estimate& from) {
     return trajectory.build(from.state, samples, end_ns, from.calibration.gravity_W_m_s2, from.excess_rad_s);
   };

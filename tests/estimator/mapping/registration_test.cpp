@@ -171,6 +171,19 @@ TEST(Registration, NamesTheFreeDirectionsOfAFloor) {
   EXPECT_LT(std::sqrt(result.covariance(2, 2)), 0.01);
 }
 
+TEST(Registration, BeginsElsewhereAndKeepsItsPrior) {
+  Registration::Prior prior = loose_prior(0.3, 0.1);
+  prior.start = prior.mean.state;
+  prior.start->p_WI_m = Eigen::Vector3d(0.5, 0.4, 0.2);
+  const Registration::Result room = align(test::Room::box_with_pillars(), prior);
+  ASSERT_EQ(room.verdict, RegistrationVerdict::converged);
+  EXPECT_LT(room.mean.state.p_WI_m.norm(), 0.02);
+  // nothing holds the sensor along a floor: there the mean decides, not the start (0.64 m away)
+  const Registration::Result floor = align(test::Room::floor_only(), prior);
+  ASSERT_EQ(floor.verdict, RegistrationVerdict::converged);
+  EXPECT_LT(floor.mean.state.p_WI_m.norm(), 0.05);
+}
+
 TEST(Registration, NamesTheAxisOfACorridor) {
   Registration::Prior prior = loose_prior(0.1, 0.05);
   prior.mean.state.p_WI_m = Eigen::Vector3d(0.1, 0.08, -0.05);

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -83,6 +84,7 @@ class Registration {
     Estimate mean;
     Matrix covariance = Matrix::Zero();
     Excess excess_start_rad_s = Excess::Zero();  ///< where the iterations begin
+    std::optional<MotionState> start;            ///< likewise for the motion; empty: at the mean
 
     Prior() = default;
     /// The state with its covariance, nothing else to be estimated.
