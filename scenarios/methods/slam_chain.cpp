@@ -15,7 +15,8 @@ namespace {
 // Of the sweeps, those that the surfaces held in every direction: below it the run did not localise itself. Measured:
 // 0.4 and more on worlds with features (the least on stairs), none on `bare`.
 constexpr double kLocalisedShare = 0.2;
-constexpr double kBelieved = 5.0;  // standard deviations that a calibration may move by
+constexpr double kAccelRailShare = 0.98;  // of the stated range: calibration moves a rail by its error of scale
+constexpr double kBelieved = 5.0;         // standard deviations that a calibration may move by
 
 // the library's own defaults, so that each stands in one place
 const std::array<sim::Parameter, 13>& parameters_of_the_chain() {
@@ -79,6 +80,8 @@ LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const
   params.prior_sigma_m_s = parameters.at("prior_sigma_m_s");
   params.turn_sigma_share = parameters.at("turn_sigma_share");
   params.force_sigma_share = parameters.at("force_sigma_share");
+  const double accel_range_m_s2 = sensors.imus.front().stated_accel_range_m_s2;
+  if (accel_range_m_s2 > 0.0) params.accel_rail_m_s2 = kAccelRailShare * accel_range_m_s2;
   params.window_sweeps = static_cast<int>(std::lround(parameters.at("window_sweeps")));
   if (parameters.at("flight_arc") > 0.5) {
     params.body.emplace().p_IB_I_m = -bridge::lever_arm_I_m(sensors.imus.front());

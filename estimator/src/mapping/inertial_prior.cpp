@@ -65,6 +65,22 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
   return noise;
 }
 
+Eigen::Matrix3d railed_velocity_variance(const LidarInertialOdometry::Params& params, const SweepTrajectory& trajectory,
+                                         std::span<const MotionSample> samples) {
+  std::size_t hint = 0;
+  Eigen::Matrix3d lasted = Eigen::Matrix3d::Zero();  // column j: how long axis j was at its rail, in W
+  for (const MotionSample& sample : samples) {
+    const double from = std::max(seconds(sample.from_ns - trajectory.start_ns()), 0.0);
+    const double to = std::min(seconds(sample.time_ns - trajectory.start_ns()), trajectory.duration_s());
+    if (to <= from || sample.railed_axes == 0) continue;
+    const Eigen::Matrix3d R = trajectory.at(0.5 * (from + to), hint).q_WI.toRotationMatrix();
+    for (int axis = 0; axis < 3; ++axis) {
+      if (sample.railed_axes >> axis & 1) lasted.col(axis) += (to - from) * R.col(axis);
+    }
+  }
+  return params.railed_force_m_s2 * params.railed_force_m_s2 * lasted * lasted.transpose();
+}
+
 bool InitialRest::take(const LidarInertialOdometry::Params& params, const Eigen::Vector3d& rate_rad_s,
                        const Eigen::Vector3d& force_m_s2) {
   if (!lasts) return false;

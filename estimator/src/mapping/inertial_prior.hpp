@@ -20,6 +20,11 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
                                            const SweepTrajectory& trajectory, std::span<const MotionSample> samples,
                                            unsigned excess_axes);
 
+/// Variance of the velocity gained over the stretch from what the accelerometer's rail hid, in W. One rail's excess is
+/// taken as constant for as long as it lasts.
+Eigen::Matrix3d railed_velocity_variance(const LidarInertialOdometry::Params& params, const SweepTrajectory& trajectory,
+                                         std::span<const MotionSample> samples);
+
 /// Rest at the start of a recording, and what it teaches: once left it does not come back.
 struct InitialRest {
   bool lasts = true;

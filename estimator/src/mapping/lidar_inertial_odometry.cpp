@@ -45,6 +45,7 @@ void LidarInertialOdometry::Impl::finish(TimeNs end_ns, SweepReport& report) {
   report.pose = state.pose();
   report.pose.covariance = report.trajectory.back().covariance;
 
+  railed_before = mapping::railed_velocity_variance(params, trajectory, samples);
   odometer.known = false;
   excess_share_at_end.setZero();
   if (aligned) excess_share_at_end = trajectory.excess_share_at_end();

@@ -120,7 +120,8 @@ struct LidarInertialOdometry::Impl {
 
   Params params;
   bool started = false;
-  MotionState state;  // at the end of the last sweep, as the next three
+  Eigen::Matrix3d railed_before = Eigen::Matrix3d::Zero();  // variance of the velocity, of the last sweep's rails
+  MotionState state;                                        // at the end of the last sweep, as the next three
   SweepCalibration calibration;
   Registration::Excess excess_rad_s = Registration::Excess::Zero();
   /// Of all three: what weighs them against the next sweep, and what they are thought to be off by. The first counts a

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+
 #include "odometry_impl.hpp"
 
 namespace tumble {
@@ -28,6 +30,11 @@ void LidarInertialOdometry::Impl::take(const ImuSample& sample, const RateState&
   next.f_I_m_s2 = sample.specific_force_m_s2;
   next.rate_sigma_rad_s = mapping::believed_rate_sigma(params, rate, next.time_ns - next.from_ns);
   next.clipped_axes = static_cast<std::uint8_t>(rate.clipped_axes & kAllAxes);
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool railed = std::abs(next.f_I_m_s2[axis]) >= params.accel_rail_m_s2 ||
+                        (sample.device_clip_flags & (kClipAccelX << axis)) != 0;
+    if (railed) next.railed_axes |= static_cast<std::uint8_t>(1 << axis);
+  }
   next.bridges_gap = next.time_ns - next.from_ns > mapping::kGap_ns;
   const bool in_flight = params.body && !samples.empty() && settle_force(next);
   before_newest = newest;

@@ -33,6 +33,8 @@ void check_params(const LidarInertialOdometry::Params& params) {
   require_within("prior_sigma_m_s", params.prior_sigma_m_s, 1e-9, 1e3);
   require_within("turn_sigma_share", params.turn_sigma_share, 0.0, 1.0);
   require_within("force_sigma_share", params.force_sigma_share, 0.0, 1.0);
+  require_within("accel_rail_m_s2", params.accel_rail_m_s2, 1e-9, 1e5);
+  require_within("railed_force_m_s2", params.railed_force_m_s2, 0.0, 1e4);
   require_within("trusted_prior_m", params.trusted_prior_m, 0.0, 1e3);
   require_within("trusted_prior_rad", params.trusted_prior_rad, 0.0, 1e3);
   require_within("clipped_sigma_rad_s", params.clipped_sigma_rad_s, 0.0, 100.0);

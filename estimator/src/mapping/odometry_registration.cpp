@@ -88,6 +88,9 @@ mapping::Prediction LidarInertialOdometry::Impl::predict() const {
   if (odometer.known) next.follow(odometer.v_WI_I_m_s, odometer.sigma_m_s);
   const std::uint8_t axes = params.estimate_excess_rate ? trajectory.clipped_axes() : 0;
   next.noise.topLeftCorner<9, 9>() += mapping::inertial_noise(params, trajectory, samples, axes);
+  // a force that comes late in a stretch is not in the velocity that the stretch is fitted with: the next one hears of
+  // it as well
+  next.noise.block<3, 3>(6, 6) += railed_before + mapping::railed_velocity_variance(params, trajectory, samples);
   add_excess_noise(next);
   next.prior.excess_start_rad_s = next.prior.mean.excess_rad_s;
   next.compose(covariance, error_covariance);

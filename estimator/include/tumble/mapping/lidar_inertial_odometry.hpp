@@ -90,6 +90,11 @@ class LidarInertialOdometry {
     /// Standard deviation of the specific force as a share of its magnitude: velocity is uncertain by this times the
     /// integral of the force, which counts at impacts; bound [0, 1].
     double force_sigma_share = 0.03;
+    /// Readings of the accelerometer from accel_rail_m_s2 on, or flagged by the device, are at its rail: there the
+    /// force may be larger by railed_force_m_s2 (standard deviation), for as long as the rail lasts. Bounds (0, 1e5],
+    /// [0, 1e4].
+    double accel_rail_m_s2 = 1e5;
+    double railed_force_m_s2 = 50.0;
     /// Standard deviation assumed for a rate on a clipped axis that the rate method did not recover; bound [0, 100].
     double clipped_sigma_rad_s = 3.0;
     double rate_sigma_max_rad_s = 5.0;  ///< what RateState reports is believed up to this; bound [0, 100]

@@ -22,6 +22,7 @@ struct MotionSample {
   Eigen::Vector3d f_I_m_s2 = Eigen::Vector3d::Zero();
   Eigen::Vector3d rate_sigma_rad_s = Eigen::Vector3d::Zero();  ///< standard deviation of the rate, IMU axes
   std::uint8_t clipped_axes = 0;                               ///< bit j: the gyro's axis j was at its rail
+  std::uint8_t railed_axes = 0;                                ///< likewise the accelerometer's
   bool at_rest = false;                                        ///< belongs to the rest at the start
   bool in_flight = false;    ///< f_I_m_s2 is that of free flight, not the accelerometer's
   bool bridges_gap = false;  ///< longer than a sample: the force is not known inside, and the velocity goes on
