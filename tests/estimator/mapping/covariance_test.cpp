@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <cmath>
 
 #include "tests/estimator/mapping/synthetic_room.hpp"
 #include "tumble/common/so3.hpp"
@@ -57,6 +58,35 @@ TEST(Covariance, HoldsOverTumbles) {
   // would claim too much; far below it would tell nothing.
   EXPECT_GT(mean, 0.1);
   EXPECT_LT(mean, 1.31);
+}
+
+/// Error along a corridor, which its walls do not hold, in reported standard deviations: a quarter of a second after a
+/// knock of which one reading lost 1 m/s. `flags` are those of that reading.
+double deviations_after_a_knock(std::uint8_t flags) {
+  constexpr int kKnocked = 25, kEnd = 5;  // sample; sweeps
+  test::Motion still;
+  still.rest_s = 1e9;
+  Odometry odometry{Odometry::Params()};
+  std::vector<ImuSample> imu = test::make_imu(still, 0.1 * kEnd);
+  imu[kKnocked].specific_force_m_s2.x() -= 100.0;
+  imu[kKnocked].device_clip_flags = flags;
+  Odometry::SweepReport report;
+  for (int k = 0; k < kEnd; ++k) {
+    for (int j = k * kSamplesPerSweep; j < (k + 1) * kSamplesPerSweep; ++j) {
+      const ImuSample& sample = imu[static_cast<std::size_t>(j)];
+      EXPECT_TRUE(odometry.add_imu(sample, test::believe(sample)).ok());
+    }
+    const auto points =
+        test::make_sweep(test::Room::corridor(), still, Eigen::Isometry3d::Identity(), k, 0.0, kColumns);
+    EXPECT_TRUE(odometry.add_sweep(k * test::kSweep_ns, (k + 1) * test::kSweep_ns, points, report).ok());
+  }
+  EXPECT_GT(std::abs(report.pose.p_WA_m.x()), 0.1);  // nothing else stops it
+  return report.pose.p_WA_m.x() / std::sqrt(report.pose.covariance(0, 0));
+}
+
+TEST(Covariance, CountsWhatTheAccelerometersRailHides) {
+  EXPECT_LT(std::abs(deviations_after_a_knock(kClipAccelX)), 3.0);
+  EXPECT_GT(std::abs(deviations_after_a_knock(0)), 3.0);  // a knock that nobody owns up to
 }
 
 }  // namespace
