@@ -91,7 +91,10 @@ void LidarInertialOdometry::Impl::count_errors() {
   if (result.verdict != RegistrationVerdict::converged) return;
   Registration::Matrix weighed = prediction.prior.covariance;
   weighed.diagonal().array() += kLeastVariance;
-  const Registration::Matrix from_prior = result.covariance * weighed.ldlt().solve(Registration::Matrix::Identity());
+  // what is no information corrects nothing
+  Registration::Matrix kept = weighed.ldlt().solve(Registration::Matrix::Identity());
+  kept.topLeftCorner<9, 9>() += result.false_information;
+  const Registration::Matrix from_prior = result.covariance * kept;
   const Registration::Matrix sum =
       from_prior * prediction.errors * from_prior.transpose() + result.covariance * result.scatter * result.covariance;
   errors = 0.5 * (sum + sum.transpose());

@@ -3,6 +3,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 
 namespace tumble {
 
@@ -61,6 +62,11 @@ PlaneFit fit_plane(const VoxelMap& map, const Neighbours& neighbours, const Plan
   if (!(l[1] >= bounds.collinear_share * l[2]) || !(l[2] > 0.0)) {
     fit.verdict = PlaneVerdict::collinear;
     return fit;
+  }
+  // three of the n degrees of freedom went into the plane
+  const double noise2 = l[0] / std::max(n - 3, 1);
+  for (int axis = 0; axis < 2; ++axis) {
+    fit.tilt_W.col(axis) = (std::sqrt(noise2 / l[axis + 1]) * solver.eigenvectors().col(axis + 1)).cast<float>();
   }
   fit.normal_W = solver.eigenvectors().col(0).cast<float>().normalized();
   fit.verdict = l[0] > bounds.rough_share * l[1] ? PlaneVerdict::rough : PlaneVerdict::plane;

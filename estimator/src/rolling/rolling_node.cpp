@@ -26,11 +26,11 @@ constexpr double kUsual_m_s2 = 3.0;                   // what a force differs fr
 constexpr double kOffCentre_m = 0.02;                 // of an IMU: makes forces in fast turns
 constexpr double kHiddenFrom = 0.3, kHiddenTo = 0.6;  // of the accelerometer's range
 constexpr double kForceTilt_rad = 0.35;               // of the direction of a force in motion
-constexpr double kLostTilt_rad = 0.35;                // a tilt less sure than that is no tilt to integrate forces with
-constexpr double kDoubtfulTilt_rad = 0.1;             // and as this, no better than the direction of the force at rest
+constexpr double kLostTilt_rad = kForceTilt_rad;      // a tilt less sure than that of a force is levelled by one
+constexpr double kDoubtfulTilt_rad = 0.1;             // and at rest, where the force is gravity, from here on
 constexpr double kRestTilt_rad = 5e-3;
-constexpr double kPush =
-    0.15;  // of gravity: a force that differs by more shows a push or a fast turn, not the vertical
+// of gravity: a force that differs by more shows a push or a fast turn, not the vertical
+constexpr double kPush = 0.15;
 constexpr double kLostSpeed_m_s = 1.0;
 constexpr double kRecoveredTau_s = 0.1;  // a recovered rate stays off for so long: what it is off by is no noise
 constexpr double kFastTurn_rad_s = 6.0;  // a force turns too far within a node to level by, and is not gravity

@@ -16,6 +16,9 @@ struct PlaneFit {
   Eigen::Vector3f normal_W = Eigen::Vector3f::Zero();  ///< unit, sign arbitrary
   Eigen::Vector3f centre_W_m = Eigen::Vector3f::Zero();
   float thickness2_m2 = 0.0f;  ///< least eigenvalue of the neighbours' covariance
+  /// Standard deviation of the normal's error along the two axes of the plane, as columns: that of a regression on
+  /// neighbours that lie off the plane by chance, as far as their thickness shows.
+  Eigen::Matrix<float, 3, 2> tilt_W = Eigen::Matrix<float, 3, 2>::Zero();
 };
 
 /// Bounds on the eigenvalues l0 <= l1 <= l2 of the covariance of a neighbourhood.

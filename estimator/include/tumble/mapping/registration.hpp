@@ -102,6 +102,10 @@ class Registration {
     /// (cluster-robust covariance, K. Liang, S. Zeger, 1986). In units of the covariance: that of independent points
     /// would be the information_share times what they add to the normal matrix.
     Matrix scatter = Matrix::Zero();
+    /// What the normal matrix of the motion holds of noise alone: the normals are fitted to few points, and their
+    /// errors add information in every direction of a plane (errors in variables, W. Fuller, Measurement Error Models,
+    /// 1987, section 2.2). It holds the iterations where they are; it tells nothing of the motion.
+    Eigen::Matrix<double, kMotion, kMotion> false_information = Eigen::Matrix<double, kMotion, kMotion>::Zero();
     std::size_t points = 0, matches = 0, inliers = 0;
     double correction_m = 0.0;  ///< of the position at the start; where the correction broke its bound, that value
     double correction_rad = 0.0;
@@ -110,7 +114,8 @@ class Registration {
     /// the prior: eigenvalues ascending, and their directions. The translation part has trace 1.
     Eigen::Matrix<double, 6, 1> eigenvalues = Eigen::Matrix<double, 6, 1>::Zero();
     Eigen::Matrix<double, 6, 6> directions = Eigen::Matrix<double, 6, 6>::Identity();
-    /// Standard deviation of the pose in the direction that the surfaces hold least, from the surfaces alone.
+    /// Standard deviation of the pose in the direction that the surfaces hold least, from the surfaces alone and
+    /// without the false information.
     double weakest_sigma_m = std::numeric_limits<double>::infinity();
   };
 
@@ -155,6 +160,7 @@ class Registration {
   void accumulate_block(std::span<const SweepPoint> points, std::size_t block, const SweepTrajectory& trajectory,
                         const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m, Sums& sum);
 
+  Eigen::Matrix<double, kMotion, kMotion> false_information(std::span<const SweepPoint> points, double kernel_m) const;
   Matrix scatter(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
                  const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m);
   struct Weight {
