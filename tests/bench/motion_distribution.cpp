@@ -16,6 +16,7 @@
 #include "scenarios/sweep/evaluate.hpp"
 #include "scenarios/sweep/statistics.hpp"
 #include "sim/simulate.hpp"
+#include "tests/tree.hpp"
 
 namespace {
 
@@ -95,7 +96,7 @@ int run(int count, char** words) {
     std::fprintf(stderr, "usage: motion_distribution SCENARIO|FILE.yaml FIRST LAST\n");
     return 2;
   }
-  const scenarios::DataRoot data{TUMBLE_SOURCE_DIR};
+  const scenarios::DataRoot data{test::source_dir()};
   const scenarios::Scenario scenario = scenarios::load_scenario(data, words[1]);
   const std::uint64_t first = std::strtoull(words[2], nullptr, 10), last = std::strtoull(words[3], nullptr, 10);
   Spread spread;

@@ -28,6 +28,7 @@
 #include "scenarios/sweep/statistics.hpp"
 #include "sim/simulate.hpp"
 #include "tests/bench/rate_pool.hpp"
+#include "tests/tree.hpp"
 
 namespace {
 
@@ -113,7 +114,7 @@ scenarios::Learning learn(const sim::Recording& recording) {
 }
 
 int run(const Request& request) {
-  const scenarios::DataRoot data{TUMBLE_SOURCE_DIR};
+  const scenarios::DataRoot data{test::source_dir()};
   const scenarios::Scenario scenario = scenarios::load_scenario(data, request.scenario);
   std::vector<RatePool> pools;
   for (const std::string& name : request.methods) pools.emplace_back(name);

@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# estimator/ configured alone, built, installed; then a consumer outside of the tree, and a negative control: the consumer must
-# fail to configure when the package is not there.
+# The library as somebody else has it: estimator/ configures alone, with the very compilations of the whole tree; what
+# the build tree installs is enough for a consumer outside of it. Negative controls: the consumer must fail to configure
+# where the package is not, and a compilation with other flags is told from ours. With ALONE=ON the library is compiled
+# from its own folder, too, and that is what is installed: for the long suite, since it costs what a build costs.
+include(${CMAKE_CURRENT_LIST_DIR}/compilations.cmake)
+
 function(run expected)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE out ERROR_VARIABLE out)
   if(expected STREQUAL "passes" AND NOT status EQUAL 0)
@@ -14,14 +18,32 @@ endfunction()
 file(REMOVE_RECURSE ${WORK})
 file(MAKE_DIRECTORY ${WORK})
 file(COPY ${SOURCE}/tests/install/consumer DESTINATION ${WORK})
-set(common -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_BUILD_TYPE=Release)
+set(common -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_BUILD_TYPE=${BUILD_TYPE})
 
 run(fails ${CMAKE_COMMAND} -S ${WORK}/consumer -B ${WORK}/absent ${common} -DCMAKE_PREFIX_PATH=${WORK}/prefix)
-run(passes ${CMAKE_COMMAND} -S ${SOURCE}/estimator -B ${WORK}/estimator ${common} -DTUMBLE_PRECOMPILE=ON
-    -DCMAKE_INSTALL_PREFIX=${WORK}/prefix)
-run(passes ${CMAKE_COMMAND} --build ${WORK}/estimator --parallel --target install)
+
+run(passes ${CMAKE_COMMAND} -S ${SOURCE}/estimator -B ${WORK}/estimator ${common} ${OPTIONS}
+    -DCMAKE_EXPORT_COMPILE_COMMANDS=ON)
+read_compilations(${BUILD} ${SOURCE}/estimator/src whole)
+read_compilations(${WORK}/estimator ${SOURCE}/estimator/src alone)
+compare_compilations("${whole}" "${alone}" difference)
+if(NOT difference STREQUAL "")
+  message(FATAL_ERROR "alone the library is compiled otherwise than with the tree: ${difference}")
+endif()
+list(TRANSFORM alone REPLACE " -O[0-9g]" " -O9" AT 0)
+compare_compilations("${whole}" "${alone}" difference)
+if(difference STREQUAL "")
+  message(FATAL_ERROR "negative control: another optimisation of one file went unnoticed")
+endif()
+
+if(ALONE)
+  run(passes ${CMAKE_COMMAND} --build ${WORK}/estimator --parallel)
+  run(passes ${CMAKE_COMMAND} --install ${WORK}/estimator --prefix ${WORK}/prefix)
+else()
+  run(passes ${CMAKE_COMMAND} --install ${BUILD}/estimator --prefix ${WORK}/prefix)
+endif()
 run(passes ${CMAKE_COMMAND} -S ${WORK}/consumer -B ${WORK}/present ${common} -DCMAKE_PREFIX_PATH=${WORK}/prefix)
-run(passes ${CMAKE_COMMAND} --build ${WORK}/present)
+run(passes ${CMAKE_COMMAND} --build ${WORK}/present --parallel)
 run(passes ${WORK}/present/consumer)
 if(NOT output MATCHES "position 0\\.2278")
   message(FATAL_ERROR "the consumer printed: ${output}")

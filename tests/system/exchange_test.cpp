@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "system/program.hpp"
+#include "tests/tree.hpp"
 
 namespace tumble::system_test {
 namespace {
@@ -205,7 +206,7 @@ TEST(Exchange, HostileSweepsAreOneLine) {
 }
 
 TEST(Exchange, ATrialOfBroadIsRead) {
-  const fs::path trials = fs::path(TUMBLE_SHARED_DATA) / "broad";
+  const fs::path trials = test::shared_data() / "broad";
   if (!fs::is_directory(trials)) GTEST_SKIP() << "the trials are not beside this tree";
   const fs::path trial = trials / "07_undisturbed_fast_rotation_B.hdf5";
   const fs::path folder = test_folder();
@@ -229,7 +230,7 @@ TEST(Exchange, ATrialOfBroadIsRead) {
 }
 
 TEST(Exchange, TheLogOfARealSphereIsRead) {
-  const fs::path log = fs::path(TUMBLE_SHARED_DATA) / "sphere_log" / "orientation_all.csv";
+  const fs::path log = test::shared_data() / "sphere_log" / "orientation_all.csv";
   if (!fs::exists(log)) GTEST_SKIP() << "the log is not beside this tree";
   const fs::path folder = test_folder();
   const std::string recording = (folder / "s.h5").string();

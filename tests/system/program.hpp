@@ -40,7 +40,10 @@ class Running {
 
 /// An empty folder of the test that runs.
 std::filesystem::path test_folder();
-/// The folder of `tumble run SCENARIO --seed 1 -o ...`, made once per process. Not to be changed.
+/// What `tumble run` takes for the scenario of that name where every method is to run: itself, or for `hill` a file
+/// with a tumble of 5 s instead of 10, made once per process.
+std::string shared_scenario(const std::string& name);
+/// The folder of `tumble run SHARED_SCENARIO --seed 1 -o ...`, made once per process. Not to be changed.
 std::filesystem::path shared_run(const std::string& scenario);
 
 std::string read_file(const std::filesystem::path& path);

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "system/program.hpp"
+#include "tests/tree.hpp"
 
 namespace tumble::system_test {
 namespace {
@@ -81,7 +82,7 @@ TEST(Trouble, DataThatAreNotThereAreSaid) {
 
 TEST(Trouble, ScenarioFileWithAnUnknownKeyNamesItsLineAndTheNearest) {
   const fs::path file = test_folder() / "bad.yaml";
-  const std::string catalogue = read_file(fs::path(TUMBLE_SOURCE_DIR) / "scenarios" / "catalogue" / "roll.yaml");
+  const std::string catalogue = read_file(test::source_dir() / "scenarios" / "catalogue" / "roll.yaml");
   const std::size_t at = catalogue.find("motion:");
   ASSERT_NE(at, std::string::npos);
   std::ofstream(file) << catalogue.substr(0, at) << "motoin:" << catalogue.substr(at + 7);

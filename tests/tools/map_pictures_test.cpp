@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "sim/situation.hpp"
+#include "tests/tree.hpp"
 
 namespace tumble::tools {
 namespace {
@@ -23,7 +24,7 @@ const sim::Surface& surface() {
     for (const char* none : {"pillar_count", "box_count"}) situation.world.values.set(none, 0.0);
     situation.robot.type = "sphere";
     situation.motion.type = "hand_roll";
-    return sim::Surface(sim::resolve(situation), std::string(TUMBLE_SOURCE_DIR) + "/models");
+    return sim::Surface(sim::resolve(situation), (test::source_dir() / "models").string());
   }();
   return room;
 }

@@ -11,6 +11,7 @@
 
 #include "estimator/attitude/filter_contract.hpp"
 #include "estimator/attitude/sphere_log.hpp"
+#include "tests/tree.hpp"
 #include "tumble/attitude/strapdown.hpp"
 
 namespace tumble {
@@ -134,7 +135,7 @@ double replay_median_arcsec(const testing::SphereLog& log, const Autogain::Param
 
 TEST(AutogainReplay, TheLogWasWrittenByTheCodeOf2021WithItsRollError) {
   const std::string path = testing::sphere_log_path();
-  if (path.empty()) GTEST_SKIP() << "no sphere_log/orientation_all.csv in " << TUMBLE_SHARED_DATA;
+  if (path.empty()) GTEST_SKIP() << "no sphere_log/orientation_all.csv in " << test::shared_data();
   const testing::SphereLog log = testing::read_sphere_log(path);
   constexpr AutogainProfile kPaper = AutogainProfile::paper, kCode = AutogainProfile::code2021;
   // known beforehand: 8.3, 24 and about 150; measured here 8.4, 24.4, 150.3 and 154.7

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "estimator/attitude/broad_trial.hpp"
+#include "tests/tree.hpp"
 #include "tumble/attitude/autogain.hpp"
 #include "tumble/attitude/complementary.hpp"
 #include "tumble/attitude/eskf.hpp"
@@ -34,7 +35,7 @@ class Broad : public ::testing::Test {
   }
   static void TearDownTestSuite() { trials().clear(); }
   void SetUp() override {
-    if (trials().empty()) GTEST_SKIP() << "no shared data folder at " << TUMBLE_SHARED_DATA;
+    if (trials().empty()) GTEST_SKIP() << "no shared data folder at " << test::shared_data();
   }
   static std::vector<BroadTrial>& trials() {
     static std::vector<BroadTrial> all;

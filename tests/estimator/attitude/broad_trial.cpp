@@ -8,6 +8,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "tests/tree.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble::testing {
@@ -76,7 +77,7 @@ struct MeanSquare {
 }  // namespace
 
 std::string broad_folder() {
-  const std::filesystem::path folder = std::filesystem::path(TUMBLE_SHARED_DATA) / "broad";
+  const std::filesystem::path folder = test::shared_data() / "broad";
   return std::filesystem::is_directory(folder) ? folder.string() : std::string();
 }
 

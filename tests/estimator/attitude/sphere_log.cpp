@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "estimator/attitude/sphere_log.hpp"
+#include "tests/tree.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -36,7 +37,7 @@ TimeNs parse_stamp(const std::string& text) {
 }  // namespace
 
 std::string sphere_log_path() {
-  const auto path = std::filesystem::path(TUMBLE_SHARED_DATA) / "sphere_log" / "orientation_all.csv";
+  const auto path = test::shared_data() / "sphere_log" / "orientation_all.csv";
   return std::filesystem::is_regular_file(path) ? path.string() : std::string();
 }
 

@@ -7,9 +7,9 @@ namespace tumble::test {
 
 namespace {
 
-constexpr int kSamplesPerSweep = 10;
+constexpr std::int64_t kSample_ns = 10'000'000;
 constexpr int kRestSweeps = 5;
-constexpr double kSpeed_m_s = 1.0, kRise_s = 1.0, kSweep_s = 0.1;
+constexpr double kSpeed_m_s = 1.0, kRise_s = 1.0;
 
 /// Place of rib `k` along the corridor: not evenly spaced, so that each place looks like itself alone.
 double rib_m(double k) {
@@ -19,15 +19,16 @@ double rib_m(double k) {
 }  // namespace
 
 std::vector<ImuSample> EndlessCorridor::advance() {
+  const double sweep_s = 1e-9 * static_cast<double>(sweep_ns_);
   start_m_ = x_m_;
   start_m_s_ = v_m_s_;
   a_m_s2_ = sweep_ >= kRestSweeps && v_m_s_ < kSpeed_m_s - 1e-9 ? kSpeed_m_s / kRise_s : 0.0;
-  x_m_ += kSweep_s * start_m_s_ + 0.5 * kSweep_s * kSweep_s * a_m_s2_;
-  v_m_s_ += kSweep_s * a_m_s2_;
-  std::vector<ImuSample> samples(kSamplesPerSweep);
-  for (int k = 0; k < kSamplesPerSweep; ++k) {
-    samples[static_cast<std::size_t>(k)].time_ns = sweep_ * kSweep_ns + (k + 1) * (kSweep_ns / kSamplesPerSweep);
-    samples[static_cast<std::size_t>(k)].specific_force_m_s2 = Eigen::Vector3d(a_m_s2_, 0.0, 9.80665);
+  x_m_ += sweep_s * start_m_s_ + 0.5 * sweep_s * sweep_s * a_m_s2_;
+  v_m_s_ += sweep_s * a_m_s2_;
+  std::vector<ImuSample> samples(static_cast<std::size_t>(sweep_ns_ / kSample_ns));
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    samples[k].time_ns = sweep_ * sweep_ns_ + static_cast<std::int64_t>(k + 1) * kSample_ns;
+    samples[k].specific_force_m_s2 = Eigen::Vector3d(a_m_s2_, 0.0, 9.80665);
   }
   ++sweep_;
   return samples;
@@ -36,7 +37,8 @@ std::vector<ImuSample> EndlessCorridor::advance() {
 std::vector<LidarPoint> EndlessCorridor::points() const {
   std::vector<LidarPoint> points(static_cast<std::size_t>(points_per_sweep_));
   for (int i = 0; i < points_per_sweep_; ++i) {
-    const double t = kSweep_s * i / points_per_sweep_, x = start_m_ + start_m_s_ * t + 0.5 * a_m_s2_ * t * t;
+    const double t = 1e-9 * static_cast<double>(sweep_ns_) * i / points_per_sweep_;
+    const double x = start_m_ + start_m_s_ * t + 0.5 * a_m_s2_ * t * t;
     const auto counter = static_cast<std::uint64_t>(sweep_ * 2 * points_per_sweep_ + i);
     const double u = uniform(counter), w = uniform(counter + static_cast<std::uint64_t>(points_per_sweep_));
     // floor, two walls, and ribs across the floor that hold the way along it

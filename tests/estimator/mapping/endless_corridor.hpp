@@ -14,18 +14,21 @@ namespace tumble::test {
 /// memory.
 class EndlessCorridor {
  public:
-  explicit EndlessCorridor(int points_per_sweep) : points_per_sweep_(points_per_sweep) {}
+  /// `sweep_ns`: how long a sweep takes, tenths of a second.
+  explicit EndlessCorridor(int points_per_sweep, std::int64_t sweep_ns = kSweep_ns)
+      : points_per_sweep_(points_per_sweep), sweep_ns_(sweep_ns) {}
 
   /// Samples of the next sweep (100 Hz); then points() are those of that sweep.
   std::vector<ImuSample> advance();
   std::vector<LidarPoint> points() const;
 
-  std::int64_t start_ns() const { return (sweep_ - 1) * kSweep_ns; }
-  std::int64_t end_ns() const { return sweep_ * kSweep_ns; }
+  std::int64_t start_ns() const { return (sweep_ - 1) * sweep_ns_; }
+  std::int64_t end_ns() const { return sweep_ * sweep_ns_; }
   double x_m() const { return x_m_; }  ///< at the end of the sweep
 
  private:
   int points_per_sweep_;
+  std::int64_t sweep_ns_;
   std::int64_t sweep_ = 0;  // the present one, from 1
   double start_m_ = 0.0, start_m_s_ = 0.0, a_m_s2_ = 0.0;
   double x_m_ = 0.0, v_m_s_ = 0.0;

@@ -157,7 +157,7 @@ void run_on_threads(std::size_t threads, std::size_t count, const std::function<
   for (std::thread& worker : workers) worker.join();
 }
 
-TEST(Executor, BitsDoNotDependOnTheThreadsThatTheCallerGives) {
+TEST(ExecutorThreads, BitsDoNotDependOnTheThreadsThatTheCallerGives) {
   Drive alone(given());
   alone.sweeps(0, 8);
   const std::vector<MapPoint> expected = alone.odometry.map();
@@ -180,7 +180,7 @@ TEST(Executor, BitsDoNotDependOnTheThreadsThatTheCallerGives) {
   }
 }
 
-TEST(Executor, OrderDoesNotMatterEither) {
+TEST(ExecutorThreads, OrderDoesNotMatterEither) {
   Drive alone(given());
   alone.sweeps(0, 8);
   Odometry::Params params = given();

@@ -11,6 +11,7 @@
 #include "scenarios/sweep/build_id.hpp"
 #include "scenarios/sweep/results.hpp"
 #include "tests/scenarios/sweep/temporary_folder.hpp"
+#include "tests/tree.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -22,7 +23,7 @@ class CertificateStoreTest : public testing::TemporaryFolder {
             {{"free_flight_energy", "rig", "law", "1", 1.0 / 3.0, 0.0, 1e-8, ""},
              {"digest_restart", "slip", "law", "1", 0.0, 0.0, 0.0, "a note"}}};
   }
-  CertificateStore store() const { return {folder_ / "cache", DataRoot{TUMBLE_SOURCE_DIR}}; }
+  CertificateStore store() const { return {folder_ / "cache", DataRoot{test::source_dir()}}; }
   Results results() const { return Results(folder_ / "r.db", Results::Mode::create_or_append); }
 };
 
@@ -44,18 +45,18 @@ TEST_F(CertificateStoreTest, KeepsOnePerBuildAndSurvivesDamage) {
     std::ofstream(entry.path()) << "{\"build\": ";
   }
   EXPECT_FALSE(store().find().has_value()) << "a file that was cut off";
-  EXPECT_FALSE(CertificateStore({}, DataRoot{TUMBLE_SOURCE_DIR}).find().has_value());
+  EXPECT_FALSE(CertificateStore({}, DataRoot{test::source_dir()}).find().has_value());
 }
 
 TEST_F(CertificateStoreTest, AFolderThatCannotBeWrittenIsNoError) {
   std::ofstream(folder_ / "file") << "x";
-  const CertificateStore below(folder_ / "file" / "cache", DataRoot{TUMBLE_SOURCE_DIR});
+  const CertificateStore below(folder_ / "file" / "cache", DataRoot{test::source_dir()});
   below.keep(sample());
   EXPECT_FALSE(below.find().has_value());
 }
 
 TEST_F(CertificateStoreTest, ResultsGetItOnceAndKeepIt) {
-  const CertificateInput input{DataRoot{TUMBLE_SOURCE_DIR}, ""};
+  const CertificateInput input{DataRoot{test::source_dir()}, ""};
   CertifyOptions options;
   options.rows = {"free_fall"};
   int measured = 0;
@@ -82,7 +83,7 @@ TEST_F(CertificateStoreTest, WhatIsKnownIsFoundAndNothingIsMeasured) {
   ASSERT_TRUE(known_certificate(all, store()).has_value());
   ASSERT_EQ(all.certificates().size(), 1u) << "it goes with the results";
   EXPECT_EQ(all.certificates().front(), certificate);
-  EXPECT_EQ(known_certificate(all, CertificateStore({}, DataRoot{TUMBLE_SOURCE_DIR})), certificate);
+  EXPECT_EQ(known_certificate(all, CertificateStore({}, DataRoot{test::source_dir()})), certificate);
 }
 
 TEST_F(CertificateStoreTest, AStoppedMeasuringIsKeptNowhere) {
@@ -90,7 +91,7 @@ TEST_F(CertificateStoreTest, AStoppedMeasuringIsKeptNowhere) {
   CertifyOptions options;
   options.stop = &stop;
   Results all = results();
-  EXPECT_TRUE(certify_results(all, store(), {DataRoot{TUMBLE_SOURCE_DIR}, ""}, options).entries.empty());
+  EXPECT_TRUE(certify_results(all, store(), {DataRoot{test::source_dir()}, ""}, options).entries.empty());
   EXPECT_TRUE(all.certificates().empty());
   EXPECT_FALSE(store().find().has_value());
 }

@@ -8,6 +8,7 @@
 
 #include "scenarios/certificate/rows.hpp"
 #include "scenarios/errors.hpp"
+#include "tests/tree.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -16,7 +17,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 CertificateInput input() {
-  return {DataRoot{TUMBLE_SOURCE_DIR}, TUMBLE_PROGRAM};
+  return {DataRoot{test::source_dir()}, test::program()};
 }
 
 /// "row (subject)" of every entry that does not pass.

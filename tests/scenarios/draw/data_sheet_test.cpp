@@ -6,6 +6,7 @@
 
 #include "scenarios/draw/fixture_registry.hpp"
 #include "scenarios/draw/scenario_text.hpp"
+#include "tests/tree.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -74,7 +75,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"title:", "titel:", "mti30.yaml:2: titel: ", "did you mean 'title'?"}));
 
 TEST(DataSheet, UnknownDeviceNamesTheNearest) {
-  const DataRoot data{TUMBLE_SOURCE_DIR};
+  const DataRoot data{test::source_dir()};
   EXPECT_THAT(device_names(data), IsSupersetOf({"mid100", "rs16"}));
   EXPECT_EQ(fixture::complaint([&] { load_data_sheet(data, "rs17"); }), "unknown device 'rs17'; did you mean 'rs16'?");
   const DataRoot nowhere{"no_such_folder"};
@@ -83,7 +84,7 @@ TEST(DataSheet, UnknownDeviceNamesTheNearest) {
 
 // Each sheet of the project is checked against the registries of this build.
 TEST(DataSheet, EverySheetOfTheProjectIsRight) {
-  const DataRoot data{TUMBLE_SOURCE_DIR};
+  const DataRoot data{test::source_dir()};
   const std::vector<std::string> names = device_names(data);
   ASSERT_FALSE(names.empty());
   for (const std::string& name : names) {

@@ -7,6 +7,7 @@
 
 #include "scenarios/draw/fixture_registry.hpp"
 #include "scenarios/draw/scenario_text.hpp"
+#include "tests/tree.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -114,7 +115,7 @@ sensors:
 class DrawReal : public DrawFiles {
  protected:
   DrawReal() {
-    std::filesystem::copy(DataRoot{TUMBLE_SOURCE_DIR}.data_sheets(), data_.data_sheets(),
+    std::filesystem::copy(DataRoot{test::source_dir()}.data_sheets(), data_.data_sheets(),
                           std::filesystem::copy_options::recursive);
   }
   std::string draw_complaint(const std::string& from, const std::string& to, std::uint64_t seed) {

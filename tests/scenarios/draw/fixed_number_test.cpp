@@ -5,13 +5,14 @@
 #include <gtest/gtest.h>
 
 #include "scenarios/errors.hpp"
+#include "tests/tree.hpp"
 
 namespace tumble::scenarios {
 namespace {
 
 using ::testing::HasSubstr;
 
-const DataRoot kData{TUMBLE_SOURCE_DIR};
+const DataRoot kData{test::source_dir()};
 
 std::string complaint(const std::string& key, double value) {
   Scenario scenario = load_scenario(kData, "hill");

@@ -13,6 +13,7 @@
 
 #include "scenarios/methods/method.hpp"
 #include "scenarios/recordings/import.hpp"
+#include "tests/tree.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -25,8 +26,8 @@ constexpr double kRolledAnchor_m = 4.71;
 class SphereLog : public ::testing::Test {
  protected:
   void SetUp() override {
-    path_ = std::filesystem::path(TUMBLE_SHARED_DATA) / "sphere_log" / "orientation_all.csv";
-    if (!std::filesystem::is_regular_file(path_)) GTEST_SKIP() << "no sphere_log in " << TUMBLE_SHARED_DATA;
+    path_ = test::shared_data() / "sphere_log" / "orientation_all.csv";
+    if (!std::filesystem::is_regular_file(path_)) GTEST_SKIP() << "no sphere_log in " << test::shared_data();
   }
   static sim::Sensors sphere(Imported imported) {
     imported.sensors.robot = "sphere";

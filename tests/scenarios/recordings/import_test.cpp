@@ -8,6 +8,7 @@
 
 #include "scenarios/recordings/export.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"
+#include "tests/tree.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -104,7 +105,7 @@ TEST_F(ImportCsv, AnotherUnitOrAMissingColumnIsSaid) {
 }
 
 TEST_F(ImportCsv, ReadsTheLogOfARealSphere) {
-  const std::filesystem::path log = std::filesystem::path(TUMBLE_SHARED_DATA) / "sphere_log/orientation_all.csv";
+  const std::filesystem::path log = test::shared_data() / "sphere_log/orientation_all.csv";
   if (!std::filesystem::exists(log)) GTEST_SKIP() << "the log of the sphere is not at " << log;
   const sim::ImuRecord imu = import_imu_csv(log, {}, AccelUnit::g).sensors.imus.at(0);
   ASSERT_EQ(imu.time_ns.size(), 7294u);
@@ -152,7 +153,7 @@ TEST_F(ImportCsv, BadInputHasFileAndLine) {
 using ImportBroad = fixture::Folder;
 
 TEST_F(ImportBroad, ReadsATrialAndKeepsTheAttribution) {
-  const std::filesystem::path trial = std::filesystem::path(TUMBLE_SHARED_DATA) / "broad/24_disturbed_tapping_A.hdf5";
+  const std::filesystem::path trial = test::shared_data() / "broad/24_disturbed_tapping_A.hdf5";
   if (!std::filesystem::exists(trial)) GTEST_SKIP() << "the BROAD trials are not at " << trial;
   const Imported imported = import_broad(trial);
   ASSERT_EQ(imported.sensors.imus.size(), 1u);
@@ -173,8 +174,7 @@ TEST_F(ImportBroad, ReadsATrialAndKeepsTheAttribution) {
 }
 
 TEST_F(ImportBroad, TheReferenceAgreesWithTheReadings) {
-  const std::filesystem::path trial =
-      std::filesystem::path(TUMBLE_SHARED_DATA) / "broad/05_undisturbed_slow_rotation_with_breaks_B.hdf5";
+  const std::filesystem::path trial = test::shared_data() / "broad/05_undisturbed_slow_rotation_with_breaks_B.hdf5";
   if (!std::filesystem::exists(trial)) GTEST_SKIP() << "the BROAD trials are not at " << trial;
   const Imported imported = import_broad(trial);
   ASSERT_TRUE(imported.reference.has_value());

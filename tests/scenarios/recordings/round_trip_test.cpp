@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "scenarios/recordings/fixture_recording.hpp"
+#include "tests/tree.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -219,7 +220,7 @@ herr_t note_dataset(hid_t root, const char* name, const H5O_info_t* object, void
 TEST_F(RoundTrip, EveryDatasetHasAUnitAndIsDocumented) {
   const sim::Recording recording = fixture::recording();
   write_recording(folder_ / "a.h5", info(), recording.sensors, &recording.truth);
-  const std::string page = fixture::bytes_of(std::string(TUMBLE_SOURCE_DIR) + "/scenarios/recordings/FORMAT.md");
+  const std::string page = fixture::bytes_of((test::source_dir() / "scenarios/recordings/FORMAT.md").string());
   std::vector<std::pair<std::string, bool>> datasets;
   const hid_t file = H5Fopen((folder_ / "a.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, note_dataset, &datasets, H5O_INFO_BASIC);

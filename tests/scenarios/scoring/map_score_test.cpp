@@ -3,6 +3,7 @@
 
 #include "scenarios/scoring/perfect_estimate.hpp"
 #include "sim/lidar/surface.hpp"
+#include "tests/tree.hpp"
 
 // maps against the true surface of an empty square room: floor at z = 0
 namespace tumble::scenarios {
@@ -26,7 +27,7 @@ sim::Situation empty_room() {
 }
 
 const sim::Surface& surface() {
-  static const sim::Surface room(empty_room(), std::string(TUMBLE_SOURCE_DIR) + "/models");
+  static const sim::Surface room(empty_room(), (test::source_dir() / "models").string());
   return room;
 }
 

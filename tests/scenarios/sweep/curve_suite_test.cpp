@@ -9,6 +9,7 @@
 #include "scenarios/sweep/results.hpp"
 #include "scenarios/sweep/sweep.hpp"
 #include "scenarios/sweep/temporary_folder.hpp"
+#include "tests/tree.hpp"
 
 // suites that vary a number, on the sphere, whose draws are short
 namespace tumble::scenarios {
@@ -35,7 +36,7 @@ class CurveSuiteTest : public testing::TemporaryFolder {
   void SetUp() override {
     TemporaryFolder::SetUp();
     write("scenarios/catalogue/roll.yaml", kRoll);
-    std::filesystem::create_directory_symlink(std::filesystem::path(TUMBLE_SOURCE_DIR) / "models", folder_ / "models");
+    std::filesystem::create_directory_symlink(test::source_dir() / "models", folder_ / "models");
   }
   DataRoot data() const { return {folder_}; }
 
@@ -151,7 +152,7 @@ TEST_F(CurveSuiteTest, ADrawThatAValueMakesImpossibleIsKeptAsRejected) {
 }
 
 TEST(CurveSuites, OfTheTreeVaryWhatTheirIssuesName) {
-  const DataRoot tree{TUMBLE_SOURCE_DIR};
+  const DataRoot tree{test::source_dir()};
   const auto keys = [&](const char* name) {
     std::vector<std::string> all;
     for (const Variation& curve : load_suite(tree, name).curves) all.push_back(curve.key());

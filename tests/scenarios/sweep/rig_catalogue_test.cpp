@@ -10,11 +10,12 @@
 #include "scenarios/scoring/motion_summary.hpp"
 #include "scenarios/sweep/sweep.hpp"
 #include "sim/simulate.hpp"
+#include "tests/tree.hpp"
 
 namespace tumble::scenarios {
 namespace {
 
-const DataRoot kData{TUMBLE_SOURCE_DIR};
+const DataRoot kData{test::source_dir()};
 // a seed of the range that development looks at
 constexpr std::uint64_t kSeed = 1001;
 

@@ -7,6 +7,7 @@
 #include "scenarios/methods/method.hpp"
 #include "scenarios/sweep/sweep.hpp"
 #include "scenarios/sweep/temporary_folder.hpp"
+#include "tests/tree.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -79,7 +80,7 @@ TEST_F(SuiteTest, ComplaintsNameFileLineAndNearestName) {
 
 // the suites that are delivered, on the catalogue that is delivered
 TEST(Suites, OfTheTreeLoad) {
-  const DataRoot data{TUMBLE_SOURCE_DIR};
+  const DataRoot data{test::source_dir()};
   ASSERT_TRUE(std::filesystem::exists(data.catalogue())) << data.catalogue();
   const auto names = suite_names(data);
   ASSERT_GE(names.size(), 4u);

@@ -11,6 +11,7 @@
 #include "scenarios/sweep/results.hpp"
 #include "scenarios/sweep/run_situation.hpp"
 #include "scenarios/sweep/temporary_folder.hpp"
+#include "tests/tree.hpp"
 
 // the sweep end to end on the sphere, whose draws are short and have no map to score
 namespace tumble::scenarios {
@@ -51,7 +52,7 @@ class SweepTest : public testing::TemporaryFolder {
   void SetUp() override {
     TemporaryFolder::SetUp();
     write("scenarios/catalogue/roll.yaml", kRoll);
-    std::filesystem::create_directory_symlink(std::filesystem::path(TUMBLE_SOURCE_DIR) / "models", folder_ / "models");
+    std::filesystem::create_directory_symlink(test::source_dir() / "models", folder_ / "models");
   }
   DataRoot data() const { return {folder_}; }
 };

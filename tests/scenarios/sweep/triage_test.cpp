@@ -8,12 +8,13 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/scoring/truth_track.hpp"
+#include "tests/tree.hpp"
 
 namespace tumble::scenarios {
 namespace {
 
 DataRoot data() {
-  return DataRoot{TUMBLE_SOURCE_DIR};
+  return DataRoot{test::source_dir()};
 }
 
 /// A tumble with all sensors, once for all tests.

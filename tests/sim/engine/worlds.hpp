@@ -4,11 +4,12 @@
 #include <filesystem>
 
 #include "sim/situation.hpp"
+#include "tests/tree.hpp"
 
 namespace tumble::sim {
 
 inline std::filesystem::path models_folder() {
-  return std::filesystem::path(TUMBLE_SOURCE_DIR) / "models";
+  return test::source_dir() / "models";
 }
 
 inline SensorSpec imu_at(const std::string& name, const std::string& site, double rate_hz) {

@@ -16,6 +16,7 @@
 #include "sim/imu/allan.hpp"
 #include "sim/imu/bias.hpp"
 #include "sim/imu/imu_simulation.hpp"
+#include "tests/tree.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -29,7 +30,7 @@ constexpr double kHour_s = 3600.0;
 constexpr double kGravity_m_s2 = 9.80665;
 
 DataRoot data() {
-  return {TUMBLE_SOURCE_DIR};
+  return {test::source_dir()};
 }
 
 /// The device with its own numbers, but for those given; at rest the bandwidths have nothing to do and are off.

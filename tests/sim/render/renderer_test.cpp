@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "sim/render/framing.hpp"
+#include "tests/tree.hpp"
 
 namespace tumble::sim {
 namespace {
@@ -26,7 +27,7 @@ Situation situation_of(const std::string& world, const std::string& robot) {
   return situation;
 }
 
-const std::filesystem::path kModels = TUMBLE_SOURCE_DIR "/models";
+const std::filesystem::path kModels = test::source_dir() / "models";
 
 View small_view() {
   View view;

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/tree.hpp"
+
+namespace tumble::test {
+
+std::filesystem::path source_dir() {
+  return TUMBLE_SOURCE_DIR;
+}
+
+std::filesystem::path program() {
+  return TUMBLE_PROGRAM;
+}
+
+std::filesystem::path shared_data() {
+  return TUMBLE_SHARED_DATA;
+}
+
+}  // namespace tumble::test
