@@ -29,6 +29,11 @@ Rail::Params rail_params(const Values& values, const std::string& prefix, const 
           values.at(prefix + "_slow_recovery_share")};
 }
 
+Elements::Params element_params(const Values& values, const std::string& prefix, const std::string& unit) {
+  return {values.at(prefix + "_element_misalignment"), values.at(prefix + "_element_scale"),
+          values.at(prefix + "_element_offset_" + unit)};
+}
+
 Eigen::Matrix3d axis_errors(const Values& values, const std::string& prefix, Stream stream) {
   return draw_axis_errors(stream, values.at(prefix + "_scale_error"), values.at(prefix + "_misalignment_rad"));
 }
@@ -51,6 +56,7 @@ TriadChain::TriadChain(const Values& values, const std::string& prefix, const st
       range_(values.at(prefix + "_handover_" + unit)),
       rail_(rail_params(values, prefix, unit), (rail_after_ ? steps : 1) / rate_hz,
             Stream(seed, stream_name + ".rail")),
+      elements_(element_params(values, prefix, unit), Stream(seed, stream_name + ".elements")),
       axis_errors_(axis_errors(values, prefix, Stream(seed, stream_name + ".axes"))),
       delivered_{LowPass(values.at("digital_bandwidth_hz"), rate_hz)},
       unclipped_(delivered_) {}
@@ -67,17 +73,15 @@ void TriadChain::step(const Eigen::Vector3d& ideal, const Eigen::Vector3d& added
   range_.update(clean);
   const Eigen::Vector3d signal = clean + white_noise(noise_stream_, range_.pick(noise_, precise_noise_), rate_hz_);
   const Eigen::Vector3d quantum = range_.pick(quantum_, precise_quantum_);
-  delivered_.add(quantise(rail_after_ ? signal : rail_(signal, 0, railed_), quantum), ideal);
+  delivered_.add(quantise(rail_after_ ? signal : elements_.clip(signal, rail_, 0, railed_), quantum), ideal);
   unclipped_.add(quantise(signal, quantum), ideal);
   ++in_window_;
 }
 
 TriadReading TriadChain::take(const Eigen::Vector3d& exact, int first_bit, std::uint8_t& flags) {
   TriadReading reading{exact + delivered_.error / in_window_, exact + unclipped_.error / in_window_, bias_now_};
-  for (int axis = 0; axis < 3; ++axis) {
-    if ((railed_ >> axis & 1) != 0) reading.delivered[axis] = delivered_.sum[axis] / in_window_;
-  }
-  if (rail_after_) reading.delivered = rail_(reading.delivered, 0, railed_);
+  reading.delivered = elements_.with_elements_of(delivered_.sum / in_window_, railed_, reading.delivered);
+  if (rail_after_) reading.delivered = elements_.clip(reading.delivered, rail_, 0, railed_);
   flags = static_cast<std::uint8_t>(flags | railed_ << first_bit);
   railed_ = 0;
   in_window_ = 0;

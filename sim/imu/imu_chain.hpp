@@ -6,6 +6,7 @@
 #include <string>
 
 #include "sim/imu/bias.hpp"
+#include "sim/imu/elements.hpp"
 #include "sim/imu/rail.hpp"
 #include "sim/imu/stages.hpp"
 #include "sim/parameters.hpp"
@@ -21,13 +22,13 @@ struct TriadReading {
 
 /// Error chain of one triad (gyroscope or accelerometer), fed at the rate of the physics, read once per output window:
 /// analogue low-pass, scale and misalignment, bias, what is added from outside (g-sensitivity), white noise of the part
-/// in range, rail, quantum, digital low-pass, mean over the window. With `clip_after_low_pass` the rail acts on that
-/// mean instead.
+/// in range, the sensing elements and their rail, the device's compensation of them, quantum, digital low-pass, mean
+/// over the window. With `clip_after_low_pass` elements and rail act on that mean instead.
 ///
 /// The mean of a turning triad's readings is not the increment of its motion (coning, sculling). The window's ideal
-/// reading is therefore given from outside, exact, and the mean of the chain's errors is added to it; an axis that met
-/// its rail in the window reports the plain mean of what came through. With every stage off the reading is the exact
-/// one, bit for bit. The unclipped twin goes through the same stages with the same noise.
+/// reading is therefore given from outside, exact, and the mean of the chain's errors is added to it; an element that
+/// met its rail in the window reports the plain mean of what came through. With every stage off the reading is the
+/// exact one, bit for bit. The unclipped twin goes through the same stages with the same noise.
 class TriadChain {
  public:
   /// `prefix` and `unit` select the numbers: "gyro", "rad_s" or "accel", "m_s2". Streams are named after
@@ -37,9 +38,11 @@ class TriadChain {
 
   /// One physics step: the ideal mean over it, and what is added to the signal before its noise.
   void step(const Eigen::Vector3d& ideal, const Eigen::Vector3d& added);
-  /// Ends the window, whose exact reading is `exact`; sets bit `first_bit + axis` of `flags` for axes that met the
-  /// rail.
+  /// Ends the window, whose exact reading is `exact`; sets bit `first_bit + i` of `flags` for each element i that met
+  /// its rail.
   TriadReading take(const Eigen::Vector3d& exact, int first_bit, std::uint8_t& flags);
+
+  const Elements& elements() const { return elements_; }
 
  private:
   /// From the signal to the mean of a window, with the rail or without.
@@ -58,6 +61,7 @@ class TriadChain {
   Bias bias_;
   RangeChoice range_;
   Rail rail_;
+  Elements elements_;
   Eigen::Matrix3d axis_errors_;
   Eigen::Vector3d bias_now_ = Eigen::Vector3d::Zero();
   Path delivered_, unclipped_;

@@ -30,7 +30,9 @@ class Device {
         accel_(sensor.values, "accel", "m_s2", rate_hz, steps, seed, sensor.name + ".accel"),
         stamps_(sensor.values, "sensors." + sensor.name, record.period_ns, Stream(seed, sensor.name + ".time")),
         g_sensitivity_(sensor.values.at("gyro_g_sensitivity_s_m")),
-        flagged_(sensor.values.at("clip_flags") > 0.5) {}
+        flagged_(sensor.values.at("clip_flags") > 0.5) {
+    describe_elements();
+  }
 
   void step(const Ideal& ideal) {
     gyro_.step(ideal.rate_rad_s, g_sensitivity_ * ideal.force_m_s2);
@@ -58,6 +60,16 @@ class Device {
   }
 
  private:
+  void describe_elements() {
+    const auto rows = [](const Elements& elements, std::vector<Eigen::Vector3d>& out, Eigen::Vector3d& offset) {
+      if (elements.upright()) return;
+      for (int i = 0; i < 3; ++i) out.emplace_back(elements.axes().row(i));
+      offset = elements.offset();
+    };
+    rows(gyro_.elements(), truth_.gyro_elements, truth_.gyro_element_offset_rad_s);
+    rows(accel_.elements(), truth_.accel_elements, truth_.accel_element_offset_m_s2);
+  }
+
   ImuRecord& record_;
   ImuTruth& truth_;
   TriadChain gyro_, accel_;
