@@ -8,6 +8,7 @@
 #include "sim/imu/bias.hpp"
 #include "sim/imu/elements.hpp"
 #include "sim/imu/rail.hpp"
+#include "sim/imu/sampling.hpp"
 #include "sim/imu/stages.hpp"
 #include "sim/parameters.hpp"
 
@@ -29,6 +30,8 @@ struct TriadReading {
 /// reading is therefore given from outside, exact, and the mean of the chain's errors is added to it; an element that
 /// met its rail in the window reports the plain mean of what came through. With every stage off the reading is the
 /// exact one, bit for bit. The unclipped twin goes through the same stages with the same noise.
+/// A device with a window or a rate of its own (sampling.hpp) does not integrate: its reading is the plain mean of that
+/// window.
 class TriadChain {
  public:
   /// `prefix` and `unit` select the numbers: "gyro", "rad_s" or "accel", "m_s2". Streams are named after
@@ -49,8 +52,12 @@ class TriadChain {
   struct Path {
     LowPass low_pass;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero(), error = Eigen::Vector3d::Zero();
-    void add(const Eigen::Vector3d& signal, const Eigen::Vector3d& ideal);
+    /// Returns what came through.
+    Eigen::Vector3d add(const Eigen::Vector3d& signal, const Eigen::Vector3d& ideal);
   };
+
+  /// The reading of a device that integrates from output to output.
+  TriadReading integrated(const Eigen::Vector3d& exact) const;
 
   double rate_hz_, noise_, precise_noise_, quantum_, precise_quantum_;
   bool rail_after_;
@@ -65,6 +72,7 @@ class TriadChain {
   Eigen::Matrix3d axis_errors_;
   Eigen::Vector3d bias_now_ = Eigen::Vector3d::Zero();
   Path delivered_, unclipped_;
+  Sampling sampling_;
   std::int64_t count_ = 0;
   int in_window_ = 0;
   std::uint8_t railed_ = 0;

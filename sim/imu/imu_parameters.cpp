@@ -42,6 +42,12 @@ constexpr std::string_view kMisalignmentDoc = "standard deviation of each cross-
 constexpr std::string_view kNoiseDoc = "density of the white noise; a sample at rate f has density * sqrt(f)";
 constexpr std::string_view kBandwidthDoc = "-3 dB of the analogue low-pass, second order; 0: off";
 constexpr std::string_view kQuantumDoc = "step of the converter, before digital low-pass and mean; 0: off";
+constexpr std::string_view kWindowDoc =
+    "each reading is the plain mean over the last so many seconds, to the nearest physics step, as of a device that "
+    "samples; 0: it integrates from output to output, or from one reading of its own rate to the next";
+constexpr std::string_view kUpdateDoc =
+    "sample and hold: the device's own readings per second, not in step with the outputs, which say the last one once "
+    "more until there is a new one; 0: a new one for each output";
 constexpr std::string_view kHandoverDoc =
     "an axis is read by the precise part up to here (back below 0.9 of it) and by the coarse one beyond; 0: coarse "
     "always";
@@ -72,6 +78,10 @@ constexpr std::array kParameters = {
     Parameter{"gyro_misalignment_rad", 0.0, 0.0, 0.2, "rad", kMisalignmentDoc},
     Parameter{"gyro_g_sensitivity_s_m", 0.0, 0.0, 0.01, "rad/s/(m/s^2)",
               "rate per specific force, each axis on itself"},
+    Parameter{"gyro_g_sensitivity_spread_s_m", 0.0, 0.0, 0.01, "rad/s/(m/s^2)",
+              "rate per specific force beyond that: standard deviation of each of the nine entries of its matrix"},
+    Parameter{"gyro_window_s", 0.0, 0.0, 0.1, "s", kWindowDoc},
+    Parameter{"gyro_update_hz", 0.0, 0.0, 2000.0, "Hz", kUpdateDoc},
     Parameter{"gyro_quantum_rad_s", 0.0, 0.0, 1.0, "rad/s", kQuantumDoc},
     Parameter{"gyro_handover_rad_s", 0.0, 0.0, 1000.0, "rad/s", kHandoverDoc},
     Parameter{"gyro_precise_noise_rad_s_sqrt_hz", 0.0, 0.0, 1.0, "rad/s/sqrt(Hz)", kPreciseNoiseDoc},
@@ -95,6 +105,8 @@ constexpr std::array kParameters = {
     Parameter{"accel_bias_walk_m_s2_sqrt_s", 0.0, 0.0, 10.0, "m/s^2/sqrt(s)", kWalkDoc},
     Parameter{"accel_scale_error", 0.0, 0.0, 0.2, "1", kScaleDoc},
     Parameter{"accel_misalignment_rad", 0.0, 0.0, 0.2, "rad", kMisalignmentDoc},
+    Parameter{"accel_window_s", 0.0, 0.0, 0.1, "s", kWindowDoc},
+    Parameter{"accel_update_hz", 0.0, 0.0, 2000.0, "Hz", kUpdateDoc},
     Parameter{"accel_quantum_m_s2", 0.0, 0.0, 10.0, "m/s^2", kQuantumDoc},
     Parameter{"accel_handover_m_s2", 0.0, 0.0, 1e5, "m/s^2", kHandoverDoc},
     Parameter{"accel_precise_noise_m_s2_sqrt_hz", 0.0, 0.0, 1.0, "m/s^2/sqrt(Hz)", kPreciseNoiseDoc},

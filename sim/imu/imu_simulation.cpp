@@ -20,6 +20,17 @@ struct Ideal {
   Eigen::Vector3d rate_rad_s, force_m_s2;
 };
 
+std::optional<Eigen::Matrix3d> draw_g_sensitivity(const SensorSpec& sensor, std::uint64_t seed) {
+  const double sigma = sensor.values.at("gyro_g_sensitivity_spread_s_m");
+  if (sigma == 0.0) return std::nullopt;
+  Stream stream(seed, sensor.name + ".gyro.g_sensitivity");
+  Eigen::Matrix3d drawn;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) drawn(row, column) = bounded_normal(stream, sigma);
+  }
+  return drawn;
+}
+
 /// Both triads of a device, its stamps, and where the samples go.
 class Device {
  public:
@@ -30,12 +41,15 @@ class Device {
         accel_(sensor.values, "accel", "m_s2", rate_hz, steps, seed, sensor.name + ".accel"),
         stamps_(sensor.values, "sensors." + sensor.name, record.period_ns, Stream(seed, sensor.name + ".time")),
         g_sensitivity_(sensor.values.at("gyro_g_sensitivity_s_m")),
+        g_sensitivity_drawn_(draw_g_sensitivity(sensor, seed)),
         flagged_(sensor.values.at("clip_flags") > 0.5) {
     describe_elements();
   }
 
   void step(const Ideal& ideal) {
-    gyro_.step(ideal.rate_rad_s, g_sensitivity_ * ideal.force_m_s2);
+    Eigen::Vector3d felt_rad_s = g_sensitivity_ * ideal.force_m_s2;
+    if (g_sensitivity_drawn_) felt_rad_s += *g_sensitivity_drawn_ * ideal.force_m_s2;
+    gyro_.step(ideal.rate_rad_s, felt_rad_s);
     accel_.step(ideal.force_m_s2, Eigen::Vector3d::Zero());
   }
 
@@ -75,6 +89,7 @@ class Device {
   TriadChain gyro_, accel_;
   TimeStamps stamps_;
   double g_sensitivity_;
+  std::optional<Eigen::Matrix3d> g_sensitivity_drawn_;  ///< nothing when it has no spread
   bool flagged_;
 };
 
