@@ -85,6 +85,11 @@ struct ImuTruth {
   std::vector<Eigen::Vector3d> accel_unclipped_m_s2;
   std::vector<Eigen::Vector3d> gyro_bias_rad_s;  ///< bias in force at each sample
   std::vector<Eigen::Vector3d> accel_bias_m_s2;
+  /// The sensing elements (sim/imu/elements.hpp): three rows of the matrix M, which the rail acts behind; empty:
+  /// upright.
+  std::vector<Eigen::Vector3d> gyro_elements, accel_elements;
+  Eigen::Vector3d gyro_element_offset_rad_s = Eigen::Vector3d::Zero();
+  Eigen::Vector3d accel_element_offset_m_s2 = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3d> magnetic_field_t;  ///< true mean over the window, disturbances included
 };
 

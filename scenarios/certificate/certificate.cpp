@@ -67,6 +67,8 @@ std::span<const CertificateRow> certificate_rows() {
       CertificateRow{"lidar_rays", "range error against mj_ray", as_certified<certify_lidar_rays>},
       CertificateRow{"imu_noise", "noise of the IMUs at rest against their data sheets",
                      as_certified<certify_imu_noise>},
+      CertificateRow{"tilted_rail", "planes of the clipped readings of tilted sensing elements against the drawn ones",
+                     as_certified<certify_tilted_rail>},
       CertificateRow{"digests", "equal digests for threads, order and restart", as_certified<certify_digests>},
   };
   return kRows;

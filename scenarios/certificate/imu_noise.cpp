@@ -30,7 +30,8 @@ sim::SensorSpec resting(const DataSheet& sheet) {
   sensor.values = sim::resolve(sheet.device, sheet.values(), sim::imu_parameters());
   for (const char* off :
        {"gyro_bandwidth_hz", "accel_bandwidth_hz", "digital_bandwidth_hz", "gyro_quantum_rad_s", "accel_quantum_m_s2",
-        "gyro_precise_quantum_rad_s", "accel_precise_quantum_m_s2", "magnetometer", "time_jitter_s", "dropout_share"}) {
+        "gyro_precise_quantum_rad_s", "accel_precise_quantum_m_s2", "gyro_window_s", "accel_window_s", "gyro_update_hz",
+        "accel_update_hz", "magnetometer", "time_jitter_s", "dropout_share"}) {
     sensor.values.set(off, 0.0);
   }
   sensor.values.set("output_rate_hz", kRate_hz);

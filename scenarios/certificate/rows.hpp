@@ -84,6 +84,15 @@ struct ImuNoiseSetup {
 };
 std::vector<CertificateEntry> certify_imu_noise(const CertificateInput& input, const ImuNoiseSetup& setup = {});
 
+/// Planes fitted to the clipped readings of IMUs with tilted sensing elements, one at a time, against those drawn.
+/// `believed_tilt` is added to one entry of the matrix that the closed form believes.
+struct TiltedRailSetup {
+  double misalignment = 0.02;  ///< drawn; scales with half of it, offsets of half a per cent of the rail
+  double believed_tilt = 0.0;
+  int devices = 5;
+};
+std::vector<CertificateEntry> certify_tilted_rail(const CertificateInput& input, const TiltedRailSetup& setup = {});
+
 /// The digest of a draw with other numbers of threads, in another order, and from a program started anew.
 struct DigestSetup {
   std::string scenario = "hill";

@@ -101,6 +101,10 @@ void imu_truth_fields(Archive& archive, Imu& imu) {
   archive.rows("accel_unclipped_I_m_s2", imu.accel_unclipped_m_s2, "m/s^2", kXyz, Storage::deflated);
   archive.rows("gyro_bias_I_rad_s", imu.gyro_bias_rad_s, "rad/s", kXyz, Storage::deflated);
   archive.rows("accel_bias_I_m_s2", imu.accel_bias_m_s2, "m/s^2", kXyz, Storage::deflated);
+  archive.optional_rows("gyro_elements_I", imu.gyro_elements, "1", kXyz, Storage::plain);
+  archive.optional_point("gyro_element_offset_rad_s", imu.gyro_element_offset_rad_s, "rad/s");
+  archive.optional_rows("accel_elements_I", imu.accel_elements, "1", kXyz, Storage::plain);
+  archive.optional_point("accel_element_offset_m_s2", imu.accel_element_offset_m_s2, "m/s^2");
   archive.optional_rows("magnetic_field_I_t", imu.magnetic_field_t, "T", kXyz, Storage::deflated);
 }
 

@@ -13,7 +13,9 @@ namespace tumble::scenarios {
 ///
 /// Definition, used by every score: axis j of a sample is clipped when the reading differs from its unclipped twin (the
 /// same errors, no rail) by more than one standard deviation of the gyro's white noise per sample, sqrt(density^2 /
-/// period), or 1e-6 rad/s if that is larger. What the rail takes away below the noise is nobody's loss.
+/// period), or 1e-6 rad/s if that is larger. What the rail takes away below the noise is nobody's loss. Behind tilted
+/// sensing elements (sim/imu/elements.hpp) this holds of the axes beside a clipped element too, which lose entries of
+/// the inverse of the elements' matrix times its excess: they count as clipped where that shows above the noise.
 class ClippingTruth {
  public:
   struct Sample {

@@ -29,6 +29,15 @@ Rail::Params rail_params(const Values& values, const std::string& prefix, const 
           values.at(prefix + "_slow_recovery_share")};
 }
 
+Elements::Params element_params(const Values& values, const std::string& prefix, const std::string& unit) {
+  return {values.at(prefix + "_element_misalignment"), values.at(prefix + "_element_scale"),
+          values.at(prefix + "_element_offset_" + unit)};
+}
+
+Sampling::Params sampling_params(const Values& values, const std::string& prefix) {
+  return {values.at(prefix + "_window_s"), values.at(prefix + "_update_hz")};
+}
+
 Eigen::Matrix3d axis_errors(const Values& values, const std::string& prefix, Stream stream) {
   return draw_axis_errors(stream, values.at(prefix + "_scale_error"), values.at(prefix + "_misalignment_rad"));
 }
@@ -51,14 +60,17 @@ TriadChain::TriadChain(const Values& values, const std::string& prefix, const st
       range_(values.at(prefix + "_handover_" + unit)),
       rail_(rail_params(values, prefix, unit), (rail_after_ ? steps : 1) / rate_hz,
             Stream(seed, stream_name + ".rail")),
+      elements_(element_params(values, prefix, unit), Stream(seed, stream_name + ".elements")),
       axis_errors_(axis_errors(values, prefix, Stream(seed, stream_name + ".axes"))),
       delivered_{LowPass(values.at("digital_bandwidth_hz"), rate_hz)},
-      unclipped_(delivered_) {}
+      unclipped_(delivered_),
+      sampling_(sampling_params(values, prefix), rate_hz, Stream(seed, stream_name + ".sampling")) {}
 
-void TriadChain::Path::add(const Eigen::Vector3d& signal, const Eigen::Vector3d& ideal) {
+Eigen::Vector3d TriadChain::Path::add(const Eigen::Vector3d& signal, const Eigen::Vector3d& ideal) {
   const Eigen::Vector3d out = low_pass(signal);
   sum += out;
   error += out - ideal;
+  return out;
 }
 
 void TriadChain::step(const Eigen::Vector3d& ideal, const Eigen::Vector3d& added) {
@@ -67,17 +79,31 @@ void TriadChain::step(const Eigen::Vector3d& ideal, const Eigen::Vector3d& added
   range_.update(clean);
   const Eigen::Vector3d signal = clean + white_noise(noise_stream_, range_.pick(noise_, precise_noise_), rate_hz_);
   const Eigen::Vector3d quantum = range_.pick(quantum_, precise_quantum_);
-  delivered_.add(quantise(rail_after_ ? signal : rail_(signal, 0, railed_), quantum), ideal);
-  unclipped_.add(quantise(signal, quantum), ideal);
+  std::uint8_t railed = 0;
+  const Eigen::Vector3d clipped = rail_after_ ? signal : elements_.clip(signal, rail_, 0, railed);
+  const Eigen::Vector3d delivered = delivered_.add(quantise(clipped, quantum), ideal);
+  const Eigen::Vector3d unclipped = unclipped_.add(quantise(signal, quantum), ideal);
+  if (sampling_.on()) sampling_.add({delivered, unclipped, railed});
+  railed_ = static_cast<std::uint8_t>(railed_ | railed);
   ++in_window_;
 }
 
+TriadReading TriadChain::integrated(const Eigen::Vector3d& exact) const {
+  TriadReading out{exact + delivered_.error / in_window_, exact + unclipped_.error / in_window_, bias_now_};
+  out.delivered = elements_.with_elements_of(delivered_.sum / in_window_, railed_, out.delivered);
+  return out;
+}
+
 TriadReading TriadChain::take(const Eigen::Vector3d& exact, int first_bit, std::uint8_t& flags) {
-  TriadReading reading{exact + delivered_.error / in_window_, exact + unclipped_.error / in_window_, bias_now_};
-  for (int axis = 0; axis < 3; ++axis) {
-    if ((railed_ >> axis & 1) != 0) reading.delivered[axis] = delivered_.sum[axis] / in_window_;
+  TriadReading reading;
+  if (sampling_.on()) {
+    const Sampling::Reading sampled = sampling_.output();
+    reading = {sampled.delivered, sampled.unclipped, bias_now_};
+    railed_ = sampled.railed;
+  } else {
+    reading = integrated(exact);
   }
-  if (rail_after_) reading.delivered = rail_(reading.delivered, 0, railed_);
+  if (rail_after_) reading.delivered = elements_.clip(reading.delivered, rail_, 0, railed_);
   flags = static_cast<std::uint8_t>(flags | railed_ << first_bit);
   railed_ = 0;
   in_window_ = 0;

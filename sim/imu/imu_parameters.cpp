@@ -4,6 +4,8 @@
 #include <array>
 #include <sstream>
 
+#include "sim/imu/elements.hpp"
+
 namespace tumble::sim {
 
 namespace {
@@ -20,6 +22,15 @@ constexpr std::string_view kRecoveryDoc =
     "rail kind slow_recovery: time with which the offset that clipping leaves builds up and fades; 0: off";
 constexpr std::string_view kRecoveryShareDoc =
     "rail kind slow_recovery: largest offset that clipping leaves, as a share of the rail";
+constexpr std::string_view kElementMisalignmentDoc =
+    "the sensing elements' own axes, along which they clip: standard deviation of each entry off the diagonal of their "
+    "matrix, within 3 of them, as a share; the device undoes it after the rail; 0: upright";
+constexpr std::string_view kElementScaleDoc =
+    "the sensing elements' own scale: standard deviation of each diagonal entry of their matrix about 1, within 3 of "
+    "them";
+constexpr std::string_view kElementOffsetDoc =
+    "the sensing elements' own zero offset, taken off after the rail, so that the two signs clip apart: standard "
+    "deviation, within 3 of them";
 constexpr std::string_view kInRunDoc =
     "in-run instability: floor of the Allan deviation (a bounded process, flicker over three decades)";
 constexpr std::string_view kInRunTimeDoc =
@@ -31,6 +42,12 @@ constexpr std::string_view kMisalignmentDoc = "standard deviation of each cross-
 constexpr std::string_view kNoiseDoc = "density of the white noise; a sample at rate f has density * sqrt(f)";
 constexpr std::string_view kBandwidthDoc = "-3 dB of the analogue low-pass, second order; 0: off";
 constexpr std::string_view kQuantumDoc = "step of the converter, before digital low-pass and mean; 0: off";
+constexpr std::string_view kWindowDoc =
+    "each reading is the plain mean over the last so many seconds, to the nearest physics step, as of a device that "
+    "samples; 0: it integrates from output to output, or from one reading of its own rate to the next";
+constexpr std::string_view kUpdateDoc =
+    "sample and hold: the device's own readings per second, not in step with the outputs, which say the last one once "
+    "more until there is a new one; 0: a new one for each output";
 constexpr std::string_view kHandoverDoc =
     "an axis is read by the precise part up to here (back below 0.9 of it) and by the coarse one beyond; 0: coarse "
     "always";
@@ -47,6 +64,9 @@ constexpr std::array kParameters = {
     Parameter{"gyro_wrap", 0.0, 0.0, 1.0, "1", kWrapDoc},
     Parameter{"gyro_slow_recovery_s", 0.0, 0.0, 100.0, "s", kRecoveryDoc},
     Parameter{"gyro_slow_recovery_share", 0.0, 0.0, 1.0, "1", kRecoveryShareDoc},
+    Parameter{"gyro_element_misalignment", 0.0, 0.0, Elements::kMostMisalignment, "1", kElementMisalignmentDoc},
+    Parameter{"gyro_element_scale", 0.0, 0.0, Elements::kMostMisalignment, "1", kElementScaleDoc},
+    Parameter{"gyro_element_offset_rad_s", 0.0, 0.0, 100.0, "rad/s", kElementOffsetDoc},
     Parameter{"gyro_noise_rad_s_sqrt_hz", 0.0, 0.0, 1.0, "rad/s/sqrt(Hz)", kNoiseDoc},
     Parameter{"gyro_bandwidth_hz", 0.0, 0.0, 900.0, "Hz", kBandwidthDoc},
     Parameter{"gyro_delay_s", 0.0, 0.0, 0.1, "s", "the gyroscope's signal is late by this; 0: off"},
@@ -58,6 +78,10 @@ constexpr std::array kParameters = {
     Parameter{"gyro_misalignment_rad", 0.0, 0.0, 0.2, "rad", kMisalignmentDoc},
     Parameter{"gyro_g_sensitivity_s_m", 0.0, 0.0, 0.01, "rad/s/(m/s^2)",
               "rate per specific force, each axis on itself"},
+    Parameter{"gyro_g_sensitivity_spread_s_m", 0.0, 0.0, 0.01, "rad/s/(m/s^2)",
+              "rate per specific force beyond that: standard deviation of each of the nine entries of its matrix"},
+    Parameter{"gyro_window_s", 0.0, 0.0, 0.1, "s", kWindowDoc},
+    Parameter{"gyro_update_hz", 0.0, 0.0, 2000.0, "Hz", kUpdateDoc},
     Parameter{"gyro_quantum_rad_s", 0.0, 0.0, 1.0, "rad/s", kQuantumDoc},
     Parameter{"gyro_handover_rad_s", 0.0, 0.0, 1000.0, "rad/s", kHandoverDoc},
     Parameter{"gyro_precise_noise_rad_s_sqrt_hz", 0.0, 0.0, 1.0, "rad/s/sqrt(Hz)", kPreciseNoiseDoc},
@@ -69,6 +93,9 @@ constexpr std::array kParameters = {
     Parameter{"accel_wrap", 0.0, 0.0, 1.0, "1", kWrapDoc},
     Parameter{"accel_slow_recovery_s", 0.0, 0.0, 100.0, "s", kRecoveryDoc},
     Parameter{"accel_slow_recovery_share", 0.0, 0.0, 1.0, "1", kRecoveryShareDoc},
+    Parameter{"accel_element_misalignment", 0.0, 0.0, Elements::kMostMisalignment, "1", kElementMisalignmentDoc},
+    Parameter{"accel_element_scale", 0.0, 0.0, Elements::kMostMisalignment, "1", kElementScaleDoc},
+    Parameter{"accel_element_offset_m_s2", 0.0, 0.0, 1000.0, "m/s^2", kElementOffsetDoc},
     Parameter{"accel_noise_m_s2_sqrt_hz", 0.0, 0.0, 1.0, "m/s^2/sqrt(Hz)", kNoiseDoc},
     Parameter{"accel_bandwidth_hz", 0.0, 0.0, 900.0, "Hz", kBandwidthDoc},
     Parameter{"accel_delay_s", 0.0, 0.0, 0.1, "s", "the accelerometer's signal is late by this; 0: off"},
@@ -78,6 +105,8 @@ constexpr std::array kParameters = {
     Parameter{"accel_bias_walk_m_s2_sqrt_s", 0.0, 0.0, 10.0, "m/s^2/sqrt(s)", kWalkDoc},
     Parameter{"accel_scale_error", 0.0, 0.0, 0.2, "1", kScaleDoc},
     Parameter{"accel_misalignment_rad", 0.0, 0.0, 0.2, "rad", kMisalignmentDoc},
+    Parameter{"accel_window_s", 0.0, 0.0, 0.1, "s", kWindowDoc},
+    Parameter{"accel_update_hz", 0.0, 0.0, 2000.0, "Hz", kUpdateDoc},
     Parameter{"accel_quantum_m_s2", 0.0, 0.0, 10.0, "m/s^2", kQuantumDoc},
     Parameter{"accel_handover_m_s2", 0.0, 0.0, 1e5, "m/s^2", kHandoverDoc},
     Parameter{"accel_precise_noise_m_s2_sqrt_hz", 0.0, 0.0, 1.0, "m/s^2/sqrt(Hz)", kPreciseNoiseDoc},
@@ -123,6 +152,14 @@ void check_rail(const Values& values, const std::string& place, const std::strin
   if (rail > 0.0 && 3.0 * spread >= rail) {
     std::ostringstream text;
     text << place << "." << axis_name << " and " << event_name << " are " << spread
+         << " together, must be below a third of " << rail_name << ", which is " << rail;
+    throw InvalidSituation(text.str());
+  }
+  const std::string offset_name = prefix + "_element_offset_" + unit;
+  const double offset = values.at(offset_name);
+  if (rail > 0.0 && offset > 0.0 && 3.0 * (spread + offset) >= rail) {
+    std::ostringstream text;
+    text << place << "." << offset_name << " and the plateau's spreads are " << spread + offset
          << " together, must be below a third of " << rail_name << ", which is " << rail;
     throw InvalidSituation(text.str());
   }

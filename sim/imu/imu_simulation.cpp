@@ -20,6 +20,17 @@ struct Ideal {
   Eigen::Vector3d rate_rad_s, force_m_s2;
 };
 
+std::optional<Eigen::Matrix3d> draw_g_sensitivity(const SensorSpec& sensor, std::uint64_t seed) {
+  const double sigma = sensor.values.at("gyro_g_sensitivity_spread_s_m");
+  if (sigma == 0.0) return std::nullopt;
+  Stream stream(seed, sensor.name + ".gyro.g_sensitivity");
+  Eigen::Matrix3d drawn;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) drawn(row, column) = bounded_normal(stream, sigma);
+  }
+  return drawn;
+}
+
 /// Both triads of a device, its stamps, and where the samples go.
 class Device {
  public:
@@ -30,10 +41,15 @@ class Device {
         accel_(sensor.values, "accel", "m_s2", rate_hz, steps, seed, sensor.name + ".accel"),
         stamps_(sensor.values, "sensors." + sensor.name, record.period_ns, Stream(seed, sensor.name + ".time")),
         g_sensitivity_(sensor.values.at("gyro_g_sensitivity_s_m")),
-        flagged_(sensor.values.at("clip_flags") > 0.5) {}
+        g_sensitivity_drawn_(draw_g_sensitivity(sensor, seed)),
+        flagged_(sensor.values.at("clip_flags") > 0.5) {
+    describe_elements();
+  }
 
   void step(const Ideal& ideal) {
-    gyro_.step(ideal.rate_rad_s, g_sensitivity_ * ideal.force_m_s2);
+    Eigen::Vector3d felt_rad_s = g_sensitivity_ * ideal.force_m_s2;
+    if (g_sensitivity_drawn_) felt_rad_s += *g_sensitivity_drawn_ * ideal.force_m_s2;
+    gyro_.step(ideal.rate_rad_s, felt_rad_s);
     accel_.step(ideal.force_m_s2, Eigen::Vector3d::Zero());
   }
 
@@ -58,11 +74,22 @@ class Device {
   }
 
  private:
+  void describe_elements() {
+    const auto rows = [](const Elements& elements, std::vector<Eigen::Vector3d>& out, Eigen::Vector3d& offset) {
+      if (elements.upright()) return;
+      for (int i = 0; i < 3; ++i) out.emplace_back(elements.axes().row(i));
+      offset = elements.offset();
+    };
+    rows(gyro_.elements(), truth_.gyro_elements, truth_.gyro_element_offset_rad_s);
+    rows(accel_.elements(), truth_.accel_elements, truth_.accel_element_offset_m_s2);
+  }
+
   ImuRecord& record_;
   ImuTruth& truth_;
   TriadChain gyro_, accel_;
   TimeStamps stamps_;
   double g_sensitivity_;
+  std::optional<Eigen::Matrix3d> g_sensitivity_drawn_;  ///< nothing when it has no spread
   bool flagged_;
 };
 

@@ -16,11 +16,13 @@ namespace tumble::sim {
 /// at any output rate. The errors of the device come on top, in this order (each stage is documented where it lives):
 ///
 ///   lever arm and mounting (truth/record_truth.hpp), delay, analogue low-pass, scale and misalignment, bias,
-///   g-sensitivity, white noise of the part in range, rail, quantum, digital low-pass, mean over the window
-///   (imu_chain.hpp), stamps and losses (time_stamps.hpp); magnetometer.hpp for the magnetic field.
+///   g-sensitivity, white noise of the part in range, sensing elements, rail, compensation of the elements
+///   (elements.hpp), quantum, digital low-pass, mean over the window (imu_chain.hpp), stamps and losses
+///   (time_stamps.hpp); magnetometer.hpp for the magnetic field.
 ///
 /// A twin with the same noise and no rail gives ImuTruth's unclipped readings. `sensor.values` are resolved; `T_BI` is
-/// the true mounting. Clip flags mark windows in which an axis met its rail at any moment. A lost sample is lost from
+/// the true mounting. Clip flags mark windows in which an element met its rail at any moment; with
+/// tilted elements the axes beside it are wrong too, unflagged. A lost sample is lost from
 /// the truth too. Throws InvalidSituation when the output period is no whole number of physics steps, or numbers
 /// contradict each other.
 /// What it does not model: temperature, vibration rectification, bending of the mount.

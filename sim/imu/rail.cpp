@@ -4,15 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/imu/stages.hpp"
+
 namespace tumble::sim {
 
 namespace {
 
 constexpr double kEventEnds_share = 0.9;
-
-double bounded_normal(Stream& stream, double sigma) {
-  return sigma > 0.0 ? sigma * std::clamp(stream.normal(), -3.0, 3.0) : 0.0;
-}
 
 /// The number that is left of `value` when the word that holds it reaches from -level to level and overflows.
 double wrapped(double value, double level) {

@@ -13,6 +13,10 @@ Eigen::Vector3d normals(Stream& stream, double sigma) {
   return sigma * Eigen::Vector3d(x, y, z);
 }
 
+double bounded_normal(Stream& stream, double sigma) {
+  return sigma > 0.0 ? sigma * std::clamp(stream.normal(), -3.0, 3.0) : 0.0;
+}
+
 DelayLine::DelayLine(double delay_s, double rate_hz) {
   const double samples = delay_s * rate_hz;
   if (!(samples > 0.0)) return;

@@ -14,6 +14,9 @@ namespace tumble::sim {
 /// Three normal numbers of this standard deviation; zero, and nothing drawn, for 0.
 Eigen::Vector3d normals(Stream& stream, double sigma);
 
+/// One normal number of this standard deviation, cut at three of them; 0, and nothing drawn, for 0.
+double bounded_normal(Stream& stream, double sigma);
+
 /// A signal that arrives late by `delay_s`, held at its first value until then; between samples it is interpolated
 /// linearly. The whole of it arrives: sums over a long time are kept. A delay of 0 is off.
 class DelayLine {

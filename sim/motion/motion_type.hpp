@@ -37,6 +37,8 @@ const MotionType& drop_motion();
 const MotionType& hand_roll_motion();
 /// A hand that leads a sphere along a way of some shape.
 const MotionType& hand_path_motion();
+/// A robot carried in a hand and twirled about its x axis.
+const MotionType& twirl_motion();
 
 /// All kinds, in the order of registration: a new one is a file and a line in motion_type.cpp.
 std::span<const MotionType* const> all_motion_types();

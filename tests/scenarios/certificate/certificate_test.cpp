@@ -185,6 +185,21 @@ TEST(Rows, TwiceTheBiasFailsTheImus) {
   }
 }
 
+TEST(Rows, ATiltOfTwoTenThousandthsFailsTheTiltedRail) {
+  TiltedRailSetup setup;
+  setup.devices = 1;
+  EXPECT_THAT(failures(certify_tilted_rail(input(), setup)), IsEmpty());
+  setup.believed_tilt = 2e-4;  // a tenth of what real devices keep their tilt to
+  EXPECT_THAT(failures(certify_tilted_rail(input(), setup)),
+              testing::ElementsAre("tilted_rail_slope (mti30 gyro)", "tilted_rail_slope (mti30 accel)"));
+}
+
+TEST(Rows, WithoutADeviceTheTiltedRailSaysNothing) {
+  TiltedRailSetup setup;
+  setup.devices = 0;
+  EXPECT_EQ(failures(certify_tilted_rail(input(), setup)).size(), 4u);
+}
+
 TEST(Rows, OtherDrawsFailTheDigests) {
   DigestSetup setup;
   setup.duration_s = 2.5;

@@ -92,6 +92,14 @@ TEST(Digest, EveryFieldCounts) {
                                        [](auto&, auto& t) { t.imus[1].gyro_bias_rad_s.back().x() += 1e-9; },
                                        [](auto&, auto& t) { t.imus[1].accel_bias_m_s2.back().x() += 1e-9; },
                                        [](auto&, auto& t) { t.imus[1].magnetic_field_t.back().x() += 1e-12; },
+                                       [](auto&, auto& t) {
+                                         t.imus[1].gyro_elements.assign(3, {1, 2, 3});
+                                       },
+                                       [](auto&, auto& t) {
+                                         t.imus[1].accel_elements.assign(3, {1, 2, 3});
+                                       },
+                                       [](auto&, auto& t) { t.imus[1].gyro_element_offset_rad_s.x() = 1e-9; },
+                                       [](auto&, auto& t) { t.imus[1].accel_element_offset_m_s2.x() = 1e-9; },
                                        [](auto&, auto& t) { t.lidars[0].name += "x"; },
                                        [](auto&, auto& t) { t.lidars[0].T_BL.translation().x() += 1e-9; },
                                        [](auto&, auto& t) { t.lidars[0].hit_W_m.back().x() += 1e-3f; },

@@ -90,6 +90,12 @@ TEST(RecordingCheck, NamesWhatContradictsInTheTruth) {
       {[](auto& t) { t.lidars[0].surface_id[3] = -3; }, "truth/lidars/0: surface_id -3"},
       {[](auto& t) { t.lidars[0].hit_W_m.pop_back(); }, "surface_id has 150 rows, hit_W_m has 149"},
       {[](auto& t) { t.imus[1].magnetic_field_t.pop_back(); }, "truth/imus/1: magnetic_field_I_t has 69 rows"},
+      {[](auto& t) { t.imus[1].gyro_elements.resize(2); }, "truth/imus/1: gyro_elements_I has 2 rows, must have 3"},
+      {[](auto& t) { t.imus[1].accel_elements.resize(4); }, "truth/imus/1: accel_elements_I has 4 rows, must have 3"},
+      {[](auto& t) { t.imus[0].gyro_element_offset_rad_s.y() = std::nan(""); },
+       "truth/imus/0: gyro_element_offset_rad_s is not finite"},
+      {[](auto& t) { t.imus[0].accel_element_offset_m_s2.y() = std::nan(""); },
+       "truth/imus/0: accel_element_offset_m_s2 is not finite"},
       {[](auto& t) { t.imus[1].gyro_bias_rad_s.clear(); }, "truth/imus/1: gyro_bias_I_rad_s has 0 rows"},
       {[](auto& t) { t.p_BG_m.x() = std::numeric_limits<double>::infinity(); }, "p_BG_m is not finite"}};
   for (const Case& each : cases) {

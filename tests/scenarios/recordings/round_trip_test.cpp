@@ -120,6 +120,29 @@ TEST_F(RoundTrip, WhatIsKnownOfPointTimesComesBackAndTheUsualLeavesNoTrace) {
   }
 }
 
+TEST_F(RoundTrip, SensingElementsComeBackAndUprightOnesLeaveNoTrace) {
+  sim::Recording recording = fixture::recording();
+  sim::ImuTruth& tilted = recording.truth.imus[1];
+  tilted.gyro_elements = {{1.0, 0.02, 0.0}, {-0.01, 0.98, 0.05}, {0.0, 0.03, 1.01}};
+  tilted.accel_elements = {{1.0, 0.01, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 0.97}};
+  tilted.gyro_element_offset_rad_s = {0.05, 0.0, -0.02};
+  tilted.accel_element_offset_m_s2 = {0.2, 0.1, 0.0};
+  const std::filesystem::path path = folder_ / "a.h5";
+  write_recording(path, info(), recording.sensors, &recording.truth);
+  const sim::Truth truth = read_truth(path);
+  EXPECT_EQ(truth.imus[1].gyro_elements, tilted.gyro_elements);
+  EXPECT_EQ(truth.imus[1].accel_elements, tilted.accel_elements);
+  EXPECT_EQ(truth.imus[1].gyro_element_offset_rad_s, tilted.gyro_element_offset_rad_s);
+  EXPECT_EQ(truth.imus[1].accel_element_offset_m_s2, tilted.accel_element_offset_m_s2);
+  EXPECT_TRUE(truth.imus[0].gyro_elements.empty());
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  EXPECT_GT(H5Lexists(file, "truth/imus/1/gyro_elements_I", H5P_DEFAULT), 0);
+  for (const char* name : {"gyro_elements_I", "gyro_element_offset_rad_s", "accel_elements_I"}) {
+    EXPECT_EQ(H5Lexists(file, ("truth/imus/0/" + std::string(name)).c_str(), H5P_DEFAULT), 0) << name;
+  }
+  H5Fclose(file);
+}
+
 TEST_F(RoundTrip, AnImuWithoutMagnetometerLeavesNoTraceOfOne) {
   sim::Recording recording = fixture::recording();
   for (sim::ImuRecord& imu : recording.sensors.imus) {

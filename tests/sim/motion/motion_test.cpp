@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "sim/motion/rigid_body.hpp"
 #include "sim/simulate.hpp"
@@ -90,6 +91,38 @@ TEST(Drop, MayBeHeldAwayFromTheStart) {
   situation.motion.values.set("forward_m", 0.0);
   const Truth near = simulate(situation, {models_folder(), 1}).truth;
   EXPECT_NEAR((away.p_WB_m[0] - near.p_WB_m[0] - Vector3d(2, 0, 0)).norm(), 0.0, 1e-9);
+}
+
+TEST(Twirl, SpinsAboutXInStrokesAndKeepsTheGripInTheHand) {
+  Situation situation = moved_by("twirl", 8.0);
+  for (const auto& [name, value] :
+       {std::pair{"spin_rad_s", 12.0}, std::pair{"spin_spread_rad_s", 0.0}, std::pair{"interval_s", 1.5},
+        std::pair{"twist_rad", 0.0}, std::pair{"sway_rad", 0.02}, std::pair{"sway_m", 0.005},
+        std::pair{"grip_x_m", 0.05}, std::pair{"grip_y_m", -0.08}, std::pair{"hand_seed", 3.0}}) {
+    situation.motion.values.set(name, value);
+  }
+  const Truth truth = simulate(situation, {models_folder(), 1}).truth;
+  const auto grip = [&](std::size_t k) {
+    return Vector3d(truth.p_WB_m[k] + truth.q_WB[k] * Vector3d(0.05, -0.08, 0.0));
+  };
+  double fastest = 0.0, farthest = 0.0, beside = 0.0;
+  int strokes = 0;
+  bool within = false;
+  for (std::size_t k = 0; k < truth.q_WB.size(); ++k) {
+    const Vector3d& w = truth.w_WB_B_rad_s[k];
+    fastest = std::max(fastest, std::abs(w.x()));
+    beside = std::max(beside, w.tail<2>().norm());
+    farthest = std::max(farthest, (grip(k) - grip(0)).norm());
+    strokes += !within && std::abs(w.x()) > 6.0;
+    within = std::abs(w.x()) > (within ? 3.0 : 6.0);
+    ASSERT_EQ(truth.label[k], ContactLabel::air);
+  }
+  EXPECT_NEAR(fastest, 12.0, 0.5);
+  EXPECT_GE(strokes, 3);  // within 7 s, each 1.1 to 1.9 s after the last
+  EXPECT_LE(strokes, 7);
+  EXPECT_LT(beside, 1.0);
+  EXPECT_LT(farthest, 0.05);
+  EXPECT_LT(largest_step_m_s(truth), 0.05);  // no jump: 100 m/s^2 at most
 }
 
 TEST(Clearance, IsThatOfTheTurnedRobot) {

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "sim/motion/held.hpp"
+#include "sim/motion/motion_type.hpp"
+#include "sim/motion/tremor.hpp"
+
+namespace tumble::sim {
+
+namespace {
+
+constexpr std::array kParameters = {
+    Parameter{"rest_s", 1.75, 0.5, 30.0, "s", "held still before the first stroke"},
+    Parameter{"height_m", 1.0, 0.1, 10.0, "m", "of the lowest point of the held robot above the ground at the start"},
+    Parameter{"yaw_rad", 0.0, -3.2, 3.2, "rad", "heading of the held robot"},
+    Parameter{"spin_rad_s", 10.5, 0.0, 40.0, "rad/s", "mean of the strokes' peak rates about the robot's x axis"},
+    Parameter{"spin_spread_rad_s", 2.0, 0.0, 20.0, "rad/s", "standard deviation of that, within 2.5 of them"},
+    Parameter{"stroke_s", 0.9, 0.1, 5.0, "s", "length of a stroke; it rises for a third of it"},
+    Parameter{"interval_s", 1.65, 0.1, 20.0, "s",
+              "mean time from stroke to stroke, give or take a quarter; never before the last has ended"},
+    Parameter{"turn_back_share", 0.45, 0.0, 1.0, "1", "of the strokes, that turn the other way than the one before"},
+    Parameter{"twist_rad", 0.4, 0.0, 3.0, "rad",
+              "root mean square of the unsteady turn about x, beside the strokes, 0.3 to 4 Hz; as on the real wand"},
+    Parameter{"sway_rad", 0.03, 0.0, 0.5, "rad",
+              "root mean square of the unsteady pitch and yaw, 0.3 to 4 Hz; assumed"},
+    Parameter{"sway_m", 0.01, 0.0, 0.2, "m", "the same of the place of the grip, per axis; assumed"},
+    Parameter{"grip_x_m", 0.0, -0.5, 0.5, "m", "what the hand carries, in the robot's design frame, B axes"},
+    Parameter{"grip_y_m", 0.0, -0.5, 0.5, "m", "the same along y"},
+    Parameter{"grip_z_m", 0.0, -0.5, 0.5, "m", "the same along z"},
+    Parameter{"hand_seed", 0.0, 0.0, 1e9, "1", "what is random about the hand belongs to this number, rounded down"},
+};
+
+constexpr double kSwayLow_hz = 0.3, kSwayHigh_hz = 4.0;
+constexpr double kLongest_s = 120.0;
+
+/// One twist of the wrist or the fingers: its rate rises and falls as sin^2, from rest to rest.
+struct Stroke {
+  static constexpr double kRise = 1.0 / 3.0;
+  double start_s, length_s, peak_rad_s;
+
+  /// Turned so far, in closed form.
+  double angle_rad(double time_s) const {
+    constexpr double kPi = std::numbers::pi, kFall = 1.0 - kRise;
+    const double u = std::clamp((time_s - start_s) / length_s, 0.0, 1.0);
+    const double rise = std::min(u, kRise), fall = std::max(u - kRise, 0.0);
+    return peak_rad_s * length_s *
+           (0.5 * rise - kRise / (2.0 * kPi) * std::sin(kPi * rise / kRise) + 0.5 * fall +
+            kFall / (2.0 * kPi) * std::sin(kPi * fall / kFall));
+  }
+};
+
+std::vector<Stroke> plan_strokes(const Values& values, Stream& stream) {
+  std::vector<Stroke> strokes;
+  const double length_s = values.at("stroke_s"), interval_s = values.at("interval_s");
+  double sign = stream.uniform() < 0.5 ? 1.0 : -1.0;
+  for (double start_s = values.at("rest_s") + 0.5; start_s < kLongest_s;) {
+    const double off = std::clamp(stream.normal(), -2.5, 2.5);
+    strokes.push_back({start_s, length_s, sign * (values.at("spin_rad_s") + off * values.at("spin_spread_rad_s"))});
+    start_s += std::max(length_s, interval_s * stream.uniform(0.75, 1.25));
+    if (stream.uniform() < values.at("turn_back_share")) sign = -sign;
+  }
+  return strokes;
+}
+
+/// Carried by a point of it and twirled about x, stroke by stroke: a spring and a damper hold it to a way that the hand
+/// means to go, the forces that this takes added beforehand. The hand is no body.
+class Twirl : public Motion {
+ public:
+  Twirl(const Values& values, const engine::World& world)
+      : hand_(world, Eigen::AngleAxisd(values.at("yaw_rad"), Eigen::Vector3d::UnitZ()) * Eigen::Quaterniond::Identity(),
+              Eigen::Vector3d::Zero(), values.at("height_m")),
+        rest_s_(values.at("rest_s")),
+        grip_B_m_(Eigen::Vector3d(values.at("grip_x_m"), values.at("grip_y_m"), values.at("grip_z_m")) -
+                  world.com_offset_m),
+        inertia_B_kg_m2_(hand_.start().q_WB.conjugate() * hand_.inertia_W_kg_m2() * hand_.start().q_WB) {
+    Stream stream(static_cast<std::uint64_t>(values.at("hand_seed")), "hand.twirl");
+    strokes_ = plan_strokes(values, stream);
+    turns_.emplace_back(stream, values.at("twist_rad"), kSwayLow_hz, kSwayHigh_hz);
+    for (int i = 0; i < 2; ++i) turns_.emplace_back(stream, values.at("sway_rad"), kSwayLow_hz, kSwayHigh_hz);
+    for (int i = 0; i < 3; ++i) places_.emplace_back(stream, values.at("sway_m"), kSwayLow_hz, kSwayHigh_hz);
+  }
+
+  BodyState start() const override { return hand_.start(); }
+
+  Wrench wrench(const BodyState& state) override {
+    constexpr double kDifference_s = 1e-3;     // over which the way's rates are taken
+    constexpr double kFrequency_rad_s = 60.0;  // of spring and damper: the wander of the hand is in its way
+    constexpr double kStiffness_1_s2 = kFrequency_rad_s * kFrequency_rad_s, kDamping_1_s = 2.0 * kFrequency_rad_s;
+    const Pose before = way(state.time_s - kDifference_s), now = way(state.time_s),
+               after = way(state.time_s + kDifference_s);
+    const Eigen::Vector3d v_m_s = (after.p_m - before.p_m) / (2.0 * kDifference_s);
+    const Eigen::Vector3d a_m_s2 = (after.p_m - 2.0 * now.p_m + before.p_m) / (kDifference_s * kDifference_s);
+    const Eigen::Vector3d first = turn(before.q, now.q), second = turn(now.q, after.q);
+    const Eigen::Vector3d w_rad_s = (first + second) / (2.0 * kDifference_s);
+    const Eigen::Vector3d alpha_rad_s2 = (second - first) / (kDifference_s * kDifference_s);
+
+    Wrench out;
+    out.force_W_n = hand_.weight_n() + hand_.mass_kg() * (a_m_s2 + kStiffness_1_s2 * (now.p_m - state.p_WB_m) +
+                                                          kDamping_1_s * (v_m_s - state.v_WB_m_s));
+    // in body axes: what Euler's equation takes, and the spring
+    const Eigen::Vector3d aim_rad_s2 =
+        alpha_rad_s2 + kStiffness_1_s2 * turn(state.q_WB, now.q) + kDamping_1_s * (w_rad_s - state.w_WB_B_rad_s);
+    out.torque_W_nm =
+        state.q_WB * (inertia_B_kg_m2_ * aim_rad_s2 + state.w_WB_B_rad_s.cross(inertia_B_kg_m2_ * state.w_WB_B_rad_s));
+    return out;
+  }
+
+ private:
+  struct Pose {
+    Eigen::Vector3d p_m;  ///< of the centre of mass
+    Eigen::Quaterniond q;
+  };
+
+  /// Rotation vector from one attitude to another, in the axes of either.
+  static Eigen::Vector3d turn(const Eigen::Quaterniond& from, const Eigen::Quaterniond& to) {
+    const Eigen::AngleAxisd turned(from.conjugate() * to);
+    return turned.angle() * turned.axis();
+  }
+
+  /// Where the hand means the robot to be.
+  Pose way(double time_s) const {
+    double spun_rad = 0.0;
+    for (const Stroke& stroke : strokes_) {
+      if (time_s <= stroke.start_s) break;
+      spun_rad += stroke.angle_rad(time_s);
+    }
+    // the unsteadiness sets in within a second, without a jump of acceleration
+    const double u = std::clamp(time_s - rest_s_, 0.0, 1.0), share = u * u * u * (10.0 + u * (-15.0 + 6.0 * u));
+    const Eigen::Vector3d sway_m(places_[0].at(time_s), places_[1].at(time_s), places_[2].at(time_s));
+    const BodyState start = hand_.start();
+    Pose pose;
+    pose.q = start.q_WB * Eigen::AngleAxisd(share * turns_[1].at(time_s), Eigen::Vector3d::UnitZ()) *
+             Eigen::AngleAxisd(share * turns_[2].at(time_s), Eigen::Vector3d::UnitY()) *
+             Eigen::AngleAxisd(spun_rad + share * turns_[0].at(time_s), Eigen::Vector3d::UnitX());
+    pose.p_m = start.p_WB_m + start.q_WB * grip_B_m_ + share * sway_m - pose.q * grip_B_m_;
+    return pose;
+  }
+
+  HoldingHand hand_;
+  double rest_s_;
+  Eigen::Vector3d grip_B_m_;
+  Eigen::Matrix3d inertia_B_kg_m2_;
+  std::vector<Stroke> strokes_;
+  std::vector<Tremor> turns_, places_;  ///< about x, z and y; along x, y and z
+};
+
+std::unique_ptr<Motion> make(const Values& values, const engine::World& world) {
+  return std::make_unique<Twirl>(values, world);
+}
+
+}  // namespace
+
+const MotionType& twirl_motion() {
+  static const MotionType kType{
+      {"twirl", "carried in a hand and twirled about its x axis, stroke by stroke", kParameters}, make};
+  return kType;
+}
+
+}  // namespace tumble::sim

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Tilted sensing elements through the whole chain of a device.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <initializer_list>
+#include <string>
+#include <utility>
+
+#include "sim/imu/imu_simulation.hpp"
+
+namespace tumble::sim {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using Numbers = std::initializer_list<std::pair<const char*, double>>;
+
+constexpr double kGravity_m_s2 = 9.80665;
+constexpr double kRail_rad_s = 10.0;
+
+/// Turns about an axis that itself turns (coning), up to `size` times 15 rad/s about z and 6 about the others, and is
+/// shaken along x.
+Truth wobbling(double duration_s, double size) {
+  Truth truth;
+  Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
+  for (int k = 0; k <= std::lround(duration_s / 0.0005); ++k) {
+    const double t = k * 0.0005;
+    const Vector3d rate = size * Vector3d(6.0 * std::sin(9.0 * t), 6.0 * std::cos(13.0 * t), 15.0 * std::sin(3.0 * t));
+    truth.q_WB.push_back(q);
+    truth.w_WB_B_rad_s.push_back(rate);
+    truth.v_WB_m_s.emplace_back(0.5 * std::sin(40.0 * t), 0.0, 0.0);
+    truth.p_WB_m.emplace_back(Vector3d::Zero());
+    q = (q * Eigen::Quaterniond(Eigen::AngleAxisd(rate.norm() * 0.0005, rate.normalized()))).normalized();
+  }
+  return truth;
+}
+
+SensorSpec device(Numbers numbers, double rate_hz = 100.0) {
+  SensorSpec sensor;
+  sensor.name = "imu";
+  sensor.kind = "imu";
+  Values given;
+  given.set("output_rate_hz", rate_hz);
+  given.set("gyro_rail_rad_s", kRail_rad_s);
+  given.set("clip_flags", 1.0);
+  for (const auto& [name, value] : numbers) given.set(name, value);
+  sensor.values = resolve("sensors.imu", given, imu_parameters());
+  return sensor;
+}
+
+struct Result {
+  ImuRecord record;
+  ImuTruth truth;
+};
+
+Result run(const Truth& truth, const SensorSpec& sensor, std::uint64_t seed = 1) {
+  Result result;
+  simulate_imu(truth, sensor, Eigen::Isometry3d::Identity(), kGravity_m_s2, seed, result.record, result.truth);
+  return result;
+}
+
+Matrix3d matrix(const std::vector<Vector3d>& rows) {
+  Matrix3d out;
+  for (int i = 0; i < 3; ++i) out.row(i) = rows.at(static_cast<std::size_t>(i));
+  return out;
+}
+
+/// Largest distance of a whole window at the positive rail of z from `row` . y = `level`; the number of such windows.
+std::pair<double, int> off_plane(const Result& r, const Vector3d& row, double level) {
+  double largest = 0.0;
+  int windows = 0;
+  for (std::size_t k = 1; k + 1 < r.record.gyro_rad_s.size(); ++k) {
+    const auto whole = [&](std::size_t i) { return r.truth.gyro_unclipped_rad_s[i].z() > kRail_rad_s + 1.5; };
+    if (!whole(k - 1) || !whole(k) || !whole(k + 1)) continue;  // at the rail at every moment of the window
+    largest = std::max(largest, std::abs(row.dot(r.record.gyro_rad_s[k]) - level));
+    ++windows;
+  }
+  return {largest, windows};
+}
+
+TEST(TiltedRail, WholeWindowsLieOnThePlaneOfTheElement) {
+  for (const double after : {0.0, 1.0}) {
+    const Result r = run(wobbling(2.0, 1.0), device({{"gyro_element_misalignment", 0.05},
+                                                     {"gyro_element_scale", 0.01},
+                                                     {"gyro_element_offset_rad_s", 0.05},
+                                                     {"clip_after_low_pass", after}}));
+    ASSERT_EQ(r.truth.gyro_elements.size(), 3u);
+    const double level = kRail_rad_s - r.truth.gyro_element_offset_rad_s.z();
+    const auto [off, windows] = off_plane(r, r.truth.gyro_elements[2], level);
+    EXPECT_LT(off, 1e-12);
+    EXPECT_GT(windows, 20);
+    // an upright plane of any level is not it: the reading moves with the axes beside
+    const Vector3d upright = Vector3d::UnitZ() * r.truth.gyro_elements[2].z();
+    EXPECT_GT(off_plane(r, upright, level).first, 0.05);
+  }
+}
+
+TEST(TiltedRail, FreeElementsAreRightAndFreeAxesAreNot) {
+  const Result r = run(wobbling(2.0, 1.0), device({{"gyro_element_misalignment", 0.05}}, 500.0));
+  const Matrix3d axes = matrix(r.truth.gyro_elements);
+  int clipped = 0;
+  double largest = 0.0;
+  for (std::size_t k = 0; k < r.record.gyro_rad_s.size(); ++k) {
+    const Vector3d lost = r.truth.gyro_unclipped_rad_s[k] - r.record.gyro_rad_s[k];
+    const Vector3d excess = axes * lost;
+    for (int i = 0; i < 3; ++i) {
+      if ((r.record.clip_flags[k] >> i & 1) == 0) {
+        ASSERT_NEAR(excess[i], 0.0, 1e-12) << k;
+      } else {
+        ASSERT_GE(excess[i] * axes.row(i).dot(r.truth.gyro_unclipped_rad_s[k]), 0.0) << k;  // outwards
+      }
+    }
+    if (r.record.clip_flags[k] == 0) {
+      ASSERT_EQ(r.record.gyro_rad_s[k], r.truth.gyro_unclipped_rad_s[k]);
+    } else if (r.record.clip_flags[k] == 0b100) {
+      ++clipped;
+      largest = std::max(largest, lost.head<2>().cwiseAbs().maxCoeff());
+    }
+  }
+  EXPECT_GT(clipped, 100);
+  EXPECT_GT(largest, 0.1);  // unflagged axes, off by some hundredths of 5 rad/s
+}
+
+TEST(TiltedRail, CannotBeSeenWhileNothingClips) {
+  const Numbers noisy = {{"gyro_noise_rad_s_sqrt_hz", 1e-3}, {"gyro_bias_turn_on_rad_s", 0.01},
+                         {"gyro_scale_error", 0.01},         {"accel_noise_m_s2_sqrt_hz", 1e-3},
+                         {"accel_rail_m_s2", 100.0},         {"gyro_quantum_rad_s", 1e-3}};
+  SensorSpec upright = device(noisy), tilted = upright;
+  for (const auto& [name, value] : Numbers{{"gyro_element_misalignment", 0.05},
+                                           {"gyro_element_scale", 0.03},
+                                           {"gyro_element_offset_rad_s", 0.1},
+                                           {"accel_element_misalignment", 0.05},
+                                           {"accel_element_scale", 0.03},
+                                           {"accel_element_offset_m_s2", 0.3}}) {
+    tilted.values.set(name, value);
+  }
+  const Truth slow = wobbling(1.0, 0.4);
+  const Result a = run(slow, upright), b = run(slow, tilted);
+  ASSERT_EQ(a.record.gyro_rad_s.size(), 100u);
+  EXPECT_EQ(a.record.gyro_rad_s, b.record.gyro_rad_s);
+  EXPECT_EQ(a.record.accel_m_s2, b.record.accel_m_s2);
+  EXPECT_THAT(b.record.clip_flags, testing::Each(0));
+  const Truth fast = wobbling(1.0, 1.0);
+  const Result c = run(fast, upright), d = run(fast, tilted);
+  EXPECT_NE(c.record.gyro_rad_s, d.record.gyro_rad_s);  // and can when something does
+  EXPECT_EQ(c.truth.gyro_unclipped_rad_s, d.truth.gyro_unclipped_rad_s);
+}
+
+TEST(TiltedRail, AccelerometerHasElementsOfItsOwn) {
+  const Numbers numbers = {{"accel_rail_m_s2", 9.0}, {"accel_element_misalignment", 0.05}};
+  const Result r = run(wobbling(1.0, 0.1), device(numbers, 2000.0));  // a sample a step: no mean hides the plane
+  ASSERT_EQ(r.truth.accel_elements.size(), 3u);
+  EXPECT_TRUE(r.truth.gyro_elements.empty());  // upright: nothing to say
+  int clipped = 0;
+  for (std::size_t k = 0; k < r.record.accel_m_s2.size(); ++k) {
+    for (int i = 0; i < 3; ++i) {
+      if ((r.record.clip_flags[k] >> (3 + i) & 1) == 0) continue;
+      ASSERT_NEAR(std::abs(r.truth.accel_elements[static_cast<std::size_t>(i)].dot(r.record.accel_m_s2[k])), 9.0, 1e-9);
+      ++clipped;
+    }
+  }
+  EXPECT_GT(clipped, 500);
+}
+
+TEST(TiltedRail, TheSeedDrawsTheDevice) {
+  const SensorSpec sensor = device({{"gyro_element_misalignment", 0.02}, {"accel_element_misalignment", 0.02}});
+  const Truth still = wobbling(0.1, 0.1);
+  const Result a = run(still, sensor, 1), again = run(still, sensor, 1), b = run(still, sensor, 2);
+  EXPECT_EQ(a.truth.gyro_elements, again.truth.gyro_elements);
+  EXPECT_NE(a.truth.gyro_elements, b.truth.gyro_elements);
+  EXPECT_NE(a.truth.gyro_elements, a.truth.accel_elements);
+}
+
+TEST(TiltedRail, RefusesOffsetsThatLeaveNoRail) {
+  try {
+    run(wobbling(0.1, 0.1), device({{"gyro_element_offset_rad_s", 4.0}}));
+    FAIL() << "an offset of 4 was accepted for a rail of 10";
+  } catch (const InvalidSituation& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("gyro_element_offset_rad_s"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("below a third of gyro_rail_rad_s, which is 10"));
+  }
+}
+
+}  // namespace
+}  // namespace tumble::sim
