@@ -22,6 +22,7 @@ constexpr double kUnharmed = 0.8;        // of the accelerometer's range, up to 
 constexpr int kOffset = ImuMerge::kErrors - 1;
 constexpr double kArmSquareMin_m2_s3 = 1.0;  // 1 m/s^2 for a second: a bias of 0.05 makes 0.05 of the share
 constexpr double kMisfitTau_s = 0.5;
+constexpr double kHeld_s = 0.03;
 constexpr double kWindowMax_s = 0.05;  // over a longer one a central difference says nothing
 
 constexpr double kSuspect_s = 0.04;         // blows come in rows, and what one takes a filter gives back later
@@ -227,7 +228,11 @@ std::optional<double> ImuMerge::arm_share(const State& state) {
 /// Learns from the means over the window, and begins the next.
 void ImuMerge::close_window(const Flags& present, TimeNs time_ns, State& state) const {
   const bool follows = state.windows > 1 && state.window.length_s < kWindowMax_s;
-  if (state.all_used && params_.count > 1 && follows) learn(state);
+  // a unit that repeats itself may turn out to be frozen, and nothing is to be learnt from one
+  const bool held = std::any_of(state.units.begin(), state.units.end(), [](const Unit& unit) {
+    return unit.rate_hold.held_s >= kHeld_s || unit.force_hold.held_s >= kHeld_s;
+  });
+  if (state.all_used && !held && params_.count > 1 && follows) learn(state);
   watch_misfits(present, time_ns, state);
   for (Unit& unit : state.units) {
     if (unit.window.readings > 0) {
