@@ -32,9 +32,10 @@ Status check_imus(const sim::Sensors& sensors, const MergedImus& imus, Estimate&
   if (!imus.arm_share) return own;
   estimate.health["imu_arm_share"] = *imus.arm_share;
   if (!own.ok() || *imus.arm_share >= kArmShareMin) return own;
-  return told({Trouble::out_of_range, "differences of the IMUs' forces as a share of what the turning makes of their places",
-               *imus.arm_share, kArmShareMin},
-              estimate);
+  return told(
+      {Trouble::out_of_range, "differences of the IMUs' forces as a share of what the turning makes of their places",
+       *imus.arm_share, kArmShareMin},
+      estimate);
 }
 
 }  // namespace tumble::scenarios

@@ -15,9 +15,9 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kRangeShare = 0.98;     // of the stated range: calibration moves a rail by its error of scale
-constexpr double kSilentMaxS = 0.05;      // without readings for longer, a unit is absent
-constexpr double kSilentToldS = 0.5;      // and for so long, told
+constexpr double kRangeShare = 0.98;  // of the stated range: calibration moves a rail by its error of scale
+constexpr double kSilentMaxS = 0.05;  // without readings for longer, a unit is absent
+constexpr double kSilentToldS = 0.5;  // and for so long, told
 
 ImuSample absent(TimeNs time_ns) {
   ImuSample sample;
@@ -184,8 +184,7 @@ Status merge_imus(const sim::Sensors& sensors, MergedImus& out) {
     if (unit.frozen) {
       anew = true;
       silence(units.samples[k], unit.frozen_since_ns);
-      out.out.push_back(
-          {units.names[k], MergedImus::LeftOut::Why::frozen, seconds(unit.frozen_since_ns - start_ns)});
+      out.out.push_back({units.names[k], MergedImus::LeftOut::Why::frozen, seconds(unit.frozen_since_ns - start_ns)});
     } else if (unit.disagrees) {
       anew = true;
       out.out.push_back(

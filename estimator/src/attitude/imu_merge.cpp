@@ -367,7 +367,8 @@ void ImuMerge::leave_out_hidden(std::span<const ImuSample> samples, const Flags&
   if (std::none_of(used.begin(), used.begin() + params_.count, [](bool one) { return one; })) used[believed] = true;
 }
 
-void ImuMerge::recover(std::span<const ImuSample> samples, const Flags& present, double dt_s, State& state, ImuSample& merged) const {
+void ImuMerge::recover(std::span<const ImuSample> samples, const Flags& present, double dt_s, State& state,
+                       ImuSample& merged) const {
   std::array<ImuSample, kImus> corrected{};
   for (std::size_t k = 0; k < samples.size(); ++k) {
     corrected[k] = samples[k];

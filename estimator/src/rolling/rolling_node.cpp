@@ -228,8 +228,8 @@ ImuAverage gap_piece(const RollingParams& params, const ImuSample& before, const
   return piece;
 }
 
-void integrate_gap(const RollingParams& params, const ImuAverage& piece, const GapDoubt& doubt,
-                   RollingNominal& nominal, RollingSums& sums) {
+void integrate_gap(const RollingParams& params, const ImuAverage& piece, const GapDoubt& doubt, RollingNominal& nominal,
+                   RollingSums& sums) {
   integrate(params, piece, nominal, sums);
   sums.gap_s += piece.length_s;
   sums.gap_rad2 += doubt.rad2;

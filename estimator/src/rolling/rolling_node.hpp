@@ -68,8 +68,8 @@ ImuAverage gap_piece(const RollingParams& params, const ImuSample& before, const
                      GapDoubt& doubt);
 
 /// Takes a piece of a gap.
-void integrate_gap(const RollingParams& params, const ImuAverage& piece, const GapDoubt& doubt,
-                   RollingNominal& nominal, RollingSums& sums);
+void integrate_gap(const RollingParams& params, const ImuAverage& piece, const GapDoubt& doubt, RollingNominal& nominal,
+                   RollingSums& sums);
 
 /// Transition of the error over the node: x <- x + (B x on top).
 Moving transition(const RollingSums& sums);

@@ -184,8 +184,8 @@ void RollingSmoother::run_window(const std::vector<PathNode>& path, std::size_t 
   rolling::PathFilter& filter = window.start;
   filter = {state.committed.nominal, state.committed.P, state.committed.mode};
   const Committed& last = state.committed;
-  rolling::Readings::Place place{last.last_time_ns, last.last_rate_rad_s, 0, last.gap_rate_rad_s, last.gap_start_ns,
-                                 last.gap_piece};
+  rolling::Readings::Place place{last.last_time_ns,   last.last_rate_rad_s, 0,
+                                 last.gap_rate_rad_s, last.gap_start_ns,    last.gap_piece};
   if (!last.started) {
     const ImuSample& sample = state.samples[0];
     Eigen::Quaterniond q_WI = params_.filter.q_WI_start.value_or(Eigen::Quaterniond::Identity());
@@ -231,7 +231,8 @@ void RollingSmoother::run_window(const std::vector<PathNode>& path, std::size_t 
         const ImuSample& sample = state.samples[k];
         so_far.add(sample, seconds(sample.time_ns - last_ns));
         last_ns = sample.time_ns;
-        remember(last_ns, rolling::carried_on(path_params_, so_far, filter.nominal), so_far.mean.angular_velocity_rad_s);
+        remember(last_ns, rolling::carried_on(path_params_, so_far, filter.nominal),
+                 so_far.mean.angular_velocity_rad_s);
       }
       if (reading.whole) rolling::integrate(path_params_, average, filter.nominal, sums);
     }
@@ -303,18 +304,12 @@ void RollingSmoother::run_window(const std::vector<PathNode>& path, std::size_t 
   }
 
   if (emitted <= window.nodes.size()) {
-    state.committed = {window.committed.nominal,
-                       window.committed.P,
-                       window.committed.mode,
-                       committed_m2,
-                       state.committed.held_p_WG_m,
-                       state.committed.held,
-                       committed_place.time_ns,
-                       committed_place.last_rate_rad_s,
-                       committed_place.gap_rate_rad_s,
-                       committed_place.gap_start_ns,
-                       committed_place.gap_piece,
-                       true};
+    state.committed = {window.committed.nominal,       window.committed.P,
+                       window.committed.mode,          committed_m2,
+                       state.committed.held_p_WG_m,    state.committed.held,
+                       committed_place.time_ns,        committed_place.last_rate_rad_s,
+                       committed_place.gap_rate_rad_s, committed_place.gap_start_ns,
+                       committed_place.gap_piece,      true};
     state.samples.erase(state.samples.begin(), state.samples.begin() + static_cast<std::ptrdiff_t>(taken));
     state.steps.erase(state.steps.begin(), state.steps.begin() + static_cast<std::ptrdiff_t>(emitted));
   } else {

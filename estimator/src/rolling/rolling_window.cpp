@@ -128,8 +128,8 @@ NodeRecord close_node(const RollingParams& params, const RollingSums& sums, cons
   if (path.at_rest) {
     measure_rest(params, sums, filter.nominal, record, x, filter.P);
   } else {
-    measure_contact(params, contact(params, filter.nominal, rate_I_rad_s, sums), sums.node_s, filter.nominal.v_WI_m_s, record,
-                    x, filter.P);
+    measure_contact(params, contact(params, filter.nominal, rate_I_rad_s, sums), sums.node_s, filter.nominal.v_WI_m_s,
+                    record, x, filter.P);
   }
   filter.P = (0.5 * (filter.P + filter.P.transpose())).eval();
   filter.P.block<3, 3>(kPosition, kPosition) += path.spread_m2;

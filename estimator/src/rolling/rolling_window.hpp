@@ -57,11 +57,11 @@ class Readings {
  public:
   /// Where in the samples: before the next reading.
   struct Place {
-    TimeNs time_ns = 0;                                           ///< end of the last reading
+    TimeNs time_ns = 0;  ///< end of the last reading
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
-    std::size_t next = 0;                                         ///< sample
+    std::size_t next = 0;  ///< sample
     // of the gap that it is in
-    Eigen::Vector3d gap_rate_rad_s = Eigen::Vector3d::Zero();     ///< before it
+    Eigen::Vector3d gap_rate_rad_s = Eigen::Vector3d::Zero();  ///< before it
     TimeNs gap_start_ns = 0;
     int gap_piece = 0;
     bool operator==(const Place&) const = default;

@@ -13,7 +13,8 @@ namespace tumble {
 /// Turning fast, units at different places measure large forces that cancel in their mean; what scale and misalignment
 /// make of those forces does not. A Kalman filter holds, for each unit, bias, scale and misalignment, and the error of
 /// its place: f_k = c + A p_k + b_k + M_k f_k + A dp_k, A = [a]x + [w]x[w]x, and measures each unit's difference from
-/// the mean of all, averaged over kSpan_s (all of it is linear, so the average loses nothing but what turns within it). What all units share shows in no difference and stays about zero: it is left to the user of the mean.
+/// the mean of all, averaged over kSpan_s (all of it is linear, so the average loses nothing but what turns within it).
+/// What all units share shows in no difference and stays about zero: it is left to the user of the mean.
 ///
 /// Not modelled: errors that change, a body that bends.
 class ForceErrors {

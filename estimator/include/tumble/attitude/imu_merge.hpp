@@ -32,8 +32,8 @@ namespace tumble {
 /// What is learnt, is learnt from means over window_s, whatever the rate of the readings; derivatives reach back to the
 /// middle of the last window.
 ///
-/// A unit whose reading is not finite is absent. One whose gyro or accelerometer repeats itself while the others move is
-/// frozen, and left out until it has moved again for a while; one that is off from the others for long (scale, axes,
+/// A unit whose reading is not finite is absent. One whose gyro or accelerometer repeats itself while the others move
+/// is frozen, and left out until it has moved again for a while; one that is off from the others for long (scale, axes,
 /// unit) is left out for good, as long as two others remain. Equal readings at rest are no sign of either.
 ///
 /// Not modelled: clocks of different rates, an error that all units share.
@@ -59,10 +59,10 @@ class ImuMerge {
     double gap_max_s = 1.0;          ///< bound (0, 1e4]
     // Of units that are left out. A reading that lasts for frozen_after_s while the others move by more than this is
     // frozen; sample and hold is shorter.
-    double frozen_after_s = 0.1;        ///< bound (0, 1e3]
-    double frozen_rate_rad_s = 0.03;    ///< bound (0, 1e3]
-    double frozen_force_m_s2 = 0.3;     ///< bound (0, 1e4]
-    double thawed_after_s = 0.5;        ///< of readings that change; bound (0, 1e3]
+    double frozen_after_s = 0.1;      ///< bound (0, 1e3]
+    double frozen_rate_rad_s = 0.03;  ///< bound (0, 1e3]
+    double frozen_force_m_s2 = 0.3;   ///< bound (0, 1e4]
+    double thawed_after_s = 0.5;      ///< of readings that change; bound (0, 1e3]
     // Off from the median, as a mean over half a second, for disagrees_after_s.
     double disagree_rate_rad_s = 0.1;   ///< bound (0, 1e3]
     double disagree_rate_share = 0.06;  ///< more, as a share of the rate; bound [0, 1]
@@ -92,7 +92,7 @@ class ImuMerge {
     double misfit_rate_rad_s = 0.0, misfit_force_m_s2 = 0.0, misfits_s = 0.0;
     TimeNs misfits_since_ns = 0;
     bool frozen = false, disagrees = false;
-    std::int64_t absent = 0;                   ///< samples that were not finite
+    std::int64_t absent = 0;  ///< samples that were not finite
     TimeNs frozen_since_ns = 0, disagrees_since_ns = 0, absent_since_ns = 0;
     bool left_out_for_long() const { return frozen || disagrees; }
     double offset_s() const { return x[kErrors - 1]; }
@@ -105,10 +105,10 @@ class ImuMerge {
     Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();         ///< merged, mean over the last window
     Eigen::Vector3d rate_before_rad_s = Eigen::Vector3d::Zero();  ///< and over the one before
     Eigen::Vector3d middle_rate_rad_s = Eigen::Vector3d::Zero(), middle_force_m_s2 = Eigen::Vector3d::Zero();
-    double turning_rad_s = 0.0;  ///< mean of the rate over half a second
-    ImuAverage window;           ///< of merged readings, since the last one closed
-    double length_s = 0.0, length_before_s = 0.0;  ///< of the last windows
-    bool all_used = true;                          ///< within this one
+    double turning_rad_s = 0.0;                        ///< mean of the rate over half a second
+    ImuAverage window;                                 ///< of merged readings, since the last one closed
+    double length_s = 0.0, length_before_s = 0.0;      ///< of the last windows
+    bool all_used = true;                              ///< within this one
     double arm_product = 0.0, arm_square_m2_s3 = 0.0;  ///< of arm_share()
     std::int64_t samples = 0, windows = 0;
     TimeNs last_time_ns = 0;
@@ -117,15 +117,16 @@ class ImuMerge {
 
   explicit ImuMerge(const Params& params);
 
-  /// What the forces differ by from unit to unit, as a share of what the turning makes of their places: 1 when all is as
-  /// it should be, -1 when the accelerometers' sign is flipped. None while the body has not turned enough to tell.
+  /// What the forces differ by from unit to unit, as a share of what the turning makes of their places: 1 when all is
+  /// as it should be, -1 when the accelerometers' sign is flipped. None while the body has not turned enough to tell.
   static std::optional<double> arm_share(const State& state);
 
   /// Place of the merged IMU in C.
   Eigen::Vector3d p_C_m() const { return p_C_m_; }
 
   /// `samples` are those of all units at one time (their time stamps are the first's); `merged` is in C. On trouble,
-  /// `too_few` when there are not `count` samples or none is finite, state and `merged` are unchanged. O(count), no allocation.
+  /// `too_few` when there are not `count` samples or none is finite, state and `merged` are unchanged. O(count), no
+  /// allocation.
   Status step(std::span<const ImuSample> samples, State& state, ImuSample& merged) const;
 
  private:

@@ -54,11 +54,11 @@ class RateRecovery {
   /// Throws InvalidParams when a parameter is outside of its bound.
   explicit RateRecovery(const Params& params);
 
-  /// Takes the units' readings (of a unit that is not finite, none), each in its own axes, `dt_s` after the last ones; `merged` (C) holds the mean of those
-  /// in use and gets rate and force of the filter where a rail made them wrong. Its clip flags of the gyro are set when
-  /// the rate could not be recovered, those of the accelerometer when most units' were at their rail, or one's and a
-  /// gyro's; else cleared. O(count),
-  /// no allocation; little to do while the body turns slowly.
+  /// Takes the units' readings (of a unit that is not finite, none), each in its own axes, `dt_s` after the last ones;
+  /// `merged` (C) holds the mean of those in use and gets rate and force of the filter where a rail made them wrong.
+  /// Its clip flags of the gyro are set when the rate could not be recovered, those of the accelerometer when most
+  /// units' were at their rail, or one's and a gyro's; else cleared. O(count), no allocation; little to do while the
+  /// body turns slowly.
   void step(std::span<const ImuSample> units, double dt_s, State& state, ImuSample& merged) const;
 
  private:

@@ -14,9 +14,9 @@ namespace tumble {
 ///
 /// Not modelled: coning and sculling within the window, as within the sample of an IMU that reads at its rate.
 struct ImuAverage {
-  ImuSample mean;                  ///< its time is that of the last reading, its clip flags are those of all
-  double length_s = 0.0;           ///< of all readings
-  double rate_peak_rad_s = 0.0;    ///< largest component of a single reading
+  ImuSample mean;                ///< its time is that of the last reading, its clip flags are those of all
+  double length_s = 0.0;         ///< of all readings
+  double rate_peak_rad_s = 0.0;  ///< largest component of a single reading
   double force_peak_m_s2 = 0.0;
   std::int64_t readings = 0;
 

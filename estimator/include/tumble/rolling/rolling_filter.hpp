@@ -22,8 +22,9 @@ namespace tumble {
 /// way before is taken up when the motion goes on, or at once where another hypothesis becomes the best.
 ///
 /// Readings count by their time: those of a fast IMU are averaged to RollingParams::reading_s before anything is
-/// decided by them, and the estimate between two averages is the last one, carried on. Over a gap of up to gap_max_s the
-/// rate is interpolated and the force unknown, which the covariance shows. A start in motion is told and believed less.
+/// decided by them, and the estimate between two averages is the last one, carried on. Over a gap of up to gap_max_s
+/// the rate is interpolated and the force unknown, which the covariance shows. A start in motion is told and believed
+/// less.
 ///
 /// While the gyro stands at its rail the attitude is unknown to that extent, and rolling says nothing: the position is
 /// then bounded by the covariance alone. State and stack need 430 KiB each.
@@ -68,7 +69,7 @@ class RollingFilter {
     // What the hypotheses have in common: they hold their errors about it.
     RollingNominal nominal;
     RollingSums sums;
-    ImuAverage average;  ///< of the readings since the last one that was taken
+    ImuAverage average;                                           ///< of the readings since the last one that was taken
     Eigen::Matrix3d settled_spread_m2 = Eigen::Matrix3d::Zero();  ///< of hypotheses given up at the last node
     Eigen::Vector3d slow_force_m_s2 = Eigen::Vector3d::Zero();
     Eigen::Vector3d slow_rate_rad_s = Eigen::Vector3d::Zero();
@@ -89,14 +90,15 @@ class RollingFilter {
   /// Takes a sample. The first one levels the attitude (yaw 0) and puts the centre at the origin, at rest; a second of
   /// rest should follow. On trouble the state is unchanged. No allocation; about kHypotheses * kStates^2 * 40
   /// operations per node.
-  Status step(const ImuSample& sample, State& state) const { return step(sample, state, [](const State&) {}); }
+  Status step(const ImuSample& sample, State& state) const {
+    return step(sample, state, [](const State&) {});
+  }
 
   /// The same, and `closed(state)` after each node that it closes: several, where the sample ends a gap.
   template <typename Closed>
   Status step(const ImuSample& sample, State& state, Closed closed) const {
-    return step_with(sample, state, Listener{&closed, [](void* to, const State& at) {
-                                          (*static_cast<Closed*>(to))(at);
-                                        }});
+    return step_with(sample, state,
+                     Listener{&closed, [](void* to, const State& at) { (*static_cast<Closed*>(to))(at); }});
   }
 
  private:

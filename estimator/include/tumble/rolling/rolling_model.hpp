@@ -90,9 +90,9 @@ struct RollingParams {
   double rest_time_s = 0.4;       ///< quiet for so long; bound [0, 100]
   // Gaps. Between two readings further apart than gap_from_s nothing is known of the force; the rate is taken to have
   // gone straight from the one to the other, give or take what an angular acceleration of gap_acceleration_rad_s2 does.
-  double gap_from_s = 0.06;                ///< bound (0, 1]
-  double gap_max_s = 1.0;                  ///< a longer one ends the run; bound (0, 1]
-  double gap_acceleration_rad_s2 = 15.0;   ///< bound (0, 1e4]
+  double gap_from_s = 0.06;               ///< bound (0, 1]
+  double gap_max_s = 1.0;                 ///< a longer one ends the run; bound (0, 1]
+  double gap_acceleration_rad_s2 = 15.0;  ///< bound (0, 1e4]
   /// A first reading that turns faster than this was taken in motion: attitude and velocity are then known by that much
   /// less; bound (0, 10].
   double start_rate_rad_s = 0.1;
