@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/method.hpp"
 
 /// What the attitude methods have in common: a filter of the estimator fed with the primary IMU, sample by sample.
@@ -30,6 +31,7 @@ Estimate run_attitude_filter(const sim::Sensors& sensors, const typename Filter:
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
 
+  (void)check_imu(sensors, samples, estimate);  // a warning: a body that is pushed about all the time may look so
   typename Filter::State state;
   estimate.attitudes.reserve(samples.size());
   for (const ImuSample& sample : samples) {

@@ -2,6 +2,7 @@
 #include <array>
 
 #include "scenarios/methods/attitude_filter.hpp"
+#include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/sphere_imus.hpp"
 #include "tumble/attitude/tumble_attitude.hpp"
@@ -38,6 +39,8 @@ Estimate run_sphere(const sim::Sensors& sensors, TumbleAttitude::Params params) 
   MergedImus imus;
   estimate.status = merge_imus(sensors, imus);
   if (!estimate.status.ok()) return estimate;
+  (void)check_imus(sensors, imus, estimate);
+  for (const MergedImus::LeftOut& unit : imus.out) estimate.health[to_string(unit)] = unit.since_s;
   params.radius_m = sensors.sphere_radius_m;
   params.lever_arm_m = imus.lever_arm_m;
   const TumbleAttitude filter(params);

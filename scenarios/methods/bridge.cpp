@@ -43,12 +43,9 @@ Status check_stream(std::span<const ImuSample> samples) {
     }
     if (k == 0) continue;
     const TimeNs previous = samples[k - 1].time_ns;
-    if (sample.time_ns <= previous) {
-      return {Trouble::time_order, "imu.time_ns", static_cast<double>(sample.time_ns), static_cast<double>(previous)};
-    }
-    if (seconds(sample.time_ns - previous) > kGapMaxS) {
-      return {Trouble::gap, "imu.time_ns", seconds(sample.time_ns - previous), kGapMaxS};
-    }
+    Status follows = check_follows(sample.time_ns, previous, kGapMaxS);
+    if (follows.trouble == Trouble::time_order) follows.field = "imu.time_ns";
+    if (!follows.ok()) return follows;
   }
   return {};
 }

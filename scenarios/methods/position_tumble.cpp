@@ -3,6 +3,7 @@
 #include <array>
 #include <memory>
 
+#include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/position_tumble.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/sphere_attitude.hpp"
@@ -117,10 +118,13 @@ bool merged(const char* method, const sim::Sensors& sensors, MergedImus& imus, E
   estimate.status = merge_imus(sensors, imus);
   if (!estimate.status.ok()) return false;
   require_sphere(method, sensors);
+  estimate.status = check_imus(sensors, imus, estimate);
+  if (!estimate.status.ok()) return false;
   estimate.health["imus"] = imus.units;
   estimate.health["imu_readings_left_out"] = imus.left_out;
   estimate.health["imu_offset_max_s"] = imus.offset_max_s;
   estimate.health["imus_at_other_times"] = imus.resampled;
+  for (const MergedImus::LeftOut& unit : imus.out) estimate.health[to_string(unit)] = unit.since_s;
   for (const MergedImus::Unit& unit : imus.each) {
     estimate.health[unit.name + "_time_offset_s"] = unit.time_offset_s;
     estimate.health[unit.name + "_time_offset_sigma_s"] = unit.time_offset_sigma_s;
@@ -135,6 +139,15 @@ RollingMode claimed_mode(const RollingFilter::State& state, double claimed_from)
   if (claimed == slips(state.mode)) return state.mode;
   if (!claimed) return RollingMode::grip;
   return 2.0 * state.bump_probability > state.slip_probability ? RollingMode::bump : RollingMode::slip;
+}
+
+/// What was odd about the samples' times and their beginning.
+void tell_of_samples(const RollingFilter::State& state, Estimate& estimate) {
+  if (state.gaps > 0) {
+    estimate.health["gaps_bridged"] = static_cast<double>(state.gaps);
+    estimate.health["gap_longest_s"] = state.gap_longest_s;
+  }
+  if (state.started_in_motion) estimate.health["started_in_motion"] = 1.0;
 }
 
 Estimate run_live(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
@@ -155,6 +168,7 @@ Estimate run_live(const sim::Sensors& sensors, const sim::Values& parameters, co
     add_contact(claimed_mode(*state, claimed_from), state->at_rest, state->uncertain, sensors.sphere_radius_m, sample,
                 estimate);
   }
+  tell_of_samples(*state, estimate);
   return estimate;
 }
 
@@ -165,6 +179,8 @@ Estimate run_lag(const sim::Sensors& sensors, const sim::Values& parameters, con
   RollingSmoother::Params params;
   params.filter = rolling_params(sensors, imus, parameters);
   params.lag_s = parameters.at("lag_s");
+  const TimeNs period_ns = sensors.imus.front().period_ns;
+  if (period_ns > 0) params.rate_max_hz = std::max(params.rate_max_hz, 1.1 / seconds(period_ns));
   smooth(params, imus, {}, estimate);
   return estimate;
 }
@@ -243,6 +259,7 @@ void smooth(const RollingSmoother::Params& params, const MergedImus& imus, std::
   } else {
     smoother.finish(known, *state, out);
   }
+  tell_of_samples(state->live, estimate);
   estimate.poses.reserve(out.size());
   for (std::size_t k = 0; k < out.size(); ++k) {  // one for each sample
     const RollingEstimate& e = out[k];

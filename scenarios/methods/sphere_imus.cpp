@@ -3,6 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <utility>
 
 #include "scenarios/methods/bridge.hpp"
 #include "tumble/attitude/imu_merge.hpp"
@@ -11,15 +15,34 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kRangeShare = 0.98;     // of the stated range: calibration moves a rail by its error of scale
-constexpr double kUncoveredMaxS = 0.05;  // at either end, where the nearest reading stands in
+constexpr double kRangeShare = 0.98;  // of the stated range: calibration moves a rail by its error of scale
+constexpr double kSilentMaxS = 0.05;  // without readings for longer, a unit is absent
+constexpr double kSilentToldS = 0.5;  // and for so long, told
+
+ImuSample absent(TimeNs time_ns) {
+  ImuSample sample;
+  sample.time_ns = time_ns;
+  sample.angular_velocity_rad_s.setConstant(std::numeric_limits<double>::quiet_NaN());
+  return sample;
+}
+
+/// What there is of a unit: readings that are finite and in order. Throws BadInput when its arrays differ in length.
+std::vector<ImuSample> readings_of(const sim::ImuRecord& record, Status& status) {
+  std::vector<ImuSample> samples;
+  status = bridge::imu_samples(record, samples);
+  if (status.ok()) return samples;
+  for (std::size_t k = 0; k < record.time_ns.size(); ++k) {
+    const TimeNs time_ns = record.time_ns[k];
+    if (!record.gyro_rad_s[k].allFinite() || !record.accel_m_s2[k].allFinite()) continue;
+    if (!samples.empty() && time_ns <= samples.back().time_ns) continue;
+    samples.push_back({time_ns, record.gyro_rad_s[k], record.accel_m_s2[k], 0});
+  }
+  return samples;
+}
 
 /// Readings of a unit at the times of another, linearly between two: stamps are ends of windows, so both are means over
-/// a window that ends there. Empty when the unit does not cover them.
+/// a window that ends there. Absent where the nearest reading is further off than kSilentMaxS.
 std::vector<ImuSample> at_times_of(const std::vector<ImuSample>& primary, const std::vector<ImuSample>& own) {
-  const bool covers = seconds(own.front().time_ns - primary.front().time_ns) <= kUncoveredMaxS &&
-                      seconds(primary.back().time_ns - own.back().time_ns) <= kUncoveredMaxS;
-  if (!covers) return {};
   std::vector<ImuSample> out(primary.size());
   std::size_t next = 0;
   for (std::size_t k = 0; k < primary.size(); ++k) {
@@ -27,6 +50,13 @@ std::vector<ImuSample> at_times_of(const std::vector<ImuSample>& primary, const 
     while (next < own.size() && own[next].time_ns < time_ns) ++next;
     const ImuSample& after = own[std::min(next, own.size() - 1)];
     const ImuSample& before = next > 0 ? own[next - 1] : own.front();
+    const auto far = [&](TimeNs other_ns) {
+      return std::abs(static_cast<double>(other_ns) - static_cast<double>(time_ns)) > kSilentMaxS * 1e9;
+    };
+    if (after.time_ns != time_ns && (far(before.time_ns) || far(after.time_ns))) {
+      out[k] = absent(time_ns);
+      continue;
+    }
     const double length_s = seconds(after.time_ns - before.time_ns);
     const double share = length_s > 0.0 ? seconds(time_ns - before.time_ns) / length_s : 1.0;
     out[k] = after;
@@ -40,52 +70,148 @@ std::vector<ImuSample> at_times_of(const std::vector<ImuSample>& primary, const 
   return out;
 }
 
+/// All units at the same times.
+struct Units {
+  std::vector<std::string> names;
+  std::vector<Eigen::Isometry3d> T_BI;
+  std::vector<std::vector<ImuSample>> samples;
+  int resampled = 0;
+};
+
+Status units_of(const sim::Sensors& sensors, Units& units) {
+  if (sensors.imus.empty()) return {Trouble::empty, "imus", 0.0, 1.0};
+  std::vector<const sim::ImuRecord*> records;
+  std::vector<std::vector<ImuSample>> readings;
+  std::optional<std::size_t> base;
+  Status primary_status;
+  for (const sim::ImuRecord& record : sensors.imus) {
+    if (&record != &sensors.imus.front() && record.name == "imu_reference") continue;
+    if (records.size() == ImuMerge::kImus) break;
+    Status status;
+    std::vector<ImuSample> samples = readings_of(record, status);
+    if (&record == &sensors.imus.front()) primary_status = status;
+    if (samples.empty()) continue;
+    if (status.ok() && !base) base = records.size();
+    records.push_back(&record);
+    readings.push_back(std::move(samples));
+  }
+  if (!base) return primary_status;
+  const std::vector<ImuSample> times = readings[*base];
+  for (std::size_t k = 0; k < records.size(); ++k) {
+    std::vector<ImuSample> samples = std::move(readings[k]);
+    const bool same = records[k]->time_ns == records[*base]->time_ns && samples.size() == records[k]->time_ns.size();
+    units.names.push_back(records[k]->name);
+    units.T_BI.push_back(records[k]->T_BI);
+    if (!same) {
+      samples = at_times_of(times, samples);
+      ++units.resampled;
+    }
+    units.samples.push_back(std::move(samples));
+  }
+  return {};
+}
+
+Status run(const ImuMerge& merge, const Units& units, ImuMerge::State& state, std::vector<ImuSample>& out) {
+  std::vector<ImuSample> now(units.samples.size());
+  out.resize(units.samples[0].size());
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    for (std::size_t unit = 0; unit < now.size(); ++unit) now[unit] = units.samples[unit][k];
+    if (Status status = merge.step(now, state, out[k]); !status.ok()) return status;
+  }
+  return {};
+}
+
+/// Takes the readings of `unit` away from `from_ns` on.
+void silence(std::vector<ImuSample>& unit, TimeNs from_ns) {
+  for (ImuSample& sample : unit) {
+    if (sample.time_ns >= from_ns) sample = absent(sample.time_ns);
+  }
+}
+
+/// Since when a unit has been silent up to the end, or where it was for long.
+std::optional<TimeNs> silent_since(const std::vector<ImuSample>& unit) {
+  std::size_t from = unit.size();
+  for (std::size_t k = 0; k <= unit.size(); ++k) {
+    const bool here = k < unit.size() && !is_finite(unit[k]);
+    if (here && from == unit.size()) from = k;
+    if (here || from == unit.size()) continue;
+    if (seconds(unit[k - 1].time_ns - unit[from].time_ns) >= kSilentToldS) return unit[from].time_ns;
+    from = unit.size();
+  }
+  return std::nullopt;
+}
+
 }  // namespace
+
+std::string to_string(const MergedImus::LeftOut& unit) {
+  switch (unit.why) {
+    case MergedImus::LeftOut::Why::frozen:
+      return unit.name + "_frozen_since_s";
+    case MergedImus::LeftOut::Why::disagrees:
+      return unit.name + "_disagrees_since_s";
+    case MergedImus::LeftOut::Why::silent:
+      break;
+  }
+  return unit.name + "_silent_since_s";
+}
 
 Status merge_imus(const sim::Sensors& sensors, MergedImus& out) {
   out = {};
-  std::vector<std::vector<ImuSample>> units(1);
-  if (Status status = bridge::primary_imu_samples(sensors, units[0]); !status.ok()) return status;
-  ImuMerge::Params params;
-  params.T_CI[0] = sensors.imus.front().T_BI;
-  params.gap_max_s = bridge::kGapMaxS;
+  Units units;
+  if (Status status = units_of(sensors, units); !status.ok()) return status;
+  out.resampled = units.resampled;
   const sim::ImuRecord& primary = sensors.imus.front();
   if (primary.stated_gyro_range_rad_s > 0.0) out.gyro_range_rad_s = kRangeShare * primary.stated_gyro_range_rad_s;
   if (primary.stated_accel_range_m_s2 > 0.0) out.accel_range_m_s2 = kRangeShare * primary.stated_accel_range_m_s2;
-  std::vector<std::string> names = {primary.name};
+  ImuMerge::Params params;
+  params.gap_max_s = bridge::kGapMaxS;
   params.gyro_range_rad_s = out.gyro_range_rad_s;
   params.accel_range_m_s2 = out.accel_range_m_s2;
-  for (std::size_t k = 1; k < sensors.imus.size() && params.count < ImuMerge::kImus; ++k) {
-    const sim::ImuRecord& record = sensors.imus[k];
-    std::vector<ImuSample> samples;
-    if (record.name == "imu_reference" || !bridge::imu_samples(record, samples).ok() || samples.empty()) continue;
-    if (record.time_ns != primary.time_ns) {
-      samples = at_times_of(units[0], samples);
-      if (samples.empty()) continue;
-      ++out.resampled;
-    }
-    names.push_back(record.name);
-    params.T_CI[static_cast<std::size_t>(params.count++)] = record.T_BI;
-    units.push_back(std::move(samples));
+  params.count = static_cast<int>(units.names.size());
+  std::copy(units.T_BI.begin(), units.T_BI.end(), params.T_CI.begin());
+  const TimeNs start_ns = units.samples[0].front().time_ns;
+  for (std::size_t k = 0; k < units.names.size(); ++k) {
+    const std::optional<TimeNs> since_ns = silent_since(units.samples[k]);
+    if (since_ns) out.out.push_back({units.names[k], MergedImus::LeftOut::Why::silent, seconds(*since_ns - start_ns)});
   }
+  auto state = std::make_unique<ImuMerge::State>();
+  if (Status status = run(ImuMerge(params), units, *state, out.samples); !status.ok()) return status;
 
+  // who was found out is left out from the beginning of it
+  bool anew = false;
+  for (std::size_t k = units.names.size(); k-- > 0;) {
+    const ImuMerge::Unit& unit = state->units[k];
+    if (unit.frozen) {
+      anew = true;
+      silence(units.samples[k], unit.frozen_since_ns);
+      out.out.push_back({units.names[k], MergedImus::LeftOut::Why::frozen, seconds(unit.frozen_since_ns - start_ns)});
+    } else if (unit.disagrees) {
+      anew = true;
+      out.out.push_back(
+          {units.names[k], MergedImus::LeftOut::Why::disagrees, seconds(unit.disagrees_since_ns - start_ns)});
+      const auto at = static_cast<std::ptrdiff_t>(k);
+      units.names.erase(units.names.begin() + at);
+      units.T_BI.erase(units.T_BI.begin() + at);
+      units.samples.erase(units.samples.begin() + at);
+      --params.count;
+    }
+  }
+  std::copy(units.T_BI.begin(), units.T_BI.end(), params.T_CI.begin());
   const ImuMerge merge(params);
-  ImuMerge::State state;
-  std::vector<ImuSample> now(units.size());
+  if (anew) {
+    *state = {};
+    if (Status status = run(merge, units, *state, out.samples); !status.ok()) return status;
+  }
   out.units = params.count;
   out.lever_arm_m = merge.p_C_m();
-  out.samples.resize(units[0].size());
-  for (std::size_t k = 0; k < out.samples.size(); ++k) {
-    for (std::size_t unit = 0; unit < units.size(); ++unit) now[unit] = units[unit][k];
-    if (Status status = merge.step(now, state, out.samples[k]); !status.ok()) return status;
-  }
-  for (std::size_t unit = 0; unit < units.size(); ++unit) {
-    out.left_out += static_cast<double>(state.units[unit].left_out);
-    const ImuMerge::Unit& learnt = state.units[unit];
+  out.arm_share = ImuMerge::arm_share(*state);
+  for (std::size_t unit = 0; unit < units.names.size(); ++unit) {
+    const ImuMerge::Unit& learnt = state->units[unit];
+    out.left_out += static_cast<double>(learnt.left_out);
     out.offset_max_s = std::max(out.offset_max_s, std::abs(learnt.offset_s()));
-    if (units.size() < 2) continue;
+    if (units.names.size() < 2) continue;
     constexpr int kOffset = ImuMerge::kErrors - 1;
-    out.each.push_back({names[unit], learnt.offset_s(), std::sqrt(std::max(0.0, learnt.P(kOffset, kOffset))),
+    out.each.push_back({units.names[unit], learnt.offset_s(), std::sqrt(std::max(0.0, learnt.P(kOffset, kOffset))),
                         learnt.x.head<3>().norm()});
   }
   return {};

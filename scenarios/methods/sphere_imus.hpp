@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,19 +21,32 @@ struct MergedImus {
     double rate_bias_rad_s = 0.0;                           ///< length
   };
 
+  /// A unit that is not in use, or not all the time.
+  struct LeftOut {
+    std::string name;
+    enum class Why { frozen, disagrees, silent } why = Why::frozen;
+    double since_s = 0.0;  ///< from the first sample
+  };
+
   std::vector<ImuSample> samples;                         ///< body axes
   Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< from the centre of mass, body axes
   double gyro_range_rad_s = 1e3, accel_range_m_s2 = 1e5;  ///< readings from here on are taken to be at the rail
   int units = 0;
-  double left_out = 0.0;      ///< readings
-  int resampled = 0;          ///< units whose stamps differ from the primary one's
-  double offset_max_s = 0.0;  ///< largest time offset of a unit about the mean
-  std::vector<Unit> each;     ///< those in use
+  double left_out = 0.0;            ///< readings
+  int resampled = 0;                ///< units whose stamps differ from the primary one's
+  double offset_max_s = 0.0;        ///< largest time offset of a unit about the mean
+  std::vector<Unit> each;           ///< those in use
+  std::optional<double> arm_share;  ///< ImuMerge::arm_share
+  std::vector<LeftOut> out;         ///< those that froze, went silent (NaN, no readings), or are off from the others
 };
 
-/// Merges the primary IMU with the others; `imu_reference` is not one of them. Readings with stamps of their own are
-/// interpolated at the primary one's; a unit that does not cover nearly all of these, or has trouble in its samples, is
-/// left out. Trouble: that of the primary one's samples. O(N).
+/// "imu_2_frozen_since_s" and the like, as a row of an estimate's health.
+std::string to_string(const MergedImus::LeftOut& unit);
+
+/// Merges the primary IMU with the others; `imu_reference` is not one of them. The stamps are those of the first unit
+/// whose own are without trouble; readings with other stamps are interpolated at them. A unit that is silent for a
+/// while (NaN, no readings) is left out for so long. Twice: who froze or disagrees is known after the first time, and
+/// left out from the beginning of it. Trouble: that of the primary one's samples, when no unit is without. O(N).
 Status merge_imus(const sim::Sensors& sensors, MergedImus& out);
 
 }  // namespace tumble::scenarios

@@ -29,7 +29,7 @@ ForceErrors::ForceErrors(const Params& p) : params_(p) {
 }
 
 void ForceErrors::learn(std::span<const Eigen::Vector3d> forces, const Eigen::Vector3d& rate,
-                        const Eigen::Vector3d& acceleration, State& state) const {
+                        const Eigen::Vector3d& acceleration, double dt_s, State& state) const {
   const auto count = static_cast<std::size_t>(params_.count);
   if (!state.started) {
     for (int k = 0; k < params_.count; ++k) {
@@ -53,17 +53,20 @@ void ForceErrors::learn(std::span<const Eigen::Vector3d> forces, const Eigen::Ve
   }
   state.by_place += by_place;
   state.acceleration_rad_s2 += acceleration.norm();
-  if (++state.samples == kSpan) update(state);
+  ++state.samples;
+  state.span_s += dt_s;
+  if (state.span_s >= kSpan_s - 0.5 * dt_s) update(state);
 }
 
 void ForceErrors::update(State& state) const {
   const double share = 1.0 / params_.count;
+  const double samples = state.samples;
   double reach_m = 0.0;
   for (int k = 1; k < params_.count; ++k) {
     reach_m = std::max(reach_m, (params_.p_C_m[static_cast<std::size_t>(k)] - params_.p_C_m[0]).norm());
   }
   const double variance =
-      squared(params_.noise_m_s2) + squared(params_.acceleration_share * reach_m * state.acceleration_rad_s2 / kSpan);
+      squared(params_.noise_m_s2) + squared(params_.acceleration_share * reach_m * state.acceleration_rad_s2 / samples);
   const Eigen::Index used = kPerUnit * params_.count;
   auto P = state.P.topLeftCorner(used, used);
   for (int k = 0; k < params_.count; ++k) {
@@ -73,13 +76,13 @@ void ForceErrors::update(State& state) const {
         const double weight = (j == k ? 1.0 : 0.0) - share;
         auto own = row.segment<kPerUnit>(kPerUnit * j);
         own[kBias + axis] = weight;
-        own.segment<3>(kScale + 3 * axis) = weight / kSpan * state.force_m_s2.col(j);
-        own.segment<3>(kPlace) = weight / kSpan * state.by_place.row(axis).transpose();
+        own.segment<3>(kScale + 3 * axis) = weight / samples * state.force_m_s2.col(j);
+        own.segment<3>(kPlace) = weight / samples * state.by_place.row(axis).transpose();
       }
       Vector PHt = Vector::Zero();
       PHt.head(used).noalias() = P * row.head(used);
       const double s = row.dot(PHt) + variance;
-      const double innovation = state.difference_m_s2(axis, k) / kSpan - row.dot(state.x);
+      const double innovation = state.difference_m_s2(axis, k) / samples - row.dot(state.x);
       if (squared(innovation) > squared(params_.doubt) * s) continue;  // a blow within the samples
       state.x += PHt * (innovation / s);
       P.noalias() -= PHt.head(used) * (PHt.head(used) / s).transpose();
@@ -91,6 +94,7 @@ void ForceErrors::update(State& state) const {
   state.by_place.setZero();
   state.acceleration_rad_s2 = 0.0;
   state.samples = 0;
+  state.span_s = 0.0;
 }
 
 Eigen::Vector3d ForceErrors::corrected(int k, const Eigen::Vector3d& force, const State& state) {

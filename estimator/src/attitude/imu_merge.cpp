@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "tumble/attitude/timing.hpp"
+#include "tumble/common/so3.hpp"
 
 namespace tumble {
 
@@ -19,21 +20,13 @@ constexpr double kBeyondDoubt = 4.0;     // sigmas
 constexpr int kRecovering = 3;           // so many units tell the rate by their accelerometers
 constexpr double kUnharmed = 0.8;        // of the accelerometer's range, up to which its errors are learnt
 constexpr int kOffset = ImuMerge::kErrors - 1;
+constexpr double kArmSquareMin_m2_s3 = 1.0;  // 1 m/s^2 for a second: a bias of 0.05 makes 0.05 of the share
+constexpr double kMisfitTau_s = 0.5;
+constexpr double kHeld_s = 0.03;
+constexpr double kWindowMax_s = 0.05;  // over a longer one a central difference says nothing
 
 constexpr double kSuspect_s = 0.04;         // blows come in rows, and what one takes a filter gives back later
 constexpr double kAccelerationShare = 0.3;  // of its change from sample to sample, that an acceleration is in doubt by
-
-Eigen::Vector3d median(const std::array<Eigen::Vector3d, ImuMerge::kImus>& values, int count) {
-  Eigen::Vector3d out;
-  for (int axis = 0; axis < 3; ++axis) {
-    std::array<double, ImuMerge::kImus> sorted;
-    sorted.fill(std::numeric_limits<double>::infinity());
-    for (int k = 0; k < count; ++k) sorted[static_cast<std::size_t>(k)] = values[static_cast<std::size_t>(k)][axis];
-    std::sort(sorted.begin(), sorted.end());
-    out[axis] = 0.5 * (sorted[static_cast<std::size_t>((count - 1) / 2)] + sorted[static_cast<std::size_t>(count / 2)]);
-  }
-  return out;
-}
 
 }  // namespace
 
@@ -72,6 +65,15 @@ ImuMerge::ImuMerge(const Params& p) : params_(p), forces_(force_params(p)), reco
   require_within("hidden_share", p.hidden_share, kSmallest, 1.0);
   require_within("hidden_force_m_s2", p.hidden_force_m_s2, kSmallest, 1e4);
   require_within("gap_max_s", p.gap_max_s, 1e-9, 1e4);
+  require_within("window_s", p.window_s, 0.0, 0.1);
+  require_within("frozen_after_s", p.frozen_after_s, kSmallest, 1e3);
+  require_within("frozen_rate_rad_s", p.frozen_rate_rad_s, kSmallest, 1e3);
+  require_within("frozen_force_m_s2", p.frozen_force_m_s2, kSmallest, 1e4);
+  require_within("thawed_after_s", p.thawed_after_s, kSmallest, 1e3);
+  require_within("disagree_rate_rad_s", p.disagree_rate_rad_s, kSmallest, 1e3);
+  require_within("disagree_rate_share", p.disagree_rate_share, 0.0, 1.0);
+  require_within("disagree_force_m_s2", p.disagree_force_m_s2, kSmallest, 1e4);
+  require_within("disagrees_after_s", p.disagrees_after_s, kSmallest, 1e3);
   for (int k = 0; k < p.count; ++k) {
     const Eigen::Isometry3d& T = p.T_CI[static_cast<std::size_t>(k)];
     require_within("T_CI", T.translation().norm(), 0.0, 1e3);
@@ -80,14 +82,34 @@ ImuMerge::ImuMerge(const Params& p) : params_(p), forces_(force_params(p)), reco
   }
 }
 
+Eigen::Vector3d ImuMerge::median(const Vectors& values, const Flags& which) {
+  Eigen::Vector3d out = Eigen::Vector3d::Zero();
+  for (int axis = 0; axis < 3; ++axis) {
+    std::array<double, kImus> sorted;
+    sorted.fill(std::numeric_limits<double>::infinity());
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < which.size(); ++k) {
+      if (which[k]) sorted[count++] = values[k][axis];
+    }
+    if (count == 0) return out;
+    std::sort(sorted.begin(), sorted.end());
+    out[axis] = 0.5 * (sorted[(count - 1) / 2] + sorted[count / 2]);
+  }
+  return out;
+}
+
 Status ImuMerge::step(std::span<const ImuSample> samples, State& state, ImuSample& merged) const {
   const int count = params_.count;
   if (samples.size() != static_cast<std::size_t>(count)) {
     return {Trouble::too_few, "samples", static_cast<double>(samples.size()), static_cast<double>(count)};
   }
-  for (const ImuSample& sample : samples) {
-    if (const Status bad = check(sample); !bad.ok()) return bad;
+  Flags finite{}, present{};
+  int heard = 0;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    finite[k] = check(samples[k]).ok();
+    heard += finite[k];
   }
+  if (heard == 0) return check(samples[0]);
   double dt_s = 0.0;
   if (state.samples > 0) {
     const Status bad = elapsed(samples[0].time_ns, state.last_time_ns, params_.gap_max_s, dt_s);
@@ -99,43 +121,58 @@ Status ImuMerge::step(std::span<const ImuSample> samples, State& state, ImuSampl
       unit.P(kOffset, kOffset) = params_.offset_sigma_s * params_.offset_sigma_s;
     }
   }
+  const TimeNs time_ns = samples[0].time_ns;
 
+  // from the middle of the last window to that of this reading
+  const double since_s = state.window.length_s + 0.5 * dt_s + 0.5 * state.length_s;
   Vectors rates{}, raw_rates{}, raw_forces{}, forces{};
   for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (!finite[k]) {
+      if (state.units[k].absent++ == 0) state.units[k].absent_since_ns = time_ns;
+      continue;
+    }
     const Eigen::Matrix3d R_CI = params_.T_CI[k].linear();
-    Unit& unit = state.units[k];
     raw_rates[k] = R_CI * samples[k].angular_velocity_rad_s;
     raw_forces[k] = R_CI * samples[k].specific_force_m_s2;
+  }
+  if (count > 1) watch_holds(finite, raw_rates, raw_forces, dt_s, time_ns, state);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const Unit& unit = state.units[k];
+    present[k] = finite[k] && !unit.left_out_for_long();
     rates[k] = raw_rates[k];
     forces[k] = raw_forces[k];
     const double offset_s = unit.offset_s();
     const bool late = offset_s * offset_s > kBeyondDoubt * kBeyondDoubt * unit.P(kOffset, kOffset);
-    if (dt_s > 0.0 && late) {
-      rates[k] -= offset_s / dt_s * (raw_rates[k] - unit.last_rate_rad_s);
-      forces[k] -= offset_s / dt_s * (raw_forces[k] - unit.last_force_m_s2);
+    if (finite[k] && state.windows > 0 && late) {
+      rates[k] -= offset_s / since_s * (raw_rates[k] - unit.last_rate_rad_s);
+      forces[k] -= offset_s / since_s * (raw_forces[k] - unit.last_force_m_s2);
     }
     forces[k] = ForceErrors::corrected(static_cast<int>(k), forces[k], state.forces);
   }
+  if (std::none_of(present.begin(), present.end(), [](bool one) { return one; })) present = finite;
+  const int units = static_cast<int>(std::count(present.begin(), present.end(), true));
 
   // the places differ, so forces may by what the rate makes of it; the tolerance has to bear that
-  const Eigen::Vector3d middle_rate = median(rates, count), middle_force = median(forces, count);
+  const Eigen::Vector3d middle_rate = median(rates, present), middle_force = median(forces, present);
   const double rate_tolerance = params_.rate_tolerance_rad_s + params_.rate_tolerance_share * middle_rate.norm();
-  std::array<bool, kImus> used{};
+  Flags used{};
   int kept = 0;
   for (int k = 0; k < count; ++k) {
     const auto i = static_cast<std::size_t>(k);
     const double turned = (params_.T_CI[i].translation() - p_C_m_).norm() * middle_rate.squaredNorm() * 2.0;
-    used[i] = count < 3 || ((rates[i] - middle_rate).norm() < rate_tolerance &&
+    used[i] = units < 3 || ((rates[i] - middle_rate).norm() < rate_tolerance &&
                             (forces[i] - middle_force).norm() < params_.force_tolerance_m_s2 + turned);
     used[i] = used[i] && samples[i].specific_force_m_s2.cwiseAbs().maxCoeff() < params_.accel_range_m_s2;
+    used[i] = used[i] && present[i];
     kept += used[i];
   }
-  if (2 * kept <= count && kept < count) {  // no majority: nobody is to blame
-    used.fill(true);
-    kept = count;
+  if (2 * kept <= units && kept < units) {  // no majority: nobody is to blame
+    used = present;
+    kept = units;
   }
-  if (count >= kRecovering && dt_s > 0.0 && middle_rate.cwiseAbs().maxCoeff() < params_.gyro_range_rad_s) {
-    leave_out_hidden(samples, forces, middle_rate, dt_s, state, used);
+  const bool apart = state.windows > 0 && dt_s > 0.0;  // there is a window to take derivatives from
+  if (units >= kRecovering && apart && middle_rate.cwiseAbs().maxCoeff() < params_.gyro_range_rad_s) {
+    leave_out_hidden(samples, present, forces, middle_rate, dt_s, state, used);
     kept = static_cast<int>(std::count(used.begin(), used.begin() + count, true));
   }
 
@@ -151,41 +188,149 @@ Status ImuMerge::step(std::span<const ImuSample> samples, State& state, ImuSampl
     place += params_.T_CI[i].translation() / kept;
     if (kept < count) place += ForceErrors::place_error_m(k, state.forces) / kept;
   }
-  if (kept < count && dt_s > 0.0) {
+  if (kept < count) {
     const Eigen::Vector3d d = p_C_m_ - place;
-    force += ((rate - state.rate_rad_s) / dt_s).cross(d) + rate.cross(rate.cross(d));
-  }
-  if (kept == count && count > 1 && dt_s > 0.0 && state.samples > 1)
-    learn({raw_rates.data(), samples.size()}, dt_s, state);
-  for (std::size_t k = 0; k < samples.size(); ++k) {
-    state.units[k].last_rate_rad_s = raw_rates[k];
-    state.units[k].last_force_m_s2 = raw_forces[k];
+    if (apart) force += ((rate - state.rate_rad_s) / since_s).cross(d);
+    force += rate.cross(rate.cross(d));
   }
 
-  merged.time_ns = samples[0].time_ns;
+  merged.time_ns = time_ns;
   merged.angular_velocity_rad_s = rate;
   merged.specific_force_m_s2 = force;
   merged.device_clip_flags = 0;
-  if (count >= kRecovering) recover(samples, dt_s, state, merged);
+
+  state.all_used = state.all_used && kept == count;
+  const double weight_s = state.samples > 0 ? dt_s : params_.window_s;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (finite[k]) state.units[k].window.add({time_ns, raw_rates[k], raw_forces[k], 0}, weight_s);
+  }
+  state.window.add(merged, weight_s);
+  if (state.samples == 0 || state.window.full(params_.window_s, dt_s)) close_window(present, time_ns, state);
+
+  if (units >= kRecovering) recover(samples, present, dt_s, state, merged);
   const auto suspect = [](const Unit& unit) { return unit.suspect_s > 0.0; };
   if (2 * std::count_if(state.units.begin(), state.units.begin() + count, suspect) > count) {
     merged.device_clip_flags =
         static_cast<std::uint8_t>(merged.device_clip_flags | kClipAccelX | kClipAccelY | kClipAccelZ);
   }
-  state.rate_before_rad_s = state.rate_rad_s;
-  state.rate_rad_s = rate;
-  state.last_time_ns = samples[0].time_ns;
+  state.middle_rate_rad_s = middle_rate;
+  state.middle_force_m_s2 = middle_force;
+  state.last_time_ns = time_ns;
   ++state.samples;
   return {};
+}
+
+std::optional<double> ImuMerge::arm_share(const State& state) {
+  if (state.arm_square_m2_s3 < kArmSquareMin_m2_s3) return std::nullopt;
+  return state.arm_product / state.arm_square_m2_s3;
+}
+
+/// Learns from the means over the window, and begins the next.
+void ImuMerge::close_window(const Flags& present, TimeNs time_ns, State& state) const {
+  const bool follows = state.windows > 1 && state.window.length_s < kWindowMax_s;
+  // a unit that repeats itself may turn out to be frozen, and nothing is to be learnt from one
+  const bool held = std::any_of(state.units.begin(), state.units.end(), [](const Unit& unit) {
+    return unit.rate_hold.held_s >= kHeld_s || unit.force_hold.held_s >= kHeld_s;
+  });
+  if (state.all_used && !held && params_.count > 1 && follows) learn(state);
+  watch_misfits(present, time_ns, state);
+  for (Unit& unit : state.units) {
+    if (unit.window.readings > 0) {
+      unit.last_rate_rad_s = unit.window.mean.angular_velocity_rad_s;
+      unit.last_force_m_s2 = unit.window.mean.specific_force_m_s2;
+    }
+    unit.window = {};
+  }
+  state.rate_before_rad_s = state.rate_rad_s;
+  state.rate_rad_s = state.window.mean.angular_velocity_rad_s;
+  state.length_before_s = state.length_s;
+  state.length_s = state.window.length_s;
+  state.window = {};
+  state.all_used = true;
+  ++state.windows;
+}
+
+/// Triads that repeat themselves while the median of all moves on.
+void ImuMerge::watch_holds(const Flags& present, const Vectors& rates, const Vectors& forces, double dt_s,
+                           TimeNs time_ns, State& state) const {
+  const auto watch = [&](const Eigen::Vector3d& reading, const Eigen::Vector3d& others, Hold& hold) {
+    const bool same = state.samples > 0 && reading == hold.reading;
+    hold.held_s = same ? hold.held_s + dt_s : 0.0;
+    if (!same) {
+      hold.reading = reading;
+      hold.others = others;
+      hold.since_ns = time_ns;
+    }
+    return same;
+  };
+  Flags counted = present;
+  for (std::size_t k = 0; k < counted.size(); ++k) counted[k] = counted[k] && !state.units[k].left_out_for_long();
+  const Eigen::Vector3d middle_rate = median(rates, counted), middle_force = median(forces, counted);
+  for (std::size_t k = 0; k < present.size(); ++k) {
+    if (!present[k]) continue;
+    Unit& unit = state.units[k];
+    const bool rate_same = watch(rates[k], middle_rate, unit.rate_hold);
+    const bool force_same = watch(forces[k], middle_force, unit.force_hold);
+    const bool railed = rates[k].cwiseAbs().maxCoeff() >= params_.gyro_range_rad_s ||
+                        forces[k].cwiseAbs().maxCoeff() >= params_.accel_range_m_s2;
+    const bool rate_frozen = unit.rate_hold.held_s >= params_.frozen_after_s &&
+                             (middle_rate - unit.rate_hold.others).norm() > params_.frozen_rate_rad_s;
+    const bool force_frozen = unit.force_hold.held_s >= params_.frozen_after_s &&
+                              (middle_force - unit.force_hold.others).norm() > params_.frozen_force_m_s2;
+    unit.thawing_s = rate_same || force_same ? 0.0 : unit.thawing_s + dt_s;
+    if (unit.frozen) {
+      unit.frozen = unit.thawing_s < params_.thawed_after_s;
+    } else if (!railed && (rate_frozen || force_frozen)) {
+      unit.frozen = true;
+      unit.frozen_since_ns = rate_frozen ? unit.rate_hold.since_ns : unit.force_hold.since_ns;
+    }
+  }
+}
+
+/// Units that are off from the others for long.
+void ImuMerge::watch_misfits(const Flags& present, TimeNs time_ns, State& state) const {
+  if (std::count(present.begin(), present.end(), true) < kRecovering) return;  // of two, nobody is to blame
+  const double h = state.window.length_s, share = -std::expm1(-h / kMisfitTau_s);
+  Vectors rates{}, forces{};
+  bool railed = false;
+  for (std::size_t k = 0; k < present.size(); ++k) {
+    const ImuAverage& window = state.units[k].window;
+    if (!present[k] || window.readings == 0) continue;
+    rates[k] = window.mean.angular_velocity_rad_s;
+    forces[k] = window.mean.specific_force_m_s2;
+    railed |= window.rate_peak_rad_s >= kUnharmed * params_.gyro_range_rad_s ||
+              window.force_peak_m_s2 >= params_.hidden_share * params_.accel_range_m_s2;
+  }
+  if (railed) return;
+  const Eigen::Vector3d middle_rate = median(rates, present), middle_force = median(forces, present);
+  state.turning_rad_s += share * (middle_rate.norm() - state.turning_rad_s);
+  for (std::size_t k = 0; k < present.size(); ++k) {
+    if (!present[k] || state.units[k].window.readings == 0) continue;
+    Unit& unit = state.units[k];
+    const double turned = (params_.T_CI[k].translation() - p_C_m_).norm() * 2.0 * middle_rate.squaredNorm();
+    const double force = std::max(0.0, (forces[k] - middle_force).norm() - turned);
+    unit.misfit_rate_rad_s += share * ((rates[k] - middle_rate).norm() - unit.misfit_rate_rad_s);
+    unit.misfit_force_m_s2 += share * (force - unit.misfit_force_m_s2);
+    const double rate_bound = params_.disagree_rate_rad_s + params_.disagree_rate_share * state.turning_rad_s;
+    const bool off = unit.misfit_rate_rad_s > rate_bound || unit.misfit_force_m_s2 > params_.disagree_force_m_s2;
+    if (off && unit.misfits_s == 0.0) unit.misfits_since_ns = time_ns;
+    unit.misfits_s = off ? unit.misfits_s + h : 0.0;
+    if (unit.misfits_s < params_.disagrees_after_s) continue;
+    unit.disagrees = true;
+    unit.disagrees_since_ns = unit.misfits_since_ns;
+    break;  // the median is another one without it
+  }
 }
 
 /// A blow may take a unit to its rail for less than a sample. On a rigid body one unit tells what the others feel,
 /// along the line between the two without the angular acceleration. The one that most others agree with is believed,
 /// among equals the one whose force changed least.
-void ImuMerge::leave_out_hidden(std::span<const ImuSample> samples, const Vectors& forces, const Eigen::Vector3d& rate,
-                                double dt_s, State& state, std::array<bool, kImus>& used) const {
-  const Eigen::Vector3d acceleration = (rate - state.rate_rad_s) / dt_s;
-  const Eigen::Vector3d before = (state.rate_rad_s - state.rate_before_rad_s) / dt_s;
+void ImuMerge::leave_out_hidden(std::span<const ImuSample> samples, const Flags& present, const Vectors& forces,
+                                const Eigen::Vector3d& rate, double dt_s, State& state, Flags& used) const {
+  const double since_s = state.window.length_s + 0.5 * dt_s + 0.5 * state.length_s;
+  const double apart_s = 0.5 * (state.length_s + state.length_before_s);
+  const Eigen::Vector3d acceleration = (rate - state.rate_rad_s) / since_s;
+  const Eigen::Vector3d before = (state.rate_rad_s - state.rate_before_rad_s) / apart_s;
   const auto peak = [&](std::size_t k) { return samples[k].specific_force_m_s2.cwiseAbs().maxCoeff(); };
   const auto change = [&](std::size_t k) {
     return (params_.T_CI[k].linear() * samples[k].specific_force_m_s2 - state.units[k].last_force_m_s2).norm();
@@ -204,8 +349,9 @@ void ImuMerge::leave_out_hidden(std::span<const ImuSample> samples, const Vector
   std::size_t believed = 0;
   std::pair<int, double> most(-1, 0.0);
   for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (!present[k]) continue;
     int others = 0;
-    for (std::size_t j = 0; j < samples.size(); ++j) others += j != k && agree(k, j);
+    for (std::size_t j = 0; j < samples.size(); ++j) others += present[j] && j != k && agree(k, j);
     const std::pair<int, double> rank(others, -change(k));
     if (rank > most) {
       most = rank;
@@ -213,6 +359,7 @@ void ImuMerge::leave_out_hidden(std::span<const ImuSample> samples, const Vector
     }
   }
   for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (!present[k]) continue;
     double& suspect_s = state.units[k].suspect_s;
     suspect_s = k == believed || agree(k, believed) ? std::max(0.0, suspect_s - dt_s) : kSuspect_s;
     used[k] = used[k] && suspect_s == 0.0;
@@ -220,10 +367,15 @@ void ImuMerge::leave_out_hidden(std::span<const ImuSample> samples, const Vector
   if (std::none_of(used.begin(), used.begin() + params_.count, [](bool one) { return one; })) used[believed] = true;
 }
 
-void ImuMerge::recover(std::span<const ImuSample> samples, double dt_s, State& state, ImuSample& merged) const {
+void ImuMerge::recover(std::span<const ImuSample> samples, const Flags& present, double dt_s, State& state,
+                       ImuSample& merged) const {
   std::array<ImuSample, kImus> corrected{};
   for (std::size_t k = 0; k < samples.size(); ++k) {
     corrected[k] = samples[k];
+    if (!present[k]) {
+      corrected[k].angular_velocity_rad_s.setConstant(std::numeric_limits<double>::quiet_NaN());
+      continue;
+    }
     if (samples[k].specific_force_m_s2.cwiseAbs().maxCoeff() >= params_.accel_range_m_s2) continue;
     const Eigen::Matrix3d R_CI = params_.T_CI[k].linear();
     const Eigen::Vector3d force = R_CI * samples[k].specific_force_m_s2;
@@ -233,28 +385,36 @@ void ImuMerge::recover(std::span<const ImuSample> samples, double dt_s, State& s
   recovery_.step({corrected.data(), samples.size()}, dt_s, state.recovery, merged);
 }
 
-/// A unit's rate at the last sample less the mean of all, explained by bias, scale and time offset; the angular
-/// acceleration is the central difference, from the sample before to this one.
-void ImuMerge::learn(std::span<const Eigen::Vector3d> rates, double dt_s, State& state) const {
+/// A unit's rate over the last window less the mean of all, explained by bias, scale and time offset; the angular
+/// acceleration is the central difference, from the window before to this one.
+void ImuMerge::learn(State& state) const {
+  const auto count = static_cast<std::size_t>(params_.count);
   Eigen::Vector3d now = Eigen::Vector3d::Zero(), mean = Eigen::Vector3d::Zero();
-  for (std::size_t k = 0; k < rates.size(); ++k) {
-    now += rates[k] / static_cast<double>(rates.size());
-    mean += state.units[k].last_rate_rad_s / static_cast<double>(rates.size());
+  for (std::size_t k = 0; k < count; ++k) {
+    now += state.units[k].window.mean.angular_velocity_rad_s / static_cast<double>(count);
+    mean += state.units[k].last_rate_rad_s / static_cast<double>(count);
   }
-  const Eigen::Vector3d acceleration = (now - state.rate_before_rad_s) / (2.0 * dt_s);
+  const double apart_s = 0.5 * (state.window.length_s + state.length_before_s) + state.length_s;
+  const Eigen::Vector3d acceleration = (now - state.rate_before_rad_s) / apart_s;
   Vectors forces{};
   double peak = 0.0;
-  for (std::size_t k = 0; k < rates.size(); ++k) {
+  for (std::size_t k = 0; k < count; ++k) {
     forces[k] = state.units[k].last_force_m_s2;
     peak = std::max(peak, forces[k].cwiseAbs().maxCoeff());
   }
   const bool railed = mean.cwiseAbs().maxCoeff() >= params_.gyro_range_rad_s;
   if (!railed && peak < kUnharmed * params_.accel_range_m_s2) {
-    forces_.learn({forces.data(), rates.size()}, mean, acceleration, state.forces);
+    forces_.learn({forces.data(), count}, mean, acceleration, state.length_s, state.forces);
+  }
+  const Eigen::Matrix3d by_place = so3::hat(acceleration) + so3::hat(mean) * so3::hat(mean);
+  for (std::size_t k = 0; k < count && !railed; ++k) {
+    const Eigen::Vector3d by_turning = by_place * (params_.T_CI[k].translation() - p_C_m_);
+    state.arm_product += state.length_s * by_turning.dot(forces[k]);  // the mean of all drops out of the sum
+    state.arm_square_m2_s3 += state.length_s * by_turning.squaredNorm();
   }
   if (acceleration.norm() < kTurning_rad_s2) return;
   const double variance = params_.rate_noise_rad_s * params_.rate_noise_rad_s;
-  for (std::size_t k = 0; k < rates.size(); ++k) {
+  for (std::size_t k = 0; k < count; ++k) {
     Unit& unit = state.units[k];
     const Eigen::Vector3d residual = unit.last_rate_rad_s - mean;
     for (int axis = 0; axis < 3; ++axis) {

@@ -61,19 +61,22 @@ void RateRecovery::step(std::span<const ImuSample> units, double dt_s, State& st
   } else {
     start(merged, state);
   }
-  measure_rates(units, state);
-  measure_forces(units, state);
+  measure_rates(units, dt_s, state);
+  measure_forces(units, dt_s, state);
   state.P = (0.5 * (state.P + state.P.transpose())).eval();
 
   bool rate_clipped = false;
   std::size_t forces_clipped = 0;
+  std::size_t heard = 0;
   for (const ImuSample& unit : units) {
+    if (!is_finite(unit)) continue;
+    ++heard;
     rate_clipped |= unit.angular_velocity_rad_s.cwiseAbs().maxCoeff() >= params_.gyro_range_rad_s;
     forces_clipped += unit.specific_force_m_s2.cwiseAbs().maxCoeff() >= params_.accel_range_m_s2;
   }
   // with a rate that is right, the units that are left tell the force better than the filter: only where they are few
   // does it count as clipped
-  const bool force_clipped = forces_clipped > 0 && (rate_clipped || 2 * forces_clipped > units.size());
+  const bool force_clipped = forces_clipped > 0 && (rate_clipped || 2 * forces_clipped > heard);
   if (rate_clipped && state.P.diagonal().segment<3>(kRate).maxCoeff() < squared(params_.recovered_sigma_rad_s)) {
     merged.angular_velocity_rad_s = state.x.segment<3>(kRate);
   } else if (rate_clipped) {
@@ -119,8 +122,10 @@ void RateRecovery::predict(double dt_s, State& state) const {
   diagonal.segment<3>(kForce).array() += squared(params_.force_walk_m_s2_sqrts) * dt_s;
 }
 
-void RateRecovery::measure_rates(std::span<const ImuSample> units, State& state) const {
+void RateRecovery::measure_rates(std::span<const ImuSample> units, double dt_s, State& state) const {
+  const double shorter = std::max(1.0, kReading_s / dt_s);
   for (std::size_t k = 0; k < units.size(); ++k) {
+    if (!is_finite(units[k])) continue;
     const Eigen::Matrix3d R_IC = params_.T_CI[k].linear().transpose();
     for (int axis = 0; axis < 3; ++axis) {
       const double reading = units[k].angular_velocity_rad_s[axis];
@@ -130,13 +135,15 @@ void RateRecovery::measure_rates(std::span<const ImuSample> units, State& state)
       Row row = Row::Zero();
       row.segment<3>(kRate) = R_IC.row(axis);
       const double sigma = params_.rate_noise_rad_s + params_.rate_noise_share * std::abs(reading);
-      update(row, missing, squared(railed ? kRailSigma_rad_s : sigma), state);
+      update(row, missing, shorter * squared(railed ? kRailSigma_rad_s : sigma), state);
     }
   }
 }
 
-void RateRecovery::measure_forces(std::span<const ImuSample> units, State& state) const {
+void RateRecovery::measure_forces(std::span<const ImuSample> units, double dt_s, State& state) const {
+  const double shorter = std::max(1.0, kReading_s / dt_s);
   for (std::size_t k = 0; k < units.size(); ++k) {
+    if (!is_finite(units[k])) continue;
     const Eigen::Matrix3d R_IC = params_.T_CI[k].linear().transpose();
     const int arm = kArms + 3 * static_cast<int>(k);
     for (int axis = 0; axis < 3; ++axis) {
@@ -153,7 +160,7 @@ void RateRecovery::measure_forces(std::span<const ImuSample> units, State& state
       row.segment<3>(arm) = axis_C * by_place;
       const double expected = axis_C.dot(state.x.segment<3>(kForce) + by_place * place);
       const double sigma = params_.force_noise_m_s2 + params_.force_noise_share * std::abs(reading);
-      update(row, reading - expected, squared(sigma), state);
+      update(row, reading - expected, shorter * squared(sigma), state);
     }
   }
 }

@@ -2,7 +2,6 @@
 #include "tumble/attitude/timing.hpp"
 
 #include <cmath>
-#include <cstdint>
 
 namespace tumble {
 
@@ -21,13 +20,8 @@ Status check_vector(const Eigen::Vector3d& value, const char* field) {
 }  // namespace
 
 Status elapsed(TimeNs time_ns, TimeNs last_time_ns, double gap_max_s, double& dt_s) {
-  const double last = static_cast<double>(last_time_ns);
-  if (time_ns <= last_time_ns) return {Trouble::time_order, "time_ns", static_cast<double>(time_ns), last};
-  // unsigned: the difference of two 64-bit stamps may not fit into a signed one
-  const std::uint64_t span_ns = static_cast<std::uint64_t>(time_ns) - static_cast<std::uint64_t>(last_time_ns);
-  const double span_s = static_cast<double>(span_ns) * 1e-9;
-  if (span_s > gap_max_s) return {Trouble::gap, "time_ns", static_cast<double>(time_ns), last + gap_max_s * 1e9};
-  dt_s = span_s;
+  if (const Status bad = check_follows(time_ns, last_time_ns, gap_max_s); !bad.ok()) return bad;
+  dt_s = seconds(time_ns - last_time_ns);  // fits: gap_max_s is some hours at the most
   return {};
 }
 

@@ -46,6 +46,7 @@ TumbleAttitude::TumbleAttitude(const Params& p) : params_(p) {
   require_within("displacement_m_sqrts", p.displacement_m_sqrts, kSmallest, 1e3);
   require_within("displacement_tau_s", p.displacement_tau_s, 0.1, 1e4);
   require_within("node_s", p.node_s, 1e-4, 1.0);
+  require_within("reading_s", p.reading_s, 0.0, 0.1);
   require_within("rest_tau_s", p.rest_tau_s, 1e-3, 1e4);
   require_within("rest_time_s", p.rest_time_s, 0.0, 1e4);
   require_within("rest_rate_rad_s", p.rest_rate_rad_s, kSmallest, 1.0);
@@ -69,15 +70,35 @@ Status TumbleAttitude::step(const ImuSample& sample, State& state) const {
   } else {
     double dt_s = 0.0;
     if (const Status bad = elapsed(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s); !bad.ok()) return bad;
-    detect_rest(sample, dt_s, state);
-    integrate(sample, dt_s, state);
-    if (state.node_s >= params_.node_s - 0.5 * dt_s) {
-      predict_node(state);
-      correct_node(state);
+    // of the average so far the attitude before it is turned on
+    if (state.average.readings == 0) {
+      state.q_taken_WI = state.q_WI;
+    } else {
+      state.q_WI = state.q_taken_WI;
+    }
+    state.average.add(sample, dt_s);
+    if (state.average.full(params_.reading_s, dt_s)) {
+      take_average(state);
+    } else {
+      const Eigen::Vector3d rate = state.average.mean.angular_velocity_rad_s - state.bias_rad_s;
+      if (!state.at_rest) state.q_WI = (state.q_WI * so3::exp(state.average.length_s * rate)).normalized();
     }
   }
   state.last_time_ns = sample.time_ns;
   return {};
+}
+
+void TumbleAttitude::take_average(State& state) const {
+  const ImuSample reading = state.average.mean;
+  const double length_s = state.average.length_s;
+  state.average = {};
+  state.q_taken_WI.setIdentity();
+  detect_rest(reading, length_s, state);
+  integrate(reading, length_s, state);
+  if (state.node_s >= params_.node_s - 0.5 * length_s) {
+    predict_node(state);
+    correct_node(state);
+  }
 }
 
 void TumbleAttitude::start(State& state) const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/rolling/rolling_filter.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "rolling_node.hpp"
@@ -24,29 +25,70 @@ RollingFilter::RollingFilter(const Params& p) : params_(p) {
   require_valid(p);
 }
 
-Status RollingFilter::step(const ImuSample& sample, State& state) const {
+Status RollingFilter::step_with(const ImuSample& sample, State& state, Listener listener) const {
   if (const Status bad = check(sample); !bad.ok()) return bad;
   if (state.started) {
     double dt_s = 0.0;
     if (const Status bad = elapsed(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s); !bad.ok()) return bad;
-    // a node closes one sample late, because the rate at its end lies between two samples
-    if (state.sums.node_s >= params_.node_s - 0.5 * dt_s) close_node(sample.angular_velocity_rad_s, state);
-    rolling::integrate(params_, sample, dt_s, state.nominal, state.sums);
+    if (dt_s > params_.gap_from_s) {
+      bridge(sample, dt_s, state, listener);
+    } else {
+      state.average.add(sample, dt_s);
+      if (state.average.full(params_.reading_s, dt_s)) take_average(state, listener);
+    }
   } else {
     Eigen::Quaterniond q_WI = params_.q_WI_start.value_or(Eigen::Quaterniond::Identity());
     if (!params_.q_WI_start) {
       if (const Status bad = level(sample.specific_force_m_s2, q_WI); !bad.ok()) return bad;
     }
-    state.nominal = rolling::start_nominal(params_, q_WI);
-    state.hypotheses[0].P = rolling::prior_covariance(params_);
-    state.slow_force_m_s2 = sample.specific_force_m_s2;
-    state.count = 1;
-    state.started = true;
+    start(sample, q_WI, state);
   }
-  state.last_rate_rad_s = sample.angular_velocity_rad_s;
   state.last_time_ns = sample.time_ns;
   report(state);
   return {};
+}
+
+void RollingFilter::start(const ImuSample& sample, const Eigen::Quaterniond& q_WI, State& state) const {
+  const Eigen::Vector3d& rate = sample.angular_velocity_rad_s;
+  state.nominal = rolling::start_nominal(params_, q_WI, rate);
+  state.hypotheses[0].P = rolling::prior_covariance(params_, rate);
+  state.started_in_motion = rolling::starts_in_motion(params_, rate);
+  state.slow_force_m_s2 = sample.specific_force_m_s2;
+  state.last_rate_rad_s = rate;
+  state.count = 1;
+  state.started = true;
+}
+
+void RollingFilter::take_average(State& state, Listener listener) const {
+  const ImuAverage reading = state.average;
+  state.average = {};
+  // a node closes one reading late, because the rate at its end lies between two readings
+  if (state.sums.node_s >= params_.node_s - 0.5 * reading.length_s) {
+    close_node(reading.mean.angular_velocity_rad_s, state);
+    listener.call(listener.to, state);
+  }
+  rolling::integrate(params_, reading, state.nominal, state.sums);
+  state.last_rate_rad_s = reading.mean.angular_velocity_rad_s;
+}
+
+void RollingFilter::bridge(const ImuSample& sample, double gap_s, State& state, Listener listener) const {
+  if (state.average.readings > 0) take_average(state, listener);
+  ImuSample before;
+  before.angular_velocity_rad_s = state.last_rate_rad_s;
+  const int pieces = rolling::gap_pieces(params_, gap_s);
+  for (int k = 0; k < pieces; ++k) {
+    rolling::GapDoubt doubt;
+    const ImuAverage piece = rolling::gap_piece(params_, before, sample, gap_s, k, doubt);
+    const Eigen::Vector3d& rate = piece.mean.angular_velocity_rad_s;
+    if (state.sums.node_s >= params_.node_s - 0.5 * piece.length_s) {
+      close_node(rate, state);
+      listener.call(listener.to, state);
+    }
+    rolling::integrate_gap(params_, piece, doubt, state.nominal, state.sums);
+    state.last_rate_rad_s = rate;
+  }
+  ++state.gaps;
+  state.gap_longest_s = std::max(state.gap_longest_s, gap_s);
 }
 
 void RollingFilter::close_node(const Eigen::Vector3d& next_rate_rad_s, State& state) const {
@@ -85,6 +127,11 @@ void RollingFilter::close_node(const Eigen::Vector3d& next_rate_rad_s, State& st
 
 void RollingFilter::detect_rest(State& state) const {
   const double h = state.sums.node_s;
+  if (state.sums.gap_s > 0.0) {  // two readings are not the rest that may have been between them
+    state.rest_s = 0.0;
+    state.at_rest = state.pivots = false;
+    return;
+  }
   const Eigen::Vector3d f_mean = state.sums.f_I_m_s / h;
   const bool quiet = (state.sums.w_I_rad / h).norm() < params_.rest_rate_rad_s &&
                      (f_mean - state.slow_force_m_s2).norm() < params_.rest_force_m_s2;
@@ -164,9 +211,11 @@ void RollingFilter::rebase(State& state) const {
 }
 
 void RollingFilter::report(State& state) const {
-  const RollingNominal& nominal = state.nominal;
+  const RollingNominal nominal = rolling::carried_on(params_, state.average, state.nominal);
+  const Eigen::Vector3d& rate =
+      state.average.readings > 0 ? state.average.mean.angular_velocity_rad_s : state.last_rate_rad_s;
   const Eigen::Vector3d arm_W = nominal.q_WI * (params_.lever_arm_m + nominal.lever_arm_error_m);
-  const Eigen::Vector3d w_W = nominal.q_WI * (state.last_rate_rad_s - nominal.gyro_bias_rad_s);
+  const Eigen::Vector3d w_W = nominal.q_WI * (rate - nominal.gyro_bias_rad_s);
   state.q_WI = nominal.q_WI;
   if (!state.held) state.p_WG_m = nominal.p_WI_m - arm_W;
   state.v_WG_m_s = nominal.v_WI_m_s - w_W.cross(arm_W);

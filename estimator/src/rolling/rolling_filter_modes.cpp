@@ -142,8 +142,9 @@ double RollingFilter::log_transition(RollingMode from, RollingMode to, double h_
 }
 
 void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, State& state) const {
-  const rolling::Contact c = rolling::contact(params_, state.nominal, rate_I_rad_s);
+  const rolling::Contact c = rolling::contact(params_, state.nominal, rate_I_rad_s, state.sums);
   const double node_s = state.sums.node_s;
+  const bool in_gap = state.sums.gap_s > 0.0;
   const bool too_fast = c.rolling_speed_m_s > params_.speed_max_m_s;
   std::array<Candidate, kRollingModes * kHypotheses> candidates;
   std::size_t total = 0;
@@ -155,7 +156,8 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, State& sta
       const bool bound = slips(h.mode) && state.node - h.switched_node < shortest;
       if (mode != h.mode && bound) continue;
       if (too_fast && !slips(mode)) continue;
-      const double likelihood = slips(mode) ? log_moving(c, h, mode, u, params_) : log_still(c, h, mode, params_);
+      double likelihood = 0.0;  // a gap speaks for no mode
+      if (!in_gap) likelihood = slips(mode) ? log_moving(c, h, mode, u, params_) : log_still(c, h, mode, params_);
       const double blow = mode == RollingMode::bump ? 0.0 : state.sums.blow_m_s / params_.blow_m_s;
       candidates[total++] = {h.log_weight + log_transition(h.mode, mode, node_s) + likelihood - blow, parent, mode,
                              mode == h.mode ? h.switched_node : state.node};

@@ -35,6 +35,12 @@ constexpr double kLostSpeed_m_s = 1.0;
 constexpr double kRecoveredTau_s = 0.1;  // a recovered rate stays off for so long: what it is off by is no noise
 constexpr double kFastTurn_rad_s = 6.0;  // a force turns too far within a node to level by, and is not gravity
 constexpr double kUnsureSpeed_m_s = 0.1, kSpeedWindow_s = 1.0;
+constexpr double kStartTilt_rad = 0.15;  // of a start in motion: a push of 1.5 m/s^2
+// of a gap: a sphere that turned slower than this on both sides was not pushed about in between, but for a little
+constexpr double kGapTurning_rad_s = 1.0, kGapStill_rad_s2 = 0.5;
+constexpr double kGapStep = 0.15;  // of a change of rate times the gap's length: when in it the change came
+constexpr std::uint8_t kGyroFlags = kClipGyroX | kClipGyroY | kClipGyroZ,
+                       kAccelFlags = kClipAccelX | kClipAccelY | kClipAccelZ;
 
 void require_sigmas(const RollingParams& p) {
   require_within("tilt_sigma_rad", p.tilt_sigma_rad, 0.0, 1e3);
@@ -97,7 +103,7 @@ void require_modes(const RollingParams& p) {
 
 Eigen::Vector3d contact_variance(const RollingParams& params, const Contact& c, RollingMode mode) {
   const double rough = mode == RollingMode::rough ? squared(params.rough_share * c.rolling_speed_m_s) : 0.0;
-  return {c.grip_variance, c.grip_variance, squared(params.vertical_sigma_m_s) + rough};
+  return {c.grip_variance, c.grip_variance, squared(params.vertical_sigma_m_s) + rough + c.gap_variance};
 }
 
 Eigen::Vector3d Contact::velocity(const Vector& x) const {
@@ -106,18 +112,31 @@ Eigen::Vector3d Contact::velocity(const Vector& x) const {
   return u_W_m_s + H * x + curved * lift_W;
 }
 
-RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaterniond& q_WI) {
+bool starts_in_motion(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s) {
+  return rate_I_rad_s.norm() > params.start_rate_rad_s;
+}
+
+RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaterniond& q_WI,
+                             const Eigen::Vector3d& rate_I_rad_s) {
   RollingNominal nominal;
   nominal.q_WI = q_WI;
   nominal.p_WI_m = q_WI * params.lever_arm_m;
+  if (starts_in_motion(params, rate_I_rad_s)) {
+    const Eigen::Vector3d w_W = q_WI * rate_I_rad_s;
+    nominal.v_WI_m_s = w_W.cross(params.radius_m * Eigen::Vector3d::UnitZ() + nominal.p_WI_m);
+  }
   return nominal;
 }
 
-Covariance prior_covariance(const RollingParams& params) {
+Covariance prior_covariance(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s) {
   Covariance P = Covariance::Zero();
   auto prior = P.diagonal();
-  prior.segment<2>(kAttitude).setConstant(squared(params.tilt_sigma_rad));  // the heading defines the world's x axis
-  prior.segment<3>(kVelocity).setConstant(squared(params.velocity_sigma_m_s));
+  // the force of a sphere that is pushed is not gravity, and one that turns may slip by as much as it turns
+  const bool moves = starts_in_motion(params, rate_I_rad_s);
+  const double tilt = moves ? kStartTilt_rad : 0.0, velocity = moves ? params.radius_m * rate_I_rad_s.norm() : 0.0;
+  // the heading defines the world's x axis
+  prior.segment<2>(kAttitude).setConstant(squared(params.tilt_sigma_rad) + squared(tilt));
+  prior.segment<3>(kVelocity).setConstant(squared(params.velocity_sigma_m_s) + squared(velocity));
   prior.segment<3>(kGyroBias).setConstant(squared(params.gyro_bias_sigma_rad_s));
   prior.segment<3>(kAccelBias).setConstant(squared(params.accel_bias_sigma_m_s2));
   prior.segment<9>(kAccelScale).setConstant(squared(params.accel_scale_sigma));
@@ -129,8 +148,9 @@ Covariance prior_covariance(const RollingParams& params) {
   return P;
 }
 
-void integrate(const RollingParams& params, const ImuSample& sample, double dt_s, RollingNominal& nominal,
-               RollingSums& sums) {
+void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominal& nominal, RollingSums& sums) {
+  const ImuSample& sample = reading.mean;
+  const double dt_s = reading.length_s;
   const Eigen::Vector3d& w_raw = sample.angular_velocity_rad_s;
   const Eigen::Vector3d& f_raw = sample.specific_force_m_s2;
   const Eigen::Vector3d w = w_raw - nominal.gyro_bias_rad_s - nominal.gyro_scale * w_raw;
@@ -143,11 +163,11 @@ void integrate(const RollingParams& params, const ImuSample& sample, double dt_s
   const Eigen::Matrix3d R_T = dt_s * q_mid.toRotationMatrix();
   nominal.q_WI = (q_mid * half).normalized();
   const double gravity = params.gravity_m_s2;
-  constexpr std::uint8_t kGyro = kClipGyroX | kClipGyroY | kClipGyroZ, kAccel = kClipAccelX | kClipAccelY | kClipAccelZ;
-  const bool beyond = w_raw.cwiseAbs().maxCoeff() >= params.gyro_range_rad_s;
-  const bool lost = (sample.device_clip_flags & kGyro) != 0 || (beyond && !(params.recovered_rate_sigma_rad_s > 0.0));
-  const bool clipped = lost || beyond || (sample.device_clip_flags & kAccel) != 0 ||
-                       f_raw.cwiseAbs().maxCoeff() >= params.accel_range_m_s2;
+  const bool beyond = reading.rate_peak_rad_s >= params.gyro_range_rad_s;
+  const bool lost =
+      (sample.device_clip_flags & kGyroFlags) != 0 || (beyond && !(params.recovered_rate_sigma_rad_s > 0.0));
+  const bool clipped = lost || beyond || (sample.device_clip_flags & kAccelFlags) != 0 ||
+                       reading.force_peak_m_s2 >= params.accel_range_m_s2;
   // a force that is clipped, or turned by a rate that is, says nothing: the velocity of the centre is kept
   const Eigen::Vector3d arm = params.lever_arm_m + nominal.lever_arm_error_m;
   const Eigen::Vector3d gained = clipped ? Eigen::Vector3d(R_T * w.cross(w.cross(arm)))
@@ -176,6 +196,46 @@ void integrate(const RollingParams& params, const ImuSample& sample, double dt_s
   sums.node_s += dt_s;
 }
 
+RollingNominal carried_on(const RollingParams& params, const ImuAverage& reading, const RollingNominal& nominal) {
+  RollingNominal out = nominal;
+  if (reading.readings == 0) return out;
+  RollingSums unused;
+  integrate(params, reading, out, unused);
+  return out;
+}
+
+int gap_pieces(const RollingParams& params, double gap_s) {
+  return std::max(1, static_cast<int>(std::lround(gap_s / params.node_s)));
+}
+
+ImuAverage gap_piece(const RollingParams& params, const ImuSample& before, const ImuSample& after, double gap_s, int k,
+                     GapDoubt& doubt) {
+  const int pieces = gap_pieces(params, gap_s);
+  const double share = (k + 0.5) / pieces;
+  const Eigen::Vector3d change = after.angular_velocity_rad_s - before.angular_velocity_rad_s;
+  ImuSample sample = after;
+  sample.angular_velocity_rad_s = before.angular_velocity_rad_s + share * change;
+  sample.device_clip_flags = kAccelFlags;  // of the force nothing is known
+  const double turning = std::max(before.angular_velocity_rad_s.norm(), after.angular_velocity_rad_s.norm());
+  const double acceleration =
+      kGapStill_rad_s2 + params.gap_acceleration_rad_s2 * std::min(1.0, turning / kGapTurning_rad_s);
+  // a parabola between two known rates encloses a T^3 / 12
+  const double off_rad = acceleration * gap_s * gap_s * gap_s / 12.0 + kGapStep * change.norm() * gap_s;
+  doubt.rad2 = off_rad * off_rad / pieces;
+  doubt.rate_rad2_s = squared(off_rad / gap_s) * gap_s;  // of all pieces in one direction, hence once for each piece
+  ImuAverage piece;
+  piece.add(sample, gap_s / pieces);
+  return piece;
+}
+
+void integrate_gap(const RollingParams& params, const ImuAverage& piece, const GapDoubt& doubt, RollingNominal& nominal,
+                   RollingSums& sums) {
+  integrate(params, piece, nominal, sums);
+  sums.gap_s += piece.length_s;
+  sums.gap_rad2 += doubt.rad2;
+  sums.gap_rate_rad2_s += doubt.rate_rad2_s;
+}
+
 Moving transition(const RollingSums& sums) {
   Moving B = Moving::Zero();
   B.block<3, 3>(kAttitude, kGyroBias) = -sums.R_s;
@@ -196,7 +256,7 @@ void predict(const RollingParams& params, const RollingSums& sums, const Moving&
   P.leftCols<9>() += (P * B.transpose()).eval();
   P = (0.5 * (P + P.transpose())).eval();
   const double attitude = squared(params.attitude_walk_rad_sqrts) * h +
-                          squared(params.rate_error_sqrts) * sums.turned_rad2_s +
+                          squared(params.rate_error_sqrts) * sums.turned_rad2_s + sums.gap_rad2 +
                           squared(params.clipped_rate_sigma_rad_s * sums.rate_clipped_s) +
                           squared(params.recovered_rate_sigma_rad_s) * 2.0 * kRecoveredTau_s * sums.recovered_s;
   const double velocity = squared(params.velocity_walk_m_s_sqrts) * h + squared(params.shock_share * sums.shock_m_s) +
@@ -211,7 +271,8 @@ void predict(const RollingParams& params, const RollingSums& sums, const Moving&
   diagonal.segment<3>(kAccelBias).array() += squared(params.accel_bias_walk_m_s2_sqrts) * h;
 }
 
-Contact contact(const RollingParams& params, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s) {
+Contact contact(const RollingParams& params, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s,
+                const RollingSums& sums) {
   const Eigen::Matrix3d R = nominal.q_WI.toRotationMatrix();
   const Eigen::Vector3d w_W = R * (rate_I_rad_s - nominal.gyro_bias_rad_s - nominal.gyro_scale * rate_I_rad_s);
   const Eigen::Vector3d arm_W = R * (params.lever_arm_m + nominal.lever_arm_error_m);
@@ -240,6 +301,10 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
   if (rate_I_rad_s.cwiseAbs().maxCoeff() >= params.gyro_range_rad_s) {
     const bool recovered = params.recovered_rate_sigma_rad_s > 0.0;
     out.grip_variance += squared(r * (recovered ? params.recovered_rate_sigma_rad_s : params.clipped_rate_sigma_rad_s));
+  }
+  if (sums.gap_s > 0.0) {
+    out.gap_variance = squared(r) * sums.gap_rate_rad2_s / sums.node_s;
+    out.grip_variance += out.gap_variance;
   }
   return out;
 }
@@ -328,7 +393,11 @@ void require_valid(const RollingParams& p) {
   require_within("lever_arm_m", p.lever_arm_m.norm(), 0.0, 10.0);
   if (p.q_WI_start) require_within("q_WI_start", p.q_WI_start->norm(), 1.0 - 1e-6, 1.0 + 1e-6);
   require_within("node_s", p.node_s, 1e-3, 0.1);
+  require_within("reading_s", p.reading_s, 0.0, 0.1);
+  require_within("gap_from_s", p.gap_from_s, 1e-9, 1.0);
   require_within("gap_max_s", p.gap_max_s, 1e-9, 1.0);
+  require_within("gap_acceleration_rad_s2", p.gap_acceleration_rad_s2, rolling::kSmallest, 1e4);
+  require_within("start_rate_rad_s", p.start_rate_rad_s, rolling::kSmallest, 10.0);
   rolling::require_sigmas(p);
   rolling::require_noise(p);
   rolling::require_modes(p);

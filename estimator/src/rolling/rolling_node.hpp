@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <optional>
 
+#include "tumble/common/imu_average.hpp"
 #include "tumble/rolling/rolling_model.hpp"
 
 namespace tumble::rolling {
@@ -30,6 +31,7 @@ struct Contact {
   Eigen::Vector3d u_W_m_s;
   Eigen::Matrix<double, 3, kStates> H;
   double grip_variance = 0.0;
+  double gap_variance = 0.0;       ///< more, in every direction
   double rolling_speed_m_s = 0.0;  ///< of the centre, should it grip
   Eigen::Vector3d lift_W;          ///< change of u for a change of the normal's third component
   Eigen::Vector2d slope;           ///< nominal
@@ -41,20 +43,42 @@ struct Contact {
 /// Of the contact velocity while the contact stands still; slipping, its vertical part alone counts.
 Eigen::Vector3d contact_variance(const RollingParams& params, const Contact& c, RollingMode mode);
 
-/// Levelled (or given) attitude, centre at the origin, at rest.
-RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaterniond& q_WI);
-Covariance prior_covariance(const RollingParams& params);
+/// Whether the first reading was taken in motion.
+bool starts_in_motion(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s);
 
-/// Takes a sample of length `dt_s` into the nominal trajectory and the sums.
-void integrate(const RollingParams& params, const ImuSample& sample, double dt_s, RollingNominal& nominal,
-               RollingSums& sums);
+/// Levelled (or given) attitude, centre at the origin, at rest; in motion it rolls.
+RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaterniond& q_WI,
+                             const Eigen::Vector3d& rate_I_rad_s);
+Covariance prior_covariance(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s);
+
+/// Takes averaged readings into the nominal trajectory and the sums.
+void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominal& nominal, RollingSums& sums);
+
+/// The nominal trajectory carried on by readings that are not taken yet.
+RollingNominal carried_on(const RollingParams& params, const ImuAverage& reading, const RollingNominal& nominal);
+
+/// Pieces that a gap is bridged in.
+int gap_pieces(const RollingParams& params, double gap_s);
+
+/// Piece k of a gap between two readings: the rate between theirs, no force. `doubt` gets what it may be off by.
+struct GapDoubt {
+  double rad2 = 0.0, rate_rad2_s = 0.0;
+};
+ImuAverage gap_piece(const RollingParams& params, const ImuSample& before, const ImuSample& after, double gap_s, int k,
+                     GapDoubt& doubt);
+
+/// Takes a piece of a gap.
+void integrate_gap(const RollingParams& params, const ImuAverage& piece, const GapDoubt& doubt, RollingNominal& nominal,
+                   RollingSums& sums);
 
 /// Transition of the error over the node: x <- x + (B x on top).
 Moving transition(const RollingSums& sums);
 void predict(const RollingParams& params, const RollingSums& sums, const Moving& B, Vector& x, Covariance& P);
 
 /// `rate_I_rad_s` is the raw reading at the node.
-Contact contact(const RollingParams& params, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s);
+/// `sums` are those of the node: what a gap in it makes of the rate counts as noise of the contact.
+Contact contact(const RollingParams& params, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s,
+                const RollingSums& sums);
 
 /// What a change of mode does to the floor's slope: it walks while the slope lasts, and becomes level or unknown when
 /// the contact stands still anew. `h_s` is the length of the node.

@@ -39,6 +39,15 @@ double stated(const RollingSmoother::Params& params) {
   return 1.0 / (params.path_noise * params.path_noise);
 }
 
+/// After the first sample.
+rolling::Readings::Place start_place(const ImuSample& sample) {
+  rolling::Readings::Place place;
+  place.time_ns = sample.time_ns;
+  place.last_rate_rad_s = sample.angular_velocity_rad_s;
+  place.next = 1;
+  return place;
+}
+
 double horizontal_variance(const RollingSmoother::Params& params, const rolling::NodeRecord& node) {
   return stated(params) * (node.smoothed_P(6, 6) + node.smoothed_P(7, 7));
 }
@@ -94,28 +103,30 @@ RollingSmoother::RollingSmoother(const Params& p) : params_(p), filter_(p.filter
 }
 
 Status RollingSmoother::step(const ImuSample& sample, State& state, std::vector<RollingEstimate>& out) const {
-  const std::int64_t node = state.live.node;
   if (!state.live.started && params_.lag_s < kWholeRun) {
     state.steps.reserve(lag_nodes_ + block_nodes_ + 1);
     state.samples.reserve(
         static_cast<std::size_t>(std::ceil((params_.lag_s + params_.block_s + 1.0) * params_.rate_max_hz)));
   }
-  if (const Status bad = filter_.step(sample, state.live); !bad.ok()) return bad;
-  if (state.live.node > node) {
+  const auto closed = [&steps = state.steps](const RollingFilter::State& live) {
     Step step;
     for (std::size_t k = 0; k < RollingFilter::kHypotheses; ++k) {
-      step.parent[k] = static_cast<std::uint8_t>(state.live.hypotheses[k].parent);
-      step.mode[k] = state.live.hypotheses[k].mode;
+      step.parent[k] = static_cast<std::uint8_t>(live.hypotheses[k].parent);
+      step.mode[k] = live.hypotheses[k].mode;
     }
-    step.spread_m2 = state.live.settled_spread_m2;
-    step.rest_s = state.live.rest_s;
-    step.at_rest = state.live.at_rest;
-    step.pivots = state.live.pivots;
-    state.steps.push_back(step);
-  }
+    step.spread_m2 = live.settled_spread_m2;
+    step.rest_s = live.rest_s;
+    step.at_rest = live.at_rest;
+    step.pivots = live.pivots;
+    steps.push_back(step);
+  };
+  const std::size_t nodes = state.steps.size();
+  if (const Status bad = filter_.step(sample, state.live, closed); !bad.ok()) return bad;
   state.samples.push_back(sample);
-  if (state.live.node > node && state.steps.size() >= lag_nodes_ + block_nodes_) {
+  while (state.steps.size() > nodes && state.steps.size() >= lag_nodes_ + block_nodes_) {
+    const std::size_t before = state.steps.size();
     run_window(best_path(state), block_nodes_, state, out);
+    if (state.steps.size() == before) break;
   }
   return {};
 }
@@ -127,18 +138,20 @@ void RollingSmoother::finish(State& state, std::vector<RollingEstimate>& out) co
 void RollingSmoother::finish(std::span<const RollingMode> known, State& state,
                              std::vector<RollingEstimate>& out) const {
   std::vector<PathNode> path = best_path(state);
+  if (state.samples.empty()) return;
   std::size_t n = 0;
   double node_s = 0.0;
   RollingMode mode = RollingMode::grip;
-  for (std::size_t k = 1; k < std::min(known.size(), state.samples.size()) && n < path.size(); ++k) {
-    const double dt_s = seconds(state.samples[k].time_ns - state.samples[k - 1].time_ns);
-    if (node_s >= params_.filter.node_s - 0.5 * dt_s) {
-      path[n++].mode = looser(mode, known[k]);
+  rolling::Readings readings(params_.filter, state.samples, start_place(state.samples.front()));
+  rolling::Reading reading;
+  while (readings.next(reading) && reading.whole && n < path.size()) {
+    if (node_s >= params_.filter.node_s - 0.5 * reading.average.length_s) {
+      path[n++].mode = looser(mode, known[std::min(reading.first, known.size() - 1)]);
       mode = RollingMode::grip;
       node_s = 0.0;
     }
-    mode = looser(mode, known[k]);
-    node_s += dt_s;
+    for (std::size_t k = reading.first; k < std::min(reading.end, known.size()); ++k) mode = looser(mode, known[k]);
+    node_s += reading.average.length_s;
   }
   run_window(path, path.size() + 1, state, out);
 }
@@ -170,42 +183,60 @@ void RollingSmoother::run_window(const std::vector<PathNode>& path, std::size_t 
   window.points.reserve(state.samples.size());
   rolling::PathFilter& filter = window.start;
   filter = {state.committed.nominal, state.committed.P, state.committed.mode};
-  TimeNs last_ns = state.committed.last_time_ns;
-  std::size_t first = 0;
-  if (!state.committed.started) {
+  const Committed& last = state.committed;
+  rolling::Readings::Place place{last.last_time_ns,   last.last_rate_rad_s, 0,
+                                 last.gap_rate_rad_s, last.gap_start_ns,    last.gap_piece};
+  if (!last.started) {
+    const ImuSample& sample = state.samples[0];
     Eigen::Quaterniond q_WI = params_.filter.q_WI_start.value_or(Eigen::Quaterniond::Identity());
-    if (!params_.filter.q_WI_start) (void)level(state.samples[0].specific_force_m_s2, q_WI);  // went well in the filter
-    filter.nominal = rolling::start_nominal(path_params_, q_WI);
-    filter.P = rolling::prior_covariance(path_params_);
-    last_ns = state.samples[0].time_ns;
-    first = 1;
+    if (!params_.filter.q_WI_start) (void)level(sample.specific_force_m_s2, q_WI);  // went well in the filter
+    filter.nominal = rolling::start_nominal(path_params_, q_WI, sample.angular_velocity_rad_s);
+    filter.P = rolling::prior_covariance(path_params_, sample.angular_velocity_rad_s);
+    place = start_place(sample);
   }
   const rolling::PathFilter start = filter;
-  const TimeNs start_ns = last_ns;
+  const TimeNs start_ns = place.time_ns;
   std::size_t taken = state.samples.size();  // samples up to the node that becomes the committed one
-  const auto remember = [&](const ImuSample& sample) {
-    window.points.push_back({sample.time_ns, filter.nominal.q_WI, filter.nominal.v_WI_m_s, filter.nominal.p_WI_m,
-                             sample.angular_velocity_rad_s, window.nodes.size()});
+  rolling::Readings::Place committed_place = place;
+  const auto remember = [&](TimeNs time_ns, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s) {
+    window.points.push_back(
+        {time_ns, nominal.q_WI, nominal.v_WI_m_s, nominal.p_WI_m, rate_I_rad_s, window.nodes.size()});
   };
-  if (first == 1) remember(state.samples[0]);
+  if (place.next == 1) remember(place.time_ns, filter.nominal, place.last_rate_rad_s);
   RollingSums sums;
-  for (std::size_t k = first; k < state.samples.size(); ++k) {
-    const ImuSample& sample = state.samples[k];
-    const double dt_s = seconds(sample.time_ns - last_ns);
-    if (sums.node_s >= path_params_.node_s - 0.5 * dt_s && window.nodes.size() < path.size()) {
-      const Eigen::Vector3d& before = state.samples[k > 0 ? k - 1 : k].angular_velocity_rad_s;
-      window.nodes.push_back(rolling::close_node(path_params_, sums, 0.5 * (before + sample.angular_velocity_rad_s),
+  rolling::Readings readings(path_params_, state.samples, place);
+  rolling::Reading reading;
+  while (readings.next(reading)) {
+    const ImuAverage& average = reading.average;
+    const Eigen::Vector3d& rate = average.mean.angular_velocity_rad_s;
+    if (reading.whole && sums.node_s >= path_params_.node_s - 0.5 * average.length_s &&
+        window.nodes.size() < path.size()) {
+      window.nodes.push_back(rolling::close_node(path_params_, sums, 0.5 * (place.last_rate_rad_s + rate),
                                                  path[window.nodes.size()], filter));
-      window.nodes.back().time_ns = last_ns;
+      window.nodes.back().time_ns = place.time_ns;
       sums = {};
       if (window.nodes.size() == emitted) {
         window.committed = filter;
-        taken = k;
+        taken = reading.first;
+        committed_place = place;
       }
     }
-    rolling::integrate(path_params_, sample, dt_s, filter.nominal, sums);
-    last_ns = sample.time_ns;
-    remember(sample);
+    if (reading.in_gap) {
+      rolling::integrate_gap(path_params_, average, reading.doubt, filter.nominal, sums);
+      if (reading.end > reading.first) remember(reading.end_ns, filter.nominal, rate);
+    } else {
+      ImuAverage so_far;
+      TimeNs last_ns = place.time_ns;
+      for (std::size_t k = reading.first; k < reading.end; ++k) {
+        const ImuSample& sample = state.samples[k];
+        so_far.add(sample, seconds(sample.time_ns - last_ns));
+        last_ns = sample.time_ns;
+        remember(last_ns, rolling::carried_on(path_params_, so_far, filter.nominal),
+                 so_far.mean.angular_velocity_rad_s);
+      }
+      if (reading.whole) rolling::integrate(path_params_, average, filter.nominal, sums);
+    }
+    place = readings.place();
   }
   const bool ended = emitted > window.nodes.size();
   rolling::Reported moved_at_end = rolling::Reported::Zero();
@@ -273,14 +304,12 @@ void RollingSmoother::run_window(const std::vector<PathNode>& path, std::size_t 
   }
 
   if (emitted <= window.nodes.size()) {
-    state.committed = {window.committed.nominal,
-                       window.committed.P,
-                       window.committed.mode,
-                       committed_m2,
-                       state.committed.held_p_WG_m,
-                       state.committed.held,
-                       window.nodes[emitted - 1].time_ns,
-                       true};
+    state.committed = {window.committed.nominal,       window.committed.P,
+                       window.committed.mode,          committed_m2,
+                       state.committed.held_p_WG_m,    state.committed.held,
+                       committed_place.time_ns,        committed_place.last_rate_rad_s,
+                       committed_place.gap_rate_rad_s, committed_place.gap_start_ns,
+                       committed_place.gap_piece,      true};
     state.samples.erase(state.samples.begin(), state.samples.begin() + static_cast<std::ptrdiff_t>(taken));
     state.steps.erase(state.steps.begin(), state.steps.begin() + static_cast<std::ptrdiff_t>(emitted));
   } else {

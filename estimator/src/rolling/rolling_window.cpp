@@ -60,6 +60,55 @@ Reported reported(const Vector& x) {
 
 }  // namespace
 
+bool Readings::next_piece(double gap_s, Reading& out) {
+  const ImuSample& after = samples_[place_.next];
+  ImuSample before;
+  before.angular_velocity_rad_s = place_.gap_rate_rad_s;
+  const int pieces = gap_pieces(params_, gap_s);
+  out.average = gap_piece(params_, before, after, gap_s, place_.gap_piece, out.doubt);
+  out.in_gap = true;
+  ++place_.gap_piece;
+  const bool last = place_.gap_piece == pieces;
+  const double share = static_cast<double>(place_.gap_piece) / pieces;
+  out.end_ns = last ? after.time_ns : place_.gap_start_ns + static_cast<TimeNs>(share * gap_s * 1e9);
+  if (last) {
+    place_.gap_piece = 0;
+    out.end = ++place_.next;
+  }
+  place_.time_ns = out.end_ns;
+  place_.last_rate_rad_s = out.average.mean.angular_velocity_rad_s;
+  return true;
+}
+
+bool Readings::next(Reading& out) {
+  out = {};
+  out.first = out.end = place_.next;
+  if (place_.next >= samples_.size()) return false;
+  if (place_.gap_piece > 0) return next_piece(seconds(samples_[place_.next].time_ns - place_.gap_start_ns), out);
+  TimeNs last_ns = place_.time_ns;
+  for (; out.end < samples_.size(); ++out.end) {
+    const ImuSample& sample = samples_[out.end];
+    const double dt_s = seconds(sample.time_ns - last_ns);
+    if (dt_s > params_.gap_from_s) {
+      if (out.average.readings > 0) break;
+      place_.gap_rate_rad_s = place_.last_rate_rad_s;
+      place_.gap_start_ns = last_ns;
+      return next_piece(dt_s, out);
+    }
+    out.average.add(sample, dt_s);
+    last_ns = sample.time_ns;
+    out.whole = out.average.full(params_.reading_s, dt_s) || out.end + 1 < samples_.size();
+    if (out.average.full(params_.reading_s, dt_s)) {
+      ++out.end;
+      break;
+    }
+  }
+  out.end_ns = place_.time_ns = last_ns;
+  place_.last_rate_rad_s = out.average.mean.angular_velocity_rad_s;
+  place_.next = out.end;
+  return true;
+}
+
 Eigen::Matrix<double, kReported, kStates> reported_rows(const Covariance& P) {
   Eigen::Matrix<double, kReported, kStates> out;
   out << P.topRows<9>(), P.middleRows<3>(kLeverArm);
@@ -79,8 +128,8 @@ NodeRecord close_node(const RollingParams& params, const RollingSums& sums, cons
   if (path.at_rest) {
     measure_rest(params, sums, filter.nominal, record, x, filter.P);
   } else {
-    measure_contact(params, contact(params, filter.nominal, rate_I_rad_s), sums.node_s, filter.nominal.v_WI_m_s, record,
-                    x, filter.P);
+    measure_contact(params, contact(params, filter.nominal, rate_I_rad_s, sums), sums.node_s, filter.nominal.v_WI_m_s,
+                    record, x, filter.P);
   }
   filter.P = (0.5 * (filter.P + filter.P.transpose())).eval();
   filter.P.block<3, 3>(kPosition, kPosition) += path.spread_m2;

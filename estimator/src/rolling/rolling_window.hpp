@@ -42,6 +42,46 @@ struct NodeRecord {
   Eigen::Matrix<double, kReported, kReported> smoothed_P;
 };
 
+/// What the live filter takes at once: readings averaged, or a piece of a gap.
+struct Reading {
+  ImuAverage average;
+  GapDoubt doubt;
+  bool in_gap = false;
+  bool whole = true;               ///< false: the last one of the run, not long enough to be taken
+  std::size_t first = 0, end = 0;  ///< its samples; of a gap's pieces the last one alone has one
+  TimeNs end_ns = 0;
+};
+
+/// Stored samples as the live filter takes them. O(1) for each, no allocation.
+class Readings {
+ public:
+  /// Where in the samples: before the next reading.
+  struct Place {
+    TimeNs time_ns = 0;  ///< end of the last reading
+    Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
+    std::size_t next = 0;  ///< sample
+    // of the gap that it is in
+    Eigen::Vector3d gap_rate_rad_s = Eigen::Vector3d::Zero();  ///< before it
+    TimeNs gap_start_ns = 0;
+    int gap_piece = 0;
+    bool operator==(const Place&) const = default;
+  };
+
+  Readings(const RollingParams& params, std::span<const ImuSample> samples, const Place& from)
+      : params_(params), samples_(samples), place_(from) {}
+
+  const Place& place() const { return place_; }
+  /// False at the end.
+  bool next(Reading& out);
+
+ private:
+  bool next_piece(double gap_s, Reading& out);
+
+  const RollingParams& params_;
+  std::span<const ImuSample> samples_;
+  Place place_;
+};
+
 /// Nominal trajectory at a sample.
 struct SamplePoint {
   TimeNs time_ns = 0;

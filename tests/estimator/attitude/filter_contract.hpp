@@ -91,6 +91,12 @@ void expect_bad_input_refused(const Filter& filter) {
   bad.time_ns = std::numeric_limits<TimeNs>::max();
   expect_refused(filter, state, bad, Trouble::gap);
 
+  ImuSample first = samples[0];
+  first.time_ns = std::numeric_limits<TimeNs>::min();
+  typename Filter::State long_ago;
+  EXPECT_TRUE(filter.step(first, long_ago).ok());
+  expect_refused(filter, long_ago, good, Trouble::gap);
+
   ImuSample weightless = good;
   weightless.specific_force_m_s2.setZero();
   expect_refused(filter, typename Filter::State{}, weightless, Trouble::degenerate);

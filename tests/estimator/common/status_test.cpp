@@ -75,6 +75,12 @@ TEST(CheckFollows, RefusesEqualFallingAndDistantStamps) {
   EXPECT_EQ(gap.trouble, Trouble::gap);
   EXPECT_DOUBLE_EQ(gap.value, 2.0);
   EXPECT_EQ(gap.bound, 1.0);
+  // stamps whose difference does not fit into one
+  constexpr TimeNs kFirst = std::numeric_limits<TimeNs>::min(), kLast = std::numeric_limits<TimeNs>::max();
+  EXPECT_EQ(check_follows(0, kFirst, 1.0).trouble, Trouble::gap);
+  EXPECT_DOUBLE_EQ(check_follows(kLast, kFirst, 1.0).value, 18446744073.709551615);
+  EXPECT_EQ(check_follows(kFirst, kLast, 1.0).trouble, Trouble::time_order);
+  EXPECT_TRUE(check_follows(kFirst + 1, kFirst, 1.0).ok());
 }
 
 }  // namespace

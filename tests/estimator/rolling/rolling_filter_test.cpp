@@ -322,7 +322,9 @@ TEST(RollingFilter, RefusesBadInputAndKeepsItsState) {
   bad.angular_velocity_rad_s.z() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(filter.step(bad, *state).trouble, Trouble::non_finite);
   EXPECT_EQ(filter.step(truth.samples[599], *state).trouble, Trouble::time_order);
-  EXPECT_EQ(filter.step(truth.samples[640], *state).trouble, Trouble::gap);
+  ImuSample late = truth.samples[640];
+  late.time_ns = truth.samples[599].time_ns + 1'000'000'001;  // gap_max_s is 1 by default
+  EXPECT_EQ(filter.step(late, *state).trouble, Trouble::gap);
   EXPECT_TRUE(*state == *before);
   EXPECT_TRUE(filter.step(truth.samples[600], *state).ok());
 }

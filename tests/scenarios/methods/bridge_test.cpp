@@ -115,6 +115,8 @@ TEST(Bridge, TroubleIsNamedAndLeavesNothing) {
               for (std::size_t k = 7; k < r.time_ns.size(); ++k) r.time_ns[k] += 1000000001;
             }).trouble,
             Trouble::gap);
+  EXPECT_EQ(status_of([](sim::ImuRecord& r) { r.time_ns[0] = std::numeric_limits<std::int64_t>::min(); }).trouble,
+            Trouble::gap);
   sim::Sensors none;
   EXPECT_EQ(bridge::primary_imu_samples(none, samples).trouble, Trouble::empty);
   sim::ImuRecord short_record = good.sensors.imus.front();

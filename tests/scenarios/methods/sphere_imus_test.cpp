@@ -83,17 +83,61 @@ TEST(SphereImus, ATimeOffsetOfOneUnitIsLearntAndTold) {
   EXPECT_NEAR(merged.offset_max_s, 2.0 / 3.0 * kLate_s, 1e-4);
 }
 
-TEST(SphereImus, AUnitThatEndsEarlyOrHasTroubleIsLeftOut) {
+TEST(SphereImus, AUnitThatEndsEarlyIsLeftOutFromThereOnAndNamed) {
   sim::ImuRecord ends = unit("imu_2", 1'000'000, 0.0);
   for (auto* rows : {&ends.gyro_rad_s, &ends.accel_m_s2}) rows->resize(kSamples / 2);
   ends.time_ns.resize(kSamples / 2);
   ends.clip_flags.resize(kSamples / 2);
   sim::ImuRecord nan = unit("imu_3", 0, 0.0);
-  nan.gyro_rad_s[7].x() = std::nan("");
+  nan.gyro_rad_s[7].x() = std::nan("");  // one reading: made up for
   MergedImus merged;
   ASSERT_TRUE(merge_imus(three(ends, nan), merged).ok());
-  EXPECT_EQ(merged.units, 1);
-  EXPECT_TRUE(merged.each.empty()) << "there is no mean that it could be off from";
+  EXPECT_EQ(merged.units, 3);
+  ASSERT_EQ(merged.out.size(), 1U);
+  EXPECT_EQ(to_string(merged.out[0]), "imu_2_silent_since_s");
+  EXPECT_NEAR(merged.out[0].since_s, 5.0, 0.06);
+  EXPECT_LT(worst_rate_error(merged), 1e-3);
+}
+
+TEST(SphereImus, ThePrimaryUnitMayDieToo) {
+  sim::Sensors sensors = three(unit("imu_2", 0, 0.0), unit("imu_3", 0, 0.0));
+  for (std::size_t k = kSamples / 3; k < kSamples; ++k) sensors.imus[0].gyro_rad_s[k].x() = std::nan("");
+  MergedImus merged;
+  ASSERT_TRUE(merge_imus(sensors, merged).ok());
+  ASSERT_EQ(merged.samples.size(), static_cast<std::size_t>(kSamples));
+  ASSERT_EQ(merged.out.size(), 1U);
+  EXPECT_EQ(to_string(merged.out[0]), "imu_silent_since_s");
+  EXPECT_LT(worst_rate_error(merged), 1e-6);
+}
+
+TEST(SphereImus, AFrozenUnitIsLeftOutFromTheBeginningOfItAndNamed) {
+  for (std::size_t frozen = 0; frozen < 3; ++frozen) {
+    sim::Sensors sensors = three(unit("imu_2", 0, 0.0), unit("imu_3", 0, 0.0));
+    MergedImus merged;
+    ASSERT_TRUE(merge_imus(sensors, merged).ok());
+    EXPECT_TRUE(merged.out.empty());
+    sim::ImuRecord& record = sensors.imus[frozen];
+    for (std::size_t k = kSamples / 3; k < kSamples; ++k) {
+      record.gyro_rad_s[k] = record.gyro_rad_s[kSamples / 3];
+      record.accel_m_s2[k] = record.accel_m_s2[kSamples / 3];
+    }
+    ASSERT_TRUE(merge_imus(sensors, merged).ok());
+    ASSERT_EQ(merged.out.size(), 1U) << frozen;
+    EXPECT_EQ(to_string(merged.out[0]), record.name + "_frozen_since_s");
+    EXPECT_NEAR(merged.out[0].since_s, 1e-9 * static_cast<double>(record.time_ns[kSamples / 3]), 1e-9);
+    EXPECT_LT(worst_rate_error(merged), 1e-6) << frozen;  // nothing was learnt from it
+  }
+}
+
+TEST(SphereImus, AUnitOfOtherUnitsIsLeftOutAndNamed) {
+  sim::Sensors sensors = three(unit("imu_2", 0, 0.0), unit("imu_3", 0, 0.0));
+  for (Eigen::Vector3d& force : sensors.imus[1].accel_m_s2) force /= 9.80665;
+  MergedImus merged;
+  ASSERT_TRUE(merge_imus(sensors, merged).ok());
+  ASSERT_EQ(merged.out.size(), 1U);
+  EXPECT_EQ(to_string(merged.out[0]), "imu_2_disagrees_since_s");
+  EXPECT_EQ(merged.units, 2);
+  EXPECT_NEAR(merged.samples[100].specific_force_m_s2.z(), 9.80665, 1e-9);
 }
 
 }  // namespace

@@ -13,8 +13,8 @@ namespace tumble {
 /// Turning fast, units at different places measure large forces that cancel in their mean; what scale and misalignment
 /// make of those forces does not. A Kalman filter holds, for each unit, bias, scale and misalignment, and the error of
 /// its place: f_k = c + A p_k + b_k + M_k f_k + A dp_k, A = [a]x + [w]x[w]x, and measures each unit's difference from
-/// the mean of all, averaged over kSpan samples (all of it is linear, so the average loses nothing but what turns
-/// within it). What all units share shows in no difference and stays about zero: it is left to the user of the mean.
+/// the mean of all, averaged over kSpan_s (all of it is linear, so the average loses nothing but what turns within it).
+/// What all units share shows in no difference and stays about zero: it is left to the user of the mean.
 ///
 /// Not modelled: errors that change, a body that bends.
 class ForceErrors {
@@ -22,7 +22,7 @@ class ForceErrors {
   static constexpr int kUnits = 4;
   static constexpr int kPerUnit = 15;  ///< bias, rows of M, error of place
   static constexpr int kStates = kUnits * kPerUnit;
-  static constexpr int kSpan = 8;
+  static constexpr double kSpan_s = 0.032;
   using Vector = Eigen::Matrix<double, kStates, 1>;
   using Covariance = Eigen::Matrix<double, kStates, kStates>;
 
@@ -45,6 +45,7 @@ class ForceErrors {
     Eigen::Matrix3d by_place = Eigen::Matrix3d::Zero();
     double acceleration_rad_s2 = 0.0;
     int samples = 0;
+    double span_s = 0.0;
     bool started = false;
     bool operator==(const State&) const = default;
   };
@@ -52,10 +53,10 @@ class ForceErrors {
   /// Throws InvalidParams when a parameter is outside of its bound.
   explicit ForceErrors(const Params& params);
 
-  /// `forces_m_s2` of all units in common axes C, as measured, with rate and angular acceleration at their time. Once
-  /// in kSpan samples the filter is updated; O((kPerUnit count)^2), no allocation.
+  /// `forces_m_s2` of all units in common axes C, as measured over `dt_s`, with rate and angular acceleration at their
+  /// time. Once in kSpan_s the filter is updated; O((kPerUnit count)^2), no allocation.
   void learn(std::span<const Eigen::Vector3d> forces_m_s2, const Eigen::Vector3d& rate_rad_s,
-             const Eigen::Vector3d& acceleration_rad_s2, State& state) const;
+             const Eigen::Vector3d& acceleration_rad_s2, double dt_s, State& state) const;
 
   /// The force of unit `k` without its own bias, scale and misalignment.
   static Eigen::Vector3d corrected(int k, const Eigen::Vector3d& force_m_s2, const State& state);

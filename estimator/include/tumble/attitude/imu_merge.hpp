@@ -4,11 +4,13 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "tumble/attitude/force_errors.hpp"
 #include "tumble/attitude/rate_recovery.hpp"
 #include "tumble/common/imu.hpp"
+#include "tumble/common/imu_average.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble {
@@ -27,6 +29,13 @@ namespace tumble {
 /// the gyros do, three units or more tell the rate by what the turning does to their accelerometers (RateRecovery); the
 /// merged sample's clip flags say when they could not.
 ///
+/// What is learnt, is learnt from means over window_s, whatever the rate of the readings; derivatives reach back to the
+/// middle of the last window.
+///
+/// A unit whose reading is not finite is absent. One whose gyro or accelerometer repeats itself while the others move
+/// is frozen, and left out until it has moved again for a while; one that is off from the others for long (scale, axes,
+/// unit) is left out for good, as long as two others remain. Equal readings at rest are no sign of either.
+///
 /// Not modelled: clocks of different rates, an error that all units share.
 class ImuMerge {
  public:
@@ -39,7 +48,8 @@ class ImuMerge {
     double rate_tolerance_rad_s = 0.15;           ///< from the median, for a unit to be left out; bound (0, 1e3]
     double rate_tolerance_share = 0.03;           ///< more, as a share of the rate; bound [0, 1]
     double force_tolerance_m_s2 = 3.0;            ///< bound (0, 1e4]
-    double rate_noise_rad_s = 0.01;               ///< of one reading; bound (0, 10]
+    double rate_noise_rad_s = 0.01;               ///< of the mean over a window; bound (0, 10]
+    double window_s = 4e-3;                       ///< over which readings are averaged to learn from; bound [0, 0.1]
     double offset_sigma_s = 3e-3;                 ///< prior of a unit's time offset; zero: none; bound [0, 0.1]
     double gyro_range_rad_s = 1e3;                ///< readings from here on are at the rail; bound (0, 1e3]
     double accel_range_m_s2 = 1e5;                ///< bound (0, 1e5]
@@ -47,15 +57,44 @@ class ImuMerge {
     double hidden_share = 0.15;
     double hidden_force_m_s2 = 3.0;  ///< by which it then may disagree with another; bound (0, 1e4]
     double gap_max_s = 1.0;          ///< bound (0, 1e4]
+    // Of units that are left out. A reading that lasts for frozen_after_s while the others move by more than this is
+    // frozen; sample and hold is shorter.
+    double frozen_after_s = 0.1;      ///< bound (0, 1e3]
+    double frozen_rate_rad_s = 0.03;  ///< bound (0, 1e3]
+    double frozen_force_m_s2 = 0.3;   ///< bound (0, 1e4]
+    double thawed_after_s = 0.5;      ///< of readings that change; bound (0, 1e3]
+    // Off from the median, as a mean over half a second, for disagrees_after_s.
+    double disagree_rate_rad_s = 0.1;   ///< bound (0, 1e3]
+    double disagree_rate_share = 0.06;  ///< more, as a share of the rate; bound [0, 1]
+    double disagree_force_m_s2 = 1.0;   ///< bound (0, 1e4]
+    double disagrees_after_s = 0.3;     ///< bound (0, 1e3]
+  };
+
+  /// How long a triad has given the same reading, and what the others gave when it began.
+  struct Hold {
+    Eigen::Vector3d reading = Eigen::Vector3d::Zero(), others = Eigen::Vector3d::Zero();
+    TimeNs since_ns = 0;
+    double held_s = 0.0;
+    bool operator==(const Hold&) const = default;
   };
 
   /// Errors of one unit's rate about the mean of all.
   struct Unit {
     Eigen::Matrix<double, kErrors, 1> x = Eigen::Matrix<double, kErrors, 1>::Zero();
     Eigen::Matrix<double, kErrors, kErrors> P = Eigen::Matrix<double, kErrors, kErrors>::Zero();
+    /// Means over the last window, and what came since.
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero(), last_force_m_s2 = Eigen::Vector3d::Zero();
+    ImuAverage window;
     double suspect_s = 0.0;     ///< for so long it is still left out of the force
     std::int64_t left_out = 0;  ///< samples
+    Hold rate_hold, force_hold;
+    double thawing_s = 0.0;
+    double misfit_rate_rad_s = 0.0, misfit_force_m_s2 = 0.0, misfits_s = 0.0;
+    TimeNs misfits_since_ns = 0;
+    bool frozen = false, disagrees = false;
+    std::int64_t absent = 0;  ///< samples that were not finite
+    TimeNs frozen_since_ns = 0, disagrees_since_ns = 0, absent_since_ns = 0;
+    bool left_out_for_long() const { return frozen || disagrees; }
     double offset_s() const { return x[kErrors - 1]; }
     bool operator==(const Unit&) const = default;
   };
@@ -63,29 +102,48 @@ class ImuMerge {
     std::array<Unit, kImus> units{};
     ForceErrors::State forces;
     RateRecovery::State recovery;
-    Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();         ///< merged, last sample
-    Eigen::Vector3d rate_before_rad_s = Eigen::Vector3d::Zero();  ///< and the one before
-    std::int64_t samples = 0;
+    Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();         ///< merged, mean over the last window
+    Eigen::Vector3d rate_before_rad_s = Eigen::Vector3d::Zero();  ///< and over the one before
+    Eigen::Vector3d middle_rate_rad_s = Eigen::Vector3d::Zero(), middle_force_m_s2 = Eigen::Vector3d::Zero();
+    double turning_rad_s = 0.0;                        ///< mean of the rate over half a second
+    ImuAverage window;                                 ///< of merged readings, since the last one closed
+    double length_s = 0.0, length_before_s = 0.0;      ///< of the last windows
+    bool all_used = true;                              ///< within this one
+    double arm_product = 0.0, arm_square_m2_s3 = 0.0;  ///< of arm_share()
+    std::int64_t samples = 0, windows = 0;
     TimeNs last_time_ns = 0;
     bool operator==(const State&) const = default;
   };
 
   explicit ImuMerge(const Params& params);
 
+  /// What the forces differ by from unit to unit, as a share of what the turning makes of their places: 1 when all is
+  /// as it should be, -1 when the accelerometers' sign is flipped. None while the body has not turned enough to tell.
+  static std::optional<double> arm_share(const State& state);
+
   /// Place of the merged IMU in C.
   Eigen::Vector3d p_C_m() const { return p_C_m_; }
 
   /// `samples` are those of all units at one time (their time stamps are the first's); `merged` is in C. On trouble,
-  /// `too_few` when there are not `count` samples, state and `merged` are unchanged. O(count), no allocation.
+  /// `too_few` when there are not `count` samples or none is finite, state and `merged` are unchanged. O(count), no
+  /// allocation.
   Status step(std::span<const ImuSample> samples, State& state, ImuSample& merged) const;
 
  private:
   using Vectors = std::array<Eigen::Vector3d, kImus>;
 
-  void learn(std::span<const Eigen::Vector3d> rates, double dt_s, State& state) const;
-  void leave_out_hidden(std::span<const ImuSample> samples, const Vectors& forces, const Eigen::Vector3d& rate,
-                        double dt_s, State& state, std::array<bool, kImus>& used) const;
-  void recover(std::span<const ImuSample> samples, double dt_s, State& state, ImuSample& merged) const;
+  using Flags = std::array<bool, kImus>;
+
+  void learn(State& state) const;
+  void close_window(const Flags& present, TimeNs time_ns, State& state) const;
+  void watch_holds(const Flags& present, const Vectors& rates, const Vectors& forces, double dt_s, TimeNs time_ns,
+                   State& state) const;
+  void watch_misfits(const Flags& present, TimeNs time_ns, State& state) const;
+  static Eigen::Vector3d median(const Vectors& values, const Flags& which);
+  void leave_out_hidden(std::span<const ImuSample> samples, const Flags& present, const Vectors& forces,
+                        const Eigen::Vector3d& rate, double dt_s, State& state, Flags& used) const;
+  void recover(std::span<const ImuSample> samples, const Flags& present, double dt_s, State& state,
+               ImuSample& merged) const;
   static ForceErrors::Params force_params(const Params& params);
   static RateRecovery::Params recovery_params(const Params& params);
 

@@ -23,6 +23,8 @@ class RateRecovery {
  public:
   static constexpr int kUnits = 4;
   static constexpr int kStates = 9 + 3 * kUnits;
+  /// Shorter readings are noisier by the square root of their shortness, and say no more by being many.
+  static constexpr double kReading_s = 4e-3;
   static constexpr double kFast = 0.5;  ///< share of the gyro's range from which on the filter runs
   using Vector = Eigen::Matrix<double, kStates, 1>;
   using Covariance = Eigen::Matrix<double, kStates, kStates>;
@@ -33,9 +35,9 @@ class RateRecovery {
     double gyro_range_rad_s = 1e3;                  ///< from here on a reading is at its rail; bound (0, 1e3]
     double accel_range_m_s2 = 1e5;                  ///< bound (0, 1e5]
     double lever_arm_sigma_m = 1.5e-3;              ///< prior; bound (0, 10]
-    double rate_noise_rad_s = 0.03;                 ///< of one reading; bound (0, 10]
+    double rate_noise_rad_s = 0.03;                 ///< of a reading over kReading_s; bound (0, 10]
     double rate_noise_share = 0.003;                ///< more, as a share of the reading; bound [0, 1]
-    double force_noise_m_s2 = 0.3;                  ///< of one reading; bound (0, 1e3]
+    double force_noise_m_s2 = 0.3;                  ///< of a reading over kReading_s; bound (0, 1e3]
     double force_noise_share = 0.004;               ///< more, as a share of the reading; bound [0, 1]
     double acceleration_walk_rad_s2_sqrts = 200.0;  ///< of the angular acceleration; bound (0, 1e6]
     double force_walk_m_s2_sqrts = 25.0;            ///< of the common force; bound (0, 1e6]
@@ -52,18 +54,18 @@ class RateRecovery {
   /// Throws InvalidParams when a parameter is outside of its bound.
   explicit RateRecovery(const Params& params);
 
-  /// Takes the units' readings, each in its own axes, `dt_s` after the last ones; `merged` (C) holds the mean of those
-  /// in use and gets rate and force of the filter where a rail made them wrong. Its clip flags of the gyro are set when
-  /// the rate could not be recovered, those of the accelerometer when most units' were at their rail, or one's and a
-  /// gyro's; else cleared. O(count),
-  /// no allocation; little to do while the body turns slowly.
+  /// Takes the units' readings (of a unit that is not finite, none), each in its own axes, `dt_s` after the last ones;
+  /// `merged` (C) holds the mean of those in use and gets rate and force of the filter where a rail made them wrong.
+  /// Its clip flags of the gyro are set when the rate could not be recovered, those of the accelerometer when most
+  /// units' were at their rail, or one's and a gyro's; else cleared. O(count), no allocation; little to do while the
+  /// body turns slowly.
   void step(std::span<const ImuSample> units, double dt_s, State& state, ImuSample& merged) const;
 
  private:
   void start(const ImuSample& merged, State& state) const;
   void predict(double dt_s, State& state) const;
-  void measure_rates(std::span<const ImuSample> units, State& state) const;
-  void measure_forces(std::span<const ImuSample> units, State& state) const;
+  void measure_rates(std::span<const ImuSample> units, double dt_s, State& state) const;
+  void measure_forces(std::span<const ImuSample> units, double dt_s, State& state) const;
 
   Params params_;
 };

@@ -7,8 +7,8 @@
 
 namespace tumble {
 
-/// Time from `last_time_ns` to `time_ns` in `dt_s`. `time_order` when it is not positive, `gap` when it is longer than
-/// `gap_max_s`; `dt_s` is then untouched. Safe for any pair of stamps.
+/// Time from `last_time_ns` to `time_ns` in `dt_s`, or the trouble that check_follows() finds; `dt_s` is then
+/// untouched. Safe for any pair of stamps; gap_max_s up to 1e9.
 Status elapsed(TimeNs time_ns, TimeNs last_time_ns, double gap_max_s, double& dt_s);
 
 /// `non_finite` on NaN or infinity in the rates or forces, `out_of_range` on a component beyond 1e6 (rad/s, m/s^2):

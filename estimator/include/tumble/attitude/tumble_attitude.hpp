@@ -5,6 +5,7 @@
 
 #include "tumble/attitude/low_pass.hpp"
 #include "tumble/common/imu.hpp"
+#include "tumble/common/imu_average.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble {
@@ -21,6 +22,9 @@ namespace tumble {
 /// A rolling sphere (radius_m > 0) tells more: its velocity is r w x n, and that of the IMU w x (R rho) more, so the
 /// specific force is explained by rolling but for tilt and bias, without a derivative of the rate. A velocity that
 /// does not fit opens a slip: corrections are frozen until it fits again, for slip_timeout_s at the most.
+///
+/// Readings count by their time: those of a fast IMU are averaged to reading_s before anything is decided by them, and
+/// the attitude between two averages is the last one, turned on.
 ///
 /// Not modelled: accelerometer bias and scale (they are the tilt error that is left at rest), heading reference.
 class TumbleAttitude {
@@ -39,8 +43,11 @@ class TumbleAttitude {
     double displacement_m_sqrts = 0.3;           ///< sigma of the mean displacement over 1 s; bound (0, 1e3]
     double displacement_tau_s = 10.0;            ///< in which a displacement is forgotten; bound [0.1, 1e4]
     double node_s = 0.04;                        ///< time between two corrections; bound [1e-4, 1]
-    double rest_tau_s = 0.5;                     ///< of the low-passes that detect rest; bound [1e-3, 1e4]
-    double rest_time_s = 1.0;                    ///< quiet for so long is rest; bound [0, 1e4]
+    /// Readings are averaged to this length, at which all thresholds here are meant; zero: taken as they come; [0,
+    /// 0.1].
+    double reading_s = 4e-3;
+    double rest_tau_s = 0.5;             ///< of the low-passes that detect rest; bound [1e-3, 1e4]
+    double rest_time_s = 1.0;            ///< quiet for so long is rest; bound [0, 1e4]
     double rest_rate_rad_s = 3.4907e-2;  ///< 2 deg/s: quiet about the low-passed rate, and it about the bias; (0, 1]
     double rest_force_m_s2 = 0.5;        ///< quiet about the low-passed force; bound (0, 100]
     double rest_velocity_sigma_m_s = 0.005;   ///< per node at rest; bound (0, 10]
@@ -60,6 +67,8 @@ class TumbleAttitude {
     Eigen::Vector2d d_W_m = Eigen::Vector2d::Zero();
     /// Of (tilt error phi_x, phi_y in W with q_true = Exp(phi) q_WI; bias in I; velocity; displacement).
     Covariance covariance = Covariance::Zero();
+    ImuAverage average;  ///< of the readings since the last one that was taken
+    Eigen::Quaterniond q_taken_WI = Eigen::Quaterniond::Identity();  ///< and the attitude there
     // integrals since the last node
     Eigen::Matrix3d R_WI_s = Eigen::Matrix3d::Zero();
     Eigen::Vector3d f_W_m_s = Eigen::Vector3d::Zero();
@@ -87,6 +96,7 @@ class TumbleAttitude {
 
  private:
   void start(State& state) const;
+  void take_average(State& state) const;
   void detect_rest(const ImuSample& sample, double dt_s, State& state) const;
   void integrate(const ImuSample& sample, double dt_s, State& state) const;
   void predict_node(State& state) const;

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "tumble/common/imu.hpp"
+#include "tumble/common/imu_average.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/rolling/rolling_model.hpp"
 
@@ -19,6 +20,11 @@ namespace tumble {
 /// each filter's state, so that the grip after an event mends the way made in it; older estimates are not revised
 /// (RollingSmoother does that). While it stands still the position that is given out does too: what rest teaches of the
 /// way before is taken up when the motion goes on, or at once where another hypothesis becomes the best.
+///
+/// Readings count by their time: those of a fast IMU are averaged to RollingParams::reading_s before anything is
+/// decided by them, and the estimate between two averages is the last one, carried on. Over a gap of up to gap_max_s
+/// the rate is interpolated and the force unknown, which the covariance shows. A start in motion is told and believed
+/// less.
 ///
 /// While the gyro stands at its rail the attitude is unknown to that extent, and rolling says nothing: the position is
 /// then bounded by the covariance alone. State and stack need 430 KiB each.
@@ -57,9 +63,13 @@ class RollingFilter {
     bool at_rest = false;
     bool pivots = false;     ///< at rest but for a slow turn about the contact, which says nothing of the gyro's bias
     bool uncertain = false;  ///< in an event in which the position's sigma has grown by more than uncertain_m
+    bool started_in_motion = false;
+    std::int64_t gaps = 0;  ///< bridged
+    double gap_longest_s = 0.0;
     // What the hypotheses have in common: they hold their errors about it.
     RollingNominal nominal;
     RollingSums sums;
+    ImuAverage average;                                           ///< of the readings since the last one that was taken
     Eigen::Matrix3d settled_spread_m2 = Eigen::Matrix3d::Zero();  ///< of hypotheses given up at the last node
     Eigen::Vector3d slow_force_m_s2 = Eigen::Vector3d::Zero();
     Eigen::Vector3d slow_rate_rad_s = Eigen::Vector3d::Zero();
@@ -80,11 +90,29 @@ class RollingFilter {
   /// Takes a sample. The first one levels the attitude (yaw 0) and puts the centre at the origin, at rest; a second of
   /// rest should follow. On trouble the state is unchanged. No allocation; about kHypotheses * kStates^2 * 40
   /// operations per node.
-  Status step(const ImuSample& sample, State& state) const;
+  Status step(const ImuSample& sample, State& state) const {
+    return step(sample, state, [](const State&) {});
+  }
+
+  /// The same, and `closed(state)` after each node that it closes: several, where the sample ends a gap.
+  template <typename Closed>
+  Status step(const ImuSample& sample, State& state, Closed closed) const {
+    return step_with(sample, state,
+                     Listener{&closed, [](void* to, const State& at) { (*static_cast<Closed*>(to))(at); }});
+  }
 
  private:
   struct Candidate;
+  struct Listener {
+    void* to;
+    void (*call)(void*, const State&);
+  };
 
+  Status step_with(const ImuSample& sample, State& state, Listener listener) const;
+
+  void start(const ImuSample& sample, const Eigen::Quaterniond& q_WI, State& state) const;
+  void bridge(const ImuSample& sample, double gap_s, State& state, Listener listener) const;
+  void take_average(State& state, Listener listener) const;
   void close_node(const Eigen::Vector3d& next_rate_rad_s, State& state) const;
   void detect_rest(State& state) const;
   bool pivots(const State& state) const;

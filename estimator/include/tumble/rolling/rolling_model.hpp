@@ -31,6 +31,9 @@ struct RollingParams {
   Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< from centre to IMU, sensor axes; length up to 10
   std::optional<Eigen::Quaterniond> q_WI_start = {};      ///< attitude at the first sample; levelled when not given
   double node_s = 0.02;                                   ///< time between two measurements; bound [1e-3, 0.1]
+  /// Readings are averaged to this length, at which all thresholds here are meant; zero: taken as they come. A slower
+  /// IMU's are longer as they are. Bound [0, 0.1].
+  double reading_s = 4e-3;
   // Prior sigmas; bounds [0, 1e3]. Zero: known.
   double tilt_sigma_rad = 6e-3;
   double velocity_sigma_m_s = 2e-3;
@@ -85,7 +88,14 @@ struct RollingParams {
   double rest_rate_rad_s = 0.02;  ///< bound (0, 10]
   double rest_force_m_s2 = 0.15;  ///< of a node's mean about its slow mean; bound (0, 100]
   double rest_time_s = 0.4;       ///< quiet for so long; bound [0, 100]
-  double gap_max_s = 0.1;         ///< bound (0, 1]
+  // Gaps. Between two readings further apart than gap_from_s nothing is known of the force; the rate is taken to have
+  // gone straight from the one to the other, give or take what an angular acceleration of gap_acceleration_rad_s2 does.
+  double gap_from_s = 0.06;               ///< bound (0, 1]
+  double gap_max_s = 1.0;                 ///< a longer one ends the run; bound (0, 1]
+  double gap_acceleration_rad_s2 = 15.0;  ///< bound (0, 1e4]
+  /// A first reading that turns faster than this was taken in motion: attitude and velocity are then known by that much
+  /// less; bound (0, 10].
+  double start_rate_rad_s = 0.1;
   /// By how much more than this the horizontal sigma grows in an event that is called uncertain; bound (0, 1e3].
   double uncertain_m = 0.03;
 };
@@ -122,6 +132,8 @@ struct RollingSums {
   double shock_m_s = 0.0;                                  ///< of | |f| - g | beyond the usual
   double blow_m_s = 0.0;                                   ///< the same without what the turning may explain
   Eigen::Vector3d hidden_W_m_s = Eigen::Vector3d::Zero();  ///< sigma of what a rail took unseen, along the force
+  // of a gap: its length, variance of the turning, and of the rate times time
+  double gap_s = 0.0, gap_rad2 = 0.0, gap_rate_rad2_s = 0.0;
   double node_s = 0.0;
   bool operator==(const RollingSums&) const = default;
 };

@@ -75,6 +75,11 @@ class RollingSmoother {
     Eigen::Vector3d held_p_WG_m = Eigen::Vector3d::Zero();  ///< while `held`
     bool held = false;                                      ///< it stands still, and so does the position given out
     TimeNs last_time_ns = 0;
+    Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
+    // of the gap that the node lies in, if it does
+    Eigen::Vector3d gap_rate_rad_s = Eigen::Vector3d::Zero();
+    TimeNs gap_start_ns = 0;
+    int gap_piece = 0;
     bool started = false;
     bool operator==(const Committed&) const = default;
   };

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "tumble/common/imu.hpp"
+#include "tumble/common/imu_average.hpp"
+#include "tumble/common/status.hpp"
+
+namespace tumble {
+
+/// Whether an IMU's readings can be what they claim to be: units, axes, signs.
+///
+/// Where the force is steady in size over a fifth of a second it is nearly gravity: its size must be g, and the gyro
+/// must explain how its direction turns, u(t + T) = R^T u(t). Three sums over such windows tell: what the gyro leaves
+/// unexplained, what turned by the force, and what turned by the gyro. An accelerometer in g, a gyro in deg/s, axes
+/// that are swapped or of which one is flipped, and a force that stands still while the body turns leave most
+/// unexplained.
+///
+/// Not seen: an accelerometer with all three axes flipped, which is the mirrored world (ImuMerge::arm_share() tells it,
+/// with several IMUs), errors of some per cent, a body that does not turn, or that is pushed about all the time.
+class ImuPlausibility {
+ public:
+  struct Params {
+    double gravity_m_s2 = 9.80665;  ///< bound (0, 100]
+    double window_s = 0.2;          ///< bound [0.02, 10]
+    double reading_s = 0.02;        ///< readings are averaged to this length; bound [1e-3, 1]
+    double steady_share = 0.12;     ///< by which the force's size may change within a window; bound (0, 1]
+    double force_share_min = 0.5,
+           force_share_max = 2.0;  ///< of gravity, mean of steady windows; bounds [0, 1], [1, 1e6]
+    double unexplained_max = 0.2;  ///< share of the turning; good rolls of a sphere leave 0.001 to 0.03; bound (0, 10]
+    double turned_min_rad2 = 0.5;  ///< sum of squares below which nothing is said of it; bound (0, 1e6]
+    double turn_least_rad = 0.15;  ///< of a window, to count as turning; bound (0, 3]
+    int windows_min = 5;           ///< steady ones, to say something of the force's size; bound [1, 1e6]
+    double gap_max_s = 0.1;        ///< after a longer one a window begins anew; bound (0, 1e4]
+  };
+  struct State {
+    ImuAverage average;
+    Eigen::Vector3d force_start_m_s2 = Eigen::Vector3d::Zero();
+    Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  ///< within the window, by the gyro
+    double length_s = 0.0;
+    bool open = false, steady = false;
+    double force_sum_m_s2 = 0.0, windows = 0.0;
+    double unexplained_rad2 = 0.0, by_force_rad2 = 0.0, by_gyro_rad2 = 0.0;
+    TimeNs last_time_ns = 0;
+    bool started = false;
+    bool operator==(const State&) const = default;
+  };
+
+  /// Throws InvalidParams when a parameter is outside of its bound.
+  explicit ImuPlausibility(const Params& params);
+
+  /// Takes a reading; one that is not finite or out of order is passed over. O(1), no allocation.
+  void step(const ImuSample& sample, State& state) const;
+
+  /// Mean size of a steady force as a share of gravity; 1 while nothing is known.
+  double force_share(const State& state) const;
+  /// Share of the turning that the gyro does not explain; 0 while nothing is known.
+  double unexplained_share(const State& state) const;
+  /// `out_of_range` naming which of the two is out of its bound.
+  Status verdict(const State& state) const;
+
+ private:
+  void take(State& state) const;
+
+  Params params_;
+};
+
+}  // namespace tumble

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "tumble/common/imu.hpp"
+
+namespace tumble {
+
+/// Mean of the readings of a window of time. A filter that puts readings together to windows of one length has one
+/// bandwidth, and so one meaning of its thresholds, whatever the rate of the IMU; a reading that is itself as long as
+/// the window passes bit by bit.
+///
+/// Not modelled: coning and sculling within the window, as within the sample of an IMU that reads at its rate.
+struct ImuAverage {
+  ImuSample mean;                ///< its time is that of the last reading, its clip flags are those of all
+  double length_s = 0.0;         ///< of all readings
+  double rate_peak_rad_s = 0.0;  ///< largest component of a single reading
+  double force_peak_m_s2 = 0.0;
+  std::int64_t readings = 0;
+
+  /// Takes a reading over `dt_s` up to its time stamp.
+  void add(const ImuSample& sample, double dt_s) {
+    length_s += dt_s;
+    if (++readings == 1) {
+      mean = sample;
+    } else {
+      const double share = dt_s / length_s;
+      mean.angular_velocity_rad_s += share * (sample.angular_velocity_rad_s - mean.angular_velocity_rad_s);
+      mean.specific_force_m_s2 += share * (sample.specific_force_m_s2 - mean.specific_force_m_s2);
+      mean.time_ns = sample.time_ns;
+      mean.device_clip_flags = static_cast<std::uint8_t>(mean.device_clip_flags | sample.device_clip_flags);
+    }
+    rate_peak_rad_s = std::max(rate_peak_rad_s, sample.angular_velocity_rad_s.cwiseAbs().maxCoeff());
+    force_peak_m_s2 = std::max(force_peak_m_s2, sample.specific_force_m_s2.cwiseAbs().maxCoeff());
+  }
+
+  /// Whether another reading of `dt_s` would take it further from `window_s`.
+  bool full(double window_s, double dt_s) const { return length_s >= window_s - 0.5 * dt_s; }
+
+  bool operator==(const ImuAverage& other) const {
+    return mean.time_ns == other.mean.time_ns && mean.angular_velocity_rad_s == other.mean.angular_velocity_rad_s &&
+           mean.specific_force_m_s2 == other.mean.specific_force_m_s2 &&
+           mean.device_clip_flags == other.mean.device_clip_flags && length_s == other.length_s &&
+           rate_peak_rad_s == other.rate_peak_rad_s && force_peak_m_s2 == other.force_peak_m_s2 &&
+           readings == other.readings;
+  }
+};
+
+}  // namespace tumble

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/attitude/imu_plausibility.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tumble/attitude/timing.hpp"
+#include "tumble/common/so3.hpp"
+
+namespace tumble {
+
+namespace {
+
+constexpr double kSmallest = 1e-12;
+constexpr double kWeightless = 0.05;  // of gravity in m/s^2, in whatever unit it comes: no direction below it
+
+}  // namespace
+
+ImuPlausibility::ImuPlausibility(const Params& p) : params_(p) {
+  require_within("gravity_m_s2", p.gravity_m_s2, kSmallest, 100.0);
+  require_within("window_s", p.window_s, 0.02, 10.0);
+  require_within("reading_s", p.reading_s, 1e-3, 1.0);
+  require_within("steady_share", p.steady_share, kSmallest, 1.0);
+  require_within("force_share_min", p.force_share_min, 0.0, 1.0);
+  require_within("force_share_max", p.force_share_max, 1.0, 1e6);
+  require_within("unexplained_max", p.unexplained_max, kSmallest, 10.0);
+  require_within("turned_min_rad2", p.turned_min_rad2, kSmallest, 1e6);
+  require_within("turn_least_rad", p.turn_least_rad, kSmallest, 3.0);
+  require_within("windows_min", p.windows_min, 1, 1e6);
+  require_within("gap_max_s", p.gap_max_s, kSmallest, 1e4);
+}
+
+void ImuPlausibility::step(const ImuSample& sample, State& state) const {
+  if (!check(sample).ok()) return;
+  double dt_s = 0.0;
+  if (state.started) {
+    const Status follows = elapsed(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s);
+    if (follows.trouble == Trouble::time_order) return;
+    if (!follows.ok()) {
+      state.open = false;
+      state.average = {};
+    } else {
+      state.average.add(sample, dt_s);
+      if (state.average.full(params_.reading_s, dt_s)) take(state);
+    }
+  }
+  state.started = true;
+  state.last_time_ns = sample.time_ns;
+}
+
+void ImuPlausibility::take(State& state) const {
+  const Eigen::Vector3d force = state.average.mean.specific_force_m_s2;
+  const Eigen::Vector3d turned = state.average.length_s * state.average.mean.angular_velocity_rad_s;
+  const double length_s = state.average.length_s;
+  state.average = {};
+  if (state.open) {
+    // forces stand in the middle of their averages, so the first and the last turn count by half: to first order the
+    // same as all but the first
+    state.turned = (state.turned * so3::exp(turned)).normalized();
+    state.length_s += length_s;
+    const double start = state.force_start_m_s2.norm();
+    state.steady = state.steady && std::abs(force.norm() - start) <= params_.steady_share * start;
+    if (state.length_s >= params_.window_s - 0.5 * length_s) {
+      if (state.steady) {
+        const Eigen::Vector3d from = state.force_start_m_s2.normalized(), to = force.normalized();
+        const Eigen::Vector3d expected = state.turned.conjugate() * from;
+        const double by_force = (to - from).squaredNorm(), by_gyro = (expected - from).squaredNorm();
+        state.force_sum_m_s2 += force.norm();
+        state.windows += 1.0;
+        if (std::max(by_force, by_gyro) >= params_.turn_least_rad * params_.turn_least_rad) {
+          state.by_force_rad2 += by_force;
+          state.by_gyro_rad2 += by_gyro;
+          state.unexplained_rad2 += (to - expected).squaredNorm();
+        }
+      }
+      state.open = false;
+    }
+  }
+  if (!state.open) {
+    state.force_start_m_s2 = force;
+    state.turned.setIdentity();
+    state.length_s = 0.0;
+    state.open = true;
+    state.steady = force.norm() >= kWeightless;
+  }
+}
+
+double ImuPlausibility::force_share(const State& state) const {
+  if (state.windows < params_.windows_min) return 1.0;
+  return state.force_sum_m_s2 / state.windows / params_.gravity_m_s2;
+}
+
+double ImuPlausibility::unexplained_share(const State& state) const {
+  const double turned = std::max(state.by_force_rad2, state.by_gyro_rad2);
+  return turned < params_.turned_min_rad2 ? 0.0 : state.unexplained_rad2 / turned;
+}
+
+Status ImuPlausibility::verdict(const State& state) const {
+  const double force = force_share(state);
+  if (force < params_.force_share_min) {
+    return {Trouble::out_of_range, "steady specific force as a share of gravity", force, params_.force_share_min};
+  }
+  if (force > params_.force_share_max) {
+    return {Trouble::out_of_range, "steady specific force as a share of gravity", force, params_.force_share_max};
+  }
+  const double unexplained = unexplained_share(state);
+  if (unexplained > params_.unexplained_max) {
+    return {Trouble::out_of_range, "share of gravity's turning that the gyro does not explain", unexplained,
+            params_.unexplained_max};
+  }
+  return {};
+}
+
+}  // namespace tumble

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/methods/imu_check.hpp"
+
+#include "tumble/attitude/imu_plausibility.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr double kArmShareMin = 0.5;  // 1: as the places say; 0: no relation; -1: the sign is flipped
+
+Status told(Status status, Estimate& estimate) {
+  if (!status.ok()) estimate.health["imu_implausible"] = 1.0;
+  return status;
+}
+
+}  // namespace
+
+Status check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate) {
+  ImuPlausibility::Params params;
+  params.gravity_m_s2 = sensors.gravity_m_s2;
+  const ImuPlausibility plausibility(params);
+  ImuPlausibility::State state;
+  for (const ImuSample& sample : samples) plausibility.step(sample, state);
+  estimate.health["imu_force_share"] = plausibility.force_share(state);
+  estimate.health["imu_turning_unexplained"] = plausibility.unexplained_share(state);
+  return told(plausibility.verdict(state), estimate);
+}
+
+Status check_imus(const sim::Sensors& sensors, const MergedImus& imus, Estimate& estimate) {
+  const Status own = check_imu(sensors, imus.samples, estimate);
+  if (!imus.arm_share) return own;
+  estimate.health["imu_arm_share"] = *imus.arm_share;
+  if (!own.ok() || *imus.arm_share >= kArmShareMin) return own;
+  return told(
+      {Trouble::out_of_range, "differences of the IMUs' forces as a share of what the turning makes of their places",
+       *imus.arm_share, kArmShareMin},
+      estimate);
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+
+#include "scenarios/methods/method.hpp"
+#include "scenarios/methods/sphere_imus.hpp"
+#include "tumble/common/imu.hpp"
+
+/// Whether readings can be what they claim to be: units, axes, signs, by physics alone.
+namespace tumble::scenarios {
+
+/// Puts what was found into the estimate's health (`imu_force_share`, `imu_turning_unexplained`, `imu_implausible`) and
+/// returns the verdict: `out_of_range` with what was seen, where the readings contradict each other or gravity. O(N).
+Status check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate);
+
+/// The same of several IMUs as one, whose differences tell a flipped sign besides (`imu_arm_share`).
+Status check_imus(const sim::Sensors& sensors, const MergedImus& imus, Estimate& estimate);
+
+}  // namespace tumble::scenarios

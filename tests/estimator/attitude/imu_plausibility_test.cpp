@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/attitude/imu_plausibility.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "estimator/rolling/rolling_truth.hpp"
+
+namespace tumble {
+namespace {
+
+Status verdict_of(const std::function<void(ImuSample&)>& harm, TimeNs period_ns = 4'000'000) {
+  const testing::RollingTruth truth = testing::roll({.velocity_m_s = testing::l_shape,
+                                                     .contact_velocity_m_s = testing::no_slip,
+                                                     .lever_arm_m = {0.02, -0.01, 0.03},
+                                                     .q_start = so3::exp({0.1, -0.2, 0.0}),
+                                                     .period_ns = period_ns});
+  const ImuPlausibility plausibility({});
+  ImuPlausibility::State state;
+  for (ImuSample sample : truth.samples) {
+    harm(sample);
+    plausibility.step(sample, state);
+  }
+  return plausibility.verdict(state);
+}
+
+TEST(ImuPlausibility, ARollOfASphereIsPlausibleAtEveryRate) {
+  for (const TimeNs period_ns : {20'000'000, 4'000'000, 500'000}) {
+    const Status status = verdict_of([](ImuSample&) {}, period_ns);
+    EXPECT_TRUE(status.ok()) << status.message();
+  }
+  // biases and scales far beyond a data sheet's are no wrong unit
+  EXPECT_TRUE(verdict_of([](ImuSample& sample) {
+                sample.angular_velocity_rad_s =
+                    1.05 * sample.angular_velocity_rad_s + Eigen::Vector3d(0.05, 0.0, -0.05);
+                sample.specific_force_m_s2 = 0.9 * sample.specific_force_m_s2 + Eigen::Vector3d(0.0, 0.5, 0.0);
+              }).ok());
+}
+
+TEST(ImuPlausibility, WrongUnitsAndAxesAreNot) {
+  const auto says = [](const std::function<void(ImuSample&)>& harm) { return std::string(verdict_of(harm).field); };
+  const std::string size = "steady specific force as a share of gravity",
+                    turning = "share of gravity's turning that the gyro does not explain";
+  EXPECT_EQ(says([](ImuSample& sample) { sample.specific_force_m_s2 /= 9.80665; }), size);
+  EXPECT_EQ(says([](ImuSample& sample) { sample.specific_force_m_s2 *= 9.80665; }), size);
+  EXPECT_EQ(says([](ImuSample& sample) { sample.angular_velocity_rad_s *= 57.29578; }), turning);
+  EXPECT_EQ(says([](ImuSample& sample) { sample.angular_velocity_rad_s /= 57.29578; }), turning);
+  EXPECT_EQ(says([](ImuSample& sample) { sample.angular_velocity_rad_s *= -1.0; }), turning);
+  EXPECT_EQ(says([](ImuSample& sample) { std::swap(sample.specific_force_m_s2.x(), sample.specific_force_m_s2.y()); }),
+            turning);
+  EXPECT_EQ(says([](ImuSample& sample) { sample.specific_force_m_s2 = {0.5, 1.0, 9.7}; }), turning);
+}
+
+TEST(ImuPlausibility, OfABodyAtRestOrReadingsThatAreNoneNothingIsSaid) {
+  const ImuPlausibility plausibility({});
+  ImuPlausibility::State state;
+  EXPECT_TRUE(plausibility.verdict(state).ok());
+  ImuSample sample;
+  sample.specific_force_m_s2.setConstant(std::numeric_limits<double>::quiet_NaN());
+  plausibility.step(sample, state);
+  EXPECT_FALSE(state.started);
+  sample.specific_force_m_s2 = {0.0, 0.0, 9.8};
+  sample.time_ns = std::numeric_limits<TimeNs>::min();
+  plausibility.step(sample, state);
+  for (int k = 0; k < 2500; ++k) {
+    sample.time_ns = k * 4'000'000;
+    plausibility.step(sample, state);
+  }
+  EXPECT_TRUE(plausibility.verdict(state).ok());
+  EXPECT_NEAR(plausibility.force_share(state), 1.0, 0.01);
+  EXPECT_THROW(ImuPlausibility({.gravity_m_s2 = 0.0}), InvalidParams);
+}
+
+}  // namespace
+}  // namespace tumble
