@@ -8,12 +8,16 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <new>
 #include <optional>
+#include <system_error>
 
+#include "scenarios/errors.hpp"
 #include "scenarios/sweep/message.hpp"
 #include "scenarios/sweep/motion_values.hpp"
 #include "scenarios/sweep/variation.hpp"
 #include "sim/lidar/surface.hpp"
+#include "sim/simulate.hpp"
 
 namespace tumble::scenarios {
 
@@ -79,6 +83,30 @@ Given changed(const SimulatedDraw& draw, const Setting& setting) {
   return given;
 }
 
+Outcome unanswered(const DrawTask& task, const DrawTask::Run& run, const std::string& status,
+                   const std::string& message) {
+  Outcome outcome;
+  outcome.scenario = task.scenario->name;
+  outcome.seed = task.seed;
+  outcome.kind = run.method->info.kind;
+  outcome.method = run.method->info.name;
+  outcome.setting = run.setting;
+  outcome.status = status;
+  outcome.message = one_line(message);
+  return outcome;
+}
+
+/// The draw cannot be drawn or simulated, here or anywhere.
+void reject(const DrawTask& task, const std::exception& error, int fd) {
+  write_all(fd, to_line({{}, RejectedDraw{task.scenario->name, task.seed, one_line(error.what()), task.setting}}));
+}
+
+/// Nothing is known of the draw: each of its runs gets `status`.
+void give_up(const DrawTask& task, const std::string& status, const std::string& message, int fd) {
+  for (const Outcome& outcome : without_answer(task, status, message)) write_all(fd, to_line({outcome, {}}));
+  write_all(fd, to_line({}));
+}
+
 }  // namespace
 
 Outcome run_isolated(const Method& method, const SimulatedDraw& draw, const SimulatedDraw& scored,
@@ -101,12 +129,18 @@ Outcome run_isolated(const Method& method, const SimulatedDraw& draw, const Simu
   outcome.kind = method.info.kind;
   outcome.method = method.info.name;
   outcome.recording_digest = draw.recording_digest;
-  outcome.status = in_time ? "crashed" : "timeout";
+  outcome.status = in_time ? end.status() : "timeout";
   outcome.message = in_time ? end.describe() : "no answer within " + std::to_string(timeout_s) + " s";
   outcome.scores = {{"estimate_cpu_s", end.cpu_s},
                     {"estimate_peak_mib", std::max(0.0, end.peak_mib - before_mib)},
                     {"simulate_cpu_s", draw.simulate_cpu_s}};
   return outcome;
+}
+
+std::vector<Outcome> without_answer(const DrawTask& task, const std::string& status, const std::string& message) {
+  std::vector<Outcome> outcomes;
+  for (const DrawTask::Run& run : task.runs) outcomes.push_back(unanswered(task, run, status, message));
+  return outcomes;
 }
 
 void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int fd) {
@@ -121,15 +155,29 @@ void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int 
     DrawValues values = motion_values(name, task.seed, draw->recording);
     values.setting = task.setting;
     write_all(fd, to_line({{}, {}, std::move(values)}));
+  } catch (const BadInput& error) {
+    return reject(task, error, fd);
+  } catch (const sim::InvalidSituation& error) {
+    return reject(task, error, fd);
+  } catch (const sim::SimulationFailure& error) {
+    return reject(task, error, fd);
+  } catch (const std::bad_alloc&) {
+    return give_up(task, "killed", "no memory was left to simulate the draw", fd);
   } catch (const std::exception& error) {
-    write_all(fd, to_line({{}, RejectedDraw{name, task.seed, one_line(error.what()), task.setting}}));
-    return;
+    return give_up(task, "crashed", std::string("the simulation: ") + error.what(), fd);
   }
   Given given;
   for (const DrawTask::Run& run : task.runs) {
-    if (run.setting != given.setting) given = changed(*draw, run.setting);
-    Outcome outcome = run_isolated(with_setting(*run.method, run.setting), given.draw ? *given.draw : *draw,
-                                   given.scored ? *given.scored : *draw, surface ? &*surface : nullptr, timeout_s);
+    Outcome outcome;
+    try {
+      if (run.setting != given.setting) given = changed(*draw, run.setting);
+      outcome = run_isolated(with_setting(*run.method, run.setting), given.draw ? *given.draw : *draw,
+                             given.scored ? *given.scored : *draw, surface ? &*surface : nullptr, timeout_s);
+    } catch (const std::bad_alloc&) {
+      outcome = unanswered(task, run, "killed", "no memory was left for it");
+    } catch (const std::system_error& error) {
+      outcome = unanswered(task, run, "killed", error.what());
+    }
     outcome.setting = run.setting;
     if (!write_all(fd, to_line({outcome, {}}))) return;
   }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <new>
 #include <utility>
 
 #include "scenarios/draw/without_lidars.hpp"
@@ -59,6 +60,10 @@ Estimate run_method(const Method& method, const SimulatedDraw& draw, Outcome& ou
       outcome.status = "failed";
       outcome.message = one_line(estimate.status.message());
     }
+  } catch (const std::bad_alloc&) {
+    estimate = {};
+    outcome.status = "killed";
+    outcome.message = "no memory was left for it";
   } catch (const std::exception& error) {
     estimate = {};
     outcome.status = "failed";
@@ -78,6 +83,9 @@ void assess(const Method& method, const SimulatedDraw& draw, const sim::Surface*
     outcome.status = verdict(method.info.kind, estimate, input);
     if (outcome.status == "diverged") outcome.message = "the estimate left the truth, the recording or the numbers";
     for (Score& score : score(method.info.kind, estimate, input)) outcome.scores.push_back(std::move(score));
+  } catch (const std::bad_alloc&) {
+    outcome.status = "killed";
+    outcome.message = "no memory was left to score it";
   } catch (const std::exception& error) {
     outcome.status = "failed";
     outcome.message = one_line(std::string("not scored: ") + error.what());

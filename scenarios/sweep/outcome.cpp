@@ -120,4 +120,25 @@ std::string digest_of_texts(std::span<const std::string> texts) {
   return hasher.hex();
 }
 
+namespace {
+
+int rank(const std::string& status) {
+  if (status == "killed") return 0;
+  return status == "crashed" || status == "timeout" ? 1 : 2;
+}
+
+}  // namespace
+
+bool was_scored(const std::string& status) {
+  return rank(status) == 2;
+}
+
+bool outranks(const std::string& status, const std::string& other) {
+  return rank(status) > rank(other);
+}
+
+bool may_run_again(const std::string& status) {
+  return status == "crashed" || status == "timeout" || status == "killed";
+}
+
 }  // namespace tumble::scenarios

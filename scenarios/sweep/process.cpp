@@ -45,6 +45,10 @@ std::string Process::End::describe() const {
   return "ended with exit status " + std::to_string(exit_code);
 }
 
+std::string Process::End::status() const {
+  return signal == SIGKILL || signal == SIGXCPU || signal == SIGTERM ? "killed" : "crashed";
+}
+
 Process::Process(const std::function<void(int)>& work, bool own_group) : own_group_(own_group) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) throw std::system_error(errno, std::generic_category(), "pipe");

@@ -19,6 +19,9 @@ class Process {
     double cpu_s = 0;              ///< used by the child, its own children not counted
     double peak_mib = 0;           ///< largest resident size
     std::string describe() const;  ///< "ended by signal 11 (Segmentation fault)"
+    /// "killed" when something outside ended it (SIGKILL: the system short of memory, an operator; a quota of time),
+    /// else "crashed".
+    std::string status() const;
   };
 
   /// Forks and runs `work(write_end)` in the child, in a process group of its own when `own_group`. What `work` throws

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "scenarios/errors.hpp"
@@ -18,6 +19,8 @@ namespace {
 
 constexpr int kBusyTimeoutMs = 20000;
 constexpr const char* kRejected = "rejected";
+constexpr int kSqliteBusy = 5;  // as sqlite3.h has it
+constexpr const char* kBusy = "another program is writing to it; try again when it has ended";
 
 std::int64_t stored_seed(std::uint64_t seed) {
   return std::bit_cast<std::int64_t>(seed);
@@ -58,6 +61,14 @@ const char* picked(Rows rows) {
   return "0";
 }
 
+// what follows is a condition, and then the order
+constexpr const char* kOutcomes =
+    "SELECT scenario, seed, kind, method, status, message, recording_digest, estimate_digest, varied, setting "
+    "FROM outcomes WHERE kind <> '' AND ";
+constexpr const char* kRejections =
+    "SELECT scenario, seed, message, varied, setting FROM outcomes WHERE kind = '' AND ";
+constexpr const char* kInOrder = " ORDER BY varied, setting, scenario, seed, kind, method";
+
 int open_flags(Results::Mode mode) {
   return mode == Results::Mode::read_only ? SQLite::OPEN_READONLY : SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE;
 }
@@ -67,6 +78,21 @@ int open_flags(Results::Mode mode) {
 struct Results::Impl {
   std::filesystem::path path;
   SQLite::Database database;
+  bool in_transaction = false;  ///< of the caller
+
+  /// One of its own, unless the caller has begun one.
+  class Transaction {
+   public:
+    explicit Transaction(Impl& impl) {
+      if (!impl.in_transaction) own_.emplace(impl.database, SQLite::TransactionBehavior::IMMEDIATE);
+    }
+    void commit() {
+      if (own_) own_->commit();
+    }
+
+   private:
+    std::optional<SQLite::Transaction> own_;
+  };
 
   Impl(const std::filesystem::path& file, Mode mode)
       : path(file), database(file.string(), open_flags(mode), kBusyTimeoutMs) {
@@ -80,7 +106,7 @@ struct Results::Impl {
     try {
       return action();
     } catch (const SQLite::Exception& error) {
-      throw BadInput(path.string() + ": " + error.what());
+      throw BadInput(path.string() + ": " + (error.getErrorCode() == kSqliteBusy ? kBusy : error.what()));
     }
   }
 
@@ -102,7 +128,8 @@ struct Results::Impl {
 
   void check(Mode mode) {
     if (number("application_id") != kApplicationId) throw BadInput(path.string() + ": not a results database");
-    if (number("user_version") != kSchemaVersion) {
+    const int version = number("user_version");
+    if (version != kSchemaVersion && !(mode == Mode::read_only && version == kReadableVersion)) {
       throw BadInput(path.string() + ": schema version " + std::to_string(number("user_version")) + ", must be " +
                      std::to_string(kSchemaVersion));
     }
@@ -126,8 +153,47 @@ struct Results::Impl {
     return select.executeStep() ? select.getColumn(0).getString() : std::string();
   }
 
+  std::vector<Outcome> read_outcomes(SQLite::Statement& select) const {
+    std::vector<Outcome> found;
+    while (select.executeStep()) {
+      Outcome row;
+      row.scenario = select.getColumn(0).getString();
+      row.seed = read_seed(select.getColumn(1).getInt64());
+      row.kind = kind_named(select.getColumn(2).getString(), path);
+      row.method = select.getColumn(3).getString();
+      row.status = select.getColumn(4).getString();
+      row.message = select.getColumn(5).getString();
+      row.recording_digest = select.getColumn(6).getString();
+      row.estimate_digest = select.getColumn(7).getString();
+      row.setting = {select.getColumn(8).getString(), select.getColumn(9).getDouble()};
+      found.push_back(std::move(row));
+    }
+    return found;
+  }
+
+  static std::vector<RejectedDraw> read_rejected(SQLite::Statement& select) {
+    std::vector<RejectedDraw> found;
+    while (select.executeStep()) {
+      found.push_back({select.getColumn(0).getString(),
+                       read_seed(select.getColumn(1).getInt64()),
+                       select.getColumn(2).getString(),
+                       {select.getColumn(3).getString(), select.getColumn(4).getDouble()}});
+    }
+    return found;
+  }
+
   void store(const std::string& kind, const Outcome& outcome) {
-    SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
+    Transaction transaction(*this);
+    if (!kind.empty()) {
+      SQLite::Statement drawn(database,
+                              "DELETE FROM outcomes WHERE scenario = ? AND seed = ? AND kind = '' AND method = '' "
+                              "AND varied = ? AND setting = ?");
+      drawn.bind(1, outcome.scenario);
+      drawn.bind(2, stored_seed(outcome.seed));
+      drawn.bind(3, outcome.setting.key);
+      drawn.bind(4, outcome.setting.value);
+      drawn.exec();
+    }
     SQLite::Statement insert(
         database,
         "INSERT OR REPLACE INTO outcomes (scenario, seed, kind, method, status, message, "
@@ -164,6 +230,7 @@ Results::Results(const std::filesystem::path& path, Mode mode) {
     if (mode == Mode::create_or_append && impl_->is_empty()) impl_->create();
     impl_->check(mode);
   } catch (const SQLite::Exception& error) {
+    if (error.getErrorCode() == kSqliteBusy) throw BadInput(path.string() + ": " + kBusy);
     throw BadInput(path.string() + ": not a usable results database: " + error.what());
   }
 }
@@ -175,7 +242,10 @@ void Results::store(const Outcome& outcome) {
   impl_->guarded([&] { impl_->store(to_string(outcome.kind), outcome); });
 }
 
-void Results::store(const RejectedDraw& rejected) {
+bool Results::store(const RejectedDraw& rejected) {
+  for (const Outcome& held : outcomes_of(rejected.scenario, rejected.seed)) {
+    if (held.setting == rejected.setting) return false;
+  }
   Outcome outcome;
   outcome.scenario = rejected.scenario;
   outcome.seed = rejected.seed;
@@ -183,11 +253,12 @@ void Results::store(const RejectedDraw& rejected) {
   outcome.message = rejected.message;
   outcome.setting = rejected.setting;
   impl_->guarded([&] { impl_->store("", outcome); });
+  return true;
 }
 
 void Results::store(const DrawValues& draw) {
   impl_->guarded([&] {
-    SQLite::Transaction transaction(impl_->database, SQLite::TransactionBehavior::IMMEDIATE);
+    Impl::Transaction transaction(*impl_);
     SQLite::Statement insert(impl_->database, "INSERT OR REPLACE INTO draw_values VALUES (?, ?, ?, ?, ?, ?)");
     for (const Score& score : draw.values) {
       insert.bind(1, draw.scenario);
@@ -205,7 +276,7 @@ void Results::store(const DrawValues& draw) {
 
 void Results::store(const Certificate& certificate) {
   impl_->guarded([&] {
-    SQLite::Transaction transaction(impl_->database, SQLite::TransactionBehavior::IMMEDIATE);
+    Impl::Transaction transaction(*impl_);
     SQLite::Statement remove(impl_->database, "DELETE FROM certificates WHERE build = ?");
     remove.bind(1, certificate.build);
     remove.exec();
@@ -235,6 +306,28 @@ void Results::set_note(const std::string& key, const std::string& text) {
 
 std::string Results::note(const std::string& key) const {
   return impl_->guarded([&] { return impl_->read_note(key); });
+}
+
+void Results::in_one_transaction(const std::function<void()>& work) {
+  impl_->guarded([&] {
+    SQLite::Transaction transaction(impl_->database, SQLite::TransactionBehavior::IMMEDIATE);
+    impl_->in_transaction = true;
+    try {
+      work();
+    } catch (...) {
+      impl_->in_transaction = false;
+      throw;
+    }
+    impl_->in_transaction = false;
+    transaction.commit();
+  });
+}
+
+std::optional<Outcome> Results::find(const Outcome& key) const {
+  for (Outcome& held : outcomes_of(key.scenario, key.seed)) {
+    if (held.kind == key.kind && held.method == key.method && held.setting == key.setting) return std::move(held);
+  }
+  return std::nullopt;
 }
 
 bool Results::has(const std::string& scenario, std::uint64_t seed, Kind kind, const std::string& method) const {
@@ -275,42 +368,33 @@ std::vector<ScoreRow> Results::scores(Rows rows) const {
 
 std::vector<Outcome> Results::outcomes(Rows rows) const {
   return impl_->guarded([&] {
-    std::vector<Outcome> found;
-    SQLite::Statement select(impl_->database,
-                             std::string("SELECT scenario, seed, kind, method, status, message, recording_digest, "
-                                         "estimate_digest, varied, setting FROM outcomes WHERE kind <> '' AND ") +
-                                 picked(rows) + " ORDER BY varied, setting, scenario, seed, kind, method");
-    while (select.executeStep()) {
-      Outcome row;
-      row.scenario = select.getColumn(0).getString();
-      row.seed = read_seed(select.getColumn(1).getInt64());
-      row.kind = kind_named(select.getColumn(2).getString(), impl_->path);
-      row.method = select.getColumn(3).getString();
-      row.status = select.getColumn(4).getString();
-      row.message = select.getColumn(5).getString();
-      row.recording_digest = select.getColumn(6).getString();
-      row.estimate_digest = select.getColumn(7).getString();
-      row.setting = {select.getColumn(8).getString(), select.getColumn(9).getDouble()};
-      found.push_back(std::move(row));
-    }
-    return found;
+    SQLite::Statement select(impl_->database, std::string(kOutcomes) + picked(rows) + kInOrder);
+    return impl_->read_outcomes(select);
+  });
+}
+
+std::vector<Outcome> Results::outcomes_of(const std::string& scenario, std::uint64_t seed) const {
+  return impl_->guarded([&] {
+    SQLite::Statement select(impl_->database, std::string(kOutcomes) + "scenario = ? AND seed = ?" + kInOrder);
+    select.bind(1, scenario);
+    select.bind(2, stored_seed(seed));
+    return impl_->read_outcomes(select);
   });
 }
 
 std::vector<RejectedDraw> Results::rejected(Rows rows) const {
   return impl_->guarded([&] {
-    std::vector<RejectedDraw> found;
-    SQLite::Statement select(
-        impl_->database,
-        std::string("SELECT scenario, seed, message, varied, setting FROM outcomes WHERE kind = '' AND ") +
-            picked(rows) + " ORDER BY varied, setting, scenario, seed");
-    while (select.executeStep()) {
-      found.push_back({select.getColumn(0).getString(),
-                       read_seed(select.getColumn(1).getInt64()),
-                       select.getColumn(2).getString(),
-                       {select.getColumn(3).getString(), select.getColumn(4).getDouble()}});
-    }
-    return found;
+    SQLite::Statement select(impl_->database, std::string(kRejections) + picked(rows) + kInOrder);
+    return impl_->read_rejected(select);
+  });
+}
+
+std::vector<RejectedDraw> Results::rejected_of(const std::string& scenario, std::uint64_t seed) const {
+  return impl_->guarded([&] {
+    SQLite::Statement select(impl_->database, std::string(kRejections) + "scenario = ? AND seed = ?" + kInOrder);
+    select.bind(1, scenario);
+    select.bind(2, stored_seed(seed));
+    return impl_->read_rejected(select);
   });
 }
 

@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,18 +38,27 @@ class Results {
   ~Results();
   Results(Results&&) noexcept;
 
-  /// A score without a name, as `scores()` has it for an outcome that has none, is left out.
+  /// A score without a name, as `scores()` has it for an outcome that has none, is left out. A rejection of the same
+  /// draw goes: what has run could be drawn.
   void store(const Outcome& outcome);
-  void store(const RejectedDraw& rejected);
+  /// Not where an outcome of the draw stands; false then.
+  bool store(const RejectedDraw& rejected);
   void store(const DrawValues& draw);
   /// Replaces what was known of its build.
   void store(const Certificate& certificate);
   /// A free text kept with the results: "suite", "build", "data".
   void set_note(const std::string& key, const std::string& text);
   std::string note(const std::string& key) const;
+  /// All that `work` stores, or, when it throws, nothing of it. Throws what it throws.
+  void in_one_transaction(const std::function<void()>& work);
 
   /// Of a plain outcome.
   bool has(const std::string& scenario, std::uint64_t seed, Kind kind, const std::string& method) const;
+  /// The row with the scenario, seed, kind, method and setting of `key`, without its scores.
+  std::optional<Outcome> find(const Outcome& key) const;
+  /// What is held of one draw, curves included, without scores.
+  std::vector<Outcome> outcomes_of(const std::string& scenario, std::uint64_t seed) const;
+  std::vector<RejectedDraw> rejected_of(const std::string& scenario, std::uint64_t seed) const;
   std::vector<ScoreRow> scores(Rows rows = Rows::plain) const;
   /// Every outcome without its scores.
   std::vector<Outcome> outcomes(Rows rows = Rows::plain) const;

@@ -19,7 +19,7 @@ CREATE TABLE outcomes (
   seed INTEGER NOT NULL,
   kind TEXT NOT NULL,
   method TEXT NOT NULL,
-  status TEXT NOT NULL CHECK (status IN ('ok', 'diverged', 'failed', 'crashed', 'timeout', 'rejected')),
+  status TEXT NOT NULL CHECK (status IN ('ok', 'diverged', 'failed', 'crashed', 'timeout', 'killed', 'rejected')),
   message TEXT NOT NULL,
   recording_digest TEXT NOT NULL,
   estimate_digest TEXT NOT NULL,

@@ -5,7 +5,9 @@ namespace tumble::scenarios {
 
 /// Marks a results database in SQLite's header ("TMBL"), so that another program's file is never written to.
 inline constexpr int kApplicationId = 0x544d424c;
-inline constexpr int kSchemaVersion = 3;
+inline constexpr int kSchemaVersion = 4;
+/// Differs in the statuses that it allows alone: it may still be read.
+inline constexpr int kReadableVersion = 3;
 
 /// Statements that make an empty results database.
 extern const char* const kSchema;

@@ -89,6 +89,9 @@ Suite read_suite(const DataRoot& data, const std::filesystem::path& path) {
     if (!std::binary_search(known.begin(), known.end(), name)) {
       item.fail("unknown scenario '" + name + "'" + suggestion(name, known));
     }
+    if (std::find(suite.scenarios.begin(), suite.scenarios.end(), name) != suite.scenarios.end()) {
+      item.fail("scenario '" + name + "' stands twice");
+    }
     suite.scenarios.push_back(name);
   }
   if (suite.scenarios.empty()) fields.at("scenarios").fail("no scenario");

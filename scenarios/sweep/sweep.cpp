@@ -6,8 +6,7 @@
 #include <algorithm>
 #include <list>
 #include <optional>
-#include <set>
-#include <tuple>
+#include <system_error>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/sweep/data_digest.hpp"
@@ -30,7 +29,6 @@ struct Worker {
   Process process;
   double deadline_s;
   std::string buffer;
-  bool simulated = false;  // an outcome has come
   bool finished = false;   // said that it is done, or that the draw was rejected
 };
 
@@ -75,18 +73,24 @@ void claim(Results& results, const DataRoot& data, const Suite& suite, const std
 class Sweep {
  public:
   Sweep(const DataRoot& data, const Suite& suite, Results& results, const SweepOptions& options)
-      : data_(data), suite_(suite), results_(results), options_(options), started_s_(now_s()) {}
+      : data_(data), suite_(suite), results_(results), options_(options), started_s_(now_s()),
+        settings_(settings_of(suite)) {
+    next_.seed = suite.first_seed;
+  }
 
   SweepProgress run() {
-    const std::vector<const Method*> methods = chosen_methods(suite_);
-    for (const std::string& name : suite_.scenarios) scenarios_.push_back(load_scenario(data_, name));
+    for (const std::string& name : suite_.scenarios) add_scenario(name);
+    if (std::all_of(scenarios_.begin(), scenarios_.end(), [](const auto& each) { return each.methods.empty(); })) {
+      throw BadInput("suite " + suite_.name + ": none of its methods applies to any of its scenarios");
+    }
     // a catalogue that cannot be drawn from is the caller's mistake, not an outcome
-    for (const Scenario& scenario : scenarios_) draw(data_, scenario, suite_.first_seed);
-    plan(methods);
-    done_before_ = progress_.draws_done;
-    report();
-    while (!stopped() && (!pending_.empty() || !workers_.empty())) {
-      while (!pending_.empty() && static_cast<int>(workers_.size()) < options_.jobs) start();
+    for (const Planned& each : scenarios_) draw(data_, each.scenario, suite_.first_seed);
+    progress_.draws_total = (suite_.last_seed - suite_.first_seed + 1) * scenarios_.size() * settings_.simulated.size();
+    while (!stopped()) {
+      while (!stopped() && static_cast<int>(workers_.size()) < options_.jobs && start_next()) {
+      }
+      report();
+      if (workers_.empty()) break;
       wait_for_words();
       for (auto worker = workers_.begin(); worker != workers_.end();) {
         worker = serve(*worker) ? workers_.erase(worker) : std::next(worker);
@@ -105,50 +109,90 @@ class Sweep {
   }
 
  private:
+  /// A scenario of the suite and the methods that apply to it.
+  struct Planned {
+    Scenario scenario;
+    std::vector<const Method*> methods;
+  };
+
+  /// The draw that comes next: seeds outermost, so that a sweep that is stopped has all scenarios and all points of the
+  /// curves in it.
+  struct Cursor {
+    std::uint64_t seed = 0;
+    std::size_t scenario = 0, setting = 0;
+    bool at_end = false;
+  };
+
   bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
 
-  // seeds outermost, so that a sweep that is stopped has all scenarios and all points of the curves in it
-  void plan(const std::vector<const Method*>& methods) {
-    std::set<std::tuple<std::string, std::uint64_t, Setting>> rejected;
-    for (const RejectedDraw& draw : results_.rejected(Rows::all)) {
-      rejected.emplace(draw.scenario, draw.seed, draw.setting);
-    }
-    std::set<std::tuple<std::string, std::uint64_t, Kind, std::string, Setting>> held;
-    for (const Outcome& row : results_.outcomes(Rows::all)) {
-      held.emplace(row.scenario, row.seed, row.kind, row.method, row.setting);
-    }
-    const Settings settings = settings_of(suite_);
-    for (std::uint64_t seed = suite_.first_seed;; ++seed) {
-      for (const Scenario& scenario : scenarios_) {
-        const std::vector<const Method*> own = applicable(methods, scenario.robot.type);
-        for (const Setting& simulated : settings.simulated) {
-          DrawTask draw{&scenario, seed, simulated, {}};
-          const auto add = [&](const Setting& setting) {
-            for (const Method* method : own) {
-              const MethodInfo& info = method->info;
-              const bool missing = !held.contains({scenario.name, seed, info.kind, info.name, setting});
-              if (missing && concerns(setting, info)) draw.runs.push_back({method, setting});
-            }
-          };
-          add(simulated);
-          if (simulated.is_plain()) std::for_each(settings.shared.begin(), settings.shared.end(), add);
-          ++progress_.draws_total;
-          if (draw.runs.empty() || rejected.contains({scenario.name, seed, simulated}))
-            ++progress_.draws_done;
-          else
-            pending_.push_back(std::move(draw));
-        }
-      }
-      if (seed == suite_.last_seed) break;
-    }
+  void add_scenario(const std::string& name) {
+    Planned planned{load_scenario(data_, name), {}};
+    const std::vector<const Method*> chosen = chosen_methods(suite_);
+    planned.methods = applicable(chosen, planned.scenario.robot.type);
+    scenarios_.push_back(std::move(planned));
   }
 
-  void start() {
-    DrawTask draw = std::move(pending_.front());
-    pending_.pop_front();
-    const double limit_s = suite_.timeout_s * (static_cast<double>(draw.runs.size()) + kSimulateTimeouts);
-    Process process([&](int fd) { run_draw(data_, draw, suite_.timeout_s, fd); }, true);
-    workers_.push_back({std::move(draw), std::move(process), now_s() + limit_s, {}, false, false});
+  void advance() {
+    if (++next_.setting < settings_.simulated.size()) return;
+    next_.setting = 0;
+    if (++next_.scenario < scenarios_.size()) return;
+    next_.scenario = 0;
+    next_.at_end = next_.seed == suite_.last_seed;
+    ++next_.seed;
+  }
+
+  /// What of the draw at the cursor has no row yet, or one that is to be run again.
+  DrawTask task_at_cursor() const {
+    const Planned& planned = scenarios_[next_.scenario];
+    const Setting& simulated = settings_.simulated[next_.setting];
+    DrawTask task{&planned.scenario, next_.seed, simulated, {}};
+    for (const RejectedDraw& rejected : results_.rejected_of(planned.scenario.name, next_.seed)) {
+      if (rejected.setting == simulated) return task;
+    }
+    const std::vector<Outcome> held = results_.outcomes_of(planned.scenario.name, next_.seed);
+    const auto stands = [&](const MethodInfo& info, const Setting& setting) {
+      return std::any_of(held.begin(), held.end(), [&](const Outcome& row) {
+        return row.kind == info.kind && row.method == info.name && row.setting == setting &&
+               std::find(options_.again.begin(), options_.again.end(), row.status) == options_.again.end();
+      });
+    };
+    const auto add = [&](const Setting& setting) {
+      for (const Method* method : planned.methods) {
+        const MethodInfo& info = method->info;
+        if (concerns(setting, info) && !stands(info, setting)) task.runs.push_back({method, setting});
+      }
+    };
+    add(simulated);
+    if (simulated.is_plain()) std::for_each(settings_.shared.begin(), settings_.shared.end(), add);
+    return task;
+  }
+
+  // starts the next draw that has something to run; false when there is none, or no process to run it in for now
+  bool start_next() {
+    for (; !next_.at_end && !stopped(); advance()) {
+      DrawTask task = task_at_cursor();
+      if (task.runs.empty()) {
+        ++progress_.draws_done;
+        ++done_before_;
+        continue;
+      }
+      if (!start(std::move(task))) return false;
+      advance();
+      return true;
+    }
+    return false;
+  }
+
+  bool start(DrawTask task) {
+    const double limit_s = suite_.timeout_s * (static_cast<double>(task.runs.size()) + kSimulateTimeouts);
+    try {
+      Process process([&](int fd) { run_draw(data_, task, suite_.timeout_s, fd); }, true);
+      workers_.push_back({std::move(task), std::move(process), now_s() + limit_s, {}, false});
+    } catch (const std::system_error& error) {
+      if (workers_.empty()) throw BadInput(std::string("no process can be made: ") + error.what());
+      return false;  // when one of the others has ended
+    }
+    return true;
   }
 
   void wait_for_words() const {
@@ -178,7 +222,6 @@ class Sweep {
       if (!message) continue;
       if (message->outcome) {
         keep(*message->outcome);
-        worker.simulated = true;
         std::erase_if(worker.draw.runs, [&](const DrawTask::Run& run) {
           const MethodInfo& info = run.method->info;
           return info.kind == message->outcome->kind && info.name == message->outcome->method &&
@@ -195,24 +238,10 @@ class Sweep {
     }
   }
 
-  // the process of a draw died: before its first outcome it is the simulation that failed, later the methods left over
+  // the process of a draw died: what is left over of its runs has no answer
   void account_for_death(const Worker& worker, bool late, const Process::End& end) {
     const std::string what = late ? "the draw did not end in time" : "the draw's process " + end.describe();
-    if (!worker.simulated) {
-      keep(RejectedDraw{worker.draw.scenario->name, worker.draw.seed, what, worker.draw.setting});
-      return;
-    }
-    for (const DrawTask::Run& run : worker.draw.runs) {
-      Outcome outcome;
-      outcome.scenario = worker.draw.scenario->name;
-      outcome.seed = worker.draw.seed;
-      outcome.kind = run.method->info.kind;
-      outcome.method = run.method->info.name;
-      outcome.setting = run.setting;
-      outcome.status = late ? "timeout" : "crashed";
-      outcome.message = what;
-      keep(outcome);
-    }
+    for (const Outcome& outcome : without_answer(worker.draw, late ? "timeout" : end.status(), what)) keep(outcome);
   }
 
   void keep(const Outcome& outcome) {
@@ -222,8 +251,7 @@ class Sweep {
   }
 
   void keep(const RejectedDraw& rejected) {
-    results_.store(rejected);
-    ++progress_.rejected;
+    if (results_.store(rejected)) ++progress_.rejected;
   }
 
   void report() {
@@ -239,14 +267,21 @@ class Sweep {
   Results& results_;
   const SweepOptions& options_;
   double started_s_;
-  std::vector<Scenario> scenarios_;
-  std::list<DrawTask> pending_;
+  Settings settings_;
+  std::vector<Planned> scenarios_;
+  Cursor next_;
   std::list<Worker> workers_;
   SweepProgress progress_;
   std::uint64_t done_before_ = 0;
 };
 
 }  // namespace
+
+Results open_results(const DataRoot& data, const Suite& suite, const std::filesystem::path& database) {
+  Results results(database, Results::Mode::create_or_append);
+  claim(results, data, suite, database);
+  return results;
+}
 
 SweepProgress sweep(const DataRoot& data, const Suite& suite, const std::filesystem::path& database,
                     const SweepOptions& options) {
@@ -258,8 +293,12 @@ SweepProgress sweep(const DataRoot& data, const Suite& suite, const std::filesys
   if (suite.last_seed - suite.first_seed >= kSeedsMax) {
     throw BadInput("suite " + suite.name + ": more than " + std::to_string(kSeedsMax) + " seeds; sweep them in parts");
   }
-  Results results(database, Results::Mode::create_or_append);
-  claim(results, data, suite, database);
+  for (const std::string& status : options.again) {
+    if (!may_run_again(status)) {
+      throw BadInput("'" + status + "' is not run again; what may be: crashed timeout killed");
+    }
+  }
+  Results results = open_results(data, suite, database);
   return Sweep(data, suite, results, options).run();
 }
 

@@ -10,6 +10,7 @@
 
 #include "scenarios/data_root.hpp"
 #include "scenarios/methods/method.hpp"
+#include "scenarios/sweep/results.hpp"
 #include "scenarios/sweep/variation.hpp"
 
 namespace tumble::scenarios {
@@ -39,11 +40,18 @@ struct SweepOptions {
   int jobs = 1;                             ///< processes
   const std::atomic<bool>* stop = nullptr;  ///< set it to end after storing what has finished
   std::function<void(const SweepProgress&)> on_progress;
+  std::vector<std::string> again;  ///< statuses whose rows are run once more: crashed, timeout, killed
 };
 
+/// Makes the database, or opens it, as one of this suite, build, models and scenarios. Throws BadInput when it is of
+/// others.
+Results open_results(const DataRoot& data, const Suite& suite, const std::filesystem::path& database);
+
 /// Runs what the database does not hold yet. Each draw is a process of its own, each method in it another: a crash, a
-/// time-out or a memory failure is an outcome (crashed, timeout), never the end of the sweep. Finished outcomes are
-/// stored as they come. Returns the final progress; draws_done < draws_total when stopped.
+/// time-out or a memory failure is an outcome (crashed, timeout, killed), never the end of the sweep. Finished outcomes
+/// are stored as they come. Draws are looked up and planned one at a time: memory does not grow with their number.
+/// Returns the final progress; draws_done < draws_total when stopped. Throws BadInput when none of the methods applies
+/// to any of the scenarios.
 SweepProgress sweep(const DataRoot& data, const Suite& suite, const std::filesystem::path& database,
                     const SweepOptions& options);
 

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "scenarios/certificate/certificate_store.hpp"
 #include "scenarios/errors.hpp"
@@ -18,8 +19,9 @@ namespace tumble::tools {
 namespace {
 
 struct Options {
-  std::string suite, seeds, shard;
-  std::vector<std::string> methods;
+  std::string suite;
+  std::optional<std::string> seeds, shard;
+  std::vector<std::string> methods, again;
   int jobs = 1;
   std::filesystem::path database;
 };
@@ -27,12 +29,12 @@ struct Options {
 /// The suite with what the command line changes of it. Returns false when this shard has no seed.
 bool select(const scenarios::DataRoot& data, const Options& options, scenarios::Suite& suite) {
   suite = scenarios::load_suite(data, options.suite);
-  if (!options.seeds.empty()) std::tie(suite.first_seed, suite.last_seed) = parse_seeds(options.seeds);
+  if (options.seeds) std::tie(suite.first_seed, suite.last_seed) = parse_seeds(*options.seeds);
   if (!options.methods.empty()) {
     for (const std::string& name : options.methods) scenarios::find_methods(name);  // refuses an unknown one now
     suite.methods = options.methods;
   }
-  return options.shard.empty() || shard_seeds(parse_shard(options.shard), suite.first_seed, suite.last_seed);
+  return !options.shard || shard_seeds(parse_shard(*options.shard), suite.first_seed, suite.last_seed);
 }
 
 /// The certificate of this build goes with its results; measured at most once per build and machine.
@@ -70,16 +72,20 @@ Table to_table(const scenarios::SweepProgress& p, const std::string& database) {
 int run_sweep(const Session& session, const Options& options) {
   const scenarios::DataRoot data = session.data();
   scenarios::Suite suite;
-  if (!select(data, options, suite)) {
-    session.note("shard " + options.shard + " has no seeds: nothing to do");
+  const bool any = select(data, options, suite);
+  if (options.database.has_parent_path()) make_folder(options.database.parent_path());
+  if (!any) {
+    // an empty database, so that all shards can be merged
+    scenarios::open_results(data, suite, options.database);
+    session.note("shard " + *options.shard + " has no seeds: nothing to do");
+    session.print({to_table({}, options.database.string())}, to_json({}, options.database.string()));
     return kDone;
   }
-  if (options.database.has_parent_path()) make_folder(options.database.parent_path());
 
   const InterruptFlag interrupt;
   certify(session, data, options.database, interrupt.raised());
   const scenarios::SweepProgress final =
-      sweep_with_progress(session, data, suite, options.database, options.jobs, interrupt.raised());
+      sweep_with_progress(session, data, suite, options.database, options.jobs, interrupt.raised(), options.again);
 
   session.print({to_table(final, options.database.string())}, to_json(final, options.database.string()));
   return final.draws_done >= final.draws_total ? kDone : say_stopped(final);
@@ -95,6 +101,9 @@ Action declare_sweep(CLI::App& app, const Session& session) {
       ->allow_extra_args(false);  // the word after a method is not another one
   app.add_option("--jobs", options->jobs, "processes at a time")->check(CLI::Range(1, 1024))->capture_default_str();
   app.add_option("--shard", options->shard, "i/n: the i-th of n parts of the seeds");
+  app.add_option("--again", options->again, "run rows of these statuses once more: crashed,timeout,killed")
+      ->delimiter(',')
+      ->allow_extra_args(false);
   app.add_option("--db", options->database, "the results database; what it holds already is not run again")->required();
   return [&session, options] { return run_sweep(session, *options); };
 }

@@ -12,7 +12,8 @@ namespace tumble::tools {
 
 scenarios::SweepProgress sweep_with_progress(const Session& session, const scenarios::DataRoot& data,
                                              const scenarios::Suite& suite, const std::filesystem::path& database,
-                                             int jobs, const std::atomic<bool>& stop) {
+                                             int jobs, const std::atomic<bool>& stop,
+                                             const std::vector<std::string>& again) {
   const auto to_standard_error = [](std::string_view text) {
     std::fwrite(text.data(), 1, text.size(), stderr);
     std::fflush(stderr);
@@ -21,6 +22,7 @@ scenarios::SweepProgress sweep_with_progress(const Session& session, const scena
   scenarios::SweepOptions options;
   options.jobs = jobs;
   options.stop = &stop;
+  options.again = again;
   if (!session.quiet) options.on_progress = [&](const scenarios::SweepProgress& p) { display.show(p); };
   const scenarios::SweepProgress final = scenarios::sweep(data, suite, database, options);
   if (!session.quiet) display.finish(final);

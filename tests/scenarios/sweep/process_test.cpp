@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <new>
 #include <stdexcept>
 #include <vector>
 
@@ -161,6 +162,19 @@ TEST_F(RunIsolated, ACrashIsAnOutcome) {
 
 TEST_F(RunIsolated, AnExitInsideAMethodIsACrash) {
   EXPECT_EQ(run([](const sim::Sensors&) -> Estimate { _exit(0); }).status, "crashed");
+}
+
+// what the machine did to it is no verdict on it
+TEST_F(RunIsolated, AKillFromOutsideAndNoMemoryAreTheMachines) {
+  const Outcome killed = run([](const sim::Sensors&) -> Estimate {
+    kill(getpid(), SIGKILL);
+    return {};
+  });
+  EXPECT_EQ(killed.status, "killed");
+  EXPECT_EQ(killed.message, "ended by signal 9 (Killed)");
+  const Outcome memory = run([](const sim::Sensors&) -> Estimate { throw std::bad_alloc(); });
+  EXPECT_EQ(memory.status, "killed");
+  EXPECT_EQ(memory.message, "no memory was left for it");
 }
 
 TEST_F(RunIsolated, EndlessWorkIsATimeout) {

@@ -63,6 +63,8 @@ TEST_F(SuiteTest, ComplaintsNameFileLineAndNearestName) {
             std::string::npos);
   EXPECT_NE(complaint(head + "scenarios: [hill]\nseeds: {first: 1, last: 2}\nmethods: [saav]\n").find("'saave'"),
             std::string::npos);
+  EXPECT_NE(complaint(head + "scenarios: [hill, hill]\nseeds: {first: 1, last: 2}\n").find("'hill' stands twice"),
+            std::string::npos);
   EXPECT_NE(complaint(head + "scenarios: [hill]\nseeds: {first: 2, last: 1}\n").find("last is below first"),
             std::string::npos);
   EXPECT_NE(complaint(head + "scenarios: [hill]\nseeds: {first: 1, last: 2}\ntimeout: 5\n").find("timeout"),

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "sim/lidar/test_worlds.hpp"
@@ -170,6 +171,53 @@ TEST(RayScene, VisualGeomsAreTransparent) {
   EXPECT_EQ(rays.surface_id[0], 1);
   EXPECT_FLOAT_EQ(rays.range[0], 8.0f);
   EXPECT_FLOAT_EQ(rays.cosine[0], 1.0f);
+}
+
+void fill(Stream& chance, RayPacket& rays, int i) {
+  const Vector3d direction = random_direction(chance);
+  rays.origin_x[i] = static_cast<float>(chance.uniform(-18, 18));
+  rays.origin_y[i] = static_cast<float>(chance.uniform(-18, 18));
+  rays.origin_z[i] = static_cast<float>(chance.uniform(-6, 8));
+  rays.direction_x[i] = static_cast<float>(direction.x());
+  rays.direction_y[i] = static_cast<float>(direction.y());
+  rays.direction_z[i] = static_cast<float>(direction.z());
+  rays.range[i] = static_cast<float>(kReach_m);
+  rays.surface_id[i] = kNothing;
+}
+
+// what lies in lanes that are not used, and which rays share a packet, changes no bit: a kernel that looked at either
+// would give other recordings on other CPUs
+TEST(RayScene, ALaneIsAloneAndUnusedOnesMayHoldAnything) {
+  const engine::World world = testing::rough_world(60, 60);
+  const RayScene scene(static_geometry(world, HeightFieldSides::closed));
+  Stream chance(5, "test.lanes");
+  int hits = 0;
+  for (int p = 0; p < 200; ++p) {
+    RayPacket together;
+    for (int i = 0; i < kLanes; ++i) fill(chance, together, i);
+    const RayPacket given = together;
+    scene.cast(together);
+    for (int i = 0; i < kLanes; ++i) {
+      RayPacket alone;
+      const float odd[] = {std::nanf(""), std::numeric_limits<float>::infinity(), -1e38f, 0.0f};
+      for (int k = 0; k < kLanes; ++k) {
+        alone.origin_x[k] = alone.origin_y[k] = alone.origin_z[k] = alone.direction_x[k] = alone.direction_y[k] =
+            alone.direction_z[k] = alone.range[k] = odd[(k + p) % 4];
+      }
+      alone.count = 1;
+      alone.origin_x[0] = given.origin_x[i], alone.origin_y[0] = given.origin_y[i], alone.origin_z[0] = given.origin_z[i];
+      alone.direction_x[0] = given.direction_x[i], alone.direction_y[0] = given.direction_y[i];
+      alone.direction_z[0] = given.direction_z[i], alone.range[0] = given.range[i];
+      alone.surface_id[0] = kNothing;
+      scene.cast(alone);
+      ASSERT_EQ(alone.surface_id[0], together.surface_id[i]);
+      ASSERT_EQ(alone.range[0], together.range[i]);
+      if (alone.surface_id[0] == kNothing) continue;
+      ++hits;
+      ASSERT_EQ(alone.cosine[0], together.cosine[i]);
+    }
+  }
+  EXPECT_GT(hits, 1000);
 }
 
 /// Closed forms: an unbounded plane at an angle, a sphere off the axis, a box face.

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Draws give the same bits on every x86-64 with AVX2 and FMA: their digests are kept here, and compared on whatever
+// machine the tests run. A change of the simulation, the models or the catalogue changes them, and then they are
+// accepted anew: the failure prints the line.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <ostream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "scenarios/draw/scenario.hpp"
+#include "scenarios/sweep/evaluate.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+struct Kept {
+  std::string scenario;
+  std::uint64_t seed;
+  std::string lidars;  ///< "lidars", or "none": motion and IMUs alone
+  std::string digest;
+};
+
+void PrintTo(const Kept& draw, std::ostream* out) {
+  *out << draw.scenario << ' ' << draw.seed << ' ' << draw.lidars;
+}
+
+std::vector<Kept> kept() {
+  std::ifstream file(std::string(TUMBLE_SOURCE_DIR) + "/tests/scenarios/digests/digests.txt");
+  std::vector<Kept> all;
+  for (std::string line; std::getline(file, line);) {
+    if (line.empty() || line.front() == '#') continue;
+    std::istringstream words(line);
+    Kept each;
+    words >> each.scenario >> each.seed >> each.lidars >> each.digest;
+    all.push_back(each);
+  }
+  return all;
+}
+
+class Digests : public testing::TestWithParam<Kept> {};
+
+TEST_P(Digests, AreTheKeptOnes) {
+  const Kept& draw = GetParam();
+  const DataRoot data{TUMBLE_SOURCE_DIR};
+  const SimulatedDraw simulated = simulate_draw(data, load_scenario(data, draw.scenario), draw.seed, 1,
+                                                draw.lidars == "none" ? Lidars::left_out : Lidars::simulated);
+  EXPECT_EQ(simulated.recording_digest, draw.digest)
+      << "the line is now\n"
+      << draw.scenario << ' ' << draw.seed << ' ' << draw.lidars << ' ' << simulated.recording_digest;
+}
+
+INSTANTIATE_TEST_SUITE_P(, Digests, testing::ValuesIn(kept()), [](const auto& of) {
+  return of.param.scenario + "_" + std::to_string(of.param.seed) + "_" + of.param.lidars;
+});
+
+// every scenario of the catalogue has a draw here
+TEST(DigestsOf, TheWholeCatalogueAreKept) {
+  const std::vector<Kept> all = kept();
+  std::size_t with_lidars = 0;
+  for (const Kept& each : all) with_lidars += each.lidars == "lidars";
+  EXPECT_GE(with_lidars, 3u);
+  for (const std::string& name : scenario_names({TUMBLE_SOURCE_DIR})) {
+    EXPECT_TRUE(std::any_of(all.begin(), all.end(), [&](const Kept& each) { return each.scenario == name; })) << name;
+  }
+}
+
+}  // namespace
+}  // namespace tumble::scenarios
