@@ -114,15 +114,16 @@ std::string lidar_problem(const sim::LidarRecord& lidar) {
 }
 
 std::string imu_truth_problem(const sim::ImuTruth& imu) {
-  return first_of({pose_problem("T_BI", imu.T_BI),
-                   // all of them empty for a reference, which knows poses alone
-                   length_problem({{"rate_I_rad_s", imu.rate_rad_s.size()},
-                                   {"specific_force_I_m_s2", imu.specific_force_m_s2.size()},
-                                   {"gyro_unclipped_I_rad_s", imu.gyro_unclipped_rad_s.size()},
-                                   {"accel_unclipped_I_m_s2", imu.accel_unclipped_m_s2.size()},
-                                   {"gyro_bias_I_rad_s", imu.gyro_bias_rad_s.size()},
-                                   {"accel_bias_I_m_s2", imu.accel_bias_m_s2.size()}}),
-                   optional_length_problem("magnetic_field_I_t", imu.magnetic_field_t.size(), imu.rate_rad_s.size())});
+  return first_of(
+      {pose_problem("T_BI", imu.T_BI),
+       // a reference knows poses alone, or rates beside them
+       optional_length_problem("specific_force_I_m_s2", imu.specific_force_m_s2.size(), imu.rate_rad_s.size()),
+       length_problem({{"specific_force_I_m_s2", imu.specific_force_m_s2.size()},
+                       {"gyro_unclipped_I_rad_s", imu.gyro_unclipped_rad_s.size()},
+                       {"accel_unclipped_I_m_s2", imu.accel_unclipped_m_s2.size()},
+                       {"gyro_bias_I_rad_s", imu.gyro_bias_rad_s.size()},
+                       {"accel_bias_I_m_s2", imu.accel_bias_m_s2.size()}}),
+       optional_length_problem("magnetic_field_I_t", imu.magnetic_field_t.size(), imu.rate_rad_s.size())});
 }
 
 std::string surface_problem(std::int32_t id, std::size_t surfaces) {

@@ -112,13 +112,17 @@ Outcome run_isolated(const Method& method, const SimulatedDraw& draw, const Simu
 void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int fd) {
   std::optional<SimulatedDraw> draw;
   std::optional<sim::Surface> surface;
-  const std::string& name = task.scenario->name;
+  const std::string& name = task.name;
   try {
-    draw = simulate_draw(data, with_setting(*task.scenario, task.setting), task.seed, 1, lidars_for(task));
+    draw = task.recording != nullptr
+               ? read_draw(*task.recording)
+               : simulate_draw(data, with_setting(*task.scenario, task.setting), task.seed, 1, lidars_for(task));
     const bool maps = std::any_of(task.runs.begin(), task.runs.end(),
                                   [](const DrawTask::Run& run) { return run.method->info.kind == Kind::slam; });
-    if (maps) surface.emplace(draw->situation, data.models());
-    DrawValues values = motion_values(name, task.seed, draw->recording);
+    if (maps && task.scenario != nullptr) surface.emplace(draw->situation, data.models());
+    const bool whole = task.recording == nullptr || task.recording->simulated;
+    DrawValues values = whole ? motion_values(name, task.seed, draw->recording)
+                              : recorded_motion_values(name, task.seed, draw->recording);
     values.setting = task.setting;
     write_all(fd, to_line({{}, {}, std::move(values)}));
   } catch (const std::exception& error) {

@@ -7,12 +7,15 @@
 
 #include "scenarios/sweep/evaluate.hpp"
 #include "scenarios/sweep/process.hpp"
+#include "scenarios/sweep/recorded_draw.hpp"
 
 namespace tumble::scenarios {
 
-/// One simulation and what is run on it.
+/// One simulation, or one recording, and what is run on it.
 struct DrawTask {
-  const Scenario* scenario = nullptr;
+  std::string name;                         ///< of the scenario, or of the recording
+  const Scenario* scenario = nullptr;       ///< to be simulated; or
+  const RecordedDraw* recording = nullptr;  ///< to be read
   std::uint64_t seed = 0;
   Setting setting;  ///< that the simulation is made with
   struct Run {

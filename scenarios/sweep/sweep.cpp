@@ -70,6 +70,7 @@ void claim(Results& results, const DataRoot& data, const Suite& suite, const std
                    "); outcomes of two catalogues do not mix: name another file");
   }
   results.set_note("suite", suite.name);
+  if (!suite.recordings.empty()) results.set_note("source", kRecordingsSource);
 }
 
 class Sweep {
@@ -79,6 +80,7 @@ class Sweep {
 
   SweepProgress run() {
     const std::vector<const Method*> methods = chosen_methods(suite_);
+    if (!suite_.recordings.empty()) recordings_ = find_recordings(suite_.recordings, suite_.recordings_folder);
     for (const std::string& name : suite_.scenarios) scenarios_.push_back(load_scenario(data_, name));
     // a catalogue that cannot be drawn from is the caller's mistake, not an outcome
     for (const Scenario& scenario : scenarios_) draw(data_, scenario, suite_.first_seed);
@@ -107,22 +109,52 @@ class Sweep {
  private:
   bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
 
+  using Held = std::set<std::tuple<std::string, std::uint64_t, Kind, std::string, Setting>>;
+
+  void plan_recordings(const std::vector<const Method*>& methods, const Held& held) {
+    for (const RecordedDraw& recording : recordings_) {
+      require_same_data(recording);
+      DrawTask draw{recording.name, nullptr, &recording, kRecordingSeed, {}, {}};
+      for (const Method* method : applicable(methods, recording)) {
+        if (!held.contains({recording.name, kRecordingSeed, method->info.kind, method->info.name, Setting{}}))
+          draw.runs.push_back({method, {}});
+      }
+      ++progress_.draws_total;
+      if (draw.runs.empty())
+        ++progress_.draws_done;
+      else
+        pending_.push_back(std::move(draw));
+    }
+  }
+
+  /// Rows of a file that has been imported anew do not stand beside those of the old one.
+  void require_same_data(const RecordedDraw& recording) const {
+    for (const Outcome& row : results_.outcomes(Rows::all)) {
+      if (row.scenario != recording.name || row.recording_digest.empty() || row.recording_digest == recording.digest)
+        continue;
+      throw BadInput(recording.path.string() + ": has digest " + recording.digest +
+                     ", the results were made of one with " + row.recording_digest + ": name another database");
+    }
+  }
+
   // seeds outermost, so that a sweep that is stopped has all scenarios and all points of the curves in it
   void plan(const std::vector<const Method*>& methods) {
     std::set<std::tuple<std::string, std::uint64_t, Setting>> rejected;
     for (const RejectedDraw& draw : results_.rejected(Rows::all)) {
       rejected.emplace(draw.scenario, draw.seed, draw.setting);
     }
-    std::set<std::tuple<std::string, std::uint64_t, Kind, std::string, Setting>> held;
+    Held held;
     for (const Outcome& row : results_.outcomes(Rows::all)) {
       held.emplace(row.scenario, row.seed, row.kind, row.method, row.setting);
     }
+    plan_recordings(methods, held);
+    if (scenarios_.empty()) return;
     const Settings settings = settings_of(suite_);
     for (std::uint64_t seed = suite_.first_seed;; ++seed) {
       for (const Scenario& scenario : scenarios_) {
         const std::vector<const Method*> own = applicable(methods, scenario.robot.type);
         for (const Setting& simulated : settings.simulated) {
-          DrawTask draw{&scenario, seed, simulated, {}};
+          DrawTask draw{scenario.name, &scenario, nullptr, seed, simulated, {}};
           const auto add = [&](const Setting& setting) {
             for (const Method* method : own) {
               const MethodInfo& info = method->info;
@@ -199,12 +231,12 @@ class Sweep {
   void account_for_death(const Worker& worker, bool late, const Process::End& end) {
     const std::string what = late ? "the draw did not end in time" : "the draw's process " + end.describe();
     if (!worker.simulated) {
-      keep(RejectedDraw{worker.draw.scenario->name, worker.draw.seed, what, worker.draw.setting});
+      keep(RejectedDraw{worker.draw.name, worker.draw.seed, what, worker.draw.setting});
       return;
     }
     for (const DrawTask::Run& run : worker.draw.runs) {
       Outcome outcome;
-      outcome.scenario = worker.draw.scenario->name;
+      outcome.scenario = worker.draw.name;
       outcome.seed = worker.draw.seed;
       outcome.kind = run.method->info.kind;
       outcome.method = run.method->info.name;
@@ -240,6 +272,7 @@ class Sweep {
   const SweepOptions& options_;
   double started_s_;
   std::vector<Scenario> scenarios_;
+  std::vector<RecordedDraw> recordings_;
   std::list<DrawTask> pending_;
   std::list<Worker> workers_;
   SweepProgress progress_;

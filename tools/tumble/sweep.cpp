@@ -21,13 +21,19 @@ struct Options {
   std::string suite, seeds, shard;
   std::vector<std::string> methods;
   int jobs = 1;
-  std::filesystem::path database;
+  std::filesystem::path database, recordings;
 };
 
 /// The suite with what the command line changes of it. Returns false when this shard has no seed.
 bool select(const scenarios::DataRoot& data, const Options& options, scenarios::Suite& suite) {
   suite = scenarios::load_suite(data, options.suite);
   if (!options.seeds.empty()) std::tie(suite.first_seed, suite.last_seed) = parse_seeds(options.seeds);
+  const bool recorded = !suite.recordings.empty();
+  if (recorded && (!options.seeds.empty() || !options.shard.empty()))
+    throw scenarios::BadInput("--seeds, --shard: a suite of recordings has no seeds");
+  if (!recorded && !options.recordings.empty())
+    throw scenarios::BadInput("--data: suite '" + suite.name + "' has no recordings");
+  if (!options.recordings.empty()) suite.recordings_folder = options.recordings;
   if (!options.methods.empty()) {
     for (const std::string& name : options.methods) scenarios::find_methods(name);  // refuses an unknown one now
     suite.methods = options.methods;
@@ -77,7 +83,8 @@ int run_sweep(const Session& session, const Options& options) {
   if (options.database.has_parent_path()) make_folder(options.database.parent_path());
 
   const InterruptFlag interrupt;
-  certify(session, data, options.database, interrupt.raised());
+  // it speaks of simulations
+  if (suite.recordings.empty()) certify(session, data, options.database, interrupt.raised());
   const scenarios::SweepProgress final =
       sweep_with_progress(session, data, suite, options.database, options.jobs, interrupt.raised());
 
@@ -95,6 +102,7 @@ Action declare_sweep(CLI::App& app, const Session& session) {
       ->allow_extra_args(false);  // the word after a method is not another one
   app.add_option("--jobs", options->jobs, "processes at a time")->check(CLI::Range(1, 1024))->capture_default_str();
   app.add_option("--shard", options->shard, "i/n: the i-th of n parts of the seeds");
+  app.add_option("--data", options.recordings, "folder of a suite's recordings [the suite file's]");
   app.add_option("--db", options->database, "the results database; what it holds already is not run again")->required();
   return [&session, options] { return run_sweep(session, *options); };
 }
