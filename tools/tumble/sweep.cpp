@@ -102,7 +102,7 @@ Action declare_sweep(CLI::App& app, const Session& session) {
       ->allow_extra_args(false);  // the word after a method is not another one
   app.add_option("--jobs", options->jobs, "processes at a time")->check(CLI::Range(1, 1024))->capture_default_str();
   app.add_option("--shard", options->shard, "i/n: the i-th of n parts of the seeds");
-  app.add_option("--data", options.recordings, "folder of a suite's recordings [the suite file's]");
+  app.add_option("--data", options->recordings, "folder of a suite's recordings [the suite file's]");
   app.add_option("--db", options->database, "the results database; what it holds already is not run again")->required();
   return [&session, options] { return run_sweep(session, *options); };
 }

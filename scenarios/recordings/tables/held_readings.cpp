@@ -11,9 +11,9 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kHeldShare = 0.05;
+constexpr double kHeldShare = 0.05, kFrozenShare = 0.98;
 constexpr double kRailLeast_m_s2 = 14.7;
-constexpr int kRailReadings = 6, kRailContrast = 3;
+constexpr int kRailReadings = 5, kRailContrast = 3;
 
 /// Rows whose reading differs from the row before; the first one is new.
 std::vector<std::size_t> fresh_rows(const std::vector<Eigen::Vector3d>& readings) {
@@ -37,6 +37,11 @@ std::vector<std::int64_t> beat_of(const std::vector<std::int64_t>& time_ns, cons
 
 double repeated_share(std::size_t fresh, std::size_t rows) {
   return rows < 2 ? 0.0 : static_cast<double>(rows - fresh) / static_cast<double>(rows - 1);
+}
+
+/// What repeats for ever is not held but frozen, or at rest to the last digit: nothing is known of its beat.
+bool is_held(double share) {
+  return share > kHeldShare && share < kFrozenShare;
 }
 
 /// Readings at `times`, which rise, by straight lines between the sensor's own; the nearest beyond its ends.
@@ -73,11 +78,11 @@ HoldReport undo_hold(const LoggedReadings& log, sim::ImuRecord& imu) {
   report.gyro_repeated = repeated_share(gyro.size(), report.rows);
   report.accel_repeated = repeated_share(accel.size(), report.rows);
   report.accel_readings = accel.size();
-  report.gyro_held = report.gyro_repeated > kHeldShare;
+  report.gyro_held = is_held(report.gyro_repeated);
   imu.time_ns = report.gyro_held ? beat_of(log.time_ns, gyro) : log.time_ns;
   imu.gyro_rad_s = report.gyro_held ? at_rows(log.gyro_rad_s, gyro) : log.gyro_rad_s;
   const std::vector<Eigen::Vector3d> beside = report.gyro_held ? at_rows(log.accel_m_s2, gyro) : log.accel_m_s2;
-  report.accel_held = repeated_share(fresh_rows(beside).size(), beside.size()) > kHeldShare;
+  report.accel_held = is_held(repeated_share(fresh_rows(beside).size(), beside.size()));
   imu.accel_m_s2 = report.accel_held
                        ? interpolated(beat_of(log.time_ns, accel), at_rows(log.accel_m_s2, accel), imu.time_ns)
                        : beside;
@@ -97,22 +102,22 @@ std::string HoldReport::text() const {
   return out;
 }
 
-std::string accel_rail_text(const sim::ImuRecord& imu) {
+std::string accel_rail_text(const std::vector<Eigen::Vector3d>& logged) {
+  const std::vector<Eigen::Vector3d> readings = at_rows(logged, fresh_rows(logged));
   std::string out;
   for (int axis = 0; axis < 3; ++axis) {
     for (const double sign : {1.0, -1.0}) {
       double extreme = 0.0;
-      for (const Eigen::Vector3d& f : imu.accel_m_s2) extreme = std::max(extreme, sign * f[axis]);
+      for (const Eigen::Vector3d& f : readings) extreme = std::max(extreme, sign * f[axis]);
       if (extreme < kRailLeast_m_s2) continue;
       const auto within = [&](double low, double high) {
-        return static_cast<int>(
-            std::count_if(imu.accel_m_s2.begin(), imu.accel_m_s2.end(), [&](const Eigen::Vector3d& f) {
-              return sign * f[axis] > low * extreme && sign * f[axis] <= high * extreme;
-            }));
+        return static_cast<int>(std::count_if(readings.begin(), readings.end(), [&](const Eigen::Vector3d& f) {
+          return sign * f[axis] > low * extreme && sign * f[axis] <= high * extreme;
+        }));
       };
-      const int top = within(0.99, 1.0), below = within(0.97, 0.98);
+      const int top = within(0.98, 1.0), below = within(0.96, 0.98);
       if (top < kRailReadings || top < kRailContrast * below) continue;
-      out += fmt::format("{}{}{} within 1 % of {:.2f} m/s^2 ({})", out.empty() ? "" : ", ", sign > 0 ? "+" : "-",
+      out += fmt::format("{}{}{} within 2 % of {:.2f} m/s^2 ({})", out.empty() ? "" : ", ", sign > 0 ? "+" : "-",
                          "xyz"[axis], sign * extreme, top);
     }
   }

@@ -26,14 +26,15 @@ struct HoldReport {
 };
 
 /// The readings of a log without its repetitions. A sensor is held when more than a twentieth of its rows repeat all
-/// three axes of the one before. Then the gyro's own readings alone are kept and put on a steady beat within the step
-/// of the log in which they came; an accelerometer that holds longer than the gyro is
-/// interpolated linearly between its own readings at the gyro's instants, which low-passes it: its own rate bounds what
-/// it can tell. Fills time_ns, gyro, accelerometer and clip_flags (0) of `imu`. O(N).
+/// three axes of the one before, and fewer than 98 % (which is frozen). Then the gyro's own readings alone are kept and
+/// put on a steady beat within the step of the log in which they came; an accelerometer that holds longer than the gyro
+/// is interpolated linearly between its own readings at the gyro's instants, which low-passes it: its own rate bounds
+/// what it can tell. Fills time_ns, gyro, accelerometer and clip_flags (0) of `imu`. O(N).
 HoldReport undo_hold(const LoggedReadings& log, sim::ImuRecord& imu);
 
-/// A remark for each axis and sign of the accelerometer whose readings gather at their extreme: at least six within
-/// one percent of it and three times as many as between two and three percent below, beyond 1.5 g; "" when none does.
-std::string accel_rail_text(const sim::ImuRecord& imu);
+/// A remark on logged readings, repetitions counted once, for each axis and sign of the accelerometer whose readings
+/// gather at their extreme: at least five within two percent of it (a rail is tilted) and three times as many as between
+/// two and four percent below, beyond 1.5 g; "" when none does.
+std::string accel_rail_text(const std::vector<Eigen::Vector3d>& logged);
 
 }  // namespace tumble::scenarios

@@ -91,7 +91,8 @@ Columns columns_of(const CsvLine& groups, const CsvLine& second) {
   for (std::size_t i = 0; i < 3; ++i) take(std::string("IMU Gyroscope/") + "XYZ"[i], columns.rate[i]);
   if (!missing.empty()) fail(second, "columns are missing:" + missing);
   for (const std::string& name : names) {
-    if (!name.empty() && !name.starts_with("IMU Magnetometer/")) fail(second, "unknown column '" + name + "'");
+    const bool magnetic = name.starts_with("IMU Magnetometer/") && name.size() == 18 && name.back() >= 'X';
+    if (!name.empty() && !magnetic) fail(second, "unknown column '" + name + "'");
   }
   return columns;
 }
@@ -167,7 +168,7 @@ Log read_log(const std::filesystem::path& path) {
       fail(line, fmt::format("Time is {} s, must be within 0 and {}", time_s, kStampMax_s));
     const std::int64_t time_ns = std::llround(time_s * 1e9);
     if (!log.readings.time_ns.empty() && time_ns < log.readings.time_ns.back()) {
-      fail(line, fmt::format("Time goes back: {} s after {} s", time_s,
+      fail(line, fmt::format("Time goes back: {:.9g} s after {:.9g} s", time_s,
                              1e-9 * static_cast<double>(log.readings.time_ns.back())));
     }
     const auto& a = columns.attitude;
@@ -198,8 +199,8 @@ void steady(Log& log, std::vector<std::string>& notes) {
     if (k == 0) continue;
     equal += printed[k] == printed[k - 1] ? 1 : 0;
     if (time_ns <= log.readings.time_ns[k - 1]) {
-      throw BadInput(fmt::format("{}: Time does not rise: {} s twice, beyond what its rounding explains", log.where[k],
-                                 1e-9 * static_cast<double>(printed[k])));
+      throw BadInput(fmt::format("{}: Time does not rise: {:.9g} s twice, beyond what its rounding explains",
+                                 log.where[k], 1e-9 * static_cast<double>(printed[k])));
     }
   }
   for (std::size_t k = 0; k < printed.size(); ++k) log.poses[k].time_ns = log.readings.time_ns[k];
@@ -300,7 +301,8 @@ Imported import_repoimu(const std::filesystem::path& path, bool align) {
   const HoldReport hold = undo_hold(log.readings, imu);
   if (!hold.text().empty()) out.notes.push_back(hold.text());
   finish_readings(path.string(), AccelUnit::m_s2, imu);
-  for (const std::string& note : {require_gravity_turns(path.string(), imu, GyroUnit::rad_s), accel_rail_text(imu)}) {
+  for (const std::string& note :
+       {require_gravity_turns(path.string(), imu, GyroUnit::rad_s), accel_rail_text(log.readings.accel_m_s2)}) {
     if (!note.empty()) out.notes.push_back(note);
   }
   if (log.decimal_commas > 0)

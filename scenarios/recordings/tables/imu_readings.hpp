@@ -20,7 +20,8 @@ void add_reading(const std::string& where, std::int64_t stamp_ns, const Eigen::V
 void finish_readings(const std::string& where, AccelUnit unit, sim::ImuRecord& imu);
 
 /// How gravity turns in the accelerometer against what the gyro says: over windows of 0.2 s in which the specific force
-/// keeps the size of gravity within a tenth and turns by one to some twenty degrees, the change of the force is held against
+/// keeps the size of gravity within a tenth and turns by one to some twenty degrees, the change of the force is held
+/// against
 /// -(angle turned) x force. `ratio`: the factor between them, 1 when the units agree; `correlation`: of the two.
 /// O(N).
 struct GravityTurn {

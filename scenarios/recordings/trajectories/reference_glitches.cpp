@@ -18,7 +18,7 @@ constexpr double kLeap_rad_s = 10.0;
 constexpr std::size_t kNear = 3, kFar = 6;  // steps
 constexpr std::size_t kMargin = 3;          // samples
 constexpr std::int64_t kPair_ns = 500'000'000;
-constexpr double kThaw_rad = 0.02;
+constexpr double kThaw_rad = 0.02, kCatchUp = 1.5;
 
 double turn_rad(const ReferencePose& a, const ReferencePose& b) {
   const Eigen::Quaterniond q = a.q_WA.conjugate() * b.q_WA;
@@ -88,8 +88,10 @@ void leave_out_frozen(std::vector<ReferencePose>& poses, GlitchReport& report) {
   for (std::size_t first = 0; first < poses.size();) {
     std::size_t last = first;
     while (last + 1 < poses.size() && poses[last + 1].q_WA.coeffs() == poses[first].q_WA.coeffs()) ++last;
-    // at rest a rounded attitude may repeat; it does not then go on elsewhere
-    if (last > first && last + 1 < poses.size() && turn_rad(poses[last], poses[last + 1]) > kThaw_rad) {
+    // at rest a rounded attitude may repeat; it does not then catch up with a leap
+    const bool thaws = last > first && last + 2 < poses.size();
+    const double thaw_rad = thaws ? turn_rad(poses[last], poses[last + 1]) : 0.0;
+    if (thaws && thaw_rad > kThaw_rad && thaw_rad > kCatchUp * turn_rad(poses[last + 1], poses[last + 2])) {
       std::fill(out.begin() + static_cast<std::ptrdiff_t>(first + 1),
                 out.begin() + static_cast<std::ptrdiff_t>(last + 1), true);
       report.frozen += last - first;

@@ -12,9 +12,10 @@ namespace tumble::scenarios {
 
 /// What was left out, in samples.
 struct GlitchReport {
-  std::size_t unknown = 0;           ///< not finite
-  std::size_t bad_norm = 0;          ///< off unit length by more than a percent: an average of two attitudes
-  std::size_t frozen = 0;            ///< repeats the one before although the next is elsewhere
+  std::size_t unknown = 0;   ///< not finite
+  std::size_t bad_norm = 0;  ///< off unit length by more than a percent: an average of two attitudes
+  std::size_t frozen =
+      0;  ///< repeats the one before; then a step of more than 0.02 rad catches up, half again the next
   std::size_t leaps = 0, leapt = 0;  ///< leaps; samples in and between them
   double fastest_leap_rad_s = 0.0;
   std::size_t gaps = 0;  ///< steps longer than 2.5 times the median: nothing is known within

@@ -232,7 +232,7 @@ TEST_F(ImportCsv, BadInputHasFileAndLine) {
   EXPECT_THAT(complaint_of(good + line("1,1000000000")), HasSubstr("csv:4: column 1 must be a whole number"));
   EXPECT_THAT(complaint_of(good + line("1e30,0")), HasSubstr("csv:4: column 0 must be a whole number"));
   EXPECT_THAT(complaint_of(good + "\n"), HasSubstr("csv:4: has 1 columns"));
-  EXPECT_THAT(complaint_of(good + line("1,20000000").substr(0, 60)), HasSubstr("csv:4: has"));
+  EXPECT_THAT(complaint_of(good + line("1,20000000").substr(0, 60) + "\n"), HasSubstr("csv:4: has"));
   EXPECT_THAT(complaint_of("a,b\n1,2\n"), HasSubstr("csv:1: names no column that is known"));
   EXPECT_THAT(complaint_of("1,2\n"), HasSubstr("csv:1: has 2 columns and no header, needs 15"));
   EXPECT_THAT(complaint_of(good.substr(0, good.size() - 1)), HasSubstr("csv:3: the last line has no line end"))

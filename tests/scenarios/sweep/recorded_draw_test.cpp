@@ -80,8 +80,9 @@ TEST_F(RecordedSweep, EachRecordingIsADraw) {
     for (const Score& score : row.scores) scores[score.metric] = score.value;
     EXPECT_EQ(scores.contains("rate_error_clipped_median_rad_s"), row.scenario == "wand_a" && row.kind == Kind::rate);
     EXPECT_EQ(scores.contains("inclination_rmse_rad"), row.scenario == "wand_a" && row.kind == Kind::attitude);
-    if (row.method == "vqf" && row.scenario == "wand_a")
+    if (row.method == "vqf" && row.scenario == "wand_a") {
       EXPECT_LT(scores.at("inclination_rmse_rad"), 0.3) << "rates clip, gravity stays";
+    }
   }
   EXPECT_EQ(results.note("source"), kRecordingsSource);
   // resumed: nothing is left to do; two processes at once: the same bits
