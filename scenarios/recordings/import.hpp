@@ -23,18 +23,20 @@ struct Imported {
 
 /// Unit of the accelerometer columns of a CSV; g is 9.80665 m/s^2.
 enum class AccelUnit { m_s2, g };
+enum class GyroUnit { rad_s, deg_s };
 
-/// Reads the readings of one IMU from CSV: one header line, then a line per message of sensor_msgs/Imu. Columns are
-/// found by name when the header holds ".../header/stamp" (seconds, read to the nanosecond), ".../angular_velocity/x"
-/// and
-/// ".../linear_acceleration/x", y and z, as tools that flatten ROS messages write them; else by place (from 0): 0 stamp
-/// s, 1 stamp ns, 8-10 rate rad/s, 12-14 specific force. `device` gives what the file does not state: name, device,
-/// ranges, noise, T_BI; its period and readings are replaced. Times are counted from the first stamp; the period is the
-/// median step. Throws BadInput with file and line: too few or differing columns, not a number, not finite, a stamp
-/// that does not rise; fewer than two samples; a median specific force outside 3 to 30 m/s^2, which says that the unit
-/// is another one. Does not judge the unit of the rates: degrees pass.
+/// Reads the readings of one IMU from CSV, a line per message of sensor_msgs/Imu. A header's names are believed before
+/// places: those of export_csv (each once and no other), short forms of them (sec nsec wx.. fx.. or ax..), or
+/// ".../header/stamp" (seconds, read to the nanosecond), ".../angular_velocity/x" and ".../linear_acceleration/x", y
+/// and z, as tools that flatten ROS messages write them. A first line of numbers is a sample, and columns stand by
+/// place (from 0): 0 stamp s, 1 stamp ns, 8-10 rate, 12-14 specific force. `device` gives what the file does not state:
+/// name, device, ranges, noise, T_BI; its period and readings are replaced. Times are counted from the first stamp; the
+/// period is the median step. Units are held against gravity: its size, and how it turns (a note says so where the
+/// motion tells). Throws BadInput with file and line: unknown, doubled or missing columns, differing numbers of them,
+/// not a number, not finite, a stamp that does not rise, a last line without its end; fewer than two samples; a median
+/// specific force outside 3 to 30 m/s^2, or gravity that turns 57 times too fast or too slow for the rates.
 Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord& device,
-                        AccelUnit unit = AccelUnit::m_s2);
+                        AccelUnit unit = AccelUnit::m_s2, GyroUnit gyro_unit = GyroUnit::rad_s);
 
 /// Where the sweeps of one lidar lie.
 struct SweepSource {
@@ -79,8 +81,37 @@ void attach_imus(Imported& recording, Imported imu);
 /// Reads a trial of BROAD (Laidig et al., Data 2021, 6(7), 72) from its HDF5 file: imu_gyr, imu_acc, imu_mag (to tesla)
 /// and sampling_rate; opt_quat and opt_pos, when both are there, as the reference, unknown where the cameras saw too
 /// little, with rates and velocities from its differences over 140 ms (which tell rest from motion and blur fast
-/// turns). Sample k stands at k / sampling_rate. Ranges and noise are not stated by the file and left 0. Throws
-/// BadInput.
+/// turns), and with rates at the IMU's samples over 40 ms (reference_rate.hpp). Sample k stands at k / sampling_rate.
+/// Ranges and noise are not stated by the file and left 0. Throws BadInput.
 Imported import_broad(const std::filesystem::path& path);
+
+/// A recording of RepoIMU (Szczesna et al., ICCVG 2016) as it is published: columns separated by ';', two header lines
+/// (a group's name, then the column's), time s, "Vicon Orientation" W X Y Z, "IMU Acceleration" m/s^2, "IMU Gyroscope"
+/// rad/s, "IMU Magnetometer" (of no unit, left out). What is recognised is undone and said in the notes:
+///
+/// - stamps printed more coarsely than they step are put on a steady beat within their rounding (steady_stamps.hpp);
+/// - sample and hold: repeated readings are left out, the rest put on the gyro's own beat, an accelerometer that holds
+///   longer interpolated between its own readings (held_readings.hpp);
+/// - glitches of the optical reference are left out (reference_glitches.hpp);
+/// - the delay, the rotation and the tilt between reference and IMU are estimated (align_reference.hpp) and, when
+///   `align` is set, taken out, so that the truth is the IMU's attitude in a world whose z is up.
+///
+/// The truth's rates at the IMU's stamps are derived from the attitudes (reference_rate.hpp); it knows no position.
+/// Throws BadInput with file, line, value and bound: unknown, missing or doubled columns, a number that is none, IMU
+/// readings that are not finite, a stamp that does not rise, more than a fifth of the quaternions off unit length by
+/// more than a percent, a last line without its end.
+Imported import_repoimu(const std::filesystem::path& path, bool align);
+
+/// Whether the file begins as a recording of RepoIMU does.
+bool is_repoimu(const std::filesystem::path& path);
+
+/// A flight log of AirbrakesV2 (NCSU High-Powered Rocketry Club, MIT): columns by name, timestamp_seconds,
+/// raw_acceleration_{x,y,z}_gs, raw_angular_rate_{x,y,z}_deg_per_s, magnetic_field_{x,y,z}_microteslas if there; others
+/// are left alone. There is no reference: what its own filter estimated is no truth. Rows that repeat a stamp are left
+/// out and counted; of stretches more than a second apart the longest is kept, and said. Throws BadInput as above.
+Imported import_airbrakes(const std::filesystem::path& path);
+
+/// Whether the file's header is one of AirbrakesV2.
+bool is_airbrakes(const std::filesystem::path& path);
 
 }  // namespace tumble::scenarios

@@ -114,19 +114,20 @@ std::string lidar_problem(const sim::LidarRecord& lidar) {
 }
 
 std::string imu_truth_problem(const sim::ImuTruth& imu) {
-  return first_of({pose_problem("T_BI", imu.T_BI),
-                   // all of them empty for a reference, which knows poses alone
-                   length_problem({{"rate_I_rad_s", imu.rate_rad_s.size()},
-                                   {"specific_force_I_m_s2", imu.specific_force_m_s2.size()},
-                                   {"gyro_unclipped_I_rad_s", imu.gyro_unclipped_rad_s.size()},
-                                   {"accel_unclipped_I_m_s2", imu.accel_unclipped_m_s2.size()},
-                                   {"gyro_bias_I_rad_s", imu.gyro_bias_rad_s.size()},
-                                   {"accel_bias_I_m_s2", imu.accel_bias_m_s2.size()}}),
-                   optional_length_problem("magnetic_field_I_t", imu.magnetic_field_t.size(), imu.rate_rad_s.size()),
-                   optional_length_problem("gyro_elements_I", imu.gyro_elements.size(), 3),
-                   optional_length_problem("accel_elements_I", imu.accel_elements.size(), 3),
-                   imu.gyro_element_offset_rad_s.allFinite() ? "" : "gyro_element_offset_rad_s is not finite",
-                   imu.accel_element_offset_m_s2.allFinite() ? "" : "accel_element_offset_m_s2 is not finite"});
+  return first_of(
+      {pose_problem("T_BI", imu.T_BI),
+       // a reference knows poses alone, or rates beside them
+       optional_length_problem("specific_force_I_m_s2", imu.specific_force_m_s2.size(), imu.rate_rad_s.size()),
+       length_problem({{"specific_force_I_m_s2", imu.specific_force_m_s2.size()},
+                       {"gyro_unclipped_I_rad_s", imu.gyro_unclipped_rad_s.size()},
+                       {"accel_unclipped_I_m_s2", imu.accel_unclipped_m_s2.size()},
+                       {"gyro_bias_I_rad_s", imu.gyro_bias_rad_s.size()},
+                       {"accel_bias_I_m_s2", imu.accel_bias_m_s2.size()}}),
+       optional_length_problem("magnetic_field_I_t", imu.magnetic_field_t.size(), imu.rate_rad_s.size()),
+       optional_length_problem("gyro_elements_I", imu.gyro_elements.size(), 3),
+       optional_length_problem("accel_elements_I", imu.accel_elements.size(), 3),
+       imu.gyro_element_offset_rad_s.allFinite() ? "" : "gyro_element_offset_rad_s is not finite",
+       imu.accel_element_offset_m_s2.allFinite() ? "" : "accel_element_offset_m_s2 is not finite"});
 }
 
 std::string surface_problem(std::int32_t id, std::size_t surfaces) {

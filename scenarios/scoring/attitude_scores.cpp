@@ -21,7 +21,7 @@ std::vector<AttitudeError> attitude_errors(const Estimate& estimate, const Scori
   std::vector<AttitudeError> errors;
   Eigen::Quaterniond q_align = Eigen::Quaterniond::Identity();
   for (const AttitudeState& attitude : estimate.attitudes) {
-    if (!truth.covers(attitude.time_ns)) continue;
+    if (!truth.covers_attitude(attitude.time_ns)) continue;
     const Eigen::Quaterniond q_true = truth.pose(attitude.time_ns).q_WA;
     if (errors.empty()) {
       const double heading = twist_about_z_rad(q_true * attitude.q_WA.conjugate());
@@ -52,7 +52,7 @@ bool step_rest_rms(const Estimate& estimate, const ScoringInput& input, double& 
   std::vector<double> steps;
   const AttitudeState* previous = nullptr;
   for (const AttitudeState& attitude : estimate.attitudes) {
-    const bool rest = truth.covers(attitude.time_ns) && truth.at_rest(attitude.time_ns);
+    const bool rest = truth.covers_attitude(attitude.time_ns) && truth.at_rest(attitude.time_ns);
     if (rest && previous) steps.push_back(rotation_angle_rad(previous->q_WA.conjugate() * attitude.q_WA));
     previous = rest ? &attitude : nullptr;
   }

@@ -65,7 +65,7 @@ bool error_in_bin(const Estimate& estimate, const ScoringInput& input, double& v
     if (!index || truth.clipped_axes(*index) == 0) continue;
     const double own = measure<kAxis>(truth, lengths_s, *index);
     if (!(own >= edges<kAxis>()[kBin] && own < edges<kAxis>()[kBin + 1])) continue;
-    norms.push_back((rate.w_WI_I_rad_s - truth.at(rate.time_ns)->rate_rad_s).norm());
+    if (const auto sample = truth.at(rate.time_ns)) norms.push_back((rate.w_WI_I_rad_s - sample->rate_rad_s).norm());
   }
   if (norms.empty()) return false;
   // one NaN spoils the figure instead of leaving it

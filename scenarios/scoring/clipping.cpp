@@ -6,6 +6,7 @@
 #include <string>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/scoring/reference_clipping.hpp"
 
 namespace tumble::scenarios {
 
@@ -29,13 +30,22 @@ ClippingTruth::ClippingTruth(const sim::Sensors& sensors, const sim::Truth& trut
   const std::size_t count = record_->time_ns.size();
   if (truth_->rate_rad_s.empty() && count > 0)
     throw BadInput("the truth holds no rates of imu '" + record_->name + "': a reference of poses?");
+  const bool reference = truth_->gyro_unclipped_rad_s.empty() && count > 0;
   if (record_->gyro_rad_s.size() != count || truth_->rate_rad_s.size() != count ||
-      truth_->gyro_unclipped_rad_s.size() != count) {
+      (!reference && truth_->gyro_unclipped_rad_s.size() != count)) {
     throw BadInput("imu '" + record_->name + "' and its truth differ in length");
   }
+  if (reference) reference_axes_ = clipped_by_reference(record_->gyro_rad_s, truth_->rate_rad_s);
+}
+
+std::size_t ClippingTruth::known_samples() const {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < size(); ++i) count += known(i) ? 1 : 0;
+  return count;
 }
 
 std::uint8_t ClippingTruth::clipped_axes(std::size_t index) const {
+  if (is_reference()) return reference_axes_[index];
   std::uint8_t axes = 0;
   for (int j = 0; j < 3; ++j) {
     const double lost = std::abs(truth_->gyro_unclipped_rad_s[index][j] - record_->gyro_rad_s[index][j]);
@@ -46,7 +56,8 @@ std::uint8_t ClippingTruth::clipped_axes(std::size_t index) const {
 }
 
 double ClippingTruth::depth_rad_s(std::size_t index) const {
-  return (truth_->gyro_unclipped_rad_s[index] - record_->gyro_rad_s[index]).lpNorm<Eigen::Infinity>();
+  const auto& unclipped = is_reference() ? truth_->rate_rad_s : truth_->gyro_unclipped_rad_s;
+  return (unclipped[index] - record_->gyro_rad_s[index]).lpNorm<Eigen::Infinity>();
 }
 
 std::optional<std::size_t> ClippingTruth::index_at(std::int64_t time_ns) const {
@@ -61,6 +72,7 @@ std::optional<ClippingTruth::Sample> ClippingTruth::at(std::int64_t time_ns) con
   const std::optional<std::size_t> found = index_at(time_ns);
   if (!found) return std::nullopt;
   const std::size_t index = *found;
+  if (!known(index) || (times[index] != time_ns && !known(index - 1))) return std::nullopt;
   if (times[index] == time_ns) return Sample{truth_->rate_rad_s[index], clipped_axes(index)};
   const double share =
       static_cast<double>(time_ns - times[index - 1]) / static_cast<double>(times[index] - times[index - 1]);

@@ -11,6 +11,7 @@ namespace tumble::scenarios {
 
 std::vector<Metric> rate_metrics();
 std::vector<Metric> binned_rate_metrics();
+std::vector<Metric> reference_rate_metrics();  ///< of recordings whose truth is another instrument's
 std::vector<Metric> attitude_metrics();
 std::vector<Metric> position_metrics();
 std::vector<Metric> slip_metrics();

@@ -13,7 +13,7 @@ bool contains(const std::string& text, const char* part) {
 
 Sense metric_sense(const std::string& metric) {
   // coverage of an interval and normalised errors have a target; costs are no contest
-  for (const char* part : {"coverage_3sigma", "_nees_", "_cpu_s", "_mib", "flagged_share"}) {
+  for (const char* part : {"coverage_3sigma", "_nees_", "_cpu_s", "_mib", "flagged_share", "rate_reference_"}) {
     if (contains(metric, part)) return Sense::neither;
   }
   for (const char* part : {"overlap", "coverage", "precision", "recall"}) {

@@ -24,8 +24,8 @@ constexpr double kEndErrorFloorM = 1.0;
 
 std::vector<Metric> all_metrics() {
   std::vector<Metric> all;
-  for (const auto& family : {rate_metrics(), binned_rate_metrics(), attitude_metrics(), position_metrics(),
-                             slip_metrics(), trajectory_metrics(Kind::position), end_pose_metrics(),
+  for (const auto& family : {rate_metrics(), binned_rate_metrics(), reference_rate_metrics(), attitude_metrics(),
+                             position_metrics(), slip_metrics(), trajectory_metrics(Kind::position), end_pose_metrics(),
                              trajectory_metrics(Kind::slam), map_metrics(), sweep_border_metrics()}) {
     all.insert(all.end(), family.begin(), family.end());
   }
@@ -55,7 +55,7 @@ bool rates_hold(const Estimate& estimate, const ScoringInput& input) {
     if (!rate.w_WI_I_rad_s.allFinite() || !rate.covariance_rad2_s2.allFinite()) return false;
     if (truth.at(rate.time_ns)) ++answered;
   }
-  return static_cast<double>(answered) >= kAnsweredMin * static_cast<double>(truth.size());
+  return static_cast<double>(answered) >= kAnsweredMin * static_cast<double>(truth.known_samples());
 }
 
 bool attitudes_hold(const Estimate& estimate, const ScoringInput& input) {

@@ -36,10 +36,12 @@ Eigen::Isometry3d mounting(const sim::Truth& truth, Frame frame) {
 // a sample is at rest when every sample within the window around it is slow
 std::vector<bool> rest_mask(const sim::Truth& truth) {
   const std::size_t count = truth.p_WB_m.size();
+  const bool no_position =
+      std::none_of(truth.p_WB_m.begin(), truth.p_WB_m.end(), [](const Eigen::Vector3d& p) { return p.allFinite(); });
   std::vector<std::size_t> moving_before(count + 1, 0);
   for (std::size_t k = 0; k < count; ++k) {
-    const bool slow =
-        truth.v_WB_m_s[k].norm() < TruthTrack::kRestSpeedMS && truth.w_WB_B_rad_s[k].norm() < TruthTrack::kRestRateRadS;
+    const bool slow = (no_position || truth.v_WB_m_s[k].norm() < TruthTrack::kRestSpeedMS) &&
+                      truth.w_WB_B_rad_s[k].norm() < TruthTrack::kRestRateRadS;
     moving_before[k + 1] = moving_before[k] + (slow ? 0 : 1);
   }
   const auto reach =
@@ -70,8 +72,18 @@ TruthTrack::TruthTrack(const sim::Truth& truth, Frame frame) : truth_(&truth), T
   rest_ = rest_mask(truth);
 }
 
+bool TruthTrack::attitude_known(std::size_t index) const {
+  return truth_->q_WB[index].coeffs().allFinite();
+}
+
 bool TruthTrack::known(std::size_t index) const {
-  return truth_->q_WB[index].coeffs().allFinite() && truth_->p_WB_m[index].allFinite();
+  return attitude_known(index) && truth_->p_WB_m[index].allFinite();
+}
+
+bool TruthTrack::covers_attitude(std::int64_t time_ns) const {
+  if (time_ns < 0 || time_ns > last_ns_) return false;
+  const auto index = static_cast<std::size_t>(time_ns / truth_->period_ns);
+  return attitude_known(index) && (time_ns % truth_->period_ns == 0 || attitude_known(index + 1));
 }
 
 bool TruthTrack::covers(std::int64_t time_ns) const {

@@ -17,7 +17,8 @@ namespace tumble::scenarios {
 /// errors.
 class TruthTrack {
  public:
-  /// Rest: everywhere within this time around the instant the body moves slower than both bounds.
+  /// Rest: everywhere within this time around the instant the body moves slower than both bounds; than that of the rate
+  /// where the truth knows no position at all.
   static constexpr double kRestWindowS = 0.1;
   static constexpr double kRestSpeedMS = 0.03;
   static constexpr double kRestRateRadS = 0.05;
@@ -29,8 +30,11 @@ class TruthTrack {
   std::int64_t last_ns() const { return last_ns_; }
   /// Within the truth, and where it is known: a reference has gaps.
   bool covers(std::int64_t time_ns) const;
+  /// The same where the attitude is known, whether or not the position is.
+  bool covers_attitude(std::int64_t time_ns) const;
 
-  /// Pose of the frame in W and velocity of its origin; `time_ns` must be covered. O(1).
+  /// Pose of the frame in W and velocity of its origin, NaN where position is not known; the attitude at `time_ns` must
+  /// be covered. O(1).
   PoseState pose(std::int64_t time_ns) const;
   /// Length of the way that the frame's origin has gone since time 0 [m]; `time_ns` must be covered.
   double path_m(std::int64_t time_ns) const;
@@ -39,6 +43,7 @@ class TruthTrack {
 
  private:
   bool known(std::size_t index) const;
+  bool attitude_known(std::size_t index) const;
   Eigen::Vector3d position(std::size_t index) const;
 
   const sim::Truth* truth_;

@@ -86,7 +86,7 @@ Given changed(const SimulatedDraw& draw, const Setting& setting) {
 Outcome unanswered(const DrawTask& task, const DrawTask::Run& run, const std::string& status,
                    const std::string& message) {
   Outcome outcome;
-  outcome.scenario = task.scenario->name;
+  outcome.scenario = task.name;
   outcome.seed = task.seed;
   outcome.kind = run.method->info.kind;
   outcome.method = run.method->info.name;
@@ -98,7 +98,7 @@ Outcome unanswered(const DrawTask& task, const DrawTask::Run& run, const std::st
 
 /// The draw cannot be drawn or simulated, here or anywhere.
 void reject(const DrawTask& task, const std::exception& error, int fd) {
-  write_all(fd, to_line({{}, RejectedDraw{task.scenario->name, task.seed, one_line(error.what()), task.setting}}));
+  write_all(fd, to_line({{}, RejectedDraw{task.name, task.seed, one_line(error.what()), task.setting}}));
 }
 
 /// Nothing is known of the draw: each of its runs gets `status`.
@@ -146,13 +146,17 @@ std::vector<Outcome> without_answer(const DrawTask& task, const std::string& sta
 void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int fd) {
   std::optional<SimulatedDraw> draw;
   std::optional<sim::Surface> surface;
-  const std::string& name = task.scenario->name;
+  const std::string& name = task.name;
   try {
-    draw = simulate_draw(data, with_setting(*task.scenario, task.setting), task.seed, 1, lidars_for(task));
+    draw = task.recording != nullptr
+               ? read_draw(*task.recording)
+               : simulate_draw(data, with_setting(*task.scenario, task.setting), task.seed, 1, lidars_for(task));
     const bool maps = std::any_of(task.runs.begin(), task.runs.end(),
                                   [](const DrawTask::Run& run) { return run.method->info.kind == Kind::slam; });
-    if (maps) surface.emplace(draw->situation, data.models());
-    DrawValues values = motion_values(name, task.seed, draw->recording);
+    if (maps && task.scenario != nullptr) surface.emplace(draw->situation, data.models());
+    const bool whole = task.recording == nullptr || task.recording->simulated;
+    DrawValues values = whole ? motion_values(name, task.seed, draw->recording)
+                              : recorded_motion_values(name, task.seed, draw->recording);
     values.setting = task.setting;
     write_all(fd, to_line({{}, {}, std::move(values)}));
   } catch (const BadInput& error) {

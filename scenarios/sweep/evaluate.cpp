@@ -77,7 +77,7 @@ Estimate run_method(const Method& method, const SimulatedDraw& draw, Outcome& ou
 void assess(const Method& method, const SimulatedDraw& draw, const sim::Surface* surface, const Estimate& estimate,
             Outcome& outcome) {
   outcome.estimate_digest = digest(estimate);
-  if (outcome.status != "ok") return;
+  if (outcome.status != "ok" || !draw.has_truth) return;
   try {
     const ScoringInput input{&draw.recording.sensors, &draw.recording.truth, surface};
     outcome.status = verdict(method.info.kind, estimate, input);

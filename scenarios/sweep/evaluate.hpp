@@ -9,14 +9,15 @@
 
 namespace tumble::scenarios {
 
-/// One simulated draw, ready for methods: what every outcome of it shares.
+/// One simulated (or recorded) draw, ready for methods: what every outcome of it shares.
 struct SimulatedDraw {
   std::string scenario;
   std::uint64_t seed = 0;
-  sim::Situation situation;
+  sim::Situation situation;  ///< of a simulated one
   sim::Recording recording;
   std::string recording_digest;
   double simulate_cpu_s = 0;
+  bool has_truth = true;  ///< a recording may come without: it is estimated and not scored
 };
 
 /// Whether the lidars of a draw are simulated: they cost a good part of the time, and methods of kind `rate` read none.

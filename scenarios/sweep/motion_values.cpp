@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/motion_values.hpp"
 
+#include <algorithm>
 #include <cmath>
 
+#include "scenarios/scoring/clipping.hpp"
 #include "scenarios/scoring/motion_summary.hpp"
 
 namespace tumble::scenarios {
@@ -32,6 +34,29 @@ DrawValues motion_values(const std::string& scenario, std::uint64_t seed, const 
                  {"motion_clip_length_max_s", motion.clip_length_max_s},
                  {"motion_several_axes_share", share(motion.several_axes_samples, motion.clipped_samples)},
                  {"motion_accel_clipped_share", share(motion.accel_clipped_samples, motion.samples)}};
+  return draw;
+}
+
+DrawValues recorded_motion_values(const std::string& scenario, std::uint64_t seed, const sim::Recording& recording) {
+  DrawValues draw{scenario, seed, {}};
+  if (recording.sensors.imus.empty()) return draw;
+  double peak_rad_s = 0.0;
+  for (const Eigen::Vector3d& w : recording.sensors.imus.front().gyro_rad_s)
+    peak_rad_s = std::max(peak_rad_s, w.norm());
+  draw.values = {{"motion_peak_rate_rad_s", peak_rad_s}};
+  if (recording.truth.imus.empty() || recording.truth.imus.front().rate_rad_s.empty()) return draw;
+  const ClippingTruth clipping(recording.sensors, recording.truth);
+  std::size_t clipped = 0;
+  double depth_rad_s = 0.0;
+  for (std::size_t i = 0; i < clipping.size(); ++i) {
+    if (clipping.clipped_axes(i) == 0) continue;
+    ++clipped;
+    depth_rad_s = std::max(depth_rad_s, clipping.depth_rad_s(i));
+  }
+  draw.values.push_back({"motion_clips", clipped > 0 ? 1.0 : 0.0});
+  draw.values.push_back({"motion_clipped_share", share(clipped, clipping.known_samples())});
+  draw.values.push_back({"motion_clipped_samples", static_cast<double>(clipped)});
+  draw.values.push_back({"motion_clip_depth_max_rad_s", depth_rad_s});
   return draw;
 }
 

@@ -27,4 +27,9 @@ namespace tumble::scenarios {
 /// No values for a recording without an IMU.
 DrawValues motion_values(const std::string& scenario, std::uint64_t seed, const sim::Recording& recording);
 
+/// What is known of the same of a real recording: `motion_peak_rate_rad_s` of the readings, and, where its reference
+/// knows rates, `motion_clips`, `motion_clipped_share`, `motion_clipped_samples`, `motion_clip_depth_max_rad_s` of the
+/// samples that it knows.
+DrawValues recorded_motion_values(const std::string& scenario, std::uint64_t seed, const sim::Recording& recording);
+
 }  // namespace tumble::scenarios

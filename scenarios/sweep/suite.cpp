@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <array>
+#include <map>
 #include <sstream>
 
 #include "scenarios/draw/scenario.hpp"
@@ -73,18 +74,9 @@ void read_curves(const DataRoot& data, const YamlNode& node, Suite& suite) {
   if (suite.curves.empty()) node.fail("no curve");
 }
 
-// names are checked here, so that a suite with a slip of the pen does not begin
-Suite read_suite(const DataRoot& data, const std::filesystem::path& path) {
-  const YamlNode root = YamlNode::parse(read_text_file(path), path.string());
-  const std::array<std::string, 4> required = {"name", "doc", "scenarios", "seeds"};
-  const std::array<std::string, 3> optional = {"methods", "timeout_s", "vary"};
-  const auto fields = root.fields(required, optional);
-  Suite suite;
-  suite.name = fields.at("name").identifier();
-  suite.doc = fields.at("doc").text();
-  read_seeds(fields.at("seeds"), suite);
+void read_scenarios(const DataRoot& data, const YamlNode& node, Suite& suite) {
   const std::vector<std::string> known = scenario_names(data);
-  for (const YamlNode& item : fields.at("scenarios").items()) {
+  for (const YamlNode& item : node.items()) {
     const std::string name = item.text();
     if (!std::binary_search(known.begin(), known.end(), name)) {
       item.fail("unknown scenario '" + name + "'" + suggestion(name, known));
@@ -94,7 +86,45 @@ Suite read_suite(const DataRoot& data, const std::filesystem::path& path) {
     }
     suite.scenarios.push_back(name);
   }
-  if (suite.scenarios.empty()) fields.at("scenarios").fail("no scenario");
+  if (suite.scenarios.empty()) node.fail("no scenario");
+}
+
+void read_recordings(const YamlNode& node, Suite& suite) {
+  for (const YamlNode& item : node.items()) {
+    if (item.text().empty()) item.fail("names no file");
+    suite.recordings.push_back(item.text());
+  }
+  if (suite.recordings.empty()) node.fail("no recording");
+}
+
+/// What a suite is of: recordings alone, or scenarios with their seeds.
+void read_draws(const DataRoot& data, const YamlNode& root, const std::map<std::string, YamlNode>& fields,
+                Suite& suite) {
+  if (fields.contains("recordings")) {
+    for (const char* key : {"scenarios", "seeds", "vary"}) {
+      if (fields.contains(key)) fields.at(key).fail("a suite of recordings has none");
+    }
+    read_recordings(fields.at("recordings"), suite);
+    return;
+  }
+  for (const char* key : {"scenarios", "seeds"}) {
+    if (!fields.contains(key)) root.fail(std::string("key '") + key + "' is missing");
+  }
+  read_seeds(fields.at("seeds"), suite);
+  read_scenarios(data, fields.at("scenarios"), suite);
+}
+
+// names are checked here, so that a suite with a slip of the pen does not begin
+Suite read_suite(const DataRoot& data, const std::filesystem::path& path) {
+  const YamlNode root = YamlNode::parse(read_text_file(path), path.string());
+  const std::array<std::string, 2> required = {"name", "doc"};
+  const std::array<std::string, 6> optional = {"scenarios", "seeds", "recordings", "methods", "timeout_s", "vary"};
+  const auto fields = root.fields(required, optional);
+  Suite suite;
+  suite.name = fields.at("name").identifier();
+  suite.doc = fields.at("doc").text();
+  suite.recordings_folder = path.parent_path();
+  read_draws(data, root, fields, suite);
   if (fields.contains("methods")) {
     for (const YamlNode& item : fields.at("methods").items()) {
       try {

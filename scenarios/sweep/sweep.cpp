@@ -29,7 +29,7 @@ struct Worker {
   Process process;
   double deadline_s;
   std::string buffer;
-  bool finished = false;   // said that it is done, or that the draw was rejected
+  bool finished = false;  // said that it is done, or that the draw was rejected
 };
 
 std::vector<const Method*> chosen_methods(const Suite& suite) {
@@ -68,24 +68,34 @@ void claim(Results& results, const DataRoot& data, const Suite& suite, const std
                    "); outcomes of two catalogues do not mix: name another file");
   }
   results.set_note("suite", suite.name);
+  if (!suite.recordings.empty()) results.set_note("source", kRecordingsSource);
 }
 
 class Sweep {
  public:
   Sweep(const DataRoot& data, const Suite& suite, Results& results, const SweepOptions& options)
-      : data_(data), suite_(suite), results_(results), options_(options), started_s_(now_s()),
+      : data_(data),
+        suite_(suite),
+        results_(results),
+        options_(options),
+        started_s_(now_s()),
         settings_(settings_of(suite)) {
     next_.seed = suite.first_seed;
   }
 
   SweepProgress run() {
     for (const std::string& name : suite_.scenarios) add_scenario(name);
-    if (std::all_of(scenarios_.begin(), scenarios_.end(), [](const auto& each) { return each.methods.empty(); })) {
+    if (!suite_.recordings.empty()) add_recordings();
+    const auto idle = [](const auto& each) { return each.methods.empty(); };
+    if (std::all_of(scenarios_.begin(), scenarios_.end(), idle) &&
+        std::all_of(recordings_.begin(), recordings_.end(), idle)) {
       throw BadInput("suite " + suite_.name + ": none of its methods applies to any of its scenarios");
     }
     // a catalogue that cannot be drawn from is the caller's mistake, not an outcome
     for (const Planned& each : scenarios_) draw(data_, each.scenario, suite_.first_seed);
-    progress_.draws_total = (suite_.last_seed - suite_.first_seed + 1) * scenarios_.size() * settings_.simulated.size();
+    const std::uint64_t seeds = suite_.last_seed - suite_.first_seed + 1;
+    progress_.draws_total = recordings_.size() + seeds * scenarios_.size() * settings_.simulated.size();
+    next_.at_end = scenarios_.empty();
     while (!stopped()) {
       while (!stopped() && static_cast<int>(workers_.size()) < options_.jobs && start_next()) {
       }
@@ -115,12 +125,19 @@ class Sweep {
     std::vector<const Method*> methods;
   };
 
-  /// The draw that comes next: seeds outermost, so that a sweep that is stopped has all scenarios and all points of the
-  /// curves in it.
+  /// A recording of the suite and the methods that apply to it.
+  struct Recorded {
+    RecordedDraw recording;
+    std::vector<const Method*> methods;
+  };
+
+  /// The draw that comes next: recordings first, then seeds, which are outermost, so that a sweep that is stopped has
+  /// all scenarios and all points of the curves in it.
   struct Cursor {
+    std::size_t recording = 0;
     std::uint64_t seed = 0;
     std::size_t scenario = 0, setting = 0;
-    bool at_end = false;
+    bool at_end = false;  ///< of the seeds
   };
 
   bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
@@ -132,7 +149,31 @@ class Sweep {
     scenarios_.push_back(std::move(planned));
   }
 
+  void add_recordings() {
+    const std::vector<const Method*> chosen = chosen_methods(suite_);
+    for (RecordedDraw& recording : find_recordings(suite_.recordings, suite_.recordings_folder)) {
+      require_same_data(recording);
+      std::vector<const Method*> own = applicable(chosen, recording);
+      recordings_.push_back({std::move(recording), std::move(own)});
+    }
+  }
+
+  /// Rows of a file that has been imported anew do not stand beside those of the old one.
+  void require_same_data(const RecordedDraw& recording) const {
+    for (const Outcome& row : results_.outcomes_of(recording.name, kRecordingSeed)) {
+      if (row.recording_digest.empty() || row.recording_digest == recording.digest) continue;
+      throw BadInput(recording.path.string() + ": has digest " + recording.digest +
+                     ", the results were made of one with " + row.recording_digest + ": name another database");
+    }
+  }
+
+  bool nothing_left() const { return next_.recording == recordings_.size() && next_.at_end; }
+
   void advance() {
+    if (next_.recording < recordings_.size()) {
+      ++next_.recording;
+      return;
+    }
     if (++next_.setting < settings_.simulated.size()) return;
     next_.setting = 0;
     if (++next_.scenario < scenarios_.size()) return;
@@ -141,35 +182,43 @@ class Sweep {
     ++next_.seed;
   }
 
-  /// What of the draw at the cursor has no row yet, or one that is to be run again.
-  DrawTask task_at_cursor() const {
-    const Planned& planned = scenarios_[next_.scenario];
-    const Setting& simulated = settings_.simulated[next_.setting];
-    DrawTask task{&planned.scenario, next_.seed, simulated, {}};
-    for (const RejectedDraw& rejected : results_.rejected_of(planned.scenario.name, next_.seed)) {
-      if (rejected.setting == simulated) return task;
-    }
-    const std::vector<Outcome> held = results_.outcomes_of(planned.scenario.name, next_.seed);
-    const auto stands = [&](const MethodInfo& info, const Setting& setting) {
+  /// Adds to the task what has no row yet with `setting`, or one that is to be run again.
+  void add_missing(const std::vector<const Method*>& methods, const std::vector<Outcome>& held, const Setting& setting,
+                   DrawTask& task) const {
+    const auto stands = [&](const MethodInfo& info) {
       return std::any_of(held.begin(), held.end(), [&](const Outcome& row) {
         return row.kind == info.kind && row.method == info.name && row.setting == setting &&
                std::find(options_.again.begin(), options_.again.end(), row.status) == options_.again.end();
       });
     };
-    const auto add = [&](const Setting& setting) {
-      for (const Method* method : planned.methods) {
-        const MethodInfo& info = method->info;
-        if (concerns(setting, info) && !stands(info, setting)) task.runs.push_back({method, setting});
-      }
-    };
-    add(simulated);
-    if (simulated.is_plain()) std::for_each(settings_.shared.begin(), settings_.shared.end(), add);
+    for (const Method* method : methods) {
+      if (concerns(setting, method->info) && !stands(method->info)) task.runs.push_back({method, setting});
+    }
+  }
+
+  DrawTask task_at_cursor() const {
+    if (next_.recording < recordings_.size()) {
+      const Recorded& recorded = recordings_[next_.recording];
+      DrawTask task{recorded.recording.name, nullptr, &recorded.recording, kRecordingSeed, {}, {}};
+      add_missing(recorded.methods, results_.outcomes_of(task.name, task.seed), {}, task);
+      return task;
+    }
+    const Planned& planned = scenarios_[next_.scenario];
+    const Setting& simulated = settings_.simulated[next_.setting];
+    DrawTask task{planned.scenario.name, &planned.scenario, nullptr, next_.seed, simulated, {}};
+    for (const RejectedDraw& rejected : results_.rejected_of(task.name, task.seed)) {
+      if (rejected.setting == simulated) return task;
+    }
+    const std::vector<Outcome> held = results_.outcomes_of(task.name, task.seed);
+    add_missing(planned.methods, held, simulated, task);
+    if (!simulated.is_plain()) return task;
+    for (const Setting& setting : settings_.shared) add_missing(planned.methods, held, setting, task);
     return task;
   }
 
   // starts the next draw that has something to run; false when there is none, or no process to run it in for now
   bool start_next() {
-    for (; !next_.at_end && !stopped(); advance()) {
+    for (; !nothing_left() && !stopped(); advance()) {
       DrawTask task = task_at_cursor();
       if (task.runs.empty()) {
         ++progress_.draws_done;
@@ -269,6 +318,7 @@ class Sweep {
   double started_s_;
   Settings settings_;
   std::vector<Planned> scenarios_;
+  std::vector<Recorded> recordings_;
   Cursor next_;
   std::list<Worker> workers_;
   SweepProgress progress_;

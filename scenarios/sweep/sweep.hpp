@@ -15,20 +15,26 @@
 
 namespace tumble::scenarios {
 
-/// A suite file, scenarios/suites/NAME.yaml: scenarios x seeds x methods, and once more for each point of each curve.
+/// A suite file, scenarios/suites/NAME.yaml: scenarios x seeds x methods, and once more for each point of each curve;
+/// or recordings x methods, each recording standing for one draw (recorded_draw.hpp).
 struct Suite {
   std::string name;
   std::string doc;
   std::vector<std::string> scenarios;
   std::uint64_t first_seed = 1, last_seed = 1;
-  std::vector<std::string> methods;  ///< names for find_methods
-  double timeout_s = 300;            ///< for one method on one draw
-  std::vector<Variation> curves;     ///< key `vary`: {KEY: [values]}, keys that move together joined by "+"
+  std::vector<std::string> methods;         ///< names for find_methods
+  double timeout_s = 300;                   ///< for one method on one draw
+  std::vector<std::string> recordings;      ///< patterns of files, instead of scenarios and seeds
+  std::filesystem::path recordings_folder;  ///< that they are relative to: the suite file's, unless told
+  std::vector<Variation> curves;            ///< key `vary`: {KEY: [values]}, keys that move together joined by "+"
 };
 
 std::vector<std::string> suite_names(const DataRoot& data);
 /// A suite by name, a suite file, or a scenario's name (a suite of that one with all methods). Throws BadInput.
 Suite load_suite(const DataRoot& data, const std::string& name);
+
+/// The note `source` of results that were made of recordings: their draws cannot be simulated again.
+inline constexpr const char* kRecordingsSource = "recordings";
 
 struct SweepProgress {
   std::uint64_t draws_done = 0, draws_total = 0;
@@ -50,8 +56,8 @@ Results open_results(const DataRoot& data, const Suite& suite, const std::filesy
 /// Runs what the database does not hold yet. Each draw is a process of its own, each method in it another: a crash, a
 /// time-out or a memory failure is an outcome (crashed, timeout, killed), never the end of the sweep. Finished outcomes
 /// are stored as they come. Draws are looked up and planned one at a time: memory does not grow with their number.
-/// Returns the final progress; draws_done < draws_total when stopped. Throws BadInput when none of the methods applies
-/// to any of the scenarios.
+/// A recording whose rows were made of other data (another digest) is refused. Returns the final progress; draws_done <
+/// draws_total when stopped. Throws BadInput when none of the methods applies to any of the scenarios.
 SweepProgress sweep(const DataRoot& data, const Suite& suite, const std::filesystem::path& database,
                     const SweepOptions& options);
 

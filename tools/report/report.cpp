@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 
+#include "scenarios/sweep/sweep.hpp"
 #include "tools/report/certificate_html.hpp"
 
 namespace tumble::tools {
@@ -97,11 +98,14 @@ PageContent report_content(const scenarios::Results& results, const Summary& sum
   content.curves = find_curves(results);
   content.rejected = results.rejected();
   content.certificates = results.certificates();
-  if (content.certificates.empty()) content.warnings.push_back("These results hold no certificate of their build.");
+  const bool recorded = results.note("source") == scenarios::kRecordingsSource;
+  if (content.certificates.empty() && !recorded)
+    content.warnings.push_back("These results hold no certificate of their build.");
   for (const scenarios::Certificate& certificate : content.certificates) {
     content.facts.emplace_back("certificate", certificate_summary(certificate));
     if (!certificate.passes()) content.warnings.push_back("The certificate of build " + certificate.build + " fails.");
   }
+  if (recorded) return content;  // nothing to simulate again
   for (const std::string& scenario : scenarios_to_show(summary, options.examples_max)) {
     std::uint64_t seed = 0;
     if (!typical_seed(summary, scenario, seed)) continue;

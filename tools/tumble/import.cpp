@@ -19,9 +19,17 @@ using scenarios::Imported;
 
 /// One format, and how its files become a recording.
 Imported import_format(const Session& session, const ImportOptions& options, const std::string& format) {
-  if (format == "csv") return scenarios::import_imu_csv(options.path, imu_sheet(session, options), accel_unit(options));
+  if (format == "csv")
+    return scenarios::import_imu_csv(options.path, imu_sheet(session, options), accel_unit(options),
+                                     gyro_unit(options));
   if (format == "broad") {
     Imported imported = scenarios::import_broad(options.path);
+    complete(imu_sheet(session, options), imported.sensors.imus.front());
+    return imported;
+  }
+  if (format == "repoimu" || format == "airbrakes") {
+    Imported imported = format == "repoimu" ? scenarios::import_repoimu(options.path, options.align_reference)
+                                            : scenarios::import_airbrakes(options.path);
     complete(imu_sheet(session, options), imported.sensors.imus.front());
     return imported;
   }
@@ -84,8 +92,8 @@ int import_from(const Session& session, const ImportOptions& options) {
   require_fitting(options, format);
   Imported imported = import_format(session, options, format);
   if (!options.imu.empty()) {
-    scenarios::attach_imus(imported,
-                           scenarios::import_imu_csv(options.imu, imu_sheet(session, options), accel_unit(options)));
+    scenarios::attach_imus(imported, scenarios::import_imu_csv(options.imu, imu_sheet(session, options),
+                                                               accel_unit(options), gyro_unit(options)));
   }
   if (!options.reference.empty()) {
     scenarios::attach_reference(imported, reference_source(options, !imported.sensors.lidars.empty()));

@@ -16,7 +16,8 @@ namespace {
 
 using scenarios::BadInput;
 
-const std::vector<std::string> kFormats = {"broad", "csv", "kitti", "pcd", "ply", "rosbag1", "rosbag2", "tum"};
+const std::vector<std::string> kFormats = {"airbrakes", "broad",   "csv",     "kitti",   "pcd",
+                                           "ply",       "repoimu", "rosbag1", "rosbag2", "tum"};
 
 /// What the files in a folder are.
 std::string format_of_folder(const std::filesystem::path& folder) {
@@ -35,6 +36,12 @@ std::string format_of_folder(const std::filesystem::path& folder) {
   if (found.empty())
     throw BadInput(folder.string() + ": holds no .ply, .pcd or .bin file and no metadata.yaml of a bag");
   return found;
+}
+
+/// By its first line.
+std::string format_of_csv(const std::filesystem::path& file) {
+  if (scenarios::is_repoimu(file)) return "repoimu";
+  return scenarios::is_airbrakes(file) ? "airbrakes" : "csv";
 }
 
 bool is_bag(const std::string& format) {
@@ -129,23 +136,29 @@ void declare_reference(CLI::App& app, ImportOptions& options) {
                  "whose poses they are: lidar or body [of a file: the lidar, if there is one; of a topic: the body]");
   app.add_option("--reference-topic", options.reference_topic,
                  "of a bag: nav_msgs/Odometry or geometry_msgs/PoseStamped, poses that become the truth [none]");
+  app.add_flag(
+      "--align-reference", options.align_reference,
+      "of repoimu: take the reference's delay, rotation and tilt, estimated from the motion, out of it [said alone]");
   app.add_flag("--sort", options.sorted, "a TUM file's lines may be in any order; of equal stamps the first counts");
 }
 
 }  // namespace
 
 void declare(CLI::App& app, ImportOptions& options) {
-  app.add_option(
-         "PATH", options.path,
-         "a folder of lidar sweeps (PLY, PCD, KITTI .bin); readings of an IMU: CSV with the columns of a "
-         "sensor_msgs/Imu, or a trial of BROAD (HDF5), with its optical reference; a bag (ROS 1 file, ROS 2 folder); "
-         "or poses (TUM, KITTI)")
+  app.add_option("PATH", options.path,
+                 "a folder of lidar sweeps (PLY, PCD, KITTI .bin); readings of an IMU: CSV with the columns of a "
+                 "sensor_msgs/Imu, a trial of BROAD (HDF5) or a recording of RepoIMU (CSV) with its optical reference, "
+                 "a flight log "
+                 "of AirbrakesV2 (CSV); a bag (ROS 1 file, ROS 2 folder); "
+                 "or poses (TUM, KITTI)")
       ->required();
-  app.add_option("--format", options.format,
-                 "broad, csv, kitti, pcd, ply, rosbag1, rosbag2 or tum [by the path's ending or content]");
+  app.add_option(
+      "--format", options.format,
+      "airbrakes, broad, csv, kitti, pcd, ply, repoimu, rosbag1, rosbag2 or tum [by the path's ending or content]");
   app.add_option("--device", options.device,
                  "the IMU's data sheet, for ranges and noise: see 'tumble list sensors' [unknown]");
   app.add_option("--accel-unit", options.accel_unit, "of a CSV: m/s^2 or g [m/s^2]");
+  app.add_option("--gyro-unit", options.gyro_unit, "of a CSV: rad/s or deg/s [rad/s]");
   app.add_option("--lever-arm", options.lever_arm_m, "X Y Z: from the robot's centre of mass to the IMU, m [0 0 0]")
       ->expected(3);
   app.add_option("--robot", options.robot, "rig or sphere, for methods that ask [unknown]");
@@ -165,7 +178,7 @@ std::string format_of(const ImportOptions& options) {
   }
   if (std::filesystem::is_directory(options.path)) return format_of_folder(options.path);
   const std::string ending = options.path.extension().string();
-  if (ending == ".csv") return "csv";
+  if (ending == ".csv") return format_of_csv(options.path);
   if (ending == ".bag") return "rosbag1";
   if (ending == ".db3") return "rosbag2";
   if (ending == ".hdf5" || ending == ".h5") return "broad";
@@ -176,15 +189,21 @@ std::string format_of(const ImportOptions& options) {
 
 void require_fitting(const ImportOptions& options, const std::string& format) {
   const bool bag = is_bag(format), csv = format == "csv" || !options.imu.empty();
+  const bool log = format == "repoimu" || format == "airbrakes";
   const bool sweeps = is_sweeps(format) && (format != "kitti" || std::filesystem::is_directory(options.path));
   const auto refuse = [&](bool given, const std::string& option, const std::string& why) {
     if (given) throw BadInput(option + ": " + why);
   };
   refuse(!options.accel_unit.empty() && !csv && !bag, "--accel-unit",
          "is of the readings of an IMU in a CSV file or bag");
+  refuse(!options.gyro_unit.empty() && !csv, "--gyro-unit", "is of the readings of an IMU in a CSV file");
+  refuse(options.align_reference && format != "repoimu", "--align-reference", "is for a recording of RepoIMU");
+  refuse(!options.reference.empty() && log, "--reference",
+         format == "repoimu" ? "a recording of RepoIMU has its own" : "is not for a flight log");
   refuse(!options.lever_arm_m.empty() && !csv && !bag, "--lever-arm",
-         format == "broad" ? "the body of a trial of BROAD is the IMU itself" : "is of an IMU in a CSV file or bag");
-  refuse(!options.device.empty() && !csv && !bag && format != "broad", "--device",
+         format == "broad" || log ? "the body of such a recording is the IMU itself"
+                                  : "is of an IMU in a CSV file or bag");
+  refuse(!options.device.empty() && !csv && !bag && !log && format != "broad", "--device",
          "is of an IMU; of a lidar it is --lidar");
   refuse(!options.imu.empty() && !sweeps, "--imu", "is for a folder of sweeps");
   refuse(!options.stem.empty() && !sweeps, "--stem", "is for a folder of sweeps");
@@ -238,6 +257,12 @@ void complete(const sim::ImuRecord& sheet, sim::ImuRecord& imu) {
 scenarios::AccelUnit accel_unit(const ImportOptions& options) {
   if (!options.accel_unit.empty()) require_known("unit", options.accel_unit, std::vector<std::string>{"g", "m/s^2"});
   return options.accel_unit == "g" ? scenarios::AccelUnit::g : scenarios::AccelUnit::m_s2;
+}
+
+scenarios::GyroUnit gyro_unit(const ImportOptions& options) {
+  if (options.gyro_unit.empty()) return scenarios::GyroUnit::rad_s;
+  require_known("gyro unit", options.gyro_unit, {"rad/s", "deg/s"});
+  return options.gyro_unit == "deg/s" ? scenarios::GyroUnit::deg_s : scenarios::GyroUnit::rad_s;
 }
 
 scenarios::SweepSource sweep_source(const Session& session, const ImportOptions& options, const std::string& format) {

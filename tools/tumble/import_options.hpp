@@ -21,7 +21,7 @@ struct ImportOptions {
   std::string format, robot;
   double radius_m = 0.0;
   // of the IMU
-  std::string device, accel_unit;
+  std::string device, accel_unit, gyro_unit;
   std::vector<double> lever_arm_m;
   std::filesystem::path imu;
   // of the lidar
@@ -33,7 +33,7 @@ struct ImportOptions {
   // of the reference
   std::filesystem::path reference;
   std::string reference_frame;
-  bool sorted = false;
+  bool sorted = false, align_reference = false;
   // of a bag
   std::vector<std::string> imu_topics, lidar_topics;
   std::string reference_topic;
@@ -52,6 +52,7 @@ sim::ImuRecord imu_sheet(const Session& session, const ImportOptions& options);
 /// What a file states less than the data sheet is completed from it.
 void complete(const sim::ImuRecord& sheet, sim::ImuRecord& imu);
 scenarios::AccelUnit accel_unit(const ImportOptions& options);
+scenarios::GyroUnit gyro_unit(const ImportOptions& options);
 
 scenarios::SweepSource sweep_source(const Session& session, const ImportOptions& options, const std::string& format);
 /// Poses are of the lidar where the recording has one and nothing else is said.

@@ -202,12 +202,14 @@ Listing list_suites(const scenarios::DataRoot& data, const std::string& only) {
       curves.push_back({{"keys", curve.keys}, {"values", curve.values}});
     }
     table.add_row(
-        {name, joined(suite.scenarios), std::to_string(suite.first_seed) + ".." + std::to_string(suite.last_seed),
+        {name, joined(suite.recordings.empty() ? suite.scenarios : suite.recordings),
+         std::to_string(suite.first_seed) + ".." + std::to_string(suite.last_seed),
          suite.methods.size() == all ? "all" : std::to_string(suite.methods.size()) + " of " + std::to_string(all),
          joined(varied), number_text(suite.timeout_s) + " s", suite.doc});
     out.document.push_back({{"name", name},
                             {"doc", suite.doc},
                             {"scenarios", suite.scenarios},
+                            {"recordings", suite.recordings},
                             {"first_seed", suite.first_seed},
                             {"last_seed", suite.last_seed},
                             {"methods", suite.methods},

@@ -23,13 +23,19 @@ struct Options {
   std::optional<std::string> seeds, shard;
   std::vector<std::string> methods, again;
   int jobs = 1;
-  std::filesystem::path database;
+  std::filesystem::path database, recordings;
 };
 
 /// The suite with what the command line changes of it. Returns false when this shard has no seed.
 bool select(const scenarios::DataRoot& data, const Options& options, scenarios::Suite& suite) {
   suite = scenarios::load_suite(data, options.suite);
   if (options.seeds) std::tie(suite.first_seed, suite.last_seed) = parse_seeds(*options.seeds);
+  const bool recorded = !suite.recordings.empty();
+  if (recorded && (options.seeds || options.shard))
+    throw scenarios::BadInput("--seeds, --shard: a suite of recordings has no seeds");
+  if (!recorded && !options.recordings.empty())
+    throw scenarios::BadInput("--data: suite '" + suite.name + "' has no recordings");
+  if (!options.recordings.empty()) suite.recordings_folder = options.recordings;
   if (!options.methods.empty()) {
     for (const std::string& name : options.methods) scenarios::find_methods(name);  // refuses an unknown one now
     suite.methods = options.methods;
@@ -83,7 +89,8 @@ int run_sweep(const Session& session, const Options& options) {
   }
 
   const InterruptFlag interrupt;
-  certify(session, data, options.database, interrupt.raised());
+  // it speaks of simulations
+  if (suite.recordings.empty()) certify(session, data, options.database, interrupt.raised());
   const scenarios::SweepProgress final =
       sweep_with_progress(session, data, suite, options.database, options.jobs, interrupt.raised(), options.again);
 
@@ -104,6 +111,7 @@ Action declare_sweep(CLI::App& app, const Session& session) {
   app.add_option("--again", options->again, "run rows of these statuses once more: crashed,timeout,killed")
       ->delimiter(',')
       ->allow_extra_args(false);
+  app.add_option("--data", options->recordings, "folder of a suite's recordings [the suite file's]");
   app.add_option("--db", options->database, "the results database; what it holds already is not run again")->required();
   return [&session, options] { return run_sweep(session, *options); };
 }

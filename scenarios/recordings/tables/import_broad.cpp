@@ -8,6 +8,7 @@
 #include "scenarios/recordings/import.hpp"
 #include "scenarios/recordings/recording_check.hpp"
 #include "scenarios/recordings/trajectories/reference.hpp"
+#include "scenarios/recordings/trajectories/reference_rate.hpp"
 
 namespace tumble::scenarios {
 
@@ -59,6 +60,15 @@ std::vector<Eigen::Quaterniond> attitudes(const hdf5::Group& root) {
   return q_WB;
 }
 
+/// The attitudes that the cameras saw, at the samples' stamps.
+std::vector<ReferencePose> known_poses(const sim::Truth& truth, const sim::ImuRecord& imu) {
+  std::vector<ReferencePose> poses;
+  for (std::size_t k = 0; k < truth.q_WB.size(); ++k) {
+    if (truth.q_WB[k].coeffs().allFinite()) poses.push_back({imu.time_ns[k], truth.p_WB_m[k], truth.q_WB[k]});
+  }
+  return poses;
+}
+
 /// The optical reference. The body's axes are the IMU's, the world's are east, north and up.
 std::optional<sim::Truth> read_reference(const hdf5::Group& root, const sim::ImuRecord& imu) {
   if (!root.has("opt_quat") || !root.has("opt_pos")) return std::nullopt;
@@ -73,7 +83,10 @@ std::optional<sim::Truth> read_reference(const hdf5::Group& root, const sim::Imu
     }
   }
   differentiate(truth, kReach);
-  truth.imus.push_back({imu.name, Eigen::Isometry3d::Identity(), {}, {}, {}, {}, {}, {}, {}});
+  sim::ImuTruth own;
+  own.name = imu.name;
+  own.rate_rad_s = reference_rates(known_poses(truth, imu), imu.time_ns);
+  truth.imus.push_back(std::move(own));
   return truth;
 }
 

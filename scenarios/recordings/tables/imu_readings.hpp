@@ -19,7 +19,23 @@ void add_reading(const std::string& where, std::int64_t stamp_ns, const Eigen::V
 /// specific force outside 3 to 30 m/s^2, which says that the unit is another one.
 void finish_readings(const std::string& where, AccelUnit unit, sim::ImuRecord& imu);
 
-/// m/s^2 of one unit.
+/// How gravity turns in the accelerometer against what the gyro says: over windows of 0.2 s in which the specific force
+/// keeps the size of gravity within a tenth and turns by one to some twenty degrees, the change of the force is held
+/// against
+/// -(angle turned) x force. `ratio`: the factor between them, 1 when the units agree; `correlation`: of the two.
+/// O(N).
+struct GravityTurn {
+  int windows = 0;
+  double ratio = 0.0, correlation = 0.0;
+};
+GravityTurn gravity_turn(const sim::ImuRecord& imu);
+
+/// A remark on the units that gravity shows, or none where the motion does not tell. Throws BadInput beginning with
+/// `where` when the rates are in the other unit by it (a factor of 57.3).
+std::string require_gravity_turns(const std::string& where, const sim::ImuRecord& imu, GyroUnit unit);
+
+/// m/s^2 and rad/s of one unit.
 double scale_of(AccelUnit unit);
+double scale_of(GyroUnit unit);
 
 }  // namespace tumble::scenarios

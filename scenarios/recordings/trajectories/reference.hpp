@@ -12,7 +12,8 @@
 /// What another instrument saw of a real recording's motion: FORMAT.md, "References".
 namespace tumble::scenarios {
 
-/// A pose of the frame A (body, or lidar) in a world of the instrument's own, z up.
+/// A pose of the frame A (body, or lidar) in a world of the instrument's own, z up. A position that is not known is
+/// NaN.
 struct ReferencePose {
   std::int64_t time_ns = 0;
   Eigen::Vector3d p_WA_m = Eigen::Vector3d::Zero();

@@ -91,8 +91,8 @@ sim::Truth reference_truth(const std::vector<ReferencePose>& poses, std::int64_t
     truth.p_WB_m.push_back(pose.p_WA_m);
     truth.q_WB.push_back(pose.q_WA);
   }
-  const auto known = [](const Eigen::Vector3d& p) { return p.allFinite(); };
-  if (std::none_of(truth.p_WB_m.begin(), truth.p_WB_m.end(), known)) {
+  const auto known = [](const Eigen::Quaterniond& q) { return q.coeffs().allFinite(); };
+  if (std::none_of(truth.q_WB.begin(), truth.q_WB.end(), known)) {
     throw BadInput("the reference has poses too far apart to know any of the recording by");
   }
   differentiate(truth, static_cast<std::size_t>(std::max<std::int64_t>(kReach_ns / truth.period_ns, 1)));

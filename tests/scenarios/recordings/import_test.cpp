@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <sstream>
 
 #include "scenarios/recordings/export.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"
@@ -114,6 +116,94 @@ TEST_F(ImportCsv, ReadsTheLogOfARealSphere) {
   EXPECT_NEAR(imu.accel_m_s2[0].norm(), 9.81, 0.1) << "at rest at the start";
 }
 
+/// The lines of a file with their columns in another order.
+std::string reordered(const std::string& text, const std::vector<std::size_t>& order) {
+  std::string out;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    std::vector<std::string> fields;
+    std::istringstream cells(line);
+    for (std::string cell; std::getline(cells, cell, ',');) fields.push_back(cell);
+    for (std::size_t i = 0; i < order.size(); ++i) out += (i > 0 ? "," : "") + fields.at(order[i]);
+    out += "\n";
+  }
+  return out;
+}
+
+class ImportOwnCsv : public ImportCsv {
+ protected:
+  ImportOwnCsv() {
+    sim::Recording recording = fixture::recording();
+    for (Eigen::Vector3d& force : recording.sensors.imus[1].accel_m_s2) force *= 0.2;  // to a plausible median
+    export_csv(recording.sensors, nullptr, folder_);
+    given_ = recording.sensors.imus[1];
+    text_ = fixture::bytes_of(folder_ / "imu_reference.csv");
+  }
+  sim::ImuRecord given_;
+  std::string text_;
+  const std::vector<std::size_t> order_ = {14, 0, 10, 3, 4, 9, 5, 6, 7, 13, 8, 2, 11, 12, 1, 15};
+};
+
+TEST_F(ImportOwnCsv, NamesAreBelievedBeforePlaces) {
+  const Imported imported = import(reordered(text_, order_));
+  EXPECT_EQ(imported.sensors.imus[0].gyro_rad_s, given_.gyro_rad_s);
+  EXPECT_EQ(imported.sensors.imus[0].accel_m_s2, given_.accel_m_s2);
+  EXPECT_EQ(imported.sensors.imus[0].period_ns, given_.period_ns);
+  // control: the same columns without their names come in at their places, which are others' now
+  std::string moved = reordered(text_, order_);
+  moved.erase(0, moved.find('\n') + 1);
+  EXPECT_NE(complaint_of(moved), "");
+}
+
+TEST_F(ImportOwnCsv, DoubledUnknownAndMissingColumnsAreRefused) {
+  const auto renamed = [&](const std::string& from, const std::string& to) {
+    std::string other = text_;
+    return other.replace(other.find(from), from.size(), to);
+  };
+  EXPECT_EQ(complaint_of(text_), "");
+  EXPECT_THAT(complaint_of(renamed("wy_rad_s", "wx_rad_s")), HasSubstr("csv:1: two columns are called wx_rad_s"));
+  EXPECT_THAT(complaint_of(renamed("wy_rad_s", "wy_deg_s")), HasSubstr("csv:1: unknown column 'wy_deg_s'"));
+  EXPECT_THAT(complaint_of(renamed("wy_rad_s", "wy_rads")), HasSubstr("did you mean 'wy_rad_s'"));
+  EXPECT_THAT(complaint_of(reordered(text_, {0, 1, 2, 3, 8, 9, 10, 12, 13})),
+              HasSubstr("csv:1: columns are missing: fz_m_s2"));
+  fixture::put(folder_ / "a.csv", text_);
+  EXPECT_THAT(fixture::complaint([&] { import_imu_csv(folder_ / "a.csv", {}, AccelUnit::g); }),
+              HasSubstr("its names say rad/s and m/s^2"));
+}
+
+TEST_F(ImportOwnCsv, AFileWithoutHeaderKeepsItsFirstSample) {
+  const Imported imported = import(text_.substr(text_.find('\n') + 1));
+  EXPECT_EQ(imported.sensors.imus[0].gyro_rad_s, given_.gyro_rad_s);
+  EXPECT_EQ(imported.sensors.imus[0].time_ns.size(), given_.time_ns.size());
+}
+
+// a body that turns slowly in gravity tells the unit of its gyro
+TEST_F(ImportCsv, UnitsOfTheGyroAreHeldAgainstGravity) {
+  const auto turning = [](double scale, double sign) {
+    std::string text = kHeader;
+    for (int k = 0; k < 500; ++k) {
+      const double angle = 0.5 * std::sin(0.02 * k), rate = 0.5 * 2.0 * std::cos(0.02 * k);
+      char row[200];
+      std::snprintf(row, sizeof row, "%d,%d,imu,0,0,0,1,0,%.6f,0,0,0,0,%.6f,%.6f,0\n", 1 + k / 100, k % 100 * 10000000,
+                    scale * rate, sign * 9.80665 * std::sin(angle), 9.80665 * std::cos(angle));
+      text += row;
+    }
+    return text;
+  };
+  fixture::put(folder_ / "a.csv", turning(1.0, 1.0));
+  const Imported good = import_imu_csv(folder_ / "a.csv", {});
+  ASSERT_EQ(good.notes.size(), 1u);
+  EXPECT_THAT(good.notes[0], HasSubstr("units and axes agree"));
+  EXPECT_THAT(complaint_of(turning(57.29578, 1.0)), HasSubstr("are the rates in deg/s?"));
+  fixture::put(folder_ / "deg.csv", turning(57.29578, 1.0));
+  const Imported degrees = import_imu_csv(folder_ / "deg.csv", {}, AccelUnit::m_s2, GyroUnit::deg_s);
+  EXPECT_NEAR(degrees.sensors.imus[0].gyro_rad_s[0].x(), 1.0, 1e-5);
+  EXPECT_THAT(fixture::complaint([&] { import_imu_csv(folder_ / "a.csv", {}, AccelUnit::m_s2, GyroUnit::deg_s); }),
+              HasSubstr("are the rates in rad/s?"));
+  fixture::put(folder_ / "sign.csv", turning(1.0, -1.0));
+  EXPECT_THAT(import_imu_csv(folder_ / "sign.csv", {}).notes.at(0), HasSubstr("caution: gravity turns"));
+}
+
 TEST_F(ImportCsv, AGapDoesNotChangeThePeriod) {
   std::string text = kHeader;
   for (const char* stamp : {"1,0", "1,10000000", "1,20000000", "1,920000000", "1,930000000"}) text += line(stamp);
@@ -143,8 +233,11 @@ TEST_F(ImportCsv, BadInputHasFileAndLine) {
   EXPECT_THAT(complaint_of(good + line("1,1000000000")), HasSubstr("csv:4: column 1 must be a whole number"));
   EXPECT_THAT(complaint_of(good + line("1e30,0")), HasSubstr("csv:4: column 0 must be a whole number"));
   EXPECT_THAT(complaint_of(good + "\n"), HasSubstr("csv:4: has 1 columns"));
-  EXPECT_THAT(complaint_of(good + line("1,20000000").substr(0, 60)), HasSubstr("csv:4: has"));
-  EXPECT_THAT(complaint_of("a,b\n1,2\n"), HasSubstr("csv:2: has 2 columns"));
+  EXPECT_THAT(complaint_of(good + line("1,20000000").substr(0, 60) + "\n"), HasSubstr("csv:4: has"));
+  EXPECT_THAT(complaint_of("a,b\n1,2\n"), HasSubstr("csv:1: names no column that is known"));
+  EXPECT_THAT(complaint_of("1,2\n"), HasSubstr("csv:1: has 2 columns and no header, needs 15"));
+  EXPECT_THAT(complaint_of(good.substr(0, good.size() - 1)), HasSubstr("csv:3: the last line has no line end"))
+      << "a last number may be cut in its middle";
   EXPECT_THAT(fixture::complaint([&] { import_imu_csv(folder_ / "none.csv", {}); }),
               HasSubstr("none.csv: no such file"));
   EXPECT_THAT(fixture::complaint([&] { import_imu_csv(folder_, {}); }), HasSubstr("no such file"));

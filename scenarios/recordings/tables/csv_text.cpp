@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/recordings/tables/csv_text.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+
+#include "scenarios/errors.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+  while (text.starts_with(' ') || text.starts_with('\t')) text.remove_prefix(1);
+  while (text.ends_with(' ') || text.ends_with('\t') || text.ends_with('\r')) text.remove_suffix(1);
+  return text;
+}
+
+bool parse(std::string_view text, double& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size();
+}
+
+}  // namespace
+
+CsvText::CsvText(const std::filesystem::path& path, char separator) : name_(path.string()), separator_(separator) {
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream || !std::filesystem::is_regular_file(path)) throw BadInput(name_ + ": no such file");
+  text_.assign(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
+  if (stream.bad()) throw BadInput(name_ + ": cannot be read");
+  if (text_.empty()) throw BadInput(name_ + ": is empty");
+  if (text_.back() != '\n') {
+    const auto lines = std::count(text_.begin(), text_.end(), '\n') + 1;
+    throw BadInput(name_ + ":" + std::to_string(lines) +
+                   ": the last line has no line end: the file may be cut in the middle of a number");
+  }
+  if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;  // a mark of the encoding
+}
+
+bool CsvText::next(CsvLine& line) {
+  if (at_ >= text_.size()) return false;
+  const std::size_t end = text_.find('\n', at_);  // there is one: the text ends in it
+  std::string_view text = std::string_view(text_).substr(at_, end - at_);
+  at_ = end + 1;
+  line.where = name_ + ":" + std::to_string(++number_);
+  line.fields.clear();
+  for (std::size_t comma = text.find(separator_); comma != std::string_view::npos; comma = text.find(separator_)) {
+    line.fields.push_back(trimmed(text.substr(0, comma)));
+    text.remove_prefix(comma + 1);
+  }
+  line.fields.push_back(trimmed(text));
+  return true;
+}
+
+double csv_number(const CsvLine& line, std::size_t index, const std::string& column) {
+  const std::string_view text = line.fields[index];
+  double value = 0.0;
+  const std::string place = line.where + ": column " + column + " ";
+  if (!parse(text, value)) {
+    const bool comma = text.find(',') != std::string_view::npos;
+    throw BadInput(place + "must be a number, is '" + std::string(text) + "'" +
+                   (comma ? ": decimals stand behind a point" : ""));
+  }
+  if (!std::isfinite(value)) throw BadInput(place + "is not finite");
+  return value;
+}
+
+bool is_number(std::string_view field) {
+  double value = 0.0;
+  return parse(field, value);
+}
+
+}  // namespace tumble::scenarios

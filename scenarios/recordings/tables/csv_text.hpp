@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// Text files of separated columns, read line by line. Private to scenarios/recordings.
+namespace tumble::scenarios {
+
+/// One line and where it stands: "FILE:12". Fields are views into the file's text, without blanks around them.
+struct CsvLine {
+  std::string where;
+  std::vector<std::string_view> fields;
+};
+
+/// The lines of a file, from its memory. Line ends may be those of Windows.
+class CsvText {
+ public:
+  /// Throws BadInput with the file: not there, empty, or a last line without its end, which may be cut in a number.
+  CsvText(const std::filesystem::path& path, char separator);
+  /// The next line; false at the end.
+  bool next(CsvLine& line);
+
+ private:
+  std::string name_, text_;
+  char separator_;
+  std::size_t at_ = 0;
+  int number_ = 0;
+};
+
+/// A finite number. Throws BadInput with the place and `column`, the name or number of the column.
+double csv_number(const CsvLine& line, std::size_t index, const std::string& column);
+
+/// Whether a whole field reads as a number, NaN and infinities included.
+bool is_number(std::string_view field);
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/recordings/tables/held_readings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scenarios/recordings/tables/steady_stamps.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr double kHeldShare = 0.05, kFrozenShare = 0.98;
+constexpr double kRailLeast_m_s2 = 14.7;
+constexpr int kRailReadings = 5, kRailContrast = 3;
+
+/// Rows whose reading differs from the row before; the first one is new.
+std::vector<std::size_t> fresh_rows(const std::vector<Eigen::Vector3d>& readings) {
+  std::vector<std::size_t> rows;
+  for (std::size_t k = 0; k < readings.size(); ++k) {
+    if (k == 0 || readings[k] != readings[k - 1]) rows.push_back(k);
+  }
+  return rows;
+}
+
+/// A reading came after the row before and before its own.
+std::vector<std::int64_t> beat_of(const std::vector<std::int64_t>& time_ns, const std::vector<std::size_t>& rows) {
+  std::vector<std::int64_t> stamps;
+  std::vector<StampBounds> bounds;
+  for (const std::size_t row : rows) {
+    stamps.push_back(time_ns[row]);
+    bounds.push_back({row == 0 ? 0 : time_ns[row] - time_ns[row - 1] - 1, 0});
+  }
+  return steady_stamps(stamps, bounds);
+}
+
+double repeated_share(std::size_t fresh, std::size_t rows) {
+  return rows < 2 ? 0.0 : static_cast<double>(rows - fresh) / static_cast<double>(rows - 1);
+}
+
+/// What repeats for ever is not held but frozen, or at rest to the last digit: nothing is known of its beat.
+bool is_held(double share) {
+  return share > kHeldShare && share < kFrozenShare;
+}
+
+/// Readings at `times`, which rise, by straight lines between the sensor's own; the nearest beyond its ends.
+std::vector<Eigen::Vector3d> interpolated(const std::vector<std::int64_t>& own,
+                                          const std::vector<Eigen::Vector3d>& values,
+                                          const std::vector<std::int64_t>& times) {
+  std::vector<Eigen::Vector3d> out;
+  out.reserve(times.size());
+  std::size_t next = 0;
+  for (const std::int64_t time : times) {
+    while (next < own.size() && own[next] < time) ++next;
+    if (next == 0 || next == own.size()) {
+      out.push_back(values[next == 0 ? 0 : next - 1]);
+      continue;
+    }
+    const double share = static_cast<double>(time - own[next - 1]) / static_cast<double>(own[next] - own[next - 1]);
+    out.push_back((1.0 - share) * values[next - 1] + share * values[next]);
+  }
+  return out;
+}
+
+std::vector<Eigen::Vector3d> at_rows(const std::vector<Eigen::Vector3d>& values, const std::vector<std::size_t>& rows) {
+  std::vector<Eigen::Vector3d> out;
+  for (const std::size_t row : rows) out.push_back(values[row]);
+  return out;
+}
+
+}  // namespace
+
+HoldReport undo_hold(const LoggedReadings& log, sim::ImuRecord& imu) {
+  HoldReport report;
+  report.rows = log.time_ns.size();
+  const std::vector<std::size_t> gyro = fresh_rows(log.gyro_rad_s), accel = fresh_rows(log.accel_m_s2);
+  report.gyro_repeated = repeated_share(gyro.size(), report.rows);
+  report.accel_repeated = repeated_share(accel.size(), report.rows);
+  report.accel_readings = accel.size();
+  report.gyro_held = is_held(report.gyro_repeated);
+  imu.time_ns = report.gyro_held ? beat_of(log.time_ns, gyro) : log.time_ns;
+  imu.gyro_rad_s = report.gyro_held ? at_rows(log.gyro_rad_s, gyro) : log.gyro_rad_s;
+  const std::vector<Eigen::Vector3d> beside = report.gyro_held ? at_rows(log.accel_m_s2, gyro) : log.accel_m_s2;
+  report.accel_held = is_held(repeated_share(fresh_rows(beside).size(), beside.size()));
+  imu.accel_m_s2 = report.accel_held
+                       ? interpolated(beat_of(log.time_ns, accel), at_rows(log.accel_m_s2, accel), imu.time_ns)
+                       : beside;
+  imu.clip_flags.assign(imu.time_ns.size(), 0);
+  report.readings = imu.time_ns.size();
+  return report;
+}
+
+std::string HoldReport::text() const {
+  if (!gyro_held && !accel_held) return "";
+  std::string out = fmt::format(
+      "sample and hold: {:.1f} % of the gyro's and {:.1f} % of the accelerometer's rows repeat the "
+      "one before: {} readings of the gyro and {} of the accelerometer in {} rows",
+      100.0 * gyro_repeated, 100.0 * accel_repeated, gyro_held ? readings : rows, accel_readings, rows);
+  if (gyro_held) out += "; repetitions are left out, the rest is put on the gyro's own beat";
+  if (accel_held) out += "; the accelerometer is interpolated between its own readings";
+  return out;
+}
+
+std::string accel_rail_text(const std::vector<Eigen::Vector3d>& logged) {
+  const std::vector<Eigen::Vector3d> readings = at_rows(logged, fresh_rows(logged));
+  std::string out;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double sign : {1.0, -1.0}) {
+      double extreme = 0.0;
+      for (const Eigen::Vector3d& f : readings) extreme = std::max(extreme, sign * f[axis]);
+      if (extreme < kRailLeast_m_s2) continue;
+      const auto within = [&](double low, double high) {
+        return static_cast<int>(std::count_if(readings.begin(), readings.end(), [&](const Eigen::Vector3d& f) {
+          return sign * f[axis] > low * extreme && sign * f[axis] <= high * extreme;
+        }));
+      };
+      const int top = within(0.98, 1.0), below = within(0.96, 0.98);
+      if (top < kRailReadings || top < kRailContrast * below) continue;
+      out += fmt::format("{}{}{} within 2 % of {:.2f} m/s^2 ({})", out.empty() ? "" : ", ", sign > 0 ? "+" : "-",
+                         "xyz"[axis], sign * extreme, top);
+    }
+  }
+  return out.empty() ? "" : "accelerometer: readings gather at their extreme, as at a rail: " + out;
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <string>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/recordings/import.hpp"
+#include "scenarios/recordings/recording_check.hpp"
+#include "scenarios/recordings/tables/csv_text.hpp"
+#include "scenarios/recordings/tables/held_readings.hpp"
+#include "scenarios/recordings/tables/imu_readings.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr const char* kAttribution =
+    "AirbrakesV2, NCSU High-Powered Rocketry Club (github.com/NCSU-High-Powered-Rocketry-Club/AirbrakesV2), MIT; ";
+constexpr double kStampMax_s = 1e9;
+constexpr double kTeslaPerMicrotesla = 1e-6;
+/// No estimator bridges more.
+constexpr std::int64_t kGap_ns = 1'000'000'000;
+
+using Columns3 = std::array<std::size_t, 3>;
+
+std::size_t column(const CsvLine& header, const std::string& name) {
+  const auto found = std::find(header.fields.begin(), header.fields.end(), name);
+  if (found == header.fields.end()) throw BadInput(header.where + ": column is missing: " + name);
+  if (std::count(header.fields.begin(), header.fields.end(), name) > 1)
+    throw BadInput(header.where + ": two columns are called " + name);
+  return static_cast<std::size_t>(found - header.fields.begin());
+}
+
+Columns3 columns(const CsvLine& header, const std::string& stem, const std::string& unit) {
+  return {column(header, stem + "_x_" + unit), column(header, stem + "_y_" + unit),
+          column(header, stem + "_z_" + unit)};
+}
+
+Eigen::Vector3d vector(const CsvLine& line, const Columns3& columns, const char* name) {
+  return {csv_number(line, columns[0], name), csv_number(line, columns[1], name), csv_number(line, columns[2], name)};
+}
+
+template <class T>
+void keep(std::vector<T>& rows, std::size_t first, std::size_t end) {
+  if (rows.empty()) return;
+  rows = std::vector<T>(rows.begin() + static_cast<std::ptrdiff_t>(first),
+                        rows.begin() + static_cast<std::ptrdiff_t>(end));
+}
+
+/// Logs begin long before the flight with a few samples: the longest stretch without a gap stays.
+void keep_longest_stretch(sim::ImuRecord& imu, std::vector<std::string>& notes) {
+  const std::size_t count = imu.time_ns.size();
+  std::size_t first = 0, end = 0, gaps = 0;
+  for (std::size_t begin = 0, k = 1; k <= count; ++k) {
+    if (k < count && imu.time_ns[k] - imu.time_ns[k - 1] <= kGap_ns) continue;
+    if (k - begin > end - first) first = begin, end = k;
+    gaps += k < count ? 1 : 0;
+    begin = k;
+  }
+  if (gaps == 0) return;
+  notes.push_back(fmt::format("{} gaps of more than 1 s: the longest stretch is kept, samples {} to {} of {}", gaps,
+                              first, end - 1, count));
+  keep(imu.time_ns, first, end);
+  keep(imu.gyro_rad_s, first, end);
+  keep(imu.accel_m_s2, first, end);
+  keep(imu.clip_flags, first, end);
+  keep(imu.magnetic_field_t, first, end);
+}
+
+}  // namespace
+
+bool is_airbrakes(const std::filesystem::path& path) {
+  std::ifstream stream(path);
+  std::string line;
+  return std::getline(stream, line) && line.find("timestamp_seconds") != std::string::npos &&
+         line.find("raw_angular_rate_x_deg_per_s") != std::string::npos;
+}
+
+Imported import_airbrakes(const std::filesystem::path& path) {
+  CsvText text(path, ',');
+  CsvLine line;
+  text.next(line);
+  const std::size_t stamp = column(line, "timestamp_seconds"), count = line.fields.size();
+  const Columns3 force = columns(line, "raw_acceleration", "gs");
+  const Columns3 rate = columns(line, "raw_angular_rate", "deg_per_s");
+  const char* field_name = "magnetic_field_x_microteslas";
+  const bool magnetic = std::find(line.fields.begin(), line.fields.end(), field_name) != line.fields.end();
+  const Columns3 field = magnetic ? columns(line, "magnetic_field", "microteslas") : Columns3{};
+  sim::ImuRecord imu;
+  imu.name = "imu";
+  std::size_t doubled = 0;
+  while (text.next(line)) {
+    if (line.fields.size() != count) {
+      throw BadInput(line.where + ": has " + std::to_string(line.fields.size()) + " columns, the header " +
+                     std::to_string(count) + "; must be equal");
+    }
+    const double time_s = csv_number(line, stamp, "timestamp_seconds");
+    if (!(time_s >= 0.0 && time_s <= kStampMax_s)) {
+      throw BadInput(
+          fmt::format("{}: timestamp_seconds is {}, must be within 0 and {}", line.where, time_s, kStampMax_s));
+    }
+    const std::int64_t time_ns = std::llround(time_s * 1e9);
+    if (!imu.time_ns.empty() && time_ns == imu.time_ns.back()) {
+      ++doubled;
+      continue;
+    }
+    add_reading(line.where, time_ns, scale_of(GyroUnit::deg_s) * vector(line, rate, "raw_angular_rate"),
+                scale_of(AccelUnit::g) * vector(line, force, "raw_acceleration"), imu);
+    if (magnetic) imu.magnetic_field_t.push_back(kTeslaPerMicrotesla * vector(line, field, "magnetic_field"));
+  }
+  Imported out;
+  keep_longest_stretch(imu, out.notes);
+  finish_readings(path.string(), AccelUnit::g, imu);
+  const std::int64_t first_ns = imu.time_ns.front();
+  for (std::int64_t& time : imu.time_ns) time -= first_ns;
+  if (doubled > 0) out.notes.push_back(fmt::format("{} rows repeat a stamp: left out", doubled));
+  for (const std::string& note :
+       {require_gravity_turns(path.string(), imu, GyroUnit::deg_s), accel_rail_text(imu.accel_m_s2)}) {
+    if (!note.empty()) out.notes.push_back(note);
+  }
+  out.info.attribution = kAttribution + path.filename().string();
+  out.info.origin_ns = first_ns;
+  out.sensors.imus.push_back(std::move(imu));
+  const std::string problem = find_problem(out.sensors);
+  if (!problem.empty()) throw BadInput(path.string() + ": " + problem);
+  return out;
+}
+
+}  // namespace tumble::scenarios

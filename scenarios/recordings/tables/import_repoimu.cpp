@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <string>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/recordings/import.hpp"
+#include "scenarios/recordings/recording_check.hpp"
+#include "scenarios/recordings/tables/csv_text.hpp"
+#include "scenarios/recordings/tables/held_readings.hpp"
+#include "scenarios/recordings/tables/imu_readings.hpp"
+#include "scenarios/recordings/tables/steady_stamps.hpp"
+#include "scenarios/recordings/trajectories/align_reference.hpp"
+#include "scenarios/recordings/trajectories/reference_glitches.hpp"
+#include "scenarios/recordings/trajectories/reference_rate.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr const char* kAttribution =
+    "RepoIMU: A. Szczesna, P. Skurowski, P. Pruszowski, D. Peszor, M. Paszkuta, K. Wojciechowski: Reference Data Set "
+    "for Accuracy Evaluation of Orientation Estimation Algorithms for Inertial Motion Capture Systems, ICCVG 2016; ";
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kBadNormShareMax = 0.2, kNormTolerance = 1e-2;
+constexpr double kStampMax_s = 86400.0;
+/// Rows on either side that tell how finely stamps are printed around a row.
+constexpr std::size_t kDigitsReach = 50;
+constexpr double kCoarse = 0.02;  // of a step: printed more coarsely than this is worth a remark
+
+/// The groups of columns, and where each column stands.
+struct Columns {
+  std::size_t time = 0;
+  std::array<std::size_t, 4> attitude{};  ///< w x y z
+  std::array<std::size_t, 3> force{}, rate{};
+  std::size_t count = 0;    ///< of the header
+  bool open_ended = false;  ///< the header ends in a separator, rows need not
+};
+
+struct Log {
+  LoggedReadings readings;
+  std::vector<ReferencePose> poses;
+  std::vector<StampBounds> rounding;  ///< of the printed stamps
+  std::size_t decimal_commas = 0;
+  std::vector<std::string> where;
+};
+
+[[noreturn]] void fail(const CsvLine& line, const std::string& what) {
+  throw BadInput(line.where + ": " + what);
+}
+
+/// "Vicon Orientation/W": the group's name stands above its first column.
+std::vector<std::string> column_names(const CsvLine& groups, const CsvLine& names) {
+  if (groups.fields.size() != names.fields.size()) {
+    fail(names, "has " + std::to_string(names.fields.size()) + " columns, the line above " +
+                    std::to_string(groups.fields.size()) + "; must be equal");
+  }
+  std::vector<std::string> full;
+  std::string group;
+  for (std::size_t i = 0; i < groups.fields.size(); ++i) {
+    if (!groups.fields[i].empty()) group = std::string(groups.fields[i]);
+    full.push_back(group.starts_with("Time") ? "Time" : group + "/" + std::string(names.fields[i]));
+  }
+  return full;
+}
+
+Columns columns_of(const CsvLine& groups, const CsvLine& second) {
+  std::vector<std::string> names = column_names(groups, second);
+  Columns columns;
+  columns.count = names.size();
+  columns.open_ended = groups.fields.back().empty() && second.fields.back().empty();
+  if (columns.open_ended) names.pop_back();
+  std::string missing;
+  const auto take = [&](const std::string& name, std::size_t& place) {
+    const auto count = std::count(names.begin(), names.end(), name);
+    if (count > 1) fail(second, "two columns are called " + name);
+    if (count == 0) missing += " '" + name + "'";
+    const auto found = std::find(names.begin(), names.end(), name);
+    place = static_cast<std::size_t>(found - names.begin());
+    if (found != names.end()) *found = "";  // taken
+  };
+  take("Time", columns.time);
+  for (std::size_t i = 0; i < 4; ++i) take(std::string("Vicon Orientation/") + "WXYZ"[i], columns.attitude[i]);
+  for (std::size_t i = 0; i < 3; ++i) take(std::string("IMU Acceleration/") + "XYZ"[i], columns.force[i]);
+  for (std::size_t i = 0; i < 3; ++i) take(std::string("IMU Gyroscope/") + "XYZ"[i], columns.rate[i]);
+  if (!missing.empty()) fail(second, "columns are missing:" + missing);
+  for (const std::string& name : names) {
+    const bool magnetic = name.starts_with("IMU Magnetometer/") && name.size() == 18 && name.back() >= 'X';
+    if (!name.empty() && !magnetic) fail(second, "unknown column '" + name + "'");
+  }
+  return columns;
+}
+
+/// A published file holds a value with a decimal comma among thousands with points; between ';' it is no separator.
+class Numbers {
+ public:
+  Numbers(const CsvLine& line, std::size_t& commas) : line_(line), commas_(commas) {}
+  double at(std::size_t column, const char* name) {
+    const std::string_view text = line_.fields[column];
+    const std::size_t comma = text.find(',');
+    if (comma == std::string_view::npos) return csv_number(line_, column, name);
+    if (text.find('.') != std::string_view::npos || text.find(',', comma + 1) != std::string_view::npos)
+      return csv_number(line_, column, name);  // refuses it
+    std::string pointed(text);
+    pointed[comma] = '.';
+    ++commas_;
+    return csv_number({line_.where, {pointed}}, 0, name);
+  }
+  Eigen::Vector3d at(const std::array<std::size_t, 3>& columns, const char* name) {
+    return {at(columns[0], name), at(columns[1], name), at(columns[2], name)};
+  }
+  /// NaN or nothing where the cameras saw nothing.
+  double or_unknown(std::size_t column, const char* name) {
+    const std::string_view text = line_.fields[column];
+    if (text.empty() || text == "NaN" || text == "nan") return kNaN;
+    return at(column, name);
+  }
+
+ private:
+  const CsvLine& line_;
+  std::size_t& commas_;
+};
+
+/// Decimals of a number as it is printed.
+int decimals(std::string_view text) {
+  const std::size_t point = text.find('.');
+  return point == std::string_view::npos ? 0 : static_cast<int>(text.size() - point - 1);
+}
+
+/// Half of the last decimal that stamps around a row are printed with.
+std::vector<StampBounds> rounding_of(const std::vector<int>& decimals) {
+  std::vector<StampBounds> bounds;
+  for (std::size_t k = 0; k < decimals.size(); ++k) {
+    const std::size_t first = k > kDigitsReach ? k - kDigitsReach : 0;
+    const std::size_t last = std::min(k + kDigitsReach, decimals.size() - 1);
+    const int most = *std::max_element(decimals.begin() + static_cast<std::ptrdiff_t>(first),
+                                       decimals.begin() + static_cast<std::ptrdiff_t>(last) + 1);
+    const auto half = std::llround(0.5e9 * std::pow(10.0, -most));
+    bounds.push_back({half, half});
+  }
+  return bounds;
+}
+
+Log read_log(const std::filesystem::path& path) {
+  CsvText text(path, ';');
+  CsvLine groups, line;
+  text.next(groups);
+  if (!text.next(line)) throw BadInput(path.string() + ": ends in its header");
+  const Columns columns = columns_of(groups, line);
+  Log log;
+  std::vector<int> digits;
+  while (text.next(line)) {
+    const std::size_t found = line.fields.size();
+    const bool trailing = columns.open_ended && found == columns.count && line.fields.back().empty();
+    if (found != columns.count - (columns.open_ended ? 1 : 0) && !trailing) {
+      fail(line, "has " + std::to_string(found) + " columns, must have " +
+                     std::to_string(columns.count - (columns.open_ended ? 1 : 0)));
+    }
+    Numbers numbers(line, log.decimal_commas);
+    const double time_s = numbers.at(columns.time, "Time");
+    if (!(time_s >= 0.0 && time_s <= kStampMax_s))
+      fail(line, fmt::format("Time is {} s, must be within 0 and {}", time_s, kStampMax_s));
+    const std::int64_t time_ns = std::llround(time_s * 1e9);
+    if (!log.readings.time_ns.empty() && time_ns < log.readings.time_ns.back()) {
+      fail(line, fmt::format("Time goes back: {:.9g} s after {:.9g} s", time_s,
+                             1e-9 * static_cast<double>(log.readings.time_ns.back())));
+    }
+    const auto& a = columns.attitude;
+    const char* attitude = "Vicon Orientation";
+    ReferencePose pose{time_ns,
+                       Eigen::Vector3d::Constant(kNaN),
+                       {numbers.or_unknown(a[0], attitude), numbers.or_unknown(a[1], attitude),
+                        numbers.or_unknown(a[2], attitude), numbers.or_unknown(a[3], attitude)}};
+    log.poses.push_back(pose);
+    log.readings.time_ns.push_back(time_ns);
+    log.readings.accel_m_s2.push_back(numbers.at(columns.force, "IMU Acceleration"));
+    log.readings.gyro_rad_s.push_back(numbers.at(columns.rate, "IMU Gyroscope"));
+    log.where.push_back(line.where);
+    digits.push_back(decimals(line.fields[columns.time]));
+  }
+  log.rounding = rounding_of(digits);
+  return log;
+}
+
+/// Stamps on their beat; says so where printing had coarsened them.
+void steady(Log& log, std::vector<std::string>& notes) {
+  const std::vector<std::int64_t> printed = log.readings.time_ns;
+  log.readings.time_ns = steady_stamps(printed, log.rounding);
+  std::int64_t most_ns = 0, equal = 0;
+  for (std::size_t k = 0; k < printed.size(); ++k) {
+    const std::int64_t time_ns = log.readings.time_ns[k];
+    most_ns = std::max<std::int64_t>(most_ns, std::abs(time_ns - printed[k]));
+    if (k == 0) continue;
+    equal += printed[k] == printed[k - 1] ? 1 : 0;
+    if (time_ns <= log.readings.time_ns[k - 1]) {
+      throw BadInput(fmt::format("{}: Time does not rise: {:.9g} s twice, beyond what its rounding explains",
+                                 log.where[k], 1e-9 * static_cast<double>(printed[k])));
+    }
+  }
+  for (std::size_t k = 0; k < printed.size(); ++k) log.poses[k].time_ns = log.readings.time_ns[k];
+  const auto span = static_cast<double>(printed.back() - printed.front());
+  if (static_cast<double>(most_ns) > kCoarse * span / static_cast<double>(printed.size() - 1)) {
+    notes.push_back(fmt::format(
+        "stamps are printed in steps of up to {} ms: put on a steady beat within their rounding, moved "
+        "by up to {:.1f} ms ({} were equal to the one before)",
+        2e-6 * static_cast<double>(log.rounding.back().before_ns), 1e-6 * static_cast<double>(most_ns), equal));
+  }
+}
+
+void require_attitudes(const std::filesystem::path& path, const Log& log) {
+  std::size_t bad = 0, first = 0;
+  for (std::size_t k = 0; k < log.poses.size(); ++k) {
+    if (!(std::abs(log.poses[k].q_WA.norm() - 1.0) > kNormTolerance)) continue;
+    if (bad++ == 0) first = k;
+  }
+  if (static_cast<double>(bad) <= kBadNormShareMax * static_cast<double>(log.poses.size())) return;
+  throw BadInput(
+      fmt::format("{}: the quaternion's norm is {:.4f}, must be 1 within a percent; so are {} of {} in {}, at most "
+                  "a fifth may be",
+                  log.where[first], log.poses[first].q_WA.norm(), bad, log.poses.size(), path.filename().string()));
+}
+
+/// Errors of the reference's rates at samples whose axes are all far from their extreme.
+std::string rate_error_text(const sim::ImuRecord& imu, const std::vector<Eigen::Vector3d>& rates) {
+  Eigen::Vector3d extreme = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& w : imu.gyro_rad_s) extreme = extreme.cwiseMax(w.cwiseAbs());
+  std::vector<double> errors;
+  for (std::size_t k = 0; k < rates.size(); ++k) {
+    const bool free = (imu.gyro_rad_s[k].cwiseAbs().array() < 0.9 * extreme.array()).all();
+    if (free && rates[k].allFinite() && imu.gyro_rad_s[k].norm() > 0.5)
+      errors.push_back((rates[k] - imu.gyro_rad_s[k]).norm());
+  }
+  if (errors.empty()) return "";
+  std::sort(errors.begin(), errors.end());
+  return fmt::format(
+      "reference: rates from attitudes over +-{} ms differ from the free gyro in motion by {:.3f} rad/s on the "
+      "median, {:.3f} at 90 % ({} samples)",
+      kRateWindow_ns / 1'000'000, errors[errors.size() / 2], errors[errors.size() * 9 / 10], errors.size());
+}
+
+/// The reference becomes the truth of the recording.
+void add_reference(const std::filesystem::path& path, Log& log, bool align, Imported& out) {
+  const sim::ImuRecord& imu = out.sensors.imus.front();
+  const std::size_t samples = log.poses.size();
+  const GlitchReport glitches = leave_out_glitches(log.poses);
+  out.notes.push_back(glitches.text(samples));
+  if (log.poses.size() < 2) {
+    out.notes.push_back("the reference knows nothing: left out");
+    return;
+  }
+  const ReferenceAlignment alignment = align_reference(log.poses, imu);
+  if (alignment.known && align) apply(alignment, log.poses);
+  if (!alignment.known && align) throw BadInput(path.string() + ": --align-reference: " + alignment.text());
+  out.notes.push_back(alignment.text() + (align             ? ": taken out"
+                                          : alignment.known ? ": left in; --align-reference takes it out"
+                                                            : ""));
+  try {
+    out.reference = reference_truth(log.poses, imu.time_ns.back());
+  } catch (const BadInput& error) {
+    throw BadInput(path.string() + ": " + error.what());
+  }
+  sim::ImuTruth truth;
+  truth.name = imu.name;
+  truth.rate_rad_s = reference_rates(log.poses, imu.time_ns);
+  const std::string error = rate_error_text(imu, truth.rate_rad_s);
+  if (!error.empty()) out.notes.push_back(error);
+  out.reference->imus.push_back(std::move(truth));
+}
+
+}  // namespace
+
+bool is_repoimu(const std::filesystem::path& path) {
+  std::ifstream stream(path);
+  std::string line;
+  return std::getline(stream, line) && line.starts_with("Time") &&
+         line.find(";Vicon Orientation;") != std::string::npos;
+}
+
+Imported import_repoimu(const std::filesystem::path& path, bool align) {
+  Log log = read_log(path);
+  Imported out;
+  sim::ImuRecord imu;
+  imu.name = "imu";
+  if (log.where.size() < 2)
+    throw BadInput(path.string() + ": holds " + std::to_string(log.where.size()) + " samples, needs 2");
+  require_attitudes(path, log);
+  out.info.origin_ns = log.readings.time_ns.front();
+  for (std::int64_t& time : log.readings.time_ns) time -= out.info.origin_ns;
+  steady(log, out.notes);
+  // the first stamp is time 0, wherever its beat lies within the rounding
+  const std::int64_t first_ns = log.readings.time_ns.front();
+  for (std::int64_t& time : log.readings.time_ns) time -= first_ns;
+  for (ReferencePose& pose : log.poses) pose.time_ns -= first_ns;
+  out.info.origin_ns += first_ns;
+  const HoldReport hold = undo_hold(log.readings, imu);
+  if (!hold.text().empty()) out.notes.push_back(hold.text());
+  finish_readings(path.string(), AccelUnit::m_s2, imu);
+  for (const std::string& note :
+       {require_gravity_turns(path.string(), imu, GyroUnit::rad_s), accel_rail_text(log.readings.accel_m_s2)}) {
+    if (!note.empty()) out.notes.push_back(note);
+  }
+  if (log.decimal_commas > 0)
+    out.notes.push_back(fmt::format("{} numbers with a decimal comma, read as such", log.decimal_commas));
+  out.notes.push_back("the magnetometer's columns have no unit: left out");
+  out.info.attribution = kAttribution + path.filename().string();
+  out.sensors.imus.push_back(std::move(imu));
+  add_reference(path, log, align, out);
+  std::string problem = find_problem(out.sensors);
+  if (problem.empty() && out.reference) problem = find_problem(*out.reference);
+  if (!problem.empty()) throw BadInput(path.string() + ": " + problem);
+  return out;
+}
+
+}  // namespace tumble::scenarios

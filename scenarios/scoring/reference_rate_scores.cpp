@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "scenarios/scoring/clipping.hpp"
+#include "scenarios/scoring/families.hpp"
+#include "scenarios/sweep/statistics.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+/// A sample is far from the rail when every axis reads less than this share of its extreme; it turns when it reads more
+/// than so much.
+constexpr double kFarShare = 0.9, kTurning_rad_s = 0.5;
+
+double error_norm(const Eigen::Vector3d& estimate, const Eigen::Vector3d& reference) {
+  return (estimate - reference).norm();
+}
+
+/// Of the speed alone: what a frame that is turned leaves as it is.
+double error_speed(const Eigen::Vector3d& estimate, const Eigen::Vector3d& reference) {
+  return std::abs(estimate.norm() - reference.norm());
+}
+
+template <int kAxis>
+double error_axis(const Eigen::Vector3d& estimate, const Eigen::Vector3d& reference) {
+  return std::abs(estimate[kAxis] - reference[kAxis]);
+}
+
+using ErrorOf = double (*)(const Eigen::Vector3d&, const Eigen::Vector3d&);
+
+bool quantile_of(const std::vector<double>& values, double share, double& value) {
+  if (values.empty()) return false;
+  const bool finite = std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+  value = finite ? quantile(values, share) : std::numeric_limits<double>::quiet_NaN();
+  return true;
+}
+
+/// Of the estimate at clipped samples; of one axis, at the samples at which that axis clips.
+template <ErrorOf kError, int kPercent, unsigned kAxes>
+bool clipped_error(const Estimate& estimate, const ScoringInput& input, double& value) {
+  const ClippingTruth truth(*input.sensors, *input.truth);
+  if (!truth.is_reference()) return false;
+  std::vector<double> errors;
+  for (const RateState& rate : estimate.rates) {
+    const auto sample = truth.at(rate.time_ns);
+    if (sample && (sample->clipped_axes & kAxes) != 0) errors.push_back(kError(rate.w_WI_I_rad_s, sample->rate_rad_s));
+  }
+  return quantile_of(errors, 0.01 * kPercent, value);
+}
+
+/// Of the reference against the gyro itself, where nothing clips and the body turns.
+template <ErrorOf kError, int kPercent>
+bool reference_error(const Estimate&, const ScoringInput& input, double& value) {
+  const ClippingTruth truth(*input.sensors, *input.truth);
+  if (!truth.is_reference()) return false;
+  const auto& reading = input.sensors->imus.front().gyro_rad_s;
+  Eigen::Vector3d extreme = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& w : reading) extreme = extreme.cwiseMax(w.cwiseAbs());
+  std::vector<double> errors;
+  for (std::size_t k = 0; k < reading.size(); ++k) {
+    const bool far = (reading[k].cwiseAbs().array() < kFarShare * extreme.array()).all();
+    if (!far || !truth.known(k) || truth.clipped_axes(k) != 0 || reading[k].norm() < kTurning_rad_s) continue;
+    errors.push_back(kError(input.truth->imus.front().rate_rad_s[k], reading[k]));
+  }
+  return quantile_of(errors, 0.01 * kPercent, value);
+}
+
+/// Variances of the reference's axes, from the middle half of its differences to the free gyro (normal).
+Eigen::Vector3d reference_variance(const ScoringInput& input, const ClippingTruth& truth) {
+  const auto& reading = input.sensors->imus.front().gyro_rad_s;
+  Eigen::Vector3d variance = Eigen::Vector3d::Zero();
+  for (int j = 0; j < 3; ++j) {
+    std::vector<double> sizes;
+    for (std::size_t k = 0; k < reading.size(); ++k) {
+      if (truth.known(k) && truth.clipped_axes(k) == 0 && reading[k].norm() >= kTurning_rad_s)
+        sizes.push_back(std::abs(input.truth->imus.front().rate_rad_s[k][j] - reading[k][j]));
+    }
+    const double sigma = sizes.empty() ? 0.0 : 1.4826 * quantile(sizes, 0.5);
+    variance[j] = sigma * sigma;
+  }
+  return variance;
+}
+
+/// With the reference's own error counted, unlike rate_coverage_3sigma.
+bool coverage(const Estimate& estimate, const ScoringInput& input, double& value) {
+  const ClippingTruth truth(*input.sensors, *input.truth);
+  if (!truth.is_reference()) return false;
+  const Eigen::Vector3d own = reference_variance(input, truth);
+  double axes = 0.0, within = 0.0;
+  for (const RateState& rate : estimate.rates) {
+    const auto sample = truth.at(rate.time_ns);
+    for (int j = 0; sample && j < 3; ++j) {
+      if ((sample->clipped_axes & (1u << j)) == 0) continue;
+      const double error = rate.w_WI_I_rad_s[j] - sample->rate_rad_s[j];
+      axes += 1.0;
+      within += error * error <= 9.0 * (rate.covariance_rad2_s2(j, j) + own[j]) ? 1.0 : 0.0;
+    }
+  }
+  value = within / axes;
+  return axes > 0.0;
+}
+
+bool called_measured(const Estimate& estimate, const ScoringInput& input, double& value) {
+  const ClippingTruth truth(*input.sensors, *input.truth);
+  if (!truth.is_reference()) return false;
+  double axes = 0.0, missed = 0.0;
+  for (const RateState& rate : estimate.rates) {
+    const auto sample = truth.at(rate.time_ns);
+    for (unsigned j = 0; sample && j < 3; ++j) {
+      if ((sample->clipped_axes & (1u << j)) == 0) continue;
+      axes += 1.0;
+      missed += (rate.clipped_axes & (1u << j)) == 0 ? 1.0 : 0.0;
+    }
+  }
+  value = missed / axes;
+  return axes > 0.0;
+}
+
+bool clipped_samples(const Estimate&, const ScoringInput& input, double& value) {
+  const ClippingTruth truth(*input.sensors, *input.truth);
+  if (!truth.is_reference()) return false;
+  value = 0.0;
+  for (std::size_t k = 0; k < truth.size(); ++k) value += truth.clipped_axes(k) != 0 ? 1.0 : 0.0;
+  return true;
+}
+
+bool unknown_samples(const Estimate&, const ScoringInput& input, double& value) {
+  const ClippingTruth truth(*input.sensors, *input.truth);
+  if (!truth.is_reference()) return false;
+  value = static_cast<double>(truth.size() - truth.known_samples());
+  return true;
+}
+
+template <ErrorOf kError, unsigned kAxes>
+void add_pair(const std::string& name, const std::string& doc, std::vector<Metric>& all) {
+  all.push_back({"rate_" + name + "_clipped_median_rad_s", Kind::rate, "rad/s", "median " + doc,
+                 clipped_error<kError, 50, kAxes>});
+  all.push_back({"rate_" + name + "_clipped_p90_rad_s", Kind::rate, "rad/s", "90th percentile of the same",
+                 clipped_error<kError, 90, kAxes>});
+}
+
+template <ErrorOf kError>
+void add_reference(const std::string& name, const std::string& doc, std::vector<Metric>& all) {
+  all.push_back({"rate_" + name + "_median_rad_s", Kind::rate, "rad/s", "median " + doc, reference_error<kError, 50>});
+  all.push_back(
+      {"rate_" + name + "_p90_rad_s", Kind::rate, "rad/s", "90th percentile of the same", reference_error<kError, 90>});
+}
+
+}  // namespace
+
+std::vector<Metric> reference_rate_metrics() {
+  std::vector<Metric> all;
+  all.push_back({"rate_error_clipped_p90_rad_s", Kind::rate, "rad/s",
+                 "against a reference: 90th percentile of the norm of the rate error at clipped samples",
+                 clipped_error<error_norm, 90, 7u>});
+  add_pair<error_speed, 7u>("speed_error", "error of the size of the rate at clipped samples, against a reference",
+                            all);
+  add_pair<error_axis<0>, 1u>("error_x", "error of axis x where it clips, against a reference", all);
+  add_pair<error_axis<1>, 2u>("error_y", "error of axis y where it clips, against a reference", all);
+  add_pair<error_axis<2>, 4u>("error_z", "error of axis z where it clips, against a reference", all);
+  add_reference<error_norm>(
+      "reference_error", "norm of the difference between a reference's rates and the gyro where it is free and turns",
+      all);
+  add_reference<error_speed>("reference_speed_error", "difference between the sizes of the same", all);
+  all.push_back(
+      {"rate_reference_coverage_3sigma", Kind::rate, "1",
+       "share of clipped axes whose error lies within three standard deviations of method and reference together",
+       coverage});
+  all.push_back({"rate_clipped_called_measured", Kind::rate, "1",
+                 "share of axes that clip by a reference and that the method does not call clipped", called_measured});
+  all.push_back({"rate_reference_clipped_samples", Kind::rate, "1", "samples with an axis that clips by the reference",
+                 clipped_samples});
+  all.push_back({"rate_reference_unknown_samples", Kind::rate, "1",
+                 "samples that are not scored, because the reference does not know their rate", unknown_samples});
+  return all;
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+/// A recording in the form of RepoIMU, made to the measure of the published ones, of a motion that is known.
+namespace tumble::scenarios::fixture {
+
+/// A wand in a hand: it swings slowly and is twirled about x now and then, beyond the rail.
+struct Wand {
+  double duration_s = 40.0;
+  double log_hz = 100.0;
+  double gyro_hz = 0.0;   ///< of a sensor slower than the log; 0: as fast
+  double accel_hz = 0.0;  ///< the same
+  double rail_rad_s = 7.3;
+  double rail_tilt = -0.02;  ///< of the x rail, per rad/s of z
+  double delay_s = 0.012;    ///< the reference lags the IMU
+  Eigen::Quaterniond q_IV = Eigen::Quaterniond(Eigen::AngleAxisd(0.07, Eigen::Vector3d(0.2, -0.5, 0.8).normalized()));
+  Eigen::Quaterniond q_VW = Eigen::Quaterniond(Eigen::AngleAxisd(0.05, Eigen::Vector3d(1.0, 0.3, 0.0).normalized()));
+  std::vector<double> flips_s;  ///< starts of 0.15 s during which markers are taken for one another
+  int decimals = 4;             ///< of the stamps
+
+  static Eigen::Vector3d rate(double t) {
+    const double twirl = 11.0 * std::pow(std::max(0.0, std::sin(0.9 * t)), 8.0) * std::sin(3.1 * t);
+    return {twirl + 0.8 * std::sin(1.7 * t), 1.1 * std::sin(2.3 * t + 0.4), 0.9 * std::sin(1.3 * t + 1.0)};
+  }
+};
+
+/// Attitudes q_WI every millisecond from -0.2 s on.
+class WandAttitude {
+ public:
+  explicit WandAttitude(double duration_s) {
+    Eigen::Quaterniond q(Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitY()));
+    for (double t = kStart_s; t < duration_s + 0.5; t += kStep_s) {
+      q_.push_back(q);
+      const Eigen::Vector3d turn = kStep_s * Wand::rate(t + 0.5 * kStep_s);
+      const double angle = turn.norm();
+      if (angle > 0.0) q = (q * Eigen::Quaterniond(Eigen::AngleAxisd(angle, turn / angle))).normalized();
+    }
+  }
+  Eigen::Quaterniond at(double t) const {
+    const double u = (t - kStart_s) / kStep_s;
+    const auto k = std::min(static_cast<std::size_t>(std::max(0.0, u)), q_.size() - 2);
+    return q_[k].slerp(u - static_cast<double>(k), q_[k + 1]);
+  }
+
+ private:
+  static constexpr double kStart_s = -0.2, kStep_s = 1e-3;
+  std::vector<Eigen::Quaterniond> q_;
+};
+
+inline Eigen::Vector3d clipped(const Wand& wand, Eigen::Vector3d w) {
+  const double up = wand.rail_rad_s + wand.rail_tilt * w.z(), down = -wand.rail_rad_s + wand.rail_tilt * w.z();
+  w.x() = std::clamp(w.x(), down, up);
+  return w;
+}
+
+/// The last instant at which a sensor of that rate has spoken.
+inline double held(double t, double rate_hz) {
+  return rate_hz > 0.0 ? std::floor(t * rate_hz + 1e-9) / rate_hz : t;
+}
+
+inline constexpr const char* kRepoimuHeader =
+    "Time (s);Vicon Orientation;;;;IMU Acceleration;;;IMU Gyroscope;;;IMU Magnetometer;;;\n"
+    ";W;X;Y;Z;X;Y;Z;X;Y;Z;X;Y;Z;\n";
+
+inline std::string repoimu_text(const Wand& wand) {
+  const WandAttitude attitude(wand.duration_s);
+  std::string text = kRepoimuHeader;
+  const int rows = static_cast<int>(wand.duration_s * wand.log_hz);
+  for (int k = 0; k < rows; ++k) {
+    const double t = k / wand.log_hz;
+    Eigen::Quaterniond q = wand.q_VW * attitude.at(t - wand.delay_s) * wand.q_IV;
+    for (const double flip : wand.flips_s) {
+      if (t >= flip && t < flip + 0.15) q = q * Eigen::Quaterniond(0.0, 0.7071, 0.7071, 0.0);
+    }
+    const double gyro_s = held(t, wand.gyro_hz), accel_s = held(t, wand.accel_hz);
+    const Eigen::Vector3d w = clipped(wand, Wand::rate(gyro_s));
+    const Eigen::Vector3d f = attitude.at(accel_s).conjugate() * Eigen::Vector3d(0.0, 0.0, 9.80665);
+    char line[400];
+    std::snprintf(line, sizeof line, "%.*f;%.5f;%.5f;%.5f;%.5f;%.5g;%.5g;%.5g;%.5g;%.5g;%.5g;0.4;0.2;-0.9\n",
+                  wand.decimals, t, q.w(), q.x(), q.y(), q.z(), f.x(), f.y(), f.z(), w.x(), w.y(), w.z());
+    text += line;
+  }
+  return text;
+}
+
+}  // namespace tumble::scenarios::fixture

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/sweep/recorded_draw.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/recordings/import.hpp"
+#include "scenarios/recordings/synthetic_repoimu.hpp"
+#include "scenarios/sweep/results.hpp"
+#include "scenarios/sweep/sweep.hpp"
+#include "scenarios/sweep/temporary_folder.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+using ::testing::HasSubstr;
+
+// recordings made to the measure of the published ones, one with and one without a reference
+class RecordedSweep : public testing::TemporaryFolder {
+ protected:
+  void SetUp() override {
+    TemporaryFolder::SetUp();
+    write("scenarios/catalogue/hill.yaml", "");
+    std::filesystem::create_directory_symlink(std::filesystem::path(TUMBLE_SOURCE_DIR) / "models", folder_ / "models");
+    write("scenarios/suites/real.yaml",
+          "name: real\ndoc: Some words.\nrecordings: [wands/*.h5]\nmethods: [rate/raw, rate/interpolate, rate/oracle, "
+          "attitude/vqf]\ntimeout_s: 60\n");
+    record("wand_a", 30.0, true);
+    record("wand_b", 20.0, false);
+  }
+
+  void record(const std::string& name, double duration_s, bool with_reference) const {
+    fixture::Wand wand;
+    wand.duration_s = duration_s;
+    write("data/" + name + ".csv", fixture::repoimu_text(wand));
+    const Imported imported = import_repoimu(folder_ / "data" / (name + ".csv"), true);
+    std::filesystem::create_directories(folder_ / "data/wands");
+    write_recording(folder_ / "data/wands" / (name + ".h5"), imported.info, imported.sensors,
+                    with_reference ? &*imported.reference : nullptr);
+  }
+
+  Suite suite() const {
+    Suite suite = load_suite(DataRoot{folder_}, "real");
+    suite.recordings_folder = folder_ / "data";
+    return suite;
+  }
+
+  std::map<std::string, std::string> digests(const std::filesystem::path& database) const {
+    std::map<std::string, std::string> found;
+    for (const Outcome& row : Results(database, Results::Mode::read_only).outcomes())
+      found[row.scenario + to_string(row.kind) + row.method] = row.recording_digest + row.estimate_digest;
+    return found;
+  }
+
+  std::string complaint(const Suite& suite, const std::filesystem::path& database) const {
+    try {
+      sweep(DataRoot{folder_}, suite, database, {});
+    } catch (const BadInput& error) {
+      return error.what();
+    }
+    return "";
+  }
+};
+
+TEST_F(RecordedSweep, EachRecordingIsADraw) {
+  const auto path = folder_ / "a.db";
+  const SweepProgress progress = sweep(DataRoot{folder_}, suite(), path, {});
+  EXPECT_EQ(progress.draws_total, 2u);
+  EXPECT_EQ(progress.draws_done, 2u);
+  const Results results(path, Results::Mode::read_only);
+  const std::vector<Outcome> rows = results.outcomes();
+  ASSERT_EQ(rows.size(), 6u) << "an oracle has no truth to ask";
+  for (const Outcome& row : rows) {
+    EXPECT_EQ(row.status, "ok") << row.scenario << " " << row.method << ": " << row.message;
+    EXPECT_EQ(row.seed, 1u);
+    std::map<std::string, double> scores;
+    for (const Score& score : row.scores) scores[score.metric] = score.value;
+    EXPECT_EQ(scores.contains("rate_error_clipped_median_rad_s"), row.scenario == "wand_a" && row.kind == Kind::rate);
+    EXPECT_EQ(scores.contains("inclination_rmse_rad"), row.scenario == "wand_a" && row.kind == Kind::attitude);
+    if (row.method == "vqf" && row.scenario == "wand_a") {
+      EXPECT_LT(scores.at("inclination_rmse_rad"), 0.3) << "rates clip, gravity stays";
+    }
+  }
+  EXPECT_EQ(results.note("source"), kRecordingsSource);
+  // resumed: nothing is left to do; two processes at once: the same bits
+  EXPECT_EQ(sweep(DataRoot{folder_}, suite(), path, {}).outcomes, 0u);
+  SweepOptions two;
+  two.jobs = 2;
+  sweep(DataRoot{folder_}, suite(), folder_ / "b.db", two);
+  EXPECT_EQ(digests(path), digests(folder_ / "b.db"));
+}
+
+TEST_F(RecordedSweep, ARecordingThatHasChangedIsRefused) {
+  sweep(DataRoot{folder_}, suite(), folder_ / "a.db", {});
+  record("wand_b", 21.0, false);
+  EXPECT_THAT(complaint(suite(), folder_ / "a.db"), HasSubstr("name another database"));
+  EXPECT_EQ(complaint(suite(), folder_ / "c.db"), "");
+  Suite elsewhere = suite();
+  elsewhere.recordings_folder = folder_ / "nowhere";
+  EXPECT_THAT(complaint(elsewhere, folder_ / "d.db"), HasSubstr("no recording fits 'wands/*.h5'"));
+  std::filesystem::create_directories(folder_ / "data/other");
+  std::filesystem::copy(folder_ / "data/wands/wand_a.h5", folder_ / "data/other/wand_a.h5");
+  Suite twice = suite();
+  twice.recordings = {"wands/*.h5", "other/*.h5"};
+  EXPECT_THAT(complaint(twice, folder_ / "e.db"), HasSubstr("a recording of that name is"));
+  twice.recordings = {"wands/*.h5", "wands/wand_a.h5"};
+  EXPECT_EQ(find_recordings(twice.recordings, twice.recordings_folder).size(), 2u) << "each file once";
+}
+
+TEST_F(RecordedSweep, SuitesOfRecordingsHaveNoScenarios) {
+  const auto refusal = [&](const std::string& rest) {
+    write("scenarios/suites/real.yaml", "name: real\ndoc: d\n" + rest);
+    try {
+      load_suite(DataRoot{folder_}, "real");
+    } catch (const BadInput& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refusal("recordings: [a.h5]\n"), "");
+  EXPECT_THAT(refusal("recordings: [a.h5]\nseeds: {first: 1, last: 2}\n"), HasSubstr("a suite of recordings has none"));
+  EXPECT_THAT(refusal("recordings: []\n"), HasSubstr("no recording"));
+  EXPECT_THAT(refusal("seeds: {first: 1, last: 2}\n"), HasSubstr("scenarios"));
+}
+
+}  // namespace
+}  // namespace tumble::scenarios
