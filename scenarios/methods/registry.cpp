@@ -28,6 +28,7 @@ std::vector<Method> all_methods() {
       rate_saave(),
       rate_tumble(),
       rate_tumble_lag(),
+      rate_carried(),
       rate_oracle(),
       attitude_integrate(),
       attitude_madgwick(),
@@ -37,6 +38,7 @@ std::vector<Method> all_methods() {
       attitude_autogain(),
       attitude_vqf(),
       attitude_tumble(),
+      attitude_tumble_batch(),
       position_rolling(),  // the first of a kind is what the others are held against, where no raw one is
       position_double_integration(),
       position_observer(),

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <cmath>
+
+namespace tumble {
+
+/// Normal equations H d = g of a chain of blocks of `State` unknowns that are each coupled to the next and to one
+/// common border of `Border` unknowns (an arrow matrix), factorised in place. O(N) for N blocks: one block Cholesky
+/// sweep, the border by Schur complement.
+///
+///     | D0  E0          B0 |
+///     | E0' D1  E1      B1 |
+///     |     E1' D2 ...  B2 |
+///     | B0' B1' B2' ..  C  |
+template <int State, int Border>
+struct ArrowSystem {
+  using StateMatrix = Eigen::Matrix<double, State, State>;
+  using StateVector = Eigen::Matrix<double, State, 1>;
+  using CrossMatrix = Eigen::Matrix<double, State, Border>;
+  using BorderMatrix = Eigen::Matrix<double, Border, Border>;
+  using BorderVector = Eigen::Matrix<double, Border, 1>;
+
+  /// One block row: before elimination D, E, B, g; afterwards L^-1, L^-1 E, L^-1 B, L^-1 g with D = L L' (lower).
+  struct Block {
+    StateMatrix diagonal = StateMatrix::Zero();
+    StateMatrix coupling = StateMatrix::Zero();  ///< to the next block, as (this, next)
+    CrossMatrix border = CrossMatrix::Zero();
+    StateVector gradient = StateVector::Zero();
+  };
+
+  /// The border: before elimination C and its gradient; afterwards their Schur complement.
+  struct Corner {
+    BorderMatrix matrix = BorderMatrix::Zero();
+    BorderVector gradient = BorderVector::Zero();
+  };
+
+  /// A block given the border: its covariance, and how far its mean moves with the border.
+  struct Conditional {
+    StateMatrix state;
+    CrossMatrix by_border;
+  };
+
+  /// Posterior covariance of a block and of its product with the border.
+  struct Marginal {
+    StateMatrix state;
+    CrossMatrix cross;
+  };
+
+  /// Eliminates `block`, passing what it knows on to `next` (which may be null for the last) and to the corner. Also
+  /// the marginalisation of the oldest block of a window. False when the block is not positive definite.
+  static bool eliminate(Block& block, Block* next, Corner& corner);
+
+  /// Step of the border after all blocks are eliminated, and its covariance. False when not positive definite.
+  static bool solve_corner(const Corner& corner, BorderVector& step, BorderMatrix& covariance);
+
+  /// Step of an eliminated block, given those of the next block (null for the last) and of the border.
+  static StateVector back_substitute(const Block& block, const StateVector* next_step, const BorderVector& border_step);
+
+  /// Conditional of an eliminated block, given that of the next block (null for the last).
+  static Conditional back_conditional(const Block& block, const Conditional* next);
+
+  /// The border's own uncertainty brought in.
+  static Marginal marginal(const Conditional& conditional, const BorderMatrix& border_covariance);
+
+ private:
+  static bool invert_factor(StateMatrix& a);
+  static void subtract_square(const CrossMatrix& border, BorderMatrix& corner);
+};
+
+// L^-1 of a = L L', lower, in place of a. Plain loops over columns: Eigen's general triangular solvers are several
+// times slower at these sizes. One division a column.
+template <int State, int Border>
+bool ArrowSystem<State, Border>::invert_factor(StateMatrix& a) {
+  StateMatrix L = a;
+  StateVector over_pivot;
+  for (int j = 0; j < State; ++j) {
+    double pivot = L(j, j);
+    for (int k = 0; k < j; ++k) pivot -= L(j, k) * L(j, k);
+    if (!(pivot > 0.0) || !std::isfinite(pivot)) return false;
+    over_pivot[j] = 1.0 / std::sqrt(pivot);
+    for (int i = j + 1; i < State; ++i) {
+      double sum = L(i, j);
+      for (int k = 0; k < j; ++k) sum -= L(i, k) * L(j, k);
+      L(i, j) = sum * over_pivot[j];
+    }
+  }
+  a.setZero();
+  for (int j = 0; j < State; ++j) {
+    a(j, j) = over_pivot[j];
+    for (int i = j + 1; i < State; ++i) {
+      double sum = 0.0;
+      for (int k = j; k < i; ++k) sum -= L(i, k) * a(k, j);
+      a(i, j) = sum * over_pivot[i];
+    }
+  }
+  return true;
+}
+
+// corner -= border' border, of which the upper right part is the mirror of the lower left
+template <int State, int Border>
+void ArrowSystem<State, Border>::subtract_square(const CrossMatrix& border, BorderMatrix& corner) {
+  constexpr int kHead = Border > 8 ? 8 : Border - 1, kTail = Border - kHead;
+  const auto head = border.template leftCols<kHead>();
+  const auto tail = border.template rightCols<kTail>();
+  corner.template topLeftCorner<kHead, kHead>().noalias() -= head.transpose().lazyProduct(head);
+  corner.template bottomRightCorner<kTail, kTail>().noalias() -= tail.transpose().lazyProduct(tail);
+  corner.template bottomLeftCorner<kTail, kHead>().noalias() -= tail.transpose().lazyProduct(head);
+  corner.template topRightCorner<kHead, kTail>() = corner.template bottomLeftCorner<kTail, kHead>().transpose();
+}
+
+template <int State, int Border>
+bool ArrowSystem<State, Border>::eliminate(Block& block, Block* next, Corner& corner) {
+  if (!invert_factor(block.diagonal)) return false;
+  // products with the inverse factor: fixed sizes, which the compiler unrolls and vectorises
+  const StateMatrix& L_inv = block.diagonal;
+  block.border = (L_inv.lazyProduct(block.border)).eval();
+  block.gradient = (L_inv.lazyProduct(block.gradient)).eval();
+  subtract_square(block.border, corner.matrix);
+  corner.gradient.noalias() -= block.border.transpose().lazyProduct(block.gradient);
+  if (next == nullptr) {
+    block.coupling.setZero();
+    return true;
+  }
+  block.coupling = (L_inv.lazyProduct(block.coupling)).eval();
+  next->diagonal.noalias() -= block.coupling.transpose().lazyProduct(block.coupling);
+  next->border.noalias() -= block.coupling.transpose().lazyProduct(block.border);
+  next->gradient.noalias() -= block.coupling.transpose().lazyProduct(block.gradient);
+  return true;
+}
+
+template <int State, int Border>
+bool ArrowSystem<State, Border>::solve_corner(const Corner& corner, BorderVector& step, BorderMatrix& covariance) {
+  const Eigen::LLT<BorderMatrix> factor(corner.matrix);
+  if (factor.info() != Eigen::Success) return false;
+  covariance = factor.solve(BorderMatrix::Identity());
+  step = factor.solve(corner.gradient);
+  return covariance.allFinite() && step.allFinite();
+}
+
+template <int State, int Border>
+auto ArrowSystem<State, Border>::back_substitute(const Block& block, const StateVector* next_step,
+                                                 const BorderVector& border_step) -> StateVector {
+  StateVector right = block.gradient - block.border.lazyProduct(border_step);
+  if (next_step != nullptr) right.noalias() -= block.coupling.lazyProduct(*next_step);
+  return block.diagonal.transpose().lazyProduct(right);
+}
+
+template <int State, int Border>
+auto ArrowSystem<State, Border>::back_conditional(const Block& block, const Conditional* next) -> Conditional {
+  const StateMatrix& L_inv = block.diagonal;
+  Conditional out;
+  out.state = L_inv.transpose().lazyProduct(L_inv);
+  if (next == nullptr) {
+    out.by_border = -L_inv.transpose().lazyProduct(block.border);
+    return out;
+  }
+  CrossMatrix pull = block.border;
+  pull.noalias() += block.coupling.lazyProduct(next->by_border);
+  out.by_border = -L_inv.transpose().lazyProduct(pull);
+  const StateMatrix A = L_inv.transpose().lazyProduct(block.coupling);
+  const StateMatrix A_state = A.lazyProduct(next->state);
+  out.state.noalias() += A_state.lazyProduct(A.transpose());
+  return out;
+}
+
+template <int State, int Border>
+auto ArrowSystem<State, Border>::marginal(const Conditional& conditional, const BorderMatrix& border_covariance)
+    -> Marginal {
+  Marginal out;
+  out.cross = conditional.by_border.lazyProduct(border_covariance);
+  out.state = conditional.state;
+  out.state.noalias() += out.cross.lazyProduct(conditional.by_border.transpose());
+  return out;
+}
+
+}  // namespace tumble

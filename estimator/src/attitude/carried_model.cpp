@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/attitude/carried_model.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tumble/common/so3.hpp"
+
+namespace tumble::carried {
+
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using so3::hat;
+
+using GyroRow = Eigen::Matrix<double, 1, 6>;          // by rate and angular acceleration
+using BorderRow = Eigen::Matrix<double, 1, kBorder>;  // by the constants
+using ForceState = Eigen::Matrix<double, 3, 12>;      // by attitude, rate, angular acceleration, hand
+using ForceBorder = Eigen::Matrix<double, 3, kBorder>;
+
+// slope h = -d/du log Phi(u) is the hazard phi/Phi; the tail by its asymptotic series, where both underflow
+double hazard(double u) {
+  if (u < -12.0) return -u - 1.0 / u * (1.0 - 2.0 / (u * u));
+  const double density = std::exp(-0.5 * u * u) / std::sqrt(2.0 * std::numbers::pi);
+  return density / (0.5 * std::erfc(-u / std::numbers::sqrt2));
+}
+
+double minus_two_log_phi(double u) {
+  if (u < -12.0) return u * u + 2.0 * std::log(-u * std::sqrt(2.0 * std::numbers::pi));
+  return -2.0 * std::log(0.5 * std::erfc(-u / std::numbers::sqrt2));
+}
+
+void add_gyro_row(const GyroRow& state, const BorderRow& border, double weight, double slope, System::Block& block,
+                  System::Corner& corner) {
+  const GyroRow weighted = weight * state;
+  block.diagonal.block<6, 6>(kRate, kRate).noalias() += weighted.transpose() * state;
+  block.border.block<6, kBorder>(kRate, 0).noalias() += weighted.transpose() * border;
+  block.gradient.segment<6>(kRate).noalias() -= slope * state.transpose();
+  corner.matrix.noalias() += weight * border.transpose() * border;
+  corner.gradient.noalias() -= slope * border.transpose();
+}
+
+// rows of one element for its value at the node and its derivative
+struct GyroRows {
+  GyroRow value = GyroRow::Zero(), slope = GyroRow::Zero();
+  BorderRow border = BorderRow::Zero();
+  double predicted = 0.0, predicted_slope = 0.0;
+};
+
+GyroRows gyro_rows(const Eigen::RowVector3d& m, const Node& node, const Constants& constants) {
+  GyroRows rows;
+  const Vector3d& w = node.w_WI_I_rad_s;
+  const Vector3d& alpha = node.angular_acceleration_rad_s2;
+  rows.value.head<3>() = m;
+  rows.slope.tail<3>() = rows.value.head<3>();
+  rows.border.segment<3>(kGyroBias) = m;
+  rows.predicted = m.dot(w + constants.gyro_bias_rad_s);
+  rows.predicted_slope = m.dot(alpha);
+  return rows;
+}
+
+// how far the clipped elements are believed to lie beyond their rails
+double excess(const NodeReadings& readings, const std::array<GyroRows, 3>& rows, int except) {
+  double sum = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const ElementSums& element = readings.gyro[static_cast<std::size_t>(i)];
+    if (i == except || !(element.clipped > 0.0)) continue;
+    const double beyond = element.sign * (rows[static_cast<std::size_t>(i)].predicted - element.rail);
+    sum += beyond > 0.0 ? beyond : 0.0;
+  }
+  return sum;
+}
+
+// n readings at times t as two independent ones: of the value at their mean time and of the slope about it
+double add_free(const ElementSums& e, const GyroRows& rows, double information, System::Block& block,
+                System::Corner& corner) {
+  const double mean_t = e.t_s / e.n;
+  const double mean_z = e.z / e.n;
+  const GyroRow row = rows.value + mean_t * rows.slope;
+  const double error = rows.predicted + mean_t * rows.predicted_slope - mean_z;
+  add_gyro_row(row, rows.border, e.n * information, e.n * information * error, block, corner);
+  double cost = e.n * information * error * error;
+  const double spread = e.tt_s2 - e.t_s * mean_t;
+  if (e.n > 1.5 && spread > 1e-12) {
+    const double slope_error = rows.predicted_slope - (e.zt - e.t_s * mean_z) / spread;
+    add_gyro_row(rows.slope, BorderRow::Zero(), spread * information, spread * information * slope_error, block,
+                 corner);
+    cost += spread * information * slope_error * slope_error;
+  }
+  return cost;
+}
+
+double add_bound(const ElementSums& e, const GyroRows& rows, double sigma, System::Block& block,
+                 System::Corner& corner) {
+  const GyroRow row = rows.value + e.clipped_t_s * rows.slope;
+  const double u = e.sign * (rows.predicted + e.clipped_t_s * rows.predicted_slope - e.rail) / sigma;
+  const double h = hazard(u);
+  add_gyro_row(row, rows.border, h * (h + u) / (sigma * sigma), -e.sign * h / sigma, block, corner);
+  return minus_two_log_phi(u);
+}
+
+// a scalar information `w` on three entries at `i`, of which `value` should be zero
+double add_zero(const Vector3d& value, double w, int i, System::Block& block) {
+  block.diagonal.diagonal().segment<3>(i).array() += w;
+  block.gradient.segment<3>(i) -= w * value;
+  return w * value.squaredNorm();
+}
+
+// information of `n` channels here and next, the same on each axis, the first channel at `first`
+template <int N>
+double add_chain(const Eigen::Matrix<double, 2 * N, 2 * N>& information, double scale, int first,
+                 const Eigen::Matrix<double, 3, 2 * N>& values, System::Block& block, System::Block& next) {
+  const Eigen::Matrix<double, 3, 2 * N> slope = scale * values * information;
+  for (int i = 0; i < N; ++i) {
+    const int row = first + 3 * i;
+    block.gradient.segment<3>(row) -= slope.col(i);
+    next.gradient.segment<3>(row) -= slope.col(N + i);
+    for (int j = 0; j < N; ++j) {
+      const int column = first + 3 * j;
+      block.diagonal.block<3, 3>(row, column).diagonal().array() += scale * information(i, j);
+      next.diagonal.block<3, 3>(row, column).diagonal().array() += scale * information(N + i, N + j);
+      block.coupling.block<3, 3>(row, column).diagonal().array() += scale * information(i, N + j);
+    }
+  }
+  return (slope.array() * values.array()).sum();
+}
+
+}  // namespace
+
+void Node::move(const System::StateVector& step) {
+  q_WI = (q_WI * so3::exp(step.segment<3>(kPhi))).normalized();
+  w_WI_I_rad_s += step.segment<3>(kRate);
+  angular_acceleration_rad_s2 += step.segment<3>(kAngular);
+  a_W_m_s2 += step.segment<3>(kHand);
+  v_W_m_s += step.segment<3>(kVelocity);
+  p_W_m += step.segment<3>(kPlace);
+}
+
+void Constants::move(const System::BorderVector& step) {
+  gyro_bias_rad_s += step.segment<3>(kGyroBias);
+  accel_bias_m_s2 += step.segment<3>(kAccelBias);
+  lever_arm_m += step.segment<3>(kLever);
+}
+
+double add_gyro(const NodeReadings& readings, const Matrix3d& rows, const ReadingNoise& noise, const Node& node,
+                const Constants& constants, System::Block& block, System::Corner& corner) {
+  std::array<GyroRows, 3> elements;
+  for (int i = 0; i < 3; ++i) elements[static_cast<std::size_t>(i)] = gyro_rows(rows.row(i), node, constants);
+  const double variance = noise.gyro_rad_s * noise.gyro_rad_s;
+  double cost = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const ElementSums& e = readings.gyro[static_cast<std::size_t>(i)];
+    const GyroRows& element = elements[static_cast<std::size_t>(i)];
+    if (e.n > 0.0) {
+      // the same error in each reading of the node, so that their number does not make it smaller
+      const double tilt = noise.tilt_share * excess(readings, elements, i);
+      cost += add_free(e, element, 1.0 / (variance + e.n * tilt * tilt), block, corner);
+    }
+    if (e.clipped > 0.0) {
+      const double sigma = std::sqrt(variance / e.clipped + noise.rail_rad_s * noise.rail_rad_s);
+      cost += add_bound(e, element, sigma, block, corner);
+    }
+  }
+  return cost;
+}
+
+double add_force(const NodeReadings& readings, const Vector3d& g_W_m_s2, const ReadingNoise& noise, const Node& node,
+                 const Constants& constants, System::Block& block, System::Corner& corner) {
+  if (!(readings.force_n > 0.0)) return 0.0;
+  const Vector3d& w = node.w_WI_I_rad_s;
+  const Vector3d& alpha = node.angular_acceleration_rad_s2;
+  const Vector3d& r = constants.lever_arm_m;
+  const double t = readings.force_t_s;
+  const Matrix3d later = so3::exp(-t * w).toRotationMatrix();
+  const Matrix3d R_IW = later * node.q_WI.toRotationMatrix().transpose();
+  const Vector3d push = R_IW * (node.a_W_m_s2 - g_W_m_s2);
+  const Vector3d predicted = push + alpha.cross(r) + w.cross(w.cross(r)) + constants.accel_bias_m_s2;
+  ForceState J;
+  J.block<3, 3>(0, kPhi) = hat(push) * later;
+  J.block<3, 3>(0, kRate) = t * hat(push) - hat(w.cross(r)) - hat(w) * hat(r);
+  J.block<3, 3>(0, kAngular) = -hat(r);
+  J.block<3, 3>(0, kHand) = R_IW;
+  ForceBorder B = ForceBorder::Zero();
+  B.block<3, 3>(0, kAccelBias).setIdentity();
+  B.block<3, 3>(0, kLever) = hat(alpha) + hat(w) * hat(w);
+
+  const double share = noise.accel_share * (readings.force_m_s2.norm() - g_W_m_s2.norm());
+  const double variance = noise.accel_m_s2 * noise.accel_m_s2 / readings.force_n + share * share;
+  double cost = 0.0;
+  Vector3d weight, slope;
+  for (int i = 0; i < 3; ++i) {
+    const double error = predicted[i] - readings.force_m_s2[i];
+    if (readings.force_bound[i] != 0.0) {
+      const double sigma = std::sqrt(variance);
+      const double u = readings.force_bound[i] * error / sigma;
+      const double h = hazard(u);
+      weight[i] = h * (h + u) / variance;
+      slope[i] = -readings.force_bound[i] * h / sigma;
+      cost += minus_two_log_phi(u);
+    } else {
+      weight[i] = 1.0 / variance;
+      slope[i] = weight[i] * error;
+      cost += slope[i] * error;
+    }
+  }
+  const ForceState weighted = weight.asDiagonal() * J;
+  block.diagonal.topLeftCorner<12, 12>().noalias() += weighted.transpose() * J;
+  block.border.topRows<12>().noalias() += weighted.transpose() * B;
+  block.gradient.head<12>().noalias() -= J.transpose() * slope;
+  corner.matrix.noalias() += B.transpose() * weight.asDiagonal() * B;
+  corner.gradient.noalias() -= B.transpose() * slope;
+  return cost;
+}
+
+double add_rest(const ReadingNoise& noise, const Node& node, System::Block& block) {
+  return add_zero(node.w_WI_I_rad_s, 1.0 / (noise.rest_rad_s * noise.rest_rad_s), kRate, block) +
+         add_zero(node.v_W_m_s, 1.0 / (noise.rest_m_s * noise.rest_m_s), kVelocity, block) +
+         add_zero(node.a_W_m_s2, 1.0 / (noise.rest_m_s2 * noise.rest_m_s2), kHand, block);
+}
+
+Vector3d turned(const Node& from, const Node& to, double h) {
+  const Vector3d& w0 = from.w_WI_I_rad_s;
+  const Vector3d& w1 = to.w_WI_I_rad_s;
+  return 0.5 * h * (w0 + w1) +
+         h * h / 12.0 * (from.angular_acceleration_rad_s2 - to.angular_acceleration_rad_s2 + w0.cross(w1));
+}
+
+Motion::Motion(const Params& params) : params_(params) {
+  const double h = params.step_s;
+  const double q = params.jerk_rad_s3_sqrts * params.jerk_rad_s3_sqrts;
+  // white jerk: rate and angular acceleration after the step, given those before
+  Eigen::Matrix2d Q;
+  Q << h * h * h / 3.0, h * h / 2.0, h * h / 2.0, h;
+  Eigen::Matrix<double, 2, 4> J;
+  J << -1.0, -h, 1.0, 0.0, 0.0, -1.0, 0.0, 1.0;
+  jerk_ = J.transpose() * (q * Q).inverse() * J;
+  // the angle given rate and angular acceleration at both ends: a quintic's remainder
+  phi_variance_ = q * std::pow(h, 5) / 720.0 + 1e-12;
+
+  const double decay = std::exp(-h / params.hand_tau_s);
+  const double density = (1.0 - decay * decay) * params.hand_m_s2 * params.hand_m_s2 / h;
+  Eigen::Matrix<double, 1, 6> row;
+  row << -decay, 0.0, 0.0, 1.0, 0.0, 0.0;
+  hand_ = row.transpose() * row / (density * h);
+  row << -0.5 * h, -1.0, 0.0, -0.5 * h, 1.0, 0.0;
+  way_ = row.transpose() * row / (density * h * h * h / 12.0 + 1e-10);
+  const double leak = std::exp(-h / params.place_leak_s);
+  row << 0.0, -0.5 * h, -leak, 0.0, -0.5 * h, 1.0;
+  way_ += row.transpose() * row / (density * std::pow(h, 5) / 120.0 + 1e-10);
+}
+
+double Motion::add_attitude(const Node& from, const Node& to, System::Block& block, System::Block& next) const {
+  const double h = params_.step_s;
+  const Vector3d omega = turned(from, to, h);
+  const Eigen::Quaterniond step = so3::exp(omega);
+  const Eigen::Quaterniond rotation = from.q_WI.conjugate() * to.q_WI;
+  const Vector3d error = so3::log(step.conjugate() * rotation);
+  const Matrix3d by_next = so3::left_jacobian_inverse(error).transpose();
+  const Matrix3d by_omega = -so3::left_jacobian_inverse(error) * so3::left_jacobian(omega).transpose();
+  Eigen::Matrix<double, 3, 9> J0, J1;
+  J0.leftCols<3>() = -by_next * rotation.toRotationMatrix().transpose();
+  J0.middleCols<3>(kRate) = by_omega * (0.5 * h * Matrix3d::Identity() - h * h / 12.0 * hat(to.w_WI_I_rad_s));
+  J0.middleCols<3>(kAngular) = h * h / 12.0 * by_omega;
+  J1.leftCols<3>() = by_next;
+  J1.middleCols<3>(kRate) = by_omega * (0.5 * h * Matrix3d::Identity() + h * h / 12.0 * hat(from.w_WI_I_rad_s));
+  J1.middleCols<3>(kAngular) = -h * h / 12.0 * by_omega;
+  const double error_2 = params_.turn_error_sqrts * params_.turn_error_sqrts * omega.squaredNorm() / h;
+  const double w = 1.0 / (phi_variance_ + error_2);
+  block.diagonal.topLeftCorner<9, 9>().noalias() += w * J0.transpose() * J0;
+  block.coupling.topLeftCorner<9, 9>().noalias() += w * J0.transpose() * J1;
+  next.diagonal.topLeftCorner<9, 9>().noalias() += w * J1.transpose() * J1;
+  block.gradient.head<9>().noalias() -= w * J0.transpose() * error;
+  next.gradient.head<9>().noalias() -= w * J1.transpose() * error;
+  return w * error.squaredNorm();
+}
+
+double Motion::add_step(const Node& from, const Node& to, double hand, System::Block& block,
+                        System::Block& next) const {
+  double cost = add_attitude(from, to, block, next);
+  Eigen::Matrix<double, 3, 4> turn;
+  turn << from.w_WI_I_rad_s, from.angular_acceleration_rad_s2, to.w_WI_I_rad_s, to.angular_acceleration_rad_s2;
+  cost += add_chain<2>(jerk_, 1.0, kRate, turn, block, next);
+  Eigen::Matrix<double, 3, 6> way;
+  way << from.a_W_m_s2, from.v_W_m_s, from.p_W_m, to.a_W_m_s2, to.v_W_m_s, to.p_W_m;
+  cost += add_chain<3>(hand_, 1.0 / hand, kHand, way, block, next);
+  cost += add_chain<3>(way_, 1.0, kHand, way, block, next);
+  return cost;
+}
+
+double Motion::add_bounds(const Node& node, System::Block& block) const {
+  const double velocity = params_.velocity_m_s * params_.velocity_m_s * params_.velocity_tau_s;
+  const double place = params_.place_m * params_.place_m * params_.place_tau_s;
+  return add_zero(node.v_W_m_s, params_.step_s / velocity, kVelocity, block) +
+         add_zero(node.p_W_m, params_.step_s / place, kPlace, block);
+}
+
+double Motion::add_first(const Node& node, System::Block& block) const {
+  const Vector3d up_I = node.q_WI.conjugate() * Vector3d::UnitZ();
+  block.diagonal.topLeftCorner<3, 3>() += 1e6 * up_I * up_I.transpose() + 0.1 * Matrix3d::Identity();
+  const double hand = params_.hand_m_s2, velocity = params_.velocity_m_s, place = params_.place_m;
+  return add_zero(node.w_WI_I_rad_s, 1e-4, kRate, block) +
+         add_zero(node.angular_acceleration_rad_s2, 1e-6, kAngular, block) +
+         add_zero(node.a_W_m_s2, 1.0 / (hand * hand), kHand, block) +
+         add_zero(node.v_W_m_s, 1.0 / (velocity * velocity), kVelocity, block) +
+         add_zero(node.p_W_m, 1.0 / (place * place), kPlace, block);
+}
+
+}  // namespace tumble::carried

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "attitude/carried_problem.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace tumble::carried {
+
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr double kTurnMax = 0.8;     // largest step of an attitude: beyond, the linearisation says little
+constexpr double kConverged = 1e-3;  // of attitudes [rad] and, ten times that, of rates [rad/s]
+constexpr int kFollowFirst = 3;      // iterations before the hand's power is read off the nodes
+constexpr int kFollowLast = 8;       // and after which it stays, so that the iteration ends
+constexpr double kSurpriseS = 0.25;  // over which the hand's mean acceleration is compared
+constexpr Trouble kLost = Trouble::diverged;
+
+Motion::Params motion_params(const CarriedSmoother::Params& p) {
+  Motion::Params out;
+  out.step_s = p.node_s;
+  out.jerk_rad_s3_sqrts = p.jerk_rad_s3_sqrts;
+  out.turn_error_sqrts = p.turn_error_sqrts;
+  out.hand_m_s2 = p.hand_m_s2, out.hand_tau_s = p.hand_tau_s;
+  out.velocity_m_s = p.velocity_m_s, out.velocity_tau_s = p.velocity_tau_s;
+  out.place_m = p.place_m, out.place_tau_s = p.place_tau_s, out.place_leak_s = p.place_leak_s;
+  return out;
+}
+
+ReadingNoise reading_noise(const CarriedSmoother::Params& p, double period_s) {
+  const double root_rate = 1.0 / std::sqrt(period_s);
+  ReadingNoise out;
+  out.gyro_rad_s = p.gyro_noise_density * root_rate;
+  out.tilt_share = p.tilt_share;
+  out.rail_rad_s = p.rail_sigma_rad_s;
+  out.accel_m_s2 = p.accel_noise_density * root_rate;
+  out.accel_share = p.accel_error_share;
+  out.rest_rad_s = p.rest_sigma_rad_s;
+  out.rest_m_s = p.rest_sigma_m_s;
+  out.rest_m_s2 = p.rest_sigma_m_s2;
+  return out;
+}
+
+}  // namespace
+
+Problem::Problem(const CarriedSmoother::Params& params, const Eigen::Matrix3d& rows, double period_s,
+                 std::span<const NodeReadings> readings, std::vector<Node> nodes)
+    : params_(params),
+      rows_(rows),
+      readings_(readings),
+      motion_(motion_params(params)),
+      noise_(reading_noise(params, period_s)),
+      g_W_m_s2_(0.0, 0.0, -params.gravity_m_s2),
+      nodes_(std::move(nodes)),
+      hand_(nodes_.size(), 1.0),
+      hand_power_(nodes_.size() + 1, 0.0),
+      blocks_(nodes_.size()) {}
+
+double Problem::linearise() {
+  std::fill(blocks_.begin(), blocks_.end(), System::Block{});
+  corner_ = {};
+  double cost = motion_.add_first(nodes_[0], blocks_[0]);
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    const Node& node = nodes_[i];
+    cost += add_gyro(readings_[i], rows_, noise_, node, constants_, blocks_[i], corner_);
+    cost += add_force(readings_[i], g_W_m_s2_, noise_, node, constants_, blocks_[i], corner_);
+    cost += motion_.add_bounds(node, blocks_[i]);
+    if (readings_[i].rest) cost += add_rest(noise_, node, blocks_[i]);
+    if (i + 1 < nodes_.size()) cost += motion_.add_step(node, nodes_[i + 1], hand_[i], blocks_[i], blocks_[i + 1]);
+  }
+  const auto prior = [&](const Vector3d& value, double sigma, int at) {
+    const double information = 1.0 / (sigma * sigma);
+    corner_.matrix.diagonal().segment<3>(at).array() += information;
+    corner_.gradient.segment<3>(at) -= information * value;
+    cost += information * value.squaredNorm();
+  };
+  prior(constants_.gyro_bias_rad_s, params_.gyro_bias_sigma_rad_s, kGyroBias);
+  prior(constants_.accel_bias_m_s2, params_.accel_bias_sigma_m_s2, kAccelBias);
+  prior(constants_.lever_arm_m, params_.lever_arm_sigma_m, kLever);
+  return cost;
+}
+
+bool Problem::eliminate(System::BorderVector& step) {
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    System::Block* const next = i + 1 < blocks_.size() ? &blocks_[i + 1] : nullptr;
+    if (!System::eliminate(blocks_[i], next, corner_)) return false;
+  }
+  return System::solve_corner(corner_, step, constants_covariance_);
+}
+
+bool Problem::step(double& largest) {
+  System::BorderVector border;
+  if (!eliminate(border)) return false;
+  // the steps replace the gradients, which nothing needs any more
+  double turn = 0.0;
+  largest = 0.0;
+  for (std::size_t i = blocks_.size(); i-- > 0;) {
+    const System::StateVector* const next = i + 1 < blocks_.size() ? &blocks_[i + 1].gradient : nullptr;
+    blocks_[i].gradient = System::back_substitute(blocks_[i], next, border).eval();
+    const double moved = blocks_[i].gradient.segment<3>(kPhi).norm();
+    turn = std::max(turn, moved);
+    largest = std::max({largest, moved, 0.1 * blocks_[i].gradient.segment<3>(kRate).norm()});
+  }
+  if (!std::isfinite(turn)) return false;
+  const double share = turn > kTurnMax ? kTurnMax / turn : 1.0;
+  for (std::size_t i = 0; i < blocks_.size(); ++i) nodes_[i].move(share * blocks_[i].gradient);
+  constants_.move(share * border);
+  return true;
+}
+
+// the hand is as lively as it was about that time: mean square over a window, never far below what is assumed
+void Problem::follow_hand() {
+  const std::size_t count = nodes_.size();
+  const double assumed = 3.0 * params_.hand_m_s2 * params_.hand_m_s2;
+  for (std::size_t i = 0; i < count; ++i)
+    hand_power_[i + 1] = hand_power_[i] + nodes_[i].a_W_m_s2.squaredNorm() / assumed;
+  const auto half = static_cast<std::size_t>(0.5 * params_.hand_window_s / params_.node_s);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t a = i > half ? i - half : 0, b = std::min(count, i + half + 1);
+    const double local = (hand_power_[b] - hand_power_[a]) / static_cast<double>(b - a);
+    hand_[i] = std::max(params_.hand_floor, 1.0 + params_.hand_follow * (local - 1.0));
+  }
+}
+
+Status Problem::solve(CarriedSmoother::Report& report) {
+  for (int k = 0; k < params_.iterations_max; ++k) {
+    if (k >= kFollowFirst && k <= kFollowLast && params_.hand_follow > 0.0) follow_hand();
+    report.cost = linearise();
+    double largest = 0.0;
+    if (!step(largest)) return {kLost, "iteration of the carried body", k + 1.0, static_cast<double>(k)};
+    report.iterations = k + 1;
+    report.converged = largest < kConverged;
+    if (report.converged && k > kFollowFirst) break;
+  }
+  report.constants = constants_;
+  report.hand_surprise = hand_surprise();
+  return {};
+}
+
+Status Problem::covariances(CarriedSmoother::Report& report) {
+  report.cost = linearise();
+  System::BorderVector unused;
+  if (!eliminate(unused)) return {kLost, "covariance of the carried body", report.cost, 0.0};
+  report.constants_covariance = constants_covariance_;
+  covariances_.resize(nodes_.size());
+  System::Conditional here, next;
+  for (std::size_t i = nodes_.size(); i-- > 0;) {
+    here = System::back_conditional(blocks_[i], i + 1 < nodes_.size() ? &next : nullptr);
+    const Eigen::Matrix<double, 9, kBorder> rows = here.by_border.topRows<9>();
+    covariances_[i] = here.state.topLeftCorner<9, 9>();
+    covariances_[i].noalias() += rows * constants_covariance_ * rows.transpose();
+    next = here;
+  }
+  return {};
+}
+
+// the mean over a window T of a process of deviation s and memory tau has the variance
+// s^2 2 tau/T (1 - tau/T (1 - exp(-T/tau)))
+double Problem::hand_surprise() const {
+  const auto window = static_cast<std::size_t>(std::max(1.0, kSurpriseS / params_.node_s));
+  const double span = static_cast<double>(window) * params_.node_s, ratio = params_.hand_tau_s / span;
+  const double variance =
+      params_.hand_m_s2 * params_.hand_m_s2 * 2.0 * ratio * (1.0 - ratio * (1.0 - std::exp(-1.0 / ratio)));
+  double largest = 0.0;
+  Vector3d sum = Vector3d::Zero();
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    sum += nodes_[i].a_W_m_s2;
+    if (i >= window) sum -= nodes_[i - window].a_W_m_s2;
+    if (i + 1 >= window) largest = std::max(largest, (sum / static_cast<double>(window)).norm());
+  }
+  return largest / std::sqrt(variance);
+}
+
+}  // namespace tumble::carried

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/attitude/carried_smoother.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <cmath>
+#include <utility>
+
+#include "attitude/carried_problem.hpp"
+#include "tumble/common/so3.hpp"
+
+namespace tumble {
+
+using carried::Node;
+
+namespace {
+
+constexpr double kRowsMin = 0.1;  // determinant of the elements' rows: below, they do not span the axes
+
+Status check(const CarriedSmoother::Params& params, std::span<const ImuSample> samples,
+             const ClippedElements& clipped) {
+  if (samples.empty()) return {Trouble::empty, "samples", 0.0, 1.0};
+  const double count = static_cast<double>(samples.size());
+  if (!clipped.signs.empty() && clipped.signs.size() != samples.size())
+    return {Trouble::out_of_range, "signs", static_cast<double>(clipped.signs.size()), count};
+  const double determinant = std::abs(clipped.rows.determinant());
+  if (!(determinant > kRowsMin)) return {Trouble::degenerate, "rows", determinant, kRowsMin};
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (const Status status = check_sample(samples[k]); !status.ok()) return status;
+    if (k == 0) continue;
+    const Status status = check_follows(samples[k].time_ns, samples[k - 1].time_ns, params.gap_max_s);
+    if (!status.ok()) return status;
+  }
+  return {};
+}
+
+std::uint8_t clipped_axes(const ClippedElements& clipped, std::size_t k) {
+  std::uint8_t axes = 0;
+  if (clipped.signs.empty()) return axes;
+  for (std::size_t j = 0; j < 3; ++j)
+    if (clipped.signs[k].gyro[j] != 0) axes = static_cast<std::uint8_t>(axes | (1u << j));
+  return axes;
+}
+
+RateSource source(const RateState& rate, double recovered_sigma) {
+  if (rate.clipped_axes == 0) return RateSource::measured;
+  const double variance = rate.covariance_rad2_s2.selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff();
+  return variance < recovered_sigma * recovered_sigma ? RateSource::recovered_contact : RateSource::bounded_only;
+}
+
+}  // namespace
+
+CarriedSmoother::CarriedSmoother(const Params& params) : params_(params) {
+  constexpr double kTiny = 1e-300;
+  require_within("gravity_m_s2", params.gravity_m_s2, kTiny, 100.0);
+  require_within("node_s", params.node_s, 1e-3, 0.1);
+  require_within("gyro_noise_density", params.gyro_noise_density, 1e-6, 1.0);
+  require_within("tilt_share", params.tilt_share, 0.0, 1.0);
+  require_within("rail_sigma_rad_s", params.rail_sigma_rad_s, 1e-4, 1.0);
+  require_within("accel_noise_density", params.accel_noise_density, 1e-5, 10.0);
+  require_within("accel_error_share", params.accel_error_share, 0.0, 1.0);
+  require_within("jerk_rad_s3_sqrts", params.jerk_rad_s3_sqrts, 1e-2, 1e6);
+  require_within("turn_error_sqrts", params.turn_error_sqrts, 0.0, 1.0);
+  require_within("hand_m_s2", params.hand_m_s2, 1e-3, 1e3);
+  require_within("hand_tau_s", params.hand_tau_s, 1e-3, 10.0);
+  require_within("hand_follow", params.hand_follow, 0.0, 1.0);
+  require_within("hand_window_s", params.hand_window_s, 0.01, 1e3);
+  require_within("hand_floor", params.hand_floor, 1e-3, 1e3);
+  require_within("velocity_m_s", params.velocity_m_s, 1e-3, 1e3);
+  require_within("velocity_tau_s", params.velocity_tau_s, 1e-3, 1e3);
+  require_within("place_m", params.place_m, 1e-3, 1e3);
+  require_within("place_tau_s", params.place_tau_s, 1e-3, 1e3);
+  require_within("place_leak_s", params.place_leak_s, 0.1, 1e4);
+  require_within("gyro_bias_sigma_rad_s", params.gyro_bias_sigma_rad_s, 1e-6, 10.0);
+  require_within("accel_bias_sigma_m_s2", params.accel_bias_sigma_m_s2, 1e-6, 10.0);
+  require_within("lever_arm_sigma_m", params.lever_arm_sigma_m, 1e-6, 10.0);
+  require_within("rest_sigma_rad_s", params.rest_sigma_rad_s, 1e-6, 10.0);
+  require_within("rest_sigma_m_s", params.rest_sigma_m_s, 1e-6, 10.0);
+  require_within("rest_sigma_m_s2", params.rest_sigma_m_s2, 1e-6, 10.0);
+  require_within("iterations_max", params.iterations_max, 1, 1000);
+  require_within("gap_max_s", params.gap_max_s, kTiny, 1e4);
+  require_within("recovered_sigma_rad_s", params.recovered_sigma_rad_s, 0.0, 1e4);
+  RestDetector{params.rest};
+}
+
+Status CarriedSmoother::estimate(std::span<const ImuSample> samples, const ClippedElements& clipped,
+                                 std::vector<RateState>& rates, std::vector<AttitudeState>& attitudes,
+                                 Report& report) const {
+  rates.clear();
+  attitudes.clear();
+  report = {};
+  if (const Status status = check(params_, samples, clipped); !status.ok()) return status;
+  const carried::Collected collected = carried::collect(params_, samples, clipped);
+  std::vector<Node> start;
+  Status status = carried::start_nodes(params_, samples, clipped, collected, start);
+  if (!status.ok()) return status;
+  carried::Problem problem(params_, clipped.rows, collected.period_s, collected.nodes, std::move(start));
+  status = problem.solve(report);
+  if (status.ok()) status = problem.covariances(report);
+  if (!status.ok()) return status;
+
+  rates.resize(samples.size());
+  attitudes.resize(samples.size());
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const std::size_t i = collected.node_of[k];
+    const Node& node = problem.nodes()[i];
+    const Eigen::Matrix<double, 9, 9>& covariance = problem.covariance(i);
+    const double at = static_cast<double>(i) * params_.node_s;
+    const double centre = collected.centre_s[k] - at, end = collected.end_s[k] - at;
+    rates[k].time_ns = attitudes[k].time_ns = samples[k].time_ns;
+    // a reading is the mean over its window, so the rate is that at the window's centre; the attitude is at the stamp
+    rates[k].w_WI_I_rad_s = node.w_WI_I_rad_s + centre * node.angular_acceleration_rad_s2;
+    rates[k].covariance_rad2_s2 = covariance.block<3, 3>(carried::kRate, carried::kRate);
+    rates[k].clipped_axes = clipped_axes(clipped, k);
+    rates[k].source = source(rates[k], params_.recovered_sigma_rad_s);
+    const Eigen::Vector3d turn = end * node.w_WI_I_rad_s + 0.5 * end * end * node.angular_acceleration_rad_s2;
+    attitudes[k].q_WA = node.q_WI * so3::exp(turn);
+    const Eigen::Matrix3d R = node.q_WI.toRotationMatrix();
+    attitudes[k].covariance_rad2 = R * covariance.topLeftCorner<3, 3>() * R.transpose();
+  }
+  return {};
+}
+
+}  // namespace tumble

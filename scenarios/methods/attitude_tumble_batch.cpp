@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/methods/carried.hpp"
+#include "scenarios/methods/method.hpp"
+#include "scenarios/methods/registry.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  Estimate estimate;
+  std::vector<RateState> rates;
+  estimate.status = run_carried(sensors, parameters, rates, estimate.attitudes, estimate.health);
+  return estimate;
+}
+
+}  // namespace
+
+Method attitude_tumble_batch() {
+  MethodInfo info;
+  info.name = "tumble_batch";
+  info.kind = Kind::attitude;
+  info.doc =
+      "A smoother over the whole recording of a body that is carried: bounded acceleration, velocity and place, rest, "
+      "clipped gyro axes as bounds.";
+  info.source = "ours";
+  info.parameters = carried_parameters();
+  return make_method(std::move(info), run);
+}
+
+}  // namespace tumble::scenarios

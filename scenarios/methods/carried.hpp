@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/parameters.hpp"
+#include "sim/recording.hpp"
+#include "tumble/attitude/carried_smoother.hpp"
+
+/// What the methods on a carried body have in common: the smoother fed with the primary IMU, its rails found before.
+namespace tumble::scenarios {
+
+/// Parameters of a method on the carried body, with the library's own defaults and bounds.
+std::span<const sim::Parameter> carried_parameters();
+
+/// Signs of the elements that stand at a rail, per sample: flags of the device, and plateaus found in the readings.
+/// `rows` of the result are the axes themselves; it refers to `signs`.
+ClippedElements find_clipped(const sim::ImuRecord& record, std::span<const ImuSample> samples,
+                             std::vector<ClipSigns>& signs);
+
+/// Runs the smoother over the primary IMU. Trouble: that of the record and of the smoother; the outputs are then empty.
+Status run_carried(const sim::Sensors& sensors, const sim::Values& parameters, std::vector<RateState>& rates,
+                   std::vector<AttitudeState>& attitudes, std::map<std::string, double>& health);
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/methods/carried.hpp"
+#include "scenarios/methods/method.hpp"
+#include "scenarios/methods/registry.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  Estimate estimate;
+  std::vector<AttitudeState> attitudes;
+  estimate.status = run_carried(sensors, parameters, estimate.rates, attitudes, estimate.health);
+  count_sources(estimate.rates, estimate.health);
+  return estimate;
+}
+
+}  // namespace
+
+Method rate_carried() {
+  MethodInfo info;
+  info.name = "carried";
+  info.kind = Kind::rate;
+  info.doc =
+      "A smoother over the recording of a body that is carried, not in flight: gravity turning in the sensor tells the "
+      "rate that a clipped gyro lost.";
+  info.source = "ours";
+  info.parameters = carried_parameters();
+  return make_method(std::move(info), run);
+}
+
+}  // namespace tumble::scenarios

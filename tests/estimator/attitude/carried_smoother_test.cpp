@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The smoother of carried bodies against motions in closed form.
+#include "tumble/attitude/carried_smoother.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numeric>
+
+#include "estimator/attitude/carried_motion.hpp"
+#include "oracles/gaussian.hpp"
+
+namespace tumble {
+namespace {
+
+using testing::CarriedMotion;
+using testing::CarriedRecording;
+
+struct Result {
+  std::vector<RateState> rates;
+  std::vector<AttitudeState> attitudes;
+  CarriedSmoother::Report report;
+};
+
+Result run(const CarriedRecording& recording, const CarriedSmoother::Params& params = {}) {
+  Result out;
+  ClippedElements clipped;
+  clipped.signs = recording.signs;
+  const Status status =
+      CarriedSmoother(params).estimate(recording.samples, clipped, out.rates, out.attitudes, out.report);
+  EXPECT_TRUE(status.ok()) << status.message();
+  EXPECT_EQ(out.rates.size(), recording.samples.size());
+  EXPECT_EQ(out.attitudes.size(), recording.samples.size());
+  return out;
+}
+
+/// Errors of the rate where the gyro clips, where it does not, of the raw reading where it clips [rad/s].
+struct RateErrors {
+  std::vector<double> clipped, free, raw;
+};
+
+RateErrors rate_errors(const CarriedRecording& recording, const Result& result) {
+  RateErrors out;
+  for (std::size_t k = 0; k < recording.samples.size(); ++k) {
+    const double error = (result.rates[k].w_WI_I_rad_s - recording.rate_rad_s[k]).norm();
+    if (recording.signs[k].gyro[0] == 0) {
+      out.free.push_back(error);
+      continue;
+    }
+    EXPECT_EQ(result.rates[k].clipped_axes, 1) << k;
+    EXPECT_NE(result.rates[k].source, RateSource::measured) << k;
+    out.clipped.push_back(error);
+    out.raw.push_back((recording.samples[k].angular_velocity_rad_s - recording.rate_rad_s[k]).norm());
+  }
+  return out;
+}
+
+double quantile(std::vector<double> values, double share) {
+  EXPECT_FALSE(values.empty());
+  if (values.empty()) return std::numeric_limits<double>::infinity();
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+double inclination_rms_rad(const CarriedRecording& recording, const Result& result) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < recording.samples.size(); ++k) {
+    const Eigen::Vector3d up(0.0, 0.0, 1.0);
+    const Eigen::Vector3d truth = recording.q_WI[k].conjugate() * up, ours = result.attitudes[k].q_WA.conjugate() * up;
+    sum += truth.cross(ours).squaredNorm();
+  }
+  return std::sqrt(sum / static_cast<double>(recording.samples.size()));
+}
+
+TEST(CarriedSmoother, FollowsAFreeGyroAndFindsTheVertical) {
+  const CarriedRecording recording = testing::record({}, 100.0, 20.0, 0.0);
+  const Result result = run(recording);
+  EXPECT_LT(quantile(rate_errors(recording, result).free, 0.5), 0.01);
+  EXPECT_LT(inclination_rms_rad(recording, result), 0.01);
+}
+
+TEST(CarriedSmoother, RecoversATwirlBeyondTheRail) {
+  // 11.3 rad/s at the peaks, the rail at 7.3, half of each turn lost
+  const CarriedRecording recording = testing::record({}, 100.0, 20.0, 7.3);
+  const RateErrors errors = rate_errors(recording, run(recording));
+  ASSERT_GT(errors.clipped.size(), 500u);
+  std::printf("raw %.3f %.3f, carried %.3f %.3f, free %.4f\n", quantile(errors.raw, 0.5), quantile(errors.raw, 0.9),
+              quantile(errors.clipped, 0.5), quantile(errors.clipped, 0.9), quantile(errors.free, 0.5));
+  EXPECT_LT(quantile(errors.clipped, 0.5), 0.13 * quantile(errors.raw, 0.5));
+  EXPECT_LT(quantile(errors.clipped, 0.9), 0.13 * quantile(errors.raw, 0.9));
+}
+
+TEST(CarriedSmoother, SaysTheSameAtAnyRateOfTheImu) {
+  std::vector<Result> results;
+  for (double hz : {50.0, 200.0, 2000.0}) {
+    const CarriedRecording recording = testing::record({}, hz, 8.0, 7.3);
+    results.push_back(run(recording));
+    const double median = quantile(rate_errors(recording, results.back()).clipped, 0.5);
+    std::printf("%.0f Hz: %.3f rad/s\n", hz, median);
+    EXPECT_LT(median, 0.3) << hz;
+  }
+}
+
+/// A gyro with noise and bias whose truth is one draw of the motion: the deviations hold the errors, and are not far
+/// too wide.
+TEST(CarriedSmoother, DeviationsHoldTheErrors) {
+  std::size_t within = 0, within_one = 0, count = 0;
+  for (std::uint64_t seed : {1u, 2u, 3u, 4u}) {
+    oracles::Gaussian noise(seed);
+    CarriedMotion motion;
+    motion.spin_rad = noise.uniform(2.5, 3.5), motion.spin_hz = noise.uniform(0.5, 0.7);
+    motion.hand_hz = noise.uniform(0.5, 1.5);
+    CarriedRecording recording = testing::record(motion, 100.0, 12.0, 7.3);
+    for (std::size_t k = 0; k < recording.samples.size(); ++k) {
+      ImuSample& sample = recording.samples[k];
+      for (int j = 0; j < 3; ++j) {
+        if (recording.signs[k].gyro[static_cast<std::size_t>(j)] == 0)
+          sample.angular_velocity_rad_s[j] += 0.005 * noise();
+        sample.specific_force_m_s2[j] += 0.05 * noise();
+      }
+    }
+    const Result result = run(recording);
+    for (std::size_t k = 0; k < recording.samples.size(); ++k) {
+      if (recording.signs[k].gyro[0] == 0) continue;
+      const double sigma = std::sqrt(result.rates[k].covariance_rad2_s2(0, 0));
+      const double error = std::abs(result.rates[k].w_WI_I_rad_s.x() - recording.rate_rad_s[k].x());
+      ++count;
+      within += error < 3.0 * sigma ? 1u : 0u;
+      within_one += error < 0.05 * sigma ? 1u : 0u;
+    }
+  }
+  ASSERT_GT(count, 500u);
+  const double share = static_cast<double>(within) / static_cast<double>(count);
+  const double tiny = static_cast<double>(within_one) / static_cast<double>(count);
+  std::printf("within 3 sigma %.4f, within a twentieth %.4f\n", share, tiny);
+  EXPECT_GE(share, 0.97);
+  EXPECT_LT(tiny, 0.5) << "a deviation twenty times the error says nothing";
+}
+
+/// Negative control: a body that is thrown (specific force about zero for half a second) while it is believed carried.
+TEST(CarriedSmoother, AThrownBodyShows) {
+  CarriedRecording recording = testing::record({}, 100.0, 6.0, 0.0);
+  const double carried = run(recording).report.hand_surprise;
+  for (std::size_t k = 300; k < 350; ++k) recording.samples[k].specific_force_m_s2.setConstant(0.01);
+  const double thrown = run(recording).report.hand_surprise;
+  std::printf("surprise: carried %.2f, thrown %.2f\n", carried, thrown);
+  EXPECT_LT(carried, 1.0);
+  EXPECT_GT(thrown, 2.0);
+}
+
+TEST(CarriedSmoother, RefusesBadInput) {
+  const CarriedRecording good = testing::record({}, 100.0, 1.0, 0.0);
+  std::vector<RateState> rates;
+  std::vector<AttitudeState> attitudes;
+  CarriedSmoother::Report report;
+  const auto trouble = [&](const CarriedRecording& recording, ClippedElements clipped = {}) {
+    const Status status = CarriedSmoother({}).estimate(recording.samples, clipped, rates, attitudes, report);
+    EXPECT_TRUE(status.ok() || (rates.empty() && attitudes.empty()));
+    return status.trouble;
+  };
+  EXPECT_EQ(trouble(good), Trouble::none);
+  EXPECT_EQ(trouble({}), Trouble::empty);
+  CarriedRecording bad = good;
+  bad.samples[50].angular_velocity_rad_s.y() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(trouble(bad), Trouble::non_finite);
+  bad = good;
+  std::swap(bad.samples[50].time_ns, bad.samples[51].time_ns);
+  EXPECT_EQ(trouble(bad), Trouble::time_order);
+  bad = good;
+  for (std::size_t k = 50; k < bad.samples.size(); ++k) bad.samples[k].time_ns += 3'000'000'000;
+  EXPECT_EQ(trouble(bad), Trouble::gap);
+  ClippedElements clipped;
+  clipped.signs = std::span(good.signs).first(5);
+  EXPECT_EQ(trouble(good, clipped), Trouble::out_of_range);
+  clipped = {};
+  clipped.rows.setZero();
+  EXPECT_EQ(trouble(good, clipped), Trouble::degenerate);
+  EXPECT_THROW(CarriedSmoother({.node_s = 0.0}), InvalidParams);
+  EXPECT_THROW(CarriedSmoother({.hand_m_s2 = std::numeric_limits<double>::quiet_NaN()}), InvalidParams);
+}
+
+}  // namespace
+}  // namespace tumble
