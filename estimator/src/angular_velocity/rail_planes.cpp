@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/angular_velocity/rail_planes.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "rail_evidence.hpp"
+#include "tumble/common/status.hpp"
+
+namespace tumble {
+
+namespace {
+
+using Eigen::Matrix2d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kGridStep = 0.01;  // of the slopes
+constexpr int kRefinements = 4;
+// Half a slab: deviations of the samples, and the least and the most share of the level.
+constexpr double kSlabDeviations = 4.0, kSlabShareMin = 2e-4, kSlabShareMax = 0.006;
+// An element whose rail lies this share below what another axis reads without clipping is no rail.
+constexpr double kSiblingShare = 0.08;
+// Log odds of a level: near that of another element, of a stated range, and away from it.
+constexpr double kNearSibling = 5.0, kNearStated = 3.0, kOtherSignAgrees = 5.0, kContradicts = -10.0;
+
+// One sign of one element while it is searched for.
+struct Side {
+  int axis = 0, sign = 1;
+  RailFacet facet;
+  double log_odds = -std::numeric_limits<double>::infinity();
+};
+
+Vector2d others(const Vector3d& y, int axis) {
+  return {y[(axis + 1) % 3], y[(axis + 2) % 3]};
+}
+
+// What is known of a facet before its samples are looked at.
+struct FacetPrior {
+  Vector2d slopes = Vector2d::Zero();
+  Matrix2d information = Matrix2d::Identity();
+};
+
+// Samples that may lie in the slab below the largest value for any slope up to `steepest`.
+std::vector<std::size_t> candidates(const DistinctReadings& readings, int axis, int sign, double steepest,
+                                    double slab) {
+  double sure = -std::numeric_limits<double>::max();
+  for (const Vector3d& y : readings.rates) {
+    sure = std::max(sure, sign * y[axis] - steepest * others(y, axis).lpNorm<1>());
+  }
+  std::vector<std::size_t> out;
+  for (std::size_t k = 0; k < readings.rates.size(); ++k) {
+    const Vector3d& y = readings.rates[k];
+    if (sign * y[axis] + steepest * others(y, axis).lpNorm<1>() >= sure - slab) out.push_back(k);
+  }
+  return out;
+}
+
+// The slopes on a grid about the prior whose slab holds the most samples, less what is odd about the slopes.
+Vector2d search_slopes(const DistinctReadings& readings, std::span<const std::size_t> near, int axis, int sign,
+                       double slope_max, double slab, const FacetPrior& prior) {
+  const int steps = static_cast<int>(std::floor(slope_max / kGridStep + 1e-9));
+  Vector2d best = prior.slopes;
+  double highest = -std::numeric_limits<double>::max();
+  std::vector<double> values(near.size());
+  for (int a = -steps; a <= steps; ++a) {
+    for (int b = -steps; b <= steps; ++b) {
+      const Vector2d slopes = prior.slopes + kGridStep * Vector2d(a, b);
+      if (slopes.lpNorm<Eigen::Infinity>() > slope_max + kGridStep) continue;
+      double top = -std::numeric_limits<double>::max();
+      for (std::size_t i = 0; i < near.size(); ++i) {
+        const Vector3d& y = readings.rates[near[i]];
+        values[i] = sign * (y[axis] + slopes.dot(others(y, axis)));
+        top = std::max(top, values[i]);
+      }
+      const auto count = std::count_if(values.begin(), values.end(), [&](double v) { return v >= top - slab; });
+      const Vector2d off = slopes - prior.slopes;
+      const double score = static_cast<double>(count) - 0.5 * off.dot(prior.information * off);
+      if (!(score > highest)) continue;
+      highest = score;
+      best = slopes;
+    }
+  }
+  return best;
+}
+
+// Values along the row of those samples, by which the facet is fitted.
+void collect(const DistinctReadings& readings, std::span<const std::size_t> near, double from, RailFacet& facet) {
+  facet.inliers.clear();
+  for (const std::size_t k : near) {
+    if (facet.sign * facet.row.dot(readings.rates[k]) >= from) facet.inliers.push_back(k);
+  }
+}
+
+// Least squares of slopes and level over the inliers, with the prior of the slopes; deviation of the samples.
+void fit(const DistinctReadings& readings, const FacetPrior& prior, double deviation, RailFacet& facet) {
+  const int axis = facet.axis;
+  Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
+  Vector3d g = Vector3d::Zero();
+  H.topLeftCorner<2, 2>() = prior.information;
+  g.head<2>() = prior.information * prior.slopes;
+  const double weight = 1.0 / (deviation * deviation);
+  for (const std::size_t k : facet.inliers) {
+    const Vector3d& y = readings.rates[k];
+    // level = sign * (y_j + slopes . others)
+    Vector3d A;
+    A << -facet.sign * others(y, axis), 1.0;
+    H += weight * A * A.transpose();
+    g += weight * A * (facet.sign * y[axis]);
+  }
+  facet.covariance = H.inverse();
+  const Vector3d x = facet.covariance * g;
+  facet.row = Vector3d::Zero();
+  facet.row[axis] = 1.0;
+  facet.row[(axis + 1) % 3] = x[0];
+  facet.row[(axis + 2) % 3] = x[1];
+  facet.level = x[2];
+  std::vector<double> residuals;
+  for (const std::size_t k : facet.inliers) {
+    residuals.push_back(std::abs(facet.sign * facet.row.dot(readings.rates[k]) - facet.level));
+  }
+  std::nth_element(residuals.begin(), residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2),
+                   residuals.end());
+  facet.deviation = residuals.empty() ? 0.0 : 1.4826 * residuals[residuals.size() / 2];
+}
+
+// The facet of the readings with the most samples near the upright plane of an axis.
+RailFacet find_facet(const RailPlaneFinder::Params& params, const DistinctReadings& readings, int axis, int sign,
+                     const FacetPrior& prior, double slope_range) {
+  RailFacet facet;
+  facet.axis = axis;
+  facet.sign = sign;
+  double peak = 0.0;
+  for (const Vector3d& y : readings.rates) peak = std::max(peak, sign * y[axis]);
+  if (peak < 0.5 * params.distance_min_rad_s) return facet;
+  const double steepest = std::max(slope_range, 0.0) + prior.slopes.lpNorm<Eigen::Infinity>() + kGridStep;
+  const double slab = std::max({0.002 * peak, 4.0 * readings.noise[axis], 3.0 * readings.digit[axis]});
+  const std::vector<std::size_t> near = candidates(readings, axis, sign, steepest, 2.0 * slab);
+  const Vector2d slopes = search_slopes(readings, near, axis, sign, slope_range, slab, prior);
+  facet.row[axis] = 1.0;
+  facet.row[(axis + 1) % 3] = slopes[0];
+  facet.row[(axis + 2) % 3] = slopes[1];
+  double top = -std::numeric_limits<double>::max();
+  for (const std::size_t k : near) top = std::max(top, sign * facet.row.dot(readings.rates[k]));
+  collect(readings, near, top - slab, facet);
+  double tolerance = slab, deviation = 0.5 * slab;
+  for (int i = 0; i < kRefinements && !facet.inliers.empty(); ++i) {
+    fit(readings, prior, deviation, facet);
+    const double floor = std::max(kSlabShareMin * facet.level, readings.digit[axis]);
+    deviation = std::max(facet.deviation, 0.25 * floor);
+    tolerance = std::clamp(kSlabDeviations * deviation, floor, std::max(floor, kSlabShareMax * facet.level));
+    collect(readings, near, facet.level - tolerance, facet);
+  }
+  if (facet.inliers.empty()) return facet;
+  fit(readings, prior, deviation, facet);
+  facet.deviation = std::max(facet.deviation, 0.25 * std::max(kSlabShareMin * facet.level, readings.digit[axis]));
+  facet.tolerance = tolerance;
+  return facet;
+}
+
+double log_normal_ratio(double value, double sigma) {
+  const double z = value / sigma;
+  return std::max(kContradicts, -0.5 * z * z);
+}
+
+// What is believed of a level before its samples are counted.
+double level_log_odds(const RailPlaneFinder::Params& params, const DistinctReadings& readings, const RailPlanes& known,
+                      const Side& side) {
+  const double level = side.facet.level;
+  double odds = params.log_odds_before;
+  if (level < params.distance_min_rad_s) return odds + kContradicts;
+  for (int other = 0; other < 3; ++other) {
+    const auto& rail = known.element[static_cast<std::size_t>(other)];
+    if (rail && other == side.axis) {
+      odds += kOtherSignAgrees + log_normal_ratio(level - rail->distance_rad_s, params.offset_share * level);
+    } else if (rail) {
+      odds += kNearSibling + log_normal_ratio(level - rail->distance_rad_s, 2.0 * params.offset_share * level);
+    }
+    if (other == side.axis) continue;
+    if (readings.peak[other] > (1.0 + kSiblingShare) * level) odds += kContradicts;
+  }
+  if (params.stated_rad_s) {
+    const double ratio = level / *params.stated_rad_s;
+    odds += ratio < 0.85 ? kContradicts : ratio < 1.05 && ratio > 0.95 ? kNearStated : 0.0;
+  }
+  return odds;
+}
+
+// One element of what its two signs show; either may be missing.
+RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& readings, const Side* minus,
+                 const Side* plus) {
+  Eigen::Matrix4d H = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d g = Eigen::Vector4d::Zero();
+  const int axis = (plus != nullptr ? plus : minus)->axis;
+  const double level = (plus != nullptr ? plus : minus)->facet.level;
+  const double slope_information = 1.0 / (params.slope_sigma * params.slope_sigma);
+  H.diagonal() << slope_information, slope_information, 0.0, 1.0 / std::pow(params.offset_share * level, 2);
+  RailPlane out;
+  double squares = 0.0, weights = 0.0;
+  for (const Side* side : {minus, plus}) {
+    if (side == nullptr) continue;
+    const double weight = 1.0 / (side->facet.deviation * side->facet.deviation);
+    for (const std::size_t k : side->facet.inliers) {
+      const Vector3d& y = readings.rates[k];
+      // y_j = sign * r + b - slopes . others
+      Eigen::Vector4d A;
+      A << -others(y, axis), side->sign, 1.0;
+      H += weight * A * A.transpose();
+      g += weight * A * y[axis];
+    }
+    squares += side->facet.deviation * side->facet.deviation * static_cast<double>(side->facet.inliers.size());
+    weights += static_cast<double>(side->facet.inliers.size());
+    const std::size_t i = side->sign > 0 ? 1 : 0;
+    out.samples[i] = static_cast<int>(side->facet.inliers.size());
+    out.stretches[i] = side->facet.stretches;
+    out.tolerance_rad_s = std::max(out.tolerance_rad_s, side->facet.tolerance);
+    out.log_odds = std::max(out.log_odds, side->log_odds);
+  }
+  out.covariance = H.inverse();
+  const Eigen::Vector4d x = out.covariance * g;
+  out.row[axis] = 1.0;
+  out.row[(axis + 1) % 3] = x[0];
+  out.row[(axis + 2) % 3] = x[1];
+  out.distance_rad_s = x[2];
+  out.offset_rad_s = x[3];
+  out.deviation_rad_s = std::sqrt(squares / weights);
+  return out;
+}
+
+}  // namespace
+
+RailPlaneFinder::RailPlaneFinder(const Params& params) : params_(params) {
+  require_within("slope_sigma", params.slope_sigma, 1e-4, 0.2);
+  require_within("slope_max", params.slope_max, 0.0, 0.3);
+  require_within("distance_min_rad_s", params.distance_min_rad_s, 0.01, 1000.0);
+  if (params.stated_rad_s) require_within("stated_rad_s", *params.stated_rad_s, 1e-6, 1000.0);
+  require_within("offset_share", params.offset_share, 1e-4, 0.2);
+  require_within("samples_min", params.samples_min, 2, 1000);
+  require_within("log_odds_before", params.log_odds_before, -100.0, 100.0);
+  require_within("log_odds_min", params.log_odds_min, -100.0, 100.0);
+}
+
+RailPlanes RailPlaneFinder::find(std::span<const ImuSample> samples) const {
+  const DistinctReadings readings = distinct_readings(samples);
+  RailPlanes found;
+  if (readings.rates.size() < static_cast<std::size_t>(params_.samples_min) + 2) return found;
+  std::array<std::array<std::optional<Side>, 2>, 3> sides;
+  const auto believe = [&](int axis, int i, const FacetPrior& prior, double slope_range) {
+    Side side{axis, i == 0 ? -1 : 1, {}, 0.0};
+    side.facet = find_facet(params_, readings, axis, side.sign, prior, slope_range);
+    if (static_cast<int>(side.facet.inliers.size()) < params_.samples_min) return false;
+    side.log_odds = level_log_odds(params_, readings, found, side) +
+                    stretch_evidence(readings, prior.information, side.facet);
+    if (!(side.log_odds >= params_.log_odds_min)) return false;
+    sides[static_cast<std::size_t>(axis)][static_cast<std::size_t>(i)] = side;
+    return true;
+  };
+  // what is found of one element or sign tells of the others, so again until nothing is added
+  const FacetPrior unknown{Vector2d::Zero(), Matrix2d::Identity() / (params_.slope_sigma * params_.slope_sigma)};
+  for (bool added = true; added;) {
+    added = false;
+    for (int axis = 0; axis < 3; ++axis) {
+      auto& pair = sides[static_cast<std::size_t>(axis)];
+      auto& rail = found.element[static_cast<std::size_t>(axis)];
+      for (int i = 0; i < 2; ++i) {
+        if (pair[static_cast<std::size_t>(i)]) continue;
+        FacetPrior prior = unknown;
+        double range = params_.slope_max;
+        if (rail) {
+          prior.slopes = others(rail->row, axis);
+          prior.information = (rail->covariance.topLeftCorner<2, 2>() + 1e-6 * Matrix2d::Identity()).inverse();
+          range = std::min(range, 3.0 * std::sqrt(rail->covariance.topLeftCorner<2, 2>().trace()) + 1e-3);
+        }
+        if (!believe(axis, i, prior, range)) continue;
+        added = true;
+        rail = joined(params_, readings, pair[0] ? &*pair[0] : nullptr, pair[1] ? &*pair[1] : nullptr);
+      }
+    }
+  }
+  return found;
+}
+
+ElementClipping classify(const ImuSample& sample, const RailPlanes& planes) {
+  ElementClipping out;
+  for (std::size_t j = 0; j < 3; ++j) {
+    const auto& rail = planes.element[j];
+    if (!rail) continue;
+    for (const int sign : {-1, 1}) {
+      if (!rail->seen(sign)) continue;
+      if (rail->short_of(sample.angular_velocity_rad_s, sign) <= rail->tolerance_rad_s) {
+        out.sign[j] = static_cast<std::int8_t>(sign);
+      }
+    }
+  }
+  return out;
+}
+
+void classify(std::span<const ImuSample> samples, const RailPlanes& planes, std::span<ElementClipping> out) {
+  for (std::size_t k = 0; k < samples.size(); ++k) out[k] = classify(samples[k], planes);
+}
+
+}  // namespace tumble
