@@ -19,7 +19,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kGridStep = 0.01;  // of the slopes
-constexpr int kRefinements = 4;
+constexpr int kRefinements = 10;
 // Half a slab: deviations of the samples, and the least and the most share of the level.
 constexpr double kSlabDeviations = 4.0, kSlabShareMin = 2e-4, kSlabShareMax = 0.006;
 // An element whose rail lies this share below what another axis reads without clipping is no rail.
@@ -95,9 +95,12 @@ void collect(const DistinctReadings& readings, std::span<const std::size_t> near
   }
 }
 
-// Least squares of slopes and level over the inliers, with the prior of the slopes; deviation of the samples.
+// Least squares of slopes and level over the inliers, with the prior of the slopes; deviation of the samples. Robust
+// (Cauchy) about the level before, since windows that met the rail in a part only lie short of the plane.
 void fit(const DistinctReadings& readings, const FacetPrior& prior, double deviation, RailFacet& facet) {
   const int axis = facet.axis;
+  const Vector3d row = facet.row;
+  const double level = facet.level;
   Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
   Vector3d g = Vector3d::Zero();
   H.topLeftCorner<2, 2>() = prior.information;
@@ -108,8 +111,10 @@ void fit(const DistinctReadings& readings, const FacetPrior& prior, double devia
     // level = sign * (y_j + slopes . others)
     Vector3d A;
     A << -facet.sign * others(y, axis), 1.0;
-    H += weight * A * A.transpose();
-    g += weight * A * (facet.sign * y[axis]);
+    const double off = level > 0.0 ? (facet.sign * row.dot(y) - level) / deviation : 0.0;
+    const double share = weight / (1.0 + off * off);
+    H += share * A * A.transpose();
+    g += share * A * (facet.sign * y[axis]);
   }
   facet.covariance = H.inverse();
   const Vector3d x = facet.covariance * g;
@@ -248,33 +253,46 @@ RailPlanes RailPlaneFinder::find(std::span<const ImuSample> samples) const {
   RailPlanes found;
   if (readings.rates.size() < static_cast<std::size_t>(params_.samples_min) + 2) return found;
   std::array<std::array<std::optional<Side>, 2>, 3> sides;
-  const auto believe = [&](int axis, int i, const FacetPrior& prior, double slope_range) {
-    Side side{axis, i == 0 ? -1 : 1, {}, 0.0};
-    side.facet = find_facet(params_, readings, axis, side.sign, prior, slope_range);
-    if (static_cast<int>(side.facet.inliers.size()) < params_.samples_min) return false;
-    side.log_odds = level_log_odds(params_, readings, found, side) +
-                    stretch_evidence(readings, prior.information, side.facet);
-    if (!(side.log_odds >= params_.log_odds_min)) return false;
-    sides[static_cast<std::size_t>(axis)][static_cast<std::size_t>(i)] = side;
-    return true;
+  const auto look = [&](int axis, int i, const RailPlanes& known) {
+    FacetPrior prior{Vector2d::Zero(), Matrix2d::Identity() / (params_.slope_sigma * params_.slope_sigma)};
+    double range = params_.slope_max;
+    if (const auto& rail = known.element[static_cast<std::size_t>(axis)]) {
+      const Matrix2d of_slopes = rail->covariance.topLeftCorner<2, 2>();
+      prior = {others(rail->row, axis), (of_slopes + 1e-6 * Matrix2d::Identity()).inverse()};
+      range = std::min(range, 3.0 * std::sqrt(of_slopes.trace()) + 1e-3);
+    }
+    Side side{axis, i == 0 ? -1 : 1, {}, -std::numeric_limits<double>::infinity()};
+    side.facet = find_facet(params_, readings, axis, side.sign, prior, range);
+    if (static_cast<int>(side.facet.inliers.size()) >= params_.samples_min) {
+      side.log_odds = level_log_odds(params_, readings, known, side) +
+                      stretch_evidence(readings, prior.information, side.facet);
+    }
+    return side;
   };
   // what is found of one element or sign tells of the others, so again until nothing is added
-  const FacetPrior unknown{Vector2d::Zero(), Matrix2d::Identity() / (params_.slope_sigma * params_.slope_sigma)};
   for (bool added = true; added;) {
     added = false;
     for (int axis = 0; axis < 3; ++axis) {
       auto& pair = sides[static_cast<std::size_t>(axis)];
       auto& rail = found.element[static_cast<std::size_t>(axis)];
-      for (int i = 0; i < 2; ++i) {
-        if (pair[static_cast<std::size_t>(i)]) continue;
-        FacetPrior prior = unknown;
-        double range = params_.slope_max;
-        if (rail) {
-          prior.slopes = others(rail->row, axis);
-          prior.information = (rail->covariance.topLeftCorner<2, 2>() + 1e-6 * Matrix2d::Identity()).inverse();
-          range = std::min(range, 3.0 * std::sqrt(rail->covariance.topLeftCorner<2, 2>().trace()) + 1e-3);
+      for (std::size_t i = 0; i < 2; ++i) {
+        if (pair[i]) continue;
+        const Side side = look(axis, static_cast<int>(i), found);
+        const bool believed = side.log_odds >= params_.log_odds_min;
+        if (believed) pair[i] = side;
+        // both signs of one row may be believed together where neither is alone
+        if (!believed && !rail && side.log_odds > -std::numeric_limits<double>::infinity()) {
+          RailPlanes supposed = found;
+          const bool plus = side.sign > 0;
+          supposed.element[static_cast<std::size_t>(axis)] =
+              joined(params_, readings, plus ? nullptr : &side, plus ? &side : nullptr);
+          const Side other = look(axis, plus ? 0 : 1, supposed);
+          // the odds before count once
+          if (side.log_odds + other.log_odds - params_.log_odds_before < params_.log_odds_min) continue;
+          pair[i] = side;
+          pair[1 - i] = other;
         }
-        if (!believe(axis, i, prior, range)) continue;
+        if (!pair[i]) continue;
         added = true;
         rail = joined(params_, readings, pair[0] ? &*pair[0] : nullptr, pair[1] ? &*pair[1] : nullptr);
       }
