@@ -38,7 +38,7 @@ bool invert_factor(StateMatrix& a) {
 
 // corner -= border' border, of which the upper right part is the mirror of the lower left
 void subtract_square(const CrossMatrix& border, BorderMatrix& corner) {
-  constexpr int kHead = 8, kTail = kBorder - kHead;
+  constexpr int kHead = 12, kTail = kBorder - kHead;
   const auto head = border.leftCols<kHead>();
   const auto tail = border.rightCols<kTail>();
   corner.topLeftCorner<kHead, kHead>().noalias() -= head.transpose().lazyProduct(head);

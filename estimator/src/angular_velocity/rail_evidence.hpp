@@ -24,7 +24,6 @@ struct RailFacet {
   int axis = 0, sign = 1;
   Eigen::Vector3d row = Eigen::Vector3d::Zero();
   double level = 0.0;
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of two slopes and the level, by the scatter of samples
   double deviation = 0.0, tolerance = 0.0;
   std::vector<std::size_t> inliers;  ///< of DistinctReadings::rates, rising
   int stretches = 0;                 ///< runs of two or more inliers that no round top explains

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/angular_velocity/rail_planes.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -20,12 +21,16 @@ using Eigen::Vector3d;
 
 constexpr double kGridStep = 0.01;  // of the slopes
 constexpr int kRefinements = 10;
+// Deviations with which the robust fit starts, as shares of the slab: a thin rail with a few samples short of it, a thick one.
+constexpr double kStarts[] = {0.5, 0.02};
 // Half a slab: deviations of the samples, and the least and the most share of the level.
 constexpr double kSlabDeviations = 4.0, kSlabShareMin = 2e-4, kSlabShareMax = 0.006;
-// An element whose rail lies this share below what another axis reads without clipping is no rail.
-constexpr double kSiblingShare = 0.08;
-// Log odds of a level: near that of another element, of a stated range, and away from it.
-constexpr double kNearSibling = 5.0, kNearStated = 3.0, kOtherSignAgrees = 5.0, kContradicts = -10.0;
+// Elements of one device differ by this share without remark: another axis does not read more than that beyond a rail.
+constexpr double kSiblingShare = 0.04;
+// Log odds of a level: near that of another element, of a stated range, of the other sign; and what cannot be.
+constexpr double kNearSibling = 5.0, kNearStated = 3.0, kOtherSignAgrees = 5.0, kImpossible = -100.0;
+// A rail is not found below this share of the stated range.
+constexpr double kStatedShareMin = 0.85;
 
 // One sign of one element while it is searched for.
 struct Side {
@@ -116,8 +121,8 @@ void fit(const DistinctReadings& readings, const FacetPrior& prior, double devia
     H += share * A * A.transpose();
     g += share * A * (facet.sign * y[axis]);
   }
-  facet.covariance = H.inverse();
-  const Vector3d x = facet.covariance * g;
+  const Eigen::LDLT<Eigen::Matrix3d> factor(H);
+  const Vector3d x = factor.solve(g);
   facet.row = Vector3d::Zero();
   facet.row[axis] = 1.0;
   facet.row[(axis + 1) % 3] = x[0];
@@ -134,7 +139,7 @@ void fit(const DistinctReadings& readings, const FacetPrior& prior, double devia
 
 // The facet of the readings with the most samples near the upright plane of an axis.
 RailFacet find_facet(const RailPlaneFinder::Params& params, const DistinctReadings& readings, int axis, int sign,
-                     const FacetPrior& prior, double slope_range) {
+                     const FacetPrior& prior, double slope_range, double start_share) {
   RailFacet facet;
   facet.axis = axis;
   facet.sign = sign;
@@ -151,7 +156,7 @@ RailFacet find_facet(const RailPlaneFinder::Params& params, const DistinctReadin
   double top = -std::numeric_limits<double>::max();
   for (const std::size_t k : near) top = std::max(top, sign * facet.row.dot(readings.rates[k]));
   collect(readings, near, top - slab, facet);
-  double tolerance = slab, deviation = 0.5 * slab;
+  double tolerance = slab, deviation = start_share * slab;
   for (int i = 0; i < kRefinements && !facet.inliers.empty(); ++i) {
     fit(readings, prior, deviation, facet);
     const double floor = std::max(kSlabShareMin * facet.level, readings.digit[axis]);
@@ -168,7 +173,7 @@ RailFacet find_facet(const RailPlaneFinder::Params& params, const DistinctReadin
 
 double log_normal_ratio(double value, double sigma) {
   const double z = value / sigma;
-  return std::max(kContradicts, -0.5 * z * z);
+  return std::max(kImpossible, -0.5 * z * z);
 }
 
 // What is believed of a level before its samples are counted.
@@ -176,7 +181,7 @@ double level_log_odds(const RailPlaneFinder::Params& params, const DistinctReadi
                       const Side& side) {
   const double level = side.facet.level;
   double odds = params.log_odds_before;
-  if (level < params.distance_min_rad_s) return odds + kContradicts;
+  if (level < params.distance_min_rad_s) return kImpossible;
   for (int other = 0; other < 3; ++other) {
     const auto& rail = known.element[static_cast<std::size_t>(other)];
     if (rail && other == side.axis) {
@@ -185,11 +190,12 @@ double level_log_odds(const RailPlaneFinder::Params& params, const DistinctReadi
       odds += kNearSibling + log_normal_ratio(level - rail->distance_rad_s, 2.0 * params.offset_share * level);
     }
     if (other == side.axis) continue;
-    if (readings.peak[other] > (1.0 + kSiblingShare) * level) odds += kContradicts;
+    const double beyond = readings.peak[other] / level - 1.0 - kSiblingShare;
+    if (beyond > 0.0) odds += log_normal_ratio(beyond, params.offset_share);
   }
   if (params.stated_rad_s) {
     const double ratio = level / *params.stated_rad_s;
-    odds += ratio < 0.85 ? kContradicts : ratio < 1.05 && ratio > 0.95 ? kNearStated : 0.0;
+    odds += ratio < kStatedShareMin ? kImpossible : ratio < 1.05 && ratio > 0.95 ? kNearStated : 0.0;
   }
   return odds;
 }
@@ -224,8 +230,10 @@ RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& 
     out.tolerance_rad_s = std::max(out.tolerance_rad_s, side->facet.tolerance);
     out.log_odds = std::max(out.log_odds, side->log_odds);
   }
-  out.covariance = H.inverse();
-  const Eigen::Vector4d x = out.covariance * g;
+  // two elements that clip together leave a slope untold: badly conditioned
+  const Eigen::LDLT<Eigen::Matrix4d> factor(H);
+  out.covariance = factor.solve(Eigen::Matrix4d::Identity());
+  const Eigen::Vector4d x = factor.solve(g);
   out.row[axis] = 1.0;
   out.row[(axis + 1) % 3] = x[0];
   out.row[(axis + 2) % 3] = x[1];
@@ -262,10 +270,13 @@ RailPlanes RailPlaneFinder::find(std::span<const ImuSample> samples) const {
       range = std::min(range, 3.0 * std::sqrt(of_slopes.trace()) + 1e-3);
     }
     Side side{axis, i == 0 ? -1 : 1, {}, -std::numeric_limits<double>::infinity()};
-    side.facet = find_facet(params_, readings, axis, side.sign, prior, range);
-    if (static_cast<int>(side.facet.inliers.size()) >= params_.samples_min) {
-      side.log_odds = level_log_odds(params_, readings, known, side) +
-                      stretch_evidence(readings, prior.information, side.facet);
+    for (const double start : kStarts) {
+      Side tried = side;
+      tried.facet = find_facet(params_, readings, axis, side.sign, prior, range, start);
+      if (static_cast<int>(tried.facet.inliers.size()) < params_.samples_min) continue;
+      tried.log_odds = level_log_odds(params_, readings, known, tried) +
+                       stretch_evidence(readings, prior.information, tried.facet);
+      if (tried.log_odds > side.log_odds) side = std::move(tried);
     }
     return side;
   };

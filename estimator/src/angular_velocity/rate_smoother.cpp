@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "element_clipping.hpp"
 #include "recording_check.hpp"
 #include "tumble/angular_velocity/saave.hpp"
 #include "tumble/angular_velocity/wnoj_smoother.hpp"
@@ -296,15 +297,26 @@ Status check_companions(const RateModelParams& params, std::span<const std::vect
   return {};
 }
 
-RateModelParams held(const RateModelParams& params, const RigConstants& constants) {
+// The rig as it was known; the gyro's elements, which flight cannot be taken for, stay free.
+RateModelParams held(const RateModelParams& params, const RateModel& model) {
+  constexpr int kFirst = RigConstants::kElements, kCount = RigConstants::kSize - kFirst;
   RateModelParams out = params;
-  out.calibration = RigCalibration{constants, 1e-12 * RigConstants::Matrix::Identity()};
+  out.calibration = RigCalibration{model.prior_constants(), 1e-12 * RigConstants::Matrix::Identity()};
+  out.calibration->covariance.block<kCount, kCount>(kFirst, kFirst) =
+      model.prior_covariance().block<kCount, kCount>(kFirst, kFirst);
+  return out;
+}
+
+RailPlaneFinder::Params plane_params(const RateSmoother::Params& params) {
+  RailPlaneFinder::Params out = params.planes;
+  if (!out.stated_rad_s) out.stated_rad_s = params.rails.stated_gyro_rad_s;
   return out;
 }
 
 }  // namespace
 
-RateSmoother::RateSmoother(const Params& params) : params_(params), rails_(params.rails), rests_(params.rests) {
+RateSmoother::RateSmoother(const Params& params)
+    : params_(params), rails_(params.rails), planes_(plane_params(params)), rests_(params.rests) {
   require_within("iterations_max", params.iterations_max, 1, 1000);
   require_within("tolerance_rad_s", params.tolerance_rad_s, 1e-12, 1.0);
   require_within("step_max_rad_s", params.step_max_rad_s, 1e-3, 1e4);
@@ -328,8 +340,14 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
   std::vector<Clipping> clippings(samples.size());
   RailDetector::State rail_state;
   rails_.classify_all(samples, rail_state, clippings);
+  const RailPlanes planes = health.planes = planes_.find(samples);
+  clip_by_planes(samples, planes, clippings);
+  health.rails_upright = are_upright(planes, rail_state);
   for (int c = 0; c < 6; ++c) {
     health.rail[static_cast<std::size_t>(c)] = rails_.rail(rail_state, c);
+    if (c < 3 && planes.element[static_cast<std::size_t>(c)]) {
+      health.rail[static_cast<std::size_t>(c)] = planes.element[static_cast<std::size_t>(c)]->distance_rad_s;
+    }
     health.rail_disagrees[static_cast<std::size_t>(c)] = rails_.disagrees(rail_state, c);
   }
   const double force = median_force(samples);
@@ -339,12 +357,14 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
   health.force_unit_suspect = force > 0.5 && force < 2.0;
   std::vector<RateObservation> observations(samples.size());
   const double period_s = median_period_s(samples);
-  const RateModel model(params_.model, period_s);
+  RateModelParams known = params_.model;
+  known.calibration = with_planes(params_.model, planes, health.rails_upright);
+  const RateModel model(known, period_s);
   const std::vector<bool> rest = rests_.find(samples);
   for (std::size_t k = 0; k < samples.size(); ++k) {
     observations[k] = {samples[k], clippings[k], rest[k]};
     for (std::size_t i = 0; i < companions.size(); ++i) observations[k].companions[i] = companions[i][k];
-    mark_partial(rails_, rail_state, model.gyro_sigma_rad_s(), k > 0 ? &samples[k - 1] : nullptr, observations[k],
+    mark_partial(planes, rails_, rail_state, model.gyro_sigma_rad_s(), k > 0 ? &samples[k - 1] : nullptr, observations[k],
                  k + 1 < samples.size() ? &samples[k + 1] : nullptr);
   }
   Solution solution{{}, {}, {}, Iteration(observations)};
@@ -355,7 +375,7 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
   if (health.rig_surprise > params_.rig_surprise_max) {
     // contact was taken for flight of another rig: hold the rig to what was known of it
     const double surprise = health.rig_surprise;
-    const RateModel fixed(held(params_.model, model.prior_constants()), period_s);
+    const RateModel fixed(held(known, model), period_s);
     if (!solve(params_, fixed, observations, solution, health)) {
       return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
     }

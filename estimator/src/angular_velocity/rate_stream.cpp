@@ -44,10 +44,18 @@ void add_prior(const RateStream::State& state, const RateModel& model, const Rat
   corner.gradient += state.prior_corner.gradient - state.prior_corner.matrix * c - state.prior.border.transpose() * x;
 }
 
+// The stream finds upright rails only: without a calibration it holds the gyro's elements for as upright.
+RateModelParams upright(const RateModelParams& params) {
+  constexpr double kUprightSigma = 1e-5;
+  RateModelParams out = params;
+  if (!out.calibration) out.element_sigma = std::min(out.element_sigma, kUprightSigma);
+  return out;
+}
+
 }  // namespace
 
 RateStream::RateStream(const Params& params)
-    : params_(params), rails_(params.rails), rests_(params.rests), model_(params.model, params.period_s) {
+    : params_(params), rails_(params.rails), rests_(params.rests), model_(upright(params.model), params.period_s) {
   require_within("period_s", params.period_s, 1e-5, 1.0);
   require_within("lag_s", params.lag_s, 2.0 * params.period_s, std::min(10.0, 4096.0 * params.period_s));
   require_within("widen_first", params.widen_first, 1.0, 1000.0);

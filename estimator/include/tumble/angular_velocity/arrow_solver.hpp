@@ -16,7 +16,7 @@ namespace tumble {
 namespace arrow {
 
 inline constexpr int kState = 6;    ///< size of a block: rate and scaled angular acceleration
-inline constexpr int kBorder = 14;  ///< size of the border: see RigConstants
+inline constexpr int kBorder = 20;  ///< size of the border: see RigConstants
 
 using StateMatrix = Eigen::Matrix<double, kState, kState>;
 using StateVector = Eigen::Matrix<double, kState, 1>;

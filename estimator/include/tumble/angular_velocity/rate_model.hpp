@@ -27,7 +27,9 @@ struct RateModelParams {
   double gyro_bias_sigma_rad_s = 0.01;
   double accel_bias_sigma_m_s2 = 0.05;
   double inertia_sigma = 0.3;
-  /// What an earlier run has learnt; takes the place of `nominal` and of the four deviations above.
+  /// Of each entry of RigConstants::elements: cross-axis sensitivity before the device compensates it; [1e-9, 0.2].
+  double element_sigma = 0.03;
+  /// What an earlier run has learnt; takes the place of `nominal` and of the five deviations above.
   std::optional<RigCalibration> calibration = std::nullopt;
 
   /// Other IMUs on the body, at most kCompanionsMax; their readings come with each sample.
@@ -87,6 +89,9 @@ struct RateObservation {
   Eigen::Vector3d lost_sigma_rad_s = Eigen::Vector3d::Zero();
   std::array<CompanionReading, kCompanionsMax> companions = {};  ///< in the order of RateModelParams::companions
 
+  /// Whether an element clips, so that the readings of all axes are off: it is read element by element.
+  bool by_elements() const { return (clipping.gyro | clipping.void_gyro) != 0; }
+
   /// Axes whose rate is not read: bound at most.
   std::uint8_t unseen() const {
     for (const CompanionReading& companion : companions) {
@@ -106,7 +111,8 @@ struct RateEstimate {
   double flight_weight = 0.0;  ///< 0: contact, 1: free flight
   /// Specific force of contact at the centre of mass: what the flight model does not explain.
   Eigen::Vector3d contact_m_s2 = Eigen::Vector3d::Zero();
-  /// What the bounds of clipped axes amount to, as Gaussian sites on (rate + bias): precision and precision * mean.
+  /// What the bounds of clipped elements amount to, as Gaussian sites on what each hides, m_j . (rate + bias - reading):
+  /// precision and precision * mean.
   Eigen::Vector3d bound_precision = Eigen::Vector3d::Zero();
   Eigen::Vector3d bound_shift = Eigen::Vector3d::Zero();
   bool soft_bounds = false;  ///< false: bounds are walls that act only when violated (for the first iterations)
@@ -186,6 +192,10 @@ class RateModel {
   ForceFactor force_factor(const RateObservation& observation, const RateEstimate& estimate,
                            const RigConstants& rig) const;
   double gyro_information(const RateObservation& observation, const RateEstimate& estimate, int axis) const;
+  void add_gyro(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
+                arrow::Block& block, arrow::Corner& corner) const;
+  void add_elements(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
+                    arrow::Block& block, arrow::Corner& corner) const;
   static bool says_nothing_of_rig(const RateEstimate& estimate);
   static void keep_from_rig(const RateObservation& observation, RateFactor& flight);
   void add_companions(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
