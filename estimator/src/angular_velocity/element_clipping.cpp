@@ -15,6 +15,10 @@ constexpr double kUprightSigma = 1e-5, kSlopeSigmaMin = 3e-4;
 // Samples beside a clipped one that may have met the rail: largest depth, as a share of it; and of the step before.
 constexpr double kEdgeShare = 0.02, kEdgeOfStep = 0.5;
 
+// Rails of other elements lie within this share and tilt of those seen; a few samples at one hide about this share of
+// the step to the sample beside them.
+constexpr double kUnseenShare = 0.02, kUnseenTilt = 0.06, kUnseenOfStep = 0.5;
+
 // The sign of the rail that element j is at.
 int side(const ImuSample& sample, std::size_t j) {
   return sample.angular_velocity_rad_s[static_cast<Eigen::Index>(j)] < 0.0 ? -1 : 1;
@@ -100,6 +104,32 @@ void mark_partial(const RailPlanes& planes, const RailDetector& rails, const Rai
     now.partial = static_cast<std::uint8_t>(now.partial | bit);
     now.lost_rad_s[static_cast<Eigen::Index>(j)] = sign * loss.lost_rad_s;
     now.lost_sigma_rad_s[static_cast<Eigen::Index>(j)] = loss.sigma_rad_s;
+  }
+}
+
+void doubt_unseen_rails(const RailPlanes& planes, double noise_rad_s, const ImuSample* before, RateObservation& now,
+                        const ImuSample* after) {
+  double rail = 0.0;
+  for (const auto& element : planes.element) {
+    if (element && (rail == 0.0 || element->distance_rad_s < rail)) rail = element->distance_rad_s;
+  }
+  if (rail == 0.0) return;
+  const Eigen::Vector3d& reading = now.sample.angular_velocity_rad_s;
+  for (Eigen::Index j = 0; j < 3; ++j) {
+    const auto& own = planes.element[static_cast<std::size_t>(j)];
+    const int sign = reading[j] < 0.0 ? -1 : 1;
+    const unsigned told = now.clipping.gyro | now.clipping.void_gyro | now.partial;
+    if ((own && own->seen(sign)) || (told >> j & 1u) != 0) continue;
+    const double beside = std::hypot(reading[(j + 1) % 3], reading[(j + 2) % 3]);
+    if (std::abs(reading[j]) < (1.0 - kUnseenShare) * rail - kUnseenTilt * beside) continue;
+    double step = 0.0;
+    for (const ImuSample* neighbour : {before, after}) {
+      if (neighbour == nullptr) continue;
+      step = std::max(step, std::abs(reading[j] - neighbour->angular_velocity_rad_s[j]));
+    }
+    now.partial = static_cast<std::uint8_t>(now.partial | 1u << j);
+    now.lost_rad_s[j] = 0.0;
+    now.lost_sigma_rad_s[j] = std::hypot(noise_rad_s, kUnseenOfStep * step);
   }
 }
 

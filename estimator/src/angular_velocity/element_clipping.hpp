@@ -23,6 +23,11 @@ void clip_by_planes(std::span<const ImuSample> samples, const RailPlanes& planes
 void mark_partial(const RailPlanes& planes, const RailDetector& rails, const RailDetector::State& state,
                   double noise_rad_s, const ImuSample* before, RateObservation& now, const ImuSample* after);
 
+/// Doubts readings near the rails of the other elements on an element whose own rail was not seen: too few samples show
+/// no plane. Such a reading counts as one that may be short by as much as it steps to its neighbours.
+void doubt_unseen_rails(const RailPlanes& planes, double noise_rad_s, const ImuSample* before, RateObservation& now,
+                        const ImuSample* after);
+
 /// What the planes tell of RigConstants::elements, where that is more than `params` knew.
 RigCalibration with_planes(const RateModelParams& params, const RailPlanes& planes, bool upright);
 

@@ -25,6 +25,8 @@ constexpr std::size_t kNoiseWindow = 9;
 constexpr double kNoiseQuantile = 0.2;
 // What the smoothness of the other axes at the end of a stretch may tell at most.
 constexpr double kKinkAlone = 2.5;
+// What each sample beyond the facet speaks against it; share of the samples that may stray.
+constexpr double kBeyond = 5.0, kStray = 0.02;
 
 // Second differences of a window: noise of a reading as their root mean square about their mean.
 double window_noise(std::span<const Vector3d> window, int axis) {
@@ -139,6 +141,10 @@ double stretch_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
     A << -facet.sign * mean[(facet.axis + 1) % 3], -facet.sign * mean[(facet.axis + 2) % 3], 1.0;
     H += A * A.transpose() / (facet.deviation * facet.deviation);
   }
+  // nothing lies beyond a rail
+  const auto beyond = std::count_if(facet.inliers.begin(), facet.inliers.end(),
+                                    [&](std::size_t k) { return value(k) > facet.level + facet.tolerance; });
+  odds -= kBeyond * std::max(0.0, static_cast<double>(beyond) - kStray * static_cast<double>(facet.inliers.size()));
   if (facet.stretches == 0) return -std::numeric_limits<double>::infinity();
   // what choosing the level and the slopes freely was worth: prior over posterior volume
   const Eigen::Matrix3d told = H.inverse();

@@ -64,34 +64,6 @@ std::vector<std::size_t> candidates(const DistinctReadings& readings, int axis, 
   return out;
 }
 
-// The slopes on a grid about the prior whose slab holds the most samples, less what is odd about the slopes.
-Vector2d search_slopes(const DistinctReadings& readings, std::span<const std::size_t> near, int axis, int sign,
-                       double slope_max, double slab, const FacetPrior& prior) {
-  const int steps = static_cast<int>(std::floor(slope_max / kGridStep + 1e-9));
-  Vector2d best = prior.slopes;
-  double highest = -std::numeric_limits<double>::max();
-  std::vector<double> values(near.size());
-  for (int a = -steps; a <= steps; ++a) {
-    for (int b = -steps; b <= steps; ++b) {
-      const Vector2d slopes = prior.slopes + kGridStep * Vector2d(a, b);
-      if (slopes.lpNorm<Eigen::Infinity>() > slope_max + kGridStep) continue;
-      double top = -std::numeric_limits<double>::max();
-      for (std::size_t i = 0; i < near.size(); ++i) {
-        const Vector3d& y = readings.rates[near[i]];
-        values[i] = sign * (y[axis] + slopes.dot(others(y, axis)));
-        top = std::max(top, values[i]);
-      }
-      const auto count = std::count_if(values.begin(), values.end(), [&](double v) { return v >= top - slab; });
-      const Vector2d off = slopes - prior.slopes;
-      const double score = static_cast<double>(count) - 0.5 * off.dot(prior.information * off);
-      if (!(score > highest)) continue;
-      highest = score;
-      best = slopes;
-    }
-  }
-  return best;
-}
-
 // Values along the row of those samples, by which the facet is fitted.
 void collect(const DistinctReadings& readings, std::span<const std::size_t> near, double from, RailFacet& facet) {
   facet.inliers.clear();
@@ -137,37 +109,80 @@ void fit(const DistinctReadings& readings, const FacetPrior& prior, double devia
   facet.deviation = residuals.empty() ? 0.0 : 1.4826 * residuals[residuals.size() / 2];
 }
 
-// The facet of the readings with the most samples near the upright plane of an axis.
-RailFacet find_facet(const RailPlaneFinder::Params& params, const DistinctReadings& readings, int axis, int sign,
-                     const FacetPrior& prior, double slope_range, double start_share) {
-  RailFacet facet;
-  facet.axis = axis;
-  facet.sign = sign;
+// One sign of an axis, its samples near the extreme and the slab in which a rail is looked for.
+struct Extreme {
+  int axis = 0, sign = 1;
+  double slab = 0.0;
+  std::vector<std::size_t> near;
+};
+
+// Nothing where the axis reads too little for a rail.
+std::optional<Extreme> find_extreme(const RailPlaneFinder::Params& params, const DistinctReadings& readings, int axis,
+                                    int sign, const FacetPrior& prior, double slope_range) {
   double peak = 0.0;
   for (const Vector3d& y : readings.rates) peak = std::max(peak, sign * y[axis]);
-  if (peak < 0.5 * params.distance_min_rad_s) return facet;
-  const double steepest = std::max(slope_range, 0.0) + prior.slopes.lpNorm<Eigen::Infinity>() + kGridStep;
-  const double slab = std::max({0.002 * peak, 4.0 * readings.noise[axis], 3.0 * readings.digit[axis]});
-  const std::vector<std::size_t> near = candidates(readings, axis, sign, steepest, 2.0 * slab);
-  const Vector2d slopes = search_slopes(readings, near, axis, sign, slope_range, slab, prior);
+  if (peak < 0.5 * params.distance_min_rad_s) return std::nullopt;
+  const double steepest = slope_range + prior.slopes.lpNorm<Eigen::Infinity>() + kGridStep;
+  Extreme out{axis, sign, std::max({0.002 * peak, 4.0 * readings.noise[axis], 3.0 * readings.digit[axis]}), {}};
+  out.near = candidates(readings, axis, sign, steepest, 2.0 * out.slab);
+  return out;
+}
+
+// The slopes on a grid about the prior whose slab holds the most samples, less what is odd about the slopes.
+Vector2d search_slopes(const DistinctReadings& readings, const Extreme& extreme, double slope_max,
+                       const FacetPrior& prior) {
+  const std::vector<std::size_t>& near = extreme.near;
+  const int axis = extreme.axis;
+  const int steps = static_cast<int>(std::floor(slope_max / kGridStep + 1e-9));
+  Vector2d best = prior.slopes;
+  double highest = -std::numeric_limits<double>::max();
+  std::vector<double> values(near.size());
+  for (int a = -steps; a <= steps; ++a) {
+    for (int b = -steps; b <= steps; ++b) {
+      const Vector2d slopes = prior.slopes + kGridStep * Vector2d(a, b);
+      if (slopes.lpNorm<Eigen::Infinity>() > slope_max + kGridStep) continue;
+      double top = -std::numeric_limits<double>::max();
+      for (std::size_t i = 0; i < near.size(); ++i) {
+        const Vector3d& y = readings.rates[near[i]];
+        values[i] = extreme.sign * (y[axis] + slopes.dot(others(y, axis)));
+        top = std::max(top, values[i]);
+      }
+      const auto count = std::count_if(values.begin(), values.end(), [&](double v) { return v >= top - extreme.slab; });
+      const Vector2d off = slopes - prior.slopes;
+      const double score = static_cast<double>(count) - 0.5 * off.dot(prior.information * off);
+      if (!(score > highest)) continue;
+      highest = score;
+      best = slopes;
+    }
+  }
+  return best;
+}
+
+// The facet about given slopes, the robust fit starting with `deviation`.
+RailFacet fit_facet(const DistinctReadings& readings, const Extreme& extreme, const FacetPrior& prior,
+                    const Vector2d& slopes, double deviation) {
+  const int axis = extreme.axis;
+  RailFacet facet;
+  facet.axis = axis;
+  facet.sign = extreme.sign;
   facet.row[axis] = 1.0;
   facet.row[(axis + 1) % 3] = slopes[0];
   facet.row[(axis + 2) % 3] = slopes[1];
   double top = -std::numeric_limits<double>::max();
-  for (const std::size_t k : near) top = std::max(top, sign * facet.row.dot(readings.rates[k]));
-  collect(readings, near, top - slab, facet);
-  double tolerance = slab, deviation = start_share * slab;
+  for (const std::size_t k : extreme.near) top = std::max(top, facet.sign * facet.row.dot(readings.rates[k]));
+  collect(readings, extreme.near, top - extreme.slab, facet);
+  double floor = readings.digit[axis];
+  facet.tolerance = extreme.slab;
   for (int i = 0; i < kRefinements && !facet.inliers.empty(); ++i) {
     fit(readings, prior, deviation, facet);
-    const double floor = std::max(kSlabShareMin * facet.level, readings.digit[axis]);
+    floor = std::max(kSlabShareMin * facet.level, readings.digit[axis]);
     deviation = std::max(facet.deviation, 0.25 * floor);
-    tolerance = std::clamp(kSlabDeviations * deviation, floor, std::max(floor, kSlabShareMax * facet.level));
-    collect(readings, near, facet.level - tolerance, facet);
+    facet.tolerance = std::clamp(kSlabDeviations * deviation, floor, std::max(floor, kSlabShareMax * facet.level));
+    collect(readings, extreme.near, facet.level - facet.tolerance, facet);
   }
   if (facet.inliers.empty()) return facet;
   fit(readings, prior, deviation, facet);
-  facet.deviation = std::max(facet.deviation, 0.25 * std::max(kSlabShareMin * facet.level, readings.digit[axis]));
-  facet.tolerance = tolerance;
+  facet.deviation = std::max(facet.deviation, 0.25 * floor);
   return facet;
 }
 
@@ -270,13 +285,18 @@ RailPlanes RailPlaneFinder::find(std::span<const ImuSample> samples) const {
       range = std::min(range, 3.0 * std::sqrt(of_slopes.trace()) + 1e-3);
     }
     Side side{axis, i == 0 ? -1 : 1, {}, -std::numeric_limits<double>::infinity()};
-    for (const double start : kStarts) {
-      Side tried = side;
-      tried.facet = find_facet(params_, readings, axis, side.sign, prior, range, start);
-      if (static_cast<int>(tried.facet.inliers.size()) < params_.samples_min) continue;
-      tried.log_odds = level_log_odds(params_, readings, known, tried) +
-                       stretch_evidence(readings, prior.information, tried.facet);
-      if (tried.log_odds > side.log_odds) side = std::move(tried);
+    const std::optional<Extreme> extreme = find_extreme(params_, readings, axis, side.sign, prior, range);
+    if (!extreme) return side;
+    const Vector2d searched = search_slopes(readings, *extreme, range, prior);
+    for (const Vector2d& slopes : {searched, prior.slopes}) {
+      for (const double start : kStarts) {
+        Side tried = side;
+        tried.facet = fit_facet(readings, *extreme, prior, slopes, start * extreme->slab);
+        if (static_cast<int>(tried.facet.inliers.size()) < params_.samples_min) continue;
+        tried.log_odds = level_log_odds(params_, readings, known, tried) +
+                         stretch_evidence(readings, prior.information, tried.facet);
+        if (tried.log_odds > side.log_odds) side = std::move(tried);
+      }
     }
     return side;
   };

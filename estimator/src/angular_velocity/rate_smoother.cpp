@@ -275,7 +275,7 @@ RigConstants::Matrix consider_matrices(const RateModelParams& params, const Rate
     of_rig += moved * moved.transpose();
   };
   consider(params.gyro_matrix_sigma, [&](std::size_t k, arrow::ErrorMatrix& block, arrow::BorderErrors& border) {
-    model.add_gyro_errors(observations[k], solution.estimates[k], block, border);
+    model.add_gyro_errors(observations[k], solution.estimates[k], solution.rig, block, border);
   });
   consider(params.accel_matrix_sigma, [&](std::size_t k, arrow::ErrorMatrix& block, arrow::BorderErrors& border) {
     model.add_accel_errors(observations[k], solution.estimates[k], solution.rig, block, border);
@@ -364,8 +364,11 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
   for (std::size_t k = 0; k < samples.size(); ++k) {
     observations[k] = {samples[k], clippings[k], rest[k]};
     for (std::size_t i = 0; i < companions.size(); ++i) observations[k].companions[i] = companions[i][k];
-    mark_partial(planes, rails_, rail_state, model.gyro_sigma_rad_s(), k > 0 ? &samples[k - 1] : nullptr, observations[k],
-                 k + 1 < samples.size() ? &samples[k + 1] : nullptr);
+    const ImuSample* const before = k > 0 ? &samples[k - 1] : nullptr;
+    const ImuSample* const after = k + 1 < samples.size() ? &samples[k + 1] : nullptr;
+    mark_partial(planes, rails_, rail_state, model.gyro_sigma_rad_s(), before, observations[k], after);
+    if (health.rails_upright) continue;
+    doubt_unseen_rails(planes, model.gyro_sigma_rad_s(), before, observations[k], after);
   }
   Solution solution{{}, {}, {}, Iteration(observations)};
   if (!solve(params_, model, observations, solution, health)) {

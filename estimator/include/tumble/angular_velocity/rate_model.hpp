@@ -155,8 +155,8 @@ class RateModel {
 
   /// What the nine entries of the gyro's matrix of scale and misalignment, row by row, do to the gradient of a sample.
   /// A clipped axis says no more than where its rail is: nothing.
-  void add_gyro_errors(const RateObservation& observation, const RateEstimate& estimate, arrow::ErrorMatrix& block,
-                       arrow::BorderErrors& border) const;
+  void add_gyro_errors(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
+                       arrow::ErrorMatrix& block, arrow::BorderErrors& border) const;
   /// The same of the accelerometer's.
   void add_accel_errors(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                         arrow::ErrorMatrix& block, arrow::BorderErrors& border) const;
