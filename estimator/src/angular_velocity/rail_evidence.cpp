@@ -25,6 +25,10 @@ constexpr std::size_t kNoiseWindow = 9;
 constexpr double kNoiseQuantile = 0.2;
 // What the smoothness of the other axes at the end of a stretch may tell at most.
 constexpr double kKinkAlone = 2.5;
+// The other axes must move by so many deviations about an end for their smoothness to tell anything.
+constexpr double kMoving = 10.0;
+// Log likelihood from which a stretch counts that is thinner than noise, whatever its ends look like.
+constexpr double kThinAlone = 8.0;
 // What each sample beyond the facet speaks against it; share of the samples that may stray.
 constexpr double kBeyond = 5.0, kStray = 0.02;
 
@@ -115,23 +119,25 @@ double stretch_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
     // a parabola through both neighbours bends by this within the stretch
     const double inside = (n - 1.0) / (n + 3.0), bend = depth * inside * inside;
     const double flat = std::max(high - low, 2.0 * facet.deviation);
-    if (bend < kBend * flat) continue;
-    ++facet.stretches;
-    odds += std::min((n - 1.0) * std::log(bend / flat), -std::log(kConstantShare)) + of_level;
     // thinner than the gyro's noise: no reading of a rate is
-    if (noise > 2.0 * facet.deviation) odds += (n - 2.0) * std::log(noise / (2.0 * facet.deviation));
+    const double thin = noise > 2.0 * facet.deviation ? (n - 2.0) * std::log(noise / (2.0 * facet.deviation)) : 0.0;
+    const bool bends = bend >= kBend * flat;
+    if (!bends && thin < kThinAlone) continue;
+    ++facet.stretches;
+    odds += std::max(0.0, thin);
+    if (!bends) continue;
+    odds += std::min((n - 1.0) * std::log(bend / flat), -std::log(kConstantShare)) + of_level;
     for (const bool after : {false, true}) {
       if (after ? s.last + 3 >= rates.size() : s.first < 3) continue;
       // second differences about the end: of the rail's own axis and of those beside it, which an impact would bend too
       const std::size_t end = after ? s.last : s.first;
-      const std::size_t out1 = after ? end + 2 : end - 2, in1 = s.size() > 2 ? (after ? end - 2 : end + 2) : end;
-      const std::size_t half = after ? end : end;
-      const Vector3d bent = rates[out1] - 2.0 * rates[half] + rates[in1];
-      const Vector3d moved = rates[out1] - rates[in1];
+      if (s.size() < 3) continue;
+      const std::size_t outside = after ? end + 2 : end - 2, inside_of = after ? end - 2 : end + 2;
+      const Vector3d bent = rates[outside] - 2.0 * rates[end] + rates[inside_of];
       const double own = std::abs(facet.row.dot(bent));
-      Vector3d beside = bent, moving = moved;
+      Vector3d beside = bent, moving = rates[outside] - rates[inside_of];
       beside[facet.axis] = moving[facet.axis] = 0.0;
-      if (moving.norm() < 10.0 * noise || in1 == end) continue;
+      if (moving.norm() < kMoving * noise) continue;
       const double ratio = std::max(beside.norm(), 2.0 * noise) / std::max(own, 1e-9);
       odds += std::clamp(-std::log(5.0 * ratio), -0.5, kKinkAlone);
     }

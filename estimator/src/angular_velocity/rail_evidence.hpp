@@ -26,7 +26,7 @@ struct RailFacet {
   double level = 0.0;
   double deviation = 0.0, tolerance = 0.0;
   std::vector<std::size_t> inliers;  ///< of DistinctReadings::rates, rising
-  int stretches = 0;                 ///< runs of two or more inliers that no round top explains
+  int stretches = 0;                 ///< runs of inliers that no round top explains
 };
 
 /// Log likelihood ratio of the facet's samples: at a rail, against tops of a motion or constant rates. Counts the

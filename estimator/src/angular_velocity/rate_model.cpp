@@ -37,6 +37,7 @@ void check(const RateModelParams& p) {
   require_within("flight_sigma_m_s2", p.flight_sigma_m_s2, 1e-6, 100.0);
   require_within("gyro_matrix_sigma", p.gyro_matrix_sigma, 0.0, 0.1);
   require_within("accel_matrix_sigma", p.accel_matrix_sigma, 0.0, 0.1);
+  require_within("gyro_time_sigma_s", p.gyro_time_sigma_s, 0.0, 0.1);
   require_within("euler_sigma_rad_s2", p.euler_sigma_rad_s2, 1e-6, 1e6);
   require_within("jerk_psd_flight", p.jerk_psd_flight, 1.0, 1e12);
   require_within("contact_gain_rad_m", p.contact_gain_rad_m, 0.0, 1e3);
@@ -351,7 +352,9 @@ Eigen::Matrix3d RateModel::reported(const Eigen::Matrix3d& covariance, const Rat
     if ((observation.clipping.gyro >> j & 1u) != 0 || (observation.clipping.void_gyro >> j & 1u) != 0)
       wider[j] = factor;
   }
-  return wider.asDiagonal() * covariance * wider.asDiagonal();
+  const Vector3d late = params_.gyro_time_sigma_s * estimate.knot.acceleration_rad_s2;
+  const Eigen::Matrix3d timed = covariance + late * late.transpose();
+  return wider.asDiagonal() * timed * wider.asDiagonal();
 }
 
 RateSource rate_source(const RateObservation& o, const RateEstimate& e, const Eigen::Matrix3d& covariance,

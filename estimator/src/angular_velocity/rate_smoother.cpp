@@ -6,9 +6,8 @@
 #include <limits>
 
 #include "element_clipping.hpp"
+#include "rate_first_guess.hpp"
 #include "recording_check.hpp"
-#include "tumble/angular_velocity/saave.hpp"
-#include "tumble/angular_velocity/wnoj_smoother.hpp"
 
 namespace tumble {
 
@@ -21,51 +20,11 @@ using Eigen::Vector3d;
 constexpr double kOtherStarts[] = {16.0, 0.25};
 constexpr double kFlightShareExpected = 0.5;
 
-constexpr double kVarianceUnknown = 100.0;  // of a clipped axis at the start of the iteration, (rad/s)^2
-
 double median_force(std::span<const ImuSample> samples) {
   std::vector<double> force(samples.size());
   for (std::size_t k = 0; k < force.size(); ++k) force[k] = samples[k].specific_force_m_s2.norm();
   std::nth_element(force.begin(), force.begin() + static_cast<std::ptrdiff_t>(force.size() / 2), force.end());
   return force[force.size() / 2];
-}
-
-// The published estimate, held to the bounds and smoothed: where the iteration starts.
-std::vector<RateEstimate> first_guess(std::span<const RateObservation> observations, const RateModelParams& model,
-                                      const RateModel& derived, double gap_max_s) {
-  double smallest = model.rate_max_rad_s;
-  for (const RateObservation& o : observations) {
-    for (int j = 0; j < 3; ++j) {
-      const double reading = std::abs(o.sample.angular_velocity_rad_s[j]);
-      if ((o.clipping.gyro >> j & 1u) != 0) smallest = std::min(smallest, std::max(reading, 0.01));
-    }
-  }
-  const Saave saave({.lever_arm_m = derived.prior_constants().lever_arm_m,
-                     .saturation_point_rad_s = std::max(0.01, 0.9999 * smallest),
-                     .gap_max_s = gap_max_s});
-  Saave::State state;
-  Saave::Recovered recovered;
-  const double measured = derived.gyro_sigma_rad_s() * derived.gyro_sigma_rad_s();
-  std::vector<WnojSmoother::Measurement> readings(observations.size());
-  for (std::size_t k = 0; k < observations.size(); ++k) {
-    const RateObservation& o = observations[k];
-    (void)saave.step(o.sample, state, recovered);  // the samples have been checked
-    readings[k] = {o.sample.time_ns, o.sample.angular_velocity_rad_s, Vector3d::Constant(measured)};
-    for (int j = 0; j < 3; ++j) {
-      if ((o.clipping.void_gyro >> j & 1u) != 0) readings[k].variance_rad2_s2[j] = kVarianceUnknown;
-      if ((o.unseen() & o.clipping.gyro & 1u << j) == 0) continue;
-      const double limit = model.rate_max_rad_s;
-      readings[k].rate_rad_s[j] = std::clamp(recovered.rate_rad_s[j], -limit, limit);
-      readings[k].variance_rad2_s2[j] = std::clamp(recovered.variance_rad2_s2[j], 0.25, kVarianceUnknown);
-    }
-  }
-  std::vector<WnojSmoother::Smoothed> smoothed;
-  (void)WnojSmoother({}).smooth(readings, smoothed);
-  std::vector<RateEstimate> out(observations.size());
-  for (std::size_t k = 0; k < out.size(); ++k) {
-    out[k].knot = {smoothed[k].rate_rad_s, smoothed[k].acceleration_rad_s2};
-  }
-  return out;
 }
 
 // The linear system of one iteration and its solution.

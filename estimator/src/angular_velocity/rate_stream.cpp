@@ -110,7 +110,7 @@ void RateStream::marginalise_oldest(State& state) const {
   // what leaves can never be weighed again: it must be flight of the rig as it is known now, not of one as it might be
   const double jump = model_.jump(oldest.estimate.knot, next.estimate.knot, seconds_between(oldest, next));
   model_.weigh(oldest.observation, state.rig, RigConstants::Matrix::Zero(), 1.0, jump, oldest.estimate);
-  // 14 constants explain any short contact as a flight: what they say is believed after some more of it
+  // 20 constants explain any short contact as a flight: what they say is believed after some more of it
   std::size_t run = state.flight_run;
   for (std::size_t k = 0; k < state.window.size() && state.window[k].estimate.flight_weight >= 0.5; ++k) ++run;
   const bool short_flight = run < static_cast<std::size_t>(params_.flight_run_min);

@@ -72,7 +72,7 @@ class RailPlaneFinder {
     double offset_share = 0.02;     ///< prior of the offset and of how far elements differ, as a share of r; [1e-4, 0.2]
     int samples_min = 4;            ///< on a rail, of one sign; [2, 1000]
     double log_odds_before = -6.0;  ///< before anything is seen, for each element and sign; [-100, 100]
-    double log_odds_min = 3.0;      ///< of a rail that is believed; [-100, 100]
+    double log_odds_min = 1.0;      ///< of a rail that is believed; [-100, 100]
   };
 
   /// Throws InvalidParams on a parameter outside of its bound.

@@ -60,6 +60,11 @@ struct RateReport {
 /// to rates and constants is in both covariances (parameters considered, S. F. Schmidt, 1966), else the fit takes it
 /// for noise and averages it away: the test ScaleAndMisalignmentAreInTheCovariance.
 ///
+/// A gyro's elements clip along their own, not quite orthogonal axes; the device's compensation then mixes what is left
+/// (RailPlaneFinder). While one clips the gyro is read element by element (element_factor): free elements measure,
+/// clipped ones bound, and the axes beside are corrected for what is hidden. The rows are constants of the run, told by
+/// the planes of the rails and by flight; where the rails are found to be upright nothing of this applies.
+///
 /// What it does not model: a contact point that persists, time offset between gyro and accelerometer. The rates are
 /// those at which the gyro's readings stand: means over the window of the sample.
 class RateSmoother {
