@@ -18,14 +18,16 @@ namespace tumble::scenarios {
 namespace {
 
 // the library's own defaults, so that each stands in one place; sources are those of the library's documentation
-const std::array<sim::Parameter, 11>& parameters_of_the_smoother() {
+const std::array<sim::Parameter, 12>& parameters_of_the_smoother() {
   static const RateSmoother::Params library;
   static const RateModelParams& model = library.model;
-  static const std::array<sim::Parameter, 11> parameters = {{
+  static const std::array<sim::Parameter, 12> parameters = {{
       {"lever_arm_sigma_m", model.lever_arm_sigma_m, 1e-9, 10.0, "m", "what the calibrated lever arm may be off by"},
       {"gyro_bias_sigma_rad_s", model.gyro_bias_sigma_rad_s, 1e-9, 10.0, "rad/s", "prior of the gyro's bias"},
       {"accel_bias_sigma_m_s2", model.accel_bias_sigma_m_s2, 1e-9, 10.0, "m/s^2", "prior of the accelerometer's bias"},
       {"inertia_sigma", model.inertia_sigma, 1e-9, 10.0, "1", "prior of the inertia's shape about equal moments"},
+      {"element_sigma", model.element_sigma, 1e-9, 0.2, "1",
+       "prior of each slope of a gyro element's rail: cross-axis sensitivity before the device compensates it"},
       {"flight_sigma_m_s2", model.flight_sigma_m_s2, 1e-6, 100.0, "m/s^2", "what the flight model misses of the force"},
       {"euler_sigma_rad_s2", model.euler_sigma_rad_s2, 1e-6, 1e6, "rad/s^2",
        "what Euler's equation without torque misses"},
@@ -56,6 +58,7 @@ RateSmoother::Params smoother_params(const sim::ImuRecord& record, const sim::Va
   model.gyro_bias_sigma_rad_s = parameters.at("gyro_bias_sigma_rad_s");
   model.accel_bias_sigma_m_s2 = parameters.at("accel_bias_sigma_m_s2");
   model.inertia_sigma = parameters.at("inertia_sigma");
+  model.element_sigma = parameters.at("element_sigma");
   model.flight_sigma_m_s2 = parameters.at("flight_sigma_m_s2");
   model.euler_sigma_rad_s2 = parameters.at("euler_sigma_rad_s2");
   model.jerk_psd_flight = parameters.at("jerk_psd_flight_rad2_s5");
@@ -101,6 +104,7 @@ void report_health(const RateReport& report, std::map<std::string, double>& heal
   health["readings_void"] = static_cast<double>(report.void_readings);
   health["rails_disagreeing"] =
       static_cast<double>(std::count(report.rail_disagrees.begin(), report.rail_disagrees.end(), true));
+  health["rails_upright"] = report.rails_upright ? 1.0 : 0.0;
   health["rate_unit_suspect"] = report.rate_unit_suspect ? 1.0 : 0.0;
   health["force_unit_suspect"] = report.force_unit_suspect ? 1.0 : 0.0;
   const char* const names[] = {"x", "y", "z"};
@@ -110,6 +114,11 @@ void report_health(const RateReport& report, std::map<std::string, double>& heal
     health["learnt_lever_arm_sigma_" + axis + "_m"] = std::sqrt(report.calibration.covariance(j, j));
     const std::optional<double>& rail = report.rail[static_cast<std::size_t>(j)];
     if (rail) health["learnt_gyro_rail_" + axis + "_rad_s"] = *rail;
+    const std::optional<RailPlane>& plane = report.planes.element[static_cast<std::size_t>(j)];
+    if (!plane) continue;
+    health["gyro_rail_samples_" + axis] = plane->samples[0] + plane->samples[1];
+    health["gyro_rail_deviation_" + axis + "_rad_s"] = plane->deviation_rad_s;
+    health["gyro_rail_log_odds_" + axis] = plane->log_odds;
   }
 }
 

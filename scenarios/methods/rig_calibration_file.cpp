@@ -19,6 +19,9 @@ using nlohmann::json;
 
 constexpr const char* kKeys[] = {"lever_arm_m", "gyro_bias_rad_s", "accel_bias_m_s2", "inertia",
                                  "covariance",  "gyro_rail_rad_s", "accel_rail_m_s2"};
+// Of files since the gyro's elements are learnt; the covariance of those before has that many rows.
+constexpr const char* kElementsKey = "gyro_elements";
+constexpr int kWithoutElements = RigConstants::kElements;
 
 template <typename Array>
 json numbers(const Array& values) {
@@ -100,6 +103,7 @@ void write_learnt_rig(const std::filesystem::path& path, const LearntRig& rig) {
   object["gyro_bias_rad_s"] = numbers(constants.gyro_bias_rad_s);
   object["accel_bias_m_s2"] = numbers(constants.accel_bias_m_s2);
   object["inertia"] = numbers(constants.inertia);
+  object[kElementsKey] = numbers(constants.elements);
   object["covariance"] = numbers(rig.calibration.covariance);
   object["gyro_rail_rad_s"] = rails(rig, 0);
   object["accel_rail_m_s2"] = rails(rig, 3);
@@ -125,14 +129,24 @@ LearntRig read_learnt_rig(const std::filesystem::path& path) {
     if (!object.contains(key)) reader.complain(key, "missing");
   }
   for (const auto& [key, value] : object.items()) {
-    if (std::find(std::begin(kKeys), std::end(kKeys), key) == std::end(kKeys)) reader.complain(key, "unknown key");
+    const bool known = key == kElementsKey || std::find(std::begin(kKeys), std::end(kKeys), key) != std::end(kKeys);
+    if (!known) reader.complain(key, "unknown key");
   }
   LearntRig rig;
   reader.read("lever_arm_m", rig.calibration.constants.lever_arm_m);
   reader.read("gyro_bias_rad_s", rig.calibration.constants.gyro_bias_rad_s);
   reader.read("accel_bias_m_s2", rig.calibration.constants.accel_bias_m_s2);
   reader.read("inertia", rig.calibration.constants.inertia);
-  reader.read("covariance", rig.calibration.covariance);
+  if (object.contains(kElementsKey)) {
+    reader.read(kElementsKey, rig.calibration.constants.elements);
+    reader.read("covariance", rig.calibration.covariance);
+  } else {
+    Eigen::Matrix<double, kWithoutElements, kWithoutElements> known;
+    reader.read("covariance", known);
+    const double sigma = RateModelParams{}.element_sigma;
+    rig.calibration.covariance = sigma * sigma * RigConstants::Matrix::Identity();
+    rig.calibration.covariance.topLeftCorner<kWithoutElements, kWithoutElements>() = known;
+  }
   const RigConstants::Matrix& covariance = rig.calibration.covariance;
   const double asymmetry = (covariance - covariance.transpose()).cwiseAbs().maxCoeff();
   if (asymmetry > 1e-9 * covariance.cwiseAbs().maxCoeff() ||

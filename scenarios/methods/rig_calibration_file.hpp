@@ -22,10 +22,12 @@ LearntRig learnt(const RateReport& report);
 /// again), and the lowest rail of a sensor as its stated range. Throws std::invalid_argument on `trust` below 1.
 void start_from(const LearntRig& rig, double trust, RateSmoother::Params& params);
 
-/// JSON, a few lines: lever arm, biases, inertia, covariance row by row, rails. Numbers come back to the bit. Throws
+/// JSON, a few lines: lever arm, biases, inertia, the gyro's elements, covariance row by row, rails. Numbers come back
+/// to the bit. Throws
 /// BadInput when it cannot write; nothing is left half written.
 void write_learnt_rig(const std::filesystem::path& path, const LearntRig& rig);
 
+/// A file from before the elements were learnt lacks them and their six rows: they are what is assumed without any.
 /// Throws BadInput with path and key on a missing, misspelt or extra key, on a number that is none or of the wrong
 /// count, and on a covariance that is not symmetric and positive definite.
 LearntRig read_learnt_rig(const std::filesystem::path& path);

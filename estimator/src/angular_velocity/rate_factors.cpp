@@ -34,6 +34,22 @@ RateFactor gyro_factor(const RateKnot& knot, const RigConstants& rig, const Vect
   return f;
 }
 
+RateFactor element_factor(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_rad_s) {
+  const Vector3d off = knot.rate_rad_s + rig.gyro_bias_rad_s - reading_rad_s;
+  RateFactor f;
+  f.by_knot.setZero();
+  f.by_rig.setZero();
+  for (int j = 0; j < 3; ++j) {
+    const Vector3d row = rig.element_row(j);
+    f.residual[j] = row.dot(off);
+    f.by_knot.row(j).head<3>() = row;
+    f.by_rig.row(j).segment<3>(3) = row;
+    f.by_rig(j, RigConstants::kElements + 2 * j) = off[(j + 1) % 3];
+    f.by_rig(j, RigConstants::kElements + 2 * j + 1) = off[(j + 2) % 3];
+  }
+  return f;
+}
+
 RateFactor flight_factor(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_m_s2) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2, &t = rig.lever_arm_m;
   RateFactor f;

@@ -31,11 +31,13 @@ void check(const RateModelParams& p) {
   require_within("gyro_bias_sigma_rad_s", p.gyro_bias_sigma_rad_s, 1e-9, 10.0);
   require_within("accel_bias_sigma_m_s2", p.accel_bias_sigma_m_s2, 1e-9, 10.0);
   require_within("inertia_sigma", p.inertia_sigma, 1e-9, 10.0);
+  require_within("element_sigma", p.element_sigma, 1e-9, 0.2);
   require_within("gyro_noise_density", p.gyro_noise_density, 1e-9, 1.0);
   require_within("accel_noise_density", p.accel_noise_density, 1e-9, 10.0);
   require_within("flight_sigma_m_s2", p.flight_sigma_m_s2, 1e-6, 100.0);
   require_within("gyro_matrix_sigma", p.gyro_matrix_sigma, 0.0, 0.1);
   require_within("accel_matrix_sigma", p.accel_matrix_sigma, 0.0, 0.1);
+  require_within("gyro_time_sigma_s", p.gyro_time_sigma_s, 0.0, 0.1);
   require_within("euler_sigma_rad_s2", p.euler_sigma_rad_s2, 1e-6, 1e6);
   require_within("jerk_psd_flight", p.jerk_psd_flight, 1.0, 1e12);
   require_within("contact_gain_rad_m", p.contact_gain_rad_m, 0.0, 1e3);
@@ -59,7 +61,8 @@ RigConstants::Matrix covariance_of(const RateModelParams& p) {
   if (p.calibration) return 0.5 * (p.calibration->covariance + p.calibration->covariance.transpose());
   RigConstants::Vector variance;
   variance << Vector3d::Constant(p.lever_arm_sigma_m), Vector3d::Constant(p.gyro_bias_sigma_rad_s),
-      Vector3d::Constant(p.accel_bias_sigma_m_s2), Eigen::Matrix<double, 5, 1>::Constant(p.inertia_sigma);
+      Vector3d::Constant(p.accel_bias_sigma_m_s2), Eigen::Matrix<double, 5, 1>::Constant(p.inertia_sigma),
+      Eigen::Matrix<double, 6, 1>::Constant(p.element_sigma);
   return variance.cwiseAbs2().asDiagonal();
 }
 
@@ -222,29 +225,25 @@ RateModel::ForceFactor RateModel::force_factor(const RateObservation& observatio
   return out;
 }
 
-void RateModel::add_sample(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
-                           arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* doubted) const {
+void RateModel::add_gyro(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
+                         arrow::Block& block, arrow::Corner& corner) const {
   const RateFactor gyro = gyro_factor(estimate.knot, rig, observation.sample.angular_velocity_rad_s);
   for (int j = 0; j < 3; ++j) {
-    if ((observation.clipping.void_gyro >> j & 1u) != 0) continue;
-    double information = gyro_information(observation, estimate, j);
-    double pull = information * gyro.residual[j];
-    if ((observation.partial >> j & 1u) != 0) {
-      pull = information * (gyro.residual[j] - observation.lost_rad_s[j]);
-    } else if ((observation.clipping.gyro >> j & 1u) != 0) {
-      const bool kept = gyro.residual[j] * observation.sample.angular_velocity_rad_s[j] >= 0.0;
-      if (kept && !estimate.soft_bounds) continue;
-      information = 1.0 / (params_.rail_sigma_rad_s * params_.rail_sigma_rad_s);
-      pull = information * gyro.residual[j];
-      if (estimate.soft_bounds) information = estimate.bound_precision[j];
-      if (estimate.soft_bounds)
-        pull = information * (estimate.knot.rate_rad_s[j] + rig.gyro_bias_rad_s[j]) - estimate.bound_shift[j];
-    }
+    const double information = gyro_information(observation, estimate, j), pull = information * gyro.residual[j];
     block.diagonal(j, j) += information;
     block.border(j, 3 + j) += information;
     block.gradient[j] -= pull;
     corner.matrix(3 + j, 3 + j) += information;
     corner.gradient[3 + j] -= pull;
+  }
+}
+
+void RateModel::add_sample(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
+                           arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* doubted) const {
+  if (observation.by_elements()) {
+    add_elements(observation, estimate, rig, block, corner);
+  } else {
+    add_gyro(observation, estimate, rig, block, corner);
   }
 
   auto [flight, flight_information] = force_factor(observation, estimate, rig);
@@ -353,7 +352,9 @@ Eigen::Matrix3d RateModel::reported(const Eigen::Matrix3d& covariance, const Rat
     if ((observation.clipping.gyro >> j & 1u) != 0 || (observation.clipping.void_gyro >> j & 1u) != 0)
       wider[j] = factor;
   }
-  return wider.asDiagonal() * covariance * wider.asDiagonal();
+  const Vector3d late = params_.gyro_time_sigma_s * estimate.knot.acceleration_rad_s2;
+  const Eigen::Matrix3d timed = covariance + late * late.transpose();
+  return wider.asDiagonal() * timed * wider.asDiagonal();
 }
 
 RateSource rate_source(const RateObservation& o, const RateEstimate& e, const Eigen::Matrix3d& covariance,

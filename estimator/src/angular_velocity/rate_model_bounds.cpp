@@ -2,6 +2,7 @@
 // What a clipped reading says of its rate: the part of RateModel that deals with bounds.
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -30,26 +31,32 @@ void RateModel::seek_flight(const RateObservation& observation, const RigConstan
   const Vector3d& reading = observation.sample.angular_velocity_rad_s;
   RateEstimate flown = estimate;
   const Eigen::Matrix3d J = rig.inertia_matrix();
+  // what an element hides moves all axes: columns of M^-1
+  Eigen::Matrix3d rows;
+  for (int j = 0; j < 3; ++j) rows.row(j) = rig.element_row(j);
+  const Eigen::Matrix3d hides = rows.inverse();
   RateFactor flight;
   for (int iteration = 0; iteration <= kSeekIterations; ++iteration) {
     Vector3d& w = flown.knot.rate_rad_s;
     flown.knot.acceleration_rad_s2 = -J.llt().solve(w.cross(Vector3d(J * w)));
     flight = flight_factor(flown.knot, rig, observation.sample.specific_force_m_s2);
     if (iteration == kSeekIterations) break;
+    const Eigen::Matrix3d by_hidden = flight.by_knot.leftCols<3>() * hides;
     Eigen::Matrix3d H = 1e-9 * Eigen::Matrix3d::Identity();
     Vector3d g = Vector3d::Zero();
     for (int j = 0; j < 3; ++j) {
       if ((unseen >> j & 1) == 0) continue;
-      g[j] = -flight.by_knot.col(j).dot(flight.residual);
+      g[j] = -by_hidden.col(j).dot(flight.residual);
       for (int i = 0; i < 3; ++i) {
-        if ((unseen >> i & 1) != 0) H(i, j) += flight.by_knot.col(i).dot(flight.by_knot.col(j));
+        if ((unseen >> i & 1) != 0) H(i, j) += by_hidden.col(i).dot(by_hidden.col(j));
       }
     }
-    w += H.llt().solve(g).cwiseMax(-kSeekStep).cwiseMin(kSeekStep);
+    w += hides * H.llt().solve(g).cwiseMax(-kSeekStep).cwiseMin(kSeekStep);
     for (int j = 0; j < 3; ++j) {
       if ((unseen & observation.clipping.gyro & 1 << j) == 0) continue;
       const double side = std::copysign(1.0, reading[j]), high = std::max(std::abs(reading[j]), params_.rate_max_rad_s);
-      w[j] = side * std::clamp(side * w[j], std::abs(reading[j]), high);
+      const double along = rows.row(j).dot(w), held = rows.row(j).dot(reading);
+      w += (side * std::clamp(side * along, std::abs(held), std::max(high, std::abs(held))) - along) * hides.col(j);
     }
   }
   const double gentle = kGentleShare * observation.sample.specific_force_m_s2.norm();
@@ -61,30 +68,33 @@ void RateModel::seek_flight(const RateObservation& observation, const RigConstan
 void RateModel::start_bounds(const RateObservation& observation, const RigConstants& rig,
                              RateEstimate& estimate) const {
   estimate.soft_bounds = true;
+  const RateFactor off = element_factor(estimate.knot, rig, observation.sample.angular_velocity_rad_s);
   for (int j = 0; j < 3; ++j) {
     if ((observation.unseen() & observation.clipping.gyro & 1u << j) == 0) continue;
-    const double reading = observation.sample.angular_velocity_rad_s[j];
-    const double guess = estimate.knot.rate_rad_s[j] + rig.gyro_bias_rad_s[j];
-    const double mean = reading < 0.0 ? std::min(guess, reading) : std::max(guess, reading);
+    const double guess = off.residual[j];
+    const bool negative = observation.sample.angular_velocity_rad_s[j] < 0.0;
     estimate.bound_precision[j] = kStartPrecision;
-    estimate.bound_shift[j] = kStartPrecision * mean;
+    estimate.bound_shift[j] = kStartPrecision * (negative ? std::min(guess, 0.0) : std::max(guess, 0.0));
   }
 }
 
 void RateModel::update_bounds(const RateObservation& observation, const RigConstants& rig,
                               const arrow::Conditional& conditional, const RigConstants::Matrix& rig_covariance,
                               double damping, RateEstimate& estimate) const {
+  if ((observation.unseen() & observation.clipping.gyro) == 0) return;
+  const RateFactor off = element_factor(estimate.knot, rig, observation.sample.angular_velocity_rad_s);
   for (int j = 0; j < 3; ++j) {
     if ((observation.unseen() & observation.clipping.gyro & 1u << j) == 0) continue;
-    const double reading = observation.sample.angular_velocity_rad_s[j], sign = reading < 0.0 ? -1.0 : 1.0;
-    const Eigen::Matrix<double, 1, RigConstants::kSize> by_rig = conditional.by_border.row(j);
+    const double sign = observation.sample.angular_velocity_rad_s[j] < 0.0 ? -1.0 : 1.0;
+    const Vector3d row = off.by_knot.row(j).head<3>();
+    Eigen::Matrix<double, 1, RigConstants::kSize> by_rig = off.by_rig.row(j);
+    for (int i = 0; i < 3; ++i) by_rig += row[i] * conditional.by_border.row(i);
     const Eigen::Matrix<double, 1, RigConstants::kSize> cross = by_rig.lazyProduct(rig_covariance);
-    const double variance =
-        conditional.state(j, j) + cross.dot(by_rig) + 2.0 * cross[3 + j] + rig_covariance(3 + j, 3 + j);
+    const Vector3d by_state = conditional.state.topLeftCorner<3, 3>().lazyProduct(row);
     // mirrored so that the bound lies below
-    const NormalMoments marginal{sign * (estimate.knot.rate_rad_s[j] + rig.gyro_bias_rad_s[j]), variance};
-    const NormalSite site = refined_bound(marginal, {estimate.bound_precision[j], sign * estimate.bound_shift[j]},
-                                          std::abs(reading), params_.rail_sigma_rad_s * params_.rail_sigma_rad_s,
+    const NormalMoments marginal{sign * off.residual[j], row.dot(by_state) + cross.dot(by_rig)};
+    const NormalSite site = refined_bound(marginal, {estimate.bound_precision[j], sign * estimate.bound_shift[j]}, 0.0,
+                                          params_.rail_sigma_rad_s * params_.rail_sigma_rad_s,
                                           params_.rate_max_rad_s * params_.rate_max_rad_s, damping);
     estimate.bound_precision[j] = site.precision;
     estimate.bound_shift[j] = sign * site.shift;

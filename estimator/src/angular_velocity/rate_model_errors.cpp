@@ -27,14 +27,24 @@ void RateModel::keep_from_rig(const RateObservation& o, RateFactor& flight) {
 }
 
 void RateModel::add_gyro_errors(const RateObservation& observation, const RateEstimate& estimate,
-                                arrow::ErrorMatrix& block, arrow::BorderErrors& border) const {
+                                const RigConstants& rig, arrow::ErrorMatrix& block, arrow::BorderErrors& border) const {
   constexpr int kGyroBias = 3;
+  const unsigned lost = observation.clipping.void_gyro | (observation.clipping.gyro & ~observation.partial);
+  const auto pull = [&](int j) -> Eigen::RowVector3d {
+    return gyro_information(observation, estimate, j) * estimate.knot.rate_rad_s.transpose();
+  };
+  if (!observation.by_elements()) {
+    for (int j = 0; j < 3; ++j) {
+      block.row(j).segment<3>(3 * j) += pull(j);
+      border.row(kGyroBias + j).segment<3>(3 * j) += pull(j);
+    }
+    return;
+  }
+  const RateFactor gyro = element_factor(estimate.knot, rig, observation.sample.angular_velocity_rad_s);
   for (int j = 0; j < 3; ++j) {
-    const unsigned lost = observation.clipping.void_gyro | (observation.clipping.gyro & ~observation.partial);
     if ((lost >> j & 1u) != 0) continue;
-    const Eigen::RowVector3d pull = gyro_information(observation, estimate, j) * estimate.knot.rate_rad_s.transpose();
-    block.row(j).segment<3>(3 * j) += pull;
-    border.row(kGyroBias + j).segment<3>(3 * j) += pull;
+    block.middleCols<3>(3 * j).noalias() += gyro.by_knot.row(j).transpose().lazyProduct(pull(j)).eval();
+    border.middleCols<3>(3 * j).noalias() += gyro.by_rig.row(j).transpose().lazyProduct(pull(j)).eval();
   }
 }
 

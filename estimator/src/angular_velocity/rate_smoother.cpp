@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "element_clipping.hpp"
+#include "rate_first_guess.hpp"
 #include "recording_check.hpp"
-#include "tumble/angular_velocity/saave.hpp"
-#include "tumble/angular_velocity/wnoj_smoother.hpp"
 
 namespace tumble {
 
@@ -20,51 +20,11 @@ using Eigen::Vector3d;
 constexpr double kOtherStarts[] = {16.0, 0.25};
 constexpr double kFlightShareExpected = 0.5;
 
-constexpr double kVarianceUnknown = 100.0;  // of a clipped axis at the start of the iteration, (rad/s)^2
-
 double median_force(std::span<const ImuSample> samples) {
   std::vector<double> force(samples.size());
   for (std::size_t k = 0; k < force.size(); ++k) force[k] = samples[k].specific_force_m_s2.norm();
   std::nth_element(force.begin(), force.begin() + static_cast<std::ptrdiff_t>(force.size() / 2), force.end());
   return force[force.size() / 2];
-}
-
-// The published estimate, held to the bounds and smoothed: where the iteration starts.
-std::vector<RateEstimate> first_guess(std::span<const RateObservation> observations, const RateModelParams& model,
-                                      const RateModel& derived, double gap_max_s) {
-  double smallest = model.rate_max_rad_s;
-  for (const RateObservation& o : observations) {
-    for (int j = 0; j < 3; ++j) {
-      const double reading = std::abs(o.sample.angular_velocity_rad_s[j]);
-      if ((o.clipping.gyro >> j & 1u) != 0) smallest = std::min(smallest, std::max(reading, 0.01));
-    }
-  }
-  const Saave saave({.lever_arm_m = derived.prior_constants().lever_arm_m,
-                     .saturation_point_rad_s = std::max(0.01, 0.9999 * smallest),
-                     .gap_max_s = gap_max_s});
-  Saave::State state;
-  Saave::Recovered recovered;
-  const double measured = derived.gyro_sigma_rad_s() * derived.gyro_sigma_rad_s();
-  std::vector<WnojSmoother::Measurement> readings(observations.size());
-  for (std::size_t k = 0; k < observations.size(); ++k) {
-    const RateObservation& o = observations[k];
-    (void)saave.step(o.sample, state, recovered);  // the samples have been checked
-    readings[k] = {o.sample.time_ns, o.sample.angular_velocity_rad_s, Vector3d::Constant(measured)};
-    for (int j = 0; j < 3; ++j) {
-      if ((o.clipping.void_gyro >> j & 1u) != 0) readings[k].variance_rad2_s2[j] = kVarianceUnknown;
-      if ((o.unseen() & o.clipping.gyro & 1u << j) == 0) continue;
-      const double limit = model.rate_max_rad_s;
-      readings[k].rate_rad_s[j] = std::clamp(recovered.rate_rad_s[j], -limit, limit);
-      readings[k].variance_rad2_s2[j] = std::clamp(recovered.variance_rad2_s2[j], 0.25, kVarianceUnknown);
-    }
-  }
-  std::vector<WnojSmoother::Smoothed> smoothed;
-  (void)WnojSmoother({}).smooth(readings, smoothed);
-  std::vector<RateEstimate> out(observations.size());
-  for (std::size_t k = 0; k < out.size(); ++k) {
-    out[k].knot = {smoothed[k].rate_rad_s, smoothed[k].acceleration_rad_s2};
-  }
-  return out;
 }
 
 // The linear system of one iteration and its solution.
@@ -274,7 +234,7 @@ RigConstants::Matrix consider_matrices(const RateModelParams& params, const Rate
     of_rig += moved * moved.transpose();
   };
   consider(params.gyro_matrix_sigma, [&](std::size_t k, arrow::ErrorMatrix& block, arrow::BorderErrors& border) {
-    model.add_gyro_errors(observations[k], solution.estimates[k], block, border);
+    model.add_gyro_errors(observations[k], solution.estimates[k], solution.rig, block, border);
   });
   consider(params.accel_matrix_sigma, [&](std::size_t k, arrow::ErrorMatrix& block, arrow::BorderErrors& border) {
     model.add_accel_errors(observations[k], solution.estimates[k], solution.rig, block, border);
@@ -296,15 +256,26 @@ Status check_companions(const RateModelParams& params, std::span<const std::vect
   return {};
 }
 
-RateModelParams held(const RateModelParams& params, const RigConstants& constants) {
+// The rig as it was known; the gyro's elements, which flight cannot be taken for, stay free.
+RateModelParams held(const RateModelParams& params, const RateModel& model) {
+  constexpr int kFirst = RigConstants::kElements, kCount = RigConstants::kSize - kFirst;
   RateModelParams out = params;
-  out.calibration = RigCalibration{constants, 1e-12 * RigConstants::Matrix::Identity()};
+  out.calibration = RigCalibration{model.prior_constants(), 1e-12 * RigConstants::Matrix::Identity()};
+  out.calibration->covariance.block<kCount, kCount>(kFirst, kFirst) =
+      model.prior_covariance().block<kCount, kCount>(kFirst, kFirst);
+  return out;
+}
+
+RailPlaneFinder::Params plane_params(const RateSmoother::Params& params) {
+  RailPlaneFinder::Params out = params.planes;
+  if (!out.stated_rad_s) out.stated_rad_s = params.rails.stated_gyro_rad_s;
   return out;
 }
 
 }  // namespace
 
-RateSmoother::RateSmoother(const Params& params) : params_(params), rails_(params.rails), rests_(params.rests) {
+RateSmoother::RateSmoother(const Params& params)
+    : params_(params), rails_(params.rails), planes_(plane_params(params)), rests_(params.rests) {
   require_within("iterations_max", params.iterations_max, 1, 1000);
   require_within("tolerance_rad_s", params.tolerance_rad_s, 1e-12, 1.0);
   require_within("step_max_rad_s", params.step_max_rad_s, 1e-3, 1e4);
@@ -328,8 +299,14 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
   std::vector<Clipping> clippings(samples.size());
   RailDetector::State rail_state;
   rails_.classify_all(samples, rail_state, clippings);
+  const RailPlanes planes = health.planes = planes_.find(samples);
+  clip_by_planes(samples, planes, clippings);
+  health.rails_upright = are_upright(planes, rail_state);
   for (int c = 0; c < 6; ++c) {
     health.rail[static_cast<std::size_t>(c)] = rails_.rail(rail_state, c);
+    if (c < 3 && planes.element[static_cast<std::size_t>(c)]) {
+      health.rail[static_cast<std::size_t>(c)] = planes.element[static_cast<std::size_t>(c)]->distance_rad_s;
+    }
     health.rail_disagrees[static_cast<std::size_t>(c)] = rails_.disagrees(rail_state, c);
   }
   const double force = median_force(samples);
@@ -339,13 +316,18 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
   health.force_unit_suspect = force > 0.5 && force < 2.0;
   std::vector<RateObservation> observations(samples.size());
   const double period_s = median_period_s(samples);
-  const RateModel model(params_.model, period_s);
+  RateModelParams known = params_.model;
+  known.calibration = with_planes(params_.model, planes, health.rails_upright);
+  const RateModel model(known, period_s);
   const std::vector<bool> rest = rests_.find(samples);
   for (std::size_t k = 0; k < samples.size(); ++k) {
     observations[k] = {samples[k], clippings[k], rest[k]};
     for (std::size_t i = 0; i < companions.size(); ++i) observations[k].companions[i] = companions[i][k];
-    mark_partial(rails_, rail_state, model.gyro_sigma_rad_s(), k > 0 ? &samples[k - 1] : nullptr, observations[k],
-                 k + 1 < samples.size() ? &samples[k + 1] : nullptr);
+    const ImuSample* const before = k > 0 ? &samples[k - 1] : nullptr;
+    const ImuSample* const after = k + 1 < samples.size() ? &samples[k + 1] : nullptr;
+    mark_partial(planes, rails_, rail_state, model.gyro_sigma_rad_s(), before, observations[k], after);
+    if (health.rails_upright) continue;
+    doubt_unseen_rails(planes, model.gyro_sigma_rad_s(), before, observations[k], after);
   }
   Solution solution{{}, {}, {}, Iteration(observations)};
   if (!solve(params_, model, observations, solution, health)) {
@@ -355,7 +337,7 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
   if (health.rig_surprise > params_.rig_surprise_max) {
     // contact was taken for flight of another rig: hold the rig to what was known of it
     const double surprise = health.rig_surprise;
-    const RateModel fixed(held(params_.model, model.prior_constants()), period_s);
+    const RateModel fixed(held(known, model), period_s);
     if (!solve(params_, fixed, observations, solution, health)) {
       return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
     }

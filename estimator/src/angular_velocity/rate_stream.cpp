@@ -44,10 +44,18 @@ void add_prior(const RateStream::State& state, const RateModel& model, const Rat
   corner.gradient += state.prior_corner.gradient - state.prior_corner.matrix * c - state.prior.border.transpose() * x;
 }
 
+// The stream finds upright rails only: without a calibration it holds the gyro's elements for as upright.
+RateModelParams upright(const RateModelParams& params) {
+  constexpr double kUprightSigma = 1e-5;
+  RateModelParams out = params;
+  if (!out.calibration) out.element_sigma = std::min(out.element_sigma, kUprightSigma);
+  return out;
+}
+
 }  // namespace
 
 RateStream::RateStream(const Params& params)
-    : params_(params), rails_(params.rails), rests_(params.rests), model_(params.model, params.period_s) {
+    : params_(params), rails_(params.rails), rests_(params.rests), model_(upright(params.model), params.period_s) {
   require_within("period_s", params.period_s, 1e-5, 1.0);
   require_within("lag_s", params.lag_s, 2.0 * params.period_s, std::min(10.0, 4096.0 * params.period_s));
   require_within("widen_first", params.widen_first, 1.0, 1000.0);
@@ -102,7 +110,7 @@ void RateStream::marginalise_oldest(State& state) const {
   // what leaves can never be weighed again: it must be flight of the rig as it is known now, not of one as it might be
   const double jump = model_.jump(oldest.estimate.knot, next.estimate.knot, seconds_between(oldest, next));
   model_.weigh(oldest.observation, state.rig, RigConstants::Matrix::Zero(), 1.0, jump, oldest.estimate);
-  // 14 constants explain any short contact as a flight: what they say is believed after some more of it
+  // 20 constants explain any short contact as a flight: what they say is believed after some more of it
   std::size_t run = state.flight_run;
   for (std::size_t k = 0; k < state.window.size() && state.window[k].estimate.flight_weight >= 0.5; ++k) ++run;
   const bool short_flight = run < static_cast<std::size_t>(params_.flight_run_min);

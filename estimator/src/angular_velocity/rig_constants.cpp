@@ -44,9 +44,17 @@ Eigen::Matrix<double, 5, 1> RigConstants::inertia_coordinates(const Eigen::Matri
   return coordinates;
 }
 
+Eigen::Vector3d RigConstants::element_row(int j) const {
+  Eigen::Vector3d row;
+  row[j] = 1.0;
+  row[(j + 1) % 3] = elements[2 * j];
+  row[(j + 2) % 3] = elements[2 * j + 1];
+  return row;
+}
+
 RigConstants::Vector RigConstants::vector() const {
   Vector v;
-  v << lever_arm_m, gyro_bias_rad_s, accel_bias_m_s2, inertia;
+  v << lever_arm_m, gyro_bias_rad_s, accel_bias_m_s2, inertia, elements;
   return v;
 }
 
@@ -55,6 +63,7 @@ void RigConstants::add(const Vector& step) {
   gyro_bias_rad_s += step.segment<3>(3);
   accel_bias_m_s2 += step.segment<3>(6);
   inertia += step.segment<5>(9);
+  elements += step.segment<6>(kElements);
 }
 
 }  // namespace tumble

@@ -62,6 +62,7 @@ const Vector3d kReading = {3.0, -40.0, 7.0};
 
 std::vector<Factor> factors() {
   return {[](const RateKnot& k, const RigConstants& r) { return gyro_factor(k, r, kReading); },
+          [](const RateKnot& k, const RigConstants& r) { return element_factor(k, r, kReading); },
           [](const RateKnot& k, const RigConstants& r) { return flight_factor(k, r, kReading); },
           [](const RateKnot& k, const RigConstants& r) { return euler_factor(k, r); }};
 }

@@ -2,6 +2,7 @@
 #include "estimator/angular_velocity/tumble_recording.hpp"
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -115,6 +116,7 @@ TumbleRecording make_tumble(const TumbleOptions& options) {
   const std::size_t window = static_cast<std::size_t>(2000 / options.rate_hz);
   TumbleRecording out;
   out.inertia = motion.inertia();
+  const Eigen::Matrix3d to_axes = options.gyro_rows.inverse();
   for (std::size_t k = 0; (k + 1) * window < moments.size(); ++k) {
     Vector3d rate = Vector3d::Zero(), force = Vector3d::Zero();
     Phase phase = moments[k * window].phase;
@@ -130,10 +132,12 @@ TumbleRecording make_tumble(const TumbleOptions& options) {
     const Vector3d gyro_noise = noise.vector(), accel_noise = noise.vector();
     ImuSample sample;
     sample.time_ns = static_cast<TimeNs>(k + 1) * (1'000'000'000 / options.rate_hz);
-    sample.angular_velocity_rad_s =
-        (rate + options.gyro_error * rate + options.gyro_bias_rad_s + options.gyro_sigma_rad_s * gyro_noise)
-            .cwiseMin(options.gyro_rail_rad_s)
-            .cwiseMax(-options.gyro_rail_rad_s);
+    const Vector3d free_reading =
+        rate + options.gyro_error * rate + options.gyro_bias_rad_s + options.gyro_sigma_rad_s * gyro_noise;
+    const Vector3d sensed = options.gyro_rows * free_reading + options.gyro_offset_rad_s;
+    const Vector3d delivered = sensed.cwiseMin(options.gyro_rail_rad_s).cwiseMax(-options.gyro_rail_rad_s);
+    sample.angular_velocity_rad_s = to_axes * (delivered - options.gyro_offset_rad_s);
+    out.hidden.push_back(sensed - delivered);
     sample.specific_force_m_s2 =
         (force + options.accel_error * force + options.accel_bias_m_s2 + options.accel_sigma_m_s2 * accel_noise)
             .cwiseMin(options.accel_rail_m_s2)

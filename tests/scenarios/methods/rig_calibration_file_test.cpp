@@ -21,6 +21,7 @@ class RigCalibrationFile : public testing::TemporaryFolder {
     rig.calibration.constants.lever_arm_m = {-0.0213, -0.0851, 1.0 / 3.0};
     rig.calibration.constants.gyro_bias_rad_s = {1e-3, -2e-17, 0.1};
     rig.calibration.constants.inertia << 0.1, -0.2, 0.3, 1e-9, 0.0;
+    rig.calibration.constants.elements << 0.05, -0.01, 1e-3, 0.0, 0.02, -0.03;
     rig.calibration.covariance = 0.7e-4 * RigConstants::Matrix::Identity();
     rig.calibration.covariance(0, 4) = rig.calibration.covariance(4, 0) = 2e-7;
     rig.rail = {10.5, std::nullopt, 10.4, std::nullopt, std::nullopt, std::nullopt};

@@ -11,7 +11,7 @@ namespace tumble {
 namespace arrow {
 
 inline constexpr int kState = 6;    ///< size of a block: rate and scaled angular acceleration
-inline constexpr int kBorder = 14;  ///< size of the border: see RigConstants
+inline constexpr int kBorder = 20;  ///< size of the border: see RigConstants
 
 using System = ArrowSystem<kState, kBorder>;
 using StateMatrix = System::StateMatrix;

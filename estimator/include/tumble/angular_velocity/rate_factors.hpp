@@ -21,8 +21,12 @@ struct RateFactor {
   Eigen::Matrix<double, 3, RigConstants::kSize> by_rig;
 };
 
-/// Gyro: rate + bias - reading [rad/s].
+/// Gyro while no element clips: rate + bias - reading [rad/s].
 RateFactor gyro_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_rad_s);
+
+/// Gyro while an element clips, element by element: m_j . (rate + bias - reading) [rad/s]. Of a free element noise; of
+/// the one that clips what its rail hides, whatever the device makes of it on the other axes.
+RateFactor element_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_rad_s);
 
 /// Free flight seen by the accelerometer, whose specific force vanishes at the centre of mass [m/s^2]:
 /// alpha x t + w x (w x t) + bias - reading.

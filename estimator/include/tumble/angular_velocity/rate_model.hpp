@@ -27,7 +27,9 @@ struct RateModelParams {
   double gyro_bias_sigma_rad_s = 0.01;
   double accel_bias_sigma_m_s2 = 0.05;
   double inertia_sigma = 0.3;
-  /// What an earlier run has learnt; takes the place of `nominal` and of the four deviations above.
+  /// Of each entry of RigConstants::elements: cross-axis sensitivity before the device compensates it; [1e-9, 0.2].
+  double element_sigma = 0.03;
+  /// What an earlier run has learnt; takes the place of `nominal` and of the five deviations above.
   std::optional<RigCalibration> calibration = std::nullopt;
 
   /// Other IMUs on the body, at most kCompanionsMax; their readings come with each sample.
@@ -45,6 +47,9 @@ struct RateModelParams {
   /// 3x3 matrix (MTi-300 sheet: non-orthogonality 0.05 deg). Not estimated, but counted in the covariance; [0, 0.1].
   double gyro_matrix_sigma = 5e-4;
   double accel_matrix_sigma = 5e-4;
+  /// What a gyro's bandwidth and its clock leave open of the time of a reading (a first-order low-pass at 415 Hz is 0.38 ms
+  /// late): counted in the covariance, times the angular acceleration [s]; [0, 0.1].
+  double gyro_time_sigma_s = 2.5e-4;
   /// What Euler's equation without torque misses of the angular acceleration [rad/s^2]; [1e-6, 1e6].
   double euler_sigma_rad_s2 = 0.3;
   /// Density of the white angular jerk in flight [rad^2/s^5]; [1, 1e12].
@@ -87,6 +92,9 @@ struct RateObservation {
   Eigen::Vector3d lost_sigma_rad_s = Eigen::Vector3d::Zero();
   std::array<CompanionReading, kCompanionsMax> companions = {};  ///< in the order of RateModelParams::companions
 
+  /// Whether an element clips, so that the readings of all axes are off: it is read element by element.
+  bool by_elements() const { return (clipping.gyro | clipping.void_gyro) != 0; }
+
   /// Axes whose rate is not read: bound at most.
   std::uint8_t unseen() const {
     for (const CompanionReading& companion : companions) {
@@ -106,7 +114,8 @@ struct RateEstimate {
   double flight_weight = 0.0;  ///< 0: contact, 1: free flight
   /// Specific force of contact at the centre of mass: what the flight model does not explain.
   Eigen::Vector3d contact_m_s2 = Eigen::Vector3d::Zero();
-  /// What the bounds of clipped axes amount to, as Gaussian sites on (rate + bias): precision and precision * mean.
+  /// What the bounds of clipped elements amount to, as Gaussian sites on what each hides, m_j . (rate + bias - reading):
+  /// precision and precision * mean.
   Eigen::Vector3d bound_precision = Eigen::Vector3d::Zero();
   Eigen::Vector3d bound_shift = Eigen::Vector3d::Zero();
   bool soft_bounds = false;  ///< false: bounds are walls that act only when violated (for the first iterations)
@@ -149,8 +158,8 @@ class RateModel {
 
   /// What the nine entries of the gyro's matrix of scale and misalignment, row by row, do to the gradient of a sample.
   /// A clipped axis says no more than where its rail is: nothing.
-  void add_gyro_errors(const RateObservation& observation, const RateEstimate& estimate, arrow::ErrorMatrix& block,
-                       arrow::BorderErrors& border) const;
+  void add_gyro_errors(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
+                       arrow::ErrorMatrix& block, arrow::BorderErrors& border) const;
   /// The same of the accelerometer's.
   void add_accel_errors(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                         arrow::ErrorMatrix& block, arrow::BorderErrors& border) const;
@@ -173,7 +182,7 @@ class RateModel {
   Eigen::Matrix<double, 6, 1> unscaled(const arrow::StateVector& step) const;
   /// A difference in physical units in those of the solver.
   arrow::StateVector scaled(const Eigen::Matrix<double, 6, 1>& difference) const;
-  /// Covariance of a rate as it is reported: of the fit, wider in contact.
+  /// Covariance of a rate as it is reported: of the fit, wider in contact, and what the time of a reading leaves open.
   Eigen::Matrix3d reported(const Eigen::Matrix3d& covariance_rad2_s2, const RateObservation& observation,
                            const RateEstimate& estimate) const;
   double gyro_sigma_rad_s() const { return gyro_sigma_rad_s_; }
@@ -186,6 +195,10 @@ class RateModel {
   ForceFactor force_factor(const RateObservation& observation, const RateEstimate& estimate,
                            const RigConstants& rig) const;
   double gyro_information(const RateObservation& observation, const RateEstimate& estimate, int axis) const;
+  void add_gyro(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
+                arrow::Block& block, arrow::Corner& corner) const;
+  void add_elements(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
+                    arrow::Block& block, arrow::Corner& corner) const;
   static bool says_nothing_of_rig(const RateEstimate& estimate);
   static void keep_from_rig(const RateObservation& observation, RateFactor& flight);
   void add_companions(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "tumble/angular_velocity/rail_planes.hpp"
 #include "tumble/angular_velocity/rate_model.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/angular_velocity/rest_detector.hpp"
@@ -27,6 +28,8 @@ struct RateReport {
   double rig_surprise = 0.0;
   bool rig_held = false;  ///< the surprise was too large: nothing was learnt, the constants were held
   std::array<std::optional<double>, 6> rail;  ///< in use: gyro [rad/s], accelerometer [m/s^2]; none: not seen
+  RailPlanes planes;                                  ///< of the gyro's elements, where they were seen
+  bool rails_upright = false;                         ///< the device clips what it delivers, nothing else is off
   std::array<bool, 6> rail_disagrees{};       ///< a stated range contradicted by the readings
   bool rate_unit_suspect = false;             ///< a reading beyond RateModelParams::rate_max_rad_s: perhaps degrees
   bool force_unit_suspect = false;            ///< the median specific force is near 1: perhaps given in g
@@ -57,6 +60,11 @@ struct RateReport {
 /// to rates and constants is in both covariances (parameters considered, S. F. Schmidt, 1966), else the fit takes it
 /// for noise and averages it away: the test ScaleAndMisalignmentAreInTheCovariance.
 ///
+/// A gyro's elements clip along their own, not quite orthogonal axes; the device's compensation then mixes what is left
+/// (RailPlaneFinder). While one clips the gyro is read element by element (element_factor): free elements measure,
+/// clipped ones bound, and the axes beside are corrected for what is hidden. The rows are constants of the run, told by
+/// the planes of the rails and by flight; where the rails are found to be upright nothing of this applies.
+///
 /// What it does not model: a contact point that persists, time offset between gyro and accelerometer. The rates are
 /// those at which the gyro's readings stand: means over the window of the sample.
 class RateSmoother {
@@ -64,6 +72,7 @@ class RateSmoother {
   struct Params {
     RateModelParams model;
     RailDetector::Params rails;
+    RailPlaneFinder::Params planes;  ///< without a stated range of its own: that of `rails`
     RestDetector::Params rests;
     int iterations_max = 15;        ///< [1, 1000]
     double tolerance_rad_s = 2e-3;  ///< stop when no rate changes by more; [1e-12, 1]
@@ -98,6 +107,7 @@ class RateSmoother {
  private:
   Params params_;
   RailDetector rails_;
+  RailPlaneFinder planes_;
   RestDetector rests_;
 };
 

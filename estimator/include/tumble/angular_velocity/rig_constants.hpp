@@ -5,9 +5,9 @@
 
 namespace tumble {
 
-/// What stays the same during a run and is estimated with the rates: 14 numbers, in this order.
+/// What stays the same during a run and is estimated with the rates: 20 numbers, in this order.
 struct RigConstants {
-  static constexpr int kSize = 14;
+  static constexpr int kSize = 20, kElements = 14;
   using Vector = Eigen::Matrix<double, kSize, 1>;
   using Matrix = Eigen::Matrix<double, kSize, kSize>;
 
@@ -17,7 +17,12 @@ struct RigConstants {
   /// Shape of the inertia about the centre of mass in IMU axes, free of scale: J = 1 + sum_i inertia_i S_i, S_i an
   /// orthonormal basis of the symmetric matrices without trace. Zero: all moments equal.
   Eigen::Matrix<double, 5, 1> inertia = Eigen::Matrix<double, 5, 1>::Zero();
+  /// Where the sensing elements of the gyro look before the device compensates it: element j senses along the row m_j,
+  /// 1 on axis j, elements[2j] on axis (j+1) % 3 and elements[2j+1] on axis (j+2) % 3. Seen where an element clips only.
+  Eigen::Matrix<double, 6, 1> elements = Eigen::Matrix<double, 6, 1>::Zero();
 
+  /// m_j.
+  Eigen::Vector3d element_row(int j) const;
   /// J, trace 3.
   Eigen::Matrix3d inertia_matrix() const;
   /// Coordinates `inertia` of a symmetric matrix of any positive scale.

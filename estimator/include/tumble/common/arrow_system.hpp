@@ -102,7 +102,7 @@ bool ArrowSystem<State, Border>::invert_factor(StateMatrix& a) {
 // corner -= border' border, of which the upper right part is the mirror of the lower left
 template <int State, int Border>
 void ArrowSystem<State, Border>::subtract_square(const CrossMatrix& border, BorderMatrix& corner) {
-  constexpr int kHead = Border > 8 ? 8 : Border - 1, kTail = Border - kHead;
+  constexpr int kHead = Border > 16 ? 12 : Border > 8 ? 8 : Border - 1, kTail = Border - kHead;
   const auto head = border.template leftCols<kHead>();
   const auto tail = border.template rightCols<kTail>();
   corner.template topLeftCorner<kHead, kHead>().noalias() -= head.transpose().lazyProduct(head);

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "tumble/common/imu.hpp"
+
+namespace tumble {
+
+/// The rail of one sensing element of a gyro, as the device's readings show it: the two planes row . y = b - r and
+/// row . y = b + r. The element senses along `row` and clips there; the device then compensates scale and misalignment,
+/// so that the plane is tilted in the readings y by a few percent, and takes its bias off, so that the signs differ.
+struct RailPlane {
+  /// m_j: 1 along the element's own axis j, the slopes along the other two.
+  Eigen::Vector3d row = Eigen::Vector3d::Zero();
+  double distance_rad_s = 0.0;  ///< r
+  double offset_rad_s = 0.0;    ///< b; held near 0 where one sign alone was seen
+  /// Of (slope along axis (j+1) % 3, slope along (j+2) % 3, r, b).
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
+  std::array<int, 2> samples{};    ///< on the plane of the negative and of the positive sign; 0: this sign was not seen
+  std::array<int, 2> stretches{};  ///< runs of such samples
+  double deviation_rad_s = 0.0;    ///< root mean square of the samples about the plane
+  double tolerance_rad_s = 0.0;    ///< a reading within this of the plane, or beyond it, is clipped
+  double log_odds = 0.0;           ///< natural logarithm of: a rail, against a motion that only looks like one
+
+  bool seen(int sign) const { return samples[sign > 0 ? 1 : 0] > 0; }
+  /// How far a reading lies short of the plane of `sign` (-1 or 1); negative: beyond it [rad/s].
+  double short_of(const Eigen::Vector3d& reading_rad_s, int sign) const {
+    return distance_rad_s - sign * (row.dot(reading_rad_s) - offset_rad_s);
+  }
+};
+
+/// The rails of a gyro; none where no rail was seen.
+struct RailPlanes {
+  std::array<std::optional<RailPlane>, 3> element;
+  bool any() const { return element[0] || element[1] || element[2]; }
+};
+
+/// Per element of a sample: -1 or 1 where it is at that rail, 0 where it is free.
+struct ElementClipping {
+  std::array<std::int8_t, 3> sign{};
+  bool any() const { return sign[0] != 0 || sign[1] != 0 || sign[2] != 0; }
+  bool operator==(const ElementClipping&) const = default;
+};
+
+/// Finds the rails of a gyro's elements in a whole recording, without flags and without a stated range.
+///
+/// A rail is a plane that bounds the readings, close to upright, with many samples in a thin slab below it. What else
+/// puts samples there: the round top of a motion, which its neighbours give away (they fall off as a parabola does,
+/// a rail is left by a kink), and a constant rate (a torque-free spin, a turntable), which is as noisy as any reading,
+/// has a level of its own each time and is entered by an impact that all axes feel. The evidence of each stretch is
+/// added up as a log likelihood ratio against these, less what choosing slopes and level freely was worth (Occam).
+/// Readings that repeat (sample and hold) count once; what is thinner than the digits or the noise is not told apart.
+/// A device has three elements of one kind: a rail far below what another axis reads is none, one at the level of
+/// another element's is likely. Elements that are not found are not clipped as far as anybody can tell.
+///
+/// What it does not model: rails that drift or recover slowly, readings that wrap around, several levels of one element.
+class RailPlaneFinder {
+ public:
+  struct Params {
+    /// Cross-axis sensitivity of elements before compensation: prior of each slope; [1e-4, 0.2].
+    double slope_sigma = 0.03;
+    double slope_max = 0.12;  ///< steepest slope searched; [0, 0.3]
+    /// Rails lower than this are not looked for: rest and creeping are constant too [rad/s]; [0.01, 1000].
+    double distance_min_rad_s = 1.5;
+    /// Range that the data sheet states, if any: the rail does not lie far below it [rad/s]; (0, 1000].
+    std::optional<double> stated_rad_s = std::nullopt;
+    double offset_share = 0.02;     ///< prior of the offset and of how far elements differ, as a share of r; [1e-4, 0.2]
+    int samples_min = 4;            ///< on a rail, of one sign; [2, 1000]
+    double log_odds_before = -6.0;  ///< before anything is seen, for each element and sign; [-100, 100]
+    double log_odds_min = 1.0;      ///< of a rail that is believed; [-100, 100]
+  };
+
+  /// Throws InvalidParams on a parameter outside of its bound.
+  explicit RailPlaneFinder(const Params& params);
+
+  /// The rails that the readings show. Samples must be finite and in order of time. O(N) apart from a search of some
+  /// hundred slopes over the samples near the extremes.
+  RailPlanes find(std::span<const ImuSample> samples) const;
+
+  const Params& params() const { return params_; }
+
+ private:
+  Params params_;
+};
+
+/// Which elements of a sample are at their rail. O(1).
+ElementClipping classify(const ImuSample& sample, const RailPlanes& planes);
+/// The same for each sample of a recording; `out` has their number.
+void classify(std::span<const ImuSample> samples, const RailPlanes& planes, std::span<ElementClipping> out);
+
+}  // namespace tumble

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "element_clipping.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tumble {
+
+namespace {
+
+// A slope is told when its deviation is below the first; it is nil below the second.
+constexpr double kTold = 2e-3, kNil = 3e-3;
+// What is left of a tilt where rails are upright; the least deviation of a slope (misalignment left by the device).
+constexpr double kUprightSigma = 1e-5, kSlopeSigmaMin = 3e-4;
+// Samples beside a clipped one that may have met the rail: largest depth, as a share of it; and of the step before.
+constexpr double kEdgeShare = 0.02, kEdgeOfStep = 0.5;
+
+// Rails of other elements lie within this share and tilt of those seen; a few samples at one hide about this share of
+// the step to the sample beside them.
+constexpr double kUnseenShare = 0.02, kUnseenTilt = 0.06, kUnseenOfStep = 0.5;
+
+// The sign of the rail that element j is at.
+int side(const ImuSample& sample, std::size_t j) {
+  return sample.angular_velocity_rad_s[static_cast<Eigen::Index>(j)] < 0.0 ? -1 : 1;
+}
+
+// Whether sample k, beside the clipped one at the other side of it than `outside`, met the rail in a part of its window.
+bool meets(std::span<const ImuSample> samples, const RailPlane& rail, std::size_t k, std::ptrdiff_t outside, int sign) {
+  const auto beside = static_cast<std::ptrdiff_t>(k) + outside;
+  const double depth = rail.short_of(samples[k].angular_velocity_rad_s, sign);
+  if (depth > kEdgeShare * rail.distance_rad_s) return false;
+  if (beside < 0 || beside >= static_cast<std::ptrdiff_t>(samples.size())) return true;
+  const double before = rail.short_of(samples[static_cast<std::size_t>(beside)].angular_velocity_rad_s, sign);
+  return depth < kEdgeOfStep * (before - depth);
+}
+
+}  // namespace
+
+bool are_upright(const RailPlanes& planes, const RailDetector::State& rails) {
+  int nil = 0;
+  for (std::size_t j = 0; j < 3; ++j) {
+    const auto& rail = planes.element[j];
+    if (!rail) {
+      nil += rails.channels[j].rail > 0.0 ? 1 : 0;
+      continue;
+    }
+    for (int i = 0; i < 2; ++i) {
+      const double slope = rail->row[static_cast<Eigen::Index>((j + 1 + static_cast<std::size_t>(i)) % 3)];
+      const double sigma = std::sqrt(rail->covariance(i, i));
+      if (std::abs(slope) > kNil + 4.0 * sigma) return false;
+      nil += sigma < kTold ? 1 : 0;
+    }
+  }
+  return nil >= 2;
+}
+
+void clip_by_planes(std::span<const ImuSample> samples, const RailPlanes& planes, std::span<Clipping> clippings) {
+  if (!planes.any()) return;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const ElementClipping now = classify(samples[k], planes);
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (!planes.element[j] || (clippings[k].void_gyro >> j & 1u) != 0) continue;
+      const bool clipped = now.sign[j] != 0 || (samples[k].device_clip_flags >> j & 1u) != 0;
+      const auto bit = static_cast<std::uint8_t>(1u << j);
+      clippings[k].gyro = static_cast<std::uint8_t>(clipped ? clippings[k].gyro | bit : clippings[k].gyro & ~bit);
+    }
+  }
+  const std::vector<Clipping> whole(clippings.begin(), clippings.end());
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      const auto bit = static_cast<std::uint8_t>(1u << j);
+      if (!planes.element[j] || (whole[k].gyro & bit) != 0) continue;
+      const int sign = side(samples[k], j);
+      const bool before = k > 0 && (whole[k - 1].gyro & bit) != 0 && side(samples[k - 1], j) == sign;
+      const bool after = k + 1 < samples.size() && (whole[k + 1].gyro & bit) != 0 && side(samples[k + 1], j) == sign;
+      if ((after && meets(samples, *planes.element[j], k, -1, sign)) ||
+          (before && meets(samples, *planes.element[j], k, 1, sign))) {
+        clippings[k].gyro = static_cast<std::uint8_t>(clippings[k].gyro | bit);
+      }
+    }
+  }
+}
+
+void mark_partial(const RailPlanes& planes, const RailDetector& rails, const RailDetector::State& state,
+                  double noise_rad_s, const ImuSample* before, RateObservation& now, const ImuSample* after) {
+  mark_partial(rails, state, noise_rad_s, before, now, after);
+  for (std::size_t j = 0; j < 3; ++j) {
+    const auto& rail = planes.element[j];
+    const bool flagged = (now.sample.device_clip_flags >> j & 1u) != 0 && (now.clipping.void_gyro >> j & 1u) == 0;
+    if (!rail || !flagged) continue;
+    const auto bit = static_cast<std::uint8_t>(1u << j);
+    now.partial = static_cast<std::uint8_t>(now.partial & ~bit);
+    const int sign = side(now.sample, j);
+    const double level = rail->distance_rad_s;
+    const double reading = level - rail->short_of(now.sample.angular_velocity_rad_s, sign);
+    double neighbour = level;
+    for (const ImuSample* beside : {before, after}) {
+      if (beside == nullptr) continue;
+      neighbour = std::min(neighbour, level - rail->short_of(beside->angular_velocity_rad_s, sign));
+    }
+    if (level - reading <= rail->tolerance_rad_s || neighbour > reading) continue;
+    const PartialLoss loss = partial_loss(reading, neighbour, level, noise_rad_s);
+    if (!loss.partial) continue;
+    now.partial = static_cast<std::uint8_t>(now.partial | bit);
+    now.lost_rad_s[static_cast<Eigen::Index>(j)] = sign * loss.lost_rad_s;
+    now.lost_sigma_rad_s[static_cast<Eigen::Index>(j)] = loss.sigma_rad_s;
+  }
+}
+
+void doubt_unseen_rails(const RailPlanes& planes, double noise_rad_s, const ImuSample* before, RateObservation& now,
+                        const ImuSample* after) {
+  double rail = 0.0;
+  for (const auto& element : planes.element) {
+    if (element && (rail == 0.0 || element->distance_rad_s < rail)) rail = element->distance_rad_s;
+  }
+  if (rail == 0.0) return;
+  const Eigen::Vector3d& reading = now.sample.angular_velocity_rad_s;
+  for (Eigen::Index j = 0; j < 3; ++j) {
+    const auto& own = planes.element[static_cast<std::size_t>(j)];
+    const int sign = reading[j] < 0.0 ? -1 : 1;
+    const unsigned told = now.clipping.gyro | now.clipping.void_gyro | now.partial;
+    if ((own && own->seen(sign)) || (told >> j & 1u) != 0) continue;
+    const double beside = std::hypot(reading[(j + 1) % 3], reading[(j + 2) % 3]);
+    if (std::abs(reading[j]) < (1.0 - kUnseenShare) * rail - kUnseenTilt * beside) continue;
+    double step = 0.0;
+    for (const ImuSample* neighbour : {before, after}) {
+      if (neighbour == nullptr) continue;
+      step = std::max(step, std::abs(reading[j] - neighbour->angular_velocity_rad_s[j]));
+    }
+    now.partial = static_cast<std::uint8_t>(now.partial | 1u << j);
+    now.lost_rad_s[j] = 0.0;
+    now.lost_sigma_rad_s[j] = std::hypot(noise_rad_s, kUnseenOfStep * step);
+  }
+}
+
+RigCalibration with_planes(const RateModelParams& params, const RailPlanes& planes, bool upright) {
+  const RateModel before(params, 0.01);
+  RigCalibration out{before.prior_constants(), before.prior_covariance()};
+  const auto hold = [&](Eigen::Index first, const Eigen::Vector2d& slopes, const Eigen::Matrix2d& covariance) {
+    out.constants.elements.segment<2>(first - RigConstants::kElements) = slopes;
+    out.covariance.middleRows<2>(first).setZero();
+    out.covariance.middleCols<2>(first).setZero();
+    out.covariance.block<2, 2>(first, first) = covariance;
+  };
+  for (int j = 0; j < 3; ++j) {
+    const Eigen::Index first = RigConstants::kElements + 2 * j;
+    const auto& rail = planes.element[static_cast<std::size_t>(j)];
+    if (upright) {
+      hold(first, Eigen::Vector2d::Zero(), kUprightSigma * kUprightSigma * Eigen::Matrix2d::Identity());
+    } else if (rail) {
+      const Eigen::Matrix2d told =
+          rail->covariance.topLeftCorner<2, 2>() + kSlopeSigmaMin * kSlopeSigmaMin * Eigen::Matrix2d::Identity();
+      if (told.trace() >= out.covariance.block<2, 2>(first, first).trace()) continue;
+      hold(first, {rail->row[(j + 1) % 3], rail->row[(j + 2) % 3]}, told);
+    }
+  }
+  return out;
+}
+
+}  // namespace tumble

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rail_evidence.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tumble {
+
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+// Share of the stretches of a motion that keep their rate to the noise (spins, turntables): no stretch proves more by
+// its length than that it is one of them.
+constexpr double kConstantShare = 0.05;
+// A round top must bend by so many deviations within a stretch before flatness speaks against it.
+constexpr double kBend = 3.0;
+// Levels that a constant rate may have near the largest, as a share of it.
+constexpr double kLevelShare = 0.2;
+// Readings of a window from which noise is told: residuals of a parabola; quantile of the windows taken for noise.
+constexpr std::size_t kNoiseWindow = 9;
+constexpr double kNoiseQuantile = 0.2;
+// What the smoothness of the other axes at the end of a stretch may tell at most.
+constexpr double kKinkAlone = 2.5;
+// The other axes must move by so many deviations about an end for their smoothness to tell anything.
+constexpr double kMoving = 10.0;
+// Log likelihood from which a stretch counts that is thinner than noise, whatever its ends look like.
+constexpr double kThinAlone = 8.0;
+// What each sample beyond the facet speaks against it; share of the samples that may stray.
+constexpr double kBeyond = 5.0, kStray = 0.02;
+
+// Second differences of a window: noise of a reading as their root mean square about their mean.
+double window_noise(std::span<const Vector3d> window, int axis) {
+  double sum = 0.0, squares = 0.0;
+  const std::size_t count = window.size() - 3;
+  for (std::size_t i = 0; i < count; ++i) {
+    // third difference of white noise has variance 20
+    const double d = window[i + 3][axis] - 3.0 * window[i + 2][axis] + 3.0 * window[i + 1][axis] - window[i][axis];
+    sum += d;
+    squares += d * d;
+  }
+  return std::sqrt(squares / (20.0 * static_cast<double>(count)));
+}
+
+struct Stretch {
+  std::size_t first, last;  // of rates
+  std::size_t size() const { return last - first + 1; }
+};
+
+std::vector<Stretch> stretches_of(const std::vector<std::size_t>& inliers) {
+  std::vector<Stretch> out;
+  for (const std::size_t k : inliers) {
+    if (!out.empty() && k == out.back().last + 1) {
+      out.back().last = k;
+    } else {
+      out.push_back({k, k});
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+DistinctReadings distinct_readings(std::span<const ImuSample> samples) {
+  DistinctReadings out;
+  out.digit.setConstant(std::numeric_limits<double>::max());
+  for (const ImuSample& sample : samples) {
+    const Vector3d& y = sample.angular_velocity_rad_s;
+    if (!out.rates.empty() && out.rates.back() == y) continue;
+    out.peak = out.peak.cwiseMax(y.cwiseAbs());
+    for (int j = 0; j < 3 && !out.rates.empty(); ++j) {
+      const double change = std::abs(y[j] - out.rates.back()[j]);
+      // the last bits of a sum of floating-point numbers are no digit
+      if (change > 1e-9 * (1.0 + std::abs(y[j]))) out.digit[j] = std::min(out.digit[j], change);
+    }
+    out.rates.push_back(y);
+  }
+  for (int j = 0; j < 3; ++j) {
+    if (out.digit[j] == std::numeric_limits<double>::max()) out.digit[j] = 0.0;
+    std::vector<double> noises;
+    for (std::size_t k = 0; k + kNoiseWindow <= out.rates.size(); k += kNoiseWindow) {
+      const std::span<const Vector3d> window = std::span(out.rates).subspan(k, kNoiseWindow);
+      const bool clear = std::all_of(window.begin(), window.end(),
+                                     [&](const Vector3d& y) { return std::abs(y[j]) < 0.8 * out.peak[j]; });
+      if (clear) noises.push_back(window_noise(window, j));
+    }
+    if (noises.empty()) continue;
+    const auto at = static_cast<std::ptrdiff_t>(kNoiseQuantile * static_cast<double>(noises.size() - 1));
+    std::nth_element(noises.begin(), noises.begin() + at, noises.end());
+    out.noise[j] = noises[static_cast<std::size_t>(at)];
+  }
+  return out;
+}
+
+double stretch_evidence(const DistinctReadings& readings, const Eigen::Matrix2d& slope_information, RailFacet& facet) {
+  const std::vector<Vector3d>& rates = readings.rates;
+  const auto value = [&](std::size_t k) { return facet.sign * facet.row.dot(rates[k]); };
+  const double thickness = 2.5 * facet.deviation, noise = readings.noise[facet.axis];
+  const double of_level = std::log(kLevelShare * facet.level / thickness);
+  double odds = 0.0;
+  facet.stretches = 0;
+  Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
+  H.topLeftCorner<2, 2>() = slope_information;
+  for (const Stretch& s : stretches_of(facet.inliers)) {
+    const double n = static_cast<double>(s.size());
+    double low = std::numeric_limits<double>::max(), high = -low;
+    for (std::size_t k = s.first; k <= s.last; ++k) {
+      low = std::min(low, value(k));
+      high = std::max(high, value(k));
+    }
+    // depth of the second neighbour outside of either end
+    double depth = std::numeric_limits<double>::max();
+    if (s.first >= 2) depth = std::min(depth, facet.level - value(s.first - 2));
+    if (s.last + 2 < rates.size()) depth = std::min(depth, facet.level - value(s.last + 2));
+    if (s.size() < 2 || depth == std::numeric_limits<double>::max()) continue;
+    // a parabola through both neighbours bends by this within the stretch
+    const double inside = (n - 1.0) / (n + 3.0), bend = depth * inside * inside;
+    const double flat = std::max(high - low, 2.0 * facet.deviation);
+    // thinner than the gyro's noise: no reading of a rate is
+    const double thin = noise > 2.0 * facet.deviation ? (n - 2.0) * std::log(noise / (2.0 * facet.deviation)) : 0.0;
+    const bool bends = bend >= kBend * flat;
+    if (!bends && thin < kThinAlone) continue;
+    ++facet.stretches;
+    odds += std::max(0.0, thin);
+    if (!bends) continue;
+    odds += std::min((n - 1.0) * std::log(bend / flat), -std::log(kConstantShare)) + of_level;
+    for (const bool after : {false, true}) {
+      if (after ? s.last + 3 >= rates.size() : s.first < 3) continue;
+      // second differences about the end: of the rail's own axis and of those beside it, which an impact would bend too
+      const std::size_t end = after ? s.last : s.first;
+      if (s.size() < 3) continue;
+      const std::size_t outside = after ? end + 2 : end - 2, inside_of = after ? end - 2 : end + 2;
+      const Vector3d bent = rates[outside] - 2.0 * rates[end] + rates[inside_of];
+      const double own = std::abs(facet.row.dot(bent));
+      Vector3d beside = bent, moving = rates[outside] - rates[inside_of];
+      beside[facet.axis] = moving[facet.axis] = 0.0;
+      if (moving.norm() < kMoving * noise) continue;
+      const double ratio = std::max(beside.norm(), 2.0 * noise) / std::max(own, 1e-9);
+      odds += std::clamp(-std::log(5.0 * ratio), -0.5, kKinkAlone);
+    }
+    Vector3d mean = Vector3d::Zero();
+    for (std::size_t k = s.first; k <= s.last; ++k) mean += rates[k] / n;
+    Vector3d A;
+    A << -facet.sign * mean[(facet.axis + 1) % 3], -facet.sign * mean[(facet.axis + 2) % 3], 1.0;
+    H += A * A.transpose() / (facet.deviation * facet.deviation);
+  }
+  // nothing lies beyond a rail
+  const auto beyond = std::count_if(facet.inliers.begin(), facet.inliers.end(),
+                                    [&](std::size_t k) { return value(k) > facet.level + facet.tolerance; });
+  odds -= kBeyond * std::max(0.0, static_cast<double>(beyond) - kStray * static_cast<double>(facet.inliers.size()));
+  if (facet.stretches == 0) return -std::numeric_limits<double>::infinity();
+  // what choosing the level and the slopes freely was worth: prior over posterior volume
+  const Eigen::Matrix3d told = H.inverse();
+  const double of_slopes =
+      0.5 * std::log(std::max(1.0, 1.0 / (told.topLeftCorner<2, 2>().determinant() * slope_information.determinant())));
+  return odds - of_level - of_slopes;
+}
+
+}  // namespace tumble

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rate_first_guess.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tumble/angular_velocity/saave.hpp"
+#include "tumble/angular_velocity/wnoj_smoother.hpp"
+
+namespace tumble {
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kVarianceUnknown = 100.0;  // of a clipped axis at the start of the iteration, (rad/s)^2
+
+}  // namespace
+
+std::vector<RateEstimate> first_guess(std::span<const RateObservation> observations, const RateModelParams& model,
+                                      const RateModel& derived, double gap_max_s) {
+  double smallest = model.rate_max_rad_s;
+  for (const RateObservation& o : observations) {
+    for (int j = 0; j < 3; ++j) {
+      const double reading = std::abs(o.sample.angular_velocity_rad_s[j]);
+      if ((o.clipping.gyro >> j & 1u) != 0) smallest = std::min(smallest, std::max(reading, 0.01));
+    }
+  }
+  const Saave saave({.lever_arm_m = derived.prior_constants().lever_arm_m,
+                     .saturation_point_rad_s = std::max(0.01, 0.9999 * smallest),
+                     .gap_max_s = gap_max_s});
+  Saave::State state;
+  Saave::Recovered recovered;
+  const double measured = derived.gyro_sigma_rad_s() * derived.gyro_sigma_rad_s();
+  std::vector<WnojSmoother::Measurement> readings(observations.size());
+  for (std::size_t k = 0; k < observations.size(); ++k) {
+    const RateObservation& o = observations[k];
+    (void)saave.step(o.sample, state, recovered);  // the samples have been checked
+    readings[k] = {o.sample.time_ns, o.sample.angular_velocity_rad_s, Vector3d::Constant(measured)};
+    for (int j = 0; j < 3; ++j) {
+      if ((o.clipping.void_gyro >> j & 1u) != 0) readings[k].variance_rad2_s2[j] = kVarianceUnknown;
+      if ((o.unseen() & o.clipping.gyro & 1u << j) == 0) continue;
+      const double limit = model.rate_max_rad_s;
+      readings[k].rate_rad_s[j] = std::clamp(recovered.rate_rad_s[j], -limit, limit);
+      readings[k].variance_rad2_s2[j] = std::clamp(recovered.variance_rad2_s2[j], 0.25, kVarianceUnknown);
+    }
+  }
+  std::vector<WnojSmoother::Smoothed> smoothed;
+  (void)WnojSmoother({}).smooth(readings, smoothed);
+  std::vector<RateEstimate> out(observations.size());
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    out[k].knot = {smoothed[k].rate_rad_s, smoothed[k].acceleration_rad_s2};
+  }
+  return out;
+}
+
+}  // namespace tumble

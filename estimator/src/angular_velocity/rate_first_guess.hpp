@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "tumble/angular_velocity/rate_model.hpp"
+
+namespace tumble {
+
+/// Where the iteration of RateSmoother starts: the published estimate (Saave), held to the bounds and smoothed. The
+/// samples have been checked.
+std::vector<RateEstimate> first_guess(std::span<const RateObservation> observations, const RateModelParams& model,
+                                      const RateModel& derived, double gap_max_s);
+
+}  // namespace tumble

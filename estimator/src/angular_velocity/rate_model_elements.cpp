@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The gyro while an element of it clips: the part of RateModel that reads it element by element.
+#include "tumble/angular_velocity/rate_model.hpp"
+
+namespace tumble {
+
+namespace {
+
+constexpr int kGyroBias = 3;
+
+// One row m_j . (rate + bias - reading), of the given information and pull.
+void add_row(const RateFactor& gyro, int j, double information, double pull, arrow::Block& block,
+             arrow::Corner& corner) {
+  const int first = RigConstants::kElements + 2 * j;
+  const Eigen::Vector3d row = gyro.by_knot.row(j).head<3>();
+  const Eigen::Vector3d weighted = information * row;
+  const Eigen::RowVector2d by_elements = gyro.by_rig.block<1, 2>(j, first);
+  const Eigen::Matrix3d square = weighted.lazyProduct(row.transpose());
+  const Eigen::Matrix<double, 3, 2> mixed = weighted.lazyProduct(by_elements);
+  block.diagonal.topLeftCorner<3, 3>() += square;
+  block.border.block<3, 3>(0, kGyroBias) += square;
+  block.border.block<3, 2>(0, first) += mixed;
+  block.gradient.head<3>() -= pull * row;
+  corner.matrix.block<3, 3>(kGyroBias, kGyroBias) += square;
+  corner.matrix.block<3, 2>(kGyroBias, first) += mixed;
+  corner.matrix.block<2, 3>(first, kGyroBias) += mixed.transpose();
+  corner.matrix.block<2, 2>(first, first) += information * by_elements.transpose() * by_elements;
+  corner.gradient.segment<3>(kGyroBias) -= pull * row;
+  corner.gradient.segment<2>(first) -= pull * by_elements.transpose();
+}
+
+}  // namespace
+
+void RateModel::add_elements(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
+                             arrow::Block& block, arrow::Corner& corner) const {
+  const RateFactor gyro = element_factor(estimate.knot, rig, observation.sample.angular_velocity_rad_s);
+  for (int j = 0; j < 3; ++j) {
+    if ((observation.clipping.void_gyro >> j & 1u) != 0) continue;
+    double information = gyro_information(observation, estimate, j);
+    double pull = information * gyro.residual[j];
+    if ((observation.partial >> j & 1u) != 0) {
+      pull = information * (gyro.residual[j] - observation.lost_rad_s[j]);
+    } else if ((observation.clipping.gyro >> j & 1u) != 0) {
+      const bool kept = gyro.residual[j] * observation.sample.angular_velocity_rad_s[j] >= 0.0;
+      if (kept && !estimate.soft_bounds) continue;
+      information = 1.0 / (params_.rail_sigma_rad_s * params_.rail_sigma_rad_s);
+      pull = information * gyro.residual[j];
+      if (estimate.soft_bounds) {
+        information = estimate.bound_precision[j];
+        pull = information * gyro.residual[j] - estimate.bound_shift[j];
+      }
+    }
+    add_row(gyro, j, information, pull, block, corner);
+  }
+}
+
+}  // namespace tumble

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rails of real gyros (RepoIMU, where it is at hand), and none where a real gyro does not clip (BROAD).
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "estimator/attitude/broad_trial.hpp"
+#include "tumble/angular_velocity/rail_planes.hpp"
+
+namespace tumble {
+namespace {
+
+// Columns separated by ';': time, four of a quaternion, specific force, rate, field; two lines of headings.
+std::vector<ImuSample> read_repoimu(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::vector<ImuSample> out;
+  std::string line;
+  while (std::getline(in, line)) {
+    std::istringstream cells(line);
+    std::string cell;
+    std::vector<double> values;
+    while (std::getline(cells, cell, ';')) {
+      char* end = nullptr;
+      const double value = std::strtod(cell.c_str(), &end);
+      if (end == cell.c_str()) break;
+      values.push_back(value);
+    }
+    if (values.size() < 11) continue;
+    ImuSample sample;
+    sample.time_ns = static_cast<TimeNs>(1e9 * values[0]);
+    sample.specific_force_m_s2 = {values[5], values[6], values[7]};
+    sample.angular_velocity_rad_s = {values[8], values[9], values[10]};
+    out.push_back(sample);
+  }
+  return out;
+}
+
+struct Known {
+  const char* file;
+  int axis;
+  double distance, offset, first_slope, second_slope;  // along (axis + 1) % 3 and (axis + 2) % 3
+  int samples;                                         // at the rail, counted by hand
+};
+
+class RealRails : public ::testing::TestWithParam<Known> {};
+
+TEST_P(RealRails, AreFoundWithoutAnybodyStatingThem) {
+  const std::filesystem::path file = std::filesystem::path(TUMBLE_SHARED_DATA) / "repoimu" / GetParam().file;
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "shared data not present";
+  const std::vector<ImuSample> samples = read_repoimu(file);
+  ASSERT_GT(samples.size(), 1000u);
+  const RailPlanes planes = RailPlaneFinder({}).find(samples);
+  const auto axis = static_cast<std::size_t>(GetParam().axis);
+  for (std::size_t j = 0; j < 3; ++j) EXPECT_EQ(planes.element[j].has_value(), j == axis) << j;
+  ASSERT_TRUE(planes.element[axis].has_value());
+  const RailPlane& rail = *planes.element[axis];
+  // 0.3 %: how far the fits by hand, which took windows that met the rail in a part for clipped, are below
+  EXPECT_NEAR(rail.distance_rad_s, GetParam().distance, 0.003 * GetParam().distance);
+  EXPECT_NEAR(rail.offset_rad_s, GetParam().offset, 0.01);
+  // as much as such fits differ from one recording of a device to the next
+  EXPECT_NEAR(rail.row[(GetParam().axis + 1) % 3], GetParam().first_slope, 0.008);
+  EXPECT_NEAR(rail.row[(GetParam().axis + 2) % 3], GetParam().second_slope, 0.008);
+  int clipped = 0;
+  for (const ImuSample& sample : samples) clipped += classify(sample, planes).any() ? 1 : 0;
+  EXPECT_NEAR(clipped, GetParam().samples, 0.06 * GetParam().samples);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    RepoImu, RealRails,
+    ::testing::Values(Known{"TStick_Test05_Trial1.csv", 0, 7.2987, -0.046, -0.006, 0.0181, 1509},
+                      Known{"TStick_Test10_Trial1.csv", 0, 7.3041, -0.058, -0.001, 0.0209, 215},
+                      Known{"Pendulum_Test02a_Trial1_Segment_3.csv", 2, 10.2935, 0.0, -0.0515, 0.003, 98},
+                      Known{"Pendulum_Test07_Trial3_Segment_3.csv", 2, 10.2935, 0.0, -0.0515, 0.003, 42}));
+
+class NoRails : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(NoRails, AreFoundInARealGyroThatDoesNotClip) {
+  const std::string folder = testing::broad_folder();
+  if (folder.empty()) GTEST_SKIP() << "shared data not present";
+  const std::vector<ImuSample> samples = testing::read_broad_trial(folder, GetParam()).samples;
+  ASSERT_GT(samples.size(), 10000u);
+  EXPECT_FALSE(RailPlaneFinder({}).find(samples).any());
+}
+
+INSTANTIATE_TEST_SUITE_P(Broad, NoRails, ::testing::Values("05", "07", "09", "11", "14", "16", "24", "27"));
+
+}  // namespace
+}  // namespace tumble

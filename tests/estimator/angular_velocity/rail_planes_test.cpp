@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/angular_velocity/rail_planes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <numbers>
+
+#include "estimator/angular_velocity/drawn_elements.hpp"
+#include "estimator/angular_velocity/tumble_recording.hpp"
+#include "oracles/gaussian.hpp"
+#include "tumble/common/status.hpp"
+
+namespace tumble {
+namespace {
+
+using Eigen::Vector3d;
+
+std::vector<ImuSample> samples_of(const std::vector<Vector3d>& rates) {
+  std::vector<ImuSample> out(rates.size());
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    out[k].time_ns = static_cast<TimeNs>(k) * 10'000'000;
+    out[k].angular_velocity_rad_s = rates[k];
+  }
+  return out;
+}
+
+// A rate of several sines, `scale` its size; smooth, as a hand moves it.
+Vector3d waving(double t, double scale) {
+  return scale * Vector3d(std::sin(3.1 * t) + 0.4 * std::sin(11.3 * t + 1.0), 0.7 * std::sin(4.3 * t + 0.5),
+                          0.6 * std::sin(2.3 * t) + 0.3 * std::sin(7.9 * t));
+}
+
+// What a device with elements along `rows` and `offset` makes of rates: clipped at `rail`.
+std::vector<Vector3d> clipped(const std::vector<Vector3d>& rates, const Eigen::Matrix3d& rows, const Vector3d& offset,
+                              double rail) {
+  std::vector<Vector3d> out;
+  for (const Vector3d& w : rates) {
+    const Vector3d sensed = rows * w + offset;
+    out.push_back(rows.inverse() * (sensed.cwiseMin(rail).cwiseMax(-rail) - offset));
+  }
+  return out;
+}
+
+std::vector<Vector3d> waved(double scale, double seconds, double noise_rad_s, std::uint64_t seed) {
+  oracles::Gaussian noise(seed);
+  std::vector<Vector3d> rates;
+  for (double t = 0.0; t < seconds; t += 0.01) rates.push_back(waving(t, scale) + noise_rad_s * noise.vector());
+  return rates;
+}
+
+RailPlanes find(const std::vector<Vector3d>& rates) {
+  return RailPlaneFinder({}).find(samples_of(rates));
+}
+
+// How many samples at a rail were found, of how many, and how many of those called are none.
+struct Score {
+  int deep = 0, found = 0, wrong = 0;
+  void add(const std::vector<ImuSample>& samples, const std::vector<Vector3d>& hidden) {
+    const RailPlanes planes = RailPlaneFinder({}).find(samples);
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+      const ElementClipping now = classify(samples[k], planes);
+      for (int j = 0; j < 3; ++j) {
+        const bool called = now.sign[static_cast<std::size_t>(j)] != 0;
+        deep += std::abs(hidden[k][j]) > 0.1;
+        found += std::abs(hidden[k][j]) > 0.1 && called;
+        wrong += called && hidden[k][j] == 0.0;
+      }
+    }
+  }
+};
+
+TEST(RailPlanes, ThePlaneOfAKnownDeviceComesBack) {
+  Eigen::Matrix3d rows;
+  rows << 1.0, 0.006, -0.018, -0.04, 1.0, 0.02, 0.05, 0.01, 1.0;
+  const Vector3d offset(-0.05, 0.13, 0.0);
+  const RailPlanes planes = find(clipped(waved(12.0, 30.0, 0.004, 1), rows, offset, 7.3));
+  for (int j = 0; j < 3; ++j) {
+    ASSERT_TRUE(planes.element[static_cast<std::size_t>(j)].has_value()) << j;
+    const RailPlane& rail = *planes.element[static_cast<std::size_t>(j)];
+    // the element's offset comes off after the clip, so the planes stand at +-7.3 less the offset
+    EXPECT_NEAR((rail.row - rows.row(j).transpose()).norm(), 0.0, 1e-3) << j;
+    EXPECT_NEAR(rail.distance_rad_s, 7.3, 2e-3) << j;
+    EXPECT_NEAR(rail.offset_rad_s, -offset[j], 2e-3) << j;
+    EXPECT_TRUE(rail.seen(-1) && rail.seen(1));
+    EXPECT_LT(rail.deviation_rad_s, 1e-3);
+  }
+}
+
+TEST(RailPlanes, DrawnDevicesAreFoundOnTumbles) {
+  Score score;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    TumbleOptions options;
+    options.seed = seed;
+    options.gyro_rows = drawn_rows(seed, seed % 2 == 0 ? 0.02 : 0.05);
+    const TumbleRecording tumble = make_tumble(options);
+    score.add(tumble.samples, tumble.hidden);
+  }
+  ASSERT_GT(score.deep, 500);
+  EXPECT_GE(score.found, 0.995 * score.deep);
+  EXPECT_LE(score.wrong, 0.005 * score.found);
+}
+
+TEST(RailPlanes, NothingIsFoundWhereNothingClips) {
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    TumbleOptions options;
+    options.seed = seed;
+    options.gyro_rail_rad_s = 1e3;
+    EXPECT_FALSE(RailPlaneFinder({}).find(make_tumble(options).samples).any()) << seed;
+    EXPECT_FALSE(find(waved(8.0, 20.0, 0.004, seed)).any()) << seed;
+  }
+}
+
+// The first tries' traps. A spin is a constant rate that begins and ends with an impact; a top turns around slowly.
+TEST(RailPlanes, SpinsTopsRestAndCreepingAreNoRails) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    oracles::Gaussian noise(seed);
+    std::vector<Vector3d> spin, top, rest, creep;
+    const double rate = noise.uniform(4.0, 12.0), curve = noise.uniform(1.0, 300.0);
+    for (int k = 0; k < 1000; ++k) {
+      const double t = 0.01 * k;
+      const Vector3d error = 0.005 * noise.vector();
+      // torque-free, wobbling by a little about its axis
+      const Vector3d flight(0.3 * std::cos(5.0 * t), 0.3 * std::sin(5.0 * t), rate);
+      spin.push_back((k < 300 || k > 380 ? Vector3d(0.2 * std::sin(3.0 * t), 0.3, 0.1) : flight) + error);
+      top.push_back(Vector3d(std::sin(t), std::cos(2.0 * t), 8.0 - curve * std::pow(std::fmod(t, 1.0) - 0.5, 2)) + error);
+      rest.push_back(error);
+      creep.push_back(Vector3d(0.0, 0.0, k < 300 || k > 700 ? 0.0 : 1.4) + error);
+    }
+    EXPECT_FALSE(find(spin).any()) << seed;
+    EXPECT_FALSE(find(top).any()) << seed;
+    EXPECT_FALSE(find(rest).any()) << seed;
+    EXPECT_FALSE(find(creep).any()) << seed;
+  }
+}
+
+TEST(RailPlanes, ReadingsThatRepeatOrAreCoarseDoNotHideARail) {
+  const Eigen::Matrix3d rows = drawn_rows(3, 0.03);
+  const std::vector<Vector3d> exact = clipped(waved(18.0, 20.0, 0.004, 5), rows, Vector3d::Zero(), 10.3);
+  std::vector<Vector3d> held;
+  for (std::size_t k = 0; k < exact.size(); ++k) {
+    const Vector3d& latest = exact[k - k % 3];
+    held.push_back((latest / 5e-4).array().round().matrix() * 5e-4);
+  }
+  const RailPlanes planes = find(held);
+  for (int j = 0; j < 3; ++j) {
+    ASSERT_TRUE(planes.element[static_cast<std::size_t>(j)].has_value()) << j;
+    EXPECT_NEAR((planes.element[static_cast<std::size_t>(j)]->row - rows.row(j).transpose()).norm(), 0.0, 3e-3) << j;
+  }
+  // negative control: the same, never clipped
+  std::vector<Vector3d> free;
+  const std::vector<Vector3d> smooth = waved(18.0, 20.0, 0.004, 5);
+  for (std::size_t k = 0; k < smooth.size(); ++k) {
+    free.push_back((smooth[k - k % 3] / 5e-4).array().round().matrix() * 5e-4);
+  }
+  EXPECT_FALSE(find(free).any());
+}
+
+// A stated range speaks against a rail far below it, but a range may have been set otherwise: many stretches outweigh it.
+TEST(RailPlanes, AStatedRangeCountsAsMuchAsItIsWorth) {
+  const Eigen::Matrix3d rows = drawn_rows(1, 0.03);
+  const std::vector<ImuSample> many = samples_of(clipped(waved(12.0, 20.0, 0.004, 1), rows, Vector3d::Zero(), 7.3));
+  const std::vector<ImuSample> few = samples_of(clipped(waved(7.6, 2.5, 0.004, 1), rows, Vector3d::Zero(), 7.3));
+  ASSERT_TRUE(RailPlaneFinder({.stated_rad_s = 7.0}).find(few).any());
+  EXPECT_FALSE(RailPlaneFinder({.stated_rad_s = 17.0}).find(few).any());
+  EXPECT_TRUE(RailPlaneFinder({.stated_rad_s = 17.0}).find(many).any());
+}
+
+TEST(RailPlanes, ShortAndEmptyRecordingsHaveNone) {
+  EXPECT_FALSE(find({}).any());
+  EXPECT_FALSE(find({Vector3d::Ones(), Vector3d::Zero(), Vector3d::Ones()}).any());
+}
+
+TEST(RailPlanes, ParametersOutsideOfTheirBoundThrow) {
+  EXPECT_THROW(RailPlaneFinder({.slope_sigma = 0.0}), InvalidParams);
+  EXPECT_THROW(RailPlaneFinder({.slope_max = 0.4}), InvalidParams);
+  EXPECT_THROW(RailPlaneFinder({.samples_min = 1}), InvalidParams);
+  EXPECT_THROW(RailPlaneFinder({.stated_rad_s = -1.0}), InvalidParams);
+}
+
+}  // namespace
+}  // namespace tumble

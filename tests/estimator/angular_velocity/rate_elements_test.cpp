@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The smoother on gyros whose elements clip along their own axes, without flags and without a stated range.
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "estimator/angular_velocity/drawn_elements.hpp"
+#include "estimator/angular_velocity/tumble_recording.hpp"
+#include "tumble/angular_velocity/rate_smoother.hpp"
+
+namespace tumble {
+namespace {
+
+using Eigen::Vector3d;
+
+// Errors at samples in which an element hides something, over several drawn devices and tumbles.
+struct Pool {
+  std::vector<double> raw, ours, free_axes;
+  int within = 0, axes = 0;
+
+  void add(const TumbleRecording& tumble, const std::vector<RateState>& states) {
+    for (std::size_t k = 0; k < states.size(); ++k) {
+      if (tumble.hidden[k].isZero()) continue;
+      const Vector3d error = states[k].w_WI_I_rad_s - tumble.truth[k];
+      raw.push_back((tumble.samples[k].angular_velocity_rad_s - tumble.truth[k]).norm());
+      ours.push_back(error.norm());
+      for (int j = 0; j < 3; ++j) {
+        ++axes;
+        within += std::abs(error[j]) <= 3.0 * std::sqrt(states[k].covariance_rad2_s2(j, j));
+        if (tumble.hidden[k][j] == 0.0) free_axes.push_back(std::abs(error[j]));
+      }
+    }
+  }
+  double share_within() const { return static_cast<double>(within) / axes; }
+};
+
+double quantile(std::vector<double> values, double share) {
+  std::sort(values.begin(), values.end());
+  return values.at(static_cast<std::size_t>(share * static_cast<double>(values.size() - 1)));
+}
+
+Pool run(double tilt, const RateSmoother::Params& params, std::uint64_t devices = 10) {
+  Pool pool;
+  for (std::uint64_t seed = 1; seed <= devices; ++seed) {
+    TumbleOptions options;
+    options.seed = seed;
+    if (tilt > 0.0) options.gyro_rows = drawn_rows(seed, tilt);
+    const TumbleRecording tumble = make_tumble(options);
+    std::vector<RateState> states;
+    RateReport report;
+    EXPECT_TRUE(RateSmoother(params).estimate(tumble.samples, states, report).ok());
+    pool.add(tumble, states);
+  }
+  return pool;
+}
+
+TEST(RateElements, ATiltedRailIsReadAsWellAsAnUprightOne) {
+  const Pool upright = run(0.0, {}), tilted = run(0.02, {}), steep = run(0.05, {});
+  ASSERT_GT(tilted.ours.size(), 1000u);
+  EXPECT_LT(quantile(tilted.ours, 0.5), 0.02 * quantile(tilted.raw, 0.5));
+  EXPECT_LT(quantile(tilted.ours, 0.5), 1.3 * quantile(upright.ours, 0.5));
+  EXPECT_LT(quantile(steep.ours, 0.5), 1.5 * quantile(upright.ours, 0.5));
+  EXPECT_LT(quantile(tilted.ours, 0.99), 1.3 * quantile(upright.ours, 0.99));
+  // what the elements that clip hide on the axes beside them is given back: 2 % of several rad/s, uncorrected
+  EXPECT_LT(quantile(tilted.free_axes, 0.5), 0.02);
+}
+
+TEST(RateElements, TheCovarianceHoldsTheErrorAndIsNotTooWide) {
+  // half of these tumbles' clipped samples are in or beside impacts, where the upright rail holds 98.4 % too
+  const double upright = run(0.0, {}).share_within();
+  for (const double tilt : {0.02, 0.05}) {
+    const double share = run(tilt, {}).share_within();
+    EXPECT_GT(share, std::min(0.985, upright - 0.005)) << tilt;
+    EXPECT_LT(share, 0.9999) << tilt;
+  }
+}
+
+// Negative control: the same smoother without the planes and sure of upright rails believes the readings.
+TEST(RateElements, WithoutPlanesItWouldBeSilentlyWrong) {
+  RateSmoother::Params params;
+  params.planes.distance_min_rad_s = 1000.0;
+  params.model.element_sigma = 1e-6;
+  const Pool pool = run(0.02, params, 3);
+  EXPECT_GT(quantile(pool.ours, 0.5), 0.5 * quantile(pool.raw, 0.5));
+  EXPECT_LT(pool.share_within(), 0.8);
+}
+
+TEST(RateElements, WhatIsLearntOfTheElementsIsNearTheTruth) {
+  TumbleOptions options;
+  options.gyro_rows = drawn_rows(4, 0.04);
+  const TumbleRecording tumble = make_tumble(options);
+  std::vector<RateState> states;
+  RateReport report;
+  ASSERT_TRUE(RateSmoother({}).estimate(tumble.samples, states, report).ok());
+  EXPECT_FALSE(report.rails_upright);
+  ASSERT_TRUE(report.planes.any());
+  double known = 0.0;
+  for (int i = 0; i < 6; ++i) {
+    const int j = i / 2, k = (j + 1 + i % 2) % 3, at = RigConstants::kElements + i;
+    const double sigma = std::sqrt(report.calibration.covariance(at, at));
+    EXPECT_LT(std::abs(report.calibration.constants.elements[i] - options.gyro_rows(j, k)), 4.0 * sigma + 1e-3) << i;
+    known += sigma < 0.005 ? 1.0 : 0.0;
+  }
+  EXPECT_GE(known, 3.0);
+}
+
+TEST(RateElements, AnUprightDeviceIsTakenForOne) {
+  const TumbleRecording tumble = make_tumble({});
+  std::vector<RateState> states;
+  RateReport report;
+  ASSERT_TRUE(RateSmoother({}).estimate(tumble.samples, states, report).ok());
+  EXPECT_TRUE(report.rails_upright);
+}
+
+}  // namespace
+}  // namespace tumble
