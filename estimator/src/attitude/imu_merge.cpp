@@ -21,7 +21,6 @@ constexpr int kRecovering = 3;           // so many units tell the rate by their
 constexpr double kUnharmed = 0.8;        // of the accelerometer's range, up to which its errors are learnt
 constexpr int kOffset = ImuMerge::kErrors - 1;
 constexpr double kArmSquareMin_m2_s3 = 1.0;  // 1 m/s^2 for a second: a bias of 0.05 makes 0.05 of the share
-constexpr double kMisfitTau_s = 0.5;
 constexpr double kHeld_s = 0.03;
 constexpr double kWindowMax_s = 0.05;  // over a longer one a central difference says nothing
 
@@ -80,22 +79,6 @@ ImuMerge::ImuMerge(const Params& p) : params_(p), forces_(force_params(p)), reco
     require_within("T_CI", (T.linear() * T.linear().transpose() - Eigen::Matrix3d::Identity()).norm(), 0.0, 1e-6);
     p_C_m_ += T.translation() / p.count;
   }
-}
-
-Eigen::Vector3d ImuMerge::median(const Vectors& values, const Flags& which) {
-  Eigen::Vector3d out = Eigen::Vector3d::Zero();
-  for (int axis = 0; axis < 3; ++axis) {
-    std::array<double, kImus> sorted;
-    sorted.fill(std::numeric_limits<double>::infinity());
-    std::size_t count = 0;
-    for (std::size_t k = 0; k < which.size(); ++k) {
-      if (which[k]) sorted[count++] = values[k][axis];
-    }
-    if (count == 0) return out;
-    std::sort(sorted.begin(), sorted.end());
-    out[axis] = 0.5 * (sorted[(count - 1) / 2] + sorted[count / 2]);
-  }
-  return out;
 }
 
 Status ImuMerge::step(std::span<const ImuSample> samples, State& state, ImuSample& merged) const {
@@ -248,78 +231,6 @@ void ImuMerge::close_window(const Flags& present, TimeNs time_ns, State& state) 
   state.window = {};
   state.all_used = true;
   ++state.windows;
-}
-
-/// Triads that repeat themselves while the median of all moves on.
-void ImuMerge::watch_holds(const Flags& present, const Vectors& rates, const Vectors& forces, double dt_s,
-                           TimeNs time_ns, State& state) const {
-  const auto watch = [&](const Eigen::Vector3d& reading, const Eigen::Vector3d& others, Hold& hold) {
-    const bool same = state.samples > 0 && reading == hold.reading;
-    hold.held_s = same ? hold.held_s + dt_s : 0.0;
-    if (!same) {
-      hold.reading = reading;
-      hold.others = others;
-      hold.since_ns = time_ns;
-    }
-    return same;
-  };
-  Flags counted = present;
-  for (std::size_t k = 0; k < counted.size(); ++k) counted[k] = counted[k] && !state.units[k].left_out_for_long();
-  const Eigen::Vector3d middle_rate = median(rates, counted), middle_force = median(forces, counted);
-  for (std::size_t k = 0; k < present.size(); ++k) {
-    if (!present[k]) continue;
-    Unit& unit = state.units[k];
-    const bool rate_same = watch(rates[k], middle_rate, unit.rate_hold);
-    const bool force_same = watch(forces[k], middle_force, unit.force_hold);
-    const bool railed = rates[k].cwiseAbs().maxCoeff() >= params_.gyro_range_rad_s ||
-                        forces[k].cwiseAbs().maxCoeff() >= params_.accel_range_m_s2;
-    const bool rate_frozen = unit.rate_hold.held_s >= params_.frozen_after_s &&
-                             (middle_rate - unit.rate_hold.others).norm() > params_.frozen_rate_rad_s;
-    const bool force_frozen = unit.force_hold.held_s >= params_.frozen_after_s &&
-                              (middle_force - unit.force_hold.others).norm() > params_.frozen_force_m_s2;
-    unit.thawing_s = rate_same || force_same ? 0.0 : unit.thawing_s + dt_s;
-    if (unit.frozen) {
-      unit.frozen = unit.thawing_s < params_.thawed_after_s;
-    } else if (!railed && (rate_frozen || force_frozen)) {
-      unit.frozen = true;
-      unit.frozen_since_ns = rate_frozen ? unit.rate_hold.since_ns : unit.force_hold.since_ns;
-    }
-  }
-}
-
-/// Units that are off from the others for long.
-void ImuMerge::watch_misfits(const Flags& present, TimeNs time_ns, State& state) const {
-  if (std::count(present.begin(), present.end(), true) < kRecovering) return;  // of two, nobody is to blame
-  const double h = state.window.length_s, share = -std::expm1(-h / kMisfitTau_s);
-  Vectors rates{}, forces{};
-  bool railed = false;
-  for (std::size_t k = 0; k < present.size(); ++k) {
-    const ImuAverage& window = state.units[k].window;
-    if (!present[k] || window.readings == 0) continue;
-    rates[k] = window.mean.angular_velocity_rad_s;
-    forces[k] = window.mean.specific_force_m_s2;
-    railed |= window.rate_peak_rad_s >= kUnharmed * params_.gyro_range_rad_s ||
-              window.force_peak_m_s2 >= params_.hidden_share * params_.accel_range_m_s2;
-  }
-  if (railed) return;
-  const Eigen::Vector3d middle_rate = median(rates, present), middle_force = median(forces, present);
-  state.turning_rad_s += share * (middle_rate.norm() - state.turning_rad_s);
-  for (std::size_t k = 0; k < present.size(); ++k) {
-    if (!present[k] || state.units[k].window.readings == 0) continue;
-    Unit& unit = state.units[k];
-    const double turned = (params_.T_CI[k].translation() - p_C_m_).norm() * 2.0 * middle_rate.squaredNorm();
-    const double force = std::max(0.0, (forces[k] - middle_force).norm() - turned);
-    unit.misfit_rate_rad_s += share * ((rates[k] - middle_rate).norm() - unit.misfit_rate_rad_s);
-    unit.misfit_force_m_s2 += share * (force - unit.misfit_force_m_s2);
-    const double rate_bound = params_.disagree_rate_rad_s + params_.disagree_rate_share * state.turning_rad_s;
-    const bool off = unit.misfit_rate_rad_s > rate_bound || unit.misfit_force_m_s2 > params_.disagree_force_m_s2;
-    if (off && unit.misfits_s == 0.0) unit.misfits_since_ns = time_ns;
-    unit.misfits_s = off ? unit.misfits_s + h : 0.0;
-    if (unit.misfits_s < params_.disagrees_after_s) continue;
-    unit.disagrees = true;
-    unit.disagrees_since_ns = unit.misfits_since_ns;
-    break;  // the median is another one without it
-  }
 }
 
 /// A blow may take a unit to its rail for less than a sample. On a rigid body one unit tells what the others feel,
