@@ -309,8 +309,8 @@ void read_header(const std::filesystem::path& path, Kind& kind, std::string& met
 
 }  // namespace
 
-void write_estimate(const std::filesystem::path& folder, const std::string& method, Kind kind,
-                    const Estimate& estimate, const std::string& sensors_digest) {
+void write_estimate(const std::filesystem::path& folder, const std::string& method, Kind kind, const Estimate& estimate,
+                    const std::string& sensors_digest) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw BadInput(folder.string() + ": cannot be made: " + error.message());

@@ -195,7 +195,8 @@ std::string state_problem(const sim::Truth& truth) {
 }  // namespace
 
 std::string find_problem(const sim::Sensors& sensors) {
-  std::string problem = in("sensors", first_of({text_problem("robot", sensors.robot), at_least("sphere_radius_m", sensors.sphere_radius_m, 0.0),
+  std::string problem = in("sensors", first_of({text_problem("robot", sensors.robot),
+                                                at_least("sphere_radius_m", sensors.sphere_radius_m, 0.0),
                                                 at_least("gravity_m_s2", sensors.gravity_m_s2, 0.0)}));
   for (std::size_t i = 0; i < sensors.imus.size() && problem.empty(); ++i) {
     problem = in("sensors/imus/" + std::to_string(i), imu_problem(sensors.imus[i]));

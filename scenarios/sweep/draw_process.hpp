@@ -26,7 +26,8 @@ struct DrawTask {
 std::vector<Outcome> without_answer(const DrawTask& task, const std::string& status, const std::string& message);
 
 /// Simulates one draw, without lidars where no method reads them, and tells `fd` what came of it, one message a line: a
-/// rejection when it cannot be drawn or simulated, or an outcome per run as each ends, and an empty message at the end. Runs in a process of its own.
+/// rejection when it cannot be drawn or simulated, or an outcome per run as each ends, and an empty message at the end.
+/// Runs in a process of its own.
 void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int fd);
 
 /// Runs one method in a process of its own for at most `timeout_s` of wall time. A crash, a time-out or an exception is

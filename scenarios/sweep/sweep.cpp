@@ -29,7 +29,7 @@ struct Worker {
   Process process;
   double deadline_s;
   std::string buffer;
-  bool finished = false;   // said that it is done, or that the draw was rejected
+  bool finished = false;  // said that it is done, or that the draw was rejected
 };
 
 std::vector<const Method*> chosen_methods(const Suite& suite) {
@@ -73,7 +73,11 @@ void claim(Results& results, const DataRoot& data, const Suite& suite, const std
 class Sweep {
  public:
   Sweep(const DataRoot& data, const Suite& suite, Results& results, const SweepOptions& options)
-      : data_(data), suite_(suite), results_(results), options_(options), started_s_(now_s()),
+      : data_(data),
+        suite_(suite),
+        results_(results),
+        options_(options),
+        started_s_(now_s()),
         settings_(settings_of(suite)) {
     next_.seed = suite.first_seed;
   }

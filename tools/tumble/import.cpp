@@ -83,7 +83,8 @@ Table table_of(const Imported& imported) {
 int import_from(const Session& session, const ImportOptions& options) {
   const std::string format = format_of(options);
   require_fitting(options, format);
-  prepare_output(options.out, std::vector<std::filesystem::path>{options.path, options.imu, options.times, options.reference});
+  prepare_output(options.out,
+                 std::vector<std::filesystem::path>{options.path, options.imu, options.times, options.reference});
   Imported imported = import_format(session, options, format);
   if (!options.imu.empty()) {
     scenarios::attach_imus(imported,

@@ -53,8 +53,9 @@ void require_own(const Options& options, const sim::Sensors& sensors) {
   const std::string made_from = scenarios::estimated_sensors(options.estimate);
   const std::string own = scenarios::digest(sensors, nullptr);
   if (made_from.empty() || made_from == own) return;
-  throw scenarios::BadInput(options.estimate.string() + ": was made from another recording (its sensors have the digest " +
-                            made_from + ", those of " + options.recording.string() + " " + own + ")");
+  throw scenarios::BadInput(options.estimate.string() +
+                            ": was made from another recording (its sensors have the digest " + made_from +
+                            ", those of " + options.recording.string() + " " + own + ")");
 }
 
 /// What was seen and what is claimed must share some time, and the truth must know something.
@@ -66,8 +67,9 @@ void require_common_time(const Options& options, const scenarios::Estimate& esti
   const double first_s = 1e-9 * static_cast<double>(estimate.poses.front().time_ns);
   const double last_s = 1e-9 * static_cast<double>(estimate.poses.back().time_ns);
   if (first_s <= end_s && last_s >= 0.0) return;
-  throw scenarios::BadInput(fmt::format("{}: poses from {:.3f} s to {:.3f} s, but the truth of {} goes from 0 to {:.3f} s: another clock?",
-                                        options.estimate.string(), first_s, last_s, options.recording.string(), end_s));
+  throw scenarios::BadInput(
+      fmt::format("{}: poses from {:.3f} s to {:.3f} s, but the truth of {} goes from 0 to {:.3f} s: another clock?",
+                  options.estimate.string(), first_s, last_s, options.recording.string(), end_s));
 }
 
 int score_estimate(const Session& session, const Options& options) {

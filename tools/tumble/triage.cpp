@@ -5,8 +5,8 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <memory>
-#include <optional>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/scoring/metric_sense.hpp"
@@ -104,8 +104,7 @@ int run_triage(const Session& session, const Options& options) {
   const std::uint64_t seed = parse_seed(options.seed);
   const scenarios::Method& method = choose(options.method);
   const std::string metric = metric_of(method, options);
-  if (!options.metric.empty() && !options.limit)
-    throw BadInput("--metric needs --limit: from where on a run fails");
+  if (!options.metric.empty() && !options.limit) throw BadInput("--metric needs --limit: from where on a run fails");
   scenarios::TriageOptions triage_options;
   if (options.limit && !std::isfinite(*options.limit)) throw BadInput("--limit is not a finite number");
   if (options.limit) triage_options.failure = {metric, *options.limit};

@@ -171,7 +171,8 @@ Message from_cdr(Bytes& bytes) {
     CdrReader reader(bytes);
     fields(reader, message);
   } catch (const eprosima::fastcdr::exception::Exception&) {  // "not enough memory", for want of bytes
-    throw BadMessage("its " + std::to_string(bytes.size()) + " bytes end before its fields do, or hold no such message");
+    throw BadMessage("its " + std::to_string(bytes.size()) +
+                     " bytes end before its fields do, or hold no such message");
   }
   return message;
 }

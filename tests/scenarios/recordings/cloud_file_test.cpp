@@ -63,7 +63,8 @@ TEST_F(CloudFile, WordsOfAnAsciiPcdAreNumbers) {
 
 TEST_F(CloudFile, SizesOfACompressedPcdAreHeldAgainstTheFile) {
   const auto with = [&](std::uint32_t compressed, std::uint32_t plain) {
-    return complaint_of("a.pcd", kPcd + "binary_compressed\n" + bytes(compressed) + bytes(plain) + std::string(20, 'x'));
+    return complaint_of("a.pcd",
+                        kPcd + "binary_compressed\n" + bytes(compressed) + bytes(plain) + std::string(20, 'x'));
   };
   EXPECT_THAT(with(20, 0), HasSubstr("states 0 bytes of points behind the compression, must be 24"));
   EXPECT_THAT(with(20, 4000000000u), HasSubstr("must be 24"));

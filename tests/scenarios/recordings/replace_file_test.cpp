@@ -110,7 +110,7 @@ TEST_F(ReplaceFile, AnInputIsKnownUnderAnyName) {
   std::filesystem::create_symlink("in", folder_ / "link");
   std::filesystem::create_hard_link(folder_ / "in", folder_ / "hard");
   const std::vector<std::filesystem::path> inputs = {"", folder_ / "none", folder_ / "in"};
-  for (const char* name : {"in", "link", "hard", "../" }) {
+  for (const char* name : {"in", "link", "hard", "../"}) {
     const std::filesystem::path output = name == std::string("../") ? folder_ / "." / "in" : folder_ / name;
     EXPECT_THAT(fixture::complaint([&] { require_not_an_input(output, inputs); }), HasSubstr("both read and written"))
         << output;
@@ -150,8 +150,9 @@ TEST_F(ReplaceFile, AFolderIsFreshOrRefusedAndGoesWithoutBeingKept) {
   const rlimit limit{4096, 4096};
   setrlimit(RLIMIT_FSIZE, &limit);
   const sim::Recording recording = fixture::recording();
-  const std::string message =
-      fixture::complaint([&] { export_ros1_bag(recording.sensors, {0, &recording.truth}, folder / "a.bag"); });
+  const std::string message = fixture::complaint([&] {
+    export_ros1_bag(recording.sensors, {0, &recording.truth}, folder / "a.bag");
+  });
   std::cerr << message;
   std::exit(message.empty() || !std::filesystem::is_empty(folder) ? 1 : 0);
 }
