@@ -262,7 +262,7 @@ void read_tum(const std::filesystem::path& path, std::vector<PoseState>& poses) 
   }
 }
 
-json header_of(const std::string& method, Kind kind, const Estimate& estimate) {
+json header_of(const std::string& method, Kind kind, const Estimate& estimate, const std::string& sensors_digest) {
   json health = json::object();
   for (const auto& [name, value] : estimate.health) health[name] = value;
   return {{"format", kFormatVersion},
@@ -273,7 +273,8 @@ json header_of(const std::string& method, Kind kind, const Estimate& estimate) {
            {{"trouble", to_string(estimate.status.trouble)},
             {"field", estimate.status.field},
             {"message", estimate.status.message()}}},
-          {"health", health}};
+          {"health", health},
+          {"sensors_digest", sensors_digest}};
 }
 
 template <typename Enum>
@@ -308,8 +309,8 @@ void read_header(const std::filesystem::path& path, Kind& kind, std::string& met
 
 }  // namespace
 
-void write_estimate(const std::filesystem::path& folder, const std::string& method, Kind kind,
-                    const Estimate& estimate) {
+void write_estimate(const std::filesystem::path& folder, const std::string& method, Kind kind, const Estimate& estimate,
+                    const std::string& sensors_digest) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw BadInput(folder.string() + ": cannot be made: " + error.message());
@@ -356,9 +357,18 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
 
   // last: a folder with this file is complete
   std::ofstream file(folder / "estimate.json");
-  file << header_of(method, kind, estimate).dump(2) << '\n';
+  file << header_of(method, kind, estimate, sensors_digest).dump(2) << '\n';
   file.close();
   if (!file) throw BadInput((folder / "estimate.json").string() + ": cannot be written");
+}
+
+std::string estimated_sensors(const std::filesystem::path& path) {
+  if (!std::filesystem::is_directory(path)) return "";
+  std::ifstream file(path / "estimate.json");
+  const json header = json::parse(file, nullptr, false);
+  if (!header.is_object() || !header.contains("sensors_digest")) return "";
+  const json& digest = header.at("sensors_digest");
+  return digest.is_string() ? digest.get<std::string>() : "";
 }
 
 Estimate read_estimate(const std::filesystem::path& path, Kind& kind, std::string& method, Frame tum_frame) {

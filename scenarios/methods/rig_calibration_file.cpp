@@ -10,6 +10,7 @@
 #include <string>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/recordings/replace_file.hpp"
 
 namespace tumble::scenarios {
 
@@ -17,6 +18,7 @@ namespace {
 
 using nlohmann::json;
 
+constexpr double kMost = 1e6;
 constexpr const char* kKeys[] = {"lever_arm_m", "gyro_bias_rad_s", "accel_bias_m_s2", "inertia",
                                  "covariance",  "gyro_rail_rad_s", "accel_rail_m_s2"};
 // Of files since the gyro's elements are learnt; the covariance of those before has that many rows.
@@ -56,6 +58,10 @@ class Reader {
     const json& values = array(key, static_cast<std::size_t>(into.size()));
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (!values[i].is_number() || !std::isfinite(values[i].get<double>())) complain(key, "not a number");
+      // no constant of a rig comes near: it would drown everything else
+      if (std::abs(values[i].get<double>()) > kMost) {
+        complain(key, "is " + values[i].dump() + ", must be at most 1e6 in magnitude");
+      }
       into.data()[i] = values[i].get<double>();
     }
   }
@@ -107,16 +113,7 @@ void write_learnt_rig(const std::filesystem::path& path, const LearntRig& rig) {
   object["covariance"] = numbers(rig.calibration.covariance);
   object["gyro_rail_rad_s"] = rails(rig, 0);
   object["accel_rail_m_s2"] = rails(rig, 3);
-  const std::filesystem::path temporary = path.string() + ".part";
-  std::ofstream file(temporary);
-  file << object.dump(1) << '\n';
-  file.close();
-  std::error_code failed;
-  if (file) std::filesystem::rename(temporary, path, failed);
-  if (!file || failed) {
-    std::filesystem::remove(temporary, failed);
-    throw BadInput(path.string() + ": cannot be written");
-  }
+  replace_file(path, object.dump(1) + "\n");
 }
 
 LearntRig read_learnt_rig(const std::filesystem::path& path) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/table_file.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -86,7 +87,9 @@ Table Table::read(const std::filesystem::path& path, char separator, const std::
   bool header_due = !header.empty();
   while (std::getline(file, line)) {
     ++number;
+    if (number == 1 && line.starts_with("\xef\xbb\xbf")) line.erase(0, 3);  // as editors on Windows begin a file
     if (!line.empty() && line.back() == '\r') line.pop_back();
+    if (separator == ' ') std::replace(line.begin(), line.end(), '\t', ' ');
     if (header_due) {
       if (line != header) throw BadInput(path.string() + ":1: header is '" + line + "', must be '" + header + "'");
       header_due = false;

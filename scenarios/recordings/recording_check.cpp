@@ -14,6 +14,7 @@ using Lengths = std::initializer_list<std::pair<const char*, std::size_t>>;
 
 /// Rotations and quaternions that have been written with few digits pass, a wrong order of components does not.
 constexpr double kUnitTolerance = 1e-6;
+constexpr std::int64_t kTimeMax_ns = 100'000'000'000'000'000;
 
 std::string in(const std::string& place, const std::string& problem) {
   return problem.empty() ? "" : place + ": " + problem;
@@ -60,10 +61,34 @@ std::string optional_length_problem(const char* name, std::size_t length, std::s
          " or none";
 }
 
+/// A name as it may stand in a table: UTF-8 without control characters.
+std::string text_problem(const char* name, const std::string& text) {
+  std::size_t following = 0;
+  for (const unsigned char c : text) {
+    const bool continues = (c & 0xc0) == 0x80;
+    if (continues != (following > 0) || (following == 0 && (c < 0x20 || c == 0x7f)) || c >= 0xf8) {
+      return std::string(name) + " is not plain text in UTF-8";
+    }
+    following = continues ? following - 1 : c >= 0xf0 ? 3 : c >= 0xe0 ? 2 : c >= 0xc0 ? 1 : 0;
+  }
+  return following == 0 ? "" : std::string(name) + " is not plain text in UTF-8";
+}
+
+/// Times count from the start of the recording: beyond three years they are another clock's, and their differences may
+/// not fit.
+std::string times_problem(const char* name, const std::vector<std::int64_t>& times_ns) {
+  const auto far = [](std::int64_t t) { return t > kTimeMax_ns || t < -kTimeMax_ns; };
+  const auto found = std::find_if(times_ns.begin(), times_ns.end(), far);
+  if (found == times_ns.end()) return "";
+  return std::string(name) + " is " + std::to_string(*found) + " in row " + std::to_string(found - times_ns.begin()) +
+         ", must be within 1e17 ns of the recording's start";
+}
+
 std::string imu_problem(const sim::ImuRecord& imu) {
   const std::size_t n = imu.time_ns.size();
   return first_of(
-      {positive("period_ns", imu.period_ns), at_least("stated_gyro_range_rad_s", imu.stated_gyro_range_rad_s, 0.0),
+      {text_problem("name", imu.name), text_problem("device", imu.device), times_problem("time_ns", imu.time_ns),
+       positive("period_ns", imu.period_ns), at_least("stated_gyro_range_rad_s", imu.stated_gyro_range_rad_s, 0.0),
        at_least("stated_accel_range_m_s2", imu.stated_accel_range_m_s2, 0.0),
        at_least("gyro_noise_rad_s_sqrt_hz", imu.gyro_noise_rad_s_sqrt_hz, 0.0),
        at_least("accel_noise_m_s2_sqrt_hz", imu.accel_noise_m_s2_sqrt_hz, 0.0), pose_problem("T_BI", imu.T_BI),
@@ -104,7 +129,9 @@ std::string point_times_problem(const sim::LidarRecord& lidar) {
 }
 
 std::string lidar_problem(const sim::LidarRecord& lidar) {
-  return first_of({positive("sweep_period_ns", lidar.sweep_period_ns), pose_problem("T_BL", lidar.T_BL),
+  return first_of({text_problem("name", lidar.name), text_problem("device", lidar.device),
+                   times_problem("sweep_start_ns", lidar.sweep_start_ns),
+                   positive("sweep_period_ns", lidar.sweep_period_ns), pose_problem("T_BL", lidar.T_BL),
                    length_problem({{"position_L_m", lidar.position_L_m.size()},
                                    {"range_m", lidar.range_m.size()},
                                    {"intensity", lidar.intensity.size()},
@@ -173,7 +200,8 @@ std::string state_problem(const sim::Truth& truth) {
 }  // namespace
 
 std::string find_problem(const sim::Sensors& sensors) {
-  std::string problem = in("sensors", first_of({at_least("sphere_radius_m", sensors.sphere_radius_m, 0.0),
+  std::string problem = in("sensors", first_of({text_problem("robot", sensors.robot),
+                                                at_least("sphere_radius_m", sensors.sphere_radius_m, 0.0),
                                                 at_least("gravity_m_s2", sensors.gravity_m_s2, 0.0)}));
   for (std::size_t i = 0; i < sensors.imus.size() && problem.empty(); ++i) {
     problem = in("sensors/imus/" + std::to_string(i), imu_problem(sensors.imus[i]));

@@ -2,10 +2,12 @@
 #include "scenarios/recordings/replace_file.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -16,65 +18,157 @@ namespace tumble::scenarios {
 
 namespace {
 
-[[noreturn]] void fail(const std::filesystem::path& path, int error) {
-  throw BadInput(path.string() + ": cannot be written: " + std::generic_category().message(error));
+namespace fs = std::filesystem;
+
+constexpr int kLinksMax = 40;  // as the system follows
+
+[[noreturn]] void fail(const fs::path& path, const std::string& reason) {
+  throw BadInput(path.string() + ": cannot be written: " + reason);
 }
 
-/// A new file beside `path`, removed again unless it was moved into place.
-class TemporaryFile {
+[[noreturn]] void fail(const fs::path& path, int error) {
+  fail(path, std::generic_category().message(error));
+}
+
+/// Closes itself.
+class Descriptor {
  public:
-  explicit TemporaryFile(const std::filesystem::path& path) : path_(path) {
-    std::string stem(".");
-    stem.append(path.filename().string()).append(".").append(std::to_string(getpid())).append(".");
-    for (int attempt = 0; attempt < 1000 && descriptor_ < 0; ++attempt) {
-      name_ = path.parent_path() / (stem + std::to_string(attempt) + ".tmp");
-      descriptor_ = open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-      if (descriptor_ < 0 && errno != EEXIST) fail(path_, errno);
-    }
-    if (descriptor_ < 0) fail(path_, EEXIST);
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() {
+    if (number_ >= 0) ::close(number_);
   }
-  ~TemporaryFile() {
-    if (descriptor_ >= 0) close(descriptor_);
-    if (!moved_) unlink(name_.c_str());
-  }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-
-  void write_all(std::span<const std::byte> bytes) {
-    while (!bytes.empty()) {
-      const ssize_t written =
-          write(descriptor_, bytes.data(), std::min<std::size_t>(bytes.size(), std::size_t{1} << 30));
-      if (written < 0 && errno == EINTR) continue;
-      if (written < 0) fail(path_, errno);
-      bytes = bytes.subspan(static_cast<std::size_t>(written));
-    }
-  }
-
-  void move_into_place() {
-    // a full disk may show only here, when the system has promised more than it has
-    if (fsync(descriptor_) < 0) fail(path_, errno);
-    if (close(std::exchange(descriptor_, -1)) < 0) fail(path_, errno);
-    if (rename(name_.c_str(), path_.c_str()) < 0) fail(path_, errno);
-    moved_ = true;
-  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int get() const { return number_; }
+  bool close() { return ::close(std::exchange(number_, -1)) == 0; }
 
  private:
-  std::filesystem::path path_;
-  std::filesystem::path name_;
-  int descriptor_ = -1;
-  bool moved_ = false;
+  int number_;
 };
+
+std::optional<struct stat> status_of(const fs::path& path) {
+  struct stat found {};
+  if (stat(path.c_str(), &found) != 0) return std::nullopt;
+  return found;
+}
+
+/// Where a file of this name is: behind its symbolic links, also when there is nothing at their end.
+fs::path behind_links(const fs::path& path) {
+  fs::path place = path;
+  std::error_code error;
+  for (int links = 0; fs::is_symlink(fs::symlink_status(place, error)); ++links) {
+    if (links == kLinksMax) fail(path, ELOOP);
+    const fs::path target = fs::read_symlink(place, error);
+    if (error) fail(path, error.message());
+    place = target.is_absolute() ? target : place.parent_path() / target;
+  }
+  return place;
+}
+
+void require_replaceable(const fs::path& given, const fs::path& place) {
+  const std::optional<struct stat> old = status_of(place);
+  if (!old) return;
+  if (S_ISDIR(old->st_mode)) fail(given, EISDIR);
+  if (!S_ISREG(old->st_mode)) fail(given, "it is no regular file, but a device, a pipe or a socket");
+  if (access(place.c_str(), W_OK) != 0) fail(given, errno);
+}
 
 }  // namespace
 
-void replace_file(const std::filesystem::path& path, std::span<const std::byte> bytes) {
-  TemporaryFile file(path);
-  file.write_all(bytes);
+OutputFile::OutputFile(const fs::path& path) : given_(path), place_(behind_links(path)) {
+  require_replaceable(given_, place_);
+  std::string stem(".");
+  stem.append(place_.filename().string()).append(".").append(std::to_string(getpid())).append(".");
+  for (int attempt = 0; attempt < 1000; ++attempt) {
+    unfinished_ = place_.parent_path() / (stem + std::to_string(attempt) + ".tmp");
+    const Descriptor file(open(unfinished_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+    if (file.get() >= 0) return;
+    if (errno != EEXIST) fail(given_, errno);
+  }
+  fail(given_, EEXIST);
+}
+
+OutputFile::~OutputFile() {
+  if (!moved_) unlink(unfinished_.c_str());
+}
+
+void OutputFile::write(std::span<const std::byte> bytes) {
+  Descriptor file(open(unfinished_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC));
+  if (file.get() < 0) fail(given_, errno);
+  while (!bytes.empty()) {
+    const ssize_t written =
+        ::write(file.get(), bytes.data(), std::min<std::size_t>(bytes.size(), std::size_t{1} << 30));
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail(given_, errno);
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+  if (!file.close()) fail(given_, errno);
+}
+
+void OutputFile::move_into_place() {
+  Descriptor file(open(unfinished_.c_str(), O_RDONLY | O_CLOEXEC));
+  if (file.get() < 0) fail(given_, errno);
+  if (const std::optional<struct stat> old = status_of(place_)) {
+    // what became of the place in the meantime counts too
+    require_replaceable(given_, place_);
+    const std::optional<struct stat> own = status_of(unfinished_);
+    const bool same_owner = own && own->st_uid == old->st_uid && own->st_gid == old->st_gid;
+    if (!same_owner && fchown(file.get(), old->st_uid, old->st_gid) != 0) {
+      fail(given_, "it belongs to somebody else, and its owner cannot be kept");
+    }
+    if (fchmod(file.get(), old->st_mode & 07777) != 0) fail(given_, errno);
+  }
+  // a full disk may show only here, when the system has promised more than it has
+  if (fsync(file.get()) != 0 || !file.close()) fail(given_, errno);
+  if (rename(unfinished_.c_str(), place_.c_str()) != 0) fail(given_, errno);
+  moved_ = true;
+}
+
+OutputFolder::OutputFolder(const fs::path& folder) : folder_(folder) {
+  std::error_code error;
+  made_ = fs::create_directories(folder, error);
+  if (!error && !fs::is_directory(folder)) error = std::make_error_code(std::errc::not_a_directory);
+  if (error) fail(folder, error.message());
+  const bool empty = fs::is_empty(folder, error);
+  if (error) fail(folder, error.message());
+  if (!empty) {
+    throw BadInput(folder.string() +
+                   ": holds files already, which would be taken for this run's; name a new folder or empty this one");
+  }
+}
+
+OutputFolder::~OutputFolder() {
+  if (kept_) return;
+  std::error_code ignored;
+  if (made_) {
+    fs::remove_all(folder_, ignored);
+    return;
+  }
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_, ignored)) {
+    fs::remove_all(entry.path(), ignored);
+  }
+}
+
+void replace_file(const fs::path& path, std::span<const std::byte> bytes) {
+  OutputFile file(path);
+  file.write(bytes);
   file.move_into_place();
 }
 
-void replace_file(const std::filesystem::path& path, std::string_view text) {
+void replace_file(const fs::path& path, std::string_view text) {
   replace_file(path, std::as_bytes(std::span(text.data(), text.size())));
+}
+
+void require_not_an_input(const fs::path& output, std::span<const fs::path> inputs) {
+  const std::optional<struct stat> own = status_of(output);
+  if (!own) return;
+  if (!S_ISREG(own->st_mode) && !S_ISDIR(own->st_mode)) require_replaceable(output, output);
+  for (const fs::path& input : inputs) {
+    const std::optional<struct stat> other = input.empty() ? std::nullopt : status_of(input);
+    if (other && other->st_dev == own->st_dev && other->st_ino == own->st_ino) {
+      throw BadInput(output.string() + ": is both read and written; name another output");
+    }
+  }
 }
 
 }  // namespace tumble::scenarios

@@ -6,12 +6,52 @@
 #include <span>
 #include <string_view>
 
+/// Everything that is written goes through here: beside its place and then renamed, only over regular files.
 namespace tumble::scenarios {
 
-/// Puts `bytes` into a file: written under a temporary name in the same folder, flushed to the disk, then renamed, so
-/// that the path holds the old file or the whole new one. Throws BadInput with the path and the system's reason (no
-/// such folder, no permission, disk full); the temporary file is then removed.
+/// A file in the making: a new one beside its place, removed again unless it was moved there. A symbolic link is
+/// followed. What stands there already must be a regular file that may be written; its mode and owner are kept. Throws
+/// BadInput with the path and the system's reason (no such folder, no permission, disk full, a device, a pipe).
+class OutputFile {
+ public:
+  explicit OutputFile(const std::filesystem::path& path);
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  /// Where it is in the making, for libraries that write by name.
+  const std::filesystem::path& unfinished() const { return unfinished_; }
+  void write(std::span<const std::byte> bytes);
+  /// Flushes it to the disk and renames it, so that the path holds the old file or the whole new one.
+  void move_into_place();
+
+ private:
+  std::filesystem::path given_, place_, unfinished_;
+  bool moved_ = false;
+};
+
+/// A folder of outputs: absent, or empty. Throws BadInput when it holds anything: what an earlier run left would be
+/// taken for this one's. Unless it is kept, what came into it is removed again, and the folder itself where it was made
+/// here.
+class OutputFolder {
+ public:
+  explicit OutputFolder(const std::filesystem::path& folder);
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+  const std::filesystem::path& path() const { return folder_; }
+  void keep() { kept_ = true; }
+
+ private:
+  std::filesystem::path folder_;
+  bool made_ = false, kept_ = false;
+};
+
+/// Puts `bytes` into an OutputFile.
 void replace_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
 void replace_file(const std::filesystem::path& path, std::string_view text);
+
+/// Refuses an output that is one of the inputs, by whatever name (the same device and inode). Throws BadInput.
+void require_not_an_input(const std::filesystem::path& output, std::span<const std::filesystem::path> inputs);
 
 }  // namespace tumble::scenarios

@@ -66,10 +66,14 @@ bool attitudes_hold(const Estimate& estimate, const ScoringInput& input) {
   return reaches(estimate.attitudes, truth.last_ns());
 }
 
+/// No robot that rolls or tumbles comes so far from where it began: an estimate with one such pose is wrong.
+constexpr double kFarthest_m = 1e7;
+
 bool poses_hold(const Estimate& estimate, const ScoringInput& input) {
   const TruthTrack truth(*input.truth, estimate.frame);
   for (const PoseState& pose : estimate.poses) {
     if (!pose.p_WA_m.allFinite() || !pose.q_WA.coeffs().allFinite()) return false;
+    if (pose.p_WA_m.cwiseAbs().maxCoeff() > kFarthest_m) return false;
   }
   if (!reaches(estimate.poses, truth.last_ns())) return false;
   const PairedTrack track = pair_poses(estimate, truth);

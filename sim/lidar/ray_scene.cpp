@@ -41,7 +41,7 @@ struct MeshLabel {
   std::int32_t surface_id = kNothing;
   float reflectivity = 0.0f;
   bool as_quads = false;
-  const float* vertices = nullptr;       ///< of Embree's buffers
+  const float* vertices = nullptr;  ///< of Embree's buffers
   const std::uint32_t* faces = nullptr;
 
   Vector3f corner(std::uint32_t face, std::uint32_t i) const {

@@ -79,6 +79,23 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"metric of a triage",
               {"triage", "hill", "--seed", "1", "--method", "rate/raw", "--metric", "rate_error", "--limit", "1"},
               "metric"},
+        Wrong{"radius that is no number",
+              {"import", "absent.csv", "--robot", "sphere", "--radius", "nan", "-o", "x.h5"},
+              "nan is not within"},
+        Wrong{"period that is no number",
+              {"import", "absent", "--sweep-period", "nan", "-o", "x.h5"},
+              "nan is not within"},
+        Wrong{"limit that is no number",
+              {"triage", "roll", "--seed", "1", "--method", "position/rolling", "--limit", "nan"},
+              "--limit"},
+        Wrong{"seeds that are empty", {"sweep", "demo", "--seeds", "", "--db", "x.db"}, "--seeds"},
+        Wrong{"learnt in a folder",
+              {"run", "hill", "--seed", "1", "--method", "rate/tumble", "--learnt", "/"},
+              "no file"},
+        Wrong{"methods that do not apply",
+              {"run", "roll", "--seed", "1", "--method", "slam/icp"},
+              "applies to the robot"},
+        Wrong{"output that is a device", {"record", "roll", "--seed", "1", "-o", "/dev/null"}, "no regular file"},
         Wrong{"render without seed", {"render", "hill", "-o", "x.png"}, "--seed"}));
 
 TEST(List, NamesWhatThereIs) {

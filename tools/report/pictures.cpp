@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <span>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/scoring/truth_track.hpp"
 #include "sim/simulate.hpp"
 
@@ -161,7 +163,8 @@ sim::Picture film_picture(const Scene& scene, int frames, int columns, int width
 
 void save_picture(const std::filesystem::path& path, const sim::Picture& picture) {
   try {
-    sim::write_png(path, picture);
+    const std::vector<std::uint8_t> bytes = sim::png_bytes(picture);
+    scenarios::replace_file(path, std::as_bytes(std::span(bytes)));
   } catch (const std::runtime_error& error) {
     throw scenarios::BadInput(error.what());
   }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/tumble/arguments.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
-#include <cstdio>
-#include <cstring>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/recordings/replace_file.hpp"
 #include "sim/parameters.hpp"
 
 namespace tumble::tools {
@@ -91,6 +91,17 @@ std::vector<const scenarios::Method*> select_methods(const std::vector<std::stri
   return selected;
 }
 
+CLI::Validator within(double low, double high) {
+  const std::string range = fmt::format("{:g} to {:g}", low, high);
+  return CLI::Validator(
+      [low, high, range](std::string& text) {
+        double value = 0.0;
+        const bool read = CLI::detail::lexical_cast(text, value);
+        return read && value >= low && value <= high ? std::string() : text + " is not within " + range;
+      },
+      range);
+}
+
 void make_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
@@ -98,19 +109,9 @@ void make_folder(const std::filesystem::path& folder) {
   if (!std::filesystem::is_directory(folder, error)) throw BadInput(folder.string() + ": is not a folder");
 }
 
-void write_file(const std::filesystem::path& path, const std::string& content) {
-  const std::filesystem::path part = path.string() + ".part";
-  const auto fail = [&](int reason) {
-    std::error_code ignored;
-    std::filesystem::remove(part, ignored);
-    throw BadInput(path.string() + ": cannot be written: " + std::strerror(reason));
-  };
-  std::FILE* file = std::fopen(part.c_str(), "wb");
-  if (file == nullptr) fail(errno);
-  const bool whole = std::fwrite(content.data(), 1, content.size(), file) == content.size() && std::fflush(file) == 0;
-  const int reason = errno;
-  if (std::fclose(file) != 0 || !whole) fail(whole ? errno : reason);
-  if (std::rename(part.c_str(), path.c_str()) != 0) fail(errno);
+void prepare_output(const std::filesystem::path& output, std::span<const std::filesystem::path> inputs) {
+  scenarios::require_not_an_input(output, inputs);
+  if (output.has_parent_path()) make_folder(output.parent_path());
 }
 
 }  // namespace tumble::tools

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -33,9 +34,12 @@ void require_known(const std::string& what, const std::string& name, std::span<c
 /// The methods named, each once, in the order given; all of them when none is named.
 std::vector<const scenarios::Method*> select_methods(const std::vector<std::string>& names);
 
+/// A number from `low` to `high`; what is no number is not within (CLI::Range lets it pass).
+CLI::Validator within(double low, double high);
+
 /// Makes a folder and its parents.
 void make_folder(const std::filesystem::path& folder);
-/// Writes a file under a temporary name and renames it; no partial file stays.
-void write_file(const std::filesystem::path& path, const std::string& content);
+/// Makes the folder of an output file, and refuses an output that is one of the inputs. For before the work begins.
+void prepare_output(const std::filesystem::path& output, std::span<const std::filesystem::path> inputs);
 
 }  // namespace tumble::tools

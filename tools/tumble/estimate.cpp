@@ -6,6 +6,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/estimate_file.hpp"
 #include "scenarios/recordings/recording_file.hpp"
+#include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/sweep/outcome.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/learnt_file.hpp"
@@ -82,12 +83,14 @@ int run_estimate(const Session& session, const Options& options) {
     throw BadInput("--learnt is for 'rate/tumble' and 'rate/tumble_lag'; '" + full_name(method) +
                    "' learns nothing of the rig");
   }
-  make_folder(options.folder);
+  scenarios::OutputFolder folder(options.folder);
 
   LearntFile learnt(options.learnt);
   const scenarios::Estimate estimate = learnt.wrap(method).run(sensors, {}, {});
+  scenarios::write_estimate(options.folder, method.info.name, method.info.kind, estimate,
+                            scenarios::digest(sensors, nullptr));
+  folder.keep();
   learnt.keep();
-  scenarios::write_estimate(options.folder, method.info.name, method.info.kind, estimate);
 
   const nlohmann::json document = {{"method", method.info.name},
                                    {"kind", to_string(method.info.kind)},

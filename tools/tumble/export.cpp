@@ -22,7 +22,7 @@ struct Options {
 int export_as(const Session& session, const Options& options) {
   if (options.with_truth && !options.format.starts_with("rosbag"))
     throw scenarios::BadInput("--with-truth is for bags; tum and kitti hold nothing else");
-  if (options.out.has_parent_path()) make_folder(options.out.parent_path());
+  prepare_output(options.out, std::vector<std::filesystem::path>{options.recording});
   scenarios::export_recording(options.recording, options.format, options.out, options.with_truth);
   Table table("", {"recording", "format", "written to"});
   table.add_row({options.recording.string(), options.format, options.out.string()});

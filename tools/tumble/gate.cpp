@@ -12,6 +12,7 @@
 
 #include "scenarios/certificate/certificate_store.hpp"
 #include "scenarios/errors.hpp"
+#include "scenarios/recordings/replace_file.hpp"
 #include "tools/report/certificate_html.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/certificate_table.hpp"
@@ -149,7 +150,7 @@ int run_gate(const Session& session, const Options& options) {
     gate = scenarios::accept(gate, held, options.margin);
     const fs::path file = options.bounds.empty() ? data.gates() / (suite.name + ".yaml") : options.bounds;
     if (file.has_parent_path()) make_folder(file.parent_path());
-    write_file(file, scenarios::to_yaml(gate));
+    scenarios::replace_file(file, scenarios::to_yaml(gate));
     session.note("accepted: " + file.string());
     held = scenarios::hold_to_gate(results, gate, suite.first_seed, suite.last_seed);
   }
@@ -174,7 +175,7 @@ Action declare_gate(CLI::App& app, const Session& session) {
                  "keep the results here, and do not run again what it holds [a temporary file]");
   app.add_flag("--accept", options->accept, "write the bounds from this run instead of being held to them");
   app.add_option("--margin", options->margin, "how far a later run may fall behind, as a share of the accepted value")
-      ->check(CLI::Range(0.0, 10.0))
+      ->check(within(0.0, 10.0))
       ->capture_default_str();
   return [&session, options] { return run_gate(session, *options); };
 }

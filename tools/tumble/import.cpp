@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "scenarios/errors.hpp"
 #include "tools/tumble/arguments.hpp"
@@ -90,6 +91,8 @@ Table table_of(const Imported& imported) {
 int import_from(const Session& session, const ImportOptions& options) {
   const std::string format = format_of(options);
   require_fitting(options, format);
+  prepare_output(options.out,
+                 std::vector<std::filesystem::path>{options.path, options.imu, options.times, options.reference});
   Imported imported = import_format(session, options, format);
   if (!options.imu.empty()) {
     scenarios::attach_imus(imported, scenarios::import_imu_csv(options.imu, imu_sheet(session, options),
@@ -101,9 +104,12 @@ int import_from(const Session& session, const ImportOptions& options) {
   imported.sensors.robot = options.robot;
   imported.sensors.sphere_radius_m = options.radius_m;
   imported.info.tumble_version = program_version();
-  if (options.out.has_parent_path()) make_folder(options.out.parent_path());
-  scenarios::write_recording(options.out, imported.info, imported.sensors,
-                             imported.reference ? &*imported.reference : nullptr);
+  try {
+    scenarios::write_recording(options.out, imported.info, imported.sensors,
+                               imported.reference ? &*imported.reference : nullptr);
+  } catch (const std::invalid_argument& error) {  // what the file holds makes no sound recording
+    throw BadInput(options.path.string() + ": " + error.what());
+  }
   for (const std::string& note : imported.notes) session.note(note);
   session.print({table_of(imported)}, document_of(options, format, imported));
   return kDone;

@@ -120,7 +120,7 @@ void declare_lidar(CLI::App& app, ImportOptions& options) {
                  "files' names, else the points' times]");
   app.add_option("--sweep-period", options.sweep_period_s,
                  "length of a sweep, s; where nothing tells their times, also their distance [median step]")
-      ->check(CLI::Range(1e-4, 1000.0));
+      ->check(within(1e-4, 1000.0));
   app.add_option("--time-field", options.time_field,
                  "that holds the points' times [t, time, timestamp, offset_time ...]");
   app.add_option("--time-unit", options.time_unit, "of that field: s, ms, us or ns [by its size]");
@@ -163,7 +163,7 @@ void declare(CLI::App& app, ImportOptions& options) {
       ->expected(3);
   app.add_option("--robot", options.robot, "rig or sphere, for methods that ask [unknown]");
   app.add_option("--radius", options.radius_m, "of the sphere, m, for methods of position [unknown]")
-      ->check(CLI::Range(1e-3, 10.0));
+      ->check(within(1e-3, 10.0));
   app.add_option("--imu-topic", options.imu_topics, "of a bag: sensor_msgs/Imu; the first is the primary one [all]");
   app.add_option("--lidar-topic", options.lidar_topics, "of a bag: sensor_msgs/PointCloud2 [all]");
   declare_lidar(app, options);

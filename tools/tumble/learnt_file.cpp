@@ -3,10 +3,14 @@
 
 #include <utility>
 
+#include "scenarios/errors.hpp"
+
 namespace tumble::tools {
 
 LearntFile::LearntFile(std::filesystem::path path) : path_(std::move(path)) {
-  if (!path_.empty() && std::filesystem::exists(path_)) learning_.given = scenarios::read_learnt_rig(path_);
+  if (path_.empty() || !std::filesystem::exists(path_)) return;
+  if (!std::filesystem::is_regular_file(path_)) throw scenarios::BadInput(path_.string() + ": --learnt is no file");
+  learning_.given = scenarios::read_learnt_rig(path_);
 }
 
 bool LearntFile::learns(const scenarios::Method& method) {

@@ -19,7 +19,8 @@ struct Options {
 
 int merge(const Session& session, const Options& options) {
   const scenarios::MergeCounts counts = scenarios::merge_results(options.out, options.in, options.mixed);
-  Table table("", {"database", "databases joined", "rows added", "replaced worse ones", "held already", "draws rejected"});
+  Table table("",
+              {"database", "databases joined", "rows added", "replaced worse ones", "held already", "draws rejected"});
   table.align_right_from(1);
   table.add_row({options.out.string(), std::to_string(options.in.size()), std::to_string(counts.added),
                  std::to_string(counts.replaced), std::to_string(counts.held), std::to_string(counts.rejected)});

@@ -12,6 +12,7 @@
 #include "sim/parameters.hpp"
 #include "sim/simulate.hpp"
 #include "tools/tumble/arguments.hpp"
+#include "tools/tumble/terminal_text.hpp"
 #include "tools/tumble/verbs.hpp"
 
 namespace tumble::tools {
@@ -60,7 +61,9 @@ std::string usage_line(const CLI::App& app, const CLI::ParseError& error) {
 }
 
 int say(const char* prefix, const std::string& line, int status) {
-  std::fprintf(stderr, "tumble: %s%s\n", prefix, line.c_str());
+  std::string shown = terminal_text(line);
+  std::replace(shown.begin(), shown.end(), '\n', ' ');
+  std::fprintf(stderr, "tumble: %s%s\n", prefix, shown.c_str());
   return status;
 }
 
@@ -102,6 +105,8 @@ int run_program(int argc, const char* const* argv) {
     return say("", error.what(), kBadInput);
   } catch (const sim::SimulationFailure& error) {
     return say("the draw is rejected: ", error.what(), kCheckFailed);
+  } catch (const std::bad_alloc&) {
+    return say("", "no memory is left", kBadInput);
   } catch (const std::exception& error) {
     return say("defect: ", error.what(), kDefect);
   } catch (...) {

@@ -37,7 +37,7 @@ int record(const Session& session, const Options& options) {
   const scenarios::DataRoot data = session.data();
   const std::uint64_t seed = parse_seed(options.seed);
   const sim::Situation situation = scenarios::draw(data, scenarios::load_scenario(data, options.scenario), seed);
-  if (options.file.has_parent_path()) make_folder(options.file.parent_path());
+  prepare_output(options.file, std::vector<std::filesystem::path>{options.scenario});
 
   const sim::Recording recording = sim::simulate(situation, {data.models(), options.threads});
   const scenarios::RecordingInfo info =

@@ -102,7 +102,6 @@ int render_maps(const Session& session, const Options& options, const scenarios:
     rows.push_back(
         {{"map", map.name}, {"points", map.points_W_m.size()}, {"within_0_10", fine}, {"within_0_25", coarse}});
   }
-  if (options.png.has_parent_path()) make_folder(options.png.parent_path());
   save_picture(options.png, map_picture(maps, content.truth, options.width, options.height));
   session.print({table}, {{"picture", options.png.string()}, {"maps", rows}});
   return kDone;
@@ -110,6 +109,10 @@ int render_maps(const Session& session, const Options& options, const scenarios:
 
 int render(const Session& session, const Options& options) {
   const scenarios::DataRoot data = session.data();
+  prepare_output(options.png, std::vector<std::filesystem::path>{options.what});
+  if (is_recording(options.what) && !options.seed.empty()) {
+    throw BadInput("--seed is for a scenario; '" + options.what + "' is a recording, of one draw");
+  }
   if (options.map) return render_maps(session, options, data);
   Content content;
   if (is_recording(options.what)) {
@@ -119,7 +122,6 @@ int render(const Session& session, const Options& options) {
   }
   content.scene.situation = &content.situation;
   content.scene.models = data.models();
-  if (options.png.has_parent_path()) make_folder(options.png.parent_path());
   save_picture(options.png,
                options.film > 0
                    ? film_picture(content.scene, options.film, options.columns, options.width, options.height)

@@ -13,6 +13,7 @@
 
 #include "scenarios/certificate/certificate_text.hpp"
 #include "scenarios/errors.hpp"
+#include "scenarios/recordings/replace_file.hpp"
 #include "tools/report/curves.hpp"
 #include "tools/report/distributions.hpp"
 #include "tools/tumble/arguments.hpp"
@@ -117,7 +118,6 @@ void write_page(const Session& session, const Options& options, const scenarios:
                 const Summary& summary) {
   // what is missing is said before minutes are spent
   const std::string plotly = read_text(session.plotly());
-  if (options.page.has_parent_path()) make_folder(options.page.parent_path());
   ReportOptions report;
   report.data = session.data();
   report.version = program_version();
@@ -128,10 +128,11 @@ void write_page(const Session& session, const Options& options, const scenarios:
   report.note = [&](std::string_view line) { session.note(line); };
   const PageContent content = report_content(results, summary, report);
   for (const std::string& warning : content.warnings) session.note(warning);
-  write_file(options.page, page_html(content, plotly));
+  scenarios::replace_file(options.page, page_html(content, plotly));
 }
 
 int report(const Session& session, const Options& options) {
+  if (!options.page.empty()) prepare_output(options.page, std::vector<std::filesystem::path>{options.database});
   const scenarios::Results results(options.database, scenarios::Results::Mode::read_only);
   const Summary summary = summarize(results);
   const std::vector<Curve> curves = find_curves(results);
@@ -156,8 +157,9 @@ int report(const Session& session, const Options& options) {
   for (const scenarios::Certificate& certificate : results.certificates()) {
     document["certificates"].push_back(json::parse(to_json(certificate)));
   }
-  session.print(tables, document);
+  // the page first: that nobody reads standard output costs nobody the page
   if (!options.page.empty()) write_page(session, options, results, summary);
+  session.print(tables, document);
   return kDone;
 }
 

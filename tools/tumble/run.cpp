@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/estimate_file.hpp"
 #include "scenarios/recordings/recording_file.hpp"
+#include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/sweep/run_situation.hpp"
 #include "tools/report/pictures.hpp"
 #include "tools/tumble/arguments.hpp"
@@ -34,12 +36,13 @@ struct Options {
 void leave_files(const fs::path& folder, const scenarios::RunResult& result) {
   const scenarios::RecordingInfo info = recording_info(result.situation, result.recording_digest);
   scenarios::write_recording(folder / "recording.h5", info, result.recording.sensors, &result.recording.truth);
-  write_file(folder / "situation.yaml", info.situation_yaml);
+  scenarios::replace_file(folder / "situation.yaml", info.situation_yaml);
+  const std::string sensors_digest = scenarios::digest(result.recording.sensors, nullptr);
   for (std::size_t i = 0; i < result.methods.size(); ++i) {
     const scenarios::MethodInfo& method = result.methods[i]->info;
     const fs::path own = folder / "estimates" / (std::string(to_string(method.kind)) + "-" + method.name);
     make_folder(own);
-    scenarios::write_estimate(own, method.name, method.kind, result.estimates[i]);
+    scenarios::write_estimate(own, method.name, method.kind, result.estimates[i], sensors_digest);
   }
 }
 
@@ -66,20 +69,25 @@ int run(const Session& session, const Options& options) {
       std::none_of(selected.begin(), selected.end(), [](const auto* method) { return LearntFile::learns(*method); })) {
     throw scenarios::BadInput("--learnt is for 'rate/tumble' and 'rate/tumble_lag', of which none is to run");
   }
+  if (!options.methods.empty() && std::none_of(selected.begin(), selected.end(), [&](const auto* method) {
+        return method->info.for_robot(scenario.robot.type);
+      })) {
+    throw scenarios::BadInput("none of the methods given applies to the robot '" + scenario.robot.type + "'");
+  }
   std::vector<scenarios::Method> copies;
   for (const scenarios::Method* method : selected) copies.push_back(learnt.wrap(*method));
   std::vector<const scenarios::Method*> methods;
   for (const scenarios::Method& method : copies) methods.push_back(&method);
-  if (!options.folder.empty()) make_folder(options.folder);
+  std::optional<scenarios::OutputFolder> folder;
+  if (!options.folder.empty()) folder.emplace(options.folder);
 
   const scenarios::RunResult result = scenarios::run_situation(data, scenario, seed, methods, options.threads);
-  learnt.keep();
-  if (result.methods.empty())
-    session.note("no method given applies to the robot '" + result.situation.robot.type + "'");
   if (!options.folder.empty()) {
     leave_files(options.folder, result);
     leave_pictures(options.folder, data.models(), result);
+    folder->keep();
   }
+  learnt.keep();
 
   const std::string digest = scenarios::run_digest(result);
   const nlohmann::json document = {{"scenario", result.situation.scenario},

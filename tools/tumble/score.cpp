@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdlib>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -45,6 +48,30 @@ void move_to_clock(std::int64_t origin_ns, scenarios::Estimate& estimate) {
   for (PoseState& pose : estimate.poses) pose.time_ns -= origin_ns;
 }
 
+/// An estimate says which sensors it was made from.
+void require_own(const Options& options, const sim::Sensors& sensors) {
+  const std::string made_from = scenarios::estimated_sensors(options.estimate);
+  const std::string own = scenarios::digest(sensors, nullptr);
+  if (made_from.empty() || made_from == own) return;
+  throw scenarios::BadInput(options.estimate.string() +
+                            ": was made from another recording (its sensors have the digest " + made_from +
+                            ", those of " + options.recording.string() + " " + own + ")");
+}
+
+/// What was seen and what is claimed must share some time, and the truth must know something.
+void require_common_time(const Options& options, const scenarios::Estimate& estimate, const sim::Truth& truth) {
+  const bool known = std::any_of(truth.p_WB_m.begin(), truth.p_WB_m.end(), [](const auto& p) { return p.allFinite(); });
+  if (!known) throw scenarios::BadInput(options.recording.string() + ": its truth holds no known place");
+  if (estimate.poses.empty()) return;
+  const double end_s = 1e-9 * static_cast<double>(truth.period_ns) * static_cast<double>(truth.p_WB_m.size() - 1);
+  const double first_s = 1e-9 * static_cast<double>(estimate.poses.front().time_ns);
+  const double last_s = 1e-9 * static_cast<double>(estimate.poses.back().time_ns);
+  if (first_s <= end_s && last_s >= 0.0) return;
+  throw scenarios::BadInput(
+      fmt::format("{}: poses from {:.3f} s to {:.3f} s, but the truth of {} goes from 0 to {:.3f} s: another clock?",
+                  options.estimate.string(), first_s, last_s, options.recording.string(), end_s));
+}
+
 int score_estimate(const Session& session, const Options& options) {
   const scenarios::RecordingInfo info = scenarios::read_info(options.recording);
   if (!info.has_truth) throw scenarios::BadInput(options.recording.string() + ": holds no truth to score against");
@@ -53,7 +80,12 @@ int score_estimate(const Session& session, const Options& options) {
   scenarios::Outcome outcome;
   scenarios::Estimate estimate =
       scenarios::read_estimate(options.estimate, outcome.kind, outcome.method, frame_of(options.frame, truth));
+  require_own(options, sensors);
   if (!std::filesystem::is_directory(options.estimate)) move_to_clock(info.origin_ns, estimate);
+
+  if (outcome.kind == scenarios::Kind::position || outcome.kind == scenarios::Kind::slam) {
+    require_common_time(options, estimate, truth);
+  }
 
   // the true surface matters to maps alone, and building it takes a while
   std::optional<sim::Surface> surface;

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/errors.hpp"
+#include "tools/tumble/terminal_text.hpp"
 
 namespace tumble::tools {
 
@@ -73,7 +74,7 @@ fs::path Session::cache() const {
 
 void Session::note(std::string_view line) const {
   if (quiet) return;
-  std::fprintf(stderr, "%.*s\n", static_cast<int>(line.size()), line.data());
+  std::fprintf(stderr, "%s\n", terminal_text(line).c_str());
 }
 
 void Session::print(const std::vector<Table>& tables, const nlohmann::json& document) const {
@@ -85,6 +86,7 @@ void Session::print(const std::vector<Table>& tables, const nlohmann::json& docu
       if (!text.empty()) text += "\n";
       text += table.text();
     }
+    text = terminal_text(text);
   }
   const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
   if (!written) throw scenarios::BadInput(std::string("standard output: ") + std::strerror(errno));

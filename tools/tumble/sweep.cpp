@@ -4,7 +4,6 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "scenarios/certificate/certificate_store.hpp"
 #include "scenarios/errors.hpp"
@@ -20,7 +19,7 @@ namespace {
 
 struct Options {
   std::string suite;
-  std::optional<std::string> seeds, shard;
+  std::string seeds, shard;
   std::vector<std::string> methods, again;
   int jobs = 1;
   std::filesystem::path database, recordings;
@@ -29,18 +28,12 @@ struct Options {
 /// The suite with what the command line changes of it. Returns false when this shard has no seed.
 bool select(const scenarios::DataRoot& data, const Options& options, scenarios::Suite& suite) {
   suite = scenarios::load_suite(data, options.suite);
-  if (options.seeds) std::tie(suite.first_seed, suite.last_seed) = parse_seeds(*options.seeds);
-  const bool recorded = !suite.recordings.empty();
-  if (recorded && (options.seeds || options.shard))
-    throw scenarios::BadInput("--seeds, --shard: a suite of recordings has no seeds");
-  if (!recorded && !options.recordings.empty())
-    throw scenarios::BadInput("--data: suite '" + suite.name + "' has no recordings");
-  if (!options.recordings.empty()) suite.recordings_folder = options.recordings;
+  if (!options.seeds.empty()) std::tie(suite.first_seed, suite.last_seed) = parse_seeds(options.seeds);
   if (!options.methods.empty()) {
     for (const std::string& name : options.methods) scenarios::find_methods(name);  // refuses an unknown one now
     suite.methods = options.methods;
   }
-  return !options.shard || shard_seeds(parse_shard(*options.shard), suite.first_seed, suite.last_seed);
+  return options.shard.empty() || shard_seeds(parse_shard(options.shard), suite.first_seed, suite.last_seed);
 }
 
 /// The certificate of this build goes with its results; measured at most once per build and machine.
@@ -83,7 +76,7 @@ int run_sweep(const Session& session, const Options& options) {
   if (!any) {
     // an empty database, so that all shards can be merged
     scenarios::open_results(data, suite, options.database);
-    session.note("shard " + *options.shard + " has no seeds: nothing to do");
+    session.note("shard " + options.shard + " has no seeds: nothing to do");
     session.print({to_table({}, options.database.string())}, to_json({}, options.database.string()));
     return kDone;
   }
@@ -103,11 +96,14 @@ int run_sweep(const Session& session, const Options& options) {
 Action declare_sweep(CLI::App& app, const Session& session) {
   auto options = std::make_shared<Options>();
   app.add_option("SUITE", options->suite, "a suite, a suite file, or a scenario")->required();
-  app.add_option("--seeds", options->seeds, "A..B, both included [the suite's]");
+  // an empty word would mean all of them
+  const CLI::Validator filled([](std::string& text) { return text.empty() ? std::string("is empty") : std::string(); },
+                              "");
+  app.add_option("--seeds", options->seeds, "A..B, both included [the suite's]")->check(filled);
   app.add_option("--method", options->methods, "a method; repeat for more [the suite's]")
       ->allow_extra_args(false);  // the word after a method is not another one
   app.add_option("--jobs", options->jobs, "processes at a time")->check(CLI::Range(1, 1024))->capture_default_str();
-  app.add_option("--shard", options->shard, "i/n: the i-th of n parts of the seeds");
+  app.add_option("--shard", options->shard, "i/n: the i-th of n parts of the seeds")->check(filled);
   app.add_option("--again", options->again, "run rows of these statuses once more: crashed,timeout,killed")
       ->delimiter(',')
       ->allow_extra_args(false);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/scoring/metric_sense.hpp"
@@ -22,7 +23,7 @@ using scenarios::TriageRow;
 
 struct Options {
   std::string scenario, seed, method, metric;
-  double limit = std::nan("");
+  std::optional<double> limit;
 };
 
 const scenarios::Method& choose(const std::string& name) {
@@ -103,10 +104,10 @@ int run_triage(const Session& session, const Options& options) {
   const std::uint64_t seed = parse_seed(options.seed);
   const scenarios::Method& method = choose(options.method);
   const std::string metric = metric_of(method, options);
-  if (!options.metric.empty() && std::isnan(options.limit))
-    throw BadInput("--metric needs --limit: from where on a run fails");
+  if (!options.metric.empty() && !options.limit) throw BadInput("--metric needs --limit: from where on a run fails");
   scenarios::TriageOptions triage_options;
-  if (!std::isnan(options.limit)) triage_options.failure = {metric, options.limit};
+  if (options.limit && !std::isfinite(*options.limit)) throw BadInput("--limit is not a finite number");
+  if (options.limit) triage_options.failure = {metric, *options.limit};
   triage_options.on_run = [&](const std::string& input) {
     session.note(input == "none" ? "as it is" : "true: " + input);
   };

@@ -176,6 +176,31 @@ std::vector<ReferencePose> reference_poses(const Bag& bag, const std::string& to
   throw BadInput(bag.place + ": topic '" + topic + "' is of type " + type + ", must be " + kOdometry + " or " + kPose);
 }
 
+/// Sensors that never saw the same moment have no common clock, or nothing in common.
+void require_one_clock(const sim::Sensors& sensors, const std::filesystem::path& path) {
+  struct Span {
+    std::string name;
+    std::int64_t first_ns, last_ns;
+  };
+  std::vector<Span> spans;
+  for (const sim::ImuRecord& imu : sensors.imus) {
+    if (!imu.time_ns.empty()) spans.push_back({imu.name, imu.time_ns.front(), imu.time_ns.back()});
+  }
+  for (const sim::LidarRecord& lidar : sensors.lidars) {
+    if (lidar.sweep_start_ns.empty()) continue;
+    spans.push_back({lidar.name, lidar.sweep_start_ns.front(), lidar.sweep_start_ns.back()});
+  }
+  for (const Span& early : spans) {
+    for (const Span& late : spans) {
+      if (late.first_ns <= early.last_ns) continue;
+      throw BadInput(path.string() + ": the clocks of '" + early.name + "' and '" + late.name +
+                     "' do not meet: one ends " +
+                     std::to_string((static_cast<double>(late.first_ns) - static_cast<double>(early.last_ns)) * 1e-9) +
+                     " s before the other begins");
+    }
+  }
+}
+
 Imported import_bag(BagReader& reader, const std::filesystem::path& path, const BagReading& reading) {
   const Bag bag{reader, path.string(), reader.topics()};
   Imported out;
@@ -188,6 +213,7 @@ Imported import_bag(BagReader& reader, const std::filesystem::path& path, const 
                    std::to_string(bag.topics.size()));
   }
   out.info.attribution = "imported from " + path.filename().string();
+  require_one_clock(out.sensors, path);
   start_clock(out);
   if (!reading.reference_topic.empty()) {
     attach_poses(out, reference_poses(bag, reading.reference_topic), reading.reference_of_body,

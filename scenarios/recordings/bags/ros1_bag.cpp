@@ -5,14 +5,15 @@
 #include <rosbag/view.h>
 #include <sensor_msgs/Imu.h>
 #include <sensor_msgs/PointCloud2.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <exception>
+#include <memory>
 #include <string>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
+#include "scenarios/recordings/replace_file.hpp"
 
 namespace tumble::scenarios {
 
@@ -100,18 +101,10 @@ TypedBytes typed(const Message& message) {
 class Ros1BagWriter : public BagWriter {
  public:
   explicit Ros1BagWriter(const std::filesystem::path& file)
-      : file_(file), part_(file.string() + "." + std::to_string(getpid()) + ".part") {
-    guarded(file_, "cannot be written", [&] { bag_.open(part_.string(), rosbag::bagmode::Write); });
+      : file_(file), output_(file), bag_(std::make_unique<rosbag::Bag>()) {
+    guarded_write([&] { bag_->open(output_.unfinished().string(), rosbag::bagmode::Write); });
   }
-  ~Ros1BagWriter() override {
-    const QuietBag quiet;
-    try {
-      bag_.close();
-    } catch (const std::exception&) {  // it is thrown away
-    }
-    std::error_code ignored;
-    std::filesystem::remove(part_, ignored);
-  }
+  ~Ros1BagWriter() override { give_up(); }
   void write(const BagTopic& topic, std::int64_t stamp_ns, const ros::Imu& message) override {
     write(topic, stamp_ns, typed<sensor_msgs::Imu>(message));
   }
@@ -122,21 +115,43 @@ class Ros1BagWriter : public BagWriter {
     write(topic, stamp_ns, typed<nav_msgs::Odometry>(message));
   }
   void finish() override {
-    guarded(file_, "cannot be written", [&] {
-      bag_.close();
-      std::filesystem::rename(part_, file_);
-    });
+    guarded_write([&] { bag_->close(); });
+    output_.move_into_place();
   }
 
  private:
   void write(const BagTopic& topic, std::int64_t stamp_ns, const TypedBytes& message) {
     ::ros::Time time;
     time.fromNSec(static_cast<std::uint64_t>(stamp_ns));
-    guarded(file_, "cannot be written", [&] { bag_.write(topic.name, time, message); });
+    guarded_write([&] { bag_->write(topic.name, time, message); });
   }
 
-  std::filesystem::path file_, part_;
-  rosbag::Bag bag_;
+  template <class Call>
+  void guarded_write(Call&& call) {
+    try {
+      guarded(file_, "cannot be written", call);
+    } catch (const BadInput&) {
+      give_up();
+      throw;
+    }
+  }
+
+  /// The library's destructor closes what is open, and closing writes: on a full disk it throws there, where nothing
+  /// catches it. A bag that is given up and whose close fails is left to the end of the process.
+  void give_up() {
+    if (!bag_) return;
+    const QuietBag quiet;
+    try {
+      bag_->close();
+      bag_.reset();
+    } catch (const std::exception&) {
+      static_cast<void>(bag_.release());
+    }
+  }
+
+  std::filesystem::path file_;
+  OutputFile output_;
+  std::unique_ptr<rosbag::Bag> bag_;
 };
 
 class Ros1BagReader : public BagReader {

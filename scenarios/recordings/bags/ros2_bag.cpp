@@ -7,11 +7,11 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <optional>
 #include <sstream>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
-#include "scenarios/recordings/export_folder.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 
 namespace tumble::scenarios {
@@ -44,7 +44,7 @@ struct TopicState {
 class Ros2BagWriter : public BagWriter {
  public:
   explicit Ros2BagWriter(const path& folder) : folder_(folder) {
-    require_folder(folder);
+    output_.emplace(folder);
     const std::string name = std::filesystem::weakly_canonical(folder).filename().string();
     file_ = folder / ((name.empty() ? "recording" : name) + "_0.db3");
     part_ = file_.string() + "." + std::to_string(getpid()) + ".part";
@@ -88,6 +88,7 @@ class Ros2BagWriter : public BagWriter {
       std::filesystem::rename(part_, file_);
     });
     replace_file(folder_ / "metadata.yaml", metadata());
+    output_->keep();
   }
 
  private:
@@ -172,6 +173,7 @@ class Ros2BagWriter : public BagWriter {
   }
 
   path folder_, file_, part_;
+  std::optional<OutputFolder> output_;
   std::unique_ptr<SQLite::Database> database_;
   std::unique_ptr<SQLite::Statement> insert_;
   std::vector<TopicState> topics_;

@@ -170,8 +170,9 @@ Message from_cdr(Bytes& bytes) {
   try {
     CdrReader reader(bytes);
     fields(reader, message);
-  } catch (const eprosima::fastcdr::exception::Exception& error) {
-    throw BadMessage(error.what());
+  } catch (const eprosima::fastcdr::exception::Exception&) {  // "not enough memory", for want of bytes
+    throw BadMessage("its " + std::to_string(bytes.size()) +
+                     " bytes end before its fields do, or hold no such message");
   }
   return message;
 }

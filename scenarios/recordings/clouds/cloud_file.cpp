@@ -7,9 +7,11 @@
 #include <pcl/io/ply_io.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstring>
 #include <exception>
 #include <fstream>
+#include <string_view>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/clouds/quiet_pcl.hpp"
@@ -78,9 +80,47 @@ Cloud to_columns(const pcl::PCLPointCloud2& cloud, std::size_t points) {
   return out;
 }
 
+/// Whether a word is a number and nothing else: "nan" and "inf" are, "0,5" and "x" are not.
+bool is_number(std::string_view word) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  return error != std::errc::invalid_argument && end == word.data() + word.size();
+}
+
+/// The library reads a word up to where it stops being a number, and 0 where it is none: the words of an ASCII PCD are
+/// held to be numbers, as many in a line as the header says.
+void require_numbers(const std::filesystem::path& path, const CloudHeader& header) {
+  std::ifstream stream(path, std::ios::binary);
+  std::string text(static_cast<std::size_t>(header.header_bytes), '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  auto number = std::count(text.begin(), text.end(), '\n');
+  std::string line;
+  for (std::uint64_t points = 0; points < header.points && std::getline(stream, line);) {
+    ++number;
+    std::uint64_t words = 0;
+    for (std::size_t begin = 0; (begin = line.find_first_not_of(" \t\r", begin)) != std::string::npos;) {
+      const std::size_t end = std::min(line.find_first_of(" \t\r", begin), line.size());
+      if (!is_number(std::string_view(line).substr(begin, end - begin))) {
+        throw BadInput(path.string() + ":" + std::to_string(number) + ": word " + std::to_string(words + 1) +
+                       " is no number (decimals are written with a point)");
+      }
+      ++words;
+      begin = end;
+    }
+    if (words == 0) continue;
+    if (words != header.numbers) {
+      throw BadInput(path.string() + ":" + std::to_string(number) + ": " + std::to_string(words) +
+                     " numbers, must be " + std::to_string(header.numbers));
+    }
+    ++points;
+  }
+}
+
 template <class Reader>
 Cloud read_by_pcl(const std::filesystem::path& path, const CloudHeader& header, const char* format) {
   if (header.points == 0) return {};
+  if (header.ascii_pcd) require_numbers(path, header);
   const QuietPcl quiet;
   pcl::PCLPointCloud2 cloud;
   int status = -1;

@@ -31,6 +31,8 @@ struct CloudHeader {
   std::uint64_t point_bytes = 0;  ///< 0 when written as text
   std::uint64_t header_bytes = 0;
   std::size_t fields = 0;
+  std::uint64_t numbers = 0;  ///< per point, of all fields, in a PCD
+  bool ascii_pcd = false;
 };
 
 /// Reads and checks a header alone; the same errors.

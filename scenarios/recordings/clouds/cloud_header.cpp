@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <fstream>
 #include <map>
@@ -65,6 +66,21 @@ class HeaderLines {
     if (header.points * point_bytes > rest * made_of_a_byte) {
       fail("promises " + std::to_string(header.points) + " points of " + std::to_string(point_bytes) +
            " bytes at least, but " + std::to_string(rest) + " bytes follow: truncated?");
+    }
+  }
+
+  /// The two sizes that stand before compressed points, which the library trusts: of what follows, and of the points.
+  void require_sizes(const CloudHeader& header) {
+    std::array<std::uint32_t, 2> sizes{};
+    if (!stream_.read(reinterpret_cast<char*>(sizes.data()), sizeof(sizes))) fail("no compressed points: truncated?");
+    const std::uint64_t rest = bytes_in_file_ - std::min(bytes_ + sizeof(sizes), bytes_in_file_);
+    if (sizes[0] == 0 || sizes[0] > rest) {
+      fail("states " + std::to_string(sizes[0]) + " bytes of compressed points, but " + std::to_string(rest) +
+           " follow");
+    }
+    if (sizes[1] != header.points * header.point_bytes) {
+      fail("states " + std::to_string(sizes[1]) + " bytes of points behind the compression, must be " +
+           std::to_string(header.points * header.point_bytes));
     }
   }
 
@@ -171,6 +187,7 @@ CloudHeader read_pcd_header(const std::filesystem::path& path) {
                  std::to_string(size) + " bytes: 1 to 4096 of 1 to 8 are read");
     }
     header.point_bytes += size * count;
+    header.numbers += count;
   }
   const std::uint64_t width = single(lines, "WIDTH", found["WIDTH"]), height = single(lines, "HEIGHT", found["HEIGHT"]);
   header.points = width * height;
@@ -181,10 +198,12 @@ CloudHeader read_pcd_header(const std::filesystem::path& path) {
   header.header_bytes = lines.bytes();
   if (encoding == "ascii") {
     header.point_bytes = 0;
+    header.ascii_pcd = true;
   } else if (encoding != "binary" && encoding != "binary_compressed") {
     lines.fail("DATA is '" + encoding + "', must be ascii, binary or binary_compressed");
   }
   lines.require_room(header, encoding == "binary_compressed" ? kLzfMost : 1);
+  if (encoding == "binary_compressed" && header.points > 0) lines.require_sizes(header);
   return header;
 }
 

@@ -53,7 +53,7 @@ void append_points(std::string& out, const sim::LidarRecord& lidar, std::size_t 
 void export_sweeps(const sim::Sensors& sensors, const std::filesystem::path& folder, const char* extension,
                    std::string (*header)(std::size_t, bool)) {
   if (sensors.lidars.empty()) throw BadInput("the recording has no lidar: there is no sweep to export");
-  require_folder(folder);
+  OutputFolder output(folder);
   for (std::size_t k = 0; k < sensors.lidars.size(); ++k) {
     const sim::LidarRecord& lidar = sensors.lidars[k];
     const std::string stem = file_stem(lidar.name, "lidar", k);
@@ -71,6 +71,7 @@ void export_sweeps(const sim::Sensors& sensors, const std::filesystem::path& fol
     }
     replace_file(folder / (stem + "_times.txt"), times);
   }
+  output.keep();
 }
 
 }  // namespace

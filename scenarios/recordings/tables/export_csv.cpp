@@ -72,12 +72,13 @@ std::string truth_text(const sim::Truth& truth) {
 }  // namespace
 
 void export_csv(const sim::Sensors& sensors, const sim::Truth* truth, const std::filesystem::path& folder) {
-  require_folder(folder);
+  OutputFolder output(folder);
   for (std::size_t i = 0; i < sensors.imus.size(); ++i) {
     const std::string stem = file_stem(sensors.imus[i].name, "imu", i);
     replace_file(folder / (stem + ".csv"), imu_text(sensors.imus[i], stem));
   }
   if (truth != nullptr) replace_file(folder / "truth.csv", truth_text(*truth));
+  output.keep();
 }
 
 }  // namespace tumble::scenarios

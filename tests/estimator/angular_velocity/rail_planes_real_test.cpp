@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "estimator/attitude/broad_trial.hpp"
+#include "tests/tree.hpp"
 #include "tumble/angular_velocity/rail_planes.hpp"
 
 namespace tumble {
@@ -50,7 +51,7 @@ struct Known {
 class RealRails : public ::testing::TestWithParam<Known> {};
 
 TEST_P(RealRails, AreFoundWithoutAnybodyStatingThem) {
-  const std::filesystem::path file = std::filesystem::path(TUMBLE_SHARED_DATA) / "repoimu" / GetParam().file;
+  const std::filesystem::path file = test::shared_data() / "repoimu" / GetParam().file;
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "shared data not present";
   const std::vector<ImuSample> samples = read_repoimu(file);
   ASSERT_GT(samples.size(), 1000u);

@@ -13,6 +13,7 @@
 
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/sweep/evaluate.hpp"
+#include "tests/tree.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -29,7 +30,7 @@ void PrintTo(const Kept& draw, std::ostream* out) {
 }
 
 std::vector<Kept> kept() {
-  std::ifstream file(std::string(TUMBLE_SOURCE_DIR) + "/tests/scenarios/digests/digests.txt");
+  std::ifstream file((test::source_dir() / "tests/scenarios/digests/digests.txt").string());
   std::vector<Kept> all;
   for (std::string line; std::getline(file, line);) {
     if (line.empty() || line.front() == '#') continue;
@@ -45,7 +46,7 @@ class Digests : public testing::TestWithParam<Kept> {};
 
 TEST_P(Digests, AreTheKeptOnes) {
   const Kept& draw = GetParam();
-  const DataRoot data{TUMBLE_SOURCE_DIR};
+  const DataRoot data{test::source_dir()};
   const SimulatedDraw simulated = simulate_draw(data, load_scenario(data, draw.scenario), draw.seed, 1,
                                                 draw.lidars == "none" ? Lidars::left_out : Lidars::simulated);
   EXPECT_EQ(simulated.recording_digest, draw.digest)
@@ -63,7 +64,7 @@ TEST(DigestsOf, TheWholeCatalogueAreKept) {
   std::size_t with_lidars = 0;
   for (const Kept& each : all) with_lidars += each.lidars == "lidars";
   EXPECT_GE(with_lidars, 3u);
-  for (const std::string& name : scenario_names({TUMBLE_SOURCE_DIR})) {
+  for (const std::string& name : scenario_names({test::source_dir()})) {
     EXPECT_TRUE(std::any_of(all.begin(), all.end(), [&](const Kept& each) { return each.scenario == name; })) << name;
   }
 }

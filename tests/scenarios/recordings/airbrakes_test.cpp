@@ -4,6 +4,7 @@
 
 #include "scenarios/recordings/fixture_recording.hpp"
 #include "scenarios/recordings/import.hpp"
+#include "tests/tree.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -65,7 +66,7 @@ TEST_F(Airbrakes, BadInputHasFileLineValueAndBound) {
 }
 
 TEST_F(Airbrakes, ReadsThePublishedFlights) {
-  const std::filesystem::path folder = std::filesystem::path(TUMBLE_SHARED_DATA) / "airbrakes";
+  const std::filesystem::path folder = test::shared_data() / "airbrakes";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "the flights are not at " << folder;
   const Imported flight = import_airbrakes(folder / "jackpot_launch_3.csv");
   EXPECT_EQ(flight.sensors.imus[0].time_ns.size(), 7646u);

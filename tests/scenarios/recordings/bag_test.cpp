@@ -189,6 +189,7 @@ TEST_F(HostileBag, DamagedRos2BagsAreOneLine) {
 TEST_F(HostileBag, AMessageThatPromisesTooMuchAllocatesNothing) {
   const std::filesystem::path bag = folder_ / "bag";
   for (const bool field_count : {false, true}) {
+    std::filesystem::remove_all(bag);
     export_ros2_bag(small_sensors(), {}, bag);
     SQLite::Database database((bag / "bag_0.db3").string(), SQLite::OPEN_READWRITE);
     SQLite::Statement query(database, "SELECT id, data FROM messages WHERE topic_id = 2 ORDER BY timestamp");

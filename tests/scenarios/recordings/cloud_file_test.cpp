@@ -50,6 +50,28 @@ TEST_F(CloudFile, AsciiPlyWithDoubleBytesAndNaN) {
   EXPECT_EQ(cloud.find("ring"), nullptr);
 }
 
+const std::string kPcd =
+    "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA ";
+
+TEST_F(CloudFile, WordsOfAnAsciiPcdAreNumbers) {
+  EXPECT_EQ((*read("a.pcd", kPcd + "ascii\n1 +2 3e-1\n\nnan nan nan\r\n").find("y"))[0], 2.0);
+  EXPECT_THAT(complaint_of("a.pcd", kPcd + "ascii\n1 2 3\n0,488 2,15 1,03\n"),
+              HasSubstr("a.pcd:11: word 1 is no number (decimals are written with a point)"));
+  EXPECT_THAT(complaint_of("a.pcd", kPcd + "ascii\n1 2 3\nnever was one\n"), HasSubstr("is no number"));
+  EXPECT_THAT(complaint_of("a.pcd", kPcd + "ascii\n1 2 3\n1 2 3 4\n"), HasSubstr("4 numbers, must be 3"));
+}
+
+TEST_F(CloudFile, SizesOfACompressedPcdAreHeldAgainstTheFile) {
+  const auto with = [&](std::uint32_t compressed, std::uint32_t plain) {
+    return complaint_of("a.pcd",
+                        kPcd + "binary_compressed\n" + bytes(compressed) + bytes(plain) + std::string(20, 'x'));
+  };
+  EXPECT_THAT(with(20, 0), HasSubstr("states 0 bytes of points behind the compression, must be 24"));
+  EXPECT_THAT(with(20, 4000000000u), HasSubstr("must be 24"));
+  EXPECT_THAT(with(0, 24), HasSubstr("states 0 bytes of compressed points"));
+  EXPECT_THAT(with(21, 24), HasSubstr("but 20 follow"));
+}
+
 TEST_F(CloudFile, BinaryPlyOfBothByteOrders) {
   for (const bool big : {false, true}) {
     const std::string header = std::string("ply\nformat binary_") + (big ? "big" : "little") +

@@ -10,7 +10,10 @@
 #include <csignal>
 #include <cstdlib>
 #include <iostream>
+#include <string>
+#include <vector>
 
+#include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"
 
 namespace tumble::scenarios {
@@ -61,6 +64,102 @@ TEST_F(ReplaceFile, ReadOnlyFolderIsRefused) {
   const std::string message = fixture::complaint([&] { replace_file(folder_ / "a", "x"); });
   std::filesystem::permissions(folder_, std::filesystem::perms::owner_all);
   EXPECT_THAT(message, HasSubstr("Permission denied"));
+}
+
+TEST_F(ReplaceFile, ADeviceAPipeAndASocketStay) {
+  const std::filesystem::path pipe = folder_ / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THAT(fixture::complaint([&] { replace_file(pipe, "x"); }), HasSubstr("no regular file"));
+  EXPECT_TRUE(std::filesystem::is_fifo(pipe));
+  EXPECT_THAT(fixture::complaint([&] { replace_file("/dev/null", "x"); }), HasSubstr("no regular file"));
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+  EXPECT_EQ(files(), 1u);
+}
+
+TEST_F(ReplaceFile, FollowsSymbolicLinks) {
+  std::filesystem::create_directory(folder_ / "far");
+  std::filesystem::create_symlink("far/target", folder_ / "link");
+  std::filesystem::create_symlink("link", folder_ / "link_to_link");
+  replace_file(folder_ / "link_to_link", "made at its end");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder_ / "link_to_link"));
+  EXPECT_TRUE(std::filesystem::is_symlink(folder_ / "link"));
+  EXPECT_EQ(bytes_of(folder_ / "far/target"), "made at its end");
+  replace_file(folder_ / "link", "replaced");
+  EXPECT_EQ(bytes_of(folder_ / "far/target"), "replaced");
+  std::filesystem::create_symlink("round", folder_ / "round");
+  EXPECT_THAT(fixture::complaint([&] { replace_file(folder_ / "round", "x"); }), HasSubstr("symbolic links"));
+}
+
+TEST_F(ReplaceFile, KeepsModeAndOwner) {
+  const std::filesystem::path path = folder_ / "a";
+  replace_file(path, "first");
+  ASSERT_EQ(chmod(path.c_str(), 0600), 0);
+  const bool root = geteuid() == 0;
+  if (root) ASSERT_EQ(chown(path.c_str(), 1234, 1235), 0);
+  replace_file(path, "second");
+  struct stat status {};
+  ASSERT_EQ(stat(path.c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 07777u, 0600u);
+  EXPECT_EQ(status.st_uid, root ? 1234u : geteuid());
+  EXPECT_EQ(status.st_gid, root ? 1235u : getegid());
+  EXPECT_EQ(bytes_of(path), "second");
+}
+
+TEST_F(ReplaceFile, AnInputIsKnownUnderAnyName) {
+  replace_file(folder_ / "in", "x");
+  std::filesystem::create_symlink("in", folder_ / "link");
+  std::filesystem::create_hard_link(folder_ / "in", folder_ / "hard");
+  const std::vector<std::filesystem::path> inputs = {"", folder_ / "none", folder_ / "in"};
+  for (const char* name : {"in", "link", "hard", "../"}) {
+    const std::filesystem::path output = name == std::string("../") ? folder_ / "." / "in" : folder_ / name;
+    EXPECT_THAT(fixture::complaint([&] { require_not_an_input(output, inputs); }), HasSubstr("both read and written"))
+        << output;
+  }
+  replace_file(folder_ / "other", "x");
+  EXPECT_NO_THROW(require_not_an_input(folder_ / "other", inputs));
+  EXPECT_NO_THROW(require_not_an_input(folder_ / "absent", inputs));
+}
+
+TEST_F(ReplaceFile, AFolderIsFreshOrRefusedAndGoesWithoutBeingKept) {
+  const std::filesystem::path made = folder_ / "a/b";
+  {
+    const OutputFolder output(made);
+    replace_file(made / "half", "x");
+  }
+  EXPECT_FALSE(std::filesystem::exists(made));
+  {
+    OutputFolder output(made);
+    replace_file(made / "whole", "x");
+    output.keep();
+  }
+  EXPECT_EQ(bytes_of(made / "whole"), "x");
+  EXPECT_THAT(fixture::complaint([&] { OutputFolder again(made); }), HasSubstr("holds files already"));
+  EXPECT_EQ(bytes_of(made / "whole"), "x");
+  EXPECT_THAT(fixture::complaint([&] { OutputFolder file(made / "whole"); }), HasSubstr("cannot be written"));
+  std::filesystem::create_directory(folder_ / "empty");
+  {
+    const OutputFolder output(folder_ / "empty");
+    replace_file(folder_ / "empty/half", "x");
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder_ / "empty"));
+}
+
+/// Exports a bag with little room; ends with 0 when BadInput says so and nothing is left.
+[[noreturn]] void export_with_little_room(const std::filesystem::path& folder) {
+  std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit limit{4096, 4096};
+  setrlimit(RLIMIT_FSIZE, &limit);
+  const sim::Recording recording = fixture::recording();
+  const std::string message = fixture::complaint([&] {
+    export_ros1_bag(recording.sensors, {0, &recording.truth}, folder / "a.bag");
+  });
+  std::cerr << message;
+  std::exit(message.empty() || !std::filesystem::is_empty(folder) ? 1 : 0);
+}
+
+// the library closes the file in its destructor and throws from there
+TEST_F(ReplaceFile, AFullDiskEndsABagInOneLine) {
+  EXPECT_EXIT(export_with_little_room(folder_), testing::ExitedWithCode(0), "a.bag: cannot be written");
 }
 
 /// Ends the process with 0 when a recording cannot be written, BadInput says so and nothing is left of it.

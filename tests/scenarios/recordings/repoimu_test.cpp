@@ -10,6 +10,7 @@
 #include "scenarios/recordings/synthetic_repoimu.hpp"
 #include "scenarios/recordings/trajectories/align_reference.hpp"
 #include "scenarios/recordings/trajectories/reference_glitches.hpp"
+#include "tests/tree.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -263,7 +264,7 @@ TEST_F(Repoimu, RatesInDegreesAreNoticedByGravity) {
 
 // the published files, where they are at hand; they are no part of the project
 TEST_F(Repoimu, ReadsThePublishedFiles) {
-  const std::filesystem::path folder = std::filesystem::path(TUMBLE_SHARED_DATA) / "repoimu";
+  const std::filesystem::path folder = test::shared_data() / "repoimu";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "RepoIMU is not at " << folder;
   const Imported wand = import_repoimu(folder / "TStick_Test05_Trial1.csv", true);
   EXPECT_EQ(wand.sensors.imus[0].time_ns.size(), 8813u);

@@ -12,6 +12,7 @@
 #include "scenarios/sweep/results.hpp"
 #include "scenarios/sweep/sweep.hpp"
 #include "scenarios/sweep/temporary_folder.hpp"
+#include "tests/tree.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -24,7 +25,7 @@ class RecordedSweep : public testing::TemporaryFolder {
   void SetUp() override {
     TemporaryFolder::SetUp();
     write("scenarios/catalogue/hill.yaml", "");
-    std::filesystem::create_directory_symlink(std::filesystem::path(TUMBLE_SOURCE_DIR) / "models", folder_ / "models");
+    std::filesystem::create_directory_symlink(test::source_dir() / "models", folder_ / "models");
     write("scenarios/suites/real.yaml",
           "name: real\ndoc: Some words.\nrecordings: [wands/*.h5]\nmethods: [rate/raw, rate/interpolate, rate/oracle, "
           "attitude/vqf]\ntimeout_s: 60\n");

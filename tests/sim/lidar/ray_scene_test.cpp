@@ -205,7 +205,8 @@ TEST(RayScene, ALaneIsAloneAndUnusedOnesMayHoldAnything) {
             alone.direction_z[k] = alone.range[k] = odd[(k + p) % 4];
       }
       alone.count = 1;
-      alone.origin_x[0] = given.origin_x[i], alone.origin_y[0] = given.origin_y[i], alone.origin_z[0] = given.origin_z[i];
+      alone.origin_x[0] = given.origin_x[i], alone.origin_y[0] = given.origin_y[i],
+      alone.origin_z[0] = given.origin_z[i];
       alone.direction_x[0] = given.direction_x[i], alone.direction_y[0] = given.direction_y[i];
       alone.direction_z[0] = given.direction_z[i], alone.range[0] = given.range[i];
       alone.surface_id[0] = kNothing;
