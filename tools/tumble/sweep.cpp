@@ -29,6 +29,12 @@ struct Options {
 bool select(const scenarios::DataRoot& data, const Options& options, scenarios::Suite& suite) {
   suite = scenarios::load_suite(data, options.suite);
   if (!options.seeds.empty()) std::tie(suite.first_seed, suite.last_seed) = parse_seeds(options.seeds);
+  const bool recorded = !suite.recordings.empty();
+  if (recorded && (!options.seeds.empty() || !options.shard.empty()))
+    throw scenarios::BadInput("--seeds, --shard: a suite of recordings has no seeds");
+  if (!recorded && !options.recordings.empty())
+    throw scenarios::BadInput("--data: suite '" + suite.name + "' has no recordings");
+  if (!options.recordings.empty()) suite.recordings_folder = options.recordings;
   if (!options.methods.empty()) {
     for (const std::string& name : options.methods) scenarios::find_methods(name);  // refuses an unknown one now
     suite.methods = options.methods;
