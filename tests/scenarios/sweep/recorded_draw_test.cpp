@@ -78,7 +78,7 @@ TEST_F(RecordedSweep, EachRecordingIsADraw) {
     EXPECT_EQ(row.seed, 1u);
     std::map<std::string, double> scores;
     for (const ScoreRow& score : results.scores()) {
-      if (score.scenario == row.scenario && score.kind == row.kind && score.method == row.method)
+      if (score.scenario == row.scenario && score.kind == to_string(row.kind) && score.method == row.method)
         scores[score.metric] = score.value;
     }
     EXPECT_EQ(scores.contains("rate_error_clipped_median_rad_s"), row.scenario == "wand_a" && row.kind == Kind::rate);
