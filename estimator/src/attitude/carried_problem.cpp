@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "attitude/carried_problem.hpp"
+#include "carried_problem.hpp"
 
 #include <algorithm>
 #include <cmath>

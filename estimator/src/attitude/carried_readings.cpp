@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "attitude/carried_problem.hpp"
+#include "carried_problem.hpp"
 #include "tumble/attitude/vqf.hpp"
 
 namespace tumble::carried {

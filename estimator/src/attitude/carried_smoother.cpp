@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "attitude/carried_problem.hpp"
+#include "carried_problem.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble {

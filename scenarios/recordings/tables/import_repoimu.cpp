@@ -192,13 +192,17 @@ Log read_log(const std::filesystem::path& path) {
 void steady(Log& log, std::vector<std::string>& notes) {
   const std::vector<std::int64_t> printed = log.readings.time_ns;
   log.readings.time_ns = steady_stamps(printed, log.rounding);
+  const auto mean_step = (printed.back() - printed.front()) / static_cast<std::int64_t>(printed.size() - 1);
   std::int64_t most_ns = 0, equal = 0;
   for (std::size_t k = 0; k < printed.size(); ++k) {
     const std::int64_t time_ns = log.readings.time_ns[k];
     most_ns = std::max<std::int64_t>(most_ns, std::abs(time_ns - printed[k]));
     if (k == 0) continue;
-    equal += printed[k] == printed[k - 1] ? 1 : 0;
-    if (time_ns <= log.readings.time_ns[k - 1]) {
+    const bool same = printed[k] == printed[k - 1];
+    equal += same ? 1 : 0;
+    // stamps that are printed finely do not repeat by their rounding
+    const bool coarse = 2 * (log.rounding[k].before_ns + log.rounding[k].after_ns) >= mean_step;
+    if (time_ns <= log.readings.time_ns[k - 1] || (same && !coarse)) {
       throw BadInput(fmt::format("{}: Time does not rise: {:.9g} s twice, beyond what its rounding explains",
                                  log.where[k], 1e-9 * static_cast<double>(printed[k])));
     }

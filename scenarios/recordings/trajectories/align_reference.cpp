@@ -37,17 +37,23 @@ struct Pair {
   double speed_rad_s = 0.0;
 };
 
-std::vector<Pair> free_samples(const sim::ImuRecord& imu) {
-  Eigen::Vector3d extreme = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& w : imu.gyro_rad_s) extreme = extreme.cwiseMax(w.cwiseAbs());
+std::vector<Pair> all_samples(const sim::ImuRecord& imu) {
   std::vector<Pair> pairs;
   for (std::size_t k = 0; k < imu.time_ns.size(); ++k) {
-    const Eigen::Vector3d& w = imu.gyro_rad_s[k];
-    if (w.norm() < kTurning_rad_s || (w.cwiseAbs().array() > kFreeShare * extreme.array()).any()) continue;
     Pair pair;
-    pair.time_ns = imu.time_ns[k], pair.w_I = w, pair.f_I = imu.accel_m_s2[k], pair.speed_rad_s = w.norm();
+    pair.time_ns = imu.time_ns[k], pair.w_I = imu.gyro_rad_s[k], pair.f_I = imu.accel_m_s2[k];
+    pair.speed_rad_s = pair.w_I.norm();
     pairs.push_back(pair);
   }
+  return pairs;
+}
+
+std::vector<Pair> free_samples(std::vector<Pair> pairs) {
+  Eigen::Vector3d extreme = Eigen::Vector3d::Zero();
+  for (const Pair& pair : pairs) extreme = extreme.cwiseMax(pair.w_I.cwiseAbs());
+  std::erase_if(pairs, [&](const Pair& pair) {
+    return pair.speed_rad_s < kTurning_rad_s || (pair.w_I.cwiseAbs().array() > kFreeShare * extreme.array()).any();
+  });
   return pairs;
 }
 
@@ -157,17 +163,15 @@ void pair_up(const std::vector<ReferencePose>& poses, double delay_s, std::vecto
   pairs = std::move(kept);
 }
 
-/// Gravity (up) in the reference's world, given the rotation, and the rotation, given gravity, of samples [first, end).
-Eigen::Vector3d up_in_world(const std::vector<Pair>& pairs, std::size_t first, std::size_t end,
-                            const Eigen::Quaterniond& q_IV) {
+/// Gravity (up) in the reference's world, given the rotation: of all samples alike, since what the body gains in speed
+/// it loses again.
+Eigen::Vector3d up_in_world(const std::vector<Pair>& all, const Eigen::Quaterniond& q_IV) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (std::size_t k = first; k < end; ++k) {
-    const double departure = pairs[k].f_I.norm() - kG_m_s2;
-    sum += pairs[k].q_V * (q_IV.conjugate() * pairs[k].f_I) / (kForceSigma_m_s2 + departure * departure);
-  }
+  for (const Pair& pair : all) sum += pair.q_V * (q_IV.conjugate() * pair.f_I);
   return sum.normalized();
 }
 
+/// The rotation, given gravity, of samples [first, end).
 Eigen::Quaterniond rotation(const std::vector<Pair>& pairs, std::size_t first, std::size_t end,
                             const Eigen::Vector3d& up) {
   Eigen::Matrix3d B = Eigen::Matrix3d::Zero();
@@ -184,11 +188,11 @@ Eigen::Quaterniond rotation(const std::vector<Pair>& pairs, std::size_t first, s
   return Eigen::Quaterniond(Eigen::Matrix3d(U * signs.asDiagonal() * V.transpose())).normalized();
 }
 
-void estimate_rotation(const std::vector<Pair>& pairs, ReferenceAlignment& alignment) {
-  Eigen::Vector3d up = up_in_world(pairs, 0, pairs.size(), alignment.q_IV);
+void estimate_rotation(const std::vector<Pair>& all, const std::vector<Pair>& pairs, ReferenceAlignment& alignment) {
+  Eigen::Vector3d up = up_in_world(all, alignment.q_IV);
   for (int round = 0; round < kRounds; ++round) {
     alignment.q_IV = rotation(pairs, 0, pairs.size(), up);
-    up = up_in_world(pairs, 0, pairs.size(), alignment.q_IV);
+    up = up_in_world(all, alignment.q_IV);
   }
   alignment.q_WV = Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ());
   std::array<std::vector<double>, 3> departures;
@@ -208,13 +212,14 @@ double degrees(double rad) {
 
 ReferenceAlignment align_reference(const std::vector<ReferencePose>& poses, const sim::ImuRecord& imu) {
   ReferenceAlignment alignment;
-  std::vector<Pair> pairs = free_samples(imu);
+  std::vector<Pair> all = all_samples(imu), pairs = free_samples(all);
   if (poses.size() < kLeastSamples || pairs.size() < kLeastSamples) return alignment;
   estimate_delay(poses, pairs, alignment);
   pair_up(poses, alignment.delay_s, pairs);
   alignment.samples = pairs.size();
   if (pairs.size() < kLeastSamples) return alignment;
-  estimate_rotation(pairs, alignment);
+  pair_up(poses, alignment.delay_s, all);
+  estimate_rotation(all, pairs, alignment);
   alignment.known = true;
   return alignment;
 }
