@@ -63,7 +63,11 @@ void attach_poses(Imported& recording, std::vector<ReferencePose> poses, bool of
   for (ReferencePose& pose : poses) pose.time_ns -= recording.info.origin_ns;
   if (!of_body) move_to(poses, sensors.lidars.front().T_BL.inverse(Eigen::Isometry));
   sim::Truth truth = named(where, poses, span_of(sensors).second);
-  for (const sim::ImuRecord& imu : sensors.imus) truth.imus.push_back({imu.name, imu.T_BI, {}, {}, {}, {}, {}, {}, {}});
+  for (const sim::ImuRecord& imu : sensors.imus) {
+    sim::ImuTruth& own = truth.imus.emplace_back();
+    own.name = imu.name;
+    own.T_BI = imu.T_BI;
+  }
   for (const sim::LidarRecord& lidar : sensors.lidars) truth.lidars.push_back({lidar.name, lidar.T_BL, {}, {}});
   recording.reference = std::move(truth);
 }

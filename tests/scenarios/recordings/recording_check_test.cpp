@@ -120,7 +120,12 @@ TEST(RecordingCheck, AReferenceMayKnowPosesAlone) {
   truth.label.clear();
   truth.contacts.clear();
   truth.q_WB[3].coeffs().setConstant(std::numeric_limits<double>::quiet_NaN());
-  for (sim::ImuTruth& imu : truth.imus) imu = {imu.name, imu.T_BI, {}, {}, {}, {}, {}, {}, {}};
+  for (sim::ImuTruth& imu : truth.imus) {
+    sim::ImuTruth poses;
+    poses.name = imu.name;
+    poses.T_BI = imu.T_BI;
+    imu = poses;
+  }
   for (sim::LidarTruth& lidar : truth.lidars) lidar = {lidar.name, lidar.T_BL, {}, {}};
   EXPECT_EQ(find_problem(truth), "");
   EXPECT_EQ(find_mismatch(recording.sensors, truth), "");
