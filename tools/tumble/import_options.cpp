@@ -261,7 +261,7 @@ scenarios::AccelUnit accel_unit(const ImportOptions& options) {
 
 scenarios::GyroUnit gyro_unit(const ImportOptions& options) {
   if (options.gyro_unit.empty()) return scenarios::GyroUnit::rad_s;
-  require_known("gyro unit", options.gyro_unit, {"rad/s", "deg/s"});
+  require_known("gyro unit", options.gyro_unit, std::vector<std::string>{"rad/s", "deg/s"});
   return options.gyro_unit == "deg/s" ? scenarios::GyroUnit::deg_s : scenarios::GyroUnit::rad_s;
 }
 
