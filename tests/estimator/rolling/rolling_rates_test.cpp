@@ -69,8 +69,7 @@ double end_error_m(const std::vector<ImuSample>& samples, const Eigen::Vector3d&
 // 50 Hz to 8 kHz, and rates that divide nothing
 constexpr TimeNs kPeriods_ns[] = {20'000'000, 8'000'000, 3'000'000, 1'000'000, 700'000, 250'000, 125'000};
 
-// measured: 10 to 17 mm at every rate, whole and live, 14 mm at 250 Hz; what differs is the draw of the noise. Without
-// averages 250 mm at 4 kHz.
+// measured: 10 to 17 mm at every rate, whole and live, 14 mm at 250 Hz; what differs is the draw of the noise
 TEST(RollingRates, TheSameAnswerFrom50HzTo8kHz) {
   for (const TimeNs period_ns : kPeriods_ns) {
     const testing::RollingTruth truth = slipping(period_ns);
