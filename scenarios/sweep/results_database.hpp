@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <SQLiteCpp/SQLiteCpp.h>
+
+#include <bit>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/sweep/build_id.hpp"
+#include "scenarios/sweep/results.hpp"
+#include "scenarios/sweep/results_schema.hpp"
+
+namespace tumble::scenarios {
+
+inline constexpr int kBusyTimeoutMs = 20000;
+inline constexpr int kSqliteBusy = 5;  // as sqlite3.h has it
+inline constexpr const char* kBusy = "another program is writing to it; try again when it has ended";
+
+/// SQLite's integers have a sign, seeds have none: the same bits.
+inline std::int64_t stored_seed(std::uint64_t seed) {
+  return std::bit_cast<std::int64_t>(seed);
+}
+inline std::uint64_t read_seed(std::int64_t stored) {
+  return std::bit_cast<std::uint64_t>(stored);
+}
+
+/// An open results database: what reading (results_reading.cpp) and writing (results.cpp) share.
+struct Results::Impl {
+  std::filesystem::path path;
+  SQLite::Database database;
+  bool in_transaction = false;  ///< of the caller
+
+  /// One of its own, unless the caller has begun one.
+  class Transaction {
+   public:
+    explicit Transaction(Impl& impl) {
+      if (!impl.in_transaction) own_.emplace(impl.database, SQLite::TransactionBehavior::IMMEDIATE);
+    }
+    void commit() {
+      if (own_) own_->commit();
+    }
+
+   private:
+    std::optional<SQLite::Transaction> own_;
+  };
+
+  Impl(const std::filesystem::path& file, Mode mode)
+      : path(file),
+        database(file.string(),
+                 mode == Mode::read_only ? SQLite::OPEN_READONLY : SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE,
+                 kBusyTimeoutMs) {
+    // a rollback journal: one file, readable from a read-only folder; a store is on the disk before it returns
+    if (mode == Mode::create_or_append) database.exec("PRAGMA foreign_keys = ON; PRAGMA synchronous = FULL;");
+  }
+
+  // SQLite's trouble as one line with the path
+  template <typename Action>
+  auto guarded(Action&& action) const {
+    try {
+      return action();
+    } catch (const SQLite::Exception& error) {
+      throw BadInput(path.string() + ": " + (error.getErrorCode() == kSqliteBusy ? kBusy : error.what()));
+    }
+  }
+
+  int number(const char* pragma) { return database.execAndGet(std::string("PRAGMA ") + pragma).getInt(); }
+
+  bool is_empty() { return database.execAndGet("SELECT count(*) FROM sqlite_master").getInt() == 0; }
+
+  void create() {
+    SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
+    // somebody else may have made it while this one waited for the lock
+    if (is_empty()) {
+      database.exec(kSchema);
+      database.exec("PRAGMA application_id = " + std::to_string(kApplicationId));
+      database.exec("PRAGMA user_version = " + std::to_string(kSchemaVersion));
+      write_note("build", build_id());
+    }
+    transaction.commit();
+  }
+
+  void check(Mode mode) {
+    if (number("application_id") != kApplicationId) throw BadInput(path.string() + ": not a results database");
+    const int version = number("user_version");
+    if (version != kSchemaVersion && !(mode == Mode::read_only && version == kReadableVersion)) {
+      throw BadInput(path.string() + ": schema version " + std::to_string(number("user_version")) + ", must be " +
+                     std::to_string(kSchemaVersion));
+    }
+    const std::string build = read_note("build");
+    if (mode == Mode::create_or_append && build != build_id()) {
+      throw BadInput(path.string() + ": written by build '" + build + "', this is '" + build_id() +
+                     "'; outcomes of two builds do not mix: name another file");
+    }
+  }
+
+  void write_note(const std::string& key, const std::string& text) {
+    SQLite::Statement insert(database, "INSERT OR REPLACE INTO notes VALUES (?, ?)");
+    insert.bind(1, key);
+    insert.bind(2, text);
+    insert.exec();
+  }
+
+  std::string read_note(const std::string& key) {
+    SQLite::Statement select(database, "SELECT text FROM notes WHERE key = ?");
+    select.bind(1, key);
+    return select.executeStep() ? select.getColumn(0).getString() : std::string();
+  }
+
+  void store(const std::string& kind, const Outcome& outcome);
+};
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <SQLiteCpp/SQLiteCpp.h>
+
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/sweep/results_database.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+double read_value(const SQLite::Column& column) {
+  return column.isNull() ? std::numeric_limits<double>::quiet_NaN() : column.getDouble();
+}
+
+Kind kind_named(const std::string& name, const std::filesystem::path& path) {
+  for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
+    if (name == to_string(kind)) return kind;
+  }
+  throw BadInput(path.string() + ": unknown kind '" + name + "'");
+}
+
+/// The condition that picks `rows`, for a table or a join with the column `varied`.
+const char* picked(Rows rows) {
+  switch (rows) {
+    case Rows::plain:
+      return "varied = ''";
+    case Rows::curves:
+      return "varied <> ''";
+    case Rows::all:
+      return "1";
+  }
+  return "0";
+}
+
+// what follows is a condition, and then the order
+constexpr const char* kOutcomes =
+    "SELECT scenario, seed, kind, method, status, message, recording_digest, estimate_digest, varied, setting "
+    "FROM outcomes WHERE kind <> '' AND ";
+constexpr const char* kRejections =
+    "SELECT scenario, seed, message, varied, setting FROM outcomes WHERE kind = '' AND ";
+constexpr const char* kInOrder = " ORDER BY varied, setting, scenario, seed, kind, method";
+
+std::vector<Outcome> read_outcomes(SQLite::Statement& select, const std::filesystem::path& path) {
+  std::vector<Outcome> found;
+  while (select.executeStep()) {
+    Outcome row;
+    row.scenario = select.getColumn(0).getString();
+    row.seed = read_seed(select.getColumn(1).getInt64());
+    row.kind = kind_named(select.getColumn(2).getString(), path);
+    row.method = select.getColumn(3).getString();
+    row.status = select.getColumn(4).getString();
+    row.message = select.getColumn(5).getString();
+    row.recording_digest = select.getColumn(6).getString();
+    row.estimate_digest = select.getColumn(7).getString();
+    row.setting = {select.getColumn(8).getString(), select.getColumn(9).getDouble()};
+    found.push_back(std::move(row));
+  }
+  return found;
+}
+
+std::vector<RejectedDraw> read_rejected(SQLite::Statement& select) {
+  std::vector<RejectedDraw> found;
+  while (select.executeStep()) {
+    found.push_back({select.getColumn(0).getString(),
+                     read_seed(select.getColumn(1).getInt64()),
+                     select.getColumn(2).getString(),
+                     {select.getColumn(3).getString(), select.getColumn(4).getDouble()}});
+  }
+  return found;
+}
+
+}  // namespace
+
+std::optional<Outcome> Results::find(const Outcome& key) const {
+  for (Outcome& held : outcomes_of(key.scenario, key.seed)) {
+    if (held.kind == key.kind && held.method == key.method && held.setting == key.setting) return std::move(held);
+  }
+  return std::nullopt;
+}
+
+bool Results::has(const std::string& scenario, std::uint64_t seed, Kind kind, const std::string& method) const {
+  return impl_->guarded([&] {
+    SQLite::Statement select(impl_->database,
+                             "SELECT 1 FROM outcomes WHERE scenario = ? AND seed = ? AND kind = ? AND method = ? "
+                             "AND varied = ''");
+    select.bind(1, scenario);
+    select.bind(2, stored_seed(seed));
+    select.bind(3, std::string(to_string(kind)));
+    select.bind(4, method);
+    return select.executeStep();
+  });
+}
+
+std::vector<ScoreRow> Results::scores(Rows rows) const {
+  return impl_->guarded([&] {
+    std::vector<ScoreRow> found;
+    SQLite::Statement select(impl_->database,
+                             std::string("SELECT o.scenario, o.seed, o.kind, o.method, o.status, s.metric, s.value, "
+                                         "o.varied, o.setting FROM outcomes AS o LEFT JOIN score_values AS s "
+                                         "ON s.outcome = o.id WHERE ") +
+                                 picked(rows) +
+                                 " ORDER BY o.varied, o.setting, o.scenario, o.seed, o.kind, o.method, s.metric");
+    while (select.executeStep()) {
+      found.push_back({select.getColumn(0).getString(),
+                       read_seed(select.getColumn(1).getInt64()),
+                       select.getColumn(2).getString(),
+                       select.getColumn(3).getString(),
+                       select.getColumn(4).getString(),
+                       select.getColumn(5).isNull() ? std::string() : select.getColumn(5).getString(),
+                       read_value(select.getColumn(6)),
+                       {select.getColumn(7).getString(), select.getColumn(8).getDouble()}});
+    }
+    return found;
+  });
+}
+
+std::vector<Outcome> Results::outcomes(Rows rows) const {
+  return impl_->guarded([&] {
+    SQLite::Statement select(impl_->database, std::string(kOutcomes) + picked(rows) + kInOrder);
+    return read_outcomes(select, impl_->path);
+  });
+}
+
+std::vector<Outcome> Results::outcomes_of(const std::string& scenario, std::uint64_t seed) const {
+  return impl_->guarded([&] {
+    SQLite::Statement select(impl_->database, std::string(kOutcomes) + "scenario = ? AND seed = ?" + kInOrder);
+    select.bind(1, scenario);
+    select.bind(2, stored_seed(seed));
+    return read_outcomes(select, impl_->path);
+  });
+}
+
+std::vector<RejectedDraw> Results::rejected(Rows rows) const {
+  return impl_->guarded([&] {
+    SQLite::Statement select(impl_->database, std::string(kRejections) + picked(rows) + kInOrder);
+    return read_rejected(select);
+  });
+}
+
+std::vector<RejectedDraw> Results::rejected_of(const std::string& scenario, std::uint64_t seed) const {
+  return impl_->guarded([&] {
+    SQLite::Statement select(impl_->database, std::string(kRejections) + "scenario = ? AND seed = ?" + kInOrder);
+    select.bind(1, scenario);
+    select.bind(2, stored_seed(seed));
+    return read_rejected(select);
+  });
+}
+
+std::vector<DrawValues> Results::draws(Rows rows) const {
+  return impl_->guarded([&] {
+    std::vector<DrawValues> draws;
+    SQLite::Statement select(
+        impl_->database, std::string("SELECT scenario, seed, metric, value, varied, setting FROM draw_values WHERE ") +
+                             picked(rows) + " ORDER BY varied, setting, scenario, seed, metric");
+    while (select.executeStep()) {
+      const std::string scenario = select.getColumn(0).getString();
+      const std::uint64_t seed = read_seed(select.getColumn(1).getInt64());
+      const Setting setting{select.getColumn(4).getString(), select.getColumn(5).getDouble()};
+      if (draws.empty() || draws.back().scenario != scenario || draws.back().seed != seed ||
+          draws.back().setting != setting) {
+        draws.push_back({scenario, seed, {}, setting});
+      }
+      draws.back().values.push_back({select.getColumn(2).getString(), read_value(select.getColumn(3))});
+    }
+    return draws;
+  });
+}
+
+std::vector<Certificate> Results::certificates() const {
+  return impl_->guarded([&] {
+    std::vector<Certificate> certificates;
+    SQLite::Statement select(impl_->database,
+                             "SELECT build, row, subject, law, unit, value, low, high, note FROM certificates "
+                             "ORDER BY build, number");
+    while (select.executeStep()) {
+      const std::string build = select.getColumn(0).getString();
+      if (certificates.empty() || certificates.back().build != build) certificates.push_back({build, {}});
+      const auto text = [&](int column) { return select.getColumn(column).getString(); };
+      certificates.back().entries.push_back({text(1), text(2), text(3), text(4), read_value(select.getColumn(5)),
+                                             read_value(select.getColumn(6)), read_value(select.getColumn(7)),
+                                             text(8)});
+    }
+    return certificates;
+  });
+}
+
+}  // namespace tumble::scenarios
