@@ -24,7 +24,8 @@ int side(const ImuSample& sample, std::size_t j) {
   return sample.angular_velocity_rad_s[static_cast<Eigen::Index>(j)] < 0.0 ? -1 : 1;
 }
 
-// Whether sample k, beside the clipped one at the other side of it than `outside`, met the rail in a part of its window.
+// Whether sample k, beside the clipped one at the other side of it than `outside`, met the rail in a part of its
+// window.
 bool meets(std::span<const ImuSample> samples, const RailPlane& rail, std::size_t k, std::ptrdiff_t outside, int sign) {
   const auto beside = static_cast<std::ptrdiff_t>(k) + outside;
   const double depth = rail.short_of(samples[k].angular_velocity_rad_s, sign);
@@ -52,6 +53,14 @@ bool are_upright(const RailPlanes& planes, const RailDetector::State& rails) {
     }
   }
   return nil >= 2;
+}
+
+RailPlanes without_plateaus(const RailPlanes& planes, const RailDetector::State& rails) {
+  RailPlanes out = planes;
+  for (std::size_t j = 0; j < 3; ++j) {
+    if (rails.channels[j].rail > 0.0) out.element[j].reset();
+  }
+  return out;
 }
 
 void clip_by_planes(std::span<const ImuSample> samples, const RailPlanes& planes, std::span<Clipping> clippings) {
