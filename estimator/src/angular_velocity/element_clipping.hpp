@@ -12,7 +12,7 @@ namespace tumble {
 /// Whether the rails found, and the plateaus of equal readings, show a device that clips what it delivers: rails
 /// upright, nothing hidden on the axes beside. Two slopes known to be nil tell, a plateau counting for one; one that is
 /// not nil tells the contrary.
-bool are_upright(const RailPlanes& planes, const RailDetector::State& rails);
+bool are_upright(std::span<const ImuSample> samples, const RailPlanes& planes, const RailDetector::State& rails);
 
 /// The planes of elements on whose axis no plateau of equal readings was seen.
 RailPlanes without_plateaus(const RailPlanes& planes, const RailDetector::State& rails);

@@ -300,7 +300,7 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
   RailDetector::State rail_state;
   rails_.classify_all(samples, rail_state, clippings);
   health.planes = planes_.find(samples);
-  health.rails_upright = are_upright(health.planes, rail_state);
+  health.rails_upright = are_upright(samples, health.planes, rail_state);
   // equal readings tell an upright rail to the bit, a plane what else there is
   const RailPlanes planes = health.rails_upright ? without_plateaus(health.planes, rail_state) : health.planes;
   clip_by_planes(samples, planes, clippings);
