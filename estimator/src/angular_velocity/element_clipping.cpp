@@ -10,6 +10,8 @@ namespace {
 
 // A slope is told when its deviation is below the first; it is nil below the second.
 constexpr double kTold = 2e-3, kNil = 3e-3;
+// Readings closer than this share are equal, as RailDetector has it.
+constexpr double kEqualShare = 2e-5;
 // What is left of a tilt where rails are upright; the least deviation of a slope (misalignment left by the device).
 constexpr double kUprightSigma = 1e-5, kSlopeSigmaMin = 3e-4;
 // Samples beside a clipped one that may have met the rail: largest depth, as a share of it; and of the step before.
@@ -24,7 +26,8 @@ int side(const ImuSample& sample, std::size_t j) {
   return sample.angular_velocity_rad_s[static_cast<Eigen::Index>(j)] < 0.0 ? -1 : 1;
 }
 
-// Whether sample k, beside the clipped one at the other side of it than `outside`, met the rail in a part of its window.
+// Whether sample k, beside the clipped one at the other side of it than `outside`, met the rail in a part of its
+// window.
 bool meets(std::span<const ImuSample> samples, const RailPlane& rail, std::size_t k, std::ptrdiff_t outside, int sign) {
   const auto beside = static_cast<std::ptrdiff_t>(k) + outside;
   const double depth = rail.short_of(samples[k].angular_velocity_rad_s, sign);
@@ -36,10 +39,22 @@ bool meets(std::span<const ImuSample> samples, const RailPlane& rail, std::size_
 
 }  // namespace
 
-bool are_upright(const RailPlanes& planes, const RailDetector::State& rails) {
+bool are_upright(std::span<const ImuSample> samples, const RailPlanes& planes, const RailDetector::State& rails) {
   int nil = 0;
   for (std::size_t j = 0; j < 3; ++j) {
     const auto& rail = planes.element[j];
+    const double plateau = rails.channels[j].rail;
+    if (rail && plateau > 0.0) {
+      // most of the samples at the rail read the same: no tilted plane does that
+      const auto equal = std::count_if(samples.begin(), samples.end(), [&](const ImuSample& sample) {
+        const double reading = std::abs(sample.angular_velocity_rad_s[static_cast<Eigen::Index>(j)]);
+        return std::abs(reading - plateau) <= kEqualShare * plateau;
+      });
+      if (2 * equal >= rail->samples[0] + rail->samples[1]) {
+        nil += 2;
+        continue;
+      }
+    }
     if (!rail) {
       nil += rails.channels[j].rail > 0.0 ? 1 : 0;
       continue;
@@ -52,6 +67,14 @@ bool are_upright(const RailPlanes& planes, const RailDetector::State& rails) {
     }
   }
   return nil >= 2;
+}
+
+RailPlanes without_plateaus(const RailPlanes& planes, const RailDetector::State& rails) {
+  RailPlanes out = planes;
+  for (std::size_t j = 0; j < 3; ++j) {
+    if (rails.channels[j].rail > 0.0) out.element[j].reset();
+  }
+  return out;
 }
 
 void clip_by_planes(std::span<const ImuSample> samples, const RailPlanes& planes, std::span<Clipping> clippings) {

@@ -9,14 +9,17 @@
 
 namespace tumble {
 
-/// Whether the rails found, and the plateaus of equal readings, show a device that clips what it delivers: rails upright,
-/// nothing hidden on the axes beside. Two slopes known to be nil tell, a plateau counting for one; one that is not nil
-/// tells the contrary.
-bool are_upright(const RailPlanes& planes, const RailDetector::State& rails);
+/// Whether the rails found, and the plateaus of equal readings, show a device that clips what it delivers: rails
+/// upright, nothing hidden on the axes beside. Two slopes known to be nil tell, a plateau counting for one; one that is
+/// not nil tells the contrary.
+bool are_upright(std::span<const ImuSample> samples, const RailPlanes& planes, const RailDetector::State& rails);
+
+/// The planes of elements on whose axis no plateau of equal readings was seen.
+RailPlanes without_plateaus(const RailPlanes& planes, const RailDetector::State& rails);
 
 /// Brings the planes into what was classified with upright rails: an element with a plane clips where its plane says so
-/// or the device does. Samples that meet a rail in a part of their window, beside one that is clipped, belong to it: they
-/// lie short of the plane by less than half of what the neighbour outside still lacked.
+/// or the device does. Samples that meet a rail in a part of their window, beside one that is clipped, belong to it:
+/// they lie short of the plane by less than half of what the neighbour outside still lacked.
 void clip_by_planes(std::span<const ImuSample> samples, const RailPlanes& planes, std::span<Clipping> clippings);
 
 /// Finds partial axes as mark_partial() does, with the rail of each element where its plane is known.

@@ -21,7 +21,8 @@ using Eigen::Vector3d;
 
 constexpr double kGridStep = 0.01;  // of the slopes
 constexpr int kRefinements = 10;
-// Deviations with which the robust fit starts, as shares of the slab: a thin rail with a few samples short of it, a thick one.
+// Deviations with which the robust fit starts, as shares of the slab: a thin rail with a few samples short of it, a
+// thick one.
 constexpr double kStarts[] = {0.5, 0.02};
 // Half a slab: deviations of the samples, and the least and the most share of the level.
 constexpr double kSlabDeviations = 4.0, kSlabShareMin = 2e-4, kSlabShareMax = 0.006;

@@ -299,9 +299,11 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
   std::vector<Clipping> clippings(samples.size());
   RailDetector::State rail_state;
   rails_.classify_all(samples, rail_state, clippings);
-  const RailPlanes planes = health.planes = planes_.find(samples);
+  health.planes = planes_.find(samples);
+  health.rails_upright = are_upright(samples, health.planes, rail_state);
+  // equal readings tell an upright rail to the bit, a plane what else there is
+  const RailPlanes planes = health.rails_upright ? without_plateaus(health.planes, rail_state) : health.planes;
   clip_by_planes(samples, planes, clippings);
-  health.rails_upright = are_upright(planes, rail_state);
   for (int c = 0; c < 6; ++c) {
     health.rail[static_cast<std::size_t>(c)] = rails_.rail(rail_state, c);
     if (c < 3 && planes.element[static_cast<std::size_t>(c)]) {

@@ -124,7 +124,8 @@ TEST(RailPlanes, SpinsTopsRestAndCreepingAreNoRails) {
       // torque-free, wobbling by a little about its axis
       const Vector3d flight(0.3 * std::cos(5.0 * t), 0.3 * std::sin(5.0 * t), rate);
       spin.push_back((k < 300 || k > 380 ? Vector3d(0.2 * std::sin(3.0 * t), 0.3, 0.1) : flight) + error);
-      top.push_back(Vector3d(std::sin(t), std::cos(2.0 * t), 8.0 - curve * std::pow(std::fmod(t, 1.0) - 0.5, 2)) + error);
+      top.push_back(Vector3d(std::sin(t), std::cos(2.0 * t), 8.0 - curve * std::pow(std::fmod(t, 1.0) - 0.5, 2)) +
+                    error);
       rest.push_back(error);
       creep.push_back(Vector3d(0.0, 0.0, k < 300 || k > 700 ? 0.0 : 1.4) + error);
     }
@@ -157,7 +158,8 @@ TEST(RailPlanes, ReadingsThatRepeatOrAreCoarseDoNotHideARail) {
   EXPECT_FALSE(find(free).any());
 }
 
-// A stated range speaks against a rail far below it, but a range may have been set otherwise: many stretches outweigh it.
+// A stated range speaks against a rail far below it, but a range may have been set otherwise: many stretches outweigh
+// it.
 TEST(RailPlanes, AStatedRangeCountsAsMuchAsItIsWorth) {
   const Eigen::Matrix3d rows = drawn_rows(1, 0.03);
   const std::vector<ImuSample> many = samples_of(clipped(waved(12.0, 20.0, 0.004, 1), rows, Vector3d::Zero(), 7.3));

@@ -69,11 +69,10 @@ TEST(RateElements, ATiltedRailIsReadAsWellAsAnUprightOne) {
 }
 
 TEST(RateElements, TheCovarianceHoldsTheErrorAndIsNotTooWide) {
-  // half of these tumbles' clipped samples are in or beside impacts, where the upright rail holds 98.4 % too
-  const double upright = run(0.0, {}).share_within();
+  // measured at 5 %: 0.983; what is missing lies in impacts, and in a few samples of elements whose rail nobody saw
   for (const double tilt : {0.02, 0.05}) {
     const double share = run(tilt, {}).share_within();
-    EXPECT_GT(share, std::min(0.985, upright - 0.005)) << tilt;
+    EXPECT_GT(share, 0.98) << tilt;
     EXPECT_LT(share, 0.9999) << tilt;
   }
 }

@@ -31,7 +31,7 @@ struct TumbleOptions {
   /// Rows along which the gyro's elements sense; they clip there, and readings are brought back to the axes.
   Eigen::Matrix3d gyro_rows = Eigen::Matrix3d::Identity();
   Eigen::Vector3d gyro_offset_rad_s = Eigen::Vector3d::Zero();  ///< of the elements, taken off after they clip
-  double speed_low_rad_s = 9.0, speed_high_rad_s = 18.0;  ///< of the flights
+  double speed_low_rad_s = 9.0, speed_high_rad_s = 18.0;        ///< of the flights
   int flights = 8;
   double impact_m_s2 = 150.0;  ///< peak force of an impact, drawn between a third of it and all of it
   bool roll = true;            ///< end by a second of rolling to rest
@@ -41,7 +41,7 @@ struct TumbleRecording {
   std::vector<ImuSample> samples;
   std::vector<Eigen::Vector3d> truth;  ///< mean of w_WI_I over the window of each sample
   std::vector<Phase> phase;
-  std::vector<Eigen::Vector3d> hidden;  ///< what each element's rail took away, signed [rad/s]
+  std::vector<Eigen::Vector3d> hidden;                ///< what each element's rail took away, signed [rad/s]
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< in IMU axes
 };
 

@@ -58,7 +58,8 @@ struct ElementClipping {
 /// A device has three elements of one kind: a rail far below what another axis reads is none, one at the level of
 /// another element's is likely. Elements that are not found are not clipped as far as anybody can tell.
 ///
-/// What it does not model: rails that drift or recover slowly, readings that wrap around, several levels of one element.
+/// What it does not model: rails that drift or recover slowly, readings that wrap around, several levels of one
+/// element.
 class RailPlaneFinder {
  public:
   struct Params {
@@ -69,8 +70,8 @@ class RailPlaneFinder {
     double distance_min_rad_s = 1.5;
     /// Range that the data sheet states, if any: the rail does not lie far below it [rad/s]; (0, 1000].
     std::optional<double> stated_rad_s = std::nullopt;
-    double offset_share = 0.02;     ///< prior of the offset and of how far elements differ, as a share of r; [1e-4, 0.2]
-    int samples_min = 4;            ///< on a rail, of one sign; [2, 1000]
+    double offset_share = 0.02;  ///< prior of the offset and of how far elements differ, as a share of r; [1e-4, 0.2]
+    int samples_min = 4;         ///< on a rail, of one sign; [2, 1000]
     double log_odds_before = -6.0;  ///< before anything is seen, for each element and sign; [-100, 100]
     double log_odds_min = 1.0;      ///< of a rail that is believed; [-100, 100]
   };

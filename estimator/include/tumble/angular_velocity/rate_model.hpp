@@ -47,8 +47,8 @@ struct RateModelParams {
   /// 3x3 matrix (MTi-300 sheet: non-orthogonality 0.05 deg). Not estimated, but counted in the covariance; [0, 0.1].
   double gyro_matrix_sigma = 5e-4;
   double accel_matrix_sigma = 5e-4;
-  /// What a gyro's bandwidth and its clock leave open of the time of a reading (a first-order low-pass at 415 Hz is 0.38 ms
-  /// late): counted in the covariance, times the angular acceleration [s]; [0, 0.1].
+  /// What a gyro's bandwidth and its clock leave open of the time of a reading (a first-order low-pass at 415 Hz is
+  /// 0.38 ms late): counted in the covariance, times the angular acceleration [s]; [0, 0.1].
   double gyro_time_sigma_s = 2.5e-4;
   /// What Euler's equation without torque misses of the angular acceleration [rad/s^2]; [1e-6, 1e6].
   double euler_sigma_rad_s2 = 0.3;
@@ -114,8 +114,8 @@ struct RateEstimate {
   double flight_weight = 0.0;  ///< 0: contact, 1: free flight
   /// Specific force of contact at the centre of mass: what the flight model does not explain.
   Eigen::Vector3d contact_m_s2 = Eigen::Vector3d::Zero();
-  /// What the bounds of clipped elements amount to, as Gaussian sites on what each hides, m_j . (rate + bias - reading):
-  /// precision and precision * mean.
+  /// What the bounds of clipped elements amount to, as Gaussian sites on what each hides, m_j . (rate + bias -
+  /// reading): precision and precision * mean.
   Eigen::Vector3d bound_precision = Eigen::Vector3d::Zero();
   Eigen::Vector3d bound_shift = Eigen::Vector3d::Zero();
   bool soft_bounds = false;  ///< false: bounds are walls that act only when violated (for the first iterations)

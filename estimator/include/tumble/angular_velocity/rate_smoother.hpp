@@ -28,8 +28,8 @@ struct RateReport {
   double rig_surprise = 0.0;
   bool rig_held = false;  ///< the surprise was too large: nothing was learnt, the constants were held
   std::array<std::optional<double>, 6> rail;  ///< in use: gyro [rad/s], accelerometer [m/s^2]; none: not seen
-  RailPlanes planes;                                  ///< of the gyro's elements, where they were seen
-  bool rails_upright = false;                         ///< the device clips what it delivers, nothing else is off
+  RailPlanes planes;                          ///< of the gyro's elements, where they were seen
+  bool rails_upright = false;                 ///< the device clips what it delivers, nothing else is off
   std::array<bool, 6> rail_disagrees{};       ///< a stated range contradicted by the readings
   bool rate_unit_suspect = false;             ///< a reading beyond RateModelParams::rate_max_rad_s: perhaps degrees
   bool force_unit_suspect = false;            ///< the median specific force is near 1: perhaps given in g

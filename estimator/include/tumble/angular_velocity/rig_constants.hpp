@@ -18,7 +18,8 @@ struct RigConstants {
   /// orthonormal basis of the symmetric matrices without trace. Zero: all moments equal.
   Eigen::Matrix<double, 5, 1> inertia = Eigen::Matrix<double, 5, 1>::Zero();
   /// Where the sensing elements of the gyro look before the device compensates it: element j senses along the row m_j,
-  /// 1 on axis j, elements[2j] on axis (j+1) % 3 and elements[2j+1] on axis (j+2) % 3. Seen where an element clips only.
+  /// 1 on axis j, elements[2j] on axis (j+1) % 3 and elements[2j+1] on axis (j+2) % 3. Seen where an element clips
+  /// only.
   Eigen::Matrix<double, 6, 1> elements = Eigen::Matrix<double, 6, 1>::Zero();
 
   /// m_j.
