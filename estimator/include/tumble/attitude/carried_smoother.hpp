@@ -70,7 +70,7 @@ class CarriedSmoother {
     double rest_sigma_rad_s = 0.01;  ///< of the rate at rest, one node; bound [1e-6, 10]
     double rest_sigma_m_s = 0.02;    ///< of the velocity at rest; bound [1e-6, 10]
     double rest_sigma_m_s2 = 0.1;    ///< of the acceleration at rest; bound [1e-6, 10]
-    RestDetector::Params rest;
+    RestDetector::Params rest = {};
   };
   struct Report {
     carried::Constants constants;
