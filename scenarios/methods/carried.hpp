@@ -16,8 +16,9 @@ namespace tumble::scenarios {
 /// Parameters of a method on the carried body, with the library's own defaults and bounds.
 std::span<const sim::Parameter> carried_parameters();
 
-/// Signs of the elements that stand at a rail, per sample: flags of the device, and plateaus found in the readings.
-/// `rows` of the result are the axes themselves; it refers to `signs`.
+/// Signs of the elements that stand at a rail, per sample: flags of the device, plateaus and tilted planes found in the
+/// readings. `rows` of the result are those of the planes, the axes themselves where none was seen; it refers to
+/// `signs`.
 ClippedElements find_clipped(const sim::ImuRecord& record, std::span<const ImuSample> samples,
                              std::vector<ClipSigns>& signs);
 

@@ -78,8 +78,9 @@ class CarriedSmoother {
     int iterations = 0;
     bool converged = false;
     double cost = 0.0;
-    /// Largest mean acceleration of the carried point over a quarter of a second, in deviations of what is assumed:
-    /// carried bodies stay below some 3, one that is thrown (specific force about 0) shows.
+    /// Largest mean acceleration of the carried point over a quarter of a second, in deviations of what is assumed. One
+    /// that is thrown (specific force about 0) shows 2 and more; so does a hand that is rough: it warns, it decides
+    /// nothing.
     double hand_surprise = 0.0;
   };
 
