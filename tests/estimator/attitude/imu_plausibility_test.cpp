@@ -67,7 +67,7 @@ TEST(ImuPlausibility, OfABodyAtRestOrReadingsThatAreNoneNothingIsSaid) {
   sample.specific_force_m_s2 = {0.0, 0.0, 9.8};
   sample.time_ns = std::numeric_limits<TimeNs>::min();
   plausibility.step(sample, state);
-  for (int k = 0; k < 2500; ++k) {
+  for (TimeNs k = 0; k < 2500; ++k) {
     sample.time_ns = k * 4'000'000;
     plausibility.step(sample, state);
   }

@@ -95,7 +95,9 @@ TEST_F(ReplaceFile, KeepsModeAndOwner) {
   replace_file(path, "first");
   ASSERT_EQ(chmod(path.c_str(), 0600), 0);
   const bool root = geteuid() == 0;
-  if (root) ASSERT_EQ(chown(path.c_str(), 1234, 1235), 0);
+  if (root) {
+    ASSERT_EQ(chown(path.c_str(), 1234, 1235), 0);
+  }
   replace_file(path, "second");
   struct stat status {};
   ASSERT_EQ(stat(path.c_str(), &status), 0);

@@ -165,7 +165,9 @@ TEST(SampledDevice, HeldReadingsKeepTheirFlags) {
   for (std::size_t k = 6; k < 100; ++k) {
     const bool lost = r.record.gyro_rad_s[k] != r.truth.gyro_unclipped_rad_s[k];
     ASSERT_EQ(r.record.clip_flags[k], lost ? 0b100 : 0) << k;
-    if (lost) ASSERT_LE(r.record.gyro_rad_s[k].z(), 5.0 + 1e-12);
+    if (lost) {
+      ASSERT_LE(r.record.gyro_rad_s[k].z(), 5.0 + 1e-12);
+    }
     clipped += lost;
   }
   EXPECT_GT(clipped, 40);
