@@ -84,7 +84,7 @@ std::string broken_rule(const std::string& path, const std::string& include) {
 std::vector<fs::path> sources() {
   std::vector<fs::path> out;
   for (const char* folder : {"estimator", "sim", "scenarios", "tools"}) {
-    for (const auto& entry : fs::recursive_directory_iterator(test::source_dir() / folder)) {
+    for (const auto& entry : fs::recursive_directory_iterator(tumble::test::source_dir() / folder)) {
       const std::string extension = entry.path().extension().string();
       if (extension == ".hpp" || extension == ".cpp") out.push_back(entry.path());
     }
@@ -94,14 +94,14 @@ std::vector<fs::path> sources() {
 }
 
 std::string path_in_tree(const fs::path& path) {
-  return fs::relative(path, test::source_dir()).generic_string();
+  return fs::relative(path, tumble::test::source_dir()).generic_string();
 }
 
 /// Private headers of a module may be reached from inside the module alone: follow the includes of a public header.
 void collect_reachable(const std::string& header, std::vector<std::string>& seen) {
   if (std::find(seen.begin(), seen.end(), header) != seen.end()) return;
   seen.push_back(header);
-  const fs::path file = test::source_dir() / header;
+  const fs::path file = tumble::test::source_dir() / header;
   if (!fs::exists(file)) return;
   for (const std::string& include : includes_of(file)) collect_reachable(include, seen);
 }
@@ -140,7 +140,7 @@ TEST(Architecture, CheckerRefusesForbiddenIncludes) {
 
 TEST(Architecture, PublicSimHeadersDoNotBringTheEngine) {
   for (const std::string& header : kPublicSimHeaders) {
-    ASSERT_TRUE(fs::exists(test::source_dir() / header)) << header;
+    ASSERT_TRUE(fs::exists(tumble::test::source_dir() / header)) << header;
     std::vector<std::string> reachable;
     collect_reachable(header, reachable);
     for (const std::string& include : reachable) {

@@ -96,7 +96,7 @@ int run(int count, char** words) {
     std::fprintf(stderr, "usage: motion_distribution SCENARIO|FILE.yaml FIRST LAST\n");
     return 2;
   }
-  const scenarios::DataRoot data{test::source_dir()};
+  const scenarios::DataRoot data{tumble::test::source_dir()};
   const scenarios::Scenario scenario = scenarios::load_scenario(data, words[1]);
   const std::uint64_t first = std::strtoull(words[2], nullptr, 10), last = std::strtoull(words[3], nullptr, 10);
   Spread spread;

@@ -133,7 +133,7 @@ int main(int count, char** words) {
     return 2;
   }
   try {
-    const scenarios::DataRoot data{test::source_dir()};
+    const scenarios::DataRoot data{tumble::test::source_dir()};
     const scenarios::Scenario scenario = scenarios::load_scenario(data, words[1]);
     Shares shares;
     for (std::uint64_t seed = std::strtoull(words[2], nullptr, 10); seed <= std::strtoull(words[3], nullptr, 10);

@@ -114,7 +114,7 @@ scenarios::Learning learn(const sim::Recording& recording) {
 }
 
 int run(const Request& request) {
-  const scenarios::DataRoot data{test::source_dir()};
+  const scenarios::DataRoot data{tumble::test::source_dir()};
   const scenarios::Scenario scenario = scenarios::load_scenario(data, request.scenario);
   std::vector<RatePool> pools;
   for (const std::string& name : request.methods) pools.emplace_back(name);

