@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kRangeShare = 0.98;  // of the stated range: calibration moves a rail by its error of scale
 constexpr double kSilentMaxS = 0.05;  // without readings for longer, a unit is absent
+constexpr double kEdgeShare = 0.9;    // of a sample, by which the readings at either end are carried on
 constexpr double kSilentToldS = 0.5;  // and for so long, told
 
 ImuSample absent(TimeNs time_ns) {
@@ -41,24 +42,34 @@ std::vector<ImuSample> readings_of(const sim::ImuRecord& record, Status& status)
 }
 
 /// Readings of a unit at the times of another, linearly between two: stamps are ends of windows, so both are means over
-/// a window that ends there. Absent where the nearest reading is further off than kSilentMaxS.
+/// a window that ends there. Absent where the nearest reading is further off than kSilentMaxS, and a sample's length
+/// before the first and after the last.
 std::vector<ImuSample> at_times_of(const std::vector<ImuSample>& primary, const std::vector<ImuSample>& own) {
   std::vector<ImuSample> out(primary.size());
+  const std::size_t last = own.size() - 1;
+  const double edge_s = last > 0 ? kEdgeShare * seconds(own[last].time_ns - own[last - 1].time_ns) : 0.0;
   std::size_t next = 0;
   for (std::size_t k = 0; k < primary.size(); ++k) {
     const TimeNs time_ns = primary[k].time_ns;
     while (next < own.size() && own[next].time_ns < time_ns) ++next;
-    const ImuSample& after = own[std::min(next, own.size() - 1)];
-    const ImuSample& before = next > 0 ? own[next - 1] : own.front();
+    if (last == 0 || own[std::min(next, last)].time_ns == time_ns) {
+      out[k] = own[std::min(next, last)].time_ns == time_ns ? own[std::min(next, last)] : absent(time_ns);
+      continue;
+    }
+    // at either end the line through the two readings there goes on
+    const std::size_t second = std::clamp<std::size_t>(next, 1, last);
+    const ImuSample &before = own[second - 1], &after = own[second];
     const auto far = [&](TimeNs other_ns) {
       return std::abs(static_cast<double>(other_ns) - static_cast<double>(time_ns)) > kSilentMaxS * 1e9;
     };
-    if (after.time_ns != time_ns && (far(before.time_ns) || far(after.time_ns))) {
+    const bool outside = time_ns > own.back().time_ns || time_ns < own.front().time_ns;
+    const double beyond_s = std::max(seconds(time_ns - own.back().time_ns), seconds(own.front().time_ns - time_ns));
+    if ((outside && beyond_s >= edge_s) || far(before.time_ns) || far(after.time_ns)) {
       out[k] = absent(time_ns);
       continue;
     }
     const double length_s = seconds(after.time_ns - before.time_ns);
-    const double share = length_s > 0.0 ? seconds(time_ns - before.time_ns) / length_s : 1.0;
+    const double share = seconds(time_ns - before.time_ns) / length_s;
     out[k] = after;
     out[k].time_ns = time_ns;
     out[k].angular_velocity_rad_s =

@@ -211,10 +211,15 @@ std::optional<double> ImuMerge::arm_share(const State& state) {
 /// Learns from the means over the window, and begins the next.
 void ImuMerge::close_window(const Flags& present, TimeNs time_ns, State& state) const {
   const bool follows = state.windows > 1 && state.window.length_s < kWindowMax_s;
-  // a unit that repeats itself may turn out to be frozen, and nothing is to be learnt from one
-  const bool held = std::any_of(state.units.begin(), state.units.end(), [](const Unit& unit) {
-    return unit.rate_hold.held_s >= kHeld_s || unit.force_hold.held_s >= kHeld_s;
-  });
+  // a unit that repeats itself may turn out to be frozen, and nothing is to be learnt from one; where all do, it is the
+  // body that keeps its rate
+  const auto end = state.units.begin() + params_.count;
+  const auto some_hold = [&](Hold Unit::* hold) {
+    const auto holding =
+        std::count_if(state.units.begin(), end, [&](const Unit& unit) { return (unit.*hold).held_s >= kHeld_s; });
+    return holding > 0 && holding < params_.count;
+  };
+  const bool held = some_hold(&Unit::rate_hold) || some_hold(&Unit::force_hold);
   if (state.all_used && !held && params_.count > 1 && follows) learn(state);
   watch_misfits(present, time_ns, state);
   for (Unit& unit : state.units) {

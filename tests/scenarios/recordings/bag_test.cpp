@@ -85,6 +85,7 @@ TEST_P(Bag, TheTruthIsLeftOutUnlessAskedFor) {
   reading_.reference_topic = "/truth";
   write();
   EXPECT_THAT(complaint_of(), HasSubstr("no topic '/truth'"));
+  std::filesystem::remove_all(path_);
   GetParam().write(recording_.sensors, {0, &recording_.truth}, path_);
   const Imported imported = read();
   ASSERT_TRUE(imported.reference.has_value());
