@@ -30,8 +30,7 @@ constexpr double kSlabDeviations = 4.0, kSlabShareMin = 2e-4, kSlabShareMax = 0.
 constexpr double kSiblingShare = 0.04;
 // Log odds of a level: near that of another element, of a stated range, of the other sign; and what cannot be.
 constexpr double kNearSibling = 5.0, kNearStated = 3.0, kOtherSignAgrees = 5.0, kImpossible = -100.0;
-// A rail is hardly below this share of the stated range: sheets are wrong, but seldom by so much.
-constexpr double kBelowStated = -10.0;
+// A rail is not found below this share of the stated range.
 constexpr double kStatedShareMin = 0.85;
 
 // One sign of one element while it is searched for.
@@ -212,7 +211,7 @@ double level_log_odds(const RailPlaneFinder::Params& params, const DistinctReadi
   }
   if (params.stated_rad_s) {
     const double ratio = level / *params.stated_rad_s;
-    odds += ratio < kStatedShareMin ? kBelowStated : ratio < 1.05 && ratio > 0.95 ? kNearStated : 0.0;
+    odds += ratio < kStatedShareMin ? kImpossible : ratio < 1.05 && ratio > 0.95 ? kNearStated : 0.0;
   }
   return odds;
 }

@@ -266,6 +266,17 @@ RateModelParams held(const RateModelParams& params, const RateModel& model) {
   return out;
 }
 
+// A stated range that the readings contradict tells the planes nothing.
+RailPlanes find_planes(const RailPlaneFinder& finder, const RailDetector& rails, const RailDetector::State& state,
+                       std::span<const ImuSample> samples) {
+  if (!rails.disagrees(state, 0) && !rails.disagrees(state, 1) && !rails.disagrees(state, 2)) {
+    return finder.find(samples);
+  }
+  RailPlaneFinder::Params params = finder.params();
+  params.stated_rad_s = std::nullopt;
+  return RailPlaneFinder(params).find(samples);
+}
+
 RailPlaneFinder::Params plane_params(const RateSmoother::Params& params) {
   RailPlaneFinder::Params out = params.planes;
   if (!out.stated_rad_s) out.stated_rad_s = params.rails.stated_gyro_rad_s;
@@ -299,7 +310,7 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
   std::vector<Clipping> clippings(samples.size());
   RailDetector::State rail_state;
   rails_.classify_all(samples, rail_state, clippings);
-  health.planes = planes_.find(samples);
+  health.planes = find_planes(planes_, rails_, rail_state, samples);
   health.rails_upright = are_upright(samples, health.planes, rail_state);
   // equal readings tell an upright rail to the bit, a plane what else there is
   const RailPlanes planes = health.rails_upright ? without_plateaus(health.planes, rail_state) : health.planes;
