@@ -216,7 +216,7 @@ class Sweep {
     return task;
   }
 
-  // starts the next draw that has something to run; false when there is none, or no process to run it in for now
+  // starts the next draw that has something to run; false when there is none, or no process can be made to run it in
   bool start_next() {
     for (; !nothing_left() && !stopped(); advance()) {
       DrawTask task = task_at_cursor();
