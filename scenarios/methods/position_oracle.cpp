@@ -31,12 +31,17 @@ Estimate run_exact_attitude(const sim::Sensors& sensors, const sim::Values& para
   MergedImus imus;
   if (!prepare("position/oracle", sensors, imus, estimate)) return estimate;
   const sim::Truth& truth = *oracle.truth;
-  if (truth.imus.empty() || truth.imus.front().rate_rad_s.size() != imus.samples.size() || truth.q_WB.empty()) {
+  const std::vector<std::int64_t>& times_ns = sensors.imus.front().time_ns;
+  if (truth.imus.empty() || truth.imus.front().rate_rad_s.size() != times_ns.size() || truth.q_WB.empty()) {
     throw BadInput("the truth does not belong to the recording: rates of the primary IMU are missing");
   }
   const Eigen::Matrix3d R_BI = truth.imus.front().T_BI.linear();
-  for (std::size_t k = 0; k < imus.samples.size(); ++k) {
-    imus.samples[k].angular_velocity_rad_s = R_BI * truth.imus.front().rate_rad_s[k];
+  std::size_t next = 0;
+  for (ImuSample& sample : imus.samples) {  // a mean over readings of the primary IMU
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    const std::size_t first = next;
+    while (next < times_ns.size() && times_ns[next] <= sample.time_ns) sum += truth.imus.front().rate_rad_s[next++];
+    if (next > first) sample.angular_velocity_rad_s = R_BI * (sum / static_cast<double>(next - first));
   }
   RollingSmoother::Params params;
   params.filter = rolling_params(sensors, imus, parameters);

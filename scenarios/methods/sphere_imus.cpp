@@ -124,10 +124,12 @@ Status units_of(const sim::Sensors& sensors, Units& units) {
 
 Status run(const ImuMerge& merge, const Units& units, ImuMerge::State& state, std::vector<ImuSample>& out) {
   std::vector<ImuSample> now(units.samples.size());
-  out.resize(units.samples[0].size());
-  for (std::size_t k = 0; k < out.size(); ++k) {
+  std::optional<ImuSample> merged;
+  out.clear();
+  for (std::size_t k = 0; k < units.samples[0].size(); ++k) {
     for (std::size_t unit = 0; unit < now.size(); ++unit) now[unit] = units.samples[unit][k];
-    if (Status status = merge.step(now, state, out[k]); !status.ok()) return status;
+    if (Status status = merge.step(now, state, merged); !status.ok()) return status;
+    if (merged) out.push_back(*merged);
   }
   return {};
 }

@@ -19,6 +19,7 @@ constexpr double kTurning_rad_s2 = 1.0;  // an angular acceleration that tells a
 constexpr double kBeyondDoubt = 4.0;     // sigmas
 constexpr int kRecovering = 3;           // so many units tell the rate by their accelerometers
 constexpr double kUnharmed = 0.8;        // of the accelerometer's range, up to which its errors are learnt
+constexpr int kClipAccel = kClipAccelX | kClipAccelY | kClipAccelZ;
 constexpr int kOffset = ImuMerge::kErrors - 1;
 constexpr double kArmSquareMin_m2_s3 = 1.0;  // 1 m/s^2 for a second: a bias of 0.05 makes 0.05 of the share
 constexpr double kHeld_s = 0.03;
@@ -81,18 +82,13 @@ ImuMerge::ImuMerge(const Params& p) : params_(p), forces_(force_params(p)), reco
   }
 }
 
-Status ImuMerge::step(std::span<const ImuSample> samples, State& state, ImuSample& merged) const {
-  const int count = params_.count;
-  if (samples.size() != static_cast<std::size_t>(count)) {
-    return {Trouble::too_few, "samples", static_cast<double>(samples.size()), static_cast<double>(count)};
+Status ImuMerge::step(std::span<const ImuSample> samples, State& state, std::optional<ImuSample>& merged) const {
+  merged.reset();
+  if (samples.size() != static_cast<std::size_t>(params_.count)) {
+    return {Trouble::too_few, "samples", static_cast<double>(samples.size()), static_cast<double>(params_.count)};
   }
-  Flags finite{}, present{};
-  int heard = 0;
-  for (std::size_t k = 0; k < samples.size(); ++k) {
-    finite[k] = check(samples[k]).ok();
-    heard += finite[k];
-  }
-  if (heard == 0) return check(samples[0]);
+  const bool heard = std::any_of(samples.begin(), samples.end(), [](const ImuSample& s) { return check(s).ok(); });
+  if (!heard) return check(samples[0]);
   double dt_s = 0.0;
   if (state.samples > 0) {
     const Status bad = elapsed(samples[0].time_ns, state.last_time_ns, params_.gap_max_s, dt_s);
@@ -104,22 +100,54 @@ Status ImuMerge::step(std::span<const ImuSample> samples, State& state, ImuSampl
       unit.P(kOffset, kOffset) = params_.offset_sigma_s * params_.offset_sigma_s;
     }
   }
-  const TimeNs time_ns = samples[0].time_ns;
+  gather(samples, dt_s, state);
+  const bool full = state.samples == 0 || state.window_s >= params_.window_s - 0.5 * dt_s;
+  state.last_time_ns = samples[0].time_ns;
+  ++state.samples;
+  if (full) merged = merge(state);
+  return {};
+}
 
-  // from the middle of the last window to that of this reading
-  const double since_s = state.window.length_s + 0.5 * dt_s + 0.5 * state.length_s;
-  Vectors rates{}, raw_rates{}, raw_forces{}, forces{};
+/// Readings that are finite go into the windows of their units, with flags of the axes that are at a rail.
+void ImuMerge::gather(std::span<const ImuSample> samples, double dt_s, State& state) const {
+  const double weight_s = state.samples > 0 ? dt_s : params_.window_s;
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (!finite[k]) {
-      if (state.units[k].absent++ == 0) state.units[k].absent_since_ns = time_ns;
+    Unit& unit = state.units[k];
+    if (!check(samples[k]).ok()) {
+      if (unit.absent++ == 0) unit.absent_since_ns = samples[0].time_ns;
       continue;
     }
-    const Eigen::Matrix3d R_CI = params_.T_CI[k].linear();
-    raw_rates[k] = R_CI * samples[k].angular_velocity_rad_s;
-    raw_forces[k] = R_CI * samples[k].specific_force_m_s2;
+    ImuSample sample = samples[k];
+    for (int axis = 0; axis < 3; ++axis) {
+      int flags = sample.device_clip_flags;
+      if (std::abs(sample.angular_velocity_rad_s[axis]) >= params_.gyro_range_rad_s) flags |= kClipGyroX << axis;
+      if (std::abs(sample.specific_force_m_s2[axis]) >= params_.accel_range_m_s2) flags |= kClipAccelX << axis;
+      sample.device_clip_flags = static_cast<std::uint8_t>(flags);
+    }
+    unit.window.add(sample, weight_s);
   }
-  if (count > 1) watch_holds(finite, raw_rates, raw_forces, dt_s, time_ns, state);
-  for (std::size_t k = 0; k < samples.size(); ++k) {
+  state.window_s += dt_s;
+}
+
+/// Closes the windows, and begins the next.
+ImuSample ImuMerge::merge(State& state) const {
+  const auto count = static_cast<std::size_t>(params_.count);
+  const double h = state.window_s;
+  const TimeNs time_ns = state.last_time_ns;
+  Readings readings{};
+  Flags finite{}, present{};
+  Vectors raw_rates{}, raw_forces{}, rates{}, forces{};
+  for (std::size_t k = 0; k < count; ++k) {
+    finite[k] = state.units[k].window.readings > 0;
+    if (!finite[k]) continue;
+    readings[k] = state.units[k].window.mean;
+    const Eigen::Matrix3d R_CI = params_.T_CI[k].linear();
+    raw_rates[k] = R_CI * readings[k].angular_velocity_rad_s;
+    raw_forces[k] = R_CI * readings[k].specific_force_m_s2;
+  }
+  if (count > 1) watch_holds(finite, raw_rates, raw_forces, h, time_ns, state);
+  const double since_s = 0.5 * (h + state.length_s);  // from the middle of the last window to that of this one
+  for (std::size_t k = 0; k < count; ++k) {
     const Unit& unit = state.units[k];
     present[k] = finite[k] && !unit.left_out_for_long();
     rates[k] = raw_rates[k];
@@ -133,74 +161,71 @@ Status ImuMerge::step(std::span<const ImuSample> samples, State& state, ImuSampl
     forces[k] = ForceErrors::corrected(static_cast<int>(k), forces[k], state.forces);
   }
   if (std::none_of(present.begin(), present.end(), [](bool one) { return one; })) present = finite;
-  const int units = static_cast<int>(std::count(present.begin(), present.end(), true));
 
-  // the places differ, so forces may by what the rate makes of it; the tolerance has to bear that
-  const Eigen::Vector3d middle_rate = median(rates, present), middle_force = median(forces, present);
-  const double rate_tolerance = params_.rate_tolerance_rad_s + params_.rate_tolerance_share * middle_rate.norm();
-  Flags used{};
-  int kept = 0;
-  for (int k = 0; k < count; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    const double turned = (params_.T_CI[i].translation() - p_C_m_).norm() * middle_rate.squaredNorm() * 2.0;
-    used[i] = units < 3 || ((rates[i] - middle_rate).norm() < rate_tolerance &&
-                            (forces[i] - middle_force).norm() < params_.force_tolerance_m_s2 + turned);
-    used[i] = used[i] && samples[i].specific_force_m_s2.cwiseAbs().maxCoeff() < params_.accel_range_m_s2;
-    used[i] = used[i] && present[i];
-    kept += used[i];
-  }
-  if (2 * kept <= units && kept < units) {  // no majority: nobody is to blame
-    used = present;
-    kept = units;
-  }
-  const bool apart = state.windows > 0 && dt_s > 0.0;  // there is a window to take derivatives from
-  if (units >= kRecovering && apart && middle_rate.cwiseAbs().maxCoeff() < params_.gyro_range_rad_s) {
-    leave_out_hidden(samples, present, forces, middle_rate, dt_s, state, used);
-    kept = static_cast<int>(std::count(used.begin(), used.begin() + count, true));
-  }
-
-  Eigen::Vector3d rate = Eigen::Vector3d::Zero(), force = Eigen::Vector3d::Zero(), place = Eigen::Vector3d::Zero();
-  for (int k = 0; k < count; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    if (!used[i]) {
-      ++state.units[i].left_out;
-      continue;
-    }
-    rate += rates[i] / kept;
-    force += forces[i] / kept;
-    place += params_.T_CI[i].translation() / kept;
-    if (kept < count) place += ForceErrors::place_error_m(k, state.forces) / kept;
-  }
-  if (kept < count) {
-    const Eigen::Vector3d d = p_C_m_ - place;
-    if (apart) force += ((rate - state.rate_rad_s) / since_s).cross(d);
-    force += rate.cross(rate.cross(d));
-  }
-
+  const Flags used = choose(readings, present, rates, forces, h, state);
+  ImuSample merged = mean_of_used(rates, forces, used, h, state);
   merged.time_ns = time_ns;
-  merged.angular_velocity_rad_s = rate;
-  merged.specific_force_m_s2 = force;
-  merged.device_clip_flags = 0;
+  const bool all_used = std::count(used.begin(), used.end(), true) == params_.count;
+  close_windows(present, raw_rates, raw_forces, all_used, merged, state);
 
-  state.all_used = state.all_used && kept == count;
-  const double weight_s = state.samples > 0 ? dt_s : params_.window_s;
-  for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (finite[k]) state.units[k].window.add({time_ns, raw_rates[k], raw_forces[k], 0}, weight_s);
-  }
-  state.window.add(merged, weight_s);
-  if (state.samples == 0 || state.window.full(params_.window_s, dt_s)) close_window(present, time_ns, state);
-
-  if (units >= kRecovering) recover(samples, present, dt_s, state, merged);
+  if (std::count(present.begin(), present.end(), true) >= kRecovering) recover(readings, present, h, state, merged);
   const auto suspect = [](const Unit& unit) { return unit.suspect_s > 0.0; };
-  if (2 * std::count_if(state.units.begin(), state.units.begin() + count, suspect) > count) {
+  if (2 * std::count_if(state.units.begin(), state.units.begin() + params_.count, suspect) > params_.count) {
     merged.device_clip_flags =
         static_cast<std::uint8_t>(merged.device_clip_flags | kClipAccelX | kClipAccelY | kClipAccelZ);
   }
+  return merged;
+}
+
+/// Units whose rate and force agree with the median, and that met no rail.
+ImuMerge::Flags ImuMerge::choose(const Readings& readings, const Flags& present, const Vectors& rates,
+                                 const Vectors& forces, double h, State& state) const {
+  // the places differ, so forces may by what the rate makes of it; the tolerance has to bear that
+  const Eigen::Vector3d middle_rate = median(rates, present), middle_force = median(forces, present);
+  const auto units = std::count(present.begin(), present.end(), true);
+  const double rate_tolerance = params_.rate_tolerance_rad_s + params_.rate_tolerance_share * middle_rate.norm();
+  Flags used{};
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    if (!present[i]) continue;
+    const double turned = (params_.T_CI[i].translation() - p_C_m_).norm() * middle_rate.squaredNorm() * 2.0;
+    const bool agrees = units < 3 || ((rates[i] - middle_rate).norm() < rate_tolerance &&
+                                      (forces[i] - middle_force).norm() < params_.force_tolerance_m_s2 + turned);
+    used[i] = agrees && (readings[i].device_clip_flags & kClipAccel) == 0;
+  }
+  const auto kept = std::count(used.begin(), used.end(), true);
+  if (2 * kept <= units && kept < units) used = present;  // no majority: nobody is to blame
+  const bool apart = state.windows > 0 && h > 0.0;        // there is a window to take derivatives from
+  if (units >= kRecovering && apart && middle_rate.cwiseAbs().maxCoeff() < params_.gyro_range_rad_s) {
+    leave_out_hidden(readings, present, forces, middle_rate, h, state, used);
+  }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(params_.count); ++i) state.units[i].left_out += !used[i];
   state.middle_rate_rad_s = middle_rate;
   state.middle_force_m_s2 = middle_force;
-  state.last_time_ns = time_ns;
-  ++state.samples;
-  return {};
+  return used;
+}
+
+/// The mean of those in use, moved to the mean place of all.
+ImuSample ImuMerge::mean_of_used(const Vectors& rates, const Vectors& forces, const Flags& used, double h,
+                                 const State& state) const {
+  const auto kept = static_cast<int>(std::count(used.begin(), used.end(), true));
+  Eigen::Vector3d rate = Eigen::Vector3d::Zero(), force = Eigen::Vector3d::Zero(), place = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    if (!used[i]) continue;
+    rate += rates[i] / kept;
+    force += forces[i] / kept;
+    place += params_.T_CI[i].translation() / kept;
+    if (kept < params_.count) place += ForceErrors::place_error_m(static_cast<int>(i), state.forces) / kept;
+  }
+  if (kept < params_.count) {
+    const Eigen::Vector3d d = p_C_m_ - place;
+    const double since_s = 0.5 * (h + state.length_s);
+    if (state.windows > 0 && h > 0.0) force += ((rate - state.rate_rad_s) / since_s).cross(d);
+    force += rate.cross(rate.cross(d));
+  }
+  ImuSample merged;
+  merged.angular_velocity_rad_s = rate;
+  merged.specific_force_m_s2 = force;
+  return merged;
 }
 
 std::optional<double> ImuMerge::arm_share(const State& state) {
@@ -208,9 +233,11 @@ std::optional<double> ImuMerge::arm_share(const State& state) {
   return state.arm_product / state.arm_square_m2_s3;
 }
 
-/// Learns from the means over the window, and begins the next.
-void ImuMerge::close_window(const Flags& present, TimeNs time_ns, State& state) const {
-  const bool follows = state.windows > 1 && state.window.length_s < kWindowMax_s;
+/// Learns from the means over the windows, and begins the next.
+void ImuMerge::close_windows(const Flags& present, const Vectors& rates, const Vectors& forces, bool all_used,
+                             const ImuSample& merged, State& state) const {
+  const double length_s = state.windows > 0 ? state.window_s : params_.window_s;
+  const bool follows = state.windows > 1 && length_s < kWindowMax_s;
   // a unit that repeats itself may turn out to be frozen, and nothing is to be learnt from one; where all do, it is the
   // body that keeps its rate
   const auto end = state.units.begin() + params_.count;
@@ -220,30 +247,30 @@ void ImuMerge::close_window(const Flags& present, TimeNs time_ns, State& state) 
     return holding > 0 && holding < params_.count;
   };
   const bool held = some_hold(&Unit::rate_hold) || some_hold(&Unit::force_hold);
-  if (state.all_used && !held && params_.count > 1 && follows) learn(state);
-  watch_misfits(present, time_ns, state);
-  for (Unit& unit : state.units) {
+  if (all_used && !held && params_.count > 1 && follows) learn(rates, state);
+  watch_misfits(present, rates, forces, merged.time_ns, state);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(params_.count); ++k) {
+    Unit& unit = state.units[k];
     if (unit.window.readings > 0) {
-      unit.last_rate_rad_s = unit.window.mean.angular_velocity_rad_s;
-      unit.last_force_m_s2 = unit.window.mean.specific_force_m_s2;
+      unit.last_rate_rad_s = rates[k];
+      unit.last_force_m_s2 = forces[k];
     }
     unit.window = {};
   }
   state.rate_before_rad_s = state.rate_rad_s;
-  state.rate_rad_s = state.window.mean.angular_velocity_rad_s;
+  state.rate_rad_s = merged.angular_velocity_rad_s;
   state.length_before_s = state.length_s;
-  state.length_s = state.window.length_s;
-  state.window = {};
-  state.all_used = true;
+  state.length_s = length_s;
+  state.window_s = 0.0;
   ++state.windows;
 }
 
 /// A blow may take a unit to its rail for less than a sample. On a rigid body one unit tells what the others feel,
 /// along the line between the two without the angular acceleration. The one that most others agree with is believed,
 /// among equals the one whose force changed least.
-void ImuMerge::leave_out_hidden(std::span<const ImuSample> samples, const Flags& present, const Vectors& forces,
-                                const Eigen::Vector3d& rate, double dt_s, State& state, Flags& used) const {
-  const double since_s = state.window.length_s + 0.5 * dt_s + 0.5 * state.length_s;
+void ImuMerge::leave_out_hidden(const Readings& samples, const Flags& present, const Vectors& forces,
+                                const Eigen::Vector3d& rate, double h, State& state, Flags& used) const {
+  const double since_s = 0.5 * (h + state.length_s);
   const double apart_s = 0.5 * (state.length_s + state.length_before_s);
   const Eigen::Vector3d acceleration = (rate - state.rate_rad_s) / since_s;
   const Eigen::Vector3d before = (state.rate_rad_s - state.rate_before_rad_s) / apart_s;
@@ -264,53 +291,52 @@ void ImuMerge::leave_out_hidden(std::span<const ImuSample> samples, const Flags&
   };
   std::size_t believed = 0;
   std::pair<int, double> most(-1, 0.0);
-  for (std::size_t k = 0; k < samples.size(); ++k) {
+  for (std::size_t k = 0; k < present.size(); ++k) {
     if (!present[k]) continue;
     int others = 0;
-    for (std::size_t j = 0; j < samples.size(); ++j) others += present[j] && j != k && agree(k, j);
+    for (std::size_t j = 0; j < present.size(); ++j) others += present[j] && j != k && agree(k, j);
     const std::pair<int, double> rank(others, -change(k));
     if (rank > most) {
       most = rank;
       believed = k;
     }
   }
-  for (std::size_t k = 0; k < samples.size(); ++k) {
+  for (std::size_t k = 0; k < present.size(); ++k) {
     if (!present[k]) continue;
     double& suspect_s = state.units[k].suspect_s;
-    suspect_s = k == believed || agree(k, believed) ? std::max(0.0, suspect_s - dt_s) : kSuspect_s;
+    suspect_s = k == believed || agree(k, believed) ? std::max(0.0, suspect_s - h) : kSuspect_s;
     used[k] = used[k] && suspect_s == 0.0;
   }
   if (std::none_of(used.begin(), used.begin() + params_.count, [](bool one) { return one; })) used[believed] = true;
 }
 
-void ImuMerge::recover(std::span<const ImuSample> samples, const Flags& present, double dt_s, State& state,
+void ImuMerge::recover(const Readings& readings, const Flags& present, double h, State& state,
                        ImuSample& merged) const {
-  std::array<ImuSample, kImus> corrected{};
-  for (std::size_t k = 0; k < samples.size(); ++k) {
-    corrected[k] = samples[k];
+  Readings corrected = readings;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(params_.count); ++k) {
     if (!present[k]) {
       corrected[k].angular_velocity_rad_s.setConstant(std::numeric_limits<double>::quiet_NaN());
       continue;
     }
-    if (samples[k].specific_force_m_s2.cwiseAbs().maxCoeff() >= params_.accel_range_m_s2) continue;
+    if ((readings[k].device_clip_flags & kClipAccel) != 0) continue;
     const Eigen::Matrix3d R_CI = params_.T_CI[k].linear();
-    const Eigen::Vector3d force = R_CI * samples[k].specific_force_m_s2;
+    const Eigen::Vector3d force = R_CI * readings[k].specific_force_m_s2;
     corrected[k].specific_force_m_s2 =
         R_CI.transpose() * ForceErrors::corrected(static_cast<int>(k), force, state.forces);
   }
-  recovery_.step({corrected.data(), samples.size()}, dt_s, state.recovery, merged);
+  recovery_.step({corrected.data(), static_cast<std::size_t>(params_.count)}, h, state.recovery, merged);
 }
 
 /// A unit's rate over the last window less the mean of all, explained by bias, scale and time offset; the angular
 /// acceleration is the central difference, from the window before to this one.
-void ImuMerge::learn(State& state) const {
+void ImuMerge::learn(const Vectors& rates, State& state) const {
   const auto count = static_cast<std::size_t>(params_.count);
   Eigen::Vector3d now = Eigen::Vector3d::Zero(), mean = Eigen::Vector3d::Zero();
   for (std::size_t k = 0; k < count; ++k) {
-    now += state.units[k].window.mean.angular_velocity_rad_s / static_cast<double>(count);
+    now += rates[k] / static_cast<double>(count);
     mean += state.units[k].last_rate_rad_s / static_cast<double>(count);
   }
-  const double apart_s = 0.5 * (state.window.length_s + state.length_before_s) + state.length_s;
+  const double apart_s = 0.5 * (state.window_s + state.length_before_s) + state.length_s;
   const Eigen::Vector3d acceleration = (now - state.rate_before_rad_s) / apart_s;
   Vectors forces{};
   double peak = 0.0;

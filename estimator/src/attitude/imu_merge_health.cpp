@@ -70,16 +70,14 @@ void ImuMerge::watch_holds(const Flags& present, const Vectors& rates, const Vec
 }
 
 /// Units that are off from the others for long.
-void ImuMerge::watch_misfits(const Flags& present, TimeNs time_ns, State& state) const {
+void ImuMerge::watch_misfits(const Flags& present, const Vectors& rates, const Vectors& forces, TimeNs time_ns,
+                             State& state) const {
   if (std::count(present.begin(), present.end(), true) < kBlaming) return;
-  const double h = state.window.length_s, share = -std::expm1(-h / kMisfitTau_s);
-  Vectors rates{}, forces{};
+  const double h = state.windows > 0 ? state.window_s : params_.window_s, share = -std::expm1(-h / kMisfitTau_s);
   bool railed = false;
   for (std::size_t k = 0; k < present.size(); ++k) {
     const ImuAverage& window = state.units[k].window;
     if (!present[k] || window.readings == 0) continue;
-    rates[k] = window.mean.angular_velocity_rad_s;
-    forces[k] = window.mean.specific_force_m_s2;
     railed |= window.rate_peak_rad_s >= kUnharmed * params_.gyro_range_rad_s ||
               window.force_peak_m_s2 >= params_.hidden_share * params_.accel_range_m_s2;
   }

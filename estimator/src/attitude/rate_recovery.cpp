@@ -50,6 +50,16 @@ RateRecovery::RateRecovery(const Params& p) : params_(p) {
   require_within("recovered_sigma_rad_s", p.recovered_sigma_rad_s, kSmallest, 1e3);
 }
 
+bool RateRecovery::rate_railed(const ImuSample& unit, int axis) const {
+  return std::abs(unit.angular_velocity_rad_s[axis]) >= params_.gyro_range_rad_s ||
+         (unit.device_clip_flags & (kClipGyroX << axis)) != 0;
+}
+
+bool RateRecovery::force_railed(const ImuSample& unit, int axis) const {
+  return std::abs(unit.specific_force_m_s2[axis]) >= params_.accel_range_m_s2 ||
+         (unit.device_clip_flags & (kClipAccelX << axis)) != 0;
+}
+
 void RateRecovery::step(std::span<const ImuSample> units, double dt_s, State& state, ImuSample& merged) const {
   merged.device_clip_flags = 0;
   if (merged.angular_velocity_rad_s.cwiseAbs().maxCoeff() < kFast * params_.gyro_range_rad_s) {
@@ -71,8 +81,12 @@ void RateRecovery::step(std::span<const ImuSample> units, double dt_s, State& st
   for (const ImuSample& unit : units) {
     if (!is_finite(unit)) continue;
     ++heard;
-    rate_clipped |= unit.angular_velocity_rad_s.cwiseAbs().maxCoeff() >= params_.gyro_range_rad_s;
-    forces_clipped += unit.specific_force_m_s2.cwiseAbs().maxCoeff() >= params_.accel_range_m_s2;
+    bool force_clipped = false;
+    for (int axis = 0; axis < 3; ++axis) {
+      rate_clipped |= rate_railed(unit, axis);
+      force_clipped |= force_railed(unit, axis);
+    }
+    forces_clipped += force_clipped;
   }
   // with a rate that is right, the units that are left tell the force better than the filter: only where they are few
   // does it count as clipped
@@ -130,7 +144,7 @@ void RateRecovery::measure_rates(std::span<const ImuSample> units, double dt_s, 
     for (int axis = 0; axis < 3; ++axis) {
       const double reading = units[k].angular_velocity_rad_s[axis];
       const double missing = reading - R_IC.row(axis).dot(state.x.segment<3>(kRate));
-      const bool railed = std::abs(reading) >= params_.gyro_range_rad_s;
+      const bool railed = rate_railed(units[k], axis);
       if (railed && missing * reading < 0.0) continue;  // beyond the rail, as it may be
       Row row = Row::Zero();
       row.segment<3>(kRate) = R_IC.row(axis);
@@ -148,7 +162,7 @@ void RateRecovery::measure_forces(std::span<const ImuSample> units, double dt_s,
     const int arm = kArms + 3 * static_cast<int>(k);
     for (int axis = 0; axis < 3; ++axis) {
       const double reading = units[k].specific_force_m_s2[axis];
-      if (std::abs(reading) >= params_.accel_range_m_s2) continue;
+      if (force_railed(units[k], axis)) continue;
       const Eigen::Vector3d rate = state.x.segment<3>(kRate), acceleration = state.x.segment<3>(kAcceleration);
       const Eigen::Vector3d place = params_.T_CI[k].translation() + state.x.segment<3>(arm);
       const Eigen::Matrix3d by_place = so3::hat(acceleration) + so3::hat(rate) * so3::hat(rate);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "tumble/common/so3.hpp"
 
@@ -67,14 +68,14 @@ Outcome run(const Spin& spin, const ImuMerge::Params& p, double top) {
     angle += seconds(kPeriod_ns) * spin.rate(t, top);
     const std::array<ImuSample, 3> now = {spin.sample(0, k, angle, top), spin.sample(1, k, angle, top),
                                           spin.sample(2, k, angle, top)};
-    ImuSample merged;
+    std::optional<ImuSample> merged;
     EXPECT_TRUE(merge.step(now, state, merged).ok());
     const Eigen::Vector3d truth = spin.rate(t, top) * spin.axis;
     since = truth.cwiseAbs().maxCoeff() > kGyroRange ? since + 1 : 0;
     out.railed += since > 0;
-    out.flagged += merged.device_clip_flags != 0;
+    out.flagged += merged->device_clip_flags != 0;
     if (since <= 25) continue;
-    out.rate_error_rad_s = std::max(out.rate_error_rad_s, (merged.angular_velocity_rad_s - truth).norm());
+    out.rate_error_rad_s = std::max(out.rate_error_rad_s, (merged->angular_velocity_rad_s - truth).norm());
     out.clipped_error_rad_s = std::max(out.clipped_error_rad_s, (now[0].angular_velocity_rad_s - truth).norm());
   }
   return out;
@@ -102,10 +103,10 @@ TEST(ImuMerge, BelowTheRangeTheMeanIsLeftAlone) {
     angle += seconds(kPeriod_ns) * spin.rate(t, 30.0);
     const std::array<ImuSample, 3> now = {spin.sample(0, k, angle, 30.0), spin.sample(1, k, angle, 30.0),
                                           spin.sample(2, k, angle, 30.0)};
-    ImuSample merged;
+    std::optional<ImuSample> merged;
     ASSERT_TRUE(merge.step(now, state, merged).ok());
-    EXPECT_LT((merged.angular_velocity_rad_s - spin.rate(t, 30.0) * spin.axis).norm(), 1e-9) << k;
-    EXPECT_EQ(merged.device_clip_flags, 0) << k;
+    EXPECT_LT((merged->angular_velocity_rad_s - spin.rate(t, 30.0) * spin.axis).norm(), 1e-9) << k;
+    EXPECT_EQ(merged->device_clip_flags, 0) << k;
   }
 }
 
@@ -113,15 +114,15 @@ TEST(ImuMerge, LeavesOutTheOneThatDisagrees) {
   const Spin spin;
   const ImuMerge merge(params(spin));
   ImuMerge::State state;
-  ImuSample merged;
+  std::optional<ImuSample> merged;
   for (int k = 0; k < 50; ++k) {
     std::array<ImuSample, 3> now = {spin.sample(0, 0, 0.0, 0.0), spin.sample(1, 0, 0.0, 0.0),
                                     spin.sample(2, 0, 0.0, 0.0)};
     for (ImuSample& sample : now) sample.time_ns = k * kPeriod_ns;
     if (k >= 25) now[1].angular_velocity_rad_s.x() += 1.0;
     ASSERT_TRUE(merge.step(now, state, merged).ok());
-    EXPECT_LT(merged.angular_velocity_rad_s.norm(), 1e-9) << k;
-    EXPECT_NEAR(merged.specific_force_m_s2.norm(), kGravity, 1e-9) << k;
+    EXPECT_LT(merged->angular_velocity_rad_s.norm(), 1e-9) << k;
+    EXPECT_NEAR(merged->specific_force_m_s2.norm(), kGravity, 1e-9) << k;
   }
   EXPECT_EQ(state.units[1].left_out, 25);
   EXPECT_EQ(state.units[0].left_out, 0);
@@ -153,12 +154,12 @@ TEST(ImuMerge, TakesOutMisalignmentsThatLargeForcesShow) {
       now[unit].specific_force_m_s2 += (errors[unit] * now[unit].specific_force_m_s2).eval();
       mean += now[unit].specific_force_m_s2 / 3.0;
     }
-    ImuSample merged;
+    std::optional<ImuSample> merged;
     ASSERT_TRUE(merge.step(now, state, merged).ok());
     if (k < 250 || k >= 395) continue;  // the rate is constant from 0.4 to 1.6 s
     const Eigen::Vector3d exact = exact_force(spin, k, angle, 25.0);
     plain = std::max(plain, (mean - exact).norm());
-    corrected = std::max(corrected, (merged.specific_force_m_s2 - exact).norm());
+    corrected = std::max(corrected, (merged->specific_force_m_s2 - exact).norm());
   }
   EXPECT_GT(plain, 0.1);  // or the test shows nothing
   EXPECT_LT(corrected, 0.3 * plain);
@@ -176,10 +177,10 @@ TEST(ImuMerge, LeavesOutARailThatABlowHides) {
       now[unit].time_ns = k * kPeriod_ns;
       if (blow) now[unit].specific_force_m_s2.x() += unit == 1 ? 20.0 : 50.0;  // far from the rail, as a mean
     }
-    ImuSample merged;
+    std::optional<ImuSample> merged;
     ASSERT_TRUE(merge.step(now, state, merged).ok());
-    EXPECT_NEAR(merged.specific_force_m_s2.x(), blow ? 50.0 : 0.0, 1e-6) << k;
-    EXPECT_EQ(merged.device_clip_flags, 0) << k;
+    EXPECT_NEAR(merged->specific_force_m_s2.x(), blow ? 50.0 : 0.0, 1e-6) << k;
+    EXPECT_EQ(merged->device_clip_flags, 0) << k;
   }
   EXPECT_EQ(state.units[1].left_out, 10);  // for 40 ms, as blows come in rows
   EXPECT_EQ(state.units[0].left_out, 0);
@@ -195,7 +196,7 @@ TEST(ImuMerge, RefusesBadInput) {
   EXPECT_THROW(ImuMerge{bad}, InvalidParams);
   const ImuMerge merge(params(spin));
   ImuMerge::State state;
-  ImuSample merged;
+  std::optional<ImuSample> merged;
   const std::array<ImuSample, 2> two{};
   EXPECT_EQ(merge.step(two, state, merged).trouble, Trouble::too_few);
   EXPECT_EQ(state.samples, 0);

@@ -29,8 +29,9 @@ namespace tumble {
 /// the gyros do, three units or more tell the rate by what the turning does to their accelerometers (RateRecovery); the
 /// merged sample's clip flags say when they could not.
 ///
-/// What is learnt, is learnt from means over window_s, whatever the rate of the readings; derivatives reach back to the
-/// middle of the last window.
+/// Decided and learnt is by means over window_s, whatever the rate of the IMUs: they have one bandwidth, and so the
+/// tolerances one meaning. A reading that is itself as long is taken as it is; of an axis that was at its rail within
+/// the window the mean is a bound, as a reading at the rail is.
 ///
 /// A unit whose reading is not finite is absent. One whose gyro or accelerometer repeats itself while the others move
 /// is frozen, and left out until it has moved again for a while; one that is off from the others for long (scale, axes,
@@ -49,7 +50,7 @@ class ImuMerge {
     double rate_tolerance_share = 0.03;           ///< more, as a share of the rate; bound [0, 1]
     double force_tolerance_m_s2 = 3.0;            ///< bound (0, 1e4]
     double rate_noise_rad_s = 0.01;               ///< of the mean over a window; bound (0, 10]
-    double window_s = 4e-3;                       ///< over which readings are averaged to learn from; bound [0, 0.1]
+    double window_s = 4e-3;                       ///< over which readings are averaged beforehand; bound [0, 0.1]
     double offset_sigma_s = 3e-3;                 ///< prior of a unit's time offset; zero: none; bound [0, 0.1]
     double gyro_range_rad_s = 1e3;                ///< readings from here on are at the rail; bound (0, 1e3]
     double accel_range_m_s2 = 1e5;                ///< bound (0, 1e5]
@@ -82,11 +83,11 @@ class ImuMerge {
   struct Unit {
     Eigen::Matrix<double, kErrors, 1> x = Eigen::Matrix<double, kErrors, 1>::Zero();
     Eigen::Matrix<double, kErrors, kErrors> P = Eigen::Matrix<double, kErrors, kErrors>::Zero();
-    /// Means over the last window, and what came since.
+    ImuAverage window;  ///< of its readings, since the last one closed
+    /// Means over the last window.
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero(), last_force_m_s2 = Eigen::Vector3d::Zero();
-    ImuAverage window;
-    double suspect_s = 0.0;     ///< for so long it is still left out of the force
-    std::int64_t left_out = 0;  ///< samples
+    double suspect_s = 0.0;  ///< for so long it is still left out of the force
+    std::int64_t left_out = 0;  ///< windows
     Hold rate_hold, force_hold;
     double thawing_s = 0.0;
     double misfit_rate_rad_s = 0.0, misfit_force_m_s2 = 0.0, misfits_s = 0.0;
@@ -106,9 +107,8 @@ class ImuMerge {
     Eigen::Vector3d rate_before_rad_s = Eigen::Vector3d::Zero();  ///< and over the one before
     Eigen::Vector3d middle_rate_rad_s = Eigen::Vector3d::Zero(), middle_force_m_s2 = Eigen::Vector3d::Zero();
     double turning_rad_s = 0.0;                        ///< mean of the rate over half a second
-    ImuAverage window;                                 ///< of merged readings, since the last one closed
+    double window_s = 0.0;                             ///< length of the one that is open
     double length_s = 0.0, length_before_s = 0.0;      ///< of the last windows
-    bool all_used = true;                              ///< within this one
     double arm_product = 0.0, arm_square_m2_s3 = 0.0;  ///< of arm_share()
     std::int64_t samples = 0, windows = 0;
     TimeNs last_time_ns = 0;
@@ -124,26 +124,35 @@ class ImuMerge {
   /// Place of the merged IMU in C.
   Eigen::Vector3d p_C_m() const { return p_C_m_; }
 
-  /// `samples` are those of all units at one time (their time stamps are the first's); `merged` is in C. On trouble,
-  /// `too_few` when there are not `count` samples or none is finite, state and `merged` are unchanged. O(count), no
-  /// allocation.
-  Status step(std::span<const ImuSample> samples, State& state, ImuSample& merged) const;
+  /// `samples` are those of all units at one time (their time stamps are the first's); `merged` is in C, the mean over
+  /// the window that they close, and empty where they close none. On trouble, `too_few` when there are not `count`
+  /// samples or none is finite, the state is unchanged and `merged` empty. O(count), no allocation.
+  Status step(std::span<const ImuSample> samples, State& state, std::optional<ImuSample>& merged) const;
 
  private:
   using Vectors = std::array<Eigen::Vector3d, kImus>;
 
   using Flags = std::array<bool, kImus>;
 
-  void learn(State& state) const;
-  void close_window(const Flags& present, TimeNs time_ns, State& state) const;
+  using Readings = std::array<ImuSample, kImus>;  ///< means over a window; flags of the axes that met a rail in it
+
+  void gather(std::span<const ImuSample> samples, double dt_s, State& state) const;
+  ImuSample merge(State& state) const;
+  Flags choose(const Readings& readings, const Flags& present, const Vectors& rates, const Vectors& forces, double h,
+               State& state) const;
+  ImuSample mean_of_used(const Vectors& rates, const Vectors& forces, const Flags& used, double h,
+                         const State& state) const;
+  void close_windows(const Flags& present, const Vectors& rates, const Vectors& forces, bool all_used,
+                     const ImuSample& merged, State& state) const;
+  void learn(const Vectors& rates, State& state) const;
   void watch_holds(const Flags& present, const Vectors& rates, const Vectors& forces, double dt_s, TimeNs time_ns,
                    State& state) const;
-  void watch_misfits(const Flags& present, TimeNs time_ns, State& state) const;
+  void watch_misfits(const Flags& present, const Vectors& rates, const Vectors& forces, TimeNs time_ns,
+                     State& state) const;
   static Eigen::Vector3d median(const Vectors& values, const Flags& which);
-  void leave_out_hidden(std::span<const ImuSample> samples, const Flags& present, const Vectors& forces,
-                        const Eigen::Vector3d& rate, double dt_s, State& state, Flags& used) const;
-  void recover(std::span<const ImuSample> samples, const Flags& present, double dt_s, State& state,
-               ImuSample& merged) const;
+  void leave_out_hidden(const Readings& samples, const Flags& present, const Vectors& forces,
+                        const Eigen::Vector3d& rate, double h, State& state, Flags& used) const;
+  void recover(const Readings& readings, const Flags& present, double h, State& state, ImuSample& merged) const;
   static ForceErrors::Params force_params(const Params& params);
   static RateRecovery::Params recovery_params(const Params& params);
 

@@ -15,7 +15,7 @@ namespace tumble {
 /// An extended Kalman filter of rate, angular acceleration and the specific force at the units' mean place, which turns
 /// in the body as gravity does, with the error of each unit's lever arm: f_k = c + a x r_k + w x (w x r_k). It runs
 /// while a gyro reads more than kFast of its range, so that the lever arms are learnt before the gyro stands at its
-/// rail; readings at a rail, of gyro or accelerometer, are bounds and no measurements.
+/// rail; readings at a rail or flagged, of gyro or accelerometer, are bounds and no measurements.
 ///
 /// Not modelled: errors of scale (the gyro's is what the lever arms are learnt with), units that share a place, which
 /// tell nothing. A blow on the body reads as a spell of doubt, not as a rate.
@@ -62,6 +62,8 @@ class RateRecovery {
   void step(std::span<const ImuSample> units, double dt_s, State& state, ImuSample& merged) const;
 
  private:
+  bool rate_railed(const ImuSample& unit, int axis) const;
+  bool force_railed(const ImuSample& unit, int axis) const;
   void start(const ImuSample& merged, State& state) const;
   void predict(double dt_s, State& state) const;
   void measure_rates(std::span<const ImuSample> units, double dt_s, State& state) const;
