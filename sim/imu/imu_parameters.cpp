@@ -55,8 +55,9 @@ constexpr std::string_view kPreciseNoiseDoc = "density of the white noise of the
 constexpr std::string_view kPreciseQuantumDoc = "step of the precise part; 0: off";
 
 constexpr std::array kParameters = {
-    Parameter{"output_rate_hz", 100.0, 1.0, 2000.0, "Hz",
-              "samples per second; must divide the physics rate of 2000 Hz"},
+    Parameter{"output_rate_hz", 100.0, 1.0, 8000.0, "Hz",
+              "samples per second; must divide the physics rate of 2000 Hz or be a multiple of it: then the readings "
+              "within a step differ by their noise alone"},
     Parameter{"gyro_range_rad_s", 34.9, 0.1, 1000.0, "rad/s", "range that the data sheet states"},
     Parameter{"gyro_rail_rad_s", 0.0, 0.0, 1000.0, "rad/s", kClampDoc},
     Parameter{"gyro_plateau_axis_spread_rad_s", 0.0, 0.0, 100.0, "rad/s", kAxisSpreadDoc},
@@ -81,7 +82,7 @@ constexpr std::array kParameters = {
     Parameter{"gyro_g_sensitivity_spread_s_m", 0.0, 0.0, 0.01, "rad/s/(m/s^2)",
               "rate per specific force beyond that: standard deviation of each of the nine entries of its matrix"},
     Parameter{"gyro_window_s", 0.0, 0.0, 0.1, "s", kWindowDoc},
-    Parameter{"gyro_update_hz", 0.0, 0.0, 2000.0, "Hz", kUpdateDoc},
+    Parameter{"gyro_update_hz", 0.0, 0.0, 8000.0, "Hz", kUpdateDoc},
     Parameter{"gyro_quantum_rad_s", 0.0, 0.0, 1.0, "rad/s", kQuantumDoc},
     Parameter{"gyro_handover_rad_s", 0.0, 0.0, 1000.0, "rad/s", kHandoverDoc},
     Parameter{"gyro_precise_noise_rad_s_sqrt_hz", 0.0, 0.0, 1.0, "rad/s/sqrt(Hz)", kPreciseNoiseDoc},
@@ -106,7 +107,7 @@ constexpr std::array kParameters = {
     Parameter{"accel_scale_error", 0.0, 0.0, 0.2, "1", kScaleDoc},
     Parameter{"accel_misalignment_rad", 0.0, 0.0, 0.2, "rad", kMisalignmentDoc},
     Parameter{"accel_window_s", 0.0, 0.0, 0.1, "s", kWindowDoc},
-    Parameter{"accel_update_hz", 0.0, 0.0, 2000.0, "Hz", kUpdateDoc},
+    Parameter{"accel_update_hz", 0.0, 0.0, 8000.0, "Hz", kUpdateDoc},
     Parameter{"accel_quantum_m_s2", 0.0, 0.0, 10.0, "m/s^2", kQuantumDoc},
     Parameter{"accel_handover_m_s2", 0.0, 0.0, 1e5, "m/s^2", kHandoverDoc},
     Parameter{"accel_precise_noise_m_s2_sqrt_hz", 0.0, 0.0, 1.0, "m/s^2/sqrt(Hz)", kPreciseNoiseDoc},

@@ -126,16 +126,23 @@ class Compass {
   int count_ = 0;
 };
 
-int steps_per_sample(const SensorSpec& sensor, double step_ns) {
+/// How the samples of a device lie in the steps of a chain.
+struct Pace {
+  int steps = 1;   ///< of the chain, per sample
+  int shares = 1;  ///< of one step of the physics, per step of the chain: more than one for a device that is faster
+};
+
+Pace pace_of(const SensorSpec& sensor, double step_ns) {
   const double steps = 1e9 / (sensor.values.at("output_rate_hz") * step_ns);
-  const double whole = std::round(steps);
-  if (whole < 1.0 || std::abs(steps - whole) > 1e-9 * whole) {
+  const bool faster = steps < 1.0;
+  const double ratio = faster ? 1.0 / steps : steps, whole = std::round(ratio);
+  if (std::abs(ratio - whole) > 1e-9 * whole) {
     std::ostringstream text;
     text << "sensors." << sensor.name << ".output_rate_hz is " << sensor.values.at("output_rate_hz")
-         << " Hz, must divide the physics rate of " << 1e9 / step_ns << " Hz";
+         << " Hz, must divide the physics rate of " << 1e9 / step_ns << " Hz or be a multiple of it";
     throw InvalidSituation(text.str());
   }
-  return static_cast<int>(whole);
+  return faster ? Pace{1, static_cast<int>(whole)} : Pace{static_cast<int>(whole), 1};
 }
 
 BodyState state_at(const Truth& truth, std::size_t k) {
@@ -185,11 +192,12 @@ void require_bandwidths_below(const SensorSpec& sensor, double rate_hz) {
 void simulate_imu(const Truth& truth, const SensorSpec& sensor, const Eigen::Isometry3d& T_BI, double gravity_m_s2,
                   std::uint64_t seed, ImuRecord& record, ImuTruth& imu_truth) {
   check_imu_values(sensor.values, "sensors." + sensor.name);
-  const int steps = steps_per_sample(sensor, static_cast<double>(truth.period_ns));
-  describe(sensor, steps * truth.period_ns, record);
+  const auto [steps, shares] = pace_of(sensor, static_cast<double>(truth.period_ns));
+  const std::int64_t share_ns = truth.period_ns / shares;
+  describe(sensor, steps * share_ns, record);
   imu_truth.name = sensor.name;
   imu_truth.T_BI = T_BI;
-  Device device(sensor, 1e9 / static_cast<double>(truth.period_ns), steps, seed, record, imu_truth);
+  Device device(sensor, 1e9 / static_cast<double>(share_ns), steps, seed, record, imu_truth);
   std::optional<Compass> compass;
   if (sensor.values.at("magnetometer") > 0.5) {
     compass.emplace(truth, sensor, T_BI, seed);
@@ -202,6 +210,15 @@ void simulate_imu(const Truth& truth, const SensorSpec& sensor, const Eigen::Iso
     const BodyState after = state_at(truth, k);
     const Ideal step = ideal_between(before, after, T_BI, gravity_m_s2);
     before = after;
+    if (shares > 1) {  // the physics says no more of its step: rate and force are those of the whole
+      for (int share = 1; share <= shares; ++share) {
+        device.step(step);
+        if (compass) compass->step(k);
+        const bool kept = device.take(step, static_cast<std::int64_t>(k - 1) * truth.period_ns + share * share_ns);
+        if (compass) compass->take(kept, record, imu_truth);
+      }
+      continue;
+    }
     sum_of_rates += step.rate_rad_s;
     device.step(step);
     if (compass) compass->step(k);
@@ -220,7 +237,7 @@ void simulate_imu_at_rest(const SensorSpec& sensor, double duration_s, double ch
                           std::uint64_t seed, ImuRecord& record, ImuTruth& imu_truth) {
   check_imu_values(sensor.values, "sensors." + sensor.name);
   require_bandwidths_below(sensor, chain_rate_hz);
-  const int steps = steps_per_sample(sensor, 1e9 / chain_rate_hz);
+  const int steps = pace_of(sensor, 1e9 / chain_rate_hz).steps;
   const std::int64_t period_ns = std::llround(1e9 / sensor.values.at("output_rate_hz"));
   describe(sensor, period_ns, record);
   imu_truth.name = sensor.name;
