@@ -126,6 +126,7 @@ Status LidarInertialOdometry::add_sweep(TimeNs lidar_start_ns, TimeNs lidar_end_
     my.choose_points();
     report.points_registered = my.chosen.size();
     my.register_sweep(end_ns, report);
+    if (report.conditioning > 0.0) report.innovation = my.innovation();
   }
   if (report.conditioning == 0.0) {
     if (Status built = my.fall_back_on_inertia(end_ns); !built.ok()) return built;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
 
 #include "odometry_impl.hpp"
 #include "tumble/common/so3.hpp"
@@ -98,6 +100,15 @@ void LidarInertialOdometry::Impl::count_errors() {
   const Registration::Matrix sum =
       from_prior * prediction.errors * from_prior.transpose() + result.covariance * result.scatter * result.covariance;
   errors = 0.5 * (sum + sum.transpose());
+}
+
+/// See SweepReport::innovation.
+double LidarInertialOdometry::Impl::innovation() const {
+  constexpr int kMotion = Registration::kMotion;
+  const auto moved = result.mean.minus(prediction.prior.mean).head<kMotion>().eval();
+  Eigen::Matrix<double, kMotion, kMotion> P = prediction.errors.topLeftCorner<kMotion, kMotion>();
+  P.diagonal().array() += kLeastVariance;
+  return std::sqrt(std::max(0.0, moved.dot(P.ldlt().solve(moved))) / kMotion);
 }
 
 void LidarInertialOdometry::Impl::carry_covariance(TimeNs end_ns) {

@@ -84,6 +84,7 @@ struct LidarInertialOdometry::Impl {
   // odometry_calibration.cpp
   void start_calibration();
   void count_errors();
+  double innovation() const;
   void carry_covariance(TimeNs end_ns);
   std::vector<PoseState> describe(const SweepTrajectory& motion, const Registration::Matrix& at_start) const;
   Eigen::Matrix<double, 6, 6> reported_covariance(const Registration::Matrix& joint,

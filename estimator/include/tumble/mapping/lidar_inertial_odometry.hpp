@@ -147,6 +147,9 @@ class LidarInertialOdometry {
     /// Standard deviation in the direction that the surfaces hold least, by this sweep's surfaces alone; 0: not
     /// aligned.
     double weakest_sigma_m = 0.0;
+    /// Length of the correction of pose and velocity in standard deviations of the inertial prior's error, per root of
+    /// its nine unknowns: 1 at most, in the mean, where prior and surfaces are what they claim to be; 0: not aligned.
+    double innovation = 0.0;
     int iterations = 0;
     int lost_sweeps = 0;  ///< rejected in a row up to this sweep, this one included
     /// Direction in which the surfaces hold the pose least: (position, attitude scaled by the rms lever) in W, unit.
