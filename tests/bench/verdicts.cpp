@@ -10,8 +10,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <functional>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -20,104 +18,18 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/method.hpp"
 #include "scenarios/sweep/evaluate.hpp"
-#include "sim/random/stream.hpp"
 #include "sim/simulate.hpp"
+#include "tests/scenarios/methods/wrong_inputs.hpp"
 #include "tests/tree.hpp"
 
 namespace {
 
 namespace scenarios = tumble::scenarios;
 namespace sim = tumble::sim;
+using scenarios::testing::is_of_kind;
+using scenarios::testing::wrong_inputs;
 
-constexpr double kWrongDeviations = 5.0, kDegree = 57.29577951308232, kGravity = 9.80665;
-
-using Harm = std::function<void(sim::Sensors&)>;
-
-void each_reading(sim::Sensors& sensors, const std::function<void(Eigen::Vector3d&, Eigen::Vector3d&)>& change) {
-  for (sim::ImuRecord& imu : sensors.imus) {
-    for (std::size_t k = 0; k < imu.time_ns.size(); ++k) change(imu.gyro_rad_s[k], imu.accel_m_s2[k]);
-  }
-}
-
-void shift_lidar(sim::Sensors& sensors, std::int64_t by_ns) {
-  for (sim::LidarRecord& lidar : sensors.lidars) {
-    for (std::int64_t& start_ns : lidar.sweep_start_ns) start_ns += by_ns;
-  }
-}
-
-void freeze(std::vector<Eigen::Vector3d>& readings) {
-  for (std::size_t k = readings.size() / 3; k < readings.size(); ++k) readings[k] = readings[readings.size() / 3];
-}
-
-void turn_lidar(sim::Sensors& sensors, double rad, double m) {
-  for (sim::LidarRecord& lidar : sensors.lidars) {
-    lidar.T_BL.translate(Eigen::Vector3d::Constant(m));
-    for (int axis = 0; axis < 3; ++axis) {
-      lidar.T_BL.rotate(Eigen::AngleAxisd(rad, Eigen::Vector3d::Unit(axis)));
-    }
-  }
-}
-
-/// Returns at random ranges along their beams, as dust, rain or grass make them.
-void dust(sim::Sensors& sensors, double share) {
-  sim::Stream stream(7, "dust");
-  for (sim::LidarRecord& lidar : sensors.lidars) {
-    for (std::size_t k = 0; k < lidar.range_m.size(); ++k) {
-      if (stream.uniform() >= share) continue;
-      const auto to_m = static_cast<float>(0.7 + 15.0 * stream.uniform());
-      lidar.position_L_m[k] *= to_m / lidar.range_m[k];
-      lidar.range_m[k] = to_m;
-    }
-  }
-}
-
-const std::map<std::string, Harm>& harms() {
-  using Vector = Eigen::Vector3d;
-  static const std::map<std::string, Harm> all = {
-      {"none", [](sim::Sensors&) {}},
-      {"accel_in_g", [](sim::Sensors& s) { each_reading(s, [](Vector&, Vector& f) { f /= kGravity; }); }},
-      {"accel_flipped", [](sim::Sensors& s) { each_reading(s, [](Vector&, Vector& f) { f = -f; }); }},
-      {"accel_x_y_swapped",
-       [](sim::Sensors& s) { each_reading(s, [](Vector&, Vector& f) { std::swap(f.x(), f.y()); }); }},
-      {"accel_z_flipped", [](sim::Sensors& s) { each_reading(s, [](Vector&, Vector& f) { f.z() = -f.z(); }); }},
-      {"gyro_in_degrees", [](sim::Sensors& s) { each_reading(s, [](Vector& w, Vector&) { w *= kDegree; }); }},
-      {"gyro_flipped", [](sim::Sensors& s) { each_reading(s, [](Vector& w, Vector&) { w = -w; }); }},
-      {"gyro_x_y_swapped",
-       [](sim::Sensors& s) { each_reading(s, [](Vector& w, Vector&) { std::swap(w.x(), w.y()); }); }},
-      {"gyro_scale_5_percent", [](sim::Sensors& s) { each_reading(s, [](Vector& w, Vector&) { w *= 1.05; }); }},
-      {"all_accels_frozen",
-       [](sim::Sensors& s) {
-         for (sim::ImuRecord& imu : s.imus) freeze(imu.accel_m_s2);
-       }},
-      {"all_gyros_frozen",
-       [](sim::Sensors& s) {
-         for (sim::ImuRecord& imu : s.imus) freeze(imu.gyro_rad_s);
-       }},
-      {"first_frozen", [](sim::Sensors& s) { freeze(s.imus.front().accel_m_s2), freeze(s.imus.front().gyro_rad_s); }},
-      {"stamps_in_us",
-       [](sim::Sensors& s) {
-         for (sim::ImuRecord& imu : s.imus)
-           for (std::int64_t& t : imu.time_ns) t /= 1000;
-       }},
-      {"lidar_20_ms", [](sim::Sensors& s) { shift_lidar(s, 20'000'000); }},
-      {"lidar_100_ms", [](sim::Sensors& s) { shift_lidar(s, 100'000'000); }},
-      {"mounting_2_deg", [](sim::Sensors& s) { turn_lidar(s, 0.03, 0.015); }},
-      {"mounting_10_deg", [](sim::Sensors& s) { turn_lidar(s, 0.1, 0.05); }},
-      {"mounting_90_deg",
-       [](sim::Sensors& s) {
-         for (sim::LidarRecord& l : s.lidars) l.T_BL.rotate(Eigen::AngleAxisd(1.5707963, Vector::UnitZ()));
-       }},
-      {"dust_5_percent", [](sim::Sensors& s) { dust(s, 0.05); }},
-      {"radius_2_percent", [](sim::Sensors& s) { s.sphere_radius_m *= 1.02; }},
-  };
-  return all;
-}
-
-bool applies(const std::string& harm, const std::string& kind) {
-  const bool of_lidar = harm.starts_with("lidar") || harm.starts_with("mounting") || harm.starts_with("dust");
-  const bool of_sphere = harm == "first_frozen" || harm == "radius_2_percent";
-  return kind == "slam" ? !of_sphere : !of_lidar;
-}
+constexpr double kWrongDeviations = 5.0;
 
 double value_of(const std::vector<scenarios::Score>& scores, const std::string& metric) {
   const auto found =
@@ -141,7 +53,7 @@ struct Tally {
 void judge(const scenarios::Method& method, const scenarios::SimulatedDraw& draw, const sim::Surface* surface,
            const std::string& harm, Tally& tally) {
   scenarios::SimulatedDraw given = draw;
-  harms().at(harm)(given.recording.sensors);
+  wrong_inputs().at(harm)(given.recording.sensors);
   scenarios::Outcome outcome;
   const scenarios::Estimate estimate = scenarios::run_method(method, given, outcome);
   const bool says = told(outcome, estimate), answered = outcome.status == "ok";
@@ -183,7 +95,7 @@ int run(const std::string& name, std::uint64_t first, std::uint64_t last, const 
   const scenarios::Method& method = *scenarios::find_methods(full_name).front();
   const std::string kind = full_name.substr(0, full_name.find('/'));
   if (chosen.empty()) {
-    for (const auto& [harm, _] : harms()) chosen.push_back(harm);
+    for (const auto& [harm, _] : wrong_inputs()) chosen.push_back(harm);
   }
   Tally tally;
   for (std::uint64_t seed = first; seed <= last; ++seed) {
@@ -195,7 +107,7 @@ int run(const std::string& name, std::uint64_t first, std::uint64_t last, const 
       continue;
     }
     for (const std::string& harm : chosen) {
-      if (applies(harm, kind)) judge(method, draw, nullptr, harm, tally);
+      if (is_of_kind(harm, method.info.kind)) judge(method, draw, nullptr, harm, tally);
     }
   }
   std::printf("wrong by more than %g deviations: %d, of these told: %d; good: %d, of these crying wolf: %d\n",
@@ -208,7 +120,7 @@ int run(const std::string& name, std::uint64_t first, std::uint64_t last, const 
 int main(int count, char** words) {
   if (count < 5) {
     std::fprintf(stderr, "usage: verdicts SCENARIO FIRST LAST KIND/METHOD [HARM]...\nharms:");
-    for (const auto& [harm, _] : harms()) std::fprintf(stderr, " %s", harm.c_str());
+    for (const auto& [harm, _] : wrong_inputs()) std::fprintf(stderr, " %s", harm.c_str());
     std::fprintf(stderr, "\n");
     return 2;
   }

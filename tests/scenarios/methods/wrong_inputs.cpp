@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/scenarios/methods/wrong_inputs.hpp"
+
+#include <utility>
+
+#include "sim/random/stream.hpp"
+
+namespace tumble::scenarios::testing {
+
+namespace {
+
+constexpr double kDegree = 57.29577951308232, kGravity = 9.80665;
+
+void each_reading(sim::Sensors& sensors, const std::function<void(Eigen::Vector3d&, Eigen::Vector3d&)>& change) {
+  for (sim::ImuRecord& imu : sensors.imus) {
+    for (std::size_t k = 0; k < imu.time_ns.size(); ++k) change(imu.gyro_rad_s[k], imu.accel_m_s2[k]);
+  }
+}
+
+void shift_lidar(sim::Sensors& sensors, std::int64_t by_ns) {
+  for (sim::LidarRecord& lidar : sensors.lidars) {
+    for (std::int64_t& start_ns : lidar.sweep_start_ns) start_ns += by_ns;
+  }
+}
+
+void freeze(std::vector<Eigen::Vector3d>& readings) {
+  for (std::size_t k = readings.size() / 3; k < readings.size(); ++k) readings[k] = readings[readings.size() / 3];
+}
+
+void turn_lidar(sim::Sensors& sensors, double rad, double m) {
+  for (sim::LidarRecord& lidar : sensors.lidars) {
+    lidar.T_BL.translate(Eigen::Vector3d::Constant(m));
+    for (int axis = 0; axis < 3; ++axis) {
+      lidar.T_BL.rotate(Eigen::AngleAxisd(rad, Eigen::Vector3d::Unit(axis)));
+    }
+  }
+}
+
+/// Returns at random ranges along their beams, as dust, rain or grass make them.
+void dust(sim::Sensors& sensors, double share) {
+  sim::Stream stream(7, "dust");
+  for (sim::LidarRecord& lidar : sensors.lidars) {
+    for (std::size_t k = 0; k < lidar.range_m.size(); ++k) {
+      if (stream.uniform() >= share) continue;
+      const auto to_m = static_cast<float>(0.7 + 15.0 * stream.uniform());
+      lidar.position_L_m[k] *= to_m / lidar.range_m[k];
+      lidar.range_m[k] = to_m;
+    }
+  }
+}
+
+}  // namespace
+
+const std::map<std::string, std::function<void(sim::Sensors&)>>& wrong_inputs() {
+  using Vector = Eigen::Vector3d;
+  static const std::map<std::string, std::function<void(sim::Sensors&)>> all = {
+      {"none", [](sim::Sensors&) {}},
+      {"accel_in_g", [](sim::Sensors& s) { each_reading(s, [](Vector&, Vector& f) { f /= kGravity; }); }},
+      {"accel_flipped", [](sim::Sensors& s) { each_reading(s, [](Vector&, Vector& f) { f = -f; }); }},
+      {"accel_x_y_swapped",
+       [](sim::Sensors& s) { each_reading(s, [](Vector&, Vector& f) { std::swap(f.x(), f.y()); }); }},
+      {"accel_z_flipped", [](sim::Sensors& s) { each_reading(s, [](Vector&, Vector& f) { f.z() = -f.z(); }); }},
+      {"gyro_in_degrees", [](sim::Sensors& s) { each_reading(s, [](Vector& w, Vector&) { w *= kDegree; }); }},
+      {"gyro_flipped", [](sim::Sensors& s) { each_reading(s, [](Vector& w, Vector&) { w = -w; }); }},
+      {"gyro_x_y_swapped",
+       [](sim::Sensors& s) { each_reading(s, [](Vector& w, Vector&) { std::swap(w.x(), w.y()); }); }},
+      {"gyro_scale_5_percent", [](sim::Sensors& s) { each_reading(s, [](Vector& w, Vector&) { w *= 1.05; }); }},
+      {"all_accels_frozen",
+       [](sim::Sensors& s) {
+         for (sim::ImuRecord& imu : s.imus) freeze(imu.accel_m_s2);
+       }},
+      {"all_gyros_frozen",
+       [](sim::Sensors& s) {
+         for (sim::ImuRecord& imu : s.imus) freeze(imu.gyro_rad_s);
+       }},
+      {"first_frozen", [](sim::Sensors& s) { freeze(s.imus.front().accel_m_s2), freeze(s.imus.front().gyro_rad_s); }},
+      {"stamps_in_us",
+       [](sim::Sensors& s) {
+         for (sim::ImuRecord& imu : s.imus)
+           for (std::int64_t& t : imu.time_ns) t /= 1000;
+       }},
+      {"lidar_20_ms", [](sim::Sensors& s) { shift_lidar(s, 20'000'000); }},
+      {"lidar_100_ms", [](sim::Sensors& s) { shift_lidar(s, 100'000'000); }},
+      {"mounting_2_deg", [](sim::Sensors& s) { turn_lidar(s, 0.03, 0.015); }},
+      {"mounting_10_deg", [](sim::Sensors& s) { turn_lidar(s, 0.1, 0.05); }},
+      {"mounting_90_deg",
+       [](sim::Sensors& s) {
+         for (sim::LidarRecord& l : s.lidars) l.T_BL.rotate(Eigen::AngleAxisd(1.5707963, Vector::UnitZ()));
+       }},
+      {"dust_5_percent", [](sim::Sensors& s) { dust(s, 0.05); }},
+      {"radius_2_percent", [](sim::Sensors& s) { s.sphere_radius_m *= 1.02; }},
+  };
+  return all;
+}
+
+bool is_of_kind(const std::string& harm, Kind kind) {
+  const bool of_lidar = harm.starts_with("lidar") || harm.starts_with("mounting") || harm.starts_with("dust");
+  const bool of_sphere = harm == "first_frozen" || harm == "radius_2_percent";
+  return kind == Kind::slam ? !of_sphere : !of_lidar;
+}
+
+}  // namespace tumble::scenarios::testing
