@@ -120,16 +120,17 @@ double repeated_share(const std::vector<Eigen::Vector3d>& readings) {
 
 // to the measure of RepoIMU's pendulum, segment 3: models/README.md
 TEST(SwingScenario, ClipsAsTheRealPendulumDoesAndRepeatsItsReadings) {
+  std::size_t railed_force = 0;  // of all draws: a whip may fall between two of the accelerometer's readings
   for (std::uint64_t seed = kSeed; seed < kSeed + 3; ++seed) {
     const sim::Recording recording =
         sim::simulate(draw(kData, load_scenario(kData, "swing"), seed), {kData.models(), 1});
     const sim::ImuRecord& imu = recording.sensors.imus.at(0);
     const std::vector<Eigen::Vector3d>& rate = recording.truth.imus.at(0).rate_rad_s;
-    std::size_t beyond = 0, railed_force = 0;
+    std::size_t beyond = 0;
     double fastest_rad_s = 0.0;
     for (std::size_t k = 0; k < rate.size(); ++k) {
       beyond += std::abs(rate[k].z()) > 10.29;
-      railed_force += imu.accel_m_s2[k].x() > 19.2;
+      railed_force += imu.accel_m_s2[k].x() > 18.9;  // the element's scale: 3 sigma below 19.5
       fastest_rad_s = std::max(fastest_rad_s, rate[k].norm());
       EXPECT_LT(imu.gyro_rad_s[k].cwiseAbs().maxCoeff(), 12.0);  // a tilt of 3 sigma moves the rail by some 10 %
     }
@@ -137,12 +138,12 @@ TEST(SwingScenario, ClipsAsTheRealPendulumDoesAndRepeatsItsReadings) {
     EXPECT_GT(share, 0.003) << seed;
     EXPECT_LT(share, 0.03) << seed;
     EXPECT_GT(fastest_rad_s, 12.0) << seed;
-    EXPECT_GT(railed_force, 0u) << seed;
     const double gyro = repeated_share(imu.gyro_rad_s), accel = repeated_share(imu.accel_m_s2);
     EXPECT_GT(gyro, 0.43) << seed;  // 1 - 49.8 / 90.9 = 0.45, 1 - 49.8 / 166.7 = 0.70
     EXPECT_LT(gyro, 0.72) << seed;
     EXPECT_GT(accel, gyro + 0.1) << seed;
   }
+  EXPECT_GT(railed_force, 0u);
 }
 
 }  // namespace
