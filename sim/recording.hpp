@@ -55,7 +55,7 @@ struct LidarRecord {
 
 /// Everything that an estimator may see.
 struct Sensors {
-  std::string robot;           ///< "rig", "sphere"; "" for a recording of an unknown robot
+  std::string robot;           ///< "rig", "sphere", "pendulum"; "" for a recording of an unknown robot
   double sphere_radius_m = 0;  ///< 0 when not a sphere
   double gravity_m_s2 = 9.80665;
   std::vector<ImuRecord> imus;  ///< the first is the primary one; `imu_reference`, if any, is for comparison only

@@ -21,6 +21,9 @@ Eigen::Isometry3d site_pose(const engine::World& world, const SensorSpec& sensor
     throw InvalidSituation("sensors." + sensor.name + ": the robot has no site '" + sensor.site + "'" +
                            (near.empty() ? "" : "; did you mean '" + near + "'?"));
   }
+  if (model.site_bodyid[site] != world.robot_body) {
+    throw InvalidSituation("sensors." + sensor.name + ": site '" + sensor.site + "' is not on the body of the sensors");
+  }
   const mjtNum* p = model.site_pos + 3 * site;
   const mjtNum* q = model.site_quat + 4 * site;
   Eigen::Isometry3d T_BX = Eigen::Isometry3d::Identity();

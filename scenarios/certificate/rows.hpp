@@ -93,6 +93,15 @@ struct TiltedRailSetup {
 };
 std::vector<CertificateEntry> certify_tilted_rail(const CertificateInput& input, const TiltedRailSetup& setup = {});
 
+/// The pendulum without friction, swung wildly and gently, against Lagrange's equations of three bars.
+struct PendulumSetup {
+  double duration_s = 5.0;
+  sim::Integrator integrator = sim::Integrator::runge_kutta_4;
+  double stated_segment_m = 0.0;   ///< that the closed forms of energy and periods believe; 0: the pendulum's own
+  double lever_arm_error_m = 0.0;  ///< the IMU sits so much higher than the closed form believes
+};
+std::vector<CertificateEntry> certify_pendulum(const CertificateInput& input, const PendulumSetup& setup = {});
+
 /// The digest of a draw with other numbers of threads, in another order, and from a program started anew.
 struct DigestSetup {
   std::string scenario = "hill";

@@ -13,7 +13,7 @@ sim::Situation bare_room(const std::string& robot) {
   situation.world.values.set("pillar_count", 0.0);
   situation.world.values.set("box_count", 0.0);
   situation.robot.type = robot;
-  situation.motion.type = robot == "sphere" ? "hand_roll" : "push";
+  situation.motion.type = robot == "sphere" ? "hand_roll" : robot == "pendulum" ? "swing" : "push";
   return situation;
 }
 

@@ -8,7 +8,7 @@
 /// Situations and motions that several rows measure on.
 namespace tumble::scenarios {
 
-/// A robot ("rig" or "sphere") in a room with nothing in it but floor and walls; no sensors.
+/// A robot ("rig", "sphere" or "pendulum") in a room with nothing in it but floor and walls; no sensors.
 sim::Situation bare_room(const std::string& robot);
 
 /// Thrown up high above the room, so that it stays in the air for seconds, and spun at `rate_rad_s` near the axis of

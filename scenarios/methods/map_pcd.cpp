@@ -2,10 +2,12 @@
 #include <pcl/io/pcd_io.h>
 
 #include <algorithm>
+#include <exception>
 #include <string>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/map_file.hpp"
+#include "scenarios/recordings/clouds/cloud_file.hpp"
 #include "scenarios/recordings/clouds/quiet_pcl.hpp"
 #include "tumble/mapping/pcl.hpp"
 
@@ -23,13 +25,15 @@ void write_pcd_map(const std::filesystem::path& path, std::span<const MapPoint> 
 }
 
 std::vector<MapPoint> read_pcd_map(const std::filesystem::path& path) {
+  // the library trusts the header, and reads an empty file's
+  if (read_pcd_header(path).points == 0) throw BadInput(path.string() + ": a map holds one point at least");
   const QuietPcl quiet;
   pcl::PCDReader reader;
   pcl::PCLPointCloud2 blob;
   int status = -1;
   try {
     status = reader.read(path.string(), blob);
-  } catch (const pcl::PCLException&) {
+  } catch (const std::exception&) {  // the status says so
   }
   if (status != 0) throw BadInput(path.string() + ": cannot be read as PCD: absent, damaged or truncated");
   for (const char* name : {"x", "y", "z", "normal_x", "normal_y", "normal_z", "intensity"}) {

@@ -53,7 +53,7 @@ Method rate_saave() {
       "the exact lever arm its median error on `hill` is 83.5 % below the clipped gyro's (83.4 % published).";
   info.source = "Deschenes et al., Saturation-Aware Angular Velocity Estimation, ICRA 2024";
   info.parameters = kParameters;
-  info.robots = {"rig"};
+  info.robots = {"rig", "pendulum"};
   return make_method(std::move(info), run);
 }
 

@@ -229,7 +229,7 @@ Method rate_tumble() {
       "and the constants of the rig with it; further IMUs on the body where there are any (not imu_reference).";
   info.source = "ours, from Deschenes et al., Saturation-Aware Angular Velocity Estimation, ICRA 2024";
   info.parameters = tumble_rate_parameters();
-  info.robots = {"rig"};
+  info.robots = {"rig", "pendulum"};
   return make_method(std::move(info), run);
 }
 

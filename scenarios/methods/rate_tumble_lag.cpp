@@ -97,7 +97,7 @@ Method rate_tumble_lag() {
       "The smoother `tumble` as a stream: the same factors in a sliding window, estimates given out at a fixed age.";
   info.source = "ours";
   info.parameters = parameters_of_the_stream();
-  info.robots = {"rig"};
+  info.robots = {"rig", "pendulum"};
   return make_method(std::move(info), run);
 }
 

@@ -35,6 +35,11 @@ SpecPtr parse(const std::filesystem::path& file) {
   return spec;
 }
 
+void move_to_start(mjSpec* spec, std::string_view anchor, const World& world) {
+  mjsBody* body = mjs_findBody(spec, std::string(anchor).c_str());
+  for (int i = 0; i < 3; ++i) body->pos[i] += world.start_W_m[i];
+}
+
 }  // namespace
 
 bool FrictionPatch::contains(double x_m, double y_m) const {
@@ -59,10 +64,12 @@ World compose(const Situation& situation, const std::filesystem::path& models) {
   spec->compiler.usethread = 0;
   robot_type.shape(spec.get(), robot_values, world);
   world_type.build(spec.get(), world_values, situation.seed, world);
+  world.free = robot_type.anchor.empty();
+  if (!world.free) move_to_start(spec.get(), robot_type.anchor, world);
 
   world.model.reset(mj_compile(spec.get(), nullptr));
   if (!world.model) throw InvalidSituation(std::string("model: ") + mjs_getError(spec.get()));
-  world.robot_body = mj_name2id(world.model.get(), mjOBJ_BODY, "robot");
+  world.robot_body = mj_name2id(world.model.get(), mjOBJ_BODY, std::string(robot_type.sensor_body).c_str());
   for (const std::string& name : world.surfaces) {
     world.surface_geom.push_back(mj_name2id(world.model.get(), mjOBJ_GEOM, name.c_str()));
   }

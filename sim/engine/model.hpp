@@ -32,7 +32,9 @@ struct FrictionPatch {
 /// A compiled situation: world and robot in one model.
 struct World {
   ModelPtr model;
-  int robot_body = -1;                ///< id of the robot's free body (its frame is B: inertial frame position zero)
+  /// Id of the robot's body that carries the sensors (its frame is B: inertial frame position zero).
+  int robot_body = -1;
+  bool free = true;                   ///< that body is the whole robot and floats; else it hangs on joints
   std::vector<std::string> surfaces;  ///< surface id -> name; parallel to `surface_geom`
   std::vector<int> surface_geom;      ///< surface id -> geom id: the static geoms that a lidar sees and a robot touches
   std::vector<FrictionPatch> patches;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "sim/engine/jointed.hpp"
 #include "sim/simulate.hpp"
 
 namespace tumble::sim::engine {
@@ -30,6 +31,7 @@ Eigen::Vector3d vector(const mjtNum* numbers) {
 Physics::Physics(World& world)
     : world_(world), data_(mj_makeData(world.model.get())), surface_of_geom_(world.model->ngeom, -1) {
   if (!data_) throw SimulationFailure("out of memory for the engine's state");
+  if (!world.free) update_bodies(*world.model, *data_);
   for (std::size_t i = 0; i < world.surface_geom.size(); ++i)
     surface_of_geom_[world.surface_geom[i]] = static_cast<int>(i);
   if (!world.patches.empty()) {
@@ -39,6 +41,7 @@ Physics::Physics(World& world)
 }
 
 BodyState Physics::state() const {
+  if (!world_.free) return state_on_joints(*world_.model, *data_, world_.robot_body);
   const mjtNum* q = data_->qpos;  // free joint: position, quaternion; velocity in world axes, rate in body axes
   return {data_->time, vector(q), Eigen::Quaterniond(q[3], q[4], q[5], q[6]), vector(data_->qvel),
           vector(data_->qvel + 3)};
@@ -46,6 +49,14 @@ BodyState Physics::state() const {
 
 void Physics::set_state(const BodyState& state) {
   data_->time = state.time_s;
+  if (!world_.free) {
+    constexpr double kSame = 1e-9;
+    const BodyState now = this->state();
+    if ((now.p_WB_m - state.p_WB_m).norm() > kSame || now.q_WB.angularDistance(state.q_WB) > kSame) {
+      throw InvalidSituation("motion: the robot hangs on its joints and cannot be put elsewhere");
+    }
+    return;
+  }
   for (int i = 0; i < 3; ++i) {
     data_->qpos[i] = state.p_WB_m[i];
     data_->qvel[i] = state.v_WB_m_s[i];
@@ -62,7 +73,31 @@ void Physics::step(const Wrench& wrench) {
     data_->xfrc_applied[6 * world_.robot_body + 3 + i] = wrench.torque_W_nm[i];
   }
   mj_step(world_.model.get(), data_.get());
+  if (!world_.free) update_bodies(*world_.model, *data_);
   check();
+}
+
+int Physics::hinge(const std::string& name) const {
+  const int joint = mj_name2id(world_.model.get(), mjOBJ_JOINT, name.c_str());
+  if (joint < 0 || world_.model->jnt_type[joint] != mjJNT_HINGE) {
+    throw InvalidSituation("robot: no hinge '" + name + "'");
+  }
+  return joint;
+}
+
+double Physics::joint_rad(const std::string& name) const {
+  return data_->qpos[world_.model->jnt_qposadr[hinge(name)]];
+}
+
+double Physics::joint_rate_rad_s(const std::string& name) const {
+  return data_->qvel[world_.model->jnt_dofadr[hinge(name)]];
+}
+
+void Physics::set_joint(const std::string& name, double angle_rad, double rate_rad_s) {
+  const int joint = hinge(name);
+  data_->qpos[world_.model->jnt_qposadr[joint]] = angle_rad;
+  data_->qvel[world_.model->jnt_dofadr[joint]] = rate_rad_s;
+  update_bodies(*world_.model, *data_);
 }
 
 void Physics::set_floor_friction() {
@@ -79,12 +114,12 @@ void Physics::check() const {
   for (int i = 0; i < mjNWARNING; ++i) {
     if (data_->warning[i].number > 0) fail(std::string("engine warning: ") + kWarnings[i], data_->time);
   }
-  for (int i = 0; i < 7; ++i) {
+  for (int i = 0; i < world_.model->nq; ++i) {
     if (!std::isfinite(data_->qpos[i])) fail("position is not finite", data_->time);
   }
   constexpr double kBelow_m = 60.0;
-  if (std::abs(data_->qpos[0]) > world_.half_extent_m || std::abs(data_->qpos[1]) > world_.half_extent_m ||
-      data_->qpos[2] < -kBelow_m) {
+  const Eigen::Vector3d p_m = state().p_WB_m;
+  if (std::abs(p_m.x()) > world_.half_extent_m || std::abs(p_m.y()) > world_.half_extent_m || p_m.z() < -kBelow_m) {
     fail("the robot left its world", data_->time);
   }
 }
@@ -97,6 +132,7 @@ void Physics::append_contacts(std::int64_t time_ns, std::vector<ContactTruth>& c
     const mjContact& contact = data_->contact[i];
     if (contact.efc_address < 0) continue;  // found, but too far apart to push
     const bool robot_second = model->geom_bodyid[contact.geom[1]] == world_.robot_body;
+    if (!robot_second && model->geom_bodyid[contact.geom[0]] != world_.robot_body) continue;  // of another segment
     mjtNum force[6];
     mj_contactForce(model, data_.get(), i, force);
     ContactTruth truth;

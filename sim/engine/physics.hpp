@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "sim/body_state.hpp"
@@ -10,8 +11,8 @@
 
 namespace tumble::sim::engine {
 
-/// One robot in one world, advanced step by step (RK4). Any warning of the engine ends it: a run that lost contacts or
-/// numbers is not evidence.
+/// One robot in one world, advanced step by step (RK4); its state is that of the body that carries the sensors. Any
+/// warning of the engine ends it: a run that lost contacts or numbers is not evidence.
 class Physics {
  public:
   /// Works on `world`'s model (the floor's friction changes with the place of the contact). `world` outlives it.
@@ -19,7 +20,13 @@ class Physics {
 
   double step_s() const { return world_.model->opt.timestep; }
   BodyState state() const;
+  /// Throws InvalidSituation for a robot on joints, unless it is where it is already: then the time is set alone.
   void set_state(const BodyState& state);
+
+  /// Angle and rate of a hinge by its name; throws InvalidSituation when the robot has none of that name.
+  double joint_rad(const std::string& name) const;
+  double joint_rate_rad_s(const std::string& name) const;
+  void set_joint(const std::string& name, double angle_rad, double rate_rad_s);
 
   /// Advances by one step under gravity, contacts and `wrench`, held constant. Throws SimulationFailure with the reason
   /// and the simulated time: a warning of the engine, a state that is not finite, a robot that left its world.
@@ -31,6 +38,7 @@ class Physics {
   void append_contacts(std::int64_t time_ns, std::vector<ContactTruth>& contacts) const;
 
  private:
+  int hinge(const std::string& name) const;
   void set_floor_friction();
   void check() const;
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "sim/engine/jointed.hpp"
 #include "sim/render/decoration.hpp"
 #include "sim/render/framing.hpp"
 
@@ -152,6 +153,10 @@ double SceneRenderer::Impl::robot_radius_m() const {
   double radius_m = 0.1;
   const mjModel& model = *world.model;
   for (int geom = 0; geom < model.ngeom; ++geom) {
+    if (!world.free && model.body_rootid[model.geom_bodyid[geom]] == model.body_rootid[world.robot_body]) {
+      const Eigen::Map<const Eigen::Vector3d> p_W(data->geom_xpos + 3 * geom), p_WB(data->xpos + 3 * world.robot_body);
+      radius_m = std::max(radius_m, (p_W - p_WB).norm() + model.geom_rbound[geom]);
+    }
     if (model.geom_bodyid[geom] != world.robot_body) continue;
     const mjtNum* p = model.geom_pos + 3 * geom;
     radius_m = std::max(radius_m, std::hypot(p[0], p[1], p[2]) + model.geom_rbound[geom]);
@@ -162,6 +167,13 @@ double SceneRenderer::Impl::robot_radius_m() const {
 void SceneRenderer::Impl::add_robots(const View& view, const mjvOption& option, mjvScene& scene) {
   const mjModel& model = *world.model;
   if (world.robot_body < 0) return;
+  if (!world.free) {
+    for (const Eigen::Isometry3d& T_WB : view.robots_T_WB) {
+      engine::reach(world, T_WB, *data);  // from the pose before: a film strip's neighbours are near each other
+      mjv_addGeoms(&model, data.get(), &option, nullptr, mjCAT_DYNAMIC, &scene);
+    }
+    return;
+  }
   const int joint = model.body_jntadr[world.robot_body];
   if (joint < 0 || model.jnt_type[joint] != mjJNT_FREE) return;
   mjtNum* qpos = data->qpos + model.jnt_qposadr[joint];

@@ -8,7 +8,7 @@
 namespace tumble::sim {
 
 std::span<const RobotType* const> all_robot_types() {
-  static const std::array<const RobotType*, 2> kTypes = {&rig_robot(), &sphere_robot()};
+  static const std::array<const RobotType*, 3> kTypes = {&rig_robot(), &sphere_robot(), &pendulum_robot()};
   return kTypes;
 }
 

@@ -87,6 +87,18 @@ void Trial::set_state(const BodyState& state) {
   impl_->physics.set_state(state);
 }
 
+double Trial::joint_rad(const std::string& name) const {
+  return impl_->physics.joint_rad(name);
+}
+
+double Trial::joint_rate_rad_s(const std::string& name) const {
+  return impl_->physics.joint_rate_rad_s(name);
+}
+
+void Trial::set_joint(const std::string& name, double angle_rad, double rate_rad_s) {
+  impl_->physics.set_joint(name, angle_rad, rate_rad_s);
+}
+
 void Trial::step(const Wrench& wrench) {
   impl_->physics.step(wrench);
 }

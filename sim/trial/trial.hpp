@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "sim/body_state.hpp"
@@ -38,8 +39,13 @@ class Trial {
   Eigen::Vector3d p_BG_m() const;           ///< geometric centre (design origin) in B
   double half_extent_m() const;             ///< beyond this |x| or |y| the robot has left its world
 
-  BodyState state() const;
+  BodyState state() const;  ///< of the body that carries the sensors
+  /// Throws InvalidSituation for a robot on joints.
   void set_state(const BodyState& state);
+  /// Hinges of such a robot by name; throw InvalidSituation when there is none of that name.
+  double joint_rad(const std::string& name) const;
+  double joint_rate_rad_s(const std::string& name) const;
+  void set_joint(const std::string& name, double angle_rad, double rate_rad_s);
   /// One step under gravity, contacts and `wrench`. Throws SimulationFailure.
   void step(const Wrench& wrench = {});
   /// Contacts that the last step ended with; their time is the state's, rounded to nanoseconds.

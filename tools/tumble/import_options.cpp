@@ -223,7 +223,8 @@ void require_fitting(const ImportOptions& options, const std::string& format) {
          "and --reference-topic exclude each other");
   refuse(options.radius_m != 0.0 && options.robot != "sphere", "--radius",
          "is the sphere's: --robot sphere is missing");
-  if (!options.robot.empty()) require_known("robot", options.robot, std::vector<std::string>{"rig", "sphere"});
+  if (!options.robot.empty())
+    require_known("robot", options.robot, std::vector<std::string>{"rig", "sphere", "pendulum"});
   if (!options.reference_frame.empty())
     require_known("frame", options.reference_frame, std::vector<std::string>{"lidar", "body"});
 }

@@ -113,12 +113,22 @@ void take_property(const HeaderLines& lines, const std::vector<std::string>& wor
 
 using Words = std::vector<std::string>;
 
-/// The lines of a PCD's header by their first words.
+/// The lines of a PCD's header by their first words. They stand once each and in this order, as the format has it: the
+/// library that reads the points takes a line that is unknown, doubled or in its wrong place for the header's end or
+/// for another one, and trusts what it then has.
 std::map<std::string, Words> pcd_lines(HeaderLines& lines) {
+  constexpr std::array<const char*, 10> kOrder = {"VERSION", "FIELDS", "SIZE",      "TYPE",   "COUNT",
+                                                  "WIDTH",   "HEIGHT", "VIEWPOINT", "POINTS", "DATA"};
   std::map<std::string, Words> found;
+  std::size_t next = 0;
   while (!found.contains("DATA")) {
     const Words words = lines.next();
     if (words.empty() || words.front().starts_with("#")) continue;
+    const auto at = std::find(kOrder.begin(), kOrder.end(), words.front());
+    if (at == kOrder.end()) lines.fail("begins with no word of a PCD's header");
+    const auto place = static_cast<std::size_t>(at - kOrder.begin());
+    if (place < next) lines.fail(words.front() + " stands twice or in its wrong place");
+    next = place + 1;
     found[words.front()] = Words(words.begin() + 1, words.end());
   }
   for (const char* needed : {"FIELDS", "SIZE", "TYPE", "WIDTH", "HEIGHT"}) {
@@ -185,6 +195,12 @@ CloudHeader read_pcd_header(const std::filesystem::path& path) {
     if (size == 0 || size > 8 || count == 0 || count > 4096) {
       lines.fail("field " + found["FIELDS"][i] + " has " + std::to_string(count) + " numbers of " +
                  std::to_string(size) + " bytes: 1 to 4096 of 1 to 8 are read");
+    }
+    const std::string& type = found["TYPE"][i];
+    const bool whole = type == "I" || type == "U", real = type == "F";
+    if (!(whole && (size == 1 || size == 2 || size == 4 || size == 8)) && !(real && (size == 4 || size == 8))) {
+      lines.fail("field " + std::to_string(i + 1) +
+                 " is of no type that is read: I or U of 1, 2, 4 or 8 bytes, F of 4 or 8");
     }
     header.point_bytes += size * count;
     header.numbers += count;

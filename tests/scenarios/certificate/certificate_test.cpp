@@ -200,6 +200,27 @@ TEST(Rows, WithoutADeviceTheTiltedRailSaysNothing) {
   EXPECT_EQ(failures(certify_tilted_rail(input(), setup)).size(), 4u);
 }
 
+TEST(Rows, APendulumOfAnotherLengthFailsEnergyAndPeriods) {
+  PendulumSetup setup;
+  setup.stated_segment_m = 0.25001;  // of 0.25
+  EXPECT_THAT(failures(certify_pendulum(input(), setup)),
+              testing::ElementsAre("pendulum_energy (pendulum)", "pendulum_period (pendulum)"));
+}
+
+TEST(Rows, EulerIntegrationFailsThePendulumsEnergy) {
+  PendulumSetup setup;
+  setup.duration_s = 1.0;
+  setup.integrator = sim::Integrator::euler;
+  EXPECT_THAT(failures(certify_pendulum(input(), setup)), testing::Contains("pendulum_energy (pendulum)"));
+}
+
+TEST(Rows, ALeverArmOfOneMillimetreFailsThePendulumsSpecificForce) {
+  PendulumSetup setup;
+  setup.duration_s = 0.1;
+  setup.lever_arm_error_m = 0.001;
+  EXPECT_THAT(failures(certify_pendulum(input(), setup)), testing::ElementsAre("pendulum_specific_force (pendulum)"));
+}
+
 TEST(Rows, OtherDrawsFailTheDigests) {
   DigestSetup setup;
   setup.duration_s = 2.5;

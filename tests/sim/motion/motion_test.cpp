@@ -125,6 +125,35 @@ TEST(Twirl, SpinsAboutXInStrokesAndKeepsTheGripInTheHand) {
   EXPECT_LT(largest_step_m_s(truth), 0.05);  // no jump: 100 m/s^2 at most
 }
 
+TEST(Swing, LeadsAsideAndUpHoldsAndLetsGo) {
+  Situation situation = moved_by("swing", 8.0);
+  situation.world = {"floor", {}};
+  situation.robot = {"pendulum", {}};
+  situation.sensors.clear();
+  for (const auto& [name, value] : {std::pair{"lift_s", 1.0}, std::pair{"hold_s", 1.0}, std::pair{"aside_m", 0.3},
+                                    std::pair{"up_m", 0.3}, std::pair{"spread_m", 0.0}, std::pair{"sideways_m", 0.0},
+                                    std::pair{"other_side_share", 0.0}, std::pair{"interval_s", 4.5}}) {
+    situation.motion.values.set(name, value);
+  }
+  for (const char* name : {"hinge_damping_nm_s", "hinge_friction_nm"}) situation.robot.values.set(name, 0.004);
+  const Truth truth = simulate(situation, {models_folder(), 1}).truth;
+  const auto at = [](double time_s) { return static_cast<std::size_t>(std::lround(time_s / 0.0005)); };
+  EXPECT_EQ((truth.p_WB_m[at(0.49)] - truth.p_WB_m[0]).norm(), 0.0);
+  // held at 2.4 s: what hangs pulls the hand's spring (200 N/m at 0.9 kg) down by at most its weight, 4.4 cm
+  const Vector3d held = truth.p_WB_m[at(2.4)] - truth.p_WB_m[0];
+  EXPECT_NEAR((held - Vector3d(0.3, 0.0, 0.3)).norm(), 0.0, 0.05);
+  EXPECT_LT(truth.v_WB_m_s[at(2.4)].norm(), 0.3);
+  // let go at 2.5 s: it falls, then swings through to the other side, and nothing jumps
+  EXPECT_LT(truth.p_WB_m[at(2.75)].z(), truth.p_WB_m[at(2.5)].z() - 0.1);
+  double least_x_m = 0.0;
+  for (std::size_t k = at(2.6); k < at(4.0); ++k) least_x_m = std::min(least_x_m, truth.p_WB_m[k].x());
+  EXPECT_LT(least_x_m, -0.1);
+  EXPECT_LT(largest_step_m_s(truth), 0.2);  // 400 m/s^2 at the whip's end
+  // and again, 4.05 to 4.95 s after the first time
+  const double again_m = (truth.p_WB_m[at(6.5)] - truth.p_WB_m[0] - Vector3d(0.3, 0.0, 0.3)).norm();
+  EXPECT_LT(again_m, 0.1);
+}
+
 TEST(Clearance, IsThatOfTheTurnedRobot) {
   const engine::World world = engine::compose(tumble_down(1.0, 100.0), models_folder());
   const Eigen::Quaterniond upright = Eigen::Quaterniond::Identity();

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "sim/engine/jointed.hpp"
+#include "sim/motion/motion_type.hpp"
+#include "sim/random/stream.hpp"
+
+namespace tumble::sim {
+
+namespace {
+
+constexpr std::array kParameters = {
+    Parameter{"rest_s", 1.75, 0.5, 30.0, "s", "hanging before the hand takes hold"},
+    Parameter{"lift_s", 1.0, 0.2, 10.0, "s", "in which the hand leads the lowest segment aside and up"},
+    Parameter{"hold_s", 0.5, 0.0, 10.0, "s", "it holds it there"},
+    Parameter{"release_s", 0.03, 0.005, 1.0, "s", "in which its grip ends"},
+    Parameter{"interval_s", 19.0, 2.0, 120.0, "s",
+              "mean time from one letting go to the next, give or take a tenth; at least lift and hold"},
+    Parameter{"aside_m", 0.4, 0.0, 3.0, "m", "mean way aside, across the hinges"},
+    Parameter{"up_m", 0.45, 0.0, 3.0, "m", "mean way up"},
+    Parameter{"spread_m", 0.05, 0.0, 0.5, "m", "standard deviation of both from swing to swing, within 2 of them"},
+    Parameter{"sideways_m", 0.02, 0.0, 0.5, "m", "standard deviation of the way along the hinges, within 2 of them"},
+    Parameter{"other_side_share", 0.3, 0.0, 1.0, "1", "of the swings, that begin on the other side"},
+    Parameter{"hand_seed", 0.0, 0.0, 1e9, "1", "what is random about the hand belongs to this number, rounded down"},
+};
+
+constexpr double kLongest_s = 3600.0;
+
+/// One swing: taken hold of, led away, held, let go.
+struct Lift {
+  double start_s;
+  Eigen::Vector3d way_W_m;
+};
+
+double bounded(Stream& stream, double sigma) {
+  return sigma * std::clamp(stream.normal(), -2.0, 2.0);
+}
+
+std::vector<Lift> plan_lifts(const Values& values, Stream& stream) {
+  const double shortest_s = values.at("lift_s") + values.at("hold_s") + values.at("release_s");
+  const double spread_m = values.at("spread_m");
+  std::vector<Lift> lifts;
+  for (double start_s = values.at("rest_s"); start_s < kLongest_s;) {
+    const double side = stream.uniform() < values.at("other_side_share") ? -1.0 : 1.0;
+    const double aside_m = std::max(0.0, values.at("aside_m") + bounded(stream, spread_m));
+    const double up_m = std::max(0.0, values.at("up_m") + bounded(stream, spread_m));
+    lifts.push_back({start_s, {side * aside_m, bounded(stream, values.at("sideways_m")), up_m}});
+    start_s += std::max(shortest_s, values.at("interval_s") * stream.uniform(0.9, 1.1));
+  }
+  return lifts;
+}
+
+/// From 0 to 1 with neither velocity nor acceleration at its ends.
+double smooth(double share) {
+  const double u = std::clamp(share, 0.0, 1.0);
+  return u * u * u * (10.0 + u * (-15.0 + 6.0 * u));
+}
+
+/// A hand that takes the lowest segment by its centre of mass: a spring and a damper to a place that moves. It turns
+/// nothing, and is no body.
+class Swing : public Motion {
+ public:
+  Swing(const Values& values, const engine::World& world)
+      : lift_s_(values.at("lift_s")),
+        hold_s_(values.at("hold_s")),
+        release_s_(values.at("release_s")),
+        mass_kg_(world.model->body_subtreemass[world.model->body_rootid[world.robot_body]]) {
+    if (world.free) throw InvalidSituation("motion.swing: the robot hangs on nothing");
+    start_ = engine::state_at_rest(world);
+    Stream stream(static_cast<std::uint64_t>(values.at("hand_seed")), "hand.swing");
+    lifts_ = plan_lifts(values, stream);
+  }
+
+  BodyState start() const override { return start_; }
+
+  Wrench wrench(const BodyState& state) override {
+    const auto after = std::upper_bound(lifts_.begin(), lifts_.end(), state.time_s,
+                                        [](double time_s, const Lift& lift) { return time_s < lift.start_s; });
+    if (after == lifts_.begin()) return {};
+    const Lift& lift = *std::prev(after);
+    const double since_s = state.time_s - lift.start_s;
+    constexpr double kGrip_s = 0.3;            // in which the fingers close
+    constexpr double kFrequency_rad_s = 15.0;  // of the spring with all that hangs: an arm's
+    const double grip = smooth(since_s / kGrip_s) * (1.0 - smooth((since_s - lift_s_ - hold_s_) / release_s_));
+    if (grip <= 0.0) return {};
+
+    const Eigen::Vector3d aim_m = start_.p_WB_m + smooth(since_s / lift_s_) * lift.way_W_m;
+    constexpr double kStep_s = 1e-3;
+    const double pace_1_s =
+        (smooth((since_s + kStep_s) / lift_s_) - smooth((since_s - kStep_s) / lift_s_)) / (2.0 * kStep_s);
+    const double stiffness_n_m = mass_kg_ * kFrequency_rad_s * kFrequency_rad_s;
+    const double damping_n_s_m = 2.0 * mass_kg_ * kFrequency_rad_s;
+    Wrench out;
+    out.force_W_n =
+        grip * (stiffness_n_m * (aim_m - state.p_WB_m) + damping_n_s_m * (pace_1_s * lift.way_W_m - state.v_WB_m_s));
+    return out;
+  }
+
+ private:
+  double lift_s_, hold_s_, release_s_;
+  double mass_kg_;  ///< of all segments
+  BodyState start_;
+  std::vector<Lift> lifts_;
+};
+
+std::unique_ptr<Motion> make(const Values& values, const engine::World& world) {
+  return std::make_unique<Swing>(values, world);
+}
+
+}  // namespace
+
+const MotionType& swing_motion() {
+  static const MotionType kType{{"swing", "a hand leads what hangs aside and lets it go, again and again", kParameters},
+                                make};
+  return kType;
+}
+
+}  // namespace tumble::sim

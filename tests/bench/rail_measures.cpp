@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// rail_measures AXIS RAIL FILE...: what a gyro does at its rail of RAIL rad/s on AXIS (x, y, z), a line a file: share
+// of rows that repeat the readings before; of the gyro's own readings those at the rail; how long they stay there; the
+// true rate there; how far the readings of one sign, inside of stretches, scatter there, before and after a plane
+// through them. FILE is a simulated recording (.h5) or one of RepoIMU (.csv), whose rate is the cameras'. Not a test.
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "scenarios/recordings/import.hpp"
+#include "scenarios/recordings/recording_file.hpp"
+#include "scenarios/sweep/statistics.hpp"
+
+namespace {
+
+using Eigen::Vector3d;
+using namespace tumble;
+
+/// The gyro's own readings, and the true rates beside them.
+struct Readings {
+  std::vector<double> time_s;
+  std::vector<Vector3d> gyro, rate;
+  double gyro_repeats = 0.0, accel_repeats = 0.0;
+};
+
+template <class Row>
+double repeated(const std::vector<Row>& rows) {
+  std::size_t count = 0;
+  for (std::size_t k = 1; k < rows.size(); ++k) count += rows[k] == rows[k - 1];
+  return rows.size() < 2 ? 0.0 : static_cast<double>(count) / static_cast<double>(rows.size() - 1);
+}
+
+Readings simulated(const std::string& file) {
+  const sim::ImuRecord imu = scenarios::read_sensors(file).imus.at(0);
+  const std::vector<Vector3d> rate = scenarios::read_truth(file).imus.at(0).rate_rad_s;
+  Readings out;
+  out.gyro_repeats = repeated(imu.gyro_rad_s);
+  out.accel_repeats = repeated(imu.accel_m_s2);
+  for (std::size_t k = 0; k < imu.time_ns.size(); ++k) {
+    if (k > 0 && imu.gyro_rad_s[k] == imu.gyro_rad_s[k - 1]) continue;
+    out.time_s.push_back(1e-9 * static_cast<double>(imu.time_ns[k]));
+    out.gyro.push_back(imu.gyro_rad_s[k]);
+    out.rate.push_back(rate.at(k));
+  }
+  return out;
+}
+
+/// The import leaves repeated readings out; how many there were the file tells.
+Readings real(const std::string& file) {
+  constexpr int kAccel = 5, kGyro = 8, kMagnetometer = 11;  // columns
+  std::ifstream stream(file);
+  std::vector<std::string> accel, gyro;
+  std::string line;
+  for (int row = 0; std::getline(stream, line); ++row) {
+    if (row < 2) continue;
+    std::vector<std::size_t> starts = {0};
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      if (line[i] == ';') starts.push_back(i + 1);
+    }
+    accel.push_back(line.substr(starts.at(kAccel), starts.at(kGyro) - starts[kAccel]));
+    gyro.push_back(line.substr(starts[kGyro], starts.at(kMagnetometer) - starts[kGyro]));
+  }
+  const scenarios::Imported imported = scenarios::import_repoimu(file, true);
+  const sim::ImuRecord& imu = imported.sensors.imus.at(0);
+  Readings out;
+  out.gyro_repeats = repeated(gyro);
+  out.accel_repeats = repeated(accel);
+  for (const std::int64_t time_ns : imu.time_ns) out.time_s.push_back(1e-9 * static_cast<double>(time_ns));
+  out.gyro = imu.gyro_rad_s;
+  out.rate = imported.reference.value().imus.at(0).rate_rad_s;
+  return out;
+}
+
+/// The plane of readings of one sign at the rail of `axis`.
+struct Plane {
+  std::size_t readings = 0;
+  double before = std::nan(""), after = std::nan("");  ///< standard deviation of the axis, about its mean and the plane
+  double slope_1 = std::nan(""), slope_2 = std::nan("");  ///< against the next axis and the one after
+};
+
+Plane fit(const std::vector<Vector3d>& readings, int axis) {
+  Plane out;
+  out.readings = readings.size();
+  const auto count = static_cast<Eigen::Index>(readings.size());
+  if (count < 8) return out;
+  Eigen::Matrix<double, Eigen::Dynamic, 3> design(count, 3);
+  Eigen::VectorXd value(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Vector3d& w = readings[static_cast<std::size_t>(i)];
+    value[i] = w[axis];
+    design.row(i) << 1.0, w[(axis + 1) % 3], w[(axis + 2) % 3];
+  }
+  const double n = static_cast<double>(count);
+  const Vector3d plane = (design.transpose() * design).ldlt().solve(design.transpose() * value);
+  out.before = std::sqrt((value.array() - value.mean()).square().sum() / n);
+  out.after = (value - design * plane).norm() / std::sqrt(n);
+  out.slope_1 = plane[1];
+  out.slope_2 = plane[2];
+  return out;
+}
+
+void print(const std::string& file, const Readings& readings, int axis, double rail_rad_s) {
+  constexpr double kNear_rad_s = 0.3;  // elements' scale, offset and tilt move the rail by about so much
+  std::vector<double> rates, stretches_s;
+  std::vector<Vector3d> inside[2];
+  std::size_t at_rail = 0, run = 0;
+  const std::vector<Vector3d>& gyro = readings.gyro;
+  const double step_s = (readings.time_s.back() - readings.time_s.front()) / static_cast<double>(gyro.size() - 1);
+  const auto railed = [&](std::size_t k) {
+    return k < gyro.size() && std::abs(gyro[k][axis]) > rail_rad_s - kNear_rad_s;
+  };
+  for (std::size_t k = 0; k <= gyro.size(); ++k) {
+    if (railed(k)) {
+      ++run, ++at_rail;
+      if (readings.rate[k].allFinite()) rates.push_back(readings.rate[k].norm());
+      if (k > 0 && railed(k - 1) && railed(k + 1)) inside[gyro[k][axis] > 0.0].push_back(gyro[k]);
+    } else if (run > 0) {
+      stretches_s.push_back(static_cast<double>(run) * step_s);
+      run = 0;
+    }
+  }
+  const auto& more = inside[inside[1].size() > inside[0].size()];
+  const Plane plane = fit(more, axis);
+  const auto quantile = [](const std::vector<double>& v, double q) {
+    return v.empty() ? std::nan("") : scenarios::quantile(v, q);
+  };
+  std::printf("%5.1f %5.1f %6.2f %4zu  %5.2f %5.2f  %5.1f %5.1f %5.1f  %4zu %7.4f %7.4f %7.4f %7.4f  %s\n",
+              100.0 * readings.gyro_repeats, 100.0 * readings.accel_repeats,
+              100.0 * static_cast<double>(at_rail) / static_cast<double>(gyro.size()), stretches_s.size(),
+              quantile(stretches_s, 0.5), quantile(stretches_s, 1.0), quantile(rates, 0.5), quantile(rates, 0.9),
+              quantile(rates, 0.99), plane.readings, plane.before, plane.after, plane.slope_1, plane.slope_2,
+              file.c_str());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string axes = "xyz";
+  if (argc < 4 || std::string(argv[1]).size() != 1 || axes.find(argv[1]) == std::string::npos) {
+    std::fprintf(stderr, "usage: rail_measures x|y|z RAIL_RAD_S FILE...\n");
+    return 2;
+  }
+  std::printf(
+      "repeats [%%]  at rail      stretch [s]  true rate [rad/s]  plane of one sign: scatter [rad/s] and slopes\n"
+      " gyro accel    [%%]    n   med.  max.   med.  90 %%  99 %%     n  before   after\n");
+  try {
+    for (int i = 3; i < argc; ++i) {
+      const std::string file = argv[i];
+      print(file, file.ends_with(".csv") ? real(file) : simulated(file), static_cast<int>(axes.find(argv[1])),
+            std::atof(argv[2]));
+    }
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "rail_measures: %s\n", error.what());
+    return 2;
+  }
+  return 0;
+}

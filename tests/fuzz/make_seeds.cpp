@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// fuzz_make_seeds FOLDER: writes the smallest good file of each kind into FOLDER/READER/, where the readers' own
+// writers know how; tests/fuzz/README.md says where the others come from.
+#include <hdf5.h>
+
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "scenarios/draw/scenario.hpp"
+#include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/methods/map_file.hpp"
+#include "scenarios/methods/rig_calibration_file.hpp"
+#include "scenarios/recordings/bags/bag.hpp"
+#include "scenarios/recordings/clouds/cloud_file.hpp"
+#include "scenarios/recordings/export.hpp"
+#include "tests/scenarios/recordings/fixture_recording.hpp"
+#include "tests/tree.hpp"
+
+namespace {
+
+using namespace tumble;
+using namespace tumble::scenarios;
+using std::filesystem::path;
+
+/// Few readings of a body that turns slowly under gravity.
+sim::Recording small_recording(int samples) {
+  fixture::Numbers numbers;
+  sim::Recording out = fixture::recording();
+  out.sensors.imus = {fixture::imu_record(numbers, "imu", samples)};
+  out.truth.imus = {fixture::imu_truth(numbers, "imu", samples)};
+  out.sensors.lidars.clear();
+  out.truth.lidars.clear();
+  fixture::add_lidar(numbers, out, "lidar", 2, 4);
+  for (std::uint32_t& offset_ns : out.sensors.lidars[0].offset_ns) offset_ns *= 8000;  // 25 ms from point to point
+  sim::ImuRecord& imu = out.sensors.imus[0];
+  for (std::size_t k = 0; k < imu.time_ns.size(); ++k) {
+    const double angle_rad = 0.003 * static_cast<double>(k);
+    imu.gyro_rad_s[k] = {0.01, 1.2, -0.02};
+    imu.accel_m_s2[k] = {9.8 * std::sin(angle_rad), 0.1, 9.8 * std::cos(angle_rad)};
+  }
+  return out;
+}
+
+path in(const path& folder, const std::string& reader) {
+  std::filesystem::create_directories(folder / reader);
+  return folder / reader;
+}
+
+void put_text(const path& file, const std::string& text) {
+  std::ofstream(file, std::ios::binary | std::ios::trunc) << text;
+}
+
+std::string row(const char* format, double t) {
+  char line[256];
+  std::snprintf(line, sizeof line, format, t, 0.001 * std::sin(t), 0.5 * std::sin(3.0 * t), 0.3 * std::cos(2.0 * t));
+  return line;
+}
+
+std::string tables(const std::string& header, const char* format, int rows) {
+  std::string text = header;
+  for (int k = 0; k < rows; ++k) text += row(format, 0.01 * k);
+  return text;
+}
+
+void write_broad(const path& file) {
+  const hid_t out = H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  constexpr hsize_t kRows = 40;
+  for (const auto& [name, columns] : {std::pair{"imu_gyr", 3}, std::pair{"imu_acc", 3}, std::pair{"imu_mag", 3},
+                                      std::pair{"opt_quat", 4}, std::pair{"opt_pos", 3}}) {
+    std::vector<double> values(kRows * static_cast<hsize_t>(columns), 0.0);
+    for (hsize_t i = 0; i < kRows; ++i) {
+      const hsize_t at = i * static_cast<hsize_t>(columns);
+      values[columns == 4 ? at : at + 2] = columns == 4 ? 1.0 : std::string(name) == "imu_acc" ? 9.8 : 0.01;
+    }
+    const hsize_t shape[2] = {kRows, static_cast<hsize_t>(columns)};
+    const hid_t space = H5Screate_simple(2, shape, nullptr);
+    const hid_t set = H5Dcreate2(out, name, H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+    H5Dclose(set);
+    H5Sclose(space);
+  }
+  const double rate_hz = 285.714;
+  for (const char* place : {"dataset", "attribute"}) {
+    const hid_t space = H5Screate(H5S_SCALAR);
+    if (std::string(place) == "dataset") {
+      const hid_t set =
+          H5Dcreate2(out, "sampling_rate", H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+      H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, &rate_hz);
+      H5Dclose(set);
+    } else {
+      const hid_t attribute = H5Acreate2(out, "sampling_rate", H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT);
+      H5Awrite(attribute, H5T_NATIVE_DOUBLE, &rate_hz);
+      H5Aclose(attribute);
+    }
+    H5Sclose(space);
+  }
+  H5Fclose(out);
+}
+
+void write_recordings(const path& folder, const path& scratch) {
+  const sim::Recording recording = small_recording(6);
+  write_recording(in(folder, "recording") / "small", fixture::info(), recording.sensors, &recording.truth);
+  const sim::Recording longer = small_recording(40);
+  export_ros1_bag(longer.sensors, {}, in(folder, "ros1_bag") / "small");
+  export_ros2_bag(longer.sensors, {}, scratch / "bag");
+  for (const auto& entry : std::filesystem::directory_iterator(scratch / "bag")) {
+    if (entry.path().extension() == ".db3") std::filesystem::copy_file(entry.path(), in(folder, "ros2_bag") / "small");
+  }
+  export_csv(longer.sensors, nullptr, scratch / "csv");
+  std::filesystem::copy_file(scratch / "csv" / "imu.csv", in(folder, "imu_csv") / "own");
+  put_text(in(folder, "imu_csv") / "short",
+           tables("sec,nsec,wx,wy,wz,ax,ay,az\n", "1,%.0f,0.01,0.02,0.03,0.1,0.2,9.8\n", 0) +
+               "1,0,0.01,0.02,0.03,0.1,0.2,9.8\n1,10000000,0.01,0.02,0.03,0.1,0.2,9.8\n"
+               "1,20000000,0.01,0.02,0.03,0.1,0.2,9.8\n");
+  export_ply(longer.sensors, scratch / "ply");
+  export_pcd(longer.sensors, scratch / "pcd");
+  std::filesystem::copy_file(scratch / "ply" / "lidar_000000.ply", in(folder, "ply_cloud") / "binary");
+  std::filesystem::copy_file(scratch / "pcd" / "lidar_000000.pcd", in(folder, "pcd_cloud") / "binary");
+  std::filesystem::copy_file(scratch / "ply" / "lidar_times.txt", in(folder, "stamps") / "times");
+  export_tum(longer.truth, in(folder, "tum") / "poses");
+  export_tum(longer.truth, in(folder, "estimate_tum") / "poses");
+  export_kitti(longer.truth, in(folder, "kitti") / "poses");
+}
+
+void write_texts(const path& folder) {
+  put_text(in(folder, "ply_cloud") / "text",
+           "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
+           "property float intensity\nend_header\n1 2 3 0.5\n4 5 6 1\n");
+  put_text(in(folder, "pcd_cloud") / "text",
+           "VERSION 0.7\nFIELDS x y z intensity\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH 2\nHEIGHT 1\n"
+           "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\nDATA ascii\n1 2 3 0.5\n4 5 6 1\n");
+  const float points[8] = {1, 2, 3, 0.5f, 4, 5, 6, 1};
+  put_text(in(folder, "kitti_cloud") / "small", std::string(reinterpret_cast<const char*>(points), sizeof points));
+  std::string wand =
+      "Time;Vicon Orientation;;;;IMU Acceleration;;;IMU Gyroscope;;;IMU Magnetometer;;\n"
+      "s;W;X;Y;Z;X;Y;Z;X;Y;Z;X;Y;Z\n";
+  for (int k = 0; k < 150; ++k) {  // it swings about x, and the readings belong to it
+    const double t = 0.01 * k, angle_rad = 0.5 * std::sin(6.0 * t);
+    char line[256];
+    std::snprintf(line, sizeof line, "%.3f;%.6f;%.6f;0;0;0.1;%.4f;%.4f;%.5f;0.01;0.02;0.1;0.2;0.3\n", t,
+                  std::cos(0.5 * angle_rad), std::sin(0.5 * angle_rad), 9.8 * std::sin(angle_rad),
+                  9.8 * std::cos(angle_rad), 3.0 * std::cos(6.0 * t));
+    wand += line;
+  }
+  put_text(in(folder, "repoimu") / "small", wand);
+  put_text(in(folder, "airbrakes") / "small",
+           tables("state_letter,timestamp_seconds,raw_acceleration_x_gs,raw_acceleration_y_gs,raw_acceleration_z_gs,"
+                  "raw_angular_rate_x_deg_per_s,raw_angular_rate_y_deg_per_s,raw_angular_rate_z_deg_per_s\n",
+                  "S,%.4f,%.4f,0,1,%.4f,%.4f,2\n", 12));
+}
+
+void write_documents(const path& folder, const path& scratch) {
+  const DataRoot data{test::source_dir()};
+  for (const char* name : {"swing", "slip"}) {
+    std::filesystem::copy_file(data.catalogue() / (std::string(name) + ".yaml"), in(folder, "scenario") / name);
+  }
+  put_text(in(folder, "situation") / "roll", to_yaml(draw(data, load_scenario(data, "roll"), 1)));
+  std::filesystem::copy_file(data.suites() / "rates_rig.yaml", in(folder, "suite") / "rates_rig");
+  std::filesystem::copy_file(data.data_sheets() / "mid40.yaml", in(folder, "data_sheet") / "mid40");
+  put_text(in(folder, "gate") / "small",
+           "suite: gate\nmargin: 0.25\nbounds:\n"
+           "  - {scenario: hill, kind: rate, method: tumble, statistic: share_not_ok, accepted: 0, high: 0.25}\n"
+           "  - {scenario: hill, kind: slam, method: tumble, metric: map_overlap, statistic: median, accepted: 1, "
+           "low: 0.75}\n");
+
+  LearntRig rig;
+  rig.calibration.covariance = 0.7e-4 * RigConstants::Matrix::Identity();
+  rig.rail = {10.5, std::nullopt, 10.4, std::nullopt, std::nullopt, std::nullopt};
+  write_learnt_rig(in(folder, "learnt") / "small", rig);
+  const std::vector<MapPoint> map(3, MapPoint{{1, 2, 3}, {0, 0, 1}, 0.1f});
+  write_map(in(folder, "map_ply") / "small", map);
+  write_pcd_map(scratch / "map.pcd", map);
+  std::filesystem::copy_file(scratch / "map.pcd", in(folder, "map_pcd") / "small");
+
+  Estimate estimate;
+  estimate.health["rejected_samples"] = 2.0;
+  for (int k = 0; k < 3; ++k) {
+    RateState state;
+    state.time_ns = 10'000'000 * (k + 1);
+    state.covariance_rad2_s2 = 1e-4 * Eigen::Matrix3d::Identity();
+    estimate.rates.push_back(state);
+  }
+  write_estimate(scratch / "estimate", "rate/raw", Kind::rate, estimate, std::string(32, 'a'));
+  std::filesystem::copy_file(scratch / "estimate" / "estimate.json", in(folder, "estimate_json") / "rates");
+  std::filesystem::copy_file(scratch / "estimate" / "rates.csv", in(folder, "estimate_rates") / "rates");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: fuzz_make_seeds FOLDER\n");
+    return 2;
+  }
+  try {
+    const path folder = argv[1], scratch = folder / "scratch";
+    std::filesystem::create_directories(scratch);
+    write_recordings(folder, scratch);
+    write_texts(folder);
+    write_documents(folder, scratch);
+    write_broad(in(folder, "broad") / "small");
+    std::filesystem::remove_all(scratch);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "fuzz_make_seeds: %s\n", error.what());
+    return 3;
+  }
+  return 0;
+}

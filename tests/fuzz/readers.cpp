@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/fuzz/readers.hpp"
+
+#include <array>
+#include <fstream>
+
+#include "scenarios/draw/data_sheet.hpp"
+#include "scenarios/draw/registry.hpp"
+#include "scenarios/draw/scenario.hpp"
+#include "scenarios/draw/scenario_text.hpp"
+#include "scenarios/draw/strict_yaml.hpp"
+#include "scenarios/errors.hpp"
+#include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/methods/map_file.hpp"
+#include "scenarios/methods/rig_calibration_file.hpp"
+#include "scenarios/recordings/bags/bag.hpp"
+#include "scenarios/recordings/clouds/cloud_file.hpp"
+#include "scenarios/recordings/clouds/sweep_stamps.hpp"
+#include "scenarios/recordings/import.hpp"
+#include "scenarios/recordings/recording_file.hpp"
+#include "scenarios/recordings/trajectories/reference.hpp"
+#include "scenarios/sweep/gate.hpp"
+#include "scenarios/sweep/sweep.hpp"
+#include "sim/parameters.hpp"
+#include "tests/tree.hpp"
+
+namespace tumble::fuzz {
+
+namespace {
+
+using std::filesystem::path;
+using namespace tumble::scenarios;  // the readers are all there
+
+void recording(const path& file) {
+  read_info(file);
+  read_sensors(file);
+  read_truth(file);
+}
+
+sim::ImuRecord some_imu() {
+  sim::ImuRecord imu;
+  imu.name = "imu";
+  imu.device = "mti30";
+  imu.period_ns = 10'000'000;
+  return imu;
+}
+
+BagReading some_bag() {
+  BagReading reading;
+  reading.imu = some_imu();
+  reading.sweeps.device.name = "lidar";
+  return reading;
+}
+
+void imu_csv(const path& file) {
+  import_imu_csv(file, some_imu());
+}
+void repoimu(const path& file) {
+  import_repoimu(file, false);
+  try {
+    import_repoimu(file, true);
+  } catch (const BadInput&) {  // too little motion to align by
+  }
+}
+void airbrakes(const path& file) {
+  import_airbrakes(file);
+}
+void broad(const path& file) {
+  import_broad(file);
+}
+void ros1_bag(const path& file) {
+  import_ros1_bag(file, some_bag());
+}
+void ros2_bag(const path& file) {
+  import_ros2_bag(file, some_bag());
+}
+
+/// A file of points, then the sweep that it is.
+void cloud(const path& file, const std::string& format) {
+  read_cloud(file);
+  SweepSource source;
+  source.folder = file.parent_path();
+  source.format = format;
+  source.steady_ns = 100'000'000;
+  source.reading.device.name = "lidar";
+  source.reading.device.sweep_period_ns = 100'000'000;
+  import_sweeps(source);
+}
+void ply_cloud(const path& file) {
+  cloud(file, "ply");
+}
+void pcd_cloud(const path& file) {
+  cloud(file, "pcd");
+}
+void kitti_cloud(const path& file) {
+  cloud(file, "kitti");
+}
+void stamps(const path& file) {
+  read_stamps(file);
+}
+
+void tum(const path& file) {
+  pose_format(file);
+  read_tum_poses(file, true);
+  read_tum_poses(file, false);
+  ReferenceSource source;
+  source.file = file;
+  source.format = "tum";
+  import_trajectory(source);
+}
+void kitti(const path& file) {
+  ReferenceSource source;
+  source.file = file;
+  source.format = "kitti";
+  source.steady_ns = 100'000'000;
+  import_trajectory(source);
+}
+
+const DataRoot& data() {
+  static const DataRoot kData{test::source_dir()};
+  return kData;
+}
+void scenario(const path& file) {
+  draw(data(), load_scenario(data(), file.string()), 1);
+}
+void situation(const path& file) {
+  situation_from_yaml(read_text_file(file), "situation");
+}
+void suite(const path& file) {
+  load_suite(data(), file.string());
+}
+void gate(const path& file) {
+  load_gate(data(), file.string());
+}
+void data_sheet(const path& file) {
+  parse_data_sheet(read_text_file(file), file.string(), Registry::of_simulation());
+}
+
+void learnt(const path& file) {
+  read_learnt_rig(file);
+}
+void map_ply(const path& file) {
+  read_map(file);
+}
+void map_pcd(const path& file) {
+  read_pcd_map(file);
+}
+void estimate(const path& place) {
+  Kind kind{};
+  std::string method;
+  estimated_sensors(place);
+  read_estimate(place, kind, method, Frame::imu);
+}
+void estimate_tum(const path& file) {
+  estimate(file);
+}
+/// The table beside an estimate.json that is good.
+void estimate_rates(const path& file) {
+  const path json = file.parent_path() / "estimate.json";
+  if (!std::filesystem::exists(json)) {
+    std::filesystem::copy_file(test::source_dir() / "tests/fuzz/seeds/estimate_json/rates", json);
+  }
+  estimate(file.parent_path());
+}
+/// The description beside a table that is good.
+void estimate_json(const path& file) {
+  const path rates = file.parent_path() / "rates.csv";
+  if (!std::filesystem::exists(rates)) {
+    std::filesystem::copy_file(test::source_dir() / "tests/fuzz/seeds/estimate_rates/rates", rates);
+  }
+  estimate(file.parent_path());
+}
+
+constexpr std::array kReaders = {
+    Reader{"recording", "a.h5", recording},
+    Reader{"imu_csv", "a.csv", imu_csv},
+    Reader{"repoimu", "a.csv", repoimu},
+    Reader{"airbrakes", "a.csv", airbrakes},
+    Reader{"broad", "a.hdf5", broad},
+    Reader{"ros1_bag", "a.bag", ros1_bag},
+    Reader{"ros2_bag", "a.db3", ros2_bag},
+    Reader{"ply_cloud", "lidar_000000.ply", ply_cloud},
+    Reader{"pcd_cloud", "lidar_000000.pcd", pcd_cloud},
+    Reader{"kitti_cloud", "lidar_000000.bin", kitti_cloud},
+    Reader{"stamps", "times.txt", stamps},
+    Reader{"tum", "a.tum", tum},
+    Reader{"kitti", "a.txt", kitti},
+    Reader{"scenario", "a.yaml", scenario},
+    Reader{"situation", "a.yaml", situation},
+    Reader{"suite", "a.yaml", suite},
+    Reader{"gate", "a.yaml", gate},
+    Reader{"data_sheet", "a.yaml", data_sheet},
+    Reader{"learnt", "a.json", learnt},
+    Reader{"map_ply", "map.ply", map_ply},
+    Reader{"map_pcd", "map.pcd", map_pcd},
+    Reader{"estimate_tum", "a.tum", estimate_tum},
+    Reader{"estimate_rates", "rates.csv", estimate_rates},
+    Reader{"estimate_json", "estimate.json", estimate_json},
+};
+
+}  // namespace
+
+std::span<const Reader> readers() {
+  return kReaders;
+}
+
+const Reader* find_reader(std::string_view name) {
+  for (const Reader& reader : kReaders) {
+    if (reader.name == name) return &reader;
+  }
+  return nullptr;
+}
+
+bool takes(const Reader& reader, std::string_view bytes, const path& folder) {
+  const path file = folder / reader.file;
+  std::ofstream(file, std::ios::binary | std::ios::trunc)
+      .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  try {
+    reader.read(file);
+    return true;
+  } catch (const BadInput&) {
+    return false;
+  } catch (const sim::InvalidSituation&) {  // a number that the draw finds out of bounds
+    return false;
+  }
+}
+
+}  // namespace tumble::fuzz
