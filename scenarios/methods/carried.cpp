@@ -12,13 +12,15 @@ namespace tumble::scenarios {
 
 std::span<const sim::Parameter> carried_parameters() {
   static const CarriedSmoother::Params library;
-  static const std::array<sim::Parameter, 14> parameters = {{
+  static const std::array<sim::Parameter, 16> parameters = {{
       {"node_s", library.node_s, 1e-3, 0.1, "s", "between two nodes of the smoother"},
       {"accel_noise_m_s2_sqrt_hz", library.accel_noise_density, 1e-5, 10.0, "m/s^2/sqrt(Hz)",
        "of the specific force, unmodelled errors included"},
       {"tilt_share", library.tilt_share, 0.0, 1.0, "1", "error of a free element per excess of a clipped one"},
       {"jerk_rad_s3_sqrts", library.jerk_rad_s3_sqrts, 1e-2, 1e6, "rad/s^3 sqrt(s)",
        "root density of the angular jerk"},
+      {"jerk_doubt", library.jerk_doubt, 1.0, 100.0, "1", "by how much more covariances are those of"},
+      {"iterations_max", static_cast<double>(library.iterations_max), 1.0, 1000.0, "1", "steps of Gauss-Newton"},
       {"turn_error_sqrts", library.turn_error_sqrts, 0.0, 1.0, "sqrt(s)", "angle random walk per rad/s turned: scale"},
       {"hand_m_s2", library.hand_m_s2, 1e-3, 1e3, "m/s^2", "deviation of the carried point's acceleration"},
       {"hand_tau_s", library.hand_tau_s, 1e-3, 10.0, "s", "its memory"},
@@ -74,6 +76,8 @@ Status run_carried(const sim::Sensors& sensors, const sim::Values& parameters, s
   params.accel_noise_density = parameters.at("accel_noise_m_s2_sqrt_hz");
   params.tilt_share = parameters.at("tilt_share");
   params.jerk_rad_s3_sqrts = parameters.at("jerk_rad_s3_sqrts");
+  params.jerk_doubt = parameters.at("jerk_doubt");
+  params.iterations_max = static_cast<int>(parameters.at("iterations_max"));
   params.turn_error_sqrts = parameters.at("turn_error_sqrts");
   params.hand_m_s2 = parameters.at("hand_m_s2");
   params.hand_tau_s = parameters.at("hand_tau_s");

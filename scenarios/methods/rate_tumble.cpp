@@ -11,6 +11,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/rate_baseline.hpp"
+#include "scenarios/methods/rate_regimes.hpp"
 #include "scenarios/methods/rate_tumble.hpp"
 
 namespace tumble::scenarios {
@@ -200,7 +201,11 @@ Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& paramet
     if (estimate.status.ok()) {
       estimate.status = RateSmoother(params).estimate(samples, companions, estimate.rates, report);
     }
-    if (estimate.status.ok()) report_health(report, estimate.health);
+    if (estimate.status.ok()) {
+      report_health(report, estimate.health);
+      // further IMUs tell the rate whoever holds the body; the other smoother does not know them
+      if (companions.empty()) join_regimes(sensors, samples, report, estimate.rates, estimate.health);
+    }
     estimate.health["imus"] = 1.0 + static_cast<double>(companions.size());
     if (estimate.status.ok() && !report.rig_held && found != nullptr) *found = learnt(report);
   }
@@ -216,7 +221,10 @@ Status tumble_rates(const sim::Sensors& sensors, std::span<const ImuSample> samp
   std::vector<std::vector<CompanionReading>> companions;
   Status status = companion_readings(sensors, samples, params.model, companions);
   if (status.ok()) status = RateSmoother(params).estimate(samples, companions, out, report);
-  if (status.ok()) report_health(report, health);
+  if (status.ok()) {
+    report_health(report, health);
+    if (companions.empty()) join_regimes(sensors, samples, report, out, health);
+  }
   return status;
 }
 
@@ -225,8 +233,9 @@ Method rate_tumble() {
   info.name = "tumble";
   info.kind = Kind::rate;
   info.doc =
-      "A smoother over the recording: bounds of clipped axes, rigid flight at the lever arm, Euler's equation, "
-      "and the constants of the rig with it; further IMUs on the body where there are any (not imu_reference).";
+      "A smoother over the recording: bounds of clipped axes, rigid flight at the lever arm, Euler's equation, and the "
+      "constants of the rig with it; further IMUs on the body where there are any (not imu_reference); that of carried "
+      "where the readings say that a hand holds it.";
   info.source = "ours, from Deschenes et al., Saturation-Aware Angular Velocity Estimation, ICRA 2024";
   info.parameters = tumble_rate_parameters();
   info.robots = {"rig", "pendulum"};

@@ -43,6 +43,7 @@ Method attitude_autogain();
 Method attitude_vqf();
 Method attitude_tumble();
 Method attitude_tumble_batch();
+Method attitude_oracle();
 Method position_double_integration();
 Method position_rolling();
 Method position_observer();

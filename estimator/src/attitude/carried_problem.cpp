@@ -18,10 +18,10 @@ constexpr int kFollowLast = 8;       // and after which it stays, so that the it
 constexpr double kSurpriseS = 0.25;  // over which the hand's mean acceleration is compared
 constexpr Trouble kLost = Trouble::diverged;
 
-Motion::Params motion_params(const CarriedSmoother::Params& p) {
+Motion::Params motion_params(const CarriedSmoother::Params& p, double jerk = 1.0) {
   Motion::Params out;
   out.step_s = p.node_s;
-  out.jerk_rad_s3_sqrts = p.jerk_rad_s3_sqrts;
+  out.jerk_rad_s3_sqrts = jerk * p.jerk_rad_s3_sqrts;
   out.turn_error_sqrts = p.turn_error_sqrts;
   out.hand_m_s2 = p.hand_m_s2, out.hand_tau_s = p.hand_tau_s;
   out.velocity_m_s = p.velocity_m_s, out.velocity_tau_s = p.velocity_tau_s;
@@ -140,7 +140,8 @@ Status Problem::solve(CarriedSmoother::Report& report) {
 }
 
 Status Problem::covariances(CarriedSmoother::Report& report) {
-  report.cost = linearise();
+  motion_ = Motion(motion_params(params_, params_.jerk_doubt));
+  (void)linearise();
   System::BorderVector unused;
   if (!eliminate(unused)) return {kLost, "covariance of the carried body", report.cost, 0.0};
   report.constants_covariance = constants_covariance_;

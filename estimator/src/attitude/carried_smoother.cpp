@@ -60,6 +60,7 @@ CarriedSmoother::CarriedSmoother(const Params& params) : params_(params) {
   require_within("accel_noise_density", params.accel_noise_density, 1e-5, 10.0);
   require_within("accel_error_share", params.accel_error_share, 0.0, 1.0);
   require_within("jerk_rad_s3_sqrts", params.jerk_rad_s3_sqrts, 1e-2, 1e6);
+  require_within("jerk_doubt", params.jerk_doubt, 1.0, 100.0);
   require_within("turn_error_sqrts", params.turn_error_sqrts, 0.0, 1.0);
   require_within("hand_m_s2", params.hand_m_s2, 1e-3, 1e3);
   require_within("hand_tau_s", params.hand_tau_s, 1e-3, 10.0);

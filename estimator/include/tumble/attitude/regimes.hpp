@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tumble/angular_velocity/rate_state.hpp"
+#include "tumble/common/imu.hpp"
+#include "tumble/common/status.hpp"
+
+namespace tumble {
+
+/// What a body is doing: free of support (the specific force at the centre of mass is zero), touching something (a
+/// force of any size), held by a hand (a bounded acceleration about gravity).
+enum class Regime : std::uint8_t { flight, contact, carried };
+
+/// Probabilities of one sample; their sum is 1.
+struct RegimeShares {
+  double flight = 0.0, contact = 0.0, carried = 0.0;
+  Regime most_likely() const;
+};
+
+/// Which regime each sample of a recording is in, by its specific force: what is left of it after the turning at the
+/// lever arm, e = f - a x r - w x (w x r), is zero in flight, the size of gravity and a hand's acceleration when the
+/// body is carried, whatever its direction, and anything (a norm flat in its logarithm) in contact. A Markov chain over
+/// the samples joins them: flight and contact follow each other several times a second, but a body is rarely thrown or
+/// caught, so that an impact does not pass for a hand, nor a quiet moment of a roll. Readings within `memory_s` are not
+/// independent and count as one. A body that does not turn says nothing of who holds it.
+///
+/// Needs no attitude, so that it is decided before the problem of the carried body is posed. Not modelled: a body that
+/// hangs on a rope, buoyancy, forces of air beyond `flight_m_s2`.
+class RegimeEvidence {
+ public:
+  struct Params {
+    double gravity_m_s2 = 9.80665;     ///< bound (0, 100]
+    double flight_m_s2 = 0.3;          ///< deviation of the force left in flight: drag, bandwidth; bound [1e-3, 10]
+    double flight_share = 0.05;        ///< more, as a share of the lever arm's force; bound [0, 1]
+    double hand_m_s2 = 5.0;            ///< deviation of a hand's acceleration; bound [0.1, 100]
+    double grip_m = 0.05;              ///< how far from the hand an IMU is; bound [0, 1]
+    double contact_max_m_s2 = 1000.0;  ///< forces of contact lie between 1 m/s^2 and this; bound [10, 1e6]
+    double memory_s = 0.05;            ///< bound [1e-3, 10]
+    double rest_rate_rad_s = 0.5;      ///< slower turning says nothing of who holds the body; bound [0, 100]
+    double contacts_hz = 5.0;          ///< changes between flight and contact; bound [1e-3, 100]
+    double throws_hz = 0.02;           ///< changes between these and a hand; bound [1e-9, 10]
+  };
+
+  /// Throws InvalidParams when a parameter is outside of its bound.
+  explicit RegimeEvidence(const Params& params);
+
+  /// One RegimeShares per sample. `rates` are those of a smoother that believes in flight and contact, one per sample;
+  /// `lever_arm_m` from the centre of mass to the IMU, its axes, with its covariance. Trouble: `empty`; `out_of_range`
+  /// for rates that are not one per sample. O(N).
+  Status find(std::span<const ImuSample> samples, std::span<const RateState> rates, const Eigen::Vector3d& lever_arm_m,
+              const Eigen::Matrix3d& lever_arm_covariance_m2, std::vector<RegimeShares>& out) const;
+
+ private:
+  Params params_;
+};
+
+/// A rate of which two smoothers say different things: that of the likelier one with the covariance of both, the spread
+/// between them included. `share`: probability of `second`.
+RateState either(const RateState& first, const RateState& second, double share);
+
+}  // namespace tumble

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/attitude/regimes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace tumble {
+
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double kTwoPi = 2.0 * std::numbers::pi;
+constexpr double kContactMin_m_s2 = 1.0;
+
+double squared(double x) {
+  return x * x;
+}
+
+double log_gaussian(double squared_norm, double variance) {
+  return -1.5 * std::log(kTwoPi * variance) - 0.5 * squared_norm / variance;
+}
+
+// a vector of length g, its direction unknown, with Gaussian noise: averaged over the sphere it is
+// N(n; 0) exp(-g^2 / 2v) sinh(x) / x with x = n g / v
+double log_about_gravity(double n, double g, double variance) {
+  const double x = n * g / variance;
+  const double log_sinh_x = x < 1e-3 ? 0.0 : x - std::log(2.0 * x) + std::log1p(-std::exp(-2.0 * x));
+  return log_gaussian(n * n + g * g, variance) + log_sinh_x;
+}
+
+// a hand is gentle or rough: one in kRoughly of its moments has kRougher times the deviation
+constexpr double kRoughly = 3.0, kRougher = 5.0;
+
+double log_carried(double n, double g, double hand_variance, double grip_variance) {
+  const double gentle = log_about_gravity(n, g, hand_variance + grip_variance);
+  const double rough = log_about_gravity(n, g, kRougher * kRougher * hand_variance + grip_variance);
+  const double larger = std::max(gentle, rough);
+  return larger + std::log(((kRoughly - 1.0) * std::exp(gentle - larger) + std::exp(rough - larger)) / kRoughly);
+}
+
+// a body on the ground is struck, by forces of any size, or rolls as gently as a hand would carry it: then the ground
+// and a hand are not told apart by one moment, but by what comes before and after
+constexpr double kRolls = 0.5;
+
+double log_contact(double left, double n, double most, double g, double variance) {
+  const double within = std::max(left, kContactMin_m_s2);
+  const double struck = 1.0 / (within * std::log(most / kContactMin_m_s2) * 2.0 * kTwoPi * within * within);
+  return std::log((1.0 - kRolls) * struck + kRolls * std::exp(log_about_gravity(n, g, variance)));
+}
+
+Vector3d angular_acceleration(std::span<const RateState> rates, std::size_t k) {
+  const std::size_t a = k == 0 ? 0 : k - 1, b = std::min(k + 1, rates.size() - 1);
+  const double dt_s = seconds(rates[b].time_ns - rates[a].time_ns);
+  if (!(dt_s > 0.0)) return Vector3d::Zero();
+  return (rates[b].w_WI_I_rad_s - rates[a].w_WI_I_rad_s) / dt_s;
+}
+
+// probability of staying, and of each change, over dt
+Matrix3d changes(const RegimeEvidence::Params& p, double dt_s) {
+  const double contacts = 1.0 - std::exp(-p.contacts_hz * dt_s), throws = 0.5 * (1.0 - std::exp(-p.throws_hz * dt_s));
+  Matrix3d out;
+  out << 1.0 - contacts - throws, contacts, throws,  //
+      contacts, 1.0 - contacts - throws, throws,     //
+      throws, throws, 1.0 - 2.0 * throws;
+  return out.cwiseMax(1e-300);
+}
+
+}  // namespace
+
+Regime RegimeShares::most_likely() const {
+  if (carried >= flight && carried >= contact) return Regime::carried;
+  return flight >= contact ? Regime::flight : Regime::contact;
+}
+
+RegimeEvidence::RegimeEvidence(const Params& params) : params_(params) {
+  require_within("gravity_m_s2", params.gravity_m_s2, 1e-300, 100.0);
+  require_within("flight_m_s2", params.flight_m_s2, 1e-3, 10.0);
+  require_within("flight_share", params.flight_share, 0.0, 1.0);
+  require_within("hand_m_s2", params.hand_m_s2, 0.1, 100.0);
+  require_within("grip_m", params.grip_m, 0.0, 1.0);
+  require_within("contact_max_m_s2", params.contact_max_m_s2, 10.0, 1e6);
+  require_within("memory_s", params.memory_s, 1e-3, 10.0);
+  require_within("rest_rate_rad_s", params.rest_rate_rad_s, 0.0, 100.0);
+  require_within("contacts_hz", params.contacts_hz, 1e-3, 100.0);
+  require_within("throws_hz", params.throws_hz, 1e-9, 10.0);
+}
+
+Status RegimeEvidence::find(std::span<const ImuSample> samples, std::span<const RateState> rates,
+                            const Vector3d& lever_arm_m, const Matrix3d& lever_arm_covariance_m2,
+                            std::vector<RegimeShares>& out) const {
+  out.clear();
+  const std::size_t count = samples.size();
+  if (count == 0) return {Trouble::empty, "samples", 0.0, 1.0};
+  if (rates.size() != count)
+    return {Trouble::out_of_range, "rates", static_cast<double>(rates.size()), static_cast<double>(count)};
+
+  const double arm_m = lever_arm_m.norm(), arm_variance = lever_arm_covariance_m2.trace();
+  std::vector<Vector3d> likelihood(count), forward(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const Vector3d& w = rates[k].w_WI_I_rad_s;
+    const Vector3d alpha = angular_acceleration(rates, k);
+    const Vector3d turning = alpha.cross(lever_arm_m) + w.cross(w.cross(lever_arm_m));
+    const double turn = w.squaredNorm() + alpha.norm(), rate_variance = rates[k].covariance_rad2_s2.trace();
+    const double flight_variance = squared(params_.flight_m_s2) +
+                                   squared(params_.flight_share) * turning.squaredNorm() + turn * turn * arm_variance +
+                                   4.0 * w.squaredNorm() * arm_m * arm_m * rate_variance;
+    const double hand_variance = squared(params_.hand_m_s2);
+    const double grip_variance = squared(params_.grip_m * w.squaredNorm());
+    const Vector3d& f = samples[k].specific_force_m_s2;
+    const Vector3d left = f - turning;
+    Vector3d logs(log_gaussian(left.squaredNorm(), flight_variance),
+                  log_contact(left.norm(), f.norm(), params_.contact_max_m_s2, params_.gravity_m_s2,
+                              hand_variance + grip_variance),
+                  log_carried(f.norm(), params_.gravity_m_s2, hand_variance, grip_variance));
+    if (w.norm() < params_.rest_rate_rad_s) logs.setZero();
+    const double dt_s = k == 0 ? params_.memory_s : seconds(samples[k].time_ns - samples[k - 1].time_ns);
+    logs *= std::min(1.0, dt_s / params_.memory_s);
+    likelihood[k] = (logs.array() - logs.maxCoeff()).exp().cwiseMax(1e-300);
+    const Vector3d before = k == 0 ? Vector3d::Constant(1.0 / 3.0) : Vector3d(changes(params_, dt_s) * forward[k - 1]);
+    forward[k] = before.cwiseProduct(likelihood[k]);
+    forward[k] /= forward[k].sum();
+  }
+  out.resize(count);
+  Vector3d backward = Vector3d::Ones();
+  for (std::size_t k = count; k-- > 0;) {
+    Vector3d both = forward[k].cwiseProduct(backward);
+    both /= both.sum();
+    out[k] = {both[0], both[1], both[2]};
+    if (k == 0) break;
+    backward = changes(params_, seconds(samples[k].time_ns - samples[k - 1].time_ns)) *
+               Vector3d(backward.cwiseProduct(likelihood[k]));  // the matrix is symmetric
+    backward /= backward.sum();
+  }
+  return {};
+}
+
+RateState either(const RateState& first, const RateState& second, double share) {
+  RateState out = share > 0.5 ? second : first;
+  const Vector3d apart = second.w_WI_I_rad_s - first.w_WI_I_rad_s;
+  // about the likelier answer the other lies `apart`
+  out.covariance_rad2_s2 = (1.0 - share) * first.covariance_rad2_s2 + share * second.covariance_rad2_s2 +
+                           std::min(share, 1.0 - share) * apart * apart.transpose();
+  return out;
+}
+
+}  // namespace tumble

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdint>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/methods/attitude_tumble.hpp"
+#include "scenarios/methods/registry.hpp"
+#include "tumble/common/imu.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr std::uint8_t kGyroFlags = kClipGyroX | kClipGyroY | kClipGyroZ;
+
+/// The IMUs without the rails of their gyros; that of an accelerometer stays.
+sim::Sensors unclipped_gyros(const sim::Sensors& sensors, const sim::Truth& truth) {
+  if (truth.imus.size() < sensors.imus.size()) throw BadInput("the truth does not hold every IMU");
+  sim::Sensors out;
+  out.robot = sensors.robot;
+  out.sphere_radius_m = sensors.sphere_radius_m;
+  out.gravity_m_s2 = sensors.gravity_m_s2;
+  out.imus = sensors.imus;
+  for (std::size_t i = 0; i < out.imus.size(); ++i) {
+    sim::ImuRecord& imu = out.imus[i];
+    if (truth.imus[i].gyro_unclipped_rad_s.size() != imu.time_ns.size()) {
+      throw BadInput("the truth of imu '" + imu.name + "' has not one reading per sample");
+    }
+    imu.gyro_rad_s = truth.imus[i].gyro_unclipped_rad_s;
+    imu.stated_gyro_range_rad_s = 0.0;
+    for (std::uint8_t& flags : imu.clip_flags) flags = static_cast<std::uint8_t>(flags & ~kGyroFlags);
+  }
+  return out;
+}
+
+Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& oracle) {
+  return run_attitude_tumble(unclipped_gyros(sensors, *oracle.truth), parameters);
+}
+
+}  // namespace
+
+Method attitude_oracle() {
+  MethodInfo info;
+  info.name = "oracle";
+  info.kind = Kind::attitude;
+  info.doc = "attitude/tumble given gyros without their rails: noise, bias and bandwidth as read. The bound.";
+  info.source = "ours";
+  info.parameters = attitude_tumble_parameters();
+  info.needs_truth = true;
+  return make_method(std::move(info), run);
+}
+
+}  // namespace tumble::scenarios

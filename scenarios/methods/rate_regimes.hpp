@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/recording.hpp"
+#include "tumble/angular_velocity/rate_smoother.hpp"
+#include "tumble/common/imu.hpp"
+
+namespace tumble::scenarios {
+
+/// Where the readings say that the body was carried (RegimeEvidence), the smoother of carried bodies has the word:
+/// `rates`, those of a smoother that believes in flight and contact, with what it tells of its run, are joined with
+/// those of the other. It is asked only where it may matter: where a clipped sample is not clearly in flight or
+/// contact. Adds the shares of the regimes to `health`, `regime_carried_asked` with them.
+void join_regimes(const sim::Sensors& sensors, std::span<const ImuSample> samples, const RateReport& report,
+                  std::vector<RateState>& rates, std::map<std::string, double>& health);
+
+}  // namespace tumble::scenarios
