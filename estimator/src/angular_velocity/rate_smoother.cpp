@@ -198,7 +198,9 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
   health.together = found.together;
   if (health.rig_held) return {};
   health.calibration.constants = fit.solution.rig;
-  health.calibration.covariance += fit.moved.of_rig * found.known.covariance * fit.moved.of_rig.transpose();
+  // the device's errors stay with the device: the next run meets them as this one did, and counts them anew
+  const SensorErrors::Matrix stated = fit_sensor_errors({}, as_stated(known.error_sizes)).known.covariance;
+  health.calibration.covariance += fit.moved.of_rig * stated * fit.moved.of_rig.transpose();
   return {};
 }
 
