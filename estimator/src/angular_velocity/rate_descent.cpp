@@ -90,7 +90,8 @@ double explained(std::span<const RateObservation> observations, std::span<const 
 
 }  // namespace
 
-bool RateIteration::factorise(const RateModel& model, std::span<const RateEstimate> estimates, const RigConstants& rig) {
+bool RateIteration::factorise(const RateModel& model, std::span<const RateEstimate> estimates,
+                              const RigConstants& rig) {
   corner_ = {};
   model.add_rig_prior(rig, corner_);
   blocks_[0] = {};
@@ -107,7 +108,8 @@ bool RateIteration::factorise(const RateModel& model, std::span<const RateEstima
   return arrow::solve_corner(corner_, rig_step_, rig_covariance_);
 }
 
-double RateIteration::apply(const RateModel& model, double step_max, std::span<RateEstimate> estimates, RigConstants& rig) const {
+double RateIteration::apply(const RateModel& model, double step_max, std::span<RateEstimate> estimates,
+                            RigConstants& rig) const {
   double largest = 0.0;
   arrow::StateVector step;
   for (std::size_t k = blocks_.size(); k-- > 0;) {

@@ -30,8 +30,8 @@ class RateIteration {
     }
   }
 
-  /// Of the last factorisation, how far all unknowns move with each of the device's errors, and what the readings say of
-  /// those once all else follows them. `estimates` and `rig`: those of the factorisation, before apply().
+  /// Of the last factorisation, how far all unknowns move with each of the device's errors, and what the readings say
+  /// of those once all else follows them. `estimates` and `rig`: those of the factorisation, before apply().
   struct Moved {
     std::vector<arrow::ErrorMatrix> of_sample;
     arrow::BorderErrors of_rig;

@@ -65,9 +65,8 @@ void RateModel::add_errors(const RateObservation& observation, const RateEstimat
 
   const bool by_elements = observation.by_elements();
   const Vector3d reading = corrected_rate(observation, estimate);
-  const RateFactor gyro =
-      by_elements ? element_factor(at_reading(observation, estimate), rig, reading)
-                  : gyro_factor(at_reading(observation, estimate), rig, reading);
+  const RateFactor gyro = by_elements ? element_factor(at_reading(observation, estimate), rig, reading)
+                                      : gyro_factor(at_reading(observation, estimate), rig, reading);
   const unsigned lost = observation.clipping.void_gyro | (observation.clipping.gyro & ~observation.partial);
   for (int j = 0; j < 3; ++j) {
     if ((lost >> j & 1u) != 0) continue;

@@ -69,7 +69,8 @@ bool far_apart(const SensorErrors& a, const SensorErrors& b) {
   constexpr double kMatrix = 1e-3, kFelt_s_m = 3e-5, kDelay_s = 3e-4, kBlur_s2 = 3e-6;
   return (a.gyro - b.gyro).cwiseAbs().maxCoeff() > kMatrix || (a.accel - b.accel).cwiseAbs().maxCoeff() > kMatrix ||
          (a.felt_s_m - b.felt_s_m).cwiseAbs().maxCoeff() > kFelt_s_m ||
-         std::abs(a.accel_delay_s - b.accel_delay_s) > kDelay_s || std::abs(a.accel_blur_s2 - b.accel_blur_s2) > kBlur_s2;
+         std::abs(a.accel_delay_s - b.accel_delay_s) > kDelay_s ||
+         std::abs(a.accel_blur_s2 - b.accel_blur_s2) > kBlur_s2;
 }
 
 Status check_companions(const RateModelParams& params, std::span<const std::vector<CompanionReading>> companions,
@@ -181,8 +182,8 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
     errors = found.known.errors;
   }
   if (health.rig_held || !estimated) {
-    // what a run tells of the device without flight is nothing: as the sheet has it
-    found = fit_sensor_errors({}, as_stated(known.error_sizes));
+    // what a run tells of the device without flight is nothing: all that may be is left open
+    found = fit_sensor_errors({}, estimated ? known.error_sizes : as_stated(known.error_sizes));
     found.known.errors = errors;
   } else {
     const SensorErrors::Vector step = found.known.errors.vector() - errors.vector();

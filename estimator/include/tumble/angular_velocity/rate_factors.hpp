@@ -33,8 +33,8 @@ RateFactor element_factor(const RateKnot& knot, const RigConstants& rig, const E
 RateFactor flight_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_m_s2);
 
 /// The same for an accelerometer that is `delay_s` late: of the earlier instant to which Euler's equation without
-/// torque takes the knot back, w - d alpha + d^2/2 j and alpha - d j with the angular jerk j. Also by inertia. `by_delay`
-/// (may be null): the residual's derivative by the delay.
+/// torque takes the knot back, w - d alpha + d^2/2 j and alpha - d j with the angular jerk j. Also by inertia.
+/// `by_delay` (may be null): the residual's derivative by the delay.
 RateFactor late_flight_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_m_s2,
                               double delay_s, Eigen::Vector3d* by_delay);
 

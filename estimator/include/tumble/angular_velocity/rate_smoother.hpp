@@ -31,13 +31,13 @@ struct RateReport {
   RailPlanes planes;                          ///< of the gyro's elements, where they were seen
   /// What the device makes of the motion, as far as the run tells.
   KnownSensorErrors sensor_errors;
-  double calibrated = 1.0, together = 1.0;  ///< see SensorErrorFit
+  double calibrated = 1.0, together = 1.0;           ///< see SensorErrorFit
   double gyro_update_s = 0.0, accel_update_s = 0.0;  ///< of readings that repeat (find_held); 0: none does
-  int error_rounds = 0;                     ///< descents with corrected readings
-  bool rails_upright = false;                 ///< the device clips what it delivers, nothing else is off
-  std::array<bool, 6> rail_disagrees{};       ///< a stated range contradicted by the readings
-  bool rate_unit_suspect = false;             ///< a reading beyond RateModelParams::rate_max_rad_s: perhaps degrees
-  bool force_unit_suspect = false;            ///< the median specific force is near 1: perhaps given in g
+  int error_rounds = 0;                              ///< descents with corrected readings
+  bool rails_upright = false;                        ///< the device clips what it delivers, nothing else is off
+  std::array<bool, 6> rail_disagrees{};              ///< a stated range contradicted by the readings
+  bool rate_unit_suspect = false;   ///< a reading beyond RateModelParams::rate_max_rad_s: perhaps degrees
+  bool force_unit_suspect = false;  ///< the median specific force is near 1: perhaps given in g
   std::size_t samples = 0, clipped = 0, recovered_flight = 0, recovered_contact = 0, bounded_only = 0;
   std::size_t void_readings = 0;  ///< samples with an overflow (sign flipped at the rail)
   double flight_share = 0.0;      ///< share of the samples that count as free flight

@@ -21,8 +21,8 @@ enum class Triad : std::uint8_t { gyro, accelerometer };
 
 /// Finds them: none where fewer than a twentieth of the samples in motion (faster than 0.3 rad/s, 30 of them at least)
 /// repeat all three numbers of the one before. Period and phase are those with which a steady clock explains best which
-/// samples repeat; ages follow from them, and are zero where no steady clock does (agreement below 0.9). O(N) for each of
-/// some 5000 clocks, on 1000 samples at most.
+/// samples repeat; ages follow from them, and are zero where no steady clock does (agreement below 0.9). O(N) for each
+/// of some 5000 clocks, on 1000 samples at most.
 std::optional<HeldReadings> find_held(std::span<const ImuSample> samples, Triad triad);
 
 }  // namespace tumble
