@@ -2,6 +2,7 @@
 #include "tumble/angular_velocity/rate_factors.hpp"
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <numbers>
 
 #include "tumble/common/so3.hpp"
@@ -20,6 +21,31 @@ Eigen::Matrix<double, 3, 5> basis_times(const Vector3d& v) {
   out << kHalf * v[0], kSixth * v[0], kHalf * v[1], kHalf * v[2], 0.0,  //
       -kHalf * v[1], kSixth * v[1], kHalf * v[0], 0.0, kHalf * v[2],    //
       0.0, -2.0 * kSixth * v[2], 0.0, kHalf * v[0], kHalf * v[1];
+  return out;
+}
+
+// Angular jerk of torque-free rotation about which a knot is taken to turn, and its derivatives.
+struct Jerk {
+  Vector3d value;
+  Matrix3d by_rate, by_acceleration;
+  Eigen::Matrix<double, 3, 5> by_inertia;
+  Matrix3d J, J_inv;
+};
+
+// The derivative of J alpha + w x J w = 0 by time: J j = -(alpha x J w + w x J alpha).
+Jerk jerk_of(const RateKnot& knot, const RigConstants& rig) {
+  const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2;
+  Jerk out;
+  out.J = rig.inertia_matrix();
+  out.J_inv = out.J.inverse();
+  const Vector3d Jw = out.J * w, Ja = out.J * alpha;
+  out.value = -out.J_inv * (alpha.cross(Jw) + w.cross(Ja));
+  out.by_rate = -out.J_inv * (so3::hat(alpha) * out.J - so3::hat(Ja));
+  out.by_acceleration = -out.J_inv * (so3::hat(w) * out.J - so3::hat(Jw));
+  Eigen::Matrix<double, 3, 5> moved = basis_times(out.value);
+  moved.noalias() += so3::hat(alpha).lazyProduct(basis_times(w));
+  moved.noalias() += so3::hat(w).lazyProduct(basis_times(alpha));
+  out.by_inertia = -out.J_inv.lazyProduct(moved);
   return out;
 }
 
@@ -60,6 +86,34 @@ RateFactor flight_factor(const RateKnot& knot, const RigConstants& rig, const Ve
   f.by_rig.middleCols<3>(0) = so3::hat(alpha) + w * w.transpose() - w.squaredNorm() * Matrix3d::Identity();
   f.by_rig.middleCols<3>(6).setIdentity();
   return f;
+}
+
+RateFactor late_flight_factor(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_m_s2,
+                              double delay_s, Vector3d* by_delay) {
+  const Jerk jerk = jerk_of(knot, rig);
+  const double d = delay_s, half = 0.5 * delay_s * delay_s;
+  const RateKnot earlier = {knot.rate_rad_s - d * knot.acceleration_rad_s2 + half * jerk.value,
+                            knot.acceleration_rad_s2 - d * jerk.value};
+  const RateFactor at = flight_factor(earlier, rig, reading_m_s2);
+  const Matrix3d by_rate = at.by_knot.leftCols<3>(), by_acceleration = at.by_knot.rightCols<3>();
+  RateFactor f = at;
+  f.by_knot.leftCols<3>() = by_rate + (half * by_rate - d * by_acceleration) * jerk.by_rate;
+  f.by_knot.rightCols<3>() =
+      by_acceleration - d * by_rate + (half * by_rate - d * by_acceleration) * jerk.by_acceleration;
+  f.by_rig.middleCols<5>(9) = (half * by_rate - d * by_acceleration) * jerk.by_inertia;
+  if (by_delay != nullptr) {
+    *by_delay = by_rate * (d * jerk.value - knot.acceleration_rad_s2) - by_acceleration * jerk.value;
+  }
+  return f;
+}
+
+Vector3d flight_curvature(const RateKnot& knot, const RigConstants& rig) {
+  const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2, &t = rig.lever_arm_m;
+  const Jerk jerk = jerk_of(knot, rig);
+  const Vector3d& j = jerk.value;
+  const Vector3d snap = -jerk.J_inv * (j.cross(Vector3d(jerk.J * w)) + 2.0 * alpha.cross(Vector3d(jerk.J * alpha)) +
+                                       w.cross(Vector3d(jerk.J * j)));
+  return snap.cross(t) + j.cross(w.cross(t)) + 2.0 * alpha.cross(alpha.cross(t)) + w.cross(j.cross(t));
 }
 
 RateFactor euler_factor(const RateKnot& knot, const RigConstants& rig) {

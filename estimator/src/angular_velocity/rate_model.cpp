@@ -26,6 +26,17 @@ void check(const CompanionImu& p) {
   for (const double value : p.T_IC.matrix().reshaped()) require_within("companion T_IC", value, -100.0, 100.0);
 }
 
+void check(const SensorErrorSizes& p) {
+  require_within("error_sizes.gyro", p.gyro, 0.0, 0.1);
+  require_within("error_sizes.gyro_unknown", p.gyro_unknown, 0.0, 0.1);
+  require_within("error_sizes.accel", p.accel, 0.0, 0.1);
+  require_within("error_sizes.accel_unknown", p.accel_unknown, 0.0, 0.1);
+  require_within("error_sizes.felt_s_m", p.felt_s_m, 0.0, 0.1);
+  require_within("error_sizes.felt_unknown_s_m", p.felt_unknown_s_m, 0.0, 0.1);
+  require_within("error_sizes.delay_s", p.delay_s, 0.0, 0.1);
+  require_within("error_sizes.delay_unknown_s", p.delay_unknown_s, 0.0, 0.1);
+}
+
 void check(const RateModelParams& p) {
   require_within("lever_arm_sigma_m", p.lever_arm_sigma_m, 1e-9, 10.0);
   require_within("gyro_bias_sigma_rad_s", p.gyro_bias_sigma_rad_s, 1e-9, 10.0);
@@ -35,8 +46,8 @@ void check(const RateModelParams& p) {
   require_within("gyro_noise_density", p.gyro_noise_density, 1e-9, 1.0);
   require_within("accel_noise_density", p.accel_noise_density, 1e-9, 10.0);
   require_within("flight_sigma_m_s2", p.flight_sigma_m_s2, 1e-6, 100.0);
-  require_within("gyro_matrix_sigma", p.gyro_matrix_sigma, 0.0, 0.1);
-  require_within("accel_matrix_sigma", p.accel_matrix_sigma, 0.0, 0.1);
+  check(p.error_sizes);
+  for (const double value : p.errors.vector()) require_within("sensor errors", value, -0.2, 0.2);
   require_within("gyro_time_sigma_s", p.gyro_time_sigma_s, 0.0, 0.1);
   require_within("euler_sigma_rad_s2", p.euler_sigma_rad_s2, 1e-6, 1e6);
   require_within("jerk_psd_flight", p.jerk_psd_flight, 1.0, 1e12);
@@ -169,6 +180,7 @@ RateModel::RateModel(const RateModelParams& params, double period_s) : params_(p
   const double bandwidth_hz = 1.0 / period_s;
   gyro_sigma_rad_s_ = params.gyro_noise_density * std::sqrt(bandwidth_hz);
   accel_sigma_m_s2_ = std::hypot(params.flight_sigma_m_s2, params.accel_noise_density * std::sqrt(bandwidth_hz));
+  exact_ = params.errors == SensorErrors{};
   prior_constants_ = params.calibration ? params.calibration->constants : params.nominal;
   prior_covariance_ = covariance_of(params);
   const Eigen::LLT<RigConstants::Matrix> factor(prior_covariance_);
@@ -181,7 +193,7 @@ RateModel::RateModel(const RateModelParams& params, double period_s) : params_(p
 void RateModel::weigh(const RateObservation& observation, const RigConstants& rig,
                       const RigConstants::Matrix& rig_covariance, double widen, double jump,
                       RateEstimate& estimate) const {
-  RateFactor flight = flight_factor(estimate.knot, rig, observation.sample.specific_force_m_s2);
+  RateFactor flight = this->flight(observation, estimate.knot, rig);
   drop_satisfied_bounds(observation, flight);
   const RateFactor euler = euler_factor(estimate.knot, rig);
   const double r2 = normalised(flight, flight_spread(flight, rig_covariance), accel_sigma_m_s2(observation)) +
@@ -206,6 +218,13 @@ double RateModel::jump(const RateKnot& from, const RateKnot& to, double dt_s) co
 }
 
 double RateModel::gyro_information(const RateObservation& observation, const RateEstimate& estimate, int axis) const {
+  if (observation.gyro_repeats) return 0.0;
+  if (observation.gyro_age_s > 0.0) {
+    // what contact makes of the rate since the reading was taken
+    const double change = params_.contact_gain_rad_m * estimate.contact_m_s2.norm() * observation.gyro_age_s;
+    const double lost = (observation.partial >> axis & 1u) != 0 ? observation.lost_sigma_rad_s[axis] : 0.0;
+    return 1.0 / (gyro_sigma_rad_s_ * gyro_sigma_rad_s_ + change * change + lost * lost);
+  }
   if ((observation.partial >> axis & 1u) == 0) return 1.0 / (gyro_sigma_rad_s_ * gyro_sigma_rad_s_);
   const double impact = kPartialInContact * (1.0 - estimate.flight_weight), lost = observation.lost_sigma_rad_s[axis];
   return 1.0 / (lost * lost + impact * impact);
@@ -220,19 +239,28 @@ RateModel::ForceFactor RateModel::force_factor(const RateObservation& observatio
   const double contact2 = flight2 + share * share * estimate.contact_m_s2.squaredNorm();
   ForceFactor out;
   out.information = estimate.flight_weight / flight2 + (share > 0.0 ? (1.0 - estimate.flight_weight) / contact2 : 0.0);
-  out.factor = flight_factor(estimate.knot, rig, observation.sample.specific_force_m_s2);
+  out.factor = flight(observation, estimate.knot, rig);
   drop_satisfied_bounds(observation, out.factor);
   return out;
 }
 
 void RateModel::add_gyro(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                          arrow::Block& block, arrow::Corner& corner) const {
-  const RateFactor gyro = gyro_factor(estimate.knot, rig, observation.sample.angular_velocity_rad_s);
+  const RateFactor gyro = gyro_factor(at_reading(observation, estimate), rig, corrected_rate(observation, estimate));
+  const double age = observation.gyro_age_s / time_scale_s_;
   for (int j = 0; j < 3; ++j) {
     const double information = gyro_information(observation, estimate, j), pull = information * gyro.residual[j];
     block.diagonal(j, j) += information;
     block.border(j, 3 + j) += information;
     block.gradient[j] -= pull;
+    if (age != 0.0) {
+      const int i = 3 + j;
+      block.diagonal(j, i) -= age * information;
+      block.diagonal(i, j) -= age * information;
+      block.diagonal(i, i) += age * age * information;
+      block.border(i, 3 + j) -= age * information;
+      block.gradient[i] += age * pull;
+    }
     corner.matrix(3 + j, 3 + j) += information;
     corner.gradient[3 + j] -= pull;
   }

@@ -28,7 +28,7 @@ constexpr double kSeekStep = 3.0, kGentleShare = 0.25;
 void RateModel::seek_flight(const RateObservation& observation, const RigConstants& rig, RateEstimate& estimate) const {
   const int unseen = observation.unseen();
   if (unseen == 0 || observation.clipping.accel != 0) return;
-  const Vector3d& reading = observation.sample.angular_velocity_rad_s;
+  const Vector3d reading = corrected_rate(observation, estimate);
   RateEstimate flown = estimate;
   const Eigen::Matrix3d J = rig.inertia_matrix();
   // what an element hides moves all axes: columns of M^-1
@@ -39,7 +39,7 @@ void RateModel::seek_flight(const RateObservation& observation, const RigConstan
   for (int iteration = 0; iteration <= kSeekIterations; ++iteration) {
     Vector3d& w = flown.knot.rate_rad_s;
     flown.knot.acceleration_rad_s2 = -J.llt().solve(w.cross(Vector3d(J * w)));
-    flight = flight_factor(flown.knot, rig, observation.sample.specific_force_m_s2);
+    flight = this->flight(observation, flown.knot, rig);
     if (iteration == kSeekIterations) break;
     const Eigen::Matrix3d by_hidden = flight.by_knot.leftCols<3>() * hides;
     Eigen::Matrix3d H = 1e-9 * Eigen::Matrix3d::Identity();
@@ -68,7 +68,7 @@ void RateModel::seek_flight(const RateObservation& observation, const RigConstan
 void RateModel::start_bounds(const RateObservation& observation, const RigConstants& rig,
                              RateEstimate& estimate) const {
   estimate.soft_bounds = true;
-  const RateFactor off = element_factor(estimate.knot, rig, observation.sample.angular_velocity_rad_s);
+  const RateFactor off = element_factor(at_reading(observation, estimate), rig, corrected_rate(observation, estimate));
   for (int j = 0; j < 3; ++j) {
     if ((observation.unseen() & observation.clipping.gyro & 1u << j) == 0) continue;
     const double guess = off.residual[j];
@@ -82,7 +82,7 @@ void RateModel::update_bounds(const RateObservation& observation, const RigConst
                               const arrow::Conditional& conditional, const RigConstants::Matrix& rig_covariance,
                               double damping, RateEstimate& estimate) const {
   if ((observation.unseen() & observation.clipping.gyro) == 0) return;
-  const RateFactor off = element_factor(estimate.knot, rig, observation.sample.angular_velocity_rad_s);
+  const RateFactor off = element_factor(at_reading(observation, estimate), rig, corrected_rate(observation, estimate));
   for (int j = 0; j < 3; ++j) {
     if ((observation.unseen() & observation.clipping.gyro & 1u << j) == 0) continue;
     const double sign = observation.sample.angular_velocity_rad_s[j] < 0.0 ? -1.0 : 1.0;

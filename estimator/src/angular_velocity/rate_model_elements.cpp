@@ -8,8 +8,9 @@ namespace {
 
 constexpr int kGyroBias = 3;
 
-// One row m_j . (rate + bias - reading), of the given information and pull.
-void add_row(const RateFactor& gyro, int j, double information, double pull, arrow::Block& block,
+// One row m_j . (rate - age acceleration + bias - reading), of the given information and pull; `age` in units of the
+// time by which the acceleration is scaled.
+void add_row(const RateFactor& gyro, int j, double age, double information, double pull, arrow::Block& block,
              arrow::Corner& corner) {
   const int first = RigConstants::kElements + 2 * j;
   const Eigen::Vector3d row = gyro.by_knot.row(j).head<3>();
@@ -21,6 +22,14 @@ void add_row(const RateFactor& gyro, int j, double information, double pull, arr
   block.border.block<3, 3>(0, kGyroBias) += square;
   block.border.block<3, 2>(0, first) += mixed;
   block.gradient.head<3>() -= pull * row;
+  if (age != 0.0) {
+    block.diagonal.topRightCorner<3, 3>() -= age * square;
+    block.diagonal.bottomLeftCorner<3, 3>() -= age * square;
+    block.diagonal.bottomRightCorner<3, 3>() += age * age * square;
+    block.border.block<3, 3>(3, kGyroBias) -= age * square;
+    block.border.block<3, 2>(3, first) -= age * mixed;
+    block.gradient.tail<3>() += age * pull * row;
+  }
   corner.matrix.block<3, 3>(kGyroBias, kGyroBias) += square;
   corner.matrix.block<3, 2>(kGyroBias, first) += mixed;
   corner.matrix.block<2, 3>(first, kGyroBias) += mixed.transpose();
@@ -33,7 +42,7 @@ void add_row(const RateFactor& gyro, int j, double information, double pull, arr
 
 void RateModel::add_elements(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                              arrow::Block& block, arrow::Corner& corner) const {
-  const RateFactor gyro = element_factor(estimate.knot, rig, observation.sample.angular_velocity_rad_s);
+  const RateFactor gyro = element_factor(at_reading(observation, estimate), rig, corrected_rate(observation, estimate));
   for (int j = 0; j < 3; ++j) {
     if ((observation.clipping.void_gyro >> j & 1u) != 0) continue;
     double information = gyro_information(observation, estimate, j);
@@ -50,7 +59,7 @@ void RateModel::add_elements(const RateObservation& observation, const RateEstim
         pull = information * gyro.residual[j] - estimate.bound_shift[j];
       }
     }
-    add_row(gyro, j, information, pull, block, corner);
+    add_row(gyro, j, observation.gyro_age_s / time_scale_s_, information, pull, block, corner);
   }
 }
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What cannot be told from a run: the part of RateModel that keeps contact from the rig's constants and counts the
-// errors of scale and misalignment.
+// What cannot be told from a sample alone: the part of RateModel that keeps contact from the rig's constants, and
+// corrects for and gathers what the device makes of the motion.
 #include "tumble/angular_velocity/rate_model.hpp"
 
 namespace tumble {
+
+using Eigen::Vector3d;
 
 namespace {
 
@@ -26,38 +28,84 @@ void RateModel::keep_from_rig(const RateObservation& o, RateFactor& flight) {
   }
 }
 
-void RateModel::add_gyro_errors(const RateObservation& observation, const RateEstimate& estimate,
-                                const RigConstants& rig, arrow::ErrorMatrix& block, arrow::BorderErrors& border) const {
-  constexpr int kGyroBias = 3;
-  const unsigned lost = observation.clipping.void_gyro | (observation.clipping.gyro & ~observation.partial);
-  const auto pull = [&](int j) -> Eigen::RowVector3d {
-    return gyro_information(observation, estimate, j) * estimate.knot.rate_rad_s.transpose();
-  };
-  if (!observation.by_elements()) {
-    for (int j = 0; j < 3; ++j) {
-      block.row(j).segment<3>(3 * j) += pull(j);
-      border.row(kGyroBias + j).segment<3>(3 * j) += pull(j);
-    }
-    return;
-  }
-  const RateFactor gyro = element_factor(estimate.knot, rig, observation.sample.angular_velocity_rad_s);
-  for (int j = 0; j < 3; ++j) {
-    if ((lost >> j & 1u) != 0) continue;
-    block.middleCols<3>(3 * j).noalias() += gyro.by_knot.row(j).transpose().lazyProduct(pull(j)).eval();
-    border.middleCols<3>(3 * j).noalias() += gyro.by_rig.row(j).transpose().lazyProduct(pull(j)).eval();
-  }
+RateKnot RateModel::at_reading(const RateObservation& observation, const RateEstimate& estimate) const {
+  const RateKnot& knot = estimate.knot;
+  return {knot.rate_rad_s - observation.gyro_age_s * knot.acceleration_rad_s2, knot.acceleration_rad_s2};
 }
 
-void RateModel::add_accel_errors(const RateObservation& observation, const RateEstimate& estimate,
-                                 const RigConstants& rig, arrow::ErrorMatrix& block,
-                                 arrow::BorderErrors& border) const {
-  auto [flight, information] = force_factor(observation, estimate, rig);
-  if (says_nothing_of_rig(estimate)) keep_from_rig(observation, flight);
-  flight.by_knot.rightCols<3>() /= time_scale_s_;
-  const Eigen::RowVector3d force = information * observation.sample.specific_force_m_s2.transpose();
+Vector3d RateModel::corrected_rate(const RateObservation& observation, const RateEstimate& estimate) const {
+  const Vector3d& reading = observation.sample.angular_velocity_rad_s;
+  if (exact_) return reading;
+  return reading - params_.errors.gyro * estimate.knot.rate_rad_s -
+         params_.errors.felt_s_m * observation.sample.specific_force_m_s2;
+}
+
+RateFactor RateModel::flight(const RateObservation& observation, const RateKnot& knot, const RigConstants& rig,
+                             Vector3d* by_delay) const {
+  const Vector3d& reading = observation.sample.specific_force_m_s2;
+  const double delay_s = params_.errors.accel_delay_s + observation.accel_age_s;
+  if (exact_ && delay_s == 0.0 && by_delay == nullptr) return flight_factor(knot, rig, reading);
+  const Vector3d force = reading - params_.errors.accel * reading;
+  RateFactor out = late_flight_factor(knot, rig, force, delay_s, by_delay);
+  // small beside the rest, so that its derivatives may be left out
+  out.residual += 0.5 * params_.errors.accel_blur_s2 * flight_curvature(knot, rig);
+  return out;
+}
+
+void RateModel::add_errors(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
+                           arrow::ErrorMatrix& block, arrow::BorderErrors& border,
+                           SensorErrorEvidence& evidence) const {
+  constexpr int kGyroBias = 3, kAccelBias = 6;
+  using Row = Eigen::Matrix<double, 1, SensorErrors::kSize>;
+  const Vector3d &rate = estimate.knot.rate_rad_s, &force = observation.sample.specific_force_m_s2;
+  const auto add = [&](const Row& by_errors, double information, double residual) {
+    evidence.information.noalias() += information * by_errors.transpose() * by_errors;
+    evidence.gradient.noalias() -= information * residual * by_errors.transpose();
+  };
+
+  const bool by_elements = observation.by_elements();
+  const Vector3d reading = corrected_rate(observation, estimate);
+  const RateFactor gyro = by_elements ? element_factor(at_reading(observation, estimate), rig, reading)
+                                      : gyro_factor(at_reading(observation, estimate), rig, reading);
+  const unsigned lost = observation.clipping.void_gyro | (observation.clipping.gyro & ~observation.partial);
   for (int j = 0; j < 3; ++j) {
-    block.middleCols<3>(3 * j).noalias() += flight.by_knot.row(j).transpose().lazyProduct(force);
-    border.middleCols<3>(3 * j).noalias() += flight.by_rig.row(j).transpose().lazyProduct(force);
+    if ((lost >> j & 1u) != 0) continue;
+    const Eigen::RowVector3d sees = gyro.by_knot.row(j).head<3>();
+    Row by_errors = Row::Zero();
+    for (int i = 0; i < 3; ++i) {
+      by_errors.segment<3>(3 * i) = sees[i] * rate.transpose();
+      by_errors.segment<3>(SensorErrors::kFelt + 3 * i) = sees[i] * force.transpose();
+    }
+    const double information = gyro_information(observation, estimate, j);
+    const double part = (observation.partial >> j & 1u) != 0 ? observation.lost_rad_s[j] : 0.0;
+    const Row pull = information * by_errors;
+    block.topRows<3>().noalias() -= sees.transpose() * pull;
+    block.bottomRows<3>().noalias() += observation.gyro_age_s / time_scale_s_ * sees.transpose() * pull;
+    border.middleRows<3>(kGyroBias).noalias() -= sees.transpose() * pull;
+    if (by_elements) {
+      const int first = RigConstants::kElements + 2 * j;
+      border.middleRows<2>(first).noalias() -= gyro.by_rig.block<1, 2>(j, first).transpose() * pull;
+    }
+    add(by_errors, information, gyro.residual[j] - part);
+  }
+
+  if (says_nothing_of_rig(estimate)) return;
+  auto [flight, information] = force_factor(observation, estimate, rig);
+  Vector3d by_delay;
+  (void)this->flight(observation, estimate.knot, rig, &by_delay);
+  const Vector3d curvature = flight_curvature(estimate.knot, rig);
+  flight.by_knot.rightCols<3>() /= time_scale_s_;
+  for (int j = 0; j < 3; ++j) {
+    if (flight.by_knot.row(j).isZero()) continue;  // a bound that holds
+    Row by_errors = Row::Zero();
+    by_errors.segment<3>(SensorErrors::kAccel + 3 * j) = force.transpose();
+    by_errors[SensorErrors::kDelay] = by_delay[j];
+    by_errors[SensorErrors::kBlur] = 0.5 * curvature[j];
+    const Row pull = information * by_errors;
+    block.noalias() -= flight.by_knot.row(j).transpose() * pull;
+    border.topRows<3>().noalias() -= flight.by_rig.row(j).head<3>().transpose() * pull;
+    border.row(kAccelBias + j) -= pull;
+    add(by_errors, information, flight.residual[j]);
   }
 }
 

@@ -3,11 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "element_clipping.hpp"
-#include "rate_first_guess.hpp"
+#include "rate_descent.hpp"
 #include "recording_check.hpp"
+#include "tumble/angular_velocity/sample_hold.hpp"
+#include "tumble/angular_velocity/triad_delay.hpp"
 
 namespace tumble {
 
@@ -15,113 +16,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Other first thresholds of contact, as multiples of the given one, and the share of clipped samples in flight below
-// which they are tried.
-constexpr double kOtherStarts[] = {16.0, 0.25};
-constexpr double kFlightShareExpected = 0.5;
-
 double median_force(std::span<const ImuSample> samples) {
   std::vector<double> force(samples.size());
   for (std::size_t k = 0; k < force.size(); ++k) force[k] = samples[k].specific_force_m_s2.norm();
   std::nth_element(force.begin(), force.begin() + static_cast<std::ptrdiff_t>(force.size() / 2), force.end());
   return force[force.size() / 2];
-}
-
-// The linear system of one iteration and its solution.
-class Iteration {
- public:
-  explicit Iteration(std::span<const RateObservation> observations)
-      : observations_(observations), blocks_(observations.size()) {}
-
-  bool factorise(const RateModel& model, std::span<const RateEstimate> estimates, const RigConstants& rig) {
-    corner_ = {};
-    model.add_rig_prior(rig, corner_);
-    blocks_[0] = {};
-    for (std::size_t k = 0; k < blocks_.size(); ++k) {
-      model.add_sample(observations_[k], estimates[k], rig, blocks_[k], corner_);
-      const bool last = k + 1 == blocks_.size();
-      if (!last) {
-        blocks_[k + 1] = {};
-        const double dt_s = seconds(observations_[k + 1].sample.time_ns - observations_[k].sample.time_ns);
-        model.add_step(estimates[k], estimates[k + 1], dt_s, blocks_[k], blocks_[k + 1]);
-      }
-      if (!arrow::eliminate(blocks_[k], last ? nullptr : &blocks_[k + 1], corner_)) return false;
-    }
-    return arrow::solve_corner(corner_, rig_step_, rig_covariance_);
-  }
-
-  // Adds the step, cut to step_max; returns the largest change of a rate.
-  double apply(const RateModel& model, double step_max, std::span<RateEstimate> estimates, RigConstants& rig) const {
-    double largest = 0.0;
-    arrow::StateVector step;
-    for (std::size_t k = blocks_.size(); k-- > 0;) {
-      const bool last = k + 1 == blocks_.size();
-      step = arrow::back_substitute(blocks_[k], last ? nullptr : &step, rig_step_);
-      const Eigen::Matrix<double, 6, 1> physical = model.unscaled(step);
-      const double length = physical.head<3>().norm();
-      const double share = length > step_max ? step_max / length : 1.0;
-      estimates[k].knot.rate_rad_s += share * physical.head<3>();
-      estimates[k].knot.acceleration_rad_s2 += share * physical.tail<3>();
-      largest = std::max(largest, length);
-    }
-    rig.add(rig_step_);
-    return largest;
-  }
-
-  // Of the last factorisation, from the last sample to the first: use(k, conditional).
-  template <typename Use>
-  void for_each_conditional(Use use) const {
-    arrow::Conditional conditional;
-    for (std::size_t k = blocks_.size(); k-- > 0;) {
-      conditional = arrow::back_conditional(blocks_[k], k + 1 == blocks_.size() ? nullptr : &conditional);
-      use(k, conditional);
-    }
-  }
-
-  // Of the last factorisation, how far sample k moves with each of kErrors common errors: use(k, moved). `add` gives
-  // what they do to the gradient: add(k, of the sample, of the border). Returns how far the border moves.
-  template <typename Add, typename Use>
-  arrow::BorderErrors for_each_moved(Add add, Use use) const {
-    std::vector<arrow::ErrorMatrix> errors(blocks_.size(), arrow::ErrorMatrix::Zero());
-    arrow::BorderErrors border = arrow::BorderErrors::Zero();
-    for (std::size_t k = 0; k < blocks_.size(); ++k) {
-      add(k, errors[k], border);
-      arrow::eliminate_errors(blocks_[k], errors[k], k + 1 == blocks_.size() ? nullptr : &errors[k + 1], border);
-    }
-    border = (rig_covariance_ * border).eval();
-    arrow::ErrorMatrix moved;
-    for (std::size_t k = blocks_.size(); k-- > 0;) {
-      moved = arrow::back_substitute_errors(blocks_[k], errors[k], k + 1 == blocks_.size() ? nullptr : &moved, border);
-      use(k, moved);
-    }
-    return border;
-  }
-
-  const RigConstants::Matrix& rig_covariance() const { return rig_covariance_; }
-
- private:
-  std::span<const RateObservation> observations_;
-  std::vector<arrow::Block> blocks_;
-  arrow::Corner corner_;
-  arrow::BorderVector rig_step_;
-  RigConstants::Matrix rig_covariance_;
-};
-
-void weigh_all(const RateModel& model, std::span<const RateObservation> observations, const RigConstants& rig,
-               const RigConstants::Matrix& rig_covariance, double widen, std::span<RateEstimate> estimates) {
-  double before = std::numeric_limits<double>::max();
-  for (std::size_t k = 0; k < estimates.size(); ++k) {
-    double after = std::numeric_limits<double>::max();
-    if (k + 1 < estimates.size()) {
-      const double dt_s = seconds(observations[k + 1].sample.time_ns - observations[k].sample.time_ns);
-      after = model.jump(estimates[k].knot, estimates[k + 1].knot, dt_s);
-    }
-    // where the gyro reads all axes nothing is unknown that would excuse a residual
-    const int clipped = observations[k].unseen();
-    model.weigh(observations[k], rig, rig_covariance, clipped != 0 ? widen : 1.0, std::min(before, after),
-                estimates[k]);
-    before = after;
-  }
 }
 
 void count(const RateState& state, RateReport& report) {
@@ -131,115 +30,47 @@ void count(const RateState& state, RateReport& report) {
   report.bounded_only += state.source == RateSource::bounded_only;
 }
 
-struct Solution {
-  std::vector<RateEstimate> estimates;
-  RigConstants rig;
-  RigConstants::Matrix rig_covariance;
-  Iteration iteration;
-};
+// The accelerometer's readings of other instants: of the sample `shift` after each, at the ends of the last there is.
+void shift_force(std::span<const ImuSample> samples, std::span<const Clipping> clippings, std::ptrdiff_t shift,
+                 std::span<const double> accel_age_s, std::span<RateObservation> observations) {
+  const auto last = static_cast<std::ptrdiff_t>(samples.size()) - 1;
+  for (std::ptrdiff_t k = 0; k <= last; ++k) {
+    const auto from = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(k + shift, 0, last));
+    RateObservation& o = observations[static_cast<std::size_t>(k)];
+    o.sample.specific_force_m_s2 = samples[from].specific_force_m_s2;
+    o.clipping.accel = clippings[from].accel;
+    o.accel_age_s = accel_age_s[from];
+  }
+}
 
-// Gauss-Newton from the first guess; false when a system is not positive definite.
-bool descend(const RateSmoother::Params& params, const RateModel& model, std::span<const RateObservation> observations,
-             double widen, Solution& solution, RateReport& health) {
-  solution.estimates = first_guess(observations, params.model, model, params.gap_max_s);
-  solution.rig = model.prior_constants();
-  solution.rig_covariance = model.prior_covariance();
-  std::vector<RateEstimate>& estimates = solution.estimates;
-  int soft = 0;  // iterations with soft bounds
-  health.iterations = 0;
-  health.converged = false;
-  while (health.iterations < params.iterations_max) {
-    weigh_all(model, observations, solution.rig, solution.rig_covariance, widen, estimates);
-    if (!solution.iteration.factorise(model, estimates, solution.rig)) return false;
-    solution.rig_covariance = solution.iteration.rig_covariance();
-    health.last_step_rad_s = solution.iteration.apply(model, params.step_max_rad_s, estimates, solution.rig);
-    ++health.iterations;
-
-    const bool settled = widen == 1.0 && health.last_step_rad_s < params.tolerance_rad_s;
-    if (soft > 0) {
-      solution.iteration.for_each_conditional([&](std::size_t k, const arrow::Conditional& conditional) {
-        model.update_bounds(observations[k], solution.rig, conditional, solution.rig_covariance, params.bound_damping,
-                            estimates[k]);
-      });
+// Readings that a triad says twice, and how old they are.
+void mark_held(std::span<const ImuSample> samples, std::span<RateObservation> observations, RateReport& health) {
+  const std::optional<HeldReadings> gyro = find_held(samples, Triad::gyro);
+  const std::optional<HeldReadings> accel = find_held(samples, Triad::accelerometer);
+  for (std::size_t k = 0; k < observations.size(); ++k) {
+    if (gyro) {
+      observations[k].gyro_age_s = gyro->age_s[k];
+      observations[k].gyro_repeats = gyro->repeats[k] && !observations[k].at_rest;
     }
-    if (soft > 0 || settled || health.iterations + params.bound_iterations >= params.iterations_max) {
-      for (std::size_t k = 0; k < estimates.size() && soft == 0; ++k) {
-        if (estimates[k].flight_weight >= 0.5) continue;
-        model.seek_flight(observations[k], solution.rig, estimates[k]);
-        model.start_bounds(observations[k], solution.rig, estimates[k]);
-      }
-      health.converged = settled || health.converged;
-      if (soft++ == params.bound_iterations) break;
-    }
-    widen = std::max(1.0, 0.5 * widen);
+    if (accel) observations[k].accel_age_s = accel->age_s[k];
   }
-  health.rig_surprise = model.rig_surprise(solution.rig);
-  return true;
+  if (gyro) health.gyro_update_s = gyro->period_s;
+  if (accel) health.accel_update_s = accel->period_s;
 }
 
-// How much of what the gyro does not see is explained as free flight: the part of the robust cost that differs between
-// the minima in which a run may end. `share`: of these samples, those that count as flight.
-double explained(std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
-                 double& share) {
-  double sum = 0.0, unseen = 0.0, flight = 0.0;
-  for (std::size_t k = 0; k < estimates.size(); ++k) {
-    sum += std::sqrt(estimates[k].flight_weight);
-    if (observations[k].unseen() == 0) continue;
-    unseen += 1.0;
-    flight += estimates[k].flight_weight >= 0.5 ? 1.0 : 0.0;
-  }
-  share = unseen > 0.0 ? flight / unseen : 1.0;
-  return sum;
+// A sheet that is believed.
+SensorErrorSizes as_stated(SensorErrorSizes sizes) {
+  sizes.gyro_unknown = sizes.accel_unknown = sizes.felt_unknown_s_m = sizes.delay_unknown_s = 0.0;
+  return sizes;
 }
 
-// The descent, again from wider and narrower thresholds of contact where most clipped samples pass for contact: with
-// a lever arm that is far off the first may end in a minimum in which nothing is flight.
-bool solve(const RateSmoother::Params& params, const RateModel& model, std::span<const RateObservation> observations,
-           Solution& solution, RateReport& health) {
-  if (!descend(params, model, observations, params.widen_first, solution, health)) return false;
-  double share = 1.0;
-  double best = explained(observations, solution.estimates, share);
-  for (const double factor : kOtherStarts) {
-    if (share >= kFlightShareExpected) break;
-    Solution other{{}, {}, {}, Iteration(observations)};
-    RateReport other_health = health;
-    const double widen = std::max(1.0, factor * params.widen_first);
-    if (!descend(params, model, observations, widen, other, other_health)) continue;
-    double other_share = 0.0;
-    const double found = explained(observations, other.estimates, other_share);
-    ++health.restarts;
-    if (!(found > best)) continue;
-    best = found;
-    share = other_share;
-    other_health.restarts = health.restarts;
-    health = other_health;
-    solution = std::move(other);
-  }
-  return true;
-}
-
-// What the scale and misalignment of gyro and accelerometer, which no run can tell from the rig's constants, add to the
-// covariance of each rate and, returned, of the constants (S. F. Schmidt, 1966: parameters considered, not estimated).
-RigConstants::Matrix consider_matrices(const RateModelParams& params, const RateModel& model,
-                                       std::span<const RateObservation> observations, const Solution& solution,
-                                       std::span<Eigen::Matrix3d> spread_rad2_s2) {
-  RigConstants::Matrix of_rig = RigConstants::Matrix::Zero();
-  const auto consider = [&](double sigma, auto add) {
-    if (!(sigma > 0.0)) return;
-    const arrow::BorderErrors moved =
-        sigma * solution.iteration.for_each_moved(add, [&](std::size_t k, const arrow::ErrorMatrix& by_error) {
-          const Eigen::Matrix<double, 3, arrow::kErrors> rates = sigma * by_error.topRows<3>();
-          spread_rad2_s2[k].noalias() += rates.lazyProduct(rates.transpose());
-        });
-    of_rig += moved * moved.transpose();
-  };
-  consider(params.gyro_matrix_sigma, [&](std::size_t k, arrow::ErrorMatrix& block, arrow::BorderErrors& border) {
-    model.add_gyro_errors(observations[k], solution.estimates[k], solution.rig, block, border);
-  });
-  consider(params.accel_matrix_sigma, [&](std::size_t k, arrow::ErrorMatrix& block, arrow::BorderErrors& border) {
-    model.add_accel_errors(observations[k], solution.estimates[k], solution.rig, block, border);
-  });
-  return of_rig;
+// Whether errors are so far from those that readings have been corrected for that the descent must be made again.
+bool far_apart(const SensorErrors& a, const SensorErrors& b) {
+  constexpr double kMatrix = 1e-3, kFelt_s_m = 3e-5, kDelay_s = 3e-4, kBlur_s2 = 3e-6;
+  return (a.gyro - b.gyro).cwiseAbs().maxCoeff() > kMatrix || (a.accel - b.accel).cwiseAbs().maxCoeff() > kMatrix ||
+         (a.felt_s_m - b.felt_s_m).cwiseAbs().maxCoeff() > kFelt_s_m ||
+         std::abs(a.accel_delay_s - b.accel_delay_s) > kDelay_s ||
+         std::abs(a.accel_blur_s2 - b.accel_blur_s2) > kBlur_s2;
 }
 
 Status check_companions(const RateModelParams& params, std::span<const std::vector<CompanionReading>> companions,
@@ -283,6 +114,122 @@ RailPlaneFinder::Params plane_params(const RateSmoother::Params& params) {
   return out;
 }
 
+// A descent with what it was made with.
+struct Fit {
+  RateSolution solution;
+  RateModel model;
+  RateIteration::Moved moved;
+};
+
+// The descent, with the rig held to what was known of it where it takes contact for flight of another rig.
+Status descend_held(const RateSmoother::Params& params, const RateModelParams& known, double period_s,
+                    std::span<const RateObservation> observations, Fit& fit, RateReport& health) {
+  fit.model = RateModel(known, period_s);
+  if (!solve(params, fit.model, observations, fit.solution, health)) {
+    return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
+  }
+  health.rig_held = health.rig_surprise > params.rig_surprise_max;
+  health.calibration = {fit.solution.rig, fit.solution.rig_covariance};
+  if (!health.rig_held) return {};
+  const double surprise = health.rig_surprise;
+  health.calibration = {fit.model.prior_constants(), fit.model.prior_covariance()};
+  fit.model = RateModel(held(known, fit.model), period_s);
+  if (!solve(params, fit.model, observations, fit.solution, health)) {
+    return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
+  }
+  health.rig_surprise = surprise;
+  return {};
+}
+
+// Descents with readings corrected for the device's errors as the one before has found them, and a last, linear
+// correction.
+Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& known, std::span<const ImuSample> samples,
+                  std::span<const Clipping> clippings, std::span<RateObservation> observations, Fit& fit,
+                  RateReport& health) {
+  const bool estimated = params.error_rounds_max > 1;
+  const double period_s = median_period_s(samples);
+  const RigConstants rig = known.calibration ? known.calibration->constants : known.nominal;
+  SensorErrors errors = known.errors;
+  if (estimated && known.error_sizes.delay_unknown_s > known.error_sizes.delay_s) {
+    errors.accel_delay_s += guess_triad_delay_s(samples, clippings, rig.lever_arm_m);
+  }
+  std::vector<double> age_s(samples.size());
+  for (std::size_t k = 0; k < age_s.size(); ++k) age_s[k] = observations[k].accel_age_s;
+  SensorErrorFit found;
+  for (health.error_rounds = 1;; ++health.error_rounds) {
+    const double shift = std::round(errors.accel_delay_s / period_s);
+    shift_force(samples, clippings, static_cast<std::ptrdiff_t>(shift), age_s, observations);
+    RateModelParams corrected = known;
+    corrected.errors = errors;
+    corrected.errors.accel_delay_s -= shift * period_s;
+    if (Status status = descend_held(params, corrected, period_s, observations, fit, health); !status.ok()) {
+      return status;
+    }
+    const RateSolution& solution = fit.solution;
+    fit.moved = solution.iteration.moved_by_errors(fit.model, solution.estimates, solution.rig);
+    if (estimated) {
+      // where the descent has not come to its end, what is left of the gradient must not pass for errors
+      RateIteration again = solution.iteration;
+      if (!again.factorise(fit.model, solution.estimates, solution.rig)) {
+        return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
+      }
+      fit.moved.evidence = again.moved_by_errors(fit.model, solution.estimates, solution.rig).evidence;
+    }
+    fit.moved.evidence.about = errors;
+    found = fit_sensor_errors(fit.moved.evidence, known.error_sizes);
+    if (health.rig_held || health.error_rounds >= params.error_rounds_max) break;
+    if (!far_apart(found.known.errors, errors)) break;
+    errors = found.known.errors;
+  }
+  if (health.rig_held || !estimated) {
+    // what a run tells of the device without flight is nothing: all that may be is left open
+    found = fit_sensor_errors({}, estimated ? known.error_sizes : as_stated(known.error_sizes));
+    found.known.errors = errors;
+  } else {
+    const SensorErrors::Vector step = found.known.errors.vector() - errors.vector();
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+      const Eigen::Matrix<double, 6, 1> moved = fit.model.unscaled(fit.moved.of_sample[k] * step);
+      fit.solution.estimates[k].knot.rate_rad_s += moved.head<3>();
+      fit.solution.estimates[k].knot.acceleration_rad_s2 += moved.tail<3>();
+    }
+    fit.solution.rig.add(fit.moved.of_rig * step);
+  }
+  health.sensor_errors = found.known;
+  health.calibrated = found.calibrated;
+  health.together = found.together;
+  if (health.rig_held) return {};
+  health.calibration.constants = fit.solution.rig;
+  // the device's errors stay with the device: the next run meets them as this one did, and counts them anew
+  const SensorErrors::Matrix stated = fit_sensor_errors({}, as_stated(known.error_sizes)).known.covariance;
+  health.calibration.covariance += fit.moved.of_rig * stated * fit.moved.of_rig.transpose();
+  return {};
+}
+
+// What remains open of the device's errors, in a rate.
+Eigen::Matrix3d considered(const arrow::ErrorMatrix& moved, const SensorErrors::Matrix& covariance) {
+  const Eigen::Matrix<double, 3, SensorErrors::kSize> rates = moved.topRows<3>(), spread = rates * covariance;
+  return spread.lazyProduct(rates.transpose());
+}
+
+// The rate some time after a sample: cubic between the knots about that instant.
+Vector3d rate_later(std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
+                    std::size_t k, double late_s) {
+  double left_s = late_s;
+  while (k + 1 < estimates.size()) {
+    const RateKnot &a = estimates[k].knot, &b = estimates[k + 1].knot;
+    const double dt_s = seconds(observations[k + 1].sample.time_ns - observations[k].sample.time_ns);
+    if (left_s <= 0.0) return a.rate_rad_s;
+    if (left_s < dt_s) {
+      const double u = left_s / dt_s, v = 1.0 - u;
+      return v * v * (1.0 + 2.0 * u) * a.rate_rad_s + u * u * (3.0 - 2.0 * u) * b.rate_rad_s +
+             u * v * dt_s * (v * a.acceleration_rad_s2 - u * b.acceleration_rad_s2);
+    }
+    left_s -= dt_s;
+    ++k;
+  }
+  return estimates[k].knot.rate_rad_s;
+}
+
 }  // namespace
 
 RateSmoother::RateSmoother(const Params& params)
@@ -295,6 +242,7 @@ RateSmoother::RateSmoother(const Params& params)
   require_within("bound_iterations", params.bound_iterations, 0, 1000);
   require_within("bound_damping", params.bound_damping, 0.01, 1.0);
   require_within("rig_surprise_max", params.rig_surprise_max, 0.1, 1e6);
+  require_within("error_rounds_max", params.error_rounds_max, 1, 10);
   require_within("gap_max_s", params.gap_max_s, 1e-6, 3600.0);
   (void)RateModel(params.model, 0.01);  // throws on bad parameters
 }
@@ -342,36 +290,24 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
     if (health.rails_upright) continue;
     doubt_unseen_rails(planes, model.gyro_sigma_rad_s(), before, observations[k], after);
   }
-  Solution solution{{}, {}, {}, Iteration(observations)};
-  if (!solve(params_, model, observations, solution, health)) {
-    return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
+  mark_held(samples, observations, health);
+  Fit fit{{{}, {}, {}, RateIteration(observations)}, model, {}};
+  if (Status status = fit_rounds(params_, known, samples, clippings, observations, fit, health); !status.ok()) {
+    return status;
   }
-  health.calibration = {solution.rig, solution.rig_covariance};
-  if (health.rig_surprise > params_.rig_surprise_max) {
-    // contact was taken for flight of another rig: hold the rig to what was known of it
-    const double surprise = health.rig_surprise;
-    const RateModel fixed(held(known, model), period_s);
-    if (!solve(params_, fixed, observations, solution, health)) {
-      return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
-    }
-    health.rig_held = true;
-    health.rig_surprise = surprise;
-    health.calibration = {model.prior_constants(), model.prior_covariance()};
-  }
+  const RateSolution& solution = fit.solution;
 
-  std::vector<Eigen::Matrix3d> considered(samples.size(), Eigen::Matrix3d::Zero());
-  const RigConstants::Matrix of_rig = consider_matrices(params_.model, model, observations, solution, considered);
-  if (!health.rig_held) health.calibration.covariance += of_rig;
-
+  const double gyro_late_s = std::max(0.0, -health.sensor_errors.errors.accel_delay_s);
   std::vector<RateState> states(samples.size());
   std::size_t in_flight = 0;
   solution.iteration.for_each_conditional([&](std::size_t k, const arrow::Conditional& conditional) {
     const RateEstimate& estimate = solution.estimates[k];
+    const Eigen::Matrix3d covariance = arrow::rate_covariance(conditional, solution.rig_covariance) +
+                                       considered(fit.moved.of_sample[k], health.sensor_errors.covariance);
     RateState& state = states[k];
     state.time_ns = samples[k].time_ns;
-    state.w_WI_I_rad_s = estimate.knot.rate_rad_s;
-    state.covariance_rad2_s2 = model.reported(
-        arrow::rate_covariance(conditional, solution.rig_covariance) + considered[k], observations[k], estimate);
+    state.w_WI_I_rad_s = rate_later(observations, solution.estimates, k, gyro_late_s);
+    state.covariance_rad2_s2 = fit.model.reported(covariance, observations[k], estimate);
     state.clipped_axes = clippings[k].gyro | clippings[k].void_gyro;
     state.source = rate_source(observations[k], estimate, state.covariance_rad2_s2, params_.recovered_sigma_rad_s);
     count(state, health);

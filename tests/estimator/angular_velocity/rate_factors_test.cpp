@@ -127,5 +127,78 @@ TEST(RigConstants, InertiaIsFreeOfScaleAndItsCoordinatesComeBack) {
   EXPECT_EQ(RigConstants{}.inertia_matrix(), Eigen::Matrix3d::Identity());
 }
 
+// Torque-free rotation by some time, fourth order in small steps.
+RateKnot turned(RateKnot knot, const RigConstants& rig, double time_s) {
+  const Eigen::Matrix3d J = rig.inertia_matrix();
+  const auto slope = [&](const Vector3d& w) -> Vector3d { return -J.inverse() * w.cross(Vector3d(J * w)); };
+  constexpr int kSteps = 20;
+  const double h = time_s / kSteps;
+  Vector3d w = knot.rate_rad_s;
+  for (int i = 0; i < kSteps; ++i) {
+    const Vector3d a = slope(w), b = slope(w + 0.5 * h * a), c = slope(w + 0.5 * h * b), d = slope(w + h * c);
+    w += h / 6.0 * (a + 2.0 * b + 2.0 * c + d);
+  }
+  return {w, slope(w)};
+}
+
+Point flying_point(oracles::Gaussian& noise) {
+  Point p = random_point(noise);
+  p.knot.acceleration_rad_s2 = turned(p.knot, p.rig, 0.0).acceleration_rad_s2;
+  return p;
+}
+
+TEST(LateFlight, DerivativesAreThoseOfTheResidual) {
+  oracles::Gaussian noise(12);
+  for (int i = 0; i < 20; ++i) {
+    const Point p = flying_point(noise);
+    const double delay_s = 0.005 * noise();
+    const Factor factor = [&](const RateKnot& k, const RigConstants& r) {
+      return late_flight_factor(k, r, kReading, delay_s, nullptr);
+    };
+    // a polynomial of low degree in all but the inertia: differences err by the step's square
+    EXPECT_LT(disagreement(analytic(factor, p), numeric(factor, p)), 1e-5);
+    Vector3d by_delay;
+    (void)late_flight_factor(p.knot, p.rig, kReading, delay_s, &by_delay);
+    constexpr double kStep_s = 1e-6;
+    const Vector3d moved = late_flight_factor(p.knot, p.rig, kReading, delay_s + kStep_s, nullptr).residual -
+                           late_flight_factor(p.knot, p.rig, kReading, delay_s - kStep_s, nullptr).residual;
+    EXPECT_LT((moved / (2.0 * kStep_s) - by_delay).norm(), 1e-5 * (1.0 + by_delay.norm()));
+  }
+}
+
+TEST(LateFlight, IsTheFlightOfTheEarlierInstant) {
+  oracles::Gaussian noise(13);
+  for (int i = 0; i < 20; ++i) {
+    const Point p = flying_point(noise);
+    EXPECT_EQ(late_flight_factor(p.knot, p.rig, kReading, 0.0, nullptr).residual,
+              flight_factor(p.knot, p.rig, kReading).residual);
+    const auto off = [&](double delay_s) {
+      const RateKnot earlier = turned(p.knot, p.rig, -delay_s);
+      return (late_flight_factor(p.knot, p.rig, kReading, delay_s, nullptr).residual -
+              flight_factor(earlier, p.rig, kReading).residual)
+          .norm();
+    };
+    const double now = (flight_factor(turned(p.knot, p.rig, -0.002), p.rig, kReading).residual -
+                        flight_factor(p.knot, p.rig, kReading).residual)
+                           .norm();
+    EXPECT_LT(off(0.002), 0.1 * now);
+    // what is left is of second order: the change of the angular jerk
+    EXPECT_NEAR(off(0.001) / off(0.0005), 4.0, 0.5);
+  }
+}
+
+TEST(LateFlight, CurvatureIsTheSecondDerivativeOfTheForce) {
+  oracles::Gaussian noise(14);
+  for (int i = 0; i < 20; ++i) {
+    const Point p = flying_point(noise);
+    constexpr double kStep_s = 1e-3;
+    const auto force = [&](double time_s) -> Vector3d {
+      return flight_factor(turned(p.knot, p.rig, time_s), p.rig, Vector3d::Zero()).residual;
+    };
+    const Vector3d want = (force(kStep_s) - 2.0 * force(0.0) + force(-kStep_s)) / (kStep_s * kStep_s);
+    EXPECT_LT((flight_curvature(p.knot, p.rig) - want).norm(), 1e-2 * want.norm());
+  }
+}
+
 }  // namespace
 }  // namespace tumble

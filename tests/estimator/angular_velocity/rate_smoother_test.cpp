@@ -127,7 +127,8 @@ double coverage_with_matrices(double sigma, double stated) {
     for (double& entry : options.gyro_error.reshaped()) entry = sigma * noise();
     for (double& entry : options.accel_error.reshaped()) entry = sigma * noise();
     RateSmoother::Params params = wrong_lever(0.01, seed);
-    params.model.gyro_matrix_sigma = params.model.accel_matrix_sigma = stated;
+    params.error_rounds_max = 1;
+    params.model.error_sizes.gyro = params.model.error_sizes.accel = stated;
     const Outcome run = estimate(options, params);
     for (std::size_t k = 0; k < run.states.size(); ++k) {
       if (run.recording.phase[k] != Phase::flight) continue;

@@ -24,7 +24,7 @@ using Corner = System::Corner;
 using Conditional = System::Conditional;
 using Marginal = System::Marginal;
 
-inline constexpr int kErrors = 9;  ///< errors considered at once: the entries of a matrix of scale and misalignment
+inline constexpr int kErrors = 29;  ///< errors of a device, common to all blocks: see SensorErrors
 
 /// What each of kErrors common errors adds to the gradient of a block, of the border; once solved, to their steps.
 using ErrorMatrix = Eigen::Matrix<double, kState, kErrors>;

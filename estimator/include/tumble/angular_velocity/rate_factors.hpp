@@ -32,6 +32,16 @@ RateFactor element_factor(const RateKnot& knot, const RigConstants& rig, const E
 /// alpha x t + w x (w x t) + bias - reading.
 RateFactor flight_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_m_s2);
 
+/// The same for an accelerometer that is `delay_s` late: of the earlier instant to which Euler's equation without
+/// torque takes the knot back, w - d alpha + d^2/2 j and alpha - d j with the angular jerk j. Also by inertia.
+/// `by_delay` (may be null): the residual's derivative by the delay.
+RateFactor late_flight_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_m_s2,
+                              double delay_s, Eigen::Vector3d* by_delay);
+
+/// Second derivative by time of the specific force at the lever arm in free flight [m/s^4]: half of it, times the
+/// variance of a window, is what the window adds to the reading.
+Eigen::Vector3d flight_curvature(const RateKnot& knot, const RigConstants& rig);
+
 /// Free flight by Euler's equation without torque, with the inertia scaled to trace 3 [rad/s^2]: J alpha + w x J w.
 RateFactor euler_factor(const RateKnot& knot, const RigConstants& rig);
 

@@ -14,6 +14,7 @@
 #include "tumble/angular_velocity/rate_factors.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/angular_velocity/rig_constants.hpp"
+#include "tumble/angular_velocity/sensor_errors.hpp"
 #include "tumble/common/imu.hpp"
 
 namespace tumble {
@@ -43,10 +44,10 @@ struct RateModelParams {
   double flight_sigma_m_s2 = 0.02;
   /// Scale and misalignment of the accelerometer, as a share of the force; [0, 1].
   double accel_scale_error = 1e-3;
-  /// Scale and misalignment that a run keeps: standard deviation of each entry of the gyro's and of the accelerometer's
-  /// 3x3 matrix (MTi-300 sheet: non-orthogonality 0.05 deg). Not estimated, but counted in the covariance; [0, 0.1].
-  double gyro_matrix_sigma = 5e-4;
-  double accel_matrix_sigma = 5e-4;
+  /// What the device makes of the motion, as far as it is known: readings are corrected for it.
+  SensorErrors errors = {};
+  /// What is left open of it.
+  SensorErrorSizes error_sizes = {};
   /// What a gyro's bandwidth and its clock leave open of the time of a reading (a first-order low-pass at 415 Hz is
   /// 0.38 ms late): counted in the covariance, times the angular acceleration [s]; [0, 0.1].
   double gyro_time_sigma_s = 2.5e-4;
@@ -90,6 +91,9 @@ struct RateObservation {
   std::uint8_t partial = 0;  ///< bit j: axis j met the rail in a part of its window only, see PartialLoss
   Eigen::Vector3d lost_rad_s = Eigen::Vector3d::Zero();  ///< of partial axes, signed as the reading
   Eigen::Vector3d lost_sigma_rad_s = Eigen::Vector3d::Zero();
+  /// How old the triads' readings are at the stamp of the sample, and whether the gyro's is that of the sample before.
+  double gyro_age_s = 0.0, accel_age_s = 0.0;
+  bool gyro_repeats = false;
   std::array<CompanionReading, kCompanionsMax> companions = {};  ///< in the order of RateModelParams::companions
 
   /// Whether an element clips, so that the readings of all axes are off: it is read element by element.
@@ -156,13 +160,10 @@ class RateModel {
   void add_sample(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                   arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* doubted = nullptr) const;
 
-  /// What the nine entries of the gyro's matrix of scale and misalignment, row by row, do to the gradient of a sample.
-  /// A clipped axis says no more than where its rail is: nothing.
-  void add_gyro_errors(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
-                       arrow::ErrorMatrix& block, arrow::BorderErrors& border) const;
-  /// The same of the accelerometer's.
-  void add_accel_errors(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
-                        arrow::ErrorMatrix& block, arrow::BorderErrors& border) const;
+  /// What each of SensorErrors does to the gradient of a sample, and what the sample says of them. A clipped element
+  /// says no more than where its rail is, contact nothing: neither tells of errors.
+  void add_errors(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
+                  arrow::ErrorMatrix& block, arrow::BorderErrors& border, SensorErrorEvidence& evidence) const;
 
   /// Adds the motion prior between two samples, dt_s apart.
   void add_step(const RateEstimate& from, const RateEstimate& to, double dt_s, arrow::Block& block,
@@ -194,6 +195,13 @@ class RateModel {
   };
   ForceFactor force_factor(const RateObservation& observation, const RateEstimate& estimate,
                            const RigConstants& rig) const;
+  /// The rate of which the gyro's reading tells: earlier by the reading's age.
+  RateKnot at_reading(const RateObservation& observation, const RateEstimate& estimate) const;
+  /// The gyro's reading without what the device is known to make of the motion.
+  Eigen::Vector3d corrected_rate(const RateObservation& observation, const RateEstimate& estimate) const;
+  /// flight_factor() with what is known of the accelerometer's errors; `by_delay`: as late_flight_factor().
+  RateFactor flight(const RateObservation& observation, const RateKnot& knot, const RigConstants& rig,
+                    Eigen::Vector3d* by_delay = nullptr) const;
   double gyro_information(const RateObservation& observation, const RateEstimate& estimate, int axis) const;
   void add_gyro(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                 arrow::Block& block, arrow::Corner& corner) const;
@@ -207,6 +215,7 @@ class RateModel {
   double accel_sigma_m_s2(const RateObservation& observation) const;
 
   RateModelParams params_;
+  bool exact_ = true;    ///< nothing is known of errors: readings are taken as they are
   double time_scale_s_;  ///< the solver's acceleration is the acceleration times this
   double gyro_sigma_rad_s_;
   double accel_sigma_m_s2_;

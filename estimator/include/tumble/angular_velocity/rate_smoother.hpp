@@ -29,10 +29,15 @@ struct RateReport {
   bool rig_held = false;  ///< the surprise was too large: nothing was learnt, the constants were held
   std::array<std::optional<double>, 6> rail;  ///< in use: gyro [rad/s], accelerometer [m/s^2]; none: not seen
   RailPlanes planes;                          ///< of the gyro's elements, where they were seen
-  bool rails_upright = false;                 ///< the device clips what it delivers, nothing else is off
-  std::array<bool, 6> rail_disagrees{};       ///< a stated range contradicted by the readings
-  bool rate_unit_suspect = false;             ///< a reading beyond RateModelParams::rate_max_rad_s: perhaps degrees
-  bool force_unit_suspect = false;            ///< the median specific force is near 1: perhaps given in g
+  /// What the device makes of the motion, as far as the run tells.
+  KnownSensorErrors sensor_errors;
+  double calibrated = 1.0, together = 1.0;           ///< see SensorErrorFit
+  double gyro_update_s = 0.0, accel_update_s = 0.0;  ///< of readings that repeat (find_held); 0: none does
+  int error_rounds = 0;                              ///< descents with corrected readings
+  bool rails_upright = false;                        ///< the device clips what it delivers, nothing else is off
+  std::array<bool, 6> rail_disagrees{};              ///< a stated range contradicted by the readings
+  bool rate_unit_suspect = false;   ///< a reading beyond RateModelParams::rate_max_rad_s: perhaps degrees
+  bool force_unit_suspect = false;  ///< the median specific force is near 1: perhaps given in g
   std::size_t samples = 0, clipped = 0, recovered_flight = 0, recovered_contact = 0, bounded_only = 0;
   std::size_t void_readings = 0;  ///< samples with an overflow (sign flipped at the rail)
   double flight_share = 0.0;      ///< share of the samples that count as free flight
@@ -56,17 +61,20 @@ struct RateReport {
 /// impact 48 %, and all of it in one sample of ten: a cage strikes with several bars, and within 10 ms it rolls on.
 /// Rest is zero rate (RestDetector).
 ///
-/// Scale and misalignment of the sensors look like other constants of the rig and are not estimated; what they may do
-/// to rates and constants is in both covariances (parameters considered, S. F. Schmidt, 1966), else the fit takes it
-/// for noise and averages it away: the test ScaleAndMisalignmentAreInTheCovariance.
+/// What the device makes of the motion (SensorErrors: scale, misalignment, g-sensitivity, delay and window of the
+/// accelerometer against the gyro) looks in part like other constants of the rig. It is estimated as far as the run
+/// tells, at the size that the readings show (fit_sensor_errors), by a descent with corrected readings; what remains
+/// open is in both covariances (as of parameters considered, S. F. Schmidt, 1966), else the fit takes it for noise and
+/// averages it away: the test ScaleAndMisalignmentAreInTheCovariance. A first guess of the delay comes before
+/// (guess_triad_delay_s). Of two triads that are apart the later one is taken to be late and the other in time.
 ///
 /// A gyro's elements clip along their own, not quite orthogonal axes; the device's compensation then mixes what is left
 /// (RailPlaneFinder). While one clips the gyro is read element by element (element_factor): free elements measure,
 /// clipped ones bound, and the axes beside are corrected for what is hidden. The rows are constants of the run, told by
 /// the planes of the rails and by flight; where the rails are found to be upright nothing of this applies.
 ///
-/// What it does not model: a contact point that persists, time offset between gyro and accelerometer. The rates are
-/// those at which the gyro's readings stand: means over the window of the sample.
+/// What it does not model: a contact point that persists, a delay that both triads share. The rates are those at
+/// which the gyro's readings stand: means over the window of the sample.
 class RateSmoother {
  public:
   struct Params {
@@ -86,6 +94,9 @@ class RateSmoother {
     /// A run whose constants move further than this (RateReport::rig_surprise) is estimated again with the constants
     /// held to what was known; [0.1, 1e6].
     double rig_surprise_max = 1.5;
+    /// Most descents, each with readings corrected for what the one before has told of the device; 1: the device's
+    /// errors are counted in the covariance and not estimated; [1, 10].
+    int error_rounds_max = 3;
     double gap_max_s = 1.0;  ///< longest time between samples before the run is refused; [1e-6, 3600]
   };
 

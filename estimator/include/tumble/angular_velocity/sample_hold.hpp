@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "tumble/common/imu.hpp"
+
+namespace tumble {
+
+/// Readings of a triad whose own rate is below that of the log, so that some are said twice (sample and hold).
+struct HeldReadings {
+  double period_s = 0.0;      ///< from one reading to the next
+  double agreement = 0.0;     ///< share of the samples whose being new or repeated a steady period explains
+  std::vector<double> age_s;  ///< of each sample: how old its reading is beyond that of a reading taken at once
+  std::vector<bool> repeats;  ///< it is the reading of the sample before
+};
+
+enum class Triad : std::uint8_t { gyro, accelerometer };
+
+/// Finds them: none where fewer than a twentieth of the samples in motion (faster than 0.3 rad/s, 30 of them at least)
+/// repeat all three numbers of the one before. Period and phase are those with which a steady clock explains best which
+/// samples repeat; ages follow from them, and are zero where no steady clock does (agreement below 0.9). O(N) for each
+/// of some 5000 clocks, on 1000 samples at most.
+std::optional<HeldReadings> find_held(std::span<const ImuSample> samples, Triad triad);
+
+}  // namespace tumble

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rate_descent.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "rate_first_guess.hpp"
+
+namespace tumble {
+
+namespace {
+
+// Other first thresholds of contact, as multiples of the given one, and the share of clipped samples in flight below
+// which they are tried.
+constexpr double kOtherStarts[] = {16.0, 0.25};
+constexpr double kFlightShareExpected = 0.5;
+
+void weigh_all(const RateModel& model, std::span<const RateObservation> observations, const RigConstants& rig,
+               const RigConstants::Matrix& rig_covariance, double widen, std::span<RateEstimate> estimates) {
+  double before = std::numeric_limits<double>::max();
+  for (std::size_t k = 0; k < estimates.size(); ++k) {
+    double after = std::numeric_limits<double>::max();
+    if (k + 1 < estimates.size()) {
+      const double dt_s = seconds(observations[k + 1].sample.time_ns - observations[k].sample.time_ns);
+      after = model.jump(estimates[k].knot, estimates[k + 1].knot, dt_s);
+    }
+    // where the gyro reads all axes nothing is unknown that would excuse a residual
+    const int clipped = observations[k].unseen();
+    model.weigh(observations[k], rig, rig_covariance, clipped != 0 ? widen : 1.0, std::min(before, after),
+                estimates[k]);
+    before = after;
+  }
+}
+
+// Gauss-Newton from the first guess; false when a system is not positive definite.
+bool descend(const RateSmoother::Params& params, const RateModel& model, std::span<const RateObservation> observations,
+             double widen, RateSolution& solution, RateReport& health) {
+  solution.estimates = first_guess(observations, params.model, model, params.gap_max_s);
+  solution.rig = model.prior_constants();
+  solution.rig_covariance = model.prior_covariance();
+  std::vector<RateEstimate>& estimates = solution.estimates;
+  int soft = 0;  // iterations with soft bounds
+  health.iterations = 0;
+  health.converged = false;
+  while (health.iterations < params.iterations_max) {
+    weigh_all(model, observations, solution.rig, solution.rig_covariance, widen, estimates);
+    if (!solution.iteration.factorise(model, estimates, solution.rig)) return false;
+    solution.rig_covariance = solution.iteration.rig_covariance();
+    health.last_step_rad_s = solution.iteration.apply(model, params.step_max_rad_s, estimates, solution.rig);
+    ++health.iterations;
+
+    const bool settled = widen == 1.0 && health.last_step_rad_s < params.tolerance_rad_s;
+    if (soft > 0) {
+      solution.iteration.for_each_conditional([&](std::size_t k, const arrow::Conditional& conditional) {
+        model.update_bounds(observations[k], solution.rig, conditional, solution.rig_covariance, params.bound_damping,
+                            estimates[k]);
+      });
+    }
+    if (soft > 0 || settled || health.iterations + params.bound_iterations >= params.iterations_max) {
+      for (std::size_t k = 0; k < estimates.size() && soft == 0; ++k) {
+        if (estimates[k].flight_weight >= 0.5) continue;
+        model.seek_flight(observations[k], solution.rig, estimates[k]);
+        model.start_bounds(observations[k], solution.rig, estimates[k]);
+      }
+      health.converged = settled || health.converged;
+      if (soft++ == params.bound_iterations) break;
+    }
+    widen = std::max(1.0, 0.5 * widen);
+  }
+  health.rig_surprise = model.rig_surprise(solution.rig);
+  return true;
+}
+
+// How much of what the gyro does not see is explained as free flight: the part of the robust cost that differs between
+// the minima in which a run may end. `share`: of these samples, those that count as flight.
+double explained(std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
+                 double& share) {
+  double sum = 0.0, unseen = 0.0, flight = 0.0;
+  for (std::size_t k = 0; k < estimates.size(); ++k) {
+    sum += std::sqrt(estimates[k].flight_weight);
+    if (observations[k].unseen() == 0) continue;
+    unseen += 1.0;
+    flight += estimates[k].flight_weight >= 0.5 ? 1.0 : 0.0;
+  }
+  share = unseen > 0.0 ? flight / unseen : 1.0;
+  return sum;
+}
+
+}  // namespace
+
+bool RateIteration::factorise(const RateModel& model, std::span<const RateEstimate> estimates,
+                              const RigConstants& rig) {
+  corner_ = {};
+  model.add_rig_prior(rig, corner_);
+  blocks_[0] = {};
+  for (std::size_t k = 0; k < blocks_.size(); ++k) {
+    model.add_sample(observations_[k], estimates[k], rig, blocks_[k], corner_);
+    const bool last = k + 1 == blocks_.size();
+    if (!last) {
+      blocks_[k + 1] = {};
+      const double dt_s = seconds(observations_[k + 1].sample.time_ns - observations_[k].sample.time_ns);
+      model.add_step(estimates[k], estimates[k + 1], dt_s, blocks_[k], blocks_[k + 1]);
+    }
+    if (!arrow::eliminate(blocks_[k], last ? nullptr : &blocks_[k + 1], corner_)) return false;
+  }
+  return arrow::solve_corner(corner_, rig_step_, rig_covariance_);
+}
+
+double RateIteration::apply(const RateModel& model, double step_max, std::span<RateEstimate> estimates,
+                            RigConstants& rig) const {
+  double largest = 0.0;
+  arrow::StateVector step;
+  for (std::size_t k = blocks_.size(); k-- > 0;) {
+    const bool last = k + 1 == blocks_.size();
+    step = arrow::back_substitute(blocks_[k], last ? nullptr : &step, rig_step_);
+    const Eigen::Matrix<double, 6, 1> physical = model.unscaled(step);
+    const double length = physical.head<3>().norm();
+    const double share = length > step_max ? step_max / length : 1.0;
+    estimates[k].knot.rate_rad_s += share * physical.head<3>();
+    estimates[k].knot.acceleration_rad_s2 += share * physical.tail<3>();
+    largest = std::max(largest, length);
+  }
+  rig.add(rig_step_);
+  return largest;
+}
+
+RateIteration::Moved RateIteration::moved_by_errors(const RateModel& model, std::span<const RateEstimate> estimates,
+                                                    const RigConstants& rig) const {
+  Moved out;
+  out.of_sample.assign(blocks_.size(), arrow::ErrorMatrix::Zero());
+  arrow::BorderErrors border = arrow::BorderErrors::Zero();
+  for (std::size_t k = 0; k < blocks_.size(); ++k) {
+    arrow::ErrorMatrix& errors = out.of_sample[k];
+    model.add_errors(observations_[k], estimates[k], rig, errors, border, out.evidence);
+    const bool last = k + 1 == blocks_.size();
+    arrow::eliminate_errors(blocks_[k], errors, last ? nullptr : &out.of_sample[k + 1], border);
+    // what the sample explains of the errors by itself
+    out.evidence.information.noalias() -= errors.transpose() * errors;
+    out.evidence.gradient.noalias() += errors.transpose() * blocks_[k].gradient;
+  }
+  out.of_rig.noalias() = rig_covariance_ * border;
+  out.evidence.information.noalias() -= border.transpose() * out.of_rig;
+  out.evidence.gradient.noalias() += border.transpose() * rig_step_;
+  for (std::size_t k = blocks_.size(); k-- > 0;) {
+    const arrow::ErrorMatrix* const next = k + 1 == blocks_.size() ? nullptr : &out.of_sample[k + 1];
+    out.of_sample[k] = arrow::back_substitute_errors(blocks_[k], out.of_sample[k], next, out.of_rig);
+  }
+  return out;
+}
+
+bool solve(const RateSmoother::Params& params, const RateModel& model, std::span<const RateObservation> observations,
+           RateSolution& solution, RateReport& health) {
+  if (!descend(params, model, observations, params.widen_first, solution, health)) return false;
+  double share = 1.0;
+  double best = explained(observations, solution.estimates, share);
+  for (const double factor : kOtherStarts) {
+    if (share >= kFlightShareExpected) break;
+    RateSolution other{{}, {}, {}, RateIteration(observations)};
+    RateReport other_health = health;
+    const double widen = std::max(1.0, factor * params.widen_first);
+    if (!descend(params, model, observations, widen, other, other_health)) continue;
+    double other_share = 0.0;
+    const double found = explained(observations, other.estimates, other_share);
+    ++health.restarts;
+    if (!(found > best)) continue;
+    best = found;
+    share = other_share;
+    other_health.restarts = health.restarts;
+    health = other_health;
+    solution = std::move(other);
+  }
+  return true;
+}
+
+}  // namespace tumble

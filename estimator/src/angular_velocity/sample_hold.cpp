@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/angular_velocity/sample_hold.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "recording_check.hpp"
+
+namespace tumble {
+
+namespace {
+
+constexpr double kMoving_rad_s = 0.3, kRepeatsMin = 0.05, kAgreementMin = 0.9;
+constexpr std::size_t kMovingMin = 30, kMovingMax = 1000;
+// Clocks tried: periods about the mean one (as a share of it), phases; the same again about the best.
+constexpr int kPeriods = 100, kPhases = 24, kFine = 10;
+constexpr double kPeriodShare = 0.03;
+
+// A clock in units of the time from sample to sample.
+struct Clock {
+  double period = 1.0, phase = 0.0;
+  double reading(double sample) const { return std::floor((sample - phase) / period); }
+  double age(double sample) const { return sample - phase - period * reading(sample); }
+};
+
+double agreement(const Clock& clock, std::span<const std::size_t> moving, const std::vector<bool>& repeats) {
+  std::size_t same = 0;
+  for (const std::size_t k : moving) {
+    const auto at = static_cast<double>(k);
+    same += (clock.reading(at) == clock.reading(at - 1.0)) == repeats[k];
+  }
+  return static_cast<double>(same) / static_cast<double>(moving.size());
+}
+
+// Of the clocks about `first` the middle one of those that explain most, which stand side by side.
+Clock best_clock(const Clock& first, double reach, int periods, std::span<const std::size_t> moving,
+                 const std::vector<bool>& repeats, double& found) {
+  Clock best = first;
+  found = -1.0;
+  for (int i = -periods; i <= periods; ++i) {
+    Clock tried{first.period * (1.0 + reach * i / periods), 0.0};
+    // the phase at the middle of the motion stays as the period changes
+    const auto middle = static_cast<double>(moving[moving.size() / 2]);
+    double run_first = 0.0, run_best = -1.0;
+    int run = 0;
+    for (int p = 0; p < kPhases; ++p) {
+      tried.phase = middle + tried.period * p / kPhases;
+      const double share = agreement(tried, moving, repeats);
+      if (share > run_best) {
+        run_best = share;
+        run_first = tried.phase;
+        run = 1;
+      } else if (share == run_best && run > 0 && tried.phase < run_first + tried.period * (run + 0.5) / kPhases) {
+        ++run;
+      }
+    }
+    if (run_best <= found) continue;
+    found = run_best;
+    best = {tried.period, run_first + 0.5 * tried.period * (run - 1) / kPhases};
+  }
+  return best;
+}
+
+}  // namespace
+
+std::optional<HeldReadings> find_held(std::span<const ImuSample> samples, Triad triad) {
+  HeldReadings out;
+  out.repeats.assign(samples.size(), false);
+  out.age_s.assign(samples.size(), 0.0);
+  std::vector<std::size_t> moving;
+  std::size_t repeated = 0;
+  for (std::size_t k = 1; k < samples.size(); ++k) {
+    const ImuSample &now = samples[k], &before = samples[k - 1];
+    out.repeats[k] = triad == Triad::gyro ? now.angular_velocity_rad_s == before.angular_velocity_rad_s
+                                          : now.specific_force_m_s2 == before.specific_force_m_s2;
+    if (now.angular_velocity_rad_s.norm() < kMoving_rad_s || moving.size() == kMovingMax) continue;
+    moving.push_back(k);
+    repeated += out.repeats[k] ? 1 : 0;
+  }
+  const auto count = static_cast<double>(moving.size());
+  if (moving.size() < kMovingMin || static_cast<double>(repeated) < kRepeatsMin * count) return std::nullopt;
+  Clock clock{1.0 / (1.0 - std::min(0.95, static_cast<double>(repeated) / count)), 0.0};
+  clock = best_clock(clock, kPeriodShare, kPeriods, moving, out.repeats, out.agreement);
+  clock = best_clock(clock, 2.0 * kPeriodShare / kPeriods, kFine, moving, out.repeats, out.agreement);
+  const double sample_s = median_period_s(samples);
+  out.period_s = clock.period * sample_s;
+  if (out.agreement < kAgreementMin) return out;
+  for (std::size_t k = 0; k < samples.size(); ++k) out.age_s[k] = clock.age(static_cast<double>(k)) * sample_s;
+  return out;
+}
+
+}  // namespace tumble

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/angular_velocity/sensor_errors.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace tumble {
+
+namespace {
+
+using Vector = SensorErrors::Vector;
+using Matrix = SensorErrors::Matrix;
+using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+// Sizes between sheet (0) and unknown (1), and how likely each is beforehand.
+struct Size {
+  double share, probability;
+};
+constexpr std::array<Size, 2> kScaleSizes = {{{0.0, 0.7}, {1.0, 0.3}}};
+constexpr std::array<Size, 3> kCrossSizes = {{{0.0, 0.5}, {0.5, 0.2}, {1.0, 0.3}}};
+constexpr std::array<Size, 2> kFeltSizes = {{{0.0, 0.6}, {1.0, 0.4}}};
+constexpr std::array<Size, 2> kDelaySizes = {{{0.0, 0.6}, {1.0, 0.4}}};
+
+// least deviation, so that each prior can be inverted
+constexpr double kLeast = 1e-9;
+
+double between(double sheet, double unknown, double share) {
+  return std::max(kLeast, unknown <= sheet ? sheet : sheet * std::pow(unknown / std::max(kLeast, sheet), share));
+}
+
+// Of one device; shares of its sizes.
+struct Shares {
+  double scale = 1.0, cross = 1.0, felt = 1.0, delay = 1.0;
+};
+
+Vector deviations(const SensorErrorSizes& s, const Shares& shares) {
+  Vector out;
+  const double delay = between(s.delay_s, s.delay_unknown_s, shares.delay);
+  out << Eigen::Matrix<double, 9, 1>::Constant(between(s.gyro, s.gyro_unknown, shares.cross)),
+      Eigen::Matrix<double, 9, 1>::Constant(between(s.accel, s.accel_unknown, shares.cross)),
+      Eigen::Matrix<double, 9, 1>::Constant(between(s.felt_s_m, s.felt_unknown_s_m, shares.felt)), delay, delay * delay;
+  for (int i = 0; i < 3; ++i) {
+    out[4 * i] = between(s.gyro, s.gyro_unknown, shares.scale);
+    out[SensorErrors::kAccel + 4 * i] = between(s.accel, s.accel_unknown, shares.scale);
+  }
+  return out;
+}
+
+// Probability of what the sheet states below which the readings speak plainly against it.
+constexpr double kPlain = 0.05;
+
+// A run's samples err in common (what the model of flight misses lasts longer than a sample): of what they say of
+// values this share is believed in the covariance. Which device it is they tell by all of it.
+constexpr double kBelieved = 0.03;
+
+struct Hypothesis {
+  Shares shares;
+  double log_odds = 0.0;
+  Vector mean;
+  Matrix covariance;
+};
+
+// Evidence in units of the prior's deviations: h = sum over the readings of information * errors.
+Hypothesis posterior(const Matrix& information, const Vector& h, const Vector& deviation, double log_prior) {
+  constexpr int kRest = SensorErrors::kSize - SensorErrors::kFelt;
+  const Matrix scaled = deviation.asDiagonal() * information * deviation.asDiagonal();
+  const Vector scaled_h = deviation.cwiseProduct(h);
+  Hypothesis out;
+  const Matrix sharp = Matrix::Identity() + scaled;
+  const Eigen::LLT<Matrix> all(sharp), believed(Matrix::Identity() + kBelieved * scaled);
+  double log_determinant = 0.0;
+  for (int i = 0; i < SensorErrors::kSize; ++i) log_determinant += std::log(all.matrixLLT()(i, i));
+  out.log_odds = log_prior + 0.5 * scaled_h.dot(all.solve(scaled_h)) - log_determinant;
+  // scale and misalignment stay what they are held for: what the model of flight misses looks like them
+  Vector mean = Vector::Zero();
+  mean.tail<kRest>() = sharp.bottomRightCorner<kRest, kRest>().llt().solve(scaled_h.tail<kRest>());
+  out.mean = deviation.cwiseProduct(mean);
+  out.covariance = deviation.asDiagonal() * believed.solve(Matrix::Identity()) * deviation.asDiagonal();
+  return out;
+}
+
+// The information without what rounding leaves below zero.
+Matrix evidence_of(const Matrix& information, const SensorErrorSizes& sizes) {
+  const Vector unit = deviations(sizes, {});
+  const Matrix scaled = unit.asDiagonal() * (0.5 * (information + information.transpose())) * unit.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Matrix> parts(scaled);
+  const Matrix positive =
+      parts.eigenvectors() * parts.eigenvalues().cwiseMax(0.0).asDiagonal() * parts.eigenvectors().transpose();
+  return unit.cwiseInverse().asDiagonal() * positive * unit.cwiseInverse().asDiagonal();
+}
+
+}  // namespace
+
+Vector SensorErrors::vector() const {
+  Vector v;
+  const RowMajor g = gyro, a = accel, f = felt_s_m;
+  v << g.reshaped<Eigen::RowMajor>(), a.reshaped<Eigen::RowMajor>(), f.reshaped<Eigen::RowMajor>(), accel_delay_s,
+      accel_blur_s2;
+  return v;
+}
+
+SensorErrors SensorErrors::from(const Vector& v) {
+  SensorErrors out;
+  out.gyro = v.segment<9>(0).reshaped<Eigen::RowMajor>(3, 3);
+  out.accel = v.segment<9>(kAccel).reshaped<Eigen::RowMajor>(3, 3);
+  out.felt_s_m = v.segment<9>(kFelt).reshaped<Eigen::RowMajor>(3, 3);
+  out.accel_delay_s = v[kDelay];
+  out.accel_blur_s2 = v[kBlur];
+  return out;
+}
+
+SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const SensorErrorSizes& sizes) {
+  const Matrix information = evidence_of(evidence.information, sizes);
+  const Vector h = evidence.gradient + information * evidence.about.vector();
+  const bool one_matrix = sizes.gyro_unknown <= sizes.gyro && sizes.accel_unknown <= sizes.accel;
+  const bool one_felt = sizes.felt_unknown_s_m <= sizes.felt_s_m, one_delay = sizes.delay_unknown_s <= sizes.delay_s;
+  std::vector<Hypothesis> all;
+  for (std::size_t i = 0; i < (one_matrix ? 1 : kScaleSizes.size()); ++i) {
+    for (std::size_t m = 0; m < (one_matrix ? 1 : kCrossSizes.size()); ++m) {
+      for (std::size_t f = 0; f < (one_felt ? 1 : kFeltSizes.size()); ++f) {
+        for (std::size_t d = 0; d < (one_delay ? 1 : kDelaySizes.size()); ++d) {
+          const Size scale = kScaleSizes[i], cross = kCrossSizes[m], felt = kFeltSizes[f], delay = kDelaySizes[d];
+          const Shares shares{scale.share, cross.share, felt.share, delay.share};
+          const double prior = scale.probability * cross.probability * felt.probability * delay.probability;
+          all.push_back(posterior(information, h, deviations(sizes, shares), std::log(prior)));
+          all.back().shares = shares;
+        }
+      }
+    }
+  }
+  double best = all.front().log_odds, sum = 0.0;
+  for (const Hypothesis& one : all) best = std::max(best, one.log_odds);
+  for (Hypothesis& one : all) sum += one.log_odds = std::exp(one.log_odds - best);
+  SensorErrorFit out{{}, 0.0, 0.0};
+  for (Hypothesis& one : all) {
+    one.log_odds /= sum;
+    if (one.shares.scale == 0.0) out.calibrated += one.log_odds;
+    if (one.shares.delay == 0.0) out.together += one.log_odds;
+  }
+  // the sheet's word holds for what readings are corrected for until they speak plainly against it
+  Vector mean = Vector::Zero();
+  double kept = 0.0;
+  for (const Hypothesis& one : all) {
+    if (out.together > kPlain && one.shares.delay > 0.0) continue;
+    mean += one.log_odds * one.mean;
+    kept += one.log_odds;
+  }
+  mean /= std::max(kept, 1e-300);
+  for (const Hypothesis& one : all) {
+    const Vector off = one.mean - mean;
+    out.known.covariance += one.log_odds * (one.covariance + off * off.transpose());
+  }
+  out.known.errors = SensorErrors::from(mean);
+  return out;
+}
+
+}  // namespace tumble

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// rate_devices FIRST LAST [--method NAME]... [--keep FOLDER] [--row N]: what real devices do besides clipping, one row
+// each, on the same draws of `hill` without lidar: the accelerometer late, a gyro's window too long, a low-pass, errors
+// of scale, g-sensitivity, readings that repeat, and all of it together (`hill_consumer`). Prints for each method of
+// kind `rate` the error at clipped samples, the same against the first row, the share of clipped axes within three
+// reported deviations (all draws, the worst draw) and their mean squared error over variance. FOLDER keeps recordings.
+// Not a test: 2 to 3 s of one core a draw and row.
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scenarios/draw/scenario.hpp"
+#include "scenarios/draw/without_lidars.hpp"
+#include "scenarios/recordings/recording_file.hpp"
+#include "scenarios/sweep/evaluate.hpp"
+#include "scenarios/sweep/statistics.hpp"
+#include "sim/simulate.hpp"
+#include "tests/bench/rate_pool.hpp"
+#include "tests/tree.hpp"
+
+namespace {
+
+namespace bench = tumble::bench;
+namespace scenarios = tumble::scenarios;
+namespace sim = tumble::sim;
+using bench::RatePool;
+
+struct Row {
+  std::string title, scenario;
+  std::vector<std::pair<std::string, double>> changes;  ///< of the primary IMU's numbers
+};
+
+const std::vector<Row>& rows() {
+  static const std::vector<Row> kRows = {
+      {"as it is", "hill", {}},
+      {"accelerometer 10 ms late", "hill", {{"accel_delay_s", 0.01}}},
+      {"gyro window 20 ms", "hill", {{"gyro_window_s", 0.02}}},
+      {"accelerometer low-passed 20 Hz", "hill", {{"accel_bandwidth_hz", 20.0}}},
+      {"scale errors of 1 %", "hill", {{"gyro_scale_error", 0.01}, {"accel_scale_error", 0.01}}},
+      {"g-sensitivity 0.1 deg/s/g", "hill", {{"gyro_g_sensitivity_spread_s_m", 1.7797e-4}}},
+      {"gyro repeats, 62.5 Hz", "hill", {{"gyro_update_hz", 62.5}}},
+      {"accelerometer repeats, 50 Hz", "hill", {{"accel_update_hz", 50.0}}},
+      {"hill_consumer", "hill_consumer", {}},
+  };
+  return kRows;
+}
+
+struct Request {
+  std::uint64_t first = 0, last = 0;
+  std::vector<std::string> methods;
+  std::filesystem::path keep;
+  int row = -1;
+};
+
+bool parse(int count, char** words, Request& request) {
+  std::vector<std::string> plain;
+  for (int i = 1; i < count; ++i) {
+    const std::string word = words[i];
+    const bool option = word == "--method" || word == "--keep" || word == "--row";
+    if (option && i + 1 == count) return false;
+    if (word == "--method") {
+      request.methods.emplace_back(words[++i]);
+    } else if (word == "--keep") {
+      request.keep = words[++i];
+    } else if (word == "--row") {
+      request.row = std::atoi(words[++i]);
+    } else {
+      plain.push_back(word);
+    }
+  }
+  if (plain.size() != 2) return false;
+  request.first = std::strtoull(plain[0].c_str(), nullptr, 10);
+  request.last = std::strtoull(plain[1].c_str(), nullptr, 10);
+  if (request.methods.empty()) request.methods = {"raw", "tumble", "oracle"};
+  return true;
+}
+
+sim::Recording recording_of(const scenarios::DataRoot& data, const Row& row, std::size_t index, std::uint64_t seed,
+                            const std::filesystem::path& keep) {
+  const std::filesystem::path file = keep / ("row" + std::to_string(index) + "_" + std::to_string(seed) + ".h5");
+  if (!keep.empty() && std::filesystem::exists(file)) {
+    return {scenarios::read_sensors(file), scenarios::read_truth(file)};
+  }
+  const scenarios::Scenario scenario = scenarios::load_scenario(data, row.scenario);
+  sim::Situation situation = scenarios::without_lidars(scenarios::draw(data, scenario, seed));
+  for (const auto& [name, value] : row.changes) situation.sensors.front().values.set(name, value);
+  sim::Recording recording = sim::simulate(situation, {data.models(), 1});
+  if (!keep.empty()) {
+    std::filesystem::create_directories(keep);
+    scenarios::RecordingInfo info;
+    info.scenario = scenario.name;
+    info.seed = seed;
+    info.situation_yaml = scenarios::to_yaml(situation);
+    scenarios::write_recording(file, info, recording.sensors, &recording.truth);
+  }
+  return recording;
+}
+
+std::vector<double> normalised(const RatePool& pool) {
+  std::vector<double> out(pool.normalised_flight().begin(), pool.normalised_flight().end());
+  out.insert(out.end(), pool.normalised_contact().begin(), pool.normalised_contact().end());
+  return out;
+}
+
+double within(const std::vector<double>& normalised, std::size_t first = 0) {
+  if (normalised.size() == first) return 1.0;
+  const auto begin = normalised.begin() + static_cast<std::ptrdiff_t>(first);
+  const auto count = std::count_if(begin, normalised.end(), [](double z) { return z <= 9.0; });
+  return static_cast<double>(count) / static_cast<double>(normalised.size() - first);
+}
+
+// One method over all draws of a row.
+struct Figures {
+  double median = 0.0, p99 = 0.0, free = 0.0, share = 0.0, worst = 1.0, nees = 0.0, us = 0.0;
+};
+
+Figures figures(const Request& request, const std::vector<sim::Recording>& recordings, const std::string& name) {
+  RatePool pool(name);
+  Figures out;
+  const scenarios::Method& method = *scenarios::find_methods("rate/" + name).front();
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    const sim::Recording& recording = recordings[i];
+    const double start_s = scenarios::process_cpu_s();
+    const scenarios::Estimate estimate =
+        method.run(recording.sensors, {}, {method.info.needs_truth ? &recording.truth : nullptr});
+    const std::size_t flights = pool.normalised_flight().size(), contacts = pool.normalised_contact().size();
+    pool.add(request.first + i, recording, estimate, scenarios::process_cpu_s() - start_s);
+    std::vector<double> own(pool.normalised_flight().begin() + static_cast<std::ptrdiff_t>(flights),
+                            pool.normalised_flight().end());
+    own.insert(own.end(), pool.normalised_contact().begin() + static_cast<std::ptrdiff_t>(contacts),
+               pool.normalised_contact().end());
+    out.worst = std::min(out.worst, within(own));
+  }
+  const std::vector<double> all = normalised(pool);
+  out.median = scenarios::quantile(pool.clipped_rad_s(), 0.5);
+  out.p99 = scenarios::quantile(pool.clipped_rad_s(), 0.99);
+  out.free = scenarios::quantile(pool.free_rad_s(), 0.5);
+  out.share = within(all);
+  for (const double z : all) out.nees += z / static_cast<double>(all.size());
+  out.us = pool.cpu_us_per_sample();
+  return out;
+}
+
+int run(const Request& request) {
+  const scenarios::DataRoot data{tumble::test::source_dir()};
+  std::printf("draws %llu to %llu; errors at clipped samples [rad/s], within 3 sigma [%%]\n",
+              static_cast<unsigned long long>(request.first), static_cast<unsigned long long>(request.last));
+  std::printf("%-31s %-12s %8s %7s %8s %8s %7s %7s %8s %7s\n", "device", "method", "median", "against", "p99", "free",
+              "within", "worst", "z^2", "us");
+  std::vector<double> as_it_is(request.methods.size(), 0.0);
+  for (std::size_t r = 0; r < rows().size(); ++r) {
+    if (request.row >= 0 && r != 0 && r != static_cast<std::size_t>(request.row)) continue;
+    std::vector<sim::Recording> recordings;
+    for (std::uint64_t seed = request.first; seed <= request.last; ++seed) {
+      try {
+        recordings.push_back(recording_of(data, rows()[r], r, seed, request.keep));
+      } catch (const sim::SimulationFailure& failure) {
+        std::printf("draw %llu left out: %s\n", static_cast<unsigned long long>(seed), failure.what());
+      }
+    }
+    for (std::size_t m = 0; m < request.methods.size(); ++m) {
+      const Figures f = figures(request, recordings, request.methods[m]);
+      if (r == 0) as_it_is[m] = f.median;
+      std::printf("%-31s %-12s %8.4f %6.2fx %8.3f %8.4f %7.2f %7.2f %8.2f %7.2f\n", rows()[r].title.c_str(),
+                  request.methods[m].c_str(), f.median, f.median / as_it_is[m], f.p99, f.free, 100.0 * f.share,
+                  100.0 * f.worst, f.nees, f.us);
+    }
+    std::fflush(stdout);
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+  Request request;
+  if (!parse(count, words, request)) {
+    std::fprintf(stderr, "usage: rate_devices FIRST LAST [--method NAME]... [--keep FOLDER] [--row N]\n");
+    return 2;
+  }
+  try {
+    return run(request);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
+  }
+}
