@@ -23,6 +23,8 @@ constexpr const char* kKeys[] = {"lever_arm_m", "gyro_bias_rad_s", "accel_bias_m
                                  "covariance",  "gyro_rail_rad_s", "accel_rail_m_s2"};
 // Of files since the gyro's elements are learnt; the covariance of those before has that many rows.
 constexpr const char* kElementsKey = "gyro_elements";
+// Of files since rails are known as planes.
+constexpr const char* kOffsetKey = "gyro_rail_offset_rad_s";
 constexpr int kWithoutElements = RigConstants::kElements;
 
 template <typename Array>
@@ -75,6 +77,15 @@ class Reader {
     }
   }
 
+  void read_offsets(const char* key, LearntRig& rig) const {
+    const json& values = array(key, 3);
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (values[j].is_null()) continue;
+      if (!values[j].is_number() || !(std::abs(values[j].get<double>()) < kMost)) complain(key, "a number, or null");
+      rig.gyro_rail_offset_rad_s[j] = values[j].get<double>();
+    }
+  }
+
  private:
   const std::filesystem::path& path_;
   const json& object_;
@@ -91,13 +102,44 @@ std::optional<double> lowest(const LearntRig& rig, std::size_t first) {
 }  // namespace
 
 LearntRig learnt(const RateReport& report) {
-  return {report.calibration, report.rail};
+  LearntRig out{report.calibration, report.rail, {}};
+  for (std::size_t j = 0; j < 3 && !report.rails_upright; ++j) {
+    if (report.planes.element[j]) out.gyro_rail_offset_rad_s[j] = report.planes.element[j]->offset_rad_s;
+  }
+  return out;
+}
+
+RailPlanes LearntRig::planes() const {
+  // a device keeps its rails to 0.05 %, their offset drifts with the bias; a reading within this share is at the rail
+  constexpr double kToleranceShare = 2e-3, kDistanceShare = 1e-3;
+  RailPlanes out;
+  for (int j = 0; j < 3; ++j) {
+    const auto i = static_cast<std::size_t>(j);
+    if (!rail[i] || !gyro_rail_offset_rad_s[i]) continue;
+    const Eigen::Index first = RigConstants::kElements + 2 * j;
+    RailPlane plane;
+    plane.row = calibration.constants.element_row(j);
+    plane.distance_rad_s = *rail[i];
+    plane.offset_rad_s = *gyro_rail_offset_rad_s[i];
+    const double distance = kDistanceShare * *rail[i];
+    plane.covariance.diagonal() << 0.0, 0.0, distance * distance, distance * distance;
+    plane.covariance.topLeftCorner<2, 2>() = calibration.covariance.block<2, 2>(first, first);
+    plane.samples = {1, 1};
+    plane.deviation_rad_s = 0.25 * kToleranceShare * *rail[i];
+    plane.tolerance_rad_s = kToleranceShare * *rail[i];
+    out.element[i] = plane;
+  }
+  return out;
 }
 
 void start_from(const LearntRig& rig, double trust, RateSmoother::Params& params) {
   if (!(trust >= 1.0)) throw std::invalid_argument("trust is " + std::to_string(trust) + ", bound [1, inf)");
   params.model.calibration = rig.calibration;
   params.model.calibration->covariance *= trust;
+  params.planes.known = rig.planes();
+  for (std::optional<RailPlane>& plane : params.planes.known.element) {
+    if (plane) plane->covariance *= trust;
+  }
   if (const auto rail = lowest(rig, 0)) params.rails.stated_gyro_rad_s = rail;
   if (const auto rail = lowest(rig, 3)) params.rails.stated_accel_m_s2 = rail;
 }
@@ -113,6 +155,10 @@ void write_learnt_rig(const std::filesystem::path& path, const LearntRig& rig) {
   object["covariance"] = numbers(rig.calibration.covariance);
   object["gyro_rail_rad_s"] = rails(rig, 0);
   object["accel_rail_m_s2"] = rails(rig, 3);
+  json offsets = json::array();
+  for (const std::optional<double>& offset : rig.gyro_rail_offset_rad_s)
+    offsets.push_back(offset ? json(*offset) : json());
+  object[kOffsetKey] = offsets;
   replace_file(path, object.dump(1) + "\n");
 }
 
@@ -126,7 +172,8 @@ LearntRig read_learnt_rig(const std::filesystem::path& path) {
     if (!object.contains(key)) reader.complain(key, "missing");
   }
   for (const auto& [key, value] : object.items()) {
-    const bool known = key == kElementsKey || std::find(std::begin(kKeys), std::end(kKeys), key) != std::end(kKeys);
+    const bool known = key == kElementsKey || key == kOffsetKey ||
+                       std::find(std::begin(kKeys), std::end(kKeys), key) != std::end(kKeys);
     if (!known) reader.complain(key, "unknown key");
   }
   LearntRig rig;
@@ -152,6 +199,7 @@ LearntRig read_learnt_rig(const std::filesystem::path& path) {
   }
   reader.read_rails("gyro_rail_rad_s", 0, rig);
   reader.read_rails("accel_rail_m_s2", 3, rig);
+  if (object.contains(kOffsetKey)) reader.read_offsets(kOffsetKey, rig);
   return rig;
 }
 

@@ -25,6 +25,7 @@ class RigCalibrationFile : public testing::TemporaryFolder {
     rig.calibration.covariance = 0.7e-4 * RigConstants::Matrix::Identity();
     rig.calibration.covariance(0, 4) = rig.calibration.covariance(4, 0) = 2e-7;
     rig.rail = {10.5, std::nullopt, 10.4, std::nullopt, std::nullopt, std::nullopt};
+    rig.gyro_rail_offset_rad_s = {std::nullopt, std::nullopt, -0.05};
     return rig;
   }
 
@@ -58,6 +59,11 @@ TEST_F(RigCalibrationFile, ComesBackTheSameToTheBit) {
   EXPECT_TRUE(back.calibration.constants == example().calibration.constants);
   EXPECT_EQ(back.calibration.covariance, example().calibration.covariance);
   EXPECT_EQ(back.rail, example().rail);
+  EXPECT_EQ(back.gyro_rail_offset_rad_s, example().gyro_rail_offset_rad_s);
+  EXPECT_TRUE(back.planes() == example().planes());
+  EXPECT_FALSE(back.planes().element[0].has_value());
+  ASSERT_TRUE(back.planes().element[2].has_value());
+  EXPECT_DOUBLE_EQ(back.planes().element[2]->distance_rad_s, 10.4);
 }
 
 TEST_F(RigCalibrationFile, ComplaintsNameTheKey) {
