@@ -52,10 +52,9 @@ LearntRig learnt_by(const RateStream& stream, const RateStream::Params& params, 
     std::optional<double>& rail = rig.rail[static_cast<std::size_t>(c)];
     rail = walls.rail(known.walls, c);
     if (c >= 3 || !known.planes.element[static_cast<std::size_t>(c)]) continue;
-    const RailPlane& plane = *known.planes.element[static_cast<std::size_t>(c)];
-    rail = plane.distance_rad_s;
-    if (!known.upright) rig.gyro_rail_offset_rad_s[static_cast<std::size_t>(c)] = plane.offset_rad_s;
+    rail = known.planes.element[static_cast<std::size_t>(c)]->distance_rad_s;
   }
+  if (!known.upright) rig.keep(known.planes);
   return rig;
 }
 

@@ -24,7 +24,9 @@ constexpr const char* kKeys[] = {"lever_arm_m", "gyro_bias_rad_s", "accel_bias_m
 // Of files since the gyro's elements are learnt; the covariance of those before has that many rows.
 constexpr const char* kElementsKey = "gyro_elements";
 // Of files since rails are known as planes.
-constexpr const char* kOffsetKey = "gyro_rail_offset_rad_s";
+constexpr const char* kPlanesKey = "gyro_planes_rad_s";
+// A tumble holds a top that looks like a rail now and then: planes less sure than this are not handed on.
+constexpr double kSureLogOdds = 10.0;
 constexpr int kWithoutElements = RigConstants::kElements;
 
 template <typename Array>
@@ -77,12 +79,19 @@ class Reader {
     }
   }
 
-  void read_offsets(const char* key, LearntRig& rig) const {
+  void read_planes(const char* key, LearntRig& rig) const {
     const json& values = array(key, 3);
     for (std::size_t j = 0; j < 3; ++j) {
-      if (values[j].is_null()) continue;
-      if (!values[j].is_number() || !(std::abs(values[j].get<double>()) < kMost)) complain(key, "a number, or null");
-      rig.gyro_rail_offset_rad_s[j] = values[j].get<double>();
+      if (!values[j].is_array() || values[j].size() != 2) complain(key, "needs 3 pairs of rails");
+      for (std::size_t i = 0; i < 2; ++i) {
+        const json& rail = values[j][i];
+        if (rail.is_null()) continue;
+        const bool sound = rail.is_number() && (i == 0 ? rail.get<double>() < 0.0 : rail.get<double>() > 0.0);
+        if (!sound || std::abs(rail.get<double>()) > kMost) {
+          complain(key, "a pair is a negative and a positive rail of at most 1e6, or null");
+        }
+        rig.gyro_planes_rad_s[j][i] = rail.get<double>();
+      }
     }
   }
 
@@ -103,10 +112,20 @@ std::optional<double> lowest(const LearntRig& rig, std::size_t first) {
 
 LearntRig learnt(const RateReport& report) {
   LearntRig out{report.calibration, report.rail, {}};
-  for (std::size_t j = 0; j < 3 && !report.rails_upright; ++j) {
-    if (report.planes.element[j]) out.gyro_rail_offset_rad_s[j] = report.planes.element[j]->offset_rad_s;
-  }
+  if (!report.rails_upright) out.keep(report.planes);
   return out;
+}
+
+void LearntRig::keep(const RailPlanes& planes) {
+  for (std::size_t j = 0; j < 3; ++j) {
+    const std::optional<RailPlane>& plane = planes.element[j];
+    if (plane && plane->log_odds < kSureLogOdds) continue;
+    for (const int sign : {-1, 1}) {
+      if (plane && plane->seen(sign)) {
+        gyro_planes_rad_s[j][sign > 0 ? 1 : 0] = plane->offset_rad_s + sign * plane->distance_rad_s;
+      }
+    }
+  }
 }
 
 RailPlanes LearntRig::planes() const {
@@ -114,20 +133,21 @@ RailPlanes LearntRig::planes() const {
   constexpr double kToleranceShare = 2e-3, kDistanceShare = 1e-3;
   RailPlanes out;
   for (int j = 0; j < 3; ++j) {
-    const auto i = static_cast<std::size_t>(j);
-    if (!rail[i] || !gyro_rail_offset_rad_s[i]) continue;
+    const auto& [low, high] = gyro_planes_rad_s[static_cast<std::size_t>(j)];
+    if (!low && !high) continue;
     const Eigen::Index first = RigConstants::kElements + 2 * j;
     RailPlane plane;
     plane.row = calibration.constants.element_row(j);
-    plane.distance_rad_s = *rail[i];
-    plane.offset_rad_s = *gyro_rail_offset_rad_s[i];
-    const double distance = kDistanceShare * *rail[i];
-    plane.covariance.diagonal() << 0.0, 0.0, distance * distance, distance * distance;
+    plane.distance_rad_s = low && high ? 0.5 * (*high - *low) : low ? -*low : *high;
+    plane.offset_rad_s = low && high ? 0.5 * (*high + *low) : 0.0;
+    const double sigma = kDistanceShare * plane.distance_rad_s;
+    plane.covariance.diagonal() << 0.0, 0.0, sigma * sigma, sigma * sigma;
     plane.covariance.topLeftCorner<2, 2>() = calibration.covariance.block<2, 2>(first, first);
-    plane.samples = {1, 1};
-    plane.deviation_rad_s = 0.25 * kToleranceShare * *rail[i];
-    plane.tolerance_rad_s = kToleranceShare * *rail[i];
-    out.element[i] = plane;
+    plane.samples = {low ? 1 : 0, high ? 1 : 0};
+    plane.log_odds = kSureLogOdds;
+    plane.tolerance_rad_s = kToleranceShare * plane.distance_rad_s;
+    plane.deviation_rad_s = 0.25 * plane.tolerance_rad_s;
+    out.element[static_cast<std::size_t>(j)] = plane;
   }
   return out;
 }
@@ -155,10 +175,11 @@ void write_learnt_rig(const std::filesystem::path& path, const LearntRig& rig) {
   object["covariance"] = numbers(rig.calibration.covariance);
   object["gyro_rail_rad_s"] = rails(rig, 0);
   object["accel_rail_m_s2"] = rails(rig, 3);
-  json offsets = json::array();
-  for (const std::optional<double>& offset : rig.gyro_rail_offset_rad_s)
-    offsets.push_back(offset ? json(*offset) : json());
-  object[kOffsetKey] = offsets;
+  json planes = json::array();
+  for (const auto& [low, high] : rig.gyro_planes_rad_s) {
+    planes.push_back({low ? json(*low) : json(), high ? json(*high) : json()});
+  }
+  object[kPlanesKey] = planes;
   replace_file(path, object.dump(1) + "\n");
 }
 
@@ -172,7 +193,7 @@ LearntRig read_learnt_rig(const std::filesystem::path& path) {
     if (!object.contains(key)) reader.complain(key, "missing");
   }
   for (const auto& [key, value] : object.items()) {
-    const bool known = key == kElementsKey || key == kOffsetKey ||
+    const bool known = key == kElementsKey || key == kPlanesKey ||
                        std::find(std::begin(kKeys), std::end(kKeys), key) != std::end(kKeys);
     if (!known) reader.complain(key, "unknown key");
   }
@@ -199,7 +220,7 @@ LearntRig read_learnt_rig(const std::filesystem::path& path) {
   }
   reader.read_rails("gyro_rail_rad_s", 0, rig);
   reader.read_rails("accel_rail_m_s2", 3, rig);
-  if (object.contains(kOffsetKey)) reader.read_offsets(kOffsetKey, rig);
+  if (object.contains(kPlanesKey)) reader.read_planes(kPlanesKey, rig);
   return rig;
 }
 

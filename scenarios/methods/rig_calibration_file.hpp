@@ -13,12 +13,14 @@ namespace tumble::scenarios {
 struct LearntRig {
   RigCalibration calibration;
   std::array<std::optional<double>, 6> rail;  ///< gyro x y z [rad/s], accelerometer x y z [m/s^2]; none: not seen
-  /// Of the gyro's elements whose rail was seen as a plane, as RailPlane has it: then `rail` is its distance and
-  /// RigConstants::elements its slopes. None: not seen, or upright.
-  std::array<std::optional<double>, 3> gyro_rail_offset_rad_s;
+  /// Of the gyro's elements whose rail was seen as a plane, where it cuts the element's row: negative and positive
+  /// sign. Its slopes are RigConstants::elements. None: not seen, or upright.
+  std::array<std::array<std::optional<double>, 2>, 3> gyro_planes_rad_s;
 
   /// The rails of the gyro's elements, for the search of the next run.
   RailPlanes planes() const;
+  /// Keeps where planes cut their rows.
+  void keep(const RailPlanes& planes);
 };
 
 /// What a run has learnt. When the run held its constants (RateReport::rig_held) that is what it was given.

@@ -329,20 +329,11 @@ RailPlanes RailPlaneFinder::find(std::span<const Vector3d> readings_rad_s, const
   if (readings.rates.size() < static_cast<std::size_t>(params_.samples_min) + 2)
     return with_known(found, readings.rates);
   std::array<std::array<std::optional<Side>, 2>, 3> sides;
-  const auto look = [&](int axis, int i, const RailPlanes& known) {
-    FacetPrior prior{Vector2d::Zero(), Matrix2d::Identity() / (params_.slope_sigma * params_.slope_sigma)};
-    double range = params_.slope_max;
-    if (const auto& rail = known.element[static_cast<std::size_t>(axis)]) {
-      const Matrix2d of_slopes = rail->covariance.topLeftCorner<2, 2>();
-      prior = {others(rail->row, axis), (of_slopes + 1e-6 * Matrix2d::Identity()).inverse()};
-      range = std::min(range, 3.0 * std::sqrt(of_slopes.trace()) + 1e-3);
-    } else if (const auto& earlier = params_.known.element[static_cast<std::size_t>(axis)]) {
-      const Matrix2d of_slopes = earlier->covariance.topLeftCorner<2, 2>();
-      prior.slopes = others(earlier->row, axis);
-      prior.information = (of_slopes + kKnownSlopeSigma * kKnownSlopeSigma * Matrix2d::Identity()).inverse();
-    }
-    Side side{axis, i == 0 ? -1 : 1, {}, {}};
-    const std::optional<Extreme> extreme = find_extreme(params_, readings, axis, side.sign, prior, range, workspace);
+  const Matrix2d unknown = Matrix2d::Identity() / (params_.slope_sigma * params_.slope_sigma);
+  // the best facet about what is known of the slopes
+  const auto look_about = [&](int axis, int sign, const RailPlanes& known, const FacetPrior& prior, double range) {
+    Side side{axis, sign, {}, {}};
+    const std::optional<Extreme> extreme = find_extreme(params_, readings, axis, sign, prior, range, workspace);
     if (!extreme) return side;
     const Vector2d searched = search_slopes(readings, *extreme, range, prior, workspace);
     for (const Vector2d& slopes : {searched, prior.slopes}) {
@@ -355,6 +346,24 @@ RailPlanes RailPlaneFinder::find(std::span<const Vector3d> readings_rad_s, const
       }
     }
     return side;
+  };
+  const auto look = [&](int axis, int i, const RailPlanes& known) {
+    const int sign = i == 0 ? -1 : 1;
+    if (const auto& rail = known.element[static_cast<std::size_t>(axis)]) {
+      const Matrix2d of_slopes = rail->covariance.topLeftCorner<2, 2>();
+      const FacetPrior prior{others(rail->row, axis), (of_slopes + 1e-6 * Matrix2d::Identity()).inverse()};
+      const double range = std::min(params_.slope_max, 3.0 * std::sqrt(of_slopes.trace()) + 1e-3);
+      return look_about(axis, sign, known, prior, range);
+    }
+    const Side side = look_about(axis, sign, known, {Vector2d::Zero(), unknown}, params_.slope_max);
+    const auto& earlier = params_.known.element[static_cast<std::size_t>(axis)];
+    if (!earlier) return side;
+    // the device of the earlier run, or another
+    const Matrix2d changed =
+        earlier->covariance.topLeftCorner<2, 2>() + kKnownSlopeSigma * kKnownSlopeSigma * Matrix2d::Identity();
+    const double range = std::min(params_.slope_max, 3.0 * std::sqrt(changed.trace()));
+    const Side same = look_about(axis, sign, known, {others(earlier->row, axis), changed.inverse()}, range);
+    return same.log_odds > side.log_odds ? same : side;
   };
   // what is found of one element or sign tells of the others, so again until nothing is added
   for (bool added = true; added;) {
