@@ -6,7 +6,7 @@
 
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/rate_baseline.hpp"
-#include "tumble/angular_velocity/rail_planes.hpp"
+#include "tumble/angular_velocity/clipping_finder.hpp"
 
 namespace tumble::scenarios {
 
@@ -39,21 +39,18 @@ std::span<const sim::Parameter> carried_parameters() {
 
 ClippedElements find_clipped(const sim::ImuRecord& record, std::span<const ImuSample> samples,
                              std::vector<ClipSigns>& signs) {
-  std::vector<Clipping> found(samples.size());
-  RailDetector::State state;
-  RailDetector(stated_rails(record)).classify_all(samples, state, found);
-  RailPlaneFinder::Params tilted;
-  tilted.stated_rad_s = stated_rails(record).stated_gyro_rad_s;
-  const RailPlanes planes = RailPlaneFinder(tilted).find(samples);
+  ClippingFinder::Params params;
+  params.walls = stated_rails(record);
+  const ClippingFinder::Found found = ClippingFinder(params).find(samples);
+  const RailPlanes& planes = found.rails.planes;
   signs.assign(samples.size(), {});
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    const ElementClipping at_planes = classify(samples[k], planes);
+    const Clipping& clipping = found.clippings[k];
     for (int j = 0; j < 3; ++j) {
       const auto i = static_cast<std::size_t>(j);
       const double rate = samples[k].angular_velocity_rad_s[j], force = samples[k].specific_force_m_s2[j];
-      if ((found[k].gyro >> j & 1) != 0) signs[k].gyro[i] = rate < 0.0 ? -1 : 1;
-      if (at_planes.sign[i] != 0) signs[k].gyro[i] = at_planes.sign[i];
-      if ((found[k].accel >> j & 1) != 0) signs[k].accel[i] = force < 0.0 ? -1 : 1;
+      if ((clipping.gyro >> j & 1) != 0) signs[k].gyro[i] = rate < 0.0 ? -1 : 1;
+      if ((clipping.accel >> j & 1) != 0) signs[k].accel[i] = force < 0.0 ? -1 : 1;
     }
   }
   ClippedElements out;

@@ -35,6 +35,7 @@ RateStream::Params stream_params(const sim::ImuRecord& record, const sim::Values
   RateStream::Params params;
   params.model = batch.model;
   params.rails = batch.rails;
+  params.planes = batch.planes;
   params.recovered_sigma_rad_s = batch.recovered_sigma_rad_s;
   params.rig_surprise_max = batch.rig_surprise_max;
   params.gap_max_s = batch.gap_max_s;
@@ -44,9 +45,16 @@ RateStream::Params stream_params(const sim::ImuRecord& record, const sim::Values
 }
 
 LearntRig learnt_by(const RateStream& stream, const RateStream::Params& params, const RateStream::State& state) {
-  LearntRig rig{stream.calibration(state), {}};
-  const RailDetector rails(params.rails);
-  for (int c = 0; c < 6; ++c) rig.rail[static_cast<std::size_t>(c)] = rails.rail(state.rails, c);
+  LearntRig rig{stream.calibration(state), {}, {}};
+  const RailDetector walls(params.rails);
+  const KnownRails& known = state.rails.known;
+  for (int c = 0; c < 6; ++c) {
+    std::optional<double>& rail = rig.rail[static_cast<std::size_t>(c)];
+    rail = walls.rail(known.walls, c);
+    if (c >= 3 || !known.planes.element[static_cast<std::size_t>(c)]) continue;
+    rail = known.planes.element[static_cast<std::size_t>(c)]->distance_rad_s;
+  }
+  if (!known.upright) rig.keep(known.planes);
   return rig;
 }
 

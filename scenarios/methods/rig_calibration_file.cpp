@@ -23,6 +23,10 @@ constexpr const char* kKeys[] = {"lever_arm_m", "gyro_bias_rad_s", "accel_bias_m
                                  "covariance",  "gyro_rail_rad_s", "accel_rail_m_s2"};
 // Of files since the gyro's elements are learnt; the covariance of those before has that many rows.
 constexpr const char* kElementsKey = "gyro_elements";
+// Of files since rails are known as planes.
+constexpr const char* kPlanesKey = "gyro_planes_rad_s";
+// A tumble holds a top that looks like a rail now and then: planes less sure than this are not handed on.
+constexpr double kSureLogOdds = 10.0;
 constexpr int kWithoutElements = RigConstants::kElements;
 
 template <typename Array>
@@ -75,6 +79,22 @@ class Reader {
     }
   }
 
+  void read_planes(const char* key, LearntRig& rig) const {
+    const json& values = array(key, 3);
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (!values[j].is_array() || values[j].size() != 2) complain(key, "needs 3 pairs of rails");
+      for (std::size_t i = 0; i < 2; ++i) {
+        const json& rail = values[j][i];
+        if (rail.is_null()) continue;
+        const bool sound = rail.is_number() && (i == 0 ? rail.get<double>() < 0.0 : rail.get<double>() > 0.0);
+        if (!sound || std::abs(rail.get<double>()) > kMost) {
+          complain(key, "a pair is a negative and a positive rail of at most 1e6, or null");
+        }
+        rig.gyro_planes_rad_s[j][i] = rail.get<double>();
+      }
+    }
+  }
+
  private:
   const std::filesystem::path& path_;
   const json& object_;
@@ -91,13 +111,55 @@ std::optional<double> lowest(const LearntRig& rig, std::size_t first) {
 }  // namespace
 
 LearntRig learnt(const RateReport& report) {
-  return {report.calibration, report.rail};
+  LearntRig out{report.calibration, report.rail, {}};
+  if (!report.rails_upright) out.keep(report.planes);
+  return out;
+}
+
+void LearntRig::keep(const RailPlanes& planes) {
+  for (std::size_t j = 0; j < 3; ++j) {
+    const std::optional<RailPlane>& plane = planes.element[j];
+    if (plane && plane->log_odds < kSureLogOdds) continue;
+    for (const int sign : {-1, 1}) {
+      if (plane && plane->seen(sign)) {
+        gyro_planes_rad_s[j][sign > 0 ? 1 : 0] = plane->offset_rad_s + sign * plane->distance_rad_s;
+      }
+    }
+  }
+}
+
+RailPlanes LearntRig::planes() const {
+  // a device keeps its rails to 0.05 %, their offset drifts with the bias; a reading within this share is at the rail
+  constexpr double kToleranceShare = 2e-3, kDistanceShare = 1e-3;
+  RailPlanes out;
+  for (int j = 0; j < 3; ++j) {
+    const auto& [low, high] = gyro_planes_rad_s[static_cast<std::size_t>(j)];
+    if (!low && !high) continue;
+    const Eigen::Index first = RigConstants::kElements + 2 * j;
+    RailPlane plane;
+    plane.row = calibration.constants.element_row(j);
+    plane.distance_rad_s = low && high ? 0.5 * (*high - *low) : low ? -*low : *high;
+    plane.offset_rad_s = low && high ? 0.5 * (*high + *low) : 0.0;
+    const double sigma = kDistanceShare * plane.distance_rad_s;
+    plane.covariance.diagonal() << 0.0, 0.0, sigma * sigma, sigma * sigma;
+    plane.covariance.topLeftCorner<2, 2>() = calibration.covariance.block<2, 2>(first, first);
+    plane.samples = {low ? 1 : 0, high ? 1 : 0};
+    plane.log_odds = kSureLogOdds;
+    plane.tolerance_rad_s = kToleranceShare * plane.distance_rad_s;
+    plane.deviation_rad_s = 0.25 * plane.tolerance_rad_s;
+    out.element[static_cast<std::size_t>(j)] = plane;
+  }
+  return out;
 }
 
 void start_from(const LearntRig& rig, double trust, RateSmoother::Params& params) {
   if (!(trust >= 1.0)) throw std::invalid_argument("trust is " + std::to_string(trust) + ", bound [1, inf)");
   params.model.calibration = rig.calibration;
   params.model.calibration->covariance *= trust;
+  params.planes.known = rig.planes();
+  for (std::optional<RailPlane>& plane : params.planes.known.element) {
+    if (plane) plane->covariance *= trust;
+  }
   if (const auto rail = lowest(rig, 0)) params.rails.stated_gyro_rad_s = rail;
   if (const auto rail = lowest(rig, 3)) params.rails.stated_accel_m_s2 = rail;
 }
@@ -113,6 +175,11 @@ void write_learnt_rig(const std::filesystem::path& path, const LearntRig& rig) {
   object["covariance"] = numbers(rig.calibration.covariance);
   object["gyro_rail_rad_s"] = rails(rig, 0);
   object["accel_rail_m_s2"] = rails(rig, 3);
+  json planes = json::array();
+  for (const auto& [low, high] : rig.gyro_planes_rad_s) {
+    planes.push_back({low ? json(*low) : json(), high ? json(*high) : json()});
+  }
+  object[kPlanesKey] = planes;
   replace_file(path, object.dump(1) + "\n");
 }
 
@@ -126,7 +193,8 @@ LearntRig read_learnt_rig(const std::filesystem::path& path) {
     if (!object.contains(key)) reader.complain(key, "missing");
   }
   for (const auto& [key, value] : object.items()) {
-    const bool known = key == kElementsKey || std::find(std::begin(kKeys), std::end(kKeys), key) != std::end(kKeys);
+    const bool known = key == kElementsKey || key == kPlanesKey ||
+                       std::find(std::begin(kKeys), std::end(kKeys), key) != std::end(kKeys);
     if (!known) reader.complain(key, "unknown key");
   }
   LearntRig rig;
@@ -152,6 +220,7 @@ LearntRig read_learnt_rig(const std::filesystem::path& path) {
   }
   reader.read_rails("gyro_rail_rad_s", 0, rig);
   reader.read_rails("accel_rail_m_s2", 3, rig);
+  if (object.contains(kPlanesKey)) reader.read_planes(kPlanesKey, rig);
   return rig;
 }
 

@@ -13,13 +13,22 @@ namespace tumble::scenarios {
 struct LearntRig {
   RigCalibration calibration;
   std::array<std::optional<double>, 6> rail;  ///< gyro x y z [rad/s], accelerometer x y z [m/s^2]; none: not seen
+  /// Of the gyro's elements whose rail was seen as a plane, where it cuts the element's row: negative and positive
+  /// sign. Its slopes are RigConstants::elements. None: not seen, or upright.
+  std::array<std::array<std::optional<double>, 2>, 3> gyro_planes_rad_s;
+
+  /// The rails of the gyro's elements, for the search of the next run.
+  RailPlanes planes() const;
+  /// Keeps where planes cut their rows.
+  void keep(const RailPlanes& planes);
 };
 
 /// What a run has learnt. When the run held its constants (RateReport::rig_held) that is what it was given.
 LearntRig learnt(const RateReport& report);
 
 /// Gives it to the next run: constants with their covariance times `trust` (>= 1: rigs are taken apart and put together
-/// again), and the lowest rail of a sensor as its stated range. Throws std::invalid_argument on `trust` below 1.
+/// again), the planes of the gyro's rails, and the lowest rail of a sensor as its stated range. Throws
+/// std::invalid_argument on `trust` below 1.
 void start_from(const LearntRig& rig, double trust, RateSmoother::Params& params);
 
 /// JSON, a few lines: lever arm, biases, inertia, the gyro's elements, covariance row by row, rails. Numbers come back

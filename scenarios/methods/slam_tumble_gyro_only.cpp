@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/rate_baseline.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/slam_registry.hpp"
-#include "tumble/angular_velocity/rail_detector.hpp"
+#include "tumble/angular_velocity/clipping_finder.hpp"
 
 namespace tumble::scenarios {
 
@@ -26,13 +27,9 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
 }  // namespace
 
 Status railed_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<RateState>& out) {
-  const sim::ImuRecord& record = sensors.imus.front();
-  RailDetector::Params params;
-  if (record.stated_gyro_range_rad_s > 0.0) params.stated_gyro_rad_s = record.stated_gyro_range_rad_s;
-  if (record.stated_accel_range_m_s2 > 0.0) params.stated_accel_m_s2 = record.stated_accel_range_m_s2;
-  RailDetector::State state;
-  std::vector<Clipping> clipping(samples.size());
-  RailDetector(params).classify_all(samples, state, clipping);
+  ClippingFinder::Params params;
+  params.walls = stated_rails(sensors.imus.front());
+  const std::vector<Clipping> clipping = ClippingFinder(params).find(samples).clippings;
 
   if (const Status status = raw_rates(sensors, samples, out); !status.ok()) return status;
   for (std::size_t k = 0; k < out.size(); ++k) {

@@ -85,9 +85,11 @@ sim::Recording recording_of(const scenarios::DataRoot& data, const scenarios::Sc
   }
   sim::Situation situation = scenarios::without_lidars(scenarios::draw(data, scenario, seed + (other ? kOther : 0)));
   if (other) {
-    const sim::Situation own = scenarios::without_lidars(scenarios::draw(data, scenario, seed));
-    situation.robot = own.robot;
-    situation.sensors = own.sensors;
+    // its own seed too: the sensing elements of a device are drawn from it
+    sim::Situation own = scenarios::without_lidars(scenarios::draw(data, scenario, seed));
+    own.world = situation.world;
+    own.motion = situation.motion;
+    situation = own;
   }
   sim::Recording recording = sim::simulate(situation, {data.models(), 1});
   if (!keep.empty()) {

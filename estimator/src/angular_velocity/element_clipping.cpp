@@ -26,29 +26,50 @@ int side(const ImuSample& sample, std::size_t j) {
   return sample.angular_velocity_rad_s[static_cast<Eigen::Index>(j)] < 0.0 ? -1 : 1;
 }
 
-// Whether sample k, beside the clipped one at the other side of it than `outside`, met the rail in a part of its
+// Whether element j of a sample is at its rail, by its plane or by the device.
+bool at_rail(const ImuSample& sample, const RailPlane& rail, std::size_t j) {
+  const Eigen::Vector3d& reading = sample.angular_velocity_rad_s;
+  return (sample.device_clip_flags >> j & 1u) != 0 || rail.holds(reading, -1) || rail.holds(reading, 1);
+}
+
+// Whether a sample, beside the clipped one at the other side of it than `outside`, met the rail in a part of its
 // window.
-bool meets(std::span<const ImuSample> samples, const RailPlane& rail, std::size_t k, std::ptrdiff_t outside, int sign) {
-  const auto beside = static_cast<std::ptrdiff_t>(k) + outside;
-  const double depth = rail.short_of(samples[k].angular_velocity_rad_s, sign);
+bool meets(const RailPlane& rail, const ImuSample& now, const ImuSample* outside, int sign) {
+  const double depth = rail.short_of(now.angular_velocity_rad_s, sign);
   if (depth > kEdgeShare * rail.distance_rad_s) return false;
-  if (beside < 0 || beside >= static_cast<std::ptrdiff_t>(samples.size())) return true;
-  const double before = rail.short_of(samples[static_cast<std::size_t>(beside)].angular_velocity_rad_s, sign);
+  if (outside == nullptr) return true;
+  const double before = rail.short_of(outside->angular_velocity_rad_s, sign);
   return depth < kEdgeOfStep * (before - depth);
 }
 
 }  // namespace
 
-bool are_upright(std::span<const ImuSample> samples, const RailPlanes& planes, const RailDetector::State& rails) {
+RailPlaneFinder::Params stated_planes(const ClippingFinder::Params& params) {
+  RailPlaneFinder::Params out = params.planes;
+  if (!out.stated_rad_s) out.stated_rad_s = params.walls.stated_gyro_rad_s;
+  return out;
+}
+
+RailPlaneFinder::Params unstated_planes(const ClippingFinder::Params& params) {
+  RailPlaneFinder::Params out = params.planes;
+  out.stated_rad_s = std::nullopt;
+  return out;
+}
+
+bool stated_range_contradicted(const RailDetector& walls, const RailDetector::State& state) {
+  return walls.disagrees(state, 0) || walls.disagrees(state, 1) || walls.disagrees(state, 2);
+}
+
+bool are_upright(std::span<const Eigen::Vector3d> readings_rad_s, const RailPlanes& planes,
+                 const RailDetector::State& rails) {
   int nil = 0;
   for (std::size_t j = 0; j < 3; ++j) {
     const auto& rail = planes.element[j];
     const double plateau = rails.channels[j].rail;
     if (rail && plateau > 0.0) {
       // most of the samples at the rail read the same: no tilted plane does that
-      const auto equal = std::count_if(samples.begin(), samples.end(), [&](const ImuSample& sample) {
-        const double reading = std::abs(sample.angular_velocity_rad_s[static_cast<Eigen::Index>(j)]);
-        return std::abs(reading - plateau) <= kEqualShare * plateau;
+      const auto equal = std::count_if(readings_rad_s.begin(), readings_rad_s.end(), [&](const Eigen::Vector3d& y) {
+        return std::abs(std::abs(y[static_cast<Eigen::Index>(j)]) - plateau) <= kEqualShare * plateau;
       });
       if (2 * equal >= rail->samples[0] + rail->samples[1]) {
         nil += 2;
@@ -77,31 +98,22 @@ RailPlanes without_plateaus(const RailPlanes& planes, const RailDetector::State&
   return out;
 }
 
-void clip_by_planes(std::span<const ImuSample> samples, const RailPlanes& planes, std::span<Clipping> clippings) {
-  if (!planes.any()) return;
-  for (std::size_t k = 0; k < samples.size(); ++k) {
-    const ElementClipping now = classify(samples[k], planes);
-    for (std::size_t j = 0; j < 3; ++j) {
-      if (!planes.element[j] || (clippings[k].void_gyro >> j & 1u) != 0) continue;
-      const bool clipped = now.sign[j] != 0 || (samples[k].device_clip_flags >> j & 1u) != 0;
-      const auto bit = static_cast<std::uint8_t>(1u << j);
-      clippings[k].gyro = static_cast<std::uint8_t>(clipped ? clippings[k].gyro | bit : clippings[k].gyro & ~bit);
-    }
+Clipping clip_by_planes(const RailPlanes& planes, const Clipping& by_walls, const ImuSample* before,
+                        const ImuSample& now, const ImuSample* after) {
+  Clipping out = by_walls;
+  for (std::size_t j = 0; j < 3; ++j) {
+    const auto& rail = planes.element[j];
+    if (!rail || (by_walls.void_gyro >> j & 1u) != 0) continue;
+    const int sign = side(now, j);
+    const auto beside = [&](const ImuSample* sample, const ImuSample* outside) {
+      return sample != nullptr && side(*sample, j) == sign && at_rail(*sample, *rail, j) &&
+             meets(*rail, now, outside, sign);
+    };
+    const bool clipped = at_rail(now, *rail, j) || beside(after, before) || beside(before, after);
+    const auto bit = static_cast<std::uint8_t>(1u << j);
+    out.gyro = static_cast<std::uint8_t>(clipped ? out.gyro | bit : out.gyro & ~bit);
   }
-  const std::vector<Clipping> whole(clippings.begin(), clippings.end());
-  for (std::size_t k = 0; k < samples.size(); ++k) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      const auto bit = static_cast<std::uint8_t>(1u << j);
-      if (!planes.element[j] || (whole[k].gyro & bit) != 0) continue;
-      const int sign = side(samples[k], j);
-      const bool before = k > 0 && (whole[k - 1].gyro & bit) != 0 && side(samples[k - 1], j) == sign;
-      const bool after = k + 1 < samples.size() && (whole[k + 1].gyro & bit) != 0 && side(samples[k + 1], j) == sign;
-      if ((after && meets(samples, *planes.element[j], k, -1, sign)) ||
-          (before && meets(samples, *planes.element[j], k, 1, sign))) {
-        clippings[k].gyro = static_cast<std::uint8_t>(clippings[k].gyro | bit);
-      }
-    }
-  }
+  return out;
 }
 
 void mark_partial(const RailPlanes& planes, const RailDetector& rails, const RailDetector::State& state,
@@ -156,26 +168,29 @@ void doubt_unseen_rails(const RailPlanes& planes, double noise_rad_s, const ImuS
   }
 }
 
-RigCalibration with_planes(const RateModelParams& params, const RailPlanes& planes, bool upright) {
-  const RateModel before(params, 0.01);
+std::optional<ToldSlopes> told_slopes(const RailPlanes& planes, bool upright, int element,
+                                      const Eigen::Matrix2d& before) {
+  if (upright) {
+    return ToldSlopes{Eigen::Vector2d::Zero(), kUprightSigma * kUprightSigma * Eigen::Matrix2d::Identity()};
+  }
+  const auto& rail = planes.element[static_cast<std::size_t>(element)];
+  if (!rail) return std::nullopt;
+  const Eigen::Matrix2d told =
+      rail->covariance.topLeftCorner<2, 2>() + kSlopeSigmaMin * kSlopeSigmaMin * Eigen::Matrix2d::Identity();
+  if (told.trace() >= before.trace()) return std::nullopt;
+  return ToldSlopes{{rail->row[(element + 1) % 3], rail->row[(element + 2) % 3]}, told};
+}
+
+RigCalibration with_planes(const RateModel& before, const RailPlanes& planes, bool upright) {
   RigCalibration out{before.prior_constants(), before.prior_covariance()};
-  const auto hold = [&](Eigen::Index first, const Eigen::Vector2d& slopes, const Eigen::Matrix2d& covariance) {
-    out.constants.elements.segment<2>(first - RigConstants::kElements) = slopes;
-    out.covariance.middleRows<2>(first).setZero();
-    out.covariance.middleCols<2>(first).setZero();
-    out.covariance.block<2, 2>(first, first) = covariance;
-  };
   for (int j = 0; j < 3; ++j) {
     const Eigen::Index first = RigConstants::kElements + 2 * j;
-    const auto& rail = planes.element[static_cast<std::size_t>(j)];
-    if (upright) {
-      hold(first, Eigen::Vector2d::Zero(), kUprightSigma * kUprightSigma * Eigen::Matrix2d::Identity());
-    } else if (rail) {
-      const Eigen::Matrix2d told =
-          rail->covariance.topLeftCorner<2, 2>() + kSlopeSigmaMin * kSlopeSigmaMin * Eigen::Matrix2d::Identity();
-      if (told.trace() >= out.covariance.block<2, 2>(first, first).trace()) continue;
-      hold(first, {rail->row[(j + 1) % 3], rail->row[(j + 2) % 3]}, told);
-    }
+    const auto told = told_slopes(planes, upright, j, out.covariance.block<2, 2>(first, first));
+    if (!told) continue;
+    out.constants.elements.segment<2>(first - RigConstants::kElements) = told->slopes;
+    out.covariance.middleRows<2>(first).setZero();
+    out.covariance.middleCols<2>(first).setZero();
+    out.covariance.block<2, 2>(first, first) = told->covariance;
   }
   return out;
 }

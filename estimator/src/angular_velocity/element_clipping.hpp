@@ -1,26 +1,39 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Core>
+#include <optional>
 #include <span>
 
+#include "tumble/angular_velocity/clipping_finder.hpp"
 #include "tumble/angular_velocity/rail_detector.hpp"
 #include "tumble/angular_velocity/rail_planes.hpp"
 #include "tumble/angular_velocity/rate_model.hpp"
 
 namespace tumble {
 
+/// Parameters of the search for planes: with the stated range of the walls, and without any.
+RailPlaneFinder::Params stated_planes(const ClippingFinder::Params& params);
+RailPlaneFinder::Params unstated_planes(const ClippingFinder::Params& params);
+
+/// A stated range that the readings contradict tells the planes nothing.
+bool stated_range_contradicted(const RailDetector& walls, const RailDetector::State& state);
+
 /// Whether the rails found, and the plateaus of equal readings, show a device that clips what it delivers: rails
 /// upright, nothing hidden on the axes beside. Two slopes known to be nil tell, a plateau counting for one; one that is
 /// not nil tells the contrary.
-bool are_upright(std::span<const ImuSample> samples, const RailPlanes& planes, const RailDetector::State& rails);
+bool are_upright(std::span<const Eigen::Vector3d> readings_rad_s, const RailPlanes& planes,
+                 const RailDetector::State& rails);
 
 /// The planes of elements on whose axis no plateau of equal readings was seen.
 RailPlanes without_plateaus(const RailPlanes& planes, const RailDetector::State& rails);
 
 /// Brings the planes into what was classified with upright rails: an element with a plane clips where its plane says so
-/// or the device does. Samples that meet a rail in a part of their window, beside one that is clipped, belong to it:
-/// they lie short of the plane by less than half of what the neighbour outside still lacked.
-void clip_by_planes(std::span<const ImuSample> samples, const RailPlanes& planes, std::span<Clipping> clippings);
+/// or the device does. A sample that met a rail in a part of its window, beside one that is clipped, belongs to it: it
+/// lies short of the plane by less than half of what the neighbour outside still lacked. `before`, `after`: null where
+/// there is none.
+Clipping clip_by_planes(const RailPlanes& planes, const Clipping& by_walls, const ImuSample* before,
+                        const ImuSample& now, const ImuSample* after);
 
 /// Finds partial axes as mark_partial() does, with the rail of each element where its plane is known.
 void mark_partial(const RailPlanes& planes, const RailDetector& rails, const RailDetector::State& state,
@@ -31,7 +44,16 @@ void mark_partial(const RailPlanes& planes, const RailDetector& rails, const Rai
 void doubt_unseen_rails(const RailPlanes& planes, double noise_rad_s, const ImuSample* before, RateObservation& now,
                         const ImuSample* after);
 
-/// What the planes tell of RigConstants::elements, where that is more than `params` knew.
-RigCalibration with_planes(const RateModelParams& params, const RailPlanes& planes, bool upright);
+/// What rails tell of the slopes of an element, in the order of RigConstants::elements.
+struct ToldSlopes {
+  Eigen::Vector2d slopes;
+  Eigen::Matrix2d covariance;
+};
+/// Nothing where that is no more than was known: `before`.
+std::optional<ToldSlopes> told_slopes(const RailPlanes& planes, bool upright, int element,
+                                      const Eigen::Matrix2d& before);
+
+/// What was known of the rig with what the planes tell of RigConstants::elements.
+RigCalibration with_planes(const RateModel& before, const RailPlanes& planes, bool upright);
 
 }  // namespace tumble

@@ -122,17 +122,19 @@ Clipping RailDetector::classify(const ImuSample& sample, State& state) const {
 void RailDetector::classify_all(std::span<const ImuSample> samples, State& state, std::span<Clipping> out) const {
   for (const ImuSample& sample : samples) observe(sample, state);
   for (std::size_t k = 0; k < samples.size(); ++k) out[k] = classify(samples[k], state);
-  // the rising edge: what stands before a plateau and as near to it as what stands after it
-  for (std::size_t k = samples.size(); k-- > 1;) {
-    for (int c = 0; c < 6; ++c) {
-      const std::optional<double> level = rail(state, c);
-      if (!level) continue;
-      std::uint8_t& before = c < 3 ? out[k - 1].gyro : out[k - 1].accel;
-      const std::uint8_t after = c < 3 ? out[k].gyro : out[k].accel;
-      const double value = reading(samples[k - 1], c);
-      const bool near = std::abs(value) >= *level * (1.0 - params_.leave_share) && value * reading(samples[k], c) > 0.0;
-      if ((after >> (c % 3) & 1u) != 0 && near) set_bit(before, c % 3);
-    }
+  for (std::size_t k = samples.size(); k-- > 1;) add_edge(samples[k - 1], samples[k], out[k], state, out[k - 1]);
+}
+
+void RailDetector::add_edge(const ImuSample& sample, const ImuSample& next, const Clipping& of_next, const State& state,
+                            Clipping& clipping) const {
+  for (int c = 0; c < 6; ++c) {
+    const std::uint8_t after = c < 3 ? of_next.gyro : of_next.accel;
+    if ((after >> (c % 3) & 1u) == 0) continue;
+    const std::optional<double> level = rail(state, c);
+    if (!level) continue;
+    const double value = reading(sample, c);
+    const bool near = std::abs(value) >= *level * (1.0 - params_.leave_share) && value * reading(next, c) > 0.0;
+    if (near) set_bit(c < 3 ? clipping.gyro : clipping.accel, c % 3);
   }
 }
 

@@ -50,25 +50,21 @@ struct Stretch {
   std::size_t size() const { return last - first + 1; }
 };
 
-std::vector<Stretch> stretches_of(const std::vector<std::size_t>& inliers) {
-  std::vector<Stretch> out;
-  for (const std::size_t k : inliers) {
-    if (!out.empty() && k == out.back().last + 1) {
-      out.back().last = k;
-    } else {
-      out.push_back({k, k});
-    }
-  }
+// The run of neighbours that begins with inlier `at`, which moves to the first one after it.
+Stretch next_stretch(std::span<const std::size_t> inliers, std::size_t& at) {
+  Stretch out{inliers[at], inliers[at]};
+  for (++at; at < inliers.size() && inliers[at] == out.last + 1; ++at) ++out.last;
   return out;
 }
 
 }  // namespace
 
-DistinctReadings distinct_readings(std::span<const ImuSample> samples) {
-  DistinctReadings out;
+DistinctReadings distinct_readings(std::span<const Vector3d> readings, std::vector<Vector3d>& rates,
+                                   std::vector<double>& noises) {
+  DistinctReadings out{rates};
+  rates.clear();
   out.digit.setConstant(std::numeric_limits<double>::max());
-  for (const ImuSample& sample : samples) {
-    const Vector3d& y = sample.angular_velocity_rad_s;
+  for (const Vector3d& y : readings) {
     if (!out.rates.empty() && out.rates.back() == y) continue;
     out.peak = out.peak.cwiseMax(y.cwiseAbs());
     for (int j = 0; j < 3 && !out.rates.empty(); ++j) {
@@ -80,7 +76,7 @@ DistinctReadings distinct_readings(std::span<const ImuSample> samples) {
   }
   for (int j = 0; j < 3; ++j) {
     if (out.digit[j] == std::numeric_limits<double>::max()) out.digit[j] = 0.0;
-    std::vector<double> noises;
+    noises.clear();
     for (std::size_t k = 0; k + kNoiseWindow <= out.rates.size(); k += kNoiseWindow) {
       const std::span<const Vector3d> window = std::span(out.rates).subspan(k, kNoiseWindow);
       const bool clear = std::all_of(window.begin(), window.end(),
@@ -95,7 +91,8 @@ DistinctReadings distinct_readings(std::span<const ImuSample> samples) {
   return out;
 }
 
-double stretch_evidence(const DistinctReadings& readings, const Eigen::Matrix2d& slope_information, RailFacet& facet) {
+double stretch_evidence(const DistinctReadings& readings, const Eigen::Matrix2d& slope_information,
+                        std::span<const std::size_t> inliers, RailFacet& facet) {
   const std::vector<Vector3d>& rates = readings.rates;
   const auto value = [&](std::size_t k) { return facet.sign * facet.row.dot(rates[k]); };
   const double thickness = 2.5 * facet.deviation, noise = readings.noise[facet.axis];
@@ -104,7 +101,8 @@ double stretch_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
   facet.stretches = 0;
   Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
   H.topLeftCorner<2, 2>() = slope_information;
-  for (const Stretch& s : stretches_of(facet.inliers)) {
+  for (std::size_t at = 0; at < inliers.size();) {
+    const Stretch s = next_stretch(inliers, at);
     const double n = static_cast<double>(s.size());
     double low = std::numeric_limits<double>::max(), high = -low;
     for (std::size_t k = s.first; k <= s.last; ++k) {
@@ -148,9 +146,9 @@ double stretch_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
     H += A * A.transpose() / (facet.deviation * facet.deviation);
   }
   // nothing lies beyond a rail
-  const auto beyond = std::count_if(facet.inliers.begin(), facet.inliers.end(),
+  const auto beyond = std::count_if(inliers.begin(), inliers.end(),
                                     [&](std::size_t k) { return value(k) > facet.level + facet.tolerance; });
-  odds -= kBeyond * std::max(0.0, static_cast<double>(beyond) - kStray * static_cast<double>(facet.inliers.size()));
+  odds -= kBeyond * std::max(0.0, static_cast<double>(beyond) - kStray * static_cast<double>(inliers.size()));
   if (facet.stretches == 0) return -std::numeric_limits<double>::infinity();
   // what choosing the level and the slopes freely was worth: prior over posterior volume
   const Eigen::Matrix3d told = H.inverse();

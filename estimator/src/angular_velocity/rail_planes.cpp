@@ -18,6 +18,7 @@ namespace {
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using Workspace = RailPlaneFinder::Workspace;
 
 constexpr double kGridStep = 0.01;  // of the slopes
 constexpr int kRefinements = 10;
@@ -30,13 +31,29 @@ constexpr double kSlabDeviations = 4.0, kSlabShareMin = 2e-4, kSlabShareMax = 0.
 constexpr double kSiblingShare = 0.04;
 // Log odds of a level: near that of another element, of a stated range, of the other sign; and what cannot be.
 constexpr double kNearSibling = 5.0, kNearStated = 3.0, kOtherSignAgrees = 5.0, kImpossible = -100.0;
+// What a rail at that of an earlier run is worth, how far the two may lie apart as a share of the level, and the least
+// that one elsewhere is worth: the device may be another.
+constexpr double kNearKnown = 6.0, kKnownShare = 0.003, kFarFromKnown = -3.0;
+// What the slopes may change from run to run.
+constexpr double kKnownSlopeSigma = 2e-3;
+// Readings beyond a plane, by so many times its tolerance, that contradict it.
+constexpr double kBeyondTolerance = 4.0;
+constexpr int kContradicting = 2;
 // A rail is not found below this share of the stated range.
 constexpr double kStatedShareMin = 0.85;
+
+// Readings that belong to a facet: along `row` not below `from`, and near the extreme for slopes up to `steepest`.
+struct Gate {
+  Vector3d row = Vector3d::Zero();
+  double from = 0.0, steepest = 0.0, near_from = 0.0;
+};
 
 // One sign of one element while it is searched for.
 struct Side {
   int axis = 0, sign = 1;
   RailFacet facet;
+  Gate gate;  // of the facet's readings
+  int samples = 0;
   double log_odds = -std::numeric_limits<double>::infinity();
 };
 
@@ -50,32 +67,38 @@ struct FacetPrior {
   Matrix2d information = Matrix2d::Identity();
 };
 
-// Samples that may lie in the slab below the largest value for any slope up to `steepest`.
-std::vector<std::size_t> candidates(const DistinctReadings& readings, int axis, int sign, double steepest,
-                                    double slab) {
+double highest_value(const Vector3d& y, int axis, int sign, double steepest) {
+  return sign * y[axis] + steepest * others(y, axis).lpNorm<1>();
+}
+
+// Samples that may lie in the slab below the largest value for any slope up to `steepest`; returns their least value.
+double candidates(const DistinctReadings& readings, int axis, int sign, double steepest, double slab,
+                  std::vector<std::size_t>& out) {
   double sure = -std::numeric_limits<double>::max();
   for (const Vector3d& y : readings.rates) {
     sure = std::max(sure, sign * y[axis] - steepest * others(y, axis).lpNorm<1>());
   }
-  std::vector<std::size_t> out;
+  out.clear();
   for (std::size_t k = 0; k < readings.rates.size(); ++k) {
-    const Vector3d& y = readings.rates[k];
-    if (sign * y[axis] + steepest * others(y, axis).lpNorm<1>() >= sure - slab) out.push_back(k);
+    if (highest_value(readings.rates[k], axis, sign, steepest) >= sure - slab) out.push_back(k);
   }
-  return out;
+  return sure - slab;
 }
 
-// Values along the row of those samples, by which the facet is fitted.
-void collect(const DistinctReadings& readings, std::span<const std::size_t> near, double from, RailFacet& facet) {
-  facet.inliers.clear();
-  for (const std::size_t k : near) {
-    if (facet.sign * facet.row.dot(readings.rates[k]) >= from) facet.inliers.push_back(k);
+// The samples by which the facet is fitted.
+void collect(const DistinctReadings& readings, double from, Side& side, Workspace& workspace) {
+  workspace.inliers.clear();
+  side.gate.row = side.facet.row;
+  side.gate.from = from;
+  for (const std::size_t k : workspace.near) {
+    if (side.sign * side.gate.row.dot(readings.rates[k]) >= from) workspace.inliers.push_back(k);
   }
 }
 
 // Least squares of slopes and level over the inliers, with the prior of the slopes; deviation of the samples. Robust
 // (Cauchy) about the level before, since windows that met the rail in a part only lie short of the plane.
-void fit(const DistinctReadings& readings, const FacetPrior& prior, double deviation, RailFacet& facet) {
+void fit(const DistinctReadings& readings, const FacetPrior& prior, double deviation, RailFacet& facet,
+         Workspace& workspace) {
   const int axis = facet.axis;
   const Vector3d row = facet.row;
   const double level = facet.level;
@@ -84,7 +107,7 @@ void fit(const DistinctReadings& readings, const FacetPrior& prior, double devia
   H.topLeftCorner<2, 2>() = prior.information;
   g.head<2>() = prior.information * prior.slopes;
   const double weight = 1.0 / (deviation * deviation);
-  for (const std::size_t k : facet.inliers) {
+  for (const std::size_t k : workspace.inliers) {
     const Vector3d& y = readings.rates[k];
     // level = sign * (y_j + slopes . others)
     Vector3d A;
@@ -101,8 +124,9 @@ void fit(const DistinctReadings& readings, const FacetPrior& prior, double devia
   facet.row[(axis + 1) % 3] = x[0];
   facet.row[(axis + 2) % 3] = x[1];
   facet.level = x[2];
-  std::vector<double> residuals;
-  for (const std::size_t k : facet.inliers) {
+  std::vector<double>& residuals = workspace.values;
+  residuals.clear();
+  for (const std::size_t k : workspace.inliers) {
     residuals.push_back(std::abs(facet.sign * facet.row.dot(readings.rates[k]) - facet.level));
   }
   std::nth_element(residuals.begin(), residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2),
@@ -114,30 +138,31 @@ void fit(const DistinctReadings& readings, const FacetPrior& prior, double devia
 struct Extreme {
   int axis = 0, sign = 1;
   double slab = 0.0;
-  std::vector<std::size_t> near;
+  double steepest = 0.0, near_from = 0.0;
 };
 
-// Nothing where the axis reads too little for a rail.
+// Nothing where the axis reads too little for a rail. Leaves the samples near it in the workspace.
 std::optional<Extreme> find_extreme(const RailPlaneFinder::Params& params, const DistinctReadings& readings, int axis,
-                                    int sign, const FacetPrior& prior, double slope_range) {
+                                    int sign, const FacetPrior& prior, double slope_range, Workspace& workspace) {
   double peak = 0.0;
   for (const Vector3d& y : readings.rates) peak = std::max(peak, sign * y[axis]);
   if (peak < 0.5 * params.distance_min_rad_s) return std::nullopt;
   const double steepest = slope_range + prior.slopes.lpNorm<Eigen::Infinity>() + kGridStep;
-  Extreme out{axis, sign, std::max({0.002 * peak, 4.0 * readings.noise[axis], 3.0 * readings.digit[axis]}), {}};
-  out.near = candidates(readings, axis, sign, steepest, 2.0 * out.slab);
+  Extreme out{axis, sign, std::max({0.002 * peak, 4.0 * readings.noise[axis], 3.0 * readings.digit[axis]}), steepest};
+  out.near_from = candidates(readings, axis, sign, steepest, 2.0 * out.slab, workspace.near);
   return out;
 }
 
 // The slopes on a grid about the prior whose slab holds the most samples, less what is odd about the slopes.
 Vector2d search_slopes(const DistinctReadings& readings, const Extreme& extreme, double slope_max,
-                       const FacetPrior& prior) {
-  const std::vector<std::size_t>& near = extreme.near;
+                       const FacetPrior& prior, Workspace& workspace) {
+  const std::vector<std::size_t>& near = workspace.near;
   const int axis = extreme.axis;
   const int steps = static_cast<int>(std::floor(slope_max / kGridStep + 1e-9));
   Vector2d best = prior.slopes;
   double highest = -std::numeric_limits<double>::max();
-  std::vector<double> values(near.size());
+  std::vector<double>& values = workspace.values;
+  values.resize(near.size());
   for (int a = -steps; a <= steps; ++a) {
     for (int b = -steps; b <= steps; ++b) {
       const Vector2d slopes = prior.slopes + kGridStep * Vector2d(a, b);
@@ -159,32 +184,36 @@ Vector2d search_slopes(const DistinctReadings& readings, const Extreme& extreme,
   return best;
 }
 
-// The facet about given slopes, the robust fit starting with `deviation`.
-RailFacet fit_facet(const DistinctReadings& readings, const Extreme& extreme, const FacetPrior& prior,
-                    const Vector2d& slopes, double deviation) {
+// The facet about given slopes, the robust fit starting with `deviation`. Leaves its samples in the workspace.
+Side fit_facet(const DistinctReadings& readings, const Extreme& extreme, const FacetPrior& prior,
+               const Vector2d& slopes, double deviation, Workspace& workspace) {
   const int axis = extreme.axis;
-  RailFacet facet;
+  Side side{axis, extreme.sign, {}, {}};
+  side.gate.steepest = extreme.steepest;
+  side.gate.near_from = extreme.near_from;
+  RailFacet& facet = side.facet;
   facet.axis = axis;
   facet.sign = extreme.sign;
   facet.row[axis] = 1.0;
   facet.row[(axis + 1) % 3] = slopes[0];
   facet.row[(axis + 2) % 3] = slopes[1];
   double top = -std::numeric_limits<double>::max();
-  for (const std::size_t k : extreme.near) top = std::max(top, facet.sign * facet.row.dot(readings.rates[k]));
-  collect(readings, extreme.near, top - extreme.slab, facet);
+  for (const std::size_t k : workspace.near) top = std::max(top, facet.sign * facet.row.dot(readings.rates[k]));
+  collect(readings, top - extreme.slab, side, workspace);
   double floor = readings.digit[axis];
   facet.tolerance = extreme.slab;
-  for (int i = 0; i < kRefinements && !facet.inliers.empty(); ++i) {
-    fit(readings, prior, deviation, facet);
+  for (int i = 0; i < kRefinements && !workspace.inliers.empty(); ++i) {
+    fit(readings, prior, deviation, facet, workspace);
     floor = std::max(kSlabShareMin * facet.level, readings.digit[axis]);
     deviation = std::max(facet.deviation, 0.25 * floor);
     facet.tolerance = std::clamp(kSlabDeviations * deviation, floor, std::max(floor, kSlabShareMax * facet.level));
-    collect(readings, extreme.near, facet.level - facet.tolerance, facet);
+    collect(readings, facet.level - facet.tolerance, side, workspace);
   }
-  if (facet.inliers.empty()) return facet;
-  fit(readings, prior, deviation, facet);
+  side.samples = static_cast<int>(workspace.inliers.size());
+  if (workspace.inliers.empty()) return side;
+  fit(readings, prior, deviation, facet, workspace);
   facet.deviation = std::max(facet.deviation, 0.25 * floor);
-  return facet;
+  return side;
 }
 
 double log_normal_ratio(double value, double sigma) {
@@ -209,6 +238,10 @@ double level_log_odds(const RailPlaneFinder::Params& params, const DistinctReadi
     const double beyond = readings.peak[other] / level - 1.0 - kSiblingShare;
     if (beyond > 0.0) odds += log_normal_ratio(beyond, params.offset_share);
   }
+  if (const auto& rail = params.known.element[static_cast<std::size_t>(side.axis)]) {
+    const double apart = level - rail->distance_rad_s - side.sign * rail->offset_rad_s;
+    odds += std::max(kFarFromKnown, kNearKnown + log_normal_ratio(apart, kKnownShare * level));
+  }
   if (params.stated_rad_s) {
     const double ratio = level / *params.stated_rad_s;
     odds += ratio < kStatedShareMin ? kImpossible : ratio < 1.05 && ratio > 0.95 ? kNearStated : 0.0;
@@ -230,18 +263,20 @@ RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& 
   for (const Side* side : {minus, plus}) {
     if (side == nullptr) continue;
     const double weight = 1.0 / (side->facet.deviation * side->facet.deviation);
-    for (const std::size_t k : side->facet.inliers) {
-      const Vector3d& y = readings.rates[k];
+    const Gate& gate = side->gate;
+    for (const Vector3d& y : readings.rates) {
+      if (!(side->sign * gate.row.dot(y) >= gate.from)) continue;
+      if (!(highest_value(y, axis, side->sign, gate.steepest) >= gate.near_from)) continue;
       // y_j = sign * r + b - slopes . others
       Eigen::Vector4d A;
       A << -others(y, axis), side->sign, 1.0;
       H += weight * A * A.transpose();
       g += weight * A * y[axis];
     }
-    squares += side->facet.deviation * side->facet.deviation * static_cast<double>(side->facet.inliers.size());
-    weights += static_cast<double>(side->facet.inliers.size());
+    squares += side->facet.deviation * side->facet.deviation * side->samples;
+    weights += side->samples;
     const std::size_t i = side->sign > 0 ? 1 : 0;
-    out.samples[i] = static_cast<int>(side->facet.inliers.size());
+    out.samples[i] = side->samples;
     out.stretches[i] = side->facet.stretches;
     out.tolerance_rad_s = std::max(out.tolerance_rad_s, side->facet.tolerance);
     out.log_odds = std::max(out.log_odds, side->log_odds);
@@ -270,36 +305,65 @@ RailPlaneFinder::RailPlaneFinder(const Params& params) : params_(params) {
   require_within("samples_min", params.samples_min, 2, 1000);
   require_within("log_odds_before", params.log_odds_before, -100.0, 100.0);
   require_within("log_odds_min", params.log_odds_min, -100.0, 100.0);
+  require_within("log_odds_keep", params.log_odds_keep, -100.0, params.log_odds_min);
+}
+
+void RailPlaneFinder::Workspace::reserve(std::size_t readings) {
+  rates.reserve(readings);
+  values.reserve(readings);
+  near.reserve(readings);
+  inliers.reserve(readings);
 }
 
 RailPlanes RailPlaneFinder::find(std::span<const ImuSample> samples) const {
-  const DistinctReadings readings = distinct_readings(samples);
+  std::vector<Vector3d> readings(samples.size());
+  for (std::size_t k = 0; k < samples.size(); ++k) readings[k] = samples[k].angular_velocity_rad_s;
+  Workspace workspace;
+  return find(readings, {}, workspace);
+}
+
+RailPlanes RailPlaneFinder::find(std::span<const Vector3d> readings_rad_s, const RailPlanes& before,
+                                 Workspace& workspace) const {
+  const DistinctReadings readings = distinct_readings(readings_rad_s, workspace.rates, workspace.values);
   RailPlanes found;
-  if (readings.rates.size() < static_cast<std::size_t>(params_.samples_min) + 2) return found;
+  if (readings.rates.size() < static_cast<std::size_t>(params_.samples_min) + 2)
+    return with_known(found, readings.rates);
   std::array<std::array<std::optional<Side>, 2>, 3> sides;
-  const auto look = [&](int axis, int i, const RailPlanes& known) {
-    FacetPrior prior{Vector2d::Zero(), Matrix2d::Identity() / (params_.slope_sigma * params_.slope_sigma)};
-    double range = params_.slope_max;
-    if (const auto& rail = known.element[static_cast<std::size_t>(axis)]) {
-      const Matrix2d of_slopes = rail->covariance.topLeftCorner<2, 2>();
-      prior = {others(rail->row, axis), (of_slopes + 1e-6 * Matrix2d::Identity()).inverse()};
-      range = std::min(range, 3.0 * std::sqrt(of_slopes.trace()) + 1e-3);
-    }
-    Side side{axis, i == 0 ? -1 : 1, {}, -std::numeric_limits<double>::infinity()};
-    const std::optional<Extreme> extreme = find_extreme(params_, readings, axis, side.sign, prior, range);
+  const Matrix2d unknown = Matrix2d::Identity() / (params_.slope_sigma * params_.slope_sigma);
+  // the best facet about what is known of the slopes
+  const auto look_about = [&](int axis, int sign, const RailPlanes& known, const FacetPrior& prior, double range) {
+    Side side{axis, sign, {}, {}};
+    const std::optional<Extreme> extreme = find_extreme(params_, readings, axis, sign, prior, range, workspace);
     if (!extreme) return side;
-    const Vector2d searched = search_slopes(readings, *extreme, range, prior);
+    const Vector2d searched = search_slopes(readings, *extreme, range, prior, workspace);
     for (const Vector2d& slopes : {searched, prior.slopes}) {
       for (const double start : kStarts) {
-        Side tried = side;
-        tried.facet = fit_facet(readings, *extreme, prior, slopes, start * extreme->slab);
-        if (static_cast<int>(tried.facet.inliers.size()) < params_.samples_min) continue;
+        Side tried = fit_facet(readings, *extreme, prior, slopes, start * extreme->slab, workspace);
+        if (tried.samples < params_.samples_min) continue;
         tried.log_odds = level_log_odds(params_, readings, known, tried) +
-                         stretch_evidence(readings, prior.information, tried.facet);
-        if (tried.log_odds > side.log_odds) side = std::move(tried);
+                         stretch_evidence(readings, prior.information, workspace.inliers, tried.facet);
+        if (tried.log_odds > side.log_odds) side = tried;
       }
     }
     return side;
+  };
+  const auto look = [&](int axis, int i, const RailPlanes& known) {
+    const int sign = i == 0 ? -1 : 1;
+    if (const auto& rail = known.element[static_cast<std::size_t>(axis)]) {
+      const Matrix2d of_slopes = rail->covariance.topLeftCorner<2, 2>();
+      const FacetPrior prior{others(rail->row, axis), (of_slopes + 1e-6 * Matrix2d::Identity()).inverse()};
+      const double range = std::min(params_.slope_max, 3.0 * std::sqrt(of_slopes.trace()) + 1e-3);
+      return look_about(axis, sign, known, prior, range);
+    }
+    const Side side = look_about(axis, sign, known, {Vector2d::Zero(), unknown}, params_.slope_max);
+    const auto& earlier = params_.known.element[static_cast<std::size_t>(axis)];
+    if (!earlier) return side;
+    // the device of the earlier run, or another
+    const Matrix2d changed =
+        earlier->covariance.topLeftCorner<2, 2>() + kKnownSlopeSigma * kKnownSlopeSigma * Matrix2d::Identity();
+    const double range = std::min(params_.slope_max, 3.0 * std::sqrt(changed.trace()));
+    const Side same = look_about(axis, sign, known, {others(earlier->row, axis), changed.inverse()}, range);
+    return same.log_odds > side.log_odds ? same : side;
   };
   // what is found of one element or sign tells of the others, so again until nothing is added
   for (bool added = true; added;) {
@@ -310,7 +374,9 @@ RailPlanes RailPlaneFinder::find(std::span<const ImuSample> samples) const {
       for (std::size_t i = 0; i < 2; ++i) {
         if (pair[i]) continue;
         const Side side = look(axis, static_cast<int>(i), found);
-        const bool believed = side.log_odds >= params_.log_odds_min;
+        const auto& held = before.element[static_cast<std::size_t>(axis)];
+        const bool kept = held && held->seen(side.sign);
+        const bool believed = side.log_odds >= (kept ? params_.log_odds_keep : params_.log_odds_min);
         if (believed) pair[i] = side;
         // both signs of one row may be believed together where neither is alone
         if (!believed && !rail && side.log_odds > -std::numeric_limits<double>::infinity()) {
@@ -330,7 +396,36 @@ RailPlanes RailPlaneFinder::find(std::span<const ImuSample> samples) const {
       }
     }
   }
-  return found;
+  return with_known(found, readings.rates);
+}
+
+// What an earlier run knew of elements, and of signs, that these readings did not meet.
+RailPlanes RailPlaneFinder::with_known(const RailPlanes& found, std::span<const Vector3d> readings_rad_s) const {
+  RailPlanes out = found;
+  for (std::size_t j = 0; j < 3; ++j) {
+    const auto& earlier = params_.known.element[j];
+    auto& rail = out.element[j];
+    if (!earlier) continue;
+    if (!rail && !earlier->contradicted_by(readings_rad_s)) rail = earlier;
+    for (const int sign : {-1, 1}) {
+      // near enough to be the same device
+      if (!rail || rail->seen(sign) || !earlier->seen(sign)) continue;
+      const double apart = std::abs(rail->distance_rad_s - earlier->distance_rad_s);
+      const std::size_t i = sign > 0 ? 1 : 0;
+      if (apart <= kKnownShare * earlier->distance_rad_s) rail->samples[i] = earlier->samples[i];
+    }
+  }
+  return out;
+}
+
+bool RailPlane::contradicted_by(std::span<const Vector3d> readings_rad_s) const {
+  int beyond = 0;
+  for (const Vector3d& y : readings_rad_s) {
+    for (const int sign : {-1, 1}) {
+      beyond += seen(sign) && short_of(y, sign) < -kBeyondTolerance * tolerance_rad_s ? 1 : 0;
+    }
+  }
+  return beyond >= kContradicting;
 }
 
 ElementClipping classify(const ImuSample& sample, const RailPlanes& planes) {
@@ -339,10 +434,7 @@ ElementClipping classify(const ImuSample& sample, const RailPlanes& planes) {
     const auto& rail = planes.element[j];
     if (!rail) continue;
     for (const int sign : {-1, 1}) {
-      if (!rail->seen(sign)) continue;
-      if (rail->short_of(sample.angular_velocity_rad_s, sign) <= rail->tolerance_rad_s) {
-        out.sign[j] = static_cast<std::int8_t>(sign);
-      }
+      if (rail->holds(sample.angular_velocity_rad_s, sign)) out.sign[j] = static_cast<std::int8_t>(sign);
     }
   }
   return out;

@@ -269,7 +269,7 @@ void RateModel::add_gyro(const RateObservation& observation, const RateEstimate&
 void RateModel::add_sample(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                            arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* doubted) const {
   if (observation.by_elements()) {
-    add_elements(observation, estimate, rig, block, corner);
+    add_elements(observation, estimate, rig, block, corner, doubted);
   } else {
     add_gyro(observation, estimate, rig, block, corner);
   }

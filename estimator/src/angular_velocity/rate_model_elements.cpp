@@ -9,10 +9,18 @@ namespace {
 constexpr int kGyroBias = 3;
 
 // One row m_j . (rate - age acceleration + bias - reading), of the given information and pull; `age` in units of the
-// time by which the acceleration is scaled.
-void add_row(const RateFactor& gyro, int j, double age, double information, double pull, arrow::Block& block,
-             arrow::Corner& corner) {
+// time by which the acceleration is scaled. With `doubted` it tells nothing of m_j, and counts for as little as what is
+// not known of m_j leaves it.
+void add_row(const RateFactor& gyro, int j, double age, double information, double pull,
+             const RigConstants::Matrix* doubted, arrow::Block& block, arrow::Corner& corner) {
   const int first = RigConstants::kElements + 2 * j;
+  if (doubted != nullptr) {
+    const Eigen::RowVector2d by_slopes = gyro.by_rig.block<1, 2>(j, first);
+    const Eigen::Matrix2d unknown = doubted->block<2, 2>(first, first);
+    const double share = 1.0 / (1.0 + information * by_slopes.dot(by_slopes * unknown));
+    information *= share;
+    pull *= share;
+  }
   const Eigen::Vector3d row = gyro.by_knot.row(j).head<3>();
   const Eigen::Vector3d weighted = information * row;
   const Eigen::RowVector2d by_elements = gyro.by_rig.block<1, 2>(j, first);
@@ -20,28 +28,29 @@ void add_row(const RateFactor& gyro, int j, double age, double information, doub
   const Eigen::Matrix<double, 3, 2> mixed = weighted.lazyProduct(by_elements);
   block.diagonal.topLeftCorner<3, 3>() += square;
   block.border.block<3, 3>(0, kGyroBias) += square;
-  block.border.block<3, 2>(0, first) += mixed;
   block.gradient.head<3>() -= pull * row;
   if (age != 0.0) {
     block.diagonal.topRightCorner<3, 3>() -= age * square;
     block.diagonal.bottomLeftCorner<3, 3>() -= age * square;
     block.diagonal.bottomRightCorner<3, 3>() += age * age * square;
     block.border.block<3, 3>(3, kGyroBias) -= age * square;
-    block.border.block<3, 2>(3, first) -= age * mixed;
+    if (doubted == nullptr) block.border.block<3, 2>(3, first) -= age * mixed;
     block.gradient.tail<3>() += age * pull * row;
   }
   corner.matrix.block<3, 3>(kGyroBias, kGyroBias) += square;
+  corner.gradient.segment<3>(kGyroBias) -= pull * row;
+  if (doubted != nullptr) return;
+  block.border.block<3, 2>(0, first) += mixed;
   corner.matrix.block<3, 2>(kGyroBias, first) += mixed;
   corner.matrix.block<2, 3>(first, kGyroBias) += mixed.transpose();
   corner.matrix.block<2, 2>(first, first) += information * by_elements.transpose() * by_elements;
-  corner.gradient.segment<3>(kGyroBias) -= pull * row;
   corner.gradient.segment<2>(first) -= pull * by_elements.transpose();
 }
 
 }  // namespace
 
 void RateModel::add_elements(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
-                             arrow::Block& block, arrow::Corner& corner) const {
+                             arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* doubted) const {
   const RateFactor gyro = element_factor(at_reading(observation, estimate), rig, corrected_rate(observation, estimate));
   for (int j = 0; j < 3; ++j) {
     if ((observation.clipping.void_gyro >> j & 1u) != 0) continue;
@@ -59,7 +68,7 @@ void RateModel::add_elements(const RateObservation& observation, const RateEstim
         pull = information * gyro.residual[j] - estimate.bound_shift[j];
       }
     }
-    add_row(gyro, j, observation.gyro_age_s / time_scale_s_, information, pull, block, corner);
+    add_row(gyro, j, observation.gyro_age_s / time_scale_s_, information, pull, doubted, block, corner);
   }
 }
 

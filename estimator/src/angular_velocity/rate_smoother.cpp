@@ -97,23 +97,6 @@ RateModelParams held(const RateModelParams& params, const RateModel& model) {
   return out;
 }
 
-// A stated range that the readings contradict tells the planes nothing.
-RailPlanes find_planes(const RailPlaneFinder& finder, const RailDetector& rails, const RailDetector::State& state,
-                       std::span<const ImuSample> samples) {
-  if (!rails.disagrees(state, 0) && !rails.disagrees(state, 1) && !rails.disagrees(state, 2)) {
-    return finder.find(samples);
-  }
-  RailPlaneFinder::Params params = finder.params();
-  params.stated_rad_s = std::nullopt;
-  return RailPlaneFinder(params).find(samples);
-}
-
-RailPlaneFinder::Params plane_params(const RateSmoother::Params& params) {
-  RailPlaneFinder::Params out = params.planes;
-  if (!out.stated_rad_s) out.stated_rad_s = params.rails.stated_gyro_rad_s;
-  return out;
-}
-
 // A descent with what it was made with.
 struct Fit {
   RateSolution solution;
@@ -233,7 +216,7 @@ Vector3d rate_later(std::span<const RateObservation> observations, std::span<con
 }  // namespace
 
 RateSmoother::RateSmoother(const Params& params)
-    : params_(params), rails_(params.rails), planes_(plane_params(params)), rests_(params.rests) {
+    : params_(params), rails_({params.rails, params.planes}), rests_(params.rests) {
   require_within("iterations_max", params.iterations_max, 1, 1000);
   require_within("tolerance_rad_s", params.tolerance_rad_s, 1e-12, 1.0);
   require_within("step_max_rad_s", params.step_max_rad_s, 1e-3, 1e4);
@@ -255,20 +238,18 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
 
   RateReport health;
   health.samples = samples.size();
-  std::vector<Clipping> clippings(samples.size());
-  RailDetector::State rail_state;
-  rails_.classify_all(samples, rail_state, clippings);
-  health.planes = find_planes(planes_, rails_, rail_state, samples);
-  health.rails_upright = are_upright(samples, health.planes, rail_state);
-  // equal readings tell an upright rail to the bit, a plane what else there is
-  const RailPlanes planes = health.rails_upright ? without_plateaus(health.planes, rail_state) : health.planes;
-  clip_by_planes(samples, planes, clippings);
+  const ClippingFinder::Found found = rails_.find(samples);
+  const KnownRails& rails = found.rails;
+  const std::vector<Clipping>& clippings = found.clippings;
+  const RailPlanes planes = rails.planes_in_use();
+  health.planes = rails.planes;
+  health.rails_upright = rails.upright;
   for (int c = 0; c < 6; ++c) {
-    health.rail[static_cast<std::size_t>(c)] = rails_.rail(rail_state, c);
+    health.rail[static_cast<std::size_t>(c)] = rails_.walls().rail(rails.walls, c);
     if (c < 3 && planes.element[static_cast<std::size_t>(c)]) {
       health.rail[static_cast<std::size_t>(c)] = planes.element[static_cast<std::size_t>(c)]->distance_rad_s;
     }
-    health.rail_disagrees[static_cast<std::size_t>(c)] = rails_.disagrees(rail_state, c);
+    health.rail_disagrees[static_cast<std::size_t>(c)] = rails_.walls().disagrees(rails.walls, c);
   }
   const double force = median_force(samples);
   health.rate_unit_suspect = std::any_of(samples.begin(), samples.end(), [&](const ImuSample& sample) {
@@ -278,7 +259,7 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
   std::vector<RateObservation> observations(samples.size());
   const double period_s = median_period_s(samples);
   RateModelParams known = params_.model;
-  known.calibration = with_planes(params_.model, planes, health.rails_upright);
+  known.calibration = with_planes(RateModel(params_.model, period_s), planes, rails.upright);
   const RateModel model(known, period_s);
   const std::vector<bool> rest = rests_.find(samples);
   for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -286,7 +267,7 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
     for (std::size_t i = 0; i < companions.size(); ++i) observations[k].companions[i] = companions[i][k];
     const ImuSample* const before = k > 0 ? &samples[k - 1] : nullptr;
     const ImuSample* const after = k + 1 < samples.size() ? &samples[k + 1] : nullptr;
-    mark_partial(planes, rails_, rail_state, model.gyro_sigma_rad_s(), before, observations[k], after);
+    mark_partial(planes, rails_.walls(), rails.walls, model.gyro_sigma_rad_s(), before, observations[k], after);
     if (health.rails_upright) continue;
     doubt_unseen_rails(planes, model.gyro_sigma_rad_s(), before, observations[k], after);
   }

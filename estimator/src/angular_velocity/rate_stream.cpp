@@ -2,9 +2,12 @@
 #include "tumble/angular_velocity/rate_stream.hpp"
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "element_clipping.hpp"
 
 namespace tumble {
 
@@ -44,18 +47,13 @@ void add_prior(const RateStream::State& state, const RateModel& model, const Rat
   corner.gradient += state.prior_corner.gradient - state.prior_corner.matrix * c - state.prior.border.transpose() * x;
 }
 
-// The stream finds upright rails only: without a calibration it holds the gyro's elements for as upright.
-RateModelParams upright(const RateModelParams& params) {
-  constexpr double kUprightSigma = 1e-5;
-  RateModelParams out = params;
-  if (!out.calibration) out.element_sigma = std::min(out.element_sigma, kUprightSigma);
-  return out;
-}
-
 }  // namespace
 
 RateStream::RateStream(const Params& params)
-    : params_(params), rails_(params.rails), rests_(params.rests), model_(upright(params.model), params.period_s) {
+    : params_(params),
+      rails_({.clipping = {params.rails, params.planes}}),
+      rests_(params.rests),
+      model_(params.model, params.period_s) {
   require_within("period_s", params.period_s, 1e-5, 1.0);
   require_within("lag_s", params.lag_s, 2.0 * params.period_s, std::min(10.0, 4096.0 * params.period_s));
   require_within("widen_first", params.widen_first, 1.0, 1000.0);
@@ -73,6 +71,7 @@ RateStream::RateStream(const Params& params)
 
 RateStream::State RateStream::start() const {
   State state;
+  state.rails = rails_.start();
   state.window.reserve(capacity_ + 1);
   state.work.resize(capacity_ + 1);
   state.rig = state.prior_rig = model_.prior_constants();
@@ -145,22 +144,67 @@ void RateStream::marginalise_oldest(State& state) const {
 }
 
 void RateStream::append(const ImuSample& sample, std::span<const CompanionReading> companions, State& state) const {
-  rails_.observe(sample, state.rails);
+  const bool changed = rails_.observe(sample, state.rails);
   Knot knot;
-  knot.observation = {sample, rails_.classify(sample, state.rails), rests_.observe(sample, state.rests)};
+  knot.by_walls = rails_.walls().classify(sample, state.rails.known.walls);
+  knot.observation = {sample, knot.by_walls, rests_.observe(sample, state.rests)};
   std::copy(companions.begin(), companions.end(), knot.observation.companions.begin());
-  const double noise = model_.gyro_sigma_rad_s();
-  if (!state.window.empty()) {
-    RateObservation& last = state.window.back().observation;
-    const std::size_t count = state.window.size();
-    const ImuSample* before = count > 1 ? &state.window[count - 2].observation.sample : nullptr;
-    mark_partial(rails_, state.rails, noise, before, last, &sample);
-    mark_partial(rails_, state.rails, noise, &last.sample, knot.observation, nullptr);
-  }
   knot.estimate.knot.rate_rad_s = sample.angular_velocity_rad_s;
-  if (!state.window.empty()) guess(knot, state.window.back(), state);
   state.window.push_back(knot);
   ++state.samples;
+  if (changed) classify_again(state);
+  // a sample is judged by those beside it too
+  judge(changed ? 0 : state.window.size() - std::min<std::size_t>(2, state.window.size()), state);
+}
+
+// What walls say of the window now that more is known of them.
+void RateStream::classify_again(State& state) const {
+  RailDetector::State& walls = state.rails.known.walls;
+  for (RailDetector::Channel& channel : walls.channels) channel.clipped = false;
+  for (Knot& knot : state.window) knot.by_walls = rails_.walls().classify(knot.observation.sample, walls);
+}
+
+// Reads the samples of the window from `first` on with the rails as they are known. One that turns out to be clipped
+// starts anew.
+void RateStream::judge(std::size_t first, State& state) const {
+  const KnownRails& rails = state.rails.known;
+  const RailPlanes planes = rails.planes_in_use();
+  const double noise = model_.gyro_sigma_rad_s();
+  for (std::size_t k = first; k < state.window.size(); ++k) {
+    Knot& knot = state.window[k];
+    RateObservation& now = knot.observation;
+    const ImuSample* const before = k > 0 ? &state.window[k - 1].observation.sample : nullptr;
+    const ImuSample* const after = k + 1 < state.window.size() ? &state.window[k + 1].observation.sample : nullptr;
+    const std::uint8_t read = now.unseen();
+    Clipping by_walls = knot.by_walls;
+    if (after != nullptr) {
+      rails_.walls().add_edge(now.sample, *after, state.window[k + 1].by_walls, rails.walls, by_walls);
+    }
+    now.clipping = clip_by_planes(planes, by_walls, before, now.sample, after);
+    mark_partial(planes, rails_.walls(), rails.walls, noise, before, now, after);
+    if (!rails.upright) doubt_unseen_rails(planes, noise, before, now, after);
+    const bool newest = k + 1 == state.window.size();
+    if (!newest && (now.unseen() & ~read) == 0) continue;
+    if (!newest) {
+      knot.age = 0;
+      knot.estimate.soft_bounds = false;
+    }
+    if (k > 0) guess(knot, state.window[k - 1], state);
+  }
+}
+
+// What the rails tell of the elements that clip at them: anew with each step, since they become known better.
+void RateStream::add_rails(const State& state, arrow::Corner& corner) const {
+  const KnownRails& rails = state.rails.known;
+  const RailPlanes planes = rails.planes_in_use();
+  for (int j = 0; j < 3; ++j) {
+    const Eigen::Index first = RigConstants::kElements + 2 * j;
+    const auto told = told_slopes(planes, rails.upright, j, model_.prior_covariance().block<2, 2>(first, first));
+    if (!told) continue;
+    const Eigen::Matrix2d information = told->covariance.inverse();
+    corner.matrix.block<2, 2>(first, first) += information;
+    corner.gradient.segment<2>(first) -= information * (state.rig.elements.segment<2>(2 * j) - told->slopes);
+  }
 }
 
 // Clipped axes of a new sample start from the prediction or from the centripetal force, whichever explains flight
@@ -229,6 +273,7 @@ bool RateStream::step(State& state) const {
   arrow::Corner corner;
   blocks[0] = {};
   add_prior(state, model_, state.window[0].estimate.knot, blocks[0], corner);
+  add_rails(state, corner);
   for (std::size_t k = 0; k < count; ++k) {
     const Knot& knot = state.window[k];
     model_.add_sample(knot.observation, knot.estimate, state.rig, blocks[k], corner);
@@ -307,15 +352,16 @@ bool RateStream::equal(const State& a, const State& b) {
     const RateEstimate &e = x.estimate, &f = y.estimate;
     return p.time_ns == q.time_ns && p.angular_velocity_rad_s == q.angular_velocity_rad_s &&
            p.specific_force_m_s2 == q.specific_force_m_s2 && p.device_clip_flags == q.device_clip_flags &&
-           x.observation.clipping == y.observation.clipping && x.observation.at_rest == y.observation.at_rest &&
-           e.knot == f.knot && e.flight_weight == f.flight_weight && e.contact_m_s2 == f.contact_m_s2 &&
-           e.bound_precision == f.bound_precision && e.bound_shift == f.bound_shift && e.soft_bounds == f.soft_bounds &&
+           x.observation.clipping == y.observation.clipping && x.by_walls == y.by_walls &&
+           x.observation.at_rest == y.observation.at_rest && e.knot == f.knot && e.flight_weight == f.flight_weight &&
+           e.contact_m_s2 == f.contact_m_s2 && e.bound_precision == f.bound_precision &&
+           e.bound_shift == f.bound_shift && e.soft_bounds == f.soft_bounds &&
            x.covariance_rad2_s2 == y.covariance_rad2_s2 && x.age == y.age &&
            std::equal(x.observation.companions.begin(), x.observation.companions.end(),
                       y.observation.companions.begin(),
                       [](const CompanionReading& r, const CompanionReading& s) { return r.same(s); });
   };
-  return a.rails == b.rails && a.rests == b.rests &&
+  return RailWatch::equal(a.rails, b.rails) && a.rests == b.rests &&
          std::equal(a.window.begin(), a.window.end(), b.window.begin(), b.window.end(), same) && a.rig == b.rig &&
          a.rig_covariance == b.rig_covariance && a.prior.diagonal == b.prior.diagonal &&
          a.prior.border == b.prior.border && a.prior.gradient == b.prior.gradient &&

@@ -166,8 +166,16 @@ TEST(RateStream, AllocatesNothingPerSample) {
   const std::size_t before = allocations;
   for (const ImuSample& sample : samples) ASSERT_TRUE(method.push(sample, state, one).ok());
   EXPECT_EQ(allocations, before);
+  TumbleOptions tilted = options_of(4);
+  tilted.gyro_rows << 1.0, 0.03, -0.02, 0.01, 1.0, 0.04, -0.03, 0.02, 1.0;
+  const std::vector<ImuSample> of_planes = make_tumble(tilted).samples;
+  RateStream::State other = method.start();
+  const std::size_t between = allocations;
+  for (const ImuSample& sample : of_planes) ASSERT_TRUE(method.push(sample, other, one).ok());
+  EXPECT_EQ(allocations, between);
+  EXPECT_TRUE(other.rails.known.planes.any());
   const std::vector<int> control(3);  // the counter does count
-  EXPECT_EQ(allocations, before + control.size() / 3);
+  EXPECT_EQ(allocations, between + control.size() / 3);
 }
 
 TEST(RateStream, ARunWithoutClippingReturnsTheGyro) {

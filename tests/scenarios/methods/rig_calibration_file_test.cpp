@@ -25,6 +25,7 @@ class RigCalibrationFile : public testing::TemporaryFolder {
     rig.calibration.covariance = 0.7e-4 * RigConstants::Matrix::Identity();
     rig.calibration.covariance(0, 4) = rig.calibration.covariance(4, 0) = 2e-7;
     rig.rail = {10.5, std::nullopt, 10.4, std::nullopt, std::nullopt, std::nullopt};
+    rig.gyro_planes_rad_s[2] = {-10.25, 10.55};
     return rig;
   }
 
@@ -58,6 +59,12 @@ TEST_F(RigCalibrationFile, ComesBackTheSameToTheBit) {
   EXPECT_TRUE(back.calibration.constants == example().calibration.constants);
   EXPECT_EQ(back.calibration.covariance, example().calibration.covariance);
   EXPECT_EQ(back.rail, example().rail);
+  EXPECT_EQ(back.gyro_planes_rad_s, example().gyro_planes_rad_s);
+  EXPECT_TRUE(back.planes() == example().planes());
+  EXPECT_FALSE(back.planes().element[0].has_value());
+  ASSERT_TRUE(back.planes().element[2].has_value());
+  EXPECT_NEAR(back.planes().element[2]->distance_rad_s, 10.4, 1e-12);
+  EXPECT_NEAR(back.planes().element[2]->offset_rad_s, 0.15, 1e-12);
 }
 
 TEST_F(RigCalibrationFile, ComplaintsNameTheKey) {
@@ -67,6 +74,7 @@ TEST_F(RigCalibrationFile, ComplaintsNameTheKey) {
   EXPECT_NE(complaint("10.4", "10.4, 3").find("needs 3 numbers"), std::string::npos);
   EXPECT_NE(complaint("2e-07", "1.0").find("covariance"), std::string::npos);
   EXPECT_NE(complaint("{", "").find("not a JSON object"), std::string::npos);
+  EXPECT_NE(complaint("-10.25", "10.25").find("gyro_planes_rad_s"), std::string::npos);
   EXPECT_EQ(complaint("10.4", "10.3"), "");  // negative control: a sound change is taken
 }
 

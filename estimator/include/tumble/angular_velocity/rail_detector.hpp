@@ -82,6 +82,11 @@ class RailDetector {
   /// Classifies a whole recording after learning from all of it, edges on both sides of each plateau included. O(N).
   void classify_all(std::span<const ImuSample> samples, State& state, std::span<Clipping> out) const;
 
+  /// The rising edge: adds to `clipping` of `sample` what stands before a plateau, that is before a clipped `next`, and
+  /// as near to the rail as what stands after one.
+  void add_edge(const ImuSample& sample, const ImuSample& next, const Clipping& of_next, const State& state,
+                Clipping& clipping) const;
+
   /// Rail in use for channel c (0-5): the plateau found; else, as long as no reading exceeds it, the largest found on
   /// another axis of the same sensor; else likewise the stated range; else none.
   std::optional<double> rail(const State& state, int c) const;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "tumble/common/imu.hpp"
 
@@ -32,12 +33,20 @@ struct RailPlane {
   double short_of(const Eigen::Vector3d& reading_rad_s, int sign) const {
     return distance_rad_s - sign * (row.dot(reading_rad_s) - offset_rad_s);
   }
+  /// Whether a reading is at, or beyond, the plane of `sign`; never where that sign was not seen.
+  bool holds(const Eigen::Vector3d& reading_rad_s, int sign) const {
+    return seen(sign) && short_of(reading_rad_s, sign) <= tolerance_rad_s;
+  }
+  /// Whether readings lie so far beyond it that it is none.
+  bool contradicted_by(std::span<const Eigen::Vector3d> readings_rad_s) const;
+  bool operator==(const RailPlane&) const = default;
 };
 
 /// The rails of a gyro; none where no rail was seen.
 struct RailPlanes {
   std::array<std::optional<RailPlane>, 3> element;
   bool any() const { return element[0] || element[1] || element[2]; }
+  bool operator==(const RailPlanes&) const = default;
 };
 
 /// Per element of a sample: -1 or 1 where it is at that rail, 0 where it is free.
@@ -74,6 +83,18 @@ class RailPlaneFinder {
     int samples_min = 4;         ///< on a rail, of one sign; [2, 1000]
     double log_odds_before = -6.0;  ///< before anything is seen, for each element and sign; [-100, 100]
     double log_odds_min = 1.0;      ///< of a rail that is believed; [-100, 100]
+    double log_odds_keep = -3.0;    ///< of one that was believed before and still is; [-100, log_odds_min]
+    /// Rails that an earlier run on the device has found: a device keeps them to a fraction of a percent. They hold as
+    /// long as no readings contradict them, before anything is met, and make one near them likely.
+    RailPlanes known = {};
+  };
+
+  /// Scratch space of a search, which allocates nothing when it has room for all readings.
+  struct Workspace {
+    std::vector<Eigen::Vector3d> rates;
+    std::vector<double> values;
+    std::vector<std::size_t> near, inliers;
+    void reserve(std::size_t readings);
   };
 
   /// Throws InvalidParams on a parameter outside of its bound.
@@ -82,10 +103,14 @@ class RailPlaneFinder {
   /// The rails that the readings show. Samples must be finite and in order of time. O(N) apart from a search of some
   /// hundred slopes over the samples near the extremes.
   RailPlanes find(std::span<const ImuSample> samples) const;
+  /// The same of readings alone [rad/s]. `before`: rails that fewer of these readings showed.
+  RailPlanes find(std::span<const Eigen::Vector3d> readings_rad_s, const RailPlanes& before,
+                  Workspace& workspace) const;
 
   const Params& params() const { return params_; }
 
  private:
+  RailPlanes with_known(const RailPlanes& found, std::span<const Eigen::Vector3d> readings_rad_s) const;
   Params params_;
 };
 

@@ -206,7 +206,7 @@ class RateModel {
   void add_gyro(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                 arrow::Block& block, arrow::Corner& corner) const;
   void add_elements(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
-                    arrow::Block& block, arrow::Corner& corner) const;
+                    arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* doubted) const;
   static bool says_nothing_of_rig(const RateEstimate& estimate);
   static void keep_from_rig(const RateObservation& observation, RateFactor& flight);
   void add_companions(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,

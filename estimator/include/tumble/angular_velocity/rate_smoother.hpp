@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "tumble/angular_velocity/clipping_finder.hpp"
 #include "tumble/angular_velocity/rail_planes.hpp"
 #include "tumble/angular_velocity/rate_model.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
@@ -117,8 +118,7 @@ class RateSmoother {
 
  private:
   Params params_;
-  RailDetector rails_;
-  RailPlaneFinder planes_;
+  ClippingFinder rails_;
   RestDetector rests_;
 };
 

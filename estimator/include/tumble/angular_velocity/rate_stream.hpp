@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tumble/angular_velocity/arrow_solver.hpp"
+#include "tumble/angular_velocity/rail_watch.hpp"
 #include "tumble/angular_velocity/rate_model.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/angular_velocity/rest_detector.hpp"
@@ -20,8 +21,9 @@ namespace tumble {
 /// sample; what leaves the window is marginalised into a Gaussian prior on the next sample and on the RigConstants.
 ///
 /// An estimate comes out when its sample is `lag_s` old, and a provisional one at once. O(window) per sample; no
-/// allocation after the State is made. Rails are learnt as they show themselves: up to the first plateau the stated
-/// range serves, so the first clipped samples of a device with a wrong or no stated range may be believed.
+/// allocation after the State is made. Rails, upright ones and the tilted planes of a gyro's elements, are learnt as they
+/// show themselves (RailWatch); with each that becomes known the window is read again, element by element, so that a
+/// clipped sample that was believed counts as believed only where it left the window before its rail was seen.
 /// Give it the calibration of an earlier run where there is one: then the error is 1.1 times that of the batch (median
 /// and mean) and 99 % lie within three deviations (tests/bench/rate_statistics hill 4201 4212 --learnt). Without it the
 /// rig is learnt in the tumble that needs it: on hill, draws 1001 to 1030, 1.6 times the median of the batch and 1.7
@@ -34,7 +36,8 @@ namespace tumble {
 /// small: the lever arm was off by five of its deviations after 10 samples of flight, by three after 40. The covariance
 /// of the rig is therefore widened while few samples have been learnt from (`rig_doubt`), and that of the rates
 /// contains it so. Tried and no help: linearising 3 s of the past anew whenever the constants had moved; keeping young
-/// or short flights in the window from telling of the rig. What it does not model: see RateSmoother.
+/// or short flights in the window from telling of the rig; of the gyro's elements: keeping what was learnt of them when
+/// the rest of the rig is dropped, and keeping contact from telling of them. What it does not model: see RateSmoother.
 class RateStream {
  public:
   struct Params {
@@ -43,6 +46,7 @@ class RateStream {
     /// coordinate; sides of 3 : 2 : 2 lie at one deviation of the whole shape, a disc at 1.8, a rod at 3.6).
     RateModelParams model = {.accel_bias_sigma_m_s2 = 0.02, .inertia_sigma = 0.15};
     RailDetector::Params rails;
+    RailPlaneFinder::Params planes;  ///< without a stated range of its own: that of `rails`
     RestDetector::Params rests;
     double period_s = 0.01;        ///< nominal time between samples; [1e-5, 1]
     double lag_s = 0.2;            ///< length of the window; [2 period_s, 10], at most 4096 samples
@@ -63,6 +67,7 @@ class RateStream {
 
   struct Knot {
     RateObservation observation;
+    Clipping by_walls;  ///< what the device and upright rails say; the observation's knows planes too
     RateEstimate estimate;
     Eigen::Matrix3d covariance_rad2_s2 = Eigen::Matrix3d::Zero();
     int age = 0;
@@ -70,7 +75,7 @@ class RateStream {
 
   /// All that evolves; made by start(). Copyable; equal() compares.
   struct State {
-    RailDetector::State rails;
+    RailWatch::State rails;
     RestDetector::State rests;
     std::vector<Knot> window;  ///< oldest first
     RigConstants rig;
@@ -119,6 +124,9 @@ class RateStream {
  private:
   void marginalise_oldest(State& state) const;
   void append(const ImuSample& sample, std::span<const CompanionReading> companions, State& state) const;
+  void classify_again(State& state) const;
+  void judge(std::size_t first, State& state) const;
+  void add_rails(const State& state, arrow::Corner& corner) const;
   void guess(Knot& knot, const Knot& previous, const State& state) const;
   void weigh(State& state) const;
   bool step(State& state) const;
@@ -126,7 +134,7 @@ class RateStream {
   RateState to_state(const Knot& knot) const;
 
   Params params_;
-  RailDetector rails_;
+  RailWatch rails_;
   RestDetector rests_;
   RateModel model_;
   std::size_t capacity_;

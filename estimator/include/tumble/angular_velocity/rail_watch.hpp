@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "tumble/angular_velocity/clipping_finder.hpp"
+#include "tumble/common/imu.hpp"
+
+namespace tumble {
+
+/// ClippingFinder as a stream: the rails that the readings so far show, walls and planes.
+///
+/// It keeps up to `readings_max` distinct readings, the latest and those about the extremes before others, and searches
+/// them as the batch does: when a stretch near an extreme has ended, and within one after each eighth more of readings
+/// near the extremes, so that a run of n such readings is searched O(log n) times and not n. A plane whose readings had
+/// to be forgotten stays until readings contradict it. What it does not model: see RailPlaneFinder; a rail is seen some
+/// samples after it was first met, so that who believed those has to read them again.
+class RailWatch {
+ public:
+  struct Params {
+    ClippingFinder::Params clipping;
+    int readings_max = 1024;  ///< [64, 65536]
+  };
+  struct State {
+    KnownRails known;
+    std::vector<Eigen::Vector3d> readings;           ///< distinct, in order of time [rad/s]
+    Eigen::Vector3d peak = Eigen::Vector3d::Zero();  ///< largest magnitude of each axis [rad/s]
+    std::size_t near = 0, unsearched = 0, past = 0;  ///< readings near the extremes; not searched yet; since the last
+    bool forgot = false;                             ///< readings were dropped
+    RailPlaneFinder::Workspace work;                 ///< scratch space, no part of the state proper
+  };
+
+  /// Throws InvalidParams on a parameter outside of its bound.
+  explicit RailWatch(const Params& params);
+
+  /// A state before the first sample, with all memory that observe() needs.
+  State start() const;
+
+  /// Learns from one finite sample; true when what is known of the rails has changed. O(1), and a search now and then.
+  bool observe(const ImuSample& sample, State& state) const;
+
+  const RailDetector& walls() const { return walls_; }
+
+  /// Whether two states will behave alike for ever, bit for bit.
+  static bool equal(const State& a, const State& b);
+
+ private:
+  void remember(const Eigen::Vector3d& reading, State& state) const;
+  bool is_near(const Eigen::Vector3d& reading, const State& state, double share) const;
+  RailPlanes search(State& state) const;
+
+  RailDetector walls_;
+  RailPlaneFinder planes_, unstated_;
+  std::size_t readings_max_;
+};
+
+}  // namespace tumble
