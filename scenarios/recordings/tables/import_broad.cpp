@@ -96,7 +96,7 @@ Imported import_broad(const std::filesystem::path& path) {
   const hdf5::InputFile file(path);
   const hdf5::Group& root = file.root();
   const double rate_hz = root.double_attribute("sampling_rate");
-  if (!(rate_hz > 0.0 && rate_hz <= 1e5)) root.fail("sampling_rate", "must be above 0 and at most 100000 Hz");
+  if (!(rate_hz >= 1.0 && rate_hz <= 1e5)) root.fail("sampling_rate", "must be within 1 and 100000 Hz");
   Imported out;
   out.info.attribution = kAttribution + path.stem().string();
   out.sensors.imus.push_back(read_imu(root, rate_hz));
