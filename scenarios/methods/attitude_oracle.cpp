@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/attitude_tumble.hpp"
+#include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "tumble/common/imu.hpp"
 
@@ -33,6 +36,11 @@ sim::Sensors unclipped_gyros(const sim::Sensors& sensors, const sim::Truth& trut
 }
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& oracle) {
+  // the readings themselves are checked too: an oracle shall not run where no method could
+  Estimate estimate;
+  std::vector<ImuSample> samples;
+  estimate.status = bridge::primary_imu_samples(sensors, samples);
+  if (!estimate.status.ok()) return estimate;
   return run_attitude_tumble(unclipped_gyros(sensors, *oracle.truth), parameters);
 }
 

@@ -234,7 +234,7 @@ TEST(Registry, NamesAreUniqueWithinAKindAndSortedByKind) {
 }
 
 TEST(Registry, FindsByNameAndByKindAndName) {
-  EXPECT_EQ(find_methods("oracle").size(), 3u);
+  EXPECT_EQ(find_methods("oracle").size(), 4u);
   ASSERT_EQ(find_methods("rate/oracle").size(), 1u);
   EXPECT_EQ(find_methods("rate/oracle").front()->info.kind, Kind::rate);
   try {

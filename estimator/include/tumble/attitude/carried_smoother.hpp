@@ -45,7 +45,7 @@ class CarriedSmoother {
     double gravity_m_s2 = 9.80665;      ///< bound (0, 100]
     double node_s = 0.01;               ///< between two nodes; bound [1e-3, 0.1]
     double gyro_noise_density = 5e-4;   ///< rad/s/sqrt(Hz); bound [1e-6, 1]
-    double tilt_share = 0.01;           ///< error of a free element per excess of a clipped one; bound [0, 1]
+    double tilt_share = 0.02;           ///< error of a free element per excess of a clipped one; bound [0, 1]
     double rail_sigma_rad_s = 0.01;     ///< how sharp a rail is; bound [1e-4, 1]
     double accel_noise_density = 0.01;  ///< m/s^2/sqrt(Hz); bound [1e-5, 10]
     double accel_error_share = 0.02;    ///< more, per m/s^2 away from gravity; bound [0, 1]
