@@ -216,10 +216,13 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
   return {};
 }
 
-// What remains open of the device's errors, in a rate.
-Eigen::Matrix3d considered(const arrow::ErrorMatrix& moved, const SensorErrors::Matrix& covariance) {
+// What remains open of the device's errors, in a rate: linear in them, and no more than any rate.
+Eigen::Matrix3d considered(const arrow::ErrorMatrix& moved, const SensorErrors::Matrix& covariance,
+                           double rate_max_rad_s) {
   const Eigen::Matrix<double, 3, SensorErrors::kSize> rates = moved.topRows<3>(), spread = rates * covariance;
-  return spread.lazyProduct(rates.transpose());
+  const Eigen::Matrix3d out = spread.lazyProduct(rates.transpose());
+  const double most = rate_max_rad_s * rate_max_rad_s;
+  return std::min(1.0, most / std::max(out.trace(), 1e-300)) * out;
 }
 
 // The rate some time after a sample: cubic between the knots about that instant.
@@ -313,8 +316,9 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
   std::size_t in_flight = 0;
   solution.iteration.for_each_conditional([&](std::size_t k, const arrow::Conditional& conditional) {
     const RateEstimate& estimate = solution.estimates[k];
-    const Eigen::Matrix3d covariance = arrow::rate_covariance(conditional, solution.rig_covariance) +
-                                       considered(fit.moved.of_sample[k], health.sensor_errors.covariance);
+    const Eigen::Matrix3d covariance =
+        arrow::rate_covariance(conditional, solution.rig_covariance) +
+        considered(fit.moved.of_sample[k], health.sensor_errors.covariance, params_.model.rate_max_rad_s);
     RateState& state = states[k];
     state.time_ns = samples[k].time_ns;
     state.w_WI_I_rad_s = rate_later(observations, solution.estimates, k, gyro_late_s);
