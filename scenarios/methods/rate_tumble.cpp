@@ -105,6 +105,14 @@ void report_health(const RateReport& report, std::map<std::string, double>& heal
   health["readings_void"] = static_cast<double>(report.void_readings);
   health["rails_disagreeing"] =
       static_cast<double>(std::count(report.rail_disagrees.begin(), report.rail_disagrees.end(), true));
+  constexpr int kDelay = SensorErrors::kDelay;
+  health["accel_delay_s"] = report.sensor_errors.errors.accel_delay_s;
+  health["accel_delay_sigma_s"] = std::sqrt(report.sensor_errors.covariance(kDelay, kDelay));
+  health["device_calibrated"] = report.calibrated;
+  health["triads_together"] = report.together;
+  health["error_rounds"] = report.error_rounds;
+  health["gyro_update_s"] = report.gyro_update_s;
+  health["accel_update_s"] = report.accel_update_s;
   health["rails_upright"] = report.rails_upright ? 1.0 : 0.0;
   health["rate_unit_suspect"] = report.rate_unit_suspect ? 1.0 : 0.0;
   health["force_unit_suspect"] = report.force_unit_suspect ? 1.0 : 0.0;

@@ -64,6 +64,15 @@ SensorErrorSizes as_stated(SensorErrorSizes sizes) {
   return sizes;
 }
 
+// Whether a device may have such errors: what a fit has beyond that, the model of flight has missed.
+bool plausible(const SensorErrors& errors, const SensorErrorSizes& sizes) {
+  constexpr double kDeviations = 6.0;
+  const double delay_s = kDeviations * std::max(sizes.delay_s, sizes.delay_unknown_s);
+  const double felt_s_m = kDeviations * std::max(sizes.felt_s_m, sizes.felt_unknown_s_m);
+  return errors.vector().allFinite() && std::abs(errors.accel_delay_s) <= std::min(0.1, delay_s) &&
+         std::abs(errors.accel_blur_s2) <= delay_s * delay_s && errors.felt_s_m.cwiseAbs().maxCoeff() <= felt_s_m;
+}
+
 // Whether errors are so far from those that readings have been corrected for that the descent must be made again.
 bool far_apart(const SensorErrors& a, const SensorErrors& b) {
   constexpr double kMatrix = 1e-3, kFelt_s_m = 3e-5, kDelay_s = 3e-4, kBlur_s2 = 3e-6;
@@ -139,6 +148,7 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
   std::vector<double> age_s(samples.size());
   for (std::size_t k = 0; k < age_s.size(); ++k) age_s[k] = observations[k].accel_age_s;
   SensorErrorFit found;
+  bool believed = true;
   for (health.error_rounds = 1;; ++health.error_rounds) {
     const double shift = std::round(errors.accel_delay_s / period_s);
     shift_force(samples, clippings, static_cast<std::ptrdiff_t>(shift), age_s, observations);
@@ -160,12 +170,13 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
     }
     fit.moved.evidence.about = errors;
     found = fit_sensor_errors(fit.moved.evidence, known.error_sizes);
-    if (health.rig_held || health.error_rounds >= params.error_rounds_max) break;
+    believed = plausible(found.known.errors, known.error_sizes);
+    if (health.rig_held || !believed || health.error_rounds >= params.error_rounds_max) break;
     if (!far_apart(found.known.errors, errors)) break;
     errors = found.known.errors;
   }
-  if (health.rig_held || !estimated) {
-    // what a run tells of the device without flight is nothing: all that may be is left open
+  if (health.rig_held || !believed || !estimated) {
+    // what a run without flight tells of the device is nothing, beyond what devices have it is wrong: all is left open
     found = fit_sensor_errors({}, estimated ? known.error_sizes : as_stated(known.error_sizes));
     found.known.errors = errors;
   } else {
@@ -188,10 +199,13 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
   return {};
 }
 
-// What remains open of the device's errors, in a rate.
-Eigen::Matrix3d considered(const arrow::ErrorMatrix& moved, const SensorErrors::Matrix& covariance) {
+// What remains open of the device's errors, in a rate: linear in them, and no more than any rate.
+Eigen::Matrix3d considered(const arrow::ErrorMatrix& moved, const SensorErrors::Matrix& covariance,
+                           double rate_max_rad_s) {
   const Eigen::Matrix<double, 3, SensorErrors::kSize> rates = moved.topRows<3>(), spread = rates * covariance;
-  return spread.lazyProduct(rates.transpose());
+  const Eigen::Matrix3d out = spread.lazyProduct(rates.transpose());
+  const double most = rate_max_rad_s * rate_max_rad_s;
+  return std::min(1.0, most / std::max(out.trace(), 1e-300)) * out;
 }
 
 // The rate some time after a sample: cubic between the knots about that instant.
@@ -283,8 +297,9 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
   std::size_t in_flight = 0;
   solution.iteration.for_each_conditional([&](std::size_t k, const arrow::Conditional& conditional) {
     const RateEstimate& estimate = solution.estimates[k];
-    const Eigen::Matrix3d covariance = arrow::rate_covariance(conditional, solution.rig_covariance) +
-                                       considered(fit.moved.of_sample[k], health.sensor_errors.covariance);
+    const Eigen::Matrix3d covariance =
+        arrow::rate_covariance(conditional, solution.rig_covariance) +
+        considered(fit.moved.of_sample[k], health.sensor_errors.covariance, params_.model.rate_max_rad_s);
     RateState& state = states[k];
     state.time_ns = samples[k].time_ns;
     state.w_WI_I_rad_s = rate_later(observations, solution.estimates, k, gyro_late_s);
