@@ -36,9 +36,6 @@ constexpr double kNearSibling = 5.0, kNearStated = 3.0, kOtherSignAgrees = 5.0, 
 constexpr double kNearKnown = 6.0, kKnownShare = 0.003, kFarFromKnown = -3.0;
 // What the slopes may change from run to run.
 constexpr double kKnownSlopeSigma = 2e-3;
-// Readings beyond a plane, by so many times its tolerance, that contradict it.
-constexpr double kBeyondTolerance = 4.0;
-constexpr int kContradicting = 2;
 // A rail is not found below this share of the stated range.
 constexpr double kStatedShareMin = 0.85;
 
@@ -397,51 +394,6 @@ RailPlanes RailPlaneFinder::find(std::span<const Vector3d> readings_rad_s, const
     }
   }
   return with_known(found, readings.rates);
-}
-
-// What an earlier run knew of elements, and of signs, that these readings did not meet.
-RailPlanes RailPlaneFinder::with_known(const RailPlanes& found, std::span<const Vector3d> readings_rad_s) const {
-  RailPlanes out = found;
-  for (std::size_t j = 0; j < 3; ++j) {
-    const auto& earlier = params_.known.element[j];
-    auto& rail = out.element[j];
-    if (!earlier) continue;
-    if (!rail && !earlier->contradicted_by(readings_rad_s)) rail = earlier;
-    for (const int sign : {-1, 1}) {
-      // near enough to be the same device
-      if (!rail || rail->seen(sign) || !earlier->seen(sign)) continue;
-      const double apart = std::abs(rail->distance_rad_s - earlier->distance_rad_s);
-      const std::size_t i = sign > 0 ? 1 : 0;
-      if (apart <= kKnownShare * earlier->distance_rad_s) rail->samples[i] = earlier->samples[i];
-    }
-  }
-  return out;
-}
-
-bool RailPlane::contradicted_by(std::span<const Vector3d> readings_rad_s) const {
-  int beyond = 0;
-  for (const Vector3d& y : readings_rad_s) {
-    for (const int sign : {-1, 1}) {
-      beyond += seen(sign) && short_of(y, sign) < -kBeyondTolerance * tolerance_rad_s ? 1 : 0;
-    }
-  }
-  return beyond >= kContradicting;
-}
-
-ElementClipping classify(const ImuSample& sample, const RailPlanes& planes) {
-  ElementClipping out;
-  for (std::size_t j = 0; j < 3; ++j) {
-    const auto& rail = planes.element[j];
-    if (!rail) continue;
-    for (const int sign : {-1, 1}) {
-      if (rail->holds(sample.angular_velocity_rad_s, sign)) out.sign[j] = static_cast<std::int8_t>(sign);
-    }
-  }
-  return out;
-}
-
-void classify(std::span<const ImuSample> samples, const RailPlanes& planes, std::span<ElementClipping> out) {
-  for (std::size_t k = 0; k < samples.size(); ++k) out[k] = classify(samples[k], planes);
 }
 
 }  // namespace tumble

@@ -381,7 +381,12 @@ Eigen::Matrix3d RateModel::reported(const Eigen::Matrix3d& covariance, const Rat
       wider[j] = factor;
   }
   const Vector3d late = params_.gyro_time_sigma_s * estimate.knot.acceleration_rad_s2;
-  const Eigen::Matrix3d timed = covariance + late * late.transpose();
+  Eigen::Matrix3d timed = covariance + late * late.transpose();
+  if (observation.by_elements()) {
+    // within a window of contact the acceleration is what the force makes of it, on the axes that are read too
+    const double struck = params_.gyro_time_sigma_s * params_.contact_gain_rad_m * estimate.contact_m_s2.norm();
+    timed.diagonal().array() += struck * struck;
+  }
   return wider.asDiagonal() * timed * wider.asDiagonal();
 }
 

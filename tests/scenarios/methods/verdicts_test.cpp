@@ -14,17 +14,17 @@
 namespace tumble::scenarios {
 namespace {
 
-struct Run {
+struct Said {
   std::string status;
   double localised = std::nan(""), ate_m = std::nan(""), nees = std::nan("");
 };
 
-Run run(const Method& method, const SimulatedDraw& draw, const std::string& wrong) {
+Said run(const Method& method, const SimulatedDraw& draw, const std::string& wrong) {
   SimulatedDraw given = draw;
   testing::wrong_inputs().at(wrong)(given.recording.sensors);
   Outcome outcome;
   const Estimate estimate = run_method(method, given, outcome);
-  Run out{outcome.status};
+  Said out{outcome.status};
   if (outcome.status != "ok") return out;
   out.localised = estimate.health.at("localised");
   assess(method, scored_by(draw, given), nullptr, estimate, outcome);
@@ -41,13 +41,13 @@ TEST(Verdicts, SlamFindsAWrongCalibrationAndSaysWhenSensorsContradictEachOther) 
   const Method& method = *find_methods("slam/tumble").at(0);
   // clocks 20 ms apart, a mounting off by 3 deg and 3 cm: twice what the priors believe
   for (const char* wrong : {"none", "lidar_20_ms", "mounting_2_deg"}) {
-    const Run good = run(method, draw, wrong);
+    const Said good = run(method, draw, wrong);
     EXPECT_EQ(good.localised, 1.0) << wrong;
     EXPECT_LT(good.ate_m, 0.06) << wrong;
     EXPECT_LT(good.nees, 3.0) << wrong;
   }
   for (const char* wrong : {"accel_flipped", "gyro_x_y_swapped"}) {
-    const Run bad = run(method, draw, wrong);
+    const Said bad = run(method, draw, wrong);
     EXPECT_TRUE(bad.status != "ok" || bad.localised == 0.0) << wrong;
     EXPECT_FALSE(bad.ate_m < 0.5) << wrong;  // or nothing was wrong
   }

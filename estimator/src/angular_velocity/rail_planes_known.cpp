@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rails that are known: which readings are at them, and what an earlier run adds to those found.
+#include <cmath>
+
+#include "tumble/angular_velocity/rail_planes.hpp"
+
+namespace tumble {
+
+namespace {
+
+using Eigen::Vector3d;
+
+// Readings beyond a plane, by so many times its tolerance, that contradict it.
+constexpr double kBeyondTolerance = 4.0;
+constexpr int kContradicting = 2;
+// Rails of two runs of one device lie within this share of each other.
+constexpr double kSameShare = 0.003;
+
+}  // namespace
+
+// What an earlier run knew of elements, and of signs, that these readings did not meet.
+RailPlanes RailPlaneFinder::with_known(const RailPlanes& found, std::span<const Vector3d> readings_rad_s) const {
+  RailPlanes out = found;
+  for (std::size_t j = 0; j < 3; ++j) {
+    const auto& earlier = params_.known.element[j];
+    auto& rail = out.element[j];
+    if (!earlier) continue;
+    if (!rail && !earlier->contradicted_by(readings_rad_s)) rail = earlier;
+    for (const int sign : {-1, 1}) {
+      // near enough to be the same device
+      if (!rail || rail->seen(sign) || !earlier->seen(sign)) continue;
+      const double apart = std::abs(rail->distance_rad_s - earlier->distance_rad_s);
+      const std::size_t i = sign > 0 ? 1 : 0;
+      if (apart <= kSameShare * earlier->distance_rad_s) rail->samples[i] = earlier->samples[i];
+    }
+  }
+  return out;
+}
+
+bool RailPlane::contradicted_by(std::span<const Vector3d> readings_rad_s) const {
+  int beyond = 0;
+  for (const Vector3d& y : readings_rad_s) {
+    for (const int sign : {-1, 1}) {
+      beyond += seen(sign) && short_of(y, sign) < -kBeyondTolerance * tolerance_rad_s ? 1 : 0;
+    }
+  }
+  return beyond >= kContradicting;
+}
+
+ElementClipping classify(const ImuSample& sample, const RailPlanes& planes) {
+  ElementClipping out;
+  for (std::size_t j = 0; j < 3; ++j) {
+    const auto& rail = planes.element[j];
+    if (!rail) continue;
+    for (const int sign : {-1, 1}) {
+      if (rail->holds(sample.angular_velocity_rad_s, sign)) out.sign[j] = static_cast<std::int8_t>(sign);
+    }
+  }
+  return out;
+}
+
+void classify(std::span<const ImuSample> samples, const RailPlanes& planes, std::span<ElementClipping> out) {
+  for (std::size_t k = 0; k < samples.size(); ++k) out[k] = classify(samples[k], planes);
+}
+
+}  // namespace tumble
