@@ -62,7 +62,7 @@ TEST_F(MapFile, PcdThatIsNoMapIsRefusedInSilence) {
   ::testing::internal::CaptureStderr();
   ::testing::internal::CaptureStdout();
   const std::filesystem::path path = folder_ / "map.pcd";
-  EXPECT_NE(complaint(path).find("absent, damaged or truncated"), std::string::npos);
+  EXPECT_NE(complaint(path).find("no such file"), std::string::npos);
   write_pcd_map(path, some_map());
   std::filesystem::resize_file(path, std::filesystem::file_size(path) - 100);
   EXPECT_NE(complaint(path).find("truncated"), std::string::npos);
