@@ -13,7 +13,7 @@ bool contains(const std::string& text, const char* part) {
 
 Sense metric_sense(const std::string& metric) {
   // coverage of an interval and normalised errors have a target; costs are no contest
-  for (const char* part : {"coverage_3sigma", "_nees_", "_cpu_s", "_mib", "flagged_share", "rate_reference_"}) {
+  for (const char* part : {"coverage_3sigma", "nees", "_cpu_s", "_mib", "flagged_share", "rate_reference_"}) {
     if (contains(metric, part)) return Sense::neither;
   }
   for (const char* part : {"overlap", "coverage", "precision", "recall"}) {
@@ -36,6 +36,19 @@ std::vector<std::string> headline_metrics(Kind kind) {
       return {"position_end_error_share"};
     case Kind::slam:
       return {"translation_error_end_m", "rotation_error_end_rad", "map_overlap"};
+  }
+  return {};
+}
+
+std::vector<std::string> consistency_metrics(Kind kind) {
+  switch (kind) {
+    case Kind::rate:
+      return {"rate_nees_flight", "rate_nees_impact"};
+    case Kind::slam:
+      return {"pose_nees"};
+    case Kind::attitude:
+    case Kind::position:
+      break;
   }
   return {};
 }

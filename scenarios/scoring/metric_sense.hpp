@@ -18,4 +18,7 @@ bool is_verdict(const std::string& metric);
 /// The metrics that say most about a kind, best first.
 std::vector<std::string> headline_metrics(Kind kind);
 
+/// The metrics that hold a kind's reported covariance to its errors: neither less nor more is better.
+std::vector<std::string> consistency_metrics(Kind kind);
+
 }  // namespace tumble::scenarios

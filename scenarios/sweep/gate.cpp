@@ -121,7 +121,8 @@ Gate accept(const Gate& gate, const std::vector<GateResult>& results, double mar
     bound.high = kInfinity;
     const double room = margin * std::abs(result.value);
     if (bound.statistic == Statistic::share_not_ok) {
-      bound.high = std::min(1.0, result.value + margin);
+      // where none failed none may: a margin would let failures in that a user meets
+      bound.high = result.value > 0.0 ? std::min(1.0, result.value + margin) : 0.0;
     } else {
       const Sense sense = metric_sense(bound.metric);
       if (sense != Sense::more) bound.high = result.value + room;
@@ -145,6 +146,11 @@ Gate proposed_gate(const Results& results, const std::string& suite) {
       bound.statistic = Statistic::median;
       gate.bounds.push_back(bound);
       bound.statistic = metric_sense(metric) == Sense::more ? Statistic::quantile_05 : Statistic::quantile_95;
+      gate.bounds.push_back(bound);
+    }
+    for (const std::string& metric : consistency_metrics(outcome.kind)) {
+      bound.metric = metric;
+      bound.statistic = Statistic::median;
       gate.bounds.push_back(bound);
     }
   }

@@ -56,12 +56,12 @@ struct GateResult {
 std::vector<GateResult> hold_to_gate(const Results& results, const Gate& gate, std::uint64_t first, std::uint64_t last);
 
 /// Bounds with the values of `results` as accepted, `margin` of their size away: above for what is better small (high),
-/// below for what is better large (low). Shares of failures may rise by the margin times one, too: a share of 0 has no
-/// size. A value that is not finite throws BadInput: such a run cannot be accepted.
+/// below for what is better large (low), both for what has a target. A share of failures may rise by the margin, but
+/// where there was none there may be none. A value that is not finite throws BadInput: such a run cannot be accepted.
 Gate accept(const Gate& gate, const std::vector<GateResult>& results, double margin);
 
 /// A gate to begin with, without bounds' values: for each scenario and kind in the results, the method `tumble` and
-/// what is most often looked at. What is better large has low set to 0, the others high.
+/// what is most often looked at, errors and whether the reported covariance holds them.
 Gate proposed_gate(const Results& results, const std::string& suite);
 
 }  // namespace tumble::scenarios

@@ -241,7 +241,7 @@ void ImuMerge::close_windows(const Flags& present, const Vectors& rates, const V
   // a unit that repeats itself may turn out to be frozen, and nothing is to be learnt from one; where all do, it is the
   // body that keeps its rate
   const auto end = state.units.begin() + params_.count;
-  const auto some_hold = [&](Hold Unit::* hold) {
+  const auto some_hold = [&](Hold Unit::*hold) {
     const auto holding =
         std::count_if(state.units.begin(), end, [&](const Unit& unit) { return (unit.*hold).held_s >= kHeld_s; });
     return holding > 0 && holding < params_.count;

@@ -3,9 +3,9 @@
 
 #include <array>
 #include <cmath>
-#include <optional>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <random>
 
 #include "tumble/attitude/imu_merge.hpp"

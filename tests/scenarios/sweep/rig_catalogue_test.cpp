@@ -18,7 +18,8 @@ namespace tumble::scenarios {
 namespace {
 
 const DataRoot kData{test::source_dir()};
-// a seed of the range that development looks at, at which the gyro clips in every scenario: mild draws spin below the rail
+// a seed of the range that development looks at, at which the gyro clips in every scenario: mild draws spin below the
+// rail
 constexpr std::uint64_t kSeed = 1003;
 
 // those whose sensors are the question are a suite of their own

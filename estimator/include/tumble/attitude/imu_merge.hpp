@@ -86,7 +86,7 @@ class ImuMerge {
     ImuAverage window;  ///< of its readings, since the last one closed
     /// Means over the last window.
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero(), last_force_m_s2 = Eigen::Vector3d::Zero();
-    double suspect_s = 0.0;  ///< for so long it is still left out of the force
+    double suspect_s = 0.0;     ///< for so long it is still left out of the force
     std::int64_t left_out = 0;  ///< windows
     Hold rate_hold, force_hold;
     double thawing_s = 0.0;
