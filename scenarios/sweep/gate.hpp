@@ -50,9 +50,9 @@ struct GateResult {
   bool passes() const { return value >= bound.low && value <= bound.high; }
 };
 
-/// The statistic over the outcomes of the seeds `first` to `last`. An outcome that is not ok ranks as the worst value,
-/// on the side of the bound: infinite where `high` is set, else minus infinite. An outcome that is ok but has no such
-/// metric does not count. NaN without outcomes, which passes no bound.
+/// The statistic over the outcomes of the seeds `first` to `last`. An outcome that is not ok ranks as the worst value
+/// (infinite, or minus infinite where more is better) and does not count for a metric without sense, as one that is ok
+/// but has no such metric does not. NaN without outcomes, which passes no bound.
 std::vector<GateResult> hold_to_gate(const Results& results, const Gate& gate, std::uint64_t first, std::uint64_t last);
 
 /// Bounds with the values of `results` as accepted, `margin` of their size away: above for what is better small (high),

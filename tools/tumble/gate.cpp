@@ -33,7 +33,7 @@ struct Options {
   int jobs = 1;
   fs::path database, bounds;
   bool accept = false;
-  double margin = 0.25;
+  double margin = 0.1;
 };
 
 /// A database of its own that is gone afterwards, unless the caller named one.
