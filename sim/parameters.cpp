@@ -51,7 +51,9 @@ std::string nearest_name(std::string_view name, std::span<const std::string> kno
 Values resolve(const std::string& place, const Values& given, std::span<const Parameter> known) {
   Values out;
   for (const Parameter& parameter : known) out.set(std::string(parameter.name), parameter.default_value);
-  for (const auto& [name, value] : given.all()) {
+  for (const auto& entry : given.all()) {
+    const auto& name = entry.first;
+    const double value = entry.second;
     const auto parameter = std::find_if(known.begin(), known.end(), [&](const Parameter& p) { return p.name == name; });
     if (parameter == known.end()) {
       std::vector<std::string> names;
