@@ -199,8 +199,6 @@ ImuMerge::Flags ImuMerge::choose(const Readings& readings, const Flags& present,
     leave_out_hidden(readings, present, forces, middle_rate, h, state, used);
   }
   for (std::size_t i = 0; i < static_cast<std::size_t>(params_.count); ++i) state.units[i].left_out += !used[i];
-  state.middle_rate_rad_s = middle_rate;
-  state.middle_force_m_s2 = middle_force;
   return used;
 }
 

@@ -105,7 +105,6 @@ class ImuMerge {
     RateRecovery::State recovery;
     Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();         ///< merged, mean over the last window
     Eigen::Vector3d rate_before_rad_s = Eigen::Vector3d::Zero();  ///< and over the one before
-    Eigen::Vector3d middle_rate_rad_s = Eigen::Vector3d::Zero(), middle_force_m_s2 = Eigen::Vector3d::Zero();
     double turning_rad_s = 0.0;                        ///< mean of the rate over half a second
     double window_s = 0.0;                             ///< length of the one that is open
     double length_s = 0.0, length_before_s = 0.0;      ///< of the last windows
