@@ -16,10 +16,10 @@
 
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/draw/without_lidars.hpp"
-#include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/sweep/evaluate.hpp"
 #include "scenarios/sweep/statistics.hpp"
 #include "sim/simulate.hpp"
+#include "tests/bench/kept_recording.hpp"
 #include "tests/bench/rate_pool.hpp"
 #include "tests/tree.hpp"
 
@@ -82,23 +82,13 @@ bool parse(int count, char** words, Request& request) {
 
 sim::Recording recording_of(const scenarios::DataRoot& data, const Row& row, std::size_t index, std::uint64_t seed,
                             const std::filesystem::path& keep) {
-  const std::filesystem::path file = keep / ("row" + std::to_string(index) + "_" + std::to_string(seed) + ".h5");
-  if (!keep.empty() && std::filesystem::exists(file)) {
-    return {scenarios::read_sensors(file), scenarios::read_truth(file)};
-  }
-  const scenarios::Scenario scenario = scenarios::load_scenario(data, row.scenario);
-  sim::Situation situation = scenarios::without_lidars(scenarios::draw(data, scenario, seed));
-  for (const auto& [name, value] : row.changes) situation.sensors.front().values.set(name, value);
-  sim::Recording recording = sim::simulate(situation, {data.models(), 1});
-  if (!keep.empty()) {
-    std::filesystem::create_directories(keep);
-    scenarios::RecordingInfo info;
-    info.scenario = scenario.name;
-    info.seed = seed;
-    info.situation_yaml = scenarios::to_yaml(situation);
-    scenarios::write_recording(file, info, recording.sensors, &recording.truth);
-  }
-  return recording;
+  const std::string name = "row" + std::to_string(index) + "_" + std::to_string(seed);
+  return tumble::bench::kept_recording(data, keep, name, row.scenario, seed, [&] {
+    sim::Situation out =
+        scenarios::without_lidars(scenarios::draw(data, scenarios::load_scenario(data, row.scenario), seed));
+    for (const auto& [parameter, value] : row.changes) out.sensors.front().values.set(parameter, value);
+    return out;
+  });
 }
 
 std::vector<double> normalised(const RatePool& pool) {

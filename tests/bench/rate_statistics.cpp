@@ -27,6 +27,7 @@
 #include "scenarios/sweep/evaluate.hpp"
 #include "scenarios/sweep/statistics.hpp"
 #include "sim/simulate.hpp"
+#include "tests/bench/kept_recording.hpp"
 #include "tests/bench/rate_pool.hpp"
 #include "tests/tree.hpp"
 
@@ -78,29 +79,16 @@ bool parse(int count, char** words, Request& request) {
 sim::Recording recording_of(const scenarios::DataRoot& data, const scenarios::Scenario& scenario, std::uint64_t seed,
                             const std::filesystem::path& keep, bool other = false) {
   constexpr std::uint64_t kOther = 1'000'000;
-  const std::string name = scenario.name + "_" + std::to_string(seed) + (other ? "_other.h5" : ".h5");
-  const std::filesystem::path file = keep / name;
-  if (!keep.empty() && std::filesystem::exists(file)) {
-    return {scenarios::read_sensors(file), scenarios::read_truth(file)};
-  }
-  sim::Situation situation = scenarios::without_lidars(scenarios::draw(data, scenario, seed + (other ? kOther : 0)));
-  if (other) {
-    // its own seed too: the sensing elements of a device are drawn from it
+  const std::string name = scenario.name + "_" + std::to_string(seed) + (other ? "_other" : "");
+  return bench::kept_recording(data, keep, name, scenario.name, seed, [&] {
     sim::Situation own = scenarios::without_lidars(scenarios::draw(data, scenario, seed));
-    own.world = situation.world;
-    own.motion = situation.motion;
-    situation = own;
-  }
-  sim::Recording recording = sim::simulate(situation, {data.models(), 1});
-  if (!keep.empty()) {
-    std::filesystem::create_directories(keep);
-    scenarios::RecordingInfo info;
-    info.scenario = scenario.name;
-    info.seed = seed;
-    info.situation_yaml = scenarios::to_yaml(situation);
-    scenarios::write_recording(file, info, recording.sensors, &recording.truth);
-  }
-  return recording;
+    if (!other) return own;
+    // its own seed too: the sensing elements of a device are drawn from it
+    const sim::Situation far = scenarios::without_lidars(scenarios::draw(data, scenario, seed + kOther));
+    own.world = far.world;
+    own.motion = far.motion;
+    return own;
+  });
 }
 
 const scenarios::Method& method_of(const std::string& name) {
