@@ -8,8 +8,8 @@
 #include "scenarios/certificate/rows.hpp"
 #include "scenarios/draw/strict_yaml.hpp"
 #include "scenarios/errors.hpp"
+#include "scenarios/processes/process.hpp"
 #include "scenarios/sweep/build_id.hpp"
-#include "scenarios/sweep/process.hpp"
 #include "sim/parameters.hpp"
 
 namespace tumble::scenarios {

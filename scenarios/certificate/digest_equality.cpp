@@ -6,8 +6,8 @@
 
 #include "scenarios/certificate/rows.hpp"
 #include "scenarios/draw/scenario.hpp"
+#include "scenarios/processes/process.hpp"
 #include "scenarios/recordings/recording_file.hpp"
-#include "scenarios/sweep/process.hpp"
 #include "sim/simulate.hpp"
 
 namespace tumble::scenarios {

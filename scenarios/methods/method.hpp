@@ -61,6 +61,7 @@ struct MethodInfo {
   bool needs_truth = false;
   bool for_robot(const std::string& robot) const;  ///< whether it applies to "rig" or "sphere"
   std::vector<std::string> robots;                 ///< empty: all
+  std::string version;  ///< of a method that is not of this build: what tells it from another of its name
 };
 
 /// Runs a method over a recording. Pure: the same input gives the same bits.
@@ -71,10 +72,21 @@ struct Method {
   RunMethod run;
 };
 
-/// All methods, sorted by kind, then in order of registration.
+/// Of this build, for as long as the program runs, or of a file, shared.
+using MethodPointer = std::shared_ptr<const Method>;
+
+/// All methods of this build, sorted by kind, then in order of registration.
 std::span<const Method> methods();
 
-/// Every method called `name` ("saave"), or the one of a kind ("rate/oracle"). Throws BadInput naming the nearest.
-std::vector<const Method*> find_methods(const std::string& name);
+/// Every method called `name` ("saave"), or the one of a kind ("rate/oracle"), or the one that a file NAME.yaml
+/// describes (external_method.hpp). Throws BadInput naming the nearest, and for a file's method that bears the name of
+/// one of ours.
+std::vector<MethodPointer> find_methods(const std::string& name);
+
+/// The same for a list, each method once. Throws BadInput also for two methods of one kind and name.
+std::vector<MethodPointer> find_methods(std::span<const std::string> names);
+
+/// A method of this build, which nobody need own.
+MethodPointer unowned(const Method& method);
 
 }  // namespace tumble::scenarios

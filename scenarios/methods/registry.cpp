@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/methods/external_method.hpp"
 #include "scenarios/methods/rate_tumble.hpp"
 #include "scenarios/methods/slam_registry.hpp"
 
@@ -70,6 +71,16 @@ std::vector<Method> all_methods() {
   return all;
 }
 
+/// The name of one of ours would stand for two things in the results.
+MethodPointer method_of_file(const std::string& file) {
+  auto method = std::make_shared<const Method>(external_method(file));
+  for (const Method& own : methods()) {
+    if (full_name(own.info) == full_name(method->info))
+      throw BadInput(file + ": " + full_name(own.info) + " is a method of this build; name yours otherwise");
+  }
+  return method;
+}
+
 }  // namespace
 
 bool MethodInfo::for_robot(const std::string& robot) const {
@@ -101,17 +112,38 @@ std::span<const Method> methods() {
   return all;
 }
 
-std::vector<const Method*> find_methods(const std::string& name) {
-  std::vector<const Method*> found;
+MethodPointer unowned(const Method& method) {
+  return {std::shared_ptr<void>(), &method};
+}
+
+std::vector<MethodPointer> find_methods(const std::string& name) {
+  if (name.ends_with(".yaml")) return {method_of_file(name)};
+  std::vector<MethodPointer> found;
   std::vector<std::string> known;
   for (const Method& method : methods()) {
-    if (name == method.info.name || name == full_name(method.info)) found.push_back(&method);
+    if (name == method.info.name || name == full_name(method.info)) found.push_back(unowned(method));
     known.push_back(method.info.name);
     known.push_back(full_name(method.info));
   }
   if (found.empty()) {
     const std::string near = sim::nearest_name(name, known);
     throw BadInput("unknown method '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+  }
+  return found;
+}
+
+std::vector<MethodPointer> find_methods(std::span<const std::string> names) {
+  std::vector<MethodPointer> found;
+  std::map<std::string, std::string> asked;  // what brought each method
+  for (const std::string& name : names) {
+    for (MethodPointer& method : find_methods(name)) {
+      const auto [before, is_new] = asked.emplace(full_name(method->info), name);
+      if (is_new) {
+        found.push_back(std::move(method));
+      } else if (name.ends_with(".yaml") && before->second != name) {
+        throw BadInput("'" + before->second + "' and '" + name + "' are both " + full_name(method->info));
+      }
+    }
   }
   return found;
 }

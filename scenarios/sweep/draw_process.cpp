@@ -37,7 +37,9 @@ double resident_mib() {
 double peak_mib() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+  rusage children{};  // a method that is a command of somebody else's
+  getrusage(RUSAGE_CHILDREN, &children);
+  return static_cast<double>(usage.ru_maxrss + children.ru_maxrss) / 1024.0;
 }
 
 void run_method_child(const Method& method, const SimulatedDraw& draw, const SimulatedDraw& scored,

@@ -5,8 +5,8 @@
 
 #include <vector>
 
+#include "scenarios/processes/process.hpp"
 #include "scenarios/sweep/evaluate.hpp"
-#include "scenarios/sweep/process.hpp"
 #include "scenarios/sweep/recorded_draw.hpp"
 
 namespace tumble::scenarios {

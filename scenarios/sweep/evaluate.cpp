@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/evaluate.hpp"
 
+#include <sys/resource.h>
 #include <time.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <utility>
 
 #include "scenarios/draw/without_lidars.hpp"
+#include "scenarios/methods/external_method.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "sim/simulate.hpp"
 
@@ -35,10 +37,10 @@ std::string digest_without_lidars(const sim::Recording& recording) {
   return digest(bare.sensors, &bare.truth);
 }
 
-std::vector<const Method*> applicable(std::span<const Method* const> methods, const std::string& robot) {
-  std::vector<const Method*> chosen;
+std::vector<MethodPointer> applicable(std::span<const MethodPointer> methods, const std::string& robot) {
+  std::vector<MethodPointer> chosen;
   std::copy_if(methods.begin(), methods.end(), std::back_inserter(chosen),
-               [&](const Method* method) { return method->info.for_robot(robot); });
+               [&](const MethodPointer& method) { return method->info.for_robot(robot); });
   return chosen;
 }
 
@@ -60,6 +62,10 @@ Estimate run_method(const Method& method, const SimulatedDraw& draw, Outcome& ou
       outcome.status = "failed";
       outcome.message = one_line(estimate.status.message());
     }
+  } catch (const NoAnswer& error) {
+    estimate = {};
+    outcome.status = error.why() == NoAnswer::Why::out_of_time ? "timeout" : "crashed";
+    outcome.message = one_line(error.what());
   } catch (const std::bad_alloc&) {
     estimate = {};
     outcome.status = "killed";
@@ -102,7 +108,11 @@ SimulatedDraw scored_by(const SimulatedDraw& draw, const SimulatedDraw& given) {
 double process_cpu_s() {
   timespec now{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+  rusage children{};
+  getrusage(RUSAGE_CHILDREN, &children);
+  return static_cast<double>(now.tv_sec + children.ru_utime.tv_sec + children.ru_stime.tv_sec) +
+         1e-9 * static_cast<double>(now.tv_nsec) +
+         1e-6 * static_cast<double>(children.ru_utime.tv_usec + children.ru_stime.tv_usec);
 }
 
 std::string one_line(std::string text) {

@@ -32,7 +32,7 @@ SimulatedDraw simulate_draw(const DataRoot& data, const Scenario& scenario, std:
 std::string digest_without_lidars(const sim::Recording& recording);
 
 /// The methods that apply to the scenario's robot, in the order given.
-std::vector<const Method*> applicable(std::span<const Method* const> methods, const std::string& robot);
+std::vector<MethodPointer> applicable(std::span<const MethodPointer> methods, const std::string& robot);
 
 /// Runs a method on the draw. What it throws or reports as trouble makes `outcome` failed; otherwise `outcome` is left
 /// ok, to be scored. CPU time of the estimate is its first score.
@@ -46,7 +46,7 @@ void assess(const Method& method, const SimulatedDraw& draw, const sim::Surface*
 /// stamp it bears, also where the sensors that a method was given have been changed.
 SimulatedDraw scored_by(const SimulatedDraw& draw, const SimulatedDraw& given);
 
-/// CPU time that this process has used [s].
+/// CPU time that this process and the children that it has waited for have used [s].
 double process_cpu_s();
 
 /// A message as it may stand in one line of a table.

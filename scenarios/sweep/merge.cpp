@@ -3,6 +3,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -40,6 +41,20 @@ void require_same_origin(const Results& first, const Results& other, const fs::p
     if (first.note(key) == other.note(key)) continue;
     throw BadInput(path.string() + ": " + words + " '" + other.note(key) + "', the first database by '" +
                    first.note(key) + "'; --mixed-builds joins them all the same");
+  }
+}
+
+/// The versions of methods that are not of the build are joined with their rows; two of one method are refused.
+void join_method_notes(const Results& shard, const fs::path& path, bool mixed, Results& into) {
+  std::set<std::string> keys;
+  for (const Outcome& outcome : shard.outcomes(Rows::all)) keys.insert(method_note(outcome.kind, outcome.method));
+  for (const std::string& key : keys) {
+    const std::string theirs = shard.note(key), known = into.note(key);
+    if (theirs.empty()) continue;
+    if (!known.empty() && known != theirs && !mixed)
+      throw BadInput(path.string() + ": " + key + " is '" + theirs + "', elsewhere '" + known +
+                     "'; --mixed-builds joins them all the same");
+    into.set_note(key, known.empty() || known == theirs ? theirs : "mixed");
   }
 }
 
@@ -125,7 +140,10 @@ MergeCounts merge_results(const fs::path& out, std::span<const fs::path> in, boo
     results.in_one_transaction([&] {
       if (!made.is_new() && !mixed && !results.note("data").empty()) require_same_origin(shards.front(), results, out);
       Merge merge(results, mixed);
-      for (std::size_t i = 0; i < shards.size(); ++i) merge.add(shards[i], in[i]);
+      for (std::size_t i = 0; i < shards.size(); ++i) {
+        merge.add(shards[i], in[i]);
+        join_method_notes(shards[i], in[i], mixed, results);
+      }
       // the joined database says where its rows come from, not which program has joined them
       for (const char* key : {"suite", "build", "data"}) {
         const std::string text = shards.front().note(key);

@@ -72,9 +72,9 @@ std::vector<RecordedDraw> find_recordings(std::span<const std::string> patterns,
   return recordings;
 }
 
-std::vector<const Method*> applicable(std::span<const Method* const> methods, const RecordedDraw& recording) {
-  std::vector<const Method*> chosen;
-  std::copy_if(methods.begin(), methods.end(), std::back_inserter(chosen), [&](const Method* method) {
+std::vector<MethodPointer> applicable(std::span<const MethodPointer> methods, const RecordedDraw& recording) {
+  std::vector<MethodPointer> chosen;
+  std::copy_if(methods.begin(), methods.end(), std::back_inserter(chosen), [&](const MethodPointer& method) {
     const bool fits = recording.robot.empty() || method->info.for_robot(recording.robot);
     return fits && (!method->info.needs_truth || (recording.simulated && recording.has_truth));
   });

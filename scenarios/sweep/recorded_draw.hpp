@@ -29,7 +29,7 @@ std::vector<RecordedDraw> find_recordings(std::span<const std::string> patterns,
 
 /// The methods, in the order given, that can run on a recording: made for its robot, where that is known; oracles on
 /// simulations alone.
-std::vector<const Method*> applicable(std::span<const Method* const> methods, const RecordedDraw& recording);
+std::vector<MethodPointer> applicable(std::span<const MethodPointer> methods, const RecordedDraw& recording);
 
 /// The recording as a draw. Throws BadInput when it is not the one that was found (its digest has changed).
 SimulatedDraw read_draw(const RecordedDraw& recording);

@@ -144,6 +144,10 @@ void Results::set_note(const std::string& key, const std::string& text) {
   impl_->guarded([&] { impl_->write_note(key, text); });
 }
 
+std::string method_note(Kind kind, const std::string& name) {
+  return std::string("method ") + to_string(kind) + "/" + name;
+}
+
 std::string Results::note(const std::string& key) const {
   return impl_->guarded([&] { return impl_->read_note(key); });
 }

@@ -27,6 +27,9 @@ struct ScoreRow {
 /// Which rows are asked for: those of the scenarios and methods as they are, those that belong to a curve, or both.
 enum class Rows { plain, curves, all };
 
+/// Key of the note that tells the version of a method that is not of the build: "method slam/theirs".
+std::string method_note(Kind kind, const std::string& name);
+
 /// The results database (SQLite). Rows are unique by (scenario, seed, kind, method, setting); storing again replaces.
 /// Each store is one transaction, so that whatever has finished survives a kill.
 class Results {

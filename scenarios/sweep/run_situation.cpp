@@ -10,15 +10,15 @@
 namespace tumble::scenarios {
 
 RunResult run_situation(const DataRoot& data, const Scenario& scenario, std::uint64_t seed,
-                        std::span<const Method* const> methods, int threads) {
+                        std::span<const MethodPointer> methods, int threads) {
   SimulatedDraw draw = simulate_draw(data, scenario, seed, threads);
   RunResult result;
   result.methods = applicable(methods, scenario.robot.type);
   std::optional<sim::Surface> surface;
   const bool maps = std::any_of(result.methods.begin(), result.methods.end(),
-                                [](const Method* method) { return method->info.kind == Kind::slam; });
+                                [](const MethodPointer& method) { return method->info.kind == Kind::slam; });
   if (maps) surface.emplace(draw.situation, data.models());
-  for (const Method* method : result.methods) {
+  for (const MethodPointer& method : result.methods) {
     Outcome outcome;
     Estimate estimate = run_method(*method, draw, outcome);
     assess(*method, draw, surface ? &*surface : nullptr, estimate, outcome);

@@ -18,7 +18,7 @@ struct RunResult {
   sim::Recording recording;
   std::string recording_digest;
   double simulate_cpu_s = 0;
-  std::vector<const Method*> methods;
+  std::vector<MethodPointer> methods;
   std::vector<Estimate> estimates;  ///< parallel to methods
   std::vector<Outcome> outcomes;    ///< parallel to methods
 };
@@ -26,7 +26,7 @@ struct RunResult {
 /// Draws, simulates, estimates and scores one situation in this process. Methods that do not apply to the robot are
 /// left out. Throws BadInput, sim::InvalidSituation, sim::SimulationFailure.
 RunResult run_situation(const DataRoot& data, const Scenario& scenario, std::uint64_t seed,
-                        std::span<const Method* const> methods, int threads);
+                        std::span<const MethodPointer> methods, int threads);
 
 /// Digest of a whole run: recording and every estimate.
 std::string run_digest(const RunResult& result);

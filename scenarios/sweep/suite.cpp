@@ -114,6 +114,11 @@ void read_draws(const DataRoot& data, const YamlNode& root, const std::map<std::
   read_scenarios(data, fields.at("scenarios"), suite);
 }
 
+/// A description of somebody else's method stands beside the suite, unless its path is absolute.
+std::string method_name(const std::string& text, const std::filesystem::path& folder) {
+  return text.ends_with(".yaml") ? (folder / text).string() : text;
+}
+
 // names are checked here, so that a suite with a slip of the pen does not begin
 Suite read_suite(const DataRoot& data, const std::filesystem::path& path) {
   const YamlNode root = YamlNode::parse(read_text_file(path), path.string());
@@ -127,12 +132,12 @@ Suite read_suite(const DataRoot& data, const std::filesystem::path& path) {
   read_draws(data, root, fields, suite);
   if (fields.contains("methods")) {
     for (const YamlNode& item : fields.at("methods").items()) {
+      suite.methods.push_back(method_name(item.text(), path.parent_path()));
       try {
-        find_methods(item.text());
+        find_methods(suite.methods.back());
       } catch (const BadInput& error) {
         item.fail(error.what());
       }
-      suite.methods.push_back(item.text());
     }
     if (suite.methods.empty()) fields.at("methods").fail("no method");
   } else {

@@ -32,16 +32,6 @@ struct Worker {
   bool finished = false;  // said that it is done, or that the draw was rejected
 };
 
-std::vector<const Method*> chosen_methods(const Suite& suite) {
-  std::vector<const Method*> chosen;
-  for (const std::string& name : suite.methods) {
-    for (const Method* method : find_methods(name)) {
-      if (std::find(chosen.begin(), chosen.end(), method) == chosen.end()) chosen.push_back(method);
-    }
-  }
-  return chosen;
-}
-
 /// Of the plain draw and of each one that a curve simulates anew; and what is run on the plain one besides.
 struct Settings {
   std::vector<Setting> simulated = {Setting{}};
@@ -71,6 +61,19 @@ void claim(Results& results, const DataRoot& data, const Suite& suite, const std
   if (!suite.recordings.empty()) results.set_note("source", kRecordingsSource);
 }
 
+/// Rows of two versions of somebody else's method do not stand under one name.
+void claim_methods(Results& results, std::span<const MethodPointer> methods) {
+  for (const MethodPointer& method : methods) {
+    if (method->info.version.empty()) continue;
+    const std::string key = method_note(method->info.kind, method->info.name);
+    const std::string known = results.note(key);
+    if (!known.empty() && known != method->info.version)
+      throw BadInput("the database holds rows of another " + key + " ('" + known + "', now '" + method->info.version +
+                     "'): name another file, or another method");
+    results.set_note(key, method->info.version);
+  }
+}
+
 class Sweep {
  public:
   Sweep(const DataRoot& data, const Suite& suite, Results& results, const SweepOptions& options)
@@ -79,7 +82,8 @@ class Sweep {
         results_(results),
         options_(options),
         started_s_(now_s()),
-        settings_(settings_of(suite)) {
+        settings_(settings_of(suite)),
+        methods_(find_methods(suite.methods)) {
     next_.seed = suite.first_seed;
   }
 
@@ -91,6 +95,7 @@ class Sweep {
         std::all_of(recordings_.begin(), recordings_.end(), idle)) {
       throw BadInput("suite " + suite_.name + ": none of its methods applies to any of its scenarios");
     }
+    claim_methods(results_, methods_);
     // a catalogue that cannot be drawn from is the caller's mistake, not an outcome
     for (const Planned& each : scenarios_) draw(data_, each.scenario, suite_.first_seed);
     const std::uint64_t seeds = suite_.last_seed - suite_.first_seed + 1;
@@ -122,13 +127,13 @@ class Sweep {
   /// A scenario of the suite and the methods that apply to it.
   struct Planned {
     Scenario scenario;
-    std::vector<const Method*> methods;
+    std::vector<MethodPointer> methods;
   };
 
   /// A recording of the suite and the methods that apply to it.
   struct Recorded {
     RecordedDraw recording;
-    std::vector<const Method*> methods;
+    std::vector<MethodPointer> methods;
   };
 
   /// The draw that comes next: recordings first, then seeds, which are outermost, so that a sweep that is stopped has
@@ -144,16 +149,14 @@ class Sweep {
 
   void add_scenario(const std::string& name) {
     Planned planned{load_scenario(data_, name), {}};
-    const std::vector<const Method*> chosen = chosen_methods(suite_);
-    planned.methods = applicable(chosen, planned.scenario.robot.type);
+    planned.methods = applicable(methods_, planned.scenario.robot.type);
     scenarios_.push_back(std::move(planned));
   }
 
   void add_recordings() {
-    const std::vector<const Method*> chosen = chosen_methods(suite_);
     for (RecordedDraw& recording : find_recordings(suite_.recordings, suite_.recordings_folder)) {
       require_same_data(recording);
-      std::vector<const Method*> own = applicable(chosen, recording);
+      std::vector<MethodPointer> own = applicable(methods_, recording);
       recordings_.push_back({std::move(recording), std::move(own)});
     }
   }
@@ -183,7 +186,7 @@ class Sweep {
   }
 
   /// Adds to the task what has no row yet with `setting`, or one that is to be run again.
-  void add_missing(const std::vector<const Method*>& methods, const std::vector<Outcome>& held, const Setting& setting,
+  void add_missing(const std::vector<MethodPointer>& methods, const std::vector<Outcome>& held, const Setting& setting,
                    DrawTask& task) const {
     const auto stands = [&](const MethodInfo& info) {
       return std::any_of(held.begin(), held.end(), [&](const Outcome& row) {
@@ -191,8 +194,8 @@ class Sweep {
                std::find(options_.again.begin(), options_.again.end(), row.status) == options_.again.end();
       });
     };
-    for (const Method* method : methods) {
-      if (concerns(setting, method->info) && !stands(method->info)) task.runs.push_back({method, setting});
+    for (const MethodPointer& method : methods) {
+      if (concerns(setting, method->info) && !stands(method->info)) task.runs.push_back({method.get(), setting});
     }
   }
 
@@ -317,6 +320,7 @@ class Sweep {
   const SweepOptions& options_;
   double started_s_;
   Settings settings_;
+  const std::vector<MethodPointer> methods_;
   std::vector<Planned> scenarios_;
   std::vector<Recorded> recordings_;
   Cursor next_;

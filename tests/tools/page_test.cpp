@@ -81,8 +81,7 @@ TEST(BoxFigure, HasATracePerMethodWithEveryDraw) {
 Example clipped_example() {
   Example example;
   example.run.situation.scenario = "hill";
-  static const scenarios::Method* raw = scenarios::find_methods("rate/raw").front();
-  example.run.methods = {raw};
+  example.run.methods = scenarios::find_methods("rate/raw");
   scenarios::Estimate estimate;
   sim::Recording& recording = example.run.recording;
   recording.truth.period_ns = 10000000;

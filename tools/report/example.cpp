@@ -13,13 +13,13 @@ namespace tumble::tools {
 namespace {
 
 /// Every method of the summary's sections of a scenario that this build still knows.
-std::vector<const scenarios::Method*> methods_of(const Summary& summary, const std::string& scenario) {
-  std::vector<const scenarios::Method*> methods;
+std::vector<scenarios::MethodPointer> methods_of(const Summary& summary, const std::string& scenario) {
+  std::vector<scenarios::MethodPointer> methods;
   for (const scenarios::Method& method : scenarios::methods()) {
     for (const Section& section : summary.sections) {
       if (section.scenario == scenario && section.kind == method.info.kind &&
           section.find(method.info.name) != nullptr) {
-        methods.push_back(&method);
+        methods.push_back(scenarios::unowned(method));
       }
     }
   }

@@ -170,14 +170,14 @@ std::vector<std::string> sphere_scenarios(const Summary& summary) {
 
 SphereRoll make_sphere_roll(const scenarios::DataRoot& data, const Summary& summary, const std::string& scenario,
                             std::uint64_t seed) {
-  std::vector<const scenarios::Method*> methods;
+  std::vector<scenarios::MethodPointer> methods;
   for (const scenarios::Method& method : scenarios::methods()) {
     for (const Section& section : summary.sections) {
       if (section.scenario != scenario || section.kind != method.info.kind || !section.find(method.info.name)) continue;
       const bool named =
           std::find(kPositionMethods.begin(), kPositionMethods.end(), method.info.name) != kPositionMethods.end();
       if (method.info.kind == Kind::attitude || (method.info.kind == Kind::position && named))
-        methods.push_back(&method);
+        methods.push_back(scenarios::unowned(method));
     }
   }
   scenarios::Scenario blind = scenarios::load_scenario(data, scenario);

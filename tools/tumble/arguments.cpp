@@ -77,17 +77,10 @@ void require_known(const std::string& what, const std::string& name, std::span<c
   throw BadInput(line);
 }
 
-std::vector<const scenarios::Method*> select_methods(const std::vector<std::string>& names) {
-  std::vector<const scenarios::Method*> selected;
-  if (names.empty()) {
-    for (const scenarios::Method& method : scenarios::methods()) selected.push_back(&method);
-    return selected;
-  }
-  for (const std::string& name : names) {
-    for (const scenarios::Method* method : scenarios::find_methods(name)) {
-      if (std::find(selected.begin(), selected.end(), method) == selected.end()) selected.push_back(method);
-    }
-  }
+std::vector<scenarios::MethodPointer> select_methods(const std::vector<std::string>& names) {
+  if (!names.empty()) return scenarios::find_methods(names);
+  std::vector<scenarios::MethodPointer> selected;
+  for (const scenarios::Method& method : scenarios::methods()) selected.push_back(scenarios::unowned(method));
   return selected;
 }
 

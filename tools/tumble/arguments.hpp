@@ -32,7 +32,7 @@ bool shard_seeds(const Shard& shard, std::uint64_t& first, std::uint64_t& last);
 void require_known(const std::string& what, const std::string& name, std::span<const std::string> known);
 
 /// The methods named, each once, in the order given; all of them when none is named.
-std::vector<const scenarios::Method*> select_methods(const std::vector<std::string>& names);
+std::vector<scenarios::MethodPointer> select_methods(const std::vector<std::string>& names);
 
 /// A number from `low` to `high`; what is no number is not within (CLI::Range lets it pass).
 CLI::Validator within(double low, double high);

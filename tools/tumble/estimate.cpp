@@ -39,9 +39,9 @@ std::string reason(const Status& status) {
 
 /// The one method of that name which can run on this recording without the truth.
 const scenarios::Method& choose(const std::string& name, const std::string& robot) {
-  std::vector<const scenarios::Method*> fitting;
+  std::vector<scenarios::MethodPointer> fitting;
   std::string refused;
-  for (const scenarios::Method* method : scenarios::find_methods(name)) {
+  for (const scenarios::MethodPointer& method : scenarios::find_methods(name)) {
     if (method->info.needs_truth) {
       refused = "method '" + full_name(*method) + "' needs the truth, which this verb never opens; use 'tumble run'";
     } else if (!robot.empty() && !method->info.for_robot(robot)) {
@@ -53,7 +53,7 @@ const scenarios::Method& choose(const std::string& name, const std::string& robo
   if (fitting.empty()) throw BadInput(refused);
   if (fitting.size() > 1) {
     std::string line = "--method " + name + " names several methods; say which:";
-    for (const scenarios::Method* method : fitting) line += " " + full_name(*method);
+    for (const scenarios::MethodPointer& method : fitting) line += " " + full_name(*method);
     throw BadInput(line);
   }
   return *fitting.front();

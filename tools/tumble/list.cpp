@@ -125,11 +125,11 @@ Listing list_scenarios(const scenarios::DataRoot& data, const std::string& only)
 
 Listing list_methods(const std::string& only) {
   Listing out;
-  const std::vector<const scenarios::Method*> selected =
+  const std::vector<scenarios::MethodPointer> selected =
       select_methods(only.empty() ? std::vector<std::string>{} : std::vector<std::string>{only});
   Table table("", {"method", "robots", "needs truth", "source", "meaning"});
   Table parameters("parameters", {"method", "parameter", "default", "bound", "unit", "meaning"});
-  for (const scenarios::Method* method : selected) {
+  for (const scenarios::MethodPointer& method : selected) {
     const scenarios::MethodInfo& info = method->info;
     const std::string name = std::string(to_string(info.kind)) + "/" + info.name;
     std::string robots;

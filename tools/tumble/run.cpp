@@ -75,8 +75,8 @@ int run(const Session& session, const Options& options) {
     throw scenarios::BadInput("none of the methods given applies to the robot '" + scenario.robot.type + "'");
   }
   std::vector<scenarios::Method> copies;
-  for (const scenarios::Method* method : selected) copies.push_back(learnt.wrap(*method));
-  std::vector<const scenarios::Method*> methods;
+  for (const scenarios::MethodPointer& method : selected) copies.push_back(learnt.wrap(*method));
+  std::vector<scenarios::MethodPointer> methods;
   for (const scenarios::Method& method : copies) methods.push_back(&method);
   std::optional<scenarios::OutputFolder> folder;
   if (!options.folder.empty()) folder.emplace(options.folder);

@@ -27,10 +27,10 @@ struct Options {
 };
 
 const scenarios::Method& choose(const std::string& name) {
-  const std::vector<const scenarios::Method*> found = scenarios::find_methods(name);
+  const std::vector<scenarios::MethodPointer> found = scenarios::find_methods(name);
   if (found.size() == 1) return *found.front();
   std::string line = "--method " + name + " names several methods; say which:";
-  for (const scenarios::Method* method : found)
+  for (const scenarios::MethodPointer& method : found)
     line += std::string(" ") + to_string(method->info.kind) + "/" + method->info.name;
   throw BadInput(line);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/sweep/process.hpp"
+#include "scenarios/processes/process.hpp"
 
 #include <gtest/gtest.h>
 #include <poll.h>

@@ -92,7 +92,7 @@ TEST_F(SweepTest, StoresEveryOutcomeResumesAndDoesNotDependOnJobs) {
   const auto a = digests(path);
   ASSERT_EQ(a.size(), 4u);
   EXPECT_EQ(a, digests(folder_ / "b.db"));
-  const std::vector<const Method*> rolling = find_methods("rolling");
+  const std::vector<MethodPointer> rolling = find_methods("rolling");
   const RunResult run = run_situation(data(), load_scenario(data(), "roll"), 2, rolling, 2);
   ASSERT_EQ(run.outcomes.size(), 1u);
   EXPECT_EQ(a.at("2position"), run.outcomes[0].recording_digest + run.outcomes[0].estimate_digest);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/sweep/process.hpp"
+#include "scenarios/processes/process.hpp"
 
 #include <fcntl.h>
 #include <signal.h>
@@ -10,6 +10,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <system_error>
 #include <utility>
@@ -95,6 +96,21 @@ bool Process::read_available(std::string& buffer) {
     else
       return errno == EAGAIN || errno == EWOULDBLOCK;
   }
+}
+
+bool Process::ends_before(double deadline_s) {
+  long pause_ns = 500'000;  // short at first: what ends at once is not waited for
+  while (pid_ > 0) {
+    siginfo_t info{};
+    const int asked = waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT);
+    if (asked != 0 && errno != EINTR) return true;
+    if (asked == 0 && info.si_pid == pid_) return true;
+    if (now_s() >= deadline_s) return false;
+    const timespec pause{0, pause_ns};
+    nanosleep(&pause, nullptr);
+    pause_ns = std::min(2 * pause_ns, 20'000'000L);
+  }
+  return true;
 }
 
 void Process::kill() {

@@ -35,6 +35,8 @@ class Process {
   int read_end() const { return fd_; }
   /// Appends what the pipe holds. False at its end.
   bool read_available(std::string& buffer);
+  /// Waits until it has ended, which wait() then tells; false at the deadline (of now_s()).
+  bool ends_before(double deadline_s);
   void kill();
   End wait();
 

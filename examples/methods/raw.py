@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The gyro as it is: reads IMU.csv (columns of a sensor_msgs/Imu), writes a rate per sample. Put your method into `rate`."""
+import csv
+import sys
+
+
+def rate(gyro_rad_s, specific_force_m_s2):
+    """Angular velocity of the IMU in its own axes."""
+    return gyro_rad_s
+
+
+def main(readings, output):
+    with open(readings, newline="") as file, open(output, "w") as out:
+        rows = csv.reader(file)
+        names = next(rows)
+        at = {name: k for k, name in enumerate(names)}
+        print("time_ns,wx_rad_s,wy_rad_s,wz_rad_s", file=out)
+        for row in rows:
+            def numbers(*columns):
+                return [float(row[at[column]]) for column in columns]
+            time_ns = int(row[at["stamp_s"]]) * 1_000_000_000 + int(row[at["stamp_ns"]])
+            w = rate(numbers("wx_rad_s", "wy_rad_s", "wz_rad_s"), numbers("FORCE_X", "FORCE_Y", "FORCE_Z"))
+            print(time_ns, *map(repr, w), sep=",", file=out)
+
+
+main(*sys.argv[1:])

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/methods/external_method.hpp"
+
+#include <stdlib.h>
+
+#include <cerrno>
+#include <functional>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/methods/external_description.hpp"
+#include "scenarios/methods/external_result.hpp"
+#include "scenarios/methods/sensors_text.hpp"
+#include "scenarios/processes/command.hpp"
+#include "scenarios/recordings/bags/bag.hpp"
+#include "scenarios/recordings/export.hpp"
+#include "scenarios/recordings/recording_file.hpp"
+#include "scenarios/recordings/replace_file.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kVersionLimit_s = 30.0;
+
+/// A folder for one run, gone with it.
+class Scratch {
+ public:
+  Scratch() {
+    std::string name = (fs::temp_directory_path() / "tumble-method-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw std::system_error(errno, std::generic_category(), name);
+    folder_ = name;
+  }
+  ~Scratch() {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+  }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+  const fs::path& folder() const { return folder_; }
+
+ private:
+  fs::path folder_;
+};
+
+/// Sensor data in one format, written only when the command names it.
+struct Provision {
+  const char* placeholder;
+  const char* name;  ///< of the file or folder in the scratch folder
+  std::function<void(const sim::Sensors&, const fs::path&)> write;
+};
+
+const std::vector<Provision>& provisions() {
+  static const std::vector<Provision> all = {
+      {"recording", "recording.h5",
+       [](const sim::Sensors& sensors, const fs::path& to) { write_recording(to, {}, sensors, nullptr); }},
+      {"csv", "csv", [](const sim::Sensors& sensors, const fs::path& to) { export_csv(sensors, nullptr, to); }},
+      {"ply", "ply", [](const sim::Sensors& sensors, const fs::path& to) { export_ply(sensors, to); }},
+      {"pcd", "pcd", [](const sim::Sensors& sensors, const fs::path& to) { export_pcd(sensors, to); }},
+      {"rosbag1", "recording.bag",
+       [](const sim::Sensors& sensors, const fs::path& to) {
+         export_ros1_bag(sensors, {kExternalBagOrigin_ns, nullptr}, to);
+       }},
+      {"rosbag2", "rosbag2",
+       [](const sim::Sensors& sensors, const fs::path& to) {
+         export_ros2_bag(sensors, {kExternalBagOrigin_ns, nullptr}, to);
+       }},
+      {"sensors", "sensors.json",
+       [](const sim::Sensors& sensors, const fs::path& to) { replace_file(to, sensors_text(sensors)); }},
+  };
+  return all;
+}
+
+std::set<std::string> named_in(const std::vector<std::string>& words) {
+  std::set<std::string> out;
+  for (const std::string& word : words)
+    for (std::string& name : placeholders_in(word)) out.insert(std::move(name));
+  return out;
+}
+
+/// Where each placeholder points to in a scratch folder.
+std::map<std::string, std::string> places(const ExternalDescription& description, const fs::path& scratch) {
+  const bool folder = description.output == ExternalDescription::Output::estimate;
+  const bool rates = description.output == ExternalDescription::Output::rates;
+  std::map<std::string, std::string> out = {{"output", scratch / (folder  ? "estimate"
+                                                                  : rates ? "rates.csv"
+                                                                          : "poses.tum")},
+                                            {"map", scratch / "map.ply"},
+                                            {"folder", description.file.parent_path()}};
+  for (const Provision& provision : provisions()) out[provision.placeholder] = scratch / provision.name;
+  return out;
+}
+
+Command command_of(const ExternalDescription& description, const std::vector<std::string>& words,
+                   const std::map<std::string, std::string>& values, const fs::path& scratch) {
+  Command command{.words = {},
+                  .folder = scratch,
+                  .environment = description.environment,
+                  .transcript = scratch / "transcript.txt",
+                  .time_limit_s = description.time_limit_s,
+                  .memory_limit_mib = description.memory_limit_mib};
+  for (const std::string& word : words) command.words.push_back(filled(word, values));
+  return command;
+}
+
+std::string with_last_words(const CommandEnd& end) {
+  return end.reason + (end.last_words.empty() ? "" : "; it said: " + end.last_words);
+}
+
+Estimate run(const ExternalDescription& description, const sim::Sensors& sensors) {
+  const Scratch scratch;
+  const std::map<std::string, std::string> values = places(description, scratch.folder());
+  const std::set<std::string> wanted = named_in(description.command);
+  for (const Provision& provision : provisions())
+    if (wanted.contains(provision.placeholder)) provision.write(sensors, values.at(provision.placeholder));
+
+  const CommandEnd end = run_command(command_of(description, description.command, values, scratch.folder()));
+  if (end.how == CommandEnd::How::out_of_time) throw NoAnswer(NoAnswer::Why::out_of_time, with_last_words(end));
+  if (end.how != CommandEnd::How::done) throw NoAnswer(NoAnswer::Why::crashed, with_last_words(end));
+  try {
+    return read_external_result(description, values.at("output"), values.at("map"), sensors);
+  } catch (const BadInput& error) {
+    throw BadInput(std::string(error.what()) + (end.last_words.empty() ? "" : "; it said: " + end.last_words));
+  }
+}
+
+/// What tells this method from another of its name: what its version command prints, and the description's digest.
+std::string version_of(const ExternalDescription& description) {
+  const std::string own = "description " + description.digest;
+  if (description.version.empty()) return own;
+  const Scratch scratch;
+  Command command =
+      command_of(description, description.version, places(description, scratch.folder()), scratch.folder());
+  command.time_limit_s = kVersionLimit_s;
+  const CommandEnd end = run_command(command);
+  if (end.how != CommandEnd::How::done)
+    throw BadInput(description.file.string() + ": its version command: " + with_last_words(end));
+  return end.last_words + "; " + own;
+}
+
+}  // namespace
+
+Method external_method(const std::filesystem::path& file) {
+  const ExternalDescription description = read_external(file);
+  MethodInfo info;
+  info.name = description.name;
+  info.kind = description.kind;
+  info.doc = description.doc;
+  info.source = description.source;
+  info.robots = description.robots;
+  info.version = version_of(description);
+  return {std::move(info), [description](const sim::Sensors& sensors, const sim::Values& given, const OracleInput&) {
+            sim::resolve("method " + description.name, given, {});
+            return run(description, sensors);
+          }};
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+#include "scenarios/methods/method.hpp"
+
+namespace tumble::scenarios {
+
+/// A method's program that gave no answer: it crashed, ran out of time, or could not be started.
+class NoAnswer : public std::runtime_error {
+ public:
+  enum class Why { crashed, out_of_time };
+  NoAnswer(Why why, const std::string& what) : std::runtime_error(what), why_(why) {}
+  Why why() const { return why_; }
+
+ private:
+  Why why_;
+};
+
+/// The method that a file NAME.yaml describes (EXTERNAL.md): sensors are written into a folder of their own in the
+/// formats that its command names, the command runs with its limits in a process of its own, and what it leaves is read
+/// back. It never sees the truth. Throws BadInput when the description is wrong or its version command fails. Running
+/// it throws NoAnswer, and BadInput when what it left is not what it should be.
+Method external_method(const std::filesystem::path& file);
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/methods/external_result.hpp"
+
+#include <array>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <string_view>
+#include <utility>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/methods/map_file.hpp"
+#include "scenarios/methods/table_file.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr std::int64_t kStampTolerance_ns = 1000;  // stamps that went through seconds in double
+constexpr const char* kRateColumns = "time_ns,wx_rad_s,wy_rad_s,wz_rad_s";
+constexpr const char* kWithCovariance = "time_ns,wx_rad_s,wy_rad_s,wz_rad_s,cxx,cxy,cxz,cyy,cyz,czz";
+
+std::string first_line(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  if (!stream) throw BadInput(file.filename().string() + ": the command did not leave it");
+  std::string line;
+  std::getline(stream, line);
+  while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
+  return line;
+}
+
+Eigen::Matrix3d covariance(const Table& table, const Table::Row& row) {
+  Eigen::Matrix3d out;
+  std::size_t column = 4;
+  for (int i = 0; i < 3; ++i)
+    for (int j = i; j < 3; ++j) out(i, j) = out(j, i) = table.number(row, column++);
+  return out;
+}
+
+/// One row per sample of the first IMU, in their order.
+std::vector<RateState> read_rates(const std::filesystem::path& file, const sim::Sensors& sensors) {
+  if (sensors.imus.empty()) throw BadInput("the recording has no IMU, whose samples rates belong to");
+  const std::vector<std::int64_t>& stamps = sensors.imus.front().time_ns;
+  const std::string header = first_line(file);
+  const bool with_covariance = header == kWithCovariance;
+  if (!with_covariance && header != kRateColumns)
+    throw BadInput(file.filename().string() + ":1: header '" + header.substr(0, 120) + "', must be '" + kRateColumns +
+                   "', or that with ',cxx,cxy,cxz,cyy,cyz,czz'");
+  const Table table = Table::read(file, ',', header, with_covariance ? 10 : 4);
+  if (table.rows.size() != stamps.size())
+    throw BadInput(file.filename().string() + ": " + std::to_string(table.rows.size()) + " rows, must be " +
+                   std::to_string(stamps.size()) + ", one per sample of " + sensors.imus.front().name);
+  std::vector<RateState> rates(stamps.size());
+  for (std::size_t k = 0; k < rates.size(); ++k) {
+    const Table::Row& row = table.rows[k];
+    const std::int64_t time_ns = table.integer(row, 0);
+    if (std::abs(time_ns - stamps[k]) > kStampTolerance_ns)
+      throw BadInput(file.filename().string() + ":" + std::to_string(row.line) + ": time " + std::to_string(time_ns) +
+                     " ns, sample " + std::to_string(k) + " is of " + std::to_string(stamps[k]) + " ns");
+    rates[k].time_ns = stamps[k];
+    rates[k].w_WI_I_rad_s = {table.number(row, 1), table.number(row, 2), table.number(row, 3)};
+    if (with_covariance) rates[k].covariance_rad2_s2 = covariance(table, row);
+  }
+  return rates;
+}
+
+/// A TUM file of poses in the frame stated.
+Estimate read_poses(const ExternalDescription& description, const std::filesystem::path& file) {
+  if (!std::filesystem::is_regular_file(file))
+    throw BadInput(file.filename().string() + ": the command did not leave it");
+  Kind kind{};
+  std::string method;
+  Estimate estimate = read_estimate(file, kind, method, description.frame);
+  if (estimate.poses.front().time_ns > kExternalBagOrigin_ns / 2)
+    for (PoseState& pose : estimate.poses) pose.time_ns -= kExternalBagOrigin_ns;
+  if (description.kind != Kind::attitude) return estimate;
+  for (const PoseState& pose : std::exchange(estimate.poses, {}))
+    estimate.attitudes.push_back({pose.time_ns, pose.q_WA, Eigen::Matrix3d::Zero()});
+  return estimate;
+}
+
+Estimate read_folder(const ExternalDescription& description, const std::filesystem::path& folder) {
+  Kind kind{};
+  std::string method;
+  Estimate estimate = read_estimate(folder, kind, method, description.frame);
+  if (kind != description.kind)
+    throw BadInput(std::string("the command left an estimate of kind ") + to_string(kind) + ", " +
+                   description.file.filename().string() + " states " + to_string(description.kind));
+  return estimate;
+}
+
+}  // namespace
+
+Estimate read_external_result(const ExternalDescription& description, const std::filesystem::path& output,
+                              const std::filesystem::path& map, const sim::Sensors& sensors) {
+  Estimate estimate;
+  switch (description.output) {
+    case ExternalDescription::Output::rates:
+      estimate.rates = read_rates(output, sensors);
+      break;
+    case ExternalDescription::Output::tum:
+      estimate = read_poses(description, output);
+      break;
+    case ExternalDescription::Output::estimate:
+      estimate = read_folder(description, output);
+      break;
+  }
+  if (description.kind == Kind::slam && std::filesystem::exists(map)) estimate.map = read_map(map);
+  return estimate;
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Somebody else's command as a method: what it is given, what it leaves, and every way in which it may end.
+#include "scenarios/methods/external_method.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <chrono>
+#include <fstream>
+#include <string>
+#include <thread>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/recordings/recording_file.hpp"
+#include "tests/scenarios/methods/synthetic_recording.hpp"
+#include "tests/scenarios/sweep/temporary_folder.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// The gyro as it is, by awk: columns 9 to 11 of the exported CSV hold it, an exact time is two whole numbers.
+const std::string kRawByAwk =
+    "awk -F, 'BEGIN { print \"time_ns,wx_rad_s,wy_rad_s,wz_rad_s\" } "
+    "NR > 1 { printf \"%d%09d,%s,%s,%s\\n\", $1, $2, $9, $10, $11 }' {csv}/imu.csv > {output}";
+
+class ExternalMethod : public testing::TemporaryFolder {
+ protected:
+  std::filesystem::path describe(const std::string& kind, const std::string& script, const std::string& more = "") {
+    write("theirs.yaml",
+          "name: theirs\nkind: " + kind + "\ncommand:\n  - sh\n  - -c\n  - >-\n    " + script + "\n" + more);
+    return folder_ / "theirs.yaml";
+  }
+  static Estimate run(const std::filesystem::path& file) {
+    static const sim::Recording recording = testing::synthetic_rig();
+    return external_method(file).run(recording.sensors, {}, {});
+  }
+  /// Why a run gave no answer, and what it said.
+  static std::pair<NoAnswer::Why, std::string> no_answer(const std::filesystem::path& file) {
+    try {
+      run(file);
+    } catch (const NoAnswer& error) {
+      return {error.why(), error.what()};
+    }
+    ADD_FAILURE() << "it answered";
+    return {};
+  }
+  static std::string refused(const std::filesystem::path& file) {
+    try {
+      run(file);
+    } catch (const BadInput& error) {
+      return error.what();
+    }
+    ADD_FAILURE() << "nothing was refused";
+    return {};
+  }
+};
+
+TEST_F(ExternalMethod, AnswersAsTheSameMethodOfOursDoes) {
+  const Estimate theirs = run(describe("rate", kRawByAwk));
+  const sim::Recording recording = testing::synthetic_rig();
+  const Estimate ours = find_methods("rate/raw").front()->run(recording.sensors, {}, {});
+  ASSERT_EQ(theirs.rates.size(), ours.rates.size());
+  ASSERT_FALSE(theirs.rates.empty());
+  for (std::size_t k = 0; k < ours.rates.size(); ++k) {
+    EXPECT_EQ(theirs.rates[k].time_ns, ours.rates[k].time_ns);
+    EXPECT_EQ(theirs.rates[k].w_WI_I_rad_s, ours.rates[k].w_WI_I_rad_s);
+  }
+}
+
+TEST_F(ExternalMethod, PosesAndAttitudesComeAsTum) {
+  const std::string two = "printf '0.1 1 2 3 0 0 0 1\\n0.2 1 2 4 0 0 0 1\\n' > {output}";
+  const Estimate poses = run(describe("slam", two, "frame: lidar\n"));
+  ASSERT_EQ(poses.poses.size(), 2u);
+  EXPECT_EQ(poses.frame, Frame::lidar);
+  EXPECT_EQ(poses.poses[1].time_ns, 200'000'000);
+  EXPECT_EQ(poses.poses[1].p_WA_m, Eigen::Vector3d(1, 2, 4));
+  const Estimate attitudes = run(describe("attitude", two));
+  EXPECT_EQ(attitudes.attitudes.size(), 2u);
+  EXPECT_TRUE(attitudes.poses.empty());
+}
+
+TEST_F(ExternalMethod, StampsOfTheBagAreUnderstood) {
+  const Estimate poses = run(describe("slam", "printf '1000000000.25 1 2 3 0 0 0 1\\n' > {output}"));
+  ASSERT_EQ(poses.poses.size(), 1u);
+  EXPECT_EQ(poses.poses[0].time_ns, 250'000'000);
+}
+
+TEST_F(ExternalMethod, NeverSeesTheTruthAndLeavesNoFolder) {
+  const auto copy = folder_ / "seen.h5", place = folder_ / "place";
+  refused(describe("rate", "cp {recording} " + copy.string() + "; pwd > " + place.string() + " # {output}"));
+  EXPECT_FALSE(read_info(copy).has_truth);
+  EXPECT_FALSE(read_sensors(copy).imus.empty());
+  std::string scratch;
+  std::getline(std::ifstream(place) >> std::ws, scratch);
+  ASSERT_FALSE(scratch.empty());
+  EXPECT_FALSE(std::filesystem::exists(scratch));
+}
+
+TEST_F(ExternalMethod, ACrashIsNoAnswerWithItsLastWords) {
+  const auto [why, what] = no_answer(describe("rate", "echo out of luck >&2; kill -SEGV $$ # {output}"));
+  EXPECT_EQ(why, NoAnswer::Why::crashed);
+  EXPECT_THAT(what, HasSubstr("signal 11"));
+  EXPECT_THAT(what, HasSubstr("out of luck"));
+  EXPECT_THAT(no_answer(describe("rate", "exit 3 # {output}")).second, HasSubstr("exit status 3"));
+}
+
+TEST_F(ExternalMethod, AHangIsEndedWithAllItHasStarted) {
+  const auto pid = folder_ / "pid";
+  const auto [why, what] =
+      no_answer(describe("rate", "sleep 600 & echo $! > " + pid.string() + "; wait # {output}", "time_limit_s: 0.5\n"));
+  EXPECT_EQ(why, NoAnswer::Why::out_of_time);
+  pid_t child = 0;
+  std::ifstream(pid) >> child;
+  ASSERT_GT(child, 0);
+  bool gone = false;  // killed with its group; whoever adopts it collects it soon
+  for (int k = 0; k < 500 && !gone; ++k) {
+    std::ifstream stat("/proc/" + std::to_string(child) + "/stat");
+    std::string number, name, state;
+    gone = !(stat >> number >> name >> state) || state == "Z";
+    if (!gone) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_TRUE(gone);
+}
+
+TEST_F(ExternalMethod, MemoryBeyondItsLimitIsRefusedIt) {
+  const auto [why, what] =
+      no_answer(describe("rate", "head -c 400000000 /dev/zero | tail -n 1 > {output}", "memory_limit_mib: 64\n"));
+  EXPECT_EQ(why, NoAnswer::Why::crashed);
+  EXPECT_THAT(what, HasSubstr("memory"));
+}
+
+TEST_F(ExternalMethod, AProgramThatIsNotThereIsNamed) {
+  write("theirs.yaml", "name: theirs\nkind: rate\ncommand: [no_such_program_anywhere, '{output}']\n");
+  const auto [why, what] = no_answer(folder_ / "theirs.yaml");
+  EXPECT_EQ(why, NoAnswer::Why::crashed);
+  EXPECT_THAT(what, HasSubstr("no_such_program_anywhere"));
+}
+
+TEST_F(ExternalMethod, WhatItLeavesIsRefusedWithItsPlace) {
+  EXPECT_THAT(refused(describe("rate", "true # {output}")), HasSubstr("did not leave it"));
+  EXPECT_THAT(refused(describe("slam", "true # {output}")), HasSubstr("did not leave it"));
+  EXPECT_THAT(refused(describe("rate", "echo nonsense > {output}")), HasSubstr("rates.csv:1"));
+  EXPECT_THAT(refused(describe("rate", kRawByAwk + "; sed -i '$d' {output}")), HasSubstr("one per sample"));
+  EXPECT_THAT(refused(describe("rate", kRawByAwk + "; sed -i '7s/^/1/' {output}")), HasSubstr("rates.csv:7"));
+  EXPECT_THAT(refused(describe("slam", "printf '0.1 1 2 3 0 0 0 1\\n0.1 1' > {output}")), HasSubstr("poses.tum:2"));
+  EXPECT_THAT(refused(describe("slam", "printf '0.2 1 2 3 0 0 0 1\\n0.1 1 2 3 0 0 0 1\\n' > {output}")),
+              HasSubstr("must rise"));
+}
+
+TEST_F(ExternalMethod, DescriptionsAreCheckedBeforeAnythingRuns) {
+  EXPECT_THAT(refused(describe("rate", "{csw} {output}")), HasSubstr("did you mean 'csv'"));
+  EXPECT_THAT(refused(describe("rate", "true")), HasSubstr("{output}"));
+  EXPECT_THAT(refused(describe("rates", "{output}")), HasSubstr("did you mean 'rate'"));
+  EXPECT_THAT(refused(describe("rate", "{output}", "time_limit_s: 0\n")), HasSubstr("time_limit_s"));
+  EXPECT_THAT(refused(describe("rate", "{output}", "timelimit: 3\n")), HasSubstr("timelimit"));
+  EXPECT_THAT(refused(describe("rate", "{output}", "output: tum\n")), HasSubstr("output"));
+  EXPECT_THAT(refused(describe("rate", "{output}", "version: [sh, -c, 'exit 1']\n")), HasSubstr("version"));
+}
+
+TEST_F(ExternalMethod, AVersionTellsProgramAndDescription) {
+  const std::string first = external_method(describe("rate", "{output}", "version: [echo, v7]\n")).info.version;
+  const std::string second = external_method(describe("rate", "{output} ", "version: [echo, v7, '']\n")).info.version;
+  EXPECT_THAT(first, HasSubstr("v7"));
+  EXPECT_NE(first, second);
+}
+
+TEST_F(ExternalMethod, NamesAreTheirOwn) {
+  write("ours.yaml", "name: raw\nkind: rate\ncommand: [true, '{output}']\n");
+  EXPECT_THROW(find_methods((folder_ / "ours.yaml").string()), BadInput);
+  write("a.yaml", "name: theirs\nkind: rate\ncommand: [true, '{output}']\n");
+  write("b.yaml", "name: theirs\nkind: rate\ncommand: [false, '{output}']\n");
+  const std::vector<std::string> twice = {(folder_ / "a.yaml").string(), (folder_ / "a.yaml").string()};
+  EXPECT_EQ(find_methods(twice).size(), 1u);
+  const std::vector<std::string> two = {(folder_ / "a.yaml").string(), (folder_ / "b.yaml").string()};
+  EXPECT_THROW(find_methods(two), BadInput);
+}
+
+}  // namespace
+}  // namespace tumble::scenarios
