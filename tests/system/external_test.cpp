@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Somebody else's command in run and sweep: what it answers is scored as ours is, and what goes wrong is an outcome.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "system/program.hpp"
+#include "tests/tree.hpp"
+
+namespace tumble::system_test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+std::string example() {
+  return (test::source_dir() / "examples" / "methods" / "raw.yaml").string();
+}
+
+std::string describe(const fs::path& folder, const std::string& name, const std::string& script,
+                     const std::string& more = "") {
+  const fs::path file = folder / (name + ".yaml");
+  std::ofstream(file) << "name: " << name << "\nkind: rate\ncommand: [sh, -c, '" << script << " # {output}']\n" << more;
+  return file.string();
+}
+
+/// Metric -> value, costs left out.
+std::map<std::string, double> scores_of(const json& document, const std::string& method) {
+  std::map<std::string, double> out;
+  for (const json& row : document["scores"]) {
+    if (row["method"] != method) continue;
+    const std::string metric = row["metric"];
+    if (!metric.ends_with("_cpu_s") && !metric.ends_with("_mib") && row["value"].is_number())
+      out[metric] = row["value"];
+  }
+  return out;
+}
+
+TEST(External, ExampleScoresAsOursDoes) {
+  const json document = json_of(run_program(
+      {"run", shared_scenario("hill"), "--seed", "1", "--method", "rate/raw", "--method", example(), "--json"}));
+  const auto ours = scores_of(document, "raw"), theirs = scores_of(document, "raw_python");
+  ASSERT_TRUE(ours.contains("rate_error_clipped_median_rad_s"));
+  for (const char* metric : {"rate_error_clipped_median_rad_s", "rate_error_clipped_p99_rad_s"})
+    EXPECT_EQ(theirs.at(metric), ours.at(metric)) << metric;
+}
+
+TEST(External, WhatGoesWrongIsAnOutcomeOfTheSweep) {
+  const fs::path folder = test_folder();
+  const std::vector<std::string> sweep = {"sweep",    shared_scenario("hill"),
+                                          "--seeds",  "1..1",
+                                          "--method", "rate/raw",
+                                          "--method", describe(folder, "crashes", "kill -SEGV $$"),
+                                          "--method", describe(folder, "hangs", "sleep 600", "time_limit_s: 1\n"),
+                                          "--method", describe(folder, "silent", "true"),
+                                          "--db",     (folder / "out.db").string()};
+  const Ended ended = run_program(sweep);
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  std::map<std::string, std::string> status;
+  for (const json& row : json_of(run_program({"report", (folder / "out.db").string(), "--json"}))["failures"])
+    status[row["method"]] = row["status"];
+  EXPECT_EQ(status,
+            (std::map<std::string, std::string>{{"crashes", "crashed"}, {"hangs", "timeout"}, {"silent", "failed"}}));
+
+  // another method under the name of one that the database has rows of
+  describe(folder, "silent", "false");
+  const Ended other = run_program(sweep);
+  EXPECT_EQ(other.status, 2);
+  EXPECT_THAT(other.err, HasSubstr("rate/silent"));
+}
+
+}  // namespace
+}  // namespace tumble::system_test
