@@ -52,7 +52,7 @@ TEST(Metrics, AreNamedByTheirUnitAndDescribed) {
 // every metric of every kind, for an estimate that is the truth in a world of its own
 TEST(Metrics, OfTheTruthAreZeroWhereverItsWorldStands) {
   const std::set<std::string> shares = {"rate_coverage_3sigma", "rate_coverage_3sigma_flight",
-                                        "rate_coverage_3sigma_impact", "map_coverage"};
+                                        "rate_coverage_3sigma_impact", "map_coverage", "map_unique_share"};
   for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
     Estimate estimate = perfect_estimate(rig());
     move_world(turned_world(), estimate);
@@ -211,6 +211,19 @@ TEST(PositionScores, CoverageCountsErrorsWithinThreeSigmas) {
   EXPECT_NEAR(scores(Kind::position, estimate, rig()).at("position_coverage_3sigma"), 2.0 / 3.0, 1e-12);
   for (std::size_t k = half; k < estimate.poses.size(); ++k) estimate.poses[k].p_WA_m.y() += 1.0;
   EXPECT_LT(scores(Kind::position, estimate, rig()).at("position_coverage_3sigma"), 0.66);
+}
+
+// coverage is 1 for all of them
+TEST(PositionScores, TheNormalisedErrorSeesACovarianceThatIsHalved) {
+  Estimate estimate = perfect_estimate(rig(), Frame::body);
+  EXPECT_FALSE(scores(Kind::position, estimate, rig()).contains("position_nees_median")) << "nothing is stated";
+  for (std::size_t k = 1; k < estimate.poses.size(); ++k) estimate.poses[k].p_WA_m.array() += 0.01;
+  for (const double variance_m2 : {4e-4, 2e-4}) {
+    for (PoseState& pose : estimate.poses) pose.covariance.diagonal().head<3>().setConstant(variance_m2);
+    // the median square of a standard normal variable is 0.4549
+    EXPECT_NEAR(scores(Kind::position, estimate, rig()).at("position_nees_median"), 1e-4 / variance_m2 / 0.454936,
+                1e-9);
+  }
 }
 
 TEST(PositionScores, DriftAtStandstillIsWithinOneSpell) {
