@@ -9,7 +9,7 @@
 #include "scenarios/scoring/binned_metric.hpp"
 #include "scenarios/scoring/clipping.hpp"
 #include "scenarios/scoring/families.hpp"
-#include "scenarios/sweep/statistics.hpp"
+#include "scenarios/statistics/statistics.hpp"
 
 /// Errors of the rate over clipped samples that are alike: as deep, as long or with as many axes clipped.
 namespace tumble::scenarios {
@@ -79,9 +79,12 @@ void add_bin(const char* axis, const std::string& words, std::vector<Metric>& al
   const auto name = [&](const char* base) {
     return BinnedMetric{base, axis, edges<kAxis>()[kBin], edges<kAxis>()[kBin + 1]}.name();
   };
-  all.push_back({name("rate_error_median_rad_s"), Kind::rate, "rad/s",
-                 "median norm of the rate error over clipped samples " + words, error_in_bin<kAxis, kBin, 50>});
-  all.push_back({name("rate_error_p99_rad_s"), Kind::rate, "rad/s", "99th percentile of the same",
+  all.push_back({{name("rate_error_median_rad_s"), Unit::rad_s,
+                  "median norm of the rate error over clipped samples " + words, Sense::lower},
+                 Kind::rate,
+                 error_in_bin<kAxis, kBin, 50>});
+  all.push_back({{name("rate_error_p99_rad_s"), Unit::rad_s, "99th percentile of the same", Sense::lower},
+                 Kind::rate,
                  error_in_bin<kAxis, kBin, 99>});
 }
 
@@ -91,6 +94,17 @@ void add_bins(const char* axis, const std::string& words, std::vector<Metric>& a
 }
 
 }  // namespace
+
+std::vector<MetricInfo> binned_rate_quantities() {
+  return {
+      {"rate_error_median_rad_s", Unit::rad_s, "median norm of the rate error over clipped samples that are alike",
+       Sense::lower},
+      {"rate_error_p99_rad_s", Unit::rad_s, "99th percentile of the same", Sense::lower},
+      {"clip_depth_rad_s", Unit::rad_s, "largest loss of an axis to the rail"},
+      {"clip_length_s", Unit::s, "length of the stretch of clipped samples"},
+      {"clipped_axes", Unit::number, "number of clipped axes"},
+  };
+}
 
 std::vector<Metric> binned_rate_metrics() {
   std::vector<Metric> all;

@@ -86,11 +86,19 @@ std::vector<std::size_t> registered_sweeps(const Estimate& estimate) {
 
 std::vector<Metric> end_pose_metrics() {
   return {
-      {"translation_error_end_m", Kind::slam, "m",
-       "error of the motion from the sixth registered sweep to the last sweep: translation", translation_error_end},
-      {"rotation_error_end_rad", Kind::slam, "rad", "the same: rotation, up to pi", rotation_error_end},
-      {"pose_nees", Kind::slam, "1",
-       "squared error of the last sweep's pose over its reported covariance, per degree of freedom", pose_nees},
+      {{"translation_error_end_m", Unit::m,
+        "error of the motion from the sixth registered sweep to the last sweep: translation", Sense::lower,
+        Place::headline},
+       Kind::slam,
+       translation_error_end},
+      {{"rotation_error_end_rad", Unit::rad, "the same: rotation, up to pi", Sense::lower, Place::headline},
+       Kind::slam,
+       rotation_error_end},
+      {{"pose_nees", Unit::number,
+        "squared error of the last sweep's pose over its reported covariance, per degree of freedom", Sense::two_sided,
+        Place::held, 1.0},
+       Kind::slam,
+       pose_nees},
   };
 }
 

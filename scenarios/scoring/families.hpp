@@ -20,6 +20,14 @@ std::vector<Metric> end_pose_metrics();
 std::vector<Metric> map_metrics();
 std::vector<Metric> sweep_border_metrics();
 
+/// Besides the metrics: costs and values of the motion, which sweeps store; measures and bases of the binned metrics.
+std::vector<MetricInfo> cost_quantities();
+std::vector<MetricInfo> motion_quantities();
+std::vector<MetricInfo> binned_rate_quantities();
+
+/// Share of a normal variable within three standard deviations.
+inline constexpr double kNormal3Sigma = 0.9973;
+
 /// Root of the mean of squares; NaN when there is nothing to average.
 double rms(std::span<const double> values);
 

@@ -13,6 +13,8 @@ constexpr float kToleranceM = 0.25f;     // Deschenes et al.: a map point farthe
 constexpr float kFineToleranceM = 0.1f;  // of a map that is sharp, not only whole
 constexpr double kOutliersMax = 0.15;    // the same: a larger share of them is a failed map
 constexpr float kSurfaceCellM = 0.1f;    // the seen surface counts once per cell, however often it was hit
+constexpr float kErrorLimitM = 0.5f;     // an outlier counts as this far, however far it is
+constexpr float kSamePointM = 1e-3f;     // points of one such cell were drawn twice
 constexpr double kSeenRangeM = 100.0;    // of the frame's start; farther hits nobody maps
 
 // map points in W, by the alignment of position and yaw at the start
@@ -60,6 +62,25 @@ bool fine_overlap(const Estimate& estimate, const ScoringInput& input, double& v
   return overlap_within(estimate, input, kFineToleranceM, value);
 }
 
+bool mean_error(const Estimate& estimate, const ScoringInput& input, double& value) {
+  if (input.surface == nullptr || estimate.map.empty()) return false;
+  const std::vector<Eigen::Vector3f> points = map_in_world(estimate, input);
+  const bool finite = std::all_of(points.begin(), points.end(), [](const auto& point) { return point.allFinite(); });
+  const std::vector<float> distances = finite ? input.surface->distances(points, kErrorLimitM) : std::vector<float>();
+  double sum = 0.0;
+  for (const float distance : distances) sum += std::min(distance, kErrorLimitM);
+  value = finite ? sum / static_cast<double>(points.size()) : kErrorLimitM;
+  return true;
+}
+
+bool unique_share(const Estimate& estimate, const ScoringInput&, double& value) {
+  if (estimate.map.empty()) return false;
+  std::vector<Eigen::Vector3f> points;
+  for (const MapPoint& point : estimate.map) points.push_back(point.position_W_m);
+  value = static_cast<double>(one_per_cell(points, kSamePointM).size()) / static_cast<double>(points.size());
+  return true;
+}
+
 bool coverage(const Estimate& estimate, const ScoringInput& input, double& value) {
   if (estimate.map.empty() || input.truth->lidars.empty()) return false;
   const std::vector<Eigen::Vector3f> surface = seen_surface(*input.truth);
@@ -84,11 +105,28 @@ bool failed(const Estimate& estimate, const ScoringInput& input, double& value) 
 
 std::vector<Metric> map_metrics() {
   return {
-      {"map_overlap", Kind::slam, "1", "share of map points within 0.25 m of the true surface", overlap},
-      {"map_overlap_0_10", Kind::slam, "1", "the same within 0.10 m", fine_overlap},
-      {"map_coverage", Kind::slam, "1", "share of the truly seen surface (cells of 0.1 m) within 0.25 m of a map point",
+      {{"map_overlap", Unit::share, "share of map points within 0.25 m of the true surface", Sense::higher,
+        Place::headline},
+       Kind::slam,
+       overlap},
+      {{"map_overlap_0_10", Unit::share, "the same within 0.10 m", Sense::higher, Place::held},
+       Kind::slam,
+       fine_overlap},
+      {{"map_coverage", Unit::share, "share of the truly seen surface (cells of 0.1 m) within 0.25 m of a map point",
+        Sense::higher, Place::held},
+       Kind::slam,
        coverage},
-      {"map_failed", Kind::slam, "1", "1 when more than 15 % of the map lies off the surface, or there is none",
+      {{"map_error_mean_m", Unit::m, "mean distance of map points to the true surface, each at most 0.5 m",
+        Sense::lower, Place::held},
+       Kind::slam,
+       mean_error},
+      {{"map_unique_share", Unit::share, "map points that are left with one per cell of 1 mm: below 1, drawn twice",
+        Sense::higher, Place::held},
+       Kind::slam,
+       unique_share},
+      {{"map_failed", Unit::verdict, "1 when more than 15 % of the map lies off the surface, or there is none",
+        Sense::lower, Place::held},
+       Kind::slam,
        failed},
   };
 }

@@ -4,6 +4,7 @@
 
 #include "scenarios/scoring/families.hpp"
 #include "scenarios/scoring/truth_track.hpp"
+#include "scenarios/statistics/statistics.hpp"
 
 namespace tumble::scenarios {
 
@@ -11,7 +12,8 @@ namespace {
 
 // a share of less than this path says nothing
 constexpr double kPathMinM = 0.05;
-constexpr double kUnmovedM = 0.02;  // before, nothing can be wrong
+constexpr double kNormalSquareMedian = 0.454936;  // of the square of a standard normal variable
+constexpr double kUnmovedM = 0.02;                // before, nothing can be wrong
 
 std::vector<PairedPose> paired(const Estimate& estimate, const ScoringInput& input) {
   return pair_poses(estimate, TruthTrack(*input.truth, estimate.frame)).poses;
@@ -66,11 +68,13 @@ bool rest_drift(const Estimate& estimate, const ScoringInput& input, double& val
   return any;
 }
 
-/// In the axes that the covariance is stated in: those of the estimate's own world.
-bool coverage_3sigma(const Estimate& estimate, const ScoringInput& input, double& value) {
+/// Squared errors over their stated variances, once it moves. In the axes that the covariance is stated in: those of
+/// the estimate's own world.
+std::vector<double> normalised_errors(const Estimate& estimate, const ScoringInput& input) {
   const PairedTrack track = pair_poses(estimate, TruthTrack(*input.truth, estimate.frame));
   const Eigen::Matrix3d R_estimate_W = track.alignment.transform().linear().transpose();
-  std::size_t own = 0, total = 0, inside = 0;
+  std::vector<double> normalised;
+  std::size_t own = 0;
   for (const PairedPose& pose : track.poses) {
     if (pose.path_m < kUnmovedM) continue;
     while (own < estimate.poses.size() && estimate.poses[own].time_ns < pose.time_ns) ++own;
@@ -78,11 +82,26 @@ bool coverage_3sigma(const Estimate& estimate, const ScoringInput& input, double
     const Eigen::Vector3d variance = estimate.poses[own].covariance.topLeftCorner<3, 3>().diagonal();
     if (!(variance.maxCoeff() > 0.0)) continue;
     const Eigen::Vector3d error = R_estimate_W * (pose.estimate.p_WA_m - pose.truth.p_WA_m);
-    for (int axis = 0; axis < 3; ++axis) inside += error[axis] * error[axis] <= 9.0 * variance[axis];
-    total += 3;
+    // no error is within any variance, also within none
+    for (int axis = 0; axis < 3; ++axis)
+      normalised.push_back(error[axis] == 0.0 ? 0.0 : error[axis] * error[axis] / variance[axis]);
   }
-  if (total == 0) return false;
-  value = static_cast<double>(inside) / static_cast<double>(total);
+  return normalised;
+}
+
+bool coverage_3sigma(const Estimate& estimate, const ScoringInput& input, double& value) {
+  const std::vector<double> normalised = normalised_errors(estimate, input);
+  if (normalised.empty()) return false;
+  const auto inside = std::count_if(normalised.begin(), normalised.end(), [](double z) { return z <= 9.0; });
+  value = static_cast<double>(inside) / static_cast<double>(normalised.size());
+  return true;
+}
+
+/// The middle of them: the mean is that of the one axis whose variance is smallest.
+bool nees_median(const Estimate& estimate, const ScoringInput& input, double& value) {
+  const std::vector<double> normalised = normalised_errors(estimate, input);
+  if (normalised.empty()) return false;
+  value = quantile(normalised, 0.5) / kNormalSquareMedian;
   return true;
 }
 
@@ -90,13 +109,29 @@ bool coverage_3sigma(const Estimate& estimate, const ScoringInput& input, double
 
 std::vector<Metric> position_metrics() {
   return {
-      {"position_end_error_m", Kind::position, "m",
-       "distance to the truth at the end, position and yaw aligned at the start", end_error},
-      {"position_end_error_share", Kind::position, "1", "the same as a share of the true path", end_error_share},
-      {"position_height_error_max_m", Kind::position, "m", "largest error of height", height_error_max},
-      {"position_coverage_3sigma", Kind::position, "1",
-       "share of the errors per axis, once it moves, within three stated standard deviations", coverage_3sigma},
-      {"position_rest_drift_m", Kind::position, "m", "largest drift within one spell of standstill", rest_drift},
+      {{"position_end_error_m", Unit::m, "distance to the truth at the end, position and yaw aligned at the start",
+        Sense::lower},
+       Kind::position,
+       end_error},
+      {{"position_end_error_share", Unit::share, "the same as a share of the true path", Sense::lower, Place::headline},
+       Kind::position,
+       end_error_share},
+      {{"position_height_error_max_m", Unit::m, "largest error of height", Sense::lower, Place::held},
+       Kind::position,
+       height_error_max},
+      {{"position_coverage_3sigma", Unit::share,
+        "share of the errors per axis, once it moves, within three stated standard deviations", Sense::two_sided,
+        Place::held, kNormal3Sigma},
+       Kind::position,
+       coverage_3sigma},
+      {{"position_nees_median", Unit::number,
+        "median of the same errors squared over their stated variances, as a multiple of a normal variable's",
+        Sense::two_sided, Place::held, 1.0},
+       Kind::position,
+       nees_median},
+      {{"position_rest_drift_m", Unit::m, "largest drift within one spell of standstill", Sense::lower},
+       Kind::position,
+       rest_drift},
   };
 }
 

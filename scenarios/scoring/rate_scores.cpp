@@ -7,7 +7,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/scoring/clipping.hpp"
 #include "scenarios/scoring/families.hpp"
-#include "scenarios/sweep/statistics.hpp"
+#include "scenarios/statistics/statistics.hpp"
 
 namespace tumble::scenarios {
 
@@ -144,26 +144,48 @@ bool nees_impact(const Estimate& estimate, const ScoringInput& input, double& va
 
 std::vector<Metric> rate_metrics() {
   return {
-      {"rate_error_clipped_median_rad_s", Kind::rate, "rad/s",
-       "median norm of the rate error at samples where at least one gyro axis is clipped", clipped_median},
-      {"rate_error_clipped_p99_rad_s", Kind::rate, "rad/s", "99th percentile of the same", clipped_p99},
-      {"rate_error_free_median_rad_s", Kind::rate, "rad/s", "median norm of the rate error at all other samples",
+      {{"rate_error_clipped_median_rad_s", Unit::rad_s,
+        "median norm of the rate error at samples where at least one gyro axis is clipped", Sense::lower,
+        Place::headline},
+       Kind::rate,
+       clipped_median},
+      {{"rate_error_clipped_p99_rad_s", Unit::rad_s, "99th percentile of the same", Sense::lower, Place::headline},
+       Kind::rate,
+       clipped_p99},
+      {{"rate_error_free_median_rad_s", Unit::rad_s, "median norm of the rate error at all other samples", Sense::lower,
+        Place::held},
+       Kind::rate,
        free_median},
-      {"rate_coverage_3sigma", Kind::rate, "1",
-       "share of clipped axes whose error lies within three reported standard deviations", coverage_3sigma},
-      {"rate_error_clipped_max_rad_s", Kind::rate, "rad/s", "largest norm of the rate error at clipped samples",
+      {{"rate_coverage_3sigma", Unit::share,
+        "share of clipped axes whose error lies within three reported standard deviations", Sense::two_sided,
+        Place::held, kNormal3Sigma},
+       Kind::rate,
+       coverage_3sigma},
+      {{"rate_error_clipped_max_rad_s", Unit::rad_s, "largest norm of the rate error at clipped samples", Sense::lower},
+       Kind::rate,
        clipped_max},
-      {"rate_error_stretch_max_rad_s", Kind::rate, "rad/s",
-       "largest, over stretches of clipped samples in a row, of the norm of the mean error: what offsets a map",
+      {{"rate_error_stretch_max_rad_s", Unit::rad_s,
+        "largest, over stretches of clipped samples in a row, of the norm of the mean error: what offsets a map",
+        Sense::lower},
+       Kind::rate,
        stretch_max},
-      {"rate_coverage_3sigma_flight", Kind::rate, "1",
-       "rate_coverage_3sigma of the samples in which the robot touched nothing", coverage_3sigma_flight},
-      {"rate_coverage_3sigma_impact", Kind::rate, "1", "rate_coverage_3sigma of all other samples",
+      {{"rate_coverage_3sigma_flight", Unit::share,
+        "rate_coverage_3sigma of the samples in which the robot touched nothing", Sense::two_sided, Place::detail,
+        kNormal3Sigma},
+       Kind::rate,
+       coverage_3sigma_flight},
+      {{"rate_coverage_3sigma_impact", Unit::share, "rate_coverage_3sigma of all other samples", Sense::two_sided,
+        Place::detail, kNormal3Sigma},
+       Kind::rate,
        coverage_3sigma_impact},
-      {"rate_nees_flight", Kind::rate, "1",
-       "mean, over clipped axes of samples in flight, of the squared error over the reported variance; 1 is honest",
+      {{"rate_nees_flight", Unit::number,
+        "mean, over clipped axes of samples in flight, of the squared error over the reported variance; 1 is honest",
+        Sense::two_sided, Place::held, 1.0},
+       Kind::rate,
        nees_flight},
-      {"rate_nees_impact", Kind::rate, "1", "the same over all other samples", nees_impact},
+      {{"rate_nees_impact", Unit::number, "the same over all other samples", Sense::two_sided, Place::held, 1.0},
+       Kind::rate,
+       nees_impact},
   };
 }
 

@@ -6,7 +6,7 @@
 
 #include "scenarios/scoring/clipping.hpp"
 #include "scenarios/scoring/families.hpp"
-#include "scenarios/sweep/statistics.hpp"
+#include "scenarios/statistics/statistics.hpp"
 
 namespace tumble::scenarios {
 
@@ -137,26 +137,34 @@ bool unknown_samples(const Estimate&, const ScoringInput& input, double& value) 
 
 template <ErrorOf kError, unsigned kAxes>
 void add_pair(const std::string& name, const std::string& doc, std::vector<Metric>& all) {
-  all.push_back({"rate_" + name + "_clipped_median_rad_s", Kind::rate, "rad/s", "median " + doc,
+  all.push_back({{"rate_" + name + "_clipped_median_rad_s", Unit::rad_s, "median " + doc, Sense::lower},
+                 Kind::rate,
                  clipped_error<kError, 50, kAxes>});
-  all.push_back({"rate_" + name + "_clipped_p90_rad_s", Kind::rate, "rad/s", "90th percentile of the same",
+  all.push_back({{"rate_" + name + "_clipped_p90_rad_s", Unit::rad_s, "90th percentile of the same", Sense::lower},
+                 Kind::rate,
                  clipped_error<kError, 90, kAxes>});
 }
 
+/// Of the reference, not of a method: no contest.
 template <ErrorOf kError>
 void add_reference(const std::string& name, const std::string& doc, std::vector<Metric>& all) {
-  all.push_back({"rate_" + name + "_median_rad_s", Kind::rate, "rad/s", "median " + doc, reference_error<kError, 50>});
-  all.push_back(
-      {"rate_" + name + "_p90_rad_s", Kind::rate, "rad/s", "90th percentile of the same", reference_error<kError, 90>});
+  all.push_back({{"rate_" + name + "_median_rad_s", Unit::rad_s, "median " + doc, Sense::none},
+                 Kind::rate,
+                 reference_error<kError, 50>});
+  all.push_back({{"rate_" + name + "_p90_rad_s", Unit::rad_s, "90th percentile of the same", Sense::none},
+                 Kind::rate,
+                 reference_error<kError, 90>});
 }
 
 }  // namespace
 
 std::vector<Metric> reference_rate_metrics() {
   std::vector<Metric> all;
-  all.push_back({"rate_error_clipped_p90_rad_s", Kind::rate, "rad/s",
-                 "against a reference: 90th percentile of the norm of the rate error at clipped samples",
-                 clipped_error<error_norm, 90, 7u>});
+  all.push_back(
+      {{"rate_error_clipped_p90_rad_s", Unit::rad_s,
+        "against a reference: 90th percentile of the norm of the rate error at clipped samples", Sense::lower},
+       Kind::rate,
+       clipped_error<error_norm, 90, 7u>});
   add_pair<error_speed, 7u>("speed_error", "error of the size of the rate at clipped samples, against a reference",
                             all);
   add_pair<error_axis<0>, 1u>("error_x", "error of axis x where it clips, against a reference", all);
@@ -167,15 +175,23 @@ std::vector<Metric> reference_rate_metrics() {
       all);
   add_reference<error_speed>("reference_speed_error", "difference between the sizes of the same", all);
   all.push_back(
-      {"rate_reference_coverage_3sigma", Kind::rate, "1",
-       "share of clipped axes whose error lies within three standard deviations of method and reference together",
+      {{"rate_reference_coverage_3sigma", Unit::share,
+        "share of clipped axes whose error lies within three standard deviations of method and reference together",
+        Sense::two_sided, Place::detail, kNormal3Sigma},
+       Kind::rate,
        coverage});
-  all.push_back({"rate_clipped_called_measured", Kind::rate, "1",
-                 "share of axes that clip by a reference and that the method does not call clipped", called_measured});
-  all.push_back({"rate_reference_clipped_samples", Kind::rate, "1", "samples with an axis that clips by the reference",
+  all.push_back({{"rate_clipped_called_measured", Unit::share,
+                  "share of axes that clip by a reference and that the method does not call clipped", Sense::lower},
+                 Kind::rate,
+                 called_measured});
+  all.push_back({{"rate_reference_clipped_samples", Unit::number, "samples with an axis that clips by the reference",
+                  Sense::none},
+                 Kind::rate,
                  clipped_samples});
-  all.push_back({"rate_reference_unknown_samples", Kind::rate, "1",
-                 "samples that are not scored, because the reference does not know their rate", unknown_samples});
+  all.push_back({{"rate_reference_unknown_samples", Unit::number,
+                  "samples that are not scored, because the reference does not know their rate", Sense::none},
+                 Kind::rate,
+                 unknown_samples});
   return all;
 }
 

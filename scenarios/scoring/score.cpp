@@ -126,14 +126,14 @@ std::vector<Score> score(Kind kind, const Estimate& estimate, const ScoringInput
   std::vector<Score> scores;
   for (const Metric& metric : metrics()) {
     double value = 0.0;
-    if (metric.kind == kind && metric.compute(estimate, input, value)) scores.push_back({metric.name, value});
+    if (metric.kind == kind && metric.compute(estimate, input, value)) scores.push_back({metric.info.name, value});
   }
   return scores;
 }
 
-std::string verdict(Kind kind, const Estimate& estimate, const ScoringInput& input) {
+OutcomeStatus verdict(Kind kind, const Estimate& estimate, const ScoringInput& input) {
   require_complete(input);
-  return holds(kind, estimate, input) ? "ok" : "diverged";
+  return holds(kind, estimate, input) ? OutcomeStatus::ok : OutcomeStatus::diverged;
 }
 
 }  // namespace tumble::scenarios

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "scenarios/methods/method.hpp"
+#include "scenarios/scoring/metric.hpp"
+#include "scenarios/scoring/outcome_status.hpp"
 #include "sim/lidar/surface.hpp"
 #include "sim/recording.hpp"
 
@@ -24,12 +26,10 @@ struct ScoringInput {
   const sim::Surface* surface = nullptr;
 };
 
-/// A metric, self-describing; one file and one line of registration each.
+/// A metric, self-describing; one line of registration each, in its family's file.
 struct Metric {
-  std::string name;
+  MetricInfo info;
   Kind kind;
-  std::string unit;
-  std::string doc;
   /// False when the estimate or recording has nothing to score (no clipped sample, no map).
   bool (*compute)(const Estimate& estimate, const ScoringInput& input, double& value);
 };
@@ -42,6 +42,6 @@ std::vector<Score> score(Kind kind, const Estimate& estimate, const ScoringInput
 /// `ok`, or `diverged`: an estimate that is not finite, that leaves more than a fifth of the recording in one piece
 /// (rates: more than a tenth of the samples) unanswered, that ends farther from the truth than the path is long (1 m at
 /// least), or that registers fewer than six sweeps.
-std::string verdict(Kind kind, const Estimate& estimate, const ScoringInput& input);
+OutcomeStatus verdict(Kind kind, const Estimate& estimate, const ScoringInput& input);
 
 }  // namespace tumble::scenarios

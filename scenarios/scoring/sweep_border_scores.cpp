@@ -66,9 +66,14 @@ bool jump_rad_s(const Estimate& estimate, const ScoringInput& input, double& val
 
 std::vector<Metric> sweep_border_metrics() {
   return {
-      {"sweep_jump_m_s", Kind::slam, "m/s",
-       "rms jump of the estimated velocity at sweep borders, beyond what the true one changes there", jump_m_s},
-      {"sweep_jump_rad_s", Kind::slam, "rad/s", "the same of the rate that the attitudes imply", jump_rad_s},
+      {{"sweep_jump_m_s", Unit::m_s,
+        "rms jump of the estimated velocity at sweep borders, beyond what the true one changes there", Sense::lower,
+        Place::held},
+       Kind::slam,
+       jump_m_s},
+      {{"sweep_jump_rad_s", Unit::rad_s, "the same of the rate that the attitudes imply", Sense::lower},
+       Kind::slam,
+       jump_rad_s},
   };
 }
 

@@ -69,9 +69,14 @@ bool rpe_rad(const Estimate& estimate, const ScoringInput& input, double& value)
 
 std::vector<Metric> trajectory_metrics(Kind kind) {
   return {
-      {"ate_m", kind, "m", "rms position error, position and yaw aligned at the start only", ate},
-      {"rpe_1m_m", kind, "m", "rms error of the relative motion over 1 m of true path: translation", rpe_m},
-      {"rpe_1m_rad", kind, "rad", "the same: rotation, up to pi", rpe_rad},
+      {{"ate_m", Unit::m, "rms position error, position and yaw aligned at the start only", Sense::lower, Place::held},
+       kind,
+       ate},
+      {{"rpe_1m_m", Unit::m, "rms error of the relative motion over 1 m of true path: translation", Sense::lower,
+        Place::held},
+       kind,
+       rpe_m},
+      {{"rpe_1m_rad", Unit::rad, "the same: rotation, up to pi", Sense::lower, Place::held}, kind, rpe_rad},
   };
 }
 

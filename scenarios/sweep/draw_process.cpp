@@ -85,8 +85,7 @@ Given changed(const SimulatedDraw& draw, const Setting& setting) {
   return given;
 }
 
-Outcome unanswered(const DrawTask& task, const DrawTask::Run& run, const std::string& status,
-                   const std::string& message) {
+Outcome unanswered(const DrawTask& task, const DrawTask::Run& run, OutcomeStatus status, const std::string& message) {
   Outcome outcome;
   outcome.scenario = task.name;
   outcome.seed = task.seed;
@@ -104,7 +103,7 @@ void reject(const DrawTask& task, const std::exception& error, int fd) {
 }
 
 /// Nothing is known of the draw: each of its runs gets `status`.
-void give_up(const DrawTask& task, const std::string& status, const std::string& message, int fd) {
+void give_up(const DrawTask& task, OutcomeStatus status, const std::string& message, int fd) {
   for (const Outcome& outcome : without_answer(task, status, message)) write_all(fd, to_line({outcome, {}}));
   write_all(fd, to_line({}));
 }
@@ -131,7 +130,7 @@ Outcome run_isolated(const Method& method, const SimulatedDraw& draw, const Simu
   outcome.kind = method.info.kind;
   outcome.method = method.info.name;
   outcome.recording_digest = draw.recording_digest;
-  outcome.status = in_time ? end.status() : "timeout";
+  outcome.status = in_time ? end.status() : OutcomeStatus::timeout;
   outcome.message = in_time ? end.describe() : "no answer within " + std::to_string(timeout_s) + " s";
   outcome.scores = {{"estimate_cpu_s", end.cpu_s},
                     {"estimate_peak_mib", std::max(0.0, end.peak_mib - before_mib)},
@@ -139,7 +138,7 @@ Outcome run_isolated(const Method& method, const SimulatedDraw& draw, const Simu
   return outcome;
 }
 
-std::vector<Outcome> without_answer(const DrawTask& task, const std::string& status, const std::string& message) {
+std::vector<Outcome> without_answer(const DrawTask& task, OutcomeStatus status, const std::string& message) {
   std::vector<Outcome> outcomes;
   for (const DrawTask::Run& run : task.runs) outcomes.push_back(unanswered(task, run, status, message));
   return outcomes;
@@ -168,9 +167,9 @@ void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int 
   } catch (const sim::SimulationFailure& error) {
     return reject(task, error, fd);
   } catch (const std::bad_alloc&) {
-    return give_up(task, "killed", "no memory was left to simulate the draw", fd);
+    return give_up(task, OutcomeStatus::killed, "no memory was left to simulate the draw", fd);
   } catch (const std::exception& error) {
-    return give_up(task, "crashed", std::string("the simulation: ") + error.what(), fd);
+    return give_up(task, OutcomeStatus::crashed, std::string("the simulation: ") + error.what(), fd);
   }
   Given given;
   for (const DrawTask::Run& run : task.runs) {
@@ -180,9 +179,9 @@ void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int 
       outcome = run_isolated(with_setting(*run.method, run.setting), given.draw ? *given.draw : *draw,
                              given.scored ? *given.scored : *draw, surface ? &*surface : nullptr, timeout_s);
     } catch (const std::bad_alloc&) {
-      outcome = unanswered(task, run, "killed", "no memory was left for it");
+      outcome = unanswered(task, run, OutcomeStatus::killed, "no memory was left for it");
     } catch (const std::system_error& error) {
-      outcome = unanswered(task, run, "killed", error.what());
+      outcome = unanswered(task, run, OutcomeStatus::killed, error.what());
     }
     outcome.setting = run.setting;
     if (!write_all(fd, to_line({outcome, {}}))) return;

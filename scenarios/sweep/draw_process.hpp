@@ -26,7 +26,7 @@ struct DrawTask {
 };
 
 /// A row per run of a draw whose process gave no answer.
-std::vector<Outcome> without_answer(const DrawTask& task, const std::string& status, const std::string& message);
+std::vector<Outcome> without_answer(const DrawTask& task, OutcomeStatus status, const std::string& message);
 
 /// Simulates one draw, without lidars where no method reads them, and tells `fd` what came of it, one message a line: a
 /// rejection when it cannot be drawn or simulated, or an outcome per run as each ends, and an empty message at the end.

@@ -50,7 +50,7 @@ Estimate run_method(const Method& method, const SimulatedDraw& draw, Outcome& ou
   outcome.kind = method.info.kind;
   outcome.method = method.info.name;
   outcome.recording_digest = draw.recording_digest;
-  outcome.status = "ok";
+  outcome.status = OutcomeStatus::ok;
 
   Estimate estimate;
   const double start_s = process_cpu_s();
@@ -59,7 +59,7 @@ Estimate run_method(const Method& method, const SimulatedDraw& draw, Outcome& ou
     if (method.info.needs_truth) oracle.truth = &draw.recording.truth;
     estimate = method.run(draw.recording.sensors, {}, oracle);
     if (!estimate.status.ok()) {
-      outcome.status = "failed";
+      outcome.status = OutcomeStatus::failed;
       outcome.message = one_line(estimate.status.message());
     }
   } catch (const NoAnswer& error) {
@@ -68,11 +68,11 @@ Estimate run_method(const Method& method, const SimulatedDraw& draw, Outcome& ou
     outcome.message = one_line(error.what());
   } catch (const std::bad_alloc&) {
     estimate = {};
-    outcome.status = "killed";
+    outcome.status = OutcomeStatus::killed;
     outcome.message = "no memory was left for it";
   } catch (const std::exception& error) {
     estimate = {};
-    outcome.status = "failed";
+    outcome.status = OutcomeStatus::failed;
     outcome.message = one_line(error.what());
   }
   outcome.scores.push_back({"estimate_cpu_s", process_cpu_s() - start_s});
@@ -83,17 +83,18 @@ Estimate run_method(const Method& method, const SimulatedDraw& draw, Outcome& ou
 void assess(const Method& method, const SimulatedDraw& draw, const sim::Surface* surface, const Estimate& estimate,
             Outcome& outcome) {
   outcome.estimate_digest = digest(estimate);
-  if (outcome.status != "ok" || !draw.has_truth) return;
+  if (outcome.status != OutcomeStatus::ok || !draw.has_truth) return;
   try {
     const ScoringInput input{&draw.recording.sensors, &draw.recording.truth, surface};
     outcome.status = verdict(method.info.kind, estimate, input);
-    if (outcome.status == "diverged") outcome.message = "the estimate left the truth, the recording or the numbers";
+    if (outcome.status == OutcomeStatus::diverged)
+      outcome.message = "the estimate left the truth, the recording or the numbers";
     for (Score& score : score(method.info.kind, estimate, input)) outcome.scores.push_back(std::move(score));
   } catch (const std::bad_alloc&) {
-    outcome.status = "killed";
+    outcome.status = OutcomeStatus::killed;
     outcome.message = "no memory was left to score it";
   } catch (const std::exception& error) {
-    outcome.status = "failed";
+    outcome.status = OutcomeStatus::failed;
     outcome.message = one_line(std::string("not scored: ") + error.what());
   }
 }

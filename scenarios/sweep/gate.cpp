@@ -2,159 +2,233 @@
 #include "scenarios/sweep/gate.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <set>
+#include <limits>
+#include <sstream>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/scoring/metric_sense.hpp"
-#include "scenarios/sweep/statistics.hpp"
+#include "scenarios/statistics/paired.hpp"
+#include "scenarios/statistics/statistics.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// The outcomes that a bound speaks of, by their seeds' scores.
-struct Selection {
-  std::vector<double> values;  ///< of outcomes that are ok, and the worst value for those that are not
-  std::size_t outcomes = 0, not_ok = 0;
+std::string text_of(double value) {
+  std::ostringstream text;
+  text.precision(3);
+  text << value;
+  return text.str();
+}
+
+/// Errors and normalised errors differ by their ratio; shares that are none by their difference.
+bool by_difference(const MetricInfo& info) {
+  return info.unit == Unit::share && info.sense != Sense::lower;
+}
+
+/// How much more `now` is than `before`, as the metric is compared.
+double difference(const MetricInfo& info, double before, double now) {
+  if (before == now) return 0.0;
+  if (by_difference(info)) return now - before;
+  if (before <= 0.0) return kInfinity;
+  if (now <= 0.0) return -kInfinity;
+  return std::log(now / before);
+}
+
+/// How bad a draw is: what `GatePolicy::worst` is a multiple of.
+double badness(const MetricInfo& info, double value) {
+  return by_difference(info) ? 1.0 - value : value;
+}
+
+struct Pair {
+  std::uint64_t seed = 0;
+  double before = 0.0, now = 0.0;  ///< infinite where it was not ok, as the worst
 };
 
-class Draws {
- public:
-  Draws(const Results& results, std::uint64_t first, std::uint64_t last)
-      : outcomes_(results.outcomes()), rows_(results.scores()) {
-    std::erase_if(outcomes_, [&](const Outcome& row) { return row.seed < first || row.seed > last; });
-    std::erase_if(rows_, [&](const ScoreRow& row) { return row.seed < first || row.seed > last; });
-  }
-
-  Selection select(const GateBound& bound) const {
-    Selection out;
-    const Sense sense = metric_sense(bound.metric);
-    for (const Outcome& outcome : outcomes_) {
-      if (outcome.scenario != bound.scenario || outcome.kind != bound.kind || outcome.method != bound.method) continue;
-      ++out.outcomes;
-      if (outcome.status == "ok") continue;
-      ++out.not_ok;
-      if (sense != Sense::neither) out.values.push_back(sense == Sense::more ? -kInfinity : kInfinity);
-    }
-    for (const ScoreRow& row : rows_) {
-      const bool speaks = row.scenario == bound.scenario && row.kind == to_string(bound.kind) &&
-                          row.method == bound.method && row.metric == bound.metric && row.status == "ok";
-      if (speaks && !std::isnan(row.value)) out.values.push_back(row.value);
-    }
-    return out;
-  }
-
-  const std::vector<Outcome>& outcomes() const { return outcomes_; }
-
- private:
-  std::vector<Outcome> outcomes_;
-  std::vector<ScoreRow> rows_;
+/// Pairs of a metric. A draw on which both runs are without a value says nothing; one that has lost it is in `lost`.
+struct Pairs {
+  std::vector<Pair> pairs;
+  std::vector<std::uint64_t> lost;
 };
 
-GateResult hold(const Draws& draws, const GateBound& bound) {
-  const Selection selection = draws.select(bound);
-  GateResult result{bound, std::nan(""), selection.values.size()};
-  switch (bound.statistic) {
-    case Statistic::median:
-      result.value = quantile(selection.values, 0.5);
-      break;
-    case Statistic::quantile_05:
-      result.value = quantile(selection.values, 0.05);
-      break;
-    case Statistic::quantile_95:
-      result.value = quantile(selection.values, 0.95);
-      break;
-    case Statistic::share_not_ok:
-      result.draws = selection.outcomes;
-      if (selection.outcomes > 0) {
-        result.value = static_cast<double>(selection.not_ok) / static_cast<double>(selection.outcomes);
-      }
-      break;
+double value_at(const MethodRun& run, const std::string& metric, std::size_t draw) {
+  const auto values = run.values.find(metric);
+  return values == run.values.end() ? kNaN : values->second[draw];
+}
+
+Pairs pairs_of(const GateRun& all, const MethodRun& before, const MethodRun& now, const MetricInfo& info) {
+  Pairs out;
+  for (std::size_t k = 0; k < all.seeds.size(); ++k) {
+    const bool was_ok = before.status[k] == OutcomeStatus::ok, is_ok = now.status[k] == OutcomeStatus::ok;
+    Pair pair{all.seeds[k], value_at(before, info.name, k), value_at(now, info.name, k)};
+    if (was_ok && std::isnan(pair.before)) continue;
+    if (was_ok && is_ok && std::isnan(pair.now)) out.lost.push_back(pair.seed);
+    // a run that is not ok ranks as the worst, whatever numbers it left
+    if (!was_ok) pair.before = worst_value(info);
+    if (!is_ok) pair.now = worst_value(info);
+    if (!std::isnan(pair.before) && !std::isnan(pair.now)) out.pairs.push_back(pair);
+  }
+  return out;
+}
+
+/// The chance of differences as positive as these, were their middle at `margin` or below.
+double chance_beyond(std::vector<double> differences, double margin) {
+  for (double& each : differences) each -= margin;
+  return signed_rank_chance(differences);
+}
+
+double median_of(const std::vector<Pair>& pairs, double Pair::*member) {
+  std::vector<double> values;
+  for (const Pair& pair : pairs) values.push_back(pair.*member);
+  return quantile(values, 0.5);
+}
+
+/// Whether a draw is worse than any accepted one was, beyond the allowed; says which.
+std::string worst_draw(const MetricInfo& info, const std::vector<Pair>& pairs, const GatePolicy& policy) {
+  if (pairs.empty()) return "";
+  const auto worse = [&](double Pair::*member) {
+    return
+        [&info, member](const Pair& a, const Pair& b) { return badness(info, a.*member) < badness(info, b.*member); };
+  };
+  const Pair& before = *std::max_element(pairs.begin(), pairs.end(), worse(&Pair::before));
+  const Pair& now = *std::max_element(pairs.begin(), pairs.end(), worse(&Pair::now));
+  const double slack = by_difference(info) ? policy.share_margin : 0.0;
+  if (!(badness(info, now.now) > policy.worst * badness(info, before.before) + slack)) return "";
+  return "worst draw: " + text_of(now.now) + " at seed " + std::to_string(now.seed) + ", was " +
+         text_of(before.before) + " at most as bad";
+}
+
+/// Tests of a metric count once, two-sided ones too: they take twice the smaller chance.
+GateResult hold_metric(const GateRun& all, const MethodRun& before, const MethodRun& now, const MetricInfo& info,
+                       const GatePolicy& policy, std::size_t tests) {
+  GateResult result{before.scenario, before.kind, before.method, info.name};
+  const auto [pairs, lost] = pairs_of(all, before, now, info);
+  result.draws = pairs.size();
+  result.accepted = median_of(pairs, &Pair::before);
+  result.value = median_of(pairs, &Pair::now);
+  std::vector<double> more, less;
+  for (const Pair& pair : pairs) {
+    more.push_back(difference(info, pair.before, pair.now));
+    less.push_back(-more.back());
+  }
+  const double middle = quantile(more, 0.5);
+  result.change = by_difference(info) ? middle : std::expm1(middle);
+  const double margin = by_difference(info) ? policy.share_margin : std::log1p(policy.margin);
+  const double rises = chance_beyond(more, margin), falls = chance_beyond(less, margin);
+  double worse = 1.0, better = 1.0;
+  if (info.sense == Sense::lower) worse = rises, better = falls;
+  if (info.sense == Sense::higher) worse = falls, better = rises;
+  if (info.sense == Sense::two_sided) worse = 2.0 * std::min(rises, falls);
+  const auto corrected = [&](double chance) { return std::min(1.0, chance * static_cast<double>(tests)); };
+  result.chance = corrected(worse);
+  result.better = corrected(better) < policy.risk;
+
+  if (!lost.empty()) {
+    result.fault = "has no value any more: seed " + std::to_string(lost.front());
+    if (lost.size() > 1) result.fault += " and " + std::to_string(lost.size() - 1) + " more";
+  } else if (result.chance < policy.risk) {
+    const auto count = std::count_if(more.begin(), more.end(), [&](double d) { return rises < falls ? d > 0 : d < 0; });
+    result.fault = (info.sense == Sense::two_sided ? (rises < falls ? "higher in " : "lower in ") : "worse in ") +
+                   std::to_string(count) + " of " + std::to_string(pairs.size());
+  } else {
+    result.fault = worst_draw(info, pairs, policy);
   }
   return result;
 }
 
-std::string place_of(const GateBound& bound) {
-  return bound.scenario + ", " + to_string(bound.kind) + "/" + bound.method + ", " + to_string(bound.statistic) +
-         (bound.metric.empty() ? "" : " of " + bound.metric);
+/// A verdict is a failure as a status is: 0 has to stay 0.
+bool is_condemned(const MethodRun& run, const MetricInfo& verdict, std::size_t draw) {
+  return value_at(run, verdict.name, draw) > 0.0;
+}
+
+GateResult hold_outcomes(const GateRun& all, const MethodRun& before, const MethodRun& now,
+                         std::span<const MetricInfo* const> verdicts) {
+  GateResult result{before.scenario, before.kind, before.method, ""};
+  std::size_t was = 0, is = 0;
+  for (std::size_t k = 0; k < all.seeds.size(); ++k) {
+    const std::string seed = " at seed " + std::to_string(all.seeds[k]);
+    const auto condemned = [&](const MethodRun& run) {
+      const auto found = std::find_if(verdicts.begin(), verdicts.end(),
+                                      [&](const MetricInfo* verdict) { return is_condemned(run, *verdict, k); });
+      return found == verdicts.end() ? std::string() : (*found)->name;
+    };
+    const bool was_good = before.status[k] == OutcomeStatus::ok && condemned(before).empty();
+    std::string fault;
+    if (!now.status[k])
+      fault = "no outcome";
+    else if (*now.status[k] != OutcomeStatus::ok)
+      fault = to_string(*now.status[k]);
+    else
+      fault = condemned(now);
+    was += was_good ? 0 : 1;
+    is += fault.empty() ? 0 : 1;
+    // a draw that has gone is a fault also where it had failed
+    if (result.fault.empty() && !fault.empty() && (was_good || !now.status[k])) result.fault = fault + seed;
+  }
+  result.draws = all.seeds.size();
+  result.accepted = static_cast<double>(was) / static_cast<double>(all.seeds.size());
+  result.value = static_cast<double>(is) / static_cast<double>(all.seeds.size());
+  result.change = result.value - result.accepted;
+  result.better = result.fault.empty() && is < was;
+  return result;
+}
+
+MethodRun without_outcomes(const MethodRun& like) {
+  MethodRun none = like;
+  none.values.clear();
+  std::fill(none.status.begin(), none.status.end(), std::nullopt);
+  return none;
 }
 
 }  // namespace
 
-const char* to_string(Statistic statistic) {
-  switch (statistic) {
-    case Statistic::median:
-      return "median";
-    case Statistic::quantile_05:
-      return "quantile_05";
-    case Statistic::quantile_95:
-      return "quantile_95";
-    case Statistic::share_not_ok:
-      return "share_not_ok";
-  }
-  return "";
+const MethodRun* GateRun::find(const std::string& scenario, Kind kind, const std::string& method) const {
+  const auto found = std::find_if(methods.begin(), methods.end(), [&](const MethodRun& run) {
+    return run.scenario == scenario && run.kind == kind && run.method == method;
+  });
+  return found == methods.end() ? nullptr : &*found;
 }
 
-std::vector<GateResult> hold_to_gate(const Results& results, const Gate& gate, std::uint64_t first,
-                                     std::uint64_t last) {
-  const Draws draws(results, first, last);
+std::vector<GateResult> hold_to_gate(const GateRun& run, const Gate& gate) {
+  if (gate.accepted.methods.empty()) throw BadInput("the gate of " + gate.suite + " has accepted nothing");
+  if (run.seeds != gate.accepted.seeds) {
+    throw BadInput("the gate of " + gate.suite + " has accepted " + std::to_string(gate.accepted.seeds.size()) +
+                   " draws of other seeds than the " + std::to_string(run.seeds.size()) + " given; 'tumble gate " +
+                   gate.suite + " --accept' accepts anew");
+  }
+  std::size_t tests = 0;
+  for (const MethodRun& before : gate.accepted.methods) tests += before.values.size();
   std::vector<GateResult> held;
-  for (const GateBound& bound : gate.bounds) held.push_back(hold(draws, bound));
+  for (const MethodRun& before : gate.accepted.methods) {
+    const MethodRun* found = run.find(before.scenario, before.kind, before.method);
+    const MethodRun now = found == nullptr ? without_outcomes(before) : *found;
+    std::vector<const MetricInfo*> verdicts, metrics;
+    for (const auto& [name, values] : before.values) {
+      const MetricInfo& info = metric_info(name);
+      (info.unit == Unit::verdict ? verdicts : metrics).push_back(&info);
+    }
+    held.push_back(hold_outcomes(run, before, now, verdicts));
+    for (const MetricInfo* info : metrics) held.push_back(hold_metric(run, before, now, *info, gate.policy, tests));
+  }
   return held;
 }
 
-Gate accept(const Gate& gate, const std::vector<GateResult>& results, double margin) {
-  if (!(margin >= 0.0 && margin <= 10.0)) {
-    throw BadInput("the margin is " + std::to_string(margin) + ", must be within [0, 10]");
-  }
-  Gate accepted{gate.suite, margin, {}};
-  for (const GateResult& result : results) {
-    GateBound bound = result.bound;
-    if (!std::isfinite(result.value)) {
-      throw BadInput("cannot accept this run: " + place_of(bound) + " is " + std::to_string(result.value));
+void require_acceptable(const GateRun& run) {
+  if (run.methods.empty()) throw BadInput("cannot accept this run: it has no outcome");
+  for (const MethodRun& method : run.methods) {
+    const std::string what =
+        "cannot accept this run: " + method.scenario + ", " + to_string(method.kind) + "/" + method.method;
+    for (std::size_t k = 0; k < run.seeds.size(); ++k) {
+      if (!method.status[k]) throw BadInput(what + " has no outcome at seed " + std::to_string(run.seeds[k]));
     }
-    bound.accepted = result.value;
-    bound.low = -kInfinity;
-    bound.high = kInfinity;
-    const double room = margin * std::abs(result.value);
-    if (bound.statistic == Statistic::share_not_ok) {
-      // where none failed none may: a margin would let failures in that a user meets
-      bound.high = result.value > 0.0 ? std::min(1.0, result.value + margin) : 0.0;
-    } else {
-      const Sense sense = metric_sense(bound.metric);
-      if (sense != Sense::more) bound.high = result.value + room;
-      if (sense != Sense::less) bound.low = result.value - room;
-    }
-    accepted.bounds.push_back(bound);
-  }
-  return accepted;
-}
-
-Gate proposed_gate(const Results& results, const std::string& suite) {
-  Gate gate{suite, 0.0, {}};
-  std::set<std::pair<std::string, Kind>> seen;
-  for (const Outcome& outcome : results.outcomes()) {
-    if (outcome.method != "tumble" || !seen.insert({outcome.scenario, outcome.kind}).second) continue;
-    GateBound bound{outcome.scenario, outcome.kind, outcome.method, Statistic::share_not_ok, "", 0.0,
-                    -kInfinity,       kInfinity};
-    gate.bounds.push_back(bound);
-    for (const std::string& metric : headline_metrics(outcome.kind)) {
-      bound.metric = metric;
-      bound.statistic = Statistic::median;
-      gate.bounds.push_back(bound);
-      bound.statistic = metric_sense(metric) == Sense::more ? Statistic::quantile_05 : Statistic::quantile_95;
-      gate.bounds.push_back(bound);
-    }
-    for (const std::string& metric : consistency_metrics(outcome.kind)) {
-      bound.metric = metric;
-      bound.statistic = Statistic::median;
-      gate.bounds.push_back(bound);
+    if (std::find(method.status.begin(), method.status.end(), OutcomeStatus::ok) == method.status.end()) {
+      throw BadInput(what + " is nowhere ok");
     }
   }
-  return gate;
 }
 
 }  // namespace tumble::scenarios

@@ -2,66 +2,94 @@
 #pragma once
 
 #include <filesystem>
-#include <limits>
+#include <map>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "scenarios/data_root.hpp"
-#include "scenarios/methods/method.hpp"
+#include "scenarios/scoring/metric.hpp"
 #include "scenarios/sweep/results.hpp"
 
+/// The gate: a run over a suite's fixed seeds against the accepted one, draw by draw.
+///
+/// A draw is the same bits in both runs, so that what the draws differ in cancels out of each pair. Held are, of each
+/// scenario and method that the accepted run has:
+/// - outcomes: a draw that was ok has to be ok again, and no verdict (`map_failed`) may turn against it;
+/// - presence: an ok outcome has every metric that it had;
+/// - the middle, of each held metric (metric.hpp, `held_metrics`): no shift of the pairs for the worse beyond the
+/// margin.
+///   Pairs differ by the logarithm of their ratio, shares (but errors) by their difference. The exact signed-rank test
+///   (statistics/paired.hpp) of the differences less the margin; metrics with a target are held on both sides, a
+///   covariance that becomes smaller fails as one that becomes larger does. A run that is no worse fails any of all
+///   tests of a gate with at most `risk` (Bonferroni);
+/// - the worst draw, which a test of the middle does not see: it may be `worst` times the accepted worst.
 namespace tumble::scenarios {
 
-/// Which figure of the draws is held to a bound.
-enum class Statistic { median, quantile_05, quantile_95, share_not_ok };
-const char* to_string(Statistic statistic);
-
-/// One accepted bound: a statistic of one metric of one method over the draws of one scenario.
-struct GateBound {
+/// What one method reached on the draws, in the order of `GateRun::seeds`.
+struct MethodRun {
   std::string scenario;
   Kind kind = Kind::rate;
   std::string method;
-  Statistic statistic = Statistic::median;
-  std::string metric;     ///< empty for share_not_ok
-  double accepted = 0.0;  ///< the value of the run that the bound was set from
-  double low = -std::numeric_limits<double>::infinity();
-  double high = std::numeric_limits<double>::infinity();
+  std::vector<std::optional<OutcomeStatus>> status;   ///< none: no outcome of this draw
+  std::map<std::string, std::vector<double>> values;  ///< by held metric; NaN: none
 };
 
-/// The accepted bounds of a suite, scenarios/gates/SUITE.yaml, kept in git.
+struct GateRun {
+  std::vector<std::uint64_t> seeds;  ///< rising
+  std::vector<MethodRun> methods;
+  const MethodRun* find(const std::string& scenario, Kind kind, const std::string& method) const;
+};
+
+/// The held metrics of plain outcomes over the seeds `first` to `last`.
+GateRun gate_run(std::span<const Outcome> outcomes, std::uint64_t first, std::uint64_t last);
+GateRun gate_run(const Results& results, std::uint64_t first, std::uint64_t last);
+
+struct GatePolicy {
+  double risk = 0.05;           ///< chance that a run which is no worse fails, over all tests; (0, 0.5]
+  double margin = 0.02;         ///< shift of the pairs that does not matter, of ratios; [0, 10]
+  double share_margin = 0.005;  ///< the same, of differences of shares; [0, 1]
+  double worst = 2.0;           ///< how many times the accepted worst draw a draw may be; at least 1
+};
+
+/// The accepted run of a suite: scenarios/gates/SUITE.yaml says how it is held, SUITE.csv beside it what it reached.
+/// Both are kept in git.
 struct Gate {
   std::string suite;
-  double margin = 0.0;  ///< relative, that the bounds were set with
-  std::vector<GateBound> bounds;
+  GatePolicy policy;
+  GateRun accepted;
 };
 
 std::vector<std::string> gate_names(const DataRoot& data);
-/// The gate of a suite, or a file when `name` ends in ".yaml". Throws BadInput with file and line: no such gate
-/// (nearest named), unknown key, kind, statistic or method, no bound, an empty range.
+/// The gate of a suite, or a file when `name` ends in ".yaml" (the run beside it, in ".csv"). Throws BadInput with file
+/// and line: no such gate (nearest named), of another suite, unknown key, kind, method, metric or status, a row of
+/// another length, a number out of its bound, nothing accepted.
 Gate load_gate(const DataRoot& data, const std::string& name);
-/// As `load_gate` reads it; numbers read back exactly.
+/// The policy and the run as `load_gate` reads them; numbers read back exactly.
 std::string to_yaml(const Gate& gate);
+std::string to_csv(const GateRun& run);
+GateRun parse_gate_run(const std::string& text, const std::string& file);
 
-/// A bound beside what was measured.
+/// One line of the gate: the outcomes of a method (no metric), or one metric.
 struct GateResult {
-  GateBound bound;
-  double value = 0.0;     ///< NaN when no draw has a value
-  std::size_t draws = 0;  ///< that count
-  bool passes() const { return value >= bound.low && value <= bound.high; }
+  std::string scenario;
+  Kind kind = Kind::rate;
+  std::string method, metric;
+  std::size_t draws = 0;   ///< pairs that count
+  double accepted = 0.0;   ///< median, or the share of draws that were not ok
+  double value = 0.0;      ///< the same now
+  double change = 0.0;     ///< median of the pairs': of ratios less one, or of differences of shares
+  double chance = 1.0;     ///< of pairs as bad, were the run no worse; times the number of tests
+  bool better = false;     ///< by the same test the other way: accept it, and it is held
+  std::string fault = {};  ///< what is wrong, with a seed; empty when nothing is
+  bool passes() const { return fault.empty(); }
 };
 
-/// The statistic over the outcomes of the seeds `first` to `last`. An outcome that is not ok ranks as the worst value
-/// (infinite, or minus infinite where more is better) and does not count for a metric without sense, as one that is ok
-/// but has no such metric does not. NaN without outcomes, which passes no bound.
-std::vector<GateResult> hold_to_gate(const Results& results, const Gate& gate, std::uint64_t first, std::uint64_t last);
+/// Throws BadInput when the runs are of other seeds or nothing was accepted.
+std::vector<GateResult> hold_to_gate(const GateRun& run, const Gate& gate);
 
-/// Bounds with the values of `results` as accepted, `margin` of their size away: above for what is better small (high),
-/// below for what is better large (low), both for what has a target. A share of failures may rise by the margin, but
-/// where there was none there may be none. A value that is not finite throws BadInput: such a run cannot be accepted.
-Gate accept(const Gate& gate, const std::vector<GateResult>& results, double margin);
-
-/// A gate to begin with, without bounds' values: for each scenario and kind in the results, the method `tumble` and
-/// what is most often looked at, errors and whether the reported covariance holds them.
-Gate proposed_gate(const Results& results, const std::string& suite);
+/// Throws BadInput where a draw has no outcome, or a method has no ok one: such a run cannot be accepted.
+void require_acceptable(const GateRun& run);
 
 }  // namespace tumble::scenarios

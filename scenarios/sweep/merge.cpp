@@ -67,9 +67,9 @@ bool contradict(const Outcome& a, const Outcome& b) {
 
 [[noreturn]] void complain(const fs::path& path, const Outcome& held, const Outcome& other) {
   throw BadInput(path.string() + ": " + other.scenario + ", seed " + std::to_string(other.seed) + ", " +
-                 to_string(other.kind) + "/" + other.method + ": is " + other.status + " with digest '" +
-                 other.estimate_digest + "', elsewhere " + held.status + " with digest '" + held.estimate_digest +
-                 "'; one build gives one answer");
+                 to_string(other.kind) + "/" + other.method + ": is " + to_string(other.status) + " with digest '" +
+                 other.estimate_digest + "', elsewhere " + to_string(held.status) + " with digest '" +
+                 held.estimate_digest + "'; one build gives one answer");
 }
 
 class Merge {

@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 namespace tumble::scenarios {
 
@@ -39,7 +40,7 @@ json to_json(const Outcome& outcome) {
           {"seed", outcome.seed},
           {"kind", static_cast<int>(outcome.kind)},
           {"method", outcome.method},
-          {"status", outcome.status},
+          {"status", to_string(outcome.status)},
           {"message", outcome.message},
           {"scores", to_json(outcome.scores)},
           {"recording_digest", outcome.recording_digest},
@@ -53,7 +54,9 @@ Outcome outcome_from(const json& object) {
   outcome.seed = object.at("seed").get<std::uint64_t>();
   outcome.kind = static_cast<Kind>(object.at("kind").get<int>());
   outcome.method = object.at("method").get<std::string>();
-  outcome.status = object.at("status").get<std::string>();
+  const auto status = outcome_status_named(object.at("status").get<std::string>());
+  if (!status) throw std::invalid_argument("unknown status");
+  outcome.status = *status;
   outcome.message = object.at("message").get<std::string>();
   outcome.recording_digest = object.at("recording_digest").get<std::string>();
   outcome.estimate_digest = object.at("estimate_digest").get<std::string>();
@@ -102,6 +105,8 @@ std::optional<Message> from_line(const std::string& line) {
     }
     return message;
   } catch (const json::exception&) {
+    return std::nullopt;
+  } catch (const std::invalid_argument&) {
     return std::nullopt;
   }
 }

@@ -122,23 +122,23 @@ std::string digest_of_texts(std::span<const std::string> texts) {
 
 namespace {
 
-int rank(const std::string& status) {
-  if (status == "killed") return 0;
-  return status == "crashed" || status == "timeout" ? 1 : 2;
+int rank(OutcomeStatus status) {
+  if (status == OutcomeStatus::killed) return 0;
+  return status == OutcomeStatus::crashed || status == OutcomeStatus::timeout ? 1 : 2;
 }
 
 }  // namespace
 
-bool was_scored(const std::string& status) {
+bool was_scored(OutcomeStatus status) {
   return rank(status) == 2;
 }
 
-bool outranks(const std::string& status, const std::string& other) {
+bool outranks(OutcomeStatus status, OutcomeStatus other) {
   return rank(status) > rank(other);
 }
 
-bool may_run_again(const std::string& status) {
-  return status == "crashed" || status == "timeout" || status == "killed";
+bool may_run_again(OutcomeStatus status) {
+  return !was_scored(status);
 }
 
 }  // namespace tumble::scenarios

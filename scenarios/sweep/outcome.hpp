@@ -27,9 +27,7 @@ struct Outcome {
   std::uint64_t seed = 0;
   Kind kind = Kind::rate;
   std::string method;
-  /// What the method did: ok, diverged, failed, crashed (it ended its process), timeout. Or the machine: killed (a
-  /// signal from outside, no memory, no process), which says nothing of the method.
-  std::string status;
+  OutcomeStatus status = OutcomeStatus::failed;
   std::string message;  ///< one line when not ok
   std::vector<Score> scores;
   std::string recording_digest;
@@ -46,14 +44,14 @@ struct DrawValues {
 };
 
 /// Of a method that came to its end: ok, diverged, failed.
-bool was_scored(const std::string& status);
+bool was_scored(OutcomeStatus status);
 
 /// Whether a status says more of the method than another: one that came to its end more than crashed and timeout, these
 /// more than killed.
-bool outranks(const std::string& status, const std::string& other);
+bool outranks(OutcomeStatus status, OutcomeStatus other);
 
 /// Whether a sweep may be asked to run rows of this status once more: crashed, timeout, killed.
-bool may_run_again(const std::string& status);
+bool may_run_again(OutcomeStatus status);
 
 /// A draw that cannot be drawn or simulated, whatever the machine: an outcome of its own, kind and method empty in the
 /// database. A process that died over it is none: its methods are crashed, timeout or killed.

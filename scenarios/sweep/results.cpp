@@ -12,8 +12,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr const char* kRejected = "rejected";
-
 // SQLite has no NaN: a number that is none is null
 void bind_value(SQLite::Statement& statement, int index, double value) {
   if (std::isnan(value))
@@ -43,7 +41,7 @@ void Results::Impl::store(const std::string& kind, const Outcome& outcome) {
   insert.bind(2, stored_seed(outcome.seed));
   insert.bind(3, kind);
   insert.bind(4, outcome.method);
-  insert.bind(5, outcome.status);
+  insert.bind(5, std::string(to_string(outcome.status)));
   insert.bind(6, outcome.message);
   insert.bind(7, outcome.recording_digest);
   insert.bind(8, outcome.estimate_digest);
@@ -89,7 +87,7 @@ bool Results::store(const RejectedDraw& rejected) {
   Outcome outcome;
   outcome.scenario = rejected.scenario;
   outcome.seed = rejected.seed;
-  outcome.status = kRejected;
+  outcome.status = OutcomeStatus::rejected;
   outcome.message = rejected.message;
   outcome.setting = rejected.setting;
   impl_->guarded([&] { impl_->store("", outcome); });

@@ -19,7 +19,9 @@ namespace tumble::scenarios {
 struct ScoreRow {
   std::string scenario;
   std::uint64_t seed;
-  std::string kind, method, status, metric;
+  std::string kind, method;
+  OutcomeStatus status;
+  std::string metric;
   double value;
   Setting setting = {};
 };

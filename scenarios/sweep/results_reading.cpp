@@ -23,6 +23,11 @@ Kind kind_named(const std::string& name, const std::filesystem::path& path) {
   throw BadInput(path.string() + ": unknown kind '" + name + "'");
 }
 
+OutcomeStatus status_named(const std::string& name, const std::filesystem::path& path) {
+  if (const auto status = outcome_status_named(name)) return *status;
+  throw BadInput(path.string() + ": unknown status '" + name + "'");
+}
+
 /// The condition that picks `rows`, for a table or a join with the column `varied`.
 const char* picked(Rows rows) {
   switch (rows) {
@@ -52,7 +57,7 @@ std::vector<Outcome> read_outcomes(SQLite::Statement& select, const std::filesys
     row.seed = read_seed(select.getColumn(1).getInt64());
     row.kind = kind_named(select.getColumn(2).getString(), path);
     row.method = select.getColumn(3).getString();
-    row.status = select.getColumn(4).getString();
+    row.status = status_named(select.getColumn(4).getString(), path);
     row.message = select.getColumn(5).getString();
     row.recording_digest = select.getColumn(6).getString();
     row.estimate_digest = select.getColumn(7).getString();
@@ -109,7 +114,7 @@ std::vector<ScoreRow> Results::scores(Rows rows) const {
                        read_seed(select.getColumn(1).getInt64()),
                        select.getColumn(2).getString(),
                        select.getColumn(3).getString(),
-                       select.getColumn(4).getString(),
+                       status_named(select.getColumn(4).getString(), impl_->path),
                        select.getColumn(5).isNull() ? std::string() : select.getColumn(5).getString(),
                        read_value(select.getColumn(6)),
                        {select.getColumn(7).getString(), select.getColumn(8).getDouble()}});

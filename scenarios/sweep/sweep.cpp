@@ -293,13 +293,14 @@ class Sweep {
   // the process of a draw died: what is left over of its runs has no answer
   void account_for_death(const Worker& worker, bool late, const Process::End& end) {
     const std::string what = late ? "the draw did not end in time" : "the draw's process " + end.describe();
-    for (const Outcome& outcome : without_answer(worker.draw, late ? "timeout" : end.status(), what)) keep(outcome);
+    for (const Outcome& outcome : without_answer(worker.draw, late ? OutcomeStatus::timeout : end.status(), what))
+      keep(outcome);
   }
 
   void keep(const Outcome& outcome) {
     results_.store(outcome);
     ++progress_.outcomes;
-    if (outcome.status != "ok") ++progress_.not_ok;
+    if (outcome.status != OutcomeStatus::ok) ++progress_.not_ok;
   }
 
   void keep(const RejectedDraw& rejected) {
@@ -347,9 +348,9 @@ SweepProgress sweep(const DataRoot& data, const Suite& suite, const std::filesys
   if (suite.last_seed - suite.first_seed >= kSeedsMax) {
     throw BadInput("suite " + suite.name + ": more than " + std::to_string(kSeedsMax) + " seeds; sweep them in parts");
   }
-  for (const std::string& status : options.again) {
+  for (const OutcomeStatus status : options.again) {
     if (!may_run_again(status)) {
-      throw BadInput("'" + status + "' is not run again; what may be: crashed timeout killed");
+      throw BadInput(std::string("'") + to_string(status) + "' is not run again; what may be: crashed timeout killed");
     }
   }
   Results results = open_results(data, suite, database);

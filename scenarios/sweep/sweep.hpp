@@ -46,7 +46,7 @@ struct SweepOptions {
   int jobs = 1;                             ///< processes
   const std::atomic<bool>* stop = nullptr;  ///< set it to end after storing what has finished
   std::function<void(const SweepProgress&)> on_progress;
-  std::vector<std::string> again;  ///< statuses whose rows are run once more: crashed, timeout, killed
+  std::vector<OutcomeStatus> again;  ///< statuses whose rows are run once more: crashed, timeout, killed
 };
 
 /// Makes the database, or opens it, as one of this suite, build, models and scenarios. Throws BadInput when it is of

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/scoring/metric_sense.hpp"
+#include "scenarios/scoring/metric.hpp"
 #include "scenarios/sweep/draw_process.hpp"
 #include "sim/lidar/surface.hpp"
 
@@ -29,13 +29,15 @@ TriageRow row_of(const std::string& input, const std::string& doc, Outcome outco
 }  // namespace
 
 bool Failure::holds(const Outcome& outcome) const {
-  if (outcome.status != "ok") return true;
-  const Score* map_failed = find_score(outcome, "map_failed");
-  if (map_failed != nullptr && map_failed->value != 0.0) return true;
+  if (outcome.status != OutcomeStatus::ok) return true;
+  const bool condemned = std::any_of(outcome.scores.begin(), outcome.scores.end(), [](const Score& score) {
+    return metric_info(score.metric).unit == Unit::verdict && score.value != 0.0;
+  });
+  if (condemned) return true;
   if (metric.empty()) return false;
   const Score* score = find_score(outcome, metric);
   if (score == nullptr || std::isnan(score->value)) return true;  // a run without the number has not shown it
-  return metric_sense(metric) == Sense::more ? score->value < limit : score->value > limit;
+  return metric_info(metric).sense == Sense::higher ? score->value < limit : score->value > limit;
 }
 
 std::vector<TriageRow> triage(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,

@@ -22,11 +22,11 @@ struct TrueInput {
 /// All inputs; the last one is all of them at once.
 std::span<const TrueInput> true_inputs();
 
-/// What makes an outcome a failure: a status that is not ok, a map off the surface (`map_failed`), or a metric beyond a
+/// What makes an outcome a failure: a status that is not ok, a verdict against it (`map_failed`), or a metric beyond a
 /// limit.
 struct Failure {
-  std::string metric;  ///< empty: status and map_failed alone
-  double limit = 0.0;  ///< above it, or below it where more is better (metric_sense)
+  std::string metric;  ///< empty: status and verdicts alone
+  double limit = 0.0;  ///< above it, or below it where higher is better
   bool holds(const Outcome& outcome) const;
 };
 

@@ -13,8 +13,8 @@
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/draw/without_lidars.hpp"
 #include "scenarios/scoring/motion_summary.hpp"
+#include "scenarios/statistics/statistics.hpp"
 #include "scenarios/sweep/evaluate.hpp"
-#include "scenarios/sweep/statistics.hpp"
 #include "sim/simulate.hpp"
 #include "tests/tree.hpp"
 

@@ -15,7 +15,7 @@
 
 #include "scenarios/recordings/import.hpp"
 #include "scenarios/recordings/recording_file.hpp"
-#include "scenarios/sweep/statistics.hpp"
+#include "scenarios/statistics/statistics.hpp"
 
 namespace {
 

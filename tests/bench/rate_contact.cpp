@@ -15,7 +15,7 @@
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/draw/without_lidars.hpp"
 #include "scenarios/scoring/clipping.hpp"
-#include "scenarios/sweep/statistics.hpp"
+#include "scenarios/statistics/statistics.hpp"
 #include "sim/simulate.hpp"
 #include "tests/tree.hpp"
 

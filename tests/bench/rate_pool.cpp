@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "scenarios/scoring/clipping.hpp"
-#include "scenarios/sweep/statistics.hpp"
+#include "scenarios/statistics/statistics.hpp"
 
 namespace tumble::bench {
 

@@ -38,7 +38,7 @@ double value_of(const std::vector<scenarios::Score>& scores, const std::string& 
 }
 
 bool told(const scenarios::Outcome& outcome, const scenarios::Estimate& estimate) {
-  if (outcome.status != "ok") return true;
+  if (outcome.status != scenarios::OutcomeStatus::ok) return true;
   const auto says = [&](const char* key, double otherwise) {
     const auto found = estimate.health.find(key);
     return found == estimate.health.end() ? otherwise : found->second;
@@ -56,7 +56,7 @@ void judge(const scenarios::Method& method, const scenarios::SimulatedDraw& draw
   wrong_inputs().at(harm)(given.recording.sensors);
   scenarios::Outcome outcome;
   const scenarios::Estimate estimate = scenarios::run_method(method, given, outcome);
-  const bool says = told(outcome, estimate), answered = outcome.status == "ok";
+  const bool says = told(outcome, estimate), answered = outcome.status == scenarios::OutcomeStatus::ok;
   double error = std::nan(""), deviations = std::nan("");
   if (answered) {
     scenarios::assess(method, scenarios::scored_by(draw, given), surface, estimate, outcome);
@@ -70,7 +70,7 @@ void judge(const scenarios::Method& method, const scenarios::SimulatedDraw& draw
   const bool wrong = !(deviations <= kWrongDeviations) && answered;
   if (wrong) {
     ++tally.wrong, tally.wrong_told += says;
-  } else if (outcome.status == "ok" || harm == "none") {
+  } else if (outcome.status == scenarios::OutcomeStatus::ok || harm == "none") {
     ++tally.good, tally.good_told += says;
   }
   const auto health = [&](const char* key) {
@@ -83,8 +83,10 @@ void judge(const scenarios::Method& method, const scenarios::SimulatedDraw& draw
       draw.scenario.c_str(), static_cast<unsigned long long>(draw.seed), harm.c_str(), outcome.status.c_str(), error,
       deviations, wrong ? "wrong" : "good", says ? "told" : "-", health("calibration_surprise"),
       health("innovation_median"), health("innovation_90"), health("rig_surprise"), health("held_share"),
-      wrong && !says ? "  <- silently wrong"
-                     : (!wrong && says && (outcome.status == "ok" || harm == "none") ? "  <- cries wolf" : ""));
+      wrong && !says
+          ? "  <- silently wrong"
+          : (!wrong && says && (outcome.status == scenarios::OutcomeStatus::ok || harm == "none") ? "  <- cries wolf"
+                                                                                                  : ""));
   std::fflush(stdout);
 }
 

@@ -162,11 +162,9 @@ void write_documents(const path& folder, const path& scratch) {
   put_text(in(folder, "situation") / "roll", to_yaml(draw(data, load_scenario(data, "roll"), 1)));
   std::filesystem::copy_file(data.suites() / "rates_rig.yaml", in(folder, "suite") / "rates_rig");
   std::filesystem::copy_file(data.data_sheets() / "mid40.yaml", in(folder, "data_sheet") / "mid40");
-  put_text(in(folder, "gate") / "small",
-           "suite: gate\nmargin: 0.25\nbounds:\n"
-           "  - {scenario: hill, kind: rate, method: tumble, statistic: share_not_ok, accepted: 0, high: 0.25}\n"
-           "  - {scenario: hill, kind: slam, method: tumble, metric: map_overlap, statistic: median, accepted: 1, "
-           "low: 0.75}\n");
+  put_text(in(folder, "gate") / "small", "suite: gate\nrisk: 0.05\nmargin: 0.02\nshare_margin: 0.005\nworst: 2\n");
+  put_text(in(folder, "gate_run") / "small",
+           "scenario,kind,method,metric,1,2\nhill,slam,tumble,status,ok,failed\nhill,slam,tumble,map_overlap,0.75,\n");
 
   LearntRig rig;
   rig.calibration.covariance = 0.7e-4 * RigConstants::Matrix::Identity();

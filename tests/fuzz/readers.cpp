@@ -130,7 +130,11 @@ void suite(const path& file) {
   load_suite(data(), file.string());
 }
 void gate(const path& file) {
+  std::ofstream(path(file).replace_extension(".csv")) << "scenario,kind,method,metric,1\nroll,rate,raw,status,ok\n";
   load_gate(data(), file.string());
+}
+void gate_accepted(const path& file) {
+  parse_gate_run(read_text_file(file), file.string());
 }
 void data_sheet(const path& file) {
   parse_data_sheet(read_text_file(file), file.string(), Registry::of_simulation());
@@ -189,6 +193,7 @@ constexpr std::array kReaders = {
     Reader{"situation", "a.yaml", situation},
     Reader{"suite", "a.yaml", suite},
     Reader{"gate", "a.yaml", gate},
+    Reader{"gate_run", "a.csv", gate_accepted},
     Reader{"data_sheet", "a.yaml", data_sheet},
     Reader{"learnt", "a.json", learnt},
     Reader{"map_ply", "map.ply", map_ply},

@@ -21,43 +21,44 @@ fs::path small_suite(const fs::path& folder) {
   return folder / "small.yaml";
 }
 
-std::string bounds_with(double high) {
-  return "suite: small\nmargin: 0\nbounds:\n  - {scenario: roll, kind: position, method: rolling, metric: "
-         "position_end_error_share, "
-         "statistic: median, accepted: 0, high: " +
-         std::to_string(high) + "}\n";
-}
-
-TEST(Gate, HoldsARunToItsBounds) {
+TEST(Gate, HoldsARunToTheAcceptedOne) {
   const fs::path folder = test_folder(), suite = small_suite(folder);
-  const std::string database = (folder / "g.db").string(), bounds = (folder / "bounds.yaml").string();
-  std::ofstream(bounds) << bounds_with(0.1);
-  const std::vector<std::string> arguments = {"gate", suite.string(), "--bounds", bounds,
-                                              "--db", database,       "--json",   "--quiet"};
-  const Ended within = run_program(arguments);
-  EXPECT_EQ(within.status, 0) << within.err;
-  EXPECT_EQ(within.err, "");
-  const json held = json_of(within);
+  const std::string database = (folder / "g.db").string(), against = (folder / "accepted.yaml").string();
+  std::vector<std::string> arguments = {"gate", suite.string(), "--against", against,
+                                        "--db", database,       "--json",    "--quiet"};
+  std::vector<std::string> accept = arguments;
+  accept.emplace_back("--accept");
+  EXPECT_EQ(run_program(accept).status, 0);
+  const Ended same = run_program(arguments);
+  EXPECT_EQ(same.status, 0) << same.err;
+  EXPECT_EQ(same.err, "");
+  const json held = json_of(same);
   EXPECT_EQ(held["verdict"], "pass");
-  ASSERT_EQ(held["bounds"].size(), 1u);
-  EXPECT_EQ(held["bounds"][0]["draws"], 2);
+  ASSERT_GE(held["held"].size(), 4u);
+  EXPECT_EQ(held["held"][0]["draws"], 2);
   EXPECT_THAT(held["certificate"].get<std::string>(), ::testing::AnyOf(HasSubstr("not measured"), HasSubstr("within")));
 
-  // negative control: a bound that nothing can keep; the results are there already
-  std::ofstream(bounds) << bounds_with(1e-9);
-  const Ended outside = run_program(arguments);
-  EXPECT_EQ(outside.status, 1);
-  EXPECT_EQ(json::parse(outside.out)["verdict"], "fail");
+  // negative control: an accepted run that was far better; the results are there already
+  const std::string key = "roll,position,tumble,position_end_error_share";
+  std::string table = read_file(folder / "accepted.csv");
+  const std::size_t begin = table.find(key);
+  ASSERT_NE(begin, std::string::npos) << table;
+  table.replace(begin, table.find('\n', begin) - begin, key + ",1e-9,1e-9");
+  std::ofstream(folder / "accepted.csv") << table;
+  const Ended worse = run_program(arguments);
+  EXPECT_EQ(worse.status, 1);
+  EXPECT_EQ(json::parse(worse.out)["verdict"], "fail");
 
-  // accepting that very run widens the bound to it
-  std::vector<std::string> accept = arguments;
-  accept.insert(accept.end(), {"--accept", "--margin", "0.5"});
-  EXPECT_EQ(run_program(accept).status, 0);
-  EXPECT_EQ(run_program(arguments).status, 0);
-  EXPECT_THAT(read_file(bounds), HasSubstr("margin: 0.5"));
+  // the gate of another suite is no gate of this one
+  std::string policy = read_file(against);
+  policy.replace(policy.find("suite: small"), 12, "suite: other");
+  std::ofstream(against) << policy;
+  const Ended other = run_program(arguments);
+  EXPECT_EQ(other.status, 2);
+  EXPECT_THAT(other.err, HasSubstr("'other'"));
 }
 
-TEST(Gate, WithoutBoundsSaysHowToMakeThem) {
+TEST(Gate, WithoutAnAcceptedRunSaysHowToMakeIt) {
   const fs::path folder = test_folder();
   const Ended ended = run_program({"gate", small_suite(folder).string()});
   EXPECT_EQ(ended.status, 2);

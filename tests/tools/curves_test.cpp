@@ -33,7 +33,7 @@ class CurvesTest : public testing::Test {
   ~CurvesTest() override { std::filesystem::remove(path_); }
 
   void store(std::uint64_t seed, Kind kind, const std::string& method, const Setting& setting,
-             std::vector<scenarios::Score> scores, const std::string& status = "ok") {
+             std::vector<scenarios::Score> scores, scenarios::OutcomeStatus status = scenarios::OutcomeStatus::ok) {
     scenarios::Outcome outcome;
     outcome.scenario = "hill";
     outcome.seed = seed;
@@ -91,7 +91,8 @@ TEST_F(CurvesTest, AFailureRanksAsTheWorstAndAFailedMapCountsAsOne) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     store(seed, Kind::slam, "icp_raw", clean,
           {{"translation_error_end_m", 1.0}, {"map_failed", seed == 1 ? 1.0 : 0.0}});
-    store(seed, Kind::slam, "icp_raw", late, {{"translation_error_end_m", 2.0}}, seed <= 3 ? "diverged" : "ok");
+    store(seed, Kind::slam, "icp_raw", late, {{"translation_error_end_m", 2.0}},
+          seed <= 3 ? scenarios::OutcomeStatus::diverged : scenarios::OutcomeStatus::ok);
     store(seed, Kind::slam, "tumble", late, {{"translation_error_end_m", 0.1}});
   }
   const std::vector<Curve> curves = find_curves(results());

@@ -60,7 +60,7 @@ TEST(NumberText, HasFourSignificantDigits) {
   EXPECT_EQ(number_text(-std::numeric_limits<double>::infinity()), "-inf");
 }
 
-scenarios::Outcome outcome(scenarios::Kind kind, const std::string& method, const std::string& status,
+scenarios::Outcome outcome(scenarios::Kind kind, const std::string& method, scenarios::OutcomeStatus status,
                            std::vector<scenarios::Score> scores) {
   scenarios::Outcome out;
   out.scenario = "hill";
@@ -74,9 +74,9 @@ scenarios::Outcome outcome(scenarios::Kind kind, const std::string& method, cons
 
 TEST(ScoreTables, HaveARowPerMetricAndAColumnPerMethod) {
   const std::vector<scenarios::Outcome> outcomes = {
-      outcome(scenarios::Kind::rate, "raw", "ok", {{"error", 2.5}, {"cost", 0.1}}),
-      outcome(scenarios::Kind::rate, "saave", "diverged", {{"error", 0.5}}),
-      outcome(scenarios::Kind::slam, "icp", "ok", {{"overlap", 0.9}})};
+      outcome(scenarios::Kind::rate, "raw", scenarios::OutcomeStatus::ok, {{"error", 2.5}, {"cost", 0.1}}),
+      outcome(scenarios::Kind::rate, "saave", scenarios::OutcomeStatus::diverged, {{"error", 0.5}}),
+      outcome(scenarios::Kind::slam, "icp", scenarios::OutcomeStatus::ok, {{"overlap", 0.9}})};
   const std::vector<Table> tables = score_tables("hill, seed 7", outcomes);
   ASSERT_EQ(tables.size(), 2u);
   EXPECT_EQ(tables[0].text(),
@@ -92,7 +92,7 @@ TEST(ScoreTables, HaveARowPerMetricAndAColumnPerMethod) {
 TEST(ScoreTables, RowsInJsonCarryWhatTheDatabaseDoes) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const std::vector<scenarios::Outcome> outcomes = {
-      outcome(scenarios::Kind::rate, "raw", "ok", {{"error", 2.5}, {"bad", nan}})};
+      outcome(scenarios::Kind::rate, "raw", scenarios::OutcomeStatus::ok, {{"error", 2.5}, {"bad", nan}})};
   const nlohmann::json rows = score_rows(outcomes);
   ASSERT_EQ(rows.size(), 2u);
   EXPECT_EQ(rows[0].dump(),

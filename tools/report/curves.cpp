@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -24,7 +23,6 @@ using scenarios::Outcome;
 using scenarios::Rows;
 using scenarios::ScoreRow;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kDrawsPerBin = 8;
 constexpr std::size_t kBinsMax = 6, kBinsMin = 3;
 /// What the simulated motion of a whole draw is sorted by (scenarios/sweep/motion_values.hpp).
@@ -48,8 +46,9 @@ RunsBySetting collect(const scenarios::Results& results, Rows rows) {
     if (row.kind.empty()) continue;  // a rejected draw
     Run& run = runs[{row.setting.key, row.setting.value, row.scenario, row.seed, row.kind, row.method}];
     run.seed = row.seed;
-    run.ok = row.status == "ok";
-    run.failed = run.failed || !run.ok || (row.metric == "map_failed" && row.value != 0.0);
+    run.ok = row.status == scenarios::OutcomeStatus::ok;
+    run.failed =
+        run.failed || !run.ok || (metric_info(row.metric).unit == scenarios::Unit::verdict && row.value != 0.0);
     if (run.ok && std::isfinite(row.value)) run.scores[row.metric] = row.value;
   }
   RunsBySetting sorted;
@@ -76,23 +75,25 @@ std::set<std::uint64_t> scored_seeds(const Runs& runs, const std::string& metric
 /// Null when no draw has a value of the metric.
 bool point_of(const std::vector<Run>& runs, const std::string& metric, const std::set<std::uint64_t>& scored,
               CurvePoint& point) {
-  const Sense sense = metric_sense(metric);
-  std::vector<double> ranked;
+  const MetricInfo& info = metric_info(metric);
+  std::vector<double> values;
+  std::size_t without = 0;
   for (const Run& run : runs) {
     ++point.draws;
     point.failed += run.failed ? 1 : 0;
     const auto found = run.scores.find(metric);
     if (found != run.scores.end()) {
-      ranked.push_back(found->second);
+      values.push_back(found->second);
     } else if (!run.ok && scored.contains(run.seed)) {
-      ranked.push_back(sense == Sense::more ? -kInfinity : kInfinity);
+      ++without;
     }
   }
+  const std::vector<double> ranked = scenarios::with_failures(std::move(values), without, worst_value(info));
   point.failed_share = scenarios::share_interval(point.failed, point.draws);
   point.quantile_25 = scenarios::quantile(ranked, 0.25);
   point.median = scenarios::quantile(ranked, 0.5);
   point.quantile_75 = scenarios::quantile(ranked, 0.75);
-  point.worst_5 = scenarios::quantile(ranked, sense == Sense::more ? 0.05 : 0.95);
+  point.worst_5 = scenarios::quantile(ranked, info.sense == Sense::higher ? 0.05 : 0.95);
   return !ranked.empty() || point.failed > 0;
 }
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/statistics/statistics.hpp"
 #include "scenarios/sweep/results.hpp"
-#include "scenarios/sweep/statistics.hpp"
 #include "tools/report/plots.hpp"
 #include "tools/tumble/table.hpp"
 

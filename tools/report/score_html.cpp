@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "scenarios/scoring/score.hpp"
 #include "tools/report/html.hpp"
 
 namespace tumble::tools {
@@ -23,25 +22,16 @@ std::string plain(double value) {
   return fmt::format("{:.{}f}", value, digits);
 }
 
-std::string doc_of(Kind kind, const std::string& metric) {
-  for (const scenarios::Metric& known : scenarios::metrics()) {
-    if (known.name == metric && known.kind == kind) return known.doc;
-  }
-  return "";
-}
-
 /// The best median among the methods that can be had on a real robot.
 const MethodSummary* best_method(const Section& section, const std::string& metric, bool with_baseline) {
   const MethodSummary* best = nullptr;
-  const bool more = metric_sense(metric) == Sense::more;
+  const MetricInfo& info = metric_info(metric);
+  if (info.sense == Sense::none) return best;
   for (const MethodSummary& method : section.methods) {
     const MetricSummary* own = method.find(metric);
     if (own == nullptr || method.method == "oracle" || (!with_baseline && method.method == section.baseline)) continue;
     const double value = own->centre.value;
-    if (best == nullptr ||
-        (more ? value > best->find(metric)->centre.value : value < best->find(metric)->centre.value)) {
-      best = &method;
-    }
+    if (best == nullptr || is_better(info, value, best->find(metric)->centre.value)) best = &method;
   }
   return best;
 }
@@ -96,8 +86,7 @@ std::vector<Headline> headlines(const Summary& summary) {
       const bool comparable = std::isfinite(change) && std::isfinite(from->centre.value);
       headline.value = comparable ? fmt::format("{}{} %", change < 0.0 ? "−" : "+", plain(std::abs(change)))
                                   : styled_value(metric, to.centre.value, true);
-      headline.worse = metric_sense(metric) == Sense::less ? to.centre.value > from->centre.value
-                                                           : to.centre.value < from->centre.value;
+      headline.worse = is_better(metric_info(metric), from->centre.value, to.centre.value);
       headline.detail =
           fmt::format("{}: {} beside {} with {}; better in {} of {} draws ({})", best->method,
                       styled_value(metric, to.centre.value, true), styled_value(metric, from->centre.value, true),
@@ -120,8 +109,8 @@ std::string score_table_html(const Section& section) {
   }
   out += "</tr>";
   for (const std::string& name : section.metrics) {
-    const MethodSummary* best = metric_sense(name) == Sense::neither ? nullptr : best_method(section, name, true);
-    out += "<tr><td title=\"" + html::escaped(doc_of(section.kind, name)) + "\"><code>" + html::escaped(name) +
+    const MethodSummary* best = best_method(section, name, true);
+    out += "<tr><td title=\"" + html::escaped(metric_info(name).doc) + "\"><code>" + html::escaped(name) +
            "</code></td>" + html::cell(metric_style(name).unit, "unit");
     for (const MethodSummary& method : section.methods) out += metric_cell(name, method.find(name), &method == best);
     out += "</tr>";

@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
-#include <numbers>
 #include <set>
 #include <tuple>
 
@@ -18,12 +16,14 @@ namespace {
 
 using scenarios::Kind;
 using scenarios::Outcome;
+using scenarios::OutcomeStatus;
 
 /// Position in the registry; unknown names stand behind the known ones.
 std::size_t metric_rank(const std::string& name) {
   const auto all = scenarios::metrics();
   return static_cast<std::size_t>(
-      std::find_if(all.begin(), all.end(), [&](const scenarios::Metric& m) { return m.name == name; }) - all.begin());
+      std::find_if(all.begin(), all.end(), [&](const scenarios::Metric& m) { return m.info.name == name; }) -
+      all.begin());
 }
 
 /// `raw` or `..._raw` where there is one: the clipped gyro as it is; else the first method of the registry.
@@ -37,42 +37,39 @@ std::string choose_baseline(const std::vector<MethodSummary>& methods) {
   return methods.front().method;
 }
 
-double worst_value(Sense sense) {
-  return sense == Sense::more ? -std::numeric_limits<double>::infinity() : std::numeric_limits<double>::infinity();
-}
-
-std::map<std::uint64_t, double> by_seed(const MetricSummary& metric, Sense sense) {
+std::map<std::uint64_t, double> by_seed(const MetricSummary& metric, double worst) {
   std::map<std::uint64_t, double> out;
   for (std::size_t i = 0; i < metric.seeds.size(); ++i) out.emplace(metric.seeds[i], metric.values[i]);
-  for (const std::uint64_t seed : metric.failed) out.emplace(seed, worst_value(sense));
+  for (const std::uint64_t seed : metric.failed) {
+    if (!std::isnan(worst)) out.emplace(seed, worst);
+  }
   return out;
 }
 
 /// Compares draw by draw; where both failed neither is better.
-Wins paired_wins(const MetricSummary& own, const MetricSummary& base, Sense sense) {
+Wins paired_wins(const MetricSummary& own, const MetricSummary& base, const MetricInfo& info) {
   Wins wins;
-  if (sense == Sense::neither) return wins;
-  const std::map<std::uint64_t, double> others = by_seed(base, sense);
-  for (const auto& [seed, value] : by_seed(own, sense)) {
+  if (info.sense == Sense::none) return wins;
+  const std::map<std::uint64_t, double> others = by_seed(base, worst_value(info));
+  for (const auto& [seed, value] : by_seed(own, worst_value(info))) {
     const auto other = others.find(seed);
     if (other == others.end()) continue;
-    wins.count += (sense == Sense::less ? value < other->second : value > other->second) ? 1 : 0;
+    wins.count += is_better(info, value, other->second) ? 1 : 0;
     ++wins.pairs;
   }
   return wins;
 }
 
 void finish(const std::string& name, MetricSummary& metric) {
-  const Sense sense = metric_sense(name);
-  std::vector<double> ranked = metric.values;
-  if (sense != Sense::neither) ranked.insert(ranked.end(), metric.failed.size(), worst_value(sense));
-  if (is_verdict(name)) {
+  const MetricInfo& info = metric_info(name);
+  const std::vector<double> ranked = scenarios::with_failures(metric.values, metric.failed.size(), worst_value(info));
+  if (info.unit == scenarios::Unit::verdict) {
     const auto count = std::count_if(ranked.begin(), ranked.end(), [](double v) { return v != 0.0; });
     metric.centre = scenarios::share_interval(count, static_cast<std::int64_t>(ranked.size()));
   } else {
     metric.centre = scenarios::median_interval(ranked);
   }
-  metric.quantile_95 = scenarios::quantile(ranked, sense == Sense::more ? 0.05 : 0.95);
+  metric.quantile_95 = scenarios::quantile(ranked, info.sense == Sense::higher ? 0.05 : 0.95);
 }
 
 /// Gives each failed outcome its place in every metric that some method has a value of on that draw.
@@ -113,7 +110,7 @@ void finish(Section& section) {
     if (method.method == section.baseline) continue;
     for (auto& [name, metric] : method.metrics) {
       const MetricSummary* other = base.find(name);
-      if (other != nullptr) metric.wins = paired_wins(metric, *other, metric_sense(name));
+      if (other != nullptr) metric.wins = paired_wins(metric, *other, metric_info(name));
     }
   }
 }
@@ -125,22 +122,6 @@ std::size_t method_rank(Kind kind, const std::string& name) {
   const auto found = std::find_if(
       all.begin(), all.end(), [&](const scenarios::Method& m) { return m.info.kind == kind && m.info.name == name; });
   return static_cast<std::size_t>(found - all.begin());
-}
-
-MetricStyle metric_style(const std::string& metric) {
-  if (const auto binned = scenarios::parse_binned(metric)) return metric_style(binned->base);
-  for (const char* end : {"_share", "_overlap", "_coverage", "_precision", "_recall", "_3sigma"}) {
-    if (metric.ends_with(end)) return {"%", 100.0};
-  }
-  if (is_verdict(metric)) return {"%", 100.0};
-  // the longer endings first: "_m_s" also ends in "_s"
-  const std::pair<const char*, MetricStyle> endings[] = {
-      {"_rad_s", {"rad/s", 1.0}}, {"_m_s", {"m/s", 1.0}}, {"_rad", {"°", 180.0 / std::numbers::pi}},
-      {"_mib", {"MiB", 1.0}},     {"_s", {"s", 1.0}},     {"_m", {"m", 1.0}}};
-  for (const auto& [end, style] : endings) {
-    if (metric.ends_with(end)) return style;
-  }
-  return {"", 1.0};
 }
 
 const MetricSummary* MethodSummary::find(const std::string& metric) const {
@@ -172,7 +153,7 @@ Summary summarize(const scenarios::Results& results) {
   for (const Outcome& outcome : results.outcomes()) {
     MethodSummary& method = method_of(outcome.scenario, outcome.kind, outcome.method);
     ++method.outcomes;
-    if (outcome.status != "ok") {
+    if (outcome.status != OutcomeStatus::ok) {
       ++method.not_ok;
       failed_seeds[{outcome.scenario, outcome.kind}][outcome.method].insert(outcome.seed);
     }
@@ -182,7 +163,7 @@ Summary summarize(const scenarios::Results& results) {
   std::vector<scenarios::ScoreRow> rows = results.scores();
   std::stable_sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.seed < b.seed; });
   for (const scenarios::ScoreRow& row : rows) {
-    if (row.status != "ok" || !std::isfinite(row.value)) continue;
+    if (row.status != OutcomeStatus::ok || !std::isfinite(row.value)) continue;
     for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
       if (row.kind != to_string(kind)) continue;
       MetricSummary& metric = method_of(row.scenario, kind, row.method).metrics[row.metric];

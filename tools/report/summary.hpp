@@ -6,26 +6,23 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/scoring/metric_sense.hpp"
+#include "scenarios/scoring/metric.hpp"
+#include "scenarios/statistics/statistics.hpp"
 #include "scenarios/sweep/outcome.hpp"
 #include "scenarios/sweep/results.hpp"
-#include "scenarios/sweep/statistics.hpp"
 
 namespace tumble::tools {
 
-/// How to show a metric's values: SI values times `factor` in `unit`. Degrees and percent are for people and appear
-/// only where results are shown.
-struct MetricStyle {
-  std::string unit;
-  double factor = 1.0;
-};
-/// From the unit that ends the metric's name: "map_overlap" in %, "rotation_error_end_rad" in degrees, rates in rad/s.
-MetricStyle metric_style(const std::string& metric);
-
 using scenarios::headline_metrics;
-using scenarios::is_verdict;
-using scenarios::metric_sense;
+using scenarios::metric_info;
+using scenarios::MetricInfo;
+using scenarios::MetricStyle;
 using scenarios::Sense;
+
+/// How the values of the metric of this name are shown.
+inline MetricStyle metric_style(const std::string& metric) {
+  return scenarios::style_of(metric_info(metric).unit);
+}
 
 /// Position of a method in the registry; unknown names stand behind the known ones.
 std::size_t method_rank(scenarios::Kind kind, const std::string& name);

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "scenarios/certificate/certificate_store.hpp"
 #include "scenarios/errors.hpp"
@@ -31,10 +32,13 @@ using scenarios::GateResult;
 struct Options {
   std::string suite;
   int jobs = 1;
-  fs::path database, bounds;
+  fs::path database, accepted;
   bool accept = false;
-  double margin = 0.1;
 };
+
+fs::path gate_file(const scenarios::DataRoot& data, const Options& options, const std::string& suite) {
+  return options.accepted.empty() ? data.gates() / (suite + ".yaml") : options.accepted;
+}
 
 /// A database of its own that is gone afterwards, unless the caller named one.
 class Database {
@@ -58,30 +62,40 @@ class Database {
   bool own_;
 };
 
-/// Only what the bounds speak of is run.
-void keep_bounded(const scenarios::Gate& gate, scenarios::Suite& suite) {
+/// Only what was accepted is run.
+void keep_accepted(const scenarios::Gate& gate, bool accept, scenarios::Suite& suite) {
   std::vector<std::string> methods, names;
   const auto add = [](std::vector<std::string>& list, const std::string& name) {
     if (std::find(list.begin(), list.end(), name) == list.end()) list.push_back(name);
   };
-  for (const scenarios::GateBound& bound : gate.bounds) {
-    add(methods, std::string(to_string(bound.kind)) + "/" + bound.method);
-    add(names, bound.scenario);
+  for (const scenarios::MethodRun& run : gate.accepted.methods) {
+    add(methods, std::string(to_string(run.kind)) + "/" + run.method);
+    add(names, run.scenario);
   }
-  for (const std::string& name : names) require_known("scenario of suite " + suite.name, name, suite.scenarios);
   suite.methods = methods;
+  if (accept) return;  // a scenario that the suite has gained is accepted with the others
+  for (const std::string& name : names) require_known("scenario of suite " + suite.name, name, suite.scenarios);
   suite.scenarios = names;
 }
 
+std::string change_text(const GateResult& result) {
+  if (std::isnan(result.change)) return "";
+  const bool ratio = !result.metric.empty() && std::abs(result.change) < 10.0;
+  return ratio ? fmt::format("{:+.1f} %", 100.0 * result.change) : number_text(result.change);
+}
+
+std::string verdict_text(const GateResult& result) {
+  if (!result.passes()) return "FAIL: " + result.fault;
+  return result.better ? "pass, better" : "pass";
+}
+
 Table result_table(const std::vector<GateResult>& results) {
-  Table table("", {"scenario", "method", "statistic", "draws", "value", "bound", "accepted", "verdict"});
+  Table table("", {"scenario", "method", "held", "draws", "accepted", "now", "pairs", "chance", "verdict"});
   for (const GateResult& result : results) {
-    const scenarios::GateBound& bound = result.bound;
-    const std::string what =
-        std::string(to_string(bound.statistic)) + (bound.metric.empty() ? "" : " of " + bound.metric);
-    table.add_row({bound.scenario, std::string(to_string(bound.kind)) + "/" + bound.method, what,
-                   std::to_string(result.draws), number_text(result.value), bound_text(bound.low, bound.high),
-                   number_text(bound.accepted), result.passes() ? "pass" : "FAIL"});
+    table.add_row({result.scenario, std::string(to_string(result.kind)) + "/" + result.method,
+                   result.metric.empty() ? "outcomes" : result.metric, std::to_string(result.draws),
+                   number_text(result.accepted), number_text(result.value), change_text(result),
+                   result.metric.empty() ? "" : fmt::format("{:.2g}", result.chance), verdict_text(result)});
   }
   return table;
 }
@@ -90,31 +104,40 @@ json to_json(const std::vector<GateResult>& results, bool passes) {
   const auto finite = [](double value) { return std::isfinite(value) ? json(value) : json(); };
   json rows = json::array();
   for (const GateResult& result : results) {
-    const scenarios::GateBound& bound = result.bound;
-    rows.push_back({{"scenario", bound.scenario},
-                    {"kind", to_string(bound.kind)},
-                    {"method", bound.method},
-                    {"metric", bound.metric},
-                    {"statistic", to_string(bound.statistic)},
+    rows.push_back({{"scenario", result.scenario},
+                    {"kind", to_string(result.kind)},
+                    {"method", result.method},
+                    {"metric", result.metric},
                     {"draws", result.draws},
+                    {"accepted", finite(result.accepted)},
                     {"value", finite(result.value)},
-                    {"low", finite(bound.low)},
-                    {"high", finite(bound.high)},
-                    {"accepted", finite(bound.accepted)},
+                    {"change", finite(result.change)},
+                    {"chance", finite(result.chance)},
+                    {"better", result.better},
+                    {"fault", result.fault},
                     {"verdict", result.passes() ? "pass" : "fail"}});
   }
-  return {{"verdict", passes ? "pass" : "fail"}, {"bounds", std::move(rows)}};
+  return {{"verdict", passes ? "pass" : "fail"}, {"held", std::move(rows)}};
 }
 
-/// The bounds that are there, or, to be accepted for the first time, none yet.
-scenarios::Gate load(const scenarios::DataRoot& data, const Options& options, const std::string& suite) {
-  if (!options.bounds.empty() && (!options.accept || fs::exists(options.bounds))) {
-    return scenarios::load_gate(data, options.bounds.string());
+/// The gate that is there, or, to be accepted for the first time, none yet.
+std::optional<scenarios::Gate> load(const scenarios::DataRoot& data, const Options& options, const std::string& suite) {
+  const fs::path file = gate_file(data, options, suite);
+  if (options.accept && !(fs::exists(file) && fs::exists(fs::path(file).replace_extension(".csv"))))
+    return std::nullopt;
+  const scenarios::Gate gate = scenarios::load_gate(data, options.accepted.empty() ? suite : options.accepted.string());
+  if (gate.suite != suite) {
+    throw scenarios::BadInput(options.accepted.string() + ": is the gate of suite '" + gate.suite + "', not of '" +
+                              suite + "'");
   }
-  const std::vector<std::string> known = scenarios::gate_names(data);
-  const bool there = std::find(known.begin(), known.end(), suite) != known.end();
-  if (options.accept && (!there || !options.bounds.empty())) return {suite, options.margin, {}};
-  return scenarios::load_gate(data, suite);
+  return gate;
+}
+
+/// Writes the run as accepted, the policy as it was.
+void write_accepted(const fs::path& file, const scenarios::Gate& gate) {
+  if (file.has_parent_path()) make_folder(file.parent_path());
+  scenarios::replace_file(fs::path(file).replace_extension(".csv"), scenarios::to_csv(gate.accepted));
+  if (!fs::exists(file)) scenarios::replace_file(file, scenarios::to_yaml(gate));
 }
 
 /// The certificate that is known of this build goes with what is kept; it is not measured here: a gate is run often.
@@ -129,12 +152,12 @@ std::string certificate_text(const Session& session, const scenarios::DataRoot& 
 int run_gate(const Session& session, const Options& options) {
   const scenarios::DataRoot data = session.data();
   scenarios::Suite suite = scenarios::load_suite(data, options.suite);
-  suite.curves.clear();  // bounds speak of the scenarios as they are
-  scenarios::Gate gate = load(data, options, suite.name);
-  if (gate.bounds.empty())
-    suite.methods = {"tumble"};
+  suite.curves.clear();  // held are the scenarios as they are
+  const std::optional<scenarios::Gate> known = load(data, options, suite.name);
+  if (known)
+    keep_accepted(*known, options.accept, suite);
   else
-    keep_bounded(gate, suite);
+    suite.methods = {"tumble"};
 
   const Database database(options.database);
   const InterruptFlag interrupt;
@@ -144,18 +167,16 @@ int run_gate(const Session& session, const Options& options) {
 
   const std::string certificate = certificate_text(session, data, database.path());
   const scenarios::Results results(database.path(), scenarios::Results::Mode::read_only);
-  if (gate.bounds.empty()) gate = scenarios::proposed_gate(results, suite.name);
-  std::vector<GateResult> held = scenarios::hold_to_gate(results, gate, suite.first_seed, suite.last_seed);
+  const scenarios::GateRun run = scenarios::gate_run(results, suite.first_seed, suite.last_seed);
+  scenarios::Gate gate = known ? *known : scenarios::Gate{suite.name, {}, {}};
   if (options.accept) {
-    gate = scenarios::accept(gate, held, options.margin);
-    const fs::path file = options.bounds.empty() ? data.gates() / (suite.name + ".yaml") : options.bounds;
-    if (file.has_parent_path()) make_folder(file.parent_path());
-    scenarios::replace_file(file, scenarios::to_yaml(gate));
-    session.note("accepted: " + file.string());
-    held = scenarios::hold_to_gate(results, gate, suite.first_seed, suite.last_seed);
+    scenarios::require_acceptable(run);
+    gate.accepted = run;
+    write_accepted(gate_file(data, options, suite.name), gate);
+    session.note("accepted: " + gate_file(data, options, suite.name).string());
   }
-  const bool passes =
-      !held.empty() && std::all_of(held.begin(), held.end(), [](const GateResult& r) { return r.passes(); });
+  const std::vector<GateResult> held = scenarios::hold_to_gate(run, gate);
+  const bool passes = std::all_of(held.begin(), held.end(), [](const GateResult& r) { return r.passes(); });
   json document = to_json(held, passes);
   document["certificate"] = certificate;
   session.print({result_table(held)}, document);
@@ -169,14 +190,12 @@ Action declare_gate(CLI::App& app, const Session& session) {
   auto options = std::make_shared<Options>();
   app.add_option("SUITE", options->suite, "a suite, a suite file, or a scenario: its fixed seeds are swept")
       ->required();
-  app.add_option("--bounds", options->bounds, "the accepted bounds, FILE.yaml [scenarios/gates/SUITE.yaml]");
+  app.add_option("--against", options->accepted,
+                 "the gate, FILE.yaml, with the accepted run beside it in FILE.csv [scenarios/gates/SUITE.yaml]");
   app.add_option("--jobs", options->jobs, "processes at a time")->check(CLI::Range(1, 1024))->capture_default_str();
   app.add_option("--db", options->database,
                  "keep the results here, and do not run again what it holds [a temporary file]");
-  app.add_flag("--accept", options->accept, "write the bounds from this run instead of being held to them");
-  app.add_option("--margin", options->margin, "how far a later run may fall behind, as a share of the accepted value")
-      ->check(within(0.0, 10.0))
-      ->capture_default_str();
+  app.add_flag("--accept", options->accept, "write this run as the accepted one instead of being held to it");
   return [&session, options] { return run_gate(session, *options); };
 }
 

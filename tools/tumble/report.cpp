@@ -95,11 +95,12 @@ json to_json(const Summary& summary) {
                   {"not_ok_share", interval_json(method.not_ok_share)},
                   {"metrics", json::object()}};
       for (const auto& [name, metric] : method.metrics) {
-        row["metrics"][name] = {{is_verdict(name) ? "share" : "median", interval_json(metric.centre)},
-                                {"quantile_95", finite(metric.quantile_95)},
-                                {"count", metric.values.size()},
-                                {"better_in", metric.wins.count},
-                                {"pairs", metric.wins.pairs}};
+        row["metrics"][name] = {
+            {metric_info(name).unit == scenarios::Unit::verdict ? "share" : "median", interval_json(metric.centre)},
+            {"quantile_95", finite(metric.quantile_95)},
+            {"count", metric.values.size()},
+            {"better_in", metric.wins.count},
+            {"pairs", metric.wins.pairs}};
       }
       rows.push_back(std::move(row));
     }

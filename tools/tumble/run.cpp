@@ -104,9 +104,9 @@ int run(const Session& session, const Options& options) {
   tables.push_back(std::move(closing));
   session.print(tables, document);
   for (const scenarios::Outcome& outcome : result.outcomes) {
-    if (outcome.status != "ok")
-      session.note(
-          fmt::format("{}/{}: {}: {}", to_string(outcome.kind), outcome.method, outcome.status, outcome.message));
+    if (outcome.status != scenarios::OutcomeStatus::ok)
+      session.note(fmt::format("{}/{}: {}: {}", to_string(outcome.kind), outcome.method, to_string(outcome.status),
+                               outcome.message));
   }
   return kDone;
 }

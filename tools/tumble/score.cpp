@@ -96,14 +96,15 @@ int score_estimate(const Session& session, const Options& options) {
   const scenarios::ScoringInput input{&sensors, &truth, surface ? &*surface : nullptr};
   outcome.scenario = info.scenario;
   outcome.seed = info.seed;
-  outcome.status = estimate.status.ok() ? scenarios::verdict(outcome.kind, estimate, input) : "failed";
+  outcome.status =
+      estimate.status.ok() ? scenarios::verdict(outcome.kind, estimate, input) : scenarios::OutcomeStatus::failed;
   outcome.message = estimate.status.ok() ? "" : estimate.status.message();
   outcome.scores = scenarios::score(outcome.kind, estimate, input);
 
   const std::vector<scenarios::Outcome> outcomes = {outcome};
   const nlohmann::json document = {{"kind", to_string(outcome.kind)},
                                    {"method", outcome.method},
-                                   {"status", outcome.status},
+                                   {"status", to_string(outcome.status)},
                                    {"scores", score_rows(outcomes)}};
   session.print(score_tables(options.estimate.string(), outcomes), document);
   return kDone;

@@ -26,7 +26,7 @@ Table kind_table(const std::string& title, const std::vector<const Outcome*>& ou
   std::vector<std::string> header = {"metric"}, status = {"status"}, metrics;
   for (const Outcome* outcome : outcomes) {
     header.push_back(outcome->method);
-    status.push_back(outcome->status);
+    status.push_back(to_string(outcome->status));
     for (const scenarios::Score& score : outcome->scores) {
       if (scenarios::parse_binned(score.metric)) continue;  // of use over many draws
       if (std::find(metrics.begin(), metrics.end(), score.metric) == metrics.end()) metrics.push_back(score.metric);
@@ -65,7 +65,7 @@ json score_rows(std::span<const Outcome> outcomes) {
                       {"seed", outcome.seed},
                       {"kind", to_string(outcome.kind)},
                       {"method", outcome.method},
-                      {"status", outcome.status},
+                      {"status", to_string(outcome.status)},
                       {"metric", score.metric},
                       {"value", std::isfinite(score.value) ? json(score.value) : json()}});
     }
@@ -78,7 +78,7 @@ json outcome_rows(std::span<const Outcome> outcomes) {
   for (const Outcome& outcome : outcomes) {
     rows.push_back({{"kind", to_string(outcome.kind)},
                     {"method", outcome.method},
-                    {"status", outcome.status},
+                    {"status", to_string(outcome.status)},
                     {"message", outcome.message},
                     {"digest", outcome.estimate_digest}});
   }
@@ -87,7 +87,7 @@ json outcome_rows(std::span<const Outcome> outcomes) {
 
 std::string overall_status(std::span<const Outcome> outcomes) {
   for (const Outcome& outcome : outcomes) {
-    if (outcome.status != "ok") return outcome.status;
+    if (outcome.status != scenarios::OutcomeStatus::ok) return to_string(outcome.status);
   }
   return "ok";
 }

@@ -74,6 +74,17 @@ Table to_table(const scenarios::SweepProgress& p, const std::string& database) {
   return table;
 }
 
+std::vector<scenarios::OutcomeStatus> statuses_named(const std::vector<std::string>& names) {
+  std::vector<scenarios::OutcomeStatus> statuses;
+  std::vector<std::string> known;
+  for (const scenarios::OutcomeStatus status : scenarios::outcome_statuses()) known.emplace_back(to_string(status));
+  for (const std::string& name : names) {
+    require_known("status to run again", name, known);
+    statuses.push_back(*scenarios::outcome_status_named(name));
+  }
+  return statuses;
+}
+
 int run_sweep(const Session& session, const Options& options) {
   const scenarios::DataRoot data = session.data();
   scenarios::Suite suite;
@@ -90,8 +101,8 @@ int run_sweep(const Session& session, const Options& options) {
   const InterruptFlag interrupt;
   // it speaks of simulations
   if (suite.recordings.empty()) certify(session, data, options.database, interrupt.raised());
-  const scenarios::SweepProgress final =
-      sweep_with_progress(session, data, suite, options.database, options.jobs, interrupt.raised(), options.again);
+  const scenarios::SweepProgress final = sweep_with_progress(session, data, suite, options.database, options.jobs,
+                                                             interrupt.raised(), statuses_named(options.again));
 
   session.print({to_table(final, options.database.string())}, to_json(final, options.database.string()));
   return final.draws_done >= final.draws_total ? kDone : say_stopped(final);

@@ -13,7 +13,7 @@ namespace tumble::tools {
 scenarios::SweepProgress sweep_with_progress(const Session& session, const scenarios::DataRoot& data,
                                              const scenarios::Suite& suite, const std::filesystem::path& database,
                                              int jobs, const std::atomic<bool>& stop,
-                                             const std::vector<std::string>& again) {
+                                             const std::vector<scenarios::OutcomeStatus>& again) {
   const auto to_standard_error = [](std::string_view text) {
     std::fwrite(text.data(), 1, text.size(), stderr);
     std::fflush(stderr);

@@ -14,7 +14,7 @@ namespace tumble::tools {
 scenarios::SweepProgress sweep_with_progress(const Session& session, const scenarios::DataRoot& data,
                                              const scenarios::Suite& suite, const std::filesystem::path& database,
                                              int jobs, const std::atomic<bool>& stop,
-                                             const std::vector<std::string>& again = {});
+                                             const std::vector<scenarios::OutcomeStatus>& again = {});
 
 /// "stopped: 3 of 40 draws stored, run again to go on", to standard error; returns the exit status of a stopped sweep.
 int say_stopped(const scenarios::SweepProgress& progress);

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/scoring/metric_sense.hpp"
+#include "scenarios/scoring/metric.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/verbs.hpp"
 
@@ -40,7 +40,7 @@ std::string metric_of(const scenarios::Method& method, const Options& options) {
   if (options.metric.empty()) return scenarios::headline_metrics(method.info.kind).front();
   std::vector<std::string> known;
   for (const scenarios::Metric& metric : scenarios::metrics()) {
-    if (metric.kind == method.info.kind) known.push_back(metric.name);
+    if (metric.kind == method.info.kind) known.push_back(metric.info.name);
   }
   require_known(std::string("metric of kind ") + to_string(method.info.kind), options.metric, known);
   return options.metric;
@@ -67,7 +67,7 @@ Table table_of(const std::vector<TriageRow>& rows, const std::string& metric) {
     const double now = value_of(row, metric);
     const std::string change =
         &row == &base || !(before > 0.0) || !std::isfinite(now) ? "" : fmt::format("{:.2f}", now / before);
-    table.add_row({row.input, row.outcome.status, number_text(now), change,
+    table.add_row({row.input, to_string(row.outcome.status), number_text(now), change,
                    &row == &base ? (base.fails ? "fails" : "does not fail") : verdict(row, base), row.doc});
   }
   return table;
@@ -79,7 +79,7 @@ json to_json(const std::vector<TriageRow>& rows, const std::string& metric) {
     const double value = value_of(row, metric);
     out.push_back({{"input", row.input},
                    {"doc", row.doc},
-                   {"status", row.outcome.status},
+                   {"status", to_string(row.outcome.status)},
                    {"message", row.outcome.message},
                    {"value", std::isfinite(value) ? json(value) : json()},
                    {"fails", row.fails}});

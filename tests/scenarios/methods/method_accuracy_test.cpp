@@ -20,7 +20,7 @@ std::map<std::string, double> scores_of(const std::string& name, const sim::Reco
   const Estimate estimate = method.run(recording.sensors, {}, {&recording.truth});
   EXPECT_TRUE(estimate.status.ok()) << estimate.status.message();
   const ScoringInput input{&recording.sensors, &recording.truth, nullptr};
-  EXPECT_EQ(verdict(method.info.kind, estimate, input), "ok") << name;
+  EXPECT_EQ(verdict(method.info.kind, estimate, input), OutcomeStatus::ok) << name;
   std::map<std::string, double> values;
   for (const Score& score : score(method.info.kind, estimate, input)) values[score.metric] = score.value;
   return values;

@@ -15,7 +15,7 @@ namespace tumble::scenarios {
 namespace {
 
 struct Said {
-  std::string status;
+  OutcomeStatus status;
   double localised = std::nan(""), ate_m = std::nan(""), nees = std::nan("");
 };
 
@@ -25,7 +25,7 @@ Said run(const Method& method, const SimulatedDraw& draw, const std::string& wro
   Outcome outcome;
   const Estimate estimate = run_method(method, given, outcome);
   Said out{outcome.status};
-  if (outcome.status != "ok") return out;
+  if (outcome.status != OutcomeStatus::ok) return out;
   out.localised = estimate.health.at("localised");
   assess(method, scored_by(draw, given), nullptr, estimate, outcome);
   for (const Score& score : outcome.scores) {
@@ -48,7 +48,7 @@ TEST(Verdicts, SlamFindsAWrongCalibrationAndSaysWhenSensorsContradictEachOther) 
   }
   for (const char* wrong : {"accel_flipped", "gyro_x_y_swapped"}) {
     const Said bad = run(method, draw, wrong);
-    EXPECT_TRUE(bad.status != "ok" || bad.localised == 0.0) << wrong;
+    EXPECT_TRUE(bad.status != OutcomeStatus::ok || bad.localised == 0.0) << wrong;
     EXPECT_FALSE(bad.ate_m < 0.5) << wrong;  // or nothing was wrong
   }
 }

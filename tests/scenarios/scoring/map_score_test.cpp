@@ -67,6 +67,28 @@ TEST(MapScores, TheToleranceIsAQuarterMetre) {
   EXPECT_EQ(values.at("map_failed"), 1.0);
 }
 
+// the overlaps are 1 for both
+TEST(MapScores, TheMeanErrorSeesWhatTheTolerancesDoNot) {
+  Estimate estimate = perfect_estimate(rig());
+  for (const float height_m : {0.01f, 0.05f}) {
+    estimate.map = floor_points(height_m);
+    EXPECT_NEAR(scores(Kind::slam, estimate, rig(), &surface()).at("map_error_mean_m"), height_m, 1e-5);
+  }
+  estimate.map = floor_points(0.0f);
+  estimate.map.resize(100);
+  estimate.map.front().position_W_m = {0.0f, 0.0f, 1.5f};
+  EXPECT_NEAR(scores(Kind::slam, estimate, rig(), &surface()).at("map_error_mean_m"), 0.005, 1e-5) << "capped at 0.5 m";
+}
+
+TEST(MapScores, PointsThatWereDrawnTwiceAreNotUnique) {
+  Estimate estimate = perfect_estimate(rig());
+  estimate.map = floor_points(0.0f);
+  EXPECT_EQ(scores(Kind::slam, estimate, rig(), &surface()).at("map_unique_share"), 1.0);
+  const std::vector<MapPoint> once = estimate.map;
+  estimate.map.insert(estimate.map.end(), once.begin(), once.end());
+  EXPECT_EQ(scores(Kind::slam, estimate, rig(), &surface()).at("map_unique_share"), 0.5);
+}
+
 TEST(MapScores, AMapFailsBeyondFifteenPercentOutliers) {
   for (const auto& [outliers, failed] : std::vector<std::pair<std::size_t, double>>{{14, 0.0}, {16, 1.0}}) {
     Estimate estimate = perfect_estimate(rig());

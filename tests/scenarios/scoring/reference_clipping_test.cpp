@@ -121,7 +121,7 @@ std::map<std::string, double> scores_of(const Estimate& estimate, const sim::Rec
   const ScoringInput input{&recording.sensors, &recording.truth, nullptr};
   std::map<std::string, double> values;
   for (const Score& score : score(Kind::rate, estimate, input)) values[score.metric] = score.value;
-  EXPECT_EQ(verdict(Kind::rate, estimate, input), "ok");
+  EXPECT_EQ(verdict(Kind::rate, estimate, input), OutcomeStatus::ok);
   return values;
 }
 

@@ -39,19 +39,20 @@ TEST(Metrics, AreNamedByTheirUnitAndDescribed) {
   std::set<std::pair<Kind, std::string>> names;
   ASSERT_GE(metrics().size(), 25u);
   for (const Metric& metric : metrics()) {
-    EXPECT_TRUE(names.emplace(metric.kind, metric.name).second) << metric.name;
-    EXPECT_NE(metric.doc, "") << metric.name;
-    std::string ending = metric.unit == "1" ? "" : "_" + metric.unit;
+    EXPECT_TRUE(names.emplace(metric.kind, metric.info.name).second) << metric.info.name;
+    EXPECT_NE(metric.info.doc, "") << metric.info.name;
+    const std::string unit = symbol(metric.info.unit);
+    std::string ending = unit == "1" ? "" : "_" + unit;
     std::replace(ending.begin(), ending.end(), '/', '_');
-    const auto binned = parse_binned(metric.name);
-    EXPECT_TRUE((binned ? binned->base : metric.name).ends_with(ending)) << metric.name;
+    const auto binned = parse_binned(metric.info.name);
+    EXPECT_TRUE((binned ? binned->base : metric.info.name).ends_with(ending)) << metric.info.name;
   }
 }
 
 // every metric of every kind, for an estimate that is the truth in a world of its own
 TEST(Metrics, OfTheTruthAreZeroWhereverItsWorldStands) {
   const std::set<std::string> shares = {"rate_coverage_3sigma", "rate_coverage_3sigma_flight",
-                                        "rate_coverage_3sigma_impact", "map_coverage"};
+                                        "rate_coverage_3sigma_impact", "map_coverage", "map_unique_share"};
   for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
     Estimate estimate = perfect_estimate(rig());
     move_world(turned_world(), estimate);
@@ -61,7 +62,7 @@ TEST(Metrics, OfTheTruthAreZeroWhereverItsWorldStands) {
       // rounding, and the truth's own interpolation
       EXPECT_NEAR(value, shares.contains(name) ? 1.0 : 0.0, 1e-9) << name;
     }
-    EXPECT_EQ(verdict_of(kind, estimate, rig()), "ok");
+    EXPECT_EQ(verdict_of(kind, estimate, rig()), OutcomeStatus::ok);
   }
 }
 
@@ -144,7 +145,7 @@ TEST(RateScores, OneNaNSpoilsTheFigure) {
   Estimate estimate = perfect_estimate(rig());
   estimate.rates[600].w_WI_I_rad_s.x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(std::isnan(scores(Kind::rate, estimate, rig()).at("rate_error_clipped_median_rad_s")));
-  EXPECT_EQ(verdict_of(Kind::rate, estimate, rig()), "diverged");
+  EXPECT_EQ(verdict_of(Kind::rate, estimate, rig()), OutcomeStatus::diverged);
 }
 
 TEST(AttitudeScores, SplitTheErrorAsBroadDoes) {
@@ -212,6 +213,19 @@ TEST(PositionScores, CoverageCountsErrorsWithinThreeSigmas) {
   EXPECT_LT(scores(Kind::position, estimate, rig()).at("position_coverage_3sigma"), 0.66);
 }
 
+// coverage is 1 for all of them
+TEST(PositionScores, TheNormalisedErrorSeesACovarianceThatIsHalved) {
+  Estimate estimate = perfect_estimate(rig(), Frame::body);
+  EXPECT_FALSE(scores(Kind::position, estimate, rig()).contains("position_nees_median")) << "nothing is stated";
+  for (std::size_t k = 1; k < estimate.poses.size(); ++k) estimate.poses[k].p_WA_m.array() += 0.01;
+  for (const double variance_m2 : {4e-4, 2e-4}) {
+    for (PoseState& pose : estimate.poses) pose.covariance.diagonal().head<3>().setConstant(variance_m2);
+    // the median square of a standard normal variable is 0.4549
+    EXPECT_NEAR(scores(Kind::position, estimate, rig()).at("position_nees_median"), 1e-4 / variance_m2 / 0.454936,
+                1e-9);
+  }
+}
+
 TEST(PositionScores, DriftAtStandstillIsWithinOneSpell) {
   Estimate estimate = perfect_estimate(rig(), Frame::body);
   for (PoseState& pose : estimate.poses) {
@@ -263,7 +277,7 @@ TEST(EndPoseScores, FewerThanSixSweepsAreADivergence) {
   Estimate estimate = perfect_estimate(rig());
   for (std::size_t k = 5; k < estimate.sweeps.size(); ++k) estimate.sweeps[k].verdict = SweepVerdict::rejected;
   EXPECT_FALSE(scores(Kind::slam, estimate, rig()).contains("translation_error_end_m"));
-  EXPECT_EQ(verdict_of(Kind::slam, estimate, rig()), "diverged");
+  EXPECT_EQ(verdict_of(Kind::slam, estimate, rig()), OutcomeStatus::diverged);
 }
 
 TEST(SweepBorderScores, AJumpAtEveryBorderIsFound) {
@@ -286,9 +300,9 @@ TEST(Verdict, AnEndFartherThanThePathIsADivergence) {
     Estimate estimate = perfect_estimate(rig(), Frame::body);
     const double length = testing::SyntheticMotion().displacement_m.norm();
     estimate.poses.back().p_WA_m.x() += 0.9 * length;
-    EXPECT_EQ(verdict_of(kind, estimate, rig()), "ok");
+    EXPECT_EQ(verdict_of(kind, estimate, rig()), OutcomeStatus::ok);
     estimate.poses.back().p_WA_m.x() += 0.2 * length;
-    EXPECT_EQ(verdict_of(kind, estimate, rig()), "diverged");
+    EXPECT_EQ(verdict_of(kind, estimate, rig()), OutcomeStatus::diverged);
   }
 }
 
@@ -296,24 +310,24 @@ TEST(Verdict, NumbersThatAreNotFiniteAreADivergence) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   Estimate attitude = perfect_estimate(rig());
   attitude.attitudes[100].q_WA.x() = nan;
-  EXPECT_EQ(verdict_of(Kind::attitude, attitude, rig()), "diverged");
+  EXPECT_EQ(verdict_of(Kind::attitude, attitude, rig()), OutcomeStatus::diverged);
   Estimate position = perfect_estimate(rig());
   position.poses[100].p_WA_m.z() = nan;
-  EXPECT_EQ(verdict_of(Kind::position, position, rig()), "diverged");
+  EXPECT_EQ(verdict_of(Kind::position, position, rig()), OutcomeStatus::diverged);
 }
 
 TEST(Verdict, AnEstimateThatStopsOrAnswersHalfIsADivergence) {
   Estimate stopped = perfect_estimate(rig());
   stopped.poses.resize(stopped.poses.size() / 2);
   stopped.attitudes.resize(stopped.attitudes.size() / 2);
-  EXPECT_EQ(verdict_of(Kind::position, stopped, rig()), "diverged");
-  EXPECT_EQ(verdict_of(Kind::attitude, stopped, rig()), "diverged");
+  EXPECT_EQ(verdict_of(Kind::position, stopped, rig()), OutcomeStatus::diverged);
+  EXPECT_EQ(verdict_of(Kind::attitude, stopped, rig()), OutcomeStatus::diverged);
   // only the easy half of the rates
   Estimate picked = perfect_estimate(rig());
   const ClippingTruth truth(rig().sensors, rig().truth);
   std::erase_if(picked.rates, [&](const RateState& rate) { return truth.at(rate.time_ns)->clipped_axes != 0; });
-  EXPECT_EQ(verdict_of(Kind::rate, picked, rig()), "diverged");
-  EXPECT_EQ(verdict_of(Kind::rate, Estimate{}, rig()), "diverged");
+  EXPECT_EQ(verdict_of(Kind::rate, picked, rig()), OutcomeStatus::diverged);
+  EXPECT_EQ(verdict_of(Kind::rate, Estimate{}, rig()), OutcomeStatus::diverged);
 }
 
 TEST(Score, NeedsTheTruth) {

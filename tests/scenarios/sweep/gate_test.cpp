@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/sweep/temporary_folder.hpp"
@@ -14,50 +16,156 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr const char* kMetric = "translation_error_end_m";
+constexpr std::uint64_t kDraws = 16;
+constexpr const char *kError = "translation_error_end_m", *kShare = "map_overlap", *kNees = "pose_nees";
 
-class GateTest : public testing::TemporaryFolder {
- protected:
-  /// Seeds 1 to 5: errors 0.1 to 0.5 m; overlaps 0.91 to 0.95.
-  void store_draws(Results& results) const {
-    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-      Outcome outcome;
-      outcome.scenario = "hill";
-      outcome.seed = seed;
-      outcome.kind = Kind::slam;
-      outcome.method = "tumble";
-      outcome.status = "ok";
-      const auto number = static_cast<double>(seed);
-      outcome.scores = {{kMetric, 0.1 * number}, {"map_overlap", 0.9 + 0.01 * number}};
-      results.store(outcome);
+Outcome outcome_of(std::uint64_t seed) {
+  Outcome outcome;
+  outcome.scenario = "hill";
+  outcome.seed = seed;
+  outcome.kind = Kind::slam;
+  outcome.method = "tumble";
+  outcome.status = OutcomeStatus::ok;
+  const auto number = static_cast<double>(seed);
+  // draws differ by a factor of four: only pairs tell a change of 5 %
+  outcome.scores = {{kError, 0.01 + 0.002 * number},
+                    {kShare, 0.9 + 0.002 * number},
+                    {kNees, 0.4 + 0.1 * number},
+                    {"map_failed", 0.0},
+                    {"estimate_cpu_s", number}};
+  return outcome;
+}
+
+std::vector<Outcome> accepted_outcomes() {
+  std::vector<Outcome> outcomes;
+  for (std::uint64_t seed = 1; seed <= kDraws; ++seed) outcomes.push_back(outcome_of(seed));
+  return outcomes;
+}
+
+Gate gate_of(const std::vector<Outcome>& outcomes) {
+  return {"small", {}, gate_run(outcomes, 1, kDraws)};
+}
+
+using Change = std::function<void(Outcome&)>;
+
+/// What becomes of every outcome after `change`.
+std::vector<GateResult> held_after(const Change& change) {
+  std::vector<Outcome> outcomes = accepted_outcomes();
+  for (Outcome& outcome : outcomes) change(outcome);
+  return hold_to_gate(gate_run(outcomes, 1, kDraws), gate_of(accepted_outcomes()));
+}
+
+const GateResult& result_of(const std::vector<GateResult>& held, const std::string& metric) {
+  return *std::find_if(held.begin(), held.end(), [&](const GateResult& one) { return one.metric == metric; });
+}
+
+std::string fault_after(const std::string& metric, const Change& change) {
+  return result_of(held_after(change), metric).fault;
+}
+
+double& score_of(Outcome& outcome, const std::string& metric) {
+  return std::find_if(outcome.scores.begin(), outcome.scores.end(),
+                      [&](const Score& score) { return score.metric == metric; })
+      ->value;
+}
+
+Change scaled(const char* metric, double factor) {
+  return [=](Outcome& outcome) { score_of(outcome, metric) *= factor; };
+}
+
+TEST(Gate, TheAcceptedRunPasses) {
+  const std::vector<GateResult> held = held_after([](Outcome&) {});
+  ASSERT_EQ(held.size(), 4u) << "outcomes and three metrics; verdicts count as outcomes, costs are not held";
+  for (const GateResult& result : held) {
+    EXPECT_EQ(result.fault, "");
+    EXPECT_FALSE(result.better);
+    EXPECT_EQ(result.draws, kDraws);
+    EXPECT_EQ(result.accepted, result.value);
+  }
+}
+
+TEST(Gate, PairsTellAShiftThatIsSmallBesideTheDraws) {
+  EXPECT_THAT(fault_after(kError, scaled(kError, 1.05)), HasSubstr("worse in 16 of 16"));
+  EXPECT_EQ(fault_after(kError, scaled(kError, 1.015)), "") << "within the margin";
+  const std::vector<GateResult> better = held_after(scaled(kError, 0.9));
+  EXPECT_TRUE(result_of(better, kError).passes());
+  EXPECT_TRUE(result_of(better, kError).better);
+  EXPECT_NEAR(result_of(better, kError).change, -0.1, 1e-12);
+  EXPECT_THAT(fault_after(kShare, [](Outcome& o) { score_of(o, kShare) -= 0.01; }), HasSubstr("worse in 16 of 16"));
+  EXPECT_EQ(fault_after(kShare, [](Outcome& o) { score_of(o, kShare) += 0.01; }), "");
+}
+
+TEST(Gate, WhatGoesUpAndDownPasses) {
+  EXPECT_EQ(fault_after(kError, [](Outcome& o) { score_of(o, kError) *= o.seed % 2 == 0 ? 1.3 : 1.0 / 1.3; }), "");
+}
+
+TEST(Gate, ACovarianceIsHeldOnBothSides) {
+  EXPECT_THAT(fault_after(kNees, scaled(kNees, 2.0)), HasSubstr("higher in 16"));
+  EXPECT_THAT(fault_after(kNees, scaled(kNees, 0.5)), HasSubstr("lower in 16"));
+}
+
+TEST(Gate, ADrawThatIsLostIsSeen) {
+  const auto lost = [](const char* metric, double value) {
+    return [=](Outcome& outcome) {
+      if (outcome.seed == 7) score_of(outcome, metric) = value;
+    };
+  };
+  EXPECT_THAT(fault_after(kError, lost(kError, 0.1)), HasSubstr("seed 7"));
+  EXPECT_EQ(fault_after(kError, lost(kError, 0.08)), "") << "within twice the worst of 0.042";
+  EXPECT_THAT(fault_after(kShare, lost(kShare, 0.7)), HasSubstr("seed 7"));
+}
+
+TEST(Gate, NoFailureWhereNoneWas) {
+  const auto one_of = [](const Change& change) {
+    return [=](Outcome& outcome) {
+      if (outcome.seed == 9) change(outcome);
+    };
+  };
+  EXPECT_EQ(fault_after("", one_of([](Outcome& o) { o.status = OutcomeStatus::timeout; })), "timeout at seed 9");
+  EXPECT_EQ(fault_after("", one_of([](Outcome& o) { score_of(o, "map_failed") = 1.0; })), "map_failed at seed 9");
+  EXPECT_EQ(fault_after("", one_of([](Outcome& o) { o.seed = 99; })), "no outcome at seed 9");
+}
+
+TEST(Gate, AMetricThatAnOkOutcomeHadMayNotGo) {
+  const Change drop = [](Outcome& outcome) {
+    if (outcome.seed == 3) std::erase_if(outcome.scores, [](const Score& score) { return score.metric == kNees; });
+  };
+  EXPECT_EQ(fault_after(kNees, drop), "has no value any more: seed 3");
+  EXPECT_EQ(fault_after(kNees, [](Outcome& o) { score_of(o, kNees) = std::nan(""); }).substr(0, 22),
+            "has no value any more:");
+}
+
+TEST(Gate, AFailureThatWasAcceptedMayStayOrGo) {
+  std::vector<Outcome> failed = accepted_outcomes();
+  failed[4].status = OutcomeStatus::diverged;
+  const Gate gate = gate_of(failed);
+  for (const GateResult& result : hold_to_gate(gate_run(failed, 1, kDraws), gate)) EXPECT_EQ(result.fault, "");
+  const std::vector<GateResult> cured = hold_to_gate(gate_run(accepted_outcomes(), 1, kDraws), gate);
+  for (const GateResult& result : cured) EXPECT_EQ(result.fault, "");
+  EXPECT_TRUE(cured.front().better);
+}
+
+TEST(Gate, AMethodOrARunThatIsMissingFails) {
+  const Gate gate = gate_of(accepted_outcomes());
+  for (const GateResult& result : hold_to_gate(gate_run(std::vector<Outcome>{}, 1, kDraws), gate)) {
+    if (result.metric.empty()) {
+      EXPECT_EQ(result.fault, "no outcome at seed 1");
     }
   }
-  static void store_failure(Results& results, std::uint64_t seed) {
-    Outcome outcome;
-    outcome.scenario = "hill";
-    outcome.seed = seed;
-    outcome.kind = Kind::slam;
-    outcome.method = "tumble";
-    outcome.status = "crashed";
-    results.store(outcome);
-  }
-  Results results() const { return Results(folder_ / "g.db", Results::Mode::create_or_append); }
+  EXPECT_THROW(hold_to_gate(gate_run(accepted_outcomes(), 1, kDraws - 1), gate), BadInput) << "other seeds";
+  EXPECT_THROW(hold_to_gate(gate.accepted, Gate{"small", {}, {}}), BadInput);
+  EXPECT_THROW(require_acceptable(gate_run(accepted_outcomes(), 1, kDraws + 1)), BadInput);
+  EXPECT_NO_THROW(require_acceptable(gate.accepted));
+}
 
-  static GateBound bound(Statistic statistic, const std::string& metric) {
-    GateBound out;
-    out.scenario = "hill";
-    out.kind = Kind::slam;
-    out.method = "tumble";
-    out.statistic = statistic;
-    out.metric = metric;
-    return out;
-  }
-  static double value(const Results& results, const GateBound& bound, std::uint64_t last = 100) {
-    return hold_to_gate(results, {"s", 0.0, {bound}}, 1, last).at(0).value;
-  }
+class GateFiles : public testing::TemporaryFolder {
+ protected:
+  static constexpr const char* kPolicy = "suite: small\nrisk: 0.05\nmargin: 0.02\nshare_margin: 0.005\nworst: 2\n";
+  static constexpr const char* kHead = "scenario,kind,method,metric,1,2\n";
 
-  std::string complaint(const std::string& text) const {
-    write("bad.yaml", text);
+  std::string complaint(const std::string& policy, const std::string& run) const {
+    write("bad.yaml", policy);
+    write("bad.csv", run);
     try {
       load_gate(DataRoot{folder_}, (folder_ / "bad.yaml").string());
     } catch (const BadInput& error) {
@@ -67,110 +175,50 @@ class GateTest : public testing::TemporaryFolder {
   }
 };
 
-TEST_F(GateTest, StatisticsOfTheSeedsAsked) {
-  Results all = results();
-  store_draws(all);
-  EXPECT_DOUBLE_EQ(value(all, bound(Statistic::median, kMetric)), 0.3);
-  EXPECT_DOUBLE_EQ(value(all, bound(Statistic::median, kMetric), 3), 0.2);
-  EXPECT_NEAR(value(all, bound(Statistic::quantile_95, kMetric)), 0.48, 1e-12);  // type 7: 0.4 + 0.8 of the last step
-  EXPECT_NEAR(value(all, bound(Statistic::quantile_05, "map_overlap")), 0.912, 1e-12);
-  EXPECT_EQ(value(all, bound(Statistic::share_not_ok, "")), 0.0);
-}
-
-TEST_F(GateTest, AFailureRanksAsTheWorst) {
-  Results all = results();
-  store_draws(all);
-  for (const std::uint64_t seed : {6, 7, 8, 9, 10}) store_failure(all, seed);
-  EXPECT_EQ(value(all, bound(Statistic::share_not_ok, "")), 0.5);
-  EXPECT_EQ(value(all, bound(Statistic::quantile_95, kMetric)), std::numeric_limits<double>::infinity());
-  EXPECT_EQ(value(all, bound(Statistic::quantile_05, "map_overlap")), -std::numeric_limits<double>::infinity());
-}
-
-TEST_F(GateTest, WithoutOutcomesNothingPasses) {
-  const Results none = results();
-  GateBound wide = bound(Statistic::median, kMetric);
-  const std::vector<GateResult> held = hold_to_gate(none, {"s", 0.0, {wide}}, 1, 9);
-  ASSERT_EQ(held.size(), 1u);
-  EXPECT_TRUE(std::isnan(held[0].value));
-  EXPECT_FALSE(held[0].passes());
-}
-
-TEST_F(GateTest, AcceptedBoundsPassTheirRunAndFailAWorseOne) {
-  Results all = results();
-  store_draws(all);
-  const Gate proposed = proposed_gate(all, "hill");
-  ASSERT_FALSE(proposed.bounds.empty());
-  // rotation_error_end_rad has no value here
-  Gate gate{
-      "hill",
-      0.0,
-      {bound(Statistic::median, kMetric), bound(Statistic::median, "map_overlap"), bound(Statistic::share_not_ok, "")}};
-  gate = accept(gate, hold_to_gate(all, gate, 1, 5), 0.1);
-  EXPECT_DOUBLE_EQ(gate.bounds[0].high, 0.33);
-  EXPECT_EQ(gate.bounds[0].low, -std::numeric_limits<double>::infinity());
-  EXPECT_NEAR(gate.bounds[1].low, 0.93 * 0.9, 1e-12);
-  EXPECT_EQ(gate.bounds[1].high, std::numeric_limits<double>::infinity());
-  EXPECT_EQ(gate.bounds[2].high, 0.0);  // none failed: none may
-  for (const GateResult& result : hold_to_gate(all, gate, 1, 5)) EXPECT_TRUE(result.passes()) << result.value;
-
-  // negative control: three of eight fail, which moves every one of the three figures out
-  for (const std::uint64_t seed : {6, 7, 8}) store_failure(all, seed);
-  const std::vector<GateResult> worse = hold_to_gate(all, gate, 1, 8);
-  EXPECT_FALSE(worse[0].passes()) << worse[0].value;
-  EXPECT_FALSE(worse[2].passes()) << worse[2].value;
-}
-
-TEST_F(GateTest, ARunWithoutAFigureCannotBeAccepted) {
-  const Results none = results();
-  const Gate gate{"hill", 0.0, {bound(Statistic::median, kMetric)}};
-  EXPECT_THROW(accept(gate, hold_to_gate(none, gate, 1, 5), 0.1), BadInput);
-  EXPECT_THROW(accept(gate, {}, -0.1), BadInput);
-}
-
-TEST_F(GateTest, YamlReadsBackExactly) {
-  Results all = results();
-  store_draws(all);
-  Gate gate{"hill", 0.0, {bound(Statistic::quantile_95, kMetric), bound(Statistic::share_not_ok, "")}};
-  gate = accept(gate, hold_to_gate(all, gate, 1, 5), 0.3);
-  write("scenarios/gates/hill.yaml", to_yaml(gate));
+TEST_F(GateFiles, ReadBackExactly) {
+  Results results(folder_ / "g.db", Results::Mode::create_or_append);
+  std::vector<Outcome> outcomes = accepted_outcomes();
+  outcomes[2].status = OutcomeStatus::crashed;
+  outcomes[5].scores.erase(outcomes[5].scores.begin());
+  for (const Outcome& outcome : outcomes) results.store(outcome);
+  const Gate gate{"small", {0.01, 0.03, 0.004, 1.5}, gate_run(results, 1, kDraws)};
+  write("scenarios/gates/small.yaml", to_yaml(gate));
+  write("scenarios/gates/small.csv", to_csv(gate.accepted));
   const DataRoot data{folder_};
-  EXPECT_THAT(gate_names(data), ::testing::ElementsAre("hill"));
-  const Gate back = load_gate(data, "hill");
-  EXPECT_EQ(back.suite, "hill");
-  EXPECT_EQ(back.margin, 0.3);
-  ASSERT_EQ(back.bounds.size(), 2u);
-  for (std::size_t i = 0; i < 2; ++i) {
-    EXPECT_EQ(back.bounds[i].metric, gate.bounds[i].metric);
-    EXPECT_EQ(back.bounds[i].statistic, gate.bounds[i].statistic);
-    EXPECT_EQ(back.bounds[i].accepted, gate.bounds[i].accepted);
-    EXPECT_EQ(back.bounds[i].low, gate.bounds[i].low);
-    EXPECT_EQ(back.bounds[i].high, gate.bounds[i].high);
-  }
+  EXPECT_THAT(gate_names(data), ::testing::ElementsAre("small"));
+  const Gate back = load_gate(data, "small");
+  EXPECT_EQ(back.suite, "small");
+  EXPECT_EQ(back.policy.risk, 0.01);
+  EXPECT_EQ(back.policy.worst, 1.5);
+  EXPECT_EQ(to_csv(back.accepted), to_csv(gate.accepted));
+  EXPECT_EQ(to_csv(gate_run(outcomes, 1, kDraws)), to_csv(gate.accepted)) << "database and outcomes say the same";
+  EXPECT_EQ(back.accepted.methods.at(0).status.at(2), OutcomeStatus::crashed);
+  for (const GateResult& result : hold_to_gate(gate.accepted, back)) EXPECT_EQ(result.fault, "");
 }
 
-TEST_F(GateTest, SaysWhatIsWrongAndWhere) {
-  const std::string head = "suite: hill\nmargin: 0.1\nbounds:\n";
-  EXPECT_THAT(complaint(head + "  - {scenario: hill, kind: slm, method: tumble, statistic: median, metric: "
-                               "map_overlap, accepted: 1, low: 0}"),
-              ::testing::AllOf(HasSubstr("bad.yaml:4"), HasSubstr("'slam'")));
-  EXPECT_THAT(complaint(head + "  - {scenario: hill, kind: slam, method: tumbel, statistic: median, metric: "
-                               "map_overlap, accepted: 1, low: 0}"),
-              HasSubstr("tumble"));
-  EXPECT_THAT(complaint(head + "  - {scenario: hill, kind: slam, method: tumble, statistic: median, metric: "
-                               "map_overlp, accepted: 1, low: 0}"),
-              HasSubstr("'map_overlap'"));
-  EXPECT_THAT(
-      complaint(
-          head +
-          "  - {scenario: hill, kind: slam, method: tumble, statistic: median, metric: map_overlap, accepted: 1}"),
-      HasSubstr("needs low or high"));
-  EXPECT_THAT(complaint(head + "  - {scenario: hill, kind: slam, method: tumble, statistic: median, metric: "
-                               "map_overlap, accepted: 1, low: 2, high: 1}"),
-              HasSubstr("high is below low"));
-  EXPECT_THAT(complaint(head + "  - {scenario: hill, kind: slam, method: tumble, statistic: mean, metric: map_overlap, "
-                               "accepted: 1, low: 2}"),
-              HasSubstr("'mean'"));
-  EXPECT_THAT(complaint("suite: hill\nmargin: 0.1\nbounds: []\n"), HasSubstr("no bound"));
+TEST_F(GateFiles, SayWhatIsWrongAndWhere) {
+  const std::string head = kHead, good = head + "hill,slam,tumble,status,ok,ok\n";
+  EXPECT_EQ(complaint(kPolicy, good), "");
+  EXPECT_THAT(complaint(kPolicy, head + "hill,slm,tumble,status,ok,ok\n"),
+              ::testing::AllOf(HasSubstr("bad.csv:2"), HasSubstr("'slam'")));
+  EXPECT_THAT(complaint(kPolicy, head + "hill,slam,tumbel,status,ok,ok\n"), HasSubstr("tumble"));
+  EXPECT_THAT(complaint(kPolicy, head + "hill,slam,tumble,status,ok,fine\n"), HasSubstr("'fine'"));
+  EXPECT_THAT(complaint(kPolicy, good + "hill,slam,tumble,map_overlp,1,1\n"), HasSubstr("'map_overlap'"));
+  EXPECT_THAT(complaint(kPolicy, good + "hill,slam,tumble,map_overlap,1\n"), HasSubstr("5 columns, must be 6"));
+  EXPECT_THAT(complaint(kPolicy, good + "hill,slam,tumble,map_overlap,1,nan\n"), HasSubstr("no finite number"));
+  EXPECT_THAT(complaint(kPolicy, head + "hill,slam,tumble,map_overlap,1,1\n"), HasSubstr("must follow"));
+  EXPECT_THAT(complaint(kPolicy, good + "hill,slam,tumble,status,ok,ok\n"), HasSubstr("twice"));
+  EXPECT_THAT(complaint(kPolicy, "scenario,kind,method,metric,2,1\n"), HasSubstr("seeds must rise"));
+  EXPECT_THAT(complaint(kPolicy, head), HasSubstr("nothing accepted"));
+  EXPECT_THAT(complaint("suite: small\nrisk: 0.7\nmargin: 0\nshare_margin: 0\nworst: 2\n", good), HasSubstr("0.7"));
+  write("scenarios/gates/other.yaml", kPolicy);
+  write("scenarios/gates/other.csv", good);
+  try {
+    load_gate(DataRoot{folder_}, "other");
+    FAIL() << "a gate of another suite";
+  } catch (const BadInput& error) {
+    EXPECT_THAT(error.what(), HasSubstr("must be 'other'"));
+  }
   try {
     load_gate(DataRoot{folder_}, "slip");
     FAIL() << "a gate out of nothing";

@@ -16,7 +16,7 @@ namespace {
 using ::testing::HasSubstr;
 using Paths = std::vector<std::filesystem::path>;
 
-Outcome row(std::uint64_t seed, const std::string& status, const std::string& digest = "e") {
+Outcome row(std::uint64_t seed, OutcomeStatus status, const std::string& digest = "e") {
   Outcome outcome;
   outcome.scenario = "hill";
   outcome.seed = seed;
@@ -61,43 +61,43 @@ class MergeTest : public testing::TemporaryFolder {
 };
 
 TEST_F(MergeTest, WhatWasScoredStaysInEitherOrder) {
-  for (const char* worse : {"crashed", "timeout", "killed"}) {
+  for (const OutcomeStatus worse : {OutcomeStatus::crashed, OutcomeStatus::timeout, OutcomeStatus::killed}) {
     for (const bool good_first : {true, false}) {
       std::filesystem::remove(out_);
       std::filesystem::remove(folder_ / "good.db");
       std::filesystem::remove(folder_ / "bad.db");
-      const auto good = make("good.db", {row(1, "ok")});
-      const auto bad = make("bad.db", {row(1, worse), row(2, "killed")});
+      const auto good = make("good.db", {row(1, OutcomeStatus::ok)});
+      const auto bad = make("bad.db", {row(1, worse), row(2, OutcomeStatus::killed)});
       const MergeCounts counts = merge_results(out_, good_first ? Paths{good, bad} : Paths{bad, good}, false);
       EXPECT_EQ(counts.added, 2u);
       EXPECT_EQ(counts.replaced, good_first ? 0u : 1u);
       EXPECT_EQ(counts.held, good_first ? 1u : 0u);
       ASSERT_EQ(merged().size(), 2u);
-      EXPECT_EQ(merged()[0].status, "ok") << worse << good_first;
-      EXPECT_EQ(merged()[1].status, "killed");
+      EXPECT_EQ(merged()[0].status, OutcomeStatus::ok) << to_string(worse) << good_first;
+      EXPECT_EQ(merged()[1].status, OutcomeStatus::killed);
       EXPECT_EQ(Results(out_, Results::Mode::read_only).scores().front().value, 0.5);
     }
   }
 }
 
 TEST_F(MergeTest, CountsWhatItWrote) {
-  const auto a = make("a.db", {row(1, "ok"), row(2, "diverged")});
-  const auto b = make("b.db", {row(2, "diverged"), row(3, "failed")});
+  const auto a = make("a.db", {row(1, OutcomeStatus::ok), row(2, OutcomeStatus::diverged)});
+  const auto b = make("b.db", {row(2, OutcomeStatus::diverged), row(3, OutcomeStatus::failed)});
   EXPECT_EQ(merge_results(out_, Paths{a, b, a}, false).added, 3u);
   EXPECT_EQ(merged().size(), 3u);
   EXPECT_EQ(merge_results(out_, Paths{a, b}, false).added, 0u);
 }
 
 TEST_F(MergeTest, TwoAnswersOfOneBuildAreRefusedAndNothingIsLeft) {
-  const auto a = make("a.db", {row(1, "ok", "one")});
-  const auto b = make("b.db", {row(1, "ok", "two")});
+  const auto a = make("a.db", {row(1, OutcomeStatus::ok, "one")});
+  const auto b = make("b.db", {row(1, OutcomeStatus::ok, "two")});
   EXPECT_THAT(complaint({a, b}), HasSubstr("b.db: hill, seed 1, slam/icp: is ok with digest 'two', elsewhere ok"));
   EXPECT_FALSE(std::filesystem::exists(out_));
   EXPECT_EQ(files(), 2u);
-  const auto c = make("c.db", {row(1, "diverged", "one")});
+  const auto c = make("c.db", {row(1, OutcomeStatus::diverged, "one")});
   EXPECT_THAT(complaint({a, c}), HasSubstr("is diverged with digest"));
   // an output that was there before keeps what it had
-  make("out.db", {row(9, "ok")});
+  make("out.db", {row(9, OutcomeStatus::ok)});
   EXPECT_NE(complaint({a, b}), "");
   ASSERT_EQ(merged().size(), 1u);
   EXPECT_EQ(merged()[0].seed, 9u);
@@ -108,7 +108,7 @@ TEST_F(MergeTest, TwoAnswersOfOneBuildAreRefusedAndNothingIsLeft) {
 
 TEST_F(MergeTest, ARejectionGivesWayToAnOutcome) {
   const auto rejected = make("a.db", {}, {{"hill", 1, "no place", {}}, {"hill", 2, "no place", {}}});
-  const auto run = make("b.db", {row(1, "ok")});
+  const auto run = make("b.db", {row(1, OutcomeStatus::ok)});
   for (const Paths& in : {Paths{rejected, run}, Paths{run, rejected}}) {
     std::filesystem::remove(out_);
     merge_results(out_, in, false);
@@ -120,7 +120,7 @@ TEST_F(MergeTest, ARejectionGivesWayToAnOutcome) {
 }
 
 TEST_F(MergeTest, AnInputUnderAnotherNameIsNoOutput) {
-  const auto a = make("a.db", {row(1, "ok")});
+  const auto a = make("a.db", {row(1, OutcomeStatus::ok)});
   std::filesystem::create_symlink("a.db", out_);
   EXPECT_THAT(complaint({a}), HasSubstr("both read and written"));
 }

@@ -76,7 +76,7 @@ TEST(Message, ComesBackToTheBit) {
   outcome.seed = std::numeric_limits<std::uint64_t>::max();
   outcome.kind = Kind::position;
   outcome.method = "rolling";
-  outcome.status = "failed";
+  outcome.status = OutcomeStatus::failed;
   outcome.message = "a \"quote\", a \xff byte";
   outcome.scores = {{"a", 0.1}, {"b", 1e-310}, {"c", std::numeric_limits<double>::quiet_NaN()}};
   std::string line = to_line({outcome, {}});
@@ -128,7 +128,7 @@ class RunIsolated : public ::testing::Test {
 
 TEST_F(RunIsolated, AGoodMethodIsScoredWithItsCost) {
   const Outcome outcome = run_isolated(*find_methods("raw").front(), draw(), draw(), nullptr, 60.0);
-  EXPECT_EQ(outcome.status, "ok") << outcome.message;
+  EXPECT_EQ(outcome.status, OutcomeStatus::ok) << outcome.message;
   EXPECT_EQ(outcome.scenario, "synthetic");
   EXPECT_EQ(outcome.seed, 3u);
   EXPECT_EQ(outcome.recording_digest, "abc");
@@ -154,14 +154,14 @@ TEST_F(RunIsolated, MemoryIsTheMethodsOwn) {
 
 TEST_F(RunIsolated, ACrashIsAnOutcome) {
   const Outcome outcome = run([](const sim::Sensors&) -> Estimate { std::abort(); });
-  EXPECT_EQ(outcome.status, "crashed");
+  EXPECT_EQ(outcome.status, OutcomeStatus::crashed);
   EXPECT_EQ(outcome.message, "ended by signal 6 (Aborted)");
   EXPECT_EQ(outcome.method, "test");
   EXPECT_EQ(outcome.seed, 3u);
 }
 
 TEST_F(RunIsolated, AnExitInsideAMethodIsACrash) {
-  EXPECT_EQ(run([](const sim::Sensors&) -> Estimate { _exit(0); }).status, "crashed");
+  EXPECT_EQ(run([](const sim::Sensors&) -> Estimate { _exit(0); }).status, OutcomeStatus::crashed);
 }
 
 // what the machine did to it is no verdict on it
@@ -170,10 +170,10 @@ TEST_F(RunIsolated, AKillFromOutsideAndNoMemoryAreTheMachines) {
     kill(getpid(), SIGKILL);
     return {};
   });
-  EXPECT_EQ(killed.status, "killed");
+  EXPECT_EQ(killed.status, OutcomeStatus::killed);
   EXPECT_EQ(killed.message, "ended by signal 9 (Killed)");
   const Outcome memory = run([](const sim::Sensors&) -> Estimate { throw std::bad_alloc(); });
-  EXPECT_EQ(memory.status, "killed");
+  EXPECT_EQ(memory.status, OutcomeStatus::killed);
   EXPECT_EQ(memory.message, "no memory was left for it");
 }
 
@@ -183,13 +183,13 @@ TEST_F(RunIsolated, EndlessWorkIsATimeout) {
         while (true) pause();
       },
       0.3);
-  EXPECT_EQ(outcome.status, "timeout");
+  EXPECT_EQ(outcome.status, OutcomeStatus::timeout);
   EXPECT_NE(outcome.message.find("0.3"), std::string::npos);
 }
 
 TEST_F(RunIsolated, AnExceptionIsAFailure) {
   const Outcome outcome = run([](const sim::Sensors&) -> Estimate { throw std::runtime_error("two\nlines"); });
-  EXPECT_EQ(outcome.status, "failed");
+  EXPECT_EQ(outcome.status, OutcomeStatus::failed);
   EXPECT_EQ(outcome.message, "two lines");
 }
 
@@ -199,12 +199,12 @@ TEST_F(RunIsolated, AStatusThatIsNotOkIsAFailure) {
     estimate.status = {Trouble::gap, "imu.time_ns", 2.0, 1.0};
     return estimate;
   });
-  EXPECT_EQ(outcome.status, "failed");
+  EXPECT_EQ(outcome.status, OutcomeStatus::failed);
   EXPECT_EQ(outcome.message, "gap: imu.time_ns is 2, bound 1");
 }
 
 TEST_F(RunIsolated, NoAnswerIsADivergence) {
-  EXPECT_EQ(run([](const sim::Sensors&) { return Estimate{}; }).status, "diverged");
+  EXPECT_EQ(run([](const sim::Sensors&) { return Estimate{}; }).status, OutcomeStatus::diverged);
 }
 
 }  // namespace

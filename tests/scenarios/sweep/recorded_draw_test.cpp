@@ -75,7 +75,7 @@ TEST_F(RecordedSweep, EachRecordingIsADraw) {
   const std::vector<Outcome> rows = results.outcomes();
   ASSERT_EQ(rows.size(), 6u) << "an oracle has no truth to ask";
   for (const Outcome& row : rows) {
-    EXPECT_EQ(row.status, "ok") << row.scenario << " " << row.method << ": " << row.message;
+    EXPECT_EQ(row.status, OutcomeStatus::ok) << row.scenario << " " << row.method << ": " << row.message;
     EXPECT_EQ(row.seed, 1u);
     std::map<std::string, double> scores;
     for (const ScoreRow& score : results.scores()) {

@@ -24,7 +24,7 @@ Outcome sample_outcome(std::uint64_t seed) {
   outcome.seed = seed;
   outcome.kind = Kind::slam;
   outcome.method = "icp";
-  outcome.status = "ok";
+  outcome.status = OutcomeStatus::ok;
   outcome.scores = {{"ate_m", 0.1 + static_cast<double>(seed)}, {"map_failed", 0.0}};
   outcome.recording_digest = "aa";
   outcome.estimate_digest = "bb";
@@ -72,7 +72,7 @@ TEST_F(ResultsTest, WhatIsStoredComesBack) {
     Results results(path(), Results::Mode::create_or_append);
     results.store(sample_outcome(large));
     Outcome crashed = sample_outcome(7);
-    crashed.status = "crashed";
+    crashed.status = OutcomeStatus::crashed;
     crashed.message = "ended by signal 11";
     crashed.scores.clear();
     results.store(crashed);
@@ -95,19 +95,19 @@ TEST_F(ResultsTest, WhatIsStoredComesBack) {
   int crashed = 0;
   int rejected = 0;
   for (const ScoreRow& row : results.scores()) {
-    if (row.status == "ok") {
+    if (row.status == OutcomeStatus::ok) {
       ++ok;
       EXPECT_EQ(row.seed, large);
       if (row.metric == "ate_m") {
         EXPECT_EQ(row.value, 0.1 + static_cast<double>(large));
       }
-    } else if (row.status == "crashed") {
+    } else if (row.status == OutcomeStatus::crashed) {
       ++crashed;
       EXPECT_EQ(row.metric, "");
       EXPECT_TRUE(std::isnan(row.value));
     } else {
       ++rejected;
-      EXPECT_EQ(row.status, "rejected");
+      EXPECT_EQ(row.status, OutcomeStatus::rejected);
       EXPECT_EQ(row.kind, "");
     }
   }

@@ -76,7 +76,7 @@ TEST_F(SweepTest, StoresEveryOutcomeResumesAndDoesNotDependOnJobs) {
   EXPECT_EQ(resumed.outcomes, 2u);
   const Results results(path, Results::Mode::read_only);
   ASSERT_EQ(results.outcomes().size(), 4u);
-  for (const Outcome& outcome : results.outcomes()) EXPECT_EQ(outcome.status, "ok") << outcome.message;
+  for (const Outcome& outcome : results.outcomes()) EXPECT_EQ(outcome.status, OutcomeStatus::ok) << outcome.message;
   EXPECT_EQ(results.note("suite"), "small");
   bool cost = false;
   for (const ScoreRow& row : results.scores()) cost = cost || row.metric == "estimate_peak_mib";
@@ -142,7 +142,7 @@ TEST_F(SweepTest, WhatTheMachineKilledIsRunAgainOnDemandAlone) {
     Results results(path, Results::Mode::create_or_append);
     for (Outcome outcome : results.outcomes()) {
       if (outcome.kind != Kind::rate) continue;
-      outcome.status = "killed";
+      outcome.status = OutcomeStatus::killed;
       outcome.estimate_digest.clear();
       results.store(outcome);
     }
@@ -150,15 +150,15 @@ TEST_F(SweepTest, WhatTheMachineKilledIsRunAgainOnDemandAlone) {
   EXPECT_NE(digests(path), before);
   EXPECT_EQ(sweep(data(), small_suite(1), path, {}).outcomes, 0u);
   SweepOptions options;
-  options.again = {"crashed"};
+  options.again = {OutcomeStatus::crashed};
   EXPECT_EQ(sweep(data(), small_suite(1), path, options).outcomes, 0u);
-  options.again = {"timeout", "killed"};
+  options.again = {OutcomeStatus::timeout, OutcomeStatus::killed};
   const SweepProgress again = sweep(data(), small_suite(1), path, options);
   EXPECT_EQ(again.outcomes, 1u);
   EXPECT_EQ(again.not_ok, 0u);
   // the recording of a rate method that runs alone has no lidar; this scenario has none anyhow
   EXPECT_EQ(digests(path), before);
-  options.again = {"ok"};
+  options.again = {OutcomeStatus::ok};
   EXPECT_THROW(sweep(data(), small_suite(1), path, options), BadInput);
 }
 

@@ -105,7 +105,7 @@ TEST(TrueInputs, UnbentSweepsLieRightAtOneInstant) {
 
 TEST(Failure, IsAStatusAMapOrAMetricBeyondItsLimit) {
   Outcome outcome;
-  outcome.status = "ok";
+  outcome.status = OutcomeStatus::ok;
   outcome.scores = {{"map_failed", 0.0}, {"map_overlap", 0.7}, {"translation_error_end_m", 2.0}};
   EXPECT_FALSE(Failure{}.holds(outcome));
   EXPECT_TRUE((Failure{"translation_error_end_m", 1.0}.holds(outcome)));
@@ -116,7 +116,7 @@ TEST(Failure, IsAStatusAMapOrAMetricBeyondItsLimit) {
   outcome.scores[0].value = 1.0;
   EXPECT_TRUE(Failure{}.holds(outcome));
   outcome.scores.clear();
-  outcome.status = "diverged";
+  outcome.status = OutcomeStatus::diverged;
   EXPECT_TRUE(Failure{}.holds(outcome));
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace tumble::scenarios {
 
@@ -21,5 +22,9 @@ Interval median_interval(std::span<const double> values);
 
 /// Share of successes with its exact interval (Clopper and Pearson).
 Interval share_interval(std::int64_t count, std::int64_t total);
+
+/// The values of the runs that have one, and the value that a run without one ranks as for each that failed: what every
+/// statistic of a metric is taken over. NaN as the worst adds nothing (scenarios/scoring/metric.hpp, `worst_value`).
+std::vector<double> with_failures(std::vector<double> values, std::size_t failed, double worst);
 
 }  // namespace tumble::scenarios

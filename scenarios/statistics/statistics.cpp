@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/sweep/statistics.hpp"
+#include "scenarios/statistics/statistics.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -103,6 +103,11 @@ Interval median_interval(std::span<const double> values) {
   interval.low = sorted[rank - 1];
   interval.high = sorted[sorted.size() - rank];
   return interval;
+}
+
+std::vector<double> with_failures(std::vector<double> values, std::size_t failed, double worst) {
+  if (!std::isnan(worst)) values.insert(values.end(), failed, worst);
+  return values;
 }
 
 Interval share_interval(std::int64_t count, std::int64_t total) {

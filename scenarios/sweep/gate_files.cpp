@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "scenarios/draw/strict_yaml.hpp"
+#include "scenarios/draw/yaml_folder.hpp"
+#include "scenarios/errors.hpp"
+#include "scenarios/scoring/score.hpp"
+#include "scenarios/sweep/gate.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr std::array kKinds = {Kind::rate, Kind::attitude, Kind::position, Kind::slam};
+constexpr std::size_t kKeyCells = 4;  // scenario, kind, method, metric
+constexpr const char* kStatusRow = "status";
+
+std::string number_text(double value) {
+  std::array<char, 32> digits;
+  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
+}
+
+std::vector<std::string> cells_of(const std::string& line) {
+  std::vector<std::string> cells(1);
+  for (const char c : line) {
+    if (c == ',')
+      cells.emplace_back();
+    else
+      cells.back() += c;
+  }
+  return cells;
+}
+
+/// One line of the table, for messages.
+struct Line {
+  const std::string& file;
+  int number;
+  std::vector<std::string> cells;
+  [[noreturn]] void fail(const std::string& what) const {
+    throw BadInput(file + ":" + std::to_string(number) + ": " + what);
+  }
+};
+
+template <typename Number>
+bool read_number(const std::string& text, Number& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size();
+}
+
+std::vector<std::uint64_t> read_seeds(const Line& line) {
+  const std::array<std::string, kKeyCells> head = {"scenario", "kind", "method", "metric"};
+  if (line.cells.size() <= kKeyCells || !std::equal(head.begin(), head.end(), line.cells.begin())) {
+    line.fail("must begin with scenario,kind,method,metric and name a seed in each further column");
+  }
+  std::vector<std::uint64_t> seeds;
+  for (std::size_t i = kKeyCells; i < line.cells.size(); ++i) {
+    std::uint64_t seed = 0;
+    if (!read_number(line.cells[i], seed)) line.fail("'" + line.cells[i] + "' is no seed");
+    if (!seeds.empty() && seed <= seeds.back()) line.fail("seeds must rise: " + line.cells[i]);
+    seeds.push_back(seed);
+  }
+  return seeds;
+}
+
+Kind read_kind(const Line& line) {
+  std::vector<std::string> known;
+  for (const Kind kind : kKinds) {
+    if (line.cells[1] == to_string(kind)) return kind;
+    known.emplace_back(to_string(kind));
+  }
+  line.fail("unknown kind '" + line.cells[1] + "'" + suggestion(line.cells[1], known));
+}
+
+void read_statuses(const Line& line, MethodRun& run) {
+  try {
+    find_methods(std::string(to_string(run.kind)) + "/" + run.method);
+  } catch (const BadInput& error) {
+    line.fail(error.what());
+  }
+  for (std::size_t i = kKeyCells; i < line.cells.size(); ++i) {
+    const auto status = outcome_status_named(line.cells[i]);
+    if (!status) line.fail("unknown status '" + line.cells[i] + "'");
+    run.status.push_back(status);
+  }
+}
+
+void read_values(const Line& line, MethodRun& run) {
+  const std::vector<std::string> known = held_metrics(run.kind);
+  const std::string& metric = line.cells[3];
+  if (std::find(known.begin(), known.end(), metric) == known.end()) {
+    line.fail("'" + metric + "' is no metric that is held of kind " + to_string(run.kind) + suggestion(metric, known));
+  }
+  const auto [place, is_new] = run.values.try_emplace(metric);
+  if (!is_new) line.fail("'" + metric + "' stands twice");
+  for (std::size_t i = kKeyCells; i < line.cells.size(); ++i) {
+    double value = std::numeric_limits<double>::quiet_NaN();
+    const bool none = line.cells[i].empty();
+    if (!none && (!read_number(line.cells[i], value) || !std::isfinite(value))) {
+      line.fail("'" + line.cells[i] + "' is no finite number");
+    }
+    place->second.push_back(value);
+  }
+}
+
+void read_row(const Line& line, GateRun& run) {
+  if (line.cells.size() != kKeyCells + run.seeds.size()) {
+    line.fail(std::to_string(line.cells.size()) + " columns, must be " + std::to_string(kKeyCells + run.seeds.size()));
+  }
+  const Kind kind = read_kind(line);
+  const bool opens = line.cells[3] == kStatusRow;
+  const MethodRun* known = run.find(line.cells[0], kind, line.cells[2]);
+  if (opens && known != nullptr) line.fail("the status of this method stands twice");
+  if (!opens && (known == nullptr || known != &run.methods.back())) line.fail("must follow its method's row of status");
+  if (opens) {
+    run.methods.push_back({line.cells[0], kind, line.cells[2], {}, {}});
+    read_statuses(line, run.methods.back());
+  } else {
+    read_values(line, run.methods.back());
+  }
+}
+
+double within(const YamlNode& node, double low, double high) {
+  const double value = node.number();
+  if (!(value >= low && value <= high)) {
+    node.fail("is " + number_text(value) + ", must be within [" + number_text(low) + ", " + number_text(high) + "]");
+  }
+  return value;
+}
+
+}  // namespace
+
+std::vector<std::string> gate_names(const DataRoot& data) {
+  return std::filesystem::is_directory(data.gates()) ? yaml_stems(data.gates()) : std::vector<std::string>{};
+}
+
+GateRun parse_gate_run(const std::string& text, const std::string& file) {
+  GateRun run;
+  std::istringstream stream(text);
+  std::string content;
+  for (int number = 1; std::getline(stream, content); ++number) {
+    if (content.empty() || content[0] == '#') continue;
+    const Line line{file, number, cells_of(content)};
+    if (run.seeds.empty())
+      run.seeds = read_seeds(line);
+    else
+      read_row(line, run);
+  }
+  if (run.methods.empty()) throw BadInput(file + ": nothing accepted");
+  return run;
+}
+
+Gate load_gate(const DataRoot& data, const std::string& name) {
+  const bool is_file = name.ends_with(".yaml");
+  const std::filesystem::path path = is_file ? std::filesystem::path(name) : data.gates() / (name + ".yaml");
+  if (!std::filesystem::exists(path)) {
+    throw BadInput("no accepted run of '" + name + "'" + suggestion(name, gate_names(data)) + "; 'tumble gate " + name +
+                   " --accept' makes it");
+  }
+  const YamlNode root = YamlNode::parse(read_text_file(path), path.string());
+  const std::array<std::string, 5> required = {"suite", "risk", "margin", "share_margin", "worst"};
+  const auto fields = root.fields(required);
+  Gate gate;
+  gate.suite = fields.at("suite").text();
+  if (!is_file && gate.suite != name) fields.at("suite").fail("is '" + gate.suite + "', must be '" + name + "'");
+  gate.policy.risk = within(fields.at("risk"), 1e-6, 0.5);
+  gate.policy.margin = within(fields.at("margin"), 0.0, 10.0);
+  gate.policy.share_margin = within(fields.at("share_margin"), 0.0, 1.0);
+  gate.policy.worst = within(fields.at("worst"), 1.0, 1000.0);
+  const std::filesystem::path table = std::filesystem::path(path).replace_extension(".csv");
+  gate.accepted = parse_gate_run(read_text_file(table), table.string());
+  return gate;
+}
+
+std::string to_yaml(const Gate& gate) {
+  return "# SPDX-License-Identifier: BSD-3-Clause\n"
+         "# How a run is held to the accepted one, draw by draw: scenarios/sweep/gate.hpp says what each number does.\n"
+         "suite: " +
+         gate.suite + "\nrisk: " + number_text(gate.policy.risk) + "\nmargin: " + number_text(gate.policy.margin) +
+         "\nshare_margin: " + number_text(gate.policy.share_margin) + "\nworst: " + number_text(gate.policy.worst) +
+         "\n";
+}
+
+std::string to_csv(const GateRun& run) {
+  std::string text = "# Written by 'tumble gate SUITE --accept': what the accepted run reached, draw by draw.\n";
+  text += "scenario,kind,method,metric";
+  for (const std::uint64_t seed : run.seeds) text += "," + std::to_string(seed);
+  text += "\n";
+  for (const MethodRun& method : run.methods) {
+    const std::string key = method.scenario + "," + to_string(method.kind) + "," + method.method + ",";
+    text += key + kStatusRow;
+    for (const auto& status : method.status) text += std::string(",") + (status ? to_string(*status) : "");
+    text += "\n";
+    for (const auto& [metric, values] : method.values) {
+      text += key + metric;
+      for (const double value : values) text += "," + (std::isfinite(value) ? number_text(value) : std::string());
+      text += "\n";
+    }
+  }
+  return text;
+}
+
+}  // namespace tumble::scenarios
