@@ -46,8 +46,8 @@ std::string Process::End::describe() const {
   return "ended with exit status " + std::to_string(exit_code);
 }
 
-OutcomeStatus Process::End::status() const {
-  return signal == SIGKILL || signal == SIGXCPU || signal == SIGTERM ? OutcomeStatus::killed : OutcomeStatus::crashed;
+bool Process::End::killed() const {
+  return signal == SIGKILL || signal == SIGXCPU || signal == SIGTERM;
 }
 
 Process::Process(const std::function<void(int)>& work, bool own_group) : own_group_(own_group) {

@@ -6,8 +6,6 @@
 #include <functional>
 #include <string>
 
-#include "scenarios/scoring/outcome_status.hpp"
-
 namespace tumble::scenarios {
 
 /// A child process that writes to a pipe. The child dies with its parent, leaves no core file, and never returns into
@@ -21,9 +19,8 @@ class Process {
     double cpu_s = 0;              ///< used by the child, its own children not counted
     double peak_mib = 0;           ///< largest resident size
     std::string describe() const;  ///< "ended by signal 11 (Segmentation fault)"
-    /// `killed` when something outside ended it (SIGKILL: the system short of memory, an operator; a quota of time),
-    /// else `crashed`.
-    OutcomeStatus status() const;
+    /// Ended by something outside: SIGKILL (the system short of memory, an operator), SIGTERM, a quota of time.
+    bool killed() const;
   };
 
   /// Forks and runs `work(write_end)` in the child, in a process group of its own when `own_group`. What `work` throws

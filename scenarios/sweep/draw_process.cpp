@@ -110,6 +110,10 @@ void give_up(const DrawTask& task, OutcomeStatus status, const std::string& mess
 
 }  // namespace
 
+OutcomeStatus ended_as(const Process::End& end) {
+  return end.killed() ? OutcomeStatus::killed : OutcomeStatus::crashed;
+}
+
 Outcome run_isolated(const Method& method, const SimulatedDraw& draw, const SimulatedDraw& scored,
                      const sim::Surface* surface, double timeout_s) {
   const double before_mib = resident_mib();
@@ -130,7 +134,7 @@ Outcome run_isolated(const Method& method, const SimulatedDraw& draw, const Simu
   outcome.kind = method.info.kind;
   outcome.method = method.info.name;
   outcome.recording_digest = draw.recording_digest;
-  outcome.status = in_time ? end.status() : OutcomeStatus::timeout;
+  outcome.status = in_time ? ended_as(end) : OutcomeStatus::timeout;
   outcome.message = in_time ? end.describe() : "no answer within " + std::to_string(timeout_s) + " s";
   outcome.scores = {{"estimate_cpu_s", end.cpu_s},
                     {"estimate_peak_mib", std::max(0.0, end.peak_mib - before_mib)},

@@ -25,6 +25,9 @@ struct DrawTask {
   std::vector<Run> runs;
 };
 
+/// Of a run whose process ended without an answer.
+OutcomeStatus ended_as(const Process::End& end);
+
 /// A row per run of a draw whose process gave no answer.
 std::vector<Outcome> without_answer(const DrawTask& task, OutcomeStatus status, const std::string& message);
 

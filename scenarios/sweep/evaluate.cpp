@@ -64,7 +64,7 @@ Estimate run_method(const Method& method, const SimulatedDraw& draw, Outcome& ou
     }
   } catch (const NoAnswer& error) {
     estimate = {};
-    outcome.status = error.why() == NoAnswer::Why::out_of_time ? "timeout" : "crashed";
+    outcome.status = error.why() == NoAnswer::Why::out_of_time ? OutcomeStatus::timeout : OutcomeStatus::crashed;
     outcome.message = one_line(error.what());
   } catch (const std::bad_alloc&) {
     estimate = {};

@@ -293,7 +293,7 @@ class Sweep {
   // the process of a draw died: what is left over of its runs has no answer
   void account_for_death(const Worker& worker, bool late, const Process::End& end) {
     const std::string what = late ? "the draw did not end in time" : "the draw's process " + end.describe();
-    for (const Outcome& outcome : without_answer(worker.draw, late ? OutcomeStatus::timeout : end.status(), what))
+    for (const Outcome& outcome : without_answer(worker.draw, late ? OutcomeStatus::timeout : ended_as(end), what))
       keep(outcome);
   }
 

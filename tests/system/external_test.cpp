@@ -62,7 +62,7 @@ TEST(External, WhatGoesWrongIsAnOutcomeOfTheSweep) {
   std::map<std::string, std::string> status;
   {
     const scenarios::Results results(folder / "out.db", scenarios::Results::Mode::read_only);
-    for (const scenarios::Outcome& outcome : results.outcomes()) status[outcome.method] = outcome.status;
+    for (const scenarios::Outcome& outcome : results.outcomes()) status[outcome.method] = to_string(outcome.status);
   }
   EXPECT_EQ(status, (std::map<std::string, std::string>{
                         {"raw", "ok"}, {"crashes", "crashed"}, {"hangs", "timeout"}, {"silent", "failed"}}));
