@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <sstream>
 
 #include "stand_ins/stand_ins.hpp"
 #include "system/program.hpp"
@@ -189,6 +190,53 @@ TEST(Exchange, ATrajectoryAloneIsARecordingToScoreAgainst) {
       run_program({"estimate", recording, "--method", "attitude/vqf", "-o", (folder / "e").string()});
   EXPECT_EQ(estimated.status, 2);
   EXPECT_THAT(estimated.err, HasSubstr("it needs an IMU, and the recording has none"));
+}
+
+// a TUM file of somebody else's: as position and as slam, over the whole recording and over half of it
+TEST(Exchange, ATrajectoryIsScoredWithItsRotationAndOverWhatItCovers) {
+  const fs::path folder = test_folder();
+  const std::string recording = (shared_run("roll") / "recording.h5").string(), tum = (folder / "t.tum").string();
+  ASSERT_EQ(run_program({"export", recording, "--format", "tum", "-o", tum, "--quiet"}).status, 0);
+  const auto score = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"score", tum, recording, "--frame", "body", "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_program(words);
+  };
+  const json whole = json_of(score({"--kind", "slam"}));
+  EXPECT_EQ(whole["kind"], "slam");
+  EXPECT_EQ(whole["status"], "ok");
+  EXPECT_EQ(whole["alignment"]["of"], "position and yaw");
+  EXPECT_NEAR(whole["covered"]["share"].get<double>(), 1.0, 0.01);
+  EXPECT_LT(metric(whole, "translation_error_end_m"), 1e-9);
+  EXPECT_LT(metric(whole, "rotation_error_end_rad"), 1e-6);
+  EXPECT_EQ(json_of(score({}))["kind"], "position") << "a rolling sphere";
+  EXPECT_THAT(score({}).err, HasSubstr("aligned in position and yaw"));
+  EXPECT_THAT(score({"--kind", "slma"}).err, HasSubstr("did you mean 'slam'?"));
+
+  // the first half, and a turn of 0.1 rad about x at its last pose
+  std::ifstream all(tum);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(all, line);) lines.push_back(line);
+  ASSERT_GT(lines.size(), 100u);
+  lines.resize(lines.size() / 2);
+  std::istringstream last(lines.back());
+  std::string stamp;
+  double x, y, z, qx, qy, qz, qw;
+  ASSERT_TRUE(last >> stamp >> x >> y >> z >> qx >> qy >> qz >> qw);
+  const double c = std::cos(0.05), s = std::sin(0.05);  // q * (s, 0, 0, c)
+  std::ofstream half(tum);
+  for (std::size_t k = 0; k + 1 < lines.size(); ++k) half << lines[k] << '\n';
+  half << stamp << ' ' << x << ' ' << y << ' ' << z << ' ' << qw * s + qx * c << ' ' << qy * c + qz * s << ' '
+       << qz * c - qy * s << ' ' << qw * c - qx * s << '\n';
+  half.close();
+  const Ended ended = score({"--kind", "slam"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  const json part = json_of(ended);
+  EXPECT_EQ(part["status"], "partial");
+  EXPECT_NEAR(part["covered"]["share"].get<double>(), 0.5, 0.05);
+  EXPECT_NEAR(metric(part, "rotation_error_end_rad"), 0.1, 1e-3);
+  EXPECT_LT(metric(part, "translation_error_end_m"), 1e-3);
+  EXPECT_THAT(ended.err, HasSubstr("% of the recording's time"));
 }
 
 TEST(Exchange, HostileSweepsAreOneLine) {

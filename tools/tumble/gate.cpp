@@ -30,7 +30,7 @@ using scenarios::GateResult;
 
 struct Options {
   std::string suite;
-  int jobs = 1;
+  int jobs = available_processors();
   fs::path database, bounds;
   bool accept = false;
   double margin = 0.1;
@@ -168,9 +168,12 @@ int run_gate(const Session& session, const Options& options) {
 Action declare_gate(CLI::App& app, const Session& session) {
   auto options = std::make_shared<Options>();
   app.add_option("SUITE", options->suite, "a suite, a suite file, or a scenario: its fixed seeds are swept")
-      ->required();
+      ->required()
+      ->check(a_suite(session));
   app.add_option("--bounds", options->bounds, "the accepted bounds, FILE.yaml [scenarios/gates/SUITE.yaml]");
-  app.add_option("--jobs", options->jobs, "processes at a time")->check(CLI::Range(1, 1024))->capture_default_str();
+  app.add_option("--jobs", options->jobs, "processes at a time [the processors]")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
   app.add_option("--db", options->database,
                  "keep the results here, and do not run again what it holds [a temporary file]");
   app.add_flag("--accept", options->accept, "write the bounds from this run instead of being held to them");
