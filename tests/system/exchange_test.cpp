@@ -209,6 +209,7 @@ TEST(Exchange, ATrajectoryIsScoredWithItsRotationAndOverWhatItCovers) {
   EXPECT_NEAR(whole["covered"]["share"].get<double>(), 1.0, 0.01);
   EXPECT_LT(metric(whole, "translation_error_end_m"), 1e-9);
   EXPECT_LT(metric(whole, "rotation_error_end_rad"), 1e-6);
+  EXPECT_TRUE(std::isnan(metric(whole, "map_failed"))) << "it has no map that could have failed";
   EXPECT_EQ(json_of(score({}))["kind"], "position") << "a rolling sphere";
   EXPECT_THAT(score({}).err, HasSubstr("aligned in position and yaw"));
   EXPECT_THAT(score({"--kind", "slma"}).err, HasSubstr("did you mean 'slam'?"));

@@ -63,7 +63,7 @@ void say_what_next(const Session& session, const Options& options) {
   session.note("left in " + folder + "/: recording.h5, situation.yaml, estimates/, snapshots/scene.png and film.png");
   session.note("next:");
   const auto say = [&](const std::string& command, const char* what) {
-    session.note(fmt::format("  {:<68}  {}", command, what));
+    session.note(fmt::format("  {:<78}  {}", command, what));
   };
   if (std::find(options.methods.begin(), options.methods.end(), "slam/tumble") != options.methods.end()) {
     say(fmt::format("tumble render {0}/recording.h5 {0}/estimates/slam-* --map -o {0}/maps.png", folder),

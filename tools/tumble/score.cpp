@@ -157,9 +157,9 @@ int score_estimate(const Session& session, const Options& options) {
     require_common_time(options, estimate, truth);
   }
 
-  // the true surface matters to maps alone, and building it takes a while
+  // the true surface matters to maps alone, and building it takes a while; somebody else's trajectory has none
   std::optional<sim::Surface> surface;
-  if (outcome.kind == scenarios::Kind::slam && !info.situation_yaml.empty()) {
+  if (outcome.kind == scenarios::Kind::slam && !foreign && !info.situation_yaml.empty()) {
     surface.emplace(scenarios::situation_from_yaml(info.situation_yaml, options.recording.string()),
                     session.data().models());
   }
