@@ -26,6 +26,11 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
+/// A number of things is named so, and there are no halves of them.
+bool is_count(std::string_view name) {
+  return name.ends_with("_count");
+}
+
 }  // namespace
 
 double Values::at(std::string_view name) const {
@@ -66,6 +71,11 @@ Values resolve(const std::string& place, const Values& given, std::span<const Pa
       std::ostringstream text;
       text << place << "." << name << " is " << value << " " << parameter->unit << ", must be within ["
            << parameter->low << ", " << parameter->high << "]";
+      throw InvalidSituation(text.str());
+    }
+    if (is_count(name) && value != std::floor(value)) {
+      std::ostringstream text;
+      text << place << "." << name << " is " << value << ", must be a whole number";
       throw InvalidSituation(text.str());
     }
     out.set(name, value);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/tree.hpp"
 
+#include <cstdlib>
+
 namespace tumble::test {
 
 std::filesystem::path source_dir() {
@@ -12,7 +14,8 @@ std::filesystem::path program() {
 }
 
 std::filesystem::path shared_data() {
-  return TUMBLE_SHARED_DATA;
+  const char* named = std::getenv("TUMBLE_SHARED_DATA");
+  return named != nullptr ? named : TUMBLE_SHARED_DATA;
 }
 
 }  // namespace tumble::test

@@ -11,7 +11,8 @@ namespace tumble::test {
 std::filesystem::path source_dir();
 /// The program `tumble` of this build.
 std::filesystem::path program();
-/// Folder of the real recordings beside the checkout, which need not be there.
+/// Folder of the real recordings: the environment's TUMBLE_SHARED_DATA, else the one beside the checkout. It need not
+/// be there.
 std::filesystem::path shared_data();
 
 }  // namespace tumble::test

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/certificate/certificate_store.hpp"
 
-#include <unistd.h>
-
 #include <array>
 #include <fstream>
 #include <sstream>
 
 #include "scenarios/certificate/certificate_text.hpp"
 #include "scenarios/errors.hpp"
+#include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/sweep/build_id.hpp"
 #include "scenarios/sweep/data_digest.hpp"
 #include "scenarios/sweep/outcome.hpp"
@@ -56,17 +55,10 @@ void CertificateStore::keep(const Certificate& certificate) const {
   if (file_.empty()) return;
   std::error_code ignored;
   std::filesystem::create_directories(file_.parent_path(), ignored);
-  const std::filesystem::path part = file_.string() + "." + std::to_string(getpid());
-  bool whole = false;
-  {
-    std::ofstream out(part);
-    out << to_json(certificate);
-    whole = out.flush().good();
+  try {
+    replace_file(file_, to_json(certificate));
+  } catch (const BadInput&) {  // a cache that cannot be written is none
   }
-  if (whole)
-    std::filesystem::rename(part, file_, ignored);
-  else
-    std::filesystem::remove(part, ignored);
 }
 
 std::optional<Certificate> known_certificate(Results& results, const CertificateStore& store) {

@@ -10,6 +10,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/map_file.hpp"
 #include "scenarios/methods/table_file.hpp"
+#include "scenarios/recordings/replace_file.hpp"
 
 namespace tumble::scenarios {
 
@@ -356,10 +357,7 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
   if (!estimate.map.empty()) write_map(folder / "map.ply", estimate.map);
 
   // last: a folder with this file is complete
-  std::ofstream file(folder / "estimate.json");
-  file << header_of(method, kind, estimate, sensors_digest).dump(2) << '\n';
-  file.close();
-  if (!file) throw BadInput((folder / "estimate.json").string() + ": cannot be written");
+  replace_file(folder / "estimate.json", header_of(method, kind, estimate, sensors_digest).dump(2) + '\n');
 }
 
 std::string estimated_sensors(const std::filesystem::path& path) {

@@ -6,9 +6,11 @@
 #include <charconv>
 #include <cstring>
 #include <fstream>
+#include <span>
 #include <string>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/recordings/replace_file.hpp"
 
 namespace tumble::scenarios {
 
@@ -48,15 +50,16 @@ std::size_t read_header(std::istream& file, const std::filesystem::path& path) {
 }  // namespace
 
 void write_map(const std::filesystem::path& path, std::span<const MapPoint> map) {
-  std::ofstream file(path, std::ios::binary);
-  for (const std::string& line : header(map.size())) file << line << '\n';
+  OutputFile file(path);
+  std::string text;
+  for (const std::string& line : header(map.size())) text += line + '\n';
   for (const MapPoint& point : map) {
     const Row row = {point.position_W_m.x(), point.position_W_m.y(), point.position_W_m.z(), point.normal_W.x(),
                      point.normal_W.y(),     point.normal_W.z(),     point.sigma_m};
-    file.write(reinterpret_cast<const char*>(row.data()), sizeof(row));
+    text.append(reinterpret_cast<const char*>(row.data()), sizeof(row));
   }
-  file.flush();
-  if (!file) throw BadInput(path.string() + ": cannot be written");
+  file.write(std::as_bytes(std::span(text)));
+  file.move_into_place();
 }
 
 std::vector<MapPoint> read_map(const std::filesystem::path& path) {

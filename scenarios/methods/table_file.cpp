@@ -5,6 +5,8 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
+#include <span>
 #include <system_error>
 
 #include "scenarios/errors.hpp"
@@ -14,6 +16,8 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::int64_t kNsPerS = 1000000000;
+/// Bytes of a table that are written at a time.
+constexpr std::size_t kBlock = 1 << 16;
 
 std::vector<std::string> split(const std::string& line, char separator) {
   std::vector<std::string> cells;
@@ -38,14 +42,18 @@ bool parse(const std::string& text, T& value) {
 }  // namespace
 
 TableWriter::TableWriter(const std::filesystem::path& path, char separator, const std::string& header)
-    : path_(path), file_(path), separator_(separator) {
-  if (!file_) throw BadInput(path.string() + ": cannot be written");
-  if (!header.empty()) file_ << header << '\n';
+    : file_(path), separator_(separator) {
+  if (!header.empty()) text_ = header + '\n';
+}
+
+void TableWriter::flush() {
+  file_.write(std::as_bytes(std::span(text_)));
+  text_.clear();
 }
 
 void TableWriter::cell(const std::string& text) {
-  if (!row_empty_) file_ << separator_;
-  file_ << text;
+  if (!row_empty_) text_ += separator_;
+  text_ += text;
   row_empty_ = false;
 }
 
@@ -69,13 +77,14 @@ void TableWriter::time_s(std::int64_t time_ns) {
 }
 
 void TableWriter::end_row() {
-  file_ << '\n';
+  text_ += '\n';
   row_empty_ = true;
+  if (text_.size() > kBlock) flush();
 }
 
 void TableWriter::close() {
-  file_.close();
-  if (!file_) throw BadInput(path_.string() + ": cannot be written");
+  flush();
+  file_.move_into_place();
 }
 
 Table Table::read(const std::filesystem::path& path, char separator, const std::string& header, std::size_t columns) {

@@ -3,10 +3,11 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <span>
 #include <string>
 #include <vector>
+
+#include "scenarios/recordings/replace_file.hpp"
 
 namespace tumble::scenarios {
 
@@ -15,19 +16,21 @@ namespace tumble::scenarios {
 /// integers.
 class TableWriter {
  public:
-  /// `header` empty: none is written. Throws BadInput when the file cannot be opened.
+  /// `header` empty: none is written. Throws BadInput when the file cannot be opened. What stands there stays until
+  /// `close`; a table that is not closed leaves nothing.
   TableWriter(const std::filesystem::path& path, char separator, const std::string& header);
   void integer(std::int64_t value);
   void number(double value);
   void time_s(std::int64_t time_ns);  ///< exact: "12.000000345"
   void end_row();
-  /// Flushes; throws BadInput when anything could not be written.
+  /// Moves the whole table into its place; throws BadInput when anything could not be written.
   void close();
 
  private:
   void cell(const std::string& text);
-  std::filesystem::path path_;
-  std::ofstream file_;
+  void flush();
+  OutputFile file_;
+  std::string text_;  ///< not yet written
   char separator_;
   bool row_empty_ = true;
 };

@@ -18,16 +18,34 @@ const LidarInertialOdometry::SweepReport* last_covered(const Estimate& estimate,
   return last == estimate.sweeps.rend() ? nullptr : &*last;
 }
 
+// from where to where an end error is measured; false when there is no such motion
+bool ends_of(const Estimate& estimate, const TruthTrack& truth, PoseState& first, PoseState& last) {
+  if (estimate.sweeps.empty()) {  // a trajectory of somebody else
+    const PairedTrack track = pair_poses(estimate, truth);
+    if (track.poses.size() < 2) return false;
+    const auto pose_at = [&](std::int64_t time_ns) {
+      return *std::find_if(estimate.poses.begin(), estimate.poses.end(),
+                           [&](const PoseState& pose) { return pose.time_ns == time_ns; });
+    };
+    first = pose_at(track.poses.front().time_ns);
+    last = pose_at(track.poses.back().time_ns);
+    return true;
+  }
+  const std::vector<std::size_t> registered = registered_sweeps(estimate);
+  if (registered.size() < kStartSweep || registered[kStartSweep - 1] + 1 >= estimate.sweeps.size()) return false;
+  first = estimate.sweeps[registered[kStartSweep - 1]].pose;
+  const auto* last_sweep = last_covered(estimate, truth);
+  if (last_sweep == nullptr || last_sweep->pose.time_ns <= first.time_ns) return false;
+  last = last_sweep->pose;
+  return true;
+}
+
 // estimated motion from the sixth registered sweep to the last sweep, seen from the true one
 bool end_error(const Estimate& estimate, const ScoringInput& input, Eigen::Vector3d& translation,
                Eigen::Quaterniond& rotation) {
-  const std::vector<std::size_t> registered = registered_sweeps(estimate);
-  if (registered.size() < kStartSweep || registered[kStartSweep - 1] + 1 >= estimate.sweeps.size()) return false;
-  const PoseState& first = estimate.sweeps[registered[kStartSweep - 1]].pose;
   const TruthTrack truth(*input.truth, estimate.frame);
-  const auto* last_sweep = last_covered(estimate, truth);
-  if (last_sweep == nullptr || last_sweep->pose.time_ns <= first.time_ns) return false;
-  const PoseState& last = last_sweep->pose;
+  PoseState first, last;
+  if (!ends_of(estimate, truth, first, last)) return false;
   const PoseState true_first = truth.pose(first.time_ns);
   const PoseState true_last = truth.pose(last.time_ns);
   translation = first.q_WA.conjugate() * (last.p_WA_m - first.p_WA_m) -
@@ -87,8 +105,10 @@ std::vector<std::size_t> registered_sweeps(const Estimate& estimate) {
 std::vector<Metric> end_pose_metrics() {
   return {
       {{"translation_error_end_m", Unit::m,
-        "error of the motion from the sixth registered sweep to the last sweep: translation", Sense::lower,
-        Place::headline},
+        "error of the motion from the sixth registered sweep to the last sweep (of a trajectory without sweeps, from "
+        "its "
+        "first pose to its last): translation",
+        Sense::lower, Place::headline},
        Kind::slam,
        translation_error_end},
       {{"rotation_error_end_rad", Unit::rad, "the same: rotation, up to pi", Sense::lower, Place::headline},

@@ -69,18 +69,21 @@ bool attitudes_hold(const Estimate& estimate, const ScoringInput& input) {
 /// No robot that rolls or tumbles comes so far from where it began: an estimate with one such pose is wrong.
 constexpr double kFarthest_m = 1e7;
 
-bool poses_hold(const Estimate& estimate, const ScoringInput& input) {
-  const TruthTrack truth(*input.truth, estimate.frame);
+bool poses_hold(const Estimate& estimate, const TruthTrack& truth) {
   for (const PoseState& pose : estimate.poses) {
     if (!pose.p_WA_m.allFinite() || !pose.q_WA.coeffs().allFinite()) return false;
     if (pose.p_WA_m.cwiseAbs().maxCoeff() > kFarthest_m) return false;
   }
-  if (!reaches(estimate.poses, truth.last_ns())) return false;
   const PairedTrack track = pair_poses(estimate, truth);
   if (track.poses.empty()) return false;
   const PairedPose& end = track.poses.back();
   const double path_m = end.path_m - track.poses.front().path_m;
   return (end.estimate.p_WA_m - end.truth.p_WA_m).norm() <= std::max(path_m, kEndErrorFloorM);
+}
+
+bool poses_reach_and_hold(const Estimate& estimate, const ScoringInput& input) {
+  const TruthTrack truth(*input.truth, estimate.frame);
+  return reaches(estimate.poses, truth.last_ns()) && poses_hold(estimate, truth);
 }
 
 // a run long enough for the end error must have sweeps enough for it
@@ -100,9 +103,9 @@ bool holds(Kind kind, const Estimate& estimate, const ScoringInput& input) {
     case Kind::attitude:
       return attitudes_hold(estimate, input);
     case Kind::position:
-      return poses_hold(estimate, input);
+      return poses_reach_and_hold(estimate, input);
     case Kind::slam:
-      return poses_hold(estimate, input) && sweeps_hold(estimate, input);
+      return poses_reach_and_hold(estimate, input) && sweeps_hold(estimate, input);
   }
   return false;
 }
@@ -134,6 +137,11 @@ std::vector<Score> score(Kind kind, const Estimate& estimate, const ScoringInput
 OutcomeStatus verdict(Kind kind, const Estimate& estimate, const ScoringInput& input) {
   require_complete(input);
   return holds(kind, estimate, input) ? OutcomeStatus::ok : OutcomeStatus::diverged;
+}
+
+bool trajectory_holds(const Estimate& estimate, const ScoringInput& input) {
+  require_complete(input);
+  return poses_hold(estimate, TruthTrack(*input.truth, estimate.frame));
 }
 
 }  // namespace tumble::scenarios

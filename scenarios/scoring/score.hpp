@@ -44,4 +44,8 @@ std::vector<Score> score(Kind kind, const Estimate& estimate, const ScoringInput
 /// least), or that registers fewer than six sweeps.
 OutcomeStatus verdict(Kind kind, const Estimate& estimate, const ScoringInput& input);
 
+/// Whether a trajectory is finite and ends nearer to the truth than the path is long, over the stretch that it answers,
+/// however short that is: what `verdict` asks of poses but for the holes.
+bool trajectory_holds(const Estimate& estimate, const ScoringInput& input);
+
 }  // namespace tumble::scenarios

@@ -190,5 +190,26 @@ TEST(Render, WritesAFilmStripAndADraw) {
   EXPECT_THAT(read_file(folder / "draw.png"), StartsWith("\x89PNG"));
 }
 
+// the scenario alone: seed 1, ours beside the baseline, a folder named after it, and what to do next
+TEST(FirstRun, AScenarioAloneDoesSomethingGood) {
+  const fs::path folder = test_folder();
+  const auto run = [&] { return run_program({"run", "roll", "--json"}, [&] { fs::current_path(folder); }); };
+  const Ended ended = run();
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  const json said = json_of(ended);
+  EXPECT_EQ(said["seed"], 1);
+  std::vector<std::string> methods;
+  for (const json& outcome : said["outcomes"]) methods.push_back(outcome["method"]);
+  EXPECT_THAT(methods, ::testing::ElementsAre("rolling", "tumble"));
+  for (const char* file : {"recording.h5", "snapshots/scene.png", "estimates/position-tumble/estimate.json"})
+    EXPECT_TRUE(fs::exists(folder / "roll" / file)) << file;
+  EXPECT_THAT(ended.err, HasSubstr("left in roll/"));
+  EXPECT_THAT(ended.err, HasSubstr("tumble sweep roll --seeds 1..8"));
+  // again: nothing is mixed with what is there
+  const Ended again = run();
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_TRUE(fs::exists(folder / "roll_2" / "recording.h5"));
+}
+
 }  // namespace
 }  // namespace tumble::system_test

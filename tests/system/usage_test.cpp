@@ -2,6 +2,7 @@
 // Help, names and listings: what a newcomer types first.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sched.h>
 
 #include "system/program.hpp"
 
@@ -53,14 +54,19 @@ TEST_P(WrongUse, EndsWithTwoAndOneClearLine) {
 INSTANTIATE_TEST_SUITE_P(
     Program, WrongUse,
     testing::Values(
-        Wrong{"no verb", {}, "a verb is missing"},
+        Wrong{"no verb", {"--json"}, "a verb is missing"},
         Wrong{"option before the verb", {"--quiet", "list", "methods"}, "goes behind the verb"},
         Wrong{"verb", {"rnu", "hill"}, "did you mean 'run'?"},
         Wrong{"scenario", {"run", "hil", "--seed", "1"}, "did you mean 'hill'?"},
         Wrong{"method", {"run", "hill", "--seed", "1", "--method", "saavee"}, "saave"},
         Wrong{"method of a sweep", {"sweep", "demo", "--method", "saavee", "--db", "/dev/null/x.db"}, "saave"},
         Wrong{"suite", {"sweep", "dmeo", "--db", "/dev/null/x.db"}, "demo"},
-        Wrong{"list", {"list", "scenarois"}, "did you mean 'scenarios'?"}, Wrong{"no seed", {"run", "hill"}, "--seed"},
+        Wrong{"list", {"list", "scenarois"}, "did you mean 'scenarios'?"},
+        Wrong{"no seed", {"record", "hill", "-o", "x.h5"}, "--seed"},
+        Wrong{"scenario before seed and output", {"record", "hil"}, "did you mean 'hill'?"},
+        Wrong{"scenario before seed and method", {"triage", "hil"}, "did you mean 'hill'?"},
+        Wrong{"scenario file before what is missing", {"record", "absent.yaml"}, "absent.yaml"},
+        Wrong{"suite before its database", {"sweep", "dmeo"}, "did you mean 'demo'?"},
         Wrong{"seed", {"run", "hill", "--seed", "1.5"}, "'1.5'"},
         Wrong{"seeds", {"sweep", "demo", "--seeds", "9..3", "--db", "x.db"}, "'9..3'"},
         Wrong{"shard", {"sweep", "demo", "--shard", "3/2", "--db", "x.db"}, "'3/2'"},
@@ -97,6 +103,35 @@ INSTANTIATE_TEST_SUITE_P(
               "applies to the robot"},
         Wrong{"output that is a device", {"record", "roll", "--seed", "1", "-o", "/dev/null"}, "no regular file"},
         Wrong{"render without seed", {"render", "hill", "-o", "x.png"}, "--seed"}));
+
+TEST(FirstMinutes, TheProgramAloneShowsTheWay) {
+  const Ended ended = run_program({});
+  EXPECT_EQ(ended.status, 0);
+  EXPECT_EQ(ended.err, "");
+  for (const char* word : {"tumble run hill", "tumble list scenarios", "tumble import", "tumble score", "triage"})
+    EXPECT_THAT(ended.out, HasSubstr(word));
+}
+
+TEST(FirstMinutes, JobsAreTheProcessors) {
+  // pinned to one processor, the default is one
+  const Ended one = run_program({"sweep", "--help"}, [] {
+    cpu_set_t all, first;
+    sched_getaffinity(0, sizeof all, &all);
+    CPU_ZERO(&first);
+    for (int k = 0; k < CPU_SETSIZE && CPU_COUNT(&first) == 0; ++k) {
+      if (CPU_ISSET(k, &all)) CPU_SET(k, &first);
+    }
+    sched_setaffinity(0, sizeof first, &first);
+  });
+  const std::string before = "--jobs INT:INT in [1 - 1024]=";
+  EXPECT_THAT(one.out, HasSubstr(before + "1\n"));
+  cpu_set_t own;
+  CPU_ZERO(&own);
+  ASSERT_EQ(sched_getaffinity(0, sizeof own, &own), 0);
+  for (const char* verb : {"sweep", "gate"}) {
+    EXPECT_THAT(run_program({verb, "--help"}).out, HasSubstr(before + std::to_string(CPU_COUNT(&own)) + "\n"));
+  }
+}
 
 TEST(List, NamesWhatThereIs) {
   const auto names = [](const char* what) {

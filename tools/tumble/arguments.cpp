@@ -2,12 +2,15 @@
 #include "tools/tumble/arguments.hpp"
 
 #include <fmt/format.h>
+#include <sched.h>
 
 #include <algorithm>
 #include <charconv>
 
+#include "scenarios/draw/scenario.hpp"
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/replace_file.hpp"
+#include "scenarios/sweep/sweep.hpp"
 #include "sim/parameters.hpp"
 
 namespace tumble::tools {
@@ -93,6 +96,32 @@ CLI::Validator within(double low, double high) {
         return read && value >= low && value <= high ? std::string() : text + " is not within " + range;
       },
       range);
+}
+
+// a check runs before CLI11 looks for what is missing; BadInput passes through it with its one line
+CLI::Validator a_scenario(const Session& session) {
+  return CLI::Validator(
+      [&session](std::string& text) {
+        scenarios::load_scenario(session.data(), text);
+        return std::string();
+      },
+      "");
+}
+
+CLI::Validator a_suite(const Session& session) {
+  return CLI::Validator(
+      [&session](std::string& text) {
+        scenarios::load_suite(session.data(), text);
+        return std::string();
+      },
+      "");
+}
+
+int available_processors() {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  const int count = sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 1;
+  return std::clamp(count, 1, 1024);
 }
 
 void make_folder(const std::filesystem::path& folder) {

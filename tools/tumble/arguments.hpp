@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "scenarios/methods/method.hpp"
+#include "tools/tumble/session.hpp"
 
 /// Reading of command-line words, and files of the program's own. All throw scenarios::BadInput with one clear line.
 namespace tumble::tools {
@@ -36,6 +37,14 @@ std::vector<scenarios::MethodPointer> select_methods(const std::vector<std::stri
 
 /// A number from `low` to `high`; what is no number is not within (CLI::Range lets it pass).
 CLI::Validator within(double low, double high);
+
+/// Refuses what is neither a scenario of the catalogue nor a scenario file, before anything else is missing.
+CLI::Validator a_scenario(const Session& session);
+/// The same of a suite, a suite file or a scenario.
+CLI::Validator a_suite(const Session& session);
+
+/// The processors that this process may use.
+int available_processors();
 
 /// Makes a folder and its parents.
 void make_folder(const std::filesystem::path& folder);

@@ -31,7 +31,7 @@ using scenarios::GateResult;
 
 struct Options {
   std::string suite;
-  int jobs = 1;
+  int jobs = available_processors();
   fs::path database, accepted;
   bool accept = false;
 };
@@ -189,10 +189,13 @@ int run_gate(const Session& session, const Options& options) {
 Action declare_gate(CLI::App& app, const Session& session) {
   auto options = std::make_shared<Options>();
   app.add_option("SUITE", options->suite, "a suite, a suite file, or a scenario: its fixed seeds are swept")
-      ->required();
+      ->required()
+      ->check(a_suite(session));
   app.add_option("--against", options->accepted,
                  "the gate, FILE.yaml, with the accepted run beside it in FILE.csv [scenarios/gates/SUITE.yaml]");
-  app.add_option("--jobs", options->jobs, "processes at a time")->check(CLI::Range(1, 1024))->capture_default_str();
+  app.add_option("--jobs", options->jobs, "processes at a time [the processors]")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
   app.add_option("--db", options->database,
                  "keep the results here, and do not run again what it holds [a temporary file]");
   app.add_flag("--accept", options->accept, "write this run as the accepted one instead of being held to it");

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/tumble/program.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -67,8 +69,27 @@ int say(const char* prefix, const std::string& line, int status) {
   return status;
 }
 
+/// For who types `tumble` and nothing else.
+int show_the_way() {
+  std::string text =
+      "tumble: a physics-simulated test harness and an estimator for robots that tumble and roll\n\n"
+      "first\n"
+      "  tumble run hill                a rig tumbles down a hill: ours beside the baseline, scores, pictures\n"
+      "  tumble run slip                a sphere rolls and slips\n"
+      "  tumble list scenarios          what can be simulated; also: methods, sensors, suites\n\n"
+      "your own recording\n"
+      "  tumble import FILE -o r.h5     a bag, a table of IMU readings, a folder of sweeps, a trajectory\n"
+      "  tumble estimate r.h5 --method rate/tumble -o DIR\n"
+      "  tumble score YOURS.tum r.h5    somebody else's trajectory against the truth of a recording\n\n"
+      "verbs (tumble VERB --help)\n";
+  for (const Verb& verb : verbs()) text += fmt::format("  {:<9}  {}\n", verb.name, verb.doc);
+  std::fputs(text.c_str(), stdout);
+  return kDone;
+}
+
 /// Reads the command line and does the verb.
 int dispatch(int argc, const char* const* argv) {
+  if (argc == 1) return show_the_way();
   CLI::App app("Physics-simulated test harness and estimator for robots that tumble and roll", "tumble");
   app.set_version_flag("--version", program_version());
   app.require_subcommand(1);

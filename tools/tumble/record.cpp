@@ -55,7 +55,9 @@ int record(const Session& session, const Options& options) {
 
 Action declare_record(CLI::App& app, const Session& session) {
   auto options = std::make_shared<Options>();
-  app.add_option("SCENARIO", options->scenario, "a scenario of the catalogue, or a scenario file")->required();
+  app.add_option("SCENARIO", options->scenario, "a scenario of the catalogue, or a scenario file")
+      ->required()
+      ->check(a_scenario(session));
   app.add_option("--seed", options->seed, "which draw of it")->required();
   app.add_option("--threads", options->threads, "threads for the lidar; the result does not depend on them")
       ->check(CLI::Range(1, 1024))

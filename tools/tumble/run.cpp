@@ -25,12 +25,55 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
-  std::string scenario, seed;
+  std::string scenario, seed;  ///< an empty seed: 1
   std::vector<std::string> methods;
   int threads = 1;
   fs::path folder;
   fs::path learnt;
 };
+
+/// A scenario and nothing else: somebody looks what this is.
+bool is_bare(const Options& options) {
+  return options.seed.empty() && options.methods.empty() && options.folder.empty() && options.learnt.empty();
+}
+
+/// The scenario's name, or the first of NAME_2, NAME_3, ... that is not there.
+fs::path free_folder(const std::string& name) {
+  fs::path folder = name;
+  for (int k = 2; fs::exists(fs::symlink_status(folder)); ++k) folder = fmt::format("{}_{}", name, k);
+  return folder;
+}
+
+/// Ours beside the method that does nothing about the problem, of every kind that has both for this robot.
+Options first_run(Options options, const scenarios::Scenario& scenario) {
+  constexpr std::pair<const char*, const char*> kPairs[] = {
+      {"rate/raw", "rate/tumble"}, {"position/rolling", "position/tumble"}, {"slam/icp_raw", "slam/tumble"}};
+  const auto applies = [&](const char* name) {
+    return scenarios::find_methods(name).front()->info.for_robot(scenario.robot.type);
+  };
+  for (const auto& [baseline, ours] : kPairs) {
+    if (applies(baseline) && applies(ours)) options.methods.insert(options.methods.end(), {baseline, ours});
+  }
+  options.folder = free_folder(scenario.name);
+  return options;
+}
+
+void say_what_next(const Session& session, const Options& options) {
+  const std::string folder = options.folder.string();
+  session.note("left in " + folder + "/: recording.h5, situation.yaml, estimates/, snapshots/scene.png and film.png");
+  session.note("next:");
+  const auto say = [&](const std::string& command, const char* what) {
+    session.note(fmt::format("  {:<78}  {}", command, what));
+  };
+  if (std::find(options.methods.begin(), options.methods.end(), "slam/tumble") != options.methods.end()) {
+    say(fmt::format("tumble render {0}/recording.h5 {0}/estimates/slam-* --map -o {0}/maps.png", folder),
+        "the maps, coloured by error");
+  }
+  say(fmt::format("tumble run {} --seed 2 -o {}_seed_2", options.scenario, folder), "another draw, every method");
+  say(fmt::format("tumble sweep {} --seeds 1..8 --db {}.db", options.scenario, folder), "eight draws of it");
+  say(fmt::format("tumble report {0}.db -o {0}.html", folder), "the tables and one page of them");
+  say("tumble list methods", "what else there is");
+}
 
 /// Recording, situation and every estimate, under the names that the other verbs read.
 void leave_files(const fs::path& folder, const scenarios::RunResult& result) {
@@ -59,10 +102,12 @@ void leave_pictures(const fs::path& folder, const fs::path& models, const scenar
   save_picture(folder / "snapshots" / "film.png", film_picture(scene, 8, 4, 480, 360));
 }
 
-int run(const Session& session, const Options& options) {
-  const std::uint64_t seed = parse_seed(options.seed);
+int run(const Session& session, const Options& given) {
   const scenarios::DataRoot data = session.data();
-  const scenarios::Scenario scenario = scenarios::load_scenario(data, options.scenario);
+  const scenarios::Scenario scenario = scenarios::load_scenario(data, given.scenario);
+  const bool first = is_bare(given);
+  const Options options = first ? first_run(given, scenario) : given;
+  const std::uint64_t seed = options.seed.empty() ? 1 : parse_seed(options.seed);
   const auto selected = select_methods(options.methods);
   LearntFile learnt(options.learnt);
   if (!options.learnt.empty() &&
@@ -108,6 +153,7 @@ int run(const Session& session, const Options& options) {
       session.note(fmt::format("{}/{}: {}: {}", to_string(outcome.kind), outcome.method, to_string(outcome.status),
                                outcome.message));
   }
+  if (first) say_what_next(session, options);
   return kDone;
 }
 
@@ -115,8 +161,10 @@ int run(const Session& session, const Options& options) {
 
 Action declare_run(CLI::App& app, const Session& session) {
   auto options = std::make_shared<Options>();
-  app.add_option("SCENARIO", options->scenario, "a scenario of the catalogue, or a scenario file")->required();
-  app.add_option("--seed", options->seed, "which draw of it")->required();
+  app.add_option("SCENARIO", options->scenario, "a scenario of the catalogue, or a scenario file")
+      ->required()
+      ->check(a_scenario(session));
+  app.add_option("--seed", options->seed, "which draw of it [1]");
   app.add_option("--method", options->methods, "a method, as 'saave' or 'rate/saave'; repeat for more [all that apply]")
       ->allow_extra_args(false);  // the word after a method is not another one
   app.add_option("--threads", options->threads, "threads for the lidar; the result does not depend on them")
@@ -126,6 +174,7 @@ Action declare_run(CLI::App& app, const Session& session) {
   app.add_option("--learnt", options->learnt,
                  "FILE.json: what 'rate/tumble' and 'rate/tumble_lag' start from, if it exists; written anew with what "
                  "the run has learnt of the rig");
+  app.footer("The scenario alone runs ours beside the baseline and leaves everything in a folder named after it.");
   return [&session, options] { return run(session, *options); };
 }
 

@@ -13,6 +13,7 @@
 #include "scenarios/methods/estimate_file.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/scoring/score.hpp"
+#include "scenarios/scoring/truth_track.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/score_tables.hpp"
 #include "tools/tumble/verbs.hpp"
@@ -25,7 +26,7 @@ using scenarios::Frame;
 
 struct Options {
   std::filesystem::path estimate, recording;
-  std::string frame;
+  std::string frame, kind;
 };
 
 /// Of the poses in a TUM file: as named, else of the first IMU, of the body where the recording has none.
@@ -72,6 +73,69 @@ void require_common_time(const Options& options, const scenarios::Estimate& esti
                   options.estimate.string(), first_s, last_s, options.recording.string(), end_s));
 }
 
+/// How a trajectory of somebody else stands to the truth, beside its scores.
+struct Standing {
+  double first_s = 0, last_s = 0, end_s = 0;  ///< of its poses that the truth knows; of the truth
+  scenarios::Alignment alignment;
+  double share() const { return end_s > 0.0 ? (last_s - first_s) / end_s : 1.0; }
+};
+
+Standing standing_of(const scenarios::Estimate& estimate, const sim::Truth& truth) {
+  const scenarios::TruthTrack track(truth, estimate.frame);
+  const scenarios::PairedTrack paired = scenarios::pair_poses(estimate, track);
+  Standing out;
+  out.end_s = 1e-9 * static_cast<double>(track.last_ns());
+  out.alignment = paired.alignment;
+  if (paired.poses.empty()) return out;
+  out.first_s = 1e-9 * static_cast<double>(paired.poses.front().time_ns);
+  out.last_s = 1e-9 * static_cast<double>(paired.poses.back().time_ns);
+  return out;
+}
+
+std::string alignment_text(const Standing& standing) {
+  const Eigen::Vector3d& t = standing.alignment.translation_m;
+  return fmt::format(
+      "position and yaw at the first pose that the truth knows, {:.3f} s: yaw {:.6g} rad, ({:.6g}, {:.6g}, "
+      "{:.6g}) m; scale and tilt are not aligned",
+      standing.first_s, standing.alignment.yaw_rad, t.x(), t.y(), t.z());
+}
+
+std::string cover_text(const Standing& standing) {
+  return fmt::format("{:.1f} % of the recording's time, {:.3f} s to {:.3f} s of {:.3f} s", 100.0 * standing.share(),
+                     standing.first_s, standing.last_s, standing.end_s);
+}
+
+/// A trajectory of somebody else is judged over what it answers, and how much that is is said.
+void judge_trajectory(const Session& session, const Standing& standing, const scenarios::Estimate& estimate,
+                      const scenarios::ScoringInput& input, scenarios::Outcome& outcome) {
+  if (outcome.status == "diverged" && scenarios::trajectory_holds(estimate, input)) {
+    outcome.status = "partial";
+    outcome.message = "covers " + cover_text(standing);
+  }
+  session.note("scored as " + std::string(to_string(outcome.kind)) + ", covers " + cover_text(standing));
+  session.note("aligned in " + alignment_text(standing));
+}
+
+nlohmann::json to_json(const Standing& standing) {
+  const Eigen::Vector3d& t = standing.alignment.translation_m;
+  return {{"covered", {{"first_s", standing.first_s}, {"last_s", standing.last_s}, {"share", standing.share()}}},
+          {"alignment",
+           {{"of", "position and yaw"},
+            {"at_s", standing.first_s},
+            {"yaw_rad", standing.alignment.yaw_rad},
+            {"translation_m", {t.x(), t.y(), t.z()}}}}};
+}
+
+/// Of a TUM file: as named, else position of a rolling sphere and of what has no lidar, else slam.
+scenarios::Kind kind_of(const std::string& name, const sim::Sensors& sensors) {
+  if (name.empty()) {
+    return sensors.lidars.empty() || sensors.sphere_radius_m > 0.0 ? scenarios::Kind::position : scenarios::Kind::slam;
+  }
+  const std::vector<std::string> known = {"position", "slam"};
+  require_known("kind of a trajectory", name, known);
+  return name == "slam" ? scenarios::Kind::slam : scenarios::Kind::position;
+}
+
 int score_estimate(const Session& session, const Options& options) {
   const scenarios::RecordingInfo info = scenarios::read_info(options.recording);
   if (!info.has_truth) throw scenarios::BadInput(options.recording.string() + ": holds no truth to score against");
@@ -81,31 +145,45 @@ int score_estimate(const Session& session, const Options& options) {
   scenarios::Estimate estimate =
       scenarios::read_estimate(options.estimate, outcome.kind, outcome.method, frame_of(options.frame, truth));
   require_own(options, sensors);
-  if (!std::filesystem::is_directory(options.estimate)) move_to_clock(info.origin_ns, estimate);
+  const bool foreign = !std::filesystem::is_directory(options.estimate);
+  if (!foreign && !options.kind.empty())
+    throw scenarios::BadInput("--kind is for a TUM file; " + options.estimate.string() + " says what it is");
+  if (foreign) {
+    outcome.kind = kind_of(options.kind, sensors);
+    move_to_clock(info.origin_ns, estimate);
+  }
 
   if (outcome.kind == scenarios::Kind::position || outcome.kind == scenarios::Kind::slam) {
     require_common_time(options, estimate, truth);
   }
 
-  // the true surface matters to maps alone, and building it takes a while
+  // the true surface matters to maps alone, and building it takes a while; somebody else's trajectory has none
   std::optional<sim::Surface> surface;
-  if (outcome.kind == scenarios::Kind::slam && !info.situation_yaml.empty()) {
+  if (outcome.kind == scenarios::Kind::slam && !foreign && !info.situation_yaml.empty()) {
     surface.emplace(scenarios::situation_from_yaml(info.situation_yaml, options.recording.string()),
                     session.data().models());
   }
   const scenarios::ScoringInput input{&sensors, &truth, surface ? &*surface : nullptr};
   outcome.scenario = info.scenario;
   outcome.seed = info.seed;
+  // somebody else's trajectory has no sweeps whose registration could be judged
+  const scenarios::Kind judged = foreign ? scenarios::Kind::position : outcome.kind;
   outcome.status =
-      estimate.status.ok() ? scenarios::verdict(outcome.kind, estimate, input) : scenarios::OutcomeStatus::failed;
+      estimate.status.ok() ? scenarios::verdict(judged, estimate, input) : scenarios::OutcomeStatus::failed;
   outcome.message = estimate.status.ok() ? "" : estimate.status.message();
   outcome.scores = scenarios::score(outcome.kind, estimate, input);
+  std::optional<Standing> standing;
+  if (foreign) {
+    standing = standing_of(estimate, truth);
+    judge_trajectory(session, *standing, estimate, input, outcome);
+  }
 
   const std::vector<scenarios::Outcome> outcomes = {outcome};
-  const nlohmann::json document = {{"kind", to_string(outcome.kind)},
-                                   {"method", outcome.method},
-                                   {"status", to_string(outcome.status)},
-                                   {"scores", score_rows(outcomes)}};
+  nlohmann::json document = {{"kind", to_string(outcome.kind)},
+                             {"method", outcome.method},
+                             {"status", to_string(outcome.status)},
+                             {"scores", score_rows(outcomes)}};
+  if (standing) document.update(to_json(*standing));
   session.print(score_tables(options.estimate.string(), outcomes), document);
   return kDone;
 }
@@ -119,6 +197,9 @@ Action declare_score(CLI::App& app, const Session& session) {
   app.add_option("RECORDING", options->recording, "the recording with its truth, FILE.h5")->required();
   app.add_option("--frame", options->frame,
                  "whose poses a TUM file holds: imu, lidar, body or centre [imu; body where the recording has none]");
+  app.add_option("--kind", options->kind,
+                 "what a TUM file is scored as: position or slam, which adds the rotation at the end [slam where the "
+                 "recording has a lidar and no rolling sphere]");
   return [&session, options] { return score_estimate(session, *options); };
 }
 

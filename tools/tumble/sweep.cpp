@@ -21,7 +21,7 @@ struct Options {
   std::string suite;
   std::string seeds, shard;
   std::vector<std::string> methods, again;
-  int jobs = 1;
+  int jobs = available_processors();
   std::filesystem::path database, recordings;
 };
 
@@ -112,14 +112,16 @@ int run_sweep(const Session& session, const Options& options) {
 
 Action declare_sweep(CLI::App& app, const Session& session) {
   auto options = std::make_shared<Options>();
-  app.add_option("SUITE", options->suite, "a suite, a suite file, or a scenario")->required();
+  app.add_option("SUITE", options->suite, "a suite, a suite file, or a scenario")->required()->check(a_suite(session));
   // an empty word would mean all of them
   const CLI::Validator filled([](std::string& text) { return text.empty() ? std::string("is empty") : std::string(); },
                               "");
   app.add_option("--seeds", options->seeds, "A..B, both included [the suite's]")->check(filled);
   app.add_option("--method", options->methods, "a method; repeat for more [the suite's]")
       ->allow_extra_args(false);  // the word after a method is not another one
-  app.add_option("--jobs", options->jobs, "processes at a time")->check(CLI::Range(1, 1024))->capture_default_str();
+  app.add_option("--jobs", options->jobs, "processes at a time [the processors]")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
   app.add_option("--shard", options->shard, "i/n: the i-th of n parts of the seeds")->check(filled);
   app.add_option("--again", options->again, "run rows of these statuses once more: crashed,timeout,killed")
       ->delimiter(',')

@@ -121,7 +121,9 @@ int run_triage(const Session& session, const Options& options) {
 
 Action declare_triage(CLI::App& app, const Session& session) {
   auto options = std::make_shared<Options>();
-  app.add_option("SCENARIO", options->scenario, "a scenario of the catalogue, or a scenario file")->required();
+  app.add_option("SCENARIO", options->scenario, "a scenario of the catalogue, or a scenario file")
+      ->required()
+      ->check(a_scenario(session));
   app.add_option("--seed", options->seed, "which draw of it")->required();
   app.add_option("--method", options->method, "the method that fails")->required();
   app.add_option("--metric", options->metric,

@@ -130,14 +130,19 @@ std::string sensor_name(std::string topic) {
   return topic;
 }
 
-sim::ImuRecord read_imu(const Bag& bag, const std::string& topic, const BagReading& reading) {
+sim::ImuRecord read_imu(const Bag& bag, const std::string& topic, const BagReading& reading,
+                        std::vector<std::string>& notes) {
   sim::ImuRecord imu = without_readings(reading.imu);
   imu.name = sensor_name(topic);
   bag.read<ros::Imu>(topic, [&](const ros::Imu& message, const std::string& where) {
     add_reading(where, stamp_of(message.header), Eigen::Vector3d::Map(message.angular_velocity.data()),
                 scale_of(reading.accel_unit) * Eigen::Vector3d::Map(message.linear_acceleration.data()), imu);
   });
-  finish_readings(bag.place + ": topic " + topic, reading.accel_unit, imu);
+  const std::string where = bag.place + ": topic " + topic;
+  finish_readings(where, reading.accel_unit, imu);
+  // messages are in rad/s by their definition, and not every driver keeps to it
+  const std::string units = require_gravity_turns(where, imu, GyroUnit::rad_s);
+  if (!units.empty()) notes.push_back(topic + ": " + units);
   return imu;
 }
 
@@ -205,7 +210,7 @@ Imported import_bag(BagReader& reader, const std::filesystem::path& path, const 
   const Bag bag{reader, path.string(), reader.topics()};
   Imported out;
   for (const std::string& topic : bag.chosen(reading.imu_topics, kImu))
-    out.sensors.imus.push_back(read_imu(bag, topic, reading));
+    out.sensors.imus.push_back(read_imu(bag, topic, reading, out.notes));
   for (const std::string& topic : bag.chosen(reading.lidar_topics, kCloud))
     out.sensors.lidars.push_back(read_lidar(bag, topic, reading, out.notes));
   if (out.sensors.imus.empty() && out.sensors.lidars.empty()) {

@@ -13,6 +13,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
+#include "scenarios/recordings/bags/ros1_chunks.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 
 namespace tumble::scenarios {
@@ -158,7 +159,10 @@ class Ros1BagReader : public BagReader {
  public:
   explicit Ros1BagReader(const std::filesystem::path& file) : file_(file) {
     check_ros1_bag(file);
-    guarded(file_, kUnreadable, [&] { bag_.open(file.string(), rosbag::bagmode::Read); });
+    if (has_lz4_chunks(file))
+      open_unpacked();
+    else
+      open(file);
   }
 
   std::vector<BagTopic> topics() override {
@@ -191,6 +195,25 @@ class Ros1BagReader : public BagReader {
   bool cdr() const override { return false; }
 
  private:
+  void open_unpacked() {
+    // unlinked as soon as it is open: gone with the reader, however that ends
+    const OutputFile unpacked(std::filesystem::temp_directory_path() / "tumble_unpacked.bag");
+    copy_ros1_bag(file_, unpacked.unfinished(), [](Ros1Chunk& chunk) {
+      if (chunk.compression == "lz4") unpack_lz4(chunk);
+    });
+    try {
+      check_ros1_bag(unpacked.unfinished());
+    } catch (const BadInput& error) {
+      throw BadInput(file_.string() +
+                     ": unpacked: " + std::string(error.what()).substr(unpacked.unfinished().string().size() + 2));
+    }
+    open(unpacked.unfinished());
+  }
+
+  void open(const std::filesystem::path& file) {
+    guarded(file_, kUnreadable, [&] { bag_.open(file.string(), rosbag::bagmode::Read); });
+  }
+
   static constexpr const char* kUnreadable = "cannot be read as a ROS 1 bag";
   std::filesystem::path file_;
   rosbag::Bag bag_;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rails of real gyros (RepoIMU, where it is at hand), and none where a real gyro does not clip (BROAD).
+// Rails of real gyros (RepoIMU) and none where a real gyro does not clip (BROAD): the published files where they are at
+// hand, their stand-ins everywhere.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -10,7 +11,7 @@
 #include <vector>
 
 #include "estimator/attitude/broad_trial.hpp"
-#include "tests/tree.hpp"
+#include "stand_ins/stand_ins.hpp"
 #include "tumble/angular_velocity/rail_planes.hpp"
 
 namespace tumble {
@@ -42,6 +43,7 @@ std::vector<ImuSample> read_repoimu(const std::filesystem::path& file) {
 }
 
 struct Known {
+  test::DataFolder folder;
   const char* file;
   int axis;
   double distance, offset, first_slope, second_slope;  // along (axis + 1) % 3 and (axis + 2) % 3
@@ -51,9 +53,7 @@ struct Known {
 class RealRails : public ::testing::TestWithParam<Known> {};
 
 TEST_P(RealRails, AreFoundWithoutAnybodyStatingThem) {
-  const std::filesystem::path file = test::shared_data() / "repoimu" / GetParam().file;
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << "shared data not present";
-  const std::vector<ImuSample> samples = read_repoimu(file);
+  const std::vector<ImuSample> samples = read_repoimu(test::written(GetParam().folder) / GetParam().file);
   ASSERT_GT(samples.size(), 1000u);
   const RailPlanes planes = RailPlaneFinder({}).find(samples);
   const auto axis = static_cast<std::size_t>(GetParam().axis);
@@ -71,24 +71,31 @@ TEST_P(RealRails, AreFoundWithoutAnybodyStatingThem) {
   EXPECT_NEAR(clipped, GetParam().samples, 0.06 * GetParam().samples);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    RepoImu, RealRails,
-    ::testing::Values(Known{"TStick_Test05_Trial1.csv", 0, 7.2987, -0.046, -0.006, 0.0181, 1509},
-                      Known{"TStick_Test10_Trial1.csv", 0, 7.3041, -0.058, -0.001, 0.0209, 215},
-                      Known{"Pendulum_Test02a_Trial1_Segment_3.csv", 2, 10.2935, 0.0, -0.0515, 0.003, 98},
-                      Known{"Pendulum_Test07_Trial3_Segment_3.csv", 2, 10.2935, 0.0, -0.0515, 0.003, 42}));
+std::vector<Known> known_rails() {
+  const std::vector<test::DataFolder> folders = test::data_folders("repoimu");
+  const test::WandRail made;
+  std::vector<Known> all = {{folders.front(), test::kStandInWand, 0, made.distance_rad_s, made.offset_rad_s,
+                             -made.y_slope, -made.z_slope, test::stand_in_wand_clipped()}};
+  if (folders.size() == 1) return all;
+  const test::DataFolder& real = folders.back();
+  all.push_back({real, "TStick_Test05_Trial1.csv", 0, 7.2987, -0.046, -0.006, 0.0181, 1509});
+  all.push_back({real, "TStick_Test10_Trial1.csv", 0, 7.3041, -0.058, -0.001, 0.0209, 215});
+  all.push_back({real, "Pendulum_Test02a_Trial1_Segment_3.csv", 2, 10.2935, 0.0, -0.0515, 0.003, 98});
+  all.push_back({real, "Pendulum_Test07_Trial3_Segment_3.csv", 2, 10.2935, 0.0, -0.0515, 0.003, 42});
+  return all;
+}
 
-class NoRails : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(RepoImu, RealRails, ::testing::ValuesIn(known_rails()));
+
+class NoRails : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(NoRails, AreFoundInARealGyroThatDoesNotClip) {
-  const std::string folder = testing::broad_folder();
-  if (folder.empty()) GTEST_SKIP() << "shared data not present";
-  const std::vector<ImuSample> samples = testing::read_broad_trial(folder, GetParam()).samples;
+  const std::vector<ImuSample> samples = testing::read_broad_trial(GetParam()).samples;
   ASSERT_GT(samples.size(), 10000u);
   EXPECT_FALSE(RailPlaneFinder({}).find(samples).any());
 }
 
-INSTANTIATE_TEST_SUITE_P(Broad, NoRails, ::testing::Values("05", "07", "09", "11", "14", "16", "24", "27"));
+INSTANTIATE_TEST_SUITE_P(Broad, NoRails, ::testing::ValuesIn(testing::broad_trials()));
 
 }  // namespace
 }  // namespace tumble

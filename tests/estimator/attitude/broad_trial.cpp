@@ -8,6 +8,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "stand_ins/stand_ins.hpp"
 #include "tests/tree.hpp"
 #include "tumble/common/so3.hpp"
 
@@ -76,6 +77,12 @@ struct MeanSquare {
 
 }  // namespace
 
+std::vector<std::string> broad_trials() {
+  std::vector<std::string> numbers = {test::kStandInTrial};
+  if (!broad_folder().empty()) numbers.insert(numbers.end(), {"05", "07", "09", "11", "14", "16", "24", "27"});
+  return numbers;
+}
+
 std::string broad_folder() {
   const std::filesystem::path folder = test::shared_data() / "broad";
   return std::filesystem::is_directory(folder) ? folder.string() : std::string();
@@ -92,6 +99,11 @@ BroadTrial read_broad_trial(const std::string& folder, const std::string& number
     return trial;
   }
   throw std::runtime_error("no trial " + number + " in " + folder);
+}
+
+BroadTrial read_broad_trial(const std::string& number) {
+  if (number != test::kStandInTrial) return read_broad_trial(broad_folder(), number);
+  return read_broad_trial(test::written(test::data_folders("broad").front()).string(), number);
 }
 
 BroadError score(const BroadTrial& trial, const std::vector<Eigen::Quaterniond>& q_WI) {

@@ -16,11 +16,17 @@ struct BroadTrial {
   std::vector<bool> moving;
 };
 
-/// Folder of the trials; empty when the shared data are not there.
+/// Numbers of the trials at hand: the stand-in's ("00", tests/stand_ins) and the eight real ones where they are there.
+std::vector<std::string> broad_trials();
+
+/// Folder of the real trials; empty when the shared data are not there.
 std::string broad_folder();
 
 /// Reads the trial whose file name begins with `number` ("05"). Throws std::runtime_error when it cannot.
 BroadTrial read_broad_trial(const std::string& folder, const std::string& number);
+
+/// One of `broad_trials()`.
+BroadTrial read_broad_trial(const std::string& number);
 
 /// Root mean square errors in degrees as BROAD defines them, samples without reference left out.
 struct BroadError {

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "estimator/attitude/sphere_log.hpp"
-#include "tests/tree.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -35,11 +33,6 @@ TimeNs parse_stamp(const std::string& text) {
 }
 
 }  // namespace
-
-std::string sphere_log_path() {
-  const auto path = test::shared_data() / "sphere_log" / "orientation_all.csv";
-  return std::filesystem::is_regular_file(path) ? path.string() : std::string();
-}
 
 SphereLog read_sphere_log(const std::string& path) {
   std::ifstream file(path);

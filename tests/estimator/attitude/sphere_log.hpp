@@ -9,14 +9,12 @@
 
 namespace tumble::testing {
 
-/// A real rolling sphere as its authors logged it: merged samples (force in m/s^2) and their attitude after each.
+/// A rolling sphere in the form in which its authors logged the real one: merged samples (force in m/s^2) and their
+/// attitude after each.
 struct SphereLog {
   std::vector<ImuSample> samples;
   std::vector<Eigen::Quaterniond> q_WI;
 };
-
-/// Path of the log in the shared data; empty when it is not there.
-std::string sphere_log_path();
 
 /// Reads the log by the names in its header line. Throws std::runtime_error when it cannot.
 SphereLog read_sphere_log(const std::string& path);

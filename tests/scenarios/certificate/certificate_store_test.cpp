@@ -55,6 +55,17 @@ TEST_F(CertificateStoreTest, AFolderThatCannotBeWrittenIsNoError) {
   EXPECT_FALSE(below.find().has_value());
 }
 
+TEST_F(CertificateStoreTest, OnlyARegularFileIsReplaced) {
+  store().keep(sample());
+  const auto file = std::filesystem::directory_iterator(folder_ / "cache")->path();
+  std::filesystem::remove(file);
+  std::filesystem::create_symlink("/dev/null", file);
+  store().keep(sample());  // no error, no cache
+  EXPECT_TRUE(std::filesystem::is_symlink(file));
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_ / "cache"), {}), 1)
+      << "nothing is left beside it";
+}
+
 TEST_F(CertificateStoreTest, ResultsGetItOnceAndKeepIt) {
   const CertificateInput input{DataRoot{test::source_dir()}, ""};
   CertifyOptions options;

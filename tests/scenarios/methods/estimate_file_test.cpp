@@ -5,9 +5,12 @@
 #include <unistd.h>
 
 #include <fstream>
+#include <iterator>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/methods/map_file.hpp"
 #include "scenarios/methods/synthetic_recording.hpp"
+#include "scenarios/methods/table_file.hpp"
 #include "scenarios/scoring/score.hpp"
 
 namespace tumble::scenarios {
@@ -181,6 +184,39 @@ TEST_F(EstimateFile, NothingOfAnEarlierEstimateStays) {
   Kind kind;
   std::string method;
   EXPECT_EQ(read_estimate(folder_, kind, method, Frame::imu).map.size(), 0u);
+}
+
+// beside its place and then renamed, as everything else that is written
+TEST_F(EstimateFile, WhatIsNotFinishedReplacesNothing) {
+  const std::filesystem::path path = write("rates.csv", "old\n");
+  const auto text = [&] {
+    std::ifstream file(path);
+    return std::string{std::istreambuf_iterator<char>(file), {}};
+  };
+  {
+    TableWriter table(path, ',', "a,b");
+    for (int k = 0; k < 100000; ++k) {
+      table.integer(k);
+      table.number(0.5);
+      table.end_row();
+    }
+  }  // as when the disk is full, or the run dies
+  EXPECT_EQ(text(), "old\n");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1) << "nothing is left beside it";
+  TableWriter table(path, ',', "a,b");
+  table.integer(1);
+  table.integer(2);
+  table.end_row();
+  EXPECT_EQ(text(), "old\n");
+  table.close();
+  EXPECT_EQ(text(), "a,b\n1,2\n");
+}
+
+TEST_F(EstimateFile, OnlyRegularFilesAreReplaced) {
+  std::filesystem::create_symlink("/dev/null", folder_ / "link");
+  EXPECT_THROW(TableWriter(folder_ / "link", ',', "a"), BadInput);
+  EXPECT_THROW(write_map(folder_ / "link", std::vector<MapPoint>(3)), BadInput);
+  EXPECT_TRUE(std::filesystem::is_symlink(folder_ / "link"));
 }
 
 TEST_F(EstimateFile, AFolderThatCannotBeMadeIsBadInput) {

@@ -4,7 +4,7 @@
 
 #include "scenarios/recordings/fixture_recording.hpp"
 #include "scenarios/recordings/import.hpp"
-#include "tests/tree.hpp"
+#include "stand_ins/stand_ins.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -65,14 +65,38 @@ TEST_F(Airbrakes, BadInputHasFileLineValueAndBound) {
   EXPECT_THAT(complaint_of(doubled), HasSubstr("two columns are called raw_angular_rate_x_deg_per_s"));
 }
 
-TEST_F(Airbrakes, ReadsThePublishedFlights) {
-  const std::filesystem::path folder = test::shared_data() / "airbrakes";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "the flights are not at " << folder;
+double peak_rad_s(const Imported& flight) {
+  double peak = 0.0;
+  for (const Eigen::Vector3d& w : flight.sensors.imus.at(0).gyro_rad_s) peak = std::max(peak, w.norm());
+  return peak;
+}
+
+TEST_F(Airbrakes, ReadsTheStandIn) {
+  const Imported flight =
+      import_airbrakes(test::written(test::data_folders("airbrakes").front()) / test::kStandInFlight);
+  EXPECT_EQ(flight.sensors.imus[0].time_ns.size(), 2000u) << "ten rows repeat a stamp, seven come long before";
+  EXPECT_NEAR(peak_rad_s(flight), 38.9, 0.1);
+  EXPECT_THAT(flight.notes,
+              ElementsAre("1 gaps of more than 1 s: the longest stretch is kept, samples 7 to 2006 of 2007",
+                          "10 rows repeat a stamp: left out"));
+}
+
+/// The published flights, where they are at hand; the suite is there with them alone.
+class AirbrakesPublished : public ::testing::TestWithParam<std::filesystem::path> {};
+
+std::vector<std::filesystem::path> published() {
+  const std::vector<test::DataFolder> folders = test::data_folders("airbrakes");
+  return folders.back().real ? std::vector{folders.back().path} : std::vector<std::filesystem::path>();
+}
+
+INSTANTIATE_TEST_SUITE_P(Flights, AirbrakesPublished, ::testing::ValuesIn(published()));
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(AirbrakesPublished);
+
+TEST_P(AirbrakesPublished, AreRead) {
+  const std::filesystem::path folder = GetParam();
   const Imported flight = import_airbrakes(folder / "jackpot_launch_3.csv");
   EXPECT_EQ(flight.sensors.imus[0].time_ns.size(), 7646u);
-  double peak = 0.0;
-  for (const Eigen::Vector3d& w : flight.sensors.imus[0].gyro_rad_s) peak = std::max(peak, w.norm());
-  EXPECT_NEAR(peak, 38.9, 0.1) << "2229 deg/s";
+  EXPECT_NEAR(peak_rad_s(flight), 38.9, 0.1) << "2229 deg/s";
   const Imported other = import_airbrakes(folder / "government_work_1_airbrakes.csv");
   EXPECT_EQ(other.sensors.imus[0].time_ns.size(), 6853u) << "nine rows repeat a stamp, seven come long before";
 }

@@ -4,12 +4,15 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <lz4frame.h>
 
 #include <cmath>
 
 #include "scenarios/recordings/bags/bag_storage.hpp"
+#include "scenarios/recordings/bags/ros1_chunks.hpp"
 #include "scenarios/recordings/export.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"
+#include "scenarios/recordings/recording_file.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -121,6 +124,32 @@ INSTANTIATE_TEST_SUITE_P(Kinds, Bag,
                                          Kind{"Ros2", export_ros2_bag, import_ros2_bag}),
                          [](const auto& kind) { return std::string(kind.param.name); });
 
+// messages say rad/s; a driver that writes degrees is noticed where gravity turns slowly
+TEST_P(Bag, RatesInDegreesAreNoticedByGravity) {
+  const auto turning = [&](double scale, double sign) {
+    sim::ImuRecord& imu = recording_.sensors.imus[0];
+    recording_.sensors.imus.resize(1);
+    recording_.sensors.lidars.clear();
+    for (auto* rows : {&imu.gyro_rad_s, &imu.accel_m_s2}) rows->clear();
+    imu.time_ns.clear();
+    for (int k = 0; k < 500; ++k) {
+      const double angle = 0.5 * std::sin(0.02 * k);
+      imu.time_ns.push_back(10'000'000LL * k);
+      imu.gyro_rad_s.emplace_back(scale * std::cos(0.02 * k), 0.0, 0.0);
+      imu.accel_m_s2.emplace_back(0.0, sign * 9.80665 * std::sin(angle), 9.80665 * std::cos(angle));
+    }
+    imu.clip_flags.assign(imu.time_ns.size(), 0);
+    std::filesystem::remove_all(path_);
+    write();
+  };
+  turning(1.0, 1.0);
+  EXPECT_THAT(read().notes, testing::Contains(HasSubstr("units and axes agree")));
+  turning(57.29578, 1.0);
+  EXPECT_THAT(complaint_of(), HasSubstr("are the rates in deg/s?"));
+  turning(1.0, -1.0);
+  EXPECT_THAT(read().notes, testing::Contains(HasSubstr("caution: gravity turns")));
+}
+
 using HostileBag = fixture::Folder;
 
 sim::Sensors small_sensors() {
@@ -132,6 +161,68 @@ sim::Sensors small_sensors() {
     rows->assign(3, Eigen::Vector3d(0, 0, 9.8));
   }
   return recording.sensors;
+}
+
+/// A chunk as others pack it: blocks that lean on the ones before, checksums, the size of the content.
+void pack_lz4(Ros1Chunk& chunk) {
+  LZ4F_preferences_t how{};
+  how.frameInfo.blockMode = LZ4F_blockLinked;
+  how.frameInfo.blockSizeID = LZ4F_max64KB;
+  how.frameInfo.contentChecksumFlag = LZ4F_contentChecksumEnabled;
+  how.frameInfo.contentSize = chunk.data.size();
+  std::string packed(LZ4F_compressFrameBound(chunk.data.size(), &how), '\0');
+  packed.resize(LZ4F_compressFrame(packed.data(), packed.size(), chunk.data.data(), chunk.data.size(), &how));
+  chunk.data = packed;
+  chunk.compression = "lz4";
+}
+
+class Lz4Bag : public fixture::Folder {
+ protected:
+  Lz4Bag() {
+    export_ros1_bag(sensors_, {}, folder_ / "plain.bag");
+    copy_ros1_bag(folder_ / "plain.bag", folder_ / "lz4.bag", pack_lz4);
+  }
+  std::string complaint_of(const std::string& bytes) {
+    fixture::put(folder_ / "b.bag", bytes);
+    return fixture::complaint([&] { import_ros1_bag(folder_ / "b.bag", {}); });
+  }
+  sim::Sensors sensors_ = small_sensors();
+};
+
+TEST_F(Lz4Bag, IsReadLikeAPlainOne) {
+  EXPECT_TRUE(has_lz4_chunks(folder_ / "lz4.bag"));
+  EXPECT_FALSE(has_lz4_chunks(folder_ / "plain.bag"));
+  const Imported plain = import_ros1_bag(folder_ / "plain.bag", {}), lz4 = import_ros1_bag(folder_ / "lz4.bag", {});
+  EXPECT_EQ(digest(lz4.sensors, nullptr), digest(plain.sensors, nullptr));
+  ASSERT_EQ(lz4.sensors.imus.size(), 1u);
+  EXPECT_EQ(lz4.sensors.imus[0].gyro_rad_s, sensors_.imus[0].gyro_rad_s);
+  // and back to the very bytes
+  copy_ros1_bag(folder_ / "lz4.bag", folder_ / "back.bag", unpack_lz4);
+  EXPECT_EQ(fixture::bytes_of(folder_ / "back.bag"), fixture::bytes_of(folder_ / "plain.bag"));
+}
+
+TEST_F(Lz4Bag, DamageIsOneLine) {
+  const std::string whole = fixture::bytes_of(folder_ / "lz4.bag");
+  int refused = 0;
+  for (std::size_t at = 0; at < whole.size(); at += 97) {
+    std::string bytes = whole;
+    bytes[at] = static_cast<char>(bytes[at] ^ 0xff);
+    const std::string complaint = complaint_of(bytes);
+    EXPECT_THAT(complaint, testing::Not(HasSubstr("\n")));
+    refused += complaint.empty() ? 0 : 1;
+  }
+  EXPECT_GT(refused, 10);
+  const auto states = [](std::int64_t change) {
+    return [change](Ros1Chunk& chunk) {
+      pack_lz4(chunk);
+      chunk.unpacked_bytes = static_cast<std::uint32_t>(chunk.unpacked_bytes + change);
+    };
+  };
+  copy_ros1_bag(folder_ / "plain.bag", folder_ / "more.bag", states(-1));
+  EXPECT_THAT(fixture::complaint([&] { import_ros1_bag(folder_ / "more.bag", {}); }), HasSubstr("its LZ4 frame"));
+  copy_ros1_bag(folder_ / "plain.bag", folder_ / "fewer.bag", states(1));
+  EXPECT_THAT(fixture::complaint([&] { import_ros1_bag(folder_ / "fewer.bag", {}); }),
+              HasSubstr("bytes, the chunk states"));
 }
 
 // a bag is refused, or read: it never ends the program, whatever byte of it is gone or changed

@@ -10,7 +10,7 @@
 
 #include "scenarios/recordings/export.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"
-#include "tests/tree.hpp"
+#include "stand_ins/stand_ins.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -106,14 +106,16 @@ TEST_F(ImportCsv, AnotherUnitOrAMissingColumnIsSaid) {
   }
 }
 
-TEST_F(ImportCsv, ReadsTheLogOfARealSphere) {
-  const std::filesystem::path log = test::shared_data() / "sphere_log/orientation_all.csv";
-  if (!std::filesystem::exists(log)) GTEST_SKIP() << "the log of the sphere is not at " << log;
-  const sim::ImuRecord imu = import_imu_csv(log, {}, AccelUnit::g).sensors.imus.at(0);
-  ASSERT_EQ(imu.time_ns.size(), 7294u);
-  EXPECT_NEAR(static_cast<double>(imu.period_ns), 8e6, 1e5) << "125 Hz";
-  EXPECT_NEAR(static_cast<double>(imu.time_ns.back()) * 1e-9, 58.34, 0.01);
-  EXPECT_NEAR(imu.accel_m_s2[0].norm(), 9.81, 0.1) << "at rest at the start";
+TEST_F(ImportCsv, ReadsTheLogOfASphere) {
+  for (const test::DataFolder& folder : test::data_folders("sphere_log")) {
+    SCOPED_TRACE(folder.path);
+    const auto log = test::written(folder) / test::kSphereLogFile;
+    const sim::ImuRecord imu = import_imu_csv(log, {}, AccelUnit::g).sensors.imus.at(0);
+    ASSERT_EQ(imu.time_ns.size(), folder.real ? 7294u : test::kStandInSphereSamples);
+    EXPECT_NEAR(static_cast<double>(imu.period_ns), 8e6, 1e5) << "125 Hz";
+    EXPECT_NEAR(static_cast<double>(imu.time_ns.back()) * 1e-9, folder.real ? 58.34 : 30.0, 0.01);
+    EXPECT_NEAR(imu.accel_m_s2[0].norm(), 9.81, 0.1) << "at rest at the start";
+  }
 }
 
 /// The lines of a file with their columns in another order.
@@ -243,17 +245,25 @@ TEST_F(ImportCsv, BadInputHasFileAndLine) {
   EXPECT_THAT(fixture::complaint([&] { import_imu_csv(folder_, {}); }), HasSubstr("no such file"));
 }
 
-using ImportBroad = fixture::Folder;
+class ImportBroad : public fixture::Folder, public ::testing::WithParamInterface<test::DataFolder> {
+ protected:
+  /// The trial of that name, or the stand-in.
+  static std::string trial(const char* real) { return GetParam().real ? real : "00_stand_in_hand"; }
+  static Imported import_trial(const char* real) {
+    return import_broad(test::written(GetParam()) / (trial(real) + ".hdf5"));
+  }
+};
 
-TEST_F(ImportBroad, ReadsATrialAndKeepsTheAttribution) {
-  const std::filesystem::path trial = test::shared_data() / "broad/24_disturbed_tapping_A.hdf5";
-  if (!std::filesystem::exists(trial)) GTEST_SKIP() << "the BROAD trials are not at " << trial;
-  const Imported imported = import_broad(trial);
+INSTANTIATE_TEST_SUITE_P(Trials, ImportBroad, ::testing::ValuesIn(test::data_folders("broad")), test::FolderName());
+
+TEST_P(ImportBroad, ReadsATrialAndKeepsTheAttribution) {
+  const Imported imported = import_trial("24_disturbed_tapping_A");
+  const std::size_t count = GetParam().real ? 57746u : test::kStandInTrialSamples;
   ASSERT_EQ(imported.sensors.imus.size(), 1u);
   const sim::ImuRecord& imu = imported.sensors.imus[0];
-  ASSERT_EQ(imu.time_ns.size(), 57746u);
+  ASSERT_EQ(imu.time_ns.size(), count);
   EXPECT_EQ(imu.period_ns, 3500000) << "285.714 Hz";
-  EXPECT_NEAR(static_cast<double>(imu.time_ns.back()) * 1e-9, 57745 / 285.7142857, 1e-5);
+  EXPECT_NEAR(static_cast<double>(imu.time_ns.back()) * 1e-9, static_cast<double>(count - 1) / 285.7142857, 1e-5);
   // at rest at the start: gravity, +9.8 up, and hardly a rate
   EXPECT_NEAR(imu.accel_m_s2[0].norm(), 9.81, 0.1);
   EXPECT_LT(imu.gyro_rad_s[0].norm(), 0.05);
@@ -261,15 +271,13 @@ TEST_F(ImportBroad, ReadsATrialAndKeepsTheAttribution) {
   ASSERT_EQ(imu.magnetic_field_t.size(), imu.time_ns.size());
   EXPECT_NEAR(imu.magnetic_field_t[0].norm(), 49e-6, 15e-6);
   EXPECT_THAT(imported.info.attribution, HasSubstr("Laidig"));
-  EXPECT_THAT(imported.info.attribution, HasSubstr("CC BY 4.0; trial 24_disturbed_tapping_A"));
+  EXPECT_THAT(imported.info.attribution, HasSubstr("CC BY 4.0; trial " + trial("24_disturbed_tapping_A")));
   write_recording(folder_ / "a.h5", imported.info, imported.sensors, nullptr);
   EXPECT_EQ(read_info(folder_ / "a.h5").attribution, imported.info.attribution);
 }
 
-TEST_F(ImportBroad, TheReferenceAgreesWithTheReadings) {
-  const std::filesystem::path trial = test::shared_data() / "broad/05_undisturbed_slow_rotation_with_breaks_B.hdf5";
-  if (!std::filesystem::exists(trial)) GTEST_SKIP() << "the BROAD trials are not at " << trial;
-  const Imported imported = import_broad(trial);
+TEST_P(ImportBroad, TheReferenceAgreesWithTheReadings) {
+  const Imported imported = import_trial("05_undisturbed_slow_rotation_with_breaks_B");
   ASSERT_TRUE(imported.reference.has_value());
   const sim::Truth& truth = *imported.reference;
   const sim::ImuRecord& imu = imported.sensors.imus[0];
@@ -284,7 +292,7 @@ TEST_F(ImportBroad, TheReferenceAgreesWithTheReadings) {
     at_rest.push_back(truth.w_WB_B_rad_s[k].norm());
     up.push_back((truth.q_WB[k] * imu.accel_m_s2[k]).normalized().z());
   }
-  ASSERT_GT(errors.size(), 40000u);
+  ASSERT_GT(errors.size(), GetParam().real ? 40000u : 25000u);
   const auto median = [](std::vector<double> values) {
     std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
     return values[values.size() / 2];
@@ -301,7 +309,9 @@ TEST_F(ImportBroad, TheReferenceAgreesWithTheReadings) {
   EXPECT_EQ(back.q_WB.front().coeffs().hasNaN(), truth.q_WB.front().coeffs().hasNaN());
 }
 
-TEST_F(ImportBroad, OtherFilesAreRefused) {
+using ImportBroadFiles = fixture::Folder;
+
+TEST_F(ImportBroadFiles, OthersAreRefused) {
   const sim::Recording recording = fixture::recording();
   write_recording(folder_ / "a.h5", {}, recording.sensors, nullptr);
   EXPECT_THAT(fixture::complaint([&] { import_broad(folder_ / "a.h5"); }),

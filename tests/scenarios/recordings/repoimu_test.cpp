@@ -10,7 +10,7 @@
 #include "scenarios/recordings/synthetic_repoimu.hpp"
 #include "scenarios/recordings/trajectories/align_reference.hpp"
 #include "scenarios/recordings/trajectories/reference_glitches.hpp"
-#include "tests/tree.hpp"
+#include "stand_ins/stand_ins.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -262,10 +262,37 @@ TEST_F(Repoimu, RatesInDegreesAreNoticedByGravity) {
   EXPECT_THAT(complaint_of(text), HasSubstr("are the rates in deg/s?"));
 }
 
-// the published files, where they are at hand; they are no part of the project
-TEST_F(Repoimu, ReadsThePublishedFiles) {
-  const std::filesystem::path folder = test::shared_data() / "repoimu";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "RepoIMU is not at " << folder;
+TEST_F(Repoimu, ReadsTheStandIn) {
+  const Imported wand = import_repoimu(test::written(test::data_folders("repoimu").front()) / test::kStandInWand, true);
+  EXPECT_EQ(wand.sensors.imus[0].time_ns.size(), 12000u);
+  EXPECT_THAT(all_notes(wand), HasSubstr("units and axes agree"));
+  EXPECT_THAT(all_notes(wand), HasSubstr("leaps of up to"));
+  // the reference's rate is the gyro's wherever that one tells it
+  std::vector<double> errors;
+  const sim::ImuRecord& imu = wand.sensors.imus[0];
+  const std::vector<Eigen::Vector3d>& rates = wand.reference->imus.at(0).rate_rad_s;
+  for (std::size_t k = 0; k < rates.size(); ++k) {
+    if (rates[k].allFinite() && std::abs(imu.gyro_rad_s[k].x()) < 6.0)
+      errors.push_back((rates[k] - imu.gyro_rad_s[k]).norm());
+  }
+  EXPECT_GT(errors.size(), 10000u);
+  EXPECT_LT(median(errors), 0.02);
+}
+
+/// The published files, where they are at hand: they are no part of the project, and the suite is there with them
+/// alone.
+class RepoimuPublished : public ::testing::TestWithParam<std::filesystem::path> {};
+
+std::vector<std::filesystem::path> published() {
+  const std::vector<test::DataFolder> folders = test::data_folders("repoimu");
+  return folders.back().real ? std::vector{folders.back().path} : std::vector<std::filesystem::path>();
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, RepoimuPublished, ::testing::ValuesIn(published()));
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(RepoimuPublished);
+
+TEST_P(RepoimuPublished, AreRead) {
+  const std::filesystem::path folder = GetParam();
   const Imported wand = import_repoimu(folder / "TStick_Test05_Trial1.csv", true);
   EXPECT_EQ(wand.sensors.imus[0].time_ns.size(), 8813u);
   EXPECT_THAT(all_notes(wand), HasSubstr("units and axes agree"));

@@ -18,8 +18,10 @@ struct Wand {
   double gyro_hz = 0.0;   ///< of a sensor slower than the log; 0: as fast
   double accel_hz = 0.0;  ///< the same
   double rail_rad_s = 7.3;
-  double rail_tilt = -0.02;  ///< of the x rail, per rad/s of z
-  double delay_s = 0.012;    ///< the reference lags the IMU
+  double rail_tilt = -0.02;   ///< of the x rail, per rad/s of z
+  double rail_y_slope = 0.0;  ///< the same, per rad/s of y
+  double rail_offset_rad_s = 0.0;
+  double delay_s = 0.012;  ///< the reference lags the IMU
   Eigen::Quaterniond q_IV = Eigen::Quaterniond(Eigen::AngleAxisd(0.07, Eigen::Vector3d(0.2, -0.5, 0.8).normalized()));
   Eigen::Quaterniond q_VW = Eigen::Quaterniond(Eigen::AngleAxisd(0.05, Eigen::Vector3d(1.0, 0.3, 0.0).normalized()));
   std::vector<double> flips_s;  ///< starts of 0.15 s during which markers are taken for one another
@@ -55,8 +57,8 @@ class WandAttitude {
 };
 
 inline Eigen::Vector3d clipped(const Wand& wand, Eigen::Vector3d w) {
-  const double up = wand.rail_rad_s + wand.rail_tilt * w.z(), down = -wand.rail_rad_s + wand.rail_tilt * w.z();
-  w.x() = std::clamp(w.x(), down, up);
+  const double centre = wand.rail_offset_rad_s + wand.rail_y_slope * w.y() + wand.rail_tilt * w.z();
+  w.x() = std::clamp(w.x(), centre - wand.rail_rad_s, centre + wand.rail_rad_s);
   return w;
 }
 

@@ -76,6 +76,9 @@ TEST(Resolve, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(complaint([](Situation& s) { s.robot.type = "spere"; }),
               AllOf(HasSubstr("robot"), HasSubstr("'sphere'")));
   EXPECT_THAT(complaint([](Situation& s) { s.motion.type = "pus"; }), AllOf(HasSubstr("motion"), HasSubstr("'push'")));
+  EXPECT_THAT(complaint([](Situation& s) { s.world.values.set("rock_count", 4.5); }),
+              HasSubstr("rock_count is 4.5, must be a whole number"));
+  EXPECT_EQ(complaint([](Situation& s) { s.world.values.set("rock_count", 4.0); }), "accepted");
   EXPECT_THAT(complaint([](Situation& s) { s.world.values.set("slope_rd", 0.5); }),
               AllOf(HasSubstr("world.hill"), HasSubstr("'slope_rad'")));
   EXPECT_THAT(complaint([](Situation& s) { s.world.values.set("slope_rad", 5); }),

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/recordings/bags/ros1_chunks.hpp"
+
+#include <lz4frame.h>
+
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "scenarios/errors.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr std::uint64_t kMagicBytes = 13;  // "#ROSBAG V2.0\n"
+/// No LZ4 block gives more bytes for one.
+constexpr std::uint32_t kRatioMax = 255;
+enum Op : std::uint8_t { kFile = 3, kChunk = 5, kChunkInfo = 6 };
+
+/// One record. Its header is kept as it stands, so that fields can be changed in their place.
+struct Record {
+  std::uint64_t at = 0;
+  std::string header;
+  std::uint32_t data_bytes = 0;
+
+  /// Place of a field's value in the header and its length; nothing where there is no such field.
+  std::optional<std::pair<std::size_t, std::size_t>> find(const std::string& name) const {
+    for (std::size_t place = 0; place + 4 <= header.size();) {
+      std::uint32_t size = 0;
+      std::memcpy(&size, header.data() + place, 4);
+      const std::size_t begin = place + 4;
+      if (header.compare(begin, name.size() + 1, name + "=") == 0)
+        return std::pair{begin + name.size() + 1, size - name.size() - 1};
+      place = begin + size;
+    }
+    return std::nullopt;
+  }
+  std::string text(const std::string& name) const {
+    const auto found = find(name);
+    return found ? header.substr(found->first, found->second) : "";
+  }
+  template <class Number>
+  Number number(const std::string& name) const {
+    Number value{};
+    const std::string bytes = text(name);
+    if (bytes.size() == sizeof(value)) std::memcpy(&value, bytes.data(), sizeof(value));
+    return value;
+  }
+  template <class Number>
+  void set(const std::string& name, Number value) {
+    const auto found = find(name);
+    if (found && found->second == sizeof(value)) std::memcpy(header.data() + found->first, &value, sizeof(value));
+  }
+  std::uint8_t op() const { return number<std::uint8_t>("op"); }
+};
+
+void append_field(std::string& header, const std::string& field) {
+  const auto size = static_cast<std::uint32_t>(field.size());
+  header.append(reinterpret_cast<const char*>(&size), sizeof(size)).append(field);
+}
+
+template <class Number>
+std::string bytes_of(Number value) {
+  return {reinterpret_cast<const char*>(&value), sizeof(value)};
+}
+
+/// Walks the records of a bag whose lengths are known to fit.
+class Records {
+ public:
+  explicit Records(const std::filesystem::path& path) : path_(path), stream_(path, std::ios::binary) {
+    bytes_ = std::filesystem::file_size(path);
+    magic_ = text(kMagicBytes);
+  }
+  const std::string& magic() const { return magic_; }
+  bool next(Record& record) {
+    if (at_ >= bytes_) return false;
+    record.at = at_;
+    record.header = text(length());
+    record.data_bytes = length();
+    data_left_ = record.data_bytes;
+    return true;
+  }
+  std::string data() {
+    const std::uint32_t size = data_left_;
+    data_left_ = 0;
+    return text(size);
+  }
+  void skip() {
+    stream_.seekg(data_left_, std::ios::cur);
+    at_ += data_left_;
+  }
+  [[noreturn]] void fail(std::uint64_t at, const std::string& what) const {
+    throw BadInput(path_.string() + ": at byte " + std::to_string(at) + ": " + what);
+  }
+
+ private:
+  std::uint32_t length() {
+    std::uint32_t value = 0;
+    std::memcpy(&value, text(sizeof(value)).data(), sizeof(value));
+    return value;
+  }
+  std::string text(std::uint64_t size) {
+    std::string out(size, '\0');
+    if (!stream_.read(out.data(), static_cast<std::streamsize>(size))) fail(at_, "cannot be read");
+    at_ += size;
+    return out;
+  }
+
+  std::filesystem::path path_;
+  std::ifstream stream_;
+  std::uint64_t bytes_ = 0, at_ = 0;
+  std::uint32_t data_left_ = 0;
+  std::string magic_;
+};
+
+/// The copy in the making.
+class Copy {
+ public:
+  explicit Copy(const std::filesystem::path& path) : path_(path), stream_(path, std::ios::binary) {}
+  std::uint64_t write(const Record& record, const std::string& data) {
+    const std::uint64_t at = at_;
+    put(bytes_of(static_cast<std::uint32_t>(record.header.size())));
+    put(record.header);
+    put(bytes_of(static_cast<std::uint32_t>(data.size())));
+    put(data);
+    return at;
+  }
+  void put(const std::string& text) {
+    stream_.write(text.data(), static_cast<std::streamsize>(text.size()));
+    at_ += text.size();
+  }
+  void overwrite(std::uint64_t at, const std::string& text) {
+    stream_.seekp(static_cast<std::streamoff>(at));
+    stream_.write(text.data(), static_cast<std::streamsize>(text.size()));
+  }
+  void finish() {
+    if (!stream_.flush()) throw BadInput(path_.string() + ": cannot be written: no room for the unpacked bag?");
+  }
+
+ private:
+  std::filesystem::path path_;
+  std::ofstream stream_;
+  std::uint64_t at_ = 0;
+};
+
+std::string changed_chunk(Record& record, std::string data, const std::function<void(Ros1Chunk&)>& change) {
+  Ros1Chunk chunk{record.text("compression"), record.number<std::uint32_t>("size"), std::move(data)};
+  change(chunk);
+  record.header.clear();
+  // in the order in which ROS writes them
+  append_field(record.header, "compression=" + chunk.compression);
+  append_field(record.header, "op=" + std::string(1, static_cast<char>(kChunk)));
+  append_field(record.header, "size=" + bytes_of(chunk.unpacked_bytes));
+  return std::move(chunk.data);
+}
+
+}  // namespace
+
+bool has_lz4_chunks(const std::filesystem::path& file) {
+  Records records(file);
+  for (Record record; records.next(record); records.skip()) {
+    if (record.op() == kChunk && record.text("compression") == "lz4") return true;
+  }
+  return false;
+}
+
+void copy_ros1_bag(const std::filesystem::path& from, const std::filesystem::path& to,
+                   const std::function<void(Ros1Chunk&)>& change) {
+  Records records(from);
+  Copy copy(to);
+  copy.put(records.magic());
+  std::map<std::uint64_t, std::uint64_t> places;  // of records, before and after
+  std::optional<Record> first;
+  std::uint64_t first_at = 0;
+  for (Record record; records.next(record);) {
+    const std::uint64_t before = record.at;
+    std::string data = records.data();
+    if (record.op() == kChunk) {
+      try {
+        data = changed_chunk(record, std::move(data), change);
+      } catch (const BadInput& error) {
+        records.fail(before, error.what());
+      }
+    }
+    if (record.op() == kChunkInfo) {
+      const auto chunk = places.find(record.number<std::uint64_t>("chunk_pos"));
+      if (chunk == places.end()) records.fail(before, "names a chunk that does not stand before it");
+      record.set("chunk_pos", chunk->second);
+    }
+    places[before] = copy.write(record, data);
+    if (record.op() == kFile && !first) first = record, first_at = places[before];
+  }
+  const auto index = first ? places.find(first->number<std::uint64_t>("index_pos")) : places.end();
+  if (index == places.end()) records.fail(kMagicBytes, "the place of the index is no record");
+  copy.overwrite(first_at + 4 + first->find("index_pos")->first, bytes_of(index->second));
+  copy.finish();
+}
+
+void unpack_lz4(Ros1Chunk& chunk) {
+  if (chunk.unpacked_bytes / kRatioMax > chunk.data.size()) {
+    throw BadInput("its LZ4 frame of " + std::to_string(chunk.data.size()) + " bytes cannot hold the " +
+                   std::to_string(chunk.unpacked_bytes) + " bytes that the chunk states");
+  }
+  LZ4F_dctx* context = nullptr;
+  if (LZ4F_isError(LZ4F_createDecompressionContext(&context, LZ4F_VERSION)) != 0) throw std::bad_alloc();
+  const std::unique_ptr<LZ4F_dctx, LZ4F_errorCode_t (*)(LZ4F_dctx*)> owner(context, LZ4F_freeDecompressionContext);
+  std::string out(chunk.unpacked_bytes, '\0');
+  std::size_t taken = 0, given = 0, left = 1;
+  while (left != 0) {
+    std::size_t room = out.size() - given, packed = chunk.data.size() - taken;
+    left = LZ4F_decompress(context, out.data() + given, &room, chunk.data.data() + taken, &packed, nullptr);
+    if (LZ4F_isError(left) != 0) throw BadInput(std::string("its LZ4 frame is damaged: ") + LZ4F_getErrorName(left));
+    given += room;
+    taken += packed;
+    if (left != 0 && room == 0 && packed == 0) {
+      throw BadInput(std::string("its LZ4 frame ") +
+                     (taken == chunk.data.size() ? "is truncated before" : "holds more than") + " the " +
+                     std::to_string(out.size()) + " bytes that the chunk states");
+    }
+  }
+  if (given != out.size()) {
+    throw BadInput("its LZ4 frame holds " + std::to_string(given) + " bytes, the chunk states " +
+                   std::to_string(out.size()));
+  }
+  chunk.data = std::move(out);
+  chunk.compression = "none";
+}
+
+}  // namespace tumble::scenarios
