@@ -119,6 +119,17 @@ std::optional<double> lowest(const LearntRig& rig, std::size_t first) {
   return out;
 }
 
+// A device keeps its rails to 0.05 %, their offset drifts with the bias; a reading within this share is at the rail.
+constexpr double kToleranceShare = 2e-3;
+
+// Whether it is known where a plane cuts its row, two deviations being within the tolerance of the next run. Two
+// elements that only clip together leave a slope untold, and with it the level away from where they did.
+bool level_told(const RailPlane& plane, int sign) {
+  const Eigen::Vector4d cut(0.0, 0.0, sign, 1.0);
+  const double variance = cut.dot(plane.covariance * cut), most = 0.5 * kToleranceShare * plane.distance_rad_s;
+  return variance <= most * most;
+}
+
 }  // namespace
 
 LearntRig learnt(const RateReport& report) {
@@ -132,9 +143,15 @@ void LearntRig::keep(const RailPlanes& planes, Triad triad) {
   Planes& kept = triad == Triad::gyro ? gyro_planes_rad_s : accelerometer_planes_m_s2;
   for (std::size_t j = 0; j < 3; ++j) {
     const std::optional<RailPlane>& plane = planes.element[j];
-    if (plane && plane->log_odds < kSureLogOdds) continue;
+    if (plane && plane->log_odds < kSureLogOdds) {
+      // nor are the slopes that it told the smoother
+      const double sigma = RateModelParams{}.element_sigma;
+      const Eigen::Index at = RigConstants::kElements + 2 * static_cast<Eigen::Index>(j);
+      if (triad == Triad::gyro) calibration.covariance.diagonal().segment<2>(at).array() += sigma * sigma;
+      continue;
+    }
     for (const int sign : {-1, 1}) {
-      if (plane && plane->seen(sign)) {
+      if (plane && plane->seen(sign) && level_told(*plane, sign)) {
         kept[j][sign > 0 ? 1 : 0] = plane->offset_rad_s + sign * plane->distance_rad_s;
       }
     }
@@ -147,8 +164,7 @@ void LearntRig::keep(const RailPlanes& planes, Triad triad) {
 }
 
 RailPlanes LearntRig::planes(Triad triad) const {
-  // a device keeps its rails to 0.05 %, their offset drifts with the bias; a reading within this share is at the rail
-  constexpr double kToleranceShare = 2e-3, kDistanceShare = 1e-3;
+  constexpr double kDistanceShare = 1e-3;
   const bool gyro = triad == Triad::gyro;
   const RigConstants of_accel{.elements = accelerometer_elements};
   RailPlanes out;
