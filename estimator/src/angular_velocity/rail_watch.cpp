@@ -58,7 +58,7 @@ bool RailWatch::is_near(const Vector3d& reading, Triad triad, const Memory& memo
   return false;
 }
 
-// Where there is no room the dull readings go, and where that makes too little the oldest.
+// Where there is no room the dull readings go, and where that makes too little the oldest but for the first.
 void RailWatch::remember(const Vector3d& reading, Triad triad, Memory& memory) const {
   std::vector<Vector3d>& readings = memory.readings;
   if (readings.size() == readings_max_) {
@@ -74,7 +74,10 @@ void RailWatch::remember(const Vector3d& reading, Triad triad, Memory& memory) c
     }
     readings.resize(kept);
     const std::size_t most = readings_max_ - readings_max_ / 4;
-    if (kept > most) readings.erase(readings.begin(), readings.begin() + static_cast<std::ptrdiff_t>(kept - most));
+    if (kept > most) {
+      const auto oldest = readings.begin() + static_cast<std::ptrdiff_t>(std::min(kLatest, most / 4));
+      readings.erase(oldest, oldest + static_cast<std::ptrdiff_t>(kept - most));
+    }
   }
   readings.push_back(reading);
   memory.peak = memory.peak.cwiseMax(reading.cwiseAbs());

@@ -204,6 +204,33 @@ TEST(RailJudgement, PublishedFamiliesKeepTheWallUnlessAsked) {
   EXPECT_GT(by_planes.found, 0.95 * by_planes.deep);
 }
 
+// The first readings, at rest as a rule, tell the noise however much is forgotten after them.
+TEST(RailJudgement, TheWatchKeepsTheFirstReadingsAndTheLatest) {
+  for (const int readings_max : {64, 1024}) {
+    const RailWatch watch({.clipping = {}, .readings_max = readings_max});
+    RailWatch::State state = watch.start();
+    const auto reading = [](int k) {
+      // a slow wobble near one level: none of it is dull
+      return Vector3d(9.0 + 0.3 * std::sin(0.7 * k) + 1e-6 * k, 0.1 * std::cos(0.3 * k), 1e-3 * k);
+    };
+    constexpr int kSamples = 3000;
+    for (int k = 0; k < kSamples; ++k) {
+      ImuSample sample;
+      sample.time_ns = 10'000'000 * static_cast<TimeNs>(k);
+      sample.angular_velocity_rad_s = reading(k);
+      watch.observe(sample, state);
+    }
+    const std::vector<Vector3d>& kept = state.memory[0].readings;
+    ASSERT_TRUE(state.memory[0].forgot);
+    ASSERT_LE(kept.size(), static_cast<std::size_t>(readings_max));
+    const int first = readings_max == 64 ? 12 : 48;
+    for (int k = 0; k < first; ++k) EXPECT_EQ(kept[static_cast<std::size_t>(k)], reading(k)) << k;
+    for (int k = 0; k < 12; ++k) {
+      EXPECT_EQ(kept[kept.size() - 1 - static_cast<std::size_t>(k)], reading(kSamples - 1 - k)) << k;
+    }
+  }
+}
+
 TEST(RailJudgement, TellsWhatAReadingIsWorth) {
   ImuSample sample;
   sample.angular_velocity_rad_s = {10.0, -10.0, 1.0};
