@@ -11,9 +11,10 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::array<sim::Parameter, 2> kParameters = {{
+constexpr std::array<sim::Parameter, 3> kParameters = {{
     {"use_gyro", 1.0, 0.0, 1.0, "1", "1: axes of the primary gyro that are not clipped are read too; 0: none"},
     {"jerk_psd_rad2_s5", 1e7, 1.0, 1e12, "rad^2/s^5", "density of the white angular jerk"},
+    kTiltedRails,
 }};
 
 // The specific force of `other` at the stamps of the primary, in its axes; NaN before, after and at a rail. The gyro of
@@ -60,6 +61,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   }
   if (!(params.accel_noise_density > 0.0)) params.accel_noise_density = AccelerometerRate::Params{}.accel_noise_density;
   params.rails = stated_rails(record);
+  params.tilted_rails = parameters.at("tilted_rails") > 0.5;
   if (record.gyro_noise_rad_s_sqrt_hz > 0.0) params.gyro_noise_density = record.gyro_noise_rad_s_sqrt_hz;
   params.use_gyro = parameters.at("use_gyro") > 0.5;
   params.jerk_psd = parameters.at("jerk_psd_rad2_s5");

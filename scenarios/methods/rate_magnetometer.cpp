@@ -9,12 +9,13 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::array<sim::Parameter, 5> kParameters = {{
+constexpr std::array<sim::Parameter, 6> kParameters = {{
     {"field_noise_t", 5e-8, 1e-12, 1e-3, "T", "noise of one reading: 0.5 mG, MTi-300 sheet of May 2023"},
     {"hard_iron_t", 1e-6, 0.0, 1e-3, "T", "offset of the magnetometer, one standard deviation"},
     {"disturbance_t_sqrt_s", 1e-6, 0.0, 1.0, "T/sqrt(s)", "change of the field along the way"},
     {"disturbed_share", 0.02, 1e-4, 10.0, "1", "deviation of the field's length that doubles that change in power"},
     {"jerk_psd_rad2_s5", 1e7, 1.0, 1e12, "rad^2/s^5", "density of the white angular jerk"},
+    kTiltedRails,
 }};
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
@@ -25,6 +26,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   const sim::ImuRecord& record = sensors.imus.front();
   MagnetometerRate::Params params;
   params.rails = stated_rails(record);
+  params.tilted_rails = parameters.at("tilted_rails") > 0.5;
   if (record.gyro_noise_rad_s_sqrt_hz > 0.0) params.gyro_noise_density = record.gyro_noise_rad_s_sqrt_hz;
   params.field_noise_t = parameters.at("field_noise_t");
   params.hard_iron_t = parameters.at("hard_iron_t");

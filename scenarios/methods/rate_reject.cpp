@@ -7,14 +7,17 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::array<sim::Parameter, 1> kParameters = {{
+constexpr std::array<sim::Parameter, 2> kParameters = {{
     {"acceleration_psd_rad2_s3", 1e3, 1e-12, 1e12, "rad^2/s^3",
      "density of the white angular acceleration that drives the rate; 1000 as in Point-LIO's configurations"},
+    kTiltedRails,
 }};
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  return run_clipped_baseline(
-      {.kind = ClippedBaseline::Kind::reject, .acceleration_psd = parameters.at("acceleration_psd_rad2_s3")}, sensors);
+  return run_clipped_baseline({.kind = ClippedBaseline::Kind::reject,
+                               .tilted_rails = parameters.at("tilted_rails") > 0.5,
+                               .acceleration_psd = parameters.at("acceleration_psd_rad2_s3")},
+                              sensors);
 }
 
 }  // namespace

@@ -84,8 +84,12 @@ Status companion_readings(const sim::Sensors& sensors, std::span<const ImuSample
     if (record.gyro_noise_rad_s_sqrt_hz > 0.0) companion.gyro_noise_density = record.gyro_noise_rad_s_sqrt_hz;
     if (record.accel_noise_m_s2_sqrt_hz > 0.0) companion.accel_noise_density = record.accel_noise_m_s2_sqrt_hz;
     std::vector<CompanionReading> aligned;
-    const RailDetector rails(stated_rails(record));
-    const Status status = align(companion, readings, rails, samples, bridge::kGapMaxS, aligned);
+    ClippingFinder::Params clipping;
+    clipping.walls = stated_rails(record);
+    const ClippingFinder::Found found = ClippingFinder(clipping).find(readings);
+    companion.gyro_elements = found.rails.rows(Triad::gyro, model.element_sigma);
+    companion.accel_elements = found.rails.rows(Triad::accelerometer, model.element_sigma);
+    const Status status = align(companion, readings, found.clippings, samples, bridge::kGapMaxS, aligned);
     if (!status.ok()) return status;
     model.companions.push_back(companion);
     out.push_back(std::move(aligned));

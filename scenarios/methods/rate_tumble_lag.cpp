@@ -36,6 +36,7 @@ RateStream::Params stream_params(const sim::ImuRecord& record, const sim::Values
   params.model = batch.model;
   params.rails = batch.rails;
   params.planes = batch.planes;
+  params.accel_planes = batch.accel_planes;
   params.recovered_sigma_rad_s = batch.recovered_sigma_rad_s;
   params.rig_surprise_max = batch.rig_surprise_max;
   params.gap_max_s = batch.gap_max_s;
@@ -45,16 +46,17 @@ RateStream::Params stream_params(const sim::ImuRecord& record, const sim::Values
 }
 
 LearntRig learnt_by(const RateStream& stream, const RateStream::Params& params, const RateStream::State& state) {
-  LearntRig rig{stream.calibration(state), {}, {}};
+  LearntRig rig{stream.calibration(state), {}};
   const RailDetector walls(params.rails);
   const KnownRails& known = state.rails.known;
   for (int c = 0; c < 6; ++c) {
     std::optional<double>& rail = rig.rail[static_cast<std::size_t>(c)];
     rail = walls.rail(known.walls, c);
-    if (c >= 3 || !known.planes.element[static_cast<std::size_t>(c)]) continue;
-    rail = known.planes.element[static_cast<std::size_t>(c)]->distance_rad_s;
+    const auto& plane = (c < 3 ? known.planes : known.accel_planes).element[static_cast<std::size_t>(c % 3)];
+    if (plane) rail = plane->distance_rad_s;
   }
   if (!known.upright) rig.keep(known.planes);
+  if (!known.accel_upright) rig.keep(known.accel_planes, Triad::accelerometer);
   return rig;
 }
 

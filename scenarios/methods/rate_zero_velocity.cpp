@@ -9,9 +9,10 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::array<sim::Parameter, 2> kParameters = {{
+constexpr std::array<sim::Parameter, 3> kParameters = {{
     {"jerk_psd_rad2_s5", 1e5, 1.0, 1e12, "rad^2/s^5", "density of the white angular jerk"},
     {"accel_error_m_s2", 0.05, 0.0, 100.0, "m/s^2", "scale and bias of the specific force, taken as noise per sample"},
+    kTiltedRails,
 }};
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
@@ -22,6 +23,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   const sim::ImuRecord& record = sensors.imus.front();
   StandstillSmoother::Params params;
   params.rails = stated_rails(record);
+  params.tilted_rails = parameters.at("tilted_rails") > 0.5;
   params.gravity_m_s2 = sensors.gravity_m_s2;
   if (record.gyro_noise_rad_s_sqrt_hz > 0.0) params.gyro_noise_density = record.gyro_noise_rad_s_sqrt_hz;
   if (record.accel_noise_m_s2_sqrt_hz > 0.0) params.accel_noise_density = record.accel_noise_m_s2_sqrt_hz;

@@ -25,6 +25,11 @@ constexpr const char* kKeys[] = {"lever_arm_m", "gyro_bias_rad_s", "accel_bias_m
 constexpr const char* kElementsKey = "gyro_elements";
 // Of files since rails are known as planes.
 constexpr const char* kPlanesKey = "gyro_planes_rad_s";
+// Of files since those of the accelerometer are too.
+constexpr const char* kAccelPlanesKey = "accelerometer_planes_m_s2";
+constexpr const char* kAccelElementsKey = "accelerometer_elements";
+// What the slopes of an accelerometer's element change from run to run, as those of a gyro's.
+constexpr double kSlopeDrift = 2e-3;
 // A tumble holds a top that looks like a rail now and then: planes less sure than this are not handed on.
 constexpr double kSureLogOdds = 10.0;
 constexpr int kWithoutElements = RigConstants::kElements;
@@ -33,6 +38,12 @@ template <typename Array>
 json numbers(const Array& values) {
   json out = json::array();
   for (Eigen::Index i = 0; i < values.size(); ++i) out.push_back(values.data()[i]);
+  return out;
+}
+
+json pairs(const LearntRig::Planes& planes) {
+  json out = json::array();
+  for (const auto& [low, high] : planes) out.push_back({low ? json(*low) : json(), high ? json(*high) : json()});
   return out;
 }
 
@@ -79,7 +90,7 @@ class Reader {
     }
   }
 
-  void read_planes(const char* key, LearntRig& rig) const {
+  void read_planes(const char* key, LearntRig::Planes& planes) const {
     const json& values = array(key, 3);
     for (std::size_t j = 0; j < 3; ++j) {
       if (!values[j].is_array() || values[j].size() != 2) complain(key, "needs 3 pairs of rails");
@@ -90,7 +101,7 @@ class Reader {
         if (!sound || std::abs(rail.get<double>()) > kMost) {
           complain(key, "a pair is a negative and a positive rail of at most 1e6, or null");
         }
-        rig.gyro_planes_rad_s[j][i] = rail.get<double>();
+        planes[j][i] = rail.get<double>();
       }
     }
   }
@@ -108,41 +119,68 @@ std::optional<double> lowest(const LearntRig& rig, std::size_t first) {
   return out;
 }
 
+// A device keeps its rails to 0.05 %, their offset drifts with the bias; a reading within this share is at the rail.
+constexpr double kToleranceShare = 2e-3;
+
+// Whether it is known where a plane cuts its row, two deviations being within the tolerance of the next run. Two
+// elements that only clip together leave a slope untold, and with it the level away from where they did.
+bool level_told(const RailPlane& plane, int sign) {
+  const Eigen::Vector4d cut(0.0, 0.0, sign, 1.0);
+  const double variance = cut.dot(plane.covariance * cut), most = 0.5 * kToleranceShare * plane.distance_rad_s;
+  return variance <= most * most;
+}
+
 }  // namespace
 
 LearntRig learnt(const RateReport& report) {
-  LearntRig out{report.calibration, report.rail, {}};
+  LearntRig out{report.calibration, report.rail};
   if (!report.rails_upright) out.keep(report.planes);
+  out.keep(report.accel_planes, Triad::accelerometer);
   return out;
 }
 
-void LearntRig::keep(const RailPlanes& planes) {
+void LearntRig::keep(const RailPlanes& planes, Triad triad) {
+  Planes& kept = triad == Triad::gyro ? gyro_planes_rad_s : accelerometer_planes_m_s2;
   for (std::size_t j = 0; j < 3; ++j) {
     const std::optional<RailPlane>& plane = planes.element[j];
-    if (plane && plane->log_odds < kSureLogOdds) continue;
+    if (plane && plane->log_odds < kSureLogOdds) {
+      // nor are the slopes that it told the smoother
+      const double sigma = RateModelParams{}.element_sigma;
+      const Eigen::Index at = RigConstants::kElements + 2 * static_cast<Eigen::Index>(j);
+      if (triad == Triad::gyro) calibration.covariance.diagonal().segment<2>(at).array() += sigma * sigma;
+      continue;
+    }
     for (const int sign : {-1, 1}) {
-      if (plane && plane->seen(sign)) {
-        gyro_planes_rad_s[j][sign > 0 ? 1 : 0] = plane->offset_rad_s + sign * plane->distance_rad_s;
+      if (plane && plane->seen(sign) && level_told(*plane, sign)) {
+        kept[j][sign > 0 ? 1 : 0] = plane->offset_rad_s + sign * plane->distance_rad_s;
       }
+    }
+    if (!plane || triad == Triad::gyro) continue;
+    for (std::size_t i = 0; i < 2; ++i) {
+      accelerometer_elements[static_cast<Eigen::Index>(2 * j + i)] =
+          plane->row[static_cast<Eigen::Index>((j + 1 + i) % 3)];
     }
   }
 }
 
-RailPlanes LearntRig::planes() const {
-  // a device keeps its rails to 0.05 %, their offset drifts with the bias; a reading within this share is at the rail
-  constexpr double kToleranceShare = 2e-3, kDistanceShare = 1e-3;
+RailPlanes LearntRig::planes(Triad triad) const {
+  constexpr double kDistanceShare = 1e-3;
+  const bool gyro = triad == Triad::gyro;
+  const RigConstants of_accel{.elements = accelerometer_elements};
   RailPlanes out;
   for (int j = 0; j < 3; ++j) {
-    const auto& [low, high] = gyro_planes_rad_s[static_cast<std::size_t>(j)];
+    const auto& [low, high] = (gyro ? gyro_planes_rad_s : accelerometer_planes_m_s2)[static_cast<std::size_t>(j)];
     if (!low && !high) continue;
     const Eigen::Index first = RigConstants::kElements + 2 * j;
     RailPlane plane;
-    plane.row = calibration.constants.element_row(j);
+    plane.row = (gyro ? calibration.constants : of_accel).element_row(j);
     plane.distance_rad_s = low && high ? 0.5 * (*high - *low) : low ? -*low : *high;
     plane.offset_rad_s = low && high ? 0.5 * (*high + *low) : 0.0;
     const double sigma = kDistanceShare * plane.distance_rad_s;
     plane.covariance.diagonal() << 0.0, 0.0, sigma * sigma, sigma * sigma;
-    plane.covariance.topLeftCorner<2, 2>() = calibration.covariance.block<2, 2>(first, first);
+    plane.covariance.topLeftCorner<2, 2>() =
+        gyro ? Eigen::Matrix2d(calibration.covariance.block<2, 2>(first, first))
+             : Eigen::Matrix2d(kSlopeDrift * kSlopeDrift * Eigen::Matrix2d::Identity());
     plane.samples = {low ? 1 : 0, high ? 1 : 0};
     plane.log_odds = kSureLogOdds;
     plane.tolerance_rad_s = kToleranceShare * plane.distance_rad_s;
@@ -157,8 +195,11 @@ void start_from(const LearntRig& rig, double trust, RateSmoother::Params& params
   params.model.calibration = rig.calibration;
   params.model.calibration->covariance *= trust;
   params.planes.known = rig.planes();
-  for (std::optional<RailPlane>& plane : params.planes.known.element) {
-    if (plane) plane->covariance *= trust;
+  params.accel_planes.known = rig.planes(Triad::accelerometer);
+  for (RailPlanes* const known : {&params.planes.known, &params.accel_planes.known}) {
+    for (std::optional<RailPlane>& plane : known->element) {
+      if (plane) plane->covariance *= trust;
+    }
   }
   if (const auto rail = lowest(rig, 0)) params.rails.stated_gyro_rad_s = rail;
   if (const auto rail = lowest(rig, 3)) params.rails.stated_accel_m_s2 = rail;
@@ -175,11 +216,9 @@ void write_learnt_rig(const std::filesystem::path& path, const LearntRig& rig) {
   object["covariance"] = numbers(rig.calibration.covariance);
   object["gyro_rail_rad_s"] = rails(rig, 0);
   object["accel_rail_m_s2"] = rails(rig, 3);
-  json planes = json::array();
-  for (const auto& [low, high] : rig.gyro_planes_rad_s) {
-    planes.push_back({low ? json(*low) : json(), high ? json(*high) : json()});
-  }
-  object[kPlanesKey] = planes;
+  object[kPlanesKey] = pairs(rig.gyro_planes_rad_s);
+  object[kAccelPlanesKey] = pairs(rig.accelerometer_planes_m_s2);
+  object[kAccelElementsKey] = numbers(rig.accelerometer_elements);
   replace_file(path, object.dump(1) + "\n");
 }
 
@@ -193,7 +232,7 @@ LearntRig read_learnt_rig(const std::filesystem::path& path) {
     if (!object.contains(key)) reader.complain(key, "missing");
   }
   for (const auto& [key, value] : object.items()) {
-    const bool known = key == kElementsKey || key == kPlanesKey ||
+    const bool known = key == kElementsKey || key == kPlanesKey || key == kAccelPlanesKey || key == kAccelElementsKey ||
                        std::find(std::begin(kKeys), std::end(kKeys), key) != std::end(kKeys);
     if (!known) reader.complain(key, "unknown key");
   }
@@ -220,7 +259,14 @@ LearntRig read_learnt_rig(const std::filesystem::path& path) {
   }
   reader.read_rails("gyro_rail_rad_s", 0, rig);
   reader.read_rails("accel_rail_m_s2", 3, rig);
-  if (object.contains(kPlanesKey)) reader.read_planes(kPlanesKey, rig);
+  if (object.contains(kPlanesKey)) reader.read_planes(kPlanesKey, rig.gyro_planes_rad_s);
+  if (object.contains(kAccelPlanesKey) != object.contains(kAccelElementsKey)) {
+    reader.complain(object.contains(kAccelPlanesKey) ? kAccelElementsKey : kAccelPlanesKey, "missing");
+  }
+  if (object.contains(kAccelPlanesKey)) {
+    reader.read_planes(kAccelPlanesKey, rig.accelerometer_planes_m_s2);
+    reader.read(kAccelElementsKey, rig.accelerometer_elements);
+  }
   return rig;
 }
 

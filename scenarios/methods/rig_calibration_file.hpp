@@ -15,12 +15,17 @@ struct LearntRig {
   std::array<std::optional<double>, 6> rail;  ///< gyro x y z [rad/s], accelerometer x y z [m/s^2]; none: not seen
   /// Of the gyro's elements whose rail was seen as a plane, where it cuts the element's row: negative and positive
   /// sign. Its slopes are RigConstants::elements. None: not seen, or upright.
-  std::array<std::array<std::optional<double>, 2>, 3> gyro_planes_rad_s;
+  using Planes = std::array<std::array<std::optional<double>, 2>, 3>;
+  Planes gyro_planes_rad_s = {};
+  /// Likewise of the accelerometer's elements, whose slopes are no constants of the rig: in their order there.
+  Planes accelerometer_planes_m_s2 = {};
+  Eigen::Matrix<double, 6, 1> accelerometer_elements = Eigen::Matrix<double, 6, 1>::Zero();
 
-  /// The rails of the gyro's elements, for the search of the next run.
-  RailPlanes planes() const;
-  /// Keeps where planes cut their rows.
-  void keep(const RailPlanes& planes);
+  /// The rails of a triad's elements, for the search of the next run.
+  RailPlanes planes(Triad triad = Triad::gyro) const;
+  /// Keeps where planes cut their rows, of those that are sure. The slopes that an unsure one has told are doubted: a
+  /// few readings, one of which met the rail in a part of its window, make a plane that is not there.
+  void keep(const RailPlanes& planes, Triad triad = Triad::gyro);
 };
 
 /// What a run has learnt. When the run held its constants (RateReport::rig_held) that is what it was given.
@@ -31,12 +36,13 @@ LearntRig learnt(const RateReport& report);
 /// std::invalid_argument on `trust` below 1.
 void start_from(const LearntRig& rig, double trust, RateSmoother::Params& params);
 
-/// JSON, a few lines: lever arm, biases, inertia, the gyro's elements, covariance row by row, rails. Numbers come back
-/// to the bit. Throws
-/// BadInput when it cannot write; nothing is left half written.
+/// JSON, a few lines: lever arm, biases, inertia, the gyro's elements, covariance row by row, rails; planes of the
+/// rails of gyro and accelerometer. Numbers come back to the bit. Throws BadInput when it cannot write; nothing is left
+/// half written.
 void write_learnt_rig(const std::filesystem::path& path, const LearntRig& rig);
 
-/// A file from before the elements were learnt lacks them and their six rows: they are what is assumed without any.
+/// A file from before the elements were learnt lacks them and their six rows: they are what is assumed without any; one
+/// from before the accelerometer's planes were lacks those.
 /// Throws BadInput with path and key on a missing, misspelt or extra key, on a number that is none or of the wrong
 /// count, and on a covariance that is not symmetric and positive definite.
 LearntRig read_learnt_rig(const std::filesystem::path& path);

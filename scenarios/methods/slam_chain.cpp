@@ -4,8 +4,10 @@
 #include <cmath>
 
 #include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/rate_baseline.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/slam_registry.hpp"
+#include "tumble/angular_velocity/clipping_finder.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
 namespace tumble::scenarios {
@@ -315,6 +317,17 @@ Estimate run_passes(const sim::LidarRecord& lidar, std::span<const ImuSample> sa
   return run;
 }
 
+/// What a rail of the accelerometer hides is no reading: flags as the device should have set them.
+void flag_railed_forces(const sim::ImuRecord& record, std::vector<ImuSample>& samples) {
+  ClippingFinder::Params params;
+  params.walls = stated_rails(record);
+  const std::vector<Clipping> clippings = ClippingFinder(params).find(samples).clippings;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const unsigned forces = clip_flags({.accel = clippings[k].accel});
+    samples[k].device_clip_flags = static_cast<std::uint8_t>(samples[k].device_clip_flags | forces);
+  }
+}
+
 }  // namespace
 
 Method rig_slam(RigSlam what, RunCore run) {
@@ -334,6 +347,7 @@ Estimate begin_with_rates(const sim::Sensors& sensors, std::vector<ImuSample>& s
   Estimate estimate;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (estimate.status.ok()) estimate.status = rates(estimate);
+  if (estimate.status.ok()) flag_railed_forces(sensors.imus.front(), samples);
   return estimate;
 }
 

@@ -9,16 +9,20 @@
 #include <utility>
 
 #include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/rate_baseline.hpp"
+#include "tumble/angular_velocity/clipping_finder.hpp"
 #include "tumble/attitude/imu_merge.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kRangeShare = 0.98;  // of the stated range: calibration moves a rail by its error of scale
-constexpr double kSilentMaxS = 0.05;  // without readings for longer, a unit is absent
-constexpr double kEdgeShare = 0.9;    // of a sample, by which the readings at either end are carried on
-constexpr double kSilentToldS = 0.5;  // and for so long, told
+constexpr double kRangeShare = 0.98;    // of the stated range: calibration moves a rail by its error of scale
+constexpr double kSilentMaxS = 0.05;    // without readings for longer, a unit is absent
+constexpr double kEdgeShare = 0.9;      // of a sample, by which the readings at either end are carried on
+constexpr double kSilentToldS = 0.5;    // and for so long, told
+constexpr double kRailShareMin = 0.85;  // of the stated range, as the search for planes has it
+constexpr double kUnknownSlope = 0.03;  // of an element whose rail was not seen: its prior there
 
 ImuSample absent(TimeNs time_ns) {
   ImuSample sample;
@@ -39,6 +43,28 @@ std::vector<ImuSample> readings_of(const sim::ImuRecord& record, Status& status)
     samples.push_back({time_ns, record.gyro_rad_s[k], record.accel_m_s2[k], 0});
   }
   return samples;
+}
+
+/// Sets the flags of what a unit's readings are judged to be, and tells along what its elements sense. Where a range is
+/// stated, rails far below it are none: two flat tops of a slow motion are no plateau.
+void judge(const sim::ImuRecord& record, std::vector<ImuSample>& samples, ElementRows& gyro, ElementRows& accel) {
+  ClippingFinder::Params params;
+  params.walls = stated_rails(record);
+  const ClippingFinder::Found found = ClippingFinder(params).find(samples);
+  const auto near_range = [](double reading, double range) { return std::abs(reading) >= kRailShareMin * range; };
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    unsigned flags = samples[k].device_clip_flags;
+    const unsigned judged = clip_flags(found.clippings[k]);
+    for (int axis = 0; axis < 3; ++axis) {
+      const unsigned of_rate = static_cast<unsigned>(kClipGyroX << axis) & judged,
+                     of_force = static_cast<unsigned>(kClipAccelX << axis) & judged;
+      if (near_range(samples[k].angular_velocity_rad_s[axis], record.stated_gyro_range_rad_s)) flags |= of_rate;
+      if (near_range(samples[k].specific_force_m_s2[axis], record.stated_accel_range_m_s2)) flags |= of_force;
+    }
+    samples[k].device_clip_flags = static_cast<std::uint8_t>(flags);
+  }
+  gyro = found.rails.rows(Triad::gyro, kUnknownSlope);
+  accel = found.rails.rows(Triad::accelerometer, kUnknownSlope);
 }
 
 /// Readings of a unit at the times of another, linearly between two: stamps are ends of windows, so both are means over
@@ -86,6 +112,7 @@ struct Units {
   std::vector<std::string> names;
   std::vector<Eigen::Isometry3d> T_BI;
   std::vector<std::vector<ImuSample>> samples;
+  std::vector<ElementRows> gyro_elements, accel_elements;
   int resampled = 0;
 };
 
@@ -103,6 +130,7 @@ Status units_of(const sim::Sensors& sensors, Units& units) {
     if (&record == &sensors.imus.front()) primary_status = status;
     if (samples.empty()) continue;
     if (status.ok() && !base) base = records.size();
+    judge(record, samples, units.gyro_elements.emplace_back(), units.accel_elements.emplace_back());
     records.push_back(&record);
     readings.push_back(std::move(samples));
   }
@@ -120,6 +148,13 @@ Status units_of(const sim::Sensors& sensors, Units& units) {
     units.samples.push_back(std::move(samples));
   }
   return {};
+}
+
+void give_units(const Units& units, ImuMerge::Params& params) {
+  params.count = static_cast<int>(units.names.size());
+  std::copy(units.T_BI.begin(), units.T_BI.end(), params.T_CI.begin());
+  std::copy(units.gyro_elements.begin(), units.gyro_elements.end(), params.gyro_elements.begin());
+  std::copy(units.accel_elements.begin(), units.accel_elements.end(), params.accel_elements.begin());
 }
 
 Status run(const ImuMerge& merge, const Units& units, ImuMerge::State& state, std::vector<ImuSample>& out) {
@@ -180,8 +215,7 @@ Status merge_imus(const sim::Sensors& sensors, MergedImus& out) {
   params.gap_max_s = bridge::kGapMaxS;
   params.gyro_range_rad_s = out.gyro_range_rad_s;
   params.accel_range_m_s2 = out.accel_range_m_s2;
-  params.count = static_cast<int>(units.names.size());
-  std::copy(units.T_BI.begin(), units.T_BI.end(), params.T_CI.begin());
+  give_units(units, params);
   const TimeNs start_ns = units.samples[0].front().time_ns;
   for (std::size_t k = 0; k < units.names.size(); ++k) {
     const std::optional<TimeNs> since_ns = silent_since(units.samples[k]);
@@ -206,10 +240,11 @@ Status merge_imus(const sim::Sensors& sensors, MergedImus& out) {
       units.names.erase(units.names.begin() + at);
       units.T_BI.erase(units.T_BI.begin() + at);
       units.samples.erase(units.samples.begin() + at);
-      --params.count;
+      units.gyro_elements.erase(units.gyro_elements.begin() + at);
+      units.accel_elements.erase(units.accel_elements.begin() + at);
     }
   }
-  std::copy(units.T_BI.begin(), units.T_BI.end(), params.T_CI.begin());
+  give_units(units, params);
   const ImuMerge merge(params);
   if (anew) {
     *state = {};

@@ -59,7 +59,8 @@ struct Filter {
 
 }  // namespace
 
-AccelerometerRate::AccelerometerRate(const Params& params) : params_(params), rails_(params.rails) {
+AccelerometerRate::AccelerometerRate(const Params& params)
+    : params_(params), rails_({.walls = params.rails, .tilted = params.tilted_rails}) {
   require_within("gyro_noise_density", params.gyro_noise_density, 1e-9, 1.0);
   require_within("accel_noise_density", params.accel_noise_density, 1e-9, 10.0);
   require_within("accel_floor_m_s2", params.accel_floor_m_s2, 0.0, 100.0);
@@ -78,9 +79,7 @@ Status AccelerometerRate::estimate(std::span<const ImuSample> samples, std::span
       return {Trouble::too_few, "companion", static_cast<double>(count), static_cast<double>(samples.size())};
     }
   }
-  std::vector<Clipping> clippings(samples.size());
-  RailDetector::State rails;
-  rails_.classify_all(samples, rails, clippings);
+  const std::vector<Clipping> clippings = rails_.find(samples).clippings;
   const double period_s = median_period_s(samples);
   const double gyro_variance = params_.gyro_noise_density * params_.gyro_noise_density / period_s;
   const double noise = params_.accel_noise_density * params_.accel_noise_density / period_s;

@@ -222,7 +222,8 @@ std::vector<Value> bridge(const Axis& axis, const ClippedBaseline::Params& param
 
 }  // namespace
 
-ClippedBaseline::ClippedBaseline(const Params& params) : params_(params), rails_(params.rails) {
+ClippedBaseline::ClippedBaseline(const Params& params)
+    : params_(params), rails_({.walls = params.rails, .tilted = params.tilted_rails}) {
   require_within("gyro_noise_density", params.gyro_noise_density, 1e-9, 1.0);
   require_within("acceleration_psd", params.acceleration_psd, 1e-12, 1e12);
   require_within("snap_psd", params.snap_psd, 1e-12, 1e15);
@@ -234,9 +235,7 @@ ClippedBaseline::ClippedBaseline(const Params& params) : params_(params), rails_
 Status ClippedBaseline::estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const {
   if (Status status = check_recording(samples, 2, params_.gap_max_s); !status.ok()) return status;
   const std::size_t count = samples.size();
-  std::vector<Clipping> clippings(count);
-  RailDetector::State rails;
-  rails_.classify_all(samples, rails, clippings);
+  const std::vector<Clipping> clippings = rails_.find(samples).clippings;
 
   out.assign(count, {});
   Axis axis{samples, std::vector<bool>(count), std::vector<bool>(count), 0,

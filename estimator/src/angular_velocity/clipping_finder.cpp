@@ -5,28 +5,56 @@
 
 namespace tumble {
 
-RailPlanes KnownRails::planes_in_use() const {
-  return upright ? without_plateaus(planes, walls) : planes;
+RailPlanes KnownRails::planes_in_use(Triad triad) const {
+  const RailPlanes& known = triad == Triad::gyro ? planes : accel_planes;
+  return (triad == Triad::gyro ? upright : accel_upright) ? without_plateaus(known, walls, triad) : known;
+}
+
+ElementRows KnownRails::rows(Triad triad, double unknown_sigma) const {
+  if (triad == Triad::gyro ? upright : accel_upright) return {};
+  return element_rows(planes_in_use(triad), unknown_sigma);
+}
+
+ElementReading element_reading(const ImuSample& sample, const Clipping& clipping, Triad triad, int axis) {
+  const std::uint8_t clipped = triad == Triad::gyro ? clipping.gyro : clipping.accel;
+  if (triad == Triad::gyro && (clipping.void_gyro >> axis & 1u) != 0) return ElementReading::unreadable;
+  if ((clipped >> axis & 1u) == 0) return ElementReading::measured;
+  return reading_of(sample, triad)[axis] < 0.0 ? ElementReading::clipped_low : ElementReading::clipped_high;
+}
+
+std::uint8_t clip_flags(const Clipping& clipping) {
+  constexpr int kAccelFirst = 3;
+  return static_cast<std::uint8_t>(clipping.gyro | clipping.void_gyro | clipping.accel << kAccelFirst);
 }
 
 ClippingFinder::ClippingFinder(const Params& params)
-    : walls_(params.walls), planes_(stated_planes(params)), unstated_(unstated_planes(params)) {}
+    : walls_(params.walls), planes_(plane_finders(params)), tilted_(params.tilted) {}
+
+RailPlanes ClippingFinder::find_planes(std::span<const ImuSample> samples, Triad triad,
+                                       const RailDetector::State& walls, bool& upright) const {
+  std::vector<Eigen::Vector3d> readings(samples.size());
+  for (std::size_t k = 0; k < samples.size(); ++k) readings[k] = reading_of(samples[k], triad);
+  RailPlaneFinder::Workspace workspace;
+  const bool unstated = stated_range_contradicted(walls_, walls, triad);
+  const RailPlanes planes = planes_[index_of(triad)][unstated ? 1 : 0].find(readings, {}, workspace);
+  upright = are_upright(readings, planes, walls, triad);
+  return planes;
+}
 
 ClippingFinder::Found ClippingFinder::find(std::span<const ImuSample> samples) const {
   Found out;
   out.clippings.resize(samples.size());
   walls_.classify_all(samples, out.rails.walls, out.clippings);
-  std::vector<Eigen::Vector3d> readings(samples.size());
-  for (std::size_t k = 0; k < samples.size(); ++k) readings[k] = samples[k].angular_velocity_rad_s;
-  RailPlaneFinder::Workspace workspace;
-  const bool stated = !stated_range_contradicted(walls_, out.rails.walls);
-  out.rails.planes = (stated ? planes_ : unstated_).find(readings, {}, workspace);
-  out.rails.upright = are_upright(readings, out.rails.planes, out.rails.walls);
-  const RailPlanes planes = out.rails.planes_in_use();
-  if (!planes.any()) return out;
-  for (std::size_t k = 0; k < samples.size(); ++k) {
-    out.clippings[k] = clip_by_planes(planes, out.clippings[k], k > 0 ? &samples[k - 1] : nullptr, samples[k],
-                                      k + 1 < samples.size() ? &samples[k + 1] : nullptr);
+  if (!tilted_) return out;
+  out.rails.planes = find_planes(samples, Triad::gyro, out.rails.walls, out.rails.upright);
+  out.rails.accel_planes = find_planes(samples, Triad::accelerometer, out.rails.walls, out.rails.accel_upright);
+  for (const Triad triad : {Triad::gyro, Triad::accelerometer}) {
+    const RailPlanes planes = out.rails.planes_in_use(triad);
+    if (!planes.any()) continue;
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+      out.clippings[k] = clip_by_planes(planes, triad, out.clippings[k], k > 0 ? &samples[k - 1] : nullptr, samples[k],
+                                        k + 1 < samples.size() ? &samples[k + 1] : nullptr);
+    }
   }
   return out;
 }

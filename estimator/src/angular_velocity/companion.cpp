@@ -43,11 +43,12 @@ bool CompanionReading::same(const CompanionReading& other) const {
   const auto equal = [](const Vector3d& a, const Vector3d& b) {
     return ((a.array() == b.array()) || (a.array().isNaN() && b.array().isNaN())).all();
   };
+  if (rate_by_elements != other.rate_by_elements || force_by_elements != other.force_by_elements) return false;
   return equal(rate_rad_s, other.rate_rad_s) && equal(force_m_s2, other.force_m_s2) &&
          equal(rate_sigma_rad_s, other.rate_sigma_rad_s) && equal(force_sigma_m_s2, other.force_sigma_m_s2);
 }
 
-Status align(const CompanionImu& companion, std::span<const ImuSample> samples, const RailDetector& rails,
+Status align(const CompanionImu& companion, std::span<const ImuSample> samples, std::span<const Clipping> clippings,
              std::span<const ImuSample> primary, double gap_max_s, std::vector<CompanionReading>& out) {
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (Status status = check_sample(samples[k]); !status.ok()) return status;
@@ -55,11 +56,11 @@ Status align(const CompanionImu& companion, std::span<const ImuSample> samples, 
     Status status = check_follows(samples[k].time_ns, samples[k - 1].time_ns, std::numeric_limits<double>::max());
     if (!status.ok()) return status;
   }
+  if (clippings.size() != samples.size()) {
+    return {Trouble::too_few, "clippings", static_cast<double>(clippings.size()), static_cast<double>(samples.size())};
+  }
   out.assign(primary.size(), {});
   if (samples.size() < 2) return {};
-  std::vector<Clipping> clippings(samples.size());
-  RailDetector::State state;
-  rails.classify_all(samples, state, clippings);
   const double root_rate = 1.0 / std::sqrt(median_period_s(samples));
   std::size_t after = 1;
   for (std::size_t k = 0; k < primary.size(); ++k) {
@@ -74,17 +75,21 @@ Status align(const CompanionImu& companion, std::span<const ImuSample> samples, 
     const Between force = between(a.specific_force_m_s2, b.specific_force_m_s2, share, dt_s,
                                   companion.accel_noise_density * root_rate, companion.accel_error_m_s2, companion);
     const Clipping &c = clippings[after - 1], &d = clippings[after];
+    // a reading on which the other has no part says nothing of it
+    const bool left = share<1.0, right = share> 0.0;
+    const unsigned gyro = (left ? c.gyro | c.void_gyro : 0u) | (right ? d.gyro | d.void_gyro : 0u);
+    const unsigned accel = (left ? c.accel : 0u) | (right ? d.accel : 0u);
+    out[k].rate_by_elements = gyro != 0;
+    out[k].force_by_elements = accel != 0;
+    const Vector3d rates = gyro != 0 ? companion.gyro_elements.rows * rate.value : rate.value;
+    const Vector3d forces = accel != 0 ? companion.accel_elements.rows * force.value : force.value;
     for (int j = 0; j < 3; ++j) {
-      // a reading on which the other has no part says nothing of it
-      const bool left = share<1.0, right = share> 0.0;
-      const unsigned gyro = (left ? c.gyro | c.void_gyro : 0u) | (right ? d.gyro | d.void_gyro : 0u);
-      const unsigned accel = (left ? c.accel : 0u) | (right ? d.accel : 0u);
       if ((gyro >> j & 1u) == 0) {
-        out[k].rate_rad_s[j] = rate.value[j];
+        out[k].rate_rad_s[j] = rates[j];
         out[k].rate_sigma_rad_s[j] = rate.sigma[j];
       }
       if ((accel >> j & 1u) == 0) {
-        out[k].force_m_s2[j] = force.value[j];
+        out[k].force_m_s2[j] = forces[j];
         out[k].force_sigma_m_s2[j] = force.sigma[j];
       }
     }

@@ -22,53 +22,56 @@ constexpr double kEdgeShare = 0.02, kEdgeOfStep = 0.5;
 constexpr double kUnseenShare = 0.02, kUnseenTilt = 0.06, kUnseenOfStep = 0.5;
 
 // The sign of the rail that element j is at.
-int side(const ImuSample& sample, std::size_t j) {
-  return sample.angular_velocity_rad_s[static_cast<Eigen::Index>(j)] < 0.0 ? -1 : 1;
+int side(const ImuSample& sample, Triad triad, std::size_t j) {
+  return reading_of(sample, triad)[static_cast<Eigen::Index>(j)] < 0.0 ? -1 : 1;
 }
 
 // Whether element j of a sample is at its rail, by its plane or by the device.
-bool at_rail(const ImuSample& sample, const RailPlane& rail, std::size_t j) {
-  const Eigen::Vector3d& reading = sample.angular_velocity_rad_s;
-  return (sample.device_clip_flags >> j & 1u) != 0 || rail.holds(reading, -1) || rail.holds(reading, 1);
+bool at_rail(const ImuSample& sample, Triad triad, const RailPlane& rail, std::size_t j) {
+  const Eigen::Vector3d& reading = reading_of(sample, triad);
+  return (sample.device_clip_flags >> (first_channel(triad) + j) & 1u) != 0 || rail.holds(reading, -1) ||
+         rail.holds(reading, 1);
 }
 
 // Whether a sample, beside the clipped one at the other side of it than `outside`, met the rail in a part of its
 // window.
-bool meets(const RailPlane& rail, const ImuSample& now, const ImuSample* outside, int sign) {
-  const double depth = rail.short_of(now.angular_velocity_rad_s, sign);
+bool meets(const RailPlane& rail, Triad triad, const ImuSample& now, const ImuSample* outside, int sign) {
+  const double depth = rail.short_of(reading_of(now, triad), sign);
   if (depth > kEdgeShare * rail.distance_rad_s) return false;
   if (outside == nullptr) return true;
-  const double before = rail.short_of(outside->angular_velocity_rad_s, sign);
+  const double before = rail.short_of(reading_of(*outside, triad), sign);
   return depth < kEdgeOfStep * (before - depth);
+}
+
+// With the stated range of the walls where the search has none of its own, and without any.
+std::array<RailPlaneFinder, 2> stated_and_not(RailPlaneFinder::Params params, const std::optional<double>& stated) {
+  RailPlaneFinder::Params unstated = params;
+  unstated.stated_rad_s = std::nullopt;
+  if (!params.stated_rad_s) params.stated_rad_s = stated;
+  return {RailPlaneFinder(params), RailPlaneFinder(unstated)};
 }
 
 }  // namespace
 
-RailPlaneFinder::Params stated_planes(const ClippingFinder::Params& params) {
-  RailPlaneFinder::Params out = params.planes;
-  if (!out.stated_rad_s) out.stated_rad_s = params.walls.stated_gyro_rad_s;
-  return out;
+std::array<std::array<RailPlaneFinder, 2>, 2> plane_finders(const ClippingFinder::Params& params) {
+  return {stated_and_not(params.planes, params.walls.stated_gyro_rad_s),
+          stated_and_not(params.accel_planes, params.walls.stated_accel_m_s2)};
 }
 
-RailPlaneFinder::Params unstated_planes(const ClippingFinder::Params& params) {
-  RailPlaneFinder::Params out = params.planes;
-  out.stated_rad_s = std::nullopt;
-  return out;
+bool stated_range_contradicted(const RailDetector& walls, const RailDetector::State& state, Triad triad) {
+  const int first = static_cast<int>(first_channel(triad));
+  return walls.disagrees(state, first) || walls.disagrees(state, first + 1) || walls.disagrees(state, first + 2);
 }
 
-bool stated_range_contradicted(const RailDetector& walls, const RailDetector::State& state) {
-  return walls.disagrees(state, 0) || walls.disagrees(state, 1) || walls.disagrees(state, 2);
-}
-
-bool are_upright(std::span<const Eigen::Vector3d> readings_rad_s, const RailPlanes& planes,
-                 const RailDetector::State& rails) {
+bool are_upright(std::span<const Eigen::Vector3d> readings, const RailPlanes& planes, const RailDetector::State& rails,
+                 Triad triad) {
   int nil = 0;
   for (std::size_t j = 0; j < 3; ++j) {
     const auto& rail = planes.element[j];
-    const double plateau = rails.channels[j].rail;
+    const double plateau = rails.channels[first_channel(triad) + j].rail;
     if (rail && plateau > 0.0) {
       // most of the samples at the rail read the same: no tilted plane does that
-      const auto equal = std::count_if(readings_rad_s.begin(), readings_rad_s.end(), [&](const Eigen::Vector3d& y) {
+      const auto equal = std::count_if(readings.begin(), readings.end(), [&](const Eigen::Vector3d& y) {
         return std::abs(std::abs(y[static_cast<Eigen::Index>(j)]) - plateau) <= kEqualShare * plateau;
       });
       if (2 * equal >= rail->samples[0] + rail->samples[1]) {
@@ -77,7 +80,7 @@ bool are_upright(std::span<const Eigen::Vector3d> readings_rad_s, const RailPlan
       }
     }
     if (!rail) {
-      nil += rails.channels[j].rail > 0.0 ? 1 : 0;
+      nil += plateau > 0.0 ? 1 : 0;
       continue;
     }
     for (int i = 0; i < 2; ++i) {
@@ -90,28 +93,30 @@ bool are_upright(std::span<const Eigen::Vector3d> readings_rad_s, const RailPlan
   return nil >= 2;
 }
 
-RailPlanes without_plateaus(const RailPlanes& planes, const RailDetector::State& rails) {
+RailPlanes without_plateaus(const RailPlanes& planes, const RailDetector::State& rails, Triad triad) {
   RailPlanes out = planes;
   for (std::size_t j = 0; j < 3; ++j) {
-    if (rails.channels[j].rail > 0.0) out.element[j].reset();
+    if (rails.channels[first_channel(triad) + j].rail > 0.0) out.element[j].reset();
   }
   return out;
 }
 
-Clipping clip_by_planes(const RailPlanes& planes, const Clipping& by_walls, const ImuSample* before,
+Clipping clip_by_planes(const RailPlanes& planes, Triad triad, const Clipping& by_walls, const ImuSample* before,
                         const ImuSample& now, const ImuSample* after) {
   Clipping out = by_walls;
+  std::uint8_t& bits = triad == Triad::gyro ? out.gyro : out.accel;
+  const std::uint8_t unreadable = triad == Triad::gyro ? by_walls.void_gyro : 0;
   for (std::size_t j = 0; j < 3; ++j) {
     const auto& rail = planes.element[j];
-    if (!rail || (by_walls.void_gyro >> j & 1u) != 0) continue;
-    const int sign = side(now, j);
+    if (!rail || (unreadable >> j & 1u) != 0) continue;
+    const int sign = side(now, triad, j);
     const auto beside = [&](const ImuSample* sample, const ImuSample* outside) {
-      return sample != nullptr && side(*sample, j) == sign && at_rail(*sample, *rail, j) &&
-             meets(*rail, now, outside, sign);
+      return sample != nullptr && side(*sample, triad, j) == sign && at_rail(*sample, triad, *rail, j) &&
+             meets(*rail, triad, now, outside, sign);
     };
-    const bool clipped = at_rail(now, *rail, j) || beside(after, before) || beside(before, after);
+    const bool clipped = at_rail(now, triad, *rail, j) || beside(after, before) || beside(before, after);
     const auto bit = static_cast<std::uint8_t>(1u << j);
-    out.gyro = static_cast<std::uint8_t>(clipped ? out.gyro | bit : out.gyro & ~bit);
+    bits = static_cast<std::uint8_t>(clipped ? bits | bit : bits & ~bit);
   }
   return out;
 }
@@ -125,7 +130,7 @@ void mark_partial(const RailPlanes& planes, const RailDetector& rails, const Rai
     if (!rail || !flagged) continue;
     const auto bit = static_cast<std::uint8_t>(1u << j);
     now.partial = static_cast<std::uint8_t>(now.partial & ~bit);
-    const int sign = side(now.sample, j);
+    const int sign = side(now.sample, Triad::gyro, j);
     const double level = rail->distance_rad_s;
     const double reading = level - rail->short_of(now.sample.angular_velocity_rad_s, sign);
     double neighbour = level;

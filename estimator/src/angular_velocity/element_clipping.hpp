@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstddef>
 #include <optional>
 #include <span>
 
@@ -12,27 +14,34 @@
 
 namespace tumble {
 
-/// Parameters of the search for planes: with the stated range of the walls, and without any.
-RailPlaneFinder::Params stated_planes(const ClippingFinder::Params& params);
-RailPlaneFinder::Params unstated_planes(const ClippingFinder::Params& params);
+/// Place of a triad in arrays, and of its first channel in those of RailDetector and among ClipFlag bits.
+inline std::size_t index_of(Triad triad) {
+  return triad == Triad::gyro ? 0 : 1;
+}
+inline std::size_t first_channel(Triad triad) {
+  return 3 * index_of(triad);
+}
+
+/// The searches for planes of gyro and accelerometer: with the stated range of the walls, and without any.
+std::array<std::array<RailPlaneFinder, 2>, 2> plane_finders(const ClippingFinder::Params& params);
 
 /// A stated range that the readings contradict tells the planes nothing.
-bool stated_range_contradicted(const RailDetector& walls, const RailDetector::State& state);
+bool stated_range_contradicted(const RailDetector& walls, const RailDetector::State& state, Triad triad);
 
 /// Whether the rails found, and the plateaus of equal readings, show a device that clips what it delivers: rails
 /// upright, nothing hidden on the axes beside. Two slopes known to be nil tell, a plateau counting for one; one that is
 /// not nil tells the contrary.
-bool are_upright(std::span<const Eigen::Vector3d> readings_rad_s, const RailPlanes& planes,
-                 const RailDetector::State& rails);
+bool are_upright(std::span<const Eigen::Vector3d> readings, const RailPlanes& planes, const RailDetector::State& rails,
+                 Triad triad);
 
 /// The planes of elements on whose axis no plateau of equal readings was seen.
-RailPlanes without_plateaus(const RailPlanes& planes, const RailDetector::State& rails);
+RailPlanes without_plateaus(const RailPlanes& planes, const RailDetector::State& rails, Triad triad);
 
-/// Brings the planes into what was classified with upright rails: an element with a plane clips where its plane says so
-/// or the device does. A sample that met a rail in a part of its window, beside one that is clipped, belongs to it: it
-/// lies short of the plane by less than half of what the neighbour outside still lacked. `before`, `after`: null where
-/// there is none.
-Clipping clip_by_planes(const RailPlanes& planes, const Clipping& by_walls, const ImuSample* before,
+/// Brings the planes of a triad into what was classified with upright rails: an element with a plane clips where its
+/// plane says so or the device does. A sample that met a rail in a part of its window, beside one that is clipped,
+/// belongs to it: it lies short of the plane by less than half of what the neighbour outside still lacked. `before`,
+/// `after`: null where there is none.
+Clipping clip_by_planes(const RailPlanes& planes, Triad triad, const Clipping& by_walls, const ImuSample* before,
                         const ImuSample& now, const ImuSample* after);
 
 /// Finds partial axes as mark_partial() does, with the rail of each element where its plane is known.

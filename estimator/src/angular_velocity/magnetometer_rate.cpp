@@ -77,7 +77,8 @@ void start_field(const Vector3d& reading, double noise, double iron, Filter& fil
 
 }  // namespace
 
-MagnetometerRate::MagnetometerRate(const Params& params) : params_(params), rails_(params.rails) {
+MagnetometerRate::MagnetometerRate(const Params& params)
+    : params_(params), rails_({.walls = params.rails, .tilted = params.tilted_rails}) {
   require_within("gyro_noise_density", params.gyro_noise_density, 1e-9, 1.0);
   require_within("field_noise_t", params.field_noise_t, 1e-12, 1e-3);
   require_within("hard_iron_t", params.hard_iron_t, 0.0, 1e-3);
@@ -96,9 +97,7 @@ Status MagnetometerRate::estimate(std::span<const ImuSample> samples, std::span<
     return {Trouble::too_few, "magnetic_field", static_cast<double>(field_I_t.size()),
             static_cast<double>(samples.size())};
   }
-  std::vector<Clipping> clippings(samples.size());
-  RailDetector::State rails;
-  rails_.classify_all(samples, rails, clippings);
+  const std::vector<Clipping> clippings = rails_.find(samples).clippings;
   const double gyro_variance = params_.gyro_noise_density * params_.gyro_noise_density / median_period_s(samples);
   const double noise = params_.field_noise_t / kUnitT, iron = params_.hard_iron_t / kUnitT;
   const double disturbance = params_.disturbance_t_sqrt_s / kUnitT, earth = params_.earth_field_t / kUnitT;

@@ -312,9 +312,9 @@ void RailPlaneFinder::Workspace::reserve(std::size_t readings) {
   inliers.reserve(readings);
 }
 
-RailPlanes RailPlaneFinder::find(std::span<const ImuSample> samples) const {
+RailPlanes RailPlaneFinder::find(std::span<const ImuSample> samples, Triad triad) const {
   std::vector<Vector3d> readings(samples.size());
-  for (std::size_t k = 0; k < samples.size(); ++k) readings[k] = samples[k].angular_velocity_rad_s;
+  for (std::size_t k = 0; k < samples.size(); ++k) readings[k] = reading_of(samples[k], triad);
   Workspace workspace;
   return find(readings, {}, workspace);
 }

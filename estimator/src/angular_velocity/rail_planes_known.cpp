@@ -47,6 +47,17 @@ bool RailPlane::contradicted_by(std::span<const Vector3d> readings_rad_s) const 
   return beyond >= kContradicting;
 }
 
+ElementRows element_rows(const RailPlanes& planes, double unknown_sigma) {
+  ElementRows out;
+  for (std::size_t j = 0; j < 3; ++j) {
+    const auto i = static_cast<Eigen::Index>(j);
+    const std::optional<RailPlane>& plane = planes.element[j];
+    out.slope_sigma[i] = plane ? std::sqrt(0.5 * plane->covariance.topLeftCorner<2, 2>().trace()) : unknown_sigma;
+    if (plane) out.rows.row(i) = plane->row.transpose();
+  }
+  return out;
+}
+
 ElementClipping classify(const ImuSample& sample, const RailPlanes& planes) {
   ElementClipping out;
   for (std::size_t j = 0; j < 3; ++j) {

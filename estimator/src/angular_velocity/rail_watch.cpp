@@ -23,6 +23,9 @@ constexpr std::size_t kBeside = 4;
 constexpr std::size_t kLatest = 48;
 // A new search after this share more of readings near the extremes, two at least.
 constexpr std::size_t kMore = 8;
+// A reading this far below the lowest rail that is looked for is not near one; of an accelerometer gravity is.
+constexpr double kLowShare[] = {0.5, 0.9};
+
 std::array<std::optional<double>, 6> rails_of(const RailDetector& walls, const RailDetector::State& state) {
   std::array<std::optional<double>, 6> out;
   for (int c = 0; c < 6; ++c) out[static_cast<std::size_t>(c)] = walls.rail(state, c);
@@ -31,91 +34,104 @@ std::array<std::optional<double>, 6> rails_of(const RailDetector& walls, const R
 
 }  // namespace
 
-RailWatch::RailWatch(const Params& params)
-    : walls_(params.clipping.walls),
-      planes_(stated_planes(params.clipping)),
-      unstated_(unstated_planes(params.clipping)) {
+RailWatch::RailWatch(const Params& params) : walls_(params.clipping.walls), planes_(plane_finders(params.clipping)) {
   require_within("readings_max", params.readings_max, 64, 65536);
   readings_max_ = static_cast<std::size_t>(params.readings_max);
 }
 
 RailWatch::State RailWatch::start() const {
   State state;
-  state.readings.reserve(readings_max_);
+  for (Memory& memory : state.memory) memory.readings.reserve(readings_max_);
   state.work.reserve(readings_max_);
-  state.known.planes = planes_.params().known;
+  state.known.planes = planes_[index_of(Triad::gyro)][0].params().known;
+  state.known.accel_planes = planes_[index_of(Triad::accelerometer)][0].params().known;
   return state;
 }
 
-bool RailWatch::is_near(const Vector3d& reading, const State& state, double share) const {
+bool RailWatch::is_near(const Vector3d& reading, Triad triad, const Memory& memory, double share) const {
+  const std::size_t i = index_of(triad);
   for (int j = 0; j < 3; ++j) {
-    const double rate = std::abs(reading[j]);
-    if (rate >= 0.5 * planes_.params().distance_min_rad_s && rate >= share * state.peak[j]) return true;
+    const double magnitude = std::abs(reading[j]);
+    const bool high = magnitude >= kLowShare[i] * planes_[i][0].params().distance_min_rad_s;
+    if (high && magnitude >= share * memory.peak[j]) return true;
   }
   return false;
 }
 
-// Where there is no room the dull readings go, and where that makes too little the oldest.
-void RailWatch::remember(const Vector3d& reading, State& state) const {
-  std::vector<Vector3d>& readings = state.readings;
+// Where there is no room the dull readings go, and where that makes too little the oldest but for the first.
+void RailWatch::remember(const Vector3d& reading, Triad triad, Memory& memory) const {
+  std::vector<Vector3d>& readings = memory.readings;
   if (readings.size() == readings_max_) {
-    state.forgot = true;
+    memory.forgot = true;
     std::size_t kept = 0, looked = 0, near_until = 0;
     const std::size_t count = readings.size();
     for (std::size_t k = 0; k < count; ++k) {
       for (; looked < std::min(count, k + kBeside + 1); ++looked) {
-        if (is_near(readings[looked], state, kKeepShare)) near_until = looked + kBeside + 1;
+        if (is_near(readings[looked], triad, memory, kKeepShare)) near_until = looked + kBeside + 1;
       }
       const bool keep = k < kLatest || k + kLatest >= count || k < near_until;
       if (keep) readings[kept++] = readings[k];
     }
     readings.resize(kept);
     const std::size_t most = readings_max_ - readings_max_ / 4;
-    if (kept > most) readings.erase(readings.begin(), readings.begin() + static_cast<std::ptrdiff_t>(kept - most));
+    if (kept > most) {
+      const auto oldest = readings.begin() + static_cast<std::ptrdiff_t>(std::min(kLatest, most / 4));
+      readings.erase(oldest, oldest + static_cast<std::ptrdiff_t>(kept - most));
+    }
   }
   readings.push_back(reading);
-  state.peak = state.peak.cwiseMax(reading.cwiseAbs());
+  memory.peak = memory.peak.cwiseMax(reading.cwiseAbs());
 }
 
-RailPlanes RailWatch::search(State& state) const {
-  const bool stated = !stated_range_contradicted(walls_, state.known.walls);
-  RailPlanes found = (stated ? planes_ : unstated_).find(state.readings, state.known.planes, state.work);
-  for (std::size_t j = 0; j < 3 && state.forgot; ++j) {
-    const auto& before = state.known.planes.element[j];
-    if (!found.element[j] && before && !before->contradicted_by(state.readings)) found.element[j] = before;
+RailPlanes RailWatch::search(Triad triad, State& state) const {
+  const Memory& memory = state.memory[index_of(triad)];
+  const RailPlanes& known = triad == Triad::gyro ? state.known.planes : state.known.accel_planes;
+  const bool unstated = stated_range_contradicted(walls_, state.known.walls, triad);
+  RailPlanes found = planes_[index_of(triad)][unstated ? 1 : 0].find(memory.readings, known, state.work);
+  for (std::size_t j = 0; j < 3 && memory.forgot; ++j) {
+    const auto& before = known.element[j];
+    if (!found.element[j] && before && !before->contradicted_by(memory.readings)) found.element[j] = before;
   }
   return found;
+}
+
+bool RailWatch::observe(const Vector3d& reading, Triad triad, State& state) const {
+  Memory& memory = state.memory[index_of(triad)];
+  if (!memory.readings.empty() && memory.readings.back() == reading) return false;
+  remember(reading, triad, memory);
+  if (is_near(reading, triad, memory, kNearShare)) {
+    ++memory.near;
+    ++memory.unsearched;
+    memory.past = 0;
+  } else {
+    ++memory.past;
+  }
+  const bool ended = memory.past == kBeside - 1;
+  if (memory.unsearched == 0) return false;
+  if (!ended && memory.unsearched < std::max<std::size_t>(2, memory.near / kMore)) return false;
+  memory.unsearched = 0;
+  const RailPlanes planes = search(triad, state);
+  const bool upright = are_upright(memory.readings, planes, state.known.walls, triad);
+  RailPlanes& known = triad == Triad::gyro ? state.known.planes : state.known.accel_planes;
+  bool& known_upright = triad == Triad::gyro ? state.known.upright : state.known.accel_upright;
+  const bool changed = planes != known || upright != known_upright;
+  known = planes;
+  known_upright = upright;
+  return changed;
 }
 
 bool RailWatch::observe(const ImuSample& sample, State& state) const {
   const auto before = rails_of(walls_, state.known.walls);
   walls_.observe(sample, state.known.walls);
   bool changed = before != rails_of(walls_, state.known.walls);
-  const Vector3d& reading = sample.angular_velocity_rad_s;
-  if (!state.readings.empty() && state.readings.back() == reading) return changed;
-  remember(reading, state);
-  if (is_near(reading, state, kNearShare)) {
-    ++state.near;
-    ++state.unsearched;
-    state.past = 0;
-  } else {
-    ++state.past;
+  for (const Triad triad : {Triad::gyro, Triad::accelerometer}) {
+    if (observe(reading_of(sample, triad), triad, state)) changed = true;
   }
-  const bool ended = state.past == kBeside - 1;
-  if (state.unsearched == 0) return changed;
-  if (!ended && state.unsearched < std::max<std::size_t>(2, state.near / kMore)) return changed;
-  state.unsearched = 0;
-  const RailPlanes planes = search(state);
-  const bool upright = are_upright(state.readings, planes, state.known.walls);
-  changed = changed || planes != state.known.planes || upright != state.known.upright;
-  state.known.planes = planes;
-  state.known.upright = upright;
   return changed;
 }
 
 bool RailWatch::equal(const State& a, const State& b) {
-  return a.known == b.known && a.readings == b.readings && a.peak == b.peak && a.near == b.near &&
-         a.unsearched == b.unsearched && a.past == b.past && a.forgot == b.forgot;
+  return a.known == b.known && a.memory == b.memory;
 }
 
 }  // namespace tumble

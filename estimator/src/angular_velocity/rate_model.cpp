@@ -80,18 +80,6 @@ RigConstants::Matrix covariance_of(const RateModelParams& p) {
 // What an impact within the window may add to the loss of a partly clipped reading (one standard deviation), rad/s.
 constexpr double kPartialInContact = 0.25;
 
-// A clipped accelerometer axis bounds the force from one side: it speaks only where the model stays within the rail.
-void drop_satisfied_bounds(const RateObservation& o, RateFactor& flight) {
-  for (int j = 0; j < 3; ++j) {
-    if ((o.clipping.accel >> j & 1u) == 0) continue;
-    // residual = model - reading; the truth lies beyond the reading, on the side of its sign
-    if (flight.residual[j] * o.sample.specific_force_m_s2[j] < 0.0) continue;
-    flight.residual[j] = 0.0;
-    flight.by_knot.row(j).setZero();
-    flight.by_rig.row(j).setZero();
-  }
-}
-
 // The constants that a factor depends on: lever arm and accelerometer's bias in flight, inertia in Euler's equation.
 constexpr int kLever = 0, kAccelBias = 6, kInertia = 9;
 
@@ -115,8 +103,9 @@ Eigen::Matrix3d euler_spread(const RateFactor& f, const RigConstants::Matrix& ri
 }
 
 // Squared residual over its covariance: the sensor's own and what the uncertain rig adds, direction by direction.
-double normalised(const RateFactor& f, Eigen::Matrix3d spread, double sigma) {
+double normalised(const RateFactor& f, Eigen::Matrix3d spread, double sigma, const Vector3d& more = Vector3d::Zero()) {
   spread.diagonal().array() += sigma * sigma;
+  spread.diagonal() += more;
   return f.residual.dot(spread.inverse() * f.residual);
 }
 
@@ -194,9 +183,9 @@ void RateModel::weigh(const RateObservation& observation, const RigConstants& ri
                       const RigConstants::Matrix& rig_covariance, double widen, double jump,
                       RateEstimate& estimate) const {
   RateFactor flight = this->flight(observation, estimate.knot, rig);
-  drop_satisfied_bounds(observation, flight);
+  const Vector3d hidden = read_accel_elements(observation, flight);
   const RateFactor euler = euler_factor(estimate.knot, rig);
-  const double r2 = normalised(flight, flight_spread(flight, rig_covariance), accel_sigma_m_s2(observation)) +
+  const double r2 = normalised(flight, flight_spread(flight, rig_covariance), accel_sigma_m_s2(observation), hidden) +
                     normalised(euler, euler_spread(euler, rig_covariance), params_.euler_sigma_rad_s2) + jump;
   const double threshold = widen * params_.flight_threshold;
   // Geman-McClure: the pull of an outlier vanishes with the cube of its size, contacts do not drag the rate along
@@ -238,9 +227,11 @@ RateModel::ForceFactor RateModel::force_factor(const RateObservation& observatio
   const double share = observation.unseen() != 0 ? params_.contact_force_share : 0.0;
   const double contact2 = flight2 + share * share * estimate.contact_m_s2.squaredNorm();
   ForceFactor out;
-  out.information = estimate.flight_weight / flight2 + (share > 0.0 ? (1.0 - estimate.flight_weight) / contact2 : 0.0);
+  const double information =
+      estimate.flight_weight / flight2 + (share > 0.0 ? (1.0 - estimate.flight_weight) / contact2 : 0.0);
   out.factor = flight(observation, estimate.knot, rig);
-  drop_satisfied_bounds(observation, out.factor);
+  const Vector3d hidden = read_accel_elements(observation, out.factor);
+  for (int j = 0; j < 3; ++j) out.information[j] = information / (1.0 + information * hidden[j]);
   return out;
 }
 
@@ -276,7 +267,7 @@ void RateModel::add_sample(const RateObservation& observation, const RateEstimat
 
   auto [flight, flight_information] = force_factor(observation, estimate, rig);
   RateFactor euler = euler_factor(estimate.knot, rig);
-  Eigen::Matrix3d of_flight = flight_information * Eigen::Matrix3d::Identity(), of_euler = euler_information(estimate);
+  Eigen::Matrix3d of_flight = flight_information.asDiagonal(), of_euler = euler_information(estimate);
   if (doubted != nullptr) {
     of_flight = with_doubt(of_flight, flight_spread(flight, *doubted));
     of_euler = with_doubt(of_euler, euler_spread(euler, *doubted));

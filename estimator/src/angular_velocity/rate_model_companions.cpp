@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What other IMUs on the body say: the part of RateModel that deals with companions.
+#include <Eigen/LU>
 #include <cmath>
 
 #include "tumble/angular_velocity/rate_model.hpp"
@@ -17,13 +18,27 @@ void add_row(const Row& row, double residual, double sigma, arrow::Block& block)
   block.gradient.noalias() -= information * residual * row.transpose();
 }
 
-// The part of the primary's force that a companion's axis sees, where none of it is clipped.
-bool sees_free_axes(const Eigen::RowVector3d& axis, const Clipping& clipping) {
+// The part of the primary's force that a companion's axis sees, where none of it is clipped. What element i hides moves
+// the reading along column i of the inverse of the rows.
+bool sees_free_axes(const Eigen::RowVector3d& axis, const RateObservation& observation) {
   constexpr double kSlight = 0.02;
+  if (observation.clipping.accel == 0) return true;
+  const bool tilted = observation.accel_rows.tilted();
+  const Eigen::RowVector3d sees = tilted ? Eigen::RowVector3d(axis * observation.accel_rows.rows.inverse()) : axis;
   for (int i = 0; i < 3; ++i) {
-    if ((clipping.accel >> i & 1u) != 0 && std::abs(axis[i]) > kSlight) return false;
+    if ((observation.clipping.accel >> i & 1u) != 0 && std::abs(sees[i]) > kSlight) return false;
   }
   return true;
+}
+
+// What the companion's axes, or elements, see of the primary's.
+Eigen::Matrix3d seen_by(const Eigen::Matrix3d& R_CI, const ElementRows& elements, bool by_elements) {
+  return by_elements ? Eigen::Matrix3d(elements.rows * R_CI) : R_CI;
+}
+
+// Deviation of a reading of a free element whose row nobody knows, another one hiding up to so much.
+double unknown_row(const ElementRows& elements, bool by_elements, int j, double most) {
+  return by_elements ? elements.slope_sigma[j] * most : 0.0;
 }
 
 }  // namespace
@@ -40,17 +55,24 @@ void RateModel::add_companions(const RateObservation& observation, const RateEst
     const Vector3d force = observation.sample.specific_force_m_s2 - rig.accel_bias_m_s2 + rotation.residual;
     const double misplaced =
         mount.place_error_m * (estimate.knot.rate_rad_s.squaredNorm() + estimate.knot.acceleration_rad_s2.norm());
+    const Eigen::Matrix3d gyro = seen_by(R_CI, mount.gyro_elements, reading.rate_by_elements);
+    const Eigen::Matrix3d accel = seen_by(R_CI, mount.accel_elements, reading.force_by_elements);
     for (int j = 0; j < 3; ++j) {
-      const Eigen::RowVector3d axis = R_CI.row(j);
       if (std::isfinite(reading.rate_rad_s[j])) {
         Row row = Row::Zero();
-        row.head<3>() = axis;
-        add_row(row, axis.dot(estimate.knot.rate_rad_s) - reading.rate_rad_s[j], reading.rate_sigma_rad_s[j], block);
+        row.head<3>() = gyro.row(j);
+        const double unknown =
+            unknown_row(mount.gyro_elements, reading.rate_by_elements, j, estimate.knot.rate_rad_s.norm());
+        add_row(row, gyro.row(j).dot(estimate.knot.rate_rad_s) - reading.rate_rad_s[j],
+                std::hypot(reading.rate_sigma_rad_s[j], unknown), block);
       }
-      if (!std::isfinite(reading.force_m_s2[j]) || !sees_free_axes(axis, observation.clipping)) continue;
+      const Eigen::RowVector3d axis = accel.row(j);
+      if (!std::isfinite(reading.force_m_s2[j]) || !sees_free_axes(axis, observation)) continue;
       Row row = axis * rotation.by_knot;
       row.tail<3>() /= time_scale_s_;
-      const double sigma = std::hypot(reading.force_sigma_m_s2[j], misplaced, accel_sigma_m_s2(observation));
+      const double unknown = unknown_row(mount.accel_elements, reading.force_by_elements, j, force.norm());
+      const double sigma =
+          std::hypot(std::hypot(reading.force_sigma_m_s2[j], misplaced, accel_sigma_m_s2(observation)), unknown);
       add_row(row, axis.dot(force) - reading.force_m_s2[j], sigma, block);
     }
   }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The gyro while an element of it clips: the part of RateModel that reads it element by element.
+// Gyro and accelerometer while an element of them clips: the part of RateModel that reads them element by element.
+#include <cmath>
+
 #include "tumble/angular_velocity/rate_model.hpp"
 
 namespace tumble {
@@ -70,6 +72,32 @@ void RateModel::add_elements(const RateObservation& observation, const RateEstim
     }
     add_row(gyro, j, observation.gyro_age_s / time_scale_s_, information, pull, doubted, block, corner);
   }
+}
+
+Eigen::Vector3d RateModel::read_accel_elements(const RateObservation& observation, RateFactor& flight) {
+  Eigen::Vector3d unknown = Eigen::Vector3d::Zero();
+  const unsigned clipped = observation.clipping.accel;
+  if (clipped == 0) return unknown;
+  const ElementRows& elements = observation.accel_rows;
+  if (elements.tilted()) {
+    flight.residual = elements.rows * flight.residual;
+    flight.by_knot = (elements.rows * flight.by_knot).eval();
+    flight.by_rig = (elements.rows * flight.by_rig).eval();
+  }
+  double hidden2 = 0.0;
+  for (int j = 0; j < 3; ++j) {
+    if ((clipped >> j & 1u) == 0) continue;
+    // residual = model - reading; the truth lies beyond the reading, on the side of its sign
+    if (flight.residual[j] * observation.sample.specific_force_m_s2[j] < 0.0) continue;
+    hidden2 += flight.residual[j] * flight.residual[j];
+    flight.residual[j] = 0.0;
+    flight.by_knot.row(j).setZero();
+    flight.by_rig.row(j).setZero();
+  }
+  for (int j = 0; j < 3; ++j) {
+    if ((clipped >> j & 1u) == 0) unknown[j] = elements.slope_sigma[j] * elements.slope_sigma[j] * hidden2;
+  }
+  return unknown;
 }
 
 }  // namespace tumble

@@ -90,6 +90,7 @@ void RateModel::add_errors(const RateObservation& observation, const RateEstimat
   }
 
   if (says_nothing_of_rig(estimate)) return;
+  if (observation.clipping.accel != 0 && observation.accel_rows.tilted()) return;  // rows mix what each axis is told
   auto [flight, information] = force_factor(observation, estimate, rig);
   Vector3d by_delay;
   (void)this->flight(observation, estimate.knot, rig, &by_delay);
@@ -101,11 +102,11 @@ void RateModel::add_errors(const RateObservation& observation, const RateEstimat
     by_errors.segment<3>(SensorErrors::kAccel + 3 * j) = force.transpose();
     by_errors[SensorErrors::kDelay] = by_delay[j];
     by_errors[SensorErrors::kBlur] = 0.5 * curvature[j];
-    const Row pull = information * by_errors;
+    const Row pull = information[j] * by_errors;
     block.noalias() -= flight.by_knot.row(j).transpose() * pull;
     border.topRows<3>().noalias() -= flight.by_rig.row(j).head<3>().transpose() * pull;
     border.row(kAccelBias + j) -= pull;
-    add(by_errors, information, flight.residual[j]);
+    add(by_errors, information[j], flight.residual[j]);
   }
 }
 

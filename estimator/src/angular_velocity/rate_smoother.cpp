@@ -230,7 +230,7 @@ Vector3d rate_later(std::span<const RateObservation> observations, std::span<con
 }  // namespace
 
 RateSmoother::RateSmoother(const Params& params)
-    : params_(params), rails_({params.rails, params.planes}), rests_(params.rests) {
+    : params_(params), rails_({params.rails, params.planes, params.accel_planes}), rests_(params.rests) {
   require_within("iterations_max", params.iterations_max, 1, 1000);
   require_within("tolerance_rad_s", params.tolerance_rad_s, 1e-12, 1.0);
   require_within("step_max_rad_s", params.step_max_rad_s, 1e-3, 1e4);
@@ -255,14 +255,14 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
   const ClippingFinder::Found found = rails_.find(samples);
   const KnownRails& rails = found.rails;
   const std::vector<Clipping>& clippings = found.clippings;
-  const RailPlanes planes = rails.planes_in_use();
+  const RailPlanes planes = rails.planes_in_use(), accel_planes = rails.planes_in_use(Triad::accelerometer);
   health.planes = rails.planes;
+  health.accel_planes = rails.planes_in_use(Triad::accelerometer);
   health.rails_upright = rails.upright;
   for (int c = 0; c < 6; ++c) {
     health.rail[static_cast<std::size_t>(c)] = rails_.walls().rail(rails.walls, c);
-    if (c < 3 && planes.element[static_cast<std::size_t>(c)]) {
-      health.rail[static_cast<std::size_t>(c)] = planes.element[static_cast<std::size_t>(c)]->distance_rad_s;
-    }
+    const auto& plane = (c < 3 ? planes : accel_planes).element[static_cast<std::size_t>(c % 3)];
+    if (plane) health.rail[static_cast<std::size_t>(c)] = plane->distance_rad_s;
     health.rail_disagrees[static_cast<std::size_t>(c)] = rails_.walls().disagrees(rails.walls, c);
   }
   const double force = median_force(samples);
@@ -276,8 +276,10 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
   known.calibration = with_planes(RateModel(params_.model, period_s), planes, rails.upright);
   const RateModel model(known, period_s);
   const std::vector<bool> rest = rests_.find(samples);
+  const ElementRows accel_rows = rails.rows(Triad::accelerometer, params_.model.element_sigma);
   for (std::size_t k = 0; k < samples.size(); ++k) {
     observations[k] = {samples[k], clippings[k], rest[k]};
+    observations[k].accel_rows = accel_rows;
     for (std::size_t i = 0; i < companions.size(); ++i) observations[k].companions[i] = companions[i][k];
     const ImuSample* const before = k > 0 ? &samples[k - 1] : nullptr;
     const ImuSample* const after = k + 1 < samples.size() ? &samples[k + 1] : nullptr;

@@ -51,7 +51,7 @@ void add_prior(const RateStream::State& state, const RateModel& model, const Rat
 
 RateStream::RateStream(const Params& params)
     : params_(params),
-      rails_({.clipping = {params.rails, params.planes}}),
+      rails_({.clipping = {params.rails, params.planes, params.accel_planes}}),
       rests_(params.rests),
       model_(params.model, params.period_s) {
   require_within("period_s", params.period_s, 1e-5, 1.0);
@@ -168,7 +168,8 @@ void RateStream::classify_again(State& state) const {
 // starts anew.
 void RateStream::judge(std::size_t first, State& state) const {
   const KnownRails& rails = state.rails.known;
-  const RailPlanes planes = rails.planes_in_use();
+  const RailPlanes planes = rails.planes_in_use(), accel_planes = rails.planes_in_use(Triad::accelerometer);
+  const ElementRows accel_rows = rails.rows(Triad::accelerometer, params_.model.element_sigma);
   const double noise = model_.gyro_sigma_rad_s();
   for (std::size_t k = first; k < state.window.size(); ++k) {
     Knot& knot = state.window[k];
@@ -180,7 +181,9 @@ void RateStream::judge(std::size_t first, State& state) const {
     if (after != nullptr) {
       rails_.walls().add_edge(now.sample, *after, state.window[k + 1].by_walls, rails.walls, by_walls);
     }
-    now.clipping = clip_by_planes(planes, by_walls, before, now.sample, after);
+    now.clipping = clip_by_planes(planes, Triad::gyro, by_walls, before, now.sample, after);
+    now.clipping = clip_by_planes(accel_planes, Triad::accelerometer, now.clipping, before, now.sample, after);
+    now.accel_rows = accel_rows;
     mark_partial(planes, rails_.walls(), rails.walls, noise, before, now, after);
     if (!rails.upright) doubt_unseen_rails(planes, noise, before, now, after);
     const bool newest = k + 1 == state.window.size();

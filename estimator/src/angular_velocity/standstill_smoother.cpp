@@ -184,7 +184,8 @@ void smooth(const Step& next, Belief& now, const Belief& next_smoothed) {
 
 }  // namespace
 
-StandstillSmoother::StandstillSmoother(const Params& params) : params_(params), rails_(params.rails) {
+StandstillSmoother::StandstillSmoother(const Params& params)
+    : params_(params), rails_({.walls = params.rails, .tilted = params.tilted_rails}) {
   require_within("gravity_m_s2", params.gravity_m_s2, 0.1, 100.0);
   require_within("gyro_noise_density", params.gyro_noise_density, 1e-9, 1.0);
   require_within("accel_noise_density", params.accel_noise_density, 1e-9, 10.0);
@@ -204,9 +205,7 @@ StandstillSmoother::StandstillSmoother(const Params& params) : params_(params), 
 Status StandstillSmoother::estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const {
   if (Status status = check_recording(samples, 2, params_.gap_max_s); !status.ok()) return status;
   const std::size_t count = samples.size();
-  std::vector<Clipping> clippings(count);
-  RailDetector::State rails;
-  rails_.classify_all(samples, rails, clippings);
+  const std::vector<Clipping> clippings = rails_.find(samples).clippings;
   const std::vector<bool> rest = standstills(params_, samples);
   const double period_s = median_period_s(samples);
   const Noise noise{params_.gyro_noise_density * params_.gyro_noise_density / period_s,

@@ -20,6 +20,7 @@ constexpr double kBeyondDoubt = 4.0;     // sigmas
 constexpr int kRecovering = 3;           // so many units tell the rate by their accelerometers
 constexpr double kUnharmed = 0.8;        // of the accelerometer's range, up to which its errors are learnt
 constexpr int kClipAccel = kClipAccelX | kClipAccelY | kClipAccelZ;
+constexpr int kClipGyro = kClipGyroX | kClipGyroY | kClipGyroZ;
 constexpr int kOffset = ImuMerge::kErrors - 1;
 constexpr double kArmSquareMin_m2_s3 = 1.0;  // 1 m/s^2 for a second: a bias of 0.05 makes 0.05 of the share
 constexpr double kHeld_s = 0.03;
@@ -49,6 +50,8 @@ RateRecovery::Params ImuMerge::recovery_params(const Params& p) {
   for (std::size_t k = 0; k < count; ++k) {
     out.T_CI[k] = p.T_CI[k];
     out.T_CI[k].translation() -= mean;
+    out.gyro_elements[k] = p.gyro_elements[k];
+    out.accel_elements[k] = p.accel_elements[k];
   }
   return out;
 }
@@ -164,6 +167,9 @@ ImuSample ImuMerge::merge(State& state) const {
 
   const Flags used = choose(readings, present, rates, forces, h, state);
   ImuSample merged = mean_of_used(rates, forces, used, h, state);
+  merged.device_clip_flags = flags_of(readings, used);
+  const bool railed = (flags_of(readings, present) & kClipGyro) != 0;
+  state.free_windows = railed ? 0 : std::min(state.free_windows + 1, kLearnFrom);
   merged.time_ns = time_ns;
   const bool all_used = std::count(used.begin(), used.end(), true) == params_.count;
   close_windows(present, raw_rates, raw_forces, all_used, merged, state);
@@ -190,11 +196,14 @@ ImuMerge::Flags ImuMerge::choose(const Readings& readings, const Flags& present,
     const double turned = (params_.T_CI[i].translation() - p_C_m_).norm() * middle_rate.squaredNorm() * 2.0;
     const bool agrees = units < 3 || ((rates[i] - middle_rate).norm() < rate_tolerance &&
                                       (forces[i] - middle_force).norm() < params_.force_tolerance_m_s2 + turned);
-    used[i] = agrees && (readings[i].device_clip_flags & kClipAccel) == 0;
+    // with three units and more a clipped gyro is a bound, and its accelerometer is needed
+    const int clipping = units < kRecovering ? kClipAccel | kClipGyro : kClipAccel;
+    used[i] = agrees && (readings[i].device_clip_flags & clipping) == 0;
   }
   const auto kept = std::count(used.begin(), used.end(), true);
-  if (2 * kept <= units && kept < units) used = present;  // no majority: nobody is to blame
-  const bool apart = state.windows > 0 && h > 0.0;        // there is a window to take derivatives from
+  // no majority: nobody is to blame; of one or two, who is free is believed
+  if (units < kRecovering ? kept == 0 : 2 * kept <= units && kept < units) used = present;
+  const bool apart = state.windows > 0 && h > 0.0;  // there is a window to take derivatives from
   if (units >= kRecovering && apart && middle_rate.cwiseAbs().maxCoeff() < params_.gyro_range_rad_s) {
     leave_out_hidden(readings, present, forces, middle_rate, h, state, used);
   }
@@ -245,7 +254,8 @@ void ImuMerge::close_windows(const Flags& present, const Vectors& rates, const V
     return holding > 0 && holding < params_.count;
   };
   const bool held = some_hold(&Unit::rate_hold) || some_hold(&Unit::force_hold);
-  if (all_used && !held && params_.count > 1 && follows) learn(rates, state);
+  const bool free = state.free_windows == kLearnFrom;
+  if (all_used && !held && params_.count > 1 && follows && free) learn(rates, state);
   watch_misfits(present, rates, forces, merged.time_ns, state);
   for (std::size_t k = 0; k < static_cast<std::size_t>(params_.count); ++k) {
     Unit& unit = state.units[k];
@@ -342,12 +352,11 @@ void ImuMerge::learn(const Vectors& rates, State& state) const {
     forces[k] = state.units[k].last_force_m_s2;
     peak = std::max(peak, forces[k].cwiseAbs().maxCoeff());
   }
-  const bool railed = mean.cwiseAbs().maxCoeff() >= params_.gyro_range_rad_s;
-  if (!railed && peak < kUnharmed * params_.accel_range_m_s2) {
+  if (peak < kUnharmed * params_.accel_range_m_s2) {
     forces_.learn({forces.data(), count}, mean, acceleration, state.length_s, state.forces);
   }
   const Eigen::Matrix3d by_place = so3::hat(acceleration) + so3::hat(mean) * so3::hat(mean);
-  for (std::size_t k = 0; k < count && !railed; ++k) {
+  for (std::size_t k = 0; k < count; ++k) {
     const Eigen::Vector3d by_turning = by_place * (params_.T_CI[k].translation() - p_C_m_);
     state.arm_product += state.length_s * by_turning.dot(forces[k]);  // the mean of all drops out of the sum
     state.arm_square_m2_s3 += state.length_s * by_turning.squaredNorm();

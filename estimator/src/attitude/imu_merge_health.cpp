@@ -5,7 +5,7 @@
 
 #include "tumble/attitude/imu_merge.hpp"
 
-// units that freeze or disagree
+// what is odd about units: rails, freezing, disagreement
 namespace tumble {
 
 namespace {
@@ -14,7 +14,27 @@ constexpr int kBlaming = 3;  // of two units that differ, nobody is to blame
 constexpr double kMisfitTau_s = 0.5;
 constexpr double kUnharmed = 0.8;  // of the gyro's range, up to which units are compared
 
+constexpr double kPart = 0.02;  // of a clipped axis in another, from which on that is clipped too
+
 }  // namespace
+
+/// Flags of the units in question, of the axes of C that a clipped axis of theirs has a part in.
+std::uint8_t ImuMerge::flags_of(const Readings& readings, const Flags& which) const {
+  unsigned out = 0;
+  for (std::size_t k = 0; k < which.size(); ++k) {
+    const unsigned flags = readings[k].device_clip_flags;
+    if (!which[k] || flags == 0) continue;
+    const Eigen::Matrix3d R_CI = params_.T_CI[k].linear();
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int own = 0; own < 3; ++own) {
+        if (std::abs(R_CI(axis, own)) <= kPart) continue;
+        if ((flags & static_cast<unsigned>(kClipGyroX << own)) != 0) out |= static_cast<unsigned>(kClipGyroX << axis);
+        if ((flags & static_cast<unsigned>(kClipAccelX << own)) != 0) out |= static_cast<unsigned>(kClipAccelX << axis);
+      }
+    }
+  }
+  return static_cast<std::uint8_t>(out);
+}
 
 Eigen::Vector3d ImuMerge::median(const Vectors& values, const Flags& which) {
   Eigen::Vector3d out = Eigen::Vector3d::Zero();

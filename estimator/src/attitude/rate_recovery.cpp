@@ -2,6 +2,7 @@
 #include "tumble/attitude/rate_recovery.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "tumble/common/so3.hpp"
@@ -27,6 +28,38 @@ void update(const Row& row, double innovation, double variance, RateRecovery::St
   const double s = row.dot(PHt) + variance;
   state.x += PHt * (innovation / s);
   state.P -= PHt * (PHt / s).transpose();
+}
+
+// A triad of one unit as it is read: axis by axis, or along the rows of its elements while one of them clips.
+struct Seen {
+  Eigen::Matrix3d rows_C;
+  Eigen::Vector3d reading, slope_sigma = Eigen::Vector3d::Zero();
+  std::array<bool, 3> railed{};
+
+  // What the clipped elements hide where they should have read `expected`.
+  double hidden(const Eigen::Vector3d& expected) const {
+    double sum2 = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double missing = reading[axis] - expected[axis];
+      if (railed[static_cast<std::size_t>(axis)] && missing * reading[axis] < 0.0) sum2 += missing * missing;
+    }
+    return std::sqrt(sum2);
+  }
+};
+
+template <typename Railed>
+Seen seen_by(const ElementRows& elements, const Eigen::Matrix3d& R_IC, const Eigen::Vector3d& reading,
+             const Railed& railed) {
+  Seen out{R_IC, reading};
+  bool any = false;
+  for (int axis = 0; axis < 3; ++axis) any |= out.railed[static_cast<std::size_t>(axis)] = railed(axis);
+  if (!any) return out;
+  out.rows_C = elements.rows * R_IC;
+  out.reading = elements.rows * reading;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!out.railed[static_cast<std::size_t>(axis)]) out.slope_sigma[axis] = elements.slope_sigma[axis];
+  }
+  return out;
 }
 
 }  // namespace
@@ -60,9 +93,31 @@ bool RateRecovery::force_railed(const ImuSample& unit, int axis) const {
          (unit.device_clip_flags & (kClipAccelX << axis)) != 0;
 }
 
+RateRecovery::Met RateRecovery::met_by(std::span<const ImuSample> units) const {
+  Met out;
+  std::size_t clipped = 0, heard = 0;
+  for (const ImuSample& unit : units) {
+    if (!is_finite(unit)) continue;
+    ++heard;
+    bool force = false;
+    for (int axis = 0; axis < 3; ++axis) {
+      out.rate |= rate_railed(unit, axis);
+      force |= force_railed(unit, axis);
+    }
+    clipped += force;
+  }
+  // with a rate that is right, the units that are left tell the force better than the filter: only where they are few
+  // does it count as clipped
+  out.force = clipped > 0 && (out.rate || 2 * clipped > heard);
+  return out;
+}
+
 void RateRecovery::step(std::span<const ImuSample> units, double dt_s, State& state, ImuSample& merged) const {
-  merged.device_clip_flags = 0;
-  if (merged.angular_velocity_rad_s.cwiseAbs().maxCoeff() < kFast * params_.gyro_range_rad_s) {
+  const Met met = met_by(units);
+  // rails are met when gravity and the turning add up: what is left is off in one direction of W
+  merged.device_clip_flags = met.force ? kClipAccelX | kClipAccelY | kClipAccelZ : 0;
+  const bool fast = merged.angular_velocity_rad_s.cwiseAbs().maxCoeff() >= kFast * params_.gyro_range_rad_s;
+  if (!fast && !met.rate) {
     state.running = false;
     return;
   }
@@ -75,34 +130,14 @@ void RateRecovery::step(std::span<const ImuSample> units, double dt_s, State& st
   measure_forces(units, dt_s, state);
   state.P = (0.5 * (state.P + state.P.transpose())).eval();
 
-  bool rate_clipped = false;
-  std::size_t forces_clipped = 0;
-  std::size_t heard = 0;
-  for (const ImuSample& unit : units) {
-    if (!is_finite(unit)) continue;
-    ++heard;
-    bool force_clipped = false;
-    for (int axis = 0; axis < 3; ++axis) {
-      rate_clipped |= rate_railed(unit, axis);
-      force_clipped |= force_railed(unit, axis);
-    }
-    forces_clipped += force_clipped;
-  }
-  // with a rate that is right, the units that are left tell the force better than the filter: only where they are few
-  // does it count as clipped
-  const bool force_clipped = forces_clipped > 0 && (rate_clipped || 2 * forces_clipped > heard);
-  if (rate_clipped && state.P.diagonal().segment<3>(kRate).maxCoeff() < squared(params_.recovered_sigma_rad_s)) {
+  if (met.rate && state.P.diagonal().segment<3>(kRate).maxCoeff() < squared(params_.recovered_sigma_rad_s)) {
     merged.angular_velocity_rad_s = state.x.segment<3>(kRate);
-  } else if (rate_clipped) {
-    merged.device_clip_flags = kClipGyroX | kClipGyroY | kClipGyroZ;
+  } else if (met.rate) {
+    merged.device_clip_flags =
+        static_cast<std::uint8_t>(merged.device_clip_flags | kClipGyroX | kClipGyroY | kClipGyroZ);
   }
   // the mean of the units in use was moved to the mean place with a rate that may be wrong
-  if (rate_clipped || force_clipped) merged.specific_force_m_s2 = state.x.segment<3>(kForce);
-  // rails are met when gravity and the turning add up: what is left is off in one direction of W
-  if (force_clipped) {
-    merged.device_clip_flags =
-        static_cast<std::uint8_t>(merged.device_clip_flags | kClipAccelX | kClipAccelY | kClipAccelZ);
-  }
+  if (met.rate || met.force) merged.specific_force_m_s2 = state.x.segment<3>(kForce);
 }
 
 void RateRecovery::start(const ImuSample& merged, State& state) const {
@@ -141,15 +176,19 @@ void RateRecovery::measure_rates(std::span<const ImuSample> units, double dt_s, 
   for (std::size_t k = 0; k < units.size(); ++k) {
     if (!is_finite(units[k])) continue;
     const Eigen::Matrix3d R_IC = params_.T_CI[k].linear().transpose();
+    const auto railed = [&](int axis) { return rate_railed(units[k], axis); };
+    const Seen seen = seen_by(params_.gyro_elements[k], R_IC, units[k].angular_velocity_rad_s, railed);
+    const double hidden = seen.hidden(seen.rows_C * state.x.segment<3>(kRate));
     for (int axis = 0; axis < 3; ++axis) {
-      const double reading = units[k].angular_velocity_rad_s[axis];
-      const double missing = reading - R_IC.row(axis).dot(state.x.segment<3>(kRate));
-      const bool railed = rate_railed(units[k], axis);
-      if (railed && missing * reading < 0.0) continue;  // beyond the rail, as it may be
+      const double reading = seen.reading[axis];
+      const double missing = reading - seen.rows_C.row(axis).dot(state.x.segment<3>(kRate));
+      if (seen.railed[static_cast<std::size_t>(axis)] && missing * reading < 0.0)
+        continue;  // beyond the rail, as it may be
       Row row = Row::Zero();
-      row.segment<3>(kRate) = R_IC.row(axis);
+      row.segment<3>(kRate) = seen.rows_C.row(axis);
       const double sigma = params_.rate_noise_rad_s + params_.rate_noise_share * std::abs(reading);
-      update(row, missing, shorter * squared(railed ? kRailSigma_rad_s : sigma), state);
+      const double variance = seen.railed[static_cast<std::size_t>(axis)] ? squared(kRailSigma_rad_s) : squared(sigma);
+      update(row, missing, shorter * variance + squared(seen.slope_sigma[axis] * hidden), state);
     }
   }
 }
@@ -159,22 +198,26 @@ void RateRecovery::measure_forces(std::span<const ImuSample> units, double dt_s,
   for (std::size_t k = 0; k < units.size(); ++k) {
     if (!is_finite(units[k])) continue;
     const Eigen::Matrix3d R_IC = params_.T_CI[k].linear().transpose();
+    const auto railed = [&](int axis) { return force_railed(units[k], axis); };
+    const Seen seen = seen_by(params_.accel_elements[k], R_IC, units[k].specific_force_m_s2, railed);
     const int arm = kArms + 3 * static_cast<int>(k);
     for (int axis = 0; axis < 3; ++axis) {
-      const double reading = units[k].specific_force_m_s2[axis];
-      if (force_railed(units[k], axis)) continue;
+      const double reading = seen.reading[axis];
+      if (seen.railed[static_cast<std::size_t>(axis)]) continue;
       const Eigen::Vector3d rate = state.x.segment<3>(kRate), acceleration = state.x.segment<3>(kAcceleration);
       const Eigen::Vector3d place = params_.T_CI[k].translation() + state.x.segment<3>(arm);
       const Eigen::Matrix3d by_place = so3::hat(acceleration) + so3::hat(rate) * so3::hat(rate);
-      const auto axis_C = R_IC.row(axis);
+      const auto axis_C = seen.rows_C.row(axis);
       Row row = Row::Zero();
       row.segment<3>(kRate) = -axis_C * (so3::hat(rate.cross(place)) + so3::hat(rate) * so3::hat(place));
       row.segment<3>(kAcceleration) = -axis_C * so3::hat(place);
       row.segment<3>(kForce) = axis_C;
       row.segment<3>(arm) = axis_C * by_place;
-      const double expected = axis_C.dot(state.x.segment<3>(kForce) + by_place * place);
+      const Eigen::Vector3d force = state.x.segment<3>(kForce) + by_place * place;
+      const double hidden = seen.slope_sigma[axis] > 0.0 ? seen.hidden(seen.rows_C * force) : 0.0;
       const double sigma = params_.force_noise_m_s2 + params_.force_noise_share * std::abs(reading);
-      update(row, reading - expected, shorter * squared(sigma), state);
+      update(row, reading - axis_C.dot(force), shorter * squared(sigma) + squared(seen.slope_sigma[axis] * hidden),
+             state);
     }
   }
 }

@@ -63,6 +63,7 @@ RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaternio
   RollingNominal nominal;
   nominal.q_WI = q_WI;
   nominal.p_WI_m = q_WI * params.lever_arm_m;
+  nominal.last_rate_I_rad_s = rate_I_rad_s;
   if (starts_in_motion(params, rate_I_rad_s)) {
     const Eigen::Vector3d w_W = q_WI * rate_I_rad_s;
     nominal.v_WI_m_s = w_W.cross(params.radius_m * Eigen::Vector3d::UnitZ() + nominal.p_WI_m);
@@ -112,8 +113,11 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
                        reading.force_peak_m_s2 >= params.accel_range_m_s2;
   // a force that is clipped, or turned by a rate that is, says nothing: the velocity of the centre is kept
   const Eigen::Vector3d arm = params.lever_arm_m + nominal.lever_arm_error_m;
-  const Eigen::Vector3d gained = clipped ? Eigen::Vector3d(R_T * w.cross(w.cross(arm)))
-                                         : Eigen::Vector3d(R_T * f - dt_s * gravity * Eigen::Vector3d::UnitZ());
+  const Eigen::Vector3d change_rad_s = w_raw - nominal.last_rate_I_rad_s;  // the angular acceleration times dt_s
+  nominal.last_rate_I_rad_s = w_raw;
+  const Eigen::Vector3d gained = clipped
+                                     ? Eigen::Vector3d(R_T * w.cross(w.cross(arm)) + q_mid * change_rad_s.cross(arm))
+                                     : Eigen::Vector3d(R_T * f - dt_s * gravity * Eigen::Vector3d::UnitZ());
   nominal.p_WI_m += dt_s * (nominal.v_WI_m_s + 0.5 * gained);
   nominal.v_WI_m_s += gained;
   sums.R_s += R_T;
@@ -240,9 +244,13 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
   out.H.col(kRadius) = -w_W.cross(n);
   out.rolling_speed_m_s = r * w_W.cross(n).norm();
   out.grip_variance = squared(params.grip_sigma_m_s) + squared(params.grip_sigma_share * r * w_W.norm());
-  if (rate_I_rad_s.cwiseAbs().maxCoeff() >= params.gyro_range_rad_s) {
-    const bool recovered = params.recovered_rate_sigma_rad_s > 0.0;
-    out.grip_variance += squared(r * (recovered ? params.recovered_rate_sigma_rad_s : params.clipped_rate_sigma_rad_s));
+  // a flag counts whatever the rate reads: a rail may lie below the range
+  const bool beyond = rate_I_rad_s.cwiseAbs().maxCoeff() >= params.gyro_range_rad_s || sums.recovered_s > 0.0;
+  const bool recovered = params.recovered_rate_sigma_rad_s > 0.0;
+  if (sums.rate_clipped_s > 0.0 || (beyond && !recovered)) {
+    out.grip_variance += squared(r * params.clipped_rate_sigma_rad_s);
+  } else if (beyond) {
+    out.grip_variance += squared(r * params.recovered_rate_sigma_rad_s);
   }
   if (sums.gap_s > 0.0) {
     out.gap_variance = squared(r) * sums.gap_rate_rad2_s / sums.node_s;

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "tumble/angular_velocity/clipping_finder.hpp"
 #include "tumble/angular_velocity/companion.hpp"
-#include "tumble/angular_velocity/rail_detector.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
@@ -28,6 +28,7 @@ class AccelerometerRate {
  public:
   struct Params {
     RailDetector::Params rails = {};
+    bool tilted_rails = false;  ///< judge by tilted planes too (ClippingFinder); published by axis alone
     bool use_gyro = true;
     double gyro_noise_density = 5.236e-4;  ///< [rad/s/sqrt(Hz)]; [1e-9, 1]
     double accel_noise_density = 1.5e-3;   ///< the worst of the accelerometers [m/s^2/sqrt(Hz)]; [1e-9, 10]
@@ -48,7 +49,7 @@ class AccelerometerRate {
 
  private:
   Params params_;
-  RailDetector rails_;
+  ClippingFinder rails_;
 };
 
 }  // namespace tumble

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "tumble/angular_velocity/rail_detector.hpp"
+#include "tumble/angular_velocity/clipping_finder.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
@@ -37,6 +37,7 @@ class ClippedBaseline {
   struct Params {
     Kind kind = Kind::interpolate;
     RailDetector::Params rails = {};
+    bool tilted_rails = false;  ///< judge by tilted planes too (ClippingFinder); published by axis alone
     /// Noise density of the gyro [rad/s/sqrt(Hz)]; [1e-9, 1].
     double gyro_noise_density = 5.236e-4;
     /// Density of the white angular acceleration of `reject` [rad^2/s^3]; [1e-12, 1e12].
@@ -58,7 +59,7 @@ class ClippedBaseline {
 
  private:
   Params params_;
-  RailDetector rails_;
+  ClippingFinder rails_;
 };
 
 }  // namespace tumble

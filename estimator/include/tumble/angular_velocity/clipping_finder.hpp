@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -12,23 +14,44 @@ namespace tumble {
 
 /// What the rails of an IMU are known to be.
 struct KnownRails {
-  RailDetector::State walls;  ///< levels of equal readings, stated ranges
-  RailPlanes planes;          ///< of the gyro's elements, where they were seen
-  bool upright = false;       ///< the device clips what it delivers: nothing is off on the axes beside
+  RailDetector::State walls;   ///< levels of equal readings, stated ranges
+  RailPlanes planes;           ///< of the gyro's elements, where they were seen
+  RailPlanes accel_planes;     ///< of the accelerometer's
+  bool upright = false;        ///< the device clips what it delivers: nothing is off on the axes beside
+  bool accel_upright = false;  ///< the same of the accelerometer
 
   /// The planes by which readings are judged: where rails are upright equal readings tell them to the bit, and planes
   /// what else there is.
-  RailPlanes planes_in_use() const;
+  RailPlanes planes_in_use(Triad triad = Triad::gyro) const;
+  /// Along what the elements sense; `unknown_sigma` is the deviation of slopes that no rail has told.
+  ElementRows rows(Triad triad, double unknown_sigma) const;
   bool operator==(const KnownRails&) const = default;
 };
 
+/// What the reading of one element is worth.
+enum class ElementReading : std::uint8_t {
+  measured,
+  clipped_high,  ///< a bound: the truth along the element's row lies there or beyond
+  clipped_low,
+  unreadable  ///< says nothing
+};
+/// Of element `axis` of a judged sample.
+ElementReading element_reading(const ImuSample& sample, const Clipping& clipping, Triad triad, int axis);
+
+/// Flags of a judged sample, ClipFlag bits: what readings the device itself should have flagged.
+std::uint8_t clip_flags(const Clipping& clipping);
+
 /// Finds which readings of a recording are clipped: the one judgement for all that reads recordings, from what the
-/// device flags, levels of equal readings (RailDetector) and tilted planes (RailPlaneFinder).
+/// device flags, levels of equal readings (RailDetector) and tilted planes (RailPlaneFinder), of gyro and
+/// accelerometer. RateStream judges its window by the same rails and rules (RailWatch).
 class ClippingFinder {
  public:
   struct Params {
-    RailDetector::Params walls;
-    RailPlaneFinder::Params planes;  ///< without a stated range of its own: that of `walls`
+    RailDetector::Params walls = {};
+    RailPlaneFinder::Params planes = {};  ///< without a stated range of its own: that of `walls`
+    RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();  ///< likewise
+    /// False: by flags and walls alone, as methods were published that know no other rail.
+    bool tilted = true;
   };
   struct Found {
     KnownRails rails;
@@ -44,8 +67,13 @@ class ClippingFinder {
   const RailDetector& walls() const { return walls_; }
 
  private:
+  RailPlanes find_planes(std::span<const ImuSample> samples, Triad triad, const RailDetector::State& walls,
+                         bool& upright) const;
+
   RailDetector walls_;
-  RailPlaneFinder planes_, unstated_;  // the second where readings contradict the stated range
+  // of gyro and accelerometer; the second of each where readings contradict the stated range
+  std::array<std::array<RailPlaneFinder, 2>, 2> planes_;
+  bool tilted_;
 };
 
 }  // namespace tumble

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tumble/angular_velocity/rail_detector.hpp"
+#include "tumble/angular_velocity/rail_planes.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
 
@@ -30,12 +31,15 @@ struct CompanionImu {
   double share_error = 2e-3;       ///< scale and misalignment, as a share of the reading; [0, 1]
   double place_error_m = 2e-3;     ///< of p_IC; [1e-9, 1]
   double clock_error_s = 1e-3;     ///< between the clocks of the two; [0, 0.1]
+  ElementRows gyro_elements = {}, accel_elements = {};  ///< of use where one of them clips
 };
 
 /// What a companion read at the time of a sample of the primary IMU, its own axes; NaN where an axis says nothing.
+/// While an element of it clips, the values are those along its free elements: the axes are off by what is hidden.
 struct CompanionReading {
   Eigen::Vector3d rate_rad_s, force_m_s2;
   Eigen::Vector3d rate_sigma_rad_s, force_sigma_m_s2;
+  bool rate_by_elements = false, force_by_elements = false;
   /// Nothing.
   CompanionReading();
   bool sees_all_rates() const { return rate_rad_s.allFinite(); }
@@ -44,9 +48,10 @@ struct CompanionReading {
 };
 
 /// Readings of a companion at the stamps of the primary, by linear interpolation between neighbours no further apart
-/// than `gap_max_s`; clipped axes are left out (what does not know: the bound that they are). Trouble of its samples
-/// (`non_finite`, `time_order`): nothing is written. No samples: no reading says anything. O(N).
-Status align(const CompanionImu& companion, std::span<const ImuSample> samples, const RailDetector& rails,
+/// than `gap_max_s`; clipped elements are left out (what does not know: the bound that they are), as `clippings` has
+/// them, one per sample (ClippingFinder). Trouble of its samples (`non_finite`, `time_order`; `too_few` clippings):
+/// nothing is written. No samples: no reading says anything. O(N).
+Status align(const CompanionImu& companion, std::span<const ImuSample> samples, std::span<const Clipping> clippings,
              std::span<const ImuSample> primary, double gap_max_s, std::vector<CompanionReading>& out);
 
 }  // namespace tumble

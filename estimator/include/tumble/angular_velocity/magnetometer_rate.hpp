@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "tumble/angular_velocity/rail_detector.hpp"
+#include "tumble/angular_velocity/clipping_finder.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
@@ -28,6 +28,7 @@ class MagnetometerRate {
  public:
   struct Params {
     RailDetector::Params rails = {};
+    bool tilted_rails = false;             ///< judge by tilted planes too (ClippingFinder); published by axis alone
     double gyro_noise_density = 5.236e-4;  ///< [rad/s/sqrt(Hz)]; [1e-9, 1]
     double field_noise_t = 5e-8;           ///< of one reading, one standard deviation [T]; [1e-12, 1e-3]
     double hard_iron_t = 1e-6;             ///< offset of the sensor, one standard deviation [T]; [0, 1e-3]
@@ -50,7 +51,7 @@ class MagnetometerRate {
 
  private:
   Params params_;
-  RailDetector rails_;
+  ClippingFinder rails_;
 };
 
 }  // namespace tumble

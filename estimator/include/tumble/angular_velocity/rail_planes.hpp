@@ -8,13 +8,15 @@
 #include <span>
 #include <vector>
 
+#include "tumble/angular_velocity/triad.hpp"
 #include "tumble/common/imu.hpp"
 
 namespace tumble {
 
 /// The rail of one sensing element of a gyro, as the device's readings show it: the two planes row . y = b - r and
 /// row . y = b + r. The element senses along `row` and clips there; the device then compensates scale and misalignment,
-/// so that the plane is tilted in the readings y by a few percent, and takes its bias off, so that the signs differ.
+/// so that the plane is tilted in the readings y by a few percent, and takes its bias off, so that the signs differ. Of
+/// an accelerometer's element it is the same with m/s^2 for rad/s in all that follows.
 struct RailPlane {
   /// m_j: 1 along the element's own axis j, the slopes along the other two.
   Eigen::Vector3d row = Eigen::Vector3d::Zero();
@@ -49,6 +51,17 @@ struct RailPlanes {
   bool operator==(const RailPlanes&) const = default;
 };
 
+/// Along what the elements of a triad sense, as far as their rails tell: free ones measure, and clipped ones bound,
+/// what is along their rows.
+struct ElementRows {
+  Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d slope_sigma = Eigen::Vector3d::Zero();  ///< of each row, one of its two slopes
+  bool tilted() const { return rows != Eigen::Matrix3d::Identity(); }
+  bool operator==(const ElementRows&) const = default;
+};
+/// Rows of elements that no plane is known of are upright, with a deviation of `unknown_sigma`.
+ElementRows element_rows(const RailPlanes& planes, double unknown_sigma);
+
 /// Per element of a sample: -1 or 1 where it is at that rail, 0 where it is free.
 struct ElementClipping {
   std::array<std::int8_t, 3> sign{};
@@ -56,7 +69,7 @@ struct ElementClipping {
   bool operator==(const ElementClipping&) const = default;
 };
 
-/// Finds the rails of a gyro's elements in a whole recording, without flags and without a stated range.
+/// Finds the rails of a triad's elements in a whole recording, without flags and without a stated range.
 ///
 /// A rail is a plane that bounds the readings, close to upright, with many samples in a thin slab below it. What else
 /// puts samples there: the round top of a motion, which its neighbours give away (they fall off as a parabola does,
@@ -72,6 +85,12 @@ struct ElementClipping {
 class RailPlaneFinder {
  public:
   struct Params {
+    /// What differs for an accelerometer: below about 1.5 g gravity alone reads constant for long.
+    static Params for_accelerometer() {
+      Params out;
+      out.distance_min_rad_s = 15.0;
+      return out;
+    }
     /// Cross-axis sensitivity of elements before compensation: prior of each slope; [1e-4, 0.2].
     double slope_sigma = 0.03;
     double slope_max = 0.12;  ///< steepest slope searched; [0, 0.3]
@@ -100,9 +119,9 @@ class RailPlaneFinder {
   /// Throws InvalidParams on a parameter outside of its bound.
   explicit RailPlaneFinder(const Params& params);
 
-  /// The rails that the readings show. Samples must be finite and in order of time. O(N) apart from a search of some
-  /// hundred slopes over the samples near the extremes.
-  RailPlanes find(std::span<const ImuSample> samples) const;
+  /// The rails that the readings of a triad show. Samples must be finite and in order of time. O(N) apart from a search
+  /// of some hundred slopes over the samples near the extremes.
+  RailPlanes find(std::span<const ImuSample> samples, Triad triad = Triad::gyro) const;
   /// The same of readings alone [rad/s]. `before`: rails that fewer of these readings showed.
   RailPlanes find(std::span<const Eigen::Vector3d> readings_rad_s, const RailPlanes& before,
                   Workspace& workspace) const;

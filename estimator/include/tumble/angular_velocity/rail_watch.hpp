@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -10,26 +11,31 @@
 
 namespace tumble {
 
-/// ClippingFinder as a stream: the rails that the readings so far show, walls and planes.
+/// ClippingFinder as a stream: the rails that the readings so far show, walls and planes, of gyro and accelerometer.
 ///
-/// It keeps up to `readings_max` distinct readings, the latest and those about the extremes before others, and searches
-/// them as the batch does: when a stretch near an extreme has ended, and within one after each eighth more of readings
-/// near the extremes, so that a run of n such readings is searched O(log n) times and not n. A plane whose readings had
-/// to be forgotten stays until readings contradict it. What it does not model: see RailPlaneFinder; a rail is seen some
-/// samples after it was first met, so that who believed those has to read them again.
+/// Of each it keeps up to `readings_max` distinct readings, the latest and those about the extremes before others, and
+/// searches them as the batch does: when a stretch near an extreme has ended, and within one after each eighth more of
+/// readings near the extremes, so that a run of n such readings is searched O(log n) times and not n. A plane whose
+/// readings had to be forgotten stays until readings contradict it. What it does not model: see RailPlaneFinder; a rail
+/// is seen some samples after it was first met, so that who believed those has to read them again.
 class RailWatch {
  public:
   struct Params {
     ClippingFinder::Params clipping;
     int readings_max = 1024;  ///< [64, 65536]
   };
-  struct State {
-    KnownRails known;
-    std::vector<Eigen::Vector3d> readings;           ///< distinct, in order of time [rad/s]
-    Eigen::Vector3d peak = Eigen::Vector3d::Zero();  ///< largest magnitude of each axis [rad/s]
+  /// What is kept of one triad, rad/s or m/s^2.
+  struct Memory {
+    std::vector<Eigen::Vector3d> readings;           ///< distinct, in order of time
+    Eigen::Vector3d peak = Eigen::Vector3d::Zero();  ///< largest magnitude of each axis
     std::size_t near = 0, unsearched = 0, past = 0;  ///< readings near the extremes; not searched yet; since the last
     bool forgot = false;                             ///< readings were dropped
-    RailPlaneFinder::Workspace work;                 ///< scratch space, no part of the state proper
+    bool operator==(const Memory&) const = default;
+  };
+  struct State {
+    KnownRails known;
+    std::array<Memory, 2> memory;     ///< of gyro and accelerometer
+    RailPlaneFinder::Workspace work;  ///< scratch space, no part of the state proper
   };
 
   /// Throws InvalidParams on a parameter outside of its bound.
@@ -47,12 +53,13 @@ class RailWatch {
   static bool equal(const State& a, const State& b);
 
  private:
-  void remember(const Eigen::Vector3d& reading, State& state) const;
-  bool is_near(const Eigen::Vector3d& reading, const State& state, double share) const;
-  RailPlanes search(State& state) const;
+  void remember(const Eigen::Vector3d& reading, Triad triad, Memory& memory) const;
+  bool is_near(const Eigen::Vector3d& reading, Triad triad, const Memory& memory, double share) const;
+  bool observe(const Eigen::Vector3d& reading, Triad triad, State& state) const;
+  RailPlanes search(Triad triad, State& state) const;
 
   RailDetector walls_;
-  RailPlaneFinder planes_, unstated_;
+  std::array<std::array<RailPlaneFinder, 2>, 2> planes_;  // as ClippingFinder has them
   std::size_t readings_max_;
 };
 

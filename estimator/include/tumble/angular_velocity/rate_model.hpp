@@ -11,6 +11,7 @@
 #include "tumble/angular_velocity/companion.hpp"
 #include "tumble/angular_velocity/partial_clipping.hpp"
 #include "tumble/angular_velocity/rail_detector.hpp"
+#include "tumble/angular_velocity/rail_planes.hpp"
 #include "tumble/angular_velocity/rate_factors.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/angular_velocity/rig_constants.hpp"
@@ -94,6 +95,7 @@ struct RateObservation {
   /// How old the triads' readings are at the stamp of the sample, and whether the gyro's is that of the sample before.
   double gyro_age_s = 0.0, accel_age_s = 0.0;
   bool gyro_repeats = false;
+  ElementRows accel_rows = {};  ///< of the accelerometer's elements: of use where one of them clips
   std::array<CompanionReading, kCompanionsMax> companions = {};  ///< in the order of RateModelParams::companions
 
   /// Whether an element clips, so that the readings of all axes are off: it is read element by element.
@@ -191,8 +193,11 @@ class RateModel {
  private:
   struct ForceFactor {
     RateFactor factor;
-    double information;  ///< of each axis
+    Eigen::Vector3d information;  ///< of each axis, or element
   };
+  /// The residual of flight element by element where one of the accelerometer's clips: bounds that hold are dropped.
+  /// Returns variances to be added, of what unknown rows make of the hidden force.
+  static Eigen::Vector3d read_accel_elements(const RateObservation& observation, RateFactor& flight);
   ForceFactor force_factor(const RateObservation& observation, const RateEstimate& estimate,
                            const RigConstants& rig) const;
   /// The rate of which the gyro's reading tells: earlier by the reading's age.

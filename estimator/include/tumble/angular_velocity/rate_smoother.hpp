@@ -30,6 +30,7 @@ struct RateReport {
   bool rig_held = false;  ///< the surprise was too large: nothing was learnt, the constants were held
   std::array<std::optional<double>, 6> rail;  ///< in use: gyro [rad/s], accelerometer [m/s^2]; none: not seen
   RailPlanes planes;                          ///< of the gyro's elements, where they were seen
+  RailPlanes accel_planes;                    ///< of the accelerometer's, m/s^2
   /// What the device makes of the motion, as far as the run tells.
   KnownSensorErrors sensor_errors;
   double calibrated = 1.0, together = 1.0;           ///< see SensorErrorFit
@@ -82,6 +83,7 @@ class RateSmoother {
     RateModelParams model;
     RailDetector::Params rails;
     RailPlaneFinder::Params planes;  ///< without a stated range of its own: that of `rails`
+    RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();  ///< likewise
     RestDetector::Params rests;
     int iterations_max = 15;        ///< [1, 1000]
     double tolerance_rad_s = 2e-3;  ///< stop when no rate changes by more; [1e-12, 1]

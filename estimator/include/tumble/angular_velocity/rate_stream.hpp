@@ -47,6 +47,7 @@ class RateStream {
     RateModelParams model = {.accel_bias_sigma_m_s2 = 0.02, .inertia_sigma = 0.15};
     RailDetector::Params rails;
     RailPlaneFinder::Params planes;  ///< without a stated range of its own: that of `rails`
+    RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();  ///< likewise
     RestDetector::Params rests;
     double period_s = 0.01;        ///< nominal time between samples; [1e-5, 1]
     double lag_s = 0.2;            ///< length of the window; [2 period_s, 10], at most 4096 samples

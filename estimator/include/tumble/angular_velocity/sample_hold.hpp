@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "tumble/angular_velocity/triad.hpp"
 #include "tumble/common/imu.hpp"
 
 namespace tumble {
@@ -16,8 +17,6 @@ struct HeldReadings {
   std::vector<double> age_s;  ///< of each sample: how old its reading is beyond that of a reading taken at once
   std::vector<bool> repeats;  ///< it is the reading of the sample before
 };
-
-enum class Triad : std::uint8_t { gyro, accelerometer };
 
 /// Finds them: none where fewer than a twentieth of the samples in motion (faster than 0.3 rad/s, 30 of them at least)
 /// repeat all three numbers of the one before. Period and phase are those with which a steady clock explains best which

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "tumble/angular_velocity/rail_detector.hpp"
+#include "tumble/angular_velocity/clipping_finder.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
@@ -27,6 +27,7 @@ class StandstillSmoother {
  public:
   struct Params {
     RailDetector::Params rails = {};
+    bool tilted_rails = false;              ///< judge by tilted planes too (ClippingFinder); published by axis alone
     double gravity_m_s2 = 9.80665;          ///< [0.1, 100]
     double gyro_noise_density = 5.236e-4;   ///< [rad/s/sqrt(Hz)]; [1e-9, 1]
     double accel_noise_density = 5.9e-4;    ///< [m/s^2/sqrt(Hz)]; [1e-9, 10]
@@ -52,7 +53,7 @@ class StandstillSmoother {
 
  private:
   Params params_;
-  RailDetector rails_;
+  ClippingFinder rails_;
 };
 
 }  // namespace tumble

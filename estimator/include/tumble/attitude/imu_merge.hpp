@@ -27,7 +27,10 @@ namespace tumble {
 /// A unit whose accelerometer stands at its rail is left out of the force, and one that may have met it within a sample
 /// and disagrees with the others; where most are doubtful, the merged force is flagged as clipped. Where
 /// the gyros do, three units or more tell the rate by what the turning does to their accelerometers (RateRecovery); the
-/// merged sample's clip flags say when they could not.
+/// merged sample's clip flags say when they could not. Fewer units leave out a clipped one where another is free; where
+/// none is, the merged sample carries the flags, of all axes of C that a clipped one has a part in. Clipped is what is
+/// flagged or reads beyond the range: rails below it, tilted ones above all, are for whoever judges the units
+/// (ClippingFinder) to flag.
 ///
 /// Decided and learnt is by means over window_s, whatever the rate of the IMUs: they have one bandwidth, and so the
 /// tolerances one meaning. A reading that is itself as long is taken as it is; of an axis that was at its rail within
@@ -41,7 +44,8 @@ namespace tumble {
 class ImuMerge {
  public:
   static constexpr int kImus = 4;
-  static constexpr int kErrors = 13;  ///< of a unit's rate about the mean: bias, scale and misalignment, time offset
+  static constexpr int kLearnFrom = 3;  ///< so many windows make an angular acceleration
+  static constexpr int kErrors = 13;    ///< of a unit's rate about the mean: bias, scale and misalignment, time offset
 
   struct Params {
     std::array<Eigen::Isometry3d, kImus> T_CI{};  ///< mountings; the first `count` are used
@@ -58,6 +62,8 @@ class ImuMerge {
     double hidden_share = 0.15;
     double hidden_force_m_s2 = 3.0;  ///< by which it then may disagree with another; bound (0, 1e4]
     double gap_max_s = 1.0;          ///< bound (0, 1e4]
+    /// Along what the elements of each unit sense (RateRecovery).
+    std::array<ElementRows, kImus> gyro_elements{}, accel_elements{};
     // Of units that are left out. A reading that lasts for frozen_after_s while the others move by more than this is
     // frozen; sample and hold is shorter.
     double frozen_after_s = 0.1;      ///< bound (0, 1e3]
@@ -110,6 +116,7 @@ class ImuMerge {
     double length_s = 0.0, length_before_s = 0.0;                 ///< of the last windows
     double arm_product = 0.0, arm_square_m2_s3 = 0.0;             ///< of arm_share()
     std::int64_t samples = 0, windows = 0;
+    int free_windows = kLearnFrom;  ///< since a gyro was clipped, at most kLearnFrom
     TimeNs last_time_ns = 0;
     bool operator==(const State&) const = default;
   };
@@ -141,6 +148,7 @@ class ImuMerge {
                State& state) const;
   ImuSample mean_of_used(const Vectors& rates, const Vectors& forces, const Flags& used, double h,
                          const State& state) const;
+  std::uint8_t flags_of(const Readings& readings, const Flags& which) const;
   void close_windows(const Flags& present, const Vectors& rates, const Vectors& forces, bool all_used,
                      const ImuSample& merged, State& state) const;
   void learn(const Vectors& rates, State& state) const;

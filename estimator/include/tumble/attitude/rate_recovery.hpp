@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "tumble/angular_velocity/rail_planes.hpp"
 #include "tumble/common/imu.hpp"
 
 namespace tumble {
@@ -14,8 +15,10 @@ namespace tumble {
 ///
 /// An extended Kalman filter of rate, angular acceleration and the specific force at the units' mean place, which turns
 /// in the body as gravity does, with the error of each unit's lever arm: f_k = c + a x r_k + w x (w x r_k). It runs
-/// while a gyro reads more than kFast of its range, so that the lever arms are learnt before the gyro stands at its
-/// rail; readings at a rail or flagged, of gyro or accelerometer, are bounds and no measurements.
+/// while a gyro is clipped or reads more than kFast of its range, so that the lever arms are learnt before the gyro
+/// stands at its rail. A reading is clipped where its flag says so (which whoever has judged the unit sets, see
+/// ClippingFinder: a device that flags nothing may clip below its range) and from the range on; of gyro and
+/// accelerometer, such readings are bounds and no measurements.
 ///
 /// Not modelled: errors of scale (the gyro's is what the lever arms are learnt with), units that share a place, which
 /// tell nothing. A blow on the body reads as a spell of doubt, not as a rate.
@@ -42,6 +45,9 @@ class RateRecovery {
     double acceleration_walk_rad_s2_sqrts = 200.0;  ///< of the angular acceleration; bound (0, 1e6]
     double force_walk_m_s2_sqrts = 25.0;            ///< of the common force; bound (0, 1e6]
     double recovered_sigma_rad_s = 1.0;             ///< a rate known no better than this stays clipped; bound (0, 1e3]
+    /// Along what the elements of the units sense: while one clips, the axes beside it are off by what it hides, and
+    /// the free ones are read along their rows.
+    std::array<ElementRows, kUnits> gyro_elements{}, accel_elements{};
   };
   struct State {
     Vector x = Vector::Zero();  ///< rate, angular acceleration, force (C), lever arms of the units in error
@@ -57,13 +63,19 @@ class RateRecovery {
   /// Takes the units' readings (of a unit that is not finite, none), each in its own axes, `dt_s` after the last ones;
   /// `merged` (C) holds the mean of those in use and gets rate and force of the filter where a rail made them wrong.
   /// Its clip flags of the gyro are set when the rate could not be recovered, those of the accelerometer when most
-  /// units' were at their rail, or one's and a gyro's; else cleared. O(count), no allocation; little to do while the
-  /// body turns slowly.
+  /// units' were at their rail, or one's and a gyro's; else cleared: a rate that was recovered is none that is clipped.
+  /// O(count), no allocation; little to do while the body turns slowly and no gyro is clipped.
   void step(std::span<const ImuSample> units, double dt_s, State& state, ImuSample& merged) const;
 
  private:
+  /// What the units met.
+  struct Met {
+    bool rate = false;   ///< a gyro's rail
+    bool force = false;  ///< so many accelerometers' that the common force is off
+  };
   bool rate_railed(const ImuSample& unit, int axis) const;
   bool force_railed(const ImuSample& unit, int axis) const;
+  Met met_by(std::span<const ImuSample> units) const;
   void start(const ImuSample& merged, State& state) const;
   void predict(double dt_s, State& state) const;
   void measure_rates(std::span<const ImuSample> units, double dt_s, State& state) const;

@@ -116,6 +116,7 @@ struct RollingNominal {
   Eigen::Vector3d lever_arm_error_m = Eigen::Vector3d::Zero();
   Eigen::Vector2d slope = Eigen::Vector2d::Zero();  ///< horizontal part of the floor's unit normal, W
   double radius_error_m = 0.0;
+  Eigen::Vector3d last_rate_I_rad_s = Eigen::Vector3d::Zero();  ///< as it was read last
   bool operator==(const RollingNominal&) const = default;
 };
 

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// rail_detection [--no-flags] FILE...: what ClippingFinder makes of simulated recordings (.h5), of the first IMU's gyro
+// and accelerometer: elements that lost more than 1 % of the stated range to their rail, how many of them are called
+// clipped, how many of all called lost anything, and what it calls when it is given the unclipped twin, which has no
+// rail. Not a test.
+#include <Eigen/Dense>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/rate_baseline.hpp"
+#include "scenarios/recordings/recording_file.hpp"
+#include "tumble/angular_velocity/clipping_finder.hpp"
+
+namespace {
+
+using namespace tumble;
+
+struct Count {
+  std::size_t deep = 0, found = 0, called = 0, right = 0, false_alarms = 0;
+};
+
+// Largest share of a range that is no loss: rounding, and the digits of the device.
+constexpr double kNothing = 2e-5, kDeep = 0.01;
+
+Eigen::Matrix3d rows_of(const std::vector<Eigen::Vector3d>& elements) {
+  Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
+  for (std::size_t j = 0; j < elements.size(); ++j) rows.row(static_cast<Eigen::Index>(j)) = elements[j];
+  return rows;
+}
+
+void count(const Eigen::Matrix3d& rows, const Eigen::Vector3d& lost, double range, unsigned called, Count& out) {
+  const Eigen::Vector3d excess = (rows * lost).cwiseAbs() / range;
+  for (int j = 0; j < 3; ++j) {
+    const bool call = (called >> j & 1u) != 0;
+    out.deep += excess[j] > kDeep;
+    out.found += call && excess[j] > kDeep;
+    out.called += call;
+    out.right += call && excess[j] > kNothing;
+  }
+}
+
+void print(const char* triad, const Count& c, const RailPlanes& planes, const std::string& file) {
+  std::printf("%-5s %5zu %5zu  %5zu %5zu  %5zu  planes", triad, c.deep, c.found, c.called, c.right, c.false_alarms);
+  for (const auto& plane : planes.element) {
+    if (plane) {
+      std::printf(" %.3f(%d+%d)", plane->distance_rad_s, plane->samples[0], plane->samples[1]);
+    } else {
+      std::printf(" -");
+    }
+  }
+  std::printf("  %s\n", file.c_str());
+}
+
+void judge(const std::string& file, bool flags) {
+  sim::Sensors sensors = scenarios::read_sensors(file);
+  const sim::ImuTruth truth = scenarios::read_truth(file).imus.at(0);
+  sim::ImuRecord& imu = sensors.imus.at(0);
+  if (!flags) imu.clip_flags.assign(imu.time_ns.size(), 0);
+  ClippingFinder::Params params;
+  params.walls = scenarios::stated_rails(imu);
+  const ClippingFinder finder(params);
+  std::vector<ImuSample> samples;
+  if (!scenarios::bridge::imu_samples(imu, samples).ok()) return;
+  const ClippingFinder::Found found = finder.find(samples);
+  std::vector<ImuSample> free = samples;
+  Count gyro, accel;
+  const Eigen::Matrix3d gyro_rows = rows_of(truth.gyro_elements), accel_rows = rows_of(truth.accel_elements);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    count(gyro_rows, truth.gyro_unclipped_rad_s[k] - samples[k].angular_velocity_rad_s, imu.stated_gyro_range_rad_s,
+          found.clippings[k].gyro, gyro);
+    count(accel_rows, truth.accel_unclipped_m_s2[k] - samples[k].specific_force_m_s2, imu.stated_accel_range_m_s2,
+          found.clippings[k].accel, accel);
+    free[k].device_clip_flags = 0;
+    free[k].angular_velocity_rad_s = truth.gyro_unclipped_rad_s[k];
+    free[k].specific_force_m_s2 = truth.accel_unclipped_m_s2[k];
+  }
+  params.walls.stated_gyro_rad_s = params.walls.stated_accel_m_s2 = std::nullopt;
+  const ClippingFinder::Found none = ClippingFinder(params).find(free);
+  for (const Clipping& clipping : none.clippings) {
+    gyro.false_alarms += clipping.gyro != 0;
+    accel.false_alarms += clipping.accel != 0;
+  }
+  print("gyro", gyro, found.rails.planes, file);
+  print("accel", accel, found.rails.accel_planes, file);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  bool flags = true;
+  std::printf("triad  deep found called right  alarms on the unclipped twin\n");
+  try {
+    for (int i = 1; i < argc; ++i) {
+      const std::string word = argv[i];
+      if (word == "--no-flags") {
+        flags = false;
+      } else {
+        judge(word, flags);
+      }
+    }
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "rail_detection: %s\n", error.what());
+    return 2;
+  }
+  return 0;
+}

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The one judgement of rails: accelerometers with tilted elements, other IMUs on the body, families that keep the wall.
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <type_traits>
+#include <vector>
+
+#include "estimator/angular_velocity/drawn_elements.hpp"
+#include "estimator/angular_velocity/tumble_recording.hpp"
+#include "tumble/angular_velocity/clipped_baseline.hpp"
+#include "tumble/angular_velocity/clipping_finder.hpp"
+#include "tumble/angular_velocity/companion.hpp"
+#include "tumble/angular_velocity/rail_watch.hpp"
+#include "tumble/angular_velocity/rate_smoother.hpp"
+#include "tumble/angular_velocity/rate_stream.hpp"
+
+namespace tumble {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double kRail_m_s2 = 19.6;  // 2 g, as the pendulum of RepoIMU has: the turning alone passes it
+
+struct Tumble {
+  TumbleRecording recording;
+  std::vector<Vector3d> hidden_m_s2;  // what each element of the accelerometer lost, signed
+  Matrix3d rows;
+};
+
+// A tumble whose accelerometer clips along tilted elements.
+Tumble tumble_of(std::uint64_t seed, double tilt, double rail_m_s2 = kRail_m_s2) {
+  TumbleOptions options;
+  options.seed = seed;
+  Tumble out{make_tumble(options), {}, tilt > 0.0 ? drawn_rows(seed, tilt) : Matrix3d(Matrix3d::Identity())};
+  for (ImuSample& sample : out.recording.samples) {
+    const Vector3d sensed = out.rows * sample.specific_force_m_s2;
+    const Vector3d kept = sensed.cwiseMax(-rail_m_s2).cwiseMin(rail_m_s2);
+    out.hidden_m_s2.push_back(sensed - kept);
+    if (kept != sensed) sample.specific_force_m_s2 = out.rows.inverse() * kept;
+  }
+  return out;
+}
+
+struct Share {
+  int deep = 0, found = 0, called = 0, right = 0;
+  void add(const Vector3d& hidden, unsigned called_axes) {
+    for (int j = 0; j < 3; ++j) {
+      const bool call = (called_axes >> j & 1u) != 0, is_deep = std::abs(hidden[j]) > 0.01 * kRail_m_s2;
+      deep += is_deep;
+      found += is_deep && call;
+      called += call;
+      right += call && hidden[j] != 0.0;
+    }
+  }
+};
+
+TEST(RailJudgement, FindsTheTiltedRailsOfAnAccelerometer) {
+  Share share;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const Tumble tumble = tumble_of(seed, 0.02);
+    const ClippingFinder::Found found = ClippingFinder({}).find(tumble.recording.samples);
+    EXPECT_TRUE(found.rails.accel_planes.any()) << seed;
+    for (std::size_t k = 0; k < found.clippings.size(); ++k) {
+      share.add(tumble.hidden_m_s2[k], found.clippings[k].accel);
+    }
+    for (int j = 0; j < 3; ++j) {
+      const auto& plane = found.rails.accel_planes.element[static_cast<std::size_t>(j)];
+      if (!plane) continue;
+      EXPECT_NEAR(plane->distance_rad_s, kRail_m_s2, 0.05) << seed;
+      EXPECT_LT((plane->row.transpose() - tumble.rows.row(j)).norm(), 0.01) << seed;
+    }
+  }
+  ASSERT_GT(share.deep, 500);
+  EXPECT_GE(share.found, 0.97 * share.deep);
+  EXPECT_GE(share.right, 0.98 * share.called);
+}
+
+// Negative control: what never met a rail has none, rest and gravity included.
+TEST(RailJudgement, AnAccelerometerThatDoesNotClipHasNoRail) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const Tumble tumble = tumble_of(seed, 0.02, 1e4);
+    const ClippingFinder::Found found = ClippingFinder({}).find(tumble.recording.samples);
+    EXPECT_FALSE(found.rails.accel_planes.any()) << seed;
+    for (const Clipping& clipping : found.clippings) EXPECT_EQ(clipping.accel, 0) << seed;
+  }
+}
+
+struct Errors {
+  std::vector<double> all;
+  int within = 0, axes = 0;
+  void add(const Tumble& tumble, const std::vector<RateState>& states) {
+    ASSERT_EQ(states.size(), tumble.recording.truth.size());
+    for (std::size_t k = 0; k < states.size(); ++k) {
+      if (states[k].clipped_axes == 0) continue;
+      const Vector3d error = states[k].w_WI_I_rad_s - tumble.recording.truth[k];
+      all.push_back(error.norm());
+      for (int j = 0; j < 3; ++j) {
+        ++axes;
+        within += std::abs(error[j]) <= 3.0 * std::sqrt(states[k].covariance_rad2_s2(j, j));
+      }
+    }
+  }
+  double median() {
+    std::sort(all.begin(), all.end());
+    return all.at(all.size() / 2);
+  }
+};
+
+template <typename Params>
+Errors smooth(Params params, double distance_min) {
+  params.accel_planes.distance_min_rad_s = distance_min;
+  Errors out;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const Tumble tumble = tumble_of(seed, 0.03);
+    std::vector<RateState> states;
+    if constexpr (std::is_same_v<Params, RateSmoother::Params>) {
+      RateReport report;
+      EXPECT_TRUE(RateSmoother(params).estimate(tumble.recording.samples, states, report).ok());
+    } else {
+      const RateStream stream(params);
+      RateStream::State state = stream.start();
+      std::optional<RateState> one;
+      for (const ImuSample& sample : tumble.recording.samples) {
+        EXPECT_TRUE(stream.push(sample, state, one).ok());
+        if (one) states.push_back(*one);
+      }
+      stream.flush(state, states);
+    }
+    out.add(tumble, states);
+  }
+  return out;
+}
+
+TEST(RailJudgement, ASaturatedForceIsABoundAlongItsElement) {
+  Errors ours = smooth(RateSmoother::Params{}, 15.0);
+  // negative control: the same smoother that knows no planes believes forces that are none
+  Errors blind = smooth(RateSmoother::Params{}, 1000.0);
+  ASSERT_GT(ours.all.size(), 200u);
+  EXPECT_LT(ours.median(), 0.5 * blind.median());
+  EXPECT_GT(ours.within, 0.97 * ours.axes);
+  EXPECT_LT(blind.within, 0.97 * blind.axes);
+}
+
+TEST(RailJudgement, TheStreamReadsItAlike) {
+  Errors ours = smooth(RateStream::Params{}, 15.0), blind = smooth(RateStream::Params{}, 1000.0);
+  ASSERT_GT(ours.all.size(), 200u);
+  EXPECT_LT(ours.median(), 0.7 * blind.median());
+  EXPECT_GT(ours.within, 0.95 * ours.axes);
+}
+
+TumbleRecording tilted_gyro() {
+  TumbleOptions options;
+  options.gyro_rows = drawn_rows(3, 0.04);
+  return make_tumble(options);
+}
+
+// What a companion with tilted elements says of free ones is true while another clips; axis by axis it is not.
+TEST(RailJudgement, ACompanionIsReadAlongItsElements) {
+  const TumbleRecording tumble = tilted_gyro();
+  const ClippingFinder::Found found = ClippingFinder({}).find(tumble.samples);
+  CompanionImu companion;
+  companion.gyro_elements = found.rails.rows(Triad::gyro, 0.03);
+  std::vector<CompanionReading> readings;
+  ASSERT_TRUE(align(companion, tumble.samples, found.clippings, tumble.samples, 1.0, readings).ok());
+  const Matrix3d& rows = companion.gyro_elements.rows;
+  double along = 0.0, by_axis = 0.0;
+  int count = 0;
+  for (std::size_t k = 0; k < readings.size(); ++k) {
+    EXPECT_EQ(readings[k].rate_by_elements, found.clippings[k].gyro != 0) << k;
+    if (!readings[k].rate_by_elements || tumble.hidden[k].norm() < 2.0) continue;
+    for (int j = 0; j < 3; ++j) {
+      if (!std::isfinite(readings[k].rate_rad_s[j]) || companion.gyro_elements.slope_sigma[j] > 0.01) continue;
+      along += std::abs(readings[k].rate_rad_s[j] - rows.row(j).dot(tumble.truth[k]));
+      by_axis += std::abs(tumble.samples[k].angular_velocity_rad_s[j] - tumble.truth[k][j]);
+      ++count;
+    }
+  }
+  ASSERT_GT(count, 50);
+  EXPECT_LT(along, 0.3 * by_axis);
+  std::vector<Clipping> few(3);
+  EXPECT_EQ(align(companion, tumble.samples, few, tumble.samples, 1.0, readings).trouble, Trouble::too_few);
+}
+
+// Published with the wall of each axis, judged by planes on demand.
+TEST(RailJudgement, PublishedFamiliesKeepTheWallUnlessAsked) {
+  const TumbleRecording tumble = tilted_gyro();
+  std::vector<RateState> wall, planes;
+  ASSERT_TRUE(ClippedBaseline({.kind = ClippedBaseline::Kind::interpolate}).estimate(tumble.samples, wall).ok());
+  ASSERT_TRUE(ClippedBaseline({.kind = ClippedBaseline::Kind::interpolate, .tilted_rails = true})
+                  .estimate(tumble.samples, planes)
+                  .ok());
+  Share by_wall, by_planes;
+  for (std::size_t k = 0; k < wall.size(); ++k) {
+    by_wall.add(tumble.hidden[k], wall[k].clipped_axes);
+    by_planes.add(tumble.hidden[k], planes[k].clipped_axes);
+  }
+  ASSERT_GT(by_planes.deep, 20);
+  EXPECT_LT(by_wall.found, 0.2 * by_wall.deep);
+  EXPECT_GT(by_planes.found, 0.95 * by_planes.deep);
+}
+
+// The first readings, at rest as a rule, tell the noise however much is forgotten after them.
+TEST(RailJudgement, TheWatchKeepsTheFirstReadingsAndTheLatest) {
+  for (const int readings_max : {64, 1024}) {
+    const RailWatch watch({.clipping = {}, .readings_max = readings_max});
+    RailWatch::State state = watch.start();
+    const auto reading = [](int k) {
+      // a slow wobble near one level: none of it is dull
+      return Vector3d(9.0 + 0.3 * std::sin(0.7 * k) + 1e-6 * k, 0.1 * std::cos(0.3 * k), 1e-3 * k);
+    };
+    constexpr int kSamples = 3000;
+    for (int k = 0; k < kSamples; ++k) {
+      ImuSample sample;
+      sample.time_ns = 10'000'000 * static_cast<TimeNs>(k);
+      sample.angular_velocity_rad_s = reading(k);
+      watch.observe(sample, state);
+    }
+    const std::vector<Vector3d>& kept = state.memory[0].readings;
+    ASSERT_TRUE(state.memory[0].forgot);
+    ASSERT_LE(kept.size(), static_cast<std::size_t>(readings_max));
+    const int first = readings_max == 64 ? 12 : 48;
+    for (int k = 0; k < first; ++k) EXPECT_EQ(kept[static_cast<std::size_t>(k)], reading(k)) << k;
+    for (int k = 0; k < 12; ++k) {
+      EXPECT_EQ(kept[kept.size() - 1 - static_cast<std::size_t>(k)], reading(kSamples - 1 - k)) << k;
+    }
+  }
+}
+
+TEST(RailJudgement, TellsWhatAReadingIsWorth) {
+  ImuSample sample;
+  sample.angular_velocity_rad_s = {10.0, -10.0, 1.0};
+  sample.specific_force_m_s2 = {1.0, -50.0, 2.0};
+  Clipping clipping;
+  clipping.gyro = 3;
+  clipping.void_gyro = 4;
+  clipping.accel = 2;
+  EXPECT_EQ(element_reading(sample, clipping, Triad::gyro, 0), ElementReading::clipped_high);
+  EXPECT_EQ(element_reading(sample, clipping, Triad::gyro, 1), ElementReading::clipped_low);
+  EXPECT_EQ(element_reading(sample, clipping, Triad::gyro, 2), ElementReading::unreadable);
+  EXPECT_EQ(element_reading(sample, clipping, Triad::accelerometer, 0), ElementReading::measured);
+  EXPECT_EQ(element_reading(sample, clipping, Triad::accelerometer, 1), ElementReading::clipped_low);
+  EXPECT_EQ(clip_flags(clipping), kClipGyroX | kClipGyroY | kClipGyroZ | kClipAccelY);
+}
+
+}  // namespace
+}  // namespace tumble
