@@ -86,12 +86,13 @@ bool poses_reach_and_hold(const Estimate& estimate, const ScoringInput& input) {
   return reaches(estimate.poses, truth.last_ns()) && poses_hold(estimate, truth);
 }
 
-// a run long enough for the end error must have sweeps enough for it
+// a run long enough for the end error must have sweeps enough for it; a trajectory without any (somebody else's) is
+// judged by its poses alone
 bool sweeps_hold(const Estimate& estimate, const ScoringInput& input) {
   for (const auto& sweep : estimate.sweeps) {
     if (!sweep.pose.p_WA_m.allFinite() || !sweep.pose.q_WA.coeffs().allFinite()) return false;
   }
-  if (input.sensors->lidars.empty()) return true;
+  if (estimate.sweeps.empty() || input.sensors->lidars.empty()) return true;
   const std::size_t given = input.sensors->lidars.front().sweep_start_ns.size();
   return given <= kStartSweep || registered_sweeps(estimate).size() >= kStartSweep;
 }

@@ -41,7 +41,7 @@ std::vector<Score> score(Kind kind, const Estimate& estimate, const ScoringInput
 
 /// `ok`, or `diverged`: an estimate that is not finite, that leaves more than a fifth of the recording in one piece
 /// (rates: more than a tenth of the samples) unanswered, that ends farther from the truth than the path is long (1 m at
-/// least), or that registers fewer than six sweeps.
+/// least), or that reports sweeps and registers fewer than six.
 OutcomeStatus verdict(Kind kind, const Estimate& estimate, const ScoringInput& input);
 
 /// Whether a trajectory is finite and ends nearer to the truth than the path is long, over the stretch that it answers,

@@ -38,7 +38,7 @@ std::string reason(const Status& status) {
 }
 
 /// The one method of that name which can run on this recording without the truth.
-const scenarios::Method& choose(const std::string& name, const std::string& robot) {
+scenarios::MethodPointer choose(const std::string& name, const std::string& robot) {
   std::vector<scenarios::MethodPointer> fitting;
   std::string refused;
   for (const scenarios::MethodPointer& method : scenarios::find_methods(name)) {
@@ -56,7 +56,7 @@ const scenarios::Method& choose(const std::string& name, const std::string& robo
     for (const scenarios::MethodPointer& method : fitting) line += " " + full_name(*method);
     throw BadInput(line);
   }
-  return *fitting.front();
+  return fitting.front();
 }
 
 /// What the estimate holds, and its health.
@@ -78,7 +78,8 @@ Table summary(const scenarios::Estimate& estimate) {
 
 int run_estimate(const Session& session, const Options& options) {
   const sim::Sensors sensors = scenarios::read_sensors(options.recording);
-  const scenarios::Method& method = choose(options.method, sensors.robot);
+  const scenarios::MethodPointer chosen = choose(options.method, sensors.robot);
+  const scenarios::Method& method = *chosen;
   if (!options.learnt.empty() && !LearntFile::learns(method)) {
     throw BadInput("--learnt is for 'rate/tumble' and 'rate/tumble_lag'; '" + full_name(method) +
                    "' learns nothing of the rig");

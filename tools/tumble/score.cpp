@@ -105,15 +105,19 @@ std::string cover_text(const Standing& standing) {
                      standing.first_s, standing.last_s, standing.end_s);
 }
 
-/// A trajectory of somebody else is judged over what it answers, and how much that is is said.
-void judge_trajectory(const Session& session, const Standing& standing, const scenarios::Estimate& estimate,
-                      const scenarios::ScoringInput& input, scenarios::Outcome& outcome) {
-  if (outcome.status == "diverged" && scenarios::trajectory_holds(estimate, input)) {
-    outcome.status = "partial";
+/// A trajectory of somebody else is judged over what it answers, and how much that is is said: "partial" for one that
+/// holds there, but begins late or ends early.
+std::string judge_trajectory(const Session& session, const Standing& standing, const scenarios::Estimate& estimate,
+                             const scenarios::ScoringInput& input, scenarios::Outcome& outcome) {
+  std::string status = to_string(outcome.status);
+  if (outcome.status == scenarios::OutcomeStatus::diverged && scenarios::trajectory_holds(estimate, input)) {
+    status = "partial";
+    outcome.status = scenarios::OutcomeStatus::ok;
     outcome.message = "covers " + cover_text(standing);
   }
   session.note("scored as " + std::string(to_string(outcome.kind)) + ", covers " + cover_text(standing));
   session.note("aligned in " + alignment_text(standing));
+  return status;
 }
 
 nlohmann::json to_json(const Standing& standing) {
@@ -166,22 +170,21 @@ int score_estimate(const Session& session, const Options& options) {
   const scenarios::ScoringInput input{&sensors, &truth, surface ? &*surface : nullptr};
   outcome.scenario = info.scenario;
   outcome.seed = info.seed;
-  // somebody else's trajectory has no sweeps whose registration could be judged
-  const scenarios::Kind judged = foreign ? scenarios::Kind::position : outcome.kind;
   outcome.status =
-      estimate.status.ok() ? scenarios::verdict(judged, estimate, input) : scenarios::OutcomeStatus::failed;
+      estimate.status.ok() ? scenarios::verdict(outcome.kind, estimate, input) : scenarios::OutcomeStatus::failed;
   outcome.message = estimate.status.ok() ? "" : estimate.status.message();
   outcome.scores = scenarios::score(outcome.kind, estimate, input);
   std::optional<Standing> standing;
+  std::string status = to_string(outcome.status);
   if (foreign) {
     standing = standing_of(estimate, truth);
-    judge_trajectory(session, *standing, estimate, input, outcome);
+    status = judge_trajectory(session, *standing, estimate, input, outcome);
   }
 
   const std::vector<scenarios::Outcome> outcomes = {outcome};
   nlohmann::json document = {{"kind", to_string(outcome.kind)},
                              {"method", outcome.method},
-                             {"status", to_string(outcome.status)},
+                             {"status", status},
                              {"scores", score_rows(outcomes)}};
   if (standing) document.update(to_json(*standing));
   session.print(score_tables(options.estimate.string(), outcomes), document);

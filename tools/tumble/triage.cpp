@@ -26,9 +26,9 @@ struct Options {
   std::optional<double> limit;
 };
 
-const scenarios::Method& choose(const std::string& name) {
+scenarios::MethodPointer choose(const std::string& name) {
   const std::vector<scenarios::MethodPointer> found = scenarios::find_methods(name);
-  if (found.size() == 1) return *found.front();
+  if (found.size() == 1) return found.front();
   std::string line = "--method " + name + " names several methods; say which:";
   for (const scenarios::MethodPointer& method : found)
     line += std::string(" ") + to_string(method->info.kind) + "/" + method->info.name;
@@ -102,7 +102,8 @@ int run_triage(const Session& session, const Options& options) {
   const scenarios::DataRoot data = session.data();
   const scenarios::Scenario scenario = scenarios::load_scenario(data, options.scenario);
   const std::uint64_t seed = parse_seed(options.seed);
-  const scenarios::Method& method = choose(options.method);
+  const scenarios::MethodPointer chosen = choose(options.method);
+  const scenarios::Method& method = *chosen;
   const std::string metric = metric_of(method, options);
   if (!options.metric.empty() && !options.limit) throw BadInput("--metric needs --limit: from where on a run fails");
   scenarios::TriageOptions triage_options;
