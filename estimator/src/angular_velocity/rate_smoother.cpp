@@ -276,11 +276,11 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
   known.calibration = with_planes(RateModel(params_.model, period_s), planes, rails.upright);
   const RateModel model(known, period_s);
   const std::vector<bool> rest = rests_.find(samples);
+  const std::vector<Neighbours> beside = other_readings(samples);
   for (std::size_t k = 0; k < samples.size(); ++k) {
     observations[k] = {samples[k], clippings[k], rest[k]};
     for (std::size_t i = 0; i < companions.size(); ++i) observations[k].companions[i] = companions[i][k];
-    const ImuSample* const before = k > 0 ? &samples[k - 1] : nullptr;
-    const ImuSample* const after = k + 1 < samples.size() ? &samples[k + 1] : nullptr;
+    const auto [before, after] = beside[k];
     mark_partial(planes, rails_.walls(), rails.walls, model.gyro_sigma_rad_s(), before, observations[k], after);
     if (health.rails_upright) continue;
     doubt_unseen_rails(planes, model.gyro_sigma_rad_s(), before, observations[k], after);

@@ -25,4 +25,12 @@ enum class Triad : std::uint8_t { gyro, accelerometer };
 /// of some 5000 clocks, on 1000 samples at most.
 std::optional<HeldReadings> find_held(std::span<const ImuSample> samples, Triad triad);
 
+/// The samples nearest to one whose gyro says something else; null where there is none.
+struct Neighbours {
+  const ImuSample *before = nullptr, *after = nullptr;
+};
+/// Of each sample: a reading said twice has the same neighbours both times. Whole stretches of equal readings (rest, a
+/// level plateau) are stepped over likewise. O(N).
+std::vector<Neighbours> other_readings(std::span<const ImuSample> samples);
+
 }  // namespace tumble
