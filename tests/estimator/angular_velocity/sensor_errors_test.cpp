@@ -130,7 +130,7 @@ TEST(TriadDelay, IsGuessedWhereThereIsOne) {
           clippings[k].gyro = static_cast<std::uint8_t>(clippings[k].gyro | (at_rail ? 1u << j : 0u));
         }
       }
-      const double found = guess_triad_delay_s(recording.samples, clippings, {-0.022, -0.085, 0.055});
+      const double found = guess_triad_delay(recording.samples, clippings, {-0.022, -0.085, 0.055}).delay_s;
       const bool near = std::abs(found - 0.01 * static_cast<double>(late)) < 2.6e-3;
       right += near ? 1 : 0;
       EXPECT_TRUE(near || late > 0) << seed;
@@ -142,8 +142,8 @@ TEST(TriadDelay, IsGuessedWhereThereIsOne) {
 
 TEST(TriadDelay, IsNilWithoutMotion) {
   const std::vector<ImuSample> rest(100);
-  EXPECT_EQ(guess_triad_delay_s(rest, std::vector<Clipping>(100), Vector3d::Zero()), 0.0);
-  EXPECT_EQ(guess_triad_delay_s({}, {}, Vector3d::Zero()), 0.0);
+  EXPECT_EQ(guess_triad_delay(rest, std::vector<Clipping>(100), Vector3d::Zero()).delay_s, 0.0);
+  EXPECT_EQ(guess_triad_delay({}, {}, Vector3d::Zero()).delay_s, 0.0);
 }
 
 // An accelerometer 10 ms late: as good as in time, and honest; taken for in time it is neither.
