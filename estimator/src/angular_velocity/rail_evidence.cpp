@@ -34,6 +34,8 @@ constexpr double kEqualShare = 2e-5;
 // Of the scatter of a stretch: samples that its level, its slope and its two ends (windows that met the rail in a part
 // only) take.
 constexpr std::size_t kThinTaken = 4;
+// A reading within so many deviations of the noise of a facet is at it; no more than this share of the level.
+constexpr double kAtRail = 4.0, kAtRailShareMax = 0.006;
 // What each sample beyond the facet speaks against it; share of the samples that may stray.
 constexpr double kBeyond = 5.0, kStray = 0.02;
 
@@ -181,6 +183,8 @@ double stretch_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
                                     [&](std::size_t k) { return value(k) > facet.level + facet.tolerance; });
   odds -= kBeyond * std::max(0.0, static_cast<double>(beyond) - kStray * static_cast<double>(inliers.size()));
   if (facet.stretches == 0) return -std::numeric_limits<double>::infinity();
+  // nor is a reading told from the rail that is nearer to it than noise, from a facet that is off by as much elsewhere
+  facet.tolerance = std::max(facet.tolerance, std::min(kAtRail * noise, kAtRailShareMax * facet.level));
   // what choosing the level and the slopes freely was worth: prior over posterior volume
   const Eigen::Matrix3d told = H.inverse();
   const double of_slopes =
