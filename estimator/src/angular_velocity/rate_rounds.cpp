@@ -49,6 +49,9 @@ bool far_apart(const SensorErrors& a, const SensorErrors& b) {
          std::abs(a.accel_blur_s2 - b.accel_blur_s2) > kBlur_s2;
 }
 
+// What one device in a thousand moves three constants by, in deviations of all that may move them.
+constexpr double kSurpriseOfDevice = 2.33;
+
 // The rig as it was known; the gyro's elements, which flight cannot be taken for, stay free.
 RateModelParams held(const RateModelParams& params, const RateModel& model) {
   constexpr int kFirst = RigConstants::kElements, kCount = RigConstants::kSize - kFirst;
@@ -79,10 +82,11 @@ Status descend_held(const RateSmoother::Params& params, const RateModelParams& k
   if (!solve(params, fit.model, observations, fit.solution, health)) {
     return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
   }
+  health.rig_held = false;
   if (health.rig_surprise > params.rig_surprise_max) {
     health.rig_surprise = surprise_of(known, fit.model, period_s, observations, fit.solution);
+    health.rig_held = health.rig_surprise > std::max(params.rig_surprise_max, kSurpriseOfDevice);
   }
-  health.rig_held = health.rig_surprise > params.rig_surprise_max;
   health.calibration = {fit.solution.rig, fit.solution.rig_covariance};
   if (!health.rig_held) return {};
   const double surprise = health.rig_surprise;
