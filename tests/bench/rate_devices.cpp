@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rate_devices FIRST LAST [--method NAME]... [--keep FOLDER] [--row N]: what real devices do besides clipping, one row
-// each, on the same draws of `hill` without lidar: the accelerometer late, a gyro's window too long, a low-pass, errors
-// of scale, g-sensitivity, readings that repeat, and all of it together (`hill_consumer`). Prints for each method of
-// kind `rate` the error at clipped samples, the same against the first row, the share of clipped axes within three
-// reported deviations (all draws, the worst draw) and their mean squared error over variance. FOLDER keeps recordings.
-// Not a test: 2 to 3 s of one core a draw and row.
+// rate_devices FIRST LAST [--method NAME]... [--keep FOLDER] [--row N] [--draws]: what real devices do besides
+// clipping, one row each, on the same draws of `hill` without lidar: the accelerometer late, a gyro's window too long,
+// a low-pass, errors of scale, g-sensitivity, readings that repeat, and all of it together (`hill_consumer`). Prints
+// for each method of kind `rate` the error at clipped samples, the same against the first row, the share of clipped
+// axes within three reported deviations (all draws, the worst draw), their mean squared error over variance, and of the
+// elements from which the rail took more than 0.1 rad/s the share that the method calls clipped, and of those it calls
+// so the share from which it took anything. FOLDER keeps recordings; --draws prints a line a draw too. Not a test: 2 to
+// 3 s of one core a draw and row.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -55,6 +57,7 @@ struct Request {
   std::vector<std::string> methods;
   std::filesystem::path keep;
   int row = -1;
+  bool draws = false;
 };
 
 bool parse(int count, char** words, Request& request) {
@@ -63,6 +66,10 @@ bool parse(int count, char** words, Request& request) {
     const std::string word = words[i];
     const bool option = word == "--method" || word == "--keep" || word == "--row";
     if (option && i + 1 == count) return false;
+    if (word == "--draws") {
+      request.draws = true;
+      continue;
+    }
     if (word == "--method") {
       request.methods.emplace_back(words[++i]);
     } else if (word == "--keep") {
@@ -104,9 +111,40 @@ double within(const std::vector<double>& normalised, std::size_t first = 0) {
   return static_cast<double>(count) / static_cast<double>(normalised.size() - first);
 }
 
+// Elements at their rails, as the truth and as a method has them.
+struct Rails {
+  static constexpr double kDeep_rad_s = 0.1;
+  double deep = 0.0, found = 0.0, called = 0.0, right = 0.0;
+
+  void add(const sim::Recording& recording, const scenarios::Estimate& estimate) {
+    const sim::ImuRecord& imu = recording.sensors.imus.front();
+    const sim::ImuTruth& truth = recording.truth.imus.front();
+    const double period_s = 1e-9 * static_cast<double>(imu.period_ns);
+    const double noise = std::max(1e-6, imu.gyro_noise_rad_s_sqrt_hz / std::sqrt(period_s));
+    for (std::size_t k = 0; k < std::min(estimate.rates.size(), imu.time_ns.size()); ++k) {
+      const Eigen::Vector3d lost = truth.gyro_unclipped_rad_s[k] - imu.gyro_rad_s[k];
+      for (std::size_t j = 0; j < 3; ++j) {
+        const auto axis = static_cast<Eigen::Index>(j);
+        const double own = std::abs(truth.gyro_elements.empty() ? lost[axis] : truth.gyro_elements[j].dot(lost));
+        const bool said = (estimate.rates[k].clipped_axes >> j & 1u) != 0;
+        deep += own > kDeep_rad_s;
+        found += own > kDeep_rad_s && said;
+        called += said;
+        right += said && own > noise;
+      }
+    }
+  }
+  void add(const Rails& other) {
+    deep += other.deep, found += other.found, called += other.called, right += other.right;
+  }
+  double found_share() const { return deep > 0.0 ? found / deep : 1.0; }
+  double right_share() const { return called > 0.0 ? right / called : 1.0; }
+};
+
 // One method over all draws of a row.
 struct Figures {
   double median = 0.0, p99 = 0.0, free = 0.0, share = 0.0, worst = 1.0, nees = 0.0, us = 0.0;
+  Rails rails;
 };
 
 Figures figures(const Request& request, const std::vector<sim::Recording>& recordings, const std::string& name) {
@@ -119,12 +157,30 @@ Figures figures(const Request& request, const std::vector<sim::Recording>& recor
     const scenarios::Estimate estimate =
         method.run(recording.sensors, {}, {method.info.needs_truth ? &recording.truth : nullptr});
     const std::size_t flights = pool.normalised_flight().size(), contacts = pool.normalised_contact().size();
+    const std::size_t before = pool.clipped_rad_s().size();
     pool.add(request.first + i, recording, estimate, scenarios::process_cpu_s() - start_s);
     std::vector<double> own(pool.normalised_flight().begin() + static_cast<std::ptrdiff_t>(flights),
                             pool.normalised_flight().end());
     own.insert(own.end(), pool.normalised_contact().begin() + static_cast<std::ptrdiff_t>(contacts),
                pool.normalised_contact().end());
     out.worst = std::min(out.worst, within(own));
+    Rails rails;
+    rails.add(recording, estimate);
+    out.rails.add(rails);
+    if (!request.draws) continue;
+    const std::vector<double> errors(pool.clipped_rad_s().begin() + static_cast<std::ptrdiff_t>(before),
+                                     pool.clipped_rad_s().end());
+    const auto health = [&](const char* value) {
+      const auto at = estimate.health.find(value);
+      return at == estimate.health.end() ? 0.0 : at->second;
+    };
+    std::printf("  draw %llu %s: %zu clipped, median %.4f, p90 %.3f, within %.1f, found %.1f of %.0f, right %.1f;",
+                static_cast<unsigned long long>(request.first + i), name.c_str(), errors.size(),
+                scenarios::quantile(errors, 0.5), scenarios::quantile(errors, 0.9), 100.0 * within(own),
+                100.0 * rails.found_share(), rails.deep, 100.0 * rails.right_share());
+    std::printf(" delay %.2f ms, rounds %.0f, surprise %.1f, held %.0f, calibrated %.2f, together %.2f\n",
+                1e3 * health("accel_delay_s"), health("error_rounds"), health("rig_surprise"), health("rig_held"),
+                health("device_calibrated"), health("triads_together"));
   }
   const std::vector<double> all = normalised(pool);
   out.median = scenarios::quantile(pool.clipped_rad_s(), 0.5);
@@ -140,8 +196,8 @@ int run(const Request& request) {
   const scenarios::DataRoot data{tumble::test::source_dir()};
   std::printf("draws %llu to %llu; errors at clipped samples [rad/s], within 3 sigma [%%]\n",
               static_cast<unsigned long long>(request.first), static_cast<unsigned long long>(request.last));
-  std::printf("%-31s %-12s %8s %7s %8s %8s %7s %7s %8s %7s\n", "device", "method", "median", "against", "p99", "free",
-              "within", "worst", "z^2", "us");
+  std::printf("%-31s %-12s %8s %7s %8s %8s %7s %7s %8s %7s %6s %6s\n", "device", "method", "median", "against", "p99",
+              "free", "within", "worst", "z^2", "us", "found", "right");
   std::vector<double> as_it_is(request.methods.size(), 0.0);
   for (std::size_t r = 0; r < rows().size(); ++r) {
     if (request.row >= 0 && r != 0 && r != static_cast<std::size_t>(request.row)) continue;
@@ -156,9 +212,9 @@ int run(const Request& request) {
     for (std::size_t m = 0; m < request.methods.size(); ++m) {
       const Figures f = figures(request, recordings, request.methods[m]);
       if (r == 0) as_it_is[m] = f.median;
-      std::printf("%-31s %-12s %8.4f %6.2fx %8.3f %8.4f %7.2f %7.2f %8.2f %7.2f\n", rows()[r].title.c_str(),
+      std::printf("%-31s %-12s %8.4f %6.2fx %8.3f %8.4f %7.2f %7.2f %8.2f %7.2f %6.2f %6.2f\n", rows()[r].title.c_str(),
                   request.methods[m].c_str(), f.median, f.median / as_it_is[m], f.p99, f.free, 100.0 * f.share,
-                  100.0 * f.worst, f.nees, f.us);
+                  100.0 * f.worst, f.nees, f.us, 100.0 * f.rails.found_share(), 100.0 * f.rails.right_share());
     }
     std::fflush(stdout);
   }
@@ -170,7 +226,7 @@ int run(const Request& request) {
 int main(int count, char** words) {
   Request request;
   if (!parse(count, words, request)) {
-    std::fprintf(stderr, "usage: rate_devices FIRST LAST [--method NAME]... [--keep FOLDER] [--row N]\n");
+    std::fprintf(stderr, "usage: rate_devices FIRST LAST [--method NAME]... [--keep FOLDER] [--row N] [--draws]\n");
     return 2;
   }
   try {

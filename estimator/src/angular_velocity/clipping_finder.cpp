@@ -2,6 +2,7 @@
 #include "tumble/angular_velocity/clipping_finder.hpp"
 
 #include "element_clipping.hpp"
+#include "tumble/angular_velocity/sample_hold.hpp"
 
 namespace tumble {
 
@@ -51,9 +52,9 @@ ClippingFinder::Found ClippingFinder::find(std::span<const ImuSample> samples) c
   for (const Triad triad : {Triad::gyro, Triad::accelerometer}) {
     const RailPlanes planes = out.rails.planes_in_use(triad);
     if (!planes.any()) continue;
+    const std::vector<Neighbours> beside = other_readings(samples, triad);
     for (std::size_t k = 0; k < samples.size(); ++k) {
-      out.clippings[k] = clip_by_planes(planes, triad, out.clippings[k], k > 0 ? &samples[k - 1] : nullptr, samples[k],
-                                        k + 1 < samples.size() ? &samples[k + 1] : nullptr);
+      out.clippings[k] = clip_by_planes(planes, triad, out.clippings[k], beside[k].before, samples[k], beside[k].after);
     }
   }
   return out;

@@ -29,6 +29,13 @@ constexpr double kKinkAlone = 2.5;
 constexpr double kMoving = 10.0;
 // Log likelihood from which a stretch counts that is thinner than noise, whatever its ends look like.
 constexpr double kThinAlone = 8.0;
+// Readings closer than this share of the level are equal (as RailDetector has it): scatter below it tells no more.
+constexpr double kEqualShare = 2e-5;
+// Of the scatter of a stretch: samples that its level, its slope and its two ends (windows that met the rail in a part
+// only) take.
+constexpr std::size_t kThinTaken = 4;
+// A reading within so many deviations of the noise of a facet is at it; no more than this share of the level.
+constexpr double kAtRail = 4.0, kAtRailShareMax = 0.006;
 // What each sample beyond the facet speaks against it; share of the samples that may stray.
 constexpr double kBeyond = 5.0, kStray = 0.02;
 
@@ -55,6 +62,32 @@ Stretch next_stretch(std::span<const std::size_t> inliers, std::size_t& at) {
   Stretch out{inliers[at], inliers[at]};
   for (++at; at < inliers.size() && inliers[at] == out.last + 1; ++at) ++out.last;
   return out;
+}
+
+// How much less the inside of a stretch scatters about a straight line than readings of a rate do, as a log likelihood
+// ratio: noise belongs to a rate, and what clips behind it has none. Nothing where digits hide the noise.
+double thinness(const DistinctReadings& readings, const RailFacet& facet, const Stretch& s) {
+  if (s.size() <= kThinTaken) return 0.0;
+  const std::size_t first = s.first + 1, count = s.size() - 2;
+  const double middle = 0.5 * static_cast<double>(count - 1);
+  double mean = 0.0, slope = 0.0, moment = 0.0, squares = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double value = facet.row.dot(readings.rates[first + i]), at = static_cast<double>(i) - middle;
+    mean += value / static_cast<double>(count);
+    slope += value * at;
+    moment += at * at;
+  }
+  slope /= moment;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double line = mean + slope * (static_cast<double>(i) - middle);
+    squares += std::pow(facet.row.dot(readings.rates[first + i]) - line, 2);
+  }
+  const double free = static_cast<double>(s.size() - kThinTaken), digit = readings.digit[facet.axis] / std::sqrt(12.0);
+  const double least = std::max(digit, kEqualShare * facet.level);
+  const double noise = std::hypot(readings.noise[facet.axis], digit);
+  const double scatter = std::max(least, std::sqrt(squares / free));
+  // Gaussian likelihoods of the scatter at its own deviation and at that of the noise
+  return scatter < noise ? free * (std::log(noise / scatter) - 0.5 * (1.0 - std::pow(scatter / noise, 2))) : 0.0;
 }
 
 }  // namespace
@@ -118,7 +151,7 @@ double stretch_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
     const double inside = (n - 1.0) / (n + 3.0), bend = depth * inside * inside;
     const double flat = std::max(high - low, 2.0 * facet.deviation);
     // thinner than the gyro's noise: no reading of a rate is
-    const double thin = noise > 2.0 * facet.deviation ? (n - 2.0) * std::log(noise / (2.0 * facet.deviation)) : 0.0;
+    const double thin = thinness(readings, facet, s);
     const bool bends = bend >= kBend * flat;
     if (!bends && thin < kThinAlone) continue;
     ++facet.stretches;
@@ -150,6 +183,8 @@ double stretch_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
                                     [&](std::size_t k) { return value(k) > facet.level + facet.tolerance; });
   odds -= kBeyond * std::max(0.0, static_cast<double>(beyond) - kStray * static_cast<double>(inliers.size()));
   if (facet.stretches == 0) return -std::numeric_limits<double>::infinity();
+  // nor is a reading told from the rail that is nearer to it than noise, from a facet that is off by as much elsewhere
+  facet.tolerance = std::max(facet.tolerance, std::min(kAtRail * noise, kAtRailShareMax * facet.level));
   // what choosing the level and the slopes freely was worth: prior over posterior volume
   const Eigen::Matrix3d told = H.inverse();
   const double of_slopes =

@@ -5,10 +5,9 @@
 #include <cmath>
 
 #include "element_clipping.hpp"
-#include "rate_descent.hpp"
+#include "rate_rounds.hpp"
 #include "recording_check.hpp"
 #include "tumble/angular_velocity/sample_hold.hpp"
-#include "tumble/angular_velocity/triad_delay.hpp"
 
 namespace tumble {
 
@@ -30,19 +29,6 @@ void count(const RateState& state, RateReport& report) {
   report.bounded_only += state.source == RateSource::bounded_only;
 }
 
-// The accelerometer's readings of other instants: of the sample `shift` after each, at the ends of the last there is.
-void shift_force(std::span<const ImuSample> samples, std::span<const Clipping> clippings, std::ptrdiff_t shift,
-                 std::span<const double> accel_age_s, std::span<RateObservation> observations) {
-  const auto last = static_cast<std::ptrdiff_t>(samples.size()) - 1;
-  for (std::ptrdiff_t k = 0; k <= last; ++k) {
-    const auto from = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(k + shift, 0, last));
-    RateObservation& o = observations[static_cast<std::size_t>(k)];
-    o.sample.specific_force_m_s2 = samples[from].specific_force_m_s2;
-    o.clipping.accel = clippings[from].accel;
-    o.accel_age_s = accel_age_s[from];
-  }
-}
-
 // Readings that a triad says twice, and how old they are.
 void mark_held(std::span<const ImuSample> samples, std::span<RateObservation> observations, RateReport& health) {
   const std::optional<HeldReadings> gyro = find_held(samples, Triad::gyro);
@@ -56,30 +42,6 @@ void mark_held(std::span<const ImuSample> samples, std::span<RateObservation> ob
   }
   if (gyro) health.gyro_update_s = gyro->period_s;
   if (accel) health.accel_update_s = accel->period_s;
-}
-
-// A sheet that is believed.
-SensorErrorSizes as_stated(SensorErrorSizes sizes) {
-  sizes.gyro_unknown = sizes.accel_unknown = sizes.felt_unknown_s_m = sizes.delay_unknown_s = 0.0;
-  return sizes;
-}
-
-// Whether a device may have such errors: what a fit has beyond that, the model of flight has missed.
-bool plausible(const SensorErrors& errors, const SensorErrorSizes& sizes) {
-  constexpr double kDeviations = 6.0;
-  const double delay_s = kDeviations * std::max(sizes.delay_s, sizes.delay_unknown_s);
-  const double felt_s_m = kDeviations * std::max(sizes.felt_s_m, sizes.felt_unknown_s_m);
-  return errors.vector().allFinite() && std::abs(errors.accel_delay_s) <= std::min(0.1, delay_s) &&
-         std::abs(errors.accel_blur_s2) <= delay_s * delay_s && errors.felt_s_m.cwiseAbs().maxCoeff() <= felt_s_m;
-}
-
-// Whether errors are so far from those that readings have been corrected for that the descent must be made again.
-bool far_apart(const SensorErrors& a, const SensorErrors& b) {
-  constexpr double kMatrix = 1e-3, kFelt_s_m = 3e-5, kDelay_s = 3e-4, kBlur_s2 = 3e-6;
-  return (a.gyro - b.gyro).cwiseAbs().maxCoeff() > kMatrix || (a.accel - b.accel).cwiseAbs().maxCoeff() > kMatrix ||
-         (a.felt_s_m - b.felt_s_m).cwiseAbs().maxCoeff() > kFelt_s_m ||
-         std::abs(a.accel_delay_s - b.accel_delay_s) > kDelay_s ||
-         std::abs(a.accel_blur_s2 - b.accel_blur_s2) > kBlur_s2;
 }
 
 Status check_companions(const RateModelParams& params, std::span<const std::vector<CompanionReading>> companions,
@@ -96,109 +58,6 @@ Status check_companions(const RateModelParams& params, std::span<const std::vect
   return {};
 }
 
-// The rig as it was known; the gyro's elements, which flight cannot be taken for, stay free.
-RateModelParams held(const RateModelParams& params, const RateModel& model) {
-  constexpr int kFirst = RigConstants::kElements, kCount = RigConstants::kSize - kFirst;
-  RateModelParams out = params;
-  out.calibration = RigCalibration{model.prior_constants(), 1e-12 * RigConstants::Matrix::Identity()};
-  out.calibration->covariance.block<kCount, kCount>(kFirst, kFirst) =
-      model.prior_covariance().block<kCount, kCount>(kFirst, kFirst);
-  return out;
-}
-
-// A descent with what it was made with.
-struct Fit {
-  RateSolution solution;
-  RateModel model;
-  RateIteration::Moved moved;
-};
-
-// The descent, with the rig held to what was known of it where it takes contact for flight of another rig.
-Status descend_held(const RateSmoother::Params& params, const RateModelParams& known, double period_s,
-                    std::span<const RateObservation> observations, Fit& fit, RateReport& health) {
-  fit.model = RateModel(known, period_s);
-  if (!solve(params, fit.model, observations, fit.solution, health)) {
-    return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
-  }
-  health.rig_held = health.rig_surprise > params.rig_surprise_max;
-  health.calibration = {fit.solution.rig, fit.solution.rig_covariance};
-  if (!health.rig_held) return {};
-  const double surprise = health.rig_surprise;
-  health.calibration = {fit.model.prior_constants(), fit.model.prior_covariance()};
-  fit.model = RateModel(held(known, fit.model), period_s);
-  if (!solve(params, fit.model, observations, fit.solution, health)) {
-    return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
-  }
-  health.rig_surprise = surprise;
-  return {};
-}
-
-// Descents with readings corrected for the device's errors as the one before has found them, and a last, linear
-// correction.
-Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& known, std::span<const ImuSample> samples,
-                  std::span<const Clipping> clippings, std::span<RateObservation> observations, Fit& fit,
-                  RateReport& health) {
-  const bool estimated = params.error_rounds_max > 1;
-  const double period_s = median_period_s(samples);
-  const RigConstants rig = known.calibration ? known.calibration->constants : known.nominal;
-  SensorErrors errors = known.errors;
-  if (estimated && known.error_sizes.delay_unknown_s > known.error_sizes.delay_s) {
-    errors.accel_delay_s += guess_triad_delay_s(samples, clippings, rig.lever_arm_m);
-  }
-  std::vector<double> age_s(samples.size());
-  for (std::size_t k = 0; k < age_s.size(); ++k) age_s[k] = observations[k].accel_age_s;
-  SensorErrorFit found;
-  bool believed = true;
-  for (health.error_rounds = 1;; ++health.error_rounds) {
-    const double shift = std::round(errors.accel_delay_s / period_s);
-    shift_force(samples, clippings, static_cast<std::ptrdiff_t>(shift), age_s, observations);
-    RateModelParams corrected = known;
-    corrected.errors = errors;
-    corrected.errors.accel_delay_s -= shift * period_s;
-    if (Status status = descend_held(params, corrected, period_s, observations, fit, health); !status.ok()) {
-      return status;
-    }
-    const RateSolution& solution = fit.solution;
-    fit.moved = solution.iteration.moved_by_errors(fit.model, solution.estimates, solution.rig);
-    if (estimated) {
-      // where the descent has not come to its end, what is left of the gradient must not pass for errors
-      RateIteration again = solution.iteration;
-      if (!again.factorise(fit.model, solution.estimates, solution.rig)) {
-        return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
-      }
-      fit.moved.evidence = again.moved_by_errors(fit.model, solution.estimates, solution.rig).evidence;
-    }
-    fit.moved.evidence.about = errors;
-    found = fit_sensor_errors(fit.moved.evidence, known.error_sizes);
-    believed = plausible(found.known.errors, known.error_sizes);
-    if (health.rig_held || !believed || health.error_rounds >= params.error_rounds_max) break;
-    if (!far_apart(found.known.errors, errors)) break;
-    errors = found.known.errors;
-  }
-  if (health.rig_held || !believed || !estimated) {
-    // what a run without flight tells of the device is nothing, beyond what devices have it is wrong: all is left open
-    found = fit_sensor_errors({}, estimated ? known.error_sizes : as_stated(known.error_sizes));
-    found.known.errors = errors;
-  } else {
-    const SensorErrors::Vector step = found.known.errors.vector() - errors.vector();
-    for (std::size_t k = 0; k < samples.size(); ++k) {
-      const Eigen::Matrix<double, 6, 1> moved = fit.model.unscaled(fit.moved.of_sample[k] * step);
-      fit.solution.estimates[k].knot.rate_rad_s += moved.head<3>();
-      fit.solution.estimates[k].knot.acceleration_rad_s2 += moved.tail<3>();
-    }
-    fit.solution.rig.add(fit.moved.of_rig * step);
-  }
-  health.sensor_errors = found.known;
-  health.calibrated = found.calibrated;
-  health.together = found.together;
-  if (health.rig_held) return {};
-  health.calibration.constants = fit.solution.rig;
-  // the device's errors stay with the device: the next run meets them as this one did, and counts them anew
-  const SensorErrors::Matrix stated = fit_sensor_errors({}, as_stated(known.error_sizes)).known.covariance;
-  health.calibration.covariance += fit.moved.of_rig * stated * fit.moved.of_rig.transpose();
-  return {};
-}
-
 // What remains open of the device's errors, in a rate: linear in them, and no more than any rate.
 Eigen::Matrix3d considered(const arrow::ErrorMatrix& moved, const SensorErrors::Matrix& covariance,
                            double rate_max_rad_s) {
@@ -208,23 +67,46 @@ Eigen::Matrix3d considered(const arrow::ErrorMatrix& moved, const SensorErrors::
   return std::min(1.0, most / std::max(out.trace(), 1e-300)) * out;
 }
 
-// The rate some time after a sample: cubic between the knots about that instant.
-Vector3d rate_later(std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
-                    std::size_t k, double late_s) {
+// Variance of a time that both triads may share beyond what the sheet states: nobody hears of it but in what else the
+// device shows. A maker who leaves scale or sampling open leaves this open too: naive Bayes over the two, each against
+// what was held of it beforehand.
+double shared_delay_s2(const SensorErrorFit& device, const SensorErrorSizes& sizes) {
+  if (sizes.delay_unknown_s <= sizes.delay_s) return 0.0;
+  const SensorErrorFit before = fit_sensor_errors({}, sizes);
+  const auto odds = [](double p) { return std::max(p, 1e-12) / std::max(1.0 - p, 1e-12); };
+  const double told = odds(device.calibrated) / odds(before.calibrated) * odds(device.together);
+  // the difference of two such times is what the sizes are of
+  return told < 1.0 ? 0.5 * sizes.delay_unknown_s * sizes.delay_unknown_s : 0.0;
+}
+
+// What such a time makes of a rate.
+Eigen::Matrix3d of_shared_delay(double variance_s2, const RateModelParams& params, const RateEstimate& estimate) {
+  const Vector3d& alpha = estimate.knot.acceleration_rad_s2;
+  const double struck = params.contact_gain_rad_m * estimate.contact_m_s2.norm();
+  return variance_s2 * (alpha * alpha.transpose() + struck * struck * Eigen::Matrix3d::Identity());
+}
+
+// The rate some time after a sample, cubic between the knots about that instant, and its covariance, which between two
+// knots is at most the mean of theirs.
+RateState state_later(std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
+                      std::span<const Eigen::Matrix3d> covariances, std::size_t k, double late_s) {
+  RateState out;
   double left_s = late_s;
-  while (k + 1 < estimates.size()) {
-    const RateKnot &a = estimates[k].knot, &b = estimates[k + 1].knot;
+  for (; k + 1 < estimates.size(); ++k) {
     const double dt_s = seconds(observations[k + 1].sample.time_ns - observations[k].sample.time_ns);
-    if (left_s <= 0.0) return a.rate_rad_s;
     if (left_s < dt_s) {
-      const double u = left_s / dt_s, v = 1.0 - u;
-      return v * v * (1.0 + 2.0 * u) * a.rate_rad_s + u * u * (3.0 - 2.0 * u) * b.rate_rad_s +
-             u * v * dt_s * (v * a.acceleration_rad_s2 - u * b.acceleration_rad_s2);
+      const RateKnot &a = estimates[k].knot, &b = estimates[k + 1].knot;
+      const double u = std::max(0.0, left_s / dt_s), v = 1.0 - u;
+      out.w_WI_I_rad_s = v * v * (1.0 + 2.0 * u) * a.rate_rad_s + u * u * (3.0 - 2.0 * u) * b.rate_rad_s +
+                         u * v * dt_s * (v * a.acceleration_rad_s2 - u * b.acceleration_rad_s2);
+      out.covariance_rad2_s2 = v * covariances[k] + u * covariances[k + 1];
+      return out;
     }
     left_s -= dt_s;
-    ++k;
   }
-  return estimates[k].knot.rate_rad_s;
+  out.w_WI_I_rad_s = estimates[k].knot.rate_rad_s;
+  out.covariance_rad2_s2 = covariances[k];
+  return out;
 }
 
 }  // namespace
@@ -277,41 +159,47 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
   const RateModel model(known, period_s);
   const std::vector<bool> rest = rests_.find(samples);
   const ElementRows accel_rows = rails.rows(Triad::accelerometer, params_.model.element_sigma);
+  const std::vector<Neighbours> beside = other_readings(samples, Triad::gyro);
   for (std::size_t k = 0; k < samples.size(); ++k) {
     observations[k] = {samples[k], clippings[k], rest[k]};
     observations[k].accel_rows = accel_rows;
     for (std::size_t i = 0; i < companions.size(); ++i) observations[k].companions[i] = companions[i][k];
-    const ImuSample* const before = k > 0 ? &samples[k - 1] : nullptr;
-    const ImuSample* const after = k + 1 < samples.size() ? &samples[k + 1] : nullptr;
+    const auto [before, after] = beside[k];
     mark_partial(planes, rails_.walls(), rails.walls, model.gyro_sigma_rad_s(), before, observations[k], after);
     if (health.rails_upright) continue;
     doubt_unseen_rails(planes, model.gyro_sigma_rad_s(), before, observations[k], after);
   }
   mark_held(samples, observations, health);
-  Fit fit{{{}, {}, {}, RateIteration(observations)}, model, {}};
+  RateFit fit(observations, model);
   if (Status status = fit_rounds(params_, known, samples, clippings, observations, fit, health); !status.ok()) {
     return status;
   }
   const RateSolution& solution = fit.solution;
 
   const double gyro_late_s = std::max(0.0, -health.sensor_errors.errors.accel_delay_s);
-  std::vector<RateState> states(samples.size());
-  std::size_t in_flight = 0;
+  const double shared_s2 =
+      shared_delay_s2({health.sensor_errors, health.calibrated, health.together}, known.error_sizes);
+  std::vector<Eigen::Matrix3d> covariances(samples.size());
   solution.iteration.for_each_conditional([&](std::size_t k, const arrow::Conditional& conditional) {
-    const RateEstimate& estimate = solution.estimates[k];
     const Eigen::Matrix3d covariance =
         arrow::rate_covariance(conditional, solution.rig_covariance) +
-        considered(fit.moved.of_sample[k], health.sensor_errors.covariance, params_.model.rate_max_rad_s);
+        considered(fit.moved.of_sample[k], health.sensor_errors.covariance, params_.model.rate_max_rad_s) +
+        of_shared_delay(shared_s2, known, solution.estimates[k]);
+    covariances[k] = fit.model.reported(covariance, observations[k], solution.estimates[k]);
+  });
+  std::vector<RateState> states(samples.size());
+  std::size_t in_flight = 0;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const RateEstimate& estimate = solution.estimates[k];
     RateState& state = states[k];
+    state = state_later(observations, solution.estimates, covariances, k, gyro_late_s);
     state.time_ns = samples[k].time_ns;
-    state.w_WI_I_rad_s = rate_later(observations, solution.estimates, k, gyro_late_s);
-    state.covariance_rad2_s2 = fit.model.reported(covariance, observations[k], estimate);
     state.clipped_axes = clippings[k].gyro | clippings[k].void_gyro;
     state.source = rate_source(observations[k], estimate, state.covariance_rad2_s2, params_.recovered_sigma_rad_s);
     count(state, health);
     health.void_readings += clippings[k].void_gyro != 0;
     in_flight += estimate.flight_weight >= 0.5;
-  });
+  }
   health.flight_share = static_cast<double>(in_flight) / static_cast<double>(samples.size());
   out = std::move(states);
   report = health;

@@ -90,4 +90,19 @@ std::optional<HeldReadings> find_held(std::span<const ImuSample> samples, Triad 
   return out;
 }
 
+std::vector<Neighbours> other_readings(std::span<const ImuSample> samples, Triad triad) {
+  std::vector<Neighbours> out(samples.size());
+  const auto equal = [&](std::size_t a, std::size_t b) {
+    return triad == Triad::gyro ? samples[a].angular_velocity_rad_s == samples[b].angular_velocity_rad_s
+                                : samples[a].specific_force_m_s2 == samples[b].specific_force_m_s2;
+  };
+  for (std::size_t k = 1; k < samples.size(); ++k) {
+    out[k].before = equal(k, k - 1) ? out[k - 1].before : &samples[k - 1];
+  }
+  for (std::size_t k = samples.size(); k-- > 1;) {
+    out[k - 1].after = equal(k, k - 1) ? out[k].after : &samples[k];
+  }
+  return out;
+}
+
 }  // namespace tumble

@@ -5,9 +5,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "recording_check.hpp"
+#include "tumble/angular_velocity/sample_hold.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble {
@@ -23,52 +25,85 @@ constexpr int kPerSample = 4;  // delays tried to a sample, on the coarse and, a
 constexpr double kRateMin_rad_s = 2.0;
 constexpr std::size_t kSamplesMin = 20, kSamplesMax = 2000;
 constexpr double kLeverSigma_m = 0.02, kBiasSigma_m_s2 = 0.3;
+// Readings nearer in time are the same one, said with a jitter.
+constexpr double kApart_s = 1e-4;
 // Scales of what fits, from the first iteration to the last [m/s^2].
 constexpr double kScales_m_s2[] = {3.0, 1.5, 0.8, 0.4, 0.25, 0.2};
 // A gain of robust cost, each sample's at most 1, that chance does not make.
 constexpr double kGainMin = 0.4;
 
-struct Place {
-  std::size_t index;
-  Matrix3d by_lever;  ///< [alpha]x + [w]x [w]x
+// Readings of a struck body: rate from which it counts as moving, least number and correlation, and how well the delay
+// of the best is known, as a share of the slower triad's period.
+constexpr double kStruckRate_rad_s = 1.0, kCorrelationMin = 0.6, kStruckSigma = 0.15;
+constexpr std::size_t kStruckMin = 30;
+constexpr int kStruckPerSample = 8;
+
+// A triad's own readings: those that are not said twice, at the instants of which they tell.
+struct Readings {
+  std::vector<double> time_s;
+  std::vector<Vector3d> value;
+  std::vector<bool> clipped;
+
+  std::size_t size() const { return time_s.size(); }
+  void add(double at_s, const Vector3d& reading, bool clips) {
+    time_s.push_back(at_s);
+    value.push_back(reading);
+    clipped.push_back(clips);
+  }
 };
 
-// Cubic through the four readings about an instant `shift` samples after sample k.
-bool force_at(std::span<const ImuSample> samples, std::span<const Clipping> clippings, std::size_t k, double shift,
-              Vector3d& force) {
-  const double at = static_cast<double>(k) + shift, floor = std::floor(at);
-  const auto i = static_cast<std::ptrdiff_t>(floor);
-  if (i < 1 || i + 2 >= static_cast<std::ptrdiff_t>(samples.size())) return false;
-  const double u = at - floor;
-  const double weights[] = {-u * (u - 1.0) * (u - 2.0) / 6.0, (u + 1.0) * (u - 1.0) * (u - 2.0) / 2.0,
-                            -(u + 1.0) * u * (u - 2.0) / 2.0, (u + 1.0) * u * (u - 1.0) / 6.0};
-  force.setZero();
-  for (std::ptrdiff_t n = 0; n < 4; ++n) {
-    const auto s = static_cast<std::size_t>(i - 1 + n);
-    if (clippings[s].accel != 0) return false;
-    force += weights[n] * samples[s].specific_force_m_s2;
-  }
-  return true;
-}
-
-std::vector<Place> places(std::span<const ImuSample> samples, std::span<const Clipping> clippings) {
-  std::vector<Place> out;
-  for (std::size_t k = kReach + 2; k + kReach + 2 < samples.size(); ++k) {
-    const Vector3d& w = samples[k].angular_velocity_rad_s;
-    if (w.norm() < kRateMin_rad_s) continue;
-    const auto clipped = [&](std::size_t i) { return (clippings[i].gyro | clippings[i].void_gyro) != 0; };
-    if (clipped(k - 1) || clipped(k) || clipped(k + 1)) continue;
-    const double span_s = seconds(samples[k + 1].time_ns - samples[k - 1].time_ns);
-    const Vector3d alpha = (samples[k + 1].angular_velocity_rad_s - samples[k - 1].angular_velocity_rad_s) / span_s;
-    if (out.size() == kSamplesMax) break;
-    out.push_back({k, so3::hat(alpha) + so3::hat(w) * so3::hat(w)});
+Readings readings_of(std::span<const ImuSample> samples, std::span<const Clipping> clippings, Triad triad) {
+  const std::optional<HeldReadings> held = find_held(samples, triad);
+  Readings out;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (held && held->repeats[k]) continue;
+    const double at_s = seconds(samples[k].time_ns - samples[0].time_ns) - (held ? held->age_s[k] : 0.0);
+    if (out.size() > 0 && !(at_s > out.time_s.back() + kApart_s)) continue;
+    if (triad == Triad::gyro) {
+      out.add(at_s, samples[k].angular_velocity_rad_s, (clippings[k].gyro | clippings[k].void_gyro) != 0);
+    } else {
+      out.add(at_s, samples[k].specific_force_m_s2, clippings[k].accel != 0);
+    }
   }
   return out;
 }
 
-// Robust cost of a delay of `shift` samples, least over lever arm and bias.
-double cost(std::span<const ImuSample> samples, std::span<const Clipping> clippings, std::span<const Place> places,
-            const Vector3d& lever_arm_m, double shift) {
+struct Place {
+  double time_s;
+  Matrix3d by_lever;  ///< [alpha]x + [w]x [w]x
+};
+
+// Cubic through the four readings about an instant; `from`: index of the last reading before it, which moves on.
+bool force_at(const Readings& force, double time_s, std::size_t& from, Vector3d& out) {
+  while (from + 2 < force.size() && force.time_s[from + 1] <= time_s) ++from;
+  if (from < 1 || from + 2 >= force.size() || force.time_s[from] > time_s) return false;
+  out.setZero();
+  for (std::size_t i = from - 1; i < from + 3; ++i) {
+    if (force.clipped[i]) return false;
+    double weight = 1.0;
+    for (std::size_t j = from - 1; j < from + 3; ++j) {
+      if (j != i) weight *= (time_s - force.time_s[j]) / (force.time_s[i] - force.time_s[j]);
+    }
+    out += weight * force.value[i];
+  }
+  return true;
+}
+
+std::vector<Place> places(const Readings& gyro) {
+  std::vector<Place> out;
+  for (std::size_t k = 1; k + 1 < gyro.size() && out.size() < kSamplesMax; ++k) {
+    const Vector3d &before = gyro.value[k - 1], &w = gyro.value[k], &after = gyro.value[k + 1];
+    if (w.norm() < kRateMin_rad_s || gyro.clipped[k - 1] || gyro.clipped[k] || gyro.clipped[k + 1]) continue;
+    // slope of the parabola through three readings
+    const double left = gyro.time_s[k] - gyro.time_s[k - 1], right = gyro.time_s[k + 1] - gyro.time_s[k];
+    const Vector3d alpha = (left / right * (after - w) + right / left * (w - before)) / (left + right);
+    out.push_back({gyro.time_s[k], so3::hat(alpha) + so3::hat(w) * so3::hat(w)});
+  }
+  return out;
+}
+
+// Robust cost of a delay, least over lever arm and bias.
+double cost(const Readings& accel, std::span<const Place> places, const Vector3d& lever_arm_m, double delay_s) {
   Unknown prior, at, information;
   prior << lever_arm_m, Vector3d::Zero();
   information << Vector3d::Constant(1.0 / (kLeverSigma_m * kLeverSigma_m)),
@@ -79,9 +114,10 @@ double cost(std::span<const ImuSample> samples, std::span<const Clipping> clippi
     Eigen::Matrix<double, 6, 6> H = information.asDiagonal();
     Unknown g = information.cwiseProduct(prior);
     sum = 0.0;
+    std::size_t from = 0;
     for (const Place& place : places) {
       Vector3d force;
-      if (!force_at(samples, clippings, place.index, shift, force)) {
+      if (!force_at(accel, place.time_s + delay_s, from, force)) {
         sum += 1.0;
         continue;
       }
@@ -98,13 +134,88 @@ double cost(std::span<const ImuSample> samples, std::span<const Clipping> clippi
   return sum;
 }
 
-}  // namespace
+// Mean angular acceleration between two free readings of the gyro.
+struct Change {
+  double begin_s, end_s, root;  ///< root of its norm
+};
 
-double guess_triad_delay_s(std::span<const ImuSample> samples, std::span<const Clipping> clippings,
-                           const Vector3d& lever_arm_m) {
-  const std::vector<Place> turning = places(samples, clippings);
+std::vector<Change> changes(const Readings& gyro) {
+  std::vector<Change> out;
+  for (std::size_t k = 1; k < gyro.size(); ++k) {
+    if (gyro.clipped[k] || gyro.clipped[k - 1]) continue;
+    if (std::min(gyro.value[k].norm(), gyro.value[k - 1].norm()) < kStruckRate_rad_s) continue;
+    const double span_s = gyro.time_s[k] - gyro.time_s[k - 1];
+    const double change = (gyro.value[k] - gyro.value[k - 1]).norm() / span_s;
+    out.push_back({gyro.time_s[k - 1], gyro.time_s[k], std::sqrt(change)});
+  }
+  return out;
+}
+
+// The integral of the force's norm, linear between readings, from the first of them on.
+class ForceIntegral {
+ public:
+  explicit ForceIntegral(const Readings& force) : time_s_(force.time_s), norm_(force.size()), sum_(force.size(), 0.0) {
+    for (std::size_t k = 0; k < norm_.size(); ++k) {
+      norm_[k] = force.value[k].norm();
+      if (k > 0) sum_[k] = sum_[k - 1] + 0.5 * (norm_[k] + norm_[k - 1]) * (time_s_[k] - time_s_[k - 1]);
+    }
+  }
+  // `from`: as in force_at(); beyond the ends the last reading holds
+  double to(double time_s, std::size_t& from) const {
+    while (from + 2 < norm_.size() && time_s_[from + 1] <= time_s) ++from;
+    const double u = time_s - time_s_[from];
+    const double slope = (norm_[from + 1] - norm_[from]) / (time_s_[from + 1] - time_s_[from]);
+    return sum_[from] + u * (norm_[from] + 0.5 * slope * u);
+  }
+
+ private:
+  std::span<const double> time_s_;
+  std::vector<double> norm_, sum_;
+};
+
+double correlation(std::span<const Change> changes, const ForceIntegral& force, double delay_s) {
+  double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, yy = 0.0, xy = 0.0;
+  std::size_t begin = 0, end = 0;
+  for (const Change& change : changes) {
+    const double span_s = change.end_s - change.begin_s;
+    const double mean = (force.to(change.end_s + delay_s, end) - force.to(change.begin_s + delay_s, begin)) / span_s;
+    const double root = std::sqrt(std::max(0.0, mean));
+    n += 1.0;
+    x += change.root, y += root;
+    xx += change.root * change.root, yy += root * root, xy += change.root * root;
+  }
+  const double spread = (n * xx - x * x) * (n * yy - y * y);
+  return spread > 0.0 ? (n * xy - x * y) / std::sqrt(spread) : 0.0;
+}
+
+// By what strikes the body; sigma 0 where that tells nothing.
+TriadDelay struck(const Readings& gyro, const Readings& accel, double period_s) {
+  const std::vector<Change> turns = changes(gyro);
+  if (turns.size() < kStruckMin || accel.size() < 4) return {};
+  const ForceIntegral force(accel);
+  constexpr int kMost = kReach * kStruckPerSample;
+  const double step_s = period_s / kStruckPerSample;
+  const auto of = [&](int i) { return correlation(turns, force, i * step_s); };
+  int at = -kMost;
+  double best = -1.0;
+  for (int i = -kMost; i <= kMost; ++i) {
+    const double found = of(i);
+    if (found > best) best = found, at = i;
+  }
+  if (best < kCorrelationMin || std::abs(at) == kMost) return {};
+  const double left = of(at - 1), right = of(at + 1), bend = left - 2.0 * best + right;
+  const double part = bend < 0.0 ? std::clamp(0.5 * (left - right) / bend, -0.5, 0.5) : 0.0;
+  const auto mean_period = [](const Readings& triad) {
+    return (triad.time_s.back() - triad.time_s.front()) / static_cast<double>(triad.size() - 1);
+  };
+  return {(at + part) * step_s, kStruckSigma * std::max(mean_period(gyro), mean_period(accel))};
+}
+
+// By how it flies; 0 where that tells nothing.
+double flown_s(const Readings& gyro, const Readings& accel, const Vector3d& lever_arm_m, double period_s) {
+  const std::vector<Place> turning = places(gyro);
   if (turning.size() < kSamplesMin) return 0.0;
-  const auto of = [&](double shift) { return cost(samples, clippings, turning, lever_arm_m, shift); };
+  const auto of = [&](double shift) { return cost(accel, turning, lever_arm_m, shift * period_s); };
   const double none = of(0.0);
   double best = none, shift = 0.0;
   for (int i = -kReach * kPerSample; i <= kReach * kPerSample; ++i) {
@@ -123,7 +234,20 @@ double guess_triad_delay_s(std::span<const ImuSample> samples, std::span<const C
       shift = tried;
     }
   }
-  return none - best < kGainMin ? 0.0 : shift * median_period_s(samples);
+  return none - best < kGainMin ? 0.0 : shift * period_s;
+}
+
+}  // namespace
+
+TriadDelay guess_triad_delay(std::span<const ImuSample> samples, std::span<const Clipping> clippings,
+                             const Vector3d& lever_arm_m) {
+  if (samples.size() < 2) return {};
+  const Readings gyro = readings_of(samples, clippings, Triad::gyro);
+  const Readings accel = readings_of(samples, clippings, Triad::accelerometer);
+  const double period_s = median_period_s(samples);
+  const TriadDelay of_strokes = struck(gyro, accel, period_s);
+  if (of_strokes.sigma_s > 0.0) return of_strokes;
+  return {flown_s(gyro, accel, lever_arm_m, period_s), 0.0};
 }
 
 }  // namespace tumble

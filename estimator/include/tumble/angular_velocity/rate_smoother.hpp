@@ -68,7 +68,7 @@ struct RateReport {
 /// tells, at the size that the readings show (fit_sensor_errors), by a descent with corrected readings; what remains
 /// open is in both covariances (as of parameters considered, S. F. Schmidt, 1966), else the fit takes it for noise and
 /// averages it away: the test ScaleAndMisalignmentAreInTheCovariance. A first guess of the delay comes before
-/// (guess_triad_delay_s). Of two triads that are apart the later one is taken to be late and the other in time.
+/// (guess_triad_delay). Of two triads that are apart the later one is taken to be late and the other in time.
 ///
 /// A gyro's elements clip along their own, not quite orthogonal axes; the device's compensation then mixes what is left
 /// (RailPlaneFinder). While one clips the gyro is read element by element (element_factor): free elements measure,

@@ -24,4 +24,12 @@ struct HeldReadings {
 /// of some 5000 clocks, on 1000 samples at most.
 std::optional<HeldReadings> find_held(std::span<const ImuSample> samples, Triad triad);
 
+/// The samples nearest to one whose gyro (or accelerometer) says something else; null where there is none.
+struct Neighbours {
+  const ImuSample *before = nullptr, *after = nullptr;
+};
+/// Of each sample: a reading said twice has the same neighbours both times. Whole stretches of equal readings (rest, a
+/// level plateau) are stepped over likewise. O(N).
+std::vector<Neighbours> other_readings(std::span<const ImuSample> samples, Triad triad);
+
 }  // namespace tumble
