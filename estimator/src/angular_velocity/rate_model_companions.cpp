@@ -50,7 +50,8 @@ void RateModel::add_companions(const RateObservation& observation, const RateEst
       if (!std::isfinite(reading.force_m_s2[j]) || !sees_free_axes(axis, observation.clipping)) continue;
       Row row = axis * rotation.by_knot;
       row.tail<3>() /= time_scale_s_;
-      const double sigma = std::hypot(reading.force_sigma_m_s2[j], misplaced, accel_sigma_m_s2(observation));
+      const double lasting = std::sqrt(misplaced * misplaced / share_ + accel_variance_together(observation));
+      const double sigma = std::hypot(reading.force_sigma_m_s2[j], lasting);
       add_row(row, axis.dot(force) - reading.force_m_s2[j], sigma, block);
     }
   }
