@@ -55,7 +55,8 @@ TEST(RestDetector, AFastImuRestsToo) {
             0.01 * (j - 1) + louder * (sample.angular_velocity_rad_s[j] - 0.01 * (j - 1));
       }
     }
-    EXPECT_EQ(resting(samples), static_cast<std::ptrdiff_t>(samples.size())) << rate_hz;
+    // the first sample is a reading by itself, and as loud as one
+    EXPECT_GE(resting(samples), static_cast<std::ptrdiff_t>(samples.size()) - 1) << rate_hz;
     // a slow turn is none, however fast it is sampled
     for (std::size_t k = 0; k < samples.size(); ++k) {
       const double t_s = seconds(samples[k].time_ns);
