@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <vector>
+
+#include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/carried.hpp"
+#include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/method.hpp"
 #include "scenarios/methods/registry.hpp"
 
@@ -9,6 +13,10 @@ namespace {
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
+  std::vector<ImuSample> samples;
+  estimate.status = bridge::primary_imu_samples(sensors, samples);
+  if (!estimate.status.ok()) return estimate;
+  (void)check_imu(sensors, samples, estimate);  // a warning, as for the filters
   std::vector<RateState> rates;
   estimate.status = run_carried(sensors, parameters, rates, estimate.attitudes, estimate.health);
   return estimate;

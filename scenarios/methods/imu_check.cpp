@@ -24,6 +24,7 @@ Status check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples
   for (const ImuSample& sample : samples) plausibility.step(sample, state);
   estimate.health["imu_force_share"] = plausibility.force_share(state);
   estimate.health["imu_turning_unexplained"] = plausibility.unexplained_share(state);
+  if (plausibility.frozen_s(state) > 0.0) estimate.health["imu_frozen_s"] = plausibility.frozen_s(state);
   return told(plausibility.verdict(state), estimate);
 }
 

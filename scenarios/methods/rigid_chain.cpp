@@ -22,7 +22,7 @@ const std::array<sim::Parameter, 5>& parameters_of_the_chain() {
   static const RigidOdometry::Params library;
   static const std::array<sim::Parameter, 5> parameters = {{
       {"sweep_voxel_m", library.sweep_voxel_m, 0.01, 10.0, "m", "one point per voxel of a sweep is registered"},
-      {"map_voxel_m", library.map_voxel_m, 0.05, 10.0, "m", "cell of the map's hash"},
+      {"map_voxel_m", library.map_voxel_m, 0.01, 10.0, "m", "cell of the map's hash"},
       {"map_spacing_m", library.map_spacing_m, 0.0, 1.0, "m", "edge of the cube that holds one map point"},
       {"neighbours", 12.0, 3.0, 32.0, "1", "map points per plane fit"},
       {"match_distance_m", 1.0, 0.01, 10.0, "m", "farther map points are no match"},
@@ -52,9 +52,9 @@ void for_windows(std::span<const ImuSample> samples, TimeNs from_ns, TimeNs to_n
 
 Status start_at_rest(std::span<const ImuSample> samples, StartAtRest& out) {
   if (samples.empty()) return {Trouble::too_few, "imu samples", 0.0, 1.0};
-  Eigen::Vector3d force = samples.front().specific_force_m_s2;
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();
-  double count = 1.0;
+  double count = 0.0;
   for (const ImuSample& sample : samples) {
     if (seconds(sample.time_ns - samples.front().time_ns) > kRestMaxS) break;
     if (sample.angular_velocity_rad_s.norm() > kRestRateRadS) break;
@@ -62,6 +62,8 @@ Status start_at_rest(std::span<const ImuSample> samples, StartAtRest& out) {
     rate += sample.angular_velocity_rad_s;
     count += 1.0;
   }
+  out.gyro_bias_rad_s.setZero();
+  if (count == 0.0) return level(samples.front().specific_force_m_s2, out.q_WI);
   out.gyro_bias_rad_s = rate / count;
   return level(force / count, out.q_WI);
 }

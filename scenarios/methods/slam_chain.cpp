@@ -29,7 +29,7 @@ const std::array<sim::Parameter, 13>& parameters_of_the_chain() {
   static const LidarInertialOdometry::Params library;
   static const std::array<sim::Parameter, 13> parameters = {{
       {"sweep_voxel_m", library.sweep_voxel_m, 0.01, 10.0, "m", "one point per voxel of a sweep is registered"},
-      {"map_voxel_m", library.map_voxel_m, 0.05, 10.0, "m", "cell of the map's hash"},
+      {"map_voxel_m", library.map_voxel_m, 0.01, 10.0, "m", "cell of the map's hash"},
       {"map_spacing_m", library.map_spacing_m, 0.0, 1.0, "m", "edge of the cube that holds one map point"},
       {"neighbours", static_cast<double>(library.neighbours), 3.0, 32.0, "1", "map points per plane fit"},
       {"match_distance_m", library.match_distance_m, 0.01, 10.0, "m", "farther map points are no match"},

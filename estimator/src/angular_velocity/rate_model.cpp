@@ -46,6 +46,7 @@ void check(const RateModelParams& p) {
   require_within("gyro_noise_density", p.gyro_noise_density, 1e-9, 1.0);
   require_within("accel_noise_density", p.accel_noise_density, 1e-9, 10.0);
   require_within("flight_sigma_m_s2", p.flight_sigma_m_s2, 1e-6, 100.0);
+  require_within("model_error_s", p.model_error_s, 1e-6, 1.0);
   check(p.error_sizes);
   for (const double value : p.errors.vector()) require_within("sensor errors", value, -0.2, 0.2);
   require_within("gyro_time_sigma_s", p.gyro_time_sigma_s, 0.0, 0.1);
@@ -168,7 +169,9 @@ RateModel::RateModel(const RateModelParams& params, double period_s) : params_(p
   require_within("period_s", period_s, 1e-6, 10.0);
   const double bandwidth_hz = 1.0 / period_s;
   gyro_sigma_rad_s_ = params.gyro_noise_density * std::sqrt(bandwidth_hz);
-  accel_sigma_m_s2_ = std::hypot(params.flight_sigma_m_s2, params.accel_noise_density * std::sqrt(bandwidth_hz));
+  accel_noise_m_s2_ = params.accel_noise_density * std::sqrt(bandwidth_hz);
+  accel_sigma_m_s2_ = std::hypot(params.flight_sigma_m_s2, accel_noise_m_s2_);
+  share_ = std::min(1.0, period_s / params.model_error_s);
   exact_ = params.errors == SensorErrors{};
   prior_constants_ = params.calibration ? params.calibration->constants : params.nominal;
   prior_covariance_ = covariance_of(params);
@@ -199,6 +202,12 @@ double RateModel::accel_sigma_m_s2(const RateObservation& observation) const {
   return std::hypot(accel_sigma_m_s2_, params_.accel_scale_error * observation.sample.specific_force_m_s2.norm());
 }
 
+// The same as a variance with which samples may be added up: what lasts longer than a sample does not average out.
+double RateModel::accel_variance_together(const RateObservation& observation) const {
+  const double single = accel_sigma_m_s2(observation), noise2 = accel_noise_m_s2_ * accel_noise_m_s2_;
+  return share_ < 1.0 ? noise2 + (single * single - noise2) / share_ : single * single;
+}
+
 double RateModel::jump(const RateKnot& from, const RateKnot& to, double dt_s) const {
   const Vector3d e0 = from.rate_rad_s + dt_s * from.acceleration_rad_s2 - to.rate_rad_s;
   const Vector3d e1 = dt_s * (from.acceleration_rad_s2 - to.acceleration_rad_s2);
@@ -223,9 +232,9 @@ double RateModel::gyro_information(const RateObservation& observation, const Rat
 // is more likely.
 RateModel::ForceFactor RateModel::force_factor(const RateObservation& observation, const RateEstimate& estimate,
                                                const RigConstants& rig) const {
-  const double sigma = accel_sigma_m_s2(observation), flight2 = sigma * sigma;
+  const double flight2 = accel_variance_together(observation);
   const double share = observation.unseen() != 0 ? params_.contact_force_share : 0.0;
-  const double contact2 = flight2 + share * share * estimate.contact_m_s2.squaredNorm();
+  const double contact2 = flight2 + share * share * estimate.contact_m_s2.squaredNorm() / share_;
   ForceFactor out;
   const double information =
       estimate.flight_weight / flight2 + (share > 0.0 ? (1.0 - estimate.flight_weight) / contact2 : 0.0);
@@ -283,9 +292,9 @@ void RateModel::add_sample(const RateObservation& observation, const RateEstimat
   add_companions(observation, estimate, rig, block);
 
   const double rate_sigma = observation.at_rest ? params_.rest_sigma_rad_s : params_.rate_max_rad_s;
-  const double rate_information = 1.0 / (rate_sigma * rate_sigma);
+  const double rate_information = share_ / (rate_sigma * rate_sigma);
   const double largest = params_.acceleration_max_rad_s2 * time_scale_s_;
-  const double acceleration_information = 1.0 / (largest * largest);
+  const double acceleration_information = share_ / (largest * largest);
   for (int j = 0; j < 3; ++j) {
     block.diagonal(j, j) += rate_information;
     block.gradient[j] -= rate_information * estimate.knot.rate_rad_s[j];
@@ -298,11 +307,11 @@ void RateModel::add_sample(const RateObservation& observation, const RateEstimat
 Eigen::Matrix3d RateModel::euler_information(const RateEstimate& estimate) const {
   const double flight = params_.euler_sigma_rad_s2 * params_.euler_sigma_rad_s2;
   const double force = estimate.contact_m_s2.norm(), lever = params_.contact_lever_rad_m * force;
-  const double across = 1.0 / (flight + lever * lever);
+  const double across = share_ / (flight + lever * lever);
   if (!(force > 0.0)) return across * Eigen::Matrix3d::Identity();
   const double twist = params_.contact_twist_share * lever;
   const Vector3d n = estimate.contact_m_s2 / force;
-  return across * Eigen::Matrix3d::Identity() + (1.0 / (flight + twist * twist) - across) * n * n.transpose();
+  return across * Eigen::Matrix3d::Identity() + (share_ / (flight + twist * twist) - across) * n * n.transpose();
 }
 
 void RateModel::add_step(const RateEstimate& from, const RateEstimate& to, double dt_s, arrow::Block& block,

@@ -71,8 +71,9 @@ void RateModel::add_companions(const RateObservation& observation, const RateEst
       Row row = axis * rotation.by_knot;
       row.tail<3>() /= time_scale_s_;
       const double unknown = unknown_row(mount.accel_elements, reading.force_by_elements, j, force.norm());
-      const double sigma =
-          std::hypot(std::hypot(reading.force_sigma_m_s2[j], misplaced, accel_sigma_m_s2(observation)), unknown);
+      const double lasting =
+          std::sqrt((misplaced * misplaced + unknown * unknown) / share_ + accel_variance_together(observation));
+      const double sigma = std::hypot(reading.force_sigma_m_s2[j], lasting);
       add_row(row, axis.dot(force) - reading.force_m_s2[j], sigma, block);
     }
   }

@@ -66,14 +66,16 @@ RateStream::RateStream(const Params& params)
   require_within("recovered_sigma_rad_s", params.recovered_sigma_rad_s, 0.0, 1e4);
   require_within("rig_surprise_max", params.rig_surprise_max, 0.1, 1e6);
   require_within("gap_max_s", params.gap_max_s, 1e-6, 3600.0);
+  require_within("step_s", params.step_s, 0.0, 0.1);
   capacity_ = static_cast<std::size_t>(std::lround(params.lag_s / params.period_s)) + 1;
+  every_ = std::clamp(static_cast<std::size_t>(params.step_s / params.period_s + 1e-6), std::size_t{1}, capacity_);
 }
 
 RateStream::State RateStream::start() const {
   State state;
   state.rails = rails_.start();
-  state.window.reserve(capacity_ + 1);
-  state.work.resize(capacity_ + 1);
+  state.window.reserve(capacity_ + every_);
+  state.work.resize(capacity_ + every_);
   state.rig = state.prior_rig = model_.prior_constants();
   state.rig_covariance = model_.prior_covariance();
   model_.add_rig_prior(state.rig, state.prior_corner);
@@ -92,17 +94,40 @@ Status RateStream::push(const ImuSample& sample, std::span<const CompanionReadin
     Status status = check_follows(sample.time_ns, state.window.back().observation.sample.time_ns, params_.gap_max_s);
     if (!status.ok()) return status;
   }
-  if (state.window.size() == capacity_) marginalise_oldest(state);
+  const bool due = ++state.waiting >= every_;
+  if (due) forget_oldest(state);
   append(sample, companions, state);
-  weigh(state);
-  if (!step(state)) ++state.failures;
-  if (state.window.size() == capacity_) out = to_state(state.window.front());
+  if (!due) {
+    predict_covariance(state);
+  } else if (weigh(state); !step(state)) {
+    ++state.failures;
+  }
+  if (state.window.size() >= capacity_) out = to_state(state.window[state.window.size() - capacity_]);
   return {};
 }
 
-void RateStream::marginalise_oldest(State& state) const {
-  Knot& oldest = state.window[0];
-  const Knot& next = state.window[1];
+// Before a step: makes room for one more sample. All that leaves is taken from the window's front at once.
+void RateStream::forget_oldest(State& state) const {
+  state.waiting = 0;
+  std::size_t count = 0;
+  for (; state.window.size() - count >= capacity_; ++count) marginalise(count, state);
+  state.window.erase(state.window.begin(), state.window.begin() + static_cast<std::ptrdiff_t>(count));
+}
+
+// What can be said of the newest sample before the next step: its reading, or else what the body can have done since.
+void RateStream::predict_covariance(State& state) const {
+  Knot& newest = state.window.back();
+  const Knot& before = state.window[state.window.size() - std::min<std::size_t>(2, state.window.size())];
+  const double turned = params_.model.acceleration_max_rad_s2 * seconds_between(before, newest);
+  Vector3d sigma = Vector3d::Constant(model_.gyro_sigma_rad_s());
+  for (int j = 0; j < 3; ++j) sigma[j] = (clipped_axes(newest.observation) >> j & 1) != 0 ? turned : sigma[j];
+  newest.covariance_rad2_s2 = before.covariance_rad2_s2;
+  newest.covariance_rad2_s2 += sigma.cwiseAbs2().asDiagonal();
+}
+
+void RateStream::marginalise(std::size_t first, State& state) const {
+  Knot& oldest = state.window[first];
+  const Knot& next = state.window[first + 1];
   arrow::Block block, after;
   arrow::Corner corner;
   add_prior(state, model_, oldest.estimate.knot, block, corner);
@@ -111,10 +136,12 @@ void RateStream::marginalise_oldest(State& state) const {
   model_.weigh(oldest.observation, state.rig, RigConstants::Matrix::Zero(), 1.0, jump, oldest.estimate);
   // 20 constants explain any short contact as a flight: what they say is believed after some more of it
   std::size_t run = state.flight_run;
-  for (std::size_t k = 0; k < state.window.size() && state.window[k].estimate.flight_weight >= 0.5; ++k) ++run;
-  const bool short_flight = run < static_cast<std::size_t>(params_.flight_run_min);
-  state.flight_run = oldest.estimate.flight_weight >= 0.5 ? state.flight_run + 1 : 0;
-  if (!short_flight && oldest.estimate.flight_weight >= 0.5) ++state.learnt_from;
+  const auto needed = static_cast<std::size_t>(params_.flight_run_min);
+  const auto flies = [](const Knot& knot) { return knot.estimate.flight_weight >= 0.5; };
+  for (std::size_t k = first; k < state.window.size() && run < needed && flies(state.window[k]); ++k) ++run;
+  const bool short_flight = run < needed;
+  state.flight_run = flies(oldest) ? state.flight_run + 1 : 0;
+  if (!short_flight && flies(oldest)) ++state.learnt_from;
   model_.add_sample(oldest.observation, oldest.estimate, state.rig, block, corner,
                     short_flight ? &state.rig_covariance : nullptr);
   model_.add_step(oldest.estimate, next.estimate, seconds_between(oldest, next), block, after);
@@ -130,7 +157,6 @@ void RateStream::marginalise_oldest(State& state) const {
   }
   state.prior_knot = next.estimate.knot;
   state.prior_rig = state.rig;
-  state.window.erase(state.window.begin());
   if (model_.rig_surprise(state.rig) > params_.rig_surprise_max) {
     // contact was taken for flight of another rig: drop what was learnt of the rig and of the motion with it
     state.rig = state.prior_rig = model_.prior_constants();
@@ -345,7 +371,7 @@ std::optional<RateState> RateStream::newest(const State& state) const {
 }
 
 void RateStream::flush(const State& state, std::vector<RateState>& out) const {
-  const std::size_t given = state.window.size() == capacity_ ? 1 : 0;
+  const std::size_t given = state.window.size() + 1 - std::min(capacity_, state.window.size() + 1);
   for (std::size_t k = given; k < state.window.size(); ++k) out.push_back(to_state(state.window[k]));
 }
 
@@ -370,8 +396,8 @@ bool RateStream::equal(const State& a, const State& b) {
          a.prior.border == b.prior.border && a.prior.gradient == b.prior.gradient &&
          a.prior_corner.matrix == b.prior_corner.matrix && a.prior_corner.gradient == b.prior_corner.gradient &&
          a.prior_knot == b.prior_knot && a.prior_rig == b.prior_rig && a.samples == b.samples &&
-         a.rig_resets == b.rig_resets && a.flight_run == b.flight_run && a.learnt_from == b.learnt_from &&
-         a.failures == b.failures;
+         a.rig_resets == b.rig_resets && a.flight_run == b.flight_run && a.waiting == b.waiting &&
+         a.learnt_from == b.learnt_from && a.failures == b.failures;
 }
 
 }  // namespace tumble

@@ -28,6 +28,8 @@ ImuPlausibility::ImuPlausibility(const Params& p) : params_(p) {
   require_within("turn_least_rad", p.turn_least_rad, kSmallest, 3.0);
   require_within("windows_min", p.windows_min, 1, 1e6);
   require_within("gap_max_s", p.gap_max_s, kSmallest, 1e4);
+  require_within("frozen_s", p.frozen_s, kSmallest, 1e4);
+  require_within("frozen_share", p.frozen_share, 1.0, 1e6);
 }
 
 void ImuPlausibility::step(const ImuSample& sample, State& state) const {
@@ -36,6 +38,10 @@ void ImuPlausibility::step(const ImuSample& sample, State& state) const {
   if (state.started) {
     const Status follows = elapsed(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s);
     if (follows.trouble == Trouble::time_order) return;
+    if (follows.ok()) {
+      hold(sample.angular_velocity_rad_s, dt_s, state.gyro);
+      hold(sample.specific_force_m_s2, dt_s, state.accel);
+    }
     if (!follows.ok()) {
       state.open = false;
       state.average = {};
@@ -46,6 +52,20 @@ void ImuPlausibility::step(const ImuSample& sample, State& state) const {
   }
   state.started = true;
   state.last_time_ns = sample.time_ns;
+}
+
+void ImuPlausibility::hold(const Eigen::Vector3d& reading, double dt_s, Hold& hold) const {
+  if (reading != hold.reading) {
+    hold.longest_s = std::max(hold.longest_s, hold.held_s);
+    hold.held_s = 0.0;
+    hold.moved_s += dt_s;
+    hold.reading = reading;
+    return;
+  }
+  hold.held_s += dt_s;
+  const bool froze = hold.held_s >= params_.frozen_s && hold.moved_s >= params_.frozen_s &&
+                     hold.held_s >= params_.frozen_share * hold.longest_s;
+  if (froze) hold.frozen_s = std::max(hold.frozen_s, hold.held_s);
 }
 
 void ImuPlausibility::take(State& state) const {
@@ -102,6 +122,9 @@ Status ImuPlausibility::verdict(const State& state) const {
   }
   if (force > params_.force_share_max) {
     return {Trouble::out_of_range, "steady specific force as a share of gravity", force, params_.force_share_max};
+  }
+  if (const double frozen = frozen_s(state); frozen > 0.0) {
+    return {Trouble::out_of_range, "seconds for which a triad repeats one reading", frozen, params_.frozen_s};
   }
   const double unexplained = unexplained_share(state);
   if (unexplained > params_.unexplained_max) {

@@ -13,8 +13,9 @@ namespace {
 constexpr double kReferenceSpan_s = 0.1;  // the prior's standard deviations are stated for this
 constexpr double kGapForce_m_s2 = 5.0;    // what a velocity that goes on through a gap may be off by, per second
 
-// a levelled start: gravity's direction within the accelerometer's bias, speed within what passes for rest
-constexpr double kStartTilt_rad = 0.01;
+// What the first sweeps may correct a levelled start by, a weight and no error: five times the tilt that
+// odometry_calibration.cpp reports of it, for a rest that was none; speed within what passes for rest.
+constexpr double kLevelling_rad = 0.01;
 constexpr double kStartSpeed_m_s = 0.05;
 
 constexpr double kRestShare = 0.02;    // of the noise of motion, while at rest
@@ -113,7 +114,7 @@ Status start_at_rest(std::span<const MotionSample> samples, double rest_s, Motio
   state = MotionState{};
   state.time_ns = samples.front().from_ns;
   if (Status status = level(force, state.q_WI); !status.ok()) return status;
-  state.covariance.diagonal().segment<2>(3).setConstant(kStartTilt_rad * kStartTilt_rad);
+  state.covariance.diagonal().segment<2>(3).setConstant(kLevelling_rad * kLevelling_rad);
   state.covariance.diagonal().tail<3>().setConstant(kStartSpeed_m_s * kStartSpeed_m_s);
   return {};
 }

@@ -28,11 +28,10 @@ Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
   return mapping::check_offsets(end_ns - start_ns, given);
 }
 
-void LidarInertialOdometry::Impl::finish(TimeNs end_ns, SweepReport& report) {
-  const bool aligned = report.conditioning > 0.0;
+void LidarInertialOdometry::Impl::finish(TimeNs end_ns, bool aligned, SweepReport& report) {
   lost_sweeps = report.verdict == SweepVerdict::rejected ? lost_sweeps + 1 : 0;
   report.lost_sweeps = lost_sweeps;
-  count_drift(report);
+  if (aligned) count_drift(report);
   count_errors();
   report.trajectory = describe(trajectory, errors);
   enter_window(end_ns, aligned, report);
@@ -120,21 +119,22 @@ Status LidarInertialOdometry::add_sweep(TimeNs lidar_start_ns, TimeNs lidar_end_
   my.unmatched = false;
   const Status status = mapping::check_selection(end_ns - start_ns, points, counts);
   const bool first = my.map.size() == 0;
+  bool aligned = false;
   if (status.ok() && first && counts.used >= my.params.matches_min) {
     report.verdict = SweepVerdict::first;
   } else if (status.ok() && !first) {
     my.choose_points();
     report.points_registered = my.chosen.size();
-    my.register_sweep(end_ns, report);
-    if (report.conditioning > 0.0) report.innovation = my.innovation();
+    aligned = my.register_sweep(end_ns, report);
+    if (aligned) report.innovation = my.innovation();
   }
-  if (report.conditioning == 0.0) {
+  if (!aligned) {
     if (Status built = my.fall_back_on_inertia(end_ns); !built.ok()) return built;
   }
   // where the map had nothing to say the prior draws on: points that it leaves too uncertain stay out by themselves
   if (report.verdict != SweepVerdict::rejected || my.unmatched)
     report.map_points_added = my.extend_map(counts.rings_differ);
-  my.finish(end_ns, report);
+  my.finish(end_ns, aligned, report);
   return status;
 }
 

@@ -12,7 +12,8 @@ namespace {
 
 // variance added to what the prior holds exactly, so that it can be inverted
 constexpr double kLeastVariance = 1e-12;
-constexpr double kStartTilt_rad = 0.002;  // of a levelled start: an accelerometer's turn-on bias of 2 mg (MTi-30)
+constexpr double kStartTilt_rad =
+    0.002;  // a levelled start is off by: an accelerometer's turn-on bias of 2 mg (MTi-30)
 // Of the weakest direction's standard deviation, per sweep, where the surfaces do not hold it: measured on `bare`.
 constexpr double kDriftShare = 0.1;
 constexpr double kDriftMax_m = 3.0;
@@ -155,7 +156,7 @@ Eigen::Matrix<double, 6, 6> LidarInertialOdometry::Impl::reported_covariance(con
 }
 
 void LidarInertialOdometry::Impl::count_drift(const SweepReport& report) {
-  if (report.verdict != SweepVerdict::degenerate || report.conditioning <= 0.0 || resting_sweeps > 0) return;
+  if (report.verdict != SweepVerdict::degenerate || resting_sweeps > 0) return;
   const double sigma_m = kDriftShare * std::min(report.weakest_sigma_m, kDriftMax_m);
   const Eigen::Vector3d direction = report.weakest_direction.head<3>();
   drift_covariance_m2 += (sigma_m * sigma_m) * direction * direction.transpose();

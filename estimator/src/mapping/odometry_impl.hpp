@@ -79,7 +79,7 @@ struct LidarInertialOdometry::Impl {
 
   // lidar_inertial_odometry.cpp
   Status check_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points) const;
-  void finish(TimeNs end_ns, SweepReport& report);
+  void finish(TimeNs end_ns, bool aligned, SweepReport& report);
 
   // odometry_calibration.cpp
   void start_calibration();
@@ -104,7 +104,8 @@ struct LidarInertialOdometry::Impl {
                    Registration::Result& result);
   Status align_patiently(const Registration::Prior& prior, TimeNs end_ns, Registration::Result& result);
   Status search(const Registration::Prior& prior, TimeNs end_ns, Registration::Result& result);
-  void register_sweep(TimeNs end_ns, SweepReport& report);
+  /// Whether it was aligned, be it in no direction that holds it.
+  bool register_sweep(TimeNs end_ns, SweepReport& report);
   Status fall_back_on_inertia(TimeNs end_ns);
   bool imu_rests(TimeNs end_ns) const;
   bool trajectory_speeds_up() const;

@@ -122,6 +122,8 @@ void LidarInertialOdometry::Impl::add_excess_noise(mapping::Prediction& next) co
     if (!(trajectory.clipped_axes() >> axis & 1)) continue;
     double sigma = params.excess_sigma_min_rad_s;
     for (const MotionSample& sample : samples) {
+      // those after the stretch wait for the next one
+      if (seconds(sample.from_ns - trajectory.start_ns()) >= trajectory.duration_s()) break;
       if (sample.clipped_axes >> axis & 1) sigma = std::max(sigma, sample.rate_sigma_rad_s[axis]);
     }
     const int first = Registration::kExcess + axis;
@@ -230,7 +232,7 @@ Status LidarInertialOdometry::Impl::search(const Registration::Prior& prior, Tim
   return status;
 }
 
-void LidarInertialOdometry::Impl::register_sweep(TimeNs end_ns, SweepReport& report) {
+bool LidarInertialOdometry::Impl::register_sweep(TimeNs end_ns, SweepReport& report) {
   const bool prior_trusted = prior_is_trusted();
   result = Registration::Result{};
   result.points = chosen.size();
@@ -239,7 +241,7 @@ void LidarInertialOdometry::Impl::register_sweep(TimeNs end_ns, SweepReport& rep
       lost_sweeps == 0 ? align(prediction.prior, end_ns, result) : search(prediction.prior, end_ns, result);
   report.iterations = result.iterations;
   report.inlier_share = result.points == 0 ? 0.0 : double(result.inliers) / double(result.points);
-  if (!status.ok()) return;
+  if (!status.ok()) return false;
   if (result.verdict != RegistrationVerdict::converged) {
     const bool too_few = result.verdict == RegistrationVerdict::too_few;
     unmatched = too_few && chosen.size() >= params.matches_min;
@@ -247,7 +249,7 @@ void LidarInertialOdometry::Impl::register_sweep(TimeNs end_ns, SweepReport& rep
     if (chosen.size() >= params.matches_min && ((too_few && prior_trusted) || given_up)) {
       report.verdict = SweepVerdict::degenerate;
     }
-    return;
+    return false;
   }
   failed_searches = 0;
   report.conditioning = result.eigenvalues[5] > 0.0 ? result.eigenvalues[0] / result.eigenvalues[5] : 0.0;
@@ -256,6 +258,7 @@ void LidarInertialOdometry::Impl::register_sweep(TimeNs end_ns, SweepReport& rep
   report.verdict =
       report.weakest_sigma_m > params.degenerate_sigma_m ? SweepVerdict::degenerate : SweepVerdict::registered;
   report.excess_rate_rad_s = result.mean.excess_rad_s.rowwise().mean();
+  return true;
 }
 
 /// Whether the IMU has nothing to say but gravity over the present stretch.

@@ -10,10 +10,12 @@ namespace tumble {
 
 namespace {
 
-/// Largest standard deviation of each axis among the samples in which it was clipped.
-Eigen::Vector3d least_known(std::span<const MotionSample> samples) {
+/// Largest standard deviation of each axis among the samples of the stretch in which it was clipped; those that wait
+/// for the next one say nothing of it.
+Eigen::Vector3d least_known(std::span<const MotionSample> samples, TimeNs end_ns) {
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero();
   for (const MotionSample& sample : samples) {
+    if (sample.from_ns >= end_ns) break;
     for (int axis = 0; axis < 3; ++axis) {
       if (sample.clipped_axes >> axis & 1) sigma[axis] = std::max(sigma[axis], sample.rate_sigma_rad_s[axis]);
     }
@@ -89,7 +91,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     return {Trouble::gap, "imu window start", double(samples.front().from_ns), double(start.time_ns)};
   }
 
-  const Eigen::Vector3d sigma = least_known(samples);
+  const Eigen::Vector3d sigma = least_known(samples, end_ns);
   Interval next{};
   next.q_WI = start.q_WI;
   next.thrust_v = next.thrust_p = next.w_I = next.a_W = next.excess_share = Eigen::Vector3d::Zero();

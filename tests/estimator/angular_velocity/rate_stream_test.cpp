@@ -158,6 +158,44 @@ TEST(RateStream, SplittingAnywhereChangesNothing) {
   EXPECT_FALSE(RateStream::equal(other, whole));
 }
 
+// Samples that come faster than steps are made: all of them come out, once and in order, as good as with a step each.
+TEST(RateStream, StepsAreMadeByTimeAndNotBySample) {
+  TumbleOptions options = options_of(2);
+  options.rate_hz = 1000;
+  const TumbleRecording recording = make_tumble(options);
+  RateStream::Params params = wrong_lever(2);
+  params.period_s = 0.001;
+  params.lag_s = 0.05;  // short: a step with each sample costs the square of it
+  const auto median_of = [&](const RateStream::Params& with) {
+    const RateStream method(with);
+    RateStream::State state = method.start();
+    const std::vector<RateState> out = stream(method, recording.samples, state);
+    EXPECT_EQ(out.size(), recording.samples.size());
+    for (std::size_t k = 0; k < out.size(); ++k) {
+      EXPECT_EQ(out[k].time_ns, recording.samples[k].time_ns);
+      EXPECT_GT(out[k].covariance_rad2_s2.diagonal().minCoeff(), 0.0);
+    }
+    return clipped_errors(recording, rates_of(out), options.gyro_rail_rad_s).median;
+  };
+  const double five_ms = median_of(params);
+  params.step_s = 0.0;
+  EXPECT_LT(five_ms, 1.2 * median_of(params));
+
+  // and it can be split between two steps
+  params.step_s = 0.005;
+  const RateStream method(params);
+  RateStream::State whole = method.start(), split = method.start();
+  std::optional<RateState> one;
+  for (std::size_t k = 0; k < 1503; ++k) {
+    ASSERT_TRUE(method.push(recording.samples[k], whole, one).ok());
+    ASSERT_TRUE(method.push(recording.samples[k], split, one).ok());
+    if (k % 97 == 0) split = RateStream::State(split);
+  }
+  EXPECT_TRUE(RateStream::equal(whole, split));
+  split.waiting += 1;
+  EXPECT_FALSE(RateStream::equal(whole, split));
+}
+
 TEST(RateStream, AllocatesNothingPerSample) {
   const std::vector<ImuSample> samples = make_tumble(options_of(4)).samples;
   const RateStream method(wrong_lever(4));

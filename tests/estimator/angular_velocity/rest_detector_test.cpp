@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -39,6 +40,31 @@ std::ptrdiff_t resting(const std::vector<ImuSample>& samples) {
 TEST(RestDetector, FindsAStandstillFromItsFirstSample) {
   // a reading leaves the spread of 0.03 at 5.8 deviations: once in 1e8 readings
   EXPECT_EQ(resting(standing(200, 1)), 200);
+}
+
+// The noise of a reading grows with the rate of the samples: at 8 kHz it is 0.047 rad/s, beyond the spread of 0.03.
+TEST(RestDetector, AFastImuRestsToo) {
+  for (const int rate_hz : {250, 1000, 2000, 8000}) {
+    const double louder = std::sqrt(rate_hz / 100.0);
+    std::vector<ImuSample> samples = standing(static_cast<std::size_t>(2 * rate_hz), 4);
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+      ImuSample& sample = samples[k];
+      sample.time_ns = static_cast<TimeNs>(k + 1) * 1'000'000'000 / rate_hz;
+      for (int j = 0; j < 3; ++j) {
+        sample.angular_velocity_rad_s[j] =
+            0.01 * (j - 1) + louder * (sample.angular_velocity_rad_s[j] - 0.01 * (j - 1));
+      }
+    }
+    // the first sample is a reading by itself, and as loud as one
+    EXPECT_GE(resting(samples), static_cast<std::ptrdiff_t>(samples.size()) - 1) << rate_hz;
+    // a slow turn is none, however fast it is sampled
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+      const double t_s = seconds(samples[k].time_ns);
+      samples[k].angular_velocity_rad_s.x() += 0.3 * t_s;
+      samples[k].specific_force_m_s2.y() += 9.8 * std::sin(0.15 * t_s * t_s);
+    }
+    EXPECT_LT(resting(samples), static_cast<std::ptrdiff_t>(samples.size() / 2)) << rate_hz;
+  }
 }
 
 TEST(RestDetector, ShorterThanItsLeastIsNoRest) {

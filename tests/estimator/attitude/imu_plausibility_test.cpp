@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "estimator/rolling/rolling_truth.hpp"
+#include "oracles/gaussian.hpp"
 
 namespace tumble {
 namespace {
@@ -74,6 +75,38 @@ TEST(ImuPlausibility, OfABodyAtRestOrReadingsThatAreNoneNothingIsSaid) {
   EXPECT_TRUE(plausibility.verdict(state).ok());
   EXPECT_NEAR(plausibility.force_share(state), 1.0, 0.01);
   EXPECT_THROW(ImuPlausibility({.gravity_m_s2 = 0.0}), InvalidParams);
+}
+
+// Standing, with noise; from `from_s` on a triad repeats its reading for `for_s`.
+ImuPlausibility::State with_a_hold(bool gyro, double from_s, double for_s, double before_s = 0.0) {
+  const ImuPlausibility plausibility({});
+  ImuPlausibility::State state;
+  oracles::Gaussian noise(5);
+  ImuSample sample;
+  for (int k = 0; k < 800; ++k) {
+    const double t_s = 0.01 * k;
+    const bool holds = (t_s >= from_s && t_s < from_s + for_s) || t_s < before_s;
+    sample.time_ns = TimeNs{k} * 10'000'000;
+    Eigen::Vector3d rate, force;
+    for (int j = 0; j < 3; ++j) rate[j] = 0.005 * noise(), force[j] = (j == 2 ? 9.8 : 0.0) + 0.006 * noise();
+    if (!(holds && gyro)) sample.angular_velocity_rad_s = rate;
+    if (!(holds && !gyro)) sample.specific_force_m_s2 = force;
+    plausibility.step(sample, state);
+  }
+  return state;
+}
+
+TEST(ImuPlausibility, ATriadThatRepeatsItselfIsFrozen) {
+  const ImuPlausibility plausibility({});
+  for (const bool gyro : {true, false}) {
+    EXPECT_TRUE(plausibility.verdict(with_a_hold(gyro, 20.0, 0.0)).ok());
+    EXPECT_TRUE(plausibility.verdict(with_a_hold(gyro, 4.0, 0.5)).ok()) << "half a second was lost";
+    EXPECT_TRUE(plausibility.verdict(with_a_hold(gyro, 4.0, 1.5, 1.0)).ok()) << "so it does at the start";
+    const ImuPlausibility::State frozen = with_a_hold(gyro, 4.0, 4.0);
+    EXPECT_EQ(plausibility.verdict(frozen).trouble, Trouble::out_of_range);
+    EXPECT_NEAR(plausibility.frozen_s(frozen), 4.0, 0.05);
+    EXPECT_FALSE(plausibility.verdict(with_a_hold(gyro, 3.0, 2.0)).ok()) << "and says so when it has come back";
+  }
 }
 
 }  // namespace

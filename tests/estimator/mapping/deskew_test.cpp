@@ -69,6 +69,26 @@ TEST(SweepTrajectory, IsExactForASteadySpinAtRest) {
   EXPECT_LT((end.v_WI_m_s - 0.1 * so3::left_jacobian(0.1 * w) * samples[0].f_I_m_s2).norm(), 1e-14);
 }
 
+// Samples that wait for the next stretch say nothing of this one's clipped axes.
+TEST(SweepTrajectory, WhatWaitsChangesNothing) {
+  MotionSample clipped;
+  clipped.from_ns = 0;
+  clipped.time_ns = 10'000'000;
+  clipped.w_WI_I_rad_s = {10.0, 0.0, 0.0};
+  clipped.clipped_axes = 1;
+  clipped.rate_sigma_rad_s = {0.5, 0.1, 0.1};
+  MotionSample waiting = clipped;
+  waiting.from_ns = clipped.time_ns;
+  waiting.time_ns = 20'000'000;
+  waiting.rate_sigma_rad_s = {50.0, 0.1, 0.1};
+  const std::vector<MotionSample> samples = {clipped, waiting};
+  SweepTrajectory trajectory;
+  ASSERT_TRUE(trajectory.build(MotionState{}, samples, 10'000'000, {0.0, 0.0, -9.8}).ok());
+  EXPECT_EQ(trajectory.excess_share_at_end().x(), 1.0);
+  ASSERT_TRUE(trajectory.build(MotionState{}, samples, 20'000'000, {0.0, 0.0, -9.8}).ok());
+  EXPECT_EQ(trajectory.excess_share_at_start().x(), 0.01) << "one of the stretch does";
+}
+
 TEST(SweepTrajectory, SaysWhatItLacks) {
   const std::vector<MotionSample> samples = test::motion_samples(test::make_imu(test::Motion{}, 0.2));
   SweepTrajectory trajectory;

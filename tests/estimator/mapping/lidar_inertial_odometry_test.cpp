@@ -318,6 +318,43 @@ TEST(LidarInertialOdometry, SaysThatAFloorAloneDoesNotHoldIt) {
   EXPECT_GT(degenerate, 3);  // at rest its rings give no plane at all
 }
 
+/// A plane without noise leaves directions open to the last bit: smallest over largest eigenvalue is 0 then. What it
+/// does hold is aligned all the same.
+TEST(LidarInertialOdometry, AnExactlyDegenerateAlignmentCounts) {
+  const auto plane = [](float height_m) {
+    std::vector<LidarPoint> points;
+    for (int i = -40; i <= 40; ++i) {
+      for (int j = -40; j <= 40; ++j) {
+        LidarPoint& point = points.emplace_back();
+        point.position_L_m = {0.25f * static_cast<float>(i), 0.25f * static_cast<float>(j), height_m};
+        point.offset_ns = static_cast<TimeNs>(points.size()) * 10'000;
+        point.ring = static_cast<std::uint16_t>(i + 40);
+      }
+    }
+    return points;
+  };
+  Odometry::Params params;
+  params.T_IL.setIdentity();
+  Odometry odometry(params);
+  Odometry::SweepReport report;
+  for (int sweep = 0; sweep < 2; ++sweep) {
+    for (int k = sweep * kSamplesPerSweep; k < (sweep + 1) * kSamplesPerSweep; ++k) {
+      ImuSample sample;
+      sample.time_ns = (k + 1) * test::kSweep_ns / kSamplesPerSweep;
+      sample.angular_velocity_rad_s = {0.0, 0.0, sweep == 0 ? 0.0 : 0.5};  // no rest, about the plane's normal
+      sample.specific_force_m_s2 = {0.0, 0.0, params.gravity_m_s2};
+      ASSERT_TRUE(odometry.add_imu(sample, test::believe(sample)).ok());
+    }
+    // the second sweep sees the plane 5 mm nearer than inertia has it
+    ASSERT_TRUE(add_sweep(odometry, sweep, plane(sweep == 0 ? -1.5f : -1.495f), report).ok());
+  }
+  EXPECT_EQ(report.verdict, SweepVerdict::degenerate);
+  EXPECT_EQ(report.conditioning, 0.0);
+  EXPECT_GT(report.iterations, 0);
+  EXPECT_NEAR(report.pose.p_WA_m.z(), -0.005, 0.002);
+  EXPECT_GT(report.innovation, 0.0);
+}
+
 /// Above a floor alone, which leaves two directions open, and with an accelerometer that is off by 0.5 m/s^2 once the
 /// rest is over: integrated it goes astray, a velocity that is told at every sweep holds it.
 TEST(LidarInertialOdometry, AVelocityThatIsToldHoldsWhatTheSurfacesDoNot) {

@@ -4,8 +4,12 @@
 #include <algorithm>
 
 #include "scenarios/methods/method.hpp"
+#include "scenarios/methods/rigid_chain.hpp"
 #include "scenarios/methods/synthetic_recording.hpp"
 #include "scenarios/scoring/score.hpp"
+#include "sim/random/stream.hpp"
+#include "tumble/common/status.hpp"
+#include "tumble/mapping/lidar_inertial_odometry.hpp"
 
 // the peers must be honest: on a motion that asks nothing of a gyro each of them works
 namespace tumble::scenarios {
@@ -37,6 +41,68 @@ Outcome outcome_of(const std::string& name, const sim::Recording& recording) {
   }
   EXPECT_TRUE(any) << name;
   return out;
+}
+
+/// The rest at the start is the mean of its samples, each of them once.
+TEST(RigidChain, TheFirstSampleOfTheRestCountsOnce) {
+  std::vector<ImuSample> samples(4);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    samples[k].time_ns = static_cast<TimeNs>(k) * 10'000'000;
+    samples[k].angular_velocity_rad_s = {0.01, -0.02, 0.005};
+    samples[k].specific_force_m_s2 = {k == 0 ? 1.0 : 0.0, 0.0, 9.8};
+  }
+  StartAtRest start;
+  ASSERT_TRUE(start_at_rest(samples, start).ok());
+  EXPECT_NEAR((start.gyro_bias_rad_s - samples[0].angular_velocity_rad_s).norm(), 0.0, 1e-15);
+  const Eigen::Vector3d up = start.q_WI * Eigen::Vector3d(0.25, 0.0, 9.8).normalized();
+  EXPECT_NEAR(up.z(), 1.0, 1e-12);
+  // one that turns from the start on is levelled by what there is
+  samples[0].angular_velocity_rad_s.x() = 1.0;
+  ASSERT_TRUE(start_at_rest(samples, start).ok());
+  EXPECT_EQ(start.gyro_bias_rad_s.norm(), 0.0);
+}
+
+/// A number has one bound, that of the library.
+TEST(SlamParameters, AreBoundAsTheLibraryBindsThem) {
+  for (const sim::Parameter& parameter : find_methods("slam/icp").at(0)->info.parameters) {
+    if (parameter.name != "map_voxel_m") continue;
+    LidarInertialOdometry::Params params;
+    params.map_spacing_m = 0.0;
+    params.map_voxel_m = parameter.low;
+    EXPECT_NO_THROW(LidarInertialOdometry{params});
+    params.map_voxel_m = 0.99 * parameter.low;
+    EXPECT_THROW(LidarInertialOdometry{params}, InvalidParams);
+    return;
+  }
+  FAIL() << "no such parameter";
+}
+
+/// All methods of attitude read their IMU through one check.
+TEST(ImuCheck, EveryAttitudeMethodSaysThatItsImuFroze) {
+  sim::Recording recording = testing::synthetic_rig(gentle());
+  sim::Stream noise(3, "noise");
+  sim::ImuRecord& imu = recording.sensors.imus.front();
+  for (std::size_t k = 0; k < imu.time_ns.size(); ++k) {
+    for (int j = 0; j < 3; ++j) imu.gyro_rad_s[k][j] += 0.01 * (noise.uniform() - 0.5);
+    for (int j = 0; j < 3; ++j) imu.accel_m_s2[k][j] += 0.01 * (noise.uniform() - 0.5);
+  }
+  sim::Sensors frozen = recording.sensors;
+  for (std::size_t k = imu.time_ns.size() / 2; k < imu.time_ns.size(); ++k) {
+    frozen.imus.front().gyro_rad_s[k] = imu.gyro_rad_s[imu.time_ns.size() / 2];
+    frozen.imus.front().accel_m_s2[k] = imu.accel_m_s2[imu.time_ns.size() / 2];
+  }
+  int asked = 0;
+  for (const Method& method : methods()) {
+    if (method.info.kind != Kind::attitude || method.info.needs_truth) continue;
+    const auto says = [&](const sim::Sensors& sensors) {
+      const Estimate estimate = method.run(sensors, {}, {nullptr});
+      return !estimate.status.ok() || estimate.health.contains("imu_frozen_s");
+    };
+    EXPECT_FALSE(says(recording.sensors)) << method.info.name;
+    EXPECT_TRUE(says(frozen)) << method.info.name;
+    ++asked;
+  }
+  EXPECT_GE(asked, 8);
 }
 
 class SlamPeer : public ::testing::TestWithParam<const char*> {};

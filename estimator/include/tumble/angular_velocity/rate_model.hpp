@@ -43,6 +43,9 @@ struct RateModelParams {
   double accel_noise_density = 5.9e-4;
   /// What the flight model misses of the specific force (drag, bias in motion), besides noise [m/s^2]; [1e-6, 100].
   double flight_sigma_m_s2 = 0.02;
+  /// What the model misses of a force, a torque or a rate lasts so long: samples that come faster say it once between
+  /// them, and their noise alone averages out [s]; [1e-6, 1].
+  double model_error_s = 0.01;
   /// Scale and misalignment of the accelerometer, as a share of the force; [0, 1].
   double accel_scale_error = 1e-3;
   /// What the device makes of the motion, as far as it is known: readings are corrected for it.
@@ -218,12 +221,15 @@ class RateModel {
                       arrow::Block& block) const;
   Eigen::Matrix3d euler_information(const RateEstimate& estimate) const;
   double accel_sigma_m_s2(const RateObservation& observation) const;
+  double accel_variance_together(const RateObservation& observation) const;
 
   RateModelParams params_;
   bool exact_ = true;    ///< nothing is known of errors: readings are taken as they are
   double time_scale_s_;  ///< the solver's acceleration is the acceleration times this
   double gyro_sigma_rad_s_;
+  double accel_noise_m_s2_;
   double accel_sigma_m_s2_;
+  double share_;  ///< of what lasts model_error_s, that one sample may say
   RigConstants prior_constants_;
   RigConstants::Matrix prior_covariance_;
   RigConstants::Matrix prior_information_;

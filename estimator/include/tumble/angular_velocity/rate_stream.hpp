@@ -18,18 +18,20 @@
 namespace tumble {
 
 /// The streaming form of RateSmoother: the same factors over a window of fixed length, one Gauss-Newton step per
-/// sample; what leaves the window is marginalised into a Gaussian prior on the next sample and on the RigConstants.
+/// sample, or every 5 ms where samples come faster; what leaves the window is marginalised into a Gaussian prior on the
+/// next sample and on the RigConstants.
 ///
-/// An estimate comes out when its sample is `lag_s` old, and a provisional one at once. O(window) per sample; no
-/// allocation after the State is made. Rails, upright ones and the tilted planes of a gyro's elements, are learnt as
-/// they show themselves (RailWatch); with each that becomes known the window is read again, element by element, so that
-/// a clipped sample that was believed counts as believed only where it left the window before its rail was seen. Give
-/// it the calibration of an earlier run where there is one: then the error is 1.1 times that of the batch (median and
-/// mean) and 99 % lie within three deviations (tests/bench/rate_statistics hill 4201 4212 --learnt). Without it the rig
-/// is learnt in the tumble that needs it: on hill, draws 1001 to 1030, 1.6 times the median of the batch and 1.7 times
-/// its mean. Nearly all of that arises in the first 0.3 s after the first clipped sample, and the window is not what
-/// loses it: the batch run anew for each sample on all the past and the same 0.2 s ahead is no better (draws 1001 to
-/// 1007: 1.4 and 1.8 times, the stream 1.6 and 1.9 with the wider priors). With 0.5 s of lag it is 1.2 and 1.4.
+/// An estimate comes out when its sample is `lag_s` old, and a provisional one at once. A step is O(window): in
+/// proportion to the rate of the samples beyond 200 Hz, to its square below; no allocation after the State is made.
+/// Rails, upright ones and the tilted planes of a gyro's elements, are learnt as they show themselves (RailWatch); with
+/// each that becomes known the window is read again, element by element, so that a clipped sample that was believed
+/// counts as believed only where it left the window before its rail was seen. Give it the calibration of an earlier run
+/// where there is one: then the error is 1.1 times that of the batch (median and mean) and 99 % lie within three
+/// deviations (tests/bench/rate_statistics hill 4201 4212 --learnt). Without it the rig is learnt in the tumble that
+/// needs it: on hill, draws 1001 to 1030, 1.6 times the median of the batch and 1.7 times its mean. Nearly all of that
+/// arises in the first 0.3 s after the first clipped sample, and the window is not what loses it: the batch run anew
+/// for each sample on all the past and the same 0.2 s ahead is no better (draws 1001 to 1007: 1.4 and 1.8 times, the
+/// stream 1.6 and 1.9 with the wider priors). With 0.5 s of lag it is 1.2 and 1.4.
 ///
 /// What leaves the window is weighed for good while the constants are off by millimetres, and the samples of a flight
 /// err together (its edges, an impact or a push that was taken for flight), so that their formal covariance is too
@@ -64,6 +66,7 @@ class RateStream {
     double recovered_sigma_rad_s = 0.5;  ///< as in RateSmoother
     double rig_surprise_max = 1.5;       ///< beyond this what was learnt of the rig is dropped; [0.1, 1e6]
     double gap_max_s = 1.0;              ///< longest time between samples; [1e-6, 3600]
+    double step_s = 0.005;               ///< least time between Gauss-Newton steps; 0: with each sample; [0, 0.1]
   };
 
   struct Knot {
@@ -87,6 +90,7 @@ class RateStream {
     RateKnot prior_knot;
     RigConstants prior_rig;
     std::size_t samples = 0;
+    std::size_t waiting = 0;         ///< samples since the last step
     std::size_t learnt_from = 0;     ///< samples of flight that left the window and told of the rig
     std::size_t flight_run = 0;      ///< samples of flight in a row that left the window last
     std::size_t rig_resets = 0;      ///< times that what was learnt of the rig was dropped
@@ -123,7 +127,9 @@ class RateStream {
   static bool equal(const State& a, const State& b);
 
  private:
-  void marginalise_oldest(State& state) const;
+  void forget_oldest(State& state) const;
+  void marginalise(std::size_t first, State& state) const;
+  void predict_covariance(State& state) const;
   void append(const ImuSample& sample, std::span<const CompanionReading> companions, State& state) const;
   void classify_again(State& state) const;
   void judge(std::size_t first, State& state) const;
@@ -139,6 +145,7 @@ class RateStream {
   RestDetector rests_;
   RateModel model_;
   std::size_t capacity_;
+  std::size_t every_;  ///< samples from one step to the next
 };
 
 }  // namespace tumble

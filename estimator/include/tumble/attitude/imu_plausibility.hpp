@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 
 #include "tumble/common/imu.hpp"
 #include "tumble/common/imu_average.hpp"
@@ -9,13 +10,17 @@
 
 namespace tumble {
 
-/// Whether an IMU's readings can be what they claim to be: units, axes, signs.
+/// Whether an IMU's readings can be what they claim to be: units, axes, signs, and alive.
 ///
 /// Where the force is steady in size over a fifth of a second it is nearly gravity: its size must be g, and the gyro
 /// must explain how its direction turns, u(t + T) = R^T u(t). Three sums over such windows tell: what the gyro leaves
 /// unexplained, what turned by the force, and what turned by the gyro. An accelerometer in g, a gyro in deg/s, axes
 /// that are swapped or of which one is flipped, and a force that stands still while the body turns leave most
 /// unexplained.
+///
+/// A gyro or an accelerometer that repeats one reading to the last bit, for a second and ten times as long as ever
+/// before, is frozen: it has shown that its readings move. One that held its readings as long before (a coarse quantum
+/// at rest, a simulation without noise) is not told from that.
 ///
 /// Not seen: an accelerometer with all three axes flipped, which is the mirrored world (ImuMerge::arm_share() tells it,
 /// with several IMUs), errors of some per cent, a body that does not turn, or that is pushed about all the time.
@@ -33,8 +38,19 @@ class ImuPlausibility {
     double turn_least_rad = 0.15;  ///< of a window, to count as turning; bound (0, 3]
     int windows_min = 5;           ///< steady ones, to say something of the force's size; bound [1, 1e6]
     double gap_max_s = 0.1;        ///< after a longer one a window begins anew; bound (0, 1e4]
+    double frozen_s = 1.0;         ///< a reading that repeats for so long may be frozen, after as long of moving ones;
+                                   ///< bound (0, 1e4]
+    double frozen_share = 10.0;    ///< and lasts so many times longer than any did before; bound [1, 1e6]
+  };
+  /// How long a triad has repeated its reading.
+  struct Hold {
+    Eigen::Vector3d reading = Eigen::Vector3d::Zero();
+    double held_s = 0.0, longest_s = 0.0, moved_s = 0.0;
+    double frozen_s = 0.0;  ///< 0: never
+    bool operator==(const Hold&) const = default;
   };
   struct State {
+    Hold gyro, accel;
     ImuAverage average;
     Eigen::Vector3d force_start_m_s2 = Eigen::Vector3d::Zero();
     Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  ///< within the window, by the gyro
@@ -57,11 +73,14 @@ class ImuPlausibility {
   double force_share(const State& state) const;
   /// Share of the turning that the gyro does not explain; 0 while nothing is known.
   double unexplained_share(const State& state) const;
-  /// `out_of_range` naming which of the two is out of its bound.
+  /// Longest time for which the gyro or the accelerometer was frozen [s]; 0: never.
+  double frozen_s(const State& state) const { return std::max(state.gyro.frozen_s, state.accel.frozen_s); }
+  /// `out_of_range` naming which of the three is out of its bound.
   Status verdict(const State& state) const;
 
  private:
   void take(State& state) const;
+  void hold(const Eigen::Vector3d& reading, double dt_s, Hold& hold) const;
 
   Params params_;
 };

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// imu_rates SCENARIO FIRST LAST KIND/METHOD... [--rate HZ]... [--keep FOLDER]: the same draws with IMUs of other rates.
+// A line per method and rate: its error (rate: median at clipped samples; attitude: inclination; position: at the end;
+// slam: ate_m; median and mean over the draws), both against the scenario's own rate, the share within three reported
+// deviations (slam: of the draws whose last pose lies within the 99.7 % of its NEES), that of the worst draw, and the
+// CPU time against the length of the recording. FOLDER keeps the recordings. Not a test: 2 to 10 s a draw and rate.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scenarios/draw/scenario.hpp"
+#include "scenarios/draw/without_lidars.hpp"
+#include "scenarios/sweep/evaluate.hpp"
+#include "scenarios/sweep/statistics.hpp"
+#include "sim/simulate.hpp"
+#include "tests/bench/kept_recording.hpp"
+#include "tests/tree.hpp"
+
+namespace {
+
+namespace scenarios = tumble::scenarios;
+namespace sim = tumble::sim;
+using scenarios::Kind;
+
+constexpr double kPoseNees = 20.06 / 6.0;  // 99.73 % of chi-square with six degrees, per degree
+
+struct Request {
+  std::string scenario;
+  std::uint64_t first = 0, last = 0;
+  std::vector<std::string> methods;
+  std::vector<double> rates_hz = {50, 100, 125, 250, 500, 1000, 2000, 4000, 8000};
+  std::filesystem::path keep;
+};
+
+bool parse(int count, char** words, Request& request) {
+  std::vector<std::string> plain;
+  std::vector<double> rates_hz;
+  for (int i = 1; i < count; ++i) {
+    const std::string word = words[i];
+    if ((word == "--rate" || word == "--keep") && i + 1 == count) return false;
+    if (word == "--rate") {
+      rates_hz.push_back(std::strtod(words[++i], nullptr));
+    } else if (word == "--keep") {
+      request.keep = words[++i];
+    } else {
+      plain.push_back(word);
+    }
+  }
+  if (plain.size() < 4) return false;
+  request.scenario = plain[0];
+  request.first = std::strtoull(plain[1].c_str(), nullptr, 10);
+  request.last = std::strtoull(plain[2].c_str(), nullptr, 10);
+  request.methods.assign(plain.begin() + 3, plain.end());
+  if (!rates_hz.empty()) request.rates_hz = rates_hz;
+  return true;
+}
+
+/// The draw with the primary IMU's rate, that of a sphere's others too; 0: as the scenario has it.
+scenarios::SimulatedDraw draw_of(const scenarios::DataRoot& data, const Request& request, std::uint64_t seed,
+                                 double rate_hz, bool lidar) {
+  scenarios::SimulatedDraw draw;
+  draw.scenario = request.scenario;
+  draw.seed = seed;
+  const std::string name = request.scenario + "_" + std::to_string(seed) + "_" +
+                           std::to_string(static_cast<int>(rate_hz)) + (lidar ? "_lidar" : "");
+  const auto situation = [&] {
+    sim::Situation out = scenarios::draw(data, scenarios::load_scenario(data, request.scenario), seed);
+    if (!lidar) out = scenarios::without_lidars(std::move(out));
+    for (sim::SensorSpec& sensor : out.sensors) {
+      const bool one_of_them = &sensor == &out.sensors.front() || out.robot.type == "sphere";
+      if (rate_hz > 0.0 && sensor.kind == "imu" && one_of_them) sensor.values.set("output_rate_hz", rate_hz);
+    }
+    return out;
+  };
+  draw.recording = tumble::bench::kept_recording(data, request.keep, name, request.scenario, seed, situation);
+  return draw;
+}
+
+struct Metrics {
+  const char *error, *coverage;
+};
+
+Metrics metrics_of(Kind kind) {
+  if (kind == Kind::rate) return {"rate_error_clipped_median_rad_s", "rate_coverage_3sigma"};
+  if (kind == Kind::attitude) return {"inclination_rmse_rad", ""};
+  if (kind == Kind::position) return {"position_end_error_m", "position_coverage_3sigma"};
+  return {"ate_m", "pose_nees"};
+}
+
+/// One method at one rate, over the draws.
+struct Pool {
+  std::vector<double> error, coverage;
+  double cpu_s = 0.0, length_s = 0.0;
+  int failed = 0;
+};
+
+double mean(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return values.empty() ? std::nan("") : sum / static_cast<double>(values.size());
+}
+
+void add(const scenarios::Method& method, const scenarios::SimulatedDraw& draw, Pool& pool) {
+  scenarios::Outcome outcome;
+  const double start_s = scenarios::process_cpu_s();
+  const scenarios::Estimate estimate = scenarios::run_method(method, draw, outcome);
+  pool.cpu_s += scenarios::process_cpu_s() - start_s;
+  const auto& stamps = draw.recording.sensors.imus.front().time_ns;
+  pool.length_s += 1e-9 * static_cast<double>(stamps.back() - stamps.front());
+  if (outcome.status == "ok") scenarios::assess(method, draw, nullptr, estimate, outcome);
+  if (outcome.status != "ok") {
+    ++pool.failed;
+    return;
+  }
+  const Metrics metrics = metrics_of(method.info.kind);
+  for (const scenarios::Score& score : outcome.scores) {
+    if (std::isnan(score.value)) continue;
+    if (score.metric == metrics.error) pool.error.push_back(score.value);
+    if (score.metric != metrics.coverage) continue;
+    const bool nees = method.info.kind == Kind::slam;
+    pool.coverage.push_back(nees ? static_cast<double>(score.value <= kPoseNees) : score.value);
+  }
+}
+
+void print(const std::string& name, double rate_hz, const Pool& pool, const Pool& own) {
+  const double median = scenarios::quantile(pool.error, 0.5);
+  std::printf("%-22s %6.0f %9.5f %9.5f %7.2f %7.2f %8.2f %7.2f %7.2f", name.c_str(), rate_hz, median, mean(pool.error),
+              median / scenarios::quantile(own.error, 0.5), mean(pool.error) / mean(own.error),
+              100.0 * mean(pool.coverage), 100.0 * scenarios::quantile(pool.coverage, 0.0), pool.cpu_s / pool.length_s);
+  if (pool.failed > 0) std::printf("  not ok: %d", pool.failed);
+  std::printf("\n");
+  std::fflush(stdout);
+}
+
+int run(const Request& request) {
+  const scenarios::DataRoot data{tumble::test::source_dir()};
+  std::vector<const scenarios::Method*> methods;
+  for (const std::string& name : request.methods) methods.push_back(scenarios::find_methods(name).at(0));
+  const bool lidar =
+      std::any_of(methods.begin(), methods.end(), [](const auto* method) { return method->info.kind == Kind::slam; });
+  std::printf("%s, draws %llu to %llu; 0 Hz: as the scenario has it\n", request.scenario.c_str(),
+              static_cast<unsigned long long>(request.first), static_cast<unsigned long long>(request.last));
+  std::printf("%-22s %6s %9s %9s %7s %7s %8s %7s %7s\n", "method", "Hz", "median", "mean", "against", "against",
+              "within", "worst", "cpu");
+  std::vector<Pool> own(methods.size());
+  std::vector<double> rates_hz = {0.0};
+  rates_hz.insert(rates_hz.end(), request.rates_hz.begin(), request.rates_hz.end());
+  for (const double rate_hz : rates_hz) {
+    std::vector<Pool> pools(methods.size());
+    for (std::uint64_t seed = request.first; seed <= request.last; ++seed) {
+      try {
+        const scenarios::SimulatedDraw draw = draw_of(data, request, seed, rate_hz, lidar);
+        for (std::size_t m = 0; m < methods.size(); ++m) add(*methods[m], draw, pools[m]);
+      } catch (const sim::SimulationFailure& failure) {
+        std::printf("draw %llu left out: %s\n", static_cast<unsigned long long>(seed), failure.what());
+      }
+    }
+    if (rate_hz == 0.0) own = pools;
+    for (std::size_t m = 0; m < methods.size(); ++m) print(request.methods[m], rate_hz, pools[m], own[m]);
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+  Request request;
+  if (!parse(count, words, request)) {
+    std::fprintf(stderr, "usage: imu_rates SCENARIO FIRST LAST KIND/METHOD... [--rate HZ]... [--keep FOLDER]\n");
+    return 2;
+  }
+  try {
+    return run(request);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
+  }
+}
