@@ -51,6 +51,7 @@ Problem::Problem(const CarriedSmoother::Params& params, const Eigen::Matrix3d& r
       rows_(rows),
       readings_(readings),
       motion_(motion_params(params)),
+      nominal_(motion_),
       noise_(reading_noise(params, period_s)),
       g_W_m_s2_(0.0, 0.0, -params.gravity_m_s2),
       nodes_(std::move(nodes)),
@@ -58,17 +59,30 @@ Problem::Problem(const CarriedSmoother::Params& params, const Eigen::Matrix3d& r
       hand_power_(nodes_.size() + 1, 0.0),
       blocks_(nodes_.size()) {}
 
+double Problem::add_node(std::size_t i, System::Block& block, System::Corner& corner) const {
+  const Node& node = nodes_[i];
+  double cost = add_gyro(readings_[i], rows_, noise_, node, constants_, block, corner);
+  cost += add_force(readings_[i], g_W_m_s2_, noise_, node, constants_, block, corner);
+  cost += motion_.add_bounds(node, block);
+  if (readings_[i].rest) cost += add_rest(noise_, node, block);
+  return cost;
+}
+
 double Problem::linearise() {
   std::fill(blocks_.begin(), blocks_.end(), System::Block{});
   corner_ = {};
-  double cost = motion_.add_first(nodes_[0], blocks_[0]);
+  double cost =
+      part_ ? part_->before.add(nodes_.front(), blocks_.front()) + part_->after.add(nodes_.back(), blocks_.back())
+            : motion_.add_first(nodes_[0], blocks_[0]);
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    const Node& node = nodes_[i];
-    cost += add_gyro(readings_[i], rows_, noise_, node, constants_, blocks_[i], corner_);
-    cost += add_force(readings_[i], g_W_m_s2_, noise_, node, constants_, blocks_[i], corner_);
-    cost += motion_.add_bounds(node, blocks_[i]);
-    if (readings_[i].rest) cost += add_rest(noise_, node, blocks_[i]);
-    if (i + 1 < nodes_.size()) cost += motion_.add_step(node, nodes_[i + 1], hand_[i], blocks_[i], blocks_[i + 1]);
+    cost += add_node(i, blocks_[i], corner_);
+    if (i + 1 < nodes_.size()) cost += motion_.add_step(nodes_[i], nodes_[i + 1], hand_[i], blocks_[i], blocks_[i + 1]);
+  }
+  if (part_) {
+    corner_ = {};
+    corner_.matrix.setIdentity();
+    for (System::Block& block : blocks_) block.border.setZero();
+    return cost;
   }
   const auto prior = [&](const Vector3d& value, double sigma, int at) {
     const double information = 1.0 / (sigma * sigma);
@@ -125,6 +139,7 @@ void Problem::follow_hand() {
 }
 
 Status Problem::solve(CarriedSmoother::Report& report) {
+  motion_ = nominal_;
   for (int k = 0; k < params_.iterations_max; ++k) {
     if (k >= kFollowFirst && k <= kFollowLast && params_.hand_follow > 0.0) follow_hand();
     report.cost = linearise();
