@@ -93,6 +93,9 @@ Status run_carried(const sim::Sensors& sensors, const sim::Values& parameters, s
   health["iterations"] = report.iterations;
   health["converged"] = report.converged ? 1.0 : 0.0;
   health["hand_surprise"] = report.hand_surprise;
+  health["turns_asked"] = report.turns_asked;
+  health["turns_taken"] = report.turns_taken;
+  health["turns_open"] = report.turns_open;
   return status;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,27 +28,77 @@ std::vector<Eigen::Vector3d> filled_rates(std::span<const ImuSample> samples, co
 
 inline constexpr double kFillMost = 2.5;  ///< rails: the fill is a start, no more
 
+/// Adds one sample's reading, `t` seconds from the node.
+void add_reading(const ImuSample& sample, const Eigen::Matrix3d& rows, const ClipSigns& signs, double t,
+                 NodeReadings& node);
+
+/// What the factors of the motion and of the readings are weighed with; `jerk`: its root density counts so many times.
+Motion::Params motion_params(const CarriedSmoother::Params& params, double jerk = 1.0);
+ReadingNoise reading_noise(const CarriedSmoother::Params& params, double period_s);
+/// Gyro, force, bounds and rest of one node.
+double add_node(const NodeReadings& readings, const Eigen::Matrix3d& rows, const ReadingNoise& noise,
+                const Eigen::Vector3d& g_W_m_s2, const Motion& motion, const Node& node, const Constants& constants,
+                System::Block& block, System::Corner& corner);
+/// Priors of the constants about zero.
+double add_constants_prior(const CarriedSmoother::Params& params, const Constants& constants, System::Corner& corner);
+/// The way from one node to another, as Node::move takes it.
+System::StateVector moved(const Node& from, const Node& to);
+
 /// Attitude and rates of the nodes by a filter (VQF) on the filled rates; the hand's acceleration is what is left.
 Status start_nodes(const CarriedSmoother::Params& params, std::span<const ImuSample> samples,
                    const ClippedElements& clipped, const Collected& collected, std::vector<Node>& nodes);
+
+/// What all that lies on one side of a node says of it: a quadratic about the node as it stood.
+struct Message {
+  Node about;
+  System::StateMatrix information = System::StateMatrix::Zero();
+  System::StateVector gradient = System::StateVector::Zero();
+  double add(const Node& node, System::Block& block) const;
+};
+
+/// Nodes [first, last] of a problem, and what is said of its ends by all that lies beyond them, the constants given.
+struct Part {
+  std::size_t first = 0, last = 0;
+  Message before = {}, after = {};
+};
 
 /// The normal equations of one recording and their solution.
 class Problem {
  public:
   Problem(const CarriedSmoother::Params& params, const Eigen::Matrix3d& rows, double period_s,
           std::span<const NodeReadings> readings, std::vector<Node> nodes);
+  /// A part of another one alone, `part.before` and `after` filled by tell(). The constants and how lively the hand is
+  /// stay as they are there.
+  Problem(const Problem& whole, const Part& part);
 
   /// Gauss-Newton; `diverged` when the equations lose their definiteness.
   Status solve(CarriedSmoother::Report& report);
   /// Covariances of all nodes at the solution.
   Status covariances(CarriedSmoother::Report& report);
+  /// Fills what the rest says of each part's ends: one sweep from either side. False where it loses its definiteness.
+  bool tell(std::span<Part> parts) const;
+  /// Gauss-Newton of a part. The cost at the solution, infinite where it did not converge.
+  double settle();
 
+  const Eigen::Matrix3d& rows() const { return rows_; }
+  /// Rate and bias of a node: what the gyro would read.
+  Eigen::Vector3d gyro_rad_s(std::size_t node) const { return nodes_[node].w_WI_I_rad_s + constants_.gyro_bias_rad_s; }
+  double rail_sigma_rad_s() const { return noise_.rail_rad_s; }
+  double jerk_rad_s3_sqrts() const { return params_.jerk_rad_s3_sqrts; }
+  double node_s() const { return params_.node_s; }
+  const Eigen::Vector3d& gravity_W_m_s2() const { return g_W_m_s2_; }
+  const NodeReadings& readings(std::size_t node) const { return readings_[node]; }
   std::span<const Node> nodes() const { return nodes_; }
+  /// Other nodes from `first` on: another start.
+  void place(std::size_t first, std::span<const Node> nodes);
+  /// Adds to a node's covariance.
+  void widen(std::size_t node, const Eigen::Matrix<double, 9, 9>& by) { covariances_[node] += by; }
   /// Of attitude (error in sensor axes), rate, angular acceleration.
   const Eigen::Matrix<double, 9, 9>& covariance(std::size_t node) const { return covariances_[node]; }
 
  private:
   double linearise();
+  double add_node(std::size_t i, System::Block& block, System::Corner& corner) const;
   bool eliminate(System::BorderVector& step);
   bool step(double& largest);
   void follow_hand();
@@ -56,9 +107,10 @@ class Problem {
   CarriedSmoother::Params params_;
   Eigen::Matrix3d rows_;
   std::span<const NodeReadings> readings_;
-  Motion motion_;
+  Motion motion_, nominal_;  // as the equations stand, and of the jerk that is assumed
   ReadingNoise noise_;
   Eigen::Vector3d g_W_m_s2_;
+  std::optional<Part> part_;  // of another problem; the constants stay then
   std::vector<Node> nodes_;
   Constants constants_;
   std::vector<double> hand_;        // what the density of the hand's acceleration is multiplied with, per step

@@ -8,6 +8,7 @@
 
 #include "carried_problem.hpp"
 #include "tumble/common/so3.hpp"
+#include "turn_hypotheses.hpp"
 
 namespace tumble {
 
@@ -98,6 +99,7 @@ Status CarriedSmoother::estimate(std::span<const ImuSample> samples, const Clipp
   carried::Problem problem(params_, clipped.rows, collected.period_s, collected.nodes, std::move(start));
   status = problem.solve(report);
   if (status.ok()) status = problem.covariances(report);
+  if (status.ok()) status = carried::ask_turns(problem, report);
   if (!status.ok()) return status;
 
   rates.resize(samples.size());

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "turn_hypotheses.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "tumble/common/so3.hpp"
+
+namespace tumble::carried {
+
+namespace {
+
+using Eigen::Vector3d;
+using Vector9 = Eigen::Matrix<double, 9, 1>;
+using Matrix9 = Eigen::Matrix<double, 9, 9>;
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kAngleShare = 1.0 / 3.0;  // of pi: a deviation of the angle that may hide a turn at six sigma
+constexpr double kAgainst = 3.0;           // deviations of the rail beyond it, on the mean of a stretch
+constexpr double kTurnCost = 100.0;        // of the jerk that makes a turn: ten deviations
+constexpr double kAround_s = 0.3;          // solved with a stretch, on either side
+constexpr double kLogOdds = 6.9;           // 1 to 1000: less likely turns are not counted
+constexpr int kTurnsMax = 2;               // more or less than the descent says
+constexpr int kRounds = 3;                 // of asking, solving the whole between them
+
+/// Nodes [first, last] in which `element` had no free reading and stood at its rail.
+struct Stretch {
+  std::size_t element = 0, first = 0, last = 0;
+};
+
+/// One number of turns: nodes from `from` on, and its cost.
+struct Hypothesis {
+  std::vector<Node> nodes;
+  double cost = 0.0;
+};
+
+/// What is left of a stretch when its turns have been asked for: the likely ones but the best, with their shares.
+struct Open {
+  std::size_t from = 0;
+  std::vector<std::pair<double, std::vector<Node>>> others;
+};
+
+/// Least cost of white jerk for a whole turn more within so many steps: a rate of 2 pi / T 30 u^2 (1 - u)^2.
+double turn_cost(const Problem& problem, std::size_t steps) {
+  const double span_s = static_cast<double>(steps) * problem.node_s(), jerk = problem.jerk_rad_s3_sqrts();
+  return 720.0 * std::pow(2.0 * kPi / jerk, 2.0) / std::pow(span_s, 5.0);
+}
+
+std::vector<Stretch> doubtful_stretches(const Problem& problem) {
+  std::vector<Stretch> out;
+  const std::size_t count = problem.nodes().size();
+  for (std::size_t j = 0; j < 3; ++j) {
+    const Eigen::RowVector3d m = problem.rows().row(static_cast<Eigen::Index>(j));
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!(problem.readings(i).gyro[j].clipped > 0.0)) continue;
+      Stretch stretch{j, i, i};
+      double angle_rad = 0.0, beyond_rad_s = 0.0, clipped = 0.0;
+      for (; i < count; ++i) {
+        const ElementSums& element = problem.readings(i).gyro[j];
+        if (element.n > 0.0 && !(element.clipped > 0.0)) break;
+        if (element.clipped > 0.0) {
+          stretch.last = i;
+          clipped += 1.0;
+          beyond_rad_s += element.sign * (m.dot(problem.gyro_rad_s(i)) - element.rail);
+        }
+        const Eigen::Matrix3d covariance = problem.covariance(i).block<3, 3>(kRate, kRate);
+        angle_rad += problem.node_s() * std::sqrt(std::max(0.0, m.dot(covariance * m.transpose())));
+      }
+      // one that begins or ends with the recording has nothing behind it that would tell whole turns apart
+      if (stretch.first == 0 || stretch.last + 1 >= count) continue;
+      const bool against_rail = beyond_rad_s < kAgainst * problem.rail_sigma_rad_s() * clipped &&
+                                turn_cost(problem, stretch.last + 2 - stretch.first) < kTurnCost;
+      if (angle_rad > kAngleShare * kPi || against_rail) out.push_back(stretch);
+    }
+  }
+  return out;
+}
+
+/// The nodes of a part turned `turns` more about `axis` between its nodes a and b: a smooth bump of the rate, the
+/// attitudes that follow from it, and what they miss at b spread evenly.
+std::vector<Node> turned_more(const Problem& part, const Vector3d& axis, double turns, std::size_t a, std::size_t b) {
+  std::vector<Node> nodes(part.nodes().begin(), part.nodes().end());
+  const double h = part.node_s(), span_s = static_cast<double>(b - a) * h, mean = 2.0 * kPi * turns / span_s;
+  const auto along = [&](std::size_t i) { return static_cast<double>(i - a) / static_cast<double>(b - a); };
+  for (std::size_t i = a; i <= b; ++i) {
+    const double phase = 2.0 * kPi * along(i);
+    nodes[i].w_WI_I_rad_s += mean * (1.0 - std::cos(phase)) * axis;
+    nodes[i].angular_acceleration_rad_s2 += mean * 2.0 * kPi / span_s * std::sin(phase) * axis;
+  }
+  for (std::size_t i = a; i < b; ++i) nodes[i + 1].q_WI = nodes[i].q_WI * so3::exp(turned(nodes[i], nodes[i + 1], h));
+  const Vector3d missed = so3::log(nodes[b].q_WI.conjugate() * part.nodes()[b].q_WI);
+  const Vector3d& g_W = part.gravity_W_m_s2();
+  for (std::size_t i = a; i <= b; ++i) {
+    nodes[i].q_WI = (nodes[i].q_WI * so3::exp(along(i) * missed)).normalized();
+    // the same specific force in the sensor
+    const Node& before = part.nodes()[i];
+    nodes[i].a_W_m_s2 = nodes[i].q_WI * (before.q_WI.conjugate() * (before.a_W_m_s2 - g_W)) + g_W;
+  }
+  return nodes;
+}
+
+double angle_between(std::span<const Node> from, std::span<const Node> to, const Eigen::RowVector3d& m, double h) {
+  double out = 0.0;
+  for (std::size_t i = 0; i < from.size(); ++i) out += h * m.dot(to[i].w_WI_I_rad_s - from[i].w_WI_I_rad_s);
+  return out;
+}
+
+/// The number of turns that the descent found and those about it that are possible; the best one first.
+std::vector<Hypothesis> hypotheses(const Problem& whole, const Stretch& stretch, const Part& part) {
+  const Eigen::RowVector3d m = whole.rows().row(static_cast<Eigen::Index>(stretch.element));
+  const Vector3d axis = whole.rows().inverse().col(static_cast<Eigen::Index>(stretch.element)).normalized();
+  const std::size_t a = stretch.first - 1 - part.first, b = stretch.last + 1 - part.first;
+  std::vector<Hypothesis> out;
+  const auto keep = [&](Problem& problem) {
+    Hypothesis found{{}, problem.settle()};
+    found.nodes.assign(problem.nodes().begin(), problem.nodes().end());
+    if (!std::isfinite(found.cost)) return false;
+    // the same turns as another's, come back to
+    for (const Hypothesis& other : out)
+      if (std::abs(angle_between(other.nodes, found.nodes, m, whole.node_s())) < kPi) return false;
+    const bool likely = out.empty() || found.cost < out.front().cost + 2.0 * kLogOdds;
+    if (!likely) return false;
+    out.push_back(std::move(found));
+    if (out.back().cost < out.front().cost) std::swap(out.back(), out.front());
+    return true;
+  };
+  Problem as_it_is(whole, part);
+  if (!keep(as_it_is)) return out;
+  for (const double sign : {1.0, -1.0}) {
+    for (int n = 1; n <= kTurnsMax; ++n) {
+      Problem other(whole, part);
+      other.place(0, turned_more(as_it_is, axis, sign * n, a, b));
+      if (!keep(other)) break;
+    }
+  }
+  // those that a better one, found later, leaves behind
+  std::erase_if(out, [&](const Hypothesis& each) { return each.cost > out.front().cost + 2.0 * kLogOdds; });
+  return out;
+}
+
+Open shares_of(std::vector<Hypothesis>& found, std::size_t from) {
+  Open out{from, {}};
+  double sum = 0.0;
+  for (const Hypothesis& each : found) sum += std::exp(-0.5 * (each.cost - found.front().cost));
+  for (std::size_t k = 1; k < found.size(); ++k) {
+    const double share = std::exp(-0.5 * (found[k].cost - found.front().cost)) / sum;
+    out.others.emplace_back(share, std::move(found[k].nodes));
+  }
+  return out;
+}
+
+Vector9 apart(const Node& from, const Node& to) {
+  Vector9 out;
+  out << so3::log(from.q_WI.conjugate() * to.q_WI), to.w_WI_I_rad_s - from.w_WI_I_rad_s,
+      to.angular_acceleration_rad_s2 - from.angular_acceleration_rad_s2;
+  return out;
+}
+
+std::vector<Part> with_surroundings(const Problem& problem, std::span<const Stretch> stretches) {
+  const auto around = static_cast<std::size_t>(std::llround(kAround_s / problem.node_s()));
+  std::vector<Part> out;
+  for (const Stretch& stretch : stretches) {
+    const std::size_t from = stretch.first > around ? stretch.first - 1 - around : 0;
+    out.push_back({from, std::min(stretch.last + 1 + around, problem.nodes().size() - 1)});
+  }
+  return out;
+}
+
+}  // namespace
+
+Status ask_turns(Problem& problem, CarriedSmoother::Report& report) {
+  const std::vector<Stretch> stretches = doubtful_stretches(problem);
+  report.turns_asked = static_cast<int>(stretches.size());
+  if (stretches.empty()) return {};
+  std::vector<Part> parts = with_surroundings(problem, stretches);
+  std::vector<Open> open;
+  // what the rest says of a part is linear: right where it stands, and so asked again once a turn was taken
+  for (int round = 0; round < kRounds; ++round) {
+    if (!problem.tell(parts)) return {};
+    open.clear();
+    std::vector<std::pair<std::size_t, std::vector<Node>>> taken;
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+      const Part& part = parts[k];
+      std::vector<Hypothesis> found = hypotheses(problem, stretches[k], part);
+      if (found.empty()) continue;
+      const std::span<const Node> before = problem.nodes().subspan(part.first, part.last - part.first + 1);
+      const Eigen::RowVector3d m = problem.rows().row(static_cast<Eigen::Index>(stretches[k].element));
+      const bool another = std::abs(angle_between(before, found.front().nodes, m, problem.node_s())) > kPi;
+      if (another) taken.emplace_back(part.first, found.front().nodes);
+      if (found.size() > 1) open.push_back(shares_of(found, part.first));
+    }
+    if (taken.empty()) break;
+    for (const auto& [from, nodes] : taken) problem.place(from, nodes);
+    report.turns_taken += static_cast<int>(taken.size());
+    if (const Status status = problem.solve(report); !status.ok()) return status;
+    if (const Status status = problem.covariances(report); !status.ok()) return status;
+  }
+  report.turns_open = static_cast<int>(open.size());
+  for (const Open& stretch : open) {
+    for (const auto& [share, nodes] : stretch.others) {
+      for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const Vector9 d = apart(problem.nodes()[stretch.from + i], nodes[i]);
+        problem.widen(stretch.from + i, share * d * d.transpose());
+      }
+    }
+  }
+  return {};
+}
+
+}  // namespace tumble::carried
