@@ -23,10 +23,6 @@ using testing::mutations;
 
 constexpr std::size_t kDraws = 12;
 
-std::string name_of(const Method& method) {
-  return std::string(to_string(method.info.kind)) + "/" + method.info.name;
-}
-
 /// The accepted run cut to its first draws.
 Gate first_draws(Gate gate) {
   gate.accepted.seeds.resize(kDraws);
