@@ -80,7 +80,7 @@ void judge(const scenarios::Method& method, const scenarios::SimulatedDraw& draw
   std::printf(
       "%-10s %6llu %-22s %-9s error %9.4f deviations %8.2f %-5s %-5s surprise %7.3g innovation %7.3g %7.3g rig %7.3g "
       "held %5.2f%s\n",
-      draw.scenario.c_str(), static_cast<unsigned long long>(draw.seed), harm.c_str(), outcome.status.c_str(), error,
+      draw.scenario.c_str(), static_cast<unsigned long long>(draw.seed), harm.c_str(), to_string(outcome.status), error,
       deviations, wrong ? "wrong" : "good", says ? "told" : "-", health("calibration_surprise"),
       health("innovation_median"), health("innovation_90"), health("rig_surprise"), health("held_share"),
       wrong && !says

@@ -21,18 +21,12 @@ namespace {
 using testing::Mutation;
 using testing::mutations;
 
-constexpr std::size_t kDraws = 12;
-
-std::string name_of(const Method& method) {
-  return std::string(to_string(method.info.kind)) + "/" + method.info.name;
-}
-
 /// The accepted run cut to its first draws.
-Gate first_draws(Gate gate) {
-  gate.accepted.seeds.resize(kDraws);
+Gate first_draws(Gate gate, std::size_t draws) {
+  gate.accepted.seeds.resize(draws);
   for (MethodRun& run : gate.accepted.methods) {
-    run.status.resize(kDraws);
-    for (auto& [metric, values] : run.values) values.resize(kDraws);
+    run.status.resize(draws);
+    for (auto& [metric, values] : run.values) values.resize(draws);
   }
   return gate;
 }
@@ -52,12 +46,12 @@ GateRun with(GateRun run, const std::vector<Outcome>& outcomes) {
 /// What each mutation made of the draws of a scenario; "" is the methods as they are.
 using Outcomes = std::map<std::string, std::vector<Outcome>>;
 
-void run_draw(const SimulatedDraw& draw, const sim::Surface& surface, const std::string& method_name, Outcomes& all) {
+void run_draw(const SimulatedDraw& draw, const sim::Surface* surface, const std::string& method_name, Outcomes& all) {
   const Method& method = *find_methods(method_name).at(0);
   Outcome run;
   const Estimate estimate = run_method(method, draw, run);
   Outcome as_it_is = run;
-  assess(method, draw, &surface, estimate, as_it_is);
+  assess(method, draw, surface, estimate, as_it_is);
   all[""].push_back(as_it_is);
   for (const Mutation& mutation : mutations()) {
     if (mutation.scenario != draw.scenario || mutation.method != method_name) continue;
@@ -70,18 +64,21 @@ void run_draw(const SimulatedDraw& draw, const sim::Surface& surface, const std:
       changed = run_method(method, given, outcome);
     }
     if (mutation.returned != nullptr) mutation.returned(draw.recording, changed);
-    assess(method, draw, &surface, changed, outcome);
+    assess(method, draw, surface, changed, outcome);
     all[mutation.name].push_back(outcome);
   }
 }
 
-Outcomes run_scenario(const DataRoot& data, const Gate& gate, const std::string& scenario,
-                      const std::vector<std::string>& methods) {
+/// Rates alone need no lidar, and are the same without.
+Outcomes run_scenario(const DataRoot& data, const Gate& gate, const std::string& scenario, const std::string& method) {
   Outcomes all;
+  const bool maps = method.starts_with("slam/");
   for (const std::uint64_t seed : gate.accepted.seeds) {
-    const SimulatedDraw draw = simulate_draw(data, load_scenario(data, scenario), seed, 1);
-    const sim::Surface surface(draw.situation, data.models());
-    for (const std::string& method : methods) run_draw(draw, surface, method, all);
+    const SimulatedDraw draw =
+        simulate_draw(data, load_scenario(data, scenario), seed, 1, maps ? Lidars::simulated : Lidars::left_out);
+    std::optional<sim::Surface> surface;
+    if (maps) surface.emplace(draw.situation, data.models());
+    run_draw(draw, surface ? &*surface : nullptr, method, all);
   }
   return all;
 }
@@ -97,13 +94,13 @@ std::string faults_of(const GateRun& run, const Gate& gate) {
   return faults;
 }
 
-void expect_refused(const std::string& scenario, const std::vector<std::string>& methods) {
+void expect_refused(const std::string& scenario, const std::string& method, std::size_t draws) {
   const DataRoot data{test::source_dir()};
-  const Gate gate = first_draws(load_gate(data, "gate"));
-  const Outcomes all = run_scenario(data, gate, scenario, methods);
+  const Gate gate = first_draws(load_gate(data, "gate"), draws);
+  const Outcomes all = run_scenario(data, gate, scenario, method);
   std::size_t refused = 0;
   for (const auto& [name, outcomes] : all) {
-    ASSERT_EQ(outcomes.size(), name.empty() ? kDraws * methods.size() : kDraws) << name;
+    ASSERT_EQ(outcomes.size(), draws) << name;
     const std::string faults = faults_of(with(gate.accepted, outcomes), gate);
     if (name.empty()) {
       EXPECT_EQ(faults, "") << "the methods as they are";
@@ -113,16 +110,22 @@ void expect_refused(const std::string& scenario, const std::vector<std::string>&
     std::printf("%s: %s\n", name.c_str(), faults.c_str());
     ++refused;
   }
-  EXPECT_EQ(refused, static_cast<std::size_t>(std::count_if(mutations().begin(), mutations().end(),
-                                                            [&](const auto& m) { return m.scenario == scenario; })));
+  EXPECT_EQ(refused, static_cast<std::size_t>(std::count_if(mutations().begin(), mutations().end(), [&](const auto& m) {
+              return m.scenario == scenario && m.method == method;
+            })));
 }
 
-TEST(GateMutations, OfRatesAndMapsAreRefused) {
-  expect_refused("hill", {"rate/tumble", "slam/tumble"});
+// on some draws nothing clips: of twelve, ten are too few for a test on both sides among so many
+TEST(GateMutations, OfRatesAreRefused) {
+  expect_refused("hill", "rate/tumble", 18);
+}
+
+TEST(GateMutations, OfMapsAreRefused) {
+  expect_refused("hill", "slam/tumble", 12);
 }
 
 TEST(GateMutations, OfTheRollingSphereAreRefused) {
-  expect_refused("bump", {"position/tumble"});
+  expect_refused("bump", "position/tumble", 12);
 }
 
 }  // namespace

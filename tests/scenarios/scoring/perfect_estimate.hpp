@@ -75,7 +75,7 @@ inline std::map<std::string, double> scores(Kind kind, const Estimate& estimate,
   return values;
 }
 
-inline std::string verdict_of(Kind kind, const Estimate& estimate, const sim::Recording& recording) {
+inline OutcomeStatus verdict_of(Kind kind, const Estimate& estimate, const sim::Recording& recording) {
   return verdict(kind, estimate, {&recording.sensors, &recording.truth, nullptr});
 }
 
