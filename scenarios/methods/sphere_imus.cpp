@@ -47,23 +47,32 @@ std::vector<ImuSample> readings_of(const sim::ImuRecord& record, Status& status)
   return samples;
 }
 
-/// Sets the flags of what a unit's readings are judged to be, and tells along what its elements sense. Where a range is
-/// stated, rails far below it are none: two flat tops of a slow motion are no plateau.
+/// Sets the flags of what a unit's readings are judged to be, and tells along what its elements sense. Equal readings
+/// alone are no rail: flat tops of a slow motion far below a stated range are not heard, nor what repeats where none is
+/// stated, since the unit may have frozen. Planes are, which know neither.
 void judge(const sim::ImuRecord& record, std::vector<ImuSample>& samples, ElementRows& gyro, ElementRows& accel) {
   ClippingFinder::Params params;
   params.walls = stated_rails(record);
   const ClippingFinder::Found found = ClippingFinder(params).find(samples);
-  const auto near_range = [](double reading, double range) { return std::abs(reading) >= kRailShareMin * range; };
+  const auto heard = [](double reading, double range, const std::optional<RailPlane>& plane) {
+    return range > 0.0 ? std::abs(reading) >= kRailShareMin * range : plane.has_value();
+  };
+  const RailPlanes of_gyro = found.rails.planes_in_use(), of_accel = found.rails.planes_in_use(Triad::accelerometer);
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    unsigned flags = samples[k].device_clip_flags;
+    ImuSample& sample = samples[k];
     const unsigned judged = clip_flags(found.clippings[k]);
+    unsigned out = sample.device_clip_flags;
     for (int axis = 0; axis < 3; ++axis) {
-      const unsigned of_rate = static_cast<unsigned>(kClipGyroX << axis) & judged,
-                     of_force = static_cast<unsigned>(kClipAccelX << axis) & judged;
-      if (near_range(samples[k].angular_velocity_rad_s[axis], record.stated_gyro_range_rad_s)) flags |= of_rate;
-      if (near_range(samples[k].specific_force_m_s2[axis], record.stated_accel_range_m_s2)) flags |= of_force;
+      const auto j = static_cast<std::size_t>(axis);
+      const double rate = sample.angular_velocity_rad_s[axis], force = sample.specific_force_m_s2[axis];
+      if (heard(rate, record.stated_gyro_range_rad_s, of_gyro.element[j])) {
+        out |= judged & static_cast<unsigned>(kClipGyroX << axis);
+      }
+      if (heard(force, record.stated_accel_range_m_s2, of_accel.element[j])) {
+        out |= judged & static_cast<unsigned>(kClipAccelX << axis);
+      }
     }
-    samples[k].device_clip_flags = static_cast<std::uint8_t>(flags);
+    sample.device_clip_flags = static_cast<std::uint8_t>(out);
   }
   gyro = found.rails.rows(Triad::gyro, kUnknownSlope);
   accel = found.rails.rows(Triad::accelerometer, kUnknownSlope);
