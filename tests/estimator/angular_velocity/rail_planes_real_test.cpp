@@ -93,6 +93,8 @@ TEST_P(NoRails, AreFoundInARealGyroThatDoesNotClip) {
   const std::vector<ImuSample> samples = testing::read_broad_trial(GetParam()).samples;
   ASSERT_GT(samples.size(), 10000u);
   EXPECT_FALSE(RailPlaneFinder({}).find(samples).any());
+  const RailPlaneFinder forces(RailPlaneFinder::Params::for_accelerometer());
+  EXPECT_FALSE(forces.find(samples, Triad::accelerometer).any());
 }
 
 INSTANTIATE_TEST_SUITE_P(Broad, NoRails, ::testing::ValuesIn(testing::broad_trials()));

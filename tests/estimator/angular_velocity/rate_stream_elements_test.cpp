@@ -160,7 +160,7 @@ TEST(RateStreamElements, SplittingAnywhereChangesNothing) {
     for (std::size_t k = 0; k < got.size(); ++k) ASSERT_EQ(got[k].w_WI_I_rad_s, want[k].w_WI_I_rad_s) << k;
   }
   RateStream::State other = whole;
-  other.rails.readings.back().x() += 1e-12;
+  other.rails.memory[0].readings.back().x() += 1e-12;
   EXPECT_FALSE(RateStream::equal(other, whole));
   other = whole;
   other.rails.known.upright = !other.rails.known.upright;
