@@ -77,13 +77,13 @@ double surprise_of(const RateModelParams& known, const RateModel& model, double 
 
 // The descent, with the rig held to what was known of it where it takes contact for flight of another rig.
 Status descend_held(const RateSmoother::Params& params, const RateModelParams& known, double period_s,
-                    std::span<const RateObservation> observations, RateFit& fit, RateReport& health) {
+                    std::span<const RateObservation> observations, bool struck, RateFit& fit, RateReport& health) {
   fit.model = RateModel(known, period_s);
   if (!solve(params, fit.model, observations, fit.solution, health)) {
     return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
   }
-  health.rig_held = false;
-  if (health.rig_surprise > params.rig_surprise_max) {
+  health.rig_held = health.rig_surprise > params.rig_surprise_max;
+  if (health.rig_held && struck) {
     health.rig_surprise = surprise_of(known, fit.model, period_s, observations, fit.solution);
     health.rig_held = health.rig_surprise > std::max(params.rig_surprise_max, kSurpriseOfDevice);
   }
@@ -114,6 +114,25 @@ void add_guess(const TriadDelay& guess, SensorErrorEvidence& evidence) {
   evidence.gradient[SensorErrors::kDelay] += information * (guess.delay_s - evidence.about.accel_delay_s);
 }
 
+// Whether a device is more likely not what its sheet says: a maker who leaves scale or sampling open leaves all open.
+// Naive Bayes over the two, each against what was held of it beforehand; `own_clocks`: the sampling is known to be
+// open.
+bool off_sheet(const SensorErrorFit& device, const SensorErrorSizes& sizes, bool own_clocks) {
+  const SensorErrorFit before = fit_sensor_errors({}, sizes);
+  const auto odds = [](double p) { return std::max(p, 1e-12) / std::max(1.0 - p, 1e-12); };
+  const double of_scale = odds(device.calibrated) / odds(before.calibrated);
+  return own_clocks || of_scale * odds(device.together) < 1.0;
+}
+
+// The sizes of a device of which nothing is stated.
+SensorErrorSizes unstated(SensorErrorSizes sizes) {
+  sizes.gyro = std::max(sizes.gyro, sizes.gyro_unknown);
+  sizes.accel = std::max(sizes.accel, sizes.accel_unknown);
+  sizes.felt_s_m = std::max(sizes.felt_s_m, sizes.felt_unknown_s_m);
+  sizes.delay_s = std::max(sizes.delay_s, sizes.delay_unknown_s);
+  return sizes;
+}
+
 // The fit where errors are assumed about those that were given.
 SensorErrorFit fit_about(const SensorErrors& given, SensorErrorEvidence evidence, const SensorErrorSizes& sizes) {
   evidence.about = SensorErrors::from(evidence.about.vector() - given.vector());
@@ -131,12 +150,18 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
   const double period_s = median_period_s(samples);
   const RigConstants rig = known.calibration ? known.calibration->constants : known.nominal;
   SensorErrors errors = known.errors;
+  // triads with clocks of their own are not sampled as alike as a sheet may have it
+  const bool own_clocks = health.gyro_update_s > 0.0 || health.accel_update_s > 0.0;
+  SensorErrorSizes sizes = known.error_sizes;
+  if (own_clocks) sizes.delay_s = std::max(sizes.delay_s, sizes.delay_unknown_s);
   TriadDelay guess;
   if (estimated && known.error_sizes.delay_unknown_s > known.error_sizes.delay_s) {
     guess = guess_triad_delay(samples, clippings, rig.lever_arm_m);
     if (std::abs(guess.delay_s - errors.accel_delay_s) > kGuessFar * guess.sigma_s)
       errors.accel_delay_s = guess.delay_s;
   }
+  // a body that is struck and flies is no hand's: its rig may be moved by what the device makes of the motion
+  const bool struck = guess.sigma_s > 0.0;
   // for where the descent from there has to hold the rig
   const double other_delay_s = errors.accel_delay_s == guess.delay_s ? known.errors.accel_delay_s : guess.delay_s;
   std::vector<double> age_s(samples.size());
@@ -149,7 +174,7 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
     RateModelParams corrected = known;
     corrected.errors = errors;
     corrected.errors.accel_delay_s -= shift * period_s;
-    if (Status status = descend_held(params, corrected, period_s, observations, fit, health); !status.ok()) {
+    if (Status status = descend_held(params, corrected, period_s, observations, struck, fit, health); !status.ok()) {
       return status;
     }
     if (health.rig_held && health.error_rounds == 1 && estimated && errors.accel_delay_s != other_delay_s) {
@@ -169,15 +194,27 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
     }
     fit.moved.evidence.about = errors;
     add_guess(guess, fit.moved.evidence);
-    found = fit_about(known.errors, fit.moved.evidence, known.error_sizes);
+    found = fit_about(known.errors, fit.moved.evidence, sizes);
     believed = plausible(found.known.errors, known.error_sizes);
     if (health.rig_held || !believed || health.error_rounds >= params.error_rounds_max) break;
     if (!far_apart(found.known.errors, errors)) break;
     errors = found.known.errors;
   }
+  health.calibrated = found.calibrated;
+  health.together = own_clocks ? 0.0 : found.together;
+  const bool open = estimated && known.error_sizes.delay_unknown_s > known.error_sizes.delay_s &&
+                    (off_sheet(found, known.error_sizes, own_clocks) || health.rig_surprise > params.rig_surprise_max);
+  if (open) {
+    sizes = unstated(sizes);
+    health.shared_delay_sigma_s = std::sqrt(0.5) * sizes.delay_s;
+    // in the covariance alone: what readings are corrected for stays what they speak for plainly
+    const KnownSensorErrors unknown = fit_about(known.errors, fit.moved.evidence, sizes).known;
+    const SensorErrors::Vector apart = unknown.errors.vector() - found.known.errors.vector();
+    found.known.covariance = unknown.covariance + apart * apart.transpose();
+  }
   if (health.rig_held || !believed || !estimated) {
     // what a run without flight tells of the device is nothing, beyond what devices have it is wrong: all is left open
-    found = fit_sensor_errors({}, estimated ? known.error_sizes : as_stated(known.error_sizes));
+    found = fit_sensor_errors({}, estimated ? sizes : as_stated(known.error_sizes));
     found.known.errors = errors;
   } else {
     const SensorErrors::Vector step = found.known.errors.vector() - errors.vector();
@@ -189,8 +226,6 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
     fit.solution.rig.add(fit.moved.of_rig * step);
   }
   health.sensor_errors = found.known;
-  health.calibrated = found.calibrated;
-  health.together = found.together;
   if (health.rig_held) return {};
   health.calibration.constants = fit.solution.rig;
   // the device's errors stay with the device: the next run meets them as this one did, and counts them anew

@@ -67,19 +67,7 @@ Eigen::Matrix3d considered(const arrow::ErrorMatrix& moved, const SensorErrors::
   return std::min(1.0, most / std::max(out.trace(), 1e-300)) * out;
 }
 
-// Variance of a time that both triads may share beyond what the sheet states: nobody hears of it but in what else the
-// device shows. A maker who leaves scale or sampling open leaves this open too: naive Bayes over the two, each against
-// what was held of it beforehand.
-double shared_delay_s2(const SensorErrorFit& device, const SensorErrorSizes& sizes) {
-  if (sizes.delay_unknown_s <= sizes.delay_s) return 0.0;
-  const SensorErrorFit before = fit_sensor_errors({}, sizes);
-  const auto odds = [](double p) { return std::max(p, 1e-12) / std::max(1.0 - p, 1e-12); };
-  const double told = odds(device.calibrated) / odds(before.calibrated) * odds(device.together);
-  // the difference of two such times is what the sizes are of
-  return told < 1.0 ? 0.5 * sizes.delay_unknown_s * sizes.delay_unknown_s : 0.0;
-}
-
-// What such a time makes of a rate.
+// What a time that both triads may share makes of a rate.
 Eigen::Matrix3d of_shared_delay(double variance_s2, const RateModelParams& params, const RateEstimate& estimate) {
   const Vector3d& alpha = estimate.knot.acceleration_rad_s2;
   const double struck = params.contact_gain_rad_m * estimate.contact_m_s2.norm();
@@ -177,8 +165,7 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
   const RateSolution& solution = fit.solution;
 
   const double gyro_late_s = std::max(0.0, -health.sensor_errors.errors.accel_delay_s);
-  const double shared_s2 =
-      shared_delay_s2({health.sensor_errors, health.calibrated, health.together}, known.error_sizes);
+  const double shared_s2 = health.shared_delay_sigma_s * health.shared_delay_sigma_s;
   std::vector<Eigen::Matrix3d> covariances(samples.size());
   solution.iteration.for_each_conditional([&](std::size_t k, const arrow::Conditional& conditional) {
     const Eigen::Matrix3d covariance =

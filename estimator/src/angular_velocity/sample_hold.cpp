@@ -2,6 +2,7 @@
 #include "tumble/angular_velocity/sample_hold.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -33,33 +34,53 @@ double agreement(const Clock& clock, std::span<const std::size_t> moving, const 
   return static_cast<double>(same) / static_cast<double>(moving.size());
 }
 
-// Of the clocks about `first` the middle one of those that explain most, which stand side by side.
+// Phases, side by side on the circle, with which a period explains most: the longest run of them.
+struct Phases {
+  double agreement = -1.0;
+  double first = 0.0;
+  int count = 0;
+};
+
+Phases best_phases(double period, std::span<const std::size_t> moving, const std::vector<bool>& repeats) {
+  // the phase at the middle of the motion stays as the period changes
+  const auto middle = static_cast<double>(moving[moving.size() / 2]);
+  std::array<double, kPhases> shares;
+  Phases out;
+  for (std::size_t p = 0; p < kPhases; ++p) {
+    shares[p] = agreement({period, middle + period * static_cast<double>(p) / kPhases}, moving, repeats);
+    out.agreement = std::max(out.agreement, shares[p]);
+  }
+  // twice round, so that a run may begin before the end of the circle
+  int run = 0;
+  for (int p = 0; p < 2 * kPhases; ++p) {
+    run = shares[static_cast<std::size_t>(p % kPhases)] == out.agreement ? std::min(run + 1, kPhases) : 0;
+    if (run <= out.count) continue;
+    out.count = run;
+    out.first = middle + period * (p - run + 1) / kPhases;
+  }
+  return out;
+}
+
+// Of the clocks about `first` the middle one of those that explain most: clocks that explain the same fill a figure in
+// period and phase, in whose middle the most phases stand side by side.
 Clock best_clock(const Clock& first, double reach, int periods, std::span<const std::size_t> moving,
                  const std::vector<bool>& repeats, double& found) {
-  Clock best = first;
-  found = -1.0;
+  Phases best;
+  int begin = 0, end = 0;
+  const auto period = [&](double i) { return first.period * (1.0 + reach * i / periods); };
   for (int i = -periods; i <= periods; ++i) {
-    Clock tried{first.period * (1.0 + reach * i / periods), 0.0};
-    // the phase at the middle of the motion stays as the period changes
-    const auto middle = static_cast<double>(moving[moving.size() / 2]);
-    double run_first = 0.0, run_best = -1.0;
-    int run = 0;
-    for (int p = 0; p < kPhases; ++p) {
-      tried.phase = middle + tried.period * p / kPhases;
-      const double share = agreement(tried, moving, repeats);
-      if (share > run_best) {
-        run_best = share;
-        run_first = tried.phase;
-        run = 1;
-      } else if (share == run_best && run > 0 && tried.phase < run_first + tried.period * (run + 0.5) / kPhases) {
-        ++run;
-      }
-    }
-    if (run_best <= found) continue;
-    found = run_best;
-    best = {tried.period, run_first + 0.5 * tried.period * (run - 1) / kPhases};
+    const Phases tried = best_phases(period(i), moving, repeats);
+    const bool same = tried.agreement == best.agreement && tried.count == best.count;
+    if (same) end = i;
+    if (same || tried.agreement < best.agreement) continue;
+    if (tried.agreement == best.agreement && tried.count < best.count) continue;
+    best = tried;
+    begin = end = i;
   }
-  return best;
+  const double middle = period(0.5 * (begin + end));
+  const Phases at = best_phases(middle, moving, repeats);
+  found = at.agreement;
+  return {middle, at.first + 0.5 * middle * (at.count - 1) / kPhases};
 }
 
 }  // namespace

@@ -36,6 +36,10 @@ constexpr double kGainMin = 0.4;
 // of the best is known, as a share of the slower triad's period.
 constexpr double kStruckRate_rad_s = 1.0, kCorrelationMin = 0.6, kStruckSigma = 0.15;
 constexpr std::size_t kStruckMin = 30;
+// A force that strikes, and how many of the stretches must have met it; one that a body has that nothing holds up, and
+// in what share of the stretches: what is struck and never flies is in a hand.
+constexpr double kStroke_m_s2 = 30.0, kFlying_m_s2 = 5.0, kFlyingShareMin = 0.1;
+constexpr std::size_t kStrokesMin = 10;
 constexpr int kStruckPerSample = 8;
 
 // A triad's own readings: those that are not said twice, at the instants of which they tell.
@@ -175,16 +179,19 @@ class ForceIntegral {
 
 double correlation(std::span<const Change> changes, const ForceIntegral& force, double delay_s) {
   double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, yy = 0.0, xy = 0.0;
-  std::size_t begin = 0, end = 0;
+  std::size_t begin = 0, end = 0, strokes = 0, flying = 0;
   for (const Change& change : changes) {
     const double span_s = change.end_s - change.begin_s;
     const double mean = (force.to(change.end_s + delay_s, end) - force.to(change.begin_s + delay_s, begin)) / span_s;
     const double root = std::sqrt(std::max(0.0, mean));
+    strokes += mean > kStroke_m_s2;
+    flying += mean < kFlying_m_s2;
     n += 1.0;
     x += change.root, y += root;
     xx += change.root * change.root, yy += root * root, xy += change.root * root;
   }
   const double spread = (n * xx - x * x) * (n * yy - y * y);
+  if (strokes < kStrokesMin || static_cast<double>(flying) < kFlyingShareMin * n) return 0.0;
   return spread > 0.0 ? (n * xy - x * y) / std::sqrt(spread) : 0.0;
 }
 

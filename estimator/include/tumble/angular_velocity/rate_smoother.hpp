@@ -33,7 +33,9 @@ struct RateReport {
   RailPlanes accel_planes;                    ///< of the accelerometer's, m/s^2
   /// What the device makes of the motion, as far as the run tells.
   KnownSensorErrors sensor_errors;
-  double calibrated = 1.0, together = 1.0;           ///< see SensorErrorFit
+  double calibrated = 1.0, together = 1.0;  ///< see SensorErrorFit
+  /// A delay that both triads may share, counted in the covariance: of a device that is not what its sheet says.
+  double shared_delay_sigma_s = 0.0;
   double gyro_update_s = 0.0, accel_update_s = 0.0;  ///< of readings that repeat (find_held); 0: none does
   int error_rounds = 0;                              ///< descents with corrected readings
   bool rails_upright = false;                        ///< the device clips what it delivers, nothing else is off

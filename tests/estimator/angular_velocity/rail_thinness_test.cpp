@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "oracles/gaussian.hpp"
+#include "tumble/angular_velocity/rail_planes.hpp"
+#include "tumble/angular_velocity/sample_hold.hpp"
+
+namespace tumble {
+namespace {
+
+constexpr double kNoise = 1e-3, kLevel = 8.7;
+
+// A spin that swells to 8.7 rad/s on y, stays there for 40 samples and ebbs away, while the other axes turn gently:
+// `scatter` of the readings at the top.
+std::vector<ImuSample> one_stretch(double scatter) {
+  oracles::Gaussian noise(5);
+  std::vector<ImuSample> out(200);
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    const double t = 0.01 * static_cast<double>(k), beyond = std::abs(t - 1.0) - 0.2;
+    out[k].time_ns = static_cast<TimeNs>(10'000'000 * k);
+    const bool top = beyond <= 0.0;
+    const double y = top ? kLevel + scatter * noise() : kLevel - 9.0 * beyond + kNoise * noise();
+    out[k].angular_velocity_rad_s = {2.0 * std::sin(3.0 * t) + kNoise * noise(), y,
+                                     1.5 * std::cos(2.0 * t) + kNoise * noise()};
+  }
+  return out;
+}
+
+// Noise belongs to a rate: a single stretch that has none is a rail, the same with noise may be a spin.
+TEST(RailThinness, OneStretchIsEnoughWhereItHasNoNoise) {
+  const RailPlaneFinder finder{{}};
+  const RailPlanes rail = finder.find(one_stretch(1e-4)), spin = finder.find(one_stretch(kNoise));
+  ASSERT_TRUE(rail.element[1].has_value());
+  EXPECT_NEAR(rail.element[1]->distance_rad_s, kLevel, 0.03);
+  EXPECT_FALSE(rail.element[0].has_value() || rail.element[2].has_value());
+  EXPECT_GT(rail.element[1]->log_odds, 10.0);
+  const double of_spin = spin.element[1] ? spin.element[1]->log_odds : 0.0;
+  EXPECT_LT(of_spin, rail.element[1]->log_odds - 10.0);
+}
+
+// A reading said twice has the neighbours of the first time.
+TEST(OtherReadings, StepOverRepeats) {
+  std::vector<ImuSample> samples(5);
+  const double rates[] = {1.0, 2.0, 2.0, 3.0, 3.0};
+  for (std::size_t k = 0; k < samples.size(); ++k) samples[k].angular_velocity_rad_s.x() = rates[k];
+  const std::vector<Neighbours> beside = other_readings(samples);
+  ASSERT_EQ(beside.size(), 5u);
+  EXPECT_EQ(beside[0].before, nullptr);
+  EXPECT_EQ(beside[0].after, &samples[1]);
+  for (const std::size_t k : {1u, 2u}) {
+    EXPECT_EQ(beside[k].before, &samples[0]);
+    EXPECT_EQ(beside[k].after, &samples[3]);
+  }
+  for (const std::size_t k : {3u, 4u}) {
+    EXPECT_EQ(beside[k].before, &samples[2]);
+    EXPECT_EQ(beside[k].after, nullptr);
+  }
+}
+
+}  // namespace
+}  // namespace tumble
