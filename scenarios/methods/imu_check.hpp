@@ -7,10 +7,11 @@
 #include "scenarios/methods/sphere_imus.hpp"
 #include "tumble/common/imu.hpp"
 
-/// Whether readings can be what they claim to be: units, axes, signs, by physics alone.
+/// Whether readings can be what they claim to be: units, axes, signs, alive, by physics alone.
 namespace tumble::scenarios {
 
-/// Puts what was found into the estimate's health (`imu_force_share`, `imu_turning_unexplained`, `imu_implausible`) and
+/// Puts what was found into the estimate's health (`imu_force_share`, `imu_turning_unexplained`, `imu_frozen_s`,
+/// `imu_implausible`) and
 /// returns the verdict: `out_of_range` with what was seen, where the readings contradict each other or gravity. O(N).
 Status check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate);
 

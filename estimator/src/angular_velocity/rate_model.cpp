@@ -317,9 +317,10 @@ Eigen::Matrix3d RateModel::euler_information(const RateEstimate& estimate) const
 void RateModel::add_step(const RateEstimate& from, const RateEstimate& to, double dt_s, arrow::Block& block,
                          arrow::Block& next) const {
   const double h = time_scale_s_, ratio = dt_s / h;
-  // a contact may change the angular acceleration by gain * force within one step
+  // a contact may change the angular acceleration by gain * force within one step of model_error_s, and in shorter ones
+  // by what adds up to that
   const double change = params_.contact_gain_rad_m * std::max(from.contact_m_s2.norm(), to.contact_m_s2.norm());
-  const double psd = params_.jerk_psd_flight + change * change / dt_s;
+  const double psd = params_.jerk_psd_flight + share_ * change * change / dt_s;
   // inverse of Q = psd [dt^3/3, dt^2 h/2; dt^2 h/2, dt h^2] of the scaled state
   const double a = 12.0 / (psd * dt_s * dt_s * dt_s), b = -6.0 / (psd * dt_s * dt_s * h),
                c = 4.0 / (psd * dt_s * h * h);

@@ -53,5 +53,22 @@ TEST(Verdicts, SlamFindsAWrongCalibrationAndSaysWhenSensorsContradictEachOther) 
   }
 }
 
+// A scale that all gyros share is in the way too, where nothing contradicts it: more than a metre off, and told by the
+// forces of units at different places.
+TEST(Verdicts, PositionTellsGyrosOfAnotherScale) {
+  const DataRoot data{test::source_dir()};
+  const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "slip"), 16202, 1, Lidars::left_out);
+  const auto tells = [&](const std::string& wrong) {
+    SimulatedDraw given = draw;
+    testing::wrong_inputs().at(wrong)(given.recording.sensors);
+    Outcome outcome;
+    const Estimate estimate = run_method(*find_methods("position/tumble").at(0), given, outcome);
+    return outcome.status != "ok" || estimate.health.contains("imu_implausible");
+  };
+  EXPECT_FALSE(tells("none"));
+  EXPECT_TRUE(tells("gyro_scale_5_percent"));
+  EXPECT_TRUE(tells("all_gyros_frozen"));
+}
+
 }  // namespace
 }  // namespace tumble::scenarios
