@@ -107,7 +107,8 @@ void RateStream::marginalise_oldest(State& state) const {
   arrow::Corner corner;
   add_prior(state, model_, oldest.estimate.knot, block, corner);
   // what leaves can never be weighed again: it must be flight of the rig as it is known now, not of one as it might be
-  const double jump = model_.jump(oldest.estimate.knot, next.estimate.knot, seconds_between(oldest, next));
+  const double after_it = model_.jump(oldest.estimate.knot, next.estimate.knot, seconds_between(oldest, next));
+  const double jump = std::min(jump_before(state), after_it);
   model_.weigh(oldest.observation, state.rig, RigConstants::Matrix::Zero(), 1.0, jump, oldest.estimate);
   // 20 constants explain any short contact as a flight: what they say is believed after some more of it
   std::size_t run = state.flight_run;
@@ -128,6 +129,8 @@ void RateStream::marginalise_oldest(State& state) const {
     model_.add_rig_prior(state.rig, state.prior_corner);
     ++state.failures;
   }
+  state.left = oldest.estimate.knot;
+  state.left_ns = oldest.observation.sample.time_ns;
   state.prior_knot = next.estimate.knot;
   state.prior_rig = state.rig;
   state.window.erase(state.window.begin());
@@ -143,6 +146,13 @@ void RateStream::marginalise_oldest(State& state) const {
   }
 }
 
+// From the sample that left last to the oldest of the window.
+double RateStream::jump_before(const State& state) const {
+  if (!state.left) return std::numeric_limits<double>::max();
+  const Knot& oldest = state.window.front();
+  return model_.jump(*state.left, oldest.estimate.knot, seconds(oldest.observation.sample.time_ns - state.left_ns));
+}
+
 void RateStream::append(const ImuSample& sample, std::span<const CompanionReading> companions, State& state) const {
   const bool changed = rails_.observe(sample, state.rails);
   Knot knot;
@@ -150,6 +160,8 @@ void RateStream::append(const ImuSample& sample, std::span<const CompanionReadin
   knot.observation = {sample, knot.by_walls, rests_.observe(sample, state.rests)};
   std::copy(companions.begin(), companions.end(), knot.observation.companions.begin());
   knot.estimate.knot.rate_rad_s = sample.angular_velocity_rad_s;
+  // until a step of the window says more
+  knot.covariance_rad2_s2 = std::pow(params_.model.rate_max_rad_s, 2) * Eigen::Matrix3d::Identity();
   state.window.push_back(knot);
   ++state.samples;
   if (changed) classify_again(state);
@@ -247,7 +259,7 @@ void RateStream::guess(Knot& knot, const Knot& previous, const State& state) con
 
 void RateStream::weigh(State& state) const {
   constexpr double kNone = std::numeric_limits<double>::max();
-  double before = kNone;
+  double before = jump_before(state);
   for (std::size_t k = 0; k < state.window.size(); ++k) {
     Knot& knot = state.window[k];
     double after = kNone;
@@ -353,9 +365,11 @@ bool RateStream::equal(const State& a, const State& b) {
     return p.time_ns == q.time_ns && p.angular_velocity_rad_s == q.angular_velocity_rad_s &&
            p.specific_force_m_s2 == q.specific_force_m_s2 && p.device_clip_flags == q.device_clip_flags &&
            x.observation.clipping == y.observation.clipping && x.by_walls == y.by_walls &&
-           x.observation.at_rest == y.observation.at_rest && e.knot == f.knot && e.flight_weight == f.flight_weight &&
-           e.contact_m_s2 == f.contact_m_s2 && e.bound_precision == f.bound_precision &&
-           e.bound_shift == f.bound_shift && e.soft_bounds == f.soft_bounds &&
+           x.observation.at_rest == y.observation.at_rest && x.observation.partial == y.observation.partial &&
+           x.observation.lost_rad_s == y.observation.lost_rad_s &&
+           x.observation.lost_sigma_rad_s == y.observation.lost_sigma_rad_s && e.knot == f.knot &&
+           e.flight_weight == f.flight_weight && e.contact_m_s2 == f.contact_m_s2 &&
+           e.bound_precision == f.bound_precision && e.bound_shift == f.bound_shift && e.soft_bounds == f.soft_bounds &&
            x.covariance_rad2_s2 == y.covariance_rad2_s2 && x.age == y.age &&
            std::equal(x.observation.companions.begin(), x.observation.companions.end(),
                       y.observation.companions.begin(),
@@ -366,9 +380,9 @@ bool RateStream::equal(const State& a, const State& b) {
          a.rig_covariance == b.rig_covariance && a.prior.diagonal == b.prior.diagonal &&
          a.prior.border == b.prior.border && a.prior.gradient == b.prior.gradient &&
          a.prior_corner.matrix == b.prior_corner.matrix && a.prior_corner.gradient == b.prior_corner.gradient &&
-         a.prior_knot == b.prior_knot && a.prior_rig == b.prior_rig && a.samples == b.samples &&
-         a.rig_resets == b.rig_resets && a.flight_run == b.flight_run && a.learnt_from == b.learnt_from &&
-         a.failures == b.failures;
+         a.left == b.left && a.left_ns == b.left_ns && a.prior_knot == b.prior_knot && a.prior_rig == b.prior_rig &&
+         a.samples == b.samples && a.rig_resets == b.rig_resets && a.flight_run == b.flight_run &&
+         a.learnt_from == b.learnt_from && a.failures == b.failures;
 }
 
 }  // namespace tumble

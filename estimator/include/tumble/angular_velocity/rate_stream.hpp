@@ -83,6 +83,8 @@ class RateStream {
     // what is known of the oldest sample and of the rig from all that left the window, about a point
     arrow::Block prior;
     arrow::Corner prior_corner;
+    std::optional<RateKnot> left;  ///< the sample that left last, and when it was read
+    TimeNs left_ns = 0;
     RateKnot prior_knot;
     RigConstants prior_rig;
     std::size_t samples = 0;
@@ -123,6 +125,7 @@ class RateStream {
 
  private:
   void marginalise_oldest(State& state) const;
+  double jump_before(const State& state) const;
   void append(const ImuSample& sample, std::span<const CompanionReading> companions, State& state) const;
   void classify_again(State& state) const;
   void judge(std::size_t first, State& state) const;
