@@ -7,6 +7,7 @@
 #include "scenarios/methods/rate_tumble.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
+#include "tumble/attitude/regime_stream.hpp"
 
 namespace tumble::scenarios {
 
@@ -74,24 +75,41 @@ Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& par
   std::vector<std::vector<CompanionReading>> companions;
   estimate.status = companion_readings(sensors, samples, params.model, companions);
   if (!estimate.status.ok()) return estimate;
-  const RateStream stream(params);
-  RateStream::State state = stream.start();
+  RegimeStream::Params regimes;
+  regimes.rate = params;
+  regimes.evidence.gravity_m_s2 = regimes.carried.body.gravity_m_s2 = sensors.gravity_m_s2;
+  regimes.carried.body.gap_max_s = params.gap_max_s;
+  // further IMUs tell the rate whoever holds the body; the other smoother does not know them
+  if (!companions.empty()) regimes.carried_min = 1.0;
+  const RegimeStream joined(regimes);
+  const RateStream& stream = joined.rate();
+  RegimeStream::State all = joined.start();
   estimate.rates.reserve(samples.size());
   std::optional<RateState> out;
   std::vector<CompanionReading> beside(companions.size());
   for (std::size_t k = 0; k < samples.size(); ++k) {
     for (std::size_t i = 0; i < beside.size(); ++i) beside[i] = companions[i][k];
-    estimate.status = stream.push(samples[k], beside, state, out);
+    estimate.status = joined.push(samples[k], beside, all, out);
     if (!estimate.status.ok()) break;
     if (out) estimate.rates.push_back(*out);
   }
-  stream.flush(state, estimate.rates);
+  joined.flush(all, estimate.rates);
+  const RateStream::State& state = all.rate;
   // one whose constants were dropped may not have learnt anything since
   const RigConstants::Matrix before = stream.start().rig_covariance;
   const bool held = !(state.rig_covariance.topLeftCorner<3, 3>().trace() < before.topLeftCorner<3, 3>().trace());
   estimate.health["rig_held"] = held ? 1.0 : 0.0;
   estimate.health["rig_resets"] = static_cast<double>(state.rig_resets);
   estimate.health["steps_skipped"] = static_cast<double>(state.failures);
+  if (all.given > 0) {
+    const double each = 1.0 / static_cast<double>(all.given);
+    estimate.health["regime_flight_share"] = each * all.sum.flight;
+    estimate.health["regime_contact_share"] = each * all.sum.contact;
+    estimate.health["regime_carried_share"] = each * all.sum.carried;
+  }
+  estimate.health["regime_carried_joined"] = static_cast<double>(all.joined);
+  estimate.health["regime_carried_starts"] = static_cast<double>(all.starts);
+  estimate.health["carried_steps_skipped"] = static_cast<double>(all.carried.failures);
   if (estimate.status.ok() && !held && found != nullptr) *found = learnt_by(stream, params, state);
   count_sources(estimate.rates, estimate.health);
   return estimate;

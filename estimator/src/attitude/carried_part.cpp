@@ -15,6 +15,12 @@ namespace {
 constexpr double kSettled = 0.2;  // change of the cost, which are odds of 1.1
 constexpr int kSettleMax = 30;    // iterations
 
+Message message(const Node& about, const System::Block& block) {
+  return {about, block.diagonal, block.gradient};
+}
+
+}  // namespace
+
 System::StateVector moved(const Node& from, const Node& to) {
   System::StateVector out;
   out << so3::log(from.q_WI.conjugate() * to.q_WI), to.w_WI_I_rad_s - from.w_WI_I_rad_s,
@@ -22,12 +28,6 @@ System::StateVector moved(const Node& from, const Node& to) {
       to.v_W_m_s - from.v_W_m_s, to.p_W_m - from.p_W_m;
   return out;
 }
-
-Message message(const Node& about, const System::Block& block) {
-  return {about, block.diagonal, block.gradient};
-}
-
-}  // namespace
 
 double Message::add(const Node& node, System::Block& block) const {
   const System::StateVector x = moved(about, node), pull = information * x;

@@ -18,7 +18,9 @@ constexpr int kFollowLast = 8;       // and after which it stays, so that the it
 constexpr double kSurpriseS = 0.25;  // over which the hand's mean acceleration is compared
 constexpr Trouble kLost = Trouble::diverged;
 
-Motion::Params motion_params(const CarriedSmoother::Params& p, double jerk = 1.0) {
+}  // namespace
+
+Motion::Params motion_params(const CarriedSmoother::Params& p, double jerk) {
   Motion::Params out;
   out.step_s = p.node_s;
   out.jerk_rad_s3_sqrts = jerk * p.jerk_rad_s3_sqrts;
@@ -43,8 +45,6 @@ ReadingNoise reading_noise(const CarriedSmoother::Params& p, double period_s) {
   return out;
 }
 
-}  // namespace
-
 Problem::Problem(const CarriedSmoother::Params& params, const Eigen::Matrix3d& rows, double period_s,
                  std::span<const NodeReadings> readings, std::vector<Node> nodes)
     : params_(params),
@@ -59,13 +59,32 @@ Problem::Problem(const CarriedSmoother::Params& params, const Eigen::Matrix3d& r
       hand_power_(nodes_.size() + 1, 0.0),
       blocks_(nodes_.size()) {}
 
-double Problem::add_node(std::size_t i, System::Block& block, System::Corner& corner) const {
-  const Node& node = nodes_[i];
-  double cost = add_gyro(readings_[i], rows_, noise_, node, constants_, block, corner);
-  cost += add_force(readings_[i], g_W_m_s2_, noise_, node, constants_, block, corner);
-  cost += motion_.add_bounds(node, block);
-  if (readings_[i].rest) cost += add_rest(noise_, node, block);
+double add_node(const NodeReadings& readings, const Eigen::Matrix3d& rows, const ReadingNoise& noise,
+                const Vector3d& g_W_m_s2, const Motion& motion, const Node& node, const Constants& constants,
+                System::Block& block, System::Corner& corner) {
+  double cost = add_gyro(readings, rows, noise, node, constants, block, corner);
+  cost += add_force(readings, g_W_m_s2, noise, node, constants, block, corner);
+  cost += motion.add_bounds(node, block);
+  if (readings.rest) cost += add_rest(noise, node, block);
   return cost;
+}
+
+double add_constants_prior(const CarriedSmoother::Params& params, const Constants& constants, System::Corner& corner) {
+  double cost = 0.0;
+  const auto prior = [&](const Vector3d& value, double sigma, int at) {
+    const double information = 1.0 / (sigma * sigma);
+    corner.matrix.diagonal().segment<3>(at).array() += information;
+    corner.gradient.segment<3>(at) -= information * value;
+    cost += information * value.squaredNorm();
+  };
+  prior(constants.gyro_bias_rad_s, params.gyro_bias_sigma_rad_s, kGyroBias);
+  prior(constants.accel_bias_m_s2, params.accel_bias_sigma_m_s2, kAccelBias);
+  prior(constants.lever_arm_m, params.lever_arm_sigma_m, kLever);
+  return cost;
+}
+
+double Problem::add_node(std::size_t i, System::Block& block, System::Corner& corner) const {
+  return carried::add_node(readings_[i], rows_, noise_, g_W_m_s2_, nominal_, nodes_[i], constants_, block, corner);
 }
 
 double Problem::linearise() {
@@ -84,15 +103,7 @@ double Problem::linearise() {
     for (System::Block& block : blocks_) block.border.setZero();
     return cost;
   }
-  const auto prior = [&](const Vector3d& value, double sigma, int at) {
-    const double information = 1.0 / (sigma * sigma);
-    corner_.matrix.diagonal().segment<3>(at).array() += information;
-    corner_.gradient.segment<3>(at) -= information * value;
-    cost += information * value.squaredNorm();
-  };
-  prior(constants_.gyro_bias_rad_s, params_.gyro_bias_sigma_rad_s, kGyroBias);
-  prior(constants_.accel_bias_m_s2, params_.accel_bias_sigma_m_s2, kAccelBias);
-  prior(constants_.lever_arm_m, params_.lever_arm_sigma_m, kLever);
+  cost += add_constants_prior(params_, constants_, corner_);
   return cost;
 }
 

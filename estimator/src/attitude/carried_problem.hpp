@@ -28,6 +28,22 @@ std::vector<Eigen::Vector3d> filled_rates(std::span<const ImuSample> samples, co
 
 inline constexpr double kFillMost = 2.5;  ///< rails: the fill is a start, no more
 
+/// Adds one sample's reading, `t` seconds from the node.
+void add_reading(const ImuSample& sample, const Eigen::Matrix3d& rows, const ClipSigns& signs, double t,
+                 NodeReadings& node);
+
+/// What the factors of the motion and of the readings are weighed with; `jerk`: its root density counts so many times.
+Motion::Params motion_params(const CarriedSmoother::Params& params, double jerk = 1.0);
+ReadingNoise reading_noise(const CarriedSmoother::Params& params, double period_s);
+/// Gyro, force, bounds and rest of one node.
+double add_node(const NodeReadings& readings, const Eigen::Matrix3d& rows, const ReadingNoise& noise,
+                const Eigen::Vector3d& g_W_m_s2, const Motion& motion, const Node& node, const Constants& constants,
+                System::Block& block, System::Corner& corner);
+/// Priors of the constants about zero.
+double add_constants_prior(const CarriedSmoother::Params& params, const Constants& constants, System::Corner& corner);
+/// The way from one node to another, as Node::move takes it.
+System::StateVector moved(const Node& from, const Node& to);
+
 /// Attitude and rates of the nodes by a filter (VQF) on the filled rates; the hand's acceleration is what is left.
 Status start_nodes(const CarriedSmoother::Params& params, std::span<const ImuSample> samples,
                    const ClippedElements& clipped, const Collected& collected, std::vector<Node>& nodes);

@@ -45,19 +45,6 @@ void add_gyro_reading(double z, double t, int sign, ElementSums& e) {
   e.zt += z * t;
 }
 
-void add_reading(const ImuSample& sample, const Eigen::Matrix3d& rows, const ClipSigns& signs, double t,
-                 NodeReadings& node) {
-  const Vector3d z = rows * sample.angular_velocity_rad_s;
-  for (int j = 0; j < 3; ++j) {
-    const std::size_t i = static_cast<std::size_t>(j);
-    add_gyro_reading(z[j], t, signs.gyro[i], node.gyro[i]);
-    if (signs.accel[i] != 0) node.force_bound[j] = signs.accel[i];
-  }
-  node.force_n += 1.0;
-  node.force_m_s2 += (sample.specific_force_m_s2 - node.force_m_s2) / node.force_n;
-  node.force_t_s += (t - node.force_t_s) / node.force_n;
-}
-
 /// The clipped stretch [begin, end) of one element, whose readings are `raw`.
 void fill_stretch(std::span<const ImuSample> samples, const std::vector<double>& raw, std::size_t begin,
                   std::size_t end, int sign, std::vector<double>& filled) {
@@ -76,6 +63,19 @@ void fill_stretch(std::span<const ImuSample> samples, const std::vector<double>&
 }
 
 }  // namespace
+
+void add_reading(const ImuSample& sample, const Eigen::Matrix3d& rows, const ClipSigns& signs, double t,
+                 NodeReadings& node) {
+  const Vector3d z = rows * sample.angular_velocity_rad_s;
+  for (int j = 0; j < 3; ++j) {
+    const std::size_t i = static_cast<std::size_t>(j);
+    add_gyro_reading(z[j], t, signs.gyro[i], node.gyro[i]);
+    if (signs.accel[i] != 0) node.force_bound[j] = signs.accel[i];
+  }
+  node.force_n += 1.0;
+  node.force_m_s2 += (sample.specific_force_m_s2 - node.force_m_s2) / node.force_n;
+  node.force_t_s += (t - node.force_t_s) / node.force_n;
+}
 
 Collected collect(const CarriedSmoother::Params& params, std::span<const ImuSample> samples,
                   const ClippedElements& clipped) {

@@ -88,6 +88,38 @@ RegimeEvidence::RegimeEvidence(const Params& params) : params_(params) {
   require_within("throws_hz", params.throws_hz, 1e-9, 10.0);
 }
 
+Vector3d RegimeEvidence::likelihood(double dt_s, const ImuSample& sample, const RateState& rate, const Vector3d& alpha,
+                                    const Vector3d& lever_arm_m, double lever_arm_variance_m2) const {
+  const Vector3d& w = rate.w_WI_I_rad_s;
+  const double arm_m = lever_arm_m.norm();
+  const Vector3d turning = alpha.cross(lever_arm_m) + w.cross(w.cross(lever_arm_m));
+  const double turn = w.squaredNorm() + alpha.norm(), rate_variance = rate.covariance_rad2_s2.trace();
+  const double flight_variance = squared(params_.flight_m_s2) + squared(params_.flight_share) * turning.squaredNorm() +
+                                 turn * turn * lever_arm_variance_m2 +
+                                 4.0 * w.squaredNorm() * arm_m * arm_m * rate_variance;
+  const double hand_variance = squared(params_.hand_m_s2);
+  const double grip_variance = squared(params_.grip_m * w.squaredNorm());
+  const Vector3d& f = sample.specific_force_m_s2;
+  const Vector3d left = f - turning;
+  Vector3d logs(
+      log_gaussian(left.squaredNorm(), flight_variance),
+      log_contact(left.norm(), f.norm(), params_.contact_max_m_s2, params_.gravity_m_s2, hand_variance + grip_variance),
+      log_carried(f.norm(), params_.gravity_m_s2, hand_variance, grip_variance));
+  if (w.norm() < params_.rest_rate_rad_s) logs.setZero();
+  logs *= std::min(1.0, dt_s / params_.memory_s);
+  return (logs.array() - logs.maxCoeff()).exp().cwiseMax(1e-300);
+}
+
+RegimeShares RegimeEvidence::next(const RegimeShares& before, double dt_s, const ImuSample& sample,
+                                  const RateState& rate, const Vector3d& alpha, const Vector3d& lever_arm_m,
+                                  const Matrix3d& lever_arm_covariance_m2) const {
+  const Vector3d predicted = changes(params_, dt_s) * Vector3d(before.flight, before.contact, before.carried);
+  Vector3d after =
+      predicted.cwiseProduct(likelihood(dt_s, sample, rate, alpha, lever_arm_m, lever_arm_covariance_m2.trace()));
+  after /= after.sum();
+  return {after[0], after[1], after[2]};
+}
+
 Status RegimeEvidence::find(std::span<const ImuSample> samples, std::span<const RateState> rates,
                             const Vector3d& lever_arm_m, const Matrix3d& lever_arm_covariance_m2,
                             std::vector<RegimeShares>& out) const {
@@ -97,28 +129,12 @@ Status RegimeEvidence::find(std::span<const ImuSample> samples, std::span<const 
   if (rates.size() != count)
     return {Trouble::out_of_range, "rates", static_cast<double>(rates.size()), static_cast<double>(count)};
 
-  const double arm_m = lever_arm_m.norm(), arm_variance = lever_arm_covariance_m2.trace();
+  const double arm_variance = lever_arm_covariance_m2.trace();
   std::vector<Vector3d> likelihood(count), forward(count);
   for (std::size_t k = 0; k < count; ++k) {
-    const Vector3d& w = rates[k].w_WI_I_rad_s;
-    const Vector3d alpha = angular_acceleration(rates, k);
-    const Vector3d turning = alpha.cross(lever_arm_m) + w.cross(w.cross(lever_arm_m));
-    const double turn = w.squaredNorm() + alpha.norm(), rate_variance = rates[k].covariance_rad2_s2.trace();
-    const double flight_variance = squared(params_.flight_m_s2) +
-                                   squared(params_.flight_share) * turning.squaredNorm() + turn * turn * arm_variance +
-                                   4.0 * w.squaredNorm() * arm_m * arm_m * rate_variance;
-    const double hand_variance = squared(params_.hand_m_s2);
-    const double grip_variance = squared(params_.grip_m * w.squaredNorm());
-    const Vector3d& f = samples[k].specific_force_m_s2;
-    const Vector3d left = f - turning;
-    Vector3d logs(log_gaussian(left.squaredNorm(), flight_variance),
-                  log_contact(left.norm(), f.norm(), params_.contact_max_m_s2, params_.gravity_m_s2,
-                              hand_variance + grip_variance),
-                  log_carried(f.norm(), params_.gravity_m_s2, hand_variance, grip_variance));
-    if (w.norm() < params_.rest_rate_rad_s) logs.setZero();
     const double dt_s = k == 0 ? params_.memory_s : seconds(samples[k].time_ns - samples[k - 1].time_ns);
-    logs *= std::min(1.0, dt_s / params_.memory_s);
-    likelihood[k] = (logs.array() - logs.maxCoeff()).exp().cwiseMax(1e-300);
+    likelihood[k] =
+        this->likelihood(dt_s, samples[k], rates[k], angular_acceleration(rates, k), lever_arm_m, arm_variance);
     const Vector3d before = k == 0 ? Vector3d::Constant(1.0 / 3.0) : Vector3d(changes(params_, dt_s) * forward[k - 1]);
     forward[k] = before.cwiseProduct(likelihood[k]);
     forward[k] /= forward[k].sum();

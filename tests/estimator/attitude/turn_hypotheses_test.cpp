@@ -112,8 +112,9 @@ TEST(TurnHypotheses, WhatNothingTellsIsCountedInTheCovariance) {
   EXPECT_NEAR(stated, spread, 0.15 * spread);
 }
 
-/// A spin of which the first descent, begun at the rail, loses a turn and is held there by the bound: gravity behind the
-/// stretch tells the angle but for whole turns, and of these the one with the least jerk is taken. More stay possible.
+/// A spin of which the first descent, begun at the rail, loses a turn and is held there by the bound: gravity behind
+/// the stretch tells the angle but for whole turns, and of these the one with the least jerk is taken. More stay
+/// possible.
 TEST(TurnHypotheses, WhatFollowsDecides) {
   Spin spin;
   spin.more_rad_s = 7.5;

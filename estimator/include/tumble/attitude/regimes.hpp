@@ -55,7 +55,15 @@ class RegimeEvidence {
   Status find(std::span<const ImuSample> samples, std::span<const RateState> rates, const Eigen::Vector3d& lever_arm_m,
               const Eigen::Matrix3d& lever_arm_covariance_m2, std::vector<RegimeShares>& out) const;
 
+  /// The same as a filter: the shares after a sample, given those after the one `dt_s` before it, with the rate's
+  /// derivative. O(1).
+  RegimeShares next(const RegimeShares& before, double dt_s, const ImuSample& sample, const RateState& rate,
+                    const Eigen::Vector3d& angular_acceleration_rad_s2, const Eigen::Vector3d& lever_arm_m,
+                    const Eigen::Matrix3d& lever_arm_covariance_m2) const;
+
  private:
+  Eigen::Vector3d likelihood(double dt_s, const ImuSample& sample, const RateState& rate, const Eigen::Vector3d& alpha,
+                             const Eigen::Vector3d& lever_arm_m, double lever_arm_variance_m2) const;
   Params params_;
 };
 

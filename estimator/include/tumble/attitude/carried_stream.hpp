@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "tumble/attitude/carried_smoother.hpp"
+
+namespace tumble {
+
+/// The streaming form of CarriedSmoother: the same factors over a window of nodes, one Gauss-Newton step per node.
+///
+/// The oldest node is marginalised into a Gaussian prior on the next one and on the constants; it keeps the derivatives
+/// that it had when it left. Each estimate is given out when its sample is `lag_s` old, from a window that reaches back
+/// further (`window_s`), so that what the window still holds of the past is linearised anew with each step. Memory is
+/// bounded and made by start(); splitting a recording and carrying the State over gives the same bits.
+///
+/// Differs from the batch: while nothing in the window clips, only each fifth node is a step; the first attitude stands
+/// on one force and not on a filter; the hand's liveliness follows the nodes that have left, with the memory
+/// `hand_window_s` / 2, and not the time to come; whole turns are not asked for; readings that have left were read with
+/// the rails known then; the prior of the past keeps the assumed jerk where covariances are those of a larger one.
+/// Work: one step per node that begins, O(window).
+class CarriedStream {
+ public:
+  struct Params {
+    CarriedSmoother::Params body;  ///< `iterations_max` has no meaning here
+    double period_s = 0.01;        ///< nominal time between samples; bound [1e-5, 1]
+    double lag_s = 0.2;            ///< bound [2 period_s, 10]
+    double window_s = 0.6;         ///< bound [lag_s + 4 body.node_s, 20]
+  };
+
+  /// One sample of the window.
+  struct Reading {
+    ImuSample sample;
+    ClipSigns signs;
+    double centre_s = 0.0, end_s = 0.0;  ///< of its window, from the first sample's centre
+    std::int64_t node = 0;               ///< nearest to the centre
+    bool rest = false;
+  };
+  struct Knot {
+    carried::Node node;
+    carried::NodeReadings readings;
+  };
+  struct State {
+    std::vector<Reading> readings;  ///< of the nodes in the window, oldest first
+    std::vector<Knot> window;       ///< oldest first
+    std::int64_t first_node = 0;    ///< number of the oldest
+    Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
+    carried::Constants constants;
+    carried::System::BorderMatrix constants_covariance = carried::System::BorderMatrix::Zero();
+    // what all that left says of the oldest node and of the constants, about a point
+    carried::System::Block prior;
+    carried::System::Corner prior_corner;
+    carried::Node prior_node;
+    carried::Constants prior_constants;
+    double hand_power = 1.0;  ///< of the nodes that left, over that assumed
+    RestDetector::State rests;
+    std::int64_t given_node = -1;  ///< node of the last estimate given out, and its covariance
+    Eigen::Matrix3d given_covariance_rad2_s2 = Eigen::Matrix3d::Zero();
+    std::int64_t start_ns = 0;
+    std::size_t samples = 0;
+    std::size_t failures = 0;                  ///< steps whose system was not positive definite and was skipped
+    std::vector<carried::System::Block> work;  ///< scratch space, no part of the state proper
+  };
+
+  /// Throws InvalidParams on a parameter outside of its bound.
+  explicit CarriedStream(const Params& params);
+
+  /// A state before the first sample, with all memory that push() needs.
+  State start() const;
+  /// Makes of a state one before the first sample, in the memory that it has.
+  void restart(State& state) const;
+
+  /// Takes one sample. `known.signs`: of the newest samples as they are known now, this one's last, at least this one;
+  /// samples whose signs have changed are read again while they are in the window. `out`: rate of the sample that is
+  /// `lag_s` old, empty while the window fills. Trouble: `non_finite`, `time_order`, `gap`, `out_of_range` for no
+  /// signs, `degenerate` for rows that do not span the axes; the state is then as it was and `out` empty.
+  Status push(const ImuSample& sample, const ClippedElements& known, State& state, std::optional<RateState>& out) const;
+
+  /// Rates of the samples that push() has not given out, oldest first, appended to `out`.
+  void flush(const State& state, std::vector<RateState>& out) const;
+
+ private:
+  void append(const ImuSample& sample, State& state) const;
+  bool read_again(const ClippedElements& known, State& state) const;
+  void rebuild(State& state) const;
+  carried::Node begin(const State& state) const;
+  void predict(const carried::Node& before, const Eigen::Matrix3d& rows, Knot& knot) const;
+  void marginalise_oldest(State& state) const;
+  double hand(const State& state) const;
+  void add_prior(const State& state, carried::System::Block& block, carried::System::Corner& corner) const;
+  bool factorise(const carried::Motion& motion, State& state, carried::System::BorderVector& step) const;
+  bool step(State& state) const;
+  void extend(const carried::NodeReadings& readings, State& state) const;
+  void publish(std::size_t first, std::size_t last, bool factorised, State& state, std::span<RateState> out) const;
+  RateState to_rate(const Reading& reading, const State& state, const Eigen::Matrix3d& covariance_rad2_s2) const;
+
+  Params params_;
+  RestDetector rests_;
+  carried::Motion motion_, doubted_;
+  carried::ReadingNoise noise_;
+  Eigen::Vector3d g_W_m_s2_;
+  std::size_t nodes_max_, readings_max_, delay_;
+};
+
+}  // namespace tumble

@@ -1,0 +1,366 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/attitude/carried_stream.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "carried_problem.hpp"
+#include "tumble/common/so3.hpp"
+
+namespace tumble {
+
+using carried::Node;
+using carried::System;
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr double kRowsMin = 0.1;          // determinant of the elements' rows, as in CarriedSmoother
+constexpr double kTurnMax = 0.8;          // largest step of an attitude
+constexpr int kFreeNodes = 5;             // while nothing in the window clips, one step for so many nodes
+constexpr int kFirstNodes = 100;          // but for the first, which still find their attitude
+constexpr double kUnknown_rad2_s2 = 1e6;  // variance where the equations fail
+constexpr double kNear_s = 0.1;           // so near to a clipped node covariances are those of the doubted jerk
+
+std::uint8_t clipped_axes(const ClipSigns& signs) {
+  std::uint8_t axes = 0;
+  for (std::size_t j = 0; j < 3; ++j)
+    if (signs.gyro[j] != 0) axes = static_cast<std::uint8_t>(axes | (1u << j));
+  return axes;
+}
+
+System::BorderVector moved(const carried::Constants& from, const carried::Constants& to) {
+  System::BorderVector out;
+  out << to.gyro_bias_rad_s - from.gyro_bias_rad_s, to.accel_bias_m_s2 - from.accel_bias_m_s2,
+      to.lever_arm_m - from.lever_arm_m;
+  return out;
+}
+
+bool clips(const carried::NodeReadings& readings) {
+  return std::any_of(readings.gyro.begin(), readings.gyro.end(), [](const auto& e) { return e.clipped > 0.0; });
+}
+
+bool anything_clips(const CarriedStream::State& state) {
+  return std::any_of(state.window.begin(), state.window.end(), [](const auto& knot) { return clips(knot.readings); });
+}
+
+bool same(const ClipSigns& a, const ClipSigns& b) {
+  return a.gyro == b.gyro && a.accel == b.accel;
+}
+
+}  // namespace
+
+CarriedStream::CarriedStream(const Params& params)
+    : params_((CarriedSmoother(params.body), params)),
+      rests_(params.body.rest),
+      motion_(carried::motion_params(params.body)),
+      doubted_(carried::motion_params(params.body, params.body.jerk_doubt)),
+      noise_(carried::reading_noise(params.body, params.period_s)),
+      g_W_m_s2_(0.0, 0.0, -params.body.gravity_m_s2) {
+  require_within("period_s", params.period_s, 1e-5, 1.0);
+  require_within("lag_s", params.lag_s, 2.0 * params.period_s, 10.0);
+  require_within("window_s", params.window_s, params.lag_s + 4.0 * params.body.node_s, 20.0);
+  nodes_max_ = static_cast<std::size_t>(std::lround(params.window_s / params.body.node_s)) + 1;
+  delay_ = static_cast<std::size_t>(std::lround(params.lag_s / params.period_s));
+  // samples may come denser than is said; beyond twice as dense the oldest go
+  readings_max_ = 2 * static_cast<std::size_t>(std::ceil(params.window_s / params.period_s)) + 4;
+}
+
+CarriedStream::State CarriedStream::start() const {
+  State state;
+  state.readings.reserve(readings_max_ + 1);
+  state.window.reserve(nodes_max_ + 1);
+  state.work.resize(nodes_max_ + 1);
+  return state;
+}
+
+void CarriedStream::restart(State& state) const {
+  State fresh;
+  fresh.readings.swap(state.readings);
+  fresh.window.swap(state.window);
+  fresh.work.swap(state.work);
+  fresh.readings.clear();
+  fresh.window.clear();
+  state = std::move(fresh);
+}
+
+Status CarriedStream::push(const ImuSample& sample, const ClippedElements& known, State& state,
+                           std::optional<RateState>& out) const {
+  out.reset();
+  if (const Status status = check_sample(sample); !status.ok()) return status;
+  if (state.samples > 0) {
+    const TimeNs before_ns = state.readings.back().sample.time_ns;
+    const Status status = check_follows(sample.time_ns, before_ns, params_.body.gap_max_s);
+    if (!status.ok()) return status;
+  }
+  if (known.signs.empty()) return {Trouble::out_of_range, "signs", 0.0, 1.0};
+  const double determinant = std::abs(known.rows.determinant());
+  if (!(determinant > kRowsMin)) return {Trouble::degenerate, "rows", determinant, kRowsMin};
+
+  append(sample, state);
+  if (read_again(known, state)) rebuild(state);
+  const Reading& latest = state.readings.back();
+  const double t = latest.centre_s - static_cast<double>(latest.node) * params_.body.node_s;
+  const auto end = [&] { return state.first_node + static_cast<std::int64_t>(state.window.size()); };
+  const bool begun = latest.node >= end();
+  while (latest.node > end()) extend({}, state);  // nodes that no sample is near to
+  carried::NodeReadings readings = begun ? carried::NodeReadings{} : state.window.back().readings;
+  carried::add_reading(sample, state.rows, latest.signs, t, readings);
+  readings.rest = readings.rest || latest.rest;
+  if (begun) {
+    extend(readings, state);
+  } else {
+    state.window.back().readings = readings;
+  }
+  // a free gyro takes nodes where they belong: steps now and then keep attitude and constants
+  const bool due = begun && (latest.node % kFreeNodes == 0 || latest.node < kFirstNodes || anything_clips(state));
+  const bool factorised = due && step(state);
+  if (due && !factorised) ++state.failures;
+  if (state.readings.size() <= delay_) return {};
+  const std::size_t at = state.readings.size() - 1 - delay_;
+  RateState rate;
+  if (due && state.readings[at].node != state.given_node) {
+    publish(at, at, factorised, state, {&rate, 1});
+    state.given_node = state.readings[at].node;
+    state.given_covariance_rad2_s2 = rate.covariance_rad2_s2;
+  } else {
+    rate = to_rate(state.readings[at], state, state.given_covariance_rad2_s2);
+  }
+  out = rate;
+  return {};
+}
+
+void CarriedStream::extend(const carried::NodeReadings& readings, State& state) const {
+  if (state.window.size() == nodes_max_) marginalise_oldest(state);
+  Knot knot{{}, readings};
+  if (state.window.empty()) {
+    knot.node = begin(state);
+  } else {
+    predict(state.window.back().node, state.rows, knot);
+  }
+  state.window.push_back(knot);
+}
+
+// The next sample of the window. A window after a drop-out is as long as any other.
+void CarriedStream::append(const ImuSample& sample, State& state) const {
+  Reading reading;
+  reading.sample = sample;
+  const double period_s = params_.period_s;
+  if (state.samples == 0) {
+    state.start_ns = sample.time_ns;
+    state.rests = {};
+  }
+  const double since_s = state.samples == 0 ? period_s : seconds(sample.time_ns - state.readings.back().sample.time_ns);
+  reading.end_s = seconds(sample.time_ns - state.start_ns) + 0.5 * period_s;
+  reading.centre_s = reading.end_s - 0.5 * std::min(since_s, 1.5 * period_s);
+  const std::int64_t nearest = std::llround(reading.centre_s / params_.body.node_s);
+  reading.node = std::max(nearest, state.samples == 0 ? 0 : state.readings.back().node);
+  reading.rest = rests_.observe(sample, state.rests);
+  if (state.readings.size() == readings_max_) state.readings.erase(state.readings.begin());
+  state.readings.push_back(reading);
+  ++state.samples;
+}
+
+// Takes over signs and rows as they are known now; true where what was read before has changed.
+bool CarriedStream::read_again(const ClippedElements& known, State& state) const {
+  bool changed = state.rows != known.rows;
+  state.rows = known.rows;
+  const std::size_t count = std::min(known.signs.size(), state.readings.size());
+  for (std::size_t k = 0; k < count; ++k) {
+    Reading& reading = state.readings[state.readings.size() - 1 - k];
+    const ClipSigns& signs = known.signs[known.signs.size() - 1 - k];
+    changed = changed || (k > 0 && !same(reading.signs, signs));
+    reading.signs = signs;
+  }
+  return changed;
+}
+
+void CarriedStream::rebuild(State& state) const {
+  for (Knot& knot : state.window) knot.readings = {};
+  for (const Reading& reading : state.readings) {
+    const std::int64_t at = reading.node - state.first_node;
+    if (at < 0 || at >= static_cast<std::int64_t>(state.window.size())) continue;
+    carried::NodeReadings& node = state.window[static_cast<std::size_t>(at)].readings;
+    const double t = reading.centre_s - static_cast<double>(reading.node) * params_.body.node_s;
+    carried::add_reading(reading.sample, state.rows, reading.signs, t, node);
+    node.rest = node.rest || reading.rest;
+  }
+}
+
+Node CarriedStream::begin(const State& state) const {
+  const ImuSample& sample = state.readings.front().sample;
+  Node out;
+  out.q_WI = Eigen::Quaterniond::FromTwoVectors(sample.specific_force_m_s2, Vector3d::UnitZ());
+  out.w_WI_I_rad_s = sample.angular_velocity_rad_s;
+  out.a_W_m_s2 = out.q_WI * sample.specific_force_m_s2 + g_W_m_s2_;
+  return out;
+}
+
+// A new node from the one before it: turned on, its rate as read where elements are free, beyond the rail where not.
+void CarriedStream::predict(const Node& before, const Eigen::Matrix3d& rows, Knot& knot) const {
+  const double h = params_.body.node_s;
+  Node& node = knot.node;
+  node = before;
+  Vector3d elements = rows * (before.w_WI_I_rad_s + h * before.angular_acceleration_rad_s2);
+  for (int j = 0; j < 3; ++j) {
+    const carried::ElementSums& e = knot.readings.gyro[static_cast<std::size_t>(j)];
+    if (e.clipped > 0.0) {
+      const double rail = std::abs(e.rail);
+      elements[j] = e.sign * std::clamp(e.sign * elements[j], rail, carried::kFillMost * rail);
+    } else if (e.n > 0.0) {
+      elements[j] = e.z / e.n;
+    }
+  }
+  node.w_WI_I_rad_s = rows.inverse() * elements;
+  node.q_WI = (before.q_WI * so3::exp(carried::turned(before, node, h))).normalized();
+  node.v_W_m_s += h * before.a_W_m_s2;
+  node.p_W_m += h * before.v_W_m_s;
+  if (knot.readings.force_n > 0.0) node.a_W_m_s2 = node.q_WI * knot.readings.force_m_s2 + g_W_m_s2_;
+}
+
+double CarriedStream::hand(const State& state) const {
+  return std::max(params_.body.hand_floor, 1.0 + params_.body.hand_follow * (state.hand_power - 1.0));
+}
+
+void CarriedStream::add_prior(const State& state, System::Block& block, System::Corner& corner) const {
+  if (state.first_node == 0) {
+    (void)motion_.add_first(state.window.front().node, block);
+    (void)carried::add_constants_prior(params_.body, state.constants, corner);
+    return;
+  }
+  const System::StateVector x = carried::moved(state.prior_node, state.window.front().node);
+  const System::BorderVector c = moved(state.prior_constants, state.constants);
+  block.diagonal += state.prior.diagonal;
+  block.border += state.prior.border;
+  block.gradient += state.prior.gradient - state.prior.diagonal * x - state.prior.border * c;
+  corner.matrix += state.prior_corner.matrix;
+  corner.gradient += state.prior_corner.gradient - state.prior_corner.matrix * c - state.prior.border.transpose() * x;
+}
+
+void CarriedStream::marginalise_oldest(State& state) const {
+  const Knot& oldest = state.window[0];
+  const Node& next = state.window[1].node;
+  System::Block block, after;
+  System::Corner corner;
+  add_prior(state, block, corner);
+  (void)carried::add_node(oldest.readings, state.rows, noise_, g_W_m_s2_, motion_, oldest.node, state.constants, block,
+                          corner);
+  (void)motion_.add_step(oldest.node, next, hand(state), block, after);
+  if (System::eliminate(block, &after, corner)) {
+    state.prior = after;
+    state.prior_corner = corner;
+  } else {
+    // nothing can be said of what left: as at the start
+    state.prior = {};
+    state.prior_corner = {};
+    (void)motion_.add_first(next, state.prior);
+    (void)carried::add_constants_prior(params_.body, state.constants, state.prior_corner);
+    ++state.failures;
+  }
+  state.prior_node = next;
+  state.prior_constants = state.constants;
+  const double assumed = 3.0 * params_.body.hand_m_s2 * params_.body.hand_m_s2;
+  const double share = std::min(1.0, 2.0 * params_.body.node_s / params_.body.hand_window_s);
+  state.hand_power += share * (oldest.node.a_W_m_s2.squaredNorm() / assumed - state.hand_power);
+  ++state.first_node;
+  state.window.erase(state.window.begin());
+  const auto gone = std::find_if(state.readings.begin(), state.readings.end(),
+                                 [&](const Reading& reading) { return reading.node >= state.first_node; });
+  state.readings.erase(state.readings.begin(), gone);
+}
+
+bool CarriedStream::factorise(const carried::Motion& motion, State& state, System::BorderVector& step) const {
+  const std::size_t count = state.window.size();
+  const double lively = hand(state);
+  System::Corner corner;
+  state.work[0] = {};
+  add_prior(state, state.work[0], corner);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Knot& knot = state.window[i];
+    System::Block& block = state.work[i];
+    const bool last = i + 1 == count;
+    (void)carried::add_node(knot.readings, state.rows, noise_, g_W_m_s2_, motion, knot.node, state.constants, block,
+                            corner);
+    if (!last) {
+      state.work[i + 1] = {};
+      (void)motion.add_step(knot.node, state.window[i + 1].node, lively, block, state.work[i + 1]);
+    }
+    if (!System::eliminate(block, last ? nullptr : &state.work[i + 1], corner)) return false;
+  }
+  return System::solve_corner(corner, step, state.constants_covariance);
+}
+
+bool CarriedStream::step(State& state) const {
+  System::BorderVector border;
+  if (!factorise(motion_, state, border)) return false;
+  double turn = 0.0;
+  for (std::size_t i = state.window.size(); i-- > 0;) {
+    System::StateVector* const next = i + 1 < state.window.size() ? &state.work[i + 1].gradient : nullptr;
+    state.work[i].gradient = System::back_substitute(state.work[i], next, border).eval();
+    turn = std::max(turn, state.work[i].gradient.segment<3>(carried::kPhi).norm());
+  }
+  if (!std::isfinite(turn)) return false;
+  const double share = turn > kTurnMax ? kTurnMax / turn : 1.0;
+  for (std::size_t i = 0; i < state.window.size(); ++i) state.window[i].node.move(share * state.work[i].gradient);
+  state.constants.move(share * border);
+  return true;
+}
+
+RateState CarriedStream::to_rate(const Reading& reading, const State& state, const Eigen::Matrix3d& covariance) const {
+  const auto at = static_cast<std::size_t>(std::max<std::int64_t>(0, reading.node - state.first_node));
+  const Node& node = state.window[at].node;
+  RateState out;
+  out.time_ns = reading.sample.time_ns;
+  const double t = reading.centre_s - static_cast<double>(reading.node) * params_.body.node_s;
+  out.w_WI_I_rad_s = node.w_WI_I_rad_s + t * node.angular_acceleration_rad_s2;
+  out.covariance_rad2_s2 = covariance;
+  out.clipped_axes = clipped_axes(reading.signs);
+  if (out.clipped_axes == 0) return out;
+  const double variance = covariance.selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff();
+  const double recovered = params_.body.recovered_sigma_rad_s * params_.body.recovered_sigma_rad_s;
+  out.source = variance < recovered ? RateSource::recovered_contact : RateSource::bounded_only;
+  return out;
+}
+
+// Rates of the readings [first, last], with their covariances: near to clipped nodes those of the doubted jerk.
+// `factorised`: the work holds the equations with the jerk that is assumed.
+void CarriedStream::publish(std::size_t first, std::size_t last, bool factorised, State& state,
+                            std::span<RateState> out) const {
+  const auto of = [&](std::size_t k) {
+    return static_cast<std::size_t>(std::max<std::int64_t>(0, state.readings[k].node - state.first_node));
+  };
+  const auto near = static_cast<std::size_t>(std::lround(kNear_s / params_.body.node_s));
+  const std::size_t from = of(first) > near ? of(first) - near : 0;
+  const std::size_t to = std::min(state.window.size(), of(last) + near + 1);
+  bool clipped = false;
+  for (std::size_t i = from; i < to; ++i) clipped = clipped || clips(state.window[i].readings);
+  System::BorderVector unused;
+  const bool known = (factorised && !clipped) || factorise(clipped ? doubted_ : motion_, state, unused);
+  System::Conditional here, next;
+  Eigen::Matrix3d covariance = kUnknown_rad2_s2 * Eigen::Matrix3d::Identity();
+  std::size_t k = last + 1;
+  for (std::size_t i = state.window.size(); i-- > of(first);) {
+    if (known) {
+      here = System::back_conditional(state.work[i], i + 1 < state.window.size() ? &next : nullptr);
+      const auto rows = here.by_border.middleRows<3>(carried::kRate);
+      covariance =
+          here.state.block<3, 3>(carried::kRate, carried::kRate) + rows * state.constants_covariance * rows.transpose();
+    }
+    for (; k > first && of(k - 1) == i; --k) out[k - 1 - first] = to_rate(state.readings[k - 1], state, covariance);
+    next = here;
+  }
+}
+
+void CarriedStream::flush(const State& state, std::vector<RateState>& out) const {
+  const std::size_t left = std::min(delay_, state.readings.size());
+  if (left == 0) return;
+  State last = state;
+  std::vector<RateState> rates(left);
+  publish(state.readings.size() - left, state.readings.size() - 1, false, last, rates);
+  out.insert(out.end(), rates.begin(), rates.end());
+}
+
+}  // namespace tumble

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/attitude/regime_stream.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tumble {
+
+namespace {
+
+constexpr double kResets_s = 2.0;      // memory of how often a rig was dropped
+constexpr double kDoubtResets = 10.0;  // within that
+
+CarriedStream::Params joined(const RegimeStream::Params& params) {
+  CarriedStream::Params out = params.carried;
+  out.period_s = params.rate.period_s;
+  out.lag_s = params.rate.lag_s;
+  out.window_s = std::max(out.window_s, out.lag_s + 4.0 * out.body.node_s);
+  return out;
+}
+
+ClipSigns signs_of(const RateObservation& observation) {
+  ClipSigns out;
+  for (int j = 0; j < 3; ++j) {
+    const auto i = static_cast<std::size_t>(j);
+    const double rate = observation.sample.angular_velocity_rad_s[j], force = observation.sample.specific_force_m_s2[j];
+    if ((observation.clipping.gyro >> j & 1) != 0) out.gyro[i] = rate < 0.0 ? -1 : 1;
+    if ((observation.clipping.accel >> j & 1) != 0) out.accel[i] = force < 0.0 ? -1 : 1;
+  }
+  return out;
+}
+
+}  // namespace
+
+RegimeStream::RegimeStream(const Params& params)
+    : params_(params), rate_(params.rate), evidence_(params.evidence), carried_(joined(params)) {
+  require_within("carried_min", params.carried_min, 0.0, 1.0);
+  require_within("near_s", params.near_s, 0.0, 10.0);
+}
+
+RegimeStream::State RegimeStream::start() const {
+  State state;
+  state.rate = rate_.start();
+  state.carried = carried_.start();
+  state.signs.reserve(state.rate.window.capacity());
+  return state;
+}
+
+Status RegimeStream::push(const ImuSample& sample, std::span<const CompanionReading> companions, State& state,
+                          std::optional<RateState>& out) const {
+  if (const Status status = rate_.push(sample, companions, state.rate, out); !status.ok()) return status;
+  std::optional<RateState> carried;
+  // what RateStream takes has nothing that CarriedStream refuses, but rows that are no frame
+  if (state.shares.carried >= params_.carried_min) {
+    if (!state.carrying) {
+      carried_.restart(state.carried);
+      state.carrying = true;
+      ++state.starts;
+    }
+    state.carrying = carried_.push(sample, known_of(state), state.carried, carried).ok();
+  } else {
+    state.carrying = false;
+  }
+  if (!out) return {};
+  judge(*out, state);
+  const double share = share_of(*out, state);
+  if (share > params_.carried_min && carried && carried->time_ns == out->time_ns) {
+    *out = either(*out, *carried, share);
+    ++state.joined;
+  }
+  return {};
+}
+
+// Signs and rows as RateStream knows them now.
+ClippedElements RegimeStream::known_of(State& state) const {
+  state.signs.clear();
+  for (const RateStream::Knot& knot : state.rate.window) state.signs.push_back(signs_of(knot.observation));
+  ClippedElements out;
+  out.signs = state.signs;
+  for (int j = 0; j < 3; ++j) {
+    const std::optional<RailPlane>& plane = state.rate.rails.known.planes.element[static_cast<std::size_t>(j)];
+    if (plane) out.rows.row(j) = plane->row.transpose();
+  }
+  return out;
+}
+
+RegimeShares RegimeStream::next(const RegimeShares& before, double dt_s, const RateStream::Knot& knot,
+                                const RigCalibration& rig, bool doubted) const {
+  // a rate that was fitted to the force by a rig that is none agrees with the force whoever holds the body
+  if (doubted && knot.observation.unseen() != 0) return before;
+  RateState rate;
+  rate.w_WI_I_rad_s = knot.estimate.knot.rate_rad_s;
+  rate.covariance_rad2_s2 = knot.covariance_rad2_s2;
+  rate.clipped_axes = static_cast<std::uint8_t>(knot.observation.unseen());
+  return evidence_.next(before, dt_s, knot.observation.sample, rate, knot.estimate.knot.acceleration_rad_s2,
+                        rig.constants.lever_arm_m, rig.covariance.topLeftCorner<3, 3>());
+}
+
+// Whether RateStream drops one rig after another: then there is none that these would be flights of.
+bool RegimeStream::doubts(const State& state) const {
+  return state.resets > kDoubtResets;
+}
+
+// The evidence of the sample that is given out, by its own rate.
+void RegimeStream::judge(const RateState& rate, State& state) const {
+  const double dt_s = state.given == 0 ? params_.evidence.memory_s : seconds(rate.time_ns - state.given_ns);
+  state.shares = next(state.shares, dt_s, state.rate.window.front(), rate_.calibration(state.rate), doubts(state));
+  const auto dropped = static_cast<double>(state.rate.rig_resets - state.rig_resets);
+  state.rig_resets = state.rate.rig_resets;
+  state.resets = std::exp(-dt_s / kResets_s) * state.resets + dropped;
+  state.given_ns = rate.time_ns;
+  ++state.given;
+  state.sum.flight += state.shares.flight;
+  state.sum.contact += state.shares.contact;
+  state.sum.carried += state.shares.carried;
+}
+
+// With which probability CarriedStream is right about the sample given out: the least over the stretch of clipped
+// samples that it lies in, or near to, as far as the window shows it; 0 away from all.
+double RegimeStream::share_of(const RateState& rate, State& state) const {
+  const auto near_ns = static_cast<TimeNs>(std::llround(1e9 * params_.near_s));
+  const bool after = state.clipped_ns && rate.time_ns - *state.clipped_ns <= near_ns;
+  const std::vector<RateStream::Knot>& window = state.rate.window;
+  const auto clips = [](const RateStream::Knot& knot) { return knot.observation.unseen() != 0; };
+  const bool before = std::any_of(window.begin(), window.end(), [&](const RateStream::Knot& knot) {
+    return clips(knot) && knot.observation.sample.time_ns - rate.time_ns <= near_ns;
+  });
+  if (rate.clipped_axes != 0) state.clipped_ns = rate.time_ns;
+  if (!after && !before) {
+    state.least = 1.0;
+    return 0.0;
+  }
+  state.least = std::min(state.least, state.shares.carried);
+  double out = state.least;
+  if (out < params_.carried_min) return out;
+  // what lies ahead, by rates that are not settled yet
+  RegimeShares shares = state.shares;
+  const RigCalibration rig = rate_.calibration(state.rate);
+  TimeNs clipped_ns = rate.time_ns;
+  for (std::size_t k = 1; k < window.size(); ++k) {
+    const TimeNs now_ns = window[k].observation.sample.time_ns;
+    if (clips(window[k])) clipped_ns = now_ns;
+    if (now_ns - clipped_ns > near_ns) break;
+    shares = next(shares, seconds(now_ns - window[k - 1].observation.sample.time_ns), window[k], rig, doubts(state));
+    if (clips(window[k])) out = std::min(out, shares.carried);
+  }
+  return out;
+}
+
+void RegimeStream::flush(const State& state, std::vector<RateState>& out) const {
+  const std::size_t first = out.size();
+  rate_.flush(state.rate, out);
+  if (!state.carrying || !(state.shares.carried > params_.carried_min)) return;
+  std::vector<RateState> carried;
+  carried_.flush(state.carried, carried);
+  const std::size_t count = std::min(out.size() - first, carried.size());
+  State last = state;
+  for (std::size_t k = 0; k < count; ++k) {
+    RateState& rate = out[out.size() - count + k];
+    const RateState& other = carried[carried.size() - count + k];
+    const double share = share_of(rate, last);
+    if (share > params_.carried_min && rate.time_ns == other.time_ns) rate = either(rate, other, share);
+  }
+}
+
+}  // namespace tumble
