@@ -132,7 +132,8 @@ void RateStream::marginalise(std::size_t first, State& state) const {
   arrow::Corner corner;
   add_prior(state, model_, oldest.estimate.knot, block, corner);
   // what leaves can never be weighed again: it must be flight of the rig as it is known now, not of one as it might be
-  const double jump = model_.jump(oldest.estimate.knot, next.estimate.knot, seconds_between(oldest, next));
+  const double after_it = model_.jump(oldest.estimate.knot, next.estimate.knot, seconds_between(oldest, next));
+  const double jump = std::min(jump_before(oldest, state), after_it);
   model_.weigh(oldest.observation, state.rig, RigConstants::Matrix::Zero(), 1.0, jump, oldest.estimate);
   // 20 constants explain any short contact as a flight: what they say is believed after some more of it
   std::size_t run = state.flight_run;
@@ -155,6 +156,8 @@ void RateStream::marginalise(std::size_t first, State& state) const {
     model_.add_rig_prior(state.rig, state.prior_corner);
     ++state.failures;
   }
+  state.left = oldest.estimate.knot;
+  state.left_ns = oldest.observation.sample.time_ns;
   state.prior_knot = next.estimate.knot;
   state.prior_rig = state.rig;
   if (model_.rig_surprise(state.rig) > params_.rig_surprise_max) {
@@ -169,6 +172,12 @@ void RateStream::marginalise(std::size_t first, State& state) const {
   }
 }
 
+// From the sample that left last to the oldest that is there.
+double RateStream::jump_before(const Knot& oldest, const State& state) const {
+  if (!state.left) return std::numeric_limits<double>::max();
+  return model_.jump(*state.left, oldest.estimate.knot, seconds(oldest.observation.sample.time_ns - state.left_ns));
+}
+
 void RateStream::append(const ImuSample& sample, std::span<const CompanionReading> companions, State& state) const {
   const bool changed = rails_.observe(sample, state.rails);
   Knot knot;
@@ -176,64 +185,13 @@ void RateStream::append(const ImuSample& sample, std::span<const CompanionReadin
   knot.observation = {sample, knot.by_walls, rests_.observe(sample, state.rests)};
   std::copy(companions.begin(), companions.end(), knot.observation.companions.begin());
   knot.estimate.knot.rate_rad_s = sample.angular_velocity_rad_s;
+  // until a step of the window says more
+  knot.covariance_rad2_s2 = std::pow(params_.model.rate_max_rad_s, 2) * Eigen::Matrix3d::Identity();
   state.window.push_back(knot);
   ++state.samples;
   if (changed) classify_again(state);
   // a sample is judged by those beside it too
   judge(changed ? 0 : state.window.size() - std::min<std::size_t>(2, state.window.size()), state);
-}
-
-// What walls say of the window now that more is known of them.
-void RateStream::classify_again(State& state) const {
-  RailDetector::State& walls = state.rails.known.walls;
-  for (RailDetector::Channel& channel : walls.channels) channel.clipped = false;
-  for (Knot& knot : state.window) knot.by_walls = rails_.walls().classify(knot.observation.sample, walls);
-}
-
-// Reads the samples of the window from `first` on with the rails as they are known. One that turns out to be clipped
-// starts anew.
-void RateStream::judge(std::size_t first, State& state) const {
-  const KnownRails& rails = state.rails.known;
-  const RailPlanes planes = rails.planes_in_use(), accel_planes = rails.planes_in_use(Triad::accelerometer);
-  const ElementRows accel_rows = rails.rows(Triad::accelerometer, params_.model.element_sigma);
-  const double noise = model_.gyro_sigma_rad_s();
-  for (std::size_t k = first; k < state.window.size(); ++k) {
-    Knot& knot = state.window[k];
-    RateObservation& now = knot.observation;
-    const ImuSample* const before = k > 0 ? &state.window[k - 1].observation.sample : nullptr;
-    const ImuSample* const after = k + 1 < state.window.size() ? &state.window[k + 1].observation.sample : nullptr;
-    const std::uint8_t read = now.unseen();
-    Clipping by_walls = knot.by_walls;
-    if (after != nullptr) {
-      rails_.walls().add_edge(now.sample, *after, state.window[k + 1].by_walls, rails.walls, by_walls);
-    }
-    now.clipping = clip_by_planes(planes, Triad::gyro, by_walls, before, now.sample, after);
-    now.clipping = clip_by_planes(accel_planes, Triad::accelerometer, now.clipping, before, now.sample, after);
-    now.accel_rows = accel_rows;
-    mark_partial(planes, rails_.walls(), rails.walls, noise, before, now, after);
-    if (!rails.upright) doubt_unseen_rails(planes, noise, before, now, after);
-    const bool newest = k + 1 == state.window.size();
-    if (!newest && (now.unseen() & ~read) == 0) continue;
-    if (!newest) {
-      knot.age = 0;
-      knot.estimate.soft_bounds = false;
-    }
-    if (k > 0) guess(knot, state.window[k - 1], state);
-  }
-}
-
-// What the rails tell of the elements that clip at them: anew with each step, since they become known better.
-void RateStream::add_rails(const State& state, arrow::Corner& corner) const {
-  const KnownRails& rails = state.rails.known;
-  const RailPlanes planes = rails.planes_in_use();
-  for (int j = 0; j < 3; ++j) {
-    const Eigen::Index first = RigConstants::kElements + 2 * j;
-    const auto told = told_slopes(planes, rails.upright, j, model_.prior_covariance().block<2, 2>(first, first));
-    if (!told) continue;
-    const Eigen::Matrix2d information = told->covariance.inverse();
-    corner.matrix.block<2, 2>(first, first) += information;
-    corner.gradient.segment<2>(first) -= information * (state.rig.elements.segment<2>(2 * j) - told->slopes);
-  }
 }
 
 // Clipped axes of a new sample start from the prediction or from the centripetal force, whichever explains flight
@@ -276,7 +234,7 @@ void RateStream::guess(Knot& knot, const Knot& previous, const State& state) con
 
 void RateStream::weigh(State& state) const {
   constexpr double kNone = std::numeric_limits<double>::max();
-  double before = kNone;
+  double before = jump_before(state.window.front(), state);
   for (std::size_t k = 0; k < state.window.size(); ++k) {
     Knot& knot = state.window[k];
     double after = kNone;
@@ -382,9 +340,11 @@ bool RateStream::equal(const State& a, const State& b) {
     return p.time_ns == q.time_ns && p.angular_velocity_rad_s == q.angular_velocity_rad_s &&
            p.specific_force_m_s2 == q.specific_force_m_s2 && p.device_clip_flags == q.device_clip_flags &&
            x.observation.clipping == y.observation.clipping && x.by_walls == y.by_walls &&
-           x.observation.at_rest == y.observation.at_rest && e.knot == f.knot && e.flight_weight == f.flight_weight &&
-           e.contact_m_s2 == f.contact_m_s2 && e.bound_precision == f.bound_precision &&
-           e.bound_shift == f.bound_shift && e.soft_bounds == f.soft_bounds &&
+           x.observation.at_rest == y.observation.at_rest && x.observation.partial == y.observation.partial &&
+           x.observation.lost_rad_s == y.observation.lost_rad_s &&
+           x.observation.lost_sigma_rad_s == y.observation.lost_sigma_rad_s && e.knot == f.knot &&
+           e.flight_weight == f.flight_weight && e.contact_m_s2 == f.contact_m_s2 &&
+           e.bound_precision == f.bound_precision && e.bound_shift == f.bound_shift && e.soft_bounds == f.soft_bounds &&
            x.covariance_rad2_s2 == y.covariance_rad2_s2 && x.age == y.age &&
            std::equal(x.observation.companions.begin(), x.observation.companions.end(),
                       y.observation.companions.begin(),
@@ -395,9 +355,9 @@ bool RateStream::equal(const State& a, const State& b) {
          a.rig_covariance == b.rig_covariance && a.prior.diagonal == b.prior.diagonal &&
          a.prior.border == b.prior.border && a.prior.gradient == b.prior.gradient &&
          a.prior_corner.matrix == b.prior_corner.matrix && a.prior_corner.gradient == b.prior_corner.gradient &&
-         a.prior_knot == b.prior_knot && a.prior_rig == b.prior_rig && a.samples == b.samples &&
-         a.rig_resets == b.rig_resets && a.flight_run == b.flight_run && a.waiting == b.waiting &&
-         a.learnt_from == b.learnt_from && a.failures == b.failures;
+         a.left == b.left && a.left_ns == b.left_ns && a.prior_knot == b.prior_knot && a.prior_rig == b.prior_rig &&
+         a.samples == b.samples && a.rig_resets == b.rig_resets && a.flight_run == b.flight_run &&
+         a.waiting == b.waiting && a.learnt_from == b.learnt_from && a.failures == b.failures;
 }
 
 }  // namespace tumble

@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "carried_problem.hpp"
 #include "tumble/common/so3.hpp"
@@ -74,6 +75,16 @@ CarriedStream::State CarriedStream::start() const {
   state.window.reserve(nodes_max_ + 1);
   state.work.resize(nodes_max_ + 1);
   return state;
+}
+
+void CarriedStream::restart(State& state) const {
+  State fresh;
+  fresh.readings.swap(state.readings);
+  fresh.window.swap(state.window);
+  fresh.work.swap(state.work);
+  fresh.readings.clear();
+  fresh.window.clear();
+  state = std::move(fresh);
 }
 
 Status CarriedStream::push(const ImuSample& sample, const ClippedElements& known, State& state,

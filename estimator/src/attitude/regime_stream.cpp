@@ -53,7 +53,7 @@ Status RegimeStream::push(const ImuSample& sample, std::span<const CompanionRead
   // what RateStream takes has nothing that CarriedStream refuses, but rows that are no frame
   if (state.shares.carried >= params_.carried_min) {
     if (!state.carrying) {
-      state.carried = carried_.start();
+      carried_.restart(state.carried);
       state.carrying = true;
       ++state.starts;
     }

@@ -156,6 +156,37 @@ TEST(RateStream, SplittingAnywhereChangesNothing) {
   RateStream::State other = whole;
   other.window[3].estimate.knot.rate_rad_s.x() += 1e-12;
   EXPECT_FALSE(RateStream::equal(other, whole));
+  // all that a later step reads of a sample counts
+  other = whole;
+  other.window[3].observation.partial ^= 1;
+  EXPECT_FALSE(RateStream::equal(other, whole));
+  other = whole;
+  other.window[3].observation.lost_rad_s.x() += 1e-12;
+  EXPECT_FALSE(RateStream::equal(other, whole));
+  other = whole;
+  other.window[3].observation.lost_sigma_rad_s.x() += 1e-12;
+  EXPECT_FALSE(RateStream::equal(other, whole));
+  other = whole;
+  ASSERT_TRUE(other.left);
+  other.left->rate_rad_s.x() += 1e-12;
+  EXPECT_FALSE(RateStream::equal(other, whole));
+}
+
+/// A step that fails says nothing of the newest sample: its deviation is that of any rate, not none at all.
+TEST(RateStream, AFailedStepStatesNoCertainty) {
+  const std::vector<ImuSample> samples = make_tumble(options_of(3)).samples;
+  const RateStream method(wrong_lever(3));
+  RateStream::State state = method.start();
+  std::optional<RateState> one;
+  for (std::size_t k = 0; k < 30; ++k) ASSERT_TRUE(method.push(samples[k], state, one).ok());
+  ASSERT_EQ(state.failures, 0u);
+  state.prior_corner.matrix.diagonal().array() -= 1e30;
+  ASSERT_TRUE(method.push(samples[30], state, one).ok());
+  ASSERT_GT(state.failures, 0u);
+  const std::optional<RateState> newest = method.newest(state);
+  ASSERT_TRUE(newest);
+  EXPECT_EQ(newest->time_ns, samples[30].time_ns);
+  EXPECT_GT(newest->covariance_rad2_s2.diagonal().minCoeff(), 100.0);
 }
 
 // Samples that come faster than steps are made: all of them come out, once and in order, as good as with a step each.

@@ -87,6 +87,8 @@ class RateStream {
     // what is known of the oldest sample and of the rig from all that left the window, about a point
     arrow::Block prior;
     arrow::Corner prior_corner;
+    std::optional<RateKnot> left;  ///< the sample that left last, and when it was read
+    TimeNs left_ns = 0;
     RateKnot prior_knot;
     RigConstants prior_rig;
     std::size_t samples = 0;
@@ -130,6 +132,7 @@ class RateStream {
   void forget_oldest(State& state) const;
   void marginalise(std::size_t first, State& state) const;
   void predict_covariance(State& state) const;
+  double jump_before(const Knot& oldest, const State& state) const;
   void append(const ImuSample& sample, std::span<const CompanionReading> companions, State& state) const;
   void classify_again(State& state) const;
   void judge(std::size_t first, State& state) const;

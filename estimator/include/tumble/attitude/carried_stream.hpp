@@ -17,10 +17,11 @@ namespace tumble {
 /// further (`window_s`), so that what the window still holds of the past is linearised anew with each step. Memory is
 /// bounded and made by start(); splitting a recording and carrying the State over gives the same bits.
 ///
-/// Differs from the batch: the first attitude stands on one force and not on a filter; the hand's liveliness follows
-/// the nodes that have left, with the memory `hand_window_s` / 2, and not the time to come; whole turns are not asked
-/// for; readings that have left were read with the rails known then; the prior of the past keeps the assumed jerk where
-/// covariances are those of a larger one. Work: one step per node that begins, O(window).
+/// Differs from the batch: while nothing in the window clips, only each fifth node is a step; the first attitude stands
+/// on one force and not on a filter; the hand's liveliness follows the nodes that have left, with the memory
+/// `hand_window_s` / 2, and not the time to come; whole turns are not asked for; readings that have left were read with
+/// the rails known then; the prior of the past keeps the assumed jerk where covariances are those of a larger one.
+/// Work: one step per node that begins, O(window).
 class CarriedStream {
  public:
   struct Params {
@@ -69,6 +70,8 @@ class CarriedStream {
 
   /// A state before the first sample, with all memory that push() needs.
   State start() const;
+  /// Makes of a state one before the first sample, in the memory that it has.
+  void restart(State& state) const;
 
   /// Takes one sample. `known.signs`: of the newest samples as they are known now, this one's last, at least this one;
   /// samples whose signs have changed are read again while they are in the window. `out`: rate of the sample that is

@@ -16,10 +16,15 @@ namespace tumble {
 /// clips. Rails are those that RateStream learns.
 ///
 /// The evidence is a filter over the samples as they are given out, so that each is judged by all of the past and, by
-/// its rate, by the lag ahead; the batch also has the time to come. The share with which CarriedStream is believed is
-/// the least since the stretch of clipped samples began, as in the batch. CarriedStream runs from the start on; its
-/// work is spared while the evidence says that no hand holds the body (share below `carried_min`), and it starts anew
-/// after that. Estimates are those of RateStream where nothing clips.
+/// its rate, by the lag ahead. The share with which CarriedStream is believed is the least over the stretch of clipped
+/// samples, as in the batch, as far as the window shows it. While RateStream drops one rig after another (ten times in
+/// two seconds), clipped samples tell nothing. CarriedStream's work is spared while the evidence says that no hand
+/// holds the body (share below `carried_min`); it starts anew after that. Estimates are those of RateStream where
+/// nothing clips.
+///
+/// Not solved: clipped rates were fitted to the very force by which they are judged. Where the IMU sits far from the
+/// centre of mass, gravity in a gentle hand can be explained as the lever arm's force of a flight; the hand is then not
+/// known, and the covariance is that of the flight. The batch, which holds the rig, is hardly misled.
 class RegimeStream {
  public:
   struct Params {
