@@ -19,7 +19,7 @@ constexpr std::array<sim::Parameter, 3> kParameters = {{
 
 // The specific force of `other` at the stamps of the primary, in its axes; NaN before, after and at a rail. The gyro of
 // `other` is never read.
-Status companion(const sim::ImuRecord& primary, const sim::ImuRecord& other, Companion& out) {
+Status auxiliary_imu(const sim::ImuRecord& primary, const sim::ImuRecord& other, AuxiliaryAccelerometer& out) {
   std::vector<ImuSample> there;
   if (Status status = bridge::imu_samples(other, there); !status.ok()) return status;
   const Eigen::Isometry3d T_IO = primary.T_BI.inverse(Eigen::Isometry) * other.T_BI;
@@ -51,11 +51,11 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
   const sim::ImuRecord& record = sensors.imus.front();
-  std::vector<Companion> companions(sensors.imus.size() - 1);
+  std::vector<AuxiliaryAccelerometer> auxiliary_imus(sensors.imus.size() - 1);
   AccelerometerRate::Params params;
   params.accel_noise_density = record.accel_noise_m_s2_sqrt_hz;
-  for (std::size_t i = 0; i < companions.size(); ++i) {
-    estimate.status = companion(record, sensors.imus[i + 1], companions[i]);
+  for (std::size_t i = 0; i < auxiliary_imus.size(); ++i) {
+    estimate.status = auxiliary_imu(record, sensors.imus[i + 1], auxiliary_imus[i]);
     if (!estimate.status.ok()) return estimate;
     params.accel_noise_density = std::max(params.accel_noise_density, sensors.imus[i + 1].accel_noise_m_s2_sqrt_hz);
   }
@@ -66,7 +66,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   params.use_gyro = parameters.at("use_gyro") > 0.5;
   params.jerk_psd = parameters.at("jerk_psd_rad2_s5");
   params.gap_max_s = bridge::kGapMaxS;
-  estimate.status = AccelerometerRate(params).estimate(samples, companions, estimate.rates);
+  estimate.status = AccelerometerRate(params).estimate(samples, auxiliary_imus, estimate.rates);
   estimate.health["accelerometers"] = static_cast<double>(sensors.imus.size());
   count_sources(estimate.rates, estimate.health);
   return estimate;

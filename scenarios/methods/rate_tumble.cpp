@@ -38,7 +38,7 @@ const std::array<sim::Parameter, 12>& parameters_of_the_smoother() {
       {"flight_threshold", model.flight_threshold, 1.0, 100.0, "1", "residuals of flight beyond this count as contact"},
       {"recovered_sigma_rad_s", library.recovered_sigma_rad_s, 0.0, 1e4, "rad/s",
        "a clipped axis known better than this is recovered, not only bounded"},
-      {"rig_surprise_max", library.rig_surprise_max, 0.1, 1e6, "1",
+      {"calibration_mahalanobis_max", library.calibration_mahalanobis_max, 0.1, 1e6, "1",
        "constants of the rig that move further from their prior are held to it"},
   }};
   return parameters;
@@ -66,32 +66,32 @@ RateSmoother::Params smoother_params(const sim::ImuRecord& record, const sim::Va
   model.contact_gain_rad_m = parameters.at("contact_gain_rad_m");
   model.flight_threshold = parameters.at("flight_threshold");
   params.recovered_sigma_rad_s = parameters.at("recovered_sigma_rad_s");
-  params.rig_surprise_max = parameters.at("rig_surprise_max");
+  params.calibration_mahalanobis_max = parameters.at("calibration_mahalanobis_max");
   return params;
 }
 
-Status companion_readings(const sim::Sensors& sensors, std::span<const ImuSample> samples, RateModelParams& model,
-                          std::vector<std::vector<CompanionReading>>& out) {
+Status auxiliary_readings(const sim::Sensors& sensors, std::span<const ImuSample> samples, RateModelParams& model,
+                          std::vector<std::vector<AuxiliaryReading>>& out) {
   out.clear();
   const sim::ImuRecord& primary = sensors.imus.front();
-  for (std::size_t i = 1; i < sensors.imus.size() && out.size() < kCompanionsMax; ++i) {
+  for (std::size_t i = 1; i < sensors.imus.size() && out.size() < kAuxiliaryImusMax; ++i) {
     const sim::ImuRecord& record = sensors.imus[i];
     if (record.name == "imu_reference") continue;  // for comparison only
     std::vector<ImuSample> readings;
     if (Status status = bridge::imu_samples(record, readings); !status.ok()) return status;
-    CompanionImu companion;
-    companion.T_IC = primary.T_BI.inverse(Eigen::Isometry) * record.T_BI;
-    if (record.gyro_noise_rad_s_sqrt_hz > 0.0) companion.gyro_noise_density = record.gyro_noise_rad_s_sqrt_hz;
-    if (record.accel_noise_m_s2_sqrt_hz > 0.0) companion.accel_noise_density = record.accel_noise_m_s2_sqrt_hz;
-    std::vector<CompanionReading> aligned;
+    AuxiliaryImu auxiliary_imu;
+    auxiliary_imu.T_IC = primary.T_BI.inverse(Eigen::Isometry) * record.T_BI;
+    if (record.gyro_noise_rad_s_sqrt_hz > 0.0) auxiliary_imu.gyro_noise_density = record.gyro_noise_rad_s_sqrt_hz;
+    if (record.accel_noise_m_s2_sqrt_hz > 0.0) auxiliary_imu.accel_noise_density = record.accel_noise_m_s2_sqrt_hz;
+    std::vector<AuxiliaryReading> aligned;
     ClippingFinder::Params clipping;
     clipping.walls = stated_rails(record);
     const ClippingFinder::Found found = ClippingFinder(clipping).find(readings);
-    companion.gyro_elements = found.rails.rows(Triad::gyro, model.element_sigma);
-    companion.accel_elements = found.rails.rows(Triad::accelerometer, model.element_sigma);
-    const Status status = align(companion, readings, found.clippings, samples, bridge::kGapMaxS, aligned);
+    auxiliary_imu.gyro_elements = found.rails.rows(Triad::gyro, model.element_sigma);
+    auxiliary_imu.accel_elements = found.rails.rows(Triad::accelerometer, model.element_sigma);
+    const Status status = align(auxiliary_imu, readings, found.clippings, samples, bridge::kGapMaxS, aligned);
     if (!status.ok()) return status;
-    model.companions.push_back(companion);
+    model.auxiliary_imus.push_back(auxiliary_imu);
     out.push_back(std::move(aligned));
   }
   return {};
@@ -103,7 +103,7 @@ void report_health(const RateReport& report, std::map<std::string, double>& heal
   health["iterations"] = report.iterations;
   health["converged"] = report.converged ? 1.0 : 0.0;
   health["restarts"] = report.restarts;
-  health["rig_surprise"] = report.rig_surprise;
+  health["calibration_mahalanobis"] = report.calibration_mahalanobis;
   health["rig_held"] = report.rig_held ? 1.0 : 0.0;
   health["flight_share"] = report.flight_share;
   health["readings_void"] = static_cast<double>(report.void_readings);
@@ -210,18 +210,18 @@ Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& paramet
   if (estimate.status.ok()) {
     RateSmoother::Params params = smoother_params(sensors.imus.front(), parameters);
     if (given != nullptr) start_from_learnt(*given, params);
-    std::vector<std::vector<CompanionReading>> companions;
+    std::vector<std::vector<AuxiliaryReading>> auxiliary_imus;
     RateReport report;
-    estimate.status = companion_readings(sensors, samples, params.model, companions);
+    estimate.status = auxiliary_readings(sensors, samples, params.model, auxiliary_imus);
     if (estimate.status.ok()) {
-      estimate.status = RateSmoother(params).estimate(samples, companions, estimate.rates, report);
+      estimate.status = RateSmoother(params).estimate(samples, auxiliary_imus, estimate.rates, report);
     }
     if (estimate.status.ok()) {
       report_health(report, estimate.health);
       // further IMUs tell the rate whoever holds the body; the other smoother does not know them
-      if (companions.empty()) join_regimes(sensors, samples, report, estimate.rates, estimate.health);
+      if (auxiliary_imus.empty()) join_regimes(sensors, samples, report, estimate.rates, estimate.health);
     }
-    estimate.health["imus"] = 1.0 + static_cast<double>(companions.size());
+    estimate.health["imus"] = 1.0 + static_cast<double>(auxiliary_imus.size());
     if (estimate.status.ok() && !report.rig_held && found != nullptr) *found = learnt(report);
   }
   count_sources(estimate.rates, estimate.health);
@@ -233,12 +233,12 @@ Status tumble_rates(const sim::Sensors& sensors, std::span<const ImuSample> samp
   out.clear();
   RateReport report;
   RateSmoother::Params params = smoother_params(sensors.imus.front(), parameters);
-  std::vector<std::vector<CompanionReading>> companions;
-  Status status = companion_readings(sensors, samples, params.model, companions);
-  if (status.ok()) status = RateSmoother(params).estimate(samples, companions, out, report);
+  std::vector<std::vector<AuxiliaryReading>> auxiliary_imus;
+  Status status = auxiliary_readings(sensors, samples, params.model, auxiliary_imus);
+  if (status.ok()) status = RateSmoother(params).estimate(samples, auxiliary_imus, out, report);
   if (status.ok()) {
     report_health(report, health);
-    if (companions.empty()) join_regimes(sensors, samples, report, out, health);
+    if (auxiliary_imus.empty()) join_regimes(sensors, samples, report, out, health);
   }
   return status;
 }

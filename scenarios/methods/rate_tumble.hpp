@@ -18,10 +18,10 @@ namespace tumble::scenarios {
 RateSmoother::Params smoother_params(const sim::ImuRecord& record, const sim::Values& parameters);
 
 /// The other IMUs of a recording on the same body, at the stamps of `samples`: those of its first further IMUs that are
-/// not `imu_reference`, at most kCompanionsMax. Adds their mountings, as calibrated, to `model`. Trouble: that of a
+/// not `imu_reference`, at most kAuxiliaryImusMax. Adds their mountings, as calibrated, to `model`. Trouble: that of a
 /// record.
-Status companion_readings(const sim::Sensors& sensors, std::span<const ImuSample> samples, RateModelParams& model,
-                          std::vector<std::vector<CompanionReading>>& out);
+Status auxiliary_readings(const sim::Sensors& sensors, std::span<const ImuSample> samples, RateModelParams& model,
+                          std::vector<std::vector<AuxiliaryReading>>& out);
 
 /// The method `tumble` that starts from what an earlier run has learnt of the rig (null: nothing) and leaves in `found`
 /// (may be null) what this run has learnt; `found` stays as it is when the status is not ok and when the run learnt

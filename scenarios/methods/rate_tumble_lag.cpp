@@ -39,7 +39,7 @@ RateStream::Params stream_params(const sim::ImuRecord& record, const sim::Values
   params.planes = batch.planes;
   params.accel_planes = batch.accel_planes;
   params.recovered_sigma_rad_s = batch.recovered_sigma_rad_s;
-  params.rig_surprise_max = batch.rig_surprise_max;
+  params.calibration_mahalanobis_max = batch.calibration_mahalanobis_max;
   params.gap_max_s = batch.gap_max_s;
   if (record.period_ns > 0) params.period_s = seconds(record.period_ns);
   params.lag_s = std::max(parameters.at("lag_s"), 2.0 * params.period_s);
@@ -74,23 +74,23 @@ Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& par
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
   RateStream::Params params = stream_params(sensors.imus.front(), parameters, given);
-  std::vector<std::vector<CompanionReading>> companions;
-  estimate.status = companion_readings(sensors, samples, params.model, companions);
+  std::vector<std::vector<AuxiliaryReading>> auxiliary_imus;
+  estimate.status = auxiliary_readings(sensors, samples, params.model, auxiliary_imus);
   if (!estimate.status.ok()) return estimate;
   RegimeStream::Params regimes;
   regimes.rate = params;
   regimes.evidence.gravity_m_s2 = regimes.carried.body.gravity_m_s2 = sensors.gravity_m_s2;
   regimes.carried.body.gap_max_s = params.gap_max_s;
   // further IMUs tell the rate whoever holds the body; the other smoother does not know them
-  if (!companions.empty()) regimes.carried_min = 1.0;
+  if (!auxiliary_imus.empty()) regimes.carried_min = 1.0;
   const RegimeStream joined(regimes);
   const RateStream& stream = joined.rate();
   RegimeStream::State all = joined.start();
   estimate.rates.reserve(samples.size());
   std::optional<RateState> out;
-  std::vector<CompanionReading> beside(companions.size());
+  std::vector<AuxiliaryReading> beside(auxiliary_imus.size());
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    for (std::size_t i = 0; i < beside.size(); ++i) beside[i] = companions[i][k];
+    for (std::size_t i = 0; i < beside.size(); ++i) beside[i] = auxiliary_imus[i][k];
     estimate.status = joined.push(samples[k], beside, all, out);
     if (!estimate.status.ok()) break;
     if (out) estimate.rates.push_back(*out);

@@ -50,7 +50,7 @@ std::vector<Method> all_methods() {
       position_tumble_live(),
       position_oracle(),
       position_oracle_contact(),
-      slam_seed(),
+      slam_published(),
       slam_icp(),
       slam_icp_raw(),
       slam_tumble(),

@@ -105,7 +105,7 @@ struct KnownMotion {
 
 /// What the lidar-inertial chain estimates beside the motion.
 struct SlamChain {
-  bool excess_rate = false;  ///< by how much the rates of clipped axes are short; `excess_parameters`
+  bool saturation_deficit = false;  ///< by how much the rates of clipped axes are short; `excess_parameters`
   /// Mounting and clock of the lidar, and gravity; `calibration_parameters`. The recording is run through twice: what
   /// the first run learns of the calibration is the start of the second.
   bool calibration = false;
@@ -120,7 +120,7 @@ void run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samp
 /// Parameters of `run_slam_chain`.
 std::span<const sim::Parameter> slam_parameters();
 
-/// Parameters of `run_slam_chain` that count where the excess rate is estimated.
+/// Parameters of `run_slam_chain` that count where the saturation deficit is estimated.
 std::span<const sim::Parameter> excess_parameters();
 
 /// Parameters of `run_slam_chain` that count where the calibration is estimated.

@@ -51,8 +51,8 @@ const std::array<sim::Parameter, 3>& parameters_of_the_excess() {
   static const LidarInertialOdometry::Params library;
   static const std::array<sim::Parameter, 3> parameters = {{
       {"excess_sigma_min_rad_s", library.excess_sigma_min_rad_s, 1e-9, 100.0, "rad/s",
-       "least prior of the excess rate of a clipped axis, whatever the rate method claims"},
-      {"excess_time_s", library.excess_time_s, 1e-3, 1e3, "s", "over which the excess rate forgets what it was"},
+       "least prior of the saturation deficit of a clipped axis, whatever the rate method claims"},
+      {"excess_time_s", library.excess_time_s, 1e-3, 1e3, "s", "over which the saturation deficit forgets what it was"},
       {"clipped_sigma_rad_s", library.clipped_sigma_rad_s, 0.0, 100.0, "rad/s",
        "assumed of a clipped axis that the rate method did not recover"},
   }};
@@ -92,8 +92,8 @@ LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const
   if (parameters.at("flight_arc") > 0.5) {
     params.body.emplace().p_IB_I_m = -bridge::lever_arm_I_m(sensors.imus.front());
   }
-  if (chain.excess_rate) {
-    params.estimate_excess_rate = true;
+  if (chain.saturation_deficit) {
+    params.estimate_saturation_deficit = true;
     params.excess_sigma_min_rad_s = parameters.at("excess_sigma_min_rad_s");
     params.excess_time_s = parameters.at("excess_time_s");
     params.clipped_sigma_rad_s = parameters.at("clipped_sigma_rad_s");
@@ -113,7 +113,7 @@ LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const
 }
 
 /// A sweep's last word takes the place of its first.
-void settle(std::vector<PoseState> settled, LidarInertialOdometry::SweepReport& sweep) {
+void settle(std::vector<PoseState> smoothed, LidarInertialOdometry::SweepReport& sweep) {
   if (settled.empty()) return;
   sweep.trajectory = std::move(settled);
   sweep.pose = sweep.trajectory.back();
@@ -190,8 +190,8 @@ void run_sweeps(const sim::LidarRecord& lidar, std::span<const ImuSample> sample
     if (!status.ok()) estimate.health[std::string("sweeps_") + to_string(status.trouble)] += 1.0;
     estimate.health[std::string("sweeps_") + to_string(report.verdict)] += 1.0;
     estimate.sweep_end_ns.push_back(report.pose.time_ns);
-    const bool left_the_window = !report.settled.empty();
-    std::vector<PoseState> last_word = std::move(report.settled);
+    const bool left_the_window = !report.smoothed.empty();
+    std::vector<PoseState> last_word = std::move(report.smoothed);
     estimate.sweeps.push_back(std::move(report));
     if (left_the_window) settle(std::move(last_word), estimate.sweeps[settled++]);
   }
@@ -238,7 +238,7 @@ void report_end(Estimate& estimate) {
     const auto found = estimate.health.find(name);
     return found == estimate.health.end() ? 0.0 : found->second;
   };
-  const bool contradicted = (told("calibration_unsettled") > 0.0 && told("calibration_surprise") > kBelieved) ||
+  const bool contradicted = (told("calibration_unconverged") > 0.0 && told("calibration_surprise") > kBelieved) ||
                             told("innovation_90") > kInnovationMax;
   estimate.health["localised"] = share >= kLocalisedShare && !contradicted ? 1.0 : 0.0;
 }
@@ -313,7 +313,7 @@ Estimate run_passes(const sim::LidarRecord& lidar, std::span<const ImuSample> sa
   }
   if (passes > 1) run.health["passes"] = passes;
   run.health["calibration_surprise"] = calibration_surprise(odometry, given, given);
-  run.health["calibration_unsettled"] = settled ? 0.0 : 1.0;
+  run.health["calibration_unconverged"] = settled ? 0.0 : 1.0;
   return run;
 }
 

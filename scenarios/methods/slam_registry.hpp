@@ -13,7 +13,7 @@
 /// Slam methods beside those of registry.hpp, and what several of them share.
 namespace tumble::scenarios {
 
-Method slam_seed();
+Method slam_published();
 Method slam_constant_velocity();
 Method slam_constant_jerk();
 Method slam_iterated_filter();

@@ -19,7 +19,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
     return tumble_rates(sensors, samples, parameters, out.rates, out.health);
   });
   if (estimate.status.ok())
-    run_slam_chain(sensors, samples, parameters, {.excess_rate = true, .calibration = true}, estimate);
+    run_slam_chain(sensors, samples, parameters, {.saturation_deficit = true, .calibration = true}, estimate);
   return estimate;
 }
 

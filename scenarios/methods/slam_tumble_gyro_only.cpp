@@ -20,7 +20,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   Estimate estimate =
       begin_with_rates(sensors, samples, [&](Estimate& out) { return railed_rates(sensors, samples, out.rates); });
   if (estimate.status.ok())
-    run_slam_chain(sensors, samples, parameters, {.excess_rate = true, .calibration = true}, estimate);
+    run_slam_chain(sensors, samples, parameters, {.saturation_deficit = true, .calibration = true}, estimate);
   return estimate;
 }
 

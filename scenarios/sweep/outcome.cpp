@@ -70,7 +70,7 @@ void add_sweep(Hasher& hasher, const LidarInertialOdometry::SweepReport& sweep) 
   hasher.add(sweep.conditioning);
   hasher.add(static_cast<std::int32_t>(sweep.iterations));
   hasher.add_matrix(sweep.weakest_direction);
-  hasher.add_matrix(sweep.excess_rate_rad_s);
+  hasher.add_matrix(sweep.saturation_deficit_rad_s);
   for (const std::size_t count : {sweep.points_used, sweep.points_registered, sweep.map_points_added}) {
     hasher.add(static_cast<std::uint64_t>(count));
   }

@@ -81,10 +81,10 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// The method's own setting: excess rates of clipped axes and the calibration are unknowns too.
+/// The method's own setting: saturation deficits of clipped axes and the calibration are unknowns too.
 LidarInertialOdometry::Params all_unknowns() {
   LidarInertialOdometry::Params params;
-  params.estimate_excess_rate = true;
+  params.estimate_saturation_deficit = true;
   params.mount_sigma_rad = 0.01;
   params.mount_sigma_m = 0.006;
   params.time_offset_sigma_s = 0.003;

@@ -82,7 +82,7 @@ void judge(const scenarios::Method& method, const scenarios::SimulatedDraw& draw
       "held %5.2f%s\n",
       draw.scenario.c_str(), static_cast<unsigned long long>(draw.seed), harm.c_str(), to_string(outcome.status), error,
       deviations, wrong ? "wrong" : "good", says ? "told" : "-", health("calibration_surprise"),
-      health("innovation_median"), health("innovation_90"), health("rig_surprise"), health("held_share"),
+      health("innovation_median"), health("innovation_90"), health("calibration_mahalanobis"), health("held_share"),
       wrong && !says
           ? "  <- silently wrong"
           : (!wrong && says && (outcome.status == scenarios::OutcomeStatus::ok || harm == "none") ? "  <- cries wolf"

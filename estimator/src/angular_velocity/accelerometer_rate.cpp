@@ -70,13 +70,14 @@ AccelerometerRate::AccelerometerRate(const Params& params)
   require_within("gap_max_s", params.gap_max_s, 1e-6, 3600.0);
 }
 
-Status AccelerometerRate::estimate(std::span<const ImuSample> samples, std::span<const Companion> companions,
+Status AccelerometerRate::estimate(std::span<const ImuSample> samples,
+                                   std::span<const AuxiliaryAccelerometer> auxiliary_imus,
                                    std::vector<RateState>& out) const {
   if (Status status = check_recording(samples, 2, params_.gap_max_s); !status.ok()) return status;
-  for (const Companion& companion : companions) {
-    const std::size_t count = companion.specific_force_m_s2.size();
+  for (const AuxiliaryAccelerometer& auxiliary_imu : auxiliary_imus) {
+    const std::size_t count = auxiliary_imu.specific_force_m_s2.size();
     if (count != samples.size()) {
-      return {Trouble::too_few, "companion", static_cast<double>(count), static_cast<double>(samples.size())};
+      return {Trouble::too_few, "auxiliary_imu", static_cast<double>(count), static_cast<double>(samples.size())};
     }
   }
   const std::vector<Clipping> clippings = rails_.find(samples).clippings;
@@ -95,12 +96,12 @@ Status AccelerometerRate::estimate(std::span<const ImuSample> samples, std::span
     for (int j = 0; j < 3 && params_.use_gyro; ++j) {
       if ((clipped >> j & 1) == 0) filter.measure_axis(j, reading[j], gyro_variance);
     }
-    for (const Companion& companion : companions) {
-      const Vector3d& there = companion.specific_force_m_s2[k];
+    for (const AuxiliaryAccelerometer& auxiliary_imu : auxiliary_imus) {
+      const Vector3d& there = auxiliary_imu.specific_force_m_s2[k];
       if (!there.allFinite() || clippings[k].accel != 0) continue;
       const double scale = params_.accel_scale_error * std::max(there.norm(), force.norm());
       const double variance = 2.0 * noise + params_.accel_floor_m_s2 * params_.accel_floor_m_s2 + scale * scale;
-      filter.measure_difference(companion.p_I_m, there - force, variance);
+      filter.measure_difference(auxiliary_imu.p_I_m, there - force, variance);
     }
     for (int j = 0; j < 3; ++j) {
       double low = -params_.rate_max_rad_s, high = params_.rate_max_rad_s;
@@ -114,9 +115,9 @@ Status AccelerometerRate::estimate(std::span<const ImuSample> samples, std::span
     state.w_WI_I_rad_s = filter.x.head<3>();
     state.covariance_rad2_s2 = filter.P.topLeftCorner<3, 3>();
     state.clipped_axes = static_cast<std::uint8_t>(clipped);
-    state.source = clipped == 0         ? RateSource::measured
-                   : companions.empty() ? RateSource::bounded_only
-                                        : RateSource::recovered_contact;
+    state.source = clipped == 0             ? RateSource::measured
+                   : auxiliary_imus.empty() ? RateSource::bounded_only
+                                            : RateSource::recovered_contact;
   }
   out = std::move(states);
   return {};

@@ -96,7 +96,7 @@ struct BoundedJerk {
     P << variance, 0.0, -middle, 0.0, middle, 0.0, -middle, 0.0, lambda * lambda * lambda * lambda * variance;
     return P;
   }
-  // exp(A t) of the companion matrix A, whose three eigenvalues are -lambda
+  // exp(A t) of the auxiliary IMU matrix A, whose three eigenvalues are -lambda
   Matrix transition(double dt_s) const {
     Matrix N;
     N << lambda, 1.0, 0.0, 0.0, lambda, 1.0, -lambda * lambda * lambda, -3.0 * lambda * lambda, -2.0 * lambda;

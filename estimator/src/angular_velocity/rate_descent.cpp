@@ -69,7 +69,7 @@ bool descend(const RateSmoother::Params& params, const RateModel& model, std::sp
     }
     widen = std::max(1.0, 0.5 * widen);
   }
-  health.rig_surprise = model.rig_surprise(solution.rig);
+  health.calibration_mahalanobis = model.calibration_mahalanobis(solution.rig);
   return true;
 }
 

@@ -15,15 +15,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-void check(const CompanionImu& p) {
-  require_within("companion gyro_noise_density", p.gyro_noise_density, 1e-9, 1.0);
-  require_within("companion accel_noise_density", p.accel_noise_density, 1e-9, 10.0);
-  require_within("companion gyro_error_rad_s", p.gyro_error_rad_s, 1e-9, 10.0);
-  require_within("companion accel_error_m_s2", p.accel_error_m_s2, 1e-9, 10.0);
-  require_within("companion share_error", p.share_error, 0.0, 1.0);
-  require_within("companion place_error_m", p.place_error_m, 1e-9, 1.0);
-  require_within("companion clock_error_s", p.clock_error_s, 0.0, 0.1);
-  for (const double value : p.T_IC.matrix().reshaped()) require_within("companion T_IC", value, -100.0, 100.0);
+void check(const AuxiliaryImu& p) {
+  require_within("auxiliary_imu gyro_noise_density", p.gyro_noise_density, 1e-9, 1.0);
+  require_within("auxiliary_imu accel_noise_density", p.accel_noise_density, 1e-9, 10.0);
+  require_within("auxiliary_imu gyro_error_rad_s", p.gyro_error_rad_s, 1e-9, 10.0);
+  require_within("auxiliary_imu accel_error_m_s2", p.accel_error_m_s2, 1e-9, 10.0);
+  require_within("auxiliary_imu share_error", p.share_error, 0.0, 1.0);
+  require_within("auxiliary_imu place_error_m", p.place_error_m, 1e-9, 1.0);
+  require_within("auxiliary_imu clock_error_s", p.clock_error_s, 0.0, 0.1);
+  for (const double value : p.T_IC.matrix().reshaped()) require_within("auxiliary_imu T_IC", value, -100.0, 100.0);
 }
 
 void check(const SensorErrorSizes& p) {
@@ -63,8 +63,8 @@ void check(const RateModelParams& p) {
   require_within("rest_sigma_rad_s", p.rest_sigma_rad_s, 1e-9, 10.0);
   require_within("rate_max_rad_s", p.rate_max_rad_s, 1.0, 1e4);
   require_within("acceleration_max_rad_s2", p.acceleration_max_rad_s2, 1.0, 1e7);
-  require_within("companions", p.companions.size(), 0, kCompanionsMax);
-  for (const CompanionImu& companion : p.companions) check(companion);
+  require_within("auxiliary_imus", p.auxiliary_imus.size(), 0, kAuxiliaryImusMax);
+  for (const AuxiliaryImu& auxiliary_imu : p.auxiliary_imus) check(auxiliary_imu);
   const RigConstants::Vector nominal = p.calibration ? p.calibration->constants.vector() : p.nominal.vector();
   for (double value : nominal) require_within("rig constants", value, -10.0, 10.0);
 }
@@ -289,7 +289,7 @@ void RateModel::add_sample(const RateObservation& observation, const RateEstimat
   add_flight(flight, of_flight, time_scale_s_, block, corner);
   add_euler(euler, of_euler, time_scale_s_, block, corner);
 
-  add_companions(observation, estimate, rig, block);
+  add_auxiliary_imus(observation, estimate, rig, block);
 
   const double rate_sigma = observation.at_rest ? params_.rest_sigma_rad_s : params_.rate_max_rad_s;
   const double rate_information = share_ / (rate_sigma * rate_sigma);
@@ -354,7 +354,7 @@ void RateModel::add_rig_prior(const RigConstants& rig, arrow::Corner& corner) co
   corner.gradient -= prior_information_ * (rig.vector() - prior_constants_.vector());
 }
 
-double RateModel::rig_surprise(const RigConstants& rig) const {
+double RateModel::calibration_mahalanobis(const RigConstants& rig) const {
   const RigConstants::Vector moved = rig.vector() - prior_constants_.vector();
   const double lever = surprise<0, 3>(moved, prior_covariance_), gyro = surprise<3, 3>(moved, prior_covariance_),
                accel = surprise<6, 3>(moved, prior_covariance_), inertia = surprise<9, 5>(moved, prior_covariance_);

@@ -66,13 +66,13 @@ RateModelParams held(const RateModelParams& params, const RateModel& model) {
 double surprise_of(const RateModelParams& known, const RateModel& model, double period_s,
                    std::span<const RateObservation> observations, const RateSolution& solution) {
   RateIteration again(observations);
-  if (!again.factorise(model, solution.estimates, solution.rig)) return model.rig_surprise(solution.rig);
+  if (!again.factorise(model, solution.estimates, solution.rig)) return model.calibration_mahalanobis(solution.rig);
   const arrow::BorderErrors moved = again.moved_by_errors(model, solution.estimates, solution.rig).of_rig;
   RateModelParams wider = known;
   wider.calibration = RigCalibration{model.prior_constants(), model.prior_covariance()};
   wider.calibration->covariance +=
       moved * fit_sensor_errors({}, known.error_sizes).known.covariance * moved.transpose();
-  return RateModel(wider, period_s).rig_surprise(solution.rig);
+  return RateModel(wider, period_s).calibration_mahalanobis(solution.rig);
 }
 
 // The descent, with the rig held to what was known of it where it takes contact for flight of another rig.
@@ -82,20 +82,20 @@ Status descend_held(const RateSmoother::Params& params, const RateModelParams& k
   if (!solve(params, fit.model, observations, fit.solution, health)) {
     return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
   }
-  health.rig_held = health.rig_surprise > params.rig_surprise_max;
+  health.rig_held = health.calibration_mahalanobis > params.calibration_mahalanobis_max;
   if (health.rig_held && struck) {
-    health.rig_surprise = surprise_of(known, fit.model, period_s, observations, fit.solution);
-    health.rig_held = health.rig_surprise > std::max(params.rig_surprise_max, kSurpriseOfDevice);
+    health.calibration_mahalanobis = surprise_of(known, fit.model, period_s, observations, fit.solution);
+    health.rig_held = health.calibration_mahalanobis > std::max(params.calibration_mahalanobis_max, kSurpriseOfDevice);
   }
   health.calibration = {fit.solution.rig, fit.solution.rig_covariance};
   if (!health.rig_held) return {};
-  const double surprise = health.rig_surprise;
+  const double surprise = health.calibration_mahalanobis;
   health.calibration = {fit.model.prior_constants(), fit.model.prior_covariance()};
   fit.model = RateModel(held(known, fit.model), period_s);
   if (!solve(params, fit.model, observations, fit.solution, health)) {
     return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
   }
-  health.rig_surprise = surprise;
+  health.calibration_mahalanobis = surprise;
   // held is not known: what was open of the rig stays open in the rates
   constexpr int kOpen = RigConstants::kElements;
   fit.solution.rig_covariance.topLeftCorner<kOpen, kOpen>() =
@@ -203,7 +203,8 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
   health.calibrated = found.calibrated;
   health.together = own_clocks ? 0.0 : found.together;
   const bool open = estimated && known.error_sizes.delay_unknown_s > known.error_sizes.delay_s &&
-                    (off_sheet(found, known.error_sizes, own_clocks) || health.rig_surprise > params.rig_surprise_max);
+                    (off_sheet(found, known.error_sizes, own_clocks) ||
+                     health.calibration_mahalanobis > params.calibration_mahalanobis_max);
   if (open) {
     sizes = unstated(sizes);
     health.shared_delay_sigma_s = std::sqrt(0.5) * sizes.delay_s;

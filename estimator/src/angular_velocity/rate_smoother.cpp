@@ -44,15 +44,15 @@ void mark_held(std::span<const ImuSample> samples, std::span<RateObservation> ob
   if (accel) health.accel_update_s = accel->period_s;
 }
 
-Status check_companions(const RateModelParams& params, std::span<const std::vector<CompanionReading>> companions,
-                        std::size_t count) {
-  const auto needed = static_cast<double>(params.companions.size());
-  if (companions.size() != params.companions.size()) {
-    return {Trouble::too_few, "companions", static_cast<double>(companions.size()), needed};
+Status check_auxiliary_imus(const RateModelParams& params,
+                            std::span<const std::vector<AuxiliaryReading>> auxiliary_imus, std::size_t count) {
+  const auto needed = static_cast<double>(params.auxiliary_imus.size());
+  if (auxiliary_imus.size() != params.auxiliary_imus.size()) {
+    return {Trouble::too_few, "auxiliary_imus", static_cast<double>(auxiliary_imus.size()), needed};
   }
-  for (const std::vector<CompanionReading>& readings : companions) {
+  for (const std::vector<AuxiliaryReading>& readings : auxiliary_imus) {
     if (readings.size() == count) continue;
-    return {Trouble::too_few, "readings of a companion", static_cast<double>(readings.size()),
+    return {Trouble::too_few, "readings of a auxiliary_imu", static_cast<double>(readings.size()),
             static_cast<double>(count)};
   }
   return {};
@@ -108,17 +108,17 @@ RateSmoother::RateSmoother(const Params& params)
   require_within("recovered_sigma_rad_s", params.recovered_sigma_rad_s, 0.0, 1e4);
   require_within("bound_iterations", params.bound_iterations, 0, 1000);
   require_within("bound_damping", params.bound_damping, 0.01, 1.0);
-  require_within("rig_surprise_max", params.rig_surprise_max, 0.1, 1e6);
+  require_within("calibration_mahalanobis_max", params.calibration_mahalanobis_max, 0.1, 1e6);
   require_within("error_rounds_max", params.error_rounds_max, 1, 10);
   require_within("gap_max_s", params.gap_max_s, 1e-6, 3600.0);
   (void)RateModel(params.model, 0.01);  // throws on bad parameters
 }
 
 Status RateSmoother::estimate(std::span<const ImuSample> samples,
-                              std::span<const std::vector<CompanionReading>> companions, std::vector<RateState>& out,
-                              RateReport& report) const {
+                              std::span<const std::vector<AuxiliaryReading>> auxiliary_imus,
+                              std::vector<RateState>& out, RateReport& report) const {
   if (Status status = check_recording(samples, 2, params_.gap_max_s); !status.ok()) return status;
-  if (Status status = check_companions(params_.model, companions, samples.size()); !status.ok()) return status;
+  if (Status status = check_auxiliary_imus(params_.model, auxiliary_imus, samples.size()); !status.ok()) return status;
 
   RateReport health;
   health.samples = samples.size();
@@ -151,7 +151,7 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
   for (std::size_t k = 0; k < samples.size(); ++k) {
     observations[k] = {samples[k], clippings[k], rest[k]};
     observations[k].accel_rows = accel_rows;
-    for (std::size_t i = 0; i < companions.size(); ++i) observations[k].companions[i] = companions[i][k];
+    for (std::size_t i = 0; i < auxiliary_imus.size(); ++i) observations[k].auxiliary_imus[i] = auxiliary_imus[i][k];
     const auto [before, after] = beside[k];
     mark_partial(planes, rails_.walls(), rails.walls, model.gyro_sigma_rad_s(), before, observations[k], after);
     if (health.rails_upright) continue;

@@ -64,7 +64,7 @@ RateStream::RateStream(const Params& params)
   require_within("rig_doubt_samples", params.rig_doubt_samples, 1.0, 1e6);
   require_within("bound_damping", params.bound_damping, 0.01, 1.0);
   require_within("recovered_sigma_rad_s", params.recovered_sigma_rad_s, 0.0, 1e4);
-  require_within("rig_surprise_max", params.rig_surprise_max, 0.1, 1e6);
+  require_within("calibration_mahalanobis_max", params.calibration_mahalanobis_max, 0.1, 1e6);
   require_within("gap_max_s", params.gap_max_s, 1e-6, 3600.0);
   require_within("step_s", params.step_s, 0.0, 0.1);
   capacity_ = static_cast<std::size_t>(std::lround(params.lag_s / params.period_s)) + 1;
@@ -82,12 +82,12 @@ RateStream::State RateStream::start() const {
   return state;
 }
 
-Status RateStream::push(const ImuSample& sample, std::span<const CompanionReading> companions, State& state,
+Status RateStream::push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
                         std::optional<RateState>& out) const {
   out.reset();
-  if (!companions.empty() && companions.size() != params_.model.companions.size()) {
-    return {Trouble::too_few, "companions", static_cast<double>(companions.size()),
-            static_cast<double>(params_.model.companions.size())};
+  if (!auxiliary_imus.empty() && auxiliary_imus.size() != params_.model.auxiliary_imus.size()) {
+    return {Trouble::too_few, "auxiliary_imus", static_cast<double>(auxiliary_imus.size()),
+            static_cast<double>(params_.model.auxiliary_imus.size())};
   }
   if (Status status = check_sample(sample); !status.ok()) return status;
   if (!state.window.empty()) {
@@ -96,7 +96,7 @@ Status RateStream::push(const ImuSample& sample, std::span<const CompanionReadin
   }
   const bool due = ++state.waiting >= every_;
   if (due) forget_oldest(state);
-  append(sample, companions, state);
+  append(sample, auxiliary_imus, state);
   if (!due) {
     predict_covariance(state);
   } else if (weigh(state); !step(state)) {
@@ -160,7 +160,7 @@ void RateStream::marginalise(std::size_t first, State& state) const {
   state.left_ns = oldest.observation.sample.time_ns;
   state.prior_knot = next.estimate.knot;
   state.prior_rig = state.rig;
-  if (model_.rig_surprise(state.rig) > params_.rig_surprise_max) {
+  if (model_.calibration_mahalanobis(state.rig) > params_.calibration_mahalanobis_max) {
     // contact was taken for flight of another rig: drop what was learnt of the rig and of the motion with it
     state.rig = state.prior_rig = model_.prior_constants();
     state.rig_covariance = model_.prior_covariance();
@@ -178,12 +178,12 @@ double RateStream::jump_before(const Knot& oldest, const State& state) const {
   return model_.jump(*state.left, oldest.estimate.knot, seconds(oldest.observation.sample.time_ns - state.left_ns));
 }
 
-void RateStream::append(const ImuSample& sample, std::span<const CompanionReading> companions, State& state) const {
+void RateStream::append(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state) const {
   const bool changed = rails_.observe(sample, state.rails);
   Knot knot;
   knot.by_walls = rails_.walls().classify(sample, state.rails.known.walls);
   knot.observation = {sample, knot.by_walls, rests_.observe(sample, state.rests)};
-  std::copy(companions.begin(), companions.end(), knot.observation.companions.begin());
+  std::copy(auxiliary_imus.begin(), auxiliary_imus.end(), knot.observation.auxiliary_imus.begin());
   knot.estimate.knot.rate_rad_s = sample.angular_velocity_rad_s;
   // until a step of the window says more
   knot.covariance_rad2_s2 = std::pow(params_.model.rate_max_rad_s, 2) * Eigen::Matrix3d::Identity();
@@ -346,9 +346,9 @@ bool RateStream::equal(const State& a, const State& b) {
            e.flight_weight == f.flight_weight && e.contact_m_s2 == f.contact_m_s2 &&
            e.bound_precision == f.bound_precision && e.bound_shift == f.bound_shift && e.soft_bounds == f.soft_bounds &&
            x.covariance_rad2_s2 == y.covariance_rad2_s2 && x.age == y.age &&
-           std::equal(x.observation.companions.begin(), x.observation.companions.end(),
-                      y.observation.companions.begin(),
-                      [](const CompanionReading& r, const CompanionReading& s) { return r.same(s); });
+           std::equal(x.observation.auxiliary_imus.begin(), x.observation.auxiliary_imus.end(),
+                      y.observation.auxiliary_imus.begin(),
+                      [](const AuxiliaryReading& r, const AuxiliaryReading& s) { return r.same(s); });
   };
   return RailWatch::equal(a.rails, b.rails) && a.rests == b.rests &&
          std::equal(a.window.begin(), a.window.end(), b.window.begin(), b.window.end(), same) && a.rig == b.rig &&

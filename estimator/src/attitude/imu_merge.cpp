@@ -65,7 +65,7 @@ ImuMerge::ImuMerge(const Params& p) : params_(p), forces_(force_params(p)), reco
   require_within("offset_sigma_s", p.offset_sigma_s, 0.0, 0.1);
   require_within("gyro_range_rad_s", p.gyro_range_rad_s, kSmallest, 1e3);
   require_within("accel_range_m_s2", p.accel_range_m_s2, kSmallest, 1e5);
-  require_within("hidden_share", p.hidden_share, kSmallest, 1.0);
+  require_within("subsample_saturation_share", p.subsample_saturation_share, kSmallest, 1.0);
   require_within("hidden_force_m_s2", p.hidden_force_m_s2, kSmallest, 1e4);
   require_within("gap_max_s", p.gap_max_s, 1e-9, 1e4);
   require_within("window_s", p.window_s, 0.0, 0.1);
@@ -205,7 +205,7 @@ ImuMerge::Flags ImuMerge::choose(const Readings& readings, const Flags& present,
   if (units < kRecovering ? kept == 0 : 2 * kept <= units && kept < units) used = present;
   const bool apart = state.windows > 0 && h > 0.0;  // there is a window to take derivatives from
   if (units >= kRecovering && apart && middle_rate.cwiseAbs().maxCoeff() < params_.gyro_range_rad_s) {
-    leave_out_hidden(readings, present, forces, middle_rate, h, state, used);
+    leave_out_subsample_saturated(readings, present, forces, middle_rate, h, state, used);
   }
   for (std::size_t i = 0; i < static_cast<std::size_t>(params_.count); ++i) state.units[i].left_out += !used[i];
   return used;
@@ -276,8 +276,8 @@ void ImuMerge::close_windows(const Flags& present, const Vectors& rates, const V
 /// A blow may take a unit to its rail for less than a sample. On a rigid body one unit tells what the others feel,
 /// along the line between the two without the angular acceleration. The one that most others agree with is believed,
 /// among equals the one whose force changed least.
-void ImuMerge::leave_out_hidden(const Readings& samples, const Flags& present, const Vectors& forces,
-                                const Eigen::Vector3d& rate, double h, State& state, Flags& used) const {
+void ImuMerge::leave_out_subsample_saturated(const Readings& samples, const Flags& present, const Vectors& forces,
+                                             const Eigen::Vector3d& rate, double h, State& state, Flags& used) const {
   const double since_s = 0.5 * (h + state.length_s);
   const double apart_s = 0.5 * (state.length_s + state.length_before_s);
   const Eigen::Vector3d acceleration = (rate - state.rate_rad_s) / since_s;
@@ -290,7 +290,7 @@ void ImuMerge::leave_out_hidden(const Readings& samples, const Flags& present, c
     return params_.T_CI[k].translation() + ForceErrors::place_error_m(static_cast<int>(k), state.forces);
   };
   const auto agree = [&](std::size_t k, std::size_t j) {
-    if (std::max(peak(k), peak(j)) < params_.hidden_share * params_.accel_range_m_s2) return true;
+    if (std::max(peak(k), peak(j)) < params_.subsample_saturation_share * params_.accel_range_m_s2) return true;
     const Eigen::Vector3d d = place(k) - place(j);
     const Eigen::Vector3d misfit = forces[k] - forces[j] - acceleration.cross(d) - rate.cross(rate.cross(d));
     const double doubt = kAccelerationShare * (acceleration - before).norm() * d.norm();

@@ -99,7 +99,7 @@ void ImuMerge::watch_misfits(const Flags& present, const Vectors& rates, const V
     const ImuAverage& window = state.units[k].window;
     if (!present[k] || window.readings == 0) continue;
     railed |= window.rate_peak_rad_s >= kUnharmed * params_.gyro_range_rad_s ||
-              window.force_peak_m_s2 >= params_.hidden_share * params_.accel_range_m_s2;
+              window.force_peak_m_s2 >= params_.subsample_saturation_share * params_.accel_range_m_s2;
   }
   if (railed) return;
   const Eigen::Vector3d middle_rate = median(rates, present), middle_force = median(forces, present);

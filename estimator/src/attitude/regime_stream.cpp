@@ -46,9 +46,9 @@ RegimeStream::State RegimeStream::start() const {
   return state;
 }
 
-Status RegimeStream::push(const ImuSample& sample, std::span<const CompanionReading> companions, State& state,
+Status RegimeStream::push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
                           std::optional<RateState>& out) const {
-  if (const Status status = rate_.push(sample, companions, state.rate, out); !status.ok()) return status;
+  if (const Status status = rate_.push(sample, auxiliary_imus, state.rate, out); !status.ok()) return status;
   std::optional<RateState> carried;
   // what RateStream takes has nothing that CarriedStream refuses, but rows that are no frame
   if (state.shares.carried >= params_.carried_min) {

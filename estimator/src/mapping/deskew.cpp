@@ -53,7 +53,7 @@ void compute_levers(const SweepTrajectory& trajectory, std::span<const SweepPoin
   std::size_t hint = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const SweepTrajectory::Instant now = trajectory.at(points[i].t_s, hint);
-    levers_W_m[i] = (now.thrust_m + now.q_WI * points[i].x_I_m.cast<double>()).cast<float>();
+    levers_W_m[i] = (now.preintegrated_position_m + now.q_WI * points[i].x_I_m.cast<double>()).cast<float>();
   }
 }
 
@@ -62,7 +62,7 @@ void deskew(const SweepTrajectory& trajectory, std::span<const SweepPoint> point
   compute_levers(trajectory, points, positions_I_m);
   std::size_t hint = trajectory.intervals();
   const SweepTrajectory::Instant target = trajectory.at(target_s, hint);
-  const Eigen::Vector3d origin = trajectory.base_m(target_s) + target.thrust_m;
+  const Eigen::Vector3d origin = trajectory.base_m(target_s) + target.preintegrated_position_m;
   const Eigen::Quaterniond q_IW = target.q_WI.conjugate();
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3d world = trajectory.base_m(points[i].t_s) + positions_I_m[i].cast<double>();

@@ -88,7 +88,8 @@ void LidarInertialOdometry::Impl::start_calibration() {
 }
 
 /// What the unknowns are off by after the registration, which weighed prior and surfaces by what it made of them: the
-/// errors of the prior and the pull of the surfaces, whose scatter is measured, through the same normal equations.
+/// errors of the prior and the pull of the surfaces, whose score_covariance is measured, through the same normal
+/// equations.
 void LidarInertialOdometry::Impl::count_errors() {
   errors = prediction.errors;
   if (result.verdict != RegistrationVerdict::converged) return;
@@ -96,10 +97,10 @@ void LidarInertialOdometry::Impl::count_errors() {
   weighed.diagonal().array() += kLeastVariance;
   // what is no information corrects nothing
   Registration::Matrix kept = weighed.ldlt().solve(Registration::Matrix::Identity());
-  kept.topLeftCorner<9, 9>() += result.false_information;
+  kept.topLeftCorner<9, 9>() += result.errors_in_variables_information;
   const Registration::Matrix from_prior = result.covariance * kept;
-  const Registration::Matrix sum =
-      from_prior * prediction.errors * from_prior.transpose() + result.covariance * result.scatter * result.covariance;
+  const Registration::Matrix sum = from_prior * prediction.errors * from_prior.transpose() +
+                                   result.covariance * result.score_covariance * result.covariance;
   errors = 0.5 * (sum + sum.transpose());
 }
 

@@ -52,7 +52,7 @@ struct WindowSweep {
 /// First-order effect on the unknowns, their motion taken `t_s` after the start, of the unknowns at the start.
 Registration::Matrix unknowns_at(const SweepTrajectory& trajectory, double t_s);
 
-/// Of the excess rate from knot to knot.
+/// Of the saturation deficit from knot to knot.
 double knot_correlation(const LidarInertialOdometry::Params& params, const SweepTrajectory& trajectory);
 
 void check_params(const LidarInertialOdometry::Params& params);
@@ -102,7 +102,7 @@ struct LidarInertialOdometry::Impl {
   Status align(const Registration::Prior& prior, TimeNs end_ns, Registration::Result& result);
   Status try_start(const Registration::Prior& start, const Registration::Prior& prior, TimeNs end_ns,
                    Registration::Result& result);
-  Status align_patiently(const Registration::Prior& prior, TimeNs end_ns, Registration::Result& result);
+  Status align_to_convergence(const Registration::Prior& prior, TimeNs end_ns, Registration::Result& result);
   Status search(const Registration::Prior& prior, TimeNs end_ns, Registration::Result& result);
   /// Whether it was aligned, be it in no direction that holds it.
   bool register_sweep(TimeNs end_ns, SweepReport& report);

@@ -86,7 +86,7 @@ mapping::Prediction LidarInertialOdometry::Impl::predict() const {
     next.hold_still(kRestSpeed_m_s);
   }
   if (odometer.known) next.follow(odometer.v_WI_I_m_s, odometer.sigma_m_s);
-  const std::uint8_t axes = params.estimate_excess_rate ? trajectory.clipped_axes() : 0;
+  const std::uint8_t axes = params.estimate_saturation_deficit ? trajectory.clipped_axes() : 0;
   next.noise.topLeftCorner<9, 9>() += mapping::inertial_noise(params, trajectory, samples, axes);
   // a force that comes late in a stretch is not in the velocity that the stretch is fitted with: the next one hears of
   // it as well
@@ -101,7 +101,7 @@ mapping::Prediction LidarInertialOdometry::Impl::predict() const {
 void LidarInertialOdometry::Impl::carry_excess(mapping::Prediction& next) const {
   constexpr int kLast = SweepTrajectory::kKnots - 1;
   next.by_last.middleRows<SweepTrajectory::kExcess>(Registration::kExcess).setZero();
-  if (!params.estimate_excess_rate) return;
+  if (!params.estimate_saturation_deficit) return;
   const Eigen::Vector3d share_at_start = trajectory.excess_share_at_start();
   for (int axis = 0; axis < 3; ++axis) {
     if (!(share_at_start[axis] > 0.0 && excess_share_at_end[axis] > 0.0)) continue;
@@ -116,7 +116,7 @@ void LidarInertialOdometry::Impl::carry_excess(mapping::Prediction& next) const 
 
 /// Knots as samples of a process that forgets: of the reported standard deviation, correlated from knot to knot.
 void LidarInertialOdometry::Impl::add_excess_noise(mapping::Prediction& next) const {
-  if (!params.estimate_excess_rate) return;
+  if (!params.estimate_saturation_deficit) return;
   const double rho = mapping::knot_correlation(params, trajectory);
   for (int axis = 0; axis < 3; ++axis) {
     if (!(trajectory.clipped_axes() >> axis & 1)) continue;
@@ -171,12 +171,12 @@ Status LidarInertialOdometry::Impl::try_start(const Registration::Prior& start, 
   Registration::Prior fine = prior;
   fine.start = rough.mean.state;
   fine.excess_start_rad_s = rough.mean.excess_rad_s;
-  return align_patiently(fine, end_ns, found);
+  return align_to_convergence(fine, end_ns, found);
 }
 
 /// With some of the points for as long as it takes, and in full from where these lead.
-Status LidarInertialOdometry::Impl::align_patiently(const Registration::Prior& prior, TimeNs end_ns,
-                                                    Registration::Result& found) {
+Status LidarInertialOdometry::Impl::align_to_convergence(const Registration::Prior& prior, TimeNs end_ns,
+                                                         Registration::Result& found) {
   Status status = patient.align(prior, samples, end_ns, some, map, trajectory, found);
   if (!status.ok() || found.verdict != RegistrationVerdict::converged) return status;
   Registration::Prior near = prior;
@@ -188,8 +188,8 @@ Status LidarInertialOdometry::Impl::align_patiently(const Registration::Prior& p
   return status;
 }
 
-/// Registers; where that fails and the rate may be short on a clipped axis, tries again from larger excess rates, since
-/// a rail that is left behind within one sweep may put the start a whole radian off.
+/// Registers; where that fails and the rate may be short on a clipped axis, tries again from larger saturation
+/// deficits, since a rail that is left behind within one sweep may put the start a whole radian off.
 Status LidarInertialOdometry::Impl::align(const Registration::Prior& prior, TimeNs end_ns,
                                           Registration::Result& found) {
   Status status = registration.align(prior, samples, end_ns, chosen, map, trajectory, found);
@@ -198,7 +198,7 @@ Status LidarInertialOdometry::Impl::align(const Registration::Prior& prior, Time
   const bool out_of_bounds =
       found.correction_m > params.correction_max_m || found.correction_rad > params.correction_max_rad;
   if (status.ok() && found.verdict == RegistrationVerdict::diverged && !out_of_bounds) {
-    status = align_patiently(prior, end_ns, found);
+    status = align_to_convergence(prior, end_ns, found);
     iterations += found.iterations;
   }
   for (const double more : kExcessTries_rad_s) {
@@ -257,7 +257,7 @@ bool LidarInertialOdometry::Impl::register_sweep(TimeNs end_ns, SweepReport& rep
   report.weakest_sigma_m = result.weakest_sigma_m;
   report.verdict =
       report.weakest_sigma_m > params.degenerate_sigma_m ? SweepVerdict::degenerate : SweepVerdict::registered;
-  report.excess_rate_rad_s = result.mean.excess_rad_s.rowwise().mean();
+  report.saturation_deficit_rad_s = result.mean.excess_rad_s.rowwise().mean();
   return true;
 }
 

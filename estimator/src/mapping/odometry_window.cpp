@@ -24,7 +24,7 @@ void LidarInertialOdometry::Impl::enter_window(TimeNs end_ns, bool aligned, Swee
   sweep.end_ns = end_ns;
   sweep.drawn.swap(drawn);
   if (window.size() > static_cast<std::size_t>(params.window_sweeps)) {
-    report.settled = describe(window.front());
+    report.smoothed = describe(window.front());
     window.pop_front();
   }
   if (window.size() < 2 || !aligned) return;
@@ -68,7 +68,7 @@ void LidarInertialOdometry::Impl::redraw(mapping::WindowSweep& sweep) {
     const double t_s = drawn_point.point.t_s + later_s;
     const SweepTrajectory::Instant at = motion.at(t_s, hint);
     const Eigen::Vector3d position =
-        motion.base_m(t_s) + at.thrust_m + at.q_WI * (T_IL * drawn_point.point.x_L_m.cast<double>());
+        motion.base_m(t_s) + at.preintegrated_position_m + at.q_WI * (T_IL * drawn_point.point.x_L_m.cast<double>());
     map.move(drawn_point.index, position.cast<float>());
   }
 }

@@ -77,7 +77,7 @@ Registration::Registration(const Params& params) : params_(params) {
   require_within("range_sigma_share", params.range_sigma_share, 0.0, 1.0);
   require_within("skew_sigma_m_s", params.skew_sigma_m_s, 0.0, 1e3);
   require_within("kernel_min_m", params.kernel_min_m, 1e-6, 1e3);
-  require_within("information_share", params.information_share, 1e-6, 1.0);
+  require_within("correlation_discount", params.correlation_discount, 1e-6, 1.0);
   require_within("cluster_m", params.cluster_m, 0.01, 100.0);
   require_within("matched_share_min", params.matched_share_min, 0.0, 1.0);
   require_within("fitting_share_min", params.fitting_share_min, 0.0, 1.0);
@@ -158,7 +158,7 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
   result.verdict = RegistrationVerdict::converged;
   describe_shape(points, kernel_m, sum, result);
   if (Status status = build(result.mean); !status.ok()) return status;
-  result.scatter = scatter(points, trajectory, now.calibration, unknowns, kernel_m);
+  result.score_covariance = score_covariance(points, trajectory, now.calibration, unknowns, kernel_m);
   return {};
 }
 
@@ -176,7 +176,7 @@ void Registration::describe_shape(std::span<const SweepPoint> points, double ker
     weight += robust;
     lever2 += robust * lever.squaredNorm();
   }
-  result.false_information = false_information(points, kernel_m);
+  result.errors_in_variables_information = errors_in_variables_information(points, kernel_m);
   const double lever_m = std::sqrt(std::max(lever2 / weight, 1e-12));
   Eigen::Matrix<double, 6, 1> scale;
   scale << 1.0, 1.0, 1.0, 1.0 / lever_m, 1.0 / lever_m, 1.0 / lever_m;
@@ -185,13 +185,14 @@ void Registration::describe_shape(std::span<const SweepPoint> points, double ker
   result.eigenvalues = solver.eigenvalues().cwiseMax(0.0);
   result.directions = solver.eigenvectors();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> information(
-      scale.asDiagonal() * (sum.H.topLeftCorner<6, 6>() - result.false_information.topLeftCorner<6, 6>()) *
+      scale.asDiagonal() *
+          (sum.H.topLeftCorner<6, 6>() - result.errors_in_variables_information.topLeftCorner<6, 6>()) *
           scale.asDiagonal(),
       Eigen::EigenvaluesOnly);
   result.weakest_sigma_m = 1.0 / std::sqrt(std::max(information.eigenvalues()[0], 1e-12));
 }
 
-Eigen::Matrix<double, Registration::kMotion, Registration::kMotion> Registration::false_information(
+Eigen::Matrix<double, Registration::kMotion, Registration::kMotion> Registration::errors_in_variables_information(
     std::span<const SweepPoint> points, double kernel_m) const {
   Eigen::Matrix<double, kMotion, kMotion> lower = Eigen::Matrix<double, kMotion, kMotion>::Zero();
   for (std::size_t i = 0; i < points.size(); ++i) {

@@ -80,7 +80,7 @@ double Registration::residual(const SweepTrajectory& trajectory, const SweepCali
   const SweepTrajectory::Instant now = trajectory.at(point.t_s, hint);
   const Eigen::Vector3d x_I = point.x_I_m.cast<double>();
   const Eigen::Vector3d turned = now.q_WI * x_I;
-  const Eigen::Vector3d lever = now.thrust_m + turned;
+  const Eigen::Vector3d lever = now.preintegrated_position_m + turned;
   const Eigen::Vector3d n = plane.normal_W.cast<double>();
   const Eigen::Vector3d n_I = now.q_WI.conjugate() * n;
   const double t = point.t_s;
@@ -90,7 +90,7 @@ double Registration::residual(const SweepTrajectory& trajectory, const SweepCali
   if (trajectory.clipped_axes() != 0) {
     const SweepTrajectory::ExcessDerivative by_excess = trajectory.excess_derivative(t, hint);
     derivative.segment<SweepTrajectory::kExcess>(kExcess) =
-        by_excess.thrust_m_s.transpose() * n + by_excess.attitude_s.transpose() * turned.cross(n);
+        by_excess.preintegrated_position_m_s.transpose() * n + by_excess.attitude_s.transpose() * turned.cross(n);
   } else {
     derivative.segment<SweepTrajectory::kExcess>(kExcess).setZero();
   }
@@ -122,7 +122,7 @@ Registration::Weight Registration::weigh(const SweepPoint& point, const Match& m
   const double variance = point_variance_m2(point) + match.map_variance_m2;
   const double soft = 1.0 + distance_m * distance_m / (kernel_m * kernel_m);
   const double robust = 1.0 / (soft * soft);
-  return {variance, robust, robust * params_.information_share / variance};
+  return {variance, robust, robust * params_.correlation_discount / variance};
 }
 
 /// Where the points lie in the world by this trajectory, the planes that they belong to, and how far they are from
@@ -137,7 +137,7 @@ void Registration::place(const SweepTrajectory& trajectory, std::span<const Swee
     const std::size_t end = std::min(points.size(), (block + 1) * kBlock);
     for (std::size_t i = block * kBlock; i < end; ++i) {
       const SweepTrajectory::Instant now = trajectory.at(points[i].t_s, hint);
-      levers_[i] = (now.thrust_m + now.q_WI * points[i].x_I_m.cast<double>()).cast<float>();
+      levers_[i] = (now.preintegrated_position_m + now.q_WI * points[i].x_I_m.cast<double>()).cast<float>();
       positions_[i] = (trajectory.base_m(points[i].t_s) + levers_[i].cast<double>()).cast<float>();
       find_match(map, i, found);
       distances_[i] = matches_[i].plane.normal_W.dot(positions_[i] - matches_[i].plane.centre_W_m);
@@ -208,9 +208,10 @@ void Registration::accumulate(std::span<const SweepPoint> points, const SweepTra
   sum.H = lower.selfadjointView<Eigen::Lower>();
 }
 
-Registration::Matrix Registration::scatter(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
-                                           const SweepCalibration& calibration, const Unknowns& unknowns,
-                                           double kernel_m) {
+Registration::Matrix Registration::score_covariance(std::span<const SweepPoint> points,
+                                                    const SweepTrajectory& trajectory,
+                                                    const SweepCalibration& calibration, const Unknowns& unknowns,
+                                                    double kernel_m) {
   cluster_of_.clear();
   pulls_.clear();
   const float cubes_per_m = static_cast<float>(1.0 / params_.cluster_m);

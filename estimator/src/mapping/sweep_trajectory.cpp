@@ -23,7 +23,7 @@ Eigen::Vector3d least_known(std::span<const MotionSample> samples, TimeNs end_ns
   return sigma;
 }
 
-/// What an excess rate of one does to a sample: signed, in proportion to how little is known of the sample.
+/// What an saturation deficit of one does to a sample: signed, in proportion to how little is known of the sample.
 Eigen::Vector3d signed_shares(const MotionSample& sample, const Eigen::Vector3d& least_known_rad_s) {
   Eigen::Vector3d share = Eigen::Vector3d::Zero();
   for (int axis = 0; axis < 3; ++axis) {
@@ -94,7 +94,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
   const Eigen::Vector3d sigma = least_known(samples, end_ns);
   Interval next{};
   next.q_WI = start.q_WI;
-  next.thrust_v = next.thrust_p = next.w_I = next.a_W = next.excess_share = Eigen::Vector3d::Zero();
+  next.preintegrated_v = next.preintegrated_p = next.w_I = next.a_W = next.excess_share = Eigen::Vector3d::Zero();
   next.excess_attitude = next.excess_v = next.excess_p = ByExcess::Zero();
   for (const MotionSample& sample : samples) {
     const TimeNs from = std::max(sample.from_ns, start.time_ns);
@@ -115,8 +115,8 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     now.a_W = sample.bridges_gap ? Eigen::Vector3d(-gravity_W_m_s2) : Eigen::Vector3d(mean_rotation * sample.f_I_m_s2);
 
     next.q_WI = (now.q_WI * so3::exp(now.w_I * dt)).normalized();
-    next.thrust_v = now.thrust_v + now.a_W * dt;
-    next.thrust_p = now.thrust_p + now.thrust_v * dt + now.a_W * (0.5 * dt * dt);
+    next.preintegrated_v = now.preintegrated_v + now.a_W * dt;
+    next.preintegrated_p = now.preintegrated_p + now.preintegrated_v * dt + now.a_W * (0.5 * dt * dt);
     if (clipped_axes_ == 0) continue;
     next.excess_attitude = now.excess_attitude + gained_by_excess(now, dt);
     // the force turns with the mean attitude error of the interval
@@ -140,14 +140,14 @@ SweepTrajectory::Instant SweepTrajectory::at(double t_s, std::size_t& hint) cons
   const double t = std::clamp(t_s, -kBeyond_s, duration_s_ + kBeyond_s);
   const Interval& now = interval_at(t, hint);
   const double s = t - now.start_s;
-  return {now.q_WI * turned_by(now.w_I, s), now.thrust_p + s * now.thrust_v + (0.5 * s * s) * now.a_W};
+  return {now.q_WI * turned_by(now.w_I, s), now.preintegrated_p + s * now.preintegrated_v + (0.5 * s * s) * now.a_W};
 }
 
 Eigen::Vector3d SweepTrajectory::velocity_m_s(double t_s, const Eigen::Vector3d& x_I_m, std::size_t& hint) const {
   const double t = std::clamp(t_s, -kBeyond_s, duration_s_ + kBeyond_s);
   const Interval& now = interval_at(t, hint);
   const double s = t - now.start_s;
-  return start_.v_WI_m_s + t * gravity_W_m_s2_ + now.thrust_v + s * now.a_W +
+  return start_.v_WI_m_s + t * gravity_W_m_s2_ + now.preintegrated_v + s * now.a_W +
          now.q_WI * (turned_by(now.w_I, s) * now.w_I.cross(x_I_m));
 }
 
@@ -178,8 +178,8 @@ MotionState SweepTrajectory::state(double t_s) const {
   MotionState state;
   state.time_ns = start_.time_ns + static_cast<TimeNs>(std::llround(t * 1e9));
   state.q_WI = (now.q_WI * so3::exp(now.w_I * s)).normalized();
-  state.p_WI_m = base_m(t) + now.thrust_p + s * now.thrust_v + (0.5 * s * s) * now.a_W;
-  state.v_WI_m_s = start_.v_WI_m_s + now.thrust_v + s * now.a_W + t * gravity_W_m_s2_;
+  state.p_WI_m = base_m(t) + now.preintegrated_p + s * now.preintegrated_v + (0.5 * s * s) * now.a_W;
+  state.v_WI_m_s = start_.v_WI_m_s + now.preintegrated_v + s * now.a_W + t * gravity_W_m_s2_;
   const Eigen::Matrix<double, 9, 9> F = transition(t).by_start;
   const Eigen::Matrix<double, 9, 9> P = F * start_.covariance * F.transpose();
   state.covariance = 0.5 * (P + P.transpose());
@@ -193,13 +193,14 @@ SweepTrajectory::Transition SweepTrajectory::transition(double t_s) const {
   const double s = t - now.start_s;
   Transition out;
   out.by_start.setIdentity();
-  out.by_start.block<3, 3>(0, 3) = -so3::hat(now.thrust_p + s * now.thrust_v + (0.5 * s * s) * now.a_W);
+  out.by_start.block<3, 3>(0, 3) = -so3::hat(now.preintegrated_p + s * now.preintegrated_v + (0.5 * s * s) * now.a_W);
   out.by_start.block<3, 3>(0, 6) = t * Eigen::Matrix3d::Identity();
-  out.by_start.block<3, 3>(6, 3) = -so3::hat(now.thrust_v + s * now.a_W);
+  out.by_start.block<3, 3>(6, 3) = -so3::hat(now.preintegrated_v + s * now.a_W);
 
   const ExcessDerivative excess = excess_derivative(t, hint);
   const ByExcess mean_attitude = 0.5 * (now.excess_attitude + excess.attitude_s);
-  out.by_excess_s << excess.thrust_m_s, excess.attitude_s, now.excess_v - so3::hat(now.a_W) * mean_attitude * s;
+  out.by_excess_s << excess.preintegrated_position_m_s, excess.attitude_s,
+      now.excess_v - so3::hat(now.a_W) * mean_attitude * s;
   out.by_gravity << 0.5 * t * t * Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Zero(), t * Eigen::Matrix3d::Identity();
   return out;
 }

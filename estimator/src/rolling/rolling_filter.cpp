@@ -97,10 +97,10 @@ void RollingFilter::close_node(const Eigen::Vector3d& next_rate_rad_s, State& st
     Hypothesis& h = state.hypotheses[static_cast<std::size_t>(k)];
     rolling::predict(params_, state.sums, B, h.x, h.P);
   }
-  state.settled_spread_m2.setZero();
+  state.pruned_spread_m2.setZero();
   detect_rest(state);
   Hypothesis& best = state.hypotheses[0];
-  if (rolling::relevel(params_, state.sums, state.at_rest, state.nominal, best.P)) {
+  if (rolling::reset_tilt(params_, state.sums, state.at_rest, state.nominal, best.P)) {
     best.x.setZero();
     for (int k = 1; k < state.count; ++k) state.hypotheses[static_cast<std::size_t>(k)] = Hypothesis{};
     state.count = 1;
@@ -114,8 +114,8 @@ void RollingFilter::close_node(const Eigen::Vector3d& next_rate_rad_s, State& st
       state.hypotheses[0].P.block<3, 3>(rolling::kPosition, rolling::kPosition) + position_spread(state);
   // what they disagree in about the past is where they are
   if (state.at_rest && state.count == 1) {
-    state.hypotheses[0].P.block<3, 3>(rolling::kPosition, rolling::kPosition) += state.settled_spread_m2;
-    state.position_covariance_m2 += state.settled_spread_m2;
+    state.hypotheses[0].P.block<3, 3>(rolling::kPosition, rolling::kPosition) += state.pruned_spread_m2;
+    state.position_covariance_m2 += state.pruned_spread_m2;
   }
   call_uncertain(state);
   weigh_events(state);
@@ -129,7 +129,7 @@ void RollingFilter::detect_rest(State& state) const {
   const double h = state.sums.node_s;
   if (state.sums.gap_s > 0.0) {  // two readings are not the rest that may have been between them
     state.rest_s = 0.0;
-    state.at_rest = state.pivots = false;
+    state.at_rest = state.spins_in_place = false;
     return;
   }
   const Eigen::Vector3d f_mean = state.sums.f_I_m_s / h;
@@ -140,11 +140,11 @@ void RollingFilter::detect_rest(State& state) const {
   state.at_rest = quiet && state.rest_s >= params_.rest_time_s;
   const Eigen::Vector3d w_mean = state.sums.w_I_rad / h + state.nominal.gyro_bias_rad_s;
   state.slow_rate_rad_s += -std::expm1(-h / kSlowRateTau_s) * (w_mean - state.slow_rate_rad_s);
-  state.pivots = state.at_rest && pivots(state);
+  state.spins_in_place = state.at_rest && spins_in_place(state);
 }
 
 /// Whether a sphere that stands still turns about its contact: so slowly that only what is known of the bias tells.
-bool RollingFilter::pivots(const State& state) const {
+bool RollingFilter::spins_in_place(const State& state) const {
   const double averaged = params_.node_s / (2.0 * kSlowRateTau_s);
   const Hypothesis& best = state.hypotheses[0];
   const Eigen::Array3d variance = best.P.diagonal().segment<3>(rolling::kGyroBias).array() +

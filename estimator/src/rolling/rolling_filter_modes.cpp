@@ -158,7 +158,8 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, State& sta
       if (too_fast && !slips(mode)) continue;
       double likelihood = 0.0;  // a gap speaks for no mode
       if (!in_gap) likelihood = slips(mode) ? log_moving(c, h, mode, u, params_) : log_still(c, h, mode, params_);
-      const double blow = mode == RollingMode::bump ? 0.0 : state.sums.blow_m_s / params_.blow_m_s;
+      const double blow =
+          mode == RollingMode::bump ? 0.0 : state.sums.unexplained_impact_m_s / params_.unexplained_impact_m_s;
       candidates[total++] = {h.log_weight + log_transition(h.mode, mode, node_s) + likelihood - blow, parent, mode,
                              mode == h.mode ? h.switched_node : state.node};
     }
@@ -206,7 +207,7 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, State& sta
   state.count = static_cast<int>(count);
 }
 
-/// Every hypothesis stands still: velocity and, unless it pivots, rate are zero, the contact grips.
+/// Every hypothesis stands still: velocity and, unless it spins in place, rate are zero, the contact grips.
 void RollingFilter::correct_at_rest(State& state) const {
   for (int k = 0; k < state.count; ++k) {
     Hypothesis& h = state.hypotheses[static_cast<std::size_t>(k)];
@@ -217,7 +218,7 @@ void RollingFilter::correct_at_rest(State& state) const {
       const double v = state.nominal.v_WI_m_s[axis] + h.x[velocity];
       likelihood += log_normal(v, h.P(velocity, velocity) + variance);
       rolling::update(velocity, -state.nominal.v_WI_m_s[axis], variance, h.x, h.P);
-      if (state.pivots) continue;
+      if (state.spins_in_place) continue;
       const double bias = state.sums.w_I_rad[axis] / state.sums.node_s;  // already without the nominal bias
       rolling::update(rolling::kGyroBias + axis, bias, squared(params_.rest_rate_sigma_rad_s), h.x, h.P);
     }
@@ -235,7 +236,7 @@ void RollingFilter::correct_at_rest(State& state) const {
             });
   // they agree about the present, so after a while one is enough
   const bool settled = state.rest_s > kSettled_s;
-  if (settled && state.count > 1) state.settled_spread_m2 = position_spread(state);
+  if (settled && state.count > 1) state.pruned_spread_m2 = position_spread(state);
   const double best = state.hypotheses[0].log_weight;
   int kept = 0;
   for (int k = 0; k < state.count; ++k) {

@@ -131,11 +131,12 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   sums.f_I_m_s += dt_s * f_raw;
   sums.turned_rad2_s += dt_s * w.squaredNorm();
   const double about_gravity = std::abs(f.norm() - gravity) - kUsual_m_s2;
-  sums.shock_m_s += dt_s * std::max(0.0, about_gravity);
-  sums.blow_m_s += dt_s * std::max(0.0, about_gravity - kOffCentre_m * w.squaredNorm());
+  sums.impact_m_s += dt_s * std::max(0.0, about_gravity);
+  sums.unexplained_impact_m_s += dt_s * std::max(0.0, about_gravity - kOffCentre_m * w.squaredNorm());
   const double peak = f_raw.cwiseAbs().maxCoeff() / params.accel_range_m_s2;
   const double hidden = std::clamp((peak - kHiddenFrom) / (kHiddenTo - kHiddenFrom), 0.0, 1.0);
-  if (!clipped && hidden > 0.0) sums.hidden_W_m_s += params.hidden_clip_share * hidden * (R_T * f);
+  if (!clipped && hidden > 0.0)
+    sums.subsample_saturation_W_m_s += params.subsample_saturation_share * hidden * (R_T * f);
   if (clipped) sums.force_clipped_s += dt_s;
   if (lost) sums.rate_clipped_s += dt_s;
   if (beyond && !lost) sums.recovered_s += dt_s;
@@ -205,10 +206,10 @@ void predict(const RollingParams& params, const RollingSums& sums, const Moving&
                           squared(params.rate_error_sqrts) * sums.turned_rad2_s + sums.gap_rad2 +
                           squared(params.clipped_rate_sigma_rad_s * sums.rate_clipped_s) +
                           squared(params.recovered_rate_sigma_rad_s) * 2.0 * kRecoveredTau_s * sums.recovered_s;
-  const double velocity = squared(params.velocity_walk_m_s_sqrts) * h + squared(params.shock_share * sums.shock_m_s) +
+  const double velocity = squared(params.velocity_walk_m_s_sqrts) * h + squared(params.impact_share * sums.impact_m_s) +
                           squared(params.spin_force_sqrts * sums.turned_rad2_s) / h +
                           squared(params.clipped_force_sigma_m_s2 * sums.force_clipped_s);
-  P.block<3, 3>(kVelocity, kVelocity) += sums.hidden_W_m_s * sums.hidden_W_m_s.transpose();
+  P.block<3, 3>(kVelocity, kVelocity) += sums.subsample_saturation_W_m_s * sums.subsample_saturation_W_m_s.transpose();
   auto diagonal = P.diagonal();
   diagonal.segment<3>(kAttitude).array() += attitude;
   diagonal.segment<3>(kVelocity).array() += velocity;
@@ -283,8 +284,8 @@ void change_floor(const RollingParams& params, RollingMode from, RollingMode to,
   x.segment<2>(kSlope) = -nominal.slope;
 }
 
-bool relevel(const RollingParams& params, const RollingSums& sums, bool at_rest, RollingNominal& nominal,
-             Covariance& P) {
+bool reset_tilt(const RollingParams& params, const RollingSums& sums, bool at_rest, RollingNominal& nominal,
+                Covariance& P) {
   if (sums.force_clipped_s >= sums.node_s) return false;
   if (sums.turned_rad2_s > squared(kFastTurn_rad_s) * sums.node_s) return false;
   const Eigen::Vector3d f_I_m_s2 = sums.f_I_m_s / sums.node_s;

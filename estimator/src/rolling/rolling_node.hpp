@@ -93,8 +93,8 @@ bool forgets_slope(RollingMode from, RollingMode to);
 
 /// After clipping the attitude may be lost: levels it anew by the node's mean force, at rest or not, and forgets the
 /// velocity. False when there was no need, or the node's force tells nothing.
-bool relevel(const RollingParams& params, const RollingSums& sums, bool at_rest, RollingNominal& nominal,
-             Covariance& P);
+bool reset_tilt(const RollingParams& params, const RollingSums& sums, bool at_rest, RollingNominal& nominal,
+                Covariance& P);
 
 /// Kalman update by a scalar row: measurement = row x + noise.
 void update(const Row& row, double measured, double variance, Vector& x, Covariance& P);

@@ -37,12 +37,12 @@ void require_noise(const RollingParams& p) {
   require_within("rest_velocity_sigma_m_s", p.rest_velocity_sigma_m_s, kSmallest, 1e3);
   require_within("rest_rate_sigma_rad_s", p.rest_rate_sigma_rad_s, kSmallest, 1e3);
   require_within("gyro_range_rad_s", p.gyro_range_rad_s, kSmallest, 1e3);
-  require_within("hidden_clip_share", p.hidden_clip_share, 0.0, 10.0);
-  require_within("shock_share", p.shock_share, 0.0, 1e3);
+  require_within("subsample_saturation_share", p.subsample_saturation_share, 0.0, 10.0);
+  require_within("impact_share", p.impact_share, 0.0, 1e3);
   require_within("accel_range_m_s2", p.accel_range_m_s2, kSmallest, 1e5);
   require_within("clipped_force_sigma_m_s2", p.clipped_force_sigma_m_s2, kSmallest, 1e3);
   require_within("recovered_rate_sigma_rad_s", p.recovered_rate_sigma_rad_s, 0.0, 1e3);
-  require_within("blow_m_s", p.blow_m_s, kSmallest, 1e3);
+  require_within("unexplained_impact_m_s", p.unexplained_impact_m_s, kSmallest, 1e3);
   require_within("speed_max_m_s", p.speed_max_m_s, kSmallest, 1e3);
   require_within("speed_sigma_m_s", p.speed_sigma_m_s, kSmallest, 1e3);
   require_within("clipped_rate_sigma_rad_s", p.clipped_rate_sigma_rad_s, kSmallest, 1e3);

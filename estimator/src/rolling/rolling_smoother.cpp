@@ -114,10 +114,10 @@ Status RollingSmoother::step(const ImuSample& sample, State& state, std::vector<
       step.parent[k] = static_cast<std::uint8_t>(live.hypotheses[k].parent);
       step.mode[k] = live.hypotheses[k].mode;
     }
-    step.spread_m2 = live.settled_spread_m2;
+    step.spread_m2 = live.pruned_spread_m2;
     step.rest_s = live.rest_s;
     step.at_rest = live.at_rest;
-    step.pivots = live.pivots;
+    step.spins_in_place = live.spins_in_place;
     steps.push_back(step);
   };
   const std::size_t nodes = state.steps.size();
@@ -168,7 +168,7 @@ std::vector<RollingSmoother::PathNode> RollingSmoother::best_path(const State& s
     path[n].stands = lasts_s > 0.0 && lasts_s >= stands_after_s;
     path[n].mode = step.mode[which];
     path[n].at_rest = step.at_rest;
-    path[n].pivots = step.pivots;
+    path[n].spins_in_place = step.spins_in_place;
     path[n].spread_m2 = step.spread_m2;
     which = step.parent[which];
   }

@@ -30,7 +30,7 @@ void measure_rest(const RollingParams& params, const RollingSums& sums, const Ro
   for (int axis = 0; axis < 3; ++axis) {
     const Row velocity = Vector::Unit(kVelocity + axis).transpose(), bias = Vector::Unit(kGyroBias + axis).transpose();
     measure(velocity, -nominal.v_WI_m_s[axis], squared(params.rest_velocity_sigma_m_s), record, x, P);
-    if (record.path.pivots) continue;
+    if (record.path.spins_in_place) continue;
     measure(bias, sums.w_I_rad[axis] / sums.node_s, squared(params.rest_rate_sigma_rad_s), record, x, P);
   }
 }
@@ -122,7 +122,7 @@ NodeRecord close_node(const RollingParams& params, const RollingSums& sums, cons
   record.B = transition(sums);
   Vector x = Vector::Zero();
   predict(params, sums, record.B, x, filter.P);
-  record.relevelled = relevel(params, sums, path.at_rest, filter.nominal, filter.P);
+  record.tilt_reset = reset_tilt(params, sums, path.at_rest, filter.nominal, filter.P);
   record.forgets_slope = forgets_slope(filter.mode, path.mode);
   change_floor(params, filter.mode, path.mode, sums.node_s, filter.nominal, x, filter.P);
   if (path.at_rest) {
@@ -188,7 +188,7 @@ Reported smooth_back(const Eigen::Matrix<double, kReported, kStates>& P_rows, st
       Lambda.middleRows<2>(kSlope).setZero();
       Lambda.middleCols<2>(kSlope).setZero();
     }
-    if (node.relevelled) {
+    if (node.tilt_reset) {
       lambda.head<6>().setZero();
       Lambda.topRows<6>().setZero();
       Lambda.leftCols<6>().setZero();

@@ -14,8 +14,8 @@ namespace tumble::rolling {
 struct PathNode {
   RollingMode mode = RollingMode::grip;
   bool at_rest = false;
-  bool pivots = false;  ///< at rest, yet it turns about its contact
-  bool stands = false;  ///< quiet, and for so long about it that it may be standing still
+  bool spins_in_place = false;  ///< at rest, yet it turns about its contact
+  bool stands = false;          ///< quiet, and for so long about it that it may be standing still
   Eigen::Matrix3d spread_m2 = Eigen::Matrix3d::Zero();
 };
 
@@ -31,7 +31,7 @@ struct NodeRecord {
   std::array<double, kRowsMax> innovation{}, variance{};
   int rows = 0;
   bool forgets_slope = false;
-  bool relevelled = false;
+  bool tilt_reset = false;
   Eigen::Matrix<double, kReported, kStates> P_rows;  ///< after the update
   Reported correction;                               ///< by which the update moved the nominal
   RollingNominal nominal;                            ///< after the update

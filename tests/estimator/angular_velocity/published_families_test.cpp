@@ -107,28 +107,28 @@ TEST(ClippedBaseline, BridgesASwingThatPassesTheRailOnce) {
   EXPECT_NEAR(worst_baseline(swing, ClippedBaseline::Kind::reject), raw(swing), 0.05 * raw(swing));
 }
 
-TEST(AccelerometerRate, TwoCompanionsGiveTheClippedRate) {
+TEST(AccelerometerRate, TwoAuxiliaryImusGiveTheClippedRate) {
   const Swing swing;
   const std::vector<ImuSample> samples = swing.samples();
-  std::vector<Companion> companions(2);
-  companions[0].p_I_m = {0.3, 0.0, 0.0};
-  companions[1].p_I_m = {0.0, 0.0, 0.3};
-  for (Companion& companion : companions) {
+  std::vector<AuxiliaryAccelerometer> auxiliary_imus(2);
+  auxiliary_imus[0].p_I_m = {0.3, 0.0, 0.0};
+  auxiliary_imus[1].p_I_m = {0.0, 0.0, 0.3};
+  for (AuxiliaryAccelerometer& auxiliary_imu : auxiliary_imus) {
     for (std::size_t k = 0; k < swing.count(); ++k) {
-      companion.specific_force_m_s2.push_back(swing.force_at(companion.p_I_m, k));
+      auxiliary_imu.specific_force_m_s2.push_back(swing.force_at(auxiliary_imu.p_I_m, k));
     }
   }
-  const auto run = [&](std::span<const Companion> given) {
+  const auto run = [&](std::span<const AuxiliaryAccelerometer> given) {
     return worst_of(swing, [&](std::vector<RateState>& out) {
       return AccelerometerRate({.rails = rails()}).estimate(samples, given, out);
     });
   };
-  EXPECT_LT(run(companions), 0.1 * raw(swing));
+  EXPECT_LT(run(auxiliary_imus), 0.1 * raw(swing));
   // negative control: nothing to tell the rate from
   EXPECT_GT(run({}), 0.3 * raw(swing));
-  companions[1].specific_force_m_s2.pop_back();
+  auxiliary_imus[1].specific_force_m_s2.pop_back();
   std::vector<RateState> out;
-  EXPECT_EQ(AccelerometerRate(AccelerometerRate::Params{}).estimate(samples, companions, out).trouble,
+  EXPECT_EQ(AccelerometerRate(AccelerometerRate::Params{}).estimate(samples, auxiliary_imus, out).trouble,
             Trouble::too_few);
 }
 

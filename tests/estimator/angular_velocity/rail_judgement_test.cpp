@@ -12,9 +12,9 @@
 
 #include "estimator/angular_velocity/drawn_elements.hpp"
 #include "estimator/angular_velocity/tumble_recording.hpp"
+#include "tumble/angular_velocity/auxiliary_imu.hpp"
 #include "tumble/angular_velocity/clipped_baseline.hpp"
 #include "tumble/angular_velocity/clipping_finder.hpp"
-#include "tumble/angular_velocity/companion.hpp"
 #include "tumble/angular_velocity/rail_watch.hpp"
 #include "tumble/angular_velocity/rate_smoother.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
@@ -175,22 +175,22 @@ TumbleRecording tilted_gyro() {
   return make_tumble(options);
 }
 
-// What a companion with tilted elements says of free ones is true while another clips; axis by axis it is not.
-TEST(RailJudgement, ACompanionIsReadAlongItsElements) {
+// What a auxiliary IMU with tilted elements says of free ones is true while another clips; axis by axis it is not.
+TEST(RailJudgement, AnAuxiliaryImuIsReadAlongItsElements) {
   const TumbleRecording tumble = tilted_gyro();
   const ClippingFinder::Found found = ClippingFinder({}).find(tumble.samples);
-  CompanionImu companion;
-  companion.gyro_elements = found.rails.rows(Triad::gyro, 0.03);
-  std::vector<CompanionReading> readings;
-  ASSERT_TRUE(align(companion, tumble.samples, found.clippings, tumble.samples, 1.0, readings).ok());
-  const Matrix3d& rows = companion.gyro_elements.rows;
+  AuxiliaryImu auxiliary_imu;
+  auxiliary_imu.gyro_elements = found.rails.rows(Triad::gyro, 0.03);
+  std::vector<AuxiliaryReading> readings;
+  ASSERT_TRUE(align(auxiliary_imu, tumble.samples, found.clippings, tumble.samples, 1.0, readings).ok());
+  const Matrix3d& rows = auxiliary_imu.gyro_elements.rows;
   double along = 0.0, by_axis = 0.0;
   int count = 0;
   for (std::size_t k = 0; k < readings.size(); ++k) {
     EXPECT_EQ(readings[k].rate_by_elements, found.clippings[k].gyro != 0) << k;
     if (!readings[k].rate_by_elements || tumble.hidden[k].norm() < 2.0) continue;
     for (int j = 0; j < 3; ++j) {
-      if (!std::isfinite(readings[k].rate_rad_s[j]) || companion.gyro_elements.slope_sigma[j] > 0.01) continue;
+      if (!std::isfinite(readings[k].rate_rad_s[j]) || auxiliary_imu.gyro_elements.slope_sigma[j] > 0.01) continue;
       along += std::abs(readings[k].rate_rad_s[j] - rows.row(j).dot(tumble.truth[k]));
       by_axis += std::abs(tumble.samples[k].angular_velocity_rad_s[j] - tumble.truth[k][j]);
       ++count;
@@ -199,7 +199,7 @@ TEST(RailJudgement, ACompanionIsReadAlongItsElements) {
   ASSERT_GT(count, 50);
   EXPECT_LT(along, 0.3 * by_axis);
   std::vector<Clipping> few(3);
-  EXPECT_EQ(align(companion, tumble.samples, few, tumble.samples, 1.0, readings).trouble, Trouble::too_few);
+  EXPECT_EQ(align(auxiliary_imu, tumble.samples, few, tumble.samples, 1.0, readings).trouble, Trouble::too_few);
 }
 
 // Published with the wall of each axis, judged by planes on demand.

@@ -123,10 +123,10 @@ TEST(RateStream, TheShapeOfABoxIsExpectedAndThatOfARodIsNot) {
   const auto surprise = [&](const Vector3d& moments) {
     RigConstants rig = model.prior_constants();
     rig.inertia = RigConstants::inertia_coordinates(moments.asDiagonal());
-    return model.rig_surprise(rig);
+    return model.calibration_mahalanobis(rig);
   };
   EXPECT_NEAR(surprise({8.0, 13.0, 13.0}), 1.07, 0.01);  // sides 3 : 2 : 2
-  EXPECT_GT(surprise({1.0, 1.0, 2.0}), params.rig_surprise_max);
+  EXPECT_GT(surprise({1.0, 1.0, 2.0}), params.calibration_mahalanobis_max);
   EXPECT_NEAR(surprise({0.0, 1.0, 1.0}), 3.65, 0.01);
 }
 

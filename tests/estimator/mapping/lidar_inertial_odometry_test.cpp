@@ -148,13 +148,13 @@ TEST(LidarInertialOdometry, IsLostWithAClippedRate) {
 
 TEST(LidarInertialOdometry, FindsTheExcessOfClippedAxesByItself) {
   Odometry::Params params = rig_params();
-  params.estimate_excess_rate = true;
+  params.estimate_saturation_deficit = true;
   Odometry odometry(params);
   const auto reports = run(odometry, 0, 26, 8.0);
   const Error end = error_of(reports.back().pose);
   EXPECT_LT(end.m, 0.15);
   EXPECT_LT(end.rad, 0.02);
-  EXPECT_GT(reports.back().excess_rate_rad_s.maxCoeff(), 1.0);
+  EXPECT_GT(reports.back().saturation_deficit_rad_s.maxCoeff(), 1.0);
 }
 
 TEST(LidarInertialOdometry, RestartsBitByBitFromACopy) {

@@ -111,7 +111,7 @@ TEST(Registration, DerivativesMatchDifferences) {
     SweepPoint point = measured;
     point.x_I_m = x_I.cast<float>();
     Registration::residual(trajectory, calibration, point, plane, hint, derivative);
-    return plane.normal_W.cast<double>().dot(trajectory.base_m(t) + now.thrust_m + now.q_WI * x_I);
+    return plane.normal_W.cast<double>().dot(trajectory.base_m(t) + now.preintegrated_position_m + now.q_WI * x_I);
   };
   Registration::Vector analytic, unused;
   residual(Registration::Vector::Zero(), analytic);
@@ -211,12 +211,12 @@ TEST(Registration, TakesNoNoiseOfNormalsForInformation) {
   // 3.3 cm
   const double along = 1.0 / corridor.covariance(0, 0) - 1.0 / (0.5 * 0.5);
   EXPECT_GT(along, 500.0);
-  EXPECT_NEAR(corridor.false_information(0, 0) / along, 1.0, 0.2);
+  EXPECT_NEAR(corridor.errors_in_variables_information(0, 0) / along, 1.0, 0.2);
   EXPECT_GT(corridor.weakest_sigma_m, 0.1);
   const Registration::Result corner = align(test::Room::corner(), prior, {}, kNoise_m);
   ASSERT_EQ(corner.verdict, RegistrationVerdict::converged);
   // and where surfaces hold all six, next to none: 610 of 33 800
-  EXPECT_LT(corner.false_information(0, 0) * corner.covariance(0, 0), 0.05);
+  EXPECT_LT(corner.errors_in_variables_information(0, 0) * corner.covariance(0, 0), 0.05);
   EXPECT_LT(corner.weakest_sigma_m, 0.05);
 }
 

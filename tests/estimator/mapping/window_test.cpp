@@ -20,7 +20,7 @@ Odometry::Params given() {
   Odometry::Params params;
   params.T_IL.translation() = Eigen::Vector3d(0.02, 0.087, 0.04);
   params.T_IL.linear() = so3::exp({0.0, 0.0, -1.5707963267948966}).toRotationMatrix();
-  params.estimate_excess_rate = true;
+  params.estimate_saturation_deficit = true;
   return params;
 }
 
@@ -80,7 +80,7 @@ TEST(Window, TheSweepsAfterItPlaceASweepThatSawNothing) {
   run.sweeps(15, 18, 15, 16);  // nothing but a gyro on its rail
   run.sweeps(18, 19);
   const PoseState& at_once = run.reports[15].trajectory.back();
-  const PoseState& settled = run.reports[18].settled.back();
+  const PoseState& settled = run.reports[18].smoothed.back();
   ASSERT_EQ(at_once.time_ns, settled.time_ns);
   EXPECT_LT(run.error_rad(settled), 0.5 * run.error_rad(at_once));
   EXPECT_LT(settled.covariance.diagonal().tail<3>().sum(), at_once.covariance.diagonal().tail<3>().sum());
@@ -93,7 +93,7 @@ TEST(Window, OfOneLeavesASweepAsItWas) {
   Drive run(params);
   run.sweeps(0, 12);
   for (std::size_t k = 1; k < run.reports.size(); ++k) {
-    const std::vector<PoseState>& settled = run.reports[k].settled;
+    const std::vector<PoseState>& settled = run.reports[k].smoothed;
     const std::vector<PoseState>& before = run.reports[k - 1].trajectory;
     ASSERT_EQ(settled.size(), before.size());
     for (std::size_t i = 0; i < settled.size(); ++i) {
@@ -110,7 +110,7 @@ TEST(Window, SettledAndOpenSweepsAreTheWholeTrajectory) {
   run.sweeps(0, 12);
   std::vector<PoseState> all;
   for (const Odometry::SweepReport& report : run.reports) {
-    all.insert(all.end(), report.settled.begin(), report.settled.end());
+    all.insert(all.end(), report.smoothed.begin(), report.smoothed.end());
   }
   EXPECT_EQ(all.back().time_ns, 8 * test::kSweep_ns);
   const auto open = run.odometry.open_trajectories();

@@ -9,8 +9,9 @@
 #include "scenarios/methods/method.hpp"
 #include "scenarios/methods/synthetic_recording.hpp"
 
-// errors of the published chain as cases: reproduced where they are a switch of slam/seed, impossible elsewhere. The
-// trim that counts unmatched slots stands in the library's trimmed_icp_test, angles beyond 90 degrees in score_test.
+// errors of the published chain as cases: reproduced where they are a switch of slam/published, impossible elsewhere.
+// The trim that counts unmatched slots stands in the library's trimmed_icp_test, angles beyond 90 degrees in
+// score_test.
 namespace tumble::scenarios {
 namespace {
 
@@ -30,7 +31,7 @@ double velocity_error_m_s(double late_velocity) {
   const sim::Recording recording = testing::synthetic_rig(motion);
   sim::Values values;
   values.set("late_velocity", late_velocity);
-  const Estimate estimate = find_methods("slam/seed").at(0)->run(recording.sensors, values, {});
+  const Estimate estimate = find_methods("slam/published").at(0)->run(recording.sensors, values, {});
   EXPECT_TRUE(estimate.status.ok()) << estimate.status.message();
   std::vector<double> errors;
   for (const auto& sweep : estimate.sweeps) {

@@ -131,12 +131,13 @@ std::string test_name(const ::testing::TestParamInfo<const char*>& param) {
 
 INSTANTIATE_TEST_SUITE_P(All, SlamPeer,
                          ::testing::Values("slam/constant_velocity", "slam/constant_jerk", "slam/iterated_filter",
-                                           "slam/pointwise_reject", "slam/health_switch", "slam/icp_raw", "slam/seed"),
+                                           "slam/pointwise_reject", "slam/health_switch", "slam/icp_raw",
+                                           "slam/published"),
                          test_name);
 
 INSTANTIATE_TEST_SUITE_P(Some, SlamPeerWithGyro,
                          ::testing::Values("slam/constant_jerk", "slam/iterated_filter", "slam/health_switch",
-                                           "slam/icp_raw", "slam/seed"),
+                                           "slam/icp_raw", "slam/published"),
                          test_name);
 
 // the data sheet's range is not where the gyro clips: a reading beyond it that is not on a plateau is healthy

@@ -28,7 +28,7 @@ using Settings = std::vector<std::pair<const char*, double>>;
 struct Option {
   const char* name;
   Settings on;
-  Settings off;  ///< switched off, with its companions at values that would show
+  Settings off;  ///< switched off, with its auxiliary IMUs at values that would show
 };
 
 void PrintTo(const Option& option, std::ostream* out) {

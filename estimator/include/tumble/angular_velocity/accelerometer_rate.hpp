@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "tumble/angular_velocity/auxiliary_imu.hpp"
 #include "tumble/angular_velocity/clipping_finder.hpp"
-#include "tumble/angular_velocity/companion.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
@@ -15,15 +15,15 @@ namespace tumble {
 /// Rates from several accelerometers at known places: the gyro-free inertial system, as an extended Kalman filter.
 ///
 /// State: rate and angular acceleration, driven by white jerk. Measured: the difference of the specific force at each
-/// companion and at the primary, alpha x p + w x (w x p), which holds in flight, in contact and at rest alike; and the
-/// gyro's axes that are not clipped (`use_gyro`), the strongest form of the family: the accelerometers then carry only
-/// what the rail hides. Made for long rotation at high rates with a wide spread of accelerometers (projectiles,
+/// auxiliary IMU and at the primary, alpha x p + w x (w x p), which holds in flight, in contact and at rest alike; and
+/// the gyro's axes that are not clipped (`use_gyro`), the strongest form of the family: the accelerometers then carry
+/// only what the rail hides. Made for long rotation at high rates with a wide spread of accelerometers (projectiles,
 /// vehicles): centripetal force grows with the square of the rate, so that slow motion drowns in noise and
 /// misalignment.
 ///
-/// With one companion the rate about the line between the two shows only through its products with the others; without
-/// any the filter bridges clipped readings by smoothness alone. What it does not model: free flight, bias and
-/// misalignment of the accelerometers, correlation between the companions' differences.
+/// With one auxiliary IMU the rate about the line between the two shows only through its products with the others;
+/// without any the filter bridges clipped readings by smoothness alone. What it does not model: free flight, bias and
+/// misalignment of the accelerometers, correlation between the auxiliary IMUs' differences.
 class AccelerometerRate {
  public:
   struct Params {
@@ -42,9 +42,9 @@ class AccelerometerRate {
   /// Throws InvalidParams on a parameter outside of its bound.
   explicit AccelerometerRate(const Params& params);
 
-  /// One RateState per sample. On trouble (`empty`, `too_few`: less than two samples, or a companion with another
-  /// number of samples, `non_finite`, `time_order`, `gap`) nothing is written. O(N times companions).
-  Status estimate(std::span<const ImuSample> samples, std::span<const Companion> companions,
+  /// One RateState per sample. On trouble (`empty`, `too_few`: less than two samples, or a auxiliary IMU with another
+  /// number of samples, `non_finite`, `time_order`, `gap`) nothing is written. O(N times auxiliary IMUs).
+  Status estimate(std::span<const ImuSample> samples, std::span<const AuxiliaryAccelerometer> auxiliary_imus,
                   std::vector<RateState>& out) const;
 
  private:

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tumble/angular_velocity/arrow_solver.hpp"
-#include "tumble/angular_velocity/companion.hpp"
+#include "tumble/angular_velocity/auxiliary_imu.hpp"
 #include "tumble/angular_velocity/partial_clipping.hpp"
 #include "tumble/angular_velocity/rail_detector.hpp"
 #include "tumble/angular_velocity/rail_planes.hpp"
@@ -34,8 +34,8 @@ struct RateModelParams {
   /// What an earlier run has learnt; takes the place of `nominal` and of the five deviations above.
   std::optional<RigCalibration> calibration = std::nullopt;
 
-  /// Other IMUs on the body, at most kCompanionsMax; their readings come with each sample.
-  std::vector<CompanionImu> companions = {};
+  /// Other IMUs on the body, at most kAuxiliaryImusMax; their readings come with each sample.
+  std::vector<AuxiliaryImu> auxiliary_imus = {};
 
   /// Noise density of the gyro [rad/s/sqrt(Hz)] (MTi-30: 0.03 deg/s/sqrt(Hz)); [1e-9, 1].
   double gyro_noise_density = 5.236e-4;
@@ -85,7 +85,7 @@ struct RateModelParams {
   double acceleration_max_rad_s2 = 5000.0;
 };
 
-inline constexpr std::size_t kCompanionsMax = 2;
+inline constexpr std::size_t kAuxiliaryImusMax = 2;
 
 /// One sample as the model sees it.
 struct RateObservation {
@@ -99,15 +99,16 @@ struct RateObservation {
   double gyro_age_s = 0.0, accel_age_s = 0.0;
   bool gyro_repeats = false;
   ElementRows accel_rows = {};  ///< of the accelerometer's elements: of use where one of them clips
-  std::array<CompanionReading, kCompanionsMax> companions = {};  ///< in the order of RateModelParams::companions
+  std::array<AuxiliaryReading, kAuxiliaryImusMax> auxiliary_imus =
+      {};  ///< in the order of RateModelParams::auxiliary_imus
 
   /// Whether an element clips, so that the readings of all axes are off: it is read element by element.
   bool by_elements() const { return (clipping.gyro | clipping.void_gyro) != 0; }
 
   /// Axes whose rate is not read: bound at most.
   std::uint8_t unseen() const {
-    for (const CompanionReading& companion : companions) {
-      if (companion.sees_all_rates()) return 0;
+    for (const AuxiliaryReading& auxiliary_imu : auxiliary_imus) {
+      if (auxiliary_imu.sees_all_rates()) return 0;
     }
     return static_cast<std::uint8_t>((clipping.gyro | clipping.void_gyro) & ~(partial & ~clipping.void_gyro));
   }
@@ -179,7 +180,7 @@ class RateModel {
 
   /// How far `rig` is from what was known beforehand: the largest, over lever arm, both biases and inertia, of the
   /// Mahalanobis distance divided by the root of the number of components. About 1 is expected.
-  double rig_surprise(const RigConstants& rig) const;
+  double calibration_mahalanobis(const RigConstants& rig) const;
 
   RigConstants prior_constants() const { return prior_constants_; }
   const RigConstants::Matrix& prior_covariance() const { return prior_covariance_; }
@@ -217,8 +218,8 @@ class RateModel {
                     arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* doubted) const;
   static bool says_nothing_of_rig(const RateEstimate& estimate);
   static void keep_from_rig(const RateObservation& observation, RateFactor& flight);
-  void add_companions(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
-                      arrow::Block& block) const;
+  void add_auxiliary_imus(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
+                          arrow::Block& block) const;
   Eigen::Matrix3d euler_information(const RateEstimate& estimate) const;
   double accel_sigma_m_s2(const RateObservation& observation) const;
   double accel_variance_together(const RateObservation& observation) const;

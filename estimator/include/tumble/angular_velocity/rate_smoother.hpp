@@ -24,9 +24,9 @@ struct RateReport {
   int restarts = 0;              ///< descents from another start, where the first found hardly any flight
   double last_step_rad_s = 0.0;  ///< largest change of a rate in the last iteration
   RigCalibration calibration;    ///< what the run has learnt of the rig: can be given to the next
-  /// How far the constants moved from what was known beforehand (RateModel::rig_surprise). Far beyond 1 the prior is
-  /// wrong, or a run without flight was taken for one with flight.
-  double rig_surprise = 0.0;
+  /// How far the constants moved from what was known beforehand (RateModel::calibration_mahalanobis). Far beyond 1 the
+  /// prior is wrong, or a run without flight was taken for one with flight.
+  double calibration_mahalanobis = 0.0;
   bool rig_held = false;  ///< the surprise was too large: nothing was learnt, the constants were held
   std::array<std::optional<double>, 6> rail;  ///< in use: gyro [rad/s], accelerometer [m/s^2]; none: not seen
   RailPlanes planes;                          ///< of the gyro's elements, where they were seen
@@ -96,9 +96,9 @@ class RateSmoother {
     int bound_iterations = 3;
     double bound_damping = 0.5;          ///< share of a new bound taken over in each of them; [0.01, 1]
     double recovered_sigma_rad_s = 0.5;  ///< a clipped axis known better than this is recovered, not only bounded
-    /// A run whose constants move further than this (RateReport::rig_surprise) is estimated again with the constants
-    /// held to what was known; [0.1, 1e6].
-    double rig_surprise_max = 1.5;
+    /// A run whose constants move further than this (RateReport::calibration_mahalanobis) is estimated again with the
+    /// constants held to what was known; [0.1, 1e6].
+    double calibration_mahalanobis_max = 1.5;
     /// Most descents, each with readings corrected for what the one before has told of the device; 1: the device's
     /// errors are counted in the covariance and not estimated; [1, 10].
     int error_rounds_max = 3;
@@ -113,9 +113,9 @@ class RateSmoother {
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out, RateReport& report) const {
     return estimate(samples, {}, out, report);
   }
-  /// The same with other IMUs on the body: `companions` holds one list per RateModelParams::companions, one reading
-  /// per sample each (see align()); `too_few` when the numbers differ.
-  Status estimate(std::span<const ImuSample> samples, std::span<const std::vector<CompanionReading>> companions,
+  /// The same with other IMUs on the body: `auxiliary_imus` holds one list per RateModelParams::auxiliary_imus, one
+  /// reading per sample each (see align()); `too_few` when the numbers differ.
+  Status estimate(std::span<const ImuSample> samples, std::span<const std::vector<AuxiliaryReading>> auxiliary_imus,
                   std::vector<RateState>& out, RateReport& report) const;
 
   const Params& params() const { return params_; }

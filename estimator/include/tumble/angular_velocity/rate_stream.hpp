@@ -62,11 +62,11 @@ class RateStream {
     /// 1e3] and [1, 1e6].
     double rig_doubt = 30.0;
     double rig_doubt_samples = 10.0;
-    double bound_damping = 0.5;          ///< share of a new bound taken over in each step; [0.01, 1]
-    double recovered_sigma_rad_s = 0.5;  ///< as in RateSmoother
-    double rig_surprise_max = 1.5;       ///< beyond this what was learnt of the rig is dropped; [0.1, 1e6]
-    double gap_max_s = 1.0;              ///< longest time between samples; [1e-6, 3600]
-    double step_s = 0.005;               ///< least time between Gauss-Newton steps; 0: with each sample; [0, 0.1]
+    double bound_damping = 0.5;                ///< share of a new bound taken over in each step; [0.01, 1]
+    double recovered_sigma_rad_s = 0.5;        ///< as in RateSmoother
+    double calibration_mahalanobis_max = 1.5;  ///< beyond this what was learnt of the rig is dropped; [0.1, 1e6]
+    double gap_max_s = 1.0;                    ///< longest time between samples; [1e-6, 3600]
+    double step_s = 0.005;                     ///< least time between Gauss-Newton steps; 0: with each sample; [0, 0.1]
   };
 
   struct Knot {
@@ -111,9 +111,9 @@ class RateStream {
   Status push(const ImuSample& sample, State& state, std::optional<RateState>& out) const {
     return push(sample, {}, state, out);
   }
-  /// The same with what other IMUs on the body read at that time, one per RateModelParams::companions or none at all;
-  /// else `too_few`.
-  Status push(const ImuSample& sample, std::span<const CompanionReading> companions, State& state,
+  /// The same with what other IMUs on the body read at that time, one per RateModelParams::auxiliary_imus or none at
+  /// all; else `too_few`.
+  Status push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
               std::optional<RateState>& out) const;
 
   /// Provisional estimate of the newest sample; empty before the first.
@@ -133,7 +133,7 @@ class RateStream {
   void marginalise(std::size_t first, State& state) const;
   void predict_covariance(State& state) const;
   double jump_before(const Knot& oldest, const State& state) const;
-  void append(const ImuSample& sample, std::span<const CompanionReading> companions, State& state) const;
+  void append(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state) const;
   void classify_again(State& state) const;
   void judge(std::size_t first, State& state) const;
   void add_rails(const State& state, arrow::Corner& corner) const;

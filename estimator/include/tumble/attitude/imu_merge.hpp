@@ -59,7 +59,7 @@ class ImuMerge {
     double gyro_range_rad_s = 1e3;                ///< readings from here on are at the rail; bound (0, 1e3]
     double accel_range_m_s2 = 1e5;                ///< bound (0, 1e5]
     /// A reading from this share of the range on may hide a rail met within its sample; bound (0, 1].
-    double hidden_share = 0.15;
+    double subsample_saturation_share = 0.15;
     double hidden_force_m_s2 = 3.0;  ///< by which it then may disagree with another; bound (0, 1e4]
     double gap_max_s = 1.0;          ///< bound (0, 1e4]
     /// Along what the elements of each unit sense (RateRecovery).
@@ -157,8 +157,8 @@ class ImuMerge {
   void watch_misfits(const Flags& present, const Vectors& rates, const Vectors& forces, TimeNs time_ns,
                      State& state) const;
   static Eigen::Vector3d median(const Vectors& values, const Flags& which);
-  void leave_out_hidden(const Readings& samples, const Flags& present, const Vectors& forces,
-                        const Eigen::Vector3d& rate, double h, State& state, Flags& used) const;
+  void leave_out_subsample_saturated(const Readings& samples, const Flags& present, const Vectors& forces,
+                                     const Eigen::Vector3d& rate, double h, State& state, Flags& used) const;
   void recover(const Readings& readings, const Flags& present, double h, State& state, ImuSample& merged) const;
   static ForceErrors::Params force_params(const Params& params);
   static RateRecovery::Params recovery_params(const Params& params);

@@ -58,7 +58,7 @@ class RegimeStream {
   State start() const;
 
   /// As RateStream::push.
-  Status push(const ImuSample& sample, std::span<const CompanionReading> companions, State& state,
+  Status push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
               std::optional<RateState>& out) const;
   Status push(const ImuSample& sample, State& state, std::optional<RateState>& out) const {
     return push(sample, {}, state, out);

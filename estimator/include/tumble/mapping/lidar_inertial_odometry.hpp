@@ -41,7 +41,7 @@ const char* to_string(SweepVerdict verdict);
 /// piece.
 ///
 /// Covariances reported follow the errors through the filter's weights, the registration's share as measured from its
-/// residuals (Registration::Result::scatter).
+/// residuals (Registration::Result::score_covariance).
 ///
 /// After rejected sweeps the sensor is lost: the inertial prior goes on, with velocity zero while the IMU rests, and
 /// each further sweep is also tried against the map from starts around the prior, coarse to fine. Not modelled: biases
@@ -102,7 +102,7 @@ class LidarInertialOdometry {
     /// it acts on clipped samples only, there in proportion to the rate's reported uncertainty. Its prior is the rate's
     /// reported uncertainty, at least excess_sigma_min_rad_s, bound (0, 100], correlated over excess_time_s, bound
     /// [1e-3, 1e3]; on a rail that lasts over the border of two sweeps it goes on from where it was.
-    bool estimate_excess_rate = false;
+    bool estimate_saturation_deficit = false;
     double excess_sigma_min_rad_s = 1.0;
     double excess_time_s = 0.3;
     /// Sweeps that are refined together: the newest, and so many less one before it by what it teaches (see settled).
@@ -141,7 +141,7 @@ class LidarInertialOdometry {
     std::vector<PoseState> trajectory;  ///< IMU poses inside the sweep at IMU times, corrected by the registration
     /// The same of the sweep that left the window with this one, refined by those after it: its last word. Empty while
     /// the window fills.
-    std::vector<PoseState> settled;
+    std::vector<PoseState> smoothed;
     double inlier_share = 0.0;  ///< of the points registered
     double conditioning = 0.0;  ///< smallest over largest eigenvalue of the scaled normal matrix
     /// Standard deviation in the direction that the surfaces hold least, by this sweep's surfaces alone; 0: not
@@ -154,7 +154,7 @@ class LidarInertialOdometry {
     int lost_sweeps = 0;  ///< rejected in a row up to this sweep, this one included
     /// Direction in which the surfaces hold the pose least: (position, attitude scaled by the rms lever) in W, unit.
     Eigen::Matrix<double, 6, 1> weakest_direction = Eigen::Matrix<double, 6, 1>::Zero();
-    Eigen::Vector3d excess_rate_rad_s =
+    Eigen::Vector3d saturation_deficit_rad_s =
         Eigen::Vector3d::Zero();        ///< added to the clipped axes, along the sign of the rate; mean of the knots
     std::size_t points_used = 0;        ///< finite returns in range that are not the robot's own
     std::size_t points_registered = 0;  ///< one per voxel of these
@@ -195,7 +195,7 @@ class LidarInertialOdometry {
   /// Pose at any time within the window of sweeps, by all that has been seen. `out_of_range` outside of it.
   Status pose_at(TimeNs time_ns, PoseState& pose) const;
 
-  /// Poses of the sweeps in the window as they stand, oldest first: with SweepReport::settled, the whole trajectory.
+  /// Poses of the sweeps in the window as they stand, oldest first: with SweepReport::smoothed, the whole trajectory.
   std::vector<std::vector<PoseState>> open_trajectories() const;
 
   /// Memory held by the map [bytes].

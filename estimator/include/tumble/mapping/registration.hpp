@@ -28,9 +28,9 @@ enum class RegistrationVerdict : std::uint8_t {
 /// Registers a sweep to a map by point-to-plane distances, together with the motion inside the sweep.
 ///
 /// Unknowns: position, attitude (left perturbation in W) and velocity of the IMU at the start of the trajectory, and,
-/// where their prior leaves them free, the excess rate of clipped axes and the calibration. A point in the world is
-/// X = p + v t + g t^2/2 + Exp(phi) u with the lever u of SweepTrajectory, so that each iteration deskews anew. Cost:
-/// robustly weighted squared distances to planes through the k nearest map points, plus the prior's Mahalanobis
+/// where their prior leaves them free, the saturation deficit of clipped axes and the calibration. A point in the world
+/// is X = p + v t + g t^2/2 + Exp(phi) u with the lever u of SweepTrajectory, so that each iteration deskews anew.
+/// Cost: robustly weighted squared distances to planes through the k nearest map points, plus the prior's Mahalanobis
 /// distance; Gauss-Newton, a 28x28 normal matrix at most. In directions that no surface holds the prior stands.
 class Registration {
  public:
@@ -46,7 +46,7 @@ class Registration {
     double skew_sigma_m_s = 0.25;  ///< growth of a point's uncertainty over the sweep (time weighting); 0: none
     double kernel_min_m = 0.1;     ///< least width of the robust kernel (Geman-McClure)
     /// Weight of a point's information: neighbouring returns share the errors of the map and are not independent.
-    double information_share = 0.1;
+    double correlation_discount = 0.1;
     double cluster_m = 1.0;          ///< points of one cube of this edge are not independent; bound [0.01, 100]
     std::size_t matches_min = 100;   ///< fewer matches are too few
     double matched_share_min = 0.1;  ///< of the points
@@ -59,14 +59,14 @@ class Registration {
   };
 
   static constexpr int kMotion = 9;        ///< position, attitude, velocity
-  static constexpr int kExcess = kMotion;  ///< first unknown of the excess rate, knot after knot
+  static constexpr int kExcess = kMotion;  ///< first unknown of the saturation deficit, knot after knot
   static constexpr int kCalibration = kExcess + SweepTrajectory::kExcess;  ///< first unknown of the calibration
   static constexpr int kUnknowns = kCalibration + SweepCalibration::kErrors;
   using Vector = Eigen::Matrix<double, kUnknowns, 1>;
   using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
   using Excess = SweepTrajectory::Excess;
 
-  /// Where the unknowns stand: motion at the start of the trajectory, excess rate, calibration.
+  /// Where the unknowns stand: motion at the start of the trajectory, saturation deficit, calibration.
   struct Estimate {
     MotionState state;  ///< its covariance is not used
     SweepCalibration calibration;
@@ -100,12 +100,13 @@ class Registration {
     /// Covariance of the pull of the surfaces on the unknowns (the gradient of their cost), measured from the
     /// residuals: points within cluster_m of each other share the errors of the map, those farther apart do not
     /// (cluster-robust covariance, K. Liang, S. Zeger, 1986). In units of the covariance: that of independent points
-    /// would be the information_share times what they add to the normal matrix.
-    Matrix scatter = Matrix::Zero();
+    /// would be the correlation_discount times what they add to the normal matrix.
+    Matrix score_covariance = Matrix::Zero();
     /// What the normal matrix of the motion holds of noise alone: the normals are fitted to few points, and their
     /// errors add information in every direction of a plane (errors in variables, W. Fuller, Measurement Error Models,
     /// 1987, section 2.2). It holds the iterations where they are; it tells nothing of the motion.
-    Eigen::Matrix<double, kMotion, kMotion> false_information = Eigen::Matrix<double, kMotion, kMotion>::Zero();
+    Eigen::Matrix<double, kMotion, kMotion> errors_in_variables_information =
+        Eigen::Matrix<double, kMotion, kMotion>::Zero();
     std::size_t points = 0, matches = 0, inliers = 0;
     double correction_m = 0.0;  ///< of the position at the start; where the correction broke its bound, that value
     double correction_rad = 0.0;
@@ -115,7 +116,7 @@ class Registration {
     Eigen::Matrix<double, 6, 1> eigenvalues = Eigen::Matrix<double, 6, 1>::Zero();
     Eigen::Matrix<double, 6, 6> directions = Eigen::Matrix<double, 6, 6>::Identity();
     /// Standard deviation of the pose in the direction that the surfaces hold least, from the surfaces alone and
-    /// without the false information.
+    /// without the errors-in-variables information.
     double weakest_sigma_m = std::numeric_limits<double>::infinity();
   };
 
@@ -160,9 +161,10 @@ class Registration {
   void accumulate_block(std::span<const SweepPoint> points, std::size_t block, const SweepTrajectory& trajectory,
                         const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m, Sums& sum);
 
-  Eigen::Matrix<double, kMotion, kMotion> false_information(std::span<const SweepPoint> points, double kernel_m) const;
-  Matrix scatter(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
-                 const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m);
+  Eigen::Matrix<double, kMotion, kMotion> errors_in_variables_information(std::span<const SweepPoint> points,
+                                                                          double kernel_m) const;
+  Matrix score_covariance(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
+                          const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m);
   struct Weight {
     double variance_m2, robust, information;
   };

@@ -46,11 +46,11 @@ struct MotionState {
 /// p(t) = p_0 + v_0 t + g t^2 / 2 + S(t) with S the double integral of the specific force in W, whose mean over each
 /// sample is R_k J_l(w_k dt) f_k (exact for a force constant in body axes, as the centripetal force of a spin is).
 ///
-/// The excess rate e is a correction of the clipped axes, linear in time between kKnots knots at equal steps from the
-/// start to the end of the stretch: the rate used is w_j + s_j e_j(t) where axis j was clipped, with the sign of w_j
-/// and the magnitude sigma_j / (largest sigma_j among the stretch's clipped samples), so that what is known well moves
-/// little; 1 where nothing is known of any. Over a sample e is what it is in the middle of it. Not modelled: sculling
-/// within a sample, the earth's rotation.
+/// The saturation deficit e is a correction of the clipped axes, linear in time between kKnots knots at equal steps
+/// from the start to the end of the stretch: the rate used is w_j + s_j e_j(t) where axis j was clipped, with the sign
+/// of w_j and the magnitude sigma_j / (largest sigma_j among the stretch's clipped samples), so that what is known well
+/// moves little; 1 where nothing is known of any. Over a sample e is what it is in the middle of it. Not modelled:
+/// sculling within a sample, the earth's rotation.
 class SweepTrajectory {
  public:
   static constexpr int kKnots = 3;
@@ -61,12 +61,12 @@ class SweepTrajectory {
   /// What a lidar point needs of its instant: attitude, and S(t) of the text above.
   struct Instant {
     Eigen::Quaterniond q_WI;
-    Eigen::Vector3d thrust_m;
+    Eigen::Vector3d preintegrated_position_m;
   };
-  /// Derivatives of an instant with respect to the excess rate: phi = attitude e, dS = thrust e (first order).
+  /// Derivatives of an instant with respect to the saturation deficit: phi = attitude e, dS = thrust e (first order).
   struct ExcessDerivative {
     ByExcess attitude_s;
-    ByExcess thrust_m_s;
+    ByExcess preintegrated_position_m_s;
   };
 
   /// Integrates from `start` to `end_ns`. Samples must be in time order and follow each other; the first window must
@@ -113,7 +113,8 @@ class SweepTrajectory {
   };
   Transition transition(double t_s) const;
 
-  /// Magnitude of the excess rate's share in the first and the last interval, 0 on axes that were not clipped there.
+  /// Magnitude of the saturation deficit's share in the first and the last interval, 0 on axes that were not clipped
+  /// there.
   Eigen::Vector3d excess_share_at_start() const { return intervals_.front().excess_share.cwiseAbs(); }
   Eigen::Vector3d excess_share_at_end() const { return intervals_.back().excess_share.cwiseAbs(); }
 
@@ -124,9 +125,9 @@ class SweepTrajectory {
   struct Interval {
     double start_s, length_s;
     Eigen::Quaterniond q_WI;
-    Eigen::Vector3d w_I, a_W;            // rate in body axes; mean specific force in W
-    Eigen::Vector3d thrust_v, thrust_p;  // integrals of the specific force up to start_s
-    Eigen::Vector3d excess_share;        // s_j where axis j is clipped, 0 elsewhere
+    Eigen::Vector3d w_I, a_W;                          // rate in body axes; mean specific force in W
+    Eigen::Vector3d preintegrated_v, preintegrated_p;  // integrals of the specific force up to start_s
+    Eigen::Vector3d excess_share;                      // s_j where axis j is clipped, 0 elsewhere
     Eigen::Matrix<double, kKnots, 1> knot_weight =
         Eigen::Matrix<double, kKnots, 1>::Zero();  // of each knot's excess in this interval
     ByExcess excess_attitude, excess_v, excess_p;  // derivatives at start_s

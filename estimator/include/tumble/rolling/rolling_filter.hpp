@@ -61,7 +61,8 @@ class RollingFilter {
     double slip_probability = 0.0;  ///< that the contact moves, over all hypotheses, at the last node
     double bump_probability = 0.0;  ///< the part of it in which the sphere hops
     bool at_rest = false;
-    bool pivots = false;     ///< at rest but for a slow turn about the contact, which says nothing of the gyro's bias
+    bool spins_in_place =
+        false;               ///< at rest but for a slow turn about the contact, which says nothing of the gyro's bias
     bool uncertain = false;  ///< in an event in which the position's sigma has grown by more than uncertain_m
     bool started_in_motion = false;
     std::int64_t gaps = 0;  ///< bridged
@@ -69,8 +70,8 @@ class RollingFilter {
     // What the hypotheses have in common: they hold their errors about it.
     RollingNominal nominal;
     RollingSums sums;
-    ImuAverage average;                                           ///< of the readings since the last one that was taken
-    Eigen::Matrix3d settled_spread_m2 = Eigen::Matrix3d::Zero();  ///< of hypotheses given up at the last node
+    ImuAverage average;                                          ///< of the readings since the last one that was taken
+    Eigen::Matrix3d pruned_spread_m2 = Eigen::Matrix3d::Zero();  ///< of hypotheses given up at the last node
     Eigen::Vector3d slow_force_m_s2 = Eigen::Vector3d::Zero();
     Eigen::Vector3d slow_rate_rad_s = Eigen::Vector3d::Zero();
     double rest_s = 0.0;
@@ -115,7 +116,7 @@ class RollingFilter {
   void take_average(State& state, Listener listener) const;
   void close_node(const Eigen::Vector3d& next_rate_rad_s, State& state) const;
   void detect_rest(State& state) const;
-  bool pivots(const State& state) const;
+  bool spins_in_place(const State& state) const;
   void correct_at_rest(State& state) const;
   void choose_modes(const Eigen::Vector3d& rate_I_rad_s, State& state) const;
   double log_transition(RollingMode from, RollingMode to, double h_s) const;

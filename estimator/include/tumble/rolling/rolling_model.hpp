@@ -58,7 +58,7 @@ struct RollingParams {
   double rough_share = 0.055;               ///< more on a rough floor, as a share of the rolling speed
   double rough_radius_walk_m_sqrts = 1e-4;  ///< of the radius that it rolls with there; bound [0, 1]
   double slope_walk_sqrts = 0.02;
-  double shock_share = 0.06;  ///< of the velocity that a shock gives: error of its timing and direction
+  double impact_share = 0.06;  ///< of the velocity that a shock gives: error of its timing and direction
   double rest_velocity_sigma_m_s = 2e-3;
   double rest_rate_sigma_rad_s = 3e-3;  ///< of a node's mean rate at rest
   // Clipped readings, by the device's flags or from this size on, say no more than that; how short they may be.
@@ -70,13 +70,13 @@ struct RollingParams {
   double clipped_force_sigma_m_s2 = 4.0;  ///< bound (0, 1e3]
   /// A blow within one sample may have met the accelerometer's rail though its mean did not: sigma of what is missing
   /// along the force, as a share of it; full from 0.6 of the range on, none up to 0.3; bound [0, 10].
-  double hidden_clip_share = 0.25;
+  double subsample_saturation_share = 0.25;
   // What the sphere is able to: no grip is believed that would make it roll faster; where the velocity is lost it is
   // about zero, with this sigma of its mean over a second.
   double speed_max_m_s = 2.5;    ///< bound (0, 1e3]
   double speed_sigma_m_s = 1.0;  ///< bound (0, 1e3]
   /// A wheel that stays on the floor meets no blows: mean of what one may give in a node; bound (0, 1e3].
-  double blow_m_s = 0.03;
+  double unexplained_impact_m_s = 0.03;
   // Change of mode, per second; bounds (0, 1e3].
   double slip_begins_per_s = 0.5, slip_ends_per_s = 2.0;
   double bump_begins_per_s = 0.3, bump_ends_per_s = 5.0;
@@ -128,11 +128,12 @@ struct RollingSums {
   Eigen::Vector3d R_wxf = Eigen::Vector3d::Zero();
   Eigen::Vector3d w_I_rad = Eigen::Vector3d::Zero(), f_I_m_s = Eigen::Vector3d::Zero();
   double turned_rad2_s = 0.0;
-  double rate_clipped_s = 0.0, force_clipped_s = 0.0;      ///< with a reading that says nothing
-  double recovered_s = 0.0;                                ///< with a rate that was recovered
-  double shock_m_s = 0.0;                                  ///< of | |f| - g | beyond the usual
-  double blow_m_s = 0.0;                                   ///< the same without what the turning may explain
-  Eigen::Vector3d hidden_W_m_s = Eigen::Vector3d::Zero();  ///< sigma of what a rail took unseen, along the force
+  double rate_clipped_s = 0.0, force_clipped_s = 0.0;  ///< with a reading that says nothing
+  double recovered_s = 0.0;                            ///< with a rate that was recovered
+  double impact_m_s = 0.0;                             ///< of | |f| - g | beyond the usual
+  double unexplained_impact_m_s = 0.0;                 ///< the same without what the turning may explain
+  Eigen::Vector3d subsample_saturation_W_m_s =
+      Eigen::Vector3d::Zero();  ///< sigma of what a rail took unseen, along the force
   // of a gap: its length, variance of the turning, and of the rate times time
   double gap_s = 0.0, gap_rad2 = 0.0, gap_rate_rad2_s = 0.0;
   double node_s = 0.0;

@@ -63,7 +63,7 @@ class RollingSmoother {
     Eigen::Matrix3d spread_m2 = Eigen::Matrix3d::Zero();
     double rest_s = 0.0;  ///< quiet for so long
     bool at_rest = false;
-    bool pivots = false;
+    bool spins_in_place = false;
     bool operator==(const Step&) const = default;
   };
   /// The last pass at the node up to which estimates are out.

@@ -23,9 +23,9 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
 
 }  // namespace
 
-Method slam_seed() {
+Method slam_published() {
   return rig_slam(
-      {.name = "seed",
+      {.name = "published",
        .doc = "The published chain with the constants as launched: rates of saave, Madgwick's attitude, accelerometer "
               "odometry fed back by the registration, time weighting, trimmed point to plane; its errors are "
               "parameters. Map in memory whole.",

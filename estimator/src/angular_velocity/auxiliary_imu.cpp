@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/companion.hpp"
+#include "tumble/angular_velocity/auxiliary_imu.hpp"
 
 #include <cmath>
 #include <limits>
@@ -22,13 +22,13 @@ struct Between {
 };
 
 Between between(const Vector3d& a, const Vector3d& b, double share, double dt_s, double noise, double error,
-                const CompanionImu& companion) {
+                const AuxiliaryImu& auxiliary_imu) {
   const Vector3d change = (b - a).cwiseAbs();
   // the chord misses a curve by up to a share (1 - share) of the change, and the clocks differ
-  const double crooked = share * (1.0 - share) + companion.clock_error_s / dt_s;
+  const double crooked = share * (1.0 - share) + auxiliary_imu.clock_error_s / dt_s;
   Between out;
   out.value = (1.0 - share) * a + share * b;
-  const double scaled = companion.share_error * out.value.norm();
+  const double scaled = auxiliary_imu.share_error * out.value.norm();
   out.sigma = (Vector3d::Constant(noise * noise + error * error + scaled * scaled) + (crooked * change).cwiseAbs2())
                   .cwiseSqrt();
   return out;
@@ -36,10 +36,10 @@ Between between(const Vector3d& a, const Vector3d& b, double share, double dt_s,
 
 }  // namespace
 
-CompanionReading::CompanionReading()
+AuxiliaryReading::AuxiliaryReading()
     : rate_rad_s(nothing()), force_m_s2(nothing()), rate_sigma_rad_s(nothing()), force_sigma_m_s2(nothing()) {}
 
-bool CompanionReading::same(const CompanionReading& other) const {
+bool AuxiliaryReading::same(const AuxiliaryReading& other) const {
   const auto equal = [](const Vector3d& a, const Vector3d& b) {
     return ((a.array() == b.array()) || (a.array().isNaN() && b.array().isNaN())).all();
   };
@@ -48,8 +48,8 @@ bool CompanionReading::same(const CompanionReading& other) const {
          equal(rate_sigma_rad_s, other.rate_sigma_rad_s) && equal(force_sigma_m_s2, other.force_sigma_m_s2);
 }
 
-Status align(const CompanionImu& companion, std::span<const ImuSample> samples, std::span<const Clipping> clippings,
-             std::span<const ImuSample> primary, double gap_max_s, std::vector<CompanionReading>& out) {
+Status align(const AuxiliaryImu& auxiliary_imu, std::span<const ImuSample> samples, std::span<const Clipping> clippings,
+             std::span<const ImuSample> primary, double gap_max_s, std::vector<AuxiliaryReading>& out) {
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (Status status = check_sample(samples[k]); !status.ok()) return status;
     if (k == 0) continue;
@@ -70,10 +70,12 @@ Status align(const CompanionImu& companion, std::span<const ImuSample> samples, 
     const double dt_s = seconds(b.time_ns - a.time_ns);
     if (time_ns < a.time_ns || time_ns > b.time_ns || dt_s > gap_max_s) continue;
     const double share = seconds(time_ns - a.time_ns) / dt_s;
-    const Between rate = between(a.angular_velocity_rad_s, b.angular_velocity_rad_s, share, dt_s,
-                                 companion.gyro_noise_density * root_rate, companion.gyro_error_rad_s, companion);
-    const Between force = between(a.specific_force_m_s2, b.specific_force_m_s2, share, dt_s,
-                                  companion.accel_noise_density * root_rate, companion.accel_error_m_s2, companion);
+    const Between rate =
+        between(a.angular_velocity_rad_s, b.angular_velocity_rad_s, share, dt_s,
+                auxiliary_imu.gyro_noise_density * root_rate, auxiliary_imu.gyro_error_rad_s, auxiliary_imu);
+    const Between force =
+        between(a.specific_force_m_s2, b.specific_force_m_s2, share, dt_s,
+                auxiliary_imu.accel_noise_density * root_rate, auxiliary_imu.accel_error_m_s2, auxiliary_imu);
     const Clipping &c = clippings[after - 1], &d = clippings[after];
     // a reading on which the other has no part says nothing of it
     const bool left = share<1.0, right = share> 0.0;
@@ -81,8 +83,8 @@ Status align(const CompanionImu& companion, std::span<const ImuSample> samples, 
     const unsigned accel = (left ? c.accel : 0u) | (right ? d.accel : 0u);
     out[k].rate_by_elements = gyro != 0;
     out[k].force_by_elements = accel != 0;
-    const Vector3d rates = gyro != 0 ? companion.gyro_elements.rows * rate.value : rate.value;
-    const Vector3d forces = accel != 0 ? companion.accel_elements.rows * force.value : force.value;
+    const Vector3d rates = gyro != 0 ? auxiliary_imu.gyro_elements.rows * rate.value : rate.value;
+    const Vector3d forces = accel != 0 ? auxiliary_imu.accel_elements.rows * force.value : force.value;
     for (int j = 0; j < 3; ++j) {
       if ((gyro >> j & 1u) == 0) {
         out[k].rate_rad_s[j] = rates[j];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What other IMUs on the body say: the part of RateModel that deals with companions.
+// What other IMUs on the body say: the part of RateModel that deals with auxiliary IMUs.
 #include <Eigen/LU>
 #include <cmath>
 
@@ -18,8 +18,8 @@ void add_row(const Row& row, double residual, double sigma, arrow::Block& block)
   block.gradient.noalias() -= information * residual * row.transpose();
 }
 
-// The part of the primary's force that a companion's axis sees, where none of it is clipped. What element i hides moves
-// the reading along column i of the inverse of the rows.
+// The part of the primary's force that a auxiliary IMU's axis sees, where none of it is clipped. What element i hides
+// moves the reading along column i of the inverse of the rows.
 bool sees_free_axes(const Eigen::RowVector3d& axis, const RateObservation& observation) {
   constexpr double kSlight = 0.02;
   if (observation.clipping.accel == 0) return true;
@@ -31,7 +31,7 @@ bool sees_free_axes(const Eigen::RowVector3d& axis, const RateObservation& obser
   return true;
 }
 
-// What the companion's axes, or elements, see of the primary's.
+// What the auxiliary IMU's axes, or elements, see of the primary's.
 Eigen::Matrix3d seen_by(const Eigen::Matrix3d& R_CI, const ElementRows& elements, bool by_elements) {
   return by_elements ? Eigen::Matrix3d(elements.rows * R_CI) : R_CI;
 }
@@ -43,11 +43,11 @@ double unknown_row(const ElementRows& elements, bool by_elements, int j, double 
 
 }  // namespace
 
-void RateModel::add_companions(const RateObservation& observation, const RateEstimate& estimate,
-                               const RigConstants& rig, arrow::Block& block) const {
-  for (std::size_t i = 0; i < params_.companions.size(); ++i) {
-    const CompanionImu& mount = params_.companions[i];
-    const CompanionReading& reading = observation.companions[i];
+void RateModel::add_auxiliary_imus(const RateObservation& observation, const RateEstimate& estimate,
+                                   const RigConstants& rig, arrow::Block& block) const {
+  for (std::size_t i = 0; i < params_.auxiliary_imus.size(); ++i) {
+    const AuxiliaryImu& mount = params_.auxiliary_imus[i];
+    const AuxiliaryReading& reading = observation.auxiliary_imus[i];
     const Eigen::Matrix3d R_CI = mount.T_IC.linear().transpose();
     // the lever from the primary takes the place of that from the centre of mass: the forces differ by the rest
     const RateFactor rotation =

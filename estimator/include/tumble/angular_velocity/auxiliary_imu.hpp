@@ -15,14 +15,14 @@ namespace tumble {
 
 /// Another accelerometer on the same rigid body, expressed in the axes and at the time stamps of the primary IMU. What
 /// the two read differs by the rotation of the body alone, in flight and in contact.
-struct Companion {
+struct AuxiliaryAccelerometer {
   Eigen::Vector3d p_I_m = Eigen::Vector3d::Zero();   ///< from the primary IMU to it, primary IMU's axes
   std::vector<Eigen::Vector3d> specific_force_m_s2;  ///< one per sample of the primary; NaN where it says nothing
 };
 
 /// Another whole IMU C on the same rigid body, as it is mounted and how well it reads. Its biases are not estimated:
 /// they are part of the deviations, as are the errors of the mounting.
-struct CompanionImu {
+struct AuxiliaryImu {
   Eigen::Isometry3d T_IC = Eigen::Isometry3d::Identity();  ///< its axes to those of the primary IMU
   double gyro_noise_density = 5.236e-4;                    ///< [rad/s/sqrt(Hz)]; [1e-9, 1]
   double accel_noise_density = 5.9e-4;                     ///< [m/s^2/sqrt(Hz)]; [1e-9, 10]
@@ -34,24 +34,24 @@ struct CompanionImu {
   ElementRows gyro_elements = {}, accel_elements = {};  ///< of use where one of them clips
 };
 
-/// What a companion read at the time of a sample of the primary IMU, its own axes; NaN where an axis says nothing.
+/// What a auxiliary IMU read at the time of a sample of the primary IMU, its own axes; NaN where an axis says nothing.
 /// While an element of it clips, the values are those along its free elements: the axes are off by what is hidden.
-struct CompanionReading {
+struct AuxiliaryReading {
   Eigen::Vector3d rate_rad_s, force_m_s2;
   Eigen::Vector3d rate_sigma_rad_s, force_sigma_m_s2;
   bool rate_by_elements = false, force_by_elements = false;
   /// Nothing.
-  CompanionReading();
+  AuxiliaryReading();
   bool sees_all_rates() const { return rate_rad_s.allFinite(); }
   /// Bit for bit, NaN being equal to NaN.
-  bool same(const CompanionReading& other) const;
+  bool same(const AuxiliaryReading& other) const;
 };
 
-/// Readings of a companion at the stamps of the primary, by linear interpolation between neighbours no further apart
-/// than `gap_max_s`; clipped elements are left out (what does not know: the bound that they are), as `clippings` has
-/// them, one per sample (ClippingFinder). Trouble of its samples (`non_finite`, `time_order`; `too_few` clippings):
+/// Readings of a auxiliary IMU at the stamps of the primary, by linear interpolation between neighbours no further
+/// apart than `gap_max_s`; clipped elements are left out (what does not know: the bound that they are), as `clippings`
+/// has them, one per sample (ClippingFinder). Trouble of its samples (`non_finite`, `time_order`; `too_few` clippings):
 /// nothing is written. No samples: no reading says anything. O(N).
-Status align(const CompanionImu& companion, std::span<const ImuSample> samples, std::span<const Clipping> clippings,
-             std::span<const ImuSample> primary, double gap_max_s, std::vector<CompanionReading>& out);
+Status align(const AuxiliaryImu& auxiliary_imu, std::span<const ImuSample> samples, std::span<const Clipping> clippings,
+             std::span<const ImuSample> primary, double gap_max_s, std::vector<AuxiliaryReading>& out);
 
 }  // namespace tumble
