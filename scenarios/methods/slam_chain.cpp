@@ -114,8 +114,8 @@ LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const
 
 /// A sweep's last word takes the place of its first.
 void settle(std::vector<PoseState> smoothed, LidarInertialOdometry::SweepReport& sweep) {
-  if (settled.empty()) return;
-  sweep.trajectory = std::move(settled);
+  if (smoothed.empty()) return;
+  sweep.trajectory = std::move(smoothed);
   sweep.pose = sweep.trajectory.back();
 }
 

@@ -16,7 +16,7 @@
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/draw/without_lidars.hpp"
 #include "scenarios/sweep/evaluate.hpp"
-#include "scenarios/sweep/statistics.hpp"
+#include "scenarios/statistics/statistics.hpp"
 #include "sim/simulate.hpp"
 #include "tests/bench/kept_recording.hpp"
 #include "tests/tree.hpp"

@@ -111,10 +111,10 @@ int run(const Session& session, const Options& given) {
   const auto selected = select_methods(options.methods);
   LearntFile learnt(options.learnt);
   if (!options.learnt.empty() &&
-      std::none_of(selected.begin(), selected.end(), [](const auto* method) { return LearntFile::learns(*method); })) {
+      std::none_of(selected.begin(), selected.end(), [](const auto& method) { return LearntFile::learns(*method); })) {
     throw scenarios::BadInput("--learnt is for 'rate/tumble' and 'rate/tumble_lag', of which none is to run");
   }
-  if (!options.methods.empty() && std::none_of(selected.begin(), selected.end(), [&](const auto* method) {
+  if (!options.methods.empty() && std::none_of(selected.begin(), selected.end(), [&](const auto& method) {
         return method->info.for_robot(scenario.robot.type);
       })) {
     throw scenarios::BadInput("none of the methods given applies to the robot '" + scenario.robot.type + "'");
@@ -122,7 +122,7 @@ int run(const Session& session, const Options& given) {
   std::vector<scenarios::Method> copies;
   for (const scenarios::MethodPointer& method : selected) copies.push_back(learnt.wrap(*method));
   std::vector<scenarios::MethodPointer> methods;
-  for (const scenarios::Method& method : copies) methods.push_back(&method);
+  for (const scenarios::Method& method : copies) methods.push_back(scenarios::unowned(method));
   std::optional<scenarios::OutputFolder> folder;
   if (!options.folder.empty()) folder.emplace(options.folder);
 

@@ -46,7 +46,7 @@ TEST(OtherReadings, StepOverRepeats) {
   std::vector<ImuSample> samples(5);
   const double rates[] = {1.0, 2.0, 2.0, 3.0, 3.0};
   for (std::size_t k = 0; k < samples.size(); ++k) samples[k].angular_velocity_rad_s.x() = rates[k];
-  const std::vector<Neighbours> beside = other_readings(samples);
+  const std::vector<Neighbours> beside = other_readings(samples, Triad::gyro);
   ASSERT_EQ(beside.size(), 5u);
   EXPECT_EQ(beside[0].before, nullptr);
   EXPECT_EQ(beside[0].after, &samples[1]);

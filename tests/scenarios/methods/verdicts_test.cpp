@@ -63,7 +63,7 @@ TEST(Verdicts, PositionTellsGyrosOfAnotherScale) {
     testing::wrong_inputs().at(wrong)(given.recording.sensors);
     Outcome outcome;
     const Estimate estimate = run_method(*find_methods("position/tumble").at(0), given, outcome);
-    return outcome.status != "ok" || estimate.health.contains("imu_implausible");
+    return outcome.status != OutcomeStatus::ok || estimate.health.contains("imu_implausible");
   };
   EXPECT_FALSE(tells("none"));
   EXPECT_TRUE(tells("gyro_scale_5_percent"));
