@@ -112,8 +112,8 @@ void add(const scenarios::Method& method, const scenarios::SimulatedDraw& draw, 
   pool.cpu_s += scenarios::process_cpu_s() - start_s;
   const auto& stamps = draw.recording.sensors.imus.front().time_ns;
   pool.length_s += 1e-9 * static_cast<double>(stamps.back() - stamps.front());
-  if (outcome.status == "ok") scenarios::assess(method, draw, nullptr, estimate, outcome);
-  if (outcome.status != "ok") {
+  if (outcome.status == scenarios::OutcomeStatus::ok) scenarios::assess(method, draw, nullptr, estimate, outcome);
+  if (outcome.status != scenarios::OutcomeStatus::ok) {
     ++pool.failed;
     return;
   }
@@ -139,7 +139,7 @@ void print(const std::string& name, double rate_hz, const Pool& pool, const Pool
 
 int run(const Request& request) {
   const scenarios::DataRoot data{tumble::test::source_dir()};
-  std::vector<const scenarios::Method*> methods;
+  std::vector<scenarios::MethodPointer> methods;
   for (const std::string& name : request.methods) methods.push_back(scenarios::find_methods(name).at(0));
   const bool lidar =
       std::any_of(methods.begin(), methods.end(), [](const auto* method) { return method->info.kind == Kind::slam; });
