@@ -19,7 +19,7 @@ def main(readings, output):
             def numbers(*columns):
                 return [float(row[at[column]]) for column in columns]
             time_ns = int(row[at["stamp_s"]]) * 1_000_000_000 + int(row[at["stamp_ns"]])
-            w = rate(numbers("wx_rad_s", "wy_rad_s", "wz_rad_s"), numbers("FORCE_X", "FORCE_Y", "FORCE_Z"))
+            w = rate(numbers("wx_rad_s", "wy_rad_s", "wz_rad_s"), numbers("fx_m_s2", "fy_m_s2", "fz_m_s2"))
             print(time_ns, *map(repr, w), sep=",", file=out)
 
 

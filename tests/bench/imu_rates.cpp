@@ -142,7 +142,7 @@ int run(const Request& request) {
   std::vector<scenarios::MethodPointer> methods;
   for (const std::string& name : request.methods) methods.push_back(scenarios::find_methods(name).at(0));
   const bool lidar =
-      std::any_of(methods.begin(), methods.end(), [](const auto* method) { return method->info.kind == Kind::slam; });
+      std::any_of(methods.begin(), methods.end(), [](const auto& method) { return method->info.kind == Kind::slam; });
   std::printf("%s, draws %llu to %llu; 0 Hz: as the scenario has it\n", request.scenario.c_str(),
               static_cast<unsigned long long>(request.first), static_cast<unsigned long long>(request.last));
   std::printf("%-22s %6s %9s %9s %7s %7s %8s %7s %7s\n", "method", "Hz", "median", "mean", "against", "against",
