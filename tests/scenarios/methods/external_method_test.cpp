@@ -162,7 +162,7 @@ TEST_F(ExternalMethod, DescriptionsAreCheckedBeforeAnythingRuns) {
 
 TEST_F(ExternalMethod, AVersionTellsProgramAndDescription) {
   const std::string first = external_method(describe("rate", "{output}", "version: [echo, v7]\n")).info.version;
-  const std::string second = external_method(describe("rate", "{output} ", "version: [echo, v7, '']\n")).info.version;
+  const std::string second = external_method(describe("rate", "{output} ", "version: [echo, v7, b]\n")).info.version;
   EXPECT_THAT(first, HasSubstr("v7"));
   EXPECT_NE(first, second);
 }
