@@ -255,7 +255,7 @@ void RateStream::weigh(State& state) const {
   }
 }
 
-// rate_smoother.md (R28), (R34) over the window.
+// rate_smoother.md (R28) to (R34) over the window.
 bool RateStream::step(State& state) const {
   const std::size_t count = state.window.size();
   std::vector<arrow::Block>& blocks = state.work;
