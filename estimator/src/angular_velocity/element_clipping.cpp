@@ -26,7 +26,7 @@ int side(const ImuSample& sample, Triad triad, std::size_t j) {
   return reading_of(sample, triad)[static_cast<Eigen::Index>(j)] < 0.0 ? -1 : 1;
 }
 
-// Whether element j of a sample is at its rail, by its plane or by the device.
+// Whether element j of a sample is at its rail, by its plane, rails.md (R55), or by the device.
 bool at_rail(const ImuSample& sample, Triad triad, const RailPlane& rail, std::size_t j) {
   const Eigen::Vector3d& reading = reading_of(sample, triad);
   return (sample.device_clip_flags >> (first_channel(triad) + j) & 1u) != 0 || rail.holds(reading, -1) ||
@@ -34,7 +34,7 @@ bool at_rail(const ImuSample& sample, Triad triad, const RailPlane& rail, std::s
 }
 
 // Whether a sample, beside the clipped one at the other side of it than `outside`, met the rail in a part of its
-// window.
+// window; depths are those of rails.md (R54).
 bool meets(const RailPlane& rail, Triad triad, const ImuSample& now, const ImuSample* outside, int sign) {
   const double depth = rail.short_of(reading_of(now, triad), sign);
   if (depth > kEdgeShare * rail.distance_rad_s) return false;
@@ -173,6 +173,7 @@ void doubt_unseen_rails(const RailPlanes& planes, double noise_rad_s, const ImuS
   }
 }
 
+// With the covariance of rails.md (R59).
 std::optional<ToldSlopes> told_slopes(const RailPlanes& planes, bool upright, int element,
                                       const Eigen::Matrix2d& before) {
   if (upright) {

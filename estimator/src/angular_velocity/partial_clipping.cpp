@@ -15,17 +15,19 @@ constexpr double kOfLoss = 0.5, kOfDepth = 0.25, kDepthMax = 1.0;
 
 }  // namespace
 
+// A rate of constant slope that passes the rail: rails.md (R69), (R70).
 PartialLoss partial_loss(double reading_rad_s, double neighbour_rad_s, double rail_rad_s, double noise_rad_s) {
   const double depth = rail_rad_s - reading_rad_s, slope = reading_rad_s - neighbour_rad_s;
   // a mean of clipped values stands on the rail exactly; noise before the rail lowers it by less than this
   if (!(depth > 0.1 * noise_rad_s)) return {};
-  double share = 0.0;
+  double share = 0.0;  // rails.md (R71)
   if (slope > 2.0 * depth) {
     const double ratio = depth / slope;
     const double root = std::sqrt(std::max(0.0, 1.0 - (1.0 + ratio) * (1.0 - 2.0 * ratio)));
     share = (1.0 - root) / (1.0 + ratio);
   }
   if (share > kShareMax) return {};
+  // rails.md (R72), (R73)
   const double free = 1.0 - share, lost = share * share / (free * free) * depth;
   return {true, lost, std::hypot(2.0 * noise_rad_s, kOfLoss * lost + kOfDepth * std::min(depth, kDepthMax))};
 }

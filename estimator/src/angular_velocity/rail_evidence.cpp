@@ -39,7 +39,7 @@ constexpr double kAtRail = 4.0, kAtRailShareMax = 0.006;
 // What each sample beyond the facet speaks against it; share of the samples that may stray.
 constexpr double kBeyond = 5.0, kStray = 0.02;
 
-// Second differences of a window: noise of a reading as their root mean square about their mean.
+// Third differences of a window: noise of a reading from their root mean square, rails.md (R56).
 double window_noise(std::span<const Vector3d> window, int axis) {
   double sum = 0.0, squares = 0.0;
   const std::size_t count = window.size() - 3;
@@ -65,7 +65,7 @@ Stretch next_stretch(std::span<const std::size_t> inliers, std::size_t& at) {
 }
 
 // How much less the inside of a stretch scatters about a straight line than readings of a rate do, as a log likelihood
-// ratio: noise belongs to a rate, and what clips behind it has none. Nothing where digits hide the noise.
+// ratio, rails.md (R65): noise belongs to a rate, what clips behind it has none. Nothing where digits hide the noise.
 double thinness(const DistinctReadings& readings, const RailFacet& facet, const Stretch& s) {
   if (s.size() <= kThinTaken) return 0.0;
   const std::size_t first = s.first + 1, count = s.size() - 2;
@@ -147,7 +147,7 @@ double stretch_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
     if (s.first >= 2) depth = std::min(depth, facet.level - value(s.first - 2));
     if (s.last + 2 < rates.size()) depth = std::min(depth, facet.level - value(s.last + 2));
     if (s.size() < 2 || depth == std::numeric_limits<double>::max()) continue;
-    // a parabola through both neighbours bends by this within the stretch
+    // a parabola through both neighbours bends by this within the stretch: rails.md (R61)
     const double inside = (n - 1.0) / (n + 3.0), bend = depth * inside * inside;
     const double flat = std::max(high - low, 2.0 * facet.deviation);
     // thinner than the gyro's noise: no reading of a rate is
@@ -157,7 +157,9 @@ double stretch_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
     ++facet.stretches;
     odds += std::max(0.0, thin);
     if (!bends) continue;
+    // flatness and recurrence: rails.md (R62), (R63)
     odds += std::min((n - 1.0) * std::log(bend / flat), -std::log(kConstantShare)) + of_level;
+    // kinks: rails.md (R64)
     for (const bool after : {false, true}) {
       if (after ? s.last + 3 >= rates.size() : s.first < 3) continue;
       // second differences about the end: of the rail's own axis and of those beside it, which an impact would bend too
@@ -185,7 +187,7 @@ double stretch_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
   if (facet.stretches == 0) return -std::numeric_limits<double>::infinity();
   // nor is a reading told from the rail that is nearer to it than noise, from a facet that is off by as much elsewhere
   facet.tolerance = std::max(facet.tolerance, std::min(kAtRail * noise, kAtRailShareMax * facet.level));
-  // what choosing the level and the slopes freely was worth: prior over posterior volume
+  // what choosing the level and the slopes freely was worth, prior over posterior volume: rails.md (R66)
   const Eigen::Matrix3d told = H.inverse();
   const double of_slopes =
       0.5 * std::log(std::max(1.0, 1.0 / (told.topLeftCorner<2, 2>().determinant() * slope_information.determinant())));

@@ -93,7 +93,7 @@ void collect(const DistinctReadings& readings, double from, Side& side, Workspac
 }
 
 // Least squares of slopes and level over the inliers, with the prior of the slopes; deviation of the samples. Robust
-// (Cauchy) about the level before, since windows that met the rail in a part only lie short of the plane.
+// (Cauchy), since windows that met the rail in a part only lie short of the plane: rails.md (R58).
 void fit(const DistinctReadings& readings, const FacetPrior& prior, double deviation, RailFacet& facet,
          Workspace& workspace) {
   const int axis = facet.axis;
@@ -150,7 +150,7 @@ std::optional<Extreme> find_extreme(const RailPlaneFinder::Params& params, const
   return out;
 }
 
-// The slopes on a grid about the prior whose slab holds the most samples, less what is odd about the slopes.
+// Slopes on a grid about the prior whose slab holds the most samples, less what is odd about them: rails.md (R57).
 Vector2d search_slopes(const DistinctReadings& readings, const Extreme& extreme, double slope_max,
                        const FacetPrior& prior, Workspace& workspace) {
   const std::vector<std::size_t>& near = workspace.near;
@@ -218,7 +218,7 @@ double log_normal_ratio(double value, double sigma) {
   return std::max(kImpossible, -0.5 * z * z);
 }
 
-// What is believed of a level before its samples are counted.
+// What is believed of a level before its samples are counted: rails.md (R67).
 double level_log_odds(const RailPlaneFinder::Params& params, const DistinctReadings& readings, const RailPlanes& known,
                       const Side& side) {
   const double level = side.facet.level;
@@ -246,7 +246,7 @@ double level_log_odds(const RailPlaneFinder::Params& params, const DistinctReadi
   return odds;
 }
 
-// One element of what its two signs show; either may be missing.
+// One element, rails.md (R53), of what its two signs show; either may be missing.
 RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& readings, const Side* minus,
                  const Side* plus) {
   Eigen::Matrix4d H = Eigen::Matrix4d::Zero();
@@ -264,7 +264,7 @@ RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& 
     for (const Vector3d& y : readings.rates) {
       if (!(side->sign * gate.row.dot(y) >= gate.from)) continue;
       if (!(highest_value(y, axis, side->sign, gate.steepest) >= gate.near_from)) continue;
-      // y_j = sign * r + b - slopes . others
+      // rails.md (R59): y_j = sign * r + b - slopes . others
       Eigen::Vector4d A;
       A << -others(y, axis), side->sign, 1.0;
       H += weight * A * A.transpose();
@@ -327,7 +327,7 @@ RailPlanes RailPlaneFinder::find(std::span<const Vector3d> readings_rad_s, const
     return with_known(found, readings.rates);
   std::array<std::array<std::optional<Side>, 2>, 3> sides;
   const Matrix2d unknown = Matrix2d::Identity() / (params_.slope_sigma * params_.slope_sigma);
-  // the best facet about what is known of the slopes
+  // the best facet about what is known of the slopes, by the log odds of rails.md (R60)
   const auto look_about = [&](int axis, int sign, const RailPlanes& known, const FacetPrior& prior, double range) {
     Side side{axis, sign, {}, {}};
     const std::optional<Extreme> extreme = find_extreme(params_, readings, axis, sign, prior, range, workspace);
@@ -382,7 +382,7 @@ RailPlanes RailPlaneFinder::find(std::span<const Vector3d> readings_rad_s, const
           supposed.element[static_cast<std::size_t>(axis)] =
               joined(params_, readings, plus ? nullptr : &side, plus ? &side : nullptr);
           const Side other = look(axis, plus ? 0 : 1, supposed);
-          // the odds before count once
+          // the odds before count once: rails.md (R68)
           if (side.log_odds + other.log_odds - params_.log_odds_before < params_.log_odds_min) continue;
           pair[i] = side;
           pair[1 - i] = other;

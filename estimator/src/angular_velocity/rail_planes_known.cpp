@@ -58,6 +58,7 @@ ElementRows element_rows(const RailPlanes& planes, double unknown_sigma) {
   return out;
 }
 
+// rails.md (R54), (R55)
 ElementClipping classify(const ImuSample& sample, const RailPlanes& planes) {
   ElementClipping out;
   for (std::size_t j = 0; j < 3; ++j) {

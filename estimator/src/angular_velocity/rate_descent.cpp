@@ -17,6 +17,7 @@ namespace {
 constexpr double kOtherStarts[] = {16.0, 0.25};
 constexpr double kFlightShareExpected = 0.5;
 
+// rate_smoother.md (R22) to (R25); the jump is the smaller of (R23).
 void weigh_all(const RateModel& model, std::span<const RateObservation> observations, const RigConstants& rig,
                const RigConstants::Matrix& rig_covariance, double widen, std::span<RateEstimate> estimates) {
   double before = std::numeric_limits<double>::max();
@@ -74,7 +75,7 @@ bool descend(const RateSmoother::Params& params, const RateModel& model, std::sp
 }
 
 // How much of what the gyro does not see is explained as free flight: the part of the robust cost that differs between
-// the minima in which a run may end. `share`: of these samples, those that count as flight.
+// the minima in which a run may end, rate_smoother.md (R43). `share`: of these samples, those that count as flight.
 double explained(std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
                  double& share) {
   double sum = 0.0, unseen = 0.0, flight = 0.0;
@@ -90,6 +91,7 @@ double explained(std::span<const RateObservation> observations, std::span<const 
 
 }  // namespace
 
+// The system of rate_smoother.md (R28), eliminated from the first sample on.
 bool RateIteration::factorise(const RateModel& model, std::span<const RateEstimate> estimates,
                               const RigConstants& rig) {
   corner_ = {};
@@ -126,6 +128,7 @@ double RateIteration::apply(const RateModel& model, double step_max, std::span<R
   return largest;
 }
 
+// rate_smoother.md (R36), (R37)
 RateIteration::Moved RateIteration::moved_by_errors(const RateModel& model, std::span<const RateEstimate> estimates,
                                                     const RigConstants& rig) const {
   Moved out;

@@ -32,7 +32,7 @@ struct Jerk {
   Matrix3d J, J_inv;
 };
 
-// The derivative of J alpha + w x J w = 0 by time: J j = -(alpha x J w + w x J alpha).
+// The derivative of J alpha + w x J w = 0 by time: J j = -(alpha x J w + w x J alpha), rate_smoother.md (R15).
 Jerk jerk_of(const RateKnot& knot, const RigConstants& rig) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2;
   Jerk out;
@@ -51,6 +51,7 @@ Jerk jerk_of(const RateKnot& knot, const RigConstants& rig) {
 
 }  // namespace
 
+// rate_smoother.md (R5), at an earlier knot (R6)
 RateFactor gyro_factor(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_rad_s) {
   RateFactor f;
   f.residual = knot.rate_rad_s + rig.gyro_bias_rad_s - reading_rad_s;
@@ -60,6 +61,7 @@ RateFactor gyro_factor(const RateKnot& knot, const RigConstants& rig, const Vect
   return f;
 }
 
+// rate_smoother.md (R7), by rails.md (R52)
 RateFactor element_factor(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_rad_s) {
   const Vector3d off = knot.rate_rad_s + rig.gyro_bias_rad_s - reading_rad_s;
   RateFactor f;
@@ -76,11 +78,12 @@ RateFactor element_factor(const RateKnot& knot, const RigConstants& rig, const V
   return f;
 }
 
+// rate_smoother.md (R13)
 RateFactor flight_factor(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_m_s2) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2, &t = rig.lever_arm_m;
   RateFactor f;
   f.residual = alpha.cross(t) + w.cross(w.cross(t)) + rig.accel_bias_m_s2 - reading_m_s2;
-  // w x (w x t) = w (w.t) - t (w.w)
+  // rate_smoother.md (R14): w x (w x t) = w (w.t) - t (w.w)
   f.by_knot << w * t.transpose() + w.dot(t) * Matrix3d::Identity() - 2.0 * t * w.transpose(), -so3::hat(t);
   f.by_rig.setZero();
   f.by_rig.middleCols<3>(0) = so3::hat(alpha) + w * w.transpose() - w.squaredNorm() * Matrix3d::Identity();
@@ -88,6 +91,7 @@ RateFactor flight_factor(const RateKnot& knot, const RigConstants& rig, const Ve
   return f;
 }
 
+// rate_smoother.md (R16)
 RateFactor late_flight_factor(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_m_s2,
                               double delay_s, Vector3d* by_delay) {
   const Jerk jerk = jerk_of(knot, rig);
@@ -107,6 +111,7 @@ RateFactor late_flight_factor(const RateKnot& knot, const RigConstants& rig, con
   return f;
 }
 
+// rate_smoother.md (R17)
 Vector3d flight_curvature(const RateKnot& knot, const RigConstants& rig) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2, &t = rig.lever_arm_m;
   const Jerk jerk = jerk_of(knot, rig);
@@ -116,6 +121,7 @@ Vector3d flight_curvature(const RateKnot& knot, const RigConstants& rig) {
   return snap.cross(t) + j.cross(w.cross(t)) + 2.0 * alpha.cross(alpha.cross(t)) + w.cross(j.cross(t));
 }
 
+// rate_smoother.md (R18)
 RateFactor euler_factor(const RateKnot& knot, const RigConstants& rig) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2;
   const Matrix3d J = rig.inertia_matrix();

@@ -103,14 +103,14 @@ Eigen::Matrix3d euler_spread(const RateFactor& f, const RigConstants::Matrix& ri
   return IC.lazyProduct(I.transpose());
 }
 
-// Squared residual over its covariance: the sensor's own and what the uncertain rig adds, direction by direction.
+// Squared residual over its covariance, the sensor's own and what the uncertain rig adds: rate_smoother.md (R22).
 double normalised(const RateFactor& f, Eigen::Matrix3d spread, double sigma, const Vector3d& more = Vector3d::Zero()) {
   spread.diagonal().array() += sigma * sigma;
   spread.diagonal() += more;
   return f.residual.dot(spread.inverse() * f.residual);
 }
 
-// Mahalanobis distance of one part of the constants, over the root of its size
+// Mahalanobis distance of one part of the constants, over the root of its size: rate_smoother.md (R4)
 template <int kFirst, int kCount>
 double surprise(const RigConstants::Vector& moved, const RigConstants::Matrix& covariance) {
   const Eigen::Matrix<double, kCount, 1> part = moved.segment<kCount>(kFirst);
@@ -157,7 +157,7 @@ void add_euler(const RateFactor& f, const Eigen::Matrix3d& information, double t
   add_to_rig<kInertia, 5>(f, information, At, block, corner);
 }
 
-// Information of a residual whose covariance is wider than by its own inverse.
+// Information of a residual whose covariance is wider than by its own inverse: rate_stream.md (R92).
 Eigen::Matrix3d with_doubt(const Eigen::Matrix3d& information, const Eigen::Matrix3d& spread) {
   return (Eigen::Matrix3d::Identity() + information * spread).inverse() * information;
 }
@@ -168,7 +168,7 @@ RateModel::RateModel(const RateModelParams& params, double period_s) : params_(p
   check(params);
   require_within("period_s", period_s, 1e-6, 10.0);
   const double bandwidth_hz = 1.0 / period_s;
-  gyro_sigma_rad_s_ = params.gyro_noise_density * std::sqrt(bandwidth_hz);
+  gyro_sigma_rad_s_ = params.gyro_noise_density * std::sqrt(bandwidth_hz);  // rate_smoother.md (R5)
   accel_noise_m_s2_ = params.accel_noise_density * std::sqrt(bandwidth_hz);
   accel_sigma_m_s2_ = std::hypot(params.flight_sigma_m_s2, accel_noise_m_s2_);
   share_ = std::min(1.0, period_s / params.model_error_s);
@@ -191,10 +191,10 @@ void RateModel::weigh(const RateObservation& observation, const RigConstants& ri
   const double r2 = normalised(flight, flight_spread(flight, rig_covariance), accel_sigma_m_s2(observation), hidden) +
                     normalised(euler, euler_spread(euler, rig_covariance), params_.euler_sigma_rad_s2) + jump;
   const double threshold = widen * params_.flight_threshold;
-  // Geman-McClure: the pull of an outlier vanishes with the cube of its size, contacts do not drag the rate along
+  // Geman-McClure, rate_smoother.md (R24): the pull of an outlier vanishes with the cube of its size
   const double ratio = 1.0 / (1.0 + r2 / (threshold * threshold));
   estimate.flight_weight = ratio * ratio;
-  // the residual is model minus reading
+  // the residual is model minus reading: rate_smoother.md (R25)
   estimate.contact_m_s2 = (estimate.flight_weight - 1.0) * flight.residual;
 }
 
@@ -208,6 +208,7 @@ double RateModel::accel_variance_together(const RateObservation& observation) co
   return share_ < 1.0 ? noise2 + (single * single - noise2) / share_ : single * single;
 }
 
+// The step over its covariance in flight: rate_smoother.md (R23), (R20).
 double RateModel::jump(const RateKnot& from, const RateKnot& to, double dt_s) const {
   const Vector3d e0 = from.rate_rad_s + dt_s * from.acceleration_rad_s2 - to.rate_rad_s;
   const Vector3d e1 = dt_s * (from.acceleration_rad_s2 - to.acceleration_rad_s2);
@@ -218,7 +219,7 @@ double RateModel::jump(const RateKnot& from, const RateKnot& to, double dt_s) co
 double RateModel::gyro_information(const RateObservation& observation, const RateEstimate& estimate, int axis) const {
   if (observation.gyro_repeats) return 0.0;
   if (observation.gyro_age_s > 0.0) {
-    // what contact makes of the rate since the reading was taken
+    // what contact makes of the rate since the reading was taken: rate_smoother.md (R6)
     const double change = params_.contact_gain_rad_m * estimate.contact_m_s2.norm() * observation.gyro_age_s;
     const double lost = (observation.partial >> axis & 1u) != 0 ? observation.lost_sigma_rad_s[axis] : 0.0;
     return 1.0 / (gyro_sigma_rad_s_ * gyro_sigma_rad_s_ + change * change + lost * lost);
@@ -229,7 +230,7 @@ double RateModel::gyro_information(const RateObservation& observation, const Rat
 }
 
 // In contact the force is known to be of its own order: of two explanations of a rate that is not seen the gentler one
-// is more likely.
+// is more likely: rate_smoother.md (R26).
 RateModel::ForceFactor RateModel::force_factor(const RateObservation& observation, const RateEstimate& estimate,
                                                const RigConstants& rig) const {
   const double flight2 = accel_variance_together(observation);
@@ -303,7 +304,7 @@ void RateModel::add_sample(const RateObservation& observation, const RateEstimat
   }
 }
 
-// A force through one point of the body has no torque about its own direction.
+// A force through one point of the body has no torque about its own direction: rate_smoother.md (R19).
 Eigen::Matrix3d RateModel::euler_information(const RateEstimate& estimate) const {
   const double flight = params_.euler_sigma_rad_s2 * params_.euler_sigma_rad_s2;
   const double force = estimate.contact_m_s2.norm(), lever = params_.contact_lever_rad_m * force;
@@ -318,10 +319,10 @@ void RateModel::add_step(const RateEstimate& from, const RateEstimate& to, doubl
                          arrow::Block& next) const {
   const double h = time_scale_s_, ratio = dt_s / h;
   // a contact may change the angular acceleration by gain * force within one step of model_error_s, and in shorter ones
-  // by what adds up to that
+  // by what adds up to that: rate_smoother.md (R21)
   const double change = params_.contact_gain_rad_m * std::max(from.contact_m_s2.norm(), to.contact_m_s2.norm());
   const double psd = params_.jerk_psd_flight + share_ * change * change / dt_s;
-  // inverse of Q = psd [dt^3/3, dt^2 h/2; dt^2 h/2, dt h^2] of the scaled state
+  // inverse of Q = psd [dt^3/3, dt^2 h/2; dt^2 h/2, dt h^2] of the scaled state: rate_smoother.md (R20)
   const double a = 12.0 / (psd * dt_s * dt_s * dt_s), b = -6.0 / (psd * dt_s * dt_s * h),
                c = 4.0 / (psd * dt_s * h * h);
   for (int j = 0; j < 3; ++j) {
@@ -361,6 +362,7 @@ double RateModel::calibration_mahalanobis(const RigConstants& rig) const {
   return std::max({lever, gyro, accel, inertia});
 }
 
+// From the scaled state of rate_smoother.md (R1); scaled() leads back to it.
 Eigen::Matrix<double, 6, 1> RateModel::unscaled(const arrow::StateVector& step) const {
   Eigen::Matrix<double, 6, 1> out = step;
   out.tail<3>() /= time_scale_s_;

@@ -31,7 +31,7 @@ void RateModel::seek_flight(const RateObservation& observation, const RigConstan
   const Vector3d reading = corrected_rate(observation, estimate);
   RateEstimate flown = estimate;
   const Eigen::Matrix3d J = rig.inertia_matrix();
-  // what an element hides moves all axes: columns of M^-1
+  // what an element hides moves all axes: columns of M^-1 in rails.md (R51)
   Eigen::Matrix3d rows;
   for (int j = 0; j < 3; ++j) rows.row(j) = rig.element_row(j);
   const Eigen::Matrix3d hides = rows.inverse();
@@ -91,7 +91,7 @@ void RateModel::update_bounds(const RateObservation& observation, const RigConst
     for (int i = 0; i < 3; ++i) by_rig += row[i] * conditional.by_border.row(i);
     const Eigen::Matrix<double, 1, RigConstants::kSize> cross = by_rig.lazyProduct(rig_covariance);
     const Vector3d by_state = conditional.state.topLeftCorner<3, 3>().lazyProduct(row);
-    // mirrored so that the bound lies below
+    // mirrored so that the bound lies below: rate_smoother.md (R9); variance as in (R34)
     const NormalMoments marginal{sign * off.residual[j], row.dot(by_state) + cross.dot(by_rig)};
     const NormalSite site = refined_bound(marginal, {estimate.bound_precision[j], sign * estimate.bound_shift[j]}, 0.0,
                                           params_.rail_sigma_rad_s * params_.rail_sigma_rad_s,

@@ -12,7 +12,7 @@ constexpr int kGyroBias = 3;
 
 // One row m_j . (rate - age acceleration + bias - reading), of the given information and pull; `age` in units of the
 // time by which the acceleration is scaled. With `doubted` it tells nothing of m_j, and counts for as little as what is
-// not known of m_j leaves it.
+// not known of m_j leaves it: rate_smoother.md (R7), rate_stream.md (R92).
 void add_row(const RateFactor& gyro, int j, double age, double information, double pull,
              const RigConstants::Matrix* doubted, arrow::Block& block, arrow::Corner& corner) {
   const int first = RigConstants::kElements + 2 * j;
@@ -62,7 +62,7 @@ void RateModel::add_elements(const RateObservation& observation, const RateEstim
       pull = information * (gyro.residual[j] - observation.lost_rad_s[j]);
     } else if ((observation.clipping.gyro >> j & 1u) != 0) {
       const bool kept = gyro.residual[j] * observation.sample.angular_velocity_rad_s[j] >= 0.0;
-      if (kept && !estimate.soft_bounds) continue;
+      if (kept && !estimate.soft_bounds) continue;  // a wall: rate_smoother.md (R8)
       information = 1.0 / (params_.rail_sigma_rad_s * params_.rail_sigma_rad_s);
       pull = information * gyro.residual[j];
       if (estimate.soft_bounds) {
@@ -87,7 +87,7 @@ Eigen::Vector3d RateModel::read_accel_elements(const RateObservation& observatio
   double hidden2 = 0.0;
   for (int j = 0; j < 3; ++j) {
     if ((clipped >> j & 1u) == 0) continue;
-    // residual = model - reading; the truth lies beyond the reading, on the side of its sign
+    // residual = model - reading; the truth lies beyond the reading, on the side of its sign: rate_smoother.md (R8)
     if (flight.residual[j] * observation.sample.specific_force_m_s2[j] < 0.0) continue;
     hidden2 += flight.residual[j] * flight.residual[j];
     flight.residual[j] = 0.0;

@@ -28,6 +28,7 @@ void RateModel::keep_from_rig(const RateObservation& o, RateFactor& flight) {
   }
 }
 
+// The rate of which a reading tells: rate_smoother.md (R6).
 RateKnot RateModel::at_reading(const RateObservation& observation, const RateEstimate& estimate) const {
   const RateKnot& knot = estimate.knot;
   return {knot.rate_rad_s - observation.gyro_age_s * knot.acceleration_rad_s2, knot.acceleration_rad_s2};
@@ -47,11 +48,12 @@ RateFactor RateModel::flight(const RateObservation& observation, const RateKnot&
   if (exact_ && delay_s == 0.0 && by_delay == nullptr) return flight_factor(knot, rig, reading);
   const Vector3d force = reading - params_.errors.accel * reading;
   RateFactor out = late_flight_factor(knot, rig, force, delay_s, by_delay);
-  // small beside the rest, so that its derivatives may be left out
+  // small beside the rest, so that its derivatives may be left out: rate_smoother.md (R17)
   out.residual += 0.5 * params_.errors.accel_blur_s2 * flight_curvature(knot, rig);
   return out;
 }
 
+// rate_smoother.md (R35), and the sums over samples of (R37)
 void RateModel::add_errors(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                            arrow::ErrorMatrix& block, arrow::BorderErrors& border,
                            SensorErrorEvidence& evidence) const {
@@ -110,6 +112,7 @@ void RateModel::add_errors(const RateObservation& observation, const RateEstimat
   }
 }
 
+// rate_smoother.md (R42)
 Eigen::Matrix3d RateModel::reported(const Eigen::Matrix3d& covariance, const RateObservation& observation,
                                     const RateEstimate& estimate) const {
   const double factor = 1.0 + (params_.contact_sigma_factor - 1.0) * (1.0 - estimate.flight_weight);

@@ -62,7 +62,7 @@ RateModelParams held(const RateModelParams& params, const RateModel& model) {
   return out;
 }
 
-// How far the constants moved, where the device's errors may have moved them too.
+// How far the constants moved, rate_smoother.md (R4), where the device's errors may have moved them too.
 double surprise_of(const RateModelParams& known, const RateModel& model, double period_s,
                    std::span<const RateObservation> observations, const RateSolution& solution) {
   RateIteration again(observations);
@@ -106,7 +106,7 @@ Status descend_held(const RateSmoother::Params& params, const RateModelParams& k
 // A guess of the delay this many of its deviations from what is assumed is where the descent starts.
 constexpr double kGuessFar = 2.0;
 
-// What strikes the body is not seen by the model of flight: evidence of its own.
+// What strikes the body is not seen by the model of flight: evidence of its own, added to rate_smoother.md (R37).
 void add_guess(const TriadDelay& guess, SensorErrorEvidence& evidence) {
   if (!(guess.sigma_s > 0.0)) return;
   const double information = 1.0 / (guess.sigma_s * guess.sigma_s);

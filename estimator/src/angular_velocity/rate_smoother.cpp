@@ -58,7 +58,7 @@ Status check_auxiliary_imus(const RateModelParams& params,
   return {};
 }
 
-// What remains open of the device's errors, in a rate: linear in them, and no more than any rate.
+// What remains open of the device's errors, in a rate, and no more than any rate: rate_smoother.md (R41).
 Eigen::Matrix3d considered(const arrow::ErrorMatrix& moved, const SensorErrors::Matrix& covariance,
                            double rate_max_rad_s) {
   const Eigen::Matrix<double, 3, SensorErrors::kSize> rates = moved.topRows<3>(), spread = rates * covariance;

@@ -32,7 +32,7 @@ void hold_to_bounds(const RateObservation& o, Vector3d& rate) {
   }
 }
 
-// The prior at another point than the one about which it stands.
+// The prior at another point than the one about which it stands: rate_stream.md (R91).
 void add_prior(const RateStream::State& state, const RateModel& model, const RateKnot& knot, arrow::Block& block,
                arrow::Corner& corner) {
   Eigen::Matrix<double, 6, 1> moved;
@@ -125,6 +125,7 @@ void RateStream::predict_covariance(State& state) const {
   newest.covariance_rad2_s2 += sigma.cwiseAbs2().asDiagonal();
 }
 
+// rate_stream.md (R90); the weight for good by rate_smoother.md (R22) to (R25), short flights by rate_stream.md (R92).
 void RateStream::marginalise(std::size_t first, State& state) const {
   Knot& oldest = state.window[first];
   const Knot& next = state.window[first + 1];
@@ -254,6 +255,7 @@ void RateStream::weigh(State& state) const {
   }
 }
 
+// rate_smoother.md (R28) to (R34) over the window.
 bool RateStream::step(State& state) const {
   const std::size_t count = state.window.size();
   std::vector<arrow::Block>& blocks = state.work;
@@ -299,6 +301,7 @@ bool RateStream::step(State& state) const {
   return true;
 }
 
+// rate_stream.md (R93)
 RigConstants::Matrix RateStream::widened(const State& state) const {
   if (params_.model.calibration) return state.rig_covariance;
   const double samples = static_cast<double>(state.learnt_from) / params_.rig_doubt_samples;

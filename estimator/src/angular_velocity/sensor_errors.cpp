@@ -64,7 +64,7 @@ struct Hypothesis {
   Matrix covariance;
 };
 
-// Evidence in units of the prior's deviations: h = sum over the readings of information * errors.
+// Evidence in units of the prior's deviations, h = gamma + information * errors: rate_smoother.md (R38), (R39).
 Hypothesis posterior(const Matrix& information, const Vector& h, const Vector& deviation, double log_prior) {
   constexpr int kRest = SensorErrors::kSize - SensorErrors::kFelt;
   const Matrix scaled = deviation.asDiagonal() * information * deviation.asDiagonal();
@@ -150,6 +150,7 @@ SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const Sens
     kept += one.log_odds;
   }
   mean /= std::max(kept, 1e-300);
+  // about the mean in use: rate_smoother.md (R40)
   for (const Hypothesis& one : all) {
     const Vector off = one.mean - mean;
     out.known.covariance += one.log_odds * (one.covariance + off * off.transpose());

@@ -106,7 +106,7 @@ std::vector<Place> places(const Readings& gyro) {
   return out;
 }
 
-// Robust cost of a delay, least over lever arm and bias.
+// Robust cost of a delay, least over lever arm and bias: residuals of rate_smoother.md (R13).
 double cost(const Readings& accel, std::span<const Place> places, const Vector3d& lever_arm_m, double delay_s) {
   Unknown prior, at, information;
   prior << lever_arm_m, Vector3d::Zero();
@@ -138,7 +138,7 @@ double cost(const Readings& accel, std::span<const Place> places, const Vector3d
   return sum;
 }
 
-// Mean angular acceleration between two free readings of the gyro.
+// Mean angular acceleration between two free readings of the gyro: x of rate_smoother.md (R44).
 struct Change {
   double begin_s, end_s, root;  ///< root of its norm
 };
@@ -177,6 +177,7 @@ class ForceIntegral {
   std::vector<double> norm_, sum_;
 };
 
+// Of the two of rate_smoother.md (R44).
 double correlation(std::span<const Change> changes, const ForceIntegral& force, double delay_s) {
   double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, yy = 0.0, xy = 0.0;
   std::size_t begin = 0, end = 0, strokes = 0, flying = 0;

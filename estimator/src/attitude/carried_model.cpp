@@ -21,7 +21,8 @@ using BorderRow = Eigen::Matrix<double, 1, kBorder>;  // by the constants
 using ForceState = Eigen::Matrix<double, 3, 12>;      // by attitude, rate, angular acceleration, hand
 using ForceBorder = Eigen::Matrix<double, 3, kBorder>;
 
-// slope h = -d/du log Phi(u) is the hazard phi/Phi; the tail by its asymptotic series, where both underflow
+// carried.md (C12): slope h = -d/du log Phi(u) is the hazard phi/Phi; the tail by its asymptotic series, where both
+// underflow
 double hazard(double u) {
   if (u < -12.0) return -u - 1.0 / u * (1.0 - 2.0 / (u * u));
   const double density = std::exp(-0.5 * u * u) / std::sqrt(2.0 * std::numbers::pi);
@@ -74,7 +75,7 @@ double excess(const NodeReadings& readings, const std::array<GyroRows, 3>& rows,
   return sum;
 }
 
-// n readings at times t as two independent ones: of the value at their mean time and of the slope about it
+// n readings at times t as two independent ones, of the value at their mean time and of the slope: carried.md (C11)
 double add_free(const ElementSums& e, const GyroRows& rows, double information, System::Block& block,
                 System::Corner& corner) {
   const double mean_t = e.t_s / e.n;
@@ -93,6 +94,7 @@ double add_free(const ElementSums& e, const GyroRows& rows, double information, 
   return cost;
 }
 
+// carried.md (C12)
 double add_bound(const ElementSums& e, const GyroRows& rows, double sigma, System::Block& block,
                  System::Corner& corner) {
   const GyroRow row = rows.value + e.clipped_t_s * rows.slope;
@@ -130,6 +132,7 @@ double add_chain(const Eigen::Matrix<double, 2 * N, 2 * N>& information, double 
 
 }  // namespace
 
+// carried.md (C1)
 void Node::move(const System::StateVector& step) {
   q_WI = (q_WI * so3::exp(step.segment<3>(kPhi))).normalized();
   w_WI_I_rad_s += step.segment<3>(kRate);
@@ -167,6 +170,7 @@ double add_gyro(const NodeReadings& readings, const Matrix3d& rows, const Readin
   return cost;
 }
 
+// carried.md (C13)
 double add_force(const NodeReadings& readings, const Vector3d& g_W_m_s2, const ReadingNoise& noise, const Node& node,
                  const Constants& constants, System::Block& block, System::Corner& corner) {
   if (!(readings.force_n > 0.0)) return 0.0;
@@ -221,6 +225,7 @@ double add_rest(const ReadingNoise& noise, const Node& node, System::Block& bloc
          add_zero(node.a_W_m_s2, 1.0 / (noise.rest_m_s2 * noise.rest_m_s2), kHand, block);
 }
 
+// carried.md (C3)
 Vector3d turned(const Node& from, const Node& to, double h) {
   const Vector3d& w0 = from.w_WI_I_rad_s;
   const Vector3d& w1 = to.w_WI_I_rad_s;
@@ -231,15 +236,16 @@ Vector3d turned(const Node& from, const Node& to, double h) {
 Motion::Motion(const Params& params) : params_(params) {
   const double h = params.step_s;
   const double q = params.jerk_rad_s3_sqrts * params.jerk_rad_s3_sqrts;
-  // white jerk: rate and angular acceleration after the step, given those before
+  // white jerk, carried.md (C2): rate and angular acceleration after the step, given those before
   Eigen::Matrix2d Q;
   Q << h * h * h / 3.0, h * h / 2.0, h * h / 2.0, h;
   Eigen::Matrix<double, 2, 4> J;
   J << -1.0, -h, 1.0, 0.0, 0.0, -1.0, 0.0, 1.0;
   jerk_ = J.transpose() * (q * Q).inverse() * J;
-  // the angle given rate and angular acceleration at both ends: a quintic's remainder
+  // the angle given rate and angular acceleration at both ends, a quintic's remainder: carried.md (C4)
   phi_variance_ = q * std::pow(h, 5) / 720.0 + 1e-12;
 
+  // the hand: carried.md (C6), (C7), (C8)
   const double decay = std::exp(-h / params.hand_tau_s);
   const double density = (1.0 - decay * decay) * params.hand_m_s2 * params.hand_m_s2 / h;
   Eigen::Matrix<double, 1, 6> row;
@@ -252,6 +258,7 @@ Motion::Motion(const Params& params) : params_(params) {
   way_ += row.transpose() * row / (density * std::pow(h, 5) / 120.0 + 1e-10);
 }
 
+// carried.md (C4), (C5)
 double Motion::add_attitude(const Node& from, const Node& to, System::Block& block, System::Block& next) const {
   const double h = params_.step_s;
   const Vector3d omega = turned(from, to, h);
@@ -277,6 +284,7 @@ double Motion::add_attitude(const Node& from, const Node& to, System::Block& blo
   return w * error.squaredNorm();
 }
 
+// carried.md (C2), (C4), (C6), (C7), (C8)
 double Motion::add_step(const Node& from, const Node& to, double hand, System::Block& block,
                         System::Block& next) const {
   double cost = add_attitude(from, to, block, next);
@@ -290,6 +298,7 @@ double Motion::add_step(const Node& from, const Node& to, double hand, System::B
   return cost;
 }
 
+// carried.md (C9)
 double Motion::add_bounds(const Node& node, System::Block& block) const {
   const double velocity = params_.velocity_m_s * params_.velocity_m_s * params_.velocity_tau_s;
   const double place = params_.place_m * params_.place_m * params_.place_tau_s;

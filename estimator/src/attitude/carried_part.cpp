@@ -52,6 +52,7 @@ Problem::Problem(const Problem& whole, const Part& part)
             whole.hand_.begin() + static_cast<std::ptrdiff_t>(part.last + 1)),
       blocks_(nodes_.size()) {}
 
+// The Schur complements of carried.md (C14), from both ends.
 bool Problem::tell(std::span<Part> parts) const {
   System::Corner unused;
   // from the left: what is known of a node before its own readings

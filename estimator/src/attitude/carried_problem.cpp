@@ -69,6 +69,7 @@ double add_node(const NodeReadings& readings, const Eigen::Matrix3d& rows, const
   return cost;
 }
 
+// carried.md (C1)
 double add_constants_prior(const CarriedSmoother::Params& params, const Constants& constants, System::Corner& corner) {
   double cost = 0.0;
   const auto prior = [&](const Vector3d& value, double sigma, int at) {
@@ -107,6 +108,7 @@ double Problem::linearise() {
   return cost;
 }
 
+// carried.md (C14), (C15)
 bool Problem::eliminate(System::BorderVector& step) {
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     System::Block* const next = i + 1 < blocks_.size() ? &blocks_[i + 1] : nullptr;
@@ -115,6 +117,7 @@ bool Problem::eliminate(System::BorderVector& step) {
   return System::solve_corner(corner_, step, constants_covariance_);
 }
 
+// carried.md (C16)
 bool Problem::step(double& largest) {
   System::BorderVector border;
   if (!eliminate(border)) return false;
@@ -135,7 +138,7 @@ bool Problem::step(double& largest) {
   return true;
 }
 
-// the hand is as lively as it was about that time: mean square over a window, never far below what is assumed
+// the hand is as lively as it was about that time, never far below what is assumed: carried.md (C10)
 void Problem::follow_hand() {
   const std::size_t count = nodes_.size();
   const double assumed = 3.0 * params_.hand_m_s2 * params_.hand_m_s2;
@@ -165,6 +168,7 @@ Status Problem::solve(CarriedSmoother::Report& report) {
   return {};
 }
 
+// carried.md (C17), (C18), of the jerk of (C19)
 Status Problem::covariances(CarriedSmoother::Report& report) {
   motion_ = Motion(motion_params(params_, params_.jerk_doubt));
   (void)linearise();
@@ -183,7 +187,7 @@ Status Problem::covariances(CarriedSmoother::Report& report) {
   return {};
 }
 
-// the mean over a window T of a process of deviation s and memory tau has the variance
+// carried.md (C20): the mean over a window T of a process of deviation s and memory tau has the variance
 // s^2 2 tau/T (1 - tau/T (1 - exp(-T/tau)))
 double Problem::hand_surprise() const {
   const auto window = static_cast<std::size_t>(std::max(1.0, kSurpriseS / params_.node_s));

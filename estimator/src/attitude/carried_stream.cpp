@@ -221,10 +221,12 @@ void CarriedStream::predict(const Node& before, const Eigen::Matrix3d& rows, Kno
   if (knot.readings.force_n > 0.0) node.a_W_m_s2 = node.q_WI * knot.readings.force_m_s2 + g_W_m_s2_;
 }
 
+// carried.md (C32)
 double CarriedStream::hand(const State& state) const {
   return std::max(params_.body.hand_floor, 1.0 + params_.body.hand_follow * (state.hand_power - 1.0));
 }
 
+// As rate_stream.md (R91).
 void CarriedStream::add_prior(const State& state, System::Block& block, System::Corner& corner) const {
   if (state.first_node == 0) {
     (void)motion_.add_first(state.window.front().node, block);
@@ -240,6 +242,7 @@ void CarriedStream::add_prior(const State& state, System::Block& block, System::
   corner.gradient += state.prior_corner.gradient - state.prior_corner.matrix * c - state.prior.border.transpose() * x;
 }
 
+// carried.md (C14), as rate_stream.md (R90); the hand's power is that of carried.md (C32).
 void CarriedStream::marginalise_oldest(State& state) const {
   const Knot& oldest = state.window[0];
   const Node& next = state.window[1].node;
@@ -272,6 +275,7 @@ void CarriedStream::marginalise_oldest(State& state) const {
   state.readings.erase(state.readings.begin(), gone);
 }
 
+// carried.md (C14), (C15)
 bool CarriedStream::factorise(const carried::Motion& motion, State& state, System::BorderVector& step) const {
   const std::size_t count = state.window.size();
   const double lively = hand(state);
@@ -293,6 +297,7 @@ bool CarriedStream::factorise(const carried::Motion& motion, State& state, Syste
   return System::solve_corner(corner, step, state.constants_covariance);
 }
 
+// carried.md (C16)
 bool CarriedStream::step(State& state) const {
   System::BorderVector border;
   if (!factorise(motion_, state, border)) return false;
@@ -325,7 +330,7 @@ RateState CarriedStream::to_rate(const Reading& reading, const State& state, con
   return out;
 }
 
-// Rates of the readings [first, last], with their covariances: near to clipped nodes those of the doubted jerk.
+// Rates of the readings [first, last], with their covariances: near to clipped nodes those of carried.md (C19).
 // `factorised`: the work holds the equations with the jerk that is assumed.
 void CarriedStream::publish(std::size_t first, std::size_t last, bool factorised, State& state,
                             std::span<RateState> out) const {

@@ -101,7 +101,7 @@ bool RegimeStream::doubts(const State& state) const {
   return state.resets > kDoubtResets;
 }
 
-// The evidence of the sample that is given out, by its own rate.
+// The evidence of the sample that is given out, by its own rate: the forward half of carried.md (C28).
 void RegimeStream::judge(const RateState& rate, State& state) const {
   const double dt_s = state.given == 0 ? params_.evidence.memory_s : seconds(rate.time_ns - state.given_ns);
   state.shares = next(state.shares, dt_s, state.rate.window.front(), rate_.calibration(state.rate), doubts(state));
@@ -115,8 +115,8 @@ void RegimeStream::judge(const RateState& rate, State& state) const {
   state.sum.carried += state.shares.carried;
 }
 
-// With which probability CarriedStream is right about the sample given out: the least over the stretch of clipped
-// samples that it lies in, or near to, as far as the window shows it; 0 away from all.
+// With which probability CarriedStream is right about the sample given out, s of carried.md (C29): the least over the
+// stretch of clipped samples that it lies in, or near to, as far as the window shows it; 0 away from all.
 double RegimeStream::share_of(const RateState& rate, State& state) const {
   const auto near_ns = static_cast<TimeNs>(std::llround(1e9 * params_.near_s));
   const bool after = state.clipped_ns && rate.time_ns - *state.clipped_ns <= near_ns;

@@ -44,12 +44,13 @@ struct Open {
   std::vector<std::pair<double, std::vector<Node>>> others;
 };
 
-/// Least cost of white jerk for a whole turn more within so many steps: a rate of 2 pi / T 30 u^2 (1 - u)^2.
+/// Least cost of white jerk for a whole turn more within so many steps, carried.md (C30): 2 pi / T 30 u^2 (1 - u)^2.
 double turn_cost(const Problem& problem, std::size_t steps) {
   const double span_s = static_cast<double>(steps) * problem.node_s(), jerk = problem.jerk_rad_s3_sqrts();
   return 720.0 * std::pow(2.0 * kPi / jerk, 2.0) / std::pow(span_s, 5.0);
 }
 
+/// carried.md (C30)
 std::vector<Stretch> doubtful_stretches(const Problem& problem) {
   std::vector<Stretch> out;
   const std::size_t count = problem.nodes().size();
@@ -142,6 +143,7 @@ std::vector<Hypothesis> hypotheses(const Problem& whole, const Stretch& stretch,
   return out;
 }
 
+/// The shares of carried.md (C31).
 Open shares_of(std::vector<Hypothesis>& found, std::size_t from) {
   Open out{from, {}};
   double sum = 0.0;
@@ -200,6 +202,7 @@ Status ask_turns(Problem& problem, CarriedSmoother::Report& report) {
     if (const Status status = problem.covariances(report); !status.ok()) return status;
   }
   report.turns_open = static_cast<int>(open.size());
+  // carried.md (C31)
   for (const Open& stretch : open) {
     for (const auto& [share, nodes] : stretch.others) {
       for (std::size_t i = 0; i < nodes.size(); ++i) {
