@@ -28,7 +28,8 @@ double current_yaw(const Eigen::Quaterniond& q) {
   return std::atan2(2.0 * (q.w() * q.z() + q.x() * q.y()), 1.0 - 2.0 * (q.y() * q.y() + q.z() * q.z()));
 }
 
-/// The published complementary step: towards roll and pitch of the accelerometer at the current yaw, along the arc.
+/// The published complementary step: towards roll and pitch of the accelerometer at the current yaw, along the arc,
+/// attitude.md (A16).
 Eigen::Quaterniond towards_roll_and_pitch(const Eigen::Quaterniond& q, const Eigen::Vector3d& f, double share,
                                           bool keep_roll) {
   const double sin_pitch = 2.0 * (q.w() * q.y() - q.x() * q.z());
@@ -50,6 +51,7 @@ Autogain::Autogain(const Params& p) : params_(p) {
   require_within("gap_max_s", p.gap_max_s, 1e-9, 1e4);
 }
 
+/// attitude.md (A12), (A13), (A14).
 AutogainGains Autogain::gains(const Eigen::Vector3d& w_I_rad_s, double dt_s) const {
   const double width = params_.upper_rad_s - params_.lower_rad_s;
   const auto risen = [&](double rate) { return std::clamp((rate - params_.lower_rad_s) / width, 0.0, 1.0); };

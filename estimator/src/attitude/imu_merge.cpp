@@ -157,7 +157,7 @@ ImuSample ImuMerge::merge(State& state) const {
     forces[k] = raw_forces[k];
     const double offset_s = unit.offset_s();
     const bool late = offset_s * offset_s > kBeyondDoubt * kBeyondDoubt * unit.P(kOffset, kOffset);
-    if (finite[k] && state.windows > 0 && late) {
+    if (finite[k] && state.windows > 0 && late) {  // imu_merge.md (I4)
       rates[k] -= offset_s / since_s * (raw_rates[k] - unit.last_rate_rad_s);
       forces[k] -= offset_s / since_s * (raw_forces[k] - unit.last_force_m_s2);
     }
@@ -183,7 +183,7 @@ ImuSample ImuMerge::merge(State& state) const {
   return merged;
 }
 
-/// Units whose rate and force agree with the median, and that met no rail.
+/// Units whose rate and force agree with the median, and that met no rail: imu_merge.md (I5).
 ImuMerge::Flags ImuMerge::choose(const Readings& readings, const Flags& present, const Vectors& rates,
                                  const Vectors& forces, double h, State& state) const {
   // the places differ, so forces may by what the rate makes of it; the tolerance has to bear that
@@ -211,7 +211,7 @@ ImuMerge::Flags ImuMerge::choose(const Readings& readings, const Flags& present,
   return used;
 }
 
-/// The mean of those in use, moved to the mean place of all.
+/// The mean of those in use, moved to the mean place of all: imu_merge.md (I1), (I2).
 ImuSample ImuMerge::mean_of_used(const Vectors& rates, const Vectors& forces, const Flags& used, double h,
                                  const State& state) const {
   const auto kept = static_cast<int>(std::count(used.begin(), used.end(), true));
@@ -235,6 +235,7 @@ ImuSample ImuMerge::mean_of_used(const Vectors& rates, const Vectors& forces, co
   return merged;
 }
 
+/// imu_merge.md (I7).
 std::optional<double> ImuMerge::arm_share(const State& state) {
   if (state.arm_square_m2_s3 < kArmSquareMin_m2_s3) return std::nullopt;
   return state.arm_product / state.arm_square_m2_s3;
@@ -275,7 +276,7 @@ void ImuMerge::close_windows(const Flags& present, const Vectors& rates, const V
 
 /// A blow may take a unit to its rail for less than a sample. On a rigid body one unit tells what the others feel,
 /// along the line between the two without the angular acceleration. The one that most others agree with is believed,
-/// among equals the one whose force changed least.
+/// among equals the one whose force changed least. imu_merge.md (I6).
 void ImuMerge::leave_out_subsample_saturated(const Readings& samples, const Flags& present, const Vectors& forces,
                                              const Eigen::Vector3d& rate, double h, State& state, Flags& used) const {
   const double since_s = 0.5 * (h + state.length_s);
@@ -336,7 +337,7 @@ void ImuMerge::recover(const Readings& readings, const Flags& present, double h,
 }
 
 /// A unit's rate over the last window less the mean of all, explained by bias, scale and time offset; the angular
-/// acceleration is the central difference, from the window before to this one.
+/// acceleration is the central difference, from the window before to this one. imu_merge.md (I3), (I7).
 void ImuMerge::learn(const Vectors& rates, State& state) const {
   const auto count = static_cast<std::size_t>(params_.count);
   Eigen::Vector3d now = Eigen::Vector3d::Zero(), mean = Eigen::Vector3d::Zero();

@@ -68,6 +68,7 @@ void ImuPlausibility::hold(const Eigen::Vector3d& reading, double dt_s, Hold& ho
   if (froze) hold.frozen_s = std::max(hold.frozen_s, hold.held_s);
 }
 
+/// imu_merge.md (I15), (I16).
 void ImuPlausibility::take(State& state) const {
   const Eigen::Vector3d force = state.average.mean.specific_force_m_s2;
   const Eigen::Vector3d turned = state.average.length_s * state.average.mean.angular_velocity_rad_s;
@@ -110,6 +111,7 @@ double ImuPlausibility::force_share(const State& state) const {
   return state.force_sum_m_s2 / state.windows / params_.gravity_m_s2;
 }
 
+/// imu_merge.md (I17).
 double ImuPlausibility::unexplained_share(const State& state) const {
   const double turned = std::max(state.by_force_rad2, state.by_gyro_rad2);
   return turned < params_.turned_min_rad2 ? 0.0 : state.unexplained_rad2 / turned;

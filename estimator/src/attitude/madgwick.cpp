@@ -15,7 +15,7 @@ constexpr double kForceMin_m_s2 = 1e-6;
 constexpr double kGradientMin = 1e-12;
 
 /// Gradient J^T F of half the squared distance between the predicted and the measured direction of "up", as (x, y, z,
-/// w).
+/// w): s of attitude.md (A15).
 Eigen::Vector4d tilt_gradient(const Eigen::Quaterniond& q, const Eigen::Vector3d& up_I) {
   const double w = q.w(), x = q.x(), y = q.y(), z = q.z();
   const double f1 = 2.0 * (x * z - w * y) - up_I.x();
@@ -37,6 +37,7 @@ Eigen::Vector4d correction(const Eigen::Quaterniond& q, const Eigen::Vector3d& f
 
 }  // namespace
 
+/// attitude.md (A15).
 Eigen::Quaterniond madgwick_step(const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& w_I_rad_s,
                                  const Eigen::Vector3d& f_I_m_s2, double gain_rad_s, double dt_s) {
   const Eigen::Quaterniond rate(0.0, w_I_rad_s.x(), w_I_rad_s.y(), w_I_rad_s.z());

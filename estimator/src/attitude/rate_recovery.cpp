@@ -30,7 +30,8 @@ void update(const Row& row, double innovation, double variance, RateRecovery::St
   state.P -= PHt * (PHt / s).transpose();
 }
 
-// A triad of one unit as it is read: axis by axis, or along the rows of its elements while one of them clips.
+// A triad of one unit as it is read: axis by axis, or along the rows of its elements while one of them clips, by
+// rails.md (R52).
 struct Seen {
   Eigen::Matrix3d rows_C;
   Eigen::Vector3d reading, slope_sigma = Eigen::Vector3d::Zero();
@@ -153,6 +154,7 @@ void RateRecovery::start(const ImuSample& merged, State& state) const {
   state.started = state.running = true;
 }
 
+/// imu_merge.md (I11), (I12).
 void RateRecovery::predict(double dt_s, State& state) const {
   const Eigen::Vector3d rate = state.x.segment<3>(kRate), force = state.x.segment<3>(kForce);
   const Eigen::Matrix3d turn = so3::exp(-dt_s * rate).toRotationMatrix();  // a force that stays in W turns back in C
@@ -171,6 +173,7 @@ void RateRecovery::predict(double dt_s, State& state) const {
   diagonal.segment<3>(kForce).array() += squared(params_.force_walk_m_s2_sqrts) * dt_s;
 }
 
+/// imu_merge.md (I13).
 void RateRecovery::measure_rates(std::span<const ImuSample> units, double dt_s, State& state) const {
   const double shorter = std::max(1.0, kReading_s / dt_s);
   for (std::size_t k = 0; k < units.size(); ++k) {
@@ -193,6 +196,7 @@ void RateRecovery::measure_rates(std::span<const ImuSample> units, double dt_s, 
   }
 }
 
+/// imu_merge.md (I14).
 void RateRecovery::measure_forces(std::span<const ImuSample> units, double dt_s, State& state) const {
   const double shorter = std::max(1.0, kReading_s / dt_s);
   for (std::size_t k = 0; k < units.size(); ++k) {

@@ -21,7 +21,8 @@ double squared(double x) {
   return x * x;
 }
 
-/// Kalman update by one scalar measurement of state `index`: `innovation` is measurement minus estimate.
+/// Kalman update by one scalar measurement of state `index` of attitude.md (A4): `innovation` is measurement minus
+/// estimate.
 void update(int index, double innovation, double variance, TumbleAttitude::State& state) {
   const Eigen::Matrix<double, TumbleAttitude::kStates, 1> column = state.covariance.col(index);
   const double s = column[index] + variance;
@@ -109,6 +110,7 @@ void TumbleAttitude::start(State& state) const {
   state.started = true;
 }
 
+/// attitude.md (A3), (A11).
 void TumbleAttitude::detect_rest(const ImuSample& sample, double dt_s, State& state) const {
   const double warp = low_pass_warp(params_.rest_tau_s, dt_s);
   state.rest_rate_rad_s.advance(sample.angular_velocity_rad_s, params_.rest_tau_s, dt_s, warp);
@@ -120,6 +122,7 @@ void TumbleAttitude::detect_rest(const ImuSample& sample, double dt_s, State& st
   state.at_rest = quiet && state.rest_s >= params_.rest_time_s;
 }
 
+/// attitude.md (A5).
 void TumbleAttitude::integrate(const ImuSample& sample, double dt_s, State& state) const {
   Eigen::Vector3d rate = sample.angular_velocity_rad_s - state.bias_rad_s;
   if (state.at_rest) rate.setZero();
@@ -134,6 +137,7 @@ void TumbleAttitude::integrate(const ImuSample& sample, double dt_s, State& stat
   state.node_s += dt_s;
 }
 
+/// attitude.md (A6), (A7), (A8).
 void TumbleAttitude::predict_node(State& state) const {
   const double h = state.node_s;
   const double keep = std::exp(-h / params_.displacement_tau_s);
@@ -175,6 +179,7 @@ bool TumbleAttitude::watch_slip(const Eigen::Vector2d& misfit_m_s, State& state)
   return state.slipping;
 }
 
+/// attitude.md (A9), (A10).
 void TumbleAttitude::correct_node(State& state) const {
   const double h = state.node_s;
   // velocity of the IMU by the turning of the body: about the centre, and of the centre that rolls

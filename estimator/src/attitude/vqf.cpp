@@ -78,10 +78,12 @@ void Vqf::detect_rest(const ImuSample& sample, double dt_s, State& state) const 
 
 /// Corrects q_WN; returns the unit vector "up" as the force says, in W before the correction.
 Eigen::Vector3d Vqf::level_inertial_frame(const Eigen::Vector3d& f_I_m_s2, double dt_s, State& state) const {
+  // attitude.md (A3)
   state.f_N_m_s2.advance(state.q_NI * f_I_m_s2, params_.tau_s, dt_s, low_pass_warp(params_.tau_s, dt_s));
   const double length = state.f_N_m_s2.value.norm();
   if (length < kForceMin_m_s2) return Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d up_W = state.q_WN * (state.f_N_m_s2.value / length);
+  // attitude.md (A2)
   state.q_WN = (levelling(up_W) * state.q_WN).normalized();
   return up_W;
 }

@@ -47,6 +47,7 @@ void apply_calibration(const SweepCalibration& calibration, double later_s, std:
   }
 }
 
+/// mapping.md (R3): u.
 void compute_levers(const SweepTrajectory& trajectory, std::span<const SweepPoint> points,
                     std::vector<Eigen::Vector3f>& levers_W_m) {
   levers_W_m.resize(points.size());
@@ -57,6 +58,7 @@ void compute_levers(const SweepTrajectory& trajectory, std::span<const SweepPoin
   }
 }
 
+/// mapping.md (R13).
 void deskew(const SweepTrajectory& trajectory, std::span<const SweepPoint> points, double target_s,
             std::vector<Eigen::Vector3f>& positions_I_m) {
   compute_levers(trajectory, points, positions_I_m);

@@ -23,6 +23,7 @@ constexpr double kRestSamples = 10.0;  // fewer teach no bias
 
 }  // namespace
 
+/// mapping.md (R31), (R32), (R33).
 Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& params,
                                            const SweepTrajectory& trajectory, std::span<const MotionSample> samples,
                                            unsigned excess_axes) {
@@ -61,11 +62,12 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
     return sample.at_rest || seconds(sample.from_ns - start_ns) >= trajectory.duration_s();
   };
   if (std::all_of(samples.begin(), samples.end(), rests)) return kRestShare * kRestShare * noise;
-  noise.block<3, 3>(3, 3) += trajectory.duration_s() * turned;
+  noise.block<3, 3>(3, 3) += trajectory.duration_s() * turned;  // mapping.md (R34)
   noise.diagonal().segment<3>(3).array() += std::pow(params.turn_sigma_share * turned_rad, 2);
   return noise;
 }
 
+/// mapping.md (R35).
 Eigen::Matrix3d railed_velocity_variance(const LidarInertialOdometry::Params& params, const SweepTrajectory& trajectory,
                                          std::span<const MotionSample> samples) {
   std::size_t hint = 0;

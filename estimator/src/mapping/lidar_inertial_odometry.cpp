@@ -36,7 +36,8 @@ void LidarInertialOdometry::Impl::finish(TimeNs end_ns, bool aligned, SweepRepor
   report.trajectory = describe(trajectory, errors);
   enter_window(end_ns, aligned, report);
   carry_covariance(end_ns);
-  // what the sweep adds to the map is off by what the pose was: by so much of it the map moves where the robot is
+  // what the sweep adds to the map is off by what the pose was: by so much of it the map moves where the robot is:
+  // mapping.md (R49)
   const double drawn_share =
       report.points_used == 0 ? 0.0 : double(report.map_points_added) / double(report.points_used);
   if (report.verdict != SweepVerdict::first) map_covariance += drawn_share * drawn_share * drawing_covariance();

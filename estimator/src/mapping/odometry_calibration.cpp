@@ -18,7 +18,8 @@ constexpr double kStartTilt_rad =
 constexpr double kDriftShare = 0.1;
 constexpr double kDriftMax_m = 3.0;
 
-/// Pose errors of the IMU by errors of the mounting, at this attitude of it, while the lidar's pose is certain.
+/// Pose errors of the IMU by errors of the mounting, at this attitude of it, while the lidar's pose is certain: K of
+/// mapping.md (R43).
 Eigen::Matrix<double, 6, 6> pose_by_mounting(const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& p_IL_m) {
   const Eigen::Matrix3d R = q_WI.toRotationMatrix();
   Eigen::Matrix<double, 6, 6> B = Eigen::Matrix<double, 6, 6>::Zero();
@@ -28,7 +29,7 @@ Eigen::Matrix<double, 6, 6> pose_by_mounting(const Eigen::Quaterniond& q_WI, con
   return B;
 }
 
-/// Covariance of (error of the pose) - by_mounting (error of the mounting).
+/// Covariance of (error of the pose) - by_mounting (error of the mounting): mapping.md (R46).
 Eigen::Matrix<double, 6, 6> less_mounting(const Registration::Matrix& joint,
                                           const Eigen::Matrix<double, 6, 6>& by_mounting) {
   Eigen::Matrix<double, 6, Registration::kUnknowns> G = Eigen::Matrix<double, 6, Registration::kUnknowns>::Zero();
@@ -40,6 +41,7 @@ Eigen::Matrix<double, 6, 6> less_mounting(const Registration::Matrix& joint,
 
 }  // namespace
 
+/// mapping.md (R12), of all unknowns.
 Registration::Matrix mapping::unknowns_at(const SweepTrajectory& trajectory, double t_s) {
   const SweepTrajectory::Transition step = trajectory.transition(t_s);
   Registration::Matrix F = Registration::Matrix::Identity();
@@ -50,7 +52,7 @@ Registration::Matrix mapping::unknowns_at(const SweepTrajectory& trajectory, dou
 }
 
 /// The map hangs on the lidar: at the start the lidar's pose is certain by definition, and an error of its mounting is
-/// one of the IMU's pose, of gravity as seen from the map too.
+/// one of the IMU's pose, of gravity as seen from the map too: mapping.md (R43), (R44).
 void LidarInertialOdometry::Impl::start_calibration() {
   calibration.T_IL = params.T_IL;
   calibration.time_offset_s = 0.0;  // the given offset is applied to the stamps
@@ -89,7 +91,7 @@ void LidarInertialOdometry::Impl::start_calibration() {
 
 /// What the unknowns are off by after the registration, which weighed prior and surfaces by what it made of them: the
 /// errors of the prior and the pull of the surfaces, whose score_covariance is measured, through the same normal
-/// equations.
+/// equations: mapping.md (R41).
 void LidarInertialOdometry::Impl::count_errors() {
   errors = prediction.errors;
   if (result.verdict != RegistrationVerdict::converged) return;
@@ -104,7 +106,7 @@ void LidarInertialOdometry::Impl::count_errors() {
   errors = 0.5 * (sum + sum.transpose());
 }
 
-/// See SweepReport::innovation.
+/// See SweepReport::innovation; mapping.md (R51).
 double LidarInertialOdometry::Impl::innovation() const {
   constexpr int kMotion = Registration::kMotion;
   const auto moved = result.mean.minus(prediction.prior.mean).head<kMotion>().eval();
@@ -113,6 +115,7 @@ double LidarInertialOdometry::Impl::innovation() const {
   return std::sqrt(std::max(0.0, moved.dot(P.ldlt().solve(moved))) / kMotion);
 }
 
+/// mapping.md (R42).
 void LidarInertialOdometry::Impl::carry_covariance(TimeNs end_ns) {
   end_by_start = mapping::unknowns_at(trajectory, trajectory.duration_s());
   const Registration::Matrix P = end_by_start * result.covariance * end_by_start.transpose();
@@ -141,10 +144,10 @@ std::vector<PoseState> LidarInertialOdometry::Impl::describe(const SweepTrajecto
 }
 
 /// Pose against the world rather than against the map: the world is held by the IMU's first pose, which the mounting
-/// parts from the map; added what the map is off by here, and the tilt of the start.
+/// parts from the map; added what the map is off by here, and the tilt of the start: mapping.md (R47).
 Eigen::Matrix<double, 6, 6> LidarInertialOdometry::Impl::reported_covariance(const Registration::Matrix& joint,
                                                                              const Eigen::Vector3d& p_WI_m) const {
-  // a map that is turned about the start moves what is far from it
+  // a map that is turned about the start moves what is far from it: mapping.md (R45)
   Eigen::Matrix<double, 6, 6> start = start_by_mounting;
   start.topRows<3>() -= so3::hat(p_WI_m) * start_by_mounting.bottomRows<3>();
   Eigen::Matrix<double, 6, 2> by_tilt = Eigen::Matrix<double, 6, 2>::Zero();
@@ -156,6 +159,7 @@ Eigen::Matrix<double, 6, 6> LidarInertialOdometry::Impl::reported_covariance(con
   return P;
 }
 
+/// mapping.md (R50).
 void LidarInertialOdometry::Impl::count_drift(const SweepReport& report) {
   if (report.verdict != SweepVerdict::degenerate || resting_sweeps > 0) return;
   const double sigma_m = kDriftShare * std::min(report.weakest_sigma_m, kDriftMax_m);
@@ -164,7 +168,7 @@ void LidarInertialOdometry::Impl::count_drift(const SweepReport& report) {
 }
 
 /// Of the lidar's pose in the map in the middle of the sweep, which is what draws it: an error of the mounting is none
-/// of the map, and at its ends a sweep is known less well than as a whole.
+/// of the map, and at its ends a sweep is known less well than as a whole. mapping.md (R48).
 Eigen::Matrix<double, 6, 6> LidarInertialOdometry::Impl::drawing_covariance() const {
   const double middle_s = 0.5 * trajectory.duration_s();
   const Registration::Matrix F = mapping::unknowns_at(trajectory, middle_s);

@@ -53,7 +53,7 @@ void LidarInertialOdometry::Impl::take(const ImuSample& sample, const RateState&
 }
 
 /// Now that the rates on both sides of the newest sample are known, tells whether it belongs to a flight: before a gap
-/// by the rate that flight itself would change.
+/// by the rate that flight itself would change. flight_arc.md (A3), (A4), (A5).
 bool LidarInertialOdometry::Impl::settle_force(const MotionSample& next) {
   MotionSample& now = samples.back();
   if (now.in_flight) return true;

@@ -9,7 +9,8 @@ namespace {
 
 constexpr double kPruneShare = 0.1;  // of the map's radius: moved so far, the sensor drops what is out of reach
 
-/// What the trajectory is uncertain by inside of a stretch, as seen at a point: between its start and its end.
+/// What the trajectory is uncertain by inside of a stretch, as seen at a point: between its start and its end. Its part
+/// of mapping.md (R53).
 class PoseVariance {
  public:
   PoseVariance(const Registration::Matrix& covariance, const SweepTrajectory& trajectory)
@@ -50,6 +51,7 @@ std::size_t LidarInertialOdometry::Impl::extend_map(bool rings_differ) {
   std::size_t added = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3f position = positions_W_m[i] + trajectory.base_m(points[i].t_s).cast<float>();
+    // mapping.md (R53)
     const double sigma_m = std::sqrt(registration.point_variance_m2(points[i]) + of_pose.at_m2(points[i]));
     if (sigma_m > params.map_sigma_max_m) continue;
     const std::uint32_t index =

@@ -13,6 +13,7 @@ constexpr std::size_t kCoarseMatches = 50;
 
 }  // namespace
 
+/// mapping.md (R36).
 double knot_correlation(const LidarInertialOdometry::Params& params, const SweepTrajectory& trajectory) {
   return std::exp(-trajectory.duration_s() / (SweepTrajectory::kKnots - 1) / params.excess_time_s);
 }

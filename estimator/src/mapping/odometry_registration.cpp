@@ -25,7 +25,7 @@ constexpr double kCarryMax = 3.0;    // an excess carried over a border grows by
 constexpr double kKnotFloor = 0.05;  // of the prior's standard deviation: a knot differs from its neighbours by this
 
 /// Start number `index` of a search: the prior itself, then moved along each axis by what it may be off by, nearer ones
-/// first.
+/// first, mapping.md (R54).
 Registration::Prior moved_start(Registration::Prior prior, int index) {
   if (index == 0) return prior;
   const double reach = 1.0 + (index - 1) / 12;
@@ -52,6 +52,7 @@ void thin(const std::vector<SweepPoint>& points, std::size_t count, std::vector<
 
 }  // namespace
 
+/// mapping.md (R29).
 void mapping::Prediction::compose(const Registration::Matrix& covariance,
                                   const Registration::Matrix& error_covariance) {
   prior.covariance = by_last * covariance * by_last.transpose() + noise;
@@ -66,6 +67,7 @@ void mapping::Prediction::hold_still(double sigma_m_s) {
   noise.diagonal().segment<3>(6).setConstant(sigma_m_s * sigma_m_s);
 }
 
+/// mapping.md (R30).
 void mapping::Prediction::follow(const Eigen::Vector3d& v_WI_I_m_s, double sigma_m_s) {
   hold_still(sigma_m_s);
   const Eigen::Vector3d v_WI_m_s = prior.mean.state.q_WI * v_WI_I_m_s;
@@ -97,7 +99,8 @@ mapping::Prediction LidarInertialOdometry::Impl::predict() const {
   return next;
 }
 
-/// The excess of a clipped axis that is on the rail at the border goes on from where it was, and forgets as time goes.
+/// The excess of a clipped axis that is on the rail at the border goes on from where it was, and forgets as time goes:
+/// mapping.md (R38).
 void LidarInertialOdometry::Impl::carry_excess(mapping::Prediction& next) const {
   constexpr int kLast = SweepTrajectory::kKnots - 1;
   next.by_last.middleRows<SweepTrajectory::kExcess>(Registration::kExcess).setZero();
@@ -114,7 +117,8 @@ void LidarInertialOdometry::Impl::carry_excess(mapping::Prediction& next) const 
   }
 }
 
-/// Knots as samples of a process that forgets: of the reported standard deviation, correlated from knot to knot.
+/// Knots as samples of a process that forgets: of the reported standard deviation, correlated from knot to knot,
+/// mapping.md (R36), (R37), (R39): the last where the first knot is carried.
 void LidarInertialOdometry::Impl::add_excess_noise(mapping::Prediction& next) const {
   if (!params.estimate_saturation_deficit) return;
   const double rho = mapping::knot_correlation(params, trajectory);

@@ -32,6 +32,7 @@ void LidarInertialOdometry::Impl::enter_window(TimeNs end_ns, bool aligned, Swee
   for (std::size_t k = 0; k + 1 < window.size(); ++k) redraw(window[k]);
 }
 
+/// mapping.md (R52).
 /// Backward pass over the window (H. Rauch, F. Tung, C. Striebel, 1965), each sweep's registration being the linear
 /// measurement that it settled on: the maximum a posteriori of all sweeps' unknowns together, to first order. What it
 /// is for is a sweep that saw little: where all see much, as on `hill` 1002 to 1007, the end error is the same within
@@ -53,7 +54,7 @@ void LidarInertialOdometry::Impl::smooth() {
   }
 }
 
-/// Moves what a sweep drew into the map to where it is now known to lie.
+/// Moves what a sweep drew into the map to where it is now known to lie, by mapping.md (R3).
 void LidarInertialOdometry::Impl::redraw(mapping::WindowSweep& sweep) {
   if (sweep.drawn.empty()) return;
   SweepTrajectory motion;

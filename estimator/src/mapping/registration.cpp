@@ -26,7 +26,8 @@ Matrix information_of(const Matrix& covariance) {
   return positive.llt().solve(Matrix::Identity());
 }
 
-/// Pulls the estimate towards the prior: adds its information and gradient to normal equations over all unknowns.
+/// Pulls the estimate towards the prior: adds its information and gradient to normal equations over all unknowns, those
+/// terms of mapping.md (R20), (R21) that hold the prior.
 void add_prior(const Registration::Prior& prior, const Matrix& information, const Registration::Estimate& now,
                Matrix& H, Vector& g) {
   Matrix J = Matrix::Identity();
@@ -135,7 +136,7 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
     unknowns.expand(sum, H, g);
     add_prior(prior, information, now, H, g);
     unknowns.hold(H, g);
-    const Vector step = -H.ldlt().solve(g);
+    const Vector step = -H.ldlt().solve(g);  // mapping.md (R21)
     if (!step.allFinite()) return refuse(RegistrationVerdict::diverged);
     now.add(step);
     if (Status status = build(now); !status.ok()) return status;
@@ -150,7 +151,7 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
   const bool fits = static_cast<double>(sum.inliers) >= params_.fitting_share_min * static_cast<double>(sum.matches);
   if (!settled || !fits) return refuse(RegistrationVerdict::diverged);
 
-  const Matrix posterior = H.ldlt().solve(Matrix::Identity());
+  const Matrix posterior = H.ldlt().solve(Matrix::Identity());  // mapping.md (R22)
   result.covariance = 0.5 * (posterior + posterior.transpose());
   unknowns.clear_held(result.covariance);
   result.mean = now;
@@ -162,6 +163,7 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
   return {};
 }
 
+/// mapping.md (R27), (R28).
 void Registration::describe_shape(std::span<const SweepPoint> points, double kernel_m, const Sums& sum,
                                   Result& result) const {
   Eigen::Matrix<double, 6, 6> shape = Eigen::Matrix<double, 6, 6>::Zero();  // robustly weighted, without variances
@@ -192,6 +194,7 @@ void Registration::describe_shape(std::span<const SweepPoint> points, double ker
   result.weakest_sigma_m = 1.0 / std::sqrt(std::max(information.eigenvalues()[0], 1e-12));
 }
 
+/// mapping.md (R25), (R26).
 Eigen::Matrix<double, Registration::kMotion, Registration::kMotion> Registration::errors_in_variables_information(
     std::span<const SweepPoint> points, double kernel_m) const {
   Eigen::Matrix<double, kMotion, kMotion> lower = Eigen::Matrix<double, kMotion, kMotion>::Zero();

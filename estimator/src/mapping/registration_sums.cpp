@@ -69,12 +69,14 @@ void Registration::Sums::add(const Sums& other) {
   inliers += other.inliers;
 }
 
+/// Range and skew part of mapping.md (R16).
 double Registration::point_variance_m2(const SweepPoint& point) const {
   const double range = std::max(params_.range_sigma_m, params_.range_sigma_share * point.range_m);
   const double skew = params_.skew_sigma_m_s * point.sweep_t_s;
   return range * range + skew * skew;
 }
 
+/// mapping.md (R14) and (R15), the distance and its derivative.
 double Registration::residual(const SweepTrajectory& trajectory, const SweepCalibration& calibration,
                               const SweepPoint& point, const PlaneFit& plane, std::size_t& hint, Vector& derivative) {
   const SweepTrajectory::Instant now = trajectory.at(point.t_s, hint);
@@ -113,10 +115,11 @@ void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours
     const float sigma = map.sigma_m(found.index[k]);
     variance += sigma * sigma;
   }
+  // the map's part of mapping.md (R16)
   match.map_variance_m2 = variance / static_cast<float>(found.count) + match.plane.thickness2_m2;
 }
 
-/// What a match counts for: its information, as far as it fits (D. Geman, D. McClure, 1987).
+/// What a match counts for: its information, as far as it fits (D. Geman, D. McClure, 1987); mapping.md (R17), (R19).
 Registration::Weight Registration::weigh(const SweepPoint& point, const Match& match, double distance_m,
                                          double kernel_m) const {
   const double variance = point_variance_m2(point) + match.map_variance_m2;
@@ -126,7 +129,7 @@ Registration::Weight Registration::weigh(const SweepPoint& point, const Match& m
 }
 
 /// Where the points lie in the world by this trajectory, the planes that they belong to, and how far they are from
-/// them.
+/// them: mapping.md (R3), (R14).
 void Registration::place(const SweepTrajectory& trajectory, std::span<const SweepPoint> points, const VoxelMap& map) {
   levers_.resize(points.size());
   positions_.resize(points.size());
@@ -145,6 +148,7 @@ void Registration::place(const SweepTrajectory& trajectory, std::span<const Swee
   });
 }
 
+/// mapping.md (R18).
 double Registration::kernel_width_m() {
   sorted_.clear();
   for (std::size_t i = 0; i < matches_.size(); ++i) {
@@ -157,6 +161,7 @@ double Registration::kernel_width_m() {
   return std::max(params_.kernel_min_m, 3.0 * 1.4826 * static_cast<double>(*middle));
 }
 
+/// Sums over the points of mapping.md (R21).
 void Registration::accumulate_block(std::span<const SweepPoint> points, std::size_t block,
                                     const SweepTrajectory& trajectory, const SweepCalibration& calibration,
                                     const Unknowns& unknowns, double kernel_m, Sums& sum) {
@@ -208,6 +213,7 @@ void Registration::accumulate(std::span<const SweepPoint> points, const SweepTra
   sum.H = lower.selfadjointView<Eigen::Lower>();
 }
 
+/// mapping.md (R23).
 Registration::Matrix Registration::score_covariance(std::span<const SweepPoint> points,
                                                     const SweepTrajectory& trajectory,
                                                     const SweepCalibration& calibration, const Unknowns& unknowns,

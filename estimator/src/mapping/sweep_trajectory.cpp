@@ -24,6 +24,7 @@ Eigen::Vector3d least_known(std::span<const MotionSample> samples, TimeNs end_ns
 }
 
 /// What an saturation deficit of one does to a sample: signed, in proportion to how little is known of the sample.
+/// mapping.md (R9).
 Eigen::Vector3d signed_shares(const MotionSample& sample, const Eigen::Vector3d& least_known_rad_s) {
   Eigen::Vector3d share = Eigen::Vector3d::Zero();
   for (int axis = 0; axis < 3; ++axis) {
@@ -34,7 +35,7 @@ Eigen::Vector3d signed_shares(const MotionSample& sample, const Eigen::Vector3d&
   return share;
 }
 
-/// Weights of the knots at a share of the stretch: linear between neighbours.
+/// Weights of the knots at a share of the stretch: linear between neighbours, mapping.md (R8).
 Eigen::Matrix<double, SweepTrajectory::kKnots, 1> knot_weights(double share) {
   Eigen::Matrix<double, SweepTrajectory::kKnots, 1> weights;
   const double place = std::clamp(share, 0.0, 1.0) * (SweepTrajectory::kKnots - 1);
@@ -109,6 +110,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     now.length_s = dt;
     now.excess_share = share;
     now.knot_weight = knot_weights(duration_s_ > 0.0 ? (now.start_s + 0.5 * dt) / duration_s_ : 0.0);
+    // mapping.md (R8), (R5), (R4), (R6)
     now.w_I = sample.w_WI_I_rad_s + share.cwiseProduct(excess_rad_s * now.knot_weight);
     const Eigen::Matrix3d R = now.q_WI.toRotationMatrix();
     const Eigen::Matrix3d mean_rotation = R * so3::left_jacobian(now.w_I * dt);
@@ -119,7 +121,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     next.preintegrated_p = now.preintegrated_p + now.preintegrated_v * dt + now.a_W * (0.5 * dt * dt);
     if (clipped_axes_ == 0) continue;
     next.excess_attitude = now.excess_attitude + gained_by_excess(now, dt);
-    // the force turns with the mean attitude error of the interval
+    // the force turns with the mean attitude error of the interval, mapping.md (R11)
     const ByExcess turn = -so3::hat(now.a_W) * (0.5 * (now.excess_attitude + next.excess_attitude));
     next.excess_v = now.excess_v + turn * dt;
     next.excess_p = now.excess_p + now.excess_v * dt + turn * (0.5 * dt * dt);
@@ -136,6 +138,7 @@ const SweepTrajectory::Interval& SweepTrajectory::interval_at(double t_s, std::s
   return intervals_[i];
 }
 
+/// mapping.md (R2), (R4), (R6), at an instant inside of an interval.
 SweepTrajectory::Instant SweepTrajectory::at(double t_s, std::size_t& hint) const {
   const double t = std::clamp(t_s, -kBeyond_s, duration_s_ + kBeyond_s);
   const Interval& now = interval_at(t, hint);
@@ -151,7 +154,7 @@ Eigen::Vector3d SweepTrajectory::velocity_m_s(double t_s, const Eigen::Vector3d&
          now.q_WI * (turned_by(now.w_I, s) * now.w_I.cross(x_I_m));
 }
 
-/// Attitude that the excess adds up to `s` seconds into an interval, per unit of each knot's axes.
+/// Attitude that the excess adds up to `s` seconds into an interval, per unit of each knot's axes: mapping.md (R10).
 SweepTrajectory::ByExcess SweepTrajectory::gained_by_excess(const Interval& now, double s) {
   if (now.excess_share.isZero(0.0)) return ByExcess::Zero();
   const Eigen::Matrix3d gained =
@@ -161,6 +164,7 @@ SweepTrajectory::ByExcess SweepTrajectory::gained_by_excess(const Interval& now,
   return out;
 }
 
+/// mapping.md (R10), (R11), at an instant inside of an interval.
 SweepTrajectory::ExcessDerivative SweepTrajectory::excess_derivative(double t_s, std::size_t& hint) const {
   const double t = std::clamp(t_s, 0.0, duration_s_);
   const Interval& now = interval_at(t, hint);
@@ -186,6 +190,7 @@ MotionState SweepTrajectory::state(double t_s) const {
   return state;
 }
 
+/// mapping.md (R12).
 SweepTrajectory::Transition SweepTrajectory::transition(double t_s) const {
   const double t = std::clamp(t_s, 0.0, duration_s_);
   std::size_t hint = 0;

@@ -144,6 +144,7 @@ void RollingFilter::detect_rest(State& state) const {
 }
 
 /// Whether a sphere that stands still turns about its contact: so slowly that only what is known of the bias tells.
+/// rolling.md (R28).
 bool RollingFilter::spins_in_place(const State& state) const {
   const double averaged = params_.node_s / (2.0 * kSlowRateTau_s);
   const Hypothesis& best = state.hypotheses[0];
@@ -154,7 +155,8 @@ bool RollingFilter::spins_in_place(const State& state) const {
   return (off.square() > kPivots * kPivots * variance).any();
 }
 
-/// What the other hypotheses add to the position's covariance about the best one: sum of w d d^T over the sum of w.
+/// What the other hypotheses add to the position's covariance about the best one: sum of w d d^T over the sum of w,
+/// rolling.md (R26).
 Eigen::Matrix3d RollingFilter::position_spread(const State& state) {
   const Eigen::Vector3d best = state.hypotheses[0].x.segment<3>(rolling::kPosition);
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();

@@ -36,7 +36,7 @@ double log_normal(double value, double variance) {
   return -0.5 * (value * value / variance + std::log(2.0 * std::numbers::pi * variance));
 }
 
-/// log density of a rise or fall of u per node on a bump: rolling over it, or hitting it.
+/// log density of a rise or fall of u per node on a bump: rolling over it, or hitting it. m1 of rolling.md (R24).
 double log_rise(double change) {
   const auto density = [&](double sigma) {
     return std::exp(-0.5 * change * change / (sigma * sigma)) / (sigma * std::sqrt(2.0 * std::numbers::pi));
@@ -45,6 +45,7 @@ double log_rise(double change) {
 }
 
 /// log density of a change of u per node, horizontal, with squared length `square`: a plateau, a drift, or a jump.
+/// m2 of rolling.md (R23).
 double log_change(double square) {
   double density = 0.0;
   for (const auto& [share, sigma] : {std::pair(kPlateauShare, kPlateau_m_s), std::pair(kSteadyShare, kSteady_m_s),
@@ -54,7 +55,7 @@ double log_change(double square) {
   return std::log(density + 1e-300);
 }
 
-/// log density of a contact that stands still, by the hypothesis `h` should it enter `mode`.
+/// log density of a contact that stands still, by the hypothesis `h` should it enter `mode`: rolling.md (R22).
 double log_still(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode,
                  const RollingParams& params) {
   RollingFilter::Vector x = h.x;
@@ -86,7 +87,7 @@ double log_still(const rolling::Contact& c, const RollingFilter::Hypothesis& h, 
   return -cost - 0.5 * (square + log_det + 3.0 * std::log(2.0 * std::numbers::pi));
 }
 
-/// log density of a contact velocity `u` that moves, by its change since the last node.
+/// log density of a contact velocity `u` that moves, by its change since the last node: rolling.md (R23), (R24).
 double log_moving(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode,
                   const Eigen::Vector3d& u, const RollingParams& params) {
   const Eigen::Vector3d change = u - h.u_W_m_s;
@@ -123,6 +124,7 @@ struct RollingFilter::Candidate {
   std::int64_t switched_node = 0;
 };
 
+/// rolling.md (R21).
 double RollingFilter::log_transition(RollingMode from, RollingMode to, double h_s) const {
   const auto rate = [this](RollingMode a, RollingMode b) {
     if (b == RollingMode::incline) {
@@ -141,6 +143,7 @@ double RollingFilter::log_transition(RollingMode from, RollingMode to, double h_
   return -leaving * h_s;
 }
 
+/// rolling.md (R25).
 void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, State& state) const {
   const rolling::Contact c = rolling::contact(params_, state.nominal, rate_I_rad_s, state.sums);
   const double node_s = state.sums.node_s;
@@ -207,7 +210,8 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, State& sta
   state.count = static_cast<int>(count);
 }
 
-/// Every hypothesis stands still: velocity and, unless it spins in place, rate are zero, the contact grips.
+/// Every hypothesis stands still: velocity and, unless it spins in place, rate are zero, the contact grips. rolling.md
+/// (R27).
 void RollingFilter::correct_at_rest(State& state) const {
   for (int k = 0; k < state.count; ++k) {
     Hypothesis& h = state.hypotheses[static_cast<std::size_t>(k)];

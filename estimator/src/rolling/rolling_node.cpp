@@ -43,11 +43,13 @@ constexpr std::uint8_t kGyroFlags = kClipGyroX | kClipGyroY | kClipGyroZ,
 
 }  // namespace
 
+/// rolling.md (R17), (R18).
 Eigen::Vector3d contact_variance(const RollingParams& params, const Contact& c, RollingMode mode) {
   const double rough = mode == RollingMode::rough ? squared(params.rough_share * c.rolling_speed_m_s) : 0.0;
   return {c.grip_variance, c.grip_variance, squared(params.vertical_sigma_m_s) + rough + c.gap_variance};
 }
 
+/// rolling.md (R16).
 Eigen::Vector3d Contact::velocity(const Vector& x) const {
   const Eigen::Vector2d change = x.segment<2>(kSlope);
   const double curved = upward(slope + change) - upward(slope) + slope.dot(change) / upward(slope);
@@ -71,6 +73,7 @@ RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaternio
   return nominal;
 }
 
+/// Of the states in the order of rolling.md (R1).
 Covariance prior_covariance(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s) {
   Covariance P = Covariance::Zero();
   auto prior = P.diagonal();
@@ -91,6 +94,7 @@ Covariance prior_covariance(const RollingParams& params, const Eigen::Vector3d& 
   return P;
 }
 
+/// rolling.md (R2) to (R8).
 void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominal& nominal, RollingSums& sums) {
   const ImuSample& sample = reading.mean;
   const double dt_s = reading.length_s;
@@ -99,7 +103,8 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   const Eigen::Vector3d w = w_raw - nominal.gyro_bias_rad_s - nominal.gyro_scale * w_raw;
   Eigen::Vector3d f =
       f_raw - nominal.accel_bias_m_s2 - nominal.accel_scale * f_raw - nominal.accel_delay_s * w.cross(f_raw);
-  // the mean of a force that turns in the sensor over the window is shorter across the axis by (|w| dt)^2 / 24
+  // the mean of a force that turns in the sensor over the window is shorter across the axis by (|w| dt)^2 / 24:
+  // rolling.md (R4)
   f -= dt_s * dt_s / 24.0 * w.cross(w.cross(f));
   const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * w);
   const Eigen::Quaterniond q_mid = nominal.q_WI * half;
@@ -111,7 +116,8 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
       (sample.device_clip_flags & kGyroFlags) != 0 || (beyond && !(params.recovered_rate_sigma_rad_s > 0.0));
   const bool clipped = lost || beyond || (sample.device_clip_flags & kAccelFlags) != 0 ||
                        reading.force_peak_m_s2 >= params.accel_range_m_s2;
-  // a force that is clipped, or turned by a rate that is, says nothing: the velocity of the centre is kept
+  // a force that is clipped, or turned by a rate that is, says nothing: the velocity of the centre is kept,
+  // rolling.md (R7)
   const Eigen::Vector3d arm = params.lever_arm_m + nominal.lever_arm_error_m;
   const Eigen::Vector3d change_rad_s = w_raw - nominal.last_rate_I_rad_s;  // the angular acceleration times dt_s
   nominal.last_rate_I_rad_s = w_raw;
@@ -166,9 +172,10 @@ ImuAverage gap_piece(const RollingParams& params, const ImuSample& before, const
   const double turning = std::max(before.angular_velocity_rad_s.norm(), after.angular_velocity_rad_s.norm());
   const double acceleration =
       kGapStill_rad_s2 + params.gap_acceleration_rad_s2 * std::min(1.0, turning / kGapTurning_rad_s);
-  // a parabola between two known rates encloses a T^3 / 12
+  // a parabola between two known rates encloses a T^3 / 12: rolling.md (R30)
   const double off_rad = acceleration * gap_s * gap_s * gap_s / 12.0 + kGapStep * change.norm() * gap_s;
   doubt.rad2 = off_rad * off_rad / pieces;
+  // rolling.md (R31)
   doubt.rate_rad2_s = squared(off_rad / gap_s) * gap_s;  // of all pieces in one direction, hence once for each piece
   ImuAverage piece;
   piece.add(sample, gap_s / pieces);
@@ -183,6 +190,7 @@ void integrate_gap(const RollingParams& params, const ImuAverage& piece, const G
   sums.gap_rate_rad2_s += doubt.rate_rad2_s;
 }
 
+/// rolling.md (R9).
 Moving transition(const RollingSums& sums) {
   Moving B = Moving::Zero();
   B.block<3, 3>(kAttitude, kGyroBias) = -sums.R_s;
@@ -196,6 +204,7 @@ Moving transition(const RollingSums& sums) {
   return B;
 }
 
+/// rolling.md (R10) to (R13).
 void predict(const RollingParams& params, const RollingSums& sums, const Moving& B, Vector& x, Covariance& P) {
   const double h = sums.node_s;
   x.head<9>() += (B * x).eval();
@@ -218,6 +227,7 @@ void predict(const RollingParams& params, const RollingSums& sums, const Moving&
   diagonal.segment<3>(kAccelBias).array() += squared(params.accel_bias_walk_m_s2_sqrts) * h;
 }
 
+/// rolling.md (R14), (R15), and the variance of (R17).
 Contact contact(const RollingParams& params, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s,
                 const RollingSums& sums) {
   const Eigen::Matrix3d R = nominal.q_WI.toRotationMatrix();
@@ -254,12 +264,13 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
     out.grip_variance += squared(r * params.recovered_rate_sigma_rad_s);
   }
   if (sums.gap_s > 0.0) {
-    out.gap_variance = squared(r) * sums.gap_rate_rad2_s / sums.node_s;
+    out.gap_variance = squared(r) * sums.gap_rate_rad2_s / sums.node_s;  // rolling.md (R31)
     out.grip_variance += out.gap_variance;
   }
   return out;
 }
 
+/// rolling.md (R19).
 std::optional<double> lost_velocity_variance(const RollingParams& params, double node_s, const Covariance& P) {
   if (P(kVelocity, kVelocity) + P(kVelocity + 1, kVelocity + 1) < squared(kUnsureSpeed_m_s)) return std::nullopt;
   return squared(params.speed_sigma_m_s) * kSpeedWindow_s / node_s;
@@ -269,6 +280,7 @@ bool forgets_slope(RollingMode from, RollingMode to) {
   return from != to && !slips(to);
 }
 
+/// rolling.md (R20).
 void change_floor(const RollingParams& params, RollingMode from, RollingMode to, double h_s,
                   const RollingNominal& nominal, Vector& x, Covariance& P) {
   if (from == RollingMode::incline && to == from) {
@@ -284,6 +296,7 @@ void change_floor(const RollingParams& params, RollingMode from, RollingMode to,
   x.segment<2>(kSlope) = -nominal.slope;
 }
 
+/// rolling.md (R29).
 bool reset_tilt(const RollingParams& params, const RollingSums& sums, bool at_rest, RollingNominal& nominal,
                 Covariance& P) {
   if (sums.force_clipped_s >= sums.node_s) return false;
@@ -320,6 +333,7 @@ void update(int index, double measured, double variance, Vector& x, Covariance& 
   P -= column * (column / s).transpose();
 }
 
+/// rolling.md (R1).
 void rebase(const Vector& x, RollingNominal& nominal) {
   nominal.q_WI = (so3::exp(x.segment<3>(kAttitude)) * nominal.q_WI).normalized();
   nominal.v_WI_m_s += x.segment<3>(kVelocity);

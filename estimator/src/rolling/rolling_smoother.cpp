@@ -52,7 +52,7 @@ double horizontal_variance(const RollingSmoother::Params& params, const rolling:
   return stated(params) * (node.smoothed_P(6, 6) + node.smoothed_P(7, 7));
 }
 
-/// Covariance of (centre, attitude) from that of the reported states.
+/// Covariance of (centre, attitude) from that of the reported states: rolling.md (R35).
 Eigen::Matrix<double, 6, 6> pose_covariance(const rolling::NodeRecord& node, const Eigen::Vector3d& arm_W) {
   Eigen::Matrix<double, 6, rolling::kReported> J = Eigen::Matrix<double, 6, rolling::kReported>::Zero();
   J.block<3, 3>(0, 0) = so3::hat(arm_W);

@@ -13,7 +13,7 @@ constexpr double kBelieved = 5.0;        // sigmas
 constexpr double kNoDirection_m = 0.05;  // between two places nearer than this
 
 /// A measurement further off than kBelieved is taken for a coarser one, by as much: linear corrections as large as that
-/// would bend the whole run.
+/// would bend the whole run: rolling.md (R32).
 void measure(const Row& H, double measured, double variance, NodeRecord& record, Vector& x, Covariance& P) {
   const auto k = static_cast<std::size_t>(record.rows++);
   const Vector PHt = P * H.transpose();
@@ -25,6 +25,7 @@ void measure(const Row& H, double measured, double variance, NodeRecord& record,
   P -= PHt * record.gain[k].transpose();
 }
 
+/// rolling.md (R27).
 void measure_rest(const RollingParams& params, const RollingSums& sums, const RollingNominal& nominal,
                   NodeRecord& record, Vector& x, Covariance& P) {
   for (int axis = 0; axis < 3; ++axis) {
@@ -35,6 +36,7 @@ void measure_rest(const RollingParams& params, const RollingSums& sums, const Ro
   }
 }
 
+/// "u is zero", by rolling.md (R16), (R19).
 void measure_contact(const RollingParams& params, const Contact& c, double node_s, const Eigen::Vector3d& v_WI_m_s,
                      NodeRecord& record, Vector& x, Covariance& P) {
   const Eigen::Vector3d u = c.velocity(x) - c.H * x, variance = contact_variance(params, c, record.path.mode);
@@ -141,6 +143,7 @@ NodeRecord close_node(const RollingParams& params, const RollingSums& sums, cons
   return record;
 }
 
+/// rolling.md (R36).
 Reported measure_distance(const RollingParams& params, double distance_m, double sigma_m, NodeRecord& last,
                           PathFilter& filter) {
   const RollingNominal& nominal = filter.nominal;
@@ -165,6 +168,7 @@ Reported measure_distance(const RollingParams& params, double distance_m, double
   return reported(x);
 }
 
+/// rolling.md (R33), (R34).
 Reported smooth_back(const Eigen::Matrix<double, kReported, kStates>& P_rows, std::span<NodeRecord> nodes) {
   Vector lambda = Vector::Zero();
   Covariance Lambda = Covariance::Zero();

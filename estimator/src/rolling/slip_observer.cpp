@@ -85,6 +85,7 @@ Status SlipObserver::step(const ImuSample& sample, const Eigen::Quaterniond& q_W
 void SlipObserver::observe(const ImuSample& sample, const Eigen::Quaterniond& q_WI, double dt_s, State& state) const {
   const Eigen::Vector3d& w = sample.angular_velocity_rad_s;
   const Eigen::Vector3d turning = (w - state.last_rate_rad_s) / dt_s;
+  // imu_merge.md (I1)
   const Eigen::Vector3d lever = turning.cross(params_.lever_arm_m) + w.cross(w.cross(params_.lever_arm_m));
   // the force is a mean over the window, so it is turned as the body stood in its middle
   const Eigen::Quaterniond q_mid = q_WI * so3::exp(-0.5 * dt_s * w);
