@@ -15,8 +15,8 @@
 
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/draw/without_lidars.hpp"
-#include "scenarios/sweep/evaluate.hpp"
 #include "scenarios/statistics/statistics.hpp"
+#include "scenarios/sweep/evaluate.hpp"
 #include "sim/simulate.hpp"
 #include "tests/bench/kept_recording.hpp"
 #include "tests/tree.hpp"

@@ -41,12 +41,11 @@ constexpr double kBeyond = 5.0, kStray = 0.02;
 
 // Third differences of a window: noise of a reading from their root mean square, rails.md (R56).
 double window_noise(std::span<const Vector3d> window, int axis) {
-  double sum = 0.0, squares = 0.0;
+  double squares = 0.0;
   const std::size_t count = window.size() - 3;
   for (std::size_t i = 0; i < count; ++i) {
     // third difference of white noise has variance 20
     const double d = window[i + 3][axis] - 3.0 * window[i + 2][axis] + 3.0 * window[i + 1][axis] - window[i][axis];
-    sum += d;
     squares += d * d;
   }
   return std::sqrt(squares / (20.0 * static_cast<double>(count)));

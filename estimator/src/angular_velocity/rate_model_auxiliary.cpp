@@ -18,7 +18,7 @@ void add_row(const Row& row, double residual, double sigma, arrow::Block& block)
   block.gradient.noalias() -= information * residual * row.transpose();
 }
 
-// The part of the primary's force that a auxiliary IMU's axis sees, where none of it is clipped. What element i hides
+// The part of the primary's force that an auxiliary IMU's axis sees, where none of it is clipped. What element i hides
 // moves the reading along column i of the inverse of the rows.
 bool sees_free_axes(const Eigen::RowVector3d& axis, const RateObservation& observation) {
   constexpr double kSlight = 0.02;

@@ -52,7 +52,7 @@ Status check_auxiliary_imus(const RateModelParams& params,
   }
   for (const std::vector<AuxiliaryReading>& readings : auxiliary_imus) {
     if (readings.size() == count) continue;
-    return {Trouble::too_few, "readings of a auxiliary_imu", static_cast<double>(readings.size()),
+    return {Trouble::too_few, "readings of an auxiliary_imu", static_cast<double>(readings.size()),
             static_cast<double>(count)};
   }
   return {};

@@ -23,7 +23,7 @@ Eigen::Vector3d least_known(std::span<const MotionSample> samples, TimeNs end_ns
   return sigma;
 }
 
-/// What an saturation deficit of one does to a sample: signed, in proportion to how little is known of the sample.
+/// What a saturation deficit of one does to a sample: signed, in proportion to how little is known of the sample.
 /// mapping.md (R9).
 Eigen::Vector3d signed_shares(const MotionSample& sample, const Eigen::Vector3d& least_known_rad_s) {
   Eigen::Vector3d share = Eigen::Vector3d::Zero();

@@ -175,7 +175,7 @@ TumbleRecording tilted_gyro() {
   return make_tumble(options);
 }
 
-// What a auxiliary IMU with tilted elements says of free ones is true while another clips; axis by axis it is not.
+// What an auxiliary IMU with tilted elements says of free ones is true while another clips; axis by axis it is not.
 TEST(RailJudgement, AnAuxiliaryImuIsReadAlongItsElements) {
   const TumbleRecording tumble = tilted_gyro();
   const ClippingFinder::Found found = ClippingFinder({}).find(tumble.samples);

@@ -42,7 +42,7 @@ class AccelerometerRate {
   /// Throws InvalidParams on a parameter outside of its bound.
   explicit AccelerometerRate(const Params& params);
 
-  /// One RateState per sample. On trouble (`empty`, `too_few`: less than two samples, or a auxiliary IMU with another
+  /// One RateState per sample. On trouble (`empty`, `too_few`: less than two samples, or an auxiliary IMU with another
   /// number of samples, `non_finite`, `time_order`, `gap`) nothing is written. O(N times auxiliary IMUs).
   Status estimate(std::span<const ImuSample> samples, std::span<const AuxiliaryAccelerometer> auxiliary_imus,
                   std::vector<RateState>& out) const;

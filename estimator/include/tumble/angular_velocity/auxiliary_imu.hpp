@@ -34,7 +34,7 @@ struct AuxiliaryImu {
   ElementRows gyro_elements = {}, accel_elements = {};  ///< of use where one of them clips
 };
 
-/// What a auxiliary IMU read at the time of a sample of the primary IMU, its own axes; NaN where an axis says nothing.
+/// What an auxiliary IMU read at the time of a sample of the primary IMU, its own axes; NaN where an axis says nothing.
 /// While an element of it clips, the values are those along its free elements: the axes are off by what is hidden.
 struct AuxiliaryReading {
   Eigen::Vector3d rate_rad_s, force_m_s2;
@@ -47,7 +47,7 @@ struct AuxiliaryReading {
   bool same(const AuxiliaryReading& other) const;
 };
 
-/// Readings of a auxiliary IMU at the stamps of the primary, by linear interpolation between neighbours no further
+/// Readings of an auxiliary IMU at the stamps of the primary, by linear interpolation between neighbours no further
 /// apart than `gap_max_s`; clipped elements are left out (what does not know: the bound that they are), as `clippings`
 /// has them, one per sample (ClippingFinder). Trouble of its samples (`non_finite`, `time_order`; `too_few` clippings):
 /// nothing is written. No samples: no reading says anything. O(N).
