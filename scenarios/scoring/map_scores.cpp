@@ -93,8 +93,9 @@ bool coverage(const Estimate& estimate, const ScoringInput& input, double& value
 }
 
 // a method that leaves no map has failed to map
+// a trajectory alone, without sweeps, comes of a program that draws no map
 bool failed(const Estimate& estimate, const ScoringInput& input, double& value) {
-  if (input.surface == nullptr) return false;
+  if (input.surface == nullptr || (estimate.sweeps.empty() && estimate.map.empty())) return false;
   double share = 0.0;
   const bool has_map = overlap(estimate, input, share);
   value = has_map && 1.0 - share <= kOutliersMax ? 0.0 : 1.0;
@@ -124,8 +125,9 @@ std::vector<Metric> map_metrics() {
         Sense::higher, Place::held},
        Kind::slam,
        unique_share},
-      {{"map_failed", Unit::verdict, "1 when more than 15 % of the map lies off the surface, or there is none",
-        Sense::lower, Place::held},
+      {{"map_failed", Unit::verdict,
+        "1 when more than 15 % of the map lies off the surface, or sweeps were taken and there is none", Sense::lower,
+        Place::held},
        Kind::slam,
        failed},
   };

@@ -124,6 +124,8 @@ TEST(MapScores, NoMapIsAFailedMapAndNoSurfaceNoVerdict) {
   const auto values = scores(Kind::slam, estimate, rig(), &surface());
   EXPECT_EQ(values.at("map_failed"), 1.0);
   EXPECT_FALSE(values.contains("map_overlap"));
+  estimate.sweeps.clear();
+  EXPECT_FALSE(scores(Kind::slam, estimate, rig(), &surface()).contains("map_failed")) << "a trajectory alone";
   EXPECT_FALSE(scores(Kind::slam, perfect_estimate(rig()), rig()).contains("map_failed"));
 }
 
