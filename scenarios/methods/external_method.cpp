@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/external_method.hpp"
 
+#include <fmt/format.h>
 #include <stdlib.h>
+#include <xxhash.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <functional>
 #include <set>
 #include <system_error>
 #include <utility>
 
+#include "scenarios/draw/strict_yaml.hpp"
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/external_description.hpp"
 #include "scenarios/methods/external_result.hpp"
@@ -26,6 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kVersionLimit_s = 30.0;
+constexpr std::size_t kFirstLineMax = 120;
 
 /// A folder for one run, gone with it.
 class Scratch {
@@ -111,14 +116,19 @@ std::string with_last_words(const CommandEnd& end) {
   return end.reason + (end.last_words.empty() ? "" : "; it said: " + end.last_words);
 }
 
-Estimate run(const ExternalDescription& description, const sim::Sensors& sensors) {
-  const Scratch scratch;
-  const std::map<std::string, std::string> values = places(description, scratch.folder());
+/// What the command's words name, written; then the command, to its end.
+CommandEnd provide_and_run(const ExternalDescription& description, const sim::Sensors& sensors,
+                           const std::map<std::string, std::string>& values, const fs::path& scratch) {
   const std::set<std::string> wanted = named_in(description.command);
   for (const Provision& provision : provisions())
     if (wanted.contains(provision.placeholder)) provision.write(sensors, values.at(provision.placeholder));
+  return run_command(command_of(description, description.command, values, scratch));
+}
 
-  const CommandEnd end = run_command(command_of(description, description.command, values, scratch.folder()));
+Estimate run(const ExternalDescription& description, const sim::Sensors& sensors) {
+  const Scratch scratch;
+  const std::map<std::string, std::string> values = places(description, scratch.folder());
+  const CommandEnd end = provide_and_run(description, sensors, values, scratch.folder());
   if (end.how == CommandEnd::How::out_of_time) throw NoAnswer(NoAnswer::Why::out_of_time, with_last_words(end));
   if (end.how != CommandEnd::How::done) throw NoAnswer(NoAnswer::Why::crashed, with_last_words(end));
   try {
@@ -139,13 +149,16 @@ std::string version_of(const ExternalDescription& description) {
   const CommandEnd end = run_command(command);
   if (end.how != CommandEnd::How::done)
     throw BadInput(description.file.string() + ": its version command: " + with_last_words(end));
-  return end.last_words + "; " + own;
+  const std::string said = read_text_file(scratch.folder() / "transcript.txt");
+  return fmt::format("{}; said {:016x}; {}", said.substr(0, std::min(said.find('\n'), kFirstLineMax)),
+                     XXH3_64bits(said.data(), said.size()), own);
 }
 
 }  // namespace
 
-Method external_method(const std::filesystem::path& file) {
-  const ExternalDescription description = read_external(file);
+Method external_method(const std::filesystem::path& file, double time_limit_s) {
+  ExternalDescription description = read_external(file);
+  description.time_limit_s = std::min(description.time_limit_s, time_limit_s);
   MethodInfo info;
   info.name = description.name;
   info.kind = description.kind;
@@ -155,7 +168,11 @@ Method external_method(const std::filesystem::path& file) {
   info.version = version_of(description);
   return {std::move(info), [description](const sim::Sensors& sensors, const sim::Values& given, const OracleInput&) {
             sim::resolve("method " + description.name, given, {});
-            return run(description, sensors);
+            try {
+              return run(description, sensors);
+            } catch (const std::system_error& error) {  // no folder, no process
+              throw NoAnswer(NoAnswer::Why::machine, error.what());
+            }
           }};
 }
 

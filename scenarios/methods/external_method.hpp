@@ -2,17 +2,21 @@
 #pragma once
 
 #include <filesystem>
+#include <limits>
+#include <span>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "scenarios/methods/method.hpp"
 
 namespace tumble::scenarios {
 
-/// A method's program that gave no answer: it crashed, ran out of time, or could not be started.
+/// A method's program that gave no answer: it crashed or could not be started, ran out of time, or the machine had no
+/// room for its run.
 class NoAnswer : public std::runtime_error {
  public:
-  enum class Why { crashed, out_of_time };
+  enum class Why { crashed, out_of_time, machine };
   NoAnswer(Why why, const std::string& what) : std::runtime_error(what), why_(why) {}
   Why why() const { return why_; }
 
@@ -22,8 +26,13 @@ class NoAnswer : public std::runtime_error {
 
 /// The method that a file NAME.yaml describes (EXTERNAL.md): sensors are written into a folder of their own in the
 /// formats that its command names, the command runs with its limits in a process of its own, and what it leaves is read
-/// back. It never sees the truth. Throws BadInput when the description is wrong or its version command fails. Running
-/// it throws NoAnswer, and BadInput when what it left is not what it should be.
-Method external_method(const std::filesystem::path& file);
+/// back. It never sees the truth. Its limit of time is the description's, at most `time_limit_s`. Throws BadInput when
+/// the description is wrong or its version command fails. Running it throws NoAnswer, and BadInput when what it left is
+/// not what it should be.
+Method external_method(const std::filesystem::path& file,
+                       double time_limit_s = std::numeric_limits<double>::infinity());
+
+/// find_methods (method.hpp) for a list, commands of somebody else's given at most `time_limit_s`.
+std::vector<MethodPointer> find_methods_within(std::span<const std::string> names, double time_limit_s);
 
 }  // namespace tumble::scenarios

@@ -2,7 +2,6 @@
 #include "scenarios/methods/external_result.hpp"
 
 #include <array>
-#include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <string_view>
@@ -55,7 +54,7 @@ std::vector<RateState> read_rates(const std::filesystem::path& file, const sim::
   for (std::size_t k = 0; k < rates.size(); ++k) {
     const Table::Row& row = table.rows[k];
     const std::int64_t time_ns = table.integer(row, 0);
-    if (std::abs(time_ns - stamps[k]) > kStampTolerance_ns)
+    if (time_ns < stamps[k] - kStampTolerance_ns || time_ns > stamps[k] + kStampTolerance_ns)
       throw BadInput(file.filename().string() + ":" + std::to_string(row.line) + ": time " + std::to_string(time_ns) +
                      " ns, sample " + std::to_string(k) + " is of " + std::to_string(stamps[k]) + " ns");
     rates[k].time_ns = stamps[k];

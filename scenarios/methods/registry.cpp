@@ -2,6 +2,7 @@
 #include "scenarios/methods/registry.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "scenarios/errors.hpp"
@@ -72,13 +73,29 @@ std::vector<Method> all_methods() {
 }
 
 /// The name of one of ours would stand for two things in the results.
-MethodPointer method_of_file(const std::string& file) {
-  auto method = std::make_shared<const Method>(external_method(file));
+MethodPointer method_of_file(const std::string& file, double time_limit_s) {
+  auto method = std::make_shared<const Method>(external_method(file, time_limit_s));
   for (const Method& own : methods()) {
     if (full_name(own.info) == full_name(method->info))
       throw BadInput(file + ": " + full_name(own.info) + " is a method of this build; name yours otherwise");
   }
   return method;
+}
+
+std::vector<MethodPointer> find_within(const std::string& name, double time_limit_s) {
+  if (name.ends_with(".yaml")) return {method_of_file(name, time_limit_s)};
+  std::vector<MethodPointer> found;
+  std::vector<std::string> known;
+  for (const Method& method : methods()) {
+    if (name == method.info.name || name == full_name(method.info)) found.push_back(unowned(method));
+    known.push_back(method.info.name);
+    known.push_back(full_name(method.info));
+  }
+  if (found.empty()) {
+    const std::string near = sim::nearest_name(name, known);
+    throw BadInput("unknown method '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+  }
+  return found;
 }
 
 }  // namespace
@@ -117,26 +134,18 @@ MethodPointer unowned(const Method& method) {
 }
 
 std::vector<MethodPointer> find_methods(const std::string& name) {
-  if (name.ends_with(".yaml")) return {method_of_file(name)};
-  std::vector<MethodPointer> found;
-  std::vector<std::string> known;
-  for (const Method& method : methods()) {
-    if (name == method.info.name || name == full_name(method.info)) found.push_back(unowned(method));
-    known.push_back(method.info.name);
-    known.push_back(full_name(method.info));
-  }
-  if (found.empty()) {
-    const std::string near = sim::nearest_name(name, known);
-    throw BadInput("unknown method '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
-  }
-  return found;
+  return find_within(name, std::numeric_limits<double>::infinity());
 }
 
 std::vector<MethodPointer> find_methods(std::span<const std::string> names) {
+  return find_methods_within(names, std::numeric_limits<double>::infinity());
+}
+
+std::vector<MethodPointer> find_methods_within(std::span<const std::string> names, double time_limit_s) {
   std::vector<MethodPointer> found;
   std::map<std::string, std::string> asked;  // what brought each method
   for (const std::string& name : names) {
-    for (MethodPointer& method : find_methods(name)) {
+    for (MethodPointer& method : find_within(name, time_limit_s)) {
       const auto [before, is_new] = asked.emplace(full_name(method->info), name);
       if (is_new) {
         found.push_back(std::move(method));

@@ -16,6 +16,7 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::int64_t kNsPerS = 1000000000;
+constexpr std::int64_t kSecondsMax = 9'000'000'000;  // of a time stamp: nanoseconds must fit
 /// Bytes of a table that are written at a time.
 constexpr std::size_t kBlock = 1 << 16;
 
@@ -142,10 +143,11 @@ std::int64_t Table::time_ns(const Row& row, std::size_t column) const {
   if (plain && point != std::string::npos && point > 0 && parse(text.substr(0, point), whole)) {
     std::string digits = text.substr(point + 1, 9);
     digits.append(9 - digits.size(), '0');
-    if (parse(digits, fraction)) return whole * kNsPerS + (text.front() == '-' ? -fraction : fraction);
+    const bool fits = whole >= -kSecondsMax && whole <= kSecondsMax;
+    if (fits && parse(digits, fraction)) return whole * kNsPerS + (text.front() == '-' ? -fraction : fraction);
   }
   const double value_s = number(row, column);
-  if (!std::isfinite(value_s) || std::abs(value_s) > 9e9) {
+  if (!std::isfinite(value_s) || std::abs(value_s) > static_cast<double>(kSecondsMax)) {
     throw BadInput(path.string() + ":" + std::to_string(row.line) + ": '" + text + "' is not a time in seconds");
   }
   return static_cast<std::int64_t>(std::llround(value_s * 1e9));

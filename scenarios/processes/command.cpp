@@ -83,7 +83,6 @@ CommandEnd run_command(const Command& command) {
   CommandEnd end;
   end.last_words = end_of(command.transcript);
   end.cpu_s = last.cpu_s;
-  end.peak_mib = last.peak_mib;
   if (!problem.empty()) {
     end.how = CommandEnd::How::not_started;
     end.reason = "cannot be started: " + problem;

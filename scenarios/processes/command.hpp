@@ -25,7 +25,6 @@ struct CommandEnd {
   std::string reason;      ///< one line; empty when done
   std::string last_words;  ///< end of the transcript, one line of at most 300 characters
   double cpu_s = 0.0;      ///< of the command, its own children not counted
-  double peak_mib = 0.0;   ///< its largest resident size
 };
 
 /// Runs the command to its end, in a process group of its own that dies with it; at the limit of time the whole group

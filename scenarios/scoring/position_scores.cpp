@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "scenarios/scoring/families.hpp"
 #include "scenarios/scoring/truth_track.hpp"
@@ -82,9 +83,12 @@ std::vector<double> normalised_errors(const Estimate& estimate, const ScoringInp
     const Eigen::Vector3d variance = estimate.poses[own].covariance.topLeftCorner<3, 3>().diagonal();
     if (!(variance.maxCoeff() > 0.0)) continue;
     const Eigen::Vector3d error = R_estimate_W * (pose.estimate.p_WA_m - pose.truth.p_WA_m);
-    // no error is within any variance, also within none
-    for (int axis = 0; axis < 3; ++axis)
-      normalised.push_back(error[axis] == 0.0 ? 0.0 : error[axis] * error[axis] / variance[axis]);
+    // no error is within any variance, also within none; an error is within no variance that is none
+    for (int axis = 0; axis < 3; ++axis) {
+      const double square = error[axis] * error[axis];
+      const double beyond = square > 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
+      normalised.push_back(variance[axis] > 0.0 ? square / variance[axis] : beyond);
+    }
   }
   return normalised;
 }

@@ -44,6 +44,22 @@ std::vector<MethodPointer> applicable(std::span<const MethodPointer> methods, co
   return chosen;
 }
 
+namespace {
+
+OutcomeStatus status_of(NoAnswer::Why why) {
+  switch (why) {
+    case NoAnswer::Why::crashed:
+      return OutcomeStatus::crashed;
+    case NoAnswer::Why::out_of_time:
+      return OutcomeStatus::timeout;
+    case NoAnswer::Why::machine:
+      break;
+  }
+  return OutcomeStatus::killed;
+}
+
+}  // namespace
+
 Estimate run_method(const Method& method, const SimulatedDraw& draw, Outcome& outcome) {
   outcome.scenario = draw.scenario;
   outcome.seed = draw.seed;
@@ -64,7 +80,7 @@ Estimate run_method(const Method& method, const SimulatedDraw& draw, Outcome& ou
     }
   } catch (const NoAnswer& error) {
     estimate = {};
-    outcome.status = error.why() == NoAnswer::Why::out_of_time ? OutcomeStatus::timeout : OutcomeStatus::crashed;
+    outcome.status = status_of(error.why());
     outcome.message = one_line(error.what());
   } catch (const std::bad_alloc&) {
     estimate = {};

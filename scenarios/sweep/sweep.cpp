@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/methods/external_method.hpp"
 #include "scenarios/sweep/data_digest.hpp"
 #include "scenarios/sweep/draw_process.hpp"
 #include "scenarios/sweep/message.hpp"
@@ -23,6 +24,9 @@ constexpr int kJobsMax = 4096;
 constexpr std::uint64_t kSeedsMax = 10'000'000;
 // what the simulation of a draw may take beyond its methods, in units of a method's time-out
 constexpr double kSimulateTimeouts = 2.0;
+
+// of a method's time-out: by then a command of somebody else's is ended by what knows all that it has started
+constexpr double kOwnShare = 0.9;
 
 struct Worker {
   DrawTask draw;
@@ -83,7 +87,7 @@ class Sweep {
         options_(options),
         started_s_(now_s()),
         settings_(settings_of(suite)),
-        methods_(find_methods(suite.methods)) {
+        methods_(find_methods_within(suite.methods, kOwnShare * suite.timeout_s)) {
     next_.seed = suite.first_seed;
   }
 

@@ -5,6 +5,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/methods/external_method.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/sweep/outcome.hpp"
@@ -59,6 +60,15 @@ scenarios::MethodPointer choose(const std::string& name, const std::string& robo
   return fitting.front();
 }
 
+/// A command of somebody else's that gives no answer is told as such.
+scenarios::Estimate run_of(const scenarios::Method& method, const sim::Sensors& sensors) {
+  try {
+    return method.run(sensors, {}, {});
+  } catch (const scenarios::NoAnswer& error) {
+    throw BadInput(full_name(method) + ": " + error.what());
+  }
+}
+
 /// What the estimate holds, and its health.
 Table summary(const scenarios::Estimate& estimate) {
   Table table("", {"estimate", "value"});
@@ -87,7 +97,7 @@ int run_estimate(const Session& session, const Options& options) {
   scenarios::OutputFolder folder(options.folder);
 
   LearntFile learnt(options.learnt);
-  const scenarios::Estimate estimate = learnt.wrap(method).run(sensors, {}, {});
+  const scenarios::Estimate estimate = run_of(learnt.wrap(method), sensors);
   scenarios::write_estimate(options.folder, method.info.name, method.info.kind, estimate,
                             scenarios::digest(sensors, nullptr));
   folder.keep();

@@ -78,6 +78,19 @@ void keep_accepted(const scenarios::Gate& gate, bool accept, scenarios::Suite& s
   suite.scenarios = names;
 }
 
+/// A database that was kept may hold more than the suite has.
+scenarios::GateRun of_suite(scenarios::GateRun run, const scenarios::Suite& suite) {
+  const std::vector<scenarios::MethodPointer> methods = scenarios::find_methods(suite.methods);
+  std::erase_if(run.methods, [&](const scenarios::MethodRun& each) {
+    const bool known =
+        std::find(suite.scenarios.begin(), suite.scenarios.end(), each.scenario) != suite.scenarios.end();
+    return !known || std::none_of(methods.begin(), methods.end(), [&](const scenarios::MethodPointer& method) {
+      return method->info.kind == each.kind && method->info.name == each.method;
+    });
+  });
+  return run;
+}
+
 std::string change_text(const GateResult& result) {
   if (std::isnan(result.change)) return "";
   const bool ratio = !result.metric.empty() && std::abs(result.change) < 10.0;
@@ -152,6 +165,10 @@ std::string certificate_text(const Session& session, const scenarios::DataRoot& 
 int run_gate(const Session& session, const Options& options) {
   const scenarios::DataRoot data = session.data();
   scenarios::Suite suite = scenarios::load_suite(data, options.suite);
+  if (!suite.recordings.empty())
+    throw scenarios::BadInput("suite '" + suite.name + "' is of recordings; a gate holds draws of scenarios");
+  if (!options.accepted.empty() && options.accepted.extension() != ".yaml")
+    throw scenarios::BadInput("--against " + options.accepted.string() + ": must be a FILE.yaml");
   suite.curves.clear();  // held are the scenarios as they are
   const std::optional<scenarios::Gate> known = load(data, options, suite.name);
   if (known)
@@ -167,7 +184,7 @@ int run_gate(const Session& session, const Options& options) {
 
   const std::string certificate = certificate_text(session, data, database.path());
   const scenarios::Results results(database.path(), scenarios::Results::Mode::read_only);
-  const scenarios::GateRun run = scenarios::gate_run(results, suite.first_seed, suite.last_seed);
+  const scenarios::GateRun run = of_suite(scenarios::gate_run(results, suite.first_seed, suite.last_seed), suite);
   scenarios::Gate gate = known ? *known : scenarios::Gate{suite.name, {}, {}};
   if (options.accept) {
     scenarios::require_acceptable(run);

@@ -73,11 +73,14 @@ void require_common_time(const Options& options, const scenarios::Estimate& esti
                   options.estimate.string(), first_s, last_s, options.recording.string(), end_s));
 }
 
+constexpr double kHoleShare = 0.2;  // of the recording; a longer one is a divergence (scenarios::verdict)
+
 /// How a trajectory of somebody else stands to the truth, beside its scores.
 struct Standing {
   double first_s = 0, last_s = 0, end_s = 0;  ///< of its poses that the truth knows; of the truth
+  double covered_s = 0;                       ///< without what is longer than a fifth of the truth and has no pose
   scenarios::Alignment alignment;
-  double share() const { return end_s > 0.0 ? (last_s - first_s) / end_s : 1.0; }
+  double share() const { return end_s > 0.0 ? covered_s / end_s : 1.0; }
 };
 
 Standing standing_of(const scenarios::Estimate& estimate, const sim::Truth& truth) {
@@ -89,6 +92,10 @@ Standing standing_of(const scenarios::Estimate& estimate, const sim::Truth& trut
   if (paired.poses.empty()) return out;
   out.first_s = 1e-9 * static_cast<double>(paired.poses.front().time_ns);
   out.last_s = 1e-9 * static_cast<double>(paired.poses.back().time_ns);
+  for (std::size_t k = 1; k < paired.poses.size(); ++k) {
+    const double step_s = 1e-9 * static_cast<double>(paired.poses[k].time_ns - paired.poses[k - 1].time_ns);
+    if (step_s <= kHoleShare * out.end_s) out.covered_s += step_s;
+  }
   return out;
 }
 

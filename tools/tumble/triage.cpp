@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/methods/external_method.hpp"
 #include "scenarios/scoring/metric.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/verbs.hpp"
@@ -27,7 +28,8 @@ struct Options {
 };
 
 scenarios::MethodPointer choose(const std::string& name) {
-  const std::vector<scenarios::MethodPointer> found = scenarios::find_methods(name);
+  const std::vector<scenarios::MethodPointer> found =
+      scenarios::find_methods_within(std::vector<std::string>{name}, 0.9 * scenarios::TriageOptions{}.timeout_s);
   if (found.size() == 1) return found.front();
   std::string line = "--method " + name + " names several methods; say which:";
   for (const scenarios::MethodPointer& method : found)

@@ -40,6 +40,11 @@ bool plausible(const SensorErrors& errors, const SensorErrorSizes& sizes) {
          std::abs(errors.accel_blur_s2) <= delay_s * delay_s && errors.felt_s_m.cwiseAbs().maxCoeff() <= felt_s_m;
 }
 
+// A guess that tells nothing leaves what was stated.
+bool tells(const TriadDelay& guess) {
+  return guess.sigma_s > 0.0 || guess.delay_s != 0.0;
+}
+
 // Whether errors are so far from those that readings have been corrected for that the descent must be made again.
 bool far_apart(const SensorErrors& a, const SensorErrors& b) {
   constexpr double kMatrix = 1e-3, kFelt_s_m = 3e-5, kDelay_s = 3e-4, kBlur_s2 = 3e-6;
@@ -157,13 +162,15 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
   TriadDelay guess;
   if (estimated && known.error_sizes.delay_unknown_s > known.error_sizes.delay_s) {
     guess = guess_triad_delay(samples, clippings, rig.lever_arm_m);
-    if (std::abs(guess.delay_s - errors.accel_delay_s) > kGuessFar * guess.sigma_s)
+    if (tells(guess) && std::abs(guess.delay_s - errors.accel_delay_s) > kGuessFar * guess.sigma_s)
       errors.accel_delay_s = guess.delay_s;
   }
   // a body that is struck and flies is no hand's: its rig may be moved by what the device makes of the motion
   const bool struck = guess.sigma_s > 0.0;
   // for where the descent from there has to hold the rig
-  const double other_delay_s = errors.accel_delay_s == guess.delay_s ? known.errors.accel_delay_s : guess.delay_s;
+  const double other_delay_s = !tells(guess)                           ? errors.accel_delay_s
+                               : errors.accel_delay_s == guess.delay_s ? known.errors.accel_delay_s
+                                                                       : guess.delay_s;
   std::vector<double> age_s(samples.size());
   for (std::size_t k = 0; k < age_s.size(); ++k) age_s[k] = observations[k].accel_age_s;
   SensorErrorFit found;

@@ -122,8 +122,9 @@ Status CarriedStream::push(const ImuSample& sample, const ClippedElements& known
   if (state.readings.size() <= delay_) return {};
   const std::size_t at = state.readings.size() - 1 - delay_;
   RateState rate;
-  if (due && state.readings[at].node != state.given_node) {
-    publish(at, at, factorised, state, {&rate, 1});
+  // the covariance of a node stands until the next one is solved; the first that is given has none to take over
+  if (state.readings[at].node != state.given_node && (due || state.given_node < 0)) {
+    publish(at, at, due && factorised, state, {&rate, 1});
     state.given_node = state.readings[at].node;
     state.given_covariance_rad2_s2 = rate.covariance_rad2_s2;
   } else {
@@ -178,9 +179,10 @@ bool CarriedStream::read_again(const ClippedElements& known, State& state) const
   return changed;
 }
 
+// The newest reading is added by push().
 void CarriedStream::rebuild(State& state) const {
   for (Knot& knot : state.window) knot.readings = {};
-  for (const Reading& reading : state.readings) {
+  for (const Reading& reading : std::span(state.readings).first(state.readings.size() - 1)) {
     const std::int64_t at = reading.node - state.first_node;
     if (at < 0 || at >= static_cast<std::int64_t>(state.window.size())) continue;
     carried::NodeReadings& node = state.window[static_cast<std::size_t>(at)].readings;

@@ -174,7 +174,11 @@ ImuSample ImuMerge::merge(State& state) const {
   const bool all_used = std::count(used.begin(), used.end(), true) == params_.count;
   close_windows(present, raw_rates, raw_forces, all_used, merged, state);
 
-  if (std::count(present.begin(), present.end(), true) >= kRecovering) recover(readings, present, h, state, merged);
+  if (std::count(present.begin(), present.end(), true) >= kRecovering) {
+    recover(readings, present, h, state, merged);
+  } else {
+    state.recovery.running = false;  // what comes after a silence is not predicted from before it
+  }
   const auto suspect = [](const Unit& unit) { return unit.suspect_s > 0.0; };
   if (2 * std::count_if(state.units.begin(), state.units.begin() + params_.count, suspect) > params_.count) {
     merged.device_clip_flags =

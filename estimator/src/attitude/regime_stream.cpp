@@ -16,6 +16,8 @@ CarriedStream::Params joined(const RegimeStream::Params& params) {
   out.period_s = params.rate.period_s;
   out.lag_s = params.rate.lag_s;
   out.window_s = std::max(out.window_s, out.lag_s + 4.0 * out.body.node_s);
+  // over a longer gap samples would leave the window before they are given out: the body is begun anew
+  out.body.gap_max_s = std::min(out.body.gap_max_s, out.window_s - out.lag_s);
   return out;
 }
 
@@ -96,6 +98,14 @@ RegimeShares RegimeStream::next(const RegimeShares& before, double dt_s, const R
                         rig.constants.lever_arm_m, rig.covariance.topLeftCorner<3, 3>());
 }
 
+// The sample of the window that a rate is of.
+std::size_t RegimeStream::index_of(const RateState& rate, const State& state) const {
+  const std::vector<RateStream::Knot>& window = state.rate.window;
+  std::size_t k = 0;
+  while (k + 1 < window.size() && window[k].observation.sample.time_ns < rate.time_ns) ++k;
+  return k;
+}
+
 // Whether RateStream drops one rig after another: then there is none that these would be flights of.
 bool RegimeStream::doubts(const State& state) const {
   return state.resets > kDoubtResets;
@@ -104,7 +114,8 @@ bool RegimeStream::doubts(const State& state) const {
 // The evidence of the sample that is given out, by its own rate: the forward half of carried.md (C28).
 void RegimeStream::judge(const RateState& rate, State& state) const {
   const double dt_s = state.given == 0 ? params_.evidence.memory_s : seconds(rate.time_ns - state.given_ns);
-  state.shares = next(state.shares, dt_s, state.rate.window.front(), rate_.calibration(state.rate), doubts(state));
+  const RateStream::Knot& knot = state.rate.window[index_of(rate, state)];
+  state.shares = next(state.shares, dt_s, knot, rate_.calibration(state.rate), doubts(state));
   const auto dropped = static_cast<double>(state.rate.rig_resets - state.rig_resets);
   state.rig_resets = state.rate.rig_resets;
   state.resets = std::exp(-dt_s / kResets_s) * state.resets + dropped;
@@ -123,7 +134,8 @@ double RegimeStream::share_of(const RateState& rate, State& state) const {
   const std::vector<RateStream::Knot>& window = state.rate.window;
   const auto clips = [](const RateStream::Knot& knot) { return knot.observation.unseen() != 0; };
   const bool before = std::any_of(window.begin(), window.end(), [&](const RateStream::Knot& knot) {
-    return clips(knot) && knot.observation.sample.time_ns - rate.time_ns <= near_ns;
+    const TimeNs ahead_ns = knot.observation.sample.time_ns - rate.time_ns;
+    return clips(knot) && ahead_ns >= 0 && ahead_ns <= near_ns;
   });
   if (rate.clipped_axes != 0) state.clipped_ns = rate.time_ns;
   if (!after && !before) {
@@ -137,7 +149,7 @@ double RegimeStream::share_of(const RateState& rate, State& state) const {
   RegimeShares shares = state.shares;
   const RigCalibration rig = rate_.calibration(state.rate);
   TimeNs clipped_ns = rate.time_ns;
-  for (std::size_t k = 1; k < window.size(); ++k) {
+  for (std::size_t k = index_of(rate, state) + 1; k < window.size(); ++k) {
     const TimeNs now_ns = window[k].observation.sample.time_ns;
     if (clips(window[k])) clipped_ns = now_ns;
     if (now_ns - clipped_ns > near_ns) break;

@@ -182,8 +182,8 @@ Status ask_turns(Problem& problem, CarriedSmoother::Report& report) {
   std::vector<Open> open;
   // what the rest says of a part is linear: right where it stands, and so asked again once a turn was taken
   for (int round = 0; round < kRounds; ++round) {
-    if (!problem.tell(parts)) return {};
-    open.clear();
+    if (!problem.tell(parts)) break;
+    open.clear();  // of the round before, whose turns have been taken
     std::vector<std::pair<std::size_t, std::vector<Node>>> taken;
     for (std::size_t k = 0; k < parts.size(); ++k) {
       const Part& part = parts[k];

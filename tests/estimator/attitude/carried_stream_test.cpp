@@ -127,6 +127,17 @@ TEST(CarriedStream, SplitsAnywhereToTheBit) {
   }
 }
 
+TEST(CarriedStream, StatesACovarianceWithEachRate) {
+  for (const double hz : {100.0, 200.0, 500.0}) {
+    CarriedStream::Params params;
+    params.period_s = 1.0 / hz;
+    const std::vector<RateState> rates = stream(testing::record({}, hz, 2.0, 7.3), params);
+    ASSERT_FALSE(rates.empty());
+    for (std::size_t k = 0; k < rates.size(); ++k)
+      ASSERT_GT(rates[k].covariance_rad2_s2.diagonal().minCoeff(), 0.0) << hz << " Hz, " << k;
+  }
+}
+
 TEST(CarriedStream, RefusesBadInputAndKeepsItsState) {
   const CarriedRecording recording = testing::record({}, 100.0, 1.0, 7.3);
   const CarriedStream stream({});

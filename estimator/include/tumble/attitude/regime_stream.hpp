@@ -71,6 +71,7 @@ class RegimeStream {
 
  private:
   ClippedElements known_of(State& state) const;
+  std::size_t index_of(const RateState& rate, const State& state) const;
   bool doubts(const State& state) const;
   RegimeShares next(const RegimeShares& before, double dt_s, const RateStream::Knot& knot, const RigCalibration& rig,
                     bool doubted) const;
