@@ -161,7 +161,7 @@ void declare(CLI::App& app, ImportOptions& options) {
   app.add_option("--gyro-unit", options.gyro_unit, "of a CSV: rad/s or deg/s [rad/s]");
   app.add_option("--lever-arm", options.lever_arm_m, "X Y Z: from the robot's centre of mass to the IMU, m [0 0 0]")
       ->expected(3);
-  app.add_option("--robot", options.robot, "rig or sphere, for methods that ask [unknown]");
+  app.add_option("--robot", options.robot, "rig, sphere or pendulum, for methods that ask [unknown]");
   app.add_option("--radius", options.radius_m, "of the sphere, m, for methods of position [unknown]")
       ->check(within(1e-3, 10.0));
   app.add_option("--imu-topic", options.imu_topics, "of a bag: sensor_msgs/Imu; the first is the primary one [all]");
