@@ -24,6 +24,7 @@ constexpr double kAgainst = 3.0;           // deviations of the rail beyond it, 
 constexpr double kTurnCost = 100.0;        // of the jerk that makes a turn: ten deviations
 constexpr double kAround_s = 0.3;          // solved with a stretch, on either side
 constexpr double kLogOdds = 6.9;           // 1 to 1000: less likely turns are not counted
+constexpr double kTakeLogOdds = 3.0;       // 1 to 20: for a turn that is taken, costs leave out what the model misses
 constexpr int kTurnsMax = 2;               // more or less than the descent says
 constexpr int kRounds = 3;                 // of asking, solving the whole between them
 
@@ -38,7 +39,8 @@ struct Hypothesis {
   double cost = 0.0;
 };
 
-/// What is left of a stretch when its turns have been asked for: the likely ones but the best, with their shares.
+/// What is left of a stretch when its turns have been asked for: the likely ones but that which stands, with their
+/// shares.
 struct Open {
   std::size_t from = 0;
   std::vector<std::pair<double, std::vector<Node>>> others;
@@ -110,7 +112,7 @@ double angle_between(std::span<const Node> from, std::span<const Node> to, const
   return out;
 }
 
-/// The number of turns that the descent found and those about it that are possible; the best one first.
+/// The number of turns that the descent found and those about it that are possible.
 std::vector<Hypothesis> hypotheses(const Problem& whole, const Stretch& stretch, const Part& part) {
   const Eigen::RowVector3d m = whole.rows().row(static_cast<Eigen::Index>(stretch.element));
   const Vector3d axis = whole.rows().inverse().col(static_cast<Eigen::Index>(stretch.element)).normalized();
@@ -180,6 +182,7 @@ Status ask_turns(Problem& problem, CarriedSmoother::Report& report) {
   if (stretches.empty()) return {};
   std::vector<Part> parts = with_surroundings(problem, stretches);
   std::vector<Open> open;
+  std::vector<bool> fallen(parts.size(), false);
   // what the rest says of a part is linear: right where it stands, and so asked again once a turn was taken
   for (int round = 0; round < kRounds; ++round) {
     if (!problem.tell(parts)) break;
@@ -191,8 +194,16 @@ Status ask_turns(Problem& problem, CarriedSmoother::Report& report) {
       if (found.empty()) continue;
       const std::span<const Node> before = problem.nodes().subspan(part.first, part.last - part.first + 1);
       const Eigen::RowVector3d m = problem.rows().row(static_cast<Eigen::Index>(stretches[k].element));
-      const bool another = std::abs(angle_between(before, found.front().nodes, m, problem.node_s())) > kPi;
+      const auto turned = [&](const Hypothesis& each) {
+        return std::abs(angle_between(before, each.nodes, m, problem.node_s())) > kPi;
+      };
+      // the descent's own stands until another is clearly better; once it has fallen the best of the others stands
+      const double least = found.front().cost, margin = fallen[k] ? 0.0 : 2.0 * kTakeLogOdds;
+      const auto held = std::find_if_not(found.begin(), found.end(), turned);
+      const bool another = held == found.end() || held->cost > least + margin;
+      if (!another) std::iter_swap(found.begin(), held);
       if (another) taken.emplace_back(part.first, found.front().nodes);
+      fallen[k] = fallen[k] || another;
       if (found.size() > 1) open.push_back(shares_of(found, part.first));
     }
     if (taken.empty()) break;
