@@ -2,16 +2,16 @@
 #include <array>
 #include <cmath>
 
+#include "scenarios/baselines/attitude/autogain.hpp"
 #include "scenarios/methods/attitude_filter.hpp"
 #include "scenarios/methods/registry.hpp"
-#include "tumble/attitude/autogain.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
 const std::array<sim::Parameter, 7>& parameters_of_the_filter() {
-  static const Autogain::Params library;
+  static const baselines::Autogain::Params library;
   static const std::array<sim::Parameter, 7> parameters = {{
       {"profile", static_cast<double>(library.profile), 0.0, 2.0, "1",
        "factor by rate: 0 the paper's eq. 2, 1 the authors' code of 2021, 2 smooth"},
@@ -29,7 +29,7 @@ const std::array<sim::Parameter, 7>& parameters_of_the_filter() {
 }
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  return run_attitude_filter<Autogain>(sensors, autogain_params(parameters));
+  return run_attitude_filter<baselines::Autogain>(sensors, autogain_params(parameters));
 }
 
 }  // namespace
@@ -38,9 +38,9 @@ std::span<const sim::Parameter> autogain_parameters() {
   return parameters_of_the_filter();
 }
 
-Autogain::Params autogain_params(const sim::Values& parameters) {
-  Autogain::Params params;
-  params.profile = static_cast<AutogainProfile>(std::lround(parameters.at("profile")));
+baselines::Autogain::Params autogain_params(const sim::Values& parameters) {
+  baselines::Autogain::Params params;
+  params.profile = static_cast<baselines::AutogainProfile>(std::lround(parameters.at("profile")));
   params.gain_rad_s = parameters.at("gain_rad_s");
   params.tau_s = parameters.at("tau_s");
   params.lower_rad_s = parameters.at("lower_rad_s");

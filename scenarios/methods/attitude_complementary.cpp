@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <array>
 
+#include "scenarios/baselines/attitude/complementary.hpp"
 #include "scenarios/methods/attitude_filter.hpp"
 #include "scenarios/methods/registry.hpp"
-#include "tumble/attitude/complementary.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
 const std::array<sim::Parameter, 1>& parameters_of_the_filter() {
-  static const Complementary::Params library;
+  static const baselines::Complementary::Params library;
   static const std::array<sim::Parameter, 1> parameters = {{
       {"tau_s", library.tau_s, 1e-3, 1e4, "s",
        "time in which the accelerometer takes over: 0.02 per sample at 125 Hz (Zevering et al., MFI 2021)"},
@@ -19,9 +19,9 @@ const std::array<sim::Parameter, 1>& parameters_of_the_filter() {
 }
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  Complementary::Params params;
+  baselines::Complementary::Params params;
   params.tau_s = parameters.at("tau_s");
-  return run_attitude_filter<Complementary>(sensors, params);
+  return run_attitude_filter<baselines::Complementary>(sensors, params);
 }
 
 }  // namespace

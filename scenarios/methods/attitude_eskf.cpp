@@ -2,16 +2,16 @@
 #include <array>
 #include <numbers>
 
+#include "scenarios/baselines/attitude/eskf.hpp"
 #include "scenarios/methods/attitude_filter.hpp"
 #include "scenarios/methods/registry.hpp"
-#include "tumble/attitude/eskf.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
 const std::array<sim::Parameter, 5>& parameters_of_the_filter() {
-  static const Eskf::Params library;
+  static const baselines::Eskf::Params library;
   static const std::array<sim::Parameter, 5> parameters = {{
       {"gyro_noise_rad_sqrts", library.gyro_noise_rad_sqrts, 1e-12, 1.0, "rad/sqrt(s)", "angle random walk"},
       {"bias_walk_rad_s_sqrts", library.bias_walk_rad_s_sqrts, 0.0, 1.0, "rad/s/sqrt(s)",
@@ -26,7 +26,7 @@ const std::array<sim::Parameter, 5>& parameters_of_the_filter() {
 }
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  Eskf::Params params;
+  baselines::Eskf::Params params;
   params.gravity_m_s2 = sensors.gravity_m_s2;
   params.gyro_noise_rad_sqrts = parameters.at("gyro_noise_rad_sqrts");
   params.bias_walk_rad_s_sqrts = parameters.at("bias_walk_rad_s_sqrts");
@@ -34,9 +34,9 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   params.tilt_sigma_start_rad = parameters.at("tilt_sigma_start_rad");
   params.acceleration_noise_m_s2_sqrts = parameters.at("acceleration_noise_m_s2_sqrts");
   // the filter's error is that of AttitudeState: world axes, q_true = Exp(phi) q
-  return run_attitude_filter<Eskf>(sensors, params, [](const Eskf::State& state) -> Eigen::Matrix3d {
-    return state.covariance.topLeftCorner<3, 3>();
-  });
+  return run_attitude_filter<baselines::Eskf>(
+      sensors, params,
+      [](const baselines::Eskf::State& state) -> Eigen::Matrix3d { return state.covariance.topLeftCorner<3, 3>(); });
 }
 
 }  // namespace

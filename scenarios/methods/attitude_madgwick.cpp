@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <array>
 
+#include "scenarios/baselines/attitude/madgwick.hpp"
 #include "scenarios/methods/attitude_filter.hpp"
 #include "scenarios/methods/registry.hpp"
-#include "tumble/attitude/madgwick.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
 const std::array<sim::Parameter, 1>& parameters_of_the_filter() {
-  static const Madgwick::Params library;
+  static const baselines::Madgwick::Params library;
   static const std::array<sim::Parameter, 1> parameters = {{
       {"gain_rad_s", library.gain_rad_s, 0.0, 10.0, "rad/s",
        "speed of the tilt correction, as a quaternion rate (Madgwick, eq. 33)"},
@@ -19,9 +19,9 @@ const std::array<sim::Parameter, 1>& parameters_of_the_filter() {
 }
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  Madgwick::Params params;
+  baselines::Madgwick::Params params;
   params.gain_rad_s = parameters.at("gain_rad_s");
-  return run_attitude_filter<Madgwick>(sensors, params);
+  return run_attitude_filter<baselines::Madgwick>(sensors, params);
 }
 
 }  // namespace

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <array>
 
+#include "scenarios/baselines/attitude/mahony.hpp"
 #include "scenarios/methods/attitude_filter.hpp"
 #include "scenarios/methods/registry.hpp"
-#include "tumble/attitude/mahony.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
 const std::array<sim::Parameter, 2>& parameters_of_the_filter() {
-  static const Mahony::Params library;
+  static const baselines::Mahony::Params library;
   static const std::array<sim::Parameter, 2> parameters = {{
       {"proportional_rad_s", library.proportional_rad_s, 0.0, 100.0, "rad/s", "gain kp on the tilt error (eq. 32)"},
       {"integral_rad_s2", library.integral_rad_s2, 0.0, 100.0, "rad/s^2", "gain ki: takes up the gyro's bias (eq. 32)"},
@@ -19,10 +19,10 @@ const std::array<sim::Parameter, 2>& parameters_of_the_filter() {
 }
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  Mahony::Params params;
+  baselines::Mahony::Params params;
   params.proportional_rad_s = parameters.at("proportional_rad_s");
   params.integral_rad_s2 = parameters.at("integral_rad_s2");
-  return run_attitude_filter<Mahony>(sensors, params);
+  return run_attitude_filter<baselines::Mahony>(sensors, params);
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <array>
 
+#include "scenarios/baselines/rolling/autogain_fusion.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/sphere_attitude.hpp"
-#include "tumble/rolling/autogain_fusion.hpp"
 
 namespace tumble::scenarios {
 
@@ -15,7 +15,7 @@ sim::Parameter a_switch(const char* name, bool by_default, const char* doc) {
 }
 
 const std::array<sim::Parameter, 9>& parameters_of_the_fusion() {
-  static const AutogainFusion::Params library;
+  static const baselines::AutogainFusion::Params library;
   static const std::array<sim::Parameter, 9> parameters = {{
       {"limiter", library.limiter, 0.0, 100.0, "1",
        "integrated over rolling velocity, at most; 1.1 in the authors' code"},
@@ -36,8 +36,8 @@ std::span<const sim::Parameter> parameters_with_attitude() {
   return all;
 }
 
-AutogainFusion::Params fusion_params(const sim::Sensors& sensors, const sim::Values& parameters) {
-  AutogainFusion::Params params;
+baselines::AutogainFusion::Params fusion_params(const sim::Sensors& sensors, const sim::Values& parameters) {
+  baselines::AutogainFusion::Params params;
   params.radius_m = sensors.sphere_radius_m;
   params.gravity_m_s2 = sensors.gravity_m_s2;
   params.autogain = autogain_params(parameters);
@@ -62,11 +62,11 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   if (!estimate.status.ok()) return estimate;
   require_sphere("position/autogain_fusion", sensors);
 
-  const AutogainFusion::Params params = fusion_params(sensors, parameters);
-  const Autogain autogain(params.autogain);
-  const AutogainFusion fusion(params);
-  Autogain::State attitude;
-  AutogainFusion::State state;
+  const baselines::AutogainFusion::Params params = fusion_params(sensors, parameters);
+  const baselines::Autogain autogain(params.autogain);
+  const baselines::AutogainFusion fusion(params);
+  baselines::Autogain::State attitude;
+  baselines::AutogainFusion::State state;
   estimate.poses.reserve(samples.size());
   for (const ImuSample& sample : samples) {
     estimate.status = autogain.step(sample, attitude);

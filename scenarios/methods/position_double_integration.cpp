@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/baselines/rolling/double_integration.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/sphere_attitude.hpp"
-#include "tumble/rolling/double_integration.hpp"
 
 namespace tumble::scenarios {
 
@@ -15,10 +15,10 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   estimate.status = sphere_attitude("position/double_integration", sensors, parameters.at("rest_s"), attitude);
   if (!estimate.status.ok()) return estimate;
 
-  DoubleIntegration::Params params;
+  baselines::DoubleIntegration::Params params;
   params.gravity_m_s2 = sensors.gravity_m_s2;
-  const DoubleIntegration integration(params);
-  DoubleIntegration::State state;
+  const baselines::DoubleIntegration integration(params);
+  baselines::DoubleIntegration::State state;
   const Eigen::Vector3d arm_I_m = bridge::lever_arm_I_m(sensors.imus.front());
   const Eigen::Vector3d start_W_m = attitude.q_WI.front() * arm_I_m;
   estimate.poses.reserve(attitude.samples.size());

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <array>
 
+#include "scenarios/baselines/rolling/slip_observer.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/sphere_attitude.hpp"
-#include "tumble/rolling/slip_observer.hpp"
 
 namespace tumble::scenarios {
 
@@ -12,7 +12,7 @@ namespace {
 
 // thresholds of the library, whose own defaults they are
 const std::array<sim::Parameter, 5>& parameters_of_the_observer() {
-  static const SlipObserver::Params library;
+  static const baselines::SlipObserver::Params library;
   static const std::array<sim::Parameter, 5> parameters = {{
       {"open_m_s2", library.open_m_s2, 1e-9, 100.0, "m/s^2", "residual that opens an event"},
       {"quiet_m_s2", library.quiet_m_s2, 1e-9, 100.0, "m/s^2", "residual below which an event may end"},
@@ -29,8 +29,8 @@ std::span<const sim::Parameter> parameters_with_rest() {
   return all;
 }
 
-SlipObserver::Params observer_params(const sim::Sensors& sensors, const sim::Values& parameters) {
-  SlipObserver::Params params;
+baselines::SlipObserver::Params observer_params(const sim::Sensors& sensors, const sim::Values& parameters) {
+  baselines::SlipObserver::Params params;
   params.radius_m = sensors.sphere_radius_m;
   params.gravity_m_s2 = sensors.gravity_m_s2;
   // from the centre of mass, which the calibration refers to; the geometric centre is some mm away
@@ -50,8 +50,8 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   estimate.status = sphere_attitude("position/observer", sensors, parameters.at("rest_s"), attitude);
   if (!estimate.status.ok()) return estimate;
 
-  const SlipObserver observer(observer_params(sensors, parameters));
-  SlipObserver::State state;
+  const baselines::SlipObserver observer(observer_params(sensors, parameters));
+  baselines::SlipObserver::State state;
   estimate.poses.reserve(attitude.samples.size());
   for (std::size_t k = 0; k < attitude.samples.size(); ++k) {
     const bool before = state.open;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <array>
 
+#include "scenarios/baselines/rolling/rolling_odometry.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/sphere_attitude.hpp"
-#include "tumble/rolling/rolling_odometry.hpp"
 
 namespace tumble::scenarios {
 
@@ -20,10 +20,10 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   estimate.status = sphere_attitude("position/rolling", sensors, parameters.at("rest_s"), attitude);
   if (!estimate.status.ok()) return estimate;
 
-  RollingOdometry::Params params;
+  baselines::RollingOdometry::Params params;
   params.radius_m = sensors.sphere_radius_m;
-  const RollingOdometry odometry(params);
-  RollingOdometry::State state;
+  const baselines::RollingOdometry odometry(params);
+  baselines::RollingOdometry::State state;
   estimate.poses.reserve(attitude.samples.size());
   for (std::size_t k = 0; k < attitude.samples.size(); ++k) {
     const ImuSample& sample = attitude.samples[k];

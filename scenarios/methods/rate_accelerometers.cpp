@@ -3,9 +3,9 @@
 #include <array>
 #include <limits>
 
+#include "scenarios/baselines/angular_velocity/accelerometer_rate.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/rate_baseline.hpp"
-#include "tumble/angular_velocity/accelerometer_rate.hpp"
 
 namespace tumble::scenarios {
 
@@ -52,21 +52,22 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   if (!estimate.status.ok()) return estimate;
   const sim::ImuRecord& record = sensors.imus.front();
   std::vector<AuxiliaryAccelerometer> auxiliary_imus(sensors.imus.size() - 1);
-  AccelerometerRate::Params params;
+  baselines::AccelerometerRate::Params params;
   params.accel_noise_density = record.accel_noise_m_s2_sqrt_hz;
   for (std::size_t i = 0; i < auxiliary_imus.size(); ++i) {
     estimate.status = auxiliary_imu(record, sensors.imus[i + 1], auxiliary_imus[i]);
     if (!estimate.status.ok()) return estimate;
     params.accel_noise_density = std::max(params.accel_noise_density, sensors.imus[i + 1].accel_noise_m_s2_sqrt_hz);
   }
-  if (!(params.accel_noise_density > 0.0)) params.accel_noise_density = AccelerometerRate::Params{}.accel_noise_density;
+  if (!(params.accel_noise_density > 0.0))
+    params.accel_noise_density = baselines::AccelerometerRate::Params{}.accel_noise_density;
   params.rails = stated_rails(record);
   params.tilted_rails = parameters.at("tilted_rails") > 0.5;
   if (record.gyro_noise_rad_s_sqrt_hz > 0.0) params.gyro_noise_density = record.gyro_noise_rad_s_sqrt_hz;
   params.use_gyro = parameters.at("use_gyro") > 0.5;
   params.jerk_psd = parameters.at("jerk_psd_rad2_s5");
   params.gap_max_s = bridge::kGapMaxS;
-  estimate.status = AccelerometerRate(params).estimate(samples, auxiliary_imus, estimate.rates);
+  estimate.status = baselines::AccelerometerRate(params).estimate(samples, auxiliary_imus, estimate.rates);
   estimate.health["accelerometers"] = static_cast<double>(sensors.imus.size());
   count_sources(estimate.rates, estimate.health);
   return estimate;

@@ -12,7 +12,7 @@ RailDetector::Params stated_rails(const sim::ImuRecord& record) {
   return rails;
 }
 
-Estimate run_clipped_baseline(ClippedBaseline::Params params, const sim::Sensors& sensors) {
+Estimate run_clipped_baseline(baselines::ClippedBaseline::Params params, const sim::Sensors& sensors) {
   Estimate estimate;
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
@@ -21,7 +21,7 @@ Estimate run_clipped_baseline(ClippedBaseline::Params params, const sim::Sensors
   params.rails = stated_rails(record);
   if (record.gyro_noise_rad_s_sqrt_hz > 0.0) params.gyro_noise_density = record.gyro_noise_rad_s_sqrt_hz;
   params.gap_max_s = bridge::kGapMaxS;
-  estimate.status = ClippedBaseline(params).estimate(samples, estimate.rates);
+  estimate.status = baselines::ClippedBaseline(params).estimate(samples, estimate.rates);
   count_sources(estimate.rates, estimate.health);
   return estimate;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "scenarios/baselines/angular_velocity/clipped_baseline.hpp"
 #include "scenarios/methods/registry.hpp"
-#include "tumble/angular_velocity/clipped_baseline.hpp"
 
 namespace tumble::scenarios {
 
@@ -14,6 +14,6 @@ inline constexpr sim::Parameter kTiltedRails = {
     "tilted_rails", 0.0, 0.0, 1.0, "1", "1: judge clipping by the elements' tilted planes as our methods do"};
 
 /// Runs one of the library's baselines on the primary IMU, with its data sheet's noise and ranges.
-Estimate run_clipped_baseline(ClippedBaseline::Params params, const sim::Sensors& sensors);
+Estimate run_clipped_baseline(baselines::ClippedBaseline::Params params, const sim::Sensors& sensors);
 
 }  // namespace tumble::scenarios

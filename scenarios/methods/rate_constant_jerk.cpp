@@ -13,7 +13,7 @@ constexpr std::array<sim::Parameter, 2> kParameters = {{
 }};
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  return run_clipped_baseline({.kind = ClippedBaseline::Kind::constant_jerk,
+  return run_clipped_baseline({.kind = baselines::ClippedBaseline::Kind::constant_jerk,
                                .snap_psd = parameters.at("snap_psd_rad2_s7"),
                                .rate_sigma_rad_s = parameters.at("rate_sigma_rad_s")},
                               sensors);

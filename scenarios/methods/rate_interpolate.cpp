@@ -11,7 +11,8 @@ constexpr std::array<sim::Parameter, 1> kParameters = {{kTiltedRails}};
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   return run_clipped_baseline(
-      {.kind = ClippedBaseline::Kind::interpolate, .tilted_rails = parameters.at("tilted_rails") > 0.5}, sensors);
+      {.kind = baselines::ClippedBaseline::Kind::interpolate, .tilted_rails = parameters.at("tilted_rails") > 0.5},
+      sensors);
 }
 
 }  // namespace

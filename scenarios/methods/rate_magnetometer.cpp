@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <array>
 
+#include "scenarios/baselines/angular_velocity/magnetometer_rate.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/rate_baseline.hpp"
-#include "tumble/angular_velocity/magnetometer_rate.hpp"
 
 namespace tumble::scenarios {
 
@@ -24,7 +24,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
   const sim::ImuRecord& record = sensors.imus.front();
-  MagnetometerRate::Params params;
+  baselines::MagnetometerRate::Params params;
   params.rails = stated_rails(record);
   params.tilted_rails = parameters.at("tilted_rails") > 0.5;
   if (record.gyro_noise_rad_s_sqrt_hz > 0.0) params.gyro_noise_density = record.gyro_noise_rad_s_sqrt_hz;
@@ -35,7 +35,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   params.disturbed_share = parameters.at("disturbed_share");
   params.jerk_psd = parameters.at("jerk_psd_rad2_s5");
   params.gap_max_s = bridge::kGapMaxS;
-  estimate.status = MagnetometerRate(params).estimate(samples, record.magnetic_field_t, estimate.rates);
+  estimate.status = baselines::MagnetometerRate(params).estimate(samples, record.magnetic_field_t, estimate.rates);
   estimate.health["magnetometers"] = record.magnetic_field_t.empty() ? 0.0 : 1.0;
   count_sources(estimate.rates, estimate.health);
   return estimate;

@@ -14,7 +14,7 @@ constexpr std::array<sim::Parameter, 2> kParameters = {{
 }};
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  return run_clipped_baseline({.kind = ClippedBaseline::Kind::reject,
+  return run_clipped_baseline({.kind = baselines::ClippedBaseline::Kind::reject,
                                .tilted_rails = parameters.at("tilted_rails") > 0.5,
                                .acceleration_psd = parameters.at("acceleration_psd_rad2_s3")},
                               sensors);

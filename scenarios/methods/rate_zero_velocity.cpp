@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <array>
 
+#include "scenarios/baselines/angular_velocity/standstill_smoother.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/rate_baseline.hpp"
-#include "tumble/angular_velocity/standstill_smoother.hpp"
 
 namespace tumble::scenarios {
 
@@ -21,7 +21,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
   const sim::ImuRecord& record = sensors.imus.front();
-  StandstillSmoother::Params params;
+  baselines::StandstillSmoother::Params params;
   params.rails = stated_rails(record);
   params.tilted_rails = parameters.at("tilted_rails") > 0.5;
   params.gravity_m_s2 = sensors.gravity_m_s2;
@@ -30,7 +30,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   params.jerk_psd = parameters.at("jerk_psd_rad2_s5");
   params.accel_error_m_s2 = parameters.at("accel_error_m_s2");
   params.gap_max_s = bridge::kGapMaxS;
-  estimate.status = StandstillSmoother(params).estimate(samples, estimate.rates);
+  estimate.status = baselines::StandstillSmoother(params).estimate(samples, estimate.rates);
   count_sources(estimate.rates, estimate.health);
   return estimate;
 }

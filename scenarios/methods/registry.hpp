@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/baselines/attitude/autogain.hpp"
 #include "scenarios/methods/method.hpp"
-#include "tumble/attitude/autogain.hpp"
 #include "tumble/common/imu.hpp"
 
 /// How a method enters the registry. Add one: write KIND_NAME.cpp that defines `Method KIND_NAME()`, declare it here
@@ -83,7 +83,7 @@ void count_sources(std::span<const RateState> rates, std::map<std::string, doubl
 
 /// Parameters of the attitude filter of the published sphere, and what they mean to the library.
 std::span<const sim::Parameter> autogain_parameters();
-Autogain::Params autogain_params(const sim::Values& parameters);
+baselines::Autogain::Params autogain_params(const sim::Values& parameters);
 
 /// Parameters of `sphere_attitude`.
 std::span<const sim::Parameter> sphere_rest_parameters();

@@ -19,7 +19,7 @@ constexpr double kRestRateRadS = 0.05;
 constexpr double kVelocitySigmaMS = 1e-4;  // the registration of a rigid sweep says nothing of velocity
 
 const std::array<sim::Parameter, 5>& parameters_of_the_chain() {
-  static const RigidOdometry::Params library;
+  static const baselines::RigidOdometry::Params library;
   static const std::array<sim::Parameter, 5> parameters = {{
       {"sweep_voxel_m", library.sweep_voxel_m, 0.01, 10.0, "m", "one point per voxel of a sweep is registered"},
       {"map_voxel_m", library.map_voxel_m, 0.01, 10.0, "m", "cell of the map's hash"},
@@ -119,7 +119,7 @@ Eigen::Matrix<double, 9, 9> loose_covariance(double sigma_m, double sigma_rad) {
 }
 
 void run_rigid_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples,
-                     const RigidOdometry::Params& params, TrajectoryModel& model, Estimate& estimate) {
+                     const baselines::RigidOdometry::Params& params, TrajectoryModel& model, Estimate& estimate) {
   if (sensors.lidars.empty()) {
     estimate.status = {Trouble::empty, "lidars", 0.0, 1.0};
     return;
@@ -130,7 +130,7 @@ void run_rigid_chain(const sim::Sensors& sensors, std::span<const ImuSample> sam
     estimate.status = {Trouble::empty, "lidar.sweep_start_ns", 0.0, 1.0};
     return;
   }
-  RigidOdometry odometry(params);
+  baselines::RigidOdometry odometry(params);
   bool started = false, any = false;
   TimeNs from_ns = 0;
   for (std::size_t k = 0; k < sweeps; ++k) {
@@ -168,8 +168,8 @@ std::span<const sim::Parameter> rigid_parameters() {
   return parameters_of_the_chain();
 }
 
-RigidOdometry::Params rigid_params(const sim::Sensors& sensors, const sim::Values& parameters) {
-  RigidOdometry::Params params;
+baselines::RigidOdometry::Params rigid_params(const sim::Sensors& sensors, const sim::Values& parameters) {
+  baselines::RigidOdometry::Params params;
   if (!sensors.lidars.empty() && !sensors.imus.empty())
     params.T_IL = bridge::T_IL(sensors.imus.front(), sensors.lidars.front());
   params.sweep_voxel_m = parameters.at("sweep_voxel_m");

@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
+#include "scenarios/baselines/mapping/rigid_odometry.hpp"
 #include "scenarios/methods/method.hpp"
 #include "sim/parameters.hpp"
 #include "tumble/common/imu.hpp"
-#include "tumble/mapping/rigid_odometry.hpp"
 
 /// The seams of the rigid registration methods: a rate method gives Estimate::rates, a trajectory model the motion
 /// inside of a sweep, RigidOdometry the registration. Each method file puts its own together.
@@ -18,9 +18,9 @@ class TrajectoryModel {
  public:
   virtual ~TrajectoryModel() = default;
   /// From the end of the last sweep (at first: the start of this one) to `to_ns`.
-  virtual RigidOdometry::Motion expect(TimeNs from_ns, TimeNs to_ns) = 0;
+  virtual baselines::RigidOdometry::Motion expect(TimeNs from_ns, TimeNs to_ns) = 0;
   /// After each sweep; `report.verdict` tells whether the state is more than the expectation.
-  virtual void learn(const RigidOdometry& odometry, const LidarInertialOdometry::SweepReport& report) = 0;
+  virtual void learn(const baselines::RigidOdometry& odometry, const LidarInertialOdometry::SweepReport& report) = 0;
 };
 
 /// What the rest at the start tells: the attitude from the specific force, yaw 0, and the gyro's bias.
@@ -52,10 +52,10 @@ Eigen::Matrix<double, 9, 9> loose_covariance(double sigma_m, double sigma_rad);
 /// The chain with a rigid registration. Sweeps that the IMU does not cover are counted, not registered; a covered lidar
 /// is a fact of life.
 void run_rigid_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples,
-                     const RigidOdometry::Params& params, TrajectoryModel& model, Estimate& estimate);
+                     const baselines::RigidOdometry::Params& params, TrajectoryModel& model, Estimate& estimate);
 
 /// Parameters of the rigid methods and what they mean to the library; T_IL is the calibration's.
 std::span<const sim::Parameter> rigid_parameters();
-RigidOdometry::Params rigid_params(const sim::Sensors& sensors, const sim::Values& parameters);
+baselines::RigidOdometry::Params rigid_params(const sim::Sensors& sensors, const sim::Values& parameters);
 
 }  // namespace tumble::scenarios

@@ -7,12 +7,12 @@
 #include <limits>
 #include <unordered_map>
 
+#include "scenarios/baselines/attitude/madgwick.hpp"
+#include "scenarios/baselines/mapping/trimmed_icp.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
-#include "tumble/attitude/madgwick.hpp"
 #include "tumble/mapping/map_drawing.hpp"
 #include "tumble/mapping/spatial_hash.hpp"
-#include "tumble/mapping/trimmed_icp.hpp"
 
 namespace tumble::scenarios {
 
@@ -46,10 +46,10 @@ constexpr std::array<sim::Parameter, 6> kParameters = {{
 class ImuOdometry {
  public:
   ImuOdometry(std::span<const ImuSample> samples, std::span<const RateState> rates) : samples_(samples) {
-    Madgwick::Params params;
+    baselines::Madgwick::Params params;
     params.gain_rad_s = kMadgwickGain;
-    const Madgwick madgwick(params);
-    Madgwick::State state;
+    const baselines::Madgwick madgwick(params);
+    baselines::Madgwick::State state;
     for (std::size_t k = 0; k < samples.size(); ++k) {
       ImuSample sample = samples[k];
       sample.angular_velocity_rad_s = rates[k].w_WI_I_rad_s;
@@ -130,8 +130,8 @@ struct Cell {
 };
 
 /// Returns of a sweep in the lidar's axes at its start, voxelised, with their variances.
-std::vector<TrimmedIcp::Point> prepare(const bridge::Sweep& sweep, const ImuOdometry& odometry,
-                                       const Eigen::Isometry3d& T_IL, const sim::Values& parameters) {
+std::vector<baselines::TrimmedIcp::Point> prepare(const bridge::Sweep& sweep, const ImuOdometry& odometry,
+                                                  const Eigen::Isometry3d& T_IL, const sim::Values& parameters) {
   const double rate = parameters.at("skew_sigma_m_s");
   const Eigen::Isometry3d from_odom = (odometry.pose(sweep.start_ns) * T_IL).inverse(Eigen::Isometry);
   std::unordered_map<std::uint64_t, std::size_t> index_of;
@@ -159,10 +159,10 @@ std::vector<TrimmedIcp::Point> prepare(const bridge::Sweep& sweep, const ImuOdom
     cell.skew_variance += rate * rate * t_s * t_s;
     cell.count += 1.0f;
   }
-  std::vector<TrimmedIcp::Point> points;
+  std::vector<baselines::TrimmedIcp::Point> points;
   points.reserve(cells.size());
   for (const Cell& cell : cells) {
-    TrimmedIcp::Point& point = points.emplace_back();
+    baselines::TrimmedIcp::Point& point = points.emplace_back();
     point.position_m = cell.sum / cell.count;
     const double count = static_cast<double>(cell.count);
     const double range = std::max(kRangeSigmaM, kRangeSigmaShare * static_cast<double>(point.position_m.norm()));
@@ -182,7 +182,7 @@ class SeedMapper {
         odometry_(odometry),
         icp_(icp_params(parameters)) {}
 
-  bool add(const bridge::Sweep& sweep, std::span<const TrimmedIcp::Point> points, SweepReport& report) {
+  bool add(const bridge::Sweep& sweep, std::span<const baselines::TrimmedIcp::Point> points, SweepReport& report) {
     report.points_used = sweep.points.size();
     report.points_registered = points.size();
     if (dead_ || points.empty()) return false;
@@ -191,7 +191,7 @@ class SeedMapper {
     if (map_.size() == 0) {
       report.verdict = SweepVerdict::first;
     } else {
-      const TrimmedIcp::Result result = icp_.align(points, T, map_);
+      const baselines::TrimmedIcp::Result result = icp_.align(points, T, map_);
       report.iterations = result.iterations;
       report.inlier_share = result.kept_share;
       dead_ = result.verdict != RegistrationVerdict::converged && ends_on_abort_;
@@ -208,15 +208,15 @@ class SeedMapper {
   std::vector<MapPoint> map() const { return mapping::with_normals(map_, seen_from_, 20, 1.0); }
 
  private:
-  static TrimmedIcp::Params icp_params(const sim::Values& parameters) {
-    TrimmedIcp::Params params;
+  static baselines::TrimmedIcp::Params icp_params(const sim::Values& parameters) {
+    baselines::TrimmedIcp::Params params;
     params.match_distance_m = parameters.at("match_distance_m");
     params.count_unmatched_slots = parameters.at("trim_counts_unmatched") > 0.5;
     return params;
   }
 
   // compared with the old map only, not with each other
-  void extend(std::span<const TrimmedIcp::Point> points, const Eigen::Isometry3d& T, SweepReport& report) {
+  void extend(std::span<const baselines::TrimmedIcp::Point> points, const Eigen::Isometry3d& T, SweepReport& report) {
     const Eigen::Isometry3f place = T.cast<float>();
     std::vector<std::uint32_t> fresh;
     Neighbours found;
@@ -235,7 +235,7 @@ class SeedMapper {
   bool ends_on_abort_, dead_ = false;
   Eigen::Isometry3d T_IL_;
   const ImuOdometry& odometry_;
-  TrimmedIcp icp_;
+  baselines::TrimmedIcp icp_;
   VoxelMap map_{{0.5, 0.0}};
   std::vector<Eigen::Vector3f> seen_from_;
   Eigen::Isometry3d T_map_odom_ = Eigen::Isometry3d::Identity();
@@ -292,7 +292,7 @@ void run_seed_chain(const sim::Sensors& sensors, std::span<const ImuSample> samp
     }
     odometry.advance(sweep.end_ns);
     SweepReport report;
-    std::vector<TrimmedIcp::Point> points = prepare(sweep, odometry, T_IL, parameters);
+    std::vector<baselines::TrimmedIcp::Point> points = prepare(sweep, odometry, T_IL, parameters);
     const Status trouble = sweep_trouble(sweep, points.size());
     if (!trouble.ok()) {
       estimate.health[std::string("sweeps_") + to_string(trouble.trouble)] += 1.0;

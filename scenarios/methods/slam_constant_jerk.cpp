@@ -33,8 +33,8 @@ class ConstantJerk : public TrajectoryModel {
     registered_.q_WI = observer_.q_WI = start.q_WI;
   }
 
-  RigidOdometry::Motion expect(TimeNs from_ns, TimeNs to_ns) override {
-    RigidOdometry::Motion motion;
+  baselines::RigidOdometry::Motion expect(TimeNs from_ns, TimeNs to_ns) override {
+    baselines::RigidOdometry::Motion motion;
     motion.start = registered_;
     motion.start.v_WI_m_s = observer_.v_WI_m_s;
     motion.start.time_ns = from_ns;
@@ -51,7 +51,7 @@ class ConstantJerk : public TrajectoryModel {
     return motion;
   }
 
-  void learn(const RigidOdometry& odometry, const LidarInertialOdometry::SweepReport& report) override {
+  void learn(const baselines::RigidOdometry& odometry, const LidarInertialOdometry::SweepReport& report) override {
     registered_ = odometry.state();
     if (report.verdict == SweepVerdict::rejected) return;
     const double span_s = std::min(seconds(registered_.time_ns - from_ns_), kSpanMaxS);

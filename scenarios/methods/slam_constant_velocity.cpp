@@ -24,8 +24,8 @@ class ConstantVelocity : public TrajectoryModel {
     last_.q_WI = q_WL;
   }
 
-  RigidOdometry::Motion expect(TimeNs from_ns, TimeNs to_ns) override {
-    RigidOdometry::Motion motion;
+  baselines::RigidOdometry::Motion expect(TimeNs from_ns, TimeNs to_ns) override {
+    baselines::RigidOdometry::Motion motion;
     motion.start = last_;
     motion.start.time_ns = from_ns;
     motion.samples = steady_motion(samples_, rate_rad_s_, Eigen::Vector3d::Zero(), from_ns, to_ns);
@@ -34,7 +34,7 @@ class ConstantVelocity : public TrajectoryModel {
     return motion;
   }
 
-  void learn(const RigidOdometry& odometry, const LidarInertialOdometry::SweepReport&) override {
+  void learn(const baselines::RigidOdometry& odometry, const LidarInertialOdometry::SweepReport&) override {
     const MotionState before = last_;
     last_ = odometry.state();
     const double span_s = seconds(last_.time_ns - from_ns_);
@@ -69,7 +69,7 @@ std::vector<ImuSample> instants(const sim::LidarRecord& lidar) {
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   estimate.frame = Frame::lidar;
-  RigidOdometry::Params params = rigid_params(sensors, parameters);
+  baselines::RigidOdometry::Params params = rigid_params(sensors, parameters);
   std::vector<ImuSample> samples;
   Eigen::Quaterniond q_WL = Eigen::Quaterniond::Identity();
   if (!sensors.imus.empty()) {

@@ -21,8 +21,8 @@ class TrueMotion : public TrajectoryModel {
     last_.q_WI = start.q_WI;
   }
 
-  RigidOdometry::Motion expect(TimeNs from_ns, TimeNs to_ns) override {
-    RigidOdometry::Motion motion;
+  baselines::RigidOdometry::Motion expect(TimeNs from_ns, TimeNs to_ns) override {
+    baselines::RigidOdometry::Motion motion;
     const auto first = static_cast<std::size_t>(std::max<TimeNs>(from_ns / truth_.period_ns, 0));
     // as if the estimate's attitude at the start were the true one: only the change of motion is taken from the truth
     const Eigen::Quaterniond to_estimate = last_.q_WI * attitude(first).conjugate();
@@ -42,7 +42,7 @@ class TrueMotion : public TrajectoryModel {
     return motion;
   }
 
-  void learn(const RigidOdometry& odometry, const LidarInertialOdometry::SweepReport&) override {
+  void learn(const baselines::RigidOdometry& odometry, const LidarInertialOdometry::SweepReport&) override {
     last_ = odometry.state();
   }
 
@@ -65,7 +65,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   if (estimate.status.ok()) estimate.status = start_at_rest(samples, start);
   if (estimate.status.ok()) estimate.status = unclipped_rates(sensors, *oracle.truth, estimate.rates);
   if (!estimate.status.ok()) return estimate;
-  RigidOdometry::Params params = rigid_params(sensors, parameters);
+  baselines::RigidOdometry::Params params = rigid_params(sensors, parameters);
   if (!oracle.truth->lidars.empty()) {
     params.T_IL = oracle.truth->imus.front().T_BI.inverse(Eigen::Isometry) * oracle.truth->lidars.front().T_BL;
   }

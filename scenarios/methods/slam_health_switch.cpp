@@ -24,8 +24,8 @@ class HealthSwitch : public TrajectoryModel {
     last_.q_WI = start.q_WI;
   }
 
-  RigidOdometry::Motion expect(TimeNs from_ns, TimeNs to_ns) override {
-    RigidOdometry::Motion motion;
+  baselines::RigidOdometry::Motion expect(TimeNs from_ns, TimeNs to_ns) override {
+    baselines::RigidOdometry::Motion motion;
     motion.start = last_;
     motion.start.time_ns = from_ns;
     motion.samples = imu_motion(samples_, rates_, bias_, from_ns, to_ns);
@@ -39,7 +39,7 @@ class HealthSwitch : public TrajectoryModel {
     return motion;
   }
 
-  void learn(const RigidOdometry& odometry, const LidarInertialOdometry::SweepReport&) override {
+  void learn(const baselines::RigidOdometry& odometry, const LidarInertialOdometry::SweepReport&) override {
     const MotionState before = last_;
     last_ = odometry.state();
     const double span_s = seconds(last_.time_ns - from_ns_);

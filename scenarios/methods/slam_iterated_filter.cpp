@@ -26,8 +26,8 @@ class IteratedFilter : public TrajectoryModel {
     state_.covariance.diagonal().tail<3>().setConstant(kStartSigmaMS * kStartSigmaMS);
   }
 
-  RigidOdometry::Motion expect(TimeNs from_ns, TimeNs to_ns) override {
-    RigidOdometry::Motion motion;
+  baselines::RigidOdometry::Motion expect(TimeNs from_ns, TimeNs to_ns) override {
+    baselines::RigidOdometry::Motion motion;
     motion.start = state_;
     motion.start.time_ns = from_ns;
     motion.samples = imu_motion(samples_, rates_, bias_, from_ns, to_ns);
@@ -50,7 +50,7 @@ class IteratedFilter : public TrajectoryModel {
     return motion;
   }
 
-  void learn(const RigidOdometry& odometry, const LidarInertialOdometry::SweepReport&) override {
+  void learn(const baselines::RigidOdometry& odometry, const LidarInertialOdometry::SweepReport&) override {
     state_ = odometry.state();
   }
 

@@ -2,11 +2,11 @@
 #include <array>
 #include <cmath>
 
+#include "scenarios/baselines/mapping/pointwise_filter.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/rigid_chain.hpp"
 #include "scenarios/methods/slam_registry.hpp"
-#include "tumble/mapping/pointwise_filter.hpp"
 
 namespace tumble::scenarios {
 
@@ -15,7 +15,7 @@ namespace {
 constexpr double kAccelRailShare = 0.99;  // of the stated range: beyond, a reading is left out
 
 const std::array<sim::Parameter, 6>& parameters_of_the_filter() {
-  static const PointwiseFilter::Params library;
+  static const baselines::PointwiseFilter::Params library;
   static const std::array<sim::Parameter, 6> parameters = {{
       {"sweep_voxel_m", library.sweep_voxel_m, 0.01, 10.0, "m", "one point per voxel of a sweep updates the state"},
       {"rate_walk_rad_s_sqrt_s", library.rate_walk_rad_s_sqrt_s, 1e-3, 1e6, "rad/s/sqrt(s)", "random walk of the rate"},
@@ -28,7 +28,7 @@ const std::array<sim::Parameter, 6>& parameters_of_the_filter() {
   return parameters;
 }
 
-void run_filter(const sim::Sensors& sensors, std::span<const ImuSample> samples, PointwiseFilter& filter,
+void run_filter(const sim::Sensors& sensors, std::span<const ImuSample> samples, baselines::PointwiseFilter& filter,
                 Estimate& estimate) {
   const sim::LidarRecord& lidar = sensors.lidars.front();
   const double rail = kAccelRailShare * sensors.imus.front().stated_accel_range_m_s2;
@@ -82,7 +82,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   }
   for (RateState& rate : estimate.rates) rate.w_WI_I_rad_s -= start.gyro_bias_rad_s;
 
-  PointwiseFilter::Params params;
+  baselines::PointwiseFilter::Params params;
   params.T_IL = bridge::T_IL(sensors.imus.front(), sensors.lidars.front());
   params.gravity_m_s2 = sensors.gravity_m_s2;
   params.sweep_voxel_m = parameters.at("sweep_voxel_m");
@@ -91,7 +91,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   params.gyro_sigma_rad_s = parameters.at("gyro_sigma_rad_s");
   params.accel_sigma_m_s2 = parameters.at("accel_sigma_m_s2");
   params.plane_sigma_m = parameters.at("plane_sigma_m");
-  PointwiseFilter filter(params, start.q_WI);
+  baselines::PointwiseFilter filter(params, start.q_WI);
   run_filter(sensors, samples, filter, estimate);
   return estimate;
 }

@@ -44,6 +44,9 @@ const std::vector<Rule>& rules() {
       {"sim",
        {"^tumble/", "^estimator/", "^scenarios/", "^tools/", "^hdf5", "^yaml-cpp", "^sqlite", "^SQLiteCpp", "^nlohmann",
         "^pcl/"}},
+      {"scenarios/baselines",
+       {"^sim/", "^scenarios/(?!baselines/)", "^pcl/", "^fstream$", "^iostream$", "^cstdio$", "^filesystem$",
+        "^thread$", "^hdf5", "^yaml-cpp", "^SQLiteCpp", "^nlohmann", "^fmt/"}},
       {"scenarios", {"mujoco", "embree", "^sim/engine/", "^estimator/src/", "^tools/", "osmesa"}},
       {"tools", {"mujoco", "embree", "^sim/engine/", "^estimator/src/", "osmesa", "^tests/"}},
   };
@@ -129,10 +132,13 @@ TEST(Architecture, EveryIncludeFollowsTheTable) {
 }
 
 TEST(Architecture, CheckerRefusesForbiddenIncludes) {
-  EXPECT_NE(broken_rule("estimator/src/attitude/madgwick.cpp", "sim/recording.hpp"), "");
+  EXPECT_NE(broken_rule("estimator/src/attitude/vqf.cpp", "sim/recording.hpp"), "");
   EXPECT_NE(broken_rule("estimator/include/tumble/common/imu.hpp", "fstream"), "");
   EXPECT_NE(broken_rule("estimator/src/rolling/x.cpp", "pcl/point_types.h"), "");
   EXPECT_NE(broken_rule("scenarios/draw/x.cpp", "mujoco/mujoco.h"), "");
+  EXPECT_NE(broken_rule("scenarios/baselines/attitude/x.cpp", "scenarios/methods/method.hpp"), "");
+  EXPECT_NE(broken_rule("scenarios/baselines/attitude/x.cpp", "sim/recording.hpp"), "");
+  EXPECT_EQ(broken_rule("scenarios/baselines/attitude/x.cpp", "scenarios/baselines/attitude/madgwick_step.hpp"), "");
   EXPECT_NE(broken_rule("scenarios/draw/x.cpp", "sim/engine/model.hpp"), "");
   EXPECT_NE(broken_rule("sim/imu/x.cpp", "tumble/common/imu.hpp"), "");
   EXPECT_NE(broken_rule("sim/imu/x.cpp", "yaml-cpp/yaml.h"), "");
@@ -174,6 +180,10 @@ const std::array kLinks = {
         "estimator/libtumble_mapping.a",
         R"(\b(mj_|rtc[A-Z]|H5[A-Z]|pcl::|YAML::|sqlite3_|std::cout|std::cerr|printf\b|fopen\b|exit\b|pthread_create|tumble::(sim|scenarios|tools)\b))",
         "tumble::scenarios::metrics()"},
+    Links{
+        "scenarios/baselines/libtumble_baselines.a",
+        R"(\b(mj_|rtc[A-Z]|H5[A-Z]|pcl::|YAML::|sqlite3_|std::cout|std::cerr|printf\b|fopen\b|exit\b|pthread_create|tumble::(sim|scenarios|tools)\b))",
+        "tumble::sim::simulate(tumble::sim::Situation const&)"},
     Links{"sim/libtumble_sim.a", R"(\b(H5[A-Z]|pcl::|YAML::|sqlite3_|std::cout|std::cerr|tumble::(?!sim\b)))",
           "tumble::RateModel::RateModel()"},
     Links{"scenarios/libtumble_scenarios.a", R"(\b(mj_|rtc[A-Z]|OSMesa|tumble::(sim::engine|tools)\b))",

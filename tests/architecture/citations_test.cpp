@@ -71,10 +71,11 @@ Notes notes_of_the_tree() {
   return out;
 }
 
-std::vector<fs::path> sources_of_the_estimator() {
+std::vector<fs::path> sources_of_the_estimators() {
   std::vector<fs::path> out;
-  for (const auto& entry : fs::recursive_directory_iterator(tumble::test::source_dir() / "estimator"))
-    if (entry.path().extension() == ".cpp" || entry.path().extension() == ".hpp") out.push_back(entry.path());
+  for (const char* folder : {"estimator", "scenarios/baselines"})
+    for (const auto& entry : fs::recursive_directory_iterator(tumble::test::source_dir() / folder))
+      if (entry.path().extension() == ".cpp" || entry.path().extension() == ".hpp") out.push_back(entry.path());
   return out;
 }
 
@@ -82,7 +83,7 @@ TEST(Citations, EveryCitedEquationIsThereAndEveryNoteIsCited) {
   const Notes notes = notes_of_the_tree();
   ASSERT_GE(notes.size(), 9u);
   std::set<std::string> cited;
-  for (const fs::path& file : sources_of_the_estimator()) {
+  for (const fs::path& file : sources_of_the_estimators()) {
     for (const Citation& citation : cited_in(text_of(file))) {
       EXPECT_EQ(complaint(citation, notes), "") << file;
       cited.insert(citation.note);

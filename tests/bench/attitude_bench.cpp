@@ -7,11 +7,11 @@
 #include <cmath>
 #include <vector>
 
-#include "tumble/attitude/autogain.hpp"
-#include "tumble/attitude/complementary.hpp"
-#include "tumble/attitude/eskf.hpp"
-#include "tumble/attitude/madgwick.hpp"
-#include "tumble/attitude/mahony.hpp"
+#include "scenarios/baselines/attitude/autogain.hpp"
+#include "scenarios/baselines/attitude/complementary.hpp"
+#include "scenarios/baselines/attitude/eskf.hpp"
+#include "scenarios/baselines/attitude/madgwick.hpp"
+#include "scenarios/baselines/attitude/mahony.hpp"
 #include "tumble/attitude/strapdown.hpp"
 #include "tumble/attitude/tumble_attitude.hpp"
 #include "tumble/attitude/vqf.hpp"
@@ -54,12 +54,12 @@ void filter(benchmark::State& state) {
   state.counters["state_bytes"] = static_cast<double>(sizeof(typename Filter::State));
 }
 BENCHMARK(filter<tumble::Strapdown>)->Name("integrate");
-BENCHMARK(filter<tumble::Madgwick>)->Name("madgwick");
-BENCHMARK(filter<tumble::Complementary>)->Name("complementary");
-BENCHMARK(filter<tumble::Mahony>)->Name("mahony");
-BENCHMARK(filter<tumble::Autogain>)->Name("autogain");
+BENCHMARK(filter<tumble::baselines::Madgwick>)->Name("madgwick");
+BENCHMARK(filter<tumble::baselines::Complementary>)->Name("complementary");
+BENCHMARK(filter<tumble::baselines::Mahony>)->Name("mahony");
+BENCHMARK(filter<tumble::baselines::Autogain>)->Name("autogain");
 BENCHMARK(filter<tumble::Vqf>)->Name("vqf");
-BENCHMARK(filter<tumble::Eskf>)->Name("eskf");
+BENCHMARK(filter<tumble::baselines::Eskf>)->Name("eskf");
 BENCHMARK(filter<tumble::TumbleAttitude>)->Name("tumble");
 
 void rolling_sphere(benchmark::State& state) {

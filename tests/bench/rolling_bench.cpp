@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "examples/online/online.hpp"
+#include "scenarios/baselines/rolling/rolling_odometry.hpp"
 #include "tests/estimator/rolling/rolling_truth.hpp"
-#include "tumble/rolling/rolling_odometry.hpp"
 #include "tumble/rolling/rolling_smoother.hpp"
 
 namespace {
@@ -54,15 +54,15 @@ void report(benchmark::State& state, std::size_t bytes, std::size_t asked) {
 }
 
 void rolling_odometry(benchmark::State& state) {
-  const tumble::RollingOdometry odometry{tumble::RollingOdometry::Params{}};
+  const tumble::baselines::RollingOdometry odometry{tumble::baselines::RollingOdometry::Params{}};
   for (auto _ : state) {
-    tumble::RollingOdometry::State s;
+    tumble::baselines::RollingOdometry::State s;
     for (std::size_t k = 0; k < truth().samples.size(); ++k) {
       const tumble::ImuSample& sample = truth().samples[k];
       benchmark::DoNotOptimize(odometry.step(sample.time_ns, sample.angular_velocity_rad_s, truth().q_WI[k], s));
     }
   }
-  report(state, sizeof(tumble::RollingOdometry::State), 0);
+  report(state, sizeof(tumble::baselines::RollingOdometry::State), 0);
 }
 BENCHMARK(rolling_odometry);
 

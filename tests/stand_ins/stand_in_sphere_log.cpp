@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/baselines/attitude/autogain.hpp"
 #include "stand_ins/known_motion.hpp"
 #include "stand_ins/stand_ins.hpp"
 #include "stand_ins/writers.hpp"
-#include "tumble/attitude/autogain.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble::test {
@@ -53,8 +53,8 @@ void write_sphere_log(const std::filesystem::path& folder) {
   const KnownMotion motion = rolling();
   Noise noise(20260703);
   // the profile and the error in roll of the code that wrote the real log
-  const Autogain filter({.profile = AutogainProfile::code2021, .roll_error_2021 = true});
-  Autogain::State state;
+  const baselines::Autogain filter({.profile = baselines::AutogainProfile::code2021, .roll_error_2021 = true});
+  baselines::Autogain::State state;
   for (std::size_t k = 0; k < kStandInSphereSamples; ++k) {
     const double t = kPeriod_s * static_cast<double>(k);
     const Eigen::Vector3d w = rounded(angular_velocity(motion, t) + noise.vector(kGyroNoise_rad_s));

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "recording_check.hpp"
+#include "tumble/angular_velocity/recording_check.hpp"
 #include "tumble/angular_velocity/triad_delay.hpp"
 
 namespace tumble {

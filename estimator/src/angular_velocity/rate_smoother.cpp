@@ -6,7 +6,7 @@
 
 #include "element_clipping.hpp"
 #include "rate_rounds.hpp"
-#include "recording_check.hpp"
+#include "tumble/angular_velocity/recording_check.hpp"
 #include "tumble/angular_velocity/sample_hold.hpp"
 
 namespace tumble {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "recording_check.hpp"
+#include "tumble/angular_velocity/recording_check.hpp"
 
 namespace tumble {
 

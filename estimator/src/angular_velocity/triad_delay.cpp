@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "recording_check.hpp"
+#include "tumble/angular_velocity/recording_check.hpp"
 #include "tumble/angular_velocity/sample_hold.hpp"
 #include "tumble/common/so3.hpp"
 

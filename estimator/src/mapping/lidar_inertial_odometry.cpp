@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "odometry_impl.hpp"
-#include "sweep_check.hpp"
+#include "tumble/mapping/sweep_check.hpp"
 
 namespace tumble {
 

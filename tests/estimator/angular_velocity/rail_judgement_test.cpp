@@ -12,8 +12,8 @@
 
 #include "estimator/angular_velocity/drawn_elements.hpp"
 #include "estimator/angular_velocity/tumble_recording.hpp"
+#include "scenarios/baselines/angular_velocity/clipped_baseline.hpp"
 #include "tumble/angular_velocity/auxiliary_imu.hpp"
-#include "tumble/angular_velocity/clipped_baseline.hpp"
 #include "tumble/angular_velocity/clipping_finder.hpp"
 #include "tumble/angular_velocity/rail_watch.hpp"
 #include "tumble/angular_velocity/rate_smoother.hpp"
@@ -206,8 +206,10 @@ TEST(RailJudgement, AnAuxiliaryImuIsReadAlongItsElements) {
 TEST(RailJudgement, PublishedFamiliesKeepTheWallUnlessAsked) {
   const TumbleRecording tumble = tilted_gyro();
   std::vector<RateState> wall, planes;
-  ASSERT_TRUE(ClippedBaseline({.kind = ClippedBaseline::Kind::interpolate}).estimate(tumble.samples, wall).ok());
-  ASSERT_TRUE(ClippedBaseline({.kind = ClippedBaseline::Kind::interpolate, .tilted_rails = true})
+  ASSERT_TRUE(baselines::ClippedBaseline({.kind = baselines::ClippedBaseline::Kind::interpolate})
+                  .estimate(tumble.samples, wall)
+                  .ok());
+  ASSERT_TRUE(baselines::ClippedBaseline({.kind = baselines::ClippedBaseline::Kind::interpolate, .tilted_rails = true})
                   .estimate(tumble.samples, planes)
                   .ok());
   Share by_wall, by_planes;

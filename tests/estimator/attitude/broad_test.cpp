@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "estimator/attitude/broad_trial.hpp"
+#include "scenarios/baselines/attitude/autogain.hpp"
+#include "scenarios/baselines/attitude/complementary.hpp"
+#include "scenarios/baselines/attitude/eskf.hpp"
+#include "scenarios/baselines/attitude/madgwick.hpp"
+#include "scenarios/baselines/attitude/mahony.hpp"
 #include "stand_ins/stand_ins.hpp"
-#include "tumble/attitude/autogain.hpp"
-#include "tumble/attitude/complementary.hpp"
-#include "tumble/attitude/eskf.hpp"
-#include "tumble/attitude/madgwick.hpp"
-#include "tumble/attitude/mahony.hpp"
 #include "tumble/attitude/tumble_attitude.hpp"
 #include "tumble/attitude/vqf.hpp"
 #include "tumble/common/so3.hpp"
@@ -98,14 +98,14 @@ void expect_anchors(const std::vector<BroadError>& errors, const std::array<Anch
 }
 
 TEST_P(Broad, MadgwickLandsOnItsAnchors) {
-  expect_anchors(run_trials("madgwick", Madgwick({.gain_rad_s = 0.033}), trials()), {{{0.55, 21.3, 0.19},
-                                                                                      {2.05, 17.7, 0.24},
-                                                                                      {1.36, 20.7, 0.20},
-                                                                                      {1.58, 22.4, 0.27},
-                                                                                      {1.17, 22.5, 0.25},
-                                                                                      {4.22, 20.3, 0.15},
-                                                                                      {1.31, 7.7, 0.07},
-                                                                                      {3.66, 27.7, 0.40}}});
+  expect_anchors(run_trials("madgwick", baselines::Madgwick({.gain_rad_s = 0.033}), trials()), {{{0.55, 21.3, 0.19},
+                                                                                                 {2.05, 17.7, 0.24},
+                                                                                                 {1.36, 20.7, 0.20},
+                                                                                                 {1.58, 22.4, 0.27},
+                                                                                                 {1.17, 22.5, 0.25},
+                                                                                                 {4.22, 20.3, 0.15},
+                                                                                                 {1.31, 7.7, 0.07},
+                                                                                                 {3.66, 27.7, 0.40}}});
 }
 
 TEST_P(Broad, VqfLandsOnItsAnchors) {
@@ -134,12 +134,12 @@ TEST_P(Broad, BasicVqfLandsOnItsAnchors) {
 /// No anchors on these eight trials exist for the others; the bounds hold what is measured today, with a tenth to
 /// spare.
 TEST_P(Broad, OtherFiltersStayWhereTheyAre) {
-  const BroadError complementary = run_trials("complementary", Complementary({}), trials()).back();
+  const BroadError complementary = run_trials("complementary", baselines::Complementary({}), trials()).back();
   EXPECT_LT(complementary.inclination_rest_deg, 0.18);  // 0.161
   EXPECT_GT(complementary.inclination_motion_deg, 5.0) << "it believes accelerations: 8.7";
-  const BroadError mahony = run_trials("mahony", Mahony({}), trials()).back();
+  const BroadError mahony = run_trials("mahony", baselines::Mahony({}), trials()).back();
   EXPECT_NEAR(mahony.inclination_motion_deg, 2.48, 0.1);
-  const BroadError eskf = run_trials("eskf", Eskf({}), trials()).back();
+  const BroadError eskf = run_trials("eskf", baselines::Eskf({}), trials()).back();
   EXPECT_NEAR(eskf.inclination_motion_deg, 0.72, 0.03);
 }
 
@@ -147,14 +147,15 @@ TEST_P(Broad, OtherFiltersStayWhereTheyAre) {
 constexpr double kTauPerSample_s = 0.17324;
 
 TEST_P(Broad, AutogainIsQuietAtRestAndBelievesAccelerations) {
-  const BroadError paper = run_trials("autogain", Autogain({.tau_s = kTauPerSample_s}), trials()).back();
+  const BroadError paper = run_trials("autogain", baselines::Autogain({.tau_s = kTauPerSample_s}), trials()).back();
   // over all 30 trials 10.8 in motion, 0.17 at rest
   EXPECT_NEAR(paper.inclination_rest_deg, 0.17, 0.02);
   EXPECT_NEAR(paper.inclination_motion_deg, 10.8, 3.0);
-  const Autogain code({.profile = AutogainProfile::code2021, .tau_s = kTauPerSample_s, .roll_error_2021 = true});
+  const baselines::Autogain code(
+      {.profile = baselines::AutogainProfile::code2021, .tau_s = kTauPerSample_s, .roll_error_2021 = true});
   const BroadError published = run_trials("autogain 2021", code, trials()).back();
   EXPECT_GT(published.inclination_rest_deg, 3.0) << "roll is never corrected: 8.2 over all 30 trials";
-  run_trials("autogain smooth", Autogain({.profile = AutogainProfile::smooth}), trials());
+  run_trials("autogain smooth", baselines::Autogain({.profile = baselines::AutogainProfile::smooth}), trials());
 }
 
 TEST_P(Broad, TumbleIsBetterThanVqfInMotionAndAsGoodAtRest) {
@@ -187,7 +188,7 @@ TEST_P(Broad, TumbleIsQuieterAtRestThanTheComplementaryFilter) {
   double ours = 0.0, complementary = 0.0;
   for (const BroadTrial& trial : trials()) {
     ours += jitter_at_rest_deg(TumbleAttitude({}), trial) / 8.0;
-    complementary += jitter_at_rest_deg(Complementary({}), trial) / 8.0;
+    complementary += jitter_at_rest_deg(baselines::Complementary({}), trial) / 8.0;
   }
   std::printf("jitter at rest, deg per sample: tumble %.5f, complementary %.5f\n", ours, complementary);
   EXPECT_LT(ours, 0.5 * complementary);  // measured 0.0009 against 0.0036
@@ -220,10 +221,10 @@ class BroadStandIn : public ::testing::Test {
 
 TEST_F(BroadStandIn, FiltersAreRankedAsOnTheTrials) {
   const BroadError vqf = run_trials("vqf", Vqf({}), trials()).back();
-  const BroadError madgwick = run_trials("madgwick", Madgwick({.gain_rad_s = 0.033}), trials()).back();
-  const BroadError mahony = run_trials("mahony", Mahony({}), trials()).back();
-  const BroadError complementary = run_trials("complementary", Complementary({}), trials()).back();
-  const BroadError eskf = run_trials("eskf", Eskf({}), trials()).back();
+  const BroadError madgwick = run_trials("madgwick", baselines::Madgwick({.gain_rad_s = 0.033}), trials()).back();
+  const BroadError mahony = run_trials("mahony", baselines::Mahony({}), trials()).back();
+  const BroadError complementary = run_trials("complementary", baselines::Complementary({}), trials()).back();
+  const BroadError eskf = run_trials("eskf", baselines::Eskf({}), trials()).back();
   const BroadError tumble = run_trials("tumble", TumbleAttitude({}), trials()).back();
   // a tenth above what is measured: 0.281, 0.290, 0.323
   EXPECT_LT(tumble.inclination_motion_deg, 0.31);
@@ -239,7 +240,7 @@ TEST_F(BroadStandIn, FiltersAreRankedAsOnTheTrials) {
 
 TEST_F(BroadStandIn, OursIsQuieterAtRestThanTheComplementaryFilter) {
   const double ours = jitter_at_rest_deg(TumbleAttitude({}), trials().front());
-  EXPECT_LT(ours, 0.5 * jitter_at_rest_deg(Complementary({}), trials().front()));
+  EXPECT_LT(ours, 0.5 * jitter_at_rest_deg(baselines::Complementary({}), trials().front()));
 }
 
 TEST_F(BroadStandIn, ScoreSeesAPlantedTilt) {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "estimator/rolling/rolling_truth.hpp"
-#include "tumble/rolling/rolling_odometry.hpp"
+#include "scenarios/baselines/rolling/rolling_odometry.hpp"
 
 namespace tumble {
 namespace {
@@ -113,8 +113,8 @@ Result run(const RollingTruth& truth, const Contact& contact, const RollingFilte
 }
 
 double rolling_error(const RollingTruth& truth) {
-  const RollingOdometry odometry({});
-  RollingOdometry::State state;
+  const baselines::RollingOdometry odometry({});
+  baselines::RollingOdometry::State state;
   for (std::size_t k = 0; k < truth.samples.size(); ++k) {
     EXPECT_TRUE(
         odometry.step(truth.samples[k].time_ns, truth.samples[k].angular_velocity_rad_s, truth.q_WI[k], state).ok());

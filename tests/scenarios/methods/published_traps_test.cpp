@@ -10,7 +10,7 @@
 #include "scenarios/methods/synthetic_recording.hpp"
 
 // errors of the published chain as cases: reproduced where they are a switch of slam/published, impossible elsewhere.
-// The trim that counts unmatched slots stands in the library's trimmed_icp_test, angles beyond 90 degrees in
+// The trim that counts unmatched slots stands in the baselines' trimmed_icp_test, angles beyond 90 degrees in
 // score_test.
 namespace tumble::scenarios {
 namespace {

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "tumble/angular_velocity/auxiliary_imu.hpp"
+#include "tumble/angular_velocity/clipping_finder.hpp"
+#include "tumble/angular_velocity/rate_state.hpp"
+#include "tumble/common/imu.hpp"
+#include "tumble/common/status.hpp"
+
+namespace tumble::baselines {
+
+/// Rates from several accelerometers at known places: the gyro-free inertial system, as an extended Kalman filter.
+///
+/// State: rate and angular acceleration, driven by white jerk. Measured: the difference of the specific force at each
+/// auxiliary IMU and at the primary, alpha x p + w x (w x p), which holds in flight, in contact and at rest alike; and
+/// the gyro's axes that are not clipped (`use_gyro`), the strongest form of the family: the accelerometers then carry
+/// only what the rail hides. Made for long rotation at high rates with a wide spread of accelerometers (projectiles,
+/// vehicles): centripetal force grows with the square of the rate, so that slow motion drowns in noise and
+/// misalignment.
+///
+/// With one auxiliary IMU the rate about the line between the two shows only through its products with the others;
+/// without any the filter bridges clipped readings by smoothness alone. What it does not model: free flight, bias and
+/// misalignment of the accelerometers, correlation between the auxiliary IMUs' differences.
+class AccelerometerRate {
+ public:
+  struct Params {
+    RailDetector::Params rails = {};
+    bool tilted_rails = false;  ///< judge by tilted planes too (ClippingFinder); published by axis alone
+    bool use_gyro = true;
+    double gyro_noise_density = 5.236e-4;  ///< [rad/s/sqrt(Hz)]; [1e-9, 1]
+    double accel_noise_density = 1.5e-3;   ///< the worst of the accelerometers [m/s^2/sqrt(Hz)]; [1e-9, 10]
+    double accel_floor_m_s2 = 0.05;        ///< bias of a difference, one standard deviation; [0, 100]
+    double accel_scale_error = 2e-3;       ///< scale and misalignment, as a share of the force; [0, 1]
+    double jerk_psd = 1e7;                 ///< density of the white angular jerk [rad^2/s^5]; [1, 1e12]
+    double rate_max_rad_s = 50.0;          ///< no answer lies beyond; [1, 1e4]
+    double gap_max_s = 1.0;                ///< [1e-6, 3600]
+  };
+
+  /// Throws InvalidParams on a parameter outside of its bound.
+  explicit AccelerometerRate(const Params& params);
+
+  /// One RateState per sample. On trouble (`empty`, `too_few`: less than two samples, or an auxiliary IMU with another
+  /// number of samples, `non_finite`, `time_order`, `gap`) nothing is written. O(N times auxiliary IMUs).
+  Status estimate(std::span<const ImuSample> samples, std::span<const AuxiliaryAccelerometer> auxiliary_imus,
+                  std::vector<RateState>& out) const;
+
+ private:
+  Params params_;
+  ClippingFinder rails_;
+};
+
+}  // namespace tumble::baselines

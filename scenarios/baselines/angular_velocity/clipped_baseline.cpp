@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/baselines/angular_velocity/clipped_baseline.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+#include "tumble/angular_velocity/recording_check.hpp"
+#include "tumble/angular_velocity/truncated_normal.hpp"
+
+namespace tumble::baselines {
+
+namespace {
+
+// One axis of a recording: what was read, what of it is clipped, what comes out.
+struct Axis {
+  std::span<const ImuSample> samples;
+  std::vector<bool> clipped;    ///< at the rail or beyond it
+  std::vector<bool> overflown;  ///< of these, the readings that say nothing
+  int index = 0;
+  double variance = 0.0;  ///< of a free reading
+
+  double time_s(std::size_t k) const { return seconds(samples[k].time_ns - samples.front().time_ns); }
+  double reading(std::size_t k) const { return samples[k].angular_velocity_rad_s[index]; }
+};
+
+struct Value {
+  double rate = 0.0, variance = 0.0;
+};
+
+// Cubic of Hermite between two samples with given slopes.
+double cubic(double share, double span_s, double from, double slope_from, double to, double slope_to) {
+  const double u = share, u2 = u * u, u3 = u2 * u;
+  return (2.0 * u3 - 3.0 * u2 + 1.0) * from + (u3 - 2.0 * u2 + u) * span_s * slope_from + (3.0 * u2 - 2.0 * u3) * to +
+         (u3 - u2) * span_s * slope_to;
+}
+
+// Slope of the free readings that end at k (step -1) or begin there (step +1); 0 where there is but one.
+double slope_at(const Axis& axis, std::size_t k, int step) {
+  if (step < 0 ? k == 0 : k + 1 == axis.samples.size()) return 0.0;
+  const std::size_t other = step < 0 ? k - 1 : k + 1;
+  if (axis.clipped[other]) return 0.0;
+  return (axis.reading(other) - axis.reading(k)) / (axis.time_s(other) - axis.time_s(k));
+}
+
+std::vector<Value> interpolate(const Axis& axis) {
+  const std::size_t count = axis.samples.size();
+  std::vector<Value> out(count);
+  for (std::size_t k = 0; k < count; ++k) out[k] = {axis.reading(k), axis.variance};
+  for (std::size_t first = 0; first < count;) {
+    if (!axis.clipped[first]) {
+      ++first;
+      continue;
+    }
+    std::size_t last = first;
+    while (last < count && axis.clipped[last]) ++last;
+    for (std::size_t k = first; k < last && first > 0 && last < count; ++k) {
+      const std::size_t a = first - 1, b = last;
+      const double span_s = axis.time_s(b) - axis.time_s(a), share = (axis.time_s(k) - axis.time_s(a)) / span_s;
+      out[k].rate =
+          cubic(share, span_s, axis.reading(a), slope_at(axis, a, -1), axis.reading(b), slope_at(axis, b, +1));
+      // a cubic has no variance of its own: it is trusted as far as it departs from the reading
+      const double departure = out[k].rate - axis.reading(k);
+      out[k].variance = axis.variance + departure * departure;
+    }
+    first = last;
+  }
+  return out;
+}
+
+// A rate that is a random walk.
+struct RandomWalk {
+  static constexpr int kSize = 1;
+  using Matrix = Eigen::Matrix<double, 1, 1>;
+  double psd = 0.0;
+
+  Matrix start() const { return Matrix(1e4); }
+  Matrix transition(double) const { return Matrix(1.0); }
+  Matrix noise(double dt_s, const Matrix&) const { return Matrix(psd * dt_s); }
+};
+
+// A rate whose snap is white and that stays bounded in the long run: the stationary process with the Matern 5/2
+// covariance, state rate, acceleration, jerk (Hartikainen and Saerkkae 2010, section 4).
+struct BoundedJerk {
+  static constexpr int kSize = 3;
+  using Matrix = Eigen::Matrix3d;
+  double lambda = 1.0, variance = 1.0;
+
+  BoundedJerk(double psd, double sigma)
+      : lambda(std::pow(3.0 * psd / (16.0 * sigma * sigma), 0.2)), variance(sigma * sigma) {}
+
+  Matrix start() const {
+    const double middle = lambda * lambda * variance / 3.0;
+    Matrix P;
+    P << variance, 0.0, -middle, 0.0, middle, 0.0, -middle, 0.0, lambda * lambda * lambda * lambda * variance;
+    return P;
+  }
+  // exp(A t) of the auxiliary IMU matrix A, whose three eigenvalues are -lambda
+  Matrix transition(double dt_s) const {
+    Matrix N;
+    N << lambda, 1.0, 0.0, 0.0, lambda, 1.0, -lambda * lambda * lambda, -3.0 * lambda * lambda, -2.0 * lambda;
+    return std::exp(-lambda * dt_s) * (Matrix::Identity() + dt_s * N + 0.5 * dt_s * dt_s * N * N);
+  }
+  Matrix noise(double, const Matrix& F) const { return start() - F * start() * F.transpose(); }
+};
+
+// One axis as a linear process. Clipped readings are left out but for `bounds`, one Gaussian factor per sample.
+template <typename Process>
+class Chain {
+ public:
+  static constexpr int N = Process::kSize;
+  using Matrix = Eigen::Matrix<double, N, N>;
+  using Vector = Eigen::Matrix<double, N, 1>;
+
+  Chain(const Axis& axis, const Process& process, std::span<const NormalSite> bounds)
+      : axis_(axis), process_(process), after_(axis.samples.size()) {
+    Moment now{Vector::Zero(), process.start()};
+    for (std::size_t k = 0; k < after_.size(); ++k) {
+      if (k > 0) now = predict(now, step_s(k - 1));
+      if (!axis.clipped[k]) {
+        update(now, axis.reading(k), axis.variance);
+      } else if (!bounds.empty() && bounds[k].precision > 0.0) {
+        update(now, bounds[k].shift / bounds[k].precision, 1.0 / bounds[k].precision);
+      }
+      after_[k] = now;
+    }
+  }
+
+  // With all readings up to the sample.
+  std::vector<Value> filtered() const { return values(after_); }
+
+  // With all readings (Rauch, Tung and Striebel 1965).
+  std::vector<Value> smoothed() const {
+    std::vector<Moment> out = after_;
+    for (std::size_t k = out.size() - 1; k-- > 0;) {
+      const Matrix F = process_.transition(step_s(k));
+      const Moment ahead = predict(after_[k], step_s(k));
+      const Matrix gain = ahead.covariance.ldlt().solve(F * after_[k].covariance).transpose();
+      out[k].mean += gain * (out[k + 1].mean - ahead.mean);
+      out[k].covariance += gain * (out[k + 1].covariance - ahead.covariance) * gain.transpose();
+    }
+    return values(out);
+  }
+
+ private:
+  struct Moment {
+    Vector mean;
+    Matrix covariance;
+  };
+
+  double step_s(std::size_t k) const { return axis_.time_s(k + 1) - axis_.time_s(k); }
+
+  Moment predict(const Moment& from, double dt_s) const {
+    const Matrix F = process_.transition(dt_s);
+    return {F * from.mean, F * from.covariance * F.transpose() + process_.noise(dt_s, F)};
+  }
+
+  void update(Moment& now, double reading, double variance) const {
+    const Vector column = now.covariance.col(0);
+    const double spread = column[0] + variance;
+    now.mean += column * ((reading - now.mean[0]) / spread);
+    now.covariance -= column * column.transpose() / spread;
+  }
+
+  std::vector<Value> values(const std::vector<Moment>& moments) const {
+    std::vector<Value> out(moments.size());
+    for (std::size_t k = 0; k < out.size(); ++k) {
+      out[k] = {moments[k].mean[0], std::max(moments[k].covariance(0, 0), 1e-3 * axis_.variance)};
+    }
+    return out;
+  }
+
+  const Axis& axis_;
+  const Process& process_;
+  std::vector<Moment> after_;
+};
+
+// The most likely curve that passes no clipped reading on the wrong side: walls where the smoothed curve violates them,
+// found in rounds. The variance is that of the curve without walls, cut at the reading.
+std::vector<Value> smooth_with_bounds(const Axis& axis, const ClippedBaseline::Params& params) {
+  constexpr int kRounds = 8;
+  const BoundedJerk process(params.snap_psd, params.rate_sigma_rad_s);
+  std::vector<NormalSite> walls(axis.samples.size());
+  std::vector<Value> values = Chain<BoundedJerk>(axis, process, walls).smoothed();
+  std::vector<double> variances(values.size());
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const double side = std::copysign(1.0, axis.reading(k));
+    const NormalMoments free{side * values[k].rate, values[k].variance};
+    const bool bound = axis.clipped[k] && !axis.overflown[k];
+    variances[k] =
+        bound ? truncated_below(free, std::abs(axis.reading(k)), axis.variance).variance : values[k].variance;
+  }
+  for (int round = 0; round < kRounds; ++round) {
+    bool moved = false;
+    for (std::size_t k = 0; k < walls.size(); ++k) {
+      if (!axis.clipped[k] || axis.overflown[k]) continue;
+      const double beyond = std::copysign(1.0, axis.reading(k)) * (values[k].rate - axis.reading(k));
+      const bool standing = walls[k].precision > 0.0;
+      if (standing ? beyond <= 0.0 : beyond >= 0.0) continue;
+      walls[k] = standing ? NormalSite{} : NormalSite{1.0 / axis.variance, axis.reading(k) / axis.variance};
+      moved = true;
+    }
+    if (!moved) break;
+    values = Chain<BoundedJerk>(axis, process, walls).smoothed();
+  }
+  for (std::size_t k = 0; k < values.size(); ++k) values[k].variance = std::max(variances[k], 1e-3 * axis.variance);
+  return values;
+}
+
+std::vector<Value> bridge(const Axis& axis, const ClippedBaseline::Params& params) {
+  switch (params.kind) {
+    case ClippedBaseline::Kind::interpolate:
+      return interpolate(axis);
+    case ClippedBaseline::Kind::reject:
+      return Chain<RandomWalk>(axis, {params.acceleration_psd}, {}).filtered();
+    case ClippedBaseline::Kind::constant_jerk:
+      return smooth_with_bounds(axis, params);
+  }
+  return {};
+}
+
+}  // namespace
+
+ClippedBaseline::ClippedBaseline(const Params& params)
+    : params_(params), rails_({.walls = params.rails, .tilted = params.tilted_rails}) {
+  require_within("gyro_noise_density", params.gyro_noise_density, 1e-9, 1.0);
+  require_within("acceleration_psd", params.acceleration_psd, 1e-12, 1e12);
+  require_within("snap_psd", params.snap_psd, 1e-12, 1e15);
+  require_within("rate_sigma_rad_s", params.rate_sigma_rad_s, 1e-3, 1e4);
+  require_within("rate_max_rad_s", params.rate_max_rad_s, 1.0, 1e4);
+  require_within("gap_max_s", params.gap_max_s, 1e-6, 3600.0);
+}
+
+Status ClippedBaseline::estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const {
+  if (Status status = check_recording(samples, 2, params_.gap_max_s); !status.ok()) return status;
+  const std::size_t count = samples.size();
+  const std::vector<Clipping> clippings = rails_.find(samples).clippings;
+
+  out.assign(count, {});
+  Axis axis{samples, std::vector<bool>(count), std::vector<bool>(count), 0,
+            params_.gyro_noise_density * params_.gyro_noise_density / median_period_s(samples)};
+  for (axis.index = 0; axis.index < 3; ++axis.index) {
+    const int bit = 1 << axis.index;
+    for (std::size_t k = 0; k < count; ++k) {
+      axis.overflown[k] = (clippings[k].void_gyro & bit) != 0;
+      axis.clipped[k] = axis.overflown[k] || (clippings[k].gyro & bit) != 0;
+    }
+    const std::vector<Value> values = bridge(axis, params_);
+    for (std::size_t k = 0; k < count; ++k) {
+      double rate = axis.reading(k);
+      if ((clippings[k].void_gyro & bit) != 0) {
+        rate = std::clamp(values[k].rate, -params_.rate_max_rad_s, params_.rate_max_rad_s);
+      } else if (axis.clipped[k]) {
+        const double low = std::abs(rate), side = std::copysign(1.0, rate);
+        rate = side * std::clamp(side * values[k].rate, low, std::max(low, params_.rate_max_rad_s));
+      }
+      out[k].w_WI_I_rad_s[axis.index] = rate;
+      out[k].covariance_rad2_s2(axis.index, axis.index) = axis.clipped[k] ? values[k].variance : axis.variance;
+    }
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    out[k].time_ns = samples[k].time_ns;
+    out[k].clipped_axes = clippings[k].gyro | clippings[k].void_gyro;
+    out[k].source = out[k].clipped_axes == 0 ? RateSource::measured : RateSource::bounded_only;
+  }
+  return {};
+}
+
+}  // namespace tumble::baselines

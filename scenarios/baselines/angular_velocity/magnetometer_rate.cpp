@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/baselines/angular_velocity/magnetometer_rate.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "tumble/angular_velocity/recording_check.hpp"
+#include "tumble/common/so3.hpp"
+
+namespace tumble::baselines {
+
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr int kSize = 12, kRate = 0, kAcceleration = 3, kField = 6, kIron = 9;
+using Vector = Eigen::Matrix<double, kSize, 1>;
+using Matrix = Eigen::Matrix<double, kSize, kSize>;
+
+// The field is kept in units of 10 uT, so that the covariance is of one order.
+constexpr double kUnitT = 1e-5;
+// Disturbance grows no further than this, in power.
+constexpr double kDisturbedMax = 1e4;
+
+struct Filter {
+  Vector x = Vector::Zero();
+  Matrix P = Matrix::Zero();
+
+  void predict(double dt_s, double jerk_psd, double field_psd) {
+    const Vector3d w = x.segment<3>(kRate), alpha = x.segment<3>(kAcceleration), b = x.segment<3>(kField);
+    // readings are means over windows: between their middles the body turns by the rate half-way
+    const Matrix3d turn = so3::exp(-dt_s * (w + 0.5 * dt_s * alpha)).toRotationMatrix();
+    const Vector3d turned = turn * b;
+    Matrix F = Matrix::Identity(), Q = Matrix::Zero();
+    F.block<3, 3>(kRate, kAcceleration).diagonal().setConstant(dt_s);
+    F.block<3, 3>(kField, kRate) = dt_s * so3::hat(turned);
+    F.block<3, 3>(kField, kAcceleration) = 0.5 * dt_s * dt_s * so3::hat(turned);
+    F.block<3, 3>(kField, kField) = turn;
+    Q.block<3, 3>(kRate, kRate).diagonal().setConstant(jerk_psd * dt_s * dt_s * dt_s / 3.0);
+    Q.block<3, 3>(kRate, kAcceleration).diagonal().setConstant(jerk_psd * dt_s * dt_s / 2.0);
+    Q.block<3, 3>(kAcceleration, kRate) = Q.block<3, 3>(kRate, kAcceleration);
+    Q.block<3, 3>(kAcceleration, kAcceleration).diagonal().setConstant(jerk_psd * dt_s);
+    Q.block<3, 3>(kField, kField).diagonal().setConstant(field_psd * dt_s);
+    x.segment<3>(kRate) += dt_s * alpha;
+    x.segment<3>(kField) = turned;
+    P = (F * P * F.transpose() + Q).eval();
+  }
+
+  void measure_axis(int j, double reading, double variance) {
+    const Vector gain = P.col(j) / (P(j, j) + variance);
+    x += gain * (reading - x[j]);
+    P -= (gain * P.row(j)).eval();
+  }
+
+  void measure_field(const Vector3d& reading, double variance) {
+    const Eigen::Matrix<double, 3, kSize> HP = P.middleRows<3>(kField) + P.middleRows<3>(kIron);
+    Matrix3d S = HP.middleCols<3>(kField) + HP.middleCols<3>(kIron);
+    S.diagonal().array() += variance;
+    const Eigen::Matrix<double, kSize, 3> gain = S.ldlt().solve(HP).transpose();
+    x += gain * (reading - x.segment<3>(kField) - x.segment<3>(kIron));
+    P -= gain * HP;
+    P = (0.5 * (P + P.transpose())).eval();
+  }
+};
+
+// What the first reading says: the sum of field and hard iron is known, its parts are not.
+void start_field(const Vector3d& reading, double noise, double iron, Filter& filter) {
+  filter.x.segment<3>(kField) = reading;
+  filter.P.block<3, 3>(kField, kField).diagonal().setConstant(noise * noise + iron * iron);
+  filter.P.block<3, 3>(kIron, kIron).diagonal().setConstant(iron * iron);
+  filter.P.block<3, 3>(kField, kIron).diagonal().setConstant(-iron * iron);
+  filter.P.block<3, 3>(kIron, kField) = filter.P.block<3, 3>(kField, kIron);
+}
+
+}  // namespace
+
+MagnetometerRate::MagnetometerRate(const Params& params)
+    : params_(params), rails_({.walls = params.rails, .tilted = params.tilted_rails}) {
+  require_within("gyro_noise_density", params.gyro_noise_density, 1e-9, 1.0);
+  require_within("field_noise_t", params.field_noise_t, 1e-12, 1e-3);
+  require_within("hard_iron_t", params.hard_iron_t, 0.0, 1e-3);
+  require_within("earth_field_t", params.earth_field_t, 0.0, 1e-3);
+  require_within("disturbance_t_sqrt_s", params.disturbance_t_sqrt_s, 0.0, 1.0);
+  require_within("disturbed_share", params.disturbed_share, 1e-4, 10.0);
+  require_within("jerk_psd", params.jerk_psd, 1.0, 1e12);
+  require_within("rate_max_rad_s", params.rate_max_rad_s, 1.0, 1e4);
+  require_within("gap_max_s", params.gap_max_s, 1e-6, 3600.0);
+}
+
+Status MagnetometerRate::estimate(std::span<const ImuSample> samples, std::span<const Vector3d> field_I_t,
+                                  std::vector<RateState>& out) const {
+  if (Status status = check_recording(samples, 2, params_.gap_max_s); !status.ok()) return status;
+  if (!field_I_t.empty() && field_I_t.size() != samples.size()) {
+    return {Trouble::too_few, "magnetic_field", static_cast<double>(field_I_t.size()),
+            static_cast<double>(samples.size())};
+  }
+  const std::vector<Clipping> clippings = rails_.find(samples).clippings;
+  const double gyro_variance = params_.gyro_noise_density * params_.gyro_noise_density / median_period_s(samples);
+  const double noise = params_.field_noise_t / kUnitT, iron = params_.hard_iron_t / kUnitT;
+  const double disturbance = params_.disturbance_t_sqrt_s / kUnitT, earth = params_.earth_field_t / kUnitT;
+
+  std::vector<RateState> states(samples.size());
+  Filter filter;
+  filter.x.head<3>() = samples.front().angular_velocity_rad_s;
+  filter.P.topLeftCorner<6, 6>().diagonal() << Vector3d::Constant(1.0), Vector3d::Constant(100.0);
+  bool started = false;
+  double disturbed = 1.0;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const double dt_s = k == 0 ? 0.0 : seconds(samples[k].time_ns - samples[k - 1].time_ns);
+    if (k > 0) filter.predict(dt_s, params_.jerk_psd, disturbed * disturbance * disturbance);
+    const Vector3d& reading = samples[k].angular_velocity_rad_s;
+    const int clipped = clippings[k].gyro | clippings[k].void_gyro;
+    for (int j = 0; j < 3; ++j) {
+      if ((clipped >> j & 1) == 0) filter.measure_axis(j, reading[j], gyro_variance);
+    }
+    if (!field_I_t.empty() && field_I_t[k].allFinite()) {
+      const Vector3d field = field_I_t[k] / kUnitT;
+      if (!started) start_field(field, noise, iron, filter);
+      if (started) filter.measure_field(field, noise * noise);
+      started = true;
+      if (earth > 0.0) {
+        const double off = ((field - filter.x.tail<3>()).norm() - earth) / (params_.disturbed_share * earth);
+        disturbed = std::min(1.0 + off * off, kDisturbedMax);
+      }
+    }
+    for (int j = 0; j < 3; ++j) {
+      double low = -params_.rate_max_rad_s, high = params_.rate_max_rad_s;
+      // a clipped reading still says on which side the truth lies
+      if ((clippings[k].gyro >> j & 1) != 0 && reading[j] > 0.0) low = std::min(reading[j], high);
+      if ((clippings[k].gyro >> j & 1) != 0 && reading[j] < 0.0) high = std::max(reading[j], low);
+      filter.x[j] = std::clamp(filter.x[j], low, high);
+    }
+    RateState& state = states[k];
+    state.time_ns = samples[k].time_ns;
+    state.w_WI_I_rad_s = filter.x.head<3>();
+    state.covariance_rad2_s2 = filter.P.topLeftCorner<3, 3>();
+    state.clipped_axes = static_cast<std::uint8_t>(clipped);
+    state.source = clipped == 0 ? RateSource::measured
+                   : started    ? RateSource::recovered_contact
+                                : RateSource::bounded_only;
+  }
+  out = std::move(states);
+  return {};
+}
+
+}  // namespace tumble::baselines

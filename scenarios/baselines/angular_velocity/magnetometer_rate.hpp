@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "tumble/angular_velocity/clipping_finder.hpp"
+#include "tumble/angular_velocity/rate_state.hpp"
+#include "tumble/common/imu.hpp"
+#include "tumble/common/status.hpp"
+
+namespace tumble::baselines {
+
+/// Rates from the turning of the magnetic field: an extended Kalman filter over gyro and magnetometer.
+///
+/// State: rate, angular acceleration (white jerk), the field in IMU axes, which turns against the body
+/// (b' = -w x b), and the sensor's hard iron. Measured: the gyro's free axes and the magnetometer. The field's own
+/// change along the way (iron nearby) is process noise, which grows where its length is not the Earth's: the adaptive
+/// part of Tan's family. Made for bodies that spin fast about an axis across the field, in the open (shells, balls):
+/// the rate about the field itself does not show, and follows from smoothness alone; steel at arm's length looks like
+/// rotation.
+///
+/// What it does not model: bandwidth and delay of the magnetometer, the loss of length by averaging over a window
+/// ((w dt)^2 / 24, 0.1 % at 15 rad/s and 100 Hz), soft iron, forces. Without magnetometer the filter bridges clipped
+/// readings by smoothness alone.
+class MagnetometerRate {
+ public:
+  struct Params {
+    RailDetector::Params rails = {};
+    bool tilted_rails = false;             ///< judge by tilted planes too (ClippingFinder); published by axis alone
+    double gyro_noise_density = 5.236e-4;  ///< [rad/s/sqrt(Hz)]; [1e-9, 1]
+    double field_noise_t = 5e-8;           ///< of one reading, one standard deviation [T]; [1e-12, 1e-3]
+    double hard_iron_t = 1e-6;             ///< offset of the sensor, one standard deviation [T]; [0, 1e-3]
+    double earth_field_t = 0.0;            ///< length of the undisturbed field [T]; 0: unknown; [0, 1e-3]
+    double disturbance_t_sqrt_s = 1e-6;    ///< change of the field along the way [T/sqrt(s)]; [0, 1]
+    double disturbed_share = 0.02;         ///< deviation of length, as a share, that doubles it in power; [1e-4, 10]
+    double jerk_psd = 1e7;                 ///< density of the white angular jerk [rad^2/s^5]; [1, 1e12]
+    double rate_max_rad_s = 50.0;          ///< no answer lies beyond; [1, 1e4]
+    double gap_max_s = 1.0;                ///< [1e-6, 3600]
+  };
+
+  /// Throws InvalidParams on a parameter outside of its bound.
+  explicit MagnetometerRate(const Params& params);
+
+  /// One RateState per sample. `field_I_t`: a reading per sample, NaN where there is none; or empty: no magnetometer.
+  /// On trouble (`empty`, `too_few`: less than two samples, or fields in another number, `non_finite`, `time_order`,
+  /// `gap`) nothing is written. O(N).
+  Status estimate(std::span<const ImuSample> samples, std::span<const Eigen::Vector3d> field_I_t,
+                  std::vector<RateState>& out) const;
+
+ private:
+  Params params_;
+  ClippingFinder rails_;
+};
+
+}  // namespace tumble::baselines

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "tumble/angular_velocity/clipping_finder.hpp"
+#include "tumble/angular_velocity/rate_state.hpp"
+#include "tumble/common/imu.hpp"
+#include "tumble/common/status.hpp"
+
+namespace tumble::baselines {
+
+/// Rates between standstills: an inertial navigation filter that knows velocity and rate to be zero at rest, smoothed
+/// backwards, so that what was lost to the rail between two rests is spread over the clipped samples in between.
+///
+/// Error state: attitude, velocity, rate and angular acceleration (12), strapdown integration of the specific force,
+/// angular jerk that is white over short times with a rate that is bounded in the long run (Matern 3/2); measured: free
+/// gyro axes, clipped ones as bounds, and at standstill velocity 0, rate 0 and the direction of gravity. Forward
+/// extended Kalman filter, backward Rauch-Tung-Striebel pass. The zero-velocity smoothers of foot-mounted and
+/// hand-moved inertial sensors (Dang and Suh); made for motions of a second or two that begin and end at rest and clip
+/// a few samples, where velocity and tilt at the end have one plausible cause. A turn that was lost by more than a
+/// linear filter can spread shows at the next standstill, by tilt or by velocity: then attitude and velocity start anew
+/// and the rates in between are left to bounds and smoothness, as in a tumble of several turns. What it does not model:
+/// specific force that clips, a lever arm, sensor bias.
+class StandstillSmoother {
+ public:
+  struct Params {
+    RailDetector::Params rails = {};
+    bool tilted_rails = false;              ///< judge by tilted planes too (ClippingFinder); published by axis alone
+    double gravity_m_s2 = 9.80665;          ///< [0.1, 100]
+    double gyro_noise_density = 5.236e-4;   ///< [rad/s/sqrt(Hz)]; [1e-9, 1]
+    double accel_noise_density = 5.9e-4;    ///< [m/s^2/sqrt(Hz)]; [1e-9, 10]
+    double accel_error_m_s2 = 0.05;         ///< scale and bias of the force, taken as noise per sample; [0, 100]
+    double jerk_psd = 1e5;                  ///< density of the white angular jerk [rad^2/s^5]; [1, 1e12]
+    double rest_rate_rad_s = 0.1;           ///< rest: rates below this ... ; [1e-6, 10]
+    double rest_force_m_s2 = 0.3;           ///< ... and force within this of gravity ... ; [1e-6, 10]
+    double rest_s = 0.2;                    ///< ... for so long; [0, 60]
+    double rest_velocity_sigma_m_s = 0.01;  ///< of "standing still"; [1e-6, 10]
+    double rate_sigma_rad_s = 20.0;         ///< how fast the body turns as a rule, one axis; [1e-3, 1e4]
+    double tilt_max_rad = 0.5;              ///< at a standstill; beyond this a turn was lost; [0, 4]
+    double velocity_gate = 5.0;             ///< likewise of the velocity, in standard deviations; [0, 1e6]
+    double rate_max_rad_s = 50.0;           ///< no answer lies beyond; [1, 1e4]
+    double gap_max_s = 1.0;                 ///< [1e-6, 3600]
+  };
+
+  /// Throws InvalidParams on a parameter outside of its bound.
+  explicit StandstillSmoother(const Params& params);
+
+  /// One RateState per sample; free axes are returned as read. On trouble (`empty`, `too_few`: less than two samples,
+  /// `non_finite`, `time_order`, `gap`) nothing is written. O(N) in time and memory.
+  Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const;
+
+ private:
+  Params params_;
+  ClippingFinder rails_;
+};
+
+}  // namespace tumble::baselines

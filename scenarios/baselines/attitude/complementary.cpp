@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/baselines/attitude/complementary.hpp"
+
+#include <cmath>
+
+#include "tumble/attitude/strapdown.hpp"
+#include "tumble/attitude/tilt.hpp"
+#include "tumble/attitude/timing.hpp"
+#include "tumble/common/so3.hpp"
+
+namespace tumble::baselines {
+
+namespace {
+constexpr double kForceMin_m_s2 = 1e-6;
+}
+
+Complementary::Complementary(const Params& params) : params_(params) {
+  require_within("tau_s", params.tau_s, 1e-3, 1e4);
+  require_within("gap_max_s", params.gap_max_s, 1e-9, 1e4);
+}
+
+Status Complementary::step(const ImuSample& sample, State& state) const {
+  if (const Status bad = check(sample); !bad.ok()) return bad;
+  Eigen::Quaterniond q_WI;
+  if (state.started) {
+    double dt_s = 0.0;
+    if (const Status bad = elapsed(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s); !bad.ok()) return bad;
+    q_WI = state.q_WI * so3::exp(sample.angular_velocity_rad_s * dt_s);
+    if (const double force = sample.specific_force_m_s2.norm(); force >= kForceMin_m_s2) {
+      const double share = -std::expm1(-dt_s / params_.tau_s);
+      // a share of attitude.md (A2)
+      q_WI = tilt_correction(q_WI * (sample.specific_force_m_s2 / force), share) * q_WI;
+    }
+    q_WI.normalize();
+  } else if (const Status bad = level(sample.specific_force_m_s2, q_WI); !bad.ok()) {
+    return bad;
+  }
+  state = {q_WI, sample.time_ns, true};
+  return {};
+}
+
+}  // namespace tumble::baselines

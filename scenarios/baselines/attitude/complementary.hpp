@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "tumble/common/imu.hpp"
+#include "tumble/common/status.hpp"
+
+namespace tumble::baselines {
+
+/// Attitude by the complementary filter: the gyro integrated exactly, then a share 1 - exp(-dt / tau) of the smallest
+/// rotation that levels the measured specific force. Quiet at rest; believes accelerations longer than tau. No bias.
+class Complementary {
+ public:
+  struct Params {
+    double tau_s = 0.396;    ///< 0.02 per sample at 125 Hz, as published for the sphere; bound [1e-3, 1e4]
+    double gap_max_s = 1.0;  ///< bound (0, 1e4]
+  };
+  struct State {
+    Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
+    TimeNs last_time_ns = 0;
+    bool started = false;
+    bool operator==(const State&) const = default;
+  };
+
+  explicit Complementary(const Params& params);
+
+  /// The first sample levels the attitude (yaw 0); each later one integrates and corrects. A force below 1e-6 m/s^2
+  /// integrates the gyro alone. On trouble the state is unchanged. O(1), no allocation.
+  Status step(const ImuSample& sample, State& state) const;
+
+ private:
+  Params params_;
+};
+
+}  // namespace tumble::baselines

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/baselines/attitude/eskf.hpp"
+
+#include <Eigen/LU>
+#include <cmath>
+#include <numbers>
+
+#include "tumble/attitude/strapdown.hpp"
+#include "tumble/attitude/timing.hpp"
+#include "tumble/common/so3.hpp"
+
+namespace tumble::baselines {
+
+namespace {
+constexpr double kForceMin_m_s2 = 1e-6;
+constexpr double kSmallest = 1e-12;
+}  // namespace
+
+Eskf::Eskf(const Params& p) : params_(p) {
+  require_within("gravity_m_s2", p.gravity_m_s2, kSmallest, 100.0);
+  require_within("gyro_noise_rad_sqrts", p.gyro_noise_rad_sqrts, kSmallest, 1.0);
+  require_within("bias_walk_rad_s_sqrts", p.bias_walk_rad_s_sqrts, 0.0, 1.0);
+  require_within("bias_sigma_start_rad_s", p.bias_sigma_start_rad_s, 0.0, 1.0);
+  require_within("tilt_sigma_start_rad", p.tilt_sigma_start_rad, kSmallest, std::numbers::pi);
+  require_within("acceleration_noise_m_s2_sqrts", p.acceleration_noise_m_s2_sqrts, kSmallest, 100.0);
+  require_within("gap_max_s", p.gap_max_s, 1e-9, 1e4);
+}
+
+Status Eskf::step(const ImuSample& sample, State& state) const {
+  if (const Status bad = check(sample); !bad.ok()) return bad;
+  if (state.started) {
+    double dt_s = 0.0;
+    if (const Status bad = elapsed(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s); !bad.ok()) return bad;
+    predict(sample.angular_velocity_rad_s, dt_s, state);
+    if (sample.specific_force_m_s2.norm() >= kForceMin_m_s2) correct(sample.specific_force_m_s2, dt_s, state);
+  } else {
+    if (const Status bad = level(sample.specific_force_m_s2, state.q_WI); !bad.ok()) return bad;
+    start(state);
+  }
+  state.last_time_ns = sample.time_ns;
+  return {};
+}
+
+void Eskf::start(State& state) const {
+  const double tilt = params_.tilt_sigma_start_rad * params_.tilt_sigma_start_rad;
+  const double bias = params_.bias_sigma_start_rad_s * params_.bias_sigma_start_rad_s;
+  // the heading is the definition of the world's x axis, so it starts without error
+  state.covariance.diagonal() << tilt, tilt, 0.0, bias, bias, bias;
+  state.started = true;
+}
+
+void Eskf::predict(const Eigen::Vector3d& rate_rad_s, double dt_s, State& state) const {
+  const Eigen::Vector3d turn = (rate_rad_s - state.bias_rad_s) * dt_s;
+  const Eigen::Matrix3d R_mid = (state.q_WI * so3::exp(0.5 * turn)).toRotationMatrix();
+  Covariance F = Covariance::Identity();
+  F.topRightCorner<3, 3>() = -dt_s * R_mid;
+  state.covariance = (F * state.covariance * F.transpose()).eval();
+  const double angle = params_.gyro_noise_rad_sqrts * params_.gyro_noise_rad_sqrts * dt_s;
+  const double walk = params_.bias_walk_rad_s_sqrts * params_.bias_walk_rad_s_sqrts * dt_s;
+  state.covariance.diagonal().head<3>().array() += angle;
+  state.covariance.diagonal().tail<3>().array() += walk;
+  state.q_WI = (state.q_WI * so3::exp(turn)).normalized();
+}
+
+void Eskf::correct(const Eigen::Vector3d& f_I_m_s2, double dt_s, State& state) const {
+  // linear in the force: its mean over a bounded motion is gravity, that of the direction of the force is not.
+  // The vertical component says nothing of the attitude.
+  const Eigen::Vector3d up_W = state.q_WI * f_I_m_s2 / params_.gravity_m_s2;
+  const Eigen::Vector2d innovation(up_W.y(), -up_W.x());
+  const double sigma = params_.acceleration_noise_m_s2_sqrts / params_.gravity_m_s2;
+  Eigen::Matrix2d S = state.covariance.topLeftCorner<2, 2>();
+  S.diagonal().array() += sigma * sigma / dt_s;
+  const Eigen::Matrix<double, 6, 2> K = state.covariance.leftCols<2>() * S.inverse();
+  const Eigen::Matrix<double, 6, 1> correction = K * innovation;
+  state.covariance -= (K * S * K.transpose()).eval();
+  state.covariance = (0.5 * (state.covariance + state.covariance.transpose())).eval();
+  state.q_WI = (so3::exp(correction.head<3>()) * state.q_WI).normalized();
+  state.bias_rad_s += correction.tail<3>();
+}
+
+}  // namespace tumble::baselines

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "tumble/common/imu.hpp"
+#include "tumble/common/status.hpp"
+
+namespace tumble::baselines {
+
+/// Attitude by Madgwick's gradient filter, gyro and accelerometer (S. Madgwick, internal report, 2010, eqs 25-33).
+/// q' = q/2 (x) (0, w) - gain * s/|s|, s the gradient of the tilt error; explicit step and normalisation, as published.
+/// A step without a usable gradient (|s| or |f| ~ 0) integrates the gyro alone. No bias, no heading reference; the
+/// correction has a fixed speed of 2 gain rad/s, so it chatters at rest and believes accelerations.
+class Madgwick {
+ public:
+  struct Params {
+    double gain_rad_s = 0.033;  ///< quaternion rate of the correction; bound [0, 10]. sqrt(3/4) x gyro error per axis
+    double gap_max_s = 1.0;     ///< bound (0, 1e4]
+  };
+  struct State {
+    Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
+    TimeNs last_time_ns = 0;
+    bool started = false;
+    bool operator==(const State& other) const {
+      return q_WI.coeffs() == other.q_WI.coeffs() && last_time_ns == other.last_time_ns && started == other.started;
+    }
+  };
+
+  explicit Madgwick(const Params& params);
+
+  /// The first sample levels the attitude (yaw 0); each later one integrates and corrects.
+  /// On trouble the state is unchanged. O(1), no allocation.
+  Status step(const ImuSample& sample, State& state) const;
+
+ private:
+  Params params_;
+};
+
+}  // namespace tumble::baselines

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "tumble/common/imu.hpp"
+#include "tumble/common/status.hpp"
+
+namespace tumble::baselines {
+
+/// Attitude by the explicit complementary filter on SO(3), gyro and accelerometer (R. Mahony, T. Hamel, J.-M. Pflimlin,
+/// IEEE TAC 53(5), 2008, eq 32): rate w + kp e + integral of ki e, with e = f/|f| x R^T z in sensor axes.
+/// The integral takes up the gyro's bias, and accelerations that last. No heading reference.
+class Mahony {
+ public:
+  struct Params {
+    double proportional_rad_s = 0.2;  ///< kp; bound [0, 100]
+    double integral_rad_s2 = 0.001;   ///< ki; bound [0, 100]
+    double gap_max_s = 1.0;           ///< bound (0, 1e4]
+  };
+  struct State {
+    Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
+    Eigen::Vector3d integral_rad_s = Eigen::Vector3d::Zero();  ///< added to the rate: minus the bias
+    TimeNs last_time_ns = 0;
+    bool started = false;
+    bool operator==(const State&) const = default;
+  };
+
+  explicit Mahony(const Params& params);
+
+  /// The first sample levels the attitude (yaw 0); each later one integrates and corrects. A force below 1e-6 m/s^2
+  /// leaves gyro and integral alone at work. On trouble the state is unchanged. O(1), no allocation.
+  Status step(const ImuSample& sample, State& state) const;
+
+ private:
+  Params params_;
+};
+
+}  // namespace tumble::baselines

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <deque>
+#include <span>
+#include <vector>
+
+#include "tumble/common/imu.hpp"
+#include "tumble/common/status.hpp"
+#include "tumble/mapping/deskew.hpp"
+#include "tumble/mapping/lidar.hpp"
+#include "tumble/mapping/lidar_inertial_odometry.hpp"
+#include "tumble/mapping/map_drawing.hpp"
+#include "tumble/mapping/voxel_map.hpp"
+
+namespace tumble::baselines {
+
+/// Lidar-inertial filter that takes each point at its own instant (the family of Point-LIO, He et al., 2023): the
+/// motion is a random walk of angular velocity and specific force, the IMU a measurement of both, a point one of its
+/// distance to a plane of the map. Readings on a clipped axis are left out; nothing else is known of them.
+///
+/// State errors: (position, attitude in W, velocity in W, angular velocity, specific force), the last two in IMU axes.
+/// IMU readings count at the middle of their window. Not modelled: biases (subtract what is known), gravity, mounting
+/// and clock as states, iteration of an update.
+class PointwiseFilter {
+ public:
+  struct Params {
+    Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();
+    double gravity_m_s2 = 9.80665;
+    double range_min_m = 0.3;
+    double range_max_m = 100.0;
+    Eigen::AlignedBox3d own_body_L{Eigen::Vector3d(-0.5, -0.4, -0.27), Eigen::Vector3d(0.5, 0.4, 0.23)};
+    double sweep_voxel_m = 0.25;  ///< one point per voxel of a sweep, as measured, updates the state; bound [0.01, 10]
+    double map_voxel_m = 0.5;
+    double map_spacing_m = 0.1;
+    int neighbours = 8;             ///< of the plane fit; bound [3, 32]
+    double match_distance_m = 1.0;  ///< bound (0, 4]
+    /// Densities of the random walks; the square roots of the authors' 1000 and 500. Bounds (0, 1e6].
+    double rate_walk_rad_s_sqrt_s = 31.6;
+    double force_walk_m_s2_sqrt_s = 22.4;
+    double gyro_sigma_rad_s = 0.02;  ///< of one reading; bound (0, 1e3]
+    double accel_sigma_m_s2 = 0.1;   ///< of one reading; bound (0, 1e3]
+    double plane_sigma_m = 0.03;     ///< of a point's distance; bound (0, 10]
+    std::size_t updates_min = 50;    ///< points accepted; fewer reject a sweep
+  };
+  static constexpr int kErrors = 15;
+
+  /// `q_WI` at rest at the start, origin of W.
+  PointwiseFilter(const Params& params, const Eigen::Quaterniond& q_WI);
+
+  /// In time order; bit j of `clipped`: gyro axis j, bit 3 + j: accelerometer axis j. `time_order`, `non_finite`.
+  Status add_imu(const ImuSample& sample, unsigned clipped);
+
+  /// Once IMU samples reach its end. Troubles as those of LidarInertialOdometry::add_sweep.
+  Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
+                   LidarInertialOdometry::SweepReport& report);
+
+  std::vector<MapPoint> map() const;
+
+ private:
+  using Matrix = Eigen::Matrix<double, kErrors, kErrors>;
+  using Vector = Eigen::Matrix<double, kErrors, 1>;
+  struct Reading {
+    TimeNs middle_ns, end_ns;
+    Eigen::Vector3d rate_rad_s, force_m_s2;
+    unsigned clipped;
+  };
+
+  void advance(TimeNs to_ns);
+  void update(const Vector& row, double residual, double variance);
+  void take(const Reading& reading);
+  bool take(const SweepPoint& point);
+  void take_points(TimeNs start_ns, TimeNs end_ns, LidarInertialOdometry::SweepReport& report);
+  PoseState pose() const;
+
+  Params params_;
+  TimeNs time_ns_ = 0;
+  bool started_ = false;
+  Eigen::Vector3d p_m_ = Eigen::Vector3d::Zero(), v_m_s_ = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond q_WI_;
+  Eigen::Vector3d w_rad_s_ = Eigen::Vector3d::Zero(), f_m_s2_;
+  Matrix P_ = Matrix::Zero();
+  std::deque<Reading> readings_;
+  TimeNs last_imu_ns_ = 0;
+  TimeNs window_end_ns_ = 0;  // of the last reading taken
+  bool has_imu_ = false;
+  VoxelMap map_;
+  std::vector<Eigen::Vector3f> seen_from_W_m_;
+  mapping::ScanLines scan_lines_;
+  SweepSampler sampler_;
+  std::vector<SweepPoint> points_;
+  std::vector<Eigen::Vector3f> positions_m_;
+  std::vector<std::uint32_t> chosen_;
+};
+
+}  // namespace tumble::baselines

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <span>
+#include <vector>
+
+#include "tumble/common/status.hpp"
+#include "tumble/mapping/lidar.hpp"
+#include "tumble/mapping/lidar_inertial_odometry.hpp"
+#include "tumble/mapping/map_drawing.hpp"
+#include "tumble/mapping/registration.hpp"
+#include "tumble/mapping/sweep_trajectory.hpp"
+#include "tumble/mapping/voxel_map.hpp"
+
+namespace tumble::baselines {
+
+/// Scan-to-map odometry under a motion that the caller believes in: the sweep is deskewed once, to its end, and its
+/// pose at the end corrected as a rigid body. The family of most lidar odometries; what differs between them is the
+/// motion model, which is the caller's (`Motion`), and what a caller makes of the result.
+///
+/// Not modelled: errors of the motion inside of the sweep, of the mounting, of the clocks; recovery after a loss.
+class RigidOdometry {
+ public:
+  struct Params {
+    Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< lidar in the axes whose motion is given
+    double range_min_m = 0.3;                                ///< bound [0, 10]
+    double range_max_m = 100.0;                              ///< bound (range_min_m, 1e4]
+    Eigen::AlignedBox3d own_body_L{Eigen::Vector3d(-0.5, -0.4, -0.27), Eigen::Vector3d(0.5, 0.4, 0.23)};
+    double sweep_voxel_m = 0.25;  ///< one point per voxel of a sweep is registered; bound [0.01, 10]
+    double map_voxel_m = 0.5;     ///< bound [0.01, 10]
+    double map_spacing_m = 0.1;   ///< bound [0, map_voxel_m]
+    /// Whether a sweep that could not be registered still extends the map at the pose believed, as most peers do.
+    bool extend_always = true;
+    double degenerate_sigma_m = 0.15;  ///< as in LidarInertialOdometry
+    Registration::Params registration;
+  };
+
+  /// Motion over a stretch as a model expects it, and how sure it is of the state at the end of it.
+  struct Motion {
+    MotionState start;                  ///< time_ns at or before the sweep's start
+    std::vector<MotionSample> samples;  ///< reach from the start to the sweep's end
+    double gravity_m_s2 = 0.0;          ///< of the samples' specific force
+    Eigen::Matrix<double, 9, 9> end_covariance = Eigen::Matrix<double, 9, 9>::Zero();
+  };
+
+  explicit RigidOdometry(const Params& params);
+
+  /// Registers a sweep of points fired in [start_ns, end_ns]. Troubles as those of LidarInertialOdometry::add_sweep.
+  Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, const Motion& motion,
+                   LidarInertialOdometry::SweepReport& report);
+
+  /// At the end of the last sweep: as the motion model had it, and as registered, with its covariance.
+  const MotionState& predicted() const { return predicted_; }
+  const MotionState& state() const { return state_; }
+
+  std::vector<MapPoint> map() const;
+
+ private:
+  void place(const Eigen::Isometry3d& T_WI);
+  void register_points(LidarInertialOdometry::SweepReport& report);
+  void extend_map(bool rings_differ, LidarInertialOdometry::SweepReport& report);
+  void describe(const SweepTrajectory& trajectory, LidarInertialOdometry::SweepReport& report) const;
+
+  Params params_;
+  MotionState predicted_, state_;
+  VoxelMap map_;
+  std::vector<Eigen::Vector3f> seen_from_W_m_;
+  mapping::ScanLines scan_lines_;
+  Registration registration_;
+  SweepSampler sampler_;
+  std::vector<SweepPoint> points_, chosen_;
+  std::vector<Eigen::Vector3f> positions_m_;
+  std::vector<std::uint32_t> chosen_index_;
+};
+
+}  // namespace tumble::baselines

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tumble/mapping/plane_fit.hpp"
+#include "tumble/mapping/registration.hpp"
+#include "tumble/mapping/voxel_map.hpp"
+
+namespace tumble::baselines {
+
+/// The registration of the published chain: point-to-plane with k matches per point, matches trimmed to a share that
+/// the data choose (D. Chetverikov et al., 2005; J. Phillips et al., 2007, with lambda), the rest weighted by the
+/// inverse of both points' variances, small-angle normal equations.
+///
+/// It hands back a pose and says nothing of how well it is determined; a corridor looks like a success. Registration is
+/// the one that knows. Cost per iteration: points times k.
+class TrimmedIcp {
+ public:
+  struct Params {
+    int neighbours = 8;             ///< matches per point; bound [1, 32]
+    double match_distance_m = 1.0;  ///< bound (0, 4]
+    int normal_neighbours = 20;     ///< of the map's normals; bound [3, 32]
+    double trim_min = 0.5;          ///< least share of matches kept; bound (0, trim_max]
+    double trim_max = 0.7;          ///< bound [trim_min, 1]
+    double trim_lambda = 2.35;
+    /// The trap of the original: shares are taken of all slots though unmatched ones are missing from the sorted list.
+    /// There it read past its end; here the index stops at the end.
+    bool count_unmatched_slots = false;
+    int iterations_max = 40;
+    double step_m = 0.01;  ///< both means over two increments must fall below their bound
+    double step_rad = 0.001;
+    double correction_max_m = 15.0;
+    double correction_max_rad = 1.1;
+  };
+  struct Point {
+    Eigen::Vector3f position_m;
+    float variance_m2 = 0.0f;  ///< along its ray and from what is left of the skew
+  };
+  struct Result {
+    RegistrationVerdict verdict = RegistrationVerdict::too_few;
+    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();  ///< the prior unless converged
+    int iterations = 0;
+    std::size_t matched_slots = 0;
+    double kept_share = 0.0;  ///< of the matched slots
+  };
+
+  explicit TrimmedIcp(const Params& params);
+
+  /// Takes `points` to `map` from `prior`. Running out of iterations is no failure, as in the original; no matches, and
+  /// a correction beyond its bound, are.
+  Result align(std::span<const Point> points, const Eigen::Isometry3d& prior, const VoxelMap& map);
+
+  /// Share of the sorted squared distances to keep: minimises sum(d^2 up to f) / (f n f^(2 lambda)) over f in
+  /// [trim_min, trim_max], n = `slots`.
+  static std::size_t trim(std::span<const float> sorted_d2, std::size_t slots, const Params& params);
+
+  /// Call after the map has changed: normals are computed where they are asked for, and kept.
+  void forget_normals() { normals_.clear(); }
+
+ private:
+  struct Match {
+    std::uint32_t point, map_index;
+    float distance2_m2;
+  };
+  struct Normal {
+    Eigen::Vector3f n = Eigen::Vector3f::Zero();
+    bool known = false, usable = false;
+  };
+  const Normal& normal(const VoxelMap& map, std::uint32_t index);
+  void match(std::span<const Point> points, const Eigen::Isometry3f& T, const VoxelMap& map);
+
+  Params params_;
+  std::vector<Match> matches_;
+  std::vector<float> sorted_;
+  std::vector<Normal> normals_;
+};
+
+}  // namespace tumble::baselines

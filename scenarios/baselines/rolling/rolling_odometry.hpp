@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "tumble/common/pose.hpp"
+#include "tumble/common/status.hpp"
+
+namespace tumble::baselines {
+
+/// Position of a rolling sphere's centre G from its angular velocity alone: v = r w_W x n on a plane with normal n,
+/// integrated by the trapezoid rule. Exact while the sphere grips; sees neither slip nor slide nor height.
+class RollingOdometry {
+ public:
+  struct Params {
+    double radius_m = 0.145;                              ///< bound (0, 10]
+    Eigen::Vector3d normal_W = Eigen::Vector3d::UnitZ();  ///< unit, from the contact to the centre
+    double gap_max_s = 1.0;                               ///< bound (0, 1e4]
+  };
+  struct State {
+    Eigen::Vector3d p_WG_m = Eigen::Vector3d::Zero();
+    Eigen::Vector3d v_WG_m_s = Eigen::Vector3d::Zero();
+    TimeNs last_time_ns = 0;
+    bool started = false;
+    bool operator==(const State&) const = default;
+  };
+
+  explicit RollingOdometry(const Params& params);
+
+  /// Advances to `time_ns` with the body's rate and attitude at that time. On trouble the state is unchanged.
+  /// `w_I_rad_s` is the mean over the sample's window, as an IMU gives it; `q_WI` the attitude at its end.
+  Status step(TimeNs time_ns, const Eigen::Vector3d& w_I_rad_s, const Eigen::Quaterniond& q_WI, State& state) const;
+
+ private:
+  Params params_;
+};
+
+}  // namespace tumble::baselines

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+
+#include "tumble/common/imu.hpp"
+#include "tumble/common/status.hpp"
+
+namespace tumble::baselines {
+
+/// Position of a rolling sphere with an observer of the contact velocity u, flat floor: v = r w x n + u.
+///
+/// While the sphere grips, the centre's acceleration is r w' x n; the difference e of the two, both taken over the same
+/// window of 11 samples, opens an event when it is large and is integrated to u until it is small and u has come back.
+/// e of the last 25 samples is integrated back, so that a slide which starts before it is seen is not lost. An event
+/// that ends has its linear drift removed; one that lasts too long is undone. The window is made for about 125 Hz.
+///
+/// What it does not model: a tilt that changes inside an event, impacts, slopes. Ideal signals flatter it: on simulated
+/// physics it is hardly better than rolling alone, and is kept to compare with.
+class SlipObserver {
+ public:
+  static constexpr int kWindow = 11;   ///< samples over which acceleration and rate are fitted; delay of half of it
+  static constexpr int kHistory = 25;  ///< samples over which an event is integrated back
+
+  struct Params {
+    double radius_m = 0.145;                                ///< bound (0, 10]
+    double gravity_m_s2 = 9.80665;                          ///< bound (0, 100]
+    Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< from centre to IMU, sensor axes
+    double open_m_s2 = 0.5;                                 ///< |e| that opens an event; bound (0, 100]
+    double quiet_m_s2 = 0.25;                               ///< |e| below which an event may end; bound (0, 100]
+    double quiet_time_s = 0.12;                             ///< for so long; bound [0, 10]
+    double closing_speed_m_s = 0.08;                        ///< |u| below which an event may end; bound (0, 10]
+    double timeout_s = 2.0;                                 ///< an event longer than this is undone; bound (0, 100]
+    double ignore_time_s = 1.0;       ///< quiet for so long after a time-out before the next event; bound [0, 100]
+    double closed_decay_per_s = 8.0;  ///< of u while closed; bound [0, 1e3]
+    double bias_tau_s = 1.0;          ///< of e's mean while closed and quiet (tilt, accelerometer bias); (0, 1e3]
+    double blend_tau_s = 0.25;        ///< in which a correction of the position enters; bound (0, 1e3]
+    double gap_max_s = 1.0;           ///< bound (0, 1e4]
+  };
+  struct State {
+    Eigen::Vector2d p_WG_m = Eigen::Vector2d::Zero();
+    Eigen::Vector2d v_WG_m_s = Eigen::Vector2d::Zero();
+    Eigen::Vector2d u_W_m_s = Eigen::Vector2d::Zero();    ///< contact velocity
+    Eigen::Vector2d bias_m_s2 = Eigen::Vector2d::Zero();  ///< mean of e
+    Eigen::Vector2d pending_m = Eigen::Vector2d::Zero();  ///< correction still to be blended in
+    Eigen::Vector2d event_m = Eigen::Vector2d::Zero();    ///< displacement that u has made in this event
+    std::array<Eigen::Vector2d, kWindow> a_W_m_s2{};      ///< rings; the newest at (count - 1) mod size
+    std::array<Eigen::Vector2d, kWindow> roll_W_m_s{};    ///< r w x n
+    std::array<double, kWindow> dt_s{};
+    std::array<Eigen::Vector2d, kHistory> e_W_m_s2{};
+    std::array<double, kHistory> e_dt_s{};
+    Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
+    std::int64_t count = 0, residuals = 0;
+    double event_s = 0.0, quiet_s = 0.0;
+    bool open = false;      ///< a slip or slide is going on
+    bool ignoring = false;  ///< after a time-out
+    TimeNs last_time_ns = 0;
+    bool started = false;
+    State();
+    bool operator==(const State&) const = default;
+  };
+
+  explicit SlipObserver(const Params& params);
+
+  /// Advances to the sample's time; `q_WI` is the attitude at the end of its window. On trouble the state is unchanged.
+  /// O(kWindow), no allocation.
+  Status step(const ImuSample& sample, const Eigen::Quaterniond& q_WI, State& state) const;
+
+ private:
+  void observe(const ImuSample& sample, const Eigen::Quaterniond& q_WI, double dt_s, State& state) const;
+  void advance_closed(const Eigen::Vector2d& e, double dt_s, State& state) const;
+  void advance_open(const Eigen::Vector2d& e, double dt_s, State& state) const;
+  void open_event(const Eigen::Vector2d& e, State& state) const;
+
+  Params params_;
+};
+
+}  // namespace tumble::baselines

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "estimator/rolling/rolling_truth.hpp"
+#include "scenarios/baselines/rolling/autogain_fusion.hpp"
+#include "scenarios/baselines/rolling/double_integration.hpp"
+
+namespace tumble::baselines {
+namespace {
+
+using testing::l_shape;
+using testing::no_slip;
+using testing::RollingMotion;
+using testing::RollingTruth;
+
+template <typename Method>
+typename Method::State run(const Method& method, const RollingTruth& truth, std::size_t from, std::size_t to,
+                           typename Method::State state = {}) {
+  for (std::size_t k = from; k < to; ++k) {
+    const Status status = method.step(truth.samples[k], truth.q_WI[k], state);
+    EXPECT_TRUE(status.ok()) << k << ": " << status.message();
+  }
+  return state;
+}
+
+template <typename Method>
+typename Method::State run(const Method& method, const RollingTruth& truth) {
+  return run(method, truth, 0, truth.samples.size());
+}
+
+template <typename Method>
+class Published : public ::testing::Test {};
+using Methods = ::testing::Types<DoubleIntegration, AutogainFusion>;
+TYPED_TEST_SUITE(Published, Methods);
+
+TYPED_TEST(Published, SplitRunsAndSignOfQ) {
+  const TypeParam method({});
+  RollingTruth truth = testing::roll({.velocity_m_s = l_shape, .contact_velocity_m_s = no_slip, .duration_s = 5.0});
+  const std::size_t count = truth.samples.size();
+  const auto whole = run(method, truth);
+  for (const std::size_t cut : {std::size_t{1}, std::size_t{700}, count - 1}) {
+    const auto carried = run(method, truth, 0, cut);
+    EXPECT_FALSE(carried == whole);
+    EXPECT_TRUE(whole == run(method, truth, cut, count, carried)) << cut;
+  }
+  for (Eigen::Quaterniond& q : truth.q_WI) q.coeffs() = -q.coeffs();
+  if constexpr (std::is_same_v<TypeParam, DoubleIntegration>) {
+    EXPECT_EQ(run(method, truth).p_WI_m, whole.p_WI_m);
+  } else {
+    EXPECT_EQ(run(method, truth).p_WG_m, whole.p_WG_m);
+  }
+}
+
+TYPED_TEST(Published, RefusesBadInputAndKeepsItsState) {
+  const TypeParam method({});
+  const RollingTruth truth =
+      testing::roll({.velocity_m_s = l_shape, .contact_velocity_m_s = no_slip, .duration_s = 3.0});
+  const auto before = run(method, truth, 0, 700);
+  const auto refused = [&](const ImuSample& sample, const Eigen::Quaterniond& q) {
+    auto state = before;
+    const Trouble trouble = method.step(sample, q, state).trouble;
+    EXPECT_TRUE(state == before) << to_string(trouble);
+    return trouble;
+  };
+  const ImuSample good = truth.samples[700];
+  const Eigen::Quaterniond q = truth.q_WI[700];
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  ImuSample bad = good;
+  bad.specific_force_m_s2.y() = kNan;
+  EXPECT_EQ(refused(bad, q), Trouble::non_finite);
+  EXPECT_EQ(refused(good, Eigen::Quaterniond(1, kNan, 0, 0)), Trouble::non_finite);
+  EXPECT_EQ(refused(good, Eigen::Quaterniond(0.5, 0, 0, 0)), Trouble::out_of_range);
+  bad = good;
+  bad.time_ns = before.last_time_ns;
+  EXPECT_EQ(refused(bad, q), Trouble::time_order);
+  bad.time_ns = before.last_time_ns + 1'000'000'001;
+  EXPECT_EQ(refused(bad, q), Trouble::gap);
+}
+
+TEST(DoubleIntegration, FollowsASphereThatRollsAndSlidesWhileNothingIsWrong) {
+  const RollingTruth truth =
+      testing::roll({.velocity_m_s = l_shape, .contact_velocity_m_s = [](double t) -> Eigen::Vector3d {
+                       return {t > 3.0 && t < 4.0 ? -0.3 * std::sin(std::numbers::pi * (t - 3.0)) : 0.0, 0, 0};
+                     }});
+  const DoubleIntegration::State end = run(DoubleIntegration({}), truth);
+  // the mean force of a window is turned as if the body stood at its middle: (w dt)^2 / 24 of g at up to 5 rad/s is
+  // 1.6e-4 m/s^2, for some seconds; measured 2.6 mm
+  EXPECT_NEAR((end.p_WI_m - truth.p_WG_m.back()).norm(), 0.0, 5e-3);
+  EXPECT_NEAR(truth.p_WG_m.back().norm(), std::numbers::sqrt2, 1e-6) << "the truth itself";
+}
+
+TEST(DoubleIntegration, TiltErrorGrowsWithTheSquareOfTime) {
+  RollingTruth truth = testing::roll({.velocity_m_s = no_slip, .contact_velocity_m_s = no_slip, .duration_s = 8.0});
+  for (Eigen::Quaterniond& q : truth.q_WI) q = so3::exp({0.0, 0.001, 0.0}) * q;
+  const DoubleIntegration::State end = run(DoubleIntegration({}), truth);
+  EXPECT_NEAR(end.p_WI_m.x(), 0.5 * 9.80665 * std::sin(0.001) * 64.0, 1e-9);
+}
+
+TEST(AutogainFusion, CleanRollEndsFarOffAsPublished) {
+  const RollingTruth truth = testing::roll({.velocity_m_s = l_shape, .contact_velocity_m_s = no_slip});
+  const double error = (run(AutogainFusion({}), truth).p_WG_m - truth.p_WG_m.back()).norm();
+  // 0.77 m on another L of the same size; a fusion that did well here would not be the published one
+  EXPECT_GT(error, 0.4);
+  EXPECT_LT(error, 1.2);
+}
+
+TEST(AutogainFusion, WithoutAccelerationItIsHalfOfRolling) {
+  const RollingTruth truth = testing::roll({.velocity_m_s = l_shape, .contact_velocity_m_s = no_slip});
+  const AutogainFusion half({.limiter = 0.0});
+  // eq 12 takes the apparent climb from it as well: measured 0.076 m
+  EXPECT_NEAR((run(half, truth).p_WG_m.head<2>() - 0.5 * truth.p_WG_m.back().head<2>()).norm(), 0.0, 0.1);
+}
+
+/// With the integral at its limit the fused step is a fixed multiple of the rolling step: what the published figures
+/// show.
+TEST(AutogainFusion, SaturatedStepsHaveTheRatiosOfThePublishedFigures) {
+  const auto ratio = [](double rotation_weight, double sign) {
+    const AutogainFusion method({.limiter = 1.1, .rotation_weight = rotation_weight});
+    AutogainFusion::State state;
+    state.started = true;
+    state.v_integral_m_s = {sign * 100.0, 0.0, 0.0};
+    const ImuSample sample{4'000'000, {0.0, 3.0, 0.0}, {0.0, 0.0, 9.80665}, 0};
+    EXPECT_TRUE(method.step(sample, Eigen::Quaterniond::Identity(), state).ok());
+    return state.v_WG_m_s.x() / (0.145 * 3.0);
+  };
+  // what is left is the climb that the turn within the sample leaves to eq 12; measured 1.3e-12
+  EXPECT_NEAR(ratio(0.5, 1.0), 1.05, 1e-9);
+  EXPECT_NEAR(ratio(0.5, -1.0), -0.05, 1e-9);
+  EXPECT_NEAR(ratio(1.0, 1.0), 1.55, 1e-9);
+  EXPECT_NEAR(ratio(1.0, -1.0), 0.45, 1e-9);
+}
+
+TEST(AutogainFusion, ClimbingFasterThanRollingIsLimitedWithoutNaN) {
+  for (const bool per_axis : {true, false}) {
+    for (const bool by_norm : {true, false}) {
+      const AutogainFusion method({.shrink_per_axis = per_axis, .vertical_by_norm = by_norm});
+      AutogainFusion::State state;
+      state.started = true;
+      state.v_integral_m_s = {0.0, 0.0, 50.0};
+      ASSERT_TRUE(
+          method.step({4'000'000, {0.0, 3.0, 0.0}, {0, 0, 9.80665}, 0}, Eigen::Quaterniond::Identity(), state).ok());
+      EXPECT_TRUE(state.v_WG_m_s.allFinite());
+      EXPECT_NEAR(state.v_WG_m_s.z(), 0.145 * 3.0 * (by_norm ? 1.0 : 0.5), 1e-12);
+    }
+  }
+}
+
+TEST(AutogainFusion, MountingDoesNotMatterWithTheNormBasedFactor) {
+  const RollingTruth truth = testing::roll({.velocity_m_s = l_shape, .contact_velocity_m_s = no_slip});
+  RollingTruth turned = truth;
+  const Eigen::Quaterniond q_IB = so3::exp({0.4, -1.3, 0.9});
+  for (std::size_t k = 0; k < truth.samples.size(); ++k) {
+    turned.samples[k].angular_velocity_rad_s = q_IB * truth.samples[k].angular_velocity_rad_s;
+    turned.samples[k].specific_force_m_s2 = q_IB * truth.samples[k].specific_force_m_s2;
+    turned.q_WI[k] = truth.q_WI[k] * q_IB.conjugate();
+  }
+  AutogainFusion::Params smooth;
+  smooth.autogain.profile = AutogainProfile::smooth;
+  const auto difference = [&](const AutogainFusion::Params& params) {
+    return (run(AutogainFusion(params), truth).p_WG_m - run(AutogainFusion(params), turned).p_WG_m).norm();
+  };
+  EXPECT_NEAR(difference(smooth), 0.0, 1e-9);
+  EXPECT_GT(difference({}), 1e-3) << "the paper's factor depends on the mounting";
+}
+
+TEST(AutogainFusion, EachSwitchChangesTheResult) {
+  // a start that is turned, so that no world axis is a body axis
+  const RollingTruth truth = testing::roll({.velocity_m_s = [](double t) -> Eigen::Vector3d {
+                                              return Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ()) * l_shape(t);
+                                            },
+                                            .contact_velocity_m_s = no_slip,
+                                            .q_start = so3::exp({0.3, 0.2, 0.1})});
+  const Eigen::Vector3d printed = run(AutogainFusion({}), truth).p_WG_m;
+  const AutogainFusion::Params switched[] = {{.integrate_in_body = false}, {.direction_only = true},
+                                             {.recursive_coupling = true}, {.limit_per_axis = false},
+                                             {.shrink_per_axis = false},   {.vertical_by_norm = true}};
+  for (const AutogainFusion::Params& params : switched) {
+    EXPECT_GT((run(AutogainFusion(params), truth).p_WG_m - printed).norm(), 1e-6);
+  }
+}
+
+TEST(AutogainFusion, RefusesBadParams) {
+  EXPECT_THROW(AutogainFusion({.radius_m = 0.0}), InvalidParams);
+  EXPECT_THROW(AutogainFusion({.limiter = -1.0}), InvalidParams);
+  EXPECT_THROW(AutogainFusion({.autogain = {.tau_s = 0.0}}), InvalidParams);
+  EXPECT_THROW(DoubleIntegration({.gravity_m_s2 = -1.0}), InvalidParams);
+}
+
+}  // namespace
+}  // namespace tumble::baselines
