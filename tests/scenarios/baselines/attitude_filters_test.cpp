@@ -43,18 +43,30 @@ TYPED_TEST(Baseline, RefusesBadParams) {
   }
 }
 
-/// Turning at a constant rate with gravity alone in the accelerometer: every filter follows without error.
+/// How far a filter may come from a turn at a constant rate of 1.37 rad/s with gravity alone in the accelerometer.
+/// Those that correct the attitude that they have predicted, with a force that agrees, stay on it to rounding; Mahony's
+/// compares the force with the attitude of the step before, |w| dt behind, and its integral takes that for a bias.
+template <typename Filter>
+double turn_error_max_rad() {
+  return 1e-10;  // measured 1e-12
+}
+template <>
+double turn_error_max_rad<Mahony>() {
+  return 7e-3;  // measured 5.2e-3
+}
+
 TYPED_TEST(Baseline, FollowsAPerfectTurnExactly) {
   const TypeParam filter({});
   const Eigen::Vector3d rate(0.7, -1.1, 0.4);
   typename TypeParam::State state;
+  double error_max_rad = 0.0;
   for (int k = 0; k <= 5000; ++k) {
     const Eigen::Quaterniond truth = so3::exp(rate * (k * seconds(kPeriod_ns)));
     const Eigen::Vector3d f_I = truth.conjugate() * Eigen::Vector3d(0, 0, kGravity_m_s2);
     ASSERT_TRUE(filter.step({k * kPeriod_ns, rate, f_I, 0}, state).ok());
-    // Mahony compares the force with the attitude of the step before: it lags by up to kp dt |w| dt / ... ~ 1e-3 rad
-    ASSERT_LT(so3::log(truth.conjugate() * state.q_WI).norm(), 1.0e-2) << "sample " << k;
+    error_max_rad = std::max(error_max_rad, so3::log(truth.conjugate() * state.q_WI).norm());
   }
+  EXPECT_LT(error_max_rad, turn_error_max_rad<TypeParam>());
 }
 
 /// At rest with a gyro bias of 0.3 deg/s about a horizontal axis.
