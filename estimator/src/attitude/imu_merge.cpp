@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "tumble/attitude/timing.hpp"
+#include "tumble/common/scalar_update.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble {
@@ -376,10 +377,7 @@ void ImuMerge::learn(const Vectors& rates, State& state) const {
       row[axis] = 1.0;
       row.segment<3>(3 + 3 * axis) = mean;
       row[kOffset] = acceleration[axis];
-      const Eigen::Matrix<double, kErrors, 1> PHt = unit.P * row;
-      const double s = row.dot(PHt) + variance;
-      unit.x += PHt * ((residual[axis] - row.dot(unit.x)) / s);
-      unit.P -= PHt * (PHt / s).transpose();
+      unit.x += scalar_update(row, residual[axis] - row.dot(unit.x), variance, unit.P);
     }
     unit.P = (0.5 * (unit.P + unit.P.transpose())).eval();
   }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "tumble/common/scalar_update.hpp"
 #include "tumble/common/so3.hpp"
 #include "tumble/common/status.hpp"
 
@@ -24,10 +25,7 @@ double squared(double x) {
 using Row = Eigen::Matrix<double, 1, RateRecovery::kStates>;
 
 void update(const Row& row, double innovation, double variance, RateRecovery::State& state) {
-  const RateRecovery::Vector PHt = state.P * row.transpose();
-  const double s = row.dot(PHt) + variance;
-  state.x += PHt * (innovation / s);
-  state.P -= PHt * (PHt / s).transpose();
+  state.x += scalar_update(row, innovation, variance, state.P);
 }
 
 // A triad of one unit as it is read: axis by axis, or along the rows of its elements while one of them clips, by

@@ -5,6 +5,7 @@
 
 #include "tumble/attitude/strapdown.hpp"
 #include "tumble/attitude/timing.hpp"
+#include "tumble/common/scalar_update.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble {
@@ -24,10 +25,8 @@ double squared(double x) {
 /// Kalman update by one scalar measurement of state `index` of attitude.md (A4): `innovation` is measurement minus
 /// estimate.
 void update(int index, double innovation, double variance, TumbleAttitude::State& state) {
-  const Eigen::Matrix<double, TumbleAttitude::kStates, 1> column = state.covariance.col(index);
-  const double s = column[index] + variance;
-  const Eigen::Matrix<double, TumbleAttitude::kStates, 1> correction = column * (innovation / s);
-  state.covariance -= column * (column / s).transpose();
+  const Eigen::Matrix<double, TumbleAttitude::kStates, 1> correction =
+      component_update(index, innovation, variance, state.covariance);
   state.q_WI = (so3::exp({correction[kTilt], correction[kTilt + 1], 0.0}) * state.q_WI).normalized();
   state.bias_rad_s += correction.segment<3>(kBias);
   state.v_W_m_s += correction.segment<2>(kVelocity);

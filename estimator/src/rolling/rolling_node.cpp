@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tumble/common/scalar_update.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble::rolling {
@@ -320,17 +321,11 @@ bool reset_tilt(const RollingParams& params, const RollingSums& sums, bool at_re
 }
 
 void update(const Row& row, double measured, double variance, Vector& x, Covariance& P) {
-  const Vector PHt = P * row.transpose();
-  const double s = row.dot(PHt) + variance;
-  x += PHt * ((measured - row.dot(x)) / s);
-  P -= PHt * (PHt / s).transpose();
+  x += scalar_update(row, measured - row.dot(x), variance, P);
 }
 
 void update(int index, double measured, double variance, Vector& x, Covariance& P) {
-  const Vector column = P.col(index);
-  const double s = column[index] + variance;
-  x += column * ((measured - x[index]) / s);
-  P -= column * (column / s).transpose();
+  x += component_update(index, measured - x[index], variance, P);
 }
 
 /// rolling.md (R1).

@@ -7,6 +7,7 @@
 
 #include "tumble/angular_velocity/rate_factors.hpp"
 #include "tumble/angular_velocity/recording_check.hpp"
+#include "tumble/common/scalar_update.hpp"
 
 namespace tumble::baselines {
 
@@ -33,11 +34,7 @@ struct Filter {
     P = (F * P * F.transpose() + Q).eval();
   }
 
-  void measure_axis(int j, double reading, double variance) {
-    const State gain = P.col(j) / (P(j, j) + variance);
-    x += gain * (reading - x[j]);
-    P -= (gain * P.row(j)).eval();
-  }
+  void measure_axis(int j, double reading, double variance) { x += component_update(j, reading - x[j], variance, P); }
 
   // iterated: the last linearisation stands where the update ends
   void measure_difference(const Vector3d& p_I_m, const Vector3d& difference, double variance) {

@@ -8,6 +8,7 @@
 
 #include "tumble/angular_velocity/recording_check.hpp"
 #include "tumble/angular_velocity/truncated_normal.hpp"
+#include "tumble/common/scalar_update.hpp"
 
 namespace tumble::baselines {
 
@@ -157,10 +158,7 @@ class Chain {
   }
 
   void update(Moment& now, double reading, double variance) const {
-    const Vector column = now.covariance.col(0);
-    const double spread = column[0] + variance;
-    now.mean += column * ((reading - now.mean[0]) / spread);
-    now.covariance -= column * column.transpose() / spread;
+    now.mean += component_update(0, reading - now.mean[0], variance, now.covariance);
   }
 
   std::vector<Value> values(const std::vector<Moment>& moments) const {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "tumble/angular_velocity/recording_check.hpp"
+#include "tumble/common/scalar_update.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble::baselines {
@@ -49,11 +50,7 @@ struct Filter {
     P = (F * P * F.transpose() + Q).eval();
   }
 
-  void measure_axis(int j, double reading, double variance) {
-    const Vector gain = P.col(j) / (P(j, j) + variance);
-    x += gain * (reading - x[j]);
-    P -= (gain * P.row(j)).eval();
-  }
+  void measure_axis(int j, double reading, double variance) { x += component_update(j, reading - x[j], variance, P); }
 
   void measure_field(const Vector3d& reading, double variance) {
     const Eigen::Matrix<double, 3, kSize> HP = P.middleRows<3>(kField) + P.middleRows<3>(kIron);

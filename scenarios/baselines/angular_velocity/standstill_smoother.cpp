@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "tumble/angular_velocity/recording_check.hpp"
+#include "tumble/common/scalar_update.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble::baselines {
@@ -104,10 +105,7 @@ void predict(const StandstillSmoother::Params& p, const BoundedAcceleration& pro
 
 // One scalar reading: residual = row * error + noise.
 void measure(const Eigen::Matrix<double, 1, kSize>& row, double residual, double variance, Belief& belief) {
-  const Error column = belief.covariance * row.transpose();
-  const double spread = row * column + variance;
-  belief.mean.add(column * (residual / spread));
-  belief.covariance -= (column * column.transpose() / spread).eval();
+  belief.mean.add(scalar_update(row, residual, variance, belief.covariance));
 }
 
 void measure_component(int index, double residual, double variance, Belief& belief) {

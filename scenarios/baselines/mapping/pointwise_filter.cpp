@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "tumble/common/scalar_update.hpp"
 #include "tumble/common/so3.hpp"
 #include "tumble/mapping/plane_fit.hpp"
 #include "tumble/mapping/sweep_check.hpp"
@@ -76,11 +77,8 @@ void PointwiseFilter::advance(TimeNs to_ns) {
 
 /// One scalar: residual = measured - expected, `row` its derivative by the state's errors.
 void PointwiseFilter::update(const Vector& row, double residual, double variance) {
-  const Vector PH = P_ * row;
-  const double innovation = row.dot(PH) + variance;
-  if (!(innovation > 0.0)) return;
-  const Vector step = PH * (residual / innovation);
-  P_ -= PH * PH.transpose() / innovation;
+  if (!(row.dot(P_ * row) + variance > 0.0)) return;
+  const Vector step = scalar_update(row, residual, variance, P_);
   P_ = 0.5 * (P_ + P_.transpose()).eval();
   p_m_ += step.segment<3>(0);
   q_WI_ = (so3::exp(step.segment<3>(3)) * q_WI_).normalized();

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+namespace tumble {
+
+// The measurement update of a Kalman filter by one scalar, the only one in the library: several scalars with
+// independent noise are taken one after another, which needs no inverse. Both return what is to be added to the state
+// of N numbers and take the measurement into its covariance P (N x N, kept symmetric to rounding); O(N^2), no
+// allocation for fixed N. P must be positive semidefinite and `variance` positive (R. E. Kalman, J. Basic Eng. 82,
+// 1960; Joseph's form is not needed where P is well conditioned, and is not used).
+
+/// By a measurement with the derivative `row` (N): `innovation` is what was measured minus what was expected.
+template <typename Row, int N>
+Eigen::Matrix<double, N, 1> scalar_update(const Eigen::MatrixBase<Row>& row, double innovation, double variance,
+                                          Eigen::Matrix<double, N, N>& P) {
+  EIGEN_STATIC_ASSERT_VECTOR_SPECIFIC_SIZE(Row, N)
+  const Eigen::Matrix<double, N, 1> h = Eigen::Map<const Eigen::Matrix<double, N, 1>>(row.derived().data());
+  const Eigen::Matrix<double, N, 1> PHt = P * h;
+  const double s = h.dot(PHt) + variance;
+  P -= PHt * (PHt / s).transpose();
+  return PHt * (innovation / s);
+}
+
+/// By a measurement of component `index` of the state itself.
+template <int N>
+Eigen::Matrix<double, N, 1> component_update(Eigen::Index index, double innovation, double variance,
+                                             Eigen::Matrix<double, N, N>& P) {
+  const Eigen::Matrix<double, N, 1> column = P.col(index);
+  const double s = column[index] + variance;
+  P -= column * (column / s).transpose();
+  return column * (innovation / s);
+}
+
+}  // namespace tumble

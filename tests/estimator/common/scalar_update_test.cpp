@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/common/scalar_update.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+
+namespace tumble {
+namespace {
+
+using Matrix4 = Eigen::Matrix4d;
+using Vector4 = Eigen::Vector4d;
+
+const Matrix4 kPrior = [] {
+  Matrix4 root;
+  root << 1.0, 0.2, -0.3, 0.4, 0.0, 0.7, 0.5, -0.1, 0.0, 0.0, 1.3, 0.2, 0.0, 0.0, 0.0, 0.4;
+  return Matrix4(root * root.transpose());
+}();
+
+/// In information form: the inverse covariance gains h h^T / variance, and the correction is the new covariance times
+/// h innovation / variance.
+void expect_bayes(const Vector4& h, double innovation, double variance, const Vector4& correction, const Matrix4& P) {
+  const Matrix4 expected = (kPrior.inverse() + h * h.transpose() / variance).inverse();
+  EXPECT_LT((P - expected).norm(), 1e-12);
+  EXPECT_LT((correction - expected * h * (innovation / variance)).norm(), 1e-12);
+}
+
+TEST(ScalarUpdate, IsBayesRuleForADirection) {
+  const Eigen::RowVector4d row(0.3, -1.1, 0.0, 2.0);
+  Matrix4 P = kPrior;
+  const Vector4 correction = scalar_update(row, 0.7, 0.05, P);
+  expect_bayes(row.transpose(), 0.7, 0.05, correction, P);
+  Matrix4 other = kPrior;  // a column says the same
+  EXPECT_EQ(scalar_update(Vector4(row.transpose()), 0.7, 0.05, other), correction);
+  EXPECT_EQ(other, P);
+}
+
+TEST(ScalarUpdate, IsBayesRuleForAComponent) {
+  for (int index = 0; index < 4; ++index) {
+    Matrix4 P = kPrior;
+    const Vector4 correction = component_update(index, -0.4, 0.2, P);
+    expect_bayes(Vector4::Unit(index), -0.4, 0.2, correction, P);
+  }
+}
+
+TEST(ScalarUpdate, CheckTellsAnotherVariance) {
+  Matrix4 P = kPrior;
+  component_update(1, 0.0, 0.2, P);
+  EXPECT_GT((P - (kPrior.inverse() + Matrix4(Vector4::Unit(1) * Vector4::Unit(1).transpose() / 0.3)).inverse()).norm(),
+            1e-3);
+}
+
+}  // namespace
+}  // namespace tumble
