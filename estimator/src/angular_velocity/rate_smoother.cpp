@@ -157,6 +157,9 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
     if (health.rails_upright) continue;
     doubt_unseen_rails(planes, model.gyro_sigma_rad_s(), before, observations[k], after);
   }
+  if (!health.rails_upright) {
+    doubt_level_tops(planes, params_.planes.offset_share, model.gyro_sigma_rad_s(), observations);
+  }
   mark_held(samples, observations, health);
   RateFit fit(observations, model);
   if (Status status = fit_rounds(params_, known, samples, clippings, observations, fit, health); !status.ok()) {
