@@ -126,6 +126,12 @@ RateSmoother::RateSmoother(const Params& params)
   require_within("calibration_mahalanobis_max", params.calibration_mahalanobis_max, 0.1, 1e6);
   require_within("error_rounds_max", params.error_rounds_max, 1, 10);
   require_within("gap_max_s", params.gap_max_s, 1e-6, 3600.0);
+  if (params.learnt_errors) {
+    for (const double value : params.learnt_errors->errors.vector()) require_within("learnt errors", value, -0.2, 0.2);
+    for (const double value : params.learnt_errors->covariance.reshaped()) {
+      require_within("learnt errors' covariance", value, -1.0, 1.0);
+    }
+  }
   (void)RateModel(params.model, 0.01);  // throws on bad parameters
 }
 
