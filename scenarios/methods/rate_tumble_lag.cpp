@@ -112,7 +112,10 @@ Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& par
   estimate.health["regime_carried_joined"] = static_cast<double>(all.joined);
   estimate.health["regime_carried_starts"] = static_cast<double>(all.starts);
   estimate.health["carried_steps_skipped"] = static_cast<double>(all.carried.failures);
-  if (estimate.status.ok() && !held && found != nullptr) *found = learnt_by(stream, params, state);
+  if (estimate.status.ok() && !held && found != nullptr) {
+    *found = learnt_by(stream, params, state);
+    if (given != nullptr) found->device_errors = given->device_errors;  // the stream does not estimate them
+  }
   count_sources(estimate.rates, estimate.health);
   return estimate;
 }

@@ -28,6 +28,8 @@ constexpr const char* kPlanesKey = "gyro_planes_rad_s";
 // Of files since those of the accelerometer are too.
 constexpr const char* kAccelPlanesKey = "accelerometer_planes_m_s2";
 constexpr const char* kAccelElementsKey = "accelerometer_elements";
+// Of files since the device's errors are learnt.
+constexpr const char *kErrorsKey = "device_errors", *kErrorsCovarianceKey = "device_errors_covariance";
 // What the slopes of an accelerometer's element change from run to run, as those of a gyro's.
 constexpr double kSlopeDrift = 2e-3;
 // A tumble holds a top that looks like a rail now and then: planes less sure than this are not handed on.
@@ -134,6 +136,7 @@ bool level_told(const RailPlane& plane, int sign) {
 
 LearntRig learnt(const RateReport& report) {
   LearntRig out{report.calibration, report.rail};
+  out.device_errors = report.sensor_errors;
   if (!report.rails_upright) out.keep(report.planes);
   out.keep(report.accel_planes, Triad::accelerometer);
   return out;
@@ -201,6 +204,10 @@ void start_from(const LearntRig& rig, double trust, RateSmoother::Params& params
       if (plane) plane->covariance *= trust;
     }
   }
+  if (rig.device_errors) {
+    params.learnt_errors = rig.device_errors;
+    params.learnt_errors->covariance *= trust;
+  }
   if (const auto rail = lowest(rig, 0)) params.rails.stated_gyro_rad_s = rail;
   if (const auto rail = lowest(rig, 3)) params.rails.stated_accel_m_s2 = rail;
 }
@@ -219,8 +226,37 @@ void write_learnt_rig(const std::filesystem::path& path, const LearntRig& rig) {
   object[kPlanesKey] = pairs(rig.gyro_planes_rad_s);
   object[kAccelPlanesKey] = pairs(rig.accelerometer_planes_m_s2);
   object[kAccelElementsKey] = numbers(rig.accelerometer_elements);
+  if (rig.device_errors) {
+    object[kErrorsKey] = numbers(rig.device_errors->errors.vector());
+    object[kErrorsCovarianceKey] = numbers(rig.device_errors->covariance);
+  }
   replace_file(path, object.dump(1) + "\n");
 }
+
+namespace {
+
+void read_device_errors(const Reader& reader, const json& object, LearntRig& rig) {
+  if (object.contains(kErrorsKey) != object.contains(kErrorsCovarianceKey)) {
+    reader.complain(object.contains(kErrorsKey) ? kErrorsCovarianceKey : kErrorsKey, "missing");
+  }
+  if (!object.contains(kErrorsKey)) return;
+  SensorErrors::Vector errors;
+  KnownSensorErrors known;
+  reader.read(kErrorsKey, errors);
+  reader.read(kErrorsCovarianceKey, known.covariance);
+  known.errors = SensorErrors::from(errors);
+  const SensorErrors::Vector deviation = known.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  // entries of very different sizes: compared in units of their deviations
+  const SensorErrors::Vector over = deviation.cwiseMax(1e-300).cwiseInverse();
+  const SensorErrors::Matrix scaled = over.asDiagonal() * known.covariance * over.asDiagonal();
+  if (!scaled.allFinite() || (scaled - scaled.transpose()).cwiseAbs().maxCoeff() > 1e-9 ||
+      Eigen::LLT<SensorErrors::Matrix>(scaled).info() != Eigen::Success) {
+    reader.complain(kErrorsCovarianceKey, "not symmetric and positive definite");
+  }
+  rig.device_errors = known;
+}
+
+}  // namespace
 
 LearntRig read_learnt_rig(const std::filesystem::path& path) {
   std::ifstream file(path);
@@ -233,6 +269,7 @@ LearntRig read_learnt_rig(const std::filesystem::path& path) {
   }
   for (const auto& [key, value] : object.items()) {
     const bool known = key == kElementsKey || key == kPlanesKey || key == kAccelPlanesKey || key == kAccelElementsKey ||
+                       key == kErrorsKey || key == kErrorsCovarianceKey ||
                        std::find(std::begin(kKeys), std::end(kKeys), key) != std::end(kKeys);
     if (!known) reader.complain(key, "unknown key");
   }
@@ -267,6 +304,7 @@ LearntRig read_learnt_rig(const std::filesystem::path& path) {
     reader.read_planes(kAccelPlanesKey, rig.accelerometer_planes_m_s2);
     reader.read(kAccelElementsKey, rig.accelerometer_elements);
   }
+  read_device_errors(reader, object, rig);
   return rig;
 }
 

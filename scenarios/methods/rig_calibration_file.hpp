@@ -20,6 +20,8 @@ struct LearntRig {
   /// Likewise of the accelerometer's elements, whose slopes are no constants of the rig: in their order there.
   Planes accelerometer_planes_m_s2 = {};
   Eigen::Matrix<double, 6, 1> accelerometer_elements = Eigen::Matrix<double, 6, 1>::Zero();
+  /// What the device makes of the motion: delay, g-sensitivity, scale; none: nothing was learnt of it.
+  std::optional<KnownSensorErrors> device_errors = std::nullopt;
 
   /// The rails of a triad's elements, for the search of the next run.
   RailPlanes planes(Triad triad = Triad::gyro) const;
@@ -32,17 +34,17 @@ struct LearntRig {
 LearntRig learnt(const RateReport& report);
 
 /// Gives it to the next run: constants with their covariance times `trust` (>= 1: rigs are taken apart and put together
-/// again), the planes of the gyro's rails, and the lowest rail of a sensor as its stated range. Throws
-/// std::invalid_argument on `trust` below 1.
+/// again), the planes of the gyro's rails, the device's errors likewise, and the lowest rail of a sensor as its stated
+/// range. Throws std::invalid_argument on `trust` below 1.
 void start_from(const LearntRig& rig, double trust, RateSmoother::Params& params);
 
 /// JSON, a few lines: lever arm, biases, inertia, the gyro's elements, covariance row by row, rails; planes of the
-/// rails of gyro and accelerometer. Numbers come back to the bit. Throws BadInput when it cannot write; nothing is left
-/// half written.
+/// rails of gyro and accelerometer; the device's errors in the order of SensorErrors and their covariance. Numbers come
+/// back to the bit. Throws BadInput when it cannot write; nothing is left half written.
 void write_learnt_rig(const std::filesystem::path& path, const LearntRig& rig);
 
 /// A file from before the elements were learnt lacks them and their six rows: they are what is assumed without any; one
-/// from before the accelerometer's planes were lacks those.
+/// from before the accelerometer's planes or the device's errors were lacks those.
 /// Throws BadInput with path and key on a missing, misspelt or extra key, on a number that is none or of the wrong
 /// count, and on a covariance that is not symmetric and positive definite.
 LearntRig read_learnt_rig(const std::filesystem::path& path);

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rate_devices FIRST LAST [--method NAME]... [--keep FOLDER] [--row N] [--draws]: what real devices do besides
-// clipping, one row each, on the same draws of `hill` without lidar: the accelerometer late, a gyro's window too long,
-// a low-pass, errors of scale, g-sensitivity, readings that repeat, and all of it together (`hill_consumer`). Prints
-// for each method of kind `rate` the error at clipped samples, the same against the first row, the share of clipped
-// axes within three reported deviations (all draws, the worst draw), their mean squared error over variance, and of the
-// elements from which the rail took more than 0.1 rad/s the share that the method calls clipped, and of those it calls
-// so the share from which it took anything. FOLDER keeps recordings; --draws prints a line a draw too. Not a test: 2 to
-// 3 s of one core a draw and row.
+// rate_devices FIRST LAST [--method NAME]... [--keep FOLDER] [--row N] [--draws] [--ablation]: what real devices do
+// besides clipping, one row each, on the same draws of `hill` without lidar: the accelerometer late, a gyro's window
+// too long, a low-pass, errors of scale, g-sensitivity, readings that repeat, and all of it together (`hill_consumer`).
+// Prints for each method of kind `rate` the error at clipped samples, the same against the first row, the share of
+// clipped axes within three reported deviations (all draws, the worst draw), their mean squared error over variance,
+// and of the elements from which the rail took more than 0.1 rad/s the share that the method calls clipped, and of
+// those it calls so the share from which it took anything. FOLDER keeps recordings; --draws prints a line a draw too;
+// --ablation takes `hill_consumer` with one of its errors switched off at a time instead. Not a test: 2 to 3 s of one
+// core a draw and row.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -52,12 +53,54 @@ const std::vector<Row>& rows() {
   return kRows;
 }
 
+// `hill_consumer` with one of its errors switched off at a time.
+const std::vector<Row>& ablations() {
+  using Changes = std::vector<std::pair<std::string, double>>;
+  static const Changes kScale = {{"gyro_scale_error", 0.0}, {"accel_scale_error", 0.0}};
+  static const Changes kAcross = {{"gyro_misalignment_rad", 0.0}, {"accel_misalignment_rad", 0.0}};
+  static const Changes kDelays = {{"gyro_delay_s", 0.0}, {"accel_delay_s", 0.0}};
+  static const Changes kWindows = {{"gyro_window_s", 0.0}, {"accel_window_s", 0.0}, {"digital_bandwidth_hz", 0.0}};
+  static const Changes kRepeats = {{"gyro_update_hz", 0.0}, {"accel_update_hz", 0.0}};
+  static const Changes kElements = {{"gyro_element_misalignment", 0.0}, {"gyro_element_scale", 0.0},
+                                    {"gyro_element_offset_rad_s", 0.0}, {"accel_element_misalignment", 0.0},
+                                    {"accel_element_scale", 0.0},       {"accel_element_offset_m_s2", 0.0}};
+  const auto joined = [](std::initializer_list<Changes> parts) {
+    Changes out;
+    for (const Changes& part : parts) out.insert(out.end(), part.begin(), part.end());
+    return out;
+  };
+  static const std::vector<Row> kRows = {
+      {"as it is", "hill", {}},
+      {"hill_consumer", "hill_consumer", {}},
+      {"without scale", "hill_consumer", kScale},
+      {"without misalignment", "hill_consumer", kAcross},
+      {"without g-sensitivity", "hill_consumer", {{"gyro_g_sensitivity_spread_s_m", 0.0}}},
+      {"without delays", "hill_consumer", kDelays},
+      {"without windows, low-pass", "hill_consumer", kWindows},
+      {"without repeats", "hill_consumer", kRepeats},
+      {"without jitter of the stamps", "hill_consumer", {{"time_jitter_s", 0.0}}},
+      {"without tilted elements", "hill_consumer", kElements},
+      {"without delays, windows, repeats", "hill_consumer", joined({kDelays, kWindows, kRepeats})},
+      {"without any of these", "hill_consumer",
+       joined({kScale,
+               kAcross,
+               kDelays,
+               kWindows,
+               kRepeats,
+               kElements,
+               {{"gyro_g_sensitivity_spread_s_m", 0.0}, {"time_jitter_s", 0.0}}})},
+  };
+  return kRows;
+}
+
 struct Request {
   std::uint64_t first = 0, last = 0;
   std::vector<std::string> methods;
   std::filesystem::path keep;
   int row = -1;
-  bool draws = false;
+  bool draws = false, ablation = false;
+
+  const std::vector<Row>& table() const { return ablation ? ablations() : rows(); }
 };
 
 bool parse(int count, char** words, Request& request) {
@@ -68,6 +111,10 @@ bool parse(int count, char** words, Request& request) {
     if (option && i + 1 == count) return false;
     if (word == "--draws") {
       request.draws = true;
+      continue;
+    }
+    if (word == "--ablation") {
+      request.ablation = true;
       continue;
     }
     if (word == "--method") {
@@ -88,8 +135,8 @@ bool parse(int count, char** words, Request& request) {
 }
 
 sim::Recording recording_of(const scenarios::DataRoot& data, const Row& row, std::size_t index, std::uint64_t seed,
-                            const std::filesystem::path& keep) {
-  const std::string name = "row" + std::to_string(index) + "_" + std::to_string(seed);
+                            const std::string& prefix, const std::filesystem::path& keep) {
+  const std::string name = prefix + std::to_string(index) + "_" + std::to_string(seed);
   return tumble::bench::kept_recording(data, keep, name, row.scenario, seed, [&] {
     sim::Situation out =
         scenarios::without_lidars(scenarios::draw(data, scenarios::load_scenario(data, row.scenario), seed));
@@ -199,12 +246,14 @@ int run(const Request& request) {
   std::printf("%-31s %-12s %8s %7s %8s %8s %7s %7s %8s %7s %6s %6s\n", "device", "method", "median", "against", "p99",
               "free", "within", "worst", "z^2", "us", "found", "right");
   std::vector<double> as_it_is(request.methods.size(), 0.0);
-  for (std::size_t r = 0; r < rows().size(); ++r) {
+  const std::vector<Row>& table = request.table();
+  for (std::size_t r = 0; r < table.size(); ++r) {
     if (request.row >= 0 && r != 0 && r != static_cast<std::size_t>(request.row)) continue;
     std::vector<sim::Recording> recordings;
     for (std::uint64_t seed = request.first; seed <= request.last; ++seed) {
       try {
-        recordings.push_back(recording_of(data, rows()[r], r, seed, request.keep));
+        recordings.push_back(
+            recording_of(data, table[r], r, seed, request.ablation ? "ablation" : "row", request.keep));
       } catch (const sim::SimulationFailure& failure) {
         std::printf("draw %llu left out: %s\n", static_cast<unsigned long long>(seed), failure.what());
       }
@@ -212,7 +261,7 @@ int run(const Request& request) {
     for (std::size_t m = 0; m < request.methods.size(); ++m) {
       const Figures f = figures(request, recordings, request.methods[m]);
       if (r == 0) as_it_is[m] = f.median;
-      std::printf("%-31s %-12s %8.4f %6.2fx %8.3f %8.4f %7.2f %7.2f %8.2f %7.2f %6.2f %6.2f\n", rows()[r].title.c_str(),
+      std::printf("%-31s %-12s %8.4f %6.2fx %8.3f %8.4f %7.2f %7.2f %8.2f %7.2f %6.2f %6.2f\n", table[r].title.c_str(),
                   request.methods[m].c_str(), f.median, f.median / as_it_is[m], f.p99, f.free, 100.0 * f.share,
                   100.0 * f.worst, f.nees, f.us, 100.0 * f.rails.found_share(), 100.0 * f.rails.right_share());
     }
@@ -226,7 +275,8 @@ int run(const Request& request) {
 int main(int count, char** words) {
   Request request;
   if (!parse(count, words, request)) {
-    std::fprintf(stderr, "usage: rate_devices FIRST LAST [--method NAME]... [--keep FOLDER] [--row N] [--draws]\n");
+    std::fprintf(
+        stderr, "usage: rate_devices FIRST LAST [--method NAME]... [--keep FOLDER] [--row N] [--draws] [--ablation]\n");
     return 2;
   }
   try {

@@ -53,6 +53,13 @@ void mark_partial(const RailPlanes& planes, const RailDetector& rails, const Rai
 void doubt_unseen_rails(const RailPlanes& planes, double noise_rad_s, const ImuSample* before, RateObservation& now,
                         const ImuSample* after);
 
+/// The same of whole stretches: readings that stay at a top near the rails of the other elements, of an element whose
+/// own rail was not seen on that side, may hide what the motion had risen to between the slopes at which they were
+/// entered and left. `offset_share`: of the rail, how far elements differ (RailPlaneFinder::Params). Nothing for a
+/// device that flags what it clips, or where no rail was seen. O(N).
+void doubt_level_tops(const RailPlanes& planes, double offset_share, double noise_rad_s,
+                      std::span<RateObservation> observations);
+
 /// What rails tell of the slopes of an element, in the order of RigConstants::elements.
 struct ToldSlopes {
   Eigen::Vector2d slopes;

@@ -20,6 +20,8 @@ PartialLoss partial_loss(double reading_rad_s, double neighbour_rad_s, double ra
   const double depth = rail_rad_s - reading_rad_s, slope = reading_rad_s - neighbour_rad_s;
   // a mean of clipped values stands on the rail exactly; noise before the rail lowers it by less than this
   if (!(depth > 0.1 * noise_rad_s)) return {};
+  // nor does a rate cross the rail that does not move: a rail that is tilted a little passes for a plateau that sinks
+  if (!(slope > noise_rad_s)) return {};
   double share = 0.0;  // rails.md (R71)
   if (slope > 2.0 * depth) {
     const double ratio = depth / slope;

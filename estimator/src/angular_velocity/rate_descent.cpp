@@ -17,6 +17,10 @@ namespace {
 constexpr double kOtherStarts[] = {16.0, 0.25};
 constexpr double kFlightShareExpected = 0.5;
 
+// A step that moves nothing by more than this many of its own deviations is the last, however many rad/s that is of a
+// rate that is hardly known: rate_smoother.md (R45).
+constexpr double kStepDeviations = 0.1;
+
 // rate_smoother.md (R22) to (R25); the jump is the smaller of (R23).
 void weigh_all(const RateModel& model, std::span<const RateObservation> observations, const RigConstants& rig,
                const RigConstants::Matrix& rig_covariance, double widen, std::span<RateEstimate> estimates) {
@@ -52,7 +56,8 @@ bool descend(const RateSmoother::Params& params, const RateModel& model, std::sp
     health.last_step_rad_s = solution.iteration.apply(model, params.step_max_rad_s, estimates, solution.rig);
     ++health.iterations;
 
-    const bool settled = widen == 1.0 && health.last_step_rad_s < params.tolerance_rad_s;
+    const bool settled = widen == 1.0 && (health.last_step_rad_s < params.tolerance_rad_s ||
+                                          solution.iteration.decrement() < kStepDeviations * kStepDeviations);
     if (soft > 0) {
       solution.iteration.for_each_conditional([&](std::size_t k, const arrow::Conditional& conditional) {
         model.update_bounds(observations[k], solution.rig, conditional, solution.rig_covariance, params.bound_damping,
@@ -108,6 +113,13 @@ bool RateIteration::factorise(const RateModel& model, std::span<const RateEstima
     if (!arrow::eliminate(blocks_[k], last ? nullptr : &blocks_[k + 1], corner_)) return false;
   }
   return arrow::solve_corner(corner_, rig_step_, rig_covariance_);
+}
+
+// g' H^-1 g, block by block: rate_smoother.md (R45). Blocks hold L^-1 g once they are eliminated.
+double RateIteration::decrement() const {
+  double sum = rig_step_.dot(corner_.gradient);
+  for (const arrow::Block& block : blocks_) sum += block.gradient.squaredNorm();
+  return sum;
 }
 
 double RateIteration::apply(const RateModel& model, double step_max, std::span<RateEstimate> estimates,

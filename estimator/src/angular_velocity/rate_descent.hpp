@@ -40,6 +40,9 @@ class RateIteration {
   Moved moved_by_errors(const RateModel& model, std::span<const RateEstimate> estimates, const RigConstants& rig) const;
 
   const RigConstants::Matrix& rig_covariance() const { return rig_covariance_; }
+  /// Of the last factorisation: twice the decrease of the cost that the step promises, and the square of the most
+  /// deviations by which it moves any combination of the unknowns.
+  double decrement() const;
 
  private:
   std::span<const RateObservation> observations_;

@@ -31,9 +31,11 @@ SensorErrorSizes as_stated(SensorErrorSizes sizes) {
   return sizes;
 }
 
-// Whether a device may have such errors: what a fit has beyond that, the model of flight has missed.
-bool plausible(const SensorErrors& errors, const SensorErrorSizes& sizes) {
+// Whether a device of which `given` is stated may have such errors: what a fit has beyond that, the model of flight has
+// missed.
+bool plausible(const SensorErrors& found, const SensorErrors& given, const SensorErrorSizes& sizes) {
   constexpr double kDeviations = 6.0;
+  const SensorErrors errors = SensorErrors::from(found.vector() - given.vector());
   const double delay_s = kDeviations * std::max(sizes.delay_s, sizes.delay_unknown_s);
   const double felt_s_m = kDeviations * std::max(sizes.felt_s_m, sizes.felt_unknown_s_m);
   return errors.vector().allFinite() && std::abs(errors.accel_delay_s) <= std::min(0.1, delay_s) &&
@@ -139,9 +141,11 @@ SensorErrorSizes unstated(SensorErrorSizes sizes) {
 }
 
 // The fit where errors are assumed about those that were given.
-SensorErrorFit fit_about(const SensorErrors& given, SensorErrorEvidence evidence, const SensorErrorSizes& sizes) {
+SensorErrorFit fit_about(const SensorErrors& given, SensorErrorEvidence evidence, const SensorErrorSizes& sizes,
+                         SensorErrorEvidence learnt) {
   evidence.about = SensorErrors::from(evidence.about.vector() - given.vector());
-  SensorErrorFit out = fit_sensor_errors(evidence, sizes);
+  learnt.about = SensorErrors::from(learnt.about.vector() - given.vector());
+  SensorErrorFit out = fit_sensor_errors(evidence, sizes, learnt);
   out.known.errors = SensorErrors::from(out.known.errors.vector() + given.vector());
   return out;
 }
@@ -154,7 +158,10 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
   const bool estimated = params.error_rounds_max > 1;
   const double period_s = median_period_s(samples);
   const RigConstants rig = known.calibration ? known.calibration->constants : known.nominal;
-  SensorErrors errors = known.errors;
+  bool told_before = estimated && params.learnt_errors.has_value();
+  SensorErrorEvidence learnt =
+      told_before ? learnt_evidence(*params.learnt_errors, known.error_sizes) : SensorErrorEvidence{};
+  SensorErrors errors = told_before ? params.learnt_errors->errors : known.errors;
   // triads with clocks of their own are not sampled as alike as a sheet may have it
   const bool own_clocks = health.gyro_update_s > 0.0 || health.accel_update_s > 0.0;
   SensorErrorSizes sizes = known.error_sizes;
@@ -184,6 +191,14 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
     if (Status status = descend_held(params, corrected, period_s, observations, struck, fit, health); !status.ok()) {
       return status;
     }
+    if (health.rig_held && told_before) {
+      // it may be another device
+      told_before = false;
+      learnt = {};
+      errors = known.errors;
+      health.error_rounds = 0;
+      continue;
+    }
     if (health.rig_held && health.error_rounds == 1 && estimated && errors.accel_delay_s != other_delay_s) {
       errors.accel_delay_s = other_delay_s;
       health.error_rounds = 0;
@@ -201,8 +216,8 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
     }
     fit.moved.evidence.about = errors;
     add_guess(guess, fit.moved.evidence);
-    found = fit_about(known.errors, fit.moved.evidence, sizes);
-    believed = plausible(found.known.errors, known.error_sizes);
+    found = fit_about(known.errors, fit.moved.evidence, sizes, learnt);
+    believed = plausible(found.known.errors, known.errors, known.error_sizes);
     if (health.rig_held || !believed || health.error_rounds >= params.error_rounds_max) break;
     if (!far_apart(found.known.errors, errors)) break;
     errors = found.known.errors;
@@ -216,7 +231,7 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
     sizes = unstated(sizes);
     health.shared_delay_sigma_s = std::sqrt(0.5) * sizes.delay_s;
     // in the covariance alone: what readings are corrected for stays what they speak for plainly
-    const KnownSensorErrors unknown = fit_about(known.errors, fit.moved.evidence, sizes).known;
+    const KnownSensorErrors unknown = fit_about(known.errors, fit.moved.evidence, sizes, learnt).known;
     const SensorErrors::Vector apart = unknown.errors.vector() - found.known.errors.vector();
     found.known.covariance = unknown.covariance + apart * apart.transpose();
   }

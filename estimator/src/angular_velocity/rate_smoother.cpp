@@ -15,6 +15,9 @@ namespace {
 
 using Eigen::Vector3d;
 
+// Deviations within which a delay that both triads share lies: three in a hundred normal ones lie beyond.
+constexpr double kSharedReach = 2.0;
+
 double median_force(std::span<const ImuSample> samples) {
   std::vector<double> force(samples.size());
   for (std::size_t k = 0; k < force.size(); ++k) force[k] = samples[k].specific_force_m_s2.norm();
@@ -67,10 +70,22 @@ Eigen::Matrix3d considered(const arrow::ErrorMatrix& moved, const SensorErrors::
   return std::min(1.0, most / std::max(out.trace(), 1e-300)) * out;
 }
 
-// What a time that both triads may share makes of a rate.
-Eigen::Matrix3d of_shared_delay(double variance_s2, const RateModelParams& params, const RateEstimate& estimate) {
-  const Vector3d& alpha = estimate.knot.acceleration_rad_s2;
-  const double struck = params.contact_gain_rad_m * estimate.contact_m_s2.norm();
+// What a time that both triads may share makes of a rate: the most that force and acceleration do within reach of it,
+// where a stroke of the next sample's window may belong to this one.
+Eigen::Matrix3d of_shared_delay(double variance_s2, const RateModelParams& params,
+                                std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
+                                std::size_t k) {
+  if (!(variance_s2 > 0.0)) return Eigen::Matrix3d::Zero();
+  const auto reach_ns = static_cast<TimeNs>(1e9 * kSharedReach * std::sqrt(variance_s2));
+  const TimeNs now = observations[k].sample.time_ns;
+  double force = 0.0;
+  std::size_t from = k, to = k;
+  // the window of the sample before the first within reach ends within reach
+  while (from > 0 && now - observations[from - 1].sample.time_ns <= reach_ns) --from;
+  while (to + 1 < estimates.size() && observations[to].sample.time_ns - now < reach_ns) ++to;
+  for (std::size_t i = from; i <= to; ++i) force = std::max(force, estimates[i].contact_m_s2.norm());
+  const Vector3d& alpha = estimates[k].knot.acceleration_rad_s2;
+  const double struck = params.contact_gain_rad_m * force;
   return variance_s2 * (alpha * alpha.transpose() + struck * struck * Eigen::Matrix3d::Identity());
 }
 
@@ -111,6 +126,12 @@ RateSmoother::RateSmoother(const Params& params)
   require_within("calibration_mahalanobis_max", params.calibration_mahalanobis_max, 0.1, 1e6);
   require_within("error_rounds_max", params.error_rounds_max, 1, 10);
   require_within("gap_max_s", params.gap_max_s, 1e-6, 3600.0);
+  if (params.learnt_errors) {
+    for (const double value : params.learnt_errors->errors.vector()) require_within("learnt errors", value, -0.2, 0.2);
+    for (const double value : params.learnt_errors->covariance.reshaped()) {
+      require_within("learnt errors' covariance", value, -1.0, 1.0);
+    }
+  }
   (void)RateModel(params.model, 0.01);  // throws on bad parameters
 }
 
@@ -157,6 +178,9 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
     if (health.rails_upright) continue;
     doubt_unseen_rails(planes, model.gyro_sigma_rad_s(), before, observations[k], after);
   }
+  if (!health.rails_upright) {
+    doubt_level_tops(planes, params_.planes.offset_share, model.gyro_sigma_rad_s(), observations);
+  }
   mark_held(samples, observations, health);
   RateFit fit(observations, model);
   if (Status status = fit_rounds(params_, known, samples, clippings, observations, fit, health); !status.ok()) {
@@ -171,7 +195,7 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
     const Eigen::Matrix3d covariance =
         arrow::rate_covariance(conditional, solution.rig_covariance) +
         considered(fit.moved.of_sample[k], health.sensor_errors.covariance, params_.model.rate_max_rad_s) +
-        of_shared_delay(shared_s2, known, solution.estimates[k]);
+        of_shared_delay(shared_s2, known, observations, solution.estimates, k);
     covariances[k] = fit.model.reported(covariance, observations[k], solution.estimates[k]);
   });
   std::vector<RateState> states(samples.size());

@@ -64,14 +64,16 @@ struct Hypothesis {
   Matrix covariance;
 };
 
-// Evidence in units of the prior's deviations, h = gamma + information * errors: rate_smoother.md (R38), (R39).
-Hypothesis posterior(const Matrix& information, const Vector& h, const Vector& deviation, double log_prior) {
+// Evidence in units of the prior's deviations, h = gamma + information * errors: rate_smoother.md (R38), (R39), (R46).
+Hypothesis posterior(const Matrix& information, const Matrix& learnt, const Vector& h, const Vector& deviation,
+                     double log_prior) {
   constexpr int kRest = SensorErrors::kSize - SensorErrors::kFelt;
-  const Matrix scaled = deviation.asDiagonal() * information * deviation.asDiagonal();
+  const Matrix scaled = deviation.asDiagonal() * (information + learnt) * deviation.asDiagonal();
+  const Matrix scaled_believed = deviation.asDiagonal() * (kBelieved * information + learnt) * deviation.asDiagonal();
   const Vector scaled_h = deviation.cwiseProduct(h);
   Hypothesis out;
   const Matrix sharp = Matrix::Identity() + scaled;
-  const Eigen::LLT<Matrix> all(sharp), believed(Matrix::Identity() + kBelieved * scaled);
+  const Eigen::LLT<Matrix> all(sharp), believed(Matrix::Identity() + scaled_believed);
   double log_determinant = 0.0;
   for (int i = 0; i < SensorErrors::kSize; ++i) log_determinant += std::log(all.matrixLLT()(i, i));
   out.log_odds = log_prior + 0.5 * scaled_h.dot(all.solve(scaled_h)) - log_determinant;
@@ -113,9 +115,11 @@ SensorErrors SensorErrors::from(const Vector& v) {
   return out;
 }
 
-SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const SensorErrorSizes& sizes) {
+SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const SensorErrorSizes& sizes,
+                                 const SensorErrorEvidence& learnt) {
   const Matrix information = evidence_of(evidence.information, sizes);
-  const Vector h = evidence.gradient + information * evidence.about.vector();
+  const Vector h = evidence.gradient + information * evidence.about.vector() + learnt.gradient +
+                   learnt.information * learnt.about.vector();
   const bool one_matrix = sizes.gyro_unknown <= sizes.gyro && sizes.accel_unknown <= sizes.accel;
   const bool one_felt = sizes.felt_unknown_s_m <= sizes.felt_s_m, one_delay = sizes.delay_unknown_s <= sizes.delay_s;
   std::vector<Hypothesis> all;
@@ -126,7 +130,7 @@ SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const Sens
           const Size scale = kScaleSizes[i], cross = kCrossSizes[m], felt = kFeltSizes[f], delay = kDelaySizes[d];
           const Shares shares{scale.share, cross.share, felt.share, delay.share};
           const double prior = scale.probability * cross.probability * felt.probability * delay.probability;
-          all.push_back(posterior(information, h, deviations(sizes, shares), std::log(prior)));
+          all.push_back(posterior(information, learnt.information, h, deviations(sizes, shares), std::log(prior)));
           all.back().shares = shares;
         }
       }
@@ -156,6 +160,25 @@ SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const Sens
     out.known.covariance += one.log_odds * (one.covariance + off * off.transpose());
   }
   out.known.errors = SensorErrors::from(mean);
+  return out;
+}
+
+// rate_smoother.md (R46)
+SensorErrorEvidence learnt_evidence(const KnownSensorErrors& learnt, const SensorErrorSizes& sizes) {
+  const Vector unit = deviations(sizes, {});
+  const Matrix symmetric = 0.5 * (learnt.covariance + learnt.covariance.transpose());
+  const Matrix scaled = unit.cwiseInverse().asDiagonal() * symmetric * unit.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Matrix> parts(scaled);
+  // a direction that is as open as it was before tells nothing
+  const Vector told = parts.eigenvalues().cwiseMax(1e-12).cwiseInverse();
+  const Vector of_mean = (told.array() > 1.0).select(told, Vector::Zero());
+  const auto in_units = [&](const Vector& values) -> Matrix {
+    const Matrix kept = parts.eigenvectors() * values.asDiagonal() * parts.eigenvectors().transpose();
+    return unit.cwiseInverse().asDiagonal() * kept * unit.cwiseInverse().asDiagonal();
+  };
+  SensorErrorEvidence out;
+  out.information = in_units((told.array() - 1.0).cwiseMax(0.0));
+  out.gradient = in_units(of_mean) * learnt.errors.vector();
   return out;
 }
 

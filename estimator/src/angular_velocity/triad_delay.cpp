@@ -155,7 +155,8 @@ std::vector<Change> changes(const Readings& gyro) {
   return out;
 }
 
-// The integral of the force's norm, linear between readings, from the first of them on.
+// The integral of the force's norm, linear between readings, from the first of them on; beyond the ends the nearest
+// reading holds.
 class ForceIntegral {
  public:
   explicit ForceIntegral(const Readings& force) : time_s_(force.time_s), norm_(force.size()), sum_(force.size(), 0.0) {
@@ -164,8 +165,10 @@ class ForceIntegral {
       if (k > 0) sum_[k] = sum_[k - 1] + 0.5 * (norm_[k] + norm_[k - 1]) * (time_s_[k] - time_s_[k - 1]);
     }
   }
-  // `from`: as in force_at(); beyond the ends the last reading holds
+  // `from`: as in force_at()
   double to(double time_s, std::size_t& from) const {
+    if (time_s <= time_s_.front()) return norm_.front() * (time_s - time_s_.front());
+    if (time_s >= time_s_.back()) return sum_.back() + norm_.back() * (time_s - time_s_.back());
     while (from + 2 < norm_.size() && time_s_[from + 1] <= time_s) ++from;
     const double u = time_s - time_s_[from];
     const double slope = (norm_[from + 1] - norm_[from]) / (time_s_[from + 1] - time_s_[from]);

@@ -9,6 +9,7 @@
 
 #include "estimator/angular_velocity/drawn_elements.hpp"
 #include "estimator/angular_velocity/tumble_recording.hpp"
+#include "estimator/src/angular_velocity/element_clipping.hpp"
 #include "tumble/angular_velocity/rate_smoother.hpp"
 
 namespace tumble {
@@ -112,6 +113,58 @@ TEST(RateElements, AnUprightDeviceIsTakenForOne) {
   RateReport report;
   ASSERT_TRUE(RateSmoother({}).estimate(tumble.samples, states, report).ok());
   EXPECT_TRUE(report.rails_upright);
+}
+
+// A rate about y that rises and falls along straight lines and is cut at a level; another element's rail is known.
+std::vector<RateObservation> cut_tops(double level_rad_s, double up_rad_s, double down_rad_s, int sign) {
+  std::vector<RateObservation> out(60);
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    const double x = static_cast<double>(k) - 30.0;
+    const double rate = level_rad_s + 2.0 + (x < 0.0 ? up_rad_s * x : -down_rad_s * x);
+    out[k].sample.time_ns = static_cast<TimeNs>(k) * 10'000'000;
+    out[k].sample.angular_velocity_rad_s.y() = sign * std::min(level_rad_s, rate);
+  }
+  return out;
+}
+
+RailPlanes plane_of_x(double distance_rad_s) {
+  RailPlanes out;
+  out.element[0] = RailPlane{};
+  out.element[0]->row = Vector3d::UnitX();
+  out.element[0]->distance_rad_s = distance_rad_s;
+  out.element[0]->samples = {5, 5};
+  return out;
+}
+
+// The top of straight lines has hidden 2 rad/s; half a step at either end is what whole samples leave open.
+TEST(UnseenRails, ALevelTopNearTheOthersMayHideWhereItsSlopesMeet) {
+  for (const int sign : {-1, 1}) {
+    for (const double down : {0.25, 0.5}) {
+      std::vector<RateObservation> tops = cut_tops(8.5, 0.4, down, sign);
+      doubt_level_tops(plane_of_x(8.7), 0.02, 0.005, tops);
+      EXPECT_NEAR(2.0 * tops[30].lost_sigma_rad_s.y(), 2.0, 0.5 * (0.4 + down)) << down;
+      EXPECT_EQ(tops[30].partial, 2u);
+      EXPECT_EQ(tops[5].partial, 0u);
+      EXPECT_EQ(tops[30].lost_sigma_rad_s.x(), 0.0);
+    }
+  }
+}
+
+TEST(UnseenRails, NothingIsDoubtedThatIsKnownOrFarFromTheRails) {
+  const auto doubted = [](const RailPlanes& planes, std::vector<RateObservation> tops) {
+    doubt_level_tops(planes, 0.02, 0.005, tops);
+    return std::any_of(tops.begin(), tops.end(), [](const RateObservation& o) { return o.partial != 0; });
+  };
+  const std::vector<RateObservation> top = cut_tops(8.5, 0.4, 0.4, 1);
+  EXPECT_TRUE(doubted(plane_of_x(8.7), top));
+  EXPECT_FALSE(doubted({}, top));
+  EXPECT_FALSE(doubted(plane_of_x(9.2), top));  // a rail 6 % away is another's
+  RailPlanes own = plane_of_x(8.7);
+  own.element[1] = own.element[0];
+  EXPECT_FALSE(doubted(own, top));
+  std::vector<RateObservation> flagged = top;
+  flagged[3].sample.device_clip_flags = 1;
+  EXPECT_FALSE(doubted(plane_of_x(8.7), flagged));
 }
 
 }  // namespace

@@ -117,6 +117,36 @@ TEST(RateFactors, VanishOnATorqueFreeBody) {
   }
 }
 
+// What lever and inertia leave of a gyro's scale in flight: rate_smoother.md (R47), (R48). Nothing of a spin about a
+// principal axis.
+TEST(RateFactors, AScaleOfTheGyroShowsByTheAccelerationAlone) {
+  constexpr double k = 0.01;
+  const Vector3d moments(2.0, 2.4, 3.0);
+  RigConstants rig, other;
+  rig.lever_arm_m = {-0.022, -0.085, 0.055};
+  rig.inertia = RigConstants::inertia_coordinates(moments.asDiagonal());
+  other.lever_arm_m = rig.lever_arm_m / ((1.0 + k) * (1.0 + k));
+  other.inertia = rig.inertia / (1.0 + k);
+  for (const Vector3d& start : {Vector3d(3.0, 12.0, -5.0), Vector3d(0.0, 0.0, 14.0)}) {
+    const oracles::TorqueFreeRotation body(moments, start);
+    for (const double t : {0.0, 0.3, 1.7}) {
+      const Vector3d a = body.acceleration(t);
+      const RateKnot scaled{(1.0 + k) * body.rate(t), (1.0 + k) * a};
+      const Vector3d of_force = flight_factor(scaled, other, body.specific_force(t, rig.lever_arm_m)).residual;
+      EXPECT_LT((of_force + k * a.cross(rig.lever_arm_m)).norm(), 1e-9 + 1.1 * k * k * a.norm() * 0.11);
+      const Vector3d of_torque = euler_factor(scaled, other).residual;
+      EXPECT_LT((of_torque + k * (rig.inertia_matrix() - Eigen::Matrix3d::Identity()) * a).norm(), 1e-9);
+      if (start.x() == 0.0) {
+        EXPECT_LT(of_force.norm() + of_torque.norm(), 1e-9);
+      } else {
+        // without the other lever and inertia it would show plainly
+        EXPECT_GT(flight_factor(scaled, rig, body.specific_force(t, rig.lever_arm_m)).residual.norm(),
+                  3.0 * of_force.norm());
+      }
+    }
+  }
+}
+
 TEST(RigConstants, InertiaIsFreeOfScaleAndItsCoordinatesComeBack) {
   Eigen::Matrix3d J;
   J << 3.0, 0.1, -0.2, 0.1, 2.5, 0.3, -0.2, 0.3, 2.0;

@@ -118,6 +118,33 @@ TEST(SensorErrors, MoveTheGradientAsTheModelHasIt) {
   }
 }
 
+// What was learnt comes back as it was, from a device as open as the one it was learnt of and without other readings.
+TEST(SensorErrors, WhatWasLearntComesBack) {
+  SensorErrorSizes open;
+  open.gyro = open.accel = open.gyro_unknown;
+  open.felt_s_m = open.felt_unknown_s_m;
+  open.delay_s = open.delay_unknown_s;
+  KnownSensorErrors learnt = fit_sensor_errors({}, open).known;
+  constexpr int i = SensorErrors::kDelay, j = SensorErrors::kFelt;
+  learnt.covariance(i, i) *= 0.01;
+  learnt.covariance(j, j) *= 0.25;
+  learnt.covariance(i, j) = learnt.covariance(j, i) =
+      0.3 * std::sqrt(learnt.covariance(i, i) * learnt.covariance(j, j));
+  learnt.errors.accel_delay_s = 4e-3;
+  learnt.errors.felt_s_m(0, 0) = 1e-4;
+  const SensorErrorFit back = fit_sensor_errors({}, open, learnt_evidence(learnt, open));
+  EXPECT_NEAR(back.known.errors.accel_delay_s, 4e-3, 1e-9);
+  EXPECT_NEAR(back.known.errors.felt_s_m(0, 0), 1e-4, 1e-10);
+  const SensorErrors::Vector deviation = learnt.covariance.diagonal().cwiseSqrt();
+  const SensorErrors::Matrix apart = deviation.cwiseInverse().asDiagonal() *
+                                     (back.known.covariance - learnt.covariance) *
+                                     deviation.cwiseInverse().asDiagonal();
+  EXPECT_LT(apart.cwiseAbs().maxCoeff(), 1e-6);
+  // what is as open as before tells nothing
+  const KnownSensorErrors nothing = fit_sensor_errors({}, open).known;
+  EXPECT_LT(learnt_evidence(nothing, open).information.cwiseAbs().maxCoeff() * open.delay_s * open.delay_s, 1e-6);
+}
+
 TEST(TriadDelay, IsGuessedWhereThereIsOne) {
   std::size_t right = 0;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
@@ -216,6 +243,58 @@ TEST(RateSmootherDevices, GivenErrorsAreKept) {
   }
   ASSERT_GT(without_sum, 0.0);
   EXPECT_LT(given_sum, 0.5 * without_sum);
+}
+
+// A delay that is stated is where others are looked for: 30 ms are not doubted because devices of which nothing is
+// stated have less.
+TEST(RateSmootherDevices, AStatedDelayFarFromZeroIsBelieved) {
+  const TumbleRecording late = late_tumble(3, 3);
+  RateSmoother::Params params;
+  params.model.errors.accel_delay_s = 0.03;
+  params.model.error_sizes.delay_s = 2e-4;
+  params.model.error_sizes.delay_unknown_s = 4e-3;
+  std::vector<RateState> states;
+  RateReport report;
+  ASSERT_TRUE(RateSmoother(params).estimate(late.samples, states, report).ok());
+  EXPECT_NEAR(report.sensor_errors.errors.accel_delay_s, 0.03, 5e-4);
+  constexpr int i = SensorErrors::kDelay;
+  EXPECT_LT(std::sqrt(report.sensor_errors.covariance(i, i)), 0.5 * params.model.error_sizes.delay_unknown_s);
+  EXPECT_GT(report.together, 0.5);
+}
+
+// What a run has learnt of a late accelerometer, the next begins with: it finds in its first descent what a fresh one
+// finds in its second or third, and knows it better.
+TEST(RateSmootherDevices, WhatARunLearnsOfTheDeviceHelpsTheNext) {
+  const TumbleRecording first = late_tumble(3, 1), second = late_tumble(5, 1);
+  std::vector<RateState> states;
+  RateReport of_first, fresh, informed;
+  ASSERT_TRUE(RateSmoother({}).estimate(first.samples, states, of_first).ok());
+  ASSERT_TRUE(RateSmoother({}).estimate(second.samples, states, fresh).ok());
+  RateSmoother::Params params;
+  params.learnt_errors = of_first.sensor_errors;
+  ASSERT_TRUE(RateSmoother(params).estimate(second.samples, states, informed).ok());
+  EXPECT_NEAR(informed.sensor_errors.errors.accel_delay_s, 0.01, 5e-4);
+  EXPECT_LE(informed.error_rounds, fresh.error_rounds);
+  constexpr int i = SensorErrors::kDelay;
+  EXPECT_LT(informed.sensor_errors.covariance(i, i), fresh.sensor_errors.covariance(i, i));
+  // it stays a device that is not what its sheet says
+  EXPECT_LT(informed.together, 0.05);
+  EXPECT_GT(informed.shared_delay_sigma_s, 0.0);
+}
+
+// Negative control: what was learnt of a late device does not make another one late.
+TEST(RateSmootherDevices, WhatWasLearntOfAnotherDeviceGivesWayToTheReadings) {
+  const TumbleRecording first = late_tumble(3, 1), second = late_tumble(5, 0);
+  std::vector<RateState> states;
+  RateReport report;
+  ASSERT_TRUE(RateSmoother({}).estimate(first.samples, states, report).ok());
+  RateSmoother::Params params;
+  params.learnt_errors = report.sensor_errors;
+  ASSERT_TRUE(RateSmoother(params).estimate(second.samples, states, report).ok());
+  EXPECT_LT(std::abs(report.sensor_errors.errors.accel_delay_s), 5e-4);
+  Coverage coverage;
+  count(second, states, coverage);
+  EXPECT_GT(coverage.share(), 0.97);
 }
 
 // Readings of a triad that has a rate of its own.

@@ -217,6 +217,9 @@ TEST(PartialLoss, IsExactForAConstantSlope) {
   }
   EXPECT_FALSE(partial_loss(kRail, 9.0, kRail, 1e-3).partial);         // hidden all along
   EXPECT_FALSE(partial_loss(kRail - 1e-3, 0.0, kRail, 1e-6).partial);  // but for a hundredth
+  // a plateau that sinks, as of a rail tilted by a thousandth: flagged throughout, and no step to a neighbour
+  EXPECT_FALSE(partial_loss(kRail - 2e-3, kRail - 2.1e-3, kRail, 5e-3).partial);
+  EXPECT_TRUE(partial_loss(kRail - 0.05, kRail - 0.3, kRail, 5e-3).partial);
 }
 
 }  // namespace

@@ -29,6 +29,11 @@ class RigCalibrationFile : public testing::TemporaryFolder {
     rig.gyro_planes_rad_s[2] = {-10.25, 10.55};
     rig.accelerometer_planes_m_s2[0] = {std::nullopt, 77.5};
     rig.accelerometer_elements << 0.016, -0.0026, 0.0, 0.0, 0.0, 0.0;
+    rig.device_errors = KnownSensorErrors{};
+    rig.device_errors->errors.accel_delay_s = 0.0041;
+    rig.device_errors->errors.felt_s_m(2, 0) = -1.3e-4;
+    rig.device_errors->covariance = 1e-6 * SensorErrors::Matrix::Identity();
+    rig.device_errors->covariance(0, 27) = rig.device_errors->covariance(27, 0) = 3e-7;
     return rig;
   }
 
@@ -70,6 +75,9 @@ TEST_F(RigCalibrationFile, ComesBackTheSameToTheBit) {
   EXPECT_EQ(back.planes(Triad::accelerometer).element[0]->row, Eigen::Vector3d(1.0, 0.016, -0.0026));
   EXPECT_TRUE(back.planes(Triad::accelerometer).element[0]->seen(1));
   EXPECT_FALSE(back.planes(Triad::accelerometer).element[0]->seen(-1));
+  ASSERT_TRUE(back.device_errors.has_value());
+  EXPECT_TRUE(back.device_errors->errors == example().device_errors->errors);
+  EXPECT_EQ(back.device_errors->covariance, example().device_errors->covariance);
   EXPECT_FALSE(back.planes().element[0].has_value());
   ASSERT_TRUE(back.planes().element[2].has_value());
   EXPECT_NEAR(back.planes().element[2]->distance_rad_s, 10.4, 1e-12);
@@ -86,6 +94,8 @@ TEST_F(RigCalibrationFile, ComplaintsNameTheKey) {
   EXPECT_NE(complaint("-10.25", "10.25").find("gyro_planes_rad_s"), std::string::npos);
   EXPECT_NE(complaint("77.5", "-77.5").find("accelerometer_planes_m_s2"), std::string::npos);
   EXPECT_NE(complaint("\"accelerometer_elements\"", "\"gone\"").find("gone: unknown key"), std::string::npos);
+  EXPECT_NE(complaint("3e-07", "1.0").find("device_errors_covariance"), std::string::npos);
+  EXPECT_NE(complaint("\"device_errors\"", "\"gone\"").find("gone: unknown key"), std::string::npos);
   EXPECT_EQ(complaint("10.4", "10.3"), "");  // negative control: a sound change is taken
 }
 
@@ -154,6 +164,9 @@ TEST_F(RigCalibrationFile, TheNextRunStartsFromIt) {
   EXPECT_DOUBLE_EQ(params.model.calibration->covariance(3, 3), 2.8e-4);
   EXPECT_EQ(params.rails.stated_gyro_rad_s.value_or(0.0), 10.4);
   EXPECT_FALSE(params.rails.stated_accel_m_s2.has_value());
+  ASSERT_TRUE(params.learnt_errors.has_value());
+  EXPECT_EQ(params.learnt_errors->errors.accel_delay_s, 0.0041);
+  EXPECT_DOUBLE_EQ(params.learnt_errors->covariance(3, 3), 4e-6);
   EXPECT_NO_THROW(RateSmoother{params});
   EXPECT_THROW(start_from(example(), 0.5, params), std::invalid_argument);
 }

@@ -16,7 +16,8 @@ struct PartialLoss {
 /// Loss of a flagged reading from its free neighbour. A rate that passes the rail c with constant slope within the
 /// window (D per window) and in the neighbouring one: with the clipped share p of the window the reading is
 /// m = c - (1-p)^2 D/2, the loss p^2 D/2 and the neighbour m + p^2 D/2 - D; p follows from (c - m) / (m - neighbour) in
-/// closed form. Not partial when the reading stands at the rail or more than kShareMax of the window is hidden.
+/// closed form. Not partial when the reading stands at the rail, when it is within its noise of the neighbour, or when
+/// more than kShareMax of the window is hidden.
 /// `neighbour_rad_s`: the smaller of the neighbours' readings, signed so that the rail is positive. What it does not
 /// model: a slope that changes within the two windows; sigma allows for it (measured on impacts of the tumbling rig).
 PartialLoss partial_loss(double reading_rad_s, double neighbour_rad_s, double rail_rad_s, double noise_rad_s);

@@ -102,6 +102,9 @@ class RateSmoother {
     /// Most descents, each with readings corrected for what the one before has told of the device; 1: the device's
     /// errors are counted in the covariance and not estimated; [1, 10].
     int error_rounds_max = 3;
+    /// What an earlier run has told of the device's errors (RateReport::sensor_errors); of use where they are
+    /// estimated.
+    std::optional<KnownSensorErrors> learnt_errors = std::nullopt;
     double gap_max_s = 1.0;  ///< longest time between samples before the run is refused; [1e-6, 3600]
   };
 

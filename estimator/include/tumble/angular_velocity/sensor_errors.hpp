@@ -66,6 +66,12 @@ struct SensorErrorFit {
 /// triads, g-sensitivity, sampling; sizes in between too) the Gaussian posterior of the errors and how likely the
 /// readings are under it; mean and covariance are those of the mixture. So a device whose readings show errors as a
 /// calibrated one has keeps the small doubt in what its readings do not show. O(1): some 30 systems of 29 unknowns.
-SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const SensorErrorSizes& sizes);
+/// `learnt`: what earlier runs of the device have told, from learnt_evidence(); believed in full.
+SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const SensorErrorSizes& sizes,
+                                 const SensorErrorEvidence& learnt = {});
+
+/// What a run has told of a device, as evidence for the next: its covariance without what was assumed beforehand of a
+/// device that nobody has calibrated, which the next run assumes again.
+SensorErrorEvidence learnt_evidence(const KnownSensorErrors& learnt, const SensorErrorSizes& sizes);
 
 }  // namespace tumble
