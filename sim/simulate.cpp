@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/simulate.hpp"
 
-#include "sim/engine/model.hpp"
+#include "sim/compose.hpp"
 #include "sim/motion/motion_type.hpp"
 #include "sim/sensor_type.hpp"
 #include "sim/truth/record_truth.hpp"

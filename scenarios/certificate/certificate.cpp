@@ -9,7 +9,7 @@
 #include "scenarios/draw/strict_yaml.hpp"
 #include "scenarios/errors.hpp"
 #include "scenarios/processes/process.hpp"
-#include "scenarios/sweep/build_id.hpp"
+#include "scenarios/provenance/build_id.hpp"
 #include "sim/parameters.hpp"
 
 namespace tumble::scenarios {

@@ -7,11 +7,10 @@
 
 #include "scenarios/certificate/certificate_text.hpp"
 #include "scenarios/errors.hpp"
+#include "scenarios/provenance/build_id.hpp"
+#include "scenarios/provenance/data_digest.hpp"
+#include "scenarios/provenance/text_digest.hpp"
 #include "scenarios/recordings/replace_file.hpp"
-#include "scenarios/sweep/build_id.hpp"
-#include "scenarios/sweep/data_digest.hpp"
-#include "scenarios/sweep/outcome.hpp"
-#include "scenarios/sweep/results.hpp"
 
 namespace tumble::scenarios {
 
@@ -24,10 +23,6 @@ std::string processor() {
     if (line.starts_with("model name")) return line;
   }
   return "unknown";
-}
-
-bool stopped(const CertifyOptions& options) {
-  return options.stop != nullptr && options.stop->load();
 }
 
 }  // namespace
@@ -59,25 +54,6 @@ void CertificateStore::keep(const Certificate& certificate) const {
     replace_file(file_, to_json(certificate));
   } catch (const BadInput&) {  // a cache that cannot be written is none
   }
-}
-
-std::optional<Certificate> known_certificate(Results& results, const CertificateStore& store) {
-  for (Certificate& known : results.certificates()) {
-    if (known.build == build_id()) return std::move(known);
-  }
-  std::optional<Certificate> certificate = store.find();
-  if (certificate) results.store(*certificate);
-  return certificate;
-}
-
-Certificate certify_results(Results& results, const CertificateStore& store, const CertificateInput& input,
-                            const CertifyOptions& options) {
-  if (std::optional<Certificate> known = known_certificate(results, store)) return *std::move(known);
-  Certificate certificate = measure_certificate(input, options);
-  if (stopped(options)) return {build_id(), {}};
-  store.keep(certificate);
-  results.store(certificate);
-  return certificate;
 }
 
 }  // namespace tumble::scenarios

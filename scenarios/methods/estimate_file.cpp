@@ -9,8 +9,8 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/map_file.hpp"
-#include "scenarios/methods/table_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"
+#include "scenarios/recordings/table_file.hpp"
 
 namespace tumble::scenarios {
 

@@ -10,7 +10,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/estimate_file.hpp"
 #include "scenarios/methods/map_file.hpp"
-#include "scenarios/methods/table_file.hpp"
+#include "scenarios/recordings/table_file.hpp"
 
 namespace tumble::scenarios {
 

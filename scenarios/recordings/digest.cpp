@@ -1,11 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <xxhash.h>
-
-#include <array>
-#include <bit>
-#include <memory>
-#include <new>
-
+#include "scenarios/provenance/hasher.hpp"
 #include "scenarios/recordings/recording_fields.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 
@@ -13,22 +7,9 @@ namespace tumble::scenarios {
 
 namespace {
 
-// numbers are hashed as they lie in memory
-static_assert(std::endian::native == std::endian::little);
-
 /// Archive that hashes every field: its name, its length, its bytes.
-class Hasher {
+class FieldHasher : public Hasher {
  public:
-  Hasher() : state_(XXH3_createState(), XXH3_freeState) {
-    if (!state_ || XXH3_128bits_reset(state_.get()) == XXH_ERROR) throw std::bad_alloc();
-  }
-
-  void text(const std::string& text) {
-    count(text.size());
-    bytes(text.data(), text.size());
-  }
-  void count(std::uint64_t number) { bytes(&number, sizeof(number)); }
-
   void value(const char* name, const std::string& value) {
     text(name);
     text(value);
@@ -80,28 +61,9 @@ class Hasher {
     count(records.size());
     for (const Record& record : records) fields(*this, record);
   }
-
-  std::string hexadecimal() const {
-    XXH128_canonical_t canonical;
-    XXH128_canonicalFromHash(&canonical, XXH3_128bits_digest(state_.get()));
-    constexpr char kDigits[] = "0123456789abcdef";
-    std::string out;
-    for (const unsigned char byte : canonical.digest) {
-      out += kDigits[byte >> 4];
-      out += kDigits[byte & 15];
-    }
-    return out;
-  }
-
- private:
-  void bytes(const void* data, std::size_t size) {
-    if (size > 0) XXH3_128bits_update(state_.get(), data, size);
-  }
-
-  std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state_;
 };
 
-void hash_truth(Hasher& hasher, const sim::Truth& truth) {
+void hash_truth(FieldHasher& hasher, const sim::Truth& truth) {
   const ContactColumns contacts = to_columns(truth.contacts);
   hasher.text("truth");
   truth_fields(hasher, truth, contacts);
@@ -110,17 +72,17 @@ void hash_truth(Hasher& hasher, const sim::Truth& truth) {
 }  // namespace
 
 std::string digest(const sim::Sensors& sensors, const sim::Truth* truth) {
-  Hasher hasher;
+  FieldHasher hasher;
   hasher.text("sensors");
   sensors_fields(hasher, sensors);
   if (truth != nullptr) hash_truth(hasher, *truth);
-  return hasher.hexadecimal();
+  return hasher.hex();
 }
 
 std::string digest(const sim::Truth& truth) {
-  Hasher hasher;
+  FieldHasher hasher;
   hash_truth(hasher, truth);
-  return hasher.hexadecimal();
+  return hasher.hex();
 }
 
 }  // namespace tumble::scenarios

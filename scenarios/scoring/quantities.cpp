@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/scoring/cost.hpp"
 #include "scenarios/scoring/families.hpp"
 
 /// What is stored beside the metrics and shown as they are.
@@ -10,6 +11,11 @@ std::vector<MetricInfo> cost_quantities() {
       {"simulate_cpu_s", Unit::s, "CPU time of the simulation"},
       {"estimate_peak_mib", Unit::mib, "memory at the peak of the estimate, beyond the recording"},
   };
+}
+
+const MetricInfo& estimate_cost() {
+  static const MetricInfo cost = cost_quantities().front();
+  return cost;
 }
 
 std::vector<MetricInfo> motion_quantities() {

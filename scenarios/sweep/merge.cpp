@@ -12,6 +12,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/sweep/results.hpp"
+#include "scenarios/sweep/sweep_notes.hpp"
 
 namespace tumble::scenarios {
 
@@ -145,7 +146,7 @@ MergeCounts merge_results(const fs::path& out, std::span<const fs::path> in, boo
         join_method_notes(shards[i], in[i], mixed, results);
       }
       // the joined database says where its rows come from, not which program has joined them
-      for (const char* key : {"suite", "build", "data"}) {
+      for (const char* key : {"suite", "build", "data", kCommandNote}) {
         const std::string text = shards.front().note(key);
         if (!text.empty()) results.set_note(key, mixed && std::string_view(key) == "build" ? "mixed" : text);
       }

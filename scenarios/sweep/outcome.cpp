@@ -1,28 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/outcome.hpp"
 
-#include <xxhash.h>
-
-#include <cstdio>
-#include <memory>
-#include <stdexcept>
 #include <type_traits>
+
+#include "scenarios/provenance/hasher.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
-// feeds numbers one after the other; no padding of a struct ever enters
-class Hasher {
+/// Numbers one after the other; no padding of a struct ever enters.
+class NumberHasher : public Hasher {
  public:
-  Hasher() : state_(XXH3_createState(), &XXH3_freeState) {
-    if (!state_ || XXH3_128bits_reset(state_.get()) == XXH_ERROR) throw std::bad_alloc();
-  }
-
   template <typename Number>
   void add(Number value) {
     static_assert(std::is_arithmetic_v<Number>);
-    XXH3_128bits_update(state_.get(), &value, sizeof(value));
+    bytes(&value, sizeof(value));
   }
 
   template <typename Derived>
@@ -31,25 +24,9 @@ class Hasher {
       for (Eigen::Index i = 0; i < matrix.rows(); ++i) add(matrix(i, j));
     }
   }
-
-  void add_text(const std::string& text) {
-    add(static_cast<std::uint64_t>(text.size()));
-    XXH3_128bits_update(state_.get(), text.data(), text.size());
-  }
-
-  std::string hex() const {
-    const XXH128_hash_t hash = XXH3_128bits_digest(state_.get());
-    char text[33];
-    std::snprintf(text, sizeof(text), "%016llx%016llx", static_cast<unsigned long long>(hash.high64),
-                  static_cast<unsigned long long>(hash.low64));
-    return text;
-  }
-
- private:
-  std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state_;
 };
 
-void add_pose(Hasher& hasher, const PoseState& pose) {
+void add_pose(NumberHasher& hasher, const PoseState& pose) {
   hasher.add(pose.time_ns);
   hasher.add_matrix(pose.p_WA_m);
   hasher.add_matrix(pose.q_WA.coeffs());
@@ -57,12 +34,12 @@ void add_pose(Hasher& hasher, const PoseState& pose) {
   hasher.add_matrix(pose.covariance);
 }
 
-void add_poses(Hasher& hasher, const std::vector<PoseState>& poses) {
+void add_poses(NumberHasher& hasher, const std::vector<PoseState>& poses) {
   hasher.add(static_cast<std::uint64_t>(poses.size()));
   for (const PoseState& pose : poses) add_pose(hasher, pose);
 }
 
-void add_sweep(Hasher& hasher, const LidarInertialOdometry::SweepReport& sweep) {
+void add_sweep(NumberHasher& hasher, const LidarInertialOdometry::SweepReport& sweep) {
   hasher.add(static_cast<std::int32_t>(sweep.verdict));
   add_pose(hasher, sweep.pose);
   add_poses(hasher, sweep.trajectory);
@@ -79,9 +56,9 @@ void add_sweep(Hasher& hasher, const LidarInertialOdometry::SweepReport& sweep) 
 }  // namespace
 
 std::string digest(const Estimate& estimate) {
-  Hasher hasher;
+  NumberHasher hasher;
   hasher.add(static_cast<std::int32_t>(estimate.status.trouble));
-  hasher.add_text(estimate.status.field);
+  hasher.text(estimate.status.field);
   hasher.add(static_cast<std::int32_t>(estimate.frame));
   hasher.add(static_cast<std::uint64_t>(estimate.rates.size()));
   for (const RateState& rate : estimate.rates) {
@@ -111,12 +88,6 @@ std::string digest(const Estimate& estimate) {
     hasher.add_matrix(point.normal_W);
     hasher.add(point.sigma_m);
   }
-  return hasher.hex();
-}
-
-std::string digest_of_texts(std::span<const std::string> texts) {
-  Hasher hasher;
-  for (const std::string& text : texts) hasher.add_text(text);
   return hasher.hex();
 }
 

@@ -3,7 +3,6 @@
 
 #include <compare>
 #include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -64,8 +63,5 @@ struct RejectedDraw {
 
 /// Digest of all numbers of an estimate (XXH3, 128 bit), costs and health timings excluded.
 std::string digest(const Estimate& estimate);
-
-/// Digest of a list of texts: the same texts in the same order, the same digest.
-std::string digest_of_texts(std::span<const std::string> texts);
 
 }  // namespace tumble::scenarios

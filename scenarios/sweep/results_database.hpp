@@ -9,7 +9,7 @@
 #include <string>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/sweep/build_id.hpp"
+#include "scenarios/provenance/build_id.hpp"
 #include "scenarios/sweep/results.hpp"
 #include "scenarios/sweep/results_schema.hpp"
 

@@ -4,14 +4,14 @@
 #include <algorithm>
 #include <optional>
 
-#include "scenarios/sweep/evaluate.hpp"
+#include "scenarios/provenance/text_digest.hpp"
 #include "sim/lidar/surface.hpp"
 
 namespace tumble::scenarios {
 
 RunResult run_situation(const DataRoot& data, const Scenario& scenario, std::uint64_t seed,
-                        std::span<const MethodPointer> methods, int threads) {
-  SimulatedDraw draw = simulate_draw(data, scenario, seed, threads);
+                        std::span<const MethodPointer> methods, int threads, Lidars lidars) {
+  SimulatedDraw draw = simulate_draw(data, scenario, seed, threads, lidars);
   RunResult result;
   result.methods = applicable(methods, scenario.robot.type);
   std::optional<sim::Surface> surface;

@@ -8,7 +8,7 @@
 
 #include "scenarios/data_root.hpp"
 #include "scenarios/draw/scenario.hpp"
-#include "scenarios/sweep/outcome.hpp"
+#include "scenarios/sweep/evaluate.hpp"
 
 namespace tumble::scenarios {
 
@@ -26,7 +26,7 @@ struct RunResult {
 /// Draws, simulates, estimates and scores one situation in this process. Methods that do not apply to the robot are
 /// left out. Throws BadInput, sim::InvalidSituation, sim::SimulationFailure.
 RunResult run_situation(const DataRoot& data, const Scenario& scenario, std::uint64_t seed,
-                        std::span<const MethodPointer> methods, int threads);
+                        std::span<const MethodPointer> methods, int threads, Lidars lidars = Lidars::simulated);
 
 /// Digest of a whole run: recording and every estimate.
 std::string run_digest(const RunResult& result);

@@ -10,7 +10,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/external_method.hpp"
-#include "scenarios/sweep/data_digest.hpp"
+#include "scenarios/provenance/data_digest.hpp"
 #include "scenarios/sweep/draw_process.hpp"
 #include "scenarios/sweep/message.hpp"
 #include "scenarios/sweep/results.hpp"

@@ -11,6 +11,7 @@
 #include "scenarios/data_root.hpp"
 #include "scenarios/methods/method.hpp"
 #include "scenarios/sweep/results.hpp"
+#include "scenarios/sweep/sweep_notes.hpp"
 #include "scenarios/sweep/variation.hpp"
 
 namespace tumble::scenarios {
@@ -32,9 +33,6 @@ struct Suite {
 std::vector<std::string> suite_names(const DataRoot& data);
 /// A suite by name, a suite file, or a scenario's name (a suite of that one with all methods). Throws BadInput.
 Suite load_suite(const DataRoot& data, const std::string& name);
-
-/// The note `source` of results that were made of recordings: their draws cannot be simulated again.
-inline constexpr const char* kRecordingsSource = "recordings";
 
 struct SweepProgress {
   std::uint64_t draws_done = 0, draws_total = 0;

@@ -4,7 +4,6 @@
 #include <mujoco/mujoco.h>
 
 #include <Eigen/Core>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -43,8 +42,5 @@ struct World {
   Eigen::Vector3d com_offset_m = Eigen::Vector3d::Zero();  ///< true centre of mass in the robot's design frame, B axes
   double sphere_radius_m = 0;                              ///< 0 when the robot is not a sphere
 };
-
-/// Composes world and robot in memory (mjSpec) and compiles. Throws InvalidSituation with the compiler's message.
-World compose(const Situation& situation, const std::filesystem::path& models);
 
 }  // namespace tumble::sim::engine

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/lidar/surface.hpp"
 
-#include "sim/engine/model.hpp"
+#include "sim/compose.hpp"
 #include "sim/lidar/ray_scene.hpp"
 
 namespace tumble::sim {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/render/renderer.hpp"
 
+#include "sim/compose.hpp"
 #include "sim/render/scene_renderer.hpp"
 
 namespace tumble::sim {

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "sim/engine/model.hpp"
+#include "sim/compose.hpp"
 #include "sim/lidar/ray_scene.hpp"
 #include "sim/random/stream.hpp"
 

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "sim/compose.hpp"
 #include "sim/engine/physics.hpp"
 
 namespace tumble::sim {

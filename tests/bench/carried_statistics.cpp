@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -19,6 +18,7 @@
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/scoring/score.hpp"
 #include "scenarios/sweep/evaluate.hpp"
+#include "tests/bench/program.hpp"
 
 namespace {
 
@@ -202,17 +202,8 @@ bool parse(int count, char** words, Request& request) {
 }  // namespace
 
 int main(int count, char** words) {
-  Request request;
-  if (!parse(count, words, request)) {
-    std::fprintf(stderr,
-                 "usage: carried_statistics [--wand FILE.h5]... [--broad NUMBER]... [--attitude NUMBER]... "
-                 "[--method NAME]... [--set NAME=VALUE]... [--flags]\n");
-    return 2;
-  }
-  try {
-    return run(request);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return 2;
-  }
+  return tumble::bench::run_program(count, words,
+                                    "carried_statistics [--wand FILE.h5]... [--broad NUMBER]... [--attitude NUMBER]... "
+                                    "[--method NAME]... [--set NAME=VALUE]... [--flags]",
+                                    parse, run);
 }

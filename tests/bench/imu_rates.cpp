@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <exception>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -17,8 +16,8 @@
 #include "scenarios/draw/without_lidars.hpp"
 #include "scenarios/statistics/statistics.hpp"
 #include "scenarios/sweep/evaluate.hpp"
-#include "sim/simulate.hpp"
 #include "tests/bench/kept_recording.hpp"
+#include "tests/bench/program.hpp"
 #include "tests/tree.hpp"
 
 namespace {
@@ -152,14 +151,10 @@ int run(const Request& request) {
   rates_hz.insert(rates_hz.end(), request.rates_hz.begin(), request.rates_hz.end());
   for (const double rate_hz : rates_hz) {
     std::vector<Pool> pools(methods.size());
-    for (std::uint64_t seed = request.first; seed <= request.last; ++seed) {
-      try {
-        const scenarios::SimulatedDraw draw = draw_of(data, request, seed, rate_hz, lidar);
-        for (std::size_t m = 0; m < methods.size(); ++m) add(*methods[m], draw, pools[m]);
-      } catch (const sim::SimulationFailure& failure) {
-        std::printf("draw %llu left out: %s\n", static_cast<unsigned long long>(seed), failure.what());
-      }
-    }
+    tumble::bench::for_each_draw(request.first, request.last, [&](std::uint64_t seed) {
+      const scenarios::SimulatedDraw draw = draw_of(data, request, seed, rate_hz, lidar);
+      for (std::size_t m = 0; m < methods.size(); ++m) add(*methods[m], draw, pools[m]);
+    });
     if (rate_hz == 0.0) own = pools;
     for (std::size_t m = 0; m < methods.size(); ++m) print(request.methods[m], rate_hz, pools[m], own[m]);
   }
@@ -169,15 +164,6 @@ int run(const Request& request) {
 }  // namespace
 
 int main(int count, char** words) {
-  Request request;
-  if (!parse(count, words, request)) {
-    std::fprintf(stderr, "usage: imu_rates SCENARIO FIRST LAST KIND/METHOD... [--rate HZ]... [--keep FOLDER]\n");
-    return 2;
-  }
-  try {
-    return run(request);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return 2;
-  }
+  return tumble::bench::run_program(
+      count, words, "imu_rates SCENARIO FIRST LAST KIND/METHOD... [--rate HZ]... [--keep FOLDER]", parse, run);
 }

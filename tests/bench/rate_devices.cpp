@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <exception>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -21,8 +20,8 @@
 #include "scenarios/draw/without_lidars.hpp"
 #include "scenarios/statistics/statistics.hpp"
 #include "scenarios/sweep/evaluate.hpp"
-#include "sim/simulate.hpp"
 #include "tests/bench/kept_recording.hpp"
+#include "tests/bench/program.hpp"
 #include "tests/bench/rate_pool.hpp"
 #include "tests/tree.hpp"
 
@@ -250,14 +249,9 @@ int run(const Request& request) {
   for (std::size_t r = 0; r < table.size(); ++r) {
     if (request.row >= 0 && r != 0 && r != static_cast<std::size_t>(request.row)) continue;
     std::vector<sim::Recording> recordings;
-    for (std::uint64_t seed = request.first; seed <= request.last; ++seed) {
-      try {
-        recordings.push_back(
-            recording_of(data, table[r], r, seed, request.ablation ? "ablation" : "row", request.keep));
-      } catch (const sim::SimulationFailure& failure) {
-        std::printf("draw %llu left out: %s\n", static_cast<unsigned long long>(seed), failure.what());
-      }
-    }
+    bench::for_each_draw(request.first, request.last, [&](std::uint64_t seed) {
+      recordings.push_back(recording_of(data, table[r], r, seed, request.ablation ? "ablation" : "row", request.keep));
+    });
     for (std::size_t m = 0; m < request.methods.size(); ++m) {
       const Figures f = figures(request, recordings, request.methods[m]);
       if (r == 0) as_it_is[m] = f.median;
@@ -273,16 +267,7 @@ int run(const Request& request) {
 }  // namespace
 
 int main(int count, char** words) {
-  Request request;
-  if (!parse(count, words, request)) {
-    std::fprintf(
-        stderr, "usage: rate_devices FIRST LAST [--method NAME]... [--keep FOLDER] [--row N] [--draws] [--ablation]\n");
-    return 2;
-  }
-  try {
-    return run(request);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return 2;
-  }
+  return tumble::bench::run_program(
+      count, words, "rate_devices FIRST LAST [--method NAME]... [--keep FOLDER] [--row N] [--draws] [--ablation]",
+      parse, run);
 }

@@ -12,7 +12,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <exception>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -28,6 +27,7 @@
 #include "scenarios/sweep/evaluate.hpp"
 #include "sim/simulate.hpp"
 #include "tests/bench/kept_recording.hpp"
+#include "tests/bench/program.hpp"
 #include "tests/bench/rate_pool.hpp"
 #include "tests/tree.hpp"
 
@@ -148,17 +148,8 @@ int run(const Request& request) {
 }  // namespace
 
 int main(int count, char** words) {
-  Request request;
-  if (!parse(count, words, request)) {
-    std::fprintf(stderr,
-                 "usage: rate_statistics SCENARIO|FILE.yaml FIRST LAST [--method NAME]... [--keep FOLDER] [--worst N] "
-                 "[--exact-mounting] [--learnt]\n");
-    return 2;
-  }
-  try {
-    return run(request);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return 2;
-  }
+  return tumble::bench::run_program(count, words,
+                                    "rate_statistics SCENARIO|FILE.yaml FIRST LAST [--method NAME]... [--keep FOLDER] "
+                                    "[--worst N] [--exact-mounting] [--learnt]",
+                                    parse, run);
 }

@@ -5,6 +5,7 @@
 #include <signal.h>
 
 #include <chrono>
+#include <fstream>
 #include <thread>
 
 #include "system/program.hpp"
@@ -18,9 +19,16 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 /// The sweep that these tests share: fast draws of the sphere.
-std::vector<std::string> sweep_arguments(const fs::path& database, const std::string& seeds) {
-  return {"sweep",   "roll", "--seeds",         seeds,   "--method", "rate/raw", "--method",
-          "rolling", "--db", database.string(), "--json"};
+std::vector<std::string> sweep_arguments(const fs::path& database, const std::string& seeds,
+                                         const std::string& examples = "0") {
+  return {"sweep",   "roll", "--seeds",         seeds,        "--method", "rate/raw", "--method",
+          "rolling", "--db", database.string(), "--examples", examples,   "--json"};
+}
+
+/// A page up to the Plotly bundle, which holds pictures and addresses of its own.
+std::string own_part(const fs::path& page) {
+  const std::string text = read_file(page);
+  return text.substr(0, text.find("<script id=\"plotly\">"));
 }
 
 json report_json(const fs::path& database) {
@@ -107,7 +115,7 @@ TEST(Sweep, OffATerminalWritesNoControlCharacters) {
 TEST(Report, IsOnePageThatAsksTheNetworkNothing) {
   const fs::path folder = test_folder();
   const fs::path database = folder / "r.db", page = folder / "report.html";
-  ASSERT_EQ(run_program(sweep_arguments(database, "1..2")).status, 0);
+  ASSERT_EQ(run_program(sweep_arguments(database, "1..2", "1")).status, 0);
   const Ended ended = run_program({"report", database.string(), "-o", page.string()});
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("position_end_error_share"));
@@ -132,6 +140,38 @@ TEST(Report, IsOnePageThatAsksTheNetworkNothing) {
   ASSERT_EQ(document["certificates"].size(), 1u);
   EXPECT_EQ(document["certificates"][0]["verdict"], "pass");
   EXPECT_FALSE(document["motions"].empty());
+}
+
+TEST(Report, IsAFunctionOfWhatASweepHasLeft) {
+  const fs::path folder = test_folder();
+  const fs::path database = folder / "r.db", page = folder / "report.html";
+  const fs::path list = folder / "r.db.files" / "examples.json";
+  ASSERT_EQ(run_program(sweep_arguments(database, "1..2")).status, 0);
+  EXPECT_FALSE(fs::exists(list)) << "none were asked for";
+  const std::vector<std::string> report = {"report", database.string(), "-o", page.string()};
+  Ended ended = run_program(report);
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(own_part(page), Not(HasSubstr("data:image/png;base64,iVBORw0KGgo")));
+  EXPECT_THAT(own_part(page), HasSubstr("tumble sweep roll --seeds 1..2 --method rate/raw --method rolling --db "))
+      << "it says what makes them";
+  EXPECT_THAT(ended.err, HasSubstr("No pictures of single draws"));
+
+  // they are made of what is there: nothing runs again but the draw that is shown
+  ended = run_program(sweep_arguments(database, "1..2", "1"));
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(json_of(ended)["outcomes"], 0);
+  EXPECT_THAT(ended.err, HasSubstr("running it again for its pictures"));
+  const std::string left = read_file(list);
+  ended = run_program(sweep_arguments(database, "1..2", "1"));
+  EXPECT_THAT(ended.err, Not(HasSubstr("running it again"))) << "they are there already";
+  EXPECT_EQ(read_file(list), left);
+
+  ASSERT_EQ(run_program(report).status, 0);
+  EXPECT_THAT(own_part(page), HasSubstr("the same digest as in the results"));
+  std::ofstream(list) << "damaged";
+  ended = run_program(report);
+  EXPECT_EQ(ended.status, 0) << "the scores are there all the same";
+  EXPECT_THAT(own_part(page), HasSubstr("examples.json"));
 }
 
 TEST(Report, OfAnAbsentDatabaseMakesNone) {

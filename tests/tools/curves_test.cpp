@@ -14,6 +14,7 @@
 namespace tumble::tools {
 namespace {
 
+using scenarios::find_curves;
 using scenarios::Kind;
 using scenarios::Setting;
 using ::testing::ElementsAre;

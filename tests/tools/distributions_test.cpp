@@ -13,6 +13,8 @@
 namespace tumble::tools {
 namespace {
 
+using scenarios::motion_spreads;
+
 using ::testing::HasSubstr;
 using ::testing::Not;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/report/map_pictures.hpp"
+#include "tools/pictures/map_pictures.hpp"
 
 #include <gtest/gtest.h>
 

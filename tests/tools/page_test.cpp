@@ -10,6 +10,10 @@ namespace tumble::tools {
 namespace {
 
 using scenarios::Kind;
+using scenarios::MethodSummary;
+using scenarios::MetricSummary;
+using scenarios::Section;
+using scenarios::Summary;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -40,6 +44,19 @@ Summary summary_of(const std::string& scenario) {
   return summary;
 }
 
+/// An example with one picture, one plot and a legend, under names that would end an element.
+ShownExample evil_example(const std::string& evil) {
+  ShownExample shown;
+  shown.example.scenario = shown.example.motion = shown.example.choice = evil;
+  shown.example.seed = 7;
+  shown.example.pictures = {{"scene", evil, evil, {{evil, kTruthColour}}, {0x89, 'P', 'N', 'G'}}};
+  Plot plot;
+  plot.name = plot.caption = plot.x_title = evil;
+  plot.lines = {{evil, 0, 1.0, false, false, {0.0, 1.0}, {2.0, 3.0}}};
+  shown.example.plots = {plot};
+  return shown;
+}
+
 TEST(Page, AsksTheNetworkNothing) {
   PageContent content;
   content.title = "title";
@@ -58,6 +75,7 @@ TEST(Page, EscapesEveryTextItIsGiven) {
   content.title = evil;
   content.facts = {{evil, evil}};
   content.warnings = {evil};
+  content.examples = {evil_example(evil)};
   content.summary = summary_of(evil);
   content.figures = {box_figure(content.summary, Kind::rate, "rate_error_clipped_median_rad_s", evil)};
   const std::string page = page_html(content, "");
@@ -77,53 +95,30 @@ TEST(BoxFigure, HasATracePerMethodWithEveryDraw) {
   EXPECT_TRUE(box_figure(summary_of("hill"), Kind::slam, "map_overlap", "").empty());
 }
 
-/// A recording of four samples whose gyro y axis is flat, with what raw would make of it.
-Example clipped_example() {
-  Example example;
-  example.run.situation.scenario = "hill";
-  example.run.methods = scenarios::find_methods("rate/raw");
-  scenarios::Estimate estimate;
-  sim::Recording& recording = example.run.recording;
-  recording.truth.period_ns = 10000000;
-  recording.sensors.imus.resize(1);
-  recording.truth.imus.resize(1);
-  for (int k = 0; k < 4; ++k) {
-    recording.truth.p_WB_m.emplace_back(k, 0, 0);
-    recording.truth.q_WB.push_back(Eigen::Quaterniond::Identity());
-    recording.truth.v_WB_m_s.emplace_back(1, 0, 0);
-    recording.truth.w_WB_B_rad_s.emplace_back(0, 15, 0);
-    recording.sensors.imus[0].time_ns.push_back(10000000 * k);
-    recording.truth.imus[0].rate_rad_s.emplace_back(0, 15 + k, 0);
-    RateState rate;
-    rate.time_ns = 10000000 * k;
-    rate.w_WI_I_rad_s = {0, 10.5, 0};
-    rate.clipped_axes = 2;
-    estimate.rates.push_back(rate);
-  }
-  example.run.estimates = {estimate};
-  return example;
+TEST(Page, ShowsExamplesWithTheirPicturesAndPlots) {
+  PageContent content;
+  content.examples = {evil_example("hill")};
+  const std::string page = page_html(content, "");
+  EXPECT_THAT(page, HasSubstr("One hill of <code>hill</code>, seed 7"));
+  EXPECT_THAT(page, HasSubstr("src=\"data:image/png;base64,iVBORw==\""));
+  EXPECT_THAT(page, HasSubstr("id=\"hill-hill\""));
+  EXPECT_THAT(page, HasSubstr("another build")) << "its recording is not the results'";
+  content.examples[0].same_as_stored = true;
+  EXPECT_THAT(page_html(content, ""), Not(HasSubstr("another build")));
+  content.examples.clear();
+  EXPECT_THAT(page_html(content, ""), Not(HasSubstr("hill"))) << "negative control";
 }
 
-TEST(RateFigure, ShowsTheAxisThatClips) {
-  const Figure figure = rate_figure(clipped_example());
-  ASSERT_EQ(figure.data.size(), 2u);
-  EXPECT_EQ(figure.data[0]["y"], nlohmann::json({15.0, 16.0, 17.0, 18.0}));
-  EXPECT_EQ(figure.data[1]["y"], nlohmann::json({10.5, 10.5, 10.5, 10.5}));
-  EXPECT_THAT(figure.caption, HasSubstr("y axis"));
-}
-
-TEST(RateFigure, IsEmptyWhenNothingClips) {
-  Example example = clipped_example();
-  for (RateState& rate : example.run.estimates[0].rates) rate.clipped_axes = 0;
-  EXPECT_TRUE(rate_figure(example).empty());
-}
-
-TEST(PathFigure, HasEqualScales) {
-  Example example = clipped_example();
-  const Figure figure = path_figure(example);
-  ASSERT_EQ(figure.data.size(), 1u);
-  EXPECT_EQ(figure.data[0]["x"], nlohmann::json({0.0, 1.0, 2.0, 3.0}));
-  EXPECT_EQ(figure.layout["yaxis"]["scaleanchor"], "x");
+TEST(Page, SetsNarrowPlotsTwoInARow) {
+  PageContent content;
+  content.examples = {evil_example("hill")};
+  std::vector<Plot>& plots = content.examples[0].example.plots;
+  plots.resize(4, plots[0]);
+  plots[1].wide = plots[2].wide = false;
+  const std::string page = page_html(content, "");
+  const std::size_t open = page.find("<div class=\"pair\">");
+  ASSERT_NE(open, std::string::npos);
+  EXPECT_EQ(page.find("<div class=\"pair\">", open + 1), std::string::npos) << "one pair";
 }
 
 }  // namespace

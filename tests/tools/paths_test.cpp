@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/report/paths.hpp"
+#include "tools/pictures/paths.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/report/summary.hpp"
+#include "tools/report/score_html.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,12 +9,16 @@
 #include <filesystem>
 #include <limits>
 
-#include "tools/report/score_html.hpp"
-
 namespace tumble::tools {
 namespace {
 
 using scenarios::Kind;
+using scenarios::MethodSummary;
+using scenarios::metric_style;
+using scenarios::MetricSummary;
+using scenarios::Section;
+using scenarios::summarize;
+using scenarios::Summary;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;

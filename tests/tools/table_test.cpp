@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/tumble/table.hpp"
+#include "tools/tables/table.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "tools/report/html.hpp"
-#include "tools/tumble/certificate_table.hpp"
-#include "tools/tumble/table.hpp"
+#include "tools/tables/certificate_table.hpp"
+#include "tools/tables/table.hpp"
 
 namespace tumble::tools {
 

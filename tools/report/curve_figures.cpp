@@ -6,16 +6,18 @@
 #include <limits>
 #include <map>
 
+#include "scenarios/summary/summary.hpp"
+#include "tools/pictures/colours.hpp"
 #include "tools/report/curves.hpp"
 #include "tools/report/html.hpp"
-#include "tools/report/pictures.hpp"
-#include "tools/report/summary.hpp"
 
 namespace tumble::tools {
 
 namespace {
 
 using nlohmann::json;
+using scenarios::metric_style;
+using scenarios::MetricStyle;
 
 constexpr double kMetricDomainLow = 0.36, kFailureDomainHigh = 0.24;
 

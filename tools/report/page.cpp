@@ -8,7 +8,6 @@
 #include "report/embedded.hpp"
 #include "tools/report/certificate_html.hpp"
 #include "tools/report/html.hpp"
-#include "tools/report/pictures.hpp"
 #include "tools/report/score_html.hpp"
 
 namespace tumble::tools {
@@ -16,6 +15,8 @@ namespace tumble::tools {
 namespace {
 
 using html::escaped;
+using scenarios::Section;
+using scenarios::Summary;
 
 std::string header_html(const PageContent& content) {
   std::string out = "<header><h1>" + escaped(content.title) +
@@ -50,38 +51,35 @@ std::string picture_html(const std::vector<std::uint8_t>& png, const std::string
          caption_html + "</figcaption></figure>\n";
 }
 
-std::string example_html(const Example& example, std::vector<Figure>& figures) {
-  const sim::Situation& situation = example.run.situation;
-  std::string out = fmt::format("<h2>One {} of <code>{}</code>, seed {}</h2>\n", example.is_sphere ? "roll" : "tumble",
-                                escaped(situation.scenario), situation.seed);
-  out += "<p>The draw whose score is the median one of its scenario, simulated again for this page";
-  out += example.same_as_stored ? "; its recording has the same digest as in the sweep.</p>\n"
-                                : ". Its digest differs from the sweep's: this is another build.</p>\n";
-  std::string legend = swatch("truth", truth_colour());
-  for (std::size_t i = 0; i < example.path_methods.size(); ++i)
-    legend += swatch(example.path_methods[i], method_colour(i));
-  out += picture_html(example.scene_png, "the robot along its way, with true and estimated paths",
-                      "The robot at instants equally far apart along its way." + legend);
-  out += picture_html(example.film_png, "film strip of the same motion",
-                      "The same motion close by, left to right and down.");
-  if (!example.map_png.empty()) {
-    std::string names;
-    for (const ErrorMap& map : example.maps) {
-      names += fmt::format("{}{} ({:.1f} % of its points within 0.1 m)", names.empty() ? "" : ", ", map.name,
-                           100.0 * map.share_within(0.1f));
-    }
-    out += picture_html(example.map_png, "maps side by side, coloured by error",
-                        "Maps, left to right: " + escaped(names) +
-                            ". Each point has the colour of its distance from the true surface, from 0 (blue) to 1 m "
-                            "and more (red).");
-  }
-  Figure rate = rate_figure(example), path = path_figure(example);
-  for (Figure* figure : {&rate, &path}) {
-    if (figure->empty()) continue;
-    out += plot_html(*figure, figure == &path);
-    figures.push_back(std::move(*figure));
-  }
+std::string legend_html(const ExamplePicture& picture) {
+  std::string out;
+  for (const auto& [name, colour] : picture.legend) out += swatch(name, colour_of(colour));
   return out;
+}
+
+/// Wide plots in a row of their own, the others two in a row.
+std::string plots_html(const Example& example, std::vector<Figure>& figures) {
+  std::string out;
+  bool in_pair = false;
+  for (const Plot& plot : example.plots) {
+    if (plot.wide == in_pair) out += in_pair ? "</div>\n" : "<div class=\"pair\">";
+    in_pair = !plot.wide;
+    figures.push_back(figure_of(plot, plot.name + "-" + example.scenario));
+    out += plot_html(figures.back(), plot.wide && plot.equal_scales);
+  }
+  return out + (in_pair ? "</div>\n" : "");
+}
+
+std::string example_html(const ShownExample& shown, std::vector<Figure>& figures) {
+  const Example& example = shown.example;
+  std::string out = fmt::format("<h2>One {} of <code>{}</code>, seed {}</h2>\n", escaped(example.motion),
+                                escaped(example.scenario), example.seed);
+  out += "<p>" + escaped(example.choice) + ", run again by the sweep for this page";
+  out += shown.same_as_stored ? "; its recording has the same digest as in the results.</p>\n"
+                              : ". Its digest differs from the results': it is of another build.</p>\n";
+  for (const ExamplePicture& picture : example.pictures)
+    out += picture_html(picture.png, picture.alternative, escaped(picture.caption) + legend_html(picture));
+  return out + plots_html(example, figures);
 }
 
 std::string draws_html(const Summary& summary) {
@@ -113,7 +111,7 @@ std::string rejected_html(const std::vector<scenarios::RejectedDraw>& rejected) 
 
 std::string scores_html(const Summary& summary) {
   std::string out =
-      "<h2>Scores</h2>\n<p>Median over the draws (of <code>map_failed</code> the share) and, in brackets, its 95 % "
+      "<h2>Scores</h2>\n<p>Median over the draws (of a verdict the share) and, in brackets, its 95 % "
       "interval from order statistics; an estimate that did not end <i>ok</i> ranks as "
       "the worst of all (–: half or more of them), and is counted in the first row with its Clopper–Pearson interval. "
       "“Better in” counts the "
@@ -142,8 +140,7 @@ std::string page_html(const PageContent& content, const std::string& plotly_bund
   std::string body = header_html(content) + "<main>\n";
   for (const std::string& warning : content.warnings) body += "<p class=\"warning\">" + escaped(warning) + "</p>\n";
   body += cards_html(content.summary);
-  for (const Example& example : content.examples) body += example_html(example, figures);
-  body += sphere_html(content.rolls, figures);
+  for (const ShownExample& example : content.examples) body += example_html(example, figures);
   body += "<h2>All draws</h2>\n<p>Each point is one draw, each box the quartiles of one method.</p>\n";
   for (const Figure& figure : content.figures) body += plot_html(figure);
   body += scores_html(content.summary);

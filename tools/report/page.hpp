@@ -5,24 +5,28 @@
 #include <vector>
 
 #include "scenarios/certificate/certificate.hpp"
+#include "scenarios/summary/summary.hpp"
+#include "tools/examples/example.hpp"
 #include "tools/report/curves.hpp"
 #include "tools/report/distributions.hpp"
-#include "tools/report/example.hpp"
 #include "tools/report/plots.hpp"
-#include "tools/report/sphere_figures.hpp"
-#include "tools/report/summary.hpp"
 
 namespace tumble::tools {
+
+/// An example as the page shows it.
+struct ShownExample {
+  Example example;
+  bool same_as_stored = false;  ///< the recording's digest is one that the database holds
+};
 
 /// What a report page says; `page_html` adds nothing to it.
 struct PageContent {
   std::string title;
   std::vector<std::pair<std::string, std::string>> facts;  ///< suite, draws, versions, date
-  Summary summary;
-  std::vector<Figure> figures;    ///< of all draws
-  std::vector<Example> examples;  ///< single draws, with pictures
-  std::vector<SphereRoll> rolls;  ///< single draws of a sphere, as plots
-  std::vector<Spread> motions;    ///< of all draws
+  scenarios::Summary summary;
+  std::vector<Figure> figures;         ///< of all draws
+  std::vector<ShownExample> examples;  ///< single draws, with pictures and plots
+  std::vector<Spread> motions;         ///< of all draws
   std::vector<Curve> curves;
   std::vector<scenarios::RejectedDraw> rejected;
   std::vector<scenarios::Certificate> certificates;

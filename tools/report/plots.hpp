@@ -5,8 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "tools/report/example.hpp"
-#include "tools/report/summary.hpp"
+#include "scenarios/summary/summary.hpp"
+#include "tools/examples/example.hpp"
+#include "tools/pictures/colours.hpp"
 
 namespace tumble::tools {
 
@@ -21,16 +22,16 @@ struct Figure {
 
 /// Every draw as a point beside a box of quartiles: one box per method and scenario. Logarithmic where values are
 /// positive and span more than a decade.
-Figure box_figure(const Summary& summary, scenarios::Kind kind, const std::string& metric, const std::string& caption);
+Figure box_figure(const scenarios::Summary& summary, scenarios::Kind kind, const std::string& metric,
+                  const std::string& caption);
 
 /// CPU time of every method, one box per method and scenario, logarithmic.
-Figure cost_figure(const Summary& summary);
+Figure cost_figure(const scenarios::Summary& summary);
 
-/// Rate about the sensor axis that clips most, over the moving part: the truth, the gyro, and each rate method's
-/// answer. Empty when the recording has no clipped sample.
-Figure rate_figure(const Example& example);
+/// A plot of an example.
+Figure figure_of(const Plot& plot, const std::string& id);
 
-/// The way seen from above, at equal scales: the truth and each method's path.
-Figure path_figure(const Example& example);
+/// Of a line of an example's plot, and of its name in a legend.
+Colour colour_of(int colour);
 
 }  // namespace tumble::tools

@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 
-#include "scenarios/sweep/sweep.hpp"
+#include "scenarios/errors.hpp"
+#include "scenarios/sweep/sweep_notes.hpp"
 #include "tools/report/certificate_html.hpp"
 
 namespace tumble::tools {
@@ -14,6 +14,7 @@ namespace tumble::tools {
 namespace {
 
 using scenarios::Kind;
+using scenarios::Summary;
 
 std::vector<std::pair<std::string, std::string>> facts(const scenarios::Results& results, const Summary& summary,
                                                        const ReportOptions& options) {
@@ -34,55 +35,49 @@ std::vector<std::pair<std::string, std::string>> facts(const scenarios::Results&
   return out;
 }
 
+/// The headline metrics of each kind but verdicts, whose share is in the table; and what the estimates cost.
 std::vector<Figure> figures_of_all_draws(const Summary& summary) {
-  std::vector<Figure> figures = {
-      box_figure(
-          summary, Kind::rate, "rate_error_clipped_median_rad_s",
-          "Error of the angular velocity at samples where at least one gyro axis is clipped, median of each draw."),
-      box_figure(summary, Kind::slam, "translation_error_end_m",
-                 "Error of the last registered pose against the sixth, as the published evaluation takes it."),
-      box_figure(summary, Kind::slam, "map_overlap", "Share of map points within 0.25 m of the true surface."),
-      box_figure(summary, Kind::position, "position_end_error_share",
-                 "Position error at the end as a share of the path."),
-      cost_figure(summary)};
+  std::vector<Figure> figures;
+  for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
+    for (const std::string& name : scenarios::headline_metrics(kind)) {
+      const scenarios::MetricInfo& info = scenarios::metric_info(name);
+      if (info.unit != scenarios::Unit::verdict)
+        figures.push_back(box_figure(summary, kind, name, fmt::format("{}: {}.", name, info.doc)));
+    }
+  }
+  figures.push_back(cost_figure(summary));
   std::erase_if(figures, [](const Figure& figure) { return figure.empty(); });
   return figures;
 }
 
-/// Scenarios to show single draws of: the first of each kind of motion first. A rig's results have kind slam or rates
-/// that clip, a sphere's have kind position.
-std::vector<std::string> scenarios_to_show(const Summary& summary, int count) {
-  std::vector<std::string> tumbles, rolls, out;
-  for (const std::string& scenario : summary.scenarios) {
-    const bool rolls_here = std::any_of(summary.sections.begin(), summary.sections.end(), [&](const Section& section) {
-      return section.scenario == scenario && section.kind == Kind::position;
-    });
-    (rolls_here ? rolls : tumbles).push_back(scenario);
-  }
-  // the plain cases are the ones to begin with
-  const auto first = [](std::vector<std::string>& names, const char* name) {
-    std::stable_partition(names.begin(), names.end(), [&](const std::string& each) { return each == name; });
-  };
-  first(tumbles, "hill");
-  first(rolls, "slip");
-  first(rolls, "roll");
-  if (!tumbles.empty()) out.push_back(tumbles.front());
-  for (std::size_t i = 0; i < rolls.size() && i < 2; ++i) out.push_back(rolls[i]);
-  if (static_cast<int>(out.size()) > count) out.resize(static_cast<std::size_t>(count));
-  return out;
+/// Whether the results hold a draw of the same digest, as it is or without its lidars, which a sweep of methods that
+/// read none leaves out.
+bool same_as_stored(const scenarios::Results& results, const Example& example) {
+  const std::vector<scenarios::Outcome> rows = results.outcomes_of(example.scenario, example.seed);
+  return std::any_of(rows.begin(), rows.end(), [&](const scenarios::Outcome& row) {
+    return row.setting.is_plain() && !row.recording_digest.empty() &&
+           (row.recording_digest == example.recording_digest || row.recording_digest == example.digest_without_lidars);
+  });
 }
 
-void add_sphere_rolls(const Summary& summary, const ReportOptions& options, PageContent& content) {
-  for (const std::string& scenario : sphere_scenarios(summary)) {
-    std::uint64_t seed = 0;
-    if (!typical_seed(summary, scenario, seed)) continue;
-    if (options.note) options.note(fmt::format("simulating {}, seed {}, again for its plots", scenario, seed));
-    try {
-      content.rolls.push_back(make_sphere_roll(options.data, summary, scenario, seed));
-    } catch (const std::exception& error) {
-      content.warnings.push_back(fmt::format("No plots of {}, seed {}: {}", scenario, seed, error.what()));
+void add_examples(const scenarios::Results& results, const ReportOptions& options, PageContent& content) {
+  const std::filesystem::path folder = examples_folder(options.database);
+  try {
+    for (Example& example : read_examples(folder, Pictures::read)) {
+      const bool same = same_as_stored(results, example);
+      content.examples.push_back({std::move(example), same});
     }
+  } catch (const scenarios::BadInput& error) {
+    // what is wrong with the pictures must not cost the reader the scores
+    content.warnings.push_back(std::string("No pictures of single draws: ") + error.what());
+    return;
   }
+  if (!content.examples.empty()) return;
+  const std::string command = results.note(scenarios::kCommandNote);
+  content.warnings.push_back(
+      fmt::format("No pictures of single draws: there are none in {}. They are made, and nothing that the results hold "
+                  "is run again, by: tumble sweep {} --db {}",
+                  folder.string(), command.empty() ? "SUITE" : command, options.database.string()));
 }
 
 }  // namespace
@@ -94,8 +89,8 @@ PageContent report_content(const scenarios::Results& results, const Summary& sum
   content.facts = facts(results, summary, options);
   content.summary = summary;
   content.figures = figures_of_all_draws(summary);
-  content.motions = motion_spreads(results.draws());
-  content.curves = find_curves(results);
+  content.motions = scenarios::motion_spreads(results.draws());
+  content.curves = scenarios::find_curves(results);
   content.rejected = results.rejected();
   content.certificates = results.certificates();
   const bool recorded = results.note("source") == scenarios::kRecordingsSource;
@@ -105,19 +100,7 @@ PageContent report_content(const scenarios::Results& results, const Summary& sum
     content.facts.emplace_back("certificate", certificate_summary(certificate));
     if (!certificate.passes()) content.warnings.push_back("The certificate of build " + certificate.build + " fails.");
   }
-  if (recorded) return content;  // nothing to simulate again
-  for (const std::string& scenario : scenarios_to_show(summary, options.examples_max)) {
-    std::uint64_t seed = 0;
-    if (!typical_seed(summary, scenario, seed)) continue;
-    if (options.note) options.note(fmt::format("simulating {}, seed {}, again for its pictures", scenario, seed));
-    try {
-      content.examples.push_back(make_example(options.data, results, summary, scenario, seed, options.threads));
-    } catch (const std::exception& error) {
-      // a scenario that this build no longer has must not cost the reader the scores
-      content.warnings.push_back(fmt::format("No pictures of {}, seed {}: {}", scenario, seed, error.what()));
-    }
-  }
-  if (options.examples_max > 0) add_sphere_rolls(summary, options, content);
+  if (!recorded && !summary.sections.empty()) add_examples(results, options, content);
   return content;
 }
 

@@ -12,6 +12,15 @@ namespace tumble::tools {
 namespace {
 
 using scenarios::Kind;
+using scenarios::MethodSummary;
+using scenarios::metric_info;
+using scenarios::metric_style;
+using scenarios::MetricInfo;
+using scenarios::MetricStyle;
+using scenarios::MetricSummary;
+using scenarios::Section;
+using scenarios::Sense;
+using scenarios::Summary;
 
 std::string plain(double value) {
   if (std::isnan(value)) return "–";
@@ -29,7 +38,7 @@ const MethodSummary* best_method(const Section& section, const std::string& metr
   if (info.sense == Sense::none) return best;
   for (const MethodSummary& method : section.methods) {
     const MetricSummary* own = method.find(metric);
-    if (own == nullptr || method.method == "oracle" || (!with_baseline && method.method == section.baseline)) continue;
+    if (own == nullptr || method.needs_truth || (!with_baseline && method.method == section.baseline)) continue;
     const double value = own->centre.value;
     if (best == nullptr || is_better(info, value, best->find(metric)->centre.value)) best = &method;
   }
@@ -69,7 +78,7 @@ std::string styled_interval(const std::string& metric, const scenarios::Interval
 std::vector<Headline> headlines(const Summary& summary) {
   std::vector<Headline> out;
   for (const Section& section : summary.sections) {
-    const std::string metric = headline_metrics(section.kind).front();
+    const std::string metric = scenarios::headline_metrics(section.kind).front();
     const MethodSummary* base = section.find(section.baseline);
     const MetricSummary* from = base->find(metric);
     if (section.kind == Kind::attitude || from == nullptr) continue;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/report/summary.hpp"
+#include "scenarios/summary/summary.hpp"
 
 namespace tumble::tools {
 
@@ -21,10 +21,10 @@ struct Headline {
   bool worse = false;  ///< the method does worse than the baseline
   std::string detail;  ///< one sentence with both values and the paired count
 };
-std::vector<Headline> headlines(const Summary& summary);
+std::vector<Headline> headlines(const scenarios::Summary& summary);
 
 /// The table of one section: a row per metric, a column per method with median, interval and paired wins; failures
 /// first.
-std::string score_table_html(const Section& section);
+std::string score_table_html(const scenarios::Section& section);
 
 }  // namespace tumble::tools

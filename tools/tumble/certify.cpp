@@ -7,7 +7,7 @@
 
 #include "scenarios/certificate/certificate.hpp"
 #include "scenarios/certificate/certificate_text.hpp"
-#include "tools/tumble/certificate_table.hpp"
+#include "tools/tables/certificate_table.hpp"
 #include "tools/tumble/interrupt.hpp"
 #include "tools/tumble/verbs.hpp"
 

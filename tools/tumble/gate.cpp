@@ -11,12 +11,12 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "scenarios/certificate/certificate_store.hpp"
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/replace_file.hpp"
+#include "scenarios/sweep/certified_results.hpp"
 #include "tools/report/certificate_html.hpp"
+#include "tools/tables/certificate_table.hpp"
 #include "tools/tumble/arguments.hpp"
-#include "tools/tumble/certificate_table.hpp"
 #include "tools/tumble/interrupt.hpp"
 #include "tools/tumble/sweeping.hpp"
 #include "tools/tumble/verbs.hpp"

@@ -9,8 +9,8 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/estimate_file.hpp"
 #include "scenarios/recordings/recording_file.hpp"
-#include "tools/report/map_pictures.hpp"
-#include "tools/report/pictures.hpp"
+#include "tools/pictures/map_pictures.hpp"
+#include "tools/pictures/pictures.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/verbs.hpp"
 

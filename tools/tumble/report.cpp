@@ -24,11 +24,15 @@ namespace tumble::tools {
 namespace {
 
 using nlohmann::json;
+using scenarios::MethodSummary;
+using scenarios::metric_info;
+using scenarios::MetricSummary;
+using scenarios::Section;
+using scenarios::Summary;
+using scenarios::Wins;
 
 struct Options {
   std::filesystem::path database, page;
-  int threads = 1;
-  int examples = 3;
   bool all = false;
 };
 
@@ -47,7 +51,7 @@ Table score_table(const Section& section, bool all) {
       fmt::format("{}: {} (paired with {})", section.scenario, to_string(section.kind), section.baseline),
       {"metric", "method", "draws", "median", "95 % interval", "worst 5 %", "better in", "not ok", "at most (95 %)"});
   table.align_right_from(2);
-  for (const std::string& name : all ? section.metrics : headline_metrics(section.kind)) {
+  for (const std::string& name : all ? section.metrics : scenarios::headline_metrics(section.kind)) {
     bool first = true;
     for (const MethodSummary& method : section.methods) {
       const MetricSummary* metric = method.find(name);
@@ -117,16 +121,12 @@ std::string read_text(const std::filesystem::path& path) {
 
 void write_page(const Session& session, const Options& options, const scenarios::Results& results,
                 const Summary& summary) {
-  // what is missing is said before minutes are spent
   const std::string plotly = read_text(session.plotly());
   ReportOptions report;
-  report.data = session.data();
+  report.database = options.database;
   report.version = program_version();
   report.made_at = fmt::format("{:%Y-%m-%d %H:%M} UTC",
                                fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
-  report.threads = options.threads;
-  report.examples_max = options.examples;
-  report.note = [&](std::string_view line) { session.note(line); };
   const PageContent content = report_content(results, summary, report);
   for (const std::string& warning : content.warnings) session.note(warning);
   scenarios::replace_file(options.page, page_html(content, plotly));
@@ -135,8 +135,8 @@ void write_page(const Session& session, const Options& options, const scenarios:
 int report(const Session& session, const Options& options) {
   if (!options.page.empty()) prepare_output(options.page, std::vector<std::filesystem::path>{options.database});
   const scenarios::Results results(options.database, scenarios::Results::Mode::read_only);
-  const Summary summary = summarize(results);
-  const std::vector<Curve> curves = find_curves(results);
+  const Summary summary = scenarios::summarize(results);
+  const std::vector<Curve> curves = scenarios::find_curves(results);
   if (summary.scenarios.empty() && curves.empty())
     throw scenarios::BadInput(options.database.string() + ": holds no outcomes to report");
   std::vector<Table> tables;
@@ -148,7 +148,7 @@ int report(const Session& session, const Options& options) {
     if (options.all || curve.source == Curve::Source::set) tables.push_back(curve_table(curve));
   }
   const std::vector<scenarios::DrawValues> draws = results.draws();
-  const std::vector<Spread> motions = motion_spreads(draws);
+  const std::vector<Spread> motions = scenarios::motion_spreads(draws);
   if (!motions.empty()) tables.push_back(distribution_table(motions));
   tables.push_back(draws_table(summary));
   json document = to_json(summary);
@@ -170,12 +170,6 @@ Action declare_report(CLI::App& app, const Session& session) {
   auto options = std::make_shared<Options>();
   app.add_option("DATABASE", options->database, "a results database, FILE.db")->required();
   app.add_option("-o,--output", options->page, "the page, FILE.html [tables alone]");
-  app.add_option("--threads", options->threads, "threads for the lidar of the draws shown")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
-  app.add_option("--examples", options->examples, "draws simulated again and shown")
-      ->check(CLI::Range(0, 3))
-      ->capture_default_str();
   app.add_flag("--all", options->all,
                "all metrics in the printed tables, not the headline ones alone, and the curves over bins");
   return [&session, options] { return report(session, *options); };

@@ -11,7 +11,7 @@
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/sweep/run_situation.hpp"
-#include "tools/report/pictures.hpp"
+#include "tools/pictures/pictures.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/learnt_file.hpp"
 #include "tools/tumble/recording_info.hpp"

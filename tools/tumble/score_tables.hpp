@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "scenarios/sweep/outcome.hpp"
-#include "tools/tumble/table.hpp"
+#include "tools/tables/table.hpp"
 
 namespace tumble::tools {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "scenarios/data_root.hpp"
-#include "tools/tumble/table.hpp"
+#include "tools/tables/table.hpp"
 
 namespace tumble::tools {
 

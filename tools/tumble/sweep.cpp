@@ -5,9 +5,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "scenarios/certificate/certificate_store.hpp"
 #include "scenarios/errors.hpp"
+#include "scenarios/sweep/certified_results.hpp"
 #include "scenarios/sweep/results.hpp"
+#include "tools/examples/leave_examples.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/interrupt.hpp"
 #include "tools/tumble/sweeping.hpp"
@@ -22,6 +23,7 @@ struct Options {
   std::string seeds, shard;
   std::vector<std::string> methods, again;
   int jobs = available_processors();
+  std::size_t examples = 3;
   std::filesystem::path database, recordings;
 };
 
@@ -58,6 +60,27 @@ void certify(const Session& session, const scenarios::DataRoot& data, const std:
   if (!stop.load() && !certificate.passes()) {
     session.note("the certificate of this build has rows that fail: see 'tumble certify'");
   }
+}
+
+/// The words that ask for the same sweep once more, but for its database.
+std::string command_of(const Options& options) {
+  std::string words = options.suite;
+  if (!options.seeds.empty()) words += " --seeds " + options.seeds;
+  for (const std::string& method : options.methods) words += " --method " + method;
+  if (!options.recordings.empty()) words += " --data " + options.recordings.string();
+  return words;
+}
+
+/// Of a whole suite alone: what is typical of a part of its seeds need not be so of all.
+void leave_examples(const Session& session, const scenarios::DataRoot& data, const scenarios::Suite& suite,
+                    const Options& options, const std::atomic<bool>& stop) {
+  if (!options.shard.empty()) return;
+  LeaveOptions leave;
+  leave.count = options.examples;
+  leave.jobs = options.jobs;
+  leave.stop = &stop;
+  leave.note = [&](std::string_view line) { session.note(line); };
+  tools::leave_examples(data, suite, options.database, leave);
 }
 
 nlohmann::json to_json(const scenarios::SweepProgress& p, const std::string& database) {
@@ -98,14 +121,17 @@ int run_sweep(const Session& session, const Options& options) {
     return kDone;
   }
 
+  scenarios::open_results(data, suite, options.database).set_note(scenarios::kCommandNote, command_of(options));
   const InterruptFlag interrupt;
   // it speaks of simulations
   if (suite.recordings.empty()) certify(session, data, options.database, interrupt.raised());
   const scenarios::SweepProgress final = sweep_with_progress(session, data, suite, options.database, options.jobs,
                                                              interrupt.raised(), statuses_named(options.again));
 
+  const bool complete = final.draws_done >= final.draws_total;
+  if (complete) leave_examples(session, data, suite, options, interrupt.raised());
   session.print({to_table(final, options.database.string())}, to_json(final, options.database.string()));
-  return final.draws_done >= final.draws_total ? kDone : say_stopped(final);
+  return complete ? kDone : say_stopped(final);
 }
 
 }  // namespace
@@ -126,6 +152,11 @@ Action declare_sweep(CLI::App& app, const Session& session) {
   app.add_option("--again", options->again, "run rows of these statuses once more: crashed,timeout,killed")
       ->delimiter(',')
       ->allow_extra_args(false);
+  app.add_option("--examples", options->examples,
+                 "draws run again at the end, their pictures and plots left in FILE.db.files for 'report'; not of a "
+                 "shard")
+      ->check(CLI::Range(0, 64))
+      ->capture_default_str();
   app.add_option("--data", options->recordings, "folder of a suite's recordings [the suite file's]");
   app.add_option("--db", options->database, "the results database; what it holds already is not run again")->required();
   return [&session, options] { return run_sweep(session, *options); };

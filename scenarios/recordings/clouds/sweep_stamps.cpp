@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/table_file.hpp"
+#include "scenarios/recordings/table_file.hpp"
 
 namespace tumble::scenarios {
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/table_file.hpp"
+#include "scenarios/recordings/table_file.hpp"
 #include "scenarios/recordings/trajectories/reference.hpp"
 
 namespace tumble::scenarios {

@@ -8,8 +8,8 @@
 
 #include "scenarios/certificate/certificate_text.hpp"
 #include "scenarios/errors.hpp"
-#include "scenarios/sweep/build_id.hpp"
-#include "scenarios/sweep/results.hpp"
+#include "scenarios/provenance/build_id.hpp"
+#include "scenarios/sweep/certified_results.hpp"
 #include "tests/scenarios/sweep/temporary_folder.hpp"
 #include "tests/tree.hpp"
 

@@ -12,7 +12,7 @@
 #include <limits>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/sweep/build_id.hpp"
+#include "scenarios/provenance/build_id.hpp"
 #include "scenarios/sweep/temporary_folder.hpp"
 
 namespace tumble::scenarios {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "sim/compose.hpp"
 #include "sim/engine/physics.hpp"
 #include "sim/truth/record_truth.hpp"
 #include "tests/sim/engine/worlds.hpp"

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/compose.hpp"
 #include "sim/engine/physics.hpp"
 #include "sim/simulate.hpp"
 #include "tests/sim/engine/worlds.hpp"

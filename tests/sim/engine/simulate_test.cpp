@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/compose.hpp"
 #include "sim/engine/physics.hpp"
 #include "tests/sim/engine/worlds.hpp"
 

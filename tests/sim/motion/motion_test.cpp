@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "sim/compose.hpp"
 #include "sim/motion/rigid_body.hpp"
 #include "sim/simulate.hpp"
 #include "tests/sim/engine/worlds.hpp"

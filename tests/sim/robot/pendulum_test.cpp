@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/compose.hpp"
 #include "sim/engine/jointed.hpp"
 #include "sim/engine/physics.hpp"
 #include "sim/simulate.hpp"

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "sim/compose.hpp"
 #include "sim/engine/model.hpp"
 #include "sim/motion/rigid_body.hpp"
 #include "sim/robot/robot_type.hpp"

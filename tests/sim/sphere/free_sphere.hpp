@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "sim/compose.hpp"
 #include "sim/engine/physics.hpp"
 #include "sim/truth/record_truth.hpp"
 #include "tests/sim/engine/worlds.hpp"

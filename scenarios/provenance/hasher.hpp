@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <xxhash.h>
+
+#include <bit>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <new>
+#include <string>
+
+namespace tumble::scenarios {
+
+// numbers are hashed as they lie in memory
+static_assert(std::endian::native == std::endian::little);
+
+/// XXH3 of 128 bit over what it is fed with, in that order.
+class Hasher {
+ public:
+  Hasher() : state_(XXH3_createState(), &XXH3_freeState) {
+    if (!state_ || XXH3_128bits_reset(state_.get()) == XXH_ERROR) throw std::bad_alloc();
+  }
+
+  void bytes(const void* data, std::size_t size) {
+    if (size > 0) XXH3_128bits_update(state_.get(), data, size);
+  }
+  void count(std::uint64_t number) { bytes(&number, sizeof(number)); }
+  /// Its length, then its bytes.
+  void text(const std::string& text) {
+    count(text.size());
+    bytes(text.data(), text.size());
+  }
+
+  /// 32 hexadecimal digits.
+  std::string hex() const {
+    const XXH128_hash_t hash = XXH3_128bits_digest(state_.get());
+    char text[33];
+    std::snprintf(text, sizeof(text), "%016llx%016llx", static_cast<unsigned long long>(hash.high64),
+                  static_cast<unsigned long long>(hash.low64));
+    return text;
+  }
+
+ private:
+  std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state_;
+};
+
+}  // namespace tumble::scenarios

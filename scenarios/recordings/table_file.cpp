@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/recordings/table_file.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <span>
+#include <system_error>
+
+#include "scenarios/errors.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr std::int64_t kNsPerS = 1000000000;
+constexpr std::int64_t kSecondsMax = 9'000'000'000;  // of a time stamp: nanoseconds must fit
+/// Bytes of a table that are written at a time.
+constexpr std::size_t kBlock = 1 << 16;
+
+std::vector<std::string> split(const std::string& line, char separator) {
+  std::vector<std::string> cells;
+  std::size_t begin = 0;
+  while (begin <= line.size()) {
+    std::size_t end = line.find(separator, begin);
+    if (end == std::string::npos) end = line.size();
+    // runs of blanks separate once
+    if (separator != ' ' || end > begin) cells.push_back(line.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return cells;
+}
+
+template <typename T>
+bool parse(const std::string& text, T& value) {
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  return error == std::errc() && stop == end;
+}
+
+}  // namespace
+
+TableWriter::TableWriter(const std::filesystem::path& path, char separator, const std::string& header)
+    : file_(path), separator_(separator) {
+  if (!header.empty()) text_ = header + '\n';
+}
+
+void TableWriter::flush() {
+  file_.write(std::as_bytes(std::span(text_)));
+  text_.clear();
+}
+
+void TableWriter::cell(const std::string& text) {
+  if (!row_empty_) text_ += separator_;
+  text_ += text;
+  row_empty_ = false;
+}
+
+void TableWriter::integer(std::int64_t value) {
+  cell(std::to_string(value));
+}
+
+void TableWriter::number(double value) {
+  char text[40];
+  const auto [end, error] = std::to_chars(text, text + sizeof(text), value);
+  cell(std::string(text, error == std::errc() ? end : text));
+}
+
+void TableWriter::time_s(std::int64_t time_ns) {
+  const std::int64_t magnitude = std::llabs(time_ns);
+  std::string fraction = std::to_string(magnitude % kNsPerS);
+  fraction.insert(0, 9 - fraction.size(), '0');
+  std::string text = time_ns < 0 ? "-" : "";
+  text.append(std::to_string(magnitude / kNsPerS)).append(1, '.').append(fraction);
+  cell(text);
+}
+
+void TableWriter::end_row() {
+  text_ += '\n';
+  row_empty_ = true;
+  if (text_.size() > kBlock) flush();
+}
+
+void TableWriter::close() {
+  flush();
+  file_.move_into_place();
+}
+
+Table Table::read(const std::filesystem::path& path, char separator, const std::string& header, std::size_t columns) {
+  std::ifstream file(path);
+  if (!file) throw BadInput(path.string() + ": cannot be read");
+  Table table{path, {}};
+  std::string line;
+  int number = 0;
+  bool header_due = !header.empty();
+  while (std::getline(file, line)) {
+    ++number;
+    if (number == 1 && line.starts_with("\xef\xbb\xbf")) line.erase(0, 3);  // as editors on Windows begin a file
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    if (separator == ' ') std::replace(line.begin(), line.end(), '\t', ' ');
+    if (header_due) {
+      if (line != header) throw BadInput(path.string() + ":1: header is '" + line + "', must be '" + header + "'");
+      header_due = false;
+      continue;
+    }
+    if (line.empty() || line.front() == '#') continue;
+    Row row{number, split(line, separator)};
+    if (row.cells.size() != columns) {
+      throw BadInput(path.string() + ":" + std::to_string(number) + ": " + std::to_string(row.cells.size()) +
+                     " columns, must be " + std::to_string(columns));
+    }
+    table.rows.push_back(std::move(row));
+  }
+  if (header_due) throw BadInput(path.string() + ": empty, must begin with '" + header + "'");
+  return table;
+}
+
+double Table::number(const Row& row, std::size_t column) const {
+  double value = 0.0;
+  if (!parse(row.cells[column], value)) {
+    throw BadInput(path.string() + ":" + std::to_string(row.line) + ": '" + row.cells[column] + "' is not a number");
+  }
+  return value;
+}
+
+std::int64_t Table::integer(const Row& row, std::size_t column) const {
+  std::int64_t value = 0;
+  if (!parse(row.cells[column], value)) {
+    throw BadInput(path.string() + ":" + std::to_string(row.line) + ": '" + row.cells[column] + "' is not an integer");
+  }
+  return value;
+}
+
+std::int64_t Table::time_ns(const Row& row, std::size_t column) const {
+  const std::string& text = row.cells[column];
+  const std::size_t point = text.find('.');
+  const bool plain = text.find_first_not_of("-0123456789.") == std::string::npos;
+  std::int64_t whole = 0;
+  std::int64_t fraction = 0;
+  // epoch seconds with nine decimals do not fit a double: whole and fraction apart
+  if (plain && point != std::string::npos && point > 0 && parse(text.substr(0, point), whole)) {
+    std::string digits = text.substr(point + 1, 9);
+    digits.append(9 - digits.size(), '0');
+    const bool fits = whole >= -kSecondsMax && whole <= kSecondsMax;
+    if (fits && parse(digits, fraction)) return whole * kNsPerS + (text.front() == '-' ? -fraction : fraction);
+  }
+  const double value_s = number(row, column);
+  if (!std::isfinite(value_s) || std::abs(value_s) > static_cast<double>(kSecondsMax)) {
+    throw BadInput(path.string() + ":" + std::to_string(row.line) + ": '" + text + "' is not a time in seconds");
+  }
+  return static_cast<std::int64_t>(std::llround(value_s * 1e9));
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/summary/example_choice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace tumble::scenarios {
+
+bool typical_seed(const Summary& summary, const std::string& scenario, std::uint64_t& seed) {
+  for (const Section& section : summary.sections) {
+    if (section.scenario != scenario || section.kind == Kind::attitude) continue;
+    const MethodSummary* base = section.find(section.baseline);
+    for (const std::string& name : headline_metrics(section.kind)) {
+      const MetricSummary* metric = base->find(name);
+      if (metric == nullptr || metric->values.empty()) continue;
+      const auto nearest = std::min_element(metric->values.begin(), metric->values.end(), [&](double a, double b) {
+        return std::abs(a - metric->centre.value) < std::abs(b - metric->centre.value);
+      });
+      seed = metric->seeds[static_cast<std::size_t>(nearest - metric->values.begin())];
+      return true;
+    }
+  }
+  return false;
+}
+
+std::vector<ExampleDraw> choose_examples(const Summary& summary, std::span<const ExampleCandidate> candidates,
+                                         std::size_t count) {
+  struct Ranked {
+    std::size_t round, place;
+    ExampleDraw draw;
+  };
+  std::vector<Ranked> ranked;
+  std::map<std::string, std::size_t> taken;  // of each robot
+  for (const ExampleCandidate& candidate : candidates) {
+    ExampleDraw draw{candidate.scenario, 0};
+    if (typical_seed(summary, draw.scenario, draw.seed))
+      ranked.push_back({taken[candidate.robot]++, ranked.size(), std::move(draw)});
+  }
+  std::stable_sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) { return a.round < b.round; });
+  if (ranked.size() > count) ranked.resize(count);
+  std::sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) { return a.place < b.place; });
+  std::vector<ExampleDraw> chosen;
+  for (Ranked& each : ranked) chosen.push_back(std::move(each.draw));
+  return chosen;
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scenarios/summary/summary.hpp"
+
+/// Which draws of a sweep are shown to people: by what the results hold, not by name.
+namespace tumble::scenarios {
+
+/// A scenario of the sweep, in the suite's order.
+struct ExampleCandidate {
+  std::string scenario, robot;
+};
+
+struct ExampleDraw {
+  std::string scenario;
+  std::uint64_t seed = 0;
+  auto operator<=>(const ExampleDraw&) const = default;
+};
+
+/// The draw whose headline score under the baseline is the median one of its scenario: neither the best nor the worst.
+/// The first kind but attitude, which says least about the motion, and the first of its headline metrics that has a
+/// value choose. Returns false when the results have no such score.
+bool typical_seed(const Summary& summary, const std::string& scenario, std::uint64_t& seed);
+
+/// At most `count` typical draws, in the order of the candidates: of each robot its first scenario, then of each its
+/// second, and so on.
+std::vector<ExampleDraw> choose_examples(const Summary& summary, std::span<const ExampleCandidate> candidates,
+                                         std::size_t count);
+
+}  // namespace tumble::scenarios

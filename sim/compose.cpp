@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/compose.hpp"
+
+#include "sim/robot/robot_type.hpp"
+#include "sim/simulate.hpp"
+#include "sim/world/world_type.hpp"
+
+namespace tumble::sim::engine {
+
+namespace {
+
+struct SpecDeleter {
+  void operator()(mjSpec* spec) const { mj_deleteSpec(spec); }
+};
+using SpecPtr = std::unique_ptr<mjSpec, SpecDeleter>;
+
+constexpr double kStep_s = 0.0005;
+
+/// Without handlers the engine writes a log file beside the program and ends the process on an error. Its warnings are
+/// counted in mjData and checked after every step.
+void install_handlers() {
+  static const bool kInstalled = [] {
+    mju_user_warning = [](const char*) {};
+    mju_user_error = [](const char* message) { throw SimulationFailure(std::string("engine error: ") + message); };
+    return true;
+  }();
+  (void)kInstalled;
+}
+
+SpecPtr parse(const std::filesystem::path& file) {
+  char error[1000] = "";
+  SpecPtr spec(mj_parseXML(file.string().c_str(), nullptr, error, sizeof error));
+  if (!spec) throw InvalidSituation("model " + file.filename().string() + ": " + error);
+  return spec;
+}
+
+void move_to_start(mjSpec* spec, std::string_view anchor, const World& world) {
+  mjsBody* body = mjs_findBody(spec, std::string(anchor).c_str());
+  for (int i = 0; i < 3; ++i) body->pos[i] += world.start_W_m[i];
+}
+
+}  // namespace
+
+World compose(const Situation& situation, const std::filesystem::path& models) {
+  const WorldType& world_type = find_world_type(situation.world.type);
+  const RobotType& robot_type = find_robot_type(situation.robot.type);
+  const Values world_values =
+      resolve("world." + situation.world.type, situation.world.values, world_type.component.parameters);
+  const Values robot_values =
+      resolve("robot." + situation.robot.type, situation.robot.values, robot_type.component.parameters);
+
+  install_handlers();
+  World world;
+  const SpecPtr spec = parse(models / robot_type.file);
+  spec->option.timestep = kStep_s;
+  spec->option.integrator = mjINT_RK4;  // the only integrator here that keeps energy and momentum of a tumbling body
+  spec->compiler.usethread = 0;
+  robot_type.shape(spec.get(), robot_values, world);
+  world_type.build(spec.get(), world_values, situation.seed, world);
+  world.free = robot_type.anchor.empty();
+  if (!world.free) move_to_start(spec.get(), robot_type.anchor, world);
+
+  world.model.reset(mj_compile(spec.get(), nullptr));
+  if (!world.model) throw InvalidSituation(std::string("model: ") + mjs_getError(spec.get()));
+  world.robot_body = mj_name2id(world.model.get(), mjOBJ_BODY, std::string(robot_type.sensor_body).c_str());
+  for (const std::string& name : world.surfaces) {
+    world.surface_geom.push_back(mj_name2id(world.model.get(), mjOBJ_GEOM, name.c_str()));
+  }
+  return world;
+}
+
+}  // namespace tumble::sim::engine

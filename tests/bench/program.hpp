@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+
+#include "sim/simulate.hpp"
+
+/// What the programs of this folder that are called by hand have in common.
+namespace tumble::bench {
+
+/// Reads the words of the command line into a Request and runs it; wrong words print how it is used, what is thrown is
+/// printed. Returns the exit status: 2 for both of these.
+template <typename Request>
+int run_program(int count, char** words, const char* usage, bool (*parse)(int, char**, Request&),
+                int (*run)(const Request&)) {
+  Request request;
+  if (!parse(count, words, request)) {
+    std::fprintf(stderr, "usage: %s\n", usage);
+    return 2;
+  }
+  try {
+    return run(request);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
+  }
+}
+
+/// `work(seed)` for each seed, both ends included; a draw that the simulation rejects is left out with a line that says
+/// so.
+template <typename Work>
+void for_each_draw(std::uint64_t first, std::uint64_t last, Work&& work) {
+  for (std::uint64_t seed = first; seed <= last; ++seed) {
+    try {
+      work(seed);
+    } catch (const sim::SimulationFailure& failure) {
+      std::printf("draw %llu left out: %s\n", static_cast<unsigned long long>(seed), failure.what());
+    }
+  }
+}
+
+}  // namespace tumble::bench

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/summary/example_choice.hpp"
+
+#include <gtest/gtest.h>
+
+namespace tumble::scenarios {
+namespace {
+
+/// A scenario whose baseline has these errors on seeds 1, 2, ...
+Section section_of(const std::string& scenario, Kind kind, const std::vector<double>& errors) {
+  MetricSummary metric;
+  for (std::size_t i = 0; i < errors.size(); ++i) metric.seeds.push_back(i + 1);
+  metric.values = errors;
+  metric.centre = median_interval(errors);
+  MethodSummary method;
+  method.method = "any";
+  method.metrics[headline_metrics(kind).front()] = metric;
+  Section section;
+  section.scenario = scenario;
+  section.kind = kind;
+  section.baseline = "any";
+  section.methods = {method};
+  return section;
+}
+
+TEST(TypicalSeed, IsTheMedianDrawOfTheBaseline) {
+  Summary summary;
+  summary.sections = {section_of("a", Kind::rate, {5.0, 1.0, 3.1, 9.0, 2.0})};
+  std::uint64_t seed = 0;
+  ASSERT_TRUE(typical_seed(summary, "a", seed));
+  EXPECT_EQ(seed, 3u);
+  EXPECT_FALSE(typical_seed(summary, "b", seed));
+  summary.sections = {section_of("a", Kind::attitude, {1.0, 2.0, 3.0})};
+  EXPECT_FALSE(typical_seed(summary, "a", seed)) << "attitude says least about the motion";
+}
+
+TEST(ExampleChoice, GoesRoundTheRobotsInTheOrderOfTheSuite) {
+  Summary summary;
+  for (const char* name : {"hill", "scree", "roll", "slip"})
+    summary.sections.push_back(section_of(name, Kind::rate, {1.0, 2.0, 3.0}));
+  const std::vector<ExampleCandidate> suite = {
+      {"hill", "rig"}, {"rejected", "rig"}, {"scree", "rig"}, {"roll", "sphere"}, {"slip", "sphere"}};
+  using Draws = std::vector<ExampleDraw>;
+  EXPECT_EQ(choose_examples(summary, suite, 2), (Draws{{"hill", 2}, {"roll", 2}})) << "one of each robot first";
+  EXPECT_EQ(choose_examples(summary, suite, 3), (Draws{{"hill", 2}, {"scree", 2}, {"roll", 2}}));
+  EXPECT_EQ(choose_examples(summary, suite, 9).size(), 4u) << "what has no score is no example";
+  EXPECT_TRUE(choose_examples(summary, suite, 0).empty());
+}
+
+}  // namespace
+}  // namespace tumble::scenarios

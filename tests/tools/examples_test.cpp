@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/examples/example.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+#include "scenarios/errors.hpp"
+#include "tests/scenarios/sweep/temporary_folder.hpp"
+#include "tools/examples/draw_plots.hpp"
+#include "tools/report/plots.hpp"
+
+namespace tumble::tools {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+/// A recording of four samples whose gyro y axis is flat, with what raw would make of it.
+scenarios::RunResult clipped_run() {
+  scenarios::RunResult run;
+  run.situation.scenario = "hill";
+  run.methods = scenarios::find_methods("rate/raw");
+  scenarios::Estimate estimate;
+  sim::Recording& recording = run.recording;
+  recording.truth.period_ns = 10000000;
+  recording.sensors.imus.resize(1);
+  recording.truth.imus.resize(1);
+  for (int k = 0; k < 4; ++k) {
+    recording.truth.p_WB_m.emplace_back(k, 0, 0);
+    recording.truth.q_WB.push_back(Eigen::Quaterniond::Identity());
+    recording.truth.v_WB_m_s.emplace_back(1, 0, 0);
+    recording.truth.w_WB_B_rad_s.emplace_back(0, 15, 0);
+    recording.sensors.imus[0].time_ns.push_back(10000000 * k);
+    recording.truth.imus[0].rate_rad_s.emplace_back(0, 15 + k, 0);
+    RateState rate;
+    rate.time_ns = 10000000 * k;
+    rate.w_WI_I_rad_s = {0, 10.5, 0};
+    rate.clipped_axes = 2;
+    estimate.rates.push_back(rate);
+  }
+  run.estimates = {estimate};
+  return run;
+}
+
+TEST(RatePlot, ShowsTheAxisThatClips) {
+  const Plot plot = rate_plot(clipped_run());
+  ASSERT_EQ(plot.lines.size(), 2u);
+  EXPECT_THAT(plot.lines[0].y, ElementsAre(15.0, 16.0, 17.0, 18.0));
+  EXPECT_EQ(plot.lines[0].colour, kTruthColour);
+  EXPECT_THAT(plot.lines[1].y, ElementsAre(10.5, 10.5, 10.5, 10.5));
+  EXPECT_THAT(plot.caption, HasSubstr("y axis"));
+}
+
+TEST(RatePlot, IsEmptyWhenNothingClips) {
+  scenarios::RunResult run = clipped_run();
+  for (RateState& rate : run.estimates[0].rates) rate.clipped_axes = 0;
+  EXPECT_TRUE(rate_plot(run).lines.empty());
+}
+
+TEST(PathPlot, HasEqualScales) {
+  const Plot plot = path_plot(clipped_run(), {});
+  ASSERT_EQ(plot.lines.size(), 1u);
+  EXPECT_THAT(plot.lines[0].x, ElementsAre(0.0, 1.0, 2.0, 3.0));
+  const Figure figure = figure_of(plot, "path-hill");
+  EXPECT_EQ(figure.data[0]["x"], nlohmann::json({0.0, 1.0, 2.0, 3.0}));
+  EXPECT_EQ(figure.layout["yaxis"]["scaleanchor"], "x");
+}
+
+TEST(Figure, OfAPlotKeepsGapsSpansAndWhatIsHidden) {
+  Plot plot;
+  plot.shaded = {{1.0, 2.0}};
+  PlotLine line;
+  line.x = {0.0, 1.0};
+  line.y = {std::nan(""), 4.0};
+  line.hidden = line.dotted = true;
+  plot.lines = {line};
+  const Figure figure = figure_of(plot, "id");
+  EXPECT_TRUE(figure.data[0]["y"][0].is_null());
+  EXPECT_EQ(figure.data[0]["visible"], "legendonly");
+  EXPECT_EQ(figure.data[0]["line"]["dash"], "dot");
+  ASSERT_EQ(figure.layout["shapes"].size(), 1u);
+  EXPECT_EQ(figure.layout["shapes"][0]["x1"], 2.0);
+}
+
+class ExamplesTest : public scenarios::testing::TemporaryFolder {
+ protected:
+  /// Everything that a list holds, each with a value of its own.
+  static Example sample(std::uint64_t seed) {
+    Example example;
+    example.scenario = "hill";
+    example.seed = seed;
+    example.motion = "tumble";
+    example.choice = "why";
+    example.recording_digest = "abc";
+    example.digest_without_lidars = "def";
+    example.made_of = "123";
+    example.pictures = {{"scene", "alternative", "caption", {{"truth", kTruthColour}, {"slam/icp", 0}}, {1, 2, 3}}};
+    Plot plot = path_plot(clipped_run(), {});
+    plot.shaded = {{0.5, 1.5}};
+    plot.wide = false;
+    plot.lines[0].y[1] = std::nan("");
+    plot.lines[0].x[2] = 0.1;
+    example.plots = {plot};
+    return example;
+  }
+  void leave(const std::vector<Example>& examples) {
+    std::vector<std::string> texts;
+    for (const Example& example : examples) {
+      write_pictures(folder_, example);
+      texts.push_back(to_json(example));
+    }
+    write_examples(folder_, texts);
+  }
+  void overwrite_list(const std::string& text) { std::ofstream(folder_ / "examples.json") << text; }
+};
+
+TEST_F(ExamplesTest, ComeBackAsTheyWereLeft) {
+  leave({sample(3), sample(18446744073709551615u)});
+  const std::vector<Example> read = read_examples(folder_, Pictures::read);
+  ASSERT_EQ(read.size(), 2u);
+  EXPECT_EQ(read[1].seed, 18446744073709551615u);
+  EXPECT_EQ(to_json(read[0]), to_json(sample(3))) << "every field, to the bit";
+  EXPECT_EQ(read[0].pictures[0].png, sample(3).pictures[0].png);
+  EXPECT_TRUE(std::isnan(read[0].plots[0].lines[0].y[1]));
+  EXPECT_EQ(read[0].plots[0].lines[0].x[2], 0.1);
+  EXPECT_TRUE(read_examples(folder_, Pictures::left_out)[0].pictures[0].png.empty());
+  EXPECT_TRUE(read_examples(folder_ / "nowhere", Pictures::read).empty());
+}
+
+TEST_F(ExamplesTest, WhatANewListHasNotIsRemovedAndNothingElse) {
+  leave({sample(3), sample(4)});
+  std::ofstream(folder_ / "mine.png") << "mine";
+  leave({sample(4)});
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "hill-3-scene.png"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "hill-4-scene.png"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "mine.png"));
+}
+
+TEST_F(ExamplesTest, AListThatIsDamagedIsRefused) {
+  leave({sample(3)});
+  std::filesystem::remove(folder_ / "hill-3-scene.png");
+  EXPECT_THROW(read_examples(folder_, Pictures::read), scenarios::BadInput) << "a picture is gone";
+  for (const char* text : {"", "{", "[]", "{\"format\": \"other\", \"version\": 1, \"examples\": []}",
+                           "{\"format\": \"tumble examples\", \"version\": 1, \"examples\": [{}]}"}) {
+    overwrite_list(text);
+    EXPECT_THROW(read_examples(folder_, Pictures::read), scenarios::BadInput) << text;
+  }
+}
+
+TEST_F(ExamplesTest, AListNamesFilesOfItsOwnFolderAlone) {
+  const std::filesystem::path secret = folder_ / "secret.png", own = folder_ / "own";
+  std::ofstream(secret) << "secret";
+  std::filesystem::create_directories(own);
+  std::string list = "{\"format\": \"tumble examples\", \"version\": 1, \"examples\": [" + to_json(sample(3)) + "]}";
+  const std::string name = "hill-3-scene.png";
+  list.replace(list.find(name), name.size(), "../secret.png");
+  std::ofstream(own / "examples.json") << list;
+  EXPECT_THROW(read_examples(own, Pictures::read), scenarios::BadInput);
+  write_examples(own, {});
+  EXPECT_TRUE(std::filesystem::exists(secret)) << "nor is one removed";
+}
+
+}  // namespace
+}  // namespace tumble::tools

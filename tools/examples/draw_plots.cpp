@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/examples/draw_plots.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "scenarios/methods/origin.hpp"
+
+namespace tumble::tools {
+
+namespace {
+
+using scenarios::Kind;
+
+constexpr std::size_t kPathPointsMax = 600;
+
+/// The gyro axis with most clipped samples by the estimates' own flags; -1 when none has any.
+int most_clipped_axis(const std::vector<RateState>& rates) {
+  std::array<int, 3> count = {0, 0, 0};
+  for (const RateState& rate : rates) {
+    for (int axis = 0; axis < 3; ++axis) count[static_cast<std::size_t>(axis)] += (rate.clipped_axes >> axis) & 1;
+  }
+  const auto most = std::max_element(count.begin(), count.end());
+  return *most == 0 ? -1 : static_cast<int>(most - count.begin());
+}
+
+int most_clipped_axis(const scenarios::RunResult& run) {
+  for (std::size_t i = 0; i < run.methods.size(); ++i) {
+    if (run.methods[i]->info.kind != Kind::rate) continue;
+    const int found = most_clipped_axis(run.estimates[i].rates);
+    if (found >= 0) return found;
+  }
+  return -1;
+}
+
+PlotLine true_rate(const sim::Recording& recording, int axis, const Span& span) {
+  const sim::ImuRecord& imu = recording.sensors.imus.front();
+  const sim::ImuTruth& truth = recording.truth.imus.front();
+  PlotLine line;
+  line.name = "truth";
+  line.width = 3.5;
+  for (std::size_t k = 0; k < imu.time_ns.size() && k < truth.rate_rad_s.size(); ++k) {
+    if (imu.time_ns[k] < span.begin_ns || imu.time_ns[k] > span.end_ns) continue;
+    line.x.push_back(significant(seconds(imu.time_ns[k])));
+    line.y.push_back(significant(truth.rate_rad_s[k][axis]));
+  }
+  return line;
+}
+
+PlotLine estimated_rate(const scenarios::MethodInfo& info, const std::vector<RateState>& rates, int axis,
+                        const Span& span) {
+  PlotLine line;
+  line.name = is_baseline(info) ? info.name + " (what the gyro says)" : info.name;
+  line.width = 1.6;
+  line.dotted = line.hidden = info.needs_truth;
+  for (const RateState& rate : rates) {
+    if (rate.time_ns < span.begin_ns || rate.time_ns > span.end_ns) continue;
+    line.x.push_back(significant(seconds(rate.time_ns)));
+    line.y.push_back(significant(rate.w_WI_I_rad_s[axis]));
+  }
+  return line;
+}
+
+PlotLine path_line(const std::string& name, int colour, double width, const Path& path) {
+  PlotLine line;
+  line.name = name;
+  line.colour = colour;
+  line.width = width;
+  const std::size_t stride = path.points_W_m.size() / kPathPointsMax + 1;
+  for (std::size_t k = 0; k < path.points_W_m.size(); k += stride) {
+    line.x.push_back(significant(path.points_W_m[k].x()));
+    line.y.push_back(significant(path.points_W_m[k].y()));
+  }
+  return line;
+}
+
+}  // namespace
+
+double significant(double value) {
+  if (value == 0.0 || !std::isfinite(value)) return value;
+  const double scale = std::pow(10.0, 4 - static_cast<int>(std::floor(std::log10(std::abs(value)))));
+  return std::round(value * scale) / scale;
+}
+
+RunPaths paths_of(const scenarios::RunResult& run) {
+  RunPaths found;
+  for (std::size_t i = 0; i < run.estimates.size(); ++i) {
+    const scenarios::MethodInfo& info = run.methods[i]->info;
+    if (info.needs_truth) continue;
+    Path path = estimated_path(run.estimates[i], run.recording.sensors, run.recording.truth);
+    if (path.empty()) continue;
+    found.methods.push_back(std::string(to_string(info.kind)) + "/" + info.name);
+    found.paths.push_back(std::move(path));
+  }
+  return found;
+}
+
+Plot rate_plot(const scenarios::RunResult& run) {
+  Plot plot;
+  plot.name = "rate";
+  const int axis = most_clipped_axis(run);
+  if (axis < 0 || run.recording.truth.imus.empty()) return plot;
+  const Span span = moving_span(run.recording.truth, 0.3);
+  plot.lines.push_back(true_rate(run.recording, axis, span));
+  int colour = 0;
+  for (std::size_t i = 0; i < run.methods.size(); ++i) {
+    if (run.methods[i]->info.kind != Kind::rate) continue;
+    plot.lines.push_back(estimated_rate(run.methods[i]->info, run.estimates[i].rates, axis, span));
+    plot.lines.back().colour = colour++;
+  }
+  plot.caption =
+      std::string("Angular velocity about the sensor's ") + "xyz"[axis] +
+      " axis, the one that clips most. Where the gyro is flat it is at its rail; drag to zoom, double-click to return.";
+  plot.x_title = "time [s]";
+  plot.y_title = "rate [rad/s]";
+  plot.over_time = true;
+  return plot;
+}
+
+Plot path_plot(const scenarios::RunResult& run, const RunPaths& paths) {
+  Plot plot;
+  plot.name = "path";
+  if (run.recording.truth.p_WB_m.empty()) return plot;
+  const Path way = true_path(run.recording.sensors, run.recording.truth, 1);
+  plot.lines.push_back(path_line("truth", kTruthColour, 3.5, way));
+  bool cut = false;
+  for (std::size_t i = 0; i < paths.paths.size(); ++i) {
+    const Path shown = near_truth(paths.paths[i], way);
+    cut = cut || shown.points_W_m.size() < paths.paths[i].points_W_m.size();
+    plot.lines.push_back(path_line(paths.methods[i], static_cast<int>(i), 1.8, shown));
+  }
+  plot.caption = "The way seen from above, at equal scales. Estimates start where the truth does.";
+  if (cut) plot.caption += " A path that runs away from the truth ends where it leaves the picture.";
+  plot.x_title = "x [m]";
+  plot.y_title = "y [m]";
+  plot.equal_scales = true;
+  return plot;
+}
+
+}  // namespace tumble::tools

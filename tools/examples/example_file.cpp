@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <span>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/recordings/replace_file.hpp"
+#include "tools/examples/example.hpp"
+
+namespace tumble::tools {
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using scenarios::BadInput;
+
+constexpr const char* kFormat = "tumble examples";
+constexpr int kVersion = 1;
+
+fs::path list_file(const fs::path& folder) {
+  return folder / "examples.json";
+}
+
+/// A scenario's name is one of the catalogue or of a file: letters that lead nowhere else.
+std::string picture_file(const Example& example, const ExamplePicture& picture) {
+  std::string name = example.scenario + "-" + std::to_string(example.seed) + "-" + picture.name + ".png";
+  for (char& c : name) {
+    if (c == '/' || c == '\0') c = '_';
+  }
+  return name;
+}
+
+json numbers(const std::vector<double>& values) {
+  json out = json::array();
+  for (const double value : values) out.push_back(std::isfinite(value) ? json(value) : json());
+  return out;
+}
+
+std::vector<double> read_numbers(const json& values) {
+  std::vector<double> out;
+  for (const json& value : values)
+    out.push_back(value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>());
+  return out;
+}
+
+json line_json(const PlotLine& line) {
+  return {{"name", line.name},     {"colour", line.colour}, {"width", line.width}, {"dotted", line.dotted},
+          {"hidden", line.hidden}, {"x", numbers(line.x)},  {"y", numbers(line.y)}};
+}
+
+PlotLine read_line(const json& from) {
+  PlotLine line;
+  line.name = from.at("name");
+  line.colour = from.at("colour");
+  line.width = from.at("width");
+  line.dotted = from.at("dotted");
+  line.hidden = from.at("hidden");
+  line.x = read_numbers(from.at("x"));
+  line.y = read_numbers(from.at("y"));
+  return line;
+}
+
+json plot_json(const Plot& plot) {
+  json out = {{"name", plot.name},
+              {"caption", plot.caption},
+              {"x_title", plot.x_title},
+              {"y_title", plot.y_title},
+              {"equal_scales", plot.equal_scales},
+              {"from_zero", plot.from_zero},
+              {"over_time", plot.over_time},
+              {"wide", plot.wide},
+              {"shaded", plot.shaded},
+              {"lines", json::array()}};
+  for (const PlotLine& line : plot.lines) out["lines"].push_back(line_json(line));
+  return out;
+}
+
+Plot read_plot(const json& from) {
+  Plot plot;
+  plot.name = from.at("name");
+  plot.caption = from.at("caption");
+  plot.x_title = from.at("x_title");
+  plot.y_title = from.at("y_title");
+  plot.equal_scales = from.at("equal_scales");
+  plot.from_zero = from.at("from_zero");
+  plot.over_time = from.at("over_time");
+  plot.wide = from.at("wide");
+  from.at("shaded").get_to(plot.shaded);
+  for (const json& line : from.at("lines")) plot.lines.push_back(read_line(line));
+  return plot;
+}
+
+std::vector<std::uint8_t> read_bytes(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw BadInput(path.string() + ": cannot be read");
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+/// A list may come from anywhere: only files of its own folder are read, or removed.
+std::string file_name(const json& picture) {
+  const std::string name = picture.at("file");
+  if (name.empty() || fs::path(name).filename() != name || name.starts_with('.') || !name.ends_with(".png"))
+    throw BadInput("'" + name + "' is not the name of a picture beside it");
+  return name;
+}
+
+ExamplePicture read_picture(const fs::path& folder, const json& from, Pictures pictures) {
+  ExamplePicture picture;
+  picture.name = from.at("name");
+  picture.alternative = from.at("alternative");
+  picture.caption = from.at("caption");
+  from.at("legend").get_to(picture.legend);
+  const std::string name = file_name(from);
+  if (pictures == Pictures::read) picture.png = read_bytes(folder / name);
+  return picture;
+}
+
+Example read_example(const fs::path& folder, const json& from, Pictures pictures) {
+  Example example;
+  example.scenario = from.at("scenario");
+  example.seed = from.at("seed");
+  example.motion = from.at("motion");
+  example.choice = from.at("choice");
+  example.recording_digest = from.at("recording_digest");
+  example.digest_without_lidars = from.at("digest_without_lidars");
+  example.made_of = from.at("made_of");
+  for (const json& picture : from.at("pictures")) example.pictures.push_back(read_picture(folder, picture, pictures));
+  for (const json& plot : from.at("plots")) example.plots.push_back(read_plot(plot));
+  return example;
+}
+
+/// Null where there is none.
+json read_list(const fs::path& folder) {
+  const fs::path path = list_file(folder);
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return json();
+  json list = json::parse(file);
+  if (list.at("format") != kFormat || list.at("version") != kVersion)
+    throw BadInput("is not a list of examples of version " + std::to_string(kVersion));
+  return list;
+}
+
+std::set<std::string> files_of(const json& examples) {
+  std::set<std::string> files;
+  for (const json& example : examples) {
+    for (const json& picture : example.at("pictures")) files.insert(file_name(picture));
+  }
+  return files;
+}
+
+/// What a list that cannot be read has left stays: it is not known to be ours.
+std::set<std::string> files_before(const fs::path& folder) {
+  try {
+    const json list = read_list(folder);
+    return list.is_null() ? std::set<std::string>() : files_of(list.at("examples"));
+  } catch (const std::exception&) {
+    return {};
+  }
+}
+
+}  // namespace
+
+fs::path examples_folder(const fs::path& database) {
+  return fs::path(database.string() + ".files");
+}
+
+std::string to_json(const Example& example) {
+  json out = {{"scenario", example.scenario},
+              {"seed", example.seed},
+              {"motion", example.motion},
+              {"choice", example.choice},
+              {"recording_digest", example.recording_digest},
+              {"digest_without_lidars", example.digest_without_lidars},
+              {"made_of", example.made_of},
+              {"pictures", json::array()},
+              {"plots", json::array()}};
+  for (const ExamplePicture& picture : example.pictures) {
+    out["pictures"].push_back({{"name", picture.name},
+                               {"file", picture_file(example, picture)},
+                               {"alternative", picture.alternative},
+                               {"caption", picture.caption},
+                               {"legend", picture.legend}});
+  }
+  for (const Plot& plot : example.plots) out["plots"].push_back(plot_json(plot));
+  return out.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+void write_pictures(const fs::path& folder, const Example& example) {
+  for (const ExamplePicture& picture : example.pictures)
+    scenarios::replace_file(folder / picture_file(example, picture), std::as_bytes(std::span(picture.png)));
+}
+
+void write_examples(const fs::path& folder, const std::vector<std::string>& examples) {
+  const std::set<std::string> before = files_before(folder);
+  json list = {{"format", kFormat}, {"version", kVersion}, {"examples", json::array()}};
+  for (const std::string& example : examples) list["examples"].push_back(json::parse(example));
+  scenarios::replace_file(list_file(folder), list.dump() + "\n");
+  const std::set<std::string> now = files_of(list.at("examples"));
+  for (const std::string& name : before) {
+    std::error_code ignored;
+    if (!now.contains(name)) fs::remove(folder / name, ignored);
+  }
+}
+
+std::vector<Example> read_examples(const fs::path& folder, Pictures pictures) {
+  std::vector<Example> examples;
+  try {
+    const json list = read_list(folder);
+    if (list.is_null()) return examples;
+    for (const json& example : list.at("examples")) examples.push_back(read_example(folder, example, pictures));
+  } catch (const json::exception& error) {
+    throw BadInput(list_file(folder).string() + ": " + error.what());
+  } catch (const BadInput& error) {
+    throw BadInput(list_file(folder).string() + ": " + error.what());
+  }
+  return examples;
+}
+
+}  // namespace tumble::tools

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/examples/leave_examples.hpp"
+
+#include <fmt/format.h>
+#include <poll.h>
+
+#include <algorithm>
+#include <list>
+#include <system_error>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/methods/external_method.hpp"
+#include "scenarios/processes/process.hpp"
+#include "scenarios/provenance/text_digest.hpp"
+#include "scenarios/summary/example_choice.hpp"
+#include "tools/examples/make_example.hpp"
+
+namespace tumble::tools {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kPollMs = 200;
+/// What simulating and drawing may take beyond the methods, in units of a method's time-out.
+constexpr double kOtherTimeouts = 3.0;
+constexpr const char* kTypical = "The draw whose score is the median one of its scenario";
+
+/// One example in the making; `text` is what its process has said so far, or what was there.
+struct Making {
+  scenarios::ExampleDraw draw;
+  scenarios::Scenario scenario;
+  std::vector<scenarios::MethodPointer> methods;
+  std::string made_of;
+  std::string text;
+  bool done = false;
+};
+
+/// Digest of the rows of a draw that an example shows.
+std::string digest_of_rows(const std::vector<scenarios::Outcome>& rows, const std::string& build) {
+  std::vector<std::string> texts = {build};
+  for (const scenarios::Outcome& row : rows) {
+    for (const std::string& text : {std::string(to_string(row.kind)), row.method, std::string(to_string(row.status)),
+                                    row.recording_digest, row.estimate_digest})
+      texts.push_back(text);
+  }
+  return scenarios::digest_of_texts(texts);
+}
+
+std::vector<scenarios::Outcome> rows_to_show(const scenarios::Results& results, const scenarios::ExampleDraw& draw) {
+  std::vector<scenarios::Outcome> rows = results.outcomes_of(draw.scenario, draw.seed);
+  std::erase_if(rows, [](const scenarios::Outcome& row) {
+    return !row.setting.is_plain() || !scenarios::was_scored(row.status);
+  });
+  return rows;
+}
+
+/// Of this build in the order of the registry, then those that the suite has out of files.
+std::vector<scenarios::MethodPointer> methods_of(const std::vector<scenarios::Outcome>& rows,
+                                                 const scenarios::Suite& suite) {
+  std::vector<scenarios::MethodPointer> all, found;
+  for (const scenarios::Method& method : scenarios::methods()) all.push_back(scenarios::unowned(method));
+  for (scenarios::MethodPointer& method : scenarios::find_methods_within(suite.methods, suite.timeout_s)) {
+    if (!method->info.version.empty()) all.push_back(std::move(method));
+  }
+  for (scenarios::MethodPointer& method : all) {
+    if (std::any_of(rows.begin(), rows.end(), [&](const scenarios::Outcome& row) {
+          return row.kind == method->info.kind && row.method == method->info.name;
+        }))
+      found.push_back(std::move(method));
+  }
+  return found;
+}
+
+std::vector<Making> plan(const scenarios::DataRoot& data, const scenarios::Suite& suite,
+                         const scenarios::Results& results, std::size_t count) {
+  std::vector<scenarios::Scenario> all;
+  std::vector<scenarios::ExampleCandidate> candidates;
+  for (const std::string& name : suite.scenarios) {
+    all.push_back(scenarios::load_scenario(data, name));
+    candidates.push_back({all.back().name, all.back().robot.type});
+  }
+  std::vector<Making> makings;
+  for (const scenarios::ExampleDraw& draw :
+       scenarios::choose_examples(scenarios::summarize(results), candidates, count)) {
+    const std::vector<scenarios::Outcome> rows = rows_to_show(results, draw);
+    const auto scenario = std::find_if(all.begin(), all.end(), [&](const auto& s) { return s.name == draw.scenario; });
+    makings.push_back(
+        {draw, *scenario, methods_of(rows, suite), digest_of_rows(rows, results.note("build")), {}, false});
+  }
+  return makings;
+}
+
+/// Takes over what stands there of the same rows.
+void keep_known(const fs::path& folder, std::vector<Making>& makings) {
+  try {
+    for (const Example& known : read_examples(folder, Pictures::read)) {
+      for (Making& making : makings) {
+        if (known.made_of != making.made_of || known.scenario != making.draw.scenario || known.seed != making.draw.seed)
+          continue;
+        making.text = to_json(known);
+        making.done = true;
+      }
+    }
+  } catch (const scenarios::BadInput&) {  // made anew
+  }
+}
+
+/// In a process of its own: what cannot be run or drawn there ends nothing else. Says the example, or why there is
+/// none.
+void make(const scenarios::DataRoot& data, const fs::path& folder, const Making& making, int fd) {
+  try {
+    const bool lidars = std::any_of(making.methods.begin(), making.methods.end(),
+                                    [](const auto& method) { return method->info.kind != scenarios::Kind::rate; });
+    const scenarios::RunResult run =
+        scenarios::run_situation(data, making.scenario, making.draw.seed, making.methods, 1,
+                                 lidars ? scenarios::Lidars::simulated : scenarios::Lidars::left_out);
+    Example example = example_of(data, run);
+    example.choice = kTypical;
+    example.made_of = making.made_of;
+    write_pictures(folder, example);
+    scenarios::write_all(fd, to_json(example));
+  } catch (const std::exception& error) {
+    scenarios::write_all(fd, error.what());
+  }
+}
+
+class Makers {
+ public:
+  Makers(const scenarios::DataRoot& data, const fs::path& folder, double timeout_s, const LeaveOptions& options)
+      : data_(data), folder_(folder), timeout_s_(timeout_s), options_(options) {}
+
+  /// False when it was stopped.
+  bool run(std::vector<Making>& makings) {
+    auto next = makings.begin();
+    while (true) {
+      if (options_.stop != nullptr && options_.stop->load()) return false;
+      while (next != makings.end() && static_cast<int>(workers_.size()) < options_.jobs) {
+        if (!next->done) start(*next);
+        ++next;
+      }
+      if (workers_.empty()) return true;
+      wait_for_words();
+      std::erase_if(workers_, [&](Worker& worker) { return serve(worker); });
+    }
+  }
+
+ private:
+  struct Worker {
+    Making* making;
+    scenarios::Process process;
+    double deadline_s;
+  };
+
+  void start(Making& making) {
+    say(fmt::format("{}, seed {}: running it again for its pictures", making.draw.scenario, making.draw.seed));
+    const double limit_s = timeout_s_ * (static_cast<double>(making.methods.size()) + kOtherTimeouts);
+    try {
+      scenarios::Process process([&](int fd) { make(data_, folder_, making, fd); }, true);
+      workers_.push_back({&making, std::move(process), scenarios::now_s() + limit_s});
+    } catch (const std::system_error& error) {
+      making.text = error.what();
+      say_failed(making);
+    }
+  }
+
+  void wait_for_words() const {
+    std::vector<pollfd> waiting;
+    for (const Worker& worker : workers_) waiting.push_back({worker.process.read_end(), POLLIN, 0});
+    poll(waiting.data(), waiting.size(), kPollMs);
+  }
+
+  /// True when it has ended.
+  bool serve(Worker& worker) {
+    const bool open = worker.process.read_available(worker.making->text);
+    const bool late = open && scenarios::now_s() > worker.deadline_s;
+    if (open && !late) return false;
+    if (late) worker.process.kill();
+    const scenarios::Process::End end = worker.process.wait();
+    worker.making->done = !late && end.normal && worker.making->text.starts_with('{');
+    if (late) worker.making->text = "it did not end in time";
+    if (!late && !end.normal) worker.making->text = "its process " + end.describe();
+    if (!worker.making->done) say_failed(*worker.making);
+    return true;
+  }
+
+  void say(const std::string& line) const {
+    if (options_.note) options_.note(line);
+  }
+
+  void say_failed(const Making& making) const {
+    say(fmt::format("no pictures of {}, seed {}: {}", making.draw.scenario, making.draw.seed, making.text));
+  }
+
+  const scenarios::DataRoot& data_;
+  const fs::path& folder_;
+  double timeout_s_;
+  const LeaveOptions& options_;
+  std::list<Worker> workers_;
+};
+
+}  // namespace
+
+void leave_examples(const scenarios::DataRoot& data, const scenarios::Suite& suite, const fs::path& database,
+                    const LeaveOptions& options) {
+  if (!suite.recordings.empty() || options.count == 0) return;
+  const fs::path folder = examples_folder(database);
+  std::vector<Making> makings;
+  {
+    const scenarios::Results results(database, scenarios::Results::Mode::read_only);
+    makings = plan(data, suite, results, options.count);
+  }
+  if (makings.empty()) return;
+  keep_known(folder, makings);
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw scenarios::BadInput(folder.string() + ": " + error.message());
+  if (!Makers(data, folder, suite.timeout_s, options).run(makings)) return;
+  std::vector<std::string> texts;
+  for (Making& making : makings) {
+    if (making.done) texts.push_back(std::move(making.text));
+  }
+  write_examples(folder, texts);
+}
+
+}  // namespace tumble::tools

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/examples/make_example.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scenarios/methods/origin.hpp"
+#include "scenarios/sweep/evaluate.hpp"
+#include "sim/render/renderer.hpp"
+#include "tools/examples/draw_plots.hpp"
+#include "tools/examples/sphere_plots.hpp"
+#include "tools/pictures/map_pictures.hpp"
+#include "tools/pictures/pictures.hpp"
+
+namespace tumble::tools {
+
+namespace {
+
+bool is_sphere(const scenarios::RunResult& run) {
+  return run.recording.sensors.sphere_radius_m > 0.0;
+}
+
+/// The map of the first method that has one among those that `wanted` names; nothing when none has.
+void add_map(const scenarios::RunResult& run, const sim::Surface& surface, bool (*wanted)(const scenarios::MethodInfo&),
+             std::vector<ErrorMap>& maps) {
+  for (std::size_t i = 0; i < run.methods.size(); ++i) {
+    const scenarios::MethodInfo& info = run.methods[i]->info;
+    if (info.kind != scenarios::Kind::slam || info.needs_truth || !wanted(info)) continue;
+    ErrorMap map = map_by_error("slam/" + info.name, run.estimates[i], run.recording.truth, surface);
+    if (map.points_W_m.empty()) continue;
+    maps.push_back(std::move(map));
+    return;
+  }
+}
+
+/// What the baseline makes of the map, beside what ours makes of it.
+void add_maps(const scenarios::DataRoot& data, const scenarios::RunResult& run, Example& example) {
+  const auto is_map = [](const auto& method) { return method->info.kind == scenarios::Kind::slam; };
+  if (std::none_of(run.methods.begin(), run.methods.end(), is_map)) return;
+  const sim::Surface surface(run.situation, data.models());
+  std::vector<ErrorMap> maps;
+  add_map(run, surface, scenarios::is_baseline, maps);
+  add_map(run, surface, scenarios::is_ours, maps);
+  if (maps.empty()) return;
+  std::string names;
+  for (const ErrorMap& map : maps) {
+    names += fmt::format("{}{} ({:.1f} % of its points within 0.1 m)", names.empty() ? "" : ", ", map.name,
+                         100.0 * map.share_within(0.1f));
+  }
+  example.pictures.push_back({"maps",
+                              "maps side by side, coloured by error",
+                              "Maps, left to right: " + names +
+                                  ". Each point has the colour of its distance from the true surface, from 0 (blue) to "
+                                  "1 m and more (red).",
+                              {},
+                              sim::png_bytes(map_picture(maps, run.recording.truth, 640, 480))});
+}
+
+void add_pictures(const scenarios::DataRoot& data, const scenarios::RunResult& run, const RunPaths& paths,
+                  Example& example) {
+  const Scene scene{&run.situation, data.models(), &run.recording.sensors, &run.recording.truth, paths.paths};
+  ExamplePicture way{"scene",
+                     "the robot along its way, with true and estimated paths",
+                     "The robot at instants equally far apart along its way.",
+                     {{"truth", kTruthColour}},
+                     {}};
+  for (std::size_t i = 0; i < paths.methods.size(); ++i) way.legend.emplace_back(paths.methods[i], static_cast<int>(i));
+  // spheres that stand close together hide their path
+  way.png = sim::png_bytes(scene_picture(scene, is_sphere(run) ? 3 : 8, 1280, 640));
+  example.pictures.push_back(std::move(way));
+  example.pictures.push_back({"film",
+                              "film strip of the same motion",
+                              "The same motion close by, left to right and down.",
+                              {},
+                              sim::png_bytes(film_picture(scene, 8, 4, 400, 300))});
+  add_maps(data, run, example);
+}
+
+void add_plot(Plot plot, Example& example) {
+  if (!plot.lines.empty()) example.plots.push_back(std::move(plot));
+}
+
+}  // namespace
+
+Example example_of(const scenarios::DataRoot& data, const scenarios::RunResult& run) {
+  Example example;
+  example.scenario = run.situation.scenario;
+  example.seed = run.situation.seed;
+  example.motion = is_sphere(run) ? "roll" : "tumble";
+  example.recording_digest = run.recording_digest;
+  example.digest_without_lidars = scenarios::digest_without_lidars(run.recording);
+  const RunPaths paths = paths_of(run);
+  add_pictures(data, run, paths, example);
+  add_plot(rate_plot(run), example);
+  add_plot(path_plot(run, paths), example);
+  if (is_sphere(run)) {
+    add_plot(sphere_track_plot(run), example);
+    add_plot(sphere_speed_plot(run), example);
+    add_plot(sphere_height_plot(run), example);
+    add_plot(sphere_standstill_plot(run), example);
+  }
+  return example;
+}
+
+}  // namespace tumble::tools

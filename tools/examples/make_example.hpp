@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+
+#include "scenarios/data_root.hpp"
+#include "scenarios/sweep/run_situation.hpp"
+#include "tools/examples/example.hpp"
+
+namespace tumble::tools {
+
+/// Pictures and plots of a draw that has been run: the robot along its way, a film strip, the maps of the baseline and
+/// of the method of our own that comes first, coloured by error, and the plots that its robot and methods give
+/// something to. `choice` and `made_of` stay empty. Throws BadInput or std::runtime_error where nothing can be drawn.
+Example example_of(const scenarios::DataRoot& data, const scenarios::RunResult& run);
+
+}  // namespace tumble::tools

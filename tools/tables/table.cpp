@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/tables/table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace tumble::tools {
+
+namespace {
+
+std::string padded(const std::string& cell, std::size_t width, bool right) {
+  const std::string fill(width - std::min(width, character_count(cell)), ' ');
+  return right ? fill + cell : cell + fill;
+}
+
+void append_line(std::string& out, std::string line) {
+  line.erase(line.find_last_not_of(' ') + 1);
+  out += line + "\n";
+}
+
+}  // namespace
+
+Table::Table(std::string title, std::vector<std::string> header)
+    : title_(std::move(title)), header_(std::move(header)), right_from_(header_.size()) {}
+
+void Table::add_row(std::vector<std::string> cells) {
+  if (cells.size() > header_.size()) throw std::logic_error("table '" + title_ + "': a row is longer than the header");
+  cells.resize(header_.size());
+  rows_.push_back(std::move(cells));
+}
+
+std::string Table::text() const {
+  std::vector<std::size_t> width(header_.size());
+  for (std::size_t i = 0; i < header_.size(); ++i) {
+    width[i] = character_count(header_[i]);
+    for (const auto& row : rows_) width[i] = std::max(width[i], character_count(row[i]));
+  }
+  const auto line = [&](const std::vector<std::string>& cells) {
+    std::string joined;
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      joined += (i ? "  " : "") + padded(cells[i], width[i], i >= right_from_);
+    return joined;
+  };
+  std::string out;
+  if (!title_.empty()) append_line(out, title_);
+  append_line(out, line(header_));
+  std::vector<std::string> rule;
+  for (const std::size_t w : width) rule.emplace_back(w, '-');
+  append_line(out, line(rule));
+  for (const auto& row : rows_) append_line(out, line(row));
+  return out;
+}
+
+std::string number_text(double value) {
+  if (std::isinf(value)) return value > 0.0 ? "inf" : "-inf";
+  return std::isnan(value) ? "-" : fmt::format("{:.4g}", value);
+}
+
+std::size_t character_count(const std::string& text) {
+  // continuation bytes of UTF-8 begin with the bits 10
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
+}  // namespace tumble::tools
