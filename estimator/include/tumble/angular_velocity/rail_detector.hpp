@@ -8,6 +8,7 @@
 #include <span>
 
 #include "tumble/common/imu.hpp"
+#include "tumble/common/parameters.hpp"
 
 namespace tumble {
 
@@ -52,6 +53,27 @@ class RailDetector {
     double plateau_jump_digits = 8.0;
     /// Stated and found rail disagree beyond this share; (0, 1].
     double disagreement_share = 0.02;
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit(p.enter_share, {"enter_share", "1", 0.0, 0.1, "a reading within this share of the rail starts clipping"});
+      visit(p.leave_share, {"leave_share", "1", 0.0, 0.5,
+                            "a neighbour of a clipped reading within this share of the rail is clipped too"});
+      visit(p.plateau_samples, {"plateau_samples", "1", 2, 1000, "readings in a row that make a plateau"});
+      visit(p.plateau_spread_share,
+            {"plateau_spread_share", "1", 0.0, 0.01, "largest spread of a plateau as a share of its level"});
+      visit(p.plateau_gyro_low_rad_s, {"plateau_gyro_low_rad_s", "rad/s", 1e-6, 1000.0,
+                                       "a plateau of the gyro below this needs twice as many readings and a jump"});
+      visit(p.plateau_gyro_min_rad_s,
+            {"plateau_gyro_min_rad_s", "rad/s", 1e-6, 1000.0, "a plateau of the gyro below this is no rail"});
+      visit(p.plateau_accel_min_m_s2, {"plateau_accel_min_m_s2", "m/s^2", 1e-6, 1000.0,
+                                       "a plateau of the accelerometer below this is no rail; above gravity"});
+      visit(p.plateau_jump_digits,
+            {"plateau_jump_digits", "1", 1.0, 1000.0, "digits of the jump with which a low plateau begins or ends"});
+      visit(p.disagreement_share,
+            {"disagreement_share", "1", 1e-6, 1.0, "stated and found rail disagree beyond this share"});
+    }
   };
 
   /// One channel; gyro x, y, z then accelerometer x, y, z.

@@ -83,6 +83,10 @@ struct RateModelParams {
   /// in [1, 1e4] rad/s, the second in [1, 1e7] rad/s^2.
   double rate_max_rad_s = 50.0;
   double acceleration_max_rad_s2 = 5000.0;
+
+  /// Every number of it, stated once: `rate_model_fields.hpp`.
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit);
 };
 
 inline constexpr std::size_t kAuxiliaryImusMax = 2;

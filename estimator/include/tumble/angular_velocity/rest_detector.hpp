@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tumble/common/imu.hpp"
+#include "tumble/common/parameters.hpp"
 
 namespace tumble {
 
@@ -23,6 +24,19 @@ class RestDetector {
     double force_spread_m_s2 = 0.15;  ///< likewise for the force; [1e-6, 100]
     double rest_s = 0.4;              ///< the shortest run that is rest; [0, 60]
     double reading_s = 0.01;          ///< length of what counts as a reading; 0: each sample; [0, 1]
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit(p.rate_max_rad_s, {"rate_max_rad_s", "rad/s", 1e-6, 10.0, "a bias at most: faster is no rest"});
+      visit(p.rate_spread_rad_s, {"rate_spread_rad_s", "rad/s", 1e-6, 10.0,
+                                  "largest distance of a reading from the mean of the run, per axis"});
+      visit(p.force_min_m_s2, {"force_min_m_s2", "m/s^2", 0.0, 100.0, "flight is no rest"});
+      visit(p.force_spread_m_s2, {"force_spread_m_s2", "m/s^2", 1e-6, 100.0,
+                                  "largest distance of a force from the mean of the run, per axis"});
+      visit(p.rest_s, {"rest_s", "s", 0.0, 60.0, "the shortest run that is rest"});
+      visit(p.reading_s, {"reading_s", "s", 0.0, 1.0, "length of what counts as a reading; 0: each sample"});
+    }
   };
   struct State {
     Eigen::Vector3d rate_sum_rad_s = Eigen::Vector3d::Zero();

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "tumble/common/imu.hpp"
+#include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble {
@@ -42,6 +43,27 @@ class Autogain {
     /// profile's.
     bool tilt_form = false;
     double gap_max_s = 1.0;  ///< bound (0, 1e4]
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit(p.profile, {"profile", "1", 0.0, 2.0,
+                        "factor by rate: 0 the paper's eq. 2, 1 the authors' code of 2021, 2 smooth", Rank::first});
+      visit(p.gain_rad_s,
+            {"gain_rad_s", "rad/s", 0.0, 10.0, "capital Theta: the Madgwick gain at full rate (eq. 4)", Rank::first});
+      visit(p.tau_s, {"tau_s", "s", 1e-3, 1e4, "of the complementary step at rest (eq. 5)", Rank::first});
+      visit(p.lower_rad_s,
+            {"lower_rad_s", "rad/s", 0.0, 100.0, "rate below which the accelerometer leads (eq. 2)", Rank::first});
+      visit(p.upper_rad_s, {"upper_rad_s", "rad/s", 1e-9, 100.0,
+                            "rate above which the gyro leads, beyond lower (eq. 2)", Rank::first});
+      visit(p.roll_error_2021,
+            on_off("roll_error_2021", "1: roll is never corrected, as in the authors' code of 2021", Rank::first));
+      visit(p.tilt_form,
+            on_off("tilt_form",
+                   "1: the complementary step as the smallest rotation instead of a target in roll, pitch and yaw",
+                   Rank::first));
+      visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "longest time between two samples before the run is refused"});
+    }
   };
   struct State {
     Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();

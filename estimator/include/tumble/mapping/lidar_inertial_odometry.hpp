@@ -133,6 +133,10 @@ class LidarInertialOdometry {
     int lost_sweeps_max = 30;
     /// Threads, if any, that the registration may use; results do not depend on it.
     ParallelFor parallel_for;
+
+    /// Every number of it, stated once: `lidar_inertial_odometry_fields.hpp`.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit);
   };
 
   struct SweepReport {

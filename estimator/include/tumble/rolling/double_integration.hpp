@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 
 #include "tumble/common/imu.hpp"
+#include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble {
@@ -16,6 +17,13 @@ class DoubleIntegration {
   struct Params {
     double gravity_m_s2 = 9.80665;  ///< bound (0, 100]
     double gap_max_s = 1.0;         ///< bound (0, 1e4]
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-9, 100.0, "strength of gravity"});
+      visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "longest time between two samples before the run is refused"});
+    }
   };
   struct State {
     Eigen::Vector3d p_WI_m = Eigen::Vector3d::Zero();
