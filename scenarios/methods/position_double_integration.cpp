@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/settings.hpp"
 #include "scenarios/methods/sphere_attitude.hpp"
 #include "tumble/rolling/double_integration.hpp"
 
@@ -8,15 +9,22 @@ namespace tumble::scenarios {
 
 namespace {
 
+const Settings<DoubleIntegration::Params>& settings() {
+  static const Settings<DoubleIntegration::Params> all(DoubleIntegration::Params{}, {.stated = {"gravity_m_s2"}});
+  return all;
+}
+
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   estimate.frame = Frame::centre;
   SphereAttitude attitude;
-  estimate.status = sphere_attitude("position/double_integration", sensors, parameters.at("rest_s"), attitude);
+  estimate.status =
+      sphere_attitude("position/double_integration", sensors, rest_settings().read(parameters).rest_s, attitude);
   if (!estimate.status.ok()) return estimate;
 
   DoubleIntegration::Params params;
   params.gravity_m_s2 = sensors.gravity_m_s2;
+  settings().apply(parameters, params);
   const DoubleIntegration integration(params);
   DoubleIntegration::State state;
   const Eigen::Vector3d arm_I_m = bridge::lever_arm_I_m(sensors.imus.front());
@@ -43,7 +51,7 @@ Method position_double_integration() {
   info.kind = Kind::position;
   info.doc = "The accelerometer integrated twice with the integrated attitude: nothing bounds its drift.";
   info.source = "textbook strapdown inertial navigation";
-  info.parameters = sphere_rest_parameters();
+  info.settings = {&rest_settings(), &settings()};
   info.robots = {"sphere"};
   return make_method(std::move(info), run);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/settings.hpp"
 #include "tumble/angular_velocity/clipped_baseline.hpp"
 
 namespace tumble::scenarios {
@@ -9,11 +10,8 @@ namespace tumble::scenarios {
 /// The rails of a record as its data sheet states them; a range of 0 says nothing.
 RailDetector::Params stated_rails(const sim::ImuRecord& record);
 
-/// The named switch of families that were published with rails upright on each axis, and run so by default.
-inline constexpr sim::Parameter kTiltedRails = {
-    "tilted_rails", 0.0, 0.0, 1.0, "1", "1: judge clipping by the elements' tilted planes as our methods do"};
-
 /// Runs one of the library's baselines on the primary IMU, with its data sheet's noise and ranges.
-Estimate run_clipped_baseline(ClippedBaseline::Params params, const sim::Sensors& sensors);
+Estimate run_clipped_baseline(const Settings<ClippedBaseline::Params>& settings, const sim::Sensors& sensors,
+                              const sim::Values& parameters);
 
 }  // namespace tumble::scenarios

@@ -46,16 +46,19 @@ class AutogainFusion {
       visit(p.acceleration_weight,
             {"acceleration_weight", "1", 0.0, 10.0, "of the integrated acceleration (eq. 13)", Rank::first});
       visit.group("autogain_", p.autogain);
-      visit(p.integrate_in_body,
-            on_off("integrate_in_body", "eq 7 in the turning frame, without w x v; false integrates in W"));
+      visit(
+          p.integrate_in_body,
+          on_off("integrate_in_body", "eq 7 in the turning frame, without w x v; false integrates in W", Rank::first));
       visit(p.direction_only,
-            on_off("direction_only", "the code's: f made a unit vector before gravity is removed, and never times g"));
+            on_off("direction_only", "the code's: f made a unit vector before gravity is removed, and never times g",
+                   Rank::first));
       visit(p.recursive_coupling,
-            on_off("recursive_coupling", "the code's: eq 8 scales the integral itself, each sample"));
+            on_off("recursive_coupling", "the code's: eq 8 scales the integral itself, each sample", Rank::first));
       visit(p.limit_per_axis,
-            on_off("limit_per_axis", "limits along the world's axes; false limits the horizontal vector"));
+            on_off("limit_per_axis", "limits along the world's axes; false limits the horizontal vector", Rank::first));
       visit(p.shrink_per_axis,
-            on_off("shrink_per_axis", "eq 12 takes v_z^2 from each axis; false once from the horizontal vector"));
+            on_off("shrink_per_axis", "eq 12 takes v_z^2 from each axis; false once from the horizontal vector",
+                   Rank::first));
       visit(
           p.vertical_by_norm,
           on_off("vertical_by_norm", "the code's limit of |v_z|: the norm of v_rot; false the mean of its two sizes"));
