@@ -31,13 +31,13 @@ class AccelerometerRate {
     RailDetector::Params rails = {};
     bool tilted_rails = false;  ///< judge by tilted planes too (ClippingFinder); published by axis alone
     bool use_gyro = true;
-    double gyro_noise_density = 5.236e-4;  ///< [rad/s/sqrt(Hz)]; [1e-9, 1]
-    double accel_noise_density = 1.5e-3;   ///< the worst of the accelerometers [m/s^2/sqrt(Hz)]; [1e-9, 10]
-    double accel_floor_m_s2 = 0.05;        ///< bias of a difference, one standard deviation; [0, 100]
-    double accel_scale_error = 2e-3;       ///< scale and misalignment, as a share of the force; [0, 1]
-    double jerk_psd = 1e7;                 ///< density of the white angular jerk [rad^2/s^5]; [1, 1e12]
-    double rate_max_rad_s = 50.0;          ///< no answer lies beyond; [1, 1e4]
-    double gap_max_s = 1.0;                ///< [1e-6, 3600]
+    double gyro_noise_density = 5.236e-4;  ///< [rad/s/sqrt(Hz)]
+    double accel_noise_density = 1.5e-3;   ///< the worst of the accelerometers [m/s^2/sqrt(Hz)]
+    double accel_floor_m_s2 = 0.05;        ///< bias of a difference, one standard deviation
+    double accel_scale_error = 2e-3;       ///< scale and misalignment, as a share of the force
+    double jerk_psd = 1e7;                 ///< density of the white angular jerk [rad^2/s^5]
+    double rate_max_rad_s = 50.0;          ///< no answer lies beyond
+    double gap_max_s = 1.0;
 
     /// Every number of it, stated once.
     template <class Self, class Visitor>

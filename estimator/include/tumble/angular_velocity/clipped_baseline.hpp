@@ -39,16 +39,16 @@ class ClippedBaseline {
     Kind kind = Kind::interpolate;
     RailDetector::Params rails = {};
     bool tilted_rails = false;  ///< judge by tilted planes too (ClippingFinder); published by axis alone
-    /// Noise density of the gyro [rad/s/sqrt(Hz)]; [1e-9, 1].
+    /// Noise density of the gyro [rad/s/sqrt(Hz)].
     double gyro_noise_density = 5.236e-4;
-    /// Density of the white angular acceleration of `reject` [rad^2/s^3]; [1e-12, 1e12].
+    /// Density of the white angular acceleration of `reject` [rad^2/s^3].
     double acceleration_psd = 1e3;
-    /// Density of the white angular snap of `constant_jerk` [rad^2/s^7]; [1e-12, 1e15].
+    /// Density of the white angular snap of `constant_jerk` [rad^2/s^7].
     double snap_psd = 1e9;
-    /// How fast the body turns as a rule, one axis, `constant_jerk` [rad/s]; [1e-3, 1e4].
+    /// How fast the body turns as a rule, one axis, `constant_jerk` [rad/s].
     double rate_sigma_rad_s = 20.0;
-    double rate_max_rad_s = 50.0;  ///< no answer to a gap lies beyond; [1, 1e4]
-    double gap_max_s = 1.0;        ///< longest time between samples before the run is refused; [1e-6, 3600]
+    double rate_max_rad_s = 50.0;  ///< no answer to a gap lies beyond
+    double gap_max_s = 1.0;        ///< longest time between samples before the run is refused
 
     /// Every number of it, stated once.
     template <class Self, class Visitor>

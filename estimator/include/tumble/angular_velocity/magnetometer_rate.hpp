@@ -30,15 +30,15 @@ class MagnetometerRate {
   struct Params {
     RailDetector::Params rails = {};
     bool tilted_rails = false;             ///< judge by tilted planes too (ClippingFinder); published by axis alone
-    double gyro_noise_density = 5.236e-4;  ///< [rad/s/sqrt(Hz)]; [1e-9, 1]
-    double field_noise_t = 5e-8;           ///< of one reading, one standard deviation [T]; [1e-12, 1e-3]
-    double hard_iron_t = 1e-6;             ///< offset of the sensor, one standard deviation [T]; [0, 1e-3]
-    double earth_field_t = 0.0;            ///< length of the undisturbed field [T]; 0: unknown; [0, 1e-3]
-    double disturbance_t_sqrt_s = 1e-6;    ///< change of the field along the way [T/sqrt(s)]; [0, 1]
-    double disturbed_share = 0.02;         ///< deviation of length, as a share, that doubles it in power; [1e-4, 10]
-    double jerk_psd = 1e7;                 ///< density of the white angular jerk [rad^2/s^5]; [1, 1e12]
-    double rate_max_rad_s = 50.0;          ///< no answer lies beyond; [1, 1e4]
-    double gap_max_s = 1.0;                ///< [1e-6, 3600]
+    double gyro_noise_density = 5.236e-4;  ///< [rad/s/sqrt(Hz)]
+    double field_noise_t = 5e-8;           ///< of one reading, one standard deviation [T]
+    double hard_iron_t = 1e-6;             ///< offset of the sensor, one standard deviation [T]
+    double earth_field_t = 0.0;            ///< length of the undisturbed field [T]; 0: unknown
+    double disturbance_t_sqrt_s = 1e-6;    ///< change of the field along the way [T/sqrt(s)]
+    double disturbed_share = 0.02;         ///< deviation of length, as a share, that doubles it in power
+    double jerk_psd = 1e7;                 ///< density of the white angular jerk [rad^2/s^5]
+    double rate_max_rad_s = 50.0;          ///< no answer lies beyond
+    double gap_max_s = 1.0;
 
     /// Every number of it, stated once.
     template <class Self, class Visitor>

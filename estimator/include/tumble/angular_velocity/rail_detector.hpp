@@ -35,23 +35,23 @@ class RailDetector {
     /// Range as stated by the data sheet or the user, if any: gyro [rad/s], (0, 1000]; accelerometer [m/s^2], (0, 1e5].
     std::optional<double> stated_gyro_rad_s = std::nullopt;
     std::optional<double> stated_accel_m_s2 = std::nullopt;
-    /// A reading within this share of the rail starts clipping; [0, 0.1].
+    /// A reading within this share of the rail starts clipping.
     double enter_share = 0.003;
-    /// A neighbour of a clipped reading within this share of the rail is clipped too; [enter_share, 0.5].
+    /// A neighbour of a clipped reading within this share of the rail is clipped too.
     double leave_share = 0.02;
-    /// Readings in a row that make a plateau; [2, 1000].
+    /// Readings in a row that make a plateau.
     int plateau_samples = 4;
-    /// Largest spread of a plateau as a share of its level; [0, 0.01]. Below the noise of a free reading.
+    /// Largest spread of a plateau as a share of its level. Below the noise of a free reading.
     double plateau_spread_share = 2e-5;
-    /// A plateau of the gyro below this is a low one, which needs twice as many readings and a jump [rad/s]; (0, 1000].
+    /// A plateau of the gyro below this is a low one, which needs twice as many readings and a jump [rad/s].
     double plateau_gyro_low_rad_s = 1.0;
-    /// A plateau below this is no rail: gyro [rad/s] and accelerometer [m/s^2] (above gravity); (0, 1000].
+    /// A plateau below this is no rail: gyro [rad/s] and accelerometer [m/s^2] (above gravity).
     double plateau_gyro_min_rad_s = 0.02;
     double plateau_accel_min_m_s2 = 15.0;
     /// Digits (smallest changes seen between two readings) of the jump with which a low plateau begins or ends;
     /// [1, 1000].
     double plateau_jump_digits = 8.0;
-    /// Stated and found rail disagree beyond this share; (0, 1].
+    /// Stated and found rail disagree beyond this share.
     double disagreement_share = 0.02;
 
     /// Every number of it, stated once.

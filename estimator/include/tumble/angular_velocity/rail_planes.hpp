@@ -92,18 +92,18 @@ class RailPlaneFinder {
       out.distance_min_rad_s = 15.0;
       return out;
     }
-    /// Cross-axis sensitivity of elements before compensation: prior of each slope; [1e-4, 0.2].
+    /// Cross-axis sensitivity of elements before compensation: prior of each slope.
     double slope_sigma = 0.03;
-    double slope_max = 0.12;  ///< steepest slope searched; [0, 0.3]
-    /// Rails lower than this are not looked for: rest and creeping are constant too [rad/s]; [0.01, 1000].
+    double slope_max = 0.12;  ///< steepest slope searched
+    /// Rails lower than this are not looked for: rest and creeping are constant too [rad/s].
     double distance_min_rad_s = 1.5;
-    /// Range that the data sheet states, if any: the rail does not lie far below it [rad/s]; (0, 1000].
+    /// Range that the data sheet states, if any: the rail does not lie far below it [rad/s].
     std::optional<double> stated_rad_s = std::nullopt;
-    double offset_share = 0.02;  ///< prior of the offset and of how far elements differ, as a share of r; [1e-4, 0.2]
-    int samples_min = 4;         ///< on a rail, of one sign; [2, 1000]
-    double log_odds_before = -6.0;  ///< before anything is seen, for each element and sign; [-100, 100]
-    double log_odds_min = 1.0;      ///< of a rail that is believed; [-100, 100]
-    double log_odds_keep = -3.0;    ///< of one that was believed before and still is; [-100, log_odds_min]
+    double offset_share = 0.02;     ///< prior of the offset and of how far elements differ, as a share of r
+    int samples_min = 4;            ///< on a rail, of one sign
+    double log_odds_before = -6.0;  ///< before anything is seen, for each element and sign
+    double log_odds_min = 1.0;      ///< of a rail that is believed
+    double log_odds_keep = -3.0;    ///< of one that was believed before and still is
     /// Rails that an earlier run on the device has found: a device keeps them to a fraction of a percent. They hold as
     /// long as no readings contradict them, before anything is met, and make one near them likely.
     RailPlanes known = {};

@@ -23,7 +23,7 @@ class RailWatch {
  public:
   struct Params {
     ClippingFinder::Params clipping;
-    int readings_max = 1024;  ///< [64, 65536]
+    int readings_max = 1024;
 
     /// Every number of it, stated once.
     template <class Self, class Visitor>

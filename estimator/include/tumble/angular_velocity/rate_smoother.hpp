@@ -88,22 +88,22 @@ class RateSmoother {
     RailPlaneFinder::Params planes;  ///< without a stated range of its own: that of `rails`
     RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();  ///< likewise
     RestDetector::Params rests;
-    int iterations_max = 15;        ///< [1, 1000]
-    double tolerance_rad_s = 2e-3;  ///< stop when no rate changes by more; [1e-12, 1]
-    double step_max_rad_s = 10.0;   ///< longest step of a rate in one iteration; [1e-3, 1e4]
-    double widen_first = 8.0;       ///< threshold of contact in the first iteration, halved in each; [1, 1000]
+    int iterations_max = 15;
+    double tolerance_rad_s = 2e-3;  ///< stop when no rate changes by more
+    double step_max_rad_s = 10.0;   ///< longest step of a rate in one iteration
+    double widen_first = 8.0;       ///< threshold of contact in the first iteration, halved in each
     /// Iterations after settling in which the bounds of samples in contact are those of a truncated distribution
-    /// instead of walls, which gives them an honest covariance; [0, 1000].
+    /// instead of walls, which gives them an honest covariance.
     int bound_iterations = 3;
-    double bound_damping = 0.5;          ///< share of a new bound taken over in each of them; [0.01, 1]
+    double bound_damping = 0.5;          ///< share of a new bound taken over in each of them
     double recovered_sigma_rad_s = 0.5;  ///< a clipped axis known better than this is recovered, not only bounded
     /// A run whose constants move further than this (RateReport::calibration_mahalanobis) is estimated again with the
-    /// constants held to what was known; [0.1, 1e6].
+    /// constants held to what was known.
     double calibration_mahalanobis_max = 1.5;
     /// Most descents, each with readings corrected for what the one before has told of the device; 1: the device's
-    /// errors are counted in the covariance and not estimated; [1, 10].
+    /// errors are counted in the covariance and not estimated.
     int error_rounds_max = 3;
-    double gap_max_s = 1.0;  ///< longest time between samples before the run is refused; [1e-6, 3600]
+    double gap_max_s = 1.0;  ///< longest time between samples before the run is refused
 
     /// Every number of it, stated once.
     template <class Self, class Visitor>

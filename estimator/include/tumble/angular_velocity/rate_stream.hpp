@@ -52,22 +52,21 @@ class RateStream {
     RailPlaneFinder::Params planes;  ///< without a stated range of its own: that of `rails`
     RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();  ///< likewise
     RestDetector::Params rests;
-    double period_s = 0.01;        ///< nominal time between samples; [1e-5, 1]
+    double period_s = 0.01;        ///< nominal time between samples
     double lag_s = 0.2;            ///< length of the window; [2 period_s, 10], at most 4096 samples
-    double widen_first = 8.0;      ///< threshold of contact for a new clipped sample, halved with each step; [1, 1000]
-    double step_max_rad_s = 10.0;  ///< longest step of a rate at one sample; [1e-3, 1e4]
-    int bound_age = 3;             ///< steps after which the bounds of a sample in contact are softened; [0, 4096]
-    int flight_run_min = 6;        ///< a flight of fewer samples in a row says nothing of the rig; [0, 4096]
+    double widen_first = 8.0;      ///< threshold of contact for a new clipped sample, halved with each step
+    double step_max_rad_s = 10.0;  ///< longest step of a rate at one sample
+    int bound_age = 3;             ///< steps after which the bounds of a sample in contact are softened
+    int flight_run_min = 6;        ///< a flight of fewer samples in a row says nothing of the rig
     /// Of a rig without calibration: its covariance, but for the gyro's bias and never beyond that beforehand, counts 1
-    /// + rig_doubt / (1 + n / rig_doubt_samples) times, n being the samples of flight that have been learnt from; [0,
-    /// 1e3] and [1, 1e6].
+    /// + rig_doubt / (1 + n / rig_doubt_samples) times, n being the samples of flight that have been learnt from.
     double rig_doubt = 30.0;
     double rig_doubt_samples = 10.0;
-    double bound_damping = 0.5;                ///< share of a new bound taken over in each step; [0.01, 1]
+    double bound_damping = 0.5;                ///< share of a new bound taken over in each step
     double recovered_sigma_rad_s = 0.5;        ///< as in RateSmoother
-    double calibration_mahalanobis_max = 1.5;  ///< beyond this what was learnt of the rig is dropped; [0.1, 1e6]
-    double gap_max_s = 1.0;                    ///< longest time between samples; [1e-6, 3600]
-    double step_s = 0.005;                     ///< least time between Gauss-Newton steps; 0: with each sample; [0, 0.1]
+    double calibration_mahalanobis_max = 1.5;  ///< beyond this what was learnt of the rig is dropped
+    double gap_max_s = 1.0;                    ///< longest time between samples
+    double step_s = 0.005;                     ///< least time between Gauss-Newton steps; 0: with each sample
 
     /// Every number of it, stated once.
     template <class Self, class Visitor>

@@ -18,12 +18,12 @@ namespace tumble {
 class RestDetector {
  public:
   struct Params {
-    double rate_max_rad_s = 0.05;     ///< a bias at most; [1e-6, 10]
-    double rate_spread_rad_s = 0.03;  ///< largest distance of a reading from the mean of the run, per axis; [1e-6, 10]
-    double force_min_m_s2 = 5.0;      ///< flight is no rest; [0, 100]
-    double force_spread_m_s2 = 0.15;  ///< likewise for the force; [1e-6, 100]
-    double rest_s = 0.4;              ///< the shortest run that is rest; [0, 60]
-    double reading_s = 0.01;          ///< length of what counts as a reading; 0: each sample; [0, 1]
+    double rate_max_rad_s = 0.05;     ///< a bias at most
+    double rate_spread_rad_s = 0.03;  ///< largest distance of a reading from the mean of the run, per axis
+    double force_min_m_s2 = 5.0;      ///< flight is no rest
+    double force_spread_m_s2 = 0.15;  ///< likewise for the force
+    double rest_s = 0.4;              ///< the shortest run that is rest
+    double reading_s = 0.01;          ///< length of what counts as a reading; 0: each sample
 
     /// Every number of it, stated once.
     template <class Self, class Visitor>

@@ -29,10 +29,10 @@ class Saave {
   struct Params {
     /// t: from the centre of mass to the IMU, IMU axes [m]; bound |t_j| <= 10. Needed to about a millimetre.
     Eigen::Vector3d lever_arm_m = {-0.022, -0.085, 0.055};
-    /// A reading strictly beyond this counts as clipped [rad/s]; bound [0.01, 1000]. Trap, kept as published: a device
+    /// A reading strictly beyond this counts as clipped [rad/s]. Trap, kept as published: a device
     /// whose plateau is exactly this value never exceeds it and nothing is recovered; pass a value slightly below.
     double saturation_point_rad_s = 10.5;
-    /// Variance of an unclipped reading [(rad/s)^2]; (0.03 deg/s/sqrt(Hz) * sqrt(100 Hz))^2. Variances: [1e-12, 1e12].
+    /// Variance of an unclipped reading [(rad/s)^2]; (0.03 deg/s/sqrt(Hz) * sqrt(100 Hz))^2.
     double variance_measured_rad2_s2 = 2.741e-5;
     /// Variance of an accepted estimate [(rad/s)^2]: 0.2741 as in the authors' code, 3.648 as printed in the paper.
     double variance_estimated_rad2_s2 = 0.2741;
@@ -40,7 +40,7 @@ class Saave {
     double variance_rejected_rad2_s2 = 1e6;
     /// Power spectral density of the white angular jerk [rad^2/s^5].
     double jerk_psd_rad2_s5 = 1e6;
-    /// Longest time between two samples before the run is refused [s]; bound [1e-6, 3600].
+    /// Longest time between two samples before the run is refused [s].
     double gap_max_s = 1.0;
 
     /// Every number of it, stated once.

@@ -28,21 +28,21 @@ class StandstillSmoother {
  public:
   struct Params {
     RailDetector::Params rails = {};
-    bool tilted_rails = false;              ///< judge by tilted planes too (ClippingFinder); published by axis alone
-    double gravity_m_s2 = 9.80665;          ///< [0.1, 100]
-    double gyro_noise_density = 5.236e-4;   ///< [rad/s/sqrt(Hz)]; [1e-9, 1]
-    double accel_noise_density = 5.9e-4;    ///< [m/s^2/sqrt(Hz)]; [1e-9, 10]
-    double accel_error_m_s2 = 0.05;         ///< scale and bias of the force, taken as noise per sample; [0, 100]
-    double jerk_psd = 1e5;                  ///< density of the white angular jerk [rad^2/s^5]; [1, 1e12]
-    double rest_rate_rad_s = 0.1;           ///< rest: rates below this ... ; [1e-6, 10]
-    double rest_force_m_s2 = 0.3;           ///< ... and force within this of gravity ... ; [1e-6, 10]
-    double rest_s = 0.2;                    ///< ... for so long; [0, 60]
-    double rest_velocity_sigma_m_s = 0.01;  ///< of "standing still"; [1e-6, 10]
-    double rate_sigma_rad_s = 20.0;         ///< how fast the body turns as a rule, one axis; [1e-3, 1e4]
-    double tilt_max_rad = 0.5;              ///< at a standstill; beyond this a turn was lost; [0, 4]
-    double velocity_gate = 5.0;             ///< likewise of the velocity, in standard deviations; [0, 1e6]
-    double rate_max_rad_s = 50.0;           ///< no answer lies beyond; [1, 1e4]
-    double gap_max_s = 1.0;                 ///< [1e-6, 3600]
+    bool tilted_rails = false;  ///< judge by tilted planes too (ClippingFinder); published by axis alone
+    double gravity_m_s2 = 9.80665;
+    double gyro_noise_density = 5.236e-4;   ///< [rad/s/sqrt(Hz)]
+    double accel_noise_density = 5.9e-4;    ///< [m/s^2/sqrt(Hz)]
+    double accel_error_m_s2 = 0.05;         ///< scale and bias of the force, taken as noise per sample
+    double jerk_psd = 1e5;                  ///< density of the white angular jerk [rad^2/s^5]
+    double rest_rate_rad_s = 0.1;           ///< rest: rates below this ...
+    double rest_force_m_s2 = 0.3;           ///< ... and force within this of gravity ...
+    double rest_s = 0.2;                    ///< ... for so long
+    double rest_velocity_sigma_m_s = 0.01;  ///< of "standing still"
+    double rate_sigma_rad_s = 20.0;         ///< how fast the body turns as a rule, one axis
+    double tilt_max_rad = 0.5;              ///< at a standstill; beyond this a turn was lost
+    double velocity_gate = 5.0;             ///< likewise of the velocity, in standard deviations
+    double rate_max_rad_s = 50.0;           ///< no answer lies beyond
+    double gap_max_s = 1.0;
 
     /// Every number of it, stated once.
     template <class Self, class Visitor>

@@ -27,7 +27,7 @@ namespace tumble {
 class WnojSmoother {
  public:
   struct Params {
-    double jerk_psd_rad2_s5 = 1e6;  ///< bound [1e-12, 1e12]; larger follows the readings more closely
+    double jerk_psd_rad2_s5 = 1e6;  ///< larger follows the readings more closely
 
     /// Every number of it, stated once.
     template <class Self, class Visitor>

@@ -32,17 +32,17 @@ class Autogain {
  public:
   struct Params {
     AutogainProfile profile = AutogainProfile::paper;
-    double gain_rad_s = 0.2;  ///< capital Theta: the Madgwick gain at full rate; bound [0, 10]
-    double tau_s = 0.396;  ///< of the complementary step at rest: 0.02 (Theta / 10) per sample at 125 Hz; [1e-3, 1e4]
-    double lower_rad_s = 0.1;  ///< bound [0, 100]; not read by code2021
-    double upper_rad_s = 2.1;  ///< bound (lower, 100]; not read by code2021
+    double gain_rad_s = 0.2;   ///< capital Theta: the Madgwick gain at full rate
+    double tau_s = 0.396;      ///< of the complementary step at rest: 0.02 (Theta / 10) per sample at 125 Hz
+    double lower_rad_s = 0.1;  ///< not read by code2021
+    double upper_rad_s = 2.1;  ///< beyond lower_rad_s; not read by code2021
     /// The complementary step as in the authors' code, whose guard against gimbal lock is always true: the target keeps
     /// the current roll, so that roll is never corrected. For comparison with their recordings.
     bool roll_error_2021 = false;
     /// The complementary step as the smallest rotation instead of a target in roll, pitch and yaw; the smooth
     /// profile's.
     bool tilt_form = false;
-    double gap_max_s = 1.0;  ///< bound (0, 1e4]
+    double gap_max_s = 1.0;
 
     /// Every number of it, stated once.
     template <class Self, class Visitor>

@@ -27,9 +27,9 @@ class CarriedStream {
  public:
   struct Params {
     CarriedSmoother::Params body;  ///< `iterations_max` has no meaning here
-    double period_s = 0.01;        ///< nominal time between samples; bound [1e-5, 1]
-    double lag_s = 0.2;            ///< bound [2 period_s, 10]
-    double window_s = 0.6;         ///< bound [lag_s + 4 body.node_s, 20]
+    double period_s = 0.01;        ///< nominal time between samples
+    double lag_s = 0.2;
+    double window_s = 0.6;
 
     /// Every number of it, stated once.
     template <class Self, class Visitor>

@@ -14,8 +14,8 @@ namespace tumble {
 class Complementary {
  public:
   struct Params {
-    double tau_s = 0.396;    ///< 0.02 per sample at 125 Hz, as published for the sphere; bound [1e-3, 1e4]
-    double gap_max_s = 1.0;  ///< bound (0, 1e4]
+    double tau_s = 0.396;  ///< 0.02 per sample at 125 Hz, as published for the sphere
+    double gap_max_s = 1.0;
 
     /// Every number of it, stated once.
     template <class Self, class Visitor>

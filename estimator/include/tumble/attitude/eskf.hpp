@@ -20,13 +20,13 @@ class Eskf {
   using Covariance = Eigen::Matrix<double, 6, 6>;
 
   struct Params {
-    double gravity_m_s2 = 9.80665;               ///< bound (0, 100]
-    double gyro_noise_rad_sqrts = 1e-3;          ///< angle random walk per sqrt(s); bound (0, 1]
-    double bias_walk_rad_s_sqrts = 3e-5;         ///< per sqrt(s); bound [0, 1]
-    double bias_sigma_start_rad_s = 8.7266e-3;   ///< 0.5 deg/s; bound [0, 1]
-    double tilt_sigma_start_rad = 0.02;          ///< bound (0, pi]
-    double acceleration_noise_m_s2_sqrts = 0.5;  ///< density: sigma of the mean over 1 s; bound (0, 100]
-    double gap_max_s = 1.0;                      ///< bound (0, 1e4]
+    double gravity_m_s2 = 9.80665;
+    double gyro_noise_rad_sqrts = 1e-3;         ///< angle random walk per sqrt(s)
+    double bias_walk_rad_s_sqrts = 3e-5;        ///< per sqrt(s)
+    double bias_sigma_start_rad_s = 8.7266e-3;  ///< 0.5 deg/s
+    double tilt_sigma_start_rad = 0.02;
+    double acceleration_noise_m_s2_sqrts = 0.5;  ///< density: sigma of the mean over 1 s
+    double gap_max_s = 1.0;
 
     /// Every number of it, stated once.
     template <class Self, class Visitor>

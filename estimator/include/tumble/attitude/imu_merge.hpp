@@ -50,32 +50,32 @@ class ImuMerge {
 
   struct Params {
     std::array<Eigen::Isometry3d, kImus> T_CI{};  ///< mountings; the first `count` are used
-    int count = 1;                                ///< bound [1, kImus]
-    double rate_tolerance_rad_s = 0.15;           ///< from the median, for a unit to be left out; bound (0, 1e3]
-    double rate_tolerance_share = 0.03;           ///< more, as a share of the rate; bound [0, 1]
-    double force_tolerance_m_s2 = 3.0;            ///< bound (0, 1e4]
-    double rate_noise_rad_s = 0.01;               ///< of the mean over a window; bound (0, 10]
-    double window_s = 4e-3;                       ///< over which readings are averaged beforehand; bound [0, 0.1]
-    double offset_sigma_s = 3e-3;                 ///< prior of a unit's time offset; zero: none; bound [0, 0.1]
-    double gyro_range_rad_s = 1e3;                ///< readings from here on are at the rail; bound (0, 1e3]
-    double accel_range_m_s2 = 1e5;                ///< bound (0, 1e5]
-    /// A reading from this share of the range on may hide a rail met within its sample; bound (0, 1].
+    int count = 1;
+    double rate_tolerance_rad_s = 0.15;  ///< from the median, for a unit to be left out
+    double rate_tolerance_share = 0.03;  ///< more, as a share of the rate
+    double force_tolerance_m_s2 = 3.0;
+    double rate_noise_rad_s = 0.01;  ///< of the mean over a window
+    double window_s = 4e-3;          ///< over which readings are averaged beforehand
+    double offset_sigma_s = 3e-3;    ///< prior of a unit's time offset; zero: none
+    double gyro_range_rad_s = 1e3;   ///< readings from here on are at the rail
+    double accel_range_m_s2 = 1e5;
+    /// A reading from this share of the range on may hide a rail met within its sample.
     double subsample_saturation_share = 0.15;
-    double hidden_force_m_s2 = 3.0;  ///< by which it then may disagree with another; bound (0, 1e4]
-    double gap_max_s = 1.0;          ///< bound (0, 1e4]
+    double hidden_force_m_s2 = 3.0;  ///< by which it then may disagree with another
+    double gap_max_s = 1.0;
     /// Along what the elements of each unit sense (RateRecovery).
     std::array<ElementRows, kImus> gyro_elements{}, accel_elements{};
     // Of units that are left out. A reading that lasts for frozen_after_s while the others move by more than this is
     // frozen; sample and hold is shorter.
-    double frozen_after_s = 0.1;      ///< bound (0, 1e3]
-    double frozen_rate_rad_s = 0.03;  ///< bound (0, 1e3]
-    double frozen_force_m_s2 = 0.3;   ///< bound (0, 1e4]
-    double thawed_after_s = 0.5;      ///< of readings that change; bound (0, 1e3]
+    double frozen_after_s = 0.1;
+    double frozen_rate_rad_s = 0.03;
+    double frozen_force_m_s2 = 0.3;
+    double thawed_after_s = 0.5;  ///< of readings that change
     // Off from the median, as a mean over half a second, for disagrees_after_s.
-    double disagree_rate_rad_s = 0.1;   ///< bound (0, 1e3]
-    double disagree_rate_share = 0.06;  ///< more, as a share of the rate; bound [0, 1]
-    double disagree_force_m_s2 = 1.0;   ///< bound (0, 1e4]
-    double disagrees_after_s = 0.3;     ///< bound (0, 1e3]
+    double disagree_rate_rad_s = 0.1;
+    double disagree_rate_share = 0.06;  ///< more, as a share of the rate
+    double disagree_force_m_s2 = 1.0;
+    double disagrees_after_s = 0.3;
 
     /// Every number of it, stated once.
     template <class Self, class Visitor>

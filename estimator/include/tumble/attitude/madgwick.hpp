@@ -16,8 +16,8 @@ namespace tumble {
 class Madgwick {
  public:
   struct Params {
-    double gain_rad_s = 0.033;  ///< quaternion rate of the correction; bound [0, 10]. sqrt(3/4) x gyro error per axis
-    double gap_max_s = 1.0;     ///< bound (0, 1e4]
+    double gain_rad_s = 0.033;  ///< quaternion rate of the correction. sqrt(3/4) x gyro error per axis
+    double gap_max_s = 1.0;
 
     /// Every number of it, stated once.
     template <class Self, class Visitor>

@@ -15,9 +15,9 @@ namespace tumble {
 class Mahony {
  public:
   struct Params {
-    double proportional_rad_s = 0.2;  ///< kp; bound [0, 100]
-    double integral_rad_s2 = 0.001;   ///< ki; bound [0, 100]
-    double gap_max_s = 1.0;           ///< bound (0, 1e4]
+    double proportional_rad_s = 0.2;  ///< kp
+    double integral_rad_s2 = 0.001;   ///< ki
+    double gap_max_s = 1.0;
 
     /// Every number of it, stated once.
     template <class Self, class Visitor>

@@ -32,8 +32,8 @@ class RegimeStream {
     RateStream::Params rate;
     RegimeEvidence::Params evidence;
     CarriedStream::Params carried;  ///< `period_s` and `lag_s` are those of `rate`
-    double carried_min = 0.02;      ///< a share of the carried body below this is not worth its work; bound [0, 1]
-    double near_s = 0.1;            ///< clipped samples so close belong to one stretch; bound [0, 10]
+    double carried_min = 0.02;      ///< a share of the carried body below this is not worth its work
+    double near_s = 0.1;            ///< clipped samples so close belong to one stretch
 
     /// Every number of it, stated once.
     template <class Self, class Visitor>

@@ -35,16 +35,16 @@ struct RegimeShares {
 class RegimeEvidence {
  public:
   struct Params {
-    double gravity_m_s2 = 9.80665;     ///< bound (0, 100]
-    double flight_m_s2 = 0.3;          ///< deviation of the force left in flight: drag, bandwidth; bound [1e-3, 10]
-    double flight_share = 0.05;        ///< more, as a share of the lever arm's force; bound [0, 1]
-    double hand_m_s2 = 5.0;            ///< deviation of a hand's acceleration; bound [0.1, 100]
-    double grip_m = 0.05;              ///< how far from the hand an IMU is; bound [0, 1]
-    double contact_max_m_s2 = 1000.0;  ///< forces of contact lie between 1 m/s^2 and this; bound [10, 1e6]
-    double memory_s = 0.05;            ///< bound [1e-3, 10]
-    double rest_rate_rad_s = 0.5;      ///< slower turning says nothing of who holds the body; bound [0, 100]
-    double contacts_hz = 5.0;          ///< changes between flight and contact; bound [1e-3, 100]
-    double throws_hz = 0.02;           ///< changes between these and a hand; bound [1e-9, 10]
+    double gravity_m_s2 = 9.80665;
+    double flight_m_s2 = 0.3;          ///< deviation of the force left in flight: drag, bandwidth
+    double flight_share = 0.05;        ///< more, as a share of the lever arm's force
+    double hand_m_s2 = 5.0;            ///< deviation of a hand's acceleration
+    double grip_m = 0.05;              ///< how far from the hand an IMU is
+    double contact_max_m_s2 = 1000.0;  ///< forces of contact lie between 1 m/s^2 and this
+    double memory_s = 0.05;
+    double rest_rate_rad_s = 0.5;  ///< slower turning says nothing of who holds the body
+    double contacts_hz = 5.0;      ///< changes between flight and contact
+    double throws_hz = 0.02;       ///< changes between these and a hand
 
     /// Every number of it, stated once.
     template <class Self, class Visitor>

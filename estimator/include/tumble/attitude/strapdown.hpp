@@ -15,7 +15,7 @@ namespace tumble {
 class Strapdown {
  public:
   struct Params {
-    double gap_max_s = 1.0;  ///< a longer time between samples is a `gap`; bound (0, 1e4]
+    double gap_max_s = 1.0;  ///< a longer time between samples is a `gap`
 
     /// Every number of it, stated once.
     template <class Self, class Visitor>

@@ -34,32 +34,31 @@ class TumbleAttitude {
   using Covariance = Eigen::Matrix<double, kStates, kStates>;
 
   struct Params {
-    double gravity_m_s2 = 9.80665;       ///< bound (0, 100]
-    double gyro_noise_rad_sqrts = 1e-3;  ///< angle random walk per sqrt(s), unmodelled errors included; (0, 1]
-    double rate_error_sqrts = 4e-3;      ///< angle random walk per sqrt(s) and rad/s turned: scale, timing; [0, 1]
-    double bias_sigma_start_rad_s = 8.7266e-3;   ///< 0.5 deg/s; bound [0, 1]
-    double bias_walk_rad_s_sqrts = 2e-6;         ///< per sqrt(s); bound [0, 1]
-    double acceleration_noise_m_s_sqrts = 0.01;  ///< velocity random walk; bound (0, 100]
-    double velocity_m_sqrts = 1.0;               ///< sigma of the mean velocity over 1 s of motion; bound (0, 1e3]
-    double displacement_m_sqrts = 0.3;           ///< sigma of the mean displacement over 1 s; bound (0, 1e3]
-    double displacement_tau_s = 10.0;            ///< in which a displacement is forgotten; bound [0.1, 1e4]
-    double node_s = 0.04;                        ///< time between two corrections; bound [1e-4, 1]
-    /// Readings are averaged to this length, at which all thresholds here are meant; zero: taken as they come; [0,
-    /// 0.1].
+    double gravity_m_s2 = 9.80665;
+    double gyro_noise_rad_sqrts = 1e-3;          ///< angle random walk per sqrt(s), unmodelled errors included
+    double rate_error_sqrts = 4e-3;              ///< angle random walk per sqrt(s) and rad/s turned: scale, timing
+    double bias_sigma_start_rad_s = 8.7266e-3;   ///< 0.5 deg/s
+    double bias_walk_rad_s_sqrts = 2e-6;         ///< per sqrt(s)
+    double acceleration_noise_m_s_sqrts = 0.01;  ///< velocity random walk
+    double velocity_m_sqrts = 1.0;               ///< sigma of the mean velocity over 1 s of motion
+    double displacement_m_sqrts = 0.3;           ///< sigma of the mean displacement over 1 s
+    double displacement_tau_s = 10.0;            ///< in which a displacement is forgotten
+    double node_s = 0.04;                        ///< time between two corrections
+    /// Readings are averaged to this length, at which all thresholds here are meant; zero: taken as they come.
     double reading_s = 4e-3;
-    double rest_tau_s = 0.5;             ///< of the low-passes that detect rest; bound [1e-3, 1e4]
-    double rest_time_s = 1.0;            ///< quiet for so long is rest; bound [0, 1e4]
-    double rest_rate_rad_s = 3.4907e-2;  ///< 2 deg/s: quiet about the low-passed rate, and it about the bias; (0, 1]
-    double rest_force_m_s2 = 0.5;        ///< quiet about the low-passed force; bound (0, 100]
-    double rest_velocity_sigma_m_s = 0.005;   ///< per node at rest; bound (0, 10]
-    double rest_rate_sigma_rad_sqrts = 2e-3;  ///< of the rate measured at rest, mean over 1 s; bound (0, 1]
-    double radius_m = 0.0;                    ///< of a rolling sphere on a level floor; 0: no such thing; bound [0, 10]
+    double rest_tau_s = 0.5;                  ///< of the low-passes that detect rest
+    double rest_time_s = 1.0;                 ///< quiet for so long is rest
+    double rest_rate_rad_s = 3.4907e-2;       ///< 2 deg/s: quiet about the low-passed rate, and it about the bias
+    double rest_force_m_s2 = 0.5;             ///< quiet about the low-passed force
+    double rest_velocity_sigma_m_s = 0.005;   ///< per node at rest
+    double rest_rate_sigma_rad_sqrts = 2e-3;  ///< of the rate measured at rest, mean over 1 s
+    double radius_m = 0.0;                    ///< of a rolling sphere on a level floor; 0: no such thing
     Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< centre to IMU, sensor axes; length up to 10
-    double rolling_velocity_sigma_m_s = 0.03;               ///< per node while it grips; bound (0, 10]
-    double slip_velocity_m_s = 0.12;  ///< misfit that opens a slip, half of it closes it; bound (0, 10]
-    double slip_quiet_s = 0.2;        ///< and for so long; bound [0, 10]
-    double slip_timeout_s = 3.0;      ///< then rolling is believed again; bound (0, 1e3]
-    double gap_max_s = 1.0;           ///< bound (0, 1e4]
+    double rolling_velocity_sigma_m_s = 0.03;               ///< per node while it grips
+    double slip_velocity_m_s = 0.12;                        ///< misfit that opens a slip, half of it closes it
+    double slip_quiet_s = 0.2;                              ///< and for so long
+    double slip_timeout_s = 3.0;                            ///< then rolling is believed again
+    double gap_max_s = 1.0;
 
     /// Every number of it, stated once.
     template <class Self, class Visitor>

@@ -18,20 +18,20 @@ namespace tumble {
 class Vqf {
  public:
   struct Params {
-    double tau_s = 3.0;  ///< of the low-pass on the specific force; bound [1e-3, 1e4]
+    double tau_s = 3.0;  ///< of the low-pass on the specific force
     bool rest_bias_estimation = true;
     bool motion_bias_estimation = true;          ///< both off: the basic filter, as its authors call it
-    double bias_sigma_start_rad_s = 8.7266e-3;   ///< 0.5 deg/s; bound (0, 1], as for the other rates
+    double bias_sigma_start_rad_s = 8.7266e-3;   ///< 0.5 deg/s
     double bias_sigma_motion_rad_s = 1.7453e-3;  ///< 0.1 deg/s: what the bias converges to in motion
     double bias_sigma_rest_rad_s = 5.2360e-4;    ///< 0.03 deg/s: and at rest
-    double bias_forgetting_s = 100.0;            ///< in which the variance grows to (0.1 deg/s)^2; bound (0, 1e6]
+    double bias_forgetting_s = 100.0;            ///< in which the variance grows to (0.1 deg/s)^2
     double bias_clip_rad_s = 3.4907e-2;          ///< 2 deg/s: largest bias that is believed
-    double vertical_forgetting = 1e-4;           ///< pull of the unobservable vertical bias to zero; bound (0, 1]
-    double rest_tau_s = 0.5;                     ///< of the rest detector's low-pass; bound [1e-3, 1e4]
-    double rest_time_s = 1.5;                    ///< bound [0, 1e4]
-    double rest_rate_rad_s = 3.4907e-2;          ///< 2 deg/s from the low-passed gyro
-    double rest_force_m_s2 = 0.5;                ///< from the low-passed force; bound (0, 100]
-    double gap_max_s = 1.0;                      ///< bound (0, 1e4]
+    double vertical_forgetting = 1e-4;           ///< pull of the unobservable vertical bias to zero
+    double rest_tau_s = 0.5;                     ///< of the rest detector's low-pass
+    double rest_time_s = 1.5;
+    double rest_rate_rad_s = 3.4907e-2;  ///< 2 deg/s from the low-passed gyro
+    double rest_force_m_s2 = 0.5;        ///< from the low-passed force
+    double gap_max_s = 1.0;
 
     /// Every number of it, stated once.
     template <class Self, class Visitor>

@@ -32,17 +32,17 @@ class PointwiseFilter {
     double range_min_m = 0.3;
     double range_max_m = 100.0;
     Eigen::AlignedBox3d own_body_L{Eigen::Vector3d(-0.5, -0.4, -0.27), Eigen::Vector3d(0.5, 0.4, 0.23)};
-    double sweep_voxel_m = 0.25;  ///< one point per voxel of a sweep, as measured, updates the state; bound [0.01, 10]
+    double sweep_voxel_m = 0.25;  ///< one point per voxel of a sweep, as measured, updates the state
     double map_voxel_m = 0.5;
     double map_spacing_m = 0.1;
-    int neighbours = 8;             ///< of the plane fit; bound [3, 32]
-    double match_distance_m = 1.0;  ///< bound (0, 4]
-    /// Densities of the random walks; the square roots of the authors' 1000 and 500. Bounds (0, 1e6].
+    int neighbours = 8;  ///< of the plane fit
+    double match_distance_m = 1.0;
+    /// Densities of the random walks; the square roots of the authors' 1000 and 500.
     double rate_walk_rad_s_sqrt_s = 31.6;
     double force_walk_m_s2_sqrt_s = 22.4;
-    double gyro_sigma_rad_s = 0.02;  ///< of one reading; bound (0, 1e3]
-    double accel_sigma_m_s2 = 0.1;   ///< of one reading; bound (0, 1e3]
-    double plane_sigma_m = 0.03;     ///< of a point's distance; bound (0, 10]
+    double gyro_sigma_rad_s = 0.02;  ///< of one reading
+    double accel_sigma_m_s2 = 0.1;   ///< of one reading
+    double plane_sigma_m = 0.03;     ///< of a point's distance
     std::size_t updates_min = 50;    ///< points accepted; fewer reject a sweep
 
     /// Every number of it, stated once.

@@ -36,10 +36,10 @@ enum class RegistrationVerdict : std::uint8_t {
 class Registration {
  public:
   struct Params {
-    int neighbours = 8;             ///< k of the plane fit; bound [3, 32]
-    double match_distance_m = 1.0;  ///< farther map points are no match; bound (0, 10]
-    int iterations_max = 30;        ///< bound [1, 200]
-    double step_m = 5e-4;           ///< converged when a step is below this and below step_rad
+    int neighbours = 8;             ///< k of the plane fit
+    double match_distance_m = 1.0;  ///< farther map points are no match
+    int iterations_max = 30;
+    double step_m = 5e-4;  ///< converged when a step is below this and below step_rad
     double step_rad = 1e-4;
     double rematch_m = 0.05;      ///< a point's plane is searched anew once the point has moved by this
     double range_sigma_m = 0.02;  ///< of a return, at least; grows as range_sigma_share of the range
@@ -48,7 +48,7 @@ class Registration {
     double kernel_min_m = 0.1;     ///< least width of the robust kernel (Geman-McClure)
     /// Weight of a point's information: neighbouring returns share the errors of the map and are not independent.
     double correlation_discount = 0.1;
-    double cluster_m = 1.0;          ///< points of one cube of this edge are not independent; bound [0.01, 100]
+    double cluster_m = 1.0;          ///< points of one cube of this edge are not independent
     std::size_t matches_min = 100;   ///< fewer matches are too few
     double matched_share_min = 0.1;  ///< of the points
     double fitting_share_min =

@@ -23,11 +23,11 @@ namespace tumble {
 class TrimmedIcp {
  public:
   struct Params {
-    int neighbours = 8;             ///< matches per point; bound [1, 32]
-    double match_distance_m = 1.0;  ///< bound (0, 4]
-    int normal_neighbours = 20;     ///< of the map's normals; bound [3, 32]
-    double trim_min = 0.5;          ///< least share of matches kept; bound (0, trim_max]
-    double trim_max = 0.7;          ///< bound [trim_min, 1]
+    int neighbours = 8;  ///< matches per point
+    double match_distance_m = 1.0;
+    int normal_neighbours = 20;  ///< of the map's normals
+    double trim_min = 0.5;       ///< least share of matches kept
+    double trim_max = 0.7;
     double trim_lambda = 2.35;
     /// The trap of the original: shares are taken of all slots though unmatched ones are missing from the sorted list.
     /// There it read past its end; here the index stops at the end.

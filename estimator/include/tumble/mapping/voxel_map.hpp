@@ -34,8 +34,8 @@ class VoxelMap {
   static constexpr std::uint32_t kNoPoint = 0xffffffffu;
 
   struct Params {
-    double voxel_m = 0.5;    ///< edge of a cell; a few times the spacing searches fastest; bound [0.01, 100]
-    double spacing_m = 0.1;  ///< at most one point is kept per cube of this edge; 0 keeps all; bound [0, voxel_m]
+    double voxel_m = 0.5;    ///< edge of a cell; a few times the spacing searches fastest
+    double spacing_m = 0.1;  ///< at most one point is kept per cube of this edge; 0 keeps all
 
     /// Every number of it, stated once.
     template <class Self, class Visitor>

@@ -18,11 +18,11 @@ namespace tumble {
 class AutogainFusion {
  public:
   struct Params {
-    double radius_m = 0.145;           ///< bound (0, 10]
-    double gravity_m_s2 = 9.80665;     ///< bound (0, 100]
-    double limiter = 1.2;              ///< |v_acc| to this times |v_rot|; 1.1 in the code; bound [0, 100]
-    double rotation_weight = 0.5;      ///< eq 13; bound [0, 10]
-    double acceleration_weight = 0.5;  ///< eq 13; bound [0, 10]
+    double radius_m = 0.145;
+    double gravity_m_s2 = 9.80665;
+    double limiter = 1.2;              ///< |v_acc| to this times |v_rot|; 1.1 in the code
+    double rotation_weight = 0.5;      ///< eq 13
+    double acceleration_weight = 0.5;  ///< eq 13
     Autogain::Params autogain = {};    ///< for the factors of eq 2 alone
 
     // Errata. The defaults are the paper's equations as printed.
@@ -33,7 +33,7 @@ class AutogainFusion {
     bool shrink_per_axis = true;      ///< eq 12 takes v_z^2 from each axis; false once from the horizontal vector
     bool vertical_by_norm = false;    ///< the code's limit of |v_z|: the norm of v_rot; false the mean of its two sizes
 
-    double gap_max_s = 1.0;  ///< bound (0, 1e4]
+    double gap_max_s = 1.0;
 
     /// Every number of it, stated once.
     template <class Self, class Visitor>

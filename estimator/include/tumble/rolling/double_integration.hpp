@@ -15,8 +15,8 @@ namespace tumble {
 class DoubleIntegration {
  public:
   struct Params {
-    double gravity_m_s2 = 9.80665;  ///< bound (0, 100]
-    double gap_max_s = 1.0;         ///< bound (0, 1e4]
+    double gravity_m_s2 = 9.80665;
+    double gap_max_s = 1.0;
 
     /// Every number of it, stated once.
     template <class Self, class Visitor>

@@ -14,9 +14,9 @@ namespace tumble {
 class RollingOdometry {
  public:
   struct Params {
-    double radius_m = 0.145;                              ///< bound (0, 10]
+    double radius_m = 0.145;
     Eigen::Vector3d normal_W = Eigen::Vector3d::UnitZ();  ///< unit, from the contact to the centre
-    double gap_max_s = 1.0;                               ///< bound (0, 1e4]
+    double gap_max_s = 1.0;
 
     /// Every number of it, stated once.
     template <class Self, class Visitor>

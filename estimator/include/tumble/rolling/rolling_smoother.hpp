@@ -46,14 +46,13 @@ class RollingSmoother {
 
   struct Params {
     RollingParams filter = {};
-    /// Noise of the last pass, as a share of the filter's; the covariance that it states is of the filter's; bound (0,
-    /// 1].
+    /// Noise of the last pass, as a share of the filter's; the covariance that it states is of the filter's.
     double path_noise = 0.65;
-    double lag_s = kWholeRun;    ///< how long an estimate may wait for what follows; bound [node_s, 1e9]
-    double block_s = 0.2;        ///< estimates are given out in blocks of this length; bound [node_s, 1e3]
-    double rate_max_hz = 500.0;  ///< of the samples: storage set aside for the lag; bound (0, 1e5]
+    double lag_s = kWholeRun;    ///< how long an estimate may wait for what follows
+    double block_s = 0.2;        ///< estimates are given out in blocks of this length
+    double rate_max_hz = 500.0;  ///< of the samples: storage set aside for the lag
     /// Above zero: horizontal distance of the centre from the start to the end of the run, known from elsewhere, and
-    /// its sigma. With a prior on the radius it tells the radius. Bounds [0, 1e6], (0, 1e3].
+    /// its sigma. With a prior on the radius it tells the radius.
     double known_distance_m = 0.0, known_distance_sigma_m = 5e-3;
 
     /// Every number of it, stated once.

@@ -26,19 +26,19 @@ class SlipObserver {
   static constexpr int kHistory = 25;  ///< samples over which an event is integrated back
 
   struct Params {
-    double radius_m = 0.145;                                ///< bound (0, 10]
-    double gravity_m_s2 = 9.80665;                          ///< bound (0, 100]
+    double radius_m = 0.145;
+    double gravity_m_s2 = 9.80665;
     Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< from centre to IMU, sensor axes
-    double open_m_s2 = 0.5;                                 ///< |e| that opens an event; bound (0, 100]
-    double quiet_m_s2 = 0.25;                               ///< |e| below which an event may end; bound (0, 100]
-    double quiet_time_s = 0.12;                             ///< for so long; bound [0, 10]
-    double closing_speed_m_s = 0.08;                        ///< |u| below which an event may end; bound (0, 10]
-    double timeout_s = 2.0;                                 ///< an event longer than this is undone; bound (0, 100]
-    double ignore_time_s = 1.0;       ///< quiet for so long after a time-out before the next event; bound [0, 100]
-    double closed_decay_per_s = 8.0;  ///< of u while closed; bound [0, 1e3]
-    double bias_tau_s = 1.0;          ///< of e's mean while closed and quiet (tilt, accelerometer bias); (0, 1e3]
-    double blend_tau_s = 0.25;        ///< in which a correction of the position enters; bound (0, 1e3]
-    double gap_max_s = 1.0;           ///< bound (0, 1e4]
+    double open_m_s2 = 0.5;                                 ///< |e| that opens an event
+    double quiet_m_s2 = 0.25;                               ///< |e| below which an event may end
+    double quiet_time_s = 0.12;                             ///< for so long
+    double closing_speed_m_s = 0.08;                        ///< |u| below which an event may end
+    double timeout_s = 2.0;                                 ///< an event longer than this is undone
+    double ignore_time_s = 1.0;       ///< quiet for so long after a time-out before the next event
+    double closed_decay_per_s = 8.0;  ///< of u while closed
+    double bias_tau_s = 1.0;          ///< of e's mean while closed and quiet (tilt, accelerometer bias)
+    double blend_tau_s = 0.25;        ///< in which a correction of the position enters
+    double gap_max_s = 1.0;
 
     /// Every number of it, stated once.
     template <class Self, class Visitor>
