@@ -1,27 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <array>
-
 #include "scenarios/baselines/attitude/complementary.hpp"
 #include "scenarios/methods/attitude_filter.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/settings.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
-const std::array<sim::Parameter, 1>& parameters_of_the_filter() {
-  static const baselines::Complementary::Params library;
-  static const std::array<sim::Parameter, 1> parameters = {{
-      {"tau_s", library.tau_s, 1e-3, 1e4, "s",
-       "time in which the accelerometer takes over: 0.02 per sample at 125 Hz (Zevering et al., MFI 2021)"},
-  }};
-  return parameters;
+const Settings<baselines::Complementary::Params>& settings() {
+  static const Settings<baselines::Complementary::Params> all(baselines::Complementary::Params{});
+  return all;
 }
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  baselines::Complementary::Params params;
-  params.tau_s = parameters.at("tau_s");
-  return run_attitude_filter<baselines::Complementary>(sensors, params);
+  return run_attitude_filter<baselines::Complementary>(sensors, settings().read(parameters));
 }
 
 }  // namespace
@@ -33,7 +26,7 @@ Method attitude_complementary() {
   info.doc =
       "The gyro integrated, levelled towards the specific force by the smallest rotation with one time constant.";
   info.source = "textbook complementary filter";
-  info.parameters = parameters_of_the_filter();
+  info.settings = {&settings()};
   return make_method(std::move(info), run);
 }
 

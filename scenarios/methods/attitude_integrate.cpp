@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/attitude_filter.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/settings.hpp"
 #include "tumble/attitude/strapdown.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
-Estimate run(const sim::Sensors& sensors, const sim::Values&, const OracleInput&) {
-  return run_attitude_filter<Strapdown>(sensors, Strapdown::Params{});
+const Settings<Strapdown::Params>& settings() {
+  static const Settings<Strapdown::Params> all(Strapdown::Params{});
+  return all;
+}
+
+Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  return run_attitude_filter<Strapdown>(sensors, settings().read(parameters));
 }
 
 }  // namespace
@@ -19,6 +25,7 @@ Method attitude_integrate() {
   info.kind = Kind::attitude;
   info.doc = "Integration of the primary IMU's gyro alone, levelled by its first sample.";
   info.source = "textbook strapdown";
+  info.settings = {&settings()};
   return make_method(std::move(info), run);
 }
 

@@ -10,6 +10,7 @@
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/carried.hpp"
 #include "scenarios/methods/imu_check.hpp"
+#include "scenarios/methods/rate_tumble.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/sphere_imus.hpp"
 #include "tumble/attitude/tumble_attitude.hpp"
@@ -18,29 +19,14 @@ namespace tumble::scenarios {
 
 namespace {
 
-// the library's own defaults, so that each stands in one place; sources are those of the library's documentation
-const std::array<sim::Parameter, 9>& parameters_of_the_filter() {
-  static const TumbleAttitude::Params library;
-  static const std::array<sim::Parameter, 9> parameters = {{
-      {"gyro_noise_rad_sqrts", library.gyro_noise_rad_sqrts, 1e-12, 1.0, "rad/sqrt(s)",
-       "angle random walk, unmodelled errors included"},
-      {"rate_error_sqrts", library.rate_error_sqrts, 0.0, 1.0, "sqrt(s)",
-       "angle random walk per rad/s turned: scale, timing"},
-      {"bias_sigma_start_rad_s", library.bias_sigma_start_rad_s, 0.0, 1.0, "rad/s", "prior of the gyro's bias"},
-      {"velocity_m_sqrts", library.velocity_m_sqrts, 1e-12, 1e3, "m/sqrt(s)",
-       "sigma of the mean velocity over 1 s of motion"},
-      {"displacement_m_sqrts", library.displacement_m_sqrts, 1e-12, 1e3, "m sqrt(s)",
-       "sigma of the mean displacement over 1 s"},
-      {"displacement_tau_s", library.displacement_tau_s, 0.1, 1e4, "s", "in which a displacement is forgotten"},
-      {"rest_time_s", library.rest_time_s, 0.0, 1e4, "s", "quiet for so long is rest"},
-      {"rest_rate_rad_s", library.rest_rate_rad_s, 1e-12, 1.0, "rad/s", "quiet: about the low-passed rate"},
-      {"rest_force_m_s2", library.rest_force_m_s2, 1e-12, 100.0, "m/s^2", "quiet: about the low-passed force"},
-  }};
-  return parameters;
+TumbleAttitude::Params stated(const sim::Sensors& sensors) {
+  TumbleAttitude::Params params;
+  params.gravity_m_s2 = sensors.gravity_m_s2;
+  return params;
 }
 
 /// All IMUs as one, in body axes, and rolling as what the velocity is.
-Estimate run_sphere(const sim::Sensors& sensors, TumbleAttitude::Params params) {
+Estimate run_sphere(const sim::Sensors& sensors, const sim::Values& parameters) {
   Estimate estimate;
   estimate.frame = Frame::body;
   MergedImus imus;
@@ -48,8 +34,10 @@ Estimate run_sphere(const sim::Sensors& sensors, TumbleAttitude::Params params) 
   if (!estimate.status.ok()) return estimate;
   (void)check_imus(sensors, imus, estimate);
   for (const MergedImus::LeftOut& unit : imus.out) estimate.health[to_string(unit)] = unit.since_s;
+  TumbleAttitude::Params params = stated(sensors);
   params.radius_m = sensors.sphere_radius_m;
   params.lever_arm_m = imus.lever_arm_m;
+  attitude_tumble_settings().apply(parameters, params);
   const TumbleAttitude filter(params);
   TumbleAttitude::State state;
   estimate.attitudes.reserve(imus.samples.size());
@@ -71,10 +59,10 @@ void recover_clipped(const sim::Sensors& sensors, std::vector<ImuSample>& sample
   (void)find_clipped(sensors.imus.front(), samples, signs);
   const auto clips = [](const ClipSigns& sign) { return sign.gyro != std::array<std::int8_t, 3>{}; };
   if (std::none_of(signs.begin(), signs.end(), clips)) return;
-  const sim::Values parameters = sim::resolve("rate/tumble", {}, tumble_rate_parameters());
+  const RateSmoother::Params params = stated_params(sensors.imus.front(), rate_tumble_settings().defaults());
   std::vector<RateState> rates;
   std::map<std::string, double> of_rates;
-  if (!tumble_rates(sensors, samples, parameters, rates, of_rates).ok()) return;
+  if (!tumble_rates(sensors, samples, params, rates, of_rates).ok()) return;
   double free = 0.0, recovered = 0.0;
   Eigen::Vector3d bias = Eigen::Vector3d::Zero();  // the smoother's rates are without
   for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -91,13 +79,15 @@ void recover_clipped(const sim::Sensors& sensors, std::vector<ImuSample>& sample
 }
 
 /// The primary IMU, in its axes.
-Estimate run_rig(const sim::Sensors& sensors, const TumbleAttitude::Params& params) {
+Estimate run_rig(const sim::Sensors& sensors, const sim::Values& parameters) {
   Estimate estimate;
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
   (void)check_imu(sensors, samples, estimate);  // a warning: a body that is pushed about all the time may look so
   recover_clipped(sensors, samples, estimate.health);
+  TumbleAttitude::Params params = stated(sensors);
+  attitude_tumble_settings().apply(parameters, params);
   const TumbleAttitude filter(params);
   TumbleAttitude::State state;
   estimate.attitudes.reserve(samples.size());
@@ -112,23 +102,15 @@ Estimate run_rig(const sim::Sensors& sensors, const TumbleAttitude::Params& para
 
 }  // namespace
 
-std::span<const sim::Parameter> attitude_tumble_parameters() {
-  return parameters_of_the_filter();
+const Settings<TumbleAttitude::Params>& attitude_tumble_settings() {
+  static const Settings<TumbleAttitude::Params> all(
+      TumbleAttitude::Params{},
+      {.stated = {"gravity_m_s2", "radius_m", "lever_arm_x_m", "lever_arm_y_m", "lever_arm_z_m"}});
+  return all;
 }
 
 Estimate run_attitude_tumble(const sim::Sensors& sensors, const sim::Values& parameters) {
-  TumbleAttitude::Params params;
-  params.gravity_m_s2 = sensors.gravity_m_s2;
-  params.gyro_noise_rad_sqrts = parameters.at("gyro_noise_rad_sqrts");
-  params.rate_error_sqrts = parameters.at("rate_error_sqrts");
-  params.bias_sigma_start_rad_s = parameters.at("bias_sigma_start_rad_s");
-  params.velocity_m_sqrts = parameters.at("velocity_m_sqrts");
-  params.displacement_m_sqrts = parameters.at("displacement_m_sqrts");
-  params.displacement_tau_s = parameters.at("displacement_tau_s");
-  params.rest_time_s = parameters.at("rest_time_s");
-  params.rest_rate_rad_s = parameters.at("rest_rate_rad_s");
-  params.rest_force_m_s2 = parameters.at("rest_force_m_s2");
-  return sensors.sphere_radius_m > 0.0 ? run_sphere(sensors, params) : run_rig(sensors, params);
+  return sensors.sphere_radius_m > 0.0 ? run_sphere(sensors, parameters) : run_rig(sensors, parameters);
 }
 
 namespace {
@@ -147,7 +129,7 @@ Method attitude_tumble() {
       "Tilt and gyro bias from the velocity being bounded, that of rolling on a sphere, and zero at rest; rates that a "
       "rail hid are those of rate/tumble.";
   info.source = "ours";
-  info.parameters = attitude_tumble_parameters();
+  info.settings = {&attitude_tumble_settings()};
   return make_method(std::move(info), run);
 }
 

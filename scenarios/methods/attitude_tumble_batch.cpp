@@ -32,7 +32,7 @@ Method attitude_tumble_batch() {
       "A smoother over the whole recording of a body that is carried: bounded acceleration, velocity and place, rest, "
       "clipped gyro axes as bounds.";
   info.source = "ours";
-  info.parameters = carried_parameters();
+  info.settings = {&carried_settings()};
   return make_method(std::move(info), run);
 }
 

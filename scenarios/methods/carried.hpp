@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/methods/settings.hpp"
 #include "sim/parameters.hpp"
 #include "sim/recording.hpp"
 #include "tumble/attitude/carried_smoother.hpp"
@@ -13,8 +14,8 @@
 /// What the methods on a carried body have in common: the smoother fed with the primary IMU, its rails found before.
 namespace tumble::scenarios {
 
-/// Parameters of a method on the carried body, with the library's own defaults and bounds.
-std::span<const sim::Parameter> carried_parameters();
+/// Parameters of a method on the carried body, with the library's own defaults.
+const Settings<CarriedSmoother::Params>& carried_settings();
 
 /// Signs of the elements that stand at a rail, per sample: flags of the device, plateaus and tilted planes found in the
 /// readings. `rows` of the result are those of the planes, the axes themselves where none was seen; it refers to

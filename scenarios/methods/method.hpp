@@ -51,13 +51,17 @@ struct OracleInput {
   const sim::Truth* truth = nullptr;
 };
 
+class SettingsTable;
+
 /// A method under test, self-describing. `kind` and `name` together are unique.
 struct MethodInfo {
   std::string name;
   Kind kind = Kind::rate;
-  std::string doc;     ///< one sentence: what it is
-  std::string source;  ///< paper or "ours"
+  std::string doc;                             ///< one sentence: what it is
+  std::string source;                          ///< paper or "ours"
+  std::vector<const SettingsTable*> settings;  ///< of its stages, whose names differ; what `parameters` are made of
   std::span<const sim::Parameter> parameters;
+  std::size_t parameters_first = 0;  ///< so many of them, the first, are what a user sets before others
   bool needs_truth = false;
   bool for_robot(const std::string& robot) const;  ///< whether it applies to "rig" or "sphere"
   std::vector<std::string> robots;                 ///< empty: all

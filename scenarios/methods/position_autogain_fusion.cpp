@@ -1,38 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <array>
-
 #include "scenarios/baselines/rolling/autogain_fusion.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/settings.hpp"
 #include "scenarios/methods/sphere_attitude.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
-sim::Parameter a_switch(const char* name, bool by_default, const char* doc) {
-  return {name, by_default ? 1.0 : 0.0, 0.0, 1.0, "1", doc};
+const Settings<baselines::Autogain::Params>& attitude_settings() {
+  static const Settings<baselines::Autogain::Params> all(baselines::Autogain::Params{});
+  return all;
 }
 
-const std::array<sim::Parameter, 9>& parameters_of_the_fusion() {
-  static const baselines::AutogainFusion::Params library;
-  static const std::array<sim::Parameter, 9> parameters = {{
-      {"limiter", library.limiter, 0.0, 100.0, "1",
-       "integrated over rolling velocity, at most; 1.1 in the authors' code"},
-      {"rotation_weight", library.rotation_weight, 0.0, 10.0, "1", "of the rolling velocity (eq. 13)"},
-      {"acceleration_weight", library.acceleration_weight, 0.0, 10.0, "1", "of the integrated acceleration (eq. 13)"},
-      a_switch("integrate_in_body", library.integrate_in_body, "1: eq. 7 in the turning frame, as printed; 0: in W"),
-      a_switch("direction_only", library.direction_only, "1: the force as a unit vector, as in the authors' code"),
-      a_switch("recursive_coupling", library.recursive_coupling, "1: eq. 8 scales the integral itself, as in the code"),
-      a_switch("limit_per_axis", library.limit_per_axis, "1: limits along the world's axes; 0: the horizontal vector"),
-      a_switch("shrink_per_axis", library.shrink_per_axis, "1: eq. 12 takes v_z^2 from each axis, as printed; 0: once"),
-      a_switch("vertical_by_norm", library.vertical_by_norm, "1: vertical speed limited by the norm, as in the code"),
-  }};
-  return parameters;
-}
-
-std::span<const sim::Parameter> parameters_with_attitude() {
-  static const std::vector<sim::Parameter> all = joined_parameters({autogain_parameters(), parameters_of_the_fusion()});
+const Settings<baselines::AutogainFusion::Params>& fusion_settings() {
+  static const Settings<baselines::AutogainFusion::Params> all(baselines::AutogainFusion::Params{},
+                                                               {.stated = {"radius_m", "gravity_m_s2"},
+                                                                .fixed = {"autogain_*"},
+                                                                .beside = attitude_settings().rows(),
+                                                                .prefix = "fusion_"});
   return all;
 }
 
@@ -40,16 +27,8 @@ baselines::AutogainFusion::Params fusion_params(const sim::Sensors& sensors, con
   baselines::AutogainFusion::Params params;
   params.radius_m = sensors.sphere_radius_m;
   params.gravity_m_s2 = sensors.gravity_m_s2;
-  params.autogain = autogain_params(parameters);
-  params.limiter = parameters.at("limiter");
-  params.rotation_weight = parameters.at("rotation_weight");
-  params.acceleration_weight = parameters.at("acceleration_weight");
-  params.integrate_in_body = parameters.at("integrate_in_body") >= 0.5;
-  params.direction_only = parameters.at("direction_only") >= 0.5;
-  params.recursive_coupling = parameters.at("recursive_coupling") >= 0.5;
-  params.limit_per_axis = parameters.at("limit_per_axis") >= 0.5;
-  params.shrink_per_axis = parameters.at("shrink_per_axis") >= 0.5;
-  params.vertical_by_norm = parameters.at("vertical_by_norm") >= 0.5;
+  fusion_settings().apply(parameters, params);
+  params.autogain = attitude_settings().read(parameters);
   return params;
 }
 
@@ -85,7 +64,7 @@ Method position_autogain_fusion() {
   info.kind = Kind::position;
   info.doc = "Rolling averaged with the limited integral of the acceleration, on the attitude of autogain.";
   info.source = "Zevering et al., IMU-based pose-estimation for spherical robots, IEEE MFI 2021, eqs 2-13";
-  info.parameters = parameters_with_attitude();
+  info.settings = {&attitude_settings(), &fusion_settings()};
   info.robots = {"sphere"};
   return make_method(std::move(info), run);
 }

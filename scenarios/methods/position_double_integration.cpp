@@ -2,21 +2,30 @@
 #include "scenarios/baselines/rolling/double_integration.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/settings.hpp"
 #include "scenarios/methods/sphere_attitude.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
+const Settings<baselines::DoubleIntegration::Params>& settings() {
+  static const Settings<baselines::DoubleIntegration::Params> all(baselines::DoubleIntegration::Params{},
+                                                                  {.stated = {"gravity_m_s2"}});
+  return all;
+}
+
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   estimate.frame = Frame::centre;
   SphereAttitude attitude;
-  estimate.status = sphere_attitude("position/double_integration", sensors, parameters.at("rest_s"), attitude);
+  estimate.status =
+      sphere_attitude("position/double_integration", sensors, rest_settings().read(parameters).rest_s, attitude);
   if (!estimate.status.ok()) return estimate;
 
   baselines::DoubleIntegration::Params params;
   params.gravity_m_s2 = sensors.gravity_m_s2;
+  settings().apply(parameters, params);
   const baselines::DoubleIntegration integration(params);
   baselines::DoubleIntegration::State state;
   const Eigen::Vector3d arm_I_m = bridge::lever_arm_I_m(sensors.imus.front());
@@ -43,7 +52,7 @@ Method position_double_integration() {
   info.kind = Kind::position;
   info.doc = "The accelerometer integrated twice with the integrated attitude: nothing bounds its drift.";
   info.source = "textbook strapdown inertial navigation";
-  info.parameters = sphere_rest_parameters();
+  info.settings = {&rest_settings(), &settings()};
   info.robots = {"sphere"};
   return make_method(std::move(info), run);
 }

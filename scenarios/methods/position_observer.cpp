@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <array>
-
 #include "scenarios/baselines/rolling/slip_observer.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/settings.hpp"
 #include "scenarios/methods/sphere_attitude.hpp"
 
 namespace tumble::scenarios {
@@ -11,21 +10,10 @@ namespace tumble::scenarios {
 namespace {
 
 // thresholds of the library, whose own defaults they are
-const std::array<sim::Parameter, 5>& parameters_of_the_observer() {
-  static const baselines::SlipObserver::Params library;
-  static const std::array<sim::Parameter, 5> parameters = {{
-      {"open_m_s2", library.open_m_s2, 1e-9, 100.0, "m/s^2", "residual that opens an event"},
-      {"quiet_m_s2", library.quiet_m_s2, 1e-9, 100.0, "m/s^2", "residual below which an event may end"},
-      {"closing_speed_m_s", library.closing_speed_m_s, 1e-9, 10.0, "m/s", "contact speed below which an event may end"},
-      {"timeout_s", library.timeout_s, 1e-9, 100.0, "s", "an event longer than this is undone"},
-      {"bias_tau_s", library.bias_tau_s, 1e-9, 1e3, "s", "of the residual's mean outside of events"},
-  }};
-  return parameters;
-}
-
-std::span<const sim::Parameter> parameters_with_rest() {
-  static const std::vector<sim::Parameter> all =
-      joined_parameters({sphere_rest_parameters(), parameters_of_the_observer()});
+const Settings<baselines::SlipObserver::Params>& settings() {
+  static const Settings<baselines::SlipObserver::Params> all(
+      baselines::SlipObserver::Params{},
+      {.stated = {"radius_m", "gravity_m_s2", "lever_arm_x_m", "lever_arm_y_m", "lever_arm_z_m"}});
   return all;
 }
 
@@ -35,11 +23,7 @@ baselines::SlipObserver::Params observer_params(const sim::Sensors& sensors, con
   params.gravity_m_s2 = sensors.gravity_m_s2;
   // from the centre of mass, which the calibration refers to; the geometric centre is some mm away
   params.lever_arm_m = bridge::lever_arm_I_m(sensors.imus.front());
-  params.open_m_s2 = parameters.at("open_m_s2");
-  params.quiet_m_s2 = parameters.at("quiet_m_s2");
-  params.closing_speed_m_s = parameters.at("closing_speed_m_s");
-  params.timeout_s = parameters.at("timeout_s");
-  params.bias_tau_s = parameters.at("bias_tau_s");
+  settings().apply(parameters, params);
   return params;
 }
 
@@ -47,7 +31,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   Estimate estimate;
   estimate.frame = Frame::centre;
   SphereAttitude attitude;
-  estimate.status = sphere_attitude("position/observer", sensors, parameters.at("rest_s"), attitude);
+  estimate.status = sphere_attitude("position/observer", sensors, rest_settings().read(parameters).rest_s, attitude);
   if (!estimate.status.ok()) return estimate;
 
   const baselines::SlipObserver observer(observer_params(sensors, parameters));
@@ -78,7 +62,7 @@ Method position_observer() {
   info.doc =
       "Rolling plus a contact velocity, integrated from what acceleration and rolling disagree in during events.";
   info.source = "ours, kept to compare with: superseded by position/tumble";
-  info.parameters = parameters_with_rest();
+  info.settings = {&rest_settings(), &settings()};
   info.robots = {"sphere"};
   return make_method(std::move(info), run);
 }

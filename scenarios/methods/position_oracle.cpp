@@ -26,6 +26,19 @@ std::size_t physics_index(const sim::Truth& truth, std::int64_t time_ns, std::si
   return std::min(static_cast<std::size_t>(std::max<std::int64_t>(time_ns, 0) / truth.period_ns), count - 1);
 }
 
+/// Without what the exact attitude leaves no doubt of.
+const Settings<RollingSmoother::Params>& settings_with_attitude() {
+  static const Settings<RollingSmoother::Params> all =
+      oracle_settings({"gyro_range_rad_s", "tilt_sigma_rad", "gyro_bias_sigma_rad_s", "gyro_scale_sigma",
+                       "attitude_walk_rad_sqrts", "rate_error_sqrts", "gyro_bias_walk_rad_s_sqrts"});
+  return all;
+}
+
+const Settings<RollingSmoother::Params>& settings_with_contact() {
+  static const Settings<RollingSmoother::Params> all = oracle_settings({});
+  return all;
+}
+
 Estimate run_exact_attitude(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& oracle) {
   Estimate estimate;
   MergedImus imus;
@@ -43,8 +56,7 @@ Estimate run_exact_attitude(const sim::Sensors& sensors, const sim::Values& para
     while (next < times_ns.size() && times_ns[next] <= sample.time_ns) sum += truth.imus.front().rate_rad_s[next++];
     if (next > first) sample.angular_velocity_rad_s = R_BI * (sum / static_cast<double>(next - first));
   }
-  RollingSmoother::Params params;
-  params.filter = rolling_params(sensors, imus, parameters);
+  RollingSmoother::Params params = rolling_smoother_params(sensors, imus, settings_with_attitude(), parameters);
   params.filter.q_WI_start =
       truth.q_WB[physics_index(truth, imus.samples.front().time_ns, truth.q_WB.size())].normalized();
   params.filter.gyro_range_rad_s = 1e3;
@@ -98,8 +110,7 @@ Estimate run_exact_contact(const sim::Sensors& sensors, const sim::Values& param
   MergedImus imus;
   if (!prepare("position/oracle_contact", sensors, imus, estimate)) return estimate;
   if (oracle.truth->label.empty()) throw BadInput("the truth holds no state of contact");
-  RollingSmoother::Params params;
-  params.filter = rolling_params(sensors, imus, parameters);
+  RollingSmoother::Params params = rolling_smoother_params(sensors, imus, settings_with_contact(), parameters);
   smooth(params, imus, true_modes(*oracle.truth, imus.samples), estimate);
   return estimate;
 }
@@ -112,7 +123,7 @@ Method position_oracle() {
   info.kind = Kind::position;
   info.doc = "Our smoother given the exact attitude at all times: what the other sensors and the contact leave.";
   info.source = "ours";
-  info.parameters = rolling_parameters();
+  info.settings = {&settings_with_attitude()};
   info.needs_truth = true;
   info.robots = {"sphere"};
   return make_method(std::move(info), run_exact_attitude);
@@ -124,7 +135,7 @@ Method position_oracle_contact() {
   info.kind = Kind::position;
   info.doc = "Our smoother told at each instant whether the contact grips, slips or is lost: what the sensors leave.";
   info.source = "ours";
-  info.parameters = rolling_parameters();
+  info.settings = {&settings_with_contact()};
   info.needs_truth = true;
   info.robots = {"sphere"};
   return make_method(std::move(info), run_exact_contact);

@@ -1,27 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <array>
-
 #include "scenarios/baselines/rolling/rolling_odometry.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/settings.hpp"
 #include "scenarios/methods/sphere_attitude.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::array<sim::Parameter, 1> kParameters = {{
-    {"rest_s", 1.0, 0.01, 60.0, "s", "length of the rest at the start: gyro bias and tilt are its means"},
-}};
+const Settings<baselines::RollingOdometry::Params>& settings() {
+  static const Settings<baselines::RollingOdometry::Params> all(baselines::RollingOdometry::Params{},
+                                                                {.stated = {"radius_m"}});
+  return all;
+}
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   estimate.frame = Frame::centre;
   SphereAttitude attitude;
-  estimate.status = sphere_attitude("position/rolling", sensors, parameters.at("rest_s"), attitude);
+  estimate.status = sphere_attitude("position/rolling", sensors, rest_settings().read(parameters).rest_s, attitude);
   if (!estimate.status.ok()) return estimate;
 
   baselines::RollingOdometry::Params params;
   params.radius_m = sensors.sphere_radius_m;
+  settings().apply(parameters, params);
   const baselines::RollingOdometry odometry(params);
   baselines::RollingOdometry::State state;
   estimate.poses.reserve(attitude.samples.size());
@@ -36,10 +38,6 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
 
 }  // namespace
 
-std::span<const sim::Parameter> sphere_rest_parameters() {
-  return kParameters;
-}
-
 Method position_rolling() {
   MethodInfo info;
   info.name = "rolling";
@@ -47,7 +45,7 @@ Method position_rolling() {
   info.doc =
       "Rolling without slip on a level plane: attitude by integration after the gyro's bias at rest, v = r w x n.";
   info.source = "textbook rolling constraint";
-  info.parameters = sphere_rest_parameters();
+  info.settings = {&rest_settings(), &settings()};
   info.robots = {"sphere"};
   return make_method(std::move(info), run);
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <array>
 #include <memory>
 
 #include "scenarios/methods/imu_check.hpp"
@@ -13,6 +12,7 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kCentreSigmaM = 6e-3;
+constexpr double kLagS = 1.0;
 constexpr double kSpinsM_s = 0.2, kSpinsShare = 0.3;  // by which a hop that turns too fast differs from one that grips
 constexpr int kRecoveringUnits = 3;                   // so many IMUs tell a rate beyond the range
 constexpr double kRecoveredSigmaRadS = 1.0;
@@ -22,58 +22,72 @@ constexpr double kUnknownGyroBiasRadS = 5e-3, kUnknownAccelBiasMS2 = 0.4, kUnkno
                  kUnknownPlaceM = 0.05;
 constexpr double kUnknownInclinePerS = 1e-9;  // its bias passes for a slope: the floor is taken for level
 
-// the library's own defaults, so that each stands in one place; sources are those of the library's documentation
-const std::array<sim::Parameter, 13>& parameters_of_the_filter() {
-  static const RollingFilter::Params library;
-  static const std::array<sim::Parameter, 13> parameters = {{
-      {"tilt_sigma_rad", library.tilt_sigma_rad, 0.0, 1e3, "rad", "prior of the levelling by the first sample"},
-      {"gyro_bias_sigma_rad_s", library.gyro_bias_sigma_rad_s, 0.0, 1e3, "rad/s", "prior of the gyro's bias"},
-      {"accel_bias_sigma_m_s2", library.accel_bias_sigma_m_s2, 0.0, 1e3, "m/s^2", "prior of the accelerometer's bias"},
-      {"lever_arm_sigma_m", kCentreSigmaM, 0.0, 1e3, "m",
-       "prior of the lever arm: the centre of mass, which it is given from, is not the sphere's centre"},
-      {"radius_sigma_m", library.radius_sigma_m, 0.0, 1.0, "m", "prior of the radius; 0: it is known"},
-      {"grip_sigma_m_s", library.grip_sigma_m_s, 1e-12, 1e3, "m/s", "of the contact velocity while gripping"},
-      {"slip_begins_per_s", library.slip_begins_per_s, 1e-12, 1e3, "1/s", "rate of grip changing to slip"},
-      {"slip_ends_per_s", library.slip_ends_per_s, 1e-12, 1e3, "1/s", "and back"},
-      {"bump_begins_per_s", library.bump_begins_per_s, 1e-12, 1e3, "1/s", "rate of grip changing to bump"},
-      {"bump_ends_per_s", library.bump_ends_per_s, 1e-12, 1e3, "1/s", "and back"},
-      {"incline_begins_per_s", library.incline_begins_per_s, 1e-12, 1e3, "1/s", "rate of a slope beginning"},
-      {"rough_share", library.rough_share, 1e-12, 1e3, "1",
-       "of the rolling speed: how fast a rough floor goes up and down"},
-      {"event_shortest_s", library.event_shortest_s, 0.0, 10.0, "s", "least stay in slip or bump"},
-  }};
-  return parameters;
+/// The library's defaults but for the prior of the lever arm: the centre of mass, which it is given from, is not the
+/// sphere's centre.
+RollingSmoother::Params defaults(double lag_s = RollingSmoother::kWholeRun) {
+  RollingSmoother::Params params;
+  params.filter.lever_arm_sigma_m = kCentreSigmaM;
+  params.lag_s = lag_s;
+  return params;
 }
 
-constexpr std::array<sim::Parameter, 2> kDistance = {{
-    {"known_distance_m", 0.0, 0.0, 1e6, "m",
-     "horizontal distance from start to end, known from elsewhere: tells the radius; 0: not known"},
-    {"known_distance_sigma_m", 5e-3, 1e-9, 1e3, "m", "its sigma"},
-}};
+/// What the sensors state, and what follows from how many they are.
+std::vector<std::string> stated() {
+  return {"radius_m",      "gravity_m_s2",     "lever_arm_x_m",    "lever_arm_y_m",
+          "lever_arm_z_m", "gyro_range_rad_s", "accel_range_m_s2", "recovered_rate_sigma_rad_s"};
+}
 
-constexpr sim::Parameter kClaim = {
-    "slip_claimed_from",
-    0.5,
-    0.0,
-    1.0,
-    "1",
-    "probability of slip or bump, over all hypotheses, from which on the likelier of them is claimed"};
+/// Those of the live filter, and from when on it claims a slip.
+struct LiveParams {
+  RollingParams filter;
+  double slip_claimed_from = 0.5;
 
-constexpr sim::Parameter kLag = {"lag_s", 1.0, 0.02, 60.0, "s", "how long a pose may wait for what follows"};
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit.group("", p.filter);
+    visit(p.slip_claimed_from,
+          {"slip_claimed_from", "1", 0.0, 1.0,
+           "probability of slip or bump, over all hypotheses, from which on the likelier of them is claimed",
+           Rank::first});
+  }
+};
 
-std::span<const sim::Parameter> parameters_with_distance() {
-  static const std::vector<sim::Parameter> all = joined_parameters({parameters_of_the_filter(), kDistance});
+const Settings<LiveParams>& live_settings() {
+  static const Settings<LiveParams> all({.filter = defaults().filter}, {.stated = stated()});
   return all;
 }
 
-std::span<const sim::Parameter> parameters_with_claim() {
-  static const std::vector<sim::Parameter> all = joined_parameters({parameters_of_the_filter(), {&kClaim, 1}});
+const Settings<RollingSmoother::Params>& lag_settings() {
+  static const Settings<RollingSmoother::Params> all = [] {
+    std::vector<std::string> names = stated();
+    names.emplace_back("rate_max_hz");
+    return Settings<RollingSmoother::Params>(defaults(kLagS), {.stated = names, .fixed = {"known_distance_*"}});
+  }();
   return all;
 }
 
-std::span<const sim::Parameter> parameters_with_lag() {
-  static const std::vector<sim::Parameter> all = joined_parameters({parameters_of_the_filter(), {&kLag, 1}});
-  return all;
+/// What the sensors are like. The lever arm is from the centre of mass, which the calibration refers to; what lies
+/// between it and the centre is estimated.
+void set_stated(const sim::Sensors& sensors, const MergedImus& imus, RollingParams& params) {
+  params.radius_m = sensors.sphere_radius_m;
+  params.gravity_m_s2 = sensors.gravity_m_s2;
+  params.lever_arm_m = imus.lever_arm_m;
+  params.gyro_range_rad_s = imus.gyro_range_rad_s;
+  params.accel_range_m_s2 = imus.accel_range_m_s2;
+  if (imus.units >= kRecoveringUnits) params.recovered_rate_sigma_rad_s = kRecoveredSigmaRadS;
+}
+
+/// What a device may have that nobody has described.
+void widen_unknown(const sim::Sensors& sensors, RollingParams& params) {
+  if (!sensors.imus.front().device.empty()) return;
+  params.gyro_bias_sigma_rad_s = std::max(params.gyro_bias_sigma_rad_s, kUnknownGyroBiasRadS);
+  params.accel_bias_sigma_m_s2 = std::max(params.accel_bias_sigma_m_s2, kUnknownAccelBiasMS2);
+  params.tilt_sigma_rad = std::max(params.tilt_sigma_rad, kUnknownAccelBiasMS2 / params.gravity_m_s2);
+  params.accel_scale_sigma = std::max(params.accel_scale_sigma, kUnknownScale);
+  params.gyro_scale_sigma = std::max(params.gyro_scale_sigma, kUnknownScale);
+  params.accel_delay_sigma_s = std::max(params.accel_delay_sigma_s, kUnknownDelayS);
+  params.lever_arm_sigma_m = std::max(params.lever_arm_sigma_m, kUnknownPlaceM);
+  params.incline_begins_per_s = std::min(params.incline_begins_per_s, kUnknownInclinePerS);
 }
 
 PoseState body_pose(TimeNs time_ns, const Eigen::Quaterniond& q_WB, const Eigen::Vector3d& p_WG_m,
@@ -154,8 +168,11 @@ Estimate run_live(const sim::Sensors& sensors, const sim::Values& parameters, co
   Estimate estimate;
   MergedImus imus;
   if (!merged("position/tumble_live", sensors, imus, estimate)) return estimate;
-  const RollingFilter filter(rolling_params(sensors, imus, parameters));
-  const double claimed_from = parameters.at("slip_claimed_from");
+  LiveParams params = live_settings().defaults();
+  set_stated(sensors, imus, params.filter);
+  live_settings().apply(parameters, params);
+  widen_unknown(sensors, params.filter);
+  const RollingFilter filter(params.filter);
   // 430 KiB: not for the stack of a worker
   const auto state = std::make_unique<RollingFilter::State>();
   estimate.poses.reserve(imus.samples.size());
@@ -165,8 +182,8 @@ Estimate run_live(const sim::Sensors& sensors, const sim::Values& parameters, co
     PoseState pose = body_pose(sample.time_ns, state->q_WI, state->p_WG_m, state->v_WG_m_s);
     pose.covariance.topLeftCorner<3, 3>() = state->position_covariance_m2;
     estimate.poses.push_back(pose);
-    add_contact(claimed_mode(*state, claimed_from), state->at_rest, state->uncertain, sensors.sphere_radius_m, sample,
-                estimate);
+    add_contact(claimed_mode(*state, params.slip_claimed_from), state->at_rest, state->uncertain,
+                params.filter.radius_m, sample, estimate);
   }
   tell_of_samples(*state, estimate);
   return estimate;
@@ -176,11 +193,12 @@ Estimate run_lag(const sim::Sensors& sensors, const sim::Values& parameters, con
   Estimate estimate;
   MergedImus imus;
   if (!merged("position/tumble_lag", sensors, imus, estimate)) return estimate;
-  RollingSmoother::Params params;
-  params.filter = rolling_params(sensors, imus, parameters);
-  params.lag_s = parameters.at("lag_s");
+  RollingSmoother::Params params = lag_settings().defaults();
   const TimeNs period_ns = sensors.imus.front().period_ns;
   if (period_ns > 0) params.rate_max_hz = std::max(params.rate_max_hz, 1.1 / seconds(period_ns));
+  set_stated(sensors, imus, params.filter);
+  lag_settings().apply(parameters, params);
+  widen_unknown(sensors, params.filter);
   smooth(params, imus, {}, estimate);
   return estimate;
 }
@@ -189,10 +207,7 @@ Estimate run_whole(const sim::Sensors& sensors, const sim::Values& parameters, c
   Estimate estimate;
   MergedImus imus;
   if (!merged("position/tumble", sensors, imus, estimate)) return estimate;
-  RollingSmoother::Params params;
-  params.filter = rolling_params(sensors, imus, parameters);
-  params.known_distance_m = parameters.at("known_distance_m");
-  params.known_distance_sigma_m = parameters.at("known_distance_sigma_m");
+  RollingSmoother::Params params = rolling_smoother_params(sensors, imus, position_settings(), parameters);
   if (params.known_distance_m > 0.0 && params.filter.radius_sigma_m == 0.0) {
     params.filter.radius_sigma_m = kUnknownRadiusShare * params.filter.radius_m;
   }
@@ -200,47 +215,25 @@ Estimate run_whole(const sim::Sensors& sensors, const sim::Values& parameters, c
   return estimate;
 }
 
-/// What a device may have that nobody has described.
-void widen(RollingParams& params) {
-  params.gyro_bias_sigma_rad_s = std::max(params.gyro_bias_sigma_rad_s, kUnknownGyroBiasRadS);
-  params.accel_bias_sigma_m_s2 = std::max(params.accel_bias_sigma_m_s2, kUnknownAccelBiasMS2);
-  params.tilt_sigma_rad = std::max(params.tilt_sigma_rad, kUnknownAccelBiasMS2 / params.gravity_m_s2);
-  params.accel_scale_sigma = std::max(params.accel_scale_sigma, kUnknownScale);
-  params.gyro_scale_sigma = std::max(params.gyro_scale_sigma, kUnknownScale);
-  params.accel_delay_sigma_s = std::max(params.accel_delay_sigma_s, kUnknownDelayS);
-  params.lever_arm_sigma_m = std::max(params.lever_arm_sigma_m, kUnknownPlaceM);
-  params.incline_begins_per_s = std::min(params.incline_begins_per_s, kUnknownInclinePerS);
-}
-
 }  // namespace
 
-std::span<const sim::Parameter> rolling_parameters() {
-  return parameters_of_the_filter();
+const Settings<RollingSmoother::Params>& position_settings() {
+  static const Settings<RollingSmoother::Params> all(defaults(), {.stated = stated(), .fixed = {"lag_s"}});
+  return all;
 }
 
-RollingParams rolling_params(const sim::Sensors& sensors, const MergedImus& imus, const sim::Values& parameters) {
-  RollingParams params;
-  params.radius_m = sensors.sphere_radius_m;
-  params.gravity_m_s2 = sensors.gravity_m_s2;
-  // from the centre of mass, which the calibration refers to; what lies between it and the centre is estimated
-  params.lever_arm_m = imus.lever_arm_m;
-  params.gyro_range_rad_s = imus.gyro_range_rad_s;
-  params.accel_range_m_s2 = imus.accel_range_m_s2;
-  if (imus.units >= kRecoveringUnits) params.recovered_rate_sigma_rad_s = kRecoveredSigmaRadS;
-  params.tilt_sigma_rad = parameters.at("tilt_sigma_rad");
-  params.gyro_bias_sigma_rad_s = parameters.at("gyro_bias_sigma_rad_s");
-  params.accel_bias_sigma_m_s2 = parameters.at("accel_bias_sigma_m_s2");
-  params.lever_arm_sigma_m = parameters.at("lever_arm_sigma_m");
-  params.radius_sigma_m = parameters.at("radius_sigma_m");
-  params.grip_sigma_m_s = parameters.at("grip_sigma_m_s");
-  params.slip_begins_per_s = parameters.at("slip_begins_per_s");
-  params.slip_ends_per_s = parameters.at("slip_ends_per_s");
-  params.bump_begins_per_s = parameters.at("bump_begins_per_s");
-  params.bump_ends_per_s = parameters.at("bump_ends_per_s");
-  params.incline_begins_per_s = parameters.at("incline_begins_per_s");
-  params.rough_share = parameters.at("rough_share");
-  params.event_shortest_s = parameters.at("event_shortest_s");
-  if (sensors.imus.front().device.empty()) widen(params);
+Settings<RollingSmoother::Params> oracle_settings(std::vector<std::string> fixed) {
+  fixed.insert(fixed.end(), {"lag_s", "known_distance_*"});
+  return Settings<RollingSmoother::Params>(defaults(), {.stated = stated(), .fixed = std::move(fixed)});
+}
+
+RollingSmoother::Params rolling_smoother_params(const sim::Sensors& sensors, const MergedImus& imus,
+                                                const Settings<RollingSmoother::Params>& settings,
+                                                const sim::Values& parameters) {
+  RollingSmoother::Params params = settings.defaults();
+  set_stated(sensors, imus, params.filter);
+  settings.apply(parameters, params);
+  widen_unknown(sensors, params.filter);
   return params;
 }
 
@@ -287,7 +280,7 @@ Method position_tumble() {
       "Rolling as a velocity measurement in an inertial filter, grip, slip, bump and slope as hypotheses; smoothed "
       "over the run.";
   info.source = "ours";
-  info.parameters = parameters_with_distance();
+  info.settings = {&position_settings()};
   info.robots = {"sphere"};
   return make_method(std::move(info), run_whole);
 }
@@ -298,7 +291,7 @@ Method position_tumble_lag() {
   info.kind = Kind::position;
   info.doc = "The same, each pose smoothed with what follows within a fixed lag.";
   info.source = "ours";
-  info.parameters = parameters_with_lag();
+  info.settings = {&lag_settings()};
   info.robots = {"sphere"};
   return make_method(std::move(info), run_lag);
 }
@@ -309,7 +302,7 @@ Method position_tumble_live() {
   info.kind = Kind::position;
   info.doc = "The same, live: each pose with what came before it alone.";
   info.source = "ours";
-  info.parameters = parameters_with_claim();
+  info.settings = {&live_settings()};
   info.robots = {"sphere"};
   return make_method(std::move(info), run_live);
 }

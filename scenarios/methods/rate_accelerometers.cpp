@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <array>
 #include <limits>
 
 #include "scenarios/baselines/angular_velocity/accelerometer_rate.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/rate_baseline.hpp"
+#include "scenarios/methods/settings.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::array<sim::Parameter, 3> kParameters = {{
-    {"use_gyro", 1.0, 0.0, 1.0, "1", "1: axes of the primary gyro that are not clipped are read too; 0: none"},
-    {"jerk_psd_rad2_s5", 1e7, 1.0, 1e12, "rad^2/s^5", "density of the white angular jerk"},
-    kTiltedRails,
-}};
+const Settings<baselines::AccelerometerRate::Params>& settings() {
+  static const Settings<baselines::AccelerometerRate::Params> all(
+      baselines::AccelerometerRate::Params{}, {.stated = {"gyro_noise_density", "accel_noise_density"}});
+  return all;
+}
 
 // The specific force of `other` at the stamps of the primary, in its axes; NaN before, after and at a rail. The gyro of
 // `other` is never read.
@@ -62,11 +62,8 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   if (!(params.accel_noise_density > 0.0))
     params.accel_noise_density = baselines::AccelerometerRate::Params{}.accel_noise_density;
   params.rails = stated_rails(record);
-  params.tilted_rails = parameters.at("tilted_rails") > 0.5;
   if (record.gyro_noise_rad_s_sqrt_hz > 0.0) params.gyro_noise_density = record.gyro_noise_rad_s_sqrt_hz;
-  params.use_gyro = parameters.at("use_gyro") > 0.5;
-  params.jerk_psd = parameters.at("jerk_psd_rad2_s5");
-  params.gap_max_s = bridge::kGapMaxS;
+  settings().apply(parameters, params);
   estimate.status = baselines::AccelerometerRate(params).estimate(samples, auxiliary_imus, estimate.rates);
   estimate.health["accelerometers"] = static_cast<double>(sensors.imus.size());
   count_sources(estimate.rates, estimate.health);
@@ -83,7 +80,7 @@ Method rate_accelerometers() {
       "Gyro-free: an extended Kalman filter on the differences of all accelerometers, the reference's too (never its "
       "gyro), and on the gyro's free axes. Made for long fast rotation with a wide spread of accelerometers.";
   info.source = "the family of Pachter's and Lee's gyro-free inertial systems";
-  info.parameters = kParameters;
+  info.settings = {&settings()};
   return make_method(std::move(info), run);
 }
 

@@ -12,15 +12,17 @@ RailDetector::Params stated_rails(const sim::ImuRecord& record) {
   return rails;
 }
 
-Estimate run_clipped_baseline(baselines::ClippedBaseline::Params params, const sim::Sensors& sensors) {
+Estimate run_clipped_baseline(const Settings<baselines::ClippedBaseline::Params>& settings, const sim::Sensors& sensors,
+                              const sim::Values& parameters) {
   Estimate estimate;
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
   const sim::ImuRecord& record = sensors.imus.front();
+  baselines::ClippedBaseline::Params params = settings.defaults();
   params.rails = stated_rails(record);
   if (record.gyro_noise_rad_s_sqrt_hz > 0.0) params.gyro_noise_density = record.gyro_noise_rad_s_sqrt_hz;
-  params.gap_max_s = bridge::kGapMaxS;
+  settings.apply(parameters, params);
   estimate.status = baselines::ClippedBaseline(params).estimate(samples, estimate.rates);
   count_sources(estimate.rates, estimate.health);
   return estimate;

@@ -25,7 +25,7 @@ Method rate_carried() {
       "A smoother over the recording of a body that is carried, not in flight: gravity turning in the sensor tells the "
       "rate that a clipped gyro lost.";
   info.source = "ours";
-  info.parameters = carried_parameters();
+  info.settings = {&carried_settings()};
   return make_method(std::move(info), run);
 }
 

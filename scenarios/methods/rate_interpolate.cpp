@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <array>
-
 #include "scenarios/methods/rate_baseline.hpp"
+#include "scenarios/methods/settings.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::array<sim::Parameter, 1> kParameters = {{kTiltedRails}};
+// of the other kinds are fixed
+const Settings<baselines::ClippedBaseline::Params>& settings() {
+  static const Settings<baselines::ClippedBaseline::Params> all(
+      {.kind = baselines::ClippedBaseline::Kind::interpolate},
+      {.stated = {"gyro_noise_density"},
+       .fixed = {"acceleration_psd_rad2_s3", "snap_psd_rad2_s7", "rate_sigma_rad_s"}});
+  return all;
+}
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  return run_clipped_baseline(
-      {.kind = baselines::ClippedBaseline::Kind::interpolate, .tilted_rails = parameters.at("tilted_rails") > 0.5},
-      sensors);
+  return run_clipped_baseline(settings(), sensors, parameters);
 }
 
 }  // namespace
@@ -25,7 +29,7 @@ Method rate_interpolate() {
       "A cubic over each clipped gap, value and slope continued from both sides and held beyond the rail. Made for "
       "gaps that are short beside the motion, without impacts in them.";
   info.source = "textbook: cubic interpolation";
-  info.parameters = kParameters;
+  info.settings = {&settings()};
   return make_method(std::move(info), run);
 }
 

@@ -66,7 +66,8 @@ void join_regimes(const sim::Sensors& sensors, std::span<const ImuSample> sample
   std::vector<RateState> other;
   std::vector<AttitudeState> attitudes;
   std::map<std::string, double> of_carried;
-  const sim::Values parameters = sim::resolve("rate/carried", {}, carried_parameters());
+  const SettingsTable* const stages[] = {&carried_settings()};
+  const sim::Values parameters = resolve_settings("rate/carried", {}, stages);
   if (!run_carried(sensors, parameters, other, attitudes, of_carried).ok()) return;
   health["regime_carried_asked"] = 1.0;
   for (const auto& [name, value] : of_carried) health["carried_" + name] = value;

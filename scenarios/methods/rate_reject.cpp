@@ -1,23 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <array>
-
 #include "scenarios/methods/rate_baseline.hpp"
+#include "scenarios/methods/settings.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::array<sim::Parameter, 2> kParameters = {{
-    {"acceleration_psd_rad2_s3", 1e3, 1e-12, 1e12, "rad^2/s^3",
-     "density of the white angular acceleration that drives the rate; 1000 as in Point-LIO's configurations"},
-    kTiltedRails,
-}};
+// of the other kinds are fixed
+const Settings<baselines::ClippedBaseline::Params>& settings() {
+  static const Settings<baselines::ClippedBaseline::Params> all(
+      {.kind = baselines::ClippedBaseline::Kind::reject},
+      {.stated = {"gyro_noise_density"}, .fixed = {"snap_psd_rad2_s7", "rate_sigma_rad_s"}});
+  return all;
+}
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  return run_clipped_baseline({.kind = baselines::ClippedBaseline::Kind::reject,
-                               .tilted_rails = parameters.at("tilted_rails") > 0.5,
-                               .acceleration_psd = parameters.at("acceleration_psd_rad2_s3")},
-                              sensors);
+  return run_clipped_baseline(settings(), sensors, parameters);
 }
 
 }  // namespace
@@ -30,7 +28,7 @@ Method rate_reject() {
       "Clipped rows are dropped and the rate is a random walk pinned by its process noise alone, forward in time. Made "
       "for gaps shorter than the time between two corrections by a lidar, which this stage does not have.";
   info.source = "He et al., Point-LIO, Advanced Intelligent Systems 2023: its treatment of saturated readings";
-  info.parameters = kParameters;
+  info.settings = {&settings()};
   return make_method(std::move(info), run);
 }
 

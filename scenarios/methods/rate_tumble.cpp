@@ -16,57 +16,20 @@
 
 namespace tumble::scenarios {
 
-namespace {
-
-// the library's own defaults, so that each stands in one place; sources are those of the library's documentation
-const std::array<sim::Parameter, 12>& parameters_of_the_smoother() {
-  static const RateSmoother::Params library;
-  static const RateModelParams& model = library.model;
-  static const std::array<sim::Parameter, 12> parameters = {{
-      {"lever_arm_sigma_m", model.lever_arm_sigma_m, 1e-9, 10.0, "m", "what the calibrated lever arm may be off by"},
-      {"gyro_bias_sigma_rad_s", model.gyro_bias_sigma_rad_s, 1e-9, 10.0, "rad/s", "prior of the gyro's bias"},
-      {"accel_bias_sigma_m_s2", model.accel_bias_sigma_m_s2, 1e-9, 10.0, "m/s^2", "prior of the accelerometer's bias"},
-      {"inertia_sigma", model.inertia_sigma, 1e-9, 10.0, "1", "prior of the inertia's shape about equal moments"},
-      {"element_sigma", model.element_sigma, 1e-9, 0.2, "1",
-       "prior of each slope of a gyro element's rail: cross-axis sensitivity before the device compensates it"},
-      {"flight_sigma_m_s2", model.flight_sigma_m_s2, 1e-6, 100.0, "m/s^2", "what the flight model misses of the force"},
-      {"euler_sigma_rad_s2", model.euler_sigma_rad_s2, 1e-6, 1e6, "rad/s^2",
-       "what Euler's equation without torque misses"},
-      {"jerk_psd_flight_rad2_s5", model.jerk_psd_flight, 1.0, 1e12, "rad^2/s^5",
-       "density of the angular jerk in flight"},
-      {"contact_gain_rad_m", model.contact_gain_rad_m, 0.0, 1e3, "rad/m", "angular acceleration per force of contact"},
-      {"flight_threshold", model.flight_threshold, 1.0, 100.0, "1", "residuals of flight beyond this count as contact"},
-      {"recovered_sigma_rad_s", library.recovered_sigma_rad_s, 0.0, 1e4, "rad/s",
-       "a clipped axis known better than this is recovered, not only bounded"},
-      {"calibration_mahalanobis_max", library.calibration_mahalanobis_max, 0.1, 1e6, "1",
-       "constants of the rig that move further from their prior are held to it"},
-  }};
-  return parameters;
-}
-
-}  // namespace
-
 // a range or density of 0 means that the data sheet says nothing: no stated range, the library's density
-RateSmoother::Params smoother_params(const sim::ImuRecord& record, const sim::Values& parameters) {
-  RateSmoother::Params params;
+RateSmoother::Params stated_params(const sim::ImuRecord& record, RateSmoother::Params params) {
   RateModelParams& model = params.model;
   model.nominal.lever_arm_m = bridge::lever_arm_I_m(record);
   if (record.gyro_noise_rad_s_sqrt_hz > 0.0) model.gyro_noise_density = record.gyro_noise_rad_s_sqrt_hz;
   if (record.accel_noise_m_s2_sqrt_hz > 0.0) model.accel_noise_density = record.accel_noise_m_s2_sqrt_hz;
   params.rails = stated_rails(record);
-  params.gap_max_s = bridge::kGapMaxS;
-  model.lever_arm_sigma_m = parameters.at("lever_arm_sigma_m");
-  model.gyro_bias_sigma_rad_s = parameters.at("gyro_bias_sigma_rad_s");
-  model.accel_bias_sigma_m_s2 = parameters.at("accel_bias_sigma_m_s2");
-  model.inertia_sigma = parameters.at("inertia_sigma");
-  model.element_sigma = parameters.at("element_sigma");
-  model.flight_sigma_m_s2 = parameters.at("flight_sigma_m_s2");
-  model.euler_sigma_rad_s2 = parameters.at("euler_sigma_rad_s2");
-  model.jerk_psd_flight = parameters.at("jerk_psd_flight_rad2_s5");
-  model.contact_gain_rad_m = parameters.at("contact_gain_rad_m");
-  model.flight_threshold = parameters.at("flight_threshold");
-  params.recovered_sigma_rad_s = parameters.at("recovered_sigma_rad_s");
-  params.calibration_mahalanobis_max = parameters.at("calibration_mahalanobis_max");
+  return params;
+}
+
+RateSmoother::Params smoother_params(const sim::ImuRecord& record, const Settings<RateSmoother::Params>& settings,
+                                     const sim::Values& parameters) {
+  RateSmoother::Params params = stated_params(record, settings.defaults());
+  settings.apply(parameters, params);
   return params;
 }
 
@@ -145,8 +108,14 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
 
 }  // namespace
 
-std::span<const sim::Parameter> tumble_rate_parameters() {
-  return parameters_of_the_smoother();
+const std::vector<std::string>& stated_densities() {
+  static const std::vector<std::string> names = {"gyro_noise_density", "accel_noise_density"};
+  return names;
+}
+
+const Settings<RateSmoother::Params>& rate_tumble_settings() {
+  static const Settings<RateSmoother::Params> all(RateSmoother::Params{}, {.stated = stated_densities()});
+  return all;
 }
 
 void start_from_learnt(const LearntRig& rig, RateSmoother::Params& params) {
@@ -187,7 +156,7 @@ Method learning_method(const Method& method, Learning& learning) {
     const LearntRig* const start = learning.given ? &*learning.given : nullptr;
     LearntRig rig;
     try {
-      const sim::Values parameters = sim::resolve("method " + name, given, info.parameters);
+      const sim::Values parameters = resolve_settings("method " + name, given, info.settings);
       Estimate estimate = (batch ? run_rate_tumble : run_rate_tumble_lag)(sensors, parameters, start, &rig);
       if (estimate.status.ok() && estimate.health.at("rig_held") == 0.0) {
         (batch ? learning.of_batch : learning.of_stream) = rig;
@@ -208,7 +177,7 @@ Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& paramet
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (estimate.status.ok()) {
-    RateSmoother::Params params = smoother_params(sensors.imus.front(), parameters);
+    RateSmoother::Params params = smoother_params(sensors.imus.front(), rate_tumble_settings(), parameters);
     if (given != nullptr) start_from_learnt(*given, params);
     std::vector<std::vector<AuxiliaryReading>> auxiliary_imus;
     RateReport report;
@@ -228,11 +197,10 @@ Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& paramet
   return estimate;
 }
 
-Status tumble_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, const sim::Values& parameters,
+Status tumble_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, RateSmoother::Params params,
                     std::vector<RateState>& out, std::map<std::string, double>& health) {
   out.clear();
   RateReport report;
-  RateSmoother::Params params = smoother_params(sensors.imus.front(), parameters);
   std::vector<std::vector<AuxiliaryReading>> auxiliary_imus;
   Status status = auxiliary_readings(sensors, samples, params.model, auxiliary_imus);
   if (status.ok()) status = RateSmoother(params).estimate(samples, auxiliary_imus, out, report);
@@ -252,7 +220,7 @@ Method rate_tumble() {
       "constants of the rig with it; further IMUs on the body where there are any (not imu_reference); that of carried "
       "where the readings say that a hand holds it.";
   info.source = "ours, from Deschenes et al., Saturation-Aware Angular Velocity Estimation, ICRA 2024";
-  info.parameters = tumble_rate_parameters();
+  info.settings = {&rate_tumble_settings()};
   info.robots = {"rig", "pendulum"};
   return make_method(std::move(info), run);
 }

@@ -1,21 +1,38 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <map>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "scenarios/methods/method.hpp"
 #include "scenarios/methods/rig_calibration_file.hpp"
+#include "scenarios/methods/settings.hpp"
 #include "sim/parameters.hpp"
 #include "sim/recording.hpp"
 #include "tumble/angular_velocity/rate_smoother.hpp"
 
 namespace tumble::scenarios {
 
-/// Parameters of the smoother for an IMU: what its record states (lever arm, noise, ranges) and `parameters`, which
-/// hold those of tumble_rate_parameters().
-RateSmoother::Params smoother_params(const sim::ImuRecord& record, const sim::Values& parameters);
+/// Parameters of rate/tumble, with the library's own defaults.
+const Settings<RateSmoother::Params>& rate_tumble_settings();
+
+/// Those of them that a record states where its data sheet does.
+const std::vector<std::string>& stated_densities();
+
+/// `params` with what the record of an IMU states: lever arm, noise, ranges.
+RateSmoother::Params stated_params(const sim::ImuRecord& record, RateSmoother::Params params);
+
+/// The same for the defaults of `settings`, and then what `parameters` say.
+RateSmoother::Params smoother_params(const sim::ImuRecord& record, const Settings<RateSmoother::Params>& settings,
+                                     const sim::Values& parameters);
+
+/// Rates of `samples`, which may have other readings than the recording. Adds what the smoother tells of its run to
+/// `health`.
+Status tumble_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, RateSmoother::Params params,
+                    std::vector<RateState>& out, std::map<std::string, double>& health);
 
 /// The other IMUs of a recording on the same body, at the stamps of `samples`: those of its first further IMUs that are
 /// not `imu_reference`, at most kAuxiliaryImusMax. Adds their mountings, as calibrated, to `model`. Trouble: that of a

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <array>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/rate_tumble.hpp"
@@ -13,36 +14,43 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::array<sim::Parameter, 1> kLag = {{
-    {"lag_s", 0.2, 0.02, 10.0, "s", "how old a sample is when its estimate is given out"},
-}};
-
-const std::vector<sim::Parameter>& parameters_of_the_stream() {
-  static const std::vector<sim::Parameter> parameters = [] {
-    const RateModelParams own = RateStream::Params().model;  // where its priors differ from those of the batch
-    std::vector<sim::Parameter> joined = joined_parameters({kLag, tumble_rate_parameters()});
-    for (sim::Parameter& parameter : joined) {
-      if (parameter.name == "accel_bias_sigma_m_s2") parameter.default_value = own.accel_bias_sigma_m_s2;
-      if (parameter.name == "inertia_sigma") parameter.default_value = own.inertia_sigma;
-    }
-    return joined;
+const Settings<RegimeStream::Params>& settings() {
+  static const Settings<RegimeStream::Params> all = [] {
+    std::vector<std::string> stated = stated_densities();
+    stated.insert(stated.end(), {"period_s", "evidence_gravity_m_s2", "carried_gravity_m_s2"});
+    // RegimeStream takes these from its RateStream, and the stream of the carried body iterates as it goes
+    const std::vector<std::string> fixed = {"carried_period_s", "carried_lag_s", "carried_gap_max_s",
+                                            "carried_iterations_max"};
+    return Settings<RegimeStream::Params>(RegimeStream::Params{}, {.stated = stated, .fixed = fixed});
   }();
-  return parameters;
+  return all;
 }
 
-RateStream::Params stream_params(const sim::ImuRecord& record, const sim::Values& parameters, const LearntRig* given) {
-  RateSmoother::Params batch = smoother_params(record, parameters);
-  if (given != nullptr) start_from_learnt(*given, batch);
-  RateStream::Params params;
-  params.model = batch.model;
-  params.rails = batch.rails;
-  params.planes = batch.planes;
-  params.accel_planes = batch.accel_planes;
-  params.recovered_sigma_rad_s = batch.recovered_sigma_rad_s;
-  params.calibration_mahalanobis_max = batch.calibration_mahalanobis_max;
-  params.gap_max_s = batch.gap_max_s;
-  if (record.period_ns > 0) params.period_s = seconds(record.period_ns);
-  params.lag_s = std::max(parameters.at("lag_s"), 2.0 * params.period_s);
+RegimeStream::Params stream_params(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given) {
+  const sim::ImuRecord& record = sensors.imus.front();
+  RegimeStream::Params params = settings().defaults();
+  RateStream::Params& rate = params.rate;
+  RateSmoother::Params batch;
+  batch.model = rate.model;
+  batch = stated_params(record, std::move(batch));
+  rate.model = batch.model;
+  rate.rails = batch.rails;
+  if (record.period_ns > 0) rate.period_s = seconds(record.period_ns);
+  params.evidence.gravity_m_s2 = params.carried.body.gravity_m_s2 = sensors.gravity_m_s2;
+  settings().apply(parameters, params);
+  rate.lag_s = std::max(rate.lag_s, 2.0 * rate.period_s);
+  params.carried.body.gap_max_s = rate.gap_max_s;
+  if (given == nullptr) return params;
+
+  batch.model = rate.model;
+  batch.rails = rate.rails;
+  batch.planes = rate.planes;
+  batch.accel_planes = rate.accel_planes;
+  start_from_learnt(*given, batch);
+  rate.model = batch.model;
+  rate.rails = batch.rails;
+  rate.planes = batch.planes;
+  rate.accel_planes = batch.accel_planes;
   return params;
 }
 
@@ -73,17 +81,13 @@ Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& par
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
-  RateStream::Params params = stream_params(sensors.imus.front(), parameters, given);
+  RegimeStream::Params params = stream_params(sensors, parameters, given);
   std::vector<std::vector<AuxiliaryReading>> auxiliary_imus;
-  estimate.status = auxiliary_readings(sensors, samples, params.model, auxiliary_imus);
+  estimate.status = auxiliary_readings(sensors, samples, params.rate.model, auxiliary_imus);
   if (!estimate.status.ok()) return estimate;
-  RegimeStream::Params regimes;
-  regimes.rate = params;
-  regimes.evidence.gravity_m_s2 = regimes.carried.body.gravity_m_s2 = sensors.gravity_m_s2;
-  regimes.carried.body.gap_max_s = params.gap_max_s;
   // further IMUs tell the rate whoever holds the body; the other smoother does not know them
-  if (!auxiliary_imus.empty()) regimes.carried_min = 1.0;
-  const RegimeStream joined(regimes);
+  if (!auxiliary_imus.empty()) params.carried_min = 1.0;
+  const RegimeStream joined(params);
   const RateStream& stream = joined.rate();
   RegimeStream::State all = joined.start();
   estimate.rates.reserve(samples.size());
@@ -113,7 +117,7 @@ Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& par
   estimate.health["regime_carried_starts"] = static_cast<double>(all.starts);
   estimate.health["carried_steps_skipped"] = static_cast<double>(all.carried.failures);
   if (estimate.status.ok() && !held && found != nullptr) {
-    *found = learnt_by(stream, params, state);
+    *found = learnt_by(stream, params.rate, state);
     if (given != nullptr) found->device_errors = given->device_errors;  // the stream does not estimate them
   }
   count_sources(estimate.rates, estimate.health);
@@ -127,7 +131,7 @@ Method rate_tumble_lag() {
   info.doc =
       "The smoother `tumble` as a stream: the same factors in a sliding window, estimates given out at a fixed age.";
   info.source = "ours";
-  info.parameters = parameters_of_the_stream();
+  info.settings = {&settings()};
   info.robots = {"rig", "pendulum"};
   return make_method(std::move(info), run);
 }

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <array>
 
 #include "scenarios/baselines/angular_velocity/standstill_smoother.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/rate_baseline.hpp"
+#include "scenarios/methods/settings.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::array<sim::Parameter, 3> kParameters = {{
-    {"jerk_psd_rad2_s5", 1e5, 1.0, 1e12, "rad^2/s^5", "density of the white angular jerk"},
-    {"accel_error_m_s2", 0.05, 0.0, 100.0, "m/s^2", "scale and bias of the specific force, taken as noise per sample"},
-    kTiltedRails,
-}};
+const Settings<baselines::StandstillSmoother::Params>& settings() {
+  static const Settings<baselines::StandstillSmoother::Params> all(
+      baselines::StandstillSmoother::Params{},
+      {.stated = {"gravity_m_s2", "gyro_noise_density", "accel_noise_density"}});
+  return all;
+}
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
@@ -23,13 +24,10 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   const sim::ImuRecord& record = sensors.imus.front();
   baselines::StandstillSmoother::Params params;
   params.rails = stated_rails(record);
-  params.tilted_rails = parameters.at("tilted_rails") > 0.5;
   params.gravity_m_s2 = sensors.gravity_m_s2;
   if (record.gyro_noise_rad_s_sqrt_hz > 0.0) params.gyro_noise_density = record.gyro_noise_rad_s_sqrt_hz;
   if (record.accel_noise_m_s2_sqrt_hz > 0.0) params.accel_noise_density = record.accel_noise_m_s2_sqrt_hz;
-  params.jerk_psd = parameters.at("jerk_psd_rad2_s5");
-  params.accel_error_m_s2 = parameters.at("accel_error_m_s2");
-  params.gap_max_s = bridge::kGapMaxS;
+  settings().apply(parameters, params);
   estimate.status = baselines::StandstillSmoother(params).estimate(samples, estimate.rates);
   count_sources(estimate.rates, estimate.health);
   return estimate;
@@ -46,7 +44,7 @@ Method rate_zero_velocity() {
       "motions of a second or two from rest to rest that clip a few samples (steps, hand motion); after the turns of a "
       "tumble tilt and velocity no longer tell what was lost, and bounds and smoothness are left.";
   info.source = "the family of Dang and Suh's smoothers for inertial sensors between zero-velocity intervals";
-  info.parameters = kParameters;
+  info.settings = {&settings()};
   return make_method(std::move(info), run);
 }
 

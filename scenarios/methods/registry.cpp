@@ -8,6 +8,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/external_method.hpp"
 #include "scenarios/methods/rate_tumble.hpp"
+#include "scenarios/methods/settings.hpp"
 #include "scenarios/methods/slam_registry.hpp"
 
 namespace tumble::scenarios {
@@ -106,14 +107,19 @@ bool MethodInfo::for_robot(const std::string& robot) const {
 
 Method make_method(MethodInfo info, RunCore run) {
   const std::string name = full_name(info);
-  const std::span<const sim::Parameter> parameters = info.parameters;
+  const std::vector<const SettingsTable*> settings = info.settings;
+  const auto parameters =
+      std::make_shared<const std::vector<sim::Parameter>>(joined_rows(settings, info.parameters_first));
+  info.parameters = *parameters;
   const bool needs_truth = info.needs_truth;
-  RunMethod wrapped = [=](const sim::Sensors& sensors, const sim::Values& given, const OracleInput& oracle) {
+  // keeps `parameters`, which the info refers to
+  RunMethod wrapped = [name, settings, parameters, needs_truth, run](
+                          const sim::Sensors& sensors, const sim::Values& given, const OracleInput& oracle) {
     if (needs_truth && oracle.truth == nullptr) {
       throw BadInput("method " + name + " needs the truth, and this recording has none");
     }
     try {
-      const sim::Values resolved = sim::resolve("method " + name, given, parameters);
+      const sim::Values resolved = resolve_settings("method " + name, given, settings);
       return run(sensors, resolved, needs_truth ? oracle : OracleInput{});
     } catch (const sim::InvalidSituation& error) {
       throw BadInput(error.what());
@@ -155,12 +161,6 @@ std::vector<MethodPointer> find_methods_within(std::span<const std::string> name
     }
   }
   return found;
-}
-
-std::vector<sim::Parameter> joined_parameters(std::initializer_list<std::span<const sim::Parameter>> stages) {
-  std::vector<sim::Parameter> joined;
-  for (const std::span<const sim::Parameter> stage : stages) joined.insert(joined.end(), stage.begin(), stage.end());
-  return joined;
 }
 
 void count_sources(std::span<const RateState> rates, std::map<std::string, double>& health) {

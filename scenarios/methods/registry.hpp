@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/baselines/attitude/autogain.hpp"
 #include "scenarios/methods/method.hpp"
 #include "tumble/common/imu.hpp"
 
@@ -18,9 +17,9 @@ namespace tumble::scenarios {
 /// What a method computes; `parameters` is complete and within bounds, `oracle.truth` is set when the method needs it.
 using RunCore = Estimate (*)(const sim::Sensors&, const sim::Values& parameters, const OracleInput& oracle);
 
-/// Wraps `run` with what all methods have in common: parameters are resolved, truth is demanded from callers of an
-/// oracle and withheld from everybody else. The result throws BadInput on an unknown or out-of-bound parameter and on
-/// missing truth.
+/// Wraps `run` with what all methods have in common: `info.parameters` are those of its settings, they are resolved,
+/// truth is demanded from callers of an oracle and withheld from everybody else. The result throws BadInput on an
+/// unknown or out-of-bound parameter and on missing truth.
 Method make_method(MethodInfo info, RunCore run);
 
 Method rate_raw();
@@ -65,31 +64,10 @@ Method slam_rolling_prior();
 
 /// Rate stages, shared by the rate methods and the slam chains. One RateState per sample; `out` is empty on trouble.
 Status raw_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<RateState>& out);
-Status saave_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, const sim::Values& parameters,
-                   std::vector<RateState>& out);
-/// Adds what the smoother tells of its run to `health`.
-Status tumble_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, const sim::Values& parameters,
-                    std::vector<RateState>& out, std::map<std::string, double>& health);
 Status unclipped_rates(const sim::Sensors& sensors, const sim::Truth& truth, std::vector<RateState>& out);
-
-/// Parameters of `saave_rates`.
-std::span<const sim::Parameter> saave_parameters();
-
-/// Parameters of `tumble_rates`.
-std::span<const sim::Parameter> tumble_rate_parameters();
 
 /// Counters of a rate estimate: samples by source.
 void count_sources(std::span<const RateState> rates, std::map<std::string, double>& health);
-
-/// Parameters of the attitude filter of the published sphere, and what they mean to the library.
-std::span<const sim::Parameter> autogain_parameters();
-baselines::Autogain::Params autogain_params(const sim::Values& parameters);
-
-/// Parameters of `sphere_attitude`.
-std::span<const sim::Parameter> sphere_rest_parameters();
-
-/// Parameters of several stages of one method, in order; their names differ.
-std::vector<sim::Parameter> joined_parameters(std::initializer_list<std::span<const sim::Parameter>> stages);
 
 /// A motion known from elsewhere, one velocity per sample of the IMU along it.
 struct KnownMotion {
@@ -105,25 +83,17 @@ struct KnownMotion {
 
 /// What the lidar-inertial chain estimates beside the motion.
 struct SlamChain {
-  bool saturation_deficit = false;  ///< by how much the rates of clipped axes are short; `excess_parameters`
-  /// Mounting and clock of the lidar, and gravity; `calibration_parameters`. The recording is run through twice: what
-  /// the first run learns of the calibration is the start of the second.
+  /// Mounting and clock of the lidar, and gravity. The recording is run through twice: what the first run learns of the
+  /// calibration is the start of the second.
   bool calibration = false;
   const KnownMotion* along = nullptr;  ///< the samples were made along it
 };
 
-/// The lidar-inertial chain behind every registration method: given rates, deskew, register, map. `parameters` hold
-/// those of every part that `chain` asks for.
-void run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples, const sim::Values& parameters,
+struct SlamStage;
+
+/// The lidar-inertial chain behind every registration method: given rates, deskew, register, map. Of its parameters:
+/// slam_settings.hpp.
+void run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples, const SlamStage& stage,
                     const SlamChain& chain, Estimate& estimate);
-
-/// Parameters of `run_slam_chain`.
-std::span<const sim::Parameter> slam_parameters();
-
-/// Parameters of `run_slam_chain` that count where the saturation deficit is estimated.
-std::span<const sim::Parameter> excess_parameters();
-
-/// Parameters of `run_slam_chain` that count where the calibration is estimated.
-std::span<const sim::Parameter> calibration_parameters();
 
 }  // namespace tumble::scenarios

@@ -18,18 +18,6 @@ constexpr double kRestMaxS = 1.0;
 constexpr double kRestRateRadS = 0.05;
 constexpr double kVelocitySigmaMS = 1e-4;  // the registration of a rigid sweep says nothing of velocity
 
-const std::array<sim::Parameter, 5>& parameters_of_the_chain() {
-  static const baselines::RigidOdometry::Params library;
-  static const std::array<sim::Parameter, 5> parameters = {{
-      {"sweep_voxel_m", library.sweep_voxel_m, 0.01, 10.0, "m", "one point per voxel of a sweep is registered"},
-      {"map_voxel_m", library.map_voxel_m, 0.01, 10.0, "m", "cell of the map's hash"},
-      {"map_spacing_m", library.map_spacing_m, 0.0, 1.0, "m", "edge of the cube that holds one map point"},
-      {"neighbours", 12.0, 3.0, 32.0, "1", "map points per plane fit"},
-      {"match_distance_m", 1.0, 0.01, 10.0, "m", "farther map points are no match"},
-  }};
-  return parameters;
-}
-
 TimeNs window_start(std::span<const ImuSample> samples, std::size_t k) {
   if (k > 0) return samples[k - 1].time_ns;
   return samples.size() > 1 ? 2 * samples[0].time_ns - samples[1].time_ns : samples[0].time_ns;
@@ -164,22 +152,22 @@ void run_rigid_chain(const sim::Sensors& sensors, std::span<const ImuSample> sam
   if (!any) estimate.status = {Trouble::too_few, "lidar.sweeps_registered", 0.0, 1.0};
 }
 
-std::span<const sim::Parameter> rigid_parameters() {
-  return parameters_of_the_chain();
+const Settings<baselines::RigidOdometry::Params>& rigid_settings() {
+  static const Settings<baselines::RigidOdometry::Params> all = [] {
+    baselines::RigidOdometry::Params params;
+    params.registration.neighbours = 12;  // as in LidarInertialOdometry
+    params.registration.skew_sigma_m_s = 0.0;
+    return Settings<baselines::RigidOdometry::Params>(params, {});
+  }();
+  return all;
 }
 
 baselines::RigidOdometry::Params rigid_params(const sim::Sensors& sensors, const sim::Values& parameters) {
-  baselines::RigidOdometry::Params params;
+  baselines::RigidOdometry::Params params = rigid_settings().read(parameters);
   if (!sensors.lidars.empty() && !sensors.imus.empty())
     params.T_IL = bridge::T_IL(sensors.imus.front(), sensors.lidars.front());
-  params.sweep_voxel_m = parameters.at("sweep_voxel_m");
-  params.map_voxel_m = parameters.at("map_voxel_m");
-  params.map_spacing_m = parameters.at("map_spacing_m");
-  params.registration.neighbours = static_cast<int>(std::lround(parameters.at("neighbours")));
   params.registration.plane.neighbours_min =
       std::min(params.registration.plane.neighbours_min, params.registration.neighbours);
-  params.registration.match_distance_m = parameters.at("match_distance_m");
-  params.registration.skew_sigma_m_s = 0.0;
   return params;
 }
 

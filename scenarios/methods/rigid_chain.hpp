@@ -6,6 +6,7 @@
 
 #include "scenarios/baselines/mapping/rigid_odometry.hpp"
 #include "scenarios/methods/method.hpp"
+#include "scenarios/methods/settings.hpp"
 #include "sim/parameters.hpp"
 #include "tumble/common/imu.hpp"
 
@@ -55,7 +56,7 @@ void run_rigid_chain(const sim::Sensors& sensors, std::span<const ImuSample> sam
                      const baselines::RigidOdometry::Params& params, TrajectoryModel& model, Estimate& estimate);
 
 /// Parameters of the rigid methods and what they mean to the library; T_IL is the calibration's.
-std::span<const sim::Parameter> rigid_parameters();
+const Settings<baselines::RigidOdometry::Params>& rigid_settings();
 baselines::RigidOdometry::Params rigid_params(const sim::Sensors& sensors, const sim::Values& parameters);
 
 }  // namespace tumble::scenarios

@@ -2,7 +2,6 @@
 #include "scenarios/methods/seed_chain.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <unordered_map>
@@ -27,20 +26,6 @@ constexpr double kSweepVoxelM = 0.15;
 constexpr double kMapSpacingM = 0.05;  // a point enters the map where the old map has none within this
 constexpr double kRangeSigmaM = 0.02, kRangeSigmaShare = 0.0015;
 const Eigen::AlignedBox3f kOwnBody{Eigen::Vector3f(-0.5f, -0.4f, -0.27f), Eigen::Vector3f(0.5f, 0.4f, 0.23f)};
-
-constexpr std::array<sim::Parameter, 6> kParameters = {{
-    {"skew_sigma_m_s", 0.25, 0.0, 100.0, "m/s",
-     "growth of a point's uncertainty over the sweep (time weighting); 0: none"},
-    {"match_distance_m", 1.0, 0.01, 4.0, "m", "farther map points are no match"},
-    {"late_velocity", 1.0, 0.0, 1.0, "1",
-     "1: velocity fed back is the mean since the last sweep taken for the present one, half a sweep late, as launched"},
-    {"voxel_averages_time", 1.0, 0.0, 1.0, "1",
-     "1: points of a voxel share their mean time, also across the seam of the sweep, as launched; 0: mean variance"},
-    {"trim_counts_unmatched", 0.0, 0.0, 1.0, "1",
-     "1: the share kept is one of all slots, unmatched ones too (as launched, where it read past the end)"},
-    {"abort_ends_mapping", 0.0, 0.0, 1.0, "1",
-     "1: a registration that aborts ends the mapper, as launched; 0: odometry goes on alone for that sweep"},
-}};
 
 /// Attitude by Madgwick's filter and position by the accelerometer, in a frame of its own ("odom").
 class ImuOdometry {
@@ -131,8 +116,8 @@ struct Cell {
 
 /// Returns of a sweep in the lidar's axes at its start, voxelised, with their variances.
 std::vector<baselines::TrimmedIcp::Point> prepare(const bridge::Sweep& sweep, const ImuOdometry& odometry,
-                                                  const Eigen::Isometry3d& T_IL, const sim::Values& parameters) {
-  const double rate = parameters.at("skew_sigma_m_s");
+                                                  const Eigen::Isometry3d& T_IL, const SeedParams& params) {
+  const double rate = params.skew_sigma_m_s;
   const Eigen::Isometry3d from_odom = (odometry.pose(sweep.start_ns) * T_IL).inverse(Eigen::Isometry);
   std::unordered_map<std::uint64_t, std::size_t> index_of;
   std::vector<Cell> cells;
@@ -167,7 +152,7 @@ std::vector<baselines::TrimmedIcp::Point> prepare(const bridge::Sweep& sweep, co
     const double count = static_cast<double>(cell.count);
     const double range = std::max(kRangeSigmaM, kRangeSigmaShare * static_cast<double>(point.position_m.norm()));
     const double skew = rate * (cell.time_s / count - first_s);
-    const double variance = parameters.at("voxel_averages_time") > 0.5 ? skew * skew : cell.skew_variance / count;
+    const double variance = params.voxel_averages_time ? skew * skew : cell.skew_variance / count;
     point.variance_m2 = static_cast<float>(range * range + variance);
   }
   return points;
@@ -176,11 +161,8 @@ std::vector<baselines::TrimmedIcp::Point> prepare(const bridge::Sweep& sweep, co
 /// The mapper: registers at the sweep's start, keeps what lies between the map's frame and the odometry's.
 class SeedMapper {
  public:
-  SeedMapper(const sim::Values& parameters, const Eigen::Isometry3d& T_IL, const ImuOdometry& odometry)
-      : ends_on_abort_(parameters.at("abort_ends_mapping") > 0.5),
-        T_IL_(T_IL),
-        odometry_(odometry),
-        icp_(icp_params(parameters)) {}
+  SeedMapper(const SeedParams& params, const Eigen::Isometry3d& T_IL, const ImuOdometry& odometry)
+      : ends_on_abort_(params.abort_ends_mapping), T_IL_(T_IL), odometry_(odometry), icp_(params.icp) {}
 
   bool add(const bridge::Sweep& sweep, std::span<const baselines::TrimmedIcp::Point> points, SweepReport& report) {
     report.points_used = sweep.points.size();
@@ -208,13 +190,6 @@ class SeedMapper {
   std::vector<MapPoint> map() const { return mapping::with_normals(map_, seen_from_, 20, 1.0); }
 
  private:
-  static baselines::TrimmedIcp::Params icp_params(const sim::Values& parameters) {
-    baselines::TrimmedIcp::Params params;
-    params.match_distance_m = parameters.at("match_distance_m");
-    params.count_unmatched_slots = parameters.at("trim_counts_unmatched") > 0.5;
-    return params;
-  }
-
   // compared with the old map only, not with each other
   void extend(std::span<const baselines::TrimmedIcp::Point> points, const Eigen::Isometry3d& T, SweepReport& report) {
     const Eigen::Isometry3f place = T.cast<float>();
@@ -273,8 +248,9 @@ void run_seed_chain(const sim::Sensors& sensors, std::span<const ImuSample> samp
   const sim::LidarRecord& lidar = sensors.lidars.front();
   const std::size_t sweeps = bridge::sweep_count(lidar);
   const Eigen::Isometry3d T_IL = bridge::T_IL(sensors.imus.front(), lidar);
+  const SeedParams params = seed_settings().read(parameters);
   ImuOdometry odometry(samples, estimate.rates);
-  SeedMapper mapper(parameters, T_IL, odometry);
+  SeedMapper mapper(params, T_IL, odometry);
   bool any = false, has_last = false;
   TimeNs last_ns = 0;
   Eigen::Vector3d last_m = Eigen::Vector3d::Zero();
@@ -292,7 +268,7 @@ void run_seed_chain(const sim::Sensors& sensors, std::span<const ImuSample> samp
     }
     odometry.advance(sweep.end_ns);
     SweepReport report;
-    std::vector<baselines::TrimmedIcp::Point> points = prepare(sweep, odometry, T_IL, parameters);
+    std::vector<baselines::TrimmedIcp::Point> points = prepare(sweep, odometry, T_IL, params);
     const Status trouble = sweep_trouble(sweep, points.size());
     if (!trouble.ok()) {
       estimate.health[std::string("sweeps_") + to_string(trouble.trouble)] += 1.0;
@@ -319,7 +295,7 @@ void run_seed_chain(const sim::Sensors& sensors, std::span<const ImuSample> samp
     const Eigen::Vector3d here_m = (T * odometry.pose(sweep.start_ns)).translation();
     if (has_last) {
       const Eigen::Vector3d mean = (here_m - last_m) / seconds(sweep.start_ns - last_ns);
-      const TimeNs valid_ns = parameters.at("late_velocity") > 0.5 ? sweep.start_ns : (sweep.start_ns + last_ns) / 2;
+      const TimeNs valid_ns = params.late_velocity ? sweep.start_ns : (sweep.start_ns + last_ns) / 2;
       odometry.feed_back(T.linear().transpose() * mean, valid_ns);
     }
     has_last = true;
@@ -330,8 +306,9 @@ void run_seed_chain(const sim::Sensors& sensors, std::span<const ImuSample> samp
   if (!any) estimate.status = {Trouble::too_few, "lidar.sweeps_registered", 0.0, 1.0};
 }
 
-std::span<const sim::Parameter> seed_parameters() {
-  return kParameters;
+const Settings<SeedParams>& seed_settings() {
+  static const Settings<SeedParams> all(SeedParams{});
+  return all;
 }
 
 }  // namespace tumble::scenarios

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/rate_baseline.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/slam_registry.hpp"
+#include "scenarios/methods/slam_settings.hpp"
 #include "tumble/angular_velocity/clipping_finder.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
@@ -24,92 +24,22 @@ constexpr double kAccelRailShare = 0.98;  // of the stated range: calibration mo
 constexpr double kBelieved = 5.0;         // standard deviations that a calibration may move by in one run
 constexpr int kSearches = 3;              // runs more for one that moves further
 
-// the library's own defaults, so that each stands in one place
-const std::array<sim::Parameter, 13>& parameters_of_the_chain() {
-  static const LidarInertialOdometry::Params library;
-  static const std::array<sim::Parameter, 13> parameters = {{
-      {"sweep_voxel_m", library.sweep_voxel_m, 0.01, 10.0, "m", "one point per voxel of a sweep is registered"},
-      {"map_voxel_m", library.map_voxel_m, 0.01, 10.0, "m", "cell of the map's hash"},
-      {"map_spacing_m", library.map_spacing_m, 0.0, 1.0, "m", "edge of the cube that holds one map point"},
-      {"neighbours", static_cast<double>(library.neighbours), 3.0, 32.0, "1", "map points per plane fit"},
-      {"match_distance_m", library.match_distance_m, 0.01, 10.0, "m", "farther map points are no match"},
-      {"prior_sigma_m", library.prior_sigma_m, 1e-4, 100.0, "m", "inertial prior over 0.1 s: position"},
-      {"prior_sigma_rad", library.prior_sigma_rad, 1e-5, 10.0, "rad", "inertial prior over 0.1 s: attitude"},
-      {"prior_sigma_m_s", library.prior_sigma_m_s, 1e-4, 100.0, "m/s", "inertial prior over 0.1 s: velocity"},
-      {"turn_sigma_share", library.turn_sigma_share, 0.0, 1.0, "1", "inertial prior: of the angle turned"},
-      {"force_sigma_share", library.force_sigma_share, 0.0, 1.0, "1", "inertial prior: of the force's integral"},
-      {"window_sweeps", static_cast<double>(library.window_sweeps), 1.0, 8.0, "1",
-       "sweeps refined together: so many less one by what comes after them"},
-      {"flight_arc", 0.0, 0.0, 1.0, "1",
-       "1: in flight the ballistic arc of the centre of mass, as calibrated, gives the position; 0: the accelerometer"},
-      {"rest_s", library.rest_s, 0.01, 60.0, "s", "at most this much of the rest at the start levels the attitude"},
-  }};
-  return parameters;
-}
-
-const std::array<sim::Parameter, 3>& parameters_of_the_excess() {
-  static const LidarInertialOdometry::Params library;
-  static const std::array<sim::Parameter, 3> parameters = {{
-      {"excess_sigma_min_rad_s", library.excess_sigma_min_rad_s, 1e-9, 100.0, "rad/s",
-       "least prior of the saturation deficit of a clipped axis, whatever the rate method claims"},
-      {"excess_time_s", library.excess_time_s, 1e-3, 1e3, "s", "over which the saturation deficit forgets what it was"},
-      {"clipped_sigma_rad_s", library.clipped_sigma_rad_s, 0.0, 100.0, "rad/s",
-       "assumed of a clipped axis that the rate method did not recover"},
-  }};
-  return parameters;
-}
-
-// what calibrations of a rig that was put together by hand may be off by
-const std::array<sim::Parameter, 4>& parameters_of_the_calibration() {
-  static const std::array<sim::Parameter, 4> parameters = {{
-      {"mount_sigma_rad", 0.01, 0.0, 1.0, "rad", "the lidar's attitude on the IMU as given; 0: exact"},
-      {"mount_sigma_m", 0.006, 0.0, 1.0, "m", "the lidar's position on the IMU as given; 0: exact"},
-      {"time_offset_sigma_s", 0.003, 0.0, 0.02, "s", "offset between the clocks of lidar and IMU; 0: none"},
-      {"gravity_sigma_m_s2", 0.03, 0.0, 10.0, "m/s^2", "gravity's direction as levelled at the start; 0: exact"},
-  }};
-  return parameters;
-}
-
-LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const sim::Values& parameters,
+LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const SlamStage& stage,
                                               const SlamChain& chain) {
-  LidarInertialOdometry::Params params;
-  params.T_IL = bridge::T_IL(sensors.imus.front(), sensors.lidars.front());
-  params.gravity_m_s2 = sensors.gravity_m_s2;
-  params.rest_s = parameters.at("rest_s");
-  params.sweep_voxel_m = parameters.at("sweep_voxel_m");
-  params.map_voxel_m = parameters.at("map_voxel_m");
-  params.map_spacing_m = parameters.at("map_spacing_m");
-  params.neighbours = static_cast<int>(std::lround(parameters.at("neighbours")));
-  params.match_distance_m = parameters.at("match_distance_m");
-  params.prior_sigma_m = parameters.at("prior_sigma_m");
-  params.prior_sigma_rad = parameters.at("prior_sigma_rad");
-  params.prior_sigma_m_s = parameters.at("prior_sigma_m_s");
-  params.turn_sigma_share = parameters.at("turn_sigma_share");
-  params.force_sigma_share = parameters.at("force_sigma_share");
+  SlamParams params = stage.settings.defaults();
+  LidarInertialOdometry::Params& odometry = params.odometry;
+  odometry.T_IL = bridge::T_IL(sensors.imus.front(), sensors.lidars.front());
+  odometry.gravity_m_s2 = sensors.gravity_m_s2;
   const double accel_range_m_s2 = sensors.imus.front().stated_accel_range_m_s2;
-  if (accel_range_m_s2 > 0.0) params.accel_rail_m_s2 = kAccelRailShare * accel_range_m_s2;
-  params.window_sweeps = static_cast<int>(std::lround(parameters.at("window_sweeps")));
-  if (parameters.at("flight_arc") > 0.5) {
-    params.body.emplace().p_IB_I_m = -bridge::lever_arm_I_m(sensors.imus.front());
-  }
-  if (chain.saturation_deficit) {
-    params.estimate_saturation_deficit = true;
-    params.excess_sigma_min_rad_s = parameters.at("excess_sigma_min_rad_s");
-    params.excess_time_s = parameters.at("excess_time_s");
-    params.clipped_sigma_rad_s = parameters.at("clipped_sigma_rad_s");
-  }
-  if (chain.calibration) {
-    params.mount_sigma_rad = parameters.at("mount_sigma_rad");
-    params.mount_sigma_m = parameters.at("mount_sigma_m");
-    params.time_offset_sigma_s = parameters.at("time_offset_sigma_s");
-    params.gravity_sigma_m_s2 = parameters.at("gravity_sigma_m_s2");
-  }
+  if (accel_range_m_s2 > 0.0) odometry.accel_rail_m_s2 = kAccelRailShare * accel_range_m_s2;
   if (chain.along) {
-    params.gravity_m_s2 = chain.along->gravity_m_s2;
-    params.correction_max_m = chain.along->correction_max_m;
-    params.correction_max_rad = chain.along->correction_max_rad;
+    odometry.gravity_m_s2 = chain.along->gravity_m_s2;
+    odometry.correction_max_m = chain.along->correction_max_m;
+    odometry.correction_max_rad = chain.along->correction_max_rad;
   }
-  return params;
+  stage.settings.apply(stage.parameters, params);
+  if (params.flight_arc) odometry.body.emplace().p_IB_I_m = -bridge::lever_arm_I_m(sensors.imus.front());
+  return odometry;
 }
 
 /// A sweep's last word takes the place of its first.
@@ -336,7 +266,7 @@ Method rig_slam(RigSlam what, RunCore run) {
   info.kind = Kind::slam;
   info.doc = std::move(what.doc);
   info.source = std::move(what.source);
-  info.parameters = what.parameters;
+  info.settings = std::move(what.settings);
   info.needs_truth = what.needs_truth;
   info.robots = {"rig"};
   return make_method(std::move(info), run);
@@ -351,19 +281,25 @@ Estimate begin_with_rates(const sim::Sensors& sensors, std::vector<ImuSample>& s
   return estimate;
 }
 
-std::span<const sim::Parameter> slam_parameters() {
-  return parameters_of_the_chain();
+// what calibrations of a rig that was put together by hand may be off by
+SlamParams with_calibration(SlamParams params) {
+  params.odometry.mount_sigma_rad = 0.01;
+  params.odometry.mount_sigma_m = 0.006;
+  params.odometry.time_offset_sigma_s = 0.003;
+  params.odometry.gravity_sigma_m_s2 = 0.03;
+  return params;
 }
 
-std::span<const sim::Parameter> excess_parameters() {
-  return parameters_of_the_excess();
+SlamParams with_saturation_deficit(SlamParams params) {
+  params.odometry.estimate_saturation_deficit = true;
+  return params;
 }
 
-std::span<const sim::Parameter> calibration_parameters() {
-  return parameters_of_the_calibration();
+Settings<SlamParams> slam_settings(const SlamParams& defaults, std::vector<std::string> fixed) {
+  return Settings<SlamParams>(defaults, {.stated = {"gravity_m_s2", "accel_rail_m_s2"}, .fixed = std::move(fixed)});
 }
 
-void run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples, const sim::Values& parameters,
+void run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples, const SlamStage& stage,
                     const SlamChain& chain, Estimate& estimate) {
   estimate.frame = Frame::imu;
   count_sources(estimate.rates, estimate.health);
@@ -377,7 +313,7 @@ void run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samp
     return;
   }
 
-  const LidarInertialOdometry::Params params = odometry_params(sensors, parameters, chain);
+  const LidarInertialOdometry::Params params = odometry_params(sensors, stage, chain);
   LidarInertialOdometry odometry(params);
   Estimate run = run_passes(lidar, samples, params, chain, estimate, odometry);
   estimate = std::move(run);

@@ -96,7 +96,7 @@ Method slam_constant_jerk() {
            "geometric observer for velocity and biases. Not modelled: keyframes and the plane-to-plane distance of the "
            "original.",
        .source = "the family of DLIO, Chen et al., ICRA 2023",
-       .parameters = rigid_parameters()},
+       .settings = {&rigid_settings()}},
       run);
 }
 

@@ -99,7 +99,7 @@ Method slam_constant_velocity() {
            "cannot know. Needs no IMU, nor times of the points: then nothing is deskewed. Not modelled: the adaptive "
            "threshold and the point-to-point distance of the original.",
        .source = "the family of KISS-ICP, Vizzo et al., RA-L 2023",
-       .parameters = rigid_parameters()},
+       .settings = {&rigid_settings()}},
       run);
 }
 

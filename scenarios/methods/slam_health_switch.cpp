@@ -82,7 +82,7 @@ Method slam_health_switch() {
               "velocity; rigid registration. A tumble leaves the monitor nothing healthy to switch to. Not modelled: "
               "wheel and visual odometry, the other sources of the original's switch.",
        .source = "the family of LOCUS, Palieri et al., RA-L 2021",
-       .parameters = rigid_parameters()},
+       .settings = {&rigid_settings()}},
       run);
 }
 

@@ -1,22 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/rate_saave.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/slam_registry.hpp"
+#include "scenarios/methods/slam_settings.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
-std::span<const sim::Parameter> parameters_with_saave() {
-  static const std::vector<sim::Parameter> all = joined_parameters({slam_parameters(), saave_parameters()});
+const Settings<SlamParams>& chain_settings() {
+  static const Settings<SlamParams> all = slam_settings({});
+  return all;
+}
+
+const Settings<Saave::Params>& rate_settings() {
+  static const Settings<Saave::Params> all = saave_settings_beside(chain_settings().rows());
   return all;
 }
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   std::vector<ImuSample> samples;
-  Estimate estimate = begin_with_rates(
-      sensors, samples, [&](Estimate& out) { return saave_rates(sensors, samples, parameters, out.rates); });
-  if (estimate.status.ok()) run_slam_chain(sensors, samples, parameters, {}, estimate);
+  Estimate estimate = begin_with_rates(sensors, samples, [&](Estimate& out) {
+    return saave_rates(sensors, samples, rate_settings(), parameters, out.rates);
+  });
+  if (estimate.status.ok()) run_slam_chain(sensors, samples, {chain_settings(), parameters}, {}, estimate);
   return estimate;
 }
 
@@ -26,7 +34,7 @@ Method slam_icp() {
   return rig_slam({.name = "icp",
                    .doc = "Sweeps deskewed with the rates of saave, registered point-to-plane to a voxel map.",
                    .source = "after Deschenes et al., ICRA 2024, with a registration of our own",
-                   .parameters = parameters_with_saave()},
+                   .settings = {&chain_settings(), &rate_settings()}},
                   run);
 }
 

@@ -83,7 +83,7 @@ Method slam_iterated_filter() {
            "update position, attitude and velocity. Not modelled: biases after the rest at the start, gravity and "
            "mounting as states.",
        .source = "the family of FAST-LIO2, Xu et al., T-RO 2022",
-       .parameters = rigid_parameters()},
+       .settings = {&rigid_settings()}},
       run);
 }
 

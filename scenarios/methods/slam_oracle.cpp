@@ -2,13 +2,14 @@
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/slam_registry.hpp"
+#include "scenarios/methods/slam_settings.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
-std::span<const sim::Parameter> parameters_with_calibration() {
-  static const std::vector<sim::Parameter> all = joined_parameters({slam_parameters(), calibration_parameters()});
+const Settings<SlamParams>& settings() {
+  static const Settings<SlamParams> all = slam_settings(with_calibration({}));
   return all;
 }
 
@@ -16,7 +17,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   std::vector<ImuSample> samples;
   Estimate estimate = begin_with_rates(
       sensors, samples, [&](Estimate& out) { return unclipped_rates(sensors, *oracle.truth, out.rates); });
-  if (estimate.status.ok()) run_slam_chain(sensors, samples, parameters, {.calibration = true}, estimate);
+  if (estimate.status.ok()) run_slam_chain(sensors, samples, {settings(), parameters}, {.calibration = true}, estimate);
   return estimate;
 }
 
@@ -27,7 +28,7 @@ Method slam_oracle() {
       {.name = "oracle",
        .doc = "The chain of tumble with the gyro's unclipped twin; the accelerometer stays as read. The bound.",
        .source = "ours",
-       .parameters = parameters_with_calibration(),
+       .settings = {&settings()},
        .needs_truth = true},
       run);
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <array>
 #include <cmath>
 
 #include "scenarios/baselines/mapping/pointwise_filter.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/rigid_chain.hpp"
+#include "scenarios/methods/settings.hpp"
 #include "scenarios/methods/slam_registry.hpp"
 
 namespace tumble::scenarios {
@@ -14,18 +14,10 @@ namespace {
 
 constexpr double kAccelRailShare = 0.99;  // of the stated range: beyond, a reading is left out
 
-const std::array<sim::Parameter, 6>& parameters_of_the_filter() {
-  static const baselines::PointwiseFilter::Params library;
-  static const std::array<sim::Parameter, 6> parameters = {{
-      {"sweep_voxel_m", library.sweep_voxel_m, 0.01, 10.0, "m", "one point per voxel of a sweep updates the state"},
-      {"rate_walk_rad_s_sqrt_s", library.rate_walk_rad_s_sqrt_s, 1e-3, 1e6, "rad/s/sqrt(s)", "random walk of the rate"},
-      {"force_walk_m_s2_sqrt_s", library.force_walk_m_s2_sqrt_s, 1e-3, 1e6, "m/s^2/sqrt(s)",
-       "random walk of the specific force"},
-      {"gyro_sigma_rad_s", library.gyro_sigma_rad_s, 1e-6, 1e3, "rad/s", "of one reading"},
-      {"accel_sigma_m_s2", library.accel_sigma_m_s2, 1e-6, 1e3, "m/s^2", "of one reading"},
-      {"plane_sigma_m", library.plane_sigma_m, 1e-6, 10.0, "m", "of a point's distance to its plane"},
-  }};
-  return parameters;
+const Settings<baselines::PointwiseFilter::Params>& settings() {
+  static const Settings<baselines::PointwiseFilter::Params> all(baselines::PointwiseFilter::Params{},
+                                                                {.stated = {"gravity_m_s2"}});
+  return all;
 }
 
 void run_filter(const sim::Sensors& sensors, std::span<const ImuSample> samples, baselines::PointwiseFilter& filter,
@@ -85,12 +77,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   baselines::PointwiseFilter::Params params;
   params.T_IL = bridge::T_IL(sensors.imus.front(), sensors.lidars.front());
   params.gravity_m_s2 = sensors.gravity_m_s2;
-  params.sweep_voxel_m = parameters.at("sweep_voxel_m");
-  params.rate_walk_rad_s_sqrt_s = parameters.at("rate_walk_rad_s_sqrt_s");
-  params.force_walk_m_s2_sqrt_s = parameters.at("force_walk_m_s2_sqrt_s");
-  params.gyro_sigma_rad_s = parameters.at("gyro_sigma_rad_s");
-  params.accel_sigma_m_s2 = parameters.at("accel_sigma_m_s2");
-  params.plane_sigma_m = parameters.at("plane_sigma_m");
+  settings().apply(parameters, params);
   baselines::PointwiseFilter filter(params, start.q_WI);
   run_filter(sensors, samples, filter, estimate);
   return estimate;
@@ -106,7 +93,7 @@ Method slam_pointwise_reject() {
            "motion, "
            "clipped axes left out. Not modelled: biases after the rest at the start, gravity and mounting as states.",
        .source = "the family of Point-LIO, He et al., Advanced Intelligent Systems 2023",
-       .parameters = parameters_of_the_filter()},
+       .settings = {&settings()}},
       run);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/rate_saave.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/seed_chain.hpp"
 #include "scenarios/methods/slam_registry.hpp"
@@ -8,15 +9,16 @@ namespace tumble::scenarios {
 
 namespace {
 
-std::span<const sim::Parameter> parameters_with_saave() {
-  static const std::vector<sim::Parameter> all = joined_parameters({seed_parameters(), saave_parameters()});
+const Settings<Saave::Params>& rate_settings() {
+  static const Settings<Saave::Params> all = saave_settings_beside(seed_settings().rows());
   return all;
 }
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   std::vector<ImuSample> samples;
-  Estimate estimate = begin_with_rates(
-      sensors, samples, [&](Estimate& out) { return saave_rates(sensors, samples, parameters, out.rates); });
+  Estimate estimate = begin_with_rates(sensors, samples, [&](Estimate& out) {
+    return saave_rates(sensors, samples, rate_settings(), parameters, out.rates);
+  });
   if (estimate.status.ok()) run_seed_chain(sensors, samples, parameters, estimate);
   return estimate;
 }
@@ -30,7 +32,7 @@ Method slam_published() {
               "odometry fed back by the registration, time weighting, trimmed point to plane; its errors are "
               "parameters. Map in memory whole.",
        .source = "Deschenes et al., ICRA 2024, and the authors' launch files",
-       .parameters = parameters_with_saave()},
+       .settings = {&seed_settings(), &rate_settings()}},
       run);
 }
 

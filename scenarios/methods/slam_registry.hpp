@@ -24,7 +24,7 @@ Method slam_floor();
 /// What tells one slam method of the rig from another.
 struct RigSlam {
   std::string name, doc, source;
-  std::span<const sim::Parameter> parameters;
+  std::vector<const SettingsTable*> settings;
   bool needs_truth = false;
 };
 Method rig_slam(RigSlam what, RunCore run);

@@ -7,6 +7,7 @@
 
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/slam_settings.hpp"
 #include "scenarios/methods/sphere_attitude.hpp"
 #include "tumble/common/so3.hpp"
 #include "tumble/mapping/voxel_map.hpp"
@@ -19,29 +20,34 @@ namespace {
 
 constexpr double kNearestM = 0.3;  // nearer returns are the sphere's own
 
-const std::array<sim::Parameter, 2>& parameters_of_the_map() {
-  static const VoxelMap::Params library;
-  static const std::array<sim::Parameter, 2> parameters = {{
-      {"map_voxel_m", library.voxel_m, 0.05, 10.0, "m", "cell of the map's hash"},
-      {"map_spacing_m", library.spacing_m, 0.0, 1.0, "m", "edge of the cube that holds one map point"},
-  }};
-  return parameters;
+/// The map's numbers as those of a registration are called.
+struct MapParams {
+  VoxelMap::Params map;
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit.group("map_", p.map);
+  }
+};
+
+const Settings<MapParams>& map_settings() {
+  static const Settings<MapParams> all(MapParams{}, {.first = {"map_voxel_m", "map_spacing_m"}});
+  return all;
 }
 
 // Of the sweep's start by the last one's end, over 0.1 s, beside what the velocity is off by.
 constexpr double kPriorSigmaM = 1e-4, kPriorSigmaRad = 2e-5, kPriorSigmaMS = 1e-4, kForceSigmaShare = 2e-3;
 
 /// Those of the chain, with a prior as tight as rolling makes it: sweep after sweep looks where no map is yet.
-std::span<const sim::Parameter> parameters_of_the_prior() {
-  static const std::vector<sim::Parameter> all = [] {
-    std::vector<sim::Parameter> own(slam_parameters().begin(), slam_parameters().end());
-    for (sim::Parameter& parameter : own) {
-      if (parameter.name == "prior_sigma_m") parameter.default_value = kPriorSigmaM;
-      if (parameter.name == "prior_sigma_rad") parameter.default_value = kPriorSigmaRad;
-      if (parameter.name == "prior_sigma_m_s") parameter.default_value = kPriorSigmaMS;
-      if (parameter.name == "force_sigma_share") parameter.default_value = kForceSigmaShare;
-    }
-    return own;
+const Settings<SlamParams>& prior_settings() {
+  static const Settings<SlamParams> all = [] {
+    SlamParams params;
+    params.odometry.prior_sigma_m = kPriorSigmaM;
+    params.odometry.prior_sigma_rad = kPriorSigmaRad;
+    params.odometry.prior_sigma_m_s = kPriorSigmaMS;
+    params.odometry.force_sigma_share = kForceSigmaShare;
+    // of the samples that were made along the poses
+    return slam_settings(params, {"gravity_m_s2", "correction_max_m", "correction_max_rad"});
   }();
   return all;
 }
@@ -96,7 +102,7 @@ Estimate map_from_poses(const char* name, const sim::Sensors& sensors, const sim
     return estimate;
   }
   const sim::LidarRecord& lidar = sensors.lidars.front();
-  VoxelMap map({parameters.at("map_voxel_m"), parameters.at("map_spacing_m")});
+  VoxelMap map(map_settings().read(parameters).map);
   Track track(estimate.poses, centre_B_m(estimate));
   std::size_t first_pose = 0;
   for (std::size_t k = 0; k < bridge::sweep_count(lidar); ++k) {
@@ -280,7 +286,7 @@ Estimate register_along(const Estimate& rolled, const sim::Sensors& sensors, std
   const KnownMotion motion = motion_of(rolled, samples, sensors, loosely);
   SlamChain chain;
   chain.along = &motion;
-  if (estimate.status.ok()) run_slam_chain(sensors, samples, parameters, chain, estimate);
+  if (estimate.status.ok()) run_slam_chain(sensors, samples, {prior_settings(), parameters}, chain, estimate);
   return estimate;
 }
 
@@ -315,7 +321,7 @@ Method posed(const char* name, const char* doc, const char* source, RunCore run)
   info.kind = Kind::slam;
   info.doc = doc;
   info.source = source;
-  info.parameters = parameters_of_the_map();
+  info.settings = {&map_settings()};
   info.robots = {"sphere"};
   return make_method(std::move(info), run);
 }
@@ -344,7 +350,7 @@ Method slam_rolling_prior() {
   info.kind = Kind::slam;
   info.doc = "The registration of the rig, with the poses of our position method as its prior between two sweeps.";
   info.source = "ours";
-  info.parameters = parameters_of_the_prior();
+  info.settings = {&prior_settings()};
   info.robots = {"sphere"};
   return make_method(std::move(info), run_rolling_prior);
 }

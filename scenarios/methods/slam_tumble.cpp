@@ -1,25 +1,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/rate_tumble.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/slam_registry.hpp"
+#include "scenarios/methods/slam_settings.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
-std::span<const sim::Parameter> parameters_with_rates() {
-  static const std::vector<sim::Parameter> all =
-      joined_parameters({slam_parameters(), excess_parameters(), calibration_parameters(), tumble_rate_parameters()});
+const Settings<SlamParams>& chain_settings() {
+  static const Settings<SlamParams> all = slam_settings(with_calibration(with_saturation_deficit({})));
+  return all;
+}
+
+const Settings<RateSmoother::Params>& rate_settings() {
+  static const Settings<RateSmoother::Params> all(
+      RateSmoother::Params{}, {.stated = stated_densities(), .beside = chain_settings().rows(), .prefix = "rate_"});
   return all;
 }
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   std::vector<ImuSample> samples;
   Estimate estimate = begin_with_rates(sensors, samples, [&](Estimate& out) {
-    return tumble_rates(sensors, samples, parameters, out.rates, out.health);
+    const RateSmoother::Params params = smoother_params(sensors.imus.front(), rate_settings(), parameters);
+    return tumble_rates(sensors, samples, params, out.rates, out.health);
   });
   if (estimate.status.ok())
-    run_slam_chain(sensors, samples, parameters, {.saturation_deficit = true, .calibration = true}, estimate);
+    run_slam_chain(sensors, samples, {chain_settings(), parameters}, {.calibration = true}, estimate);
   return estimate;
 }
 
@@ -31,7 +39,7 @@ Method slam_tumble() {
        .doc =
            "The chain of icp with the rates of rate/tumble, the excess of clipped axes estimated in the registration.",
        .source = "ours",
-       .parameters = parameters_with_rates()},
+       .settings = {&chain_settings(), &rate_settings()}},
       run);
 }
 

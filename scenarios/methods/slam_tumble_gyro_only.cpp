@@ -3,15 +3,15 @@
 #include "scenarios/methods/rate_baseline.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/slam_registry.hpp"
+#include "scenarios/methods/slam_settings.hpp"
 #include "tumble/angular_velocity/clipping_finder.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
-std::span<const sim::Parameter> parameters_with_excess() {
-  static const std::vector<sim::Parameter> all =
-      joined_parameters({slam_parameters(), excess_parameters(), calibration_parameters()});
+const Settings<SlamParams>& settings() {
+  static const Settings<SlamParams> all = slam_settings(with_calibration(with_saturation_deficit({})));
   return all;
 }
 
@@ -19,8 +19,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   std::vector<ImuSample> samples;
   Estimate estimate =
       begin_with_rates(sensors, samples, [&](Estimate& out) { return railed_rates(sensors, samples, out.rates); });
-  if (estimate.status.ok())
-    run_slam_chain(sensors, samples, parameters, {.saturation_deficit = true, .calibration = true}, estimate);
+  if (estimate.status.ok()) run_slam_chain(sensors, samples, {settings(), parameters}, {.calibration = true}, estimate);
   return estimate;
 }
 
@@ -45,7 +44,7 @@ Method slam_tumble_gyro_only() {
        .doc =
            "The chain of tumble with the clipped gyro: the excess of clipped axes comes from the registration alone.",
        .source = "ours",
-       .parameters = parameters_with_excess()},
+       .settings = {&settings()}},
       run);
 }
 

@@ -32,6 +32,11 @@ Rest mean_over_rest(std::span<const ImuSample> samples, double rest_s) {
 
 }  // namespace
 
+const Settings<RestParams>& rest_settings() {
+  static const Settings<RestParams> all(RestParams{});
+  return all;
+}
+
 void require_sphere(const char* method, const sim::Sensors& sensors) {
   if (!(sensors.sphere_radius_m > 0.0)) {
     throw BadInput(std::string("method ") + method + " needs a sphere: sphere_radius_m is 0");

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scenarios/methods/method.hpp"
+#include "scenarios/methods/settings.hpp"
 #include "sim/recording.hpp"
 #include "tumble/common/imu.hpp"
 
@@ -17,6 +18,18 @@ struct SphereAttitude {
   std::vector<ImuSample> samples;
   std::vector<Eigen::Quaterniond> q_WI;  ///< parallel to `samples`, yaw 0 at the first
 };
+
+/// How long the rest at the start is.
+struct RestParams {
+  double rest_s = 1.0;
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.rest_s, {"rest_s", "s", 0.01, 60.0, "length of the rest at the start: gyro bias and tilt are its means",
+                     Rank::first});
+  }
+};
+const Settings<RestParams>& rest_settings();
 
 /// Bias and tilt are means over the first `rest_s`, then the gyro is integrated. Trouble: that of the samples and of
 /// the levelling. Throws BadInput, naming `method`, when the recording is not one of a sphere. O(N).

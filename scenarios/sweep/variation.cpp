@@ -2,12 +2,14 @@
 #include "scenarios/sweep/variation.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include "scenarios/draw/fixed_number.hpp"
 #include "scenarios/draw/registry.hpp"
 #include "scenarios/draw/strict_yaml.hpp"
 #include "scenarios/errors.hpp"
+#include "scenarios/methods/settings.hpp"
 #include "scenarios/sweep/given_errors.hpp"
 
 namespace tumble::scenarios {
@@ -78,7 +80,12 @@ void check_parameter(const std::string& key, std::span<const double> values) {
     throw BadInput("'" + key + "': unknown parameter '" + number + "' of method " + name +
                    suggestion(number, names_of(method.info.parameters)));
   }
-  for (const double value : values) require_within(key, *parameter, value);
+  const auto is_whole = [&](const SettingsTable* stage) { return stage->is_whole(parameter->name); };
+  const bool whole = std::any_of(method.info.settings.begin(), method.info.settings.end(), is_whole);
+  for (const double value : values) {
+    require_within(key, *parameter, value);
+    if (whole && value != std::floor(value)) throw BadInput("'" + key + "' must be a whole number");
+  }
 }
 
 void check_given(const std::string& key, std::span<const double> values, const Scenario& scenario) {

@@ -6,6 +6,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/estimate_file.hpp"
 #include "scenarios/methods/external_method.hpp"
+#include "scenarios/methods/given_parameters.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/sweep/outcome.hpp"
@@ -22,6 +23,7 @@ using scenarios::BadInput;
 struct Options {
   std::filesystem::path recording;
   std::string method;
+  std::vector<std::string> parameters;
   std::filesystem::path folder;
   std::filesystem::path learnt;
 };
@@ -94,10 +96,12 @@ int run_estimate(const Session& session, const Options& options) {
     throw BadInput("--learnt is for 'rate/tumble' and 'rate/tumble_lag'; '" + full_name(method) +
                    "' learns nothing of the rig");
   }
-  scenarios::OutputFolder folder(options.folder);
-
   LearntFile learnt(options.learnt);
-  const scenarios::Estimate estimate = run_of(learnt.wrap(method), sensors);
+  const scenarios::Method learning = learnt.wrap(method);
+  const scenarios::MethodPointer told[] = {scenarios::unowned(learning)};
+  const std::vector<scenarios::Method> methods = scenarios::with_parameters(told, options.parameters);
+  scenarios::OutputFolder folder(options.folder);
+  const scenarios::Estimate estimate = run_of(methods.front(), sensors);
   scenarios::write_estimate(options.folder, method.info.name, method.info.kind, estimate,
                             scenarios::digest(sensors, nullptr));
   folder.keep();
@@ -121,6 +125,9 @@ Action declare_estimate(CLI::App& app, const Session& session) {
   auto options = std::make_shared<Options>();
   app.add_option("RECORDING", options->recording, "a recording, FILE.h5")->required();
   app.add_option("--method", options->method, "a method, as 'saave' or 'rate/saave'")->required();
+  app.add_option("--set", options->parameters,
+                 "METHOD.PARAMETER=NUMBER, as rate/tumble_lag.lag_s=0.5; repeat for more ('tumble list methods NAME')")
+      ->allow_extra_args(false);
   app.add_option("-o,--output", options->folder, "folder for the estimate")->required();
   app.add_option("--learnt", options->learnt,
                  "FILE.json: what an earlier run of 'rate/tumble' or 'rate/tumble_lag' has learnt of the rig, if it "

@@ -10,6 +10,7 @@
 #include "sim/situation.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/verbs.hpp"
+#include "tumble/common/parameters.hpp"
 
 namespace tumble::tools {
 
@@ -29,6 +30,7 @@ json parameter_json(const sim::Parameter& p) {
 }
 
 std::string bound_text(const sim::Parameter& p) {
+  if (p.low == -kUnbounded && p.high == kUnbounded) return "any";
   return "[" + number_text(p.low) + ", " + number_text(p.high) + "]";
 }
 
@@ -128,7 +130,8 @@ Listing list_methods(const std::string& only) {
   const std::vector<scenarios::MethodPointer> selected =
       select_methods(only.empty() ? std::vector<std::string>{} : std::vector<std::string>{only});
   Table table("", {"method", "robots", "needs truth", "source", "meaning"});
-  Table parameters("parameters", {"method", "parameter", "default", "bound", "unit", "meaning"});
+  const std::vector<std::string> columns = {"method", "parameter", "default", "bound", "unit", "meaning"};
+  Table parameters("parameters", columns), further("further parameters", columns);
   for (const scenarios::MethodPointer& method : selected) {
     const scenarios::MethodInfo& info = method->info;
     const std::string name = std::string(to_string(info.kind)) + "/" + info.name;
@@ -138,15 +141,21 @@ Listing list_methods(const std::string& only) {
     json entry = {{"name", info.name},          {"kind", to_string(info.kind)},    {"doc", info.doc},
                   {"source", info.source},      {"needs_truth", info.needs_truth}, {"robots", info.robots},
                   {"parameters", json::array()}};
-    for (const sim::Parameter& p : info.parameters) {
-      parameters.add_row({name, std::string(p.name), number_text(p.default_value), bound_text(p), std::string(p.unit),
-                          std::string(p.doc)});
+    for (std::size_t k = 0; k < info.parameters.size(); ++k) {
+      const sim::Parameter& p = info.parameters[k];
+      const bool first = k < info.parameters_first;
+      (first ? parameters : further)
+          .add_row({name, std::string(p.name), number_text(p.default_value), bound_text(p), std::string(p.unit),
+                    std::string(p.doc)});
       entry["parameters"].push_back(parameter_json(p));
+      entry["parameters"].back()["first"] = first;
     }
     out.document.push_back(std::move(entry));
   }
   out.tables.push_back(std::move(table));
   if (!parameters.empty()) out.tables.push_back(std::move(parameters));
+  // of all methods at once they would be thousands of lines
+  if (!only.empty() && !further.empty()) out.tables.push_back(std::move(further));
   return out;
 }
 

@@ -8,6 +8,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/methods/given_parameters.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/sweep/run_situation.hpp"
@@ -26,7 +27,7 @@ namespace fs = std::filesystem;
 
 struct Options {
   std::string scenario, seed;  ///< an empty seed: 1
-  std::vector<std::string> methods;
+  std::vector<std::string> methods, parameters;
   int threads = 1;
   fs::path folder;
   fs::path learnt;
@@ -34,7 +35,8 @@ struct Options {
 
 /// A scenario and nothing else: somebody looks what this is.
 bool is_bare(const Options& options) {
-  return options.seed.empty() && options.methods.empty() && options.folder.empty() && options.learnt.empty();
+  return options.seed.empty() && options.methods.empty() && options.folder.empty() && options.learnt.empty() &&
+         options.parameters.empty();
 }
 
 /// The scenario's name, or the first of NAME_2, NAME_3, ... that is not there.
@@ -102,6 +104,12 @@ void leave_pictures(const fs::path& folder, const fs::path& models, const scenar
   save_picture(folder / "snapshots" / "film.png", film_picture(scene, 8, 4, 480, 360));
 }
 
+std::vector<scenarios::MethodPointer> pointers(const std::vector<scenarios::Method>& methods) {
+  std::vector<scenarios::MethodPointer> out;
+  for (const scenarios::Method& method : methods) out.push_back(scenarios::unowned(method));
+  return out;
+}
+
 int run(const Session& session, const Options& given) {
   const scenarios::DataRoot data = session.data();
   const scenarios::Scenario scenario = scenarios::load_scenario(data, given.scenario);
@@ -121,8 +129,8 @@ int run(const Session& session, const Options& given) {
   }
   std::vector<scenarios::Method> copies;
   for (const scenarios::MethodPointer& method : selected) copies.push_back(learnt.wrap(*method));
-  std::vector<scenarios::MethodPointer> methods;
-  for (const scenarios::Method& method : copies) methods.push_back(scenarios::unowned(method));
+  const std::vector<scenarios::Method> told = scenarios::with_parameters(pointers(copies), options.parameters);
+  const std::vector<scenarios::MethodPointer> methods = pointers(told);
   std::optional<scenarios::OutputFolder> folder;
   if (!options.folder.empty()) folder.emplace(options.folder);
 
@@ -167,6 +175,9 @@ Action declare_run(CLI::App& app, const Session& session) {
   app.add_option("--seed", options->seed, "which draw of it [1]");
   app.add_option("--method", options->methods, "a method, as 'saave' or 'rate/saave'; repeat for more [all that apply]")
       ->allow_extra_args(false);  // the word after a method is not another one
+  app.add_option("--set", options->parameters,
+                 "METHOD.PARAMETER=NUMBER, as rate/tumble_lag.lag_s=0.5; repeat for more ('tumble list methods NAME')")
+      ->allow_extra_args(false);
   app.add_option("--threads", options->threads, "threads for the lidar; the result does not depend on them")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();

@@ -23,15 +23,8 @@ void set_bit(std::uint8_t& bits, int j) {
 RailDetector::RailDetector(const Params& params) : params_(params) {
   if (params.stated_gyro_rad_s) require_within("stated_gyro_rad_s", *params.stated_gyro_rad_s, 1e-6, 1000.0);
   if (params.stated_accel_m_s2) require_within("stated_accel_m_s2", *params.stated_accel_m_s2, 1e-6, 1e5);
-  require_within("enter_share", params.enter_share, 0.0, 0.1);
+  require_fields(params);
   require_within("leave_share", params.leave_share, params.enter_share, 0.5);
-  require_within("plateau_samples", params.plateau_samples, 2, 1000);
-  require_within("plateau_spread_share", params.plateau_spread_share, 0.0, 0.01);
-  require_within("plateau_gyro_low_rad_s", params.plateau_gyro_low_rad_s, 1e-6, 1000.0);
-  require_within("plateau_gyro_min_rad_s", params.plateau_gyro_min_rad_s, 1e-6, 1000.0);
-  require_within("plateau_jump_digits", params.plateau_jump_digits, 1.0, 1000.0);
-  require_within("plateau_accel_min_m_s2", params.plateau_accel_min_m_s2, 1e-6, 1000.0);
-  require_within("disagreement_share", params.disagreement_share, 1e-6, 1.0);
 }
 
 std::optional<double> RailDetector::stated(int c) const {

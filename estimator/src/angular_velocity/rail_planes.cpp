@@ -294,14 +294,8 @@ RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& 
 }  // namespace
 
 RailPlaneFinder::RailPlaneFinder(const Params& params) : params_(params) {
-  require_within("slope_sigma", params.slope_sigma, 1e-4, 0.2);
-  require_within("slope_max", params.slope_max, 0.0, 0.3);
-  require_within("distance_min_rad_s", params.distance_min_rad_s, 0.01, 1000.0);
+  require_fields(params);
   if (params.stated_rad_s) require_within("stated_rad_s", *params.stated_rad_s, 1e-6, 1000.0);
-  require_within("offset_share", params.offset_share, 1e-4, 0.2);
-  require_within("samples_min", params.samples_min, 2, 1000);
-  require_within("log_odds_before", params.log_odds_before, -100.0, 100.0);
-  require_within("log_odds_min", params.log_odds_min, -100.0, 100.0);
   require_within("log_odds_keep", params.log_odds_keep, -100.0, params.log_odds_min);
 }
 

@@ -35,7 +35,7 @@ std::array<std::optional<double>, 6> rails_of(const RailDetector& walls, const R
 }  // namespace
 
 RailWatch::RailWatch(const Params& params) : walls_(params.clipping.walls), planes_(plane_finders(params.clipping)) {
-  require_within("readings_max", params.readings_max, 64, 65536);
+  require_fields(params);
   readings_max_ = static_cast<std::size_t>(params.readings_max);
 }
 

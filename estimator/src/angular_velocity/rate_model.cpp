@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tumble/angular_velocity/rate_model_fields.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble {
@@ -26,43 +27,9 @@ void check(const AuxiliaryImu& p) {
   for (const double value : p.T_IC.matrix().reshaped()) require_within("auxiliary_imu T_IC", value, -100.0, 100.0);
 }
 
-void check(const SensorErrorSizes& p) {
-  require_within("error_sizes.gyro", p.gyro, 0.0, 0.1);
-  require_within("error_sizes.gyro_unknown", p.gyro_unknown, 0.0, 0.1);
-  require_within("error_sizes.accel", p.accel, 0.0, 0.1);
-  require_within("error_sizes.accel_unknown", p.accel_unknown, 0.0, 0.1);
-  require_within("error_sizes.felt_s_m", p.felt_s_m, 0.0, 0.1);
-  require_within("error_sizes.felt_unknown_s_m", p.felt_unknown_s_m, 0.0, 0.1);
-  require_within("error_sizes.delay_s", p.delay_s, 0.0, 0.1);
-  require_within("error_sizes.delay_unknown_s", p.delay_unknown_s, 0.0, 0.1);
-}
-
 void check(const RateModelParams& p) {
-  require_within("lever_arm_sigma_m", p.lever_arm_sigma_m, 1e-9, 10.0);
-  require_within("gyro_bias_sigma_rad_s", p.gyro_bias_sigma_rad_s, 1e-9, 10.0);
-  require_within("accel_bias_sigma_m_s2", p.accel_bias_sigma_m_s2, 1e-9, 10.0);
-  require_within("inertia_sigma", p.inertia_sigma, 1e-9, 10.0);
-  require_within("element_sigma", p.element_sigma, 1e-9, 0.2);
-  require_within("gyro_noise_density", p.gyro_noise_density, 1e-9, 1.0);
-  require_within("accel_noise_density", p.accel_noise_density, 1e-9, 10.0);
-  require_within("flight_sigma_m_s2", p.flight_sigma_m_s2, 1e-6, 100.0);
-  require_within("model_error_s", p.model_error_s, 1e-6, 1.0);
-  check(p.error_sizes);
+  require_fields(p);
   for (const double value : p.errors.vector()) require_within("sensor errors", value, -0.2, 0.2);
-  require_within("gyro_time_sigma_s", p.gyro_time_sigma_s, 0.0, 0.1);
-  require_within("euler_sigma_rad_s2", p.euler_sigma_rad_s2, 1e-6, 1e6);
-  require_within("jerk_psd_flight", p.jerk_psd_flight, 1.0, 1e12);
-  require_within("contact_gain_rad_m", p.contact_gain_rad_m, 0.0, 1e3);
-  require_within("accel_scale_error", p.accel_scale_error, 0.0, 1.0);
-  require_within("contact_sigma_factor", p.contact_sigma_factor, 1.0, 10.0);
-  require_within("contact_lever_rad_m", p.contact_lever_rad_m, 0.0, 1e3);
-  require_within("contact_twist_share", p.contact_twist_share, 0.0, 1.0);
-  require_within("contact_force_share", p.contact_force_share, 0.0, 1e3);
-  require_within("flight_threshold", p.flight_threshold, 1.0, 100.0);
-  require_within("rail_sigma_rad_s", p.rail_sigma_rad_s, 1e-6, 10.0);
-  require_within("rest_sigma_rad_s", p.rest_sigma_rad_s, 1e-9, 10.0);
-  require_within("rate_max_rad_s", p.rate_max_rad_s, 1.0, 1e4);
-  require_within("acceleration_max_rad_s2", p.acceleration_max_rad_s2, 1.0, 1e7);
   require_within("auxiliary_imus", p.auxiliary_imus.size(), 0, kAuxiliaryImusMax);
   for (const AuxiliaryImu& auxiliary_imu : p.auxiliary_imus) check(auxiliary_imu);
   const RigConstants::Vector nominal = p.calibration ? p.calibration->constants.vector() : p.nominal.vector();

@@ -116,16 +116,7 @@ RateState state_later(std::span<const RateObservation> observations, std::span<c
 
 RateSmoother::RateSmoother(const Params& params)
     : params_(params), rails_({params.rails, params.planes, params.accel_planes}), rests_(params.rests) {
-  require_within("iterations_max", params.iterations_max, 1, 1000);
-  require_within("tolerance_rad_s", params.tolerance_rad_s, 1e-12, 1.0);
-  require_within("step_max_rad_s", params.step_max_rad_s, 1e-3, 1e4);
-  require_within("widen_first", params.widen_first, 1.0, 1000.0);
-  require_within("recovered_sigma_rad_s", params.recovered_sigma_rad_s, 0.0, 1e4);
-  require_within("bound_iterations", params.bound_iterations, 0, 1000);
-  require_within("bound_damping", params.bound_damping, 0.01, 1.0);
-  require_within("calibration_mahalanobis_max", params.calibration_mahalanobis_max, 0.1, 1e6);
-  require_within("error_rounds_max", params.error_rounds_max, 1, 10);
-  require_within("gap_max_s", params.gap_max_s, 1e-6, 3600.0);
+  require_fields(params);
   if (params.learnt_errors) {
     for (const double value : params.learnt_errors->errors.vector()) require_within("learnt errors", value, -0.2, 0.2);
     for (const double value : params.learnt_errors->covariance.reshaped()) {

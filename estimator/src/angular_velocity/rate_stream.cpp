@@ -54,19 +54,8 @@ RateStream::RateStream(const Params& params)
       rails_({.clipping = {params.rails, params.planes, params.accel_planes}}),
       rests_(params.rests),
       model_(params.model, params.period_s) {
-  require_within("period_s", params.period_s, 1e-5, 1.0);
+  require_fields(params);
   require_within("lag_s", params.lag_s, 2.0 * params.period_s, std::min(10.0, 4096.0 * params.period_s));
-  require_within("widen_first", params.widen_first, 1.0, 1000.0);
-  require_within("step_max_rad_s", params.step_max_rad_s, 1e-3, 1e4);
-  require_within("bound_age", params.bound_age, 0, 4096);
-  require_within("flight_run_min", params.flight_run_min, 0, 4096);
-  require_within("rig_doubt", params.rig_doubt, 0.0, 1e3);
-  require_within("rig_doubt_samples", params.rig_doubt_samples, 1.0, 1e6);
-  require_within("bound_damping", params.bound_damping, 0.01, 1.0);
-  require_within("recovered_sigma_rad_s", params.recovered_sigma_rad_s, 0.0, 1e4);
-  require_within("calibration_mahalanobis_max", params.calibration_mahalanobis_max, 0.1, 1e6);
-  require_within("gap_max_s", params.gap_max_s, 1e-6, 3600.0);
-  require_within("step_s", params.step_s, 0.0, 0.1);
   capacity_ = static_cast<std::size_t>(std::lround(params.lag_s / params.period_s)) + 1;
   every_ = std::clamp(static_cast<std::size_t>(params.step_s / params.period_s + 1e-6), std::size_t{1}, capacity_);
 }

@@ -6,12 +6,7 @@
 namespace tumble {
 
 RestDetector::RestDetector(const Params& params) : params_(params) {
-  require_within("rate_max_rad_s", params.rate_max_rad_s, 1e-6, 10.0);
-  require_within("rate_spread_rad_s", params.rate_spread_rad_s, 1e-6, 10.0);
-  require_within("force_min_m_s2", params.force_min_m_s2, 0.0, 100.0);
-  require_within("force_spread_m_s2", params.force_spread_m_s2, 1e-6, 100.0);
-  require_within("rest_s", params.rest_s, 0.0, 60.0);
-  require_within("reading_s", params.reading_s, 0.0, 1.0);
+  require_fields(params);
 }
 
 bool RestDetector::observe(const ImuSample& sample, State& state) const {

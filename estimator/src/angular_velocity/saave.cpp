@@ -28,13 +28,7 @@ double squared_rate(const Eigen::Vector3d& lever_arm, const Eigen::Vector3d& axi
 }  // namespace
 
 Saave::Saave(const Params& params) : params_(params) {
-  for (int j = 0; j < 3; ++j) require_within("lever_arm_m", params.lever_arm_m[j], -10.0, 10.0);
-  require_within("saturation_point_rad_s", params.saturation_point_rad_s, 0.01, 1000.0);
-  require_within("variance_measured_rad2_s2", params.variance_measured_rad2_s2, 1e-12, 1e12);
-  require_within("variance_estimated_rad2_s2", params.variance_estimated_rad2_s2, 1e-12, 1e12);
-  require_within("variance_rejected_rad2_s2", params.variance_rejected_rad2_s2, 1e-12, 1e12);
-  require_within("jerk_psd_rad2_s5", params.jerk_psd_rad2_s5, 1e-12, 1e12);
-  require_within("gap_max_s", params.gap_max_s, 1e-6, 3600.0);
+  require_fields(params);
 }
 
 Status Saave::step(const ImuSample& sample, State& state, Recovered& out) const {

@@ -137,7 +137,7 @@ void smooth_axis(std::span<const WnojSmoother::Measurement> measurements, int ax
 }  // namespace
 
 WnojSmoother::WnojSmoother(const Params& params) : params_(params) {
-  require_within("jerk_psd_rad2_s5", params.jerk_psd_rad2_s5, 1e-12, 1e12);
+  require_fields(params);
 }
 
 Status WnojSmoother::smooth(std::span<const Measurement> measurements, std::vector<Smoothed>& out) const {

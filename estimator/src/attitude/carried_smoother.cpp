@@ -52,36 +52,7 @@ RateSource source(const RateState& rate, double recovered_sigma) {
 }  // namespace
 
 CarriedSmoother::CarriedSmoother(const Params& params) : params_(params) {
-  constexpr double kTiny = 1e-300;
-  require_within("gravity_m_s2", params.gravity_m_s2, kTiny, 100.0);
-  require_within("node_s", params.node_s, 1e-3, 0.1);
-  require_within("gyro_noise_density", params.gyro_noise_density, 1e-6, 1.0);
-  require_within("tilt_share", params.tilt_share, 0.0, 1.0);
-  require_within("rail_sigma_rad_s", params.rail_sigma_rad_s, 1e-4, 1.0);
-  require_within("accel_noise_density", params.accel_noise_density, 1e-5, 10.0);
-  require_within("accel_error_share", params.accel_error_share, 0.0, 1.0);
-  require_within("jerk_rad_s3_sqrts", params.jerk_rad_s3_sqrts, 1e-2, 1e6);
-  require_within("jerk_doubt", params.jerk_doubt, 1.0, 100.0);
-  require_within("turn_error_sqrts", params.turn_error_sqrts, 0.0, 1.0);
-  require_within("hand_m_s2", params.hand_m_s2, 1e-3, 1e3);
-  require_within("hand_tau_s", params.hand_tau_s, 1e-3, 10.0);
-  require_within("hand_follow", params.hand_follow, 0.0, 1.0);
-  require_within("hand_window_s", params.hand_window_s, 0.01, 1e3);
-  require_within("hand_floor", params.hand_floor, 1e-3, 1e3);
-  require_within("velocity_m_s", params.velocity_m_s, 1e-3, 1e3);
-  require_within("velocity_tau_s", params.velocity_tau_s, 1e-3, 1e3);
-  require_within("place_m", params.place_m, 1e-3, 1e3);
-  require_within("place_tau_s", params.place_tau_s, 1e-3, 1e3);
-  require_within("place_leak_s", params.place_leak_s, 0.1, 1e4);
-  require_within("gyro_bias_sigma_rad_s", params.gyro_bias_sigma_rad_s, 1e-6, 10.0);
-  require_within("accel_bias_sigma_m_s2", params.accel_bias_sigma_m_s2, 1e-6, 10.0);
-  require_within("lever_arm_sigma_m", params.lever_arm_sigma_m, 1e-6, 10.0);
-  require_within("rest_sigma_rad_s", params.rest_sigma_rad_s, 1e-6, 10.0);
-  require_within("rest_sigma_m_s", params.rest_sigma_m_s, 1e-6, 10.0);
-  require_within("rest_sigma_m_s2", params.rest_sigma_m_s2, 1e-6, 10.0);
-  require_within("iterations_max", params.iterations_max, 1, 1000);
-  require_within("gap_max_s", params.gap_max_s, kTiny, 1e4);
-  require_within("recovered_sigma_rad_s", params.recovered_sigma_rad_s, 0.0, 1e4);
+  require_fields(params);
   RestDetector{params.rest};
 }
 

@@ -60,7 +60,7 @@ CarriedStream::CarriedStream(const Params& params)
       doubted_(carried::motion_params(params.body, params.body.jerk_doubt)),
       noise_(carried::reading_noise(params.body, params.period_s)),
       g_W_m_s2_(0.0, 0.0, -params.body.gravity_m_s2) {
-  require_within("period_s", params.period_s, 1e-5, 1.0);
+  require_fields(params);
   require_within("lag_s", params.lag_s, 2.0 * params.period_s, 10.0);
   require_within("window_s", params.window_s, params.lag_s + 4.0 * params.body.node_s, 20.0);
   nodes_max_ = static_cast<std::size_t>(std::lround(params.window_s / params.body.node_s)) + 1;

@@ -14,7 +14,6 @@ namespace tumble {
 
 namespace {
 
-constexpr double kSmallest = 1e-12;
 constexpr double kBiasSigma_rad_s = 0.01, kScaleSigma = 0.01;
 constexpr double kTurning_rad_s2 = 1.0;  // an angular acceleration that tells a time offset from noise
 constexpr double kBeyondDoubt = 4.0;     // sigmas
@@ -58,26 +57,7 @@ RateRecovery::Params ImuMerge::recovery_params(const Params& p) {
 }
 
 ImuMerge::ImuMerge(const Params& p) : params_(p), forces_(force_params(p)), recovery_(recovery_params(p)) {
-  require_within("count", p.count, 1, kImus);
-  require_within("rate_tolerance_rad_s", p.rate_tolerance_rad_s, kSmallest, 1e3);
-  require_within("rate_tolerance_share", p.rate_tolerance_share, 0.0, 1.0);
-  require_within("force_tolerance_m_s2", p.force_tolerance_m_s2, kSmallest, 1e4);
-  require_within("rate_noise_rad_s", p.rate_noise_rad_s, kSmallest, 10.0);
-  require_within("offset_sigma_s", p.offset_sigma_s, 0.0, 0.1);
-  require_within("gyro_range_rad_s", p.gyro_range_rad_s, kSmallest, 1e3);
-  require_within("accel_range_m_s2", p.accel_range_m_s2, kSmallest, 1e5);
-  require_within("subsample_saturation_share", p.subsample_saturation_share, kSmallest, 1.0);
-  require_within("hidden_force_m_s2", p.hidden_force_m_s2, kSmallest, 1e4);
-  require_within("gap_max_s", p.gap_max_s, 1e-9, 1e4);
-  require_within("window_s", p.window_s, 0.0, 0.1);
-  require_within("frozen_after_s", p.frozen_after_s, kSmallest, 1e3);
-  require_within("frozen_rate_rad_s", p.frozen_rate_rad_s, kSmallest, 1e3);
-  require_within("frozen_force_m_s2", p.frozen_force_m_s2, kSmallest, 1e4);
-  require_within("thawed_after_s", p.thawed_after_s, kSmallest, 1e3);
-  require_within("disagree_rate_rad_s", p.disagree_rate_rad_s, kSmallest, 1e3);
-  require_within("disagree_rate_share", p.disagree_rate_share, 0.0, 1.0);
-  require_within("disagree_force_m_s2", p.disagree_force_m_s2, kSmallest, 1e4);
-  require_within("disagrees_after_s", p.disagrees_after_s, kSmallest, 1e3);
+  require_fields(p);
   for (int k = 0; k < p.count; ++k) {
     const Eigen::Isometry3d& T = p.T_CI[static_cast<std::size_t>(k)];
     require_within("T_CI", T.translation().norm(), 0.0, 1e3);

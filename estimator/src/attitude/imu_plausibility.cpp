@@ -11,25 +11,12 @@ namespace tumble {
 
 namespace {
 
-constexpr double kSmallest = 1e-12;
 constexpr double kWeightless = 0.05;  // of gravity in m/s^2, in whatever unit it comes: no direction below it
 
 }  // namespace
 
 ImuPlausibility::ImuPlausibility(const Params& p) : params_(p) {
-  require_within("gravity_m_s2", p.gravity_m_s2, kSmallest, 100.0);
-  require_within("window_s", p.window_s, 0.02, 10.0);
-  require_within("reading_s", p.reading_s, 1e-3, 1.0);
-  require_within("steady_share", p.steady_share, kSmallest, 1.0);
-  require_within("force_share_min", p.force_share_min, 0.0, 1.0);
-  require_within("force_share_max", p.force_share_max, 1.0, 1e6);
-  require_within("unexplained_max", p.unexplained_max, kSmallest, 10.0);
-  require_within("turned_min_rad2", p.turned_min_rad2, kSmallest, 1e6);
-  require_within("turn_least_rad", p.turn_least_rad, kSmallest, 3.0);
-  require_within("windows_min", p.windows_min, 1, 1e6);
-  require_within("gap_max_s", p.gap_max_s, kSmallest, 1e4);
-  require_within("frozen_s", p.frozen_s, kSmallest, 1e4);
-  require_within("frozen_share", p.frozen_share, 1.0, 1e6);
+  require_fields(p);
 }
 
 void ImuPlausibility::step(const ImuSample& sample, State& state) const {

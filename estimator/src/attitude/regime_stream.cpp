@@ -36,8 +36,7 @@ ClipSigns signs_of(const RateObservation& observation) {
 
 RegimeStream::RegimeStream(const Params& params)
     : params_(params), rate_(params.rate), evidence_(params.evidence), carried_(joined(params)) {
-  require_within("carried_min", params.carried_min, 0.0, 1.0);
-  require_within("near_s", params.near_s, 0.0, 10.0);
+  require_fields(params);
 }
 
 RegimeStream::State RegimeStream::start() const {

@@ -76,16 +76,7 @@ Regime RegimeShares::most_likely() const {
 }
 
 RegimeEvidence::RegimeEvidence(const Params& params) : params_(params) {
-  require_within("gravity_m_s2", params.gravity_m_s2, 1e-300, 100.0);
-  require_within("flight_m_s2", params.flight_m_s2, 1e-3, 10.0);
-  require_within("flight_share", params.flight_share, 0.0, 1.0);
-  require_within("hand_m_s2", params.hand_m_s2, 0.1, 100.0);
-  require_within("grip_m", params.grip_m, 0.0, 1.0);
-  require_within("contact_max_m_s2", params.contact_max_m_s2, 10.0, 1e6);
-  require_within("memory_s", params.memory_s, 1e-3, 10.0);
-  require_within("rest_rate_rad_s", params.rest_rate_rad_s, 0.0, 100.0);
-  require_within("contacts_hz", params.contacts_hz, 1e-3, 100.0);
-  require_within("throws_hz", params.throws_hz, 1e-9, 10.0);
+  require_fields(params);
 }
 
 // carried.md (C21), (C22), (C23), (C24), (C26)

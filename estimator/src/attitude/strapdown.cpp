@@ -10,11 +10,10 @@ namespace tumble {
 
 namespace {
 constexpr double kForceMin_m_s2 = 1e-6;
-constexpr double kGapSmallest_s = 1e-9;
 }  // namespace
 
 Strapdown::Strapdown(const Params& params) : params_(params) {
-  require_within("gap_max_s", params.gap_max_s, kGapSmallest_s, 1e4);
+  require_fields(params);
 }
 
 Status Strapdown::step(const ImuSample& sample, State& state) const {

@@ -12,7 +12,6 @@ namespace tumble {
 
 namespace {
 
-constexpr double kSmallest = 1e-12;
 constexpr double kTiltSigmaStart_rad = 0.01;
 constexpr double kVelocitySigmaStart_m_s = 0.1;
 constexpr double kDisplacementSigmaStart_m = 0.1;
@@ -36,30 +35,8 @@ void update(int index, double innovation, double variance, TumbleAttitude::State
 }  // namespace
 
 TumbleAttitude::TumbleAttitude(const Params& p) : params_(p) {
-  require_within("gravity_m_s2", p.gravity_m_s2, kSmallest, 100.0);
-  require_within("gyro_noise_rad_sqrts", p.gyro_noise_rad_sqrts, kSmallest, 1.0);
-  require_within("rate_error_sqrts", p.rate_error_sqrts, 0.0, 1.0);
-  require_within("bias_sigma_start_rad_s", p.bias_sigma_start_rad_s, 0.0, 1.0);
-  require_within("bias_walk_rad_s_sqrts", p.bias_walk_rad_s_sqrts, 0.0, 1.0);
-  require_within("acceleration_noise_m_s_sqrts", p.acceleration_noise_m_s_sqrts, kSmallest, 100.0);
-  require_within("velocity_m_sqrts", p.velocity_m_sqrts, kSmallest, 1e3);
-  require_within("displacement_m_sqrts", p.displacement_m_sqrts, kSmallest, 1e3);
-  require_within("displacement_tau_s", p.displacement_tau_s, 0.1, 1e4);
-  require_within("node_s", p.node_s, 1e-4, 1.0);
-  require_within("reading_s", p.reading_s, 0.0, 0.1);
-  require_within("rest_tau_s", p.rest_tau_s, 1e-3, 1e4);
-  require_within("rest_time_s", p.rest_time_s, 0.0, 1e4);
-  require_within("rest_rate_rad_s", p.rest_rate_rad_s, kSmallest, 1.0);
-  require_within("rest_force_m_s2", p.rest_force_m_s2, kSmallest, 100.0);
-  require_within("rest_velocity_sigma_m_s", p.rest_velocity_sigma_m_s, kSmallest, 10.0);
-  require_within("rest_rate_sigma_rad_sqrts", p.rest_rate_sigma_rad_sqrts, kSmallest, 1.0);
-  require_within("radius_m", p.radius_m, 0.0, 10.0);
+  require_fields(p);
   require_within("lever_arm_m", p.lever_arm_m.norm(), 0.0, 10.0);
-  require_within("rolling_velocity_sigma_m_s", p.rolling_velocity_sigma_m_s, kSmallest, 10.0);
-  require_within("slip_velocity_m_s", p.slip_velocity_m_s, kSmallest, 10.0);
-  require_within("slip_quiet_s", p.slip_quiet_s, 0.0, 10.0);
-  require_within("slip_timeout_s", p.slip_timeout_s, kSmallest, 1e3);
-  require_within("gap_max_s", p.gap_max_s, 1e-9, 1e4);
 }
 
 Status TumbleAttitude::step(const ImuSample& sample, State& state) const {

@@ -14,7 +14,6 @@ namespace tumble {
 namespace {
 
 constexpr double kForceMin_m_s2 = 1e-6;
-constexpr double kSmallest = 1e-9;
 /// The bias variance grows to the square of this in the forgetting time (0.1 deg/s, fixed by the publication).
 constexpr double kForgottenSigma_rad_s = 1.7453292519943295e-3;
 
@@ -27,18 +26,7 @@ double steady_noise(double sigma, double growth) {
 }  // namespace
 
 Vqf::Vqf(const Params& p) : params_(p) {
-  require_within("tau_s", p.tau_s, 1e-3, 1e4);
-  require_within("bias_sigma_start_rad_s", p.bias_sigma_start_rad_s, kSmallest, 1.0);
-  require_within("bias_sigma_motion_rad_s", p.bias_sigma_motion_rad_s, kSmallest, 1.0);
-  require_within("bias_sigma_rest_rad_s", p.bias_sigma_rest_rad_s, kSmallest, 1.0);
-  require_within("bias_forgetting_s", p.bias_forgetting_s, kSmallest, 1e6);
-  require_within("bias_clip_rad_s", p.bias_clip_rad_s, kSmallest, 1.0);
-  require_within("vertical_forgetting", p.vertical_forgetting, kSmallest, 1.0);
-  require_within("rest_tau_s", p.rest_tau_s, 1e-3, 1e4);
-  require_within("rest_time_s", p.rest_time_s, 0.0, 1e4);
-  require_within("rest_rate_rad_s", p.rest_rate_rad_s, kSmallest, 1.0);
-  require_within("rest_force_m_s2", p.rest_force_m_s2, kSmallest, 100.0);
-  require_within("gap_max_s", p.gap_max_s, kSmallest, 1e4);
+  require_fields(p);
 }
 
 Status Vqf::step(const ImuSample& sample, State& state) const {

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "odometry_impl.hpp"
+#include "tumble/mapping/lidar_inertial_odometry_fields.hpp"
 
 namespace tumble::mapping {
 
@@ -19,41 +20,11 @@ double knot_correlation(const LidarInertialOdometry::Params& params, const Sweep
 }
 
 void check_params(const LidarInertialOdometry::Params& params) {
-  require_within("gravity_m_s2", params.gravity_m_s2, 0.0, 100.0);
-  require_within("rest_s", params.rest_s, 1e-9, 60.0);
-  require_within("rest_rate_rad_s", params.rest_rate_rad_s, 0.0, 10.0);
-  require_within("rest_force_m_s2", params.rest_force_m_s2, 0.0, 10.0);
-  require_within("range_min_m", params.range_min_m, 0.0, 10.0);
+  require_fields(params);
   require_within("range_max_m", params.range_max_m, params.range_min_m, 1e4);
-  require_within("sweep_voxel_m", params.sweep_voxel_m, 0.01, 10.0);
-  require_within("map_voxel_m", params.map_voxel_m, 0.01, 10.0);
   require_within("map_spacing_m", params.map_spacing_m, 0.0, params.map_voxel_m);
-  require_within("neighbours", params.neighbours, 3, Neighbours::kMax);
-  require_within("prior_sigma_m", params.prior_sigma_m, 1e-9, 1e3);
-  require_within("prior_sigma_rad", params.prior_sigma_rad, 1e-9, 1e3);
-  require_within("prior_sigma_m_s", params.prior_sigma_m_s, 1e-9, 1e3);
-  require_within("turn_sigma_share", params.turn_sigma_share, 0.0, 1.0);
-  require_within("force_sigma_share", params.force_sigma_share, 0.0, 1.0);
-  require_within("accel_rail_m_s2", params.accel_rail_m_s2, 1e-9, 1e5);
-  require_within("railed_force_m_s2", params.railed_force_m_s2, 0.0, 1e4);
-  require_within("trusted_prior_m", params.trusted_prior_m, 0.0, 1e3);
-  require_within("trusted_prior_rad", params.trusted_prior_rad, 0.0, 1e3);
-  require_within("clipped_sigma_rad_s", params.clipped_sigma_rad_s, 0.0, 100.0);
-  require_within("rate_sigma_max_rad_s", params.rate_sigma_max_rad_s, 0.0, 100.0);
-  require_within("excess_sigma_min_rad_s", params.excess_sigma_min_rad_s, 1e-9, 100.0);
-  require_within("excess_time_s", params.excess_time_s, 1e-3, 1e3);
-  require_within("flight_force_m_s2", params.flight_force_m_s2, 0.0, 100.0);
   if (params.body) require_within("body.p_IB_I_m", params.body->p_IB_I_m.norm(), 0.0, 1e3);
-  require_within("window_sweeps", params.window_sweeps, 1, 8);
-  require_within("degenerate_sigma_m", params.degenerate_sigma_m, 1e-6, 1e3);
-  require_within("time_offset_s", params.time_offset_s, -1.0, 1.0);
-  require_within("mount_sigma_rad", params.mount_sigma_rad, 0.0, 1.0);
-  require_within("mount_sigma_m", params.mount_sigma_m, 0.0, 1.0);
-  require_within("time_offset_sigma_s", params.time_offset_sigma_s, 0.0, 0.02);
-  require_within("gravity_sigma_m_s2", params.gravity_sigma_m_s2, 0.0, 10.0);
   require_within("map_radius_m", params.map_radius_m, params.range_max_m / 10.0, 1e5);
-  require_within("map_sigma_max_m", params.map_sigma_max_m, 1e-6, 1e3);
-  require_within("lost_sweeps_max", params.lost_sweeps_max, 1, 1e6);
   const double orthogonality =
       (params.T_IL.linear() * params.T_IL.linear().transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   require_within("T_IL rotation's distance from orthogonal", orthogonality, 0.0, 1e-6);

@@ -68,25 +68,8 @@ Vector Registration::Estimate::minus(const Estimate& other) const {
 }
 
 Registration::Registration(const Params& params) : params_(params) {
-  require_within("neighbours", params.neighbours, 3, Neighbours::kMax);
-  require_within("match_distance_m", params.match_distance_m, 1e-3, 10.0);
-  require_within("iterations_max", params.iterations_max, 1, 200);
-  require_within("step_m", params.step_m, 1e-12, 1.0);
-  require_within("step_rad", params.step_rad, 1e-12, 1.0);
-  require_within("rematch_m", params.rematch_m, 0.0, 10.0);
-  require_within("range_sigma_m", params.range_sigma_m, 1e-6, 10.0);
-  require_within("range_sigma_share", params.range_sigma_share, 0.0, 1.0);
-  require_within("skew_sigma_m_s", params.skew_sigma_m_s, 0.0, 1e3);
-  require_within("kernel_min_m", params.kernel_min_m, 1e-6, 1e3);
-  require_within("correlation_discount", params.correlation_discount, 1e-6, 1.0);
-  require_within("cluster_m", params.cluster_m, 0.01, 100.0);
-  require_within("matched_share_min", params.matched_share_min, 0.0, 1.0);
-  require_within("fitting_share_min", params.fitting_share_min, 0.0, 1.0);
-  require_within("correction_max_m", params.correction_max_m, 0.0, 1e6);
-  require_within("correction_max_rad", params.correction_max_rad, 0.0, 3.15);
-  require_within("plane.neighbours_min", params.plane.neighbours_min, 3, params.neighbours);
-  require_within("plane.collinear_share", params.plane.collinear_share, 0.0, 1.0);
-  require_within("plane.rough_share", params.plane.rough_share, 0.0, 1.0);
+  require_fields(params);
+  require_within("plane_neighbours_min", params.plane.neighbours_min, 3, params.neighbours);
 }
 
 Status Registration::align(const Prior& prior, std::span<const MotionSample> samples, TimeNs end_ns,

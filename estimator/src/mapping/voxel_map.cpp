@@ -48,7 +48,7 @@ inline int alternating(int i) {
 }  // namespace
 
 VoxelMap::VoxelMap(const Params& params) : params_(params) {
-  require_within("voxel_m", params.voxel_m, 0.01, 100.0);
+  require_fields(params);
   require_within("spacing_m", params.spacing_m, 0.0, params.voxel_m);
   cells_per_m_ = static_cast<float>(1.0 / params.voxel_m);
 }

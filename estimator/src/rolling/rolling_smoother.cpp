@@ -91,12 +91,9 @@ bool RollingSmoother::State::operator==(const State& other) const {
 }
 
 RollingSmoother::RollingSmoother(const Params& p) : params_(p), filter_(p.filter) {
-  require_within("path_noise", p.path_noise, 1e-6, 1.0);
+  require_fields(p);
   require_within("lag_s", p.lag_s, p.filter.node_s, kWholeRun);
   require_within("block_s", p.block_s, p.filter.node_s, 1e3);
-  require_within("known_distance_m", p.known_distance_m, 0.0, 1e6);
-  require_within("known_distance_sigma_m", p.known_distance_sigma_m, 1e-12, 1e3);
-  require_within("rate_max_hz", p.rate_max_hz, 1e-3, 1e5);
   path_params_ = quieter(p.filter, p.path_noise);
   lag_nodes_ = static_cast<std::size_t>(std::ceil(p.lag_s / p.filter.node_s - 1e-9));
   block_nodes_ = static_cast<std::size_t>(std::ceil(p.block_s / p.filter.node_s - 1e-9));

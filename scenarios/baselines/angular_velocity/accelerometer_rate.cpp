@@ -58,13 +58,7 @@ struct Filter {
 
 AccelerometerRate::AccelerometerRate(const Params& params)
     : params_(params), rails_({.walls = params.rails, .tilted = params.tilted_rails}) {
-  require_within("gyro_noise_density", params.gyro_noise_density, 1e-9, 1.0);
-  require_within("accel_noise_density", params.accel_noise_density, 1e-9, 10.0);
-  require_within("accel_floor_m_s2", params.accel_floor_m_s2, 0.0, 100.0);
-  require_within("accel_scale_error", params.accel_scale_error, 0.0, 1.0);
-  require_within("jerk_psd", params.jerk_psd, 1.0, 1e12);
-  require_within("rate_max_rad_s", params.rate_max_rad_s, 1.0, 1e4);
-  require_within("gap_max_s", params.gap_max_s, 1e-6, 3600.0);
+  require_fields(params);
 }
 
 Status AccelerometerRate::estimate(std::span<const ImuSample> samples,

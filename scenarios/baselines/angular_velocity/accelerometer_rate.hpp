@@ -8,6 +8,7 @@
 #include "tumble/angular_velocity/clipping_finder.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/common/imu.hpp"
+#include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble::baselines {
@@ -30,13 +31,35 @@ class AccelerometerRate {
     RailDetector::Params rails = {};
     bool tilted_rails = false;  ///< judge by tilted planes too (ClippingFinder); published by axis alone
     bool use_gyro = true;
-    double gyro_noise_density = 5.236e-4;  ///< [rad/s/sqrt(Hz)]; [1e-9, 1]
-    double accel_noise_density = 1.5e-3;   ///< the worst of the accelerometers [m/s^2/sqrt(Hz)]; [1e-9, 10]
-    double accel_floor_m_s2 = 0.05;        ///< bias of a difference, one standard deviation; [0, 100]
-    double accel_scale_error = 2e-3;       ///< scale and misalignment, as a share of the force; [0, 1]
-    double jerk_psd = 1e7;                 ///< density of the white angular jerk [rad^2/s^5]; [1, 1e12]
-    double rate_max_rad_s = 50.0;          ///< no answer lies beyond; [1, 1e4]
-    double gap_max_s = 1.0;                ///< [1e-6, 3600]
+    double gyro_noise_density = 5.236e-4;  ///< [rad/s/sqrt(Hz)]
+    double accel_noise_density = 1.5e-3;   ///< the worst of the accelerometers [m/s^2/sqrt(Hz)]
+    double accel_floor_m_s2 = 0.05;        ///< bias of a difference, one standard deviation
+    double accel_scale_error = 2e-3;       ///< scale and misalignment, as a share of the force
+    double jerk_psd = 1e7;                 ///< density of the white angular jerk [rad^2/s^5]
+    double rate_max_rad_s = 50.0;          ///< no answer lies beyond
+    double gap_max_s = 1.0;
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit.group("rails_", p.rails);
+      visit(p.tilted_rails,
+            on_off("tilted_rails", "1: rails are looked for as tilted planes too; 0: axis by axis, as published",
+                   Rank::first));
+      visit(p.use_gyro,
+            on_off("use_gyro", "1: axes of the primary gyro that are not clipped are read too; 0: none", Rank::first));
+      visit(p.gyro_noise_density, {"gyro_noise_density", "rad/s/sqrt(Hz)", 1e-9, 1.0, "noise density of the gyro"});
+      visit(p.accel_noise_density,
+            {"accel_noise_density", "m/s^2/sqrt(Hz)", 1e-9, 10.0, "noise density of the accelerometer"});
+      visit(p.accel_floor_m_s2,
+            {"accel_floor_m_s2", "m/s^2", 0.0, 100.0, "bias of a difference, one standard deviation"});
+      visit(p.accel_scale_error,
+            {"accel_scale_error", "1", 0.0, 1.0, "scale and misalignment, as a share of the force"});
+      visit(p.jerk_psd, {"jerk_psd_rad2_s5", "rad^2/s^5", 1.0, 1e12, "density of the white angular jerk", Rank::first});
+      visit(p.rate_max_rad_s, {"rate_max_rad_s", "rad/s", 1.0, 1e4, "no answer lies beyond"});
+      visit(p.gap_max_s,
+            {"gap_max_s", "s", 1e-6, 3600.0, "longest time between two samples before the run is refused"});
+    }
   };
 
   /// Throws InvalidParams on a parameter outside of its bound.

@@ -222,12 +222,7 @@ std::vector<Value> bridge(const Axis& axis, const ClippedBaseline::Params& param
 
 ClippedBaseline::ClippedBaseline(const Params& params)
     : params_(params), rails_({.walls = params.rails, .tilted = params.tilted_rails}) {
-  require_within("gyro_noise_density", params.gyro_noise_density, 1e-9, 1.0);
-  require_within("acceleration_psd", params.acceleration_psd, 1e-12, 1e12);
-  require_within("snap_psd", params.snap_psd, 1e-12, 1e15);
-  require_within("rate_sigma_rad_s", params.rate_sigma_rad_s, 1e-3, 1e4);
-  require_within("rate_max_rad_s", params.rate_max_rad_s, 1.0, 1e4);
-  require_within("gap_max_s", params.gap_max_s, 1e-6, 3600.0);
+  require_fields(params);
 }
 
 Status ClippedBaseline::estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const {

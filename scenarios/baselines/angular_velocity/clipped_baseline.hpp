@@ -7,6 +7,7 @@
 #include "tumble/angular_velocity/clipping_finder.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/common/imu.hpp"
+#include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble::baselines {
@@ -38,16 +39,37 @@ class ClippedBaseline {
     Kind kind = Kind::interpolate;
     RailDetector::Params rails = {};
     bool tilted_rails = false;  ///< judge by tilted planes too (ClippingFinder); published by axis alone
-    /// Noise density of the gyro [rad/s/sqrt(Hz)]; [1e-9, 1].
+    /// Noise density of the gyro [rad/s/sqrt(Hz)].
     double gyro_noise_density = 5.236e-4;
-    /// Density of the white angular acceleration of `reject` [rad^2/s^3]; [1e-12, 1e12].
+    /// Density of the white angular acceleration of `reject` [rad^2/s^3].
     double acceleration_psd = 1e3;
-    /// Density of the white angular snap of `constant_jerk` [rad^2/s^7]; [1e-12, 1e15].
+    /// Density of the white angular snap of `constant_jerk` [rad^2/s^7].
     double snap_psd = 1e9;
-    /// How fast the body turns as a rule, one axis, `constant_jerk` [rad/s]; [1e-3, 1e4].
+    /// How fast the body turns as a rule, one axis, `constant_jerk` [rad/s].
     double rate_sigma_rad_s = 20.0;
-    double rate_max_rad_s = 50.0;  ///< no answer to a gap lies beyond; [1, 1e4]
-    double gap_max_s = 1.0;        ///< longest time between samples before the run is refused; [1e-6, 3600]
+    double rate_max_rad_s = 50.0;  ///< no answer to a gap lies beyond
+    double gap_max_s = 1.0;        ///< longest time between samples before the run is refused
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit.group("rails_", p.rails);
+      visit(p.tilted_rails,
+            on_off("tilted_rails", "1: rails are looked for as tilted planes too; 0: axis by axis, as published",
+                   Rank::first));
+      visit(p.gyro_noise_density, {"gyro_noise_density", "rad/s/sqrt(Hz)", 1e-9, 1.0, "noise density of the gyro"});
+      visit(p.acceleration_psd,
+            {"acceleration_psd_rad2_s3", "rad^2/s^3", 1e-12, 1e12,
+             "density of the white angular acceleration that drives the rate; 1000 as in Point-LIO's configurations",
+             Rank::first});
+      visit(p.snap_psd, {"snap_psd_rad2_s7", "rad^2/s^7", 1e-12, 1e15,
+                         "density of the white angular snap that drives the jerk", Rank::first});
+      visit(p.rate_sigma_rad_s, {"rate_sigma_rad_s", "rad/s", 1e-3, 1e4,
+                                 "deviation of the rate in the long run, which bounds long gaps", Rank::first});
+      visit(p.rate_max_rad_s, {"rate_max_rad_s", "rad/s", 1.0, 1e4, "no answer lies beyond"});
+      visit(p.gap_max_s,
+            {"gap_max_s", "s", 1e-6, 3600.0, "longest time between two samples before the run is refused"});
+    }
   };
 
   /// Throws InvalidParams on a parameter outside of its bound.

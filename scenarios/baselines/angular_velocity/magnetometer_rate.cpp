@@ -76,15 +76,7 @@ void start_field(const Vector3d& reading, double noise, double iron, Filter& fil
 
 MagnetometerRate::MagnetometerRate(const Params& params)
     : params_(params), rails_({.walls = params.rails, .tilted = params.tilted_rails}) {
-  require_within("gyro_noise_density", params.gyro_noise_density, 1e-9, 1.0);
-  require_within("field_noise_t", params.field_noise_t, 1e-12, 1e-3);
-  require_within("hard_iron_t", params.hard_iron_t, 0.0, 1e-3);
-  require_within("earth_field_t", params.earth_field_t, 0.0, 1e-3);
-  require_within("disturbance_t_sqrt_s", params.disturbance_t_sqrt_s, 0.0, 1.0);
-  require_within("disturbed_share", params.disturbed_share, 1e-4, 10.0);
-  require_within("jerk_psd", params.jerk_psd, 1.0, 1e12);
-  require_within("rate_max_rad_s", params.rate_max_rad_s, 1.0, 1e4);
-  require_within("gap_max_s", params.gap_max_s, 1e-6, 3600.0);
+  require_fields(params);
 }
 
 Status MagnetometerRate::estimate(std::span<const ImuSample> samples, std::span<const Vector3d> field_I_t,

@@ -8,6 +8,7 @@
 #include "tumble/angular_velocity/clipping_finder.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/common/imu.hpp"
+#include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble::baselines {
@@ -29,15 +30,38 @@ class MagnetometerRate {
   struct Params {
     RailDetector::Params rails = {};
     bool tilted_rails = false;             ///< judge by tilted planes too (ClippingFinder); published by axis alone
-    double gyro_noise_density = 5.236e-4;  ///< [rad/s/sqrt(Hz)]; [1e-9, 1]
-    double field_noise_t = 5e-8;           ///< of one reading, one standard deviation [T]; [1e-12, 1e-3]
-    double hard_iron_t = 1e-6;             ///< offset of the sensor, one standard deviation [T]; [0, 1e-3]
-    double earth_field_t = 0.0;            ///< length of the undisturbed field [T]; 0: unknown; [0, 1e-3]
-    double disturbance_t_sqrt_s = 1e-6;    ///< change of the field along the way [T/sqrt(s)]; [0, 1]
-    double disturbed_share = 0.02;         ///< deviation of length, as a share, that doubles it in power; [1e-4, 10]
-    double jerk_psd = 1e7;                 ///< density of the white angular jerk [rad^2/s^5]; [1, 1e12]
-    double rate_max_rad_s = 50.0;          ///< no answer lies beyond; [1, 1e4]
-    double gap_max_s = 1.0;                ///< [1e-6, 3600]
+    double gyro_noise_density = 5.236e-4;  ///< [rad/s/sqrt(Hz)]
+    double field_noise_t = 5e-8;           ///< of one reading, one standard deviation [T]
+    double hard_iron_t = 1e-6;             ///< offset of the sensor, one standard deviation [T]
+    double earth_field_t = 0.0;            ///< length of the undisturbed field [T]; 0: unknown
+    double disturbance_t_sqrt_s = 1e-6;    ///< change of the field along the way [T/sqrt(s)]
+    double disturbed_share = 0.02;         ///< deviation of length, as a share, that doubles it in power
+    double jerk_psd = 1e7;                 ///< density of the white angular jerk [rad^2/s^5]
+    double rate_max_rad_s = 50.0;          ///< no answer lies beyond
+    double gap_max_s = 1.0;
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit.group("rails_", p.rails);
+      visit(p.tilted_rails,
+            on_off("tilted_rails", "1: rails are looked for as tilted planes too; 0: axis by axis, as published",
+                   Rank::first));
+      visit(p.gyro_noise_density, {"gyro_noise_density", "rad/s/sqrt(Hz)", 1e-9, 1.0, "noise density of the gyro"});
+      visit(p.field_noise_t, {"field_noise_t", "T", 1e-12, 1e-3,
+                              "noise of one reading: 0.5 mG, MTi-300 sheet of May 2023", Rank::first});
+      visit(p.hard_iron_t,
+            {"hard_iron_t", "T", 0.0, 1e-3, "offset of the magnetometer, one standard deviation", Rank::first});
+      visit(p.earth_field_t, {"earth_field_t", "T", 0.0, 1e-3, "length of the undisturbed field; 0: unknown"});
+      visit(p.disturbance_t_sqrt_s,
+            {"disturbance_t_sqrt_s", "T/sqrt(s)", 0.0, 1.0, "change of the field along the way", Rank::first});
+      visit(p.disturbed_share, {"disturbed_share", "1", 1e-4, 10.0,
+                                "deviation of the field's length that doubles that change in power", Rank::first});
+      visit(p.jerk_psd, {"jerk_psd_rad2_s5", "rad^2/s^5", 1.0, 1e12, "density of the white angular jerk", Rank::first});
+      visit(p.rate_max_rad_s, {"rate_max_rad_s", "rad/s", 1.0, 1e4, "no answer lies beyond"});
+      visit(p.gap_max_s,
+            {"gap_max_s", "s", 1e-6, 3600.0, "longest time between two samples before the run is refused"});
+    }
   };
 
   /// Throws InvalidParams on a parameter outside of its bound.

@@ -184,20 +184,7 @@ void smooth(const Step& next, Belief& now, const Belief& next_smoothed) {
 
 StandstillSmoother::StandstillSmoother(const Params& params)
     : params_(params), rails_({.walls = params.rails, .tilted = params.tilted_rails}) {
-  require_within("gravity_m_s2", params.gravity_m_s2, 0.1, 100.0);
-  require_within("gyro_noise_density", params.gyro_noise_density, 1e-9, 1.0);
-  require_within("accel_noise_density", params.accel_noise_density, 1e-9, 10.0);
-  require_within("accel_error_m_s2", params.accel_error_m_s2, 0.0, 100.0);
-  require_within("jerk_psd", params.jerk_psd, 1.0, 1e12);
-  require_within("rest_rate_rad_s", params.rest_rate_rad_s, 1e-6, 10.0);
-  require_within("rest_force_m_s2", params.rest_force_m_s2, 1e-6, 10.0);
-  require_within("rest_s", params.rest_s, 0.0, 60.0);
-  require_within("rest_velocity_sigma_m_s", params.rest_velocity_sigma_m_s, 1e-6, 10.0);
-  require_within("rate_sigma_rad_s", params.rate_sigma_rad_s, 1e-3, 1e4);
-  require_within("tilt_max_rad", params.tilt_max_rad, 0.0, 4.0);
-  require_within("velocity_gate", params.velocity_gate, 0.0, 1e6);
-  require_within("rate_max_rad_s", params.rate_max_rad_s, 1.0, 1e4);
-  require_within("gap_max_s", params.gap_max_s, 1e-6, 3600.0);
+  require_fields(params);
 }
 
 Status StandstillSmoother::estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const {

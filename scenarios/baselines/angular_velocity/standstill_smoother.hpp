@@ -7,6 +7,7 @@
 #include "tumble/angular_velocity/clipping_finder.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/common/imu.hpp"
+#include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble::baselines {
@@ -27,21 +28,47 @@ class StandstillSmoother {
  public:
   struct Params {
     RailDetector::Params rails = {};
-    bool tilted_rails = false;              ///< judge by tilted planes too (ClippingFinder); published by axis alone
-    double gravity_m_s2 = 9.80665;          ///< [0.1, 100]
-    double gyro_noise_density = 5.236e-4;   ///< [rad/s/sqrt(Hz)]; [1e-9, 1]
-    double accel_noise_density = 5.9e-4;    ///< [m/s^2/sqrt(Hz)]; [1e-9, 10]
-    double accel_error_m_s2 = 0.05;         ///< scale and bias of the force, taken as noise per sample; [0, 100]
-    double jerk_psd = 1e5;                  ///< density of the white angular jerk [rad^2/s^5]; [1, 1e12]
-    double rest_rate_rad_s = 0.1;           ///< rest: rates below this ... ; [1e-6, 10]
-    double rest_force_m_s2 = 0.3;           ///< ... and force within this of gravity ... ; [1e-6, 10]
-    double rest_s = 0.2;                    ///< ... for so long; [0, 60]
-    double rest_velocity_sigma_m_s = 0.01;  ///< of "standing still"; [1e-6, 10]
-    double rate_sigma_rad_s = 20.0;         ///< how fast the body turns as a rule, one axis; [1e-3, 1e4]
-    double tilt_max_rad = 0.5;              ///< at a standstill; beyond this a turn was lost; [0, 4]
-    double velocity_gate = 5.0;             ///< likewise of the velocity, in standard deviations; [0, 1e6]
-    double rate_max_rad_s = 50.0;           ///< no answer lies beyond; [1, 1e4]
-    double gap_max_s = 1.0;                 ///< [1e-6, 3600]
+    bool tilted_rails = false;  ///< judge by tilted planes too (ClippingFinder); published by axis alone
+    double gravity_m_s2 = 9.80665;
+    double gyro_noise_density = 5.236e-4;   ///< [rad/s/sqrt(Hz)]
+    double accel_noise_density = 5.9e-4;    ///< [m/s^2/sqrt(Hz)]
+    double accel_error_m_s2 = 0.05;         ///< scale and bias of the force, taken as noise per sample
+    double jerk_psd = 1e5;                  ///< density of the white angular jerk [rad^2/s^5]
+    double rest_rate_rad_s = 0.1;           ///< rest: rates below this ...
+    double rest_force_m_s2 = 0.3;           ///< ... and force within this of gravity ...
+    double rest_s = 0.2;                    ///< ... for so long
+    double rest_velocity_sigma_m_s = 0.01;  ///< of "standing still"
+    double rate_sigma_rad_s = 20.0;         ///< how fast the body turns as a rule, one axis
+    double tilt_max_rad = 0.5;              ///< at a standstill; beyond this a turn was lost
+    double velocity_gate = 5.0;             ///< likewise of the velocity, in standard deviations
+    double rate_max_rad_s = 50.0;           ///< no answer lies beyond
+    double gap_max_s = 1.0;
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit.group("rails_", p.rails);
+      visit(p.tilted_rails,
+            on_off("tilted_rails", "1: rails are looked for as tilted planes too; 0: axis by axis, as published",
+                   Rank::first));
+      visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.1, 100.0, "strength of gravity"});
+      visit(p.gyro_noise_density, {"gyro_noise_density", "rad/s/sqrt(Hz)", 1e-9, 1.0, "noise density of the gyro"});
+      visit(p.accel_noise_density,
+            {"accel_noise_density", "m/s^2/sqrt(Hz)", 1e-9, 10.0, "noise density of the accelerometer"});
+      visit(p.accel_error_m_s2, {"accel_error_m_s2", "m/s^2", 0.0, 100.0,
+                                 "scale and bias of the specific force, taken as noise per sample", Rank::first});
+      visit(p.jerk_psd, {"jerk_psd_rad2_s5", "rad^2/s^5", 1.0, 1e12, "density of the white angular jerk", Rank::first});
+      visit(p.rest_rate_rad_s, {"rest_rate_rad_s", "rad/s", 1e-6, 10.0, "quiet: of the rate"});
+      visit(p.rest_force_m_s2, {"rest_force_m_s2", "m/s^2", 1e-6, 10.0, "quiet: of the force"});
+      visit(p.rest_s, {"rest_s", "s", 0.0, 60.0, "quiet for so long is a standstill"});
+      visit(p.rest_velocity_sigma_m_s, {"rest_velocity_sigma_m_s", "m/s", 1e-6, 10.0, "of \"standing still\""});
+      visit(p.rate_sigma_rad_s, {"rate_sigma_rad_s", "rad/s", 1e-3, 1e4, "deviation of the rate in the long run"});
+      visit(p.tilt_max_rad, {"tilt_max_rad", "rad", 0.0, 4.0, "at a standstill; beyond this a turn was lost"});
+      visit(p.velocity_gate, {"velocity_gate", "1", 0.0, 1e6, "likewise of the velocity, in standard deviations"});
+      visit(p.rate_max_rad_s, {"rate_max_rad_s", "rad/s", 1.0, 1e4, "no answer lies beyond"});
+      visit(p.gap_max_s,
+            {"gap_max_s", "s", 1e-6, 3600.0, "longest time between two samples before the run is refused"});
+    }
   };
 
   /// Throws InvalidParams on a parameter outside of its bound.

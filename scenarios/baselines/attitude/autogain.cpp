@@ -44,11 +44,8 @@ Eigen::Quaterniond towards_roll_and_pitch(const Eigen::Quaterniond& q, const Eig
 }  // namespace
 
 Autogain::Autogain(const Params& p) : params_(p) {
-  require_within("gain_rad_s", p.gain_rad_s, 0.0, 10.0);
-  require_within("tau_s", p.tau_s, 1e-3, 1e4);
-  require_within("lower_rad_s", p.lower_rad_s, 0.0, 100.0);
+  require_fields(p);
   require_within("upper_rad_s", p.upper_rad_s, p.lower_rad_s + 1e-9, 100.0);
-  require_within("gap_max_s", p.gap_max_s, 1e-9, 1e4);
 }
 
 /// attitude.md (A12), (A13), (A14).

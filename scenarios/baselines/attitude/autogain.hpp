@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "tumble/common/imu.hpp"
+#include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble::baselines {
@@ -31,17 +32,38 @@ class Autogain {
  public:
   struct Params {
     AutogainProfile profile = AutogainProfile::paper;
-    double gain_rad_s = 0.2;  ///< capital Theta: the Madgwick gain at full rate; bound [0, 10]
-    double tau_s = 0.396;  ///< of the complementary step at rest: 0.02 (Theta / 10) per sample at 125 Hz; [1e-3, 1e4]
-    double lower_rad_s = 0.1;  ///< bound [0, 100]; not read by code2021
-    double upper_rad_s = 2.1;  ///< bound (lower, 100]; not read by code2021
+    double gain_rad_s = 0.2;   ///< capital Theta: the Madgwick gain at full rate
+    double tau_s = 0.396;      ///< of the complementary step at rest: 0.02 (Theta / 10) per sample at 125 Hz
+    double lower_rad_s = 0.1;  ///< not read by code2021
+    double upper_rad_s = 2.1;  ///< beyond lower_rad_s; not read by code2021
     /// The complementary step as in the authors' code, whose guard against gimbal lock is always true: the target keeps
     /// the current roll, so that roll is never corrected. For comparison with their recordings.
     bool roll_error_2021 = false;
     /// The complementary step as the smallest rotation instead of a target in roll, pitch and yaw; the smooth
     /// profile's.
     bool tilt_form = false;
-    double gap_max_s = 1.0;  ///< bound (0, 1e4]
+    double gap_max_s = 1.0;
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit(p.profile, {"profile", "1", 0.0, 2.0,
+                        "factor by rate: 0 the paper's eq. 2, 1 the authors' code of 2021, 2 smooth", Rank::first});
+      visit(p.gain_rad_s,
+            {"gain_rad_s", "rad/s", 0.0, 10.0, "capital Theta: the Madgwick gain at full rate (eq. 4)", Rank::first});
+      visit(p.tau_s, {"tau_s", "s", 1e-3, 1e4, "of the complementary step at rest (eq. 5)", Rank::first});
+      visit(p.lower_rad_s,
+            {"lower_rad_s", "rad/s", 0.0, 100.0, "rate below which the accelerometer leads (eq. 2)", Rank::first});
+      visit(p.upper_rad_s, {"upper_rad_s", "rad/s", 1e-9, 100.0,
+                            "rate above which the gyro leads, beyond lower (eq. 2)", Rank::first});
+      visit(p.roll_error_2021,
+            on_off("roll_error_2021", "1: roll is never corrected, as in the authors' code of 2021", Rank::first));
+      visit(p.tilt_form,
+            on_off("tilt_form",
+                   "1: the complementary step as the smallest rotation instead of a target in roll, pitch and yaw",
+                   Rank::first));
+      visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "longest time between two samples before the run is refused"});
+    }
   };
   struct State {
     Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();

@@ -15,8 +15,7 @@ constexpr double kForceMin_m_s2 = 1e-6;
 }
 
 Complementary::Complementary(const Params& params) : params_(params) {
-  require_within("tau_s", params.tau_s, 1e-3, 1e4);
-  require_within("gap_max_s", params.gap_max_s, 1e-9, 1e4);
+  require_fields(params);
 }
 
 Status Complementary::step(const ImuSample& sample, State& state) const {

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 
 #include "tumble/common/imu.hpp"
+#include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble::baselines {
@@ -13,8 +14,18 @@ namespace tumble::baselines {
 class Complementary {
  public:
   struct Params {
-    double tau_s = 0.396;    ///< 0.02 per sample at 125 Hz, as published for the sphere; bound [1e-3, 1e4]
-    double gap_max_s = 1.0;  ///< bound (0, 1e4]
+    double tau_s = 0.396;  ///< 0.02 per sample at 125 Hz, as published for the sphere
+    double gap_max_s = 1.0;
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit(p.tau_s,
+            {"tau_s", "s", 1e-3, 1e4,
+             "time in which the accelerometer takes over: 0.02 per sample at 125 Hz (Zevering et al., MFI 2021)",
+             Rank::first});
+      visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "longest time between two samples before the run is refused"});
+    }
   };
   struct State {
     Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();

@@ -3,7 +3,6 @@
 
 #include <Eigen/LU>
 #include <cmath>
-#include <numbers>
 
 #include "tumble/attitude/strapdown.hpp"
 #include "tumble/attitude/timing.hpp"
@@ -13,17 +12,10 @@ namespace tumble::baselines {
 
 namespace {
 constexpr double kForceMin_m_s2 = 1e-6;
-constexpr double kSmallest = 1e-12;
 }  // namespace
 
 Eskf::Eskf(const Params& p) : params_(p) {
-  require_within("gravity_m_s2", p.gravity_m_s2, kSmallest, 100.0);
-  require_within("gyro_noise_rad_sqrts", p.gyro_noise_rad_sqrts, kSmallest, 1.0);
-  require_within("bias_walk_rad_s_sqrts", p.bias_walk_rad_s_sqrts, 0.0, 1.0);
-  require_within("bias_sigma_start_rad_s", p.bias_sigma_start_rad_s, 0.0, 1.0);
-  require_within("tilt_sigma_start_rad", p.tilt_sigma_start_rad, kSmallest, std::numbers::pi);
-  require_within("acceleration_noise_m_s2_sqrts", p.acceleration_noise_m_s2_sqrts, kSmallest, 100.0);
-  require_within("gap_max_s", p.gap_max_s, 1e-9, 1e4);
+  require_fields(p);
 }
 
 Status Eskf::step(const ImuSample& sample, State& state) const {

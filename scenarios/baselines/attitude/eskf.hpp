@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 
 #include "tumble/common/imu.hpp"
+#include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble::baselines {
@@ -19,13 +20,31 @@ class Eskf {
   using Covariance = Eigen::Matrix<double, 6, 6>;
 
   struct Params {
-    double gravity_m_s2 = 9.80665;               ///< bound (0, 100]
-    double gyro_noise_rad_sqrts = 1e-3;          ///< angle random walk per sqrt(s); bound (0, 1]
-    double bias_walk_rad_s_sqrts = 3e-5;         ///< per sqrt(s); bound [0, 1]
-    double bias_sigma_start_rad_s = 8.7266e-3;   ///< 0.5 deg/s; bound [0, 1]
-    double tilt_sigma_start_rad = 0.02;          ///< bound (0, pi]
-    double acceleration_noise_m_s2_sqrts = 0.5;  ///< density: sigma of the mean over 1 s; bound (0, 100]
-    double gap_max_s = 1.0;                      ///< bound (0, 1e4]
+    double gravity_m_s2 = 9.80665;
+    double gyro_noise_rad_sqrts = 1e-3;         ///< angle random walk per sqrt(s)
+    double bias_walk_rad_s_sqrts = 3e-5;        ///< per sqrt(s)
+    double bias_sigma_start_rad_s = 8.7266e-3;  ///< 0.5 deg/s
+    double tilt_sigma_start_rad = 0.02;
+    double acceleration_noise_m_s2_sqrts = 0.5;  ///< density: sigma of the mean over 1 s
+    double gap_max_s = 1.0;
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
+      visit(p.gyro_noise_rad_sqrts,
+            {"gyro_noise_rad_sqrts", "rad/sqrt(s)", 1e-12, 1.0, "angle random walk", Rank::first});
+      visit(p.bias_walk_rad_s_sqrts,
+            {"bias_walk_rad_s_sqrts", "rad/s/sqrt(s)", 0.0, 1.0, "random walk of the gyro's bias", Rank::first});
+      visit(p.bias_sigma_start_rad_s,
+            {"bias_sigma_start_rad_s", "rad/s", 0.0, 1.0, "prior of the gyro's bias", Rank::first});
+      visit(p.tilt_sigma_start_rad, {"tilt_sigma_start_rad", "rad", 1e-12, 3.141592653589793,
+                                     "error of the levelling by the first sample", Rank::first});
+      visit(p.acceleration_noise_m_s2_sqrts,
+            {"acceleration_noise_m_s2_sqrts", "m/s^2 sqrt(s)", 1e-12, 100.0,
+             "the body's acceleration as white noise: sigma of its mean over 1 s", Rank::first});
+      visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "longest time between two samples before the run is refused"});
+    }
   };
   struct State {
     Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();

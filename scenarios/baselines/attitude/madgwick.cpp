@@ -49,8 +49,7 @@ Eigen::Quaterniond madgwick_step(const Eigen::Quaterniond& q_WI, const Eigen::Ve
 }
 
 Madgwick::Madgwick(const Params& params) : params_(params) {
-  require_within("gain_rad_s", params.gain_rad_s, 0.0, 10.0);
-  require_within("gap_max_s", params.gap_max_s, 1e-9, 1e4);
+  require_fields(params);
 }
 
 Status Madgwick::step(const ImuSample& sample, State& state) const {

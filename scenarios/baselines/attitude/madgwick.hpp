@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 
 #include "tumble/common/imu.hpp"
+#include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble::baselines {
@@ -15,8 +16,16 @@ namespace tumble::baselines {
 class Madgwick {
  public:
   struct Params {
-    double gain_rad_s = 0.033;  ///< quaternion rate of the correction; bound [0, 10]. sqrt(3/4) x gyro error per axis
-    double gap_max_s = 1.0;     ///< bound (0, 1e4]
+    double gain_rad_s = 0.033;  ///< quaternion rate of the correction. sqrt(3/4) x gyro error per axis
+    double gap_max_s = 1.0;
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit(p.gain_rad_s, {"gain_rad_s", "rad/s", 0.0, 10.0,
+                           "speed of the tilt correction, as a quaternion rate (Madgwick, eq. 33)", Rank::first});
+      visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "longest time between two samples before the run is refused"});
+    }
   };
   struct State {
     Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();

@@ -12,9 +12,7 @@ constexpr double kForceMin_m_s2 = 1e-6;
 }
 
 Mahony::Mahony(const Params& params) : params_(params) {
-  require_within("proportional_rad_s", params.proportional_rad_s, 0.0, 100.0);
-  require_within("integral_rad_s2", params.integral_rad_s2, 0.0, 100.0);
-  require_within("gap_max_s", params.gap_max_s, 1e-9, 1e4);
+  require_fields(params);
 }
 
 Status Mahony::step(const ImuSample& sample, State& state) const {

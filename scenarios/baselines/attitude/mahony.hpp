@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 
 #include "tumble/common/imu.hpp"
+#include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble::baselines {
@@ -14,9 +15,19 @@ namespace tumble::baselines {
 class Mahony {
  public:
   struct Params {
-    double proportional_rad_s = 0.2;  ///< kp; bound [0, 100]
-    double integral_rad_s2 = 0.001;   ///< ki; bound [0, 100]
-    double gap_max_s = 1.0;           ///< bound (0, 1e4]
+    double proportional_rad_s = 0.2;  ///< kp
+    double integral_rad_s2 = 0.001;   ///< ki
+    double gap_max_s = 1.0;
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit(p.proportional_rad_s,
+            {"proportional_rad_s", "rad/s", 0.0, 100.0, "gain kp on the tilt error (eq. 32)", Rank::first});
+      visit(p.integral_rad_s2,
+            {"integral_rad_s2", "rad/s^2", 0.0, 100.0, "gain ki: takes up the gyro's bias (eq. 32)", Rank::first});
+      visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "longest time between two samples before the run is refused"});
+    }
   };
   struct State {
     Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();

@@ -23,16 +23,8 @@ constexpr double kStartSigma_rad = 0.01, kStartSigma_m_s = 0.05, kStartSigma_rad
 
 PointwiseFilter::PointwiseFilter(const Params& params, const Eigen::Quaterniond& q_WI)
     : params_(params), q_WI_(q_WI), map_({params.map_voxel_m, params.map_spacing_m}) {
-  require_within("gravity_m_s2", params.gravity_m_s2, 0.0, 100.0);
+  require_fields(params);
   require_within("range_max_m", params.range_max_m, params.range_min_m, 1e4);
-  require_within("sweep_voxel_m", params.sweep_voxel_m, 0.01, 10.0);
-  require_within("neighbours", params.neighbours, 3, Neighbours::kMax);
-  require_within("match_distance_m", params.match_distance_m, 1e-3, 4.0);
-  require_within("rate_walk_rad_s_sqrt_s", params.rate_walk_rad_s_sqrt_s, 1e-9, 1e6);
-  require_within("force_walk_m_s2_sqrt_s", params.force_walk_m_s2_sqrt_s, 1e-9, 1e6);
-  require_within("gyro_sigma_rad_s", params.gyro_sigma_rad_s, 1e-9, 1e3);
-  require_within("accel_sigma_m_s2", params.accel_sigma_m_s2, 1e-9, 1e3);
-  require_within("plane_sigma_m", params.plane_sigma_m, 1e-9, 10.0);
   f_m_s2_ = q_WI_.conjugate() * Eigen::Vector3d(0.0, 0.0, params.gravity_m_s2);
   P_.diagonal().segment<2>(3).setConstant(kStartSigma_rad * kStartSigma_rad);
   P_.diagonal().segment<3>(6).setConstant(kStartSigma_m_s * kStartSigma_m_s);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tumble/common/imu.hpp"
+#include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/mapping/deskew.hpp"
 #include "tumble/mapping/lidar.hpp"
@@ -31,18 +32,43 @@ class PointwiseFilter {
     double range_min_m = 0.3;
     double range_max_m = 100.0;
     Eigen::AlignedBox3d own_body_L{Eigen::Vector3d(-0.5, -0.4, -0.27), Eigen::Vector3d(0.5, 0.4, 0.23)};
-    double sweep_voxel_m = 0.25;  ///< one point per voxel of a sweep, as measured, updates the state; bound [0.01, 10]
+    double sweep_voxel_m = 0.25;  ///< one point per voxel of a sweep, as measured, updates the state
     double map_voxel_m = 0.5;
     double map_spacing_m = 0.1;
-    int neighbours = 8;             ///< of the plane fit; bound [3, 32]
-    double match_distance_m = 1.0;  ///< bound (0, 4]
-    /// Densities of the random walks; the square roots of the authors' 1000 and 500. Bounds (0, 1e6].
+    int neighbours = 8;  ///< of the plane fit
+    double match_distance_m = 1.0;
+    /// Densities of the random walks; the square roots of the authors' 1000 and 500.
     double rate_walk_rad_s_sqrt_s = 31.6;
     double force_walk_m_s2_sqrt_s = 22.4;
-    double gyro_sigma_rad_s = 0.02;  ///< of one reading; bound (0, 1e3]
-    double accel_sigma_m_s2 = 0.1;   ///< of one reading; bound (0, 1e3]
-    double plane_sigma_m = 0.03;     ///< of a point's distance; bound (0, 10]
+    double gyro_sigma_rad_s = 0.02;  ///< of one reading
+    double accel_sigma_m_s2 = 0.1;   ///< of one reading
+    double plane_sigma_m = 0.03;     ///< of a point's distance
     std::size_t updates_min = 50;    ///< points accepted; fewer reject a sweep
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.0, 100.0, "strength of gravity"});
+      visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "nearer returns are dropped"});
+      visit(p.range_max_m, {"range_max_m", "m", 0.0, 1e4, "farther returns are dropped"});
+      visit(p.own_body_L.min(), {"own_body_min_m", "m", -kUnbounded, kUnbounded,
+                                 "least corner of the box that holds the robot's own returns, lidar axes"});
+      visit(p.own_body_L.max(), {"own_body_max_m", "m", -kUnbounded, kUnbounded, "and its largest corner"});
+      visit(p.sweep_voxel_m,
+            {"sweep_voxel_m", "m", 0.01, 10.0, "one point per voxel of a sweep updates the state", Rank::first});
+      visit(p.map_voxel_m, {"map_voxel_m", "m", 0.01, 100.0, "cell of the map's hash"});
+      visit(p.map_spacing_m, {"map_spacing_m", "m", 0.0, 100.0, "edge of the cube that holds one map point; 0: all"});
+      visit(p.neighbours, {"neighbours", "1", 3, 32, "map points per plane fit"});
+      visit(p.match_distance_m, {"match_distance_m", "m", 1e-3, 4.0, "farther map points are no match"});
+      visit(p.rate_walk_rad_s_sqrt_s,
+            {"rate_walk_rad_s_sqrt_s", "rad/s/sqrt(s)", 1e-9, 1e6, "random walk of the rate", Rank::first});
+      visit(p.force_walk_m_s2_sqrt_s,
+            {"force_walk_m_s2_sqrt_s", "m/s^2/sqrt(s)", 1e-9, 1e6, "random walk of the specific force", Rank::first});
+      visit(p.gyro_sigma_rad_s, {"gyro_sigma_rad_s", "rad/s", 1e-9, 1e3, "of one reading", Rank::first});
+      visit(p.accel_sigma_m_s2, {"accel_sigma_m_s2", "m/s^2", 1e-9, 1e3, "of one reading", Rank::first});
+      visit(p.plane_sigma_m, {"plane_sigma_m", "m", 1e-9, 10.0, "of a point's distance to its plane", Rank::first});
+      visit(p.updates_min, {"updates_min", "1", 0, 1e9, "points accepted; fewer reject a sweep"});
+    }
   };
   static constexpr int kErrors = 15;
 

@@ -22,10 +22,8 @@ Eigen::Isometry3d pose_of(const MotionState& state) {
 
 RigidOdometry::RigidOdometry(const Params& params)
     : params_(params), map_({params.map_voxel_m, params.map_spacing_m}), registration_(params.registration) {
-  require_within("range_min_m", params.range_min_m, 0.0, 10.0);
+  require_fields(params);
   require_within("range_max_m", params.range_max_m, params.range_min_m, 1e4);
-  require_within("sweep_voxel_m", params.sweep_voxel_m, 0.01, 10.0);
-  require_within("degenerate_sigma_m", params.degenerate_sigma_m, 1e-6, 1e3);
 }
 
 Status RigidOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/mapping/lidar.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
@@ -24,16 +25,35 @@ class RigidOdometry {
  public:
   struct Params {
     Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< lidar in the axes whose motion is given
-    double range_min_m = 0.3;                                ///< bound [0, 10]
-    double range_max_m = 100.0;                              ///< bound (range_min_m, 1e4]
+    double range_min_m = 0.3;
+    double range_max_m = 100.0;
     Eigen::AlignedBox3d own_body_L{Eigen::Vector3d(-0.5, -0.4, -0.27), Eigen::Vector3d(0.5, 0.4, 0.23)};
-    double sweep_voxel_m = 0.25;  ///< one point per voxel of a sweep is registered; bound [0.01, 10]
-    double map_voxel_m = 0.5;     ///< bound [0.01, 10]
-    double map_spacing_m = 0.1;   ///< bound [0, map_voxel_m]
+    double sweep_voxel_m = 0.25;  ///< one point per voxel of a sweep is registered
+    double map_voxel_m = 0.5;
+    double map_spacing_m = 0.1;
     /// Whether a sweep that could not be registered still extends the map at the pose believed, as most peers do.
     bool extend_always = true;
     double degenerate_sigma_m = 0.15;  ///< as in LidarInertialOdometry
     Registration::Params registration;
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "nearer returns are dropped"});
+      visit(p.range_max_m, {"range_max_m", "m", 0.0, 1e4, "farther returns are dropped"});
+      visit(p.own_body_L.min(), {"own_body_min_m", "m", -kUnbounded, kUnbounded,
+                                 "least corner of the box that holds the robot's own returns, lidar axes"});
+      visit(p.own_body_L.max(), {"own_body_max_m", "m", -kUnbounded, kUnbounded, "and its largest corner"});
+      visit(p.sweep_voxel_m,
+            {"sweep_voxel_m", "m", 0.01, 10.0, "one point per voxel of a sweep is registered", Rank::first});
+      visit(p.map_voxel_m, {"map_voxel_m", "m", 0.01, 100.0, "cell of the map's hash", Rank::first});
+      visit(p.map_spacing_m,
+            {"map_spacing_m", "m", 0.0, 100.0, "edge of the cube that holds one map point", Rank::first});
+      visit(p.extend_always, on_off("extend_always", "1: a sweep that could not be registered still extends the map"));
+      visit(p.degenerate_sigma_m, {"degenerate_sigma_m", "m", 1e-6, 1e3,
+                                   "a sweep that its surfaces hold less surely in some direction is degenerate"});
+      visit.group("", p.registration);
+    }
   };
 
   /// Motion over a stretch as a model expects it, and how sure it is of the state at the end of it.

@@ -25,15 +25,8 @@ Vector6 solve(const Matrix6& H, const Vector6& g) {
 }  // namespace
 
 TrimmedIcp::TrimmedIcp(const Params& params) : params_(params) {
-  require_within("neighbours", params.neighbours, 1, Neighbours::kMax);
-  require_within("match_distance_m", params.match_distance_m, 1e-3, 4.0);
-  require_within("normal_neighbours", params.normal_neighbours, 3, Neighbours::kMax);
-  require_within("trim_max", params.trim_max, 1e-3, 1.0);
+  require_fields(params);
   require_within("trim_min", params.trim_min, 1e-3, params.trim_max);
-  require_within("trim_lambda", params.trim_lambda, 0.0, 100.0);
-  require_within("iterations_max", params.iterations_max, 1, 1000);
-  require_within("correction_max_m", params.correction_max_m, 0.0, 1e6);
-  require_within("correction_max_rad", params.correction_max_rad, 0.0, 3.15);
 }
 
 std::size_t TrimmedIcp::trim(std::span<const float> sorted_d2, std::size_t slots, const Params& params) {

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "tumble/common/parameters.hpp"
 #include "tumble/mapping/plane_fit.hpp"
 #include "tumble/mapping/registration.hpp"
 #include "tumble/mapping/voxel_map.hpp"
@@ -22,11 +23,11 @@ namespace tumble::baselines {
 class TrimmedIcp {
  public:
   struct Params {
-    int neighbours = 8;             ///< matches per point; bound [1, 32]
-    double match_distance_m = 1.0;  ///< bound (0, 4]
-    int normal_neighbours = 20;     ///< of the map's normals; bound [3, 32]
-    double trim_min = 0.5;          ///< least share of matches kept; bound (0, trim_max]
-    double trim_max = 0.7;          ///< bound [trim_min, 1]
+    int neighbours = 8;  ///< matches per point
+    double match_distance_m = 1.0;
+    int normal_neighbours = 20;  ///< of the map's normals
+    double trim_min = 0.5;       ///< least share of matches kept
+    double trim_max = 0.7;
     double trim_lambda = 2.35;
     /// The trap of the original: shares are taken of all slots though unmatched ones are missing from the sorted list.
     /// There it read past its end; here the index stops at the end.
@@ -36,6 +37,28 @@ class TrimmedIcp {
     double step_rad = 0.001;
     double correction_max_m = 15.0;
     double correction_max_rad = 1.1;
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit(p.neighbours, {"neighbours", "1", 1, 32, "matches per point"});
+      visit(p.match_distance_m, {"match_distance_m", "m", 1e-3, 4.0, "farther map points are no match", Rank::first});
+      visit(p.normal_neighbours, {"normal_neighbours", "1", 3, 32, "map points per normal"});
+      visit(p.trim_min, {"trim_min", "1", 1e-3, 1.0, "least share of matches kept"});
+      visit(p.trim_max, {"trim_max", "1", 1e-3, 1.0, "largest share of matches kept"});
+      visit(p.trim_lambda, {"trim_lambda", "1", 0.0, 100.0, "exponent of the share in the cost that chooses it"});
+      visit(
+          p.count_unmatched_slots,
+          on_off("trim_counts_unmatched",
+                 "1: the share kept is one of all slots, unmatched ones too (as launched, where it read past the end)",
+                 Rank::first));
+      visit(p.iterations_max, {"iterations_max", "1", 1, 1000, "most steps of Gauss-Newton"});
+      visit(p.step_m, {"step_m", "m", 0.0, 1.0, "converged when a step is below this and its turn below step_rad"});
+      visit(p.step_rad, {"step_rad", "rad", 0.0, 1.0, "converged when a step turns by less"});
+      visit(p.correction_max_m, {"correction_max_m", "m", 0.0, 1e6, "a larger correction of the prior is refused"});
+      visit(p.correction_max_rad,
+            {"correction_max_rad", "rad", 0.0, 3.15, "a larger correction of the prior is refused"});
+    }
   };
   struct Point {
     Eigen::Vector3f position_m;

@@ -22,12 +22,7 @@ Eigen::Vector3d coupling(const Eigen::Vector3d& factor) {
 }  // namespace
 
 AutogainFusion::AutogainFusion(const Params& p) : params_(p), autogain_(p.autogain) {
-  require_within("radius_m", p.radius_m, 1e-9, 10.0);
-  require_within("gravity_m_s2", p.gravity_m_s2, 1e-9, 100.0);
-  require_within("limiter", p.limiter, 0.0, 100.0);
-  require_within("rotation_weight", p.rotation_weight, 0.0, 10.0);
-  require_within("acceleration_weight", p.acceleration_weight, 0.0, 10.0);
-  require_within("gap_max_s", p.gap_max_s, 1e-9, 1e4);
+  require_fields(p);
 }
 
 Status AutogainFusion::step(const ImuSample& sample, const Eigen::Quaterniond& q_WI, State& state) const {

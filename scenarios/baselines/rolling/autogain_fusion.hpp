@@ -5,6 +5,7 @@
 
 #include "scenarios/baselines/attitude/autogain.hpp"
 #include "tumble/common/imu.hpp"
+#include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble::baselines {
@@ -17,11 +18,11 @@ namespace tumble::baselines {
 class AutogainFusion {
  public:
   struct Params {
-    double radius_m = 0.145;           ///< bound (0, 10]
-    double gravity_m_s2 = 9.80665;     ///< bound (0, 100]
-    double limiter = 1.2;              ///< |v_acc| to this times |v_rot|; 1.1 in the code; bound [0, 100]
-    double rotation_weight = 0.5;      ///< eq 13; bound [0, 10]
-    double acceleration_weight = 0.5;  ///< eq 13; bound [0, 10]
+    double radius_m = 0.145;
+    double gravity_m_s2 = 9.80665;
+    double limiter = 1.2;              ///< |v_acc| to this times |v_rot|; 1.1 in the code
+    double rotation_weight = 0.5;      ///< eq 13
+    double acceleration_weight = 0.5;  ///< eq 13
     Autogain::Params autogain = {};    ///< for the factors of eq 2 alone
 
     // Errata. The defaults are the paper's equations as printed.
@@ -32,7 +33,37 @@ class AutogainFusion {
     bool shrink_per_axis = true;      ///< eq 12 takes v_z^2 from each axis; false once from the horizontal vector
     bool vertical_by_norm = false;    ///< the code's limit of |v_z|: the norm of v_rot; false the mean of its two sizes
 
-    double gap_max_s = 1.0;  ///< bound (0, 1e4]
+    double gap_max_s = 1.0;
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit(p.radius_m, {"radius_m", "m", 1e-9, 10.0, "of the sphere"});
+      visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-9, 100.0, "strength of gravity"});
+      visit(p.limiter, {"limiter", "1", 0.0, 100.0,
+                        "integrated over rolling velocity, at most; 1.1 in the authors' code", Rank::first});
+      visit(p.rotation_weight, {"rotation_weight", "1", 0.0, 10.0, "of the rolling velocity (eq. 13)", Rank::first});
+      visit(p.acceleration_weight,
+            {"acceleration_weight", "1", 0.0, 10.0, "of the integrated acceleration (eq. 13)", Rank::first});
+      visit.group("autogain_", p.autogain);
+      visit(
+          p.integrate_in_body,
+          on_off("integrate_in_body", "eq 7 in the turning frame, without w x v; false integrates in W", Rank::first));
+      visit(p.direction_only,
+            on_off("direction_only", "the code's: f made a unit vector before gravity is removed, and never times g",
+                   Rank::first));
+      visit(p.recursive_coupling,
+            on_off("recursive_coupling", "the code's: eq 8 scales the integral itself, each sample", Rank::first));
+      visit(p.limit_per_axis,
+            on_off("limit_per_axis", "limits along the world's axes; false limits the horizontal vector", Rank::first));
+      visit(p.shrink_per_axis,
+            on_off("shrink_per_axis", "eq 12 takes v_z^2 from each axis; false once from the horizontal vector",
+                   Rank::first));
+      visit(
+          p.vertical_by_norm,
+          on_off("vertical_by_norm", "the code's limit of |v_z|: the norm of v_rot; false the mean of its two sizes"));
+      visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "longest time between two samples before the run is refused"});
+    }
   };
   struct State {
     Eigen::Vector3d p_WG_m = Eigen::Vector3d::Zero();

@@ -7,8 +7,7 @@
 namespace tumble::baselines {
 
 DoubleIntegration::DoubleIntegration(const Params& params) : params_(params) {
-  require_within("gravity_m_s2", params.gravity_m_s2, 1e-9, 100.0);
-  require_within("gap_max_s", params.gap_max_s, 1e-9, 1e4);
+  require_fields(params);
 }
 
 Status DoubleIntegration::step(const ImuSample& sample, const Eigen::Quaterniond& q_WI, State& state) const {

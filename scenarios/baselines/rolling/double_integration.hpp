@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 
 #include "tumble/common/imu.hpp"
+#include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble::baselines {
@@ -14,8 +15,15 @@ namespace tumble::baselines {
 class DoubleIntegration {
  public:
   struct Params {
-    double gravity_m_s2 = 9.80665;  ///< bound (0, 100]
-    double gap_max_s = 1.0;         ///< bound (0, 1e4]
+    double gravity_m_s2 = 9.80665;
+    double gap_max_s = 1.0;
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-9, 100.0, "strength of gravity"});
+      visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "longest time between two samples before the run is refused"});
+    }
   };
   struct State {
     Eigen::Vector3d p_WI_m = Eigen::Vector3d::Zero();

@@ -24,8 +24,7 @@ Status check_input(const Eigen::Vector3d& w_I_rad_s, const Eigen::Quaterniond& q
 }  // namespace
 
 RollingOdometry::RollingOdometry(const Params& params) : params_(params) {
-  require_within("radius_m", params.radius_m, 1e-9, 10.0);
-  require_within("gap_max_s", params.gap_max_s, 1e-9, 1e4);
+  require_fields(params);
   require_within("normal_W length", params.normal_W.norm(), 1.0 - kUnitTolerance, 1.0 + kUnitTolerance);
 }
 

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 
+#include "tumble/common/parameters.hpp"
 #include "tumble/common/pose.hpp"
 #include "tumble/common/status.hpp"
 
@@ -13,9 +14,17 @@ namespace tumble::baselines {
 class RollingOdometry {
  public:
   struct Params {
-    double radius_m = 0.145;                              ///< bound (0, 10]
+    double radius_m = 0.145;
     Eigen::Vector3d normal_W = Eigen::Vector3d::UnitZ();  ///< unit, from the contact to the centre
-    double gap_max_s = 1.0;                               ///< bound (0, 1e4]
+    double gap_max_s = 1.0;
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit(p.radius_m, {"radius_m", "m", 1e-9, 10.0, "of the sphere"});
+      visit(p.normal_W, {"normal_W", "1", -1.0, 1.0, "unit normal of the floor, from the contact to the centre"});
+      visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "longest time between two samples before the run is refused"});
+    }
   };
   struct State {
     Eigen::Vector3d p_WG_m = Eigen::Vector3d::Zero();

@@ -48,19 +48,8 @@ SlipObserver::State::State() {
 }
 
 SlipObserver::SlipObserver(const Params& p) : params_(p) {
-  require_within("radius_m", p.radius_m, 1e-9, 10.0);
-  require_within("gravity_m_s2", p.gravity_m_s2, 1e-9, 100.0);
+  require_fields(p);
   require_within("lever_arm_m", p.lever_arm_m.norm(), 0.0, 10.0);
-  require_within("open_m_s2", p.open_m_s2, 1e-9, 100.0);
-  require_within("quiet_m_s2", p.quiet_m_s2, 1e-9, 100.0);
-  require_within("quiet_time_s", p.quiet_time_s, 0.0, 10.0);
-  require_within("closing_speed_m_s", p.closing_speed_m_s, 1e-9, 10.0);
-  require_within("timeout_s", p.timeout_s, 1e-9, 100.0);
-  require_within("ignore_time_s", p.ignore_time_s, 0.0, 100.0);
-  require_within("closed_decay_per_s", p.closed_decay_per_s, 0.0, 1e3);
-  require_within("bias_tau_s", p.bias_tau_s, 1e-9, 1e3);
-  require_within("blend_tau_s", p.blend_tau_s, 1e-9, 1e3);
-  require_within("gap_max_s", p.gap_max_s, 1e-9, 1e4);
 }
 
 Status SlipObserver::step(const ImuSample& sample, const Eigen::Quaterniond& q_WI, State& state) const {

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "tumble/common/imu.hpp"
+#include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble::baselines {
@@ -25,19 +26,40 @@ class SlipObserver {
   static constexpr int kHistory = 25;  ///< samples over which an event is integrated back
 
   struct Params {
-    double radius_m = 0.145;                                ///< bound (0, 10]
-    double gravity_m_s2 = 9.80665;                          ///< bound (0, 100]
+    double radius_m = 0.145;
+    double gravity_m_s2 = 9.80665;
     Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< from centre to IMU, sensor axes
-    double open_m_s2 = 0.5;                                 ///< |e| that opens an event; bound (0, 100]
-    double quiet_m_s2 = 0.25;                               ///< |e| below which an event may end; bound (0, 100]
-    double quiet_time_s = 0.12;                             ///< for so long; bound [0, 10]
-    double closing_speed_m_s = 0.08;                        ///< |u| below which an event may end; bound (0, 10]
-    double timeout_s = 2.0;                                 ///< an event longer than this is undone; bound (0, 100]
-    double ignore_time_s = 1.0;       ///< quiet for so long after a time-out before the next event; bound [0, 100]
-    double closed_decay_per_s = 8.0;  ///< of u while closed; bound [0, 1e3]
-    double bias_tau_s = 1.0;          ///< of e's mean while closed and quiet (tilt, accelerometer bias); (0, 1e3]
-    double blend_tau_s = 0.25;        ///< in which a correction of the position enters; bound (0, 1e3]
-    double gap_max_s = 1.0;           ///< bound (0, 1e4]
+    double open_m_s2 = 0.5;                                 ///< |e| that opens an event
+    double quiet_m_s2 = 0.25;                               ///< |e| below which an event may end
+    double quiet_time_s = 0.12;                             ///< for so long
+    double closing_speed_m_s = 0.08;                        ///< |u| below which an event may end
+    double timeout_s = 2.0;                                 ///< an event longer than this is undone
+    double ignore_time_s = 1.0;       ///< quiet for so long after a time-out before the next event
+    double closed_decay_per_s = 8.0;  ///< of u while closed
+    double bias_tau_s = 1.0;          ///< of e's mean while closed and quiet (tilt, accelerometer bias)
+    double blend_tau_s = 0.25;        ///< in which a correction of the position enters
+    double gap_max_s = 1.0;
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit(p.radius_m, {"radius_m", "m", 1e-9, 10.0, "of the sphere"});
+      visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-9, 100.0, "strength of gravity"});
+      visit(p.lever_arm_m, {"lever_arm_m", "m", -10.0, 10.0, "from the centre to the IMU, sensor axes"});
+      visit(p.open_m_s2, {"open_m_s2", "m/s^2", 1e-9, 100.0, "residual that opens an event", Rank::first});
+      visit(p.quiet_m_s2, {"quiet_m_s2", "m/s^2", 1e-9, 100.0, "residual below which an event may end", Rank::first});
+      visit(p.quiet_time_s, {"quiet_time_s", "s", 0.0, 10.0, "quiet for so long ends an event"});
+      visit(p.closing_speed_m_s,
+            {"closing_speed_m_s", "m/s", 1e-9, 10.0, "contact speed below which an event may end", Rank::first});
+      visit(p.timeout_s, {"timeout_s", "s", 1e-9, 100.0, "an event longer than this is undone", Rank::first});
+      visit(p.ignore_time_s,
+            {"ignore_time_s", "s", 0.0, 100.0, "quiet for so long after a time-out before the next event"});
+      visit(p.closed_decay_per_s,
+            {"closed_decay_per_s", "1/s", 0.0, 1e3, "decay of the contact velocity while closed"});
+      visit(p.bias_tau_s, {"bias_tau_s", "s", 1e-9, 1e3, "of the residual's mean outside of events", Rank::first});
+      visit(p.blend_tau_s, {"blend_tau_s", "s", 1e-9, 1e3, "in which a correction of the position enters"});
+      visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "longest time between two samples before the run is refused"});
+    }
   };
   struct State {
     Eigen::Vector2d p_WG_m = Eigen::Vector2d::Zero();

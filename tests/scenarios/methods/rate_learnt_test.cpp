@@ -15,7 +15,8 @@ namespace tumble::scenarios {
 namespace {
 
 sim::Values defaults() {
-  return sim::resolve("method.rate/tumble", {}, tumble_rate_parameters());
+  const SettingsTable* const stages[] = {&rate_tumble_settings()};
+  return resolve_settings("method.rate/tumble", {}, stages);
 }
 
 // the synthetic rig never flies: runs that learn nothing must not make the next ones know less than nothing

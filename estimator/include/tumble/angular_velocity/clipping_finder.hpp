@@ -9,6 +9,7 @@
 #include "tumble/angular_velocity/rail_detector.hpp"
 #include "tumble/angular_velocity/rail_planes.hpp"
 #include "tumble/common/imu.hpp"
+#include "tumble/common/parameters.hpp"
 
 namespace tumble {
 
@@ -52,6 +53,16 @@ class ClippingFinder {
     RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();  ///< likewise
     /// False: by flags and walls alone, as methods were published that know no other rail.
     bool tilted = true;
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit.group("rails_", p.walls);
+      visit.group("planes_", p.planes);
+      visit.group("accel_planes_", p.accel_planes);
+      visit(p.tilted,
+            on_off("tilted", "0: by flags and walls alone, as methods were published that know no other rail"));
+    }
   };
   struct Found {
     KnownRails rails;

@@ -10,6 +10,7 @@
 
 #include "tumble/angular_velocity/triad.hpp"
 #include "tumble/common/imu.hpp"
+#include "tumble/common/parameters.hpp"
 
 namespace tumble {
 
@@ -91,21 +92,38 @@ class RailPlaneFinder {
       out.distance_min_rad_s = 15.0;
       return out;
     }
-    /// Cross-axis sensitivity of elements before compensation: prior of each slope; [1e-4, 0.2].
+    /// Cross-axis sensitivity of elements before compensation: prior of each slope.
     double slope_sigma = 0.03;
-    double slope_max = 0.12;  ///< steepest slope searched; [0, 0.3]
-    /// Rails lower than this are not looked for: rest and creeping are constant too [rad/s]; [0.01, 1000].
+    double slope_max = 0.12;  ///< steepest slope searched
+    /// Rails lower than this are not looked for: rest and creeping are constant too [rad/s].
     double distance_min_rad_s = 1.5;
-    /// Range that the data sheet states, if any: the rail does not lie far below it [rad/s]; (0, 1000].
+    /// Range that the data sheet states, if any: the rail does not lie far below it [rad/s].
     std::optional<double> stated_rad_s = std::nullopt;
-    double offset_share = 0.02;  ///< prior of the offset and of how far elements differ, as a share of r; [1e-4, 0.2]
-    int samples_min = 4;         ///< on a rail, of one sign; [2, 1000]
-    double log_odds_before = -6.0;  ///< before anything is seen, for each element and sign; [-100, 100]
-    double log_odds_min = 1.0;      ///< of a rail that is believed; [-100, 100]
-    double log_odds_keep = -3.0;    ///< of one that was believed before and still is; [-100, log_odds_min]
+    double offset_share = 0.02;     ///< prior of the offset and of how far elements differ, as a share of r
+    int samples_min = 4;            ///< on a rail, of one sign
+    double log_odds_before = -6.0;  ///< before anything is seen, for each element and sign
+    double log_odds_min = 1.0;      ///< of a rail that is believed
+    double log_odds_keep = -3.0;    ///< of one that was believed before and still is
     /// Rails that an earlier run on the device has found: a device keeps them to a fraction of a percent. They hold as
     /// long as no readings contradict them, before anything is met, and make one near them likely.
     RailPlanes known = {};
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit(p.slope_sigma, {"slope_sigma", "1", 1e-4, 0.2,
+                            "prior of each slope: cross-axis sensitivity of elements before compensation"});
+      visit(p.slope_max, {"slope_max", "1", 0.0, 0.3, "steepest slope searched"});
+      visit(p.distance_min_rad_s, {"distance_min_rad_s", "rad/s", 0.01, 1000.0,
+                                   "rails lower than this are not looked for; of an accelerometer in m/s^2"});
+      visit(p.offset_share,
+            {"offset_share", "1", 1e-4, 0.2, "prior of the offset and of how far elements differ, as a share of r"});
+      visit(p.samples_min, {"samples_min", "1", 2, 1000, "on a rail, of one sign"});
+      visit(p.log_odds_before,
+            {"log_odds_before", "1", -100.0, 100.0, "before anything is seen, for each element and sign"});
+      visit(p.log_odds_min, {"log_odds_min", "1", -100.0, 100.0, "of a rail that is believed"});
+      visit(p.log_odds_keep, {"log_odds_keep", "1", -100.0, 100.0, "of one that was believed before and still is"});
+    }
   };
 
   /// Scratch space of a search, which allocates nothing when it has room for all readings.

@@ -8,6 +8,7 @@
 
 #include "tumble/angular_velocity/clipping_finder.hpp"
 #include "tumble/common/imu.hpp"
+#include "tumble/common/parameters.hpp"
 
 namespace tumble {
 
@@ -22,7 +23,14 @@ class RailWatch {
  public:
   struct Params {
     ClippingFinder::Params clipping;
-    int readings_max = 1024;  ///< [64, 65536]
+    int readings_max = 1024;
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit.group("", p.clipping);
+      visit(p.readings_max, {"readings_max", "1", 64, 65536, "distinct readings that are kept of each triad"});
+    }
   };
   /// What is kept of one triad, rad/s or m/s^2.
   struct Memory {

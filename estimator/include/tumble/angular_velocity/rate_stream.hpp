@@ -9,10 +9,11 @@
 
 #include "tumble/angular_velocity/arrow_solver.hpp"
 #include "tumble/angular_velocity/rail_watch.hpp"
-#include "tumble/angular_velocity/rate_model.hpp"
+#include "tumble/angular_velocity/rate_model_fields.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/angular_velocity/rest_detector.hpp"
 #include "tumble/common/imu.hpp"
+#include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble {
@@ -51,22 +52,54 @@ class RateStream {
     RailPlaneFinder::Params planes;  ///< without a stated range of its own: that of `rails`
     RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();  ///< likewise
     RestDetector::Params rests;
-    double period_s = 0.01;        ///< nominal time between samples; [1e-5, 1]
+    double period_s = 0.01;        ///< nominal time between samples
     double lag_s = 0.2;            ///< length of the window; [2 period_s, 10], at most 4096 samples
-    double widen_first = 8.0;      ///< threshold of contact for a new clipped sample, halved with each step; [1, 1000]
-    double step_max_rad_s = 10.0;  ///< longest step of a rate at one sample; [1e-3, 1e4]
-    int bound_age = 3;             ///< steps after which the bounds of a sample in contact are softened; [0, 4096]
-    int flight_run_min = 6;        ///< a flight of fewer samples in a row says nothing of the rig; [0, 4096]
+    double widen_first = 8.0;      ///< threshold of contact for a new clipped sample, halved with each step
+    double step_max_rad_s = 10.0;  ///< longest step of a rate at one sample
+    int bound_age = 3;             ///< steps after which the bounds of a sample in contact are softened
+    int flight_run_min = 6;        ///< a flight of fewer samples in a row says nothing of the rig
     /// Of a rig without calibration: its covariance, but for the gyro's bias and never beyond that beforehand, counts 1
-    /// + rig_doubt / (1 + n / rig_doubt_samples) times, n being the samples of flight that have been learnt from; [0,
-    /// 1e3] and [1, 1e6].
+    /// + rig_doubt / (1 + n / rig_doubt_samples) times, n being the samples of flight that have been learnt from.
     double rig_doubt = 30.0;
     double rig_doubt_samples = 10.0;
-    double bound_damping = 0.5;                ///< share of a new bound taken over in each step; [0.01, 1]
+    double bound_damping = 0.5;                ///< share of a new bound taken over in each step
     double recovered_sigma_rad_s = 0.5;        ///< as in RateSmoother
-    double calibration_mahalanobis_max = 1.5;  ///< beyond this what was learnt of the rig is dropped; [0.1, 1e6]
-    double gap_max_s = 1.0;                    ///< longest time between samples; [1e-6, 3600]
-    double step_s = 0.005;                     ///< least time between Gauss-Newton steps; 0: with each sample; [0, 0.1]
+    double calibration_mahalanobis_max = 1.5;  ///< beyond this what was learnt of the rig is dropped
+    double gap_max_s = 1.0;                    ///< longest time between samples
+    double step_s = 0.005;                     ///< least time between Gauss-Newton steps; 0: with each sample
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit.group("", p.model);
+      visit.group("rails_", p.rails);
+      visit.group("planes_", p.planes);
+      visit.group("accel_planes_", p.accel_planes);
+      visit.group("rests_", p.rests);
+      visit(p.period_s, {"period_s", "s", 1e-5, 1.0, "nominal time between samples"});
+      visit(p.lag_s, {"lag_s", "s", 2e-5, 10.0, "how old a sample is when its estimate is given out", Rank::first});
+      visit(p.widen_first,
+            {"widen_first", "1", 1.0, 1000.0, "threshold of contact for a new clipped sample, halved with each step"});
+      visit(p.step_max_rad_s, {"step_max_rad_s", "rad/s", 1e-3, 1e4, "longest step of a rate at one sample"});
+      visit(p.bound_age,
+            {"bound_age", "1", 0, 4096, "steps after which the bounds of a sample in contact are softened"});
+      visit(p.flight_run_min,
+            {"flight_run_min", "1", 0, 4096, "a flight of fewer samples in a row says nothing of the rig"});
+      visit(p.rig_doubt, {"rig_doubt", "1", 0.0, 1e3,
+                          "covariance of a rig without calibration counts 1 + this / (1 + n / rig_doubt_samples) "
+                          "times, n samples of flight learnt from"});
+      visit(p.rig_doubt_samples, {"rig_doubt_samples", "1", 1.0, 1e6, "see rig_doubt"});
+      visit(p.bound_damping, {"bound_damping", "1", 0.01, 1.0, "share of a new bound taken over in each step"});
+      visit(p.recovered_sigma_rad_s,
+            {"recovered_sigma_rad_s", "rad/s", 0.0, 1e4,
+             "a clipped axis known better than this is recovered, not only bounded", Rank::first});
+      visit(p.calibration_mahalanobis_max,
+            {"calibration_mahalanobis_max", "1", 0.1, 1e6,
+             "constants of the rig that move further from their prior are held to it", Rank::first});
+      visit(p.gap_max_s,
+            {"gap_max_s", "s", 1e-6, 3600.0, "longest time between two samples before the run is refused"});
+      visit(p.step_s, {"step_s", "s", 0.0, 0.1, "least time between Gauss-Newton steps; 0: with each sample"});
+    }
   };
 
   struct Knot {

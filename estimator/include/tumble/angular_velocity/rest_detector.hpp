@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tumble/common/imu.hpp"
+#include "tumble/common/parameters.hpp"
 
 namespace tumble {
 
@@ -17,12 +18,25 @@ namespace tumble {
 class RestDetector {
  public:
   struct Params {
-    double rate_max_rad_s = 0.05;     ///< a bias at most; [1e-6, 10]
-    double rate_spread_rad_s = 0.03;  ///< largest distance of a reading from the mean of the run, per axis; [1e-6, 10]
-    double force_min_m_s2 = 5.0;      ///< flight is no rest; [0, 100]
-    double force_spread_m_s2 = 0.15;  ///< likewise for the force; [1e-6, 100]
-    double rest_s = 0.4;              ///< the shortest run that is rest; [0, 60]
-    double reading_s = 0.01;          ///< length of what counts as a reading; 0: each sample; [0, 1]
+    double rate_max_rad_s = 0.05;     ///< a bias at most
+    double rate_spread_rad_s = 0.03;  ///< largest distance of a reading from the mean of the run, per axis
+    double force_min_m_s2 = 5.0;      ///< flight is no rest
+    double force_spread_m_s2 = 0.15;  ///< likewise for the force
+    double rest_s = 0.4;              ///< the shortest run that is rest
+    double reading_s = 0.01;          ///< length of what counts as a reading; 0: each sample
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit(p.rate_max_rad_s, {"rate_max_rad_s", "rad/s", 1e-6, 10.0, "a bias at most: faster is no rest"});
+      visit(p.rate_spread_rad_s, {"rate_spread_rad_s", "rad/s", 1e-6, 10.0,
+                                  "largest distance of a reading from the mean of the run, per axis"});
+      visit(p.force_min_m_s2, {"force_min_m_s2", "m/s^2", 0.0, 100.0, "flight is no rest"});
+      visit(p.force_spread_m_s2, {"force_spread_m_s2", "m/s^2", 1e-6, 100.0,
+                                  "largest distance of a force from the mean of the run, per axis"});
+      visit(p.rest_s, {"rest_s", "s", 0.0, 60.0, "the shortest run that is rest"});
+      visit(p.reading_s, {"reading_s", "s", 0.0, 1.0, "length of what counts as a reading; 0: each sample"});
+    }
   };
   struct State {
     Eigen::Vector3d rate_sum_rad_s = Eigen::Vector3d::Zero();

@@ -8,6 +8,7 @@
 
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/common/imu.hpp"
+#include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble {
@@ -28,10 +29,10 @@ class Saave {
   struct Params {
     /// t: from the centre of mass to the IMU, IMU axes [m]; bound |t_j| <= 10. Needed to about a millimetre.
     Eigen::Vector3d lever_arm_m = {-0.022, -0.085, 0.055};
-    /// A reading strictly beyond this counts as clipped [rad/s]; bound [0.01, 1000]. Trap, kept as published: a device
+    /// A reading strictly beyond this counts as clipped [rad/s]. Trap, kept as published: a device
     /// whose plateau is exactly this value never exceeds it and nothing is recovered; pass a value slightly below.
     double saturation_point_rad_s = 10.5;
-    /// Variance of an unclipped reading [(rad/s)^2]; (0.03 deg/s/sqrt(Hz) * sqrt(100 Hz))^2. Variances: [1e-12, 1e12].
+    /// Variance of an unclipped reading [(rad/s)^2]; (0.03 deg/s/sqrt(Hz) * sqrt(100 Hz))^2.
     double variance_measured_rad2_s2 = 2.741e-5;
     /// Variance of an accepted estimate [(rad/s)^2]: 0.2741 as in the authors' code, 3.648 as printed in the paper.
     double variance_estimated_rad2_s2 = 0.2741;
@@ -39,8 +40,32 @@ class Saave {
     double variance_rejected_rad2_s2 = 1e6;
     /// Power spectral density of the white angular jerk [rad^2/s^5].
     double jerk_psd_rad2_s5 = 1e6;
-    /// Longest time between two samples before the run is refused [s]; bound [1e-6, 3600].
+    /// Longest time between two samples before the run is refused [s].
     double gap_max_s = 1.0;
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit(p.lever_arm_m, {"lever_arm_m", "m", -10.0, 10.0,
+                            "from the centre of mass to the IMU, IMU axes; needed to about a millimetre"});
+      visit(
+          p.saturation_point_rad_s,
+          {"saturation_point_rad_s", "rad/s", 0.01, 1000.0,
+           "a reading strictly beyond counts as clipped: to be slightly below the plateau, of 10.5 rad/s on the MTi-30",
+           Rank::first});
+      visit(p.variance_measured_rad2_s2,
+            {"variance_measured_rad2_s2", "rad^2/s^2", 1e-12, 1e12, "variance of an unclipped reading"});
+      visit(
+          p.variance_estimated_rad2_s2,
+          {"variance_estimated_rad2_s2", "rad^2/s^2", 1e-12, 1e12,
+           "variance of a recovered axis: 0.2741 as in the authors' code, 3.648 as printed in the paper", Rank::first});
+      visit(p.variance_rejected_rad2_s2, {"variance_rejected_rad2_s2", "rad^2/s^2", 1e-12, 1e12,
+                                          "variance of a clipped axis when no estimate is possible"});
+      visit(p.jerk_psd_rad2_s5, {"jerk_psd_rad2_s5", "rad^2/s^5", 1e-12, 1e12,
+                                 "density of the smoother's white angular jerk (paper, sec. IV)", Rank::first});
+      visit(p.gap_max_s,
+            {"gap_max_s", "s", 1e-6, 3600.0, "longest time between two samples before the run is refused"});
+    }
   };
 
   /// All that the recursion carries from sample to sample.

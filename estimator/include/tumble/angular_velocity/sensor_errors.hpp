@@ -3,6 +3,8 @@
 
 #include <Eigen/Core>
 
+#include "tumble/common/parameters.hpp"
+
 namespace tumble {
 
 /// What a device makes of the motion besides bias and noise, the same for a run: 29 numbers, in this order, matrices
@@ -45,6 +47,21 @@ struct SensorErrorSizes {
   double felt_s_m = 5.3e-6, felt_unknown_s_m = 1.8e-4;
   /// Filters of both triads at some 400 Hz; windows and filters of their own. The blur goes with the delay's square.
   double delay_s = 1e-4, delay_unknown_s = 5e-3;
+
+  /// Every number of it, stated once.
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.gyro, {"gyro", "1", 0.0, 0.1, "scale, misalignment of the gyro, if the device is as its sheet says"});
+    visit(p.gyro_unknown, {"gyro_unknown", "1", 0.0, 0.1, "the same if it is not"});
+    visit(p.accel,
+          {"accel", "1", 0.0, 0.1, "scale, misalignment of the accelerometer, if the device is as its sheet says"});
+    visit(p.accel_unknown, {"accel_unknown", "1", 0.0, 0.1, "the same if it is not"});
+    visit(p.felt_s_m, {"felt_s_m", "s/m", 0.0, 0.1,
+                       "rate that the gyro shows per acceleration, if the device is as its sheet says"});
+    visit(p.felt_unknown_s_m, {"felt_unknown_s_m", "s/m", 0.0, 0.1, "the same if it is not"});
+    visit(p.delay_s, {"delay_s", "s", 0.0, 0.1, "accelerometer against gyro, if both are filtered alike"});
+    visit(p.delay_unknown_s, {"delay_unknown_s", "s", 0.0, 0.1, "the same if they are not"});
+  }
 };
 
 /// What a run's readings say of the errors: of the cost, once all else is at its optimum for each value of the errors,

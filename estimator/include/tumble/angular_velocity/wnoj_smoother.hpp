@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/common/time.hpp"
 
@@ -26,7 +27,14 @@ namespace tumble {
 class WnojSmoother {
  public:
   struct Params {
-    double jerk_psd_rad2_s5 = 1e6;  ///< bound [1e-12, 1e12]; larger follows the readings more closely
+    double jerk_psd_rad2_s5 = 1e6;  ///< larger follows the readings more closely
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit(p.jerk_psd_rad2_s5,
+            {"jerk_psd_rad2_s5", "rad^2/s^5", 1e-12, 1e12, "; larger follows the readings more closely"});
+    }
   };
   struct Measurement {
     TimeNs time_ns;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tumble/attitude/carried_smoother.hpp"
+#include "tumble/common/parameters.hpp"
 
 namespace tumble {
 
@@ -26,9 +27,18 @@ class CarriedStream {
  public:
   struct Params {
     CarriedSmoother::Params body;  ///< `iterations_max` has no meaning here
-    double period_s = 0.01;        ///< nominal time between samples; bound [1e-5, 1]
-    double lag_s = 0.2;            ///< bound [2 period_s, 10]
-    double window_s = 0.6;         ///< bound [lag_s + 4 body.node_s, 20]
+    double period_s = 0.01;        ///< nominal time between samples
+    double lag_s = 0.2;
+    double window_s = 0.6;
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit.group("", p.body);
+      visit(p.period_s, {"period_s", "s", 1e-5, 1.0, "nominal time between samples"});
+      visit(p.lag_s, {"lag_s", "s", 2e-5, 10.0, "how old a sample is when its estimate is given out"});
+      visit(p.window_s, {"window_s", "s", 1e-3, 20.0, "how far back the window reaches"});
+    }
   };
 
   /// One sample of the window.

@@ -11,6 +11,7 @@
 #include "tumble/attitude/rate_recovery.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/imu_average.hpp"
+#include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble {
@@ -49,32 +50,68 @@ class ImuMerge {
 
   struct Params {
     std::array<Eigen::Isometry3d, kImus> T_CI{};  ///< mountings; the first `count` are used
-    int count = 1;                                ///< bound [1, kImus]
-    double rate_tolerance_rad_s = 0.15;           ///< from the median, for a unit to be left out; bound (0, 1e3]
-    double rate_tolerance_share = 0.03;           ///< more, as a share of the rate; bound [0, 1]
-    double force_tolerance_m_s2 = 3.0;            ///< bound (0, 1e4]
-    double rate_noise_rad_s = 0.01;               ///< of the mean over a window; bound (0, 10]
-    double window_s = 4e-3;                       ///< over which readings are averaged beforehand; bound [0, 0.1]
-    double offset_sigma_s = 3e-3;                 ///< prior of a unit's time offset; zero: none; bound [0, 0.1]
-    double gyro_range_rad_s = 1e3;                ///< readings from here on are at the rail; bound (0, 1e3]
-    double accel_range_m_s2 = 1e5;                ///< bound (0, 1e5]
-    /// A reading from this share of the range on may hide a rail met within its sample; bound (0, 1].
+    int count = 1;
+    double rate_tolerance_rad_s = 0.15;  ///< from the median, for a unit to be left out
+    double rate_tolerance_share = 0.03;  ///< more, as a share of the rate
+    double force_tolerance_m_s2 = 3.0;
+    double rate_noise_rad_s = 0.01;  ///< of the mean over a window
+    double window_s = 4e-3;          ///< over which readings are averaged beforehand
+    double offset_sigma_s = 3e-3;    ///< prior of a unit's time offset; zero: none
+    double gyro_range_rad_s = 1e3;   ///< readings from here on are at the rail
+    double accel_range_m_s2 = 1e5;
+    /// A reading from this share of the range on may hide a rail met within its sample.
     double subsample_saturation_share = 0.15;
-    double hidden_force_m_s2 = 3.0;  ///< by which it then may disagree with another; bound (0, 1e4]
-    double gap_max_s = 1.0;          ///< bound (0, 1e4]
+    double hidden_force_m_s2 = 3.0;  ///< by which it then may disagree with another
+    double gap_max_s = 1.0;
     /// Along what the elements of each unit sense (RateRecovery).
     std::array<ElementRows, kImus> gyro_elements{}, accel_elements{};
     // Of units that are left out. A reading that lasts for frozen_after_s while the others move by more than this is
     // frozen; sample and hold is shorter.
-    double frozen_after_s = 0.1;      ///< bound (0, 1e3]
-    double frozen_rate_rad_s = 0.03;  ///< bound (0, 1e3]
-    double frozen_force_m_s2 = 0.3;   ///< bound (0, 1e4]
-    double thawed_after_s = 0.5;      ///< of readings that change; bound (0, 1e3]
+    double frozen_after_s = 0.1;
+    double frozen_rate_rad_s = 0.03;
+    double frozen_force_m_s2 = 0.3;
+    double thawed_after_s = 0.5;  ///< of readings that change
     // Off from the median, as a mean over half a second, for disagrees_after_s.
-    double disagree_rate_rad_s = 0.1;   ///< bound (0, 1e3]
-    double disagree_rate_share = 0.06;  ///< more, as a share of the rate; bound [0, 1]
-    double disagree_force_m_s2 = 1.0;   ///< bound (0, 1e4]
-    double disagrees_after_s = 0.3;     ///< bound (0, 1e3]
+    double disagree_rate_rad_s = 0.1;
+    double disagree_rate_share = 0.06;  ///< more, as a share of the rate
+    double disagree_force_m_s2 = 1.0;
+    double disagrees_after_s = 0.3;
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit(p.count, {"count", "1", 1, kImus, "IMUs in use"});
+      visit(p.rate_tolerance_rad_s,
+            {"rate_tolerance_rad_s", "rad/s", 1e-12, 1e3, "a rate this far from the median is left out"});
+      visit(p.rate_tolerance_share, {"rate_tolerance_share", "1", 0.0, 1.0, "and further, as a share of the rate"});
+      visit(p.force_tolerance_m_s2,
+            {"force_tolerance_m_s2", "m/s^2", 1e-12, 1e4, "a force this far from the median is left out"});
+      visit(p.rate_noise_rad_s, {"rate_noise_rad_s", "rad/s", 1e-12, 10.0, "of the mean rate over a window"});
+      visit(p.window_s, {"window_s", "s", 0.0, 0.1, "over which readings are averaged beforehand"});
+      visit(p.offset_sigma_s, {"offset_sigma_s", "s", 0.0, 0.1, "prior of a unit's time offset; zero: none"});
+      visit(p.gyro_range_rad_s,
+            {"gyro_range_rad_s", "rad/s", 1e-12, 1e3, "readings of the gyro from here on are at the rail"});
+      visit(p.accel_range_m_s2,
+            {"accel_range_m_s2", "m/s^2", 1e-12, 1e5, "readings of the accelerometer from here on are at the rail"});
+      visit(p.subsample_saturation_share,
+            {"subsample_saturation_share", "1", 1e-12, 1.0,
+             "a reading from this share of the range on may hide a rail met within its sample"});
+      visit(p.hidden_force_m_s2, {"hidden_force_m_s2", "m/s^2", 1e-12, 1e4,
+                                  "by which a force that may hide a rail may disagree with another"});
+      visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "longest time between two samples before the run is refused"});
+      visit(p.frozen_after_s,
+            {"frozen_after_s", "s", 1e-12, 1e3, "a reading that lasts so long while the others move is frozen"});
+      visit(p.frozen_rate_rad_s, {"frozen_rate_rad_s", "rad/s", 1e-12, 1e3, "the others move by more than this"});
+      visit(p.frozen_force_m_s2, {"frozen_force_m_s2", "m/s^2", 1e-12, 1e4, "or by more than this"});
+      visit(p.thawed_after_s,
+            {"thawed_after_s", "s", 1e-12, 1e3, "of readings that change, after which a unit is in use again"});
+      visit(p.disagree_rate_rad_s, {"disagree_rate_rad_s", "rad/s", 1e-12, 1e3,
+                                    "a mean rate over half a second this far from the median disagrees"});
+      visit(p.disagree_rate_share, {"disagree_rate_share", "1", 0.0, 1.0, "and further, as a share of the rate"});
+      visit(p.disagree_force_m_s2, {"disagree_force_m_s2", "m/s^2", 1e-12, 1e4,
+                                    "a mean force over half a second this far from the median disagrees"});
+      visit(p.disagrees_after_s, {"disagrees_after_s", "s", 1e-12, 1e3, "for so long, to be left out"});
+    }
   };
 
   /// How long a triad has given the same reading, and what the others gave when it began.

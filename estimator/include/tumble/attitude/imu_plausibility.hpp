@@ -6,6 +6,7 @@
 
 #include "tumble/common/imu.hpp"
 #include "tumble/common/imu_average.hpp"
+#include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble {
@@ -27,20 +28,41 @@ namespace tumble {
 class ImuPlausibility {
  public:
   struct Params {
-    double gravity_m_s2 = 9.80665;  ///< bound (0, 100]
-    double window_s = 0.2;          ///< bound [0.02, 10]
-    double reading_s = 0.02;        ///< readings are averaged to this length; bound [1e-3, 1]
-    double steady_share = 0.12;     ///< by which the force's size may change within a window; bound (0, 1]
+    double gravity_m_s2 = 9.80665;
+    double window_s = 0.2;
+    double reading_s = 0.02;     ///< readings are averaged to this length
+    double steady_share = 0.12;  ///< by which the force's size may change within a window
     double force_share_min = 0.5,
-           force_share_max = 2.0;  ///< of gravity, mean of steady windows; bounds [0, 1], [1, 1e6]
-    double unexplained_max = 0.2;  ///< share of the turning; good rolls of a sphere leave 0.001 to 0.03; bound (0, 10]
-    double turned_min_rad2 = 0.5;  ///< sum of squares below which nothing is said of it; bound (0, 1e6]
-    double turn_least_rad = 0.15;  ///< of a window, to count as turning; bound (0, 3]
-    int windows_min = 5;           ///< steady ones, to say something of the force's size; bound [1, 1e6]
-    double gap_max_s = 0.1;        ///< after a longer one a window begins anew; bound (0, 1e4]
+           force_share_max = 2.0;  ///< of gravity, mean of steady windows
+    double unexplained_max = 0.2;  ///< share of the turning; good rolls of a sphere leave 0.001 to 0.03
+    double turned_min_rad2 = 0.5;  ///< sum of squares below which nothing is said of it
+    double turn_least_rad = 0.15;  ///< of a window, to count as turning
+    int windows_min = 5;           ///< steady ones, to say something of the force's size
+    double gap_max_s = 0.1;        ///< after a longer one a window begins anew
     double frozen_s = 1.0;         ///< a reading that repeats for so long may be frozen, after as long of moving ones;
-                                   ///< bound (0, 1e4]
-    double frozen_share = 10.0;    ///< and lasts so many times longer than any did before; bound [1, 1e6]
+
+    double frozen_share = 10.0;  ///< and lasts so many times longer than any did before
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
+      visit(p.window_s, {"window_s", "s", 0.02, 10.0, "over which force and turning are compared"});
+      visit(p.reading_s, {"reading_s", "s", 1e-3, 1.0, "readings are averaged to this length"});
+      visit(p.steady_share, {"steady_share", "1", 1e-12, 1.0, "by which the force's size may change within a window"});
+      visit(p.force_share_min, {"force_share_min", "1", 0.0, 1.0, "of gravity, least mean of steady windows"});
+      visit(p.force_share_max, {"force_share_max", "1", 1.0, 1e6, "of gravity, largest mean of steady windows"});
+      visit(p.unexplained_max,
+            {"unexplained_max", "1", 1e-12, 10.0, "share of the turning; good rolls of a sphere leave 0.001 to 0.03"});
+      visit(p.turned_min_rad2,
+            {"turned_min_rad2", "rad^2", 1e-12, 1e6, "sum of squares below which nothing is said of it"});
+      visit(p.turn_least_rad, {"turn_least_rad", "rad", 1e-12, 3.0, "of a window, to count as turning"});
+      visit(p.windows_min, {"windows_min", "1", 1, 1e6, "steady ones, to say something of the force's size"});
+      visit(p.gap_max_s, {"gap_max_s", "s", 1e-12, 1e4, "longest time between two samples before the run is refused"});
+      visit(p.frozen_s, {"frozen_s", "s", 1e-12, 1e4,
+                         "a reading that repeats for so long may be frozen, after as long of moving ones"});
+      visit(p.frozen_share, {"frozen_share", "1", 1.0, 1e6, "and lasts so many times longer than any did before"});
+    }
   };
   /// How long a triad has repeated its reading.
   struct Hold {

@@ -8,6 +8,7 @@
 #include "tumble/angular_velocity/rate_stream.hpp"
 #include "tumble/attitude/carried_stream.hpp"
 #include "tumble/attitude/regimes.hpp"
+#include "tumble/common/parameters.hpp"
 
 namespace tumble {
 
@@ -31,8 +32,19 @@ class RegimeStream {
     RateStream::Params rate;
     RegimeEvidence::Params evidence;
     CarriedStream::Params carried;  ///< `period_s` and `lag_s` are those of `rate`
-    double carried_min = 0.02;      ///< a share of the carried body below this is not worth its work; bound [0, 1]
-    double near_s = 0.1;            ///< clipped samples so close belong to one stretch; bound [0, 10]
+    double carried_min = 0.02;      ///< a share of the carried body below this is not worth its work
+    double near_s = 0.1;            ///< clipped samples so close belong to one stretch
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit.group("", p.rate);
+      visit.group("evidence_", p.evidence);
+      visit.group("carried_", p.carried);
+      visit(p.carried_min,
+            {"carried_min", "1", 0.0, 1.0, "a share of the carried body below this is not worth its work"});
+      visit(p.near_s, {"near_s", "s", 0.0, 10.0, "clipped samples so close belong to one stretch"});
+    }
   };
   struct State {
     RateStream::State rate;

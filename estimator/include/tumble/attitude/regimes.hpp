@@ -8,6 +8,7 @@
 
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/common/imu.hpp"
+#include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble {
@@ -34,16 +35,34 @@ struct RegimeShares {
 class RegimeEvidence {
  public:
   struct Params {
-    double gravity_m_s2 = 9.80665;     ///< bound (0, 100]
-    double flight_m_s2 = 0.3;          ///< deviation of the force left in flight: drag, bandwidth; bound [1e-3, 10]
-    double flight_share = 0.05;        ///< more, as a share of the lever arm's force; bound [0, 1]
-    double hand_m_s2 = 5.0;            ///< deviation of a hand's acceleration; bound [0.1, 100]
-    double grip_m = 0.05;              ///< how far from the hand an IMU is; bound [0, 1]
-    double contact_max_m_s2 = 1000.0;  ///< forces of contact lie between 1 m/s^2 and this; bound [10, 1e6]
-    double memory_s = 0.05;            ///< bound [1e-3, 10]
-    double rest_rate_rad_s = 0.5;      ///< slower turning says nothing of who holds the body; bound [0, 100]
-    double contacts_hz = 5.0;          ///< changes between flight and contact; bound [1e-3, 100]
-    double throws_hz = 0.02;           ///< changes between these and a hand; bound [1e-9, 10]
+    double gravity_m_s2 = 9.80665;
+    double flight_m_s2 = 0.3;          ///< deviation of the force left in flight: drag, bandwidth
+    double flight_share = 0.05;        ///< more, as a share of the lever arm's force
+    double hand_m_s2 = 5.0;            ///< deviation of a hand's acceleration
+    double grip_m = 0.05;              ///< how far from the hand an IMU is
+    double contact_max_m_s2 = 1000.0;  ///< forces of contact lie between 1 m/s^2 and this
+    double memory_s = 0.05;
+    double rest_rate_rad_s = 0.5;  ///< slower turning says nothing of who holds the body
+    double contacts_hz = 5.0;      ///< changes between flight and contact
+    double throws_hz = 0.02;       ///< changes between these and a hand
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-300, 100.0, "strength of gravity"});
+      visit(p.flight_m_s2,
+            {"flight_m_s2", "m/s^2", 1e-3, 10.0, "deviation of the force left in flight: drag, bandwidth"});
+      visit(p.flight_share, {"flight_share", "1", 0.0, 1.0, "the same as a share of the lever arm's force"});
+      visit(p.hand_m_s2, {"hand_m_s2", "m/s^2", 0.1, 100.0, "deviation of a hand's acceleration"});
+      visit(p.grip_m, {"grip_m", "m", 0.0, 1.0, "how far from the hand an IMU is"});
+      visit(p.contact_max_m_s2,
+            {"contact_max_m_s2", "m/s^2", 10.0, 1e6, "forces of contact lie between 1 m/s^2 and this"});
+      visit(p.memory_s, {"memory_s", "s", 1e-3, 10.0, "readings within it count as one"});
+      visit(p.rest_rate_rad_s,
+            {"rest_rate_rad_s", "rad/s", 0.0, 100.0, "slower turning says nothing of who holds the body"});
+      visit(p.contacts_hz, {"contacts_hz", "Hz", 1e-3, 100.0, "changes between flight and contact"});
+      visit(p.throws_hz, {"throws_hz", "Hz", 1e-9, 10.0, "changes between these and a hand"});
+    }
   };
 
   /// Throws InvalidParams when a parameter is outside of its bound.

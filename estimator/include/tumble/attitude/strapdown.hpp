@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 
 #include "tumble/common/imu.hpp"
+#include "tumble/common/parameters.hpp"
 #include "tumble/common/pose.hpp"
 #include "tumble/common/status.hpp"
 
@@ -14,7 +15,13 @@ namespace tumble {
 class Strapdown {
  public:
   struct Params {
-    double gap_max_s = 1.0;  ///< a longer time between samples is a `gap`; bound (0, 1e4]
+    double gap_max_s = 1.0;  ///< a longer time between samples is a `gap`
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "longest time between two samples before the run is refused"});
+    }
   };
   struct State {
     Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();

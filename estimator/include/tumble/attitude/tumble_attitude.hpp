@@ -6,6 +6,7 @@
 #include "tumble/attitude/low_pass.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/imu_average.hpp"
+#include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble {
@@ -33,32 +34,74 @@ class TumbleAttitude {
   using Covariance = Eigen::Matrix<double, kStates, kStates>;
 
   struct Params {
-    double gravity_m_s2 = 9.80665;       ///< bound (0, 100]
-    double gyro_noise_rad_sqrts = 1e-3;  ///< angle random walk per sqrt(s), unmodelled errors included; (0, 1]
-    double rate_error_sqrts = 4e-3;      ///< angle random walk per sqrt(s) and rad/s turned: scale, timing; [0, 1]
-    double bias_sigma_start_rad_s = 8.7266e-3;   ///< 0.5 deg/s; bound [0, 1]
-    double bias_walk_rad_s_sqrts = 2e-6;         ///< per sqrt(s); bound [0, 1]
-    double acceleration_noise_m_s_sqrts = 0.01;  ///< velocity random walk; bound (0, 100]
-    double velocity_m_sqrts = 1.0;               ///< sigma of the mean velocity over 1 s of motion; bound (0, 1e3]
-    double displacement_m_sqrts = 0.3;           ///< sigma of the mean displacement over 1 s; bound (0, 1e3]
-    double displacement_tau_s = 10.0;            ///< in which a displacement is forgotten; bound [0.1, 1e4]
-    double node_s = 0.04;                        ///< time between two corrections; bound [1e-4, 1]
-    /// Readings are averaged to this length, at which all thresholds here are meant; zero: taken as they come; [0,
-    /// 0.1].
+    double gravity_m_s2 = 9.80665;
+    double gyro_noise_rad_sqrts = 1e-3;          ///< angle random walk per sqrt(s), unmodelled errors included
+    double rate_error_sqrts = 4e-3;              ///< angle random walk per sqrt(s) and rad/s turned: scale, timing
+    double bias_sigma_start_rad_s = 8.7266e-3;   ///< 0.5 deg/s
+    double bias_walk_rad_s_sqrts = 2e-6;         ///< per sqrt(s)
+    double acceleration_noise_m_s_sqrts = 0.01;  ///< velocity random walk
+    double velocity_m_sqrts = 1.0;               ///< sigma of the mean velocity over 1 s of motion
+    double displacement_m_sqrts = 0.3;           ///< sigma of the mean displacement over 1 s
+    double displacement_tau_s = 10.0;            ///< in which a displacement is forgotten
+    double node_s = 0.04;                        ///< time between two corrections
+    /// Readings are averaged to this length, at which all thresholds here are meant; zero: taken as they come.
     double reading_s = 4e-3;
-    double rest_tau_s = 0.5;             ///< of the low-passes that detect rest; bound [1e-3, 1e4]
-    double rest_time_s = 1.0;            ///< quiet for so long is rest; bound [0, 1e4]
-    double rest_rate_rad_s = 3.4907e-2;  ///< 2 deg/s: quiet about the low-passed rate, and it about the bias; (0, 1]
-    double rest_force_m_s2 = 0.5;        ///< quiet about the low-passed force; bound (0, 100]
-    double rest_velocity_sigma_m_s = 0.005;   ///< per node at rest; bound (0, 10]
-    double rest_rate_sigma_rad_sqrts = 2e-3;  ///< of the rate measured at rest, mean over 1 s; bound (0, 1]
-    double radius_m = 0.0;                    ///< of a rolling sphere on a level floor; 0: no such thing; bound [0, 10]
+    double rest_tau_s = 0.5;                  ///< of the low-passes that detect rest
+    double rest_time_s = 1.0;                 ///< quiet for so long is rest
+    double rest_rate_rad_s = 3.4907e-2;       ///< 2 deg/s: quiet about the low-passed rate, and it about the bias
+    double rest_force_m_s2 = 0.5;             ///< quiet about the low-passed force
+    double rest_velocity_sigma_m_s = 0.005;   ///< per node at rest
+    double rest_rate_sigma_rad_sqrts = 2e-3;  ///< of the rate measured at rest, mean over 1 s
+    double radius_m = 0.0;                    ///< of a rolling sphere on a level floor; 0: no such thing
     Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< centre to IMU, sensor axes; length up to 10
-    double rolling_velocity_sigma_m_s = 0.03;               ///< per node while it grips; bound (0, 10]
-    double slip_velocity_m_s = 0.12;  ///< misfit that opens a slip, half of it closes it; bound (0, 10]
-    double slip_quiet_s = 0.2;        ///< and for so long; bound [0, 10]
-    double slip_timeout_s = 3.0;      ///< then rolling is believed again; bound (0, 1e3]
-    double gap_max_s = 1.0;           ///< bound (0, 1e4]
+    double rolling_velocity_sigma_m_s = 0.03;               ///< per node while it grips
+    double slip_velocity_m_s = 0.12;                        ///< misfit that opens a slip, half of it closes it
+    double slip_quiet_s = 0.2;                              ///< and for so long
+    double slip_timeout_s = 3.0;                            ///< then rolling is believed again
+    double gap_max_s = 1.0;
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
+      visit(p.gyro_noise_rad_sqrts, {"gyro_noise_rad_sqrts", "rad/sqrt(s)", 1e-12, 1.0,
+                                     "angle random walk, unmodelled errors included", Rank::first});
+      visit(p.rate_error_sqrts, {"rate_error_sqrts", "sqrt(s)", 0.0, 1.0,
+                                 "angle random walk per rad/s turned: scale, timing", Rank::first});
+      visit(p.bias_sigma_start_rad_s,
+            {"bias_sigma_start_rad_s", "rad/s", 0.0, 1.0, "prior of the gyro's bias", Rank::first});
+      visit(p.bias_walk_rad_s_sqrts,
+            {"bias_walk_rad_s_sqrts", "rad/s/sqrt(s)", 0.0, 1.0, "random walk of the gyro's bias"});
+      visit(p.acceleration_noise_m_s_sqrts,
+            {"acceleration_noise_m_s_sqrts", "m/s/sqrt(s)", 1e-12, 100.0, "velocity random walk"});
+      visit(p.velocity_m_sqrts, {"velocity_m_sqrts", "m/sqrt(s)", 1e-12, 1e3,
+                                 "sigma of the mean velocity over 1 s of motion", Rank::first});
+      visit(p.displacement_m_sqrts,
+            {"displacement_m_sqrts", "m sqrt(s)", 1e-12, 1e3, "sigma of the mean displacement over 1 s", Rank::first});
+      visit(p.displacement_tau_s,
+            {"displacement_tau_s", "s", 0.1, 1e4, "in which a displacement is forgotten", Rank::first});
+      visit(p.node_s, {"node_s", "s", 1e-4, 1.0, "time between two corrections"});
+      visit(p.reading_s, {"reading_s", "s", 0.0, 0.1, "readings are averaged to this length; 0: taken as they come"});
+      visit(p.rest_tau_s, {"rest_tau_s", "s", 1e-3, 1e4, "of the low-passes that detect rest"});
+      visit(p.rest_time_s, {"rest_time_s", "s", 0.0, 1e4, "quiet for so long is rest", Rank::first});
+      visit(p.rest_rate_rad_s,
+            {"rest_rate_rad_s", "rad/s", 1e-12, 1.0, "quiet: about the low-passed rate", Rank::first});
+      visit(p.rest_force_m_s2,
+            {"rest_force_m_s2", "m/s^2", 1e-12, 100.0, "quiet: about the low-passed force", Rank::first});
+      visit(p.rest_velocity_sigma_m_s,
+            {"rest_velocity_sigma_m_s", "m/s", 1e-12, 10.0, "of the velocity, per node at rest"});
+      visit(p.rest_rate_sigma_rad_sqrts,
+            {"rest_rate_sigma_rad_sqrts", "rad/sqrt(s)", 1e-12, 1.0, "of the rate measured at rest, mean over 1 s"});
+      visit(p.radius_m, {"radius_m", "m", 0.0, 10.0, "of the sphere"});
+      visit(p.lever_arm_m, {"lever_arm_m", "m", -10.0, 10.0, "from the centre to the IMU, sensor axes"});
+      visit(p.rolling_velocity_sigma_m_s,
+            {"rolling_velocity_sigma_m_s", "m/s", 1e-12, 10.0, "of the velocity by rolling, per node while it grips"});
+      visit(p.slip_velocity_m_s,
+            {"slip_velocity_m_s", "m/s", 1e-12, 10.0, "misfit that opens a slip, half of it closes it"});
+      visit(p.slip_quiet_s, {"slip_quiet_s", "s", 0.0, 10.0, "and stays closed after so long below it"});
+      visit(p.slip_timeout_s, {"slip_timeout_s", "s", 1e-12, 1e3, "then rolling is believed again"});
+      visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "longest time between two samples before the run is refused"});
+    }
   };
   struct State {
     Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();

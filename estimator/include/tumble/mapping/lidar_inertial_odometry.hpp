@@ -50,89 +50,89 @@ class LidarInertialOdometry {
  public:
   struct Params {
     Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< lidar in IMU axes
-    double time_offset_s = 0.0;                              ///< the IMU's clock minus the lidar's; bound [-1, 1]
+    double time_offset_s = 0.0;                              ///< the IMU's clock minus the lidar's
     /// Standard deviations of T_IL, of the time offset and of gravity's horizontal part; 0: exact, not estimated.
-    /// Bounds [0, 1], [0, 1], [0, 0.02], [0, 10].
+
     double mount_sigma_rad = 0.0;
     double mount_sigma_m = 0.0;
     double time_offset_sigma_s = 0.0;
     double gravity_sigma_m_s2 = 0.0;
-    double gravity_m_s2 = 9.80665;  ///< bound [0, 100]
-    double rest_s = 0.5;            ///< at most this much of the start is used to level the attitude; bound (0, 60]
+    double gravity_m_s2 = 9.80665;
+    double rest_s = 0.5;  ///< at most this much of the start is used to level the attitude
     /// Rest at the start lasts while the rate stays below rest_rate_rad_s and the specific force within rest_force_m_s2
-    /// of gravity and of its mean. Meanwhile the robot is held still, and the mean rate becomes the gyro's bias. Bounds
-    /// [0, 10].
+    /// of gravity and of its mean. Meanwhile the robot is held still, and the mean rate becomes the gyro's bias.
     double rest_rate_rad_s = 0.05;
     double rest_force_m_s2 = 0.5;
-    double range_min_m = 0.3;    ///< nearer returns are dropped; bound [0, 10]
-    double range_max_m = 100.0;  ///< farther returns are dropped; bound (range_min_m, 1e4]
+    double range_min_m = 0.3;    ///< nearer returns are dropped
+    double range_max_m = 100.0;  ///< farther returns are dropped
     Eigen::AlignedBox3d own_body_L{
         Eigen::Vector3d(-0.5, -0.4, -0.27),
         Eigen::Vector3d(0.5, 0.4, 0.23)};  ///< returns inside are the robot's own; an empty box keeps all
-    double sweep_voxel_m = 0.25;           ///< one point per voxel of a sweep is registered; bound [0.01, 10]
-    double map_voxel_m = 0.5;              ///< cell of the map's hash; bound [0.01, 10]
-    double map_spacing_m = 0.1;            ///< at most one map point per cube of this edge; bound [0, map_voxel_m]
-    int neighbours = 12;                   ///< k of the plane fit; bound [3, 32]
-    double match_distance_m = 1.0;         ///< farther map points are no match; bound [0.001, 10]
+    double sweep_voxel_m = 0.25;           ///< one point per voxel of a sweep is registered
+    double map_voxel_m = 0.5;              ///< cell of the map's hash
+    double map_spacing_m = 0.1;            ///< at most one map point per cube of this edge
+    int neighbours = 12;                   ///< k of the plane fit
+    double match_distance_m = 1.0;         ///< farther map points are no match
     /// Of a registration; one with all points has at most eight, what has not settled goes on with a thousand of them;
     /// [1, 200].
     int iterations_max = 30;
     double correction_max_m = 15.0;   ///< a larger correction of the prior is rejected
     double correction_max_rad = 1.1;  ///< a larger correction of the prior is rejected
     /// What the inertial side may be wrong by after 0.1 s, beside what RateState reports: standard deviations that grow
-    /// in proportion to time. Loose in doubt; tight holds a world with few features. Bounds (0, 1e3].
+    /// in proportion to time. Loose in doubt; tight holds a world with few features.
     double prior_sigma_m = 0.003;
     double prior_sigma_rad = 0.002;
     double prior_sigma_m_s = 0.01;
     /// Standard deviation of the angle turned as a share of it: scale, misalignment, and a rate that changes within a
-    /// sample; bound [0, 1].
+    /// sample.
     double turn_sigma_share = 0.001;
     /// Standard deviation of the specific force as a share of its magnitude: velocity is uncertain by this times the
-    /// integral of the force, which counts at impacts; bound [0, 1].
+    /// integral of the force, which counts at impacts.
     double force_sigma_share = 0.03;
     /// Readings of the accelerometer from accel_rail_m_s2 on, or flagged by the device, are at its rail: there the
-    /// force may be larger by railed_force_m_s2 (standard deviation), for as long as the rail lasts. Bounds (0, 1e5],
-    /// [0, 1e4].
+    /// force may be larger by railed_force_m_s2 (standard deviation), for as long as the rail lasts.
     double accel_rail_m_s2 = 1e5;
     double railed_force_m_s2 = 50.0;
-    /// Standard deviation assumed for a rate on a clipped axis that the rate method did not recover; bound [0, 100].
+    /// Standard deviation assumed for a rate on a clipped axis that the rate method did not recover.
     double clipped_sigma_rad_s = 3.0;
-    double rate_sigma_max_rad_s = 5.0;  ///< what RateState reports is believed up to this; bound [0, 100]
+    double rate_sigma_max_rad_s = 5.0;  ///< what RateState reports is believed up to this
     /// Estimate the excess of the rate on clipped axes in the registration, at SweepTrajectory::kKnots knots a sweep;
     /// it acts on clipped samples only, there in proportion to the rate's reported uncertainty. Its prior is the rate's
-    /// reported uncertainty, at least excess_sigma_min_rad_s, bound (0, 100], correlated over excess_time_s, bound
-    /// [1e-3, 1e3]; on a rail that lasts over the border of two sweeps it goes on from where it was.
+    /// reported uncertainty, at least excess_sigma_min_rad_s, correlated over excess_time_s; on a rail that lasts over
+    /// the border of two sweeps it goes on from where it was.
     bool estimate_saturation_deficit = false;
     double excess_sigma_min_rad_s = 1.0;
     double excess_time_s = 0.3;
     /// Sweeps that are refined together: the newest, and so many less one before it by what it teaches (see settled).
-    /// 1: none is refined later. Bound [1, 8].
+    /// 1: none is refined later.
     int window_sweeps = 2;
     /// Given the body, its flight is told by the ballistic arc: where the specific force at the centre of mass is below
-    /// flight_force_m_s2, bound [0, 100], the accelerometer's reading gives way to what flight makes it, and a gap of
+    /// flight_force_m_s2, the accelerometer's reading gives way to what flight makes it, and a gap of
     /// the IMU that begins in flight is bridged by the arc. Empty: the accelerometer throughout.
     std::optional<FlyingBody> body;
     double flight_force_m_s2 = 4.0;
-    /// A point's uncertainty grows over the sweep by this and weighs it down (the published time weighting); bound [0,
-    /// 1e3].
+    /// A point's uncertainty grows over the sweep by this and weighs it down (the published time weighting).
     double skew_sigma_m_s = 0.25;
     /// A sweep that its surfaces alone hold less surely than this in some direction is `degenerate` (standard
-    /// deviation, attitude counted at the rms lever); bound (0, 1e3].
+    /// deviation, attitude counted at the rms lever).
     double degenerate_sigma_m = 0.15;
     std::size_t matches_min = 100;  ///< fewer matched points reject a sweep
     /// A sweep with too few matches still extends the map, as `degenerate`, while the inertial prior is this certain
-    /// (standard deviations): at rest a lidar draws rings only, which give no planes until it turns. Bounds [0, 1e3].
+    /// (standard deviations): at rest a lidar draws rings only, which give no planes until it turns.
     double trusted_prior_m = 0.1;
     double trusted_prior_rad = 0.03;
-    /// The map is kept within this of the sensor, to a tenth of it; bound (range_max_m / 10, 1e5].
+    /// The map is kept within this of the sensor, to a tenth of it.
     double map_radius_m = 100.0;
-    /// Points that the trajectory places less surely than this are kept out of the map; bound (0, 1e3].
+    /// Points that the trajectory places less surely than this are kept out of the map.
     double map_sigma_max_m = 0.25;
-    /// Sweeps in a row with points but no place in the map, after which it goes on `degenerate` by inertia; bound [1,
-    /// 1e6].
+    /// Sweeps in a row with points but no place in the map, after which it goes on `degenerate` by inertia.
     int lost_sweeps_max = 30;
     /// Threads, if any, that the registration may use; results do not depend on it.
     ParallelFor parallel_for;
+
+    /// Every number of it, stated once: `lidar_inertial_odometry_fields.hpp`.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit);
   };
 
   struct SweepReport {

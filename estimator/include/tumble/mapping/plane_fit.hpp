@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 
+#include "tumble/common/parameters.hpp"
 #include "tumble/mapping/voxel_map.hpp"
 
 namespace tumble {
@@ -30,6 +31,17 @@ struct PlaneBounds {
   /// Fewer neighbours than this beside the most frequent scan line: the plane would be that of the ring, not of the
   /// surface (a ring around a pillar or through a corner of a room is flat, and its normal is false).
   int off_line_min = 2;
+
+  /// Every number of it, stated once.
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.neighbours_min, {"neighbours_min", "1", 3, 32, "fewer map points give no plane"});
+    visit(p.collinear_share,
+          {"collinear_share", "1", 0.0, 1.0, "middle over largest eigenvalue: below, the neighbours lie on a line"});
+    visit(p.rough_share, {"rough_share", "1", 0.0, 1.0, "least over middle eigenvalue: above, there is no plane"});
+    visit(p.off_line_min,
+          {"off_line_min", "1", 0, 32, "fewer neighbours beside the most frequent scan line give no plane"});
+  }
 };
 
 /// Least-squares plane of a set of map points. Does not allocate.

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "tumble/common/parameters.hpp"
 #include "tumble/mapping/spatial_hash.hpp"
 
 namespace tumble {
@@ -33,8 +34,16 @@ class VoxelMap {
   static constexpr std::uint32_t kNoPoint = 0xffffffffu;
 
   struct Params {
-    double voxel_m = 0.5;    ///< edge of a cell; a few times the spacing searches fastest; bound [0.01, 100]
-    double spacing_m = 0.1;  ///< at most one point is kept per cube of this edge; 0 keeps all; bound [0, voxel_m]
+    double voxel_m = 0.5;    ///< edge of a cell; a few times the spacing searches fastest
+    double spacing_m = 0.1;  ///< at most one point is kept per cube of this edge; 0 keeps all
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit(p.voxel_m, {"voxel_m", "m", 0.01, 100.0, "edge of a cell; a few times the spacing searches fastest"});
+      visit(p.spacing_m,
+            {"spacing_m", "m", 0.0, 100.0, "at most one point is kept per cube of this edge; 0 keeps all"});
+    }
   };
 
   explicit VoxelMap(const Params& params);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tumble/common/imu.hpp"
+#include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/rolling/rolling_filter.hpp"
 
@@ -45,15 +46,30 @@ class RollingSmoother {
 
   struct Params {
     RollingParams filter = {};
-    /// Noise of the last pass, as a share of the filter's; the covariance that it states is of the filter's; bound (0,
-    /// 1].
+    /// Noise of the last pass, as a share of the filter's; the covariance that it states is of the filter's.
     double path_noise = 0.65;
-    double lag_s = kWholeRun;    ///< how long an estimate may wait for what follows; bound [node_s, 1e9]
-    double block_s = 0.2;        ///< estimates are given out in blocks of this length; bound [node_s, 1e3]
-    double rate_max_hz = 500.0;  ///< of the samples: storage set aside for the lag; bound (0, 1e5]
+    double lag_s = kWholeRun;    ///< how long an estimate may wait for what follows
+    double block_s = 0.2;        ///< estimates are given out in blocks of this length
+    double rate_max_hz = 500.0;  ///< of the samples: storage set aside for the lag
     /// Above zero: horizontal distance of the centre from the start to the end of the run, known from elsewhere, and
-    /// its sigma. With a prior on the radius it tells the radius. Bounds [0, 1e6], (0, 1e3].
+    /// its sigma. With a prior on the radius it tells the radius.
     double known_distance_m = 0.0, known_distance_sigma_m = 5e-3;
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit.group("", p.filter);
+      visit(p.path_noise, {"path_noise", "1", 1e-6, 1.0, "noise of the last pass as a share of the filter's"});
+      visit(p.lag_s, {"lag_s", "s", 1e-3, 1e9, "how long a pose may wait for what follows; 1e9: for the end of the run",
+                      Rank::first});
+      visit(p.block_s, {"block_s", "s", 1e-3, 1e3, "estimates are given out in blocks of this length"});
+      visit(p.rate_max_hz, {"rate_max_hz", "Hz", 1e-3, 1e5, "of the samples: storage set aside for the lag"});
+      visit(
+          p.known_distance_m,
+          {"known_distance_m", "m", 0.0, 1e6,
+           "horizontal distance from start to end, known from elsewhere: tells the radius; 0: not known", Rank::first});
+      visit(p.known_distance_sigma_m, {"known_distance_sigma_m", "m", 1e-12, 1e3, "its sigma", Rank::first});
+    }
   };
 
   /// The modes of all hypotheses at a node, and which of the node before each came from.

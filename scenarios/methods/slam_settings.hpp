@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scenarios/methods/settings.hpp"
+#include "tumble/mapping/lidar_inertial_odometry_fields.hpp"
+
+/// Parameters of the lidar-inertial chain (run_slam_chain).
+namespace tumble::scenarios {
+
+/// Those of the library, and what the chain makes of the calibration.
+struct SlamParams {
+  LidarInertialOdometry::Params odometry;
+  bool flight_arc = false;  ///< odometry.body is the robot's, from the calibration
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit.group("", p.odometry);
+    visit(p.flight_arc, on_off("flight_arc",
+                               "1: in flight the ballistic arc of the centre of mass, as calibrated, gives the "
+                               "position; 0: the accelerometer",
+                               Rank::first));
+  }
+};
+
+/// With what calibrations of a rig that was put together by hand may be off by.
+SlamParams with_calibration(SlamParams params);
+/// With the excess of clipped axes estimated in the registration.
+SlamParams with_saturation_deficit(SlamParams params);
+
+/// The parameters of a method on the chain; what the recording states, and of `fixed` nothing.
+Settings<SlamParams> slam_settings(const SlamParams& defaults, std::vector<std::string> fixed = {});
+
+/// The chain's part of a method's parameters. Both outlive the run.
+struct SlamStage {
+  const Settings<SlamParams>& settings;
+  const sim::Values& parameters;
+};
+
+}  // namespace tumble::scenarios

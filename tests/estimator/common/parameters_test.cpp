@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/common/parameters.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string>
+
+namespace tumble {
+namespace {
+
+struct Inner {
+  double share = 0.5;
+  int count = 3;
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.share, {"share", "1", 0.0, 1.0, "a share"});
+    visit(p.count, {"count", "1", 1, 4, "a number of things"});
+  }
+};
+
+struct Outer {
+  enum class Kind { first, second };
+  double tau_s = 1.0;
+  std::size_t least = 0;
+  bool on = true;
+  Kind kind = Kind::first;
+  Eigen::Vector3d arm_m = Eigen::Vector3d::Zero();
+  Inner left, right;
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.tau_s, {"tau_s", "s", 1e-3, 10.0, "a time", Rank::first});
+    visit(p.least, {"least", "1", 0, 1e9, "a number of things"});
+    visit(p.on, on_off("on", "a switch"));
+    visit(p.kind, {"kind", "1", 0, 1, "a choice"});
+    visit(p.arm_m, {"arm_m", "m", -1.0, 1.0, "an arm"});
+    visit.group("left_", p.left);
+    visit.group("right_", p.right);
+  }
+};
+
+/// The message of require_fields; empty when it accepts.
+std::string complaint(const Outer& params) {
+  try {
+    require_fields(params);
+  } catch (const InvalidParams& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Fields, AreWithinTheirBoundsBothIncluded) {
+  Outer params;
+  EXPECT_EQ(complaint(params), "");
+  EXPECT_TRUE(check_fields(params).ok());
+  params.tau_s = 10.0;
+  params.arm_m.setConstant(-1.0);
+  params.right.share = 1.0;
+  EXPECT_EQ(complaint(params), "");
+}
+
+TEST(Fields, OutOfBoundsAreNamedWithTheirGroup) {
+  Outer params;
+  params.right.share = 1.5;
+  EXPECT_EQ(complaint(params), "right_share is 1.5, must be within [0, 1]");
+  const Status status = check_fields(params);
+  EXPECT_EQ(status.trouble, Trouble::out_of_range);
+  EXPECT_STREQ(status.field, "share");
+  EXPECT_EQ(status.value, 1.5);
+  EXPECT_EQ(status.bound, 1.0);
+}
+
+TEST(Fields, TheFirstOfSeveralIsTold) {
+  Outer params;
+  params.left.count = 0;
+  params.right.share = 1.5;
+  EXPECT_EQ(complaint(params), "left_count is 0, must be within [1, 4]");
+  params.tau_s = 0.0;
+  EXPECT_EQ(complaint(params), "tau_s is 0, must be within [0.001, 10]");
+  EXPECT_EQ(check_fields(params).bound, 1e-3);
+}
+
+TEST(Fields, EachTypeIsLookedAt) {
+  Outer params;
+  params.arm_m.z() = 1.0 + 1e-12;
+  EXPECT_NE(complaint(params), "");
+  params = {};
+  params.kind = static_cast<Outer::Kind>(2);
+  EXPECT_EQ(complaint(params), "kind is 2, must be within [0, 1]");
+  params = {};
+  params.least = 2'000'000'000;
+  EXPECT_NE(complaint(params), "");
+}
+
+TEST(Fields, NaNIsOutOfAnyBounds) {
+  Outer params;
+  params.left.share = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(complaint(params).starts_with("left_share is nan")) << complaint(params);
+  params = {};
+  params.arm_m.y() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(check_fields(params).ok());
+}
+
+}  // namespace
+}  // namespace tumble

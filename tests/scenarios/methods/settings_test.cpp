@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Every parameter of every method: its default stands, each value within its bounds takes effect, what lies beyond or
+// is half of what is whole is refused.
+#include "scenarios/methods/settings.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/methods/given_parameters.hpp"
+#include "scenarios/methods/method.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+using Stages = std::vector<const SettingsTable*>;
+
+sim::Values resolved(const Stages& stages, const std::string& name, double value) {
+  sim::Values given;
+  given.set(name, value);
+  return resolve_settings("method", given, stages);
+}
+
+bool refuses(const Stages& stages, const std::string& name, double value) {
+  try {
+    (void)resolved(stages, name, value);
+    return false;
+  } catch (const sim::InvalidSituation&) {
+    return true;
+  }
+}
+
+bool is_whole(const Stages& stages, std::string_view name) {
+  return std::any_of(stages.begin(), stages.end(), [&](const SettingsTable* stage) { return stage->is_whole(name); });
+}
+
+/// A value within the bounds that is not the default.
+double another(const sim::Parameter& p, bool whole) {
+  const double d = p.default_value;
+  for (const double value : whole ? std::vector{d + 1.0, d - 1.0}
+                                  : std::vector{1.5 * d, 0.5 * d, d + 0.25, d - 0.25, 0.5 * (p.low + p.high)}) {
+    if (value != d && value >= p.low && value <= p.high) return value;
+  }
+  return d;
+}
+
+/// Numbers of the stages that differ from their defaults.
+std::vector<double> changed(const Stages& stages, const sim::Values& values) {
+  const sim::Values defaults = resolve_settings("method", {}, stages);
+  std::vector<double> out;
+  for (const SettingsTable* stage : stages) {
+    const std::map<std::string, double> before = stage->numbers(defaults), after = stage->numbers(values);
+    for (const auto& [name, value] : after) {
+      if (value != before.at(name)) out.push_back(value);
+    }
+  }
+  return out;
+}
+
+/// What is wrong with the parameters of a method; empty when nothing is.
+std::vector<std::string> complaints(const Stages& stages) {
+  std::vector<std::string> out;
+  std::set<std::string> names;
+  std::size_t first = 0;
+  for (const sim::Parameter& p : joined_rows(stages, first)) {
+    const std::string name(p.name);
+    if (!names.insert(name).second) out.push_back(name + " stands twice");
+    if (p.doc.empty() || p.unit.empty()) out.push_back(name + " lacks unit or meaning");
+    if (!(p.low <= p.default_value && p.default_value <= p.high)) out.push_back(name + ": default out of bounds");
+    const bool whole = is_whole(stages, name);
+    const double value = another(p, whole);
+    if (value == p.default_value || changed(stages, resolved(stages, name, value)) != std::vector{value}) {
+      out.push_back(name + " takes no effect");
+    }
+    if (refuses(stages, name, p.low) || refuses(stages, name, p.high)) out.push_back(name + ": bounds refused");
+    if (!refuses(stages, name, 2.0 * std::abs(p.high) + 1.0)) out.push_back(name + ": accepted above its bound");
+    if (!refuses(stages, name, -2.0 * std::abs(p.low) - 1.0)) out.push_back(name + ": accepted below its bound");
+    if (!refuses(stages, name, std::nan(""))) out.push_back(name + ": NaN accepted");
+    if (whole && !refuses(stages, name, p.low + 0.5)) out.push_back(name + ": half accepted");
+  }
+  return out;
+}
+
+TEST(Settings, EveryParameterOfEveryMethodIsReadAndBound) {
+  std::size_t with_parameters = 0;
+  for (const Method& method : methods()) {
+    const Stages& stages = method.info.settings;
+    EXPECT_TRUE(std::none_of(stages.begin(), stages.end(), [](const auto* stage) { return stage == nullptr; }));
+    for (const std::string& complaint : complaints(stages)) {
+      ADD_FAILURE() << to_string(method.info.kind) << "/" << method.info.name << ": " << complaint;
+    }
+    std::size_t first = 0;
+    const std::vector<sim::Parameter> rows = joined_rows(stages, first);
+    EXPECT_EQ(rows.size(), method.info.parameters.size()) << method.info.name;
+    EXPECT_EQ(first, method.info.parameters_first) << method.info.name;
+    with_parameters += rows.empty() ? 0 : 1;
+  }
+  EXPECT_GT(with_parameters, 40u);
+}
+
+TEST(Settings, AllOfTheLibraryIsReachable) {
+  const auto count = [](const char* name) { return find_methods(name).at(0)->info.parameters.size(); };
+  EXPECT_GT(count("rate/tumble"), 70u);
+  EXPECT_GT(count("rate/tumble_lag"), 120u);
+  EXPECT_GT(count("position/tumble"), 60u);
+  EXPECT_GT(count("slam/tumble"), 110u);
+}
+
+struct Numbers {
+  int count = 3;
+  double share = 0.5, gravity_m_s2 = 9.8;
+  Eigen::Vector3d arm_m = {0.1, 0.2, 0.3};
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.count, {"count", "1", 1, 8, "a number of things"});
+    visit(p.share, {"share", "1", 0.0, 1.0, "a share", Rank::first});
+    visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.0, 100.0, "strength of gravity"});
+    visit(p.arm_m, {"arm_m", "m", -1.0, 1.0, "an arm"});
+  }
+};
+
+std::vector<std::string> names_of(const SettingsTable& table) {
+  std::vector<std::string> names;
+  for (const sim::Parameter& row : table.rows()) names.emplace_back(row.name);
+  return names;
+}
+
+TEST(Settings, NameTheirRowsAndShowFirstWhatAUserSetsFirst) {
+  const Settings<Numbers> table(Numbers{});
+  EXPECT_EQ(names_of(table),
+            (std::vector<std::string>{"share", "count", "gravity_m_s2", "arm_x_m", "arm_y_m", "arm_z_m"}));
+  EXPECT_EQ(table.first_rows(), 1u);
+  EXPECT_EQ(table.rows()[4].default_value, 0.2);
+  EXPECT_EQ(complaints({&table}), std::vector<std::string>{});
+}
+
+TEST(Settings, HalvesOfWhatIsWholeAreRefused) {
+  const Settings<Numbers> table(Numbers{});
+  EXPECT_TRUE(refuses({&table}, "count", 4.5));
+  EXPECT_FALSE(refuses({&table}, "count", 4.0));
+  EXPECT_EQ(table.read(resolved({&table}, "count", 4.0)).count, 4);
+  EXPECT_FALSE(refuses({&table}, "share", 0.25));
+}
+
+TEST(Settings, WhatARecordingStatesGivesWayOnlyToWhatSomebodyGave) {
+  const Settings<Numbers> table(Numbers{}, {.stated = {"gravity_m_s2"}});
+  const Stages stages = {&table};
+  Numbers stated;
+  stated.gravity_m_s2 = 1.6;
+  table.apply(resolve_settings("method", {}, stages), stated);
+  EXPECT_EQ(stated.gravity_m_s2, 1.6);
+  table.apply(resolved(stages, "gravity_m_s2", 9.8), stated);  // the default's value, but given
+  EXPECT_EQ(stated.gravity_m_s2, 9.8);
+}
+
+TEST(Settings, WhatFollowsFromOthersCannotBeSet) {
+  const Settings<Numbers> table(Numbers{}, {.fixed = {"arm_*", "share"}});
+  EXPECT_EQ(names_of(table), (std::vector<std::string>{"count", "gravity_m_s2"}));
+  EXPECT_TRUE(refuses({&table}, "share", 0.5));
+}
+
+TEST(Settings, AStageBesideAnotherBearsItsPrefixWhereNamesMeet) {
+  const Settings<Numbers> chain(Numbers{}, {.fixed = {"share", "arm_*"}});
+  const Settings<Numbers> rates(Numbers{}, {.beside = chain.rows(), .prefix = "rate_"});
+  const Stages stages = {&chain, &rates};
+  EXPECT_EQ(complaints(stages), std::vector<std::string>{});
+  const sim::Values values = resolved(stages, "rate_count", 5.0);
+  EXPECT_EQ(chain.read(values).count, 3);
+  EXPECT_EQ(rates.read(values).count, 5);
+}
+
+TEST(GivenParameters, ReachTheMethodThatTheyName) {
+  const Settings<Numbers> table(Numbers{});
+  Method method;
+  method.info.name = "made_up";
+  method.info.settings = {&table};
+  sim::Values seen;
+  method.run = [&seen](const sim::Sensors&, const sim::Values& given, const OracleInput&) {
+    seen = given;
+    return Estimate{};
+  };
+  const MethodPointer methods[] = {unowned(method)};
+  const auto run = [&](const std::vector<std::string>& texts) {
+    (void)with_parameters(methods, texts).front().run({}, {}, {});
+    return seen;
+  };
+  EXPECT_TRUE(run({}).all().empty());
+  EXPECT_EQ(run({"rate/made_up.count=5", "made_up.arm_x_m=-0.5"}).all(),
+            (std::map<std::string, double>{{"arm_x_m", -0.5}, {"count", 5.0}}));
+  for (const char* wrong : {"count=5", "rate/made_up.count", "rate/made_up.count=five", "rate/made_up.count=5x",
+                            ".count=5", "rate/made_up.=5", "rate/made_up.counts=5", "rate/made_up.count=4.5",
+                            "rate/made_up.count=9", "rate/other.count=5"}) {
+    EXPECT_THROW(run({wrong}), BadInput) << wrong;
+  }
+  EXPECT_THROW(run({"made_up.count=5", "rate/made_up.count=6"}), BadInput);
+}
+
+/// A method that forgets what it is told.
+class Deaf : public SettingsTable {
+ public:
+  Deaf() : SettingsTable({}) { add("share", 0.5, {"share", "1", 0.0, 1.0, "a share"}, false); }
+  std::map<std::string, double> numbers(const sim::Values&) const override { return {{"share", 0.5}}; }
+};
+
+// negative control: the test of the registry sees a parameter without effect, and two of one name
+TEST(Settings, FaultsAreSeen) {
+  const Deaf deaf;
+  EXPECT_EQ(complaints({&deaf}), std::vector<std::string>{"share takes no effect"});
+  const Settings<Numbers> one(Numbers{}), other(Numbers{});
+  const std::vector<std::string> found = complaints({&one, &other});
+  EXPECT_NE(std::find(found.begin(), found.end(), "count stands twice"), found.end());
+  Numbers wrong;
+  wrong.share = 1.5;
+  const Settings<Numbers> beyond(wrong);
+  const std::vector<std::string> of_default = complaints({&beyond});
+  EXPECT_NE(std::find(of_default.begin(), of_default.end(), "share: default out of bounds"), of_default.end());
+}
+
+}  // namespace
+}  // namespace tumble::scenarios
