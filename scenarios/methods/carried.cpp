@@ -21,15 +21,7 @@ ClippedElements find_clipped(const sim::ImuRecord& record, std::span<const ImuSa
   const ClippingFinder::Found found = ClippingFinder(params).find(samples);
   const RailPlanes& planes = found.rails.planes;
   signs.assign(samples.size(), {});
-  for (std::size_t k = 0; k < samples.size(); ++k) {
-    const Clipping& clipping = found.clippings[k];
-    for (int j = 0; j < 3; ++j) {
-      const auto i = static_cast<std::size_t>(j);
-      const double rate = samples[k].angular_velocity_rad_s[j], force = samples[k].specific_force_m_s2[j];
-      if ((clipping.gyro >> j & 1) != 0) signs[k].gyro[i] = rate < 0.0 ? -1 : 1;
-      if ((clipping.accel >> j & 1) != 0) signs[k].accel[i] = force < 0.0 ? -1 : 1;
-    }
-  }
+  for (std::size_t k = 0; k < samples.size(); ++k) signs[k] = clip_signs(samples[k], found.clippings[k]);
   ClippedElements out;
   out.signs = signs;
   for (int j = 0; j < 3; ++j) {

@@ -99,7 +99,10 @@ Status RateStream::push(const ImuSample& sample, std::span<const AuxiliaryReadin
 void RateStream::forget_oldest(State& state) const {
   state.waiting = 0;
   std::size_t count = 0;
-  for (; state.window.size() - count >= capacity_; ++count) marginalise(count, state);
+  for (; state.window.size() - count >= capacity_; ++count) {
+    remember_entry(state.window[count], state.window[count + 1], state);
+    marginalise(count, state);
+  }
   state.window.erase(state.window.begin(), state.window.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
@@ -178,10 +181,14 @@ void RateStream::append(const ImuSample& sample, std::span<const AuxiliaryReadin
   // until a step of the window says more
   knot.covariance_rad2_s2 = std::pow(params_.model.rate_max_rad_s, 2) * Eigen::Matrix3d::Identity();
   state.window.push_back(knot);
+  state.window.back().approach_rad_s = approach(state.window);
   ++state.samples;
   if (changed) classify_again(state);
   // a sample is judged by those beside it too
   judge(changed ? 0 : state.window.size() - std::min<std::size_t>(2, state.window.size()), state);
+  state.extremes[0] = state.extremes[0].cwiseMin(sample.angular_velocity_rad_s);
+  state.extremes[1] = state.extremes[1].cwiseMax(sample.angular_velocity_rad_s);
+  doubt_possible_rails(state);
 }
 
 // Clipped axes of a new sample start from the prediction or from the centripetal force, whichever explains flight
@@ -312,6 +319,8 @@ RateState RateStream::to_state(const Knot& knot) const {
   out.covariance_rad2_s2 = model_.reported(knot.covariance_rad2_s2, knot.observation, knot.estimate);
   out.clipped_axes = knot.observation.clipping.gyro | knot.observation.clipping.void_gyro;
   out.source = rate_source(knot.observation, knot.estimate, knot.covariance_rad2_s2, params_.recovered_sigma_rad_s);
+  // a reading that may stand at a rail nobody has seen yet is not called clipped, but it is none that was measured
+  if (out.source == RateSource::measured && knot.observation.partial != 0) out.source = RateSource::bounded_only;
   return out;
 }
 
@@ -337,7 +346,7 @@ bool RateStream::equal(const State& a, const State& b) {
            x.observation.lost_sigma_rad_s == y.observation.lost_sigma_rad_s && e.knot == f.knot &&
            e.flight_weight == f.flight_weight && e.contact_m_s2 == f.contact_m_s2 &&
            e.bound_precision == f.bound_precision && e.bound_shift == f.bound_shift && e.soft_bounds == f.soft_bounds &&
-           x.covariance_rad2_s2 == y.covariance_rad2_s2 && x.age == y.age &&
+           x.covariance_rad2_s2 == y.covariance_rad2_s2 && x.age == y.age && x.approach_rad_s == y.approach_rad_s &&
            std::equal(x.observation.auxiliary_imus.begin(), x.observation.auxiliary_imus.end(),
                       y.observation.auxiliary_imus.begin(),
                       [](const AuxiliaryReading& r, const AuxiliaryReading& s) { return r.same(s); });
@@ -347,6 +356,7 @@ bool RateStream::equal(const State& a, const State& b) {
          a.rig_covariance == b.rig_covariance && a.prior.diagonal == b.prior.diagonal &&
          a.prior.border == b.prior.border && a.prior.gradient == b.prior.gradient &&
          a.prior_corner.matrix == b.prior_corner.matrix && a.prior_corner.gradient == b.prior_corner.gradient &&
+         a.extremes == b.extremes && a.entry_rad_s == b.entry_rad_s && a.entry_samples == b.entry_samples &&
          a.left == b.left && a.left_ns == b.left_ns && a.prior_knot == b.prior_knot && a.prior_rig == b.prior_rig &&
          a.samples == b.samples && a.rig_resets == b.rig_resets && a.flight_run == b.flight_run &&
          a.waiting == b.waiting && a.learnt_from == b.learnt_from && a.failures == b.failures;

@@ -1,11 +1,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How the window of a RateStream is read by the rails, as they become known.
 #include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
 
 #include "element_clipping.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
 
 namespace tumble {
+
+namespace {
+
+using Eigen::Vector3d;
+
+// Deviations of a plane. Of the largest reading of an axis: so near to it so many readings may be at one rail, tilted
+// as rails are. A round top of n readings is (n/(n - 1))^2 <= 2.25 times as high as what its readings show; one that is
+// cut off more than kKink times, and more than so many deviations of the noise.
+constexpr double kOpen = 3.0, kPossibleShare = 0.02, kKink = 4.0, kPossibleNoise = 5.0;
+constexpr std::size_t kPossibleMin = 3;
+
+// Elements' rails lie within this share of each other (3 % on the wand of RepoIMU).
+constexpr double kApart = 0.05;
+
+// Whether the largest reading of an element may be its rail, as far as those of the others tell.
+bool may_be_rail(const RailPlanes& planes, double peak_rad_s) {
+  return std::all_of(planes.element.begin(), planes.element.end(), [&](const auto& element) {
+    return !element || peak_rad_s >= (1.0 - kApart) * element->distance_rad_s;
+  });
+}
+
+}  // namespace
 
 // What walls say of the window now that more is known of them.
 void RateStream::classify_again(State& state) const {
@@ -43,6 +67,92 @@ void RateStream::judge(std::size_t first, State& state) const {
       knot.estimate.soft_bounds = false;
     }
     if (k > 0) guess(knot, state.window[k - 1], state);
+  }
+}
+
+// Whether a reading may stand at a rail: at one that is hardly known yet, as far as its slopes are open, or, where none
+// was seen, at the largest reading so far, which is about the rail of the other elements. rate_stream.md (R94)
+bool RateStream::may_clip(const ImuSample& sample, int axis, int sign, const State& state) const {
+  const Vector3d& y = sample.angular_velocity_rad_s;
+  const RailPlanes planes = state.rails.known.planes_in_use();
+  const auto& plane = planes.element[static_cast<std::size_t>(axis)];
+  if (sign * y[axis] <= 0.0) return false;
+  if (plane && plane->seen(sign)) {
+    const Eigen::Vector4d by(y[(axis + 1) % 3], y[(axis + 2) % 3], -sign, -1.0);
+    const double open = std::sqrt(std::max(0.0, by.dot(plane->covariance * by)));
+    return plane->short_of(y, sign) <= plane->tolerance_rad_s + kOpen * open;
+  }
+  const double extreme = std::abs(state.extremes[sign > 0 ? 1 : 0][axis]);
+  const bool high = extreme >= params_.planes.distance_min_rad_s && may_be_rail(planes, extreme);
+  return high && std::abs(y[axis]) >= (1.0 - kPossibleShare) * extreme;
+}
+
+// Doubts readings that may clip and that nothing says do: three and more in a row.
+void RateStream::doubt_possible_rails(State& state) const {
+  const auto observation = [&](std::size_t k) -> RateObservation& { return state.window[k].observation; };
+  for (int j = 0; j < 3; ++j) {
+    if (rails_.walls().rail(state.rails.known.walls, j)) continue;
+    const auto bit = static_cast<std::uint8_t>(1u << j);
+    for (std::size_t k = 0; k < state.window.size();) {
+      const int sign = observation(k).sample.angular_velocity_rad_s[j] < 0.0 ? -1 : 1;
+      std::size_t end = k;
+      while (end < state.window.size() && may_clip(observation(end).sample, j, sign, state)) ++end;
+      if (end >= k + kPossibleMin) doubt_run(j, k, end - 1, state);
+      // one that was doubted until a larger one was read
+      const bool none = end == k && !state.rails.known.planes.any() && (observation(k).clipping.gyro & bit) == 0;
+      if (none) observation(k).partial = static_cast<std::uint8_t>(observation(k).partial & ~bit);
+      k = std::max(end, k + 1);
+    }
+  }
+}
+
+// One such run: a smooth motion that is cut off there would have gone on with the slopes at its ends. (R95)
+void RateStream::doubt_run(int axis, std::size_t first, std::size_t last, State& state) const {
+  const auto size = [&](std::size_t k) {
+    return std::abs(state.window[k].observation.sample.angular_velocity_rad_s[axis]);
+  };
+  const auto bit = static_cast<std::uint8_t>(1u << axis);
+  double highest = 0.0, lowest = size(first);
+  for (std::size_t k = first; k <= last; ++k) {
+    highest = std::max(highest, size(k));
+    lowest = std::min(lowest, size(k));
+  }
+  const double in = first > 0 ? state.window[first - 1].approach_rad_s[axis] : state.entry_rad_s[axis];
+  const bool left = last + 3 < state.window.size();
+  const double out = left ? std::min(size(last + 1) - size(last + 2), size(last + 2) - size(last + 3)) : 0.0;
+  const double samples = static_cast<double>(last - first + 1) + (first > 0 ? 0.0 : state.entry_samples[axis]);
+  const double cut = 0.25 * samples * std::max({in, out, 0.0});
+  const double noise = model_.gyro_sigma_rad_s();
+  if (cut < kKink * (highest - lowest) || cut < kPossibleNoise * noise) return;
+  for (std::size_t k = first; k <= last; ++k) {
+    RateObservation& observation = state.window[k].observation;
+    if (((observation.clipping.gyro | observation.clipping.void_gyro) & bit) != 0) continue;
+    observation.partial = static_cast<std::uint8_t>(observation.partial | bit);
+    observation.lost_rad_s[axis] = 0.0;
+    // all of the run are cut off together: what they say is one reading's word
+    observation.lost_sigma_rad_s[axis] = std::hypot(noise, std::sqrt(samples) * cut);
+  }
+}
+
+// Of the newest sample. Two steps: an impact is one, and a spin that it leaves behind is no rail.
+Vector3d RateStream::approach(const std::vector<Knot>& window) {
+  if (window.size() < 3) return Vector3d::Zero();
+  const auto size = [&](std::size_t back) {
+    return window[window.size() - 1 - back].observation.sample.angular_velocity_rad_s.cwiseAbs();
+  };
+  const Vector3d now = size(0) - size(1), before = size(1) - size(2);
+  return now.cwiseMin(before).cwiseMax(0.0);
+}
+
+// Of a run that goes on in the window after its first reading has left.
+void RateStream::remember_entry(const Knot& leaving, const Knot& next, State& state) {
+  const auto hidden = [](const Knot& knot, int j) {
+    return ((knot.observation.clipping.gyro | knot.observation.partial) >> j & 1) != 0;
+  };
+  for (int j = 0; j < 3; ++j) {
+    const bool goes_on = hidden(leaving, j) && hidden(next, j);
+    state.entry_samples[j] = goes_on ? state.entry_samples[j] + 1.0 : 0.0;
+    if (!goes_on) state.entry_rad_s[j] = hidden(next, j) ? leaving.approach_rad_s[j] : 0.0;
   }
 }
 

@@ -63,14 +63,16 @@ GyroRows gyro_rows(const Eigen::RowVector3d& m, const Node& node, const Constant
   return rows;
 }
 
-// how far the clipped elements are believed to lie beyond their rails
+// how far the clipped elements are believed to lie beyond their rails, and the unreadable ones off their readings
 double excess(const NodeReadings& readings, const std::array<GyroRows, 3>& rows, int except) {
   double sum = 0.0;
   for (int i = 0; i < 3; ++i) {
     const ElementSums& element = readings.gyro[static_cast<std::size_t>(i)];
-    if (i == except || !(element.clipped > 0.0)) continue;
-    const double beyond = element.sign * (rows[static_cast<std::size_t>(i)].predicted - element.rail);
-    sum += beyond > 0.0 ? beyond : 0.0;
+    if (i == except) continue;
+    const double predicted = rows[static_cast<std::size_t>(i)].predicted;
+    const double beyond = element.clipped > 0.0 ? element.sign * (predicted - element.rail) : 0.0;
+    const double off = element.unread > 0.0 ? std::abs(predicted - element.unread_z) : 0.0;
+    sum += std::max({0.0, beyond, off});
   }
   return sum;
 }

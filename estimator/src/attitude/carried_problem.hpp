@@ -28,6 +28,12 @@ std::vector<Eigen::Vector3d> filled_rates(std::span<const ImuSample> samples, co
 
 inline constexpr double kFillMost = 2.5;  ///< rails: the fill is a start, no more
 
+/// While nothing in the window of CarriedStream clips, one step for so many nodes.
+inline constexpr int kFreeNodes = 5;
+
+/// Whether an element of the gyro is not read, in a part of the node's time or in all of it.
+bool clips(const NodeReadings& readings);
+
 /// Adds one sample's reading, `t` seconds from the node.
 void add_reading(const ImuSample& sample, const Eigen::Matrix3d& rows, const ClipSigns& signs, double t,
                  NodeReadings& node);

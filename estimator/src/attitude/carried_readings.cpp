@@ -5,9 +5,34 @@
 #include <limits>
 
 #include "carried_problem.hpp"
+#include "tumble/angular_velocity/clipping_finder.hpp"
 #include "tumble/attitude/vqf.hpp"
 
-namespace tumble::carried {
+namespace tumble {
+
+ClipSigns clip_signs(const ImuSample& sample, const Clipping& clipping) {
+  const auto sign = [&](Triad triad, int axis) -> std::int8_t {
+    switch (element_reading(sample, clipping, triad, axis)) {
+      case ElementReading::measured:
+        return 0;
+      case ElementReading::clipped_high:
+        return 1;
+      case ElementReading::clipped_low:
+        return -1;
+      case ElementReading::unreadable:
+        return ClipSigns::kVoid;
+    }
+    return 0;
+  };
+  ClipSigns out;
+  for (int j = 0; j < 3; ++j) {
+    out.gyro[static_cast<std::size_t>(j)] = sign(Triad::gyro, j);
+    out.accel[static_cast<std::size_t>(j)] = sign(Triad::accelerometer, j);
+  }
+  return out;
+}
+
+namespace carried {
 
 using Eigen::Vector3d;
 
@@ -31,6 +56,11 @@ ClipSigns signs_of(const ClippedElements& clipped, std::size_t k) {
 }
 
 void add_gyro_reading(double z, double t, int sign, ElementSums& e) {
+  if (sign == ClipSigns::kVoid) {
+    e.unread += 1.0;
+    e.unread_z += (z - e.unread_z) / e.unread;
+    return;
+  }
   if (sign != 0) {
     e.clipped += 1.0;
     e.clipped_t_s += (t - e.clipped_t_s) / e.clipped;
@@ -62,7 +92,36 @@ void fill_stretch(std::span<const ImuSample> samples, const std::vector<double>&
   }
 }
 
+/// From `begin` on: as long as an element stands at one rail, readings that say nothing among them, or as long as it is
+/// free (sign 0).
+struct HiddenStretch {
+  std::size_t end = 0;
+  int sign = 0;
+};
+
+HiddenStretch hidden_stretch(std::span<const ClipSigns> signs, std::size_t element, std::size_t begin,
+                             const std::vector<double>& raw) {
+  HiddenStretch out{begin, 0};
+  if (signs[begin].gyro[element] == 0) {
+    while (out.end < signs.size() && signs[out.end].gyro[element] == 0) ++out.end;
+    return out;
+  }
+  for (; out.end < signs.size(); ++out.end) {
+    const int sign = signs[out.end].gyro[element];
+    if (sign == 0 || (sign != ClipSigns::kVoid && out.sign != 0 && sign != out.sign)) break;
+    if (sign != ClipSigns::kVoid) out.sign = sign;
+  }
+  // none but unreadable ones: beyond the rail on the side from which it came
+  if (out.sign == 0) out.sign = raw[begin == 0 ? begin : begin - 1] < 0.0 ? -1 : 1;
+  return out;
+}
+
 }  // namespace
+
+bool clips(const NodeReadings& readings) {
+  return std::any_of(readings.gyro.begin(), readings.gyro.end(),
+                     [](const ElementSums& e) { return e.clipped > 0.0 || e.unread > 0.0; });
+}
 
 void add_reading(const ImuSample& sample, const Eigen::Matrix3d& rows, const ClipSigns& signs, double t,
                  NodeReadings& node) {
@@ -114,11 +173,9 @@ std::vector<Vector3d> filled_rates(std::span<const ImuSample> samples, const Cli
     for (std::size_t k = 0; k < count; ++k) raw[k] = rates[k][axis];
     filled = raw;
     for (std::size_t begin = 0; begin < count;) {
-      const int sign = clipped.signs[begin].gyro[j];
-      std::size_t end = begin + 1;
-      while (end < count && clipped.signs[end].gyro[j] == sign) ++end;
-      if (sign != 0) fill_stretch(samples, raw, begin, end, sign, filled);
-      begin = end;
+      const HiddenStretch stretch = hidden_stretch(clipped.signs, j, begin, raw);
+      if (stretch.sign != 0) fill_stretch(samples, raw, begin, stretch.end, stretch.sign, filled);
+      begin = stretch.end;
     }
     for (std::size_t k = 0; k < count; ++k) rates[k][axis] = filled[k];
   }
@@ -167,4 +224,6 @@ Status start_nodes(const CarriedSmoother::Params& params, std::span<const ImuSam
   return {};
 }
 
-}  // namespace tumble::carried
+}  // namespace carried
+
+}  // namespace tumble

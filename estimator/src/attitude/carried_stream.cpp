@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/attitude/carried_stream.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -18,19 +17,9 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kRowsMin = 0.1;          // determinant of the elements' rows, as in CarriedSmoother
-constexpr double kTurnMax = 0.8;          // largest step of an attitude
-constexpr int kFreeNodes = 5;             // while nothing in the window clips, one step for so many nodes
-constexpr int kFirstNodes = 100;          // but for the first, which still find their attitude
-constexpr double kUnknown_rad2_s2 = 1e6;  // variance where the equations fail
-constexpr double kNear_s = 0.1;           // so near to a clipped node covariances are those of the doubted jerk
-
-std::uint8_t clipped_axes(const ClipSigns& signs) {
-  std::uint8_t axes = 0;
-  for (std::size_t j = 0; j < 3; ++j)
-    if (signs.gyro[j] != 0) axes = static_cast<std::uint8_t>(axes | (1u << j));
-  return axes;
-}
+constexpr double kRowsMin = 0.1;  // determinant of the elements' rows, as in CarriedSmoother
+constexpr double kTurnMax = 0.8;  // largest step of an attitude
+constexpr int kFirstNodes = 100;  // but for the first, which still find their attitude
 
 System::BorderVector moved(const carried::Constants& from, const carried::Constants& to) {
   System::BorderVector out;
@@ -39,12 +28,9 @@ System::BorderVector moved(const carried::Constants& from, const carried::Consta
   return out;
 }
 
-bool clips(const carried::NodeReadings& readings) {
-  return std::any_of(readings.gyro.begin(), readings.gyro.end(), [](const auto& e) { return e.clipped > 0.0; });
-}
-
 bool anything_clips(const CarriedStream::State& state) {
-  return std::any_of(state.window.begin(), state.window.end(), [](const auto& knot) { return clips(knot.readings); });
+  return std::any_of(state.window.begin(), state.window.end(),
+                     [](const auto& knot) { return carried::clips(knot.readings); });
 }
 
 bool same(const ClipSigns& a, const ClipSigns& b) {
@@ -88,7 +74,7 @@ void CarriedStream::restart(State& state) const {
 }
 
 Status CarriedStream::push(const ImuSample& sample, const ClippedElements& known, State& state,
-                           std::optional<RateState>& out) const {
+                           std::optional<RateState>& out, bool wanted) const {
   out.reset();
   if (const Status status = check_sample(sample); !status.ok()) return status;
   if (state.samples > 0) {
@@ -116,21 +102,13 @@ Status CarriedStream::push(const ImuSample& sample, const ClippedElements& known
     state.window.back().readings = readings;
   }
   // a free gyro takes nodes where they belong: steps now and then keep attitude and constants
-  const bool due = begun && (latest.node % kFreeNodes == 0 || latest.node < kFirstNodes || anything_clips(state));
+  const bool due =
+      begun && (latest.node % carried::kFreeNodes == 0 || latest.node < kFirstNodes || anything_clips(state));
   const bool factorised = due && step(state);
   if (due && !factorised) ++state.failures;
-  if (state.readings.size() <= delay_) return {};
-  const std::size_t at = state.readings.size() - 1 - delay_;
-  RateState rate;
-  // the covariance of a node stands until the next one is solved; the first that is given has none to take over
-  if (state.readings[at].node != state.given_node && (due || state.given_node < 0)) {
-    publish(at, at, due && factorised, state, {&rate, 1});
-    state.given_node = state.readings[at].node;
-    state.given_covariance_rad2_s2 = rate.covariance_rad2_s2;
-  } else {
-    rate = to_rate(state.readings[at], state, state.given_covariance_rad2_s2);
+  if (wanted && state.readings.size() > delay_) {
+    out = give(state.readings.size() - 1 - delay_, due, due && factorised, state);
   }
-  out = rate;
   return {};
 }
 
@@ -246,6 +224,7 @@ void CarriedStream::add_prior(const State& state, System::Block& block, System::
 
 // carried.md (C14), as rate_stream.md (R90); the hand's power is that of carried.md (C32).
 void CarriedStream::marginalise_oldest(State& state) const {
+  settle_oldest(state);
   const Knot& oldest = state.window[0];
   const Node& next = state.window[1].node;
   System::Block block, after;
@@ -272,9 +251,15 @@ void CarriedStream::marginalise_oldest(State& state) const {
   state.hand_power += share * (oldest.node.a_W_m_s2.squaredNorm() / assumed - state.hand_power);
   ++state.first_node;
   state.window.erase(state.window.begin());
-  const auto gone = std::find_if(state.readings.begin(), state.readings.end(),
-                                 [&](const Reading& reading) { return reading.node >= state.first_node; });
-  state.readings.erase(state.readings.begin(), gone);
+  forget_readings(state);
+}
+
+// Readings whose node has left and whose rate was given out.
+void CarriedStream::forget_readings(State& state) const {
+  std::size_t gone = 0;
+  const std::size_t given = first_not_given(state);
+  while (gone < given && state.readings[gone].node < state.first_node) ++gone;
+  state.readings.erase(state.readings.begin(), state.readings.begin() + static_cast<std::ptrdiff_t>(gone));
 }
 
 // carried.md (C14), (C15)
@@ -314,60 +299,6 @@ bool CarriedStream::step(State& state) const {
   for (std::size_t i = 0; i < state.window.size(); ++i) state.window[i].node.move(share * state.work[i].gradient);
   state.constants.move(share * border);
   return true;
-}
-
-RateState CarriedStream::to_rate(const Reading& reading, const State& state, const Eigen::Matrix3d& covariance) const {
-  const auto at = static_cast<std::size_t>(std::max<std::int64_t>(0, reading.node - state.first_node));
-  const Node& node = state.window[at].node;
-  RateState out;
-  out.time_ns = reading.sample.time_ns;
-  const double t = reading.centre_s - static_cast<double>(reading.node) * params_.body.node_s;
-  out.w_WI_I_rad_s = node.w_WI_I_rad_s + t * node.angular_acceleration_rad_s2;
-  out.covariance_rad2_s2 = covariance;
-  out.clipped_axes = clipped_axes(reading.signs);
-  if (out.clipped_axes == 0) return out;
-  const double variance = covariance.selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff();
-  const double recovered = params_.body.recovered_sigma_rad_s * params_.body.recovered_sigma_rad_s;
-  out.source = variance < recovered ? RateSource::recovered_contact : RateSource::bounded_only;
-  return out;
-}
-
-// Rates of the readings [first, last], with their covariances: near to clipped nodes those of carried.md (C19).
-// `factorised`: the work holds the equations with the jerk that is assumed.
-void CarriedStream::publish(std::size_t first, std::size_t last, bool factorised, State& state,
-                            std::span<RateState> out) const {
-  const auto of = [&](std::size_t k) {
-    return static_cast<std::size_t>(std::max<std::int64_t>(0, state.readings[k].node - state.first_node));
-  };
-  const auto near = static_cast<std::size_t>(std::lround(kNear_s / params_.body.node_s));
-  const std::size_t from = of(first) > near ? of(first) - near : 0;
-  const std::size_t to = std::min(state.window.size(), of(last) + near + 1);
-  bool clipped = false;
-  for (std::size_t i = from; i < to; ++i) clipped = clipped || clips(state.window[i].readings);
-  System::BorderVector unused;
-  const bool known = (factorised && !clipped) || factorise(clipped ? doubted_ : motion_, state, unused);
-  System::Conditional here, next;
-  Eigen::Matrix3d covariance = kUnknown_rad2_s2 * Eigen::Matrix3d::Identity();
-  std::size_t k = last + 1;
-  for (std::size_t i = state.window.size(); i-- > of(first);) {
-    if (known) {
-      here = System::back_conditional(state.work[i], i + 1 < state.window.size() ? &next : nullptr);
-      const auto rows = here.by_border.middleRows<3>(carried::kRate);
-      covariance =
-          here.state.block<3, 3>(carried::kRate, carried::kRate) + rows * state.constants_covariance * rows.transpose();
-    }
-    for (; k > first && of(k - 1) == i; --k) out[k - 1 - first] = to_rate(state.readings[k - 1], state, covariance);
-    next = here;
-  }
-}
-
-void CarriedStream::flush(const State& state, std::vector<RateState>& out) const {
-  const std::size_t left = std::min(delay_, state.readings.size());
-  if (left == 0) return;
-  State last = state;
-  std::vector<RateState> rates(left);
-  publish(state.readings.size() - left, state.readings.size() - 1, false, last, rates);
-  out.insert(out.end(), rates.begin(), rates.end());
 }
 
 }  // namespace tumble

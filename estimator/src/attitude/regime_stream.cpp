@@ -8,6 +8,7 @@ namespace tumble {
 
 namespace {
 
+constexpr double kTurn_s = 0.01;       // the rates' derivative is taken over so long: model_error_s of the rates' model
 constexpr double kResets_s = 2.0;      // memory of how often a rig was dropped
 constexpr double kDoubtResets = 10.0;  // within that
 
@@ -21,15 +22,28 @@ CarriedStream::Params joined(const RegimeStream::Params& params) {
   return out;
 }
 
+// Clipped, or doubted: a rail may be there that was not seen yet.
+bool clips(const RateStream::Knot& knot) {
+  return (knot.observation.unseen() | knot.observation.partial) != 0;
+}
+
+// A reading that may be clipped is a bound like one that is: the truth lies at it or beyond.
 ClipSigns signs_of(const RateObservation& observation) {
-  ClipSigns out;
-  for (int j = 0; j < 3; ++j) {
-    const auto i = static_cast<std::size_t>(j);
-    const double rate = observation.sample.angular_velocity_rad_s[j], force = observation.sample.specific_force_m_s2[j];
-    if ((observation.clipping.gyro >> j & 1) != 0) out.gyro[i] = rate < 0.0 ? -1 : 1;
-    if ((observation.clipping.accel >> j & 1) != 0) out.accel[i] = force < 0.0 ? -1 : 1;
-  }
-  return out;
+  Clipping clipping = observation.clipping;
+  clipping.gyro = static_cast<std::uint8_t>(clipping.gyro | observation.partial);
+  return clip_signs(observation.sample, clipping);
+}
+
+// That of the rates themselves about sample k, over kTurn_s where there are so many. RateStream's own is bent by the
+// very force that is to be judged, also where the gyro reads all of the rate: carried.md (C33)
+Eigen::Vector3d angular_acceleration(std::span<const RateStream::Knot> window, std::size_t k) {
+  const auto at_s = [&](std::size_t i) { return seconds(window[i].observation.sample.time_ns); };
+  std::size_t a = k, b = k;
+  while (b + 1 < window.size() && at_s(b) - at_s(k) < kTurn_s) ++b;
+  while (a > 0 && at_s(k) - at_s(a) < kTurn_s) --a;
+  const double dt_s = at_s(b) - at_s(a);
+  if (!(dt_s > 0.0)) return Eigen::Vector3d::Zero();
+  return (window[b].estimate.knot.rate_rad_s - window[a].estimate.knot.rate_rad_s) / dt_s;
 }
 
 }  // namespace
@@ -50,6 +64,11 @@ RegimeStream::State RegimeStream::start() const {
 Status RegimeStream::push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
                           std::optional<RateState>& out) const {
   if (const Status status = rate_.push(sample, auxiliary_imus, state.rate, out); !status.ok()) return status;
+  double share = 0.0;
+  if (out) {
+    judge(*out, state);
+    share = share_of(*out, state);
+  }
   std::optional<RateState> carried;
   // what RateStream takes has nothing that CarriedStream refuses, but rows that are no frame
   if (state.shares.carried >= params_.carried_min) {
@@ -58,13 +77,11 @@ Status RegimeStream::push(const ImuSample& sample, std::span<const AuxiliaryRead
       state.carrying = true;
       ++state.starts;
     }
-    state.carrying = carried_.push(sample, known_of(state), state.carried, carried).ok();
+    const bool wanted = share > params_.carried_min;
+    state.carrying = carried_.push(sample, known_of(state), state.carried, carried, wanted).ok();
   } else {
     state.carrying = false;
   }
-  if (!out) return {};
-  judge(*out, state);
-  const double share = share_of(*out, state);
   if (share > params_.carried_min && carried && carried->time_ns == out->time_ns) {
     *out = either(*out, *carried, share);
     ++state.joined;
@@ -85,15 +102,16 @@ ClippedElements RegimeStream::known_of(State& state) const {
   return out;
 }
 
-RegimeShares RegimeStream::next(const RegimeShares& before, double dt_s, const RateStream::Knot& knot,
-                                const RigCalibration& rig, bool doubted) const {
+RegimeShares RegimeStream::next(const RegimeShares& before, double dt_s, std::span<const RateStream::Knot> window,
+                                std::size_t k, const RigCalibration& rig, bool doubted) const {
+  const RateStream::Knot& knot = window[k];
   // a rate that was fitted to the force by a rig that is none agrees with the force whoever holds the body
   if (doubted && knot.observation.unseen() != 0) return before;
   RateState rate;
   rate.w_WI_I_rad_s = knot.estimate.knot.rate_rad_s;
   rate.covariance_rad2_s2 = knot.covariance_rad2_s2;
   rate.clipped_axes = static_cast<std::uint8_t>(knot.observation.unseen());
-  return evidence_.next(before, dt_s, knot.observation.sample, rate, knot.estimate.knot.acceleration_rad_s2,
+  return evidence_.next(before, dt_s, knot.observation.sample, rate, angular_acceleration(window, k),
                         rig.constants.lever_arm_m, rig.covariance.topLeftCorner<3, 3>());
 }
 
@@ -113,8 +131,8 @@ bool RegimeStream::doubts(const State& state) const {
 // The evidence of the sample that is given out, by its own rate: the forward half of carried.md (C28).
 void RegimeStream::judge(const RateState& rate, State& state) const {
   const double dt_s = state.given == 0 ? params_.evidence.memory_s : seconds(rate.time_ns - state.given_ns);
-  const RateStream::Knot& knot = state.rate.window[index_of(rate, state)];
-  state.shares = next(state.shares, dt_s, knot, rate_.calibration(state.rate), doubts(state));
+  state.shares =
+      next(state.shares, dt_s, state.rate.window, index_of(rate, state), rate_.calibration(state.rate), doubts(state));
   const auto dropped = static_cast<double>(state.rate.rig_resets - state.rig_resets);
   state.rig_resets = state.rate.rig_resets;
   state.resets = std::exp(-dt_s / kResets_s) * state.resets + dropped;
@@ -131,12 +149,11 @@ double RegimeStream::share_of(const RateState& rate, State& state) const {
   const auto near_ns = static_cast<TimeNs>(std::llround(1e9 * params_.near_s));
   const bool after = state.clipped_ns && rate.time_ns - *state.clipped_ns <= near_ns;
   const std::vector<RateStream::Knot>& window = state.rate.window;
-  const auto clips = [](const RateStream::Knot& knot) { return knot.observation.unseen() != 0; };
   const bool before = std::any_of(window.begin(), window.end(), [&](const RateStream::Knot& knot) {
     const TimeNs ahead_ns = knot.observation.sample.time_ns - rate.time_ns;
     return clips(knot) && ahead_ns >= 0 && ahead_ns <= near_ns;
   });
-  if (rate.clipped_axes != 0) state.clipped_ns = rate.time_ns;
+  if (clips(window[index_of(rate, state)])) state.clipped_ns = rate.time_ns;
   if (!after && !before) {
     state.least = 1.0;
     return 0.0;
@@ -152,7 +169,7 @@ double RegimeStream::share_of(const RateState& rate, State& state) const {
     const TimeNs now_ns = window[k].observation.sample.time_ns;
     if (clips(window[k])) clipped_ns = now_ns;
     if (now_ns - clipped_ns > near_ns) break;
-    shares = next(shares, seconds(now_ns - window[k - 1].observation.sample.time_ns), window[k], rig, doubts(state));
+    shares = next(shares, seconds(now_ns - window[k - 1].observation.sample.time_ns), window, k, rig, doubts(state));
     if (clips(window[k])) out = std::min(out, shares.carried);
   }
   return out;

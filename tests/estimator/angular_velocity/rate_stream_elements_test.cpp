@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <optional>
 #include <vector>
 
@@ -177,6 +178,73 @@ TEST(RateStreamElements, NothingIsCalledClippedWhereNothingClips) {
     RateStream::State state = method.start();
     for (const RateState& rate : stream(method, tumble.samples, state)) EXPECT_EQ(rate.clipped_axes, 0) << seed;
   }
+}
+
+/// A body that is swung to and fro about x, faster from 4 s on, its x element at a tilted rail of 7.4 rad/s then.
+struct Swing {
+  std::vector<ImuSample> samples;
+  std::vector<Vector3d> truth;
+  explicit Swing(std::uint64_t seed) {
+    oracles::Gaussian noise(seed);
+    const Vector3d row(1.0, 0.02, -0.02);
+    for (int k = 0; k < 480; ++k) {
+      const double t = 0.01 * k, phase = 5.0 * t;
+      const Vector3d w((k < 400 ? 5.0 : 8.2) * std::sin(phase), std::sin(3.1 * t), std::cos(4.3 * t));
+      const double beyond = std::abs(row.dot(w)) - 7.4;
+      ImuSample sample;
+      sample.time_ns = static_cast<TimeNs>(k) * 10'000'000;
+      sample.angular_velocity_rad_s = w + 0.002 * noise.vector();
+      if (beyond > 0.0) sample.angular_velocity_rad_s.x() -= std::copysign(beyond, w.x());
+      sample.specific_force_m_s2 = Vector3d(0.0, 6.0, 7.7) + noise.vector();
+      samples.push_back(sample);
+      truth.push_back(w);
+    }
+  }
+};
+
+/// Of what was given out at the rail before it was known.
+struct Believed {
+  int clipped = 0, within = 0, measured = 0;
+};
+
+Believed believed(const RateStream::Params& params) {
+  Believed out;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const Swing swing(seed);
+    const RateStream method(params);
+    RateStream::State state = method.start();
+    std::optional<RateState> rate;
+    std::size_t k = 0;
+    for (const ImuSample& sample : swing.samples) {
+      EXPECT_TRUE(method.push(sample, state, rate).ok());
+      if (!rate) continue;
+      const double truth = swing.truth[k].x(), reading = swing.samples[k].angular_velocity_rad_s.x();
+      ++k;
+      if (std::abs(reading - truth) < 0.05 || state.rails.known.planes.any()) continue;
+      ++out.clipped;
+      out.within += std::abs(rate->w_WI_I_rad_s.x() - truth) < 3.0 * std::sqrt(rate->covariance_rad2_s2(0, 0));
+      out.measured += rate->source == RateSource::measured;
+    }
+  }
+  return out;
+}
+
+// A rail is seen some samples after it was first met, and the lag is over before: until then it is doubted.
+TEST(RateStreamElements, NothingAtARailGoesOutAsMeasuredBeforeTheRailIsKnown) {
+  RateStream::Params params;
+  params.lag_s = 0.06;
+  const Believed doubted = believed(params);
+  // negative control: axes that turn slower than this are believed
+  params.planes.distance_min_rad_s = 1000.0;
+  const Believed trusted = believed(params);
+  std::printf("of %d within %d, measured %d; believed: within %d, measured %d\n", doubted.clipped, doubted.within,
+              doubted.measured, trusted.within, trusted.measured);
+  ASSERT_GT(doubted.clipped, 12);
+  EXPECT_EQ(doubted.measured, 0);
+  EXPECT_GT(trusted.measured, 0.9 * trusted.clipped);
+  // not all of them: a stream that knows flight and contact alone is sure of more than it can know of a swing
+  EXPECT_GT(doubted.within, 0.4 * doubted.clipped);
+  EXPECT_LT(trusted.within, 0.05 * trusted.clipped);
 }
 
 // Readings that only look like a rail: a torque-free spin, the round top of a slow turn, creeping at one rate.

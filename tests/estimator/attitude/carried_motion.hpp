@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <vector>
 
@@ -81,6 +82,18 @@ inline CarriedRecording record(const CarriedMotion& motion, double hz, double du
     }
     out.samples.push_back(sample);
     out.signs.push_back(signs);
+  }
+  return out;
+}
+
+/// Each third reading of those at the rail has wrapped over it to the other side; its sign is `sign`.
+inline CarriedRecording with_wraps(const CarriedRecording& recording, std::int8_t sign) {
+  CarriedRecording out = recording;
+  int at_rail = 0;
+  for (std::size_t k = 0; k < out.samples.size(); ++k) {
+    if (out.signs[k].gyro[0] == 0 || ++at_rail % 3 != 0) continue;
+    out.samples[k].angular_velocity_rad_s.x() *= -1.0;
+    out.signs[k].gyro[0] = sign;
   }
   return out;
 }

@@ -76,6 +76,38 @@ double inclination_rms_rad(const CarriedRecording& recording, const Result& resu
   return std::sqrt(sum / static_cast<double>(recording.samples.size()));
 }
 
+/// A third value beside free and clipped: a reading that has wrapped over the rail is neither measurement nor bound.
+TEST(CarriedSmoother, ReadingsThatWrapSayNothing) {
+  const CarriedRecording clipped = testing::record({}, 100.0, 12.0, 7.3);
+  const CarriedRecording wrapped = testing::with_wraps(clipped, ClipSigns::kVoid);
+  const auto median = [](const CarriedRecording& recording) {
+    const Result result = run(recording);
+    std::vector<double> errors;
+    for (std::size_t k = 0; k < result.rates.size(); ++k) {
+      if (std::abs(recording.rate_rad_s[k].x()) <= 7.3) continue;
+      errors.push_back((result.rates[k].w_WI_I_rad_s - recording.rate_rad_s[k]).norm());
+    }
+    return quantile(errors, 0.5);
+  };
+  const double all = median(clipped), without = median(wrapped), free = median(testing::with_wraps(clipped, 0));
+  std::printf("clipped %.3f, a third of them wrapped %.3f, believed %.3f\n", all, without, free);
+  EXPECT_LT(without, 1.3 * all);
+  EXPECT_GT(free, 5.0 * all);
+}
+
+TEST(CarriedSmoother, AJudgedSampleHasASignForEachElement) {
+  ImuSample sample;
+  sample.angular_velocity_rad_s = {7.0, -7.0, -7.0};
+  sample.specific_force_m_s2 = {1.0, -150.0, 150.0};
+  Clipping clipping;
+  clipping.gyro = 0b011;
+  clipping.void_gyro = 0b100;
+  clipping.accel = 0b110;
+  const ClipSigns signs = clip_signs(sample, clipping);
+  EXPECT_EQ(signs.gyro, (std::array<std::int8_t, 3>{1, -1, ClipSigns::kVoid}));
+  EXPECT_EQ(signs.accel, (std::array<std::int8_t, 3>{0, -1, 1}));
+}
+
 TEST(CarriedSmoother, FollowsAFreeGyroAndFindsTheVertical) {
   const CarriedRecording recording = testing::record({}, 100.0, 20.0, 0.0);
   const Result result = run(recording);

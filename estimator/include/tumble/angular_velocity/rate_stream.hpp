@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -107,6 +108,8 @@ class RateStream {
     Clipping by_walls;  ///< what the device and upright rails say; the observation's knows planes too
     RateEstimate estimate;
     Eigen::Matrix3d covariance_rad2_s2 = Eigen::Matrix3d::Zero();
+    /// By how much the size of each axis has grown in each of the two steps up to this sample, the lesser; 0 or more.
+    Eigen::Vector3d approach_rad_s = Eigen::Vector3d::Zero();
     int age = 0;
   };
 
@@ -120,6 +123,9 @@ class RateStream {
     // what is known of the oldest sample and of the rig from all that left the window, about a point
     arrow::Block prior;
     arrow::Corner prior_corner;
+    std::array<Eigen::Vector3d, 2> extremes{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  ///< of readings so far
+    /// Of a run of readings at a possible rail that left in part: Knot::approach_rad_s before it, and how many left.
+    Eigen::Vector3d entry_rad_s = Eigen::Vector3d::Zero(), entry_samples = Eigen::Vector3d::Zero();
     std::optional<RateKnot> left;  ///< the sample that left last, and when it was read
     TimeNs left_ns = 0;
     RateKnot prior_knot;
@@ -169,6 +175,11 @@ class RateStream {
   void append(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state) const;
   void classify_again(State& state) const;
   void judge(std::size_t first, State& state) const;
+  void doubt_possible_rails(State& state) const;
+  bool may_clip(const ImuSample& sample, int axis, int sign, const State& state) const;
+  void doubt_run(int axis, std::size_t first, std::size_t last, State& state) const;
+  static Eigen::Vector3d approach(const std::vector<Knot>& window);
+  static void remember_entry(const Knot& leaving, const Knot& next, State& state);
   void add_rails(const State& state, arrow::Corner& corner) const;
   void guess(Knot& knot, const Knot& previous, const State& state) const;
   void weigh(State& state) const;

@@ -45,6 +45,7 @@ struct ElementSums {
   double n = 0.0, t_s = 0.0, tt_s2 = 0.0, z = 0.0, zt = 0.0;  ///< count and sums of the free readings z
   double clipped = 0.0, clipped_t_s = 0.0, rail = 0.0;        ///< count, mean time and mean rail
   double sign = 0.0;                                          ///< of the rail: the truth lies beyond it
+  double unread = 0.0, unread_z = 0.0;                        ///< count and mean of readings that say nothing
 };
 
 /// All readings about a node.

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "tumble/angular_velocity/rail_detector.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/angular_velocity/rest_detector.hpp"
 #include "tumble/attitude/carried_model.hpp"
@@ -17,10 +18,14 @@
 
 namespace tumble {
 
-/// Which elements of an IMU stand at a rail in one sample: -1 the negative one, 1 the positive one, 0 free.
+/// Which elements of an IMU stand at a rail in one sample: -1 the negative one, 1 the positive one, 0 free; of the gyro
+/// kVoid where the reading says nothing (one that has wrapped over the rail): neither measurement nor bound.
 struct ClipSigns {
+  static constexpr std::int8_t kVoid = 2;
   std::array<std::int8_t, 3> gyro{}, accel{};
 };
+/// Those of a judged sample.
+ClipSigns clip_signs(const ImuSample& sample, const Clipping& clipping);
 
 /// What is known of an IMU's rails. Element i senses along row i of `rows` and clips there: where it does, the readings
 /// y lie in the plane m_i' y = rail, and truly m_i' (rate + bias) lies beyond.

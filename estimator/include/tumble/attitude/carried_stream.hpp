@@ -15,8 +15,10 @@ namespace tumble {
 ///
 /// The oldest node is marginalised into a Gaussian prior on the next one and on the constants; it keeps the derivatives
 /// that it had when it left. Each estimate is given out when its sample is `lag_s` old, from a window that reaches back
-/// further (`window_s`), so that what the window still holds of the past is linearised anew with each step. Memory is
-/// bounded and made by start(); splitting a recording and carrying the State over gives the same bits.
+/// further (`window_s`), so that what the window still holds of the past is linearised anew with each step. `lag_s` is
+/// counted in samples of `period_s`: where they come so sparse that a sample's node leaves the window before, its rate
+/// is kept as it was then. Memory is bounded and made by start(); splitting a recording and carrying the State over
+/// gives the same bits.
 ///
 /// Differs from the batch: while nothing in the window clips, only each fifth node is a step; the first attitude stands
 /// on one force and not on a filter; the hand's liveliness follows the nodes that have left, with the memory
@@ -48,6 +50,7 @@ class CarriedStream {
     double centre_s = 0.0, end_s = 0.0;  ///< of its window, from the first sample's centre
     std::int64_t node = 0;               ///< nearest to the centre
     bool rest = false;
+    std::optional<RateState> settled;  ///< its rate, where its node has left and the rate has not been given out
   };
   struct Knot {
     carried::Node node;
@@ -85,9 +88,11 @@ class CarriedStream {
 
   /// Takes one sample. `known.signs`: of the newest samples as they are known now, this one's last, at least this one;
   /// samples whose signs have changed are read again while they are in the window. `out`: rate of the sample that is
-  /// `lag_s` old, empty while the window fills. Trouble: `non_finite`, `time_order`, `gap`, `out_of_range` for no
-  /// signs, `degenerate` for rows that do not span the axes; the state is then as it was and `out` empty.
-  Status push(const ImuSample& sample, const ClippedElements& known, State& state, std::optional<RateState>& out) const;
+  /// `lag_s` old, empty while the window fills and where it is not `wanted`, which spares most of the work. Trouble:
+  /// `non_finite`, `time_order`, `gap`, `out_of_range` for no signs, `degenerate` for rows that do not span the axes;
+  /// the state is then as it was and `out` empty.
+  Status push(const ImuSample& sample, const ClippedElements& known, State& state, std::optional<RateState>& out,
+              bool wanted = true) const;
 
   /// Rates of the samples that push() has not given out, oldest first, appended to `out`.
   void flush(const State& state, std::vector<RateState>& out) const;
@@ -98,12 +103,16 @@ class CarriedStream {
   void rebuild(State& state) const;
   carried::Node begin(const State& state) const;
   void predict(const carried::Node& before, const Eigen::Matrix3d& rows, Knot& knot) const;
+  std::size_t first_not_given(const State& state) const;
+  void settle_oldest(State& state) const;
+  void forget_readings(State& state) const;
   void marginalise_oldest(State& state) const;
   double hand(const State& state) const;
   void add_prior(const State& state, carried::System::Block& block, carried::System::Corner& corner) const;
   bool factorise(const carried::Motion& motion, State& state, carried::System::BorderVector& step) const;
   bool step(State& state) const;
   void extend(const carried::NodeReadings& readings, State& state) const;
+  RateState give(std::size_t at, bool due, bool factorised, State& state) const;
   void publish(std::size_t first, std::size_t last, bool factorised, State& state, std::span<RateState> out) const;
   RateState to_rate(const Reading& reading, const State& state, const Eigen::Matrix3d& covariance_rad2_s2) const;
 

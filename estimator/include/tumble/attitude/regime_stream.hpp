@@ -23,9 +23,9 @@ namespace tumble {
 /// holds the body (share below `carried_min`); it starts anew after that. Estimates are those of RateStream where
 /// nothing clips.
 ///
-/// Not solved: clipped rates were fitted to the very force by which they are judged. Where the IMU sits far from the
-/// centre of mass, gravity in a gentle hand can be explained as the lever arm's force of a flight; the hand is then not
-/// known, and the covariance is that of the flight. The batch, which holds the rig, is hardly misled.
+/// Clipped rates were fitted to the very force by which they are judged, and so was the angular acceleration of
+/// RateStream, also where the gyro reads the rate: where the IMU sits far from the centre of mass, gravity in a gentle
+/// hand passes for the lever arm's force. The evidence therefore takes the derivative of the rates themselves.
 class RegimeStream {
  public:
   struct Params {
@@ -85,8 +85,8 @@ class RegimeStream {
   ClippedElements known_of(State& state) const;
   std::size_t index_of(const RateState& rate, const State& state) const;
   bool doubts(const State& state) const;
-  RegimeShares next(const RegimeShares& before, double dt_s, const RateStream::Knot& knot, const RigCalibration& rig,
-                    bool doubted) const;
+  RegimeShares next(const RegimeShares& before, double dt_s, std::span<const RateStream::Knot> window, std::size_t k,
+                    const RigCalibration& rig, bool doubted) const;
   void judge(const RateState& rate, State& state) const;
   double share_of(const RateState& rate, State& state) const;
 

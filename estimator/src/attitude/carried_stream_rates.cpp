@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a CarriedStream gives out of its window: rates and their covariances.
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "carried_problem.hpp"
+#include "tumble/attitude/carried_stream.hpp"
+
+namespace tumble {
+
+using carried::Node;
+using carried::System;
+
+namespace {
+
+constexpr double kUnknown_rad2_s2 = 1e6;  // variance where the equations fail
+constexpr double kNear_s = 0.1;           // so near to a clipped node covariances are those of the doubted jerk
+
+std::uint8_t clipped_axes(const ClipSigns& signs) {
+  std::uint8_t axes = 0;
+  for (std::size_t j = 0; j < 3; ++j)
+    if (signs.gyro[j] != 0) axes = static_cast<std::uint8_t>(axes | (1u << j));
+  return axes;
+}
+
+}  // namespace
+
+// Of reading `at`. The covariance of a node stands until the next step of the window. `factorised`: as publish().
+RateState CarriedStream::give(std::size_t at, bool due, bool factorised, State& state) const {
+  const Reading& reading = state.readings[at];
+  if (reading.settled) return *reading.settled;
+  const bool known = state.given_node >= 0 && reading.node - state.given_node < carried::kFreeNodes;
+  if (reading.node == state.given_node || (known && !due))
+    return to_rate(reading, state, state.given_covariance_rad2_s2);
+  RateState rate;
+  publish(at, at, factorised, state, {&rate, 1});
+  state.given_node = reading.node;
+  state.given_covariance_rad2_s2 = rate.covariance_rad2_s2;
+  return rate;
+}
+
+// Among the readings, the newest of which is being taken.
+std::size_t CarriedStream::first_not_given(const State& state) const {
+  return state.readings.size() - std::min(state.readings.size(), delay_ + 1);
+}
+
+// Samples that come sparser than is said are given out after their node has left: their rates stand as they are now.
+void CarriedStream::settle_oldest(State& state) const {
+  const std::size_t first = first_not_given(state);
+  for (std::size_t k = first; k < state.readings.size() && state.readings[k].node <= state.first_node; ++k) {
+    if (state.readings[k].settled) continue;
+    RateState rate;
+    publish(k, k, false, state, {&rate, 1});
+    state.readings[k].settled = rate;
+  }
+}
+
+RateState CarriedStream::to_rate(const Reading& reading, const State& state, const Eigen::Matrix3d& covariance) const {
+  const auto at = static_cast<std::size_t>(std::max<std::int64_t>(0, reading.node - state.first_node));
+  const Node& node = state.window[at].node;
+  RateState out;
+  out.time_ns = reading.sample.time_ns;
+  const double t = reading.centre_s - static_cast<double>(reading.node) * params_.body.node_s;
+  out.w_WI_I_rad_s = node.w_WI_I_rad_s + t * node.angular_acceleration_rad_s2;
+  out.covariance_rad2_s2 = covariance;
+  out.clipped_axes = clipped_axes(reading.signs);
+  if (out.clipped_axes == 0) return out;
+  const double variance = covariance.selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff();
+  const double recovered = params_.body.recovered_sigma_rad_s * params_.body.recovered_sigma_rad_s;
+  out.source = variance < recovered ? RateSource::recovered_contact : RateSource::bounded_only;
+  return out;
+}
+
+// Rates of the readings [first, last], with their covariances: near to clipped nodes those of carried.md (C19).
+// `factorised`: the work holds the equations with the jerk that is assumed.
+void CarriedStream::publish(std::size_t first, std::size_t last, bool factorised, State& state,
+                            std::span<RateState> out) const {
+  const auto of = [&](std::size_t k) {
+    return static_cast<std::size_t>(std::max<std::int64_t>(0, state.readings[k].node - state.first_node));
+  };
+  const auto near = static_cast<std::size_t>(std::lround(kNear_s / params_.body.node_s));
+  const std::size_t from = of(first) > near ? of(first) - near : 0;
+  const std::size_t to = std::min(state.window.size(), of(last) + near + 1);
+  bool clipped = false;
+  for (std::size_t i = from; i < to; ++i) clipped = clipped || carried::clips(state.window[i].readings);
+  System::BorderVector unused;
+  const bool known = (factorised && !clipped) || factorise(clipped ? doubted_ : motion_, state, unused);
+  System::Conditional here, next;
+  Eigen::Matrix3d covariance = kUnknown_rad2_s2 * Eigen::Matrix3d::Identity();
+  std::size_t k = last + 1;
+  for (std::size_t i = state.window.size(); i-- > of(first);) {
+    if (known) {
+      here = System::back_conditional(state.work[i], i + 1 < state.window.size() ? &next : nullptr);
+      const auto rows = here.by_border.middleRows<3>(carried::kRate);
+      covariance =
+          here.state.block<3, 3>(carried::kRate, carried::kRate) + rows * state.constants_covariance * rows.transpose();
+    }
+    for (; k > first && of(k - 1) == i; --k) out[k - 1 - first] = to_rate(state.readings[k - 1], state, covariance);
+    next = here;
+  }
+}
+
+void CarriedStream::flush(const State& state, std::vector<RateState>& out) const {
+  const std::size_t left = std::min(delay_, state.readings.size());
+  if (left == 0) return;
+  std::size_t first = state.readings.size() - left;
+  for (; first < state.readings.size() && state.readings[first].settled; ++first) {
+    out.push_back(*state.readings[first].settled);
+  }
+  if (first == state.readings.size()) return;
+  State last = state;
+  std::vector<RateState> rates(state.readings.size() - first);
+  publish(first, state.readings.size() - 1, false, last, rates);
+  out.insert(out.end(), rates.begin(), rates.end());
+}
+
+}  // namespace tumble
