@@ -234,7 +234,7 @@ Estimate run_passes(const sim::LidarRecord& lidar, std::span<const ImuSample> sa
   }
   const bool settled = run.status.ok() && tells_calibration(run) && surprise <= kBelieved;
   if (settled) {
-    const auto sigma = odometry.calibration_covariance().diagonal().cwiseSqrt().eval();
+    const auto sigma = odometry.calibration_weight().diagonal().cwiseSqrt().eval();
     start_from(odometry.calibration());
     params.mount_sigma_rad = sigma.head<3>().maxCoeff();
     params.mount_sigma_m = sigma.segment<3>(3).maxCoeff();

@@ -1,24 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // verdicts SCENARIO FIRST LAST METHOD [HARM]...: runs a method of kind `slam` or `position` on draws as they are and on
-// the same with wrong inputs (units, axes, signs, clocks, mountings, sensors that die, dust), and holds what it says of
-// itself against what is true. Wrong: ends further off than five of its standard deviations (slam: pose NEES beyond
-// 25). Told: the status, `localised`, or a key of its health that says so. Prints a line per run and the two rates of a
-// classifier: wrong runs that say so, good ones that cry wolf. Not a test: a minute a draw for `slam`, seconds for
-// `position`.
+// the same with wrong inputs (units, axes, signs, clocks, mountings, sensors that die, dust, people), and holds what it
+// says of itself against what is true. Wrong: ends further off than five of its standard deviations (slam: pose NEES
+// beyond 25). Told: the status, `localised`, or a key of its health that says so. Prints a line per run and the two
+// rates of a classifier: wrong runs that say so, good ones that cry wolf. Not a test: a minute a draw for `slam`,
+// seconds for `position`.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/method.hpp"
 #include "scenarios/sweep/evaluate.hpp"
+#include "sim/lidar/surface.hpp"
 #include "sim/simulate.hpp"
+#include "tests/bench/people.hpp"
 #include "tests/scenarios/methods/wrong_inputs.hpp"
 #include "tests/tree.hpp"
 
@@ -30,6 +34,7 @@ using scenarios::testing::is_of_kind;
 using scenarios::testing::wrong_inputs;
 
 constexpr double kWrongDeviations = 5.0;
+constexpr std::string_view kPeople = "people";  // about the start: what they hide depends on the truth
 
 double value_of(const std::vector<scenarios::Score>& scores, const std::string& metric) {
   const auto found =
@@ -53,13 +58,18 @@ struct Tally {
 void judge(const scenarios::Method& method, const scenarios::SimulatedDraw& draw, const sim::Surface* surface,
            const std::string& harm, Tally& tally) {
   scenarios::SimulatedDraw given = draw;
-  wrong_inputs().at(harm)(given.recording.sensors);
+  if (harm == kPeople) {
+    tumble::bench::let_people_walk(draw.recording.truth, given.recording.sensors);
+  } else {
+    wrong_inputs().at(harm)(given.recording.sensors);
+  }
   scenarios::Outcome outcome;
   const scenarios::Estimate estimate = scenarios::run_method(method, given, outcome);
   const bool says = told(outcome, estimate), answered = outcome.status == scenarios::OutcomeStatus::ok;
-  double error = std::nan(""), deviations = std::nan("");
+  double error = std::nan(""), deviations = std::nan(""), overlap = std::nan(""), coverage = std::nan("");
   if (answered) {
     scenarios::assess(method, scenarios::scored_by(draw, given), surface, estimate, outcome);
+    overlap = value_of(outcome.scores, "map_overlap"), coverage = value_of(outcome.scores, "map_coverage");
     const double nees = value_of(outcome.scores, "pose_nees");
     const double sigma_m =
         estimate.poses.empty() ? 0.0 : std::sqrt(estimate.poses.back().covariance.topLeftCorner<3, 3>().trace());
@@ -79,10 +89,11 @@ void judge(const scenarios::Method& method, const scenarios::SimulatedDraw& draw
   };
   std::printf(
       "%-10s %6llu %-22s %-9s error %9.4f deviations %8.2f %-5s %-5s surprise %7.3g innovation %7.3g %7.3g rig %7.3g "
-      "held %5.2f%s\n",
+      "held %5.2f map %6.4f covers %6.4f%s\n",
       draw.scenario.c_str(), static_cast<unsigned long long>(draw.seed), harm.c_str(), to_string(outcome.status), error,
       deviations, wrong ? "wrong" : "good", says ? "told" : "-", health("calibration_surprise"),
       health("innovation_median"), health("innovation_90"), health("calibration_mahalanobis"), health("held_share"),
+      overlap, coverage,
       wrong && !says
           ? "  <- silently wrong"
           : (!wrong && says && (outcome.status == scenarios::OutcomeStatus::ok || harm == "none") ? "  <- cries wolf"
@@ -98,6 +109,7 @@ int run(const std::string& name, std::uint64_t first, std::uint64_t last, const 
   const std::string kind = full_name.substr(0, full_name.find('/'));
   if (chosen.empty()) {
     for (const auto& [harm, _] : wrong_inputs()) chosen.push_back(harm);
+    if (kind == "slam") chosen.emplace_back(kPeople);
   }
   Tally tally;
   for (std::uint64_t seed = first; seed <= last; ++seed) {
@@ -108,8 +120,10 @@ int run(const std::string& name, std::uint64_t first, std::uint64_t last, const 
     } catch (const sim::SimulationFailure&) {
       continue;
     }
+    std::optional<sim::Surface> surface;
+    if (kind == "slam") surface.emplace(draw.situation, data.models());
     for (const std::string& harm : chosen) {
-      if (is_of_kind(harm, method.info.kind)) judge(method, draw, nullptr, harm, tally);
+      if (is_of_kind(harm, method.info.kind)) judge(method, draw, surface ? &*surface : nullptr, harm, tally);
     }
   }
   std::printf("wrong by more than %g deviations: %d, of these told: %d; good: %d, of these crying wolf: %d\n",
@@ -123,7 +137,7 @@ int main(int count, char** words) {
   if (count < 5) {
     std::fprintf(stderr, "usage: verdicts SCENARIO FIRST LAST KIND/METHOD [HARM]...\nharms:");
     for (const auto& [harm, _] : wrong_inputs()) std::fprintf(stderr, " %s", harm.c_str());
-    std::fprintf(stderr, "\n");
+    std::fprintf(stderr, " %s\n", kPeople.data());
     return 2;
   }
   try {

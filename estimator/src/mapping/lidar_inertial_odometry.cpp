@@ -119,9 +119,10 @@ Status LidarInertialOdometry::add_sweep(TimeNs lidar_start_ns, TimeNs lidar_end_
   report.points_used = counts.used;
   my.unmatched = false;
   const Status status = mapping::check_selection(end_ns - start_ns, points, counts);
+  if (status.ok()) report.points_alone = my.lone_returns.drop(my.range_noise, my.points);
   const bool first = my.map.size() == 0;
   bool aligned = false;
-  if (status.ok() && first && counts.used >= my.params.matches_min) {
+  if (status.ok() && first && my.points.size() >= my.params.matches_min) {
     report.verdict = SweepVerdict::first;
   } else if (status.ok() && !first) {
     my.choose_points();
@@ -147,6 +148,10 @@ SweepCalibration LidarInertialOdometry::calibration() const {
 }
 
 SweepCalibration::Covariance LidarInertialOdometry::calibration_covariance() const {
+  return impl_->error_covariance.bottomRightCorner<SweepCalibration::kErrors, SweepCalibration::kErrors>();
+}
+
+SweepCalibration::Covariance LidarInertialOdometry::calibration_weight() const {
   return impl_->covariance.bottomRightCorner<SweepCalibration::kErrors, SweepCalibration::kErrors>();
 }
 

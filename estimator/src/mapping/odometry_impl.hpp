@@ -9,6 +9,7 @@
 #include "tumble/mapping/calibration.hpp"
 #include "tumble/mapping/deskew.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
+#include "tumble/mapping/lone_returns.hpp"
 #include "tumble/mapping/map_drawing.hpp"
 #include "tumble/mapping/registration.hpp"
 #include "tumble/mapping/sweep_trajectory.hpp"
@@ -57,6 +58,8 @@ double knot_correlation(const LidarInertialOdometry::Params& params, const Sweep
 
 void check_params(const LidarInertialOdometry::Params& params);
 Registration::Params registration_params(const LidarInertialOdometry::Params& params);
+/// Of a return, as the registration has it.
+RangeNoise range_noise(const LidarInertialOdometry::Params& params);
 /// For all points of a sweep: what has not settled by then is cheaper settled with some of them.
 Registration::Params brief_registration_params(const LidarInertialOdometry::Params& params);
 /// Wider in every respect: finds the neighbourhood of the answer, not the answer.
@@ -69,6 +72,7 @@ struct LidarInertialOdometry::Impl {
   explicit Impl(const Params& p)
       : params((mapping::check_params(p), p)),
         map({p.map_voxel_m, p.map_spacing_m}),
+        range_noise(mapping::range_noise(p)),
         registration(mapping::brief_registration_params(p)),
         patient(mapping::registration_params(p)),
         coarse(mapping::coarse_registration_params(p)) {}
@@ -158,11 +162,13 @@ struct LidarInertialOdometry::Impl {
   mapping::ScanLines scan_lines;
 
   // memory kept between sweeps
+  RangeNoise range_noise;
   Registration registration, patient, coarse;
   mapping::Prediction prediction;                              // of the present sweep
   Registration::Result result;                                 // of the present sweep
   Registration::Matrix errors = Registration::Matrix::Zero();  // of its unknowns: covariance
   SweepTrajectory trajectory;
+  LoneReturns lone_returns;
   SweepSampler sampler;
   std::vector<SweepPoint> points, chosen, few, some;
   std::vector<Eigen::Vector3f> positions_W_m;

@@ -45,6 +45,11 @@ Registration::Params registration_params(const LidarInertialOdometry::Params& pa
   return out;
 }
 
+RangeNoise range_noise(const LidarInertialOdometry::Params& params) {
+  const Registration::Params registration = registration_params(params);
+  return {registration.range_sigma_m, registration.range_sigma_share};
+}
+
 Registration::Params brief_registration_params(const LidarInertialOdometry::Params& params) {
   Registration::Params out = registration_params(params);
   out.iterations_max = std::min(params.iterations_max, kBriefIterations);

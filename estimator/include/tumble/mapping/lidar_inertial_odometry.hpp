@@ -118,9 +118,10 @@ class LidarInertialOdometry {
     double degenerate_sigma_m = 0.15;
     std::size_t matches_min = 100;  ///< fewer matched points reject a sweep
     /// A sweep with too few matches still extends the map, as `degenerate`, while the inertial prior is this certain
-    /// (standard deviations): at rest a lidar draws rings only, which give no planes until it turns.
+    /// (standard deviations): at rest a lidar draws rings only, which give no planes until it turns. Points that the
+    /// attitude leaves too uncertain at their range stay out by map_sigma_max_m.
     double trusted_prior_m = 0.1;
-    double trusted_prior_rad = 0.03;
+    double trusted_prior_rad = 0.1;
     /// The map is kept within this of the sensor, to a tenth of it.
     double map_radius_m = 100.0;
     /// Points that the trajectory places less surely than this are kept out of the map.
@@ -157,7 +158,8 @@ class LidarInertialOdometry {
     Eigen::Vector3d saturation_deficit_rad_s =
         Eigen::Vector3d::Zero();        ///< added to the clipped axes, along the sign of the rate; mean of the knots
     std::size_t points_used = 0;        ///< finite returns in range that are not the robot's own
-    std::size_t points_registered = 0;  ///< one per voxel of these
+    std::size_t points_alone = 0;       ///< of these, that nothing beside them bears out, and that are not used further
+    std::size_t points_registered = 0;  ///< one per voxel of the rest
     std::size_t map_points_added = 0;
   };
 
@@ -191,6 +193,9 @@ class LidarInertialOdometry {
   /// Calibration as estimated so far, and the covariance of its errors; the given one, and 0, where not estimated.
   SweepCalibration calibration() const;
   SweepCalibration::Covariance calibration_covariance() const;
+  /// What weighs the calibration against the next sweep, wider than its errors since a point counts for less than it
+  /// tells: what another run over the same data starts from.
+  SweepCalibration::Covariance calibration_weight() const;
 
   /// Pose at any time within the window of sweeps, by all that has been seen. `out_of_range` outside of it.
   Status pose_at(TimeNs time_ns, PoseState& pose) const;
