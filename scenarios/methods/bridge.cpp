@@ -52,6 +52,11 @@ Status check_stream(std::span<const ImuSample> samples) {
 
 }  // namespace
 
+double sure_range(double stated_range) {
+  constexpr double kSureShare = 0.98;
+  return stated_range > 0.0 ? kSureShare * stated_range : std::numeric_limits<double>::infinity();
+}
+
 Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out) {
   out.clear();
   const std::size_t count = record.time_ns.size();

@@ -39,6 +39,8 @@ struct Estimate {
   /// Whether each pose lies in an event whose way the method calls uncertain, parallel to `contacts`; empty when it
   /// does not say.
   std::vector<bool> uncertain;
+  /// The sphere's centre from the centre of mass, in body axes [m], by what a position method has learnt of it.
+  Eigen::Vector3d centre_B_m = Eigen::Vector3d::Zero();
   std::vector<LidarInertialOdometry::SweepReport> sweeps;  ///< kind slam, one per sweep
   std::vector<std::int64_t> sweep_end_ns;                  ///< parallel to `sweeps`
   std::vector<MapPoint> map;                               ///< kind slam

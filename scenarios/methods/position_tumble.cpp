@@ -262,10 +262,10 @@ void smooth(const RollingSmoother::Params& params, const MergedImus& imus, std::
     add_contact(e.mode, e.at_rest, e.uncertain, params.filter.radius_m, imus.samples[k], estimate);
   }
   // the lever arm was given from the centre of mass: what it was off by says where that is
-  const Eigen::Vector3d centre_B_m = -state->learnt.lever_arm_error_m;
-  estimate.health["centre_x_m"] = centre_B_m.x();
-  estimate.health["centre_y_m"] = centre_B_m.y();
-  estimate.health["centre_z_m"] = centre_B_m.z();
+  estimate.centre_B_m = -state->learnt.lever_arm_error_m;
+  estimate.health["centre_x_m"] = estimate.centre_B_m.x();
+  estimate.health["centre_y_m"] = estimate.centre_B_m.y();
+  estimate.health["centre_z_m"] = estimate.centre_B_m.z();
   if (params.filter.radius_sigma_m > 0.0) {
     estimate.health["radius_m"] = params.filter.radius_m + state->learnt.radius_error_m;
     estimate.health["radius_sigma_m"] = state->radius_sigma_m;

@@ -154,13 +154,11 @@ Method learning_method(const Method& method, Learning& learning) {
   out.run = [name, batch, info = method.info, &learning](const sim::Sensors& sensors, const sim::Values& given,
                                                          const OracleInput&) {
     const LearntRig* const start = learning.given ? &*learning.given : nullptr;
-    LearntRig rig;
+    std::optional<LearntRig> rig;
     try {
       const sim::Values parameters = resolve_settings("method " + name, given, info.settings);
       Estimate estimate = (batch ? run_rate_tumble : run_rate_tumble_lag)(sensors, parameters, start, &rig);
-      if (estimate.status.ok() && estimate.health.at("rig_held") == 0.0) {
-        (batch ? learning.of_batch : learning.of_stream) = rig;
-      }
+      if (rig) (batch ? learning.of_batch : learning.of_stream) = rig;
       return estimate;
     } catch (const sim::InvalidSituation& error) {
       throw BadInput(error.what());
@@ -172,7 +170,7 @@ Method learning_method(const Method& method, Learning& learning) {
 }
 
 Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
-                         LearntRig* found) {
+                         std::optional<LearntRig>* found) {
   Estimate estimate;
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);

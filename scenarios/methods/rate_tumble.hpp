@@ -42,14 +42,14 @@ Status auxiliary_readings(const sim::Sensors& sensors, std::span<const ImuSample
 
 /// The method `tumble` that starts from what an earlier run has learnt of the rig (null: nothing) and leaves in `found`
 /// (may be null) what this run has learnt; `found` stays as it is when the status is not ok and when the run learnt
-/// nothing (health counter `rig_held`). What was learnt counts with four times its covariance, since rigs are handled
-/// between runs, yet not more than what is assumed without it.
+/// nothing, because it had to hold the rig to what was known. What was learnt counts with four times its covariance,
+/// since rigs are handled between runs, yet not more than what is assumed without it.
 Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
-                         LearntRig* found);
+                         std::optional<LearntRig>* found);
 
 /// The same for the stream `tumble_lag`. It has learnt something where the constants are better known than before.
 Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
-                             LearntRig* found);
+                             std::optional<LearntRig>* found);
 
 /// Makes what was learnt of the rig the start of a smoother: lever arm and inertia with four times their covariance,
 /// see above, and the rails. Biases are of one switch-on and start anew.

@@ -76,7 +76,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
 }  // namespace
 
 Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
-                             LearntRig* found) {
+                             std::optional<LearntRig>* found) {
   Estimate estimate;
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
@@ -118,7 +118,7 @@ Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& par
   estimate.health["carried_steps_skipped"] = static_cast<double>(all.carried.failures);
   if (estimate.status.ok() && !held && found != nullptr) {
     *found = learnt_by(stream, params.rate, state);
-    if (given != nullptr) found->device_errors = given->device_errors;  // the stream does not estimate them
+    if (given != nullptr) (*found)->device_errors = given->device_errors;  // the stream does not estimate them
   }
   count_sources(estimate.rates, estimate.health);
   return estimate;

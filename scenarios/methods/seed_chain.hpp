@@ -3,18 +3,18 @@
 
 #include <span>
 
+#include "scenarios/baselines/mapping/trimmed_icp.hpp"
 #include "scenarios/methods/method.hpp"
 #include "scenarios/methods/settings.hpp"
 #include "sim/parameters.hpp"
 #include "tumble/common/imu.hpp"
-#include "tumble/mapping/trimmed_icp.hpp"
 
 namespace tumble::scenarios {
 
 /// What of the published chain may be varied; the traps as launched.
 struct SeedParams {
   double skew_sigma_m_s = 0.25;
-  TrimmedIcp::Params icp;
+  baselines::TrimmedIcp::Params icp;
   bool late_velocity = true, voxel_averages_time = true, abort_ends_mapping = false;
 
   template <class Self, class Visitor>

@@ -20,9 +20,8 @@ constexpr double kRests_m = 0.01, kRests_rad = 0.01;  // from one end of a sweep
 // Of what a tenth of the sweeps exceed: IMU and lidar contradict each other beyond what either says it may be off by.
 // tests/bench/verdicts: 0.09 to 0.38 on good runs, 0.6 and more on wrong ones that still hold to surfaces.
 constexpr double kInnovationMax = 0.5;
-constexpr double kAccelRailShare = 0.98;  // of the stated range: calibration moves a rail by its error of scale
-constexpr double kBelieved = 5.0;         // standard deviations that a calibration may move by in one run
-constexpr int kSearches = 3;              // runs more for one that moves further
+constexpr double kBelieved = 5.0;  // standard deviations that a calibration may move by in one run
+constexpr int kSearches = 3;       // runs more for one that moves further
 
 LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const SlamStage& stage,
                                               const SlamChain& chain) {
@@ -31,7 +30,7 @@ LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const
   odometry.T_IL = bridge::T_IL(sensors.imus.front(), sensors.lidars.front());
   odometry.gravity_m_s2 = sensors.gravity_m_s2;
   const double accel_range_m_s2 = sensors.imus.front().stated_accel_range_m_s2;
-  if (accel_range_m_s2 > 0.0) odometry.accel_rail_m_s2 = kAccelRailShare * accel_range_m_s2;
+  if (accel_range_m_s2 > 0.0) odometry.accel_rail_m_s2 = bridge::sure_range(accel_range_m_s2);
   if (chain.along) {
     odometry.gravity_m_s2 = chain.along->gravity_m_s2;
     odometry.correction_max_m = chain.along->correction_max_m;
@@ -132,15 +131,16 @@ void run_sweeps(const sim::LidarRecord& lidar, std::span<const ImuSample> sample
 }
 
 /// How far sweeps moved from where the IMU put them, in standard deviations: its median and what a tenth exceeds.
-void report_innovations(Estimate& estimate) {
+/// The latter is returned; 0 where no sweep was registered.
+double report_innovations(Estimate& estimate) {
   std::vector<double> all;
   for (const auto& sweep : estimate.sweeps) {
     if (sweep.innovation > 0.0) all.push_back(sweep.innovation);
   }
-  if (all.empty()) return;
+  if (all.empty()) return 0.0;
   std::sort(all.begin(), all.end());
   estimate.health["innovation_median"] = all[all.size() / 2];
-  estimate.health["innovation_90"] = all[all.size() * 9 / 10];
+  return estimate.health["innovation_90"] = all[all.size() * 9 / 10];
 }
 
 /// A sweep in which the rig stands: a lidar draws rings then, that hold it no worse for being degenerate.
@@ -150,8 +150,14 @@ bool rests(const LidarInertialOdometry::SweepReport& sweep) {
   return (last.p_WA_m - first.p_WA_m).norm() < kRests_m && first.q_WA.angularDistance(last.q_WA) < kRests_rad;
 }
 
+/// What the passes over a recording found of the calibration.
+struct CalibrationVerdict {
+  double moved = 0.0;  ///< from what was given, in its standard deviations
+  bool converged = true;
+};
+
 /// How sure the chain is of where it ended; a world that does not hold it shows here.
-void report_end(Estimate& estimate) {
+void report_end(const CalibrationVerdict& calibration, double innovation_90, Estimate& estimate) {
   if (estimate.sweeps.empty()) return;
   const Eigen::Matrix<double, 6, 6>& P = estimate.sweeps.back().pose.covariance;
   estimate.health["end_sigma_m"] = std::sqrt(P.topLeftCorner<3, 3>().trace());
@@ -164,12 +170,7 @@ void report_end(Estimate& estimate) {
   }
   const double share = moving > 0 ? static_cast<double>(held) / static_cast<double>(moving) : 1.0;
   estimate.health["held_share"] = share;
-  const auto told = [&](const char* name) {
-    const auto found = estimate.health.find(name);
-    return found == estimate.health.end() ? 0.0 : found->second;
-  };
-  const bool contradicted = (told("calibration_unconverged") > 0.0 && told("calibration_surprise") > kBelieved) ||
-                            told("innovation_90") > kInnovationMax;
+  const bool contradicted = (!calibration.converged && calibration.moved > kBelieved) || innovation_90 > kInnovationMax;
   estimate.health["localised"] = share >= kLocalisedShare && !contradicted ? 1.0 : 0.0;
 }
 
@@ -209,7 +210,7 @@ bool tells_calibration(const Estimate& run) {
 /// as before, until it stays.
 Estimate run_passes(const sim::LidarRecord& lidar, std::span<const ImuSample> samples,
                     const LidarInertialOdometry::Params& given, const SlamChain& chain, const Estimate& before,
-                    LidarInertialOdometry& odometry) {
+                    LidarInertialOdometry& odometry, CalibrationVerdict& verdict) {
   LidarInertialOdometry::Params params = given;
   Estimate run = before;
   run_sweeps(lidar, samples, odometry, params.time_offset_s, chain.along, run);
@@ -242,7 +243,8 @@ Estimate run_passes(const sim::LidarRecord& lidar, std::span<const ImuSample> sa
     again();
   }
   if (passes > 1) run.health["passes"] = passes;
-  run.health["calibration_surprise"] = calibration_surprise(odometry, given, given);
+  verdict = {calibration_surprise(odometry, given, given), settled};
+  run.health["calibration_surprise"] = verdict.moved;
   run.health["calibration_unconverged"] = settled ? 0.0 : 1.0;
   return run;
 }
@@ -315,12 +317,12 @@ void run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samp
 
   const LidarInertialOdometry::Params params = odometry_params(sensors, stage, chain);
   LidarInertialOdometry odometry(params);
-  Estimate run = run_passes(lidar, samples, params, chain, estimate, odometry);
+  CalibrationVerdict calibration;
+  Estimate run = run_passes(lidar, samples, params, chain, estimate, odometry, calibration);
   estimate = std::move(run);
   if (!estimate.status.ok()) return;
   if (chain.calibration) report_calibration(odometry, sensors, estimate.health);
-  report_innovations(estimate);
-  report_end(estimate);
+  report_end(calibration, report_innovations(estimate), estimate);
   estimate.map = odometry.map();
   const bool any = std::any_of(estimate.sweeps.begin(), estimate.sweeps.end(),
                                [](const auto& sweep) { return sweep.verdict != SweepVerdict::rejected; });

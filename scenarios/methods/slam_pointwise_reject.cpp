@@ -12,8 +12,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kAccelRailShare = 0.99;  // of the stated range: beyond, a reading is left out
-
 const Settings<baselines::PointwiseFilter::Params>& settings() {
   static const Settings<baselines::PointwiseFilter::Params> all(baselines::PointwiseFilter::Params{},
                                                                 {.stated = {"gravity_m_s2"}});
@@ -23,7 +21,7 @@ const Settings<baselines::PointwiseFilter::Params>& settings() {
 void run_filter(const sim::Sensors& sensors, std::span<const ImuSample> samples, baselines::PointwiseFilter& filter,
                 Estimate& estimate) {
   const sim::LidarRecord& lidar = sensors.lidars.front();
-  const double rail = kAccelRailShare * sensors.imus.front().stated_accel_range_m_s2;
+  const double rail = bridge::sure_range(sensors.imus.front().stated_accel_range_m_s2);
   bool any = false;
   std::size_t next = 0;
   for (std::size_t k = 0; k < bridge::sweep_count(lidar); ++k) {

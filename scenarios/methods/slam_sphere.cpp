@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -57,15 +58,6 @@ Estimate positions(const char* name, const sim::Sensors& sensors) {
   return find_methods(std::string("position/") + name).front()->run(sensors, {}, {});
 }
 
-/// The sphere's centre in body axes, from the centre of mass, by what a position method has learnt of it; else zero.
-Eigen::Vector3d centre_B_m(const Estimate& estimate) {
-  const auto value = [&](const char* name) {
-    const auto found = estimate.health.find(name);
-    return found == estimate.health.end() ? 0.0 : found->second;
-  };
-  return {value("centre_x_m"), value("centre_y_m"), value("centre_z_m")};
-}
-
 /// Poses of the body in time order, asked for in time order too.
 class Track {
  public:
@@ -103,7 +95,7 @@ Estimate map_from_poses(const char* name, const sim::Sensors& sensors, const sim
   }
   const sim::LidarRecord& lidar = sensors.lidars.front();
   VoxelMap map(map_settings().read(parameters).map);
-  Track track(estimate.poses, centre_B_m(estimate));
+  Track track(estimate.poses, estimate.centre_B_m);
   std::size_t first_pose = 0;
   for (std::size_t k = 0; k < bridge::sweep_count(lidar); ++k) {
     const bridge::Sweep sweep = bridge::sweep(lidar, k);
@@ -154,7 +146,7 @@ constexpr double kHintOfGravityMS2 = 1.2;
 std::vector<ImuSample> samples_along(const Estimate& poses, const sim::Sensors& sensors,
                                      std::span<const ImuSample> raw) {
   const Eigen::Isometry3d& T_BI = sensors.imus.front().T_BI;
-  const Eigen::Vector3d arm_B = T_BI.translation() - centre_B_m(poses);  // from the centre
+  const Eigen::Vector3d arm_B = T_BI.translation() - poses.centre_B_m;  // from the centre
   const Eigen::Vector3d gravity_W(0.0, 0.0, kHintOfGravityMS2);
   std::vector<ImuSample> out(raw.begin(), raw.end());
   Eigen::Vector3d v_before = Eigen::Vector3d::Zero();
@@ -192,7 +184,7 @@ struct Radius {
 /// when there are too few.
 std::optional<Radius> radius_by_lidar(const Estimate& rolled, const Estimate& registered, const sim::Sensors& sensors) {
   const Eigen::Isometry3d T_IG =
-      sensors.imus.front().T_BI.inverse(Eigen::Isometry) * Eigen::Translation3d(centre_B_m(rolled));
+      sensors.imus.front().T_BI.inverse(Eigen::Isometry) * Eigen::Translation3d(rolled.centre_B_m);
   double squares = 0.0, products = 0.0;
   std::vector<Eigen::Vector2d> stretches;  // rolled, registered
   bool open = false;                       // a stretch has begun there:
@@ -250,7 +242,7 @@ constexpr double kMovingMS = 0.03;
 KnownMotion motion_of(const Estimate& rolled, std::span<const ImuSample> samples, const sim::Sensors& sensors,
                       bool loosely) {
   const Eigen::Isometry3d& T_BI = sensors.imus.front().T_BI;
-  const Eigen::Vector3d arm_I = T_BI.linear().transpose() * (T_BI.translation() - centre_B_m(rolled));
+  const Eigen::Vector3d arm_I = T_BI.linear().transpose() * (T_BI.translation() - rolled.centre_B_m);
   KnownMotion motion;
   motion.gravity_m_s2 = kHintOfGravityMS2;
   double variance_m2 = 0.0;
@@ -266,7 +258,7 @@ KnownMotion motion_of(const Estimate& rolled, std::span<const ImuSample> samples
     velocity.sigma_m_s = kStillSigmaMS + (loose ? kLooseSigmaShare : kGripSigmaShare) * speed_m_s;
     if (loose && speed_m_s > kMovingMS) velocity.sigma_m_s = std::max(velocity.sigma_m_s, kLooseSigmaMS);
   }
-  const double lost_m = rolled.health.contains("samples_uncertain") ? 3.0 * std::sqrt(variance_m2) : 0.0;
+  const double lost_m = std::ranges::any_of(rolled.uncertain, std::identity()) ? 3.0 * std::sqrt(variance_m2) : 0.0;
   motion.correction_max_m = kCorrectionMaxM + (loosely ? kLooseCorrectionM : 0.0) + lost_m;
   motion.correction_max_rad = kCorrectionMaxRad;
   return motion;

@@ -17,7 +17,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kRangeShare = 0.98;    // of the stated range: calibration moves a rail by its error of scale
 constexpr double kSilentMaxS = 0.05;    // without readings for longer, a unit is absent
 constexpr double kEdgeShare = 0.9;      // of a sample, by which the readings at either end are carried on
 constexpr double kSilentToldS = 0.5;    // and for so long, told
@@ -220,8 +219,8 @@ Status merge_imus(const sim::Sensors& sensors, MergedImus& out) {
   if (Status status = units_of(sensors, units); !status.ok()) return status;
   out.resampled = units.resampled;
   const sim::ImuRecord& primary = sensors.imus.front();
-  if (primary.stated_gyro_range_rad_s > 0.0) out.gyro_range_rad_s = kRangeShare * primary.stated_gyro_range_rad_s;
-  if (primary.stated_accel_range_m_s2 > 0.0) out.accel_range_m_s2 = kRangeShare * primary.stated_accel_range_m_s2;
+  if (primary.stated_gyro_range_rad_s > 0.0) out.gyro_range_rad_s = bridge::sure_range(primary.stated_gyro_range_rad_s);
+  if (primary.stated_accel_range_m_s2 > 0.0) out.accel_range_m_s2 = bridge::sure_range(primary.stated_accel_range_m_s2);
   ImuMerge::Params params;
   params.gap_max_s = bridge::kGapMaxS;
   params.gyro_range_rad_s = out.gyro_range_rad_s;

@@ -113,7 +113,7 @@ bool called_measured(const Estimate& estimate, const ScoringInput& input, double
     for (unsigned j = 0; sample && j < 3; ++j) {
       if ((sample->clipped_axes & (1u << j)) == 0) continue;
       axes += 1.0;
-      missed += (rate.clipped_axes & (1u << j)) == 0 ? 1.0 : 0.0;
+      missed += (rate.clipped_axes & (1u << j)) == 0 && rate.source == RateSource::measured ? 1.0 : 0.0;
     }
   }
   value = missed / axes;
@@ -180,10 +180,11 @@ std::vector<Metric> reference_rate_metrics() {
         Sense::two_sided, Place::detail, kNormal3Sigma},
        Kind::rate,
        coverage});
-  all.push_back({{"rate_clipped_called_measured", Unit::share,
-                  "share of axes that clip by a reference and that the method does not call clipped", Sense::lower},
-                 Kind::rate,
-                 called_measured});
+  all.push_back(
+      {{"rate_clipped_called_measured", Unit::share,
+        "share of axes that clip by a reference and that the method calls neither clipped nor doubtful", Sense::lower},
+       Kind::rate,
+       called_measured});
   all.push_back({{"rate_reference_clipped_samples", Unit::number, "samples with an axis that clips by the reference",
                   Sense::none},
                  Kind::rate,

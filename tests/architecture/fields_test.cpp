@@ -71,17 +71,24 @@ std::vector<std::string> forgotten(const std::string& body, const std::string& v
   return out;
 }
 
+std::vector<fs::path> headers() {
+  std::vector<fs::path> out;
+  for (const char* folder : {"estimator/include", "scenarios/baselines"})
+    for (const auto& entry : fs::recursive_directory_iterator(tumble::test::source_dir() / folder))
+      if (entry.path().extension() == ".hpp") out.push_back(entry.path());
+  return out;
+}
+
 TEST(Fields, NameEachNumberOfAParams) {
   std::size_t structs = 0, numbers = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(tumble::test::source_dir() / "estimator" / "include")) {
-    if (entry.path().extension() != ".hpp") continue;
-    const std::string header = text_of(entry.path());
+  for (const fs::path& header_path : headers()) {
+    const std::string header = text_of(header_path);
     for (const std::string& body : params_in(header)) {
-      fs::path beside = entry.path();
-      beside.replace_filename(entry.path().stem().string() + "_fields.hpp");
+      fs::path beside = header_path;
+      beside.replace_filename(header_path.stem().string() + "_fields.hpp");
       const std::string visits = fs::exists(beside) ? text_of(beside) : body;
       for (const std::string& number : forgotten(body, visits)) {
-        ADD_FAILURE() << entry.path().string() << ": " << number << " is no field";
+        ADD_FAILURE() << header_path.string() << ": " << number << " is no field";
       }
       ++structs;
       numbers += numbers_in(body).size();

@@ -83,7 +83,9 @@ Status RegimeStream::push(const ImuSample& sample, std::span<const AuxiliaryRead
     state.carrying = false;
   }
   if (share > params_.carried_min && carried && carried->time_ns == out->time_ns) {
+    const std::uint8_t at_a_rail = out->clipped_axes;
     *out = either(*out, *carried, share);
+    out->clipped_axes = at_a_rail;  // what is but doubted is said by the source, and is no clipping that was found
     ++state.joined;
   }
   return {};
