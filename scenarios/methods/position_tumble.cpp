@@ -33,8 +33,11 @@ RollingSmoother::Params defaults(double lag_s = RollingSmoother::kWholeRun) {
 
 /// What the sensors state, and what follows from how many they are.
 std::vector<std::string> stated() {
-  return {"radius_m",      "gravity_m_s2",     "lever_arm_x_m",    "lever_arm_y_m",
-          "lever_arm_z_m", "gyro_range_rad_s", "accel_range_m_s2", "recovered_rate_sigma_rad_s"};
+  return {"radius_m", "gravity_m_s2", "lever_arm_x_m", "lever_arm_y_m", "lever_arm_z_m", "gyro_range_rad_s",
+          "accel_range_m_s2", "recovered_rate_sigma_rad_s",
+          // by whether the device is known
+          "gyro_bias_sigma_rad_s", "accel_bias_sigma_m_s2", "tilt_sigma_rad", "accel_scale_sigma", "gyro_scale_sigma",
+          "accel_delay_sigma_s", "lever_arm_sigma_m", "incline_begins_per_s"};
 }
 
 /// Those of the live filter, and from when on it claims a slip.
@@ -66,17 +69,6 @@ const Settings<RollingSmoother::Params>& lag_settings() {
   return all;
 }
 
-/// What the sensors are like. The lever arm is from the centre of mass, which the calibration refers to; what lies
-/// between it and the centre is estimated.
-void set_stated(const sim::Sensors& sensors, const MergedImus& imus, RollingParams& params) {
-  params.radius_m = sensors.sphere_radius_m;
-  params.gravity_m_s2 = sensors.gravity_m_s2;
-  params.lever_arm_m = imus.lever_arm_m;
-  params.gyro_range_rad_s = imus.gyro_range_rad_s;
-  params.accel_range_m_s2 = imus.accel_range_m_s2;
-  if (imus.units >= kRecoveringUnits) params.recovered_rate_sigma_rad_s = kRecoveredSigmaRadS;
-}
-
 /// What a device may have that nobody has described.
 void widen_unknown(const sim::Sensors& sensors, RollingParams& params) {
   if (!sensors.imus.front().device.empty()) return;
@@ -88,6 +80,18 @@ void widen_unknown(const sim::Sensors& sensors, RollingParams& params) {
   params.accel_delay_sigma_s = std::max(params.accel_delay_sigma_s, kUnknownDelayS);
   params.lever_arm_sigma_m = std::max(params.lever_arm_sigma_m, kUnknownPlaceM);
   params.incline_begins_per_s = std::min(params.incline_begins_per_s, kUnknownInclinePerS);
+}
+
+/// What the sensors are like. The lever arm is from the centre of mass, which the calibration refers to; what lies
+/// between it and the centre is estimated.
+void set_stated(const sim::Sensors& sensors, const MergedImus& imus, RollingParams& params) {
+  params.radius_m = sensors.sphere_radius_m;
+  params.gravity_m_s2 = sensors.gravity_m_s2;
+  params.lever_arm_m = imus.lever_arm_m;
+  params.gyro_range_rad_s = imus.gyro_range_rad_s;
+  params.accel_range_m_s2 = imus.accel_range_m_s2;
+  if (imus.units >= kRecoveringUnits) params.recovered_rate_sigma_rad_s = kRecoveredSigmaRadS;
+  widen_unknown(sensors, params);
 }
 
 PoseState body_pose(TimeNs time_ns, const Eigen::Quaterniond& q_WB, const Eigen::Vector3d& p_WG_m,
@@ -171,7 +175,6 @@ Estimate run_live(const sim::Sensors& sensors, const sim::Values& parameters, co
   LiveParams params = live_settings().defaults();
   set_stated(sensors, imus, params.filter);
   live_settings().apply(parameters, params);
-  widen_unknown(sensors, params.filter);
   const RollingFilter filter(params.filter);
   // 430 KiB: not for the stack of a worker
   const auto state = std::make_unique<RollingFilter::State>();
@@ -198,7 +201,6 @@ Estimate run_lag(const sim::Sensors& sensors, const sim::Values& parameters, con
   if (period_ns > 0) params.rate_max_hz = std::max(params.rate_max_hz, 1.1 / seconds(period_ns));
   set_stated(sensors, imus, params.filter);
   lag_settings().apply(parameters, params);
-  widen_unknown(sensors, params.filter);
   smooth(params, imus, {}, estimate);
   return estimate;
 }
@@ -233,7 +235,6 @@ RollingSmoother::Params rolling_smoother_params(const sim::Sensors& sensors, con
   RollingSmoother::Params params = settings.defaults();
   set_stated(sensors, imus, params.filter);
   settings.apply(parameters, params);
-  widen_unknown(sensors, params.filter);
   return params;
 }
 

@@ -17,7 +17,7 @@ namespace {
 const Settings<RegimeStream::Params>& settings() {
   static const Settings<RegimeStream::Params> all = [] {
     std::vector<std::string> stated = stated_densities();
-    stated.insert(stated.end(), {"period_s", "evidence_gravity_m_s2", "carried_gravity_m_s2"});
+    stated.insert(stated.end(), {"period_s", "evidence_gravity_m_s2", "carried_gravity_m_s2", "carried_min"});
     // RegimeStream takes these from its RateStream, and the stream of the carried body iterates as it goes
     const std::vector<std::string> fixed = {"carried_period_s", "carried_lag_s", "carried_gap_max_s",
                                             "carried_iterations_max"};
@@ -86,7 +86,7 @@ Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& par
   estimate.status = auxiliary_readings(sensors, samples, params.rate.model, auxiliary_imus);
   if (!estimate.status.ok()) return estimate;
   // further IMUs tell the rate whoever holds the body; the other smoother does not know them
-  if (!auxiliary_imus.empty()) params.carried_min = 1.0;
+  if (!auxiliary_imus.empty() && !parameters.contains("carried_min")) params.carried_min = 1.0;
   const RegimeStream joined(params);
   const RateStream& stream = joined.rate();
   RegimeStream::State all = joined.start();

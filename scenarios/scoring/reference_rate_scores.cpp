@@ -113,7 +113,9 @@ bool called_measured(const Estimate& estimate, const ScoringInput& input, double
     for (unsigned j = 0; sample && j < 3; ++j) {
       if ((sample->clipped_axes & (1u << j)) == 0) continue;
       axes += 1.0;
-      missed += (rate.clipped_axes & (1u << j)) == 0 && rate.source == RateSource::measured ? 1.0 : 0.0;
+      // a sample that no axis of which was found at its rail may yet be doubted as a whole
+      const bool doubted = rate.clipped_axes == 0 && rate.source != RateSource::measured;
+      missed += (rate.clipped_axes & (1u << j)) == 0 && !doubted ? 1.0 : 0.0;
     }
   }
   value = missed / axes;

@@ -147,6 +147,11 @@ TEST(ReferenceRateScores, OfTheTruthAndOfTheReadings) {
   EXPECT_GT(raw.at("rate_speed_error_clipped_median_rad_s"), 1.0);
   EXPECT_LT(raw.at("rate_reference_coverage_3sigma"), 0.5);
   EXPECT_EQ(raw.at("rate_clipped_called_measured"), 1.0);
+  Estimate doubting = estimate_of(made_.reading, 0.01, 0), of_another_axis = estimate_of(made_.reading, 0.01, 2);
+  for (RateState& rate : doubting.rates) rate.source = RateSource::bounded_only;
+  for (RateState& rate : of_another_axis.rates) rate.source = RateSource::bounded_only;
+  EXPECT_EQ(scores_of(doubting, recording).at("rate_clipped_called_measured"), 0.0);
+  EXPECT_EQ(scores_of(of_another_axis, recording).at("rate_clipped_called_measured"), 1.0);
   EXPECT_EQ(raw.at("rate_reference_error_median_rad_s"), truth.at("rate_reference_error_median_rad_s"))
       << "no estimate enters";
 }
