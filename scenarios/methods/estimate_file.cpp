@@ -275,6 +275,7 @@ json header_of(const std::string& method, Kind kind, const Estimate& estimate, c
             {"field", estimate.status.field},
             {"message", estimate.status.message()}}},
           {"health", health},
+          {"parameters", json(estimate.parameters)},
           {"sensors_digest", sensors_digest}};
 }
 
@@ -303,6 +304,8 @@ void read_header(const std::filesystem::path& path, Kind& kind, std::string& met
     for (const auto& [name, value] : header.at("health").items()) {
       estimate.health[name] = value.is_number() ? value.get<double>() : std::nan("");
     }
+    if (header.contains("parameters"))
+      estimate.parameters = header.at("parameters").get<std::map<std::string, double>>();
   } catch (const json::exception& error) {
     throw BadInput(path.string() + ": " + error.what());
   }

@@ -41,7 +41,9 @@ Method with(const Method& method, const sim::Values& chosen) {
                                        const OracleInput& oracle) {
     sim::Values all = chosen;
     for (const auto& [name, value] : given.all()) all.set(name, value);
-    return run(sensors, all, oracle);
+    Estimate estimate = run(sensors, all, oracle);
+    estimate.parameters = chosen.all();
+    return estimate;
   };
   return out;
 }

@@ -86,7 +86,7 @@ Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& par
   estimate.status = auxiliary_readings(sensors, samples, params.rate.model, auxiliary_imus);
   if (!estimate.status.ok()) return estimate;
   // further IMUs tell the rate whoever holds the body; the other smoother does not know them
-  if (!auxiliary_imus.empty() && !parameters.contains("carried_min")) params.carried_min = 1.0;
+  if (!auxiliary_imus.empty() && !parameters.has("carried_min")) params.carried_min = 1.0;
   const RegimeStream joined(params);
   const RateStream& stream = joined.rate();
   RegimeStream::State all = joined.start();

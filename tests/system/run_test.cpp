@@ -211,5 +211,30 @@ TEST(FirstRun, AScenarioAloneDoesSomethingGood) {
   EXPECT_TRUE(fs::exists(folder / "roll_2" / "recording.h5"));
 }
 
+/// What `--set` gives a method is taken, is told by the estimate, and a wrong name or value ends the program at once.
+TEST(Set, AGivenParameterIsTakenToldAndBounded) {
+  const fs::path folder = test_folder();
+  const fs::path recording = shared_run("roll") / "recording.h5";
+  const auto estimated = [&](const std::string& name, std::vector<std::string> more) {
+    std::vector<std::string> words = {"estimate", recording.string(),      "--method", "attitude/mahony",
+                                      "-o",       (folder / name).string()};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_program(words);
+  };
+  const Ended plain = estimated("plain", {});
+  ASSERT_EQ(plain.status, 0) << plain.err;
+  ASSERT_EQ(estimated("set", {"--set", "attitude/mahony.proportional_rad_s=1.5"}).status, 0);
+  EXPECT_EQ(json::parse(read_file(folder / "plain" / "estimate.json"))["parameters"], json::object());
+  EXPECT_EQ(json::parse(read_file(folder / "set" / "estimate.json"))["parameters"],
+            (json{{"proportional_rad_s", 1.5}}));
+  EXPECT_NE(read_file(folder / "plain" / "attitude.tum"), read_file(folder / "set" / "attitude.tum"));
+  for (const char* const wrong :
+       {"attitude/mahony.proportional_rad_s=101", "attitude/mahony.proportional=1", "attitude/mahony"}) {
+    const Ended ended = estimated("wrong", {"--set", wrong});
+    EXPECT_EQ(ended.status, 2) << wrong;
+    EXPECT_THAT(ended.err, HasSubstr(wrong)) << wrong;
+  }
+}
+
 }  // namespace
 }  // namespace tumble::system_test

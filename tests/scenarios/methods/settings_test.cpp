@@ -77,7 +77,7 @@ std::vector<std::string> complaints(const Stages& stages) {
     const bool whole = is_whole(stages, name);
     const double value = another(p, whole);
     if (value == p.default_value || changed(stages, resolved(stages, name, value)) != std::vector{value}) {
-      out.push_back(name + " takes no effect");
+      out.push_back(name + " is not read");
     }
     if (refuses(stages, name, p.low) || refuses(stages, name, p.high)) out.push_back(name + ": bounds refused");
     if (!refuses(stages, name, 2.0 * std::abs(p.high) + 1.0)) out.push_back(name + ": accepted above its bound");
@@ -213,7 +213,7 @@ class Deaf : public SettingsTable {
 // negative control: the test of the registry sees a parameter without effect, and two of one name
 TEST(Settings, FaultsAreSeen) {
   const Deaf deaf;
-  EXPECT_EQ(complaints({&deaf}), std::vector<std::string>{"share takes no effect"});
+  EXPECT_EQ(complaints({&deaf}), std::vector<std::string>{"share is not read"});
   const Settings<Numbers> one(Numbers{}), other(Numbers{});
   const std::vector<std::string> found = complaints({&one, &other});
   EXPECT_NE(std::find(found.begin(), found.end(), "count stands twice"), found.end());
