@@ -216,6 +216,7 @@ void doubt_level_tops(const RailPlanes& planes, double offset_share, double nois
         if (first == 0 || last + 1 == count || first == last) continue;
         const double rise =
             hidden_rise(static_cast<double>(last - first + 1), top - value(first - 1), top - value(last + 1));
+        if (!(rise > 0.0)) continue;  // a flank, not a top
         for (std::size_t i = first; i <= last; ++i) {
           RateObservation& o = observations[i];
           if (((o.clipping.gyro | o.clipping.void_gyro) >> j & 1u) != 0) continue;

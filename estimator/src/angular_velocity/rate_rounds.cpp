@@ -140,11 +140,16 @@ SensorErrorSizes unstated(SensorErrorSizes sizes) {
   return sizes;
 }
 
-// The fit where errors are assumed about those that were given.
+// What an earlier run told, about what is given of the device now.
+SensorErrorEvidence learnt_about(const SensorErrors& given, KnownSensorErrors learnt, const SensorErrorSizes& sizes) {
+  learnt.errors = SensorErrors::from(learnt.errors.vector() - given.vector());
+  return learnt_evidence(learnt, sizes);
+}
+
+// The fit where errors are assumed about those that were given, `learnt` being about them too.
 SensorErrorFit fit_about(const SensorErrors& given, SensorErrorEvidence evidence, const SensorErrorSizes& sizes,
-                         SensorErrorEvidence learnt) {
+                         const SensorErrorEvidence& learnt) {
   evidence.about = SensorErrors::from(evidence.about.vector() - given.vector());
-  learnt.about = SensorErrors::from(learnt.about.vector() - given.vector());
   SensorErrorFit out = fit_sensor_errors(evidence, sizes, learnt);
   out.known.errors = SensorErrors::from(out.known.errors.vector() + given.vector());
   return out;
@@ -160,24 +165,27 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
   const RigConstants rig = known.calibration ? known.calibration->constants : known.nominal;
   bool told_before = estimated && params.learnt_errors.has_value();
   SensorErrorEvidence learnt =
-      told_before ? learnt_evidence(*params.learnt_errors, known.error_sizes) : SensorErrorEvidence{};
-  SensorErrors errors = told_before ? params.learnt_errors->errors : known.errors;
+      told_before ? learnt_about(known.errors, *params.learnt_errors, known.error_sizes) : SensorErrorEvidence{};
   // triads with clocks of their own are not sampled as alike as a sheet may have it
   const bool own_clocks = health.gyro_update_s > 0.0 || health.accel_update_s > 0.0;
   SensorErrorSizes sizes = known.error_sizes;
   if (own_clocks) sizes.delay_s = std::max(sizes.delay_s, sizes.delay_unknown_s);
   TriadDelay guess;
-  if (estimated && known.error_sizes.delay_unknown_s > known.error_sizes.delay_s) {
+  if (estimated && known.error_sizes.delay_unknown_s > known.error_sizes.delay_s)
     guess = guess_triad_delay(samples, clippings, rig.lever_arm_m);
+  SensorErrors errors;
+  double other_delay_s = 0.0;  // for where the descent from the first one has to hold the rig
+  const auto begin_with = [&](const SensorErrors& assumed) {
+    errors = assumed;
     if (tells(guess) && std::abs(guess.delay_s - errors.accel_delay_s) > kGuessFar * guess.sigma_s)
       errors.accel_delay_s = guess.delay_s;
-  }
+    other_delay_s = !tells(guess)                           ? errors.accel_delay_s
+                    : errors.accel_delay_s == guess.delay_s ? known.errors.accel_delay_s
+                                                            : guess.delay_s;
+  };
+  begin_with(told_before ? params.learnt_errors->errors : known.errors);
   // a body that is struck and flies is no hand's: its rig may be moved by what the device makes of the motion
   const bool struck = guess.sigma_s > 0.0;
-  // for where the descent from there has to hold the rig
-  const double other_delay_s = !tells(guess)                           ? errors.accel_delay_s
-                               : errors.accel_delay_s == guess.delay_s ? known.errors.accel_delay_s
-                                                                       : guess.delay_s;
   std::vector<double> age_s(samples.size());
   for (std::size_t k = 0; k < age_s.size(); ++k) age_s[k] = observations[k].accel_age_s;
   SensorErrorFit found;
@@ -195,7 +203,7 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
       // it may be another device
       told_before = false;
       learnt = {};
-      errors = known.errors;
+      begin_with(known.errors);
       health.error_rounds = 0;
       continue;
     }

@@ -122,6 +122,9 @@ RateSmoother::RateSmoother(const Params& params)
     for (const double value : params.learnt_errors->covariance.reshaped()) {
       require_within("learnt errors' covariance", value, -1.0, 1.0);
     }
+    // a negative eigenvalue would pass for perfect knowledge
+    const SensorErrors::Vector pivots = params.learnt_errors->covariance.ldlt().vectorD();
+    require_within("learnt errors' covariance, least pivot", pivots.minCoeff(), -1e-9 * pivots.maxCoeff(), 1.0);
   }
   (void)RateModel(params.model, 0.01);  // throws on bad parameters
 }

@@ -34,6 +34,13 @@ ClipSigns signs_of(const RateObservation& observation) {
   return clip_signs(observation.sample, clipping);
 }
 
+// What is but doubted is told by the source: it is no clipping that was found, whoever holds the body.
+RateState joined_rate(const RateState& rate, const RateState& carried, double share) {
+  RateState out = either(rate, carried, share);
+  out.clipped_axes = rate.clipped_axes;
+  return out;
+}
+
 // That of the rates themselves about sample k, over kTurn_s where there are so many. RateStream's own is bent by the
 // very force that is to be judged, also where the gyro reads all of the rate: carried.md (C33)
 Eigen::Vector3d angular_acceleration(std::span<const RateStream::Knot> window, std::size_t k) {
@@ -83,9 +90,7 @@ Status RegimeStream::push(const ImuSample& sample, std::span<const AuxiliaryRead
     state.carrying = false;
   }
   if (share > params_.carried_min && carried && carried->time_ns == out->time_ns) {
-    const std::uint8_t at_a_rail = out->clipped_axes;
-    *out = either(*out, *carried, share);
-    out->clipped_axes = at_a_rail;  // what is but doubted is said by the source, and is no clipping that was found
+    *out = joined_rate(*out, *carried, share);
     ++state.joined;
   }
   return {};
@@ -189,7 +194,7 @@ void RegimeStream::flush(const State& state, std::vector<RateState>& out) const 
     RateState& rate = out[out.size() - count + k];
     const RateState& other = carried[carried.size() - count + k];
     const double share = share_of(rate, last);
-    if (share > params_.carried_min && rate.time_ns == other.time_ns) rate = either(rate, other, share);
+    if (share > params_.carried_min && rate.time_ns == other.time_ns) rate = joined_rate(rate, other, share);
   }
 }
 

@@ -118,8 +118,10 @@ Status LidarInertialOdometry::add_sweep(TimeNs lidar_start_ns, TimeNs lidar_end_
                     seconds(start_ns - my.state.time_ns) + my.calibration.time_offset_s, my.points);
   report.points_used = counts.used;
   my.unmatched = false;
-  const Status status = mapping::check_selection(end_ns - start_ns, points, counts);
-  if (status.ok()) report.points_alone = my.lone_returns.drop(my.range_noise, my.points);
+  Status status = mapping::check_selection(end_ns - start_ns, points, counts);
+  // neighbours are those of a ring: a device that does not tell its rings has none
+  if (status.ok() && counts.rings_differ) report.points_alone = my.lone_returns.drop(my.range_noise, my.points);
+  if (status.ok() && my.points.empty()) status = {Trouble::too_few, "points", 0.0, 1.0};
   const bool first = my.map.size() == 0;
   bool aligned = false;
   if (status.ok() && first && my.points.size() >= my.params.matches_min) {

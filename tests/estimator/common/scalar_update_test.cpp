@@ -33,6 +33,10 @@ TEST(ScalarUpdate, IsBayesRuleForADirection) {
   Matrix4 other = kPrior;  // a column says the same
   EXPECT_EQ(scalar_update(Vector4(row.transpose()), 0.7, 0.05, other), correction);
   EXPECT_EQ(other, P);
+  Eigen::Matrix<double, 2, 4> rows;  // one of which is not contiguous
+  rows << Eigen::RowVector4d::Ones(), row;
+  Matrix4 again = kPrior;
+  EXPECT_EQ(scalar_update(rows.row(1), 0.7, 0.05, again), correction);
 }
 
 TEST(ScalarUpdate, IsBayesRuleForAComponent) {

@@ -16,7 +16,8 @@ template <typename Row, int N>
 Eigen::Matrix<double, N, 1> scalar_update(const Eigen::MatrixBase<Row>& row, double innovation, double variance,
                                           Eigen::Matrix<double, N, N>& P) {
   EIGEN_STATIC_ASSERT_VECTOR_SPECIFIC_SIZE(Row, N)
-  const Eigen::Matrix<double, N, 1> h = Eigen::Map<const Eigen::Matrix<double, N, 1>>(row.derived().data());
+  Eigen::Matrix<double, N, 1> h;
+  for (int k = 0; k < N; ++k) h[k] = row.derived().coeff(k);
   const Eigen::Matrix<double, N, 1> PHt = P * h;
   const double s = h.dot(PHt) + variance;
   P -= PHt * (PHt / s).transpose();
