@@ -148,6 +148,10 @@ TEST(Report, IsAFunctionOfWhatASweepHasLeft) {
   const fs::path list = folder / "r.db.files" / "examples.json";
   ASSERT_EQ(run_program(sweep_arguments(database, "1..2")).status, 0);
   EXPECT_FALSE(fs::exists(list)) << "none were asked for";
+  std::vector<std::string> untold = sweep_arguments(database, "1..2");
+  untold.erase(std::find(untold.begin(), untold.end(), "--examples"), untold.end() - 1);
+  ASSERT_EQ(run_program(untold).status, 0);
+  EXPECT_FALSE(fs::exists(list)) << "two draws do not pay for an example";
   const std::vector<std::string> report = {"report", database.string(), "-o", page.string()};
   Ended ended = run_program(report);
   ASSERT_EQ(ended.status, 0) << ended.err;
