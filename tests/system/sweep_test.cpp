@@ -178,6 +178,16 @@ TEST(Report, IsAFunctionOfWhatASweepHasLeft) {
   EXPECT_THAT(own_part(page), HasSubstr("examples.json"));
 }
 
+TEST(Sweep, KeepsItsTableWhenPicturesCannotBeLeft) {
+  const fs::path folder = test_folder();
+  const fs::path database = folder / "s.db";
+  std::ofstream(folder / "s.db.files") << "a file where the folder would stand";
+  const Ended ended = run_program(sweep_arguments(database, "1..2", "1"));
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(json_of(ended)["draws_done"], 2);
+  EXPECT_THAT(ended.err, HasSubstr("tumble: no pictures of single draws: "));
+}
+
 TEST(Report, OfAnAbsentDatabaseMakesNone) {
   const fs::path database = test_folder() / "absent.db";
   const Ended absent = run_program({"report", database.string()});

@@ -98,7 +98,11 @@ Plot read_plot(const json& from) {
 std::vector<std::uint8_t> read_bytes(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) throw BadInput(path.string() + ": cannot be read");
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  try {
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  } catch (const std::ios_base::failure& error) {  // a folder opens, and cannot be read
+    throw BadInput(path.string() + ": cannot be read: " + error.what());
+  }
 }
 
 /// A list may come from anywhere: only files of its own folder are read, or removed.
@@ -137,9 +141,9 @@ Example read_example(const fs::path& folder, const json& from, Pictures pictures
 /// Null where there is none.
 json read_list(const fs::path& folder) {
   const fs::path path = list_file(folder);
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return json();
-  json list = json::parse(file);
+  std::error_code error;
+  if (fs::status(path, error).type() == fs::file_type::not_found) return json();
+  json list = json::parse(read_bytes(path));
   if (list.at("format") != kFormat || list.at("version") != kVersion)
     throw BadInput("is not a list of examples of version " + std::to_string(kVersion));
   return list;

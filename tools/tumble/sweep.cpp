@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -76,7 +77,8 @@ std::string command_of(const Options& options) {
   return words;
 }
 
-/// Of a whole suite alone: what is typical of a part of its seeds need not be so of all.
+/// Of a whole suite alone: what is typical of a part of its seeds need not be so of all. What is wrong with the
+/// pictures costs the sweep a line, not its table and its status.
 void leave_examples(const Session& session, const scenarios::DataRoot& data, const scenarios::Suite& suite,
                     const Options& options, std::uint64_t draws, const std::atomic<bool>& stop) {
   if (!options.shard.empty()) return;
@@ -85,7 +87,13 @@ void leave_examples(const Session& session, const scenarios::DataRoot& data, con
   leave.jobs = options.jobs;
   leave.stop = &stop;
   leave.note = [&](std::string_view line) { session.note(line); };
-  tools::leave_examples(data, suite, options.database, leave);
+  try {
+    tools::leave_examples(data, suite, options.database, leave);
+  } catch (const scenarios::BadInput& error) {
+    std::fprintf(stderr, "tumble: no pictures of single draws: %s\n", error.what());
+  } catch (const std::filesystem::filesystem_error& error) {
+    std::fprintf(stderr, "tumble: no pictures of single draws: %s\n", error.what());
+  }
 }
 
 nlohmann::json to_json(const scenarios::SweepProgress& p, const std::string& database) {
