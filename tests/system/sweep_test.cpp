@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <thread>
@@ -176,6 +177,23 @@ TEST(Report, IsAFunctionOfWhatASweepHasLeft) {
   ended = run_program(report);
   EXPECT_EQ(ended.status, 0) << "the scores are there all the same";
   EXPECT_THAT(own_part(page), HasSubstr("examples.json"));
+}
+
+TEST(Sweep, OfAnotherSuiteKeepsTheExamplesThatStandThere) {
+  const fs::path folder = test_folder();
+  const fs::path database = folder / "s.db", list = folder / "s.db.files" / "examples.json";
+  std::vector<std::string> arguments = sweep_arguments(database, "1..2", "1");
+  ASSERT_EQ(run_program(arguments).status, 0);
+  json left = json::parse(read_file(list));
+  ASSERT_EQ(left["examples"].size(), 1u);
+  // as a suite of another scenario would have left it
+  left["examples"][0]["scenario"] = "elsewhere";
+  std::ofstream(list) << left.dump();
+  ASSERT_EQ(run_program(arguments).status, 0);
+  const json both = json::parse(read_file(list));
+  ASSERT_EQ(both["examples"].size(), 2u);
+  EXPECT_EQ(both["examples"][0]["scenario"], "elsewhere");
+  EXPECT_EQ(both["examples"][1]["scenario"], "roll");
 }
 
 TEST(Sweep, KeepsItsTableWhenPicturesCannotBeLeft) {
