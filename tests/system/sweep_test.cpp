@@ -196,6 +196,22 @@ TEST(Sweep, OfAnotherSuiteKeepsTheExamplesThatStandThere) {
   EXPECT_EQ(both["examples"][1]["scenario"], "roll");
 }
 
+TEST(Sweep, StoppedAtItsPicturesSaysSoAndLeavesNone) {
+  const fs::path folder = test_folder();
+  const fs::path database = folder / "s.db", files = folder / "s.db.files";
+  Running running(sweep_arguments(database, "1..2", "1"));
+  // the folder is made just before the draw runs again
+  for (int i = 0; i < 12000 && !running.has_ended() && !fs::exists(files); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  ASSERT_TRUE(fs::exists(files));
+  running.signal(SIGINT);
+  const Ended stopped = running.wait();
+  EXPECT_EQ(stopped.status, 1) << stopped.err;
+  EXPECT_EQ(json_of(stopped)["draws_done"], 2);
+  EXPECT_THAT(stopped.err, HasSubstr("stopped: all draws are stored, their pictures are not made"));
+  EXPECT_FALSE(fs::exists(files)) << "nothing came into it";
+}
+
 TEST(Sweep, KeepsItsTableWhenPicturesCannotBeLeft) {
   const fs::path folder = test_folder();
   const fs::path database = folder / "s.db";

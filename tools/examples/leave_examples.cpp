@@ -207,27 +207,45 @@ class Makers {
   std::list<Worker> workers_;
 };
 
+/// What is left of pictures in the making goes, and a folder that got nothing.
+class Unfinished {
+ public:
+  explicit Unfinished(const fs::path& folder) : folder_(folder) { discard_unfinished(folder_); }
+  ~Unfinished() {
+    discard_unfinished(folder_);
+    std::error_code ignored;
+    if (fs::is_empty(folder_, ignored) && !ignored) fs::remove(folder_, ignored);
+  }
+  Unfinished(const Unfinished&) = delete;
+  Unfinished& operator=(const Unfinished&) = delete;
+
+ private:
+  const fs::path& folder_;
+};
+
 }  // namespace
 
-void leave_examples(const scenarios::DataRoot& data, const scenarios::Suite& suite, const fs::path& database,
+bool leave_examples(const scenarios::DataRoot& data, const scenarios::Suite& suite, const fs::path& database,
                     const LeaveOptions& options) {
-  if (!suite.recordings.empty() || options.count == 0) return;
+  if (!suite.recordings.empty() || options.count == 0) return true;
   const fs::path folder = examples_folder(database);
   std::vector<Making> makings;
   {
     const scenarios::Results results(database, scenarios::Results::Mode::read_only);
     makings = plan(data, suite, results, options.count);
   }
-  if (makings.empty()) return;
+  if (makings.empty()) return true;
   std::vector<std::string> texts = keep_known(data, folder, suite, makings);
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw scenarios::BadInput(folder.string() + ": " + error.message());
-  if (!Makers(data, folder, suite.timeout_s, options).run(makings)) return;
+  const Unfinished unfinished(folder);
+  if (!Makers(data, folder, suite.timeout_s, options).run(makings)) return false;
   for (Making& making : makings) {
     if (making.done) texts.push_back(std::move(making.text));
   }
   write_examples(folder, texts);
+  return true;
 }
 
 }  // namespace tumble::tools

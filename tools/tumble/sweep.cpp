@@ -78,22 +78,24 @@ std::string command_of(const Options& options) {
 }
 
 /// Of a whole suite alone: what is typical of a part of its seeds need not be so of all. What is wrong with the
-/// pictures costs the sweep a line, not its table and its status.
-void leave_examples(const Session& session, const scenarios::DataRoot& data, const scenarios::Suite& suite,
+/// pictures costs the sweep a line, not its table and its status. Returns false when it was
+/// stopped.
+bool leave_examples(const Session& session, const scenarios::DataRoot& data, const scenarios::Suite& suite,
                     const Options& options, std::uint64_t draws, const std::atomic<bool>& stop) {
-  if (!options.shard.empty()) return;
+  if (!options.shard.empty()) return true;
   LeaveOptions leave;
   leave.count = options.examples.value_or(std::min(kExamplesMax, draws / kDrawsPerExample));
   leave.jobs = options.jobs;
   leave.stop = &stop;
   leave.note = [&](std::string_view line) { session.note(line); };
   try {
-    tools::leave_examples(data, suite, options.database, leave);
+    return tools::leave_examples(data, suite, options.database, leave);
   } catch (const scenarios::BadInput& error) {
     std::fprintf(stderr, "tumble: no pictures of single draws: %s\n", error.what());
   } catch (const std::filesystem::filesystem_error& error) {
     std::fprintf(stderr, "tumble: no pictures of single draws: %s\n", error.what());
   }
+  return true;
 }
 
 nlohmann::json to_json(const scenarios::SweepProgress& p, const std::string& database) {
@@ -142,9 +144,12 @@ int run_sweep(const Session& session, const Options& options) {
                                                              interrupt.raised(), statuses_named(options.again));
 
   const bool complete = final.draws_done >= final.draws_total;
-  if (complete) leave_examples(session, data, suite, options, final.draws_total, interrupt.raised());
+  const bool shown = !complete || leave_examples(session, data, suite, options, final.draws_total, interrupt.raised());
   session.print({to_table(final, options.database.string())}, to_json(final, options.database.string()));
-  return complete ? kDone : say_stopped(final);
+  if (!complete) return say_stopped(final);
+  if (shown) return kDone;
+  std::fputs("tumble: stopped: all draws are stored, their pictures are not made, run again to make them\n", stderr);
+  return kCheckFailed;
 }
 
 }  // namespace
