@@ -159,6 +159,7 @@ TEST(Report, IsAFunctionOfWhatASweepHasLeft) {
   EXPECT_THAT(own_part(page), Not(HasSubstr("data:image/png;base64,iVBORw0KGgo")));
   EXPECT_THAT(own_part(page), HasSubstr("tumble sweep roll --seeds 1..2 --method rate/raw --method rolling --db "))
       << "it says what makes them";
+  EXPECT_THAT(own_part(page), HasSubstr("r.db --examples 3")) << "so few draws get none unless told";
   EXPECT_THAT(ended.err, HasSubstr("No pictures of single draws"));
 
   // they are made of what is there: nothing runs again but the draw that is shown
