@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <thread>
@@ -148,12 +149,17 @@ TEST(Report, IsAFunctionOfWhatASweepHasLeft) {
   const fs::path list = folder / "r.db.files" / "examples.json";
   ASSERT_EQ(run_program(sweep_arguments(database, "1..2")).status, 0);
   EXPECT_FALSE(fs::exists(list)) << "none were asked for";
+  std::vector<std::string> untold = sweep_arguments(database, "1..2");
+  untold.erase(std::find(untold.begin(), untold.end(), "--examples"), untold.end() - 1);
+  ASSERT_EQ(run_program(untold).status, 0);
+  EXPECT_FALSE(fs::exists(list)) << "two draws do not pay for an example";
   const std::vector<std::string> report = {"report", database.string(), "-o", page.string()};
   Ended ended = run_program(report);
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(own_part(page), Not(HasSubstr("data:image/png;base64,iVBORw0KGgo")));
   EXPECT_THAT(own_part(page), HasSubstr("tumble sweep roll --seeds 1..2 --method rate/raw --method rolling --db "))
       << "it says what makes them";
+  EXPECT_THAT(own_part(page), HasSubstr("r.db --examples 3")) << "so few draws get none unless told";
   EXPECT_THAT(ended.err, HasSubstr("No pictures of single draws"));
 
   // they are made of what is there: nothing runs again but the draw that is shown
@@ -172,6 +178,49 @@ TEST(Report, IsAFunctionOfWhatASweepHasLeft) {
   ended = run_program(report);
   EXPECT_EQ(ended.status, 0) << "the scores are there all the same";
   EXPECT_THAT(own_part(page), HasSubstr("examples.json"));
+}
+
+TEST(Sweep, OfAnotherSuiteKeepsTheExamplesThatStandThere) {
+  const fs::path folder = test_folder();
+  const fs::path database = folder / "s.db", list = folder / "s.db.files" / "examples.json";
+  std::vector<std::string> arguments = sweep_arguments(database, "1..2", "1");
+  ASSERT_EQ(run_program(arguments).status, 0);
+  json left = json::parse(read_file(list));
+  ASSERT_EQ(left["examples"].size(), 1u);
+  // as a suite of another scenario would have left it
+  left["examples"][0]["scenario"] = "elsewhere";
+  std::ofstream(list) << left.dump();
+  ASSERT_EQ(run_program(arguments).status, 0);
+  const json both = json::parse(read_file(list));
+  ASSERT_EQ(both["examples"].size(), 2u);
+  EXPECT_EQ(both["examples"][0]["scenario"], "elsewhere");
+  EXPECT_EQ(both["examples"][1]["scenario"], "roll");
+}
+
+TEST(Sweep, StoppedAtItsPicturesSaysSoAndLeavesNone) {
+  const fs::path folder = test_folder();
+  const fs::path database = folder / "s.db", files = folder / "s.db.files";
+  Running running(sweep_arguments(database, "1..2", "1"));
+  // the folder is made just before the draw runs again
+  for (int i = 0; i < 12000 && !running.has_ended() && !fs::exists(files); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  ASSERT_TRUE(fs::exists(files));
+  running.signal(SIGINT);
+  const Ended stopped = running.wait();
+  EXPECT_EQ(stopped.status, 1) << stopped.err;
+  EXPECT_EQ(json_of(stopped)["draws_done"], 2);
+  EXPECT_THAT(stopped.err, HasSubstr("stopped: all draws are stored, their pictures are not made"));
+  EXPECT_FALSE(fs::exists(files)) << "nothing came into it";
+}
+
+TEST(Sweep, KeepsItsTableWhenPicturesCannotBeLeft) {
+  const fs::path folder = test_folder();
+  const fs::path database = folder / "s.db";
+  std::ofstream(folder / "s.db.files") << "a file where the folder would stand";
+  const Ended ended = run_program(sweep_arguments(database, "1..2", "1"));
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(json_of(ended)["draws_done"], 2);
+  EXPECT_THAT(ended.err, HasSubstr("tumble: no pictures of single draws: "));
 }
 
 TEST(Report, OfAnAbsentDatabaseMakesNone) {

@@ -151,6 +151,18 @@ TEST_F(ExamplesTest, AListThatIsDamagedIsRefused) {
   }
 }
 
+TEST_F(ExamplesTest, AFolderInAFilesPlaceIsRefused) {
+  leave({sample(3)});
+  const std::filesystem::path picture = folder_ / "hill-3-scene.png", list = folder_ / "examples.json";
+  std::filesystem::remove(picture);
+  std::filesystem::create_directories(picture);
+  EXPECT_THROW(read_examples(folder_, Pictures::read), scenarios::BadInput);
+  std::filesystem::remove(list);
+  EXPECT_TRUE(read_examples(folder_, Pictures::read).empty()) << "an absent list is none";
+  std::filesystem::create_directories(list);
+  EXPECT_THROW(read_examples(folder_, Pictures::read), scenarios::BadInput) << "one that cannot be read is not absent";
+}
+
 TEST_F(ExamplesTest, AListNamesFilesOfItsOwnFolderAlone) {
   const std::filesystem::path secret = folder_ / "secret.png", own = folder_ / "own";
   std::ofstream(secret) << "secret";

@@ -60,11 +60,15 @@ std::filesystem::path examples_folder(const std::filesystem::path& database);
 /// One example as text, its pictures by the names of their files (README.md).
 std::string to_json(const Example& example);
 
-/// Writes the pictures of an example into the folder, as SCENARIO-SEED-NAME.png. Throws BadInput.
+/// Writes the pictures of an example, SCENARIO-SEED-NAME.png, where they wait for the list: FOLDER/.unfinished. Throws
+/// BadInput.
 void write_pictures(const std::filesystem::path& folder, const Example& example);
 
-/// Joins what `to_json` gave into the folder's list, which is written last, and removes the pictures that the list
-/// before had and this one has not. Throws BadInput.
+/// Removes the pictures that no list came to name.
+void discard_unfinished(const std::filesystem::path& folder);
+
+/// Joins what `to_json` gave into the folder's list, then moves its unfinished pictures into place and removes the
+/// pictures that the list before had and this one has not. Throws BadInput.
 void write_examples(const std::filesystem::path& folder, const std::vector<std::string>& examples);
 
 enum class Pictures { read, left_out };

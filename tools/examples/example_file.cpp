@@ -35,6 +35,11 @@ std::string picture_file(const Example& example, const ExamplePicture& picture) 
   return name;
 }
 
+/// Of the pictures in the making.
+fs::path unfinished(const fs::path& folder) {
+  return folder / ".unfinished";
+}
+
 json numbers(const std::vector<double>& values) {
   json out = json::array();
   for (const double value : values) out.push_back(std::isfinite(value) ? json(value) : json());
@@ -98,7 +103,11 @@ Plot read_plot(const json& from) {
 std::vector<std::uint8_t> read_bytes(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) throw BadInput(path.string() + ": cannot be read");
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  try {
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  } catch (const std::ios_base::failure& error) {  // a folder opens, and cannot be read
+    throw BadInput(path.string() + ": cannot be read: " + error.what());
+  }
 }
 
 /// A list may come from anywhere: only files of its own folder are read, or removed.
@@ -137,9 +146,9 @@ Example read_example(const fs::path& folder, const json& from, Pictures pictures
 /// Null where there is none.
 json read_list(const fs::path& folder) {
   const fs::path path = list_file(folder);
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return json();
-  json list = json::parse(file);
+  std::error_code error;
+  if (fs::status(path, error).type() == fs::file_type::not_found) return json();
+  json list = json::parse(read_bytes(path));
   if (list.at("format") != kFormat || list.at("version") != kVersion)
     throw BadInput("is not a list of examples of version " + std::to_string(kVersion));
   return list;
@@ -191,8 +200,16 @@ std::string to_json(const Example& example) {
 }
 
 void write_pictures(const fs::path& folder, const Example& example) {
+  std::error_code error;
+  fs::create_directories(unfinished(folder), error);
+  if (error) throw BadInput(unfinished(folder).string() + ": " + error.message());
   for (const ExamplePicture& picture : example.pictures)
-    scenarios::replace_file(folder / picture_file(example, picture), std::as_bytes(std::span(picture.png)));
+    scenarios::replace_file(unfinished(folder) / picture_file(example, picture), std::as_bytes(std::span(picture.png)));
+}
+
+void discard_unfinished(const fs::path& folder) {
+  std::error_code ignored;
+  fs::remove_all(unfinished(folder), ignored);
 }
 
 void write_examples(const fs::path& folder, const std::vector<std::string>& examples) {
@@ -201,6 +218,13 @@ void write_examples(const fs::path& folder, const std::vector<std::string>& exam
   for (const std::string& example : examples) list["examples"].push_back(json::parse(example));
   scenarios::replace_file(list_file(folder), list.dump() + "\n");
   const std::set<std::string> now = files_of(list.at("examples"));
+  for (const std::string& name : now) {
+    std::error_code error;
+    if (!fs::exists(unfinished(folder) / name, error)) continue;  // it stands there already
+    fs::rename(unfinished(folder) / name, folder / name, error);
+    if (error) throw BadInput((folder / name).string() + ": cannot be written: " + error.message());
+  }
+  discard_unfinished(folder);
   for (const std::string& name : before) {
     std::error_code ignored;
     if (!now.contains(name)) fs::remove(folder / name, ignored);

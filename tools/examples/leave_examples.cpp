@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <list>
+#include <set>
 #include <system_error>
 
 #include "scenarios/errors.hpp"
@@ -91,10 +92,16 @@ std::vector<Making> plan(const scenarios::DataRoot& data, const scenarios::Suite
   return makings;
 }
 
-/// Takes over what stands there of the same rows.
-void keep_known(const fs::path& folder, std::vector<Making>& makings) {
+/// Takes over what stands there of the same rows; returns the text of what is of scenarios outside the suite, left by
+/// sweeps of others into the same database.
+std::vector<std::string> keep_known(const scenarios::DataRoot& data, const fs::path& folder,
+                                    const scenarios::Suite& suite, std::vector<Making>& makings) {
+  std::set<std::string> within;
+  for (const std::string& name : suite.scenarios) within.insert(scenarios::load_scenario(data, name).name);
+  std::vector<std::string> others;
   try {
     for (const Example& known : read_examples(folder, Pictures::read)) {
+      if (!within.contains(known.scenario)) others.push_back(to_json(known));
       for (Making& making : makings) {
         if (known.made_of != making.made_of || known.scenario != making.draw.scenario || known.seed != making.draw.seed)
           continue;
@@ -104,6 +111,7 @@ void keep_known(const fs::path& folder, std::vector<Making>& makings) {
     }
   } catch (const scenarios::BadInput&) {  // made anew
   }
+  return others;
 }
 
 /// In a process of its own: what cannot be run or drawn there ends nothing else. Says the example, or why there is
@@ -199,28 +207,45 @@ class Makers {
   std::list<Worker> workers_;
 };
 
+/// What is left of pictures in the making goes, and a folder that got nothing.
+class Unfinished {
+ public:
+  explicit Unfinished(const fs::path& folder) : folder_(folder) { discard_unfinished(folder_); }
+  ~Unfinished() {
+    discard_unfinished(folder_);
+    std::error_code ignored;
+    if (fs::is_empty(folder_, ignored) && !ignored) fs::remove(folder_, ignored);
+  }
+  Unfinished(const Unfinished&) = delete;
+  Unfinished& operator=(const Unfinished&) = delete;
+
+ private:
+  const fs::path& folder_;
+};
+
 }  // namespace
 
-void leave_examples(const scenarios::DataRoot& data, const scenarios::Suite& suite, const fs::path& database,
+bool leave_examples(const scenarios::DataRoot& data, const scenarios::Suite& suite, const fs::path& database,
                     const LeaveOptions& options) {
-  if (!suite.recordings.empty() || options.count == 0) return;
+  if (!suite.recordings.empty() || options.count == 0) return true;
   const fs::path folder = examples_folder(database);
   std::vector<Making> makings;
   {
     const scenarios::Results results(database, scenarios::Results::Mode::read_only);
     makings = plan(data, suite, results, options.count);
   }
-  if (makings.empty()) return;
-  keep_known(folder, makings);
+  if (makings.empty()) return true;
+  std::vector<std::string> texts = keep_known(data, folder, suite, makings);
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw scenarios::BadInput(folder.string() + ": " + error.message());
-  if (!Makers(data, folder, suite.timeout_s, options).run(makings)) return;
-  std::vector<std::string> texts;
+  const Unfinished unfinished(folder);
+  if (!Makers(data, folder, suite.timeout_s, options).run(makings)) return false;
   for (Making& making : makings) {
     if (making.done) texts.push_back(std::move(making.text));
   }
   write_examples(folder, texts);
+  return true;
 }
 
 }  // namespace tumble::tools

@@ -20,9 +20,10 @@ struct LeaveOptions {
 
 /// Leaves examples beside the results of a sweep (examples_folder): typical draws of the suite's scenarios
 /// (choose_examples), run again with the methods that have come to an end on them, each in a process of its own, and
-/// shown. What is there of the same rows stays as it is. A draw that cannot be shown costs a note. Does nothing for
-/// recordings. Throws BadInput when the folder cannot be written.
-void leave_examples(const scenarios::DataRoot& data, const scenarios::Suite& suite,
+/// shown. What is there of the same rows, or of scenarios outside the suite, stays as it is. A draw that cannot be
+/// shown costs a note. Does nothing for recordings. Returns false when it was stopped. Throws BadInput when the folder
+/// cannot be written.
+bool leave_examples(const scenarios::DataRoot& data, const scenarios::Suite& suite,
                     const std::filesystem::path& database, const LeaveOptions& options);
 
 }  // namespace tumble::tools

@@ -76,7 +76,7 @@ void add_examples(const scenarios::Results& results, const ReportOptions& option
   const std::string command = results.note(scenarios::kCommandNote);
   content.warnings.push_back(
       fmt::format("No pictures of single draws: there are none in {}. They are made, and nothing that the results hold "
-                  "is run again, by: tumble sweep {} --db {}",
+                  "is run again, by: tumble sweep {} --db {} --examples 3",
                   folder.string(), command.empty() ? "SUITE" : command, options.database.string()));
 }
 

@@ -2,8 +2,11 @@
 #include "scenarios/sweep/sweep.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/sweep/certified_results.hpp"
@@ -18,12 +21,15 @@ namespace tumble::tools {
 
 namespace {
 
+/// Unless told: each example costs a draw run once more and its pictures.
+constexpr std::uint64_t kExamplesMax = 3, kDrawsPerExample = 8;
+
 struct Options {
   std::string suite;
   std::string seeds, shard;
   std::vector<std::string> methods, again;
   int jobs = available_processors();
-  std::size_t examples = 3;
+  std::optional<std::size_t> examples;  ///< as many as the sweep can bear, where it is not told
   std::filesystem::path database, recordings;
 };
 
@@ -71,16 +77,25 @@ std::string command_of(const Options& options) {
   return words;
 }
 
-/// Of a whole suite alone: what is typical of a part of its seeds need not be so of all.
-void leave_examples(const Session& session, const scenarios::DataRoot& data, const scenarios::Suite& suite,
-                    const Options& options, const std::atomic<bool>& stop) {
-  if (!options.shard.empty()) return;
+/// Of a whole suite alone: what is typical of a part of its seeds need not be so of all. What is wrong with the
+/// pictures costs the sweep a line, not its table and its status. Returns false when it was
+/// stopped.
+bool leave_examples(const Session& session, const scenarios::DataRoot& data, const scenarios::Suite& suite,
+                    const Options& options, std::uint64_t draws, const std::atomic<bool>& stop) {
+  if (!options.shard.empty()) return true;
   LeaveOptions leave;
-  leave.count = options.examples;
+  leave.count = options.examples.value_or(std::min(kExamplesMax, draws / kDrawsPerExample));
   leave.jobs = options.jobs;
   leave.stop = &stop;
   leave.note = [&](std::string_view line) { session.note(line); };
-  tools::leave_examples(data, suite, options.database, leave);
+  try {
+    return tools::leave_examples(data, suite, options.database, leave);
+  } catch (const scenarios::BadInput& error) {
+    std::fprintf(stderr, "tumble: no pictures of single draws: %s\n", error.what());
+  } catch (const std::filesystem::filesystem_error& error) {
+    std::fprintf(stderr, "tumble: no pictures of single draws: %s\n", error.what());
+  }
+  return true;
 }
 
 nlohmann::json to_json(const scenarios::SweepProgress& p, const std::string& database) {
@@ -129,9 +144,12 @@ int run_sweep(const Session& session, const Options& options) {
                                                              interrupt.raised(), statuses_named(options.again));
 
   const bool complete = final.draws_done >= final.draws_total;
-  if (complete) leave_examples(session, data, suite, options, interrupt.raised());
+  const bool shown = !complete || leave_examples(session, data, suite, options, final.draws_total, interrupt.raised());
   session.print({to_table(final, options.database.string())}, to_json(final, options.database.string()));
-  return complete ? kDone : say_stopped(final);
+  if (!complete) return say_stopped(final);
+  if (shown) return kDone;
+  std::fputs("tumble: stopped: all draws are stored, their pictures are not made, run again to make them\n", stderr);
+  return kCheckFailed;
 }
 
 }  // namespace
@@ -154,9 +172,8 @@ Action declare_sweep(CLI::App& app, const Session& session) {
       ->allow_extra_args(false);
   app.add_option("--examples", options->examples,
                  "draws run again at the end, their pictures and plots left in FILE.db.files for 'report'; not of a "
-                 "shard")
-      ->check(CLI::Range(0, 64))
-      ->capture_default_str();
+                 "shard [one for each 8 draws of the sweep, 3 at most]")
+      ->check(CLI::Range(0, 64));
   app.add_option("--data", options->recordings, "folder of a suite's recordings [the suite file's]");
   app.add_option("--db", options->database, "the results database; what it holds already is not run again")->required();
   return [&session, options] { return run_sweep(session, *options); };
