@@ -301,9 +301,8 @@ void read_header(const std::filesystem::path& path, Kind& kind, std::string& met
     estimate.status.trouble = enum_named(header.at("status").at("trouble").get<std::string>(), Trouble::diverged, path);
     // a Status holds a static string, so which field it was stays in the file's message
     if (!estimate.status.ok()) estimate.status.field = "estimate.json";
-    for (const auto& [name, value] : header.at("health").items()) {
+    for (const auto& [name, value] : header.at("health").items())
       estimate.health[name] = value.is_number() ? value.get<double>() : std::nan("");
-    }
     if (header.contains("parameters"))
       estimate.parameters = header.at("parameters").get<std::map<std::string, double>>();
   } catch (const json::exception& error) {

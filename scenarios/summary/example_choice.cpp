@@ -6,6 +6,8 @@
 #include <map>
 #include <utility>
 
+#include "scenarios/provenance/text_digest.hpp"
+
 namespace tumble::scenarios {
 
 bool typical_seed(const Summary& summary, const std::string& scenario, std::uint64_t& seed) {
@@ -44,6 +46,22 @@ std::vector<ExampleDraw> choose_examples(const Summary& summary, std::span<const
   std::vector<ExampleDraw> chosen;
   for (Ranked& each : ranked) chosen.push_back(std::move(each.draw));
   return chosen;
+}
+
+std::vector<Outcome> rows_to_show(const Results& results, const ExampleDraw& draw) {
+  std::vector<Outcome> rows = results.outcomes_of(draw.scenario, draw.seed);
+  std::erase_if(rows, [](const Outcome& row) { return !row.setting.is_plain() || !was_scored(row.status); });
+  return rows;
+}
+
+std::string digest_of_rows(const Results& results, const ExampleDraw& draw) {
+  std::vector<std::string> texts = {results.note("build")};
+  for (const Outcome& row : rows_to_show(results, draw)) {
+    for (const std::string& text : {std::string(to_string(row.kind)), row.method, std::string(to_string(row.status)),
+                                    row.recording_digest, row.estimate_digest})
+      texts.push_back(text);
+  }
+  return digest_of_texts(texts);
 }
 
 }  // namespace tumble::scenarios

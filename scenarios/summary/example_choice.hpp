@@ -32,4 +32,11 @@ bool typical_seed(const Summary& summary, const std::string& scenario, std::uint
 std::vector<ExampleDraw> choose_examples(const Summary& summary, std::span<const ExampleCandidate> candidates,
                                          std::size_t count);
 
+/// The scored rows of a draw that an example shows: those without a variation.
+std::vector<Outcome> rows_to_show(const Results& results, const ExampleDraw& draw);
+
+/// Digest of these rows and of the build that they are of: an example that was made of another digest is of other
+/// results.
+std::string digest_of_rows(const Results& results, const ExampleDraw& draw);
+
 }  // namespace tumble::scenarios

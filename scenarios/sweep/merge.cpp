@@ -147,7 +147,8 @@ MergeCounts merge_results(const fs::path& out, std::span<const fs::path> in, boo
       }
       // the joined database says where its rows come from, not which program has joined them
       for (const char* key : {"suite", "build", "data", kCommandNote}) {
-        const std::string text = shards.front().note(key);
+        std::string text;
+        for (std::size_t i = 0; i < shards.size() && text.empty(); ++i) text = shards[i].note(key);
         if (!text.empty()) results.set_note(key, mixed && std::string_view(key) == "build" ? "mixed" : text);
       }
       counts = merge.counts();

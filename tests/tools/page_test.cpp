@@ -102,9 +102,9 @@ TEST(Page, ShowsExamplesWithTheirPicturesAndPlots) {
   EXPECT_THAT(page, HasSubstr("One hill of <code>hill</code>, seed 7"));
   EXPECT_THAT(page, HasSubstr("src=\"data:image/png;base64,iVBORw==\""));
   EXPECT_THAT(page, HasSubstr("id=\"hill-hill\""));
-  EXPECT_THAT(page, HasSubstr("another build")) << "its recording is not the results'";
-  content.examples[0].same_as_stored = true;
-  EXPECT_THAT(page_html(content, ""), Not(HasSubstr("another build")));
+  EXPECT_THAT(page, HasSubstr("other results")) << "it is not of these";
+  content.examples[0].of_these_results = true;
+  EXPECT_THAT(page_html(content, ""), Not(HasSubstr("other results")));
   content.examples.clear();
   EXPECT_THAT(page_html(content, ""), Not(HasSubstr("hill"))) << "negative control";
 }

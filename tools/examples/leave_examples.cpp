@@ -12,7 +12,6 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/external_method.hpp"
 #include "scenarios/processes/process.hpp"
-#include "scenarios/provenance/text_digest.hpp"
 #include "scenarios/summary/example_choice.hpp"
 #include "tools/examples/make_example.hpp"
 
@@ -36,25 +35,6 @@ struct Making {
   std::string text;
   bool done = false;
 };
-
-/// Digest of the rows of a draw that an example shows.
-std::string digest_of_rows(const std::vector<scenarios::Outcome>& rows, const std::string& build) {
-  std::vector<std::string> texts = {build};
-  for (const scenarios::Outcome& row : rows) {
-    for (const std::string& text : {std::string(to_string(row.kind)), row.method, std::string(to_string(row.status)),
-                                    row.recording_digest, row.estimate_digest})
-      texts.push_back(text);
-  }
-  return scenarios::digest_of_texts(texts);
-}
-
-std::vector<scenarios::Outcome> rows_to_show(const scenarios::Results& results, const scenarios::ExampleDraw& draw) {
-  std::vector<scenarios::Outcome> rows = results.outcomes_of(draw.scenario, draw.seed);
-  std::erase_if(rows, [](const scenarios::Outcome& row) {
-    return !row.setting.is_plain() || !scenarios::was_scored(row.status);
-  });
-  return rows;
-}
 
 /// Of this build in the order of the registry, then those that the suite has out of files.
 std::vector<scenarios::MethodPointer> methods_of(const std::vector<scenarios::Outcome>& rows,
@@ -84,10 +64,9 @@ std::vector<Making> plan(const scenarios::DataRoot& data, const scenarios::Suite
   std::vector<Making> makings;
   for (const scenarios::ExampleDraw& draw :
        scenarios::choose_examples(scenarios::summarize(results), candidates, count)) {
-    const std::vector<scenarios::Outcome> rows = rows_to_show(results, draw);
+    const std::vector<scenarios::Outcome> rows = scenarios::rows_to_show(results, draw);
     const auto scenario = std::find_if(all.begin(), all.end(), [&](const auto& s) { return s.name == draw.scenario; });
-    makings.push_back(
-        {draw, *scenario, methods_of(rows, suite), digest_of_rows(rows, results.note("build")), {}, false});
+    makings.push_back({draw, *scenario, methods_of(rows, suite), scenarios::digest_of_rows(results, draw), {}, false});
   }
   return makings;
 }

@@ -75,8 +75,9 @@ std::string example_html(const ShownExample& shown, std::vector<Figure>& figures
   std::string out = fmt::format("<h2>One {} of <code>{}</code>, seed {}</h2>\n", escaped(example.motion),
                                 escaped(example.scenario), example.seed);
   out += "<p>" + escaped(example.choice) + ", run again by the sweep for this page";
-  out += shown.same_as_stored ? "; its recording has the same digest as in the results.</p>\n"
-                              : ". Its digest differs from the results': it is of another build.</p>\n";
+  out += shown.of_these_results
+             ? "; its recording has the same digest as in the results.</p>\n"
+             : ". It was made of other results than these: another build's, or run again since.</p>\n";
   for (const ExamplePicture& picture : example.pictures)
     out += picture_html(picture.png, picture.alternative, escaped(picture.caption) + legend_html(picture));
   return out + plots_html(example, figures);

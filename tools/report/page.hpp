@@ -16,7 +16,7 @@ namespace tumble::tools {
 /// An example as the page shows it.
 struct ShownExample {
   Example example;
-  bool same_as_stored = false;  ///< the recording's digest is one that the database holds
+  bool of_these_results = false;  ///< made of the rows that the database holds, its recording of their digest
 };
 
 /// What a report page says; `page_html` adds nothing to it.

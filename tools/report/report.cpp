@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/summary/example_choice.hpp"
 #include "scenarios/sweep/sweep_notes.hpp"
 #include "tools/report/certificate_html.hpp"
 
@@ -50,9 +51,10 @@ std::vector<Figure> figures_of_all_draws(const Summary& summary) {
   return figures;
 }
 
-/// Whether the results hold a draw of the same digest, as it is or without its lidars, which a sweep of methods that
-/// read none leaves out.
-bool same_as_stored(const scenarios::Results& results, const Example& example) {
+/// Whether an example is of these results: made of the rows that they hold, and its recording, simulated once more, of
+/// their digest, as it is or without its lidars, which a sweep of methods that read none leaves out.
+bool is_of(const scenarios::Results& results, const Example& example) {
+  if (example.made_of != scenarios::digest_of_rows(results, {example.scenario, example.seed})) return false;
   const std::vector<scenarios::Outcome> rows = results.outcomes_of(example.scenario, example.seed);
   return std::any_of(rows.begin(), rows.end(), [&](const scenarios::Outcome& row) {
     return row.setting.is_plain() && !row.recording_digest.empty() &&
@@ -64,8 +66,8 @@ void add_examples(const scenarios::Results& results, const ReportOptions& option
   const std::filesystem::path folder = examples_folder(options.database);
   try {
     for (Example& example : read_examples(folder, Pictures::read)) {
-      const bool same = same_as_stored(results, example);
-      content.examples.push_back({std::move(example), same});
+      const bool of_these = is_of(results, example);
+      content.examples.push_back({std::move(example), of_these});
     }
   } catch (const scenarios::BadInput& error) {
     // what is wrong with the pictures must not cost the reader the scores
@@ -73,11 +75,15 @@ void add_examples(const scenarios::Results& results, const ReportOptions& option
     return;
   }
   if (!content.examples.empty()) return;
-  const std::string command = results.note(scenarios::kCommandNote);
+  const std::string command = results.note(scenarios::kCommandNote), suite = results.note("suite");
   content.warnings.push_back(
       fmt::format("No pictures of single draws: there are none in {}. They are made, and nothing that the results hold "
                   "is run again, by: tumble sweep {} --db {} --examples 3",
-                  folder.string(), command.empty() ? "SUITE" : command, options.database.string()));
+                  folder.string(),
+                  !command.empty() ? command
+                  : suite.empty()  ? "SUITE"
+                                   : suite,
+                  scenarios::shell_word(options.database.string())));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/sweep/certified_results.hpp"
 #include "scenarios/sweep/results.hpp"
+#include "scenarios/sweep/sweep_notes.hpp"
 #include "tools/examples/leave_examples.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/interrupt.hpp"
@@ -70,10 +71,11 @@ void certify(const Session& session, const scenarios::DataRoot& data, const std:
 
 /// The words that ask for the same sweep once more, but for its database.
 std::string command_of(const Options& options) {
-  std::string words = options.suite;
-  if (!options.seeds.empty()) words += " --seeds " + options.seeds;
-  for (const std::string& method : options.methods) words += " --method " + method;
-  if (!options.recordings.empty()) words += " --data " + options.recordings.string();
+  using scenarios::shell_word;
+  std::string words = shell_word(options.suite);
+  if (!options.seeds.empty()) words += " --seeds " + shell_word(options.seeds);
+  for (const std::string& method : options.methods) words += " --method " + shell_word(method);
+  if (!options.recordings.empty()) words += " --data " + shell_word(options.recordings.string());
   return words;
 }
 

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/sweep/sweep_notes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+#include <memory>
+
+namespace tumble::scenarios {
+namespace {
+
+/// What a shell makes of `words`, taken as one argument.
+std::string seen_by_a_shell(const std::string& words) {
+  const std::string command = "printf '%s|' " + words;
+  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), pclose);
+  std::array<char, 256> buffer{};
+  std::string out;
+  while (pipe && std::fgets(buffer.data(), buffer.size(), pipe.get()) != nullptr) out += buffer.data();
+  return out;
+}
+
+TEST(SweepNotes, AShellReadsAWordAsItWas) {
+  for (const std::string text : {"hill", "o u t/x.db", "it's", "$HOME", "a;b", "`id`", "\"", "", "*", "-x", "x\\y"})
+    EXPECT_EQ(seen_by_a_shell(shell_word(text)), text + "|") << text;
+  EXPECT_NE(seen_by_a_shell("o u t/x.db"), "o u t/x.db|") << "negative control";
+  EXPECT_EQ(shell_word("suites/my-own_1.yaml"), "suites/my-own_1.yaml") << "no quotes where none are needed";
+}
+
+}  // namespace
+}  // namespace tumble::scenarios
