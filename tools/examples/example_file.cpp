@@ -15,6 +15,42 @@ namespace tumble::tools {
 
 namespace {
 
+nlohmann::json numbers(const std::vector<double>& values) {
+  nlohmann::json out = nlohmann::json::array();
+  for (const double value : values) out.push_back(std::isfinite(value) ? nlohmann::json(value) : nlohmann::json());
+  return out;
+}
+
+std::vector<double> read_numbers(const nlohmann::json& values) {
+  std::vector<double> out;
+  for (const nlohmann::json& value : values)
+    out.push_back(value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>());
+  return out;
+}
+
+}  // namespace
+
+// found by the library by the name of their argument's namespace
+static void to_json(nlohmann::json& out, const PlotLine& line) {
+  out = {{"name", line.name},     {"colour", line.colour}, {"width", line.width}, {"dotted", line.dotted},
+         {"hidden", line.hidden}, {"x", numbers(line.x)},  {"y", numbers(line.y)}};
+}
+
+static void from_json(const nlohmann::json& from, PlotLine& line) {
+  line.name = from.at("name");
+  line.colour = from.at("colour");
+  line.width = from.at("width");
+  line.dotted = from.at("dotted");
+  line.hidden = from.at("hidden");
+  line.x = read_numbers(from.at("x"));
+  line.y = read_numbers(from.at("y"));
+}
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Plot, name, caption, x_title, y_title, equal_scales, from_zero, over_time, wide,
+                                   shaded, lines)
+
+namespace {
+
 namespace fs = std::filesystem;
 using nlohmann::json;
 using scenarios::BadInput;
@@ -38,66 +74,6 @@ std::string picture_file(const Example& example, const ExamplePicture& picture) 
 /// Of the pictures in the making.
 fs::path unfinished(const fs::path& folder) {
   return folder / ".unfinished";
-}
-
-json numbers(const std::vector<double>& values) {
-  json out = json::array();
-  for (const double value : values) out.push_back(std::isfinite(value) ? json(value) : json());
-  return out;
-}
-
-std::vector<double> read_numbers(const json& values) {
-  std::vector<double> out;
-  for (const json& value : values)
-    out.push_back(value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>());
-  return out;
-}
-
-json line_json(const PlotLine& line) {
-  return {{"name", line.name},     {"colour", line.colour}, {"width", line.width}, {"dotted", line.dotted},
-          {"hidden", line.hidden}, {"x", numbers(line.x)},  {"y", numbers(line.y)}};
-}
-
-PlotLine read_line(const json& from) {
-  PlotLine line;
-  line.name = from.at("name");
-  line.colour = from.at("colour");
-  line.width = from.at("width");
-  line.dotted = from.at("dotted");
-  line.hidden = from.at("hidden");
-  line.x = read_numbers(from.at("x"));
-  line.y = read_numbers(from.at("y"));
-  return line;
-}
-
-json plot_json(const Plot& plot) {
-  json out = {{"name", plot.name},
-              {"caption", plot.caption},
-              {"x_title", plot.x_title},
-              {"y_title", plot.y_title},
-              {"equal_scales", plot.equal_scales},
-              {"from_zero", plot.from_zero},
-              {"over_time", plot.over_time},
-              {"wide", plot.wide},
-              {"shaded", plot.shaded},
-              {"lines", json::array()}};
-  for (const PlotLine& line : plot.lines) out["lines"].push_back(line_json(line));
-  return out;
-}
-
-Plot read_plot(const json& from) {
-  Plot plot;
-  plot.name = from.at("name");
-  plot.caption = from.at("caption");
-  plot.x_title = from.at("x_title");
-  plot.y_title = from.at("y_title");
-  plot.equal_scales = from.at("equal_scales");
-  plot.from_zero = from.at("from_zero");
-  plot.over_time = from.at("over_time");
-  plot.wide = from.at("wide");
-  from.at("shaded").get_to(plot.shaded);
-  for (const json& line : from.at("lines")) plot.lines.push_back(read_line(line));
-  return plot;
 }
 
 std::vector<std::uint8_t> read_bytes(const fs::path& path) {
@@ -139,7 +115,7 @@ Example read_example(const fs::path& folder, const json& from, Pictures pictures
   example.digest_without_lidars = from.at("digest_without_lidars");
   example.made_of = from.at("made_of");
   for (const json& picture : from.at("pictures")) example.pictures.push_back(read_picture(folder, picture, pictures));
-  for (const json& plot : from.at("plots")) example.plots.push_back(read_plot(plot));
+  for (const json& plot : from.at("plots")) example.plots.push_back(plot.get<Plot>());
   return example;
 }
 
@@ -195,7 +171,7 @@ std::string to_json(const Example& example) {
                                {"caption", picture.caption},
                                {"legend", picture.legend}});
   }
-  for (const Plot& plot : example.plots) out["plots"].push_back(plot_json(plot));
+  for (const Plot& plot : example.plots) out["plots"].push_back(plot);
   return out.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
