@@ -7,15 +7,9 @@ namespace tumble::mapping {
 
 namespace {
 
-constexpr int kBriefIterations = 8;
-constexpr int kCoarseIterations = 15;
-constexpr std::size_t kCoarseMatches = 50;
-constexpr std::size_t kFewPoints = 300;    // serve a start that may be far off
-constexpr std::size_t kSomePoints = 1000;  // tell whether it leads somewhere
-
 Registration::Params brief_params(const LidarInertialOdometry::Params& params) {
   Registration::Params out = registration_params(params);
-  out.iterations_max = std::min(params.iterations_max, kBriefIterations);
+  out.iterations_max = std::min(params.iterations_max, params.effort.brief_iterations);
   return out;
 }
 
@@ -23,12 +17,12 @@ Registration::Params brief_params(const LidarInertialOdometry::Params& params) {
 Registration::Params coarse_params(const LidarInertialOdometry::Params& params) {
   Registration::Params out = registration_params(params);
   out.match_distance_m = std::min(2.0 * params.match_distance_m, 10.0);
-  out.iterations_max = std::min(params.iterations_max, kCoarseIterations);
+  out.iterations_max = std::min(params.iterations_max, params.effort.coarse_iterations);
   out.kernel_min_m = 0.5;
   out.rematch_m = 0.2;
   out.step_m = 5e-3;
   out.step_rad = 2e-3;
-  out.matches_min = std::min<std::size_t>(params.matches_min, kCoarseMatches);
+  out.matches_min = std::min<std::size_t>(params.matches_min, params.effort.coarse_matches_min);
   out.fitting_share_min = 0.2;
   return out;
 }
@@ -58,7 +52,11 @@ Registration::Prior from(const Registration::Result& found, const Registration::
 }  // namespace
 
 Aligner::Aligner(const LidarInertialOdometry::Params& params)
-    : brief_(brief_params(params)), patient_(registration_params(params)), coarse_(coarse_params(params)) {}
+    : brief_(brief_params(params)),
+      patient_(registration_params(params)),
+      coarse_(coarse_params(params)),
+      patient_points_(params.effort.patient_points),
+      coarse_points_(params.effort.coarse_points) {}
 
 void Aligner::in_full(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
                       Registration::Result& found) {
@@ -67,7 +65,7 @@ void Aligner::in_full(const Registration::Prior& prior, const Scene& scene, Swee
 
 void Aligner::to_convergence(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
                              Registration::Result& found) {
-  thin(scene.points, kSomePoints, thinned_);
+  thin(scene.points, patient_points_, thinned_);
   align(patient_, prior, scene, thinned_, trajectory, found);
   if (found.verdict != RegistrationVerdict::converged) return;
   const int iterations = found.iterations;
@@ -77,7 +75,7 @@ void Aligner::to_convergence(const Registration::Prior& prior, const Scene& scen
 
 void Aligner::from_afar(const Registration::Prior& start, const Registration::Prior& prior, const Scene& scene,
                         SweepTrajectory& trajectory, Registration::Result& found) {
-  thin(scene.points, kFewPoints, thinned_);
+  thin(scene.points, coarse_points_, thinned_);
   Registration::Result rough;
   align(coarse_, start, scene, thinned_, trajectory, rough);
   found.verdict = rough.verdict;

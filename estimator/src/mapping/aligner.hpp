@@ -39,6 +39,7 @@ class Aligner {
 
  private:
   Registration brief_, patient_, coarse_;
+  std::size_t patient_points_, coarse_points_;
   std::vector<SweepPoint> thinned_;  // memory
 };
 

@@ -11,15 +11,6 @@ namespace tumble::mapping {
 namespace {
 
 constexpr double kReferenceSpan_s = 0.1;  // the prior's standard deviations are stated for this
-constexpr double kGapForce_m_s2 = 5.0;    // what a velocity that goes on through a gap may be off by, per second
-
-// What the first sweeps may correct a levelled start by, a weight and no error: five times the tilt that
-// odometry_calibration.cpp reports of it, for a rest that was none; speed within what passes for rest.
-constexpr double kLevelling_rad = 0.01;
-constexpr double kStartSpeed_m_s = 0.05;
-
-constexpr double kRestShare = 0.02;    // of the noise of motion, while at rest
-constexpr double kRestSamples = 10.0;  // fewer teach no bias
 
 }  // namespace
 
@@ -46,8 +37,8 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
       if (excess_axes >> axis & sample.clipped_axes >> axis & 1) variance[axis] = 0.0;
     }
     if (sample.bridges_gap) {
-      gap_m += gap_m_s * (to - from) + 0.5 * kGapForce_m_s2 * (to - from) * (to - from);
-      gap_m_s += kGapForce_m_s2 * (to - from);
+      gap_m += gap_m_s * (to - from) + 0.5 * params.gap_force_m_s2 * (to - from) * (to - from);
+      gap_m_s += params.gap_force_m_s2 * (to - from);
     } else {
       pushed_m_s += (to - from) * sample.f_I_m_s2.norm();
     }
@@ -61,7 +52,8 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
   const auto rests = [&](const MotionSample& sample) {
     return sample.at_rest || seconds(sample.from_ns - start_ns) >= trajectory.duration_s();
   };
-  if (std::all_of(samples.begin(), samples.end(), rests)) return kRestShare * kRestShare * noise;
+  if (std::all_of(samples.begin(), samples.end(), rests))
+    return params.standstill.noise_share * params.standstill.noise_share * noise;
   noise.block<3, 3>(3, 3) += trajectory.duration_s() * turned;  // mapping.md (R34)
   noise.diagonal().segment<3>(3).array() += std::pow(params.turn_sigma_share * turned_rad, 2);
   return noise;
@@ -97,16 +89,17 @@ bool InitialRest::take(const LidarInertialOdometry::Params& params, const Eigen:
   return true;
 }
 
-Eigen::Vector3d InitialRest::rate_bias_rad_s() const {
-  return count >= kRestSamples ? Eigen::Vector3d(sum_rate_rad_s / count) : Eigen::Vector3d::Zero();
+Eigen::Vector3d InitialRest::rate_bias_rad_s(const LidarInertialOdometry::Params& params) const {
+  return count >= params.start.bias_samples_min ? Eigen::Vector3d(sum_rate_rad_s / count) : Eigen::Vector3d::Zero();
 }
 
-Status start_at_rest(std::span<const MotionSample> samples, double rest_s, MotionState& state) {
+Status start_at_rest(const LidarInertialOdometry::Params& params, std::span<const MotionSample> samples,
+                     MotionState& state) {
   if (samples.empty()) return {Trouble::too_few, "imu samples", 0.0, 1.0};
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   double count = 0.0;
   for (const MotionSample& sample : samples) {
-    if (seconds(sample.time_ns - samples.front().from_ns) > rest_s && count > 0.0) break;
+    if (seconds(sample.time_ns - samples.front().from_ns) > params.rest_s && count > 0.0) break;
     force += sample.f_I_m_s2;
     count += 1.0;
   }
@@ -116,8 +109,8 @@ Status start_at_rest(std::span<const MotionSample> samples, double rest_s, Motio
   state = MotionState{};
   state.time_ns = samples.front().from_ns;
   if (Status status = level(force, state.q_WI); !status.ok()) return status;
-  state.covariance.diagonal().segment<2>(3).setConstant(kLevelling_rad * kLevelling_rad);
-  state.covariance.diagonal().tail<3>().setConstant(kStartSpeed_m_s * kStartSpeed_m_s);
+  state.covariance.diagonal().segment<2>(3).setConstant(params.start.level_sigma_rad * params.start.level_sigma_rad);
+  state.covariance.diagonal().tail<3>().setConstant(params.start.speed_sigma_m_s * params.start.speed_sigma_m_s);
   return {};
 }
 

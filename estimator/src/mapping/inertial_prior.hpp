@@ -35,12 +35,13 @@ struct InitialRest {
   /// Takes a sample in; false once the rest is over.
   bool take(const LidarInertialOdometry::Params& params, const Eigen::Vector3d& rate_rad_s,
             const Eigen::Vector3d& force_m_s2);
-  Eigen::Vector3d rate_bias_rad_s() const;
+  Eigen::Vector3d rate_bias_rad_s(const LidarInertialOdometry::Params& params) const;
 };
 
 /// State at rest at the start of the first sample's window: origin of W, levelled by the mean specific force of the
 /// samples within `rest_s`, yaw 0. `degenerate` when that force is shorter than 1 m/s^2.
-Status start_at_rest(std::span<const MotionSample> samples, double rest_s, MotionState& state);
+Status start_at_rest(const LidarInertialOdometry::Params& params, std::span<const MotionSample> samples,
+                     MotionState& state);
 
 /// Uncertainty of a rate method's angular velocity, per IMU axis, as the mapper believes it.
 Eigen::Vector3d believed_rate_sigma(const LidarInertialOdometry::Params& params, const RateState& rate,

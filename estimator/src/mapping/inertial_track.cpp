@@ -49,7 +49,7 @@ void InertialTrack::take(const Params& params, const ImuSample& sample, const Ra
   next.from_ns = from_ns;
   next.time_ns = sample.time_ns;
   next.at_rest = rest_.take(params, rate.w_WI_I_rad_s, sample.specific_force_m_s2);
-  if (!next.at_rest) next.w_WI_I_rad_s = rate.w_WI_I_rad_s - rest_.rate_bias_rad_s();
+  if (!next.at_rest) next.w_WI_I_rad_s = rate.w_WI_I_rad_s - rest_.rate_bias_rad_s(params);
   next.f_I_m_s2 = sample.specific_force_m_s2;
   next.rate_sigma_rad_s = believed_rate_sigma(params, rate, next.time_ns - next.from_ns);
   next.clipped_axes = static_cast<std::uint8_t>(rate.clipped_axes & kAllAxes);

@@ -62,9 +62,9 @@ Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
 Status LidarInertialOdometry::Impl::begin() {
   if (mapping::has_started(tracking)) return {};
   MotionState levelled;
-  if (Status status = mapping::start_at_rest(track.samples(), params.rest_s, levelled); !status.ok()) return status;
+  if (Status status = mapping::start_at_rest(params, track.samples(), levelled); !status.ok()) return status;
   border.belief = mapping::belief_at_start(params, levelled);
-  world = mapping::WorldCovariance(levelled.q_WI, params.T_IL.translation());
+  world = mapping::WorldCovariance(params.world, levelled.q_WI, params.T_IL.translation());
   return {};
 }
 

@@ -16,14 +16,6 @@ namespace {
 namespace u = unknowns;
 using Params = LidarInertialOdometry::Params;
 
-constexpr double kStillSpeed_m_s = 0.01;  // during the rest at the start
-constexpr double kRestSpeed_m_s = 0.05;   // of an IMU that says nothing but gravity
-constexpr double kCreepSpeed_m_s =
-    0.5;                             // below it, such an IMU is believed to rest: a world that holds nothing lets creep
-constexpr int kRestSweeps = 3;       // after so many in a row
-constexpr double kCarryMax = 3.0;    // an excess carried over a border grows by no more where less is known after it
-constexpr double kKnotFloor = 0.05;  // of the prior's standard deviation: a knot differs from its neighbours by this
-
 /// The excess of a clipped axis that is on the rail at the border goes on from where it was, and forgets as time goes:
 /// mapping.md (R38).
 void carry_excess(const Params& params, const Border& border, const SweepTrajectory& trajectory, Prediction& next) {
@@ -34,7 +26,7 @@ void carry_excess(const Params& params, const Border& border, const SweepTraject
   const double rho = knot_correlation(params, trajectory);
   for (int axis = 0; axis < 3; ++axis) {
     if (!(share_at_start[axis] > 0.0 && border.excess_share[axis] > 0.0)) continue;
-    double remains = std::clamp(border.excess_share[axis] / share_at_start[axis], 0.0, kCarryMax);
+    double remains = std::clamp(border.excess_share[axis] / share_at_start[axis], 0.0, params.excess_carry_max);
     for (int knot = 0; knot <= kLast; ++knot) {
       next.prior.mean.excess_rad_s(axis, knot) = remains * border.belief.mean.excess_rad_s(axis, kLast);
       next.by_last(u::excess_at(axis, knot), u::excess_at(axis, kLast)) = remains;
@@ -71,7 +63,8 @@ void add_excess_noise(const Params& params, const MotionWindow& window, const Sw
         next.noise(u::excess_at(axis, a), u::excess_at(axis, b)) +=
             sigma * sigma * (std::pow(rho, std::abs(a - b)) - known);
       }
-      next.noise(u::excess_at(axis, a), u::excess_at(axis, a)) += kKnotFloor * kKnotFloor * sigma * sigma;
+      next.noise(u::excess_at(axis, a), u::excess_at(axis, a)) +=
+          params.excess_knot_share * params.excess_knot_share * sigma * sigma;
     }
   }
 }
@@ -112,10 +105,11 @@ Prediction predict(const Params& params, const Border& border, const MotionWindo
   next.prior.mean.state = border.belief.mean.state;
   next.prior.mean.calibration = border.belief.mean.calibration;
   carry_excess(params, border, trajectory, next);
-  if (window.samples.front().at_rest) next.hold_still(kStillSpeed_m_s);
+  if (window.samples.front().at_rest) next.hold_still(params.standstill.start_sigma_m_s);
   // surfaces that hold the sensor tell a slow drive from a rest by themselves
-  const bool creeps = border.belief.mean.state.v_WI_m_s.norm() < kCreepSpeed_m_s;
-  if (window.resting_sweeps >= kRestSweeps && !border.held && creeps) next.hold_still(kRestSpeed_m_s);
+  const bool creeps = border.belief.mean.state.v_WI_m_s.norm() < params.standstill.creep_max_m_s;
+  if (window.resting_sweeps >= params.standstill.sweeps_min && !border.held && creeps)
+    next.hold_still(params.standstill.sigma_m_s);
   impose(known, next);
   const std::uint8_t axes = params.estimate_saturation_deficit ? trajectory.clipped_axes() : 0;
   u::block(next.noise, u::motion) += inertial_noise(params, trajectory, window.samples, axes);
@@ -129,8 +123,8 @@ Prediction predict(const Params& params, const Border& border, const MotionWindo
   return next;
 }
 
-Prediction predict_rest(const Params&, const Border& border, Prediction prediction) {
-  prediction.hold_still(kRestSpeed_m_s);
+Prediction predict_rest(const Params& params, const Border& border, Prediction prediction) {
+  prediction.hold_still(params.standstill.sigma_m_s);
   prediction.compose(border.belief);
   return prediction;
 }

@@ -15,12 +15,8 @@ namespace {
 using Params = LidarInertialOdometry::Params;
 
 constexpr double kExcessTries_rad_s[] = {3.0, 6.0, 9.0, 15.0};
-constexpr int kExcessTriesMax = 5;       // of these for one sweep, all axes together
-constexpr int kStartsPerSweep = 3;       // of a search, the prior itself among them
-constexpr double kSearchTurn_rad = 0.3;  // starts of a search reach so far at first, in attitude
-constexpr double kSearchShift_m = 1.0;   // and so far in position
-constexpr int kSearchRounds = 3;         // each reaches that much further than the last
-constexpr int kStarts = 1 + 12 * kSearchRounds;
+
+constexpr int kStartsPerRound = 12;  // six axes, two ways
 
 bool converged(const Registration::Result& found) {
   return found.verdict == RegistrationVerdict::converged;
@@ -41,7 +37,7 @@ void track(const Params& params, const Registration::Prior& prior, const Scene& 
   }
   for (const double more : kExcessTries_rad_s) {
     for (int axis = 0; axis < 3; ++axis) {
-      if (converged(found) || tries == kExcessTriesMax) break;
+      if (converged(found) || tries == params.search.excess_tries_max) break;
       const int first = unknowns::excess_at(axis, 0);
       if (std::sqrt(prior.covariance(first, first)) < more / 5.0) continue;
       Registration::Prior start = prior;
@@ -56,30 +52,31 @@ void track(const Params& params, const Registration::Prior& prior, const Scene& 
 
 /// Looks for the way back: from the prior and from starts around it. A search goes on with the next sweep where this
 /// one ended, so that no sweep costs too much.
-void search(const Registration::Prior& prior, const Scene& scene, int failed_before, Aligner& aligner,
-            SweepTrajectory& trajectory, Registration::Result& found) {
+void search(const RelocalizationParams& params, const Registration::Prior& prior, const Scene& scene, int failed_before,
+            Aligner& aligner, SweepTrajectory& trajectory, Registration::Result& found) {
   aligner.from_afar(prior, prior, scene, trajectory, found);
   const RegistrationVerdict verdict = found.verdict;  // of the sweep where nothing is found
-  for (int k = 0; k + 1 < kStartsPerSweep && !converged(found); ++k) {
-    const int index = 1 + (failed_before * (kStartsPerSweep - 1) + k) % (kStarts - 1);
-    aligner.from_afar(moved_start(prior, index), prior, scene, trajectory, found);
+  const int moved = params.starts_per_sweep - 1;
+  for (int k = 0; k < moved && !converged(found); ++k) {
+    const int index = 1 + (failed_before * moved + k) % (kStartsPerRound * params.rounds);
+    aligner.from_afar(moved_start(params, prior, index), prior, scene, trajectory, found);
   }
   if (!converged(found)) found.verdict = verdict;
 }
 
 }  // namespace
 
-Registration::Prior moved_start(Registration::Prior prior, int index) {
+Registration::Prior moved_start(const RelocalizationParams& params, Registration::Prior prior, int index) {
   if (index == 0) return prior;
-  const double reach = 1.0 + (index - 1) / 12;
+  const double reach = 1.0 + (index - 1) / kStartsPerRound;
   const int axis = (index - 1) / 2 % 6;
   const double sign = (index - 1) % 2 == 0 ? 1.0 : -1.0;
   const double sigma = std::sqrt(prior.covariance(axis, axis));
   MotionState& state = prior.mean.state;
   if (axis < 3) {
-    state.p_WI_m[axis] += sign * std::clamp(1.5 * sigma, 0.3, reach * kSearchShift_m);
+    state.p_WI_m[axis] += sign * std::clamp(1.5 * sigma, 0.3, reach * params.shift_m);
   } else {
-    const double angle = sign * std::clamp(1.5 * sigma, 0.1, reach * kSearchTurn_rad);
+    const double angle = sign * std::clamp(1.5 * sigma, 0.1, reach * params.turn_rad);
     state.q_WI = so3::exp(angle * Eigen::Vector3d::Unit(axis - 3)) * state.q_WI;
   }
   return prior;
@@ -90,7 +87,7 @@ Attempt attempt(const Params& params, const TrackingState& tracking, const Regis
   Registration::Result found;
   found.points = scene.points.size();
   if (is_lost(tracking)) {
-    search(prior, scene, failed_searches(tracking), aligner, trajectory, found);
+    search(params.search, prior, scene, failed_searches(tracking), aligner, trajectory, found);
   } else {
     track(params, prior, scene, aligner, trajectory, found);
   }

@@ -35,6 +35,6 @@ Placed judge(const LidarInertialOdometry::Params& params, const TrackingState& b
 
 /// Start number `index` of a search: the prior itself, then moved along each axis by what it may be off by, nearer ones
 /// first, mapping.md (R54).
-Registration::Prior moved_start(Registration::Prior prior, int index);
+Registration::Prior moved_start(const RelocalizationParams& params, Registration::Prior prior, int index);
 
 }  // namespace tumble::mapping

@@ -12,12 +12,6 @@ namespace {
 
 using Pose = WorldCovariance::Pose;
 
-constexpr double kStartTilt_rad =
-    0.002;  // a levelled start is off by: an accelerometer's turn-on bias of 2 mg (MTi-30)
-// Of the weakest direction's standard deviation, per sweep, where the surfaces do not hold it: measured on `bare`.
-constexpr double kDriftShare = 0.1;
-constexpr double kDriftMax_m = 3.0;
-
 /// Covariance of (error of the pose) - by_mounting (error of the mounting): mapping.md (R46).
 Pose less_mounting(const Registration::Matrix& joint, const Pose& by_mounting) {
   Eigen::Matrix<double, 6, Registration::kUnknowns> G = Eigen::Matrix<double, 6, Registration::kUnknowns>::Zero();
@@ -38,14 +32,14 @@ Pose WorldCovariance::in_world(const Registration::Matrix& joint, const Eigen::V
   by_tilt.topRows<3>() = -so3::hat(p_WI_m).leftCols<2>();
   by_tilt.block<2, 2>(3, 0).setIdentity();
   Pose P = less_mounting(joint, start);
-  P += map_ + (kStartTilt_rad * kStartTilt_rad) * by_tilt * by_tilt.transpose();
+  P += map_ + (params_.tilt_sigma_rad * params_.tilt_sigma_rad) * by_tilt * by_tilt.transpose();
   P.topLeftCorner<3, 3>() += drift_m2_;
   return P;
 }
 
 /// mapping.md (R50).
 void WorldCovariance::add_drift(double weakest_sigma_m, const Eigen::Matrix<double, 6, 1>& weakest_direction) {
-  const double sigma_m = kDriftShare * std::min(weakest_sigma_m, kDriftMax_m);
+  const double sigma_m = params_.drift_share * std::min(weakest_sigma_m, params_.drift_sigma_max_m);
   const Eigen::Vector3d direction = weakest_direction.head<3>();
   drift_m2_ += (sigma_m * sigma_m) * direction * direction.transpose();
 }

@@ -13,8 +13,8 @@ class WorldCovariance {
 
   WorldCovariance() = default;
   /// At the first pose of the IMU.
-  WorldCovariance(const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& p_IL_m)
-      : start_by_mounting_(pose_by_mounting(q_WI, p_IL_m)) {}
+  WorldCovariance(const WorldCovarianceParams& params, const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& p_IL_m)
+      : params_(params), start_by_mounting_(pose_by_mounting(q_WI, p_IL_m)) {}
 
   /// Covariance of a pose's error in the world, of a joint covariance of all unknowns in the map at that instant.
   Pose in_world(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const;
@@ -27,6 +27,7 @@ class WorldCovariance {
                    const Eigen::Vector3d& p_IL_m);
 
  private:
+  WorldCovarianceParams params_;
   Pose start_by_mounting_ = Pose::Zero();
   Pose map_ = Pose::Zero();                             // of the map against the world where the robot is
   Eigen::Matrix3d drift_m2_ = Eigen::Matrix3d::Zero();  // of the position

@@ -16,6 +16,7 @@
 #include "tumble/mapping/executor.hpp"
 #include "tumble/mapping/flight_arc.hpp"
 #include "tumble/mapping/lidar.hpp"
+#include "tumble/mapping/odometry_parts.hpp"
 
 namespace tumble {
 
@@ -95,6 +96,7 @@ class LidarInertialOdometry {
     double railed_force_m_s2 = 50.0;
     /// Standard deviation assumed for a rate on a clipped axis that the rate method did not recover.
     double clipped_sigma_rad_s = 3.0;
+    double gap_force_m_s2 = 5.0;        ///< what the force of a gap may be off by: the velocity goes on through it
     double rate_sigma_max_rad_s = 5.0;  ///< what RateState reports is believed up to this
     /// Estimate the excess of the rate on clipped axes in the registration, at SweepTrajectory::kKnots knots a sweep;
     /// it acts on clipped samples only, there in proportion to the rate's reported uncertainty. Its prior is the rate's
@@ -103,6 +105,8 @@ class LidarInertialOdometry {
     bool estimate_saturation_deficit = false;
     double excess_sigma_min_rad_s = 1.0;
     double excess_time_s = 0.3;
+    double excess_carry_max = 3.0;    ///< over a border it grows by no more where less is known after it
+    double excess_knot_share = 0.05;  ///< of its standard deviation, by which a knot may differ from its neighbours
     /// Sweeps that are refined together: the newest, and so many less one before it by what it teaches (see settled).
     /// 1: none is refined later.
     int window_sweeps = 2;
@@ -128,6 +132,11 @@ class LidarInertialOdometry {
     double map_sigma_max_m = 0.25;
     /// Sweeps in a row with points but no place in the map, after which it goes on `degenerate` by inertia.
     int lost_sweeps_max = 30;
+    OdometryStartParams start;
+    StandstillParams standstill;
+    RegistrationEffortParams effort;
+    RelocalizationParams search;
+    WorldCovarianceParams world;
     /// Threads, if any, that the registration may use; results do not depend on it.
     ParallelFor parallel_for;
 

@@ -50,6 +50,8 @@ void LidarInertialOdometry::Params::fields(Self& p, Visitor& visit) {
   visit(p.railed_force_m_s2, {"railed_force_m_s2", "m/s^2", 0.0, 1e4, "how much larger the force may be there"});
   visit(p.clipped_sigma_rad_s, {"clipped_sigma_rad_s", "rad/s", 0.0, 100.0,
                                 "assumed of a clipped axis that the rate method did not recover", Rank::first});
+  visit(p.gap_force_m_s2,
+        {"gap_force_m_s2", "m/s^2", 0.0, 1e3, "of a gap of the IMU, over which the velocity goes on"});
   visit(p.rate_sigma_max_rad_s,
         {"rate_sigma_max_rad_s", "rad/s", 0.0, 100.0, "what RateState reports is believed up to this"});
   visit(
@@ -60,6 +62,10 @@ void LidarInertialOdometry::Params::fields(Self& p, Visitor& visit) {
          "least prior of the saturation deficit of a clipped axis, whatever the rate method claims", Rank::first});
   visit(p.excess_time_s,
         {"excess_time_s", "s", 1e-3, 1e3, "over which the saturation deficit forgets what it was", Rank::first});
+  visit(p.excess_carry_max,
+        {"excess_carry_max", "1", 0.0, 1e3, "over the border of two sweeps the saturation deficit grows by no more"});
+  visit(p.excess_knot_share, {"excess_knot_share", "1", 1e-6, 1.0,
+                              "of the deficit's standard deviation, by which a knot may differ from its neighbours"});
   visit(p.window_sweeps, {"window_sweeps", "1", 1, 8,
                           "sweeps refined together: so many less one by what comes after them", Rank::first});
   visit(p.flight_force_m_s2, {"flight_force_m_s2", "m/s^2", 0.0, 100.0,
@@ -77,6 +83,11 @@ void LidarInertialOdometry::Params::fields(Self& p, Visitor& visit) {
                             "points that the trajectory places less surely than this are kept out of the map"});
   visit(p.lost_sweeps_max, {"lost_sweeps_max", "1", 1, 1e6,
                             "sweeps in a row without a place in the map, after which it goes on by inertia"});
+  visit.group("start_", p.start);
+  visit.group("standstill_", p.standstill);
+  visit.group("effort_", p.effort);
+  visit.group("search_", p.search);
+  visit.group("world_", p.world);
 }
 
 }  // namespace tumble
