@@ -68,15 +68,15 @@ void search(const RelocalizationParams& params, const Registration::Prior& prior
 
 Registration::Prior moved_start(const RelocalizationParams& params, Registration::Prior prior, int index) {
   if (index == 0) return prior;
-  const double reach = 1.0 + (index - 1) / kStartsPerRound;
+  const int round = 1 + (index - 1) / kStartsPerRound;
   const int axis = (index - 1) / 2 % 6;
   const double sign = (index - 1) % 2 == 0 ? 1.0 : -1.0;
   const double sigma = std::sqrt(prior.covariance(axis, axis));
   MotionState& state = prior.mean.state;
   if (axis < 3) {
-    state.p_WI_m[axis] += sign * std::clamp(1.5 * sigma, 0.3, reach * params.shift_m);
+    state.p_WI_m[axis] += sign * std::clamp(1.5 * sigma, 0.3, round * params.shift_m);
   } else {
-    const double angle = sign * std::clamp(1.5 * sigma, 0.1, reach * params.turn_rad);
+    const double angle = sign * std::clamp(1.5 * sigma, 0.1, round * params.turn_rad);
     state.q_WI = so3::exp(angle * Eigen::Vector3d::Unit(axis - 3)) * state.q_WI;
   }
   return prior;
