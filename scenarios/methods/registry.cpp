@@ -56,6 +56,7 @@ std::vector<Method> all_methods() {
       slam_icp(),
       slam_icp_raw(),
       slam_tumble(),
+      slam_tumble_lag(),
       slam_tumble_gyro_only(),
       slam_oracle(),
       slam_poses_rolling(),
