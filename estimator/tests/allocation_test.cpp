@@ -8,20 +8,20 @@
 #include "thrown_body.hpp"
 #include "tumble/tumble.hpp"
 
-// Every allocation of this program is counted.
+// Every allocation of this program is counted; not inlined, so that the compiler does not take the pair for mismatched.
 namespace {
 std::atomic<std::size_t> g_allocations{0};
 }
 
-void* operator new(std::size_t size) {
+[[gnu::noinline]] void* operator new(std::size_t size) {
   ++g_allocations;
   if (void* memory = std::malloc(size)) return memory;
   throw std::bad_alloc();
 }
-void operator delete(void* memory) noexcept {
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
   std::free(memory);
 }
-void operator delete(void* memory, std::size_t) noexcept {
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
   std::free(memory);
 }
 

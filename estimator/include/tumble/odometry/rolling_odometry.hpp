@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tumble/attitude/imu_merge.hpp"
+#include "tumble/common/pose.hpp"
 #include "tumble/odometry/imu_sheet.hpp"
 #include "tumble/rolling/rolling_smoother.hpp"
 
