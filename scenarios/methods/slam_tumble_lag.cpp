@@ -6,6 +6,7 @@
 
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/settings.hpp"
 #include "scenarios/methods/slam_registry.hpp"
 #include "tumble/odometry/tumbling_odometry_fields.hpp"
 
