@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aligner.hpp"
+
+#include <algorithm>
+
+namespace tumble::mapping {
+
+namespace {
+
+constexpr int kBriefIterations = 8;
+constexpr int kCoarseIterations = 15;
+constexpr std::size_t kCoarseMatches = 50;
+constexpr std::size_t kFewPoints = 300;    // serve a start that may be far off
+constexpr std::size_t kSomePoints = 1000;  // tell whether it leads somewhere
+
+Registration::Params brief_params(const LidarInertialOdometry::Params& params) {
+  Registration::Params out = registration_params(params);
+  out.iterations_max = std::min(params.iterations_max, kBriefIterations);
+  return out;
+}
+
+/// Wider in every respect: finds the neighbourhood of the answer, not the answer.
+Registration::Params coarse_params(const LidarInertialOdometry::Params& params) {
+  Registration::Params out = registration_params(params);
+  out.match_distance_m = std::min(2.0 * params.match_distance_m, 10.0);
+  out.iterations_max = std::min(params.iterations_max, kCoarseIterations);
+  out.kernel_min_m = 0.5;
+  out.rematch_m = 0.2;
+  out.step_m = 5e-3;
+  out.step_rad = 2e-3;
+  out.matches_min = std::min<std::size_t>(params.matches_min, kCoarseMatches);
+  out.fitting_share_min = 0.2;
+  return out;
+}
+
+/// At most `count` of the points, evenly.
+void thin(std::span<const SweepPoint> points, std::size_t count, std::vector<SweepPoint>& out) {
+  out.clear();
+  const std::size_t every = std::max<std::size_t>(1, (points.size() + count - 1) / count);
+  for (std::size_t i = 0; i < points.size(); i += every) out.push_back(points[i]);
+}
+
+void align(Registration& registration, const Registration::Prior& prior, const Scene& scene,
+           std::span<const SweepPoint> points, SweepTrajectory& trajectory, Registration::Result& found) {
+  // trouble is none here: the samples that the scene has cover the sweep, which add_sweep has seen to
+  const Status status = registration.align(prior, scene.samples, scene.end_ns, points, scene.map, trajectory, found);
+  if (!status.ok()) found.verdict = RegistrationVerdict::diverged;
+}
+
+/// The prior with the iterations to begin where `found` ended.
+Registration::Prior from(const Registration::Result& found, const Registration::Prior& prior) {
+  Registration::Prior out = prior;
+  out.start = found.mean.state;
+  out.excess_start_rad_s = found.mean.excess_rad_s;
+  return out;
+}
+
+}  // namespace
+
+Aligner::Aligner(const LidarInertialOdometry::Params& params)
+    : brief_(brief_params(params)), patient_(registration_params(params)), coarse_(coarse_params(params)) {}
+
+void Aligner::in_full(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
+                      Registration::Result& found) {
+  align(brief_, prior, scene, scene.points, trajectory, found);
+}
+
+void Aligner::to_convergence(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
+                             Registration::Result& found) {
+  thin(scene.points, kSomePoints, thinned_);
+  align(patient_, prior, scene, thinned_, trajectory, found);
+  if (found.verdict != RegistrationVerdict::converged) return;
+  const int iterations = found.iterations;
+  in_full(from(found, prior), scene, trajectory, found);
+  found.iterations += iterations;
+}
+
+void Aligner::from_afar(const Registration::Prior& start, const Registration::Prior& prior, const Scene& scene,
+                        SweepTrajectory& trajectory, Registration::Result& found) {
+  thin(scene.points, kFewPoints, thinned_);
+  Registration::Result rough;
+  align(coarse_, start, scene, thinned_, trajectory, rough);
+  found.verdict = rough.verdict;
+  if (rough.verdict == RegistrationVerdict::converged) {
+    to_convergence(from(rough, prior), scene, trajectory, found);
+  }
+}
+
+Registration::Params registration_params(const LidarInertialOdometry::Params& params) {
+  Registration::Params out;
+  out.neighbours = params.neighbours;
+  out.plane.neighbours_min = std::min(out.plane.neighbours_min, params.neighbours);
+  out.match_distance_m = params.match_distance_m;
+  out.iterations_max = params.iterations_max;
+  out.skew_sigma_m_s = params.skew_sigma_m_s;
+  out.correction_max_m = params.correction_max_m;
+  out.correction_max_rad = params.correction_max_rad;
+  out.matches_min = params.matches_min;
+  out.parallel_for = params.parallel_for;
+  return out;
+}
+
+}  // namespace tumble::mapping

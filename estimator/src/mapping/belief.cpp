@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "belief.hpp"
+
+#include "tumble/common/so3.hpp"
+#include "unknowns.hpp"
+
+namespace tumble::mapping {
+
+using Matrix = Registration::Matrix;
+
+/// The map hangs on the lidar: at the start the lidar's pose is certain by definition, and an error of its mounting is
+/// one of the IMU's pose, of gravity as seen from the map too: mapping.md (R43), (R44).
+Belief belief_at_start(const LidarInertialOdometry::Params& params, const MotionState& levelled) {
+  namespace u = unknowns;
+  Belief belief;
+  SweepCalibration& calibration = belief.mean.calibration;
+  calibration.T_IL = params.T_IL;
+  calibration.time_offset_s = 0.0;  // the given offset is applied to the stamps
+  calibration.gravity_W_m_s2 = Eigen::Vector3d(0.0, 0.0, -params.gravity_m_s2);
+  Matrix& P = belief.weight;
+  u::variances(P, u::mounting_rotation).setConstant(params.mount_sigma_rad * params.mount_sigma_rad);
+  u::variances(P, u::mounting_translation).setConstant(params.mount_sigma_m * params.mount_sigma_m);
+  u::variances(P, u::clock).setConstant(params.time_offset_sigma_s * params.time_offset_sigma_s);
+
+  Eigen::Matrix<double, 9, 6> by_mounting = Eigen::Matrix<double, 9, 6>::Zero();
+  by_mounting.topRows<6>() = pose_by_mounting(levelled.q_WI, params.T_IL.translation());
+  const Eigen::Matrix<double, 6, 6> mounting = u::block(P, u::mounting);
+  u::block(P, u::motion) = levelled.covariance + by_mounting * mounting * by_mounting.transpose();
+  u::block(P, u::motion, u::mounting) = by_mounting * mounting;
+  if (params.gravity_sigma_m_s2 > 0.0) {
+    Eigen::Matrix<double, 3, 6> gravity_by_mounting = Eigen::Matrix<double, 3, 6>::Zero();
+    gravity_by_mounting.leftCols<3>() = so3::hat(calibration.gravity_W_m_s2) * levelled.q_WI.toRotationMatrix();
+    u::block(P, u::gravity, u::mounting) = gravity_by_mounting * mounting;
+    u::block(P, u::mounting, u::gravity) = u::block(P, u::gravity, u::mounting).transpose();
+    u::block(P, u::gravity) = gravity_by_mounting * mounting * gravity_by_mounting.transpose();
+    const double sigma2 = params.gravity_sigma_m_s2 * params.gravity_sigma_m_s2;
+    // the magnitude is known much better than the direction
+    u::variances(P, u::gravity) += Eigen::Vector3d(sigma2, sigma2, 0.01 * sigma2);
+    u::block(P, u::motion, u::gravity) = by_mounting * mounting * gravity_by_mounting.transpose();
+  }
+  u::block(P, u::calibration, u::motion) = u::block(P, u::motion, u::calibration).transpose();
+  belief.mean.state = levelled;
+  belief.mean.state.covariance = u::block(P, u::motion);
+  belief.error = P;
+  return belief;
+}
+
+/// mapping.md (R12), of all unknowns.
+Matrix unknowns_at(const SweepTrajectory& trajectory, double t_s) {
+  namespace u = unknowns;
+  const SweepTrajectory::Transition step = trajectory.transition(t_s);
+  Matrix F = Matrix::Identity();
+  u::block(F, u::motion) = step.by_start;
+  u::block(F, u::motion, u::excess) = step.by_excess_s;
+  u::block(F, u::motion, u::gravity) = step.by_gravity;
+  return F;
+}
+
+/// mapping.md (R42).
+Belief at_end(const Belief& at_start, const SweepTrajectory& trajectory, const Matrix& end_by_start, TimeNs end_ns) {
+  const Matrix weight = end_by_start * at_start.weight * end_by_start.transpose();
+  const Matrix error = end_by_start * at_start.error * end_by_start.transpose();
+  Belief end{at_start.mean, symmetric(weight), symmetric(error)};
+  end.mean.state = trajectory.state(trajectory.duration_s());
+  end.mean.state.time_ns = end_ns;
+  end.mean.state.covariance = unknowns::block(end.weight, unknowns::motion);
+  return end;
+}
+
+Eigen::Matrix<double, 6, 6> pose_by_mounting(const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& p_IL_m) {
+  const Eigen::Matrix3d R = q_WI.toRotationMatrix();
+  Eigen::Matrix<double, 6, 6> B = Eigen::Matrix<double, 6, 6>::Zero();
+  B.topLeftCorner<3, 3>() = -R * so3::hat(p_IL_m);
+  B.topRightCorner<3, 3>() = -R;
+  B.bottomLeftCorner<3, 3>() = -R;
+  return B;
+}
+
+Matrix invertible(const Matrix& covariance) {
+  Matrix out = covariance;
+  out.diagonal().array() += kLeastVariance;
+  return out;
+}
+
+}  // namespace tumble::mapping

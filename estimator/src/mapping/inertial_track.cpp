@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "inertial_track.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tumble::mapping {
+
+namespace {
+
+using Params = LidarInertialOdometry::Params;
+
+constexpr std::uint8_t kAllAxes = 7;
+constexpr TimeNs kArcStep_ns = 5'000'000;
+
+TimeNs middle_of(const MotionSample& sample) {
+  return sample.from_ns + (sample.time_ns - sample.from_ns) / 2;
+}
+
+std::uint8_t railed_axes(const Params& params, const ImuSample& sample) {
+  std::uint8_t axes = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool railed = std::abs(sample.specific_force_m_s2[axis]) >= params.accel_rail_m_s2 ||
+                        (sample.device_clip_flags & (kClipAccelX << axis)) != 0;
+    if (railed) axes |= static_cast<std::uint8_t>(1 << axis);
+  }
+  return axes;
+}
+
+}  // namespace
+
+std::optional<TimeNs> InertialTrack::last_ns() const {
+  return samples_.empty() ? border_ns_ : samples_.back().time_ns;
+}
+
+Status InertialTrack::check(const ImuSample& sample) const {
+  const std::optional<TimeNs> last = last_ns();
+  if (last && sample.time_ns <= *last) {
+    return {Trouble::time_order, "time_ns", double(sample.time_ns), double(*last)};
+  }
+  return {};
+}
+
+void InertialTrack::take(const Params& params, const ImuSample& sample, const RateState& rate) {
+  const TimeNs from_ns = last_ns().value_or(sample.time_ns);
+  // the first window's length is that of the second
+  if (!border_ns_ && samples_.size() == 1) samples_[0].from_ns = 2 * from_ns - sample.time_ns;
+  MotionSample next;
+  next.from_ns = from_ns;
+  next.time_ns = sample.time_ns;
+  next.at_rest = rest_.take(params, rate.w_WI_I_rad_s, sample.specific_force_m_s2);
+  if (!next.at_rest) next.w_WI_I_rad_s = rate.w_WI_I_rad_s - rest_.rate_bias_rad_s();
+  next.f_I_m_s2 = sample.specific_force_m_s2;
+  next.rate_sigma_rad_s = believed_rate_sigma(params, rate, next.time_ns - next.from_ns);
+  next.clipped_axes = static_cast<std::uint8_t>(rate.clipped_axes & kAllAxes);
+  next.railed_axes = railed_axes(params, sample);
+  next.bridges_gap = next.time_ns - next.from_ns > kGap_ns;
+  const bool in_flight = params.body && !samples_.empty() && settle_force(params, next);
+  before_newest_ = newest_;
+  newest_ = {next.w_WI_I_rad_s, middle_of(next)};
+  if (in_flight && next.bridges_gap) {
+    const std::size_t before = samples_.size();
+    const Eigen::Vector3d w_rad_s = samples_.back().w_WI_I_rad_s;
+    if (flight_arc(*params.body, w_rad_s, next.from_ns, next.time_ns, kArcStep_ns, samples_).ok()) {
+      for (MotionSample& part : std::span(samples_).subspan(before)) {
+        part.rate_sigma_rad_s = next.rate_sigma_rad_s;
+        part.in_flight = true;
+      }
+      return;
+    }
+  }
+  samples_.push_back(next);
+}
+
+/// Now that the rates on both sides of the newest sample are known, tells whether it belongs to a flight: before a gap
+/// by the rate that flight itself would change. flight_arc.md (A3), (A4), (A5).
+bool InertialTrack::settle_force(const Params& params, const MotionSample& next) {
+  MotionSample& now = samples_.back();
+  if (now.in_flight) return true;
+  if (now.at_rest || now.bridges_gap || !before_newest_) return false;
+  const double span_s = seconds(middle_of(next) - before_newest_->middle_ns);
+  if (span_s <= 0.0) return false;
+  const Eigen::Vector3d acceleration = next.bridges_gap
+                                           ? torque_free_acceleration(*params.body, now.w_WI_I_rad_s)
+                                           : Eigen::Vector3d((next.w_WI_I_rad_s - before_newest_->rate_rad_s) / span_s);
+  const Eigen::Vector3d force = flight_force(*params.body, now.w_WI_I_rad_s, acceleration);
+  if ((now.f_I_m_s2 - force).norm() > params.flight_force_m_s2) return false;
+  now.f_I_m_s2 = force;
+  now.in_flight = true;
+  return true;
+}
+
+bool InertialTrack::rests_until(const Params& params, TimeNs end_ns) const {
+  const auto rests = [&](const MotionSample& sample) {
+    return sample.from_ns >= end_ns ||
+           (sample.w_WI_I_rad_s.norm() <= params.rest_rate_rad_s && sample.clipped_axes == 0 &&
+            std::abs(sample.f_I_m_s2.norm() - params.gravity_m_s2) <= params.rest_force_m_s2);
+  };
+  return std::all_of(samples_.begin(), samples_.end(), rests);
+}
+
+void InertialTrack::forget_until(TimeNs end_ns) {
+  const auto after = [&](const MotionSample& sample) { return sample.time_ns > end_ns; };
+  samples_.erase(samples_.begin(), std::find_if(samples_.begin(), samples_.end(), after));
+  border_ns_ = end_ns;
+}
+
+}  // namespace tumble::mapping

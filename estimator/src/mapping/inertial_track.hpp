@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "inertial_prior.hpp"
+
+namespace tumble::mapping {
+
+/// What the IMU has said since the last sweep's end: its samples, the rest at the start, gaps bridged, and flight told.
+class InertialTrack {
+ public:
+  using Params = LidarInertialOdometry::Params;
+
+  /// `time_order` unless the sample comes after all before it.
+  Status check(const ImuSample& sample) const;
+  /// Adds a checked sample with its angular velocity.
+  void take(const Params& params, const ImuSample& sample, const RateState& rate);
+
+  /// From the window that holds the last sweep's end on.
+  std::span<const MotionSample> samples() const { return samples_; }
+  /// Whether the IMU has nothing to say but gravity up to `end_ns`.
+  bool rests_until(const Params& params, TimeNs end_ns) const;
+  /// Forgets what ended by then, the end of a sweep.
+  void forget_until(TimeNs end_ns);
+
+ private:
+  struct Rate {
+    Eigen::Vector3d rate_rad_s;
+    TimeNs middle_ns;
+  };
+
+  std::optional<TimeNs> last_ns() const;
+  bool settle_force(const Params& params, const MotionSample& next);
+
+  std::vector<MotionSample> samples_;
+  std::optional<TimeNs> border_ns_;  // end of the last sweep
+  InitialRest rest_;
+  std::optional<Rate> before_newest_, newest_;  // windows of the IMU
+};
+
+}  // namespace tumble::mapping

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "local_map.hpp"
+#include "tumble/mapping/registration.hpp"
+
+namespace tumble::mapping {
+
+/// Unknowns and the covariance of their errors.
+struct Estimated {
+  Registration::Estimate mean;
+  Registration::Matrix errors = Registration::Matrix::Zero();
+};
+
+/// A sweep that those after it still refine. Unknowns are those of its start.
+struct WindowSweep {
+  Estimated predicted;
+  Registration::Matrix by_before = Registration::Matrix::Identity();  ///< of the predicted by those of the sweep before
+  Estimated filtered, smoothed;                                       ///< smoothed begins as filtered
+  std::vector<MotionSample> samples;
+  TimeNs end_ns = 0;
+  std::vector<DrawnPoint> drawn;
+
+  /// As smoothed. Trouble is that of SweepTrajectory::build.
+  Status motion(SweepTrajectory& trajectory) const;
+};
+
+/// The newest sweeps, refined together: fixed-lag smoothing.
+class LagWindow {
+ public:
+  explicit LagWindow(int sweeps) : length_(static_cast<std::size_t>(sweeps)) {}
+
+  /// The oldest leaves once the window is full: returned.
+  std::optional<WindowSweep> enter(WindowSweep sweep);
+  /// Each sweep but the newest by those after it: mapping.md (R52).
+  void smooth();
+  /// Moves what the sweeps but the newest drew into the map to where they are now known to have seen it.
+  void redraw(LocalMap& map) const;
+  /// What was drawn so far stays where it is: indices of the map have changed.
+  void forget_drawn();
+
+  const std::deque<WindowSweep>& sweeps() const { return sweeps_; }
+
+ private:
+  std::size_t length_;
+  std::deque<WindowSweep> sweeps_;
+};
+
+}  // namespace tumble::mapping

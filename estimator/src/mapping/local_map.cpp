@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "local_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "unknowns.hpp"
+
+namespace tumble::mapping {
+
+namespace {
+
+constexpr double kPruneShare = 0.1;  // of the map's radius: moved so far, the sensor drops what is out of reach
+
+/// What the trajectory is uncertain by inside of a stretch, as seen at a point: between its start and its end. Its part
+/// of mapping.md (R53).
+class PoseVariance {
+ public:
+  PoseVariance(const Registration::Matrix& covariance, const SweepTrajectory& trajectory)
+      : duration_s_(std::max(trajectory.duration_s(), 1e-9)) {
+    namespace u = unknowns;
+    const SweepTrajectory::Transition step = trajectory.transition(trajectory.duration_s());
+    Eigen::Matrix<double, 9, Registration::kCalibration> F;
+    F << step.by_start, step.by_excess_s;
+    const Eigen::Matrix<double, 9, 9> end = F * u::block(covariance, u::moving) * F.transpose();
+    start_m2_ = u::variances(covariance, u::position).mean();
+    start_rad2_ = u::variances(covariance, u::attitude).mean();
+    end_m2_ = u::variances(end, u::position).mean();
+    end_rad2_ = u::variances(end, u::attitude).mean();
+  }
+  double at_m2(const SweepPoint& point) const {
+    const double share = std::clamp(point.t_s / duration_s_, 0.0, 1.0);
+    const double m2 = start_m2_ + share * (end_m2_ - start_m2_);
+    const double rad2 = start_rad2_ + share * (end_rad2_ - start_rad2_);
+    return std::max(m2 + rad2 * point.range_m * point.range_m, 0.0);
+  }
+
+ private:
+  double duration_s_, start_m2_, start_rad2_, end_m2_, end_rad2_;
+};
+
+}  // namespace
+
+std::size_t LocalMap::draw(const Params& params, const SweepTrajectory& trajectory,
+                           const Registration::Matrix& covariance, std::span<const SweepPoint> points,
+                           bool rings_differ, const Registration& noise, std::vector<DrawnPoint>& drawn) {
+  compute_levers(trajectory, points, levers_W_m_);
+  const PoseVariance of_pose(covariance, trajectory);
+  const std::uint32_t sweep = static_cast<std::uint32_t>(seen_from_W_m_.size());
+  const MotionState middle = trajectory.state(0.5 * trajectory.duration_s());
+  const std::uint32_t line = scan_lines_.base(middle.q_WI * params.T_IL.linear().col(2), rings_differ);
+  std::size_t added = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3f position = levers_W_m_[i] + trajectory.base_m(points[i].t_s).cast<float>();
+    // mapping.md (R53)
+    const double sigma_m = std::sqrt(noise.point_variance_m2(points[i]) + of_pose.at_m2(points[i]));
+    if (sigma_m > params.map_sigma_max_m) continue;
+    const std::uint32_t index =
+        map_.add(position, static_cast<float>(sigma_m), sweep, ScanLines::line(line, points[i].ring));
+    if (index == VoxelMap::kNoPoint) continue;
+    ++added;
+    if (params.window_sweeps > 1) drawn.push_back({index, points[i]});
+  }
+  seen_from_W_m_.push_back(middle.p_WI_m.cast<float>());
+  return added;
+}
+
+void LocalMap::redraw(const SweepTrajectory& trajectory, const Eigen::Isometry3d& T_IL, double later_s,
+                      std::span<const DrawnPoint> drawn) {
+  std::size_t hint = 0;
+  for (const DrawnPoint& drawn_point : drawn) {
+    const double t_s = drawn_point.point.t_s + later_s;
+    const SweepTrajectory::Instant at = trajectory.at(t_s, hint);
+    const Eigen::Vector3d position = trajectory.base_m(t_s) + at.preintegrated_position_m +
+                                     at.q_WI * (T_IL * drawn_point.point.x_L_m.cast<double>());
+    map_.move(drawn_point.index, position.cast<float>());
+  }
+}
+
+bool LocalMap::prune(const Params& params, const Eigen::Vector3d& p_WI_m) {
+  const Eigen::Vector3f here = p_WI_m.cast<float>();
+  const float moved = (here - pruned_at_W_m_).norm();
+  if (moved < static_cast<float>(kPruneShare * params.map_radius_m)) return false;
+  pruned_at_W_m_ = here;
+  const std::vector<std::uint32_t> kept = map_.keep_within(here, static_cast<float>(params.map_radius_m));
+  std::vector<Eigen::Vector3f> from(kept.size());
+  for (std::size_t i = 0; i < kept.size(); ++i) from[i] = seen_from_W_m_[kept[i]];
+  seen_from_W_m_.swap(from);
+  return true;
+}
+
+std::vector<MapPoint> LocalMap::with_normals(const Params& params) const {
+  return mapping::with_normals(map_, seen_from_W_m_, params.neighbours, params.match_distance_m);
+}
+
+}  // namespace tumble::mapping

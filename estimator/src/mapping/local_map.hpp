@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "tumble/mapping/deskew.hpp"
+#include "tumble/mapping/lidar_inertial_odometry.hpp"
+#include "tumble/mapping/map_drawing.hpp"
+#include "tumble/mapping/registration.hpp"
+#include "tumble/mapping/voxel_map.hpp"
+
+namespace tumble::mapping {
+
+/// A point of a sweep in the map.
+struct DrawnPoint {
+  std::uint32_t index;  ///< in the map
+  SweepPoint point;     ///< by the calibration that it was drawn with
+};
+
+/// The map about the sensor: its points, where each was seen from, and the scan lines that they lie on.
+class LocalMap {
+ public:
+  using Params = LidarInertialOdometry::Params;
+
+  explicit LocalMap(const Params& params) : map_({params.map_voxel_m, params.map_spacing_m}) {}
+
+  const VoxelMap& voxels() const { return map_; }
+  bool empty() const { return map_.size() == 0; }
+
+  /// Adds the points of a sweep that moved along `trajectory`, whose unknowns have that covariance; `drawn` gets those
+  /// that were added, appended. `noise` tells a return's own variance.
+  std::size_t draw(const Params& params, const SweepTrajectory& trajectory, const Registration::Matrix& covariance,
+                   std::span<const SweepPoint> points, bool rings_differ, const Registration& noise,
+                   std::vector<DrawnPoint>& drawn);
+  /// Moves points to where their sweep is now known to have seen them, with `later_s` added to their times, mapping.md
+  /// (R3).
+  void redraw(const SweepTrajectory& trajectory, const Eigen::Isometry3d& T_IL, double later_s,
+              std::span<const DrawnPoint> drawn);
+
+  /// Forgets what is out of reach once the sensor has moved far enough; then true, and indices have changed.
+  bool prune(const Params& params, const Eigen::Vector3d& p_WI_m);
+
+  std::size_t bytes() const { return map_.bytes() + seen_from_W_m_.capacity() * sizeof(Eigen::Vector3f); }
+  std::vector<MapPoint> with_normals(const Params& params) const;
+
+ private:
+  VoxelMap map_;
+  std::vector<Eigen::Vector3f> seen_from_W_m_;  // per sweep that gave points
+  Eigen::Vector3f pruned_at_W_m_ = Eigen::Vector3f::Zero();
+  ScanLines scan_lines_;
+  std::vector<Eigen::Vector3f> levers_W_m_;  // memory
+};
+
+}  // namespace tumble::mapping

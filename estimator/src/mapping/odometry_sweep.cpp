@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <utility>
+
+#include "odometry_impl.hpp"
+#include "tumble/mapping/sweep_check.hpp"
+#include "unknowns.hpp"
+
+namespace tumble {
+
+using mapping::Belief, mapping::DrawnPoint, mapping::MotionWindow, mapping::Placed, mapping::Prediction;
+using mapping::SettledSweep, mapping::WindowSweep;
+
+Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns,
+                                              SweepReport& report) {
+  if (Status status = check_sweep(start_ns, end_ns, returns); !status.ok()) return status;
+  if (Status status = begin(); !status.ok()) return status;
+  const auto& [state, calibration, excess] = border.belief.mean;
+  if (Status status = trajectory.build(state, track.samples(), end_ns, calibration.gravity_W_m_s2); !status.ok())
+    return status;
+  resting_sweeps = rests(end_ns) ? resting_sweeps + 1 : 0;
+  const MotionWindow motion{track.samples(), end_ns, resting_sweeps};
+  Prediction prediction = mapping::predict(params, border, motion, trajectory, known);
+
+  mapping::SweepPoints::Counts counts;
+  const Status useless =
+      points.select(params, returns, end_ns - start_ns, calibration, seconds(start_ns - border.time_ns()), counts);
+  report.points_used = counts.used;
+  report.points_alone = counts.alone;
+  const Placed placed = useless.ok() ? place(prediction, motion, report) : Placed{};
+  report.verdict = placed.verdict;
+
+  SettledSweep sweep;
+  if (Status status = settle(std::move(prediction), placed, motion, sweep); !status.ok()) return status;
+  // where the map had nothing to say the prior draws on: points that it leaves too uncertain stay out by themselves
+  std::vector<DrawnPoint> drawn;
+  if (placed.verdict != SweepVerdict::rejected || placed.map_says_nothing)
+    drawn = draw(sweep.start, counts.rings_differ, report);
+  carry_on(sweep, placed, motion, std::move(drawn), report);
+  return useless;
+}
+
+Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
+                                                std::span<const LidarPoint> returns) const {
+  const bool started = mapping::has_started(tracking);
+  const std::span<const MotionSample> samples = track.samples();
+  if (end_ns < start_ns) return {Trouble::time_order, "end_ns", double(end_ns), double(start_ns)};
+  if (started && start_ns < border.time_ns())
+    return {Trouble::time_order, "start_ns", double(start_ns), double(border.time_ns())};
+  if (samples.empty() && returns.empty()) return {Trouble::empty, "points", 0.0, 1.0};
+  if (samples.empty()) return {Trouble::too_few, "imu samples", 0.0, 1.0};
+  if (samples.back().time_ns < end_ns) {
+    return {Trouble::too_few, "imu time_ns", double(samples.back().time_ns), double(end_ns)};
+  }
+  // a clock known to be off may place the first sweep before the first sample: the rest at the start reaches back
+  const double early_s = seconds(samples.front().from_ns - start_ns);
+  if (!started && early_s > (params.time_offset_s != 0.0 ? SweepTrajectory::kBeyond_s : 0.0)) {
+    return {Trouble::too_few, "start_ns", double(start_ns), double(samples.front().from_ns)};
+  }
+  return mapping::check_offsets(end_ns - start_ns, returns);
+}
+
+Status LidarInertialOdometry::Impl::begin() {
+  if (mapping::has_started(tracking)) return {};
+  MotionState levelled;
+  if (Status status = mapping::start_at_rest(track.samples(), params.rest_s, levelled); !status.ok()) return status;
+  border.belief = mapping::belief_at_start(params, levelled);
+  world = mapping::WorldCovariance(levelled.q_WI, params.T_IL.translation());
+  return {};
+}
+
+/// Nothing but gravity by the IMU, and no more than gravity by the attitude as it is believed.
+bool LidarInertialOdometry::Impl::rests(TimeNs end_ns) const {
+  if (!track.rests_until(params, end_ns)) return false;
+  const Eigen::Vector3d gained_m_s =
+      trajectory.state(trajectory.duration_s()).v_WI_m_s - border.belief.mean.state.v_WI_m_s;
+  return !(gained_m_s.norm() > params.rest_force_m_s2 * trajectory.duration_s());
+}
+
+Placed LidarInertialOdometry::Impl::place(const Prediction& prediction, const MotionWindow& motion,
+                                          SweepReport& report) {
+  if (map.empty()) {
+    Placed first;
+    if (points.all().size() >= params.matches_min) first.verdict = SweepVerdict::first;
+    return first;
+  }
+  const bool prior_trusted = mapping::prior_is_trusted(params, border, motion, trajectory);
+  points.choose(params, trajectory);
+  const mapping::Scene scene{motion.samples, motion.end_ns, points.chosen(), map.voxels()};
+  mapping::Attempt attempt = mapping::attempt(params, tracking, prediction.prior, scene, aligner, trajectory);
+  report.points_registered = scene.points.size();
+  report.iterations = attempt.iterations;
+  report.inlier_share = attempt.inlier_share;
+  if (attempt.alignment) {
+    const Registration::Result& aligned = *attempt.alignment;
+    report.innovation = mapping::innovation(prediction, aligned.mean);
+    report.conditioning = aligned.eigenvalues[5] > 0.0 ? aligned.eigenvalues[0] / aligned.eigenvalues[5] : 0.0;
+    report.weakest_direction = aligned.directions.col(0);
+    report.weakest_sigma_m = aligned.weakest_sigma_m;
+    report.saturation_deficit_rad_s = aligned.mean.excess_rad_s.rowwise().mean();
+  }
+  return mapping::judge(params, tracking, scene.points.size(), prior_trusted, std::move(attempt));
+}
+
+Status LidarInertialOdometry::Impl::settle(Prediction prediction, const Placed& placed, const MotionWindow& motion,
+                                           SettledSweep& settled) {
+  if (placed.alignment) {
+    settled.start = mapping::settle(prediction, *placed.alignment);
+    settled.prediction = std::move(prediction);
+    return {};
+  }
+  // the inertial prior stands; an IMU at rest stops the drift of its velocity
+  const bool by_inertia = std::holds_alternative<mapping::InertialPrior>(known);
+  if (mapping::is_lost(tracking) && by_inertia && track.rests_until(params, motion.end_ns))
+    prediction = mapping::predict_rest(params, border, std::move(prediction));
+  settled.start = mapping::settle(prediction);
+  settled.prediction = std::move(prediction);
+  const Registration::Estimate& mean = settled.start.mean;
+  return trajectory.build(mean.state, motion.samples, motion.end_ns, mean.calibration.gravity_W_m_s2,
+                          mean.excess_rad_s);
+}
+
+std::vector<DrawnPoint> LidarInertialOdometry::Impl::draw(const Belief& start, bool rings_differ, SweepReport& report) {
+  const Belief& before = border.belief;
+  if (mapping::unknowns::variances(before.weight, mapping::unknowns::calibration).maxCoeff() > 0.0) {
+    const SweepCalibration& now = start.mean.calibration;
+    points.move(now, now.time_offset_s - before.mean.calibration.time_offset_s);
+  }
+  std::vector<DrawnPoint> drawn;
+  report.map_points_added =
+      map.draw(params, trajectory, start.weight, points.all(), rings_differ, aligner.registration(), drawn);
+  return drawn;
+}
+
+/// What the sweep leaves behind.
+void LidarInertialOdometry::Impl::carry_on(const SettledSweep& sweep, const Placed& placed, const MotionWindow& motion,
+                                           std::vector<DrawnPoint> drawn, SweepReport& report) {
+  const bool aligned = placed.alignment.has_value();
+  tracking = mapping::after_sweep(tracking, placed.placement, placed.verdict);
+  report.lost_sweeps = mapping::lost_sweeps(tracking);
+  if (aligned && placed.verdict == SweepVerdict::degenerate && motion.resting_sweeps == 0)
+    world.add_drift(report.weakest_sigma_m, report.weakest_direction);
+  report.trajectory = poses_along(trajectory, motion.end_ns, sweep.start.error);
+  report.smoothed = enter_window(sweep, motion, std::move(drawn), aligned);
+
+  border = mapping::border_after(params, sweep.start, motion, trajectory, aligned ? &*placed.alignment : nullptr);
+  // what the sweep adds to the map is off by what the pose was: by so much of it the map moves where the robot is
+  const double drawn_share =
+      report.points_used == 0 ? 0.0 : double(report.map_points_added) / double(report.points_used);
+  if (placed.verdict != SweepVerdict::first)
+    world.add_drawing(drawn_share, trajectory, sweep.start.error, border.belief.mean.calibration.T_IL.translation());
+  report.pose = border.belief.mean.state.pose();
+  report.pose.covariance = report.trajectory.back().covariance;
+
+  known = mapping::InertialPrior{};
+  track.forget_until(motion.end_ns);
+  if (map.prune(params, border.belief.mean.state.p_WI_m)) window.forget_drawn();
+}
+
+/// Poses of the sweep that leaves the window, if one does.
+std::vector<PoseState> LidarInertialOdometry::Impl::enter_window(const SettledSweep& sweep, const MotionWindow& motion,
+                                                                 std::vector<DrawnPoint> drawn, bool aligned) {
+  WindowSweep newest;
+  newest.predicted = {sweep.prediction.prior.mean, sweep.prediction.errors};
+  newest.by_before = sweep.prediction.by_last * border.end_by_start;
+  newest.filtered = newest.smoothed = {sweep.start.mean, sweep.start.error};
+  newest.samples.assign(motion.samples.begin(), motion.samples.end());
+  newest.end_ns = motion.end_ns;
+  newest.drawn = std::move(drawn);
+  const std::optional<WindowSweep> oldest = window.enter(std::move(newest));
+  if (aligned) {
+    window.smooth();
+    window.redraw(map);
+  }
+  return oldest ? poses_of(*oldest) : std::vector<PoseState>{};
+}
+
+PoseState LidarInertialOdometry::Impl::pose_along(const SweepTrajectory& motion, double t_s,
+                                                  const Registration::Matrix& errors) const {
+  const Registration::Matrix F = mapping::unknowns_at(motion, t_s);
+  PoseState pose = motion.state(t_s).pose();
+  pose.covariance = world.in_world(F * errors * F.transpose(), pose.p_WA_m);
+  return pose;
+}
+
+std::vector<PoseState> LidarInertialOdometry::Impl::poses_along(const SweepTrajectory& motion, TimeNs end_ns,
+                                                                const Registration::Matrix& errors) const {
+  std::vector<PoseState> poses;
+  for (std::size_t i = 0; i < motion.intervals(); ++i)
+    poses.push_back(pose_along(motion, std::min(motion.interval_end_s(i), motion.duration_s()), errors));
+  poses.back().time_ns = end_ns;
+  return poses;
+}
+
+std::vector<PoseState> LidarInertialOdometry::Impl::poses_of(const WindowSweep& sweep) const {
+  SweepTrajectory motion;
+  if (!sweep.motion(motion).ok()) return {};
+  return poses_along(motion, sweep.end_ns, sweep.smoothed.errors);
+}
+
+}  // namespace tumble

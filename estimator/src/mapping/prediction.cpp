@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "prediction.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "inertial_prior.hpp"
+#include "tumble/common/so3.hpp"
+#include "unknowns.hpp"
+
+namespace tumble::mapping {
+
+namespace {
+
+namespace u = unknowns;
+using Params = LidarInertialOdometry::Params;
+
+constexpr double kStillSpeed_m_s = 0.01;  // during the rest at the start
+constexpr double kRestSpeed_m_s = 0.05;   // of an IMU that says nothing but gravity
+constexpr double kCreepSpeed_m_s =
+    0.5;                             // below it, such an IMU is believed to rest: a world that holds nothing lets creep
+constexpr int kRestSweeps = 3;       // after so many in a row
+constexpr double kCarryMax = 3.0;    // an excess carried over a border grows by no more where less is known after it
+constexpr double kKnotFloor = 0.05;  // of the prior's standard deviation: a knot differs from its neighbours by this
+
+/// The excess of a clipped axis that is on the rail at the border goes on from where it was, and forgets as time goes:
+/// mapping.md (R38).
+void carry_excess(const Params& params, const Border& border, const SweepTrajectory& trajectory, Prediction& next) {
+  constexpr int kLast = SweepTrajectory::kKnots - 1;
+  u::rows(next.by_last, u::excess).setZero();
+  if (!params.estimate_saturation_deficit) return;
+  const Eigen::Vector3d share_at_start = trajectory.excess_share_at_start();
+  const double rho = knot_correlation(params, trajectory);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(share_at_start[axis] > 0.0 && border.excess_share[axis] > 0.0)) continue;
+    double remains = std::clamp(border.excess_share[axis] / share_at_start[axis], 0.0, kCarryMax);
+    for (int knot = 0; knot <= kLast; ++knot) {
+      next.prior.mean.excess_rad_s(axis, knot) = remains * border.belief.mean.excess_rad_s(axis, kLast);
+      next.by_last(u::excess_at(axis, knot), u::excess_at(axis, kLast)) = remains;
+      remains *= rho;
+    }
+  }
+}
+
+/// Largest standard deviation that the rate method reports of the axis while clipped inside of the stretch, at least
+/// the parameter's.
+double excess_sigma(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory, int axis) {
+  double sigma = params.excess_sigma_min_rad_s;
+  for (const MotionSample& sample : window.samples) {
+    // those after the stretch wait for the next one
+    if (seconds(sample.from_ns - trajectory.start_ns()) >= trajectory.duration_s()) break;
+    if (sample.clipped_axes >> axis & 1) sigma = std::max(sigma, sample.rate_sigma_rad_s[axis]);
+  }
+  return sigma;
+}
+
+/// Knots as samples of a process that forgets: of the reported standard deviation, correlated from knot to knot,
+/// mapping.md (R36), (R37), (R39): the last where the first knot is carried.
+void add_excess_noise(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory,
+                      Prediction& next) {
+  if (!params.estimate_saturation_deficit) return;
+  const double rho = knot_correlation(params, trajectory);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(trajectory.clipped_axes() >> axis & 1)) continue;
+    const double sigma = excess_sigma(params, window, trajectory, axis);
+    const bool carried = next.by_last.row(u::excess_at(axis, 0)).squaredNorm() > 0.0;
+    for (int a = 0; a < SweepTrajectory::kKnots; ++a) {
+      for (int b = 0; b < SweepTrajectory::kKnots; ++b) {
+        const double known = carried ? std::pow(rho, a + b) : 0.0;
+        next.noise(u::excess_at(axis, a), u::excess_at(axis, b)) +=
+            sigma * sigma * (std::pow(rho, std::abs(a - b)) - known);
+      }
+      next.noise(u::excess_at(axis, a), u::excess_at(axis, a)) += kKnotFloor * kKnotFloor * sigma * sigma;
+    }
+  }
+}
+
+}  // namespace
+
+double knot_correlation(const Params& params, const SweepTrajectory& trajectory) {
+  return std::exp(-trajectory.duration_s() / (SweepTrajectory::kKnots - 1) / params.excess_time_s);
+}
+
+/// mapping.md (R29).
+void Prediction::compose(const Belief& at_border) {
+  prior.covariance = by_last * at_border.weight * by_last.transpose() + noise;
+  errors = by_last * at_border.error * by_last.transpose() + noise;
+}
+
+void Prediction::hold_still(double sigma_m_s) {
+  prior.mean.state.v_WI_m_s.setZero();
+  u::rows(by_last, u::velocity).setZero();
+  u::rows(noise, u::velocity).setZero();
+  u::columns(noise, u::velocity).setZero();
+  u::variances(noise, u::velocity).setConstant(sigma_m_s * sigma_m_s);
+}
+
+void impose(const InertialPrior&, Prediction&) {}
+
+/// mapping.md (R30).
+void impose(const KnownVelocity& known, Prediction& prediction) {
+  prediction.hold_still(known.sigma_m_s);
+  const Eigen::Vector3d v_WI_m_s = prediction.prior.mean.state.q_WI * known.v_WI_I_m_s;
+  prediction.prior.mean.state.v_WI_m_s = v_WI_m_s;
+  u::rows(prediction.by_last, u::velocity) = -so3::hat(v_WI_m_s) * u::rows(prediction.by_last, u::attitude);
+}
+
+Prediction predict(const Params& params, const Border& border, const MotionWindow& window,
+                   const SweepTrajectory& trajectory, const MotionPrior& known) {
+  Prediction next;
+  next.prior.mean.state = border.belief.mean.state;
+  next.prior.mean.calibration = border.belief.mean.calibration;
+  carry_excess(params, border, trajectory, next);
+  if (window.samples.front().at_rest) next.hold_still(kStillSpeed_m_s);
+  // surfaces that hold the sensor tell a slow drive from a rest by themselves
+  const bool creeps = border.belief.mean.state.v_WI_m_s.norm() < kCreepSpeed_m_s;
+  if (window.resting_sweeps >= kRestSweeps && !border.held && creeps) next.hold_still(kRestSpeed_m_s);
+  impose(known, next);
+  const std::uint8_t axes = params.estimate_saturation_deficit ? trajectory.clipped_axes() : 0;
+  u::block(next.noise, u::motion) += inertial_noise(params, trajectory, window.samples, axes);
+  // a force that comes late in a stretch is not in the velocity that the stretch is fitted with: the next one hears of
+  // it as well
+  u::block(next.noise, u::velocity) +=
+      border.railed_velocity_m2_s2 + railed_velocity_variance(params, trajectory, window.samples);
+  add_excess_noise(params, window, trajectory, next);
+  next.prior.excess_start_rad_s = next.prior.mean.excess_rad_s;
+  next.compose(border.belief);
+  return next;
+}
+
+Prediction predict_rest(const Params&, const Border& border, Prediction prediction) {
+  prediction.hold_still(kRestSpeed_m_s);
+  prediction.compose(border.belief);
+  return prediction;
+}
+
+bool prior_is_trusted(const Params& params, const Border& border, const MotionWindow& window,
+                      const SweepTrajectory& trajectory) {
+  const Eigen::Matrix<double, 9, 9> P =
+      border.belief.mean.state.covariance + inertial_noise(params, trajectory, window.samples, 0);
+  return u::variances(P, u::position).maxCoeff() <= params.trusted_prior_m * params.trusted_prior_m &&
+         u::variances(P, u::attitude).maxCoeff() <= params.trusted_prior_rad * params.trusted_prior_rad;
+}
+
+Belief settle(const Prediction& prediction) {
+  Belief start{prediction.prior.mean, prediction.prior.covariance, prediction.errors};
+  start.mean.state.covariance = u::block(start.weight, u::motion);
+  return start;
+}
+
+/// What the unknowns are off by after the registration, which weighed prior and surfaces by what it made of them: the
+/// errors of the prior and the pull of the surfaces, whose score_covariance is measured, through the same normal
+/// equations: mapping.md (R41).
+Belief settle(const Prediction& prediction, const Registration::Result& aligned) {
+  // what is no information corrects nothing
+  Registration::Matrix kept = invertible(prediction.prior.covariance).ldlt().solve(Registration::Matrix::Identity());
+  u::block(kept, u::motion) += aligned.errors_in_variables_information;
+  const Registration::Matrix from_prior = aligned.covariance * kept;
+  const Registration::Matrix sum = from_prior * prediction.errors * from_prior.transpose() +
+                                   aligned.covariance * aligned.score_covariance * aligned.covariance;
+  return {aligned.mean, aligned.covariance, symmetric(sum)};
+}
+
+double innovation(const Prediction& prediction, const Registration::Estimate& aligned) {
+  constexpr int kMotion = Registration::kMotion;
+  const auto moved = aligned.minus(prediction.prior.mean).head<kMotion>().eval();
+  Eigen::Matrix<double, kMotion, kMotion> P = u::block(prediction.errors, u::motion);
+  P.diagonal().array() += kLeastVariance;
+  return std::sqrt(std::max(0.0, moved.dot(P.ldlt().solve(moved))) / kMotion);
+}
+
+Border border_after(const Params& params, const Belief& start, const MotionWindow& window,
+                    const SweepTrajectory& trajectory, const Registration::Result* alignment) {
+  Border border;
+  border.end_by_start = unknowns_at(trajectory, trajectory.duration_s());
+  border.belief = at_end(start, trajectory, border.end_by_start, window.end_ns);
+  border.railed_velocity_m2_s2 = railed_velocity_variance(params, trajectory, window.samples);
+  if (alignment != nullptr) {
+    border.excess_share = trajectory.excess_share_at_end();
+    border.held = alignment->weakest_sigma_m <= params.degenerate_sigma_m;
+  }
+  return border;
+}
+
+}  // namespace tumble::mapping

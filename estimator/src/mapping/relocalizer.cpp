@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "relocalizer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "tumble/common/so3.hpp"
+#include "unknowns.hpp"
+
+namespace tumble::mapping {
+
+namespace {
+
+using Params = LidarInertialOdometry::Params;
+
+constexpr double kExcessTries_rad_s[] = {3.0, 6.0, 9.0, 15.0};
+constexpr int kExcessTriesMax = 5;       // of these for one sweep, all axes together
+constexpr int kStartsPerSweep = 3;       // of a search, the prior itself among them
+constexpr double kSearchTurn_rad = 0.3;  // starts of a search reach so far at first, in attitude
+constexpr double kSearchShift_m = 1.0;   // and so far in position
+constexpr int kSearchRounds = 3;         // each reaches that much further than the last
+constexpr int kStarts = 1 + 12 * kSearchRounds;
+
+bool converged(const Registration::Result& found) {
+  return found.verdict == RegistrationVerdict::converged;
+}
+
+/// Registers; where that fails and the rate may be short on a clipped axis, tries again from larger saturation
+/// deficits, since a rail that is left behind within one sweep may put the start a whole radian off.
+void track(const Params& params, const Registration::Prior& prior, const Scene& scene, Aligner& aligner,
+           SweepTrajectory& trajectory, Registration::Result& found) {
+  aligner.in_full(prior, scene, trajectory, found);
+  int iterations = found.iterations, tries = 0;
+  // one that ran beyond its bound would do so again
+  const bool out_of_bounds =
+      found.correction_m > params.correction_max_m || found.correction_rad > params.correction_max_rad;
+  if (found.verdict == RegistrationVerdict::diverged && !out_of_bounds) {
+    aligner.to_convergence(prior, scene, trajectory, found);
+    iterations += found.iterations;
+  }
+  for (const double more : kExcessTries_rad_s) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (converged(found) || tries == kExcessTriesMax) break;
+      const int first = unknowns::excess_at(axis, 0);
+      if (std::sqrt(prior.covariance(first, first)) < more / 5.0) continue;
+      Registration::Prior start = prior;
+      start.excess_start_rad_s.row(axis).array() += more;
+      aligner.from_afar(start, prior, scene, trajectory, found);
+      iterations += found.iterations;
+      ++tries;
+    }
+  }
+  found.iterations = iterations;
+}
+
+/// Looks for the way back: from the prior and from starts around it. A search goes on with the next sweep where this
+/// one ended, so that no sweep costs too much.
+void search(const Registration::Prior& prior, const Scene& scene, int failed_before, Aligner& aligner,
+            SweepTrajectory& trajectory, Registration::Result& found) {
+  aligner.from_afar(prior, prior, scene, trajectory, found);
+  const RegistrationVerdict verdict = found.verdict;  // of the sweep where nothing is found
+  for (int k = 0; k + 1 < kStartsPerSweep && !converged(found); ++k) {
+    const int index = 1 + (failed_before * (kStartsPerSweep - 1) + k) % (kStarts - 1);
+    aligner.from_afar(moved_start(prior, index), prior, scene, trajectory, found);
+  }
+  if (!converged(found)) found.verdict = verdict;
+}
+
+}  // namespace
+
+Registration::Prior moved_start(Registration::Prior prior, int index) {
+  if (index == 0) return prior;
+  const double reach = 1.0 + (index - 1) / 12;
+  const int axis = (index - 1) / 2 % 6;
+  const double sign = (index - 1) % 2 == 0 ? 1.0 : -1.0;
+  const double sigma = std::sqrt(prior.covariance(axis, axis));
+  MotionState& state = prior.mean.state;
+  if (axis < 3) {
+    state.p_WI_m[axis] += sign * std::clamp(1.5 * sigma, 0.3, reach * kSearchShift_m);
+  } else {
+    const double angle = sign * std::clamp(1.5 * sigma, 0.1, reach * kSearchTurn_rad);
+    state.q_WI = so3::exp(angle * Eigen::Vector3d::Unit(axis - 3)) * state.q_WI;
+  }
+  return prior;
+}
+
+Attempt attempt(const Params& params, const TrackingState& tracking, const Registration::Prior& prior,
+                const Scene& scene, Aligner& aligner, SweepTrajectory& trajectory) {
+  Registration::Result found;
+  found.points = scene.points.size();
+  if (is_lost(tracking)) {
+    search(prior, scene, failed_searches(tracking), aligner, trajectory, found);
+  } else {
+    track(params, prior, scene, aligner, trajectory, found);
+  }
+  Attempt out;
+  out.iterations = found.iterations;
+  out.inlier_share = found.points == 0 ? 0.0 : double(found.inliers) / double(found.points);
+  out.too_few_matches = found.verdict == RegistrationVerdict::too_few;
+  if (converged(found)) out.alignment = std::move(found);
+  return out;
+}
+
+Placed judge(const Params& params, const TrackingState& before, std::size_t points, bool prior_trusted,
+             Attempt attempt) {
+  Placed out;
+  if (attempt.alignment) {
+    const bool holds = attempt.alignment->weakest_sigma_m <= params.degenerate_sigma_m;
+    out.verdict = holds ? SweepVerdict::registered : SweepVerdict::degenerate;
+    out.placement = Placement::found;
+    out.alignment = std::move(attempt.alignment);
+    return out;
+  }
+  const bool enough = points >= params.matches_min;
+  const bool given_up = failed_searches(before) + 1 >= params.lost_sweeps_max;
+  out.placement = Placement::failed;
+  out.map_says_nothing = enough && attempt.too_few_matches;
+  if (enough && ((attempt.too_few_matches && prior_trusted) || given_up)) out.verdict = SweepVerdict::degenerate;
+  return out;
+}
+
+}  // namespace tumble::mapping

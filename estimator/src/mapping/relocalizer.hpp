@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include "aligner.hpp"
+#include "tracking.hpp"
+
+/// Where the registration is to begin: owns all restarts.
+namespace tumble::mapping {
+
+struct Attempt {
+  std::optional<Registration::Result> alignment;  ///< of the sweep's start; empty: none was found
+  bool too_few_matches = false;                   ///< why there is none: the map had nothing to say
+  int iterations = 0;
+  double inlier_share = 0.0;  ///< of the points of the last registration
+};
+
+/// Aligns a sweep by all means that its tracking state allows. `trajectory` is the alignment's, or one that was tried.
+Attempt attempt(const LidarInertialOdometry::Params& params, const TrackingState& tracking,
+                const Registration::Prior& prior, const Scene& scene, Aligner& aligner, SweepTrajectory& trajectory);
+
+/// How a sweep lies in the map.
+struct Placed {
+  SweepVerdict verdict = SweepVerdict::rejected;
+  Placement placement = Placement::not_tried;
+  bool map_says_nothing = false;                  ///< the sweep has points, but the map too few of them
+  std::optional<Registration::Result> alignment;  ///< of its start
+};
+
+/// What an attempt with so many points comes to. Where the map had nothing to say, or after enough searches in vain,
+/// the motion goes on by inertia as `degenerate`.
+Placed judge(const LidarInertialOdometry::Params& params, const TrackingState& before, std::size_t points,
+             bool prior_trusted, Attempt attempt);
+
+/// Start number `index` of a search: the prior itself, then moved along each axis by what it may be off by, nearer ones
+/// first, mapping.md (R54).
+Registration::Prior moved_start(Registration::Prior prior, int index);
+
+}  // namespace tumble::mapping

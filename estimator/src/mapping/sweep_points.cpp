@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sweep_points.hpp"
+
+#include "aligner.hpp"
+#include "tumble/mapping/sweep_check.hpp"
+
+namespace tumble::mapping {
+
+SweepPoints::SweepPoints(const Params& params) {
+  const Registration::Params registration = registration_params(params);
+  noise_ = {registration.range_sigma_m, registration.range_sigma_share};
+}
+
+Status SweepPoints::select(const Params& params, std::span<const LidarPoint> returns, TimeNs span_ns,
+                           const SweepCalibration& calibration, double start_s, Counts& counts) {
+  const PointBounds bounds{params.range_min_m, params.range_max_m, params.own_body_L};
+  const PointCounts found = select_points(returns, bounds, calibration.T_IL, start_s + calibration.time_offset_s, all_);
+  chosen_.clear();
+  counts = {found.used, 0, found.rings_differ};
+  if (Status status = check_selection(span_ns, returns, found); !status.ok()) return status;
+  // neighbours are those of a ring: a device that does not tell its rings has none
+  if (found.rings_differ) counts.alone = lone_returns_.drop(noise_, all_);
+  if (all_.empty()) return {Trouble::too_few, "points", 0.0, 1.0};
+  return {};
+}
+
+void SweepPoints::choose(const Params& params, const SweepTrajectory& predicted) {
+  compute_levers(predicted, all_, positions_W_m_);
+  for (std::size_t i = 0; i < all_.size(); ++i) positions_W_m_[i] += predicted.base_m(all_[i].t_s).cast<float>();
+  sampler_.choose(positions_W_m_, params.sweep_voxel_m, chosen_index_);
+  for (const std::uint32_t index : chosen_index_) chosen_.push_back(all_[index]);
+}
+
+}  // namespace tumble::mapping

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "tumble/common/status.hpp"
+#include "tumble/mapping/deskew.hpp"
+#include "tumble/mapping/lidar_inertial_odometry.hpp"
+#include "tumble/mapping/lone_returns.hpp"
+
+namespace tumble::mapping {
+
+/// The returns of a sweep that are used, and those of them that are registered. Memory: holds one sweep, nothing of
+/// those before.
+class SweepPoints {
+ public:
+  using Params = LidarInertialOdometry::Params;
+
+  explicit SweepPoints(const Params& params);
+
+  struct Counts {
+    std::size_t used = 0;   ///< finite, in range, not the robot's own
+    std::size_t alone = 0;  ///< of these, dropped since nothing beside them bears them out
+    bool rings_differ = false;
+  };
+  /// Takes a sweep in, `start_s` after the start of its trajectory. What makes it useless is trouble, see
+  /// check_selection.
+  Status select(const Params& params, std::span<const LidarPoint> returns, TimeNs span_ns,
+                const SweepCalibration& calibration, double start_s, Counts& counts);
+  /// Chooses those to register, one per cube in the world, by the motion as predicted.
+  void choose(const Params& params, const SweepTrajectory& predicted);
+  void move(const SweepCalibration& calibration, double later_s) { apply_calibration(calibration, later_s, all_); }
+
+  const std::vector<SweepPoint>& all() const { return all_; }
+  const std::vector<SweepPoint>& chosen() const { return chosen_; }
+
+ private:
+  RangeNoise noise_;
+  LoneReturns lone_returns_;
+  SweepSampler sampler_;
+  std::vector<SweepPoint> all_, chosen_;
+  std::vector<Eigen::Vector3f> positions_W_m_;
+  std::vector<std::uint32_t> chosen_index_;
+};
+
+}  // namespace tumble::mapping

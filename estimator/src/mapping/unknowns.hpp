@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "tumble/mapping/registration.hpp"
+
+/// Names for the blocks of a vector or a matrix over the unknowns of a sweep, or over the first of them:
+/// docs/maths/mapping.md has the list. `rows(F, velocity)` in place of an index.
+namespace tumble::mapping::unknowns {
+
+template <int First, int Size>
+struct Block {};
+
+inline constexpr Block<0, 3> position;  ///< W
+inline constexpr Block<3, 3> attitude;  ///< left perturbation in W
+inline constexpr Block<6, 3> velocity;  ///< W
+inline constexpr Block<0, 6> pose;      ///< position, attitude
+inline constexpr Block<0, Registration::kMotion> motion;
+inline constexpr Block<Registration::kExcess, SweepTrajectory::kExcess> excess;
+inline constexpr Block<0, Registration::kCalibration> moving;  ///< motion and excess
+inline constexpr Block<Registration::kCalibration, SweepCalibration::kErrors> calibration;
+inline constexpr Block<Registration::kCalibration, 6> mounting;  ///< rotation and translation of T_IL
+inline constexpr Block<Registration::kCalibration, 3> mounting_rotation;
+inline constexpr Block<Registration::kCalibration + 3, 3> mounting_translation;
+inline constexpr Block<Registration::kCalibration + 6, 1> clock;
+inline constexpr Block<Registration::kCalibration + 7, 3> gravity;
+
+/// Place of an axis of the saturation deficit at a knot.
+constexpr int excess_at(int axis, int knot) {
+  return Registration::kExcess + 3 * knot + axis;
+}
+
+template <class Matrix, int First, int Size>
+auto rows(Matrix& m, Block<First, Size>) {
+  return m.template middleRows<Size>(First);
+}
+
+template <class Matrix, int First, int Size>
+auto columns(Matrix& m, Block<First, Size>) {
+  return m.template middleCols<Size>(First);
+}
+
+template <class Matrix, int Row, int Rows, int Column, int Columns>
+auto block(Matrix& m, Block<Row, Rows>, Block<Column, Columns>) {
+  return m.template block<Rows, Columns>(Row, Column);
+}
+
+/// On the diagonal: the block by itself.
+template <class Matrix, int First, int Size>
+auto block(Matrix& m, Block<First, Size> of) {
+  return block(m, of, of);
+}
+
+template <class Matrix, int First, int Size>
+auto variances(Matrix& m, Block<First, Size>) {
+  return m.diagonal().template segment<Size>(First);
+}
+
+}  // namespace tumble::mapping::unknowns

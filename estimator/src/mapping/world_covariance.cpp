@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "world_covariance.hpp"
+
+#include <algorithm>
+
+#include "tumble/common/so3.hpp"
+#include "unknowns.hpp"
+
+namespace tumble::mapping {
+
+namespace {
+
+using Pose = WorldCovariance::Pose;
+
+constexpr double kStartTilt_rad =
+    0.002;  // a levelled start is off by: an accelerometer's turn-on bias of 2 mg (MTi-30)
+// Of the weakest direction's standard deviation, per sweep, where the surfaces do not hold it: measured on `bare`.
+constexpr double kDriftShare = 0.1;
+constexpr double kDriftMax_m = 3.0;
+
+/// Covariance of (error of the pose) - by_mounting (error of the mounting): mapping.md (R46).
+Pose less_mounting(const Registration::Matrix& joint, const Pose& by_mounting) {
+  Eigen::Matrix<double, 6, Registration::kUnknowns> G = Eigen::Matrix<double, 6, Registration::kUnknowns>::Zero();
+  unknowns::columns(G, unknowns::pose).setIdentity();
+  unknowns::columns(G, unknowns::mounting) = -by_mounting;
+  const Pose P = G * joint * G.transpose();
+  return symmetric(P);
+}
+
+}  // namespace
+
+/// Added what the map is off by here, and the tilt of the start: mapping.md (R47).
+Pose WorldCovariance::in_world(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const {
+  // a map that is turned about the start moves what is far from it: mapping.md (R45)
+  Pose start = start_by_mounting_;
+  start.topRows<3>() -= so3::hat(p_WI_m) * start_by_mounting_.bottomRows<3>();
+  Eigen::Matrix<double, 6, 2> by_tilt = Eigen::Matrix<double, 6, 2>::Zero();
+  by_tilt.topRows<3>() = -so3::hat(p_WI_m).leftCols<2>();
+  by_tilt.block<2, 2>(3, 0).setIdentity();
+  Pose P = less_mounting(joint, start);
+  P += map_ + (kStartTilt_rad * kStartTilt_rad) * by_tilt * by_tilt.transpose();
+  P.topLeftCorner<3, 3>() += drift_m2_;
+  return P;
+}
+
+/// mapping.md (R50).
+void WorldCovariance::add_drift(double weakest_sigma_m, const Eigen::Matrix<double, 6, 1>& weakest_direction) {
+  const double sigma_m = kDriftShare * std::min(weakest_sigma_m, kDriftMax_m);
+  const Eigen::Vector3d direction = weakest_direction.head<3>();
+  drift_m2_ += (sigma_m * sigma_m) * direction * direction.transpose();
+}
+
+/// By the lidar's pose in the map in the middle of the sweep, which is what draws it: an error of the mounting is none
+/// of the map, and at its ends a sweep is known less well than as a whole. mapping.md (R48), (R49).
+void WorldCovariance::add_drawing(double drawn_share, const SweepTrajectory& trajectory,
+                                  const Registration::Matrix& errors, const Eigen::Vector3d& p_IL_m) {
+  const double middle_s = 0.5 * trajectory.duration_s();
+  const Registration::Matrix F = unknowns_at(trajectory, middle_s);
+  map_ += drawn_share * drawn_share *
+          less_mounting(F * errors * F.transpose(), pose_by_mounting(trajectory.state(middle_s).q_WI, p_IL_m));
+}
+
+}  // namespace tumble::mapping

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Beliefs and predictions against closed forms, and against the nonlinear relations that they are first order of.
+#include "estimator/src/mapping/belief.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "estimator/src/mapping/prediction.hpp"
+#include "estimator/src/mapping/unknowns.hpp"
+#include "tumble/common/so3.hpp"
+
+namespace tumble::mapping {
+namespace {
+
+namespace u = unknowns;
+using Matrix = Registration::Matrix;
+
+constexpr double kForce_m_s2 = 4.0, kStretch_s = 0.5;
+
+/// Half a second in which the IMU does not turn and feels a force along x; gravity is left to the belief.
+std::vector<MotionSample> pushed() {
+  std::vector<MotionSample> samples;
+  for (int k = 0; k < 50; ++k) {
+    MotionSample& sample = samples.emplace_back();
+    sample.from_ns = k * 10'000'000;
+    sample.time_ns = sample.from_ns + 10'000'000;
+    sample.f_I_m_s2 = {kForce_m_s2, 0.0, 0.0};
+  }
+  return samples;
+}
+
+SweepTrajectory along(const Belief& belief, const std::vector<MotionSample>& samples, TimeNs end_ns) {
+  SweepTrajectory trajectory;
+  const Registration::Estimate& mean = belief.mean;
+  EXPECT_TRUE(trajectory.build(mean.state, samples, end_ns, mean.calibration.gravity_W_m_s2, mean.excess_rad_s).ok());
+  return trajectory;
+}
+
+Belief uncertain() {
+  Belief belief;
+  belief.mean.state.v_WI_m_s = {1.0, 2.0, 3.0};
+  u::variances(belief.weight, u::position).setConstant(0.01);
+  u::variances(belief.weight, u::attitude).setConstant(0.04);
+  u::variances(belief.weight, u::velocity).setConstant(0.09);
+  u::variances(belief.weight, u::gravity).setConstant(0.16);
+  belief.error = 4.0 * belief.weight;
+  return belief;
+}
+
+Belief carried(const Belief& belief, const std::vector<MotionSample>& samples, TimeNs end_ns) {
+  const SweepTrajectory trajectory = along(belief, samples, end_ns);
+  return at_end(belief, trajectory, unknowns_at(trajectory, trajectory.duration_s()), end_ns);
+}
+
+TEST(Unknowns, BlocksCoverEachUnknownOnce) {
+  Matrix count = Matrix::Zero();
+  u::variances(count, u::position).array() += 1.0;
+  u::variances(count, u::attitude).array() += 1.0;
+  u::variances(count, u::velocity).array() += 1.0;
+  u::variances(count, u::excess).array() += 1.0;
+  u::variances(count, u::mounting_rotation).array() += 1.0;
+  u::variances(count, u::mounting_translation).array() += 1.0;
+  u::variances(count, u::clock).array() += 1.0;
+  u::variances(count, u::gravity).array() += 1.0;
+  EXPECT_EQ(count.diagonal(), Registration::Vector::Ones());
+  Registration::Vector error = Registration::Vector::Zero();
+  error[u::excess_at(1, 2)] = 0.5;
+  Registration::Estimate estimate;
+  estimate.add(error);
+  EXPECT_EQ(estimate.excess_rad_s(1, 2), 0.5);
+}
+
+TEST(Belief, AtTheEndOfAPushIsTheClosedForm) {
+  const Belief start = uncertain();
+  const Belief end = carried(start, pushed(), 500'000'000);
+  const double t = kStretch_s, g = -9.80665;
+  const Eigen::Vector3d force(kForce_m_s2, 0.0, g);
+  EXPECT_LT((end.mean.state.p_WI_m - (start.mean.state.v_WI_m_s * t + 0.5 * t * t * force)).norm(), 1e-12);
+  EXPECT_LT((end.mean.state.v_WI_m_s - (start.mean.state.v_WI_m_s + t * force)).norm(), 1e-12);
+  // mapping.md (R12): a turn moves by the force's integrals, across the force alone
+  const double turned_m = 0.5 * kForce_m_s2 * t * t, turned_m_s = kForce_m_s2 * t;
+  const double along_m2 = 0.01 + t * t * 0.09 + 0.25 * t * t * t * t * 0.16;
+  const double across_m2 = along_m2 + turned_m * turned_m * 0.04;
+  const Eigen::Vector3d position(u::variances(end.weight, u::position));
+  EXPECT_LT((position - Eigen::Vector3d(along_m2, across_m2, across_m2)).norm(), 1e-12);
+  const Eigen::Vector3d velocity(u::variances(end.weight, u::velocity));
+  const double gained = 0.09 + t * t * 0.16, tilted = gained + turned_m_s * turned_m_s * 0.04;
+  EXPECT_LT((velocity - Eigen::Vector3d(gained, tilted, tilted)).norm(), 1e-12);
+  EXPECT_LT((end.error - 4.0 * end.weight).norm(), 1e-12);
+  EXPECT_EQ(end.mean.state.covariance, (u::block(end.weight, u::motion)));
+  EXPECT_GT((end.weight - start.weight).norm(), 0.01);
+}
+
+TEST(Belief, OverTwoHalvesIsThatOverTheWhole) {
+  const std::vector<MotionSample> samples = pushed();
+  const Belief start = uncertain();
+  const Belief whole = carried(start, samples, 500'000'000);
+  const Belief half = carried(start, samples, 200'000'000);
+  const std::vector<MotionSample> rest(samples.begin() + 20, samples.end());
+  const Belief both = carried(half, rest, 500'000'000);
+  EXPECT_LT((both.weight - whole.weight).norm(), 1e-12);
+  EXPECT_LT(both.mean.minus(whole.mean).norm(), 1e-12);
+  EXPECT_GT((half.weight - whole.weight).norm(), 1e-3);
+}
+
+/// Pose error of the IMU, and gravity's in the map, when the mounting is off by `m` and the lidar's pose is held:
+/// without any derivative.
+Eigen::Matrix<double, 9, 1> displaced(const Eigen::Isometry3d& T_WI, const Eigen::Isometry3d& T_IL,
+                                      const Eigen::Matrix<double, 6, 1>& m) {
+  Eigen::Isometry3d T_true = T_IL;
+  T_true.linear() = so3::exp(m.head<3>()).toRotationMatrix() * T_IL.linear();
+  T_true.translation() += m.tail<3>();
+  const Eigen::Isometry3d moved = T_WI * T_IL * T_true.inverse();
+  const Eigen::Matrix3d turned = moved.linear() * T_WI.linear().transpose();
+  const Eigen::Vector3d g(0.0, 0.0, -9.80665);
+  Eigen::Matrix<double, 9, 1> out;
+  out << moved.translation() - T_WI.translation(), so3::log(Eigen::Quaterniond(turned)), turned * g - g;
+  return out;
+}
+
+TEST(Belief, AtTheStartHangsOnTheLidar) {
+  LidarInertialOdometry::Params params;
+  params.T_IL.translation() = Eigen::Vector3d(0.3, -0.2, 0.5);
+  params.T_IL.linear() = so3::exp({0.3, 0.8, -0.4}).toRotationMatrix();
+  params.mount_sigma_rad = 0.02;
+  params.mount_sigma_m = 0.01;
+  params.time_offset_sigma_s = 0.003;
+  params.gravity_sigma_m_s2 = 0.05;
+  MotionState levelled;
+  levelled.q_WI = so3::exp({0.2, -0.5, 0.0});
+  levelled.covariance.diagonal().setConstant(0.001);
+  const Belief belief = belief_at_start(params, levelled);
+
+  Eigen::Isometry3d T_WI = Eigen::Isometry3d::Identity();
+  T_WI.linear() = levelled.q_WI.toRotationMatrix();
+  Eigen::Matrix<double, Registration::kUnknowns, 6> by_mounting =
+      Eigen::Matrix<double, Registration::kUnknowns, 6>::Zero();
+  constexpr double kStep = 1e-6;
+  for (int k = 0; k < 6; ++k) {
+    const Eigen::Matrix<double, 6, 1> step = kStep * Eigen::Matrix<double, 6, 1>::Unit(k);
+    const Eigen::Matrix<double, 9, 1> by =
+        (displaced(T_WI, params.T_IL, step) - displaced(T_WI, params.T_IL, -step)) / (2.0 * kStep);
+    by_mounting.col(k).head<6>() = by.head<6>();
+    by_mounting.col(k).tail<3>() = by.tail<3>();
+    by_mounting(Registration::kCalibration + k, k) = 1.0;
+  }
+  Eigen::Matrix<double, 6, 1> variance;
+  variance << Eigen::Vector3d::Constant(4e-4), Eigen::Vector3d::Constant(1e-4);
+  Matrix expected = by_mounting * variance.asDiagonal() * by_mounting.transpose();
+  u::variances(expected, u::motion).array() += 0.001;
+  u::variances(expected, u::clock).array() += 9e-6;
+  u::variances(expected, u::gravity) += Eigen::Vector3d(0.0025, 0.0025, 0.000025);
+  EXPECT_LT((belief.weight - expected).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_EQ(belief.weight, belief.error);
+
+  params.T_IL.translation().x() += 0.1;  // another lever is another covariance
+  EXPECT_GT((belief_at_start(params, levelled).weight - expected).cwiseAbs().maxCoeff(), 1e-5);
+}
+
+TEST(Prediction, AKnownVelocityTurnsWithTheAttitude) {
+  Prediction prediction;
+  prediction.prior.mean.state.q_WI = so3::exp({0.1, 0.7, -0.3});
+  impose(KnownVelocity{{1.0, -2.0, 0.5}, 0.1}, prediction);
+  prediction.compose(uncertain());
+  const Registration::Estimate& mean = prediction.prior.mean;
+  EXPECT_LT((mean.state.v_WI_m_s - mean.state.q_WI * Eigen::Vector3d(1.0, -2.0, 0.5)).norm(), 1e-15);
+  const Eigen::Matrix3d hat = so3::hat(mean.state.v_WI_m_s);
+  const Eigen::Matrix3d expected = 0.04 * hat * hat.transpose() + 0.01 * Eigen::Matrix3d::Identity();
+  EXPECT_LT((u::block(prediction.prior.covariance, u::velocity) - expected).norm(), 1e-12);
+  EXPECT_LT((u::block(prediction.prior.covariance, u::velocity, u::attitude) + 0.04 * hat).norm(), 1e-12);
+
+  Prediction inertial;
+  impose(InertialPrior{}, inertial);
+  inertial.compose(uncertain());
+  EXPECT_EQ(inertial.prior.covariance, uncertain().weight);
+}
+
+}  // namespace
+}  // namespace tumble::mapping

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The window's backward pass against the dense least squares of all its sweeps together.
+#include "estimator/src/mapping/lag_window.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <array>
+#include <random>
+#include <vector>
+
+namespace tumble::mapping {
+namespace {
+
+using Matrix = Registration::Matrix;
+using Vector = Registration::Vector;
+using Dense = Eigen::MatrixXd;
+
+constexpr int kSweeps = 4, kMeasured = 6;
+/// All unknowns but the two rotations: of these an estimate is linear, and first order is exact.
+constexpr std::array kLinear = {0, 1, 2, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 21, 22, 23, 24, 25, 26, 27};
+constexpr int kFree = kLinear.size();
+
+class Numbers {
+ public:
+  Dense matrix(int rows, int columns) {
+    Dense out(rows, columns);
+    for (double& value : out.reshaped()) value = normal_(engine_);
+    return out;
+  }
+
+ private:
+  std::mt19937 engine_{1};
+  std::normal_distribution<double> normal_;
+};
+
+Matrix in_unknowns(const Dense& free) {
+  Matrix out = Matrix::Zero();
+  out(kLinear, kLinear) = free;
+  return out;
+}
+
+Estimated estimated(const Dense& mean, const Dense& errors) {
+  Vector error = Vector::Zero();
+  error(kLinear) = mean;
+  Estimated out{{}, in_unknowns(errors)};
+  out.mean.add(error);
+  return out;
+}
+
+Dense mean_of(const Estimated& estimate) {
+  return estimate.mean.minus({})(kLinear);
+}
+
+Dense inverse(const Dense& matrix) {
+  return matrix.ldlt().solve(Dense::Identity(matrix.rows(), matrix.cols()));
+}
+
+/// A linear system of sweeps, measured in some directions each: through a Kalman filter into a window, and all at once.
+struct System {
+  LagWindow window{kSweeps};
+  Dense information = Dense::Zero(kSweeps * kFree, kSweeps* kFree);
+  Dense pull = Dense::Zero(kSweeps * kFree, 1);
+
+  /// `transition_error` spoils what the window is told of the transitions, not the system.
+  explicit System(double transition_error = 0.0) {
+    Numbers numbers;
+    Dense x = Dense::Zero(kFree, 1), P = Dense::Identity(kFree, kFree);
+    for (int k = 0; k < kSweeps; ++k) {
+      const Dense by_before = Dense::Identity(kFree, kFree) + 0.2 * numbers.matrix(kFree, kFree);
+      const Dense noise = 0.3 * Dense::Identity(kFree, kFree);
+      const int at = k * kFree;
+      Dense rows = Dense::Zero(kFree, kSweeps * kFree);
+      rows.middleCols(at, kFree).setIdentity();
+      if (k > 0) {
+        x = by_before * x;
+        P = by_before * P * by_before.transpose() + noise;
+        rows.middleCols(at - kFree, kFree) = -by_before;
+      }
+      information += rows.transpose() * inverse(k > 0 ? noise : P) * rows;
+      WindowSweep sweep;
+      sweep.predicted = estimated(x, P);
+      sweep.by_before = in_unknowns(by_before * (1.0 + transition_error));
+
+      const Dense H = numbers.matrix(kMeasured, kFree), z = numbers.matrix(kMeasured, 1);
+      const Dense R = 0.1 * Dense::Identity(kMeasured, kMeasured);
+      information.block(at, at, kFree, kFree) += H.transpose() * inverse(R) * H;
+      pull.middleRows(at, kFree) += H.transpose() * inverse(R) * z;
+      const Dense gain = P * H.transpose() * inverse(H * P * H.transpose() + R);
+      x = x + gain * (z - H * x);
+      P = P - gain * H * P;
+      P = Dense(0.5 * (P + P.transpose()));
+      sweep.filtered = sweep.smoothed = estimated(x, P);
+      EXPECT_FALSE(window.enter(std::move(sweep)).has_value());
+    }
+    window.smooth();
+  }
+
+  /// Largest difference from the batch, over means and covariances of all sweeps.
+  double difference(Estimated WindowSweep::*which) const {
+    const Dense covariance = inverse(information), mean = covariance * pull;
+    double largest = 0.0;
+    for (int k = 0; k < kSweeps; ++k) {
+      const Estimated& estimate = window.sweeps()[static_cast<std::size_t>(k)].*which;
+      const Dense errors = estimate.errors(kLinear, kLinear);
+      largest = std::max({largest, (mean_of(estimate) - mean.middleRows(k * kFree, kFree)).cwiseAbs().maxCoeff(),
+                          (errors - covariance.block(k * kFree, k * kFree, kFree, kFree)).cwiseAbs().maxCoeff()});
+    }
+    return largest;
+  }
+};
+
+// The window adds 1e-12 to variances so that it can invert them; the rest is rounding.
+TEST(LagWindow, SmoothsToTheBatchSolutionOfAllSweeps) {
+  EXPECT_LT(System().difference(&WindowSweep::smoothed), 1e-8);
+}
+
+TEST(LagWindow, WhatIsNotSmoothedOrWronglyTiedIsNotTheBatchSolution) {
+  EXPECT_GT(System().difference(&WindowSweep::filtered), 0.1);
+  EXPECT_GT(System(0.01).difference(&WindowSweep::smoothed), 1e-3);
+}
+
+TEST(LagWindow, TheOldestLeavesOnceItIsFull) {
+  LagWindow window(2);
+  const auto ending_at = [](TimeNs end_ns) {
+    WindowSweep sweep;
+    sweep.end_ns = end_ns;
+    return sweep;
+  };
+  window.smooth();
+  EXPECT_FALSE(window.enter(ending_at(1)).has_value());
+  EXPECT_FALSE(window.enter(ending_at(2)).has_value());
+  EXPECT_EQ(window.enter(ending_at(3)).value().end_ns, 1);
+  EXPECT_EQ(window.sweeps().size(), 2u);
+  EXPECT_EQ(window.sweeps().front().end_ns, 2);
+}
+
+}  // namespace
+}  // namespace tumble::mapping

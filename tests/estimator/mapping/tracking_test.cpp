@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a sweep makes of where the sensor stands to its map: all transitions as a table, and what decides the verdict.
+#include "estimator/src/mapping/tracking.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "estimator/src/mapping/relocalizer.hpp"
+
+namespace tumble::mapping {
+namespace {
+
+using enum SweepVerdict;
+using enum Placement;
+
+std::string text(const TrackingState& state) {
+  struct Name {
+    std::string operator()(const WaitingForStart&) const { return "waiting"; }
+    std::string operator()(const Tracking& s) const { return "tracking " + std::to_string(s.failed_searches); }
+    std::string operator()(const Lost& s) const {
+      return "lost " + std::to_string(s.sweeps) + " " + std::to_string(s.failed_searches);
+    }
+    std::string operator()(const FoundAgain& s) const { return "found after " + std::to_string(s.after_sweeps); }
+  };
+  return std::visit(Name{}, state);
+}
+
+TEST(Tracking, GoesFromStateToStateAsTheTableSays) {
+  struct Row {
+    TrackingState before;
+    Placement placement;
+    SweepVerdict verdict;
+    const char* after;
+  };
+  const Row rows[] = {
+      {WaitingForStart{}, not_tried, first, "tracking 0"},
+      {WaitingForStart{}, not_tried, rejected, "lost 1 0"},  // too few points to start a map
+      {Tracking{}, found, registered, "tracking 0"},
+      {Tracking{}, found, degenerate, "tracking 0"},
+      {Tracking{2}, found, registered, "tracking 0"},
+      {Tracking{}, failed, degenerate, "tracking 1"},  // by a trusted prior
+      {Tracking{1}, failed, rejected, "lost 1 2"},
+      {Tracking{1}, not_tried, rejected, "lost 1 1"},  // no points are no search
+      {Lost{1, 1}, failed, rejected, "lost 2 2"},
+      {Lost{1, 1}, not_tried, rejected, "lost 2 1"},
+      {Lost{5, 29}, failed, degenerate, "tracking 30"},  // given up
+      {Lost{2, 0}, not_tried, first, "tracking 0"},
+      {Lost{3, 2}, found, registered, "found after 3"},
+      {Lost{3, 2}, found, degenerate, "found after 3"},
+      {FoundAgain{3}, found, registered, "tracking 0"},
+      {FoundAgain{3}, failed, rejected, "lost 1 1"},
+      {FoundAgain{3}, not_tried, rejected, "lost 1 0"},
+  };
+  for (const Row& row : rows) {
+    EXPECT_EQ(text(after_sweep(row.before, row.placement, row.verdict)), row.after) << "from " << text(row.before);
+  }
+}
+
+TEST(Tracking, AnswersOfItsStates) {
+  EXPECT_FALSE(has_started(WaitingForStart{}));
+  EXPECT_TRUE(has_started(Lost{}));
+  EXPECT_TRUE(is_lost(Lost{}));
+  EXPECT_FALSE(is_lost(FoundAgain{4}));
+  EXPECT_EQ(lost_sweeps(Lost{4, 2}), 4);
+  EXPECT_EQ(lost_sweeps(FoundAgain{4}), 0);
+  EXPECT_EQ(failed_searches(Lost{4, 2}), 2);
+  EXPECT_EQ(failed_searches(FoundAgain{4}), 0);
+}
+
+Attempt aligned(double weakest_sigma_m) {
+  Attempt out;
+  out.alignment.emplace();
+  out.alignment->weakest_sigma_m = weakest_sigma_m;
+  return out;
+}
+
+Attempt failed_with(bool too_few) {
+  Attempt out;
+  out.too_few_matches = too_few;
+  return out;
+}
+
+TEST(Tracking, VerdictsAreWhatTheAttemptAndThePriorAllow) {
+  LidarInertialOdometry::Params params;
+  params.matches_min = 100;
+  params.lost_sweeps_max = 30;
+  params.degenerate_sigma_m = 0.15;
+  const auto verdict = [&](const TrackingState& before, std::size_t points, bool trusted, Attempt attempt) {
+    return judge(params, before, points, trusted, std::move(attempt)).verdict;
+  };
+  EXPECT_EQ(verdict(Tracking{}, 500, false, aligned(0.15)), registered);
+  EXPECT_EQ(verdict(Tracking{}, 500, false, aligned(0.16)), degenerate);
+  EXPECT_EQ(verdict(Tracking{}, 500, true, failed_with(true)), degenerate);
+  EXPECT_EQ(verdict(Tracking{}, 500, false, failed_with(true)), rejected);
+  EXPECT_EQ(verdict(Tracking{}, 99, true, failed_with(true)), rejected);
+  EXPECT_EQ(verdict(Tracking{}, 500, true, failed_with(false)), rejected);
+  EXPECT_EQ(verdict(Lost{28, 28}, 500, false, failed_with(false)), rejected);
+  EXPECT_EQ(verdict(Lost{29, 29}, 500, false, failed_with(false)), degenerate);
+  EXPECT_EQ(verdict(Lost{29, 29}, 99, false, failed_with(false)), rejected);
+  EXPECT_TRUE(judge(params, Tracking{}, 500, false, failed_with(true)).map_says_nothing);
+  EXPECT_FALSE(judge(params, Tracking{}, 500, false, failed_with(false)).map_says_nothing);
+  EXPECT_FALSE(judge(params, Tracking{}, 99, false, failed_with(true)).map_says_nothing);
+  EXPECT_EQ(judge(params, Tracking{}, 500, false, aligned(0.1)).placement, found);
+  EXPECT_EQ(judge(params, Tracking{}, 500, true, failed_with(true)).placement, failed);
+}
+
+}  // namespace
+}  // namespace tumble::mapping
