@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <optional>
+#include <stdexcept>
 #include <tumble/tumble.hpp>
 
 #include "examples/door/driver.hpp"
@@ -36,12 +38,14 @@ void run(const tumble::sim::Sensors& sensors) {
   };
   std::size_t next = 0;
   const std::size_t sweeps = sensors.lidars.empty() ? 0 : bridge::sweep_count(sensors.lidars.front());
+  std::optional<bridge::Sweep> sweep;
   for (const tumble::ImuSample& sample : samples) {
     tell(odometry.add_imu(sample));
-    for (; next < sweeps; ++next) {
-      const bridge::Sweep sweep = bridge::sweep(sensors.lidars.front(), next);
-      if (sweep.end_ns > sample.time_ns) break;
-      tell(odometry.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points));
+    while (sweep || next < sweeps) {
+      if (!sweep) sweep = bridge::sweep(sensors.lidars.front(), next++);
+      if (sweep->end_ns > sample.time_ns) break;
+      tell(odometry.add_sweep(sweep->start_ns, sweep->end_ns, sweep->points));
+      sweep.reset();
     }
     while (const auto done = odometry.take()) driver::print(done->report.pose);
   }

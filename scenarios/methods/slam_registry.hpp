@@ -22,6 +22,7 @@ Method slam_pointwise_reject();
 Method slam_health_switch();
 Method slam_floor();
 Method slam_tumble_lag();
+Method slam_tumble_live();
 
 /// What tells one slam method of the rig from another.
 struct RigSlam {

@@ -57,11 +57,22 @@ TumblingOdometry::Params stated_params(const sim::Sensors& sensors, const sim::V
   return params;
 }
 
-/// What the door said of the sweeps: each with its last word where there is one.
-class Words {
- public:
-  explicit Words(Estimate& estimate) : estimate_(estimate) {}
+/// Of which words of the door an estimate is made.
+enum class Word {
+  live,  ///< the pose at the end of each sweep as soon as it has ended
+  last,  ///< each sweep's trajectory when nothing refines it any more
+};
 
+/// Collects what the door says into an estimate.
+class Listener {
+ public:
+  Listener(Word word, Estimate& estimate) : word_(word), estimate_(estimate) {}
+
+  /// A sweep has just ended.
+  void ended(const TumblingOdometry& odometry) {
+    PoseState pose;
+    if (odometry.newest(pose).ok()) live_.push_back(pose);
+  }
   void take(TumblingOdometry& odometry) {
     while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) {
       if (!sweep->status.ok()) estimate_.health[std::string("sweeps_") + to_string(sweep->status.trouble)] += 1.0;
@@ -73,8 +84,11 @@ class Words {
       settle(std::move(last_word));
     }
   }
-  void finish(const LidarInertialOdometry& mapper) {
+  /// The run has ended.
+  void conclude(const LidarInertialOdometry& mapper) {
     for (std::vector<PoseState>& open : mapper.open_trajectories()) settle(std::move(open));
+    conclude_sweeps(mapper, estimate_);
+    if (word_ == Word::live) estimate_.poses = live_;
   }
 
  private:
@@ -85,36 +99,37 @@ class Words {
     sweep.pose = sweep.trajectory.back();
   }
 
+  Word word_;
   Estimate& estimate_;
   std::size_t settled_ = 0;
+  std::vector<PoseState> live_;
 };
 
 /// The recording as a robot lives it: each sample when its window ends, each sweep when its last point was fired.
 Status live_through(const sim::Sensors& sensors, std::span<const ImuSample> samples, TumblingOdometry& odometry,
-                    Words& words) {
+                    Listener& listener) {
   const sim::LidarRecord& lidar = sensors.lidars.front();
   const std::size_t sweeps = bridge::sweep_count(lidar);
+  std::optional<bridge::Sweep> present;
   std::size_t next = 0;
-  const auto add_sweeps = [&](TimeNs until_ns) {
-    for (; next < sweeps; ++next) {
-      const bridge::Sweep sweep = bridge::sweep(lidar, next);
-      if (sweep.end_ns > until_ns) return Status{};
-      if (Status status = odometry.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points); !status.ok()) return status;
-    }
-    return Status{};
-  };
   for (const ImuSample& sample : samples) {
     if (Status status = odometry.add_imu(sample); !status.ok()) return status;
-    if (Status status = add_sweeps(sample.time_ns); !status.ok()) return status;
-    words.take(odometry);
+    while (present || next < sweeps) {
+      if (!present) present = bridge::sweep(lidar, next++);
+      if (present->end_ns > sample.time_ns) break;
+      if (Status status = odometry.add_sweep(present->start_ns, present->end_ns, present->points); !status.ok())
+        return status;
+      listener.ended(odometry);
+      present.reset();
+    }
+    listener.take(odometry);
   }
   odometry.finish();
-  words.take(odometry);
-  words.finish(odometry.mapper());
+  listener.take(odometry);
   return {};
 }
 
-Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, Word word) {
   Estimate estimate;
   estimate.frame = Frame::imu;
   std::vector<ImuSample> samples;
@@ -125,11 +140,11 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
     return estimate;
   }
   TumblingOdometry odometry(stated_params(sensors, parameters));
-  Words words(estimate);
-  estimate.status = live_through(sensors, samples, odometry, words);
+  Listener listener(word, estimate);
+  estimate.status = live_through(sensors, samples, odometry, listener);
   if (!estimate.status.ok()) return estimate;
   estimate.health["gaps"] = static_cast<double>(odometry.gaps());
-  conclude_sweeps(odometry.mapper(), estimate);
+  listener.conclude(odometry.mapper());
   return estimate;
 }
 
@@ -141,7 +156,19 @@ Method slam_tumble_lag() {
        .doc = "TumblingOdometry, the library's door: one causal pass, each sweep's last word 0.3 s after it.",
        .source = "ours",
        .settings = {&settings()}},
-      run);
+      [](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+        return run(sensors, parameters, Word::last);
+      });
+}
+
+Method slam_tumble_live() {
+  return rig_slam({.name = "tumble_live",
+                   .doc = "The same pass, live: the pose at the end of each sweep by what came before it alone.",
+                   .source = "ours",
+                   .settings = {&settings()}},
+                  [](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+                    return run(sensors, parameters, Word::live);
+                  });
 }
 
 }  // namespace tumble::scenarios

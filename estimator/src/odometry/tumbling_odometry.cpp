@@ -65,8 +65,8 @@ void TumblingOdometry::Queue::push(const ImuSample& sample) {
   samples.push_back(sample);
 }
 
-void TumblingOdometry::Queue::drop_before(TimeNs time_ns) {
-  while (head < samples.size() && samples[head].time_ns < time_ns) ++head;
+void TumblingOdometry::Queue::drop_until(TimeNs time_ns) {
+  while (head < samples.size() && samples[head].time_ns <= time_ns) ++head;
 }
 
 LidarInertialOdometry::Params TumblingOdometry::Params::Expert::mapping_defaults() {
@@ -117,6 +117,16 @@ std::optional<TumblingOdometry::Sweep> TumblingOdometry::take() {
   return out;
 }
 
+Status TumblingOdometry::newest(PoseState& pose) const {
+  std::vector<RateState> rates;
+  rates_.flush(rate_state_, rates);
+  // of the window some may be settled already
+  if (settled_) std::erase_if(rates, [&](const RateState& rate) { return rate.time_ns <= settled_->time_ns; });
+  std::vector<ImuSample> samples;
+  for (const RateState& rate : rates) samples.push_back(as_the_stream_sees_it(rate));
+  return mapper_.predict(samples, rates, pose);
+}
+
 void TumblingOdometry::finish() {
   std::vector<RateState> rates;
   rates_.flush(rate_state_, rates);
@@ -126,13 +136,18 @@ void TumblingOdometry::finish() {
   register_covered();
 }
 
-// The mapper gets the sample as the stream came to see it: with its rate, and with the forces that a rail hid.
-Status TumblingOdometry::settle(const RateState& rate) {
-  unsettled_.drop_before(rate.time_ns);
-  ImuSample sample = unsettled_.all().front();
+// With the forces told that a rail hid.
+ImuSample TumblingOdometry::as_the_stream_sees_it(const RateState& rate) const {
+  const std::span<const ImuSample> all = unsettled_.all();
+  ImuSample out = *std::find_if(all.begin(), all.end(), [&](const ImuSample& s) { return s.time_ns == rate.time_ns; });
   const unsigned railed = railed_forces(rate_state_.rate, rate.time_ns);
-  sample.device_clip_flags = static_cast<std::uint8_t>(sample.device_clip_flags | railed);
-  unsettled_.drop_before(rate.time_ns + 1);
+  out.device_clip_flags = static_cast<std::uint8_t>(out.device_clip_flags | railed);
+  return out;
+}
+
+Status TumblingOdometry::settle(const RateState& rate) {
+  const ImuSample sample = as_the_stream_sees_it(rate);
+  unsettled_.drop_until(rate.time_ns);
   settled_ = rate;
   return mapper_.add_imu(sample, rate);
 }

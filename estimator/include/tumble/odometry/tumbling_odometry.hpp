@@ -20,8 +20,9 @@ namespace tumble {
 ///
 /// Of each sweep there are three words: newest() places the IMU at any time, by inertia from the last sweep that was
 /// registered on; take() gives the sweep lag_s after its end, registered (`report.pose`); and the sweep after it brings
-/// its last word (`report.smoothed`), one sweep later. Sweeps end in the world of LidarInertialOdometry: z up, origin
-/// and yaw at the IMU at the first sample. Begin at rest, half a second or more: it levels the attitude.
+/// its last word (`report.smoothed`): 0.3 s after its end at ten sweeps a second. Sweeps stand in the world of
+/// LidarInertialOdometry: z up, origin and yaw at the IMU at the first sample. Begin at rest, half a second or more: it
+/// levels the attitude.
 ///
 /// An IMU sample costs one step of the stream, and now and then a sweep's registration; after the first sweeps neither
 /// allocates but for the map, which is bounded by the radius kept. Memory is bounded by lag, map and `sweeps_max`. No
@@ -87,6 +88,10 @@ class TumblingOdometry {
   /// mapper().open_trajectories() the last word of those still in the window.
   void finish();
 
+  /// Pose and velocity of the IMU at its newest sample, by inertia from the last sweep that was registered, with
+  /// covariance. `empty` before that. Allocates; O(samples since then).
+  Status newest(PoseState& pose) const;
+
   /// Rate of the newest sample: provisional where the gyro clips, since what follows tells most of it. Nothing before
   /// the first sample.
   std::optional<RateState> newest_rate() const { return rates_.rate().newest(rate_state_.rate); }
@@ -112,10 +117,11 @@ class TumblingOdometry {
     std::vector<ImuSample> samples;
     std::size_t head = 0;
     void push(const ImuSample& sample);
-    void drop_before(TimeNs time_ns);
+    void drop_until(TimeNs time_ns);
     std::span<const ImuSample> all() const { return std::span(samples).subspan(head); }
   };
 
+  ImuSample as_the_stream_sees_it(const RateState& rate) const;
   Status settle(const RateState& rate);
   void register_covered();
   void begin_anew();
