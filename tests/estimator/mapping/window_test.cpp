@@ -133,7 +133,9 @@ TEST(Window, APoseAheadIsTheInertialPriorAndChangesNothing) {
   for (const ImuSample& sample : run.imu) {
     if (sample.time_ns <= 12 * test::kSweep_ns || sample.time_ns > 14 * test::kSweep_ns) continue;
     ahead.push_back(sample);
-    rates.push_back(test::clipped_rate(sample, 1e9));
+    RateState& rate = rates.emplace_back();
+    rate.time_ns = sample.time_ns;
+    rate.w_WI_I_rad_s = sample.angular_velocity_rad_s;
   }
   ASSERT_EQ(ahead.size(), 20u);
   ASSERT_TRUE(run.odometry.predict(ahead, rates, pose).ok());
