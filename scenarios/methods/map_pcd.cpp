@@ -9,7 +9,7 @@
 #include "scenarios/methods/map_file.hpp"
 #include "scenarios/recordings/clouds/cloud_file.hpp"
 #include "scenarios/recordings/clouds/quiet_pcl.hpp"
-#include "tumble/mapping/pcl.hpp"
+#include "tumble/pcl/map_cloud.hpp"
 
 namespace tumble::scenarios {
 

@@ -56,6 +56,8 @@ std::vector<Method> all_methods() {
       slam_icp(),
       slam_icp_raw(),
       slam_tumble(),
+      slam_tumble_lag(),
+      slam_tumble_live(),
       slam_tumble_gyro_only(),
       slam_oracle(),
       slam_poses_rolling(),

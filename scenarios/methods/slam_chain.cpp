@@ -174,6 +174,13 @@ void report_end(const CalibrationVerdict& calibration, double innovation_90, Est
   estimate.health["localised"] = share >= kLocalisedShare && !contradicted ? 1.0 : 0.0;
 }
 
+void draw_map(const LidarInertialOdometry& odometry, Estimate& estimate) {
+  estimate.map = odometry.map();
+  const bool any = std::any_of(estimate.sweeps.begin(), estimate.sweeps.end(),
+                               [](const auto& sweep) { return sweep.verdict != SweepVerdict::rejected; });
+  if (!any) estimate.status = {Trouble::too_few, "lidar.sweeps_registered", 0.0, 1.0};
+}
+
 /// How far the calibration moved from what was given.
 void report_calibration(const LidarInertialOdometry& odometry, const sim::Sensors& sensors,
                         std::map<std::string, double>& health) {
@@ -323,10 +330,13 @@ void run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samp
   if (!estimate.status.ok()) return;
   if (chain.calibration) report_calibration(odometry, sensors, estimate.health);
   report_end(calibration, report_innovations(estimate), estimate);
-  estimate.map = odometry.map();
-  const bool any = std::any_of(estimate.sweeps.begin(), estimate.sweeps.end(),
-                               [](const auto& sweep) { return sweep.verdict != SweepVerdict::rejected; });
-  if (!any) estimate.status = {Trouble::too_few, "lidar.sweeps_registered", 0.0, 1.0};
+  draw_map(odometry, estimate);
+}
+
+void conclude_sweeps(const LidarInertialOdometry& odometry, Estimate& estimate) {
+  gather_poses(estimate);
+  report_end({}, report_innovations(estimate), estimate);
+  draw_map(odometry, estimate);
 }
 
 }  // namespace tumble::scenarios

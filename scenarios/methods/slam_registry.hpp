@@ -9,6 +9,7 @@
 #include "scenarios/methods/method.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "tumble/common/imu.hpp"
+#include "tumble/mapping/lidar_inertial_odometry.hpp"
 
 /// Slam methods beside those of registry.hpp, and what several of them share.
 namespace tumble::scenarios {
@@ -20,6 +21,8 @@ Method slam_iterated_filter();
 Method slam_pointwise_reject();
 Method slam_health_switch();
 Method slam_floor();
+Method slam_tumble_lag();
+Method slam_tumble_live();
 
 /// What tells one slam method of the rig from another.
 struct RigSlam {
@@ -32,6 +35,9 @@ Method rig_slam(RigSlam what, RunCore run);
 /// An estimate that holds what `rates` made of the primary IMU's `samples`, or the trouble on the way.
 Estimate begin_with_rates(const sim::Sensors& sensors, std::vector<ImuSample>& samples,
                           const std::function<Status(Estimate&)>& rates);
+
+/// Poses, map and verdict of a run whose sweeps and their ends the estimate holds; `too_few` when none was registered.
+void conclude_sweeps(const LidarInertialOdometry& odometry, Estimate& estimate);
 
 /// The gyro as it is, with the axes named that are at their rail. One RateState per sample.
 Status railed_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<RateState>& out);

@@ -34,14 +34,18 @@ const std::vector<Rule>& rules() {
        {"^sim/", "^scenarios/", "^tools/", "mujoco", "embree", "^fstream$", "^iostream$", "^cstdio$", "^filesystem$",
         "^thread$", "^hdf5", "^yaml-cpp", "^sqlite", "^SQLiteCpp", "^nlohmann", "^fmt/", "^spdlog", "^tbb/",
         "^oneapi/"}},
-      {"estimator/include/tumble/common", {"^pcl/", "^tumble/(angular_velocity|attitude|rolling|mapping)/"}},
-      {"estimator/include/tumble/angular_velocity", {"^pcl/", "^tumble/(attitude|rolling|mapping)/"}},
-      {"estimator/include/tumble/attitude", {"^pcl/", "^tumble/(rolling|mapping)/"}},
-      {"estimator/include/tumble/rolling", {"^pcl/", "^tumble/mapping/"}},
-      {"estimator/src/common", {"^pcl/", "^tumble/(angular_velocity|attitude|rolling|mapping)/"}},
-      {"estimator/src/angular_velocity", {"^pcl/", "^tumble/(attitude|rolling|mapping)/"}},
-      {"estimator/src/attitude", {"^pcl/", "^tumble/(rolling|mapping)/"}},
-      {"estimator/src/rolling", {"^pcl/", "^tumble/mapping/"}},
+      {"estimator/include/tumble/common", {"^pcl/", "^tumble/(angular_velocity|attitude|rolling|mapping|odometry|pcl)/"}},
+      {"estimator/include/tumble/angular_velocity", {"^pcl/", "^tumble/(attitude|rolling|mapping|odometry|pcl)/"}},
+      {"estimator/include/tumble/attitude", {"^pcl/", "^tumble/(rolling|mapping|odometry|pcl)/"}},
+      {"estimator/include/tumble/rolling", {"^pcl/", "^tumble/(mapping|odometry|pcl)/"}},
+      {"estimator/include/tumble/mapping", {"^pcl/", "^tumble/(odometry|pcl)/"}},
+      {"estimator/include/tumble/odometry", {"^pcl/", "^tumble/pcl/"}},
+      {"estimator/src/common", {"^pcl/", "^tumble/(angular_velocity|attitude|rolling|mapping|odometry|pcl)/"}},
+      {"estimator/src/angular_velocity", {"^pcl/", "^tumble/(attitude|rolling|mapping|odometry|pcl)/"}},
+      {"estimator/src/attitude", {"^pcl/", "^tumble/(rolling|mapping|odometry|pcl)/"}},
+      {"estimator/src/rolling", {"^pcl/", "^tumble/(mapping|odometry|pcl)/"}},
+      {"estimator/src/mapping", {"^pcl/", "^tumble/(odometry|pcl)/"}},
+      {"estimator/src/odometry", {"^pcl/", "^tumble/pcl/"}},
       {"sim",
        {"^tumble/", "^estimator/", "^scenarios/", "^tools/", "^hdf5", "^yaml-cpp", "^sqlite", "^SQLiteCpp", "^nlohmann",
         "^pcl/"}},
@@ -155,7 +159,9 @@ TEST(Architecture, CheckerRefusesForbiddenIncludes) {
     EXPECT_NE(broken_rule("tools/report/page.cpp", include), "") << include;
   EXPECT_EQ(broken_rule("tools/report/page.cpp", "tools/examples/example.hpp"), "");
   EXPECT_EQ(broken_rule("scenarios/methods/x.cpp", "tumble/common/imu.hpp"), "");
-  EXPECT_EQ(broken_rule("estimator/src/mapping/x.cpp", "pcl/point_types.h"), "");
+  EXPECT_NE(broken_rule("estimator/src/mapping/x.cpp", "pcl/point_types.h"), "");
+  EXPECT_NE(broken_rule("estimator/src/mapping/x.cpp", "tumble/odometry/tumbling_odometry.hpp"), "");
+  EXPECT_EQ(broken_rule("estimator/src/pcl/x.cpp", "pcl/point_types.h"), "");
 }
 
 TEST(Architecture, PublicSimHeadersDoNotBringTheEngine) {
@@ -189,6 +195,10 @@ const std::array kLinks = {
         "mj_step"},
     Links{
         "estimator/libtumble_mapping.a",
+        R"(\b(mj_|rtc[A-Z]|H5[A-Z]|pcl::|YAML::|sqlite3_|std::cout|std::cerr|printf\b|fopen\b|exit\b|pthread_create|tumble::(sim|scenarios|tools)\b))",
+        "tumble::scenarios::metrics()"},
+    Links{
+        "estimator/libtumble_odometry.a",
         R"(\b(mj_|rtc[A-Z]|H5[A-Z]|pcl::|YAML::|sqlite3_|std::cout|std::cerr|printf\b|fopen\b|exit\b|pthread_create|tumble::(sim|scenarios|tools)\b))",
         "tumble::scenarios::metrics()"},
     Links{

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The library as somebody else has it: estimator/ configures alone, with the very compilations of the whole tree; what
 # the build tree installs is enough for a consumer outside of it. Negative controls: the consumer must fail to configure
-# where the package is not, and a compilation with other flags is told from ours. With ALONE=ON the library is compiled
-# from its own folder, too, and that is what is installed: for the long suite, since it costs what a build costs.
+# where the package is not, and a compilation with other flags is told from ours. With ALONE=ON a copy of the folder is
+# compiled and tests itself, and that is what is installed, as files, as a Debian package and from its source archive: for
+# the long suite, since it costs what a build costs.
 include(${CMAKE_CURRENT_LIST_DIR}/compilations.cmake)
 
 function(run expected)
@@ -36,20 +37,53 @@ if(difference STREQUAL "")
   message(FATAL_ERROR "negative control: another optimisation of one file went unnoticed")
 endif()
 
-if(ALONE)
-  run(passes ${CMAKE_COMMAND} --build ${WORK}/estimator --parallel)
-  run(passes ${CMAKE_COMMAND} --install ${WORK}/estimator --prefix ${WORK}/prefix)
-else()
+# consume PREFIX OPTION...: the consumer project, outside of the tree, on what lies in PREFIX
+function(consume prefix)
+  file(REMOVE_RECURSE ${WORK}/present)
+  run(passes ${CMAKE_COMMAND} -S ${WORK}/consumer -B ${WORK}/present ${common} -DCMAKE_PREFIX_PATH=${prefix} ${ARGN})
+  run(passes ${CMAKE_COMMAND} --build ${WORK}/present --parallel)
+  run(passes ${WORK}/present/consumer)
+  # half of the circumference is 0.4555 m; the filter ends within 1 % of it
+  if(NOT output MATCHES "turned 3\\.14 rad, position 0\\.4[56] m")
+    message(FATAL_ERROR "the consumer printed: ${output}")
+  endif()
+  run(passes ${WORK}/present/mapping_consumer)
+  if(NOT output MATCHES "empty")
+    message(FATAL_ERROR "the mapping consumer printed: ${output}")
+  endif()
+  run(passes ${WORK}/present/door_consumer)
+  if(NOT output MATCHES "at rest: 1, rate 0\\.000 rad/s")
+    message(FATAL_ERROR "the consumer of the door printed: ${output}")
+  endif()
+endfunction()
+
+if(NOT ALONE)
   run(passes ${CMAKE_COMMAND} --install ${BUILD}/estimator --prefix ${WORK}/prefix)
+  consume(${WORK}/prefix)
+  return()
 endif()
-run(passes ${CMAKE_COMMAND} -S ${WORK}/consumer -B ${WORK}/present ${common} -DCMAKE_PREFIX_PATH=${WORK}/prefix)
-run(passes ${CMAKE_COMMAND} --build ${WORK}/present --parallel)
-run(passes ${WORK}/present/consumer)
-# half of the circumference is 0.4555 m; the filter ends within 1 % of it
-if(NOT output MATCHES "turned 3\\.14 rad, position 0\\.4[56] m")
-  message(FATAL_ERROR "the consumer printed: ${output}")
+
+# a copy of the folder, elsewhere: builds, tests itself, installs; its package laid into a clean root; its archive
+# builds the same once more
+file(COPY ${SOURCE}/estimator DESTINATION ${WORK}/copy)
+run(passes ${CMAKE_COMMAND} -S ${WORK}/copy/estimator -B ${WORK}/alone ${common} ${OPTIONS} -DTUMBLE_BUILD_TESTS=ON)
+run(passes ${CMAKE_COMMAND} --build ${WORK}/alone --parallel)
+run(passes ${CMAKE_CTEST_COMMAND} --test-dir ${WORK}/alone --output-on-failure --no-tests=error)
+run(passes ${CMAKE_COMMAND} --install ${WORK}/alone --prefix ${WORK}/prefix)
+consume(${WORK}/prefix -DWITH_PCL=ON)
+run(passes ${WORK}/present/pcl_consumer)
+if(NOT output MATCHES "3 points")
+  message(FATAL_ERROR "the consumer of PCL printed: ${output}")
 endif()
-run(passes ${WORK}/present/mapping_consumer)
-if(NOT output MATCHES "empty")
-  message(FATAL_ERROR "the mapping consumer printed: ${output}")
-endif()
+
+get_filename_component(bin ${CMAKE_COMMAND} DIRECTORY)
+run(passes ${CMAKE_COMMAND} -E chdir ${WORK}/alone ${bin}/cpack)
+file(GLOB packages ${WORK}/alone/libtumble-dev_*.deb)
+run(passes dpkg-deb -x ${packages} ${WORK}/root)
+consume(${WORK}/root/usr)
+
+run(passes ${CMAKE_COMMAND} -E chdir ${WORK}/alone ${bin}/cpack --config CPackSourceConfig.cmake)
+file(GLOB archives ${WORK}/alone/tumble-estimator-*.tar.gz)
+file(ARCHIVE_EXTRACT INPUT ${archives} DESTINATION ${WORK}/source)
+file(GLOB unpacked ${WORK}/source/*)
+run(passes ${CMAKE_COMMAND} -S ${unpacked} -B ${WORK}/unpacked ${common} ${OPTIONS} -DTUMBLE_PCL=OFF)

@@ -13,12 +13,9 @@ Status WindowSweep::motion(SweepTrajectory& trajectory) const {
   return trajectory.build(now.state, samples, end_ns, now.calibration.gravity_W_m_s2, now.excess_rad_s);
 }
 
-std::optional<WindowSweep> LagWindow::enter(WindowSweep sweep) {
+void LagWindow::enter(WindowSweep sweep) {
+  if (is_full()) sweeps_.pop_front();
   sweeps_.push_back(std::move(sweep));
-  if (sweeps_.size() <= length_) return std::nullopt;
-  std::optional<WindowSweep> oldest(std::move(sweeps_.front()));
-  sweeps_.pop_front();
-  return oldest;
 }
 
 /// mapping.md (R52).

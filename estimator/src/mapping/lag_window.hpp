@@ -2,7 +2,6 @@
 #pragma once
 
 #include <deque>
-#include <optional>
 #include <vector>
 
 #include "local_map.hpp"
@@ -34,8 +33,10 @@ class LagWindow {
  public:
   explicit LagWindow(int sweeps) : length_(static_cast<std::size_t>(sweeps)) {}
 
-  /// The oldest leaves once the window is full: returned.
-  std::optional<WindowSweep> enter(WindowSweep sweep);
+  /// The oldest leaves when the window is full already.
+  void enter(WindowSweep sweep);
+  /// Whether the oldest sweep has been refined by all that ever will.
+  bool is_full() const { return sweeps_.size() == length_; }
   /// Each sweep but the newest by those after it: mapping.md (R52).
   void smooth();
   /// Moves what the sweeps but the newest drew into the map to where they are now known to have seen it.

@@ -10,6 +10,20 @@
 
 namespace tumble {
 
+namespace {
+
+/// Of a sample and its rate by themselves.
+Status check(const ImuSample& sample, const RateState& rate) {
+  if (!is_finite(sample)) return {Trouble::non_finite, "imu sample", std::numeric_limits<double>::quiet_NaN(), 0.0};
+  if (!rate.w_WI_I_rad_s.allFinite() || !rate.covariance_rad2_s2.allFinite()) {
+    return {Trouble::non_finite, "rate", std::numeric_limits<double>::quiet_NaN(), 0.0};
+  }
+  if (rate.time_ns == sample.time_ns) return {};
+  return {Trouble::out_of_range, "rate.time_ns", double(rate.time_ns), double(sample.time_ns)};
+}
+
+}  // namespace
+
 LidarInertialOdometry::Impl::Impl(const Params& given)
     : params((mapping::check_params(given), given)),
       window(given.window_sweeps),
@@ -31,13 +45,7 @@ LidarInertialOdometry& LidarInertialOdometry::operator=(const LidarInertialOdome
 }
 
 Status LidarInertialOdometry::add_imu(const ImuSample& sample, const RateState& rate) {
-  if (!is_finite(sample)) return {Trouble::non_finite, "imu sample", std::numeric_limits<double>::quiet_NaN(), 0.0};
-  if (!rate.w_WI_I_rad_s.allFinite() || !rate.covariance_rad2_s2.allFinite()) {
-    return {Trouble::non_finite, "rate", std::numeric_limits<double>::quiet_NaN(), 0.0};
-  }
-  if (rate.time_ns != sample.time_ns) {
-    return {Trouble::out_of_range, "rate.time_ns", double(rate.time_ns), double(sample.time_ns)};
-  }
+  if (Status status = check(sample, rate); !status.ok()) return status;
   if (Status status = impl_->track.check(sample); !status.ok()) return status;
   impl_->track.take(impl_->params, sample, rate);
   return {};
@@ -57,6 +65,31 @@ Status LidarInertialOdometry::add_sweep(TimeNs lidar_start_ns, TimeNs lidar_end_
   report = SweepReport{};
   const TimeNs offset_ns = static_cast<TimeNs>(std::llround(impl_->params.time_offset_s * 1e9));
   return impl_->add_sweep(lidar_start_ns + offset_ns, lidar_end_ns + offset_ns, points, report);
+}
+
+Status LidarInertialOdometry::predict(std::span<const ImuSample> samples, std::span<const RateState> rates,
+                                      PoseState& pose) const {
+  const Impl& my = *impl_;
+  if (!mapping::has_started(my.tracking)) return {Trouble::empty, "sweeps", 0.0, 1.0};
+  if (samples.size() != rates.size()) return {Trouble::too_few, "rates", double(rates.size()), double(samples.size())};
+  mapping::InertialTrack track = my.track;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (Status status = check(samples[k], rates[k]); !status.ok()) return status;
+    if (Status status = track.check(samples[k]); !status.ok()) return status;
+    track.take(my.params, samples[k], rates[k]);
+  }
+  if (track.samples().empty()) return {Trouble::empty, "samples", 0.0, 1.0};
+  const TimeNs end_ns = track.samples().back().time_ns;
+  const Registration::Estimate& last = my.border.belief.mean;
+  SweepTrajectory trajectory;
+  if (Status status = trajectory.build(last.state, track.samples(), end_ns, last.calibration.gravity_W_m_s2);
+      !status.ok())
+    return status;
+  const mapping::MotionWindow motion{track.samples(), end_ns, my.resting_sweeps};
+  const mapping::Prediction at_start = mapping::predict(my.params, my.border, motion, trajectory, my.known);
+  pose = my.pose_along(trajectory, trajectory.duration_s(), at_start.errors);
+  pose.time_ns = end_ns;
+  return {};
 }
 
 SweepCalibration LidarInertialOdometry::calibration() const {
@@ -90,7 +123,9 @@ Status LidarInertialOdometry::pose_at(TimeNs time_ns, PoseState& pose) const {
 
 std::vector<std::vector<PoseState>> LidarInertialOdometry::open_trajectories() const {
   std::vector<std::vector<PoseState>> all;
-  for (const mapping::WindowSweep& sweep : impl_->window.sweeps()) all.push_back(impl_->poses_of(sweep));
+  const mapping::LagWindow& window = impl_->window;
+  for (std::size_t k = window.is_full() ? 1 : 0; k < window.sweeps().size(); ++k)
+    all.push_back(impl_->poses_of(window.sweeps()[k]));
   return all;
 }
 

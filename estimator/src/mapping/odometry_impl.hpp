@@ -45,8 +45,8 @@ struct LidarInertialOdometry::Impl {
   std::vector<mapping::DrawnPoint> draw(const mapping::Belief& start, bool rings_differ, SweepReport& report);
   void carry_on(const mapping::SettledSweep& sweep, const mapping::Placed& placed, const mapping::MotionWindow& motion,
                 std::vector<mapping::DrawnPoint> drawn, SweepReport& report);
-  std::vector<PoseState> enter_window(const mapping::SettledSweep& sweep, const mapping::MotionWindow& motion,
-                                      std::vector<mapping::DrawnPoint> drawn, bool aligned);
+  void enter_window(const mapping::SettledSweep& sweep, const mapping::MotionWindow& motion,
+                    std::vector<mapping::DrawnPoint> drawn, bool aligned);
 
   PoseState pose_along(const SweepTrajectory& motion, double t_s, const Registration::Matrix& errors) const;
   /// At the ends of the IMU's windows, and at `end_ns` for the last; `errors` are those of the unknowns at the start.

@@ -140,7 +140,9 @@ void LidarInertialOdometry::Impl::carry_on(const SettledSweep& sweep, const Plac
   if (aligned && placed.verdict == SweepVerdict::degenerate && motion.resting_sweeps == 0)
     world.add_drift(report.weakest_sigma_m, report.weakest_direction);
   report.trajectory = poses_along(trajectory, motion.end_ns, sweep.start.error);
-  report.smoothed = enter_window(sweep, motion, std::move(drawn), aligned);
+  enter_window(sweep, motion, std::move(drawn), aligned);
+  // no later sweep refines it: it leaves with the next one
+  if (window.is_full()) report.smoothed = poses_of(window.sweeps().front());
 
   border = mapping::border_after(params, sweep.start, motion, trajectory, aligned ? &*placed.alignment : nullptr);
   // what the sweep adds to the map is off by what the pose was: by so much of it the map moves where the robot is
@@ -156,9 +158,8 @@ void LidarInertialOdometry::Impl::carry_on(const SettledSweep& sweep, const Plac
   if (map.prune(params, border.belief.mean.state.p_WI_m)) window.forget_drawn();
 }
 
-/// Poses of the sweep that leaves the window, if one does.
-std::vector<PoseState> LidarInertialOdometry::Impl::enter_window(const SettledSweep& sweep, const MotionWindow& motion,
-                                                                 std::vector<DrawnPoint> drawn, bool aligned) {
+void LidarInertialOdometry::Impl::enter_window(const SettledSweep& sweep, const MotionWindow& motion,
+                                               std::vector<DrawnPoint> drawn, bool aligned) {
   WindowSweep newest;
   newest.predicted = {sweep.prediction.prior.mean, sweep.prediction.errors};
   newest.by_before = sweep.prediction.by_last * border.end_by_start;
@@ -166,12 +167,10 @@ std::vector<PoseState> LidarInertialOdometry::Impl::enter_window(const SettledSw
   newest.samples.assign(motion.samples.begin(), motion.samples.end());
   newest.end_ns = motion.end_ns;
   newest.drawn = std::move(drawn);
-  const std::optional<WindowSweep> oldest = window.enter(std::move(newest));
-  if (aligned) {
-    window.smooth();
-    window.redraw(map);
-  }
-  return oldest ? poses_of(*oldest) : std::vector<PoseState>{};
+  window.enter(std::move(newest));
+  if (!aligned) return;
+  window.smooth();
+  window.redraw(map);
 }
 
 PoseState LidarInertialOdometry::Impl::pose_along(const SweepTrajectory& motion, double t_s,

@@ -91,7 +91,8 @@ struct System {
       P = P - gain * H * P;
       P = Dense(0.5 * (P + P.transpose()));
       sweep.filtered = sweep.smoothed = estimated(x, P);
-      EXPECT_FALSE(window.enter(std::move(sweep)).has_value());
+      EXPECT_FALSE(window.is_full());
+      window.enter(std::move(sweep));
     }
     window.smooth();
   }
@@ -128,9 +129,12 @@ TEST(LagWindow, TheOldestLeavesOnceItIsFull) {
     return sweep;
   };
   window.smooth();
-  EXPECT_FALSE(window.enter(ending_at(1)).has_value());
-  EXPECT_FALSE(window.enter(ending_at(2)).has_value());
-  EXPECT_EQ(window.enter(ending_at(3)).value().end_ns, 1);
+  window.enter(ending_at(1));
+  EXPECT_FALSE(window.is_full());
+  window.enter(ending_at(2));
+  EXPECT_TRUE(window.is_full());
+  EXPECT_EQ(window.sweeps().front().end_ns, 1);
+  window.enter(ending_at(3));
   EXPECT_EQ(window.sweeps().size(), 2u);
   EXPECT_EQ(window.sweeps().front().end_ns, 2);
 }

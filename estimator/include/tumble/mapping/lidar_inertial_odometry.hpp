@@ -149,8 +149,8 @@ class LidarInertialOdometry {
     SweepVerdict verdict = SweepVerdict::rejected;
     PoseState pose;                     ///< pose and velocity of the IMU at the end of the sweep, with covariance
     std::vector<PoseState> trajectory;  ///< IMU poses inside the sweep at IMU times, corrected by the registration
-    /// The same of the sweep that left the window with this one, refined by those after it: its last word. Empty while
-    /// the window fills.
+    /// The same of the sweep that stands at the old end of the window with this one as its newest: its last word, by
+    /// this sweep and those between. With a window of two that is the sweep before. Empty while the window fills.
     std::vector<PoseState> smoothed;
     double inlier_share = 0.0;  ///< of the points registered
     double conditioning = 0.0;  ///< smallest over largest eigenvalue of the scaled normal matrix
@@ -199,6 +199,11 @@ class LidarInertialOdometry {
   /// lasts).
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, SweepReport& report);
 
+  /// Pose and velocity at the last of further samples, which are not added: from the last sweep's end by inertia alone,
+  /// with covariance. For who needs a pose before the sweep is there, or its rates are settled. Trouble: `empty` before
+  /// the first sweep or without samples, and that of add_imu. O(samples since the last sweep).
+  Status predict(std::span<const ImuSample> samples, std::span<const RateState> rates, PoseState& pose) const;
+
   /// Calibration as estimated so far, and the covariance of its errors; the given one, and 0, where not estimated.
   SweepCalibration calibration() const;
   SweepCalibration::Covariance calibration_covariance() const;
@@ -209,7 +214,8 @@ class LidarInertialOdometry {
   /// Pose at any time within the window of sweeps, by all that has been seen. `out_of_range` outside of it.
   Status pose_at(TimeNs time_ns, PoseState& pose) const;
 
-  /// Poses of the sweeps in the window as they stand, oldest first: with SweepReport::smoothed, the whole trajectory.
+  /// Poses of the sweeps in the window that have not had their last word yet, as they stand, oldest first: with
+  /// SweepReport::smoothed, the whole trajectory.
   std::vector<std::vector<PoseState>> open_trajectories() const;
 
   /// Memory held by the map [bytes].

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/mapping/pcl.hpp"
+#include "tumble/pcl/map_cloud.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "tumble/common/parameters.hpp"
+
+namespace tumble {
+
+/// What the data sheet of an IMU says. A range of 0 is not stated: rails are found as they show themselves either way.
+struct ImuSheet {
+  double rate_hz = 100.0;
+  double gyro_range_rad_s = 0.0;
+  double accel_range_m_s2 = 0.0;
+  double gyro_noise_rad_s_sqrt_hz = 5.236e-4;
+  double accel_noise_m_s2_sqrt_hz = 5.9e-4;
+
+  /// Every number of it, stated once.
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.rate_hz, {"rate_hz", "Hz", 1.0, 1e5, "samples per second", Rank::first});
+    visit(p.gyro_range_rad_s, {"gyro_range_rad_s", "rad/s", 0.0, 1e4, "stated range; 0: not stated", Rank::first});
+    visit(p.accel_range_m_s2, {"accel_range_m_s2", "m/s^2", 0.0, 1e5, "stated range; 0: not stated", Rank::first});
+    visit(p.gyro_noise_rad_s_sqrt_hz,
+          {"gyro_noise_rad_s_sqrt_hz", "rad/s/sqrt(Hz)", 1e-9, 1.0, "density of the gyro's white noise", Rank::first});
+    visit(p.accel_noise_m_s2_sqrt_hz, {"accel_noise_m_s2_sqrt_hz", "m/s^2/sqrt(Hz)", 1e-9, 100.0,
+                                       "density of the accelerometer's white noise", Rank::first});
+  }
+};
+
+/// Sheets of devices that the harness has models of, with the sources of each number: models/sensors/NAME.yaml.
+namespace sheets {
+
+/// Xsens MTi-30, fifth generation (20 g); its gyro is stated to 450 deg/s.
+ImuSheet mti30();
+/// VectorNav VN-100.
+ImuSheet vn100();
+/// PhidgetSpatial Precision 3/3/3 1044_0.
+ImuSheet phidget1044();
+/// InvenSense MPU-6050 at 500 deg/s and 16 g.
+ImuSheet mpu6050();
+
+}  // namespace sheets
+
+}  // namespace tumble

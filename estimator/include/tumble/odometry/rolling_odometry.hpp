@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "tumble/attitude/imu_merge.hpp"
+#include "tumble/common/pose.hpp"
+#include "tumble/odometry/imu_sheet.hpp"
+#include "tumble/rolling/rolling_smoother.hpp"
+
+namespace tumble {
+
+/// Pose of a rolling sphere from one to four IMUs, through grip, slip, bumps and slopes: live, and smoothed with what
+/// follows within `lag_s`. ImuMerge makes the IMUs one, RollingSmoother (with its RollingFilter) does the rest.
+///
+/// World: z up, origin at the sphere's centre at the first sample, yaw 0 there. Begin with a second of rest. Memory is
+/// set aside with the first samples (half a megabyte, and 11 KiB for each 0.02 s of lag); no allocation per sample
+/// after that but for the poses that wait for take(). No threads, no files, no printing. Copies carry all state. Not
+/// modelled: see the classes named.
+class RollingOdometry {
+ public:
+  /// One IMU of the sphere.
+  struct Unit {
+    ImuSheet sheet;
+    /// The unit in axes of the sphere, from its centre: a point in axes of the sphere is T_BI times one of the unit's.
+    Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
+  };
+  struct Params {
+    double radius_m = 0.0;    ///< has no default
+    std::vector<Unit> units;  ///< 1 to ImuMerge::kImus; has no default
+    /// Of the place that T_BI counts from, about the true centre: standard deviation. It is estimated.
+    double centre_sigma_m = 6e-3;
+    double gravity_m_s2 = 9.80665;
+    double lag_s = 0.0;  ///< take() gives poses smoothed with what follows for so long; 0: live poses
+
+    /// What few need. Of the same numbers as above those above count.
+    struct Expert {
+      ImuMerge::Params merge;
+      RollingSmoother::Params rolling;
+    } expert;
+  };
+  struct Pose {
+    PoseState pose;  ///< of the sphere's centre, in axes of the sphere; of a live one the attitude has no covariance
+    RollingMode mode = RollingMode::grip;
+    bool at_rest = false;
+    bool uncertain = false;  ///< in an event that made the position uncertain (RollingParams::uncertain_m)
+  };
+
+  /// Throws InvalidParams on a parameter outside of its bound.
+  explicit RollingOdometry(const Params& params);
+  RollingOdometry(const RollingOdometry& other);
+  RollingOdometry& operator=(const RollingOdometry& other);
+  RollingOdometry(RollingOdometry&&) noexcept = default;
+  RollingOdometry& operator=(RollingOdometry&&) noexcept = default;
+  ~RollingOdometry() = default;
+
+  /// Takes what all units read at one time (the first's stamp counts); one that has nothing to say gives NaN. On
+  /// trouble (`too_few`, `time_order`, `gap`) the state is as it was.
+  Status add_imus(std::span<const ImuSample> samples);
+  /// The same of a sphere with one.
+  Status add_imu(const ImuSample& sample) { return add_imus({&sample, 1}); }
+
+  /// Pose at the newest sample by what came before it. Nothing before the first.
+  std::optional<Pose> newest() const;
+
+  /// The next pose of those given out once each, in order of time: lag_s old, or live ones without a lag.
+  std::optional<Pose> take();
+
+  /// Smooths what is still within the lag: the run has ended.
+  void finish();
+
+  /// What the IMUs say of each other: frozen, disagreeing, late ones.
+  const ImuMerge::State& units() const { return *merge_state_; }
+
+ private:
+  void gather(std::size_t before);
+
+  ImuMerge merge_;
+  RollingSmoother smoother_;
+  std::unique_ptr<ImuMerge::State> merge_state_;
+  std::unique_ptr<RollingSmoother::State> state_;
+  std::vector<RollingEstimate> done_;
+  std::size_t taken_ = 0;
+  bool live_ = true;
+};
+
+}  // namespace tumble

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "tumble/attitude/regime_stream.hpp"
+#include "tumble/mapping/lidar_inertial_odometry.hpp"
+#include "tumble/odometry/imu_sheet.hpp"
+
+namespace tumble {
+
+/// Pose, velocity and map of a body that tumbles, from one IMU whose gyro may clip and a lidar whose sweeps are bent:
+/// causal, sample by sample. RegimeStream gives each sample its angular velocity, clipped or not, when it is `lag_s`
+/// old; LidarInertialOdometry takes samples and sweeps as their rates become known.
+///
+/// Of each sweep there are three words: newest() places the IMU at any time, by inertia from the last sweep that was
+/// registered on; take() gives the sweep lag_s after its end, registered (`report.pose`); and the sweep after it brings
+/// its last word (`report.smoothed`): 0.3 s after its end at ten sweeps a second. Sweeps stand in the world of
+/// LidarInertialOdometry: z up, origin and yaw at the IMU at the first sample. Begin at rest, half a second or more: it
+/// levels the attitude.
+///
+/// An IMU sample costs one step of the stream, and now and then a sweep's registration; after the first sweeps neither
+/// allocates but for the map, which is bounded by the radius kept. Memory is bounded by lag, map and `sweeps_max`. No
+/// threads, no files, no printing. Copies carry all state: continuing from a copy gives the same bits, so that a run
+/// may be split anywhere. Not modelled: see the two classes above.
+class TumblingOdometry {
+ public:
+  struct Params {
+    ImuSheet imu;
+    /// From the body's centre of mass to the IMU, in IMU axes: what turns rates into forces; and how well it is known
+    /// (standard deviation per axis). It is estimated.
+    Eigen::Vector3d lever_arm_I_m = Eigen::Vector3d::Zero();
+    double lever_arm_sigma_m = 0.01;
+    Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< lidar in IMU axes
+    /// Of T_IL and of the lidar's clock: standard deviations, both are estimated; 0: exact.
+    double mount_sigma_rad = 0.01;
+    double mount_sigma_m = 0.006;
+    double time_offset_sigma_s = 0.003;
+    double range_min_m = 0.3;        ///< nearer returns are dropped
+    double range_max_m = 100.0;      ///< farther returns are dropped
+    Eigen::AlignedBox3d own_body_L;  ///< returns inside are the robot's own; empty: none are
+    double gravity_m_s2 = 9.80665;
+    double lag_s = 0.2;  ///< how old a sample is when its rate is settled
+
+    /// What few need. Of the same numbers as above those above count.
+    struct Expert {
+      RegimeStream::Params rate;
+      /// With gravity's direction and what the rails hid of the rate among the unknowns.
+      LidarInertialOdometry::Params mapping = mapping_defaults();
+      std::size_t sweeps_max = 16;  ///< that may wait for the IMU
+      static LidarInertialOdometry::Params mapping_defaults();
+    } expert;
+
+    /// Every number of it, stated once: `tumbling_odometry_fields.hpp`.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit);
+  };
+
+  /// What became of a sweep.
+  struct Sweep {
+    Status status;  ///< of LidarInertialOdometry::add_sweep
+    LidarInertialOdometry::SweepReport report;
+  };
+
+  /// Throws InvalidParams on a parameter outside of its bound.
+  explicit TumblingOdometry(const Params& params);
+
+  /// Takes a sample of the IMU, in order of time. On trouble (`non_finite`, `time_order`) the state is as it was.
+  /// Sweeps whose rates are settled with it are registered now. After a gap beyond the stream's bound, a second, the
+  /// rates begin anew with what is known of the rig, and the mapper bridges the gap by inertia; gaps() counts them.
+  Status add_imu(const ImuSample& sample);
+
+  /// Takes a sweep of points fired in [start_ns, end_ns], at any time after its last point; they are copied. Trouble
+  /// that leaves the state as it was: `time_order` (before the end of the last one, or an end before its start),
+  /// `out_of_range` (the offset of a point beyond the sweep, or sweeps_max sweeps wait already). What the mapper makes
+  /// of it comes with take().
+  Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
+
+  /// The next sweep that was registered, in order; nothing when there is none yet.
+  std::optional<Sweep> take();
+
+  /// Settles what there is: the run has ended. Sweeps that the IMU covers are registered; take() gives them, and
+  /// mapper().open_trajectories() the last word of those still in the window.
+  void finish();
+
+  /// Pose and velocity of the IMU at its newest sample, by inertia from the last sweep that was registered, with
+  /// covariance. `empty` before that. Allocates; O(samples since then).
+  Status newest(PoseState& pose) const;
+
+  /// Rate of the newest sample: provisional where the gyro clips, since what follows tells most of it. Nothing before
+  /// the first sample.
+  std::optional<RateState> newest_rate() const { return rates_.rate().newest(rate_state_.rate); }
+
+  /// Latest settled rate, lag_s old. Nothing while the lag fills.
+  const std::optional<RateState>& settled_rate() const { return settled_; }
+
+  /// What is known of the IMU on the body: lever arm, biases, elements.
+  RigCalibration rig() const { return rates_.rate().calibration(rate_state_.rate); }
+  /// Gaps of the IMU after which the rates began anew.
+  std::size_t gaps() const { return gaps_; }
+  /// The map, and all that the mapper tells beside.
+  const LidarInertialOdometry& mapper() const { return mapper_; }
+
+ private:
+  struct Waiting {
+    TimeNs start_ns = 0, end_ns = 0;
+    std::vector<LidarPoint> points;
+  };
+
+  /// First in, first out, in memory that is kept.
+  struct Queue {
+    std::vector<ImuSample> samples;
+    std::size_t head = 0;
+    void push(const ImuSample& sample);
+    void drop_until(TimeNs time_ns);
+    std::span<const ImuSample> all() const { return std::span(samples).subspan(head); }
+  };
+
+  ImuSample as_the_stream_sees_it(const RateState& rate) const;
+  Status settle(const RateState& rate);
+  void register_covered();
+  void begin_anew();
+
+  Params params_;
+  RegimeStream rates_;
+  RegimeStream::State rate_state_;
+  LidarInertialOdometry mapper_;
+  Queue unsettled_;  ///< samples whose rates are not settled yet
+  std::optional<RateState> settled_;
+  std::size_t gaps_ = 0;
+  std::deque<Waiting> waiting_;
+  std::deque<Sweep> done_;
+  std::optional<TimeNs> sweep_end_ns_;  ///< of the last sweep taken in
+};
+
+}  // namespace tumble

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/odometry/imu_sheet.hpp"
+
+namespace tumble::sheets {
+
+ImuSheet mti30() {
+  return {.rate_hz = 100.0,
+          .gyro_range_rad_s = 7.853981634,
+          .accel_range_m_s2 = 196.133,
+          .gyro_noise_rad_s_sqrt_hz = 5.23598776e-4,
+          .accel_noise_m_s2_sqrt_hz = 5.88399e-4};
+}
+
+ImuSheet vn100() {
+  return {.rate_hz = 100.0,
+          .gyro_range_rad_s = 34.906585,
+          .accel_range_m_s2 = 156.9064,
+          .gyro_noise_rad_s_sqrt_hz = 6.108652e-5,
+          .accel_noise_m_s2_sqrt_hz = 1.372931e-3};
+}
+
+ImuSheet phidget1044() {
+  return {.rate_hz = 250.0,
+          .gyro_range_rad_s = 34.906585,
+          .accel_range_m_s2 = 78.4532,
+          .gyro_noise_rad_s_sqrt_hz = 6.512629e-4,
+          .accel_noise_m_s2_sqrt_hz = 1.736638e-3};
+}
+
+ImuSheet mpu6050() {
+  return {.rate_hz = 100.0,
+          .gyro_range_rad_s = 8.726646,
+          .accel_range_m_s2 = 156.9064,
+          .gyro_noise_rad_s_sqrt_hz = 8.726646e-05,
+          .accel_noise_m_s2_sqrt_hz = 0.00392266};
+}
+
+}  // namespace tumble::sheets

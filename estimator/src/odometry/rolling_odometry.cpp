@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/odometry/rolling_odometry.hpp"
+
+#include <algorithm>
+
+namespace tumble {
+
+namespace {
+
+// Below this share of the stated range a reading is one for sure: a calibration moves a rail by its error of scale.
+constexpr double kSureShare = 0.98;
+constexpr std::size_t kRecoveringUnits = 3;  // so many IMUs tell a rate beyond the range
+constexpr double kRecoveredSigma_rad_s = 1.0;
+constexpr double kLive_s = 0.02;  // lag of the smoother's storage where live poses are all that is asked for
+
+ImuMerge::Params merge_params(const RollingOdometry::Params& params) {
+  require_within("units", static_cast<double>(params.units.size()), 1.0, ImuMerge::kImus);
+  ImuMerge::Params out = params.expert.merge;
+  out.count = static_cast<int>(params.units.size());
+  for (std::size_t k = 0; k < params.units.size(); ++k) {
+    const RollingOdometry::Unit& unit = params.units[k];
+    require_fields(unit.sheet);
+    out.T_CI[k] = unit.T_BI;
+    const ImuSheet& sheet = unit.sheet;
+    if (sheet.gyro_range_rad_s > 0.0)
+      out.gyro_range_rad_s = std::min(out.gyro_range_rad_s, kSureShare * sheet.gyro_range_rad_s);
+    if (sheet.accel_range_m_s2 > 0.0)
+      out.accel_range_m_s2 = std::min(out.accel_range_m_s2, kSureShare * sheet.accel_range_m_s2);
+  }
+  return out;
+}
+
+RollingSmoother::Params rolling_params(const RollingOdometry::Params& params, const ImuMerge& merge) {
+  RollingSmoother::Params out = params.expert.rolling;
+  const ImuMerge::Params merged = merge_params(params);
+  out.filter.radius_m = params.radius_m;
+  out.filter.gravity_m_s2 = params.gravity_m_s2;
+  out.filter.lever_arm_m = merge.p_C_m();
+  out.filter.lever_arm_sigma_m = params.centre_sigma_m;
+  out.filter.gyro_range_rad_s = merged.gyro_range_rad_s;
+  out.filter.accel_range_m_s2 = merged.accel_range_m_s2;
+  if (params.units.size() >= kRecoveringUnits) out.filter.recovered_rate_sigma_rad_s = kRecoveredSigma_rad_s;
+  out.lag_s = std::max(params.lag_s, kLive_s);
+  out.rate_max_hz = std::max(out.rate_max_hz, 1.1 * params.units.front().sheet.rate_hz);
+  return out;
+}
+
+RollingOdometry::Pose as_pose(const RollingEstimate& estimate) {
+  RollingOdometry::Pose out;
+  out.pose = {estimate.time_ns, estimate.p_WG_m, estimate.q_WI, estimate.v_WG_m_s, estimate.covariance};
+  out.mode = estimate.mode;
+  out.at_rest = estimate.at_rest;
+  out.uncertain = estimate.uncertain;
+  return out;
+}
+
+RollingEstimate live_estimate(const RollingFilter::State& live) {
+  RollingEstimate out;
+  out.time_ns = live.last_time_ns;
+  out.p_WG_m = live.p_WG_m;
+  out.q_WI = live.q_WI;
+  out.v_WG_m_s = live.v_WG_m_s;
+  out.covariance.topLeftCorner<3, 3>() = live.position_covariance_m2;
+  out.mode = live.mode;
+  out.at_rest = live.at_rest;
+  out.uncertain = live.uncertain;
+  return out;
+}
+
+}  // namespace
+
+RollingOdometry::RollingOdometry(const Params& params)
+    : merge_(merge_params(params)),
+      smoother_(rolling_params(params, merge_)),
+      merge_state_(std::make_unique<ImuMerge::State>()),
+      state_(std::make_unique<RollingSmoother::State>()),
+      live_(params.lag_s <= 0.0) {
+  require_within("lag_s", params.lag_s, 0.0, 1e9);
+}
+
+RollingOdometry::RollingOdometry(const RollingOdometry& other)
+    : merge_(other.merge_),
+      smoother_(other.smoother_),
+      merge_state_(std::make_unique<ImuMerge::State>(*other.merge_state_)),
+      state_(std::make_unique<RollingSmoother::State>(*other.state_)),
+      done_(other.done_),
+      taken_(other.taken_),
+      live_(other.live_) {}
+
+RollingOdometry& RollingOdometry::operator=(const RollingOdometry& other) {
+  return *this = RollingOdometry(other);
+}
+
+Status RollingOdometry::add_imus(std::span<const ImuSample> samples) {
+  std::optional<ImuSample> merged;
+  if (Status status = merge_.step(samples, *merge_state_, merged); !status.ok() || !merged) return status;
+  const std::size_t before = done_.size();
+  const Status status = smoother_.step(*merged, *state_, done_);
+  if (status.ok()) gather(before);
+  return status;
+}
+
+std::optional<RollingOdometry::Pose> RollingOdometry::newest() const {
+  if (!state_->live.started) return std::nullopt;
+  return as_pose(live_estimate(state_->live));
+}
+
+std::optional<RollingOdometry::Pose> RollingOdometry::take() {
+  if (taken_ == done_.size()) return std::nullopt;
+  const Pose out = as_pose(done_[taken_++]);
+  if (taken_ == done_.size()) {  // memory is kept
+    done_.clear();
+    taken_ = 0;
+  }
+  return out;
+}
+
+void RollingOdometry::finish() {
+  if (!live_) smoother_.finish(*state_, done_);
+}
+
+// Without a lag the live pose takes the place of what the smoother gave out since.
+void RollingOdometry::gather(std::size_t before) {
+  if (!live_) return;
+  done_.resize(before);
+  done_.push_back(live_estimate(state_->live));
+}
+
+}  // namespace tumble

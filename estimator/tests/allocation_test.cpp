@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "thrown_body.hpp"
+#include "tumble/tumble.hpp"
+
+// Every allocation of this program is counted; not inlined, so that the compiler does not take the pair for mismatched.
+namespace {
+std::atomic<std::size_t> g_allocations{0};
+}
+
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  ++g_allocations;
+  if (void* memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+
+namespace tumble {
+namespace {
+
+TEST(Allocation, NoneForASampleOfATumblingBodyOnceItHasBegun) {
+  const test::ThrownBody body;
+  TumblingOdometry::Params params;
+  params.lever_arm_I_m = body.lever_arm_I_m;
+  TumblingOdometry odometry(params);
+  const std::vector<ImuSample> imu = body.imu();
+  const std::vector<test::ThrownBody::Sweep> sweeps = body.sweeps();
+  std::size_t next = 0, without_a_sweep = 0, in_all = 0;
+  for (const ImuSample& sample : imu) {
+    const std::size_t before = g_allocations;
+    ASSERT_TRUE(odometry.add_imu(sample).ok());
+    const std::size_t made = g_allocations - before;
+    in_all += made;
+    if (!odometry.take()) {
+      // the lag has filled, and the mapper's memory of samples has the size of a sweep
+      if (sample.time_ns > 600'000'000) without_a_sweep += made;
+    }
+    while (next < sweeps.size() && sweeps[next].end_ns <= sample.time_ns) {
+      ASSERT_TRUE(odometry.add_sweep(sweeps[next].start_ns, sweeps[next].end_ns, sweeps[next].points).ok());
+      ++next;
+    }
+  }
+  EXPECT_EQ(without_a_sweep, 0u);
+  EXPECT_GT(in_all, 0u) << "negative control: the counter counts";
+}
+
+}  // namespace
+}  // namespace tumble

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "thrown_body.hpp"
+#include "tumble/tumble.hpp"
+
+namespace tumble {
+namespace {
+
+using test::ThrownBody;
+
+constexpr TimeNs kSweep_ns = 100'000'000;
+
+TumblingOdometry::Params params_of(const ThrownBody& body) {
+  TumblingOdometry::Params params;
+  params.imu.rate_hz = body.imu_hz;
+  params.lever_arm_I_m = body.lever_arm_I_m;
+  return params;
+}
+
+struct Heard {
+  std::vector<TumblingOdometry::Sweep> sweeps;
+  std::vector<TimeNs> came_ns;  ///< time of the IMU when each came
+  std::vector<RateState> rates;
+};
+
+/// Samples `from` to `to` - 1, each sweep as soon as it has ended.
+void feed(const std::vector<ImuSample>& imu, const std::vector<ThrownBody::Sweep>& sweeps, std::size_t from,
+          std::size_t to, TumblingOdometry& odometry, Heard& run) {
+  for (std::size_t k = from; k < to; ++k) {
+    ASSERT_TRUE(odometry.add_imu(imu[k]).ok());
+    const TimeNs before_ns = k == 0 ? 0 : imu[k - 1].time_ns;
+    for (const ThrownBody::Sweep& sweep : sweeps) {
+      if (sweep.end_ns > before_ns && sweep.end_ns <= imu[k].time_ns) {
+        ASSERT_TRUE(odometry.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points).ok());
+      }
+    }
+    while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) {
+      run.sweeps.push_back(std::move(*sweep));
+      run.came_ns.push_back(imu[k].time_ns);
+    }
+    const std::optional<RateState>& rate = odometry.settled_rate();
+    if (rate && (run.rates.empty() || rate->time_ns > run.rates.back().time_ns)) run.rates.push_back(*rate);
+  }
+}
+
+Heard whole(const ThrownBody& body, TumblingOdometry& odometry) {
+  Heard run;
+  const std::vector<ImuSample> imu = body.imu();
+  feed(imu, body.sweeps(), 0, imu.size(), odometry, run);
+  odometry.finish();
+  while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) {
+    run.sweeps.push_back(std::move(*sweep));
+    run.came_ns.push_back(imu.back().time_ns);
+  }
+  return run;
+}
+
+double position_error_m(const ThrownBody& body, const PoseState& pose) {
+  return (pose.p_WA_m - body.T_WI(seconds(pose.time_ns)).translation()).norm();
+}
+double attitude_error_rad(const ThrownBody& body, const PoseState& pose) {
+  return pose.q_WA.angularDistance(Eigen::Quaterniond(body.T_WI(seconds(pose.time_ns)).linear()));
+}
+
+TEST(TumblingOdometry, FollowsAThrowBeyondTheRail) {
+  const ThrownBody body;
+  TumblingOdometry odometry(params_of(body));
+  const Heard run = whole(body, odometry);
+  ASSERT_EQ(run.sweeps.size(), body.sweeps().size());
+  for (const TumblingOdometry::Sweep& sweep : run.sweeps) EXPECT_TRUE(sweep.status.ok()) << sweep.status.message();
+  // returns without noise: what is left is what the map's planes and the deskewing leave
+  EXPECT_LT(position_error_m(body, run.sweeps.back().report.pose), 0.02);
+  EXPECT_LT(attitude_error_rad(body, run.sweeps.back().report.pose), 0.01);
+  double worst_m = 0.0;
+  for (const TumblingOdometry::Sweep& sweep : run.sweeps)
+    worst_m = std::max(worst_m, position_error_m(body, sweep.report.pose));
+  EXPECT_LT(worst_m, 0.1);
+  EXPECT_GT(odometry.mapper().map().size(), 1000u);
+}
+
+TEST(TumblingOdometry, AClippedGyroAloneLosesTheSame) {  // negative control: it is the rates that hold the map
+  const ThrownBody body;
+  LidarInertialOdometry::Params params;
+  params.own_body_L = {};
+  LidarInertialOdometry mapper(params);
+  const std::vector<ImuSample> imu = body.imu();
+  std::size_t next = 0;
+  LidarInertialOdometry::SweepReport report;
+  for (const ThrownBody::Sweep& sweep : body.sweeps()) {
+    for (; next < imu.size() && imu[next].time_ns <= sweep.end_ns; ++next) {
+      RateState rate;
+      rate.time_ns = imu[next].time_ns;
+      rate.w_WI_I_rad_s = imu[next].angular_velocity_rad_s;
+      ASSERT_TRUE(mapper.add_imu(imu[next], rate).ok());
+    }
+    mapper.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, report);
+  }
+  EXPECT_GT(position_error_m(body, report.pose) + attitude_error_rad(body, report.pose), 0.3);
+}
+
+TEST(TumblingOdometry, RecoversTheRateInFlight) {
+  const ThrownBody body;
+  TumblingOdometry odometry(params_of(body));
+  const Heard run = whole(body, odometry);
+  const double from_s = body.rest_s + body.push_s + 0.1, to_s = from_s + body.flight_s - 0.2;
+  int clipped = 0;
+  for (const RateState& rate : run.rates) {
+    const double t_s = seconds(rate.time_ns);
+    if (t_s < from_s || t_s > to_s) continue;
+    clipped += rate.clipped_axes != 0;
+    // a spin about one axis tells the lever arm no better than it was given, to a centimetre: 0.87 rad/s of 3.5 is left
+    const Eigen::Vector3d error = rate.w_WI_I_rad_s - body.w_WI_I_rad_s(t_s);
+    EXPECT_LT(error.norm(), 0.3 * (body.spin_rad_s * body.axis.y() - body.rail_rad_s)) << t_s;
+    EXPECT_LT(error.dot(rate.covariance_rad2_s2.ldlt().solve(error)), 14.2) << t_s;  // 99.7 % of three unknowns
+  }
+  EXPECT_GT(clipped, 40);
+}
+
+TEST(TumblingOdometry, TheWordsComeInTime) {
+  const ThrownBody body;
+  const TumblingOdometry::Params params = params_of(body);
+  TumblingOdometry odometry(params);
+  Heard run;
+  const std::vector<ImuSample> imu = body.imu();
+  feed(imu, body.sweeps(), 0, imu.size(), odometry, run);
+  ASSERT_GT(run.sweeps.size(), 20u);
+  const auto sample_ns = static_cast<TimeNs>(1e9 / body.imu_hz);
+  const auto lag_ns = static_cast<TimeNs>(1e9 * params.lag_s);
+  for (std::size_t k = 0; k < run.sweeps.size(); ++k) {
+    const TimeNs end_ns = run.sweeps[k].report.pose.time_ns;
+    EXPECT_GE(run.came_ns[k] - end_ns, lag_ns - sample_ns);
+    EXPECT_LE(run.came_ns[k] - end_ns, lag_ns + sample_ns);
+    if (k < 1) continue;  // the last word of the one before comes with each
+    ASSERT_FALSE(run.sweeps[k].report.smoothed.empty());
+    EXPECT_EQ(run.sweeps[k].report.smoothed.back().time_ns, end_ns - kSweep_ns);
+  }
+}
+
+TEST(TumblingOdometry, TheNewestPoseIsCausalAndHonest) {
+  const ThrownBody body;
+  TumblingOdometry odometry(params_of(body));
+  const std::vector<ImuSample> imu = body.imu();
+  PoseState pose;
+  EXPECT_EQ(odometry.newest(pose).trouble, Trouble::empty);
+  Heard heard;
+  double worst_m = 0.0, worst_nees = 0.0;
+  for (std::size_t k = 0; k < imu.size(); k += 10) {
+    feed(imu, body.sweeps(), k, std::min(k + 10, imu.size()), odometry, heard);
+    if (heard.sweeps.empty()) continue;
+    ASSERT_TRUE(odometry.newest(pose).ok());
+    EXPECT_EQ(pose.time_ns, imu[std::min(k + 10, imu.size()) - 1].time_ns);
+    const Eigen::Vector3d error = pose.p_WA_m - body.T_WI(seconds(pose.time_ns)).translation();
+    worst_m = std::max(worst_m, error.norm());
+    worst_nees = std::max(worst_nees, error.dot(pose.covariance.topLeftCorner<3, 3>().ldlt().solve(error)));
+  }
+  EXPECT_LT(worst_m, 0.5);
+  EXPECT_LT(worst_nees, 20.0);
+}
+
+TEST(TumblingOdometry, ACopyGoesOnWithTheSameBits) {
+  const ThrownBody body;
+  TumblingOdometry one(params_of(body));
+  const Heard run = whole(body, one);
+  const std::vector<ImuSample> imu = body.imu();
+  for (const std::size_t split : {std::size_t{90}, imu.size() / 2 + 3}) {
+    Heard parts;
+    TumblingOdometry first(params_of(body));
+    feed(imu, body.sweeps(), 0, split, first, parts);
+    TumblingOdometry second(first);
+    feed(imu, body.sweeps(), split, imu.size(), second, parts);
+    second.finish();
+    while (std::optional<TumblingOdometry::Sweep> sweep = second.take()) parts.sweeps.push_back(std::move(*sweep));
+    ASSERT_EQ(parts.sweeps.size(), run.sweeps.size());
+    for (std::size_t k = 0; k < run.sweeps.size(); ++k) {
+      EXPECT_EQ(parts.sweeps[k].report.pose.p_WA_m, run.sweeps[k].report.pose.p_WA_m);
+      EXPECT_EQ(parts.sweeps[k].report.pose.q_WA.coeffs(), run.sweeps[k].report.pose.q_WA.coeffs());
+      EXPECT_EQ(parts.sweeps[k].report.pose.covariance, run.sweeps[k].report.pose.covariance);
+    }
+  }
+}
+
+TEST(TumblingOdometry, GoesOnAfterAGapBeyondTheStreamsBound) {
+  ThrownBody body;
+  body.end_s = 6.5;
+  TumblingOdometry odometry(params_of(body));
+  std::vector<ImuSample> imu = body.imu();
+  std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
+  // the body lies still again while nothing is heard for 1.7 s
+  std::erase_if(imu, [](const ImuSample& s) { return s.time_ns > 3'000'000'000 && s.time_ns < 4'700'000'000; });
+  std::erase_if(sweeps, [](const auto& s) { return s.end_ns > 3'000'000'000 && s.start_ns < 4'700'000'000; });
+  Heard run;
+  feed(imu, sweeps, 0, imu.size(), odometry, run);
+  EXPECT_EQ(odometry.gaps(), 1u);
+  ASSERT_FALSE(run.sweeps.empty());
+  EXPECT_GT(run.sweeps.back().report.pose.time_ns, 6'000'000'000);
+  EXPECT_LT(position_error_m(body, run.sweeps.back().report.pose), 0.1);  // measured: 0.061
+}
+
+TEST(TumblingOdometry, TroubleIsAValueAndChangesNothing) {
+  const ThrownBody body;
+  const std::vector<ImuSample> imu = body.imu();
+  TumblingOdometry odometry(params_of(body)), untouched(params_of(body));
+  ASSERT_TRUE(odometry.add_imu(imu[0]).ok());
+  ASSERT_TRUE(untouched.add_imu(imu[0]).ok());
+  ImuSample bad = imu[1];
+  bad.specific_force_m_s2.y() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(odometry.add_imu(bad).trouble, Trouble::non_finite);
+  EXPECT_EQ(odometry.add_imu(imu[0]).trouble, Trouble::time_order);
+  const std::vector<LidarPoint> late(1, LidarPoint{.offset_ns = 200'000'000});
+  EXPECT_EQ(odometry.add_sweep(0, kSweep_ns, late).trouble, Trouble::out_of_range);
+  EXPECT_EQ(odometry.add_sweep(5, 4, {}).trouble, Trouble::time_order);
+  Heard a, b;
+  feed(imu, body.sweeps(), 1, imu.size(), odometry, a);
+  feed(imu, body.sweeps(), 1, imu.size(), untouched, b);
+  ASSERT_FALSE(a.sweeps.empty());
+  EXPECT_EQ(a.sweeps.back().report.pose.p_WA_m, b.sweeps.back().report.pose.p_WA_m);
+  EXPECT_EQ(odometry.add_sweep(0, kSweep_ns, {}).trouble, Trouble::time_order);
+}
+
+TEST(TumblingOdometry, SweepsThatWaitAreBounded) {
+  const ThrownBody body;
+  TumblingOdometry::Params params = params_of(body);
+  params.expert.sweeps_max = 3;
+  TumblingOdometry odometry(params);
+  for (int k = 0; k < 3; ++k) EXPECT_TRUE(odometry.add_sweep(k * kSweep_ns, (k + 1) * kSweep_ns, {}).ok());
+  const Status status = odometry.add_sweep(3 * kSweep_ns, 4 * kSweep_ns, {});
+  EXPECT_EQ(status.trouble, Trouble::out_of_range);
+  EXPECT_EQ(status.bound, 3.0);
+}
+
+TEST(TumblingOdometry, RefusesParametersOutOfTheirBounds) {
+  TumblingOdometry::Params params;
+  params.lever_arm_sigma_m = -1.0;
+  EXPECT_THROW(TumblingOdometry{params}, InvalidParams);
+  params = {};
+  params.imu.rate_hz = 0.0;
+  EXPECT_THROW(TumblingOdometry{params}, InvalidParams);
+  params = {};
+  params.expert.mapping.neighbours = 1;
+  EXPECT_THROW(TumblingOdometry{params}, InvalidParams);
+}
+
+}  // namespace
+}  // namespace tumble

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The door behind a ROS bag: example_bag BAG (a ROS 1 file, or the folder of a ROS 2 bag) prints a pose for each sweep.
+// The readers are the harness's; sensors and mounting are those of examples/door/tumbling.cpp. Exit status 2: bad
+// input.
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <tumble/tumble.hpp>
+
+#include "examples/door/driver.hpp"
+#include "scenarios/methods/bridge.hpp"
+#include "scenarios/recordings/bags/bag.hpp"
+
+namespace {
+
+tumble::TumblingOdometry::Params rig() {
+  tumble::TumblingOdometry::Params params;
+  params.imu = tumble::sheets::mti30();
+  params.lever_arm_I_m = {-0.022, -0.085, 0.055};
+  params.T_IL.translation() = {0.02014, 0.08745, 0.0398};
+  params.T_IL.linear() = Eigen::AngleAxisd(-0.5 * M_PI, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  params.own_body_L = {Eigen::Vector3d(-0.5, -0.4, -0.27), Eigen::Vector3d(0.5, 0.4, 0.23)};
+  return params;
+}
+
+void run(const tumble::sim::Sensors& sensors) {
+  namespace bridge = tumble::scenarios::bridge;
+  std::vector<tumble::ImuSample> samples;
+  if (const auto status = bridge::primary_imu_samples(sensors, samples); !status.ok()) {
+    throw std::runtime_error(status.message());
+  }
+  tumble::TumblingOdometry odometry(rig());
+  const auto tell = [](const tumble::Status& status) {
+    if (!status.ok()) std::fprintf(stderr, "%s\n", status.message().c_str());
+  };
+  std::size_t next = 0;
+  const std::size_t sweeps = sensors.lidars.empty() ? 0 : bridge::sweep_count(sensors.lidars.front());
+  std::optional<bridge::Sweep> sweep;
+  for (const tumble::ImuSample& sample : samples) {
+    tell(odometry.add_imu(sample));
+    while (sweep || next < sweeps) {
+      if (!sweep) sweep = bridge::sweep(sensors.lidars.front(), next++);
+      if (sweep->end_ns > sample.time_ns) break;
+      tell(odometry.add_sweep(sweep->start_ns, sweep->end_ns, sweep->points));
+      sweep.reset();
+    }
+    while (const auto done = odometry.take()) driver::print(done->report.pose);
+  }
+  odometry.finish();
+  while (const auto done = odometry.take()) driver::print(done->report.pose);
+  std::fprintf(stderr, "a map of %zu points\n", odometry.mapper().map().size());
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  if (count != 2) {
+    std::fputs("use: example_bag BAG\n", stderr);
+    return 2;
+  }
+  try {
+    const std::filesystem::path bag = arguments[1];
+    const auto read =
+        bag.extension() == ".bag" ? tumble::scenarios::import_ros1_bag : tumble::scenarios::import_ros2_bag;
+    tumble::scenarios::BagReading reading;
+    reading.imu_topics = {"/imu"};
+    run(read(bag, reading).sensors);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "example_bag: %s\n", error.what());
+    return 2;
+  }
+}

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cmath>
+#include <cstdio>
+#include <istream>
+#include <optional>
+#include <string>
+#include <tumble/tumble.hpp>
+#include <vector>
+
+/// Stands for the drivers of a robot: messages as lines of text, in order of time.
+///
+///     imu TIME_NS WX WY WZ FX FY FZ        rad/s and m/s^2, of one IMU; of several a line each, the first's stamp
+///     counts sweep START_NS END_NS POINTS         then so many lines: X Y Z OFFSET_NS RING, metres in the lidar's axes
+namespace driver {
+
+struct Sweep {
+  tumble::TimeNs start_ns = 0, end_ns = 0;
+  std::vector<tumble::LidarPoint> points;
+};
+struct Message {
+  std::optional<tumble::ImuSample> imu;  ///< or a sweep
+  Sweep sweep;
+};
+
+/// The next message; nothing at the end and at the first line that is none.
+inline std::optional<Message> next(std::istream& in) {
+  Message out;
+  std::string kind;
+  if (!(in >> kind)) return std::nullopt;
+  if (kind == "imu") {
+    tumble::ImuSample& imu = out.imu.emplace();
+    Eigen::Vector3d &w = imu.angular_velocity_rad_s, &f = imu.specific_force_m_s2;
+    in >> imu.time_ns >> w.x() >> w.y() >> w.z() >> f.x() >> f.y() >> f.z();
+  } else if (kind == "sweep") {
+    std::size_t count = 0;
+    in >> out.sweep.start_ns >> out.sweep.end_ns >> count;
+    for (tumble::LidarPoint point; in && out.sweep.points.size() < count; out.sweep.points.push_back(point)) {
+      Eigen::Vector3f& p = point.position_L_m;
+      in >> p.x() >> p.y() >> p.z() >> point.offset_ns >> point.ring;
+    }
+  } else {
+    return std::nullopt;
+  }
+  if (!in) return std::nullopt;
+  return out;
+}
+
+/// "TIME_NS x y z qx qy qz qw sigma_m", a line.
+inline void print(const tumble::PoseState& pose) {
+  const Eigen::Vector3d& p = pose.p_WA_m;
+  const Eigen::Quaterniond& q = pose.q_WA;
+  std::printf("%lld %.6f %.6f %.6f %.9f %.9f %.9f %.9f %.4f\n", static_cast<long long>(pose.time_ns), p.x(), p.y(),
+              p.z(), q.x(), q.y(), q.z(), q.w(), std::sqrt(pose.covariance.topLeftCorner<3, 3>().trace()));
+}
+
+}  // namespace driver

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/settings.hpp"
+#include "scenarios/methods/slam_registry.hpp"
+#include "tumble/odometry/tumbling_odometry_fields.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+const Settings<TumblingOdometry::Params>& settings() {
+  // the door's own numbers take the place of these
+  const std::vector<std::string> fixed = {"rate_lever_arm_sigma_m",
+                                          "rate_gyro_noise_density",
+                                          "rate_accel_noise_density",
+                                          "rate_rails_stated_*",
+                                          "rate_period_s",
+                                          "rate_lag_s",
+                                          "rate_evidence_gravity_m_s2",
+                                          "rate_carried_gravity_m_s2",
+                                          "rate_carried_gap_max_s",
+                                          "rate_carried_period_s",
+                                          "rate_carried_lag_s",
+                                          "rate_carried_iterations_max",
+                                          "mapping_mount_sigma_*",
+                                          "mapping_time_offset_sigma_s",
+                                          "mapping_gravity_m_s2",
+                                          "mapping_range_*",
+                                          "mapping_own_body_*"};
+  static const Settings<TumblingOdometry::Params> all(
+      TumblingOdometry::Params{}, {.stated = {"imu_*", "lever_arm_x_m", "lever_arm_y_m", "lever_arm_z_m",
+                                              "gravity_m_s2", "mapping_accel_rail_m_s2"},
+                                   .fixed = fixed});
+  return all;
+}
+
+TumblingOdometry::Params stated_params(const sim::Sensors& sensors, const sim::Values& parameters) {
+  const sim::ImuRecord& imu = sensors.imus.front();
+  TumblingOdometry::Params params = settings().defaults();
+  ImuSheet& sheet = params.imu;
+  if (imu.period_ns > 0) sheet.rate_hz = 1.0 / seconds(imu.period_ns);
+  sheet.gyro_range_rad_s = imu.stated_gyro_range_rad_s;
+  sheet.accel_range_m_s2 = imu.stated_accel_range_m_s2;
+  if (imu.gyro_noise_rad_s_sqrt_hz > 0.0) sheet.gyro_noise_rad_s_sqrt_hz = imu.gyro_noise_rad_s_sqrt_hz;
+  if (imu.accel_noise_m_s2_sqrt_hz > 0.0) sheet.accel_noise_m_s2_sqrt_hz = imu.accel_noise_m_s2_sqrt_hz;
+  params.lever_arm_I_m = bridge::lever_arm_I_m(imu);
+  params.T_IL = bridge::T_IL(imu, sensors.lidars.front());
+  params.own_body_L = LidarInertialOdometry::Params{}.own_body_L;
+  params.gravity_m_s2 = sensors.gravity_m_s2;
+  settings().apply(parameters, params);
+  return params;
+}
+
+/// Of which words of the door an estimate is made.
+enum class Word {
+  live,  ///< the pose at the end of each sweep as soon as it has ended
+  last,  ///< each sweep's trajectory when nothing refines it any more
+};
+
+/// Collects what the door says into an estimate.
+class Listener {
+ public:
+  Listener(Word word, Estimate& estimate) : word_(word), estimate_(estimate) {}
+
+  /// A sweep has just ended.
+  void ended(const TumblingOdometry& odometry) {
+    PoseState pose;
+    if (odometry.newest(pose).ok()) live_.push_back(pose);
+  }
+  void take(TumblingOdometry& odometry) {
+    while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) {
+      if (!sweep->status.ok()) estimate_.health[std::string("sweeps_") + to_string(sweep->status.trouble)] += 1.0;
+      if (sweep->report.trajectory.empty()) continue;  // the IMU begins after it
+      estimate_.health[std::string("sweeps_") + to_string(sweep->report.verdict)] += 1.0;
+      estimate_.sweep_end_ns.push_back(sweep->report.pose.time_ns);
+      std::vector<PoseState> last_word = std::move(sweep->report.smoothed);
+      estimate_.sweeps.push_back(std::move(sweep->report));
+      settle(std::move(last_word));
+    }
+  }
+  /// The run has ended.
+  void conclude(const LidarInertialOdometry& mapper) {
+    for (std::vector<PoseState>& open : mapper.open_trajectories()) settle(std::move(open));
+    conclude_sweeps(mapper, estimate_);
+    if (word_ == Word::live) estimate_.poses = live_;
+  }
+
+ private:
+  void settle(std::vector<PoseState> last_word) {
+    if (last_word.empty() || settled_ == estimate_.sweeps.size()) return;
+    LidarInertialOdometry::SweepReport& sweep = estimate_.sweeps[settled_++];
+    sweep.trajectory = std::move(last_word);
+    sweep.pose = sweep.trajectory.back();
+  }
+
+  Word word_;
+  Estimate& estimate_;
+  std::size_t settled_ = 0;
+  std::vector<PoseState> live_;
+};
+
+/// The recording as a robot lives it: each sample when its window ends, each sweep when its last point was fired.
+Status live_through(const sim::Sensors& sensors, std::span<const ImuSample> samples, TumblingOdometry& odometry,
+                    Listener& listener) {
+  const sim::LidarRecord& lidar = sensors.lidars.front();
+  const std::size_t sweeps = bridge::sweep_count(lidar);
+  std::optional<bridge::Sweep> present;
+  std::size_t next = 0;
+  for (const ImuSample& sample : samples) {
+    if (Status status = odometry.add_imu(sample); !status.ok()) return status;
+    while (present || next < sweeps) {
+      if (!present) present = bridge::sweep(lidar, next++);
+      if (present->end_ns > sample.time_ns) break;
+      if (Status status = odometry.add_sweep(present->start_ns, present->end_ns, present->points); !status.ok())
+        return status;
+      listener.ended(odometry);
+      present.reset();
+    }
+    listener.take(odometry);
+  }
+  odometry.finish();
+  listener.take(odometry);
+  return {};
+}
+
+Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, Word word) {
+  Estimate estimate;
+  estimate.frame = Frame::imu;
+  std::vector<ImuSample> samples;
+  estimate.status = bridge::primary_imu_samples(sensors, samples);
+  if (!estimate.status.ok()) return estimate;
+  if (sensors.lidars.empty()) {
+    estimate.status = {Trouble::empty, "lidars", 0.0, 1.0};
+    return estimate;
+  }
+  TumblingOdometry odometry(stated_params(sensors, parameters));
+  Listener listener(word, estimate);
+  estimate.status = live_through(sensors, samples, odometry, listener);
+  if (!estimate.status.ok()) return estimate;
+  estimate.health["gaps"] = static_cast<double>(odometry.gaps());
+  listener.conclude(odometry.mapper());
+  return estimate;
+}
+
+}  // namespace
+
+Method slam_tumble_lag() {
+  return rig_slam(
+      {.name = "tumble_lag",
+       .doc = "TumblingOdometry, the library's door: one causal pass, each sweep's last word 0.3 s after it.",
+       .source = "ours",
+       .settings = {&settings()}},
+      [](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+        return run(sensors, parameters, Word::last);
+      });
+}
+
+Method slam_tumble_live() {
+  return rig_slam({.name = "tumble_live",
+                   .doc = "The same pass, live: the pose at the end of each sweep by what came before it alone.",
+                   .source = "ours",
+                   .settings = {&settings()}},
+                  [](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+                    return run(sensors, parameters, Word::live);
+                  });
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The programs of README on recordings: what they print is held to the truth, and the bag says what the lines say.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "scenarios/methods/bridge.hpp"
+#include "scenarios/recordings/recording_file.hpp"
+#include "sim/recording.hpp"
+#include "tests/tree.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string output_of(const std::string& command) {
+  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), pclose);
+  std::string out;
+  std::array<char, 4096> buffer;
+  while (pipe && fgets(buffer.data(), buffer.size(), pipe.get()) != nullptr) out += buffer.data();
+  return out;
+}
+
+/// The sensors of a recording as examples/door/driver.hpp reads them, all IMUs but the reference.
+void write_messages(const sim::Sensors& sensors, const fs::path& file) {
+  std::vector<std::vector<ImuSample>> units;
+  for (const sim::ImuRecord& record : sensors.imus) {
+    if (record.name == "imu_reference") continue;
+    ASSERT_TRUE(bridge::imu_samples(record, units.emplace_back()).ok());
+  }
+  std::ofstream out(file);
+  out.precision(17);
+  std::size_t next = 0;
+  const std::size_t sweeps = sensors.lidars.empty() ? 0 : bridge::sweep_count(sensors.lidars.front());
+  for (std::size_t k = 0; k < units.front().size(); ++k) {
+    for (const std::vector<ImuSample>& unit : units) {
+      const ImuSample& s = unit[k];
+      out << "imu " << s.time_ns << ' ' << s.angular_velocity_rad_s.transpose() << ' '
+          << s.specific_force_m_s2.transpose() << '\n';
+    }
+    for (; next < sweeps; ++next) {
+      const bridge::Sweep sweep = bridge::sweep(sensors.lidars.front(), next);
+      if (sweep.end_ns > units.front()[k].time_ns) break;
+      out << "sweep " << sweep.start_ns << ' ' << sweep.end_ns << ' ' << sweep.points.size() << '\n';
+      for (const LidarPoint& p : sweep.points)
+        out << p.position_L_m.transpose() << ' ' << p.offset_ns << ' ' << p.ring << '\n';
+    }
+  }
+}
+
+struct Line {
+  std::int64_t time_ns;
+  Eigen::Vector3d p_m;
+  double sigma_m;
+};
+std::vector<Line> lines_of(const std::string& text) {
+  std::vector<Line> out;
+  std::istringstream in(text);
+  for (std::string row; std::getline(in, row);) {
+    std::istringstream words(row);
+    Line line;
+    double q = 0.0;
+    words >> line.time_ns >> line.p_m.x() >> line.p_m.y() >> line.p_m.z() >> q >> q >> q >> q >> line.sigma_m;
+    if (words) out.push_back(line);
+  }
+  return out;
+}
+
+/// How far a point that is fixed in the body went from the start to `time_ns` [m].
+double way_m(const sim::Truth& truth, const Eigen::Vector3d& p_B_m, std::int64_t time_ns) {
+  const auto k = std::min(static_cast<std::size_t>(time_ns / truth.period_ns), truth.p_WB_m.size() - 1);
+  const auto at = [&](std::size_t i) { return Eigen::Vector3d(truth.p_WB_m[i] + truth.q_WB[i] * p_B_m); };
+  return (at(k) - at(0)).norm();
+}
+
+struct Recorded {
+  fs::path file, messages;
+  sim::Sensors sensors;
+  sim::Truth truth;
+};
+Recorded record(const std::string& scenario) {
+  Recorded out;
+  const fs::path folder = fs::path(testing::TempDir()) / ("tumble_door_" + scenario);
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  out.file = folder / "recording.h5";
+  out.messages = folder / "messages.txt";
+  output_of(test::program().string() + " record " + scenario + " --seed 1 --quiet -o " + out.file.string());
+  out.sensors = read_sensors(out.file);
+  out.truth = read_truth(out.file);
+  write_messages(out.sensors, out.messages);
+  return out;
+}
+
+TEST(Door, TheTumblingExampleFollowsAThrowAndABagSaysTheSame) {
+  const Recorded throw_1 = record("throw");
+  const std::vector<Line> lines = lines_of(output_of(std::string(TUMBLE_TUMBLING) + " < " + throw_1.messages.string()));
+  ASSERT_GT(lines.size(), 30u);
+  const Line& end = lines.back();
+  const double way = way_m(throw_1.truth, throw_1.truth.imus.front().T_BI.translation(), end.time_ns);
+  EXPECT_GT(way, 1.0) << "a throw that goes nowhere tells nothing";
+  EXPECT_NEAR(end.p_m.norm(), way, 0.1);
+  EXPECT_GT(end.sigma_m, 0.0);
+
+  const fs::path bag = throw_1.file.parent_path() / "throw.bag";
+  output_of(test::program().string() + " export " + throw_1.file.string() + " --format rosbag1 -o " + bag.string());
+  const std::vector<Line> from_bag = lines_of(output_of(std::string(TUMBLE_BAG) + " " + bag.string()));
+  ASSERT_EQ(from_bag.size(), lines.size());
+  // stamps of points are 4 ns coarser in a bag
+  EXPECT_LT((from_bag.back().p_m - end.p_m).norm(), 0.01);
+  EXPECT_NE(std::system((std::string(TUMBLE_BAG) + " " + throw_1.file.string() + " 2>/dev/null").c_str()), 0);
+}
+
+TEST(Door, TheRollingExampleFollowsARoll) {
+  const Recorded roll_1 = record("roll");
+  const std::vector<Line> lines = lines_of(output_of(std::string(TUMBLE_ROLLING) + " < " + roll_1.messages.string()));
+  ASSERT_GT(lines.size(), 100u);
+  const double way = way_m(roll_1.truth, roll_1.truth.p_BG_m, lines.back().time_ns);
+  EXPECT_NEAR(lines.back().p_m.norm(), way, 0.02 * std::max(1.0, way));
+}
+
+/// What stands in a file between its first include and its end.
+std::string code_of(const std::string& text) {
+  const std::size_t at = text.find("#include");
+  return at == std::string::npos ? "" : text.substr(at);
+}
+std::string text_of(const fs::path& file) {
+  std::ostringstream out;
+  out << std::ifstream(file).rdbuf();
+  return out.str();
+}
+
+TEST(Door, ReadmeShowsTheProgramsThatAreTested) {
+  const std::string readme = text_of(test::source_dir() / "README.md");
+  for (const char* name : {"tumbling.cpp", "rolling.cpp"}) {
+    const std::string code = code_of(text_of(test::source_dir() / "examples/door" / name));
+    ASSERT_GT(code.size(), 500u);
+    EXPECT_NE(readme.find("```cpp\n" + code + "```"), std::string::npos) << "README.md shows another " << name;
+    EXPECT_LT(std::count(code.begin(), code.end(), '\n'), 36);
+  }
+}
+
+}  // namespace
+}  // namespace tumble::scenarios
