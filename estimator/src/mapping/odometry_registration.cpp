@@ -28,7 +28,8 @@ constexpr double kKnotFloor = 0.05;  // of the prior's standard deviation: a kno
 /// first, mapping.md (R54).
 Registration::Prior moved_start(Registration::Prior prior, int index) {
   if (index == 0) return prior;
-  const double reach = 1.0 + (index - 1) / 12;
+  const int rounds = (index - 1) / 12;  // of all axes both ways
+  const double reach = 1.0 + rounds;
   const int axis = (index - 1) / 2 % 6;
   const double sign = (index - 1) % 2 == 0 ? 1.0 : -1.0;
   const double sigma = std::sqrt(prior.covariance(axis, axis));
