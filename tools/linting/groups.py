@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Many sources as one text, so that Clang reads the headers of libraries once for them all.
 
-Headers of Eigen, GoogleTest and JSON are nine tenths of what one reading costs, and clang-tidy's checks walk over them too.
+Headers of Eigen, GoogleTest and JSON are most of what one reading costs, and clang-tidy's checks walk over them too.
 Sources are therefore set one below the other in a single file, the includes of all first; what two of them have in unnamed
 namespaces under one name is called differently there. What Clang finds in such a text is a hint, not a finding: names may
 clash in ways that are overlooked here, so whoever reads asks the sources themselves.
