@@ -55,11 +55,15 @@ function(tumble_target target)
   endif()
 endfunction()
 
-# Without the first ccache keeps nothing. The others: GCC 12 forgets that what it precompiled were system headers, and
-# warns of std::string there.
+# Without the first ccache keeps nothing, of Clang as of GCC. The others: GCC 12 forgets that what it precompiled were
+# system headers, and warns of std::string there.
 function(tumble_precompiled_flags target)
-  target_compile_options(${target} PRIVATE -fpch-preprocess -Wno-array-bounds -Wno-stringop-overflow
-    -Wno-stringop-overread)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+    target_compile_options(${target} PRIVATE -fpch-preprocess -Wno-array-bounds -Wno-stringop-overflow
+      -Wno-stringop-overread)
+  else()
+    target_compile_options(${target} PRIVATE "SHELL:-Xclang -fno-pch-timestamp")
+  endif()
 endfunction()
 
 # tumble_precompile(TARGET HEADER...): the files of TARGET begin with what these headers left, parsed once. Saves time

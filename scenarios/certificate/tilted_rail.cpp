@@ -12,6 +12,7 @@
 // before). So the tilts drawn here are those of real devices; that a simulated plane leaves nothing is what a device
 // with an exact compensation does.
 #include <Eigen/Dense>
+#include <algorithm>
 #include <array>
 #include <cmath>
 

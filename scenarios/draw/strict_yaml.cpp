@@ -95,8 +95,8 @@ std::string suggestion(const std::string& name, std::span<const std::string> kno
   return text;
 }
 
-YamlNode::YamlNode(YAML::Node node, std::string file, std::string place)
-    : node_(std::move(node)), file_(std::move(file)), place_(std::move(place)), line_(node_.Mark().line + 1) {}
+YamlNode::YamlNode(const YAML::Node& node, std::string file, std::string place)
+    : node_(node), file_(std::move(file)), place_(std::move(place)), line_(node.Mark().line + 1) {}
 
 YamlNode YamlNode::parse(const std::string& text, const std::string& file) {
   try {

@@ -49,7 +49,7 @@ class YamlNode {
                                          std::span<const std::string> optional = {}) const;
 
  private:
-  YamlNode(YAML::Node node, std::string file, std::string place);
+  YamlNode(const YAML::Node& node, std::string file, std::string place);
   double parse_number(bool infinity_allowed) const;
 
   YAML::Node node_;

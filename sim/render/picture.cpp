@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <csetjmp>
 #include <fstream>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <system_error>

@@ -9,6 +9,7 @@
 // --ablation takes `hill_consumer` with one of its errors switched off at a time instead. Not a test: 2 to 3 s of one
 // core a draw and row.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>

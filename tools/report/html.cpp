@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/report/html.hpp"
 
+#include <algorithm>
+
 namespace tumble::tools::html {
 
 std::string escaped(const std::string& text) {

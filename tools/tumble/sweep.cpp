@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <tuple>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/sweep/certified_results.hpp"

@@ -2,6 +2,7 @@
 #include "tumble/mapping/sweep_trajectory.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "tumble/common/so3.hpp"

@@ -2,6 +2,7 @@
 #include "scenarios/baselines/mapping/rigid_odometry.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "tumble/mapping/sweep_check.hpp"
 

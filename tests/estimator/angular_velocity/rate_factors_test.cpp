@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <functional>
+#include <vector>
 
 #include "oracles/gaussian.hpp"
 #include "oracles/torque_free_rotation.hpp"

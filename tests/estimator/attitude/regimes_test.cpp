@@ -2,6 +2,7 @@
 // Which regime a body is in, on motion in closed form: it spins about an axis of its own, the force is that of a hand,
 // of flight or of the ground, in a row that the test names.
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>

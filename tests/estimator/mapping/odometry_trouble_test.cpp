@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <ostream>
 
 #include "tests/estimator/mapping/room_tumble.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"

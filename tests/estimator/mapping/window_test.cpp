@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <thread>
 
 #include "tests/estimator/mapping/synthetic_room.hpp"

@@ -2,6 +2,7 @@
 #include "tumble/rolling/rolling_smoother.hpp"
 
 #include <gtest/gtest.h>
+#include <Eigen/Cholesky>
 
 #include <cmath>
 #include <memory>

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <cmath>
 
 #include "scenarios/errors.hpp"
 #include "tests/tree.hpp"

@@ -39,9 +39,10 @@ void add_imu(const std::string& name, const Eigen::Vector3d& p_B_m, bool with_gy
   record.T_BI.translation() = p_B_m;
   record.T_BI.linear() = Eigen::AngleAxisd(1.1, Eigen::Vector3d(-2, 1, 1).normalized()).toRotationMatrix();
   truth.T_BI = record.T_BI;
+  const std::int64_t half_ns = record.period_ns / 2;
   for (std::size_t k = 0; k < record.time_ns.size(); ++k) {
-    record.time_ns[k] += record.period_ns / 2;
-    const double middle_s = 1e-9 * static_cast<double>(record.time_ns[k] - record.period_ns / 2);
+    const double middle_s = 1e-9 * static_cast<double>(record.time_ns[k]);
+    record.time_ns[k] += half_ns;
     const Eigen::Matrix3d R_IB = record.T_BI.linear().transpose();
     const Eigen::Vector3d rate = R_IB * motion.rate_B_rad_s(middle_s);
     record.gyro_rad_s[k] = rate.cwiseMax(-motion.rail_rad_s).cwiseMin(motion.rail_rad_s);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <algorithm>
 
 #include "scenarios/recordings/fixture_recording.hpp"
 #include "scenarios/recordings/import.hpp"

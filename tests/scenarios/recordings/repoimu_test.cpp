@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <sstream>
 
 #include "scenarios/recordings/fixture_recording.hpp"
 #include "scenarios/recordings/import.hpp"

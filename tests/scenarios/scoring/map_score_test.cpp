@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
+#include <cmath>
 
 #include "scenarios/scoring/perfect_estimate.hpp"
 #include "sim/lidar/surface.hpp"

@@ -1,0 +1,93 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""What tools/lint does beside clang-format and clang-tidy: includes, and many sources as one text.
+
+    linting_test.py TOOLS_FOLDER
+"""
+import pathlib
+import sys
+import tempfile
+import unittest
+
+TOOLS = pathlib.Path(sys.argv.pop(1))
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(TOOLS))
+from linting import groups, includes  # noqa: E402
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.root = pathlib.Path(scratch.name)
+
+    def write(self, name: str, *lines: str) -> str:
+        (self.root / name).write_text("".join(line + "\n" for line in lines))
+        return name
+
+
+class Includes(Case):
+    def complaints(self, *lines: str) -> list[str]:
+        return includes.complaints(self.root, [self.write("a.cpp", *lines)])
+
+    def test_what_is_used_must_be_included(self):
+        self.assertEqual(self.complaints("std::vector<int> a;"), ["a.cpp: uses std::vector without <vector>"])
+        self.assertEqual(self.complaints("#include <vector>", "std::vector<int> a;"), [])
+
+    def test_a_header_of_the_tree_may_include_it(self):
+        self.write("b.hpp", "#include <vector>")
+        self.write("c.hpp", '#include "b.hpp"')
+        self.assertEqual(self.complaints('#include "c.hpp"', "std::vector<int> a;"), [])
+
+    def test_a_header_of_a_library_may_not(self):
+        self.assertEqual(len(self.complaints("#include <Eigen/Geometry>", "double a = std::sqrt(2.0);")), 1)
+
+    def test_members_of_eigen_stand_in_headers_of_their_own(self):
+        self.assertEqual(self.complaints("#include <Eigen/Core>", "auto c = a.cross(b);"),
+                         ["a.cpp: uses .cross( without <Eigen/Geometry>"])
+
+    def test_comments_and_texts_use_nothing(self):
+        self.assertEqual(self.complaints("// std::vector", 'auto a = "std::map"; /* std::set */', 'auto b = R"(std::list)";'), [])
+
+    def test_an_unknown_name_is_not_passed_over(self):
+        self.assertIn("std::no_such_thing is unknown", self.complaints("std::no_such_thing a;")[0])
+
+
+class Groups(Case):
+    def source(self, name: str, *lines: str) -> groups.Source:
+        return groups.read_source(self.root, self.write(name, *lines), ["-Iroot"])
+
+    def test_names_of_their_own_are_told_apart_and_lines_found_again(self):
+        body = ["namespace {", "struct Span {", "  int first;", "};", "int reach(Span span) { return span.first; }", "}  // namespace"]
+        first = self.source("a.cpp", "#include <vector>", *body)
+        second = self.source("b.cpp", "#include <vector>", "#include <map>", *body, "int b = other.reach + reach({});")
+        text, places = groups.text_of([first, second])
+        lines = text.splitlines()
+        self.assertEqual(lines[:2], ["#include <vector>", "#include <map>"])
+        self.assertEqual(len(lines), len(places))
+        self.assertEqual(lines.count("struct Span {"), 1)
+        self.assertEqual(lines.count("struct Span_1 {"), 1)
+        at = lines.index("int b = other.reach + reach_1({});")  # the member of another is not theirs
+        self.assertEqual(places[at], ("b.cpp", 9))
+        self.assertEqual(groups.suspected(f"/x/j.cpp:{at + 1}:5: error: e [c]", pathlib.Path("/x/j.cpp"), places), {"b.cpp"})
+
+    def test_a_word_of_the_language_is_no_name(self):
+        pair = [self.source(name, "namespace {", "static_assert(true);", "}  // namespace") for name in ("a.cpp", "b.cpp")]
+        self.assertEqual(groups.text_of(pair)[0].count("static_assert(true);"), 2)
+
+    def test_an_include_under_a_condition_stays_there(self):
+        text, _ = groups.text_of([self.source("a.cpp", "#ifdef X", "#include <map>", "#endif"), self.source("b.cpp", "int b;")])
+        self.assertEqual(text.splitlines()[1], "#include <map>")
+
+    def test_tests_of_one_name_are_read_apart(self):
+        pair = [self.source(name, "TEST(Rail, Clips) {", "}") for name in ("a.cpp", "b.cpp")]
+        self.assertEqual(len(groups.grouped(pair)), 2)
+        self.assertEqual(len(groups.grouped([pair[0], self.source("c.cpp", "TEST(Rail, Wraps) {", "}")])), 1)
+
+    def test_a_group_is_bounded(self):
+        many = [self.source(f"s{index}.cpp", "int a;") for index in range(groups.MOST_SOURCES + 1)]
+        self.assertEqual([len(group) for group in groups.grouped(many)], [groups.MOST_SOURCES, 1])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,43 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# tools/test goes through its stages with stand-ins of cmake and ctest: to the end although one fails, which it says and exits by.
+#   stages.sh TREE
+set -euo pipefail
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+mkdir -p "$scratch/tools" "$scratch/bin"
+cp "$1/tools/test" "$scratch/tools/test"
+
+stand_in() { printf '#!/bin/sh\necho "%s $*" >> "%s/called"\n%s\n' "$1" "$scratch" "$2" > "$scratch/$1"; chmod +x "$scratch/$1"; }
+stand_in tools/setup 'exit 0'
+stand_in tools/lint 'exit 0'
+stand_in bin/ctest 'exit 0'
+# fails to build what FAILING names
+stand_in bin/cmake 'case "$*" in *"--build --preset ${FAILING:-none} "*) exit 1 ;; esac'
+
+# outcome FAILING ARGUMENT...: what tools/test says at its end, "exit STATUS" below
+outcome() {
+  local failing=$1; shift
+  local status=0
+  rm -f "$scratch/called"
+  FAILING=$failing PATH=$scratch/bin:$PATH "$scratch/tools/test" "$@" > "$scratch/said" 2>&1 || status=$?
+  sed -n '/seconds processor/,$s/^test: \([a-z]*\)[ 0-9]*\(.*\)/\1 \2/p' "$scratch/said" | tail -n +2
+  echo "exit $status"
+}
+expect() {
+  [ "$2" = "$3" ] && return
+  printf 'stages: %s\nexpected:\n%s\nfound:\n%s\n' "$1" "$3" "$2" >&2
+  exit 1
+}
+lines() { printf '%s\n' "$@"; }
+
+expect 'all pass' "$(outcome none --all)" "$(lines 'build passed' 'tests passed' 'soak passed' 'sanitize passed' 'threads passed' \
+  'fuzz passed' 'lint passed' 'bench passed' 'exit 0')"
+expect 'one fails, the others run' "$(outcome threads --all --from sanitize)" "$(lines 'sanitize passed' 'threads FAILED' \
+  'fuzz passed' 'lint passed' 'bench passed' 'failed : threads' 'exit 1')"
+expect 'no release build: nothing is tested in it' "$(outcome release --all | grep -c 'not run: no build')" 3
+expect 'as CI runs it' "$(outcome none)" "$(lines 'build passed' 'tests passed' 'exit 0')"
+expect 'as CI runs it, a build that fails' "$(outcome release)" "$(lines 'build FAILED' 'tests not run: no build' \
+  'failed : build tests' 'exit 1')"
+expect 'an unknown stage' "$(outcome none --all --from nowhere)" 'exit 2'
+expect 'a stage without --all' "$(outcome none --from soak)" 'exit 2'

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Many sources as one text, so that Clang reads the headers of libraries once for them all.
+
+Headers of Eigen, GoogleTest and JSON are most of what one reading costs, and clang-tidy's checks walk over them too.
+Sources are therefore set one below the other in a single file, the includes of all first; what two of them have in unnamed
+namespaces under one name is called differently there. What Clang finds in such a text is a hint, not a finding: names may
+clash in ways that are overlooked here, so whoever reads asks the sources themselves.
+"""
+import dataclasses
+import pathlib
+import re
+
+MOST_SOURCES = 24  # beyond this the headers' share is small, and a reading's memory grows
+MOST_LINES = 5000
+
+_OWN_BEGINS, _OWN_ENDS = "namespace {", "}  // namespace"
+_TYPE = re.compile(r"(?:struct|class|enum(?: class)?|union|concept|using)\s+(\w+)\s*(?:=|\{|:(?!:)|final|$)")
+_FUNCTION = re.compile(r"[^(]*?(?<![:.~\w])(\w+)\(")
+_VARIABLE = re.compile(r"[\w:<>,&* ]+[\s&*](\w+)(?:\[[^\]]*\])*\s*(?:=|\{|;)")
+_TEST = re.compile(r"(?:TYPED_TEST|TEST|MATCHER|INSTANTIATE_TEST_SUITE|TYPED_TEST_SUITE|BENCHMARK)(?:_[A-Z]\d*)?\(([^)]*)")
+
+
+@dataclasses.dataclass
+class Source:
+    name: str
+    text: str
+    words: list[str]  # of its compilation
+    own: set[str]     # names in its unnamed namespaces, which another source may have too
+    tests: set[str]   # what GoogleTest makes names of, which another must not have
+
+
+def read_source(root: pathlib.Path, name: str, words: list[str]) -> Source:
+    text = (root / name).read_text()
+    own, tests = set(), set()
+    inside = False
+    for line in text.splitlines():
+        if line in (_OWN_BEGINS, _OWN_ENDS):
+            inside = line == _OWN_BEGINS
+        elif found := _TEST.match(line):
+            tests.add(found[1])
+        elif (line[:1].isalpha() or line.startswith("[")) and not line.startswith("static_assert"):
+            line = re.sub(r"^(?:\[\[\w+\]\]|template <[^;{]*?>)\s*(?=[a-zA-Z])", "", line.split("//")[0].rstrip())
+            if inside or line.startswith(("static ", "int main(")):
+                own |= {found[1] for found in [_declared(line)] if found}
+    return Source(name, text, words, own, tests)
+
+
+def _declared(line: str) -> re.Match | None:
+    begins = line.find("(")
+    is_function = begins >= 0 and "=" not in line[:begins]
+    return _TYPE.match(line) or (_FUNCTION.match(line) if is_function else _VARIABLE.match(line))
+
+
+def grouped(sources: list[Source]) -> list[list[Source]]:
+    """Each source to the first group with room where no test is called the same, in the order given."""
+    groups: list[list[Source]] = []
+    for source in sources:
+        for group in groups:
+            lines = sum(member.text.count("\n") for member in group)
+            if len(group) < MOST_SOURCES and lines < MOST_LINES and all(source.tests.isdisjoint(member.tests) for member in group):
+                group.append(source)
+                break
+        else:
+            groups.append([source])
+    return groups
+
+
+def words_of(root: pathlib.Path, group: list[Source]) -> list[str]:
+    """What all of them are compiled with, their folders being where they look for their neighbours."""
+    folders = dict.fromkeys(str((root / source.name).parent) for source in group)
+    out = [*group[0].words, *(word for folder in folders for word in ("-iquote", folder))]
+    for source in group[1:]:
+        words = iter(source.words)
+        for word in words:
+            pair = [word, next(words)] if word == "-isystem" else [word]
+            if len(pair) == 2 and pair[1] not in out or len(pair) == 1 and word not in out:
+                out += pair
+    return out
+
+
+def text_of(group: list[Source]) -> tuple[str, list[tuple[str, int]]]:
+    """The text, and of each of its lines the source and the line there."""
+    included: dict[str, tuple[str, int]] = {}
+    body, places = [], []
+    taken: set[str] = set()
+    for at, source in enumerate(group):
+        renamed = source.own & taken
+        taken |= source.own
+        # not of a member or of a qualified name, which are somebody else's
+        pattern = re.compile(r"(?<![.>:\w])(" + "|".join(sorted(renamed)) + r")\b") if renamed else None
+        depth = 0  # of preprocessor conditions, within which an include stays
+        for number, line in enumerate(source.text.splitlines(), 1):
+            depth += line.startswith("#if")
+            depth -= line.startswith("#endif")
+            if depth == 0 and line.startswith("#include"):
+                included.setdefault(line.split("//")[0].strip(), (source.name, number))
+                line = ""
+            body.append(pattern.sub(rf"\1_{at}", line) if pattern else line)
+            places.append((source.name, number))
+    return "\n".join([*included, *body]) + "\n", [*included.values(), *places]
+
+
+def suspected(said: str, file: pathlib.Path, places: list[tuple[str, int]]) -> set[str]:
+    """The sources of whose lines in the joint file something was said."""
+    return {places[int(line) - 1][0] for line in re.findall(re.escape(str(file)) + r":(\d+):\d+: (?:error|warning):", said)}
