@@ -242,26 +242,27 @@ void smooth(const RollingSmoother::Params& params, const MergedImus& imus, std::
             Estimate& estimate) {
   const RollingSmoother smoother(params);
   const auto state = std::make_unique<RollingSmoother::State>();
-  std::vector<RollingEstimate> out;
-  out.reserve(imus.samples.size());
-  for (const ImuSample& sample : imus.samples) {
-    estimate.status = smoother.step(sample, *state, out);
-    if (!estimate.status.ok()) break;
-  }
-  if (known.empty()) {
-    smoother.finish(*state, out);
-  } else {
-    smoother.finish(known, *state, out);
-  }
-  tell_of_samples(state->live, estimate);
-  estimate.poses.reserve(out.size());
-  for (std::size_t k = 0; k < out.size(); ++k) {  // one for each sample
-    const RollingEstimate& e = out[k];
+  estimate.poses.reserve(imus.samples.size());
+  const auto take = [&](const RollingEstimate& e) {  // one for each sample
+    const ImuSample& sample = imus.samples[estimate.poses.size()];
     PoseState pose = body_pose(e.time_ns, e.q_WI, e.p_WG_m, e.v_WG_m_s);
     pose.covariance = e.covariance;
     estimate.poses.push_back(pose);
-    add_contact(e.mode, e.at_rest, e.uncertain, params.filter.radius_m, imus.samples[k], estimate);
+    add_contact(e.mode, e.at_rest, e.uncertain, params.filter.radius_m, sample, estimate);
+  };
+  std::vector<RollingEstimate> block;
+  for (const ImuSample& sample : imus.samples) {
+    estimate.status = smoother.step(sample, *state, block);
+    if (!estimate.status.ok()) break;
+    std::for_each(block.begin(), block.end(), take);
+    block.clear();
   }
+  if (known.empty()) {
+    smoother.finish(*state, take);
+  } else {
+    smoother.finish(known, *state, take);
+  }
+  tell_of_samples(state->live, estimate);
   // the lever arm was given from the centre of mass: what it was off by says where that is
   estimate.centre_B_m = -state->learnt.lever_arm_error_m;
   estimate.health["centre_x_m"] = estimate.centre_B_m.x();

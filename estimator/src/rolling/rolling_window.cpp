@@ -169,9 +169,9 @@ Reported measure_distance(const RollingParams& params, double distance_m, double
 }
 
 /// rolling.md (R33), (R34).
-Reported smooth_back(const Eigen::Matrix<double, kReported, kStates>& P_rows, std::span<NodeRecord> nodes) {
-  Vector lambda = Vector::Zero();
-  Covariance Lambda = Covariance::Zero();
+Adjoint smooth_back(const Adjoint& after, std::span<NodeRecord> nodes) {
+  Adjoint adjoint = after;
+  auto& [lambda, Lambda] = adjoint;
   for (std::size_t n = nodes.size(); n-- > 0;) {
     NodeRecord& node = nodes[n];
     const auto own = (Eigen::Matrix<double, kReported, kReported>() << node.P_rows.leftCols<9>(),
@@ -201,7 +201,7 @@ Reported smooth_back(const Eigen::Matrix<double, kReported, kStates>& P_rows, st
     Lambda += (node.B.transpose() * Lambda.topRows<9>()).eval();
     Lambda += (Lambda.leftCols<9>() * node.B).eval();
   }
-  return -P_rows * lambda;
+  return adjoint;
 }
 
 }  // namespace tumble::rolling

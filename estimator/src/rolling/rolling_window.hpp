@@ -109,8 +109,14 @@ NodeRecord close_node(const RollingParams& params, const RollingSums& sums, cons
 Reported measure_distance(const RollingParams& params, double distance_m, double sigma_m, NodeRecord& last,
                           PathFilter& filter);
 
-/// Modified Bryson-Fraser: fills `smoothed` and `smoothed_P` of all nodes. Returns the same for the state before the
-/// first node, whose rows of the covariance are `P_rows`.
-Reported smooth_back(const Eigen::Matrix<double, kReported, kStates>& P_rows, std::span<NodeRecord> nodes);
+/// What the measurements after a node say of the error there.
+struct Adjoint {
+  Vector lambda = Vector::Zero();
+  Covariance Lambda = Covariance::Zero();
+};
+
+/// Modified Bryson-Fraser: fills `smoothed` and `smoothed_P` of nodes in a row, of which `after` is the adjoint behind
+/// the last one. Returns that before the first.
+Adjoint smooth_back(const Adjoint& after, std::span<NodeRecord> nodes);
 
 }  // namespace tumble::rolling

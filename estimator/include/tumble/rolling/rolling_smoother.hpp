@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -112,23 +113,27 @@ class RollingSmoother {
   explicit RollingSmoother(const Params& params);
 
   /// Takes a sample; appends estimates that are old enough to `out`, if any. On trouble the state is unchanged. Storage
-  /// for the lag is set aside with the first sample; no allocation later but by `out` and, beyond rate_max_hz or with
-  /// kWholeRun, as the run grows (11 KiB per node). The work of a block is done in the sample that ends it.
+  /// for the lag is set aside with the first sample; no allocation later but by `out` and the work of a block, and,
+  /// beyond rate_max_hz or with kWholeRun, as the run grows (64 bytes per sample, 152 per node). The work of a block is
+  /// done in the sample that ends it; it holds some 14 KiB for each node of lag and block, or 4 MiB and 0.3 KiB for
+  /// each node where they are many.
   Status step(const ImuSample& sample, State& state, std::vector<RollingEstimate>& out) const;
 
-  /// Appends the estimates that are still owed, all smoothed with what there is. The run has ended.
+  /// Gives the estimates that are still owed, one after the other in the order of time, all smoothed with what there
+  /// is. The run has ended. A whole run of N nodes needs 4 MiB + N * 0.3 KiB beside the state while it lasts.
+  using Take = std::function<void(const RollingEstimate&)>;
+  void finish(State& state, const Take& take) const;
   void finish(State& state, std::vector<RollingEstimate>& out) const;
 
   /// The same with modes known from elsewhere, one per sample of a whole run that `state` took with kWholeRun.
+  void finish(std::span<const RollingMode> known, State& state, const Take& take) const;
   void finish(std::span<const RollingMode> known, State& state, std::vector<RollingEstimate>& out) const;
 
  private:
-  struct PathNode;
-  struct Window;
+  struct Path;
 
-  std::vector<PathNode> best_path(const State& state) const;
-  void run_window(const std::vector<PathNode>& path, std::size_t emitted, State& state,
-                  std::vector<RollingEstimate>& out) const;
+  Path best_path(const State& state) const;
+  void run_window(const Path& path, std::size_t emitted, State& state, const Take& take) const;
 
   Params params_;
   RollingParams path_params_;

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "last_pass.hpp"
+
+#include <algorithm>
+
+namespace tumble::rolling {
+
+LastPass::LastPass(const RollingParams& params, std::span<const ImuSample> samples, std::span<const PathNode> path,
+                   std::optional<Distance> distance, std::size_t stretch)
+    : params_(params), samples_(samples), path_(path), distance_(distance), length_(stretch) {
+  kept_.resize(std::max<std::size_t>(1, (path.size() + length_ - 1) / length_));
+  records_.reserve(std::min(path.size(), length_));
+  horizontal_m2_.reserve(path.size());
+}
+
+void LastPass::run(const Place& start, std::size_t cut) {
+  cut_after_ = cut;
+  end_ = start;
+  std::size_t nodes = 0;
+  for (std::size_t stretch = 0; stretch < kept_.size(); ++stretch) {
+    kept_[stretch].start = end_;
+    end_ = forward(stretch, end_);
+    nodes += records_.size();
+  }
+  horizontal_m2_.resize(nodes);
+  Adjoint adjoint;
+  for (std::size_t stretch = kept_.size(); stretch-- > 0;) {
+    if (loaded_ != stretch) forward(stretch, kept_[stretch].start);
+    kept_[stretch].end = adjoint;
+    adjoint = smooth_back(adjoint, records_);
+    smoothed_start_ = -reported_rows(kept_[stretch].start.filter.P) * adjoint.lambda;
+    for (std::size_t k = 0; k < records_.size(); ++k) {
+      const auto& P = records_[k].smoothed_P;
+      horizontal_m2_[first_of(stretch) + k] = P(kPosition, kPosition) + P(kPosition + 1, kPosition + 1);
+    }
+  }
+}
+
+/// Leaves the stretch loaded, without the way back, and returns where the next one begins.
+LastPass::Place LastPass::forward(std::size_t stretch, const Place& from) {
+  const std::size_t first = first_of(stretch), end = std::min(first + length_, path_.size());
+  loaded_ = stretch;
+  records_.clear();
+  points_.clear();
+  moved_at_end_.setZero();
+  auto [filter, place] = from;
+  if (stretch == 0 && place.next == 1) remember(place.time_ns, filter.nominal, place.last_rate_rad_s, 0);
+  RollingSums sums;
+  Readings readings(params_, samples_, place);
+  Reading reading;
+  while (readings.next(reading)) {
+    const ImuAverage& average = reading.average;
+    const Eigen::Vector3d& rate = average.mean.angular_velocity_rad_s;
+    if (reading.whole && sums.node_s >= params_.node_s - 0.5 * average.length_s && first + records_.size() < end) {
+      const PathNode& decided = path_[first + records_.size()];
+      records_.push_back(close_node(params_, sums, 0.5 * (place.last_rate_rad_s + rate), decided, filter));
+      records_.back().time_ns = place.time_ns;
+      sums = {};
+      if (first + records_.size() == cut_after_) cut_ = {filter, place};
+      if (first + records_.size() == end && end < path_.size()) return {filter, place};
+    }
+    const std::size_t node = first + records_.size();
+    if (reading.in_gap) {
+      integrate_gap(params_, average, reading.doubt, filter.nominal, sums);
+      if (reading.end > reading.first) remember(reading.end_ns, filter.nominal, rate, node);
+    } else {
+      ImuAverage so_far;
+      TimeNs last_ns = place.time_ns;
+      for (std::size_t k = reading.first; k < reading.end; ++k) {
+        const ImuSample& sample = samples_[k];
+        so_far.add(sample, seconds(sample.time_ns - last_ns));
+        last_ns = sample.time_ns;
+        remember(last_ns, carried_on(params_, so_far, filter.nominal), so_far.mean.angular_velocity_rad_s, node);
+      }
+      if (reading.whole) integrate(params_, average, filter.nominal, sums);
+    }
+    place = readings.place();
+  }
+  if (distance_ && !records_.empty()) {
+    moved_at_end_ = measure_distance(params_, distance_->distance_m, distance_->sigma_m, records_.back(), filter);
+  }
+  return {filter, place};
+}
+
+void LastPass::remember(TimeNs time_ns, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s,
+                        std::size_t node) {
+  points_.push_back({time_ns, nominal.q_WI, nominal.v_WI_m_s, nominal.p_WI_m, rate_I_rad_s, node});
+}
+
+void LastPass::load(std::size_t stretch) {
+  if (loaded_ == stretch) return;
+  const Kept& kept = kept_[stretch];
+  forward(stretch, kept.start);
+  const Adjoint adjoint = smooth_back(kept.end, records_);
+  smoothed_start_ = -reported_rows(kept.start.filter.P) * adjoint.lambda;
+}
+
+void LastPass::give(std::size_t until, const std::function<void(const Smoothed&)>& take) {
+  for (std::size_t stretch = 0; stretch < kept_.size() && first_of(stretch) < until; ++stretch) {
+    load(stretch);
+    give_stretch(stretch, until, take);
+  }
+}
+
+void LastPass::give_stretch(std::size_t stretch, std::size_t until,
+                            const std::function<void(const Smoothed&)>& take) const {
+  const std::size_t first = first_of(stretch);
+  const Place& start = kept_[stretch].start;
+  for (const SamplePoint& point : points_) {
+    if (point.node >= until) return;
+    const std::size_t next = point.node - first;
+    const bool inside = next < records_.size(), at_start = next == 0;
+    const Reported from = at_start ? smoothed_start_ : records_[next - 1].smoothed;
+    Reported error = inside ? from : Reported(from + moved_at_end_);
+    if (inside) {
+      const TimeNs from_ns = at_start ? start.reading.time_ns : records_[next - 1].time_ns;
+      const double length_s = seconds(records_[next].time_ns - from_ns);
+      const double share = length_s > 0.0 ? seconds(point.time_ns - from_ns) / length_s : 1.0;
+      error += share * (records_[next].smoothed + records_[next].correction - from);
+    }
+    const std::size_t of = records_.empty() ? 0 : std::min(next, records_.size() - 1);
+    const NodeRecord* node = records_.empty() ? nullptr : &records_[of];
+    take({point, at_start ? start.filter.nominal : records_[next - 1].nominal, error, node, first + of});
+  }
+}
+
+}  // namespace tumble::rolling

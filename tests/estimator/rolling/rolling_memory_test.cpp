@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+#include <malloc.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <memory>
+#include <new>
+#include <optional>
+#include <vector>
+
+#include "estimator/rolling/rolling_truth.hpp"
+#include "estimator/src/rolling/last_pass.hpp"
+#include "tumble/rolling/rolling_smoother.hpp"
+
+namespace {
+// bytes that this program holds, and the most it has held
+thread_local std::size_t held = 0, held_most = 0;
+}  // namespace
+
+// not inlined, so that the compiler does not take the pair for mismatched
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  void* memory = std::malloc(size);
+  if (memory == nullptr) throw std::bad_alloc();
+  held += malloc_usable_size(memory);
+  held_most = std::max(held_most, held);
+  return memory;
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
+  held -= malloc_usable_size(memory);
+  std::free(memory);
+}
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
+  held -= malloc_usable_size(memory);
+  std::free(memory);
+}
+
+namespace tumble {
+namespace {
+
+const Eigen::Vector3d kLeverArm(0.02, -0.01, 0.03);
+
+testing::RollingTruth way(double duration_s) {
+  return testing::roll({.velocity_m_s = testing::l_shape,
+                        .contact_velocity_m_s = testing::no_slip,
+                        .duration_s = duration_s,
+                        .lever_arm_m = kLeverArm});
+}
+
+struct Held {
+  double nodes = 0.0, state = 0.0, at_the_end = 0.0;  ///< bytes; those at the end beside the state
+};
+
+Held held_by(double duration_s) {
+  const testing::RollingTruth truth = way(duration_s);
+  RollingSmoother::Params params;
+  params.filter.lever_arm_m = kLeverArm;
+  const RollingSmoother smoother(params);
+  std::vector<RollingEstimate> none;
+  const std::size_t before = held;
+  const auto state = std::make_unique<RollingSmoother::State>();
+  for (const ImuSample& sample : truth.samples) EXPECT_TRUE(smoother.step(sample, *state, none).ok());
+  Held out;
+  out.nodes = static_cast<double>(state->steps.size());
+  out.state = static_cast<double>(held - before);
+  held_most = held;
+  const std::size_t with_state = held;
+  std::size_t estimates = 0;
+  smoother.finish(*state, [&](const RollingEstimate&) { ++estimates; });
+  EXPECT_EQ(estimates, truth.samples.size());
+  out.at_the_end = static_cast<double>(held_most - with_state);
+  return out;
+}
+
+// What a node costs is the growth from a run to one of twice the length: a node's record alone is more than 10 KiB.
+TEST(RollingMemory, AWholeRunHoldsLittleForEachNode) {
+  const Held one = held_by(60.0), two = held_by(120.0);
+  const double nodes = two.nodes - one.nodes;
+  ASSERT_NEAR(nodes, 3000.0, 2.0);
+  // five samples of 64 bytes and a step of 152, in vectors that double; measured 557
+  EXPECT_LT((two.state - one.state) / nodes, 2.0 * (5 * sizeof(ImuSample) + sizeof(RollingSmoother::Step)) + 16.0);
+  // two filters in each stretch, a mode and a variance for each node; measured 288
+  EXPECT_LT((two.at_the_end - one.at_the_end) / nodes, 320.0);
+  EXPECT_GT(sizeof(rolling::NodeRecord), 10'000u) << "the bound says nothing any more";
+  EXPECT_LT(two.at_the_end, 5e6);
+}
+
+/// All that the last pass tells of a way, in one row.
+std::vector<double> told(std::span<const ImuSample> samples, std::span<const rolling::PathNode> path,
+                         std::optional<rolling::LastPass::Distance> distance, std::size_t stretch) {
+  RollingParams params;
+  params.lever_arm_m = kLeverArm;
+  params.radius_sigma_m = 1e-3;
+  rolling::LastPass pass(params, samples, path, distance, stretch);
+  rolling::LastPass::Place start;
+  start.filter.nominal = rolling::start_nominal(params, Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero());
+  start.filter.P = rolling::prior_covariance(params, Eigen::Vector3d::Zero());
+  start.reading.next = 1;
+  pass.run(start, 200);
+  EXPECT_EQ(pass.nodes(), path.size());
+  std::vector<double> out(pass.horizontal_m2().begin(), pass.horizontal_m2().end());
+  const auto add = [&out](const auto& matrix) {
+    for (const double entry : matrix.reshaped()) out.push_back(entry);
+  };
+  add(pass.cut().filter.P);
+  add(pass.end().P);
+  pass.give(path.size() + 1, [&](const rolling::LastPass::Smoothed& at) {
+    out.push_back(static_cast<double>(at.index));
+    add(at.error);
+    add(at.node->smoothed_P);
+    add(at.nominal.p_WI_m);
+    add(at.point.p_WI_m);
+  });
+  return out;
+}
+
+TEST(RollingMemory, HowMuchIsHeldAtATimeChangesNoBit) {
+  const testing::RollingTruth truth = way(10.0);
+  constexpr std::size_t kNodes = 499;
+  std::vector<rolling::PathNode> path(kNodes);
+  for (std::size_t n = 150; n < 170; ++n) path[n].mode = RollingMode::slip;
+  for (std::size_t n = 300; n < kNodes; ++n) path[n].mode = RollingMode::incline;
+  for (const auto distance : {std::optional<rolling::LastPass::Distance>(), {{1.4, 5e-3}}}) {
+    const std::vector<double> at_once = told(truth.samples, path, distance, 1000);
+    ASSERT_GT(at_once.size(), 100'000u);
+    for (const std::size_t stretch : {1, 7, 128, 498, 499}) {
+      ASSERT_EQ(told(truth.samples, path, distance, stretch), at_once) << stretch;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tumble
