@@ -22,7 +22,7 @@ using ::testing::HasSubstr;
 /// A recording of four samples whose gyro y axis is flat, with what raw would make of it.
 scenarios::RunResult clipped_run() {
   scenarios::RunResult run;
-  run.situation.scenario = "hill";
+  run.scenario = "hill";
   run.methods = scenarios::find_methods("rate/raw");
   scenarios::Estimate estimate;
   sim::Recording& recording = run.recording;

@@ -102,7 +102,7 @@ void make(const scenarios::DataRoot& data, const fs::path& folder, const Making&
     const scenarios::RunResult run =
         scenarios::run_situation(data, making.scenario, making.draw.seed, making.methods, 1,
                                  lidars ? scenarios::Lidars::simulated : scenarios::Lidars::left_out);
-    Example example = example_of(data, run);
+    Example example = example_of(run);
     example.choice = kTypical;
     example.made_of = making.made_of;
     write_pictures(folder, example);
