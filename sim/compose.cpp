@@ -41,13 +41,9 @@ void move_to_start(mjSpec* spec, std::string_view anchor, const World& world) {
 
 }  // namespace
 
-World compose(const Situation& situation, const std::filesystem::path& models) {
-  const WorldType& world_type = find_world_type(situation.world.type);
-  const RobotType& robot_type = find_robot_type(situation.robot.type);
-  const Values world_values =
-      resolve("world." + situation.world.type, situation.world.values, world_type.component.parameters);
-  const Values robot_values =
-      resolve("robot." + situation.robot.type, situation.robot.values, robot_type.component.parameters);
+World compose(const ResolvedSituation& situation, const std::filesystem::path& models) {
+  const WorldType& world_type = find_world_type(situation->world.type);
+  const RobotType& robot_type = find_robot_type(situation->robot.type);
 
   install_handlers();
   World world;
@@ -55,8 +51,8 @@ World compose(const Situation& situation, const std::filesystem::path& models) {
   spec->option.timestep = kStep_s;
   spec->option.integrator = mjINT_RK4;  // the only integrator here that keeps energy and momentum of a tumbling body
   spec->compiler.usethread = 0;
-  robot_type.shape(spec.get(), robot_values, world);
-  world_type.build(spec.get(), world_values, situation.seed, world);
+  robot_type.shape(spec.get(), situation->robot.values, world);
+  world_type.build(spec.get(), situation->world.values, situation->seed, world);
   world.free = robot_type.anchor.empty();
   if (!world.free) move_to_start(spec.get(), robot_type.anchor, world);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/simulate.hpp"
 
-#include "sim/compose.hpp"
+#include "sim/engine/model.hpp"
 #include "sim/motion/motion_type.hpp"
 #include "sim/sensor_type.hpp"
 #include "sim/truth/record_truth.hpp"
@@ -46,9 +46,9 @@ Eigen::Isometry3d given_pose(const engine::World& world, const SensorSpec& senso
 
 }  // namespace
 
-Recording simulate(const Situation& given, const SimulateOptions& options) {
-  const Situation situation = resolve(given);
-  engine::World world = engine::compose(situation, options.models);
+Recording simulate(const BuiltSituation& built, int threads) {
+  const Situation& situation = built.situation();
+  engine::World world = engine::copy_of(built.world());  // the floor's friction changes as the robot goes
   const auto motion = find_motion_type(situation.motion.type).make(situation.motion.values, world);
   std::vector<Eigen::Isometry3d> mountings;  // before the long work: an unknown site is reported at once
   for (const SensorSpec& sensor : situation.sensors) mountings.push_back(site_pose(world, sensor));
@@ -61,17 +61,16 @@ Recording simulate(const Situation& given, const SimulateOptions& options) {
   for (std::size_t i = 0; i < situation.sensors.size(); ++i) {
     const SensorSpec& sensor = situation.sensors[i];
     const Eigen::Isometry3d given_T_BX = given_pose(world, sensor, mountings[i]);
-    const SensorContext context{
-        world, sensor, mountings[i], given_T_BX, recording.sensors.gravity_m_s2, situation.seed, options.threads};
+    const SensorContext context{world,          sensor, mountings[i], given_T_BX, recording.sensors.gravity_m_s2,
+                                situation.seed, threads};
     find_sensor_type(sensor.kind).simulate(context, recording);
   }
   return recording;
 }
 
-Eigen::Isometry3d start_pose(const Situation& given, const std::filesystem::path& models) {
-  const Situation situation = resolve(given);
-  const engine::World world = engine::compose(situation, models);
-  const BodyState start = find_motion_type(situation.motion.type).make(situation.motion.values, world)->start();
+Eigen::Isometry3d start_pose(const BuiltSituation& built) {
+  const Component& motion = built.situation()->motion;
+  const BodyState start = find_motion_type(motion.type).make(motion.values, built.world())->start();
   Eigen::Isometry3d T_WB = Eigen::Isometry3d::Identity();
   T_WB.translation() = start.p_WB_m;
   T_WB.linear() = start.q_WB.toRotationMatrix();

@@ -2,11 +2,10 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <filesystem>
 #include <stdexcept>
 
+#include "sim/built_situation.hpp"
 #include "sim/recording.hpp"
-#include "sim/situation.hpp"
 
 namespace tumble::sim {
 
@@ -18,17 +17,13 @@ class SimulationFailure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-struct SimulateOptions {
-  std::filesystem::path models;  ///< folder of the MJCF files
-  int threads = 1;               ///< for the lidar; the result does not depend on it
-};
-
 /// Simulates one situation: rigid bodies and contact (MuJoCo, RK4, 0.5 ms), IMU readings, lidar sweeps, truth.
-/// Throws InvalidSituation or SimulationFailure.
-Recording simulate(const Situation& situation, const SimulateOptions& options);
+/// `threads` are for the lidar; the result does not depend on them. Throws InvalidSituation when the robot lacks a
+/// sensor's site or the motion cannot be made in this world, or SimulationFailure.
+Recording simulate(const BuiltSituation& built, int threads = 1);
 
-/// Pose of the robot's body frame where a situation begins, before it has sunk into its contacts. Composes the world,
-/// does not step it. Throws InvalidSituation.
-Eigen::Isometry3d start_pose(const Situation& situation, const std::filesystem::path& models);
+/// Pose of the robot's body frame where a situation begins, before it has sunk into its contacts: nothing is stepped.
+/// Throws InvalidSituation when the motion cannot be made in this world.
+Eigen::Isometry3d start_pose(const BuiltSituation& built);
 
 }  // namespace tumble::sim

@@ -72,7 +72,13 @@ std::span<const Parameter> mount_error_parameters() {
   return kMountError;
 }
 
-Situation resolve(const Situation& situation) {
+ResolvedSituation ResolvedSituation::without_sensors(const std::function<bool(const SensorSpec&)>& left_out) const {
+  ResolvedSituation out = *this;
+  std::erase_if(out.situation_.sensors, left_out);
+  return out;
+}
+
+ResolvedSituation resolve(const Situation& situation) {
   if (!(situation.duration_s > 0.0 && situation.duration_s <= kLongest_s)) {
     std::ostringstream text;
     text << "duration_s is " << situation.duration_s << " s, must be within (0, " << kLongest_s << "]";
@@ -88,7 +94,7 @@ Situation resolve(const Situation& situation) {
     out.sensors.push_back(resolve_sensor(sensor));
     if (!names.insert(sensor.name).second) throw InvalidSituation("sensors: two are named '" + sensor.name + "'");
   }
-  return out;
+  return ResolvedSituation(std::move(out));
 }
 
 }  // namespace tumble::sim

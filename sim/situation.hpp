@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sim/parameters.hpp"
@@ -23,7 +25,8 @@ struct SensorSpec {
   bool operator==(const SensorSpec&) const = default;
 };
 
-/// A draw: one situation with every number fixed. Equal situations give equal recordings, bit for bit.
+/// A draw: one situation with every number fixed. Equal situations give equal recordings, bit for bit. As written it
+/// may leave out what is default; `resolve` completes and checks it.
 struct Situation {
   std::string scenario;  ///< name of the scenario that it was drawn from
   std::uint64_t seed = 0;
@@ -43,7 +46,27 @@ std::span<const ComponentType> sensor_types();
 /// Parameters of SensorSpec::mount_error.
 std::span<const Parameter> mount_error_parameters();
 
+/// A situation that is complete and checked. Only `resolve` makes one, so that whoever is given one need not ask again.
+/// It reads as a Situation; to change a number take a copy, change that and resolve it.
+class ResolvedSituation {
+ public:
+  const Situation* operator->() const { return &situation_; }
+  operator const Situation&() const& { return situation_; }
+  operator Situation() && { return std::move(situation_); }
+
+  /// The same without the sensors that `left_out` names: what is left is as complete as it was.
+  ResolvedSituation without_sensors(const std::function<bool(const SensorSpec&)>& left_out) const;
+
+  bool operator==(const ResolvedSituation&) const = default;
+
+ private:
+  friend ResolvedSituation resolve(const Situation& situation);
+  explicit ResolvedSituation(Situation situation) : situation_(std::move(situation)) {}
+
+  Situation situation_;
+};
+
 /// Completes every component with its defaults and checks it; throws InvalidSituation with the place.
-Situation resolve(const Situation& situation);
+ResolvedSituation resolve(const Situation& situation);
 
 }  // namespace tumble::sim

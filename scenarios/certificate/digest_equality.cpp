@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/certificate/rows.hpp"
+#include "scenarios/certificate/set_up.hpp"
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/processes/process.hpp"
 #include "scenarios/recordings/recording_file.hpp"
@@ -15,7 +16,7 @@ namespace tumble::scenarios {
 namespace {
 
 std::string digest_of(const CertificateInput& input, const sim::Situation& situation, int threads) {
-  const sim::Recording recording = sim::simulate(situation, {input.data.models(), threads});
+  const sim::Recording recording = sim::simulate(build(input, situation), threads);
   return digest(recording.sensors, &recording.truth);
 }
 

@@ -8,7 +8,7 @@
 namespace tumble::scenarios {
 
 std::vector<CertificateEntry> certify_flight_force(const CertificateInput& input, const FlightForceSetup& setup) {
-  sim::Trial trial(bare_room("rig"), {input.data.models()});
+  sim::Trial trial(build(input, bare_room("rig")));
   trial.set_state(thrown(setup.rate_rad_s));
   const sim::Truth truth = fly(trial, setup.duration_s);
 

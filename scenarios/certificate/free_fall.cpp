@@ -8,7 +8,7 @@
 namespace tumble::scenarios {
 
 std::vector<CertificateEntry> certify_free_fall(const CertificateInput& input, const FreeFallSetup& setup) {
-  sim::Trial trial(bare_room("sphere"), {input.data.models()});
+  sim::Trial trial(build(input, bare_room("sphere")));
   sim::BodyState start;
   start.p_WB_m.z() = trial.sphere_radius_m() + setup.height_m - trial.p_BG_m().z();
   trial.set_state(start);

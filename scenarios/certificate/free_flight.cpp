@@ -7,7 +7,7 @@
 namespace tumble::scenarios {
 
 std::vector<CertificateEntry> certify_free_flight(const CertificateInput& input, const FreeFlightSetup& setup) {
-  sim::Trial trial(bare_room("rig"), {input.data.models(), 0.0, setup.integrator});
+  sim::Trial trial(build(input, bare_room("rig")), {0.0, setup.integrator});
   const Eigen::Matrix3d inertia = trial.inertia_B_kg_m2();
   const auto energy_j = [&](const sim::BodyState& s) { return 0.5 * s.w_WB_B_rad_s.dot(inertia * s.w_WB_B_rad_s); };
   const auto momentum_W = [&](const sim::BodyState& s) -> Eigen::Vector3d {

@@ -30,7 +30,7 @@ double peak_m_s2(const CertificateInput& input, const Eigen::Quaterniond& attitu
                  double contact_time_s) {
   sim::Situation situation = bare_room("rig");
   situation.robot.values.set("contact_time_s", contact_time_s);
-  sim::Trial trial(situation, {input.data.models(), step_s});
+  sim::Trial trial(build(input, situation), {step_s});
   sim::BodyState start;
   start.p_WB_m.z() = height_m;
   start.q_WB = attitude;
@@ -52,7 +52,7 @@ double peak_m_s2(const CertificateInput& input, const Eigen::Quaterniond& attitu
 }
 
 double own_step_s(const CertificateInput& input) {
-  return sim::Trial(bare_room("rig"), {input.data.models()}).step_s();
+  return sim::Trial(build(input, bare_room("rig"))).step_s();
 }
 
 }  // namespace

@@ -78,7 +78,7 @@ Errors against_planes(const sim::Recording& recording, double added_range_m) {
 std::vector<CertificateEntry> certify_lidar_range(const CertificateInput& input, const LidarRangeSetup& setup) {
   std::vector<CertificateEntry> entries;
   for (const auto& [robot, device] : {std::pair{"rig", "rs16"}, std::pair{"sphere", "mid100"}}) {
-    const sim::Recording recording = sim::simulate(moving_lidar(input, robot, device), {input.data.models(), 1});
+    const sim::Recording recording = sim::simulate(build(input, moving_lidar(input, robot, device)));
     const Errors errors = against_planes(recording, setup.added_range_m);
     CertificateEntry entry{"lidar_range_analytic",
                            device,

@@ -89,7 +89,7 @@ class Chain {
 class Pendulum {
  public:
   Pendulum(const CertificateInput& input, sim::Integrator integrator)
-      : trial_(situation(), {input.data.models(), 0.0, integrator}) {}
+      : trial_(build(input, situation()), {0.0, integrator}) {}
 
   sim::Trial& trial() { return trial_; }
   void set(const Vector3d& angle, const Vector3d& rate) {

@@ -40,10 +40,11 @@ Ways compare(const sim::Truth& truth, double radius_m) {
   return ways;
 }
 
-CertificateEntry entry(const CertificateInput& input, const RollingSetup& setup, sim::Situation situation,
-                       const std::string& subject, double high) {
-  situation.sensors.clear();
-  const sim::Recording recording = sim::simulate(situation, {input.data.models(), 1});
+CertificateEntry entry(const CertificateInput& input, const RollingSetup& setup,
+                       const sim::ResolvedSituation& situation, const std::string& subject, double high) {
+  const auto every = [](const sim::SensorSpec&) { return true; };
+  const sim::BuiltSituation built(situation.without_sensors(every), input.data.models());
+  const sim::Recording recording = sim::simulate(built);
   const double own_m = recording.sensors.sphere_radius_m;
   const Ways ways = compare(recording.truth, setup.stated_radius_m > 0.0 ? setup.stated_radius_m : own_m);
   return {"rolling_law",
@@ -65,7 +66,7 @@ std::vector<CertificateEntry> certify_rolling(const CertificateInput& input, con
   plane.motion.values.set("leg_2_m", 0.0);
   plane.robot.values.set("inner_x_m", 0.008);
   plane.robot.values.set("inner_z_m", -0.01);
-  std::vector<CertificateEntry> entries = {entry(input, setup, plane, "plane", 1e-3)};
+  std::vector<CertificateEntry> entries = {entry(input, setup, sim::resolve(plane), "plane", 1e-3)};
   if (!setup.terrains) return entries;
   // the edge of a patch or of an obstacle is crossed within the 10 ms of a label, and the label itself lets 0.02 m/s
   // pass: 2e-4 to 5.1e-4 on the terrains of the catalogue

@@ -17,6 +17,10 @@ sim::Situation bare_room(const std::string& robot) {
   return situation;
 }
 
+sim::BuiltSituation build(const CertificateInput& input, const sim::Situation& situation) {
+  return {sim::resolve(situation), input.data.models()};
+}
+
 sim::BodyState thrown(double rate_rad_s) {
   sim::BodyState state;
   state.p_WB_m = {0.0, 0.0, 100.0};

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "scenarios/certificate/certificate.hpp"
+#include "sim/built_situation.hpp"
 #include "sim/recording.hpp"
-#include "sim/situation.hpp"
 #include "sim/trial/trial.hpp"
 
 /// Situations and motions that several rows measure on.
@@ -10,6 +11,9 @@ namespace tumble::scenarios {
 
 /// A robot ("rig", "sphere" or "pendulum") in a room with nothing in it but floor and walls; no sensors.
 sim::Situation bare_room(const std::string& robot);
+
+/// The situation resolved and built from the input's models: anew at each call.
+sim::BuiltSituation build(const CertificateInput& input, const sim::Situation& situation);
 
 /// Thrown up high above the room, so that it stays in the air for seconds, and spun at `rate_rad_s` near the axis of
 /// the rig's middle moment of inertia.

@@ -19,7 +19,7 @@ double slip_m_s(const sim::BodyState& state, double radius_m) {
 std::vector<CertificateEntry> certify_slip_to_grip(const CertificateInput& input, const SlipToGripSetup& setup) {
   sim::Situation situation = bare_room("sphere");
   situation.world.values.set("friction", setup.friction);
-  sim::Trial trial(situation, {input.data.models()});
+  sim::Trial trial(build(input, situation));
   const double radius_m = trial.sphere_radius_m();
 
   sim::BodyState state;

@@ -10,7 +10,7 @@ Registry Registry::of_simulation() {
           sim::mount_error_parameters()};
 }
 
-sim::Situation draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed) {
+sim::ResolvedSituation draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed) {
   std::vector<DataSheet> sheets;
   for (const Scenario::Sensor& sensor : scenario.sensors) {
     try {

@@ -43,8 +43,8 @@ Scenario load_scenario(const DataRoot& data, const std::string& name);
 
 /// Fixes every number: data sheet of each device, the scenario's changes, draws from streams named by the number's
 /// place
-/// ("world.slope_rad", "sensors.imu.mount_error.x_m"). The result is resolved: complete and checked. Throws BadInput.
-sim::Situation draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed);
+/// ("world.slope_rad", "sensors.imu.mount_error.x_m"). Throws BadInput.
+sim::ResolvedSituation draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed);
 
 /// The resolved situation as YAML and back, without loss (doubles round-trip). Reading is strict, but does not ask
 /// whether this build knows the types and numbers: sim::resolve does. Both throw BadInput; `place` begins the messages.

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/draw/without_lidars.hpp"
 
-#include <vector>
-
 namespace tumble::scenarios {
 
-sim::Situation without_lidars(sim::Situation situation) {
-  std::erase_if(situation.sensors, [](const sim::SensorSpec& sensor) { return sensor.kind.ends_with("_lidar"); });
-  return situation;
+sim::ResolvedSituation without_lidars(const sim::ResolvedSituation& situation) {
+  return situation.without_sensors([](const sim::SensorSpec& sensor) { return sensor.kind.ends_with("_lidar"); });
 }
 
 }  // namespace tumble::scenarios

@@ -158,7 +158,7 @@ void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int 
                : simulate_draw(data, with_setting(*task.scenario, task.setting), task.seed, 1, lidars_for(task));
     const bool maps = std::any_of(task.runs.begin(), task.runs.end(),
                                   [](const DrawTask::Run& run) { return run.method->info.kind == Kind::slam; });
-    if (maps && task.scenario != nullptr) surface.emplace(draw->situation, data.models());
+    if (maps && draw->built) surface.emplace(*draw->built);
     const bool whole = task.recording == nullptr || task.recording->simulated;
     DrawValues values = whole ? motion_values(name, task.seed, draw->recording)
                               : recorded_motion_values(name, task.seed, draw->recording);

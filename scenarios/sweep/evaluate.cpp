@@ -21,10 +21,10 @@ SimulatedDraw simulate_draw(const DataRoot& data, const Scenario& scenario, std:
   SimulatedDraw simulated;
   simulated.scenario = scenario.name;
   simulated.seed = seed;
-  simulated.situation = draw(data, scenario, seed);
-  if (lidars == Lidars::left_out) simulated.situation = without_lidars(std::move(simulated.situation));
+  const sim::ResolvedSituation situation = draw(data, scenario, seed);
   const double start_s = process_cpu_s();
-  simulated.recording = sim::simulate(simulated.situation, {data.models(), threads});
+  simulated.built.emplace(lidars == Lidars::left_out ? without_lidars(situation) : situation, data.models());
+  simulated.recording = sim::simulate(*simulated.built, threads);
   simulated.simulate_cpu_s = process_cpu_s() - start_s;
   simulated.recording_digest = digest(simulated.recording.sensors, &simulated.recording.truth);
   return simulated;

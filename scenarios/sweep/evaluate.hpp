@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "scenarios/data_root.hpp"
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/sweep/outcome.hpp"
+#include "sim/built_situation.hpp"
 
 namespace tumble::scenarios {
 
@@ -13,7 +15,8 @@ namespace tumble::scenarios {
 struct SimulatedDraw {
   std::string scenario;
   std::uint64_t seed = 0;
-  sim::Situation situation;  ///< of a simulated one
+  std::optional<sim::BuiltSituation>
+      built;  ///< of a simulated one: what its recording, its true surface and its pictures are made from
   sim::Recording recording;
   std::string recording_digest;
   double simulate_cpu_s = 0;
@@ -23,8 +26,8 @@ struct SimulatedDraw {
 /// Whether the lidars of a draw are simulated: they cost a good part of the time, and methods of kind `rate` read none.
 enum class Lidars { simulated, left_out };
 
-/// Draws and simulates. Motion and IMUs are the same to the bit without lidars, the digest is another. Throws BadInput,
-/// sim::InvalidSituation, sim::SimulationFailure.
+/// Draws, builds and simulates, each once. Motion and IMUs are the same to the bit without lidars, the digest is
+/// another. Throws BadInput, sim::InvalidSituation, sim::SimulationFailure.
 SimulatedDraw simulate_draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, int threads,
                             Lidars lidars = Lidars::simulated);
 

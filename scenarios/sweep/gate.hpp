@@ -64,12 +64,13 @@ struct Gate {
 std::vector<std::string> gate_names(const DataRoot& data);
 /// The gate of a suite, or a file when `name` ends in ".yaml" (the run beside it, in ".csv"). Throws BadInput with file
 /// and line: no such gate (nearest named), of another suite, unknown key, kind, method, metric or status, a row of
-/// another length, a number out of its bound, nothing accepted.
-Gate load_gate(const DataRoot& data, const std::string& name);
+/// another length, a number out of its bound, nothing accepted. `described` are methods of files (external_method.hpp)
+/// that it may hold beside those of this build.
+Gate load_gate(const DataRoot& data, const std::string& name, std::span<const MethodPointer> described = {});
 /// The policy and the run as `load_gate` reads them; numbers read back exactly.
 std::string to_yaml(const Gate& gate);
 std::string to_csv(const GateRun& run);
-GateRun parse_gate_run(const std::string& text, const std::string& file);
+GateRun parse_gate_run(const std::string& text, const std::string& file, std::span<const MethodPointer> described = {});
 
 /// One line of the gate: the outcomes of a method (no metric), or one metric.
 struct GateResult {

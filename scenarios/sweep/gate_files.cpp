@@ -76,12 +76,20 @@ Kind read_kind(const Line& line) {
   line.fail("unknown kind '" + line.cells[1] + "'" + suggestion(line.cells[1], known));
 }
 
-void read_statuses(const Line& line, MethodRun& run) {
+/// A method of this build, or one that was described.
+void require_method(const Line& line, const MethodRun& run, std::span<const MethodPointer> described) {
+  if (std::any_of(described.begin(), described.end(), [&](const MethodPointer& method) {
+        return method->info.kind == run.kind && method->info.name == run.method;
+      }))
+    return;
   try {
     find_methods(std::string(to_string(run.kind)) + "/" + run.method);
   } catch (const BadInput& error) {
-    line.fail(error.what());
+    line.fail(std::string(error.what()) + " (a method that a file describes is known by its file: --method FILE.yaml)");
   }
+}
+
+void read_statuses(const Line& line, MethodRun& run) {
   for (std::size_t i = kKeyCells; i < line.cells.size(); ++i) {
     const auto status = outcome_status_named(line.cells[i]);
     if (!status) line.fail("unknown status '" + line.cells[i] + "'");
@@ -107,7 +115,7 @@ void read_values(const Line& line, MethodRun& run) {
   }
 }
 
-void read_row(const Line& line, GateRun& run) {
+void read_row(const Line& line, std::span<const MethodPointer> described, GateRun& run) {
   if (line.cells.size() != kKeyCells + run.seeds.size()) {
     line.fail(std::to_string(line.cells.size()) + " columns, must be " + std::to_string(kKeyCells + run.seeds.size()));
   }
@@ -118,6 +126,7 @@ void read_row(const Line& line, GateRun& run) {
   if (!opens && (known == nullptr || known != &run.methods.back())) line.fail("must follow its method's row of status");
   if (opens) {
     run.methods.push_back({line.cells[0], kind, line.cells[2], {}, {}});
+    require_method(line, run.methods.back(), described);
     read_statuses(line, run.methods.back());
   } else {
     read_values(line, run.methods.back());
@@ -138,7 +147,7 @@ std::vector<std::string> gate_names(const DataRoot& data) {
   return std::filesystem::is_directory(data.gates()) ? yaml_stems(data.gates()) : std::vector<std::string>{};
 }
 
-GateRun parse_gate_run(const std::string& text, const std::string& file) {
+GateRun parse_gate_run(const std::string& text, const std::string& file, std::span<const MethodPointer> described) {
   GateRun run;
   std::istringstream stream(text);
   std::string content;
@@ -148,13 +157,13 @@ GateRun parse_gate_run(const std::string& text, const std::string& file) {
     if (run.seeds.empty())
       run.seeds = read_seeds(line);
     else
-      read_row(line, run);
+      read_row(line, described, run);
   }
   if (run.methods.empty()) throw BadInput(file + ": nothing accepted");
   return run;
 }
 
-Gate load_gate(const DataRoot& data, const std::string& name) {
+Gate load_gate(const DataRoot& data, const std::string& name, std::span<const MethodPointer> described) {
   const bool is_file = name.ends_with(".yaml");
   const std::filesystem::path path = is_file ? std::filesystem::path(name) : data.gates() / (name + ".yaml");
   if (!std::filesystem::exists(path)) {
@@ -172,7 +181,7 @@ Gate load_gate(const DataRoot& data, const std::string& name) {
   gate.policy.share_margin = within(fields.at("share_margin"), 0.0, 1.0);
   gate.policy.worst = within(fields.at("worst"), 1.0, 1000.0);
   const std::filesystem::path table = std::filesystem::path(path).replace_extension(".csv");
-  gate.accepted = parse_gate_run(read_text_file(table), table.string());
+  gate.accepted = parse_gate_run(read_text_file(table), table.string(), described);
   return gate;
 }
 

@@ -149,7 +149,7 @@ MergeCounts merge_results(const fs::path& out, std::span<const fs::path> in, boo
       for (const char* key : {"suite", "build", "data", kCommandNote}) {
         std::string text;
         for (std::size_t i = 0; i < shards.size() && text.empty(); ++i) text = shards[i].note(key);
-        if (!text.empty()) results.set_note(key, mixed && std::string_view(key) == "build" ? "mixed" : text);
+        if (!text.empty()) results.set_note(key, mixed && std::string_view(key) == "build" ? kMixedBuilds : text);
       }
       counts = merge.counts();
     });

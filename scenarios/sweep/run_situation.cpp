@@ -2,10 +2,8 @@
 #include "scenarios/sweep/run_situation.hpp"
 
 #include <algorithm>
-#include <optional>
 
 #include "scenarios/provenance/text_digest.hpp"
-#include "sim/lidar/surface.hpp"
 
 namespace tumble::scenarios {
 
@@ -14,18 +12,19 @@ RunResult run_situation(const DataRoot& data, const Scenario& scenario, std::uin
   SimulatedDraw draw = simulate_draw(data, scenario, seed, threads, lidars);
   RunResult result;
   result.methods = applicable(methods, scenario.robot.type);
-  std::optional<sim::Surface> surface;
   const bool maps = std::any_of(result.methods.begin(), result.methods.end(),
                                 [](const MethodPointer& method) { return method->info.kind == Kind::slam; });
-  if (maps) surface.emplace(draw.situation, data.models());
+  if (maps) result.surface = std::make_shared<const sim::Surface>(*draw.built);
   for (const MethodPointer& method : result.methods) {
     Outcome outcome;
     Estimate estimate = run_method(*method, draw, outcome);
-    assess(*method, draw, surface ? &*surface : nullptr, estimate, outcome);
+    assess(*method, draw, result.surface.get(), estimate, outcome);
     result.estimates.push_back(std::move(estimate));
     result.outcomes.push_back(std::move(outcome));
   }
-  result.situation = std::move(draw.situation);
+  result.scenario = std::move(draw.scenario);
+  result.seed = draw.seed;
+  result.built = std::move(draw.built);
   result.recording = std::move(draw.recording);
   result.recording_digest = std::move(draw.recording_digest);
   result.simulate_cpu_s = draw.simulate_cpu_s;

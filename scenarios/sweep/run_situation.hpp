@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <functional>
+#include <cstdint>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,12 +11,17 @@
 #include "scenarios/data_root.hpp"
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/sweep/evaluate.hpp"
+#include "sim/built_situation.hpp"
+#include "sim/lidar/surface.hpp"
 
 namespace tumble::scenarios {
 
 /// Everything that one situation gave: recording, and per method its estimate and outcome.
 struct RunResult {
-  sim::Situation situation;
+  std::string scenario;
+  std::uint64_t seed = 0;
+  std::optional<sim::BuiltSituation> built;     ///< what it was simulated in
+  std::shared_ptr<const sim::Surface> surface;  ///< what its maps were scored against; null when no method makes one
   sim::Recording recording;
   std::string recording_digest;
   double simulate_cpu_s = 0;

@@ -9,6 +9,9 @@ namespace tumble::scenarios {
 /// The note `source` of results that were made of recordings: their draws cannot be simulated again.
 inline constexpr const char* kRecordingsSource = "recordings";
 
+/// The note `build` of results that were merged of several builds (report-only databases).
+inline constexpr const char* kMixedBuilds = "mixed";
+
 /// The note of how the sweep was asked for: suite, seeds and methods as words of its command line, quoted for a shell.
 inline constexpr const char* kCommandNote = "command";
 

@@ -48,7 +48,7 @@ std::vector<TriageRow> triage(const DataRoot& data, const Scenario& scenario, st
   }
   const SimulatedDraw draw = simulate_draw(data, scenario, seed, 1);
   std::optional<sim::Surface> surface;
-  if (method.info.kind == Kind::slam) surface.emplace(draw.situation, data.models());
+  if (method.info.kind == Kind::slam) surface.emplace(*draw.built);
   const sim::Surface* true_surface = surface ? &*surface : nullptr;
 
   if (options.on_run) options.on_run("none");

@@ -42,7 +42,8 @@ void check(const Variation& variation, const DataRoot& data, std::span<const std
 /// The scenario with the setting's numbers fixed; as it is when the setting does not reach the simulation.
 Scenario with_setting(Scenario scenario, const Setting& setting);
 
-/// The draw with the setting's errors put into its sensors. Throws BadInput when it lacks the sensor.
+/// The draw with the setting's errors put into its sensors. Throws BadInput when it lacks the sensor
+/// or is a recording: the error's direction and the device's own numbers are its situation's.
 SimulatedDraw with_setting(const SimulatedDraw& draw, const Setting& setting);
 
 /// The method with what the setting makes of its parameters.

@@ -43,4 +43,7 @@ struct World {
   double sphere_radius_m = 0;                              ///< 0 when the robot is not a sphere
 };
 
+/// The same with a model of its own, for who changes it: the physics (a floor's friction), a trial, a picture's look.
+World copy_of(const World& world);
+
 }  // namespace tumble::sim::engine

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/lidar/surface.hpp"
 
-#include "sim/compose.hpp"
 #include "sim/lidar/ray_scene.hpp"
 
 namespace tumble::sim {
@@ -10,8 +9,8 @@ struct Surface::Impl {
   RayScene scene;
 };
 
-Surface::Surface(const Situation& situation, const std::filesystem::path& models)
-    : impl_(new Impl{RayScene(static_geometry(engine::compose(situation, models), HeightFieldSides::open))}) {}
+Surface::Surface(const BuiltSituation& built)
+    : impl_(new Impl{RayScene(static_geometry(built.world(), HeightFieldSides::open))}) {}
 
 Surface::~Surface() = default;
 Surface::Surface(Surface&&) noexcept = default;

@@ -2,20 +2,20 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <filesystem>
 #include <memory>
 #include <span>
 #include <vector>
 
-#include "sim/situation.hpp"
+#include "sim/built_situation.hpp"
 
 namespace tumble::sim {
 
 /// The true surface of a situation's world, for scoring maps: distance to the nearest surface of the static world.
 class Surface {
  public:
-  /// Rebuilds the world of a resolved situation. Throws InvalidSituation.
-  Surface(const Situation& situation, const std::filesystem::path& models);
+  /// Takes the world's static geoms over into a scene for rays; nothing is composed again. Throws InvalidSituation on a
+  /// geom that has no surface.
+  explicit Surface(const BuiltSituation& built);
   ~Surface();
   Surface(Surface&&) noexcept;
   Surface& operator=(Surface&&) noexcept;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/render/renderer.hpp"
 
-#include "sim/compose.hpp"
+#include "sim/engine/model.hpp"
 #include "sim/render/scene_renderer.hpp"
 
 namespace tumble::sim {
@@ -10,8 +10,7 @@ struct Renderer::Impl {
   SceneRenderer scene;
 };
 
-Renderer::Renderer(const Situation& situation, const std::filesystem::path& models)
-    : impl_(new Impl{SceneRenderer(engine::compose(situation, models))}) {}
+Renderer::Renderer(const BuiltSituation& built) : impl_(new Impl{SceneRenderer(engine::copy_of(built.world()))}) {}
 
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;

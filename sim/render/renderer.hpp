@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "sim/situation.hpp"
+#include "sim/built_situation.hpp"
 
 namespace tumble::sim {
 
@@ -53,8 +53,8 @@ struct View {
 /// Pictures of a situation's world without a display (OSMesa).
 class Renderer {
  public:
-  /// Throws InvalidSituation, or std::runtime_error when no OSMesa context can be made.
-  Renderer(const Situation& situation, const std::filesystem::path& models);
+  /// Dresses a copy of the world. Throws std::runtime_error when no OSMesa context can be made.
+  explicit Renderer(const BuiltSituation& built);
   ~Renderer();
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;

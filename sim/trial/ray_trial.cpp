@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "sim/compose.hpp"
+#include "sim/engine/model.hpp"
 #include "sim/lidar/ray_scene.hpp"
 #include "sim/random/stream.hpp"
 
@@ -114,8 +114,8 @@ void note(const engine::World& world, const EngineRays& engine_rays, const Ray& 
 
 }  // namespace
 
-RayDisagreement compare_rays(const Situation& situation, const RayTrialOptions& options) {
-  const engine::World world = engine::compose(situation, options.models);
+RayDisagreement compare_rays(const BuiltSituation& built, const RayTrialOptions& options) {
+  const engine::World& world = built.world();
   const EngineRays engine_rays(world);
   const RayScene mirror(static_geometry(world, HeightFieldSides::closed));
   Stream stream(options.seed, "trial.rays");

@@ -2,9 +2,8 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 
-#include "sim/situation.hpp"
+#include "sim/built_situation.hpp"
 
 namespace tumble::sim {
 
@@ -18,7 +17,6 @@ struct RayDisagreement {
 };
 
 struct RayTrialOptions {
-  std::filesystem::path models;
   int rays = 2000;
   std::uint64_t seed = 1;
   double mirror_shift_m = 0.0;  ///< lifts the rays of the mirror alone: an error, for showing that it is found
@@ -27,7 +25,7 @@ struct RayTrialOptions {
 
 /// Casts random rays in all directions, both ways: half of them from 0.2 to 3 m above whatever stands anywhere in the
 /// world, half from near the place where the robot begins. The robot is left out. A ray of the
-/// engine costs up to 0.3 ms on a height field. Throws InvalidSituation.
-RayDisagreement compare_rays(const Situation& situation, const RayTrialOptions& options);
+/// engine costs up to 0.3 ms on a height field. Throws InvalidSituation on a geom that has no surface.
+RayDisagreement compare_rays(const BuiltSituation& built, const RayTrialOptions& options);
 
 }  // namespace tumble::sim

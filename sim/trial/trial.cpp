@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "sim/compose.hpp"
 #include "sim/engine/physics.hpp"
 
 namespace tumble::sim {
@@ -23,11 +22,11 @@ int engine_integrator(Integrator integrator) {
 }
 
 /// The options take effect on the model before the engine's state is made from it.
-engine::World compose_for(const Situation& situation, const TrialOptions& options) {
+engine::World world_for(const BuiltSituation& built, const TrialOptions& options) {
   if (!(options.step_s >= 0.0 && options.step_s <= 0.1)) {
     throw InvalidSituation("trial: step_s is " + std::to_string(options.step_s) + " s, must be within [0, 0.1]");
   }
-  engine::World world = engine::compose(situation, options.models);
+  engine::World world = engine::copy_of(built.world());
   if (options.step_s > 0.0) world.model->opt.timestep = options.step_s;
   world.model->opt.integrator = engine_integrator(options.integrator);
   return world;
@@ -39,12 +38,11 @@ struct Trial::Impl {
   engine::World world;
   engine::Physics physics;
 
-  Impl(const Situation& situation, const TrialOptions& options)
-      : world(compose_for(situation, options)), physics(world) {}
+  Impl(const BuiltSituation& built, const TrialOptions& options) : world(world_for(built, options)), physics(world) {}
 };
 
-Trial::Trial(const Situation& situation, const TrialOptions& options)
-    : impl_(std::make_unique<Impl>(situation, options)) {}
+Trial::Trial(const BuiltSituation& built, const TrialOptions& options)
+    : impl_(std::make_unique<Impl>(built, options)) {}
 Trial::~Trial() = default;
 Trial::Trial(Trial&&) noexcept = default;
 

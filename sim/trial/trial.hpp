@@ -2,14 +2,13 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "sim/body_state.hpp"
+#include "sim/built_situation.hpp"
 #include "sim/recording.hpp"
-#include "sim/situation.hpp"
 
 namespace tumble::sim {
 
@@ -17,8 +16,7 @@ namespace tumble::sim {
 enum class Integrator { runge_kutta_4, euler, implicit };
 
 struct TrialOptions {
-  std::filesystem::path models;  ///< folder of the MJCF files
-  double step_s = 0.0;           ///< 0: the simulation's own
+  double step_s = 0.0;  ///< 0: the simulation's own
   Integrator integrator = Integrator::runge_kutta_4;
 };
 
@@ -26,8 +24,8 @@ struct TrialOptions {
 /// No motion, no sensors, no settling; the motion and sensors of the situation are ignored.
 class Trial {
  public:
-  /// Throws InvalidSituation.
-  Trial(const Situation& situation, const TrialOptions& options);
+  /// Moves a copy of the world. Throws InvalidSituation when the step is out of its bounds.
+  explicit Trial(const BuiltSituation& built, const TrialOptions& options = {});
   ~Trial();
   Trial(Trial&&) noexcept;
 

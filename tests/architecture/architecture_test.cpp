@@ -65,9 +65,9 @@ const std::vector<Rule>& rules() {
 
 /// Headers of sim that others include must not bring mujoco.h, Embree or OSMesa with them.
 const std::vector<std::string> kPublicSimHeaders = {
-    "sim/parameters.hpp",      "sim/situation.hpp",     "sim/recording.hpp",         "sim/simulate.hpp",
-    "sim/random/stream.hpp",   "sim/lidar/surface.hpp", "sim/render/renderer.hpp",   "sim/trial/trial.hpp",
-    "sim/trial/ray_trial.hpp", "sim/imu/allan.hpp",     "sim/imu/imu_simulation.hpp"};
+    "sim/parameters.hpp",  "sim/built_situation.hpp", "sim/situation.hpp",     "sim/recording.hpp",
+    "sim/simulate.hpp",    "sim/random/stream.hpp",   "sim/lidar/surface.hpp", "sim/render/renderer.hpp",
+    "sim/trial/trial.hpp", "sim/trial/ray_trial.hpp", "sim/imu/allan.hpp",     "sim/imu/imu_simulation.hpp"};
 
 std::vector<std::string> includes_of(const fs::path& file) {
   static const std::regex pattern(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");
@@ -204,7 +204,7 @@ const std::array kLinks = {
     Links{
         "scenarios/baselines/libtumble_baselines.a",
         R"(\b(mj_|rtc[A-Z]|H5[A-Z]|pcl::|YAML::|sqlite3_|std::cout|std::cerr|printf\b|fopen\b|exit\b|pthread_create|tumble::(sim|scenarios|tools)\b))",
-        "tumble::sim::simulate(tumble::sim::Situation const&)"},
+        "tumble::sim::simulate(tumble::sim::BuiltSituation const&, int)"},
     Links{"sim/libtumble_sim.a", R"(\b(H5[A-Z]|pcl::|YAML::|sqlite3_|std::cout|std::cerr|tumble::(?!sim\b)))",
           "tumble::RateModel::RateModel()"},
     Links{"scenarios/libtumble_scenarios.a", R"(\b(mj_|rtc[A-Z]|OSMesa|tumble::(sim::engine|tools)\b))",

@@ -15,7 +15,7 @@ sim::Recording kept_recording(const scenarios::DataRoot& data, const std::filesy
     return {scenarios::read_sensors(file), scenarios::read_truth(file)};
   }
   const sim::Situation drawn = situation();
-  sim::Recording recording = sim::simulate(drawn, {data.models(), 1});
+  sim::Recording recording = sim::simulate(sim::BuiltSituation(sim::resolve(drawn), data.models()));
   if (folder.empty()) return recording;
   std::filesystem::create_directories(folder);
   scenarios::RecordingInfo info;

@@ -102,9 +102,9 @@ int run(int count, char** words) {
   Spread spread;
   for (std::uint64_t seed = first; seed <= last; ++seed) {
     try {
-      const sim::Situation situation = scenarios::without_lidars(scenarios::draw(data, scenario, seed));
+      const sim::ResolvedSituation situation = scenarios::without_lidars(scenarios::draw(data, scenario, seed));
       const double start_s = scenarios::process_cpu_s();
-      const sim::Recording recording = sim::simulate(situation, {data.models(), 1});
+      const sim::Recording recording = sim::simulate(sim::BuiltSituation(situation, data.models()));
       spread.cpu_s.push_back(scenarios::process_cpu_s() - start_s);
       const MotionSummary m = scenarios::summarise_motion(recording.sensors, recording.truth);
       spread.draws.push_back(m);

@@ -138,8 +138,8 @@ int main(int count, char** words) {
     Shares shares;
     for (std::uint64_t seed = std::strtoull(words[2], nullptr, 10); seed <= std::strtoull(words[3], nullptr, 10);
          ++seed) {
-      const sim::Situation situation = sim::resolve(scenarios::without_lidars(scenarios::draw(data, scenario, seed)));
-      add(sim::simulate(situation, {data.models(), 1}), inertia_per_mass(situation), shares);
+      const sim::ResolvedSituation situation = scenarios::without_lidars(scenarios::draw(data, scenario, seed));
+      add(sim::simulate(sim::BuiltSituation(situation, data.models())), inertia_per_mass(situation), shares);
     }
     std::printf("clipped samples %zu, of these in contact %zu\n", shares.clipped, shares.clipped_contact);
     std::printf("%-58s %8s %8s %8s %8s\n", "", "count", "25 %", "median", "90 %");

@@ -121,7 +121,7 @@ int run(const std::string& name, std::uint64_t first, std::uint64_t last, const 
       continue;
     }
     std::optional<sim::Surface> surface;
-    if (kind == "slam") surface.emplace(draw.situation, data.models());
+    if (kind == "slam") surface.emplace(*draw.built);
     for (const std::string& harm : chosen) {
       if (is_of_kind(harm, method.info.kind)) judge(method, draw, surface ? &*surface : nullptr, harm, tally);
     }

@@ -74,5 +74,39 @@ TEST(External, WhatGoesWrongIsAnOutcomeOfTheSweep) {
   EXPECT_THAT(other.err, HasSubstr("rate/silent"));
 }
 
+TEST(External, AGateHoldsItToItsAcceptedRun) {
+  const fs::path folder = test_folder();
+  std::ofstream(folder / "small.yaml") << "name: small\ndoc: a draw\nscenarios: [hill]\nseeds: {first: 1, last: 1}\n";
+  const std::vector<std::string> gate = {
+      "gate", (folder / "small.yaml").string(), "--against", (folder / "g.yaml").string(), "--quiet", "--json"};
+  const auto run = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = gate;
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_program(arguments);
+  };
+  Ended ended = run({"--method", example(), "--accept"});
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(read_file(folder / "g.csv"), HasSubstr("hill,rate,raw_python,status,ok"));
+  ended = run({"--method", example()});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_GE(json_of(ended)["held"].size(), 2u);
+  for (const json& row : json_of(ended)["held"]) EXPECT_EQ(row["method"], "raw_python") << "the file's alone";
+
+  ended = run({});
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_THAT(ended.err, HasSubstr("--method FILE.yaml"));
+  ended = run({"--method", example(), "--method", describe(folder, "other", "true")});
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_THAT(ended.err, HasSubstr("rate/other"));
+  ended = run({"--method", "rate/raw"});
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_THAT(ended.err, HasSubstr("must be a FILE.yaml"));
+
+  // negative control: the command of that name has come to answer nothing
+  ended = run({"--method", describe(folder, "raw_python", "true")});
+  EXPECT_EQ(ended.status, 1) << ended.err;
+  EXPECT_EQ(json::parse(ended.out)["verdict"], "fail");
+}
+
 }  // namespace
 }  // namespace tumble::system_test

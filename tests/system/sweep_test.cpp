@@ -10,6 +10,7 @@
 #include <fstream>
 #include <thread>
 
+#include "scenarios/sweep/results.hpp"
 #include "system/program.hpp"
 
 namespace tumble::system_test {
@@ -163,6 +164,26 @@ TEST(Report, IsAFunctionOfWhatASweepHasLeft) {
   EXPECT_THAT(own_part(page), HasSubstr("r.db --examples 3")) << "so few draws get none unless told";
   EXPECT_THAT(ended.err, HasSubstr("No pictures of single draws"));
 
+  // a sweep of this build would be refused by results of another one: then that is named instead
+  {
+    scenarios::Results results(database, scenarios::Results::Mode::create_or_append);
+    const auto page_where = [&](const std::string& key, const std::string& text) {
+      const std::string as_it_was = results.note(key);
+      results.set_note(key, text);
+      EXPECT_EQ(run_program(report).status, 0);
+      results.set_note(key, as_it_was);
+      return own_part(page);
+    };
+    const std::string foreign = page_where("build", "another build"), mixed = page_where("build", "mixed");
+    EXPECT_THAT(foreign, HasSubstr("by the build that made these results (another build)"));
+    EXPECT_THAT(foreign, Not(HasSubstr("tumble sweep roll")));
+    EXPECT_THAT(mixed, HasSubstr("of several builds"));
+    EXPECT_THAT(mixed, Not(HasSubstr("tumble sweep roll")));
+    const std::string elsewhere = page_where("data", "other data");
+    EXPECT_THAT(elsewhere, HasSubstr("(digest other data)"));
+    EXPECT_THAT(elsewhere, Not(HasSubstr("tumble sweep roll")));
+  }
+
   // they are made of what is there: nothing runs again but the draw that is shown
   ended = run_program(sweep_arguments(database, "1..2", "1"));
   ASSERT_EQ(ended.status, 0) << ended.err;
@@ -196,6 +217,17 @@ TEST(Sweep, OfAnotherSuiteKeepsTheExamplesThatStandThere) {
   ASSERT_EQ(both["examples"].size(), 2u);
   EXPECT_EQ(both["examples"][0]["scenario"], "elsewhere");
   EXPECT_EQ(both["examples"][1]["scenario"], "roll");
+
+  // one that is damaged is told and costs the others nothing
+  left = both;
+  left["examples"].push_back(left["examples"][0]);
+  left["examples"][2].erase("motion");
+  std::ofstream(list) << left.dump();
+  const Ended ended = run_program(arguments);
+  EXPECT_THAT(ended.err, HasSubstr("an example that stood there is left out"));
+  EXPECT_THAT(ended.err, HasSubstr("example 3"));
+  EXPECT_EQ(json::parse(read_file(list)), both);
+  EXPECT_EQ(json::parse(read_file(folder / "s.db.files" / "examples.json.damaged")), left);
 }
 
 TEST(Sweep, StoppedAtItsPicturesSaysSoAndLeavesNone) {

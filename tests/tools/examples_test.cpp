@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <limits>
 
 #include "scenarios/errors.hpp"
@@ -22,7 +23,7 @@ using ::testing::HasSubstr;
 /// A recording of four samples whose gyro y axis is flat, with what raw would make of it.
 scenarios::RunResult clipped_run() {
   scenarios::RunResult run;
-  run.situation.scenario = "hill";
+  run.scenario = "hill";
   run.methods = scenarios::find_methods("rate/raw");
   scenarios::Estimate estimate;
   sim::Recording& recording = run.recording;
@@ -86,6 +87,18 @@ TEST(Figure, OfAPlotKeepsGapsSpansAndWhatIsHidden) {
   EXPECT_EQ(figure.layout["shapes"][0]["x1"], 2.0);
 }
 
+bool nothing_stands_in(const std::filesystem::path& folder) {
+  const FoundExamples found = read_examples(folder, Pictures::read);
+  return found.examples.empty() && found.unreadable.empty();
+}
+
+/// Nothing is found, and why is told with the path.
+bool all_is_unreadable_in(const std::filesystem::path& folder) {
+  const FoundExamples found = read_examples(folder, Pictures::read);
+  return found.examples.empty() && found.unreadable.size() == 1 &&
+         found.unreadable[0].find((folder / "examples.json").string()) == 0;
+}
+
 class ExamplesTest : public scenarios::testing::TemporaryFolder {
  protected:
   /// Everything that a list holds, each with a value of its own.
@@ -120,15 +133,16 @@ class ExamplesTest : public scenarios::testing::TemporaryFolder {
 
 TEST_F(ExamplesTest, ComeBackAsTheyWereLeft) {
   leave({sample(3), sample(18446744073709551615u)});
-  const std::vector<Example> read = read_examples(folder_, Pictures::read);
+  const auto [read, unreadable] = read_examples(folder_, Pictures::read);
+  EXPECT_TRUE(unreadable.empty());
   ASSERT_EQ(read.size(), 2u);
   EXPECT_EQ(read[1].seed, 18446744073709551615u);
   EXPECT_EQ(to_json(read[0]), to_json(sample(3))) << "every field, to the bit";
   EXPECT_EQ(read[0].pictures[0].png, sample(3).pictures[0].png);
   EXPECT_TRUE(std::isnan(read[0].plots[0].lines[0].y[1]));
   EXPECT_EQ(read[0].plots[0].lines[0].x[2], 0.1);
-  EXPECT_TRUE(read_examples(folder_, Pictures::left_out)[0].pictures[0].png.empty());
-  EXPECT_TRUE(read_examples(folder_ / "nowhere", Pictures::read).empty());
+  EXPECT_TRUE(read_examples(folder_, Pictures::left_out).examples[0].pictures[0].png.empty());
+  EXPECT_TRUE(nothing_stands_in(folder_ / "nowhere"));
 }
 
 TEST_F(ExamplesTest, WhatANewListHasNotIsRemovedAndNothingElse) {
@@ -143,12 +157,41 @@ TEST_F(ExamplesTest, WhatANewListHasNotIsRemovedAndNothingElse) {
 TEST_F(ExamplesTest, AListThatIsDamagedIsRefused) {
   leave({sample(3)});
   std::filesystem::remove(folder_ / "hill-3-scene.png");
-  EXPECT_THROW(read_examples(folder_, Pictures::read), scenarios::BadInput) << "a picture is gone";
+  EXPECT_TRUE(all_is_unreadable_in(folder_)) << "a picture is gone";
   for (const char* text : {"", "{", "[]", "{\"format\": \"other\", \"version\": 1, \"examples\": []}",
                            "{\"format\": \"tumble examples\", \"version\": 1, \"examples\": [{}]}"}) {
     overwrite_list(text);
-    EXPECT_THROW(read_examples(folder_, Pictures::read), scenarios::BadInput) << text;
+    EXPECT_TRUE(all_is_unreadable_in(folder_)) << text;
   }
+}
+
+TEST_F(ExamplesTest, WhatIsDamagedCostsTheOthersNothing) {
+  leave({sample(3), sample(4), sample(5)});
+  const std::filesystem::path list = folder_ / "examples.json";
+  std::ifstream file(list);
+  const std::string whole((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  const auto seeds = [&] {
+    std::vector<std::uint64_t> out;
+    for (const Example& example : read_examples(folder_, Pictures::read).examples) out.push_back(example.seed);
+    return out;
+  };
+  // one whose picture is gone
+  std::filesystem::remove(folder_ / "hill-4-scene.png");
+  EXPECT_THAT(seeds(), ElementsAre(3u, 5u));
+  ASSERT_EQ(read_examples(folder_, Pictures::read).unreadable.size(), 1u);
+  EXPECT_THAT(read_examples(folder_, Pictures::read).unreadable[0],
+              ::testing::AllOf(HasSubstr("example 2"), HasSubstr("hill-4-scene.png")));
+  // one that lacks a field
+  std::string text = whole;
+  text.replace(text.find("\"motion\""), 8, "\"notion\"");
+  overwrite_list(text);
+  EXPECT_THAT(seeds(), ElementsAre(5u)) << "the first has no motion, the second no picture";
+  // a list that is cut off in its last example
+  overwrite_list(whole.substr(0, whole.size() - 200));
+  EXPECT_THAT(seeds(), ElementsAre(3u));
+  EXPECT_EQ(read_examples(folder_, Pictures::read).unreadable.size(), 2u) << "the cut, and the picture";
+  EXPECT_EQ(set_damaged_aside(folder_), folder_ / "examples.json.damaged");
+  EXPECT_EQ(std::filesystem::file_size(folder_ / "examples.json.damaged"), whole.size() - 200);
 }
 
 TEST_F(ExamplesTest, AFolderInAFilesPlaceIsRefused) {
@@ -156,11 +199,11 @@ TEST_F(ExamplesTest, AFolderInAFilesPlaceIsRefused) {
   const std::filesystem::path picture = folder_ / "hill-3-scene.png", list = folder_ / "examples.json";
   std::filesystem::remove(picture);
   std::filesystem::create_directories(picture);
-  EXPECT_THROW(read_examples(folder_, Pictures::read), scenarios::BadInput);
+  EXPECT_TRUE(all_is_unreadable_in(folder_));
   std::filesystem::remove(list);
-  EXPECT_TRUE(read_examples(folder_, Pictures::read).empty()) << "an absent list is none";
+  EXPECT_TRUE(nothing_stands_in(folder_)) << "an absent list is none";
   std::filesystem::create_directories(list);
-  EXPECT_THROW(read_examples(folder_, Pictures::read), scenarios::BadInput) << "one that cannot be read is not absent";
+  EXPECT_TRUE(all_is_unreadable_in(folder_)) << "one that cannot be read is not absent";
 }
 
 TEST_F(ExamplesTest, AListNamesFilesOfItsOwnFolderAlone) {
@@ -171,7 +214,7 @@ TEST_F(ExamplesTest, AListNamesFilesOfItsOwnFolderAlone) {
   const std::string name = "hill-3-scene.png";
   list.replace(list.find(name), name.size(), "../secret.png");
   std::ofstream(own / "examples.json") << list;
-  EXPECT_THROW(read_examples(own, Pictures::read), scenarios::BadInput);
+  EXPECT_TRUE(all_is_unreadable_in(own));
   write_examples(own, {});
   EXPECT_TRUE(std::filesystem::exists(secret)) << "nor is one removed";
 }

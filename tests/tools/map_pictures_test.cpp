@@ -24,7 +24,7 @@ const sim::Surface& surface() {
     for (const char* none : {"pillar_count", "box_count"}) situation.world.values.set(none, 0.0);
     situation.robot.type = "sphere";
     situation.motion.type = "hand_roll";
-    return sim::Surface(sim::resolve(situation), (test::source_dir() / "models").string());
+    return sim::Surface(sim::BuiltSituation(sim::resolve(situation), test::source_dir() / "models"));
   }();
   return room;
 }

@@ -41,8 +41,8 @@ sim::Recording roll_recording() {
 /// `rolling` sees twice the way; `vqf` trembles by kTremor_rad from sample to sample.
 scenarios::RunResult sample_roll() {
   scenarios::RunResult run;
-  run.situation.scenario = "slip";
-  run.situation.seed = 5001;
+  run.scenario = "slip";
+  run.seed = 5001;
   run.recording = roll_recording();
   run.methods = {scenarios::find_methods("attitude/vqf").front(), scenarios::find_methods("position/rolling").front()};
   run.estimates.resize(2);

@@ -72,8 +72,16 @@ void discard_unfinished(const std::filesystem::path& folder);
 void write_examples(const std::filesystem::path& folder, const std::vector<std::string>& examples);
 
 enum class Pictures { read, left_out };
-/// In the order of the list; none where there is no list. Throws BadInput with path and reason: not such a list, a
-/// picture that is missing, a name that leads out of the folder.
-std::vector<Example> read_examples(const std::filesystem::path& folder, Pictures pictures);
+struct FoundExamples {
+  std::vector<Example> examples;        ///< in the order of the list
+  std::vector<std::string> unreadable;  ///< of the list or of one example: path and reason
+};
+/// None where there is no list. What cannot be read costs the others nothing: not such a list, one that is cut off (the
+/// examples before the cut are found), a picture that is missing, a name that leads out of the folder.
+FoundExamples read_examples(const std::filesystem::path& folder, Pictures pictures);
+
+/// Keeps a copy of a list that cannot be read, or not whole, before another is written: examples.json.damaged. Returns
+/// its path.
+std::filesystem::path set_damaged_aside(const std::filesystem::path& folder);
 
 }  // namespace tumble::tools

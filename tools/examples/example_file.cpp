@@ -130,6 +130,22 @@ json read_list(const fs::path& folder) {
   return list;
 }
 
+/// Of a list that is cut off: the examples that end before the cut.
+json whole_examples(const fs::path& folder) {
+  constexpr int kDepth = 2;  // the list, its array, an example
+  json whole = json::array();
+  try {
+    const auto keep = [&](int depth, json::parse_event_t event, json& parsed) {
+      if (depth == kDepth && event == json::parse_event_t::object_end) whole.push_back(parsed);
+      return true;
+    };
+    // a list that is whole is refused for another reason: what is in it is not ours
+    if (!json::parse(read_bytes(list_file(folder)), keep, false).is_discarded()) return json::array();
+  } catch (const BadInput&) {  // a folder in its place
+  }
+  return whole;
+}
+
 std::set<std::string> files_of(const json& examples) {
   std::set<std::string> files;
   for (const json& example : examples) {
@@ -207,18 +223,33 @@ void write_examples(const fs::path& folder, const std::vector<std::string>& exam
   }
 }
 
-std::vector<Example> read_examples(const fs::path& folder, Pictures pictures) {
-  std::vector<Example> examples;
+FoundExamples read_examples(const fs::path& folder, Pictures pictures) {
+  FoundExamples found;
+  const auto note = [&](const std::string& what) { found.unreadable.push_back(list_file(folder).string() + what); };
+  json examples;
   try {
     const json list = read_list(folder);
-    if (list.is_null()) return examples;
-    for (const json& example : list.at("examples")) examples.push_back(read_example(folder, example, pictures));
-  } catch (const json::exception& error) {
-    throw BadInput(list_file(folder).string() + ": " + error.what());
-  } catch (const BadInput& error) {
-    throw BadInput(list_file(folder).string() + ": " + error.what());
+    if (list.is_null()) return found;
+    examples = list.at("examples");
+  } catch (const std::exception& error) {
+    note(std::string(": ") + error.what());
+    examples = whole_examples(folder);
   }
-  return examples;
+  for (std::size_t i = 0; i < examples.size(); ++i) {
+    try {
+      found.examples.push_back(read_example(folder, examples[i], pictures));
+    } catch (const std::exception& error) {
+      note(", example " + std::to_string(i + 1) + ": " + error.what());
+    }
+  }
+  return found;
+}
+
+fs::path set_damaged_aside(const fs::path& folder) {
+  const fs::path aside = list_file(folder).string() + ".damaged";
+  std::error_code ignored;
+  fs::copy_file(list_file(folder), aside, fs::copy_options::overwrite_existing, ignored);
+  return aside;
 }
 
 }  // namespace tumble::tools

@@ -72,24 +72,29 @@ std::vector<Making> plan(const scenarios::DataRoot& data, const scenarios::Suite
 }
 
 /// Takes over what stands there of the same rows; returns the text of what is of scenarios outside the suite, left by
-/// sweeps of others into the same database.
+/// sweeps of others into the same database. What cannot be read is told: of the suite it is made anew.
 std::vector<std::string> keep_known(const scenarios::DataRoot& data, const fs::path& folder,
-                                    const scenarios::Suite& suite, std::vector<Making>& makings) {
+                                    const scenarios::Suite& suite, const LeaveOptions& options,
+                                    std::vector<Making>& makings) {
   std::set<std::string> within;
   for (const std::string& name : suite.scenarios) within.insert(scenarios::load_scenario(data, name).name);
   std::vector<std::string> others;
-  try {
-    for (const Example& known : read_examples(folder, Pictures::read)) {
-      if (!within.contains(known.scenario)) others.push_back(to_json(known));
-      for (Making& making : makings) {
-        if (known.made_of != making.made_of || known.scenario != making.draw.scenario || known.seed != making.draw.seed)
-          continue;
-        making.text = to_json(known);
-        making.done = true;
-      }
+  const FoundExamples found = read_examples(folder, Pictures::read);
+  for (const Example& known : found.examples) {
+    if (!within.contains(known.scenario)) others.push_back(to_json(known));
+    for (Making& making : makings) {
+      if (known.made_of != making.made_of || known.scenario != making.draw.scenario || known.seed != making.draw.seed)
+        continue;
+      making.text = to_json(known);
+      making.done = true;
     }
-  } catch (const scenarios::BadInput&) {  // made anew
   }
+  if (found.unreadable.empty()) return others;
+  const fs::path aside = set_damaged_aside(folder);
+  if (!options.note) return others;
+  for (const std::string& what : found.unreadable)
+    options.note(
+        fmt::format("an example that stood there is left out: {}; the list as it was: {}", what, aside.string()));
   return others;
 }
 
@@ -102,7 +107,7 @@ void make(const scenarios::DataRoot& data, const fs::path& folder, const Making&
     const scenarios::RunResult run =
         scenarios::run_situation(data, making.scenario, making.draw.seed, making.methods, 1,
                                  lidars ? scenarios::Lidars::simulated : scenarios::Lidars::left_out);
-    Example example = example_of(data, run);
+    Example example = example_of(run);
     example.choice = kTypical;
     example.made_of = making.made_of;
     write_pictures(folder, example);
@@ -214,7 +219,7 @@ bool leave_examples(const scenarios::DataRoot& data, const scenarios::Suite& sui
     makings = plan(data, suite, results, options.count);
   }
   if (makings.empty()) return true;
-  std::vector<std::string> texts = keep_known(data, folder, suite, makings);
+  std::vector<std::string> texts = keep_known(data, folder, suite, options, makings);
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw scenarios::BadInput(folder.string() + ": " + error.message());

@@ -35,13 +35,11 @@ void add_map(const scenarios::RunResult& run, const sim::Surface& surface, bool 
 }
 
 /// What the baseline makes of the map, beside what ours makes of it.
-void add_maps(const scenarios::DataRoot& data, const scenarios::RunResult& run, Example& example) {
-  const auto is_map = [](const auto& method) { return method->info.kind == scenarios::Kind::slam; };
-  if (std::none_of(run.methods.begin(), run.methods.end(), is_map)) return;
-  const sim::Surface surface(run.situation, data.models());
+void add_maps(const scenarios::RunResult& run, Example& example) {
+  if (!run.surface) return;
   std::vector<ErrorMap> maps;
-  add_map(run, surface, scenarios::is_baseline, maps);
-  add_map(run, surface, scenarios::is_ours, maps);
+  add_map(run, *run.surface, scenarios::is_baseline, maps);
+  add_map(run, *run.surface, scenarios::is_ours, maps);
   if (maps.empty()) return;
   std::string names;
   for (const ErrorMap& map : maps) {
@@ -57,9 +55,8 @@ void add_maps(const scenarios::DataRoot& data, const scenarios::RunResult& run, 
                               sim::png_bytes(map_picture(maps, run.recording.truth, 640, 480))});
 }
 
-void add_pictures(const scenarios::DataRoot& data, const scenarios::RunResult& run, const RunPaths& paths,
-                  Example& example) {
-  const Scene scene{&run.situation, data.models(), &run.recording.sensors, &run.recording.truth, paths.paths};
+void add_pictures(const scenarios::RunResult& run, const RunPaths& paths, Example& example) {
+  const Scene scene{&run.built.value(), &run.recording.sensors, &run.recording.truth, paths.paths};
   ExamplePicture way{"scene",
                      "the robot along its way, with true and estimated paths",
                      "The robot at instants equally far apart along its way.",
@@ -74,7 +71,7 @@ void add_pictures(const scenarios::DataRoot& data, const scenarios::RunResult& r
                               "The same motion close by, left to right and down.",
                               {},
                               sim::png_bytes(film_picture(scene, 8, 4, 400, 300))});
-  add_maps(data, run, example);
+  add_maps(run, example);
 }
 
 void add_plot(Plot plot, Example& example) {
@@ -83,15 +80,15 @@ void add_plot(Plot plot, Example& example) {
 
 }  // namespace
 
-Example example_of(const scenarios::DataRoot& data, const scenarios::RunResult& run) {
+Example example_of(const scenarios::RunResult& run) {
   Example example;
-  example.scenario = run.situation.scenario;
-  example.seed = run.situation.seed;
+  example.scenario = run.scenario;
+  example.seed = run.seed;
   example.motion = is_sphere(run) ? "roll" : "tumble";
   example.recording_digest = run.recording_digest;
   example.digest_without_lidars = scenarios::digest_without_lidars(run.recording);
   const RunPaths paths = paths_of(run);
-  add_pictures(data, run, paths, example);
+  add_pictures(run, paths, example);
   add_plot(rate_plot(run), example);
   add_plot(path_plot(run, paths), example);
   if (is_sphere(run)) {

@@ -79,9 +79,9 @@ double azimuth_across(const sim::Truth& truth) {
 /// The robot where a draw begins: a rig seen from down the slope, out of the lane that trunks keep off; a sphere with
 /// all of its room.
 void show_start(const Scene& scene, sim::View& view) {
-  const Isometry3d T_WB = sim::start_pose(*scene.situation, scene.models);
+  const Isometry3d T_WB = sim::start_pose(*scene.built);
   view.robots_T_WB = {T_WB};
-  if (scene.situation->robot.type == "sphere") {
+  if (scene.built->situation()->robot.type == "sphere") {
     view.look_at_W_m = Vector3d::Zero();
     view.distance_m = 25.0;
     return;
@@ -117,7 +117,7 @@ sim::Picture scene_picture(const Scene& scene, int robots, int width, int height
   } else {
     show_start(scene, view);
   }
-  return sim::Renderer(*scene.situation, scene.models).draw(view);
+  return sim::Renderer(*scene.built).draw(view);
 }
 
 sim::Picture film_picture(const Scene& scene, int frames, int columns, int width, int height) {
@@ -125,7 +125,7 @@ sim::Picture film_picture(const Scene& scene, int frames, int columns, int width
     throw scenarios::BadInput("a film strip needs a recording with its truth: it shows where the robot was");
   }
   const scenarios::TruthTrack track(*scene.truth, scenarios::Frame::body);
-  sim::Renderer renderer(*scene.situation, scene.models);
+  sim::Renderer renderer(*scene.built);
   sim::View view;
   view.width = width;
   view.height = height;

@@ -5,18 +5,17 @@
 #include <string>
 #include <vector>
 
+#include "sim/built_situation.hpp"
 #include "sim/recording.hpp"
 #include "sim/render/renderer.hpp"
-#include "sim/situation.hpp"
 #include "tools/pictures/colours.hpp"
 #include "tools/pictures/paths.hpp"
 
 namespace tumble::tools {
 
-/// What pictures are made from. Only the first two are needed.
+/// What pictures are made from. Only the first is needed.
 struct Scene {
-  const sim::Situation* situation = nullptr;
-  std::filesystem::path models;
+  const sim::BuiltSituation* built = nullptr;
   const sim::Sensors* sensors = nullptr;  ///< with `truth`: the robot along its way and the true path
   const sim::Truth* truth = nullptr;
   std::vector<Path> estimates;  ///< drawn in method_colour(0), (1), ...

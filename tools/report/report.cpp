@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "scenarios/errors.hpp"
+#include "scenarios/provenance/build_id.hpp"
 #include "scenarios/summary/example_choice.hpp"
 #include "scenarios/sweep/sweep_notes.hpp"
 #include "tools/report/certificate_html.hpp"
@@ -62,28 +62,42 @@ bool is_of(const scenarios::Results& results, const Example& example) {
   });
 }
 
-void add_examples(const scenarios::Results& results, const ReportOptions& options, PageContent& content) {
-  const std::filesystem::path folder = examples_folder(options.database);
-  try {
-    for (Example& example : read_examples(folder, Pictures::read)) {
-      const bool of_these = is_of(results, example);
-      content.examples.push_back({std::move(example), of_these});
-    }
-  } catch (const scenarios::BadInput& error) {
-    // what is wrong with the pictures must not cost the reader the scores
-    content.warnings.push_back(std::string("No pictures of single draws: ") + error.what());
-    return;
-  }
-  if (!content.examples.empty()) return;
+/// Why there are no pictures, and what makes them: of a sweep, which adds to results of its own build and data alone.
+std::string how_to_get_pictures(const scenarios::Results& results, const ReportOptions& options) {
+  const std::string none =
+      fmt::format("No pictures of single draws: there are none in {}", examples_folder(options.database).string());
+  const std::string made_by = results.note("build"), made_of = results.note("data");
+  if (made_by == scenarios::kMixedBuilds)
+    return fmt::format("{}. The results are of several builds, and a sweep adds to those of its own alone.", none);
+  if (!made_by.empty() && made_by != scenarios::build_id())
+    return fmt::format("{}. A sweep by the build that made these results ({}) makes them; this one ({}) is refused.",
+                       none, made_by, scenarios::build_id());
+  if (!made_of.empty() && !options.data.empty() && made_of != options.data)
+    return fmt::format(
+        "{}. A sweep over the models and scenarios that these results were made of (digest {}) makes them; over those "
+        "that are found here (digest {}) it is refused.",
+        none, made_of, options.data);
   const std::string command = results.note(scenarios::kCommandNote), suite = results.note("suite");
-  content.warnings.push_back(
-      fmt::format("No pictures of single draws: there are none in {}. They are made, and nothing that the results hold "
-                  "is run again, by: tumble sweep {} --db {} --examples 3",
-                  folder.string(),
-                  !command.empty() ? command
-                  : suite.empty()  ? "SUITE"
-                                   : suite,
-                  scenarios::shell_word(options.database.string())));
+  return fmt::format(
+      "{}. They are made, and nothing that the results hold is run again, by: tumble sweep {} --db {} --examples 3",
+      none,
+      !command.empty() ? command
+      : suite.empty()  ? "SUITE"
+                       : suite,
+      scenarios::shell_word(options.database.string()));
+}
+
+void add_examples(const scenarios::Results& results, const ReportOptions& options, PageContent& content) {
+  FoundExamples found = read_examples(examples_folder(options.database), Pictures::read);
+  for (Example& example : found.examples) {
+    const bool of_these = is_of(results, example);
+    content.examples.push_back({std::move(example), of_these});
+  }
+  // what is wrong with the pictures must not cost the reader the scores
+  for (const std::string& what : found.unreadable)
+    content.warnings.push_back("Pictures of single draws that cannot be shown: " + what);
+  if (!found.unreadable.empty()) return;
+  if (content.examples.empty()) content.warnings.push_back(how_to_get_pictures(results, options));
 }
 
 }  // namespace

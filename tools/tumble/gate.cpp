@@ -33,6 +33,7 @@ struct Options {
   std::string suite;
   int jobs = available_processors();
   fs::path database, accepted;
+  std::vector<std::string> methods;
   bool accept = false;
 };
 
@@ -62,18 +63,43 @@ class Database {
   bool own_;
 };
 
-/// Only what was accepted is run.
-void keep_accepted(const scenarios::Gate& gate, bool accept, scenarios::Suite& suite) {
-  std::vector<std::string> methods, names;
+bool is_of(const scenarios::MethodRun& run, const scenarios::MethodPointer& method) {
+  return run.kind == method->info.kind && run.method == method->info.name;
+}
+
+/// Methods of this build need not be given: what was accepted says which are held.
+std::vector<scenarios::MethodPointer> described_methods(const Options& options) {
+  for (const std::string& file : options.methods) {
+    if (!file.ends_with(".yaml"))
+      throw scenarios::BadInput("--method " + file +
+                                ": must be a FILE.yaml that describes a method; of this build's, those that were "
+                                "accepted are held");
+  }
+  return scenarios::find_methods(options.methods);
+}
+
+/// Only what was accepted is run; where a run is accepted, what is described for the first time too.
+void keep_accepted(const scenarios::Gate& gate, const Options& options,
+                   const std::vector<scenarios::MethodPointer>& described, scenarios::Suite& suite) {
+  std::vector<std::string> methods = options.methods, names;
   const auto add = [](std::vector<std::string>& list, const std::string& name) {
     if (std::find(list.begin(), list.end(), name) == list.end()) list.push_back(name);
   };
-  for (const scenarios::MethodRun& run : gate.accepted.methods) {
-    add(methods, std::string(to_string(run.kind)) + "/" + run.method);
+  const std::vector<scenarios::MethodRun>& accepted = gate.accepted.methods;
+  for (const scenarios::MethodRun& run : accepted) {
+    const auto is_it = [&](const scenarios::MethodPointer& method) { return is_of(run, method); };
+    if (std::none_of(described.begin(), described.end(), is_it))
+      add(methods, std::string(to_string(run.kind)) + "/" + run.method);
     add(names, run.scenario);
   }
   suite.methods = methods;
-  if (accept) return;  // a scenario that the suite has gained is accepted with the others
+  if (options.accept) return;  // a scenario that the suite has gained is accepted with the others
+  for (const scenarios::MethodPointer& method : described) {
+    if (std::none_of(accepted.begin(), accepted.end(), [&](const auto& run) { return is_of(run, method); }))
+      throw scenarios::BadInput(std::string(to_string(method->info.kind)) + "/" + method->info.name +
+                                ": the gate of suite " + suite.name +
+                                " has no accepted run of it; --accept takes it in");
+  }
   for (const std::string& name : names) require_known("scenario of suite " + suite.name, name, suite.scenarios);
   suite.scenarios = names;
 }
@@ -84,9 +110,8 @@ scenarios::GateRun of_suite(scenarios::GateRun run, const scenarios::Suite& suit
   std::erase_if(run.methods, [&](const scenarios::MethodRun& each) {
     const bool known =
         std::find(suite.scenarios.begin(), suite.scenarios.end(), each.scenario) != suite.scenarios.end();
-    return !known || std::none_of(methods.begin(), methods.end(), [&](const scenarios::MethodPointer& method) {
-      return method->info.kind == each.kind && method->info.name == each.method;
-    });
+    return !known || std::none_of(methods.begin(), methods.end(),
+                                  [&](const scenarios::MethodPointer& method) { return is_of(each, method); });
   });
   return run;
 }
@@ -134,11 +159,13 @@ json to_json(const std::vector<GateResult>& results, bool passes) {
 }
 
 /// The gate that is there, or, to be accepted for the first time, none yet.
-std::optional<scenarios::Gate> load(const scenarios::DataRoot& data, const Options& options, const std::string& suite) {
+std::optional<scenarios::Gate> load(const scenarios::DataRoot& data, const Options& options,
+                                    const std::vector<scenarios::MethodPointer>& described, const std::string& suite) {
   const fs::path file = gate_file(data, options, suite);
   if (options.accept && !(fs::exists(file) && fs::exists(fs::path(file).replace_extension(".csv"))))
     return std::nullopt;
-  const scenarios::Gate gate = scenarios::load_gate(data, options.accepted.empty() ? suite : options.accepted.string());
+  const scenarios::Gate gate =
+      scenarios::load_gate(data, options.accepted.empty() ? suite : options.accepted.string(), described);
   if (gate.suite != suite) {
     throw scenarios::BadInput(options.accepted.string() + ": is the gate of suite '" + gate.suite + "', not of '" +
                               suite + "'");
@@ -170,11 +197,12 @@ int run_gate(const Session& session, const Options& options) {
   if (!options.accepted.empty() && options.accepted.extension() != ".yaml")
     throw scenarios::BadInput("--against " + options.accepted.string() + ": must be a FILE.yaml");
   suite.curves.clear();  // held are the scenarios as they are
-  const std::optional<scenarios::Gate> known = load(data, options, suite.name);
+  const std::vector<scenarios::MethodPointer> described = described_methods(options);
+  const std::optional<scenarios::Gate> known = load(data, options, described, suite.name);
   if (known)
-    keep_accepted(*known, options.accept, suite);
+    keep_accepted(*known, options, described, suite);
   else
-    suite.methods = {"tumble"};
+    suite.methods = options.methods.empty() ? std::vector<std::string>{"tumble"} : options.methods;
 
   const Database database(options.database);
   const InterruptFlag interrupt;
@@ -210,6 +238,9 @@ Action declare_gate(CLI::App& app, const Session& session) {
       ->check(a_suite(session));
   app.add_option("--against", options->accepted,
                  "the gate, FILE.yaml, with the accepted run beside it in FILE.csv [scenarios/gates/SUITE.yaml]");
+  app.add_option("--method", options->methods,
+                 "FILE.yaml: the method that it describes is held too, or accepted; repeat for more")
+      ->allow_extra_args(false);
   app.add_option("--jobs", options->jobs, "processes at a time [the processors]")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();

@@ -36,10 +36,11 @@ Table contents(const sim::Sensors& sensors) {
 int record(const Session& session, const Options& options) {
   const scenarios::DataRoot data = session.data();
   const std::uint64_t seed = parse_seed(options.seed);
-  const sim::Situation situation = scenarios::draw(data, scenarios::load_scenario(data, options.scenario), seed);
+  const sim::ResolvedSituation situation =
+      scenarios::draw(data, scenarios::load_scenario(data, options.scenario), seed);
   prepare_output(options.file, std::vector<std::filesystem::path>{options.scenario});
 
-  const sim::Recording recording = sim::simulate(situation, {data.models(), options.threads});
+  const sim::Recording recording = sim::simulate(sim::BuiltSituation(situation, data.models()), options.threads);
   const scenarios::RecordingInfo info =
       recording_info(situation, scenarios::digest(recording.sensors, &recording.truth));
   scenarios::write_recording(options.file, info, recording.sensors, &recording.truth);

@@ -6,16 +6,23 @@
 
 namespace tumble::tools {
 
-scenarios::RecordingInfo recording_info(const sim::Situation& situation, const std::string& digest) {
+scenarios::RecordingInfo recording_info(const sim::ResolvedSituation& situation, const std::string& digest) {
   scenarios::RecordingInfo info;
-  info.scenario = situation.scenario;
-  info.seed = situation.seed;
+  info.scenario = situation->scenario;
+  info.seed = situation->seed;
   info.situation_yaml = scenarios::to_yaml(situation);
   info.tumble_version = program_version();
   info.engine_version = TUMBLE_ENGINE_VERSION;
   info.digest = digest;
   info.has_truth = true;
   return info;
+}
+
+sim::BuiltSituation built_from(const scenarios::RecordingInfo& info, const std::string& place,
+                               const scenarios::DataRoot& data) {
+  sim::Situation situation = scenarios::situation_from_yaml(info.situation_yaml, place);
+  situation.sensors.clear();
+  return {sim::resolve(situation), data.models()};
 }
 
 }  // namespace tumble::tools

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/errors.hpp"
@@ -12,6 +13,7 @@
 #include "tools/pictures/map_pictures.hpp"
 #include "tools/pictures/pictures.hpp"
 #include "tools/tumble/arguments.hpp"
+#include "tools/tumble/recording_info.hpp"
 #include "tools/tumble/verbs.hpp"
 
 namespace tumble::tools {
@@ -33,7 +35,7 @@ struct Options {
 
 /// All that a scene points to.
 struct Content {
-  sim::Situation situation;
+  std::optional<sim::BuiltSituation> built;
   sim::Sensors sensors;
   sim::Truth truth;
   Scene scene;
@@ -44,19 +46,19 @@ bool is_recording(const std::string& what) {
   return std::filesystem::exists(what) ? !what.ends_with(".yaml") : what.ends_with(".h5") || what.ends_with(".hdf5");
 }
 
-/// Situation, sensors and truth of a recording.
-void load_situation(const Options& options, Content& content) {
+/// World, sensors and truth of a recording.
+void load_situation(const scenarios::DataRoot& data, const Options& options, Content& content) {
   const scenarios::RecordingInfo info = scenarios::read_info(options.what);
   if (info.situation_yaml.empty()) throw BadInput(options.what + ": holds no situation, so there is no world to draw");
-  content.situation = scenarios::situation_from_yaml(info.situation_yaml, options.what);
+  content.built = built_from(info, options.what, data);
   content.sensors = scenarios::read_sensors(options.what);
   // the truth places the robot and the estimates in a picture for people; no estimate is made here
   if (!info.has_truth) throw BadInput(options.what + ": holds no truth, so there is no way to draw");
   content.truth = scenarios::read_truth(options.what);
 }
 
-void load_recording(const Options& options, Content& content) {
-  load_situation(options, content);
+void load_recording(const scenarios::DataRoot& data, const Options& options, Content& content) {
+  load_situation(data, options, content);
   content.scene.sensors = &content.sensors;
   content.scene.truth = &content.truth;
   for (const std::filesystem::path& folder : options.estimates) {
@@ -74,7 +76,7 @@ void load_draw(const scenarios::DataRoot& data, const Options& options, Content&
   if (options.seed.empty()) throw BadInput("--seed is required to draw the scenario '" + options.what + "'");
   if (!options.estimates.empty()) throw BadInput("estimates are drawn into a recording, not into a scenario");
   if (options.film > 0) throw BadInput("--film shows the way of a recording; '" + options.what + "' is a scenario");
-  content.situation = scenarios::draw(data, scenario, parse_seed(options.seed));
+  content.built.emplace(scenarios::draw(data, scenario, parse_seed(options.seed)), data.models());
 }
 
 /// Maps of the estimates side by side, coloured by error.
@@ -83,8 +85,8 @@ int render_maps(const Session& session, const Options& options, const scenarios:
     throw BadInput("--map shows the maps of estimates of a recording: FILE.h5 ESTIMATE...");
   }
   Content content;
-  load_situation(options, content);
-  const sim::Surface surface(content.situation, data.models());
+  load_situation(data, options, content);
+  const sim::Surface surface(*content.built);
   std::vector<ErrorMap> maps;
   Table table("", {"map", "points", "within 0.1 m", "within 0.25 m"});
   table.align_right_from(1);
@@ -116,12 +118,11 @@ int render(const Session& session, const Options& options) {
   if (options.map) return render_maps(session, options, data);
   Content content;
   if (is_recording(options.what)) {
-    load_recording(options, content);
+    load_recording(data, options, content);
   } else {
     load_draw(data, options, content);
   }
-  content.scene.situation = &content.situation;
-  content.scene.models = data.models();
+  content.scene.built = &content.built.value();
   save_picture(options.png,
                options.film > 0
                    ? film_picture(content.scene, options.film, options.columns, options.width, options.height)

@@ -13,6 +13,7 @@
 
 #include "scenarios/certificate/certificate_text.hpp"
 #include "scenarios/errors.hpp"
+#include "scenarios/provenance/data_digest.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "tools/report/curves.hpp"
 #include "tools/report/distributions.hpp"
@@ -119,12 +120,22 @@ std::string read_text(const std::filesystem::path& path) {
   return text;
 }
 
+/// Digest of the data that a sweep would take; a report needs none.
+std::string data_found(const Session& session) {
+  try {
+    return scenarios::data_digest(session.data());
+  } catch (const scenarios::BadInput&) {
+    return "";
+  }
+}
+
 void write_page(const Session& session, const Options& options, const scenarios::Results& results,
                 const Summary& summary) {
   const std::string plotly = read_text(session.plotly());
   ReportOptions report;
   report.database = options.database;
   report.version = program_version();
+  report.data = data_found(session);
   report.made_at = fmt::format("{:%Y-%m-%d %H:%M} UTC",
                                fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
   const PageContent content = report_content(results, summary, report);

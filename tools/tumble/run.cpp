@@ -79,7 +79,7 @@ void say_what_next(const Session& session, const Options& options) {
 
 /// Recording, situation and every estimate, under the names that the other verbs read.
 void leave_files(const fs::path& folder, const scenarios::RunResult& result) {
-  const scenarios::RecordingInfo info = recording_info(result.situation, result.recording_digest);
+  const scenarios::RecordingInfo info = recording_info(result.built->situation(), result.recording_digest);
   scenarios::write_recording(folder / "recording.h5", info, result.recording.sensors, &result.recording.truth);
   scenarios::replace_file(folder / "situation.yaml", info.situation_yaml);
   const std::string sensors_digest = scenarios::digest(result.recording.sensors, nullptr);
@@ -92,8 +92,8 @@ void leave_files(const fs::path& folder, const scenarios::RunResult& result) {
 }
 
 /// The whole way and a film strip, with every path that an estimate has.
-void leave_pictures(const fs::path& folder, const fs::path& models, const scenarios::RunResult& result) {
-  Scene scene{&result.situation, models, &result.recording.sensors, &result.recording.truth, {}};
+void leave_pictures(const fs::path& folder, const scenarios::RunResult& result) {
+  Scene scene{&result.built.value(), &result.recording.sensors, &result.recording.truth, {}};
   for (const scenarios::Estimate& estimate : result.estimates) {
     Path path = estimated_path(estimate, result.recording.sensors, result.recording.truth);
     if (!path.empty()) scene.estimates.push_back(std::move(path));
@@ -137,21 +137,20 @@ int run(const Session& session, const Options& given) {
   const scenarios::RunResult result = scenarios::run_situation(data, scenario, seed, methods, options.threads);
   if (!options.folder.empty()) {
     leave_files(options.folder, result);
-    leave_pictures(options.folder, data.models(), result);
+    leave_pictures(options.folder, result);
     folder->keep();
   }
   learnt.keep();
 
   const std::string digest = scenarios::run_digest(result);
-  const nlohmann::json document = {{"scenario", result.situation.scenario},
+  const nlohmann::json document = {{"scenario", result.scenario},
                                    {"seed", seed},
                                    {"digest", digest},
                                    {"recording_digest", result.recording_digest},
                                    {"status", overall_status(result.outcomes)},
                                    {"scores", score_rows(result.outcomes)},
                                    {"outcomes", outcome_rows(result.outcomes)}};
-  std::vector<Table> tables =
-      score_tables(fmt::format("{}, seed {}", result.situation.scenario, seed), result.outcomes);
+  std::vector<Table> tables = score_tables(fmt::format("{}, seed {}", result.scenario, seed), result.outcomes);
   Table closing("", {"digest of the run", digest});
   closing.add_row({"digest of the recording", result.recording_digest});
   tables.push_back(std::move(closing));

@@ -8,13 +8,13 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "scenarios/draw/scenario.hpp"
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/estimate_file.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/scoring/score.hpp"
 #include "scenarios/scoring/truth_track.hpp"
 #include "tools/tumble/arguments.hpp"
+#include "tools/tumble/recording_info.hpp"
 #include "tools/tumble/score_tables.hpp"
 #include "tools/tumble/verbs.hpp"
 
@@ -171,8 +171,7 @@ int score_estimate(const Session& session, const Options& options) {
   // the true surface matters to maps alone, and building it takes a while; somebody else's trajectory has none
   std::optional<sim::Surface> surface;
   if (outcome.kind == scenarios::Kind::slam && !foreign && !info.situation_yaml.empty()) {
-    surface.emplace(scenarios::situation_from_yaml(info.situation_yaml, options.recording.string()),
-                    session.data().models());
+    surface.emplace(built_from(info, options.recording.string(), session.data()));
   }
   const scenarios::ScoringInput input{&sensors, &truth, surface ? &*surface : nullptr};
   outcome.scenario = info.scenario;

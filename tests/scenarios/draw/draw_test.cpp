@@ -126,8 +126,9 @@ class DrawReal : public DrawFiles {
 
 TEST_F(DrawReal, TheSituationIsCompleteAndFromTheDataSheets) {
   put("slope.yaml", kReal);
-  const sim::Situation situation = draw(data_, load_scenario(data_, "slope"), 5);
-  EXPECT_EQ(sim::resolve(situation), situation) << "resolved already";
+  const sim::ResolvedSituation resolved = draw(data_, load_scenario(data_, "slope"), 5);
+  const sim::Situation& situation = resolved;
+  EXPECT_EQ(sim::resolve(situation), resolved) << "resolved already";
   EXPECT_FALSE(situation.world.values.all().empty()) << "defaults are filled in";
   ASSERT_EQ(situation.sensors.size(), 2u);
   for (const DataSheet::Entry& entry : load_data_sheet(data_, "rs16").entries) {
@@ -137,7 +138,7 @@ TEST_F(DrawReal, TheSituationIsCompleteAndFromTheDataSheets) {
   EXPECT_EQ(situation.sensors[0].mount_error.at("y_m"), 0.0);
   EXPECT_NE(situation.sensors[0].mount_error.at("x_m"), 0.0);
   EXPECT_EQ(situation_from_yaml(to_yaml(situation), "a"), situation);
-  EXPECT_EQ(draw(data_, load_scenario(data_, (data_.catalogue() / "slope.yaml").string()), 5), situation) << "by path";
+  EXPECT_EQ(draw(data_, load_scenario(data_, (data_.catalogue() / "slope.yaml").string()), 5), resolved) << "by path";
 }
 
 TEST_F(DrawReal, WhatOnlyShowsWhenDrawnIsNamed) {

@@ -77,7 +77,7 @@ Outcomes run_scenario(const DataRoot& data, const Gate& gate, const std::string&
     const SimulatedDraw draw =
         simulate_draw(data, load_scenario(data, scenario), seed, 1, maps ? Lidars::simulated : Lidars::left_out);
     std::optional<sim::Surface> surface;
-    if (maps) surface.emplace(draw.situation, data.models());
+    if (maps) surface.emplace(*draw.built);
     run_draw(draw, surface ? &*surface : nullptr, method, all);
   }
   return all;

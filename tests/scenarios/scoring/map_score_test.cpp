@@ -13,7 +13,7 @@ namespace {
 using testing::perfect_estimate;
 using testing::scores;
 
-sim::Situation empty_room() {
+sim::ResolvedSituation empty_room() {
   sim::Situation situation;
   situation.scenario = "test";
   situation.duration_s = 6.0;
@@ -28,7 +28,7 @@ sim::Situation empty_room() {
 }
 
 const sim::Surface& surface() {
-  static const sim::Surface room(empty_room(), (test::source_dir() / "models").string());
+  static const sim::Surface room(sim::BuiltSituation(empty_room(), test::source_dir() / "models"));
   return room;
 }
 

@@ -9,6 +9,7 @@
 #include "scenarios/methods/synthetic_recording.hpp"
 #include "scenarios/scoring/clipping.hpp"
 #include "scenarios/sweep/variation.hpp"
+#include "tests/tree.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -16,17 +17,18 @@ namespace {
 constexpr double kRail = 10.5;
 
 /// The synthetic rig with calibration errors of its own and a situation that says where its rail is.
-SimulatedDraw sample_draw() {
+SimulatedDraw sample_draw(std::uint64_t seed = 5001) {
   SimulatedDraw draw;
   draw.recording = testing::synthetic_rig();
   sim::Sensors& sensors = draw.recording.sensors;
   sensors.imus[0].T_BI.translation() += Eigen::Vector3d(0.004, -0.003, 0.001);
   sensors.lidars[0].T_BL.linear() *= Eigen::AngleAxisd(0.02, Eigen::Vector3d::UnitY()).toRotationMatrix();
   sensors.imus[0].clip_flags.assign(sensors.imus[0].time_ns.size(), 0b111111);
-  draw.situation.seed = 5001;
-  draw.situation.sensors.resize(1);
-  draw.situation.sensors[0].values.set("time_offset_s", 0.002);
-  draw.situation.sensors[0].values.set("gyro_rail_rad_s", kRail);
+  sim::SensorSpec imu{"imu", "imu", "ideal", "mti30", {}, {}};
+  imu.values.set("time_offset_s", 0.002);
+  imu.values.set("gyro_rail_rad_s", kRail);
+  const sim::Situation situation{"hill", seed, 10.0, {"floor", {}}, {"rig", {}}, {"push", {}}, {imu}};
+  draw.built.emplace(sim::resolve(situation), test::source_dir() / "models");
   return draw;
 }
 
@@ -49,8 +51,7 @@ TEST(GivenErrors, OfTheLeverArmHaveTheirSizeAndOneDirection) {
   EXPECT_NEAR(lever_error_m(small).norm(), 0.01, 1e-15);
   EXPECT_NEAR((lever_error_m(large) - 3.0 * lever_error_m(small)).norm(), 0.0, 1e-15);
   EXPECT_NEAR(extrinsic_angle_rad(small), extrinsic_angle_rad(draw), 1e-9) << "the sensors among each other stay";
-  SimulatedDraw other = draw;
-  other.situation.seed = 5002;
+  const SimulatedDraw other = sample_draw(5002);
   EXPECT_GT((lever_error_m(with_setting(other, {"given.lever_arm_error_m", 0.01})) - lever_error_m(small)).norm(), 1e-4)
       << "each draw has a direction of its own";
 }
@@ -133,6 +134,8 @@ TEST(GivenErrors, NeedTheSensorThatTheyAreOf) {
   blind.recording.sensors.lidars.clear();
   EXPECT_THROW(with_setting(blind, {"given.extrinsic_rotation_rad", 0.03}), BadInput);
   EXPECT_NO_THROW(with_setting(blind, {"given.lever_arm_error_m", 0.03}));
+  blind.built.reset();
+  EXPECT_THROW(with_setting(blind, {"given.lever_arm_error_m", 0.03}), BadInput) << "a recording has no situation";
 }
 
 TEST(Settings, ReachOneMethodAlone) {

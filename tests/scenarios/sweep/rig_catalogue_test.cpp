@@ -78,8 +78,8 @@ class RigScenario : public testing::TestWithParam<Expected> {};
 // a simulation that meets a warning of the engine throws
 TEST_P(RigScenario, ShowsWhatItIsAboutClipsTheGyroAndEndsAtRest) {
   const Expected& expected = GetParam();
-  const sim::Situation situation = without_lidars(draw(kData, load_scenario(kData, expected.scenario), kSeed));
-  const sim::Recording recording = sim::simulate(situation, {kData.models(), 1});
+  const sim::ResolvedSituation situation = without_lidars(draw(kData, load_scenario(kData, expected.scenario), kSeed));
+  const sim::Recording recording = sim::simulate(sim::BuiltSituation(situation, kData.models()));
   const sim::Truth& truth = recording.truth;
   for (const std::size_t k : {std::size_t{0}, truth.q_WB.size() - 1}) {
     EXPECT_LT(truth.v_WB_m_s[k].norm(), 0.02);
@@ -125,7 +125,7 @@ TEST(SwingScenario, ClipsAsTheRealPendulumDoesAndRepeatsItsReadings) {
   std::size_t railed_force = 0;  // of all draws: a whip may fall between two of the accelerometer's readings
   for (std::uint64_t seed = kSeed; seed < kSeed + 3; ++seed) {
     const sim::Recording recording =
-        sim::simulate(draw(kData, load_scenario(kData, "swing"), seed), {kData.models(), 1});
+        sim::simulate(sim::BuiltSituation(draw(kData, load_scenario(kData, "swing"), seed), kData.models()));
     const sim::ImuRecord& imu = recording.sensors.imus.at(0);
     const std::vector<Eigen::Vector3d>& rate = recording.truth.imus.at(0).rate_rad_s;
     std::size_t beyond = 0;

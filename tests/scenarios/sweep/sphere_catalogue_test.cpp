@@ -46,9 +46,11 @@ class SphereScenario : public testing::TestWithParam<Expected> {};
 // Where a scenario is not about slip it may still scrape: at the edge of an obstacle the sphere has two contacts, of
 // which one must slip. Over seeds 1001-1020 bump does so for 0.000-0.135 s, ramp and tube never.
 TEST_P(SphereScenario, ShowsWhatItIsAboutAndEndsAtRest) {
-  sim::Situation situation = draw(kData, load_scenario(kData, GetParam().scenario), kSeed);
-  std::erase_if(situation.sensors, [](const sim::SensorSpec& sensor) { return sensor.kind != "imu"; });
-  const sim::Truth truth = sim::simulate(situation, {kData.models(), 1}).truth;
+  const sim::ResolvedSituation situation =
+      draw(kData, load_scenario(kData, GetParam().scenario), kSeed).without_sensors([](const sim::SensorSpec& sensor) {
+        return sensor.kind != "imu";
+      });
+  const sim::Truth truth = sim::simulate(sim::BuiltSituation(situation, kData.models())).truth;
   const auto seconds = [&](sim::ContactLabel label) {
     return 1e-9 * static_cast<double>(truth.period_ns) *
            static_cast<double>(std::count(truth.label.begin(), truth.label.end(), label));

@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 /// The rig, spun near its unstable axis at 18 rad/s, thrown off 100 m above the hill.
 class Flight : public testing::Test {
  protected:
-  Flight() : world_(engine::compose(tumble_down(1.0, 100.0), models_folder())), physics_(world_) {
+  Flight() : world_(engine::compose(resolve(tumble_down(1.0, 100.0)), models_folder())), physics_(world_) {
     start_.p_WB_m = {0, 0, 100};
     start_.v_WB_m_s = {1.5, -0.5, 20.0};
     start_.w_WB_B_rad_s = {0.3, 0.2, 18.0};  // z: the middle moment of inertia of the defaults

@@ -32,7 +32,7 @@ TEST(Rolling, ObeysVelocityEqualsRadiusTimesRate) {
   Situation situation = roll_along(4.5);
   situation.robot.values.set("inner_x_m", 0.008);
   situation.robot.values.set("inner_z_m", -0.01);
-  const Truth truth = simulate(situation, {models_folder(), 1}).truth;
+  const Truth truth = simulate(built(situation)).truth;
   double way_m = 0.0, rolled_m = 0.0;
   Vector3d difference = Vector3d::Zero();
   for (std::size_t k = 0; k < truth.q_WB.size(); ++k) {
@@ -53,7 +53,7 @@ TEST(Rolling, ObeysVelocityEqualsRadiusTimesRate) {
 TEST(Rolling, SlideTurnsToGripAfterTheTimeOfCoulombsLaw) {
   Situation situation = roll_along(1.0);
   situation.world.values.set("friction", 0.1);
-  engine::World world = engine::compose(situation, models_folder());
+  engine::World world = engine::compose(resolve(situation), models_folder());
   engine::Physics physics(world);
   BodyState state;
   state.p_WB_m = {0, 0, kRadius_m};
@@ -89,7 +89,7 @@ Situation over_a_patch(double spin_ratio) {
 }
 
 TEST(Patch, BurstSpinsTheSphereThereAndNowhereElse) {
-  const Truth truth = simulate(over_a_patch(2.2), {models_folder(), 1}).truth;
+  const Truth truth = simulate(built(over_a_patch(2.2))).truth;
   double rolled_m = 0.0;
   std::size_t labelled = 0;
   for (std::size_t k = 0; k < truth.q_WB.size(); ++k) {
@@ -107,13 +107,13 @@ TEST(Patch, BurstSpinsTheSphereThereAndNowhereElse) {
 }
 
 TEST(Patch, BrakedRotationSlides) {
-  const Truth truth = simulate(over_a_patch(0.3), {models_folder(), 1}).truth;
+  const Truth truth = simulate(built(over_a_patch(0.3))).truth;
   EXPECT_GT(share(truth, ContactLabel::slide) * 4.5, 0.2);
   EXPECT_GT(share(truth, ContactLabel::slide), 5.0 * share(truth, ContactLabel::slip));
 }
 
 TEST(Patch, WithoutABurstTheFrictionOfThePatchIsInForce) {
-  engine::World world = engine::compose(over_a_patch(1.0), models_folder());
+  engine::World world = engine::compose(resolve(over_a_patch(1.0)), models_folder());
   ASSERT_EQ(world.patches.size(), 1u);
   engine::Physics physics(world);
   BodyState state;

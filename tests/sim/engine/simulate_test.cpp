@@ -51,7 +51,7 @@ DeadReckoning integrate(const Recording& recording) {
 }
 
 TEST(Simulate, IntegralOfTheSamplesIsTheMotionThroughImpacts) {
-  const DeadReckoning r = integrate(simulate(tumble_down(4.0, 2000.0), {models_folder(), 1}));
+  const DeadReckoning r = integrate(simulate(built(tumble_down(4.0, 2000.0))));
   EXPECT_GT(r.peak_m_s2, 60.0);  // it did hit the ground
   EXPECT_GT(r.peak_rad_s, 6.0);
   EXPECT_NEAR(r.attitude_rad, 0.0, 1e-8);
@@ -60,7 +60,7 @@ TEST(Simulate, IntegralOfTheSamplesIsTheMotionThroughImpacts) {
 }
 
 TEST(Simulate, WindowsOf400HzKeepTheMotionUpToConing) {
-  const DeadReckoning r = integrate(simulate(tumble_down(4.0, 400.0), {models_folder(), 1}));
+  const DeadReckoning r = integrate(simulate(built(tumble_down(4.0, 400.0))));
   EXPECT_LT(r.attitude_rad, 0.01);
   EXPECT_LT(r.velocity_m_s, 0.1);
 }
@@ -68,19 +68,19 @@ TEST(Simulate, WindowsOf400HzKeepTheMotionUpToConing) {
 TEST(Simulate, SameSituationTwiceGivesTheSameBits) {
   Situation situation = tumble_down(2.0, 100.0);
   situation.sensors[0].values.set("gyro_noise_rad_s_sqrt_hz", 0.001);
-  const Recording a = simulate(situation, {models_folder(), 1}), b = simulate(situation, {models_folder(), 2});
+  const Recording a = simulate(built(situation)), b = simulate(built(situation), 2);
   ASSERT_EQ(a.truth.p_WB_m.size(), 4001u);
   EXPECT_EQ(a.truth.p_WB_m, b.truth.p_WB_m);
   EXPECT_EQ(a.truth.f_B_m_s2, b.truth.f_B_m_s2);
   EXPECT_EQ(a.sensors.imus[0].gyro_rad_s, b.sensors.imus[0].gyro_rad_s);
   situation.seed = 6;
-  const Recording c = simulate(situation, {models_folder(), 1});
+  const Recording c = simulate(built(situation));
   EXPECT_NE(a.sensors.imus[0].gyro_rad_s, c.sensors.imus[0].gyro_rad_s);
   EXPECT_NE(a.truth.p_WB_m.back(), c.truth.p_WB_m.back());
 }
 
 TEST(Simulate, TruthIsCompleteAndBeginsAtRest) {
-  const Recording r = simulate(tumble_down(2.0, 100.0), {models_folder(), 1});
+  const Recording r = simulate(built(tumble_down(2.0, 100.0)));
   const Truth& truth = r.truth;
   const std::size_t count = 4001;
   EXPECT_EQ(truth.period_ns, 500000);
@@ -113,7 +113,7 @@ TEST(Simulate, CentreOfMassOffItsPlaceMovesTheTrueMountingAndNotTheCalibration) 
   situation.robot.values.set("com_x_m", 0.004);
   situation.sensors[0].mount_error.set("y_m", 0.002);
   situation.sensors[0].mount_error.set("yaw_rad", 0.01);
-  const Recording r = simulate(situation, {models_folder(), 1});
+  const Recording r = simulate(built(situation));
   EXPECT_NEAR((r.truth.imus[0].T_BI.translation() - Vector3d(-0.026, -0.085, 0.055)).norm(), 0.0, 1e-12);
   EXPECT_NEAR((r.sensors.imus[0].T_BI.translation() - Vector3d(-0.022, -0.083, 0.055)).norm(), 0.0, 1e-12);
   const Eigen::AngleAxisd error(r.truth.imus[0].T_BI.linear().transpose() * r.sensors.imus[0].T_BI.linear());
@@ -121,7 +121,7 @@ TEST(Simulate, CentreOfMassOffItsPlaceMovesTheTrueMountingAndNotTheCalibration) 
 }
 
 TEST(Simulate, AWarningOfTheEngineFailsTheDraw) {
-  engine::World world = engine::compose(tumble_down(1.0, 100.0), models_folder());
+  engine::World world = engine::compose(resolve(tumble_down(1.0, 100.0)), models_folder());
   engine::Physics physics(world);
   BodyState high;
   high.p_WB_m.z() = 10.0;
@@ -146,7 +146,7 @@ TEST(Simulate, LeavingTheWorldFailsTheDraw) {
   EXPECT_THROW(
       {
         try {
-          simulate(situation, {models_folder(), 1});
+          simulate(built(situation));
         } catch (const SimulationFailure& error) {
           EXPECT_THAT(error.what(), testing::HasSubstr("left its world at"));
           throw;
@@ -157,13 +157,13 @@ TEST(Simulate, LeavingTheWorldFailsTheDraw) {
 
 TEST(Simulate, NeverMovingFailsTheDraw) {
   Situation situation = tumble_down(0.4, 100.0);  // ends before the push
-  EXPECT_THROW(simulate(situation, {models_folder(), 1}), SimulationFailure);
+  EXPECT_THROW(simulate(built(situation)), SimulationFailure);
 }
 
 TEST(Simulate, StartPoseIsWhereTheTruthBegins) {
   const Situation situation = tumble_down(3.0, 100.0);
-  const Truth truth = simulate(situation, {models_folder(), 1}).truth;
-  const Eigen::Isometry3d T_WB = start_pose(situation, models_folder());
+  const Truth truth = simulate(built(situation)).truth;
+  const Eigen::Isometry3d T_WB = start_pose(built(situation));
   // it settles through 3 mm of gap into the give of its contacts and leans on uneven ground (measured: 7 mm, 0.040 rad)
   EXPECT_LT((T_WB.translation() - truth.p_WB_m.front()).norm(), 0.03);
   EXPECT_LT(Eigen::Quaterniond(T_WB.linear()).angularDistance(truth.q_WB.front()), 0.1);
@@ -173,7 +173,7 @@ TEST(Simulate, AnUnknownSiteNamesTheNearest) {
   Situation situation = tumble_down(1.0, 100.0);
   situation.sensors[0].site = "mti3";
   try {
-    simulate(situation, {models_folder(), 1});
+    simulate(built(situation));
     FAIL() << "site mti3 was accepted";
   } catch (const InvalidSituation& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("did you mean 'mti30'"));
@@ -182,7 +182,7 @@ TEST(Simulate, AnUnknownSiteNamesTheNearest) {
 
 TEST(Simulate, AMissingFolderOfModelsIsOneLine) {
   try {
-    simulate(tumble_down(1.0, 100.0), {"/nowhere", 1});
+    simulate(BuiltSituation(resolve(tumble_down(1.0, 100.0)), "/nowhere"));
     FAIL() << "no models, no error";
   } catch (const InvalidSituation& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("rig.xml"));

@@ -49,12 +49,13 @@ TEST(Registries, EveryParameterIsDocumentedAndItsDefaultWithinItsBounds) {
 }
 
 TEST(Resolve, FillsDefaultsAndKeepsWhatIsGiven) {
-  const Situation out = resolve(tumble_down(2.0, 200.0));
+  const ResolvedSituation resolved = resolve(tumble_down(2.0, 200.0));
+  const Situation& out = resolved;
   EXPECT_EQ(out.robot.values.at("mass_kg"), 8.0);
   EXPECT_EQ(out.motion.values.at("velocity_m_s"), 3.0);
   EXPECT_EQ(out.sensors[0].values.at("output_rate_hz"), 200.0);
   EXPECT_EQ(out.sensors[0].mount_error.at("yaw_rad"), 0.0);
-  EXPECT_EQ(resolve(out), out);
+  EXPECT_EQ(resolve(out), resolved);
 }
 
 /// What resolve says of the test tumble after a change.

@@ -3,13 +3,18 @@
 
 #include <filesystem>
 
-#include "sim/situation.hpp"
+#include "sim/built_situation.hpp"
 #include "tests/tree.hpp"
 
 namespace tumble::sim {
 
 inline std::filesystem::path models_folder() {
   return test::source_dir() / "models";
+}
+
+/// The world of a situation, from the models of this tree: anew at each call.
+inline BuiltSituation built(const Situation& situation) {
+  return {resolve(situation), models_folder()};
 }
 
 inline SensorSpec imu_at(const std::string& name, const std::string& site, double rate_hz) {

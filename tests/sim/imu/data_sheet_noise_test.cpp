@@ -205,7 +205,7 @@ sensors:
   - {name: imu, kind: imu, device: mti30, site: mti30)" +
                            options + "}\n";
   const Scenario scenario = parse_scenario(text, "options.yaml", Registry::of_simulation());
-  return draw(data(), scenario, 3).sensors.at(0);
+  return draw(data(), scenario, 3)->sensors.at(0);
 }
 
 TEST(ScenarioOptions, EveryKindOfRailIsReached) {

@@ -144,7 +144,7 @@ TEST(IdealMotion, SamplesIntegrateToTheMotionThroughImpactsAtEveryRate) {
 }
 
 TEST(IdealMotion, SamplesIntegrateToTheMotionOfTheEngine) {
-  const Recording recording = simulate(tumble_down(3.0, 100.0), {models_folder(), 1});
+  const Recording recording = simulate(built(tumble_down(3.0, 100.0)));
   const ImuTruth& imu_truth = recording.truth.imus[0];
   const Departure d = dead_reckon(recording.sensors.imus[0], recording.truth, imu_truth.T_BI);
   EXPECT_LT(d.attitude_rad, 1e-7);

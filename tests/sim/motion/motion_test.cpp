@@ -50,7 +50,7 @@ TEST(Throw, LeavesTheHandWithTheStatedVelocityAndSpin) {
   situation.motion.values.set("direction_rad", 0.2);
   situation.motion.values.set("spin_forward_rad_s", 0.0);
   situation.motion.values.set("spin_up_rad_s", 9.0);
-  const Truth truth = simulate(situation, {models_folder(), 1}).truth;
+  const Truth truth = simulate(built(situation)).truth;
   const std::size_t released = 1601;  // 0.5 s of rest and 0.3 s of throw
   const Vector3d expected(3.0 * std::cos(0.2), 3.0 * std::sin(0.2), 4.0);
   EXPECT_NEAR((truth.v_WB_m_s[released] - expected).norm(), 0.0, 0.02);  // 1 mm of sag of the hand; one step of gravity
@@ -63,7 +63,7 @@ TEST(Throw, LeavesTheHandWithTheStatedVelocityAndSpin) {
 TEST(Throw, HoldsStillBeforeAndNeverJumps) {
   Situation situation = moved_by("throw", 1.2);
   situation.motion.values.set("height_m", 1.3);
-  const Truth truth = simulate(situation, {models_folder(), 1}).truth;
+  const Truth truth = simulate(built(situation)).truth;
   for (std::size_t k = 0; k <= 1000; k += 50) {
     ASSERT_LT(truth.v_WB_m_s[k].norm(), 1e-3) << k;
     ASSERT_NEAR(truth.f_B_m_s2[k].norm(), 9.80665, 0.05) << k;
@@ -78,7 +78,7 @@ TEST(Drop, FallsFreelyFromTheStatedHeight) {
   situation.motion.values.set("roll_rad", 0.6);
   situation.motion.values.set("pitch_rad", -0.4);
   situation.motion.values.set("release_s", 0.0);
-  const Truth truth = simulate(situation, {models_folder(), 1}).truth;
+  const Truth truth = simulate(built(situation)).truth;
   ASSERT_FALSE(truth.contacts.empty());
   const double landed_s = static_cast<double>(truth.contacts.front().time_ns) * 1e-9;
   EXPECT_NEAR(landed_s - 0.5, std::sqrt(2.0 * 1.5 / 9.80665), 0.005);
@@ -88,9 +88,9 @@ TEST(Drop, FallsFreelyFromTheStatedHeight) {
 TEST(Drop, MayBeHeldAwayFromTheStart) {
   Situation situation = moved_by("drop", 1.0);
   situation.motion.values.set("forward_m", 2.0);
-  const Truth away = simulate(situation, {models_folder(), 1}).truth;
+  const Truth away = simulate(built(situation)).truth;
   situation.motion.values.set("forward_m", 0.0);
-  const Truth near = simulate(situation, {models_folder(), 1}).truth;
+  const Truth near = simulate(built(situation)).truth;
   EXPECT_NEAR((away.p_WB_m[0] - near.p_WB_m[0] - Vector3d(2, 0, 0)).norm(), 0.0, 1e-9);
 }
 
@@ -102,7 +102,7 @@ TEST(Twirl, SpinsAboutXInStrokesAndKeepsTheGripInTheHand) {
         std::pair{"grip_x_m", 0.05}, std::pair{"grip_y_m", -0.08}, std::pair{"hand_seed", 3.0}}) {
     situation.motion.values.set(name, value);
   }
-  const Truth truth = simulate(situation, {models_folder(), 1}).truth;
+  const Truth truth = simulate(built(situation)).truth;
   const auto grip = [&](std::size_t k) {
     return Vector3d(truth.p_WB_m[k] + truth.q_WB[k] * Vector3d(0.05, -0.08, 0.0));
   };
@@ -137,7 +137,7 @@ TEST(Swing, LeadsAsideAndUpHoldsAndLetsGo) {
     situation.motion.values.set(name, value);
   }
   for (const char* name : {"hinge_damping_nm_s", "hinge_friction_nm"}) situation.robot.values.set(name, 0.004);
-  const Truth truth = simulate(situation, {models_folder(), 1}).truth;
+  const Truth truth = simulate(built(situation)).truth;
   const auto at = [](double time_s) { return static_cast<std::size_t>(std::lround(time_s / 0.0005)); };
   EXPECT_EQ((truth.p_WB_m[at(0.49)] - truth.p_WB_m[0]).norm(), 0.0);
   // held at 2.4 s: what hangs pulls the hand's spring (200 N/m at 0.9 kg) down by at most its weight, 4.4 cm
@@ -156,7 +156,7 @@ TEST(Swing, LeadsAsideAndUpHoldsAndLetsGo) {
 }
 
 TEST(Clearance, IsThatOfTheTurnedRobot) {
-  const engine::World world = engine::compose(tumble_down(1.0, 100.0), models_folder());
+  const engine::World world = engine::compose(resolve(tumble_down(1.0, 100.0)), models_folder());
   const Eigen::Quaterniond upright = Eigen::Quaterniond::Identity();
   const Eigen::Quaterniond head_down(Eigen::AngleAxisd(3.141592653589793, Vector3d::UnitX()));
   const double low_m = clearance_m(*world.model, world.robot_body, upright, 0.0);

@@ -20,15 +20,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-Situation situation_of(const std::string& world, const std::string& robot) {
+BuiltSituation built(const std::string& world, const std::string& robot) {
   Situation situation;
   situation.seed = 3;
   situation.world.type = world;
   situation.robot.type = robot;
-  return situation;
+  situation.motion.type = robot == "sphere" ? "hand_roll" : "push";
+  return {resolve(situation), test::source_dir() / "models"};
 }
-
-const std::filesystem::path kModels = test::source_dir() / "models";
 
 View small_view() {
   View view;
@@ -60,7 +59,7 @@ std::size_t colours(const Picture& picture) {
 
 TEST(Renderer, DrawsWorldAndPathWithoutADisplay) {
   unsetenv("DISPLAY");
-  Renderer renderer(situation_of("hill", "rig"), kModels);
+  Renderer renderer(built("hill", "rig"));
   View view = small_view();
   const Picture with_path = renderer.draw(view);
   ASSERT_EQ(with_path.rgb.size(), 320u * 180u * 3u);
@@ -75,7 +74,7 @@ TEST(Renderer, DrawsWorldAndPathWithoutADisplay) {
 }
 
 TEST(Renderer, DrawsTheRobotAtEveryPose) {
-  Renderer renderer(situation_of("floor", "sphere"), kModels);
+  Renderer renderer(built("floor", "sphere"));
   View view;
   view.width = 320;
   view.height = 180;
@@ -101,7 +100,7 @@ TEST(Renderer, DrawsTheRobotAtEveryPose) {
 TEST(Renderer, TwiceInOneProcessAndOnAnotherThreadGivesTheSamePicture) {
   Picture first, second, third;
   {
-    Renderer renderer(situation_of("hill", "rig"), kModels);
+    Renderer renderer(built("hill", "rig"));
     first = renderer.draw(small_view());
     View large = small_view();
     large.width = 400;
@@ -109,18 +108,18 @@ TEST(Renderer, TwiceInOneProcessAndOnAnotherThreadGivesTheSamePicture) {
     EXPECT_EQ(renderer.draw(large).rgb.size(), 400u * 300u * 3u);
     std::thread([&] { second = renderer.draw(small_view()); }).join();
   }
-  Renderer again(situation_of("hill", "rig"), kModels);
+  Renderer again(built("hill", "rig"));
   third = again.draw(small_view());
   EXPECT_EQ(first.rgb, second.rgb);
   EXPECT_EQ(first.rgb, third.rgb);
 }
 
 TEST(Renderer, BadInput) {
-  Renderer renderer(situation_of("floor", "sphere"), kModels);
+  Renderer renderer(built("floor", "sphere"));
   View view;
   view.width = 0;
   EXPECT_THROW(renderer.draw(view), std::invalid_argument);
-  EXPECT_THROW(Renderer(situation_of("no_such_world", "rig"), kModels), InvalidSituation);
+  EXPECT_THROW(Renderer(built("no_such_world", "rig")), InvalidSituation);
 }
 
 TEST(Framing, APathThatRanAwayDoesNotShrinkTheRobots) {

@@ -35,7 +35,7 @@ Situation hanging(double duration_s = 6.0) {
 }
 
 TEST(Pendulum, HangsWithItsImusXAxisUpAndItsZAlongTheHinge) {
-  const Recording recording = simulate(hanging(4.0), {models_folder(), 1});
+  const Recording recording = simulate(built(hanging(4.0)));
   const Truth& truth = recording.truth;
   // the settling before the recording leaves it where it hung
   EXPECT_NEAR((truth.p_WB_m[0] - Vector3d(0, 0, kHeight_m - 2.5 * kSegment_m)).norm(), 0.0, 1e-9);
@@ -48,7 +48,7 @@ TEST(Pendulum, HangsWithItsImusXAxisUpAndItsZAlongTheHinge) {
 
 // pose, velocity and rate of the lowest segment are of one motion, and its upper neighbours let it go nowhere else
 TEST(Pendulum, TruthBelongsTogether) {
-  const Truth truth = simulate(hanging(), {models_folder(), 1}).truth;
+  const Truth truth = simulate(built(hanging())).truth;
   const double step_s = 1e-9 * static_cast<double>(truth.period_ns);
   const Vector3d hinge_W_m(0, 0, kHeight_m);
   double farthest_m = 0.0, fastest_rad_s = 0.0;
@@ -73,7 +73,7 @@ TEST(Pendulum, FrictionSwingsItDown) {
   std::vector<double> swings_rad;
   for (const double damping : {0.0, 0.05}) {
     situation.robot.values.set("hinge_damping_nm_s", damping);
-    Trial trial(situation, {models_folder()});
+    Trial trial(built(situation));
     for (const char* hinge : {"hinge_1", "hinge_2"}) trial.set_joint(hinge, 0.2, 0.0);
     double largest_rad = 0.0;
     while (trial.state().time_s < 12.0) {
@@ -87,7 +87,7 @@ TEST(Pendulum, FrictionSwingsItDown) {
 }
 
 TEST(Pendulum, CannotBePutElsewhereNorPushed) {
-  Trial trial(hanging(), {models_folder()});
+  Trial trial(built(hanging()));
   BodyState state = trial.state();
   EXPECT_NO_THROW(trial.set_state(state));
   state.p_WB_m.x() += 0.01;
@@ -96,16 +96,16 @@ TEST(Pendulum, CannotBePutElsewhereNorPushed) {
 
   Situation pushed = hanging();
   pushed.motion = {"push", {}};
-  EXPECT_THROW(simulate(pushed, {models_folder(), 1}), InvalidSituation);
+  EXPECT_THROW(simulate(built(pushed)), InvalidSituation);
   Situation rig = tumble_down(1.0, 100.0);
   rig.motion = {"swing", {}};
-  EXPECT_THROW(simulate(rig, {models_folder(), 1}), InvalidSituation);
-  Trial free(tumble_down(1.0, 100.0), {models_folder()});
+  EXPECT_THROW(simulate(built(rig)), InvalidSituation);
+  Trial free(built(tumble_down(1.0, 100.0)));
   EXPECT_THROW(free.joint_rad("hinge_1"), InvalidSituation);
 }
 
 TEST(Reach, TurnsTheJointsToThePoseOrAsNearAsTheyLetIt) {
-  const engine::World world = engine::compose(hanging(), models_folder());
+  const engine::World world = engine::compose(resolve(hanging()), models_folder());
   const engine::DataPtr there(mj_makeData(world.model.get())), data(mj_makeData(world.model.get()));
   const double angles_rad[5] = {0.05, -0.1, 0.7, -0.4, 1.1};
   ASSERT_EQ(world.model->nq, 5);

@@ -17,7 +17,7 @@ namespace {
 engine::World rig(const Values& values) {
   Situation situation = tumble_down(1.0, 100.0);
   situation.robot.values = values;
-  return engine::compose(situation, models_folder());
+  return engine::compose(resolve(situation), models_folder());
 }
 
 double contact_time_s(const engine::World& world, const std::string& strut) {

@@ -16,7 +16,7 @@ inline constexpr double kGravity_m_s2 = 9.80665;
 class FreeSphere {
  public:
   explicit FreeSphere(const Situation& situation)
-      : world_(engine::compose(situation, models_folder())), physics_(world_) {}
+      : world_(engine::compose(resolve(situation), models_folder())), physics_(world_) {}
 
   engine::World& world() { return world_; }
   /// m r^2 / I: 1.5 for a thin shell, 2.5 for a homogeneous ball.

@@ -84,7 +84,7 @@ Eigen::Vector3d centre_m(const Truth& truth, std::size_t k) {
 
 TEST(HandPath, LeadsTheSphereAlongTheWayFromRestToRest) {
   for (const double shape : {1.0, 2.0}) {
-    const Truth truth = simulate(along(shape), {models_folder(), 1}).truth;
+    const Truth truth = simulate(built(along(shape))).truth;
     double way_m = 0.0;
     for (std::size_t k = 1; k < truth.q_WB.size(); ++k)
       way_m += (centre_m(truth, k) - centre_m(truth, k - 1)).head<2>().norm();
@@ -102,10 +102,10 @@ TEST(HandPath, LeadsTheSphereAlongTheWayFromRestToRest) {
 TEST(HandPath, IsUnsteadyAsItsSeedSays) {
   Situation situation = along(0.0);
   situation.duration_s = 2.0;
-  const Truth one = simulate(situation, {models_folder(), 1}).truth;
-  EXPECT_EQ(simulate(situation, {models_folder(), 1}).truth.p_WB_m, one.p_WB_m);
+  const Truth one = simulate(built(situation)).truth;
+  EXPECT_EQ(simulate(built(situation)).truth.p_WB_m, one.p_WB_m);
   situation.motion.values.set("hand_seed", 7.0);
-  const Truth other = simulate(situation, {models_folder(), 1}).truth;
+  const Truth other = simulate(built(situation)).truth;
   EXPECT_GT((other.p_WB_m.back() - one.p_WB_m.back()).norm(), 1e-3);
   EXPECT_LT((other.p_WB_m[600] - one.p_WB_m[600]).norm(), 1e-9);  // at rest a hand is steady
 }
@@ -124,15 +124,15 @@ Situation over_ice(double push, double spin) {
 }
 
 TEST(HandPath, APushThroughTheCentreOnIceSlides) {
-  const Truth truth = simulate(over_ice(2.2, 1.0), {models_folder(), 1}).truth;
+  const Truth truth = simulate(built(over_ice(2.2, 1.0))).truth;
   EXPECT_GT(static_cast<double>(count(truth, ContactLabel::slide)) * 0.0005, 0.15);
   // negative control: without the push the same ice is crossed with hardly a slide
-  const Truth calm = simulate(over_ice(1.0, 1.0), {models_folder(), 1}).truth;
+  const Truth calm = simulate(built(over_ice(1.0, 1.0))).truth;
   EXPECT_LT(static_cast<double>(count(calm, ContactLabel::slide)) * 0.0005, 0.05);
 }
 
 TEST(HandPath, ABurstOfTorqueOnIceSpins) {
-  const Truth truth = simulate(over_ice(1.0, 5.0), {models_folder(), 1}).truth;
+  const Truth truth = simulate(built(over_ice(1.0, 5.0))).truth;
   EXPECT_GT(static_cast<double>(count(truth, ContactLabel::slip)) * 0.0005, 0.5);
   double fastest_rad_s = 0.0;
   for (const Eigen::Vector3d& w : truth.w_WB_B_rad_s) fastest_rad_s = std::max(fastest_rad_s, w.norm());

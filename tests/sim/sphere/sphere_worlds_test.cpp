@@ -22,7 +22,7 @@ Situation in_world(const std::string& type) {
 
 /// Share of 2000 directions, evenly over the sphere, in which a ray from `from_m` meets something within 50 m.
 double closed_share(const Situation& situation, const Vector3d& from_m) {
-  const engine::World world = engine::compose(situation, models_folder());
+  const engine::World world = engine::compose(resolve(situation), models_folder());
   const RayScene scene(static_geometry(world, HeightFieldSides::open));
   constexpr int kRays = 2000;
   int hits = 0;
@@ -59,7 +59,7 @@ TEST(SphereWorlds, AreClosedForALidar) {
 }
 
 TEST(SphereWorlds, NothingTouchesTheVaultOfTheTube) {
-  const engine::World world = engine::compose(in_world("tube"), models_folder());
+  const engine::World world = engine::compose(resolve(in_world("tube")), models_folder());
   const int shell = mj_name2id(world.model.get(), mjOBJ_GEOM, "shell"),
             vault = mj_name2id(world.model.get(), mjOBJ_GEOM, "shell_left");
   ASSERT_GE(shell, 0);

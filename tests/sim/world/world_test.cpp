@@ -19,7 +19,7 @@ engine::World compose_world(const std::string& type, std::uint64_t seed, const V
   Situation situation = tumble_down(1.0, 100.0);
   situation.world = {type, values};
   situation.seed = seed;
-  return engine::compose(situation, models_folder());
+  return engine::compose(resolve(situation), models_folder());
 }
 
 long count_of(const engine::World& world, const std::string& prefix) {
@@ -71,7 +71,7 @@ TEST_P(RigWorld, LetsTheRigRestAtTheStart) {
     Situation situation = tumble_down(0.8, 100.0);
     situation.world.type = GetParam();
     situation.seed = seed;
-    const Truth truth = simulate(situation, {models_folder(), 1}).truth;  // the push begins at 0.5 s
+    const Truth truth = simulate(built(situation)).truth;  // the push begins at 0.5 s
     EXPECT_LT((truth.p_WB_m[900] - truth.p_WB_m[0]).norm(), 0.002) << "seed " << seed;
   }
 }

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/engine/model.hpp"
+
+#include <new>
+
+namespace tumble::sim::engine {
+
+World copy_of(const World& world) {
+  // named one by one: a member that is added does not compile until it is copied too
+  const auto& [model, body, free, surfaces, geoms, patches, half_extent_m, start_W_m, com_offset_m, radius_m] = world;
+  ModelPtr own(mj_copyModel(nullptr, model.get()));
+  if (!own) throw std::bad_alloc();
+  return {std::move(own), body, free, surfaces, geoms, patches, half_extent_m, start_W_m, com_offset_m, radius_m};
+}
+
+}  // namespace tumble::sim::engine

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/built_situation.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <type_traits>
+
+#include "sim/compose.hpp"
+#include "sim/engine/physics.hpp"
+#include "sim/engine/worlds.hpp"
+#include "sim/lidar/surface.hpp"
+#include "sim/render/renderer.hpp"
+#include "sim/simulate.hpp"
+#include "sim/trial/ray_trial.hpp"
+#include "sim/trial/trial.hpp"
+
+namespace tumble::sim {
+namespace {
+
+// Who needs a complete situation cannot be given one that is not; who needs a world cannot be given a situation.
+static_assert(!std::is_default_constructible_v<ResolvedSituation>);
+static_assert(!std::is_constructible_v<ResolvedSituation, Situation>);
+static_assert(!std::is_assignable_v<ResolvedSituation&, Situation>);
+static_assert(!std::is_convertible_v<ResolvedSituation&, Situation&>, "no number of a resolved one is changed");
+static_assert(std::is_same_v<decltype(resolve(std::declval<Situation>())), ResolvedSituation>);
+static_assert(!std::is_constructible_v<BuiltSituation, Situation, std::filesystem::path>);
+template <typename World>
+concept Serves = std::is_constructible_v<Surface, World> && std::is_constructible_v<Renderer, World> &&
+    std::is_constructible_v<Trial, World> && std::is_invocable_v<decltype(&start_pose), World> &&
+    std::is_invocable_v<decltype(&simulate), World, int> &&
+    std::is_invocable_v<decltype(&compare_rays), World, RayTrialOptions>;
+template <typename World>
+concept ServesAny = std::is_constructible_v<Surface, World> || std::is_constructible_v<Renderer, World> ||
+    std::is_constructible_v<Trial, World> || std::is_invocable_v<decltype(&start_pose), World> ||
+    std::is_invocable_v<decltype(&simulate), World, int> ||
+    std::is_invocable_v<decltype(&compare_rays), World, RayTrialOptions>;
+static_assert(Serves<const BuiltSituation&>);
+static_assert(!ServesAny<const Situation&> && !ServesAny<const ResolvedSituation&>);
+
+/// A sphere that begins on a slippery patch: the physics changes the floor's friction in the model that it steps.
+Situation on_a_patch() {
+  Situation situation = roll_along(2.0);
+  situation.world.values.set("patch_1_x_m", 0.0);
+  situation.world.values.set("patch_1_half_x_m", 2.0);
+  situation.world.values.set("patch_1_half_y_m", 2.0);
+  situation.world.values.set("patch_1_friction", 0.1);
+  return situation;
+}
+
+double floor_friction(const engine::World& world) {
+  return world.model->geom_friction[3 * mj_name2id(world.model.get(), mjOBJ_GEOM, "floor")];
+}
+
+TEST(BuiltSituation, IsNotChangedByWhatIsDoneWithIt) {
+  const BuiltSituation shared = built(on_a_patch());
+  const double before = floor_friction(shared.world());
+  engine::World own = engine::copy_of(shared.world());
+  engine::Physics physics(own);
+  physics.step({});
+  ASSERT_NE(floor_friction(own), before) << "or nothing would be seen";
+
+  const Truth first = simulate(shared).truth;
+  Trial(shared, {0.001}).step();
+  const Truth second = simulate(shared).truth, anew = simulate(built(on_a_patch())).truth;
+  EXPECT_EQ(floor_friction(shared.world()), before);
+  EXPECT_EQ(Trial(shared).step_s(), 0.0005);
+  EXPECT_EQ(second.p_WB_m, first.p_WB_m);
+  EXPECT_EQ(second.w_WB_B_rad_s, first.w_WB_B_rad_s);
+  EXPECT_EQ(anew.p_WB_m, first.p_WB_m) << "as from a world of its own";
+  EXPECT_EQ(anew.w_WB_B_rad_s, first.w_WB_B_rad_s);
+}
+
+TEST(BuiltSituation, CopiesShareTheWorld) {
+  const BuiltSituation shared = built(on_a_patch());
+  const BuiltSituation copy = shared;  // NOLINT: that a copy is made is what is tested
+  EXPECT_EQ(&copy.world(), &shared.world());
+  EXPECT_EQ(copy.situation(), resolve(on_a_patch()));
+}
+
+// The robot's file is read wherever a world is composed: without it everything goes on but composing.
+TEST(BuiltSituation, NothingThatIsMadeFromItComposesAgain) {
+  const std::filesystem::path models =
+      std::filesystem::temp_directory_path() / ("tumble_built_" + std::to_string(getpid()));
+  std::filesystem::create_directories(models);
+  std::filesystem::copy_file(models_folder() / "rig.xml", models / "rig.xml");
+  const BuiltSituation only(resolve(tumble_down(1.0, 100.0)), models);
+  std::filesystem::remove_all(models);
+  ASSERT_THROW(BuiltSituation(resolve(tumble_down(1.0, 100.0)), models), InvalidSituation);
+
+  EXPECT_EQ(simulate(only).truth.p_WB_m, simulate(built(tumble_down(1.0, 100.0))).truth.p_WB_m);
+  EXPECT_GT(start_pose(only).translation().norm(), 0.0);
+  EXPECT_EQ(Surface(only).distances(std::vector<Eigen::Vector3f>{{0.0f, 0.0f, 50.0f}}, 1.0f).front(), 1.0f);
+  EXPECT_GT(Trial(only).mass_kg(), 1.0);
+  EXPECT_EQ(compare_rays(only, {100}).rays, 100);
+}
+
+}  // namespace
+}  // namespace tumble::sim

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How often one draw composes its world, from the simulation over the scores of maps to the pictures: counted by how
+// often the robot's MJCF file is opened, which nothing but composing does.
+#include <gtest/gtest.h>
+#include <sys/inotify.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+
+#include "scenarios/draw/scenario.hpp"
+#include "scenarios/sweep/run_situation.hpp"
+#include "tests/scenarios/sweep/temporary_folder.hpp"
+#include "tests/tree.hpp"
+#include "tools/examples/make_example.hpp"
+
+namespace tumble::tools {
+namespace {
+
+constexpr const char* kShort = R"(name: short
+doc: A short tumble with a lidar.
+duration_s: 3
+world: {type: hill}
+robot: {type: rig}
+motion: {type: push, rest_s: 0.5}
+sensors:
+  - {name: imu, kind: imu, device: mti30, site: mti30}
+  - {name: lidar, kind: spinning_lidar, device: rs16, site: rs16}
+)";
+
+/// Counts how often a file is opened from now on, by whichever process.
+class Openings {
+ public:
+  /// Closings are watched too: the kernel makes one of equal events that follow each other.
+  explicit Openings(const std::filesystem::path& file) : fd_(inotify_init1(IN_NONBLOCK)) {
+    if (fd_ < 0 || inotify_add_watch(fd_, file.c_str(), IN_OPEN | IN_CLOSE) < 0) throw std::runtime_error("inotify");
+  }
+  ~Openings() { close(fd_); }
+  Openings(const Openings&) = delete;
+  Openings& operator=(const Openings&) = delete;
+
+  /// Since the last call.
+  int count() {
+    std::array<inotify_event, 64> events;  // without names: a file is watched, no folder
+    int opened = 0;
+    for (ssize_t size = 0; (size = read(fd_, events.data(), sizeof events)) > 0;) {
+      const auto read_now = events.begin() + size / static_cast<ssize_t>(sizeof(inotify_event));
+      opened += static_cast<int>(
+          std::count_if(events.begin(), read_now, [](const auto& event) { return (event.mask & IN_OPEN) != 0; }));
+    }
+    return opened;
+  }
+
+ private:
+  int fd_;
+};
+
+class BuiltOnce : public scenarios::testing::TemporaryFolder {
+ protected:
+  void SetUp() override {
+    TemporaryFolder::SetUp();
+    write("scenarios/catalogue/short.yaml", kShort);
+    std::filesystem::copy(test::source_dir() / "models", folder_ / "models", std::filesystem::copy_options::recursive);
+  }
+  scenarios::DataRoot data() const { return {folder_}; }
+};
+
+TEST_F(BuiltOnce, OneDrawComposesItsWorldOnceFromSimulationToPictures) {
+  const scenarios::Scenario scenario = scenarios::load_scenario(data(), "short");
+  Openings openings(data().models() / "rig.xml");
+  const sim::BuiltSituation one(scenarios::draw(data(), scenario, 1), data().models());
+  const int of_one = openings.count();
+  ASSERT_GT(of_one, 0) << "or composing is not seen";
+  for (int k = 0; k < 2; ++k) sim::BuiltSituation(scenarios::draw(data(), scenario, 1), data().models());
+  ASSERT_EQ(openings.count(), 2 * of_one) << "or what is composed twice is not seen";
+
+  const std::vector<std::string> names = {"rate/raw", "slam/icp_raw"};
+  const scenarios::RunResult run = scenarios::run_situation(data(), scenario, 1, scenarios::find_methods(names), 1);
+  const Example example = example_of(run);
+  EXPECT_EQ(openings.count(), of_one);
+  ASSERT_NE(run.surface, nullptr);
+  for (const scenarios::Outcome& outcome : run.outcomes) EXPECT_EQ(outcome.status, scenarios::OutcomeStatus::ok);
+  EXPECT_EQ(example.pictures.size(), 3u) << "the way, the film and the map against the true surface";
+}
+
+}  // namespace
+}  // namespace tumble::tools
