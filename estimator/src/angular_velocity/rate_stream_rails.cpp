@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 // as rails are. A round top of n readings is (n/(n - 1))^2 <= 2.25 times as high as what its readings show; one that is
 // cut off more than kKink times, and more than so many deviations of the noise.
 constexpr double kOpen = 3.0, kPossibleShare = 0.02, kKink = 4.0, kPossibleNoise = 5.0;
-constexpr std::size_t kPossibleMin = 3;
+constexpr double kPossibleMin = 3.0;
 
 // Elements' rails lie within this share of each other (3 % on the wand of RepoIMU).
 constexpr double kApart = 0.05;
@@ -115,7 +115,9 @@ void RateStream::doubt_possible_rails(State& state) const {
       const int sign = state.window[k].observation.sample.angular_velocity_rad_s[j] < 0.0 ? -1 : 1;
       std::size_t end = k;
       while (end < state.window.size() && may_clip(state.window[end].observation.sample, j, sign, state)) ++end;
-      if (end >= k + kPossibleMin) doubt_run(j, k, end - 1, state);
+      // those of the run that have left count too
+      const double length = static_cast<double>(end - k) + (k == 0 ? state.entry_samples[j] : 0.0);
+      if (end > k && length >= kPossibleMin) doubt_run(j, k, end - 1, state);
       k = std::max(end, k + 1);
     }
   }

@@ -277,6 +277,26 @@ TEST(RateStreamElements, ADoubtThatALargerReadingRefutesIsTakenBack) {
   }
 }
 
+// Nothing refutes that one: all of it goes out as doubted, also what is left of the run when the rest has gone.
+TEST(RateStreamElements, ADoubtStaysUntilItIsGivenOut) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    std::vector<ImuSample> samples = Swing(seed).samples;
+    constexpr std::size_t kTop = 377;  // x passes zero at 3.77 s, before it has met its rail
+    const double steps[] = {1.0, 3.5, 5.3, 6.3, 7.2, 7.2, 7.2, 6.1, 5.0, 3.5, 2.0};
+    for (std::size_t i = 0; i < std::size(steps); ++i) {
+      samples[kTop - 4 + i].angular_velocity_rad_s.y() = steps[i] + 0.002 * std::sin(37.0 * static_cast<double>(i));
+    }
+    samples.resize(402);
+    const RateStream method({});
+    RateStream::State state = method.start();
+    const std::vector<RateState> out = stream(method, samples, state);
+    for (std::size_t k = kTop; k < kTop + 3; ++k) {
+      EXPECT_EQ(out[k].source, RateSource::bounded_only) << seed << " " << k;
+    }
+    EXPECT_EQ(out[kTop - 3].source, RateSource::measured) << seed;
+  }
+}
+
 // Readings that only look like a rail: a torque-free spin, the round top of a slow turn, creeping at one rate.
 TEST(RateStreamElements, SpinsAndTopsAreNoRails) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
