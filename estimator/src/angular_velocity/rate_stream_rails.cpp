@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 // as rails are. A round top of n readings is (n/(n - 1))^2 <= 2.25 times as high as what its readings show; one that is
 // cut off more than kKink times, and more than so many deviations of the noise.
 constexpr double kOpen = 3.0, kPossibleShare = 0.02, kKink = 4.0, kPossibleNoise = 5.0;
-constexpr double kPossibleMin = 3.0;
+constexpr std::size_t kPossibleMin = 3;
 
 // Elements' rails lie within this share of each other (3 % on the wand of RepoIMU).
 constexpr double kApart = 0.05;
@@ -91,7 +91,7 @@ bool RateStream::may_clip(const ImuSample& sample, int axis, int sign, const Sta
 // What a sample of the window may hide by itself, at a rail near those of the other elements.
 void RateStream::doubt_unseen(std::size_t k, State& state) const {
   RateObservation& now = state.window[k].observation;
-  now.lone = now.doubted = 0;
+  now.lone = 0;
   if (state.rails.known.upright) return;
   const ImuSample* const before = k > 0 ? &state.window[k - 1].observation.sample : nullptr;
   const ImuSample* const after = k + 1 < state.window.size() ? &state.window[k + 1].observation.sample : nullptr;
@@ -102,12 +102,15 @@ void RateStream::doubt_unseen(std::size_t k, State& state) const {
 // elsewhere.
 void RateStream::forget_doubts(State& state) const {
   for (std::size_t k = 0; k < state.window.size(); ++k) {
-    if (state.window[k].observation.may_hide() != 0) doubt_unseen(k, state);
+    if (state.window[k].observation.may_hide() == 0) continue;
+    state.window[k].observation.doubted = 0;
+    doubt_unseen(k, state);
   }
 }
 
 // Doubts readings that may clip and that nothing says do: three and more in a row. Anew with each sample.
 void RateStream::doubt_possible_rails(State& state) const {
+  const unsigned stood = state.window.front().observation.doubted;
   forget_doubts(state);
   for (int j = 0; j < 3; ++j) {
     if (rails_.walls().rail(state.rails.known.walls, j)) continue;
@@ -115,9 +118,9 @@ void RateStream::doubt_possible_rails(State& state) const {
       const int sign = state.window[k].observation.sample.angular_velocity_rad_s[j] < 0.0 ? -1 : 1;
       std::size_t end = k;
       while (end < state.window.size() && may_clip(state.window[end].observation.sample, j, sign, state)) ++end;
-      // those of the run that have left count too
-      const double length = static_cast<double>(end - k) + (k == 0 ? state.entry_samples[j] : 0.0);
-      if (end > k && length >= kPossibleMin) doubt_run(j, k, end - 1, state);
+      // what is left of a run that was doubted when it was whole
+      const bool goes_on = k == 0 && end > k && (stood >> j & 1u) != 0;
+      if (goes_on || end >= k + kPossibleMin) doubt_run(j, k, end - 1, state);
       k = std::max(end, k + 1);
     }
   }
