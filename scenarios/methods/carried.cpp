@@ -49,6 +49,7 @@ Status run_carried(const sim::Sensors& sensors, const sim::Values& parameters, s
   health["turns_asked"] = report.turns_asked;
   health["turns_taken"] = report.turns_taken;
   health["turns_open"] = report.turns_open;
+  health["turns_failed"] = report.turns_failed;
   return status;
 }
 

@@ -45,6 +45,14 @@ bool accel_clipped(const sim::Recording& recording, std::size_t k) {
   return lost.cwiseAbs().maxCoeff() > 0.1;
 }
 
+bool converged(const scenarios::Estimate& estimate) {
+  for (const char* const name : {"converged", "carried_converged"}) {
+    const auto found = estimate.health.find(name);
+    if (found != estimate.health.end() && found->second == 0.0) return false;
+  }
+  return true;
+}
+
 // Of the stretch that is being read.
 struct Sum {
   Eigen::Vector3d error = Eigen::Vector3d::Zero();
@@ -66,6 +74,7 @@ void RatePool::add(std::uint64_t seed, const sim::Recording& recording, const sc
   const sim::ImuRecord& record = recording.sensors.imus.front();
   const double infinite = std::numeric_limits<double>::infinity();
   Run run{.seed = seed};
+  run.converged = converged(estimate);
   run.noise_rad_s = record.gyro_noise_rad_s_sqrt_hz *
                     std::sqrt(3e9 / static_cast<double>(std::max<std::int64_t>(1, record.period_ns)));
   Sum sum;
@@ -97,6 +106,7 @@ void RatePool::add(std::uint64_t seed, const sim::Recording& recording, const sc
     clipped_.push_back(error.norm());
     run.clipped_mean_rad_s += error.norm();
     ++run.clipped;
+    called_measured_ += answered && estimate.rates[at].source == RateSource::measured;
     const bool contact = in_contact(recording, record.time_ns[k]);
     (contact ? contact_ : flight_).push_back(error.norm());
     if (sum.stretch.samples++ == 0) sum.stretch.seed = seed;
@@ -149,12 +159,17 @@ void print_contact(std::span<const RatePool> pools) {
 
 void print_honesty(std::span<const RatePool> pools) {
   std::printf("\nclipped axes within three reported standard deviations [%%], mean squared error over variance\n");
-  std::printf("%-16s  %22s %22s %8s %8s\n", "method", "flight", "contact", "flight", "contact");
+  std::printf("%-16s  %22s %22s %8s %8s %18s %14s\n", "method", "flight", "contact", "flight", "contact",
+              "called measured", "not converged");
   for (const RatePool& pool : pools) {
     std::printf("%-16s", pool.name().c_str());
     print_share(pool.normalised_flight());
     print_share(pool.normalised_contact());
-    std::printf(" %8.3f %8.3f\n", mean(pool.normalised_flight()), mean(pool.normalised_contact()));
+    const auto open =
+        std::count_if(pool.runs().begin(), pool.runs().end(), [](const auto& run) { return !run.converged; });
+    std::printf(" %8.3f %8.3f %10zu of %-4zu %7td of %zu\n", mean(pool.normalised_flight()),
+                mean(pool.normalised_contact()), pool.called_measured(), pool.clipped_rad_s().size(), open,
+                pool.runs().size());
   }
 }
 

@@ -31,6 +31,7 @@ class RatePool {
     std::uint64_t seed = 0;
     double clipped_mean_rad_s = 0.0, free_mean_rad_s = 0.0, noise_rad_s = 0.0;
     std::size_t clipped = 0;
+    bool converged = true;  ///< of every descent that says so
   };
 
   explicit RatePool(std::string name) : name_(std::move(name)) {}
@@ -47,6 +48,8 @@ class RatePool {
   /// Squared errors of clipped axes over their reported variances.
   std::span<const double> normalised_flight() const { return normalised_flight_; }
   std::span<const double> normalised_contact() const { return normalised_contact_; }
+  /// Clipped samples that are neither called clipped nor doubted.
+  std::size_t called_measured() const { return called_measured_; }
   std::span<const Stretch> stretches() const { return stretches_; }
   std::span<const Run> runs() const { return runs_; }
   double cpu_us_per_sample() const { return 1e6 * cpu_s_ / static_cast<double>(clipped_.size() + free_.size()); }
@@ -56,6 +59,7 @@ class RatePool {
   std::vector<double> clipped_, free_, flight_, contact_, normalised_flight_, normalised_contact_;
   std::vector<Stretch> stretches_;
   std::vector<Run> runs_;
+  std::size_t called_measured_ = 0;
   double cpu_s_ = 0.0;
 };
 

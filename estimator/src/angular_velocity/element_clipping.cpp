@@ -17,30 +17,6 @@ constexpr double kUprightSigma = 1e-5, kSlopeSigmaMin = 3e-4;
 // Samples beside a clipped one that may have met the rail: largest depth, as a share of it; and of the step before.
 constexpr double kEdgeShare = 0.02, kEdgeOfStep = 0.5;
 
-// Rails of other elements lie within this share and tilt of those seen; a few samples at one hide about this share of
-// the step to the sample beside them.
-constexpr double kUnseenShare = 0.02, kUnseenTilt = 0.06, kUnseenOfStep = 0.5;
-
-// Readings within this share below the largest of a stretch are at its top: what a tilt of 0.06 (kUnseenTilt) makes of
-// motion beside of a sixth of the rail. Elements differ by no more than so many deviations.
-constexpr double kTopShare = 0.01, kElementsApart = 3.0;
-
-// The lowest rail that was seen, or 0.
-double lowest_rail(const RailPlanes& planes) {
-  double rail = 0.0;
-  for (const auto& element : planes.element) {
-    if (element && (rail == 0.0 || element->distance_rad_s < rail)) rail = element->distance_rad_s;
-  }
-  return rail;
-}
-
-// How high a motion may have risen above a top of `count` samples that it enters and leaves by steps of these sizes,
-// going on with each of them until they meet: rails.md (R74).
-double hidden_rise(double count, double entered, double left) {
-  const double both = std::max(0.0, entered) + std::max(0.0, left);
-  return both > 0.0 ? count * std::max(0.0, entered) * std::max(0.0, left) / both : 0.0;
-}
-
 // The sign of the rail that element j is at.
 int side(const ImuSample& sample, Triad triad, std::size_t j) {
   return reading_of(sample, triad)[static_cast<Eigen::Index>(j)] < 0.0 ? -1 : 1;
@@ -164,68 +140,6 @@ void mark_partial(const RailPlanes& planes, const RailDetector& rails, const Rai
     now.partial = static_cast<std::uint8_t>(now.partial | bit);
     now.lost_rad_s[static_cast<Eigen::Index>(j)] = sign * loss.lost_rad_s;
     now.lost_sigma_rad_s[static_cast<Eigen::Index>(j)] = loss.sigma_rad_s;
-  }
-}
-
-void doubt_unseen_rails(const RailPlanes& planes, double noise_rad_s, const ImuSample* before, RateObservation& now,
-                        const ImuSample* after) {
-  const double rail = lowest_rail(planes);
-  if (rail == 0.0) return;
-  const Eigen::Vector3d& reading = now.sample.angular_velocity_rad_s;
-  for (Eigen::Index j = 0; j < 3; ++j) {
-    const auto& own = planes.element[static_cast<std::size_t>(j)];
-    const int sign = reading[j] < 0.0 ? -1 : 1;
-    const unsigned told = now.clipping.gyro | now.clipping.void_gyro | now.partial;
-    if ((own && own->seen(sign)) || (told >> j & 1u) != 0) continue;
-    const double beside = std::hypot(reading[(j + 1) % 3], reading[(j + 2) % 3]);
-    if (std::abs(reading[j]) < (1.0 - kUnseenShare) * rail - kUnseenTilt * beside) continue;
-    double step = 0.0;
-    for (const ImuSample* neighbour : {before, after}) {
-      if (neighbour == nullptr) continue;
-      step = std::max(step, std::abs(reading[j] - neighbour->angular_velocity_rad_s[j]));
-    }
-    now.partial = static_cast<std::uint8_t>(now.partial | 1u << j);
-    now.lost_rad_s[j] = 0.0;
-    now.lost_sigma_rad_s[j] = std::hypot(noise_rad_s, kUnseenOfStep * step);
-  }
-}
-
-void doubt_level_tops(const RailPlanes& planes, double offset_share, double noise_rad_s,
-                      std::span<RateObservation> observations) {
-  const double from = (1.0 - kElementsApart * offset_share) * lowest_rail(planes);
-  const bool flags = std::any_of(observations.begin(), observations.end(),
-                                 [](const RateObservation& o) { return o.sample.device_clip_flags != 0; });
-  if (!(from > 0.0) || flags) return;
-  const std::size_t count = observations.size();
-  for (std::size_t j = 0; j < 3; ++j) {
-    const auto axis = static_cast<Eigen::Index>(j);
-    for (const int sign : {-1, 1}) {
-      const auto& own = planes.element[j];
-      if (own && own->seen(sign)) continue;
-      const auto value = [&](std::size_t k) { return sign * observations[k].sample.angular_velocity_rad_s[axis]; };
-      for (std::size_t k = 0; k < count;) {
-        if (value(k) < from) {
-          ++k;
-          continue;
-        }
-        std::size_t first = k, last = k;
-        double top = value(k);
-        while (last + 1 < count && value(last + 1) >= (1.0 - kTopShare) * top) top = std::max(top, value(++last));
-        while (value(first) < (1.0 - kTopShare) * top) ++first;
-        k = last + 1;
-        if (first == 0 || last + 1 == count || first == last) continue;
-        const double rise =
-            hidden_rise(static_cast<double>(last - first + 1), top - value(first - 1), top - value(last + 1));
-        if (!(rise > 0.0)) continue;  // a flank, not a top
-        for (std::size_t i = first; i <= last; ++i) {
-          RateObservation& o = observations[i];
-          if (((o.clipping.gyro | o.clipping.void_gyro) >> j & 1u) != 0) continue;
-          const double sigma = (o.partial >> j & 1u) != 0 ? o.lost_sigma_rad_s[axis] : noise_rad_s;
-          o.partial = static_cast<std::uint8_t>(o.partial | 1u << j);
-          o.lost_sigma_rad_s[axis] = std::hypot(sigma, kUnseenOfStep * rise);
-        }
-      }
-    }
   }
 }
 

@@ -48,18 +48,6 @@ Clipping clip_by_planes(const RailPlanes& planes, Triad triad, const Clipping& b
 void mark_partial(const RailPlanes& planes, const RailDetector& rails, const RailDetector::State& state,
                   double noise_rad_s, const ImuSample* before, RateObservation& now, const ImuSample* after);
 
-/// Doubts readings near the rails of the other elements on an element whose own rail was not seen: too few samples show
-/// no plane. Such a reading counts as one that may be short by as much as it steps to its neighbours.
-void doubt_unseen_rails(const RailPlanes& planes, double noise_rad_s, const ImuSample* before, RateObservation& now,
-                        const ImuSample* after);
-
-/// The same of whole stretches: readings that stay at a top near the rails of the other elements, of an element whose
-/// own rail was not seen on that side, may hide what the motion had risen to between the slopes at which they were
-/// entered and left. `offset_share`: of the rail, how far elements differ (RailPlaneFinder::Params). Nothing for a
-/// device that flags what it clips, or where no rail was seen. O(N).
-void doubt_level_tops(const RailPlanes& planes, double offset_share, double noise_rad_s,
-                      std::span<RateObservation> observations);
-
 /// What rails tell of the slopes of an element, in the order of RigConstants::elements.
 struct ToldSlopes {
   Eigen::Vector2d slopes;

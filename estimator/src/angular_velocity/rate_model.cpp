@@ -188,10 +188,10 @@ double RateModel::gyro_information(const RateObservation& observation, const Rat
   if (observation.gyro_age_s > 0.0) {
     // what contact makes of the rate since the reading was taken: rate_smoother.md (R6)
     const double change = params_.contact_gain_rad_m * estimate.contact_m_s2.norm() * observation.gyro_age_s;
-    const double lost = (observation.partial >> axis & 1u) != 0 ? observation.lost_sigma_rad_s[axis] : 0.0;
+    const double lost = (observation.read_in_part() >> axis & 1u) != 0 ? observation.lost_sigma_rad_s[axis] : 0.0;
     return 1.0 / (gyro_sigma_rad_s_ * gyro_sigma_rad_s_ + change * change + lost * lost);
   }
-  if ((observation.partial >> axis & 1u) == 0) return 1.0 / (gyro_sigma_rad_s_ * gyro_sigma_rad_s_);
+  if ((observation.read_in_part() >> axis & 1u) == 0) return 1.0 / (gyro_sigma_rad_s_ * gyro_sigma_rad_s_);
   const double impact = kPartialInContact * (1.0 - estimate.flight_weight), lost = observation.lost_sigma_rad_s[axis];
   return 1.0 / (lost * lost + impact * impact);
 }
@@ -345,7 +345,8 @@ arrow::StateVector RateModel::scaled(const Eigen::Matrix<double, 6, 1>& differen
 RateSource rate_source(const RateObservation& o, const RateEstimate& e, const Eigen::Matrix3d& covariance,
                        double sigma) {
   const int clipped = o.clipping.gyro | o.clipping.void_gyro;
-  if (clipped == 0) return RateSource::measured;
+  // a reading that may stand at a rail nobody has seen is not called clipped, but it is none that was measured
+  if (clipped == 0) return o.may_hide() == 0 ? RateSource::measured : RateSource::bounded_only;
   if (e.flight_weight >= 0.5) return RateSource::recovered_flight;
   double largest = 0.0;
   for (int j = 0; j < 3; ++j) {

@@ -8,6 +8,7 @@
 #include "rate_rounds.hpp"
 #include "tumble/angular_velocity/recording_check.hpp"
 #include "tumble/angular_velocity/sample_hold.hpp"
+#include "unseen_rails.hpp"
 
 namespace tumble {
 
@@ -163,6 +164,10 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
   const std::vector<bool> rest = rests_.find(samples);
   const ElementRows accel_rows = rails.rows(Triad::accelerometer, params_.model.element_sigma);
   const std::vector<Neighbours> beside = other_readings(samples, Triad::gyro);
+  LeastRails least;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (clippings[k].void_gyro == 0) least.add(samples[k].angular_velocity_rad_s);
+  }
   for (std::size_t k = 0; k < samples.size(); ++k) {
     observations[k] = {samples[k], clippings[k], rest[k]};
     observations[k].accel_rows = accel_rows;
@@ -170,10 +175,10 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
     const auto [before, after] = beside[k];
     mark_partial(planes, rails_.walls(), rails.walls, model.gyro_sigma_rad_s(), before, observations[k], after);
     if (health.rails_upright) continue;
-    doubt_unseen_rails(planes, model.gyro_sigma_rad_s(), before, observations[k], after);
+    doubt_unseen_rails(planes, least, model.gyro_sigma_rad_s(), before, observations[k], after);
   }
   if (!health.rails_upright) {
-    doubt_level_tops(planes, params_.planes.offset_share, model.gyro_sigma_rad_s(), observations);
+    doubt_level_tops(planes, least, params_.planes.offset_share, model.gyro_sigma_rad_s(), observations);
   }
   mark_held(samples, observations, health);
   RateFit fit(observations, model);

@@ -183,6 +183,7 @@ void RateStream::append(const ImuSample& sample, std::span<const AuxiliaryReadin
   state.window.push_back(knot);
   state.window.back().approach_rad_s = approach(state.window);
   ++state.samples;
+  if (knot.by_walls.void_gyro == 0) state.least.add(sample.angular_velocity_rad_s);
   if (changed) classify_again(state);
   // a sample is judged by those beside it too
   judge(changed ? 0 : state.window.size() - std::min<std::size_t>(2, state.window.size()), state);
@@ -319,8 +320,6 @@ RateState RateStream::to_state(const Knot& knot) const {
   out.covariance_rad2_s2 = model_.reported(knot.covariance_rad2_s2, knot.observation, knot.estimate);
   out.clipped_axes = knot.observation.clipping.gyro | knot.observation.clipping.void_gyro;
   out.source = rate_source(knot.observation, knot.estimate, knot.covariance_rad2_s2, params_.recovered_sigma_rad_s);
-  // a reading that may stand at a rail nobody has seen yet is not called clipped, but it is none that was measured
-  if (out.source == RateSource::measured && knot.observation.partial != 0) out.source = RateSource::bounded_only;
   return out;
 }
 
@@ -342,6 +341,7 @@ bool RateStream::equal(const State& a, const State& b) {
            p.specific_force_m_s2 == q.specific_force_m_s2 && p.device_clip_flags == q.device_clip_flags &&
            x.observation.clipping == y.observation.clipping && x.by_walls == y.by_walls &&
            x.observation.at_rest == y.observation.at_rest && x.observation.partial == y.observation.partial &&
+           x.observation.lone == y.observation.lone && x.observation.doubted == y.observation.doubted &&
            x.observation.lost_rad_s == y.observation.lost_rad_s &&
            x.observation.lost_sigma_rad_s == y.observation.lost_sigma_rad_s && e.knot == f.knot &&
            e.flight_weight == f.flight_weight && e.contact_m_s2 == f.contact_m_s2 &&
@@ -356,10 +356,11 @@ bool RateStream::equal(const State& a, const State& b) {
          a.rig_covariance == b.rig_covariance && a.prior.diagonal == b.prior.diagonal &&
          a.prior.border == b.prior.border && a.prior.gradient == b.prior.gradient &&
          a.prior_corner.matrix == b.prior_corner.matrix && a.prior_corner.gradient == b.prior_corner.gradient &&
-         a.extremes == b.extremes && a.entry_rad_s == b.entry_rad_s && a.entry_samples == b.entry_samples &&
-         a.left == b.left && a.left_ns == b.left_ns && a.prior_knot == b.prior_knot && a.prior_rig == b.prior_rig &&
-         a.samples == b.samples && a.rig_resets == b.rig_resets && a.flight_run == b.flight_run &&
-         a.waiting == b.waiting && a.learnt_from == b.learnt_from && a.failures == b.failures;
+         a.extremes == b.extremes && a.least == b.least && a.entry_rad_s == b.entry_rad_s &&
+         a.entry_samples == b.entry_samples && a.left == b.left && a.left_ns == b.left_ns &&
+         a.prior_knot == b.prior_knot && a.prior_rig == b.prior_rig && a.samples == b.samples &&
+         a.rig_resets == b.rig_resets && a.flight_run == b.flight_run && a.waiting == b.waiting &&
+         a.learnt_from == b.learnt_from && a.failures == b.failures;
 }
 
 }  // namespace tumble

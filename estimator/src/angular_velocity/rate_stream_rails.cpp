@@ -6,6 +6,7 @@
 
 #include "element_clipping.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
+#include "unseen_rails.hpp"
 
 namespace tumble {
 
@@ -59,7 +60,7 @@ void RateStream::judge(std::size_t first, State& state) const {
     now.clipping = clip_by_planes(accel_planes, Triad::accelerometer, now.clipping, before, now.sample, after);
     now.accel_rows = accel_rows;
     mark_partial(planes, rails_.walls(), rails.walls, noise, before, now, after);
-    if (!rails.upright) doubt_unseen_rails(planes, noise, before, now, after);
+    doubt_unseen(k, state);
     const bool newest = k + 1 == state.window.size();
     if (!newest && (now.unseen() & ~read) == 0) continue;
     if (!newest) {
@@ -87,20 +88,39 @@ bool RateStream::may_clip(const ImuSample& sample, int axis, int sign, const Sta
   return high && std::abs(y[axis]) >= (1.0 - kPossibleShare) * extreme;
 }
 
-// Doubts readings that may clip and that nothing says do: three and more in a row.
+// What a sample of the window may hide by itself, at a rail near those of the other elements.
+void RateStream::doubt_unseen(std::size_t k, State& state) const {
+  RateObservation& now = state.window[k].observation;
+  now.lone = 0;
+  if (state.rails.known.upright) return;
+  const ImuSample* const before = k > 0 ? &state.window[k - 1].observation.sample : nullptr;
+  const ImuSample* const after = k + 1 < state.window.size() ? &state.window[k + 1].observation.sample : nullptr;
+  doubt_unseen_rails(state.rails.known.planes_in_use(), state.least, model_.gyro_sigma_rad_s(), before, now, after);
+}
+
+// Takes back the doubts in the window that are refuted by now: by a larger reading, or by a rail that is seen
+// elsewhere.
+void RateStream::forget_doubts(State& state) const {
+  for (std::size_t k = 0; k < state.window.size(); ++k) {
+    if (state.window[k].observation.may_hide() == 0) continue;
+    state.window[k].observation.doubted = 0;
+    doubt_unseen(k, state);
+  }
+}
+
+// Doubts readings that may clip and that nothing says do: three and more in a row. Anew with each sample.
 void RateStream::doubt_possible_rails(State& state) const {
-  const auto observation = [&](std::size_t k) -> RateObservation& { return state.window[k].observation; };
+  const unsigned stood = state.window.front().observation.doubted;
+  forget_doubts(state);
   for (int j = 0; j < 3; ++j) {
     if (rails_.walls().rail(state.rails.known.walls, j)) continue;
-    const auto bit = static_cast<std::uint8_t>(1u << j);
     for (std::size_t k = 0; k < state.window.size();) {
-      const int sign = observation(k).sample.angular_velocity_rad_s[j] < 0.0 ? -1 : 1;
+      const int sign = state.window[k].observation.sample.angular_velocity_rad_s[j] < 0.0 ? -1 : 1;
       std::size_t end = k;
-      while (end < state.window.size() && may_clip(observation(end).sample, j, sign, state)) ++end;
-      if (end >= k + kPossibleMin) doubt_run(j, k, end - 1, state);
-      // one that was doubted until a larger one was read
-      const bool none = end == k && !state.rails.known.planes.any() && (observation(k).clipping.gyro & bit) == 0;
-      if (none) observation(k).partial = static_cast<std::uint8_t>(observation(k).partial & ~bit);
+      while (end < state.window.size() && may_clip(state.window[end].observation.sample, j, sign, state)) ++end;
+      // what is left of a run that was doubted when it was whole
+      const bool goes_on = k == 0 && end > k && (stood >> j & 1u) != 0;
+      if (goes_on || end >= k + kPossibleMin) doubt_run(j, k, end - 1, state);
       k = std::max(end, k + 1);
     }
   }
@@ -127,8 +147,8 @@ void RateStream::doubt_run(int axis, std::size_t first, std::size_t last, State&
   for (std::size_t k = first; k <= last; ++k) {
     RateObservation& observation = state.window[k].observation;
     if (((observation.clipping.gyro | observation.clipping.void_gyro) & bit) != 0) continue;
-    observation.partial = static_cast<std::uint8_t>(observation.partial | bit);
-    observation.lost_rad_s[axis] = 0.0;
+    observation.lone = static_cast<std::uint8_t>(observation.lone & ~bit);
+    observation.doubted = static_cast<std::uint8_t>(observation.doubted | bit);
     // all of the run are cut off together: what they say is one reading's word
     observation.lost_sigma_rad_s[axis] = std::hypot(noise, std::sqrt(samples) * cut);
   }
@@ -147,7 +167,7 @@ Vector3d RateStream::approach(const std::vector<Knot>& window) {
 // Of a run that goes on in the window after its first reading has left.
 void RateStream::remember_entry(const Knot& leaving, const Knot& next, State& state) {
   const auto hidden = [](const Knot& knot, int j) {
-    return ((knot.observation.clipping.gyro | knot.observation.partial) >> j & 1) != 0;
+    return ((knot.observation.clipping.gyro | knot.observation.read_in_part()) >> j & 1) != 0;
   };
   for (int j = 0; j < 3; ++j) {
     const bool goes_on = hidden(leaving, j) && hidden(next, j);

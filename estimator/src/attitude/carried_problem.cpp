@@ -16,6 +16,8 @@ constexpr double kConverged = 1e-3;  // of attitudes [rad] and, ten times that, 
 constexpr int kFollowFirst = 3;      // iterations before the hand's power is read off the nodes
 constexpr int kFollowLast = 8;       // and after which it stays, so that the iteration ends
 constexpr double kSurpriseS = 0.25;  // over which the hand's mean acceleration is compared
+constexpr int kHalvings = 4;         // of a step after which the cost is larger
+constexpr double kRises = 0.2;       // by more than this: odds of 1.1, which no covariance shows
 constexpr Trouble kLost = Trouble::diverged;
 
 }  // namespace
@@ -119,23 +121,30 @@ bool Problem::eliminate(System::BorderVector& step) {
 
 // carried.md (C16)
 bool Problem::step(double& largest) {
-  System::BorderVector border;
-  if (!eliminate(border)) return false;
+  if (!eliminate(border_step_)) return false;
   // the steps replace the gradients, which nothing needs any more
+  steps_.resize(blocks_.size());
   double turn = 0.0;
   largest = 0.0;
   for (std::size_t i = blocks_.size(); i-- > 0;) {
-    const System::StateVector* const next = i + 1 < blocks_.size() ? &blocks_[i + 1].gradient : nullptr;
-    blocks_[i].gradient = System::back_substitute(blocks_[i], next, border).eval();
-    const double moved = blocks_[i].gradient.segment<3>(kPhi).norm();
+    const System::StateVector* const next = i + 1 < blocks_.size() ? &steps_[i + 1] : nullptr;
+    steps_[i] = System::back_substitute(blocks_[i], next, border_step_).eval();
+    const double moved = steps_[i].segment<3>(kPhi).norm();
     turn = std::max(turn, moved);
-    largest = std::max({largest, moved, 0.1 * blocks_[i].gradient.segment<3>(kRate).norm()});
+    largest = std::max({largest, moved, 0.1 * steps_[i].segment<3>(kRate).norm()});
   }
   if (!std::isfinite(turn)) return false;
   const double share = turn > kTurnMax ? kTurnMax / turn : 1.0;
-  for (std::size_t i = 0; i < blocks_.size(); ++i) nodes_[i].move(share * blocks_[i].gradient);
-  constants_.move(share * border);
+  for (System::StateVector& each : steps_) each *= share;
+  border_step_ *= share;
+  go(1.0);
   return true;
+}
+
+// A share of the last step, from where the nodes are.
+void Problem::go(double share) {
+  for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_[i].move(share * steps_[i]);
+  constants_.move(share * border_step_);
 }
 
 // the hand is as lively as it was about that time, never far below what is assumed: carried.md (C10)
@@ -152,20 +161,58 @@ void Problem::follow_hand() {
   }
 }
 
+void Problem::restore(Answer answer) {
+  nodes_ = std::move(answer.nodes);
+  constants_ = answer.constants;
+  constants_covariance_ = answer.constants_covariance;
+  hand_ = std::move(answer.hand);
+  covariances_ = std::move(answer.covariances);
+}
+
+// carried.md (C16), (C34)
 Status Problem::solve(CarriedSmoother::Report& report) {
   motion_ = nominal_;
+  std::optional<Place> before;  // the last step
+  report.converged = false;
   for (int k = 0; k < params_.iterations_max; ++k) {
-    if (k >= kFollowFirst && k <= kFollowLast && params_.hand_follow > 0.0) follow_hand();
+    if (k >= kFollowFirst && k <= kFollowLast && params_.hand_follow > 0.0) {
+      follow_hand();
+      before.reset();  // a cost of another hand
+    }
     report.cost = linearise();
+    if (before && !descend_from(*before, report.cost)) break;
+    before = Place{nodes_, constants_, report.cost};
     double largest = 0.0;
     if (!step(largest)) return {kLost, "iteration of the carried body", k + 1.0, static_cast<double>(k)};
     report.iterations = k + 1;
     report.converged = largest < kConverged;
     if (report.converged && k > kFollowFirst) break;
   }
+  if (before && !report.converged) {
+    // the last step is not known to have led anywhere
+    report.cost = linearise();
+    (void)descend_from(*before, report.cost);
+  }
   report.constants = constants_;
   report.hand_surprise = hand_surprise();
   return {};
+}
+
+// Where the last step led to a larger cost, shorter ones are tried. False when none leads down: the nodes are then back
+// where they were before it, and linearised there.
+bool Problem::descend_from(const Place& before, double& cost) {
+  const auto goes_down = [&] { return cost < before.cost + kRises; };
+  for (int k = 0; k < kHalvings && !goes_down(); ++k) {
+    nodes_ = before.nodes;
+    constants_ = before.constants;
+    go(std::ldexp(1.0, -k - 1));
+    cost = linearise();
+  }
+  if (goes_down()) return true;
+  nodes_ = before.nodes;
+  constants_ = before.constants;
+  cost = linearise();
+  return false;
 }
 
 // carried.md (C17), (C18), of the jerk of (C19)

@@ -81,6 +81,16 @@ class Problem {
   Status solve(CarriedSmoother::Report& report);
   /// Covariances of all nodes at the solution.
   Status covariances(CarriedSmoother::Report& report);
+  /// The solution as it stands, with its covariances, to come back to.
+  struct Answer {
+    std::vector<Node> nodes;
+    Constants constants;
+    System::BorderMatrix constants_covariance = System::BorderMatrix::Zero();
+    std::vector<double> hand;
+    std::vector<Eigen::Matrix<double, 9, 9>> covariances;
+  };
+  Answer answer() const { return {nodes_, constants_, constants_covariance_, hand_, covariances_}; }
+  void restore(Answer answer);
   /// Fills what the rest says of each part's ends: one sweep from either side. False where it loses its definiteness.
   bool tell(std::span<Part> parts) const;
   /// Gauss-Newton of a part. The cost at the solution, infinite where it did not converge.
@@ -107,6 +117,14 @@ class Problem {
   double add_node(std::size_t i, System::Block& block, System::Corner& corner) const;
   bool eliminate(System::BorderVector& step);
   bool step(double& largest);
+  /// Where a step of the descent began.
+  struct Place {
+    std::vector<Node> nodes;
+    Constants constants;
+    double cost = 0.0;
+  };
+  void go(double share);
+  bool descend_from(const Place& before, double& cost);
   void follow_hand();
   double hand_surprise() const;
 
@@ -122,6 +140,8 @@ class Problem {
   std::vector<double> hand_;        // what the density of the hand's acceleration is multiplied with, per step
   std::vector<double> hand_power_;  // running sum of its square
   std::vector<System::Block> blocks_;
+  std::vector<System::StateVector> steps_;  // the last step
+  System::BorderVector border_step_ = System::BorderVector::Zero();
   System::Corner corner_;
   System::BorderMatrix constants_covariance_;
   std::vector<Eigen::Matrix<double, 9, 9>> covariances_;

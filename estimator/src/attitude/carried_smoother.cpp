@@ -70,8 +70,8 @@ Status CarriedSmoother::estimate(std::span<const ImuSample> samples, const Clipp
   carried::Problem problem(params_, clipped.rows, collected.period_s, collected.nodes, std::move(start));
   status = problem.solve(report);
   if (status.ok()) status = problem.covariances(report);
-  if (status.ok()) status = carried::ask_turns(problem, report);
   if (!status.ok()) return status;
+  carried::ask_turns(problem, report);
 
   rates.resize(samples.size());
   attitudes.resize(samples.size());

@@ -22,15 +22,15 @@ CarriedStream::Params joined(const RegimeStream::Params& params) {
   return out;
 }
 
-// Clipped, or doubted: a rail may be there that was not seen yet.
+// Clipped, in a part of its window at least, or doubted: a rail may be there that was not seen yet.
 bool clips(const RateStream::Knot& knot) {
-  return (knot.observation.unseen() | knot.observation.partial) != 0;
+  return (knot.observation.unseen() | knot.observation.read_in_part()) != 0;
 }
 
-// A reading that may be clipped is a bound like one that is: the truth lies at it or beyond.
+// A run of readings that may be clipped is a bound like one that is: the truth lies at it or beyond.
 ClipSigns signs_of(const RateObservation& observation) {
   Clipping clipping = observation.clipping;
-  clipping.gyro = static_cast<std::uint8_t>(clipping.gyro | observation.partial);
+  clipping.gyro = static_cast<std::uint8_t>(clipping.gyro | observation.read_in_part());
   return clip_signs(observation.sample, clipping);
 }
 

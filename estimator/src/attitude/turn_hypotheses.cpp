@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -145,14 +147,35 @@ std::vector<Hypothesis> hypotheses(const Problem& whole, const Stretch& stretch,
   return out;
 }
 
-/// The shares of carried.md (C31).
-Open shares_of(std::vector<Hypothesis>& found, std::size_t from) {
-  Open out{from, {}};
+/// One stretch that was asked: what was found of its part's nodes, from `from` on, the best first, which of it is the
+/// number of turns that stands, where that is still among them, and whether another is to be taken.
+struct Asked {
+  std::size_t from = 0;
+  std::vector<Hypothesis> found;
+  std::optional<std::size_t> held = std::nullopt;
+  bool another = false;
+};
+
+/// The shares of carried.md (C31) of all but `standing`.
+Open shares_of(const Asked& asked, std::optional<std::size_t> standing) {
+  Open out{asked.from, {}};
+  const double least = asked.found.front().cost;
+  const auto weight = [&](const Hypothesis& each) { return std::exp(-0.5 * (each.cost - least)); };
   double sum = 0.0;
-  for (const Hypothesis& each : found) sum += std::exp(-0.5 * (each.cost - found.front().cost));
-  for (std::size_t k = 1; k < found.size(); ++k) {
-    const double share = std::exp(-0.5 * (found[k].cost - found.front().cost)) / sum;
-    out.others.emplace_back(share, std::move(found[k].nodes));
+  for (const Hypothesis& each : asked.found) sum += weight(each);
+  for (std::size_t k = 0; k < asked.found.size(); ++k) {
+    if (k != standing) out.others.emplace_back(weight(asked.found[k]) / sum, asked.found[k].nodes);
+  }
+  return out;
+}
+
+/// What is left open once the turns that are to be taken stand, or once they do not.
+std::vector<Open> left_open(const std::vector<Asked>& asked, bool taken) {
+  std::vector<Open> out;
+  for (const Asked& each : asked) {
+    const std::optional<std::size_t> standing = taken && each.another ? std::optional<std::size_t>(0) : each.held;
+    Open open = shares_of(each, standing);
+    if (!open.others.empty()) out.push_back(std::move(open));
   }
   return out;
 }
@@ -174,43 +197,68 @@ std::vector<Part> with_surroundings(const Problem& problem, std::span<const Stre
   return out;
 }
 
+/// Asks each part. The descent's own turns stand until others are clearly better; once they have fallen (`fallen`) the
+/// best of the others stands.
+std::vector<Asked> ask(const Problem& problem, std::span<const Stretch> stretches, std::span<const Part> parts,
+                       std::vector<bool>& fallen) {
+  std::vector<Asked> out;
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const Part& part = parts[k];
+    Asked asked{part.first, hypotheses(problem, stretches[k], part)};
+    if (asked.found.empty()) continue;
+    std::sort(asked.found.begin(), asked.found.end(),
+              [](const Hypothesis& a, const Hypothesis& b) { return a.cost < b.cost; });
+    const std::span<const Node> before = problem.nodes().subspan(part.first, part.last - part.first + 1);
+    const Eigen::RowVector3d m = problem.rows().row(static_cast<Eigen::Index>(stretches[k].element));
+    for (std::size_t i = 0; i < asked.found.size() && !asked.held; ++i) {
+      if (std::abs(angle_between(before, asked.found[i].nodes, m, problem.node_s())) <= kPi) asked.held = i;
+    }
+    const double margin = fallen[k] ? 0.0 : 2.0 * kTakeLogOdds;
+    asked.another = !asked.held || asked.found[*asked.held].cost > asked.found.front().cost + margin;
+    fallen[k] = fallen[k] || asked.another;
+    out.push_back(std::move(asked));
+  }
+  return out;
+}
+
+Status solve_again(Problem& problem, CarriedSmoother::Report& report) {
+  const Status status = problem.solve(report);
+  return status.ok() ? problem.covariances(report) : status;
+}
+
 }  // namespace
 
-Status ask_turns(Problem& problem, CarriedSmoother::Report& report) {
+void ask_turns(Problem& problem, CarriedSmoother::Report& report) {
+  ask_turns(problem, report, solve_again);
+}
+
+void ask_turns(Problem& problem, CarriedSmoother::Report& report, SolveAgain again) {
   const std::vector<Stretch> stretches = doubtful_stretches(problem);
   report.turns_asked = static_cast<int>(stretches.size());
-  if (stretches.empty()) return {};
+  if (stretches.empty()) return;
   std::vector<Part> parts = with_surroundings(problem, stretches);
   std::vector<Open> open;
   std::vector<bool> fallen(parts.size(), false);
   // what the rest says of a part is linear: right where it stands, and so asked again once a turn was taken
   for (int round = 0; round < kRounds; ++round) {
     if (!problem.tell(parts)) break;
-    open.clear();  // of the round before, whose turns have been taken
-    std::vector<std::pair<std::size_t, std::vector<Node>>> taken;
-    for (std::size_t k = 0; k < parts.size(); ++k) {
-      const Part& part = parts[k];
-      std::vector<Hypothesis> found = hypotheses(problem, stretches[k], part);
-      if (found.empty()) continue;
-      const std::span<const Node> before = problem.nodes().subspan(part.first, part.last - part.first + 1);
-      const Eigen::RowVector3d m = problem.rows().row(static_cast<Eigen::Index>(stretches[k].element));
-      const auto turned = [&](const Hypothesis& each) {
-        return std::abs(angle_between(before, each.nodes, m, problem.node_s())) > kPi;
-      };
-      // the descent's own stands until another is clearly better; once it has fallen the best of the others stands
-      const double least = found.front().cost, margin = fallen[k] ? 0.0 : 2.0 * kTakeLogOdds;
-      const auto held = std::find_if_not(found.begin(), found.end(), turned);
-      const bool another = held == found.end() || held->cost > least + margin;
-      if (!another) std::iter_swap(found.begin(), held);
-      if (another) taken.emplace_back(part.first, found.front().nodes);
-      fallen[k] = fallen[k] || another;
-      if (found.size() > 1) open.push_back(shares_of(found, part.first));
+    const std::vector<Asked> asked = ask(problem, stretches, parts, fallen);
+    const auto taken = std::count_if(asked.begin(), asked.end(), [](const Asked& each) { return each.another; });
+    open = left_open(asked, true);  // in the place of what the round before left open
+    if (taken == 0) break;
+    const Problem::Answer before = problem.answer();
+    const CarriedSmoother::Report report_before = report;
+    for (const Asked& each : asked) {
+      if (each.another) problem.place(each.from, each.found.front().nodes);
     }
-    if (taken.empty()) break;
-    for (const auto& [from, nodes] : taken) problem.place(from, nodes);
-    report.turns_taken += static_cast<int>(taken.size());
-    if (const Status status = problem.solve(report); !status.ok()) return status;
-    if (const Status status = problem.covariances(report); !status.ok()) return status;
+    if (!again(problem, report).ok()) {
+      problem.restore(before);
+      report = report_before;
+      report.turns_failed += static_cast<int>(taken);
+      open = left_open(asked, false);
+      break;
+    }
+    report.turns_taken += static_cast<int>(taken);
   }
   report.turns_open = static_cast<int>(open.size());
   // carried.md (C31)
@@ -222,7 +270,6 @@ Status ask_turns(Problem& problem, CarriedSmoother::Report& report) {
       }
     }
   }
-  return {};
 }
 
 }  // namespace tumble::carried

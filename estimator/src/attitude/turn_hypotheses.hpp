@@ -15,11 +15,17 @@ namespace tumble::carried {
 /// first is possible), with what all the rest says of its ends, and the costs are compared (the widths of two modes
 /// differ by next to nothing: what a faster turn leaves less sure, it expects less of). The best is taken; where any
 /// other is within odds of 1 to 1000, the covariances of the nodes get the second moment of the mixture about it. After
-/// any change the whole is solved once more. Where no stretch qualifies nothing is computed and nothing changes.
+/// any change the whole is solved once more; where that fails the answer before the change stands, and the turns that
+/// were to be taken count among those that stay possible. Where no stretch qualifies nothing is computed and nothing
+/// changes.
 ///
 /// `problem` has its covariances. Fills the counts in `report`. Not modelled: turns of two stretches that hang on each
 /// other; other modes than whole turns about the clipped element's axis; that the constants move with a turn. Two
 /// sweeps over all nodes and O(nodes of the stretches asked).
-Status ask_turns(Problem& problem, CarriedSmoother::Report& report);
+void ask_turns(Problem& problem, CarriedSmoother::Report& report);
+
+/// The same, the whole solved again by `again`, which a test may let fail.
+using SolveAgain = Status (*)(Problem& problem, CarriedSmoother::Report& report);
+void ask_turns(Problem& problem, CarriedSmoother::Report& report, SolveAgain again);
 
 }  // namespace tumble::carried

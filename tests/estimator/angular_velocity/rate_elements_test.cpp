@@ -9,7 +9,7 @@
 
 #include "estimator/angular_velocity/drawn_elements.hpp"
 #include "estimator/angular_velocity/tumble_recording.hpp"
-#include "estimator/src/angular_velocity/element_clipping.hpp"
+#include "estimator/src/angular_velocity/unseen_rails.hpp"
 #include "tumble/angular_velocity/rate_smoother.hpp"
 
 namespace tumble {
@@ -141,19 +141,22 @@ TEST(UnseenRails, ALevelTopNearTheOthersMayHideWhereItsSlopesMeet) {
   for (const int sign : {-1, 1}) {
     for (const double down : {0.25, 0.5}) {
       std::vector<RateObservation> tops = cut_tops(8.5, 0.4, down, sign);
-      doubt_level_tops(plane_of_x(8.7), 0.02, 0.005, tops);
+      doubt_level_tops(plane_of_x(8.7), {}, 0.02, 0.005, tops);
       EXPECT_NEAR(2.0 * tops[30].lost_sigma_rad_s.y(), 2.0, 0.5 * (0.4 + down)) << down;
-      EXPECT_EQ(tops[30].partial, 2u);
-      EXPECT_EQ(tops[5].partial, 0u);
+      EXPECT_EQ(tops[30].doubted, 2u);
+      EXPECT_EQ(tops[5].doubted, 0u);
       EXPECT_EQ(tops[30].lost_sigma_rad_s.x(), 0.0);
+      // neither clipped nor measured, as the stream has it
+      EXPECT_EQ(rate_source(tops[30], {}, Eigen::Matrix3d::Identity(), 0.5), RateSource::bounded_only);
+      EXPECT_EQ(rate_source(tops[5], {}, Eigen::Matrix3d::Identity(), 0.5), RateSource::measured);
     }
   }
 }
 
 TEST(UnseenRails, NothingIsDoubtedThatIsKnownOrFarFromTheRails) {
   const auto doubted = [](const RailPlanes& planes, std::vector<RateObservation> tops) {
-    doubt_level_tops(planes, 0.02, 0.005, tops);
-    return std::any_of(tops.begin(), tops.end(), [](const RateObservation& o) { return o.partial != 0; });
+    doubt_level_tops(planes, {}, 0.02, 0.005, tops);
+    return std::any_of(tops.begin(), tops.end(), [](const RateObservation& o) { return o.doubted != 0; });
   };
   const std::vector<RateObservation> top = cut_tops(8.5, 0.4, 0.4, 1);
   EXPECT_TRUE(doubted(plane_of_x(8.7), top));
@@ -165,6 +168,29 @@ TEST(UnseenRails, NothingIsDoubtedThatIsKnownOrFarFromTheRails) {
   std::vector<RateObservation> flagged = top;
   flagged[3].sample.device_clip_flags = 1;
   EXPECT_FALSE(doubted(plane_of_x(8.7), flagged));
+}
+
+// A rail of 0.06 of tilt lies no lower than 9.5 - 0.06 * 2 where 9.5 was read beside 2; a reading of 8.5 beside 0.5 is
+// at most at one of 8.53.
+TEST(UnseenRails, WhatWasReadFarBeyondRefutesThem) {
+  LeastRails least;
+  least.add({2.0, 9.5, 0.0});
+  EXPECT_TRUE(least.refute({0.5, 8.5, 0.0}, 1));
+  EXPECT_FALSE(least.refute({0.5, 9.4, 0.0}, 1));
+  EXPECT_FALSE(least.refute({13.0, 8.5, 0.0}, 1));  // a tilt makes more of so much motion beside
+  EXPECT_FALSE(least.refute({0.5, -8.5, 0.0}, 1));  // nothing was read on that side
+  EXPECT_FALSE(least.refute({8.5, 0.5, 0.0}, 0));   // nor of that element
+
+  for (const bool beyond : {false, true}) {
+    std::vector<RateObservation> top = cut_tops(8.5, 0.4, 0.4, 1);
+    const LeastRails known = beyond ? least : LeastRails{};
+    doubt_level_tops(plane_of_x(8.7), known, 0.02, 0.005, top);
+    EXPECT_EQ(top[30].doubted != 0, !beyond);
+    RateObservation single = top[30];
+    single.doubted = 0;
+    doubt_unseen_rails(plane_of_x(8.5), known, 0.005, &top[20].sample, single, &top[40].sample);
+    EXPECT_EQ(single.lone != 0, !beyond);
+  }
 }
 
 }  // namespace

@@ -184,10 +184,10 @@ TEST(RateStreamElements, NothingIsCalledClippedWhereNothingClips) {
 struct Swing {
   std::vector<ImuSample> samples;
   std::vector<Vector3d> truth;
-  explicit Swing(std::uint64_t seed) {
+  explicit Swing(std::uint64_t seed, int count = 480) {
     oracles::Gaussian noise(seed);
     const Vector3d row(1.0, 0.02, -0.02);
-    for (int k = 0; k < 480; ++k) {
+    for (int k = 0; k < count; ++k) {
       const double t = 0.01 * k, phase = 5.0 * t;
       const Vector3d w((k < 400 ? 5.0 : 8.2) * std::sin(phase), std::sin(3.1 * t), std::cos(4.3 * t));
       const double beyond = std::abs(row.dot(w)) - 7.4;
@@ -245,6 +245,56 @@ TEST(RateStreamElements, NothingAtARailGoesOutAsMeasuredBeforeTheRailIsKnown) {
   // not all of them: a stream that knows flight and contact alone is sure of more than it can know of a swing
   EXPECT_GT(doubted.within, 0.4 * doubted.clipped);
   EXPECT_LT(trusted.within, 0.05 * trusted.clipped);
+}
+
+// With the rail of x known, y stays at about that height, is doubted, and then is read far beyond it within the lag.
+TEST(RateStreamElements, ADoubtThatALargerReadingRefutesIsTakenBack) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    std::vector<ImuSample> samples = Swing(seed, 800).samples;
+    constexpr std::size_t kTop = 752;  // x passes zero at 7.54 s
+    const double steps[] = {1.0, 3.5, 5.3, 6.3, 7.2, 7.2, 7.2, 7.2, 8.2, 9.0, 9.6, 9.6, 8.6, 7.0, 5.0, 3.0};
+    for (std::size_t i = 0; i < std::size(steps); ++i) {
+      // equal readings would be a wall
+      samples[kTop - 4 + i].angular_velocity_rad_s.y() = steps[i] + 0.002 * std::sin(37.0 * static_cast<double>(i));
+    }
+    const RateStream method({});
+    RateStream::State state = method.start();
+    std::optional<RateState> rate;
+    std::vector<RateState> out;
+    int doubted = 0;
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+      ASSERT_TRUE(method.push(samples[k], state, rate).ok());
+      if (rate) out.push_back(*rate);
+      if (k != kTop + 3) continue;
+      ASSERT_TRUE(state.rails.known.planes.element[0]);
+      for (const RateStream::Knot& knot : state.window) doubted += (knot.observation.may_hide() >> 1 & 1) != 0;
+    }
+    EXPECT_GE(doubted, 3) << seed;
+    for (std::size_t k = kTop; k < kTop + 4; ++k) {
+      EXPECT_EQ(out[k].source, RateSource::measured) << seed << " " << k;
+      EXPECT_LT(out[k].covariance_rad2_s2(1, 1), 0.01) << seed << " " << k;
+    }
+  }
+}
+
+// Nothing refutes that one: all of it goes out as doubted, also what is left of the run when the rest has gone.
+TEST(RateStreamElements, ADoubtStaysUntilItIsGivenOut) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    std::vector<ImuSample> samples = Swing(seed).samples;
+    constexpr std::size_t kTop = 377;  // x passes zero at 3.77 s, before it has met its rail
+    const double steps[] = {1.0, 3.5, 5.3, 6.3, 7.2, 7.2, 7.2, 6.1, 5.0, 3.5, 2.0};
+    for (std::size_t i = 0; i < std::size(steps); ++i) {
+      samples[kTop - 4 + i].angular_velocity_rad_s.y() = steps[i] + 0.002 * std::sin(37.0 * static_cast<double>(i));
+    }
+    samples.resize(402);
+    const RateStream method({});
+    RateStream::State state = method.start();
+    const std::vector<RateState> out = stream(method, samples, state);
+    for (std::size_t k = kTop; k < kTop + 3; ++k) {
+      EXPECT_EQ(out[k].source, RateSource::bounded_only) << seed << " " << k;
+    }
+    EXPECT_EQ(out[kTop - 3].source, RateSource::measured) << seed;
+  }
 }
 
 // Readings that only look like a rail: a torque-free spin, the round top of a slow turn, creeping at one rate.

@@ -95,10 +95,13 @@ inline constexpr std::size_t kAuxiliaryImusMax = 2;
 struct RateObservation {
   ImuSample sample;
   Clipping clipping;
-  bool at_rest = false;      ///< standstill: the rate is zero, see RestDetector
-  std::uint8_t partial = 0;  ///< bit j: axis j met the rail in a part of its window only, see PartialLoss
-  Eigen::Vector3d lost_rad_s = Eigen::Vector3d::Zero();  ///< of partial axes, signed as the reading
-  Eigen::Vector3d lost_sigma_rad_s = Eigen::Vector3d::Zero();
+  bool at_rest = false;  ///< standstill: the rate is zero, see RestDetector
+  // Axes that are read with a deviation of their own, bit j of each for axis j; an axis is one of the three at most.
+  std::uint8_t partial = 0;  ///< met the rail in a part of its window only, as the device says: see PartialLoss
+  std::uint8_t lone = 0;  ///< few readings as high as other elements' rails, on a side whose own rail nobody has seen
+  std::uint8_t doubted = 0;  ///< a run of readings that may all stand at a rail nobody has seen: at least what is read
+  Eigen::Vector3d lost_rad_s = Eigen::Vector3d::Zero();        ///< of partial axes, signed as the reading
+  Eigen::Vector3d lost_sigma_rad_s = Eigen::Vector3d::Zero();  ///< of all three
   /// How old the triads' readings are at the stamp of the sample, and whether the gyro's is that of the sample before.
   double gyro_age_s = 0.0, accel_age_s = 0.0;
   bool gyro_repeats = false;
@@ -108,6 +111,11 @@ struct RateObservation {
 
   /// Whether an element clips, so that the readings of all axes are off: it is read element by element.
   bool by_elements() const { return (clipping.gyro | clipping.void_gyro) != 0; }
+
+  /// Axes that are read, but not as well as the gyro reads.
+  std::uint8_t read_in_part() const { return static_cast<std::uint8_t>(partial | lone | doubted); }
+  /// Axes whose reading may be less than the rate, though no rail was found there.
+  std::uint8_t may_hide() const { return static_cast<std::uint8_t>(lone | doubted); }
 
   /// Axes whose rate is not read: bound at most.
   std::uint8_t unseen() const {

@@ -10,7 +10,7 @@ namespace tumble {
 
 /// Where an angular velocity comes from.
 enum class RateSource : std::uint8_t {
-  measured,           ///< no axis of the gyro is clipped; of a stream, nor doubted to be
+  measured,           ///< no axis of the gyro is clipped, nor doubted to be
   recovered_flight,   ///< clipped, recovered from the centripetal specific force of free flight
   recovered_contact,  ///< clipped, recovered while in contact
   bounded_only,       ///< clipped or doubted to be, nothing known but the rail and the smoothness of the motion

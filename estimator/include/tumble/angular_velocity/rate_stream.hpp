@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tumble/angular_velocity/arrow_solver.hpp"
+#include "tumble/angular_velocity/least_rails.hpp"
 #include "tumble/angular_velocity/rail_watch.hpp"
 #include "tumble/angular_velocity/rate_model_fields.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
@@ -124,6 +125,7 @@ class RateStream {
     arrow::Block prior;
     arrow::Corner prior_corner;
     std::array<Eigen::Vector3d, 2> extremes{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  ///< of readings so far
+    LeastRails least;  ///< by the readings so far
     /// Of a run of readings at a possible rail that left in part: Knot::approach_rad_s before it, and how many left.
     Eigen::Vector3d entry_rad_s = Eigen::Vector3d::Zero(), entry_samples = Eigen::Vector3d::Zero();
     std::optional<RateKnot> left;  ///< the sample that left last, and when it was read
@@ -175,6 +177,8 @@ class RateStream {
   void append(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state) const;
   void classify_again(State& state) const;
   void judge(std::size_t first, State& state) const;
+  void doubt_unseen(std::size_t k, State& state) const;
+  void forget_doubts(State& state) const;
   void doubt_possible_rails(State& state) const;
   bool may_clip(const ImuSample& sample, int axis, int sign, const State& state) const;
   void doubt_run(int axis, std::size_t first, std::size_t last, State& state) const;

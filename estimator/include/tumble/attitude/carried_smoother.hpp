@@ -145,6 +145,9 @@ class CarriedSmoother {
     /// stretch counts anew in each round), and in how many others stay possible, at odds of 1 to 1000 or better: there
     /// the covariance holds their spread.
     int turns_asked = 0, turns_taken = 0, turns_open = 0;
+    /// Turns that were to be taken and from which the whole could not be solved: the answer without them stands, and
+    /// they count as possible.
+    int turns_failed = 0;
   };
 
   /// Throws InvalidParams when a parameter is outside of its bound.
