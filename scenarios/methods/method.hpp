@@ -68,6 +68,10 @@ struct MethodInfo {
   bool needs_truth = false;
   bool for_robot(const std::string& robot) const;  ///< whether it applies to "rig" or "sphere"
   std::vector<std::string> robots;                 ///< empty: all
+  /// Does nothing about the problem, so that the others of its kind are paired with it: of rates the clipped gyro as it
+  /// is, of slam the chain on top of it. A kind may have none.
+  bool baseline = false;
+  bool ours() const { return source == "ours"; }  ///< made here
   std::string version;  ///< of a method that is not of this build: what tells it from another of its name
 };
 

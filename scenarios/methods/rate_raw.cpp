@@ -38,6 +38,7 @@ Method rate_raw() {
   info.kind = Kind::rate;
   info.doc = "The primary IMU's gyro as it is, clipped where it clips; its variance is the data sheet's noise.";
   info.source = "no method: the baseline";
+  info.baseline = true;
   return make_method(std::move(info), run);
 }
 

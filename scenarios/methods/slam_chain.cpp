@@ -277,6 +277,7 @@ Method rig_slam(RigSlam what, RunCore run) {
   info.source = std::move(what.source);
   info.settings = std::move(what.settings);
   info.needs_truth = what.needs_truth;
+  info.baseline = what.baseline;
   info.robots = {"rig"};
   return make_method(std::move(info), run);
 }

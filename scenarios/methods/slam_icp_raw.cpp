@@ -22,7 +22,8 @@ Method slam_icp_raw() {
   return rig_slam({.name = "icp_raw",
                    .doc = "The chain of seed with the gyro as it is, clipped where it clips.",
                    .source = "baseline of Deschenes et al., ICRA 2024",
-                   .settings = {&seed_settings()}},
+                   .settings = {&seed_settings()},
+                   .baseline = true},
                   run);
 }
 

@@ -29,6 +29,7 @@ struct RigSlam {
   std::string name, doc, source;
   std::vector<const SettingsTable*> settings;
   bool needs_truth = false;
+  bool baseline = false;
 };
 Method rig_slam(RigSlam what, RunCore run);
 

@@ -7,7 +7,6 @@
 #include <set>
 #include <tuple>
 
-#include "scenarios/methods/origin.hpp"
 #include "scenarios/scoring/binned_metric.hpp"
 #include "scenarios/scoring/score.hpp"
 
@@ -31,7 +30,7 @@ const MethodInfo* registered(Kind kind, const std::string& name) {
 std::string choose_baseline(Kind kind, const std::vector<MethodSummary>& methods) {
   for (const MethodSummary& method : methods) {
     const MethodInfo* info = registered(kind, method.method);
-    if (info != nullptr && is_baseline(*info)) return method.method;
+    if (info != nullptr && info->baseline) return method.method;
   }
   for (const MethodSummary& method : methods) {
     if (!method.needs_truth) return method.method;

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "scenarios/methods/origin.hpp"
 
 namespace tumble::tools {
 
@@ -51,7 +50,7 @@ PlotLine true_rate(const sim::Recording& recording, int axis, const Span& span) 
 PlotLine estimated_rate(const scenarios::MethodInfo& info, const std::vector<RateState>& rates, int axis,
                         const Span& span) {
   PlotLine line;
-  line.name = is_baseline(info) ? info.name + " (what the gyro says)" : info.name;
+  line.name = info.baseline ? info.name + " (what the gyro says)" : info.name;
   line.width = 1.6;
   line.dotted = line.hidden = info.needs_truth;
   for (const RateState& rate : rates) {

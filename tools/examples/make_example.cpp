@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "scenarios/methods/origin.hpp"
 #include "scenarios/sweep/evaluate.hpp"
 #include "sim/render/renderer.hpp"
 #include "tools/examples/draw_plots.hpp"
@@ -38,8 +37,10 @@ void add_map(const scenarios::RunResult& run, const sim::Surface& surface, bool 
 void add_maps(const scenarios::RunResult& run, Example& example) {
   if (!run.surface) return;
   std::vector<ErrorMap> maps;
-  add_map(run, *run.surface, scenarios::is_baseline, maps);
-  add_map(run, *run.surface, scenarios::is_ours, maps);
+  add_map(
+      run, *run.surface, [](const scenarios::MethodInfo& info) { return info.baseline; }, maps);
+  add_map(
+      run, *run.surface, [](const scenarios::MethodInfo& info) { return info.ours(); }, maps);
   if (maps.empty()) return;
   std::string names;
   for (const ErrorMap& map : maps) {
