@@ -14,6 +14,7 @@ set(CPACK_DEBIAN_PACKAGE_DEPENDS "libeigen3-dev (>= 3.4)")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "libpcl-dev")  # for tumble::pcl alone
 set(CPACK_SOURCE_GENERATOR TGZ)
 set(CPACK_SOURCE_PACKAGE_FILE_NAME tumble-estimator-${PROJECT_VERSION})
-set(CPACK_SOURCE_IGNORE_FILES /build/)
+# a regular expression on whole paths: a build folder within
+set(CPACK_SOURCE_IGNORE_FILES "^${CMAKE_CURRENT_BINARY_DIR}/")
 install(FILES ${CMAKE_CURRENT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
 include(CPack)

@@ -128,7 +128,20 @@ TEST(RollingOdometry, TroubleIsAValue) {
   const std::vector<ImuSample> samples = unit_at(kPlaces[0]);
   ASSERT_TRUE(one.add_imu(samples[5]).ok());
   EXPECT_EQ(one.add_imu(samples[4]).trouble, Trouble::time_order);
+  ImuSample late = samples[6];
+  late.time_ns += 1'100'000'000;
+  EXPECT_EQ(one.add_imu(late).trouble, Trouble::gap);
   EXPECT_TRUE(one.add_imu(samples[6]).ok());
+  one.finish();
+  EXPECT_EQ(one.add_imu(samples[7]).trouble, Trouble::out_of_range);
+  one.reset();
+  EXPECT_TRUE(one.add_imu(samples[7]).ok());
+  ImuSample weightless = samples[5];
+  weightless.specific_force_m_s2.setZero();
+  RollingOdometry fresh(params_of({kPlaces[0]}));
+  EXPECT_EQ(fresh.add_imu(weightless).trouble, Trouble::degenerate);
+  for (const ImuSample& sample : samples) ASSERT_TRUE(fresh.add_imu(sample).ok());
+  EXPECT_NEAR(fresh.newest()->pose.p_WA_m.x(), kWay_m, 0.01 * kWay_m);
 }
 
 TEST(RollingOdometry, RefusesParametersOutOfTheirBounds) {

@@ -20,7 +20,7 @@ tumble::TumblingOdometry::Params rig() {
   tumble::TumblingOdometry::Params params;
   params.imu = tumble::sheets::mti30();
   params.lever_arm_I_m = {-0.022, -0.085, 0.055};
-  params.T_IL.translation() = {0.02014, 0.08745, 0.0398};
+  params.T_IL.translation() << 0.02014, 0.08745, 0.0398;
   params.T_IL.linear() = Eigen::AngleAxisd(-0.5 * M_PI, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   params.own_body_L = {Eigen::Vector3d(-0.5, -0.4, -0.27), Eigen::Vector3d(0.5, 0.4, 0.23)};
   return params;
@@ -47,10 +47,10 @@ void run(const tumble::sim::Sensors& sensors) {
       tell(odometry.add_sweep(sweep->start_ns, sweep->end_ns, sweep->points));
       sweep.reset();
     }
-    while (const auto done = odometry.take()) driver::print(done->report.pose);
+    while (const auto done = odometry.take()) driver::print(*done);
   }
   odometry.finish();
-  while (const auto done = odometry.take()) driver::print(done->report.pose);
+  while (const auto done = odometry.take()) driver::print(*done);
   std::fprintf(stderr, "a map of %zu points\n", odometry.mapper().map().size());
 }
 

@@ -55,4 +55,13 @@ inline void print(const tumble::PoseState& pose) {
               p.z(), q.x(), q.y(), q.z(), q.w(), std::sqrt(pose.covariance.topLeftCorner<3, 3>().trace()));
 }
 
+/// The pose at the end of a sweep, or why there is none: one that begins before the IMU has no place.
+inline void print(const tumble::TumblingOdometry::Sweep& sweep) {
+  if (!sweep.report.trajectory.empty()) {
+    print(sweep.report.pose);
+  } else {
+    std::fprintf(stderr, "a sweep without a place: %s\n", sweep.status.message().c_str());
+  }
+}
+
 }  // namespace driver

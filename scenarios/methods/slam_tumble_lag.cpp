@@ -71,7 +71,8 @@ class Listener {
   /// A sweep has just ended.
   void ended(const TumblingOdometry& odometry) {
     PoseState pose;
-    if (odometry.newest(pose).ok()) live_.push_back(pose);
+    const bool later = live_.empty() || live_.back().time_ns < odometry.newest_ns();
+    if (word_ == Word::live && later && odometry.newest(pose).ok()) live_.push_back(pose);
   }
   void take(TumblingOdometry& odometry) {
     while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) {
@@ -84,11 +85,14 @@ class Listener {
       settle(std::move(last_word));
     }
   }
-  /// The run has ended.
+  /// The run has ended. Live poses are scored as a trajectory: the sweeps know more than they did.
   void conclude(const LidarInertialOdometry& mapper) {
     for (std::vector<PoseState>& open : mapper.open_trajectories()) settle(std::move(open));
     conclude_sweeps(mapper, estimate_);
-    if (word_ == Word::live) estimate_.poses = live_;
+    if (word_ == Word::last) return;
+    estimate_.poses = std::move(live_);
+    estimate_.sweeps.clear();
+    estimate_.sweep_end_ns.clear();
   }
 
  private:

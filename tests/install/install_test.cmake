@@ -23,7 +23,7 @@ set(common -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_BUILD_TYPE=${BUIL
 
 run(fails ${CMAKE_COMMAND} -S ${WORK}/consumer -B ${WORK}/absent ${common} -DCMAKE_PREFIX_PATH=${WORK}/prefix)
 
-run(passes ${CMAKE_COMMAND} -S ${SOURCE}/estimator -B ${WORK}/estimator ${common} ${OPTIONS}
+run(passes ${CMAKE_COMMAND} -S ${SOURCE}/estimator -B ${WORK}/estimator ${common} ${OPTIONS} -DTUMBLE_PCL=ON
     -DCMAKE_EXPORT_COMPILE_COMMANDS=ON)
 read_compilations(${BUILD} ${SOURCE}/estimator/src whole)
 read_compilations(${WORK}/estimator ${SOURCE}/estimator/src alone)
@@ -66,7 +66,8 @@ endif()
 # a copy of the folder, elsewhere: builds, tests itself, installs; its package laid into a clean root; its archive
 # builds the same once more
 file(COPY ${SOURCE}/estimator DESTINATION ${WORK}/copy)
-run(passes ${CMAKE_COMMAND} -S ${WORK}/copy/estimator -B ${WORK}/alone ${common} ${OPTIONS} -DTUMBLE_BUILD_TESTS=ON)
+run(passes ${CMAKE_COMMAND} -S ${WORK}/copy/estimator -B ${WORK}/alone ${common} ${OPTIONS} -DTUMBLE_BUILD_TESTS=ON
+    -DTUMBLE_PCL=ON)
 run(passes ${CMAKE_COMMAND} --build ${WORK}/alone --parallel)
 run(passes ${CMAKE_CTEST_COMMAND} --test-dir ${WORK}/alone --output-on-failure --no-tests=error)
 run(passes ${CMAKE_COMMAND} --install ${WORK}/alone --prefix ${WORK}/prefix)
@@ -86,4 +87,4 @@ run(passes ${CMAKE_COMMAND} -E chdir ${WORK}/alone ${bin}/cpack --config CPackSo
 file(GLOB archives ${WORK}/alone/tumble-estimator-*.tar.gz)
 file(ARCHIVE_EXTRACT INPUT ${archives} DESTINATION ${WORK}/source)
 file(GLOB unpacked ${WORK}/source/*)
-run(passes ${CMAKE_COMMAND} -S ${unpacked} -B ${WORK}/unpacked ${common} ${OPTIONS} -DTUMBLE_PCL=OFF)
+run(passes ${CMAKE_COMMAND} -S ${unpacked} -B ${WORK}/unpacked ${common} ${OPTIONS})

@@ -71,6 +71,12 @@ class Groups(Case):
         self.assertEqual(places[at], ("b.cpp", 9))
         self.assertEqual(groups.suspected(f"/x/j.cpp:{at + 1}:5: error: e [c]", pathlib.Path("/x/j.cpp"), places), {"b.cpp"})
 
+    def test_what_is_said_of_a_header_is_no_hint_about_a_source(self):
+        joint = pathlib.Path("/x/j.cpp")
+        of_header = "/x/h.hpp:3:1: error: e [c]\n"
+        self.assertFalse(groups.of_headers("/x/j.cpp:7:5: error: e [c]\n    note without a place\n", joint))
+        self.assertTrue(groups.of_headers("/x/j.cpp:7:5: error: e [c]\n" + of_header, joint))
+
     def test_a_word_of_the_language_is_no_name(self):
         pair = [self.source(name, "namespace {", "static_assert(true);", "}  // namespace") for name in ("a.cpp", "b.cpp")]
         self.assertEqual(groups.text_of(pair)[0].count("static_assert(true);"), 2)

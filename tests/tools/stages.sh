@@ -10,8 +10,8 @@ cp "$1/tools/test" "$scratch/tools/test"
 
 stand_in() { printf '#!/bin/sh\necho "%s $*" >> "%s/called"\n%s\n' "$1" "$scratch" "$2" > "$scratch/$1"; chmod +x "$scratch/$1"; }
 stand_in tools/setup 'exit 0'
-stand_in tools/lint 'exit 0'
-stand_in bin/ctest 'exit 0'
+stand_in tools/lint '[ "${FAILING:-}" != lint ]'
+stand_in bin/ctest '[ "${FAILING:-}" != ctest ]'
 # fails to build what FAILING names
 stand_in bin/cmake 'case "$*" in *"--build --preset ${FAILING:-none} "*) exit 1 ;; esac'
 
@@ -41,3 +41,13 @@ expect 'as CI runs it, a build that fails' "$(outcome release)" "$(lines 'build 
   'failed : build tests' 'exit 1')"
 expect 'an unknown stage' "$(outcome none --all --from nowhere)" 'exit 2'
 expect 'a stage without --all' "$(outcome none --from soak)" 'exit 2'
+expect 'two stages as one' "$(outcome none --all --from 'tests soak')" 'exit 2'
+expect 'a test that fails' "$(outcome ctest --all --from soak)" "$(lines 'soak FAILED' 'sanitize FAILED' 'threads FAILED' 'fuzz FAILED' \
+  'lint passed' 'bench FAILED' 'failed : soak sanitize threads fuzz bench' 'exit 1')"
+expect 'a finding of the linter' "$(outcome lint --all --from lint)" "$(lines 'lint FAILED' 'bench passed' 'failed : lint' 'exit 1')"
+outcome none --all > /dev/null
+jobs=$(nproc)
+expect 'what was asked of CTest and the linter' "$(grep -E '^(bin/ctest|tools/lint)' "$scratch/called")" "$(lines \
+  "bin/ctest --preset release -j $jobs -LE bench|soak|threads|fuzz" "bin/ctest --preset release -j $jobs -L soak" \
+  "bin/ctest --preset sanitize -j $jobs -L ^(fast|sim|methods)\$" "bin/ctest --preset threads -j $jobs -L threads" \
+  "bin/ctest --preset fuzz -j $jobs -L fuzz" 'tools/lint --all' "bin/ctest --preset release -j $jobs -L bench -j 1")"

@@ -154,11 +154,13 @@ std::set<std::string> files_of(const json& examples) {
   return files;
 }
 
-/// What a list that cannot be read has left stays: it is not known to be ours.
+/// What a list has left that cannot be read, or not all of it, stays: the list is set aside and names it.
 std::set<std::string> files_before(const fs::path& folder) {
   try {
     const json list = read_list(folder);
-    return list.is_null() ? std::set<std::string>() : files_of(list.at("examples"));
+    if (list.is_null()) return {};
+    for (const json& example : list.at("examples")) read_example(folder, example, Pictures::read);
+    return files_of(list.at("examples"));
   } catch (const std::exception&) {
     return {};
   }
@@ -246,9 +248,12 @@ FoundExamples read_examples(const fs::path& folder, Pictures pictures) {
 }
 
 fs::path set_damaged_aside(const fs::path& folder) {
-  const fs::path aside = list_file(folder).string() + ".damaged";
-  std::error_code ignored;
-  fs::copy_file(list_file(folder), aside, fs::copy_options::overwrite_existing, ignored);
+  const std::string name = list_file(folder).string() + ".damaged";
+  fs::path aside = name;
+  std::error_code error;
+  for (int k = 2; fs::exists(aside, error); ++k) aside = name + "." + std::to_string(k);
+  fs::copy_file(list_file(folder), aside, error);
+  if (error) throw BadInput(aside.string() + ": cannot be written: " + error.message());
   return aside;
 }
 

@@ -100,6 +100,11 @@ def text_of(group: list[Source]) -> tuple[str, list[tuple[str, int]]]:
     return "\n".join([*included, *body]) + "\n", [*included.values(), *places]
 
 
+def of_headers(said: str, joint: pathlib.Path) -> bool:
+    """Whether something that was said is of another file than the joint text."""
+    return any(found[1] != str(joint) for found in re.finditer(r"^([^\s:]+):\d+:\d+: (?:warning|error): ", said, re.MULTILINE))
+
+
 def suspected(said: str, file: pathlib.Path, places: list[tuple[str, int]]) -> set[str]:
     """The sources of whose lines in the joint file something was said."""
     return {places[int(line) - 1][0] for line in re.findall(re.escape(str(file)) + r":(\d+):\d+: (?:error|warning):", said)}

@@ -85,8 +85,14 @@ Status LidarInertialOdometry::predict(std::span<const ImuSample> samples, std::s
   if (Status status = trajectory.build(last.state, track.samples(), end_ns, last.calibration.gravity_W_m_s2);
       !status.ok())
     return status;
-  const mapping::MotionWindow motion{track.samples(), end_ns, my.resting_sweeps};
+  const int resting_sweeps = my.rests(track, trajectory, end_ns) ? my.resting_sweeps + 1 : 0;
+  const mapping::MotionWindow motion{track.samples(), end_ns, resting_sweeps};
   const mapping::Prediction at_start = mapping::predict(my.params, my.border, motion, trajectory, my.known);
+  const Registration::Estimate& mean = at_start.prior.mean;  // what is known beside the last sweep is in it
+  if (Status status =
+          trajectory.build(mean.state, track.samples(), end_ns, mean.calibration.gravity_W_m_s2, mean.excess_rad_s);
+      !status.ok())
+    return status;
   pose = my.pose_along(trajectory, trajectory.duration_s(), at_start.errors);
   pose.time_ns = end_ns;
   return {};

@@ -36,7 +36,7 @@ struct LidarInertialOdometry::Impl {
   Status check_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns) const;
   /// Levels the IMU where nothing has been seen yet.
   Status begin();
-  bool rests(TimeNs end_ns) const;
+  bool rests(const mapping::InertialTrack& heard, const SweepTrajectory& motion, TimeNs end_ns) const;
   mapping::Placed place(const mapping::Prediction& prediction, const mapping::MotionWindow& motion,
                         SweepReport& report);
   /// Leaves the trajectory as that of what stands.

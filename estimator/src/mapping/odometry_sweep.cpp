@@ -17,7 +17,7 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   const auto& [state, calibration, excess] = border.belief.mean;
   if (Status status = trajectory.build(state, track.samples(), end_ns, calibration.gravity_W_m_s2); !status.ok())
     return status;
-  resting_sweeps = rests(end_ns) ? resting_sweeps + 1 : 0;
+  resting_sweeps = rests(track, trajectory, end_ns) ? resting_sweeps + 1 : 0;
   const MotionWindow motion{track.samples(), end_ns, resting_sweeps};
   Prediction prediction = mapping::predict(params, border, motion, trajectory, known);
 
@@ -69,11 +69,11 @@ Status LidarInertialOdometry::Impl::begin() {
 }
 
 /// Nothing but gravity by the IMU, and no more than gravity by the attitude as it is believed.
-bool LidarInertialOdometry::Impl::rests(TimeNs end_ns) const {
-  if (!track.rests_until(params, end_ns)) return false;
-  const Eigen::Vector3d gained_m_s =
-      trajectory.state(trajectory.duration_s()).v_WI_m_s - border.belief.mean.state.v_WI_m_s;
-  return !(gained_m_s.norm() > params.rest_force_m_s2 * trajectory.duration_s());
+bool LidarInertialOdometry::Impl::rests(const mapping::InertialTrack& heard, const SweepTrajectory& motion,
+                                        TimeNs end_ns) const {
+  if (!heard.rests_until(params, end_ns)) return false;
+  const Eigen::Vector3d gained_m_s = motion.state(motion.duration_s()).v_WI_m_s - border.belief.mean.state.v_WI_m_s;
+  return !(gained_m_s.norm() > params.rest_force_m_s2 * motion.duration_s());
 }
 
 Placed LidarInertialOdometry::Impl::place(const Prediction& prediction, const MotionWindow& motion,

@@ -85,19 +85,25 @@ RollingOdometry::RollingOdometry(const RollingOdometry& other)
       state_(std::make_unique<RollingSmoother::State>(*other.state_)),
       done_(other.done_),
       taken_(other.taken_),
-      live_(other.live_) {}
+      live_(other.live_),
+      finished_(other.finished_) {}
 
 RollingOdometry& RollingOdometry::operator=(const RollingOdometry& other) {
   return *this = RollingOdometry(other);
 }
 
 Status RollingOdometry::add_imus(std::span<const ImuSample> samples) {
+  if (finished_) return {Trouble::out_of_range, "samples after finish()", 1.0, 0.0};
   std::optional<ImuSample> merged;
-  if (Status status = merge_.step(samples, *merge_state_, merged); !status.ok() || !merged) return status;
-  const std::size_t before = done_.size();
-  const Status status = smoother_.step(*merged, *state_, done_);
-  if (status.ok()) gather(before);
-  return status;
+  ImuMerge::State next = *merge_state_;  // both take the sample, or none
+  if (Status status = merge_.step(samples, next, merged); !status.ok()) return status;
+  if (merged) {
+    const std::size_t before = done_.size();
+    if (Status status = smoother_.step(*merged, *state_, done_); !status.ok()) return status;
+    gather(before);
+  }
+  *merge_state_ = next;
+  return {};
 }
 
 std::optional<RollingOdometry::Pose> RollingOdometry::newest() const {
@@ -116,7 +122,14 @@ std::optional<RollingOdometry::Pose> RollingOdometry::take() {
 }
 
 void RollingOdometry::finish() {
-  if (!live_) smoother_.finish(*state_, done_);
+  if (!live_ && !finished_) smoother_.finish(*state_, done_);
+  finished_ = true;
+}
+
+void RollingOdometry::reset() {
+  *merge_state_ = {};
+  *state_ = {};
+  finished_ = false;
 }
 
 // Without a lag the live pose takes the place of what the smoother gave out since.

@@ -48,12 +48,32 @@ LidarInertialOdometry::Params mapper_params(const TumblingOdometry::Params& para
   return out;
 }
 
-/// The forces of the sample that a rate is of which the stream knows to be at a rail.
-unsigned railed_forces(const RateStream::State& state, TimeNs time_ns) {
-  const auto is_it = [&](const RateStream::Knot& knot) { return knot.observation.sample.time_ns == time_ns; };
-  const auto knot = std::find_if(state.window.begin(), state.window.end(), is_it);
-  return knot == state.window.end() ? 0u : clip_flags({.accel = knot->observation.clipping.accel});
-}
+constexpr double kSilent_s = 1.0;       // a lidar that says nothing for so long is made up for
+constexpr double kAhead_s = 1.0;        // a sweep that ends so much after the newest sample has a stamp that is wrong
+constexpr double kSweepsMax_hz = 20.0;  // of the lidars that there are: so many a second wait for the lag
+
+/// Samples as the stream came to see them, with the forces told that a rail hid; asked for in order of time.
+class SeenByTheStream {
+ public:
+  SeenByTheStream(std::span<const ImuSample> samples, const RateStream::State& state)
+      : samples_(samples), window_(state.window) {}
+
+  ImuSample at(TimeNs time_ns) {
+    while (next_ + 1 < samples_.size() && samples_[next_].time_ns < time_ns) ++next_;
+    while (knot_ < window_.size() && window_[knot_].observation.sample.time_ns < time_ns) ++knot_;
+    ImuSample out = samples_[next_];
+    if (knot_ < window_.size()) {
+      const unsigned railed = clip_flags({.accel = window_[knot_].observation.clipping.accel});
+      out.device_clip_flags = static_cast<std::uint8_t>(out.device_clip_flags | railed);
+    }
+    return out;
+  }
+
+ private:
+  std::span<const ImuSample> samples_;
+  std::span<const RateStream::Knot> window_;
+  std::size_t next_ = 0, knot_ = 0;
+};
 
 }  // namespace
 
@@ -83,26 +103,44 @@ TumblingOdometry::TumblingOdometry(const Params& params)
 }
 
 Status TumblingOdometry::add_imu(const ImuSample& sample) {
-  std::optional<RateState> rate;
-  Status status = rates_.push(sample, rate_state_, rate);
-  if (status.trouble == Trouble::gap) {
-    begin_anew();
-    status = rates_.push(sample, rate_state_, rate);
+  if (newest_ns_ && sample.time_ns <= *newest_ns_)
+    return {Trouble::time_order, "time_ns", double(sample.time_ns), double(*newest_ns_)};
+  const Status status = take_in(sample);
+  if (status.trouble != Trouble::gap) return status;
+  const double gap_max_s = params_.expert.rate.rate.gap_max_s;
+  if (!after_gap_ || !check_follows(sample.time_ns, after_gap_->time_ns, gap_max_s).ok()) {
+    after_gap_ = sample;
+    return status;
   }
-  if (!status.ok()) return status;
+  const ImuSample first = *after_gap_;
+  begin_anew();
+  ++gaps_;
+  if (const Status begun = take_in(first); !begun.ok()) return begun;
+  return take_in(sample);
+}
+
+Status TumblingOdometry::take_in(const ImuSample& sample) {
+  std::optional<RateState> rate;
+  if (const Status status = rates_.push(sample, rate_state_, rate); !status.ok()) return status;
   unsettled_.push(sample);
-  if (rate) status = settle(*rate);
+  newest_ns_ = sample.time_ns;
+  after_gap_.reset();
+  if (!registered_ns_) registered_ns_ = sample.time_ns;
+  if (!rate) return {};
+  settle(*rate);
   register_covered();
-  return status;
+  return {};
 }
 
 Status TumblingOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points) {
   if (end_ns < start_ns) return {Trouble::time_order, "end_ns", double(end_ns), double(start_ns)};
   if (sweep_end_ns_ && start_ns < *sweep_end_ns_)
     return {Trouble::time_order, "start_ns", double(start_ns), double(*sweep_end_ns_)};
-  if (waiting_.size() >= params_.expert.sweeps_max) {
-    return {Trouble::out_of_range, "sweeps waiting", double(waiting_.size() + 1), double(params_.expert.sweeps_max)};
-  }
+  const TimeNs latest_ns = newest_ns_.value_or(end_ns) + static_cast<TimeNs>(1e9 * kAhead_s);
+  if (end_ns > latest_ns) return {Trouble::out_of_range, "end_ns", double(end_ns), double(latest_ns)};
+  const std::size_t most = params_.expert.sweeps_max + static_cast<std::size_t>(kSweepsMax_hz * params_.lag_s);
+  if (waiting_.size() >= most)
+    return {Trouble::out_of_range, "sweeps waiting", double(waiting_.size() + 1), double(most)};
   if (const Status status = mapping::check_offsets(end_ns - start_ns, points); !status.ok()) return status;
   sweep_end_ns_ = end_ns;
   waiting_.push_back({start_ns, end_ns, {points.begin(), points.end()}});
@@ -120,55 +158,66 @@ std::optional<TumblingOdometry::Sweep> TumblingOdometry::take() {
 Status TumblingOdometry::newest(PoseState& pose) const {
   std::vector<RateState> rates;
   rates_.flush(rate_state_, rates);
-  // of the window some may be settled already
-  if (settled_) std::erase_if(rates, [&](const RateState& rate) { return rate.time_ns <= settled_->time_ns; });
   std::vector<ImuSample> samples;
-  for (const RateState& rate : rates) samples.push_back(as_the_stream_sees_it(rate));
+  SeenByTheStream seen(unsettled_.all(), rate_state_.rate);
+  for (const RateState& rate : rates) samples.push_back(seen.at(rate.time_ns));
   return mapper_.predict(samples, rates, pose);
 }
 
 void TumblingOdometry::finish() {
-  std::vector<RateState> rates;
-  rates_.flush(rate_state_, rates);
-  for (const RateState& rate : rates) {
-    if (!settled_ || rate.time_ns > settled_->time_ns) settle(rate);
-  }
-  register_covered();
+  if (!rates_.rate().newest(rate_state_.rate)) return;  // nothing since the last time
+  begin_anew();
 }
 
-// With the forces told that a rail hid.
-ImuSample TumblingOdometry::as_the_stream_sees_it(const RateState& rate) const {
-  const std::span<const ImuSample> all = unsettled_.all();
-  ImuSample out = *std::find_if(all.begin(), all.end(), [&](const ImuSample& s) { return s.time_ns == rate.time_ns; });
-  const unsigned railed = railed_forces(rate_state_.rate, rate.time_ns);
-  out.device_clip_flags = static_cast<std::uint8_t>(out.device_clip_flags | railed);
-  return out;
-}
-
-Status TumblingOdometry::settle(const RateState& rate) {
-  const ImuSample sample = as_the_stream_sees_it(rate);
+void TumblingOdometry::settle(const RateState& rate) {
+  const ImuSample sample = SeenByTheStream(unsettled_.all(), rate_state_.rate).at(rate.time_ns);
   unsettled_.drop_until(rate.time_ns);
   settled_ = rate;
-  return mapper_.add_imu(sample, rate);
+  if (!mapper_.add_imu(sample, rate).ok()) ++refused_samples_;
+}
+
+void TumblingOdometry::register_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points) {
+  if (done_.size() >= params_.expert.sweeps_max) {
+    done_.pop_front();
+    ++dropped_sweeps_;
+  }
+  Sweep& out = done_.emplace_back();
+  out.status = mapper_.add_sweep(start_ns, end_ns, points, out.report);
+  registered_ns_ = end_ns;
 }
 
 void TumblingOdometry::register_covered() {
   const auto offset_ns = static_cast<TimeNs>(std::llround(1e9 * params_.expert.mapping.time_offset_s));
   while (!waiting_.empty() && settled_ && settled_->time_ns >= waiting_.front().end_ns + offset_ns) {
     const Waiting& sweep = waiting_.front();
-    Sweep& out = done_.emplace_back();
-    out.status = mapper_.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, out.report);
+    register_sweep(sweep.start_ns, sweep.end_ns, sweep.points);
     waiting_.pop_front();
+  }
+  if (!waiting_.empty() || !settled_) return;
+  const TimeNs covered_ns = settled_->time_ns - offset_ns;
+  if (seconds(covered_ns - *registered_ns_) > kSilent_s) {
+    register_sweep(covered_ns, covered_ns, {});
+    sweep_end_ns_ = covered_ns;
   }
 }
 
+void TumblingOdometry::settle_all() {
+  std::vector<RateState> rates;
+  rates_.flush(rate_state_, rates);
+  for (const RateState& rate : rates) settle(rate);
+  register_covered();
+}
+
 void TumblingOdometry::begin_anew() {
-  finish();
+  settle_all();
   RegimeStream::Params params = rate_params(params_);
   params.rate.model.calibration = rig();
-  rates_ = RegimeStream(params);
+  try {
+    rates_ = RegimeStream(params);
+  } catch (const InvalidParams&) {  // what was learnt is beyond what can be: from what was given
+    rates_ = RegimeStream(rate_params(params_));
+  }
   rate_state_ = rates_.start();
-  ++gaps_;
 }
 
 }  // namespace tumble

@@ -128,7 +128,6 @@ TEST(Window, APoseAheadIsTheInertialPriorAndChangesNothing) {
   PoseState pose;
   EXPECT_EQ(run.odometry.predict({}, {}, pose).trouble, Trouble::empty);
   run.sweeps(0, 12);
-  const Odometry before(run.odometry);
   std::vector<ImuSample> ahead;
   std::vector<RateState> rates;
   for (const ImuSample& sample : run.imu) {
@@ -143,6 +142,13 @@ TEST(Window, APoseAheadIsTheInertialPriorAndChangesNothing) {
   EXPECT_EQ(pose.time_ns, 14 * test::kSweep_ns);
   EXPECT_LT(run.error_m(pose), 0.05);
   EXPECT_GT(pose.covariance.diagonal().head<3>().sum(), run.report.pose.covariance.diagonal().head<3>().sum());
+  // a velocity that is known is believed, and so is what it is said to be off by
+  Odometry told(run.odometry);
+  const Eigen::Vector3d v_I_m_s(3.0, 0.0, 0.0);
+  ASSERT_TRUE(told.add_velocity(v_I_m_s, 0.01).ok());
+  PoseState led;
+  ASSERT_TRUE(told.predict(ahead, rates, led).ok());
+  EXPECT_GT((led.p_WA_m - pose.p_WA_m).norm(), 0.1);
   // one that comes twice is refused, and the odometry has not heard of any
   std::swap(ahead[0], ahead[1]);
   std::swap(rates[0], rates[1]);

@@ -18,10 +18,10 @@ namespace tumble {
 /// Pose of a rolling sphere from one to four IMUs, through grip, slip, bumps and slopes: live, and smoothed with what
 /// follows within `lag_s`. ImuMerge makes the IMUs one, RollingSmoother (with its RollingFilter) does the rest.
 ///
-/// World: z up, origin at the sphere's centre at the first sample, yaw 0 there. Begin with a second of rest. Memory is
-/// set aside with the first samples (half a megabyte, and 11 KiB for each 0.02 s of lag); no allocation per sample
-/// after that but for the poses that wait for take(). No threads, no files, no printing. Copies carry all state. Not
-/// modelled: see the classes named.
+/// World: z up, origin at the sphere's centre at the first sample, yaw 0 there. Begin with a second of rest. State of
+/// half a megabyte, and 11 KiB for each 0.02 s of lag; a sample that ends no block (RollingSmoother::Params::block_s)
+/// allocates nothing once the first have come, but for poses that nobody takes. No threads, no files, no printing.
+/// Copies carry all state. Not modelled: see the classes named.
 class RollingOdometry {
  public:
   /// One IMU of the sphere.
@@ -60,7 +60,9 @@ class RollingOdometry {
   ~RollingOdometry() = default;
 
   /// Takes what all units read at one time (the first's stamp counts); one that has nothing to say gives NaN. On
-  /// trouble (`too_few`, `time_order`, `gap`) the state is as it was.
+  /// trouble the state is as it was: `too_few` (units, or one that has something to say), `time_order`, `degenerate`
+  /// (no gravity in the first sample), `gap` (more than a second: the way is not known any more, and the run is over
+  /// until reset()), `out_of_range` after finish().
   Status add_imus(std::span<const ImuSample> samples);
   /// The same of a sphere with one.
   Status add_imu(const ImuSample& sample) { return add_imus({&sample, 1}); }
@@ -71,8 +73,11 @@ class RollingOdometry {
   /// The next pose of those given out once each, in order of time: lag_s old, or live ones without a lag.
   std::optional<Pose> take();
 
-  /// Smooths what is still within the lag: the run has ended.
+  /// Smooths what is still within the lag: the run has ended, until reset().
   void finish();
+
+  /// Begins a new run: at the origin, at rest. Poses that wait for take() stay.
+  void reset();
 
   /// What the IMUs say of each other: frozen, disagreeing, late ones.
   const ImuMerge::State& units() const { return *merge_state_; }
@@ -86,7 +91,7 @@ class RollingOdometry {
   std::unique_ptr<RollingSmoother::State> state_;
   std::vector<RollingEstimate> done_;
   std::size_t taken_ = 0;
-  bool live_ = true;
+  bool live_ = true, finished_ = false;
 };
 
 }  // namespace tumble

@@ -22,12 +22,13 @@ namespace tumble {
 /// registered on; take() gives the sweep lag_s after its end, registered (`report.pose`); and the sweep after it brings
 /// its last word (`report.smoothed`): 0.3 s after its end at ten sweeps a second. Sweeps stand in the world of
 /// LidarInertialOdometry: z up, origin and yaw at the IMU at the first sample. Begin at rest, half a second or more: it
-/// levels the attitude.
+/// levels the attitude. A lidar that is silent for a second is made up for by inertia, a sweep without points.
 ///
-/// An IMU sample costs one step of the stream, and now and then a sweep's registration; after the first sweeps neither
-/// allocates but for the map, which is bounded by the radius kept. Memory is bounded by lag, map and `sweeps_max`. No
-/// threads, no files, no printing. Copies carry all state: continuing from a copy gives the same bits, so that a run
-/// may be split anywhere. Not modelled: see the two classes above.
+/// An IMU sample costs one step of the stream, and now and then a sweep's registration; one that ends no sweep
+/// allocates nothing once the first have come. Memory is bounded by the lag, the map's radius and `sweeps_max`, but for
+/// 12 bytes a sweep while the body stays within ten metres. No threads, no files, no printing. Copies carry all state:
+/// continuing from a copy gives the same bits, so that a run may be split anywhere. Not modelled: see the two classes
+/// above.
 class TumblingOdometry {
  public:
   struct Params {
@@ -52,7 +53,8 @@ class TumblingOdometry {
       RegimeStream::Params rate;
       /// With gravity's direction and what the rails hid of the rate among the unknowns.
       LidarInertialOdometry::Params mapping = mapping_defaults();
-      std::size_t sweeps_max = 16;  ///< that may wait for the IMU
+      /// That may wait for the IMU, beside those that the lag holds back; and for take(), the oldest being dropped.
+      std::size_t sweeps_max = 16;
       static LidarInertialOdometry::Params mapping_defaults();
     } expert;
 
@@ -63,34 +65,39 @@ class TumblingOdometry {
 
   /// What became of a sweep.
   struct Sweep {
-    Status status;  ///< of LidarInertialOdometry::add_sweep
+    Status status;  ///< of LidarInertialOdometry::add_sweep; where it could not be placed `report.trajectory` is empty
     LidarInertialOdometry::SweepReport report;
   };
 
   /// Throws InvalidParams on a parameter outside of its bound.
   explicit TumblingOdometry(const Params& params);
 
-  /// Takes a sample of the IMU, in order of time. On trouble (`non_finite`, `time_order`) the state is as it was.
-  /// Sweeps whose rates are settled with it are registered now. After a gap beyond the stream's bound, a second, the
-  /// rates begin anew with what is known of the rig, and the mapper bridges the gap by inertia; gaps() counts them.
+  /// Takes a sample of the IMU, in order of time. Sweeps whose rates are settled with it are registered now. On trouble
+  /// (`non_finite`, `time_order`, `gap`) the state is as it was, but that the sample after a gap beyond the stream's
+  /// bound, a second, is held back: when the next one bears it out the rates begin anew with what is known of the rig
+  /// (gaps() counts), and the mapper bridges the gap by inertia; one stamp that is wrong costs one sample.
   Status add_imu(const ImuSample& sample);
 
   /// Takes a sweep of points fired in [start_ns, end_ns], at any time after its last point; they are copied. Trouble
   /// that leaves the state as it was: `time_order` (before the end of the last one, or an end before its start),
-  /// `out_of_range` (the offset of a point beyond the sweep, or sweeps_max sweeps wait already). What the mapper makes
-  /// of it comes with take().
+  /// `out_of_range` (the offset of a point beyond the sweep; an end more than a second after the newest sample of the
+  /// IMU; too many that wait already). What the mapper makes of it comes with take().
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
 
   /// The next sweep that was registered, in order; nothing when there is none yet.
   std::optional<Sweep> take();
 
-  /// Settles what there is: the run has ended. Sweeps that the IMU covers are registered; take() gives them, and
-  /// mapper().open_trajectories() the last word of those still in the window.
+  /// Settles what there is: at the end of a run, or at a halt. Sweeps that the IMU covers are registered; take() gives
+  /// them, and mapper().open_trajectories() the last word of those still in the window. What comes later begins the
+  /// rates anew, with what is known of the rig.
   void finish();
 
   /// Pose and velocity of the IMU at its newest sample, by inertia from the last sweep that was registered, with
   /// covariance. `empty` before that. Allocates; O(samples since then).
   Status newest(PoseState& pose) const;
+
+  /// Time of the newest sample that was taken in.
+  std::optional<TimeNs> newest_ns() const { return newest_ns_; }
 
   /// Rate of the newest sample: provisional where the gyro clips, since what follows tells most of it. Nothing before
   /// the first sample.
@@ -103,6 +110,10 @@ class TumblingOdometry {
   RigCalibration rig() const { return rates_.rate().calibration(rate_state_.rate); }
   /// Gaps of the IMU after which the rates began anew.
   std::size_t gaps() const { return gaps_; }
+  /// Samples that the mapper refused with their rates, and sweeps that nobody took in time: 0 unless something is
+  /// wrong.
+  std::size_t refused_samples() const { return refused_samples_; }
+  std::size_t dropped_sweeps() const { return dropped_sweeps_; }
   /// The map, and all that the mapper tells beside.
   const LidarInertialOdometry& mapper() const { return mapper_; }
 
@@ -121,9 +132,11 @@ class TumblingOdometry {
     std::span<const ImuSample> all() const { return std::span(samples).subspan(head); }
   };
 
-  ImuSample as_the_stream_sees_it(const RateState& rate) const;
-  Status settle(const RateState& rate);
+  Status take_in(const ImuSample& sample);
+  void settle(const RateState& rate);
+  void register_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
   void register_covered();
+  void settle_all();
   void begin_anew();
 
   Params params_;
@@ -132,7 +145,10 @@ class TumblingOdometry {
   LidarInertialOdometry mapper_;
   Queue unsettled_;  ///< samples whose rates are not settled yet
   std::optional<RateState> settled_;
-  std::size_t gaps_ = 0;
+  std::optional<TimeNs> newest_ns_;      ///< of the samples taken in
+  std::optional<ImuSample> after_gap_;   ///< held back
+  std::optional<TimeNs> registered_ns_;  ///< end of the last sweep that was registered; the first sample before that
+  std::size_t gaps_ = 0, refused_samples_ = 0, dropped_sweeps_ = 0;
   std::deque<Waiting> waiting_;
   std::deque<Sweep> done_;
   std::optional<TimeNs> sweep_end_ns_;  ///< of the last sweep taken in
