@@ -110,7 +110,8 @@ TEST(TumblingOdometry, RecoversTheRateInFlight) {
   const ThrownBody body;
   TumblingOdometry odometry(params_of(body));
   const Heard run = whole(body, odometry);
-  const double from_s = body.rest_s + body.push_s + 0.1, to_s = from_s + body.flight_s - 0.2;
+  // from where the push is over to where the stream sees the catch ahead, which begins as gently as this one does
+  const double from_s = body.rest_s + body.push_s + 0.1, to_s = body.rest_s + body.push_s + body.flight_s - 0.25;
   int clipped = 0;
   for (const RateState& rate : run.rates) {
     const double t_s = seconds(rate.time_ns);
@@ -121,7 +122,7 @@ TEST(TumblingOdometry, RecoversTheRateInFlight) {
     EXPECT_LT(error.norm(), 0.3 * (body.spin_rad_s * body.axis.y() - body.rail_rad_s)) << t_s;
     EXPECT_LT(error.dot(rate.covariance_rad2_s2.ldlt().solve(error)), 14.2) << t_s;  // 99.7 % of three unknowns
   }
-  EXPECT_GT(clipped, 40);
+  EXPECT_GT(clipped, 30);
 }
 
 TEST(TumblingOdometry, TheWordsComeInTime) {
@@ -259,7 +260,7 @@ TEST(TumblingOdometry, ALidarThatFallsSilentIsMadeUpForByInertia) {
 TEST(TumblingOdometry, SweepsThatNobodyTakesAreDropped) {
   const ThrownBody body;
   TumblingOdometry::Params params = params_of(body);
-  params.expert.sweeps_max = 4;
+  params.sweeps_max = 4;
   TumblingOdometry odometry(params);
   const std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
   std::size_t next = 0;
@@ -299,7 +300,7 @@ TEST(TumblingOdometry, TroubleIsAValueAndChangesNothing) {
 TEST(TumblingOdometry, SweepsThatWaitAreBounded) {
   const ThrownBody body;
   TumblingOdometry::Params params = params_of(body);
-  params.expert.sweeps_max = 3;
+  params.sweeps_max = 3;
   TumblingOdometry odometry(params);
   const int most = 3 + 4;  // and those that a lag of 0.2 s may hold back
   for (int k = 0; k < most; ++k) EXPECT_TRUE(odometry.add_sweep(k * kSweep_ns, (k + 1) * kSweep_ns, {}).ok());

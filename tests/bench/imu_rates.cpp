@@ -68,8 +68,8 @@ scenarios::SimulatedDraw draw_of(const scenarios::DataRoot& data, const Request&
   const std::string name = request.scenario + "_" + std::to_string(seed) + "_" +
                            std::to_string(static_cast<int>(rate_hz)) + (lidar ? "_lidar" : "");
   const auto situation = [&] {
-    sim::Situation out = scenarios::draw(data, scenarios::load_scenario(data, request.scenario), seed);
-    if (!lidar) out = scenarios::without_lidars(std::move(out));
+    const sim::ResolvedSituation drawn = scenarios::draw(data, scenarios::load_scenario(data, request.scenario), seed);
+    sim::Situation out = lidar ? drawn : scenarios::without_lidars(drawn);
     for (sim::SensorSpec& sensor : out.sensors) {
       const bool one_of_them = &sensor == &out.sensors.front() || out.robot.type == "sphere";
       if (rate_hz > 0.0 && sensor.kind == "imu" && one_of_them) sensor.values.set("output_rate_hz", rate_hz);

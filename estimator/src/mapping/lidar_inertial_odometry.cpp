@@ -78,7 +78,7 @@ Status LidarInertialOdometry::predict(std::span<const ImuSample> samples, std::s
     if (Status status = track.check(samples[k]); !status.ok()) return status;
     track.take(my.params, samples[k], rates[k]);
   }
-  if (track.samples().empty()) return {Trouble::empty, "samples", 0.0, 1.0};
+  if (track.samples().empty()) return pose_at(my.border.time_ns(), pose);
   const TimeNs end_ns = track.samples().back().time_ns;
   const Registration::Estimate& last = my.border.belief.mean;
   SweepTrajectory trajectory;

@@ -52,6 +52,22 @@ constexpr double kSilent_s = 1.0;       // a lidar that says nothing for so long
 constexpr double kAhead_s = 1.0;        // a sweep that ends so much after the newest sample has a stamp that is wrong
 constexpr double kSweepsMax_hz = 20.0;  // of the lidars that there are: so many a second wait for the lag
 
+/// What the stream does not know of a clipped axis, its deviation being beyond what the mapper believes at most, goes
+/// to the mapper as the reading it is, a bound: the registration estimates what is missing. A rig that is not learnt
+/// yet may extrapolate a push by tens of rad/s, and says so.
+RateState for_the_mapper(const RateState& rate, const ImuSample& sample, double sigma_max_rad_s) {
+  RateState out = rate;
+  for (int axis = 0; axis < 3; ++axis) {
+    if ((rate.clipped_axes >> axis & 1) == 0) continue;
+    if (rate.covariance_rad2_s2(axis, axis) <= sigma_max_rad_s * sigma_max_rad_s) continue;
+    out.w_WI_I_rad_s[axis] = sample.angular_velocity_rad_s[axis];
+    out.covariance_rad2_s2.row(axis).setZero();
+    out.covariance_rad2_s2.col(axis).setZero();
+    out.source = RateSource::bounded_only;
+  }
+  return out;
+}
+
 /// Samples as the stream came to see them, with the forces told that a rail hid; asked for in order of time.
 class SeenByTheStream {
  public:
@@ -138,7 +154,7 @@ Status TumblingOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<con
     return {Trouble::time_order, "start_ns", double(start_ns), double(*sweep_end_ns_)};
   const TimeNs latest_ns = newest_ns_.value_or(end_ns) + static_cast<TimeNs>(1e9 * kAhead_s);
   if (end_ns > latest_ns) return {Trouble::out_of_range, "end_ns", double(end_ns), double(latest_ns)};
-  const std::size_t most = params_.expert.sweeps_max + static_cast<std::size_t>(kSweepsMax_hz * params_.lag_s);
+  const std::size_t most = params_.sweeps_max + static_cast<std::size_t>(kSweepsMax_hz * params_.lag_s);
   if (waiting_.size() >= most)
     return {Trouble::out_of_range, "sweeps waiting", double(waiting_.size() + 1), double(most)};
   if (const Status status = mapping::check_offsets(end_ns - start_ns, points); !status.ok()) return status;
@@ -160,7 +176,10 @@ Status TumblingOdometry::newest(PoseState& pose) const {
   rates_.flush(rate_state_, rates);
   std::vector<ImuSample> samples;
   SeenByTheStream seen(unsettled_.all(), rate_state_.rate);
-  for (const RateState& rate : rates) samples.push_back(seen.at(rate.time_ns));
+  for (RateState& rate : rates) {
+    samples.push_back(seen.at(rate.time_ns));
+    rate = for_the_mapper(rate, samples.back(), params_.expert.mapping.rate_sigma_max_rad_s);
+  }
   return mapper_.predict(samples, rates, pose);
 }
 
@@ -173,11 +192,12 @@ void TumblingOdometry::settle(const RateState& rate) {
   const ImuSample sample = SeenByTheStream(unsettled_.all(), rate_state_.rate).at(rate.time_ns);
   unsettled_.drop_until(rate.time_ns);
   settled_ = rate;
-  if (!mapper_.add_imu(sample, rate).ok()) ++refused_samples_;
+  const RateState told = for_the_mapper(rate, sample, params_.expert.mapping.rate_sigma_max_rad_s);
+  if (!mapper_.add_imu(sample, told).ok()) ++refused_samples_;
 }
 
 void TumblingOdometry::register_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points) {
-  if (done_.size() >= params_.expert.sweeps_max) {
+  if (done_.size() >= params_.sweeps_max) {
     done_.pop_front();
     ++dropped_sweeps_;
   }

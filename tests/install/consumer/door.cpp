@@ -15,6 +15,5 @@ int main() {
     sample.time_ns = k * tumble::TimeNs{10'000'000};
     if (!rolling.add_imu(sample).ok() || !tumbling.add_imu(sample).ok()) return 1;
   }
-  std::printf("at rest: %d, rate %.3f rad/s\n", rolling.newest()->at_rest,
-              tumbling.newest_rate()->w_WI_I_rad_s.norm());
+  std::printf("at rest: %d, rate %.3f rad/s\n", rolling.newest()->at_rest, tumbling.newest_rate()->w_WI_I_rad_s.norm());
 }

@@ -200,8 +200,8 @@ class LidarInertialOdometry {
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, SweepReport& report);
 
   /// Pose and velocity at the last of further samples, which are not added: from the last sweep's end by inertia alone,
-  /// with covariance. For who needs a pose before the sweep is there, or its rates are settled. Trouble: `empty` before
-  /// the first sweep or without samples, and that of add_imu. O(samples since the last sweep).
+  /// with covariance; there where nothing came after it. For who needs a pose before the sweep is there, or its rates
+  /// are settled. Trouble: `empty` before the first sweep, and that of add_imu. O(samples since the last sweep).
   Status predict(std::span<const ImuSample> samples, std::span<const RateState> rates, PoseState& pose) const;
 
   /// Calibration as estimated so far, and the covariance of its errors; the given one, and 0, where not estimated.

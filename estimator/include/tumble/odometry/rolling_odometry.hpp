@@ -43,6 +43,18 @@ class RollingOdometry {
       ImuMerge::Params merge;
       RollingSmoother::Params rolling;
     } expert;
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit(p.radius_m, {"radius_m", "m", 1e-3, 100.0, "of the sphere", Rank::first});
+      visit(p.centre_sigma_m,
+            {"centre_sigma_m", "m", 0.0, 10.0, "place that the units are given from, about the centre", Rank::first});
+      visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.1, 100.0, "strength of gravity", Rank::first});
+      visit(p.lag_s, {"lag_s", "s", 0.0, 1e3, "poses are smoothed with what follows for so long", Rank::first});
+      visit.group("merge_", p.expert.merge);
+      visit.group("rolling_", p.expert.rolling);
+    }
   };
   struct Pose {
     PoseState pose;  ///< of the sphere's centre, in axes of the sphere; of a live one the attitude has no covariance

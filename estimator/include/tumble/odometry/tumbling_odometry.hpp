@@ -48,13 +48,15 @@ class TumblingOdometry {
     double gravity_m_s2 = 9.80665;
     double lag_s = 0.2;  ///< how old a sample is when its rate is settled
 
+    /// Sweeps that may wait for the IMU, beside those that the lag holds back; and for take(), the oldest being
+    /// dropped.
+    std::size_t sweeps_max = 16;
+
     /// What few need. Of the same numbers as above those above count.
     struct Expert {
       RegimeStream::Params rate;
       /// With gravity's direction and what the rails hid of the rate among the unknowns.
       LidarInertialOdometry::Params mapping = mapping_defaults();
-      /// That may wait for the IMU, beside those that the lag holds back; and for take(), the oldest being dropped.
-      std::size_t sweeps_max = 16;
       static LidarInertialOdometry::Params mapping_defaults();
     } expert;
 

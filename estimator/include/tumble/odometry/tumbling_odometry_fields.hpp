@@ -22,7 +22,7 @@ void TumblingOdometry::Params::fields(Self& p, Visitor& visit) {
   visit(p.range_max_m, {"range_max_m", "m", 0.0, 1e4, "farther returns are dropped", Rank::first});
   visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.0, 100.0, "strength of gravity", Rank::first});
   visit(p.lag_s, {"lag_s", "s", 0.0, 10.0, "how old a sample is when its rate is settled", Rank::first});
-  visit(p.expert.sweeps_max, {"sweeps_max", "1", 1, 1e6, "sweeps that may wait for the IMU"});
+  visit(p.sweeps_max, {"sweeps_max", "1", 1, 1e6, "sweeps that may wait for the IMU"});
   visit.group("rate_", p.expert.rate);
   visit.group("mapping_", p.expert.mapping);
 }
