@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <utility>
@@ -59,7 +60,7 @@ TumblingOdometry::Params stated_params(const sim::Sensors& sensors, const sim::V
 
 /// Of which words of the door an estimate is made.
 enum class Word {
-  live,  ///< the pose at the end of each sweep as soon as it has ended
+  live,  ///< the pose at each sample of the IMU when it has just come
   last,  ///< each sweep's trajectory when nothing refines it any more
 };
 
@@ -68,11 +69,10 @@ class Listener {
  public:
   Listener(Word word, Estimate& estimate) : word_(word), estimate_(estimate) {}
 
-  /// A sweep has just ended.
-  void ended(const TumblingOdometry& odometry) {
+  /// A sample has just been taken in.
+  void heard(const TumblingOdometry& odometry) {
     PoseState pose;
-    const bool later = live_.empty() || live_.back().time_ns < odometry.newest_ns();
-    if (word_ == Word::live && later && odometry.newest(pose).ok()) live_.push_back(pose);
+    if (word_ == Word::live && odometry.newest(pose).ok()) live_.push_back(pose);
   }
   void take(TumblingOdometry& odometry) {
     while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) {
@@ -85,14 +85,11 @@ class Listener {
       settle(std::move(last_word));
     }
   }
-  /// The run has ended. Live poses are scored as a trajectory: the sweeps know more than they did.
+  /// The run has ended.
   void conclude(const LidarInertialOdometry& mapper) {
     for (std::vector<PoseState>& open : mapper.open_trajectories()) settle(std::move(open));
+    if (word_ == Word::live) speak_live();
     conclude_sweeps(mapper, estimate_);
-    if (word_ == Word::last) return;
-    estimate_.poses = std::move(live_);
-    estimate_.sweeps.clear();
-    estimate_.sweep_end_ns.clear();
   }
 
  private:
@@ -101,6 +98,20 @@ class Listener {
     LidarInertialOdometry::SweepReport& sweep = estimate_.sweeps[settled_++];
     sweep.trajectory = std::move(last_word);
     sweep.pose = sweep.trajectory.back();
+  }
+
+  /// Of each sweep what was said while it lasted takes the place of what is known of it since. One that had ended
+  /// before the first live pose, at rest some 0.3 s after the start, stays as it is.
+  void speak_live() {
+    auto next = live_.begin();
+    for (LidarInertialOdometry::SweepReport& sweep : estimate_.sweeps) {
+      const TimeNs end_ns = sweep.pose.time_ns;
+      const auto after = std::find_if(next, live_.end(), [&](const PoseState& pose) { return pose.time_ns > end_ns; });
+      if (after == next) continue;
+      sweep.trajectory.assign(next, after);
+      sweep.pose = sweep.trajectory.back();
+      next = after;
+    }
   }
 
   Word word_;
@@ -123,9 +134,9 @@ Status live_through(const sim::Sensors& sensors, std::span<const ImuSample> samp
       if (present->end_ns > sample.time_ns) break;
       if (Status status = odometry.add_sweep(present->start_ns, present->end_ns, present->points); !status.ok())
         return status;
-      listener.ended(odometry);
       present.reset();
     }
+    listener.heard(odometry);
     listener.take(odometry);
   }
   odometry.finish();
@@ -167,7 +178,7 @@ Method slam_tumble_lag() {
 
 Method slam_tumble_live() {
   return rig_slam({.name = "tumble_live",
-                   .doc = "The same pass, live: the pose at the end of each sweep by what came before it alone.",
+                   .doc = "The same pass, live: the pose at each sample of the IMU by what came before it alone.",
                    .source = "ours",
                    .settings = {&settings()}},
                   [](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {

@@ -102,23 +102,23 @@ Recorded record(const std::string& scenario) {
   return out;
 }
 
-TEST(Door, TheTumblingExampleFollowsAThrowAndABagSaysTheSame) {
-  const Recorded throw_1 = record("throw");
-  const std::vector<Line> lines = lines_of(output_of(std::string(TUMBLE_TUMBLING) + " < " + throw_1.messages.string()));
+TEST(Door, TheTumblingExampleFollowsATumbleAndABagSaysTheSame) {
+  const Recorded hill_1 = record("hill");
+  const std::vector<Line> lines = lines_of(output_of(std::string(TUMBLE_TUMBLING) + " < " + hill_1.messages.string()));
   ASSERT_GT(lines.size(), 30u);
   const Line& end = lines.back();
-  const double way = way_m(throw_1.truth, throw_1.truth.imus.front().T_BI.translation(), end.time_ns);
-  EXPECT_GT(way, 1.0) << "a throw that goes nowhere tells nothing";
-  EXPECT_NEAR(end.p_m.norm(), way, 0.1);
+  const double way = way_m(hill_1.truth, hill_1.truth.imus.front().T_BI.translation(), end.time_ns);
+  EXPECT_GT(way, 1.0) << "a tumble that goes nowhere tells nothing";
+  EXPECT_NEAR(end.p_m.norm(), way, 0.3);
   EXPECT_GT(end.sigma_m, 0.0);
 
-  const fs::path bag = throw_1.file.parent_path() / "throw.bag";
-  output_of(test::program().string() + " export " + throw_1.file.string() + " --format rosbag1 -o " + bag.string());
+  const fs::path bag = hill_1.file.parent_path() / "hill.bag";
+  output_of(test::program().string() + " export " + hill_1.file.string() + " --format rosbag1 -o " + bag.string());
   const std::vector<Line> from_bag = lines_of(output_of(std::string(TUMBLE_BAG) + " " + bag.string()));
   ASSERT_EQ(from_bag.size(), lines.size());
   // stamps of points are 4 ns coarser in a bag
   EXPECT_LT((from_bag.back().p_m - end.p_m).norm(), 0.01);
-  EXPECT_NE(std::system((std::string(TUMBLE_BAG) + " " + throw_1.file.string() + " 2>/dev/null").c_str()), 0);
+  EXPECT_NE(std::system((std::string(TUMBLE_BAG) + " " + hill_1.file.string() + " 2>/dev/null").c_str()), 0);
 }
 
 TEST(Door, TheRollingExampleFollowsARoll) {
