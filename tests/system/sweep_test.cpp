@@ -211,6 +211,11 @@ TEST(Sweep, OfAnotherSuiteKeepsTheExamplesThatStandThere) {
   ASSERT_EQ(left["examples"].size(), 1u);
   // as a suite of another scenario would have left it
   left["examples"][0]["scenario"] = "elsewhere";
+  for (json& picture : left["examples"][0]["pictures"]) {
+    const std::string name = "elsewhere-1-" + picture["name"].get<std::string>() + ".png";
+    fs::copy_file(list.parent_path() / picture["file"].get<std::string>(), list.parent_path() / name);
+    picture["file"] = name;
+  }
   std::ofstream(list) << left.dump();
   ASSERT_EQ(run_program(arguments).status, 0);
   const json both = json::parse(read_file(list));
