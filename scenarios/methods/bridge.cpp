@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -52,11 +51,6 @@ Status check_stream(std::span<const ImuSample> samples) {
 }
 
 }  // namespace
-
-double sure_range(double stated_range) {
-  constexpr double kSureShare = 0.98;
-  return stated_range > 0.0 ? kSureShare * stated_range : std::numeric_limits<double>::infinity();
-}
 
 Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out) {
   out.clear();

@@ -29,10 +29,6 @@ namespace tumble::scenarios::bridge {
 /// Longest time between two IMU samples that a recording may have [s].
 inline constexpr double kGapMaxS = 1.0;
 
-/// Below this a reading is one for sure, given the range that the device states; infinite where it states none (0). A
-/// calibration moves a rail by its error of scale, which 2 % leaves room for.
-double sure_range(double stated_range);
-
 /// Samples of an IMU, in order. Trouble: `empty`, `non_finite`, `time_order`, `gap` (more than kGapMaxS); then `out` is
 /// empty. Throws BadInput when the record's arrays differ in length. O(N).
 Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out);

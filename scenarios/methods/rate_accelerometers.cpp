@@ -6,6 +6,7 @@
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/rate_baseline.hpp"
 #include "scenarios/methods/settings.hpp"
+#include "tumble/odometry/imu_sheet.hpp"
 
 namespace tumble::scenarios {
 
@@ -26,7 +27,7 @@ Status auxiliary_imu(const sim::ImuRecord& primary, const sim::ImuRecord& other,
   out.p_I_m = T_IO.translation();
   out.specific_force_m_s2.assign(primary.time_ns.size(),
                                  Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
-  const double rail = bridge::sure_range(other.stated_accel_range_m_s2);
+  const double rail = sure_range(other.stated_accel_range_m_s2);
   std::size_t after = 1;
   for (std::size_t k = 0; k < primary.time_ns.size(); ++k) {
     const std::int64_t time_ns = primary.time_ns[k];

@@ -9,6 +9,7 @@
 #include "scenarios/methods/slam_settings.hpp"
 #include "tumble/angular_velocity/clipping_finder.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
+#include "tumble/odometry/tumbling_odometry.hpp"
 
 namespace tumble::scenarios {
 
@@ -30,7 +31,7 @@ LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const
   odometry.T_IL = bridge::T_IL(sensors.imus.front(), sensors.lidars.front());
   odometry.gravity_m_s2 = sensors.gravity_m_s2;
   const double accel_range_m_s2 = sensors.imus.front().stated_accel_range_m_s2;
-  if (accel_range_m_s2 > 0.0) odometry.accel_rail_m_s2 = bridge::sure_range(accel_range_m_s2);
+  if (accel_range_m_s2 > 0.0) odometry.accel_rail_m_s2 = sure_range(accel_range_m_s2);
   if (chain.along) {
     odometry.gravity_m_s2 = chain.along->gravity_m_s2;
     odometry.correction_max_m = chain.along->correction_max_m;
@@ -39,13 +40,6 @@ LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const
   stage.settings.apply(stage.parameters, params);
   if (params.flight_arc) odometry.body.emplace().p_IB_I_m = -bridge::lever_arm_I_m(sensors.imus.front());
   return odometry;
-}
-
-/// A sweep's last word takes the place of its first.
-void settle(std::vector<PoseState> smoothed, LidarInertialOdometry::SweepReport& sweep) {
-  if (smoothed.empty()) return;
-  sweep.trajectory = std::move(smoothed);
-  sweep.pose = sweep.trajectory.back();
 }
 
 // sweeps share the IMU time at their border: the later sweep's pose of it is left out
@@ -293,10 +287,11 @@ Estimate begin_with_rates(const sim::Sensors& sensors, std::vector<ImuSample>& s
 
 // what calibrations of a rig that was put together by hand may be off by
 SlamParams with_calibration(SlamParams params) {
-  params.odometry.mount_sigma_rad = 0.01;
-  params.odometry.mount_sigma_m = 0.006;
-  params.odometry.time_offset_sigma_s = 0.003;
-  params.odometry.gravity_sigma_m_s2 = 0.03;
+  const TumblingOdometry::Params door;
+  params.odometry.mount_sigma_rad = door.mount_sigma_rad;
+  params.odometry.mount_sigma_m = door.mount_sigma_m;
+  params.odometry.time_offset_sigma_s = door.time_offset_sigma_s;
+  params.odometry.gravity_sigma_m_s2 = door.expert.mapping.gravity_sigma_m_s2;
   return params;
 }
 
@@ -332,6 +327,12 @@ void run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samp
   if (chain.calibration) report_calibration(odometry, sensors, estimate.health);
   report_end(calibration, report_innovations(estimate), estimate);
   draw_map(odometry, estimate);
+}
+
+void settle(std::vector<PoseState> last_word, LidarInertialOdometry::SweepReport& sweep) {
+  if (last_word.empty()) return;
+  sweep.trajectory = std::move(last_word);
+  sweep.pose = sweep.trajectory.back();
 }
 
 void conclude_sweeps(const LidarInertialOdometry& odometry, Estimate& estimate) {

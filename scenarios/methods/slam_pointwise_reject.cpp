@@ -7,6 +7,7 @@
 #include "scenarios/methods/rigid_chain.hpp"
 #include "scenarios/methods/settings.hpp"
 #include "scenarios/methods/slam_registry.hpp"
+#include "tumble/odometry/imu_sheet.hpp"
 
 namespace tumble::scenarios {
 
@@ -21,7 +22,7 @@ const Settings<baselines::PointwiseFilter::Params>& settings() {
 void run_filter(const sim::Sensors& sensors, std::span<const ImuSample> samples, baselines::PointwiseFilter& filter,
                 Estimate& estimate) {
   const sim::LidarRecord& lidar = sensors.lidars.front();
-  const double rail = bridge::sure_range(sensors.imus.front().stated_accel_range_m_s2);
+  const double rail = sure_range(sensors.imus.front().stated_accel_range_m_s2);
   bool any = false;
   std::size_t next = 0;
   for (std::size_t k = 0; k < bridge::sweep_count(lidar); ++k) {

@@ -37,6 +37,9 @@ Method rig_slam(RigSlam what, RunCore run);
 Estimate begin_with_rates(const sim::Sensors& sensors, std::vector<ImuSample>& samples,
                           const std::function<Status(Estimate&)>& rates);
 
+/// A sweep's last word takes the place of its first.
+void settle(std::vector<PoseState> last_word, LidarInertialOdometry::SweepReport& sweep);
+
 /// Poses, map and verdict of a run whose sweeps and their ends the estimate holds; `too_few` when none was registered.
 void conclude_sweeps(const LidarInertialOdometry& odometry, Estimate& estimate);
 

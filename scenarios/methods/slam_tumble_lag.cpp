@@ -16,28 +16,16 @@ namespace tumble::scenarios {
 namespace {
 
 const Settings<TumblingOdometry::Params>& settings() {
-  // the door's own numbers take the place of these
-  const std::vector<std::string> fixed = {"rate_lever_arm_sigma_m",
-                                          "rate_gyro_noise_density",
-                                          "rate_accel_noise_density",
-                                          "rate_rails_stated_*",
-                                          "rate_period_s",
-                                          "rate_lag_s",
-                                          "rate_evidence_gravity_m_s2",
-                                          "rate_carried_gravity_m_s2",
-                                          "rate_carried_gap_max_s",
-                                          "rate_carried_period_s",
-                                          "rate_carried_lag_s",
-                                          "rate_carried_iterations_max",
-                                          "mapping_mount_sigma_*",
-                                          "mapping_time_offset_sigma_s",
-                                          "mapping_gravity_m_s2",
-                                          "mapping_range_*",
-                                          "mapping_own_body_*"};
   static const Settings<TumblingOdometry::Params> all(
-      TumblingOdometry::Params{}, {.stated = {"imu_*", "lever_arm_x_m", "lever_arm_y_m", "lever_arm_z_m",
-                                              "gravity_m_s2", "mapping_accel_rail_m_s2"},
-                                   .fixed = fixed});
+      TumblingOdometry::Params{},
+      {.stated = {"imu_*", "lever_arm_x_m", "lever_arm_y_m", "lever_arm_z_m", "gravity_m_s2",
+                  "mapping_accel_rail_m_s2"},
+       // the door's own numbers take the place of these
+       .fixed = {"rate_lever_arm_sigma_m", "rate_gyro_noise_density", "rate_accel_noise_density", "rate_rails_stated_*",
+                 "rate_period_s", "rate_lag_s", "rate_evidence_gravity_m_s2", "rate_carried_gravity_m_s2",
+                 "rate_carried_gap_max_s", "rate_carried_period_s", "rate_carried_lag_s", "rate_carried_iterations_max",
+                 "mapping_mount_sigma_*", "mapping_time_offset_sigma_s", "mapping_gravity_m_s2", "mapping_range_*",
+                 "mapping_own_body_*"}});
   return all;
 }
 
@@ -82,22 +70,20 @@ class Listener {
       estimate_.sweep_end_ns.push_back(sweep->report.pose.time_ns);
       std::vector<PoseState> last_word = std::move(sweep->report.smoothed);
       estimate_.sweeps.push_back(std::move(sweep->report));
-      settle(std::move(last_word));
+      settle_next(std::move(last_word));
     }
   }
   /// The run has ended.
   void conclude(const LidarInertialOdometry& mapper) {
-    for (std::vector<PoseState>& open : mapper.open_trajectories()) settle(std::move(open));
+    for (std::vector<PoseState>& open : mapper.open_trajectories()) settle_next(std::move(open));
     if (word_ == Word::live) speak_live();
     conclude_sweeps(mapper, estimate_);
   }
 
  private:
-  void settle(std::vector<PoseState> last_word) {
+  void settle_next(std::vector<PoseState> last_word) {
     if (last_word.empty() || settled_ == estimate_.sweeps.size()) return;
-    LidarInertialOdometry::SweepReport& sweep = estimate_.sweeps[settled_++];
-    sweep.trajectory = std::move(last_word);
-    sweep.pose = sweep.trajectory.back();
+    settle(std::move(last_word), estimate_.sweeps[settled_++]);
   }
 
   /// Of each sweep what was said while it lasted takes the place of what is known of it since. One that had ended

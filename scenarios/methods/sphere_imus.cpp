@@ -12,6 +12,7 @@
 #include "scenarios/methods/rate_baseline.hpp"
 #include "tumble/angular_velocity/clipping_finder.hpp"
 #include "tumble/attitude/imu_merge.hpp"
+#include "tumble/odometry/imu_sheet.hpp"
 
 namespace tumble::scenarios {
 
@@ -219,8 +220,8 @@ Status merge_imus(const sim::Sensors& sensors, MergedImus& out) {
   if (Status status = units_of(sensors, units); !status.ok()) return status;
   out.resampled = units.resampled;
   const sim::ImuRecord& primary = sensors.imus.front();
-  if (primary.stated_gyro_range_rad_s > 0.0) out.gyro_range_rad_s = bridge::sure_range(primary.stated_gyro_range_rad_s);
-  if (primary.stated_accel_range_m_s2 > 0.0) out.accel_range_m_s2 = bridge::sure_range(primary.stated_accel_range_m_s2);
+  if (primary.stated_gyro_range_rad_s > 0.0) out.gyro_range_rad_s = sure_range(primary.stated_gyro_range_rad_s);
+  if (primary.stated_accel_range_m_s2 > 0.0) out.accel_range_m_s2 = sure_range(primary.stated_accel_range_m_s2);
   ImuMerge::Params params;
   params.gap_max_s = bridge::kGapMaxS;
   params.gyro_range_rad_s = out.gyro_range_rad_s;

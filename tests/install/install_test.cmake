@@ -57,6 +57,9 @@ function(consume prefix)
   endif()
 endfunction()
 
+# the folder that is given away alone bears the licence of the whole
+run(passes ${CMAKE_COMMAND} -E compare_files ${SOURCE}/LICENSE ${SOURCE}/estimator/LICENSE)
+
 if(NOT ALONE)
   run(passes ${CMAKE_COMMAND} --install ${BUILD}/estimator --prefix ${WORK}/prefix)
   consume(${WORK}/prefix)
@@ -80,8 +83,8 @@ endif()
 get_filename_component(bin ${CMAKE_COMMAND} DIRECTORY)
 run(passes ${CMAKE_COMMAND} -E chdir ${WORK}/alone ${bin}/cpack)
 file(GLOB packages ${WORK}/alone/libtumble-dev_*.deb)
-run(passes dpkg-deb -x ${packages} ${WORK}/root)
-consume(${WORK}/root/usr)
+run(passes dpkg-deb -x ${packages} ${WORK}/laid_down)
+consume(${WORK}/laid_down/usr)
 
 run(passes ${CMAKE_COMMAND} -E chdir ${WORK}/alone ${bin}/cpack --config CPackSourceConfig.cmake)
 file(GLOB archives ${WORK}/alone/tumble-estimator-*.tar.gz)

@@ -1,7 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/odometry/imu_sheet.hpp"
 
-namespace tumble::sheets {
+#include <limits>
+
+namespace tumble {
+
+double sure_range(double stated_range) {
+  constexpr double kSureShare = 0.98;
+  return stated_range > 0.0 ? kSureShare * stated_range : std::numeric_limits<double>::infinity();
+}
+
+namespace sheets {
 
 ImuSheet mti30() {
   return {.rate_hz = 100.0,
@@ -35,4 +44,6 @@ ImuSheet mpu6050() {
           .accel_noise_m_s2_sqrt_hz = 0.00392266};
 }
 
-}  // namespace tumble::sheets
+}  // namespace sheets
+
+}  // namespace tumble

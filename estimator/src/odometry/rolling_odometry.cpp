@@ -7,11 +7,8 @@ namespace tumble {
 
 namespace {
 
-// Below this share of the stated range a reading is one for sure: a calibration moves a rail by its error of scale.
-constexpr double kSureShare = 0.98;
 constexpr std::size_t kRecoveringUnits = 3;  // so many IMUs tell a rate beyond the range
 constexpr double kRecoveredSigma_rad_s = 1.0;
-constexpr double kLive_s = 0.02;  // lag of the smoother's storage where live poses are all that is asked for
 
 ImuMerge::Params merge_params(const RollingOdometry::Params& params) {
   require_fields(params);
@@ -23,17 +20,15 @@ ImuMerge::Params merge_params(const RollingOdometry::Params& params) {
     require_fields(unit.sheet);
     out.T_CI[k] = unit.T_BI;
     const ImuSheet& sheet = unit.sheet;
-    if (sheet.gyro_range_rad_s > 0.0)
-      out.gyro_range_rad_s = std::min(out.gyro_range_rad_s, kSureShare * sheet.gyro_range_rad_s);
-    if (sheet.accel_range_m_s2 > 0.0)
-      out.accel_range_m_s2 = std::min(out.accel_range_m_s2, kSureShare * sheet.accel_range_m_s2);
+    out.gyro_range_rad_s = std::min(out.gyro_range_rad_s, sure_range(sheet.gyro_range_rad_s));
+    out.accel_range_m_s2 = std::min(out.accel_range_m_s2, sure_range(sheet.accel_range_m_s2));
   }
   return out;
 }
 
-RollingSmoother::Params rolling_params(const RollingOdometry::Params& params, const ImuMerge& merge) {
+RollingSmoother::Params rolling_params(const RollingOdometry::Params& params, const ImuMerge::Params& merged,
+                                       const ImuMerge& merge) {
   RollingSmoother::Params out = params.expert.rolling;
-  const ImuMerge::Params merged = merge_params(params);
   out.filter.radius_m = params.radius_m;
   out.filter.gravity_m_s2 = params.gravity_m_s2;
   out.filter.lever_arm_m = merge.p_C_m();
@@ -41,7 +36,7 @@ RollingSmoother::Params rolling_params(const RollingOdometry::Params& params, co
   out.filter.gyro_range_rad_s = merged.gyro_range_rad_s;
   out.filter.accel_range_m_s2 = merged.accel_range_m_s2;
   if (params.units.size() >= kRecoveringUnits) out.filter.recovered_rate_sigma_rad_s = kRecoveredSigma_rad_s;
-  out.lag_s = std::max(params.lag_s, kLive_s);
+  out.lag_s = std::max(params.lag_s, out.filter.node_s);
   out.rate_max_hz = std::max(out.rate_max_hz, 1.1 * params.units.front().sheet.rate_hz);
   return out;
 }
@@ -70,9 +65,11 @@ RollingEstimate live_estimate(const RollingFilter::State& live) {
 
 }  // namespace
 
-RollingOdometry::RollingOdometry(const Params& params)
-    : merge_(merge_params(params)),
-      smoother_(rolling_params(params, merge_)),
+RollingOdometry::RollingOdometry(const Params& params) : RollingOdometry(params, merge_params(params)) {}
+
+RollingOdometry::RollingOdometry(const Params& params, const ImuMerge::Params& merged)
+    : merge_(merged),
+      smoother_(rolling_params(params, merged, merge_)),
       merge_state_(std::make_unique<ImuMerge::State>()),
       state_(std::make_unique<RollingSmoother::State>()),
       live_(params.lag_s <= 0.0) {}
@@ -97,9 +94,7 @@ Status RollingOdometry::add_imus(std::span<const ImuSample> samples) {
   ImuMerge::State next = *merge_state_;  // both take the sample, or none
   if (Status status = merge_.step(samples, next, merged); !status.ok()) return status;
   if (merged) {
-    const std::size_t before = done_.size();
-    if (Status status = smoother_.step(*merged, *state_, done_); !status.ok()) return status;
-    gather(before);
+    if (Status status = take_in(*merged); !status.ok()) return status;
   }
   *merge_state_ = next;
   return {};
@@ -131,11 +126,11 @@ void RollingOdometry::reset() {
   finished_ = false;
 }
 
-// Without a lag the live pose takes the place of what the smoother gave out since.
-void RollingOdometry::gather(std::size_t before) {
-  if (!live_) return;
-  done_.resize(before);
+Status RollingOdometry::take_in(const ImuSample& merged) {
+  if (!live_) return smoother_.step(merged, *state_, done_);
+  if (Status status = smoother_.filter().step(merged, state_->live); !status.ok()) return status;
   done_.push_back(live_estimate(state_->live));
+  return {};
 }
 
 }  // namespace tumble

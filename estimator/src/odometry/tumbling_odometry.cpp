@@ -12,8 +12,6 @@ namespace tumble {
 
 namespace {
 
-// Below this share of the stated range a reading is one for sure: a calibration moves a rail by its error of scale.
-constexpr double kSureShare = 0.98;
 // Of the horizontal part of gravity: what the levelling leaves, and a world that is not quite level.
 constexpr double kGravitySigma_m_s2 = 0.03;
 
@@ -44,7 +42,7 @@ LidarInertialOdometry::Params mapper_params(const TumblingOdometry::Params& para
   out.range_min_m = params.range_min_m;
   out.range_max_m = params.range_max_m;
   out.own_body_L = params.own_body_L;
-  if (params.imu.accel_range_m_s2 > 0.0) out.accel_rail_m_s2 = kSureShare * params.imu.accel_range_m_s2;
+  if (params.imu.accel_range_m_s2 > 0.0) out.accel_rail_m_s2 = sure_range(params.imu.accel_range_m_s2);
   return out;
 }
 
@@ -221,15 +219,11 @@ void TumblingOdometry::register_covered() {
   }
 }
 
-void TumblingOdometry::settle_all() {
+void TumblingOdometry::begin_anew() {
   std::vector<RateState> rates;
   rates_.flush(rate_state_, rates);
   for (const RateState& rate : rates) settle(rate);
   register_covered();
-}
-
-void TumblingOdometry::begin_anew() {
-  settle_all();
   RegimeStream::Params params = rate_params(params_);
   params.rate.model.calibration = rig();
   try {

@@ -26,6 +26,10 @@ struct ImuSheet {
   }
 };
 
+/// Below this a reading is one for sure, given the range that the device states; infinite where it states none (0). A
+/// calibration moves a rail by its error of scale, which 2 % leaves room for.
+double sure_range(double stated_range);
+
 /// Sheets of devices that the harness has models of, with the sources of each number: models/sensors/NAME.yaml.
 namespace sheets {
 

@@ -95,7 +95,9 @@ class RollingOdometry {
   const ImuMerge::State& units() const { return *merge_state_; }
 
  private:
-  void gather(std::size_t before);
+  RollingOdometry(const Params& params, const ImuMerge::Params& merged);
+
+  Status take_in(const ImuSample& merged);
 
   ImuMerge merge_;
   RollingSmoother smoother_;

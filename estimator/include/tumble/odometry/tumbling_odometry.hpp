@@ -138,7 +138,6 @@ class TumblingOdometry {
   void settle(const RateState& rate);
   void register_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
   void register_covered();
-  void settle_all();
   void begin_anew();
 
   Params params_;

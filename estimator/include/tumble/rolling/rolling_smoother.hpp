@@ -112,6 +112,9 @@ class RollingSmoother {
 
   explicit RollingSmoother(const Params& params);
 
+  /// What works on State::live: by itself where live poses are all that is asked for.
+  const RollingFilter& filter() const { return filter_; }
+
   /// Takes a sample; appends estimates that are old enough to `out`, if any. On trouble the state is unchanged. Storage
   /// for the lag is set aside with the first sample; no allocation later but by `out` and the work of a block, and,
   /// beyond rate_max_hz or with kWholeRun, as the run grows (64 bytes per sample, 152 per node). The work of a block is
