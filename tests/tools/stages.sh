@@ -50,4 +50,4 @@ jobs=$(nproc)
 expect 'what was asked of CTest and the linter' "$(grep -E '^(bin/ctest|tools/lint)' "$scratch/called")" "$(lines \
   "bin/ctest --preset release -j $jobs -LE bench|soak|threads|fuzz" "bin/ctest --preset release -j $jobs -L soak" \
   "bin/ctest --preset sanitize -j $jobs -L ^(fast|sim|methods)\$" "bin/ctest --preset threads -j $jobs -L threads" \
-  "bin/ctest --preset fuzz -j $jobs -L fuzz" 'tools/lint --all' "bin/ctest --preset release -j $jobs -L bench -j 1")"
+  "bin/ctest --preset sanitize -j $jobs -L fuzz" 'tools/lint --all' "bin/ctest --preset release -j $jobs -L bench -j 1")"
