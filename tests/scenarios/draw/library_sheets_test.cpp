@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The library's own sheets of devices say what models/sensors says, where each number has its source.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+
+#include "scenarios/draw/data_sheet.hpp"
+#include "tests/tree.hpp"
+#include "tumble/odometry/imu_sheet.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+/// Holds each number of a library's sheet to the device's of that name.
+class Compare {
+ public:
+  explicit Compare(sim::Values device) : device_(std::move(device)) {}
+  void operator()(double value, const Field& field) {
+    const std::string name = std::string(field.name) == "rate_hz" ? "output_rate_hz" : field.name;
+    ASSERT_TRUE(device_.has(name)) << name;
+    different_ += value != device_.at(name);
+    ++count_;
+  }
+  int count() const { return count_; }
+  int different() const { return different_; }
+
+ private:
+  sim::Values device_;
+  int count_ = 0, different_ = 0;
+};
+
+template <class Sheet>
+Compare compare(const Sheet& sheet, const std::string& device) {
+  Compare out(load_data_sheet(DataRoot{test::source_dir()}, device).values());
+  Sheet::fields(sheet, out);
+  return out;
+}
+
+TEST(LibrarySheets, AreThoseOfTheModels) {
+  for (const auto& [sheet, device] : {std::pair{sheets::mti30(), "mti30"},
+                                      {sheets::vn100(), "vn100"},
+                                      {sheets::phidget1044(), "phidget1044"},
+                                      {sheets::mpu6050(), "mpu6050"}}) {
+    const Compare found = compare(sheet, device);
+    EXPECT_EQ(found.count(), 5) << device;
+    EXPECT_EQ(found.different(), 0) << device;
+  }
+}
+
+// negative control
+TEST(LibrarySheets, AnotherNumberIsTold) {
+  ImuSheet sheet = sheets::mti30();
+  sheet.accel_range_m_s2 = 147.1;
+  EXPECT_EQ(compare(sheet, "mti30").different(), 1);
+}
+
+}  // namespace
+}  // namespace tumble::scenarios
