@@ -31,7 +31,8 @@ ClippedElements find_clipped(const sim::ImuRecord& record, std::span<const ImuSa
   return out;
 }
 
-Status run_carried(const sim::Sensors& sensors, const sim::Values& parameters, std::vector<RateState>& rates,
+Status run_carried(const sim::Sensors& sensors, const sim::Values& parameters,
+                   std::span<const std::uint8_t> doubted_axes, std::vector<RateState>& rates,
                    std::vector<AttitudeState>& attitudes, std::map<std::string, double>& health) {
   std::vector<ImuSample> samples;
   if (const Status status = bridge::primary_imu_samples(sensors, samples); !status.ok()) return status;
@@ -40,6 +41,12 @@ Status run_carried(const sim::Sensors& sensors, const sim::Values& parameters, s
   carried_settings().apply(parameters, params);
   std::vector<ClipSigns> signs;
   const ClippedElements clipped = find_clipped(sensors.imus.front(), samples, signs);
+  for (std::size_t k = 0; k < doubted_axes.size(); ++k) {
+    for (int j = 0; j < 3; ++j) {
+      std::int8_t& sign = signs[k].gyro[static_cast<std::size_t>(j)];
+      if ((doubted_axes[k] >> j & 1u) != 0 && sign == 0) sign = samples[k].angular_velocity_rad_s[j] < 0.0 ? -1 : 1;
+    }
+  }
   CarriedSmoother::Report report;
   const Status status = CarriedSmoother(params).estimate(samples, clipped, rates, attitudes, report);
   if (!status.ok()) return status;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <span>
 #include <string>
@@ -23,8 +24,11 @@ const Settings<CarriedSmoother::Params>& carried_settings();
 ClippedElements find_clipped(const sim::ImuRecord& record, std::span<const ImuSample> samples,
                              std::vector<ClipSigns>& signs);
 
-/// Runs the smoother over the primary IMU. Trouble: that of the record and of the smoother; the outputs are then empty.
-Status run_carried(const sim::Sensors& sensors, const sim::Values& parameters, std::vector<RateState>& rates,
+/// Runs the smoother over the primary IMU. `doubted_axes`: of each sample the axes whose readings may stand at a rail
+/// that was not seen, which are bounds then, or none. Trouble: that of the record and of the smoother; the outputs are
+/// then empty.
+Status run_carried(const sim::Sensors& sensors, const sim::Values& parameters,
+                   std::span<const std::uint8_t> doubted_axes, std::vector<RateState>& rates,
                    std::vector<AttitudeState>& attitudes, std::map<std::string, double>& health);
 
 }  // namespace tumble::scenarios

@@ -14,20 +14,20 @@ namespace {
 constexpr double kMatters = 0.02;  // a share of the carried body below this changes nothing worth a run
 constexpr double kNear_s = 0.1;    // clipped samples so close belong to one stretch, and what is so close about it
 
-/// Probability that the body was carried throughout the stretch of clipped samples that a sample lies in or near to; 0
-/// away from all. Where a stretch begins in a hand and ends in flight, the flight tells its rate.
+/// Probability that the body was carried throughout the stretch of clipped or doubted samples that a sample lies in or
+/// near to; 0 away from all. Where a stretch begins in a hand and ends in flight, the flight tells its rate.
 std::vector<double> carried_stretches(std::span<const RegimeShares> shares, std::span<const RateState> rates) {
   std::vector<double> out(rates.size(), 0.0);
   const TimeNs near_ns = static_cast<TimeNs>(1e9 * kNear_s);
   for (std::size_t k = 0; k < rates.size();) {
-    if (rates[k].clipped_axes == 0) {
+    if (rates[k].source == RateSource::measured) {
       ++k;
       continue;
     }
     std::size_t first = k, last = k;
     double least = 1.0;
     for (; k < rates.size() && rates[k].time_ns <= rates[last].time_ns + near_ns; ++k)
-      if (rates[k].clipped_axes != 0) last = k;
+      if (rates[k].source != RateSource::measured) last = k;
     for (std::size_t i = first; i <= last; ++i) least = std::min(least, shares[i].carried);
     const TimeNs from_ns = rates[first].time_ns - near_ns, to_ns = rates[last].time_ns + near_ns;
     while (first > 0 && rates[first - 1].time_ns >= from_ns) --first;
@@ -68,11 +68,15 @@ void join_regimes(const sim::Sensors& sensors, std::span<const ImuSample> sample
   std::map<std::string, double> of_carried;
   const SettingsTable* const stages[] = {&carried_settings()};
   const sim::Values parameters = resolve_settings("rate/carried", {}, stages);
-  if (!run_carried(sensors, parameters, other, attitudes, of_carried).ok()) return;
+  if (!run_carried(sensors, parameters, report.doubted_axes, other, attitudes, of_carried).ok()) return;
   health["regime_carried_asked"] = 1.0;
   for (const auto& [name, value] : of_carried) health["carried_" + name] = value;
   for (std::size_t k = 0; k < rates.size(); ++k) {
-    if (by_stretch[k] > kMatters) rates[k] = either(rates[k], other[k], by_stretch[k]);
+    if (by_stretch[k] <= kMatters) continue;
+    const bool only_doubted = rates[k].clipped_axes == 0 && rates[k].source != RateSource::measured;
+    rates[k] = either(rates[k], other[k], by_stretch[k]);
+    // no clipping was found there, whoever holds the body
+    if (only_doubted) rates[k].clipped_axes = 0, rates[k].source = RateSource::bounded_only;
   }
 }
 

@@ -208,6 +208,7 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
     state.source = rate_source(observations[k], estimate, state.covariance_rad2_s2, params_.recovered_sigma_rad_s);
     count(state, health);
     health.void_readings += clippings[k].void_gyro != 0;
+    health.doubted_axes.push_back(static_cast<std::uint8_t>(observations[k].may_hide() & ~state.clipped_axes));
     in_flight += estimate.flight_weight >= 0.5;
   }
   health.flight_share = static_cast<double>(in_flight) / static_cast<double>(samples.size());

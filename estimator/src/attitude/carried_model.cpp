@@ -97,12 +97,12 @@ double add_free(const ElementSums& e, const GyroRows& rows, double information, 
 }
 
 // carried.md (C12)
-double add_bound(const ElementSums& e, const GyroRows& rows, double sigma, System::Block& block,
+double add_bound(const ElementSums& e, const GyroRows& rows, double sigma, double share, System::Block& block,
                  System::Corner& corner) {
   const GyroRow row = rows.value + e.clipped_t_s * rows.slope;
   const double u = e.sign * (rows.predicted + e.clipped_t_s * rows.predicted_slope - e.rail) / sigma;
   const double h = hazard(u);
-  add_gyro_row(row, rows.border, h * (h + u) / (sigma * sigma), -e.sign * h / sigma, block, corner);
+  add_gyro_row(row, rows.border, share * h * (h + u) / (sigma * sigma), -e.sign * h / sigma, block, corner);
   return minus_two_log_phi(u);
 }
 
@@ -154,7 +154,7 @@ double add_gyro(const NodeReadings& readings, const Matrix3d& rows, const Readin
                 const Constants& constants, System::Block& block, System::Corner& corner) {
   std::array<GyroRows, 3> elements;
   for (int i = 0; i < 3; ++i) elements[static_cast<std::size_t>(i)] = gyro_rows(rows.row(i), node, constants);
-  const double variance = noise.gyro_rad_s * noise.gyro_rad_s;
+  const double variance = noise.gyro_rad_s * noise.gyro_rad_s + noise.window_rad_s * noise.window_rad_s;
   double cost = 0.0;
   for (int i = 0; i < 3; ++i) {
     const ElementSums& e = readings.gyro[static_cast<std::size_t>(i)];
@@ -162,11 +162,11 @@ double add_gyro(const NodeReadings& readings, const Matrix3d& rows, const Readin
     if (e.n > 0.0) {
       // the same error in each reading of the node, so that their number does not make it smaller
       const double tilt = noise.tilt_share * excess(readings, elements, i);
-      cost += add_free(e, element, 1.0 / (variance + e.n * tilt * tilt), block, corner);
+      cost += add_free(e, element, 1.0 / (variance + e.n * (tilt * tilt + e.open * e.open)), block, corner);
     }
     if (e.clipped > 0.0) {
       const double sigma = std::sqrt(variance / e.clipped + noise.rail_rad_s * noise.rail_rad_s);
-      cost += add_bound(e, element, sigma, block, corner);
+      cost += add_bound(e, element, sigma, noise.bound, block, corner);
     }
   }
   return cost;
@@ -194,7 +194,8 @@ double add_force(const NodeReadings& readings, const Vector3d& g_W_m_s2, const R
   B.block<3, 3>(0, kLever) = hat(alpha) + hat(w) * hat(w);
 
   const double share = noise.accel_share * (readings.force_m_s2.norm() - g_W_m_s2.norm());
-  const double variance = noise.accel_m_s2 * noise.accel_m_s2 / readings.force_n + share * share;
+  const double variance = noise.accel_m_s2 * noise.accel_m_s2 / readings.force_n + share * share +
+                          readings.force_open_m_s2 * readings.force_open_m_s2;
   double cost = 0.0;
   Vector3d weight, slope;
   for (int i = 0; i < 3; ++i) {
@@ -261,7 +262,8 @@ Motion::Motion(const Params& params) : params_(params) {
 }
 
 // carried.md (C4), (C5)
-double Motion::add_attitude(const Node& from, const Node& to, System::Block& block, System::Block& next) const {
+double Motion::add_attitude(const Node& from, const Node& to, double jerk, System::Block& block,
+                            System::Block& next) const {
   const double h = params_.step_s;
   const Vector3d omega = turned(from, to, h);
   const Eigen::Quaterniond step = so3::exp(omega);
@@ -277,7 +279,7 @@ double Motion::add_attitude(const Node& from, const Node& to, System::Block& blo
   J1.middleCols<3>(kRate) = by_omega * (0.5 * h * Matrix3d::Identity() + h * h / 12.0 * hat(from.w_WI_I_rad_s));
   J1.middleCols<3>(kAngular) = -h * h / 12.0 * by_omega;
   const double error_2 = params_.turn_error_sqrts * params_.turn_error_sqrts * omega.squaredNorm() / h;
-  const double w = 1.0 / (phi_variance_ + error_2);
+  const double w = 1.0 / (jerk * jerk * phi_variance_ + error_2);
   block.diagonal.topLeftCorner<9, 9>().noalias() += w * J0.transpose() * J0;
   block.coupling.topLeftCorner<9, 9>().noalias() += w * J0.transpose() * J1;
   next.diagonal.topLeftCorner<9, 9>().noalias() += w * J1.transpose() * J1;
@@ -287,12 +289,12 @@ double Motion::add_attitude(const Node& from, const Node& to, System::Block& blo
 }
 
 // carried.md (C2), (C4), (C6), (C7), (C8)
-double Motion::add_step(const Node& from, const Node& to, double hand, System::Block& block,
-                        System::Block& next) const {
-  double cost = add_attitude(from, to, block, next);
+double Motion::add_step(const Node& from, const Node& to, double hand, System::Block& block, System::Block& next,
+                        double jerk) const {
+  double cost = add_attitude(from, to, jerk, block, next);
   Eigen::Matrix<double, 3, 4> turn;
   turn << from.w_WI_I_rad_s, from.angular_acceleration_rad_s2, to.w_WI_I_rad_s, to.angular_acceleration_rad_s2;
-  cost += add_chain<2>(jerk_, 1.0, kRate, turn, block, next);
+  cost += add_chain<2>(jerk_, 1.0 / (jerk * jerk), kRate, turn, block, next);
   Eigen::Matrix<double, 3, 6> way;
   way << from.a_W_m_s2, from.v_W_m_s, from.p_W_m, to.a_W_m_s2, to.v_W_m_s, to.p_W_m;
   cost += add_chain<3>(hand_, 1.0 / hand, kHand, way, block, next);

@@ -40,14 +40,14 @@ Problem::Problem(const Problem& whole, const Part& part)
     : params_(whole.params_),
       rows_(whole.rows_),
       readings_(whole.readings_.subspan(part.first, part.last - part.first + 1)),
-      motion_(whole.nominal_),
-      nominal_(whole.nominal_),
+      motion_(whole.motion_),
       noise_(whole.noise_),
       g_W_m_s2_(whole.g_W_m_s2_),
       part_(part),
       nodes_(whole.nodes_.begin() + static_cast<std::ptrdiff_t>(part.first),
              whole.nodes_.begin() + static_cast<std::ptrdiff_t>(part.last + 1)),
       constants_(whole.constants_),
+      jerk_(nodes_.size(), 1.0),
       hand_(whole.hand_.begin() + static_cast<std::ptrdiff_t>(part.first),
             whole.hand_.begin() + static_cast<std::ptrdiff_t>(part.last + 1)),
       blocks_(nodes_.size()) {}
@@ -64,7 +64,7 @@ bool Problem::tell(std::span<Part> parts) const {
     if (i + 1 == nodes_.size()) break;
     next = {};
     add_node(i, here, unused);
-    nominal_.add_step(nodes_[i], nodes_[i + 1], hand_[i], here, next);
+    motion_.add_step(nodes_[i], nodes_[i + 1], hand_[i], here, next);
     if (!System::eliminate(here, &next, unused)) return false;
     here = next;
     here.border.setZero();
@@ -77,7 +77,7 @@ bool Problem::tell(std::span<Part> parts) const {
     if (i == 0) break;
     System::Block before;
     add_node(i, here, unused);
-    nominal_.add_step(nodes_[i - 1], nodes_[i], hand_[i - 1], before, here);
+    motion_.add_step(nodes_[i - 1], nodes_[i], hand_[i - 1], before, here);
     const Eigen::LLT<System::StateMatrix> factor(here.diagonal);
     if (factor.info() != Eigen::Success) return false;
     const System::StateMatrix by = before.coupling * factor.solve(System::StateMatrix::Identity());

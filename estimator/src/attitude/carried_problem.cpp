@@ -47,16 +47,31 @@ ReadingNoise reading_noise(const CarriedSmoother::Params& p, double period_s) {
   return out;
 }
 
-Problem::Problem(const CarriedSmoother::Params& params, const Eigen::Matrix3d& rows, double period_s,
-                 std::span<const NodeReadings> readings, std::vector<Node> nodes)
+namespace {
+
+// What the covariance counts besides: a bound tells nothing of how far beyond it a rate lies, and the mean over a
+// window P is not the rate at its centre; white jerk of the density q parts them by the variance q P^3/320, carried.md
+// (C38).
+ReadingNoise stated_noise(const CarriedSmoother::Params& params, ReadingNoise noise, double period_s) {
+  noise.bound = 0.0;
+  noise.window_rad_s = params.jerk_rad_s3_sqrts * std::sqrt(period_s * period_s * period_s / 320.0);
+  return noise;
+}
+
+}  // namespace
+
+Problem::Problem(const CarriedSmoother::Params& params, const Eigen::Matrix3d& rows, const Collected& collected,
+                 std::vector<Node> nodes)
     : params_(params),
       rows_(rows),
-      readings_(readings),
+      readings_(collected.nodes),
+      jerk_seen_(collected.jerk),
       motion_(motion_params(params)),
-      nominal_(motion_),
-      noise_(reading_noise(params, period_s)),
+      period_s_(collected.rates.windows.period_s),
+      noise_(reading_noise(params, period_s_)),
       g_W_m_s2_(0.0, 0.0, -params.gravity_m_s2),
       nodes_(std::move(nodes)),
+      jerk_(nodes_.size(), 1.0),
       hand_(nodes_.size(), 1.0),
       hand_power_(nodes_.size() + 1, 0.0),
       blocks_(nodes_.size()) {}
@@ -87,7 +102,9 @@ double add_constants_prior(const CarriedSmoother::Params& params, const Constant
 }
 
 double Problem::add_node(std::size_t i, System::Block& block, System::Corner& corner) const {
-  return carried::add_node(readings_[i], rows_, noise_, g_W_m_s2_, nominal_, nodes_[i], constants_, block, corner);
+  ReadingNoise noise = noise_;
+  noise.window_rad_s *= jerk_[i];
+  return carried::add_node(readings_[i], rows_, noise, g_W_m_s2_, motion_, nodes_[i], constants_, block, corner);
 }
 
 double Problem::linearise() {
@@ -98,7 +115,8 @@ double Problem::linearise() {
             : motion_.add_first(nodes_[0], blocks_[0]);
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     cost += add_node(i, blocks_[i], corner_);
-    if (i + 1 < nodes_.size()) cost += motion_.add_step(nodes_[i], nodes_[i + 1], hand_[i], blocks_[i], blocks_[i + 1]);
+    if (i + 1 < nodes_.size())
+      cost += motion_.add_step(nodes_[i], nodes_[i + 1], hand_[i], blocks_[i], blocks_[i + 1], jerk_[i]);
   }
   if (part_) {
     corner_ = {};
@@ -171,7 +189,6 @@ void Problem::restore(Answer answer) {
 
 // carried.md (C16), (C34)
 Status Problem::solve(CarriedSmoother::Report& report) {
-  motion_ = nominal_;
   std::optional<Place> before;  // the last step
   report.converged = false;
   for (int k = 0; k < params_.iterations_max; ++k) {
@@ -215,10 +232,14 @@ bool Problem::descend_from(const Place& before, double& cost) {
   return false;
 }
 
-// carried.md (C17), (C18), of the jerk of (C19)
+// carried.md (C17), (C18), of the jerk of (C19) and with bounds that tell nothing of how far beyond them a rate lies
 Status Problem::covariances(CarriedSmoother::Report& report) {
-  motion_ = Motion(motion_params(params_, params_.jerk_doubt));
+  for (std::size_t i = 0; i < jerk_.size(); ++i)
+    jerk_[i] = std::max(params_.jerk_doubt, jerk_seen_[i] / params_.jerk_rad_s3_sqrts);
+  const ReadingNoise assumed = std::exchange(noise_, stated_noise(params_, noise_, period_s_));
   (void)linearise();
+  noise_ = assumed;
+  std::fill(jerk_.begin(), jerk_.end(), 1.0);
   System::BorderVector unused;
   if (!eliminate(unused)) return {kLost, "covariance of the carried body", report.cost, 0.0};
   report.constants_covariance = constants_covariance_;

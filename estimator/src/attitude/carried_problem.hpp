@@ -9,13 +9,35 @@
 
 namespace tumble::carried {
 
-/// Node and offset from it of each sample's window, and what the samples about each node say.
-struct Collected {
+/// Where windows lie on the line of the nodes, which begins at the centre of the first sample's window.
+struct Windows {
   double period_s = 0.0;             ///< median
-  std::vector<double> centre_s;      ///< of each sample's window, from the first one's
-  std::vector<double> end_s;         ///< of each sample's window: its time stamp, from the first window's centre
-  std::vector<std::size_t> node_of;  ///< the nearest to each sample's centre
-  std::vector<NodeReadings> nodes;   ///< at equal times from the first sample's centre
+  std::vector<double> centre_s;      ///< of each window
+  std::vector<double> end_s;         ///< of each window: its time stamp
+  std::vector<std::size_t> node_of;  ///< the nearest to each centre
+};
+
+/// The readings of one triad, each once and at its own time: one that is slower than the log repeats itself.
+struct OwnReadings {
+  std::vector<ImuSample> samples;  ///< stamped at the end of their windows
+  std::vector<ClipSigns> signs;    ///< one per sample
+  Windows windows;
+  std::vector<std::size_t> of_sample;  ///< of each sample of the IMU, the reading that it says, anew or again
+};
+
+/// Those of the gyro, and what a window lost that met the rail in a part of its length.
+struct GyroReadings : OwnReadings {
+  /// Deviation of what a window lost of each element's reading, which stands in the readings; 0: the reading is whole.
+  std::vector<Eigen::Vector3d> open_rad_s;
+};
+
+/// What the readings about each node say, and where the samples lie among the nodes.
+struct Collected {
+  Windows samples;
+  GyroReadings rates;
+  std::vector<NodeReadings> nodes;  ///< at equal times from the first sample's centre
+  /// Root density of the angular jerk that the free readings about each node show [rad/s^3 sqrt(s)]; 0: none is there.
+  std::vector<double> jerk;
 };
 
 /// Sums the readings by node. O(N).
@@ -34,9 +56,13 @@ inline constexpr int kFreeNodes = 5;
 /// Whether an element of the gyro is not read, in a part of the node's time or in all of it.
 bool clips(const NodeReadings& readings);
 
-/// Adds one sample's reading, `t` seconds from the node.
+/// Adds one sample's readings, `t` seconds from the node: of both triads, of one; `open_rad_s`: more deviation of each
+/// element's.
 void add_reading(const ImuSample& sample, const Eigen::Matrix3d& rows, const ClipSigns& signs, double t,
                  NodeReadings& node);
+void add_rate(const ImuSample& sample, const Eigen::Matrix3d& rows, const ClipSigns& signs, double t,
+              const Eigen::Vector3d& open_rad_s, NodeReadings& node);
+void add_force(const ImuSample& sample, const ClipSigns& signs, double t, NodeReadings& node);
 
 /// What the factors of the motion and of the readings are weighed with; `jerk`: its root density counts so many times.
 Motion::Params motion_params(const CarriedSmoother::Params& params, double jerk = 1.0);
@@ -51,8 +77,8 @@ double add_constants_prior(const CarriedSmoother::Params& params, const Constant
 System::StateVector moved(const Node& from, const Node& to);
 
 /// Attitude and rates of the nodes by a filter (VQF) on the filled rates; the hand's acceleration is what is left.
-Status start_nodes(const CarriedSmoother::Params& params, std::span<const ImuSample> samples,
-                   const ClippedElements& clipped, const Collected& collected, std::vector<Node>& nodes);
+Status start_nodes(const CarriedSmoother::Params& params, const Eigen::Matrix3d& rows, const Collected& collected,
+                   std::vector<Node>& nodes);
 
 /// What all that lies on one side of a node says of it: a quadratic about the node as it stood.
 struct Message {
@@ -71,8 +97,8 @@ struct Part {
 /// The normal equations of one recording and their solution.
 class Problem {
  public:
-  Problem(const CarriedSmoother::Params& params, const Eigen::Matrix3d& rows, double period_s,
-          std::span<const NodeReadings> readings, std::vector<Node> nodes);
+  Problem(const CarriedSmoother::Params& params, const Eigen::Matrix3d& rows, const Collected& collected,
+          std::vector<Node> nodes);
   /// A part of another one alone, `part.before` and `after` filled by tell(). The constants and how lively the hand is
   /// stay as they are there.
   Problem(const Problem& whole, const Part& part);
@@ -131,12 +157,15 @@ class Problem {
   CarriedSmoother::Params params_;
   Eigen::Matrix3d rows_;
   std::span<const NodeReadings> readings_;
-  Motion motion_, nominal_;  // as the equations stand, and of the jerk that is assumed
+  std::span<const double> jerk_seen_;  // of Collected
+  Motion motion_;
+  double period_s_ = 0.0;  // of the gyro's own readings
   ReadingNoise noise_;
   Eigen::Vector3d g_W_m_s2_;
   std::optional<Part> part_;  // of another problem; the constants stay then
   std::vector<Node> nodes_;
   Constants constants_;
+  std::vector<double> jerk_;        // what the root density of the jerk is multiplied with, per node
   std::vector<double> hand_;        // what the density of the hand's acceleration is multiplied with, per step
   std::vector<double> hand_power_;  // running sum of its square
   std::vector<System::Block> blocks_;

@@ -6,6 +6,8 @@
 
 #include "carried_problem.hpp"
 #include "tumble/angular_velocity/clipping_finder.hpp"
+#include "tumble/angular_velocity/partial_clipping.hpp"
+#include "tumble/angular_velocity/sample_hold.hpp"
 #include "tumble/attitude/vqf.hpp"
 
 namespace tumble {
@@ -40,6 +42,20 @@ namespace {
 
 double since_s(std::span<const ImuSample> samples, std::size_t from, std::size_t to) {
   return seconds(samples[to].time_ns - samples[from].time_ns);
+}
+
+constexpr double kLongest = 1.5;  // periods: the longest window
+constexpr double kSteady = 0.9;   // agreement of a steady clock from which on repeated readings are believed to be held
+// Of the period: deviation of a centre that lies evenly between the window's end and its middle, 1/(4 sqrt(3)).
+constexpr double kOpenShare = 0.144;
+// Nodes: longer windows may have met the rail in a part. Measured: those of 20 ms of the pendulums did, of the wand's,
+// of 10 ms, none does that shows.
+constexpr double kLongWindow = 1.5;
+// Of q P^3: the variance of a second difference; and the reach of what is seen so, in periods.
+constexpr double kSecondDifference = 11.0 / 20.0, kJerkReach = 1.5;
+
+TimeNs nanoseconds(double s) {
+  return static_cast<TimeNs>(std::llround(1e9 * s));
 }
 
 double median_period_s(std::span<const ImuSample> samples, double otherwise_s) {
@@ -116,6 +132,125 @@ HiddenStretch hidden_stretch(std::span<const ClipSigns> signs, std::size_t eleme
   return out;
 }
 
+// Ends and centres of the windows of readings that come every `period_s`; one after a drop-out is as long as any other.
+Windows windows_of(std::span<const ImuSample> samples, TimeNs origin_ns, double period_s) {
+  Windows out;
+  out.period_s = period_s;
+  out.centre_s.resize(samples.size());
+  out.end_s.resize(samples.size());
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const double window = k == 0 ? period_s : std::min(since_s(samples, k - 1, k), kLongest * period_s);
+    out.end_s[k] = seconds(samples[k].time_ns - origin_ns);
+    out.centre_s[k] = out.end_s[k] - 0.5 * window;
+  }
+  return out;
+}
+
+void place(double node_s, std::size_t nodes, Windows& windows) {
+  windows.node_of.resize(windows.centre_s.size());
+  for (std::size_t k = 0; k < windows.node_of.size(); ++k) {
+    const auto node = static_cast<std::size_t>(std::llround(std::max(0.0, windows.centre_s[k]) / node_s));
+    windows.node_of[k] = std::min(node, nodes - 1);
+  }
+}
+
+// An accelerometer that is slower than the log may filter for its whole period or read at once: centres move to the
+// middle of that, and what is open of them makes of the force what it changes by: carried.md (C36)
+std::vector<double> open_forces(OwnReadings& forces, double log_period_s) {
+  const std::vector<ImuSample>& samples = forces.samples;
+  std::vector<double> out(samples.size(), 0.0);
+  if (!(forces.windows.period_s > log_period_s)) return out;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    forces.windows.centre_s[k] += 0.25 * forces.windows.period_s;
+    const std::size_t a = k == 0 ? 0 : k - 1, b = std::min(k + 1, samples.size() - 1);
+    const Vector3d change = samples[b].specific_force_m_s2 - samples[a].specific_force_m_s2;
+    if (b > a) out[k] = kOpenShare * change.norm() / static_cast<double>(b - a);
+  }
+  return out;
+}
+
+// The free reading beside a clipped one whose window met the rail as well: what it lost by rails.md (R69) to (R73) is
+// given back.
+void whole_windows(double noise_rad_s, const Eigen::Matrix3d& rows, GyroReadings& rates) {
+  const std::size_t count = rates.samples.size();
+  const auto along = [&](std::size_t k, Eigen::Index j) {
+    return rows.row(j).dot(rates.samples[k].angular_velocity_rad_s);
+  };
+  const Eigen::Matrix3d inverse = rows.inverse();
+  std::vector<Vector3d> lost(count, Vector3d::Zero());
+  for (std::size_t k = 1; k + 1 < count; ++k) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      const int before = rates.signs[k - 1].gyro[j], after = rates.signs[k + 1].gyro[j];
+      const bool at_edge = rates.signs[k].gyro[j] == 0 && (before == 0) != (after == 0);
+      const int sign = before + after;
+      if (!at_edge || sign == ClipSigns::kVoid) continue;
+      const std::size_t inside = before != 0 ? k - 1 : k + 1, outside = before != 0 ? k + 1 : k - 1;
+      const auto axis = static_cast<Eigen::Index>(j);
+      const PartialLoss loss =
+          partial_loss(sign * along(k, axis), sign * along(outside, axis), sign * along(inside, axis), noise_rad_s);
+      if (!(loss.lost_rad_s > noise_rad_s)) continue;
+      lost[k][axis] = sign * loss.lost_rad_s;
+      rates.open_rad_s[k][axis] = loss.sigma_rad_s;
+    }
+  }
+  for (std::size_t k = 0; k < count; ++k) rates.samples[k].angular_velocity_rad_s += inverse * lost[k];
+}
+
+// The jerk that free readings show, element by element and three in a row: the second difference of means over windows
+// that follow each other has the variance 11/20 q P^3, and six times that of the noise: carried.md (C37)
+std::vector<double> seen_jerk(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s, double node_s,
+                              std::size_t nodes) {
+  const double period_s = rates.windows.period_s, reach_s = kJerkReach * std::max(period_s, node_s);
+  const double unit = kSecondDifference * period_s * period_s * period_s;
+  std::vector<double> sums(nodes, 0.0), counts(nodes, 0.0);
+  for (std::size_t k = 1; k + 1 < rates.samples.size(); ++k) {
+    const Vector3d bend = rates.samples[k + 1].angular_velocity_rad_s - 2.0 * rates.samples[k].angular_velocity_rad_s +
+                          rates.samples[k - 1].angular_velocity_rad_s;
+    double sum = 0.0, count = 0.0;
+    for (std::size_t j = 0; j < 3; ++j) {
+      const auto axis = static_cast<Eigen::Index>(j);
+      bool free = true;
+      for (std::size_t i = k - 1; i <= k + 1; ++i)
+        free = free && rates.signs[i].gyro[j] == 0 && !(rates.open_rad_s[i][axis] > 0.0);
+      if (!free) continue;
+      const double along = rows.row(axis).dot(bend);
+      sum += along * along - 6.0 * noise_rad_s * noise_rad_s;
+      count += 1.0;
+    }
+    const double from = (rates.windows.centre_s[k] - reach_s) / node_s,
+                 to = (rates.windows.centre_s[k] + reach_s) / node_s;
+    for (auto i = static_cast<std::size_t>(std::max(0.0, std::ceil(from))); i < nodes && static_cast<double>(i) <= to;
+         ++i)
+      sums[i] += sum / unit, counts[i] += count;
+  }
+  for (std::size_t i = 0; i < nodes; ++i)
+    sums[i] = counts[i] > 0.0 ? std::sqrt(std::max(0.0, sums[i] / counts[i])) : 0.0;
+  return sums;
+}
+
+OwnReadings own_readings(std::span<const ImuSample> samples, const ClippedElements& clipped, Triad triad,
+                         TimeNs origin_ns, double period_s) {
+  std::optional<HeldReadings> held = find_held(samples, triad);
+  if (held && held->agreement < kSteady) held.reset();
+  OwnReadings out;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    out.of_sample.push_back(out.samples.size());
+    if (held && held->repeats[k]) {
+      out.of_sample.back() -= 1;
+      continue;
+    }
+    ImuSample own = samples[k];
+    if (held) own.time_ns -= nanoseconds(held->age_s[k]);
+    // a clock that is a little off may put two of them into one of its steps
+    if (held && !out.samples.empty())
+      own.time_ns = std::max(own.time_ns, out.samples.back().time_ns + nanoseconds(0.5 * period_s));
+    out.samples.push_back(own);
+    out.signs.push_back(signs_of(clipped, k));
+  }
+  out.windows = windows_of(out.samples, origin_ns, held ? held->period_s : period_s);
+  return out;
+}
+
 }  // namespace
 
 bool clips(const NodeReadings& readings) {
@@ -123,12 +258,19 @@ bool clips(const NodeReadings& readings) {
                      [](const ElementSums& e) { return e.clipped > 0.0 || e.unread > 0.0; });
 }
 
-void add_reading(const ImuSample& sample, const Eigen::Matrix3d& rows, const ClipSigns& signs, double t,
-                 NodeReadings& node) {
+void add_rate(const ImuSample& sample, const Eigen::Matrix3d& rows, const ClipSigns& signs, double t,
+              const Vector3d& open_rad_s, NodeReadings& node) {
   const Vector3d z = rows * sample.angular_velocity_rad_s;
   for (int j = 0; j < 3; ++j) {
     const std::size_t i = static_cast<std::size_t>(j);
     add_gyro_reading(z[j], t, signs.gyro[i], node.gyro[i]);
+    node.gyro[i].open = std::max(node.gyro[i].open, open_rad_s[j]);
+  }
+}
+
+void add_force(const ImuSample& sample, const ClipSigns& signs, double t, NodeReadings& node) {
+  for (int j = 0; j < 3; ++j) {
+    const std::size_t i = static_cast<std::size_t>(j);
     if (signs.accel[i] != 0) node.force_bound[j] = signs.accel[i];
   }
   node.force_n += 1.0;
@@ -136,29 +278,46 @@ void add_reading(const ImuSample& sample, const Eigen::Matrix3d& rows, const Cli
   node.force_t_s += (t - node.force_t_s) / node.force_n;
 }
 
+void add_reading(const ImuSample& sample, const Eigen::Matrix3d& rows, const ClipSigns& signs, double t,
+                 NodeReadings& node) {
+  add_rate(sample, rows, signs, t, Vector3d::Zero(), node);
+  add_force(sample, signs, t, node);
+}
+
 Collected collect(const CarriedSmoother::Params& params, std::span<const ImuSample> samples,
                   const ClippedElements& clipped) {
   Collected out;
-  out.period_s = median_period_s(samples, params.node_s);
-  const std::size_t count = samples.size();
-  out.centre_s.resize(count);
-  out.end_s.resize(count);
-  out.node_of.resize(count);
-  for (std::size_t k = 0; k < count; ++k) {
-    // a window after a drop-out is as long as any other
-    const double window = k == 0 ? out.period_s : std::min(since_s(samples, k - 1, k), 1.5 * out.period_s);
-    out.end_s[k] = since_s(samples, 0, k) + 0.5 * out.period_s;
-    out.centre_s[k] = out.end_s[k] - 0.5 * window;
+  const double period_s = median_period_s(samples, params.node_s);
+  const TimeNs origin_ns = samples.front().time_ns - nanoseconds(0.5 * period_s);
+  out.samples = windows_of(samples, origin_ns, period_s);
+  out.nodes.resize(static_cast<std::size_t>(std::llround(out.samples.centre_s.back() / params.node_s)) + 1);
+  place(params.node_s, out.nodes.size(), out.samples);
+
+  out.rates = {own_readings(samples, clipped, Triad::gyro, origin_ns, period_s), {}};
+  place(params.node_s, out.nodes.size(), out.rates.windows);
+  out.rates.open_rad_s.assign(out.rates.samples.size(), Vector3d::Zero());
+  const double noise_rad_s = params.gyro_noise_density / std::sqrt(out.rates.windows.period_s);
+  if (out.rates.windows.period_s > kLongWindow * params.node_s) whole_windows(noise_rad_s, clipped.rows, out.rates);
+  out.jerk = seen_jerk(out.rates, clipped.rows, noise_rad_s, params.node_s, out.nodes.size());
+  OwnReadings forces = own_readings(samples, clipped, Triad::accelerometer, origin_ns, period_s);
+  const std::vector<double> open_m_s2 = open_forces(forces, period_s);
+  place(params.node_s, out.nodes.size(), forces.windows);
+  const auto from_node = [&](const Windows& windows, std::size_t k) {
+    return windows.centre_s[k] - static_cast<double>(windows.node_of[k]) * params.node_s;
+  };
+  for (std::size_t k = 0; k < out.rates.samples.size(); ++k) {
+    const Windows& windows = out.rates.windows;
+    add_rate(out.rates.samples[k], clipped.rows, out.rates.signs[k], from_node(windows, k), out.rates.open_rad_s[k],
+             out.nodes[windows.node_of[k]]);
   }
-  out.nodes.resize(static_cast<std::size_t>(std::llround(out.centre_s.back() / params.node_s)) + 1);
+  for (std::size_t k = 0; k < forces.samples.size(); ++k) {
+    NodeReadings& node = out.nodes[forces.windows.node_of[k]];
+    add_force(forces.samples[k], forces.signs[k], from_node(forces.windows, k), node);
+    node.force_open_m_s2 = std::max(node.force_open_m_s2, open_m_s2[k]);
+  }
   const std::vector<bool> rest = RestDetector(params.rest).find(samples);
-  for (std::size_t k = 0; k < count; ++k) {
-    const auto node = static_cast<std::size_t>(std::llround(out.centre_s[k] / params.node_s));
-    out.node_of[k] = std::min(node, out.nodes.size() - 1);
-    NodeReadings& readings = out.nodes[out.node_of[k]];
-    const double t = out.centre_s[k] - static_cast<double>(out.node_of[k]) * params.node_s;
-    add_reading(samples[k], clipped.rows, signs_of(clipped, k), t, readings);
-    readings.rest = readings.rest || rest[k];
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (rest[k]) out.nodes[out.samples.node_of[k]].rest = true;
   }
   return out;
 }
@@ -184,9 +343,11 @@ std::vector<Vector3d> filled_rates(std::span<const ImuSample> samples, const Cli
   return rates;
 }
 
-Status start_nodes(const CarriedSmoother::Params& params, std::span<const ImuSample> samples,
-                   const ClippedElements& clipped, const Collected& collected, std::vector<Node>& nodes) {
-  const std::vector<Vector3d> rates = filled_rates(samples, clipped);
+Status start_nodes(const CarriedSmoother::Params& params, const Eigen::Matrix3d& rows, const Collected& collected,
+                   std::vector<Node>& nodes) {
+  const std::span<const ImuSample> samples = collected.rates.samples;
+  const Windows& windows = collected.rates.windows;
+  const std::vector<Vector3d> rates = filled_rates(samples, {rows, collected.rates.signs});
   const Vqf filter(Vqf::Params{.gap_max_s = params.gap_max_s});
   Vqf::State state;
   const std::size_t count = collected.nodes.size();
@@ -196,14 +357,15 @@ Status start_nodes(const CarriedSmoother::Params& params, std::span<const ImuSam
     ImuSample sample = samples[k];
     sample.angular_velocity_rad_s = rates[k];
     if (const Status status = filter.step(sample, state); !status.ok()) return status;
-    const std::size_t i = collected.node_of[k];
+    const std::size_t i = windows.node_of[k];
     readings[i] += 1.0;
     nodes[i].w_WI_I_rad_s += (rates[k] - nodes[i].w_WI_I_rad_s) / readings[i];
-    const double off = std::abs(collected.centre_s[k] - static_cast<double>(i) * params.node_s);
+    const double off = std::abs(windows.centre_s[k] - static_cast<double>(i) * params.node_s);
     if (off < nearest[i]) nearest[i] = off, nodes[i].q_WI = state.q_WI;
   }
-  // the first and the last node have a sample; those without lie between two that have
-  for (std::size_t i = 1, before = 0; i < count; ++i) {
+  // those without a reading lie between two that have one, or beyond the last
+  std::size_t before = 0;
+  for (std::size_t i = 1; i < count; ++i) {
     if (!(readings[i] > 0.0)) continue;
     for (std::size_t m = before + 1; m < i; ++m) {
       const double u = static_cast<double>(m - before) / static_cast<double>(i - before);
@@ -212,6 +374,7 @@ Status start_nodes(const CarriedSmoother::Params& params, std::span<const ImuSam
     }
     before = i;
   }
+  std::fill(nodes.begin() + static_cast<std::ptrdiff_t>(before) + 1, nodes.end(), nodes[before]);
   const Vector3d g_W(0.0, 0.0, -params.gravity_m_s2);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t a = i == 0 ? 0 : i - 1, b = std::min(i + 1, count - 1);
@@ -219,7 +382,7 @@ Status start_nodes(const CarriedSmoother::Params& params, std::span<const ImuSam
       nodes[i].angular_acceleration_rad_s2 =
           (nodes[b].w_WI_I_rad_s - nodes[a].w_WI_I_rad_s) / (static_cast<double>(b - a) * params.node_s);
     }
-    if (readings[i] > 0.0) nodes[i].a_W_m_s2 = nodes[i].q_WI * collected.nodes[i].force_m_s2 + g_W;
+    if (collected.nodes[i].force_n > 0.0) nodes[i].a_W_m_s2 = nodes[i].q_WI * collected.nodes[i].force_m_s2 + g_W;
   }
   return {};
 }

@@ -35,11 +35,14 @@ Status check(const CarriedSmoother::Params& params, std::span<const ImuSample> s
   return {};
 }
 
-std::uint8_t clipped_axes(const ClippedElements& clipped, std::size_t k) {
+// Elements at the rail, in the whole window of the reading or in a part of it.
+std::uint8_t clipped_axes(const carried::GyroReadings& rates, std::size_t k) {
+  const std::size_t reading = rates.of_sample[k];
   std::uint8_t axes = 0;
-  if (clipped.signs.empty()) return axes;
-  for (std::size_t j = 0; j < 3; ++j)
-    if (clipped.signs[k].gyro[j] != 0) axes = static_cast<std::uint8_t>(axes | (1u << j));
+  for (std::size_t j = 0; j < 3; ++j) {
+    const bool in_part = rates.open_rad_s[reading][static_cast<Eigen::Index>(j)] > 0.0;
+    if (rates.signs[reading].gyro[j] != 0 || in_part) axes = static_cast<std::uint8_t>(axes | (1u << j));
+  }
   return axes;
 }
 
@@ -65,9 +68,9 @@ Status CarriedSmoother::estimate(std::span<const ImuSample> samples, const Clipp
   if (const Status status = check(params_, samples, clipped); !status.ok()) return status;
   const carried::Collected collected = carried::collect(params_, samples, clipped);
   std::vector<Node> start;
-  Status status = carried::start_nodes(params_, samples, clipped, collected, start);
+  Status status = carried::start_nodes(params_, clipped.rows, collected, start);
   if (!status.ok()) return status;
-  carried::Problem problem(params_, clipped.rows, collected.period_s, collected.nodes, std::move(start));
+  carried::Problem problem(params_, clipped.rows, collected, std::move(start));
   status = problem.solve(report);
   if (status.ok()) status = problem.covariances(report);
   if (!status.ok()) return status;
@@ -76,16 +79,16 @@ Status CarriedSmoother::estimate(std::span<const ImuSample> samples, const Clipp
   rates.resize(samples.size());
   attitudes.resize(samples.size());
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    const std::size_t i = collected.node_of[k];
+    const std::size_t i = collected.samples.node_of[k];
     const Node& node = problem.nodes()[i];
     const Eigen::Matrix<double, 9, 9>& covariance = problem.covariance(i);
     const double at = static_cast<double>(i) * params_.node_s;
-    const double centre = collected.centre_s[k] - at, end = collected.end_s[k] - at;
+    const double centre = collected.samples.centre_s[k] - at, end = collected.samples.end_s[k] - at;
     rates[k].time_ns = attitudes[k].time_ns = samples[k].time_ns;
     // a reading is the mean over its window, so the rate is that at the window's centre; the attitude is at the stamp
     rates[k].w_WI_I_rad_s = node.w_WI_I_rad_s + centre * node.angular_acceleration_rad_s2;
     rates[k].covariance_rad2_s2 = covariance.block<3, 3>(carried::kRate, carried::kRate);
-    rates[k].clipped_axes = clipped_axes(clipped, k);
+    rates[k].clipped_axes = clipped_axes(collected.rates, k);
     rates[k].source = source(rates[k], params_.recovered_sigma_rad_s);
     const Eigen::Vector3d turn = end * node.w_WI_I_rad_s + 0.5 * end * end * node.angular_acceleration_rad_s2;
     attitudes[k].q_WA = node.q_WI * so3::exp(turn);

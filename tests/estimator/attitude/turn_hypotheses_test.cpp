@@ -164,7 +164,7 @@ struct Solved {
   Solved(const Spin& spin, const CarriedSmoother::Params& params)
       : readings(spin),
         collected(carried::collect(params, readings.samples, readings.clipped())),
-        problem(params, Eigen::Matrix3d::Identity(), collected.period_s, collected.nodes, started(params)) {
+        problem(params, Eigen::Matrix3d::Identity(), collected, started(params)) {
     EXPECT_TRUE(problem.solve(report).ok());
     EXPECT_TRUE(problem.covariances(report).ok());
   }
@@ -172,7 +172,7 @@ struct Solved {
  private:
   std::vector<carried::Node> started(const CarriedSmoother::Params& params) const {
     std::vector<carried::Node> nodes;
-    EXPECT_TRUE(carried::start_nodes(params, readings.samples, readings.clipped(), collected, nodes).ok());
+    EXPECT_TRUE(carried::start_nodes(params, Eigen::Matrix3d::Identity(), collected, nodes).ok());
     return nodes;
   }
 };

@@ -46,6 +46,9 @@ struct RateReport {
   std::size_t samples = 0, clipped = 0, recovered_flight = 0, recovered_contact = 0, bounded_only = 0;
   std::size_t void_readings = 0;  ///< samples with an overflow (sign flipped at the rail)
   double flight_share = 0.0;      ///< share of the samples that count as free flight
+  /// Bit j, one per sample: the reading of axis j may stand at a rail that was not seen, though nothing says that it is
+  /// clipped.
+  std::vector<std::uint8_t> doubted_axes;
 };
 
 /// Angular velocity of a tumbling body through saturation of its gyro: a tightly coupled smoother over a recording.

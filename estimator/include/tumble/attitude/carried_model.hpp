@@ -46,6 +46,7 @@ struct ElementSums {
   double clipped = 0.0, clipped_t_s = 0.0, rail = 0.0;        ///< count, mean time and mean rail
   double sign = 0.0;                                          ///< of the rail: the truth lies beyond it
   double unread = 0.0, unread_z = 0.0;                        ///< count and mean of readings that say nothing
+  double open = 0.0;  ///< deviation that all free readings share: of one whose window met the rail in a part
 };
 
 /// All readings about a node.
@@ -55,19 +56,22 @@ struct NodeReadings {
   Eigen::Vector3d force_bound = Eigen::Vector3d::Zero();  ///< sign of the rail where an axis clips, else 0
   double force_n = 0.0;                                   ///< number of force readings
   double force_t_s = 0.0;                                 ///< mean time of the force readings
+  double force_open_m_s2 = 0.0;                           ///< what their window leaves open of their time makes of them
   bool rest = false;
 };
 
 /// Deviations that the factors are weighed with.
 struct ReadingNoise {
-  double gyro_rad_s = 0.0;   ///< of one reading
-  double tilt_share = 0.0;   ///< of a free element while another clips, per rad/s of that one's excess
-  double rail_rad_s = 0.0;   ///< of a rail
-  double accel_m_s2 = 0.0;   ///< of one reading
-  double accel_share = 0.0;  ///< more, per m/s^2 away from gravity
-  double rest_rad_s = 0.0;   ///< of the rate at rest, one node
-  double rest_m_s = 0.0;     ///< of the velocity at rest
-  double rest_m_s2 = 0.0;    ///< of the acceleration at rest
+  double gyro_rad_s = 0.0;    ///< of one reading
+  double window_rad_s = 0.0;  ///< of what a mean over a window differs from the rate at its centre by, one reading
+  double tilt_share = 0.0;    ///< of a free element while another clips, per rad/s of that one's excess
+  double rail_rad_s = 0.0;    ///< of a rail
+  double bound = 1.0;         ///< share of a gyro's bounds that counts as information
+  double accel_m_s2 = 0.0;    ///< of one reading
+  double accel_share = 0.0;   ///< more, per m/s^2 away from gravity
+  double rest_rad_s = 0.0;    ///< of the rate at rest, one node
+  double rest_m_s = 0.0;      ///< of the velocity at rest
+  double rest_m_s2 = 0.0;     ///< of the acceleration at rest
 };
 
 /// Gyro of one node, element by element: row i of `rows` is the axis m_i along which element i senses. Free readings
@@ -96,15 +100,17 @@ class Motion {
   };
   explicit Motion(const Params& params);
 
-  /// `hand`: what the density of the hand's acceleration is multiplied with in this step.
-  double add_step(const Node& from, const Node& to, double hand, System::Block& block, System::Block& next) const;
+  /// `hand`: what the density of the hand's acceleration is multiplied with in this step; `jerk`: likewise the root
+  /// density of the angular jerk.
+  double add_step(const Node& from, const Node& to, double hand, System::Block& block, System::Block& next,
+                  double jerk = 1.0) const;
   /// Velocity and place about zero: the share of one node.
   double add_bounds(const Node& node, System::Block& block) const;
   /// The first node: heading 0 as it stands, everything else as wide as the process.
   double add_first(const Node& node, System::Block& block) const;
 
  private:
-  double add_attitude(const Node& from, const Node& to, System::Block& block, System::Block& next) const;
+  double add_attitude(const Node& from, const Node& to, double jerk, System::Block& block, System::Block& next) const;
 
   Params params_;
   Eigen::Matrix4d jerk_;                    // information of (rate, angular acceleration) here and next, one axis
