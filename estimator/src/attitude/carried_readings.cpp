@@ -46,6 +46,7 @@ double since_s(std::span<const ImuSample> samples, std::size_t from, std::size_t
 
 constexpr double kLongest = 1.5;  // periods: the longest window
 constexpr double kSteady = 0.9;   // agreement of a steady clock from which on repeated readings are believed to be held
+constexpr double kSlowest = 10.0;  // steps of the log: what repeats itself longer stands still, is blind or frozen
 // Of the period: deviation of a centre that lies evenly between the window's end and its middle, 1/(4 sqrt(3)).
 constexpr double kOpenShare = 0.144;
 // Nodes: longer windows may have met the rail in a part. Measured: those of 20 ms of the pendulums did, of the wand's,
@@ -231,7 +232,7 @@ std::vector<double> seen_jerk(const GyroReadings& rates, const Eigen::Matrix3d& 
 OwnReadings own_readings(std::span<const ImuSample> samples, const ClippedElements& clipped, Triad triad,
                          TimeNs origin_ns, double period_s) {
   std::optional<HeldReadings> held = find_held(samples, triad);
-  if (held && held->agreement < kSteady) held.reset();
+  if (held && (held->agreement < kSteady || held->period_s > kSlowest * period_s)) held.reset();
   OwnReadings out;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     out.of_sample.push_back(out.samples.size());
