@@ -205,6 +205,7 @@ std::vector<double> seen_jerk(const GyroReadings& rates, const Eigen::Matrix3d& 
   const double unit = kSecondDifference * period_s * period_s * period_s;
   std::vector<double> sums(nodes, 0.0), counts(nodes, 0.0);
   for (std::size_t k = 1; k + 1 < rates.samples.size(); ++k) {
+    if (rates.windows.end_s[k + 1] - rates.windows.end_s[k - 1] > 2.0 * kLongest * period_s) continue;
     const Vector3d bend = rates.samples[k + 1].angular_velocity_rad_s - 2.0 * rates.samples[k].angular_velocity_rad_s +
                           rates.samples[k - 1].angular_velocity_rad_s;
     double sum = 0.0, count = 0.0;
