@@ -79,6 +79,34 @@ TEST(SecondPass, PutsRightWhatWasLearntTooLate) {
   EXPECT_LT(twice.end_m, 0.7 * once.end_m);
 }
 
+TEST(SecondPass, CatchesUpWhereTheClocksDifferByMoreThanWasKnown) {
+  // the newest sweep that the first pass has registered may need a sample more by the clock that was learnt
+  for (const TimeNs off_ns : {TimeNs{-4'000'000}, TimeNs{4'000'000}}) {
+    ThrownBody body;
+    body.end_s = 4.2;
+    std::vector<ImuSample> imu = body.imu();
+    for (ImuSample& sample : imu) sample.time_ns += off_ns;
+    std::erase_if(imu, [](const ImuSample& s) { return s.time_ns <= 0; });
+    const std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
+    TumblingOdometry odometry(measured_badly(body, 0.9));
+    std::size_t next = 1;  // a sweep that begins before the first sample has no place
+    for (const ImuSample& sample : imu) {
+      ASSERT_TRUE(odometry.add_imu(sample).ok());
+      for (; next < sweeps.size() && sweeps[next].end_ns <= sample.time_ns; ++next)
+        ASSERT_TRUE(odometry.add_sweep(sweeps[next].start_ns, sweeps[next].end_ns, sweeps[next].points).ok());
+      PoseState pose;
+      if (next > 4) {
+        ASSERT_TRUE(odometry.newest(pose).ok());
+      }
+      while (odometry.take()) continue;
+    }
+    EXPECT_TRUE(odometry.passed_again()) << off_ns;
+    EXPECT_EQ(odometry.refused_samples(), 0u) << off_ns;
+    const double learnt_s = odometry.mapper().calibration().time_offset_s;
+    EXPECT_NEAR(learnt_s, 1e-9 * double(off_ns), 0.002) << "else this test asks nothing";
+  }
+}
+
 TEST(SecondPass, ACopyMadeWhileItIsUnderWayGoesOnWithTheSameBits) {
   const ThrownBody body;
   const std::size_t count = body.imu().size();

@@ -81,14 +81,17 @@ Status OdometryPass::add_imu(const ImuSample& sample) {
   return {};
 }
 
+TimeNs OdometryPass::needed_ns(TimeNs lidar_ns) const {
+  return lidar_ns + static_cast<TimeNs>(std::llround(1e9 * time_offset_s_));
+}
+
 std::optional<TimeNs> OdometryPass::covered_ns() const {
   if (!settled_) return std::nullopt;
-  return settled_->time_ns - static_cast<TimeNs>(std::llround(1e9 * time_offset_s_));
+  return settled_->time_ns - needed_ns(0);
 }
 
 bool OdometryPass::covers(TimeNs end_ns) const {
-  const std::optional<TimeNs> covered = covered_ns();
-  return covered && *covered >= end_ns;
+  return settled_ && settled_->time_ns >= needed_ns(end_ns);
 }
 
 Status OdometryPass::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
@@ -101,6 +104,7 @@ Status OdometryPass::newest(PoseState& pose) const {
   rates_.flush(rate_state_, rates);
   std::vector<ImuSample> samples;
   SeenByTheStream seen(unsettled_.all(), rate_state_.rate);
+  std::erase_if(rates, [&](const RateState& rate) { return told_ns_ && rate.time_ns <= *told_ns_; });
   for (RateState& rate : rates) {
     samples.push_back(seen.at(rate.time_ns));
     rate = for_the_mapper(rate, samples.back(), rate_sigma_max_rad_s_);
@@ -112,6 +116,8 @@ void OdometryPass::settle(const RateState& rate) {
   const ImuSample sample = SeenByTheStream(unsettled_.all(), rate_state_.rate).at(rate.time_ns);
   unsettled_.drop_until(rate.time_ns);
   settled_ = rate;
+  if (told_ns_ && rate.time_ns <= *told_ns_) return;
+  told_ns_ = rate.time_ns;
   if (!mapper_.add_imu(sample, for_the_mapper(rate, sample, rate_sigma_max_rad_s_)).ok()) ++refused_samples_;
 }
 
@@ -119,7 +125,8 @@ void OdometryPass::settle_until(TimeNs time_ns) {
   std::vector<RateState> rates;
   rates_.flush(rate_state_, rates);
   for (const RateState& rate : rates) {
-    if (rate.time_ns <= time_ns && (!settled_ || rate.time_ns > settled_->time_ns)) settle(rate);
+    if (settled_ && settled_->time_ns >= time_ns) return;
+    if (!settled_ || rate.time_ns > settled_->time_ns) settle(rate);
   }
 }
 
@@ -128,9 +135,10 @@ void OdometryPass::begin_rates(const RegimeStream::Params& rate) {
   rate_state_ = rates_.start();
 }
 
-void OdometryPass::take_map(const LidarInertialOdometry& mapper, double time_offset_s) {
-  mapper_ = mapper;
-  time_offset_s_ = time_offset_s;
+void OdometryPass::take_map(const OdometryPass& other) {
+  mapper_ = other.mapper_;
+  time_offset_s_ = other.time_offset_s_;
+  told_ns_ = other.told_ns_;
 }
 
 }  // namespace tumble

@@ -129,7 +129,11 @@ void SecondPass::run(OdometryPass& first, std::size_t sweeps) {
     }
     if (!pass_->covers(sweep.end_ns)) {
       tail = true;
-      pass_->settle_until(first.settled()->time_ns);
+      pass_->settle_until(std::max(first.settled()->time_ns, pass_->needed_ns(sweep.end_ns)));
+    }
+    if (!pass_->covers(sweep.end_ns)) {  // the clocks differ by more than the first pass knew: with the next one
+      --next_sweep_;
+      return;
     }
     LidarInertialOdometry::SweepReport report;
     (void)pass_->add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, report);
@@ -143,7 +147,7 @@ void SecondPass::take_over(OdometryPass& first) {
   pass_->settle_until(first.settled()->time_ns);
   const bool first_lost = sweeps_.back().verdict == SweepVerdict::rejected;
   if (rejected_ <= rejected_by_first_ + sweeps_.size() / kMoreShare && (!lost_ || first_lost)) {
-    first.take_map(pass_->mapper(), pass_->time_offset_s());
+    first.take_map(*pass_);
     taken_ = true;
   }
   give_up();

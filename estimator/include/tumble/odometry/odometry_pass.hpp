@@ -39,18 +39,18 @@ class OdometryPass {
   /// As TumblingOdometry::newest.
   Status newest(PoseState& pose) const;
 
-  /// Settles the rates up to a time as they stand, though less than the lag lies ahead of them.
+  /// The time of the IMU's clock that is a time of the lidar's.
+  TimeNs needed_ns(TimeNs lidar_ns) const;
+  /// Settles the rates up to the first sample at or after a time as they stand, though less than the lag lies ahead.
   void settle_until(TimeNs time_ns);
   /// The rates go on with another stream, anew; the mapper stays.
   void begin_rates(const RegimeStream::Params& rate);
-  /// The map and all that hangs on it is that of another pass; the rates stay.
-  void take_map(const LidarInertialOdometry& mapper, double time_offset_s);
+  /// The map and all that hangs on it is that of another pass; the rates stay, and go on where that one was told last.
+  void take_map(const OdometryPass& other);
 
   const RegimeStream& rates() const { return rates_; }
   const RegimeStream::State& rate_state() const { return rate_state_; }
   const LidarInertialOdometry& mapper() const { return mapper_; }
-  /// What the mapper takes the IMU's clock to be ahead of the lidar's by, before its own estimate.
-  double time_offset_s() const { return time_offset_s_; }
   const std::optional<RateState>& settled() const { return settled_; }
   std::size_t refused_samples() const { return refused_samples_; }
 
@@ -63,6 +63,7 @@ class OdometryPass {
   double rate_sigma_max_rad_s_, time_offset_s_;
   Queue unsettled_;  ///< samples whose rates are not settled yet
   std::optional<RateState> settled_;
+  std::optional<TimeNs> told_ns_;  ///< of the last sample that the mapper was given
   std::size_t refused_samples_ = 0;
 };
 
