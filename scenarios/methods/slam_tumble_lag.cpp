@@ -145,6 +145,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, Word wo
   estimate.status = live_through(sensors, samples, odometry, listener);
   if (!estimate.status.ok()) return estimate;
   estimate.health["gaps"] = static_cast<double>(odometry.gaps());
+  estimate.health["passed_again"] = odometry.passed_again() ? 1.0 : 0.0;
   listener.conclude(odometry.mapper());
   return estimate;
 }

@@ -91,7 +91,7 @@ Status RateStream::push(const ImuSample& sample, std::span<const AuxiliaryReadin
   } else if (weigh(state); !step(state)) {
     ++state.failures;
   }
-  if (state.window.size() >= capacity_) out = to_state(state.window[state.window.size() - capacity_]);
+  if (state.window.size() >= capacity_) out = to_state(state.window[state.window.size() - capacity_], state);
   return {};
 }
 
@@ -227,6 +227,9 @@ void RateStream::guess(Knot& knot, const Knot& previous, const State& state) con
   centripetal.estimate.knot.rate_rad_s = rate.cwiseMin(largest).cwiseMax(-largest);
   model_.weigh(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, knot.estimate);
   model_.weigh(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, centripetal.estimate);
+  // it turned as the sample before it did, which may have been pushed: flight of its own turns without torque
+  model_.seek_flight(knot.observation, state.rig, centripetal.estimate);
+  model_.weigh(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, centripetal.estimate);
   if (centripetal.estimate.flight_weight > knot.estimate.flight_weight) knot.estimate = centripetal.estimate;
 }
 
@@ -313,24 +316,40 @@ RigConstants::Matrix RateStream::widened(const State& state) const {
   return factor.asDiagonal() * state.rig_covariance * factor.asDiagonal();
 }
 
-RateState RateStream::to_state(const Knot& knot) const {
+// rate_stream.md (R96)
+Eigen::Matrix3d RateStream::doubted(const Knot& knot, const State& state) const {
+  Eigen::Matrix3d out = knot.covariance_rad2_s2;
+  if (params_.model.calibration || knot.estimate.flight_weight >= 0.5) return out;
+  const double samples = static_cast<double>(state.learnt_from) / params_.rig_doubt_samples;
+  const double share = params_.contact_doubt / (1.0 + samples);
+  for (int j = 0; j < 3; ++j) {
+    if ((knot.observation.unseen() & knot.observation.clipping.gyro & 1u << j) == 0) continue;
+    const double read = std::abs(knot.observation.sample.angular_velocity_rad_s[j]);
+    const double least = share * std::max(0.0, std::abs(knot.estimate.knot.rate_rad_s[j]) - read);
+    out(j, j) = std::max(out(j, j), least * least);
+  }
+  return out;
+}
+
+RateState RateStream::to_state(const Knot& knot, const State& state) const {
+  const Eigen::Matrix3d covariance = doubted(knot, state);
   RateState out;
   out.time_ns = knot.observation.sample.time_ns;
   out.w_WI_I_rad_s = knot.estimate.knot.rate_rad_s;
-  out.covariance_rad2_s2 = model_.reported(knot.covariance_rad2_s2, knot.observation, knot.estimate);
+  out.covariance_rad2_s2 = model_.reported(covariance, knot.observation, knot.estimate);
   out.clipped_axes = knot.observation.clipping.gyro | knot.observation.clipping.void_gyro;
-  out.source = rate_source(knot.observation, knot.estimate, knot.covariance_rad2_s2, params_.recovered_sigma_rad_s);
+  out.source = rate_source(knot.observation, knot.estimate, covariance, params_.recovered_sigma_rad_s);
   return out;
 }
 
 std::optional<RateState> RateStream::newest(const State& state) const {
   if (state.window.empty()) return std::nullopt;
-  return to_state(state.window.back());
+  return to_state(state.window.back(), state);
 }
 
 void RateStream::flush(const State& state, std::vector<RateState>& out) const {
   const std::size_t given = state.window.size() + 1 - std::min(capacity_, state.window.size() + 1);
-  for (std::size_t k = given; k < state.window.size(); ++k) out.push_back(to_state(state.window[k]));
+  for (std::size_t k = given; k < state.window.size(); ++k) out.push_back(to_state(state.window[k], state));
 }
 
 bool RateStream::equal(const State& a, const State& b) {

@@ -50,58 +50,7 @@ constexpr double kSilent_s = 1.0;       // a lidar that says nothing for so long
 constexpr double kAhead_s = 1.0;        // a sweep that ends so much after the newest sample has a stamp that is wrong
 constexpr double kSweepsMax_hz = 20.0;  // of the lidars that there are: so many a second wait for the lag
 
-/// What the stream does not know of a clipped axis, its deviation being beyond what the mapper believes at most, goes
-/// to the mapper as the reading it is, a bound: the registration estimates what is missing. A rig that is not learnt
-/// yet may extrapolate a push by tens of rad/s, and says so.
-RateState for_the_mapper(const RateState& rate, const ImuSample& sample, double sigma_max_rad_s) {
-  RateState out = rate;
-  for (int axis = 0; axis < 3; ++axis) {
-    if ((rate.clipped_axes >> axis & 1) == 0) continue;
-    if (rate.covariance_rad2_s2(axis, axis) <= sigma_max_rad_s * sigma_max_rad_s) continue;
-    out.w_WI_I_rad_s[axis] = sample.angular_velocity_rad_s[axis];
-    out.covariance_rad2_s2.row(axis).setZero();
-    out.covariance_rad2_s2.col(axis).setZero();
-    out.source = RateSource::bounded_only;
-  }
-  return out;
-}
-
-/// Samples as the stream came to see them, with the forces told that a rail hid; asked for in order of time.
-class SeenByTheStream {
- public:
-  SeenByTheStream(std::span<const ImuSample> samples, const RateStream::State& state)
-      : samples_(samples), window_(state.window) {}
-
-  ImuSample at(TimeNs time_ns) {
-    while (next_ + 1 < samples_.size() && samples_[next_].time_ns < time_ns) ++next_;
-    while (knot_ < window_.size() && window_[knot_].observation.sample.time_ns < time_ns) ++knot_;
-    ImuSample out = samples_[next_];
-    if (knot_ < window_.size()) {
-      const unsigned railed = clip_flags({.accel = window_[knot_].observation.clipping.accel});
-      out.device_clip_flags = static_cast<std::uint8_t>(out.device_clip_flags | railed);
-    }
-    return out;
-  }
-
- private:
-  std::span<const ImuSample> samples_;
-  std::span<const RateStream::Knot> window_;
-  std::size_t next_ = 0, knot_ = 0;
-};
-
 }  // namespace
-
-void TumblingOdometry::Queue::push(const ImuSample& sample) {
-  if (samples.size() == samples.capacity() && head > 0) {
-    samples.erase(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(head));
-    head = 0;
-  }
-  samples.push_back(sample);
-}
-
-void TumblingOdometry::Queue::drop_until(TimeNs time_ns) {
-  while (head < samples.size() && samples[head].time_ns <= time_ns) ++head;
-}
 
 LidarInertialOdometry::Params TumblingOdometry::Params::Expert::mapping_defaults() {
   LidarInertialOdometry::Params out;
@@ -111,10 +60,9 @@ LidarInertialOdometry::Params TumblingOdometry::Params::Expert::mapping_defaults
 }
 
 TumblingOdometry::TumblingOdometry(const Params& params)
-    : params_(params), rates_(rate_params(params)), rate_state_(rates_.start()), mapper_(mapper_params(params)) {
-  const double in_lag = std::max(params.lag_s, 1.0) * params.imu.rate_hz;
-  unsettled_.samples.reserve(2 * static_cast<std::size_t>(std::ceil(in_lag)) + 16);
-}
+    : params_(params),
+      pass_(rate_params(params), mapper_params(params)),
+      again_(params.expert.again, rate_params(params), mapper_params(params)) {}
 
 Status TumblingOdometry::add_imu(const ImuSample& sample) {
   if (newest_ns_ && sample.time_ns <= *newest_ns_)
@@ -134,14 +82,11 @@ Status TumblingOdometry::add_imu(const ImuSample& sample) {
 }
 
 Status TumblingOdometry::take_in(const ImuSample& sample) {
-  std::optional<RateState> rate;
-  if (const Status status = rates_.push(sample, rate_state_, rate); !status.ok()) return status;
-  unsettled_.push(sample);
+  if (const Status status = pass_.add_imu(sample); !status.ok()) return status;
+  again_.remember(sample);
   newest_ns_ = sample.time_ns;
   after_gap_.reset();
   if (!registered_ns_) registered_ns_ = sample.time_ns;
-  if (!rate) return {};
-  settle(*rate);
   register_covered();
   return {};
 }
@@ -170,68 +115,61 @@ std::optional<TumblingOdometry::Sweep> TumblingOdometry::take() {
 }
 
 Status TumblingOdometry::newest(PoseState& pose) const {
-  std::vector<RateState> rates;
-  rates_.flush(rate_state_, rates);
-  std::vector<ImuSample> samples;
-  SeenByTheStream seen(unsettled_.all(), rate_state_.rate);
-  for (RateState& rate : rates) {
-    samples.push_back(seen.at(rate.time_ns));
-    rate = for_the_mapper(rate, samples.back(), params_.expert.mapping.rate_sigma_max_rad_s);
-  }
-  return mapper_.predict(samples, rates, pose);
+  return pass_.newest(pose);
 }
 
 void TumblingOdometry::finish() {
-  if (!rates_.rate().newest(rate_state_.rate)) return;  // nothing since the last time
-  begin_anew();
+  if (!newest_rate()) return;  // nothing since the last time
+  settle_all();
+  again_.complete(pass_);
+  begin_rates();
 }
 
-void TumblingOdometry::settle(const RateState& rate) {
-  const ImuSample sample = SeenByTheStream(unsettled_.all(), rate_state_.rate).at(rate.time_ns);
-  unsettled_.drop_until(rate.time_ns);
-  settled_ = rate;
-  const RateState told = for_the_mapper(rate, sample, params_.expert.mapping.rate_sigma_max_rad_s);
-  if (!mapper_.add_imu(sample, told).ok()) ++refused_samples_;
-}
-
-void TumblingOdometry::register_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points) {
+void TumblingOdometry::register_sweep(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points) {
   if (done_.size() >= params_.sweeps_max) {
     done_.pop_front();
     ++dropped_sweeps_;
   }
   Sweep& out = done_.emplace_back();
-  out.status = mapper_.add_sweep(start_ns, end_ns, points, out.report);
+  out.status = pass_.add_sweep(start_ns, end_ns, points, out.report);
   registered_ns_ = end_ns;
+  again_.remember(start_ns, end_ns, std::move(points), out.report.verdict);
+  again_.advance(pass_);
 }
 
 void TumblingOdometry::register_covered() {
-  const auto offset_ns = static_cast<TimeNs>(std::llround(1e9 * params_.expert.mapping.time_offset_s));
-  while (!waiting_.empty() && settled_ && settled_->time_ns >= waiting_.front().end_ns + offset_ns) {
-    const Waiting& sweep = waiting_.front();
-    register_sweep(sweep.start_ns, sweep.end_ns, sweep.points);
+  while (!waiting_.empty() && pass_.covers(waiting_.front().end_ns)) {
+    Waiting sweep = std::move(waiting_.front());
     waiting_.pop_front();
+    register_sweep(sweep.start_ns, sweep.end_ns, std::move(sweep.points));
   }
-  if (!waiting_.empty() || !settled_) return;
-  const TimeNs covered_ns = settled_->time_ns - offset_ns;
-  if (seconds(covered_ns - *registered_ns_) > kSilent_s) {
-    register_sweep(covered_ns, covered_ns, {});
-    sweep_end_ns_ = covered_ns;
+  const std::optional<TimeNs> covered_ns = pass_.covered_ns();
+  if (!waiting_.empty() || !covered_ns) return;
+  if (seconds(*covered_ns - *registered_ns_) > kSilent_s) {
+    register_sweep(*covered_ns, *covered_ns, {});
+    sweep_end_ns_ = *covered_ns;
   }
 }
 
-void TumblingOdometry::begin_anew() {
-  std::vector<RateState> rates;
-  rates_.flush(rate_state_, rates);
-  for (const RateState& rate : rates) settle(rate);
+void TumblingOdometry::settle_all() {
+  pass_.settle_until(*newest_ns_);
   register_covered();
+}
+
+void TumblingOdometry::begin_anew() {
+  settle_all();
+  again_.give_up();
+  begin_rates();
+}
+
+void TumblingOdometry::begin_rates() {
   RegimeStream::Params params = rate_params(params_);
   params.rate.model.calibration = rig();
   try {
-    rates_ = RegimeStream(params);
+    pass_.begin_rates(params);
   } catch (const InvalidParams&) {  // what was learnt is beyond what can be: from what was given
-    rates_ = RegimeStream(rate_params(params_));
+    pass_.begin_rates(rate_params(params_));
   }
-  rate_state_ = rates_.start();
 }
 
 }  // namespace tumble

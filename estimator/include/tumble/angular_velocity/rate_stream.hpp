@@ -64,6 +64,9 @@ class RateStream {
     /// + rig_doubt / (1 + n / rig_doubt_samples) times, n being the samples of flight that have been learnt from.
     double rig_doubt = 30.0;
     double rig_doubt_samples = 10.0;
+    /// What contact tells of a rate beyond the rail rests on a rig that flight has to tell: of a rig without
+    /// calibration its deviation is at least this share of what lies beyond the rail, over 1 + n / rig_doubt_samples.
+    double contact_doubt = 0.5;
     double bound_damping = 0.5;                ///< share of a new bound taken over in each step
     double recovered_sigma_rad_s = 0.5;        ///< as in RateSmoother
     double calibration_mahalanobis_max = 1.5;  ///< beyond this what was learnt of the rig is dropped
@@ -91,6 +94,9 @@ class RateStream {
                           "covariance of a rig without calibration counts 1 + this / (1 + n / rig_doubt_samples) "
                           "times, n samples of flight learnt from"});
       visit(p.rig_doubt_samples, {"rig_doubt_samples", "1", 1.0, 1e6, "see rig_doubt"});
+      visit(p.contact_doubt, {"contact_doubt", "1", 0.0, 10.0,
+                              "of a rig without calibration: deviation of a rate in contact, as a share of what lies "
+                              "beyond the rail, over 1 + n / rig_doubt_samples"});
       visit(p.bound_damping, {"bound_damping", "1", 0.01, 1.0, "share of a new bound taken over in each step"});
       visit(p.recovered_sigma_rad_s,
             {"recovered_sigma_rad_s", "rad/s", 0.0, 1e4,
@@ -189,7 +195,8 @@ class RateStream {
   void weigh(State& state) const;
   bool step(State& state) const;
   RigConstants::Matrix widened(const State& state) const;
-  RateState to_state(const Knot& knot) const;
+  Eigen::Matrix3d doubted(const Knot& knot, const State& state) const;
+  RateState to_state(const Knot& knot, const State& state) const;
 
   Params params_;
   RailWatch rails_;

@@ -11,6 +11,8 @@
 #include "tumble/attitude/regime_stream.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/odometry/imu_sheet.hpp"
+#include "tumble/odometry/odometry_pass.hpp"
+#include "tumble/odometry/second_pass.hpp"
 
 namespace tumble {
 
@@ -22,13 +24,16 @@ namespace tumble {
 /// registered on; take() gives the sweep lag_s after its end, registered (`report.pose`); and the sweep after it brings
 /// its last word (`report.smoothed`): 0.3 s after its end at ten sweeps a second. Sweeps stand in the world of
 /// LidarInertialOdometry: z up, origin and yaw at the IMU at the first sample. Begin at rest, half a second or more: it
-/// levels the attitude. A lidar that is silent for a second is made up for by inertia, a sweep without points.
+/// levels the attitude. Once, some seconds after the motion began, map and pose move to where a second pass over those
+/// seconds puts them, with the rig and the calibration that they told (SecondPass); poses given out before stay. A
+/// lidar that is silent for a second is made up for by inertia, a sweep without points.
 ///
 /// An IMU sample costs one step of the stream, and now and then a sweep's registration; one that ends no sweep
-/// allocates nothing once the first have come. Memory is bounded by the lag, the map's radius and `sweeps_max`, but for
-/// 12 bytes a sweep while the body stays within ten metres. No threads, no files, no printing. Copies carry all state:
-/// continuing from a copy gives the same bits, so that a run may be split anywhere. Not modelled: see the two classes
-/// above.
+/// allocates nothing once the first have come. While the second pass runs a sweep costs up to four registrations, and
+/// five more once, as it catches up. Memory is bounded by the lag, the map's radius, `sweeps_max` and what the second
+/// pass remembers, but for 12 bytes a sweep while the body stays within ten metres. No threads, no files, no printing.
+/// Copies carry all state: continuing from a copy gives the same bits, so that a run may be split anywhere. Not
+/// modelled: see the two classes above.
 class TumblingOdometry {
  public:
   struct Params {
@@ -57,6 +62,8 @@ class TumblingOdometry {
       RegimeStream::Params rate;
       /// With gravity's direction and what the rails hid of the rate among the unknowns.
       LidarInertialOdometry::Params mapping = mapping_defaults();
+      /// The second pass over the first seconds of motion, with what they told of rig and calibration.
+      SecondPass::Params again;
       static LidarInertialOdometry::Params mapping_defaults();
     } expert;
 
@@ -103,21 +110,23 @@ class TumblingOdometry {
 
   /// Rate of the newest sample: provisional where the gyro clips, since what follows tells most of it. Nothing before
   /// the first sample.
-  std::optional<RateState> newest_rate() const { return rates_.rate().newest(rate_state_.rate); }
+  std::optional<RateState> newest_rate() const { return pass_.rates().rate().newest(pass_.rate_state().rate); }
 
   /// Latest settled rate, lag_s old. Nothing while the lag fills.
-  const std::optional<RateState>& settled_rate() const { return settled_; }
+  const std::optional<RateState>& settled_rate() const { return pass_.settled(); }
 
   /// What is known of the IMU on the body: lever arm, biases, elements.
-  RigCalibration rig() const { return rates_.rate().calibration(rate_state_.rate); }
+  RigCalibration rig() const { return pass_.rates().rate().calibration(pass_.rate_state().rate); }
   /// Gaps of the IMU after which the rates began anew.
   std::size_t gaps() const { return gaps_; }
+  /// Whether the map and the pose are those of the second pass (SecondPass).
+  bool passed_again() const { return again_.taken(); }
   /// Samples that the mapper refused with their rates, and sweeps that nobody took in time: 0 unless something is
   /// wrong.
-  std::size_t refused_samples() const { return refused_samples_; }
+  std::size_t refused_samples() const { return pass_.refused_samples(); }
   std::size_t dropped_sweeps() const { return dropped_sweeps_; }
   /// The map, and all that the mapper tells beside.
-  const LidarInertialOdometry& mapper() const { return mapper_; }
+  const LidarInertialOdometry& mapper() const { return pass_.mapper(); }
 
  private:
   struct Waiting {
@@ -125,31 +134,20 @@ class TumblingOdometry {
     std::vector<LidarPoint> points;
   };
 
-  /// First in, first out, in memory that is kept.
-  struct Queue {
-    std::vector<ImuSample> samples;
-    std::size_t head = 0;
-    void push(const ImuSample& sample);
-    void drop_until(TimeNs time_ns);
-    std::span<const ImuSample> all() const { return std::span(samples).subspan(head); }
-  };
-
   Status take_in(const ImuSample& sample);
-  void settle(const RateState& rate);
-  void register_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
+  void register_sweep(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points);
   void register_covered();
+  void settle_all();
   void begin_anew();
+  void begin_rates();
 
   Params params_;
-  RegimeStream rates_;
-  RegimeStream::State rate_state_;
-  LidarInertialOdometry mapper_;
-  Queue unsettled_;  ///< samples whose rates are not settled yet
-  std::optional<RateState> settled_;
+  OdometryPass pass_;
+  SecondPass again_;
   std::optional<TimeNs> newest_ns_;      ///< of the samples taken in
   std::optional<ImuSample> after_gap_;   ///< held back
   std::optional<TimeNs> registered_ns_;  ///< end of the last sweep that was registered; the first sample before that
-  std::size_t gaps_ = 0, refused_samples_ = 0, dropped_sweeps_ = 0;
+  std::size_t gaps_ = 0, dropped_sweeps_ = 0;
   std::deque<Waiting> waiting_;
   std::deque<Sweep> done_;
   std::optional<TimeNs> sweep_end_ns_;  ///< of the last sweep taken in

@@ -25,6 +25,7 @@ void TumblingOdometry::Params::fields(Self& p, Visitor& visit) {
   visit(p.sweeps_max, {"sweeps_max", "1", 1, 1e6, "sweeps that may wait for the IMU"});
   visit.group("rate_", p.expert.rate);
   visit.group("mapping_", p.expert.mapping);
+  visit.group("again_", p.expert.again);
 }
 
 }  // namespace tumble

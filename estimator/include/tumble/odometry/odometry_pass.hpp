@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "tumble/attitude/regime_stream.hpp"
+#include "tumble/mapping/lidar_inertial_odometry.hpp"
+
+namespace tumble {
+
+/// One pass over the samples of an IMU and the sweeps of a lidar, in order of time: RegimeStream settles the rates,
+/// LidarInertialOdometry takes them and the sweeps that they cover. What TumblingOdometry does live, and once more
+/// with what it learnt (SecondPass). Copies carry all state.
+class OdometryPass {
+ public:
+  /// Samples, first in, first out, in memory that is kept.
+  struct Queue {
+    std::vector<ImuSample> samples;
+    std::size_t head = 0;
+    void push(const ImuSample& sample);
+    void drop_until(TimeNs time_ns);
+    std::span<const ImuSample> all() const { return std::span(samples).subspan(head); }
+  };
+
+  /// Throws InvalidParams on a parameter outside of its bound.
+  OdometryPass(const RegimeStream::Params& rate, const LidarInertialOdometry::Params& mapping);
+
+  /// As RegimeStream::push; a rate that is settled with the sample goes to the mapper.
+  Status add_imu(const ImuSample& sample);
+  /// Whether the rates are settled up to this time of the lidar's clock.
+  bool covers(TimeNs end_ns) const;
+  /// The same for the newest of them, by the lidar's clock. Nothing before the first.
+  std::optional<TimeNs> covered_ns() const;
+  Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
+                   LidarInertialOdometry::SweepReport& report);
+  /// As TumblingOdometry::newest.
+  Status newest(PoseState& pose) const;
+
+  /// The time of the IMU's clock that is a time of the lidar's.
+  TimeNs needed_ns(TimeNs lidar_ns) const;
+  /// Settles the rates up to the first sample at or after a time as they stand, though less than the lag lies ahead.
+  void settle_until(TimeNs time_ns);
+  /// The rates go on with another stream, anew; the mapper stays.
+  void begin_rates(const RegimeStream::Params& rate);
+  /// The map and all that hangs on it is that of another pass; the rates stay, and go on where that one was told last.
+  void take_map(const OdometryPass& other);
+
+  const RegimeStream& rates() const { return rates_; }
+  const RegimeStream::State& rate_state() const { return rate_state_; }
+  const LidarInertialOdometry& mapper() const { return mapper_; }
+  const std::optional<RateState>& settled() const { return settled_; }
+  std::size_t refused_samples() const { return refused_samples_; }
+
+ private:
+  void settle(const RateState& rate);
+
+  RegimeStream rates_;
+  RegimeStream::State rate_state_;
+  LidarInertialOdometry mapper_;
+  double rate_sigma_max_rad_s_, time_offset_s_;
+  Queue unsettled_;  ///< samples whose rates are not settled yet
+  std::optional<RateState> settled_;
+  std::optional<TimeNs> told_ns_;  ///< of the last sample that the mapper was given
+  std::size_t refused_samples_ = 0;
+};
+
+}  // namespace tumble

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "tumble/common/parameters.hpp"
+#include "tumble/odometry/odometry_pass.hpp"
+
+namespace tumble {
+
+/// What a first pass learns too late is put right by a second one over the same readings, while the first goes on.
+///
+/// The first seconds of a tumble are mapped with a lever arm, a mounting and a clock that they are only about to tell.
+/// So samples and sweeps are remembered from the end of the rest at the start on. After `after_s` of motion they are
+/// passed through again, with the rig and the calibration as learnt until then and rates that have `lag_s` ahead of
+/// them, `sweeps` sweeps for each that comes. When the second pass has caught up, its map and its pose take the place
+/// of those of the first one, unless it is lost or rejected clearly more sweeps, and what was remembered is forgotten.
+/// Poses that were given out stay: the pose moves once, by what the first pass was off, and a first pass that was lost
+/// is found.
+///
+/// Memory: samples and sweeps of `rest_s` and of at most `remembered_s` of motion, and for as long a second map. Not
+/// modelled: a third pass with what the second has learnt; a jolt that ends the rest long before the tumble.
+class SecondPass {
+ public:
+  struct Params {
+    double after_s = 3.0;        ///< of motion, after which the second pass begins; 0: there is none
+    double lag_s = 0.5;          ///< of its rates
+    std::size_t sweeps = 3;      ///< that it takes for each that comes; two at least, or it never catches up
+    double remembered_s = 10.0;  ///< where it has not caught up within this of motion it is given up
+    /// What was learnt is learnt again from the same readings: its variance counts so many times.
+    double doubt = 4.0;
+    double rest_s = 1.0;  ///< of the rest at the start that is remembered
+    /// Rest lasts while the rate stays below and the force within this of gravity.
+    double rest_rate_rad_s = 0.05;
+    double rest_force_m_s2 = 0.5;
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit(p.after_s, {"after_s", "s", 0.0, 100.0,
+                        "of motion, after which all is passed through again with what was learnt; 0: never"});
+      visit(p.lag_s, {"lag_s", "s", 0.0, 10.0, "how old a sample is there when its rate is settled"});
+      visit(p.sweeps, {"sweeps", "1", 2, 1000, "that the second pass takes for each that comes"});
+      visit(p.remembered_s, {"remembered_s", "s", 0.0, 1000.0, "motion within which the second pass has to catch up"});
+      visit(p.doubt, {"doubt", "1", 1.0, 1e6, "what was learnt is given to it with so many times its variance"});
+      visit(p.rest_s, {"rest_s", "s", 0.1, 100.0, "of the rest at the start that is remembered"});
+      visit(p.rest_rate_rad_s, {"rest_rate_rad_s", "rad/s", 0.0, 10.0, "the rest ends with a rate beyond it"});
+      visit(p.rest_force_m_s2,
+            {"rest_force_m_s2", "m/s^2", 0.0, 100.0, "and with a force that differs from gravity by more"});
+    }
+  };
+
+  /// `rate`, `mapping`: of the first pass. Throws InvalidParams on a parameter outside of its bound.
+  SecondPass(const Params& params, const RegimeStream::Params& rate, const LidarInertialOdometry::Params& mapping);
+
+  /// A sample that the first pass has taken. No allocation.
+  void remember(const ImuSample& sample);
+  /// A sweep that the first pass has registered.
+  void remember(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points, SweepVerdict verdict);
+
+  /// Goes on, after a sweep of the first pass; where it has caught up the map of `first` becomes its own.
+  void advance(OdometryPass& first);
+  /// The same to its end, where it has begun.
+  void complete(OdometryPass& first);
+  /// Forgets everything; there will be none.
+  void give_up();
+
+  bool under_way() const { return pass_.has_value(); }
+  /// Whether the map became that of the second pass.
+  bool taken() const { return taken_; }
+
+ private:
+  struct Sweep {
+    TimeNs start_ns = 0, end_ns = 0;
+    std::vector<LidarPoint> points;
+    SweepVerdict verdict = SweepVerdict::first;  ///< of the first pass
+  };
+
+  bool is_due() const;
+  bool begin(const OdometryPass& first);
+  void run(OdometryPass& first, std::size_t sweeps);
+  void take_over(OdometryPass& first);
+  RegimeStream::Params learnt_rate(const OdometryPass& first) const;
+  LidarInertialOdometry::Params learnt_mapping(const OdometryPass& first) const;
+
+  Params params_;
+  RegimeStream::Params rate_;
+  LidarInertialOdometry::Params mapping_;
+  bool wanted_, taken_ = false;
+  std::optional<TimeNs> moves_ns_;  ///< end of the rest at the start
+  OdometryPass::Queue samples_;
+  std::deque<Sweep> sweeps_;
+  std::optional<OdometryPass> pass_;
+  std::size_t next_sample_ = 0, next_sweep_ = 0;
+  std::size_t rejected_by_first_ = 0, rejected_ = 0;
+  bool lost_ = false;  ///< the second pass rejected its last sweep
+};
+
+}  // namespace tumble

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/odometry/odometry_pass.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tumble {
+
+namespace {
+
+constexpr double kRoom_s = 2.0;  // of samples that memory is kept for: more than the longest gap of a lidar
+
+/// What the stream does not know of a clipped axis, its deviation being beyond what the mapper believes at most, goes
+/// to the mapper as the reading it is, a bound: the registration estimates what is missing. A rig that is not learnt
+/// yet may extrapolate a push by tens of rad/s, and says so.
+RateState for_the_mapper(const RateState& rate, const ImuSample& sample, double sigma_max_rad_s) {
+  RateState out = rate;
+  for (int axis = 0; axis < 3; ++axis) {
+    if ((rate.clipped_axes >> axis & 1) == 0) continue;
+    if (rate.covariance_rad2_s2(axis, axis) <= sigma_max_rad_s * sigma_max_rad_s) continue;
+    out.w_WI_I_rad_s[axis] = sample.angular_velocity_rad_s[axis];
+    out.covariance_rad2_s2.row(axis).setZero();
+    out.covariance_rad2_s2.col(axis).setZero();
+    out.source = RateSource::bounded_only;
+  }
+  return out;
+}
+
+/// Samples as the stream came to see them, with the forces told that a rail hid; asked for in order of time.
+class SeenByTheStream {
+ public:
+  SeenByTheStream(std::span<const ImuSample> samples, const RateStream::State& state)
+      : samples_(samples), window_(state.window) {}
+
+  ImuSample at(TimeNs time_ns) {
+    while (next_ + 1 < samples_.size() && samples_[next_].time_ns < time_ns) ++next_;
+    while (knot_ < window_.size() && window_[knot_].observation.sample.time_ns < time_ns) ++knot_;
+    ImuSample out = samples_[next_];
+    if (knot_ < window_.size()) {
+      const unsigned railed = clip_flags({.accel = window_[knot_].observation.clipping.accel});
+      out.device_clip_flags = static_cast<std::uint8_t>(out.device_clip_flags | railed);
+    }
+    return out;
+  }
+
+ private:
+  std::span<const ImuSample> samples_;
+  std::span<const RateStream::Knot> window_;
+  std::size_t next_ = 0, knot_ = 0;
+};
+
+}  // namespace
+
+void OdometryPass::Queue::push(const ImuSample& sample) {
+  if (samples.size() == samples.capacity() && head > 0) {
+    samples.erase(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(head));
+    head = 0;
+  }
+  samples.push_back(sample);
+}
+
+void OdometryPass::Queue::drop_until(TimeNs time_ns) {
+  while (head < samples.size() && samples[head].time_ns <= time_ns) ++head;
+}
+
+OdometryPass::OdometryPass(const RegimeStream::Params& rate, const LidarInertialOdometry::Params& mapping)
+    : rates_(rate),
+      rate_state_(rates_.start()),
+      mapper_(mapping),
+      rate_sigma_max_rad_s_(mapping.rate_sigma_max_rad_s),
+      time_offset_s_(mapping.time_offset_s) {
+  const double room = std::max(rate.rate.lag_s, kRoom_s) / rate.rate.period_s;
+  unsettled_.samples.reserve(static_cast<std::size_t>(std::ceil(room)) + 16);
+}
+
+Status OdometryPass::add_imu(const ImuSample& sample) {
+  std::optional<RateState> rate;
+  if (const Status status = rates_.push(sample, rate_state_, rate); !status.ok()) return status;
+  unsettled_.push(sample);
+  if (rate && (!settled_ || rate->time_ns > settled_->time_ns)) settle(*rate);
+  return {};
+}
+
+TimeNs OdometryPass::needed_ns(TimeNs lidar_ns) const {
+  return lidar_ns + static_cast<TimeNs>(std::llround(1e9 * time_offset_s_));
+}
+
+std::optional<TimeNs> OdometryPass::covered_ns() const {
+  if (!settled_) return std::nullopt;
+  return settled_->time_ns - needed_ns(0);
+}
+
+bool OdometryPass::covers(TimeNs end_ns) const {
+  return settled_ && settled_->time_ns >= needed_ns(end_ns);
+}
+
+Status OdometryPass::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
+                               LidarInertialOdometry::SweepReport& report) {
+  return mapper_.add_sweep(start_ns, end_ns, points, report);
+}
+
+Status OdometryPass::newest(PoseState& pose) const {
+  std::vector<RateState> rates;
+  rates_.flush(rate_state_, rates);
+  std::vector<ImuSample> samples;
+  SeenByTheStream seen(unsettled_.all(), rate_state_.rate);
+  std::erase_if(rates, [&](const RateState& rate) { return told_ns_ && rate.time_ns <= *told_ns_; });
+  for (RateState& rate : rates) {
+    samples.push_back(seen.at(rate.time_ns));
+    rate = for_the_mapper(rate, samples.back(), rate_sigma_max_rad_s_);
+  }
+  return mapper_.predict(samples, rates, pose);
+}
+
+void OdometryPass::settle(const RateState& rate) {
+  const ImuSample sample = SeenByTheStream(unsettled_.all(), rate_state_.rate).at(rate.time_ns);
+  unsettled_.drop_until(rate.time_ns);
+  settled_ = rate;
+  if (told_ns_ && rate.time_ns <= *told_ns_) return;
+  told_ns_ = rate.time_ns;
+  if (!mapper_.add_imu(sample, for_the_mapper(rate, sample, rate_sigma_max_rad_s_)).ok()) ++refused_samples_;
+}
+
+void OdometryPass::settle_until(TimeNs time_ns) {
+  std::vector<RateState> rates;
+  rates_.flush(rate_state_, rates);
+  for (const RateState& rate : rates) {
+    if (settled_ && settled_->time_ns >= time_ns) return;
+    if (!settled_ || rate.time_ns > settled_->time_ns) settle(rate);
+  }
+}
+
+void OdometryPass::begin_rates(const RegimeStream::Params& rate) {
+  rates_ = RegimeStream(rate);
+  rate_state_ = rates_.start();
+}
+
+void OdometryPass::take_map(const OdometryPass& other) {
+  mapper_ = other.mapper_;
+  time_offset_s_ = other.time_offset_s_;
+  told_ns_ = other.told_ns_;
+}
+
+}  // namespace tumble

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/odometry/second_pass.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace tumble {
+
+namespace {
+
+constexpr double kBefore_s = 0.1;       // samples before the first sweep that is remembered: clocks may differ
+constexpr std::size_t kMoreShare = 20;  // so many sweeps in all allow the second pass to reject one more than the first
+constexpr std::size_t kTellsShare = 5;  // a calibration learnt with more than one in so many sweeps rejected is none
+
+/// Rails as the stream has learnt them, doubted as much as the rest.
+void start_from_rails(const KnownRails& known, double doubt, RateStream::Params& params) {
+  params.planes.known = known.planes;
+  params.accel_planes.known = known.accel_planes;
+  for (RailPlanes* const planes : {&params.planes.known, &params.accel_planes.known}) {
+    for (std::optional<RailPlane>& plane : planes->element) {
+      if (plane) plane->covariance *= doubt;
+    }
+  }
+}
+
+}  // namespace
+
+SecondPass::SecondPass(const Params& params, const RegimeStream::Params& rate,
+                       const LidarInertialOdometry::Params& mapping)
+    : params_(params), rate_(rate), mapping_(mapping), wanted_(params.after_s > 0.0) {
+  require_fields(params);
+  if (!wanted_) return;
+  const double most_s = params.rest_s + kBefore_s + params.remembered_s;
+  samples_.samples.reserve(static_cast<std::size_t>(std::ceil(most_s / rate.rate.period_s)) + 16);
+}
+
+void SecondPass::give_up() {
+  wanted_ = false;
+  pass_.reset();
+  sweeps_.clear();
+  samples_ = {};
+}
+
+void SecondPass::remember(const ImuSample& sample) {
+  if (!wanted_) return;
+  const bool rests = sample.angular_velocity_rad_s.norm() <= params_.rest_rate_rad_s &&
+                     std::abs(sample.specific_force_m_s2.norm() - mapping_.gravity_m_s2) <= params_.rest_force_m_s2;
+  if (!moves_ns_ && !rests) moves_ns_ = sample.time_ns;
+  if (!moves_ns_) {
+    const TimeNs from_ns = sample.time_ns - static_cast<TimeNs>(1e9 * params_.rest_s);
+    while (!sweeps_.empty() && sweeps_.front().start_ns < from_ns) sweeps_.pop_front();
+    samples_.drop_until(from_ns - static_cast<TimeNs>(1e9 * kBefore_s));
+  } else if (seconds(sample.time_ns - *moves_ns_) > params_.remembered_s) {
+    give_up();
+    return;
+  }
+  samples_.push(sample);
+}
+
+void SecondPass::remember(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points, SweepVerdict verdict) {
+  if (!wanted_) return;
+  sweeps_.push_back({start_ns, end_ns, std::move(points), verdict});
+  rejected_by_first_ += verdict == SweepVerdict::rejected;
+}
+
+bool SecondPass::is_due() const {
+  return wanted_ && moves_ns_ && !sweeps_.empty() && seconds(sweeps_.back().end_ns - *moves_ns_) >= params_.after_s;
+}
+
+RegimeStream::Params SecondPass::learnt_rate(const OdometryPass& first) const {
+  RegimeStream::Params out = rate_;
+  const RateStream::State& state = first.rate_state().rate;
+  out.rate.model.calibration = first.rates().rate().calibration(state);
+  out.rate.model.calibration->covariance *= params_.doubt;
+  out.rate.lag_s = std::max(params_.lag_s, rate_.rate.lag_s);
+  start_from_rails(state.rails.known, params_.doubt, out.rate);
+  return out;
+}
+
+LidarInertialOdometry::Params SecondPass::learnt_mapping(const OdometryPass& first) const {
+  LidarInertialOdometry::Params out = mapping_;
+  if (kTellsShare * rejected_by_first_ > sweeps_.size()) return out;
+  const SweepCalibration learnt = first.mapper().calibration();
+  const auto sigma = first.mapper().calibration_weight().diagonal().cwiseSqrt().eval();
+  out.T_IL = learnt.T_IL;
+  out.time_offset_s = learnt.time_offset_s;
+  out.mount_sigma_rad = sigma.head<3>().maxCoeff();
+  out.mount_sigma_m = sigma.segment<3>(3).maxCoeff();
+  out.time_offset_sigma_s = sigma[6];
+  return out;
+}
+
+bool SecondPass::begin(const OdometryPass& first) {
+  try {
+    pass_.emplace(learnt_rate(first), learnt_mapping(first));
+  } catch (const InvalidParams&) {  // what was learnt is beyond what can be
+    give_up();
+    return false;
+  }
+  next_sample_ = next_sweep_ = rejected_ = 0;
+  return true;
+}
+
+void SecondPass::advance(OdometryPass& first) {
+  if (!pass_ && (!is_due() || !begin(first))) return;
+  run(first, params_.sweeps);
+}
+
+void SecondPass::complete(OdometryPass& first) {
+  if (!pass_ && (!wanted_ || !moves_ns_ || sweeps_.empty() || !begin(first))) return;
+  run(first, std::numeric_limits<std::size_t>::max());
+  give_up();
+}
+
+void SecondPass::run(OdometryPass& first, std::size_t sweeps) {
+  // what has not the whole lag ahead of it waits for nothing: the rest goes at once
+  bool tail = false;
+  for (std::size_t taken = 0; tail || taken < sweeps; ++taken) {
+    if (next_sweep_ == sweeps_.size()) {
+      take_over(first);
+      return;
+    }
+    Sweep& sweep = sweeps_[next_sweep_++];
+    const std::span<const ImuSample> samples = samples_.all();
+    while (!pass_->covers(sweep.end_ns) && next_sample_ < samples.size()) {
+      if (!pass_->add_imu(samples[next_sample_++]).ok()) return give_up();
+    }
+    if (!pass_->covers(sweep.end_ns)) {
+      tail = true;
+      pass_->settle_until(std::max(first.settled()->time_ns, pass_->needed_ns(sweep.end_ns)));
+    }
+    if (!pass_->covers(sweep.end_ns)) {  // the clocks differ by more than the first pass knew: with the next one
+      --next_sweep_;
+      return;
+    }
+    LidarInertialOdometry::SweepReport report;
+    (void)pass_->add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, report);
+    lost_ = report.verdict == SweepVerdict::rejected;
+    rejected_ += lost_;
+    std::vector<LidarPoint>().swap(sweep.points);
+  }
+}
+
+void SecondPass::take_over(OdometryPass& first) {
+  pass_->settle_until(first.settled()->time_ns);
+  const bool first_lost = sweeps_.back().verdict == SweepVerdict::rejected;
+  if (rejected_ <= rejected_by_first_ + sweeps_.size() / kMoreShare && (!lost_ || first_lost)) {
+    first.take_map(*pass_);
+    taken_ = true;
+  }
+  give_up();
+}
+
+}  // namespace tumble

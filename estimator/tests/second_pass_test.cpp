@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/odometry/second_pass.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "thrown_body.hpp"
+#include "tumble/tumble.hpp"
+
+namespace tumble {
+namespace {
+
+using test::ThrownBody;
+
+/// A rig whose mounting and lever arm were measured as badly as their deviations say.
+TumblingOdometry::Params measured_badly(const ThrownBody& body, double after_s) {
+  TumblingOdometry::Params params;
+  params.imu.rate_hz = body.imu_hz;
+  params.lever_arm_I_m = body.lever_arm_I_m + Eigen::Vector3d(0.006, -0.006, 0.006);
+  params.T_IL.linear() = Eigen::AngleAxisd(0.015, Eigen::Vector3d(1.0, -2.0, 2.0).normalized()).toRotationMatrix();
+  params.T_IL.translation() = Eigen::Vector3d(0.005, -0.005, 0.005);
+  params.expert.again.after_s = after_s;
+  return params;
+}
+
+struct Outcome {
+  double end_m = 0.0;  ///< error where it ends
+  std::size_t sweeps = 0;
+  PoseState last;
+  bool taken_live = false;  ///< before the end of the readings
+};
+
+double error_m(const ThrownBody& body, const PoseState& pose) {
+  return (pose.p_WA_m - body.T_WI(seconds(pose.time_ns)).translation()).norm();
+}
+
+void take_all(const ThrownBody& body, TumblingOdometry& odometry, Outcome& run) {
+  while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) {
+    ++run.sweeps;
+    run.last = sweep->report.pose;
+    run.end_m = error_m(body, run.last);
+  }
+}
+
+/// Samples from `from` to `to` - 1, with the sweeps that end with them.
+void live(const ThrownBody& body, std::size_t from, std::size_t to, TumblingOdometry& odometry, Outcome& run) {
+  const std::vector<ImuSample> imu = body.imu();
+  const std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
+  for (std::size_t k = from; k < to; ++k) {
+    ASSERT_TRUE(odometry.add_imu(imu[k]).ok());
+    const TimeNs before_ns = k == 0 ? 0 : imu[k - 1].time_ns;
+    for (const ThrownBody::Sweep& sweep : sweeps) {
+      if (sweep.end_ns <= before_ns || sweep.end_ns > imu[k].time_ns) continue;
+      ASSERT_TRUE(odometry.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points).ok());
+    }
+    take_all(body, odometry, run);
+  }
+  run.taken_live = odometry.passed_again();
+}
+
+Outcome whole(const ThrownBody& body, double after_s) {
+  TumblingOdometry odometry(measured_badly(body, after_s));
+  Outcome run;
+  live(body, 0, body.imu().size(), odometry, run);
+  odometry.finish();
+  take_all(body, odometry, run);
+  return run;
+}
+
+TEST(SecondPass, PutsRightWhatWasLearntTooLate) {
+  ThrownBody body;
+  body.end_s = 4.2;  // it lies long enough for the second pass to catch up
+  const Outcome twice = whole(body, 0.9), once = whole(body, 0.0);
+  EXPECT_TRUE(twice.taken_live);
+  EXPECT_FALSE(once.taken_live) << "negative control: without it nothing is passed through again";
+  EXPECT_EQ(twice.sweeps, once.sweeps);
+  EXPECT_LT(twice.end_m, 0.7 * once.end_m);
+}
+
+TEST(SecondPass, CatchesUpWhereTheClocksDifferByMoreThanWasKnown) {
+  // the newest sweep that the first pass has registered may need a sample more by the clock that was learnt
+  for (const TimeNs off_ns : {TimeNs{-4'000'000}, TimeNs{4'000'000}}) {
+    ThrownBody body;
+    body.end_s = 4.2;
+    std::vector<ImuSample> imu = body.imu();
+    for (ImuSample& sample : imu) sample.time_ns += off_ns;
+    std::erase_if(imu, [](const ImuSample& s) { return s.time_ns <= 0; });
+    // the sample before the end of each sweep passes for one after it
+    std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
+    for (ThrownBody::Sweep& sweep : sweeps) {
+      sweep.end_ns = sweep.start_ns + 92'000'000;
+      std::erase_if(sweep.points, [](const LidarPoint& point) { return point.offset_ns > 92'000'000; });
+    }
+    TumblingOdometry odometry(measured_badly(body, 0.9));
+    std::size_t next = 1;  // a sweep that begins before the first sample has no place
+    for (const ImuSample& sample : imu) {
+      ASSERT_TRUE(odometry.add_imu(sample).ok());
+      for (; next < sweeps.size() && sweeps[next].end_ns <= sample.time_ns; ++next)
+        ASSERT_TRUE(odometry.add_sweep(sweeps[next].start_ns, sweeps[next].end_ns, sweeps[next].points).ok());
+      PoseState pose;
+      if (next > 4) {
+        ASSERT_TRUE(odometry.newest(pose).ok());
+      }
+      while (odometry.take()) continue;
+    }
+    EXPECT_TRUE(odometry.passed_again()) << off_ns;
+    EXPECT_EQ(odometry.refused_samples(), 0u) << off_ns;
+    const double learnt_s = odometry.mapper().calibration().time_offset_s;
+    EXPECT_NEAR(learnt_s, 1e-9 * double(off_ns), 0.002) << "else this test asks nothing";
+  }
+}
+
+TEST(SecondPass, ACopyMadeWhileItIsUnderWayGoesOnWithTheSameBits) {
+  const ThrownBody body;
+  const std::size_t count = body.imu().size();
+  const Outcome run = whole(body, 0.9);
+  for (const std::size_t split : {std::size_t{200}, std::size_t{255}}) {
+    Outcome parts;
+    TumblingOdometry first(measured_badly(body, 0.9));
+    live(body, 0, split, first, parts);
+    EXPECT_FALSE(first.passed_again());
+    TumblingOdometry second(first);
+    live(body, split, count, second, parts);
+    second.finish();
+    take_all(body, second, parts);
+    EXPECT_EQ(parts.sweeps, run.sweeps);
+    EXPECT_EQ(parts.last.p_WA_m, run.last.p_WA_m);
+    EXPECT_EQ(parts.last.q_WA.coeffs(), run.last.q_WA.coeffs());
+  }
+}
+
+TEST(SecondPass, AGapOfTheImuEndsIt) {
+  ThrownBody body;
+  body.end_s = 5.5;
+  std::vector<ImuSample> imu = body.imu();
+  std::erase_if(imu, [](const ImuSample& s) { return s.time_ns > 2'300'000'000 && s.time_ns < 3'500'000'000; });
+  TumblingOdometry odometry(measured_badly(body, 0.9));
+  for (const ImuSample& sample : imu) (void)odometry.add_imu(sample);
+  odometry.finish();
+  EXPECT_EQ(odometry.gaps(), 1u);
+  EXPECT_FALSE(odometry.passed_again());
+}
+
+TEST(SecondPass, RefusesParametersOutOfTheirBounds) {
+  TumblingOdometry::Params params;
+  params.expert.again.sweeps = 1;  // would never catch up
+  EXPECT_THROW(TumblingOdometry{params}, InvalidParams);
+  params = {};
+  params.expert.again.doubt = 0.5;
+  EXPECT_THROW(TumblingOdometry{params}, InvalidParams);
+}
+
+}  // namespace
+}  // namespace tumble
