@@ -7,7 +7,8 @@
 
 int main() {
   tumble::TumblingOdometry::Params params;
-  params.imu = tumble::sheets::mti30();                   // or what your data sheet says
+  params.imu = tumble::sheets::mti30();  // or what your data sheet says
+  params.lidar = tumble::sheets::rs16();
   params.lever_arm_I_m = {-0.022, -0.085, 0.055};         // from the centre of mass to the IMU, to a centimetre
   params.T_IL.translation() << 0.02014, 0.08745, 0.0398;  // lidar to IMU, to half a degree and some millimetres
   params.T_IL.linear() = Eigen::AngleAxisd(-M_PI_2, Eigen::Vector3d::UnitZ()).toRotationMatrix();

@@ -6,5 +6,6 @@
 /// tumble::odometry. The methods that they are made of have headers of their own beside this one, by what they
 /// estimate.
 #include "tumble/odometry/imu_sheet.hpp"          // IWYU pragma: export
+#include "tumble/odometry/lidar_sheet.hpp"        // IWYU pragma: export
 #include "tumble/odometry/rolling_odometry.hpp"   // IWYU pragma: export
 #include "tumble/odometry/tumbling_odometry.hpp"  // IWYU pragma: export

@@ -39,8 +39,8 @@ LidarInertialOdometry::Params mapper_params(const TumblingOdometry::Params& para
   out.mount_sigma_m = params.mount_sigma_m;
   out.time_offset_sigma_s = params.time_offset_sigma_s;
   out.gravity_m_s2 = params.gravity_m_s2;
-  out.range_min_m = params.range_min_m;
-  out.range_max_m = params.range_max_m;
+  out.range_min_m = params.lidar.range_min_m;
+  out.range_max_m = params.lidar.range_max_m;
   out.own_body_L = params.own_body_L;
   if (params.imu.accel_range_m_s2 > 0.0) out.accel_rail_m_s2 = sure_range(params.imu.accel_range_m_s2);
   return out;

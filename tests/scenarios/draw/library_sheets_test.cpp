@@ -8,6 +8,7 @@
 #include "scenarios/draw/data_sheet.hpp"
 #include "tests/tree.hpp"
 #include "tumble/odometry/imu_sheet.hpp"
+#include "tumble/odometry/lidar_sheet.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -44,6 +45,15 @@ TEST(LibrarySheets, AreThoseOfTheModels) {
                                       {sheets::mpu6050(), "mpu6050"}}) {
     const Compare found = compare(sheet, device);
     EXPECT_EQ(found.count(), 5) << device;
+    EXPECT_EQ(found.different(), 0) << device;
+  }
+}
+
+TEST(LibrarySheets, OfLidarsToo) {
+  for (const auto& [sheet, device] :
+       {std::pair{sheets::rs16(), "rs16"}, {sheets::mid40(), "mid40"}, {sheets::mid100(), "mid100"}}) {
+    const Compare found = compare(sheet, device);
+    EXPECT_EQ(found.count(), 2) << device;
     EXPECT_EQ(found.different(), 0) << device;
   }
 }

@@ -11,6 +11,7 @@
 #include "tumble/attitude/regime_stream.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/odometry/imu_sheet.hpp"
+#include "tumble/odometry/lidar_sheet.hpp"
 #include "tumble/odometry/odometry_pass.hpp"
 #include "tumble/odometry/second_pass.hpp"
 
@@ -47,8 +48,7 @@ class TumblingOdometry {
     double mount_sigma_rad = 0.01;
     double mount_sigma_m = 0.006;
     double time_offset_sigma_s = 0.003;
-    double range_min_m = 0.3;        ///< nearer returns are dropped
-    double range_max_m = 100.0;      ///< farther returns are dropped
+    LidarSheet lidar;
     Eigen::AlignedBox3d own_body_L;  ///< returns inside are the robot's own; empty: none are
     double gravity_m_s2 = 9.80665;
     double lag_s = 0.2;  ///< how old a sample is when its rate is settled

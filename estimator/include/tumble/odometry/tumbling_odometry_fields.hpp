@@ -18,8 +18,7 @@ void TumblingOdometry::Params::fields(Self& p, Visitor& visit) {
         {"mount_sigma_m", "m", 0.0, 1.0, "the lidar's position on the IMU as given; 0: exact", Rank::first});
   visit(p.time_offset_sigma_s,
         {"time_offset_sigma_s", "s", 0.0, 0.02, "offset between the clocks of lidar and IMU; 0: none", Rank::first});
-  visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "nearer returns are dropped", Rank::first});
-  visit(p.range_max_m, {"range_max_m", "m", 0.0, 1e4, "farther returns are dropped", Rank::first});
+  visit.group("", p.lidar);
   visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.0, 100.0, "strength of gravity", Rank::first});
   visit(p.lag_s, {"lag_s", "s", 0.0, 10.0, "how old a sample is when its rate is settled", Rank::first});
   visit(p.sweeps_max, {"sweeps_max", "1", 1, 1e6, "sweeps that may wait for the IMU"});

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "tumble/common/parameters.hpp"
+
+namespace tumble {
+
+/// What the data sheet of a lidar says. Returns outside of the range are dropped.
+struct LidarSheet {
+  double range_min_m = 0.3;
+  double range_max_m = 100.0;
+
+  /// Every number of it, stated once.
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "nearer returns are dropped", Rank::first});
+    visit(p.range_max_m, {"range_max_m", "m", 0.0, 1e4, "farther returns are dropped", Rank::first});
+  }
+};
+
+/// Sheets of devices that the harness has models of, with the sources of each number: models/sensors/NAME.yaml.
+namespace sheets {
+
+/// RoboSense RS-16.
+LidarSheet rs16();
+/// Livox Mid-40.
+LidarSheet mid40();
+/// Livox Mid-100.
+LidarSheet mid100();
+
+}  // namespace sheets
+
+}  // namespace tumble
