@@ -70,12 +70,20 @@ void TumbleAttitude::take_average(State& state) const {
   const double length_s = state.average.length_s;
   state.average = {};
   state.q_taken_WI.setIdentity();
-  state.at_rest = rests_.observe(reading, state.rest, state.bias_rad_s);  // attitude.md (A11)
+  state.at_rest = rests_.observe(reading, state.rest, state.bias_rad_s) && turns_by_bias_alone(state);
   integrate(reading, length_s, state);
   if (state.node_s >= params_.node_s - 0.5 * length_s) {
     predict_node(state);
     correct_node(state);
   }
+}
+
+/// attitude.md (A11a): whether the mean rate of the run is the bias, as well as both are known.
+bool TumbleAttitude::turns_by_bias_alone(const State& state) const {
+  const Eigen::Array3d off_rad_s = (state.rest.mean_rate_rad_s() - state.bias_rad_s).array();
+  const Eigen::Array3d variance =
+      state.covariance.diagonal().segment<3>(kBias).array() + squared(params_.rest_rate_sigma_rad_sqrts);  // of 1 s
+  return (off_rad_s.square() <= squared(params_.rest_rate_sigmas) * variance).all();
 }
 
 void TumbleAttitude::start(State& state) const {

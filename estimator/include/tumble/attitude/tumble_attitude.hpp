@@ -54,8 +54,11 @@ class TumbleAttitude {
                                  .rest_s = 1.0,
                                  .reading_s = 0.0,  // averages come in
                                  .memory_s = 1.0};
-    double rest_velocity_sigma_m_s = 0.005;                 ///< per node at rest
-    double rest_rate_sigma_rad_sqrts = 2e-3;                ///< of the rate measured at rest, mean over 1 s
+    double rest_velocity_sigma_m_s = 0.005;   ///< per node at rest
+    double rest_rate_sigma_rad_sqrts = 2e-3;  ///< of the rate measured at rest, mean over 1 s
+    /// At rest the mean rate is the bias to within so many deviations of what is known of both: once a bias is
+    /// measured, a body that creeps round at 0.5 deg/s turns; before, so does one with a bias beyond 1.5 deg/s.
+    double rest_rate_sigmas = 3.0;
     double radius_m = 0.0;                                  ///< of a rolling sphere on a level floor; 0: no such thing
     Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< centre to IMU, sensor axes; length up to 10
     double rolling_velocity_sigma_m_s = 0.03;               ///< per node while it grips
@@ -91,6 +94,8 @@ class TumbleAttitude {
             {"rest_velocity_sigma_m_s", "m/s", 1e-12, 10.0, "of the velocity, per node at rest"});
       visit(p.rest_rate_sigma_rad_sqrts,
             {"rest_rate_sigma_rad_sqrts", "rad/sqrt(s)", 1e-12, 1.0, "of the rate measured at rest, mean over 1 s"});
+      visit(p.rest_rate_sigmas,
+            {"rest_rate_sigmas", "1", 1.0, 1e6, "of the mean rate about the bias, as far as that is known, at rest"});
       visit(p.radius_m, {"radius_m", "m", 0.0, 10.0, "of the sphere"});
       visit(p.lever_arm_m, {"lever_arm_m", "m", -10.0, 10.0, "from the centre to the IMU, sensor axes"});
       visit(p.rolling_velocity_sigma_m_s,
@@ -136,6 +141,7 @@ class TumbleAttitude {
  private:
   void start(State& state) const;
   void take_average(State& state) const;
+  bool turns_by_bias_alone(const State& state) const;
   void integrate(const ImuSample& sample, double dt_s, State& state) const;
   void predict_node(State& state) const;
   void correct_node(State& state) const;
