@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/angular_velocity/rest_detector.hpp"
 
+#include <algorithm>
+
 #include "tumble/common/status.hpp"
 
 namespace tumble {
@@ -9,7 +11,15 @@ RestDetector::RestDetector(const Params& params) : params_(params) {
   require_fields(params);
 }
 
-bool RestDetector::observe(const ImuSample& sample, State& state) const {
+Eigen::Vector3d RestDetector::State::mean_rate_rad_s() const {
+  return weight > 0.0 ? Eigen::Vector3d((1.0 / weight) * rate_sum_rad_s) : Eigen::Vector3d::Zero();
+}
+
+Eigen::Vector3d RestDetector::State::mean_force_m_s2() const {
+  return weight > 0.0 ? Eigen::Vector3d((1.0 / weight) * force_sum_m_s2) : Eigen::Vector3d::Zero();
+}
+
+bool RestDetector::observe(const ImuSample& sample, State& state, const Eigen::Vector3d& bias_rad_s) const {
   if (state.open++ == 0) {
     state.rate_open_rad_s.setZero();
     state.force_open_m_s2.setZero();
@@ -26,34 +36,48 @@ bool RestDetector::observe(const ImuSample& sample, State& state) const {
   const double share = 1.0 / static_cast<double>(state.open);
   state.open = 0;
   state.last_reading_ns = sample.time_ns;
-  read(share * state.rate_open_rad_s, share * state.force_open_m_s2, sample.time_ns, state);
-  return state.rests;
+  return observe_mean(share * state.rate_open_rad_s, share * state.force_open_m_s2, state.open_first_ns, sample.time_ns,
+                      bias_rad_s, state);
 }
 
-void RestDetector::read(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2, TimeNs time_ns,
-                        State& state) const {
+/// attitude.md (A11).
+bool RestDetector::observe_mean(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2, TimeNs from_ns,
+                                TimeNs to_ns, const Eigen::Vector3d& bias_rad_s, State& state) const {
+  const double step_s = seconds(to_ns - state.last_mean_ns);
+  state.last_mean_ns = to_ns;
   state.rests = false;
-  if (state.count > 0) {
-    const double share = 1.0 / static_cast<double>(state.count);
+  if (state.weight > 0.0) {
+    const double share = 1.0 / state.weight;
     const double rate_off = (rate_rad_s - share * state.rate_sum_rad_s).cwiseAbs().maxCoeff();
     const double force_off = (force_m_s2 - share * state.force_sum_m_s2).cwiseAbs().maxCoeff();
-    if (rate_off > params_.rate_spread_rad_s || force_off > params_.force_spread_m_s2) state.count = 0;
+    if (rate_off > params_.rate_spread_rad_s || force_off > params_.force_spread_m_s2) state.weight = 0.0;
   }
-  if (rate_rad_s.cwiseAbs().maxCoeff() > params_.rate_max_rad_s + params_.rate_spread_rad_s ||
-      force_m_s2.norm() < params_.force_min_m_s2) {
-    state.count = 0;
-    return;
+  const double force = force_m_s2.norm();
+  if ((rate_rad_s - bias_rad_s).cwiseAbs().maxCoeff() > params_.rate_max_rad_s + params_.rate_spread_rad_s ||
+      force < params_.force_min_m_s2 || force > params_.force_max_m_s2) {
+    state.weight = 0.0;
+    state.quiet_ns = 0;
+    return false;
   }
-  if (state.count == 0) {
-    state.first_ns = state.open_first_ns;
+  if (state.weight == 0.0) {
+    state.first_ns = from_ns;
     state.rate_sum_rad_s.setZero();
     state.force_sum_m_s2.setZero();
+  } else if (seconds(to_ns - state.first_ns) > params_.memory_s) {
+    // an exponential forgetting, at which the sums arrive with the weight of one memory
+    const double keep = 1.0 - std::min(1.0, step_s / params_.memory_s);
+    state.weight *= keep;
+    state.rate_sum_rad_s *= keep;
+    state.force_sum_m_s2 *= keep;
   }
   state.rate_sum_rad_s += rate_rad_s;
   state.force_sum_m_s2 += force_m_s2;
-  ++state.count;
-  const double mean = state.rate_sum_rad_s.cwiseAbs().maxCoeff() / static_cast<double>(state.count);
-  state.rests = seconds(time_ns - state.first_ns) >= params_.rest_s && mean <= params_.rate_max_rad_s;
+  state.weight += 1.0;
+  const bool is_bias =
+      (state.rate_sum_rad_s / state.weight - bias_rad_s).cwiseAbs().maxCoeff() <= params_.rate_max_rad_s;
+  state.quiet_ns = is_bias ? to_ns - state.first_ns : 0;
+  state.rests = is_bias && seconds(state.quiet_ns) >= params_.rest_s;
+  return state.rests;
 }
 
 std::vector<bool> RestDetector::find(std::span<const ImuSample> samples) const {

@@ -34,7 +34,7 @@ void update(int index, double innovation, double variance, TumbleAttitude::State
 
 }  // namespace
 
-TumbleAttitude::TumbleAttitude(const Params& p) : params_(p) {
+TumbleAttitude::TumbleAttitude(const Params& p) : params_(p), rests_(p.rest) {
   require_fields(p);
   require_within("lever_arm_m", p.lever_arm_m.norm(), 0.0, 10.0);
 }
@@ -70,12 +70,20 @@ void TumbleAttitude::take_average(State& state) const {
   const double length_s = state.average.length_s;
   state.average = {};
   state.q_taken_WI.setIdentity();
-  detect_rest(reading, length_s, state);
+  state.at_rest = rests_.observe(reading, state.rest, state.bias_rad_s) && turns_by_bias_alone(state);
   integrate(reading, length_s, state);
   if (state.node_s >= params_.node_s - 0.5 * length_s) {
     predict_node(state);
     correct_node(state);
   }
+}
+
+/// attitude.md (A11a): whether the mean rate of the run is the bias, as well as both are known.
+bool TumbleAttitude::turns_by_bias_alone(const State& state) const {
+  const Eigen::Array3d off_rad_s = (state.rest.mean_rate_rad_s() - state.bias_rad_s).array();
+  const Eigen::Array3d variance =
+      state.covariance.diagonal().segment<3>(kBias).array() + squared(params_.rest_rate_sigma_rad_sqrts);  // of 1 s
+  return (off_rad_s.square() <= squared(params_.rest_rate_sigmas) * variance).all();
 }
 
 void TumbleAttitude::start(State& state) const {
@@ -84,18 +92,6 @@ void TumbleAttitude::start(State& state) const {
   state.covariance.diagonal().segment<2>(kVelocity).setConstant(squared(kVelocitySigmaStart_m_s));
   state.covariance.diagonal().segment<2>(kDisplacement).setConstant(squared(kDisplacementSigmaStart_m));
   state.started = true;
-}
-
-/// attitude.md (A3), (A11).
-void TumbleAttitude::detect_rest(const ImuSample& sample, double dt_s, State& state) const {
-  const double warp = low_pass_warp(params_.rest_tau_s, dt_s);
-  state.rest_rate_rad_s.advance(sample.angular_velocity_rad_s, params_.rest_tau_s, dt_s, warp);
-  state.rest_force_m_s2.advance(sample.specific_force_m_s2, params_.rest_tau_s, dt_s, warp);
-  const bool quiet = (sample.angular_velocity_rad_s - state.rest_rate_rad_s.value).norm() < params_.rest_rate_rad_s &&
-                     (sample.specific_force_m_s2 - state.rest_force_m_s2.value).norm() < params_.rest_force_m_s2 &&
-                     (state.rest_rate_rad_s.value - state.bias_rad_s).norm() < params_.rest_rate_rad_s;
-  state.rest_s = quiet ? state.rest_s + dt_s : 0.0;
-  state.at_rest = quiet && state.rest_s >= params_.rest_time_s;
 }
 
 /// attitude.md (A5).
@@ -183,8 +179,9 @@ void TumbleAttitude::correct_node(State& state) const {
     }
   }
   if (state.at_rest) {
+    const Eigen::Vector3d mean_rate_rad_s = state.rest.mean_rate_rad_s();
     for (int axis = 0; axis < 3; ++axis) {
-      update(kBias + axis, state.rest_rate_rad_s.value[axis] - state.bias_rad_s[axis],
+      update(kBias + axis, mean_rate_rad_s[axis] - state.bias_rad_s[axis],
              squared(params_.rest_rate_sigma_rad_sqrts) / h, state);
     }
   }

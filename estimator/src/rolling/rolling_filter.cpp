@@ -13,7 +13,6 @@ namespace tumble {
 
 namespace {
 
-constexpr double kSlowForceTau_s = 0.1;
 constexpr double kSlowRateTau_s = 0.3;
 constexpr double kPivots = 4.0;  // sigmas by which a rate at rest is no bias
 
@@ -21,7 +20,7 @@ static_assert(RollingFilter::kStates == rolling::kStates);
 
 }  // namespace
 
-RollingFilter::RollingFilter(const Params& p) : params_(p) {
+RollingFilter::RollingFilter(const Params& p) : params_(p), rests_(p.rest) {
   require_valid(p);
 }
 
@@ -53,7 +52,6 @@ void RollingFilter::start(const ImuSample& sample, const Eigen::Quaterniond& q_W
   state.nominal = rolling::start_nominal(params_, q_WI, rate);
   state.hypotheses[0].P = rolling::prior_covariance(params_, rate);
   state.started_in_motion = rolling::starts_in_motion(params_, rate);
-  state.slow_force_m_s2 = sample.specific_force_m_s2;
   state.last_rate_rad_s = rate;
   state.count = 1;
   state.started = true;
@@ -128,17 +126,14 @@ void RollingFilter::close_node(const Eigen::Vector3d& next_rate_rad_s, State& st
 void RollingFilter::detect_rest(State& state) const {
   const double h = state.sums.node_s;
   if (state.sums.gap_s > 0.0) {  // two readings are not the rest that may have been between them
-    state.rest_s = 0.0;
+    state.rest = {};
     state.at_rest = state.spins_in_place = false;
     return;
   }
-  const Eigen::Vector3d f_mean = state.sums.f_I_m_s / h;
-  const bool quiet = (state.sums.w_I_rad / h).norm() < params_.rest_rate_rad_s &&
-                     (f_mean - state.slow_force_m_s2).norm() < params_.rest_force_m_s2;
-  state.slow_force_m_s2 += -std::expm1(-h / kSlowForceTau_s) * (f_mean - state.slow_force_m_s2);
-  state.rest_s = quiet ? state.rest_s + h : 0.0;
-  state.at_rest = quiet && state.rest_s >= params_.rest_time_s;
   const Eigen::Vector3d w_mean = state.sums.w_I_rad / h + state.nominal.gyro_bias_rad_s;
+  const TimeNs from_ns = state.rest.last_mean_ns;  // nodes follow each other
+  state.at_rest = rests_.observe_mean(w_mean, state.sums.f_I_m_s / h, from_ns, from_ns + std::llround(1e9 * h),
+                                      state.nominal.gyro_bias_rad_s, state.rest);
   state.slow_rate_rad_s += -std::expm1(-h / kSlowRateTau_s) * (w_mean - state.slow_rate_rad_s);
   state.spins_in_place = state.at_rest && spins_in_place(state);
 }
@@ -194,8 +189,8 @@ void RollingFilter::weigh_events(State& state) {
 
 /// Whether the position that is given out stands still until the next node.
 void RollingFilter::hold(State& state) const {
-  const bool quiet =
-      state.rest_s >= std::min(rolling::kHeldAfter_s, params_.rest_time_s) && !slips(state.hypotheses[0].mode);
+  const bool quiet = seconds(state.rest.quiet_ns) >= std::min(rolling::kHeldAfter_s, params_.rest.rest_s) &&
+                     !slips(state.hypotheses[0].mode);
   const bool revised = state.hypotheses[0].parent != 0;
   const bool stands = quiet && !revised && state.v_WG_m_s.norm() < rolling::kHeldSpeed_m_s;
   if (!stands || !state.held) {

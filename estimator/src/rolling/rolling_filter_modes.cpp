@@ -239,7 +239,7 @@ void RollingFilter::correct_at_rest(State& state) const {
               return std::tuple(-a.log_weight, a.parent) < std::tuple(-b.log_weight, b.parent);
             });
   // they agree about the present, so after a while one is enough
-  const bool settled = state.rest_s > kSettled_s;
+  const bool settled = seconds(state.rest.quiet_ns) > kSettled_s;
   if (settled && state.count > 1) state.pruned_spread_m2 = position_spread(state);
   const double best = state.hypotheses[0].log_weight;
   int kept = 0;

@@ -170,7 +170,7 @@ Status RollingSmoother::step(const ImuSample& sample, State& state, std::vector<
       step.mode[k] = live.hypotheses[k].mode;
     }
     step.spread_m2 = live.pruned_spread_m2;
-    step.rest_s = live.rest_s;
+    step.rest_s = seconds(live.rest.quiet_ns);
     step.at_rest = live.at_rest;
     step.spins_in_place = live.spins_in_place;
     steps.push_back(step);
@@ -224,7 +224,7 @@ void RollingSmoother::finish(std::span<const RollingMode> known, State& state, c
 RollingSmoother::Path RollingSmoother::best_path(const State& state) const {
   Path path;
   path.nodes.resize(state.steps.size());
-  const double stands_after_s = std::min(rolling::kHeldAfter_s, params_.filter.rest_time_s);
+  const double stands_after_s = std::min(rolling::kHeldAfter_s, params_.filter.rest.rest_s);
   std::size_t which = 0;
   double lasts_s = 0.0;  // of the quiet that a node lies in
   for (std::size_t n = path.nodes.size(); n-- > 0;) {

@@ -90,6 +90,73 @@ TEST(RestDetector, ARestEndsWithItsMotion) {
   EXPECT_EQ(resting(samples), 100);
 }
 
+// A bias is what the bound of the rate is about once it is known: the same turn is rest to one who knows it for a bias.
+TEST(RestDetector, AKnownBiasIsNoTurn) {
+  const Eigen::Vector3d bias_rad_s(0.0, 0.0, 0.2);
+  std::vector<ImuSample> samples = standing(100, 5);
+  for (ImuSample& sample : samples) sample.angular_velocity_rad_s += bias_rad_s;
+  const RestDetector detector({});
+  RestDetector::State known, unknown;
+  for (const ImuSample& sample : samples) {
+    detector.observe(sample, known, bias_rad_s);
+    detector.observe(sample, unknown);
+  }
+  EXPECT_TRUE(known.rests);
+  EXPECT_FALSE(unknown.rests);
+  // a hundred readings of noise 0.0052: five deviations
+  EXPECT_LT((known.mean_rate_rad_s() - bias_rad_s - Eigen::Vector3d(-0.01, 0.0, 0.01)).cwiseAbs().maxCoeff(), 0.0026);
+}
+
+// A run that remembers all of a drift ends again and again; one that forgets sooner than the bias leaves its spread
+// goes on, and its mean is that of the bias now.
+TEST(RestDetector, AMeanThatForgetsFollowsABiasThatDrifts) {
+  constexpr double kDrift_rad_s2 = 0.002;
+  constexpr int kCount = 3000;
+  const auto drifting = [](double memory_s) {
+    const RestDetector detector({.memory_s = memory_s});
+    RestDetector::State state;
+    std::vector<ImuSample> samples = standing(kCount, 6);
+    for (ImuSample& sample : samples) {
+      sample.angular_velocity_rad_s.y() += -0.03 + kDrift_rad_s2 * seconds(sample.time_ns);
+      detector.observe(sample, state);
+    }
+    return state;
+  };
+  EXPECT_EQ(drifting(1.0).first_ns, 0);
+  EXPECT_GT(drifting(600.0).first_ns, 0);
+  // lags by the memory, 0.002 rad/s; noise of a hundred readings
+  EXPECT_NEAR(drifting(1.0).mean_rate_rad_s().y(), -0.03 + kDrift_rad_s2 * 29.0, 0.0026);
+}
+
+// Means over spans that somebody else has taken are readings by themselves, and their length counts.
+TEST(RestDetector, TakesMeans) {
+  constexpr TimeNs kNode_ns = 20'000'000;
+  const RestDetector detector({.rest_s = 0.4, .reading_s = 1.0});
+  RestDetector::State state;
+  const auto take = [&](double rate_rad_s, int k) {
+    return detector.observe_mean({rate_rad_s, 0.0, 0.0}, {0.0, 0.0, 9.8}, k * kNode_ns, (k + 1) * kNode_ns,
+                                 Eigen::Vector3d::Zero(), state);
+  };
+  for (int k = 0; k < 19; ++k) EXPECT_FALSE(take(0.01, k)) << k;
+  EXPECT_TRUE(take(0.01, 19)) << "0.4 s";
+  EXPECT_EQ(state.quiet_ns, 400'000'000);
+  EXPECT_FALSE(take(0.045, 20)) << "beyond the spread, below the largest";
+  EXPECT_EQ(state.quiet_ns, kNode_ns) << "a run of its own";
+  EXPECT_FALSE(take(0.5, 21));
+  EXPECT_EQ(state.quiet_ns, 0);
+}
+
+TEST(RestDetector, ForceBeyondGravityIsNoRest) {
+  std::vector<ImuSample> samples = standing(100, 7);
+  const auto rests = [&](double force_max_m_s2) {
+    const std::vector<bool> found = RestDetector({.force_max_m_s2 = force_max_m_s2}).find(samples);
+    return std::count(found.begin(), found.end(), true);
+  };
+  EXPECT_EQ(rests(10.3), 100);
+  for (ImuSample& sample : samples) sample.specific_force_m_s2.z() += 0.6;  // a steady push
+  EXPECT_EQ(rests(10.3), 0);
+}
+
 TEST(RestDetector, RefusesParametersOutOfBounds) {
   RestDetector::Params params;
   params.rest_s = -1.0;

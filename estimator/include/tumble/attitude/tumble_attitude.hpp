@@ -3,7 +3,7 @@
 
 #include <Eigen/Geometry>
 
-#include "tumble/attitude/low_pass.hpp"
+#include "tumble/angular_velocity/rest_detector.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/imu_average.hpp"
 #include "tumble/common/parameters.hpp"
@@ -46,13 +46,20 @@ class TumbleAttitude {
     double node_s = 0.04;                        ///< time between two corrections
     /// Readings are averaged to this length, at which all thresholds here are meant; zero: taken as they come.
     double reading_s = 4e-3;
-    double rest_tau_s = 0.5;                  ///< of the low-passes that detect rest
-    double rest_time_s = 1.0;                 ///< quiet for so long is rest
-    double rest_rate_rad_s = 3.4907e-2;       ///< 2 deg/s: quiet about the low-passed rate, and it about the bias
-    double rest_force_m_s2 = 0.5;             ///< quiet about the low-passed force
+    /// 2 deg/s about the mean, and it about the bias: room for cheap sensors, which only the bias' estimate pays for.
+    /// As a mean that forgets in half a second is what the bias is measured by, rest is known after twice that.
+    RestDetector::Params rest = {.rate_max_rad_s = 3.4907e-2,
+                                 .rate_spread_rad_s = 3.4907e-2,
+                                 .force_spread_m_s2 = 0.5,
+                                 .rest_s = 1.0,
+                                 .reading_s = 0.0,  // averages come in
+                                 .memory_s = 1.0};
     double rest_velocity_sigma_m_s = 0.005;   ///< per node at rest
     double rest_rate_sigma_rad_sqrts = 2e-3;  ///< of the rate measured at rest, mean over 1 s
-    double radius_m = 0.0;                    ///< of a rolling sphere on a level floor; 0: no such thing
+    /// At rest the mean rate is the bias to within so many deviations of what is known of both: once a bias is
+    /// measured, a body that creeps round at 0.5 deg/s turns; before, so does one with a bias beyond 1.5 deg/s.
+    double rest_rate_sigmas = 3.0;
+    double radius_m = 0.0;                                  ///< of a rolling sphere on a level floor; 0: no such thing
     Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< centre to IMU, sensor axes; length up to 10
     double rolling_velocity_sigma_m_s = 0.03;               ///< per node while it grips
     double slip_velocity_m_s = 0.12;                        ///< misfit that opens a slip, half of it closes it
@@ -82,16 +89,13 @@ class TumbleAttitude {
             {"displacement_tau_s", "s", 0.1, 1e4, "in which a displacement is forgotten", Rank::first});
       visit(p.node_s, {"node_s", "s", 1e-4, 1.0, "time between two corrections"});
       visit(p.reading_s, {"reading_s", "s", 0.0, 0.1, "readings are averaged to this length; 0: taken as they come"});
-      visit(p.rest_tau_s, {"rest_tau_s", "s", 1e-3, 1e4, "of the low-passes that detect rest"});
-      visit(p.rest_time_s, {"rest_time_s", "s", 0.0, 1e4, "quiet for so long is rest", Rank::first});
-      visit(p.rest_rate_rad_s,
-            {"rest_rate_rad_s", "rad/s", 1e-12, 1.0, "quiet: about the low-passed rate", Rank::first});
-      visit(p.rest_force_m_s2,
-            {"rest_force_m_s2", "m/s^2", 1e-12, 100.0, "quiet: about the low-passed force", Rank::first});
+      visit.group("rest_", p.rest);
       visit(p.rest_velocity_sigma_m_s,
             {"rest_velocity_sigma_m_s", "m/s", 1e-12, 10.0, "of the velocity, per node at rest"});
       visit(p.rest_rate_sigma_rad_sqrts,
             {"rest_rate_sigma_rad_sqrts", "rad/sqrt(s)", 1e-12, 1.0, "of the rate measured at rest, mean over 1 s"});
+      visit(p.rest_rate_sigmas,
+            {"rest_rate_sigmas", "1", 1.0, 1e6, "of the mean rate about the bias, as far as that is known, at rest"});
       visit(p.radius_m, {"radius_m", "m", 0.0, 10.0, "of the sphere"});
       visit(p.lever_arm_m, {"lever_arm_m", "m", -10.0, 10.0, "from the centre to the IMU, sensor axes"});
       visit(p.rolling_velocity_sigma_m_s,
@@ -117,10 +121,7 @@ class TumbleAttitude {
     Eigen::Vector3d f_W_m_s = Eigen::Vector3d::Zero();
     double turned_rad2_s = 0.0;
     double node_s = 0.0;
-    // rest
-    LowPass<3> rest_rate_rad_s;
-    LowPass<3> rest_force_m_s2;
-    double rest_s = 0.0;
+    RestDetector::State rest;
     bool at_rest = false;
     // rolling
     Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();  ///< of the last sample, without bias
@@ -140,13 +141,14 @@ class TumbleAttitude {
  private:
   void start(State& state) const;
   void take_average(State& state) const;
-  void detect_rest(const ImuSample& sample, double dt_s, State& state) const;
+  bool turns_by_bias_alone(const State& state) const;
   void integrate(const ImuSample& sample, double dt_s, State& state) const;
   void predict_node(State& state) const;
   void correct_node(State& state) const;
   bool watch_slip(const Eigen::Vector2d& misfit_m_s, State& state) const;
 
   Params params_;
+  RestDetector rests_;
 };
 
 }  // namespace tumble

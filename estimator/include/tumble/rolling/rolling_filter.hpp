@@ -72,9 +72,8 @@ class RollingFilter {
     RollingSums sums;
     ImuAverage average;                                          ///< of the readings since the last one that was taken
     Eigen::Matrix3d pruned_spread_m2 = Eigen::Matrix3d::Zero();  ///< of hypotheses given up at the last node
-    Eigen::Vector3d slow_force_m_s2 = Eigen::Vector3d::Zero();
+    RestDetector::State rest;
     Eigen::Vector3d slow_rate_rad_s = Eigen::Vector3d::Zero();
-    double rest_s = 0.0;
     bool held = false;             ///< it stands still, and so does the position that is given out
     double before_event_m2 = 0.0;  ///< horizontal variance of the position at the last node without an event
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
@@ -128,6 +127,7 @@ class RollingFilter {
   static void weigh_events(State& state);
 
   Params params_;
+  RestDetector rests_;
 };
 
 }  // namespace tumble
