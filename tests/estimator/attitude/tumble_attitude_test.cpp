@@ -69,6 +69,28 @@ TEST(TumbleAttitude, SlowTurnAfterTheBiasIsKnownIsNotRest) {
   EXPECT_NEAR(so3::log(state.q_WI).z(), turn * 15.0, 0.01);
 }
 
+// A sphere that has rolled goes on turning about its contact, slower than a detector by itself would tell: attitude.md
+// (A11a)
+TEST(TumbleAttitude, ACreepingTurnAfterTheBiasIsKnownIsNotRest) {
+  constexpr double kCreep = 0.02;  // rad/s
+  const auto after_creeping = [&](const TumbleAttitude::Params& params) {
+    const TumbleAttitude filter(params);
+    TumbleAttitude::State state;
+    for (int k = 0; k <= 5000; ++k) {
+      const double rate = k <= 1250 ? 0.0 : k <= 1750 ? 6.0 : kCreep;
+      EXPECT_TRUE(filter.step({k * kPeriod_ns, {0, 0, rate}, {0, 0, kGravity_m_s2}, 0}, state).ok());
+    }
+    return state;
+  };
+  const TumbleAttitude::State state = after_creeping({});
+  EXPECT_FALSE(state.at_rest);
+  EXPECT_NEAR(state.bias_rad_s.z(), 0.0, 1e-3);
+  // negative control: what the detector says without asking how well the bias is known
+  const TumbleAttitude::State believed = after_creeping({.rest_rate_sigmas = 1e6});
+  EXPECT_TRUE(believed.at_rest);
+  EXPECT_GT(believed.bias_rad_s.z(), 0.5 * kCreep);
+}
+
 TEST(TumbleAttitude, AnOscillationTiltsItLessThanVqf) {
   const TumbleAttitude ours({});
   const Vqf other({});
