@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace tumble::mapping {
 
@@ -28,21 +27,7 @@ std::uint8_t railed_axes(const Params& params, const ImuSample& sample) {
   return axes;
 }
 
-/// A body that is heard to be nothing but pulled down, from its first reading on. What it turns by before it is heard
-/// is lost: each axis has its part of the bound, so that the rate as a whole keeps it.
-RestDetector::Params rest_of(const Params& params) {
-  const double each_axis_rad_s = params.rest_rate_rad_s / std::numbers::sqrt3;
-  return {.rate_max_rad_s = each_axis_rad_s,
-          .rate_spread_rad_s = each_axis_rad_s,
-          .force_min_m_s2 = std::max(params.gravity_m_s2 - params.rest_force_m_s2, 0.0),
-          .force_max_m_s2 = params.gravity_m_s2 + params.rest_force_m_s2,
-          .force_spread_m_s2 = params.rest_force_m_s2,
-          .rest_s = 0.0};
-}
-
 }  // namespace
-
-InertialTrack::InertialTrack(const Params& params) : rests_(rest_of(params)) {}
 
 std::optional<TimeNs> InertialTrack::last_ns() const {
   return samples_.empty() ? border_ns_ : samples_.back().time_ns;
@@ -63,8 +48,8 @@ void InertialTrack::take(const Params& params, const ImuSample& sample, const Ra
   MotionSample next;
   next.from_ns = from_ns;
   next.time_ns = sample.time_ns;
-  listen_for_rest(params, sample, rate, next);
-  if (!next.at_rest) next.w_WI_I_rad_s = rate.w_WI_I_rad_s - initial_.gyro_bias_rad_s;
+  next.at_rest = rest_.take(params, rate.w_WI_I_rad_s, sample.specific_force_m_s2);
+  if (!next.at_rest) next.w_WI_I_rad_s = rate.w_WI_I_rad_s - rest_.rate_bias_rad_s(params);
   next.f_I_m_s2 = sample.specific_force_m_s2;
   next.rate_sigma_rad_s = believed_rate_sigma(params, rate, next.time_ns - next.from_ns);
   next.clipped_axes = static_cast<std::uint8_t>(rate.clipped_axes & kAllAxes);
@@ -105,30 +90,11 @@ bool InertialTrack::settle_force(const Params& params, const MotionSample& next)
   return true;
 }
 
-void InertialTrack::listen_for_rest(const Params& params, const ImuSample& sample, const RateState& rate,
-                                    MotionSample& next) {
-  ImuSample heard = sample;
-  heard.angular_velocity_rad_s = rate.w_WI_I_rad_s;
-  // while the rest at the start lasts its mean is the bias
-  const Eigen::Vector3d bias = initial_.lasts ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : initial_.gyro_bias_rad_s;
-  if ((rate.clipped_axes & kAllAxes) != 0) {
-    rest_ = {};
-  } else {
-    next.is_quiet = rests_.observe(heard, rest_, bias);
-    next.quiet_from_ns = rest_.first_ns;
-  }
-  if (!initial_.lasts) return;
-  if (!initial_.first_ns) initial_.first_ns = sample.time_ns;
-  initial_.lasts = next.is_quiet && next.quiet_from_ns == *initial_.first_ns;
-  next.at_rest = initial_.lasts;
-  if (initial_.lasts && seconds(rest_.quiet_ns) >= params.start.bias_rest_s) {
-    initial_.gyro_bias_rad_s = rest_.mean_rate_rad_s();
-  }
-}
-
-bool InertialTrack::rests_until(TimeNs end_ns) const {
+bool InertialTrack::rests_until(const Params& params, TimeNs end_ns) const {
   const auto rests = [&](const MotionSample& sample) {
-    return sample.from_ns >= end_ns || (sample.is_quiet && sample.quiet_from_ns <= samples_.front().time_ns);
+    return sample.from_ns >= end_ns ||
+           (sample.w_WI_I_rad_s.norm() <= params.rest_rate_rad_s && sample.clipped_axes == 0 &&
+            std::abs(sample.f_I_m_s2.norm() - params.gravity_m_s2) <= params.rest_force_m_s2);
   };
   return std::all_of(samples_.begin(), samples_.end(), rests);
 }

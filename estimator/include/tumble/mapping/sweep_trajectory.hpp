@@ -24,8 +24,6 @@ struct MotionSample {
   std::uint8_t clipped_axes = 0;                               ///< bit j: the gyro's axis j was at its rail
   std::uint8_t railed_axes = 0;                                ///< likewise the accelerometer's
   bool at_rest = false;                                        ///< belongs to the rest at the start
-  bool is_quiet = false;     ///< belongs to a rest, by the IMU alone: nothing but gravity and its bias
-  TimeNs quiet_from_ns = 0;  ///< the first sample of that rest
   bool in_flight = false;    ///< f_I_m_s2 is that of free flight, not the accelerometer's
   bool bridges_gap = false;  ///< longer than a sample: the force is not known inside, and the velocity goes on
 };
