@@ -30,6 +30,11 @@ Status check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples
   estimate.health["imu_force_share"] = plausibility.force_share(state);
   estimate.health["imu_turning_unexplained"] = plausibility.unexplained_share(state);
   if (plausibility.frozen_s(state) > 0.0) estimate.health["imu_frozen_s"] = plausibility.frozen_s(state);
+  if (const auto labels = plausibility.other_labels(state)) {
+    constexpr const char* kKeys[] = {"imu_accel_x_is", "imu_accel_y_is", "imu_accel_z_is"};
+    for (std::size_t j = 0; j < 3; ++j) estimate.health[kKeys[labels->axis[j]]] = labels->sign[j] * (1.0 + double(j));
+    if (labels->gyro_flipped) estimate.health["imu_gyro_flipped"] = 1.0;
+  }
   return told(plausibility.verdict(state), estimate);
 }
 

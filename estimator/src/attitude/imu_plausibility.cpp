@@ -69,18 +69,7 @@ void ImuPlausibility::take(State& state) const {
     const double start = state.force_start_m_s2.norm();
     state.steady = state.steady && std::abs(force.norm() - start) <= params_.steady_share * start;
     if (state.length_s >= params_.window_s - 0.5 * length_s) {
-      if (state.steady) {
-        const Eigen::Vector3d from = state.force_start_m_s2.normalized(), to = force.normalized();
-        const Eigen::Vector3d expected = state.turned.conjugate() * from;
-        const double by_force = (to - from).squaredNorm(), by_gyro = (expected - from).squaredNorm();
-        state.force_sum_m_s2 += force.norm();
-        state.windows += 1.0;
-        if (std::max(by_force, by_gyro) >= params_.turn_least_rad * params_.turn_least_rad) {
-          state.by_force_rad2 += by_force;
-          state.by_gyro_rad2 += by_gyro;
-          state.unexplained_rad2 += (to - expected).squaredNorm();
-        }
-      }
+      if (state.steady) compare(force, state);
       state.open = false;
     }
   }
@@ -93,6 +82,25 @@ void ImuPlausibility::take(State& state) const {
   }
 }
 
+/// The sums of a steady window. imu_merge.md (I16), (I18).
+void ImuPlausibility::compare(const Eigen::Vector3d& force_m_s2, State& state) const {
+  const Eigen::Vector3d from = state.force_start_m_s2.normalized(), to = force_m_s2.normalized();
+  const double by_force = (to - from).squaredNorm();
+  const double by_gyro = (state.turned.conjugate() * from - from).squaredNorm();
+  state.force_sum_m_s2 += force_m_s2.norm();
+  state.windows += 1.0;
+  if (std::max(by_force, by_gyro) < params_.turn_least_rad * params_.turn_least_rad) return;
+  state.by_force_rad2 += by_force;
+  state.by_gyro_rad2 += by_gyro;
+  const Eigen::Matrix3d back = state.turned.conjugate().toRotationMatrix(), forth = back.transpose();
+  for (std::size_t k = 0; k < state.unexplained_rad2.size(); ++k) {
+    const AxisLabels& labels = axis_labels()[k];
+    const Eigen::Vector3d renamed = labels.renamed(from);
+    const Eigen::Vector3d expected = (labels.gyro_flipped ? forth : back) * renamed;
+    state.unexplained_rad2[k] += (labels.renamed(to) - expected).squaredNorm();
+  }
+}
+
 double ImuPlausibility::force_share(const State& state) const {
   if (state.windows < params_.windows_min) return 1.0;
   return state.force_sum_m_s2 / state.windows / params_.gravity_m_s2;
@@ -101,7 +109,15 @@ double ImuPlausibility::force_share(const State& state) const {
 /// imu_merge.md (I17).
 double ImuPlausibility::unexplained_share(const State& state) const {
   const double turned = std::max(state.by_force_rad2, state.by_gyro_rad2);
-  return turned < params_.turned_min_rad2 ? 0.0 : state.unexplained_rad2 / turned;
+  return turned < params_.turned_min_rad2 ? 0.0 : state.unexplained_rad2.front() / turned;
+}
+
+/// imu_merge.md (I18).
+std::optional<AxisLabels> ImuPlausibility::other_labels(const State& state) const {
+  if (unexplained_share(state) < params_.relabelled_least) return std::nullopt;
+  const auto least = std::min_element(state.unexplained_rad2.begin(), state.unexplained_rad2.end());
+  if (*least >= params_.relabelled_share_max * state.unexplained_rad2.front()) return std::nullopt;
+  return axis_labels()[static_cast<std::size_t>(least - state.unexplained_rad2.begin())];
 }
 
 Status ImuPlausibility::verdict(const State& state) const {
@@ -114,6 +130,13 @@ Status ImuPlausibility::verdict(const State& state) const {
   }
   if (const double frozen = frozen_s(state); frozen > 0.0) {
     return {Trouble::out_of_range, "seconds for which a triad repeats one reading", frozen, params_.frozen_s};
+  }
+  if (other_labels(state)) {
+    const double least = *std::min_element(state.unexplained_rad2.begin(), state.unexplained_rad2.end());
+    return {
+        Trouble::out_of_range,
+        "turning that the gyro leaves unexplained with axes or signs named otherwise, as a share of that with these",
+        least / state.unexplained_rad2.front(), params_.relabelled_share_max};
   }
   const double unexplained = unexplained_share(state);
   if (unexplained > params_.unexplained_max) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -46,15 +47,73 @@ TEST(ImuPlausibility, ARollOfASphereIsPlausibleAtEveryRate) {
 TEST(ImuPlausibility, WrongUnitsAndAxesAreNot) {
   const auto says = [](const std::function<void(ImuSample&)>& harm) { return std::string(verdict_of(harm).field); };
   const std::string size = "steady specific force as a share of gravity",
-                    turning = "share of gravity's turning that the gyro does not explain";
+                    turning = "share of gravity's turning that the gyro does not explain",
+                    naming =
+                        "turning that the gyro leaves unexplained with axes or signs named otherwise, as a share of "
+                        "that with these";
   EXPECT_EQ(says([](ImuSample& sample) { sample.specific_force_m_s2 /= 9.80665; }), size);
   EXPECT_EQ(says([](ImuSample& sample) { sample.specific_force_m_s2 *= 9.80665; }), size);
   EXPECT_EQ(says([](ImuSample& sample) { sample.angular_velocity_rad_s *= 57.29578; }), turning);
   EXPECT_EQ(says([](ImuSample& sample) { sample.angular_velocity_rad_s /= 57.29578; }), turning);
-  EXPECT_EQ(says([](ImuSample& sample) { sample.angular_velocity_rad_s *= -1.0; }), turning);
+  EXPECT_EQ(says([](ImuSample& sample) { sample.angular_velocity_rad_s *= -1.0; }), naming);
   EXPECT_EQ(says([](ImuSample& sample) { std::swap(sample.specific_force_m_s2.x(), sample.specific_force_m_s2.y()); }),
-            turning);
+            naming);
   EXPECT_EQ(says([](ImuSample& sample) { sample.specific_force_m_s2 = {0.5, 1.0, 9.7}; }), turning);
+}
+
+ImuPlausibility::State state_of(const testing::RollingTruth& truth, const AxisLabels& named) {
+  const ImuPlausibility plausibility({});
+  ImuPlausibility::State state;
+  for (ImuSample sample : truth.samples) {
+    const Eigen::Vector3d force = sample.specific_force_m_s2;
+    // what is called axis[j] is, with its sign, what the gyro calls j
+    for (std::size_t j = 0; j < 3; ++j) {
+      sample.specific_force_m_s2[named.axis[j]] = named.sign[j] * force[static_cast<Eigen::Index>(j)];
+    }
+    if (named.gyro_flipped) sample.angular_velocity_rad_s *= -1.0;
+    plausibility.step(sample, state);
+  }
+  return state;
+}
+
+testing::RollingTruth l_roll() {
+  return testing::roll({.velocity_m_s = testing::l_shape,
+                        .contact_velocity_m_s = testing::no_slip,
+                        .q_start = so3::exp({0.1, -0.2, 0.0})});
+}
+
+TEST(ImuPlausibility, EveryOtherNamingOfTheAxesIsFound) {
+  const testing::RollingTruth truth = l_roll();
+  const ImuPlausibility plausibility({});
+  EXPECT_FALSE(plausibility.other_labels(state_of(truth, axis_labels().front())));
+  for (std::size_t k = 1; k < axis_labels().size(); ++k) {
+    const AxisLabels& named = axis_labels()[k];
+    const std::optional<AxisLabels> found = plausibility.other_labels(state_of(truth, named));
+    ASSERT_TRUE(found) << k;
+    EXPECT_EQ(found->axis, named.axis) << k;
+    EXPECT_EQ(found->sign, named.sign) << k;
+    EXPECT_EQ(found->gyro_flipped, named.gyro_flipped) << k;
+  }
+}
+
+TEST(ImuPlausibility, SwappedAxesShowThoughTheBodyRollsNearlyAlongBoth) {
+  // along x = y the axis of the roll is that which a swap of x and y leaves alone; its heading sways by `sway_rad`
+  const auto swayed = [](double sway_rad) {
+    return testing::roll({.velocity_m_s = [=](double t) -> Eigen::Vector3d {
+                            const double heading = 0.25 * 3.141592653589793 + sway_rad * std::sin(2.0 * t);
+                            return testing::minimum_jerk_speed(t, 1.0, 8.0, 4.0) *
+                                   Eigen::Vector3d(std::cos(heading), std::sin(heading), 0.0);
+                          },
+                          .contact_velocity_m_s = testing::no_slip});
+  };
+  const ImuPlausibility plausibility({});
+  const AxisLabels swapped = {{1, 0, 2}, {1.0, 1.0, 1.0}, false};
+  const ImuPlausibility::State state = state_of(swayed(0.15), swapped);
+  EXPECT_LT(plausibility.unexplained_share(state), 0.2) << "the share alone would let it pass";
+  EXPECT_FALSE(plausibility.verdict(state).ok());
+  EXPECT_TRUE(plausibility.verdict(state_of(swayed(0.15), {})).ok());
+  // of a straight way both namings say the same, and neither is called wrong
+  EXPECT_TRUE(plausibility.verdict(state_of(swayed(0.0), swapped)).ok());
 }
 
 TEST(ImuPlausibility, OfABodyAtRestOrReadingsThatAreNoneNothingIsSaid) {

@@ -3,7 +3,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
+#include <optional>
 
+#include "tumble/attitude/axis_labels.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/imu_average.hpp"
 #include "tumble/common/parameters.hpp"
@@ -17,7 +20,8 @@ namespace tumble {
 /// must explain how its direction turns, u(t + T) = R^T u(t). Three sums over such windows tell: what the gyro leaves
 /// unexplained, what turned by the force, and what turned by the gyro. An accelerometer in g, a gyro in deg/s, axes
 /// that are swapped or of which one is flipped, and a force that stands still while the body turns leave most
-/// unexplained.
+/// unexplained. A body that turns about the one axis which a wrong naming leaves alone (a sphere that rolls along x = y
+/// with x and y swapped) leaves little; but the right naming leaves less, so every naming is asked.
 ///
 /// A gyro or an accelerometer that repeats one reading to the last bit, for a second and ten times as long as ever
 /// before, is frozen: it has shown that its readings move. One that held its readings as long before (a coarse quantum
@@ -33,13 +37,15 @@ class ImuPlausibility {
     double reading_s = 0.02;     ///< readings are averaged to this length
     double steady_share = 0.12;  ///< by which the force's size may change within a window
     double force_share_min = 0.5,
-           force_share_max = 2.0;  ///< of gravity, mean of steady windows
-    double unexplained_max = 0.2;  ///< share of the turning; good rolls of a sphere leave 0.001 to 0.03
-    double turned_min_rad2 = 0.5;  ///< sum of squares below which nothing is said of it
-    double turn_least_rad = 0.15;  ///< of a window, to count as turning
-    int windows_min = 5;           ///< steady ones, to say something of the force's size
-    double gap_max_s = 0.1;        ///< after a longer one a window begins anew
-    double frozen_s = 1.0;         ///< a reading that repeats for so long may be frozen, after as long of moving ones;
+           force_share_max = 2.0;        ///< of gravity, mean of steady windows
+    double unexplained_max = 0.2;        ///< share of the turning; good rolls of a sphere leave 0.001 to 0.03
+    double relabelled_share_max = 0.33;  ///< of what the naming at hand leaves unexplained, by a better one
+    double relabelled_least = 0.01;      ///< unexplained share from which on namings are compared
+    double turned_min_rad2 = 0.5;        ///< sum of squares below which nothing is said of it
+    double turn_least_rad = 0.15;        ///< of a window, to count as turning
+    int windows_min = 5;                 ///< steady ones, to say something of the force's size
+    double gap_max_s = 0.1;              ///< after a longer one a window begins anew
+    double frozen_s = 1.0;  ///< a reading that repeats for so long may be frozen, after as long of moving ones;
 
     double frozen_share = 10.0;  ///< and lasts so many times longer than any did before
 
@@ -54,6 +60,11 @@ class ImuPlausibility {
       visit(p.force_share_max, {"force_share_max", "1", 1.0, 1e6, "of gravity, largest mean of steady windows"});
       visit(p.unexplained_max,
             {"unexplained_max", "1", 1e-12, 10.0, "share of the turning; good rolls of a sphere leave 0.001 to 0.03"});
+      visit(p.relabelled_share_max,
+            {"relabelled_share_max", "1", 0.0, 1.0,
+             "of what axes as they are named leave unexplained: axes named otherwise leave less"});
+      visit(p.relabelled_least,
+            {"relabelled_least", "1", 0.0, 1.0, "unexplained share from which on namings of the axes are compared"});
       visit(p.turned_min_rad2,
             {"turned_min_rad2", "rad^2", 1e-12, 1e6, "sum of squares below which nothing is said of it"});
       visit(p.turn_least_rad, {"turn_least_rad", "rad", 1e-12, 3.0, "of a window, to count as turning"});
@@ -79,7 +90,8 @@ class ImuPlausibility {
     double length_s = 0.0;
     bool open = false, steady = false;
     double force_sum_m_s2 = 0.0, windows = 0.0;
-    double unexplained_rad2 = 0.0, by_force_rad2 = 0.0, by_gyro_rad2 = 0.0;
+    std::array<double, kAxisLabels> unexplained_rad2{};  ///< by how axes are named; the first: as they are
+    double by_force_rad2 = 0.0, by_gyro_rad2 = 0.0;
     TimeNs last_time_ns = 0;
     bool started = false;
     bool operator==(const State&) const = default;
@@ -95,13 +107,16 @@ class ImuPlausibility {
   double force_share(const State& state) const;
   /// Share of the turning that the gyro does not explain; 0 while nothing is known.
   double unexplained_share(const State& state) const;
+  /// How axes are named where gravity turns with the gyro, when they clearly are not as they say (I18).
+  std::optional<AxisLabels> other_labels(const State& state) const;
   /// Longest time for which the gyro or the accelerometer was frozen [s]; 0: never.
   double frozen_s(const State& state) const { return std::max(state.gyro.frozen_s, state.accel.frozen_s); }
-  /// `out_of_range` naming which of the three is out of its bound.
+  /// `out_of_range` naming which of these is out of its bound.
   Status verdict(const State& state) const;
 
  private:
   void take(State& state) const;
+  void compare(const Eigen::Vector3d& force_m_s2, State& state) const;
   void hold(const Eigen::Vector3d& reading, double dt_s, Hold& hold) const;
 
   Params params_;
