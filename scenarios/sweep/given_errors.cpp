@@ -17,8 +17,8 @@ namespace {
 constexpr std::uint8_t kGyroFlags = 0b000111;
 
 Eigen::Vector3d direction(sim::Stream& stream) {
-  const Eigen::Vector3d vector(stream.normal(), stream.normal(), stream.normal());
-  return vector.normalized();
+  const double z = stream.normal(), y = stream.normal(), x = stream.normal();
+  return Eigen::Vector3d(x, y, z).normalized();
 }
 
 Eigen::Vector3d direction(const sim::Situation& situation, const char* name) {

@@ -35,7 +35,8 @@ Eigen::Vector3d draw_place(std::span<const Eigen::Vector3d> way, double nearest_
   double best_m = -1.0;
   for (int i = 0; i < kTries && best_m < nearest_m; ++i) {
     const auto k = static_cast<std::size_t>(stream.uniform() * static_cast<double>(way.size()));
-    const Eigen::Vector3d place = way[k] + stream.uniform(nearest_m, farthest_m) * random_direction(stream);
+    const Eigen::Vector3d direction = random_direction(stream);
+    const Eigen::Vector3d place = way[k] + stream.uniform(nearest_m, farthest_m) * direction;
     const double distance_m = distance_to_way(way, place);
     if (distance_m <= best_m) continue;
     best = place;

@@ -68,7 +68,8 @@ Vector3d as_float(const Vector3d& v) {
 Vector3d origin_above_ground(const EngineRays& rays, double half_extent_m, Stream& stream) {
   constexpr double kAbove_m = 50.0;
   const double reach_m = 0.85 * half_extent_m;
-  Vector3d origin(stream.uniform(-reach_m, reach_m), stream.uniform(-reach_m, reach_m), kAbove_m);
+  const double y_m = stream.uniform(-reach_m, reach_m), x_m = stream.uniform(-reach_m, reach_m);
+  Vector3d origin(x_m, y_m, kAbove_m);
   const EngineRays::Hit ground = rays.cast(origin, -Vector3d::UnitZ());
   const double height_m = stream.uniform(0.2, 3.0);
   origin.z() = (ground.range_m >= 0.0 ? kAbove_m - ground.range_m : 0.0) + height_m;
@@ -77,12 +78,13 @@ Vector3d origin_above_ground(const EngineRays& rays, double half_extent_m, Strea
 
 /// A place near where the robot begins: under a ceiling, where there is one.
 Vector3d origin_near_start(const Vector3d& start_W_m, Stream& stream) {
-  return as_float(start_W_m + Vector3d(stream.uniform(-1.5, 1.5), stream.uniform(-1.5, 1.5), stream.uniform(0.1, 1.5)));
+  const double z_m = stream.uniform(0.1, 1.5), y_m = stream.uniform(-1.5, 1.5), x_m = stream.uniform(-1.5, 1.5);
+  return as_float(start_W_m + Vector3d(x_m, y_m, z_m));
 }
 
 Vector3d random_direction(Stream& stream) {
-  const Vector3d direction = Vector3d(stream.normal(), stream.normal(), stream.normal()).normalized();
-  return as_float(direction);
+  const double z = stream.normal(), y = stream.normal(), x = stream.normal();
+  return as_float(Vector3d(x, y, z).normalized());
 }
 
 void set_ray(RayPacket& packet, int lane, const Vector3d& origin_m, const Vector3d& direction) {

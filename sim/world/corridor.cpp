@@ -53,7 +53,8 @@ class Side {
       if (which < 0.45) {
         add_recess(0.95, stream_.uniform(0.16, 0.5) * values_.at("niche_depth_m"), kDoor, true);
       } else if (which < 0.7) {
-        add_recess(stream_.uniform(0.6, 1.4), stream_.uniform(0.5, 1.0) * values_.at("niche_depth_m"), kWall, false);
+        const double depth_m = stream_.uniform(0.5, 1.0) * values_.at("niche_depth_m");
+        add_recess(stream_.uniform(0.6, 1.4), depth_m, kWall, false);
       } else {
         add_pillar();
       }
@@ -126,9 +127,10 @@ void add_beams(mjSpec* spec, engine::World& world, const Values& values, Stream&
   const double half_m = values.at("length_m") / 2;
   for (int i = 0; i < static_cast<int>(values.at("beam_count")); ++i) {
     const double half_drop_m = stream.uniform(0.06, 0.15);
+    const double half_length_m = stream.uniform(0.05, 0.15), x_m = stream.uniform(-half_m, half_m);
     mjsGeom* geom = add_surface(spec, world, "beam_" + std::to_string(i), mjGEOM_BOX,
-                                {stream.uniform(-half_m, half_m), 0.0, values.at("wall_height_m") - half_drop_m},
-                                {stream.uniform(0.05, 0.15), values.at("half_width_m"), half_drop_m}, 0.0, kPillar);
+                                {x_m, 0.0, values.at("wall_height_m") - half_drop_m},
+                                {half_length_m, values.at("half_width_m"), half_drop_m}, 0.0, kPillar);
     geom->group = kUnseenInPictures;
   }
 }

@@ -44,7 +44,8 @@ void add_furniture(mjSpec* spec, engine::World& world, const Values& values, Str
   }
   for (int i = 0; i < static_cast<int>(values.at("box_count")); ++i) {
     const Eigen::Vector2d at = place();
-    const Eigen::Vector3d size(stream.uniform(0.15, 0.4), stream.uniform(0.15, 0.4), stream.uniform(0.15, 0.5));
+    const double half_z_m = stream.uniform(0.15, 0.5), half_y_m = stream.uniform(0.15, 0.4);
+    const Eigen::Vector3d size(stream.uniform(0.15, 0.4), half_y_m, half_z_m);
     add_surface(spec, world, "box_" + std::to_string(i), mjGEOM_BOX, {at.x(), at.y(), size.z()}, size,
                 stream.uniform(0.0, std::numbers::pi), {0.7f, 0.55f, 0.38f, 1.0f});
   }
@@ -55,8 +56,9 @@ void add_shelves(mjSpec* spec, engine::World& world, const Values& values, Strea
   const double half_m = values.at("room_half_m");
   for (int i = 0; i < static_cast<int>(values.at("shelf_count")); ++i) {
     const double yaw = i % 4 * std::numbers::pi / 2;
-    const Eigen::Vector3d size(stream.uniform(0.15, 0.3), stream.uniform(0.4, 1.0),
-                               std::min(stream.uniform(0.4, 1.0), values.at("wall_height_m") / 2));
+    const double half_z_m = std::min(stream.uniform(0.4, 1.0), values.at("wall_height_m") / 2);
+    const double half_y_m = stream.uniform(0.4, 1.0);
+    const Eigen::Vector3d size(stream.uniform(0.15, 0.3), half_y_m, half_z_m);
     const double out_m = half_m - size.x(), along_m = stream.uniform(-1.0, 1.0) * (half_m - size.y());
     add_surface(
         spec, world, "shelf_" + std::to_string(i), mjGEOM_BOX,

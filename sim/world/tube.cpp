@@ -96,7 +96,8 @@ void add_ends(mjSpec* spec, engine::World& world, const Values& values, double h
 void add_rocks(mjSpec* spec, engine::World& world, const Values& values, Stream& stream) {
   const double half_m = values.at("length_m") / 2 - 0.5, clear_m = values.at("clear_half_width_m");
   for (int i = 0; i < static_cast<int>(values.at("rock_count")); ++i) {
-    const Eigen::Vector3d size(stream.uniform(0.08, 0.3), stream.uniform(0.08, 0.3), stream.uniform(0.06, 0.22));
+    const double half_z_m = stream.uniform(0.06, 0.22), half_y_m = stream.uniform(0.08, 0.3);
+    const Eigen::Vector3d size(stream.uniform(0.08, 0.3), half_y_m, half_z_m);
     const double x_m = stream.uniform(-half_m, half_m);
     const double side = stream.uniform() < 0.5 ? -1.0 : 1.0;
     const double widest_m = std::max(values.at("half_width_m"), clear_m + 0.4);

@@ -243,8 +243,8 @@ TEST(RateStream, AllocatesNothingPerSample) {
   for (const ImuSample& sample : of_planes) ASSERT_TRUE(method.push(sample, other, one).ok());
   EXPECT_EQ(allocations, between);
   EXPECT_TRUE(other.rails.known.planes.any());
-  const std::vector<int> control(3);  // the counter does count
-  EXPECT_EQ(allocations, between + control.size() / 3);
+  ::operator delete(::operator new(3));  // the counter does count; a compiler may leave out what `new` asks for
+  EXPECT_EQ(allocations, between + 1);
 }
 
 TEST(RateStream, ARunWithoutClippingReturnsTheGyro) {

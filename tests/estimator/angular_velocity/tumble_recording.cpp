@@ -36,9 +36,10 @@ class Motion {
  public:
   explicit Motion(const TumbleOptions& options) : options_(options), noise_(options.seed) {
     oracles::Gaussian mounting(options.mounting_seed);
-    R_IB_ = Eigen::AngleAxisd(3.0 * mounting.uniform(), direction(mounting)).toRotationMatrix();
+    const Vector3d axis = direction(mounting);
+    R_IB_ = Eigen::AngleAxisd(3.0 * mounting.uniform(), axis).toRotationMatrix();
     still(0.6);
-    Vector3d rate = noise_.uniform(options.speed_low_rad_s, options.speed_high_rad_s) * direction(noise_);
+    Vector3d rate = within(options.speed_low_rad_s, options.speed_high_rad_s);
     blend(Vector3d::Zero(), rate, 0.2, Phase::push, 8.0 * direction(noise_));
     for (int i = 0; i < options.flights; ++i) {
       rate = fly(rate, noise_.uniform(0.2, 0.5));
@@ -56,6 +57,12 @@ class Motion {
   Eigen::Matrix3d inertia() const { return R_IB_ * options_.moments.asDiagonal() * R_IB_.transpose(); }
 
  private:
+  // A vector of any direction and of a length between two bounds. Its direction is drawn first and in a statement of
+  // its own: of the factors of a product each compiler takes another first.
+  Vector3d within(double low, double high, double unit = 1.0) {
+    const Vector3d towards = direction(noise_);
+    return noise_.uniform(low, high) * unit * towards;
+  }
   void add(const Vector3d& rate, const Vector3d& force, Phase phase) {
     moments_.push_back({rate, force, phase});
     const Vector3d turn = kStep * rate;
@@ -67,8 +74,8 @@ class Motion {
   Vector3d after_impact(const Vector3d& rate, Vector3d& peak_force) {
     Vector3d next;
     do {
-      peak_force = noise_.uniform(0.33, 1.0) * options_.impact_m_s2 * direction(noise_);
-      const Vector3d lever = noise_.uniform(0.0, kLeverMax) * direction(noise_);
+      peak_force = within(0.33, 1.0, options_.impact_m_s2);
+      const Vector3d lever = within(0.0, kLeverMax);
       // trace of the inertia over three is the unit in which the lever is given
       const Eigen::Matrix3d J = inertia() * 3.0 / options_.moments.sum();
       next = rate + J.inverse() * lever.cross(peak_force) * kImpactTime * 2.0 / std::numbers::pi;

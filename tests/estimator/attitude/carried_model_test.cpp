@@ -23,7 +23,8 @@ struct Point {
 };
 
 Vector3d draw(oracles::Gaussian& noise, double size) {
-  return size * Vector3d(noise(), noise(), noise());
+  const double z = noise(), y = noise(), x = noise();
+  return size * Vector3d(x, y, z);
 }
 
 Node random_node(oracles::Gaussian& noise) {

@@ -119,8 +119,8 @@ TEST(CarriedReadings, TheJerkThatReadingsShowIsThatOfTheMotion) {
     Vector3d sum = Vector3d::Zero(), centre = Vector3d::Zero();
     for (int i = 0; i < kParts; ++i) {
       // pulled back slowly, so that the rate stays bounded; the jerk of that is small
-      acceleration +=
-          kJerk * std::sqrt(step_s) * Vector3d(noise(), noise(), noise()) - step_s * (0.2 * acceleration + 0.1 * rate);
+      const double z = noise(), y = noise(), x = noise();
+      acceleration += kJerk * std::sqrt(step_s) * Vector3d(x, y, z) - step_s * (0.2 * acceleration + 0.1 * rate);
       rate += step_s * acceleration;
       sum += rate;
       if (i == kParts / 2) centre = rate;

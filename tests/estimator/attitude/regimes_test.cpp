@@ -38,7 +38,8 @@ struct Motion {
       const Vector3d alpha(2.0 * std::cos(2.0 * t), -1.8 * std::sin(3.0 * t), 0.0);
       const Vector3d turning = alpha.cross(kLever_m) + w.cross(w.cross(kLever_m));
       const Vector3d up(0.2, std::sin(11.0 * t), std::cos(11.0 * t));
-      const Vector3d random(noise(gen), noise(gen), noise(gen));
+      const double z = noise(gen), y = noise(gen), x = noise(gen);
+      const Vector3d random(x, y, z);
       if (regime == Regime::carried) sample.specific_force_m_s2 = kG * up.normalized() + push_m_s2 * random;
       if (regime == Regime::flight) sample.specific_force_m_s2 = turning + 0.05 * random;
       if (regime == Regime::contact) sample.specific_force_m_s2 = turning + push_m_s2 * random;

@@ -168,7 +168,8 @@ TEST_F(ReplaceFile, AFolderIsFreshOrRefusedAndGoesWithoutBeingKept) {
     export_ros1_bag(recording.sensors, {0, &recording.truth}, folder / "a.bag");
   });
   std::cerr << message;
-  std::exit(message.empty() || !std::filesystem::is_empty(folder) ? 1 : 0);
+  // without the look for leaks at the end of a program: the library leaves its buffers where its file can't be closed
+  std::_Exit(message.empty() || !std::filesystem::is_empty(folder) ? 1 : 0);
 }
 
 // the library closes the file in its destructor and throws from there
