@@ -30,7 +30,7 @@ _HEADERS = {
     "csignal": "signal",
     "cstdint": "int8_t int16_t int32_t int64_t uint8_t uint16_t uint32_t uint64_t uintmax_t",
     "cstdio": "fflush fgets fprintf fputs fread freopen fwrite printf setvbuf snprintf",
-    "cstdlib": "abort atof atoi exit free getenv llabs malloc realloc strtod strtol strtoull system",
+    "cstdlib": "_Exit abort atof atoi exit free getenv llabs malloc realloc strtod strtol strtoull system",
     "cstring": "memcpy strerror strlen",
     "ctime": "clock clock_t",
     "deque": "deque",
