@@ -20,9 +20,9 @@ const Settings<CarriedSmoother::Params>& carried_settings();
 
 /// Signs of the elements that stand at a rail, per sample: flags of the device, plateaus and tilted planes found in the
 /// readings. `rows` of the result are those of the planes, the axes themselves where none was seen; it refers to
-/// `signs`.
+/// `signs`. `near`: bits of may_meet_rails(), where asked for.
 ClippedElements find_clipped(const sim::ImuRecord& record, std::span<const ImuSample> samples,
-                             std::vector<ClipSigns>& signs);
+                             std::vector<ClipSigns>& signs, std::vector<std::uint8_t>* near = nullptr);
 
 /// Runs the smoother over the primary IMU. `doubted_axes`: of each sample the axes whose readings may stand at a rail
 /// that was not seen, which are bounds then, or none. Trouble: that of the record and of the smoother; the outputs are

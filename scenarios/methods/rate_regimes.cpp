@@ -14,20 +14,26 @@ namespace {
 constexpr double kMatters = 0.02;  // a share of the carried body below this changes nothing worth a run
 constexpr double kNear_s = 0.1;    // clipped samples so close belong to one stretch, and what is so close about it
 
+/// Whether a reading is clipped or doubted; one that only may have met its rail in a part of its window is read.
+bool unread(const RateReport& report, const RateState& rate, std::size_t k) {
+  return rate.clipped_axes != 0 || report.doubted_axes[k] != 0;
+}
+
 /// Probability that the body was carried throughout the stretch of clipped or doubted samples that a sample lies in or
 /// near to; 0 away from all. Where a stretch begins in a hand and ends in flight, the flight tells its rate.
-std::vector<double> carried_stretches(std::span<const RegimeShares> shares, std::span<const RateState> rates) {
+std::vector<double> carried_stretches(std::span<const RegimeShares> shares, const RateReport& report,
+                                      std::span<const RateState> rates) {
   std::vector<double> out(rates.size(), 0.0);
   const TimeNs near_ns = static_cast<TimeNs>(1e9 * kNear_s);
   for (std::size_t k = 0; k < rates.size();) {
-    if (rates[k].source == RateSource::measured) {
+    if (!unread(report, rates[k], k)) {
       ++k;
       continue;
     }
     std::size_t first = k, last = k;
     double least = 1.0;
     for (; k < rates.size() && rates[k].time_ns <= rates[last].time_ns + near_ns; ++k)
-      if (rates[k].source != RateSource::measured) last = k;
+      if (unread(report, rates[k], k)) last = k;
     for (std::size_t i = first; i <= last; ++i) least = std::min(least, shares[i].carried);
     const TimeNs from_ns = rates[first].time_ns - near_ns, to_ns = rates[last].time_ns + near_ns;
     while (first > 0 && rates[first - 1].time_ns >= from_ns) --first;
@@ -57,7 +63,7 @@ void join_regimes(const sim::Sensors& sensors, std::span<const ImuSample> sample
   health["regime_flight_share"] = flight;
   health["regime_contact_share"] = contact;
   health["regime_carried_share"] = carried;
-  const std::vector<double> by_stretch = carried_stretches(shares, rates);
+  const std::vector<double> by_stretch = carried_stretches(shares, report, rates);
   const double clipped = *std::max_element(by_stretch.begin(), by_stretch.end());
   health["regime_carried_clipped_max"] = clipped;
   health["regime_carried_asked"] = 0.0;

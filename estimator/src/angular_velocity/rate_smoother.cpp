@@ -6,6 +6,7 @@
 
 #include "element_clipping.hpp"
 #include "rate_rounds.hpp"
+#include "tumble/angular_velocity/near_rails.hpp"
 #include "tumble/angular_velocity/recording_check.hpp"
 #include "tumble/angular_velocity/sample_hold.hpp"
 #include "unseen_rails.hpp"
@@ -198,6 +199,8 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
     covariances[k] = fit.model.reported(covariance, observations[k], solution.estimates[k]);
   });
   std::vector<RateState> states(samples.size());
+  const std::vector<std::uint8_t> near =
+      may_meet_rails(samples, health.rails_upright ? RailPlanes{} : planes);  // upright ones show to the bit
   std::size_t in_flight = 0;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const RateEstimate& estimate = solution.estimates[k];
@@ -206,6 +209,7 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
     state.time_ns = samples[k].time_ns;
     state.clipped_axes = clippings[k].gyro | clippings[k].void_gyro;
     state.source = rate_source(observations[k], estimate, state.covariance_rad2_s2, params_.recovered_sigma_rad_s);
+    if (near[k] != 0 && state.source == RateSource::measured) state.source = RateSource::bounded_only;
     count(state, health);
     health.void_readings += clippings[k].void_gyro != 0;
     health.doubted_axes.push_back(static_cast<std::uint8_t>(observations[k].may_hide() & ~state.clipped_axes));

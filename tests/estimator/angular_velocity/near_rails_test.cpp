@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Readings that are free, but whose windows may have met the rail.
+#include "tumble/angular_velocity/near_rails.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace tumble {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kRail_rad_s = 7.3, kWindow_s = 0.01, kTolerance_rad_s = 0.01;
+
+// The rail of element x, seen on both sides; the row leans on z.
+RailPlanes planes(double slope = -0.02) {
+  RailPlane plane;
+  plane.row = Vector3d(1.0, 0.0, slope);
+  plane.distance_rad_s = kRail_rad_s;
+  plane.samples = {20, 20};
+  plane.tolerance_rad_s = kTolerance_rad_s;
+  RailPlanes out;
+  out.element[0] = plane;
+  return out;
+}
+
+struct Twirl {
+  std::vector<ImuSample> samples;
+  std::vector<double> lost_rad_s;  // what the window of each lost
+};
+
+// Means over windows of a rate about x that swings with `amplitude` at so many Hz; each `times` said.
+Twirl twirl(double amplitude_rad_s, double hz, int times = 1) {
+  constexpr int kParts = 200;
+  constexpr double kTwoPi = 6.283185307179586;
+  Twirl out;
+  for (int k = 0; k < 400; ++k) {
+    double read = 0.0, whole = 0.0;
+    for (int i = 0; i < kParts; ++i) {
+      const double rate = amplitude_rad_s * std::sin(kTwoPi * hz * kWindow_s * (k + (i + 0.5) / kParts));
+      read += std::clamp(rate, -kRail_rad_s, kRail_rad_s) / kParts;
+      whole += rate / kParts;
+    }
+    for (int i = 0; i < times; ++i) {
+      ImuSample sample;
+      sample.angular_velocity_rad_s = Vector3d(read, 0.0, 0.0);
+      out.samples.push_back(sample);
+      out.lost_rad_s.push_back(std::abs(whole - read));
+    }
+  }
+  return out;
+}
+
+// A window that met the rail in a part lost something and reads short of it: each of them is told, and few besides.
+TEST(NearRails, EachWindowThatMetTheRailInAPartIsTold) {
+  for (const double hz : {0.7, 1.3, 2.9, 5.3}) {
+    for (const int times : {1, 2}) {
+      const Twirl motion = twirl(9.0, hz, times);
+      const RailPlanes known = planes();
+      const std::vector<std::uint8_t> near = may_meet_rails(motion.samples, known);
+      std::size_t in_part = 0, told = 0, besides = 0;
+      for (std::size_t k = 0; k < near.size(); ++k) {
+        const Vector3d& reading = motion.samples[k].angular_velocity_rad_s;
+        if (known.element[0]->holds(reading, reading.x() < 0.0 ? -1 : 1)) continue;
+        const bool lost = motion.lost_rad_s[k] > 1e-6;
+        in_part += lost ? 1 : 0;
+        told += lost && near[k] == 1 ? 1 : 0;
+        besides += !lost && near[k] != 0 ? 1 : 0;
+      }
+      EXPECT_GT(in_part, 0u) << hz;
+      EXPECT_EQ(told, in_part) << hz;
+      // two at most on either side of a stretch, of which there are two in each swing
+      EXPECT_LE(besides, static_cast<std::size_t>(4.0 * times * (2.0 * hz * 4.0 + 1.0))) << hz;
+    }
+  }
+}
+
+// What turns about well below the rail, or slowly close to it, was measured.
+TEST(NearRails, WhatStaysBelowTheRailIsMeasured) {
+  const auto none = [](const std::vector<std::uint8_t>& near) {
+    return std::all_of(near.begin(), near.end(), [](std::uint8_t bits) { return bits == 0; });
+  };
+  EXPECT_TRUE(none(may_meet_rails(twirl(0.96 * kRail_rad_s, 2.9).samples, planes())));
+  EXPECT_TRUE(none(may_meet_rails(twirl(0.98 * kRail_rad_s, 0.2).samples, planes())));
+  // control: fast, and as high
+  EXPECT_FALSE(none(may_meet_rails(twirl(0.98 * kRail_rad_s, 2.9).samples, planes())));
+}
+
+TEST(NearRails, ARailThatWasNotSeenIsNotMet) {
+  const Twirl motion = twirl(9.0, 2.9);
+  for (const std::uint8_t bits : may_meet_rails(motion.samples, {})) EXPECT_EQ(bits, 0);
+  RailPlanes one_sided = planes();
+  one_sided.element[0]->samples = {0, 20};
+  const std::vector<std::uint8_t> near = may_meet_rails(motion.samples, one_sided);
+  int positive = 0;
+  for (std::size_t k = 0; k < near.size(); ++k) {
+    const bool negative = motion.samples[k].angular_velocity_rad_s.x() < 0.0;
+    EXPECT_TRUE(near[k] == 0 || !negative) << k;
+    positive += near[k];
+  }
+  EXPECT_GT(positive, 0);
+}
+
+// The distance is that to the plane, not to a wall: motion beside moves it.
+TEST(NearRails, TheRailIsThePlane) {
+  std::vector<ImuSample> samples(3);
+  for (std::size_t k = 0; k < samples.size(); ++k)
+    samples[k].angular_velocity_rad_s = Vector3d(k == 1 ? 7.0 : 6.5, 0.0, 4.0);
+  EXPECT_EQ(may_meet_rails(samples, planes(-0.01))[1], 1);
+  EXPECT_EQ(may_meet_rails(samples, planes(-0.1))[1], 0);
+}
+
+}  // namespace
+}  // namespace tumble
