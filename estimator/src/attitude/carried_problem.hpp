@@ -36,13 +36,21 @@ struct Collected {
   Windows samples;
   GyroReadings rates;
   std::vector<NodeReadings> nodes;  ///< at equal times from the first sample's centre
-  /// Root density of the angular jerk that the free readings about each node show [rad/s^3 sqrt(s)]; 0: none is there.
+  /// Root density of the angular jerk that the readings about each node show [rad/s^3 sqrt(s)]; 0: none is there.
   std::vector<double> jerk;
 };
 
 /// Sums the readings by node. O(N).
 Collected collect(const CarriedSmoother::Params& params, std::span<const ImuSample> samples,
                   const ClippedElements& clipped);
+
+inline constexpr double kLongest = 1.5;  ///< periods: the longest window
+
+/// The root density of the angular jerk about each of `nodes` nodes as readings show it [rad/s^3 sqrt(s)]: where they
+/// are free by how they bend, across what an element hides by how its slope has changed meanwhile; 0 where none tells.
+/// carried.md (C37), (C39). O(N).
+std::vector<double> seen_jerk(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s, double node_s,
+                              std::size_t nodes);
 
 /// Rates with the clipped stretches of each element replaced by cubics: value and slope continued from both sides, held
 /// beyond the rail and within kFillMost of it.

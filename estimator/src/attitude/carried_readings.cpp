@@ -44,7 +44,6 @@ double since_s(std::span<const ImuSample> samples, std::size_t from, std::size_t
   return seconds(samples[to].time_ns - samples[from].time_ns);
 }
 
-constexpr double kLongest = 1.5;  // periods: the longest window
 constexpr double kSteady = 0.9;   // agreement of a steady clock from which on repeated readings are believed to be held
 constexpr double kSlowest = 10.0;  // steps of the log: what repeats itself longer stands still, is blind or frozen
 // Of the period: deviation of a centre that lies evenly between the window's end and its middle, 1/(4 sqrt(3)).
@@ -52,8 +51,6 @@ constexpr double kOpenShare = 0.144;
 // Nodes: longer windows may have met the rail in a part. Measured: those of 20 ms of the pendulums did, of the wand's,
 // of 10 ms, none does that shows.
 constexpr double kLongWindow = 1.5;
-// Of q P^3: the variance of a second difference; and the reach of what is seen so, in periods.
-constexpr double kSecondDifference = 11.0 / 20.0, kJerkReach = 1.5;
 
 TimeNs nanoseconds(double s) {
   return static_cast<TimeNs>(std::llround(1e9 * s));
@@ -195,39 +192,6 @@ void whole_windows(double noise_rad_s, const Eigen::Matrix3d& rows, GyroReadings
     }
   }
   for (std::size_t k = 0; k < count; ++k) rates.samples[k].angular_velocity_rad_s += inverse * lost[k];
-}
-
-// The jerk that free readings show, element by element and three in a row: the second difference of means over windows
-// that follow each other has the variance 11/20 q P^3, and six times that of the noise: carried.md (C37)
-std::vector<double> seen_jerk(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s, double node_s,
-                              std::size_t nodes) {
-  const double period_s = rates.windows.period_s, reach_s = kJerkReach * std::max(period_s, node_s);
-  const double unit = kSecondDifference * period_s * period_s * period_s;
-  std::vector<double> sums(nodes, 0.0), counts(nodes, 0.0);
-  for (std::size_t k = 1; k + 1 < rates.samples.size(); ++k) {
-    if (rates.windows.end_s[k + 1] - rates.windows.end_s[k - 1] > 2.0 * kLongest * period_s) continue;
-    const Vector3d bend = rates.samples[k + 1].angular_velocity_rad_s - 2.0 * rates.samples[k].angular_velocity_rad_s +
-                          rates.samples[k - 1].angular_velocity_rad_s;
-    double sum = 0.0, count = 0.0;
-    for (std::size_t j = 0; j < 3; ++j) {
-      const auto axis = static_cast<Eigen::Index>(j);
-      bool free = true;
-      for (std::size_t i = k - 1; i <= k + 1; ++i)
-        free = free && rates.signs[i].gyro[j] == 0 && !(rates.open_rad_s[i][axis] > 0.0);
-      if (!free) continue;
-      const double along = rows.row(axis).dot(bend);
-      sum += along * along - 6.0 * noise_rad_s * noise_rad_s;
-      count += 1.0;
-    }
-    const double from = (rates.windows.centre_s[k] - reach_s) / node_s,
-                 to = (rates.windows.centre_s[k] + reach_s) / node_s;
-    for (auto i = static_cast<std::size_t>(std::max(0.0, std::ceil(from))); i < nodes && static_cast<double>(i) <= to;
-         ++i)
-      sums[i] += sum / unit, counts[i] += count;
-  }
-  for (std::size_t i = 0; i < nodes; ++i)
-    sums[i] = counts[i] > 0.0 ? std::sqrt(std::max(0.0, sums[i] / counts[i])) : 0.0;
-  return sums;
 }
 
 OwnReadings own_readings(std::span<const ImuSample> samples, const ClippedElements& clipped, Triad triad,

@@ -143,5 +143,42 @@ TEST(CarriedReadings, TheJerkThatReadingsShowIsThatOfTheMotion) {
   EXPECT_NEAR(std::sqrt(apart), std::sqrt(expected), 0.05 * std::sqrt(expected));
 }
 
+/// A rate that swings far beyond the rail: its slope turns round while it is hidden, which what is read beside it does
+/// not bend enough to show. Control: the same readings taken for free.
+TEST(CarriedReadings, TheJerkOfAHiddenStretchIsThatOfTheSlopesAtItsEnds) {
+  constexpr double kPeriod_s = 0.0035, kAmplitude_rad_s = 20.0, kTurn_rad_s = 21.0;
+  std::vector<ImuSample> samples;
+  std::vector<ClipSigns> signs;
+  for (int k = 1; k <= 600; ++k) {
+    // mean over the window
+    const double to_s = k * kPeriod_s, from_s = to_s - kPeriod_s;
+    const double x = kAmplitude_rad_s * (std::cos(kTurn_rad_s * from_s) - std::cos(kTurn_rad_s * to_s)) /
+                     (kTurn_rad_s * kPeriod_s);
+    ImuSample sample;
+    sample.time_ns = static_cast<TimeNs>(std::llround(1e9 * to_s));
+    sample.angular_velocity_rad_s = {std::clamp(x, -kRail_rad_s, kRail_rad_s), 0.0, 0.0};
+    sample.specific_force_m_s2 = {0.0, 0.0, 9.8};
+    samples.push_back(sample);
+    ClipSigns sign;
+    if (std::abs(x) > kRail_rad_s) sign.gyro[0] = x > 0.0 ? 1 : -1;
+    signs.push_back(sign);
+  }
+  ClippedElements clipped;
+  clipped.signs = signs;
+  const CarriedSmoother::Params params;
+  const carried::Collected collected = carried::collect(params, samples, clipped);
+  const std::vector<double> free = carried::collect(params, samples, {}).jerk;
+  const double phase = std::asin(kRail_rad_s / kAmplitude_rad_s);
+  const double change = 2.0 * kAmplitude_rad_s * kTurn_rad_s * std::cos(phase);
+  const double hidden_s = (3.141592653589793 - 2.0 * phase) / kTurn_rad_s;
+  const double expected = change / std::sqrt(hidden_s);
+  const std::size_t top = static_cast<std::size_t>(std::lround(0.5 * 3.141592653589793 / kTurn_rad_s / params.node_s));
+  std::printf("hidden for %.3f s: root density %.0f, by the ends %.0f; taken for free %.0f\n", hidden_s,
+              collected.jerk[top], expected, free[top]);
+  // the slopes are read a window outside of the stretch, which is that much longer
+  EXPECT_NEAR(collected.jerk[top], expected, 0.1 * expected);
+  EXPECT_LT(free[top], 0.2 * expected);
+}
+
 }  // namespace
 }  // namespace tumble

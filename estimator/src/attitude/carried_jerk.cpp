@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How much jerk the readings of a carried body's gyro show.
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "carried_problem.hpp"
+
+namespace tumble::carried {
+
+using Eigen::Vector3d;
+
+namespace {
+
+// Of q P^3: the variance of a second difference; and the reach of what is seen so, in periods.
+constexpr double kSecondDifference = 11.0 / 20.0, kJerkReach = 1.5;
+
+bool is_free(const GyroReadings& rates, std::size_t k, Eigen::Index axis) {
+  return rates.signs[k].gyro[static_cast<std::size_t>(axis)] == 0 && !(rates.open_rad_s[k][axis] > 0.0);
+}
+
+// Nodes [first, last) within [from_s, to_s].
+struct Reach {
+  std::size_t first = 0, last = 0;
+  Reach(double from_s, double to_s, double node_s, std::size_t nodes)
+      : first(static_cast<std::size_t>(std::max(0.0, std::ceil(from_s / node_s)))),
+        last(std::min(nodes, static_cast<std::size_t>(std::max(0.0, std::floor(to_s / node_s) + 1.0)))) {}
+};
+
+// Where readings are free, element by element and three in a row: the second difference of means over windows that
+// follow each other has the variance 11/20 q P^3, and six times that of the noise: carried.md (C37)
+void add_bends(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s, double node_s,
+               std::vector<double>& densities) {
+  const double period_s = rates.windows.period_s, reach_s = kJerkReach * std::max(period_s, node_s);
+  const double unit = kSecondDifference * period_s * period_s * period_s;
+  std::vector<double> counts(densities.size(), 0.0);
+  for (std::size_t k = 1; k + 1 < rates.samples.size(); ++k) {
+    if (rates.windows.end_s[k + 1] - rates.windows.end_s[k - 1] > 2.0 * kLongest * period_s) continue;
+    const Vector3d bend = rates.samples[k + 1].angular_velocity_rad_s - 2.0 * rates.samples[k].angular_velocity_rad_s +
+                          rates.samples[k - 1].angular_velocity_rad_s;
+    double sum = 0.0, count = 0.0;
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      if (!is_free(rates, k - 1, axis) || !is_free(rates, k, axis) || !is_free(rates, k + 1, axis)) continue;
+      const double along = rows.row(axis).dot(bend);
+      sum += along * along - 6.0 * noise_rad_s * noise_rad_s;
+      count += 1.0;
+    }
+    const double at_s = rates.windows.centre_s[k];
+    const Reach reach(at_s - reach_s, at_s + reach_s, node_s, densities.size());
+    for (std::size_t i = reach.first; i < reach.last; ++i) densities[i] += sum / unit, counts[i] += count;
+  }
+  for (std::size_t i = 0; i < densities.size(); ++i)
+    densities[i] = counts[i] > 0.0 ? std::max(0.0, densities[i] / counts[i]) : 0.0;
+}
+
+// The slope of element `axis` between two free readings that follow each other, and its instant; false where they do
+// not.
+bool slope_of(const GyroReadings& rates, const Eigen::Matrix3d& rows, std::size_t k, Eigen::Index axis, double& slope,
+              double& at_s) {
+  if (!is_free(rates, k, axis) || !is_free(rates, k + 1, axis)) return false;
+  const double dt_s = rates.windows.centre_s[k + 1] - rates.windows.centre_s[k];
+  if (!(dt_s > 0.0) || dt_s > kLongest * rates.windows.period_s) return false;
+  slope =
+      rows.row(axis).dot(rates.samples[k + 1].angular_velocity_rad_s - rates.samples[k].angular_velocity_rad_s) / dt_s;
+  at_s = 0.5 * (rates.windows.centre_s[k] + rates.windows.centre_s[k + 1]);
+  return true;
+}
+
+// Across a stretch that an element hides: white jerk of density q changes its angular acceleration by q T within T, on
+// the mean of squares. What free readings beside it bend says little of a motion that turns about beyond the rail:
+// carried.md (C39)
+void add_across(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s, double node_s,
+                std::vector<double>& densities) {
+  const std::size_t count = rates.samples.size();
+  const double noise = 2.0 * noise_rad_s / rates.windows.period_s;  // of the difference of two slopes
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    for (std::size_t begin = 2; begin + 2 < count;) {
+      if (is_free(rates, begin, axis)) {
+        ++begin;
+        continue;
+      }
+      std::size_t end = begin;
+      while (end < count && !is_free(rates, end, axis)) ++end;
+      double in = 0.0, out = 0.0, from_s = 0.0, to_s = 0.0;
+      const bool told = end + 1 < count && slope_of(rates, rows, begin - 2, axis, in, from_s) &&
+                        slope_of(rates, rows, end, axis, out, to_s);
+      if (told) {
+        const double density = ((out - in) * (out - in) - noise * noise) / (to_s - from_s);
+        const Reach reach(from_s, to_s, node_s, densities.size());
+        for (std::size_t i = reach.first; i < reach.last; ++i) densities[i] = std::max(densities[i], density);
+      }
+      begin = end;
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<double> seen_jerk(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s, double node_s,
+                              std::size_t nodes) {
+  std::vector<double> out(nodes, 0.0);
+  add_bends(rates, rows, noise_rad_s, node_s, out);
+  add_across(rates, rows, noise_rad_s, node_s, out);
+  for (double& density : out) density = std::sqrt(density);
+  return out;
+}
+
+}  // namespace tumble::carried
