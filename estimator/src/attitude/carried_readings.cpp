@@ -44,7 +44,7 @@ double since_s(std::span<const ImuSample> samples, std::size_t from, std::size_t
   return seconds(samples[to].time_ns - samples[from].time_ns);
 }
 
-constexpr double kSteady = 0.9;   // agreement of a steady clock from which on repeated readings are believed to be held
+constexpr double kSteady = 0.9;  // agreement of a steady clock from which on repeated readings are believed to be held
 constexpr double kSlowest = 10.0;  // steps of the log: what repeats itself longer stands still, is blind or frozen
 // Of the period: deviation of a centre that lies evenly between the window's end and its middle, 1/(4 sqrt(3)).
 constexpr double kOpenShare = 0.144;

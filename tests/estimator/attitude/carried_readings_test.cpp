@@ -152,8 +152,8 @@ TEST(CarriedReadings, TheJerkOfAHiddenStretchIsThatOfTheSlopesAtItsEnds) {
   for (int k = 1; k <= 600; ++k) {
     // mean over the window
     const double to_s = k * kPeriod_s, from_s = to_s - kPeriod_s;
-    const double x = kAmplitude_rad_s * (std::cos(kTurn_rad_s * from_s) - std::cos(kTurn_rad_s * to_s)) /
-                     (kTurn_rad_s * kPeriod_s);
+    const double x =
+        kAmplitude_rad_s * (std::cos(kTurn_rad_s * from_s) - std::cos(kTurn_rad_s * to_s)) / (kTurn_rad_s * kPeriod_s);
     ImuSample sample;
     sample.time_ns = static_cast<TimeNs>(std::llround(1e9 * to_s));
     sample.angular_velocity_rad_s = {std::clamp(x, -kRail_rad_s, kRail_rad_s), 0.0, 0.0};
