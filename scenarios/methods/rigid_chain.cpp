@@ -8,6 +8,7 @@
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/slam_registry.hpp"
+#include "tumble/angular_velocity/rest_detector.hpp"
 #include "tumble/attitude/strapdown.hpp"
 
 namespace tumble::scenarios {
@@ -15,7 +16,8 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kRestMaxS = 1.0;
-constexpr double kRestRateRadS = 0.05;
+/// From the first reading on, until anything moves: as the mapper's (`mapper_rest`), but for gravity.
+constexpr RestDetector::Params kStart = {.rate_spread_rad_s = 0.05, .force_spread_m_s2 = 0.5, .rest_s = 0.0};
 constexpr double kVelocitySigmaMS = 1e-4;  // the registration of a rigid sweep says nothing of velocity
 
 TimeNs window_start(std::span<const ImuSample> samples, std::size_t k) {
@@ -40,20 +42,15 @@ void for_windows(std::span<const ImuSample> samples, TimeNs from_ns, TimeNs to_n
 
 Status start_at_rest(std::span<const ImuSample> samples, StartAtRest& out) {
   if (samples.empty()) return {Trouble::too_few, "imu samples", 0.0, 1.0};
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();
-  Eigen::Vector3d rate = Eigen::Vector3d::Zero();
-  double count = 0.0;
+  const RestDetector detector(kStart);
+  RestDetector::State state, rest;
   for (const ImuSample& sample : samples) {
     if (seconds(sample.time_ns - samples.front().time_ns) > kRestMaxS) break;
-    if (sample.angular_velocity_rad_s.norm() > kRestRateRadS) break;
-    force += sample.specific_force_m_s2;
-    rate += sample.angular_velocity_rad_s;
-    count += 1.0;
+    if (!detector.observe(sample, state) || state.first_ns != samples.front().time_ns) break;
+    rest = state;
   }
-  out.gyro_bias_rad_s.setZero();
-  if (count == 0.0) return level(samples.front().specific_force_m_s2, out.q_WI);
-  out.gyro_bias_rad_s = rate / count;
-  return level(force / count, out.q_WI);
+  out.gyro_bias_rad_s = rest.mean_rate_rad_s();
+  return level(rest.rests ? rest.mean_force_m_s2() : samples.front().specific_force_m_s2, out.q_WI);
 }
 
 Status raw_start(const sim::Sensors& sensors, std::vector<ImuSample>& samples, std::vector<RateState>& rates,

@@ -76,23 +76,6 @@ Eigen::Matrix3d railed_velocity_variance(const LidarInertialOdometry::Params& pa
   return params.railed_force_m_s2 * params.railed_force_m_s2 * lasted * lasted.transpose();
 }
 
-bool InitialRest::take(const LidarInertialOdometry::Params& params, const Eigen::Vector3d& rate_rad_s,
-                       const Eigen::Vector3d& force_m_s2) {
-  if (!lasts) return false;
-  const Eigen::Vector3d mean = count > 0.0 ? Eigen::Vector3d(sum_force_m_s2 / count) : force_m_s2;
-  lasts = rate_rad_s.norm() <= params.rest_rate_rad_s && (force_m_s2 - mean).norm() <= params.rest_force_m_s2 &&
-          std::abs(force_m_s2.norm() - params.gravity_m_s2) <= params.rest_force_m_s2;
-  if (!lasts) return false;
-  count += 1.0;
-  sum_rate_rad_s += rate_rad_s;
-  sum_force_m_s2 += force_m_s2;
-  return true;
-}
-
-Eigen::Vector3d InitialRest::rate_bias_rad_s(const LidarInertialOdometry::Params& params) const {
-  return count >= params.start.bias_samples_min ? Eigen::Vector3d(sum_rate_rad_s / count) : Eigen::Vector3d::Zero();
-}
-
 Status start_at_rest(const LidarInertialOdometry::Params& params, std::span<const MotionSample> samples,
                      MotionState& state) {
   if (samples.empty()) return {Trouble::too_few, "imu samples", 0.0, 1.0};

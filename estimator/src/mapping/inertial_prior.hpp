@@ -25,19 +25,6 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
 Eigen::Matrix3d railed_velocity_variance(const LidarInertialOdometry::Params& params, const SweepTrajectory& trajectory,
                                          std::span<const MotionSample> samples);
 
-/// Rest at the start of a recording, and what it teaches: once left it does not come back.
-struct InitialRest {
-  bool lasts = true;
-  double count = 0.0;
-  Eigen::Vector3d sum_rate_rad_s = Eigen::Vector3d::Zero();
-  Eigen::Vector3d sum_force_m_s2 = Eigen::Vector3d::Zero();
-
-  /// Takes a sample in; false once the rest is over.
-  bool take(const LidarInertialOdometry::Params& params, const Eigen::Vector3d& rate_rad_s,
-            const Eigen::Vector3d& force_m_s2);
-  Eigen::Vector3d rate_bias_rad_s(const LidarInertialOdometry::Params& params) const;
-};
-
 /// State at rest at the start of the first sample's window: origin of W, levelled by the mean specific force of the
 /// samples within `rest_s`, yaw 0. `degenerate` when that force is shorter than 1 m/s^2.
 Status start_at_rest(const LidarInertialOdometry::Params& params, std::span<const MotionSample> samples,

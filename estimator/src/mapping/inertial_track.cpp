@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+
+#include "tumble/mapping/mapper_rest.hpp"
 
 namespace tumble::mapping {
 
@@ -29,6 +32,18 @@ std::uint8_t railed_axes(const Params& params, const ImuSample& sample) {
 
 }  // namespace
 
+RestDetector::Params mapper_rest(const LidarInertialOdometry::Params& params) {
+  // what it turns by before it is heard is lost: each axis has its part of the bound
+  return {.rate_max_rad_s = params.rest_rate_rad_s,
+          .rate_spread_rad_s = params.rest_rate_rad_s / std::numbers::sqrt3,
+          .force_min_m_s2 = std::max(params.gravity_m_s2 - params.rest_force_m_s2, 0.0),
+          .force_max_m_s2 = params.gravity_m_s2 + params.rest_force_m_s2,
+          .force_spread_m_s2 = params.rest_force_m_s2,
+          .rest_s = 0.0};
+}
+
+InertialTrack::InertialTrack(const Params& params) : rests_(mapper_rest(params)) {}
+
 std::optional<TimeNs> InertialTrack::last_ns() const {
   return samples_.empty() ? border_ns_ : samples_.back().time_ns;
 }
@@ -48,8 +63,8 @@ void InertialTrack::take(const Params& params, const ImuSample& sample, const Ra
   MotionSample next;
   next.from_ns = from_ns;
   next.time_ns = sample.time_ns;
-  next.at_rest = rest_.take(params, rate.w_WI_I_rad_s, sample.specific_force_m_s2);
-  if (!next.at_rest) next.w_WI_I_rad_s = rate.w_WI_I_rad_s - rest_.rate_bias_rad_s(params);
+  listen_for_rest(params, sample, rate, next);
+  if (!next.at_rest) next.w_WI_I_rad_s = rate.w_WI_I_rad_s - initial_.gyro_bias_rad_s;
   next.f_I_m_s2 = sample.specific_force_m_s2;
   next.rate_sigma_rad_s = believed_rate_sigma(params, rate, next.time_ns - next.from_ns);
   next.clipped_axes = static_cast<std::uint8_t>(rate.clipped_axes & kAllAxes);
@@ -90,12 +105,48 @@ bool InertialTrack::settle_force(const Params& params, const MotionSample& next)
   return true;
 }
 
-bool InertialTrack::rests_until(const Params& params, TimeNs end_ns) const {
-  const auto rests = [&](const MotionSample& sample) {
-    return sample.from_ns >= end_ns ||
-           (sample.w_WI_I_rad_s.norm() <= params.rest_rate_rad_s && sample.clipped_axes == 0 &&
-            std::abs(sample.f_I_m_s2.norm() - params.gravity_m_s2) <= params.rest_force_m_s2);
-  };
+void InertialTrack::listen_for_rest(const Params& params, const ImuSample& sample, const RateState& rate,
+                                    MotionSample& next) {
+  ImuSample heard = sample;
+  heard.angular_velocity_rad_s = rate.w_WI_I_rad_s;
+  const bool clipped = (rate.clipped_axes & kAllAxes) != 0;
+  // while the rest at the start lasts its mean is the bias
+  const Eigen::Vector3d bias = initial_.lasts ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : initial_.gyro_bias_rad_s;
+  if (clipped) rest_ = {};
+  if (!clipped && rests_.observe(heard, rest_, bias)) next.rests_since_ns = rest_.first_ns;
+  if (initial_.lasts) {
+    if (!initial_.first_ns) initial_.first_ns = initial_.run_ns = sample.time_ns;
+    // the mean of a run that has just begun is as noisy as its readings, and noise may begin it anew
+    if (next.rests_since_ns && seconds(*next.rests_since_ns - *initial_.first_ns) < params.start.bias_rest_s)
+      initial_.run_ns = next.rests_since_ns;
+    initial_.lasts = next.rests_since_ns == initial_.run_ns;
+    if (initial_.lasts && seconds(rest_.quiet_ns) >= params.start.bias_rest_s)
+      initial_.gyro_bias_rad_s = rest_.mean_rate_rad_s();
+  }
+  next.at_rest = initial_.lasts;
+  if (rest_.open > 0) {
+    undecided_rad_s_.push_back(rate.w_WI_I_rad_s);
+    return;
+  }
+  const bool goes_on = next.rests_since_ns && *next.rests_since_ns < rest_.open_first_ns;
+  if (!goes_on) take_back_rest(next.rests_since_ns);
+  undecided_rad_s_.clear();
+}
+
+/// What moves by the whole reading has moved from its first sample on.
+void InertialTrack::take_back_rest(std::optional<TimeNs> rests_since_ns) {
+  const std::size_t count = std::min(undecided_rad_s_.size(), samples_.size());
+  for (std::size_t back = 1; back <= count; ++back) {
+    MotionSample& sample = samples_[samples_.size() - back];
+    sample.rests_since_ns = rests_since_ns;
+    if (!sample.at_rest || initial_.lasts) continue;
+    sample.at_rest = false;
+    sample.w_WI_I_rad_s = undecided_rad_s_[undecided_rad_s_.size() - back] - initial_.gyro_bias_rad_s;
+  }
+}
+
+bool InertialTrack::rests_until(TimeNs end_ns) const {
+  const auto rests = [&](const MotionSample& sample) { return sample.from_ns >= end_ns || sample.rests_since_ns; };
   return std::all_of(samples_.begin(), samples_.end(), rests);
 }
 

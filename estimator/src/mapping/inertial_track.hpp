@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "inertial_prior.hpp"
+#include "tumble/angular_velocity/rest_detector.hpp"
 
 namespace tumble::mapping {
 
@@ -13,6 +14,8 @@ namespace tumble::mapping {
 class InertialTrack {
  public:
   using Params = LidarInertialOdometry::Params;
+
+  explicit InertialTrack(const Params& params);
 
   /// `time_order` unless the sample comes after all before it.
   Status check(const ImuSample& sample) const;
@@ -22,7 +25,7 @@ class InertialTrack {
   /// From the window that holds the last sweep's end on.
   std::span<const MotionSample> samples() const { return samples_; }
   /// Whether the IMU has nothing to say but gravity up to `end_ns`.
-  bool rests_until(const Params& params, TimeNs end_ns) const;
+  bool rests_until(TimeNs end_ns) const;
   /// Forgets what ended by then, the end of a sweep.
   void forget_until(TimeNs end_ns);
 
@@ -32,13 +35,26 @@ class InertialTrack {
     TimeNs middle_ns;
   };
 
+  /// The rest at the start of a recording: once left it does not come back, and what it has taught stays.
+  struct InitialRest {
+    bool lasts = true;
+    std::optional<TimeNs> first_ns;  ///< the first sample of all
+    std::optional<TimeNs> run_ns;    ///< that of the detector's run
+    Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();
+  };
+
   std::optional<TimeNs> last_ns() const;
+  void listen_for_rest(const Params& params, const ImuSample& sample, const RateState& rate, MotionSample& next);
+  void take_back_rest(std::optional<TimeNs> rests_since_ns);
   bool settle_force(const Params& params, const MotionSample& next);
 
   std::vector<MotionSample> samples_;
   std::optional<TimeNs> border_ns_;  // end of the last sweep
-  InitialRest rest_;
-  std::optional<Rate> before_newest_, newest_;  // windows of the IMU
+  RestDetector rests_;
+  RestDetector::State rest_;
+  InitialRest initial_;
+  std::vector<Eigen::Vector3d> undecided_rad_s_;  // rates since the detector's last whole reading
+  std::optional<Rate> before_newest_, newest_;    // windows of the IMU
 };
 
 }  // namespace tumble::mapping

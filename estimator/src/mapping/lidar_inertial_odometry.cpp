@@ -26,6 +26,7 @@ Status check(const ImuSample& sample, const RateState& rate) {
 
 LidarInertialOdometry::Impl::Impl(const Params& given)
     : params((mapping::check_params(given), given)),
+      track(given),
       window(given.window_sweeps),
       map(given),
       points(given),

@@ -72,7 +72,7 @@ Status LidarInertialOdometry::Impl::begin() {
 /// Nothing but gravity by the IMU, and no more than gravity by the attitude as it is believed.
 bool LidarInertialOdometry::Impl::rests(const mapping::InertialTrack& heard, const SweepTrajectory& motion,
                                         TimeNs end_ns) const {
-  if (!heard.rests_until(params, end_ns)) return false;
+  if (!heard.rests_until(end_ns)) return false;
   const Eigen::Vector3d gained_m_s = motion.state(motion.duration_s()).v_WI_m_s - border.belief.mean.state.v_WI_m_s;
   return !(gained_m_s.norm() > params.rest_force_m_s2 * motion.duration_s());
 }
@@ -111,7 +111,7 @@ Status LidarInertialOdometry::Impl::settle(Prediction prediction, const Placed& 
   }
   // the inertial prior stands; an IMU at rest stops the drift of its velocity
   const bool by_inertia = std::holds_alternative<mapping::InertialPrior>(known);
-  if (mapping::is_lost(tracking) && by_inertia && track.rests_until(params, motion.end_ns))
+  if (mapping::is_lost(tracking) && by_inertia && track.rests_until(motion.end_ns))
     prediction = mapping::predict_rest(params, border, std::move(prediction));
   settled.start = mapping::settle(prediction);
   settled.prediction = std::move(prediction);

@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "tumble/mapping/mapper_rest.hpp"
+
 namespace tumble {
 
 namespace {
@@ -29,7 +31,11 @@ void start_from_rails(const KnownRails& known, double doubt, RateStream::Params&
 
 SecondPass::SecondPass(const Params& params, const RegimeStream::Params& rate,
                        const LidarInertialOdometry::Params& mapping)
-    : params_(params), rate_(rate), mapping_(mapping), wanted_(params.after_s > 0.0) {
+    : params_(params),
+      rate_(rate),
+      mapping_(mapping),
+      wanted_(params.after_s > 0.0),
+      rests_(mapping::mapper_rest(mapping)) {
   require_fields(params);
   if (!wanted_) return;
   const double most_s = params.rest_s + kBefore_s + params.remembered_s;
@@ -45,9 +51,7 @@ void SecondPass::give_up() {
 
 void SecondPass::remember(const ImuSample& sample) {
   if (!wanted_) return;
-  const bool rests = sample.angular_velocity_rad_s.norm() <= params_.rest_rate_rad_s &&
-                     std::abs(sample.specific_force_m_s2.norm() - mapping_.gravity_m_s2) <= params_.rest_force_m_s2;
-  if (!moves_ns_ && !rests) moves_ns_ = sample.time_ns;
+  if (!moves_ns_ && !rests_.observe(sample, rest_)) moves_ns_ = sample.time_ns;
   if (!moves_ns_) {
     const TimeNs from_ns = sample.time_ns - static_cast<TimeNs>(1e9 * params_.rest_s);
     while (!sweeps_.empty() && sweeps_.front().start_ns < from_ns) sweeps_.pop_front();

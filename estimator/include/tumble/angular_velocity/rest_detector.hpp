@@ -11,7 +11,7 @@
 
 namespace tumble {
 
-/// Finds standstill in the readings of an IMU, for rates, attitude and the rolling sphere: rates that are a known bias
+/// Finds standstill in the readings of an IMU, for rates, attitude, rolling and the mapper: rates that are a known bias
 /// at most and a force that is large enough to be gravity, both constant up to noise for a while. There the gyro reads
 /// its bias. Everything is meant by time and at one bandwidth: readings that come faster than `reading_s` are taken
 /// together first, so that white noise of density n [unit/sqrt(Hz)] is n / sqrt(reading_s) in what the bounds are

@@ -60,8 +60,9 @@ class LidarInertialOdometry {
     double gravity_sigma_m_s2 = 0.0;
     double gravity_m_s2 = 9.80665;
     double rest_s = 0.5;  ///< at most this much of the start is used to level the attitude
-    /// Rest at the start lasts while the rate stays below rest_rate_rad_s and the specific force within rest_force_m_s2
-    /// of gravity and of its mean. Meanwhile the robot is held still, and the mean rate becomes the gyro's bias.
+    /// At rest (`mapper_rest.hpp`) the rate stays within rest_rate_rad_s of the bias and of its mean, and the specific
+    /// force within rest_force_m_s2 of gravity and of its mean. During the rest at the start the robot is held still,
+    /// and the mean rate becomes the gyro's bias.
     double rest_rate_rad_s = 0.05;
     double rest_force_m_s2 = 0.5;
     double range_min_m = 0.3;    ///< nearer returns are dropped

@@ -20,10 +20,10 @@ void LidarInertialOdometry::Params::fields(Self& p, Visitor& visit) {
   visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.0, 100.0, "strength of gravity"});
   visit(p.rest_s,
         {"rest_s", "s", 1e-9, 60.0, "at most this much of the rest at the start levels the attitude", Rank::first});
-  visit(p.rest_rate_rad_s,
-        {"rest_rate_rad_s", "rad/s", 0.0, 10.0, "the rest at the start lasts while the rate is below"});
+  visit(p.rest_rate_rad_s, {"rest_rate_rad_s", "rad/s", 1e-6, 10.0,
+                            "at rest the rate is within this of the bias and of its mean, per axis"});
   visit(p.rest_force_m_s2,
-        {"rest_force_m_s2", "m/s^2", 0.0, 10.0, "and the specific force within this of gravity and of its mean"});
+        {"rest_force_m_s2", "m/s^2", 1e-6, 10.0, "and the specific force within this of gravity and of its mean"});
   visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "nearer returns are dropped"});
   visit(p.range_max_m, {"range_max_m", "m", 0.0, 1e4, "farther returns are dropped"});
   visit(p.own_body_L.min(), {"own_body_min_m", "m", -kUnbounded, kUnbounded,

@@ -13,14 +13,13 @@ struct OdometryStartParams {
   /// A weight and no error: five times the tilt that WorldCovarianceParams reports, for a rest that was none.
   double level_sigma_rad = 0.01;
   double speed_sigma_m_s = 0.05;  ///< within what passes for rest
-  int bias_samples_min = 10;      ///< fewer of the rest teach no bias of the gyro
+  double bias_rest_s = 0.1;       ///< a shorter rest teaches no bias of the gyro
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.level_sigma_rad, {"level_sigma_rad", "rad", 1e-9, 1.0, "correction of the levelled tilt that is allowed"});
     visit(p.speed_sigma_m_s, {"speed_sigma_m_s", "m/s", 1e-9, 100.0, "speed that passes for rest"});
-    visit(p.bias_samples_min,
-          {"bias_samples_min", "1", 1, 1e6, "fewer samples of the rest at the start teach no bias of the gyro"});
+    visit(p.bias_rest_s, {"bias_rest_s", "s", 0.0, 60.0, "a shorter rest at the start teaches no bias of the gyro"});
   }
 };
 

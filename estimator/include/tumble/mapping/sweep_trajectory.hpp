@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -24,7 +25,8 @@ struct MotionSample {
   std::uint8_t clipped_axes = 0;                               ///< bit j: the gyro's axis j was at its rail
   std::uint8_t railed_axes = 0;                                ///< likewise the accelerometer's
   bool at_rest = false;                                        ///< belongs to the rest at the start
-  bool in_flight = false;    ///< f_I_m_s2 is that of free flight, not the accelerometer's
+  std::optional<TimeNs> rests_since_ns;  ///< of a rest by the IMU alone that it belongs to: the first sample
+  bool in_flight = false;                ///< f_I_m_s2 is that of free flight, not the accelerometer's
   bool bridges_gap = false;  ///< longer than a sample: the force is not known inside, and the velocity goes on
 };
 

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "tumble/angular_velocity/rest_detector.hpp"
 #include "tumble/common/parameters.hpp"
 #include "tumble/odometry/odometry_pass.hpp"
 
@@ -35,9 +36,6 @@ class SecondPass {
     /// What was learnt is learnt again from the same readings: its variance counts so many times.
     double doubt = 4.0;
     double rest_s = 1.0;  ///< of the rest at the start that is remembered
-    /// Rest lasts while the rate stays below and the force within this of gravity.
-    double rest_rate_rad_s = 0.05;
-    double rest_force_m_s2 = 0.5;
 
     /// Every number of it, stated once.
     template <class Self, class Visitor>
@@ -49,9 +47,6 @@ class SecondPass {
       visit(p.remembered_s, {"remembered_s", "s", 0.0, 1000.0, "motion within which the second pass has to catch up"});
       visit(p.doubt, {"doubt", "1", 1.0, 1e6, "what was learnt is given to it with so many times its variance"});
       visit(p.rest_s, {"rest_s", "s", 0.1, 100.0, "of the rest at the start that is remembered"});
-      visit(p.rest_rate_rad_s, {"rest_rate_rad_s", "rad/s", 0.0, 10.0, "the rest ends with a rate beyond it"});
-      visit(p.rest_force_m_s2,
-            {"rest_force_m_s2", "m/s^2", 0.0, 100.0, "and with a force that differs from gravity by more"});
     }
   };
 
@@ -92,6 +87,8 @@ class SecondPass {
   RegimeStream::Params rate_;
   LidarInertialOdometry::Params mapping_;
   bool wanted_, taken_ = false;
+  RestDetector rests_;  ///< with the mapper's numbers
+  RestDetector::State rest_;
   std::optional<TimeNs> moves_ns_;  ///< end of the rest at the start
   OdometryPass::Queue samples_;
   std::deque<Sweep> sweeps_;

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the mapper hears of an IMU: when the rest at its start ends, what that teaches, and which sweeps rest.
+#include "estimator/src/mapping/inertial_track.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace tumble::mapping {
+namespace {
+
+using Params = LidarInertialOdometry::Params;
+
+const Eigen::Vector3d kBias_rad_s(0.01, -0.02, 0.005);
+
+/// One who hears an IMU of samples that are `step_ns` apart.
+struct Listener {
+  Params params = {};
+  TimeNs step_ns = 10'000'000;
+  InertialTrack track{params};
+  TimeNs now_ns = 0;
+
+  void hear(int samples, const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2 = {0.0, 0.0, 9.80665},
+            std::uint8_t clipped_axes = 0) {
+    for (int k = 0; k < samples; ++k) {
+      now_ns += step_ns;
+      ImuSample sample;
+      sample.time_ns = now_ns;
+      sample.angular_velocity_rad_s = rate_rad_s;
+      sample.specific_force_m_s2 = force_m_s2;
+      RateState rate;
+      rate.time_ns = now_ns;
+      rate.w_WI_I_rad_s = rate_rad_s;
+      rate.clipped_axes = clipped_axes;
+      track.take(params, sample, rate);
+    }
+  }
+  std::ptrdiff_t resting() const {
+    return std::count_if(track.samples().begin(), track.samples().end(),
+                         [](const MotionSample& sample) { return sample.at_rest; });
+  }
+};
+
+/// Of a gyro of 6.5 mrad/s a reading, the first two 35 mrad/s apart: rare, and no motion.
+Listener noisy_at_first(double bias_rest_s) {
+  Listener listener;
+  listener.params.start.bias_rest_s = bias_rest_s;
+  const Eigen::Vector3d off_rad_s(0.0175, 0.0, 0.0);
+  listener.hear(1, kBias_rad_s + off_rad_s);
+  listener.hear(1, kBias_rad_s - off_rad_s);
+  listener.hear(98, kBias_rad_s);
+  return listener;
+}
+
+TEST(InertialTrack, NoiseOfTheFirstReadingsEndsNoRest) {
+  Listener listener = noisy_at_first(0.1);
+  EXPECT_EQ(listener.resting(), 100);
+  listener.hear(1, kBias_rad_s + Eigen::Vector3d(0.0, 1.0, 0.0), {0.0, 0.0, 12.0});
+  EXPECT_EQ(listener.resting(), 100);
+  // the second reading is one of 99
+  EXPECT_NEAR((listener.track.samples().back().w_WI_I_rad_s - Eigen::Vector3d(0.0, 1.0, 0.0)).norm(), 0.0175 / 99.0,
+              1e-9);
+  // negative control: as if the first run of readings were the only one
+  EXPECT_EQ(noisy_at_first(0.0).resting(), 1);
+}
+
+TEST(InertialTrack, ARestOnceLeftDoesNotComeBack) {
+  Listener listener;
+  listener.hear(50, kBias_rad_s);
+  listener.hear(10, Eigen::Vector3d(0.0, 3.0, 0.0));
+  listener.hear(50, kBias_rad_s);
+  EXPECT_EQ(listener.resting(), 50);
+  EXPECT_NEAR(listener.track.samples().back().w_WI_I_rad_s.norm(), 0.0, 1e-12);
+}
+
+TEST(InertialTrack, ATooShortRestTeachesNoBias) {
+  Listener listener;
+  listener.hear(5, kBias_rad_s);
+  listener.hear(1, Eigen::Vector3d(0.0, 3.0, 0.0));
+  EXPECT_EQ(listener.track.samples().back().w_WI_I_rad_s, Eigen::Vector3d(0.0, 3.0, 0.0));
+}
+
+// readings take 10 ms, and what moves within one is told at its end
+TEST(InertialTrack, AFastImuIsHeldNoLongerThanItRests) {
+  Listener listener;
+  listener.step_ns = 1'000'000;
+  listener.hear(1004, kBias_rad_s);
+  const Eigen::Vector3d push_rad_s(0.0, 5.0, 0.0);
+  listener.hear(20, kBias_rad_s + push_rad_s);
+  double turned_rad = 0.0;
+  for (const MotionSample& sample : listener.track.samples())
+    turned_rad += seconds(sample.time_ns - sample.from_ns) * sample.w_WI_I_rad_s.norm();
+  EXPECT_NEAR(turned_rad, 0.02 * push_rad_s.norm(), 1e-9);
+  EXPECT_LE(listener.resting(), 1004);
+  EXPECT_GT(listener.resting(), 1004 - 10);
+}
+
+TEST(InertialTrack, ASweepRestsWhileTheImuSaysNothingButGravity) {
+  const auto rests = [](double later_force_m_s2, double later_rate_rad_s, std::uint8_t clipped_axes) {
+    Listener listener;
+    listener.hear(50, Eigen::Vector3d(0.0, 3.0, 0.0));
+    listener.track.forget_until(listener.now_ns);
+    listener.hear(5, Eigen::Vector3d::Zero(), {0.0, 0.0, 9.5});
+    const TimeNs before_ns = listener.now_ns;
+    listener.hear(5, {later_rate_rad_s, 0.0, 0.0}, {0.0, 0.0, later_force_m_s2}, clipped_axes);
+    EXPECT_TRUE(listener.track.rests_until(before_ns));
+    return listener.track.rests_until(listener.now_ns);
+  };
+  EXPECT_TRUE(rests(9.6, 0.0, 0));
+  EXPECT_FALSE(rests(11.0, 0.0, 0));
+  EXPECT_FALSE(rests(9.0, 0.0, 0));
+  EXPECT_FALSE(rests(9.6, 0.1, 0));
+  EXPECT_FALSE(rests(9.6, 0.0, 2));
+}
+
+}  // namespace
+}  // namespace tumble::mapping
