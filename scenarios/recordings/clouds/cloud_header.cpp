@@ -4,6 +4,7 @@
 #include <charconv>
 #include <fstream>
 #include <map>
+#include <span>
 #include <sstream>
 
 #include "scenarios/errors.hpp"
@@ -84,6 +85,21 @@ class HeaderLines {
     }
   }
 
+  /// The library goes on with the header while lines begin with one of its words, and passes over empty ones and
+  /// comments: points whose bytes look so would change what it has read.
+  void require_end_of_header(std::span<const char* const> words) {
+    stream_.clear();
+    stream_.seekg(static_cast<std::streamoff>(bytes_));
+    for (std::string line; std::getline(stream_, line);) {
+      std::string first;
+      std::istringstream(line) >> first;
+      if (line.empty() || first.starts_with("#")) continue;
+      const auto begins = [&](const char* word) { return first.starts_with(word); };
+      if (std::any_of(words.begin(), words.end(), begins)) fail("the points after it begin as a line of a header does");
+      return;
+    }
+  }
+
  private:
   std::filesystem::path path_;
   std::ifstream stream_;
@@ -113,20 +129,23 @@ void take_property(const HeaderLines& lines, const std::vector<std::string>& wor
 
 using Words = std::vector<std::string>;
 
+/// In the order of the format, then what the library takes for FIELDS too.
+constexpr std::array<const char*, 11> kPcdWords = {"VERSION", "FIELDS",    "SIZE",   "TYPE", "COUNT",  "WIDTH",
+                                                   "HEIGHT",  "VIEWPOINT", "POINTS", "DATA", "COLUMNS"};
+
 /// The lines of a PCD's header by their first words. They stand once each and in this order, as the format has it: the
 /// library that reads the points takes a line that is unknown, doubled or in its wrong place for the header's end or
 /// for another one, and trusts what it then has.
 std::map<std::string, Words> pcd_lines(HeaderLines& lines) {
-  constexpr std::array<const char*, 10> kOrder = {"VERSION", "FIELDS", "SIZE",      "TYPE",   "COUNT",
-                                                  "WIDTH",   "HEIGHT", "VIEWPOINT", "POINTS", "DATA"};
+  const std::span order = std::span(kPcdWords).first<10>();
   std::map<std::string, Words> found;
   std::size_t next = 0;
   while (!found.contains("DATA")) {
     const Words words = lines.next();
     if (words.empty() || words.front().starts_with("#")) continue;
-    const auto at = std::find(kOrder.begin(), kOrder.end(), words.front());
-    if (at == kOrder.end()) lines.fail("begins with no word of a PCD's header");
-    const auto place = static_cast<std::size_t>(at - kOrder.begin());
+    const auto at = std::find(order.begin(), order.end(), words.front());
+    if (at == order.end()) lines.fail("begins with no word of a PCD's header");
+    const auto place = static_cast<std::size_t>(at - order.begin());
     if (place < next) lines.fail(words.front() + " stands twice or in its wrong place");
     next = place + 1;
     found[words.front()] = Words(words.begin() + 1, words.end());
@@ -220,6 +239,7 @@ CloudHeader read_pcd_header(const std::filesystem::path& path) {
   }
   lines.require_room(header, encoding == "binary_compressed" ? kLzfMost : 1);
   if (encoding == "binary_compressed" && header.points > 0) lines.require_sizes(header);
+  lines.require_end_of_header(kPcdWords);
   return header;
 }
 
