@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/recordings/hdf5_survey.hpp"
 
 namespace tumble::scenarios::hdf5 {
 
@@ -18,6 +19,7 @@ Handle open_file(const std::filesystem::path& path) {
   const auto status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) throw BadInput(path.string() + ": no such file");
   if (!std::filesystem::is_regular_file(status)) throw BadInput(path.string() + ": is not a regular file");
+  require_survivable(path);
   Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (file.valid()) return file;
   const std::string reason = last_error();
