@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <limits>
 #include <optional>
 #include <string_view>
 
@@ -58,10 +59,16 @@ std::int64_t value_of(std::string_view digits) {
   return value;
 }
 
+/// `count` units and `rest_ns`, none of them negative; nothing beyond the year 2262, where nanoseconds end.
+std::optional<std::int64_t> in_ns(std::int64_t count, std::int64_t unit_ns, std::int64_t rest_ns = 0) {
+  if (count > (std::numeric_limits<std::int64_t>::max() - rest_ns) / unit_ns) return std::nullopt;
+  return count * unit_ns + rest_ns;
+}
+
 /// Nanoseconds since the epoch of a number whose digits tell its unit; nothing for another number of digits.
 std::optional<std::int64_t> epoch_ns(std::string_view digits) {
-  if (digits.size() == 13) return value_of(digits) * 1000000;
-  if (digits.size() == 16) return value_of(digits) * 1000;
+  if (digits.size() == 13) return in_ns(value_of(digits), 1000000);
+  if (digits.size() == 16) return in_ns(value_of(digits), 1000);
   if (digits.size() == 19 && digits <= "9223372036854775807") return value_of(digits);
   return std::nullopt;
 }
@@ -79,7 +86,7 @@ std::optional<std::int64_t> stamp_in_name(const std::filesystem::path& file) {
     if (whole && (decimals ? last.size() <= 9 : last.size() == 9 && seconds.size() >= 9)) {
       std::string fraction(last);
       fraction.resize(9, '0');
-      return value_of(seconds) * kSecond_ns + value_of(fraction);
+      return in_ns(value_of(seconds), kSecond_ns, value_of(fraction));
     }
   }
   return epoch_ns(last);
