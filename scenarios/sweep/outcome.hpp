@@ -17,6 +17,7 @@ struct Setting {
   std::string key;
   double value = 0.0;
   bool is_plain() const { return key.empty(); }
+  // NOLINTNEXTLINE(modernize-use-nullptr): Clang 14 takes the zero that a defaulted <=> compares with for a pointer
   auto operator<=>(const Setting&) const = default;
 };
 

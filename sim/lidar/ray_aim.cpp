@@ -57,7 +57,8 @@ void BlockPoses::follow(const BeamPattern& pattern, const FiringBlock& block, Tr
 
 void BlockPoses::aim(const BeamPattern& pattern, const FiringBlock& block, const ChannelFirings& firings, int channel,
                      RayPacket& rays) const {
-  const double after_s = 1e-9 * static_cast<double>(pattern.lag_ns(channel) - pattern.slot_length_ns() / 2);
+  const std::int64_t half_a_slot_ns = pattern.slot_length_ns() / 2;
+  const double after_s = 1e-9 * static_cast<double>(pattern.lag_ns(channel) - half_a_slot_ns);
   aim_coordinate(pose_, rate_, 0, after_s, firings, rays.origin_x, rays.direction_x);
   aim_coordinate(pose_, rate_, 1, after_s, firings, rays.origin_y, rays.direction_y);
   aim_coordinate(pose_, rate_, 2, after_s, firings, rays.origin_z, rays.direction_z);

@@ -13,6 +13,10 @@ namespace {
 
 constexpr double kWeightless = 0.05;  // of gravity in m/s^2, in whatever unit it comes: no direction below it
 
+auto least_unexplained(const ImuPlausibility::State& state) {
+  return std::min_element(state.unexplained_rad2.begin(), state.unexplained_rad2.end());
+}
+
 }  // namespace
 
 ImuPlausibility::ImuPlausibility(const Params& p) : params_(p) {
@@ -115,7 +119,7 @@ double ImuPlausibility::unexplained_share(const State& state) const {
 /// imu_merge.md (I18).
 std::optional<AxisLabels> ImuPlausibility::other_labels(const State& state) const {
   if (unexplained_share(state) < params_.relabelled_least) return std::nullopt;
-  const auto least = std::min_element(state.unexplained_rad2.begin(), state.unexplained_rad2.end());
+  const auto least = least_unexplained(state);
   if (*least >= params_.relabelled_share_max * state.unexplained_rad2.front()) return std::nullopt;
   return axis_labels()[static_cast<std::size_t>(least - state.unexplained_rad2.begin())];
 }
@@ -132,7 +136,7 @@ Status ImuPlausibility::verdict(const State& state) const {
     return {Trouble::out_of_range, "seconds for which a triad repeats one reading", frozen, params_.frozen_s};
   }
   if (other_labels(state)) {
-    const double least = *std::min_element(state.unexplained_rad2.begin(), state.unexplained_rad2.end());
+    const double least = *least_unexplained(state);
     return {
         Trouble::out_of_range,
         "turning that the gyro leaves unexplained with axes or signs named otherwise, as a share of that with these",

@@ -183,7 +183,8 @@ Eigen::Quaterniond rotation(const std::vector<Pair>& pairs, std::size_t first, s
          ((kForceSigma_m_s2 * kForceSigma_m_s2 + departure * departure) * kForceRun);
   }
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(B, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Matrix3d U = svd.matrixU(), V = svd.matrixV();
+  const Eigen::Matrix3d& U = svd.matrixU();
+  const Eigen::Matrix3d& V = svd.matrixV();
   const Eigen::Vector3d signs(1.0, 1.0, (U * V.transpose()).determinant());
   return Eigen::Quaterniond(Eigen::Matrix3d(U * signs.asDiagonal() * V.transpose())).normalized();
 }

@@ -67,7 +67,7 @@ template <typename Filter>
 void expect_bad_input_refused(const Filter& filter) {
   const std::vector<ImuSample> samples = wobble(100);
   const typename Filter::State state = run(filter, samples, 0, 99);
-  const ImuSample good = samples[99];
+  const ImuSample& good = samples[99];
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis) {

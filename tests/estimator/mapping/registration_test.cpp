@@ -20,7 +20,8 @@ VoxelMap map_of(const test::Room& room, double noise_m = 0.0) {
   still.rest_s = 1e9;
   for (int place = 0; place < 9; ++place) {
     Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-    T.translation() = Eigen::Vector3d(1.5 * (place % 3 - 1), 1.0 * (place / 3 - 1), 0.2 * place);
+    const int column = place % 3, row = place / 3;
+    T.translation() = Eigen::Vector3d(1.5 * (column - 1), 1.0 * (row - 1), 0.2 * place);
     // three attitudes, so that the rings cross
     T.linear() = so3::exp(0.7 * place * Eigen::Vector3d(1.0, 0.5, 0.2)).toRotationMatrix();
     for (const LidarPoint& point : test::make_sweep(room, still, T, place, noise_m)) {
@@ -242,7 +243,10 @@ TEST(Registration, NeverTakesNoMatchesForSuccess) {
   EXPECT_EQ(result.verdict, RegistrationVerdict::too_few);
   EXPECT_EQ(result.matches, 0u);
   EXPECT_EQ(result.mean.state.p_WI_m, prior.mean.state.p_WI_m);
-  for (int i = 0; i < 1000; ++i) map.insert({500.0f + 0.1f * (i % 30), 0.1f * (i / 30), 0.0f}, 0.02f, 0);
+  for (int i = 0; i < 1000; ++i) {
+    const int column = i % 30, row = i / 30;
+    map.insert({500.0f + 0.1f * column, 0.1f * row, 0.0f}, 0.02f, 0);
+  }
   ASSERT_TRUE(registration.align(prior, still_samples(), test::kSweep_ns, points, map, trajectory, result).ok());
   EXPECT_EQ(result.verdict, RegistrationVerdict::too_few);
   ASSERT_TRUE(registration.align(prior, still_samples(), test::kSweep_ns, {}, map, trajectory, result).ok());

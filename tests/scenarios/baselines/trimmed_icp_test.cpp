@@ -18,7 +18,8 @@ VoxelMap map_of(const test::Room& room) {
   still.rest_s = 1e9;
   for (int place = 0; place < 9; ++place) {
     Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-    T.translation() = Eigen::Vector3d(1.5 * (place % 3 - 1), 1.0 * (place / 3 - 1), 0.2 * place);
+    const int column = place % 3, row = place / 3;
+    T.translation() = Eigen::Vector3d(1.5 * (column - 1), 1.0 * (row - 1), 0.2 * place);
     T.linear() = so3::exp(0.7 * place * Eigen::Vector3d(1.0, 0.5, 0.2)).toRotationMatrix();
     for (const LidarPoint& point : test::make_sweep(room, still, T, place)) {
       map.insert((T * point.position_L_m.cast<double>()).cast<float>(), 0.02f, 0);

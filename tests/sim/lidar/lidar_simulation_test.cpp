@@ -49,9 +49,9 @@ TEST(SpinningLidar, RestingInARoomIsExact) {
   ASSERT_EQ(out.record.sweep_first, (std::vector<std::uint64_t>{0, 32000, 64000}));
   double worst_m = 0.0, worst_position_m = 0.0;
   for (std::size_t i = 0; i < 32000; ++i) {
-    const auto sequence = static_cast<double>(i / 16);
+    const std::size_t sequence = i / 16;
     const int channel = static_cast<int>(i % 16);
-    const double t_s = sequence * 50e-6 + channel * 3e-6;
+    const double t_s = static_cast<double>(sequence) * 50e-6 + channel * 3e-6;
     ASSERT_EQ(out.record.offset_ns[i], static_cast<std::uint32_t>(std::lround(t_s * 1e9)));
     const double azimuth = 2.0 * M_PI * 10.0 * t_s;
     char name[32];
@@ -136,7 +136,8 @@ TEST(RosetteLidar, FollowsTheFormula) {
   const Cast out = cast(room(), sensor, resting(0.2));
   ASSERT_EQ(out.record.sweep_first, (std::vector<std::uint64_t>{0, 30000, 60000}));
   for (std::size_t i = 0; i < 60000; i += 7) {
-    const double t_s = static_cast<double>(i / 3) * 1e-5;
+    const std::size_t firing = i / 3;
+    const double t_s = static_cast<double>(firing) * 1e-5;
     const double w1 = 2 * M_PI * 7294 / 60, w2 = -2 * M_PI * 4664 / 60;
     const double y = 0.1713 * std::cos(w1 * t_s) + 0.1744 * std::cos(w2 * t_s) + 0.0022 * std::cos((2 * w1 - w2) * t_s);
     const double z = 0.1713 * std::sin(w1 * t_s) + 0.1744 * std::sin(w2 * t_s) + 0.0022 * std::sin((2 * w1 - w2) * t_s);
