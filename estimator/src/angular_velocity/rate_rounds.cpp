@@ -121,14 +121,18 @@ void add_guess(const TriadDelay& guess, SensorErrorEvidence& evidence) {
   evidence.gradient[SensorErrors::kDelay] += information * (guess.delay_s - evidence.about.accel_delay_s);
 }
 
-// Whether a device is more likely not what its sheet says: a maker who leaves scale or sampling open leaves all open.
+// Odds of a device as its sheet says below which the readings speak plainly against it. Above, the mixture over sizes has
+// its doubt in it already.
+constexpr double kPlainOdds = 0.05;
+
+// Whether a device is plainly not what its sheet says: a maker who leaves scale or sampling open leaves all open.
 // Naive Bayes over the two, each against what was held of it beforehand; `own_clocks`: the sampling is known to be
 // open.
 bool off_sheet(const SensorErrorFit& device, const SensorErrorSizes& sizes, bool own_clocks) {
   const SensorErrorFit before = fit_sensor_errors({}, sizes);
   const auto odds = [](double p) { return std::max(p, 1e-12) / std::max(1.0 - p, 1e-12); };
   const double of_scale = odds(device.calibrated) / odds(before.calibrated);
-  return own_clocks || of_scale * odds(device.together) < 1.0;
+  return own_clocks || of_scale * odds(device.together) < kPlainOdds;
 }
 
 // The sizes of a device of which nothing is stated.

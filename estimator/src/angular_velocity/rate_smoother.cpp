@@ -72,23 +72,33 @@ Eigen::Matrix3d considered(const arrow::ErrorMatrix& moved, const SensorErrors::
   return std::min(1.0, most / std::max(out.trace(), 1e-300)) * out;
 }
 
-// What a time that both triads may share makes of a rate: the most that force and acceleration do within reach of it,
-// where a stroke of the next sample's window may belong to this one.
+// How fast the rate may change between a sample and the next, beyond the angular acceleration: by free readings that is
+// told, else force of contact bounds it.
+double change_rad_s2(const RateModelParams& params, std::span<const RateObservation> observations,
+                     std::span<const RateEstimate> estimates, std::size_t k) {
+  const RateObservation &from = observations[k], &to = observations[k + 1];
+  if (from.at_rest && to.at_rest) return 0.0;
+  if (((from.clipping.gyro | from.may_hide()) | (to.clipping.gyro | to.may_hide())) != 0)
+    return params.contact_gain_rad_m * std::max(estimates[k].contact_m_s2.norm(), estimates[k + 1].contact_m_s2.norm());
+  const double dt_s = seconds(to.sample.time_ns - from.sample.time_ns);
+  return (estimates[k + 1].knot.rate_rad_s - estimates[k].knot.rate_rad_s).norm() / dt_s;
+}
+
+// What a time that both triads may share makes of a rate: the most that it changes by within reach of it, where a
+// stroke of the next sample's window may belong to this one; rate_smoother.md (R47).
 Eigen::Matrix3d of_shared_delay(double variance_s2, const RateModelParams& params,
                                 std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
                                 std::size_t k) {
   if (!(variance_s2 > 0.0)) return Eigen::Matrix3d::Zero();
   const auto reach_ns = static_cast<TimeNs>(1e9 * kSharedReach * std::sqrt(variance_s2));
   const TimeNs now = observations[k].sample.time_ns;
-  double force = 0.0;
-  std::size_t from = k, to = k;
-  // the window of the sample before the first within reach ends within reach
-  while (from > 0 && now - observations[from - 1].sample.time_ns <= reach_ns) --from;
-  while (to + 1 < estimates.size() && observations[to].sample.time_ns - now < reach_ns) ++to;
-  for (std::size_t i = from; i <= to; ++i) force = std::max(force, estimates[i].contact_m_s2.norm());
+  double change = 0.0;
+  for (std::size_t i = k; i > 0 && now - observations[i].sample.time_ns <= reach_ns; --i)
+    change = std::max(change, change_rad_s2(params, observations, estimates, i - 1));
+  for (std::size_t i = k; i + 1 < estimates.size() && observations[i].sample.time_ns - now < reach_ns; ++i)
+    change = std::max(change, change_rad_s2(params, observations, estimates, i));
   const Vector3d& alpha = estimates[k].knot.acceleration_rad_s2;
-  const double struck = params.contact_gain_rad_m * force;
-  return variance_s2 * (alpha * alpha.transpose() + struck * struck * Eigen::Matrix3d::Identity());
+  return variance_s2 * (alpha * alpha.transpose() + change * change * Eigen::Matrix3d::Identity());
 }
 
 // The rate some time after a sample, cubic between the knots about that instant, and its covariance, which between two
