@@ -67,20 +67,21 @@ bool is_of(const scenarios::MethodRun& run, const scenarios::MethodPointer& meth
   return run.kind == method->info.kind && run.method == method->info.name;
 }
 
-/// Methods of this build need not be given: what was accepted says which are held.
-std::vector<scenarios::MethodPointer> described_methods(const Options& options) {
-  for (const std::string& file : options.methods) {
-    if (!file.ends_with(".yaml"))
-      throw scenarios::BadInput("--method " + file +
+/// Methods of this build need not be given: what was accepted says which are held. Where a run is accepted, one that is
+/// given is held from then on.
+std::vector<scenarios::MethodPointer> given_methods(const Options& options) {
+  for (const std::string& name : options.methods) {
+    if (!options.accept && !name.ends_with(".yaml"))
+      throw scenarios::BadInput("--method " + name +
                                 ": must be a FILE.yaml that describes a method; of this build's, those that were "
-                                "accepted are held");
+                                "accepted are held, and --accept takes in more");
   }
   return scenarios::find_methods(options.methods);
 }
 
-/// Only what was accepted is run; where a run is accepted, what is described for the first time too.
+/// Only what was accepted is run; where a run is accepted, what is given for the first time too.
 void keep_accepted(const scenarios::Gate& gate, const Options& options,
-                   const std::vector<scenarios::MethodPointer>& described, scenarios::Suite& suite) {
+                   const std::vector<scenarios::MethodPointer>& given, scenarios::Suite& suite) {
   std::vector<std::string> methods = options.methods, names;
   const auto add = [](std::vector<std::string>& list, const std::string& name) {
     if (std::find(list.begin(), list.end(), name) == list.end()) list.push_back(name);
@@ -88,13 +89,13 @@ void keep_accepted(const scenarios::Gate& gate, const Options& options,
   const std::vector<scenarios::MethodRun>& accepted = gate.accepted.methods;
   for (const scenarios::MethodRun& run : accepted) {
     const auto is_it = [&](const scenarios::MethodPointer& method) { return is_of(run, method); };
-    if (std::none_of(described.begin(), described.end(), is_it))
+    if (std::none_of(given.begin(), given.end(), is_it))
       add(methods, std::string(to_string(run.kind)) + "/" + run.method);
     add(names, run.scenario);
   }
   suite.methods = methods;
   if (options.accept) return;  // a scenario that the suite has gained is accepted with the others
-  for (const scenarios::MethodPointer& method : described) {
+  for (const scenarios::MethodPointer& method : given) {
     if (std::none_of(accepted.begin(), accepted.end(), [&](const auto& run) { return is_of(run, method); }))
       throw scenarios::BadInput(std::string(to_string(method->info.kind)) + "/" + method->info.name +
                                 ": the gate of suite " + suite.name +
@@ -160,12 +161,12 @@ json to_json(const std::vector<GateResult>& results, bool passes) {
 
 /// The gate that is there, or, to be accepted for the first time, none yet.
 std::optional<scenarios::Gate> load(const scenarios::DataRoot& data, const Options& options,
-                                    const std::vector<scenarios::MethodPointer>& described, const std::string& suite) {
+                                    const std::vector<scenarios::MethodPointer>& given, const std::string& suite) {
   const fs::path file = gate_file(data, options, suite);
   if (options.accept && !(fs::exists(file) && fs::exists(fs::path(file).replace_extension(".csv"))))
     return std::nullopt;
   const scenarios::Gate gate =
-      scenarios::load_gate(data, options.accepted.empty() ? suite : options.accepted.string(), described);
+      scenarios::load_gate(data, options.accepted.empty() ? suite : options.accepted.string(), given);
   if (gate.suite != suite) {
     throw scenarios::BadInput(options.accepted.string() + ": is the gate of suite '" + gate.suite + "', not of '" +
                               suite + "'");
@@ -197,10 +198,10 @@ int run_gate(const Session& session, const Options& options) {
   if (!options.accepted.empty() && options.accepted.extension() != ".yaml")
     throw scenarios::BadInput("--against " + options.accepted.string() + ": must be a FILE.yaml");
   suite.curves.clear();  // held are the scenarios as they are
-  const std::vector<scenarios::MethodPointer> described = described_methods(options);
-  const std::optional<scenarios::Gate> known = load(data, options, described, suite.name);
+  const std::vector<scenarios::MethodPointer> given = given_methods(options);
+  const std::optional<scenarios::Gate> known = load(data, options, given, suite.name);
   if (known)
-    keep_accepted(*known, options, described, suite);
+    keep_accepted(*known, options, given, suite);
   else
     suite.methods = options.methods.empty() ? std::vector<std::string>{"tumble"} : options.methods;
 
@@ -238,8 +239,10 @@ Action declare_gate(CLI::App& app, const Session& session) {
       ->check(a_suite(session));
   app.add_option("--against", options->accepted,
                  "the gate, FILE.yaml, with the accepted run beside it in FILE.csv [scenarios/gates/SUITE.yaml]");
-  app.add_option("--method", options->methods,
-                 "FILE.yaml: the method that it describes is held too, or accepted; repeat for more")
+  app.add_option(
+         "--method", options->methods,
+         "FILE.yaml: the method that it describes is held too, or accepted; with --accept also one of this build, "
+         "held from then on; repeat for more")
       ->allow_extra_args(false);
   app.add_option("--jobs", options->jobs, "processes at a time [the processors]")
       ->check(CLI::Range(1, 1024))
