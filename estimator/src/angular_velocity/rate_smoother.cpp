@@ -85,7 +85,7 @@ double change_rad_s2(const RateModelParams& params, std::span<const RateObservat
 }
 
 // What a time that both triads may share makes of a rate: the most that it changes by within reach of it, where a
-// stroke of the next sample's window may belong to this one; rate_smoother.md (R47).
+// stroke of the next sample's window may belong to this one.
 Eigen::Matrix3d of_shared_delay(double variance_s2, const RateModelParams& params,
                                 std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
                                 std::size_t k) {
