@@ -12,6 +12,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
+#include "scenarios/recordings/bags/ros2_definitions.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 
 namespace tumble::scenarios {
@@ -22,18 +23,6 @@ using std::filesystem::path;
 
 [[noreturn]] void fail(const path& place, const std::string& what) {
   throw BadInput(place.string() + ": " + what);
-}
-
-/// "sensor_msgs/Imu" as ROS 2 calls it.
-std::string ros2_type(const std::string& type) {
-  const std::size_t slash = type.find('/');
-  return type.substr(0, slash) + "/msg" + type.substr(slash);
-}
-
-std::string ros1_type(std::string type) {
-  const std::size_t middle = type.find("/msg/");
-  if (middle != std::string::npos) type.erase(middle, 4);
-  return type;
 }
 
 struct TopicState {
@@ -71,14 +60,8 @@ class Ros2BagWriter : public BagWriter {
     std::error_code ignored;
     std::filesystem::remove(part_, ignored);
   }
-  void write(const BagTopic& topic, std::int64_t stamp_ns, const ros::Imu& message) override {
-    insert(topic, stamp_ns, ros::to_cdr(message));
-  }
-  void write(const BagTopic& topic, std::int64_t stamp_ns, const ros::PointCloud2& message) override {
-    insert(topic, stamp_ns, ros::to_cdr(message));
-  }
-  void write(const BagTopic& topic, std::int64_t stamp_ns, const ros::Odometry& message) override {
-    insert(topic, stamp_ns, ros::to_cdr(message));
+  void write(const std::string& topic, std::int64_t stamp_ns, const ros::Message& message) override {
+    insert({topic, ros::type_of(message)}, stamp_ns, ros::to_cdr(message));
   }
   void finish() override {
     guarded([&] {
@@ -106,10 +89,11 @@ class Ros2BagWriter : public BagWriter {
     const auto found = std::find_if(topics_.begin(), topics_.end(), same);
     if (found != topics_.end()) return *found;
     topics_.push_back({topic, static_cast<std::int64_t>(topics_.size()) + 1, 0});
-    SQLite::Statement statement(*database_, "INSERT INTO topics VALUES (?, ?, ?, 'cdr', '')");
+    SQLite::Statement statement(*database_, "INSERT INTO topics VALUES (?, ?, ?, 'cdr', ?)");
     statement.bind(1, topics_.back().id);
     statement.bind(2, topic.name);
     statement.bind(3, ros2_type(topic.type));
+    statement.bind(4, ros2_qos(topic.name));
     statement.exec();
     return topics_.back();
   }
@@ -156,7 +140,7 @@ class Ros2BagWriter : public BagWriter {
       entry("name", each.topic.name);
       entry("type", ros2_type(each.topic.type));
       entry("serialization_format", "cdr");
-      out << YAML::Key << "offered_qos_profiles" << YAML::Value << YAML::DoubleQuoted << "";
+      out << YAML::Key << "offered_qos_profiles" << YAML::Value << YAML::DoubleQuoted << ros2_qos(each.topic.name);
       out << YAML::EndMap;
       entry("message_count", each.messages);
       out << YAML::EndMap;
@@ -180,37 +164,42 @@ class Ros2BagWriter : public BagWriter {
   std::int64_t first_ns_ = std::numeric_limits<std::int64_t>::max(), last_ns_ = 0;
 };
 
-/// The SQLite files of a bag, in order.
-std::vector<path> storage_files(const path& bag) {
-  if (!std::filesystem::is_directory(bag)) return {bag};
+/// The files of a bag, in order, and how they are stored: "sqlite3" or "mcap".
+struct Storage {
+  std::string kind = "sqlite3";
+  std::vector<path> files;
+};
+
+Storage storage_of(const path& bag) {
+  if (!std::filesystem::is_directory(bag)) return {bag.extension() == ".mcap" ? "mcap" : "sqlite3", {bag}};
   const path metadata = bag / "metadata.yaml";
   if (!std::filesystem::is_regular_file(metadata)) fail(bag, "holds no metadata.yaml: no ROS 2 bag");
-  std::vector<path> files;
+  Storage out;
   try {
     const YAML::Node root = YAML::LoadFile(metadata.string())["rosbag2_bagfile_information"];
-    const auto storage = root["storage_identifier"].as<std::string>();
-    if (storage != "sqlite3") fail(metadata, "the storage is '" + storage + "', must be sqlite3");
+    out.kind = root["storage_identifier"].as<std::string>();
+    if (out.kind != "sqlite3" && out.kind != "mcap")
+      fail(metadata, "the storage is '" + out.kind + "', must be sqlite3 or mcap");
     if (root["compression_format"] && !root["compression_format"].as<std::string>("").empty())
       fail(metadata, "the bag is compressed ('ros2 bag convert' makes a plain one)");
     for (const YAML::Node& each : root["relative_file_paths"]) {
       const path name = path(each.as<std::string>()).filename();  // nothing leads out of the folder
-      files.push_back(bag / name);
+      out.files.push_back(bag / name);
     }
   } catch (const YAML::Exception& error) {
     std::string what = error.what();
     std::replace(what.begin(), what.end(), '\n', ' ');
     fail(metadata, "no metadata of a ROS 2 bag: " + what);
   }
-  if (files.empty()) fail(metadata, "relative_file_paths names no file");
-  return files;
+  if (out.files.empty()) fail(metadata, "relative_file_paths names no file");
+  return out;
 }
 
 class Ros2BagReader : public BagReader {
  public:
-  explicit Ros2BagReader(const path& bag) {
-    for (const path& file : storage_files(bag)) {
+  explicit Ros2BagReader(std::vector<path> files) : files_(std::move(files)) {
+    for (const path& file : files_) {
       if (!std::filesystem::is_regular_file(file)) fail(file, "no such file");
-      files_.push_back(file);
     }
   }
 
@@ -246,7 +235,7 @@ class Ros2BagReader : public BagReader {
     });
   }
 
-  bool cdr() const override { return true; }
+  bool cdr(const std::string&) const override { return true; }
 
  private:
   template <class Call>
@@ -270,7 +259,9 @@ std::unique_ptr<BagWriter> make_ros2_writer(const path& folder) {
 }
 
 std::unique_ptr<BagReader> open_ros2_bag(const path& bag) {
-  return std::make_unique<Ros2BagReader>(bag);
+  Storage storage = storage_of(bag);
+  if (storage.kind == "mcap") return open_mcap(storage.files);
+  return std::make_unique<Ros2BagReader>(std::move(storage.files));
 }
 
 }  // namespace tumble::scenarios

@@ -157,6 +157,9 @@ Bytes to_cdr(Message message) {
   fields(writer, message);
   return writer.bytes();
 }
+inline Bytes to_cdr(const Message& message) {
+  return std::visit([](const auto& each) { return to_cdr(each); }, message);
+}
 template <class Message>
 Message from_ros1(const Bytes& bytes) {
   Message message;
