@@ -83,7 +83,7 @@ class BodyAt {
     const auto after = std::lower_bound(poses_.begin(), poses_.end(), time_ns,
                                         [](const BagTrack::Pose& pose, std::int64_t t) { return pose.time_ns < t; });
     if (after == poses_.end() || (after == poses_.begin() && after->time_ns != time_ns)) return false;
-    const auto before = after == poses_.begin() ? after : std::prev(after);
+    const auto before = after->time_ns == time_ns ? after : std::prev(after);
     const std::int64_t step_ns = after->time_ns - before->time_ns;
     if (step_ns > kHole_ns) return false;
     const double share =

@@ -155,7 +155,9 @@ void place_sensor(const Bag& bag, const StaticFrames& frames, const std::string&
   const auto text = [](const Eigen::Isometry3d& T) {
     std::ostringstream out;
     const Eigen::Quaterniond q(T.linear());
-    out << "(" << T.translation().transpose() << ") m, quaternion (" << q.coeffs().transpose() << ")";
+    const Eigen::IOFormat row(Eigen::StreamPrecision, Eigen::DontAlignCols, " ", " ");
+    out << "(" << T.translation().transpose().format(row) << ") m, quaternion x y z w ("
+        << q.coeffs().transpose().format(row) << ")";
     return out.str();
   };
   constexpr double kSame = 1e-3;  // m and, nearly, rad
