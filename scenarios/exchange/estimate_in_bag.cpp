@@ -126,7 +126,7 @@ void require_own(const std::filesystem::path& path, const sim::Sensors& sensors)
 /// "slam/tumble" as a topic and a frame that nobody has yet.
 std::string free_name(const std::string& method, std::set<std::string>& taken) {
   std::string stem;
-  for (const char c : method) stem += std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' ? c : '_';
+  for (const char c : method) stem += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
   if (stem.empty() || std::isdigit(static_cast<unsigned char>(stem.front())) != 0) stem.insert(0, "estimate_");
   std::string name = stem;
   for (int number = 2; !taken.insert(name).second; ++number) name = stem + "_" + std::to_string(number);

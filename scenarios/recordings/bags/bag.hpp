@@ -23,7 +23,7 @@ struct BagTrack {
     /// Of (place in W, attitude error phi in W), as in PoseState; zero where nobody states one.
     Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   };
-  std::string name;  ///< letters, digits, _ and -
+  std::string name;  ///< letters, digits and _
   std::vector<Pose> poses;
 };
 

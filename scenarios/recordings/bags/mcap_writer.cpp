@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <optional>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
