@@ -263,7 +263,7 @@ ChunkIndex File::head_of_chunk(std::uint64_t at, std::uint64_t bytes, std::uint3
     fail(at, "a chunk of " + in_bytes(std::max(chunk.records_size, chunk.uncompressed_size)) +
                  ", at most 256 MiB are read");
   }
-  if (chunk.compression != "" && chunk.compression != "lz4" && chunk.compression != "zstd") {
+  if (!chunk.compression.empty() && chunk.compression != "lz4" && chunk.compression != "zstd") {
     fail(at, "a chunk of compression '" + chunk.compression.substr(0, 40) + "': none, lz4 or zstd are read");
   }
   if (chunk.compression.empty() && chunk.uncompressed_size != chunk.records_size) {
