@@ -47,7 +47,7 @@ void write_sensors(const path& recording, const path& out, const BesideSensors&)
 }
 
 /// Sorted by name.
-const std::array<Format, 8> kFormats = {{
+const std::array<Format, 9> kFormats = {{
     {"csv", write_csv},
     {"kitti", write_truth<export_kitti>},
     {"mcap", write_bag<export_mcap>},
@@ -55,6 +55,7 @@ const std::array<Format, 8> kFormats = {{
     {"ply", write_sensors<export_ply>},
     {"rosbag1", write_bag<export_ros1_bag>},
     {"rosbag2", write_bag<export_ros2_bag>},
+    {"rosbag2_mcap", write_bag<export_ros2_mcap>},
     {"tum", write_truth<export_tum>},
 }};
 
@@ -67,7 +68,7 @@ std::vector<std::string> export_formats() {
 }
 
 bool is_bag_format(const std::string& format) {
-  return format == "mcap" || format == "rosbag1" || format == "rosbag2";
+  return format == "mcap" || format.starts_with("rosbag");
 }
 
 std::string format_of_ending(const path& out) {

@@ -11,10 +11,10 @@
 
 namespace tumble::scenarios {
 
-/// Names that export_recording takes: csv kitti mcap pcd ply rosbag1 rosbag2 tum.
+/// Names that export_recording takes: csv kitti mcap pcd ply rosbag1 rosbag2 rosbag2_mcap tum.
 std::vector<std::string> export_formats();
 
-/// Those of them that are bags: mcap rosbag1 rosbag2.
+/// Those of them that are bags: mcap rosbag1 rosbag2 rosbag2_mcap.
 bool is_bag_format(const std::string& format);
 
 /// The format that the ending of a file tells (.mcap, .bag, .tum); empty for others.
@@ -28,10 +28,10 @@ struct BesideSensors {
 };
 
 /// Writes a recording file in somebody else's format. `tum` and `kitti` write one file, the true poses of the body;
-/// `mcap` and `rosbag1` write one file, the sensors; `csv`, `pcd`, `ply` and `rosbag2` write into a folder, which is
-/// made when absent. Of bags (bag.hpp has their topics) `beside` says what else is in them. Files are replaced whole.
-/// Throws BadInput: unknown format (nearest named), a recording without what the format needs, a place that cannot be
-/// written.
+/// `mcap` and `rosbag1` write one file, the sensors; `csv`, `pcd`, `ply`, `rosbag2` and `rosbag2_mcap` write into a
+/// folder, which is made when absent. Of bags (bag.hpp has their topics) `beside` says what else is in them. Files are
+/// replaced whole. Throws BadInput: unknown format (nearest named), a recording without what the format needs, a place
+/// that cannot be written.
 void export_recording(const std::filesystem::path& recording, const std::string& format,
                       const std::filesystem::path& out, const BesideSensors& beside = {});
 

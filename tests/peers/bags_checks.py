@@ -18,7 +18,7 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 TUMBLE = FOLDER = None
 ORIGIN = 10**18  # stamp of a simulated recording's start
-BAGS = {"mcap": "a.mcap", "rosbag1": "a.bag", "rosbag2": "rosbag2"}
+BAGS = {"mcap": "a.mcap", "rosbag1": "a.bag", "rosbag2": "rosbag2", "rosbag2_mcap": "rosbag2_mcap"}
 POINTS = numpy.dtype({"names": ["x", "y", "z", "intensity", "ring", "time", "offset_ns"],
                       "formats": ["<f4", "<f4", "<f4", "<f4", "<u2", "<f4", "<u4"],
                       "offsets": [0, 4, 8, 12, 16, 18, 22], "itemsize": 26})
@@ -176,7 +176,7 @@ class Definitions(unittest.TestCase):
                 self.assertEqual(fields, store.fielddefs[name][1], name)
 
     def test_offered_qos(self):
-        for form in ("mcap", "rosbag2"):
+        for form in ("mcap", "rosbag2", "rosbag2_mcap"):
             with AnyReader([FOLDER / BAGS[form]], default_typestore=get_typestore(Stores.ROS2_HUMBLE)) as reader:
                 qos = {c.topic: c.ext.offered_qos_profiles for c in reader.connections}
             self.assertEqual(qos["/tf_static"][0].durability.name, "TRANSIENT_LOCAL")

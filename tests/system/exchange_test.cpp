@@ -28,7 +28,8 @@ TEST(Exchange, EveryFormatLeavesItsFiles) {
                                                          {"pcd", "lidar_000000.pcd"},
                                                          {"mcap", ""},
                                                          {"rosbag1", ""},
-                                                         {"rosbag2", "metadata.yaml"}};
+                                                         {"rosbag2", "metadata.yaml"},
+                                                         {"rosbag2_mcap", "metadata.yaml"}};
   for (const auto& [format, file] : formats) {
     const fs::path out = folder / format;
     const Ended ended = run_program({"export", recording, "--format", format, "-o", out.string(), "--json"});

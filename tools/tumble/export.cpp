@@ -35,7 +35,8 @@ int export_as(const Session& session, const Options& options) {
   const bool bag = scenarios::is_bag_format(format);
   if (options.with_truth && !bag)
     throw scenarios::BadInput("--with-truth is for bags; tum and kitti hold nothing else");
-  if (!options.estimates.empty() && !bag) throw scenarios::BadInput("--estimate is for bags (mcap, rosbag1, rosbag2)");
+  if (!options.estimates.empty() && !bag)
+    throw scenarios::BadInput("--estimate is for bags (mcap, rosbag1, rosbag2, rosbag2_mcap)");
   std::vector<std::filesystem::path> inputs = options.estimates;
   inputs.push_back(options.recording);
   prepare_output(options.out, inputs);

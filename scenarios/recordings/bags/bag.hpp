@@ -61,6 +61,8 @@ struct BagWriting {
 void export_ros1_bag(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& file);
 void export_ros2_bag(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& folder);
 void export_mcap(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& file);
+/// The same MCAP file in a folder with metadata.yaml, as ROS 2 itself has them since Iron.
+void export_ros2_mcap(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& folder);
 
 /// What is taken from a bag.
 struct BagReading {

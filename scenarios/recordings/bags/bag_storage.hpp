@@ -41,6 +41,7 @@ class BagReader {
 std::unique_ptr<BagWriter> make_ros1_writer(const std::filesystem::path& file);
 std::unique_ptr<BagWriter> make_ros2_writer(const std::filesystem::path& folder);
 std::unique_ptr<BagWriter> make_mcap_writer(const std::filesystem::path& file);
+std::unique_ptr<BagWriter> make_ros2_mcap_writer(const std::filesystem::path& folder);
 std::unique_ptr<BagReader> open_ros1_bag(const std::filesystem::path& file);
 std::unique_ptr<BagReader> open_ros2_bag(const std::filesystem::path& path);
 /// Files that are one bag, in order.

@@ -167,4 +167,8 @@ void export_mcap(const sim::Sensors& sensors, const BagWriting& writing, const s
   write_bag(sensors, writing, *make_mcap_writer(file));
 }
 
+void export_ros2_mcap(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& folder) {
+  write_bag(sensors, writing, *make_ros2_mcap_writer(folder));
+}
+
 }  // namespace tumble::scenarios

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <limits>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -13,6 +12,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
 #include "scenarios/recordings/bags/ros2_definitions.hpp"
+#include "scenarios/recordings/bags/ros2_metadata.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 
 namespace tumble::scenarios {
@@ -25,17 +25,13 @@ using std::filesystem::path;
   throw BadInput(place.string() + ": " + what);
 }
 
-struct TopicState {
-  BagTopic topic;
-  std::int64_t id = 0, messages = 0;
-};
-
 class Ros2BagWriter : public BagWriter {
  public:
   explicit Ros2BagWriter(const path& folder) : folder_(folder) {
     output_.emplace(folder);
     const std::string name = std::filesystem::weakly_canonical(folder).filename().string();
     file_ = folder / ((name.empty() ? "recording" : name) + "_0.db3");
+    summary_ = {"sqlite3", file_.filename().string()};
     part_ = file_.string() + "." + std::to_string(getpid()) + ".part";
     guarded([&] {
       std::filesystem::remove(part_);
@@ -70,7 +66,7 @@ class Ros2BagWriter : public BagWriter {
       database_.reset();
       std::filesystem::rename(part_, file_);
     });
-    replace_file(folder_ / "metadata.yaml", metadata());
+    replace_file(folder_ / "metadata.yaml", ros2_metadata(summary_));
     output_->keep();
   }
 
@@ -84,84 +80,41 @@ class Ros2BagWriter : public BagWriter {
     }
   }
 
-  TopicState& state_of(const BagTopic& topic) {
-    const auto same = [&](const TopicState& each) { return each.topic.name == topic.name; };
-    const auto found = std::find_if(topics_.begin(), topics_.end(), same);
-    if (found != topics_.end()) return *found;
-    topics_.push_back({topic, static_cast<std::int64_t>(topics_.size()) + 1, 0});
-    SQLite::Statement statement(*database_, "INSERT INTO topics VALUES (?, ?, ?, 'cdr', ?)");
-    statement.bind(1, topics_.back().id);
-    statement.bind(2, topic.name);
-    statement.bind(3, ros2_type(topic.type));
-    statement.bind(4, ros2_qos(topic.name));
-    statement.exec();
-    return topics_.back();
+  /// The number of the message's topic, which is entered when it is new.
+  std::int64_t topic_of(const BagTopic& topic, std::int64_t stamp_ns) {
+    const std::size_t known = summary_.topics.size();
+    const std::size_t place = summary_.count(topic, stamp_ns);
+    if (place == known) {
+      SQLite::Statement statement(*database_, "INSERT INTO topics VALUES (?, ?, ?, 'cdr', ?)");
+      statement.bind(1, static_cast<std::int64_t>(place) + 1);
+      statement.bind(2, topic.name);
+      statement.bind(3, ros2_type(topic.type));
+      statement.bind(4, ros2_qos(topic.name));
+      statement.exec();
+    }
+    return static_cast<std::int64_t>(place) + 1;
   }
 
   void insert(const BagTopic& topic, std::int64_t stamp_ns, const ros::Bytes& bytes) {
     guarded([&] {
-      TopicState& state = state_of(topic);
+      const std::int64_t number = topic_of(topic, stamp_ns);
       if (!insert_) {
         insert_ = std::make_unique<SQLite::Statement>(
             *database_, "INSERT INTO messages (topic_id, timestamp, data) VALUES (?, ?, ?)");
       }
-      insert_->bind(1, state.id);
+      insert_->bind(1, number);
       insert_->bind(2, stamp_ns);
       insert_->bindNoCopy(3, bytes.data(), static_cast<int>(bytes.size()));
       insert_->exec();
       insert_->reset();
-      ++state.messages;
-      first_ns_ = std::min(first_ns_, stamp_ns);
-      last_ns_ = std::max(last_ns_, stamp_ns);
     });
-  }
-
-  std::string metadata() const {
-    std::int64_t all = 0;
-    for (const TopicState& each : topics_) all += each.messages;
-    const std::int64_t start = all > 0 ? first_ns_ : 0, duration = all > 0 ? last_ns_ - first_ns_ : 0;
-    YAML::Emitter out;
-    const auto entry = [&](const char* key, const auto& value) { out << YAML::Key << key << YAML::Value << value; };
-    const auto times = [&] {
-      out << YAML::Key << "duration" << YAML::Value << YAML::BeginMap;
-      entry("nanoseconds", duration);
-      out << YAML::EndMap << YAML::Key << "starting_time" << YAML::Value << YAML::BeginMap;
-      entry("nanoseconds_since_epoch", start);
-      out << YAML::EndMap;
-      entry("message_count", all);
-    };
-    out << YAML::BeginMap << YAML::Key << "rosbag2_bagfile_information" << YAML::Value << YAML::BeginMap;
-    entry("version", 5);
-    entry("storage_identifier", "sqlite3");
-    times();
-    out << YAML::Key << "topics_with_message_count" << YAML::Value << YAML::BeginSeq;
-    for (const TopicState& each : topics_) {
-      out << YAML::BeginMap << YAML::Key << "topic_metadata" << YAML::Value << YAML::BeginMap;
-      entry("name", each.topic.name);
-      entry("type", ros2_type(each.topic.type));
-      entry("serialization_format", "cdr");
-      out << YAML::Key << "offered_qos_profiles" << YAML::Value << YAML::DoubleQuoted << ros2_qos(each.topic.name);
-      out << YAML::EndMap;
-      entry("message_count", each.messages);
-      out << YAML::EndMap;
-    }
-    out << YAML::EndSeq;
-    for (const char* key : {"compression_format", "compression_mode"})
-      out << YAML::Key << key << YAML::Value << YAML::DoubleQuoted << "";
-    out << YAML::Key << "relative_file_paths" << YAML::Value << YAML::BeginSeq << file_.filename().string()
-        << YAML::EndSeq << YAML::Key << "files" << YAML::Value << YAML::BeginSeq << YAML::BeginMap;
-    entry("path", file_.filename().string());
-    times();
-    out << YAML::EndMap << YAML::EndSeq << YAML::EndMap << YAML::EndMap;
-    return std::string(out.c_str()) + "\n";
   }
 
   path folder_, file_, part_;
   std::optional<OutputFolder> output_;
   std::unique_ptr<SQLite::Database> database_;
   std::unique_ptr<SQLite::Statement> insert_;
-  std::vector<TopicState> topics_;
-  std::int64_t first_ns_ = std::numeric_limits<std::int64_t>::max(), last_ns_ = 0;
+  Ros2Summary summary_;
 };
 
 /// The files of a bag, in order, and how they are stored: "sqlite3" or "mcap".

@@ -124,7 +124,8 @@ TEST_P(Bag, AnotherUnitIsSaid) {
 INSTANTIATE_TEST_SUITE_P(Kinds, Bag,
                          testing::Values(Kind{"Ros1", export_ros1_bag, import_ros1_bag},
                                          Kind{"Ros2", export_ros2_bag, import_ros2_bag},
-                                         Kind{"Mcap", export_mcap, import_mcap}),
+                                         Kind{"Mcap", export_mcap, import_mcap},
+                                         Kind{"Ros2Mcap", export_ros2_mcap, import_ros2_bag}),
                          [](const auto& kind) { return std::string(kind.param.name); });
 
 // messages say rad/s; a driver that writes degrees is noticed where gravity turns slowly
