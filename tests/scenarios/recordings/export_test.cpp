@@ -36,7 +36,7 @@ TEST_F(Export, TumHoldsTimeAndPoseExactly) {
   const auto rows = rows_of(folder_ / "truth.tum");
   ASSERT_EQ(rows.size(), 40u);
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    ASSERT_EQ(rows[i].size(), 9u);
+    ASSERT_EQ(rows[i].size(), 8u);
     EXPECT_EQ(rows[i][0], static_cast<double>(i) / 1000.0);
     EXPECT_EQ(Eigen::Vector3d(rows[i][1], rows[i][2], rows[i][3]), recording_.truth.p_WB_m[i]);
     EXPECT_EQ(Eigen::Vector4d(rows[i][4], rows[i][5], rows[i][6], rows[i][7]), recording_.truth.q_WB[i].coeffs());
