@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What bags.py runs inside of its environment: bags_checks.py TUMBLE FOLDER"""
+"""What bags.py runs with its packages in sight: bags_checks.py TUMBLE FOLDER"""
 import csv
 import pathlib
 import shutil
@@ -303,4 +303,7 @@ class Importing(unittest.TestCase):
 if __name__ == "__main__":
     TUMBLE, FOLDER = sys.argv[1], pathlib.Path(sys.argv[2])
     make_files()
-    unittest.main(argv=sys.argv[:1], verbosity=2)
+    passed = unittest.main(argv=sys.argv[:1], verbosity=2, exit=False).result.wasSuccessful()
+    if passed:  # some hundred MB
+        shutil.rmtree(FOLDER)
+    sys.exit(0 if passed else 1)

@@ -198,7 +198,8 @@ void File::take_indexed(std::vector<ChunkIndex> chunks) {
 std::optional<std::uint64_t> File::stated_messages(std::uint16_t channel) const {
   if (!statistics_) return std::nullopt;
   const auto found = statistics_->channel_message_counts.find(channel);
-  return found == statistics_->channel_message_counts.end() ? 0 : found->second;
+  if (found == statistics_->channel_message_counts.end()) return std::nullopt;
+  return found->second;
 }
 
 std::string File::records(const Stretch& stretch) {
