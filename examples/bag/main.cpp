@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The door behind a ROS bag: example_bag BAG (a ROS 1 file, or the folder of a ROS 2 bag) prints a pose for each sweep.
-// The readers are the harness's; sensors and mounting are those of examples/door/tumbling.cpp. Exit status 2: bad
-// input.
+// The door behind a ROS bag: example_bag BAG (a ROS 1 file, the folder of a ROS 2 bag, or an MCAP file) prints a pose
+// for each sweep. The readers are the harness's; sensors and mounting are those of examples/door/tumbling.cpp. Exit
+// status 2: bad input.
 #include <cmath>
 #include <cstdio>
 #include <exception>

@@ -72,7 +72,7 @@ bool names_output(const std::vector<std::string>& command) {
 }  // namespace
 
 std::vector<std::string> external_placeholders() {
-  return {"recording", "csv", "ply", "pcd", "rosbag1", "rosbag2", "sensors", "output", "map", "folder"};
+  return {"recording", "csv", "ply", "pcd", "rosbag1", "rosbag2", "mcap", "sensors", "output", "map", "folder"};
 }
 
 std::vector<std::string> placeholders_in(const std::string& word) {

@@ -74,6 +74,10 @@ const std::vector<Provision>& provisions() {
        [](const sim::Sensors& sensors, const fs::path& to) {
          export_ros2_bag(sensors, {kExternalBagOrigin_ns, nullptr}, to);
        }},
+      {"mcap", "recording.mcap",
+       [](const sim::Sensors& sensors, const fs::path& to) {
+         export_mcap(sensors, {kExternalBagOrigin_ns, nullptr}, to);
+       }},
       {"sensors", "sensors.json",
        [](const sim::Sensors& sensors, const fs::path& to) { replace_file(to, sensors_text(sensors)); }},
   };

@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "sim/parameters.hpp"
 
@@ -17,10 +16,10 @@ using std::filesystem::path;
 
 struct Format {
   const char* name;
-  void (*write)(const path& recording, const path& out, bool with_truth);
+  void (*write)(const path& recording, const path& out, const BesideSensors& beside);
 };
 
-void write_csv(const path& recording, const path& out, bool) {
+void write_csv(const path& recording, const path& out, const BesideSensors&) {
   const sim::Sensors sensors = read_sensors(recording);
   if (!read_info(recording).has_truth) return export_csv(sensors, nullptr, out);
   const sim::Truth truth = read_truth(recording);
@@ -28,30 +27,35 @@ void write_csv(const path& recording, const path& out, bool) {
 }
 
 template <void (*kExport)(const sim::Sensors&, const BagWriting&, const path&)>
-void write_bag(const path& recording, const path& out, bool with_truth) {
+void write_bag(const path& recording, const path& out, const BesideSensors& beside) {
   std::optional<sim::Truth> truth;
-  if (with_truth) truth = read_truth(recording);
-  kExport(read_sensors(recording), {read_info(recording).origin_ns, truth ? &*truth : nullptr}, out);
+  if (beside.truth) truth = read_truth(recording);
+  const sim::Sensors sensors = read_sensors(recording);
+  BagWriting writing{read_info(recording).origin_ns, truth ? &*truth : nullptr};
+  if (beside.more) beside.more(sensors, writing);
+  kExport(sensors, writing, out);
 }
 
 template <void (*kExport)(const sim::Truth&, const path&)>
-void write_truth(const path& recording, const path& out, bool) {
+void write_truth(const path& recording, const path& out, const BesideSensors&) {
   kExport(read_truth(recording), out);
 }
 
 template <void (*kExport)(const sim::Sensors&, const path&)>
-void write_sensors(const path& recording, const path& out, bool) {
+void write_sensors(const path& recording, const path& out, const BesideSensors&) {
   kExport(read_sensors(recording), out);
 }
 
 /// Sorted by name.
-const std::array<Format, 7> kFormats = {{
+const std::array<Format, 9> kFormats = {{
     {"csv", write_csv},
     {"kitti", write_truth<export_kitti>},
+    {"mcap", write_bag<export_mcap>},
     {"pcd", write_sensors<export_pcd>},
     {"ply", write_sensors<export_ply>},
     {"rosbag1", write_bag<export_ros1_bag>},
     {"rosbag2", write_bag<export_ros2_bag>},
+    {"rosbag2_mcap", write_bag<export_ros2_mcap>},
     {"tum", write_truth<export_tum>},
 }};
 
@@ -63,9 +67,18 @@ std::vector<std::string> export_formats() {
   return names;
 }
 
-void export_recording(const path& recording, const std::string& format, const path& out, bool with_truth) {
+bool is_bag_format(const std::string& format) {
+  return format == "mcap" || format.starts_with("rosbag");
+}
+
+std::string format_of_ending(const path& out) {
+  const std::string ending = out.extension().string();
+  return ending == ".mcap" ? "mcap" : ending == ".bag" ? "rosbag1" : ending == ".tum" ? "tum" : "";
+}
+
+void export_recording(const path& recording, const std::string& format, const path& out, const BesideSensors& beside) {
   for (const Format& each : kFormats) {
-    if (format == each.name) return each.write(recording, out, with_truth);
+    if (format == each.name) return each.write(recording, out, beside);
   }
   std::string known;
   for (const std::string& name : export_formats()) known += " " + name;

@@ -2,22 +2,38 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
+#include "scenarios/recordings/bags/bag.hpp"
 #include "sim/recording.hpp"
 
 namespace tumble::scenarios {
 
-/// Names that export_recording takes: csv kitti pcd ply rosbag1 rosbag2 tum.
+/// Names that export_recording takes: csv kitti mcap pcd ply rosbag1 rosbag2 rosbag2_mcap tum.
 std::vector<std::string> export_formats();
 
+/// Those of them that are bags: mcap rosbag1 rosbag2 rosbag2_mcap.
+bool is_bag_format(const std::string& format);
+
+/// The format that the ending of a file tells (.mcap, .bag, .tum); empty for others.
+std::string format_of_ending(const std::filesystem::path& out);
+
+/// What a bag holds besides the sensors.
+struct BesideSensors {
+  bool truth = false;
+  /// Called with sensors and truth read, to add estimates (scenarios/exchange); may be empty.
+  std::function<void(const sim::Sensors&, BagWriting&)> more = {};
+};
+
 /// Writes a recording file in somebody else's format. `tum` and `kitti` write one file, the true poses of the body;
-/// `rosbag1` writes one file, the sensors; `csv`, `pcd`, `ply` and `rosbag2` write into a folder, which is made when
-/// absent. A bag holds the truth only `with_truth` (bag.hpp has its topics). Files are replaced whole. Throws BadInput:
-/// unknown format (nearest named), a recording without what the format needs, a place that cannot be written.
+/// `mcap` and `rosbag1` write one file, the sensors; `csv`, `pcd`, `ply`, `rosbag2` and `rosbag2_mcap` write into a
+/// folder, which is made when absent. Of bags (bag.hpp has their topics) `beside` says what else is in them. Files are
+/// replaced whole. Throws BadInput: unknown format (nearest named), a recording without what the format needs, a place
+/// that cannot be written.
 void export_recording(const std::filesystem::path& recording, const std::string& format,
-                      const std::filesystem::path& out, bool with_truth = false);
+                      const std::filesystem::path& out, const BesideSensors& beside = {});
 
 /// "t x y z qx qy qz qw" per physics sample: T_WB, seconds from the start with nine decimals, numbers that read back
 /// exactly. Without the instants that a reference does not know.

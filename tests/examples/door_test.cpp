@@ -116,8 +116,7 @@ TEST(Door, TheTumblingExampleFollowsATumbleAndABagSaysTheSame) {
   output_of(test::program().string() + " export " + hill_1.file.string() + " --format rosbag1 -o " + bag.string());
   const std::vector<Line> from_bag = lines_of(output_of(std::string(TUMBLE_BAG) + " " + bag.string()));
   ASSERT_EQ(from_bag.size(), lines.size());
-  // stamps of points are 4 ns coarser in a bag
-  EXPECT_LT((from_bag.back().p_m - end.p_m).norm(), 0.01);
+  EXPECT_LT((from_bag.back().p_m - end.p_m).norm(), 1e-9);
   EXPECT_NE(std::system((std::string(TUMBLE_BAG) + " " + hill_1.file.string() + " 2>/dev/null").c_str()), 0);
 }
 

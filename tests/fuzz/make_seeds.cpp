@@ -19,6 +19,7 @@
 #include "scenarios/recordings/clouds/cloud_file.hpp"
 #include "scenarios/recordings/export.hpp"
 #include "tests/scenarios/recordings/fixture_recording.hpp"
+#include "tests/scenarios/recordings/mcap_file.hpp"
 #include "tests/tree.hpp"
 
 namespace {
@@ -102,6 +103,24 @@ void write_broad(const path& file) {
   H5Fclose(out);
 }
 
+/// Ours, and as others write them: without checksums, which would stop a fuzzer at the door.
+void write_mcaps(const path& folder, const sim::Recording& recording) {
+  export_mcap(recording.sensors, {0, &recording.truth}, folder / "small");
+  fixture::McapShape shape;
+  const std::vector<fixture::Logged> messages = fixture::imu_messages(12);
+  shape.chunks = {{messages.begin(), messages.begin() + 6}, {messages.begin() + 6, messages.end()}};
+  shape.crcs = false;
+  for (const char* compression : {"", "lz4", "zstd"}) {
+    shape.compression = compression;
+    put_text(folder / (*compression == '\0' ? "plain" : compression), fixture::mcap_bytes(shape));
+  }
+  shape.compression = "lz4";
+  shape.summary = false;
+  put_text(folder / "without_summary", fixture::mcap_bytes(shape));
+  shape.chunked = false;
+  put_text(folder / "loose", fixture::mcap_bytes(shape));
+}
+
 void write_recordings(const path& folder, const path& scratch) {
   const sim::Recording recording = small_recording(6);
   write_recording(in(folder, "recording") / "small", fixture::info(), recording.sensors, &recording.truth);
@@ -111,6 +130,7 @@ void write_recordings(const path& folder, const path& scratch) {
   for (const auto& entry : std::filesystem::directory_iterator(scratch / "bag")) {
     if (entry.path().extension() == ".db3") std::filesystem::copy_file(entry.path(), in(folder, "ros2_bag") / "small");
   }
+  write_mcaps(in(folder, "mcap"), longer);
   export_csv(longer.sensors, nullptr, scratch / "csv");
   std::filesystem::copy_file(scratch / "csv" / "imu.csv", in(folder, "imu_csv") / "own");
   put_text(in(folder, "imu_csv") / "short",

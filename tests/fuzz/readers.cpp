@@ -74,6 +74,9 @@ void ros1_bag(const path& file) {
 void ros2_bag(const path& file) {
   import_ros2_bag(file, some_bag());
 }
+void mcap(const path& file) {
+  import_mcap(file, some_bag());
+}
 
 /// A file of points, then the sweep that it is.
 void cloud(const path& file, const std::string& format) {
@@ -183,6 +186,7 @@ constexpr std::array kReaders = {
     Reader{"broad", "a.hdf5", broad},
     Reader{"ros1_bag", "a.bag", ros1_bag},
     Reader{"ros2_bag", "a.db3", ros2_bag},
+    Reader{"mcap", "a.mcap", mcap},
     Reader{"ply_cloud", "lidar_000000.ply", ply_cloud},
     Reader{"pcd_cloud", "lidar_000000.pcd", pcd_cloud},
     Reader{"kitti_cloud", "lidar_000000.bin", kitti_cloud},

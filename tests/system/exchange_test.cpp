@@ -26,8 +26,10 @@ TEST(Exchange, EveryFormatLeavesItsFiles) {
                                                          {"csv", "imu.csv"},
                                                          {"ply", "lidar_000000.ply"},
                                                          {"pcd", "lidar_000000.pcd"},
+                                                         {"mcap", ""},
                                                          {"rosbag1", ""},
-                                                         {"rosbag2", "metadata.yaml"}};
+                                                         {"rosbag2", "metadata.yaml"},
+                                                         {"rosbag2_mcap", "metadata.yaml"}};
   for (const auto& [format, file] : formats) {
     const fs::path out = folder / format;
     const Ended ended = run_program({"export", recording, "--format", format, "-o", out.string(), "--json"});
@@ -154,7 +156,7 @@ TEST(Exchange, SweepsAloneAreMappedAndScored) {
 TEST(Exchange, BagsComeBack) {
   const fs::path folder = test_folder();
   const std::string recording = (shared_run("roll") / "recording.h5").string();
-  for (const auto& [format, out] : {std::pair{"rosbag1", "a.bag"}, {"rosbag2", "bag"}}) {
+  for (const auto& [format, out] : {std::pair{"rosbag1", "a.bag"}, {"rosbag2", "bag"}, {"mcap", "a.mcap"}}) {
     const std::string bag = (folder / out).string(), back = (folder / (std::string(format) + ".h5")).string();
     ASSERT_EQ(run_program({"export", recording, "--format", format, "--with-truth", "-o", bag, "--quiet"}).status, 0);
     const Ended imported =
@@ -168,6 +170,43 @@ TEST(Exchange, BagsComeBack) {
   const Ended unknown = run_program({"import", (folder / "a.bag").string(), "--imu-topic", "/imo", "-o", "x.h5"});
   EXPECT_EQ(unknown.status, 2);
   EXPECT_EQ(line_count(unknown.err), 1u) << unknown.err;
+}
+
+TEST(Exchange, AnMcapIsToldByItsNameAndHoldsEstimates) {
+  const fs::path folder = test_folder();
+  const std::string recording = (shared_run("roll") / "recording.h5").string(), mcap = (folder / "a.mcap").string();
+  const std::string estimate = (folder / "rolled").string(), back = (folder / "back.h5").string();
+  ASSERT_EQ(run_program({"estimate", recording, "--method", "position/rolling", "-o", estimate, "--quiet"}).status, 0);
+  const Ended exported =
+      run_program({"export", recording, "--with-truth", "--estimate", estimate, "-o", mcap, "--json"});
+  ASSERT_EQ(exported.status, 0) << exported.err;
+  EXPECT_EQ(json_of(exported)["format"], "mcap");
+  // the estimate's topic is a reference like the truth's: held to it, it is what `score` says of the estimate
+  const std::vector<std::string> import = {"import", mcap, "--robot", "sphere", "--radius",
+                                           "0.145",  "-o", back,      "--json"};
+  std::vector<std::string> with_reference = import;
+  with_reference.insert(with_reference.end(), {"--reference-topic", "/position_rolling"});
+  const Ended imported = run_program(with_reference);
+  ASSERT_EQ(imported.status, 0) << imported.err;
+  EXPECT_EQ(json_of(imported)["has_reference"], true);
+  EXPECT_THAT(json_of(imported)["notes"].dump(), HasSubstr("/position_rolling/points: its points lie in 'world'"));
+  const Ended tum = run_program({"export", back, "-o", (folder / "rolled.tum").string(), "--quiet"});
+  ASSERT_EQ(tum.status, 0) << tum.err;
+  const Ended again = run_program({"score", (folder / "rolled.tum").string(), recording, "--frame", "body", "--json"});
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_NEAR(metric(json_of(again), "position_end_error_m"),
+              metric(json_of(run_program({"score", estimate, recording, "--json"})), "position_end_error_m"), 0.02);
+  for (const auto& [words, complaint] :
+       {std::pair<std::vector<std::string>, const char*>{{"export", recording, "-o", (folder / "x").string()},
+                                                         "--format is needed"},
+        {{"export", recording, "-o", (folder / "x.tum").string(), "--estimate", estimate}, "--estimate is for bags"},
+        {{"export", recording, "-o", (folder / "x.mcap").string(), "--estimate", (folder / "none").string()},
+         "none"}}) {
+    const Ended refused = run_program(words);
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_EQ(line_count(refused.err), 1u) << refused.err;
+    EXPECT_THAT(refused.err, HasSubstr(complaint));
+  }
 }
 
 TEST(Exchange, ATrajectoryAloneIsARecordingToScoreAgainst) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/exchange/estimate_in_bag.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/verbs.hpp"
 
@@ -17,18 +18,39 @@ struct Options {
   std::filesystem::path recording, out;
   std::string format;
   bool with_truth = false;
+  std::vector<std::filesystem::path> estimates;
 };
 
+/// The one that is asked for, or that the output's ending tells.
+std::string format_of(const Options& options) {
+  const std::string told = options.format.empty() ? scenarios::format_of_ending(options.out) : options.format;
+  if (told.empty())
+    throw scenarios::BadInput(options.out.string() +
+                              ": --format is needed for an output named so (.mcap, .bag and .tum tell theirs)");
+  return told;
+}
+
 int export_as(const Session& session, const Options& options) {
-  if (options.with_truth && !options.format.starts_with("rosbag"))
+  const std::string format = format_of(options);
+  const bool bag = scenarios::is_bag_format(format);
+  if (options.with_truth && !bag)
     throw scenarios::BadInput("--with-truth is for bags; tum and kitti hold nothing else");
-  prepare_output(options.out, std::vector<std::filesystem::path>{options.recording});
-  scenarios::export_recording(options.recording, options.format, options.out, options.with_truth);
+  if (!options.estimates.empty() && !bag)
+    throw scenarios::BadInput("--estimate is for bags (mcap, rosbag1, rosbag2, rosbag2_mcap)");
+  std::vector<std::filesystem::path> inputs = options.estimates;
+  inputs.push_back(options.recording);
+  prepare_output(options.out, inputs);
+  scenarios::BesideSensors beside{options.with_truth};
+  if (!options.estimates.empty()) {
+    beside.more = [&](const sim::Sensors& sensors, scenarios::BagWriting& writing) {
+      scenarios::add_estimates(options.estimates, sensors, writing);
+    };
+  }
+  scenarios::export_recording(options.recording, format, options.out, beside);
   Table table("", {"recording", "format", "written to"});
-  table.add_row({options.recording.string(), options.format, options.out.string()});
-  session.print(
-      {table},
-      {{"recording", options.recording.string()}, {"format", options.format}, {"output", options.out.string()}});
+  table.add_row({options.recording.string(), format, options.out.string()});
+  session.print({table},
+                {{"recording", options.recording.string()}, {"format", format}, {"output", options.out.string()}});
   return kDone;
 }
 
@@ -39,12 +61,16 @@ Action declare_export(CLI::App& app, const Session& session) {
   std::string known;
   for (const std::string& format : scenarios::export_formats()) known += " " + format;
   app.add_option("RECORDING", options->recording, "a recording, FILE.h5")->required();
-  app.add_option("--format", options->format, "one of:" + known)->required();
-  app.add_option(
-         "-o,--output", options->out,
-         "a file (kitti, tum: the true poses; rosbag1: the sensors) or a folder (csv, pcd, ply, rosbag2: the sensors)")
+  app.add_option("--format", options->format, "one of:" + known + " [by the output's ending: .mcap, .bag, .tum]");
+  app.add_option("-o,--output", options->out,
+                 "a file (kitti, tum: the true poses; mcap, rosbag1: the sensors) or a folder (csv, pcd, ply, rosbag2: "
+                 "the sensors)")
       ->required();
-  app.add_flag("--with-truth", options->with_truth, "a bag also holds the true poses, under /truth");
+  app.add_flag("--with-truth", options->with_truth, "a bag also holds the true poses, under /truth and as the body's");
+  app.add_option(
+      "--estimate", options->estimates,
+      "a bag also holds the poses of an estimate (a folder, or a TUM file of the IMU), and the returns of the "
+      "lidar where it puts them; with the truth, laid onto it at the start, each with its error_m");
   return [&session, options] { return export_as(session, *options); };
 }
 

@@ -36,6 +36,7 @@ Imported import_format(const Session& session, const ImportOptions& options, con
   }
   if (format == "rosbag1") return scenarios::import_ros1_bag(options.path, bag_reading(session, options));
   if (format == "rosbag2") return scenarios::import_ros2_bag(options.path, bag_reading(session, options));
+  if (format == "mcap") return scenarios::import_mcap(options.path, bag_reading(session, options));
   if (format == "tum" || (format == "kitti" && !std::filesystem::is_directory(options.path)))
     return scenarios::import_trajectory(trajectory_source(options, format));
   return scenarios::import_sweeps(sweep_source(session, options, format));

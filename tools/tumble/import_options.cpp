@@ -16,7 +16,7 @@ namespace {
 
 using scenarios::BadInput;
 
-const std::vector<std::string> kFormats = {"airbrakes", "broad",   "csv",     "kitti",   "pcd",
+const std::vector<std::string> kFormats = {"airbrakes", "broad",   "csv",     "kitti",   "mcap", "pcd",
                                            "ply",       "repoimu", "rosbag1", "rosbag2", "tum"};
 
 /// What the files in a folder are.
@@ -45,7 +45,7 @@ std::string format_of_csv(const std::filesystem::path& file) {
 }
 
 bool is_bag(const std::string& format) {
-  return format.starts_with("rosbag");
+  return format == "mcap" || format.starts_with("rosbag");
 }
 
 bool is_sweeps(const std::string& format) {
@@ -149,12 +149,12 @@ void declare(CLI::App& app, ImportOptions& options) {
                  "a folder of lidar sweeps (PLY, PCD, KITTI .bin); readings of an IMU: CSV with the columns of a "
                  "sensor_msgs/Imu, a trial of BROAD (HDF5) or a recording of RepoIMU (CSV) with its optical reference, "
                  "a flight log "
-                 "of AirbrakesV2 (CSV); a bag (ROS 1 file, ROS 2 folder); "
+                 "of AirbrakesV2 (CSV); a bag (ROS 1 file, ROS 2 folder, MCAP file); "
                  "or poses (TUM, KITTI)")
       ->required();
-  app.add_option(
-      "--format", options.format,
-      "airbrakes, broad, csv, kitti, pcd, ply, repoimu, rosbag1, rosbag2 or tum [by the path's ending or content]");
+  app.add_option("--format", options.format,
+                 "airbrakes, broad, csv, kitti, mcap, pcd, ply, repoimu, rosbag1, rosbag2 or tum [by the path's ending "
+                 "or content]");
   app.add_option("--device", options.device,
                  "the IMU's data sheet, for ranges and noise: see 'tumble list sensors' [unknown]");
   app.add_option("--accel-unit", options.accel_unit, "of a CSV: m/s^2 or g [m/s^2]");
@@ -181,10 +181,11 @@ std::string format_of(const ImportOptions& options) {
   if (ending == ".csv") return format_of_csv(options.path);
   if (ending == ".bag") return "rosbag1";
   if (ending == ".db3") return "rosbag2";
+  if (ending == ".mcap") return "mcap";
   if (ending == ".hdf5" || ending == ".h5") return "broad";
   if (ending == ".tum" || ending == ".txt" || ending == ".kitti") return scenarios::pose_format(options.path);
   throw BadInput(options.path.string() +
-                 ": --format is needed for a file named so (broad, csv, kitti, rosbag1, rosbag2 or tum)");
+                 ": --format is needed for a file named so (broad, csv, kitti, mcap, rosbag1, rosbag2 or tum)");
 }
 
 void require_fitting(const ImportOptions& options, const std::string& format) {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -12,20 +13,56 @@
 
 namespace tumble::scenarios {
 
+/// Somebody's poses of the body in W, as they stand in a bag: "/NAME" (nav_msgs/Odometry) and /tf.
+struct BagTrack {
+  struct Pose {
+    std::int64_t time_ns = 0;
+    Eigen::Vector3d p_WB_m = Eigen::Vector3d::Zero();
+    Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();
+    Eigen::Vector3d v_WB_B_m_s = Eigen::Vector3d::Zero(), w_WB_B_rad_s = Eigen::Vector3d::Zero();
+    /// Of (place in W, attitude error phi in W), as in PoseState; zero where nobody states one.
+    Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  };
+  std::string name;  ///< letters, digits and _
+  std::vector<Pose> poses;
+};
+
+/// Points in W, as "/TRACK/points" (sensor_msgs/PointCloud2: x y z, and error_m where it is known).
+struct BagCloud {
+  std::string track;
+  std::int64_t time_ns = 0;
+  std::vector<Eigen::Vector3f> position_W_m;
+  std::vector<float> error_m;  ///< parallel, or empty
+};
+
 /// How a recording is written as a bag.
 struct BagWriting {
   std::int64_t origin_ns = 0;         ///< stamp of time 0; 0: 1 000 000 000 s after 1970, since ROS takes 0 for no time
   const sim::Truth* truth = nullptr;  ///< written only when given
+  std::vector<BagTrack> tracks = {};  ///< estimates; names differ from each other, from the sensors' and from "truth"
+  std::vector<BagCloud> clouds = {};
 };
 
-/// Writes a recording as a ROS 1 bag (version 2.0, by librosbag), or as a ROS 2 bag: a folder with metadata.yaml
-/// (version 5) and a SQLite file of CDR messages. Topics: "/NAME" (sensor_msgs/Imu; without attitude; white noise of
-/// the data sheet as covariance), "/NAME/points" (sensor_msgs/PointCloud2, stamped at the sweep's start, with the
-/// fields that drivers of Velodyne give: x y z intensity ring time, the time float32 seconds after the stamp, to 4 ns
-/// within 0.1 s; no time where points have none), and "/truth" (nav_msgs/Odometry of the body in "world", every 5 ms at
-/// most). NAME is the sensor's. Throws BadInput when the place cannot be written.
+/// Writes a recording as a ROS 1 bag (version 2.0, by librosbag), as a ROS 2 bag: a folder with metadata.yaml (version
+/// 5) and a SQLite file of CDR messages, or as an MCAP file of profile ros2 (mcap.dev/spec: chunks of 1 MiB packed by
+/// LZ4, indexed, every checksum there is). In all of them:
+///
+/// - "/NAME" (sensor_msgs/Imu; without attitude; white noise of the data sheet as covariance), NAME the sensor's;
+/// - "/NAME/points" (sensor_msgs/PointCloud2, stamped at the sweep's start, with the fields that drivers of Velodyne
+///   give: x y z intensity ring time, the time float32 seconds after the stamp, to 4 ns within 0.1 s; and offset_ns,
+///   the same in whole nanoseconds; neither where points have no times);
+/// - "/truth" (nav_msgs/Odometry of "body" in "world", every 5 ms at most), "/TRACK" and "/TRACK/points";
+/// - "/tf_static": each sensor in "body", by the calibration that an estimator is given; "/tf": "body" in "world" by
+/// the
+///   truth, without it by the first track; other tracks move a frame "TRACK" instead;
+/// - "/clock" (rosgraph_msgs/Clock), with the first message after every 10 ms.
+///
+/// Throws BadInput when the place cannot be written.
 void export_ros1_bag(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& file);
 void export_ros2_bag(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& folder);
+void export_mcap(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& file);
+/// The same MCAP file in a folder with metadata.yaml, as ROS 2 itself has them since Iron.
+void export_ros2_mcap(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& folder);
 
 /// What is taken from a bag.
 struct BagReading {
@@ -38,10 +75,15 @@ struct BagReading {
   SweepReading sweeps;
 };
 
-/// Reads a ROS 1 bag (not encrypted), or a ROS 2 bag: its folder, or its SQLite file. Times are those of the messages'
-/// headers. Sensors bear the name of their topic. Points as import_sweeps takes them. Throws BadInput with file and
-/// place: damaged, truncated, a topic that is not there or of another type, a message whose stamp does not rise.
+/// Reads a ROS 1 bag (not encrypted), a ROS 2 bag: its folder (SQLite or MCAP), or its SQLite file, or an MCAP file
+/// with messages of ROS 2 (cdr) or ROS 1 in chunks that are plain or packed by LZ4 or Zstandard; indexed or not. Times
+/// are those of the messages' headers. Sensors bear the name of their topic. Points as import_sweeps takes them;
+/// without a choice of topics a cloud in "world", "map" or "odom" is left out, since no sensor's points lie there.
+/// Where /tf_static places a sensor in "body" or "base_link" and nothing else was given, that is its pose. Throws
+/// BadInput with file and place: damaged, truncated, a topic that is not there or of another type, a message whose
+/// stamp does not rise, frames that hang on each other in a ring.
 Imported import_ros1_bag(const std::filesystem::path& file, const BagReading& reading);
 Imported import_ros2_bag(const std::filesystem::path& path, const BagReading& reading);
+Imported import_mcap(const std::filesystem::path& file, const BagReading& reading);
 
 }  // namespace tumble::scenarios

@@ -10,7 +10,7 @@
 
 #include "scenarios/recordings/bags/ros_bytes.hpp"
 
-/// The two kinds of bags behind one face: topics, and messages as bytes in order of time. Private to
+/// The kinds of bags behind one face: topics, and messages as bytes in order of time. Private to
 /// scenarios/recordings/bags.
 namespace tumble::scenarios {
 
@@ -22,11 +22,9 @@ struct BagTopic {
 class BagWriter {
  public:
   virtual ~BagWriter() = default;
-  /// Messages must come in order of time. All throw BadInput.
-  virtual void write(const BagTopic& topic, std::int64_t stamp_ns, const ros::Imu& message) = 0;
-  virtual void write(const BagTopic& topic, std::int64_t stamp_ns, const ros::PointCloud2& message) = 0;
-  virtual void write(const BagTopic& topic, std::int64_t stamp_ns, const ros::Odometry& message) = 0;
-  /// Nothing is left of a bag that was not finished.
+  /// Messages must come in order of time, those of a topic all of one type. Throws BadInput.
+  virtual void write(const std::string& topic, std::int64_t stamp_ns, const ros::Message& message) = 0;
+  /// Nothing is left of a bag that was not finished. Throws BadInput.
   virtual void finish() = 0;
 };
 
@@ -36,14 +34,18 @@ class BagReader {
   virtual std::vector<BagTopic> topics() = 0;
   /// Calls `take(bytes)` for each message of the topic in order of time. Throws BadInput.
   virtual void read(const std::string& topic, const std::function<void(ros::Bytes&)>& take) = 0;
-  /// Messages of this bag are CDR, else ROS 1's layout.
-  virtual bool cdr() const = 0;
+  /// The topic's messages are CDR, else ROS 1's layout.
+  virtual bool cdr(const std::string& topic) const = 0;
 };
 
 std::unique_ptr<BagWriter> make_ros1_writer(const std::filesystem::path& file);
 std::unique_ptr<BagWriter> make_ros2_writer(const std::filesystem::path& folder);
+std::unique_ptr<BagWriter> make_mcap_writer(const std::filesystem::path& file);
+std::unique_ptr<BagWriter> make_ros2_mcap_writer(const std::filesystem::path& folder);
 std::unique_ptr<BagReader> open_ros1_bag(const std::filesystem::path& file);
 std::unique_ptr<BagReader> open_ros2_bag(const std::filesystem::path& path);
+/// Files that are one bag, in order.
+std::unique_ptr<BagReader> open_mcap(const std::vector<std::filesystem::path>& files);
 
 /// Walks the records of a ROS 1 bag and holds every length, position and offset in them against the file, since the
 /// library trusts them; what is inside compressed chunks is left to it. Throws BadInput with the offset in the file.

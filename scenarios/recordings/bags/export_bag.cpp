@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <cstring>
+#include <optional>
 #include <vector>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/bags/bag.hpp"
+#include "scenarios/recordings/bags/bag_messages.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
 #include "scenarios/recordings/export_folder.hpp"
 
@@ -13,89 +14,33 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::int64_t kOrigin_ns = 1000000000ll * 1000000000ll;
-constexpr std::int64_t kTruthStep_ns = 5000000;
-constexpr const char* kTruthTopic = "/truth";
+constexpr std::int64_t kTruthStep_ns = 5000000, kClockStep_ns = 10000000;
+constexpr const char *kWorld = "world", *kBody = "body";
 
-template <std::size_t kCount, class Vector>
-std::array<double, kCount> array_of(const Vector& vector) {
-  std::array<double, kCount> out;
-  std::copy(vector.data(), vector.data() + kCount, out.begin());
-  return out;
-}
-
-ros::Header header_of(std::int64_t stamp_ns, const std::string& frame) {
-  constexpr std::int64_t kSecond_ns = 1000000000;
-  return {0, static_cast<std::uint32_t>(stamp_ns / kSecond_ns), static_cast<std::uint32_t>(stamp_ns % kSecond_ns),
-          frame};
-}
-
-/// White noise of one sample: density squared times the bandwidth of the output rate.
-std::array<double, 9> covariance_of(double density_sqrt_hz, std::int64_t period_ns) {
-  const double variance = density_sqrt_hz * density_sqrt_hz / (static_cast<double>(period_ns) * 1e-9);
-  return {variance, 0, 0, 0, variance, 0, 0, 0, variance};
-}
-
-ros::Imu imu_message(const sim::ImuRecord& imu, std::size_t i, const ros::Header& header) {
-  ros::Imu out;
-  out.header = header;
-  out.angular_velocity = array_of<3>(imu.gyro_rad_s[i]);
-  out.angular_velocity_covariance = covariance_of(imu.gyro_noise_rad_s_sqrt_hz, imu.period_ns);
-  out.linear_acceleration = array_of<3>(imu.accel_m_s2[i]);
-  out.linear_acceleration_covariance = covariance_of(imu.accel_noise_m_s2_sqrt_hz, imu.period_ns);
-  return out;
-}
-
-/// The layout of Velodyne's driver.
-ros::PointCloud2 cloud_message(const sim::LidarRecord& lidar, std::size_t sweep, const ros::Header& header) {
-  const std::size_t first = lidar.sweep_first[sweep], count = lidar.sweep_first[sweep + 1] - first;
-  const bool timed = lidar.point_times == sim::PointTimes::measured;
-  using Field = ros::PointField;
-  ros::PointCloud2 out;
-  out.header = header;
-  out.fields = {{"x", 0, Field::float32, 1},
-                {"y", 4, Field::float32, 1},
-                {"z", 8, Field::float32, 1},
-                {"intensity", 12, Field::float32, 1},
-                {"ring", 16, Field::uint16, 1}};
-  if (timed) out.fields.push_back({"time", 18, Field::float32, 1});
-  out.point_step = timed ? 22 : 18;
-  out.width = static_cast<std::uint32_t>(count);
-  out.row_step = out.width * out.point_step;
-  out.data.resize(out.row_step);
-  for (std::size_t i = 0; i < count; ++i) {
-    std::uint8_t* at = out.data.data() + i * out.point_step;
-    const std::size_t k = first + i;
-    const float numbers[4] = {lidar.position_L_m[k].x(), lidar.position_L_m[k].y(), lidar.position_L_m[k].z(),
-                              lidar.intensity[k]};
-    std::memcpy(at, numbers, sizeof(numbers));
-    std::memcpy(at + 16, &lidar.ring[k], sizeof(lidar.ring[k]));
-    const float time_s = static_cast<float>(lidar.offset_ns[k] * 1e-9);
-    if (timed) std::memcpy(at + 18, &time_s, sizeof(time_s));
+/// The truth as one more track, thinned, without the instants that a reference does not know.
+BagTrack track_of(const sim::Truth& truth) {
+  BagTrack track{"truth", {}};
+  const auto step = static_cast<std::size_t>(std::max<std::int64_t>(kTruthStep_ns / truth.period_ns, 1));
+  for (std::size_t i = 0; i < truth.p_WB_m.size(); i += step) {
+    if (!truth.p_WB_m[i].allFinite() || !truth.q_WB[i].coeffs().allFinite()) continue;
+    BagTrack::Pose pose{static_cast<std::int64_t>(i) * truth.period_ns, truth.p_WB_m[i], truth.q_WB[i]};
+    pose.v_WB_B_m_s = truth.q_WB[i].conjugate() * truth.v_WB_m_s[i];
+    pose.w_WB_B_rad_s = truth.w_WB_B_rad_s[i];
+    track.poses.push_back(pose);
   }
-  return out;
-}
-
-ros::Odometry truth_message(const sim::Truth& truth, std::size_t i, const ros::Header& header) {
-  const Eigen::Vector3d v_B = truth.q_WB[i].conjugate() * truth.v_WB_m_s[i];
-  ros::Odometry out;
-  out.header = header;
-  out.child_frame_id = "body";
-  out.position = array_of<3>(truth.p_WB_m[i]);
-  out.orientation_xyzw = array_of<4>(truth.q_WB[i].coeffs());
-  out.linear_velocity = array_of<3>(v_B);
-  out.angular_velocity = array_of<3>(truth.w_WB_B_rad_s[i]);
-  return out;
+  return track;
 }
 
 /// What is to be written, and when a listener would have it: a sweep when it is over.
 struct Event {
-  enum Kind { imu, sweep, pose };
+  enum Kind { imu, sweep, pose, cloud };
   std::int64_t time_ns;
   Kind kind;
-  std::size_t sensor, index;
+  std::size_t of, index;  ///< of which sensor or track, and its reading
 };
 
-std::vector<Event> events_of(const sim::Sensors& sensors, const sim::Truth* truth) {
+std::vector<Event> events_of(const sim::Sensors& sensors, const std::vector<BagTrack>& tracks,
+                             const std::vector<BagCloud>& clouds) {
   std::vector<Event> events;
   for (std::size_t s = 0; s < sensors.imus.size(); ++s) {
     const std::vector<std::int64_t>& times = sensors.imus[s].time_ns;
@@ -107,38 +52,105 @@ std::vector<Event> events_of(const sim::Sensors& sensors, const sim::Truth* trut
       events.push_back({lidar.sweep_start_ns[i] + lidar.sweep_period_ns, Event::sweep, s, i});
     }
   }
-  if (truth != nullptr) {
-    const std::int64_t step = std::max<std::int64_t>(kTruthStep_ns / truth->period_ns, 1);
-    for (std::size_t i = 0; i < truth->p_WB_m.size(); i += static_cast<std::size_t>(step)) {
-      if (!truth->p_WB_m[i].allFinite() || !truth->q_WB[i].coeffs().allFinite()) continue;
-      events.push_back({static_cast<std::int64_t>(i) * truth->period_ns, Event::pose, 0, i});
-    }
+  for (std::size_t t = 0; t < tracks.size(); ++t) {
+    for (std::size_t i = 0; i < tracks[t].poses.size(); ++i)
+      events.push_back({tracks[t].poses[i].time_ns, Event::pose, t, i});
   }
-  std::stable_sort(events.begin(), events.end(), [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; });
+  for (std::size_t c = 0; c < clouds.size(); ++c) events.push_back({clouds[c].time_ns, Event::cloud, c, 0});
+  const auto earlier = [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; };
+  std::stable_sort(events.begin(), events.end(), earlier);
   return events;
 }
 
-void write_bag(const sim::Sensors& sensors, const BagWriting& writing, BagWriter& bag) {
-  const std::int64_t origin = writing.origin_ns != 0 ? writing.origin_ns : kOrigin_ns;
-  if (origin < 0) throw BadInput("the recording begins before 1970: a bag has no such stamps");
-  for (const Event& event : events_of(sensors, writing.truth)) {
-    const std::int64_t stamp = origin + event.time_ns;
-    if (stamp < 0) throw BadInput("a reading lies before 1970: a bag has no such stamps");
-    if (event.kind == Event::imu) {
-      const sim::ImuRecord& imu = sensors.imus[event.sensor];
-      const std::string stem = file_stem(imu.name, "imu", event.sensor);
-      bag.write({"/" + stem, "sensor_msgs/Imu"}, stamp, imu_message(imu, event.index, header_of(stamp, stem)));
-    } else if (event.kind == Event::sweep) {
-      const sim::LidarRecord& lidar = sensors.lidars[event.sensor];
-      const std::string stem = file_stem(lidar.name, "lidar", event.sensor);
-      const ros::Header header = header_of(origin + lidar.sweep_start_ns[event.index], stem);
-      bag.write({"/" + stem + "/points", "sensor_msgs/PointCloud2"}, stamp, cloud_message(lidar, event.index, header));
-    } else {
-      bag.write({kTruthTopic, "nav_msgs/Odometry"}, stamp,
-                truth_message(*writing.truth, event.index, header_of(stamp, "world")));
+/// A recording on its way into a bag.
+class Export {
+ public:
+  Export(const sim::Sensors& sensors, const BagWriting& writing, BagWriter& bag)
+      : sensors_(sensors),
+        clouds_(writing.clouds),
+        bag_(bag),
+        origin_ns_(writing.origin_ns != 0 ? writing.origin_ns : kOrigin_ns) {
+    if (origin_ns_ < 0) throw BadInput("the recording begins before 1970: a bag has no such stamps");
+    if (writing.truth != nullptr) tracks_.push_back(track_of(*writing.truth));
+    tracks_.insert(tracks_.end(), writing.tracks.begin(), writing.tracks.end());
+  }
+
+  void all() {
+    const std::vector<Event> events = events_of(sensors_, tracks_, clouds_);
+    if (!events.empty()) write_mountings(stamp_of(events.front().time_ns));
+    for (const Event& event : events) {
+      write_clock(event.time_ns);
+      write(event, stamp_of(event.time_ns));
+    }
+    bag_.finish();
+  }
+
+ private:
+  std::int64_t stamp_of(std::int64_t time_ns) const {
+    if (origin_ns_ + time_ns < 0) throw BadInput("a reading lies before 1970: a bag has no such stamps");
+    return origin_ns_ + time_ns;
+  }
+  std::string name_of(const sim::ImuRecord& imu, std::size_t index) const { return file_stem(imu.name, "imu", index); }
+  std::string name_of(const sim::LidarRecord& lidar, std::size_t index) const {
+    return file_stem(lidar.name, "lidar", index);
+  }
+
+  void write_mountings(std::int64_t stamp) {
+    ros::TFMessage message;
+    const auto add = [&](const Eigen::Isometry3d& T_BA, const std::string& frame) {
+      const Eigen::Quaterniond q_BA = Eigen::Quaterniond(T_BA.linear()).normalized();
+      message.transforms.push_back(transform_message(T_BA.translation(), q_BA, frame, header_of(stamp, kBody)));
+    };
+    for (std::size_t s = 0; s < sensors_.imus.size(); ++s) add(sensors_.imus[s].T_BI, name_of(sensors_.imus[s], s));
+    for (std::size_t s = 0; s < sensors_.lidars.size(); ++s) {
+      add(sensors_.lidars[s].T_BL, name_of(sensors_.lidars[s], s));
+    }
+    if (!message.transforms.empty()) bag_.write("/tf_static", stamp, message);
+  }
+
+  void write_clock(std::int64_t time_ns) {
+    if (tick_ns_ && time_ns < *tick_ns_ + kClockStep_ns) return;
+    tick_ns_ = time_ns;
+    bag_.write("/clock", stamp_of(time_ns), clock_message(stamp_of(time_ns)));
+  }
+
+  void write(const Event& event, std::int64_t stamp) {
+    switch (event.kind) {
+      case Event::imu: {
+        const sim::ImuRecord& imu = sensors_.imus[event.of];
+        const std::string name = name_of(imu, event.of);
+        return bag_.write("/" + name, stamp, imu_message(imu, event.index, header_of(stamp, name)));
+      }
+      case Event::sweep: {
+        const sim::LidarRecord& lidar = sensors_.lidars[event.of];
+        const std::string name = name_of(lidar, event.of);
+        const ros::Header header = header_of(origin_ns_ + lidar.sweep_start_ns[event.index], name);
+        return bag_.write("/" + name + "/points", stamp, sweep_message(lidar, event.index, header));
+      }
+      case Event::pose: {
+        const BagTrack::Pose& pose = tracks_[event.of].poses[event.index];
+        const std::string &name = tracks_[event.of].name, child = event.of == 0 ? kBody : name;
+        const ros::Header header = header_of(stamp, kWorld);
+        bag_.write("/" + name, stamp, odometry_message(pose, child, header));
+        return bag_.write("/tf", stamp, ros::TFMessage{{transform_message(pose.p_WB_m, pose.q_WB, child, header)}});
+      }
+      case Event::cloud: {
+        const BagCloud& cloud = clouds_[event.of];
+        return bag_.write("/" + cloud.track + "/points", stamp, cloud_message(cloud, header_of(stamp, kWorld)));
+      }
     }
   }
-  bag.finish();
+
+  const sim::Sensors& sensors_;
+  const std::vector<BagCloud>& clouds_;
+  BagWriter& bag_;
+  std::int64_t origin_ns_;
+  std::optional<std::int64_t> tick_ns_;  ///< the clock's last one
+  std::vector<BagTrack> tracks_;         ///< the first one moves the body
+};
+
+void write_bag(const sim::Sensors& sensors, const BagWriting& writing, BagWriter& bag) {
+  Export(sensors, writing, bag).all();
 }
 
 }  // namespace
@@ -149,6 +161,14 @@ void export_ros1_bag(const sim::Sensors& sensors, const BagWriting& writing, con
 
 void export_ros2_bag(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& folder) {
   write_bag(sensors, writing, *make_ros2_writer(folder));
+}
+
+void export_mcap(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& file) {
+  write_bag(sensors, writing, *make_mcap_writer(file));
+}
+
+void export_ros2_mcap(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& folder) {
+  write_bag(sensors, writing, *make_ros2_mcap_writer(folder));
 }
 
 }  // namespace tumble::scenarios

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cstring>
+#include <sstream>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
+#include "scenarios/recordings/bags/static_frames.hpp"
 #include "scenarios/recordings/clouds/sweep_stamps.hpp"
 #include "scenarios/recordings/recording_clock.hpp"
 #include "scenarios/recordings/tables/imu_readings.hpp"
@@ -18,6 +20,8 @@ constexpr const char* kImu = "sensor_msgs/Imu";
 constexpr const char* kCloud = "sensor_msgs/PointCloud2";
 constexpr const char* kOdometry = "nav_msgs/Odometry";
 constexpr const char* kPose = "geometry_msgs/PoseStamped";
+constexpr const char *kTransforms = "tf2_msgs/TFMessage", *kOldTransforms = "tf/tfMessage";
+constexpr const char* kStaticTopic = "/tf_static";
 
 std::int64_t stamp_of(const ros::Header& header) {
   return std::int64_t{header.sec} * 1000000000 + header.nanosec;
@@ -113,7 +117,7 @@ struct Bag {
       const std::string where = place + ": message " + std::to_string(number++) + " of " + name;
       Message message;
       try {
-        message = reader.cdr() ? ros::from_cdr<Message>(bytes) : ros::from_ros1<Message>(bytes);
+        message = reader.cdr(name) ? ros::from_cdr<Message>(bytes) : ros::from_ros1<Message>(bytes);
       } catch (const ros::BadMessage& error) {
         throw BadInput(where + ": " + error.what());
       }
@@ -130,35 +134,91 @@ std::string sensor_name(std::string topic) {
   return topic;
 }
 
-sim::ImuRecord read_imu(const Bag& bag, const std::string& topic, const BagReading& reading,
+StaticFrames read_frames(const Bag& bag) {
+  StaticFrames frames;
+  for (const BagTopic& topic : bag.topics) {
+    if (topic.name != kStaticTopic || (topic.type != kTransforms && topic.type != kOldTransforms)) continue;
+    bag.read<ros::TFMessage>(topic.name, [&](const ros::TFMessage& message, const std::string& where) {
+      for (const ros::TransformStamped& each : message.transforms) frames.add(each, where);
+    });
+  }
+  return frames;
+}
+
+/// Where the bag says that a sensor is, unless somebody else has said it: then both are shown where they differ.
+void place_sensor(const Bag& bag, const StaticFrames& frames, const std::string& topic, const std::string& frame,
+                  Eigen::Isometry3d& T_BA, std::vector<std::string>& notes) {
+  const std::string body = frames.body();
+  if (body.empty()) return;
+  const auto stated = frames.pose(body, frame, bag.place + ": topic " + kStaticTopic);
+  if (!stated) return;
+  const auto text = [](const Eigen::Isometry3d& T) {
+    std::ostringstream out;
+    const Eigen::Quaterniond q(T.linear());
+    const Eigen::IOFormat row(Eigen::StreamPrecision, Eigen::DontAlignCols, " ", " ");
+    out << "(" << T.translation().transpose().format(row) << ") m, quaternion x y z w ("
+        << q.coeffs().transpose().format(row) << ")";
+    return out.str();
+  };
+  constexpr double kSame = 1e-3;  // m and, nearly, rad
+  if (T_BA.isApprox(Eigen::Isometry3d::Identity())) {
+    T_BA = *stated;
+    notes.push_back(topic + ": placed in '" + body + "' by " + kStaticTopic + ", " + text(*stated));
+  } else if (!(T_BA.matrix() - stated->matrix()).isZero(kSame)) {
+    notes.push_back(topic + ": caution: " + kStaticTopic + " places it in '" + body + "' at " + text(*stated) +
+                    ", but given was " + text(T_BA) + ", which holds");
+  }
+}
+
+sim::ImuRecord read_imu(const Bag& bag, const StaticFrames& frames, const std::string& topic, const BagReading& reading,
                         std::vector<std::string>& notes) {
   sim::ImuRecord imu = without_readings(reading.imu);
   imu.name = sensor_name(topic);
+  std::string frame;
   bag.read<ros::Imu>(topic, [&](const ros::Imu& message, const std::string& where) {
     add_reading(where, stamp_of(message.header), Eigen::Vector3d::Map(message.angular_velocity.data()),
                 scale_of(reading.accel_unit) * Eigen::Vector3d::Map(message.linear_acceleration.data()), imu);
+    frame = message.header.frame_id;
   });
   const std::string where = bag.place + ": topic " + topic;
   finish_readings(where, reading.accel_unit, imu);
   // messages are in rad/s by their definition, and not every driver keeps to it
   const std::string units = require_gravity_turns(where, imu, GyroUnit::rad_s);
   if (!units.empty()) notes.push_back(topic + ": " + units);
+  place_sensor(bag, frames, topic, frame, imu.T_BI, notes);
   return imu;
 }
 
-sim::LidarRecord read_lidar(const Bag& bag, const std::string& topic, const BagReading& reading,
-                            std::vector<std::string>& notes) {
+/// What the headers of a topic's clouds say.
+struct CloudHeaders {
   std::vector<std::int64_t> stamps;
-  bag.read<ros::PointCloud2>(
-      topic, [&](const ros::PointCloud2& message, const std::string&) { stamps.push_back(stamp_of(message.header)); });
+  std::string frame;
+  /// A map, or points that somebody has moved there.
+  bool in_world() const { return frame == "world" || frame == "map" || frame == "odom"; }
+};
+
+CloudHeaders read_headers(const Bag& bag, const std::string& topic) {
+  CloudHeaders out;
+  bag.read<ros::PointCloud2>(topic, [&](const ros::PointCloud2& message, const std::string&) {
+    out.stamps.push_back(stamp_of(message.header));
+    out.frame = message.header.frame_id;
+  });
+  if (out.frame.starts_with('/')) out.frame.erase(0, 1);
+  return out;
+}
+
+sim::LidarRecord read_lidar(const Bag& bag, const StaticFrames& frames, const std::string& topic,
+                            const CloudHeaders& headers, const BagReading& reading, std::vector<std::string>& notes) {
   SweepReading sweeps = reading.sweeps;
   sweeps.device.name = sensor_name(topic);
   const std::int64_t given_ns = sweeps.device.sweep_period_ns;
-  SweepBuilder builder(std::move(sweeps), given_ns > 0 ? given_ns : median_step_ns(stamps));
+  SweepBuilder builder(std::move(sweeps), given_ns > 0 ? given_ns : median_step_ns(headers.stamps));
   bag.read<ros::PointCloud2>(topic, [&](const ros::PointCloud2& message, const std::string& where) {
     builder.add(stamp_of(message.header), cloud_of(message, where), where);
   });
-  return builder.finish(bag.place + ": topic " + topic, notes);
+  sim::LidarRecord lidar = builder.finish(bag.place + ": topic " + topic, notes);
+  place_sensor(bag, frames, topic, headers.frame, lidar.T_BL, notes);
+  return lidar;
 }
 
 template <class Message>
@@ -208,11 +268,18 @@ void require_one_clock(const sim::Sensors& sensors, const std::filesystem::path&
 
 Imported import_bag(BagReader& reader, const std::filesystem::path& path, const BagReading& reading) {
   const Bag bag{reader, path.string(), reader.topics()};
+  const StaticFrames frames = read_frames(bag);
   Imported out;
   for (const std::string& topic : bag.chosen(reading.imu_topics, kImu))
-    out.sensors.imus.push_back(read_imu(bag, topic, reading, out.notes));
-  for (const std::string& topic : bag.chosen(reading.lidar_topics, kCloud))
-    out.sensors.lidars.push_back(read_lidar(bag, topic, reading, out.notes));
+    out.sensors.imus.push_back(read_imu(bag, frames, topic, reading, out.notes));
+  for (const std::string& topic : bag.chosen(reading.lidar_topics, kCloud)) {
+    const CloudHeaders headers = read_headers(bag, topic);
+    if (reading.lidar_topics.empty() && headers.in_world()) {
+      out.notes.push_back(topic + ": its points lie in '" + headers.frame + "', in no sensor's frame: left out");
+      continue;
+    }
+    out.sensors.lidars.push_back(read_lidar(bag, frames, topic, headers, reading, out.notes));
+  }
   if (out.sensors.imus.empty() && out.sensors.lidars.empty()) {
     throw BadInput(path.string() + ": holds no topic of type " + kImu + " or " + kCloud + " among " +
                    std::to_string(bag.topics.size()));
@@ -235,6 +302,10 @@ Imported import_ros1_bag(const std::filesystem::path& file, const BagReading& re
 
 Imported import_ros2_bag(const std::filesystem::path& path, const BagReading& reading) {
   return import_bag(*open_ros2_bag(path), path, reading);
+}
+
+Imported import_mcap(const std::filesystem::path& file, const BagReading& reading) {
+  return import_bag(*open_mcap({file}), file, reading);
 }
 
 }  // namespace tumble::scenarios

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <console_bridge/console.h>
+#include <geometry_msgs/TransformStamped.h>
 #include <nav_msgs/Odometry.h>
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
@@ -7,9 +8,11 @@
 #include <sensor_msgs/PointCloud2.h>
 
 #include <algorithm>
+#include <boost/make_shared.hpp>
 #include <exception>
 #include <memory>
 #include <string>
+#include <variant>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
@@ -93,10 +96,31 @@ auto guarded(const std::filesystem::path& path, const char* what, Call&& call) {
 }
 
 template <class RosMessage, class Message>
-TypedBytes typed(const Message& message) {
+TypedBytes typed_as(const Message& message) {
   namespace traits = ::ros::message_traits;
   return {traits::DataType<RosMessage>::value(), traits::MD5Sum<RosMessage>::value(),
           traits::Definition<RosMessage>::value(), ros::to_ros1(message)};
+}
+
+TypedBytes typed(const ros::Imu& message) {
+  return typed_as<sensor_msgs::Imu>(message);
+}
+TypedBytes typed(const ros::PointCloud2& message) {
+  return typed_as<sensor_msgs::PointCloud2>(message);
+}
+TypedBytes typed(const ros::Odometry& message) {
+  return typed_as<nav_msgs::Odometry>(message);
+}
+// the headers of these two are no part of what the tree is built with; the sums are those of their definitions
+TypedBytes typed(const ros::TFMessage& message) {
+  const std::string inner = ::ros::message_traits::Definition<geometry_msgs::TransformStamped>::value();
+  return {ros::type_of(message), "94810edda583a504dfda3829e70d7eec",
+          "geometry_msgs/TransformStamped[] transforms\n" + std::string(80, '=') +
+              "\nMSG: geometry_msgs/TransformStamped\n" + inner,
+          ros::to_ros1(message)};
+}
+TypedBytes typed(const ros::Clock& message) {
+  return {ros::type_of(message), "a9c97c1d230cfc112e270351a944ee47", "time clock\n", ros::to_ros1(message)};
 }
 
 class Ros1BagWriter : public BagWriter {
@@ -106,14 +130,11 @@ class Ros1BagWriter : public BagWriter {
     guarded_write([&] { bag_->open(output_.unfinished().string(), rosbag::bagmode::Write); });
   }
   ~Ros1BagWriter() override { give_up(); }
-  void write(const BagTopic& topic, std::int64_t stamp_ns, const ros::Imu& message) override {
-    write(topic, stamp_ns, typed<sensor_msgs::Imu>(message));
-  }
-  void write(const BagTopic& topic, std::int64_t stamp_ns, const ros::PointCloud2& message) override {
-    write(topic, stamp_ns, typed<sensor_msgs::PointCloud2>(message));
-  }
-  void write(const BagTopic& topic, std::int64_t stamp_ns, const ros::Odometry& message) override {
-    write(topic, stamp_ns, typed<nav_msgs::Odometry>(message));
+  void write(const std::string& topic, std::int64_t stamp_ns, const ros::Message& message) override {
+    ::ros::Time time;
+    time.fromNSec(static_cast<std::uint64_t>(stamp_ns));
+    const TypedBytes bytes = std::visit([](const auto& each) { return typed(each); }, message);
+    guarded_write([&] { bag_->write(topic, time, bytes, connection_of(topic, bytes)); });
   }
   void finish() override {
     guarded_write([&] { bag_->close(); });
@@ -121,10 +142,14 @@ class Ros1BagWriter : public BagWriter {
   }
 
  private:
-  void write(const BagTopic& topic, std::int64_t stamp_ns, const TypedBytes& message) {
-    ::ros::Time time;
-    time.fromNSec(static_cast<std::uint64_t>(stamp_ns));
-    guarded_write([&] { bag_->write(topic.name, time, message); });
+  /// Of a latched topic, whose last message every later listener is given; null: as the library makes it.
+  boost::shared_ptr<::ros::M_string> connection_of(const std::string& topic, const TypedBytes& message) {
+    if (topic != "/tf_static") return nullptr;
+    return boost::make_shared<::ros::M_string>(::ros::M_string{{"topic", topic},
+                                                               {"type", message.type},
+                                                               {"md5sum", message.md5sum},
+                                                               {"message_definition", message.definition},
+                                                               {"latching", "1"}});
   }
 
   template <class Call>
@@ -192,7 +217,7 @@ class Ros1BagReader : public BagReader {
     });
   }
 
-  bool cdr() const override { return false; }
+  bool cdr(const std::string&) const override { return false; }
 
  private:
   void open_unpacked() {

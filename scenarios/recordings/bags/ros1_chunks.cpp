@@ -1,24 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/bags/ros1_chunks.hpp"
 
-#include <lz4frame.h>
-
 #include <cstring>
 #include <fstream>
 #include <map>
-#include <memory>
-#include <new>
 #include <optional>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/recordings/bags/packed.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
 constexpr std::uint64_t kMagicBytes = 13;  // "#ROSBAG V2.0\n"
-/// No LZ4 block gives more bytes for one.
-constexpr std::uint32_t kRatioMax = 255;
 enum Op : std::uint8_t { kFile = 3, kChunk = 5, kChunkInfo = 6 };
 
 /// One record. Its header is kept as it stands, so that fields can be changed in their place.
@@ -201,32 +196,7 @@ void copy_ros1_bag(const std::filesystem::path& from, const std::filesystem::pat
 }
 
 void unpack_lz4(Ros1Chunk& chunk) {
-  if (chunk.unpacked_bytes / kRatioMax > chunk.data.size()) {
-    throw BadInput("its LZ4 frame of " + std::to_string(chunk.data.size()) + " bytes cannot hold the " +
-                   std::to_string(chunk.unpacked_bytes) + " bytes that the chunk states");
-  }
-  LZ4F_dctx* context = nullptr;
-  if (LZ4F_isError(LZ4F_createDecompressionContext(&context, LZ4F_VERSION)) != 0) throw std::bad_alloc();
-  const std::unique_ptr<LZ4F_dctx, LZ4F_errorCode_t (*)(LZ4F_dctx*)> owner(context, LZ4F_freeDecompressionContext);
-  std::string out(chunk.unpacked_bytes, '\0');
-  std::size_t taken = 0, given = 0, left = 1;
-  while (left != 0) {
-    std::size_t room = out.size() - given, packed = chunk.data.size() - taken;
-    left = LZ4F_decompress(context, out.data() + given, &room, chunk.data.data() + taken, &packed, nullptr);
-    if (LZ4F_isError(left) != 0) throw BadInput(std::string("its LZ4 frame is damaged: ") + LZ4F_getErrorName(left));
-    given += room;
-    taken += packed;
-    if (left != 0 && room == 0 && packed == 0) {
-      throw BadInput(std::string("its LZ4 frame ") +
-                     (taken == chunk.data.size() ? "is truncated before" : "holds more than") + " the " +
-                     std::to_string(out.size()) + " bytes that the chunk states");
-    }
-  }
-  if (given != out.size()) {
-    throw BadInput("its LZ4 frame holds " + std::to_string(given) + " bytes, the chunk states " +
-                   std::to_string(out.size()));
-  }
-  chunk.data = std::move(out);
+  chunk.data = unpacked_lz4(chunk.data, chunk.unpacked_bytes);
   chunk.compression = "none";
 }
 

@@ -5,13 +5,14 @@
 
 #include <algorithm>
 #include <cstring>
-#include <limits>
 #include <map>
 #include <optional>
 #include <sstream>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
+#include "scenarios/recordings/bags/ros2_definitions.hpp"
+#include "scenarios/recordings/bags/ros2_metadata.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 
 namespace tumble::scenarios {
@@ -24,29 +25,13 @@ using std::filesystem::path;
   throw BadInput(place.string() + ": " + what);
 }
 
-/// "sensor_msgs/Imu" as ROS 2 calls it.
-std::string ros2_type(const std::string& type) {
-  const std::size_t slash = type.find('/');
-  return type.substr(0, slash) + "/msg" + type.substr(slash);
-}
-
-std::string ros1_type(std::string type) {
-  const std::size_t middle = type.find("/msg/");
-  if (middle != std::string::npos) type.erase(middle, 4);
-  return type;
-}
-
-struct TopicState {
-  BagTopic topic;
-  std::int64_t id = 0, messages = 0;
-};
-
 class Ros2BagWriter : public BagWriter {
  public:
   explicit Ros2BagWriter(const path& folder) : folder_(folder) {
     output_.emplace(folder);
     const std::string name = std::filesystem::weakly_canonical(folder).filename().string();
     file_ = folder / ((name.empty() ? "recording" : name) + "_0.db3");
+    summary_ = {"sqlite3", file_.filename().string()};
     part_ = file_.string() + "." + std::to_string(getpid()) + ".part";
     guarded([&] {
       std::filesystem::remove(part_);
@@ -71,14 +56,8 @@ class Ros2BagWriter : public BagWriter {
     std::error_code ignored;
     std::filesystem::remove(part_, ignored);
   }
-  void write(const BagTopic& topic, std::int64_t stamp_ns, const ros::Imu& message) override {
-    insert(topic, stamp_ns, ros::to_cdr(message));
-  }
-  void write(const BagTopic& topic, std::int64_t stamp_ns, const ros::PointCloud2& message) override {
-    insert(topic, stamp_ns, ros::to_cdr(message));
-  }
-  void write(const BagTopic& topic, std::int64_t stamp_ns, const ros::Odometry& message) override {
-    insert(topic, stamp_ns, ros::to_cdr(message));
+  void write(const std::string& topic, std::int64_t stamp_ns, const ros::Message& message) override {
+    insert({topic, ros::type_of(message)}, stamp_ns, ros::to_cdr(message));
   }
   void finish() override {
     guarded([&] {
@@ -87,7 +66,7 @@ class Ros2BagWriter : public BagWriter {
       database_.reset();
       std::filesystem::rename(part_, file_);
     });
-    replace_file(folder_ / "metadata.yaml", metadata());
+    replace_file(folder_ / "metadata.yaml", ros2_metadata(summary_));
     output_->keep();
   }
 
@@ -101,116 +80,79 @@ class Ros2BagWriter : public BagWriter {
     }
   }
 
-  TopicState& state_of(const BagTopic& topic) {
-    const auto same = [&](const TopicState& each) { return each.topic.name == topic.name; };
-    const auto found = std::find_if(topics_.begin(), topics_.end(), same);
-    if (found != topics_.end()) return *found;
-    topics_.push_back({topic, static_cast<std::int64_t>(topics_.size()) + 1, 0});
-    SQLite::Statement statement(*database_, "INSERT INTO topics VALUES (?, ?, ?, 'cdr', '')");
-    statement.bind(1, topics_.back().id);
-    statement.bind(2, topic.name);
-    statement.bind(3, ros2_type(topic.type));
-    statement.exec();
-    return topics_.back();
+  /// The number of the message's topic, which is entered when it is new.
+  std::int64_t topic_of(const BagTopic& topic, std::int64_t stamp_ns) {
+    const std::size_t known = summary_.topics.size();
+    const std::size_t place = summary_.count(topic, stamp_ns);
+    if (place == known) {
+      SQLite::Statement statement(*database_, "INSERT INTO topics VALUES (?, ?, ?, 'cdr', ?)");
+      statement.bind(1, static_cast<std::int64_t>(place) + 1);
+      statement.bind(2, topic.name);
+      statement.bind(3, ros2_type(topic.type));
+      statement.bind(4, ros2_qos(topic.name));
+      statement.exec();
+    }
+    return static_cast<std::int64_t>(place) + 1;
   }
 
   void insert(const BagTopic& topic, std::int64_t stamp_ns, const ros::Bytes& bytes) {
     guarded([&] {
-      TopicState& state = state_of(topic);
+      const std::int64_t number = topic_of(topic, stamp_ns);
       if (!insert_) {
         insert_ = std::make_unique<SQLite::Statement>(
             *database_, "INSERT INTO messages (topic_id, timestamp, data) VALUES (?, ?, ?)");
       }
-      insert_->bind(1, state.id);
+      insert_->bind(1, number);
       insert_->bind(2, stamp_ns);
       insert_->bindNoCopy(3, bytes.data(), static_cast<int>(bytes.size()));
       insert_->exec();
       insert_->reset();
-      ++state.messages;
-      first_ns_ = std::min(first_ns_, stamp_ns);
-      last_ns_ = std::max(last_ns_, stamp_ns);
     });
-  }
-
-  std::string metadata() const {
-    std::int64_t all = 0;
-    for (const TopicState& each : topics_) all += each.messages;
-    const std::int64_t start = all > 0 ? first_ns_ : 0, duration = all > 0 ? last_ns_ - first_ns_ : 0;
-    YAML::Emitter out;
-    const auto entry = [&](const char* key, const auto& value) { out << YAML::Key << key << YAML::Value << value; };
-    const auto times = [&] {
-      out << YAML::Key << "duration" << YAML::Value << YAML::BeginMap;
-      entry("nanoseconds", duration);
-      out << YAML::EndMap << YAML::Key << "starting_time" << YAML::Value << YAML::BeginMap;
-      entry("nanoseconds_since_epoch", start);
-      out << YAML::EndMap;
-      entry("message_count", all);
-    };
-    out << YAML::BeginMap << YAML::Key << "rosbag2_bagfile_information" << YAML::Value << YAML::BeginMap;
-    entry("version", 5);
-    entry("storage_identifier", "sqlite3");
-    times();
-    out << YAML::Key << "topics_with_message_count" << YAML::Value << YAML::BeginSeq;
-    for (const TopicState& each : topics_) {
-      out << YAML::BeginMap << YAML::Key << "topic_metadata" << YAML::Value << YAML::BeginMap;
-      entry("name", each.topic.name);
-      entry("type", ros2_type(each.topic.type));
-      entry("serialization_format", "cdr");
-      out << YAML::Key << "offered_qos_profiles" << YAML::Value << YAML::DoubleQuoted << "";
-      out << YAML::EndMap;
-      entry("message_count", each.messages);
-      out << YAML::EndMap;
-    }
-    out << YAML::EndSeq;
-    for (const char* key : {"compression_format", "compression_mode"})
-      out << YAML::Key << key << YAML::Value << YAML::DoubleQuoted << "";
-    out << YAML::Key << "relative_file_paths" << YAML::Value << YAML::BeginSeq << file_.filename().string()
-        << YAML::EndSeq << YAML::Key << "files" << YAML::Value << YAML::BeginSeq << YAML::BeginMap;
-    entry("path", file_.filename().string());
-    times();
-    out << YAML::EndMap << YAML::EndSeq << YAML::EndMap << YAML::EndMap;
-    return std::string(out.c_str()) + "\n";
   }
 
   path folder_, file_, part_;
   std::optional<OutputFolder> output_;
   std::unique_ptr<SQLite::Database> database_;
   std::unique_ptr<SQLite::Statement> insert_;
-  std::vector<TopicState> topics_;
-  std::int64_t first_ns_ = std::numeric_limits<std::int64_t>::max(), last_ns_ = 0;
+  Ros2Summary summary_;
 };
 
-/// The SQLite files of a bag, in order.
-std::vector<path> storage_files(const path& bag) {
-  if (!std::filesystem::is_directory(bag)) return {bag};
+/// The files of a bag, in order, and how they are stored: "sqlite3" or "mcap".
+struct Storage {
+  std::string kind = "sqlite3";
+  std::vector<path> files;
+};
+
+Storage storage_of(const path& bag) {
+  if (!std::filesystem::is_directory(bag)) return {bag.extension() == ".mcap" ? "mcap" : "sqlite3", {bag}};
   const path metadata = bag / "metadata.yaml";
   if (!std::filesystem::is_regular_file(metadata)) fail(bag, "holds no metadata.yaml: no ROS 2 bag");
-  std::vector<path> files;
+  Storage out;
   try {
     const YAML::Node root = YAML::LoadFile(metadata.string())["rosbag2_bagfile_information"];
-    const auto storage = root["storage_identifier"].as<std::string>();
-    if (storage != "sqlite3") fail(metadata, "the storage is '" + storage + "', must be sqlite3");
+    out.kind = root["storage_identifier"].as<std::string>();
+    if (out.kind != "sqlite3" && out.kind != "mcap")
+      fail(metadata, "the storage is '" + out.kind + "', must be sqlite3 or mcap");
     if (root["compression_format"] && !root["compression_format"].as<std::string>("").empty())
       fail(metadata, "the bag is compressed ('ros2 bag convert' makes a plain one)");
     for (const YAML::Node& each : root["relative_file_paths"]) {
       const path name = path(each.as<std::string>()).filename();  // nothing leads out of the folder
-      files.push_back(bag / name);
+      out.files.push_back(bag / name);
     }
   } catch (const YAML::Exception& error) {
     std::string what = error.what();
     std::replace(what.begin(), what.end(), '\n', ' ');
     fail(metadata, "no metadata of a ROS 2 bag: " + what);
   }
-  if (files.empty()) fail(metadata, "relative_file_paths names no file");
-  return files;
+  if (out.files.empty()) fail(metadata, "relative_file_paths names no file");
+  return out;
 }
 
 class Ros2BagReader : public BagReader {
  public:
-  explicit Ros2BagReader(const path& bag) {
-    for (const path& file : storage_files(bag)) {
+  explicit Ros2BagReader(std::vector<path> files) : files_(std::move(files)) {
+    for (const path& file : files_) {
       if (!std::filesystem::is_regular_file(file)) fail(file, "no such file");
-      files_.push_back(file);
     }
   }
 
@@ -246,7 +188,7 @@ class Ros2BagReader : public BagReader {
     });
   }
 
-  bool cdr() const override { return true; }
+  bool cdr(const std::string&) const override { return true; }
 
  private:
   template <class Call>
@@ -270,7 +212,9 @@ std::unique_ptr<BagWriter> make_ros2_writer(const path& folder) {
 }
 
 std::unique_ptr<BagReader> open_ros2_bag(const path& bag) {
-  return std::make_unique<Ros2BagReader>(bag);
+  Storage storage = storage_of(bag);
+  if (storage.kind == "mcap") return open_mcap(storage.files);
+  return std::make_unique<Ros2BagReader>(std::move(storage.files));
 }
 
 }  // namespace tumble::scenarios

@@ -85,9 +85,35 @@ class Ros1Reader {
   std::size_t left_;
 };
 
+/// So many bytes at most, padding included.
+class CdrBound {
+ public:
+  void operator()(std::uint8_t) { bytes += 1; }
+  void operator()(std::uint32_t) { bytes += 4 + kPadding; }
+  void operator()(const std::string& text) { bytes += 4 + kPadding + text.size() + 1; }
+  template <std::size_t kCount>
+  void operator()(const std::array<double, kCount>&) {
+    bytes += 8 * kCount + kPadding;
+  }
+  void ros1_only(std::uint32_t) {}
+  std::size_t count(std::size_t entries, std::size_t) {
+    bytes += 4 + kPadding;
+    return entries;
+  }
+  void raw(const std::uint8_t*, std::size_t size) { bytes += size; }
+  std::size_t bytes = 4;  ///< the encapsulation
+
+ private:
+  static constexpr std::size_t kPadding = 7;
+};
+
+/// Into bytes that are zero before: the library leaves what it pads as it finds it.
 class CdrWriter {
  public:
-  CdrWriter() : cdr_(buffer_, eprosima::fastcdr::Cdr::LITTLE_ENDIANNESS, eprosima::fastcdr::Cdr::DDS_CDR) {
+  explicit CdrWriter(std::size_t bound)
+      : bytes_(bound),
+        buffer_(reinterpret_cast<char*>(bytes_.data()), bytes_.size()),
+        cdr_(buffer_, eprosima::fastcdr::Cdr::LITTLE_ENDIANNESS, eprosima::fastcdr::Cdr::DDS_CDR) {
     cdr_.serialize_encapsulation();
   }
   void operator()(std::uint8_t number) { cdr_ << number; }
@@ -103,12 +129,13 @@ class CdrWriter {
     return entries;
   }
   void raw(const std::uint8_t* first, std::size_t size) { cdr_.serializeArray(first, size); }
-  Bytes bytes() const {
-    const auto* first = reinterpret_cast<const std::uint8_t*>(buffer_.getBuffer());
-    return {first, first + cdr_.getSerializedDataLength()};
+  Bytes bytes() {
+    bytes_.resize(cdr_.getSerializedDataLength());
+    return std::move(bytes_);
   }
 
  private:
+  Bytes bytes_;
   eprosima::fastcdr::FastBuffer buffer_;
   eprosima::fastcdr::Cdr cdr_;
 };
@@ -153,9 +180,14 @@ Bytes to_ros1(Message message) {
 }
 template <class Message>
 Bytes to_cdr(Message message) {
-  CdrWriter writer;
+  CdrBound bound;
+  fields(bound, message);
+  CdrWriter writer(bound.bytes);
   fields(writer, message);
   return writer.bytes();
+}
+inline Bytes to_cdr(const Message& message) {
+  return std::visit([](const auto& each) { return to_cdr(each); }, message);
 }
 template <class Message>
 Message from_ros1(const Bytes& bytes) {

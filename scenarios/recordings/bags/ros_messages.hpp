@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <variant>
 #include <vector>
 
 /// The messages that a recording becomes in a bag, and the one list of their fields in the order of their definitions.
@@ -65,6 +66,42 @@ struct Odometry {
   std::array<double, 3> linear_velocity = {}, angular_velocity = {};  ///< in the child's frame
   std::array<double, 36> twist_covariance = {};
 };
+
+struct TransformStamped {
+  Header header;
+  std::string child_frame_id;
+  std::array<double, 3> translation = {};
+  std::array<double, 4> rotation_xyzw = {0, 0, 0, 1};
+};
+
+struct TFMessage {
+  std::vector<TransformStamped> transforms;
+};
+
+struct Clock {
+  std::uint32_t sec = 0, nanosec = 0;
+};
+
+/// What a recording is written as. Types by ROS 1's names.
+using Message = std::variant<Imu, PointCloud2, Odometry, TFMessage, Clock>;
+inline const char* type_of(const Imu&) {
+  return "sensor_msgs/Imu";
+}
+inline const char* type_of(const PointCloud2&) {
+  return "sensor_msgs/PointCloud2";
+}
+inline const char* type_of(const Odometry&) {
+  return "nav_msgs/Odometry";
+}
+inline const char* type_of(const TFMessage&) {
+  return "tf2_msgs/TFMessage";
+}
+inline const char* type_of(const Clock&) {
+  return "rosgraph_msgs/Clock";
+}
+inline std::string type_of(const Message& message) {
+  return std::visit([](const auto& each) { return std::string(type_of(each)); }, message);
+}
 
 template <class Archive, class Entry, class Fields>
 void list(Archive& archive, std::vector<Entry>& entries, std::size_t least_bytes, Fields&& fields_of) {
@@ -133,6 +170,23 @@ void fields(Archive& archive, Odometry& odometry) {
   archive(odometry.linear_velocity);
   archive(odometry.angular_velocity);
   archive(odometry.twist_covariance);
+}
+
+template <class Archive>
+void fields(Archive& archive, TFMessage& message) {
+  constexpr std::size_t kTransformBytes = 72;
+  list(archive, message.transforms, kTransformBytes, [&](TransformStamped& each) {
+    header_fields(archive, each.header);
+    archive(each.child_frame_id);
+    archive(each.translation);
+    archive(each.rotation_xyzw);
+  });
+}
+
+template <class Archive>
+void fields(Archive& archive, Clock& clock) {
+  archive(clock.sec);
+  archive(clock.nanosec);
 }
 
 }  // namespace tumble::scenarios::ros

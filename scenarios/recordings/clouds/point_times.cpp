@@ -57,9 +57,10 @@ std::string choose_field(const Cloud& cloud, const SweepReading& reading, const 
   std::string found;
   for (const std::string& name : cloud.names) {
     if (!is_time(name)) continue;
-    if (!found.empty())
+    const bool states = unit_of_name(lower(name)) != nullptr, stated = unit_of_name(lower(found)) != nullptr;
+    if (!found.empty() && states == stated)
       throw BadInput(where + ": the fields '" + found + "' and '" + name + "' may both be times; say which");
-    found = name;
+    if (found.empty() || states) found = name;  // of two the one whose name tells its unit
   }
   return found;
 }

@@ -32,8 +32,8 @@ struct PointTimeRule {
 /// timestamps time_stamp offset_time time_offset offset_ns; a name that ends in _s _ms _us _ns tells the unit. Else the
 /// unit is the one in which the times of a sweep (median over the clouds) span 2 to 150 % of `period_ns`; where that is
 /// not known (0), stamps since the epoch tell it by their size. Times that begin more than two periods from 0 in any of
-/// the clouds are absolute. Throws BadInput beginning with `where`: a field that is not there, two of them, no unit
-/// that fits.
+/// the clouds are absolute. Of two fields the one whose name tells its unit is taken. Throws BadInput beginning with
+/// `where`: a field that is not there, two of them, no unit that fits.
 PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t period_ns, const SweepReading& reading,
                                const std::string& where);
 

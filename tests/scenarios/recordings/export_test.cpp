@@ -79,7 +79,7 @@ TEST_F(Export, ANameCannotLeadOutOfTheFolder) {
 
 TEST_F(Export, EveryFormatGoesFromFileToFile) {
   write_recording(folder_ / "a.h5", fixture::info(), recording_.sensors, &recording_.truth);
-  ASSERT_EQ(export_formats().size(), 7u);
+  ASSERT_EQ(export_formats().size(), 9u);
   for (const std::string& format : export_formats()) {
     export_recording(folder_ / "a.h5", format, folder_ / format);
     EXPECT_TRUE(std::filesystem::exists(folder_ / format)) << format;

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/exchange/estimate_in_bag.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <set>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/recordings/export_folder.hpp"
+#include "scenarios/recordings/recording_file.hpp"
+#include "scenarios/scoring/truth_track.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr std::int64_t kHole_ns = 200000000;
+
+/// Pose of the estimate's frame in the body.
+Eigen::Isometry3d mounting_of(const Estimate& estimate, const sim::Sensors& sensors, const sim::Truth* truth) {
+  Eigen::Isometry3d T_BA = Eigen::Isometry3d::Identity();
+  switch (estimate.frame) {
+    case Frame::body:
+      break;
+    case Frame::centre:
+      T_BA.translation() = truth != nullptr ? truth->p_BG_m : estimate.centre_B_m;
+      break;
+    case Frame::imu:
+      if (sensors.imus.empty()) throw BadInput("its poses are of an IMU, and the recording has none");
+      return sensors.imus.front().T_BI;
+    case Frame::lidar:
+      if (sensors.lidars.empty()) throw BadInput("its poses are of a lidar, and the recording has none");
+      return sensors.lidars.front().T_BL;
+  }
+  return T_BA;
+}
+
+/// The move by which the scores lay an estimate onto the truth.
+Alignment alignment_of(const Estimate& estimate, const sim::Truth* truth) {
+  if (truth == nullptr) return {};
+  const TruthTrack track(*truth, estimate.frame);
+  const PairedTrack paired = pair_poses(estimate, track);
+  if (paired.poses.empty()) throw BadInput("the truth knows the place at none of its poses: another clock?");
+  return paired.alignment;
+}
+
+Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d out;
+  out << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
+  return out;
+}
+
+/// By the alignment, its covariance too.
+PoseState moved_by(const Alignment& alignment, const PoseState& pose) {
+  PoseState out = alignment.apply(pose);
+  Eigen::Matrix<double, 6, 6> turn = Eigen::Matrix<double, 6, 6>::Zero();
+  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = alignment.transform().linear();
+  out.covariance = turn * pose.covariance * turn.transpose();
+  return out;
+}
+
+/// The body's pose by that of A; an error phi of the attitude moves the body's place by phi x (lever in W).
+BagTrack::Pose body_pose(const PoseState& moved, const Eigen::Isometry3d& T_AB) {
+  const Eigen::Quaterniond q_WA = moved.q_WA.normalized();
+  BagTrack::Pose out;
+  out.time_ns = moved.time_ns;
+  out.p_WB_m = moved.p_WA_m + q_WA * T_AB.translation();
+  out.q_WB = (q_WA * Eigen::Quaterniond(T_AB.linear())).normalized();
+  Eigen::Matrix<double, 6, 6> J = Eigen::Matrix<double, 6, 6>::Identity();
+  J.topRightCorner<3, 3>() = -cross_matrix(q_WA * T_AB.translation());
+  out.covariance = J * moved.covariance * J.transpose();
+  return out;
+}
+
+/// Where the body is at an instant between poses.
+class BodyAt {
+ public:
+  explicit BodyAt(const std::vector<BagTrack::Pose>& poses) : poses_(poses) {}
+  /// False where no two poses stand around it.
+  bool operator()(std::int64_t time_ns, Eigen::Isometry3d& T_WB) const {
+    const auto after = std::lower_bound(poses_.begin(), poses_.end(), time_ns,
+                                        [](const BagTrack::Pose& pose, std::int64_t t) { return pose.time_ns < t; });
+    if (after == poses_.end() || (after == poses_.begin() && after->time_ns != time_ns)) return false;
+    const auto before = after->time_ns == time_ns ? after : std::prev(after);
+    const std::int64_t step_ns = after->time_ns - before->time_ns;
+    if (step_ns > kHole_ns) return false;
+    const double share =
+        step_ns > 0 ? static_cast<double>(time_ns - before->time_ns) / static_cast<double>(step_ns) : 0;
+    T_WB.setIdentity();
+    T_WB.linear() = before->q_WB.slerp(share, after->q_WB).toRotationMatrix();
+    T_WB.translation() = before->p_WB_m + share * (after->p_WB_m - before->p_WB_m);
+    return true;
+  }
+
+ private:
+  const std::vector<BagTrack::Pose>& poses_;
+};
+
+std::vector<BagCloud> clouds_of(const BagTrack& track, const sim::LidarRecord& lidar, const sim::LidarTruth* truth) {
+  const BodyAt body_at(track.poses);
+  const bool hits = truth != nullptr && truth->hit_W_m.size() == lidar.position_L_m.size();
+  std::vector<BagCloud> out;
+  for (std::size_t sweep = 0; sweep < lidar.sweep_start_ns.size(); ++sweep) {
+    BagCloud cloud{track.name, lidar.sweep_start_ns[sweep] + lidar.sweep_period_ns, {}, {}};
+    for (std::size_t k = lidar.sweep_first[sweep]; k < lidar.sweep_first[sweep + 1]; ++k) {
+      Eigen::Isometry3d T_WB;
+      if (!body_at(lidar.sweep_start_ns[sweep] + lidar.offset_ns[k], T_WB)) continue;
+      const Eigen::Vector3d place_W_m = T_WB * (lidar.T_BL * lidar.position_L_m[k].cast<double>());
+      cloud.position_W_m.push_back(place_W_m.cast<float>());
+      if (hits) cloud.error_m.push_back(static_cast<float>((place_W_m - truth->hit_W_m[k].cast<double>()).norm()));
+    }
+    if (!cloud.position_W_m.empty()) out.push_back(std::move(cloud));
+  }
+  return out;
+}
+
+/// An estimate says which sensors it was made from.
+void require_own(const std::filesystem::path& path, const sim::Sensors& sensors) {
+  const std::string made_from = estimated_sensors(path), own = digest(sensors, nullptr);
+  if (made_from.empty() || made_from == own) return;
+  throw BadInput("was made from another recording (its sensors have the digest " + made_from + ", these " + own + ")");
+}
+
+/// "slam/tumble" as a topic and a frame that nobody has yet.
+std::string free_name(const std::string& method, std::set<std::string>& taken) {
+  std::string stem;
+  for (const char c : method) stem += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+  if (stem.empty() || std::isdigit(static_cast<unsigned char>(stem.front())) != 0) stem.insert(0, "estimate_");
+  std::string name = stem;
+  for (int number = 2; !taken.insert(name).second; ++number) name = stem + "_" + std::to_string(number);
+  return name;
+}
+
+}  // namespace
+
+EstimateInBag in_bag(const std::string& name, const Estimate& estimate, const sim::Sensors& sensors,
+                     const sim::Truth* truth) {
+  if (estimate.poses.empty()) throw BadInput("holds no poses: a rate or an attitude alone has no place in a bag");
+  const Eigen::Isometry3d T_AB = mounting_of(estimate, sensors, truth).inverse();
+  const Alignment alignment = alignment_of(estimate, truth);
+  EstimateInBag out;
+  out.track.name = name;
+  for (const PoseState& pose : estimate.poses) {
+    if (!pose.p_WA_m.allFinite() || !pose.q_WA.coeffs().allFinite()) continue;
+    out.track.poses.push_back(body_pose(moved_by(alignment, pose), T_AB));
+  }
+  const bool truth_of_lidar = truth != nullptr && !truth->lidars.empty();
+  if (!sensors.lidars.empty()) {
+    out.clouds = clouds_of(out.track, sensors.lidars.front(), truth_of_lidar ? &truth->lidars.front() : nullptr);
+  }
+  return out;
+}
+
+void add_estimates(std::span<const std::filesystem::path> paths, const sim::Sensors& sensors, BagWriting& writing) {
+  std::set<std::string> taken = {"truth", "body", "world", "tf", "tf_static", "clock"};
+  for (std::size_t s = 0; s < sensors.imus.size(); ++s) taken.insert(file_stem(sensors.imus[s].name, "imu", s));
+  for (std::size_t s = 0; s < sensors.lidars.size(); ++s) taken.insert(file_stem(sensors.lidars[s].name, "lidar", s));
+  for (const std::filesystem::path& path : paths) {
+    Kind kind{};
+    std::string method;
+    Estimate estimate = read_estimate(path, kind, method, sensors.imus.empty() ? Frame::body : Frame::imu);
+    const std::int64_t first_ns = estimate.poses.empty() ? 0 : estimate.poses.front().time_ns;
+    if (!std::filesystem::is_directory(path) && std::abs(first_ns - writing.origin_ns) < std::abs(first_ns)) {
+      for (PoseState& pose : estimate.poses) pose.time_ns -= writing.origin_ns;
+    }
+    try {
+      require_own(path, sensors);
+      const bool of_file = !std::filesystem::is_directory(path);
+      EstimateInBag added = in_bag(free_name((of_file ? "" : std::string(to_string(kind)) + "_") + method, taken),
+                                   estimate, sensors, writing.truth);
+      writing.tracks.push_back(std::move(added.track));
+      for (BagCloud& cloud : added.clouds) writing.clouds.push_back(std::move(cloud));
+    } catch (const BadInput& error) {
+      throw BadInput(path.string() + ": " + error.what());
+    }
+  }
+}
+
+}  // namespace tumble::scenarios

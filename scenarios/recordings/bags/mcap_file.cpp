@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/recordings/bags/mcap_file.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/recordings/bags/packed.hpp"
+
+namespace tumble::scenarios::mcap {
+
+namespace {
+
+/// Of a chunk, packed and not, of a record outside of chunks, and of the summary.
+constexpr std::uint64_t kBytesMax = 1u << 28;
+/// Records outside of chunks are read by so many bytes.
+constexpr std::uint64_t kLooseBytes = 1u << 22;
+constexpr std::uint64_t kFooterBytes = kHeadBytes + 20, kDataEndBytes = kHeadBytes + 4;
+
+std::string in_bytes(std::uint64_t bytes) {
+  return std::to_string(bytes) + " bytes";
+}
+
+/// What a chunk's record and its index both state.
+bool agree(const ChunkIndex& a, const ChunkIndex& b) {
+  return a.message_start_time == b.message_start_time && a.message_end_time == b.message_end_time &&
+         a.chunk_start_offset == b.chunk_start_offset && a.chunk_length == b.chunk_length &&
+         a.compression == b.compression && a.compressed_size == b.compressed_size &&
+         a.uncompressed_size == b.uncompressed_size;
+}
+
+}  // namespace
+
+File::File(const std::filesystem::path& path) : path_(path), stream_(path, std::ios::binary) {
+  if (!stream_ || !std::filesystem::is_regular_file(path)) throw BadInput(path.string() + ": no such file");
+  bytes_ = std::filesystem::file_size(path);
+  open_ends();
+  check_data();
+  read_summary();
+  if (stretches_.empty()) scan();
+  for (const auto& [id, channel] : channels_) {
+    if (channel.schema_id != 0 && !schemas_.contains(channel.schema_id))
+      fail(0,
+           "channel " + std::to_string(id) + " is of schema " + std::to_string(channel.schema_id) + ": there is none");
+  }
+  std::stable_sort(stretches_.begin(), stretches_.end(),
+                   [](const Stretch& a, const Stretch& b) { return a.first_ns < b.first_ns; });
+}
+
+void File::fail(std::uint64_t at, const std::string& what) const {
+  throw BadInput(path_.string() + ": at byte " + std::to_string(at) + ": " + what);
+}
+
+std::string File::text(std::uint64_t at, std::uint64_t size) {
+  if (at > bytes_ || size > bytes_ - at) fail(at, in_bytes(size) + " lie beyond the end: damaged or truncated");
+  std::string out(size, '\0');
+  stream_.clear();
+  stream_.seekg(static_cast<std::streamoff>(at));
+  if (!stream_.read(out.data(), static_cast<std::streamsize>(size))) fail(at, "cannot be read");
+  return out;
+}
+
+Record File::record_in(std::string_view records, std::uint64_t place, std::uint64_t at) const {
+  Take take(records.substr(place));
+  Record out;
+  out.at = place;
+  if (take.left.size() < kHeadBytes) fail(at + place, "ends in the head of a record: damaged or truncated");
+  std::uint64_t size = 0;
+  take(out.op), take(size);
+  if (size > take.left.size()) {
+    fail(at + place, "a record of " + in_bytes(size) + ", must be at most " + std::to_string(take.left.size()) +
+                         ": damaged or truncated");
+  }
+  if (out.op == 0) fail(at + place, "a record of kind 0: damaged");
+  out.content = take.cut(size);
+  return out;
+}
+
+/// Magic, header, footer and the end of the data.
+void File::open_ends() {
+  if (bytes_ < kMagic.size() || text(0, kMagic.size()) != kMagic)
+    fail(0, "does not begin with the magic of MCAP 0: no MCAP file");
+  if (bytes_ < 2 * kMagic.size() + kFooterBytes + kDataEndBytes ||
+      text(bytes_ - kMagic.size(), kMagic.size()) != kMagic)
+    fail(bytes_, "does not end with the magic of MCAP: truncated or never closed ('mcap recover' makes it whole)");
+  footer_at_ = bytes_ - kMagic.size() - kFooterBytes;
+  const std::string footer = text(footer_at_, kFooterBytes);
+  const Record record = record_in(footer, 0, footer_at_);
+  if (record.op != kFooter || record.content.size() != kFooterBytes - kHeadBytes)
+    fail(footer_at_, "holds no footer: damaged");
+  footer_ = as<Footer>(record, footer_at_);
+  const std::uint64_t data_end = footer_.summary_start == 0 ? footer_at_ : footer_.summary_start;
+  if (data_end > footer_at_ || data_end < kMagic.size() + kDataEndBytes)
+    fail(footer_at_, "the summary would begin at byte " + std::to_string(data_end) + ": damaged");
+  data_end_ = data_end - kDataEndBytes;
+}
+
+void File::check_data() {
+  const std::string bytes = text(data_end_, kDataEndBytes);
+  const Record end = record_in(bytes, 0, data_end_);
+  if (end.op != kDataEnd || end.content.size() != kDataEndBytes - kHeadBytes)
+    fail(data_end_, "the data do not end before the summary: damaged");
+  const std::uint32_t stated = as<DataEnd>(end, data_end_).data_section_crc;
+  if (stated == 0) return;
+  std::uint32_t crc = 0;
+  for (std::uint64_t at = 0; at < data_end_;) {
+    const std::uint64_t size = std::min(kLooseBytes, data_end_ - at);
+    crc = crc32_of(text(at, size), crc);
+    at += size;
+  }
+  if (crc != stated) {
+    fail(data_end_,
+         "the checksum of the data is " + std::to_string(crc) + ", stated " + std::to_string(stated) + ": damaged");
+  }
+}
+
+void File::read_summary() {
+  if (footer_.summary_start == 0) return;
+  const std::uint64_t size = footer_at_ - footer_.summary_start;
+  if (size > kBytesMax) fail(footer_.summary_start, "a summary of " + in_bytes(size) + ", at most 256 MiB are read");
+  const std::string all = text(footer_.summary_start, size + kFooterBytes);
+  const std::uint32_t crc = crc32_of(std::string_view(all).substr(0, all.size() - sizeof(footer_.summary_crc)));
+  if (footer_.summary_crc != 0 && crc != footer_.summary_crc) {
+    fail(footer_.summary_start, "the checksum of the summary is " + std::to_string(crc) + ", stated " +
+                                    std::to_string(footer_.summary_crc) + ": damaged");
+  }
+  std::string_view summary = std::string_view(all).substr(0, size);
+  if (footer_.summary_offset_start != 0) {
+    if (footer_.summary_offset_start < footer_.summary_start || footer_.summary_offset_start > footer_at_)
+      fail(footer_at_, "the offsets of the summary would begin at byte " +
+                           std::to_string(footer_.summary_offset_start) + ": damaged");
+    const std::uint64_t records = footer_.summary_offset_start - footer_.summary_start;
+    check_groups(summary.substr(0, records), summary.substr(records));
+    summary = summary.substr(0, records);
+  }
+  std::vector<ChunkIndex> chunks;
+  walk(summary, footer_.summary_start, [&](const Record& record) {
+    const std::uint64_t at = footer_.summary_start + record.at;
+    if (record.op == kSchema) add(as<Schema>(record, at), at);
+    if (record.op == kChannel) add(as<Channel>(record, at), at);
+    if (record.op == kStatistics) statistics_ = as<Statistics>(record, at);
+    if (record.op == kChunkIndex) chunks.push_back(as<ChunkIndex>(record, at));
+  });
+  take_indexed(std::move(chunks));
+}
+
+/// The offsets must name groups of one kind each.
+void File::check_groups(std::string_view summary, std::string_view groups) const {
+  const std::uint64_t groups_at = footer_.summary_offset_start;
+  walk(groups, groups_at, [&](const Record& record) {
+    const std::uint64_t at = groups_at + record.at;
+    if (record.op != kSummaryOffset) fail(at, "a record of kind " + std::to_string(record.op) + " has no place here");
+    const auto group = as<SummaryOffset>(record, at);
+    const std::uint64_t start = group.group_start - footer_.summary_start;
+    if (group.group_start < footer_.summary_start || start > summary.size() ||
+        group.group_length > summary.size() - start)
+      fail(at, "names a group at byte " + std::to_string(group.group_start) + ", outside of the summary");
+    walk(summary.substr(start, group.group_length), group.group_start, [&](const Record& each) {
+      if (each.op != group.group_opcode)
+        fail(at, "names a group of kind " + std::to_string(group.group_opcode) + " that holds one of " +
+                     std::to_string(each.op));
+    });
+  });
+}
+
+/// Chunks by their index: whole where it lists all of them. A file that lists none is scanned.
+void File::take_indexed(std::vector<ChunkIndex> chunks) {
+  if (chunks.empty()) return;
+  std::sort(chunks.begin(), chunks.end(),
+            [](const ChunkIndex& a, const ChunkIndex& b) { return a.chunk_start_offset < b.chunk_start_offset; });
+  if (statistics_ && statistics_->chunk_count != chunks.size()) {
+    fail(footer_.summary_start, "states " + std::to_string(statistics_->chunk_count) + " chunks and indexes " +
+                                    std::to_string(chunks.size()) + ": damaged");
+  }
+  std::uint64_t free = kMagic.size();
+  for (const ChunkIndex& each : chunks) {
+    const std::uint64_t at = each.chunk_start_offset;
+    if (at < free || at > data_end_ || each.chunk_length > data_end_ - at ||
+        each.message_index_length > data_end_ - at - each.chunk_length) {
+      fail(footer_.summary_start, "indexes a chunk of " + in_bytes(each.chunk_length) + " at byte " +
+                                      std::to_string(at) + ", must lie between " + std::to_string(free) + " and " +
+                                      std::to_string(data_end_));
+    }
+    free = at + each.chunk_length + each.message_index_length;
+    for (const auto& [channel, place] : each.message_index_offsets) {
+      if (!channels_.contains(channel)) return stretches_.clear();  // the summary does not repeat them: scan
+      if (place < at + each.chunk_length || place >= free)
+        fail(place,
+             "is named as an index of the chunk at byte " + std::to_string(at) + ", behind which it does not lie");
+    }
+    stretches_.push_back({at, each.chunk_length, each.message_start_time, each.message_end_time, each});
+  }
+  // messages outside of chunks are in no index: none may be missing
+  if (!statistics_ || channels_.empty()) stretches_.clear();
+}
+
+std::optional<std::uint64_t> File::stated_messages(std::uint16_t channel) const {
+  if (!statistics_) return std::nullopt;
+  const auto found = statistics_->channel_message_counts.find(channel);
+  if (found == statistics_->channel_message_counts.end()) return std::nullopt;
+  return found->second;
+}
+
+std::string File::records(const Stretch& stretch) {
+  if (!stretch.chunk) return text(stretch.at, stretch.bytes);
+  std::uint32_t crc = 0;
+  const ChunkIndex own = head_of_chunk(stretch.at, stretch.bytes, &crc);
+  if (!agree(own, *stretch.chunk)) fail(stretch.at, "the chunk is not what its index says: damaged");
+  std::string packed = text(stretch.at + stretch.bytes - own.compressed_size, own.compressed_size), out;
+  try {
+    if (own.compression == "lz4")
+      out = unpacked_lz4(packed, own.uncompressed_size);
+    else if (own.compression == "zstd")
+      out = unpacked_zstd(packed, own.uncompressed_size);
+    else
+      out = std::move(packed);
+  } catch (const BadInput& error) {
+    fail(stretch.at, error.what());
+  }
+  if (crc != 0 && crc32_of(out) != crc) {
+    fail(stretch.at, "the checksum of the chunk is " + std::to_string(crc32_of(out)) + ", stated " +
+                         std::to_string(crc) + ": damaged");
+  }
+  return out;
+}
+
+std::optional<MessageIndex> File::index_of(const Stretch& stretch, std::uint16_t channel) {
+  if (!stretch.chunk || !stretch.chunk->message_index_offsets.contains(channel)) return std::nullopt;
+  const std::uint64_t at = stretch.chunk->message_index_offsets.at(channel);
+  const std::uint64_t end = stretch.at + stretch.bytes + stretch.chunk->message_index_length;
+  if (end - at < kHeadBytes) fail(at, "ends in the head of an index: damaged");
+  const std::string bytes = text(at, std::min(end - at, kBytesMax));
+  const Record record = record_in(bytes, 0, at);
+  if (record.op != kMessageIndex) fail(at, "is no index of messages: damaged");
+  auto index = as<MessageIndex>(record, at);
+  if (index.channel_id != channel) {
+    fail(at, "is the index of channel " + std::to_string(index.channel_id) + ", should be of " +
+                 std::to_string(channel) + ": damaged");
+  }
+  return index;
+}
+
+/// What the chunk's own record states, as an index would.
+ChunkIndex File::head_of_chunk(std::uint64_t at, std::uint64_t bytes, std::uint32_t* crc) {
+  constexpr std::uint64_t kMost = kHeadBytes + 8 + 8 + 8 + 4 + 4 + 64 + 8;  // with the name of a packing
+  std::string head = text(at, std::min(bytes, kMost));
+  if (head.size() < kHeadBytes || static_cast<std::uint8_t>(head[0]) != kChunk) fail(at, "is no chunk: damaged");
+  std::uint64_t content = 0;
+  std::memcpy(&content, head.data() + 1, sizeof(content));
+  if (content != bytes - kHeadBytes)
+    fail(at, "a chunk of " + in_bytes(content) + ", its index says " + in_bytes(bytes - kHeadBytes));
+  Take take(std::string_view(head).substr(kHeadBytes));
+  Chunk chunk;
+  try {
+    fields(take, chunk);
+  } catch (const BadRecord& error) {
+    fail(at, std::string("the chunk ") + error.what());
+  }
+  const std::uint64_t taken = head.size() - take.left.size();
+  if (chunk.records_size != bytes - taken)
+    fail(at, "a chunk that promises " + in_bytes(chunk.records_size) + " and holds " + in_bytes(bytes - taken));
+  if (chunk.records_size > kBytesMax || chunk.uncompressed_size > kBytesMax) {
+    fail(at, "a chunk of " + in_bytes(std::max(chunk.records_size, chunk.uncompressed_size)) +
+                 ", at most 256 MiB are read");
+  }
+  if (!chunk.compression.empty() && chunk.compression != "lz4" && chunk.compression != "zstd") {
+    fail(at, "a chunk of compression '" + chunk.compression.substr(0, 40) + "': none, lz4 or zstd are read");
+  }
+  if (chunk.compression.empty() && chunk.uncompressed_size != chunk.records_size) {
+    fail(at, "a plain chunk of " + in_bytes(chunk.records_size) + " says that it has " +
+                 std::to_string(chunk.uncompressed_size));
+  }
+  if (crc != nullptr) *crc = chunk.uncompressed_crc;
+  return {chunk.message_start_time, chunk.message_end_time, at, bytes, {}, 0, chunk.compression,
+          chunk.records_size,       chunk.uncompressed_size};
+}
+
+void File::add(Schema schema, std::uint64_t at) {
+  if (schema.id == 0) fail(at, "a schema with the number 0, which means none");
+  const auto [place, fresh] = schemas_.try_emplace(schema.id, schema);
+  if (!fresh && place->second != schema)
+    fail(at, "schema " + std::to_string(schema.id) + " is stated twice, differently");
+}
+
+void File::add(Channel channel, std::uint64_t at) {
+  const auto [place, fresh] = channels_.try_emplace(channel.id, channel);
+  if (!fresh && place->second != channel)
+    fail(at, "channel " + std::to_string(channel.id) + " is stated twice, differently");
+}
+
+}  // namespace tumble::scenarios::mcap

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scenarios/recordings/bags/mcap_records.hpp"
+
+/// An MCAP file by its chunks. Nothing in it is trusted: every length, place, time and checksum is held against the
+/// file before it is used. Private to scenarios/recordings/bags.
+namespace tumble::scenarios::mcap {
+
+/// Records that lie together: a chunk, or some that stand outside of any.
+struct Stretch {
+  std::uint64_t at = 0, bytes = 0;  ///< in the file, heads included
+  std::uint64_t first_ns = 0, last_ns = 0;
+  std::optional<ChunkIndex> chunk;  ///< of a chunk; its index is complete where the file has a summary
+  /// Whether messages of the channel may be in it.
+  bool may_hold(std::uint16_t channel) const {
+    return !chunk || chunk->message_index_offsets.empty() || chunk->message_index_offsets.contains(channel);
+  }
+};
+
+/// One record: its kind, where its head lies in what was walked, and its content.
+struct Record {
+  std::uint8_t op = 0;
+  std::uint64_t at = 0;
+  std::string_view content;
+};
+
+class File {
+ public:
+  /// Reads the summary where there is one, else the whole file once. The checksum of the data section, where it is
+  /// stated, is computed too: O(bytes of the file), in memory some MiB and the summary. Throws BadInput with the
+  /// offset: no MCAP, truncated, damaged, of packings other than none, lz4 and zstd, a chunk or record beyond 256 MiB.
+  explicit File(const std::filesystem::path& path);
+
+  const std::map<std::uint16_t, Schema>& schemas() const { return schemas_; }
+  const std::map<std::uint16_t, Channel>& channels() const { return channels_; }
+  /// In the order of their first messages.
+  const std::vector<Stretch>& stretches() const { return stretches_; }
+  /// Messages of a channel that the file says it has; nothing where it does not say.
+  std::optional<std::uint64_t> stated_messages(std::uint16_t channel) const;
+
+  /// The records of a stretch, unpacked and held to its checksum.
+  std::string records(const Stretch& stretch);
+  /// Where the index behind the stretch's chunk says that messages of the channel lie; nothing where there is none.
+  std::optional<MessageIndex> index_of(const Stretch& stretch, std::uint16_t channel);
+
+  /// Calls `take(record)` for each of `records`, which stand at `at` in the file when they were not packed.
+  template <class Call>
+  void walk(std::string_view records, std::uint64_t at, Call&& take) const {
+    for (std::uint64_t place = 0; place < records.size();) {
+      const Record record = record_in(records, place, at);
+      take(record);
+      place += kHeadBytes + record.content.size();
+    }
+  }
+  /// The content as a record of this kind; throws BadInput with the offset.
+  template <class Content>
+  Content as(const Record& record, std::uint64_t at) const {
+    try {
+      return from_bytes<Content>(record.content);
+    } catch (const BadRecord& error) {
+      fail(at, "a record of kind " + std::to_string(record.op) + " " + error.what());
+    }
+  }
+  /// Takes note of a schema or channel that stands at `at`; one that is known must be the same.
+  void add(Schema schema, std::uint64_t at);
+  void add(Channel channel, std::uint64_t at);
+  [[noreturn]] void fail(std::uint64_t at, const std::string& what) const;
+
+ private:
+  std::string text(std::uint64_t at, std::uint64_t size);
+  Record record_in(std::string_view records, std::uint64_t place, std::uint64_t at) const;
+  void open_ends();
+  void check_data();
+  void read_summary();
+  void check_groups(std::string_view summary, std::string_view groups) const;
+  void take_indexed(std::vector<ChunkIndex> chunks);
+  void scan();
+  void scan_chunk(const ChunkIndex& index);
+  ChunkIndex head_of_chunk(std::uint64_t at, std::uint64_t bytes, std::uint32_t* crc);
+
+  std::filesystem::path path_;
+  std::ifstream stream_;
+  std::uint64_t bytes_ = 0, data_end_ = 0, footer_at_ = 0;
+  Footer footer_;
+  std::optional<Statistics> statistics_;
+  std::map<std::uint16_t, Schema> schemas_;
+  std::map<std::uint16_t, Channel> channels_;
+  std::vector<Stretch> stretches_;
+};
+
+}  // namespace tumble::scenarios::mcap

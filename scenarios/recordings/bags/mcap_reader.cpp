@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/recordings/bags/bag_storage.hpp"
+#include "scenarios/recordings/bags/mcap_file.hpp"
+#include "scenarios/recordings/bags/ros2_definitions.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+using namespace mcap;
+
+/// Messages that wait because later chunks may hold earlier ones.
+constexpr std::uint64_t kWaitingMax = 1u << 30;
+
+/// How messages and their types are written.
+bool is_cdr(const Channel& channel, const Schema& schema) {
+  return channel.message_encoding == "cdr" && (schema.encoding == "ros2msg" || schema.encoding == "ros2idl");
+}
+bool is_ros1(const Channel& channel, const Schema& schema) {
+  return channel.message_encoding == "ros1" && schema.encoding == "ros1msg";
+}
+
+/// Messages of one topic of one file in order of time, a chunk in memory and what overlaps it.
+class TopicWalk {
+ public:
+  TopicWalk(File& file, std::set<std::uint16_t> channels, const std::function<void(ros::Bytes&)>& take)
+      : file_(file), channels_(std::move(channels)), take_(take) {}
+
+  void all() {
+    for (const Stretch& stretch : file_.stretches()) {
+      const auto held = [&](std::uint16_t channel) { return stretch.may_hold(channel); };
+      if (std::none_of(channels_.begin(), channels_.end(), held)) continue;
+      give_before(stretch.first_ns);
+      read(stretch);
+    }
+    while (!waiting_.empty()) give_first();
+    for (const std::uint16_t channel : channels_) {
+      const std::optional<std::uint64_t> stated = file_.stated_messages(channel);
+      if (stated && *stated != counts_[channel]) {
+        file_.fail(0, "channel " + std::to_string(channel) + " holds " + std::to_string(counts_[channel]) +
+                          " messages, the summary states " + std::to_string(*stated) + ": damaged");
+      }
+    }
+  }
+
+ private:
+  void read(const Stretch& stretch) {
+    const std::string records = file_.records(stretch);
+    std::map<std::uint16_t, std::vector<std::pair<std::uint64_t, std::uint64_t>>> found;
+    file_.walk(records, stretch.at, [&](const Record& record) {
+      if (record.op == kSchema) file_.add(file_.as<Schema>(record, stretch.at), stretch.at);
+      if (record.op == kChannel) file_.add(file_.as<Channel>(record, stretch.at), stretch.at);
+      if (record.op != kMessage) return;
+      const auto message = file_.as<Message>(record, stretch.at);
+      if (!channels_.contains(message.channel_id)) return;
+      require_time(stretch, message.log_time);
+      found[message.channel_id].emplace_back(message.log_time, record.at);
+      ++counts_[message.channel_id];
+      constexpr std::size_t kFields = 2 + 4 + 8 + 8;
+      hold(stretch, message.log_time, record.content.substr(kFields));
+    });
+    for (const std::uint16_t channel : channels_) require_indexed(stretch, channel, found[channel]);
+  }
+
+  void require_time(const Stretch& stretch, std::uint64_t time_ns) const {
+    if (time_ns >= stretch.first_ns && time_ns <= stretch.last_ns) return;
+    file_.fail(stretch.at, "a message at " + std::to_string(time_ns) + " ns in a chunk from " +
+                               std::to_string(stretch.first_ns) + " to " + std::to_string(stretch.last_ns) +
+                               " ns: damaged");
+  }
+
+  /// The index behind the chunk names the messages that are there, and no others.
+  void require_indexed(const Stretch& stretch, std::uint16_t channel,
+                       std::vector<std::pair<std::uint64_t, std::uint64_t>>& found) {
+    std::optional<MessageIndex> index = file_.index_of(stretch, channel);
+    const bool complete = stretch.chunk && !stretch.chunk->message_index_offsets.empty();
+    if (!index && (!complete || found.empty())) return;
+    if (!index) index.emplace();
+    std::sort(index->entries.begin(), index->entries.end());
+    std::sort(found.begin(), found.end());
+    if (index->entries == found) return;
+    file_.fail(stretch.at, "the index of the chunk names " + std::to_string(index->entries.size()) +
+                               " messages of channel " + std::to_string(channel) + ", not the " +
+                               std::to_string(found.size()) + " that are there: damaged");
+  }
+
+  void hold(const Stretch& stretch, std::uint64_t time_ns, std::string_view bytes) {
+    waiting_bytes_ += bytes.size();
+    if (waiting_bytes_ > kWaitingMax) {
+      file_.fail(stretch.at, "chunks overlap in time so that more than 1 GiB of messages would have to wait");
+    }
+    const auto* first = reinterpret_cast<const std::uint8_t*>(bytes.data());
+    waiting_.emplace(time_ns, ros::Bytes(first, first + bytes.size()));
+  }
+
+  void give_before(std::uint64_t time_ns) {
+    while (!waiting_.empty() && waiting_.begin()->first < time_ns) give_first();
+  }
+  void give_first() {
+    ros::Bytes bytes = std::move(waiting_.begin()->second);
+    waiting_bytes_ -= bytes.size();
+    waiting_.erase(waiting_.begin());
+    take_(bytes);
+  }
+
+  File& file_;
+  std::set<std::uint16_t> channels_;
+  const std::function<void(ros::Bytes&)>& take_;
+  std::multimap<std::uint64_t, ros::Bytes> waiting_;  ///< of equal times in the order of the file
+  std::uint64_t waiting_bytes_ = 0;
+  std::map<std::uint16_t, std::uint64_t> counts_;
+};
+
+class McapReader : public BagReader {
+ public:
+  explicit McapReader(const std::vector<std::filesystem::path>& files) {
+    for (const std::filesystem::path& file : files) files_.push_back(std::make_unique<File>(file));
+  }
+
+  std::vector<BagTopic> topics() override {
+    std::vector<BagTopic> topics;
+    for (const auto& file : files_) {
+      for (const auto& [id, channel] : file->channels()) {
+        const BagTopic topic = {channel.topic, type_of(*file, channel)};
+        const auto same = [&](const BagTopic& each) { return each.name == topic.name; };
+        const auto found = std::find_if(topics.begin(), topics.end(), same);
+        if (found == topics.end()) {
+          topics.push_back(topic);
+        } else if (found->type != topic.type) {
+          file->fail(0, "topic " + topic.name + " is of type " + found->type + " and of type " + topic.type);
+        }
+      }
+    }
+    return topics;
+  }
+
+  void read(const std::string& topic, const std::function<void(ros::Bytes&)>& take) override {
+    for (const auto& file : files_) {
+      std::set<std::uint16_t> channels;
+      for (const auto& [id, channel] : file->channels()) {
+        if (channel.topic == topic) channels.insert(id);
+      }
+      if (!channels.empty()) TopicWalk(*file, channels, take).all();
+    }
+  }
+
+  bool cdr(const std::string& topic) const override {
+    for (const auto& file : files_) {
+      for (const auto& [id, channel] : file->channels()) {
+        if (channel.topic == topic) return is_cdr(channel, schema_of(*file, channel));
+      }
+    }
+    return true;
+  }
+
+ private:
+  static const Schema& schema_of(const File& file, const Channel& channel) {
+    static const Schema none;
+    return channel.schema_id == 0 ? none : file.schemas().at(channel.schema_id);
+  }
+
+  /// By ROS 1's name; of what is no message of ROS with its encoding, which no type that is read has.
+  static std::string type_of(const File& file, const Channel& channel) {
+    const Schema& schema = schema_of(file, channel);
+    if (is_cdr(channel, schema)) return ros1_type(schema.name);
+    if (is_ros1(channel, schema)) return schema.name;
+    return schema.name + " as " + channel.message_encoding + " (" + schema.encoding + ")";
+  }
+
+  std::vector<std::unique_ptr<File>> files_;
+};
+
+}  // namespace
+
+std::unique_ptr<BagReader> open_mcap(const std::vector<std::filesystem::path>& files) {
+  return std::make_unique<McapReader>(files);
+}
+
+}  // namespace tumble::scenarios

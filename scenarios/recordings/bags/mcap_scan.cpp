@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Files without a summary, or with one that does not list everything: the data are gone through once.
+#include <algorithm>
+
+#include "scenarios/recordings/bags/mcap_file.hpp"
+
+namespace tumble::scenarios::mcap {
+
+namespace {
+
+constexpr std::uint64_t kRecordMax = 1u << 28;
+/// Records outside of chunks are kept together up to so many bytes.
+constexpr std::uint64_t kStretchBytes = 1u << 22;
+
+/// Widens the times of a stretch.
+void cover(Stretch& stretch, bool& empty, std::uint64_t time_ns) {
+  stretch.first_ns = empty ? time_ns : std::min(stretch.first_ns, time_ns);
+  stretch.last_ns = empty ? time_ns : std::max(stretch.last_ns, time_ns);
+  empty = false;
+}
+
+}  // namespace
+
+void File::scan() {
+  std::optional<Stretch> loose;
+  bool empty = true;
+  const auto close = [&] {
+    if (loose && !empty) stretches_.push_back(*loose);
+    loose.reset();
+    empty = true;
+  };
+  bool first = true;
+  for (std::uint64_t at = kMagic.size(); at < data_end_;) {
+    const std::string head = text(at, std::min(kHeadBytes, data_end_ - at));
+    std::uint8_t op = 0;
+    std::uint64_t size = 0;
+    if (head.size() < kHeadBytes) fail(at, "ends in the head of a record: damaged or truncated");
+    Take take(head);
+    take(op), take(size);
+    const std::uint64_t left = data_end_ - at - kHeadBytes;
+    if (size > left) {
+      fail(at, "a record of " + std::to_string(size) + " bytes, must be at most " + std::to_string(left) +
+                   ": damaged or truncated");
+    }
+    if (first && op != kHeader) fail(at, "the first record is no header: damaged");
+    if (op == 0 || op == kFooter || op == kDataEnd || (op == kHeader && !first))
+      fail(at, "a record of kind " + std::to_string(op) + " has no place here: damaged");
+    first = false;
+    const std::uint64_t bytes = kHeadBytes + size;
+    if (op == kChunk) {
+      close();
+      scan_chunk(head_of_chunk(at, bytes, nullptr));
+    } else if (op == kSchema || op == kChannel || op == kMessage) {
+      if (bytes > kRecordMax) fail(at, "a record of " + std::to_string(bytes) + " bytes, at most 256 MiB are read");
+      const std::string whole = text(at, bytes);
+      const Record record = record_in(whole, 0, at);
+      if (op == kSchema) add(as<Schema>(record, at), at);
+      if (op == kChannel) add(as<Channel>(record, at), at);
+      if (loose && loose->bytes + bytes > kStretchBytes) close();
+      if (!loose) loose = Stretch{at, 0, 0, 0, std::nullopt};
+      loose->bytes = at + bytes - loose->at;
+      if (op == kMessage) cover(*loose, empty, as<Message>(record, at).log_time);
+    } else {
+      close();  // an index, an attachment, metadata, or what a later version knows
+    }
+    at += bytes;
+  }
+  close();
+}
+
+/// The channels that a chunk brings, and when its messages were logged.
+void File::scan_chunk(const ChunkIndex& index) {
+  Stretch stretch{index.chunk_start_offset, index.chunk_length, 0, 0, index};
+  bool empty = true;
+  walk(records(stretch), index.chunk_start_offset, [&](const Record& record) {
+    const std::uint64_t at = index.chunk_start_offset;
+    if (record.op == kSchema) add(as<Schema>(record, at), at);
+    if (record.op == kChannel) add(as<Channel>(record, at), at);
+    if (record.op == kMessage) cover(stretch, empty, as<Message>(record, at).log_time);
+  });
+  if (!empty) stretches_.push_back(stretch);
+}
+
+}  // namespace tumble::scenarios::mcap

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "scenarios/recordings/bags/ros_messages.hpp"
+
+namespace tumble::scenarios {
+
+/// Where frames stand to each other, as messages on /tf_static say: each hangs on one parent. Private to
+/// scenarios/recordings/bags.
+class StaticFrames {
+ public:
+  /// Takes a transform; of a frame that is stated again the last one holds. Throws BadInput beginning with `where`: not
+  /// finite, beyond 1 km, a quaternion whose norm is not 1 within a percent, a frame that hangs on itself.
+  void add(const ros::TransformStamped& transform, const std::string& where);
+
+  /// The frame that is taken for the body's: "body", else "base_link", else none.
+  std::string body() const;
+
+  /// T_AB of two frames that hang on the same one; nothing where they do not. Throws BadInput beginning with `where`
+  /// when the frames hang on each other in a ring.
+  std::optional<Eigen::Isometry3d> pose(const std::string& frame_A, const std::string& frame_B,
+                                        const std::string& where) const;
+
+ private:
+  struct Hung {
+    std::string parent;
+    Eigen::Isometry3d T_parent;  ///< takes coordinates of the frame to its parent's
+  };
+  /// The frame on which all hang, and the frame's pose there.
+  Hung root_of(const std::string& frame, const std::string& where) const;
+  std::map<std::string, Hung> frames_;
+};
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// /tf, /tf_static and /clock in every kind of bag, and what is made of the frames on the way in.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "scenarios/recordings/bags/bag.hpp"
+#include "scenarios/recordings/bags/bag_messages.hpp"
+#include "scenarios/recordings/bags/bag_storage.hpp"
+#include "scenarios/recordings/bags/static_frames.hpp"
+#include "scenarios/recordings/fixture_recording.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+std::unique_ptr<BagReader> open_mcap_file(const std::filesystem::path& file) {
+  return open_mcap({file});
+}
+
+struct Kind {
+  const char* name;
+  void (*write)(const sim::Sensors&, const BagWriting&, const std::filesystem::path&);
+  std::unique_ptr<BagReader> (*open)(const std::filesystem::path&);
+  Imported (*read)(const std::filesystem::path&, const BagReading&);
+  std::unique_ptr<BagWriter> (*make)(const std::filesystem::path&);
+};
+
+class Frames : public fixture::Folder, public testing::WithParamInterface<Kind> {
+ protected:
+  Frames() {
+    for (sim::ImuRecord& imu : recording_.sensors.imus) {
+      for (Eigen::Vector3d& force : imu.accel_m_s2) force *= 0.2;
+    }
+    for (std::uint32_t& offset : recording_.sensors.lidars[0].offset_ns) offset *= 600;
+  }
+  template <class Message>
+  std::vector<Message> messages(const std::string& topic) {
+    const auto reader = GetParam().open(path_);
+    std::vector<Message> out;
+    reader->read(topic, [&](ros::Bytes& bytes) {
+      out.push_back(reader->cdr(topic) ? ros::from_cdr<Message>(bytes) : ros::from_ros1<Message>(bytes));
+    });
+    return out;
+  }
+  std::vector<std::string> topics() {
+    std::vector<std::string> names;
+    for (const BagTopic& topic : GetParam().open(path_)->topics()) names.push_back(topic.name + " " + topic.type);
+    return names;
+  }
+  sim::Recording recording_ = fixture::recording();
+  std::filesystem::path path_ = folder_ / "bag";
+};
+
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, Frames,
+    testing::Values(Kind{"Ros1", export_ros1_bag, open_ros1_bag, import_ros1_bag, make_ros1_writer},
+                    Kind{"Ros2", export_ros2_bag, open_ros2_bag, import_ros2_bag, make_ros2_writer},
+                    Kind{"Mcap", export_mcap, open_mcap_file, import_mcap, make_mcap_writer}),
+    [](const auto& kind) { return std::string(kind.param.name); });
+
+TEST_P(Frames, SensorsHangOnTheBody) {
+  GetParam().write(recording_.sensors, {}, path_);
+  EXPECT_THAT(topics(), Contains("/tf_static tf2_msgs/TFMessage"));
+  EXPECT_THAT(topics(), testing::Not(Contains("/tf tf2_msgs/TFMessage"))) << "nobody says where the body is";
+  const std::vector<ros::TFMessage> found = messages<ros::TFMessage>("/tf_static");
+  ASSERT_EQ(found.size(), 1u);
+  ASSERT_EQ(found[0].transforms.size(), 3u);
+  const char* names[] = {"imu", "imu_reference", "lidar"};
+  const Eigen::Isometry3d poses[] = {recording_.sensors.imus[0].T_BI, recording_.sensors.imus[1].T_BI,
+                                     recording_.sensors.lidars[0].T_BL};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const ros::TransformStamped& each = found[0].transforms[k];
+    EXPECT_EQ(each.header.frame_id, "body");
+    EXPECT_EQ(each.child_frame_id, names[k]);
+    EXPECT_EQ(Eigen::Vector3d::Map(each.translation.data()), poses[k].translation());
+    Eigen::Quaterniond q;
+    q.coeffs() = Eigen::Vector4d::Map(each.rotation_xyzw.data());
+    EXPECT_TRUE(q.toRotationMatrix().isApprox(poses[k].linear(), 1e-14));
+  }
+}
+
+TEST_P(Frames, TheTruthMovesTheBodyAndEstimatesFramesOfTheirOwn) {
+  const BagTrack track{"slam_mine", {{7'000'000, {1, 2, 3}, Eigen::Quaterniond(0.6, 0.8, 0, 0)}}};
+  GetParam().write(recording_.sensors, {0, &recording_.truth, {track}}, path_);
+  const std::vector<ros::TFMessage> found = messages<ros::TFMessage>("/tf");
+  ASSERT_EQ(found.size(), 9u) << "40 ms in steps of 5, and one of the track";
+  std::size_t truths = 0, tracks = 0;
+  for (const ros::TFMessage& message : found) {
+    ASSERT_EQ(message.transforms.size(), 1u);
+    const ros::TransformStamped& each = message.transforms[0];
+    EXPECT_EQ(each.header.frame_id, "world");
+    const auto p = Eigen::Vector3d::Map(each.translation.data());
+    if (each.child_frame_id == "body") {
+      EXPECT_EQ(p, recording_.truth.p_WB_m[5 * truths++]);
+    } else {
+      EXPECT_EQ(each.child_frame_id, "slam_mine");
+      EXPECT_EQ(p, Eigen::Vector3d(1, 2, 3));
+      EXPECT_EQ(each.rotation_xyzw, (std::array<double, 4>{0.8, 0, 0, 0.6}));
+      EXPECT_EQ(each.header.nanosec, 7'000'000u);
+      ++tracks;
+    }
+  }
+  EXPECT_EQ(truths, 8u);
+  EXPECT_EQ(tracks, 1u);
+  EXPECT_EQ(messages<ros::Odometry>("/slam_mine").at(0).child_frame_id, "slam_mine");
+  // without the truth the first estimate carries the sensors
+  std::filesystem::remove_all(path_);
+  GetParam().write(recording_.sensors, {0, nullptr, {track}}, path_);
+  EXPECT_EQ(messages<ros::TFMessage>("/tf").at(0).transforms.at(0).child_frame_id, "body");
+}
+
+TEST_P(Frames, TheClockTicks) {
+  GetParam().write(recording_.sensors, {}, path_);
+  const std::vector<ros::Clock> ticks = messages<ros::Clock>("/clock");
+  ASSERT_GT(ticks.size(), 10u);
+  std::int64_t before = -1;
+  for (const ros::Clock& tick : ticks) {
+    const std::int64_t time = std::int64_t{tick.sec} * 1'000'000'000 + tick.nanosec;
+    if (before >= 0) {
+      EXPECT_GE(time - before, 10'000'000);
+    }
+    before = time;
+  }
+  EXPECT_EQ(ticks.front().sec, 1'000'000'000u);
+}
+
+TEST_P(Frames, AStatedPlaceHoldsAndAContradictionShowsBoth) {
+  GetParam().write(recording_.sensors, {}, path_);
+  const Imported found = GetParam().read(path_, {});
+  EXPECT_THAT(found.notes, Contains(HasSubstr("/lidar/points: placed in 'body' by /tf_static")));
+  EXPECT_TRUE(found.sensors.lidars[0].T_BL.isApprox(recording_.sensors.lidars[0].T_BL, 1e-12));
+  BagReading stated;
+  stated.sweeps.device.T_BL.translation() = Eigen::Vector3d(0.5, 0.25, 0.125);
+  const Imported held = GetParam().read(path_, stated);
+  EXPECT_EQ(held.sensors.lidars[0].T_BL.translation(), Eigen::Vector3d(0.5, 0.25, 0.125));
+  EXPECT_THAT(held.notes,
+              Contains(testing::AllOf(HasSubstr("/lidar/points: caution: /tf_static places it in 'body' at"),
+                                      HasSubstr("but given was (0.5 "))));
+  // the same place said twice is no contradiction
+  stated.sweeps.device.T_BL = recording_.sensors.lidars[0].T_BL;
+  EXPECT_THAT(GetParam().read(path_, stated).notes, testing::Not(Contains(HasSubstr("caution: /tf_static"))));
+}
+
+TEST_P(Frames, CloudsInTheWorldAreNoSensors) {
+  const BagCloud cloud{"mine", 20'000'000, {{1, 2, 3}, {4, 5, 6}}, {0.5f, 0.25f}};
+  GetParam().write(recording_.sensors, {0, nullptr, {}, {cloud}}, path_);
+  const ros::PointCloud2 written = messages<ros::PointCloud2>("/mine/points").at(0);
+  ASSERT_EQ(written.fields.size(), 4u);
+  EXPECT_EQ(written.fields[3].name, "error_m");
+  EXPECT_EQ(written.point_step, 16u);
+  float numbers[8];
+  ASSERT_EQ(written.data.size(), sizeof numbers);
+  std::memcpy(numbers, written.data.data(), sizeof numbers);
+  EXPECT_THAT(numbers, testing::ElementsAre(1, 2, 3, 0.5f, 4, 5, 6, 0.25f));
+  const Imported imported = GetParam().read(path_, {});
+  EXPECT_EQ(imported.sensors.lidars.size(), 1u);
+  EXPECT_THAT(imported.notes, Contains(HasSubstr("/mine/points: its points lie in 'world'")));
+}
+
+ros::TransformStamped hung(const std::string& child, const std::string& parent, const Eigen::Vector3d& p,
+                           const Eigen::Quaterniond& q = Eigen::Quaterniond::Identity()) {
+  return transform_message(p, q, child, header_of(1'000'000'000, parent));
+}
+
+/// A bag with an IMU "imu" and these frames.
+void write_frames(BagWriter& bag, const std::vector<ros::TransformStamped>& frames) {
+  bag.write("/tf_static", 1'000'000'000, ros::TFMessage{frames});
+  sim::ImuRecord imu;
+  imu.period_ns = 10'000'000;
+  for (std::size_t k = 0; k < 5; ++k) {
+    imu.gyro_rad_s.emplace_back(0, 0, 0);
+    imu.accel_m_s2.emplace_back(0, 0, 9.8);
+    const std::int64_t stamp = 1'000'000'000 + 10'000'000 * static_cast<std::int64_t>(k);
+    bag.write("/imu", stamp, imu_message(imu, k, header_of(stamp, "/imu")));
+  }
+  bag.finish();
+}
+
+TEST_P(Frames, AreFollowedThroughOthers) {
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()));
+  // a robot's way: both hang on a mast that hangs on the base
+  write_frames(*GetParam().make(path_), {hung("mast", "base_link", {0, 0, 1}, turn), hung("imu", "mast", {0.5, 0, 0})});
+  const Imported found = GetParam().read(path_, {});
+  const Eigen::Isometry3d T_BI = found.sensors.imus.at(0).T_BI;
+  EXPECT_TRUE(T_BI.translation().isApprox(Eigen::Vector3d(0, 0.5, 1))) << T_BI.translation();
+  EXPECT_TRUE(T_BI.linear().isApprox(turn.toRotationMatrix()));
+  EXPECT_THAT(found.notes, Contains(HasSubstr("/imu: placed in 'base_link' by /tf_static")));
+}
+
+TEST_P(Frames, ThatNobodyTiesToTheBodyPlaceNothing) {
+  write_frames(*GetParam().make(path_), {hung("imu", "mast", {0.5, 0, 0})});
+  const Imported found = GetParam().read(path_, {});
+  EXPECT_TRUE(found.sensors.imus.at(0).T_BI.isApprox(Eigen::Isometry3d::Identity()));
+}
+
+TEST_P(Frames, ThatMakeNoSenseAreRefused) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const std::pair<std::vector<ros::TransformStamped>, const char*> cases[] = {
+      {{hung("imu", "mast", {0, 0, 0}), hung("mast", "imu", {0, 0, 0}), hung("x", "body", {0, 0, 0})},
+       "hang on each other in a ring"},
+      {{hung("imu", "imu", {0, 0, 0})}, "the frame hangs on itself"},
+      {{hung("imu", "body", {kNan, 0, 0})}, "the transform of 'imu' in 'body': its place must be within 1 km"},
+      {{hung("imu", "body", {0, 2000, 0})}, "its place must be within 1 km"},
+      {{hung("imu", "body", {0, 0, 0}, Eigen::Quaterniond(0, 0, 0, 0))}, "its quaternion has norm 0.000000, must be 1"},
+      {{hung("imu", "body", {0, 0, 0}, Eigen::Quaterniond(kNan, 0, 0, 0))}, "its quaternion has norm nan"}};
+  for (const auto& [frames, complaint] : cases) {
+    std::filesystem::remove_all(path_);
+    write_frames(*GetParam().make(path_), frames);
+    EXPECT_THAT(fixture::complaint([&] { GetParam().read(path_, {}); }),
+                testing::AllOf(HasSubstr("/tf_static: "), HasSubstr(complaint)));
+  }
+}
+
+}  // namespace
+}  // namespace tumble::scenarios

@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// MCAP files of every shape are read alike, and a lie in any place of one is refused. Files of ours are given to other
+// people's readers by tests/peers/bags_test.py.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "scenarios/recordings/bags/bag.hpp"
+#include "scenarios/recordings/bags/bag_storage.hpp"
+#include "scenarios/recordings/fixture_recording.hpp"
+#include "scenarios/recordings/mcap_file.hpp"
+#include "scenarios/recordings/recording_file.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+using fixture::McapShape;
+using testing::HasSubstr;
+
+class Mcap : public fixture::Folder {
+ protected:
+  Mcap() { shape_.chunks = {{messages_.begin(), messages_.begin() + 20}, {messages_.begin() + 20, messages_.end()}}; }
+  std::filesystem::path file() const { return folder_ / "a.mcap"; }
+  Imported read(const std::string& bytes) {
+    fixture::put(file(), bytes);
+    return import_mcap(file(), {});
+  }
+  std::string complaint_of(const std::string& bytes) {
+    return fixture::complaint([&] { read(bytes); });
+  }
+  std::string complaint_of(const McapShape& shape) { return complaint_of(fixture::mcap_bytes(shape)); }
+  /// Rates of the messages in the order in which they are given.
+  std::vector<double> rates(const std::string& bytes) {
+    fixture::put(file(), bytes);
+    std::vector<double> out;
+    open_mcap({file()})->read(
+        "/imu", [&](ros::Bytes& message) { out.push_back(ros::from_cdr<ros::Imu>(message).angular_velocity[0]); });
+    return out;
+  }
+  std::vector<fixture::Logged> messages_ = fixture::imu_messages(50);
+  McapShape shape_;
+};
+
+TEST_F(Mcap, EveryShapeIsReadAlike) {
+  const std::string expected = digest(read(fixture::mcap_bytes(shape_)).sensors, nullptr);
+  EXPECT_EQ(read(fixture::mcap_bytes(shape_)).sensors.imus.at(0).time_ns.size(), 50u);
+  int shapes = 0;
+  for (const char* compression : {"", "lz4", "zstd"}) {
+    for (int bits = 0; bits < 64; ++bits) {
+      shape_.compression = compression;
+      shape_.chunked = (bits & 1) == 0, shape_.message_index = (bits & 2) == 0, shape_.summary = (bits & 4) == 0;
+      shape_.statistics = (bits & 8) == 0, shape_.repeat_channels = (bits & 16) == 0, shape_.crcs = (bits & 32) == 0;
+      ASSERT_EQ(digest(read(fixture::mcap_bytes(shape_)).sensors, nullptr), expected) << compression << " " << bits;
+      ++shapes;
+    }
+  }
+  EXPECT_EQ(shapes, 192);
+}
+
+TEST_F(Mcap, MessagesComeInOrderOfTimeAlsoWhereChunksOverlap) {
+  std::vector<std::vector<fixture::Logged>> mixed(4);
+  for (std::size_t k = 0; k < messages_.size(); ++k) mixed[(k * 7) % 4].push_back(messages_[messages_.size() - 1 - k]);
+  shape_.chunks = mixed;
+  std::vector<double> rising;
+  for (int k = 0; k < 50; ++k) rising.push_back(0.001 * k);
+  for (const bool summary : {true, false}) {
+    for (const bool chunked : {true, false}) {
+      shape_.summary = summary, shape_.chunked = chunked;
+      EXPECT_EQ(rates(fixture::mcap_bytes(shape_)), rising) << summary << chunked;
+    }
+  }
+}
+
+TEST_F(Mcap, MessagesOfRos1AreReadToo) {
+  shape_.schema = {1, "sensor_msgs/Imu", "ros1msg", "Header header\n"};
+  shape_.channel = {1, 1, "/imu", "ros1", {}};
+  for (auto& chunk : shape_.chunks) {
+    for (fixture::Logged& each : chunk) {
+      ros::Bytes cdr(each.bytes.begin(), each.bytes.end());
+      const ros::Bytes plain = ros::to_ros1(ros::from_cdr<ros::Imu>(cdr));
+      each.bytes.assign(plain.begin(), plain.end());
+    }
+  }
+  EXPECT_EQ(read(fixture::mcap_bytes(shape_)).sensors.imus.at(0).gyro_rad_s.at(7).x(), 0.007);
+}
+
+TEST_F(Mcap, OtherEncodingsAreNamed) {
+  shape_.channel.message_encoding = "json";
+  EXPECT_THAT(complaint_of(shape_), HasSubstr("holds no topic of type sensor_msgs/Imu"));
+  fixture::put(file(), fixture::mcap_bytes(shape_));
+  BagReading reading;
+  reading.imu_topics = {"/imu"};
+  EXPECT_THAT(fixture::complaint([&] { import_mcap(file(), reading); }),
+              HasSubstr("is of type sensor_msgs/msg/Imu as json (ros2msg), must be sensor_msgs/Imu"));
+}
+
+TEST_F(Mcap, AFolderOfRos2MayHoldIt) {
+  const std::vector<fixture::Logged> all = messages_;
+  std::filesystem::create_directories(folder_ / "bag");
+  for (const int part : {0, 1}) {
+    shape_.chunks = {{all.begin() + 25 * part, all.begin() + 25 * part + 25}};
+    fixture::put(folder_ / "bag" / ("b_" + std::to_string(part) + ".mcap"), fixture::mcap_bytes(shape_));
+  }
+  fixture::put(
+      folder_ / "bag" / "metadata.yaml",
+      "rosbag2_bagfile_information:\n  storage_identifier: mcap\n  relative_file_paths: [b_0.mcap, b_1.mcap]\n");
+  EXPECT_EQ(import_ros2_bag(folder_ / "bag", {}).sensors.imus.at(0).time_ns.size(), 50u);
+  std::filesystem::remove(folder_ / "bag" / "b_1.mcap");
+  EXPECT_THAT(fixture::complaint([&] { import_ros2_bag(folder_ / "bag", {}); }), HasSubstr("b_1.mcap: no such file"));
+}
+
+/// A lie, and what is said of it.
+struct Lie {
+  const char* name;
+  std::function<void(McapShape&)> tell;
+  const char* complaint;
+};
+
+class McapLie : public Mcap, public testing::WithParamInterface<Lie> {};
+
+TEST_P(McapLie, IsRefusedWithItsPlace) {
+  ASSERT_EQ(complaint_of(shape_), "");
+  GetParam().tell(shape_);
+  const std::string complaint = complaint_of(shape_);
+  EXPECT_THAT(complaint, HasSubstr(GetParam().complaint));
+  EXPECT_THAT(complaint, HasSubstr("a.mcap: at byte "));
+  EXPECT_THAT(complaint, testing::Not(HasSubstr("\n")));
+}
+
+const Lie kLies[] = {
+    {"ChecksumOfAChunk", [](McapShape& s) { s.chunk = [](mcap::Chunk& c) { ++c.uncompressed_crc; }; },
+     "the checksum of the chunk is "},
+    {"ChecksumOfAPackedChunk",
+     [](McapShape& s) {
+       s.compression = "zstd";
+       s.chunk = [](mcap::Chunk& c) { ++c.uncompressed_crc; };
+     },
+     "the checksum of the chunk is "},
+    {"ChecksumOfTheData", [](McapShape& s) { s.data_end = [](mcap::DataEnd& d) { ++d.data_section_crc; }; },
+     "the checksum of the data is "},
+    {"ChecksumOfTheSummary", [](McapShape& s) { s.footer = [](mcap::Footer& f) { ++f.summary_crc; }; },
+     "the checksum of the summary is "},
+    {"PlaceOfTheSummary", [](McapShape& s) { s.footer = [](mcap::Footer& f) { f.summary_start = 1ull << 60; }; },
+     "the summary would begin at byte 1152921504606846976"},
+    {"PlaceOfTheOffsets",
+     [](McapShape& s) {
+       s.crcs = false;
+       s.footer = [](mcap::Footer& f) { f.summary_offset_start = 9; };
+     },
+     "the offsets of the summary would begin at byte 9"},
+    {"GroupOfTheSummary",
+     [](McapShape& s) {
+       s.crcs = false;
+       s.footer = [](mcap::Footer& f) { f.summary_offset_start = f.summary_start; };
+     },
+     "has no place here"},
+    {"PlaceOfAMessage", [](McapShape& s) { s.index = [](mcap::MessageIndex& i) { i.entries[3].second += 1; }; },
+     "the index of the chunk names 20 messages of channel 1, not the 20 that are there"},
+    {"TimeOfAMessage", [](McapShape& s) { s.index = [](mcap::MessageIndex& i) { i.entries[3].first += 1; }; },
+     "the index of the chunk names"},
+    {"MessageLeftOutOfTheIndex", [](McapShape& s) { s.index = [](mcap::MessageIndex& i) { i.entries.pop_back(); }; },
+     "the index of the chunk names 19 messages of channel 1, not the 20"},
+    {"ChannelOfAnIndex", [](McapShape& s) { s.index = [](mcap::MessageIndex& i) { i.channel_id = 9; }; },
+     "is the index of channel 9, should be of 1"},
+    {"ChunkLeftOutOfTheIndex", [](McapShape& s) { s.chunk_index = [](auto& all) { all.pop_back(); }; },
+     "states 2 chunks and indexes 1"},
+    {"ChunkTwiceInTheIndex", [](McapShape& s) { s.chunk_index = [](auto& all) { all[1] = all[0]; }; },
+     "indexes a chunk of "},
+    {"ChunkBeyondTheEnd",
+     [](McapShape& s) { s.chunk_index = [](auto& all) { all[1].chunk_start_offset = 1ull << 62; }; },
+     "indexes a chunk of "},
+    {"LengthOfAChunk", [](McapShape& s) { s.chunk_index = [](auto& all) { all[1].chunk_length = ~0ull; }; },
+     "indexes a chunk of 18446744073709551615 bytes"},
+    {"PlaceOfAChunk",
+     [](McapShape& s) { s.chunk_index = [](auto& all) { --all[0].chunk_length, ++all[0].chunk_start_offset; }; },
+     "is no chunk"},
+    {"TimesOfAChunk", [](McapShape& s) { s.chunk_index = [](auto& all) { --all[0].message_end_time; }; },
+     "the chunk is not what its index says"},
+    {"PlaceOfAnIndex", [](McapShape& s) { s.chunk_index = [](auto& all) { all[0].message_index_offsets[1] = 8; }; },
+     "behind which it does not lie"},
+    {"PlaceWithinAnIndex",
+     [](McapShape& s) { s.chunk_index = [](auto& all) { all[0].message_index_offsets[1] += 1; }; }, "damaged"},
+    {"MessageOutsideOfItsChunk", [](McapShape& s) { s.chunk = [](mcap::Chunk& c) { ++c.message_start_time; }; },
+     "a message at 1000000000 ns in a chunk from 1000000001"},
+    {"NumberOfMessages", [](McapShape& s) { s.counts = [](mcap::Statistics& c) { ++c.channel_message_counts[1]; }; },
+     "channel 1 holds 50 messages, the summary states 51"},
+    {"NameOfAPacking", [](McapShape& s) { s.compression = "brotli"; },
+     "a chunk of compression 'brotli': none, lz4 or zstd are read"},
+    {"SizeOfAPlainChunk", [](McapShape& s) { s.chunk = [](mcap::Chunk& c) { ++c.uncompressed_size; }; },
+     "a plain chunk of "},
+    {"SizeOfAnLz4Chunk",
+     [](McapShape& s) {
+       s.compression = "lz4";
+       s.chunk = [](mcap::Chunk& c) { ++c.uncompressed_size; };
+     },
+     "bytes, the chunk states"},
+    {"BombOfLz4",
+     [](McapShape& s) {
+       s.compression = "lz4";
+       s.chunk = [](mcap::Chunk& c) { c.uncompressed_size = 1u << 28; };
+     },
+     "cannot hold the 268435456 bytes that the chunk states"},
+    {"BombOfZstd",
+     [](McapShape& s) {
+       s.compression = "zstd";
+       s.chunk_records = [](std::string& records) { records.append(50'000'000, '\0'); };
+       s.chunk = [](mcap::Chunk& c) { c.uncompressed_size = 1000; };
+     },
+     "holds more than the 1000 bytes that the chunk states"},
+    {"ChunkBeyondTheBound", [](McapShape& s) { s.chunk = [](mcap::Chunk& c) { c.uncompressed_size = 1ull << 40; }; },
+     "a chunk of 1099511627776 bytes, at most 256 MiB are read"},
+    {"LengthOfTheRecords", [](McapShape& s) { s.chunk = [](mcap::Chunk& c) { c.records_size = ~0ull; }; },
+     "a chunk that promises 18446744073709551615 bytes"},
+    {"LengthOfARecord", [](McapShape& s) { s.chunk_records = [](std::string& records) { records[8] = '\x7f'; }; },
+     "damaged or truncated"},
+    {"KindZero", [](McapShape& s) { s.chunk_records = [](std::string& r) { r += std::string(20, '\0'); }; },
+     "a record of kind 0"},
+    {"SchemaOfAChannel", [](McapShape& s) { s.channel.schema_id = 7; }, "channel 1 is of schema 7: there is none"},
+    {"NumberOfASchema", [](McapShape& s) { s.schema.id = 0; }, "a schema with the number 0"},
+    {"ChannelStatedTwice",
+     [](McapShape& s) {
+       mcap::Channel other = s.channel;
+       other.topic = "/other";
+       s.chunk_records = [other](std::string& records) { records += mcap::to_bytes(other); };
+     },
+     "channel 1 is stated twice, differently"},
+    {"MessageWithoutItsFields",
+     [](McapShape& s) {
+       s.chunk_records = [](std::string& r) { r += std::string("\x05\x02\0\0\0\0\0\0\0\x01\0", 11); };
+     },
+     "a record of kind 5 promises 4 bytes where 0 are left"},
+};
+
+INSTANTIATE_TEST_SUITE_P(, McapLie, testing::ValuesIn(kLies),
+                         [](const auto& of) { return std::string(of.param.name); });
+
+// without a summary the same is found where the file is gone through
+TEST_F(Mcap, LiesAreFoundWithoutASummaryToo) {
+  shape_.summary = false;
+  ASSERT_EQ(complaint_of(shape_), "");
+  McapShape lie = shape_;
+  lie.chunk = [](mcap::Chunk& c) { ++c.uncompressed_crc; };
+  EXPECT_THAT(complaint_of(lie), HasSubstr("the checksum of the chunk is "));
+  lie = shape_;
+  lie.crcs = false;
+  lie.chunk_records = [](std::string& records) { records[8] = '\x7f'; };
+  EXPECT_THAT(complaint_of(lie), HasSubstr("damaged or truncated"));
+  std::string loose = [&] {
+    McapShape shape = shape_;
+    shape.chunked = shape.crcs = false;
+    return fixture::mcap_bytes(shape);
+  }();
+  ASSERT_EQ(complaint_of(loose), "");
+  loose[8 + 1] = '\x7f';  // the length of the header, which is the first record
+  EXPECT_NE(complaint_of(loose), "");
+}
+
+sim::Sensors small_sensors() {
+  sim::Recording recording = fixture::recording();
+  for (std::uint32_t& offset : recording.sensors.lidars[0].offset_ns) offset *= 600;
+  recording.sensors.imus.resize(1);
+  sim::ImuRecord& imu = recording.sensors.imus[0];
+  imu.time_ns.resize(3);
+  for (auto* rows : {&imu.gyro_rad_s, &imu.accel_m_s2}) rows->assign(3, Eigen::Vector3d(0, 0, 9.8));
+  return recording.sensors;
+}
+
+// every byte of what we write is under some checksum
+TEST_F(Mcap, AnyChangedByteOfOursIsRefused) {
+  export_mcap(small_sensors(), {}, file());
+  const std::string whole = fixture::bytes_of(file());
+  ASSERT_EQ(complaint_of(whole), "");
+  ASSERT_GT(whole.size(), 5000u);
+  const std::size_t far = whole.size() - 300;  // the last chunk's index, the offsets, the footer
+  for (std::size_t at = 0; at < whole.size(); at += at < 200 || at > far ? 1 : 13) {
+    std::string bytes = whole;
+    bytes[at] = static_cast<char>(bytes[at] ^ (1 << (at % 8)));
+    const std::string complaint = complaint_of(bytes);
+    ASSERT_THAT(complaint, HasSubstr("a.mcap: at byte ")) << at;
+    ASSERT_THAT(complaint, testing::Not(HasSubstr("\n"))) << at;
+  }
+}
+
+TEST_F(Mcap, AnyCutOfOursIsRefused) {
+  export_mcap(small_sensors(), {}, file());
+  const std::string whole = fixture::bytes_of(file());
+  for (std::size_t size = 0; size < whole.size(); size += size < 100 || size + 100 > whole.size() ? 1 : 97)
+    ASSERT_THAT(complaint_of(whole.substr(0, size)), HasSubstr("a.mcap: at byte ")) << size;
+  EXPECT_THAT(complaint_of(whole.substr(0, whole.size() / 2)), HasSubstr("'mcap recover' makes it whole"));
+  EXPECT_THAT(complaint_of("hello"), HasSubstr("does not begin with the magic of MCAP 0: no MCAP file"));
+  EXPECT_THAT(fixture::complaint([&] { import_mcap(folder_ / "none.mcap", {}); }), HasSubstr("no such file"));
+}
+
+TEST_F(Mcap, TheSameRecordingGivesTheSameBytes) {
+  export_mcap(small_sensors(), {}, file());
+  export_mcap(small_sensors(), {}, folder_ / "b.mcap");
+  EXPECT_TRUE(fixture::bytes_of(file()) == fixture::bytes_of(folder_ / "b.mcap"));
+  EXPECT_THAT(fixture::complaint([&] { export_mcap(small_sensors(), {}, folder_ / "none" / "a.mcap"); }),
+              HasSubstr("cannot be written"));
+  EXPECT_EQ(files(), 2u) << "nothing is left of it";
+}
+
+}  // namespace
+}  // namespace tumble::scenarios
