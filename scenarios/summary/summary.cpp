@@ -38,24 +38,16 @@ std::string choose_baseline(Kind kind, const std::vector<MethodSummary>& methods
   return methods.front().method;
 }
 
-std::map<std::uint64_t, double> by_seed(const MetricSummary& metric, double worst) {
-  std::map<std::uint64_t, double> out;
-  for (std::size_t i = 0; i < metric.seeds.size(); ++i) out.emplace(metric.seeds[i], metric.values[i]);
-  for (const std::uint64_t seed : metric.failed) {
-    if (!std::isnan(worst)) out.emplace(seed, worst);
-  }
-  return out;
-}
-
 /// Compares draw by draw; where both failed neither is better.
 Wins paired_wins(const MetricSummary& own, const MetricSummary& base, const MetricInfo& info) {
   Wins wins;
   if (info.sense == Sense::none) return wins;
-  const std::map<std::uint64_t, double> others = by_seed(base, worst_value(info));
-  for (const auto& [seed, value] : by_seed(own, worst_value(info))) {
-    const auto other = others.find(seed);
-    if (other == others.end()) continue;
-    wins.count += is_better(info, value, other->second) ? 1 : 0;
+  const std::vector<RankedValue> others = ranked_values(base, worst_value(info));
+  auto other = others.begin();
+  for (const RankedValue& each : ranked_values(own, worst_value(info))) {
+    while (other != others.end() && other->seed < each.seed) ++other;
+    if (other == others.end() || other->seed != each.seed) continue;
+    wins.count += is_better(info, each.value, other->value) ? 1 : 0;
     ++wins.pairs;
   }
   return wins;
@@ -98,6 +90,8 @@ void finish(Section& section) {
   for (MethodSummary& method : section.methods) {
     const MethodInfo* info = registered(section.kind, method.method);
     method.needs_truth = info != nullptr && info->needs_truth;
+    std::sort(method.seeds.begin(), method.seeds.end());
+    std::sort(method.not_ok_seeds.begin(), method.not_ok_seeds.end());
     method.not_ok_share = share_interval(method.not_ok, method.outcomes);
     for (auto& [name, metric] : method.metrics) {
       finish(name, metric);
@@ -125,6 +119,18 @@ std::size_t method_rank(Kind kind, const std::string& name) {
   const auto found =
       std::find_if(all.begin(), all.end(), [&](const Method& m) { return m.info.kind == kind && m.info.name == name; });
   return static_cast<std::size_t>(found - all.begin());
+}
+
+std::vector<RankedValue> ranked_values(const MetricSummary& metric, double worst) {
+  std::vector<RankedValue> out;
+  out.reserve(metric.seeds.size() + metric.failed.size());
+  auto failed = std::isnan(worst) ? metric.failed.end() : metric.failed.begin();
+  for (std::size_t i = 0; i < metric.seeds.size(); ++i) {
+    for (; failed != metric.failed.end() && *failed < metric.seeds[i]; ++failed) out.push_back({*failed, worst});
+    out.push_back({metric.seeds[i], metric.values[i]});
+  }
+  for (; failed != metric.failed.end(); ++failed) out.push_back({*failed, worst});
+  return out;
 }
 
 const MetricSummary* MethodSummary::find(const std::string& metric) const {
@@ -156,8 +162,10 @@ Summary summarize(const Results& results) {
   for (const Outcome& outcome : results.outcomes()) {
     MethodSummary& method = method_of(outcome.scenario, outcome.kind, outcome.method);
     ++method.outcomes;
+    method.seeds.push_back(outcome.seed);
     if (outcome.status != OutcomeStatus::ok) {
       ++method.not_ok;
+      method.not_ok_seeds.push_back(outcome.seed);
       failed_seeds[{outcome.scenario, outcome.kind}][outcome.method].insert(outcome.seed);
     }
     seeds[outcome.scenario].insert(outcome.seed);
