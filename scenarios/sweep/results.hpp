@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -29,8 +30,16 @@ struct ScoreRow {
 /// Which rows are asked for: those of the scenarios and methods as they are, those that belong to a curve, or both.
 enum class Rows { plain, curves, all };
 
+/// What a merge wrote: rows that were not there, rows that took the place of a worse one, and what the inputs held
+/// besides, which stood already.
+struct MergeCounts {
+  std::size_t added = 0, replaced = 0, held = 0;
+  std::size_t rejected = 0;  ///< draws, of those added
+};
+
 /// Key of the note that tells the version of a method that is not of the build: "method slam/theirs".
 std::string method_note(Kind kind, const std::string& name);
+bool is_method_note(const std::string& key);
 
 /// The results database (SQLite). Rows are unique by (scenario, seed, kind, method, setting); storing again replaces.
 /// Each store is one transaction, so that whatever has finished survives a kill.
@@ -54,6 +63,10 @@ class Results {
   /// A free text kept with the results: "suite", "build", "data".
   void set_note(const std::string& key, const std::string& text);
   std::string note(const std::string& key) const;
+  std::map<std::string, std::string> notes() const;
+  /// All rows of another database but its notes, by the rule of merge.hpp, row by row: memory does not grow with their
+  /// number. Throws BadInput when two rows that were scored differ in status or digest, unless `mixed`.
+  void absorb(const Results& shard, bool mixed, MergeCounts& counts);
   /// All that `work` stores, or, when it throws, nothing of it. Throws what it throws.
   void in_one_transaction(const std::function<void()>& work);
 

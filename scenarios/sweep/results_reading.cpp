@@ -175,6 +175,15 @@ std::vector<DrawValues> Results::draws(Rows rows) const {
   });
 }
 
+std::map<std::string, std::string> Results::notes() const {
+  return impl_->guarded([&] {
+    std::map<std::string, std::string> notes;
+    SQLite::Statement select(impl_->database, "SELECT key, text FROM notes");
+    while (select.executeStep()) notes.emplace(select.getColumn(0).getString(), select.getColumn(1).getString());
+    return notes;
+  });
+}
+
 std::vector<Certificate> Results::certificates() const {
   return impl_->guarded([&] {
     std::vector<Certificate> certificates;

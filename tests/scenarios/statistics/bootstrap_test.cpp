@@ -102,7 +102,7 @@ TEST(MedianBootstrap, RefusesWhatItCannotMean) {
 /// How often the interval holds the true median, over 2000 samples of a distribution.
 double coverage(std::size_t n, double risk, double (*draw)(sim::Stream&), double truth) {
   sim::Stream stream(n, "test.coverage");
-  const MedianBootstrap bootstrap(n);
+  const MedianBootstrap bootstrap(n, 1000);
   int held = 0;
   for (int k = 0; k < 2000; ++k) {
     std::vector<double> values;
