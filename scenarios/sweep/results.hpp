@@ -7,7 +7,10 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scenarios/certificate/certificate.hpp"
@@ -35,6 +38,25 @@ enum class Rows { plain, curves, all };
 struct MergeCounts {
   std::size_t added = 0, replaced = 0, held = 0;
   std::size_t rejected = 0;  ///< draws, of those added
+};
+
+/// Names that rows share, kept once by who reads them.
+using Names = std::set<std::string, std::less<>>;
+
+/// An outcome as it is read, for results of any size: what it points to goes with the next one, but the names.
+struct OutcomeView {
+  struct Value {
+    const std::string* metric;  ///< in the `Names` of the reader
+    double value;
+  };
+  std::string_view scenario;
+  std::uint64_t seed;
+  Kind kind;
+  std::string_view method;
+  OutcomeStatus status;
+  std::string_view varied;
+  double setting;
+  std::span<const Value> scores;  ///< by name
 };
 
 /// Key of the note that tells the version of a method that is not of the build: "method slam/theirs".
@@ -77,6 +99,8 @@ class Results {
   /// What is held of one draw, curves included, without scores.
   std::vector<Outcome> outcomes_of(const std::string& scenario, std::uint64_t seed) const;
   std::vector<RejectedDraw> rejected_of(const std::string& scenario, std::uint64_t seed) const;
+  /// Every outcome with its scores, in the order of storing; nothing is kept but the metrics' names.
+  void each(Rows rows, Names& names, const std::function<void(const OutcomeView&)>& visit) const;
   std::vector<ScoreRow> scores(Rows rows = Rows::plain) const;
   /// Every outcome without its scores.
   std::vector<Outcome> outcomes(Rows rows = Rows::plain) const;
