@@ -284,12 +284,16 @@ void add_draw_curves(const RunsBySetting& plain, std::span<const DrawValues> dra
 }  // namespace
 
 std::vector<Curve> find_curves(const Results& results) {
+  return find_curves(results, results.draws());
+}
+
+std::vector<Curve> find_curves(const Results& results, std::span<const DrawValues> draws) {
   std::vector<Curve> all;
   Names names;
   add_set_curves(results, names, all);
   const RunsBySetting plain = Collecting(names).collect(results, Rows::plain);
   add_sample_curves(plain, all);
-  add_draw_curves(plain, results.draws(), names, all);
+  add_draw_curves(plain, draws, names, all);
   return all;
 }
 

@@ -189,9 +189,12 @@ std::vector<RejectedDraw> Results::rejected_of(const std::string& scenario, std:
 std::vector<DrawValues> Results::draws(Rows rows) const {
   return impl_->guarded([&] {
     std::vector<DrawValues> draws;
+    // plain ones have one setting: the same order, and that of the key, which needs no sorting
+    const char* order = rows == Rows::plain ? " ORDER BY scenario, seed, varied, setting, metric"
+                                            : " ORDER BY varied, setting, scenario, seed, metric";
     SQLite::Statement select(
         impl_->database, std::string("SELECT scenario, seed, metric, value, varied, setting FROM draw_values WHERE ") +
-                             picked(rows) + " ORDER BY varied, setting, scenario, seed, metric");
+                             picked(rows) + order);
     while (select.executeStep()) {
       const std::string scenario = select.getColumn(0).getString();
       const std::uint64_t seed = read_seed(select.getColumn(1).getInt64());

@@ -30,7 +30,7 @@ TEST_P(EachVerb, RefusesAnUnknownOptionInOneLine) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Program, EachVerb,
-                         testing::Values("list", "run", "record", "estimate", "score", "sweep", "merge", "report",
+                         testing::Values("list", "run", "record", "estimate", "score", "sweep", "merge", "report", "compare", "sensitivity",
                                          "render", "certify", "gate", "triage", "export", "import"));
 
 struct Wrong {
