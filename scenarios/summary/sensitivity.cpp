@@ -52,16 +52,24 @@ void add_quarters(const std::vector<double>& numbers, const std::vector<double>&
   out.median_high = quantile(highest, 0.5);
 }
 
+/// NaN where there is none.
+std::vector<double> at_seeds(const std::vector<RankedValue>& numbers, const std::vector<std::uint64_t>& seeds) {
+  std::vector<double> column;
+  column.reserve(seeds.size());
+  auto at = numbers.begin();
+  for (const std::uint64_t seed : seeds) {
+    while (at != numbers.end() && at->seed < seed) ++at;
+    column.push_back(at != numbers.end() && at->seed == seed ? at->value : std::nan(""));
+  }
+  return column;
+}
+
 std::vector<Influence> influences(const Scored& scored, const NumbersOfDraws& numbers) {
   std::vector<Influence> out;
   std::vector<double> chances;
   const std::vector<double> ranks = mean_ranks(scored.badness);
   for (const auto& [name, by_seed] : numbers) {
-    std::vector<double> column;
-    for (const std::uint64_t seed : scored.seeds) {
-      const auto found = by_seed.find(seed);
-      column.push_back(found == by_seed.end() ? std::nan("") : found->second);
-    }
+    const std::vector<double> column = at_seeds(by_seed, scored.seeds);
     Influence each{name, rank_correlation(column, ranks), first_order_index(column, ranks)};
     add_quarters(column, scored.values, each);
     // statistics.md (S17): two tests of one question
@@ -94,8 +102,8 @@ NumbersOfDraws numbers_of_draws(const Summary& summary, const Scenario& scenario
   }
   NumbersOfDraws out;
   for (const DrawnNumber& number : drawn_numbers(scenario)) {
-    std::map<std::uint64_t, double>& column = out[number.place];
-    for (const std::uint64_t seed : seeds) column.emplace_hint(column.end(), seed, number.of(seed));
+    std::vector<RankedValue>& column = out[number.place];
+    for (const std::uint64_t seed : seeds) column.push_back({seed, number.of(seed)});
   }
   return out;
 }
@@ -104,7 +112,10 @@ NumbersOfDraws numbers_of_motion(std::span<const DrawValues> draws, const std::s
   NumbersOfDraws out;
   for (const DrawValues& draw : draws) {
     if (draw.scenario != scenario || !draw.setting.is_plain()) continue;
-    for (const Score& value : draw.values) out[value.metric][draw.seed] = value.value;
+    for (const Score& value : draw.values) out[value.metric].push_back({draw.seed, value.value});
+  }
+  for (auto& [name, column] : out) {
+    std::sort(column.begin(), column.end(), [](const auto& a, const auto& b) { return a.seed < b.seed; });
   }
   return out;
 }

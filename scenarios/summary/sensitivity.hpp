@@ -16,8 +16,8 @@
 /// What breaks a method: each score against each number that its draws differ in (docs/maths/statistics.md).
 namespace tumble::scenarios {
 
-/// Numbers of the draws of a scenario, by what they are called; each by seed.
-using NumbersOfDraws = std::map<std::string, std::map<std::uint64_t, double>>;
+/// Numbers of the draws of a scenario, by what they are called; each by rising seed.
+using NumbersOfDraws = std::map<std::string, std::vector<RankedValue>>;
 
 /// Those that the scenario draws, over the seeds that the summary has of it.
 NumbersOfDraws numbers_of_draws(const Summary& summary, const Scenario& scenario);

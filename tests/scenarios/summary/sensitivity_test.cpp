@@ -36,9 +36,9 @@ Fixture fixture(std::size_t draws = 120) {
   NumbersOfDraws& numbers = out.numbers["hill"];
   for (std::uint64_t seed = 1; seed <= draws; ++seed) {
     const double slope = stream.uniform(), rock = stream.uniform();
-    numbers["world.slope_rad"][seed] = slope;
-    numbers["world.rock_m"][seed] = rock;
-    for (int i = 0; i < 8; ++i) numbers["motion.idle_" + std::to_string(i)][seed] = stream.uniform();
+    numbers["world.slope_rad"].push_back({seed, slope});
+    numbers["world.rock_m"].push_back({seed, rock});
+    for (int i = 0; i < 8; ++i) numbers["motion.idle_" + std::to_string(i)].push_back({seed, stream.uniform()});
     method.seeds.push_back(seed);
     if (rock > 0.85) {
       method.not_ok_seeds.push_back(seed);
@@ -85,7 +85,7 @@ TEST(Sensitivity, NamesNothingWhereNothingIs) {
     Fixture given = fixture(60);
     sim::Stream stream(trial, "test.shuffled");
     for (auto& [name, column] : given.numbers["hill"]) {
-      for (auto& [seed, value] : column) value = stream.uniform();
+      for (RankedValue& each : column) each.value = stream.uniform();
     }
     for (const Sensitivity& row : sensitivities(given.summary, given.numbers, {{}, {kError}})) {
       if (row.metric != kError) continue;
