@@ -30,8 +30,9 @@ TEST_P(EachVerb, RefusesAnUnknownOptionInOneLine) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Program, EachVerb,
-                         testing::Values("list", "run", "record", "estimate", "score", "sweep", "merge", "report", "compare", "sensitivity",
-                                         "render", "certify", "gate", "triage", "export", "import"));
+                         testing::Values("list", "run", "record", "estimate", "score", "sweep", "merge", "report",
+                                         "compare", "sensitivity", "render", "certify", "gate", "triage", "export",
+                                         "import"));
 
 struct Wrong {
   const char* what;
