@@ -69,7 +69,8 @@ std::string chance_text(double chance) {
 std::string more_text(double needed, std::int64_t pairs, scenarios::Finding finding) {
   if (finding != scenarios::Finding::undecided) return "";
   if (std::isinf(needed)) return "no number";
-  return number_text(std::max(0.0, needed - static_cast<double>(pairs)));
+  const double more = std::max(0.0, needed - static_cast<double>(pairs));
+  return more < 1e9 ? fmt::format("{:.0f}", more) : "over 1e9";
 }
 
 std::string interval_text(const scenarios::Interval& interval) {
