@@ -104,6 +104,20 @@ bool is_better(const MetricInfo& metric, double a, double b) {
   return false;
 }
 
+double how_bad(const MetricInfo& metric, double value) {
+  switch (metric.sense) {
+    case Sense::lower:
+      return value;
+    case Sense::higher:
+      return -value;
+    case Sense::two_sided:
+      return distance(value, metric.target);
+    case Sense::none:
+      break;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
 double worst_value(const MetricInfo& metric) {
   if (metric.sense == Sense::lower) return std::numeric_limits<double>::infinity();
   if (metric.sense == Sense::higher) return -std::numeric_limits<double>::infinity();

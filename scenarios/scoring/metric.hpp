@@ -50,6 +50,10 @@ MetricStyle style_of(Unit unit);
 /// nearer to it, as a ratio where both are positive.
 bool is_better(const MetricInfo& metric, double a, double b);
 
+/// How bad a value is, for differences of pairs: the value itself where lower is better, its negative where higher is,
+/// the distance from the target (of the logarithms where both are positive), NaN where there is no contest.
+double how_bad(const MetricInfo& metric, double value);
+
 /// The value that a run without one ranks as: infinite, or minus infinite where higher is better. NaN, which no
 /// statistic counts, where there is no worst: two-sided and none.
 double worst_value(const MetricInfo& metric);

@@ -2,6 +2,7 @@
 #include "scenarios/statistics/statistics.hpp"
 
 #include <algorithm>
+#include <boost/math/special_functions/beta.hpp>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -32,50 +33,6 @@ double quantile_of_sorted(const std::vector<double>& sorted, double share) {
   // an infinity is not interpolated: what lies above minus infinity, or at a place itself, is that value
   if (place == static_cast<double>(below) || std::isinf(sorted[below])) return sorted[below];
   return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
-}
-
-// continued fraction of the incomplete beta function (DLMF 8.17.22), evaluated by the modified Lentz method
-double beta_fraction(double a, double b, double x) {
-  constexpr double kTiny = 1e-300;
-  double c = 1.0;
-  double d = 1.0 / std::max(kTiny, 1.0 - (a + b) * x / (a + 1.0));
-  double fraction = d;
-  for (int m = 1; m <= 10000; ++m) {
-    for (const bool even : {true, false}) {
-      const double term = even ? m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m))
-                               : -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1));
-      d = 1.0 + term * d;
-      c = 1.0 + term / c;
-      if (std::abs(d) < kTiny) d = kTiny;
-      if (std::abs(c) < kTiny) c = kTiny;
-      d = 1.0 / d;
-      fraction *= c * d;
-    }
-    if (std::abs(c * d - 1.0) < 1e-15) break;
-  }
-  return fraction;
-}
-
-// regularised incomplete beta function I_x(a, b)
-double incomplete_beta(double a, double b, double x) {
-  if (x <= 0.0) return 0.0;
-  if (x >= 1.0) return 1.0;
-  const double front =
-      std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x));
-  // the fraction converges fast on the near side of the mean
-  if (x < (a + 1.0) / (a + b + 2.0)) return front * beta_fraction(a, b, x) / a;
-  return 1.0 - front * beta_fraction(b, a, 1.0 - x) / b;
-}
-
-// x with I_x(a, b) = probability
-double beta_quantile(double a, double b, double probability) {
-  double low = 0.0;
-  double high = 1.0;
-  for (int step = 0; step < 200 && high - low > 1e-16; ++step) {
-    const double middle = 0.5 * (low + high);
-    (incomplete_beta(a, b, middle) < probability ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
 }
 
 }  // namespace
@@ -119,8 +76,9 @@ Interval share_interval(std::int64_t count, std::int64_t total) {
   }
   const auto k = static_cast<double>(count);
   const auto n = static_cast<double>(total);
-  return {k / n, count == 0 ? 0.0 : beta_quantile(k, n - k + 1.0, kTail),
-          count == total ? 1.0 : beta_quantile(k + 1.0, n - k, 1.0 - kTail)};
+  // statistics.md (S18)
+  return {k / n, count == 0 ? 0.0 : boost::math::ibeta_inv(k, n - k + 1.0, kTail),
+          count == total ? 1.0 : boost::math::ibetac_inv(k + 1.0, n - k, kTail)};
 }
 
 }  // namespace tumble::scenarios

@@ -8,7 +8,10 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <span>
 #include <tuple>
+#include <unordered_map>
+#include <utility>
 
 #include "scenarios/scoring/binned_metric.hpp"
 #include "scenarios/summary/summary.hpp"
@@ -23,61 +26,105 @@ constexpr std::size_t kBinsMax = 6, kBinsMin = 3;
 constexpr std::array kDrawMeasures = {"motion_clipped_share", "motion_clip_depth_max_rad_s",
                                       "motion_clip_length_max_s"};
 
-/// One outcome: its scores by metric, and whether it failed.
+/// One outcome: the scores that a curve may show, and whether it failed.
 struct Run {
   std::uint64_t seed = 0;
   bool ok = false, failed = false;
-  std::map<std::string, double> scores;
+  std::vector<OutcomeView::Value> scores;
+
+  const double* find(const std::string* metric) const {
+    const auto found = std::find_if(scores.begin(), scores.end(), [&](const auto& s) { return s.metric == metric; });
+    return found == scores.end() ? nullptr : &found->value;
+  }
 };
 
-/// Runs of one kind of one scenario at one setting, by method.
-using Runs = std::map<std::string, std::vector<Run>>;
-using RunsBySetting = std::map<std::tuple<std::string, std::string, int>, std::map<double, Runs>>;
+/// Runs of one kind of one scenario at one setting, by method; by rising seed.
+using Runs = std::map<std::string, std::vector<Run>, std::less<>>;
+using RunsBySetting = std::map<std::tuple<std::string, std::string, Kind>, std::map<double, Runs>>;
+/// Some of them.
+using PickedRuns = std::map<std::string, std::vector<const Run*>>;
 
-RunsBySetting collect(const Results& results, Rows rows) {
-  std::map<std::tuple<std::string, double, std::string, std::uint64_t, std::string, std::string>, Run> runs;
-  for (const ScoreRow& row : results.scores(rows)) {
-    if (row.kind.empty()) continue;  // a rejected draw
-    Run& run = runs[{row.setting.key, row.setting.value, row.scenario, row.seed, row.kind, row.method}];
-    run.seed = row.seed;
-    run.ok = row.status == OutcomeStatus::ok;
-    run.failed = run.failed || !run.ok || (metric_info(row.metric).unit == Unit::verdict && row.value != 0.0);
-    if (run.ok && std::isfinite(row.value)) run.scores[row.metric] = row.value;
-  }
-  RunsBySetting sorted;
-  for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
-    for (auto& [key, run] : runs) {
-      const auto& [varied, value, scenario, seed, name, method] = key;
-      if (name == to_string(kind)) sorted[{varied, scenario, static_cast<int>(kind)}][value][method].push_back(run);
+/// What is to be known of a metric for each of its scores.
+struct Use {
+  bool shown, verdict;
+};
+
+class Collecting {
+ public:
+  explicit Collecting(Names& names) : names_(names) {}
+
+  RunsBySetting collect(const Results& results, Rows rows) {
+    RunsBySetting sorted;
+    results.each(rows, names_, [&](const OutcomeView& outcome) {
+      Runs& runs = sorted[{std::string(outcome.varied), std::string(outcome.scenario), outcome.kind}][outcome.setting];
+      auto method = runs.find(outcome.method);
+      if (method == runs.end()) method = runs.emplace(outcome.method, std::vector<Run>()).first;
+      method->second.push_back(run_of(outcome));
+    });
+    const auto by_seed = [](const Run& a, const Run& b) { return a.seed < b.seed; };
+    for (auto& [key, by_value] : sorted) {
+      for (auto& [value, runs] : by_value) {
+        for (auto& [method, own] : runs) std::stable_sort(own.begin(), own.end(), by_seed);
+      }
     }
+    return sorted;
   }
-  return sorted;
-}
 
-/// Seeds on which any method has a value of the metric: on the others a failure says nothing about it.
-std::set<std::uint64_t> scored_seeds(const Runs& runs, const std::string& metric) {
-  std::set<std::uint64_t> seeds;
+ private:
+  Run run_of(const OutcomeView& outcome) {
+    Run run{outcome.seed, outcome.status == OutcomeStatus::ok, outcome.status != OutcomeStatus::ok, {}};
+    for (const OutcomeView::Value& score : outcome.scores) {
+      const Use use = use_of(outcome.kind, score.metric);
+      run.failed = run.failed || (use.verdict && score.value != 0.0);
+      if (run.ok && use.shown && std::isfinite(score.value)) run.scores.push_back(score);
+    }
+    return run;
+  }
+
+  Use use_of(Kind kind, const std::string* metric) {
+    const auto [place, is_new] = uses_[static_cast<std::size_t>(kind)].try_emplace(metric, Use{});
+    if (is_new) {
+      const std::vector<std::string> headlines = headline_metrics(kind);
+      const bool headline = std::find(headlines.begin(), headlines.end(), *metric) != headlines.end();
+      place->second = {headline || parse_binned(*metric), metric_info(*metric).unit == Unit::verdict};
+    }
+    return place->second;
+  }
+
+  Names& names_;
+  std::array<std::unordered_map<const std::string*, Use>, 4> uses_;  ///< by kind
+};
+
+PickedRuns all_of(const Runs& runs) {
+  PickedRuns all;
   for (const auto& [method, own] : runs) {
-    for (const Run& run : own) {
-      if (run.scores.contains(metric)) seeds.insert(run.seed);
-    }
+    for (const Run& run : own) all[method].push_back(&run);
   }
-  return seeds;
+  return all;
 }
 
-/// Null when no draw has a value of the metric.
-bool point_of(const std::vector<Run>& runs, const std::string& metric, const std::set<std::uint64_t>& scored,
+/// Whether any method has a value of the metric on that draw: if none has, a failure says nothing about it.
+bool is_scored(const PickedRuns& runs, const std::string* metric, std::uint64_t seed) {
+  return std::any_of(runs.begin(), runs.end(), [&](const auto& entry) {
+    const auto& own = entry.second;
+    const auto found = std::lower_bound(own.begin(), own.end(), seed,
+                                        [](const Run* run, std::uint64_t wanted) { return run->seed < wanted; });
+    return found != own.end() && (*found)->seed == seed && (*found)->find(metric) != nullptr;
+  });
+}
+
+/// False when no draw has a value of the metric.
+bool point_of(const std::vector<const Run*>& own, const PickedRuns& runs, const std::string* metric,
               CurvePoint& point) {
-  const MetricInfo& info = metric_info(metric);
+  const MetricInfo& info = metric_info(*metric);
   std::vector<double> values;
   std::size_t without = 0;
-  for (const Run& run : runs) {
+  for (const Run* run : own) {
     ++point.draws;
-    point.failed += run.failed ? 1 : 0;
-    const auto found = run.scores.find(metric);
-    if (found != run.scores.end()) {
-      values.push_back(found->second);
-    } else if (!run.ok && scored.contains(run.seed)) {
+    point.failed += run->failed ? 1 : 0;
+    if (const double* value = run->find(metric)) {
+      values.push_back(*value);
+    } else if (!run->ok && is_scored(runs, metric, run->seed)) {
       ++without;
     }
   }
@@ -91,11 +138,10 @@ bool point_of(const std::vector<Run>& runs, const std::string& metric, const std
 }
 
 /// Adds the runs at one place to the lines of a curve.
-void add_place(const Runs& runs, const std::string& metric, const CurvePoint& place, Curve& curve) {
-  const std::set<std::uint64_t> scored = scored_seeds(runs, metric);
+void add_place(const PickedRuns& runs, const std::string* metric, const CurvePoint& place, Curve& curve) {
   for (const auto& [method, own] : runs) {
     CurvePoint point = place;
-    if (!point_of(own, metric, scored, point)) continue;
+    if (!point_of(own, runs, metric, point)) continue;
     auto line = std::find_if(curve.lines.begin(), curve.lines.end(),
                              [&, &name = method](const CurveLine& l) { return l.method == name; });
     if (line == curve.lines.end()) line = curve.lines.insert(line, CurveLine{method, {}});
@@ -110,15 +156,20 @@ void keep(Curve curve, std::vector<Curve>& all) {
   if (!curve.lines.empty()) all.push_back(std::move(curve));
 }
 
-void add_set_curves(const Results& results, std::vector<Curve>& all) {
-  for (const auto& [key, by_value] : collect(results, Rows::curves)) {
+/// The reader's name, added where no score bears it.
+const std::string* name_of(const std::string& metric, Names& names) {
+  return &*names.insert(metric).first;
+}
+
+void add_set_curves(const Results& results, Names& names, std::vector<Curve>& all) {
+  for (const auto& [key, by_value] : Collecting(names).collect(results, Rows::curves)) {
     const auto& [varied, scenario, kind] = key;
-    for (const std::string& metric : headline_metrics(static_cast<Kind>(kind))) {
-      Curve curve{Curve::Source::set, varied, scenario, static_cast<Kind>(kind), metric, {}};
+    for (const std::string& metric : headline_metrics(kind)) {
+      Curve curve{Curve::Source::set, varied, scenario, kind, metric, {}};
       for (const auto& [value, runs] : by_value) {
         CurvePoint place;
         place.x = value;
-        add_place(runs, metric, place, curve);
+        add_place(all_of(runs), name_of(metric, names), place, curve);
       }
       keep(std::move(curve), all);
     }
@@ -131,38 +182,47 @@ std::string bin_label(const BinnedMetric& bin, double factor) {
   return fmt::format("{:g} – {:g}", bin.low * factor, bin.high * factor);
 }
 
+/// Bins by axis and base, in rising order, each with the name that its scores bear.
+using Bins =
+    std::map<std::pair<std::string, std::string>, std::map<double, std::pair<BinnedMetric, const std::string*>>>;
+
+Bins bins_of(const Runs& runs) {
+  std::set<const std::string*> metrics;
+  for (const auto& [method, own] : runs) {
+    for (const Run& run : own) {
+      for (const auto& score : run.scores) metrics.insert(score.metric);
+    }
+  }
+  Bins bins;
+  for (const std::string* metric : metrics) {
+    if (const auto bin = parse_binned(*metric)) bins[{bin->axis, bin->base}].try_emplace(bin->low, *bin, metric);
+  }
+  return bins;
+}
+
 void add_sample_curves(const RunsBySetting& plain, std::vector<Curve>& all) {
   for (const auto& [key, by_value] : plain) {
     const auto& [varied, scenario, kind] = key;
     const Runs& runs = by_value.begin()->second;
-    // bins by axis and base, in rising order
-    std::map<std::pair<std::string, std::string>, std::map<double, BinnedMetric>> bins;
-    for (const auto& [method, own] : runs) {
-      for (const Run& run : own) {
-        for (const auto& [metric, value] : run.scores) {
-          const auto bin = parse_binned(metric);
-          if (bin) bins[{bin->axis, bin->base}].emplace(bin->low, *bin);
-        }
-      }
-    }
-    for (const auto& [name, places] : bins) {
-      Curve curve{Curve::Source::samples, name.first, scenario, static_cast<Kind>(kind), name.second, {}};
+    const PickedRuns picked = all_of(runs);
+    for (const auto& [name, places] : bins_of(runs)) {
+      Curve curve{Curve::Source::samples, name.first, scenario, kind, name.second, {}};
       double rank = 0.0;
       for (const auto& [low, bin] : places) {
         CurvePoint place;
         place.x = ++rank;
-        place.label = bin_label(bin, metric_style(bin.axis).factor);
-        add_place(runs, bin.name(), place, curve);
+        place.label = bin_label(bin.first, metric_style(bin.first.axis).factor);
+        add_place(picked, bin.second, place, curve);
       }
       keep(std::move(curve), all);
     }
   }
 }
 
-/// Draws in bins of equally many, by rising measure: (median measure, seeds).
-std::vector<std::pair<double, std::set<std::uint64_t>>> bins_of_draws(std::span<const DrawValues> draws,
-                                                                      const std::string& scenario,
-                                                                      const std::string& measure) {
+/// Draws in bins of equally many, by rising measure: (median measure, rising seeds).
+std::vector<std::pair<double, std::vector<std::uint64_t>>> bins_of_draws(std::span<const DrawValues> draws,
+                                                                         const std::string& scenario,
+                                                                         const std::string& measure) {
   std::vector<std::pair<double, std::uint64_t>> ranked;
   for (const DrawValues& draw : draws) {
     if (draw.scenario != scenario) continue;
@@ -173,41 +233,47 @@ std::vector<std::pair<double, std::set<std::uint64_t>>> bins_of_draws(std::span<
   }
   std::sort(ranked.begin(), ranked.end());
   const std::size_t count = std::min(kBinsMax, ranked.size() / kDrawsPerBin);
-  std::vector<std::pair<double, std::set<std::uint64_t>>> bins;
+  std::vector<std::pair<double, std::vector<std::uint64_t>>> bins;
   if (count < kBinsMin) return bins;
   for (std::size_t i = 0; i < count; ++i) {
     std::vector<double> values;
-    std::set<std::uint64_t> seeds;
+    std::vector<std::uint64_t> seeds;
     for (std::size_t k = i * ranked.size() / count; k < (i + 1) * ranked.size() / count; ++k) {
       values.push_back(ranked[k].first);
-      seeds.insert(ranked[k].second);
+      seeds.push_back(ranked[k].second);
     }
+    std::sort(seeds.begin(), seeds.end());
     bins.emplace_back(quantile(values, 0.5), std::move(seeds));
   }
   return bins;
 }
 
-Runs only(const Runs& runs, const std::set<std::uint64_t>& seeds) {
-  Runs kept = runs;
-  for (auto& [method, own] : kept) std::erase_if(own, [&](const Run& run) { return !seeds.contains(run.seed); });
-  std::erase_if(kept, [](const auto& entry) { return entry.second.empty(); });
+PickedRuns only(const Runs& runs, const std::vector<std::uint64_t>& seeds) {
+  PickedRuns kept;
+  for (const auto& [method, own] : runs) {
+    for (const Run& run : own) {
+      if (std::binary_search(seeds.begin(), seeds.end(), run.seed)) kept[method].push_back(&run);
+    }
+  }
   return kept;
 }
 
-void add_draw_curves(const Results& results, const RunsBySetting& plain, std::vector<Curve>& all) {
-  const std::vector<DrawValues> draws = results.draws();
+void add_draw_curves(const RunsBySetting& plain, std::span<const DrawValues> draws, Names& names,
+                     std::vector<Curve>& all) {
   for (const auto& [key, by_value] : plain) {
     const auto& [varied, scenario, kind] = key;
-    if (static_cast<Kind>(kind) != Kind::rate && static_cast<Kind>(kind) != Kind::slam) continue;
+    if (kind != Kind::rate && kind != Kind::slam) continue;
     for (const char* measure : kDrawMeasures) {
-      const auto bins = bins_of_draws(draws, scenario, measure);
-      if (bins.empty()) continue;
-      for (const std::string& metric : headline_metrics(static_cast<Kind>(kind))) {
-        Curve curve{Curve::Source::draws, measure, scenario, static_cast<Kind>(kind), metric, {}};
-        for (const auto& [value, seeds] : bins) {
+      std::vector<std::pair<double, PickedRuns>> places;
+      for (const auto& [value, seeds] : bins_of_draws(draws, scenario, measure))
+        places.emplace_back(value, only(by_value.begin()->second, seeds));
+      if (places.empty()) continue;
+      for (const std::string& metric : headline_metrics(kind)) {
+        Curve curve{Curve::Source::draws, measure, scenario, kind, metric, {}};
+        for (const auto& [value, runs] : places) {
           CurvePoint place;
           place.x = value;
-          add_place(only(by_value.begin()->second, seeds), metric, place, curve);
+          add_place(runs, name_of(metric, names), place, curve);
         }
         keep(std::move(curve), all);
       }
@@ -218,11 +284,16 @@ void add_draw_curves(const Results& results, const RunsBySetting& plain, std::ve
 }  // namespace
 
 std::vector<Curve> find_curves(const Results& results) {
+  return find_curves(results, results.draws());
+}
+
+std::vector<Curve> find_curves(const Results& results, std::span<const DrawValues> draws) {
   std::vector<Curve> all;
-  add_set_curves(results, all);
-  const RunsBySetting plain = collect(results, Rows::plain);
+  Names names;
+  add_set_curves(results, names, all);
+  const RunsBySetting plain = Collecting(names).collect(results, Rows::plain);
   add_sample_curves(plain, all);
-  add_draw_curves(results, plain, all);
+  add_draw_curves(plain, draws, names, all);
   return all;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -43,5 +44,7 @@ struct Curve {
 /// equally many draws, when there are draws for three bins at least. A run has failed when it did not end `ok` or its
 /// map has failed. O(number of scores * log).
 std::vector<Curve> find_curves(const Results& results);
+/// The same, where the results' draws are at hand.
+std::vector<Curve> find_curves(const Results& results, std::span<const DrawValues> draws);
 
 }  // namespace tumble::scenarios

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <tuple>
 #include <utility>
 
@@ -54,12 +55,12 @@ double value_of(const DrawValues& draw, const std::string& metric) {
 
 /// Mean weighted by each draw's clipped samples, with its 95 % interval: the ratio estimator of a cluster sample
 /// (Cochran, Sampling Techniques, 1977, section 9A.2), since samples of one draw belong together.
-Interval pooled(std::span<const DrawValues> draws, const std::string& scenario, const std::string& metric) {
+Interval pooled(std::span<const DrawValues* const> draws, const std::string& metric) {
   std::vector<std::pair<double, double>> weighted;  // number of samples, share of them
   double samples = 0.0, hits = 0.0, square = 0.0;
-  for (const DrawValues& draw : draws) {
-    const double weight = value_of(draw, "motion_clipped_samples"), share = value_of(draw, metric);
-    if (draw.scenario != scenario || !(weight > 0.0) || !std::isfinite(share)) continue;
+  for (const DrawValues* draw : draws) {
+    const double weight = value_of(*draw, "motion_clipped_samples"), share = value_of(*draw, metric);
+    if (!(weight > 0.0) || !std::isfinite(share)) continue;
     weighted.emplace_back(weight, share);
     samples += weight;
     hits += weight * share;
@@ -74,9 +75,12 @@ Interval pooled(std::span<const DrawValues> draws, const std::string& scenario, 
 }  // namespace
 
 std::vector<Spread> motion_spreads(std::span<const DrawValues> draws) {
-  std::vector<std::string> names;
+  std::vector<std::string> names;  // in the order of the draws
+  std::map<std::string, std::vector<const DrawValues*>> by_scenario;
   for (const DrawValues& draw : draws) {
-    if (std::find(names.begin(), names.end(), draw.scenario) == names.end()) names.push_back(draw.scenario);
+    std::vector<const DrawValues*>& own = by_scenario[draw.scenario];
+    if (own.empty()) names.push_back(draw.scenario);
+    own.push_back(&draw);
   }
   std::vector<Spread> spreads;
   for (const Quantity& quantity : kQuantities) {
@@ -91,13 +95,14 @@ std::vector<Spread> motion_spreads(std::span<const DrawValues> draws) {
       spread.published_high = quantity.high;
       spread.factor = quantity.factor;
       spread.of_draws = quantity.over == Over::draws;
-      for (const DrawValues& draw : draws) {
-        const double value = value_of(draw, quantity.metric);
-        if (draw.scenario == name && std::isfinite(value)) spread.values.push_back(value);
+      const std::vector<const DrawValues*>& own = by_scenario[name];
+      for (const DrawValues* draw : own) {
+        const double value = value_of(*draw, quantity.metric);
+        if (std::isfinite(value)) spread.values.push_back(value);
       }
       if (spread.values.empty()) continue;
       if (quantity.over == Over::clipped_samples) {
-        const Interval share = pooled(draws, name, quantity.metric);
+        const Interval share = pooled(own, quantity.metric);
         std::tie(spread.median, spread.quantile_05, spread.quantile_95) =
             std::tuple(share.value, share.low, share.high);
       } else if (quantity.over == Over::share_of_draws) {

@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <set>
 #include <tuple>
+#include <unordered_map>
+#include <utility>
 
 #include "scenarios/scoring/binned_metric.hpp"
 #include "scenarios/scoring/score.hpp"
@@ -38,24 +41,16 @@ std::string choose_baseline(Kind kind, const std::vector<MethodSummary>& methods
   return methods.front().method;
 }
 
-std::map<std::uint64_t, double> by_seed(const MetricSummary& metric, double worst) {
-  std::map<std::uint64_t, double> out;
-  for (std::size_t i = 0; i < metric.seeds.size(); ++i) out.emplace(metric.seeds[i], metric.values[i]);
-  for (const std::uint64_t seed : metric.failed) {
-    if (!std::isnan(worst)) out.emplace(seed, worst);
-  }
-  return out;
-}
-
 /// Compares draw by draw; where both failed neither is better.
 Wins paired_wins(const MetricSummary& own, const MetricSummary& base, const MetricInfo& info) {
   Wins wins;
   if (info.sense == Sense::none) return wins;
-  const std::map<std::uint64_t, double> others = by_seed(base, worst_value(info));
-  for (const auto& [seed, value] : by_seed(own, worst_value(info))) {
-    const auto other = others.find(seed);
-    if (other == others.end()) continue;
-    wins.count += is_better(info, value, other->second) ? 1 : 0;
+  const std::vector<RankedValue> others = ranked_values(base, worst_value(info));
+  auto other = others.begin();
+  for (const RankedValue& each : ranked_values(own, worst_value(info))) {
+    while (other != others.end() && other->seed < each.seed) ++other;
+    if (other == others.end() || other->seed != each.seed) continue;
+    wins.count += is_better(info, each.value, other->value) ? 1 : 0;
     ++wins.pairs;
   }
   return wins;
@@ -74,20 +69,86 @@ void finish(const std::string& name, MetricSummary& metric) {
 }
 
 /// Gives each failed outcome its place in every metric that some method has a value of on that draw.
-void place_failures(Section& section, const std::map<std::string, std::set<std::uint64_t>>& failed_seeds) {
-  std::map<std::string, std::set<std::uint64_t>> scored;
+void place_failures(Section& section) {
+  std::set<std::string> names;
   for (const MethodSummary& method : section.methods) {
-    for (const auto& [name, metric] : method.metrics) scored[name].insert(metric.seeds.begin(), metric.seeds.end());
+    for (const auto& [name, metric] : method.metrics) names.insert(name);
   }
-  for (MethodSummary& method : section.methods) {
-    const auto failed = failed_seeds.find(method.method);
-    if (failed == failed_seeds.end()) continue;
-    for (const auto& [name, seeds] : scored) {
-      for (const std::uint64_t seed : failed->second) {
-        if (seeds.contains(seed)) method.metrics[name].failed.push_back(seed);
-      }
+  for (const std::string& name : names) {
+    std::vector<const MetricSummary*> scored;
+    for (const MethodSummary& method : section.methods) {
+      if (const MetricSummary* metric = method.find(name)) scored.push_back(metric);
+    }
+    for (MethodSummary& method : section.methods) {
+      std::vector<std::uint64_t> failed;
+      std::copy_if(method.not_ok_seeds.begin(), method.not_ok_seeds.end(), std::back_inserter(failed),
+                   [&](std::uint64_t seed) {
+                     return std::any_of(scored.begin(), scored.end(), [&](const MetricSummary* metric) {
+                       return std::binary_search(metric->seeds.begin(), metric->seeds.end(), seed);
+                     });
+                   });
+      if (!failed.empty()) method.metrics[name].failed = std::move(failed);
     }
   }
+}
+
+/// Values by rising seed, whatever the order in the database.
+void sort_by_seed(MetricSummary& metric) {
+  if (std::is_sorted(metric.seeds.begin(), metric.seeds.end())) return;
+  std::vector<RankedValue> sorted = ranked_values(metric, std::nan(""));
+  std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.seed < b.seed; });
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    metric.seeds[i] = sorted[i].seed;
+    metric.values[i] = sorted[i].value;
+  }
+}
+
+/// What one method has on one scenario, and where its metrics are by the reader's names.
+struct Gathered {
+  MethodSummary summary;
+  std::unordered_map<const std::string*, MetricSummary*> places;
+
+  void add(const OutcomeView& outcome) {
+    ++summary.outcomes;
+    summary.seeds.push_back(outcome.seed);
+    if (outcome.status != OutcomeStatus::ok) {
+      ++summary.not_ok;
+      summary.not_ok_seeds.push_back(outcome.seed);
+      return;
+    }
+    for (const OutcomeView::Value& score : outcome.scores) {
+      if (!std::isfinite(score.value)) continue;
+      MetricSummary*& place = places[score.metric];
+      if (place == nullptr) place = &summary.metrics[*score.metric];
+      place->seeds.push_back(outcome.seed);
+      place->values.push_back(score.value);
+    }
+  }
+
+  MethodSummary sorted() {
+    std::sort(summary.seeds.begin(), summary.seeds.end());
+    std::sort(summary.not_ok_seeds.begin(), summary.not_ok_seeds.end());
+    for (auto& [name, metric] : summary.metrics) sort_by_seed(metric);
+    return std::move(summary);
+  }
+};
+
+/// By scenario and kind, then by method.
+using GatheredSections = std::map<std::pair<std::string, Kind>, std::map<std::string, Gathered, std::less<>>>;
+
+GatheredSections gather(const Results& results) {
+  GatheredSections sections;
+  Names names;
+  results.each(Rows::plain, names, [&](const OutcomeView& outcome) {
+    auto& methods = sections[{std::string(outcome.scenario), outcome.kind}];
+    auto method = methods.find(outcome.method);
+    if (method == methods.end()) {
+      method = methods.emplace(outcome.method, Gathered{}).first;
+      method->second.summary.method = outcome.method;
+    }
+    method->second.add(outcome);
+  });
+  return sections;
 }
 
 void finish(Section& section) {
@@ -127,6 +188,18 @@ std::size_t method_rank(Kind kind, const std::string& name) {
   return static_cast<std::size_t>(found - all.begin());
 }
 
+std::vector<RankedValue> ranked_values(const MetricSummary& metric, double worst) {
+  std::vector<RankedValue> out;
+  out.reserve(metric.seeds.size() + metric.failed.size());
+  auto failed = std::isnan(worst) ? metric.failed.end() : metric.failed.begin();
+  for (std::size_t i = 0; i < metric.seeds.size(); ++i) {
+    for (; failed != metric.failed.end() && *failed < metric.seeds[i]; ++failed) out.push_back({*failed, worst});
+    out.push_back({metric.seeds[i], metric.values[i]});
+  }
+  for (; failed != metric.failed.end(); ++failed) out.push_back({*failed, worst});
+  return out;
+}
+
 const MetricSummary* MethodSummary::find(const std::string& metric) const {
   const auto found = metrics.find(metric);
   return found == metrics.end() ? nullptr : &found->second;
@@ -139,44 +212,20 @@ const MethodSummary* Section::find(const std::string& method) const {
 }
 
 Summary summarize(const Results& results) {
-  std::map<std::pair<std::string, Kind>, Section> sections;
-  std::map<std::string, std::set<std::uint64_t>> seeds;
-  const auto method_of = [&](const std::string& scenario, Kind kind, const std::string& name) -> MethodSummary& {
-    Section& section = sections[{scenario, kind}];
-    section.scenario = scenario;
-    section.kind = kind;
-    for (MethodSummary& method : section.methods) {
-      if (method.method == name) return method;
-    }
-    section.methods.push_back({});
-    section.methods.back().method = name;
-    return section.methods.back();
-  };
-  std::map<std::pair<std::string, Kind>, std::map<std::string, std::set<std::uint64_t>>> failed_seeds;
-  for (const Outcome& outcome : results.outcomes()) {
-    MethodSummary& method = method_of(outcome.scenario, outcome.kind, outcome.method);
-    ++method.outcomes;
-    if (outcome.status != OutcomeStatus::ok) {
-      ++method.not_ok;
-      failed_seeds[{outcome.scenario, outcome.kind}][outcome.method].insert(outcome.seed);
-    }
-    seeds[outcome.scenario].insert(outcome.seed);
-  }
-  // values by rising seed, whatever the order in the database
-  std::vector<ScoreRow> rows = results.scores();
-  std::stable_sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.seed < b.seed; });
-  for (const ScoreRow& row : rows) {
-    if (row.status != OutcomeStatus::ok || !std::isfinite(row.value)) continue;
-    for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
-      if (row.kind != to_string(kind)) continue;
-      MetricSummary& metric = method_of(row.scenario, kind, row.method).metrics[row.metric];
-      metric.seeds.push_back(row.seed);
-      metric.values.push_back(row.value);
-    }
-  }
   Summary summary;
-  for (auto& [key, section] : sections) {
-    place_failures(section, failed_seeds[key]);
+  std::map<std::string, std::vector<std::uint64_t>> seeds;
+  for (auto& [key, methods] : gather(results)) {
+    Section section;
+    std::tie(section.scenario, section.kind) = key;
+    std::vector<std::uint64_t>& own = seeds[section.scenario];
+    for (auto& [name, gathered] : methods) {
+      section.methods.push_back(gathered.sorted());
+      const std::vector<std::uint64_t>& more = section.methods.back().seeds;
+      std::vector<std::uint64_t> all;
+      std::set_union(own.begin(), own.end(), more.begin(), more.end(), std::back_inserter(all));
+      own = std::move(all);
+    }
+    place_failures(section);
     finish(section);
     summary.sections.push_back(std::move(section));
   }

@@ -42,7 +42,8 @@ struct MethodSummary {
   std::string method;
   bool needs_truth = false;  ///< as registered: not to be had on a real robot
   std::int64_t outcomes = 0, not_ok = 0;
-  Interval not_ok_share{};  ///< Clopper and Pearson, 95 %
+  Interval not_ok_share{};                         ///< Clopper and Pearson, 95 %
+  std::vector<std::uint64_t> seeds, not_ok_seeds;  ///< of all outcomes, and of those that failed; rising
   std::map<std::string, MetricSummary> metrics;
   const MetricSummary* find(const std::string& metric) const;
 };
@@ -62,6 +63,15 @@ struct Summary {
   std::vector<std::string> scenarios;
   std::map<std::string, std::int64_t> draws, rejected;  ///< per scenario
 };
+
+/// The value of one draw, or the worst in its place.
+struct RankedValue {
+  std::uint64_t seed;
+  double value;
+};
+
+/// Values and failures by rising seed; where there is no worst (NaN) the failures have none.
+std::vector<RankedValue> ranked_values(const MetricSummary& metric, double worst);
 
 /// O(number of scores * log).
 Summary summarize(const Results& results);

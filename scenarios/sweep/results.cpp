@@ -4,6 +4,7 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 
 #include <cmath>
+#include <string_view>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/sweep/results_database.hpp"
@@ -142,8 +143,18 @@ void Results::set_note(const std::string& key, const std::string& text) {
   impl_->guarded([&] { impl_->write_note(key, text); });
 }
 
+namespace {
+
+constexpr std::string_view kMethodNote = "method ";
+
+}  // namespace
+
 std::string method_note(Kind kind, const std::string& name) {
-  return std::string("method ") + to_string(kind) + "/" + name;
+  return std::string(kMethodNote) + to_string(kind) + "/" + name;
+}
+
+bool is_method_note(const std::string& key) {
+  return key.starts_with(kMethodNote);
 }
 
 std::string Results::note(const std::string& key) const {

@@ -4,9 +4,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
+#include <set>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scenarios/certificate/certificate.hpp"
@@ -29,8 +33,35 @@ struct ScoreRow {
 /// Which rows are asked for: those of the scenarios and methods as they are, those that belong to a curve, or both.
 enum class Rows { plain, curves, all };
 
+/// What a merge wrote: rows that were not there, rows that took the place of a worse one, and what the inputs held
+/// besides, which stood already.
+struct MergeCounts {
+  std::size_t added = 0, replaced = 0, held = 0;
+  std::size_t rejected = 0;  ///< draws, of those added
+};
+
+/// Names that rows share, kept once by who reads them.
+using Names = std::set<std::string, std::less<>>;
+
+/// An outcome as it is read, for results of any size: what it points to goes with the next one, but the names.
+struct OutcomeView {
+  struct Value {
+    const std::string* metric;  ///< in the `Names` of the reader
+    double value;
+  };
+  std::string_view scenario;
+  std::uint64_t seed;
+  Kind kind;
+  std::string_view method;
+  OutcomeStatus status;
+  std::string_view varied;
+  double setting;
+  std::span<const Value> scores;  ///< by name
+};
+
 /// Key of the note that tells the version of a method that is not of the build: "method slam/theirs".
 std::string method_note(Kind kind, const std::string& name);
+bool is_method_note(const std::string& key);
 
 /// The results database (SQLite). Rows are unique by (scenario, seed, kind, method, setting); storing again replaces.
 /// Each store is one transaction, so that whatever has finished survives a kill.
@@ -54,6 +85,10 @@ class Results {
   /// A free text kept with the results: "suite", "build", "data".
   void set_note(const std::string& key, const std::string& text);
   std::string note(const std::string& key) const;
+  std::map<std::string, std::string> notes() const;
+  /// All rows of another database but its notes, by the rule of merge.hpp, row by row: memory does not grow with their
+  /// number. Throws BadInput when two rows that were scored differ in status or digest, unless `mixed`.
+  void absorb(const Results& shard, bool mixed, MergeCounts& counts);
   /// All that `work` stores, or, when it throws, nothing of it. Throws what it throws.
   void in_one_transaction(const std::function<void()>& work);
 
@@ -64,6 +99,8 @@ class Results {
   /// What is held of one draw, curves included, without scores.
   std::vector<Outcome> outcomes_of(const std::string& scenario, std::uint64_t seed) const;
   std::vector<RejectedDraw> rejected_of(const std::string& scenario, std::uint64_t seed) const;
+  /// Every outcome with its scores, in the order of storing; nothing is kept but the metrics' names.
+  void each(Rows rows, Names& names, const std::function<void(const OutcomeView&)>& visit) const;
   std::vector<ScoreRow> scores(Rows rows = Rows::plain) const;
   /// Every outcome without its scores.
   std::vector<Outcome> outcomes(Rows rows = Rows::plain) const;

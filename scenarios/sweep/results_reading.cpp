@@ -123,6 +123,37 @@ std::vector<ScoreRow> Results::scores(Rows rows) const {
   });
 }
 
+void Results::each(Rows rows, Names& names, const std::function<void(const OutcomeView&)>& visit) const {
+  impl_->guarded([&] {
+    SQLite::Statement outcomes(impl_->database,
+                               std::string("SELECT id, scenario, seed, kind, method, status, varied, setting "
+                                           "FROM outcomes WHERE kind <> '' AND ") +
+                                   picked(rows) + " ORDER BY id");
+    SQLite::Statement scores(impl_->database,
+                             "SELECT outcome, metric, value FROM score_values ORDER BY outcome, metric");
+    bool more = scores.executeStep();
+    std::vector<OutcomeView::Value> values;
+    const auto text = [](SQLite::Statement& row, int column) {
+      return std::string_view(row.getColumn(column).getText());
+    };
+    while (outcomes.executeStep()) {
+      const std::int64_t id = outcomes.getColumn(0).getInt64();
+      while (more && scores.getColumn(0).getInt64() < id) more = scores.executeStep();
+      values.clear();
+      for (; more && scores.getColumn(0).getInt64() == id; more = scores.executeStep()) {
+        const std::string_view metric = text(scores, 1);
+        auto name = names.find(metric);
+        if (name == names.end()) name = names.emplace(metric).first;
+        values.push_back({&*name, read_value(scores.getColumn(2))});
+      }
+      visit({text(outcomes, 1), read_seed(outcomes.getColumn(2).getInt64()),
+             kind_named(outcomes.getColumn(3).getString(), impl_->path), text(outcomes, 4),
+             status_named(outcomes.getColumn(5).getString(), impl_->path), text(outcomes, 6),
+             outcomes.getColumn(7).getDouble(), values});
+    }
+  });
+}
+
 std::vector<Outcome> Results::outcomes(Rows rows) const {
   return impl_->guarded([&] {
     SQLite::Statement select(impl_->database, std::string(kOutcomes) + picked(rows) + kInOrder);
@@ -158,9 +189,12 @@ std::vector<RejectedDraw> Results::rejected_of(const std::string& scenario, std:
 std::vector<DrawValues> Results::draws(Rows rows) const {
   return impl_->guarded([&] {
     std::vector<DrawValues> draws;
+    // plain ones have one setting: the same order, and that of the key, which needs no sorting
+    const char* order = rows == Rows::plain ? " ORDER BY scenario, seed, varied, setting, metric"
+                                            : " ORDER BY varied, setting, scenario, seed, metric";
     SQLite::Statement select(
         impl_->database, std::string("SELECT scenario, seed, metric, value, varied, setting FROM draw_values WHERE ") +
-                             picked(rows) + " ORDER BY varied, setting, scenario, seed, metric");
+                             picked(rows) + order);
     while (select.executeStep()) {
       const std::string scenario = select.getColumn(0).getString();
       const std::uint64_t seed = read_seed(select.getColumn(1).getInt64());
@@ -172,6 +206,15 @@ std::vector<DrawValues> Results::draws(Rows rows) const {
       draws.back().values.push_back({select.getColumn(2).getString(), read_value(select.getColumn(3))});
     }
     return draws;
+  });
+}
+
+std::map<std::string, std::string> Results::notes() const {
+  return impl_->guarded([&] {
+    std::map<std::string, std::string> notes;
+    SQLite::Statement select(impl_->database, "SELECT key, text FROM notes");
+    while (select.executeStep()) notes.emplace(select.getColumn(0).getString(), select.getColumn(1).getString());
+    return notes;
   });
 }
 

@@ -344,6 +344,11 @@ Results open_results(const DataRoot& data, const Suite& suite, const std::filesy
 
 SweepProgress sweep(const DataRoot& data, const Suite& suite, const std::filesystem::path& database,
                     const SweepOptions& options) {
+  return sweep(data, suite, DatabaseOwner(database), options);
+}
+
+SweepProgress sweep(const DataRoot& data, const Suite& suite, const DatabaseOwner& database,
+                    const SweepOptions& options) {
   if (options.jobs < 1 || options.jobs > kJobsMax) {
     throw BadInput("jobs is " + std::to_string(options.jobs) + ", must be within [1, " + std::to_string(kJobsMax) +
                    "]");
@@ -357,7 +362,7 @@ SweepProgress sweep(const DataRoot& data, const Suite& suite, const std::filesys
       throw BadInput(std::string("'") + to_string(status) + "' is not run again; what may be: crashed timeout killed");
     }
   }
-  Results results = open_results(data, suite, database);
+  Results results = open_results(data, suite, database.database());
   return Sweep(data, suite, results, options).run();
 }
 

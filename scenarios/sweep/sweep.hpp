@@ -10,6 +10,7 @@
 
 #include "scenarios/data_root.hpp"
 #include "scenarios/methods/method.hpp"
+#include "scenarios/sweep/database_owner.hpp"
 #include "scenarios/sweep/results.hpp"
 #include "scenarios/sweep/sweep_notes.hpp"
 #include "scenarios/sweep/variation.hpp"
@@ -56,6 +57,9 @@ Results open_results(const DataRoot& data, const Suite& suite, const std::filesy
 /// are stored as they come. Draws are looked up and planned one at a time: memory does not grow with their number.
 /// A recording whose rows were made of other data (another digest) is refused. Returns the final progress; draws_done <
 /// draws_total when stopped. Throws BadInput when none of the methods applies to any of the scenarios.
+SweepProgress sweep(const DataRoot& data, const Suite& suite, const DatabaseOwner& database,
+                    const SweepOptions& options);
+/// The same, and owns the database while it runs: throws BadInput when another does.
 SweepProgress sweep(const DataRoot& data, const Suite& suite, const std::filesystem::path& database,
                     const SweepOptions& options);
 

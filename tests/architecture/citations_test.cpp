@@ -71,9 +71,9 @@ Notes notes_of_the_tree() {
   return out;
 }
 
-std::vector<fs::path> sources_of_the_estimators() {
+std::vector<fs::path> sources_with_equations() {
   std::vector<fs::path> out;
-  for (const char* folder : {"estimator", "scenarios/baselines"})
+  for (const char* folder : {"estimator", "scenarios/baselines", "scenarios/statistics", "scenarios/summary"})
     for (const auto& entry : fs::recursive_directory_iterator(tumble::test::source_dir() / folder))
       if (entry.path().extension() == ".cpp" || entry.path().extension() == ".hpp") out.push_back(entry.path());
   return out;
@@ -83,7 +83,7 @@ TEST(Citations, EveryCitedEquationIsThereAndEveryNoteIsCited) {
   const Notes notes = notes_of_the_tree();
   ASSERT_GE(notes.size(), 9u);
   std::set<std::string> cited;
-  for (const fs::path& file : sources_of_the_estimators()) {
+  for (const fs::path& file : sources_with_equations()) {
     for (const Citation& citation : cited_in(text_of(file))) {
       EXPECT_EQ(complaint(citation, notes), "") << file;
       cited.insert(citation.note);

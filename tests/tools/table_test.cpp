@@ -52,6 +52,31 @@ TEST(Table, MissingCellsAreEmptyAndSurplusOnesRefused) {
   EXPECT_THROW(table.add_row({"1", "2", "3"}), std::logic_error);
 }
 
+TEST(Table, IsTextInEveryFormatWhateverItHolds) {
+  Table table("a|b\nc", {"name_of", "n"});
+  table.align_right_from(1);
+  table.add_row({"<b>_x_</b>|`\n", "1,5"});
+  table.add_row({"50 % & \\ {$#^~}", "\"q\""});
+  EXPECT_EQ(table.markdown(),
+            "**a\\|b c**\n\n"
+            "| name_of | n |\n"
+            "| --- | ---: |\n"
+            "| \\<b\\>\\_x\\_\\</b\\>\\|\\`  | 1,5 |\n"
+            "| 50 % \\& \\\\ {$\\#^\\~} | \"q\" |\n");
+  EXPECT_EQ(table.csv(),
+            "# a|b c\n"
+            "name_of,n\n"
+            "\"<b>_x_</b>|`\n\",\"1,5\"\n"
+            "50 % & \\ {$#^~},\"\"\"q\"\"\"\n");
+  EXPECT_EQ(table.tex(),
+            "% a|b c\n"
+            "\\begin{tabular}{lr}\n\\toprule\n"
+            "name\\_of & n \\\\\n\\midrule\n"
+            "$<$b$>$\\_x\\_$<$/b$>$|`  & 1,5 \\\\\n"
+            "50 \\% \\& \\textbackslash{} \\{\\$\\#\\textasciicircum{}\\textasciitilde{}\\} & \"q\" \\\\\n"
+            "\\bottomrule\n\\end{tabular}\n");
+}
+
 TEST(NumberText, HasFourSignificantDigits) {
   EXPECT_EQ(number_text(0.0), "0");
   EXPECT_EQ(number_text(1.0 / 3.0), "0.3333");

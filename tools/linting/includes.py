@@ -16,16 +16,17 @@ _OF_COMMON = """size_t ptrdiff_t move swap pair make_pair exchange initializer_l
 _STREAMS = "ostream istream fstream sstream iostream".split()
 
 _HEADERS = {
-    "algorithm": """adjacent_find all_of any_of binary_search clamp copy_if count count_if find find_if
+    "algorithm": """adjacent_find all_of any_of binary_search clamp copy_if count count_if equal_range find find_if
         find_if_not is_sorted iter_swap lower_bound max_element min_element minmax_element none_of nth_element replace replace_if
-        reverse sort stable_partition stable_sort transform unique upper_bound ranges""",
+        reverse rotate set_union sort stable_partition stable_sort transform unique upper_bound ranges""",
     "atomic": "atomic",
     "bit": "bit_cast bit_ceil countr_zero endian popcount",
     "cctype": "isalnum isalpha isdigit tolower",
     "charconv": "from_chars to_chars",
     "chrono": "chrono milli",
-    "cmath": """acos asin atan atan2 cbrt ceil comp_ellint_1 copysign cos ellint_1 erfc exp expm1 floor fmax fmod hypot
-        isfinite isinf isnan ldexp lgamma llround log log10 log1p lround nan nanf nextafter pow round signbit sin sqrt tan""",
+    "cmath": """acos asin atan atan2 atanh cbrt ceil comp_ellint_1 copysign cos ellint_1 erfc exp expm1 floor fmax fmod hypot
+        isfinite isinf isnan ldexp lgamma llround log log10 log1p log2 lround nan nanf nextafter pow round signbit sin sqrt tan
+        tanh""",
     "complex": "complex norm polar",
     "concepts": "unsigned_integral",
     "csignal": "signal",
@@ -33,7 +34,7 @@ _HEADERS = {
     "cstdio": "fflush fgets fprintf fputs fread freopen fwrite printf setvbuf snprintf",
     "cstdlib": "_Exit abort atof atoi exit free getenv llabs malloc realloc strtod strtol strtoull system",
     "cstring": "memcpy strerror strlen",
-    "ctime": "clock clock_t",
+    "ctime": "clock clock_t strftime time time_t tm",
     "deque": "deque",
     "filesystem": "filesystem",
     "fstream": "ifstream ofstream",
@@ -75,6 +76,7 @@ _ANY_OF = {
     "getline": ["string"], **dict.fromkeys("ios ios_base istream ostream streamoff streamsize ws".split(), _STREAMS),
     "stod": ["string"], "stoll": ["string"], "string": ["string"], "to_string": ["string"],
     "string_view": ["string_view", "string"],
+    "less": ["functional", "map", "set"],
     "tie": ["tuple"], "tuple": ["tuple"], "tuple_size_v": ["tuple", "array"],
 }
 _STANDARD = {name: [header] for header, names in _HEADERS.items() for name in names.split()}

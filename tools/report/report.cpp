@@ -109,8 +109,9 @@ PageContent report_content(const scenarios::Results& results, const Summary& sum
   content.facts = facts(results, summary, options);
   content.summary = summary;
   content.figures = figures_of_all_draws(summary);
-  content.motions = scenarios::motion_spreads(results.draws());
-  content.curves = scenarios::find_curves(results);
+  const std::vector<scenarios::DrawValues> draws = results.draws();
+  content.motions = scenarios::motion_spreads(draws);
+  content.curves = scenarios::find_curves(results, draws);
   content.rejected = results.rejected();
   content.certificates = results.certificates();
   const bool recorded = results.note("source") == scenarios::kRecordingsSource;

@@ -20,6 +20,10 @@ class Table {
   bool empty() const { return rows_.empty(); }
   /// Title, header, rule and rows, each line ended; no spaces at line ends.
   std::string text() const;
+  /// The same for other programs' documents, cells escaped so that what they hold is text there and never markup.
+  std::string markdown() const;  ///< a table of GitHub's Markdown
+  std::string csv() const;       ///< RFC 4180; the title as a comment line, "# title"
+  std::string tex() const;       ///< a `tabular` of LaTeX with the rules of `booktabs`
 
  private:
   std::string title_;

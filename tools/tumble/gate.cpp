@@ -206,9 +206,10 @@ int run_gate(const Session& session, const Options& options) {
     suite.methods = options.methods.empty() ? std::vector<std::string>{"tumble"} : options.methods;
 
   const Database database(options.database);
+  const scenarios::DatabaseOwner owner(database.path());
   const InterruptFlag interrupt;
   const scenarios::SweepProgress progress =
-      sweep_with_progress(session, data, suite, database.path(), options.jobs, interrupt.raised());
+      sweep_with_progress(session, data, suite, owner, options.jobs, interrupt.raised());
   if (progress.draws_done < progress.draws_total) return say_stopped(progress);
 
   const std::string certificate = certificate_text(session, data, database.path());

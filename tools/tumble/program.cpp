@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <new>
 #include <string>
 #include <vector>
@@ -83,9 +84,17 @@ int show_the_way() {
       "  tumble estimate r.h5 --method rate/tumble -o DIR\n"
       "  tumble score YOURS.tum r.h5    somebody else's trajectory against the truth of a recording\n\n"
       "verbs (tumble VERB --help)\n";
-  for (const Verb& verb : verbs()) text += fmt::format("  {:<9}  {}\n", verb.name, verb.doc);
+  for (const Verb& verb : verbs()) text += fmt::format("  {:<11}  {}\n", verb.name, verb.doc);
   std::fputs(text.c_str(), stdout);
   return kDone;
+}
+
+void add_table_format(CLI::App& options, Session& session) {
+  const std::map<std::string, TableFormat> names = {
+      {"text", TableFormat::text}, {"md", TableFormat::markdown}, {"csv", TableFormat::csv}, {"tex", TableFormat::tex}};
+  options.add_option("--format", session.format, "tables as text, md, csv or tex [text]")
+      ->transform(CLI::CheckedTransformer(names).description(""))
+      ->type_name("TEXT");
 }
 
 /// Reads the command line and does the verb.
@@ -102,6 +111,8 @@ int dispatch(int argc, const char* const* argv) {
     options->add_flag("--json", session.json, "tables as JSON on standard output");
     options->add_flag("--quiet", session.quiet, "no notes and no progress on standard error");
     options->callback([action = verb.declare(*options, session), &chosen] { chosen = action; });
+    // of some verbs it is the format of a recording
+    if (options->get_option_no_throw("--format") == nullptr) add_table_format(*options, session);
   }
   check_verb(argc, argv);
   try {

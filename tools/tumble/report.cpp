@@ -147,7 +147,8 @@ int report(const Session& session, const Options& options) {
   if (!options.page.empty()) prepare_output(options.page, std::vector<std::filesystem::path>{options.database});
   const scenarios::Results results(options.database, scenarios::Results::Mode::read_only);
   const Summary summary = scenarios::summarize(results);
-  const std::vector<Curve> curves = scenarios::find_curves(results);
+  const std::vector<scenarios::DrawValues> draws = results.draws();
+  const std::vector<Curve> curves = scenarios::find_curves(results, draws);
   if (summary.scenarios.empty() && curves.empty())
     throw scenarios::BadInput(options.database.string() + ": holds no outcomes to report");
   std::vector<Table> tables;
@@ -158,7 +159,6 @@ int report(const Session& session, const Options& options) {
   for (const Curve& curve : curves) {
     if (options.all || curve.source == Curve::Source::set) tables.push_back(curve_table(curve));
   }
-  const std::vector<scenarios::DrawValues> draws = results.draws();
   const std::vector<Spread> motions = scenarios::motion_spreads(draws);
   if (!motions.empty()) tables.push_back(distribution_table(motions));
   tables.push_back(draws_table(summary));

@@ -27,6 +27,20 @@ std::vector<fs::path> candidate_roots() {
   return roots;
 }
 
+std::string written(const Table& table, TableFormat format) {
+  switch (format) {
+    case TableFormat::markdown:
+      return table.markdown();
+    case TableFormat::csv:
+      return table.csv();
+    case TableFormat::tex:
+      return table.tex();
+    case TableFormat::text:
+      break;
+  }
+  return table.text();
+}
+
 }  // namespace
 
 scenarios::DataRoot Session::data() const {
@@ -84,7 +98,7 @@ void Session::print(const std::vector<Table>& tables, const nlohmann::json& docu
   } else {
     for (const Table& table : tables) {
       if (!text.empty()) text += "\n";
-      text += table.text();
+      text += written(table, format);
     }
     text = terminal_text(text);
   }

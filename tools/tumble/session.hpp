@@ -15,11 +15,15 @@ namespace tumble::tools {
 /// The program's exit statuses (DESIGN.md, "The program").
 enum ExitStatus { kDone = 0, kCheckFailed = 1, kBadInput = 2, kDefect = 3 };
 
+/// How tables are written: for the terminal, or for documents and other programs.
+enum class TableFormat { text, markdown, csv, tex };
+
 /// What every verb is given: how to speak, and where the project's files are.
 class Session {
  public:
   bool json = false;   ///< tables as JSON
   bool quiet = false;  ///< no notes and no progress
+  TableFormat format = TableFormat::text;
 
   /// Models, catalogue and suites: $TUMBLE_DATA, else share/tumble beside the program's folder, else the source tree
   /// that it was built from. Throws BadInput when none of them holds models.

@@ -131,6 +131,7 @@ int run_sweep(const Session& session, const Options& options) {
   scenarios::Suite suite;
   const bool any = select(data, options, suite);
   if (options.database.has_parent_path()) make_folder(options.database.parent_path());
+  const scenarios::DatabaseOwner owner(options.database);
   if (!any) {
     // an empty database, so that all shards can be merged
     scenarios::open_results(data, suite, options.database);
@@ -143,8 +144,8 @@ int run_sweep(const Session& session, const Options& options) {
   const InterruptFlag interrupt;
   // it speaks of simulations
   if (suite.recordings.empty()) certify(session, data, options.database, interrupt.raised());
-  const scenarios::SweepProgress final = sweep_with_progress(session, data, suite, options.database, options.jobs,
-                                                             interrupt.raised(), statuses_named(options.again));
+  const scenarios::SweepProgress final =
+      sweep_with_progress(session, data, suite, owner, options.jobs, interrupt.raised(), statuses_named(options.again));
 
   const bool complete = final.draws_done >= final.draws_total;
   const bool shown = !complete || leave_examples(session, data, suite, options, final.draws_total, interrupt.raised());

@@ -11,7 +11,7 @@
 namespace tumble::tools {
 
 scenarios::SweepProgress sweep_with_progress(const Session& session, const scenarios::DataRoot& data,
-                                             const scenarios::Suite& suite, const std::filesystem::path& database,
+                                             const scenarios::Suite& suite, const scenarios::DatabaseOwner& database,
                                              int jobs, const std::atomic<bool>& stop,
                                              const std::vector<scenarios::OutcomeStatus>& again) {
   const auto to_standard_error = [](std::string_view text) {

@@ -12,7 +12,7 @@ namespace tumble::tools {
 /// Sweeps a suite into a database with the progress shown, unless the session is quiet. `stop` ends it early; rows of
 /// the statuses `again` are run once more.
 scenarios::SweepProgress sweep_with_progress(const Session& session, const scenarios::DataRoot& data,
-                                             const scenarios::Suite& suite, const std::filesystem::path& database,
+                                             const scenarios::Suite& suite, const scenarios::DatabaseOwner& database,
                                              int jobs, const std::atomic<bool>& stop,
                                              const std::vector<scenarios::OutcomeStatus>& again = {});
 

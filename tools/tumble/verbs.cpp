@@ -13,6 +13,8 @@ std::span<const Verb> verbs() {
       {"sweep", "thousands of runs into a results database; run again to resume", declare_sweep},
       {"merge", "join results databases", declare_merge},
       {"report", "score tables and one self-contained page from a results database", declare_report},
+      {"compare", "two methods on the same draws: differences, tests, failures, draws wanted", declare_compare},
+      {"sensitivity", "which of the drawn numbers a method's scores depend on", declare_sensitivity},
       {"render", "pictures of a recording or of a draw", declare_render},
       {"gate", "sweep a suite's fixed seeds and hold them to the accepted run, draw by draw", declare_gate},
       {"triage", "replace one input at a time by its truth and say which one cures a failure", declare_triage},

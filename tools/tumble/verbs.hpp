@@ -34,6 +34,8 @@ Action declare_score(CLI::App& options, const Session& session);
 Action declare_sweep(CLI::App& options, const Session& session);
 Action declare_merge(CLI::App& options, const Session& session);
 Action declare_report(CLI::App& options, const Session& session);
+Action declare_compare(CLI::App& options, const Session& session);
+Action declare_sensitivity(CLI::App& options, const Session& session);
 Action declare_render(CLI::App& options, const Session& session);
 Action declare_gate(CLI::App& options, const Session& session);
 Action declare_triage(CLI::App& options, const Session& session);

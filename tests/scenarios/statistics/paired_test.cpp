@@ -5,7 +5,11 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
+
+#include "scenarios/errors.hpp"
+#include "sim/random/stream.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -57,6 +61,87 @@ TEST(SignedRank, ZerosAndNothingSayNothing) {
   EXPECT_EQ(signed_rank_chance(std::vector<double>{0.0, 0.0}), 1.0);
   EXPECT_EQ(signed_rank_chance(std::vector<double>{0.0, 1.0, std::nan("")}), 0.5);
   EXPECT_NEAR(signed_rank_chance(std::vector<double>(30, 1.0)), std::pow(0.5, 30), 1e-15);
+}
+
+/// Differences 1 to n, those with these ranks negative so that the negative ranks add up to `sum`.
+std::vector<double> with_negative_sum(int n, int sum) {
+  std::vector<double> differences;
+  for (int rank = n; rank > 0; --rank) {
+    const bool negative = rank <= sum;
+    sum -= negative ? rank : 0;
+    differences.push_back(negative ? -rank : rank);
+  }
+  EXPECT_EQ(sum, 0);
+  return differences;
+}
+
+// the two-sided 5 % points of every table of the test (Conover, Practical Nonparametric Statistics, table A12; from 26
+// on other tables): the last sum that is refused
+TEST(SignedRank, MatchesTheTableOfCriticalValues) {
+  const std::vector<std::pair<int, int>> table = {{6, 0},   {7, 2},   {8, 3},    {9, 5},    {10, 8},
+                                                  {11, 10}, {12, 13}, {13, 17},  {14, 21},  {15, 25},
+                                                  {20, 52}, {25, 89}, {30, 137}, {40, 264}, {50, 434}};
+  for (const auto& [n, critical] : table) {
+    EXPECT_LE(signed_rank_test(with_negative_sum(n, critical)), 0.05) << n;
+    EXPECT_GT(signed_rank_test(with_negative_sum(n, critical + 1)), 0.05) << n;
+  }
+}
+
+// scipy 1.17.1: wilcoxon(d, mode="exact") of the nine pairs of Hollander and Wolfe's depression scores;
+// wilcoxon(d, correction=True, mode="approx") of 120 differences with many ties
+TEST(SignedRank, AgreesWithScipy) {
+  const std::vector<double> depression = {-0.952, 0.147, -1.022, -0.43, -0.62, -0.59, -0.49, 0.08, -0.01};
+  EXPECT_NEAR(signed_rank_test(depression), 0.0390625, 1e-12);
+  std::vector<double> many;
+  for (int copy = 0; copy < 3; ++copy) {
+    for (int x = 1; x <= 40; ++x) many.push_back(((x * 7) % 11 < 4 ? -1.0 : 1.0) * std::ceil(x / 3.0));
+  }
+  ASSERT_GT(many.size(), kExactPairsMax);
+  EXPECT_NEAR(signed_rank_test(many), 0.0032098257966214354, 1e-14);
+  EXPECT_NEAR(signed_rank_chance(many), 0.0016049128983107177, 1e-14);
+}
+
+// one more pair, and the sum as far from its middle: at the border the two are within half a percent of each other
+TEST(SignedRank, GoesOverIntoTheApproximation) {
+  const int n = static_cast<int>(kExactPairsMax);
+  for (const int sum : {1700, 2000, 2300}) {
+    const double exact = signed_rank_test(with_negative_sum(n, sum));
+    const double beyond = signed_rank_test(with_negative_sum(n + 1, sum + (n + 1) / 2));
+    EXPECT_NEAR(beyond, exact, 0.005) << sum;
+  }
+}
+
+TEST(SignedRank, IsRefusedAsOftenAsItSaysOfAlikeOnes) {
+  for (const std::size_t n : {20u, 150u}) {
+    sim::Stream stream(n, "test.alike");
+    int refused = 0;
+    for (int k = 0; k < 2000; ++k) {
+      std::vector<double> differences;
+      for (std::size_t i = 0; i < n; ++i) differences.push_back(stream.normal());
+      refused += signed_rank_test(differences) < 0.05;
+    }
+    EXPECT_GT(refused, 2000 * 0.035) << n;
+    EXPECT_LT(refused, 2000 * 0.065) << n;
+  }
+}
+
+// scipy 1.17.1: binomtest(3, 20).pvalue; statsmodels' mcnemar([[10, 5], [16, 9]], exact=True)
+TEST(SignTest, IsBinomial) {
+  std::vector<double> differences(17, 1.0);
+  differences.insert(differences.end(), {-1.0, -2.0, -0.5, 0.0, std::nan("")});
+  EXPECT_NEAR(sign_test(differences), 0.0025768280029296875, 1e-14);
+  EXPECT_NEAR(sign_test(std::vector<double>(6, -3.0)), std::pow(0.5, 5), 1e-15);
+  EXPECT_EQ(sign_test(std::vector<double>{1.0, -1.0}), 1.0);
+  EXPECT_EQ(sign_test({}), 1.0);
+}
+
+TEST(PairedFailures, IsMcNemarsInItsExactForm) {
+  EXPECT_NEAR(paired_failures_test(5, 16), 0.02660369873046875, 1e-14);
+  EXPECT_NEAR(paired_failures_test(16, 5), 0.02660369873046875, 1e-14);
+  EXPECT_EQ(paired_failures_test(0, 0), 1.0);
+  EXPECT_EQ(paired_failures_test(7, 7), 1.0);
+  EXPECT_NEAR(paired_failures_test(0, 10), std::pow(0.5, 9), 1e-15);
+  EXPECT_THROW(paired_failures_test(-1, 3), BadInput);
 }
 
 }  // namespace

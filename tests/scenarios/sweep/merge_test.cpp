@@ -4,9 +4,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
 #include <vector>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/sweep/database_owner.hpp"
 #include "scenarios/sweep/results.hpp"
 #include "scenarios/sweep/temporary_folder.hpp"
 
@@ -117,6 +123,81 @@ TEST_F(MergeTest, ARejectionGivesWayToAnOutcome) {
     ASSERT_EQ(results.rejected().size(), 1u);
     EXPECT_EQ(results.rejected()[0].seed, 2u);
   }
+}
+
+// what a merge leaves is what storing every row into one database leaves, whatever the order and the number of shards
+TEST_F(MergeTest, HasAllThatTheShardsHave) {
+  std::vector<Outcome> rows;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    Outcome plain = row(seed, seed % 7 == 0 ? OutcomeStatus::crashed : OutcomeStatus::ok, "e" + std::to_string(seed));
+    plain.scores.push_back({"nothing", std::nan("")});
+    plain.scores.push_back({"far", std::numeric_limits<double>::infinity()});
+    plain.message = "seed " + std::to_string(seed);
+    Outcome varied = plain;
+    varied.setting = {"world.slope_rad", 0.1 * static_cast<double>(seed % 3)};
+    rows.push_back(plain);
+    rows.push_back(varied);
+    plain.kind = Kind::rate;
+    plain.method = "raw";
+    plain.scores.clear();
+    rows.push_back(plain);
+  }
+  const auto fill = [&](const std::filesystem::path& path, std::size_t first, std::size_t step) {
+    Results results(path, Results::Mode::create_or_append);
+    for (std::size_t i = first; i < rows.size(); i += step) {
+      results.store(rows[i]);
+      results.store(DrawValues{rows[i].scenario, rows[i].seed, {{"motion_path_m", 2.0}}, rows[i].setting});
+    }
+    results.set_note(method_note(Kind::rate, "raw"), "version 1");
+    return path;
+  };
+  fill(folder_ / "whole.db", 0, 1);
+  Paths shards;
+  for (std::size_t k = 0; k < 13; ++k) shards.push_back(fill(folder_ / ("s" + std::to_string(k) + ".db"), k, 13));
+  const MergeCounts counts = merge_results(out_, shards, false);
+  EXPECT_EQ(counts.added, rows.size());
+  EXPECT_EQ(counts.held + counts.replaced, 0u);
+  const Results whole(folder_ / "whole.db", Results::Mode::read_only), joined(out_, Results::Mode::read_only);
+  const auto text_of = [](const Results& results) {
+    std::vector<std::string> lines;
+    for (const ScoreRow& s : results.scores(Rows::all)) {
+      lines.push_back(s.scenario + " " + std::to_string(s.seed) + " " + s.kind + "/" + s.method + " " +
+                      to_string(s.status) + " " + s.metric + " " + std::to_string(s.value) + " " + s.setting.key +
+                      std::to_string(s.setting.value));
+    }
+    for (const Outcome& o : results.outcomes(Rows::all))
+      lines.push_back(o.message + o.recording_digest + o.estimate_digest);
+    for (const DrawValues& d : results.draws(Rows::all)) lines.push_back(d.scenario + std::to_string(d.seed));
+    return lines;
+  };
+  ASSERT_GT(text_of(whole).size(), 300u);
+  EXPECT_EQ(text_of(joined), text_of(whole));
+  EXPECT_EQ(joined.note(method_note(Kind::rate, "raw")), "version 1");
+  EXPECT_EQ(joined.notes().at("build"), whole.note("build"));
+}
+
+TEST_F(MergeTest, ARejectionOfTwoShardsIsOne) {
+  const auto a = make("a.db", {}, {{"hill", 1, "no place", {}}}), b = make("b.db", {}, {{"hill", 1, "no place", {}}});
+  const MergeCounts counts = merge_results(out_, Paths{a, b}, false);
+  EXPECT_EQ(counts.added, 1u);
+  EXPECT_EQ(counts.rejected, 1u);
+  EXPECT_EQ(counts.held, 1u);
+}
+
+TEST_F(MergeTest, ADamagedShardIsNamedAndNothingIsLeft) {
+  std::vector<Outcome> rows;
+  for (std::uint64_t seed = 1; seed <= 400; ++seed) rows.push_back(row(seed, OutcomeStatus::ok));
+  const auto a = make("a.db", rows);
+  std::filesystem::resize_file(a, std::filesystem::file_size(a) / 2);
+  EXPECT_THAT(complaint({a}), HasSubstr("a.db"));
+  EXPECT_EQ(files(), 1u);
+}
+
+TEST_F(MergeTest, WaitsForNobodyWhoWrites) {
+  const auto a = make("a.db", {row(1, OutcomeStatus::ok)});
+  const DatabaseOwner owner(out_);
+  EXPECT_THAT(complaint({a}), HasSubstr("out.db: process " + std::to_string(getpid()) + " on "));
+  EXPECT_FALSE(std::filesystem::exists(out_));
 }
 
 TEST_F(MergeTest, AnInputUnderAnotherNameIsNoOutput) {

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+
+namespace tumble::scenarios {
+
+/// The one that writes to a results database: a second sweep on it, or a merge into it, says so and leaves. The lock
+/// (flock) is on FILE.lock beside it, which says who holds it; the system lets go of it when the process ends, however
+/// it ends, and a file that a killed one has left behind is taken over. Reading needs no owner. Where the file system
+/// is shared, it holds between machines as far as its locks do.
+class DatabaseOwner {
+ public:
+  /// Throws BadInput: another owns it (its process, machine and since when), or no file can be made there.
+  explicit DatabaseOwner(const std::filesystem::path& database);
+  /// Lets go, and takes the file away.
+  ~DatabaseOwner();
+  DatabaseOwner(const DatabaseOwner&) = delete;
+  DatabaseOwner& operator=(const DatabaseOwner&) = delete;
+
+  const std::filesystem::path& database() const { return database_; }
+
+ private:
+  std::filesystem::path database_, lock_;
+  int fd_ = -1;
+};
+
+}  // namespace tumble::scenarios

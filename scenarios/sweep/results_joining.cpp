@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <SQLiteCpp/SQLiteCpp.h>
+
+#include <array>
+#include <string>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/sweep/results_database.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr const char* kDraw = " WHERE scenario = ? AND seed = ? AND varied = ? AND setting = ? AND kind ";
+
+/// A row of `outcomes` as it stands in the shard; its texts are valid until the next one.
+struct ShardRow {
+  std::int64_t id, seed;
+  const char *scenario, *kind, *method, *status, *message, *recording_digest, *estimate_digest, *varied;
+  double setting;
+};
+
+/// Rows of a shard on their way into another database, each statement prepared once. Outcomes and scores are read side
+/// by side in the order of the outcomes' numbers; new numbers rise with the old ones, so that scores are appended.
+class Joining {
+ public:
+  Joining(SQLite::Database& into, const SQLite::Database& shard, const std::filesystem::path& path, bool mixed,
+          MergeCounts& counts)
+      : into_(into), shard_(shard), path_(path), mixed_(mixed), counts_(counts) {
+    has_rejections_ = into.execAndGet("SELECT EXISTS (SELECT 1 FROM outcomes WHERE kind = '')").getInt() != 0;
+  }
+
+  void join_outcomes() {
+    while (next(outcomes_)) {
+      const ShardRow row = read(outcomes_);
+      std::int64_t id = 0;
+      if (take(row, id)) copy_scores(row.id, id);
+    }
+  }
+
+  void join_draws() {
+    SQLite::Statement select(shard_, "SELECT scenario, seed, metric, value, varied, setting FROM draw_values");
+    SQLite::Statement insert(into_, "INSERT OR REPLACE INTO draw_values VALUES (?, ?, ?, ?, ?, ?)");
+    while (next(select)) {
+      insert.bindNoCopy(1, select.getColumn(0).getText());
+      insert.bind(2, select.getColumn(1).getInt64());
+      insert.bindNoCopy(3, select.getColumn(2).getText());
+      bind_number(select, 3, insert, 4);
+      insert.bindNoCopy(5, select.getColumn(4).getText());
+      insert.bind(6, select.getColumn(5).getDouble());
+      run(insert);
+    }
+  }
+
+  /// Only where no outcome of the draw stands.
+  void join_rejections() {
+    SQLite::Statement select(shard_, std::string(kColumns) + "WHERE kind = '' ORDER BY id");
+    SQLite::Statement ran(into_, std::string("SELECT 1 FROM outcomes") + kDraw + "<> '' LIMIT 1");
+    while (next(select)) {
+      const ShardRow row = read(select);
+      bind_draw(ran, row);
+      const bool stands = ran.executeStep();
+      ran.reset();
+      const bool stored = !stands && insert(row);
+      ++(stored ? counts_.added : counts_.held);
+      counts_.rejected += stored;
+      has_rejections_ = has_rejections_ || stored;
+    }
+  }
+
+ private:
+  static constexpr const char* kColumns =
+      "SELECT id, seed, scenario, kind, method, status, message, recording_digest, estimate_digest, varied, setting "
+      "FROM outcomes ";
+
+  static ShardRow read(SQLite::Statement& select) {
+    const auto text = [&](int column) { return select.getColumn(column).getText(); };
+    return {select.getColumn(0).getInt64(),
+            select.getColumn(1).getInt64(),
+            text(2),
+            text(3),
+            text(4),
+            text(5),
+            text(6),
+            text(7),
+            text(8),
+            text(9),
+            select.getColumn(10).getDouble()};
+  }
+
+  static void bind_number(const SQLite::Statement& from, int column, SQLite::Statement& to, int index) {
+    const SQLite::Column value = const_cast<SQLite::Statement&>(from).getColumn(column);
+    if (value.isNull())
+      to.bind(index);
+    else
+      to.bind(index, value.getDouble());
+  }
+
+  static void bind_draw(SQLite::Statement& statement, const ShardRow& row) {
+    statement.bindNoCopy(1, row.scenario);
+    statement.bind(2, row.seed);
+    statement.bindNoCopy(3, row.varied);
+    statement.bind(4, row.setting);
+  }
+
+  /// The next row of the shard; trouble in it is told with its path.
+  bool next(SQLite::Statement& select) const {
+    try {
+      return select.executeStep();
+    } catch (const SQLite::Exception& error) {
+      throw BadInput(path_.string() + ": " + error.what());
+    }
+  }
+
+  /// Returns the number of rows that it changed.
+  static int run(SQLite::Statement& statement) {
+    const int changed = statement.exec();
+    statement.reset();
+    return changed;
+  }
+
+  OutcomeStatus status(const char* name) const {
+    if (const auto known = outcome_status_named(name)) return *known;
+    throw BadInput(path_.string() + ": unknown status '" + name + "'");
+  }
+
+  void require_kind(const std::string& name) const {
+    for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
+      if (name == to_string(kind)) return;
+    }
+    throw BadInput(path_.string() + ": unknown kind '" + name + "'");
+  }
+
+  /// False where a row of its key stands.
+  bool insert(const ShardRow& row) {
+    insert_.bindNoCopy(1, row.scenario);
+    insert_.bind(2, row.seed);
+    insert_.bindNoCopy(3, row.kind);
+    insert_.bindNoCopy(4, row.method);
+    insert_.bindNoCopy(5, row.status);
+    insert_.bindNoCopy(6, row.message);
+    insert_.bindNoCopy(7, row.recording_digest);
+    insert_.bindNoCopy(8, row.estimate_digest);
+    insert_.bindNoCopy(9, row.varied);
+    insert_.bind(10, row.setting);
+    return run(insert_) == 1;
+  }
+
+  /// Whether the row now stands, under which number.
+  bool take(const ShardRow& row, std::int64_t& id) {
+    require_kind(row.kind);
+    const OutcomeStatus own = status(row.status);
+    if (insert(row)) {
+      ++counts_.added;
+    } else if (replaces_held(row, own)) {
+      insert(row);
+      ++counts_.replaced;
+    } else {
+      ++counts_.held;
+      return false;
+    }
+    id = into_.getLastInsertRowid();
+    if (has_rejections_) {
+      bind_draw(forget_, row);
+      run(forget_);
+    }
+    return true;
+  }
+
+  /// Takes the held row away where this one says more.
+  bool replaces_held(const ShardRow& row, OutcomeStatus own) {
+    held_.bindNoCopy(1, row.scenario);
+    held_.bind(2, row.seed);
+    held_.bindNoCopy(3, row.kind);
+    held_.bindNoCopy(4, row.method);
+    held_.bindNoCopy(5, row.varied);
+    held_.bind(6, row.setting);
+    if (!held_.executeStep()) throw BadInput(path_.string() + ": a row of draw " + row.scenario + " is not unique");
+    const std::int64_t id = held_.getColumn(0).getInt64();
+    const std::string status_text = held_.getColumn(1).getString(), recording = held_.getColumn(2).getString(),
+                      estimate = held_.getColumn(3).getString();
+    held_.reset();
+    const OutcomeStatus known = status(status_text.c_str());
+    if (outranks(own, known)) {
+      remove_.bind(1, id);
+      run(remove_);
+      return true;
+    }
+    if (!outranks(known, own) && !mixed_ && was_scored(known) &&
+        (own != known || estimate != row.estimate_digest ||
+         // recordings are simulated without lidars where only rates are asked for: their digest is no part of the
+         // answer
+         (std::string(to_string(Kind::rate)) != row.kind && recording != row.recording_digest)))
+      complain(row, status_text, estimate);
+    return false;
+  }
+
+  [[noreturn]] void complain(const ShardRow& row, const std::string& known, const std::string& digest) const {
+    throw BadInput(path_.string() + ": " + row.scenario + ", seed " + std::to_string(read_seed(row.seed)) + ", " +
+                   row.kind + "/" + row.method + ": is " + row.status + " with digest '" + row.estimate_digest +
+                   "', elsewhere " + known + " with digest '" + digest + "'; one build gives one answer");
+  }
+
+  void copy_scores(std::int64_t from, std::int64_t to) {
+    while (more_scores_ && scores_.getColumn(0).getInt64() < from) more_scores_ = next(scores_);
+    while (more_scores_ && scores_.getColumn(0).getInt64() == from) {
+      score_.bind(1, to);
+      score_.bindNoCopy(2, scores_.getColumn(1).getText());
+      bind_number(scores_, 2, score_, 3);
+      run(score_);
+      more_scores_ = next(scores_);
+    }
+  }
+
+  SQLite::Database& into_;
+  const SQLite::Database& shard_;
+  const std::filesystem::path& path_;
+  bool mixed_;
+  MergeCounts& counts_;
+  bool has_rejections_ = false;
+  SQLite::Statement outcomes_{shard_, std::string(kColumns) + "WHERE kind <> '' ORDER BY id"};
+  SQLite::Statement scores_{shard_, "SELECT outcome, metric, value FROM score_values ORDER BY outcome, metric"};
+  bool more_scores_ = next(scores_);
+  SQLite::Statement insert_{
+      into_,
+      "INSERT INTO outcomes (scenario, seed, kind, method, status, message, recording_digest, estimate_digest, "
+      "varied, setting) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?) "
+      "ON CONFLICT (scenario, seed, kind, method, varied, setting) DO NOTHING"};
+  SQLite::Statement held_{into_,
+                          "SELECT id, status, recording_digest, estimate_digest FROM outcomes WHERE scenario = ? AND "
+                          "seed = ? AND kind = ? AND method = ? AND varied = ? AND setting = ?"};
+  SQLite::Statement remove_{into_, "DELETE FROM outcomes WHERE id = ?"};
+  SQLite::Statement forget_{into_, std::string("DELETE FROM outcomes") + kDraw + "= ''"};
+  SQLite::Statement score_{into_, "INSERT OR REPLACE INTO score_values VALUES (?, ?, ?)"};
+};
+
+}  // namespace
+
+void Results::absorb(const Results& shard, bool mixed, MergeCounts& counts) {
+  impl_->guarded([&] {
+    Joining joining(impl_->database, shard.impl_->database, shard.impl_->path, mixed, counts);
+    joining.join_outcomes();
+    joining.join_draws();
+    joining.join_rejections();
+  });
+  for (const Certificate& certificate : shard.certificates()) store(certificate);
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,130 @@
+#!/usr/bin/env bash
+# tools/slurm/submit on three nodes of one machine, one of which dies with all that it runs: what comes out is what one
+# undisturbed sweep gives. Needs root, Debian's slurm-wlm and munge (tools/setup --for cluster); 77 where they are not there.
+#   slurm_test.sh SOURCE_TREE PROGRAM
+set -euo pipefail
+root=$1 program=$2
+for command in slurmctld slurmd munged sbatch; do
+  command -v "$command" >/dev/null || { echo "skipped: no $command; tools/setup --for cluster"; exit 77; }
+done
+[ "$(id -u)" -eq 0 ] || { echo "skipped: slurmd needs root"; exit 77; }
+
+folder=$(mktemp -d /tmp/tumble_slurm_XXXXXX)
+declare -A node
+killed=0
+others=()
+say() { printf 'slurm_test: %s\n' "$*"; }
+# what a node runs says so in its environment; the step above it is of no parent that would tell
+processes_of() {
+  local file pid parent said
+  for file in /proc/[0-9]*/environ; do
+    said=$(tr '\0' '\n' 2>/dev/null < "$file" | grep -cx -e "SLURMD_NODENAME=$1" -e "SLURM_CONF=$SLURM_CONF") || true
+    [ "$said" = 2 ] || continue
+    pid=${file#/proc/}; pid=${pid%/environ}
+    echo "$pid"
+    parent=$(ps -o ppid= -p "$pid" | tr -d ' ') || continue
+    [ "$(ps -o comm= -p "$parent")" != slurmstepd ] || echo "$parent"
+  done
+}
+# a node with its daemon, its steps and all that they run
+kill_node() {
+  local all
+  all=$(processes_of "$1")
+  kill -KILL "${node[$1]}" $all 2>/dev/null || true
+  wait "${node[$1]}" 2>/dev/null || true
+  unset "node[$1]"
+  killed=$(wc -w <<< "$all")
+}
+finish() {
+  local status=$?
+  for name in "${!node[@]}"; do kill_node "$name"; done
+  for pid in "${others[@]}"; do kill -KILL "$pid" 2>/dev/null || true; done
+  [ "$status" -eq 0 ] || tail -n 20 "$folder"/*.log "$folder"/*/logs/*.log 2>/dev/null || true
+  rm -rf "$folder"
+}
+trap finish EXIT
+
+dd if=/dev/urandom of="$folder/key" bs=1024 count=1 status=none
+chmod 400 "$folder/key"
+chmod 755 "$folder"
+export SLURM_CONF=$folder/slurm.conf
+port=$((20000 + $$ % 20000))
+host=$(hostname -s)
+cat > "$SLURM_CONF" <<END
+ClusterName=tumble
+SlurmctldHost=$host(127.0.0.1)
+SlurmctldPort=$port
+AuthType=auth/munge
+AuthInfo=socket=$folder/munge.socket
+SlurmUser=root
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_Core
+SlurmdParameters=config_overrides
+SlurmdTimeout=15
+JobRequeue=1
+ReturnToService=2
+MpiDefault=none
+SlurmctldPidFile=$folder/slurmctld.pid
+SlurmdPidFile=$folder/slurmd_%n.pid
+SlurmdSpoolDir=$folder/spool_%n
+StateSaveLocation=$folder/state
+SlurmctldLogFile=$folder/slurmctld.log
+SlurmdLogFile=$folder/slurmd_%n.log
+NodeName=n[1-3] NodeHostname=$host NodeAddr=127.0.0.1 Port=[$((port + 1))-$((port + 3))] CPUs=1 State=UNKNOWN
+PartitionName=all Nodes=ALL Default=YES MaxTime=INFINITE State=UP
+END
+mkdir "$folder/state"
+munged --foreground --force --key-file="$folder/key" --socket="$folder/munge.socket" --pid-file="$folder/munged.pid" \
+  --log-file="$folder/munged.log" --seed-file="$folder/munged.seed" > "$folder/munged.out.log" 2>&1 & others+=($!)
+for _ in $(seq 50); do [ -S "$folder/munge.socket" ] && break; sleep 0.2; done
+slurmctld -D -c > "$folder/slurmctld.out.log" 2>&1 & others+=($!)
+for name in n1 n2 n3; do slurmd -D -N "$name" > "$folder/slurmd_$name.out.log" 2>&1 & node[$name]=$!; done
+for _ in $(seq 100); do [ "$(sinfo -h -t idle -o %D 2>/dev/null || true)" = 3 ] && break; sleep 0.3; done
+[ "$(sinfo -h -t idle -o %D)" = 3 ] || { say "the three nodes do not come up"; exit 1; }
+
+# draws of a sphere: a second each
+words=(--seeds 1..18 --method rate/raw --method rolling)
+export TUMBLE_CACHE=${TUMBLE_CACHE:-$folder/cache} TUMBLE_SLURM_EVERY_S=1
+say "one sweep, undisturbed"
+"$program" sweep roll "${words[@]}" --jobs 2 --examples 0 --quiet --db "$folder/whole.db" >/dev/null
+
+say "three shards, a node of which dies"
+"$root/tools/slurm/submit" roll --db "$folder/out.db" --shards 3 --report "$folder/out.html" --program "$program" -- "${words[@]}"
+dead='' array=''
+for _ in $(seq 600); do
+  # a shard that has brought something home, and is not done
+  for part in "$folder"/out.db.shards/shard_*.part.db; do
+    [ -f "$part" ] || continue
+    task=${part##*shard_}; task=${task%.part.db}
+    dead=$(squeue -h -r -t running -o '%a %K %N' 2>/dev/null | awk -v t="$task" '$2 == t { print $3 }')
+    [ -z "$dead" ] || break 2
+  done
+  sleep 0.1
+done
+[ -n "$dead" ] || { say "no shard was caught at work"; exit 1; }
+say "node $dead dies, with task $task"
+kill_node "$dead"
+[ "$killed" -ge 3 ] || { say "the node ran too little to mean anything: $killed processes"; exit 1; }
+[ ! -f "$folder/out.db.shards/shard_$task.db" ] || { say "the task had ended before"; exit 1; }
+for _ in $(seq 900); do [ -z "$(squeue -h 2>/dev/null || echo busy)" ] && break; sleep 0.5; done
+grep -q "shard $task: done" "$folder/out.db.shards/logs/shard_$task.log" || { say "task $task was not done again"; exit 1; }
+[ -s "$folder/out.html" ] || { say "there is no report"; exit 1; }
+
+python3 - "$folder/whole.db" "$folder/out.db" <<'END'
+import sqlite3
+import sys
+
+def rows(path):
+    costs = "'estimate_cpu_s', 'simulate_cpu_s', 'estimate_peak_mib'"
+    return sqlite3.connect(path).execute(
+        "SELECT o.scenario, o.seed, o.kind, o.method, o.status, o.recording_digest, o.estimate_digest, s.metric, s.value "
+        f"FROM outcomes o JOIN score_values s ON s.outcome = o.id WHERE s.metric NOT IN ({costs}) "
+        "ORDER BY 1, 2, 3, 4, 8").fetchall()
+
+whole, out = rows(sys.argv[1]), rows(sys.argv[2])
+assert len({row[1] for row in whole}) == 18, "the undisturbed sweep is not complete"
+assert whole == out, f"{len(whole)} rows undisturbed, {len(out)} with the dead node; they differ"
+print(f"slurm_test: {len(out)} scores, as undisturbed")
+END

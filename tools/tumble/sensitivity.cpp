@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/summary/sensitivity.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/provenance/data_digest.hpp"
+#include "tools/tumble/verbs.hpp"
+
+namespace tumble::tools {
+
+namespace {
+
+using nlohmann::json;
+using scenarios::BadInput;
+using scenarios::Influence;
+using scenarios::Sensitivity;
+
+constexpr std::size_t kShown = 3;
+constexpr double kRisk = 0.05;
+
+struct Options {
+  std::filesystem::path database;
+  std::vector<std::string> methods, metrics;
+  bool motion = false, all = false;
+};
+
+/// What the numbers of a draw are follows from the models and scenarios that it was made of.
+void require_same_data(const scenarios::Results& results, const scenarios::DataRoot& data,
+                       const std::filesystem::path& database) {
+  const std::string made_of = results.note("data"), found = scenarios::data_digest(data);
+  if (made_of != found)
+    throw BadInput(database.string() + ": made of models and scenarios with digest '" + made_of +
+                   "', those here have " + found +
+                   ": what its draws were cannot be told; --motion asks for what their motions were alone");
+}
+
+std::map<std::string, scenarios::NumbersOfDraws> numbers_of(const Session& session, const Options& options,
+                                                            const scenarios::Results& results,
+                                                            const scenarios::Summary& summary) {
+  std::map<std::string, scenarios::NumbersOfDraws> out;
+  if (options.motion) {
+    const std::vector<scenarios::DrawValues> draws = results.draws();
+    for (const std::string& scenario : summary.scenarios) out[scenario] = scenarios::numbers_of_motion(draws, scenario);
+    return out;
+  }
+  const scenarios::DataRoot data = session.data();
+  require_same_data(results, data, options.database);
+  const std::vector<std::string> known = scenarios::scenario_names(data);
+  for (const std::string& scenario : summary.scenarios) {
+    if (std::find(known.begin(), known.end(), scenario) == known.end()) {
+      session.note(scenario + ": no scenario of the catalogue; left out");
+      continue;
+    }
+    out[scenario] = scenarios::numbers_of_draws(summary, scenarios::load_scenario(data, scenario));
+  }
+  return out;
+}
+
+/// The strongest, and of these the ones that chance does not explain; all where asked for.
+std::vector<Influence> shown(const Sensitivity& row, bool all) {
+  std::vector<Influence> out;
+  for (const Influence& each : row.influences) {
+    if (all || (out.size() < kShown && each.corrected < kRisk)) out.push_back(each);
+  }
+  return out;
+}
+
+std::string chance_text(double chance) {
+  return chance < 1e-4 ? "< 0.0001" : fmt::format("{:.4f}", chance);
+}
+
+std::vector<Table> tables_of(const std::vector<Sensitivity>& rows, bool all) {
+  std::vector<Table> tables;
+  const Sensitivity* open = nullptr;
+  for (const Sensitivity& row : rows) {
+    if (open == nullptr || open->scenario != row.scenario || open->kind != row.kind) {
+      tables.emplace_back(
+          fmt::format("{}: {}, what breaks it", row.scenario, to_string(row.kind)),
+          std::vector<std::string>{"method", "metric", "draws", "number", "first order", "rank correlation", "95 %",
+                                   "Holm p", "median, lowest quarter", "highest"});
+      tables.back().align_right_from(4);
+      open = &row;
+    }
+    const std::vector<Influence> strongest = shown(row, all);
+    if (strongest.empty())
+      tables.back().add_row({row.method, row.metric, std::to_string(row.draws), "(none is told from chance)"});
+    bool first = true;
+    for (const Influence& each : strongest) {
+      tables.back().add_row({first ? row.method : "", first ? row.metric : "", first ? std::to_string(row.draws) : "",
+                             each.number, fmt::format("{:.2f}", each.first_order.index),
+                             fmt::format("{:+.2f}", each.correlation.rho),
+                             fmt::format("[{:+.2f}, {:+.2f}]", each.correlation.low, each.correlation.high),
+                             chance_text(each.corrected), number_text(each.median_low), number_text(each.median_high)});
+      first = false;
+    }
+  }
+  return tables;
+}
+
+json finite(double value) {
+  return std::isfinite(value) ? json(value) : json();
+}
+
+json to_json(const std::vector<Sensitivity>& rows) {
+  json out = json::array();
+  for (const Sensitivity& row : rows) {
+    json numbers = json::array(), breaks = json::array();
+    for (const Influence& each : row.influences) {
+      numbers.push_back({{"number", each.number},
+                         {"first_order", each.first_order.index},
+                         {"classes", each.first_order.classes},
+                         {"rho", each.correlation.rho},
+                         {"rho_low", each.correlation.low},
+                         {"rho_high", each.correlation.high},
+                         {"holm_p", each.corrected},
+                         {"median_lowest_quarter", finite(each.median_low)},
+                         {"median_highest_quarter", finite(each.median_high)}});
+    }
+    for (const Influence& each : shown(row, false)) breaks.push_back(each.number);
+    out.push_back({{"scenario", row.scenario},
+                   {"kind", to_string(row.kind)},
+                   {"method", row.method},
+                   {"metric", row.metric},
+                   {"draws", row.draws},
+                   {"breaks_it", std::move(breaks)},
+                   {"numbers", std::move(numbers)}});
+  }
+  return out;
+}
+
+int sensitivity(const Session& session, const Options& options) {
+  const scenarios::Results results(options.database, scenarios::Results::Mode::read_only);
+  const scenarios::Summary summary = scenarios::summarize(results);
+  const std::vector<Sensitivity> rows = scenarios::sensitivities(
+      summary, numbers_of(session, options, results, summary), {options.methods, options.metrics});
+  if (rows.empty())
+    throw BadInput(options.database.string() + ": holds nothing to judge: it takes " +
+                   std::to_string(scenarios::kSensitivityDrawsMin) +
+                   " draws of a scenario with a number that is drawn");
+  session.print(tables_of(rows, options.all), {{"sensitivity", to_json(rows)}});
+  session.note("correlation above 0: the larger the number, the worse the score; docs/maths/statistics.md");
+  return kDone;
+}
+
+}  // namespace
+
+Action declare_sensitivity(CLI::App& app, const Session& session) {
+  auto options = std::make_shared<Options>();
+  app.add_option("DATABASE", options->database, "a results database, FILE.db")->required();
+  app.add_option("--method", options->methods, "a method; repeat for more [all that need no truth]")
+      ->allow_extra_args(false);
+  app.add_option("--metric", options->metrics, "a metric; repeat for more [the headline ones of the kind]")
+      ->allow_extra_args(false);
+  app.add_flag("--motion", options->motion, "against what the motions were like, not against what was drawn");
+  app.add_flag("--all", options->all, "every number, not the three strongest that chance does not explain");
+  return [&session, options] { return sensitivity(session, *options); };
+}
+
+}  // namespace tumble::tools
