@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/report/html.hpp"
+#include "tools/html/html.hpp"
 
 #include <gtest/gtest.h>
 

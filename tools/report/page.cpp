@@ -6,8 +6,8 @@
 #include <map>
 
 #include "report/embedded.hpp"
+#include "tools/html/html.hpp"
 #include "tools/report/certificate_html.hpp"
-#include "tools/report/html.hpp"
 #include "tools/report/score_html.hpp"
 
 namespace tumble::tools {

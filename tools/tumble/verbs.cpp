@@ -14,6 +14,7 @@ std::span<const Verb> verbs() {
       {"merge", "join results databases", declare_merge},
       {"report", "score tables and one self-contained page from a results database", declare_report},
       {"render", "pictures of a recording or of a draw", declare_render},
+      {"replay", "a page that plays a recording with its estimates, off line", declare_replay},
       {"gate", "sweep a suite's fixed seeds and hold them to the accepted run, draw by draw", declare_gate},
       {"triage", "replace one input at a time by its truth and say which one cures a failure", declare_triage},
       {"export", "a recording in somebody else's format", declare_export},

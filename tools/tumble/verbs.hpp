@@ -35,6 +35,7 @@ Action declare_sweep(CLI::App& options, const Session& session);
 Action declare_merge(CLI::App& options, const Session& session);
 Action declare_report(CLI::App& options, const Session& session);
 Action declare_render(CLI::App& options, const Session& session);
+Action declare_replay(CLI::App& options, const Session& session);
 Action declare_gate(CLI::App& options, const Session& session);
 Action declare_triage(CLI::App& options, const Session& session);
 Action declare_export(CLI::App& options, const Session& session);
