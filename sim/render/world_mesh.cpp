@@ -21,6 +21,14 @@ std::array<float, 4> colour_of(const mjModel& model, int geom) {
   return {rgba[0], rgba[1], rgba[2], rgba[3]};
 }
 
+/// A plane is the smallest field: four nodes, a cell.
+MeshPart as_field(const Tessellation& plane, MeshPart part) {
+  const auto& corners = plane.vertices_F_m;  // about the plane, to the left
+  part.vertices_m = {corners[0], corners[1], corners[3], corners[2]};
+  part.rows = part.columns = 2;
+  return part;
+}
+
 MeshPart part_of(const mjModel& model, int geom, const Eigen::Isometry3d& T_FS, int segments) {
   SceneGeometry scene;
   append_geom(model, geom, T_FS, 0, HeightFieldSides::open, scene);
@@ -28,6 +36,7 @@ MeshPart part_of(const mjModel& model, int geom, const Eigen::Isometry3d& T_FS, 
   part.rgba = colour_of(model, geom);
   for (const SceneShape& shape : scene.shapes) {
     Tessellation round = tessellate(shape.shape, segments, kUnbounded_m);
+    if (shape.shape.kind == ShapeKind::plane) return as_field(round, std::move(part));
     part.vertices_m = std::move(round.vertices_F_m);
     part.triangles = std::move(round.triangles);
   }
@@ -50,7 +59,9 @@ std::vector<MeshPart> body_mesh(const mjModel& model, const mjData& data, int bo
   for (int geom = 0; geom < model.ngeom; ++geom) {
     if (model.geom_bodyid[geom] != body || model.geom_group[geom] >= kGroupsSeen) continue;
     if (colour_of(model, geom)[3] == 0.0f) continue;
-    parts.push_back(part_of(model, geom, T_FW * geom_pose(data, geom), segments));
+    // a thin strut needs fewer pieces than a shell
+    const bool thin = model.geom_type[geom] == mjGEOM_CAPSULE;
+    parts.push_back(part_of(model, geom, T_FW * geom_pose(data, geom), thin ? (segments + 2) / 4 * 2 : segments));
   }
   return parts;
 }

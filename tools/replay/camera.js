@@ -35,12 +35,14 @@ class Camera {
     this.target = add(this.target, add(times(side, -right * size_m), times(above, up * size_m)));
     this.follows = false;
   }
-  matrices(aspect) {
+  // `beside`: share of the width, at the left, that is not seen.
+  matrices(aspect, beside) {
     const eye = this.eye();
     const view = lookingAt(eye, this.target, [0, 0, 1]);
     // a picture that is higher than wide shows as much to the sides
     const height_rad = aspect < 1 ? 2 * Math.atan(Math.tan(this.height_rad / 2) / Math.max(aspect, 0.55)) : this.height_rad;
     const projection = perspective(height_rad, aspect, Math.max(0.05, this.distance_m / 60), 400);
+    projection[8] = -beside;
     return { eye, view, projection, both: product(projection, view), height_rad };
   }
 }

@@ -49,7 +49,14 @@ function sayErrors(replay, t) {
   }
 }
 
-// By whom the points are placed: ours, the first estimate as a rule, since that is what is judged.
+// The estimate whose points lie nearest to the true surface; the truth's cloud shows the sensor alone.
+function bestPlacing(replay) {
+  const estimates = replay.actors.filter((actor) => actor.track && !actor.truth);
+  const off = (actor) => actor.errors ? actor.errors.reduce((sum, error) => sum + error, 0) : 0;
+  return estimates.sort((a, b) => off(a) - off(b))[0] || replay.actors.find((actor) => actor.track);
+}
+
+// By whom the points are placed, and what their colours say.
 function showPlacing(replay, chosen, changed) {
   const can = replay.actors.filter((actor) => actor.track);
   if (!replay.head.points.shown) return;
@@ -76,6 +83,13 @@ function showScale(replay, byError) {
   byId('scale-says').textContent = byError
     ? 'Each point of the lidar has the colour of its distance from the true surface.'
     : 'Nobody knows the true surface: each point has the colour of its height.';
+}
+
+// What this is, in one sentence.
+function leadOf(replay) {
+  const estimates = replay.actors.filter((actor) => !actor.truth).length;
+  if (!replay.actors.some((actor) => actor.truth)) return 'Nobody knows the truth here: what the methods make of the sensors.';
+  return estimates ? 'The true motion, and beside it what each method makes of the robot’s sensors.' : 'The true motion, and what the robot’s sensors say.';
 }
 
 function showFacts(replay) {

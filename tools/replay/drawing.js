@@ -13,9 +13,9 @@ class Stage {
     this.drawn = {};
     for (const name of Object.keys(SHADERS)) this[name] = compiled(gl, name);
     const { head, array } = replay;
-    this.hasWorld = head.world.parts.length > 0;
-    this.world = this.bodyOf(this.hasWorld ? meshOf(head.world, array('world.vertices'), array('world.corners'))
-      : emptyGround(lowest(replay) - head.robot_radius_m, 40));
+    this.world = this.bodyOf(head.world.parts.length ? meshOf(head.world, array('world.vertices'), array('world.corners'))
+      : emptyGround(boxOf(replay.actors.find((actor) => actor.track && actor.track.span()).track).low[2] - head.robot_radius_m, 40));
+    this.showsWorld = head.world.parts.length > 0 || !head.points.shown;  // points alone show what there is
     this.robot = this.bodyOf(meshOf(head.robot, array('robot.vertices'), array('robot.corners')));
     this.makePoints(array('points.places'), array('points.times'));
     for (const actor of replay.actors) this.makeActor(actor);
@@ -80,7 +80,7 @@ class Stage {
   makeActor(actor) {
     if (!actor.track) return;
     const gl = this.gl;
-    const numbers = ribbonOf(actor.track, 0.02 * this.replay.head.robot_radius_m);
+    const numbers = ribbonOf(actor.track, 0.02 * this.replay.head.robot_radius_m, surroundings(this.replay));
     actor.ribbon = gl.createVertexArray();
     actor.ribbonCount = numbers.length / 8;
     gl.bindVertexArray(actor.ribbon);
@@ -100,6 +100,7 @@ class Stage {
       texels.set(known ? [...track.place(k), 1] : [0, 0, 0, 0], 8 * k);
       texels.set(known ? track.attitude(k) : [0, 0, 0, 1], 8 * k + 4);
     }
+    actor.heights = heightsOf(actor, this.replay);
     actor.poses = this.texture(1024, rows, gl.RGBA32F, gl.FLOAT, texels, gl.NEAREST);
   }
 
@@ -136,6 +137,9 @@ class Stage {
     const height = Math.max(1, Math.round(this.canvas.clientHeight * ratio));
     if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height });
     this.ratio = ratio;
+    // what the panel covers counts as the picture's rim
+    const panel = document.getElementById('panel');
+    this.beside = this.canvas.clientWidth > 900 ? panel.offsetWidth / this.canvas.clientWidth : 0;
   }
 
   // Slow processors get a picture of fewer dots, then one without shadows.
@@ -155,14 +159,14 @@ class Stage {
   draw(t, camera, placed) {
     const gl = this.gl;
     this.resize();
-    const eye = camera.matrices(this.canvas.width / this.canvas.height), robots = this.robotsAt(t);
+    const eye = camera.matrices(this.canvas.width / this.canvas.height, this.beside), robots = this.robotsAt(t);
     const shadow = this.drawShadows(camera, robots);
     gl.viewport(0, 0, this.canvas.width, this.canvas.height);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.disable(gl.BLEND);
     this.drawSky(camera);
     this.beginSolids(eye, camera, shadow);
-    this.drawWorld(camera);
+    if (this.showsWorld) this.drawWorld(camera);
     this.drawOpaqueRobots(robots);
     this.drawPoints(t, eye, placed);
     this.drawRibbons(t, eye);
@@ -233,10 +237,12 @@ class Stage {
     const gl = this.gl, { at } = this.solid;
     gl.uniform4f(at.u_tint, 0, 0, 0, 0);
     gl.uniform1f(at.u_opacity, 1);
-    gl.uniform1f(at.u_cut_m, Math.max(0.35 * camera.distance_m, 2 * this.replay.head.robot_radius_m));
     gl.enable(gl.CULL_FACE);
+    // the ground gives way along the line of sight alone, all else more
+    gl.uniform1f(at.u_cut_m, this.replay.head.robot_radius_m);
     gl.uniform1f(at.u_grid, 1);
     this.drawRanges(this.world, (range) => range.ground);
+    gl.uniform1f(at.u_cut_m, Math.max(0.35 * camera.distance_m, 2 * this.replay.head.robot_radius_m));
     gl.uniform1f(at.u_grid, 0);
     this.drawRanges(this.world, (range) => !range.ground && !range.clear);
     gl.disable(gl.CULL_FACE);
@@ -322,15 +328,16 @@ class Stage {
     }
     gl.uniformMatrix4fv(at.u_camera, false, eye.both);
     gl.uniformMatrix4fv(at.u_mount, false, placed.mount);
+    gl.uniform3fv(at.u_eye, eye.eye);
     gl.uniform1ui(at.u_step_us, Math.round(head.pose_step_s * 1e6));
     gl.uniform1ui(at.u_last, placed.track.count - 1);
     gl.uniform1f(at.u_scale_m, head.points.scale_m);
     gl.uniform1f(at.u_now_us, t * 1e6);
-    gl.uniform1f(at.u_size, this.canvas.height * 0.026);
+    gl.uniform1f(at.u_largest, 6 * this.ratio);
+    gl.uniform1f(at.u_size, 0.022 * Math.min(this.canvas.height, 1.2 * this.canvas.width));
     gl.uniform1f(at.u_by_error, placed.errorBuffer ? 1 : 0);
     gl.uniform1f(at.u_glow, 0.85);
-    const z = lowest(this.replay);
-    gl.uniform2f(at.u_heights, z - 1, z + 5);
+    gl.uniform2f(at.u_heights, ...placed.heights);
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, placed.poses);
     gl.uniform1i(at.u_poses, 0);
@@ -353,21 +360,23 @@ function joined(ranges) {
   return out;
 }
 
-// The lowest place that any robot comes to.
-function lowest(replay) {
-  if (replay.lowest_m !== undefined) return replay.lowest_m;
-  let z = Infinity;
-  for (const actor of replay.actors) {
-    if (!actor.track || (replay.actors[0].track && actor !== replay.actors[0])) continue;
-    for (let k = 0; k < actor.track.count; ++k) if (actor.track.known(k)) z = Math.min(z, actor.track.places[3 * k + 2]);
+// Between which heights nine tenths of the points lie, as an actor places them.
+function heightsOf(actor, replay) {
+  const places = replay.array('points.places'), times = replay.array('points.times'), scale = replay.head.points.scale_m, heights = [];
+  for (let i = 0; i < times.length; i += Math.ceil(times.length / 4000)) {
+    const pose = actor.track.pose(times[i] * 1e-6);
+    if (!pose) continue;
+    const body = poseMatrix(pose.p, pose.q);
+    heights.push(pose.p[2] + scale * (body[2] * places[3 * i] + body[6] * places[3 * i + 1] + body[10] * places[3 * i + 2]));
   }
-  replay.lowest_m = z;
-  return z;
+  heights.sort((a, b) => a - b);
+  const at = (share) => heights[Math.floor(share * (heights.length - 1))] || 0;
+  return [at(0.05), Math.max(at(0.95), at(0.05) + 0.1)];
 }
 
-// From dark blue to yellow, even in lightness (cividis, Nunez, Anderton and Renslow 2018): for heights.
+// From violet to amber, rising in lightness and seen on a light and a dark ground (after matplotlib's plasma): for heights.
 const HEIGHT_COLOURS = Array.from({ length: 64 }, (unused, i) => {
-  const stops = [[0, 34, 78], [53, 69, 108], [102, 105, 112], [148, 142, 119], [200, 184, 102], [254, 232, 56]];
+  const stops = [[84, 70, 190], [142, 50, 170], [204, 71, 120], [237, 121, 83], [247, 165, 55]];
   const at = i / 63 * (stops.length - 1), k = Math.min(Math.floor(at), stops.length - 2);
   return mix(stops[k], stops[k + 1], at - k).map(Math.round);
 });

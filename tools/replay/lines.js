@@ -1,9 +1,12 @@
 // The ways as bands: two corners a sample, each with the direction ahead, its side and its time.
-function ribbonOf(track, least_m) {
+// A way ends where it leaves `box`: one that runs away would cross the whole picture.
+function ribbonOf(track, least_m, box) {
   const kept = [];
   for (let k = 0; k < track.count; ++k) {
     if (!track.known(k)) { kept.push(null); continue; }
-    const p = track.place(k), last = kept[kept.length - 1];
+    const p = track.place(k);
+    if (p.some((value, i) => value < box.low[i] || value > box.high[i])) break;
+    const last = kept[kept.length - 1];
     if (last && distance(last.p, p) < least_m) continue;
     kept.push({ p, t: k * track.step_s });
   }
@@ -19,4 +22,20 @@ function ribbonOf(track, least_m) {
     corner(kept[i], ahead, 1);
   }
   return new Float32Array(numbers);
+}
+
+// The first way's box, wider on every side by half of its diagonal and 1 m at least.
+function surroundings(replay) {
+  const { low, high } = boxOf(replay.actors.find((actor) => actor.track && actor.track.span()).track);
+  const margin = Math.max(1, 0.5 * distance(low, high));
+  return { low: low.map((value) => value - margin), high: high.map((value) => value + margin) };
+}
+
+function boxOf(track) {
+  const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+  for (let k = 0; k < track.count; ++k) {
+    if (!track.known(k)) continue;
+    track.place(k).forEach((value, i) => { low[i] = Math.min(low[i], value); high[i] = Math.max(high[i], value); });
+  }
+  return { low, high };
 }

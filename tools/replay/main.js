@@ -6,8 +6,7 @@ class Player {
     this.strip = new Strip(byId('strip'), replay);
     this.camera = firstCamera(replay);
     this.stage = null;
-    // ours is the first estimate as a rule; the truth's cloud shows the sensor alone
-    this.placed = replay.actors.find((actor) => actor.track && !actor.truth) || replay.actors.find((actor) => actor.track);
+    this.placed = bestPlacing(replay);
     this.begin_s = Math.max(0, this.head.from_s - 0.4);
     this.end_s = Math.min(this.head.end_s, this.head.to_s + 0.8);
     this.t = this.begin_s;
@@ -22,6 +21,7 @@ class Player {
 
   begin() {
     document.title = byId('title').textContent = this.head.title;
+    byId('lead').textContent = leadOf(this.replay);
     showActors(this.replay, () => this.redrawStrip());
     if (this.placed) showPlacing(this.replay, this.placed, (actor) => this.place(actor));
     showFacts(this.replay);
@@ -166,11 +166,7 @@ class Player {
     return null;
   }
   wholeWay() {
-    const track = this.replay.actors.find((actor) => actor.track).track, low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
-    for (let k = 0; k < track.count; k += 5) {
-      if (!track.known(k)) continue;
-      track.place(k).forEach((value, i) => { low[i] = Math.min(low[i], value); high[i] = Math.max(high[i], value); });
-    }
+    const { low, high } = boxOf(this.replay.actors.find((actor) => actor.track && actor.track.span()).track);
     return { middle: mix(low, high, 0.5), size_m: distance(low, high) };
   }
 

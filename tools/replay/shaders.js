@@ -84,7 +84,8 @@ const SHADERS = {
       }
       float sun = max(dot(normal, u_sun), 0.0) * lit();
       float sky = 0.5 + 0.5 * normal.z;
-      vec3 light = vec3(1.0, 0.95, 0.86) * (0.85 * sun) + mix(vec3(0.22, 0.20, 0.18), vec3(0.46, 0.52, 0.60), sky);
+      vec3 light = vec3(1.0, 0.95, 0.86) * (0.85 * sun) + mix(vec3(0.24, 0.22, 0.20), vec3(0.46, 0.52, 0.60), sky);
+      light += 0.16 * max(dot(normal, normalize(u_eye - v_place)), 0.0);  // from the eye: no side is black
       vec3 colour = albedo * light * u_light;
       colour = mix(colour, vec3(u_light), grid);
       o_colour = vec4(hazed(colour, v_place), u_opacity * v_colour.a);
@@ -133,8 +134,9 @@ const SHADERS = {
     layout(location = 2) in float a_error;
     uniform highp sampler2D u_poses;   // place and attitude, a pose in two texels
     uniform mat4 u_camera, u_mount;
+    uniform vec3 u_eye;
     uniform uint u_step_us, u_last;
-    uniform float u_scale_m, u_now_us, u_size, u_by_error;
+    uniform float u_scale_m, u_now_us, u_size, u_largest, u_by_error;
     uniform vec2 u_heights;
     out float v_share, v_fresh, v_known;
     vec4 texel(uint i) { return texelFetch(u_poses, ivec2(int(i & 1023u), int(i >> 10)), 0); }
@@ -152,8 +154,9 @@ const SHADERS = {
       v_fresh = exp(-6.0 * max(age_s, 0.0));
       v_known = u_by_error > 0.5 && a_error > 254.5 ? 0.0 : 1.0;
       v_share = u_by_error > 0.5 ? a_error / 254.0 : clamp((place.z - u_heights.x) / (u_heights.y - u_heights.x), 0.0, 1.0);
+      place += 0.03 * normalize(u_eye - place);  // in front of the surface that it lies on
       gl_Position = lost ? vec4(2.0, 2.0, 2.0, 1.0) : u_camera * vec4(place, 1.0);
-      gl_PointSize = clamp(u_size * (1.0 + 0.9 * v_fresh) / max(gl_Position.w, 0.1), 1.6, 9.0);
+      gl_PointSize = clamp(u_size * (1.0 + 0.9 * v_fresh) / max(gl_Position.w, 0.1), 1.6, u_largest);
     }`, `
     in float v_share, v_fresh, v_known;
     uniform sampler2D u_colours;

@@ -120,8 +120,8 @@ class Strip {
   drawLines(pen) {
     const shown = this.replay.actors.filter((actor) => actor.rates && actor.shown);
     for (const actor of shown.filter((one) => one.truth)) this.drawLine(pen, actor.rates, actor.css, 3.2);
-    this.drawLine(pen, this.gyro, this.colour('--gyro'), 1.3);
-    for (const actor of shown.filter((one) => !one.truth)) this.drawLine(pen, actor.rates, actor.css, 1.5);
+    for (const actor of shown.filter((one) => !one.truth)) this.drawLine(pen, actor.rates, actor.css, 1.8);
+    this.drawLine(pen, this.gyro, this.colour('--gyro'), 1.1);
   }
   drawLine(pen, rates, colour, width) {
     pen.strokeStyle = colour;
