@@ -72,6 +72,10 @@ TEST_P(OnRobot, RunLeavesEverythingAndScoresIt) {
   for (const char* picture : {"scene.png", "film.png"}) {
     EXPECT_THAT(read_file(folder / "snapshots" / picture), StartsWith("\x89PNG")) << picture;
   }
+  const std::string replay = read_file(folder / "replay.html");
+  EXPECT_THAT(replay, StartsWith("<!DOCTYPE html>"));
+  EXPECT_GT(replay.size(), 300'000u);
+  EXPECT_LE(replay.size(), 3'000'000u);
 }
 
 TEST_P(OnRobot, SameSeedGivesTheSameDigestForAnyThreads) {
