@@ -16,8 +16,9 @@ struct MeshPart {
   std::array<float, 4> rgba = {1, 1, 1, 1};
   std::vector<Eigen::Vector3f> vertices_m;
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  /// Of a height field, and of a plane as one of a single cell: its nodes stand row by row in `vertices_m`, x grows along a row and y from row to row, and
-  /// `triangles` is empty: each cell is two, cut from (row, column) to (row + 1, column + 1). 0 of all else.
+  /// Of a height field, and of a plane as one of a single cell: its nodes stand row by row in `vertices_m`, x grows
+  /// along a row and y from row to row, and `triangles` is empty: each cell is two, cut from (row, column) to (row + 1,
+  /// column + 1). 0 of all else.
   int rows = 0, columns = 0;
 };
 

@@ -12,7 +12,7 @@ namespace tumble::tools {
 inline constexpr std::size_t kRunReplayMethods = 6;
 
 /// Indices of the methods of a run that its replay shows, in their order: those that ended with poses or rates and were
-/// not given the truth; of each kind first the baseline and the first of ours, then the others.
+/// not given the truth; first the baseline and `tumble` of each kind, then what has poses, then the others.
 std::vector<std::size_t> shown_methods(const scenarios::RunResult& run);
 
 /// A draw that has been run, with its truth.
