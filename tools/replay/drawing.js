@@ -139,7 +139,7 @@ class Stage {
     this.ratio = ratio;
     // what the panel covers counts as the picture's rim
     const panel = document.getElementById('panel');
-    this.beside = this.canvas.clientWidth > 900 ? panel.offsetWidth / this.canvas.clientWidth : 0;
+    this.beside = this.canvas.clientWidth > 760 ? panel.offsetWidth / this.canvas.clientWidth : 0;
   }
 
   // Slow processors get a picture of fewer dots, then one without shadows.
@@ -242,7 +242,7 @@ class Stage {
     gl.uniform1f(at.u_cut_m, this.replay.head.robot_radius_m);
     gl.uniform1f(at.u_grid, 1);
     this.drawRanges(this.world, (range) => range.ground);
-    gl.uniform1f(at.u_cut_m, Math.max(0.35 * camera.distance_m, 2 * this.replay.head.robot_radius_m));
+    gl.uniform1f(at.u_cut_m, Math.max(0.18 * camera.distance_m, 1.5 * this.replay.head.robot_radius_m));
     gl.uniform1f(at.u_grid, 0);
     this.drawRanges(this.world, (range) => !range.ground && !range.clear);
     gl.disable(gl.CULL_FACE);

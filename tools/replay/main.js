@@ -154,6 +154,7 @@ class Player {
   }
   redrawStrip() {
     this.strip.prepare();
+    this.strip.draw(this.t);  // at once: a canvas of another size is empty
     this.stale = true;
   }
 
