@@ -3,12 +3,16 @@ const SUN = unit([-0.45, -0.35, 0.82]);
 
 class Stage {
   constructor(canvas, replay) {
-    const gl = canvas.getContext('webgl2', { antialias: true, alpha: false, powerPreference: 'high-performance' });
+    const software = drawsInSoftware();
+    const gl = canvas.getContext('webgl2', { antialias: !software, alpha: false, powerPreference: 'high-performance' });
     if (!gl) throw new Error('this browser draws no WebGL 2, which the picture needs');
     this.gl = gl;
     this.canvas = canvas;
     this.replay = replay;
-    this.sharpness = 1;  // of the picture, against the screen's own
+    // a picture that stands may take its time; without a graphics card its edges are smoothed by more dots
+    this.still = { shadows: true, sharpness: software ? 1.6 : 1, pointStep: 1 };
+    this.moving = { shadows: true, sharpness: 1, pointStep: 1 };  // sharpness: against the screen's own; every so many points
+    this.eased = 0;
     this.shadowSide = 2048;
     this.drawn = {};
     for (const name of Object.keys(SHADERS)) this[name] = compiled(gl, name);
@@ -24,6 +28,7 @@ class Stage {
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.LEQUAL);
     if (gl.getError() !== gl.NO_ERROR) throw new Error('WebGL refuses the data of this page');
+    if (software) this.easier();
   }
 
   buffer(data, target = this.gl.ARRAY_BUFFER) {
@@ -55,12 +60,8 @@ class Stage {
     if (!this.times.length) return;
     this.cloud = gl.createVertexArray();
     gl.bindVertexArray(this.cloud);
-    this.buffer(places);
-    gl.enableVertexAttribArray(0);
-    gl.vertexAttribPointer(0, 3, gl.SHORT, false, 0, 0);
-    this.buffer(this.times);
-    gl.enableVertexAttribArray(1);
-    gl.vertexAttribIPointer(1, 1, gl.UNSIGNED_INT, 0, 0);
+    this.placeBuffer = this.buffer(places);
+    this.timeBuffer = this.buffer(this.times);
     gl.bindVertexArray(null);
     this.errorColours = this.texture(64, 1, gl.RGBA8, gl.UNSIGNED_BYTE, new Uint8Array(this.replay.head.error_colours.flatMap((c) => [...c, 255])));
     this.heightColours = this.texture(64, 1, gl.RGBA8, gl.UNSIGNED_BYTE, new Uint8Array(HEIGHT_COLOURS.flatMap((c) => [...c, 255])));
@@ -119,7 +120,6 @@ class Stage {
     gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, this.depths, 0);
     gl.drawBuffers([gl.NONE]);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    this.shadows = true;
   }
 
   // The page's own colours, light or dark.
@@ -132,7 +132,7 @@ class Stage {
   }
 
   resize() {
-    const ratio = Math.min(window.devicePixelRatio || 1, 2) * this.sharpness;
+    const ratio = Math.min(window.devicePixelRatio || 1, 2) * this.effort.sharpness;
     const width = Math.max(1, Math.round(this.canvas.clientWidth * ratio));
     const height = Math.max(1, Math.round(this.canvas.clientHeight * ratio));
     if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height });
@@ -142,10 +142,10 @@ class Stage {
     this.beside = this.canvas.clientWidth > 760 ? panel.offsetWidth / this.canvas.clientWidth : 0;
   }
 
-  // Slow processors get a picture of fewer dots, then one without shadows.
+  // A slow processor draws no shadows, then a coarser picture, then every other point, then both more so.
   easier() {
-    if (this.sharpness > 0.55) this.sharpness *= 0.75;
-    else this.shadows = false;
+    const steps = [{ shadows: false }, { sharpness: 0.75 }, { pointStep: 2 }, { sharpness: 0.6, pointStep: 4 }];
+    if (this.eased < steps.length) Object.assign(this.moving, steps[this.eased++]);
   }
 
   // Robots that are there now, the truth's first.
@@ -156,8 +156,9 @@ class Stage {
       .map((one) => Object.assign(one, { body: poseMatrix(one.pose.p, one.pose.q) }));
   }
 
-  draw(t, camera, placed) {
+  draw(t, camera, placed, moving) {
     const gl = this.gl;
+    this.effort = moving ? this.moving : this.still;
     this.resize();
     const eye = camera.matrices(this.canvas.width / this.canvas.height, this.beside), robots = this.robotsAt(t);
     const shadow = this.drawShadows(camera, robots);
@@ -178,7 +179,7 @@ class Stage {
     const gl = this.gl, half = Math.min(14, 1.6 * camera.distance_m + 2);
     const light = lookingAt(add(camera.target, times(SUN, 1)), camera.target, [0, 0, 1]);
     const matrix = product(parallel(half, 3 * half), light);
-    if (!this.shadows) return matrix;
+    if (!this.effort.shadows) return matrix;
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.shadowBuffer);
     gl.viewport(0, 0, this.shadowSide, this.shadowSide);
     gl.clear(gl.DEPTH_BUFFER_BIT);
@@ -227,7 +228,7 @@ class Stage {
     gl.uniform1f(at.u_haze_m, 45 + 2 * camera.distance_m);
     gl.uniform3fv(at.u_sun, SUN);
     gl.uniform1f(at.u_light, this.light);
-    gl.uniform1f(at.u_shadows, this.shadows ? 1 : 0);
+    gl.uniform1f(at.u_shadows, this.effort.shadows ? 1 : 0);
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, this.depths);
     gl.uniform1i(at.u_depths, 0);
@@ -318,11 +319,18 @@ class Stage {
     if (!placed || !placed.poses || !this.times.length) return;
     const gl = this.gl, { program, at } = this.points, head = this.replay.head;
     gl.useProgram(program);
+    const step = this.effort.pointStep;
     gl.bindVertexArray(this.cloud);
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.placeBuffer);
+    gl.enableVertexAttribArray(0);
+    gl.vertexAttribPointer(0, 3, gl.SHORT, false, 6 * step, 0);
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.timeBuffer);
+    gl.enableVertexAttribArray(1);
+    gl.vertexAttribIPointer(1, 1, gl.UNSIGNED_INT, 4 * step, 0);
     if (placed.errorBuffer) {
       gl.bindBuffer(gl.ARRAY_BUFFER, placed.errorBuffer);
       gl.enableVertexAttribArray(2);
-      gl.vertexAttribPointer(2, 1, gl.UNSIGNED_BYTE, false, 0, 0);
+      gl.vertexAttribPointer(2, 1, gl.UNSIGNED_BYTE, false, step, 0);
     } else {
       gl.disableVertexAttribArray(2);
     }
@@ -344,9 +352,18 @@ class Stage {
     gl.activeTexture(gl.TEXTURE1);
     gl.bindTexture(gl.TEXTURE_2D, placed.errorBuffer ? this.errorColours : this.heightColours);
     gl.uniform1i(at.u_colours, 1);
-    this.drawn.points = countUpTo(this.times, t * 1e6);
+    this.drawn.points = Math.floor(countUpTo(this.times, t * 1e6) / step);
     gl.drawArrays(gl.POINTS, 0, this.drawn.points);
   }
+}
+
+// Whether the processor draws, and no graphics card: smooth edges cost it four times the dots.
+function drawsInSoftware() {
+  const gl = document.createElement('canvas').getContext('webgl2');
+  const names = gl && gl.getExtension('WEBGL_debug_renderer_info');
+  const found = Boolean(names) && /swiftshader|llvmpipe|software|basic render/i.test(gl.getParameter(names.UNMASKED_RENDERER_WEBGL));
+  if (gl && gl.getExtension('WEBGL_lose_context')) gl.getExtension('WEBGL_lose_context').loseContext();
+  return found;
 }
 
 // Neighbours of one sort are drawn at once.

@@ -15,6 +15,7 @@ class Player {
     if (!this.playing) this.t = 0.5 * (this.head.from_s + this.head.to_s);
     this.rest_s = 0;
     this.stale = true;
+    this.movedAt = -1e9;
     this.slow = 0;
     this.frames = 0;
   }
@@ -50,7 +51,7 @@ class Player {
 
   connect() {
     const again = () => { this.stale = true; };
-    steerCamera(byId('scene'), this.camera, again);
+    steerCamera(byId('scene'), this.camera, () => this.moved());
     scrubStrip(this.strip, (t) => this.goTo(t));
     byId('play').addEventListener('click', () => this.setPlaying(!this.playing));
     byId('camera').addEventListener('click', () => this.setFollowing(!this.camera.follows));
@@ -115,6 +116,11 @@ class Player {
     this.t = Math.min(this.head.end_s, Math.max(0, t));
     if (this.t < this.begin_s || this.t > this.end_s) { this.begin_s = 0; this.end_s = this.head.end_s; }
     this.rest_s = 0;
+    this.moved();
+  }
+  // For a moment pictures follow each other, then the last one may take its time.
+  moved() {
+    this.movedAt = performance.now();
     this.stale = true;
   }
   setPlaying(playing) {
@@ -189,19 +195,20 @@ class Player {
     const robot = this.followed();
     if (this.playing) this.camera.drift(elapsed_s);
     if (robot) this.camera.follow(robot.p, elapsed_s);
-    if (this.stale) this.draw();
-    this.stale = Boolean(robot) && this.camera.follows && distance(this.camera.target, robot.p) > 1e-3;
+    const following = Boolean(robot) && this.camera.follows && distance(this.camera.target, robot.p) > 1e-3;
+    const moving = this.playing || following || now - this.movedAt < 250;
+    if (this.stale) this.draw(moving);
+    this.stale = moving;
     requestAnimationFrame((next) => this.frame(next));
   }
 
-  draw() {
+  draw(moving) {
     const root = document.documentElement;
     if (this.stage) {
-      const began = performance.now();
       try {
-        this.stage.draw(this.t, this.camera, this.placed);
+        this.stage.draw(this.t, this.camera, this.placed, moving);
         // software that draws a frame in the processor answers late: it gets an easier picture
-        if (this.playing && ++this.frames < 40) this.watch(performance.now() - began);
+        if (this.playing && ++this.frames < 40) this.watch();
         root.dataset.state = 'drawn';
         root.dataset.points = String(this.stage.drawn.points);
       } catch (error) {

@@ -203,7 +203,7 @@ Replay replay_of(const ReplayInput& input, const ReplayLimits& limits) {
   replay.title = input.title;
   replay.facts = input.facts;
   const std::vector<Motion> motions = motions_of(input, input.truth == nullptr ? 0 : input.truth->period_ns);
-  replay.end_ns = last_instant(*input.sensors, input.truth, motions);
+  replay.end_ns = std::max<std::int64_t>(last_instant(*input.sensors, input.truth, motions), 1);  // of a single pose
   replay.actors = actors_of(input);
   add_rates(input, limits, replay);
   add_tracks(motions, limits, replay);
