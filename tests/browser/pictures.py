@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pictures that a browser has left: PNG of 8 bits a channel, RGB or RGBA, read without further packages."""
-import pathlib
+"""Pictures of a browser: PNG of 8 bits a channel, RGB or RGBA, read without further packages."""
 import struct
 import zlib
 
 
-def read_png(path: pathlib.Path) -> tuple[int, int, list[bytes]]:
+def read_png(data: bytes) -> tuple[int, int, list[bytes]]:
     """Width, height and per row its pixels as RGB triples (PNG specification, third edition, 9: filters)."""
-    data = path.read_bytes()
-    assert data[:8] == b"\x89PNG\r\n\x1a\n", path
+    assert data[:8] == b"\x89PNG\r\n\x1a\n", "no PNG"
     at, packed = 8, b""
     width = height = channels = 0
     while at < len(data):
@@ -59,8 +57,8 @@ def bytes_of_rgb(row: bytes, channels: int) -> bytes:
 
 
 class Picture:
-    def __init__(self, path: pathlib.Path):
-        self.width, self.height, self.rows = read_png(path)
+    def __init__(self, png: bytes):
+        self.width, self.height, self.rows = read_png(png)
 
     def pixels(self, left: float, top: float, right: float, bottom: float):
         """RGB triples within shares of the picture."""

@@ -117,6 +117,7 @@ class Player {
     if (this.t < this.begin_s || this.t > this.end_s) { this.begin_s = 0; this.end_s = this.head.end_s; }
     this.rest_s = 0;
     this.moved();
+    this.say();
   }
   // For a moment pictures follow each other, then the last one may take its time.
   moved() {
@@ -210,6 +211,7 @@ class Player {
         // software that draws a frame in the processor answers late: it gets an easier picture
         if (this.playing && ++this.frames < 40) this.watch();
         root.dataset.state = 'drawn';
+        root.dataset.moving = String(moving);
         root.dataset.points = String(this.stage.drawn.points);
       } catch (error) {
         this.stage = null;
