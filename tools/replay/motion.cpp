@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "scenarios/scoring/truth_track.hpp"
+#include "tools/pictures/paths.hpp"
 
 namespace tumble::tools {
 
@@ -30,27 +31,6 @@ PoseState state_of(std::int64_t time_ns, const Isometry3d& T_WA) {
   state.p_WA_m = T_WA.translation();
   state.q_WA = Eigen::Quaterniond(T_WA.linear());
   return state;
-}
-
-/// Whether the recording has the frame that an estimate's poses belong to, and its mounting as it was given.
-bool given_mounting(Frame frame, const sim::Sensors& sensors, const sim::Truth* truth, Isometry3d& T_BA) {
-  T_BA = Isometry3d::Identity();
-  switch (frame) {
-    case Frame::body:
-      return true;
-    case Frame::centre:
-      if (truth != nullptr) T_BA.translation() = truth->p_BG_m;
-      return true;
-    case Frame::imu:
-      if (sensors.imus.empty()) return false;
-      T_BA = sensors.imus.front().T_BI;
-      return truth == nullptr || !truth->imus.empty();
-    case Frame::lidar:
-      if (sensors.lidars.empty()) return false;
-      T_BA = sensors.lidars.front().T_BL;
-      return truth == nullptr || !truth->lidars.empty();
-  }
-  return false;
 }
 
 bool is_finite(const PoseState& state) {

@@ -9,21 +9,19 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "scenarios/errors.hpp"
 #include "scenarios/methods/estimate_file.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "sim/lidar/surface.hpp"
 #include "tools/replay/page.hpp"
 #include "tools/tumble/arguments.hpp"
+#include "tools/tumble/given_estimate.hpp"
 #include "tools/tumble/recording_info.hpp"
 #include "tools/tumble/verbs.hpp"
 
 namespace tumble::tools {
 
 namespace {
-
-using scenarios::BadInput;
 
 struct Options {
   std::filesystem::path recording, page;
@@ -41,26 +39,6 @@ struct Content {
   std::list<scenarios::Estimate> estimates;
 };
 
-/// The frame of the poses in a TUM file: as named, else of the first IMU, of the body where the recording has none.
-scenarios::Frame frame_of(const std::string& name, const sim::Sensors& sensors) {
-  using scenarios::Frame;
-  if (name.empty()) return sensors.imus.empty() ? Frame::body : Frame::imu;
-  std::vector<std::string> known;
-  for (const Frame frame : {Frame::imu, Frame::lidar, Frame::body, Frame::centre}) {
-    if (name == to_string(frame)) return frame;
-    known.emplace_back(to_string(frame));
-  }
-  require_known("frame", name, known);
-  return Frame::imu;
-}
-
-void require_own(const std::filesystem::path& estimate, const sim::Sensors& sensors) {
-  const std::string made_from = scenarios::estimated_sensors(estimate);
-  if (made_from.empty() || made_from == scenarios::digest(sensors, nullptr)) return;
-  throw BadInput(estimate.string() + ": was made from another recording (its sensors have the digest " + made_from +
-                 ")");
-}
-
 /// The truth is opened for people's eyes; no estimate is made here.
 void load_recording(const Session& session, const Options& options, const scenarios::RecordingInfo& info,
                     Content& content) {
@@ -75,9 +53,9 @@ void load_estimates(const Session& session, const Options& options, Content& con
   for (const std::filesystem::path& path : options.estimates) {
     scenarios::Kind kind;
     std::string method;
-    require_own(path, content.sensors);
+    require_own(path, options.recording, content.sensors);
     scenarios::Estimate estimate =
-        scenarios::read_estimate(path, kind, method, frame_of(options.frame, content.sensors));
+        scenarios::read_estimate(path, kind, method, frame_of(options.frame, !content.sensors.imus.empty()));
     if (estimate.poses.empty() && estimate.rates.empty()) {
       session.note(path.string() + ": left out, it has neither poses nor rates");
       continue;
