@@ -12,13 +12,6 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-Isometry3d geom_pose(const mjData& data, int geom) {
-  Isometry3d T_WS = Isometry3d::Identity();
-  T_WS.linear() = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(data.geom_xmat + 9 * geom);
-  T_WS.translation() = Eigen::Map<const Vector3d>(data.geom_xpos + 3 * geom);
-  return T_WS;
-}
-
 bool is_seen(const mjModel& model, int geom) {
   const int material = model.geom_matid[geom];
   const float alpha = material >= 0 ? model.mat_rgba[4 * material + 3] : model.geom_rgba[4 * geom + 3];
@@ -147,6 +140,21 @@ bool primitive_kind(int type, ShapeKind& kind) {
   }
 }
 
+engine::DataPtr resting_data(const mjModel& model) {
+  engine::DataPtr data(mj_makeData(&model));
+  mj_kinematics(&model, data.get());
+  return data;
+}
+
+}  // namespace
+
+Isometry3d geom_pose(const mjData& data, int geom) {
+  Isometry3d T_WS = Isometry3d::Identity();
+  T_WS.linear() = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(data.geom_xmat + 9 * geom);
+  T_WS.translation() = Eigen::Map<const Vector3d>(data.geom_xpos + 3 * geom);
+  return T_WS;
+}
+
 void append_geom(const mjModel& model, int geom, const Isometry3d& T_FS, std::int32_t surface_id,
                  HeightFieldSides sides, SceneGeometry& scene) {
   const float reflectivity = geom_reflectivity(model, geom);
@@ -168,14 +176,6 @@ void append_geom(const mjModel& model, int geom, const Isometry3d& T_FS, std::in
                            "' has a type that no ray can be cast against: " + std::to_string(type));
   }
 }
-
-engine::DataPtr resting_data(const mjModel& model) {
-  engine::DataPtr data(mj_makeData(&model));
-  mj_kinematics(&model, data.get());
-  return data;
-}
-
-}  // namespace
 
 float geom_reflectivity(const mjModel& model, int geom) {
   constexpr double kLuminance[3] = {0.2126, 0.7152, 0.0722};

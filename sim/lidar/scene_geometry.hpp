@@ -50,6 +50,14 @@ SceneGeometry static_geometry(const engine::World& world, HeightFieldSides sides
 /// origin of L inside is the lidar's own housing or a shell around it: transparent.
 SceneGeometry cage_geometry(const engine::World& world, const Eigen::Isometry3d& T_BL);
 
+/// Pose of a geom in W where the data's kinematics have it.
+Eigen::Isometry3d geom_pose(const mjData& data, int geom);
+
+/// Adds one geom, whatever it is for, in the axes F that `T_FS` leads to from its own. Throws InvalidSituation on a
+/// type that has no surface here (SDF).
+void append_geom(const mjModel& model, int geom, const Eigen::Isometry3d& T_FS, std::int32_t surface_id,
+                 HeightFieldSides sides, SceneGeometry& scene);
+
 /// Diffuse reflectivity of a geom: the luminance (ITU-R BT.709) of its colour times the mean colour of its texture,
 /// within 0.05..0.95. Colour stands for 905 nm here, which real surfaces do not obey.
 float geom_reflectivity(const mjModel& model, int geom);

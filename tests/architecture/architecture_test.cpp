@@ -66,9 +66,10 @@ const std::vector<Rule>& rules() {
 
 /// Headers of sim that others include must not bring mujoco.h, Embree or OSMesa with them.
 const std::vector<std::string> kPublicSimHeaders = {
-    "sim/parameters.hpp",  "sim/built_situation.hpp", "sim/situation.hpp",     "sim/recording.hpp",
-    "sim/simulate.hpp",    "sim/random/stream.hpp",   "sim/lidar/surface.hpp", "sim/render/renderer.hpp",
-    "sim/trial/trial.hpp", "sim/trial/ray_trial.hpp", "sim/imu/allan.hpp",     "sim/imu/imu_simulation.hpp"};
+    "sim/parameters.hpp",        "sim/built_situation.hpp", "sim/situation.hpp",       "sim/recording.hpp",
+    "sim/simulate.hpp",          "sim/random/stream.hpp",   "sim/lidar/surface.hpp",   "sim/render/renderer.hpp",
+    "sim/render/world_mesh.hpp", "sim/trial/trial.hpp",     "sim/trial/ray_trial.hpp", "sim/imu/allan.hpp",
+    "sim/imu/imu_simulation.hpp"};
 
 std::vector<std::string> includes_of(const fs::path& file) {
   static const std::regex pattern(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");

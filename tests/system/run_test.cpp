@@ -72,6 +72,10 @@ TEST_P(OnRobot, RunLeavesEverythingAndScoresIt) {
   for (const char* picture : {"scene.png", "film.png"}) {
     EXPECT_THAT(read_file(folder / "snapshots" / picture), StartsWith("\x89PNG")) << picture;
   }
+  const std::string replay = read_file(folder / "replay.html");
+  EXPECT_THAT(replay, StartsWith("<!DOCTYPE html>"));
+  EXPECT_GT(replay.size(), 300'000u);
+  EXPECT_LE(replay.size(), 3'000'000u);
 }
 
 TEST_P(OnRobot, SameSeedGivesTheSameDigestForAnyThreads) {
@@ -188,6 +192,36 @@ TEST(Render, WritesAFilmStripAndADraw) {
       {"render", "hill", "--seed", "1", "--width", "320", "--height", "240", "-o", (folder / "draw.png").string()});
   ASSERT_EQ(draw.status, 0) << draw.err;
   EXPECT_THAT(read_file(folder / "draw.png"), StartsWith("\x89PNG"));
+}
+
+TEST(Replay, MakesAPageOfARecordingWithItsEstimates) {
+  const fs::path run = shared_run("roll");
+  const fs::path page = test_folder() / "roll.html";
+  const Ended ended =
+      run_program({"replay", (run / "recording.h5").string(), (run / "estimates" / "position-rolling").string(),
+                   (run / "estimates" / "rate-raw").string(), "--points", "5000", "-o", page.string(), "--json"});
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  const json said = json_of(ended);
+  const std::string html = read_file(page);
+  EXPECT_EQ(said["bytes"], html.size());
+  EXPECT_EQ(said["points"]["shown"], 5000);
+  EXPECT_GT(said["points"]["of"], 5000);
+  ASSERT_EQ(said["paths"].size(), 3u);
+  EXPECT_EQ(said["paths"][1]["path"], "position/rolling");
+  for (const char* held : {"\"title\":\"roll, seed 1\"", "position/rolling", "rate/raw", "actor1.errors"})
+    EXPECT_THAT(html, HasSubstr(held));
+}
+
+TEST(Replay, RefusesWhatItCannotShow) {
+  const fs::path run = shared_run("roll"), folder = test_folder();
+  const std::string recording = (run / "recording.h5").string();
+  EXPECT_EQ(run_program({"replay", recording, "-o", recording}).status, 2) << "over its input";
+  EXPECT_EQ(run_program({"replay", (folder / "absent.h5").string(), "-o", (folder / "a.html").string()}).status, 2);
+  const Ended other = run_program({"replay", recording, (shared_run("hill") / "estimates" / "slam-tumble").string(),
+                                   "-o", (folder / "a.html").string()});
+  EXPECT_EQ(other.status, 2);
+  EXPECT_THAT(other.err, HasSubstr("another recording"));
+  EXPECT_FALSE(fs::exists(folder / "a.html"));
 }
 
 // the scenario alone: seed 1, ours beside the baseline, a folder named after it, and what to do next

@@ -33,6 +33,7 @@ TEST(Trouble, TruncatedRecordingIsRecognised) {
     expect_one_line(run_program({"estimate", cut.string(), "--method", "rate/raw", "-o", (folder / "e").string()}),
                     "cut.h5");
     expect_one_line(run_program({"render", cut.string(), "-o", (folder / "p.png").string()}), "cut.h5");
+    expect_one_line(run_program({"replay", cut.string(), "-o", (folder / "p.html").string()}), "cut.h5");
   }
   EXPECT_FALSE(fs::exists(folder / "e")) << "nothing is left of an estimate that could not begin";
 }
@@ -49,6 +50,8 @@ TEST(Trouble, FolderThatCannotBeWritten) {
       "file/below");
   expect_one_line(run_program({"sweep", "roll", "--seeds", "1", "--db", below + "/x.db"}), "file/below");
   expect_one_line(run_program({"render", (shared_run("roll") / "recording.h5").string(), "-o", below + "/p.png"}),
+                  "file/below");
+  expect_one_line(run_program({"replay", (shared_run("roll") / "recording.h5").string(), "-o", below + "/p.html"}),
                   "file/below");
 }
 

@@ -31,7 +31,7 @@ TEST_P(EachVerb, RefusesAnUnknownOptionInOneLine) {
 
 INSTANTIATE_TEST_SUITE_P(Program, EachVerb,
                          testing::Values("list", "run", "record", "estimate", "score", "sweep", "merge", "report",
-                                         "compare", "sensitivity", "render", "certify", "gate", "triage", "export",
+                                         "compare", "sensitivity", "render", "replay", "certify", "gate", "triage", "export",
                                          "import"));
 
 struct Wrong {

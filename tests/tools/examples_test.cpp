@@ -118,6 +118,8 @@ class ExamplesTest : public scenarios::testing::TemporaryFolder {
     plot.lines[0].y[1] = std::nan("");
     plot.lines[0].x[2] = 0.1;
     example.plots = {plot};
+    example.replay = replay_file(example);
+    example.replay_page = "<!DOCTYPE html>";
     return example;
   }
   void leave(const std::vector<Example>& examples) {
@@ -142,7 +144,25 @@ TEST_F(ExamplesTest, ComeBackAsTheyWereLeft) {
   EXPECT_TRUE(std::isnan(read[0].plots[0].lines[0].y[1]));
   EXPECT_EQ(read[0].plots[0].lines[0].x[2], 0.1);
   EXPECT_TRUE(read_examples(folder_, Pictures::left_out).examples[0].pictures[0].png.empty());
+  EXPECT_EQ(read[0].replay, "hill-3-replay.html");
+  EXPECT_EQ(std::filesystem::file_size(folder_ / read[0].replay), sample(3).replay_page.size());
   EXPECT_TRUE(nothing_stands_in(folder_ / "nowhere"));
+}
+
+TEST_F(ExamplesTest, AReplayThatIsGoneOrElsewhereIsRefusedAndNoneIsNone) {
+  Example without = sample(3);
+  without.replay.clear();
+  leave({without});
+  EXPECT_EQ(read_examples(folder_, Pictures::read).examples.at(0).replay, "") << "as earlier versions have left it";
+  leave({sample(3)});
+  std::filesystem::remove(folder_ / "hill-3-replay.html");
+  EXPECT_TRUE(all_is_unreadable_in(folder_));
+  for (const char* name : {"../hill-3-replay.html", ".hidden.html", "examples.json"}) {
+    Example elsewhere = sample(3);
+    elsewhere.replay = name;
+    overwrite_list("{\"format\": \"tumble examples\", \"version\": 1, \"examples\": [" + to_json(elsewhere) + "]}");
+    EXPECT_TRUE(all_is_unreadable_in(folder_)) << name;
+  }
 }
 
 TEST_F(ExamplesTest, WhatANewListHasNotIsRemovedAndNothingElse) {
@@ -150,7 +170,9 @@ TEST_F(ExamplesTest, WhatANewListHasNotIsRemovedAndNothingElse) {
   std::ofstream(folder_ / "mine.png") << "mine";
   leave({sample(4)});
   EXPECT_FALSE(std::filesystem::exists(folder_ / "hill-3-scene.png"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "hill-3-replay.html"));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "hill-4-scene.png"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "hill-4-replay.html"));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "mine.png"));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/report/html.hpp"
+#include "tools/html/html.hpp"
 
 #include <gtest/gtest.h>
 
@@ -24,6 +24,12 @@ TEST(ScriptJson, CannotEndItsElementAndMeansTheSame) {
   const std::string text = script_json(value.dump());
   EXPECT_EQ(text.find('<'), std::string::npos) << text;
   EXPECT_EQ(nlohmann::json::parse(text), value);
+}
+
+TEST(FileAddress, LeavesNothingThatAnAddressWouldReadOtherwise) {
+  EXPECT_EQ(file_address("a.db.files/hill-3-replay.html"), "a.db.files/hill-3-replay.html");
+  EXPECT_EQ(file_address("a b/c#d?e%f"), "a%20b/c%23d%3Fe%25f");
+  EXPECT_EQ(file_address("javascript:x\"'<ä"), "javascript%3Ax%22%27%3C%C3%A4");
 }
 
 TEST(Base64, AgreesWithTheVectorsOfRfc4648) {

@@ -109,6 +109,14 @@ TEST(Page, ShowsExamplesWithTheirPicturesAndPlots) {
   EXPECT_THAT(page_html(content, ""), Not(HasSubstr("hill"))) << "negative control";
 }
 
+TEST(Page, LinksTheReplayOfAnExampleThatHasOne) {
+  PageContent content;
+  content.examples = {evil_example("hill")};
+  EXPECT_THAT(page_html(content, ""), Not(HasSubstr("<a href"))) << "it has none";
+  content.examples[0].replay_address = "a.db.files/hill-7-replay.html";
+  EXPECT_THAT(page_html(content, ""), HasSubstr("<a href=\"a.db.files/hill-7-replay.html\">"));
+}
+
 TEST(Page, SetsNarrowPlotsTwoInARow) {
   PageContent content;
   content.examples = {evil_example("hill")};

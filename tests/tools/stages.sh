@@ -31,7 +31,7 @@ expect() {
 }
 lines() { printf '%s\n' "$@"; }
 
-expect 'all pass' "$(outcome none --all)" "$(lines 'build passed' 'tests passed' 'soak passed' 'peers passed' 'cluster passed' 'sanitize passed' 'threads passed' \
+expect 'all pass' "$(outcome none --all)" "$(lines 'build passed' 'tests passed' 'browser passed' 'soak passed' 'peers passed' 'cluster passed' 'sanitize passed' 'threads passed' \
   'fuzz passed' 'lint passed' 'bench passed' 'exit 0')"
 expect 'one fails, the others run' "$(outcome threads --all --from sanitize)" "$(lines 'sanitize passed' 'threads FAILED' \
   'fuzz passed' 'lint passed' 'bench passed' 'failed : threads' 'exit 1')"
@@ -48,7 +48,7 @@ expect 'a finding of the linter' "$(outcome lint --all --from lint)" "$(lines 'l
 outcome none --all > /dev/null
 jobs=$(nproc)
 expect 'what was asked of CTest and the linter' "$(grep -E '^(bin/ctest|tools/lint)' "$scratch/called")" "$(lines \
-  "bin/ctest --preset release -j $jobs -LE bench|soak|peers|cluster|threads|fuzz" "bin/ctest --preset release -j $jobs -L soak" \
+  "bin/ctest --preset release -j $jobs -LE bench|browser|soak|peers|cluster|threads|fuzz" "bin/ctest --preset release -j $jobs -L browser" "bin/ctest --preset release -j $jobs -L soak" \
   "bin/ctest --preset release -j $jobs -L peers" "bin/ctest --preset release -j $jobs -L cluster -j 1" \
   "bin/ctest --preset sanitize -j $jobs -L ^(fast|sim|methods)\$" "bin/ctest --preset threads -j $jobs -L threads" \
   "bin/ctest --preset sanitize -j $jobs -L fuzz" 'tools/lint --all' "bin/ctest --preset release -j $jobs -L bench -j 1")"

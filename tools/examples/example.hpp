@@ -52,6 +52,8 @@ struct Example {
   std::string made_of;  ///< digest of the rows of the results that it shows
   std::vector<ExamplePicture> pictures;
   std::vector<Plot> plots;
+  std::string replay;       ///< name of the file of its replay, which stands beside the list; "": there is none
+  std::string replay_page;  ///< what is in it; not read back
 };
 
 /// Where the examples of a results database stand: FILE.db.files.
@@ -60,12 +62,15 @@ std::filesystem::path examples_folder(const std::filesystem::path& database);
 /// One example as text, its pictures by the names of their files (README.md).
 std::string to_json(const Example& example);
 
-/// Writes the pictures of an example, SCENARIO-SEED-NAME.png, where they wait for the list: FOLDER/.unfinished. Throws
-/// BadInput.
+/// Writes the pictures of an example, SCENARIO-SEED-NAME.png, and its replay, SCENARIO-SEED-replay.html, where they
+/// wait for the list: FOLDER/.unfinished. Throws BadInput.
 void write_pictures(const std::filesystem::path& folder, const Example& example);
 
 /// Removes the pictures that no list came to name.
 void discard_unfinished(const std::filesystem::path& folder);
+
+/// The name of the file of an example's replay.
+std::string replay_file(const Example& example);
 
 /// Joins what `to_json` gave into the folder's list, then moves its unfinished pictures into place and removes the
 /// pictures that the list before had and this one has not. Throws BadInput.

@@ -63,12 +63,16 @@ fs::path list_file(const fs::path& folder) {
 }
 
 /// A scenario's name is one of the catalogue or of a file: letters that lead nowhere else.
-std::string picture_file(const Example& example, const ExamplePicture& picture) {
-  std::string name = example.scenario + "-" + std::to_string(example.seed) + "-" + picture.name + ".png";
+std::string file_of(const Example& example, const std::string& ending) {
+  std::string name = example.scenario + "-" + std::to_string(example.seed) + "-" + ending;
   for (char& c : name) {
     if (c == '/' || c == '\0') c = '_';
   }
   return name;
+}
+
+std::string picture_file(const Example& example, const ExamplePicture& picture) {
+  return file_of(example, picture.name + ".png");
 }
 
 /// Of the pictures in the making.
@@ -87,11 +91,20 @@ std::vector<std::uint8_t> read_bytes(const fs::path& path) {
 }
 
 /// A list may come from anywhere: only files of its own folder are read, or removed.
-std::string file_name(const json& picture) {
-  const std::string name = picture.at("file");
-  if (name.empty() || fs::path(name).filename() != name || name.starts_with('.') || !name.ends_with(".png"))
-    throw BadInput("'" + name + "' is not the name of a picture beside it");
+std::string file_name(const std::string& name, const char* ending, const char* what) {
+  if (name.empty() || fs::path(name).filename() != name || name.starts_with('.') || !name.ends_with(ending))
+    throw BadInput("'" + name + "' is not the name of a " + what + " beside it");
   return name;
+}
+
+std::string file_name(const json& picture) {
+  return file_name(picture.at("file"), ".png", "picture");
+}
+
+/// "" of an example that has none, as those of earlier versions.
+std::string replay_name(const json& example) {
+  const std::string name = example.value("replay", "");
+  return name.empty() ? name : file_name(name, ".html", "replay");
 }
 
 ExamplePicture read_picture(const fs::path& folder, const json& from, Pictures pictures) {
@@ -116,6 +129,10 @@ Example read_example(const fs::path& folder, const json& from, Pictures pictures
   example.made_of = from.at("made_of");
   for (const json& picture : from.at("pictures")) example.pictures.push_back(read_picture(folder, picture, pictures));
   for (const json& plot : from.at("plots")) example.plots.push_back(plot.get<Plot>());
+  example.replay = replay_name(from);
+  std::error_code error;
+  if (pictures == Pictures::read && !example.replay.empty() && !fs::is_regular_file(folder / example.replay, error))
+    throw BadInput((folder / example.replay).string() + ": cannot be read");
   return example;
 }
 
@@ -150,6 +167,7 @@ std::set<std::string> files_of(const json& examples) {
   std::set<std::string> files;
   for (const json& example : examples) {
     for (const json& picture : example.at("pictures")) files.insert(file_name(picture));
+    if (const std::string replay = replay_name(example); !replay.empty()) files.insert(replay);
   }
   return files;
 }
@@ -172,6 +190,10 @@ fs::path examples_folder(const fs::path& database) {
   return fs::path(database.string() + ".files");
 }
 
+std::string replay_file(const Example& example) {
+  return file_of(example, "replay.html");
+}
+
 std::string to_json(const Example& example) {
   json out = {{"scenario", example.scenario},
               {"seed", example.seed},
@@ -190,6 +212,7 @@ std::string to_json(const Example& example) {
                                {"legend", picture.legend}});
   }
   for (const Plot& plot : example.plots) out["plots"].push_back(plot);
+  if (!example.replay.empty()) out["replay"] = example.replay;
   return out.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
@@ -199,6 +222,7 @@ void write_pictures(const fs::path& folder, const Example& example) {
   if (error) throw BadInput(unfinished(folder).string() + ": " + error.message());
   for (const ExamplePicture& picture : example.pictures)
     scenarios::replace_file(unfinished(folder) / picture_file(example, picture), std::as_bytes(std::span(picture.png)));
+  if (!example.replay.empty()) scenarios::replace_file(unfinished(folder) / example.replay, example.replay_page);
 }
 
 void discard_unfinished(const fs::path& folder) {

@@ -11,6 +11,8 @@
 #include "tools/examples/sphere_plots.hpp"
 #include "tools/pictures/map_pictures.hpp"
 #include "tools/pictures/pictures.hpp"
+#include "tools/replay/page.hpp"
+#include "tools/replay/run_replay.hpp"
 
 namespace tumble::tools {
 
@@ -90,6 +92,8 @@ Example example_of(const scenarios::RunResult& run) {
   example.digest_without_lidars = scenarios::digest_without_lidars(run.recording);
   const RunPaths paths = paths_of(run);
   add_pictures(run, paths, example);
+  example.replay_page = replay_page(replay_of_run(run));
+  example.replay = replay_file(example);
   add_plot(rate_plot(run), example);
   add_plot(path_plot(run, paths), example);
   if (is_sphere(run)) {

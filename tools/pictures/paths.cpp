@@ -19,27 +19,6 @@ Vector3d drawn_point_B(const sim::Sensors& sensors, const sim::Truth& truth) {
   return sensors.sphere_radius_m > 0.0 ? truth.p_BG_m : Vector3d::Zero();
 }
 
-/// Mounting of the frame that an estimate's poses belong to, as the estimator was given it.
-bool given_mounting(Frame frame, const sim::Sensors& sensors, const sim::Truth& truth, Isometry3d& T_BA) {
-  T_BA = Isometry3d::Identity();
-  switch (frame) {
-    case Frame::body:
-      return true;
-    case Frame::centre:
-      T_BA.translation() = truth.p_BG_m;
-      return true;
-    case Frame::imu:
-      if (sensors.imus.empty() || truth.imus.empty()) return false;
-      T_BA = sensors.imus.front().T_BI;
-      return true;
-    case Frame::lidar:
-      if (sensors.lidars.empty() || truth.lidars.empty()) return false;
-      T_BA = sensors.lidars.front().T_BL;
-      return true;
-  }
-  return false;
-}
-
 Isometry3d pose_of(const PoseState& state) {
   Isometry3d T_WA = Isometry3d::Identity();
   T_WA.linear() = state.q_WA.normalized().toRotationMatrix();
@@ -52,6 +31,26 @@ bool moves(const sim::Truth& truth, std::size_t k) {
 }
 
 }  // namespace
+
+bool given_mounting(Frame frame, const sim::Sensors& sensors, const sim::Truth* truth, Isometry3d& T_BA) {
+  T_BA = Isometry3d::Identity();
+  switch (frame) {
+    case Frame::body:
+      return true;
+    case Frame::centre:
+      if (truth != nullptr) T_BA.translation() = truth->p_BG_m;
+      return true;
+    case Frame::imu:
+      if (sensors.imus.empty() || (truth != nullptr && truth->imus.empty())) return false;
+      T_BA = sensors.imus.front().T_BI;
+      return true;
+    case Frame::lidar:
+      if (sensors.lidars.empty() || (truth != nullptr && truth->lidars.empty())) return false;
+      T_BA = sensors.lidars.front().T_BL;
+      return true;
+  }
+  return false;
+}
 
 Path true_path(const sim::Sensors& sensors, const sim::Truth& truth, std::size_t stride) {
   Path path;
@@ -70,7 +69,7 @@ Path estimated_path(const scenarios::Estimate& estimate, const sim::Sensors& sen
   Path path;
   Isometry3d T_BA;
   if (estimate.poses.empty() || truth.p_WB_m.empty()) return path;
-  if (!given_mounting(estimate.frame, sensors, truth, T_BA)) return path;
+  if (!given_mounting(estimate.frame, sensors, &truth, T_BA)) return path;
 
   const scenarios::TruthTrack track(truth, estimate.frame);
   const auto first = std::find_if(estimate.poses.begin(), estimate.poses.end(),

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <vector>
 
@@ -17,6 +18,11 @@ struct Path {
   std::vector<Eigen::Vector3d> points_W_m;
   bool empty() const { return points_W_m.empty(); }
 };
+
+/// Mounting of the frame that an estimate's poses belong to, as the estimator was given it; false where the recording
+/// or its truth, if there is one, lacks the sensor. `truth` may be null: the sphere's centre is then the body's origin.
+bool given_mounting(scenarios::Frame frame, const sim::Sensors& sensors, const sim::Truth* truth,
+                    Eigen::Isometry3d& T_BA);
 
 /// The true path, every `stride`-th physics sample and the last one.
 Path true_path(const sim::Sensors& sensors, const sim::Truth& truth, std::size_t stride);

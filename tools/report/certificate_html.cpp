@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "tools/report/html.hpp"
+#include "tools/html/html.hpp"
 #include "tools/tables/certificate_table.hpp"
 #include "tools/tables/table.hpp"
 

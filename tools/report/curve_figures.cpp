@@ -7,9 +7,9 @@
 #include <map>
 
 #include "scenarios/summary/summary.hpp"
+#include "tools/html/html.hpp"
 #include "tools/pictures/colours.hpp"
 #include "tools/report/curves.hpp"
-#include "tools/report/html.hpp"
 
 namespace tumble::tools {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "tools/html/html.hpp"
 #include "tools/pictures/colours.hpp"
-#include "tools/report/html.hpp"
 
 namespace tumble::tools {
 

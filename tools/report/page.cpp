@@ -6,8 +6,8 @@
 #include <map>
 
 #include "report/embedded.hpp"
+#include "tools/html/html.hpp"
 #include "tools/report/certificate_html.hpp"
-#include "tools/report/html.hpp"
 #include "tools/report/score_html.hpp"
 
 namespace tumble::tools {
@@ -78,6 +78,10 @@ std::string example_html(const ShownExample& shown, std::vector<Figure>& figures
   out += shown.of_these_results
              ? "; its recording has the same digest as in the results.</p>\n"
              : ". It was made of other results than these: another build's, or run again since.</p>\n";
+  if (!shown.replay_address.empty()) {
+    out += "<p><a href=\"" + escaped(shown.replay_address) +
+           "\">Play it</a>: the robot, its paths, the points of its lidar and the gyro over time.</p>\n";
+  }
   for (const ExamplePicture& picture : example.pictures)
     out += picture_html(picture.png, picture.alternative, escaped(picture.caption) + legend_html(picture));
   return out + plots_html(example, figures);

@@ -17,6 +17,7 @@ namespace tumble::tools {
 struct ShownExample {
   Example example;
   bool of_these_results = false;  ///< made of the rows that the database holds, its recording of their digest
+  std::string replay_address;     ///< from the page to its replay, ready for an attribute; "": there is none
 };
 
 /// What a report page says; `page_html` adds nothing to it.

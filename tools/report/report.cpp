@@ -4,10 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
 
 #include "scenarios/provenance/build_id.hpp"
 #include "scenarios/summary/example_choice.hpp"
 #include "scenarios/sweep/sweep_notes.hpp"
+#include "tools/html/html.hpp"
 #include "tools/report/certificate_html.hpp"
 
 namespace tumble::tools {
@@ -87,11 +90,22 @@ std::string how_to_get_pictures(const scenarios::Results& results, const ReportO
       scenarios::shell_word(options.database.string()));
 }
 
+/// From the page to a replay beside the database, as an address.
+std::string replay_address(const ReportOptions& options, const Example& example) {
+  if (example.replay.empty()) return "";
+  const std::filesystem::path replay = examples_folder(options.database) / example.replay;
+  std::error_code error;
+  const std::filesystem::path from = std::filesystem::absolute(options.page, error).parent_path();
+  const std::filesystem::path way = std::filesystem::proximate(replay, from, error);
+  return html::file_address((error ? replay : way).generic_string());
+}
+
 void add_examples(const scenarios::Results& results, const ReportOptions& options, PageContent& content) {
   FoundExamples found = read_examples(examples_folder(options.database), Pictures::read);
   for (Example& example : found.examples) {
     const bool of_these = is_of(results, example);
-    content.examples.push_back({std::move(example), of_these});
+    std::string replay = replay_address(options, example);
+    content.examples.push_back({std::move(example), of_these, std::move(replay)});
   }
   // what is wrong with the pictures must not cost the reader the scores
   for (const std::string& what : found.unreadable)

@@ -12,6 +12,7 @@ namespace tumble::tools {
 
 struct ReportOptions {
   std::filesystem::path database;  ///< that the results were read from; its examples stand beside it
+  std::filesystem::path page;      ///< where the page will stand: its links lead to replays from there
   std::string version;             ///< of the program
   std::string data;                ///< digest of the models and scenarios that a sweep would find here; "" when none
   std::string made_at;             ///< date and time, as the page shall show it

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/report/html.hpp"
+#include "tools/html/html.hpp"
 
 namespace tumble::tools {
 

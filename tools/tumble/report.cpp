@@ -134,6 +134,7 @@ void write_page(const Session& session, const Options& options, const scenarios:
   const std::string plotly = read_text(session.plotly());
   ReportOptions report;
   report.database = options.database;
+  report.page = options.page;
   report.version = program_version();
   report.data = data_found(session);
   report.made_at = fmt::format("{:%Y-%m-%d %H:%M} UTC",

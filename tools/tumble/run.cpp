@@ -13,6 +13,8 @@
 #include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/sweep/run_situation.hpp"
 #include "tools/pictures/pictures.hpp"
+#include "tools/replay/page.hpp"
+#include "tools/replay/run_replay.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/learnt_file.hpp"
 #include "tools/tumble/recording_info.hpp"
@@ -62,7 +64,8 @@ Options first_run(Options options, const scenarios::Scenario& scenario) {
 
 void say_what_next(const Session& session, const Options& options) {
   const std::string folder = options.folder.string();
-  session.note("left in " + folder + "/: recording.h5, situation.yaml, estimates/, snapshots/scene.png and film.png");
+  session.note("left in " + folder +
+               "/: recording.h5, situation.yaml, estimates/, snapshots/scene.png and film.png, replay.html");
   session.note("next:");
   const auto say = [&](const std::string& command, const char* what) {
     session.note(fmt::format("  {:<78}  {}", command, what));
@@ -91,7 +94,7 @@ void leave_files(const fs::path& folder, const scenarios::RunResult& result) {
   }
 }
 
-/// The whole way and a film strip, with every path that an estimate has.
+/// The whole way and a film strip, with every path that an estimate has, and the page that plays it.
 void leave_pictures(const fs::path& folder, const scenarios::RunResult& result) {
   Scene scene{&result.built.value(), &result.recording.sensors, &result.recording.truth, {}};
   for (const scenarios::Estimate& estimate : result.estimates) {
@@ -102,6 +105,7 @@ void leave_pictures(const fs::path& folder, const scenarios::RunResult& result) 
   save_picture(folder / "snapshots" / "scene.png",
                scene_picture(scene, result.recording.sensors.sphere_radius_m > 0.0 ? 3 : 8, 1280, 720));
   save_picture(folder / "snapshots" / "film.png", film_picture(scene, 8, 4, 480, 360));
+  scenarios::replace_file(folder / "replay.html", replay_page(replay_of_run(result)));
 }
 
 std::vector<scenarios::MethodPointer> pointers(const std::vector<scenarios::Method>& methods) {
@@ -180,7 +184,8 @@ Action declare_run(CLI::App& app, const Session& session) {
   app.add_option("--threads", options->threads, "threads for the lidar; the result does not depend on them")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
-  app.add_option("-o,--output", options->folder, "folder for recording, estimates and pictures [none are left]");
+  app.add_option("-o,--output", options->folder,
+                 "folder for recording, estimates, pictures and replay [none are left]");
   app.add_option("--learnt", options->learnt,
                  "FILE.json: what 'rate/tumble' and 'rate/tumble_lag' start from, if it exists; written anew with what "
                  "the run has learnt of the rig");

@@ -14,6 +14,7 @@
 #include "scenarios/scoring/score.hpp"
 #include "scenarios/scoring/truth_track.hpp"
 #include "tools/tumble/arguments.hpp"
+#include "tools/tumble/given_estimate.hpp"
 #include "tools/tumble/recording_info.hpp"
 #include "tools/tumble/score_tables.hpp"
 #include "tools/tumble/verbs.hpp"
@@ -22,24 +23,10 @@ namespace tumble::tools {
 
 namespace {
 
-using scenarios::Frame;
-
 struct Options {
   std::filesystem::path estimate, recording;
   std::string frame, kind;
 };
-
-/// Of the poses in a TUM file: as named, else of the first IMU, of the body where the recording has none.
-Frame frame_of(const std::string& name, const sim::Truth& truth) {
-  if (name.empty()) return truth.imus.empty() ? Frame::body : Frame::imu;
-  std::vector<std::string> known;
-  for (const Frame frame : {Frame::imu, Frame::lidar, Frame::body, Frame::centre}) {
-    if (name == to_string(frame)) return frame;
-    known.emplace_back(to_string(frame));
-  }
-  require_known("frame", name, known);
-  return Frame::imu;
-}
 
 /// Somebody else's poses may bear the stamps of the recording's source: they are moved to the recording's own clock
 /// when its origin is nearer to them than its zero.
@@ -47,16 +34,6 @@ void move_to_clock(std::int64_t origin_ns, scenarios::Estimate& estimate) {
   const std::int64_t first = estimate.poses.empty() ? 0 : estimate.poses.front().time_ns;
   if (std::abs(first - origin_ns) >= std::abs(first)) return;
   for (PoseState& pose : estimate.poses) pose.time_ns -= origin_ns;
-}
-
-/// An estimate says which sensors it was made from.
-void require_own(const Options& options, const sim::Sensors& sensors) {
-  const std::string made_from = scenarios::estimated_sensors(options.estimate);
-  const std::string own = scenarios::digest(sensors, nullptr);
-  if (made_from.empty() || made_from == own) return;
-  throw scenarios::BadInput(options.estimate.string() +
-                            ": was made from another recording (its sensors have the digest " + made_from +
-                            ", those of " + options.recording.string() + " " + own + ")");
 }
 
 /// What was seen and what is claimed must share some time, and the truth must know something.
@@ -153,9 +130,9 @@ int score_estimate(const Session& session, const Options& options) {
   const sim::Sensors sensors = scenarios::read_sensors(options.recording);
   const sim::Truth truth = scenarios::read_truth(options.recording);
   scenarios::Outcome outcome;
-  scenarios::Estimate estimate =
-      scenarios::read_estimate(options.estimate, outcome.kind, outcome.method, frame_of(options.frame, truth));
-  require_own(options, sensors);
+  scenarios::Estimate estimate = scenarios::read_estimate(options.estimate, outcome.kind, outcome.method,
+                                                          frame_of(options.frame, !truth.imus.empty()));
+  require_own(options.estimate, options.recording, sensors);
   const bool foreign = !std::filesystem::is_directory(options.estimate);
   if (!foreign && !options.kind.empty())
     throw scenarios::BadInput("--kind is for a TUM file; " + options.estimate.string() + " says what it is");

@@ -15,6 +15,10 @@ std::string escaped(const std::string& text);
 /// JSON that may stand inside a script element: "<" is written as an escape, so that no "</script>" can end it.
 std::string script_json(const std::string& json);
 
+/// A path as the address of a file, relative or not: all but letters, digits, "/", "-", ".", "_" and "~" as %XX (RFC
+/// 3986).
+std::string file_address(const std::string& path);
+
 /// A data: address that carries a PNG.
 std::string png_address(std::span<const std::uint8_t> png);
 

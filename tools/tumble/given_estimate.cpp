@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/tumble/given_estimate.hpp"
+
+#include <vector>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/recordings/recording_file.hpp"
+#include "tools/tumble/arguments.hpp"
+
+namespace tumble::tools {
+
+scenarios::Frame frame_of(const std::string& name, bool has_imu) {
+  using scenarios::Frame;
+  if (name.empty()) return has_imu ? Frame::imu : Frame::body;
+  std::vector<std::string> known;
+  for (const Frame frame : {Frame::imu, Frame::lidar, Frame::body, Frame::centre}) {
+    if (name == to_string(frame)) return frame;
+    known.emplace_back(to_string(frame));
+  }
+  require_known("frame", name, known);
+  return Frame::imu;
+}
+
+void require_own(const std::filesystem::path& estimate, const std::filesystem::path& recording,
+                 const sim::Sensors& sensors) {
+  const std::string made_from = scenarios::estimated_sensors(estimate);
+  const std::string own = scenarios::digest(sensors, nullptr);
+  if (made_from.empty() || made_from == own) return;
+  throw scenarios::BadInput(estimate.string() + ": was made from another recording (its sensors have the digest " +
+                            made_from + ", those of " + recording.string() + " " + own + ")");
+}
+
+}  // namespace tumble::tools

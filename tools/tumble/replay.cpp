@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/replay/replay.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <list>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/recordings/recording_file.hpp"
+#include "scenarios/recordings/replace_file.hpp"
+#include "sim/lidar/surface.hpp"
+#include "tools/replay/page.hpp"
+#include "tools/tumble/arguments.hpp"
+#include "tools/tumble/given_estimate.hpp"
+#include "tools/tumble/recording_info.hpp"
+#include "tools/tumble/verbs.hpp"
+
+namespace tumble::tools {
+
+namespace {
+
+struct Options {
+  std::filesystem::path recording, page;
+  std::vector<std::filesystem::path> estimates;
+  std::string frame;
+  std::size_t points = ReplayLimits{}.points;
+};
+
+/// All that a replay points to.
+struct Content {
+  sim::Sensors sensors;
+  std::optional<sim::Truth> truth;
+  std::optional<sim::BuiltSituation> built;
+  std::optional<sim::Surface> surface;
+  std::list<scenarios::Estimate> estimates;
+};
+
+/// The truth is opened for people's eyes; no estimate is made here.
+void load_recording(const Session& session, const Options& options, const scenarios::RecordingInfo& info,
+                    Content& content) {
+  content.sensors = scenarios::read_sensors(options.recording);
+  if (info.has_truth) content.truth = scenarios::read_truth(options.recording);
+  if (info.situation_yaml.empty()) return;
+  content.built = built_from(info, options.recording.string(), session.data());
+  content.surface.emplace(*content.built);
+}
+
+void load_estimates(const Session& session, const Options& options, Content& content, ReplayInput& input) {
+  for (const std::filesystem::path& path : options.estimates) {
+    scenarios::Kind kind;
+    std::string method;
+    require_own(path, options.recording, content.sensors);
+    scenarios::Estimate estimate =
+        scenarios::read_estimate(path, kind, method, frame_of(options.frame, !content.sensors.imus.empty()));
+    if (estimate.poses.empty() && estimate.rates.empty()) {
+      session.note(path.string() + ": left out, it has neither poses nor rates");
+      continue;
+    }
+    content.estimates.push_back(std::move(estimate));
+    const std::string name = std::filesystem::is_directory(path) ? std::string(to_string(kind)) + "/" + method : method;
+    input.estimates.push_back({name, &content.estimates.back()});
+  }
+}
+
+std::string title_of(const scenarios::RecordingInfo& info, const std::filesystem::path& recording) {
+  return info.scenario.empty() ? recording.filename().string() : fmt::format("{}, seed {}", info.scenario, info.seed);
+}
+
+int make_replay(const Session& session, const Options& options) {
+  std::vector<std::filesystem::path> inputs = {options.recording};
+  inputs.insert(inputs.end(), options.estimates.begin(), options.estimates.end());
+  prepare_output(options.page, inputs);
+  const scenarios::RecordingInfo info = scenarios::read_info(options.recording);
+  Content content;
+  load_recording(session, options, info, content);
+  ReplayInput input;
+  input.title = title_of(info, options.recording);
+  if (!info.attribution.empty()) input.facts.emplace_back("recorded by", info.attribution);
+  input.sensors = &content.sensors;
+  input.truth = content.truth ? &*content.truth : nullptr;
+  input.built = content.built ? &*content.built : nullptr;
+  input.surface = content.surface ? &*content.surface : nullptr;
+  load_estimates(session, options, content, input);
+  ReplayLimits limits;
+  limits.points = options.points;
+  const Replay replay = replay_of(input, limits);
+  const std::string page = replay_page(replay);
+  scenarios::replace_file(options.page, page);
+
+  Table table("", {"replay", options.page.string()});
+  nlohmann::json document = {{"page", options.page.string()},
+                             {"bytes", page.size()},
+                             {"points", {{"shown", replay.points.p_B_m.size()}, {"of", replay.points.of}}},
+                             {"triangles", {{"shown", replay.triangles.shown}, {"of", replay.triangles.of}}},
+                             {"paths", nlohmann::json::array()}};
+  table.add_row({"bytes", std::to_string(page.size())});
+  table.add_row({"points", fmt::format("{} of {}", replay.points.p_B_m.size(), replay.points.of)});
+  table.add_row({"triangles of the world", fmt::format("{} of {}", replay.triangles.shown, replay.triangles.of)});
+  for (const ReplayActor& actor : replay.actors) {
+    table.add_row({actor.name, actor.colour});
+    document["paths"].push_back({{"path", actor.name}, {"colour", actor.colour}});
+  }
+  session.print({table}, document);
+  return kDone;
+}
+
+}  // namespace
+
+Action declare_replay(CLI::App& app, const Session& session) {
+  auto options = std::make_shared<Options>();
+  app.add_option("RECORDING", options->recording, "the recording, FILE.h5, with or without truth")->required();
+  app.add_option("ESTIMATE", options->estimates, "folders of estimates, or TUM files (t x y z qx qy qz qw)");
+  app.add_option("-o,--output", options->page, "the page, FILE.html")->required();
+  app.add_option("--frame", options->frame,
+                 "whose poses a TUM file holds: imu, lidar, body or centre [imu; body where the recording has none]");
+  app.add_option("--points", options->points, "of the lidar, at most; the page's 3 MB may leave fewer")
+      ->check(CLI::Range(0, 200000))
+      ->capture_default_str();
+  return [&session, options] { return make_replay(session, *options); };
+}
+
+}  // namespace tumble::tools
