@@ -79,11 +79,6 @@ std::vector<Scalar> counts_of(nb::handle value, const std::string& field, std::s
   return out;
 }
 
-bool is_one(nb::handle time_ns) {
-  if (PyLong_Check(time_ns.ptr())) return true;
-  return nb::hasattr(time_ns, "ndim") && nb::cast<int>(time_ns.attr("ndim")) == 0;
-}
-
 /// Row k of N x 3.
 template <class Scalar>
 Eigen::Matrix<Scalar, 3, 1> row(const Given<Scalar>& array, std::size_t k) {
@@ -117,8 +112,9 @@ TimeNs time_of(nb::handle value, const char* field) {
 
 std::vector<ImuSample> samples_of(nb::handle time_ns, nb::handle gyro_rad_s, nb::handle accel_m_s2,
                                   nb::handle clip_flags) {
-  if (is_one(time_ns)) return {one_sample(time_ns, gyro_rad_s, accel_m_s2, clip_flags)};
+  if (PyLong_Check(time_ns.ptr())) return {one_sample(time_ns, gyro_rad_s, accel_m_s2, clip_flags)};
   const nb::object listed = as_array(time_ns);
+  if (nb::cast<int>(listed.attr("ndim")) == 0) return {one_sample(time_ns, gyro_rad_s, accel_m_s2, clip_flags)};
   const std::size_t count = nb::len(listed);
   const Given<std::int64_t> times = array_of<std::int64_t>(listed, "time_ns", {count});
   const Given<double> gyro = array_of<double>(gyro_rad_s, "gyro_rad_s", {count, 3});

@@ -25,7 +25,7 @@ RigCalibration rig_from(nb::handle constants, nb::handle covariance) {
   }
   RigCalibration out;
   out.constants.add(Eigen::Map<const RigConstants::Vector>(vector.data()));
-  out.covariance = Eigen::Map<const RigConstants::Matrix>(flat.data());
+  out.covariance = Eigen::Map<const RigConstants::Matrix>(flat.data()).transpose();  // numpy's rows, Eigen's columns
   const bool symmetric = (out.covariance - out.covariance.transpose()).cwiseAbs().maxCoeff() <=
                          1e-9 * out.covariance.cwiseAbs().maxCoeff();
   if (!symmetric || Eigen::LLT<RigConstants::Matrix>(out.covariance).info() != Eigen::Success) {
@@ -55,7 +55,7 @@ void bind_rig(nb::module_& m) {
             const RigConstants::Vector v = r.constants.vector();
             return owned(std::vector<double>(v.data(), v.data() + v.size()));
           },
-          "(20,): lever arm, gyro bias, accelerometer bias, inertia (5), elements (6)")
+          nb::rv_policy::automatic, "(20,): lever arm, gyro bias, accelerometer bias, inertia (5), elements (6)")
       .def_prop_ro(
           "covariance", [](const R& r) { return whole<20, 20>(r.covariance.data()); }, "(20, 20)")
       .def_prop_ro(

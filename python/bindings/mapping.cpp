@@ -59,13 +59,16 @@ void bind_report(nb::module_& m) {
           "gravity_m_s2", [](const C& c) { return whole<3>(c.gravity_W_m_s2.data()); }, "(3,), in W");
 }
 
+/// Of a box the corners are no fields here: `own_body_L` is the box.
+const std::vector<const char*> kOfTheBox = {"own_body_*"};
+
 LidarInertialOdometry::Params mapper_params(const nb::kwargs& given) {
   Keywords keywords("LidarInertialOdometry", given);
   LidarInertialOdometry::Params params;
   params.T_IL = pose_of(keywords.need("T_IL"), "T_IL");
   const nb::object body = keywords.take("own_body_L");
   params.own_body_L = body.is_valid() ? box_of(body, "own_body_L") : Eigen::AlignedBox3d();
-  read_fields(keywords, params);
+  read_fields(keywords, params, kOfTheBox);
   keywords.done();
   return params;
 }
@@ -161,7 +164,7 @@ void bind_mapping(nb::module_& m) {
       .def(
           "map", [](Object& self) { return MapPoints{self.run([](auto& mapper) { return mapper.map(); })}; },
           "The map within map_radius_m of the sensor.")
-      .def_static("parameters", [] { return list_fields(LidarInertialOdometry::Params{}); });
+      .def_static("parameters", [] { return list_fields(LidarInertialOdometry::Params{}, kOfTheBox); });
   bind_copy<Object>(bound);
 }
 

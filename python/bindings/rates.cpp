@@ -111,7 +111,7 @@ void bind_batch(nb::module_& m) {
       .def_ro("bounded_only", &RateReport::bounded_only)
       .def_ro("flight_share", &RateReport::flight_share)
       .def_prop_ro(
-          "doubted_axes", [](const RateReport& r) { return owned(r.doubted_axes); },
+          "doubted_axes", [](const RateReport& r) { return owned(r.doubted_axes); }, nb::rv_policy::automatic,
           "(N,) uint8, bit j: axis j may stand at a rail that was not seen");
   nb::class_<RateSmoother>(
       m, "RateSmoother",

@@ -42,6 +42,7 @@ const std::vector<const char*> kOfTheDoor = {"imu_*",
                                              "mapping_time_offset_sigma_s",
                                              "mapping_gravity_m_s2",
                                              "mapping_range_*",
+                                             "mapping_own_body_*",
                                              "mapping_accel_rail_m_s2"};
 
 template <class Sheet>
