@@ -34,6 +34,7 @@ _HEADERS = {
     "cstring": "memcpy strerror strlen",
     "ctime": "clock clock_t",
     "deque": "deque",
+    "exception": "exception_ptr rethrow_exception",
     "filesystem": "filesystem",
     "fstream": "ifstream ofstream",
     "functional": "function identity",
@@ -42,6 +43,7 @@ _HEADERS = {
     "list": "list",
     "map": "map",
     "memory": "make_shared make_unique shared_ptr unique_ptr",
+    "mutex": "lock_guard mutex",
     "new": "bad_alloc",
     "numbers": "numbers",
     "numeric": "accumulate inner_product iota",
@@ -74,7 +76,7 @@ _ANY_OF = {
     "getline": ["string"], **dict.fromkeys("ios ios_base istream ostream streamoff streamsize ws".split(), _STREAMS),
     "stod": ["string"], "stoll": ["string"], "string": ["string"], "to_string": ["string"],
     "string_view": ["string_view", "string"],
-    "tie": ["tuple"], "tuple": ["tuple"], "tuple_size_v": ["tuple", "array"],
+    "get": ["tuple", "utility", "array", "variant"], "tie": ["tuple"], "tuple": ["tuple"], "tuple_size_v": ["tuple", "array"],
 }
 _STANDARD = {name: [header] for header, names in _HEADERS.items() for name in names.split()}
 _STANDARD |= {name: [*_COMMON, "cstddef", "initializer_list"] for name in _OF_COMMON} | _ANY_OF
