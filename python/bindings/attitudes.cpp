@@ -4,8 +4,6 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
-#include <cstdint>
-#include <optional>
 #include <tuple>
 #include <vector>
 
@@ -15,8 +13,8 @@
 #include "rails.hpp"
 #include "results.hpp"
 #include "streams.hpp"
-#include "tumble/angular_velocity/near_rails.hpp"
 #include "tumble/angular_velocity/recording_check.hpp"
+#include "tumble/attitude/carried_elements.hpp"
 #include "tumble/attitude/carried_smoother.hpp"
 #include "tumble/attitude/strapdown.hpp"
 #include "tumble/attitude/tumble_attitude.hpp"
@@ -59,28 +57,6 @@ auto bind_filter(nb::module_& m, const char* name, const char* doc) {
   return bound;
 }
 
-/// What is known of the rails of a recording, as CarriedSmoother wants it.
-struct KnownElements {
-  std::vector<ClipSigns> signs;
-  std::vector<std::uint8_t> near;  ///< free readings whose window may have met a rail
-  Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
-};
-
-KnownElements elements_of(const RailDetector::Params& walls, const std::vector<ImuSample>& samples) {
-  ClippingFinder::Params params;
-  params.walls = walls;
-  const ClippingFinder::Found found = ClippingFinder(params).find(samples);
-  KnownElements out;
-  out.signs.resize(samples.size());
-  for (std::size_t k = 0; k < samples.size(); ++k) out.signs[k] = clip_signs(samples[k], found.clippings[k]);
-  out.near = may_meet_rails(samples, found.rails.upright ? RailPlanes{} : found.rails.planes_in_use());
-  for (int j = 0; j < 3; ++j) {
-    const std::optional<RailPlane>& plane = found.rails.planes.element[static_cast<std::size_t>(j)];
-    if (plane) out.rows.row(j) = plane->row.transpose();
-  }
-  return out;
-}
-
 /// CarriedSmoother with what its data sheet says of the rails.
 struct Carried {
   CarriedSmoother smoother;
@@ -97,12 +73,11 @@ std::tuple<Rates, Attitudes, CarriedSmoother::Report> carried(const Carried& sel
     const nb::gil_scoped_release released;
     status = check_recording(samples, 2, 1.0);
     if (status.ok()) {
-      const KnownElements known = elements_of(self.walls, samples);
-      const ClippedElements clipped{known.rows, known.signs};
-      status = self.smoother.estimate(samples, clipped, rates, std::get<1>(out).rows, std::get<2>(out));
-      for (std::size_t k = 0; k < rates.size(); ++k) {
-        if (known.near[k] != 0 && rates[k].source == RateSource::measured) rates[k].source = RateSource::bounded_only;
-      }
+      ClippingFinder::Params finding;
+      finding.walls = self.walls;
+      const CarriedElements known = carried_elements(samples, ClippingFinder(finding).find(samples));
+      status = self.smoother.estimate(samples, known.clipped(), rates, std::get<1>(out).rows, std::get<2>(out));
+      if (status.ok()) known.mark_near(rates);
     }
   }
   require(status);

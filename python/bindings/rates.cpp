@@ -19,6 +19,7 @@
 #include "tumble/angular_velocity/rate_smoother.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
 #include "tumble/angular_velocity/saave.hpp"
+#include "tumble/attitude/regime_smoother.hpp"
 #include "tumble/attitude/regime_stream.hpp"
 
 namespace tumble::python {
@@ -51,6 +52,15 @@ RateStream::Params stream_params(const nb::kwargs& given) {
   return params;
 }
 
+RegimeSmoother::Params joint_params(const nb::kwargs& given) {
+  Keywords keywords("RegimeSmoother", given);
+  RegimeSmoother::Params params;
+  read_rig(keywords, params.rate.model, params.rate.rails);
+  read_fields(keywords, params);
+  keywords.done();
+  return params;
+}
+
 /// RegimeStream takes these from its RateStream, and the stream of the carried body iterates as it goes.
 const std::vector<const char*> kOfTheRate = {"carried_period_s", "carried_lag_s", "carried_gap_max_s",
                                              "carried_iterations_max"};
@@ -65,10 +75,11 @@ RegimeStream::Params regime_params(const nb::kwargs& given) {
   return params;
 }
 
-std::pair<Rates, RateReport> smooth(const RateSmoother& self, nb::handle time_ns, nb::handle gyro, nb::handle accel,
-                                    nb::handle clip_flags) {
+template <class Smoother, class Report>
+std::pair<Rates, Report> smooth(const Smoother& self, nb::handle time_ns, nb::handle gyro, nb::handle accel,
+                                nb::handle clip_flags) {
   const std::vector<ImuSample> samples = samples_of(time_ns, gyro, accel, clip_flags);
-  std::pair<Rates, RateReport> out;
+  std::pair<Rates, Report> out;
   Status status;
   {
     const nb::gil_scoped_release released;
@@ -87,6 +98,14 @@ Rates saave(const Saave& self, nb::handle time_ns, nb::handle gyro, nb::handle a
     status = self.estimate(samples, out.rows);
   }
   require(status);
+  return out;
+}
+
+nb::dict shares_of(const RegimeShares& shares) {
+  nb::dict out;
+  out["flight"] = shares.flight;
+  out["contact"] = shares.contact;
+  out["carried"] = shares.carried;
   return out;
 }
 
@@ -125,9 +144,30 @@ void bind_batch(nb::module_& m) {
           "__init__",
           [](RateSmoother* self, const nb::kwargs& options) { new (self) RateSmoother(smoother_params(options)); },
           nb::arg("options"))
-      .def("estimate", &smooth, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
+      .def("estimate", &smooth<RateSmoother, RateReport>, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
            nb::arg("clip_flags") = nb::none(), "One rate per sample, and what the run tells of itself.")
       .def_static("parameters", [] { return list_fields(RateSmoother::Params{}); });
+  using Joint = RegimeSmoother::Report;
+  nb::class_<Joint>(m, "RegimeReport", "What a run of RegimeSmoother tells about itself.")
+      .def_ro("rate", &Joint::rate, "of RateSmoother")
+      .def_prop_ro(
+          "shares", [](const Joint& r) { return shares_of(r.shares); },
+          "means of the probabilities of flight, contact and being carried")
+      .def_ro("carried_clipped_max", &Joint::carried_clipped_max, "largest share of being carried where the gyro clips")
+      .def_ro("carried_asked", &Joint::carried_asked, "CarriedSmoother had a word")
+      .def_ro("carried", &Joint::carried, "of CarriedSmoother, where it had");
+  nb::class_<RegimeSmoother>(m, "RegimeSmoother",
+                             "Angular velocity of a body that flies, touches or is carried, over a whole recording:\n"
+                             "RateSmoother, and where a hand held the body while its gyro clipped CarriedSmoother.\n\n"
+                             "RegimeSmoother(lever_arm_m=(x, y, z), gyro_range_rad_s=None, accel_range_m_s2=None,\n"
+                             "calibration=None, **options): as RateSmoother; options: parameters().")
+      .def(
+          "__init__",
+          [](RegimeSmoother* self, const nb::kwargs& options) { new (self) RegimeSmoother(joint_params(options)); },
+          nb::arg("options"))
+      .def("estimate", &smooth<RegimeSmoother, Joint>, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
+           nb::arg("clip_flags") = nb::none(), "One rate per sample, and what the run tells of itself.")
+      .def_static("parameters", [] { return list_fields(RegimeSmoother::Params{}); });
   nb::class_<Saave>(
       m, "Saave",
       "The published recovery of one clipped axis (Deschenes et al., ICRA 2024), then its smoother, over a\n"
@@ -226,11 +266,7 @@ void bind_streams(nb::module_& m) {
           "regime_shares",
           [](Guarded<Running<RegimeStream>>& self) {
             const RegimeShares shares = self.run([](Running<RegimeStream>& at) { return at.state.shares; });
-            nb::dict out;
-            out["flight"] = shares.flight;
-            out["contact"] = shares.contact;
-            out["carried"] = shares.carried;
-            return out;
+            return shares_of(shares);
           },
           "Probabilities of flight, contact and being carried, at the sample given out last.")
       .def_static("parameters", [] { return list_fields(RegimeStream::Params{}, kOfTheRate); });

@@ -18,14 +18,19 @@ def program():
 
 @pytest.fixture(scope="session")
 def recordings(program, tmp_path_factory):
-    """A tumble of the rig and a slip of the sphere, as the program simulates them."""
+    """A tumble of the rig, the rig twirled in a hand and a slip of the sphere, as the program simulates them."""
     folder = tmp_path_factory.mktemp("recordings")
-    return {name: tumble.record(name, folder / f"{name}.h5", seed=1) for name in ("hill", "slip")}
+    return {name: tumble.record(name, folder / f"{name}.h5", seed=1) for name in ("hill", "slip", "twirl")}
 
 
 @pytest.fixture(scope="session")
 def hill(recordings):
     return tumble.read(recordings["hill"])
+
+
+@pytest.fixture(scope="session")
+def twirl(recordings):
+    return tumble.read(recordings["twirl"])
 
 
 @pytest.fixture(scope="session")

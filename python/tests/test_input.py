@@ -20,6 +20,7 @@ STREAMS = {
 }
 BATCHES = {
     "smoother": lambda *s: tumble.RateSmoother(lever_arm_m=LEVER).estimate(*s),
+    "regimes": lambda *s: tumble.RegimeSmoother(lever_arm_m=LEVER).estimate(*s),
     "saave": lambda *s: tumble.Saave().estimate(*s),
     "carried": lambda *s: tumble.CarriedSmoother().estimate(*s),
     "rails": lambda *s: tumble.find_rails(*s),

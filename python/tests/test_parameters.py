@@ -9,6 +9,7 @@ import tumble
 
 NEEDED = {
     "RateSmoother": {"lever_arm_m": (0.0, 0.0, 0.0)},
+    "RegimeSmoother": {"lever_arm_m": (0.0, 0.0, 0.0)},
     "RateStream": {"lever_arm_m": (0.0, 0.0, 0.0)},
     "RegimeStream": {"lever_arm_m": (0.0, 0.0, 0.0)},
     "CarriedSmoother": {}, "Saave": {}, "Vqf": {}, "TumbleAttitude": {}, "Strapdown": {}, "ImuSheet": {}, "LidarSheet": {},

@@ -45,10 +45,18 @@ def test_saave(hill, estimates):
 
 def test_rate_stream(hill, estimates):
     told = estimates("rate/tumble_lag").rates
-    own = tumble.rate(hill.imus[0], hill.gravity_m_s2)
+    own = tumble.rate(hill.imus[0], hill.gravity_m_s2, live=True)
     assert same(own.rate, told.rate) and same_covariance(own, told) and same(own.source, told.source)
-    other = tumble.rate(hill.imus[0], hill.gravity_m_s2, lag_s=0.1)
+    other = tumble.rate(hill.imus[0], hill.gravity_m_s2, live=True, lag_s=0.1)
     assert not same(other.rate, told.rate), "the negative control"
+
+
+def test_rate_of_who_carries_what(twirl, estimates):
+    """A body in a hand: the smoother of carried bodies has its word."""
+    told = estimates("rate/tumble", "twirl")
+    own = tumble.rate(twirl.imus[0], twirl.gravity_m_s2)
+    assert told.health["regime_carried_asked"] == 1.0
+    assert same(own.rate, told.rates.rate) and same_covariance(own, told.rates) and same(own.source, told.rates.source)
 
 
 def test_rate_smoother(hill, estimates):

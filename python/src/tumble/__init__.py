@@ -5,7 +5,7 @@ Arrays of numpy in and out; times are int64 nanoseconds, everything else SI; qua
 world (z up). What is wrong with input is TumbleError, with field, value and bound. `parameters()` of a class lists its keywords.
 
 The door        TumblingOdometry (an IMU that may clip and a lidar), RollingOdometry (IMUs in a sphere), sheets of sensors
-Rates           RegimeStream, RateStream, RateSmoother, CarriedSmoother, Saave, find_rails
+Rates           RegimeSmoother, RateSmoother, CarriedSmoother, Saave (whole recordings), RegimeStream, RateStream (live), find_rails
 Attitude        TumbleAttitude, Vqf, Strapdown
 Sphere          RollingSmoother
 Mapper          LidarInertialOdometry
@@ -31,6 +31,8 @@ from ._tumble import (
     RateSmoother,
     RateSource,
     RateStream,
+    RegimeReport,
+    RegimeSmoother,
     RegimeStream,
     RigCalibration,
     RollingMode,
@@ -61,7 +63,7 @@ __version__ = "0.1.0"
 __all__ = [
     "Attitudes", "CarriedReport", "CarriedSmoother", "Estimate", "Imu", "ImuSheet", "Lidar", "LidarInertialOdometry", "LidarSheet",
     "MapPoints", "Parameter", "Pose", "Poses", "ProgramError", "RailPlane", "Rails", "RateReport", "RateSmoother", "RateSource",
-    "RateStream", "RateTable", "Rates", "Recording", "RegimeStream", "RigCalibration", "RollingMode", "RollingOdometry",
+    "RateStream", "RateTable", "Rates", "Recording", "RegimeReport", "RegimeSmoother", "RegimeStream", "RigCalibration", "RollingMode", "RollingOdometry",
     "RollingPoses", "RollingSmoother", "Saave", "Strapdown", "Sweep", "SweepCalibration", "SweepReport", "SweepVerdict", "Trajectory",
     "Truth", "Tumble", "TumbleAttitude", "TumbleError", "TumblingOdometry", "Vqf", "call", "describe_method", "estimate",
     "find_rails", "program", "rails_parameters", "rate", "read", "read_estimate", "read_tum", "record", "results", "rolling", "run",

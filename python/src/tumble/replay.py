@@ -28,11 +28,12 @@ def sheet_of(imu: Imu) -> _tumble.ImuSheet:
     return _tumble.ImuSheet(**numbers)
 
 
-def rate(imu: Imu, gravity_m_s2: float = 9.80665, **options: Any) -> _tumble.Rates:
-    """Angular velocity through saturation, one per sample of a recording: RegimeStream with what the recording states of its IMU
-    (lever arm, ranges, noise), as the program's `rate/tumble_lag` of a recording with one IMU.
+def rate(imu: Imu, gravity_m_s2: float = 9.80665, live: bool = False, **options: Any) -> _tumble.Rates:
+    """Angular velocity through saturation, one per sample of a recording, with what the recording states of its IMU (lever arm,
+    ranges, noise): RegimeSmoother, as the program's `rate/tumble` of a recording with one IMU.
 
-    options: keywords of RegimeStream; they count before what the recording states. lag_s=2 looks further ahead.
+    live      RegimeStream instead, which looks 0.2 s ahead (lag_s) and not over the whole: `rate/tumble_lag`
+    options   keywords of these; they count before what the recording states
     """
     stated: dict[str, Any] = {
         "lever_arm_m": imu.lever_arm_m, "gyro_range_rad_s": imu.gyro_range_rad_s or None,
@@ -41,14 +42,15 @@ def rate(imu: Imu, gravity_m_s2: float = 9.80665, **options: Any) -> _tumble.Rat
         stated["gyro_noise_density"] = imu.gyro_noise_rad_s_sqrt_hz
     if imu.accel_noise_m_s2_sqrt_hz > 0.0:
         stated["accel_noise_density"] = imu.accel_noise_m_s2_sqrt_hz
+    if not live:
+        return _tumble.RegimeSmoother(**(stated | options)).estimate(*imu.samples)[0]
     if imu.period_ns > 0:
         stated["period_s"] = imu.period_ns * 1e-9
-    stated.update(options)
+    stated |= options
     if "lag_s" not in options and stated.get("period_s", 0.0) > 0.1:
         stated["lag_s"] = 2.0 * stated["period_s"]
     stream = _tumble.RegimeStream(**stated)
-    settled = stream.add_imu(*imu.samples)
-    return _tumble.Rates.joined([settled, stream.flush()])
+    return _tumble.Rates.joined([stream.add_imu(*imu.samples), stream.flush()])
 
 
 @dataclass
