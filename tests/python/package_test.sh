@@ -11,7 +11,8 @@ mkdir -p "$work"
 # what a wheel may be: itself alone, small, of no shared library but those of every system
 "$environment/bin/python" "$tree/tests/python/wheel_check.py" "$environment"
 
-export TUMBLE_ROOT=$tree TUMBLE_PROGRAM=$build/bin/tumble TUMBLE_CACHE=$build/Testing/cache PATH=$build/bin:$environment/bin:$PATH
+export TUMBLE_ROOT=$tree TUMBLE_PROGRAM=$build/bin/tumble TUMBLE_CACHE=$build/Testing/cache PATH=$environment/bin:$build/bin:$PATH
+hash -r
 cd "$work"  # not in the sources: the installed package is what is tested
 "$environment/bin/python" -m pytest -q -p no:cacheprovider "$tree/python/tests"
 "$environment/bin/python" "$tree/tests/tutorials/follow.py" "$tree/docs/tutorials/python.md" "$work/tutorial"
