@@ -55,8 +55,7 @@ Estimate run_sphere(const sim::Sensors& sensors, const sim::Values& parameters) 
 /// reading clips, or the smoother has no answer, the samples stay as they are.
 void recover_clipped(const sim::Sensors& sensors, std::vector<ImuSample>& samples,
                      std::map<std::string, double>& health) {
-  std::vector<ClipSigns> signs;
-  (void)find_clipped(sensors.imus.front(), samples, signs);
+  const std::vector<ClipSigns> signs = find_clipped(sensors.imus.front(), samples).signs;
   const auto clips = [](const ClipSigns& sign) { return sign.gyro != std::array<std::int8_t, 3>{}; };
   if (std::none_of(signs.begin(), signs.end(), clips)) return;
   const RateSmoother::Params params = stated_params(sensors.imus.front(), rate_tumble_settings().defaults());

@@ -18,7 +18,7 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   if (!estimate.status.ok()) return estimate;
   (void)check_imu(sensors, samples, estimate);  // a warning, as for the filters
   std::vector<RateState> rates;
-  estimate.status = run_carried(sensors, parameters, {}, rates, estimate.attitudes, estimate.health);
+  estimate.status = run_carried(sensors, parameters, rates, estimate.attitudes, estimate.health);
   return estimate;
 }
 

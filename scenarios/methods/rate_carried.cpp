@@ -10,7 +10,7 @@ namespace {
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   std::vector<AttitudeState> attitudes;
-  estimate.status = run_carried(sensors, parameters, {}, estimate.rates, attitudes, estimate.health);
+  estimate.status = run_carried(sensors, parameters, estimate.rates, attitudes, estimate.health);
   count_sources(estimate.rates, estimate.health);
   return estimate;
 }

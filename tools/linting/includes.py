@@ -36,6 +36,7 @@ _HEADERS = {
     "cstring": "memcpy strerror strlen",
     "ctime": "clock clock_t strftime time time_t tm",
     "deque": "deque",
+    "exception": "exception_ptr rethrow_exception",
     "filesystem": "filesystem",
     "fstream": "ifstream ofstream",
     "functional": "function identity",
@@ -44,6 +45,7 @@ _HEADERS = {
     "list": "list",
     "map": "map multimap",
     "memory": "make_shared make_unique shared_ptr unique_ptr",
+    "mutex": "lock_guard mutex",
     "new": "bad_alloc",
     "numbers": "numbers",
     "numeric": "accumulate inner_product iota",
@@ -77,7 +79,7 @@ _ANY_OF = {
     "stod": ["string"], "stoll": ["string"], "string": ["string"], "to_string": ["string"],
     "string_view": ["string_view", "string"],
     "less": ["functional", "map", "set"],
-    "tie": ["tuple"], "tuple": ["tuple"], "tuple_size_v": ["tuple", "array"],
+    "get": ["tuple", "utility", "array", "variant"], "tie": ["tuple"], "tuple": ["tuple"], "tuple_size_v": ["tuple", "array"],
 }
 _STANDARD = {name: [header] for header, names in _HEADERS.items() for name in names.split()}
 _STANDARD |= {name: [*_COMMON, "cstddef", "initializer_list"] for name in _OF_COMMON} | _ANY_OF

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/attitude/regime_smoother.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "tumble/attitude/carried_elements.hpp"
+
+namespace tumble {
+
+namespace {
+
+/// Whether a reading is clipped or doubted; one that only may have met its rail in a part of its window is read.
+bool unread(const RateReport& report, const RateState& rate, std::size_t k) {
+  return rate.clipped_axes != 0 || report.doubted_axes[k] != 0;
+}
+
+}  // namespace
+
+RegimeSmoother::RegimeSmoother(const Params& params)
+    : params_(params), rate_(params.rate), evidence_(params.evidence), carried_(params.carried) {
+  require_fields(params);
+}
+
+Status RegimeSmoother::estimate(std::span<const ImuSample> samples, std::vector<RateState>& rates,
+                                Report& report) const {
+  rates.clear();
+  report = {};
+  if (const Status status = rate_.estimate(samples, rates, report.rate); !status.ok()) return status;
+  join(samples, rates, report);
+  return {};
+}
+
+void RegimeSmoother::join(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const {
+  const RigCalibration& rig = report.rate.calibration;
+  const Eigen::Matrix3d lever_covariance = rig.covariance.topLeftCorner<3, 3>();
+  std::vector<RegimeShares> shares;
+  if (!evidence_.find(samples, rates, rig.constants.lever_arm_m, lever_covariance, shares).ok()) return;
+  report.judged = true;
+  const double each = 1.0 / static_cast<double>(shares.size());
+  for (const RegimeShares& share : shares) {
+    report.shares.flight += each * share.flight;
+    report.shares.contact += each * share.contact;
+    report.shares.carried += each * share.carried;
+  }
+  const std::vector<double> by_stretch = carried_stretches(shares, report.rate, rates);
+  report.carried_clipped_max = *std::max_element(by_stretch.begin(), by_stretch.end());
+  if (report.carried_clipped_max < params_.carried_min) return;
+
+  ClippingFinder::Params finding;
+  finding.walls = params_.rate.rails;
+  CarriedElements known = carried_elements(samples, ClippingFinder(finding).find(samples));
+  known.doubt(samples, report.rate.doubted_axes);
+  std::vector<RateState> other;
+  std::vector<AttitudeState> attitudes;
+  if (!carried_.estimate(samples, known.clipped(), other, attitudes, report.carried).ok()) return;
+  known.mark_near(other);
+  report.carried_asked = true;
+  for (std::size_t k = 0; k < rates.size(); ++k) {
+    if (by_stretch[k] <= params_.carried_min) continue;
+    const bool only_doubted = rates[k].clipped_axes == 0 && rates[k].source != RateSource::measured;
+    rates[k] = either(rates[k], other[k], by_stretch[k]);
+    // no clipping was found there, whoever holds the body
+    if (only_doubted) rates[k].clipped_axes = 0, rates[k].source = RateSource::bounded_only;
+  }
+}
+
+/// Probability that the body was carried throughout the stretch of clipped or doubted samples that a sample lies in or
+/// near to; 0 away from all.
+std::vector<double> RegimeSmoother::carried_stretches(std::span<const RegimeShares> shares, const RateReport& report,
+                                                      std::span<const RateState> rates) const {
+  std::vector<double> out(rates.size(), 0.0);
+  const TimeNs near_ns = static_cast<TimeNs>(1e9 * params_.near_s);
+  for (std::size_t k = 0; k < rates.size();) {
+    if (!unread(report, rates[k], k)) {
+      ++k;
+      continue;
+    }
+    std::size_t first = k, last = k;
+    double least = 1.0;
+    for (; k < rates.size() && rates[k].time_ns <= rates[last].time_ns + near_ns; ++k)
+      if (unread(report, rates[k], k)) last = k;
+    for (std::size_t i = first; i <= last; ++i) least = std::min(least, shares[i].carried);
+    const TimeNs from_ns = rates[first].time_ns - near_ns, to_ns = rates[last].time_ns + near_ns;
+    while (first > 0 && rates[first - 1].time_ns >= from_ns) --first;
+    for (std::size_t i = first; i < rates.size() && rates[i].time_ns <= to_ns; ++i) out[i] = std::max(out[i], least);
+  }
+  return out;
+}
+
+}  // namespace tumble

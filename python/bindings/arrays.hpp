@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tumble/common/imu.hpp"
+#include "tumble/mapping/lidar.hpp"
+
+/// Between numpy's arrays and the library's messages. What comes in is checked for type and shape and copied into
+/// messages; what goes out are views, read-only, that keep the object alive whose memory they show.
+namespace tumble::python {
+
+namespace nb = nanobind;
+
+/// Samples of an IMU: one (an int, two vectors of 3) or N (int64 of N, two N x 3). `clip_flags`: None, or ClipFlag
+/// bits. TumbleError with `type` for times that are not int64 (seconds would lose their fractions), `shape`.
+std::vector<ImuSample> samples_of(nb::handle time_ns, nb::handle gyro_rad_s, nb::handle accel_m_s2,
+                                  nb::handle clip_flags);
+
+/// Points of a sweep: N x 3 positions, offsets of N; ring and intensity of N, or None.
+std::vector<LidarPoint> points_of(nb::handle position_L_m, nb::handle offset_ns, nb::handle ring, nb::handle intensity);
+
+/// A time in nanoseconds: an integer, of Python or numpy. `type` for anything else.
+TimeNs time_of(nb::handle value, const char* field);
+
+/// A row of `count` numbers.
+std::vector<double> numbers_of(nb::handle value, const std::string& field, std::size_t count);
+Eigen::Vector3d vector_of(nb::handle value, const std::string& field);
+
+/// A rigid transform from a 4 x 4 matrix: `out_of_range` unless its rotation is one to 1e-6 and its last row 0 0 0 1.
+Eigen::Isometry3d pose_of(nb::handle value, const std::string& field);
+/// From 2 x 3, least and largest corner; None: an empty box.
+Eigen::AlignedBox3d box_of(nb::handle value, const std::string& field);
+
+template <class Scalar, nb::ssize_t... Shape>
+using Array = nb::ndarray<nb::numpy, const Scalar, nb::shape<Shape...>>;
+
+/// Column of `records` whose first number in each is `first(record)`: N x Rest, shown where it lies. A matrix of Eigen
+/// lies by columns.
+template <class Scalar, nb::ssize_t... Rest, class Record, class First>
+Array<Scalar, -1, Rest...> column(const std::vector<Record>& records, First first) {
+  static_assert(sizeof(Record) % sizeof(Scalar) == 0);
+  constexpr std::size_t kAxes = 1 + sizeof...(Rest);
+  const std::size_t shape[kAxes] = {records.size(), static_cast<std::size_t>(Rest)...};
+  std::int64_t strides[kAxes] = {static_cast<std::int64_t>(sizeof(Record) / sizeof(Scalar))};
+  std::int64_t next = 1;
+  for (std::size_t k = 1; k < kAxes; ++k) {
+    strides[k] = next;
+    next *= static_cast<std::int64_t>(shape[k]);
+  }
+  static const Record none{};
+  const Scalar* const data = first(records.empty() ? none : records.front());
+  return Array<Scalar, -1, Rest...>(data, kAxes, shape, nb::handle(), strides);
+}
+
+/// A fixed vector or matrix of Eigen's, shown where it lies.
+template <nb::ssize_t... Shape, class Scalar>
+Array<Scalar, Shape...> whole(const Scalar* first) {
+  const std::size_t shape[] = {static_cast<std::size_t>(Shape)...};
+  std::int64_t strides[sizeof...(Shape)];
+  std::int64_t next = 1;
+  for (std::size_t k = 0; k < sizeof...(Shape); ++k) {
+    strides[k] = next;
+    next *= static_cast<std::int64_t>(shape[k]);
+  }
+  return Array<Scalar, Shape...>(first, sizeof...(Shape), shape, nb::handle(), strides);
+}
+
+/// A copy of `values` that Python owns.
+template <class Scalar>
+nb::ndarray<nb::numpy, Scalar, nb::ndim<1>> owned(std::vector<Scalar> values) {
+  auto* const kept = new std::vector<Scalar>(std::move(values));
+  const nb::capsule owner(kept, [](void* at) noexcept { delete static_cast<std::vector<Scalar>*>(at); });
+  const std::size_t shape[] = {kept->size()};
+  return nb::ndarray<nb::numpy, Scalar, nb::ndim<1>>(kept->data(), 1, shape, owner);
+}
+
+/// 4 x 4 of a rigid transform, a copy.
+nb::object matrix(const Eigen::Isometry3d& pose);
+
+}  // namespace tumble::python

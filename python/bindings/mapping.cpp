@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/mapping/lidar_inertial_odometry.hpp"
+
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <utility>
+#include <vector>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "parameters.hpp"
+#include "results.hpp"
+#include "streams.hpp"
+#include "tumble/mapping/lidar_inertial_odometry_fields.hpp"
+
+namespace tumble::python {
+
+namespace {
+
+using Report = LidarInertialOdometry::SweepReport;
+
+void bind_report(nb::module_& m) {
+  nb::enum_<SweepVerdict>(m, "SweepVerdict", nb::is_arithmetic(),
+                          "What became of a sweep; but for `registered` the pose rests on the inertial prior.")
+      .value("first", SweepVerdict::first, "started the map")
+      .value("registered", SweepVerdict::registered, "aligned with the map in all six directions")
+      .value("degenerate", SweepVerdict::degenerate, "aligned where the surfaces allow it, prior elsewhere")
+      .value("rejected", SweepVerdict::rejected, "too few matches, or a correction beyond the bound");
+  nb::class_<Report>(m, "SweepReport", "What the mapper made of a sweep. Poses are the IMU's, in W.")
+      .def_ro("verdict", &Report::verdict)
+      .def_ro("pose", &Report::pose, "pose and velocity at the end of the sweep, with covariance")
+      .def_prop_ro(
+          "trajectory", [](const Report& r) { return Poses{r.trajectory}; }, "poses inside of the sweep at IMU times")
+      .def_prop_ro(
+          "smoothed", [](const Report& r) { return Poses{r.smoothed}; },
+          "the last word on the sweep that leaves the window with this one: of two the one before; empty while\n"
+          "the window fills")
+      .def_ro("inlier_share", &Report::inlier_share)
+      .def_ro("conditioning", &Report::conditioning)
+      .def_ro("weakest_sigma_m", &Report::weakest_sigma_m, "where the surfaces hold the pose least")
+      .def_prop_ro("weakest_direction", [](const Report& r) { return whole<6>(r.weakest_direction.data()); })
+      .def_ro("innovation", &Report::innovation, "correction over the prior's deviation, per root of unknowns")
+      .def_ro("iterations", &Report::iterations)
+      .def_ro("lost_sweeps", &Report::lost_sweeps, "rejected in a row, this one included")
+      .def_prop_ro("saturation_deficit_rad_s",
+                   [](const Report& r) { return whole<3>(r.saturation_deficit_rad_s.data()); })
+      .def_ro("points_used", &Report::points_used)
+      .def_ro("points_alone", &Report::points_alone)
+      .def_ro("points_registered", &Report::points_registered)
+      .def_ro("map_points_added", &Report::map_points_added);
+  using C = SweepCalibration;
+  nb::class_<C>(m, "SweepCalibration", "What ties a lidar to an IMU and both to the world, as estimated.")
+      .def_prop_ro(
+          "T_IL", [](const C& c) { return matrix(c.T_IL); }, "(4, 4), lidar in IMU axes")
+      .def_ro("time_offset_s", &C::time_offset_s, "the IMU's clock minus the lidar's")
+      .def_prop_ro(
+          "gravity_m_s2", [](const C& c) { return whole<3>(c.gravity_W_m_s2.data()); }, "(3,), in W");
+}
+
+/// Of a box the corners are no fields here: `own_body_L` is the box.
+const std::vector<const char*> kOfTheBox = {"own_body_*"};
+
+LidarInertialOdometry::Params mapper_params(const nb::kwargs& given) {
+  Keywords keywords("LidarInertialOdometry", given);
+  LidarInertialOdometry::Params params;
+  params.T_IL = pose_of(keywords.need("T_IL"), "T_IL");
+  const nb::object body = keywords.take("own_body_L");
+  params.own_body_L = body.is_valid() ? box_of(body, "own_body_L") : Eigen::AlignedBox3d();
+  read_fields(keywords, params, kOfTheBox);
+  keywords.done();
+  return params;
+}
+
+/// Rates as given, or the gyro as it reads where none are.
+std::vector<RateState> rates_for(const std::vector<ImuSample>& samples, nb::handle rates) {
+  std::vector<RateState> out;
+  if (rates.is_none()) {
+    out.resize(samples.size());
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+      out[k].time_ns = samples[k].time_ns;
+      out[k].w_WI_I_rad_s = samples[k].angular_velocity_rad_s;
+      out[k].clipped_axes = samples[k].device_clip_flags & (kClipGyroX | kClipGyroY | kClipGyroZ);
+    }
+    return out;
+  }
+  Rates given;
+  if (!nb::try_cast(rates, given)) raise_input("type", "rates", rates.type(), nb::str("Rates, or None"));
+  if (given.rows.size() != samples.size())
+    raise_input("shape", "rates", nb::int_(given.rows.size()), nb::int_(samples.size()));
+  return given.rows;
+}
+
+using Object = Guarded<LidarInertialOdometry>;
+
+void add_imu(Object& self, nb::handle time_ns, nb::handle gyro, nb::handle accel, nb::handle rates,
+             nb::handle clip_flags) {
+  const std::vector<ImuSample> samples = samples_of(time_ns, gyro, accel, clip_flags);
+  const std::vector<RateState> each = rates_for(samples, rates);
+  Status status;
+  std::size_t k = 0;
+  self.run([&](LidarInertialOdometry& mapper) {
+    for (; k < samples.size() && (status = mapper.add_imu(samples[k], each[k])).ok();) ++k;
+  });
+  if (!status.ok()) require(status, k);
+}
+
+Report add_sweep(Object& self, nb::handle start_ns, nb::handle end_ns, nb::handle position, nb::handle offset_ns,
+                 nb::handle ring, nb::handle intensity) {
+  const TimeNs start = time_of(start_ns, "start_ns"), end = time_of(end_ns, "end_ns");
+  const std::vector<LidarPoint> points = points_of(position, offset_ns, ring, intensity);
+  Report report;
+  Status status;
+  self.run([&](LidarInertialOdometry& mapper) { status = mapper.add_sweep(start, end, points, report); });
+  if (report.trajectory.empty()) require(status);  // else the pose is the inertial prior, and the verdict `rejected`
+  return report;
+}
+
+}  // namespace
+
+void bind_mapping(nb::module_& m) {
+  bind_report(m);
+  nb::class_<Object> bound(
+      m, "LidarInertialOdometry",
+      "Lidar-inertial odometry and mapping of a body that tumbles, given the rates that a rate method found.\n\n"
+      "LidarInertialOdometry(T_IL=..., own_body_L=None, **options): T_IL (4, 4), lidar in IMU axes; own_body_L (2, "
+      "3),\n"
+      "least and largest corner of the box in lidar axes whose returns are the robot's own. Options: parameters().\n"
+      "World: z up, origin and yaw at the IMU at the first sample. Begin at rest, half a second or more.");
+  bound
+      .def(
+          "__init__",
+          [](Object* self, const nb::kwargs& options) {
+            new (self) Object(LidarInertialOdometry(mapper_params(options)));
+          },
+          nb::arg("options"))
+      .def("add_imu", &add_imu, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"), nb::arg("rates") = nb::none(),
+           nb::arg("clip_flags") = nb::none(),
+           "Takes one sample or many with the Rates of a rate method; without any the gyro is believed as it reads.")
+      .def("add_sweep", &add_sweep, nb::arg("start_ns"), nb::arg("end_ns"), nb::arg("position"), nb::arg("offset_ns"),
+           nb::arg("ring") = nb::none(), nb::arg("intensity") = nb::none(),
+           "Registers a sweep of points fired in [start_ns, end_ns], which the IMU has to cover: position (N, 3), m, "
+           "in the\n"
+           "lidar's axes at each point's own instant; offset_ns (N,), after the start. Of a sweep that has no place in "
+           "the\n"
+           "map the verdict is `rejected` and the pose the inertial prior.")
+      .def(
+          "calibration", [](Object& self) { return self.run([](auto& mapper) { return mapper.calibration(); }); },
+          "T_IL, the clocks' offset and gravity as estimated so far.")
+      .def(
+          "pose_at",
+          [](Object& self, nb::handle time_ns) {
+            const TimeNs at = time_of(time_ns, "time_ns");
+            PoseState pose;
+            require(self.run([&](auto& mapper) { return mapper.pose_at(at, pose); }));
+            return pose;
+          },
+          nb::arg("time_ns"), "Pose at any time within the window of sweeps.")
+      .def(
+          "open_trajectory",
+          [](Object& self) { return joined(self.run([](auto& mapper) { return mapper.open_trajectories(); })); },
+          "Poses of the sweeps in the window that have not had their last word yet.")
+      .def(
+          "map", [](Object& self) { return MapPoints{self.run([](auto& mapper) { return mapper.map(); })}; },
+          "The map within map_radius_m of the sensor.")
+      .def_static("parameters", [] { return list_fields(LidarInertialOdometry::Params{}, kOfTheBox); });
+  bind_copy<Object>(bound);
+}
+
+}  // namespace tumble::python

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include <Eigen/Core>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "tumble/common/parameters.hpp"
+
+/// The numbers of a `Params` as keywords of Python: what its fields say (common/parameters.hpp) is all that reading,
+/// checking and listing know.
+namespace tumble::python {
+
+namespace nb = nanobind;
+
+/// One number of a `Params`, as `parameters()` of a class lists them.
+struct Parameter {
+  std::string name, unit;
+  nb::object value;  ///< the default
+  double low, high;
+  std::string meaning;
+  bool first;  ///< of those that a user sets before others
+};
+
+/// Keywords of a constructor. What is taken is known; what is left over in the end is not.
+class Keywords {
+ public:
+  /// `of`: the class, for messages.
+  Keywords(const char* of, const nb::kwargs& given) : of_(of), given_(given) {}
+
+  /// The value given for a name; an invalid object where there is none. The name is known from here on.
+  nb::object take(const std::string& name);
+  /// The same; TumbleError `empty` where there is none.
+  nb::object need(const std::string& name);
+  /// A number within its field's bounds.
+  void read(const std::string& name, const Field& field, bool whole, double& out);
+  void read(const std::string& name, const Field& field, Eigen::Vector3d& out);
+  /// TumbleError `unknown` for the first keyword that nobody has asked for, with the nearest known one and all of them.
+  void done() const;
+
+ private:
+  std::string of_;
+  const nb::kwargs& given_;
+  std::vector<std::string> known_;
+};
+
+/// Whether a name is hidden by a pattern: equal, or begins with it where the pattern ends in '*'.
+bool hidden_by(const std::vector<const char*>& patterns, const std::string& name);
+
+/// Calls `each(name, value, field)` for each field of a `Params`, by its whole name, but for hidden ones: what follows
+/// from another number.
+template <class Each>
+class ByWholeName {
+ public:
+  ByWholeName(const std::vector<const char*>& hidden, Each& each) : hidden_(hidden), each_(each) {}
+
+  template <class T>
+  void operator()(T& value, const Field& field) {
+    if (const std::string name = prefix_ + field.name; !hidden_by(hidden_, name)) each_(name, value, field);
+  }
+  template <class Params>
+  void group(const char* prefix, Params& params) {
+    const std::string outer = prefix_;
+    prefix_ += prefix;
+    std::remove_cv_t<Params>::fields(params, *this);
+    prefix_ = outer;
+  }
+
+ private:
+  const std::vector<const char*>& hidden_;
+  Each& each_;
+  std::string prefix_;
+};
+
+/// Reads all fields of `params` that are given.
+template <class Params>
+void read_fields(Keywords& keywords, Params& params, const std::vector<const char*>& hidden = {}) {
+  const auto each = [&](const std::string& name, auto& value, const Field& field) {
+    using Value = std::remove_cvref_t<decltype(value)>;
+    if constexpr (std::is_same_v<Value, Eigen::Vector3d>) {
+      keywords.read(name, field, value);
+    } else {
+      double number = static_cast<double>(value);
+      keywords.read(name, field, !std::is_floating_point_v<Value>, number);
+      value = static_cast<Value>(number);
+    }
+  };
+  ByWholeName visitor(hidden, each);
+  Params::fields(params, visitor);
+}
+
+nb::object as_object(const Eigen::Vector3d& value);
+
+/// What `read_fields` knows, with the defaults of `params`.
+template <class Params>
+std::vector<Parameter> list_fields(const Params& params, const std::vector<const char*>& hidden = {}) {
+  std::vector<Parameter> out;
+  const auto each = [&](const std::string& name, const auto& value, const Field& field) {
+    using Value = std::remove_cvref_t<decltype(value)>;
+    nb::object number;
+    if constexpr (std::is_same_v<Value, Eigen::Vector3d>) {
+      number = as_object(value);
+    } else if constexpr (std::is_floating_point_v<Value>) {
+      number = nb::float_(value);
+    } else if constexpr (std::is_same_v<Value, bool>) {
+      number = nb::bool_(value);
+    } else {
+      number = nb::int_(static_cast<long long>(value));
+    }
+    out.push_back({name, field.unit, number, field.low, field.high, field.meaning, field.rank == Rank::first});
+  };
+  ByWholeName visitor(hidden, each);
+  Params::fields(params, visitor);
+  return out;
+}
+
+/// Binds Parameter.
+void bind_parameter(nb::module_& m);
+
+}  // namespace tumble::python

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rails.hpp"
+
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <cstdint>
+#include <optional>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "streams.hpp"
+#include "trouble.hpp"
+#include "tumble/angular_velocity/recording_check.hpp"
+
+namespace tumble::python {
+
+namespace {
+
+using Found = ClippingFinder::Found;
+
+constexpr Field kGyroRange{"gyro_range_rad_s", "rad/s", 1e-9, 1e3, "range that the data sheet states"};
+constexpr Field kAccelRange{"accel_range_m_s2", "m/s^2", 1e-9, 1e5, "range that the data sheet states"};
+
+std::optional<double> range_of(Keywords& keywords, const Field& field) {
+  const nb::object given = keywords.take(field.name);
+  if (!given.is_valid() || given.is_none()) return std::nullopt;
+  double value = 0.0;
+  keywords.read(field.name, field, false, value);
+  return value;
+}
+
+Found find_rails(nb::handle time_ns, nb::handle gyro, nb::handle accel, nb::handle clip_flags,
+                 const nb::kwargs& given) {
+  Keywords keywords("find_rails", given);
+  ClippingFinder::Params params;
+  read_ranges(keywords, params.walls);
+  read_fields(keywords, params);
+  keywords.done();
+  const std::vector<ImuSample> samples = samples_of(time_ns, gyro, accel, clip_flags);
+  Found found;
+  Status status;
+  {
+    const nb::gil_scoped_release released;
+    status = check_recording(samples, 2, 3600.0);
+    if (status.ok()) found = ClippingFinder(params).find(samples);
+  }
+  require(status);
+  return found;
+}
+
+auto bits(const Found& found, std::uint8_t Clipping::*which) {
+  return column<std::uint8_t>(found.clippings, [which](const Clipping& c) { return &(c.*which); });
+}
+
+}  // namespace
+
+void read_ranges(Keywords& keywords, RailDetector::Params& rails) {
+  rails.stated_gyro_rad_s = range_of(keywords, kGyroRange);
+  rails.stated_accel_m_s2 = range_of(keywords, kAccelRange);
+}
+
+nb::list as_list(const RailPlanes& planes) {
+  nb::list out;
+  for (const std::optional<RailPlane>& plane : planes.element) out.append(plane ? nb::cast(*plane) : nb::none());
+  return out;
+}
+
+void bind_rails(nb::module_& m) {
+  nb::class_<RailPlane>(
+      m, "RailPlane", "The rail of one sensing element, as readings show it: the planes row . y = offset -+ distance.")
+      .def_prop_ro(
+          "row", [](const RailPlane& p) { return whole<3>(p.row.data()); },
+          "(3,): 1 along the element's own axis, its slopes along the other two")
+      .def_ro("distance", &RailPlane::distance_rad_s, "rad/s; of an accelerometer m/s^2")
+      .def_ro("offset", &RailPlane::offset_rad_s)
+      .def_ro("tolerance", &RailPlane::tolerance_rad_s, "a reading within this of the plane, or beyond it, is clipped")
+      .def_ro("samples", &RailPlane::samples, "on the plane of the negative and of the positive sign")
+      .def_ro("log_odds", &RailPlane::log_odds, "of a rail against a motion that only looks like one");
+  nb::class_<Found>(m, "Rails", "The rails of an IMU, and which readings of a recording stand at them.")
+      .def_prop_ro(
+          "gyro", [](const Found& f) { return as_list(f.rails.planes); },
+          "planes of the gyro's elements x, y, z, each a RailPlane or None where none was seen")
+      .def_prop_ro("accel", [](const Found& f) { return as_list(f.rails.accel_planes); })
+      .def_prop_ro(
+          "upright", [](const Found& f) { return f.rails.upright; },
+          "the device clips what it delivers: nothing is off on the axes beside")
+      .def_prop_ro(
+          "clipped_gyro", [](const Found& f) { return bits(f, &Clipping::gyro); },
+          "(N,) uint8, bit j: axis j at its rail, the truth lies at or beyond the reading")
+      .def_prop_ro("clipped_accel", [](const Found& f) { return bits(f, &Clipping::accel); })
+      .def_prop_ro(
+          "void_gyro", [](const Found& f) { return bits(f, &Clipping::void_gyro); },
+          "(N,) uint8, bit j: the reading of axis j says nothing (its sign flipped at the rail)");
+  m.def(
+      "find_rails", &find_rails, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
+      nb::arg("clip_flags") = nb::none(), nb::arg("options"),
+      "Finds which readings of a recording are clipped, without flags and without a stated range: level plateaus and\n"
+      "tilted planes. gyro_range_rad_s, accel_range_m_s2: what the data sheet states, if anything. Further keywords:\n"
+      "rails_parameters().");
+  m.def(
+      "rails_parameters", [] { return list_fields(ClippingFinder::Params{}); }, "Keywords of find_rails.");
+}
+
+}  // namespace tumble::python

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include <vector>
+
+#include "parameters.hpp"
+#include "tumble/angular_velocity/clipping_finder.hpp"
+#include "tumble/angular_velocity/rail_planes.hpp"
+
+namespace tumble::python {
+
+/// Takes `gyro_range_rad_s` and `accel_range_m_s2`, what the data sheet states; None: nothing.
+void read_ranges(Keywords& keywords, RailDetector::Params& rails);
+
+/// [RailPlane or None] of three elements.
+nb::list as_list(const RailPlanes& planes);
+
+}  // namespace tumble::python

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <utility>
+#include <vector>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "parameters.hpp"
+#include "rails.hpp"
+#include "results.hpp"
+#include "rig.hpp"
+#include "streams.hpp"
+#include "tumble/angular_velocity/rate_smoother.hpp"
+#include "tumble/angular_velocity/rate_stream.hpp"
+#include "tumble/angular_velocity/saave.hpp"
+#include "tumble/attitude/regime_smoother.hpp"
+#include "tumble/attitude/regime_stream.hpp"
+
+namespace tumble::python {
+
+namespace {
+
+/// What the model of both smoothers is told beside its numbers.
+void read_rig(Keywords& keywords, RateModelParams& model, RailDetector::Params& rails) {
+  model.nominal.lever_arm_m = vector_of(keywords.need("lever_arm_m"), "lever_arm_m");
+  const nb::object calibration = keywords.take("calibration");
+  if (calibration.is_valid() && !calibration.is_none()) model.calibration = rig_of(calibration, "calibration");
+  read_ranges(keywords, rails);
+}
+
+RateSmoother::Params smoother_params(const nb::kwargs& given) {
+  Keywords keywords("RateSmoother", given);
+  RateSmoother::Params params;
+  read_rig(keywords, params.model, params.rails);
+  read_fields(keywords, params);
+  keywords.done();
+  return params;
+}
+
+RateStream::Params stream_params(const nb::kwargs& given) {
+  Keywords keywords("RateStream", given);
+  RateStream::Params params;
+  read_rig(keywords, params.model, params.rails);
+  read_fields(keywords, params);
+  keywords.done();
+  return params;
+}
+
+RegimeSmoother::Params joint_params(const nb::kwargs& given) {
+  Keywords keywords("RegimeSmoother", given);
+  RegimeSmoother::Params params;
+  read_rig(keywords, params.rate.model, params.rate.rails);
+  read_fields(keywords, params);
+  keywords.done();
+  return params;
+}
+
+/// RegimeStream takes these from its RateStream, and the stream of the carried body iterates as it goes.
+const std::vector<const char*> kOfTheRate = {"carried_period_s", "carried_lag_s", "carried_gap_max_s",
+                                             "carried_iterations_max"};
+
+RegimeStream::Params regime_params(const nb::kwargs& given) {
+  Keywords keywords("RegimeStream", given);
+  RegimeStream::Params params;
+  read_rig(keywords, params.rate.model, params.rate.rails);
+  read_fields(keywords, params, kOfTheRate);
+  keywords.done();
+  params.carried.body.gap_max_s = params.rate.gap_max_s;
+  return params;
+}
+
+template <class Smoother, class Report>
+std::pair<Rates, Report> smooth(const Smoother& self, nb::handle time_ns, nb::handle gyro, nb::handle accel,
+                                nb::handle clip_flags) {
+  const std::vector<ImuSample> samples = samples_of(time_ns, gyro, accel, clip_flags);
+  std::pair<Rates, Report> out;
+  Status status;
+  {
+    const nb::gil_scoped_release released;
+    status = self.estimate(samples, out.first.rows, out.second);
+  }
+  require(status);
+  return out;
+}
+
+Rates saave(const Saave& self, nb::handle time_ns, nb::handle gyro, nb::handle accel, nb::handle clip_flags) {
+  const std::vector<ImuSample> samples = samples_of(time_ns, gyro, accel, clip_flags);
+  Rates out;
+  Status status;
+  {
+    const nb::gil_scoped_release released;
+    status = self.estimate(samples, out.rows);
+  }
+  require(status);
+  return out;
+}
+
+nb::dict shares_of(const RegimeShares& shares) {
+  nb::dict out;
+  out["flight"] = shares.flight;
+  out["contact"] = shares.contact;
+  out["carried"] = shares.carried;
+  return out;
+}
+
+void bind_batch(nb::module_& m) {
+  nb::class_<RateReport>(m, "RateReport", "What a run of RateSmoother tells about itself.")
+      .def_ro("iterations", &RateReport::iterations)
+      .def_ro("converged", &RateReport::converged)
+      .def_ro("restarts", &RateReport::restarts)
+      .def_ro("calibration", &RateReport::calibration, "what was learnt of the rig: can be given to the next run")
+      .def_ro("calibration_mahalanobis", &RateReport::calibration_mahalanobis,
+              "how far the rig's constants moved from what was known; far beyond 1 the prior is wrong")
+      .def_ro("rig_held", &RateReport::rig_held, "nothing was learnt, the constants were held")
+      .def_ro("rail", &RateReport::rail, "in use: gyro x y z [rad/s], accelerometer [m/s^2]; None: not seen")
+      .def_prop_ro(
+          "planes", [](const RateReport& r) { return as_list(r.planes); }, "of the gyro's elements")
+      .def_ro("rate_unit_suspect", &RateReport::rate_unit_suspect, "readings that no body has: perhaps degrees")
+      .def_ro("force_unit_suspect", &RateReport::force_unit_suspect, "the specific force is near 1: perhaps in g")
+      .def_ro("samples", &RateReport::samples)
+      .def_ro("clipped", &RateReport::clipped)
+      .def_ro("recovered_flight", &RateReport::recovered_flight)
+      .def_ro("recovered_contact", &RateReport::recovered_contact)
+      .def_ro("bounded_only", &RateReport::bounded_only)
+      .def_ro("flight_share", &RateReport::flight_share)
+      .def_prop_ro(
+          "doubted_axes", [](const RateReport& r) { return owned(r.doubted_axes); }, nb::rv_policy::automatic,
+          "(N,) uint8, bit j: axis j may stand at a rail that was not seen");
+  nb::class_<RateSmoother>(
+      m, "RateSmoother",
+      "Angular velocity of a tumbling body through saturation of its gyro, over a whole recording.\n\n"
+      "RateSmoother(lever_arm_m=(x, y, z), gyro_range_rad_s=None, accel_range_m_s2=None,\n"
+      "calibration=None, **options): lever_arm_m from the centre of mass to the IMU, IMU axes; ranges\n"
+      "as the data sheet states them, if it does; calibration: a RigCalibration of an earlier run.\n"
+      "Options: parameters(). For a body that flies and touches; one that a hand carries is\n"
+      "RegimeStream's or CarriedSmoother's, and tumble.rate() decides.")
+      .def(
+          "__init__",
+          [](RateSmoother* self, const nb::kwargs& options) { new (self) RateSmoother(smoother_params(options)); },
+          nb::arg("options"))
+      .def("estimate", &smooth<RateSmoother, RateReport>, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
+           nb::arg("clip_flags") = nb::none(), "One rate per sample, and what the run tells of itself.")
+      .def_static("parameters", [] { return list_fields(RateSmoother::Params{}); });
+  using Joint = RegimeSmoother::Report;
+  nb::class_<Joint>(m, "RegimeReport", "What a run of RegimeSmoother tells about itself.")
+      .def_ro("rate", &Joint::rate, "of RateSmoother")
+      .def_prop_ro(
+          "shares", [](const Joint& r) { return shares_of(r.shares); },
+          "means of the probabilities of flight, contact and being carried")
+      .def_ro("carried_clipped_max", &Joint::carried_clipped_max, "largest share of being carried where the gyro clips")
+      .def_ro("carried_asked", &Joint::carried_asked, "CarriedSmoother had a word")
+      .def_ro("carried", &Joint::carried, "of CarriedSmoother, where it had");
+  nb::class_<RegimeSmoother>(m, "RegimeSmoother",
+                             "Angular velocity of a body that flies, touches or is carried, over a whole recording:\n"
+                             "RateSmoother, and where a hand held the body while its gyro clipped CarriedSmoother.\n\n"
+                             "RegimeSmoother(lever_arm_m=(x, y, z), gyro_range_rad_s=None, accel_range_m_s2=None,\n"
+                             "calibration=None, **options): as RateSmoother; options: parameters().")
+      .def(
+          "__init__",
+          [](RegimeSmoother* self, const nb::kwargs& options) { new (self) RegimeSmoother(joint_params(options)); },
+          nb::arg("options"))
+      .def("estimate", &smooth<RegimeSmoother, Joint>, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
+           nb::arg("clip_flags") = nb::none(), "One rate per sample, and what the run tells of itself.")
+      .def_static("parameters", [] { return list_fields(RegimeSmoother::Params{}); });
+  nb::class_<Saave>(
+      m, "Saave",
+      "The published recovery of one clipped axis (Deschenes et al., ICRA 2024), then its smoother, over a\n"
+      "whole recording. Saave(**options): parameters().")
+      .def(
+          "__init__",
+          [](Saave* self, const nb::kwargs& options) {
+            Keywords keywords("Saave", options);
+            Saave::Params params;
+            read_fields(keywords, params);
+            keywords.done();
+            new (self) Saave(params);
+          },
+          nb::arg("options"))
+      .def("estimate", &saave, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
+           nb::arg("clip_flags") = nb::none(), "One rate per sample.")
+      .def_static("parameters", [] { return list_fields(Saave::Params{}); });
+}
+
+/// What the two streams have in common. `rate(stream)` and `state(state)`: the RateStream inside.
+template <class Stream, class Rate, class RateState_>
+auto bind_stream(nb::module_& m, const char* name, const char* doc,
+                 typename Stream::Params (*params)(const nb::kwargs&), Rate rate, RateState_ rate_state) {
+  using Object = Guarded<Running<Stream>>;
+  nb::class_<Object> bound(m, name, doc);
+  bound
+      .def(
+          "__init__",
+          [params](Object* self, const nb::kwargs& options) {
+            const Stream stream(params(options));
+            new (self) Object(Running<Stream>{stream, stream.start()});
+          },
+          nb::arg("options"))
+      .def(
+          "add_imu",
+          [](Object& self, nb::handle time_ns, nb::handle gyro, nb::handle accel, nb::handle clip_flags) {
+            std::optional<RateState> settled;
+            const auto step = [&settled](Running<Stream>& at, const ImuSample& sample, Rates& out) {
+              const Status status = at.filter.push(sample, at.state, settled);
+              if (settled) out.rows.push_back(*settled);
+              return status;
+            };
+            return feed<Rates>(self, samples_of(time_ns, gyro, accel, clip_flags), step);
+          },
+          nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"), nb::arg("clip_flags") = nb::none(),
+          "Takes one sample or many; returns the rates that are settled with them, lag_s old each.")
+      .def(
+          "flush",
+          [](Object& self) {
+            Rates out;
+            self.run([&](Running<Stream>& at) { at.filter.flush(at.state, out.rows); });
+            return out;
+          },
+          "Rates of the samples still in the window, as they stand. The stream stays as it is.")
+      .def(
+          "newest",
+          [rate, rate_state](Object& self) {
+            Rates out;
+            self.run([&](Running<Stream>& at) {
+              const std::optional<RateState> newest = rate(at.filter).newest(rate_state(at.state));
+              if (newest) out.rows.push_back(*newest);
+            });
+            return out;
+          },
+          "Provisional rate of the newest sample; no row before the first.")
+      .def(
+          "calibration",
+          [rate, rate_state](Object& self) {
+            return self.run([&](Running<Stream>& at) { return rate(at.filter).calibration(rate_state(at.state)); });
+          },
+          "What has been learnt of the rig.");
+  bind_copy<Object>(bound);
+  return bound;
+}
+
+void bind_streams(nb::module_& m) {
+  bind_stream<RateStream>(
+      m, "RateStream",
+      "The streaming form of RateSmoother: each rate is given out when its sample is lag_s old.\n\n"
+      "RateStream(lever_arm_m=(x, y, z), gyro_range_rad_s=None, accel_range_m_s2=None, calibration=None, **options):\n"
+      "as RateSmoother; options: parameters().",
+      &stream_params, [](const RateStream& s) -> const RateStream& { return s; },
+      [](const RateStream::State& s) -> const RateStream::State& { return s; })
+      .def_static("parameters", [] { return list_fields(RateStream::Params{}); });
+  bind_stream<RegimeStream>(
+      m, "RegimeStream",
+      "Angular velocity of a body that flies, touches or is carried, as a stream: RateStream, and where a hand holds "
+      "the\n"
+      "body while its gyro clips a smoother of carried bodies.\n\n"
+      "RegimeStream(lever_arm_m=(x, y, z), gyro_range_rad_s=None, accel_range_m_s2=None, calibration=None, "
+      "**options):\n"
+      "as RateSmoother; options: parameters().",
+      &regime_params, [](const RegimeStream& s) -> const RateStream& { return s.rate(); },
+      [](const RegimeStream::State& s) -> const RateStream::State& { return s.rate; })
+      .def(
+          "regime_shares",
+          [](Guarded<Running<RegimeStream>>& self) {
+            const RegimeShares shares = self.run([](Running<RegimeStream>& at) { return at.state.shares; });
+            return shares_of(shares);
+          },
+          "Probabilities of flight, contact and being carried, at the sample given out last.")
+      .def_static("parameters", [] { return list_fields(RegimeStream::Params{}, kOfTheRate); });
+}
+
+}  // namespace
+
+void bind_rates(nb::module_& m) {
+  nb::enum_<RateSource>(m, "RateSource", nb::is_arithmetic(), "Where an angular velocity comes from.")
+      .value("measured", RateSource::measured)
+      .value("recovered_flight", RateSource::recovered_flight)
+      .value("recovered_contact", RateSource::recovered_contact)
+      .value("bounded_only", RateSource::bounded_only);
+  bind_rig(m);
+  bind_batch(m);
+  bind_streams(m);
+}
+
+}  // namespace tumble::python

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "results.hpp"
+
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/vector.h>
+
+#include <cstdint>
+
+#include "arrays.hpp"
+#include "trouble.hpp"
+
+namespace tumble::python {
+
+namespace {
+
+template <class Rows>
+std::size_t length(const Rows& self) {
+  return self.rows.size();
+}
+
+template <class Rows>
+auto times(const Rows& self) {
+  return column<std::int64_t>(self.rows, [](const auto& row) { return &row.time_ns; });
+}
+
+/// What all of them have.
+template <class Rows>
+nb::class_<Rows> bind_rows(nb::module_& m, const char* name, const char* doc) {
+  nb::class_<Rows> bound(m, name, doc);
+  bound.def("__len__", &length<Rows>)
+      .def_static(
+          "joined",
+          [](const std::vector<const Rows*>& parts) {
+            Rows out;
+            for (const Rows* part : parts) {
+              if (part == nullptr) raise_input("type", "parts", nb::none(), nb::str("rows"));
+              out.rows.insert(out.rows.end(), part->rows.begin(), part->rows.end());
+            }
+            return out;
+          },
+          nb::arg("parts"), "The rows of several, one after the other.");
+  return bound;
+}
+
+constexpr const char* kTimes = "(N,) int64, nanoseconds";
+constexpr const char* kQuaternions = "(N, 4): Hamilton, x y z w as scipy has them; sensor or body axes to world";
+constexpr const char* kPoseCovariance =
+    "(6, 6), of (position error in W [m], attitude error phi in W [rad]); zero where not reported";
+constexpr const char* kPoseCovariances = "(N, 6, 6), of (position error in W [m], attitude error phi in W [rad])";
+
+void bind_rates(nb::module_& m) {
+  bind_rows<Rates>(m, "Rates", "Angular velocity of an IMU in the world, in the IMU's axes, one per sample.")
+      .def_prop_ro("time_ns", &times<Rates>, kTimes)
+      .def_prop_ro(
+          "rate",
+          [](const Rates& s) { return column<double, 3>(s.rows, [](auto& r) { return r.w_WI_I_rad_s.data(); }); },
+          "(N, 3), rad/s")
+      .def_prop_ro(
+          "covariance",
+          [](const Rates& s) {
+            return column<double, 3, 3>(s.rows, [](auto& r) { return r.covariance_rad2_s2.data(); });
+          },
+          "(N, 3, 3), rad^2/s^2")
+      .def_prop_ro(
+          "clipped_axes",
+          [](const Rates& s) { return column<std::uint8_t>(s.rows, [](auto& r) { return &r.clipped_axes; }); },
+          "(N,) uint8, bit j set: the gyro's axis j was at its rail")
+      .def_prop_ro(
+          "source",
+          [](const Rates& s) {
+            return column<std::uint8_t>(s.rows,
+                                        [](auto& r) { return reinterpret_cast<const std::uint8_t*>(&r.source); });
+          },
+          "(N,) uint8: 0 measured, 1 recovered in flight, 2 recovered in contact, 3 bounded only (`RateSource`)");
+}
+
+void bind_attitudes(nb::module_& m) {
+  bind_rows<Attitudes>(m, "Attitudes", "Attitude of an IMU in the world, one per sample.")
+      .def_prop_ro("time_ns", &times<Attitudes>, kTimes)
+      .def_prop_ro(
+          "quaternion",
+          [](const Attitudes& s) { return column<double, 4>(s.rows, [](auto& r) { return r.q_WA.coeffs().data(); }); },
+          kQuaternions)
+      .def_prop_ro(
+          "covariance",
+          [](const Attitudes& s) {
+            return column<double, 3, 3>(s.rows, [](auto& r) { return r.covariance_rad2.data(); });
+          },
+          "(N, 3, 3), rad^2, of phi with q_true = Exp(phi) q, world axes; zero where the method reports none");
+}
+
+void bind_poses(nb::module_& m) {
+  nb::class_<PoseState>(m, "Pose", "Pose and velocity of a frame in the world at one instant.")
+      .def_ro("time_ns", &PoseState::time_ns)
+      .def_prop_ro(
+          "position", [](const PoseState& s) { return whole<3>(s.p_WA_m.data()); }, "(3,), m")
+      .def_prop_ro(
+          "quaternion", [](const PoseState& s) { return whole<4>(s.q_WA.coeffs().data()); }, "(4,), x y z w")
+      .def_prop_ro(
+          "velocity", [](const PoseState& s) { return whole<3>(s.v_WA_m_s.data()); }, "(3,), m/s, W")
+      .def_prop_ro(
+          "covariance", [](const PoseState& s) { return whole<6, 6>(s.covariance.data()); }, kPoseCovariance)
+      .def_prop_ro(
+          "matrix",
+          [](const PoseState& s) {
+            Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+            pose.linear() = s.q_WA.toRotationMatrix();
+            pose.translation() = s.p_WA_m;
+            return matrix(pose);
+          },
+          "(4, 4), takes coordinates of the frame to W");
+  bind_rows<Poses>(m, "Poses", "Poses and velocities of a frame in the world, in order of time.")
+      .def_prop_ro("time_ns", &times<Poses>, kTimes)
+      .def_prop_ro(
+          "position", [](const Poses& s) { return column<double, 3>(s.rows, [](auto& r) { return r.p_WA_m.data(); }); },
+          "(N, 3), m")
+      .def_prop_ro(
+          "quaternion",
+          [](const Poses& s) { return column<double, 4>(s.rows, [](auto& r) { return r.q_WA.coeffs().data(); }); },
+          kQuaternions)
+      .def_prop_ro(
+          "velocity",
+          [](const Poses& s) { return column<double, 3>(s.rows, [](auto& r) { return r.v_WA_m_s.data(); }); },
+          "(N, 3), m/s, W")
+      .def_prop_ro(
+          "covariance",
+          [](const Poses& s) { return column<double, 6, 6>(s.rows, [](auto& r) { return r.covariance.data(); }); },
+          kPoseCovariances);
+}
+
+void bind_rolling(nb::module_& m) {
+  using R = RollingPoses;
+  bind_rows<R>(m, "RollingPoses", "Poses of a rolling sphere's centre, with what is known of the contact.")
+      .def_prop_ro("time_ns", &times<R>, kTimes)
+      .def_prop_ro(
+          "position", [](const R& s) { return column<double, 3>(s.rows, [](auto& r) { return r.p_WG_m.data(); }); },
+          "(N, 3), m")
+      .def_prop_ro(
+          "quaternion",
+          [](const R& s) { return column<double, 4>(s.rows, [](auto& r) { return r.q_WI.coeffs().data(); }); },
+          kQuaternions)
+      .def_prop_ro(
+          "velocity", [](const R& s) { return column<double, 3>(s.rows, [](auto& r) { return r.v_WG_m_s.data(); }); },
+          "(N, 3), m/s, W")
+      .def_prop_ro(
+          "covariance",
+          [](const R& s) { return column<double, 6, 6>(s.rows, [](auto& r) { return r.covariance.data(); }); },
+          kPoseCovariances)
+      .def_prop_ro(
+          "mode",
+          [](const R& s) {
+            return column<std::uint8_t>(s.rows, [](auto& r) { return reinterpret_cast<const std::uint8_t*>(&r.mode); });
+          },
+          "(N,) uint8: 0 grip, 1 slip, 2 bump, 3 incline, 4 rough (`RollingMode`)")
+      .def_prop_ro(
+          "at_rest", [](const R& s) { return column<bool>(s.rows, [](auto& r) { return &r.at_rest; }); }, "(N,) bool")
+      .def_prop_ro(
+          "uncertain", [](const R& s) { return column<bool>(s.rows, [](auto& r) { return &r.uncertain; }); },
+          "(N,) bool: in an event that made the position uncertain");
+}
+
+void bind_map(nb::module_& m) {
+  using M = MapPoints;
+  bind_rows<M>(m, "MapPoints", "Points of a map, in the world.")
+      .def_prop_ro(
+          "position",
+          [](const M& s) { return column<float, 3>(s.rows, [](auto& r) { return r.position_W_m.data(); }); },
+          "(N, 3) float32, m")
+      .def_prop_ro(
+          "normal", [](const M& s) { return column<float, 3>(s.rows, [](auto& r) { return r.normal_W.data(); }); },
+          "(N, 3) float32, unit; zero where no plane could be fitted")
+      .def_prop_ro(
+          "sigma", [](const M& s) { return column<float>(s.rows, [](auto& r) { return &r.sigma_m; }); },
+          "(N,) float32, m: uncertainty of the position, one standard deviation");
+}
+
+}  // namespace
+
+Poses joined(const std::vector<std::vector<PoseState>>& parts) {
+  Poses out;
+  for (const std::vector<PoseState>& part : parts) out.rows.insert(out.rows.end(), part.begin(), part.end());
+  return out;
+}
+
+void bind_results(nb::module_& m) {
+  bind_rates(m);
+  bind_attitudes(m);
+  bind_poses(m);
+  bind_rolling(m);
+  bind_map(m);
+}
+
+}  // namespace tumble::python

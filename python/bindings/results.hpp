@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include <vector>
+
+#include "tumble/angular_velocity/rate_state.hpp"
+#include "tumble/common/pose.hpp"
+#include "tumble/mapping/lidar.hpp"
+#include "tumble/rolling/rolling_smoother.hpp"
+
+/// What estimators give out, in rows: each class shows the columns as arrays where they lie.
+namespace tumble::python {
+
+struct Rates {
+  std::vector<RateState> rows;
+};
+struct Attitudes {
+  std::vector<AttitudeState> rows;
+};
+struct Poses {
+  std::vector<PoseState> rows;
+};
+struct RollingPoses {
+  std::vector<RollingEstimate> rows;
+};
+struct MapPoints {
+  std::vector<MapPoint> rows;
+};
+
+/// The rows of several as one.
+Poses joined(const std::vector<std::vector<PoseState>>& parts);
+
+void bind_results(nanobind::module_& m);
+
+}  // namespace tumble::python

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include "tumble/angular_velocity/rig_constants.hpp"
+
+namespace tumble::python {
+
+/// What an earlier run has learnt: a RigCalibration of Python's. `type` for anything else.
+RigCalibration rig_of(nanobind::handle given, const char* field);
+
+void bind_rig(nanobind::module_& m);
+
+}  // namespace tumble::python

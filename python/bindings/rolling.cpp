@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "parameters.hpp"
+#include "results.hpp"
+#include "streams.hpp"
+#include "tumble/odometry/rolling_odometry.hpp"
+#include "tumble/rolling/rolling_smoother.hpp"
+
+namespace tumble::python {
+
+namespace {
+
+/// A state of half a megabyte does not lie inside of an object of Python's.
+struct Smoothing {
+  RollingSmoother smoother;
+  std::unique_ptr<RollingSmoother::State> state = std::make_unique<RollingSmoother::State>();
+
+  explicit Smoothing(const RollingSmoother::Params& params) : smoother(params) {}
+  Smoothing(const Smoothing& other)
+      : smoother(other.smoother), state(std::make_unique<RollingSmoother::State>(*other.state)) {}
+  Smoothing& operator=(const Smoothing&) = delete;
+  ~Smoothing() = default;
+};
+
+void bind_smoother(nb::module_& m) {
+  using Object = Guarded<Smoothing>;
+  nb::class_<Object> bound(
+      m, "RollingSmoother",
+      "Pose of a rolling sphere from one IMU, smoothed with a fixed lag or, by default, over the whole run.\n\n"
+      "RollingSmoother(radius_m=..., lever_arm_m=(x, y, z), **options): lever_arm_m from the centre to the IMU, "
+      "sensor\n"
+      "axes; options: parameters(). Begin with a second of rest.");
+  bound
+      .def(
+          "__init__",
+          [](Object* self, const nb::kwargs& options) {
+            Keywords keywords("RollingSmoother", options);
+            keywords.need("radius_m");
+            RollingSmoother::Params params;
+            read_fields(keywords, params);
+            keywords.done();
+            new (self) Object(Smoothing(params));
+          },
+          nb::arg("options"))
+      .def(
+          "add_imu",
+          [](Object& self, nb::handle time_ns, nb::handle gyro, nb::handle accel, nb::handle clip_flags) {
+            const auto step = [](Smoothing& at, const ImuSample& sample, RollingPoses& out) {
+              return at.smoother.step(sample, *at.state, out.rows);
+            };
+            return feed<RollingPoses>(self, samples_of(time_ns, gyro, accel, clip_flags), step);
+          },
+          nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"), nb::arg("clip_flags") = nb::none(),
+          "Takes one sample or many; returns the poses that are old enough with them.")
+      .def(
+          "finish",
+          [](Object& self) {
+            RollingPoses out;
+            self.run([&](Smoothing& at) { at.smoother.finish(*at.state, out.rows); });
+            return out;
+          },
+          "The poses that are still owed. The run has ended.")
+      .def_static("parameters", [] { return list_fields(RollingSmoother::Params{}); });
+  bind_copy<Object>(bound);
+}
+
+/// The door's own numbers, and what its sheets say, take the place of these.
+const std::vector<const char*> kOfTheDoor = {"merge_count",
+                                             "merge_gyro_range_rad_s",
+                                             "merge_accel_range_m_s2",
+                                             "rolling_radius_m",
+                                             "rolling_gravity_m_s2",
+                                             "rolling_lever_arm_m",
+                                             "rolling_lever_arm_sigma_m",
+                                             "rolling_gyro_range_rad_s",
+                                             "rolling_accel_range_m_s2",
+                                             "rolling_recovered_rate_sigma_rad_s",
+                                             "rolling_lag_s"};
+
+RollingOdometry::Params door_params(const nb::kwargs& given) {
+  Keywords keywords("RollingOdometry", given);
+  RollingOdometry::Params params;
+  const nb::object units = keywords.need("units");
+  keywords.need("radius_m");
+  for (const nb::handle unit : units) {
+    const nb::object pair = nb::borrow(unit);
+    if (!nb::isinstance<nb::tuple>(pair) || nb::len(pair) != 2) {
+      raise_input("type", "units", nb::str(pair), nb::str("pairs (ImuSheet, T_BI)"));
+    }
+    ImuSheet sheet;
+    if (!nb::try_cast(nb::object(pair[0]), sheet))
+      raise_input("type", "units", nb::str(pair), nb::str("pairs (ImuSheet, T_BI)"));
+    params.units.push_back({sheet, pose_of(pair[1], "units T_BI")});
+  }
+  read_fields(keywords, params, kOfTheDoor);
+  keywords.done();
+  return params;
+}
+
+RollingEstimate as_estimate(const RollingOdometry::Pose& p) {
+  return {p.pose.time_ns,    p.pose.p_WA_m, p.pose.q_WA, p.pose.v_WA_m_s,
+          p.pose.covariance, p.mode,        p.at_rest,   p.uncertain};
+}
+
+/// Samples of all units: one triple of arrays, or a list with one for each unit. The first's times count.
+std::vector<std::vector<ImuSample>> samples_of_units(nb::handle time_ns, nb::handle gyro, nb::handle accel,
+                                                     std::size_t units) {
+  if (units == 1 && !nb::isinstance<nb::list>(gyro)) return {samples_of(time_ns, gyro, accel, nb::none())};
+  std::vector<std::vector<ImuSample>> out;
+  for (std::size_t k = 0; k < units; ++k) {
+    for (const auto& [name, list] : {std::pair{"gyro", gyro}, std::pair{"accel", accel}}) {
+      if (!nb::isinstance<nb::list>(list) || nb::len(list) != units) {
+        raise_input("shape", name, list.type(),
+                    nb::str(("a list of " + std::to_string(units) + " arrays, one a unit").c_str()));
+      }
+    }
+    out.push_back(samples_of(time_ns, gyro[k], accel[k], nb::none()));
+  }
+  return out;
+}
+
+RollingPoses taken(RollingOdometry& odometry) {
+  RollingPoses out;
+  while (const std::optional<RollingOdometry::Pose> pose = odometry.take()) out.rows.push_back(as_estimate(*pose));
+  return out;
+}
+
+/// The door, with how many units it has.
+struct Door {
+  RollingOdometry odometry;
+  std::size_t units;
+};
+
+void bind_door(nb::module_& m) {
+  using Object = Guarded<Door>;
+  nb::class_<Object> bound(
+      m, "RollingOdometry",
+      "Pose of a rolling sphere from one to four IMUs, through grip, slip, bumps and slopes: live, and smoothed with "
+      "what\n"
+      "follows within lag_s.\n\n"
+      "RollingOdometry(units=[(ImuSheet, T_BI), ...], radius_m=..., **options): T_BI (4, 4) places a unit in axes of "
+      "the\n"
+      "sphere, from its centre. Options: parameters(). World: z up, origin at the centre at the first sample, yaw 0.\n"
+      "Begin with a second of rest.");
+  bound
+      .def(
+          "__init__",
+          [](Object* self, const nb::kwargs& options) {
+            const RollingOdometry::Params params = door_params(options);
+            new (self) Object(Door{RollingOdometry(params), params.units.size()});
+          },
+          nb::arg("options"))
+      .def(
+          "add_imu",
+          [](Object& self, nb::handle time_ns, nb::handle gyro, nb::handle accel) {
+            const std::size_t units = self.run([](Door& door) { return door.units; });
+            const std::vector<std::vector<ImuSample>> all = samples_of_units(time_ns, gyro, accel, units);
+            Status status;
+            std::size_t k = 0;
+            self.run([&](Door& door) {
+              std::vector<ImuSample> now(units);
+              for (; k < all.front().size(); ++k) {
+                for (std::size_t unit = 0; unit < units; ++unit) now[unit] = all[unit][k];
+                status = door.odometry.add_imus(now);
+                if (!status.ok()) break;
+              }
+            });
+            if (!status.ok()) require(status, k);
+          },
+          nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
+          "Takes what all units read at one time, or at N: of one unit arrays, of several lists with one for each "
+          "unit.\n"
+          "A unit that has nothing to say gives NaN.")
+      .def(
+          "newest",
+          [](Object& self) {
+            RollingPoses out;
+            self.run([&](Door& door) {
+              if (const auto pose = door.odometry.newest()) out.rows.push_back(as_estimate(*pose));
+            });
+            return out;
+          },
+          "Pose at the newest sample by what came before it; no row before the first.")
+      .def(
+          "take", [](Object& self) { return self.run([](Door& door) { return taken(door.odometry); }); },
+          "The poses that have become known since the last call, each once: lag_s old, or live ones without a lag.")
+      .def(
+          "finish", [](Object& self) { self.run([](Door& door) { door.odometry.finish(); }); },
+          "Smooths what is still within the lag: the run has ended, until reset(). take() gives it.")
+      .def(
+          "reset", [](Object& self) { self.run([](Door& door) { door.odometry.reset(); }); },
+          "Begins a new run: at the origin, at rest.")
+      .def_static("parameters", [] { return list_fields(RollingOdometry::Params{}, kOfTheDoor); });
+  bind_copy<Object>(bound);
+}
+
+}  // namespace
+
+void bind_rolling(nb::module_& m) {
+  nb::enum_<RollingMode>(m, "RollingMode", nb::is_arithmetic(), "How the sphere meets the floor.")
+      .value("grip", RollingMode::grip, "the contact point stands still, the floor is level")
+      .value("slip", RollingMode::slip, "it moves along the floor")
+      .value("bump", RollingMode::bump, "it also rises or falls")
+      .value("incline", RollingMode::incline, "it stands still on a slope")
+      .value("rough", RollingMode::rough, "it stands still, the floor goes up and down");
+  bind_smoother(m);
+  bind_door(m);
+}
+
+}  // namespace tumble::python

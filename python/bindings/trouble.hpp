@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "tumble/common/status.hpp"
+
+/// How trouble of the library reaches Python: as tumble.TumbleError with trouble, field, value and bound.
+namespace tumble::python {
+
+namespace nb = nanobind;
+
+/// Raises TumbleError with the message "FIELD is VALUE, must be BOUND". `trouble`: the name of a Trouble, or `type`,
+/// `shape`, `unknown` of an argument. `bound`: a number or a text.
+[[noreturn]] void raise_input(const char* trouble, const std::string& field, nb::handle value, nb::handle bound);
+
+/// Raises TumbleError with a status' own message, unless it is ok. `index`: of the sample in an array; those before it
+/// were taken in. `so_far`: what came out of these.
+void require(const Status& status, std::optional<std::size_t> index = std::nullopt, nb::object so_far = nb::none());
+
+/// From here on InvalidParams, which constructors throw, is a TumbleError too.
+void translate_invalid_params();
+
+}  // namespace tumble::python

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/odometry/tumbling_odometry.hpp"
+
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <optional>
+#include <vector>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "parameters.hpp"
+#include "results.hpp"
+#include "rig.hpp"
+#include "streams.hpp"
+#include "tumble/odometry/tumbling_odometry_fields.hpp"
+
+namespace tumble::python {
+
+namespace {
+
+using Object = Guarded<TumblingOdometry>;
+using Sweep = TumblingOdometry::Sweep;
+
+/// The door's own numbers take the place of these.
+const std::vector<const char*> kOfTheDoor = {"imu_*",
+                                             "range_*",
+                                             "rate_lever_arm_sigma_m",
+                                             "rate_gyro_noise_density",
+                                             "rate_accel_noise_density",
+                                             "rate_period_s",
+                                             "rate_lag_s",
+                                             "rate_evidence_gravity_m_s2",
+                                             "rate_carried_gravity_m_s2",
+                                             "rate_carried_gap_max_s",
+                                             "rate_carried_period_s",
+                                             "rate_carried_lag_s",
+                                             "rate_carried_iterations_max",
+                                             "mapping_mount_sigma_*",
+                                             "mapping_time_offset_sigma_s",
+                                             "mapping_gravity_m_s2",
+                                             "mapping_range_*",
+                                             "mapping_own_body_*",
+                                             "mapping_accel_rail_m_s2"};
+
+template <class Sheet>
+Sheet sheet_of(nb::handle given, const char* field, const char* type) {
+  Sheet sheet;
+  if (!nb::try_cast(given, sheet)) raise_input("type", field, given.type(), nb::str(type));
+  return sheet;
+}
+
+TumblingOdometry::Params door_params(const nb::kwargs& given) {
+  Keywords keywords("TumblingOdometry", given);
+  TumblingOdometry::Params params;
+  params.imu = sheet_of<ImuSheet>(keywords.need("imu"), "imu", "an ImuSheet");
+  if (const nb::object lidar = keywords.take("lidar"); lidar.is_valid())
+    params.lidar = sheet_of<LidarSheet>(lidar, "lidar", "a LidarSheet");
+  params.T_IL = pose_of(keywords.need("T_IL"), "T_IL");
+  params.lever_arm_I_m = vector_of(keywords.need("lever_arm_m"), "lever_arm_m");
+  if (const nb::object body = keywords.take("own_body_L"); body.is_valid())
+    params.own_body_L = box_of(body, "own_body_L");
+  if (const nb::object rig = keywords.take("calibration"); rig.is_valid() && !rig.is_none())
+    params.expert.rate.rate.model.calibration = rig_of(rig, "calibration");
+  read_fields(keywords, params, kOfTheDoor);
+  keywords.done();
+  return params;
+}
+
+void add_imu(Object& self, nb::handle time_ns, nb::handle gyro, nb::handle accel, nb::handle clip_flags) {
+  const std::vector<ImuSample> samples = samples_of(time_ns, gyro, accel, clip_flags);
+  Status status;
+  std::size_t k = 0;
+  self.run([&](TumblingOdometry& odometry) {
+    for (; k < samples.size() && (status = odometry.add_imu(samples[k])).ok();) ++k;
+  });
+  if (!status.ok()) require(status, k);
+}
+
+void add_sweep(Object& self, nb::handle start_ns, nb::handle end_ns, nb::handle position, nb::handle offset_ns,
+               nb::handle ring, nb::handle intensity) {
+  const TimeNs start = time_of(start_ns, "start_ns"), end = time_of(end_ns, "end_ns");
+  const std::vector<LidarPoint> points = points_of(position, offset_ns, ring, intensity);
+  require(self.run([&](TumblingOdometry& odometry) { return odometry.add_sweep(start, end, points); }));
+}
+
+Rates rates_of(const std::optional<RateState>& rate) {
+  Rates out;
+  if (rate) out.rows.push_back(*rate);
+  return out;
+}
+
+template <class Class>
+void bind_talk(Class& bound) {
+  bound
+      .def(
+          "newest",
+          [](Object& self) {
+            PoseState pose;
+            require(self.run([&](TumblingOdometry& odometry) { return odometry.newest(pose); }));
+            return pose;
+          },
+          "Pose and velocity of the IMU at its newest sample, by inertia from the last sweep that was registered, "
+          "with\n"
+          "covariance. TumbleError `empty` before that.")
+      .def(
+          "newest_rate",
+          [](Object& self) {
+            return rates_of(self.run([](TumblingOdometry& odometry) { return odometry.newest_rate(); }));
+          },
+          "Rate of the newest sample, provisional where the gyro clips; no row before the first.")
+      .def(
+          "settled_rate",
+          [](Object& self) {
+            return rates_of(self.run([](TumblingOdometry& odometry) { return odometry.settled_rate(); }));
+          },
+          "Latest settled rate, lag_s old; no row while the lag fills.")
+      .def(
+          "rig", [](Object& self) { return self.run([](TumblingOdometry& odometry) { return odometry.rig(); }); },
+          "What is known of the IMU on the body: lever arm, biases, elements. For the next run's `calibration`.")
+      .def(
+          "calibration",
+          [](Object& self) {
+            return self.run([](TumblingOdometry& odometry) { return odometry.mapper().calibration(); });
+          },
+          "T_IL, the clocks' offset and gravity as estimated so far.")
+      .def(
+          "open_trajectory",
+          [](Object& self) {
+            return joined(self.run([](TumblingOdometry& odometry) { return odometry.mapper().open_trajectories(); }));
+          },
+          "Poses of the sweeps in the window that have not had their last word yet.")
+      .def(
+          "map",
+          [](Object& self) {
+            return MapPoints{self.run([](TumblingOdometry& odometry) { return odometry.mapper().map(); })};
+          },
+          "The map within mapping_map_radius_m of the sensor.")
+      .def_prop_ro(
+          "gaps", [](Object& self) { return self.run([](TumblingOdometry& odometry) { return odometry.gaps(); }); },
+          "of the IMU, after which the rates began anew")
+      .def_prop_ro(
+          "passed_again",
+          [](Object& self) { return self.run([](TumblingOdometry& odometry) { return odometry.passed_again(); }); },
+          "whether map and pose are those of the second pass")
+      .def_prop_ro(
+          "dropped_sweeps",
+          [](Object& self) { return self.run([](TumblingOdometry& odometry) { return odometry.dropped_sweeps(); }); },
+          "that nobody took in time");
+}
+
+}  // namespace
+
+void bind_tumbling(nb::module_& m) {
+  nb::class_<Sweep>(m, "Sweep", "What became of a sweep.")
+      .def_prop_ro("ok", [](const Sweep& s) { return s.status.ok(); })
+      .def_prop_ro(
+          "message", [](const Sweep& s) { return s.status.message(); }, "\"ok\", or the trouble with it")
+      .def_prop_ro(
+          "placed", [](const Sweep& s) { return !s.report.trajectory.empty(); },
+          "whether it has poses; one that begins before the IMU has none")
+      .def_ro("report", &Sweep::report);
+  nb::class_<Object> bound(
+      m, "TumblingOdometry",
+      "Pose, velocity and map of a body that tumbles, from one IMU whose gyro may clip and a lidar whose sweeps are "
+      "bent:\n"
+      "causal, sample by sample.\n\n"
+      "TumblingOdometry(imu=ImuSheet, T_IL=..., lever_arm_m=(x, y, z), lidar=LidarSheet(), own_body_L=None,\n"
+      "calibration=None, **options): T_IL (4, 4), lidar in IMU axes; lever_arm_m from the centre of mass to the IMU, "
+      "IMU\n"
+      "axes, to a centimetre; own_body_L (2, 3), least and largest corner of the box in lidar axes whose returns are "
+      "the\n"
+      "robot's own; calibration: rig() of an earlier run. Options: parameters().\n"
+      "World: z up, origin and yaw at the IMU at the first sample. Begin at rest, half a second or more.");
+  bound
+      .def(
+          "__init__",
+          [](Object* self, const nb::kwargs& options) { new (self) Object(TumblingOdometry(door_params(options))); },
+          nb::arg("options"))
+      .def("add_imu", &add_imu, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
+           nb::arg("clip_flags") = nb::none(),
+           "Takes one sample or many, in order of time. Sweeps whose rates are settled with them are registered now.")
+      .def("add_sweep", &add_sweep, nb::arg("start_ns"), nb::arg("end_ns"), nb::arg("position"), nb::arg("offset_ns"),
+           nb::arg("ring") = nb::none(), nb::arg("intensity") = nb::none(),
+           "Takes a sweep of points fired in [start_ns, end_ns], at any time after its last point: position (N, 3), m, "
+           "in\n"
+           "the lidar's axes at each point's own instant; offset_ns (N,), after the start.")
+      .def(
+          "take", [](Object& self) { return self.run([](TumblingOdometry& odometry) { return odometry.take(); }); },
+          "The next sweep that was registered, in order; None when there is none yet.")
+      .def(
+          "take_all",
+          [](Object& self) {
+            return self.run([](TumblingOdometry& odometry) {
+              std::vector<Sweep> out;
+              while (std::optional<Sweep> sweep = odometry.take()) out.push_back(std::move(*sweep));
+              return out;
+            });
+          },
+          "All of them.")
+      .def(
+          "finish", [](Object& self) { self.run([](TumblingOdometry& odometry) { odometry.finish(); }); },
+          "Settles what there is, at the end of a run or at a halt: take() gives the sweeps that the IMU covers.")
+      .def_static("parameters", [] { return list_fields(TumblingOdometry::Params{}, kOfTheDoor); });
+  bind_talk(bound);
+  bind_copy<Object>(bound);
+}
+
+}  // namespace tumble::python

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Estimators and mapper for robots that tumble and roll: gyros that clip, lidar sweeps bent by the motion, spheres that slip.
+
+Arrays of numpy in and out; times are int64 nanoseconds, everything else SI; quaternions are Hamilton, x y z w, sensor or body to
+world (z up). What is wrong with input is TumbleError, with field, value and bound. `parameters()` of a class lists its keywords.
+
+The door        TumblingOdometry (an IMU that may clip and a lidar), RollingOdometry (IMUs in a sphere), sheets of sensors
+Rates           RegimeSmoother, RateSmoother, CarriedSmoother, Saave (whole recordings), RegimeStream, RateStream (live), find_rails
+Attitude        TumbleAttitude, Vqf, Strapdown
+Sphere          RollingSmoother
+Mapper          LidarInertialOdometry
+Recordings      read, write; rate, tumbling, rolling take them whole
+Estimates       read_tum, write_tum, read_estimate
+The program     record, run, estimate, score, sweep, results; serve and describe_method make a function a method of it
+"""
+from ._tumble import (
+    Attitudes,
+    CarriedReport,
+    CarriedSmoother,
+    ImuSheet,
+    LidarInertialOdometry,
+    LidarSheet,
+    MapPoints,
+    Parameter,
+    Pose,
+    Poses,
+    RailPlane,
+    Rails,
+    Rates,
+    RateReport,
+    RateSmoother,
+    RateSource,
+    RateStream,
+    RegimeReport,
+    RegimeSmoother,
+    RegimeStream,
+    RigCalibration,
+    RollingMode,
+    RollingOdometry,
+    RollingPoses,
+    RollingSmoother,
+    Saave,
+    Strapdown,
+    Sweep,
+    SweepCalibration,
+    SweepReport,
+    SweepVerdict,
+    TumbleAttitude,
+    TumblingOdometry,
+    Vqf,
+    find_rails,
+    rails_parameters,
+)
+from . import sheets
+from .errors import TumbleError
+from .estimates import Estimate, RateTable, Trajectory, read_estimate, read_tum, write_tum
+from .method import describe_method, serve
+from .program import ProgramError, call, estimate, program, record, results, run, score, score_rows, sweep
+from .recordings import Imu, Lidar, Recording, Truth, read, write
+from .replay import Tumble, rate, rolling, sheet_of, tumbling, tumbling_options
+
+__version__ = "0.1.0"
+__all__ = [
+    "Attitudes", "CarriedReport", "CarriedSmoother", "Estimate", "Imu", "ImuSheet", "Lidar", "LidarInertialOdometry", "LidarSheet",
+    "MapPoints", "Parameter", "Pose", "Poses", "ProgramError", "RailPlane", "Rails", "RateReport", "RateSmoother", "RateSource",
+    "RateStream", "RateTable", "Rates", "Recording", "RegimeReport", "RegimeSmoother", "RegimeStream", "RigCalibration", "RollingMode", "RollingOdometry",
+    "RollingPoses", "RollingSmoother", "Saave", "Strapdown", "Sweep", "SweepCalibration", "SweepReport", "SweepVerdict", "Trajectory",
+    "Truth", "Tumble", "TumbleAttitude", "TumbleError", "TumblingOdometry", "Vqf", "call", "describe_method", "estimate",
+    "find_rails", "program", "rails_parameters", "rate", "read", "read_estimate", "read_tum", "record", "results", "rolling", "run",
+    "score", "score_rows", "serve", "sheet_of", "sheets", "sweep", "tumbling", "tumbling_options", "write", "write_tum",
+]

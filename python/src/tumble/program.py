@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The program `tumble` from Python: simulate, estimate, score, sweep. It is built from the whole tree and is no part of this
+package: found in $TUMBLE_PROGRAM, then on the path."""
+from __future__ import annotations
+
+import json
+import os
+import pathlib
+import shutil
+import sqlite3
+import subprocess
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from .errors import TumbleError
+from .files import optional
+
+Path = str | os.PathLike[str]
+Number = float | int
+
+
+class ProgramError(RuntimeError):
+    """The program ended as nobody has to expect: a defect of its own, or a signal. What it said is the message."""
+
+
+def program() -> str:
+    """Path of the program. TumbleError `program` where there is none."""
+    named = os.environ.get("TUMBLE_PROGRAM")
+    found = shutil.which(named) if named else shutil.which("tumble")
+    if found is None:
+        place = f"$TUMBLE_PROGRAM ({named})" if named else "the path"
+        raise TumbleError(f"the program tumble is not in {place}: build it (README of the tree), or set TUMBLE_PROGRAM", "program",
+                          "TUMBLE_PROGRAM", named, "the program")
+    return found
+
+
+def call(verb: str, *words: Path | Number, timeout_s: float | None = None) -> str:
+    """Runs `tumble verb words... --quiet` and returns what it prints.
+
+    TumbleError `program` on wrong use, bad input and checks that failed (its exit status is the value), ProgramError on a
+    defect, subprocess.TimeoutExpired.
+    """
+    command = [program(), verb, *map(_word, words), "--quiet"]
+    ended = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=timeout_s)
+    if ended.returncode in (1, 2):
+        said = ended.stderr.strip() or ended.stdout.strip()
+        raise TumbleError(said, "program", verb, ended.returncode, 0)
+    if ended.returncode != 0:
+        raise ProgramError(f"{' '.join(command)} ended with {ended.returncode}: {ended.stderr.strip()}")
+    return ended.stdout
+
+
+def _word(word: Path | Number) -> str:
+    return os.fspath(word) if isinstance(word, (str, os.PathLike)) else repr(word)
+
+
+def _settings(settings: Mapping[str, Number] | None) -> list[str]:
+    return [word for name, value in (settings or {}).items() for word in ("--set", f"{name}={value!r}")]
+
+
+def _repeated(flag: str, values: Iterable[Path]) -> list[str]:
+    return [word for value in values for word in (flag, os.fspath(value))]
+
+
+def record(scenario: Path, path: Path, seed: int = 1) -> pathlib.Path:
+    """Draws and simulates one situation, leaves its recording."""
+    call("record", scenario, "--seed", int(seed), "-o", path)
+    return pathlib.Path(path)
+
+
+def estimate(recording: Path, method: Path, folder: Path, settings: Mapping[str, Number] | None = None) -> pathlib.Path:
+    """Runs one method of the program on a recording, leaves the folder of its estimate (`read_estimate`). `settings`: by the
+    whole name, {"rate/tumble_lag.lag_s": 0.5}."""
+    call("estimate", recording, "--method", method, *_settings(settings), "-o", folder)
+    return pathlib.Path(folder)
+
+
+def score(estimate: Path, recording: Path, kind: str | None = None, frame: str | None = None) -> dict[str, float | None]:
+    """Scores of an estimate (a folder, or a TUM file with kind "position" or "slam") against the truth of a recording: metric to
+    value, None where there was nothing to score."""
+    words = [*(["--kind", kind] if kind else []), *(["--frame", frame] if frame else [])]
+    told = json.loads(call("score", estimate, recording, *words, "--json"))
+    return {row["metric"]: row["value"] for row in told["scores"]}
+
+
+def run(scenario: Path, seed: int = 1, methods: Iterable[Path] = (), folder: Path | None = None,
+        settings: Mapping[str, Number] | None = None) -> dict[str, Any]:
+    """Draws, simulates, estimates and scores one situation; with `folder` leaves recording, estimates and pictures. Returns what
+    the program tells as JSON."""
+    words = ["--seed", int(seed), *_repeated("--method", methods), *_settings(settings), *(["-o", folder] if folder else [])]
+    return json.loads(call("run", scenario, *words, "--json"))
+
+
+def sweep(suite: Path, db: Path, seeds: tuple[int, int] | None = None, methods: Iterable[Path] = (), jobs: int | None = None,
+          data: Path | None = None, timeout_s: float | None = None) -> Any:
+    """Runs a suite, a suite's file or a scenario into a results database, and returns `results(db)`.
+
+    seeds     first and last, both included; else the suite's
+    methods   names, or files NAME.yaml that describe a command (`describe_method`); else the suite's
+    jobs      processes at a time; else the processors
+    What the database holds already is not run again. Pictures of single draws are not left.
+    """
+    words: list[Path | Number] = ["--db", db, "--examples", 0, *_repeated("--method", methods)]
+    if seeds is not None:
+        words += ["--seeds", f"{int(seeds[0])}..{int(seeds[1])}"]
+    if jobs is not None:
+        words += ["--jobs", int(jobs)]
+    if data is not None:
+        words += ["--data", data]
+    call("sweep", suite, *words, timeout_s=timeout_s)
+    return results(db)
+
+
+def score_rows(db: Path) -> list[dict[str, Any]]:
+    """Rows of a results database as dictionaries: scenario, seed, kind, method, status, metric, value. An outcome without scores
+    has one row whose metric is None."""
+    path = pathlib.Path(db)
+    if not path.is_file():
+        raise TumbleError(f"{path} is not there", "file", str(path), None, "a results database")
+    connection = sqlite3.connect(f"file:{path.resolve()}?mode=ro", uri=True)
+    try:
+        cursor = connection.execute("SELECT scenario, seed, kind, method, status, metric, value FROM scores "
+                                    "ORDER BY scenario, seed, kind, method, metric")
+        names = [column[0] for column in cursor.description]
+        rows = [dict(zip(names, row, strict=True)) for row in cursor]
+    except sqlite3.DatabaseError as error:
+        raise TumbleError(f"{path} is no results database: {error}", "file", str(path), None, "a results database") from error
+    finally:
+        connection.close()
+    for row in rows:
+        row["seed"] %= 2**64  # kept as the signed number of the same bits
+    return rows
+
+
+def results(db: Path) -> Any:
+    """`score_rows` as a data frame of pandas: `pip install tumble[tables]`. A table of one metric:
+    `frame[frame.metric == "ate_m"].pivot(index="seed", columns="method", values="value")`."""
+    pandas = optional("pandas", "tables")
+    return pandas.DataFrame(score_rows(db), columns=["scenario", "seed", "kind", "method", "status", "metric", "value"])

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Processor time of whole recordings from Python beside that of the same method in the program: speed.py [RUNS]
+
+The program's is its metric estimate_cpu_s, of the estimate alone; Python's is of the call that takes the recording's arrays. The least
+of RUNS (5) each. Called by hand: nothing asserts a clock.
+"""
+import pathlib
+import sys
+import tempfile
+import time
+
+import tumble
+
+
+def least(run, runs):
+    taken = []
+    for _ in range(runs):
+        began = time.process_time()
+        run()
+        taken.append(time.process_time() - began)
+    return min(taken)
+
+
+def of_program(recording, method, runs, folder):
+    """By sweeps of the recording: each has the time of its estimate."""
+    taken = []
+    kind = method.split("/")[0]
+    for k in range(runs):
+        suite = folder / f"{kind}_{k}.yaml"
+        suite.write_text(f"name: {kind}_{k}\ndoc: one recording\nrecordings: [{recording.name}]\nmethods: [{method}]\n")
+        tumble.call("sweep", suite, "--data", recording.parent, "--db", folder / f"{method.replace('/', '_')}_{k}.db", "--examples", 0)
+        rows = tumble.score_rows(folder / f"{method.replace('/', '_')}_{k}.db")
+        taken += [row["value"] for row in rows if row["metric"] == "estimate_cpu_s"]
+    return min(taken)
+
+
+runs = int(sys.argv[1]) if len(sys.argv) > 1 else 5
+with tempfile.TemporaryDirectory() as name:
+    folder = pathlib.Path(name)
+    path = tumble.record("hill", folder / "hill.h5", seed=1)
+    hill = tumble.read(path)
+    for method, call in (("rate/tumble_lag", lambda: tumble.rate(hill.imus[0], hill.gravity_m_s2, live=True)),
+                         ("slam/tumble_lag", lambda: tumble.tumbling(hill))):
+        ours, theirs = least(call, runs), of_program(path, method, runs, folder)
+        print(f"{method}: {ours:.3f} s from Python, {theirs:.3f} s in the program, {ours / theirs:.2f} times")

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the package says of itself: every name is there, explained, and in the stubs."""
+import ast
+import inspect
+import pathlib
+
+import tumble
+
+STUB = pathlib.Path(tumble.__file__).parent / "_tumble.pyi"
+
+
+def compiled():
+    return [name for name in tumble.__all__ if getattr(getattr(tumble, name), "__module__", "") == "tumble._tumble"]
+
+
+def test_names_are_there_and_explained():
+    assert len(tumble.__all__) == len(set(tumble.__all__)) > 50 and len(compiled()) > 25
+    for name in tumble.__all__:
+        thing = getattr(tumble, name)
+        if not (inspect.isclass(thing) and issubclass(thing, Exception)):
+            assert inspect.getdoc(thing), name
+    for name in compiled():
+        if inspect.isclass(getattr(tumble, name)):
+            for member, value in vars(getattr(tumble, name)).items():
+                if not member.startswith("_") and callable(value) and member not in ("parameters", "calibration", "map"):
+                    assert inspect.getdoc(value), f"{name}.{member}"
+
+
+def test_stubs_have_what_the_module_has():
+    tree = ast.parse(STUB.read_text(encoding="utf-8"))
+    known = {node.name: node for node in tree.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
+    assert set(compiled()) <= set(known)
+    stream = {node.name for node in known["RegimeStream"].body if isinstance(node, ast.FunctionDef)}
+    assert {"add_imu", "flush", "newest", "calibration", "__copy__"} <= stream
+    assert (STUB.parent / "py.typed").exists()
+    assert "NoSuchClass" not in known, "the negative control"
+
+
+def test_module_is_one_file_beside_python():
+    modules = [path for path in STUB.parent.iterdir() if path.suffix == ".so"]
+    assert len(modules) == 1 and modules[0].stat().st_size < 6e6

@@ -1,0 +1,220 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The package beside the program: the same bits from the same recordings, and the program called from here."""
+import importlib
+import sys
+import textwrap
+
+import numpy as np
+import pytest
+
+import tumble
+
+pytestmark = pytest.mark.program
+
+
+@pytest.fixture(scope="module")
+def estimates(recordings, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("estimates")
+    kept = {}
+
+    def of(method, recording="hill", **settings):
+        key = method, recording
+        if key not in kept:
+            kept[key] = tumble.read_estimate(
+                tumble.estimate(recordings[recording], method, folder / f"{recording}_{method.replace('/', '_')}", settings))
+        return kept[key]
+    return of
+
+
+def same(a, b):
+    return a.shape == b.shape and len(a) > 100 and np.array_equal(a, b)
+
+
+def same_covariance(own, told):
+    """Of files, which hold the upper triangle: ours is symmetric to rounding alone."""
+    rows, columns = np.triu_indices(3)
+    return same(own.covariance[:, rows, columns], told.covariance[:, rows, columns])
+
+
+def test_saave(hill, estimates):
+    told = estimates("rate/saave").rates
+    own = tumble.Saave(lever_arm_m=hill.imus[0].lever_arm_m, saturation_point_rad_s=10.45).estimate(*hill.imus[0].samples)
+    assert same(own.rate, told.rate) and same_covariance(own, told) and same(own.time_ns, told.time_ns)
+    assert same(own.source, told.source) and same(own.clipped_axes, told.clipped_axes)
+
+
+def test_rate_stream(hill, estimates):
+    told = estimates("rate/tumble_lag").rates
+    own = tumble.rate(hill.imus[0], hill.gravity_m_s2, live=True)
+    assert same(own.rate, told.rate) and same_covariance(own, told) and same(own.source, told.source)
+    other = tumble.rate(hill.imus[0], hill.gravity_m_s2, live=True, lag_s=0.1)
+    assert not same(other.rate, told.rate), "the negative control"
+
+
+def test_rate_of_who_carries_what(twirl, estimates):
+    """A body in a hand: the smoother of carried bodies has its word."""
+    told = estimates("rate/tumble", "twirl")
+    own = tumble.rate(twirl.imus[0], twirl.gravity_m_s2)
+    assert told.health["regime_carried_asked"] == 1.0
+    assert same(own.rate, told.rates.rate) and same_covariance(own, told.rates) and same(own.source, told.rates.source)
+
+
+def test_rate_smoother(hill, estimates):
+    told, imu = estimates("rate/tumble").rates, hill.imus[0]
+    own, report = tumble.RateSmoother(
+        lever_arm_m=imu.lever_arm_m, gyro_range_rad_s=imu.gyro_range_rad_s, accel_range_m_s2=imu.accel_range_m_s2,
+        gyro_noise_density=imu.gyro_noise_rad_s_sqrt_hz, accel_noise_density=imu.accel_noise_m_s2_sqrt_hz).estimate(*imu.samples)
+    assert estimates("rate/tumble").health["regime_carried_asked"] == 0.0, "nobody carries a tumble: the rates are the smoother's"
+    assert same(own.rate, told.rate) and same_covariance(own, told)
+    assert report.samples == len(imu) and report.clipped == np.count_nonzero(own.clipped_axes) > 0
+    assert estimates("rate/tumble").health["learnt_lever_arm_x_m"] == report.calibration.lever_arm_m[0]
+
+
+def test_carried_smoother(hill, estimates):
+    told, imu = estimates("rate/carried").rates, hill.imus[0]
+    own, attitudes, report = tumble.CarriedSmoother(
+        gravity_m_s2=hill.gravity_m_s2, gyro_range_rad_s=imu.gyro_range_rad_s,
+        accel_range_m_s2=imu.accel_range_m_s2).estimate(*imu.samples)
+    assert same(own.rate, told.rate) and same_covariance(own, told) and same(own.source, told.source)
+    assert len(attitudes) == len(own) and report.iterations == estimates("rate/carried").health["iterations"]
+
+
+def test_vqf(hill, estimates):
+    assert same(tumble.Vqf().add_imu(*hill.imus[0].samples).quaternion, estimates("attitude/vqf").poses.quaternion)
+
+
+def test_tumbling(hill, estimates):
+    """Sweeps, poses, verdicts, covariances and map of a whole tumble."""
+    told = estimates("slam/tumble_lag")
+    own = tumble.tumbling(hill)
+    assert same(own.poses.position, told.sweep_poses.position) and same(own.poses.quaternion, told.sweep_poses.quaternion)
+    assert same(own.poses.time_ns, told.sweep_poses.time_ns)
+    assert [int(s.verdict) for s in own.sweeps] == told.sweeps["verdict"].astype(int).tolist()
+    assert [s.iterations for s in own.sweeps] == told.sweeps["iterations"].astype(int).tolist()
+    assert [s.inlier_share for s in own.sweeps] == told.sweeps["inlier_share"].tolist()
+    assert len(own.map) > 10000 and own.odometry.passed_again == bool(told.health["passed_again"])
+    assert own.odometry.rig().covariance.shape == (20, 20)
+
+
+def test_tumbling_sample_by_sample(hill, estimates):
+    live = []
+
+    def listen(odometry):
+        try:
+            live.append(odometry.newest().position)
+        except tumble.TumbleError as error:
+            assert error.trouble == "empty"
+
+    assert same(tumble.tumbling(hill, on_sample=listen).poses.position, estimates("slam/tumble_lag").sweep_poses.position)
+    assert len(live) > 900
+
+
+def test_rolling_is_the_programs(slip, estimates):
+    """RollingOdometry merges the IMUs by itself and the program beforehand: the same to a hundredth of the way."""
+    told = estimates("position/tumble_lag", "slip", **{"position/tumble_lag.lag_s": 1.0}).poses
+    own = tumble.rolling(slip, lag_s=1.0)
+    way = np.linalg.norm(np.diff(told.position, axis=0), axis=1).sum()
+    assert len(own) == len(told) and way > 1.0
+    assert np.linalg.norm(own.position - told.position, axis=1).max() < 0.01 * way
+    truth = slip.truth.position + 0.0
+    ended = own.position[-1] - own.position[0] - (truth[-1] - truth[0])
+    assert np.linalg.norm(ended[:2]) < 0.02 * way
+
+
+def test_rolling_smoother_over_the_run(slip):
+    imu = slip.imus[0]
+    smoother = tumble.RollingSmoother(radius_m=slip.sphere_radius_m, lever_arm_m=imu.lever_arm_m, lever_arm_sigma_m=6e-3)
+    assert len(smoother.add_imu(*imu.samples)) == 0
+    whole = smoother.finish()
+    assert len(whole) == len(imu) and np.isfinite(whole.position).all()
+    assert set(np.unique(whole.mode)) <= {int(mode) for mode in tumble.RollingMode}
+
+
+def test_program_reads_what_we_write(hill, recordings, estimates, tmp_path):
+    tumble.write(tmp_path / "own.h5", hill)
+    again = tumble.read_estimate(tumble.estimate(tmp_path / "own.h5", "rate/tumble_lag", tmp_path / "again"))
+    assert same(again.rates.rate, estimates("rate/tumble_lag").rates.rate)
+    slam = tumble.read_estimate(tumble.estimate(tmp_path / "own.h5", "slam/tumble_lag", tmp_path / "slam"))
+    assert same(slam.sweep_poses.position, estimates("slam/tumble_lag").sweep_poses.position)
+    back = tumble.read(tmp_path / "own.h5")
+    assert back.truth is None and tumble.read(recordings["hill"], truth=False).truth is None
+    for own, first in zip(back.imus, hill.imus, strict=True):
+        assert same(own.gyro, first.gyro) and own.name == first.name and own.gyro_range_rad_s == first.gyro_range_rad_s
+        assert np.array_equal(own.clip_flags, first.clip_flags) and np.array_equal(own.T_BI, first.T_BI)
+    assert same(back.sweeps.position, hill.sweeps.position) and np.array_equal(back.sweeps[3].offset_ns, hill.sweeps[3].offset_ns)
+
+
+def test_program_scores_our_poses(hill, recordings, tmp_path):
+    tumble.write_tum(tmp_path / "own.tum", tumble.tumbling(hill).poses)
+    scores = tumble.score(tmp_path / "own.tum", recordings["hill"], kind="slam")
+    assert 0.0 <= scores["ate_m"] < 0.5
+    lost = tumble.read_tum(tmp_path / "own.tum")
+    lost.position *= 3.0
+    tumble.write_tum(tmp_path / "lost.tum", lost)
+    assert tumble.score(tmp_path / "lost.tum", recordings["hill"], kind="slam")["ate_m"] > 10 * scores["ate_m"]
+
+
+RAW = textwrap.dedent('''
+    import tumble
+
+    def rate(recording):
+        return recording.imus[0].gyro
+
+    if __name__ == "__main__":
+        tumble.serve("rate", rate)
+''')
+
+
+def test_a_function_is_a_method(tmp_path):
+    """Swept beside the program's own raw gyro it has the same errors."""
+    (tmp_path / "mine.py").write_text(RAW)
+    mine = tumble.describe_method(tmp_path / "mine.yaml", "mine", "rate", tmp_path / "mine.py", doc="it's the gyro", robots=["rig"])
+    frame = tumble.sweep("bare", tmp_path / "a.db", seeds=(1, 2), methods=["rate/raw", mine], jobs=2)
+    table = frame[frame.metric == "rate_error_clipped_median_rad_s"].pivot(index="seed", columns="method", values="value")
+    assert set(frame.status) == {"ok"} and len(table) == 2
+    assert (table["mine"] == table["raw"]).all() and (table["raw"] > 0.1).all()
+    assert frame.equals(tumble.results(tmp_path / "a.db"))
+    (tmp_path / "mine.py").write_text(RAW.replace("imus[0].gyro", "imus[0].gyro[:-1]"))
+    broken = tumble.sweep("bare", tmp_path / "b.db", seeds=(1, 1), methods=[mine], jobs=1)
+    assert set(broken.status) == {"crashed"} and not any("error" in metric for metric in broken.metric), "the negative control"
+
+
+def test_attitudes_of_a_function(recordings, tmp_path):
+    (tmp_path / "mine.py").write_text(textwrap.dedent('''
+        import tumble
+        tumble.serve("attitude", lambda recording: tumble.Vqf().add_imu(*recording.imus[0].samples))
+    '''))
+    mine = tumble.describe_method(tmp_path / "mine.yaml", "mine", "attitude", tmp_path / "mine.py")
+    own = tumble.read_estimate(tumble.estimate(recordings["hill"], mine, tmp_path / "own"))
+    assert own.kind == "attitude" and len(own.poses) > 900
+
+
+def test_run(tmp_path):
+    told = tumble.run("hill", seed=1, methods=["rate/raw"], settings={})
+    assert told["scenario"] == "hill"
+    with pytest.raises(tumble.TumbleError) as caught:
+        tumble.run("hill", methods=["rate/nobody"])
+    assert (caught.value.trouble, caught.value.value) == ("program", 2) and "nobody" in str(caught.value)
+    with pytest.raises(tumble.TumbleError, match="lag"):
+        tumble.run("hill", methods=["rate/tumble_lag"], settings={"rate/tumble_lag.lag": 1})
+
+
+def test_no_program(monkeypatch):
+    monkeypatch.setenv("TUMBLE_PROGRAM", "/nowhere/tumble")
+    with pytest.raises(tumble.TumbleError) as caught:
+        tumble.program()
+    assert caught.value.trouble == "program"
+
+
+def test_results_without_pandas(tmp_path, monkeypatch):
+    tumble.call("sweep", "bare", "--seeds", "1..1", "--method", "rate/raw", "--db", tmp_path / "a.db", "--examples", 0)
+    assert {row["metric"] for row in tumble.score_rows(tmp_path / "a.db")} >= {"rate_error_clipped_median_rad_s"}
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(ImportError):
+        tumble.results(tmp_path / "a.db")
+    with pytest.raises(tumble.TumbleError, match="no results database|not there"):
+        tumble.score_rows(tmp_path / "none.db")
+    (tmp_path / "text.db").write_text("hello " * 500)
+    with pytest.raises(tumble.TumbleError, match="no results database"):
+        tumble.score_rows(tmp_path / "text.db")
+    assert importlib.util.find_spec("tumble")

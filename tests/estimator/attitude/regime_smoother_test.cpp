@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rates of a whole recording whoever holds the body: a twirl in closed form has the smoother of carried bodies asked,
+// and a spin in free flight has not.
+#include "tumble/attitude/regime_smoother.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "estimator/attitude/carried_motion.hpp"
+
+namespace tumble {
+namespace {
+
+using testing::CarriedMotion;
+using testing::CarriedRecording;
+
+constexpr double kRail_rad_s = 7.0;
+
+RegimeSmoother::Params params_of(const CarriedMotion& motion) {
+  RegimeSmoother::Params params;
+  params.rate.model.nominal.lever_arm_m = motion.lever_arm_m;
+  return params;
+}
+
+/// Median error where the gyro clips.
+double clipped_error(const CarriedRecording& recording, const std::vector<RateState>& rates) {
+  std::vector<double> errors;
+  for (std::size_t k = 0; k < rates.size(); ++k) {
+    if (recording.signs[k].gyro[0] == 0) continue;
+    errors.push_back((rates[k].w_WI_I_rad_s - recording.rate_rad_s[k]).norm());
+  }
+  EXPECT_GT(errors.size(), 50u);
+  std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2), errors.end());
+  return errors[errors.size() / 2];
+}
+
+TEST(RegimeSmoother, ATwirlIsTheHands) {
+  const CarriedMotion motion;
+  const CarriedRecording recording = record(motion, 100.0, 10.0, kRail_rad_s);
+  std::vector<RateState> alone, joined;
+  RateReport of_flight;
+  RegimeSmoother::Report report;
+  ASSERT_TRUE(RateSmoother(params_of(motion).rate).estimate(recording.samples, alone, of_flight).ok());
+  ASSERT_TRUE(RegimeSmoother(params_of(motion)).estimate(recording.samples, joined, report).ok());
+  ASSERT_EQ(joined.size(), recording.samples.size());
+  EXPECT_TRUE(report.judged && report.carried_asked);
+  EXPECT_GT(report.carried_clipped_max, 0.9);
+  EXPECT_NEAR(report.shares.flight + report.shares.contact + report.shares.carried, 1.0, 1e-9);
+  EXPECT_LT(clipped_error(recording, joined), 0.5 * clipped_error(recording, alone));
+}
+
+TEST(RegimeSmoother, ASpinInFlightIsNot) {
+  const CarriedMotion motion;
+  CarriedRecording recording = record(motion, 100.0, 10.0, kRail_rad_s);
+  for (std::size_t k = 0; k < recording.samples.size(); ++k) {  // the same turning, and nobody who holds the body
+    const double t = 0.01 * (static_cast<double>(k) + 0.5);
+    const Eigen::Vector3d w = motion.rate(t);
+    recording.samples[k].specific_force_m_s2 =
+        motion.angular_acceleration(t).cross(motion.lever_arm_m) + w.cross(w.cross(motion.lever_arm_m));
+  }
+  std::vector<RateState> alone, joined;
+  RateReport of_flight;
+  RegimeSmoother::Report report;
+  ASSERT_TRUE(RateSmoother(params_of(motion).rate).estimate(recording.samples, alone, of_flight).ok());
+  ASSERT_TRUE(RegimeSmoother(params_of(motion)).estimate(recording.samples, joined, report).ok());
+  EXPECT_TRUE(report.judged);
+  EXPECT_FALSE(report.carried_asked);
+  ASSERT_EQ(joined.size(), alone.size());
+  for (std::size_t k = 0; k < joined.size(); ++k) {
+    ASSERT_EQ(joined[k].w_WI_I_rad_s, alone[k].w_WI_I_rad_s);
+    ASSERT_EQ(joined[k].covariance_rad2_s2, alone[k].covariance_rad2_s2);
+  }
+}
+
+TEST(RegimeSmoother, RefusesWhatItsPartsRefuse) {
+  RegimeSmoother::Params params;
+  params.carried_min = 1.5;
+  EXPECT_THROW(RegimeSmoother{params}, InvalidParams);
+  params = {};
+  params.carried.node_s = 0.0;
+  EXPECT_THROW(RegimeSmoother{params}, InvalidParams);
+  std::vector<RateState> rates(3);
+  RegimeSmoother::Report report;
+  EXPECT_EQ(RegimeSmoother({}).estimate({}, rates, report).trouble, Trouble::empty);
+  EXPECT_TRUE(rates.empty());
+}
+
+}  // namespace
+}  // namespace tumble
