@@ -2,7 +2,11 @@
 """Any pipeline of evalio (Potokar, Kaess 2025, PyPI evalio): DLIO, LIO-SAM, CT-ICP, MAD-ICP, LOAM, FORM.
 
 Settings: evalio's defaults, which are those of the pipelines' authors, and what a peer's YAML names beside them as KEY=VALUE. The
-order of calls is that of evalio's Experiment.setup. Its poses are of the IMU."""
+order of calls is that of evalio's Experiment.setup. Its poses are of the IMU.
+
+`shift_s=T` is ours: what a pipeline's stamps are off by, where the sweep's start that they state is not the instant of the pose. Each was
+measured on `stroll`, where the error is least (docs/peers.md). A pose that repeats the last one to the bit is left out: LIO-SAM passes over
+sweeps that come within its mappingProcessInterval."""
 import numpy as np
 from evalio import pipelines, types
 from evalio._cpp import helpers
@@ -11,7 +15,8 @@ from poses import Track
 from recording import SEQUENCE_NS, Recording, Sweep
 
 ORIGIN_NS = 1_000_000_000_000  # its clock is unsigned
-RINGS, COLUMNS = 16, 100_000_000 // SEQUENCE_NS
+SWEEP_NS = 100_000_000
+RINGS, COLUMNS = 16, SWEEP_NS // SEQUENCE_NS
 FIELDS = np.dtype([("x", "f4"), ("y", "f4"), ("z", "f4"), ("intensity", "f4"), ("t", "u4"), ("range", "u4"), ("ring", "u2")])
 TYPES = {"f4": "FLOAT32", "u4": "UINT32", "u2": "UINT16"}
 
@@ -44,7 +49,11 @@ def cloud(sweep: Sweep) -> types.LidarMeasurement:
 def run(sensors: Recording, name: str, *settings: str) -> Track:
     pipeline = pipelines.get_pipeline(name)()
     parameters = pipeline.default_params()
+    shift_ns = 0
     for key, text in (setting.split("=", 1) for setting in settings):
+        if key == "shift_s":
+            shift_ns = int(round(float(text) * 1e9))
+            continue
         parameters[key] = value(text, parameters[key])
     unused = pipeline.set_params(parameters)
     if unused:
@@ -59,8 +68,11 @@ def run(sensors: Recording, name: str, *settings: str) -> Track:
 
     def take() -> None:
         for stamp, pose in pipeline.saved_estimates():
-            track.time_ns.append(stamp.to_nsec() - ORIGIN_NS)
-            track.T_WA.append(np.array(pose.to_mat()))
+            T_WI, time_ns = np.array(pose.to_mat()), stamp.to_nsec() - ORIGIN_NS + shift_ns
+            if time_ns < 0 or (track.T_WA and np.array_equal(T_WI, track.T_WA[-1])):
+                continue
+            track.time_ns.append(time_ns)
+            track.T_WA.append(T_WI)
 
     for sweep in sensors.sweeps:
         upto = sensors.until(sweep.end_ns, fed)

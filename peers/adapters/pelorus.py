@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Pelorus (University of Osnabrueck, PyPI pelorus, MIT or Apache-2.0). Lidar and IMU.
 
-Settings: the default configuration that is built into the package."""
+Settings: the default configuration that is built into the package, with the rig's extrinsics and points that have times in
+nanoseconds (its vendor Ouster). Its poses are of the lidar."""
+import tempfile
 import time
 
 import numpy as np
@@ -12,6 +14,23 @@ from recording import Recording
 
 ORIGIN_S = 1000  # its clock is unsigned
 PATIENCE_S = 2.0
+CONFIGURATION = """lidar {{
+  vendor = Ouster
+}}
+imu {{
+  from_lidar_transform {{
+    translation = [{x:.6f}m, {y:.6f}m, {z:.6f}m]
+    rotation = [ [{r[0]:.9f}, {r[1]:.9f}, {r[2]:.9f}],
+                 [{r[3]:.9f}, {r[4]:.9f}, {r[5]:.9f}],
+                 [{r[6]:.9f}, {r[7]:.9f}, {r[8]:.9f}] ]
+  }}
+}}
+output {{
+  terminal {{
+    ui = false
+  }}
+}}
+"""
 
 
 def matrix(odometry: dict) -> np.ndarray:
@@ -25,8 +44,12 @@ def matrix(odometry: dict) -> np.ndarray:
 
 
 def run(sensors: Recording) -> Track:
-    odometry = pelorus.Handle()
-    track, fed = Track([], [], "imu"), 0
+    x, y, z = sensors.T_IL[:3, 3]
+    with tempfile.NamedTemporaryFile("w", suffix=".rl") as file:
+        file.write(CONFIGURATION.format(x=x, y=y, z=z, r=sensors.T_IL[:3, :3].ravel()))
+        file.flush()
+        odometry = pelorus.Handle(file.name)
+    track, fed = Track([], [], "lidar"), 0
 
     def take(patience_s: float) -> None:
         until = time.monotonic() + patience_s
