@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Filters of attitude from gyro and accelerometer: vqf (Laidig, Seel 2023), ahrs (Madgwick, Mahony), imufusion (x-io).
 
-Settings: each package's defaults at the IMU's rate; the filters of ahrs begin at the attitude that gravity gives; imufusion is
-told the gyro's stated range, which it has a parameter for. Attitudes are of the IMU, W with z up."""
+Settings: each package's defaults at the IMU's rate; the filters of ahrs begin at the attitude that gravity gives, the others as they do
+by themselves (imufusion with a high gain over its first 3 s). Attitudes are of the IMU, W with z up."""
 import numpy as np
 
-from poses import Track, quaternion_xyzw, turning, up_in  # noqa: F401
+from poses import Track, quaternion_xyzw, turning, up_in
 from recording import Recording
 
 

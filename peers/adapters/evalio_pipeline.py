@@ -3,6 +3,7 @@
 
 Settings: evalio's defaults, which are those of the pipelines' authors, and what a peer's YAML names beside them as KEY=VALUE. The
 order of calls is that of evalio's Experiment.setup. Its poses are of the IMU.
+MAD-ICP: deskewing on, since points have times; `realtime` off, which cuts work short by the clock.
 
 `shift_s=T` is ours: what a pipeline's stamps are off by, where the sweep's start that they state is not the instant of the pose. Each was
 measured on `stroll`, where the error is least (docs/peers.md). A pose that repeats the last one to the bit is left out: LIO-SAM passes over
