@@ -39,6 +39,8 @@ const MotionType& hand_roll_motion();
 const MotionType& hand_path_motion();
 /// A robot carried in a hand and twirled about its x axis.
 const MotionType& twirl_motion();
+/// A robot carried by a walker along a level eight.
+const MotionType& stroll_motion();
 /// A robot that hangs is led aside by a hand and let go, now and then.
 const MotionType& swing_motion();
 

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "sim/motion/held.hpp"
+#include "sim/motion/carrying.hpp"
 #include "sim/motion/motion_type.hpp"
 #include "sim/motion/tremor.hpp"
 
@@ -76,7 +76,7 @@ class Twirl : public Motion {
         rest_s_(values.at("rest_s")),
         grip_B_m_(Eigen::Vector3d(values.at("grip_x_m"), values.at("grip_y_m"), values.at("grip_z_m")) -
                   world.com_offset_m),
-        inertia_B_kg_m2_(hand_.start().q_WB.conjugate() * hand_.inertia_W_kg_m2() * hand_.start().q_WB) {
+        inertia_B_kg_m2_(carried_inertia_B_kg_m2(hand_)) {
     Stream stream(static_cast<std::uint64_t>(values.at("hand_seed")), "hand.twirl");
     strokes_ = plan_strokes(values, stream);
     turns_.emplace_back(stream, values.at("twist_rad"), kSwayLow_hz, kSwayHigh_hz);
@@ -87,52 +87,22 @@ class Twirl : public Motion {
   BodyState start() const override { return hand_.start(); }
 
   Wrench wrench(const BodyState& state) override {
-    constexpr double kDifference_s = 1e-3;     // over which the way's rates are taken
-    constexpr double kFrequency_rad_s = 60.0;  // of spring and damper: the wander of the hand is in its way
-    constexpr double kStiffness_1_s2 = kFrequency_rad_s * kFrequency_rad_s, kDamping_1_s = 2.0 * kFrequency_rad_s;
-    const Pose before = way(state.time_s - kDifference_s), now = way(state.time_s),
-               after = way(state.time_s + kDifference_s);
-    const Eigen::Vector3d v_m_s = (after.p_m - before.p_m) / (2.0 * kDifference_s);
-    const Eigen::Vector3d a_m_s2 = (after.p_m - 2.0 * now.p_m + before.p_m) / (kDifference_s * kDifference_s);
-    const Eigen::Vector3d first = turn(before.q, now.q), second = turn(now.q, after.q);
-    const Eigen::Vector3d w_rad_s = (first + second) / (2.0 * kDifference_s);
-    const Eigen::Vector3d alpha_rad_s2 = (second - first) / (kDifference_s * kDifference_s);
-
-    Wrench out;
-    out.force_W_n = hand_.weight_n() + hand_.mass_kg() * (a_m_s2 + kStiffness_1_s2 * (now.p_m - state.p_WB_m) +
-                                                          kDamping_1_s * (v_m_s - state.v_WB_m_s));
-    // in body axes: what Euler's equation takes, and the spring
-    const Eigen::Vector3d aim_rad_s2 =
-        alpha_rad_s2 + kStiffness_1_s2 * turn(state.q_WB, now.q) + kDamping_1_s * (w_rad_s - state.w_WB_B_rad_s);
-    out.torque_W_nm =
-        state.q_WB * (inertia_B_kg_m2_ * aim_rad_s2 + state.w_WB_B_rad_s.cross(inertia_B_kg_m2_ * state.w_WB_B_rad_s));
-    return out;
+    return carry_along(hand_, inertia_B_kg_m2_, state, [this](double time_s) { return way(time_s); });
   }
 
  private:
-  struct Pose {
-    Eigen::Vector3d p_m;  ///< of the centre of mass
-    Eigen::Quaterniond q;
-  };
-
-  /// Rotation vector from one attitude to another, in the axes of either.
-  static Eigen::Vector3d turn(const Eigen::Quaterniond& from, const Eigen::Quaterniond& to) {
-    const Eigen::AngleAxisd turned(from.conjugate() * to);
-    return turned.angle() * turned.axis();
-  }
-
   /// Where the hand means the robot to be.
-  Pose way(double time_s) const {
+  CarriedPose way(double time_s) const {
     double spun_rad = 0.0;
     for (const Stroke& stroke : strokes_) {
       if (time_s <= stroke.start_s) break;
       spun_rad += stroke.angle_rad(time_s);
     }
     // the unsteadiness sets in within a second, without a jump of acceleration
-    const double u = std::clamp(time_s - rest_s_, 0.0, 1.0), share = u * u * u * (10.0 + u * (-15.0 + 6.0 * u));
+    const double share = eased(time_s - rest_s_);
     const Eigen::Vector3d sway_m(places_[0].at(time_s), places_[1].at(time_s), places_[2].at(time_s));
     const BodyState start = hand_.start();
-    Pose pose;
+    CarriedPose pose;
     pose.q = start.q_WB * Eigen::AngleAxisd(share * turns_[1].at(time_s), Eigen::Vector3d::UnitZ()) *
              Eigen::AngleAxisd(share * turns_[2].at(time_s), Eigen::Vector3d::UnitY()) *
              Eigen::AngleAxisd(spun_rad + share * turns_[0].at(time_s), Eigen::Vector3d::UnitX());

@@ -121,8 +121,8 @@ void add_guess(const TriadDelay& guess, SensorErrorEvidence& evidence) {
   evidence.gradient[SensorErrors::kDelay] += information * (guess.delay_s - evidence.about.accel_delay_s);
 }
 
-// Odds of a device as its sheet says below which the readings speak plainly against it. Above, the mixture over sizes has
-// its doubt in it already.
+// Odds of a device as its sheet says below which the readings speak plainly against it. Above, the mixture over sizes
+// has its doubt in it already.
 constexpr double kPlainOdds = 0.05;
 
 // Whether a device is plainly not what its sheet says: a maker who leaves scale or sampling open leaves all open.

@@ -126,6 +126,33 @@ TEST(Twirl, SpinsAboutXInStrokesAndKeepsTheGripInTheHand) {
   EXPECT_LT(largest_step_m_s(truth), 0.05);  // no jump: 100 m/s^2 at most
 }
 
+// without sway the way is x = a sin u, y = b sin 2u, walked by `loops` of its 2 pi, headed along it
+TEST(Stroll, WalksTheEightAndStopsWhereItShould) {
+  Situation situation = moved_by("stroll", 20.0);
+  for (const auto& [name, value] :
+       {std::pair{"rest_s", 1.5}, std::pair{"half_length_m", 2.0}, std::pair{"half_width_m", 1.0},
+        std::pair{"loops", 0.75}, std::pair{"speed_m_s", 1.2}, std::pair{"heading_rad", 0.5},
+        std::pair{"sway_rad", 0.0}, std::pair{"sway_m", 0.0}, std::pair{"step_m", 0.0}}) {
+    situation.motion.values.set(name, value);
+  }
+  const Truth truth = simulate(built(situation)).truth;
+  const Eigen::AngleAxisd heading(0.5, Vector3d::UnitZ());
+  double fastest = 0.0, off = 0.0;
+  for (std::size_t k = 0; k < truth.q_WB.size(); ++k) {
+    const Vector3d walked = heading.inverse() * (truth.p_WB_m[k] - truth.p_WB_m[0]);
+    // the curve's own equation: (y / b)^2 = 4 (x / a)^2 (1 - (x / a)^2)
+    const double x = walked.x() / 2.0, y = walked.y();
+    off = std::max({off, std::abs(y * y - 4.0 * x * x * (1.0 - x * x)), std::abs(walked.z())});
+    fastest = std::max(fastest, truth.v_WB_m_s[k].norm());
+    ASSERT_EQ(truth.label[k], ContactLabel::air);
+  }
+  EXPECT_LT(off, 0.01);
+  EXPECT_NEAR(fastest, 1.2, 0.02);
+  EXPECT_NEAR((heading.inverse() * (truth.p_WB_m.back() - truth.p_WB_m[0]) - Vector3d(-2.0, 0.0, 0.0)).norm(), 0.0,
+              5e-3);
+  EXPECT_LT(largest_step_m_s(truth), 0.05);
+}
+
 TEST(Swing, LeadsAsideAndUpHoldsAndLetsGo) {
   Situation situation = moved_by("swing", 8.0);
   situation.world = {"floor", {}};

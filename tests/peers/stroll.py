@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Three peers on one draw of `stroll`, each within a bound; and the same adapter with two axes of the points exchanged, beyond it.
+
+stroll.py ROOT PROGRAM WORK. Status 77 where the packages cannot be had."""
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+
+# 12 m of way in a hall. The papers state 0.2 to 1 % of the way at the end: 0.12 m; and what the lidar's mounting, 1 cm and 1 deg off as
+# given, adds to that. Measured: 0.006 to 0.025 m (docs/peers.md).
+BOUND_M = 0.3
+SEED = 61003
+PEERS = ("kiss_icp", "rko_lio", "pelorus")
+
+
+def make_environment(root: pathlib.Path) -> None:
+    try:
+        subprocess.run([root / "tools/peers", "install"], check=True, capture_output=True, text=True)
+    except subprocess.CalledProcessError as error:
+        said = error.stderr or ""
+        if any(word in said for word in ("Could not find a version", "connection", "Temporary failure", "Max retries", "No matching")):
+            print("skipped, packages cannot be had:", said[-300:])
+            sys.exit(77)
+        sys.exit(f"tools/peers install failed: {said[-2000:]}")
+
+
+def end_error_m(program: str, recording: pathlib.Path, description: pathlib.Path, out: pathlib.Path) -> float:
+    """Of one method, as the program scores it; infinite where it gives no answer."""
+    shutil.rmtree(out, ignore_errors=True)
+    ran = subprocess.run([program, "estimate", recording, "--method", description, "-o", out], capture_output=True, text=True)
+    if ran.returncode != 0:
+        print(description.name, "gave no estimate:", ran.stderr[-500:])
+        return float("inf")
+    folders = [file.parent for file in out.rglob("estimate.json")]
+    assert len(folders) == 1, folders
+    scored = subprocess.run([program, "score", folders[0], recording, "--json"], capture_output=True, text=True, check=True)
+    values = find(json.loads(scored.stdout), "translation_error_end_m")
+    assert len(values) == 1, scored.stdout[:2000]
+    return values[0]
+
+
+def find(node, metric: str) -> list[float]:
+    """Values of a metric wherever the program's JSON has them: under its name, or in a row whose first cell it is."""
+    if isinstance(node, dict):
+        found = [float(value) for key, value in node.items() if key == metric and isinstance(value, (int, float))]
+        if node.get("metric") == metric:
+            found += [float(node["value"])]
+        return found + [value for child in node.values() if isinstance(child, (dict, list)) for value in find(child, metric)]
+    return [value for child in node for value in find(child, metric)] if isinstance(node, list) else []
+
+
+def mirrored(root: pathlib.Path, work: pathlib.Path) -> pathlib.Path:
+    """KISS-ICP behind an adapter that exchanges x and y."""
+    folder = work / "mirrored"
+    shutil.rmtree(folder, ignore_errors=True)
+    shutil.copytree(root / "peers", folder)
+    adapter = folder / "adapters/kiss_icp.py"
+    text = adapter.read_text()
+    wrong = text.replace("register_frame(sweep.points_L_m,", "register_frame(sweep.points_L_m[:, [1, 0, 2]],")
+    assert wrong != text
+    adapter.write_text(wrong)
+    return folder / "kiss_icp.yaml"
+
+
+def main() -> int:
+    root, program, work = pathlib.Path(sys.argv[1]), sys.argv[2], pathlib.Path(sys.argv[3])
+    if not (root / "build/peers/complete").exists():
+        make_environment(root)
+    os.environ.setdefault("TUMBLE_PEERS", str(root / "build/peers"))
+    recording = work / "stroll.h5"
+    subprocess.run([program, "record", "stroll", "--seed", str(SEED), "-o", recording, "--quiet"], check=True)
+    failed = 0
+    for peer in PEERS:
+        error_m = end_error_m(program, recording, root / "peers" / f"{peer}.yaml", work / "out")
+        print(f"{peer}: {error_m:.3f} m at the end, at most {BOUND_M}")
+        failed += not error_m <= BOUND_M
+    error_m = end_error_m(program, recording, mirrored(root, work), work / "out")
+    print(f"kiss_icp with two axes exchanged: {error_m:.3f} m, more than {BOUND_M}")
+    failed += error_m <= BOUND_M
+    recording.unlink()
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
