@@ -149,7 +149,7 @@ Belief settle(const Prediction& prediction) {
 Belief settle(const Prediction& prediction, const Registration::Result& aligned) {
   // what is no information corrects nothing
   Registration::Matrix kept = invertible(prediction.prior.covariance).ldlt().solve(Registration::Matrix::Identity());
-  u::block(kept, u::motion) += aligned.errors_in_variables_information;
+  kept += aligned.errors_in_variables_information;
   const Registration::Matrix from_prior = aligned.covariance * kept;
   const Registration::Matrix sum = from_prior * prediction.errors * from_prior.transpose() +
                                    aligned.covariance * aligned.score_covariance * aligned.covariance;

@@ -140,8 +140,10 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
   result.mean = now;
   result.mean.state.covariance = result.covariance.topLeftCorner<kMotion, kMotion>();
   result.verdict = RegistrationVerdict::converged;
-  describe_shape(points, kernel_m, sum, result);
   if (Status status = build(result.mean); !status.ok()) return status;
+  result.errors_in_variables_information =
+      errors_in_variables_information(trajectory, now.calibration, unknowns, points, kernel_m);
+  describe_shape(points, kernel_m, sum, result);
   result.score_covariance = score_covariance(points, trajectory, now.calibration, unknowns, kernel_m);
   return {};
 }
@@ -161,7 +163,6 @@ void Registration::describe_shape(std::span<const SweepPoint> points, double ker
     weight += robust;
     lever2 += robust * lever.squaredNorm();
   }
-  result.errors_in_variables_information = errors_in_variables_information(points, kernel_m);
   const double lever_m = std::sqrt(std::max(lever2 / weight, 1e-12));
   Eigen::Matrix<double, 6, 1> scale;
   scale << 1.0, 1.0, 1.0, 1.0 / lever_m, 1.0 / lever_m, 1.0 / lever_m;
@@ -175,25 +176,6 @@ void Registration::describe_shape(std::span<const SweepPoint> points, double ker
           scale.asDiagonal(),
       Eigen::EigenvaluesOnly);
   result.weakest_sigma_m = 1.0 / std::sqrt(std::max(information.eigenvalues()[0], 1e-12));
-}
-
-/// mapping.md (R25), (R26).
-Eigen::Matrix<double, Registration::kMotion, Registration::kMotion> Registration::errors_in_variables_information(
-    std::span<const SweepPoint> points, double kernel_m) const {
-  Eigen::Matrix<double, kMotion, kMotion> lower = Eigen::Matrix<double, kMotion, kMotion>::Zero();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Match& match = matches_[i];
-    if (match.plane.verdict != PlaneVerdict::plane) continue;
-    const double information = weigh(points[i], match, distances_[i], kernel_m).information;
-    const Eigen::Vector3d lever = levers_[i].cast<double>();
-    Eigen::Matrix<double, kMotion, 2> j;
-    for (int axis = 0; axis < 2; ++axis) {
-      const Eigen::Vector3d tilt = match.plane.tilt_W.col(axis).cast<double>();
-      j.col(axis) << tilt, lever.cross(tilt), static_cast<double>(points[i].t_s) * tilt;
-    }
-    lower.selfadjointView<Eigen::Lower>().rankUpdate(j, information);
-  }
-  return lower.selfadjointView<Eigen::Lower>();
 }
 
 }  // namespace tumble

@@ -76,14 +76,14 @@ double Registration::point_variance_m2(const SweepPoint& point) const {
   return range * range + skew * skew;
 }
 
-/// mapping.md (R14) and (R15), the distance and its derivative.
-double Registration::residual(const SweepTrajectory& trajectory, const SweepCalibration& calibration,
-                              const SweepPoint& point, const PlaneFit& plane, std::size_t& hint, Vector& derivative) {
+/// mapping.md (R15), which is linear in the normal.
+void Registration::derivative_along(const SweepTrajectory& trajectory, const SweepCalibration& calibration,
+                                    const SweepPoint& point, const Eigen::Vector3d& n, std::size_t& hint,
+                                    Vector& derivative) {
   const SweepTrajectory::Instant now = trajectory.at(point.t_s, hint);
   const Eigen::Vector3d x_I = point.x_I_m.cast<double>();
   const Eigen::Vector3d turned = now.q_WI * x_I;
   const Eigen::Vector3d lever = now.preintegrated_position_m + turned;
-  const Eigen::Vector3d n = plane.normal_W.cast<double>();
   const Eigen::Vector3d n_I = now.q_WI.conjugate() * n;
   const double t = point.t_s;
   derivative.segment<3>(0) = n;
@@ -98,7 +98,55 @@ double Registration::residual(const SweepTrajectory& trajectory, const SweepCali
   }
   derivative.tail<SweepCalibration::kErrors>() << (x_I - calibration.T_IL.translation()).cross(n_I), n_I,
       n.dot(trajectory.velocity_m_s(t, x_I, hint)), (0.5 * t * t) * n;
-  return n.dot(trajectory.base_m(t) + lever - plane.centre_W_m.cast<double>());
+}
+
+/// mapping.md (R14) and (R15), the distance and its derivative.
+double Registration::residual(const SweepTrajectory& trajectory, const SweepCalibration& calibration,
+                              const SweepPoint& point, const PlaneFit& plane, std::size_t& hint, Vector& derivative) {
+  const Eigen::Vector3d n = plane.normal_W.cast<double>();
+  derivative_along(trajectory, calibration, point, n, hint, derivative);
+  const SweepTrajectory::Instant now = trajectory.at(point.t_s, hint);
+  const Eigen::Vector3d lever = now.preintegrated_position_m + now.q_WI * point.x_I_m.cast<double>();
+  return n.dot(trajectory.base_m(point.t_s) + lever - plane.centre_W_m.cast<double>());
+}
+
+/// mapping.md (R25), (R26), of all that is free: of the motion alone it would hold what only motion and calibration
+/// together leave open, as an attitude that a turned mounting makes up for, and (R41) would grow there without bound.
+Registration::Matrix Registration::errors_in_variables_information(const SweepTrajectory& trajectory,
+                                                                   const SweepCalibration& calibration,
+                                                                   const Unknowns& unknowns,
+                                                                   std::span<const SweepPoint> points,
+                                                                   double kernel_m) const {
+  const int n = unknowns.count;
+  Eigen::Matrix<double, kUnknowns, 2 * static_cast<int>(kBlock)> columns;
+  Matrix lower = Matrix::Zero();
+  int count = 0;
+  std::size_t hint = 0;
+  const auto add_up = [&] {
+    lower.topLeftCorner(n, n).selfadjointView<Eigen::Lower>().rankUpdate(columns.topLeftCorner(n, count));
+    count = 0;
+  };
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Match& match = matches_[i];
+    if (match.plane.verdict != PlaneVerdict::plane) continue;
+    const double root = std::sqrt(weigh(points[i], match, distances_[i], kernel_m).information);
+    for (int axis = 0; axis < 2; ++axis) {
+      Vector derivative;
+      derivative_along(trajectory, calibration, points[i], match.plane.tilt_W.col(axis).cast<double>(), hint,
+                       derivative);
+      for (int k = 0; k < n; ++k) columns(k, count) = root * derivative[unknowns.free[static_cast<std::size_t>(k)]];
+      ++count;
+    }
+    if (count == columns.cols()) add_up();
+  }
+  add_up();
+  Matrix out = Matrix::Zero();
+  for (int a = 0; a < n; ++a) {
+    for (int b = 0; b < n; ++b)
+      out(unknowns.free[static_cast<std::size_t>(a)], unknowns.free[static_cast<std::size_t>(b)]) =
+          lower(std::max(a, b), std::min(a, b));
+  }
+  return out;
 }
 
 void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours& found) {

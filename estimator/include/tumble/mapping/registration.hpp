@@ -131,11 +131,11 @@ class Registration {
     /// (cluster-robust covariance, K. Liang, S. Zeger, 1986). In units of the covariance: that of independent points
     /// would be the correlation_discount times what they add to the normal matrix.
     Matrix score_covariance = Matrix::Zero();
-    /// What the normal matrix of the motion holds of noise alone: the normals are fitted to few points, and their
-    /// errors add information in every direction of a plane (errors in variables, W. Fuller, Measurement Error Models,
-    /// 1987, section 2.2). It holds the iterations where they are; it tells nothing of the motion.
-    Eigen::Matrix<double, kMotion, kMotion> errors_in_variables_information =
-        Eigen::Matrix<double, kMotion, kMotion>::Zero();
+    /// What the normal matrix holds of noise alone, of all unknowns that are free: the normals are fitted to few
+    /// points, and their errors add information in every direction of a plane (errors in variables, W. Fuller,
+    /// Measurement Error Models, 1987, section 2.2). It holds the iterations where they are; it tells nothing of the
+    /// motion.
+    Matrix errors_in_variables_information = Matrix::Zero();
     std::size_t points = 0, matches = 0, inliers = 0;
     double correction_m = 0.0;  ///< of the position at the start; where the correction broke its bound, that value
     double correction_rad = 0.0;
@@ -190,8 +190,12 @@ class Registration {
   void accumulate_block(std::span<const SweepPoint> points, std::size_t block, const SweepTrajectory& trajectory,
                         const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m, Sums& sum);
 
-  Eigen::Matrix<double, kMotion, kMotion> errors_in_variables_information(std::span<const SweepPoint> points,
-                                                                          double kernel_m) const;
+  static void derivative_along(const SweepTrajectory& trajectory, const SweepCalibration& calibration,
+                               const SweepPoint& point, const Eigen::Vector3d& direction_W, std::size_t& hint,
+                               Vector& derivative);
+  Matrix errors_in_variables_information(const SweepTrajectory& trajectory, const SweepCalibration& calibration,
+                                         const Unknowns& unknowns, std::span<const SweepPoint> points,
+                                         double kernel_m) const;
   Matrix score_covariance(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
                           const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m);
   struct Weight {
