@@ -221,6 +221,34 @@ TEST(Registration, TakesNoNoiseOfNormalsForInformation) {
   EXPECT_LT(corner.weakest_sigma_m, 0.05);
 }
 
+/// The lidar's place alone is seen: an IMU that is turned, with the mounting turned back, is seen by no surface, and
+/// by none of the noise in their normals either. Of the motion alone the noise holds it (the control), and the error of
+/// such a turn would grow with each sweep.
+TEST(Registration, TakesNoNoiseOfNormalsForInformationOfAMounting) {
+  constexpr double kNoise_m = 0.02;
+  Registration::Prior prior = loose_prior(0.5, 0.05);
+  prior.covariance.bottomRightCorner<SweepCalibration::kErrors, SweepCalibration::kErrors>()
+      .topLeftCorner<6, 6>()
+      .setIdentity();
+  prior.covariance.bottomRightCorner<SweepCalibration::kErrors, SweepCalibration::kErrors>() *= 0.01 * 0.01;
+  const Registration::Result corridor = align(test::Room::corridor(), prior, {}, kNoise_m);
+  ASSERT_EQ(corridor.verdict, RegistrationVerdict::converged);
+  const Registration::Matrix& B = corridor.errors_in_variables_information;
+  const Eigen::Matrix3d R = corridor.mean.state.q_WI.toRotationMatrix();
+  const Eigen::Vector3d lever_m = corridor.mean.calibration.T_IL.translation();
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector3d turned = Eigen::Vector3d::Unit(axis);
+    Registration::Vector unseen = Registration::Vector::Zero();
+    unseen.segment<3>(0) = R * turned.cross(lever_m);
+    unseen.segment<3>(3) = -(R * turned);
+    const double of_motion = unseen.dot(B * unseen);
+    unseen.segment<3>(Registration::kCalibration) = turned;
+    EXPECT_GT(of_motion, 100.0) << axis;
+    // the attitude in a sweep at rest is not one to the last digit
+    EXPECT_LT(std::abs(unseen.dot(B * unseen)), 1e-3 * of_motion) << axis;
+  }
+}
+
 TEST(Registration, FindsAllSixInACorner) {
   Registration::Prior prior = loose_prior(0.5, 0.2);
   prior.mean.state.p_WI_m = Eigen::Vector3d(-0.1, 0.12, 0.08);
