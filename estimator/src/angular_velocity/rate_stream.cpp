@@ -153,30 +153,16 @@ void RateStream::marginalise(std::size_t first, State& state) const {
   state.left_ns = oldest.observation.sample.time_ns;
   state.prior_knot = next.estimate.knot;
   state.prior_rig = state.rig;
-  if (is_another_rig(state)) forget_rig(state);
-}
-
-// Whether the constants have lain beyond what a rig may be for long enough: a rail that is met for the first time bends
-// them too, until it is found. rate_stream.md (R97)
-bool RateStream::is_another_rig(State& state) const {
-  if (!(model_.calibration_mahalanobis(state.rig) > params_.calibration_mahalanobis_max)) {
-    state.surprised_from_ns.reset();
-    return false;
+  if (model_.calibration_mahalanobis(state.rig) > params_.calibration_mahalanobis_max) {
+    // contact was taken for flight of another rig: drop what was learnt of the rig and of the motion with it
+    state.rig = state.prior_rig = model_.prior_constants();
+    state.rig_covariance = model_.prior_covariance();
+    state.prior = {};
+    state.prior_corner = {};
+    model_.add_rig_prior(state.rig, state.prior_corner);
+    state.learnt_from = 0;
+    ++state.rig_resets;
   }
-  if (!state.surprised_from_ns) state.surprised_from_ns = state.left_ns;
-  return seconds(state.left_ns - *state.surprised_from_ns) >= params_.surprise_s;
-}
-
-// Contact was taken for flight of another rig: drops what was learnt of the rig and of the motion with it.
-void RateStream::forget_rig(State& state) const {
-  state.rig = state.prior_rig = model_.prior_constants();
-  state.rig_covariance = model_.prior_covariance();
-  state.prior = {};
-  state.prior_corner = {};
-  model_.add_rig_prior(state.rig, state.prior_corner);
-  state.learnt_from = 0;
-  state.surprised_from_ns.reset();
-  ++state.rig_resets;
 }
 
 // From the sample that left last to the oldest that is there.
@@ -393,7 +379,7 @@ bool RateStream::equal(const State& a, const State& b) {
          a.entry_samples == b.entry_samples && a.left == b.left && a.left_ns == b.left_ns &&
          a.prior_knot == b.prior_knot && a.prior_rig == b.prior_rig && a.samples == b.samples &&
          a.rig_resets == b.rig_resets && a.flight_run == b.flight_run && a.waiting == b.waiting &&
-         a.learnt_from == b.learnt_from && a.surprised_from_ns == b.surprised_from_ns && a.failures == b.failures;
+         a.learnt_from == b.learnt_from && a.failures == b.failures;
 }
 
 }  // namespace tumble

@@ -69,8 +69,7 @@ class RateStream {
     double contact_doubt = 0.5;
     double bound_damping = 0.5;                ///< share of a new bound taken over in each step
     double recovered_sigma_rad_s = 0.5;        ///< as in RateSmoother
-    double calibration_mahalanobis_max = 1.5;  ///< beyond this what was learnt of the rig is dropped,
-    double surprise_s = 0.035;                 ///< once it lasts: longer than a rail takes to be found
+    double calibration_mahalanobis_max = 1.5;  ///< beyond this what was learnt of the rig is dropped
     double gap_max_s = 1.0;                    ///< longest time between samples
     double step_s = 0.005;                     ///< least time between Gauss-Newton steps; 0: with each sample
 
@@ -105,7 +104,6 @@ class RateStream {
       visit(p.calibration_mahalanobis_max,
             {"calibration_mahalanobis_max", "1", 0.1, 1e6,
              "constants of the rig that move further from their prior are held to it", Rank::first});
-      visit(p.surprise_s, {"surprise_s", "s", 0.0, 10.0, "how long that lasts before what was learnt is dropped"});
       visit(p.gap_max_s,
             {"gap_max_s", "s", 1e-6, 3600.0, "longest time between two samples before the run is refused"});
       visit(p.step_s, {"step_s", "s", 0.0, 0.1, "least time between Gauss-Newton steps; 0: with each sample"});
@@ -141,13 +139,12 @@ class RateStream {
     RateKnot prior_knot;
     RigConstants prior_rig;
     std::size_t samples = 0;
-    std::size_t waiting = 0;                  ///< samples since the last step
-    std::size_t learnt_from = 0;              ///< samples of flight that left the window and told of the rig
-    std::size_t flight_run = 0;               ///< samples of flight in a row that left the window last
-    std::optional<TimeNs> surprised_from_ns;  ///< since when the constants lie beyond what a rig may be
-    std::size_t rig_resets = 0;               ///< times that what was learnt of the rig was dropped
-    std::size_t failures = 0;                 ///< steps whose system was not positive definite and was skipped
-    std::vector<arrow::Block> work;           ///< scratch space, no part of the state proper
+    std::size_t waiting = 0;         ///< samples since the last step
+    std::size_t learnt_from = 0;     ///< samples of flight that left the window and told of the rig
+    std::size_t flight_run = 0;      ///< samples of flight in a row that left the window last
+    std::size_t rig_resets = 0;      ///< times that what was learnt of the rig was dropped
+    std::size_t failures = 0;        ///< steps whose system was not positive definite and was skipped
+    std::vector<arrow::Block> work;  ///< scratch space, no part of the state proper
   };
 
   /// Throws InvalidParams on a parameter outside of its bound.
@@ -181,8 +178,6 @@ class RateStream {
  private:
   void forget_oldest(State& state) const;
   void marginalise(std::size_t first, State& state) const;
-  bool is_another_rig(State& state) const;
-  void forget_rig(State& state) const;
   void predict_covariance(State& state) const;
   double jump_before(const Knot& oldest, const State& state) const;
   void append(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state) const;
