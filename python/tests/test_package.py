@@ -6,7 +6,7 @@ import pathlib
 
 import tumble
 
-STUB = pathlib.Path(tumble.__file__).parent / "_tumble.pyi"
+TYPES = pathlib.Path(tumble.__file__).parent / "_tumble.pyi"
 
 
 def compiled():
@@ -27,15 +27,15 @@ def test_names_are_there_and_explained():
 
 
 def test_stubs_have_what_the_module_has():
-    tree = ast.parse(STUB.read_text(encoding="utf-8"))
+    tree = ast.parse(TYPES.read_text(encoding="utf-8"))
     known = {node.name: node for node in tree.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
     assert set(compiled()) <= set(known)
     stream = {node.name for node in known["RegimeStream"].body if isinstance(node, ast.FunctionDef)}
     assert {"add_imu", "flush", "newest", "calibration", "__copy__"} <= stream
-    assert (STUB.parent / "py.typed").exists()
+    assert (TYPES.parent / "py.typed").exists()
     assert "NoSuchClass" not in known, "the negative control"
 
 
 def test_module_is_one_file_beside_python():
-    modules = [path for path in STUB.parent.iterdir() if path.suffix == ".so"]
+    modules = [path for path in TYPES.parent.iterdir() if path.suffix == ".so"]
     assert len(modules) == 1 and modules[0].stat().st_size < 6e6
