@@ -6,55 +6,13 @@
 #include <optional>
 #include <vector>
 
+#include "rolled_sphere.hpp"
 #include "tumble/tumble.hpp"
 
 namespace tumble {
 namespace {
 
-constexpr double kRadius_m = 0.145, kGravity_m_s2 = 9.80665, kRest_s = 1.5, kRoll_s = 2.0, kTurns = 2.0;
-
-/// Turned so far [rad]: from rest to rest, two turns about y.
-double angle_rad(double t_s) {
-  const double u = std::clamp((t_s - kRest_s) / kRoll_s, 0.0, 1.0);
-  return kTurns * 2.0 * M_PI * u * u * u * (10.0 + u * (-15.0 + 6.0 * u));
-}
-
-/// What a unit at p_B of a sphere that rolls without slip along x reads at 250 Hz: means of windows by differences of
-/// the closed form.
-std::vector<ImuSample> unit_at(const Eigen::Vector3d& p_B_m) {
-  std::vector<ImuSample> out;
-  constexpr double kStep_s = 0.004;
-  const auto turned = [](double t_s) { return Eigen::AngleAxisd(angle_rad(t_s), Eigen::Vector3d::UnitY()); };
-  const auto place = [&](double t_s) {
-    return Eigen::Vector3d(Eigen::Vector3d(kRadius_m * angle_rad(t_s), 0.0, 0.0) + turned(t_s) * p_B_m);
-  };
-  for (int k = 1; k * kStep_s <= kRest_s + kRoll_s + 1.5; ++k) {
-    const double a_s = (k - 1) * kStep_s, b_s = k * kStep_s, middle_s = 0.5 * (a_s + b_s), h_s = 0.5 * kStep_s;
-    ImuSample sample;
-    sample.time_ns = k * TimeNs{4'000'000};
-    sample.angular_velocity_rad_s = {0.0, (angle_rad(b_s) - angle_rad(a_s)) / kStep_s, 0.0};
-    const Eigen::Vector3d acceleration = (place(b_s) - 2.0 * place(middle_s) + place(a_s)) / (h_s * h_s);
-    sample.specific_force_m_s2 =
-        turned(middle_s).inverse() * Eigen::Vector3d(acceleration + kGravity_m_s2 * Eigen::Vector3d::UnitZ());
-    out.push_back(sample);
-  }
-  return out;
-}
-
-RollingOdometry::Params params_of(const std::vector<Eigen::Vector3d>& places_m) {
-  RollingOdometry::Params params;
-  params.radius_m = kRadius_m;
-  params.lag_s = 0.5;
-  for (const Eigen::Vector3d& place_m : places_m) {
-    RollingOdometry::Unit& unit = params.units.emplace_back();
-    unit.sheet = sheets::phidget1044();
-    unit.T_BI.translation() = place_m;
-  }
-  return params;
-}
-
-const std::vector<Eigen::Vector3d> kPlaces = {{0.03, 0.0, 0.0}, {-0.02, 0.03, 0.01}, {0.0, -0.03, -0.02}};
-const double kWay_m = kTurns * 2.0 * M_PI * kRadius_m;
+using test::kPlaces, test::kRadius_m, test::kWay_m, test::params_of, test::unit_at;
 
 TEST(RollingOdometry, RollsTwoTurnsWithOneUnitOrThree) {
   for (const std::size_t count : {std::size_t{1}, std::size_t{3}}) {

@@ -2,7 +2,6 @@
 // The door behind a ROS bag: example_bag BAG (a ROS 1 file, the folder of a ROS 2 bag, or an MCAP file) prints a pose
 // for each sweep. The readers are the harness's; sensors and mounting are those of examples/door/tumbling.cpp. Exit
 // status 2: bad input.
-#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -11,21 +10,11 @@
 #include <tumble/tumble.hpp>
 
 #include "examples/door/driver.hpp"
+#include "examples/door/rig.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/recordings/bags/bag.hpp"
 
 namespace {
-
-tumble::TumblingOdometry::Params rig() {
-  tumble::TumblingOdometry::Params params;
-  params.imu = tumble::sheets::mti30();
-  params.lidar = tumble::sheets::rs16();
-  params.lever_arm_I_m = {-0.022, -0.085, 0.055};
-  params.T_IL.translation() << 0.02014, 0.08745, 0.0398;
-  params.T_IL.linear() = Eigen::AngleAxisd(-0.5 * M_PI, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  params.own_body_L = {Eigen::Vector3d(-0.5, -0.4, -0.27), Eigen::Vector3d(0.5, 0.4, 0.23)};
-  return params;
-}
 
 void run(const tumble::sim::Sensors& sensors) {
   namespace bridge = tumble::scenarios::bridge;
@@ -52,7 +41,8 @@ void run(const tumble::sim::Sensors& sensors) {
   }
   odometry.finish();
   while (const auto done = odometry.take()) driver::print(*done);
-  std::fprintf(stderr, "a map of %zu points\n", odometry.mapper().map().size());
+  std::fprintf(stderr, "a map of %zu points, a state of %zu bytes\n", odometry.mapper().map().size(),
+               odometry.save().size());
 }
 
 }  // namespace

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdio>
+#include <fstream>
 #include <istream>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <tumble/tumble.hpp>
@@ -12,7 +15,7 @@
 /// Stands for the drivers of a robot: messages as lines of text, in order of time.
 ///
 ///     imu TIME_NS WX WY WZ FX FY FZ        rad/s and m/s^2, of one IMU; of several a line each, the first's stamp
-///     counts sweep START_NS END_NS POINTS         then so many lines: X Y Z OFFSET_NS RING, metres in the lidar's axes
+///     sweep START_NS END_NS POINTS         then so many lines: X Y Z OFFSET_NS RING, metres in the lidar's axes
 namespace driver {
 
 struct Sweep {
@@ -45,6 +48,27 @@ inline std::optional<Message> next(std::istream& in) {
   }
   if (!in) return std::nullopt;
   return out;
+}
+
+/// Hands it over; what is wrong with it is printed, and it is left out.
+inline void add(const Message& message, tumble::TumblingOdometry& odometry) {
+  const Sweep& sweep = message.sweep;
+  const tumble::Status status =
+      message.imu ? odometry.add_imu(*message.imu) : odometry.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points);
+  if (!status.ok()) std::fprintf(stderr, "%s\n", status.message().c_str());
+}
+
+/// All bytes of a file; none where there is no such file.
+inline std::vector<std::byte> read_bytes(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  const auto* const bytes = reinterpret_cast<const std::byte*>(text.data());
+  return {bytes, bytes + text.size()};
+}
+
+inline void write_bytes(const std::vector<std::byte>& bytes, const std::string& file) {
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
 }
 
 /// "TIME_NS x y z qx qy qz qw sigma_m", a line.

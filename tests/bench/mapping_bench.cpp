@@ -6,12 +6,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <ctime>
 #include <vector>
 
 #include "tests/estimator/mapping/endless_corridor.hpp"
 #include "tests/estimator/mapping/synthetic_room.hpp"
+#include "tumble/common/state_bytes.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/mapping/plane_fit.hpp"
 #include "tumble/mapping/voxel_map.hpp"
@@ -68,6 +70,32 @@ void sweep_of_28800_points(benchmark::State& state) {
   state.counters["added"] = static_cast<double>(report.map_points_added);
 }
 BENCHMARK(sweep_of_28800_points)->Arg(25)->Arg(50)->Unit(benchmark::kMillisecond)->ArgName("voxel_cm");
+
+/// The state of an odometry as bytes, and back.
+void map_saved_and_loaded(benchmark::State& state) {
+  const LidarInertialOdometry::Params params;
+  const Saved saved(params);
+  const bool loads = state.range(0) != 0;
+  std::vector<std::byte> bytes;
+  for (auto _ : state) {
+    if (loads) state.PauseTiming();
+    bytes.clear();
+    tumble::StateWriter out(bytes);
+    saved.odometry.save(out);
+    if (!loads) continue;
+    LidarInertialOdometry other(params);
+    state.ResumeTiming();
+    tumble::StateReader in(bytes);
+    other.load(in);
+    if (!in.status().ok()) {
+      state.SkipWithError("the state was refused");
+      break;
+    }
+  }
+  state.counters["bytes"] = static_cast<double>(bytes.size());
+  state.counters["points"] = static_cast<double>(saved.odometry.map().size());
+}
+BENCHMARK(map_saved_and_loaded)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->ArgName("load");
 
 /// Of the processor, which a busy machine does not lengthen.
 double since_ms(std::clock_t start) {

@@ -128,6 +128,38 @@ TEST(Door, TheRollingExampleFollowsARoll) {
   EXPECT_NEAR(lines.back().p_m.norm(), way, 0.02 * std::max(1.0, way));
 }
 
+TEST(Door, TheRebootExampleGoesOnWhereItWas) {
+  const Recorded throw_1 = record("throw");
+  const fs::path folder = throw_1.file.parent_path();
+  // the messages in two: between two of the IMU in the middle of the motion
+  std::ifstream all(throw_1.messages);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(all, line);) lines.push_back(line);
+  std::size_t half = lines.size() / 2;
+  while (!lines[half].starts_with("imu")) ++half;
+  std::ofstream first(folder / "first.txt"), second(folder / "second.txt");
+  for (std::size_t k = 0; k < lines.size(); ++k) (k < half ? first : second) << lines[k] << '\n';
+  first.close();
+  second.close();
+  const auto poses = [&](const char* messages, const char* state) {
+    return output_of(std::string(TUMBLE_REBOOT) + " " + (folder / state).string() + " < " +
+                     (folder / messages).string() + " 2> " + (folder / "errors.txt").string());
+  };
+  const std::string whole = poses("messages.txt", "whole");
+  const std::string before = poses("first.txt", "parts"), after = poses("second.txt", "parts");
+  EXPECT_GT(lines_of(before).size(), 3u);
+  EXPECT_GT(lines_of(after).size(), 3u);
+  EXPECT_EQ(before + after, whole);
+  EXPECT_EQ(fs::file_size(folder / "parts"), fs::file_size(folder / "whole"));
+  // negative controls: without the state it begins anew, and says so of one that is none
+  EXPECT_NE(poses("second.txt", "none"), after);
+  std::ofstream(folder / "damaged") << "no state";
+  poses("second.txt", "damaged");
+  std::ostringstream errors;
+  errors << std::ifstream(folder / "errors.txt").rdbuf();
+  EXPECT_NE(errors.str().find("begins anew: too_few"), std::string::npos);
+}
+
 /// What stands in a file between its first include and its end.
 std::string code_of(const std::string& text) {
   const std::size_t at = text.find("#include");
@@ -139,12 +171,14 @@ std::string text_of(const fs::path& file) {
   return out.str();
 }
 
-TEST(Door, ReadmeShowsTheProgramsThatAreTested) {
-  const std::string readme = text_of(test::source_dir() / "README.md");
-  for (const char* name : {"tumbling.cpp", "rolling.cpp"}) {
-    const std::string code = code_of(text_of(test::source_dir() / "examples/door" / name));
+TEST(Door, ReadmeAndTutorialShowTheProgramsThatAreTested) {
+  const fs::path root = test::source_dir();
+  const std::string readme = text_of(root / "README.md"), tutorial = text_of(root / "docs/tutorials/your_robot.md");
+  for (const char* name : {"tumbling.cpp", "rolling.cpp", "reboot.cpp"}) {
+    const std::string code = code_of(text_of(root / "examples/door" / name)), shown = "```cpp\n" + code + "```";
     ASSERT_GT(code.size(), 500u);
-    EXPECT_NE(readme.find("```cpp\n" + code + "```"), std::string::npos) << "README.md shows another " << name;
+    const std::string& text = std::string(name) == "reboot.cpp" ? tutorial : readme;
+    EXPECT_NE(text.find(shown), std::string::npos) << "another " << name << " is shown";
     EXPECT_LT(std::count(code.begin(), code.end(), '\n'), 36);
   }
 }

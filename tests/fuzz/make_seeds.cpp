@@ -154,6 +154,13 @@ void write_texts(const path& folder) {
   put_text(in(folder, "pcd_cloud") / "text",
            "VERSION 0.7\nFIELDS x y z intensity\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH 2\nHEIGHT 1\n"
            "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\nDATA ascii\n1 2 3 0.5\n4 5 6 1\n");
+  const auto edits = [](char kind, std::initializer_list<unsigned char> bytes) {
+    return kind + std::string(bytes.begin(), bytes.end());
+  };
+  put_text(in(folder, "saved_states") / "tumbling", edits('T', {1, 0, 0, 0, 0, 0, 1, 0x88, 0x13, 0, 0, 0}));
+  put_text(in(folder, "saved_states") / "rolling", edits('R', {1, 0x28, 0x23, 0, 0, 0}));
+  put_text(in(folder, "saved_states") / "refused_of_other_parameters", edits('T', {2, 0, 0, 0, 0, 8}));
+  put_text(in(folder, "saved_states") / "refused_cut", edits('R', {3, 0x20, 0x4e, 0, 0, 3}));
   const float points[8] = {1, 2, 3, 0.5f, 4, 5, 6, 1};
   put_text(in(folder, "kitti_cloud") / "small", std::string(reinterpret_cast<const char*>(points), sizeof points));
   std::string wand =

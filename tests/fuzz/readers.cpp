@@ -22,6 +22,7 @@
 #include "scenarios/sweep/gate.hpp"
 #include "scenarios/sweep/sweep.hpp"
 #include "sim/parameters.hpp"
+#include "tests/fuzz/saved_states.hpp"
 #include "tests/tree.hpp"
 
 namespace tumble::fuzz {
@@ -205,6 +206,7 @@ constexpr std::array kReaders = {
     Reader{"estimate_tum", "a.tum", estimate_tum},
     Reader{"estimate_rates", "rates.csv", estimate_rates},
     Reader{"estimate_json", "estimate.json", estimate_json},
+    Reader{"saved_states", "edits", saved_states},
 };
 
 }  // namespace

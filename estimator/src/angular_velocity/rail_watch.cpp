@@ -130,6 +130,11 @@ bool RailWatch::observe(const ImuSample& sample, State& state) const {
   return changed;
 }
 
+bool RailWatch::has_room_for(const State& state) const {
+  return std::all_of(state.memory.begin(), state.memory.end(),
+                     [&](const Memory& memory) { return memory.readings.size() <= readings_max_; });
+}
+
 bool RailWatch::equal(const State& a, const State& b) {
   return a.known == b.known && a.memory == b.memory;
 }

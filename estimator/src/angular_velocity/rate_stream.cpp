@@ -352,6 +352,20 @@ void RateStream::flush(const State& state, std::vector<RateState>& out) const {
   for (std::size_t k = given; k < state.window.size(); ++k) out.push_back(to_state(state.window[k], state));
 }
 
+Status RateStream::check_state(const State& state) const {
+  const std::size_t most = capacity_ + every_;
+  if (state.window.size() > most)
+    return {Trouble::out_of_range, "rate.window", double(state.window.size()), double(most)};
+  if (state.waiting > every_) return {Trouble::out_of_range, "rate.waiting", double(state.waiting), double(every_)};
+  if (!rails_.has_room_for(state.rails)) return {Trouble::out_of_range, "rails.readings", 1.0, 0.0};
+  for (std::size_t k = 1; k < state.window.size(); ++k) {
+    const TimeNs before_ns = state.window[k - 1].observation.sample.time_ns;
+    const Status status = check_follows(state.window[k].observation.sample.time_ns, before_ns, params_.gap_max_s);
+    if (!status.ok()) return status;
+  }
+  return {};
+}
+
 bool RateStream::equal(const State& a, const State& b) {
   const auto same = [](const Knot& x, const Knot& y) {
     const ImuSample &p = x.observation.sample, &q = y.observation.sample;

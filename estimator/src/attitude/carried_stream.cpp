@@ -55,6 +55,29 @@ CarriedStream::CarriedStream(const Params& params)
   readings_max_ = 2 * static_cast<std::size_t>(std::ceil(params.window_s / params.period_s)) + 4;
 }
 
+Status CarriedStream::check_state(const State& state) const {
+  const auto size_of = [](const auto& all) { return double(all.size()); };
+  if (state.window.size() > nodes_max_)
+    return {Trouble::out_of_range, "carried.window", size_of(state.window), double(nodes_max_)};
+  if (state.readings.size() > readings_max_)
+    return {Trouble::out_of_range, "carried.readings", size_of(state.readings), double(readings_max_)};
+  if (state.samples == 0) return {};
+  if (state.window.empty() || state.readings.empty()) return {Trouble::empty, "carried.window", 0.0, 1.0};
+  const std::int64_t end = state.first_node + static_cast<std::int64_t>(state.window.size());
+  for (std::size_t k = 0; k < state.readings.size(); ++k) {
+    const Reading& reading = state.readings[k];
+    if (state.first_node < 0 || reading.node >= end)
+      return {Trouble::out_of_range, "reading.node", double(reading.node), double(end)};
+    if (reading.end_s != seconds(reading.sample.time_ns - state.start_ns) + 0.5 * params_.period_s)
+      return {Trouble::out_of_range, "reading.end_s", reading.end_s, seconds(reading.sample.time_ns)};
+    if (k == 0) continue;
+    const TimeNs before_ns = state.readings[k - 1].sample.time_ns;
+    const Status status = check_follows(reading.sample.time_ns, before_ns, params_.body.gap_max_s);
+    if (!status.ok()) return status;
+  }
+  return {};
+}
+
 CarriedStream::State CarriedStream::start() const {
   State state;
   state.readings.reserve(readings_max_ + 1);

@@ -29,10 +29,16 @@ class InertialTrack {
   /// Forgets what ended by then, the end of a sweep.
   void forget_until(TimeNs end_ns);
 
+  /// Stated once: `mapping_members.hpp`.
+  template <class Self, class Visitor>
+  static void members(Self& s, Visitor& visit);
+
  private:
   struct Rate {
     Eigen::Vector3d rate_rad_s;
     TimeNs middle_ns;
+    template <class Self, class Visitor>
+    static void members(Self& s, Visitor& visit);
   };
 
   /// The rest at the start of a recording: once left it does not come back, and what it has taught stays.
@@ -41,6 +47,8 @@ class InertialTrack {
     std::optional<TimeNs> first_ns;  ///< the first sample of all
     std::optional<TimeNs> run_ns;    ///< that of the detector's run
     Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();
+    template <class Self, class Visitor>
+    static void members(Self& s, Visitor& visit);
   };
 
   std::optional<TimeNs> last_ns() const;

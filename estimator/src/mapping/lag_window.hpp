@@ -46,6 +46,10 @@ class LagWindow {
 
   const std::deque<WindowSweep>& sweeps() const { return sweeps_; }
 
+  /// Stated once: `mapping_members.hpp`.
+  template <class Self, class Visitor>
+  static void members(Self& s, Visitor& visit);
+
  private:
   std::size_t length_;
   std::deque<WindowSweep> sweeps_;

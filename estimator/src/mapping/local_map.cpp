@@ -89,6 +89,13 @@ bool LocalMap::prune(const Params& params, const Eigen::Vector3d& p_WI_m) {
   return true;
 }
 
+bool LocalMap::knows_its_sweeps() const {
+  for (std::uint32_t index = 0; index < map_.index_end(); ++index) {
+    if (map_.exists(index) && map_.sweep(index) >= seen_from_W_m_.size()) return false;
+  }
+  return true;
+}
+
 std::vector<MapPoint> LocalMap::with_normals(const Params& params) const {
   return mapping::with_normals(map_, seen_from_W_m_, params.neighbours, params.match_distance_m);
 }

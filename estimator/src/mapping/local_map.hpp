@@ -44,6 +44,12 @@ class LocalMap {
   std::size_t bytes() const { return map_.bytes() + seen_from_W_m_.capacity() * sizeof(Eigen::Vector3f); }
   std::vector<MapPoint> with_normals(const Params& params) const;
 
+  /// Whether each point was drawn by a sweep that it knows, as all of a map that was loaded have to be.
+  bool knows_its_sweeps() const;
+  /// Stated once: `mapping_members.hpp`.
+  template <class Self, class Visitor>
+  static void members(Self& s, Visitor& visit);
+
  private:
   VoxelMap map_;
   std::vector<Eigen::Vector3f> seen_from_W_m_;  // per sweep that gave points

@@ -54,6 +54,12 @@ struct LidarInertialOdometry::Impl {
                                      const Registration::Matrix& errors) const;
   std::vector<PoseState> poses_of(const mapping::WindowSweep& sweep) const;
 
+  /// Stated once: `mapping_members.hpp`.
+  template <class Self, class Visitor>
+  static void members(Self& s, Visitor& visit);
+  /// What holds between the members of every state; the first that does not.
+  Status check_state() const;
+
   Params params;
   mapping::TrackingState tracking;
   mapping::InertialTrack track;

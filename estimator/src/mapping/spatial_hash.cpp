@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <iterator>
 
 namespace tumble {
 
@@ -42,6 +43,14 @@ bool SpatialHash::add(std::uint64_t key) {
 void SpatialHash::clear() {
   std::fill(keys_.begin(), keys_.end(), kFree);
   size_ = 0;
+}
+
+std::vector<std::uint64_t> SpatialHash::keys() const {
+  std::vector<std::uint64_t> out;
+  out.reserve(size_);
+  std::copy_if(keys_.begin(), keys_.end(), std::back_inserter(out), [](std::uint64_t key) { return key != kFree; });
+  std::sort(out.begin(), out.end());
+  return out;
 }
 
 void SpatialHash::grow() {

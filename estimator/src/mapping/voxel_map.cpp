@@ -51,6 +51,7 @@ VoxelMap::VoxelMap(const Params& params) : params_(params) {
   require_fields(params);
   require_within("spacing_m", params.spacing_m, 0.0, params.voxel_m);
   cells_per_m_ = static_cast<float>(1.0 / params.voxel_m);
+  cubes_per_m_ = params.spacing_m > 0.0 ? static_cast<float>(1.0 / params.spacing_m) : cells_per_m_;
 }
 
 std::uint32_t VoxelMap::first_chunk(const Eigen::Vector3i& cell, std::uint64_t& group_key, std::uint32_t& group) const {
@@ -65,34 +66,43 @@ std::uint32_t VoxelMap::first_chunk(const Eigen::Vector3i& cell, std::uint64_t& 
   return groups_[group][inside];
 }
 
-std::uint32_t VoxelMap::add(const Eigen::Vector3f& position, float sigma_m, std::uint32_t sweep, std::uint32_t line) {
+/// The first chunk of a cell, to be set.
+std::uint32_t& VoxelMap::first_of(const Eigen::Vector3i& cell) {
   constexpr int kMask = (1 << kGroupBits) - 1;
-  const float finest = params_.spacing_m > 0.0 ? static_cast<float>(1.0 / params_.spacing_m) : cells_per_m_;
-  // one margin for cells and cubes of the spacing; also false for NaN
-  if (!((position * finest).cwiseAbs().maxCoeff() < static_cast<float>(SpatialHash::kLimit - 2))) return kNoPoint;
-
-  if (params_.spacing_m > 0.0 && !taken_.add(SpatialHash::key(cube_of(position, finest)))) return kNoPoint;
-  const Eigen::Vector3i cell = cube_of(position, cells_per_m_);
   const std::uint64_t key = SpatialHash::key({cell.x() >> kGroupBits, cell.y() >> kGroupBits, cell.z() >> kGroupBits});
   const std::uint32_t group = groups_of_.insert(key, static_cast<std::uint32_t>(groups_.size()));
   if (group == groups_.size()) groups_.emplace_back().fill(kNone);
   const int inside = (cell.x() & kMask) | ((cell.y() & kMask) << kGroupBits) | ((cell.z() & kMask) << (2 * kGroupBits));
+  return groups_[group][inside];
+}
 
+/// An empty one before the first of a cell.
+std::uint32_t VoxelMap::new_chunk(std::uint32_t& first) {
+  Chunk chunk;
+  chunk.x.fill(kFar);
+  chunk.y.fill(kFar);
+  chunk.z.fill(kFar);
+  chunk.next = first;
+  first = static_cast<std::uint32_t>(chunks_.size());
+  chunks_.push_back(chunk);
+  sigma_m_.resize(sigma_m_.size() + kChunk, -1.0f);
+  sweep_.resize(sweep_.size() + kChunk, 0);
+  line_.resize(line_.size() + kChunk, kNoLine);
+  vacant_ += kChunk;
+  return first;
+}
+
+/// One margin for cells and cubes of the spacing; also false for NaN.
+bool VoxelMap::has_room_for(const Eigen::Vector3f& position) const {
+  return (position * cubes_per_m_).cwiseAbs().maxCoeff() < static_cast<float>(SpatialHash::kLimit - 2);
+}
+
+std::uint32_t VoxelMap::add(const Eigen::Vector3f& position, float sigma_m, std::uint32_t sweep, std::uint32_t line) {
+  if (!has_room_for(position)) return kNoPoint;
+  if (params_.spacing_m > 0.0 && !taken_.add(SpatialHash::key(cube_of(position, cubes_per_m_)))) return kNoPoint;
   // the newest chunk of a cell stands first and is the only one with room
-  std::uint32_t& first = groups_[group][inside];
-  if (first == kNone || chunks_[first].count == kChunk) {
-    Chunk chunk;
-    chunk.x.fill(kFar);
-    chunk.y.fill(kFar);
-    chunk.z.fill(kFar);
-    chunk.next = first;
-    first = static_cast<std::uint32_t>(chunks_.size());
-    chunks_.push_back(chunk);
-    sigma_m_.resize(sigma_m_.size() + kChunk, -1.0f);
-    sweep_.resize(sweep_.size() + kChunk, 0);
-    line_.resize(line_.size() + kChunk, kNoLine);
-    vacant_ += kChunk;
-  }
+  std::uint32_t& first = first_of(cube_of(position, cells_per_m_));
+  if (first == kNone || chunks_[first].count == kChunk) new_chunk(first);
   Chunk& chunk = chunks_[first];
   const std::uint32_t place = chunk.count++;
   chunk.x[place] = position.x();

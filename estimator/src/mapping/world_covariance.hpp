@@ -26,6 +26,10 @@ class WorldCovariance {
   void add_drawing(double drawn_share, const SweepTrajectory& trajectory, const Registration::Matrix& errors,
                    const Eigen::Vector3d& p_IL_m);
 
+  /// Stated once: `mapping_members.hpp`.
+  template <class Self, class Visitor>
+  static void members(Self& s, Visitor& visit);
+
  private:
   WorldCovarianceParams params_;
   Pose start_by_mounting_ = Pose::Zero();

@@ -68,14 +68,16 @@ RollingEstimate live_estimate(const RollingFilter::State& live) {
 RollingOdometry::RollingOdometry(const Params& params) : RollingOdometry(params, merge_params(params)) {}
 
 RollingOdometry::RollingOdometry(const Params& params, const ImuMerge::Params& merged)
-    : merge_(merged),
+    : params_(params),
+      merge_(merged),
       smoother_(rolling_params(params, merged, merge_)),
       merge_state_(std::make_unique<ImuMerge::State>()),
       state_(std::make_unique<RollingSmoother::State>()),
       live_(params.lag_s <= 0.0) {}
 
 RollingOdometry::RollingOdometry(const RollingOdometry& other)
-    : merge_(other.merge_),
+    : params_(other.params_),
+      merge_(other.merge_),
       smoother_(other.smoother_),
       merge_state_(std::make_unique<ImuMerge::State>(*other.merge_state_)),
       state_(std::make_unique<RollingSmoother::State>(*other.state_)),

@@ -73,12 +73,17 @@ bool SecondPass::is_due() const {
   return wanted_ && moves_ns_ && !sweeps_.empty() && seconds(sweeps_.back().end_ns - *moves_ns_) >= params_.after_s;
 }
 
-RegimeStream::Params SecondPass::learnt_rate(const OdometryPass& first) const {
+RegimeStream::Params SecondPass::lagging_rate() const {
   RegimeStream::Params out = rate_;
+  out.rate.lag_s = std::max(params_.lag_s, rate_.rate.lag_s);
+  return out;
+}
+
+RegimeStream::Params SecondPass::learnt_rate(const OdometryPass& first) const {
+  RegimeStream::Params out = lagging_rate();
   const RateStream::State& state = first.rate_state().rate;
   out.rate.model.calibration = first.rates().rate().calibration(state);
   out.rate.model.calibration->covariance *= params_.doubt;
-  out.rate.lag_s = std::max(params_.lag_s, rate_.rate.lag_s);
   start_from_rails(state.rails.known, params_.doubt, out.rate);
   return out;
 }

@@ -157,6 +157,26 @@ RollingSmoother::RollingSmoother(const Params& p) : params_(p), filter_(p.filter
   block_nodes_ = static_cast<std::size_t>(std::ceil(p.block_s / p.filter.node_s - 1e-9));
 }
 
+Status RollingSmoother::check_state(const State& state) const {
+  const RollingParams& filter = params_.filter;
+  if (state.live.started && state.live.count < 1)
+    return {Trouble::out_of_range, "live.count", double(state.live.count), 1.0};
+  const Committed& committed = state.committed;
+  for (std::size_t k = committed.started ? 0 : 1; k < state.samples.size(); ++k) {
+    const TimeNs before_ns = k > 0 ? state.samples[k - 1].time_ns : committed.last_time_ns;
+    // a node may lie within a gap: the sample after it comes later than that
+    const TimeNs from_ns = k == 0 && committed.gap_piece > 0 ? committed.gap_start_ns : before_ns;
+    const Status status = check_follows(state.samples[k].time_ns, from_ns, filter.gap_max_s);
+    if (!status.ok()) return status;
+  }
+  if (committed.gap_piece == 0) return {};
+  if (state.samples.empty()) return {Trouble::empty, "rolling.samples", 0.0, 1.0};
+  const double gap_s = seconds(state.samples.front().time_ns - committed.gap_start_ns);
+  const int pieces = rolling::gap_pieces(filter, gap_s);
+  if (committed.gap_piece < pieces) return {};
+  return {Trouble::out_of_range, "committed.gap_piece", double(committed.gap_piece), double(pieces)};
+}
+
 Status RollingSmoother::step(const ImuSample& sample, State& state, std::vector<RollingEstimate>& out) const {
   if (!state.live.started && params_.lag_s < kWholeRun) {
     state.steps.reserve(lag_nodes_ + block_nodes_ + 1);

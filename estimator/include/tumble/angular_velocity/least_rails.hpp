@@ -16,6 +16,11 @@ class LeastRails {
   bool refute(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) const;
   bool operator==(const LeastRails&) const = default;
 
+  template <class Self, class Visitor>
+  static void members(Self& s, Visitor& visit) {
+    visit("least_rails", s.rad_s_);
+  }
+
  private:
   std::array<Eigen::Vector3d, 2> rad_s_{Eigen::Vector3d::Zero(),
                                         Eigen::Vector3d::Zero()};  // of negative, positive side

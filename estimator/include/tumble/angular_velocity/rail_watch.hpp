@@ -60,6 +60,9 @@ class RailWatch {
   /// Whether two states will behave alike for ever, bit for bit.
   static bool equal(const State& a, const State& b);
 
+  /// Whether there is room for the readings of a state that comes from elsewhere.
+  bool has_room_for(const State& state) const;
+
  private:
   void remember(const Eigen::Vector3d& reading, Triad triad, Memory& memory) const;
   bool is_near(const Eigen::Vector3d& reading, Triad triad, const Memory& memory, double share) const;

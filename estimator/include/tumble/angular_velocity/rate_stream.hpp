@@ -175,6 +175,9 @@ class RateStream {
   /// True when two states will behave alike for ever (scratch space excluded), bit for bit.
   static bool equal(const State& a, const State& b);
 
+  /// What holds of every state that push() left, for one that comes from elsewhere; the first that does not.
+  Status check_state(const State& state) const;
+
  private:
   void forget_oldest(State& state) const;
   void marginalise(std::size_t first, State& state) const;

@@ -97,6 +97,9 @@ class CarriedStream {
   /// Rates of the samples that push() has not given out, oldest first, appended to `out`.
   void flush(const State& state, std::vector<RateState>& out) const;
 
+  /// What holds of every state that push() left, for one that comes from elsewhere; the first that does not.
+  Status check_state(const State& state) const;
+
  private:
   void append(const ImuSample& sample, State& state) const;
   bool read_again(const ClippedElements& known, State& state) const;

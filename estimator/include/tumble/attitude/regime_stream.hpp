@@ -80,6 +80,10 @@ class RegimeStream {
   void flush(const State& state, std::vector<RateState>& out) const;
 
   const RateStream& rate() const { return rate_; }
+  const Params& params() const { return params_; }
+
+  /// What holds of every state that push() left, for one that comes from elsewhere; the first that does not.
+  Status check_state(const State& state) const;
 
  private:
   ClippedElements known_of(State& state) const;

@@ -29,12 +29,26 @@ struct ArrowSystem {
     StateMatrix coupling = StateMatrix::Zero();  ///< to the next block, as (this, next)
     CrossMatrix border = CrossMatrix::Zero();
     StateVector gradient = StateVector::Zero();
+
+    template <class Self, class Visitor>
+    static void members(Self& s, Visitor& visit) {
+      visit("block.diagonal", s.diagonal);
+      visit("block.coupling", s.coupling);
+      visit("block.border", s.border);
+      visit("block.gradient", s.gradient);
+    }
   };
 
   /// The border: before elimination C and its gradient; afterwards their Schur complement.
   struct Corner {
     BorderMatrix matrix = BorderMatrix::Zero();
     BorderVector gradient = BorderVector::Zero();
+
+    template <class Self, class Visitor>
+    static void members(Self& s, Visitor& visit) {
+      visit("corner.matrix", s.matrix);
+      visit("corner.gradient", s.gradient);
+    }
   };
 
   /// A block given the border: its covariance, and how far its mean moves with the border.

@@ -20,6 +20,10 @@
 
 namespace tumble {
 
+class StateWriter;
+class StateReader;
+class StateLayout;
+
 /// What became of a sweep. Anything but `registered` means that the pose rests on the inertial prior.
 enum class SweepVerdict : std::uint8_t {
   first,       ///< started the map
@@ -226,8 +230,17 @@ class LidarInertialOdometry {
   /// from. O(number of points).
   std::vector<MapPoint> map() const;
 
+  /// All of it but what the caller gave for its work (`parallel_for`), into one of the same parameters: a state that
+  /// was loaded goes on with the same bits. What another run may have taught of the parameters (the mounting, the
+  /// clock, their deviations) comes with it; that the others are the same is for the caller to see to. On trouble,
+  /// which the reader tells, this is as it was.
+  void save(StateWriter& out) const;
+  void load(StateReader& in);
+  void describe(StateLayout& out) const;
+
+  struct Impl;  ///< for the library's own sources
+
  private:
-  struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 

@@ -20,6 +20,8 @@ class ScanLines {
   static std::uint32_t line(std::uint32_t base, std::uint16_t ring) {
     return base == VoxelMap::kNoLine ? base : base | ring;
   }
+  template <class Self, class Visitor>
+  static void members(Self& s, Visitor& visit);
 
  private:
   Eigen::Vector3d axis_W_ = Eigen::Vector3d::Zero();  // of the sweeps that share lines

@@ -39,6 +39,8 @@ class SpatialHash {
   /// Forgets all keys and keeps the memory.
   void clear();
   std::size_t size() const { return size_; }
+  /// Those that are in it, ascending.
+  std::vector<std::uint64_t> keys() const;
   /// Memory held.
   std::size_t bytes() const {
     return keys_.capacity() * sizeof(std::uint64_t) + values_.capacity() * sizeof(std::uint32_t);

@@ -12,6 +12,10 @@
 
 namespace tumble {
 
+class StateWriter;
+class StateReader;
+class StateLayout;
+
 /// Result of a neighbour search: the nearest points of a map, nearest first.
 struct Neighbours {
   static constexpr int kMax = 32;
@@ -73,6 +77,14 @@ class VoxelMap {
   /// Memory held [bytes].
   std::size_t bytes() const;
 
+  /// The points, and which cubes of the spacing are taken: 24 bytes a point and 8 a cube. What finds them is built
+  /// anew.
+  void save(StateWriter& out) const;
+  /// In place of what there is, into a map of the same parameters. Trouble of the reader: `out_of_range` where points
+  /// lie where none can.
+  void load(StateReader& in);
+  static void describe(StateLayout& out);
+
   std::size_t size() const { return sigma_m_.size() - vacant_; }
   /// Indices handed out are below this; those that exists() refuses are free places inside of chunks.
   std::uint32_t index_end() const { return static_cast<std::uint32_t>(sigma_m_.size()); }
@@ -94,10 +106,15 @@ class VoxelMap {
   };
   using Group = std::array<std::uint32_t, 1u << (3 * kGroupBits)>;  // first chunk of each cell
 
+  bool has_room_for(const Eigen::Vector3f& position_W_m) const;
+  std::uint32_t& first_of(const Eigen::Vector3i& cell);
+  std::uint32_t new_chunk(std::uint32_t& first);
+  void load_chunk(StateReader& in);
   std::uint32_t first_chunk(const Eigen::Vector3i& cell, std::uint64_t& group_key, std::uint32_t& group) const;
 
   Params params_;
   float cells_per_m_ = 0.0f;
+  float cubes_per_m_ = 0.0f;  // of the spacing; of the cells where all are kept
   SpatialHash groups_of_;
   SpatialHash taken_;
   std::vector<Group> groups_;

@@ -23,6 +23,8 @@ class OdometryPass {
     void push(const ImuSample& sample);
     void drop_until(TimeNs time_ns);
     std::span<const ImuSample> all() const { return std::span(samples).subspan(head); }
+    template <class Self, class Visitor>
+    static void members(Self& s, Visitor& visit);
   };
 
   /// Throws InvalidParams on a parameter outside of its bound.
@@ -53,6 +55,12 @@ class OdometryPass {
   const LidarInertialOdometry& mapper() const { return mapper_; }
   const std::optional<RateState>& settled() const { return settled_; }
   std::size_t refused_samples() const { return refused_samples_; }
+
+  /// Stated once, in the library's own sources: state_visitor.hpp.
+  template <class Self, class Visitor>
+  static void members(Self& s, Visitor& visit);
+  /// What holds between the members of every state; the first that does not.
+  Status check_state() const;
 
  private:
   void settle(const RateState& rate);

@@ -94,11 +94,20 @@ class RollingOdometry {
   /// What the IMUs say of each other: frozen, disagreeing, late ones.
   const ImuMerge::State& units() const { return *merge_state_; }
 
+  /// As TumblingOdometry::save and load: a state of half a megabyte, less at rest, and what the lag holds.
+  std::vector<std::byte> save() const;
+  Status load(std::span<const std::byte> bytes);
+
+  /// Stated once, in the library's own sources: state_visitor.hpp.
+  template <class Self, class Visitor>
+  static void members(Self& s, Visitor& visit);
+
  private:
   RollingOdometry(const Params& params, const ImuMerge::Params& merged);
 
   Status take_in(const ImuSample& merged);
 
+  Params params_;
   ImuMerge merge_;
   RollingSmoother smoother_;
   std::unique_ptr<ImuMerge::State> merge_state_;

@@ -69,17 +69,26 @@ class SecondPass {
   /// Whether the map became that of the second pass.
   bool taken() const { return taken_; }
 
+  /// Stated once, in the library's own sources: state_visitor.hpp.
+  template <class Self, class Visitor>
+  static void members(Self& s, Visitor& visit);
+  /// What holds between the members of every state, beside that first pass; the first that does not.
+  Status check_state(const OdometryPass& first) const;
+
  private:
   struct Sweep {
     TimeNs start_ns = 0, end_ns = 0;
     std::vector<LidarPoint> points;
     SweepVerdict verdict = SweepVerdict::first;  ///< of the first pass
+    template <class Self, class Visitor>
+    static void members(Self& s, Visitor& visit);
   };
 
   bool is_due() const;
   bool begin(const OdometryPass& first);
   void run(OdometryPass& first, std::size_t sweeps);
   void take_over(OdometryPass& first);
+  RegimeStream::Params lagging_rate() const;
   RegimeStream::Params learnt_rate(const OdometryPass& first) const;
   LidarInertialOdometry::Params learnt_mapping(const OdometryPass& first) const;
 

@@ -128,11 +128,30 @@ class TumblingOdometry {
   /// The map, and all that the mapper tells beside.
   const LidarInertialOdometry& mapper() const { return pass_.mapper(); }
 
+  /// All that it knows, map, rig, second pass and what waits for take() included, as bytes that are the same on every
+  /// machine: one of the same parameters that loads them goes on with the same bits. A checksum is with them. Two
+  /// states are equal when their bytes are. What a map costs: docs/tutorials/your_robot.md.
+  std::vector<std::byte> save() const;
+
+  /// Goes on from where save() was called, in place of what is here. On trouble this is as it was: `too_few` (bytes
+  /// that end early), `non_finite`, `time_order`, `gap`, `out_of_range`, with the field, what the bytes say and the
+  /// bound. Parameters that are not those of the state are trouble too: the first that differs, the one saved and the
+  /// one here. Bytes of another version of the library, or damaged ones, are refused.
+  Status load(std::span<const std::byte> bytes);
+
+  /// Stated once, in the library's own sources: state_visitor.hpp.
+  template <class Self, class Visitor>
+  static void members(Self& s, Visitor& visit);
+
  private:
   struct Waiting {
     TimeNs start_ns = 0, end_ns = 0;
     std::vector<LidarPoint> points;
+    template <class Self, class Visitor>
+    static void members(Self& s, Visitor& visit);
   };
+
+  Status check_state() const;
 
   Status take_in(const ImuSample& sample);
   void register_sweep(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points);

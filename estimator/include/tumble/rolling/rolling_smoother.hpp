@@ -132,6 +132,9 @@ class RollingSmoother {
   void finish(std::span<const RollingMode> known, State& state, const Take& take) const;
   void finish(std::span<const RollingMode> known, State& state, std::vector<RollingEstimate>& out) const;
 
+  /// What holds of every state that step() left, for one that comes from elsewhere; the first that does not.
+  Status check_state(const State& state) const;
+
  private:
   struct Path;
 

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "tumble/angular_velocity/rail_watch.hpp"
+#include "tumble/angular_velocity/rest_detector.hpp"
+#include "tumble/common/imu_members.hpp"
+
+/// Members of what is known of rails and rest: state_visitor.hpp.
+namespace tumble {
+
+template <StateOf<RestDetector::State> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("rest.rate_sum_rad_s", s.rate_sum_rad_s);
+  visit("rest.force_sum_m_s2", s.force_sum_m_s2);
+  visit("rest.weight", s.weight);
+  visit("rest.first_ns", s.first_ns);
+  visit("rest.last_mean_ns", s.last_mean_ns);
+  visit("rest.quiet_ns", s.quiet_ns);
+  visit("rest.rests", s.rests);
+  visit("rest.rate_open_rad_s", s.rate_open_rad_s);
+  visit("rest.force_open_m_s2", s.force_open_m_s2);
+  visit("rest.open", s.open);
+  visit("rest.open_first_ns", s.open_first_ns);
+  visit("rest.last_reading_ns", s.last_reading_ns);
+  visit("rest.last_ns", s.last_ns);
+  visit("rest.started", s.started);
+}
+
+template <StateOf<Clipping> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("clipping.gyro", s.gyro);
+  visit("clipping.accel", s.accel);
+  visit("clipping.void_gyro", s.void_gyro);
+}
+
+template <StateOf<RailDetector::Channel> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("channel.rail", s.rail);
+  visit("channel.peak", s.peak);
+  visit("channel.run_first", s.run_first);
+  visit("channel.run_length", s.run_length);
+  visit("channel.before", s.before);
+  visit("channel.entry", s.entry);
+  visit("channel.digit", s.digit);
+  visit("channel.last", s.last);
+  visit("channel.clipped", s.clipped);
+}
+
+template <StateOf<RailDetector::State> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("channels", s.channels);
+}
+
+template <StateOf<RailPlane> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("plane.row", s.row);
+  visit("plane.distance_rad_s", s.distance_rad_s);
+  visit("plane.offset_rad_s", s.offset_rad_s);
+  visit("plane.covariance", s.covariance);
+  visit("plane.samples", s.samples);
+  visit("plane.stretches", s.stretches);
+  visit("plane.deviation_rad_s", s.deviation_rad_s);
+  visit("plane.tolerance_rad_s", s.tolerance_rad_s);
+  visit("plane.log_odds", s.log_odds);
+}
+
+template <StateOf<RailPlanes> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("planes", s.element);
+}
+
+template <StateOf<ElementRows> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("elements.rows", s.rows);
+  visit("elements.slope_sigma", s.slope_sigma);
+}
+
+template <StateOf<KnownRails> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("rails.walls", s.walls);
+  visit("rails.planes", s.planes);
+  visit("rails.accel_planes", s.accel_planes);
+  visit("rails.upright", s.upright);
+  visit("rails.accel_upright", s.accel_upright);
+}
+
+template <StateOf<RailWatch::Memory> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("rails.readings", s.readings);
+  visit("rails.peak", s.peak);
+  visit("rails.near", s.near);
+  visit("rails.unsearched", s.unsearched);
+  visit("rails.past", s.past);
+  visit("rails.forgot", s.forgot);
+}
+
+template <StateOf<RailWatch::State> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("rails.known", s.known);
+  visit("rails.memory", s.memory);
+  visit.scratch(s.work);
+}
+
+template <StateOf<RailDetector::Params> Self, class Visitor>
+void others(Self& p, Visitor& visit) {
+  visit("stated_gyro_rad_s", p.stated_gyro_rad_s);
+  visit("stated_accel_m_s2", p.stated_accel_m_s2);
+}
+
+template <StateOf<RailPlaneFinder::Params> Self, class Visitor>
+void others(Self& p, Visitor& visit) {
+  visit("stated_rad_s", p.stated_rad_s);
+  visit("known rails", p.known);
+}
+
+}  // namespace tumble

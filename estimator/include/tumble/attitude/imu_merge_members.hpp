@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "tumble/angular_velocity/rails_members.hpp"
+#include "tumble/attitude/imu_merge.hpp"
+
+/// Members of an ImuMerge's state and of what its Params hold beside Fields: state_visitor.hpp.
+namespace tumble {
+
+template <StateOf<ForceErrors::State> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("forces.x", s.x);
+  visit("forces.P", s.P);
+  visit("forces.difference_m_s2", s.difference_m_s2);
+  visit("forces.force_m_s2", s.force_m_s2);
+  visit("forces.by_place", s.by_place);
+  visit("forces.acceleration_rad_s2", s.acceleration_rad_s2);
+  visit("forces.samples", s.samples);
+  visit("forces.span_s", s.span_s);
+  visit("forces.started", s.started);
+}
+
+template <StateOf<RateRecovery::State> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("recovery.x", s.x);
+  visit("recovery.P", s.P);
+  visit("recovery.started", s.started);
+  visit("recovery.running", s.running);
+}
+
+template <StateOf<ImuMerge::Hold> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("hold.reading", s.reading);
+  visit("hold.others", s.others);
+  visit("hold.since_ns", s.since_ns);
+  visit("hold.held_s", s.held_s);
+}
+
+template <StateOf<ImuMerge::Unit> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("unit.x", s.x);
+  visit("unit.P", s.P);
+  visit("unit.window", s.window);
+  visit("unit.last_rate_rad_s", s.last_rate_rad_s);
+  visit("unit.last_force_m_s2", s.last_force_m_s2);
+  visit("unit.suspect_s", s.suspect_s);
+  visit("unit.left_out", s.left_out);
+  visit("unit.rate_hold", s.rate_hold);
+  visit("unit.force_hold", s.force_hold);
+  visit("unit.thawing_s", s.thawing_s);
+  visit("unit.misfit_rate_rad_s", s.misfit_rate_rad_s);
+  visit("unit.misfit_force_m_s2", s.misfit_force_m_s2);
+  visit("unit.misfits_s", s.misfits_s);
+  visit("unit.misfits_since_ns", s.misfits_since_ns);
+  visit("unit.frozen", s.frozen);
+  visit("unit.disagrees", s.disagrees);
+  visit("unit.absent", s.absent);
+  visit("unit.frozen_since_ns", s.frozen_since_ns);
+  visit("unit.disagrees_since_ns", s.disagrees_since_ns);
+  visit("unit.absent_since_ns", s.absent_since_ns);
+}
+
+template <StateOf<ImuMerge::State> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("merge.units", s.units);
+  visit("merge.forces", s.forces);
+  visit("merge.recovery", s.recovery);
+  visit("merge.rate_rad_s", s.rate_rad_s);
+  visit("merge.rate_before_rad_s", s.rate_before_rad_s);
+  visit("merge.turning_rad_s", s.turning_rad_s);
+  visit("merge.window_s", s.window_s);
+  visit("merge.length_s", s.length_s);
+  visit("merge.length_before_s", s.length_before_s);
+  visit("merge.arm_product", s.arm_product);
+  visit("merge.arm_square_m2_s3", s.arm_square_m2_s3);
+  visit("merge.samples", s.samples);
+  visit("merge.windows", s.windows);
+  visit("merge.free_windows", s.free_windows);
+  visit("merge.last_time_ns", s.last_time_ns);
+}
+
+/// But for the mountings, which are those of RollingOdometry's units.
+template <StateOf<ImuMerge::Params> Self, class Visitor>
+void others(Self& p, Visitor& visit) {
+  visit.scratch(p.T_CI);
+  visit("gyro_elements", p.gyro_elements);
+  visit("accel_elements", p.accel_elements);
+}
+
+}  // namespace tumble

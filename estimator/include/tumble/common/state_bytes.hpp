@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <span>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "tumble/common/state_visitor.hpp"
+#include "tumble/common/status.hpp"
+
+/// States as bytes: numbers of fixed width, little-endian on every machine, in the order in which they are visited;
+/// before a sequence its length (8 bytes).
+namespace tumble {
+
+/// 64 bits that change with any one byte: FNV-1a (G. Fowler, L. Noll, K.-P. Vo, RFC 9923). Against faults, not fraud.
+std::uint64_t checksum(std::span<const std::byte> bytes, std::uint64_t before = 0xcbf29ce484222325u);
+
+namespace detail {
+
+static_assert(sizeof(std::size_t) == 8 && sizeof(int) == 4, "states are of machines of 64 bits");
+
+/// Between numbers as they lie in memory and little-endian ones; the same way in both directions.
+void copy_little_endian(const std::byte* from, std::byte* to, std::size_t count, std::size_t width);
+
+}  // namespace detail
+
+/// Appends states to bytes.
+class StateWriter : public StateVisitor<StateWriter> {
+ public:
+  static constexpr bool kReads = false;
+  static constexpr bool kDescribes = false;
+
+  explicit StateWriter(std::vector<std::byte>& out) : out_(out) {}
+
+  template <class N>
+  void numbers(const char* /*name*/, const N* data, std::size_t count) {
+    const std::size_t at = out_.size();
+    out_.resize(at + count * sizeof(N));
+    detail::copy_little_endian(reinterpret_cast<const std::byte*>(data), out_.data() + at, count, sizeof(N));
+  }
+  std::size_t length(const char* name, std::size_t count) {
+    const std::uint64_t written = count;
+    numbers(name, &written, 1);
+    return count;
+  }
+  void bounded(const char*, double, double, double) {}
+  static constexpr bool going() { return true; }
+  template <class T>
+  requires requires(const T& value, StateWriter& out) { value.save(out); }
+  void whole(const char* /*name*/, const T& value) { value.save(*this); }
+
+ private:
+  std::vector<std::byte>& out_;
+};
+
+/// Reads them back, from bytes of anybody's. After the first trouble, which status() tells, nothing more is read; what
+/// was read till then is of no use. Trouble: `too_few` (bytes that end within `field`), `non_finite`, `out_of_range`
+/// (an index, a count, an enumeration, a length that the bytes left cannot hold).
+class StateReader : public StateVisitor<StateReader> {
+ public:
+  static constexpr bool kReads = true;
+  static constexpr bool kDescribes = false;
+  static constexpr double kCountMax = 1e9;    ///< of an int
+  static constexpr double kTimeMax = 4.6e18;  ///< of 64 bits, half of what they hold: differences do not overflow
+
+  explicit StateReader(std::span<const std::byte> bytes) : left_(bytes) {}
+
+  template <class N>
+  void numbers(const char* name, N* data, std::size_t count) {
+    if (!take(name, reinterpret_cast<std::byte*>(data), count, sizeof(N), std::is_same_v<N, bool>)) return;
+    for (std::size_t k = 0; k < count && going(); ++k) check(name, data[k]);
+  }
+  std::size_t length(const char* name, std::size_t /*of what is replaced*/);
+  void bounded(const char* name, double value, double low, double high) {
+    if (going() && !(value >= low && value <= high))
+      status_ = {Trouble::out_of_range, name, value, value > high ? high : low};
+  }
+  bool going() const { return status_.ok(); }
+  template <class T>
+  requires requires(T& value, StateReader& in) { value.load(in); }
+  void whole(const char* /*name*/, T& value) { value.load(*this); }
+
+  /// What holds of every state that was saved, between its members.
+  void require(const char* name, bool holds, double value = 0.0, double bound = 1.0) {
+    if (going() && !holds) status_ = {Trouble::out_of_range, name, value, bound};
+  }
+  void refuse(const Status& status) {
+    if (going()) status_ = status;
+  }
+
+  std::span<const std::byte> left() const { return left_; }
+  const Status& status() const { return status_; }
+
+ private:
+  bool take(const char* name, std::byte* to, std::size_t count, std::size_t width, bool are_bools);
+
+  template <class N>
+  void check(const char* name, N value) {
+    if constexpr (std::is_floating_point_v<N>) {
+      if (!nan_allowed() && !std::isfinite(value))
+        status_ = {Trouble::non_finite, name, static_cast<double>(value), std::numeric_limits<double>::max()};
+    } else if constexpr (std::is_same_v<N, int>) {
+      bounded(name, value, -kCountMax, kCountMax);
+    } else if constexpr (std::is_same_v<N, std::int64_t>) {
+      bounded(name, static_cast<double>(value), -kTimeMax, kTimeMax);
+    }
+  }
+
+  std::span<const std::byte> left_;
+  Status status_;
+};
+
+/// Holds what is visited to bytes: `out_of_range` with the name of the first number that differs, the one of the bytes
+/// and the one visited; `too_few` where they end.
+class StateMatcher : public StateVisitor<StateMatcher> {
+ public:
+  static constexpr bool kReads = false;
+  static constexpr bool kDescribes = false;
+
+  explicit StateMatcher(std::span<const std::byte> bytes) : left_(bytes) {}
+
+  template <class N>
+  void numbers(const char* name, const N* data, std::size_t count) {
+    for (std::size_t k = 0; k < count && going(); ++k) match(name, data[k]);
+  }
+  std::size_t length(const char* name, std::size_t count) {
+    match(name, static_cast<std::uint64_t>(count));
+    return going() ? count : 0;
+  }
+  void bounded(const char*, double, double, double) {}
+  bool going() const { return status_.ok(); }
+
+  std::span<const std::byte> left() const { return left_; }
+  const Status& status() const { return status_; }
+
+ private:
+  template <class N>
+  void match(const char* name, N own) {
+    using Saved = std::conditional_t<std::is_same_v<N, bool>, std::uint8_t, N>;
+    Saved saved{};
+    if (left_.size() < sizeof(N)) {
+      status_ = {Trouble::too_few, name, static_cast<double>(left_.size()), static_cast<double>(sizeof(N))};
+      return;
+    }
+    detail::copy_little_endian(left_.data(), reinterpret_cast<std::byte*>(&saved), 1, sizeof(N));
+    left_ = left_.subspan(sizeof(N));
+    if (std::memcmp(&saved, &own, sizeof(N)) != 0)
+      status_ = {Trouble::out_of_range, name, static_cast<double>(saved), static_cast<double>(own)};
+  }
+
+  std::span<const std::byte> left_;
+  Status status_;
+};
+
+/// 64 bits that change with the names, widths and order of what is visited: bytes of another layout are refused by it.
+class StateLayout : public StateVisitor<StateLayout> {
+ public:
+  static constexpr bool kReads = false;
+  static constexpr bool kDescribes = true;
+
+  template <class N>
+  void numbers(const char* name, const N* /*data*/, std::size_t count) {
+    mix(name, sizeof(N) + (std::is_floating_point_v<N> ? 16 : 0), count);
+  }
+  std::size_t length(const char* name, std::size_t /*count*/) {
+    mix(name, 0, 0);
+    return 1;
+  }
+  void bounded(const char*, double, double, double) {}
+  static constexpr bool going() { return true; }
+  template <class T>
+  requires requires(const T& value, StateLayout& out) { value.describe(out); }
+  void whole(const char* name, const T& value) {
+    mix(name, 0, 0);
+    value.describe(*this);
+  }
+
+  std::uint64_t digest() const { return digest_; }
+
+ private:
+  void mix(std::string_view name, std::uint64_t kind, std::uint64_t count);
+
+  std::uint64_t digest_ = 0xcbf29ce484222325u;
+};
+
+}  // namespace tumble

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <type_traits>
+#include <vector>
+
+#include "tumble/common/parameters.hpp"
+
+/// What evolves in an estimator, stated once, member by member: saving, loading and comparing are visitors of it.
+///
+/// A state has `members(Self& s, Visitor& visit)`, found beside its type (or, where its members are private, as its
+/// static function), which calls `visit("name", s.member)` for each: numbers, Eigen's fixed sizes, arrays, vectors,
+/// deques, optionals and states within. What is used as an index or counts something is given with its bounds, an
+/// enumeration with its last value; what may be NaN goes through `with_nan`; memory without meaning through `scratch`.
+/// Self may be const. A `Params` that is part of a state is visited by `visit_params`: its Fields, and what is none by
+/// `others(Self& p, Visitor& visit)`.
+namespace tumble {
+
+/// Constrains the first argument of `members` and `others`: `Of` or const `Of`.
+template <class T, class Of>
+concept StateOf = std::same_as<std::remove_const_t<T>, Of>;
+
+namespace detail {
+
+template <class T>
+inline constexpr bool is_fixed_matrix = false;
+template <class S, int R, int C, int O, int MR, int MC>
+inline constexpr bool is_fixed_matrix<Eigen::Matrix<S, R, C, O, MR, MC>> = R > 0 && C > 0;
+
+template <class T>
+inline constexpr bool is_sequence = false;
+template <class T, class A>
+inline constexpr bool is_sequence<std::vector<T, A>> = true;
+template <class T, class A>
+inline constexpr bool is_sequence<std::deque<T, A>> = true;
+
+template <class T>
+inline constexpr bool is_array = false;
+template <class T, std::size_t N>
+inline constexpr bool is_array<std::array<T, N>> = true;
+
+template <class T>
+inline constexpr bool is_optional = false;
+template <class T>
+inline constexpr bool is_optional<std::optional<T>> = true;
+
+}  // namespace detail
+
+/// Takes states apart. `Derived` has
+/// - numbers(name, data, count): numbers that lie in a row
+/// - length(name, count): of a sequence, or of an optional (0 or 1); returns the one that counts
+/// - bounded(name, value, low, high): of a number that was visited
+/// - going(): false when nothing more is of use
+/// - whole(name, value), if it likes: of what takes itself apart
+/// - kReads: true where what is visited is filled
+/// - kDescribes: true where a sequence is to be visited as if it had one element that is as at the start.
+template <class Derived>
+class StateVisitor {
+ public:
+  template <class T>
+  void operator()(const char* name, T& value) {
+    if (!self().going()) return;
+    using V = std::remove_const_t<T>;
+    if constexpr (std::is_arithmetic_v<V>) {
+      self().numbers(name, &value, 1);
+    } else if constexpr (detail::is_fixed_matrix<V>) {
+      self().numbers(name, value.data(), static_cast<std::size_t>(V::SizeAtCompileTime));
+    } else if constexpr (std::same_as<V, Eigen::Quaterniond>) {
+      self().numbers(name, value.coeffs().data(), 4);
+    } else if constexpr (std::same_as<V, Eigen::Isometry3d>) {
+      self().numbers(name, value.matrix().data(), 16);
+    } else if constexpr (std::same_as<V, Eigen::AlignedBox3d>) {
+      (*this)(name, value.min());
+      (*this)(name, value.max());
+    } else if constexpr (detail::is_array<V>) {
+      for (auto& element : value) (*this)(name, element);
+    } else if constexpr (detail::is_sequence<V>) {
+      sequence(name, value);
+    } else if constexpr (detail::is_optional<V>) {
+      optional(name, value);
+    } else if constexpr (requires { self().whole(name, value); }) {
+      self().whole(name, value);
+    } else if constexpr (requires { V::members(value, self()); }) {
+      V::members(value, self());
+    } else {
+      static_assert(!std::is_enum_v<V>, "an enumeration is visited with its last value");
+      members(value, self());
+    }
+  }
+
+  /// A number that has to lie within bounds: an index, a count.
+  template <class T>
+  void operator()(const char* name, T& value, double low, double high) {
+    (*this)(name, value);
+    self().bounded(name, static_cast<double>(value), low, high);
+  }
+
+  /// An enumeration.
+  template <class T>
+  requires std::is_enum_v<std::remove_const_t<T>>
+  void operator()(const char* name, T& value, std::remove_const_t<T> last) {
+    auto number = static_cast<std::underlying_type_t<std::remove_const_t<T>>>(value);
+    (*this)(name, number, 0.0, static_cast<double>(last));
+    if constexpr (Derived::kReads) value = static_cast<T>(number);
+  }
+
+  /// The first `count` elements of an array whose others are as at the start.
+  template <class Array>
+  void leading(const char* name, Array& array, std::size_t count) {
+    if (Derived::kDescribes) count = 1;
+    for (std::size_t k = 0; k < count && k < array.size(); ++k) (*this)(name, array[k]);
+  }
+
+  /// What may be NaN.
+  template <class T>
+  void with_nan(const char* name, T& value) {
+    const bool before = nan_allowed_;
+    nan_allowed_ = true;
+    (*this)(name, value);
+    nan_allowed_ = before;
+  }
+
+  /// Memory that is no part of the state.
+  template <class T>
+  void scratch(T& /*value*/) {}
+
+ protected:
+  bool nan_allowed() const { return nan_allowed_; }
+
+ private:
+  Derived& self() { return static_cast<Derived&>(*this); }
+
+  template <class T>
+  void sequence(const char* name, T& value) {
+    using Element = typename std::remove_const_t<T>::value_type;
+    const std::size_t count = self().length(name, value.size());
+    if constexpr (Derived::kDescribes) {
+      const Element element{};
+      (*this)(name, element);
+    } else if constexpr (!Derived::kReads) {
+      for (const Element& element : value) (*this)(name, element);
+    } else {
+      value.clear();
+      // one by one: no more memory is asked for than there are bytes to fill it
+      for (std::size_t k = 0; k < count && self().going(); ++k) (*this)(name, value.emplace_back());
+    }
+  }
+
+  template <class T>
+  void optional(const char* name, T& value) {
+    const std::size_t held = self().length(name, value ? 1 : 0);
+    self().bounded(name, static_cast<double>(held), 0.0, 1.0);
+    const bool there = held == 1;
+    if constexpr (Derived::kDescribes) {
+      const typename std::remove_const_t<T>::value_type element{};
+      (*this)(name, element);
+    } else {
+      if constexpr (Derived::kReads) {
+        value.reset();
+        if (there) value.emplace();
+      }
+      if (there) (*this)(name, *value);
+    }
+  }
+
+  bool nan_allowed_ = false;
+};
+
+namespace detail {
+
+/// Takes the Fields of a `Params` to a StateVisitor.
+template <class Visitor>
+class FieldsAsMembers {
+ public:
+  explicit FieldsAsMembers(Visitor& visit) : visit_(visit) {}
+  template <class T>
+  void operator()(T& value, const Field& field) {
+    using V = std::remove_const_t<T>;
+    if constexpr (std::is_enum_v<V>) {
+      visit_(field.name, value, static_cast<V>(static_cast<int>(field.high)));
+    } else {
+      visit_(field.name, value);
+    }
+  }
+  template <class Params>
+  void group(const char* /*prefix*/, Params& params) {
+    std::remove_const_t<Params>::fields(params, *this);
+  }
+
+ private:
+  Visitor& visit_;
+};
+
+}  // namespace detail
+
+/// All of a `Params`: its Fields, and what is none.
+template <class Params, class Visitor>
+void visit_params(Params& params, Visitor& visit) {
+  detail::FieldsAsMembers<Visitor> fields(visit);
+  std::remove_const_t<Params>::fields(params, fields);
+  if constexpr (requires { others(params, visit); }) others(params, visit);
+}
+
+}  // namespace tumble

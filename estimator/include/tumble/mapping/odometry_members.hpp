@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "tumble/common/imu_members.hpp"
+#include "tumble/mapping/lidar_inertial_odometry_fields.hpp"
+
+/// Members of sweeps and reports, and what the mapper's Params hold beside Fields: state_visitor.hpp.
+namespace tumble {
+
+template <StateOf<LidarPoint> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit.with_nan("point.position_L_m", s.position_L_m);  // a miss
+  visit.with_nan("point.intensity", s.intensity);
+  visit("point.offset_ns", s.offset_ns);
+  visit("point.ring", s.ring);
+}
+
+template <StateOf<LidarInertialOdometry::SweepReport> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("report.verdict", s.verdict, SweepVerdict::rejected);
+  visit("report.pose", s.pose);
+  visit("report.trajectory", s.trajectory);
+  visit("report.smoothed", s.smoothed);
+  visit("report.inlier_share", s.inlier_share);
+  visit("report.conditioning", s.conditioning);
+  visit.with_nan("report.weakest_sigma_m", s.weakest_sigma_m);  // infinite where nothing holds
+  visit("report.innovation", s.innovation);
+  visit("report.iterations", s.iterations);
+  visit("report.lost_sweeps", s.lost_sweeps);
+  visit("report.weakest_direction", s.weakest_direction);
+  visit("report.saturation_deficit_rad_s", s.saturation_deficit_rad_s);
+  visit("report.points_used", s.points_used);
+  visit("report.points_alone", s.points_alone);
+  visit("report.points_registered", s.points_registered);
+  visit("report.map_points_added", s.map_points_added);
+}
+
+template <StateOf<FlyingBody> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("body.p_IB_I_m", s.p_IB_I_m);
+  visit("body.inertia_I_kg_m2", s.inertia_I_kg_m2);
+}
+
+template <StateOf<LidarInertialOdometry::Params> Self, class Visitor>
+void others(Self& p, Visitor& visit) {
+  visit("T_IL", p.T_IL);
+  visit("body", p.body);
+  visit.scratch(p.parallel_for);  // the caller's
+}
+
+}  // namespace tumble

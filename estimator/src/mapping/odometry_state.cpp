@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The mapper as bytes.
+#include <utility>
+
+#include "mapping_members.hpp"
+#include "tumble/common/state_bytes.hpp"
+
+namespace tumble {
+
+namespace {
+
+/// Parameters that another run may have taught: SecondPass.
+template <StateOf<LidarInertialOdometry::Params> Self, class Visitor>
+void visit_taught(Self& p, Visitor& visit) {
+  visit("T_IL", p.T_IL);
+  visit("time_offset_s", p.time_offset_s);
+  visit("mount_sigma_rad", p.mount_sigma_rad);
+  visit("mount_sigma_m", p.mount_sigma_m);
+  visit("time_offset_sigma_s", p.time_offset_sigma_s);
+}
+
+}  // namespace
+
+Status LidarInertialOdometry::Impl::check_state() const {
+  const auto most = static_cast<std::size_t>(params.window_sweeps);
+  if (window.sweeps().size() > most)
+    return {Trouble::out_of_range, "window.sweeps", double(window.sweeps().size()), double(most)};
+  for (const mapping::WindowSweep& sweep : window.sweeps()) {
+    for (const mapping::DrawnPoint& drawn : sweep.drawn) {
+      if (drawn.index >= map.voxels().index_end() || !map.voxels().exists(drawn.index))
+        return {Trouble::out_of_range, "drawn.index", double(drawn.index), double(map.voxels().index_end())};
+    }
+  }
+  if (!map.knows_its_sweeps()) return {Trouble::out_of_range, "map.sweep", 1.0, 0.0};
+  const std::span<const MotionSample> samples = track.samples();
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (samples[k].from_ns > samples[k].time_ns || (k > 0 && samples[k].time_ns <= samples[k - 1].time_ns))
+      return {Trouble::time_order, "motion.time_ns", double(samples[k].time_ns), double(samples[k].from_ns)};
+  }
+  return {};
+}
+
+void LidarInertialOdometry::save(StateWriter& out) const {
+  visit_taught(std::as_const(impl_->params), out);
+  Impl::members(std::as_const(*impl_), out);
+}
+
+void LidarInertialOdometry::load(StateReader& in) {
+  Params params = impl_->params;
+  visit_taught(params, in);
+  if (!in.going()) return;
+  try {
+    auto fresh = std::make_unique<Impl>(params);
+    Impl::members(*fresh, in);
+    in.refuse(fresh->check_state());
+    if (in.going()) impl_ = std::move(fresh);
+  } catch (const InvalidParams&) {
+    in.refuse({Trouble::out_of_range, "T_IL, its deviations or the clock's", 0.0, 0.0});
+  }
+}
+
+void LidarInertialOdometry::describe(StateLayout& out) const {
+  visit_taught(std::as_const(impl_->params), out);
+  Impl::members(std::as_const(*impl_), out);
+}
+
+}  // namespace tumble

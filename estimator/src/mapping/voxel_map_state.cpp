@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A map as bytes: what finds its points again is built from them.
+#include "tumble/common/state_bytes.hpp"
+#include "tumble/mapping/voxel_map.hpp"
+
+namespace tumble {
+
+namespace {
+
+Eigen::Vector3i cell_of(const Eigen::Vector3f& p, float cells_per_m) {
+  return (p * cells_per_m).array().floor().cast<int>();
+}
+
+}  // namespace
+
+void VoxelMap::save(StateWriter& out) const {
+  out.length("map.chunks", chunks_.size());
+  for (std::uint32_t c = 0; c < chunks_.size(); ++c) {
+    const Chunk& chunk = chunks_[c];
+    const auto count = static_cast<std::uint8_t>(chunk.count);
+    out("map.chunk.count", count);
+    for (std::uint32_t index = c * kChunk; index < c * kChunk + count; ++index) {
+      const Eigen::Vector3f position_W_m = this->position_W_m(index);
+      out("map.position_W_m", position_W_m);
+      out("map.sigma_m", sigma_m_[index]);
+      out("map.sweep", sweep_[index]);
+      out("map.line", line_[index]);
+    }
+  }
+  const std::vector<std::uint64_t> taken = taken_.keys();
+  out("map.taken", taken);
+}
+
+void VoxelMap::load(StateReader& in) {
+  VoxelMap map(params_);
+  const std::size_t chunks = in.length("map.chunks", 0);
+  for (std::size_t c = 0; c < chunks && in.going(); ++c) map.load_chunk(in);
+  std::vector<std::uint64_t> taken;
+  in("map.taken", taken);
+  for (std::size_t k = 0; k < taken.size() && in.going(); ++k) {
+    in.require("map.taken", taken[k] >> 63 == 0 && (k == 0 || taken[k - 1] < taken[k]), double(taken[k]));
+    map.taken_.add(taken[k]);
+  }
+  if (in.going()) *this = std::move(map);
+}
+
+/// The next chunk. Chunks of a cell come in the order in which they were filled, all but the last to the brim, which
+/// is all that there is to know of their places.
+void VoxelMap::load_chunk(StateReader& in) {
+  std::uint8_t count = 0;
+  in("map.chunk.count", count, 1.0, kChunk);
+  Eigen::Vector3i cell = Eigen::Vector3i::Zero();
+  std::uint32_t index = 0;
+  for (int k = 0; k < count && in.going(); ++k, ++index) {
+    Eigen::Vector3f position_W_m;
+    float sigma_m = 0.0f;
+    std::uint32_t sweep = 0, line = 0;
+    in("map.position_W_m", position_W_m);
+    in("map.sigma_m", sigma_m, 0.0, std::numeric_limits<float>::max());
+    in("map.sweep", sweep);
+    in("map.line", line);
+    if (!in.going()) return;
+    in.require("map.position_W_m", has_room_for(position_W_m), position_W_m.cwiseAbs().maxCoeff(),
+               (SpatialHash::kLimit - 2) / double(cubes_per_m_));
+    if (!in.going()) return;
+    const Eigen::Vector3i its_cell = cell_of(position_W_m, cells_per_m_);
+    if (k == 0) {
+      cell = its_cell;
+      std::uint32_t& first = first_of(cell);
+      in.require("map.chunk before", first == kNone || chunks_[first].count == kChunk, 0.0, kChunk);
+      if (!in.going()) return;
+      index = new_chunk(first) * kChunk;
+    }
+    in.require("map.position_W_m", its_cell == cell, position_W_m.x());
+    Chunk& chunk = chunks_[index / kChunk];
+    const std::uint32_t place = chunk.count++;
+    chunk.x[place] = position_W_m.x();
+    chunk.y[place] = position_W_m.y();
+    chunk.z[place] = position_W_m.z();
+    sigma_m_[index] = sigma_m;
+    sweep_[index] = sweep;
+    line_[index] = line;
+    --vacant_;
+  }
+}
+
+void VoxelMap::describe(StateLayout& out) {
+  const Eigen::Vector3f position_W_m = Eigen::Vector3f::Zero();
+  out("map.position_W_m", position_W_m);
+}
+
+}  // namespace tumble

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// RollingOdometry as bytes.
+#include "saved_state.hpp"
+#include "tumble/attitude/imu_merge_members.hpp"
+#include "tumble/odometry/rolling_odometry.hpp"
+#include "tumble/rolling/rolling_members.hpp"
+
+namespace tumble {
+
+template <StateOf<RollingOdometry::Unit> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit_params(s.sheet, visit);
+  visit("T_BI", s.T_BI);
+}
+
+template <StateOf<RollingOdometry::Params> Self, class Visitor>
+void others(Self& p, Visitor& visit) {
+  visit("units", p.units);
+  others(p.expert.merge, visit);
+  others(p.expert.rolling, visit);
+}
+
+template <class Self, class Visitor>
+void RollingOdometry::members(Self& s, Visitor& visit) {
+  visit.scratch(s.params_);  // held to those that are saved; these two are made of them
+  visit.scratch(s.merge_);
+  visit.scratch(s.smoother_);
+  visit("merge", *s.merge_state_);
+  visit("rolling", *s.state_);
+  if constexpr (std::is_const_v<Self>) {
+    const std::vector<RollingEstimate> waiting(s.done_.begin() + static_cast<std::ptrdiff_t>(s.taken_), s.done_.end());
+    visit("done", waiting);
+  } else {
+    visit("done", s.done_);
+    s.taken_ = 0;
+  }
+  visit.scratch(s.live_);
+  visit("finished", s.finished_);
+}
+
+std::vector<std::byte> RollingOdometry::save() const {
+  return odometry::save(odometry::SavedKind::rolling, *this, params_);
+}
+
+Status RollingOdometry::load(std::span<const std::byte> bytes) {
+  RollingOdometry fresh(params_);
+  if (Status status = odometry::load(odometry::SavedKind::rolling, bytes, params_, fresh); !status.ok()) return status;
+  if (Status status = fresh.smoother_.check_state(*fresh.state_); !status.ok()) return status;
+  *this = std::move(fresh);
+  return {};
+}
+
+}  // namespace tumble

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "tumble/common/state_bytes.hpp"
+
+/// States of the door's classes as bytes that somebody keeps. Numbers are little-endian.
+///
+/// | bytes | |
+/// | --- | --- |
+/// | 0 | "tumblest" |
+/// | 8 | version of the format, 4 bytes |
+/// | 12 | of which class: SavedKind, 4 bytes |
+/// | 16 | digest of names, widths and order of all that follows (StateLayout) |
+/// | 24 | number of bytes from 40 on |
+/// | 32 | checksum of all other bytes |
+/// | 40 | the parameters, then the state, as StateWriter writes them |
+///
+/// A state is for the same build of the library's states: whatever is added to one changes the digest, and what means
+/// something else than before without it the version.
+namespace tumble::odometry {
+
+enum class SavedKind : std::uint32_t { tumbling = 1, rolling = 2 };
+inline constexpr std::uint32_t kSavedVersion = 1;
+inline constexpr std::size_t kSavedHeader = 40;
+
+/// Fills the header of bytes whose first kSavedHeader are free.
+void seal(SavedKind kind, std::uint64_t layout, std::vector<std::byte>& bytes);
+/// Checks the header and gives what follows it.
+Status open(SavedKind kind, std::uint64_t layout, std::span<const std::byte> bytes,
+            std::span<const std::byte>& payload);
+
+template <class Door, class Params>
+std::uint64_t layout_of(const Door& door, const Params& params) {
+  StateLayout layout;
+  visit_params(params, layout);
+  Door::members(door, layout);
+  return layout.digest();
+}
+
+template <class Door, class Params>
+std::vector<std::byte> save(SavedKind kind, const Door& door, const Params& params) {
+  std::vector<std::byte> bytes(kSavedHeader);
+  StateWriter out(bytes);
+  visit_params(params, out);
+  Door::members(door, out);
+  seal(kind, layout_of(door, params), bytes);
+  return bytes;
+}
+
+/// Into a door that was made anew of these parameters; on trouble it is of no use.
+template <class Door, class Params>
+Status load(SavedKind kind, std::span<const std::byte> bytes, const Params& params, Door& door) {
+  std::span<const std::byte> payload;
+  const Status opened = open(kind, layout_of(std::as_const(door), params), bytes, payload);
+  if (!opened.ok()) return opened;
+  StateMatcher given(payload);
+  visit_params(params, given);
+  if (!given.status().ok()) return given.status();
+  StateReader in(given.left());
+  Door::members(door, in);
+  in.require("bytes after the state", in.left().empty(), double(in.left().size()), 0.0);
+  return in.status();
+}
+
+}  // namespace tumble::odometry

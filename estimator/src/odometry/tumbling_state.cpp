@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// TumblingOdometry as bytes.
+#include "odometry_members.hpp"
+#include "saved_state.hpp"
+
+namespace tumble {
+
+namespace {
+
+constexpr Status missing(const char* field) {
+  return {Trouble::empty, field, 0.0, 1.0};
+}
+
+}  // namespace
+
+Status OdometryPass::check_state() const {
+  if (const Status status = rates_.check_state(rate_state_); !status.ok()) return status;
+  const auto& window = rate_state_.rate.window;
+  if (window.empty()) return {};
+  if (unsettled_.all().empty()) return missing("pass.unsettled");
+  const TimeNs newest_ns = window.back().observation.sample.time_ns, heard_ns = unsettled_.all().back().time_ns;
+  if (heard_ns == newest_ns) return {};
+  return {Trouble::out_of_range, "pass.unsettled", double(heard_ns), double(newest_ns)};
+}
+
+Status SecondPass::check_state(const OdometryPass& first) const {
+  if (!pass_) return {};
+  if (sweeps_.empty()) return missing("again.sweeps");
+  if (!first.settled()) return missing("pass.settled");
+  return pass_->check_state();
+}
+
+Status TumblingOdometry::check_state() const {
+  if (const Status status = pass_.check_state(); !status.ok()) return status;
+  if (const Status status = again_.check_state(pass_); !status.ok()) return status;
+  if (pass_.settled() && !registered_ns_) return missing("registered_ns");
+  if (newest_rate() && !newest_ns_) return missing("newest_ns");
+  return {};
+}
+
+std::vector<std::byte> TumblingOdometry::save() const {
+  return odometry::save(odometry::SavedKind::tumbling, *this, params_);
+}
+
+Status TumblingOdometry::load(std::span<const std::byte> bytes) {
+  TumblingOdometry fresh(params_);
+  if (Status status = odometry::load(odometry::SavedKind::tumbling, bytes, params_, fresh); !status.ok()) return status;
+  if (Status status = fresh.check_state(); !status.ok()) return status;
+  *this = std::move(fresh);
+  return {};
+}
+
+}  // namespace tumble

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Saved states that somebody cut, flipped or made up: a Status, and nothing else.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "rolled_sphere.hpp"
+#include "thrown_body.hpp"
+#include "tumble/tumble.hpp"
+
+namespace tumble {
+namespace {
+
+using Bytes = std::vector<std::byte>;
+
+constexpr std::size_t kHeader = 40, kLengthAt = 24, kChecksumAt = 32;
+
+void put_number(std::uint64_t value, std::size_t at, Bytes& bytes) {
+  for (std::size_t k = 0; k < 8; ++k) bytes[at + k] = static_cast<std::byte>(value >> (8 * k));
+}
+
+/// Length and checksum as they should be: FNV-1a by its definition.
+void reseal(Bytes& bytes) {
+  if (bytes.size() < kHeader) return;
+  put_number(bytes.size() - kHeader, kLengthAt, bytes);
+  std::uint64_t sum = 14695981039346656037u;
+  for (std::size_t k = 0; k < bytes.size(); ++k) {
+    if (k >= kChecksumAt && k < kHeader) continue;
+    sum = (sum ^ std::to_integer<std::uint64_t>(bytes[k])) * 1099511628211u;
+  }
+  put_number(sum, kChecksumAt, bytes);
+}
+
+struct Tumbling {
+  using Door = TumblingOdometry;
+  static TumblingOdometry::Params params() {
+    TumblingOdometry::Params out;
+    out.lag_s = 0.05;
+    return out;
+  }
+  /// With a map, a sweep that waits and one that nobody took.
+  static Door some() {
+    const test::ThrownBody body;
+    Door door(params());
+    for (std::size_t k = 0; k < 45; ++k) EXPECT_TRUE(door.add_imu(body.imu()[k]).ok());
+    const std::vector<test::ThrownBody::Sweep> sweeps = body.sweeps();
+    for (std::size_t k = 0; k < 4; ++k) {
+      std::vector<LidarPoint> few;
+      for (std::size_t p = 0; p < sweeps[k].points.size(); p += 17) few.push_back(sweeps[k].points[p]);
+      EXPECT_TRUE(door.add_sweep(sweeps[k].start_ns, sweeps[k].end_ns, few).ok());
+    }
+    return door;
+  }
+  static void go_on(Door& door) {
+    const test::ThrownBody body;
+    for (std::size_t k = 45; k < 48; ++k) (void)door.add_imu(body.imu()[k]);
+    PoseState pose;
+    (void)door.newest(pose);
+    while (door.take()) continue;
+  }
+};
+
+struct Rolling {
+  using Door = RollingOdometry;
+  static RollingOdometry::Params params() {
+    RollingOdometry::Params out = test::params_of({test::kPlaces[0]});
+    out.lag_s = 0.1;
+    return out;
+  }
+  static Door some() {
+    Door door(params());
+    const std::vector<ImuSample> samples = test::unit_at(test::kPlaces[0]);
+    for (std::size_t k = 0; k < 100; ++k) EXPECT_TRUE(door.add_imu(samples[k]).ok());
+    return door;
+  }
+  static void go_on(Door& door) {
+    const std::vector<ImuSample> samples = test::unit_at(test::kPlaces[0]);
+    for (std::size_t k = 100; k < 120; ++k) (void)door.add_imu(samples[k]);
+    (void)door.newest();
+    while (door.take()) continue;
+  }
+};
+
+template <class Kind>
+class HostileState : public testing::Test {};
+using Kinds = testing::Types<Tumbling, Rolling>;
+TYPED_TEST_SUITE(HostileState, Kinds);
+
+TYPED_TEST(HostileState, CutAnywhereIsRefused) {
+  const Bytes saved = TypeParam::some().save();
+  typename TypeParam::Door door(TypeParam::params());
+  for (std::size_t length = 0; length < saved.size(); length += length < 200 ? 1 : saved.size() / 61) {
+    const Status status = door.load(std::span(saved).first(length));
+    EXPECT_EQ(status.trouble, Trouble::too_few) << length << ": " << status.message();
+    Bytes resealed(saved.begin(), saved.begin() + static_cast<std::ptrdiff_t>(length));
+    reseal(resealed);
+    EXPECT_FALSE(door.load(resealed).ok()) << length;
+  }
+  Bytes longer = saved;
+  longer.push_back(std::byte{0});
+  EXPECT_FALSE(door.load(longer).ok());
+  reseal(longer);
+  EXPECT_STREQ(door.load(longer).field, "bytes after the state");
+  ASSERT_TRUE(door.load(saved).ok()) << "negative control";
+  EXPECT_EQ(door.save(), saved);
+  EXPECT_FALSE(door.load(longer).ok());
+  EXPECT_EQ(door.save(), saved) << "on trouble it is as it was";
+}
+
+TYPED_TEST(HostileState, AnyByteThatFlippedIsRefused) {
+  const Bytes saved = TypeParam::some().save();
+  typename TypeParam::Door door(TypeParam::params());
+  for (std::size_t at = 0; at < saved.size(); at += at < kHeader ? 1 : saved.size() / 97) {
+    Bytes flipped = saved;
+    flipped[at] ^= std::byte{0x10};
+    const Status status = door.load(flipped);
+    EXPECT_FALSE(status.ok()) << at;
+    EXPECT_STRNE(status.field, "") << at;
+  }
+}
+
+TYPED_TEST(HostileState, TheHeaderSaysWhatIsWrong) {
+  const Bytes saved = TypeParam::some().save();
+  typename TypeParam::Door door(TypeParam::params());
+  const auto field_with = [&](std::size_t at, std::uint8_t value) {
+    Bytes changed = saved;
+    changed[at] = static_cast<std::byte>(value);
+    reseal(changed);
+    return std::string(door.load(changed).field);
+  };
+  EXPECT_EQ(field_with(0, 'T'), "magic of the state");
+  EXPECT_EQ(field_with(8, 99), "version of the state");
+  EXPECT_EQ(field_with(12, 7), "kind of the state");
+  EXPECT_EQ(field_with(16, 0x5a), "layout of the state");
+}
+
+/// With a checksum that fits there is no telling what is right: whatever is taken says the same again, and goes on.
+TYPED_TEST(HostileState, MadeUpNumbersNeverHurt) {
+  const Bytes saved = TypeParam::some().save();
+  std::uint64_t state = 2026;
+  const auto random = [&](std::uint64_t below) {
+    state = state * 6364136223846793005u + 1442695040888963407u;
+    return (state >> 33) % below;
+  };
+  constexpr std::uint64_t kNumbers[] = {0,
+                                        1,
+                                        0xffu,
+                                        0x7fffffffu,
+                                        0xffffffffffffffffu,
+                                        0x7fffffffffffffffu,
+                                        0x8000000000000000u,
+                                        0x7ff0000000000000u,
+                                        0x7ff8000000000000u,
+                                        0x7fe0000000000000u,
+                                        0x0000000000100000u};
+  std::size_t taken = 0, refused = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    Bytes made_up = saved;
+    for (std::uint64_t edits = 1 + random(3); edits-- > 0;) {
+      const std::size_t at = kHeader + random(made_up.size() - kHeader - 8);
+      if (random(2) == 0) {
+        made_up[at] = static_cast<std::byte>(random(256));
+      } else {
+        put_number(kNumbers[random(std::size(kNumbers))], at, made_up);
+      }
+    }
+    reseal(made_up);
+    typename TypeParam::Door door(TypeParam::params());
+    const Status status = door.load(made_up);
+    if (!status.ok()) {
+      EXPECT_STRNE(status.field, "");
+      ++refused;
+      continue;
+    }
+    ++taken;
+    EXPECT_EQ(door.save(), made_up) << "trial " << trial;
+    TypeParam::go_on(door);
+  }
+  EXPECT_GT(refused, 40u);
+  EXPECT_GT(taken, 40u);
+}
+
+}  // namespace
+}  // namespace tumble

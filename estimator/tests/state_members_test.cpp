@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A member that nobody visits would not be saved: every byte of a state is visited, or padding.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <vector>
+
+#include "../src/mapping/mapping_members.hpp"
+#include "../src/odometry/odometry_members.hpp"
+#include "rolled_sphere.hpp"
+#include "tumble/attitude/imu_merge_members.hpp"
+#include "tumble/common/state_bytes.hpp"
+#include "tumble/rolling/rolling_members.hpp"
+
+namespace tumble {
+namespace {
+
+template <class T>
+concept TakesItselfApart = requires(const T& value, StateWriter& out) {
+  value.save(out);
+};
+
+/// Marks where the members of one object lie. What a vector or an optional holds lies elsewhere, and is asked for by
+/// itself.
+class Marks : public StateVisitor<Marks> {
+ public:
+  static constexpr bool kReads = false;
+  static constexpr bool kDescribes = false;
+
+  using StateVisitor::operator();
+  template <class T>
+  void operator()(const char* name, T& value) {
+    using V = std::remove_const_t<T>;
+    if constexpr (detail::is_sequence<V> || detail::is_optional<V> || TakesItselfApart<V>) {
+      scratch(value);
+    } else if constexpr (detail::is_array<V>) {
+      for (auto& element : value) (*this)(name, element);
+    } else {
+      StateVisitor::operator()(name, value);
+    }
+  }
+  template <class T>
+  void operator()(const char* /*name*/, T& value, double /*low*/, double /*high*/) {
+    scratch(value);
+  }
+  template <class T>
+  requires std::is_enum_v<std::remove_const_t<T>>
+  void operator()(const char* /*name*/, T& value, std::remove_const_t<T> /*last*/) { scratch(value); }
+  template <class Array>
+  void leading(const char* /*name*/, Array& array, std::size_t /*count*/) {
+    scratch(array);
+  }
+  template <class T>
+  void scratch(T& value) {
+    mark(&value, sizeof value);
+  }
+  template <class N>
+  void numbers(const char* /*name*/, const N* data, std::size_t count) {
+    mark(data, count * sizeof(N));
+  }
+  std::size_t length(const char*, std::size_t) { return 0; }
+  void bounded(const char*, double, double, double) {}
+  static constexpr bool going() { return true; }
+
+  /// Bytes of an object in the longest piece of it that nobody visited.
+  std::size_t longest_hole(const void* object, std::size_t size) {
+    const auto* const begin = static_cast<const std::byte*>(object);
+    const std::byte* const end = begin + size;
+    std::sort(pieces_.begin(), pieces_.end(), [](const Piece& a, const Piece& b) { return std::less<>()(a.at, b.at); });
+    const std::byte* until = begin;
+    std::size_t longest = 0;
+    for (const Piece& piece : pieces_) {
+      if (std::less<>()(piece.at, begin) || !std::less<>()(piece.at, end)) continue;  // a copy of something
+      if (piece.at > until) longest = std::max(longest, static_cast<std::size_t>(piece.at - until));
+      until = std::max(until, piece.at + piece.size);
+    }
+    return std::max(longest, static_cast<std::size_t>(end - until));
+  }
+
+ private:
+  struct Piece {
+    const std::byte* at;
+    std::size_t size;
+  };
+  void mark(const void* at, std::size_t size) { pieces_.push_back({static_cast<const std::byte*>(at), size}); }
+  std::vector<Piece> pieces_;
+};
+
+/// Padding is shorter than what begins after it is aligned to; Eigen's fixed sizes are aligned to 32 bytes at most, and
+/// what follows one lies at a multiple of 8.
+template <class T>
+constexpr std::size_t padding_below = alignof(T) > 8 ? 32 : 8;
+
+template <class T>
+void expect_whole(const T& object, const char* what) {
+  Marks marks;
+  marks("object", object);
+  EXPECT_LT(marks.longest_hole(&object, sizeof object), padding_below<T>) << what;
+}
+template <class Params>
+void expect_whole_params(const Params& params, const char* what) {
+  Marks marks;
+  visit_params(params, marks);
+  EXPECT_LT(marks.longest_hole(&params, sizeof params), padding_below<Params>) << what;
+}
+
+TEST(StateMembers, AllOfATumblingOdometry) {
+  const TumblingOdometry door{TumblingOdometry::Params{}};
+  Marks marks;
+  TumblingOdometry::members(door, marks);
+  EXPECT_LT(marks.longest_hole(&door, sizeof door), padding_below<TumblingOdometry>);
+  expect_whole(OdometryPass({}, TumblingOdometry::Params::Expert::mapping_defaults()), "pass");
+  expect_whole(TumblingOdometry::Sweep{}, "done");
+  expect_whole(RateStream::Knot{}, "rate.window");
+  expect_whole(CarriedStream::Reading{}, "carried.readings");
+  expect_whole(CarriedStream::Knot{}, "carried.window");
+  expect_whole(RateState{}, "settled");
+  expect_whole(RateKnot{}, "left");
+  expect_whole(RailPlane{}, "planes");
+  expect_whole(RigCalibration{}, "calibration");
+  expect_whole(AuxiliaryImu{}, "auxiliary_imus");
+  expect_whole(ImuSample{}, "samples");
+  expect_whole(LidarPoint{}, "points");
+  expect_whole(PoseState{}, "trajectory");
+}
+
+TEST(StateMembers, AllOfAMapper) {
+  using Impl = LidarInertialOdometry::Impl;
+  const Impl impl{LidarInertialOdometry::Params{}};
+  Marks marks;
+  Impl::members(impl, marks);
+  marks.scratch(impl.tracking);  // variants, whose kinds follow
+  marks.scratch(impl.known);
+  EXPECT_LT(marks.longest_hole(&impl, sizeof impl), padding_below<Impl>);
+  expect_whole(mapping::Tracking{}, "tracking");
+  expect_whole(mapping::Lost{}, "lost");
+  expect_whole(mapping::FoundAgain{}, "found again");
+  expect_whole(mapping::KnownVelocity{}, "known");
+  expect_whole(mapping::WindowSweep{}, "window");
+  expect_whole(mapping::DrawnPoint{}, "drawn");
+  expect_whole(MotionSample{}, "track");
+  expect_whole(FlyingBody{}, "body");
+}
+
+TEST(StateMembers, AllOfARollingOdometry) {
+  const RollingOdometry door(test::params_of(test::kPlaces));
+  expect_whole(ImuMerge::State{}, "merge");
+  const auto state = std::make_unique<RollingSmoother::State>();
+  expect_whole(*state, "rolling");
+  expect_whole(RollingSmoother::Step{}, "steps");
+  expect_whole(RollingEstimate{}, "done");
+}
+
+TEST(StateMembers, AllOfTheParametersWithinAState) {
+  expect_whole_params(RailPlaneFinder::Params{}, "rails");
+  expect_whole_params(RailDetector::Params{}, "walls");
+  expect_whole_params(RateStream::Params{}, "rate");
+  expect_whole_params(RegimeStream::Params{}, "regimes");
+  expect_whole_params(LidarInertialOdometry::Params{}, "mapping");
+  expect_whole_params(TumblingOdometry::Params{}, "tumbling");
+  expect_whole_params(ImuMerge::Params{}, "merge");
+  expect_whole_params(RollingSmoother::Params{}, "rolling");
+}
+
+struct Forgetful {
+  double kept = 0.0, forgotten = 0.0;
+  std::vector<int> list;
+};
+template <StateOf<Forgetful> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("kept", s.kept);
+  visit("list", s.list);
+}
+
+TEST(StateMembers, OneThatIsForgottenIsFound) {  // negative control
+  const Forgetful forgetful;
+  Marks marks;
+  marks("object", forgetful);
+  EXPECT_EQ(marks.longest_hole(&forgetful, sizeof forgetful), sizeof(double));
+}
+
+TEST(StateLayout, TellsNamesWidthsAndOrder) {
+  const auto digest = [](auto visit) {
+    StateLayout layout;
+    visit(layout);
+    return layout.digest();
+  };
+  const double d = 0.0;
+  const float f = 0.0f;
+  const std::vector<int> none, three(3);
+  const auto one = digest([&](auto& v) { v("a", d), v("b", f); });
+  EXPECT_EQ(one, digest([&](auto& v) { v("a", d), v("b", f); }));
+  EXPECT_NE(one, digest([&](auto& v) { v("b", f), v("a", d); }));
+  EXPECT_NE(one, digest([&](auto& v) { v("a", f), v("b", f); }));
+  EXPECT_NE(one, digest([&](auto& v) { v("a", d), v("c", f); }));
+  EXPECT_EQ(digest([&](auto& v) { v("a", none); }), digest([&](auto& v) { v("a", three); })) << "not what is held";
+}
+
+}  // namespace
+}  // namespace tumble

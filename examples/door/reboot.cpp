@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdio>
+#include <iostream>
+#include <string>
+#include <tumble/tumble.hpp>
+
+#include "driver.hpp"
+#include "rig.hpp"
+
+// goes on where it was when it ended last: reboot [FILE], which keeps its state
+int main(int count, char** arguments) {
+  const std::string file = count > 1 ? arguments[1] : "odometry.state";
+  tumble::TumblingOdometry odometry(rig());  // of the same parameters
+  if (const auto state = driver::read_bytes(file); !state.empty()) {
+    const tumble::Status status = odometry.load(state);
+    if (!status.ok()) std::fprintf(stderr, "begins anew: %s\n", status.message().c_str());
+  }
+  while (const auto message = driver::next(std::cin)) {
+    driver::add(*message, odometry);
+    while (const auto done = odometry.take()) driver::print(*done);
+  }
+  driver::write_bytes(odometry.save(), file);
+}
