@@ -285,6 +285,16 @@ Estimate begin_with_rates(const sim::Sensors& sensors, std::vector<ImuSample>& s
   return estimate;
 }
 
+Eigen::AlignedBox3d rig_body_L() {
+  return {Eigen::Vector3d(-0.5, -0.4, -0.27), Eigen::Vector3d(0.5, 0.4, 0.23)};
+}
+
+LidarInertialOdometry::Params SlamParams::on_the_rig() {
+  LidarInertialOdometry::Params params;
+  params.own_body_L = rig_body_L();
+  return params;
+}
+
 // what calibrations of a rig that was put together by hand may be off by
 SlamParams with_calibration(SlamParams params) {
   const TumblingOdometry::Params door;

@@ -10,10 +10,15 @@
 /// Parameters of the lidar-inertial chain (run_slam_chain).
 namespace tumble::scenarios {
 
-/// Those of the library, and what the chain makes of the calibration.
+/// Of the published rig, lidar axes: returns within are its own.
+Eigen::AlignedBox3d rig_body_L();
+
+/// Those of the library, on the rig, and what the chain makes of the calibration.
 struct SlamParams {
-  LidarInertialOdometry::Params odometry;
+  LidarInertialOdometry::Params odometry = on_the_rig();
   bool flight_arc = false;  ///< odometry.body is the robot's, from the calibration
+
+  static LidarInertialOdometry::Params on_the_rig();
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {

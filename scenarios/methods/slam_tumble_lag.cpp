@@ -9,6 +9,7 @@
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/settings.hpp"
 #include "scenarios/methods/slam_registry.hpp"
+#include "scenarios/methods/slam_settings.hpp"
 #include "tumble/odometry/tumbling_odometry_fields.hpp"
 
 namespace tumble::scenarios {
@@ -40,7 +41,7 @@ TumblingOdometry::Params stated_params(const sim::Sensors& sensors, const sim::V
   if (imu.accel_noise_m_s2_sqrt_hz > 0.0) sheet.accel_noise_m_s2_sqrt_hz = imu.accel_noise_m_s2_sqrt_hz;
   params.lever_arm_I_m = bridge::lever_arm_I_m(imu);
   params.T_IL = bridge::T_IL(imu, sensors.lidars.front());
-  params.own_body_L = LidarInertialOdometry::Params{}.own_body_L;
+  params.own_body_L = rig_body_L();
   params.gravity_m_s2 = sensors.gravity_m_s2;
   settings().apply(parameters, params);
   return params;

@@ -21,7 +21,7 @@ void LagWindow::enter(WindowSweep sweep) {
 /// mapping.md (R52).
 /// Backward pass over the window (H. Rauch, F. Tung, C. Striebel, 1965), each sweep's registration being the linear
 /// measurement that it settled on: the maximum a posteriori of all sweeps' unknowns together, to first order. What it
-/// is for is a sweep that saw little: where all see much, as on `hill` 1002 to 1007, the end error is the same within
+/// is for is a sweep that saw little: where all see much the end error is the same within
 /// its noise (1.0 to 1.9 cm for windows of 1, 2 and 3).
 void LagWindow::smooth() {
   if (sweeps_.empty()) return;

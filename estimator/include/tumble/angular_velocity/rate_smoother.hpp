@@ -64,8 +64,8 @@ struct RateReport {
 /// Contact: the force at the centre of mass is what flight leaves of the reading, and a force through a point of the
 /// cage has no torque about its own direction: that row of Euler's equation stays in force, the two across it are as
 /// wide as the cage makes them (RateModelParams::contact_lever_rad_m). More is not to be had from a contact point:
-/// tests/bench/rate_contact, hill draws 4101 to 4112, 103 clipped samples in contact: along the force lie 1.4 % of the
-/// torque (median), but the point that the sample before gives leaves 66 % of it, the best single point of a whole
+/// of clipped samples in contact (tests/bench/rate_contact; docs/maths/rate_smoother.md) along the force lie 1.4 % of
+/// the torque (median), but the point that the sample before gives leaves 66 % of it, the best single point of a whole
 /// impact 48 %, and all of it in one sample of ten: a cage strikes with several bars, and within 10 ms it rolls on.
 /// Rest is zero rate (RestDetector).
 ///

@@ -30,11 +30,10 @@ namespace tumble {
 /// each that becomes known the window is read again, element by element, so that a clipped sample that was believed
 /// counts as believed only where it left the window before its rail was seen. Give it the calibration of an earlier run
 /// where there is one: then the error is 1.1 times that of the batch (median and mean) and 99 % lie within three
-/// deviations (tests/bench/rate_statistics hill 4201 4212 --learnt). Without it the rig is learnt in the tumble that
-/// needs it: on hill, draws 1001 to 1030, 1.6 times the median of the batch and 1.7 times its mean. Nearly all of that
-/// arises in the first 0.3 s after the first clipped sample, and the window is not what loses it: the batch run anew
-/// for each sample on all the past and the same 0.2 s ahead is no better (draws 1001 to 1007: 1.4 and 1.8 times, the
-/// stream 1.6 and 1.9 with the wider priors). With 0.5 s of lag it is 1.2 and 1.4.
+/// deviations. Without it the rig is learnt in the tumble that needs it: 1.6 times the median of the batch and 1.7
+/// times its mean. Nearly all of that arises in the first 0.3 s after the first clipped sample, and the window is not
+/// what loses it: the batch run anew for each sample on all the past and the same 0.2 s ahead is no better. With 0.5 s
+/// of lag it is 1.2 and 1.4 (docs/maths/rate_stream.md has the draws).
 ///
 /// What leaves the window is weighed for good while the constants are off by millimetres, and the samples of a flight
 /// err together (its edges, an impact or a push that was taken for flight), so that their formal covariance is too

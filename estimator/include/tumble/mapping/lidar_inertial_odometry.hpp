@@ -69,16 +69,14 @@ class LidarInertialOdometry {
     /// and the mean rate becomes the gyro's bias.
     double rest_rate_rad_s = 0.05;
     double rest_force_m_s2 = 0.5;
-    double range_min_m = 0.3;    ///< nearer returns are dropped
-    double range_max_m = 100.0;  ///< farther returns are dropped
-    Eigen::AlignedBox3d own_body_L{
-        Eigen::Vector3d(-0.5, -0.4, -0.27),
-        Eigen::Vector3d(0.5, 0.4, 0.23)};  ///< returns inside are the robot's own; an empty box keeps all
-    double sweep_voxel_m = 0.25;           ///< one point per voxel of a sweep is registered
-    double map_voxel_m = 0.5;              ///< cell of the map's hash
-    double map_spacing_m = 0.1;            ///< at most one map point per cube of this edge
-    int neighbours = 12;                   ///< k of the plane fit
-    double match_distance_m = 1.0;         ///< farther map points are no match
+    double range_min_m = 0.3;        ///< nearer returns are dropped
+    double range_max_m = 100.0;      ///< farther returns are dropped
+    Eigen::AlignedBox3d own_body_L;  ///< returns inside are the robot's own; an empty box, as here, keeps all
+    double sweep_voxel_m = 0.25;     ///< one point per voxel of a sweep is registered
+    double map_voxel_m = 0.5;        ///< cell of the map's hash
+    double map_spacing_m = 0.1;      ///< at most one map point per cube of this edge
+    int neighbours = 12;             ///< k of the plane fit
+    double match_distance_m = 1.0;   ///< farther map points are no match
     /// Of a registration; one with all points has at most eight, what has not settled goes on with a thousand of them;
     /// [1, 200].
     int iterations_max = 30;

@@ -88,7 +88,7 @@ struct RollingParams {
   double event_shortest_s = 0.06;  ///< least stay in slip or bump
   /// Rest; its readings are the means of nodes. 0.02 rad/s in all, shared by the axes, is 3 mm/s of the sphere. The
   /// bounds are measured: as loose as 0.02 an axis, a sphere that is about to stand drifts by half as much again.
-  /// What is left between them and bounds on the norm is up to 40 um of drift, of either sign (roll, seeds 3 to 5).
+  /// What is left between them and bounds on the norm is up to 40 um of drift, of either sign.
   RestDetector::Params rest = {
       .rate_max_rad_s = 0.0115, .rate_spread_rad_s = 0.016, .force_spread_m_s2 = 0.15, .rest_s = 0.4, .memory_s = 0.1};
   // Gaps. Between two readings further apart than gap_from_s nothing is known of the force; the rate is taken to have
