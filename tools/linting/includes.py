@@ -18,7 +18,7 @@ _STREAMS = "ostream istream fstream sstream iostream".split()
 _HEADERS = {
     "algorithm": """adjacent_find all_of any_of binary_search clamp copy_if count count_if equal_range find find_if
         find_if_not is_sorted iter_swap lower_bound max_element min_element minmax_element none_of nth_element replace replace_if
-        reverse rotate set_union sort stable_partition stable_sort transform unique upper_bound ranges""",
+        reverse reverse_copy rotate set_union sort stable_partition stable_sort transform unique upper_bound ranges""",
     "atomic": "atomic",
     "bit": "bit_cast bit_ceil countr_zero endian popcount",
     "cctype": "isalnum isalpha isdigit tolower",
@@ -28,12 +28,12 @@ _HEADERS = {
         isfinite isinf isnan ldexp lgamma llround log log10 log1p log2 lround nan nanf nextafter pow round signbit sin sqrt tan
         tanh""",
     "complex": "complex norm polar",
-    "concepts": "unsigned_integral",
+    "concepts": "same_as unsigned_integral",
     "csignal": "signal",
     "cstdint": "int8_t int16_t int32_t int64_t uint8_t uint16_t uint32_t uint64_t uintmax_t",
     "cstdio": "fflush fgets fprintf fputs fread freopen fwrite printf setvbuf snprintf",
     "cstdlib": "_Exit abort atof atoi exit free getenv llabs malloc realloc strtod strtol strtoull system",
-    "cstring": "memcpy strerror strlen",
+    "cstring": "memcmp memcpy strerror strlen",
     "ctime": "clock clock_t strftime time time_t tm",
     "deque": "deque",
     "exception": "exception_ptr rethrow_exception",
@@ -57,18 +57,18 @@ _HEADERS = {
     "sstream": "istringstream ostringstream stringstream",
     "stdexcept": "invalid_argument logic_error out_of_range runtime_error",
     "thread": "this_thread thread",
-    "type_traits": "decay_t is_arithmetic_v is_assignable_v is_constructible_v is_convertible_v is_default_constructible_v is_enum_v is_floating_point_v is_integral_v is_invocable_v is_same_v remove_cv_t remove_cvref_t",
+    "type_traits": "conditional_t decay_t integral_constant is_arithmetic_v is_const_v is_assignable_v is_constructible_v is_convertible_v is_default_constructible_v is_enum_v is_floating_point_v is_integral_v is_invocable_v is_same_v remove_const_t remove_cv_t remove_cvref_t underlying_type_t",
     "unordered_map": "unordered_map",
     "unordered_set": "unordered_set",
-    "variant": "get_if holds_alternative variant visit",
-    "utility": "declval",
+    "variant": "get_if holds_alternative variant variant_alternative_t variant_size_v visit",
+    "utility": "as_const declval",
     "vector": "vector",
 }
 _ANY_OF = {
     "abs": ["cmath", "cstdlib"],
     "array": ["array"],
     "back_inserter": ["iterator", *_CONTAINERS], "istream_iterator": ["iterator"], "istreambuf_iterator": ["iterator", *_STREAMS],
-    "byte": ["cstddef", "span"],
+    "byte": ["cstddef", "span"], "to_integer": ["cstddef"],
     "for_each": ["algorithm"], "copy": ["algorithm"], "copy_n": ["algorithm"], "equal": ["algorithm"], "fill": ["algorithm"],
     "max": ["algorithm"], "min": ["algorithm"],
     "erase": ["string", "vector", "deque", "list"], "erase_if": ["string", "vector", "deque", "list", "map", "set"],

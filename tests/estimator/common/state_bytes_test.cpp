@@ -3,9 +3,14 @@
 
 #include <gtest/gtest.h>
 
-#include <cstring>
+#include <array>
+#include <cstdint>
 #include <limits>
+#include <optional>
+#include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "tumble/common/imu_members.hpp"
 
