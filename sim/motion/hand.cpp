@@ -12,6 +12,16 @@ namespace {
 constexpr double kTremorLow_hz = 0.7, kTremorHigh_hz = 9.0;
 constexpr double kFullTremor_m_s = 0.1;  // a hand that waits is steady; from this speed on the tremor is in full force
 
+/// The smallest turn that takes the unit vector `from` up; a half turn about x where it points straight down. Written
+/// out: Eigen's setFromTwoVectors compiles a singular value decomposition for that last case, which takes 6 s.
+Eigen::Quaterniond turn_up(const Eigen::Vector3d& from) {
+  const double cosine = from.z();
+  if (cosine < -1.0 + 1e-12) return {0.0, 1.0, 0.0, 0.0};
+  const Eigen::Vector3d axis = from.cross(Eigen::Vector3d::UnitZ());
+  const double s = std::sqrt((1.0 + cosine) * 2.0), inverse = 1.0 / s;
+  return {s * 0.5, axis.x() * inverse, axis.y() * inverse, axis.z() * inverse};
+}
+
 }  // namespace
 
 Hand::Hand(const std::string& motion, const Values& values, const engine::World& world)
@@ -33,7 +43,7 @@ Hand::Hand(const std::string& motion, const Values& values, const engine::World&
 
 BodyState Hand::at_rest(const Eigen::Vector3d& p_G_m) const {
   BodyState state;
-  if (p_BG_m_.norm() > 1e-6) state.q_WB.setFromTwoVectors(p_BG_m_, Eigen::Vector3d::UnitZ());
+  if (p_BG_m_.norm() > 1e-6) state.q_WB = turn_up(p_BG_m_.normalized());
   state.p_WB_m = p_G_m - state.q_WB * p_BG_m_;
   return state;
 }

@@ -12,7 +12,7 @@ import unittest
 TOOLS = pathlib.Path(sys.argv.pop(1))
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(TOOLS))
-from linting import groups, includes  # noqa: E402
+from linting import clean, groups, includes  # noqa: E402
 
 
 class Case(unittest.TestCase):
@@ -93,6 +93,42 @@ class Groups(Case):
     def test_a_group_is_bounded(self):
         many = [self.source(f"s{index}.cpp", "int a;") for index in range(groups.MOST_SOURCES + 1)]
         self.assertEqual([len(group) for group in groups.grouped(many)], [groups.MOST_SOURCES, 1])
+
+
+class CleanSources(Case):
+    def known(self, depends_on: bytes = b"checks") -> clean.Clean:
+        headers = [path.relative_to(self.root).as_posix() for path in self.root.rglob("*.hpp")]
+        return clean.Clean(self.root, self.root / "clean", headers, depends_on)
+
+    def setUp(self):
+        super().setUp()
+        (self.root / "include" / "room").mkdir(parents=True)
+        self.write("include/room/far.hpp", "int far();")
+        self.write("near.hpp", "#include <room/far.hpp>")
+        self.write("other.hpp", "int other();")
+        self.write("a.cpp", '#include "near.hpp"', "#include <vector>")
+        self.known().add("a.cpp", ["-O1"])
+
+    def test_what_has_not_changed_is_not_read_again(self):
+        self.assertTrue(self.known().holds("a.cpp", ["-O1"]))
+        self.write("other.hpp", "double other();")  # which it does not reach
+        self.assertTrue(self.known().holds("a.cpp", ["-O1"]))
+
+    def test_all_that_a_reading_depends_on_counts(self):
+        self.assertFalse(self.known().holds("a.cpp", ["-O2"]))
+        self.assertFalse(self.known(b"other checks").holds("a.cpp", ["-O1"]))
+        for name, line in (("include/room/far.hpp", "double far();"), ("near.hpp", ""), ("a.cpp", "int a;")):
+            kept = (self.root / name).read_text()
+            self.write(name, line)
+            self.assertFalse(self.known().holds("a.cpp", ["-O1"]), name)
+            self.write(name, *kept.splitlines())
+            self.assertTrue(self.known().holds("a.cpp", ["-O1"]), name)
+
+    def test_headers_that_include_each_other_end(self):
+        self.write("near.hpp", "#include <room/far.hpp>")
+        self.write("include/room/far.hpp", '#include "near.hpp"')
+        self.known().add("a.cpp", ["-O1"])
+        self.assertTrue(self.known().holds("a.cpp", ["-O1"]))
 
 
 if __name__ == "__main__":

@@ -196,7 +196,7 @@ void CarriedStream::rebuild(State& state) const {
 Node CarriedStream::begin(const State& state) const {
   const ImuSample& sample = state.readings.front().sample;
   Node out;
-  out.q_WI = Eigen::Quaterniond::FromTwoVectors(sample.specific_force_m_s2, Vector3d::UnitZ());
+  out.q_WI = so3::shortest_arc(sample.specific_force_m_s2.normalized(), Vector3d::UnitZ());
   out.w_WI_I_rad_s = sample.angular_velocity_rad_s;
   out.a_W_m_s2 = out.q_WI * sample.specific_force_m_s2 + g_W_m_s2_;
   return out;

@@ -3,12 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/SVD>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "scenarios/recordings/trajectories/reference_rate.hpp"
+#include "tumble/common/so3.hpp"
 
 namespace tumble::scenarios {
 
@@ -171,6 +172,20 @@ Eigen::Vector3d up_in_world(const std::vector<Pair>& all, const Eigen::Quaternio
   return sum.normalized();
 }
 
+/// The rotation R with the largest trace(R^T B), as a unit quaternion: the eigenvector of the largest eigenvalue of
+/// Davenport's matrix (Markley and Crassidis, Fundamentals of Spacecraft Attitude Determination and Control, 2014,
+/// section 5.3; there for R^T).
+Eigen::Quaterniond closest_rotation(const Eigen::Matrix3d& B) {
+  const Eigen::Vector3d z(B(2, 1) - B(1, 2), B(0, 2) - B(2, 0), B(1, 0) - B(0, 1));
+  Eigen::Matrix4d K;
+  K.topLeftCorner<3, 3>() = B + B.transpose() - B.trace() * Eigen::Matrix3d::Identity();
+  K.topRightCorner<3, 1>() = z;
+  K.bottomLeftCorner<1, 3>() = z.transpose();
+  K(3, 3) = B.trace();
+  const Eigen::Vector4d q = Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d>(K).eigenvectors().col(3);
+  return Eigen::Quaterniond(q.w() < 0.0 ? Eigen::Vector4d(-q) : q).normalized();
+}
+
 /// The rotation, given gravity, of samples [first, end).
 Eigen::Quaterniond rotation(const std::vector<Pair>& pairs, std::size_t first, std::size_t end,
                             const Eigen::Vector3d& up) {
@@ -182,11 +197,7 @@ Eigen::Quaterniond rotation(const std::vector<Pair>& pairs, std::size_t first, s
     B += pair.f_I * (kG_m_s2 * (pair.q_V.conjugate() * up)).transpose() /
          ((kForceSigma_m_s2 * kForceSigma_m_s2 + departure * departure) * kForceRun);
   }
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(B, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Matrix3d& U = svd.matrixU();
-  const Eigen::Matrix3d& V = svd.matrixV();
-  const Eigen::Vector3d signs(1.0, 1.0, (U * V.transpose()).determinant());
-  return Eigen::Quaterniond(Eigen::Matrix3d(U * signs.asDiagonal() * V.transpose())).normalized();
+  return closest_rotation(B);
 }
 
 void estimate_rotation(const std::vector<Pair>& all, const std::vector<Pair>& pairs, ReferenceAlignment& alignment) {
@@ -195,7 +206,7 @@ void estimate_rotation(const std::vector<Pair>& all, const std::vector<Pair>& pa
     alignment.q_IV = rotation(pairs, 0, pairs.size(), up);
     up = up_in_world(all, alignment.q_IV);
   }
-  alignment.q_WV = Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ());
+  alignment.q_WV = so3::shortest_arc(up, Eigen::Vector3d::UnitZ());
   std::array<std::vector<double>, 3> departures;
   for (std::size_t i = 0; i < kParts; ++i) {
     const auto [first, end] = part(i, pairs.size());
