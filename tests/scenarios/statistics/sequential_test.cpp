@@ -120,7 +120,8 @@ Simulated simulate(double p, int runs) {
   return out;
 }
 
-// the level holds whatever share of the draws are ties, and little of it is lost; four standard errors of the simulation
+// the level holds whatever share of the draws are ties, and little of it is lost; four standard errors of the
+// simulation
 TEST(SequentialSignTest, KeepsItsLevelBySimulation) {
   constexpr int kRuns = 4000;
   const double error = std::sqrt(0.05 * 0.95 / kRuns);
