@@ -117,7 +117,8 @@ std::string Question::describe() const {
 void require_sound(const Question& question) {
   const std::string kind = kind_of(question.method);
   for (const std::string& name : {question.method, question.against}) {
-    if (kind_of(name).empty()) throw BadInput("method '" + name + "' of a question needs its kind, as in 'rate/tumble'");
+    if (kind_of(name).empty())
+      throw BadInput("method '" + name + "' of a question needs its kind, as in 'rate/tumble'");
     if (kind_of(name) != kind)
       throw BadInput("methods '" + question.method + "' and '" + name + "' are of two kinds, which no metric compares");
   }
@@ -133,6 +134,16 @@ void require_sound(const Question& question) {
                    "]");
   if (question.scenarios.empty()) throw BadInput("a question needs a scenario");
   if (question.last_seed < question.first_seed) throw BadInput("a question needs a seed");
+}
+
+void claim(Results& results, const Question& question, const std::filesystem::path& database) {
+  const std::string known = results.note(kQuestionNote), asked = question.describe();
+  if (known == asked) return;
+  if (!known.empty())
+    throw BadInput(database.string() + ": was asked '" + known + "', now '" + asked + "': name another file");
+  if (!results.outcomes().empty())
+    throw BadInput(database.string() + ": holds draws from before the question was asked: name another file");
+  results.set_note(kQuestionNote, asked);
 }
 
 std::vector<Answer> answers(const Results& results, const Question& question, std::uint64_t last_seed) {

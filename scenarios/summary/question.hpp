@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -12,13 +13,16 @@
 /// (docs/maths/statistics.md, "Stopping when the question is answered").
 namespace tumble::scenarios {
 
+/// The note of results that a question was asked of: `describe` of it.
+inline constexpr const char* kQuestionNote = "until";
+
 /// Is `method` better than `against` in `metric`, by more than the margin?
 struct Question {
   std::string method, against;  ///< "rate/tumble"; of one kind
   std::string metric;
-  Margin margin;        ///< 0: better at all
-  double risk = 0.05;   ///< of any answer, over all scenarios and looks, where neither is better
-  int looks = 20;       ///< after equal parts of the seeds
+  Margin margin;       ///< 0: better at all
+  double risk = 0.05;  ///< of any answer, over all scenarios and looks, where neither is better
+  int looks = 20;      ///< after equal parts of the seeds
   std::uint64_t first_seed = 1, last_seed = 1;
   std::vector<std::string> scenarios;
 
@@ -40,6 +44,10 @@ struct Answer {
 /// Throws BadInput: methods that are the same, of two kinds, or not known by a full name, a metric without a better
 /// side, a margin or a risk beyond its bounds, no look.
 void require_sound(const Question& question);
+
+/// Writes the question into the results that are to answer it. Throws BadInput when another one stands there, or when
+/// draws do: a risk holds for what was asked before.
+void claim(Results& results, const Question& question, const std::filesystem::path& database);
 
 /// The answers of the looks until `last_seed`, of which all draws up to it have been run: a function of the results of
 /// these looks' seeds alone. In the order of the question's scenarios. A failed run ranks as the worst.

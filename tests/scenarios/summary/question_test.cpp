@@ -71,7 +71,8 @@ TEST(Question, LooksAtEqualPartsOfTheSeeds) {
 }
 
 TEST_F(QuestionTest, StopsAtTheLookThatAnswers) {
-  add("hill", 1, 100, [](auto) { return 1.0; }, [](auto) { return 2.0; });
+  add(
+      "hill", 1, 100, [](auto) { return 1.0; }, [](auto) { return 2.0; });
   const Question question = question_of(100);
   // a look that was too early to answer, then the first one that does; what comes after it changes nothing
   EXPECT_EQ(ask(question, 10).front().finding, Finding::undecided);
@@ -87,7 +88,8 @@ TEST_F(QuestionTest, StopsAtTheLookThatAnswers) {
 }
 
 TEST_F(QuestionTest, TheOtherWayRoundIsWorse) {
-  add("hill", 1, 100, [](auto) { return 1.0; }, [](auto) { return 2.0; });
+  add(
+      "hill", 1, 100, [](auto) { return 1.0; }, [](auto) { return 2.0; });
   Question question = question_of(100);
   std::swap(question.method, question.against);
   EXPECT_EQ(ask(question, 100).front().finding, Finding::worse);
@@ -95,7 +97,8 @@ TEST_F(QuestionTest, TheOtherWayRoundIsWorse) {
 
 // better by 0.1 on every draw is not better by 10 % of 2, nor by 0.15, but by 0.05
 TEST_F(QuestionTest, AMarginAsksForMore) {
-  add("hill", 1, 60, [](auto) { return 1.9; }, [](auto) { return 2.0; });
+  add(
+      "hill", 1, 60, [](auto) { return 1.9; }, [](auto) { return 2.0; });
   Question question = question_of(60);
   question.margin = {0.1, true};
   EXPECT_EQ(ask(question, 60).front().finding, Finding::worse);
@@ -121,8 +124,10 @@ TEST_F(QuestionTest, FailuresRankAsTheWorst) {
 
 // each of two scenarios has half of the risk; one without an answer keeps the sweep going
 TEST_F(QuestionTest, EveryScenarioIsAsked) {
-  add("hill", 1, 100, [](auto) { return 1.0; }, [](auto) { return 2.0; });
-  add("cliff", 1, 100, [](auto seed) { return seed % 2 == 0 ? 1.0 : 3.0; }, [](auto) { return 2.0; });
+  add(
+      "hill", 1, 100, [](auto) { return 1.0; }, [](auto) { return 2.0; });
+  add(
+      "cliff", 1, 100, [](auto seed) { return seed % 2 == 0 ? 1.0 : 3.0; }, [](auto) { return 2.0; });
   Question question = question_of(100);
   question.scenarios = {"hill", "cliff"};
   const std::vector<Answer> both = ask(question, 100);
@@ -132,6 +137,28 @@ TEST_F(QuestionTest, EveryScenarioIsAsked) {
   EXPECT_EQ(both[1].seeds, 100u);
   EXPECT_FALSE(all_answered(both));
   EXPECT_GE(both[0].seeds, ask(question_of(100), 100).front().seeds);
+}
+
+TEST_F(QuestionTest, IsClaimedBeforeTheDraws) {
+  {
+    Results results(path(), Results::Mode::create_or_append);
+    claim(results, question_of(100), path());
+  }
+  add(
+      "hill", 1, 1, [](auto) { return 1.0; }, [](auto) { return 2.0; });
+  Results results(path(), Results::Mode::create_or_append);
+  EXPECT_NO_THROW(claim(results, question_of(100), path())) << "resumed";
+  const auto refused = [&](const Question& question, const std::string& what) {
+    try {
+      claim(results, question, path());
+      ADD_FAILURE() << what;
+    } catch (const BadInput& error) {
+      EXPECT_THAT(error.what(), HasSubstr(what));
+    }
+  };
+  refused(question_of(200), "was asked");
+  results.set_note(kQuestionNote, "");
+  refused(question_of(100), "before the question was asked");
 }
 
 TEST_F(QuestionTest, OfNothingIsOpen) {

@@ -101,7 +101,7 @@ TEST_F(CurveSuiteTest, SweepsEveryPointOnceAndSimulatesOnlyWhereItMust) {
   EXPECT_EQ(progress.draws_total, 3u) << "one simulation as it is, one for each length of the way";
   // two methods: as it is, at two offsets, at two lengths; nothing for the parameter of a method that is not there
   EXPECT_EQ(progress.outcomes, 10u);
-  EXPECT_EQ(progress.not_ok, 0u);
+  EXPECT_EQ(progress.not_ok(), 0u);
 
   const Results results(path, Results::Mode::read_only);
   const auto by_setting = recordings(results);

@@ -155,7 +155,7 @@ TEST_F(SweepTest, WhatTheMachineKilledIsRunAgainOnDemandAlone) {
   options.again = {OutcomeStatus::timeout, OutcomeStatus::killed};
   const SweepProgress again = sweep(data(), small_suite(1), path, options);
   EXPECT_EQ(again.outcomes, 1u);
-  EXPECT_EQ(again.not_ok, 0u);
+  EXPECT_EQ(again.not_ok(), 0u);
   // the recording of a rate method that runs alone has no lidar; this scenario has none anyhow
   EXPECT_EQ(digests(path), before);
   options.again = {OutcomeStatus::ok};
