@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/compose.hpp"
 
-#include <cstring>
 #include <new>
+#include <string_view>
 
 #include "sim/robot/robot_type.hpp"
 #include "sim/simulate.hpp"
@@ -20,8 +20,8 @@ using SpecPtr = std::unique_ptr<mjSpec, SpecDeleter>;
 constexpr double kStep_s = 0.0005;
 
 /// That memory was short says nothing of the situation, which simulates where there is more.
-void refuse_for_memory(const char* message) {
-  if (std::strstr(message, "ould not allocate") != nullptr) throw std::bad_alloc();
+void refuse_for_memory(std::string_view message) {
+  if (message.find("ould not allocate") != std::string_view::npos) throw std::bad_alloc();
 }
 
 /// Without handlers the engine writes a log file beside the program and ends the process on an error. Its warnings are

@@ -49,7 +49,7 @@ struct SweepProgress {
   std::uint64_t not_ok() const;
 };
 
-/// Unless told, what a worker may hold: a draw of the dearest scenario with its maps takes a tenth of it.
+/// Unless told, what a worker may hold: as much as a command of somebody else's (processes/command.hpp).
 inline constexpr double kWorkerMemoryMib = 8192.0;
 
 struct SweepOptions {

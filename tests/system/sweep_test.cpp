@@ -131,7 +131,7 @@ TEST(Sweep, KeepsDrawsThatOtherVerbsRead) {
   const fs::path draw = fs::directory_iterator(kept)->path();
   EXPECT_THAT(read_file(draw / "command"), HasSubstr("tumble run roll --seed " + draw.filename().string()));
   const Ended scored = run_program(
-      {"score", (draw / "recording.h5").string(), (draw / "estimates" / "position-rolling").string(), "--json"});
+      {"score", (draw / "estimates" / "position-rolling").string(), (draw / "recording.h5").string(), "--json"});
   EXPECT_EQ(scored.status, 0) << scored.err;
 }
 

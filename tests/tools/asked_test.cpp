@@ -9,8 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/sweep/temporary_folder.hpp"
-#include "tests/tree.hpp"
+#include "scenarios/sweep/small_catalogue.hpp"
 #include "tools/tumble/sweeping.hpp"
 
 namespace tumble::tools {
@@ -18,16 +17,6 @@ namespace {
 
 using scenarios::BadInput;
 using ::testing::HasSubstr;
-
-constexpr const char* kRoll = R"(name: roll
-doc: A short straight way.
-duration_s: 3
-world: {type: floor, room_half_m: 4, pillar_count: 0, box_count: 0}
-robot: {type: sphere}
-motion: {type: hand_roll, rest_s: 1.2, leg_1_m: {uniform: [0.3, 0.5]}, leg_2_m: 0}
-sensors:
-  - {name: imu, kind: imu, device: phidget1044, site: phidget_1}
-)";
 
 constexpr const char* kAsked = "position/rolling:position/autogain_fusion:position_end_error_share";
 
@@ -76,12 +65,10 @@ TEST(ParseQuestion, RefusesWhatIsNone) {
   refused(std::string(kAsked) + ":ten", "must be a number from 0 on");
 }
 
-class SweepUntilTest : public scenarios::testing::TemporaryFolder {
+class SweepUntilTest : public scenarios::testing::SmallCatalogue {
  protected:
   void SetUp() override {
-    TemporaryFolder::SetUp();
-    write("scenarios/catalogue/roll.yaml", kRoll);
-    std::filesystem::create_directory_symlink(test::source_dir() / "models", folder_ / "models");
+    SmallCatalogue::SetUp();
     session_.quiet = true;
   }
 

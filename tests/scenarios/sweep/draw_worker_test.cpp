@@ -9,21 +9,10 @@
 
 #include <fstream>
 
-#include "scenarios/sweep/temporary_folder.hpp"
-#include "tests/tree.hpp"
+#include "scenarios/sweep/small_catalogue.hpp"
 
 namespace tumble::scenarios {
 namespace {
-
-constexpr const char* kRoll = R"(name: roll
-doc: A short straight way.
-duration_s: 3
-world: {type: floor, room_half_m: 4, pillar_count: 0, box_count: 0}
-robot: {type: sphere}
-motion: {type: hand_roll, rest_s: 1.2, leg_1_m: {uniform: [0.3, 0.5]}, leg_2_m: 0}
-sensors:
-  - {name: imu, kind: imu, device: phidget1044, site: phidget_1}
-)";
 
 /// Enough for the process as it is, too little for a world: what it has of data now, and a little.
 double too_little_mib() {
@@ -33,12 +22,10 @@ double too_little_mib() {
   return pages[5] * static_cast<double>(sysconf(_SC_PAGESIZE)) / (1024.0 * 1024.0) + 0.5;
 }
 
-class DrawWorkerTest : public testing::TemporaryFolder {
+class DrawWorkerTest : public testing::SmallCatalogue {
  protected:
   void SetUp() override {
-    TemporaryFolder::SetUp();
-    write("scenarios/catalogue/roll.yaml", kRoll);
-    std::filesystem::create_directory_symlink(test::source_dir() / "models", folder_ / "models");
+    SmallCatalogue::SetUp();
     suite_.name = "small";
     suite_.scenarios = {"roll"};
     suite_.last_seed = 4;

@@ -13,25 +13,14 @@
 #include "scenarios/methods/estimate_file.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/sweep/merge.hpp"
+#include "scenarios/sweep/small_catalogue.hpp"
 #include "scenarios/sweep/sweep.hpp"
-#include "scenarios/sweep/temporary_folder.hpp"
-#include "tests/tree.hpp"
 
 namespace tumble::scenarios {
 namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-constexpr const char* kRoll = R"(name: roll
-doc: A short straight way.
-duration_s: 3
-world: {type: floor, room_half_m: 4, pillar_count: 0, box_count: 0}
-robot: {type: sphere}
-motion: {type: hand_roll, rest_s: 1.2, leg_1_m: {uniform: [0.3, 0.5]}, leg_2_m: 0}
-sensors:
-  - {name: imu, kind: imu, device: phidget1044, site: phidget_1}
-)";
 
 TEST(Keep, IsReadAndWritten) {
   for (const char* text : {"none", "failed", "all", "worst:1", "worst:1000"})
@@ -47,15 +36,8 @@ TEST(Keep, IsReadAndWritten) {
   }
 }
 
-class KeepTest : public testing::TemporaryFolder {
+class KeepTest : public testing::SmallCatalogue {
  protected:
-  void SetUp() override {
-    TemporaryFolder::SetUp();
-    write("scenarios/catalogue/roll.yaml", kRoll);
-    std::filesystem::create_directory_symlink(test::source_dir() / "models", folder_ / "models");
-  }
-  DataRoot data() const { return {folder_}; }
-
   Suite suite(std::uint64_t first, std::uint64_t last) const {
     Suite suite;
     suite.name = "small";
