@@ -143,6 +143,7 @@ std::size_t merge_kept(const fs::path& out, std::span<const fs::path> in) {
     for (const fs::path& each : in) kept.take(draw, KeptDraws(each));
     count += kept.holds(draw, {});
   }
+  kept.discard_unfinished();
   return count;
 }
 

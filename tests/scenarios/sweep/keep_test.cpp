@@ -156,6 +156,7 @@ TEST_F(KeepTest, TheWorstAreTheSameResumedAndInShards) {
   merge_results(folder_ / "merged.db", shards, false);
   EXPECT_EQ(merge_kept(folder_ / "merged.db", shards), seeds("whole.db").size());
   EXPECT_EQ(kept("merged.db"), whole);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "merged.db.files/kept/.unfinished"));
 }
 
 // what a kill left half done is not taken for a draw, and what is missing is made again
