@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/compose.hpp"
 
+#include <new>
+#include <string_view>
+
 #include "sim/robot/robot_type.hpp"
 #include "sim/simulate.hpp"
 #include "sim/world/world_type.hpp"
@@ -16,12 +19,20 @@ using SpecPtr = std::unique_ptr<mjSpec, SpecDeleter>;
 
 constexpr double kStep_s = 0.0005;
 
+/// That memory was short says nothing of the situation, which simulates where there is more.
+void refuse_for_memory(std::string_view message) {
+  if (message.find("ould not allocate") != std::string_view::npos) throw std::bad_alloc();
+}
+
 /// Without handlers the engine writes a log file beside the program and ends the process on an error. Its warnings are
 /// counted in mjData and checked after every step.
 void install_handlers() {
   static const bool kInstalled = [] {
     mju_user_warning = [](const char*) {};
-    mju_user_error = [](const char* message) { throw SimulationFailure(std::string("engine error: ") + message); };
+    mju_user_error = [](const char* message) {
+      refuse_for_memory(message);
+      throw SimulationFailure(std::string("engine error: ") + message);
+    };
     return true;
   }();
   (void)kInstalled;
@@ -57,6 +68,7 @@ World compose(const ResolvedSituation& situation, const std::filesystem::path& m
   if (!world.free) move_to_start(spec.get(), robot_type.anchor, world);
 
   world.model.reset(mj_compile(spec.get(), nullptr));
+  if (!world.model) refuse_for_memory(mjs_getError(spec.get()));
   if (!world.model) throw InvalidSituation(std::string("model: ") + mjs_getError(spec.get()));
   world.robot_body = mj_name2id(world.model.get(), mjOBJ_BODY, std::string(robot_type.sensor_body).c_str());
   for (const std::string& name : world.surfaces) {

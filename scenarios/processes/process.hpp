@@ -26,12 +26,16 @@ class Process {
   /// Forks and runs `work(write_end)` in the child, in a process group of its own when `own_group`. What `work` throws
   /// ends the child with exit status 1. Throws std::system_error when no process can be made.
   explicit Process(const std::function<void(int)>& work, bool own_group);
+  /// The same for a child that is told something: `work(read_end, write_end)` reads what `tell` writes.
+  explicit Process(const std::function<void(int, int)>& work, bool own_group);
   /// Kills (the whole group) and collects what still runs.
   ~Process();
   Process(Process&& other) noexcept;
   Process& operator=(Process&&) = delete;
 
   int read_end() const { return fd_; }
+  /// Writes all of `text` to a child that is told something; false when it reads no more.
+  bool tell(const std::string& text);
   /// Appends what the pipe holds. False at its end.
   bool read_available(std::string& buffer);
   /// Waits until it has ended, which wait() then tells; false at the deadline (of now_s()).
@@ -40,8 +44,11 @@ class Process {
   End wait();
 
  private:
+  void start(const std::function<void(int)>& work);
+
   pid_t pid_ = -1;
   int fd_ = -1;
+  int told_fd_ = -1;  ///< our end of the socket that it reads
   bool own_group_ = false;
 };
 

@@ -42,10 +42,9 @@ double mean(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// Ends of the classes of sorted pairs. What has one x is never parted.
-std::vector<std::size_t> class_ends(const Pairs& sorted) {
+/// Ends of the classes of sorted pairs, as many as are wanted at most. What has one x is never parted.
+std::vector<std::size_t> class_ends(const Pairs& sorted, std::size_t wanted) {
   const std::size_t n = sorted.size();
-  const auto wanted = static_cast<std::size_t>(1.5 * std::cbrt(static_cast<double>(n)));
   std::vector<std::size_t> distinct;
   for (std::size_t i = 1; i <= n; ++i) {
     if (i == n || sorted[i].first != sorted[i - 1].first) distinct.push_back(i);
@@ -57,6 +56,30 @@ std::vector<std::size_t> class_ends(const Pairs& sorted) {
     if (ends.empty() || end > ends.back()) ends.push_back(end);
   }
   return ends;
+}
+
+/// statistics.md (S23)
+Interval mean_interval(std::span<const double> values) {
+  const auto n = static_cast<double>(values.size());
+  const double middle = mean(values);
+  if (values.size() < 2)
+    return {middle, -std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  double squares = 0.0;
+  for (const double value : values) squares += (value - middle) * (value - middle);
+  const double half =
+      boost::math::quantile(complement(boost::math::students_t(n - 1.0), 0.025)) * std::sqrt(squares / (n - 1.0) / n);
+  return {middle, middle - half, middle + half};
+}
+
+Interval centre_of(std::span<const double> values, Centre centre) {
+  if (centre == Centre::mean) return mean_interval(values);
+  if (centre == Centre::median) return median_interval(values);
+  for (const double value : values) {
+    if (value != 0.0 && value != 1.0)
+      throw BadInput("dependence: a share of values with " + std::to_string(value) + ", must be 0 or 1");
+  }
+  const auto count = static_cast<std::int64_t>(std::count(values.begin(), values.end(), 1.0));
+  return share_interval(count, static_cast<std::int64_t>(values.size()));
 }
 
 }  // namespace
@@ -114,7 +137,8 @@ FirstOrder first_order_index(std::span<const double> x, std::span<const double> 
   const double middle = mean(sorted);
   double whole = 0.0;
   for (const double value : sorted) whole += (value - middle) * (value - middle);
-  const std::vector<std::size_t> ends = class_ends(pairs);
+  const auto wanted = static_cast<std::size_t>(1.5 * std::cbrt(static_cast<double>(pairs.size())));
+  const std::vector<std::size_t> ends = class_ends(pairs, wanted);
   if (!(whole > 0.0) || ends.size() < 2) return out;
   // statistics.md (S14)
   double between = 0.0;
@@ -131,6 +155,21 @@ FirstOrder first_order_index(std::span<const double> x, std::span<const double> 
   // statistics.md (S15), (S16)
   out.index = std::clamp(1.0 - (1.0 - explained) * (n - 1.0) / (n - classes), 0.0, 1.0);
   out.chance = cdf(complement(boost::math::chi_squared(classes - 1.0), (n - 1.0) * explained));
+  return out;
+}
+
+std::vector<DependenceClass> partial_dependence(std::span<const double> x, std::span<const double> y, Centre centre) {
+  Pairs pairs = complete_pairs(x, y);
+  std::vector<DependenceClass> out;
+  if (pairs.size() < kDependenceDrawsMin) return out;
+  std::sort(pairs.begin(), pairs.end());
+  const std::vector<double> sorted = column(pairs, &std::pair<double, double>::second);
+  std::size_t begin = 0;
+  for (const std::size_t end : class_ends(pairs, std::min(kDependenceClassesMax, pairs.size() / kDependenceDrawsMin))) {
+    out.push_back({pairs[begin].first, pairs[end - 1].first, end - begin,
+                   centre_of(std::span(sorted).subspan(begin, end - begin), centre)});
+    begin = end;
+  }
   return out;
 }
 

@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "scenarios/statistics/statistics.hpp"
+
 /// What one number has to do with another over the same draws.
 namespace tumble::scenarios {
 
@@ -33,5 +35,25 @@ struct FirstOrder {
 /// what chance alone would give, (S15). Where x takes few values each is a class. Of ranks of y the chance, (S16), is
 /// the Kruskal-Wallis test. Finite y; pairs with NaN are left out. At least 24 pairs. Throws BadInput on two lengths.
 FirstOrder first_order_index(std::span<const double> x, std::span<const double> y);
+
+/// What stands for the values of a class, with its 95 % interval: the mean (Student, of finite values), the median
+/// (order statistics, infinite values rank as what they are) or, of zeros and ones, the share (Clopper and Pearson).
+enum class Centre { mean, median, share };
+
+/// The draws whose x lies from `low` to `high`, both among them.
+struct DependenceClass {
+  double low = 0.0, high = 0.0;
+  std::size_t draws = 0;
+  Interval centre{};
+};
+
+inline constexpr std::size_t kDependenceClassesMax = 8, kDependenceDrawsMin = 12;
+
+/// Partial dependence of y on x from given data, statistics.md (S22), (S23): where the numbers of a draw are
+/// independent of each other it is what is seen of y where x is. Classes of x with as many draws each, at most
+/// `kDependenceClassesMax`, of `kDependenceDrawsMin` draws at least; what has one x is never parted, and where x takes
+/// few values each is a class. Pairs with NaN are left out; empty below `kDependenceDrawsMin` pairs. Throws BadInput on
+/// two lengths, and on a share of other values than 0 and 1.
+std::vector<DependenceClass> partial_dependence(std::span<const double> x, std::span<const double> y, Centre centre);
 
 }  // namespace tumble::scenarios

@@ -66,14 +66,7 @@ double less(double own, double other) {
 /// How much worse each pair is than the margin allows.
 std::vector<double> beyond(const Margin& margin, const MetricInfo& info, const std::vector<Pair>& pairs) {
   std::vector<double> out;
-  for (const Pair& pair : pairs) {
-    const double own = how_bad(info, pair.own), other = how_bad(info, pair.other);
-    if (std::isinf(own) || std::isinf(other)) {
-      out.push_back(less(own, other));
-    } else {
-      out.push_back(own - other - margin.value * (margin.relative ? std::abs(other) : 1.0));
-    }
-  }
+  for (const Pair& pair : pairs) out.push_back(worse_by(info, pair.own, pair.other, margin));
   return out;
 }
 
@@ -236,6 +229,12 @@ class Comparing {
 };
 
 }  // namespace
+
+double worse_by(const MetricInfo& info, double own, double other, const Margin& allowed) {
+  const double bad = how_bad(info, own), other_bad = how_bad(info, other);
+  if (std::isinf(bad) || std::isinf(other_bad)) return less(bad, other_bad);
+  return bad - other_bad - allowed.value * (allowed.relative ? std::abs(other_bad) : 1.0);
+}
 
 const char* to_string(Finding finding) {
   switch (finding) {

@@ -18,6 +18,10 @@ struct Margin {
   bool relative = false;
 };
 
+/// How much worse `own` is than `other` on a draw, beyond what is allowed: below 0 where it is not; a negative margin
+/// asks it to be better by as much. Infinite where one of the two failed, 0 where both did.
+double worse_by(const MetricInfo& info, double own, double other, const Margin& allowed);
+
 struct ComparisonOptions {
   std::vector<std::string> methods;  ///< "rate/tumble" or "tumble"; empty: all that need no truth
   std::string against;               ///< empty: the baseline of each section

@@ -16,13 +16,16 @@ namespace {
 struct Scored {
   std::vector<std::uint64_t> seeds;
   std::vector<double> values, badness;
+  Centre centre = Centre::median;  ///< of its partial dependence
 };
 
 Scored scored(const MetricSummary& metric, const MetricInfo& info) {
   Scored out;
+  if (info.unit == Unit::verdict) out.centre = Centre::share;
   for (const RankedValue& each : ranked_values(metric, worst_value(info))) {
     out.seeds.push_back(each.seed);
-    out.values.push_back(each.value);
+    // of a verdict a failed run is one that is condemned
+    out.values.push_back(info.unit == Unit::verdict && each.value != 0.0 ? 1.0 : each.value);
     // a verdict's bad value is the larger one; a cost has no bad side, and more of it counts as worse
     const bool contested = info.sense != Sense::none;
     out.badness.push_back(contested ? how_bad(info, each.value) : each.value);
@@ -31,7 +34,7 @@ Scored scored(const MetricSummary& metric, const MetricInfo& info) {
 }
 
 Scored failures(const MethodSummary& method) {
-  Scored out{method.seeds, {}, {}};
+  Scored out{method.seeds, {}, {}, Centre::share};
   for (const std::uint64_t seed : method.seeds) {
     const bool failed = std::binary_search(method.not_ok_seeds.begin(), method.not_ok_seeds.end(), seed);
     out.values.push_back(failed ? 1.0 : 0.0);
@@ -72,6 +75,7 @@ std::vector<Influence> influences(const Scored& scored, const NumbersOfDraws& nu
     const std::vector<double> column = at_seeds(by_seed, scored.seeds);
     Influence each{name, rank_correlation(column, ranks), first_order_index(column, ranks)};
     add_quarters(column, scored.values, each);
+    each.dependence = partial_dependence(column, scored.values, scored.centre);
     // statistics.md (S17): two tests of one question
     chances.push_back(std::min(1.0, 2.0 * std::min(each.correlation.chance, each.first_order.chance)));
     out.push_back(std::move(each));

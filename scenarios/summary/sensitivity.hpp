@@ -32,6 +32,8 @@ struct Influence {
   double corrected = 1.0;   ///< chance of both being so large, by Holm over all numbers of the row
   /// Median of the score over the quarter of the draws with the lowest and with the highest numbers.
   double median_low = 0.0, median_high = 0.0;
+  /// Median of the score, or share that has failed, over classes of the number: its partial dependence.
+  std::vector<DependenceClass> dependence = {};
   /// What the influence is ranked by: the larger of the index and the square of rho.
   double strength() const;
 };

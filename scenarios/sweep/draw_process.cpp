@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/draw_process.hpp"
 
+#include <malloc.h>
 #include <poll.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -13,6 +14,8 @@
 #include <system_error>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/sweep/message.hpp"
 #include "scenarios/sweep/motion_values.hpp"
 #include "scenarios/sweep/variation.hpp"
@@ -40,8 +43,21 @@ double peak_mib() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
+/// What cannot be written costs the outcome nothing; that it is missing is seen (KeptDraws::holds).
+void leave_estimate(const Method& method, const SimulatedDraw& draw, const Estimate& estimate,
+                    const std::filesystem::path& folder) {
+  if (folder.empty()) return;
+  try {
+    std::filesystem::create_directories(folder);
+    write_estimate(folder, method.info.name, method.info.kind, estimate, digest(draw.recording.sensors, nullptr));
+  } catch (const std::exception&) {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder, ignored);
+  }
+}
+
 void run_method_child(const Method& method, const SimulatedDraw& draw, const SimulatedDraw& scored,
-                      const sim::Surface* surface, int fd) {
+                      const sim::Surface* surface, const std::filesystem::path& folder, int fd) {
   const double before_mib = resident_mib();
   Outcome outcome;
   const Estimate estimate = run_method(method, draw, outcome);
@@ -49,6 +65,7 @@ void run_method_child(const Method& method, const SimulatedDraw& draw, const Sim
   const bool own = method.info.version.empty();
   if (own) outcome.scores.push_back({"estimate_peak_mib", std::max(0.0, peak_mib() - before_mib)});
   assess(method, scored, surface, estimate, outcome);
+  leave_estimate(method, draw, estimate, folder);
   write_all(fd, to_line({outcome, {}}));
 }
 
@@ -115,9 +132,9 @@ OutcomeStatus ended_as(const Process::End& end) {
 }
 
 Outcome run_isolated(const Method& method, const SimulatedDraw& draw, const SimulatedDraw& scored,
-                     const sim::Surface* surface, double timeout_s) {
+                     const sim::Surface* surface, double timeout_s, const std::filesystem::path& folder) {
   const double before_mib = resident_mib();
-  Process process([&](int fd) { run_method_child(method, draw, scored, surface, fd); }, false);
+  Process process([&](int fd) { run_method_child(method, draw, scored, surface, folder, fd); }, false);
   std::string text;
   const bool in_time = read_until(process, now_s() + timeout_s, text);
   if (!in_time) process.kill();
@@ -175,21 +192,29 @@ void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int 
   } catch (const std::exception& error) {
     return give_up(task, OutcomeStatus::crashed, std::string("the simulation: ") + error.what(), fd);
   }
+  // what the simulation gave back is not to hide what a method takes
+  malloc_trim(0);
+  DrawFiles files(task.keeping);
+  bool failed = false;
   Given given;
   for (const DrawTask::Run& run : task.runs) {
     Outcome outcome;
     try {
       if (run.setting != given.setting) given = changed(*draw, run.setting);
       outcome = run_isolated(with_setting(*run.method, run.setting), given.draw ? *given.draw : *draw,
-                             given.scored ? *given.scored : *draw, surface ? &*surface : nullptr, timeout_s);
+                             given.scored ? *given.scored : *draw, surface ? &*surface : nullptr, timeout_s,
+                             run.setting.is_plain() ? files.estimate(run.method->info) : std::filesystem::path());
     } catch (const std::bad_alloc&) {
       outcome = unanswered(task, run, OutcomeStatus::killed, "no memory was left for it");
     } catch (const std::system_error& error) {
       outcome = unanswered(task, run, OutcomeStatus::killed, error.what());
     }
     outcome.setting = run.setting;
+    failed = failed || (run.setting.is_plain() && outcome.status != OutcomeStatus::ok);
     if (!write_all(fd, to_line({outcome, {}}))) return;
   }
+  files.finish(*draw, failed);
+  if (!files.trouble().empty()) write_all(fd, to_line({{}, {}, {}, files.trouble()}));
   write_all(fd, to_line({}));
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scenarios/processes/process.hpp"
+#include "scenarios/sweep/draw_files.hpp"
 #include "scenarios/sweep/evaluate.hpp"
 #include "scenarios/sweep/recorded_draw.hpp"
 
@@ -23,6 +24,7 @@ struct DrawTask {
     Setting setting;  ///< the simulation's, or one that leaves the simulation alone
   };
   std::vector<Run> runs;
+  Keeping keeping;  ///< of a plain setting alone
 };
 
 /// Of a run whose process ended without an answer.
@@ -33,14 +35,14 @@ std::vector<Outcome> without_answer(const DrawTask& task, OutcomeStatus status, 
 
 /// Simulates one draw, without lidars where no method reads them, and tells `fd` what came of it, one message a line: a
 /// rejection when it cannot be drawn or simulated, or an outcome per run as each ends, and an empty message at the end.
-/// Runs in a process of its own.
+/// Runs in a worker.
 void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int fd);
 
 /// Runs one method in a process of its own for at most `timeout_s` of wall time. A crash, a time-out or an exception is
 /// an outcome. Cost: CPU and peak memory of the estimate alone, memory above what the draw's process held. The estimate
 /// is scored against the sensors and the truth of `scored`, which is `draw` unless its sensors have been changed
-/// (triage).
+/// (triage). It is left in `folder` (estimate_file.hpp) unless that is empty; one that cannot be written is not there.
 Outcome run_isolated(const Method& method, const SimulatedDraw& draw, const SimulatedDraw& scored,
-                     const sim::Surface* surface, double timeout_s);
+                     const sim::Surface* surface, double timeout_s, const std::filesystem::path& folder = {});
 
 }  // namespace tumble::scenarios

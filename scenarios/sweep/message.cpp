@@ -82,6 +82,7 @@ std::string to_line(const Message& message) {
                       {"values", to_json(message.draw->values)},
                       {"setting", to_json(message.draw->setting)}};
   }
+  if (message.not_kept) object["not_kept"] = *message.not_kept;
   // text that is not UTF-8 must not stop an outcome
   return object.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
 }
@@ -103,6 +104,7 @@ std::optional<Message> from_line(const std::string& line) {
       message.draw = DrawValues{draw.at("scenario").get<std::string>(), draw.at("seed").get<std::uint64_t>(),
                                 scores_from(draw.at("values")), setting_from(draw.at("setting"))};
     }
+    if (object.contains("not_kept")) message.not_kept = object.at("not_kept").get<std::string>();
     return message;
   } catch (const json::exception&) {
     return std::nullopt;

@@ -8,12 +8,15 @@
 
 namespace tumble::scenarios {
 
-/// What the process of a draw tells the sweep, one JSON object a line. At most one field is set; none: the draw is
-/// done.
+/// What a worker tells the sweep of the draw that it is at, one JSON object a line. At most one field is set; none: the
+/// draw is done.
 struct Message {
   std::optional<Outcome> outcome;
   std::optional<RejectedDraw> rejected;
   std::optional<DrawValues> draw = std::nullopt;
+  std::optional<std::string> not_kept = std::nullopt;  ///< why the draw's files could not be kept
+  /// Whether it is the last of its draw.
+  bool is_last() const { return !outcome && !draw && !not_kept; }
 };
 
 /// With the newline. Numbers come back to the bit; what is not finite comes back as NaN.

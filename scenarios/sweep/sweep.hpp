@@ -5,12 +5,15 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "scenarios/data_root.hpp"
 #include "scenarios/methods/method.hpp"
+#include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/sweep/database_owner.hpp"
+#include "scenarios/sweep/keep.hpp"
 #include "scenarios/sweep/results.hpp"
 #include "scenarios/sweep/sweep_notes.hpp"
 #include "scenarios/sweep/variation.hpp"
@@ -37,26 +40,39 @@ Suite load_suite(const DataRoot& data, const std::string& name);
 
 struct SweepProgress {
   std::uint64_t draws_done = 0, draws_total = 0;
-  std::uint64_t outcomes = 0, not_ok = 0, rejected = 0;
+  std::uint64_t outcomes = 0, rejected = 0;
+  std::map<OutcomeStatus, std::uint64_t> failures;  ///< of the outcomes: how many of each status but ok
+  std::uint64_t kept = 0, to_keep = 0;              ///< draws whose files stand, and that are to; at the end
+  std::string not_kept;                             ///< why the last one that could not be kept was not
   double elapsed_s = 0, left_s = 0;
+  double peak_mib = 0;  ///< largest resident size of any one process that has ended
+  std::uint64_t not_ok() const;
 };
 
+/// Unless told, what a worker may hold: as much as a command of somebody else's (processes/command.hpp).
+inline constexpr double kWorkerMemoryMib = 8192.0;
+
 struct SweepOptions {
-  int jobs = 1;                             ///< processes
+  int jobs = 1;                             ///< workers
+  double memory_mib = kWorkerMemoryMib;     ///< of data (RLIMIT_DATA), of a worker and of each of its methods
   const std::atomic<bool>* stop = nullptr;  ///< set it to end after storing what has finished
   std::function<void(const SweepProgress&)> on_progress;
   std::vector<OutcomeStatus> again;  ///< statuses whose rows are run once more: crashed, timeout, killed
+  Keep keep;               ///< draws whose recording and estimates are left beside the database; none: as it is
+  RecordingInfo versions;  ///< of program and engine, for recordings that are kept
 };
 
 /// Makes the database, or opens it, as one of this suite, build, models and scenarios. Throws BadInput when it is of
 /// others.
 Results open_results(const DataRoot& data, const Suite& suite, const std::filesystem::path& database);
 
-/// Runs what the database does not hold yet. Each draw is a process of its own, each method in it another: a crash, a
-/// time-out or a memory failure is an outcome (crashed, timeout, killed), never the end of the sweep. Finished outcomes
-/// are stored as they come. Draws are looked up and planned one at a time: memory does not grow with their number.
-/// A recording whose rows were made of other data (another digest) is refused. Returns the final progress; draws_done <
-/// draws_total when stopped. Throws BadInput when none of the methods applies to any of the scenarios.
+/// Runs what the database does not hold yet. Workers, processes that serve one draw after the other (draw_worker.hpp),
+/// run each method in a process of its own: a crash, a time-out or a memory failure is an outcome (crashed, timeout,
+/// killed), never the end of the sweep. Finished outcomes are stored as they come. Draws are looked up and planned one
+/// at a time: memory does not grow with their number. At the end what is to be kept stands beside the database, and
+/// what was kept and is no longer to be is gone. A recording whose rows were made of other data (another digest) is
+/// refused. Returns the final progress; draws_done < draws_total when stopped. Throws BadInput when none of the methods
+/// applies to any of the scenarios.
 SweepProgress sweep(const DataRoot& data, const Suite& suite, const DatabaseOwner& database,
                     const SweepOptions& options);
 /// The same, and owns the database while it runs: throws BadInput when another does.

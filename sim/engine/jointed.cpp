@@ -2,6 +2,7 @@
 #include "sim/engine/jointed.hpp"
 
 #include <Eigen/Cholesky>
+#include <new>
 
 #include "sim/simulate.hpp"
 
@@ -51,7 +52,7 @@ BodyState state_on_joints(const mjModel& model, const mjData& data, int body) {
 
 BodyState state_at_rest(const World& world) {
   const DataPtr data(mj_makeData(world.model.get()));
-  if (!data) throw SimulationFailure("out of memory for the engine's state");
+  if (!data) throw std::bad_alloc();
   update_bodies(*world.model, *data);
   return state_on_joints(*world.model, *data, world.robot_body);
 }

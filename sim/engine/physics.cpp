@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <new>
 #include <sstream>
 
 #include "sim/engine/jointed.hpp"
@@ -30,7 +31,7 @@ Eigen::Vector3d vector(const mjtNum* numbers) {
 
 Physics::Physics(World& world)
     : world_(world), data_(mj_makeData(world.model.get())), surface_of_geom_(world.model->ngeom, -1) {
-  if (!data_) throw SimulationFailure("out of memory for the engine's state");
+  if (!data_) throw std::bad_alloc();
   if (!world.free) update_bodies(*world.model, *data_);
   for (std::size_t i = 0; i < world.surface_geom.size(); ++i)
     surface_of_geom_[world.surface_geom[i]] = static_cast<int>(i);

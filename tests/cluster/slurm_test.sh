@@ -112,19 +112,4 @@ for _ in $(seq 900); do [ -z "$(squeue -h 2>/dev/null || echo busy)" ] && break;
 grep -q "shard $task: done" "$folder/out.db.shards/logs/shard_$task.log" || { say "task $task was not done again"; exit 1; }
 [ -s "$folder/out.html" ] || { say "there is no report"; exit 1; }
 
-python3 - "$folder/whole.db" "$folder/out.db" <<'END'
-import sqlite3
-import sys
-
-def rows(path):
-    costs = "'estimate_cpu_s', 'simulate_cpu_s', 'estimate_peak_mib'"
-    return sqlite3.connect(path).execute(
-        "SELECT o.scenario, o.seed, o.kind, o.method, o.status, o.recording_digest, o.estimate_digest, s.metric, s.value "
-        f"FROM outcomes o JOIN score_values s ON s.outcome = o.id WHERE s.metric NOT IN ({costs}) "
-        "ORDER BY 1, 2, 3, 4, 8").fetchall()
-
-whole, out = rows(sys.argv[1]), rows(sys.argv[2])
-assert len({row[1] for row in whole}) == 18, "the undisturbed sweep is not complete"
-assert whole == out, f"{len(whole)} rows undisturbed, {len(out)} with the dead node; they differ"
-print(f"slurm_test: {len(out)} scores, as undisturbed")
-END
+python3 "$root/tests/cluster/same_results.py" "$folder/whole.db" "$folder/out.db" 18

@@ -115,6 +115,43 @@ TEST(Sweep, OffATerminalWritesNoControlCharacters) {
   EXPECT_EQ(run_program(quiet).err, "");
 }
 
+// what is kept is what `tumble run` leaves: other verbs read it
+TEST(Sweep, KeepsDrawsThatOtherVerbsRead) {
+  const fs::path folder = test_folder();
+  std::vector<std::string> arguments = sweep_arguments(folder / "k.db", "1..2");
+  arguments.insert(arguments.end(), {"--keep", "worst:1"});
+  const Ended ended = run_program(arguments);
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  const json swept = json_of(ended);
+  EXPECT_GE(swept["kept"], 1);
+  EXPECT_EQ(swept["kept"], swept["to_keep"]);
+  EXPECT_GT(swept["peak_mib"], 1.0);
+  EXPECT_THAT(ended.err, HasSubstr("k.db.files/kept/SCENARIO/SEED"));
+  const fs::path kept = folder / "k.db.files" / "kept" / "roll";
+  const fs::path draw = fs::directory_iterator(kept)->path();
+  EXPECT_THAT(read_file(draw / "command"), HasSubstr("tumble run roll --seed " + draw.filename().string()));
+  const Ended scored = run_program(
+      {"score", (draw / "estimates" / "position-rolling").string(), (draw / "recording.h5").string(), "--json"});
+  EXPECT_EQ(scored.status, 0) << scored.err;
+}
+
+TEST(Sweep, RefusesWhatItCannotKeepOrAsk) {
+  const fs::path database = test_folder() / "x.db";
+  const auto refused = [&](const std::vector<std::string>& more, const std::string& what) {
+    std::vector<std::string> arguments = sweep_arguments(database, "1");
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Ended ended = run_program(arguments);
+    EXPECT_EQ(ended.status, 2) << what;
+    EXPECT_THAT(ended.err, HasSubstr(what));
+  };
+  refused({"--keep", "worst:0"}, "worst:N with N from 1 to 1000");
+  refused({"--memory", "1"}, "--memory");
+  refused({"--memory", "nan"}, "--memory");
+  refused({"--until", "rate/raw:rate/tumble"}, "must be A:B:METRIC");
+  refused({"--until", "rate/raw:rate/tumble:rate_error_clipped_median_rad_s"}, "method of the suite");
+  refused({"--until", "rate/raw:rate/raw:rate_error_clipped_median_rad_s", "--shard", "1/2"}, "a shard has no looks");
+}
+
 TEST(Report, IsOnePageThatAsksTheNetworkNothing) {
   const fs::path folder = test_folder();
   const fs::path database = folder / "r.db", page = folder / "report.html";

@@ -11,6 +11,7 @@
 
 #include "scenarios/errors.hpp"
 #include "tools/tumble/arguments.hpp"
+#include "tools/tumble/asked.hpp"
 #include "tools/tumble/verbs.hpp"
 
 namespace tumble::tools {
@@ -31,16 +32,6 @@ struct Options {
   double risk = 0.05, power = 0.8;
 };
 
-/// "0.05", in the metric's unit, or "10%", of the other's value.
-scenarios::Margin parse_margin(const std::string& text) {
-  const bool relative = text.ends_with('%');
-  double value = 0.0;
-  const std::string number = relative ? text.substr(0, text.size() - 1) : text;
-  if (!CLI::detail::lexical_cast(number, value) || !std::isfinite(value) || value < 0.0)
-    throw BadInput("--margin is '" + text + "', must be a number from 0 on, or such a number and %");
-  return {relative ? value / 100.0 : value, relative};
-}
-
 /// One method against the baseline, or against the one that is named last.
 scenarios::ComparisonOptions read(const Options& options) {
   scenarios::ComparisonOptions out;
@@ -51,7 +42,7 @@ scenarios::ComparisonOptions read(const Options& options) {
     out.methods.pop_back();
   }
   out.metrics = options.metrics;
-  if (!options.margin.empty()) out.margin = parse_margin(options.margin);
+  if (!options.margin.empty()) out.margin = parse_margin("--margin", options.margin);
   if (out.margin && !out.margin->relative && out.metrics.empty())
     throw BadInput("--margin " + options.margin +
                    " is in the unit of a metric: name it with --metric, or give a share, as 10%");

@@ -208,8 +208,10 @@ int run_gate(const Session& session, const Options& options) {
   const Database database(options.database);
   const scenarios::DatabaseOwner owner(database.path());
   const InterruptFlag interrupt;
-  const scenarios::SweepProgress progress =
-      sweep_with_progress(session, data, suite, owner, options.jobs, interrupt.raised());
+  scenarios::SweepOptions how;
+  how.jobs = options.jobs;
+  how.stop = &interrupt.raised();
+  const scenarios::SweepProgress progress = sweep_with_progress(session, data, suite, owner, how);
   if (progress.draws_done < progress.draws_total) return say_stopped(progress);
 
   const std::string certificate = certificate_text(session, data, database.path());

@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "scenarios/sweep/keep.hpp"
 #include "tools/tumble/verbs.hpp"
 
 namespace tumble::tools {
@@ -19,17 +20,20 @@ struct Options {
 
 int merge(const Session& session, const Options& options) {
   const scenarios::MergeCounts counts = scenarios::merge_results(options.out, options.in, options.mixed);
-  Table table("",
-              {"database", "databases joined", "rows added", "replaced worse ones", "held already", "draws rejected"});
+  const std::size_t kept = options.mixed ? 0 : scenarios::merge_kept(options.out, options.in);
+  Table table("", {"database", "databases joined", "rows added", "replaced worse ones", "held already",
+                   "draws rejected", "draws kept"});
   table.align_right_from(1);
   table.add_row({options.out.string(), std::to_string(options.in.size()), std::to_string(counts.added),
-                 std::to_string(counts.replaced), std::to_string(counts.held), std::to_string(counts.rejected)});
+                 std::to_string(counts.replaced), std::to_string(counts.held), std::to_string(counts.rejected),
+                 std::to_string(kept)});
   session.print({table}, {{"database", options.out.string()},
                           {"joined", options.in.size()},
                           {"outcomes", counts.added + counts.replaced - counts.rejected},
                           {"replaced", counts.replaced},
                           {"held", counts.held},
-                          {"rejected", counts.rejected}});
+                          {"rejected", counts.rejected},
+                          {"kept", kept}});
   return kDone;
 }
 

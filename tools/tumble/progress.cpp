@@ -13,6 +13,14 @@ namespace {
 constexpr double kLinePeriodS = 10.0;
 constexpr int kBarWidth = 24;
 
+/// " (2 diverged, 1 timeout)"; nothing where nothing has failed.
+std::string failures_text(const scenarios::SweepProgress& progress) {
+  std::string text;
+  for (const auto& [status, count] : progress.failures)
+    text += fmt::format("{}{} {}", text.empty() ? " (" : ", ", count, to_string(status));
+  return text.empty() ? text : text + ")";
+}
+
 }  // namespace
 
 std::string duration_text(double seconds) {
@@ -32,8 +40,9 @@ std::string progress_line(const scenarios::SweepProgress& p, int bar_width) {
     line = "[" + std::string(static_cast<std::size_t>(filled), '#') +
            std::string(static_cast<std::size_t>(bar_width - filled), '-') + "]  ";
   }
-  line += fmt::format("{}/{} draws  {} %  {} outcomes  {} not ok  {} rejected", p.draws_done, p.draws_total,
-                      static_cast<int>(share * 100.0), p.outcomes, p.not_ok, p.rejected);
+  line += fmt::format("{}/{} draws  {} %  {} outcomes  {} not ok{}  {} rejected", p.draws_done, p.draws_total,
+                      static_cast<int>(share * 100.0), p.outcomes, p.not_ok(), failures_text(p), p.rejected);
+  if (p.to_keep > 0) line += fmt::format("  kept {}/{}", p.kept, p.to_keep);
   if (p.draws_done < p.draws_total) {
     // nothing is known of the time left before the first draw has ended
     line += "  left " + (p.draws_done == 0 ? "?" : duration_text(p.left_s));

@@ -9,13 +9,18 @@
 
 namespace tumble::tools {
 
-scenarios::RecordingInfo recording_info(const sim::ResolvedSituation& situation, const std::string& digest) {
+scenarios::RecordingInfo recording_versions() {
   scenarios::RecordingInfo info;
+  info.tumble_version = program_version();
+  info.engine_version = TUMBLE_ENGINE_VERSION;
+  return info;
+}
+
+scenarios::RecordingInfo recording_info(const sim::ResolvedSituation& situation, const std::string& digest) {
+  scenarios::RecordingInfo info = recording_versions();
   info.scenario = situation->scenario;
   info.seed = situation->seed;
   info.situation_yaml = scenarios::to_yaml(situation);
-  info.tumble_version = program_version();
-  info.engine_version = TUMBLE_ENGINE_VERSION;
   info.digest = digest;
   info.has_truth = true;
   return info;

@@ -9,6 +9,9 @@
 
 namespace tumble::tools {
 
+/// The versions of program and engine, for recordings.
+scenarios::RecordingInfo recording_versions();
+
 /// What the program writes about a recording that it has simulated.
 scenarios::RecordingInfo recording_info(const sim::ResolvedSituation& situation, const std::string& digest);
 

@@ -28,7 +28,7 @@ constexpr double kRisk = 0.05;
 struct Options {
   std::filesystem::path database;
   std::vector<std::string> methods, metrics;
-  bool motion = false, all = false;
+  bool motion = false, all = false, dependence = false;
 };
 
 /// What the numbers of a draw are follows from the models and scenarios that it was made of.
@@ -104,8 +104,42 @@ std::vector<Table> tables_of(const std::vector<Sensitivity>& rows, bool all) {
   return tables;
 }
 
+/// Of each influence that is shown a line per class of its number.
+Table dependence_table(const std::vector<Sensitivity>& rows, bool all) {
+  Table table("partial dependence: median, or share that failed, where the number lies",
+              {"scenario", "method", "metric", "number", "from", "to", "draws", "score", "95 %"});
+  table.align_right_from(4);
+  for (const Sensitivity& row : rows) {
+    for (const Influence& each : shown(row, all)) {
+      bool first = true;
+      for (const scenarios::DependenceClass& part : each.dependence) {
+        const auto once = [&](const std::string& text) { return first ? text : std::string(); };
+        table.add_row({once(row.scenario), once(std::string(to_string(row.kind)) + "/" + row.method), once(row.metric),
+                       once(each.number), number_text(part.low), number_text(part.high), std::to_string(part.draws),
+                       number_text(part.centre.value),
+                       "[" + number_text(part.centre.low) + ", " + number_text(part.centre.high) + "]"});
+        first = false;
+      }
+    }
+  }
+  return table;
+}
+
 json finite(double value) {
   return std::isfinite(value) ? json(value) : json();
+}
+
+json to_json(const std::vector<scenarios::DependenceClass>& dependence) {
+  json out = json::array();
+  for (const scenarios::DependenceClass& part : dependence) {
+    out.push_back({{"from", part.low},
+                   {"to", part.high},
+                   {"draws", part.draws},
+                   {"score", finite(part.centre.value)},
+                   {"low", finite(part.centre.low)},
+                   {"high", finite(part.centre.high)}});
+  }
+  return out;
 }
 
 json to_json(const std::vector<Sensitivity>& rows) {
@@ -121,7 +155,8 @@ json to_json(const std::vector<Sensitivity>& rows) {
                          {"rho_high", each.correlation.high},
                          {"holm_p", each.corrected},
                          {"median_lowest_quarter", finite(each.median_low)},
-                         {"median_highest_quarter", finite(each.median_high)}});
+                         {"median_highest_quarter", finite(each.median_high)},
+                         {"dependence", to_json(each.dependence)}});
     }
     for (const Influence& each : shown(row, false)) breaks.push_back(each.number);
     out.push_back({{"scenario", row.scenario},
@@ -144,7 +179,9 @@ int sensitivity(const Session& session, const Options& options) {
     throw BadInput(options.database.string() + ": holds nothing to judge: it takes " +
                    std::to_string(scenarios::kSensitivityDrawsMin) +
                    " draws of a scenario with a number that is drawn");
-  session.print(tables_of(rows, options.all), {{"sensitivity", to_json(rows)}});
+  std::vector<Table> tables = tables_of(rows, options.all);
+  if (options.dependence) tables.push_back(dependence_table(rows, options.all));
+  session.print(tables, {{"sensitivity", to_json(rows)}});
   session.note("correlation above 0: the larger the number, the worse the score; docs/maths/statistics.md");
   return kDone;
 }
@@ -160,6 +197,8 @@ Action declare_sensitivity(CLI::App& app, const Session& session) {
       ->allow_extra_args(false);
   app.add_flag("--motion", options->motion, "against what the motions were like, not against what was drawn");
   app.add_flag("--all", options->all, "every number, not the three strongest that chance does not explain");
+  app.add_flag("--dependence", options->dependence,
+               "also the score over classes of each number that is shown, with intervals");
   return [&session, options] { return sensitivity(session, *options); };
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/sweep.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -15,7 +17,9 @@
 #include "scenarios/sweep/sweep_notes.hpp"
 #include "tools/examples/leave_examples.hpp"
 #include "tools/tumble/arguments.hpp"
+#include "tools/tumble/asked.hpp"
 #include "tools/tumble/interrupt.hpp"
+#include "tools/tumble/recording_info.hpp"
 #include "tools/tumble/sweeping.hpp"
 #include "tools/tumble/verbs.hpp"
 
@@ -33,6 +37,10 @@ struct Options {
   int jobs = available_processors();
   std::optional<std::size_t> examples;  ///< as many as the sweep can bear, where it is not told
   std::filesystem::path database, recordings;
+  double memory_mib = scenarios::kWorkerMemoryMib;
+  std::string keep = "none";
+  std::string until;
+  double risk = 0.05;
 };
 
 /// The suite with what the command line changes of it. Returns false when this shard has no seed.
@@ -102,16 +110,21 @@ bool leave_examples(const Session& session, const scenarios::DataRoot& data, con
 }
 
 nlohmann::json to_json(const scenarios::SweepProgress& p, const std::string& database) {
-  return {{"database", database},    {"draws_done", p.draws_done}, {"draws_total", p.draws_total},
-          {"outcomes", p.outcomes},  {"not_ok", p.not_ok},         {"rejected", p.rejected},
+  nlohmann::json failures = nlohmann::json::object();
+  for (const auto& [status, count] : p.failures) failures[to_string(status)] = count;
+  return {{"database", database},         {"draws_done", p.draws_done},
+          {"draws_total", p.draws_total}, {"outcomes", p.outcomes},
+          {"not_ok", p.not_ok()},         {"failures", std::move(failures)},
+          {"rejected", p.rejected},       {"kept", p.kept},
+          {"to_keep", p.to_keep},         {"peak_mib", p.peak_mib},
           {"elapsed_s", p.elapsed_s}};
 }
 
 Table to_table(const scenarios::SweepProgress& p, const std::string& database) {
-  Table table("", {"database", "draws done", "draws in all", "outcomes", "not ok", "draws rejected"});
+  Table table("", {"database", "draws done", "draws in all", "outcomes", "not ok", "draws rejected", "peak MiB"});
   table.align_right_from(1);
   table.add_row({database, std::to_string(p.draws_done), std::to_string(p.draws_total), std::to_string(p.outcomes),
-                 std::to_string(p.not_ok), std::to_string(p.rejected)});
+                 std::to_string(p.not_ok()), std::to_string(p.rejected), fmt::format("{:.0f}", p.peak_mib)});
   return table;
 }
 
@@ -126,7 +139,42 @@ std::vector<scenarios::OutcomeStatus> statuses_named(const std::vector<std::stri
   return statuses;
 }
 
+scenarios::SweepOptions sweep_options(const Options& options, const std::atomic<bool>& stop) {
+  scenarios::SweepOptions out;
+  out.jobs = options.jobs;
+  out.memory_mib = options.memory_mib;
+  out.stop = &stop;
+  out.again = statuses_named(options.again);
+  out.keep = scenarios::parse_keep(options.keep);
+  out.versions = recording_versions();
+  return out;
+}
+
+/// Recorded in the results before anything runs. An empty word asks nothing.
+std::optional<scenarios::Question> ask(const Options& options, const scenarios::DataRoot& data,
+                                       const scenarios::Suite& suite) {
+  if (options.until.empty()) return std::nullopt;
+  if (!options.shard.empty()) throw scenarios::BadInput("--until: a shard has no looks at all of the draws");
+  if (!suite.recordings.empty() || !suite.curves.empty())
+    throw scenarios::BadInput("--until: suite '" + suite.name + "' is of recordings, or has curves; ask it of draws");
+  const scenarios::Question question = parse_question(options.until, options.risk, suite);
+  scenarios::Results results = scenarios::open_results(data, suite, options.database);
+  scenarios::claim(results, question, options.database);
+  return question;
+}
+
+void say_what_is_kept(const Session& session, const Options& options, const scenarios::SweepProgress& progress) {
+  if (options.keep == "none") return;
+  session.note(fmt::format("{} of {} draws to keep stand in {}.files/kept/SCENARIO/SEED", progress.kept,
+                           progress.to_keep, options.database.string()));
+  if (progress.kept < progress.to_keep)
+    std::fprintf(stderr, "tumble: %llu draws could not be kept: %s\n",
+                 static_cast<unsigned long long>(progress.to_keep - progress.kept),
+                 progress.not_kept.empty() ? "stopped before" : progress.not_kept.c_str());
+}
+
 int run_sweep(const Session& session, const Options& options) {
+  scenarios::parse_keep(options.keep);
   const scenarios::DataRoot data = session.data();
   scenarios::Suite suite;
   const bool any = select(data, options, suite);
@@ -140,16 +188,32 @@ int run_sweep(const Session& session, const Options& options) {
     return kDone;
   }
 
+  const std::optional<scenarios::Question> question = ask(options, data, suite);
   scenarios::open_results(data, suite, options.database).set_note(scenarios::kCommandNote, command_of(options));
   const InterruptFlag interrupt;
   // it speaks of simulations
   if (suite.recordings.empty()) certify(session, data, options.database, interrupt.raised());
-  const scenarios::SweepProgress final =
-      sweep_with_progress(session, data, suite, owner, options.jobs, interrupt.raised(), statuses_named(options.again));
+  const scenarios::SweepOptions how = sweep_options(options, interrupt.raised());
+  AskedSweep swept;
+  if (question) {
+    swept = sweep_until(session, data, suite, owner, how, *question);
+  } else {
+    swept.progress = sweep_with_progress(session, data, suite, owner, how);
+  }
+  const scenarios::SweepProgress& final = swept.progress;
+  if (question && scenarios::all_answered(swept.answers))
+    suite.last_seed = suite.first_seed + swept.progress.draws_total / suite.scenarios.size() - 1;
 
   const bool complete = final.draws_done >= final.draws_total;
   const bool shown = !complete || leave_examples(session, data, suite, options, final.draws_total, interrupt.raised());
-  session.print({to_table(final, options.database.string())}, to_json(final, options.database.string()));
+  std::vector<Table> tables = {to_table(final, options.database.string())};
+  nlohmann::json document = to_json(final, options.database.string());
+  if (question) {
+    tables.push_back(table_of(swept.answers, *question));
+    document["until"] = json_of(swept.answers, *question);
+  }
+  session.print(tables, document);
+  say_what_is_kept(session, options, final);
   if (!complete) return say_stopped(final);
   if (shown) return kDone;
   std::fputs("tumble: stopped: all draws are stored, their pictures are not made, run again to make them\n", stderr);
@@ -178,6 +242,21 @@ Action declare_sweep(CLI::App& app, const Session& session) {
                  "draws run again at the end, their pictures and plots left in FILE.db.files for 'report'; not of a "
                  "shard [one for each 8 draws of the sweep, 3 at most]")
       ->check(CLI::Range(0, 64));
+  app.add_option("--memory", options->memory_mib,
+                 "MiB of data that a worker, and each method that it runs, may hold; one that needs more is 'killed'")
+      ->check(within(64.0, 1e7))
+      ->capture_default_str();
+  app.add_option("--keep", options->keep,
+                 "draws whose recording and estimates are left in FILE.db.files/kept: none, failed, worst:N of each "
+                 "scenario and method, all")
+      ->capture_default_str();
+  app.add_option("--until", options->until,
+                 "A:B:METRIC[:MARGIN]: stop when it is answered whether method A is better than B, by more than the "
+                 "margin (in the metric's unit, or as 10% of B's value); looked at 20 times")
+      ->check(filled);
+  app.add_option("--risk", options->risk, "of any answer to --until where neither is better")
+      ->check(within(1e-6, 0.5))
+      ->capture_default_str();
   app.add_option("--data", options->recordings, "folder of a suite's recordings [the suite file's]");
   app.add_option("--db", options->database, "the results database; what it holds already is not run again")->required();
   return [&session, options] { return run_sweep(session, *options); };

@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <string_view>
 
@@ -10,23 +11,79 @@
 
 namespace tumble::tools {
 
-scenarios::SweepProgress sweep_with_progress(const Session& session, const scenarios::DataRoot& data,
-                                             const scenarios::Suite& suite, const scenarios::DatabaseOwner& database,
-                                             int jobs, const std::atomic<bool>& stop,
-                                             const std::vector<scenarios::OutcomeStatus>& again) {
+namespace {
+
+ProgressDisplay display() {
   const auto to_standard_error = [](std::string_view text) {
     std::fwrite(text.data(), 1, text.size(), stderr);
     std::fflush(stderr);
   };
-  ProgressDisplay display(to_standard_error, isatty(STDERR_FILENO) == 1);
-  scenarios::SweepOptions options;
-  options.jobs = jobs;
-  options.stop = &stop;
-  options.again = again;
-  if (!session.quiet) options.on_progress = [&](const scenarios::SweepProgress& p) { display.show(p); };
+  return {to_standard_error, isatty(STDERR_FILENO) == 1};
+}
+
+/// What was done before and what has been done since, of `draws` in all.
+scenarios::SweepProgress sum(const scenarios::SweepProgress& before, const scenarios::SweepProgress& since,
+                             std::uint64_t draws) {
+  scenarios::SweepProgress all = since;
+  all.draws_done += before.draws_done;
+  all.draws_total = draws;
+  all.outcomes += before.outcomes;
+  all.rejected += before.rejected;
+  for (const auto& [status, count] : before.failures) all.failures[status] += count;
+  all.elapsed_s += before.elapsed_s;
+  all.peak_mib = std::max(all.peak_mib, before.peak_mib);
+  if (all.not_kept.empty()) all.not_kept = before.not_kept;
+  // at the pace of the draws so far, were all of them asked for
+  if (all.draws_done > 0)
+    all.left_s = all.elapsed_s / static_cast<double>(all.draws_done) * static_cast<double>(draws - all.draws_done);
+  return all;
+}
+
+}  // namespace
+
+scenarios::SweepProgress sweep_with_progress(const Session& session, const scenarios::DataRoot& data,
+                                             const scenarios::Suite& suite, const scenarios::DatabaseOwner& database,
+                                             scenarios::SweepOptions options) {
+  ProgressDisplay shown = display();
+  if (!session.quiet) options.on_progress = [&](const scenarios::SweepProgress& p) { shown.show(p); };
   const scenarios::SweepProgress final = scenarios::sweep(data, suite, database, options);
-  if (!session.quiet) display.finish(final);
+  if (!session.quiet) shown.finish(final);
   return final;
+}
+
+AskedSweep sweep_until(const Session& session, const scenarios::DataRoot& data, const scenarios::Suite& suite,
+                       const scenarios::DatabaseOwner& database, const scenarios::SweepOptions& options,
+                       const scenarios::Question& question) {
+  ProgressDisplay shown = display();
+  AskedSweep out;
+  scenarios::Suite part = suite;
+  // the worst of all are known at the end
+  scenarios::SweepOptions own = options;
+  if (options.keep.which == scenarios::Keep::Which::worst) own.keep = {};
+  const auto draws_of = [&](std::uint64_t seeds) { return seeds * suite.scenarios.size(); };
+  const std::uint64_t all = draws_of(suite.last_seed - suite.first_seed + 1);
+  for (const std::uint64_t seed : question.look_seeds()) {
+    part.last_seed = seed;
+    const scenarios::SweepProgress before = out.progress;
+    if (!session.quiet) own.on_progress = [&](const scenarios::SweepProgress& p) { shown.show(sum(before, p, all)); };
+    const std::uint64_t seen = draws_of(seed - suite.first_seed + 1);
+    out.progress = sum(before, scenarios::sweep(data, part, database, own), seen);
+    if (out.progress.draws_done < seen) break;  // stopped
+    out.answers = scenarios::answers({database.database(), scenarios::Results::Mode::read_only}, question, seed);
+    if (scenarios::all_answered(out.answers)) break;
+    part.first_seed = seed + 1;
+  }
+  if (own.keep != options.keep && out.progress.draws_done == out.progress.draws_total) {
+    own.keep = options.keep;
+    own.on_progress = {};
+    part.first_seed = suite.first_seed;
+    const scenarios::SweepProgress kept = scenarios::sweep(data, part, database, own);
+    out.progress.kept = kept.kept;
+    out.progress.to_keep = kept.to_keep;
+    out.progress.not_kept = kept.not_kept;
+  }
+  if (!session.quiet) shown.finish(out.progress);
+  return out;
 }
 
 int say_stopped(const scenarios::SweepProgress& progress) {

@@ -66,6 +66,12 @@ TEST(Sensitivity, NamesWhatBreaksAMethod) {
   EXPECT_EQ(row.influences[0].number, "world.slope_rad");
   EXPECT_GT(row.influences[0].correlation.rho, 0.5) << "steeper is worse";
   EXPECT_GT(row.influences[0].median_high, 3.0 * row.influences[0].median_low);
+  const std::vector<DependenceClass>& slope = row.influences[0].dependence;
+  ASSERT_EQ(slope.size(), 8u);
+  EXPECT_GT(slope.back().centre.low, slope.front().centre.value) << "the score rises over the classes of the slope";
+  const std::vector<DependenceClass>& share = rows[0].influences[0].dependence;
+  ASSERT_EQ(share.size(), 8u);
+  for (const DependenceClass& each : share) EXPECT_LE(each.centre.high, 1.0) << "a share that has failed";
   EXPECT_EQ(row.influences[1].number, "world.rock_m");
   EXPECT_LT(row.influences[1].corrected, 0.05);
   for (std::size_t i = 2; i < row.influences.size(); ++i)

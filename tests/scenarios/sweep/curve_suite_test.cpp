@@ -7,9 +7,8 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/sweep/results.hpp"
+#include "scenarios/sweep/small_catalogue.hpp"
 #include "scenarios/sweep/sweep.hpp"
-#include "scenarios/sweep/temporary_folder.hpp"
-#include "tests/tree.hpp"
 
 // suites that vary a number, on the sphere, whose draws are short
 namespace tumble::scenarios {
@@ -18,28 +17,11 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::UnorderedElementsAre;
 
-constexpr const char* kRoll = R"(name: roll
-doc: A short straight way.
-duration_s: 3
-world: {type: floor, room_half_m: 4, pillar_count: 0, box_count: 0}
-robot: {type: sphere}
-motion: {type: hand_roll, rest_s: 1.2, leg_1_m: {uniform: [0.3, 0.5]}, leg_2_m: 0}
-sensors:
-  - {name: imu, kind: imu, device: phidget1044, site: phidget_1}
-)";
-
 constexpr const char* kHead =
     "name: test\ndoc: d\nscenarios: [roll]\nseeds: {first: 1, last: 1}\nmethods: [rate/raw, rolling]\nvary:\n";
 
-class CurveSuiteTest : public testing::TemporaryFolder {
+class CurveSuiteTest : public testing::SmallCatalogue {
  protected:
-  void SetUp() override {
-    TemporaryFolder::SetUp();
-    write("scenarios/catalogue/roll.yaml", kRoll);
-    std::filesystem::create_directory_symlink(test::source_dir() / "models", folder_ / "models");
-  }
-  DataRoot data() const { return {folder_}; }
-
   Suite suite(const std::string& vary) const {
     write("scenarios/suites/test.yaml", kHead + vary);
     return load_suite(data(), "test");
@@ -101,7 +83,7 @@ TEST_F(CurveSuiteTest, SweepsEveryPointOnceAndSimulatesOnlyWhereItMust) {
   EXPECT_EQ(progress.draws_total, 3u) << "one simulation as it is, one for each length of the way";
   // two methods: as it is, at two offsets, at two lengths; nothing for the parameter of a method that is not there
   EXPECT_EQ(progress.outcomes, 10u);
-  EXPECT_EQ(progress.not_ok, 0u);
+  EXPECT_EQ(progress.not_ok(), 0u);
 
   const Results results(path, Results::Mode::read_only);
   const auto by_setting = recordings(results);

@@ -11,22 +11,11 @@
 #include "scenarios/sweep/evaluate.hpp"
 #include "scenarios/sweep/results.hpp"
 #include "scenarios/sweep/run_situation.hpp"
-#include "scenarios/sweep/temporary_folder.hpp"
-#include "tests/tree.hpp"
+#include "scenarios/sweep/small_catalogue.hpp"
 
 // the sweep end to end on the sphere, whose draws are short and have no map to score
 namespace tumble::scenarios {
 namespace {
-
-constexpr const char* kRoll = R"(name: roll
-doc: A short straight way.
-duration_s: 3
-world: {type: floor, room_half_m: 4, pillar_count: 0, box_count: 0}
-robot: {type: sphere}
-motion: {type: hand_roll, rest_s: 1.2, leg_1_m: {uniform: [0.3, 0.5]}, leg_2_m: 0}
-sensors:
-  - {name: imu, kind: imu, device: phidget1044, site: phidget_1}
-)";
 
 Suite small_suite(std::uint64_t last_seed) {
   Suite suite;
@@ -47,16 +36,8 @@ std::map<std::string, std::string> digests(const std::filesystem::path& database
   return found;
 }
 
-// the delivered models under a catalogue of one scenario
-class SweepTest : public testing::TemporaryFolder {
- protected:
-  void SetUp() override {
-    TemporaryFolder::SetUp();
-    write("scenarios/catalogue/roll.yaml", kRoll);
-    std::filesystem::create_directory_symlink(test::source_dir() / "models", folder_ / "models");
-  }
-  DataRoot data() const { return {folder_}; }
-};
+using SweepTest = testing::SmallCatalogue;
+using testing::kRoll;
 
 TEST_F(SweepTest, StoresEveryOutcomeResumesAndDoesNotDependOnJobs) {
   const auto path = folder_ / "a.db";
@@ -155,7 +136,7 @@ TEST_F(SweepTest, WhatTheMachineKilledIsRunAgainOnDemandAlone) {
   options.again = {OutcomeStatus::timeout, OutcomeStatus::killed};
   const SweepProgress again = sweep(data(), small_suite(1), path, options);
   EXPECT_EQ(again.outcomes, 1u);
-  EXPECT_EQ(again.not_ok, 0u);
+  EXPECT_EQ(again.not_ok(), 0u);
   // the recording of a rate method that runs alone has no lidar; this scenario has none anyhow
   EXPECT_EQ(digests(path), before);
   options.again = {OutcomeStatus::ok};

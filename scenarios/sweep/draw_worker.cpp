@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/sweep/draw_worker.hpp"
+
+#include <malloc.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <optional>
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr double kMib = 1024.0 * 1024.0;
+
+void limit_memory(double mib) {
+  rlimit both{};
+  getrlimit(RLIMIT_DATA, &both);
+  // never above what whoever started the sweep allows
+  both.rlim_cur = std::min(both.rlim_max, static_cast<rlim_t>(mib * kMib));
+  setrlimit(RLIMIT_DATA, &both);
+}
+
+/// The next line that comes, without its end; nothing when there is nobody who would send another.
+std::optional<std::string> next_line(int fd, std::string& buffer) {
+  char chunk[8192];
+  std::size_t newline;
+  while ((newline = buffer.find('\n')) == std::string::npos) {
+    const ssize_t count = read(fd, chunk, sizeof(chunk));
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return std::nullopt;
+    buffer.append(chunk, static_cast<std::size_t>(count));
+  }
+  std::string line = buffer.substr(0, newline);
+  buffer.erase(0, newline + 1);
+  return line;
+}
+
+/// In the worker: one line a draw, an empty one at the end.
+void serve(const WorkerTerms& terms, int tasks, int fd) {
+  limit_memory(terms.memory_mib);
+  std::string buffer;
+  while (const std::optional<std::string> line = next_line(tasks, buffer)) {
+    if (line->empty()) return;
+    run_draw(terms.data, terms.plan.from_line(*line), terms.timeout_s, fd);
+    malloc_trim(0);  // an idle worker holds nothing of its last draw
+  }
+}
+
+}  // namespace
+
+DrawWorker::DrawWorker(const WorkerTerms& terms)
+    : plan_(terms.plan), process_([&](int tasks, int fd) { serve(terms, tasks, fd); }, true) {}
+
+bool DrawWorker::give(const DrawTask& task, double deadline_s) {
+  if (!process_.tell(plan_.to_line(task))) return false;
+  draw_ = task;
+  deadline_s_ = deadline_s;
+  busy_ = true;
+  ++served_;
+  return true;
+}
+
+bool DrawWorker::hear(std::vector<Message>& said) {
+  const bool open = process_.read_available(buffer_);
+  std::size_t newline;
+  while ((newline = buffer_.find('\n')) != std::string::npos) {
+    const std::optional<Message> message = from_line(buffer_.substr(0, newline));
+    buffer_.erase(0, newline + 1);
+    if (!message) continue;
+    take_up(*message);
+    said.push_back(*message);
+  }
+  return open;
+}
+
+void DrawWorker::take_up(const Message& message) {
+  if (message.outcome) {
+    spoilt_ = spoilt_ || !was_scored(message.outcome->status);
+    std::erase_if(draw_.runs, [&](const DrawTask::Run& run) {
+      const MethodInfo& info = run.method->info;
+      return info.kind == message.outcome->kind && info.name == message.outcome->method &&
+             run.setting == message.outcome->setting;
+    });
+  } else if (message.is_last()) {
+    busy_ = false;
+  }
+}
+
+Process::End DrawWorker::dismiss() {
+  if (!busy_) process_.tell("\n");
+  return process_.wait();
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/sweep/sweep_plan.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/methods/external_method.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+using nlohmann::json;
+
+// of a method's time-out: by then a command of somebody else's is ended by what knows all that it has started
+constexpr double kOwnShare = 0.9;
+
+Setting setting_from(const json& pair) {
+  return {pair.at(0).get<std::string>(), pair.at(1).get<double>()};
+}
+
+json to_json(const Setting& setting) {
+  return json::array({setting.key, setting.value});
+}
+
+}  // namespace
+
+SweepPlan::SweepPlan(const DataRoot& data, const Suite& suite, const SweepOptions& options,
+                     const std::filesystem::path& database)
+    : suite_(suite),
+      options_(options),
+      kept_(database),
+      methods_(find_methods_within(suite.methods, kOwnShare * suite.timeout_s)) {
+  for (const Variation& curve : suite.curves) {
+    for (const Setting& setting : curve.settings())
+      (reach(setting) == Reach::simulation ? simulated_ : shared_).push_back(setting);
+  }
+  for (const std::string& name : suite.scenarios) {
+    Planned planned{name, load_scenario(data, name), {}};
+    planned.methods = applicable(methods_, planned.scenario.robot.type);
+    scenarios_.push_back(std::move(planned));
+  }
+  if (!suite.recordings.empty()) {
+    for (RecordedDraw& recording : find_recordings(suite.recordings, suite.recordings_folder)) {
+      std::vector<MethodPointer> own = applicable(methods_, recording);
+      recordings_.push_back({std::move(recording), std::move(own)});
+    }
+  }
+  const auto idle = [](const auto& each) { return each.methods.empty(); };
+  if (std::all_of(scenarios_.begin(), scenarios_.end(), idle) &&
+      std::all_of(recordings_.begin(), recordings_.end(), idle)) {
+    throw BadInput("suite " + suite.name + ": none of its methods applies to any of its scenarios");
+  }
+  // a catalogue that cannot be drawn from is the caller's mistake, not an outcome
+  for (const Planned& each : scenarios_) draw(data, each.scenario, suite.first_seed);
+  next_.seed = suite.first_seed;
+  next_.past_seeds = scenarios_.empty();
+}
+
+std::uint64_t SweepPlan::draws_total() const {
+  const std::uint64_t seeds = suite_.last_seed - suite_.first_seed + 1;
+  return recordings_.size() + seeds * scenarios_.size() * simulated_.size();
+}
+
+void SweepPlan::require_same_recordings(const Results& results) const {
+  for (const Recorded& each : recordings_) {
+    for (const Outcome& row : results.outcomes_of(each.recording.name, kRecordingSeed)) {
+      if (row.recording_digest.empty() || row.recording_digest == each.recording.digest) continue;
+      throw BadInput(each.recording.path.string() + ": has digest " + each.recording.digest +
+                     ", the results were made of one with " + row.recording_digest + ": name another database");
+    }
+  }
+}
+
+void SweepPlan::advance() {
+  if (next_.recording < recordings_.size()) {
+    ++next_.recording;
+    return;
+  }
+  if (++next_.setting < simulated_.size()) return;
+  next_.setting = 0;
+  if (++next_.scenario < scenarios_.size()) return;
+  next_.scenario = 0;
+  next_.past_seeds = next_.seed == suite_.last_seed;
+  ++next_.seed;
+}
+
+DrawTask SweepPlan::next(const Results& results) const {
+  return next_.recording < recordings_.size() ? of_recording(results) : of_scenario(results);
+}
+
+/// Adds to the task what has no row yet with `setting`, or one that is to be run again.
+void SweepPlan::add_missing(const std::vector<MethodPointer>& methods, const std::vector<Outcome>& held,
+                            const Setting& setting, DrawTask& task) const {
+  const auto stands = [&](const MethodInfo& info) {
+    return std::any_of(held.begin(), held.end(), [&](const Outcome& row) {
+      return row.kind == info.kind && row.method == info.name && row.setting == setting &&
+             std::find(options_.again.begin(), options_.again.end(), row.status) == options_.again.end();
+    });
+  };
+  for (const MethodPointer& method : methods) {
+    if (concerns(setting, method->info) && !stands(method->info)) task.runs.push_back({method.get(), setting});
+  }
+}
+
+DrawTask SweepPlan::of_recording(const Results& results) const {
+  const Recorded& recorded = recordings_[next_.recording];
+  DrawTask task{recorded.recording.name, nullptr, &recorded.recording, kRecordingSeed, {}, {}, {}};
+  add_missing(recorded.methods, results.outcomes_of(task.name, task.seed), {}, task);
+  return task;
+}
+
+DrawTask SweepPlan::of_scenario(const Results& results) const {
+  const Planned& planned = scenarios_[next_.scenario];
+  const Setting& simulated = simulated_[next_.setting];
+  DrawTask task{planned.scenario.name, &planned.scenario, nullptr, next_.seed, simulated, {}, {}};
+  for (const RejectedDraw& rejected : results.rejected_of(task.name, task.seed)) {
+    if (rejected.setting == simulated) return task;
+  }
+  const std::vector<Outcome> held = results.outcomes_of(task.name, task.seed);
+  add_missing(planned.methods, held, simulated, task);
+  if (!simulated.is_plain()) return task;
+  for (const Setting& setting : shared_) add_missing(planned.methods, held, setting, task);
+  const Keep::Which which = options_.keep.which;
+  if (which == Keep::Which::all) task.keeping = keeping(planned, task, Keeping::When::always);
+  if (which == Keep::Which::failed) task.keeping = keeping(planned, task, Keeping::When::if_failed);
+  return task;
+}
+
+bool SweepPlan::has(const DrawName& draw) const {
+  return std::any_of(scenarios_.begin(), scenarios_.end(),
+                     [&](const Planned& planned) { return planned.scenario.name == draw.scenario; });
+}
+
+DrawTask SweepPlan::again(const DrawName& draw, const Results& results) const {
+  DrawTask task{draw.scenario, nullptr, nullptr, draw.seed, {}, {}, {}};
+  for (const Planned& planned : scenarios_) {
+    if (planned.scenario.name != draw.scenario) continue;
+    task.scenario = &planned.scenario;
+    for (const Outcome& row : results.outcomes_of(draw.scenario, draw.seed)) {
+      if (!row.setting.is_plain() || !was_scored(row.status)) continue;
+      for (const MethodPointer& method : planned.methods) {
+        if (method->info.kind == row.kind && method->info.name == row.method) task.runs.push_back({method.get(), {}});
+      }
+    }
+    task.keeping = keeping(planned, task, Keeping::When::always);
+  }
+  return task;
+}
+
+Keeping SweepPlan::keeping(const Planned& planned, const DrawTask& task, Keeping::When when) const {
+  Keeping out{when, kept_.folder_of({task.name, task.seed}), {}, options_.versions};
+  out.command = "tumble run " + shell_word(planned.asked) + " --seed " + std::to_string(task.seed);
+  for (const std::string& method : suite_.methods) out.command += " --method " + shell_word(method);
+  out.command += " -o " + shell_word(task.name + "_" + std::to_string(task.seed));
+  return out;
+}
+
+std::string SweepPlan::to_line(const DrawTask& task) const {
+  json runs = json::array();
+  for (const DrawTask::Run& run : task.runs) {
+    const auto at =
+        std::find_if(methods_.begin(), methods_.end(), [&](const auto& m) { return m.get() == run.method; });
+    runs.push_back({at - methods_.begin(), to_json(run.setting)});
+  }
+  const auto scenario = std::find_if(scenarios_.begin(), scenarios_.end(),
+                                     [&](const Planned& each) { return &each.scenario == task.scenario; });
+  const auto recording = std::find_if(recordings_.begin(), recordings_.end(),
+                                      [&](const Recorded& each) { return &each.recording == task.recording; });
+  return json{{"scenario", scenario - scenarios_.begin()},
+              {"recording", recording - recordings_.begin()},
+              {"seed", task.seed},
+              {"setting", to_json(task.setting)},
+              {"keep", static_cast<int>(task.keeping.when)},
+              {"runs", std::move(runs)}}
+             .dump() +
+         "\n";
+}
+
+DrawTask SweepPlan::from_line(const std::string& line) const {
+  const json object = json::parse(line);
+  DrawTask task;
+  task.seed = object.at("seed").get<std::uint64_t>();
+  task.setting = setting_from(object.at("setting"));
+  for (const json& run : object.at("runs"))
+    task.runs.push_back({methods_.at(run.at(0).get<std::size_t>()).get(), setting_from(run.at(1))});
+  if (const auto at = object.at("recording").get<std::size_t>(); at < recordings_.size()) {
+    task.recording = &recordings_[at].recording;
+    task.name = task.recording->name;
+    return task;
+  }
+  const Planned& planned = scenarios_.at(object.at("scenario").get<std::size_t>());
+  task.scenario = &planned.scenario;
+  task.name = planned.scenario.name;
+  task.keeping = keeping(planned, task, static_cast<Keeping::When>(object.at("keep").get<int>()));
+  return task;
+}
+
+}  // namespace tumble::scenarios

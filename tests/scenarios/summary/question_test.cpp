@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/summary/question.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <optional>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/sweep/temporary_folder.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+const std::string kError = "rate_error_clipped_median_rad_s";
+
+Question question_of(std::uint64_t seeds) {
+  Question question;
+  question.method = "rate/tumble";
+  question.against = "rate/raw";
+  question.metric = kError;
+  question.last_seed = seeds;
+  question.scenarios = {"hill"};
+  return question;
+}
+
+class QuestionTest : public testing::TemporaryFolder {
+ protected:
+  using Value = std::function<std::optional<double>(std::uint64_t)>;
+
+  /// Seeds first to last of a scenario; no value: the run failed.
+  void add(const std::string& scenario, std::uint64_t first, std::uint64_t last, const Value& tumble,
+           const Value& raw) {
+    Results results(path(), Results::Mode::create_or_append);
+    results.in_one_transaction([&] {
+      for (std::uint64_t seed = first; seed <= last; ++seed) {
+        for (const auto& [name, value] : {std::pair("tumble", &tumble), std::pair("raw", &raw)}) {
+          Outcome row{scenario, seed, Kind::rate, name, OutcomeStatus::failed, "", {}, "", ""};
+          if (const std::optional<double> own = (*value)(seed)) {
+            row.status = OutcomeStatus::ok;
+            row.scores = {{kError, *own}};
+          }
+          results.store(row);
+        }
+      }
+    });
+  }
+
+  std::vector<Answer> ask(const Question& question, std::uint64_t last_seed) const {
+    return answers(Results(path(), Results::Mode::read_only), question, last_seed);
+  }
+
+  std::filesystem::path path() const { return folder_ / "a.db"; }
+};
+
+TEST(Question, LooksAtEqualPartsOfTheSeeds) {
+  Question question = question_of(100);
+  question.first_seed = 11;
+  question.last_seed = 110;
+  question.looks = 4;
+  EXPECT_THAT(question.look_seeds(), ElementsAre(35, 60, 85, 110));
+  question.last_seed = 13;
+  question.looks = 20;
+  EXPECT_THAT(question.look_seeds(), ElementsAre(11, 12, 13));
+}
+
+TEST_F(QuestionTest, StopsAtTheLookThatAnswers) {
+  add(
+      "hill", 1, 100, [](auto) { return 1.0; }, [](auto) { return 2.0; });
+  const Question question = question_of(100);
+  // a look that was too early to answer, then the first one that does; what comes after it changes nothing
+  EXPECT_EQ(ask(question, 10).front().finding, Finding::undecided);
+  const std::vector<Answer> at_end = ask(question, 100);
+  EXPECT_EQ(at_end.front().finding, Finding::better);
+  EXPECT_LT(at_end.front().seeds, 50u);
+  EXPECT_EQ(at_end.front().seeds % 5, 0u);
+  EXPECT_EQ(at_end.front().better, static_cast<std::int64_t>(at_end.front().seeds));
+  EXPECT_GE(at_end.front().better, at_end.front().needed);
+  EXPECT_EQ(ask(question, at_end.front().seeds).front().finding, Finding::better);
+  EXPECT_EQ(ask(question, at_end.front().seeds - 1).front().finding, Finding::undecided);
+  EXPECT_TRUE(all_answered(at_end));
+}
+
+TEST_F(QuestionTest, TheOtherWayRoundIsWorse) {
+  add(
+      "hill", 1, 100, [](auto) { return 1.0; }, [](auto) { return 2.0; });
+  Question question = question_of(100);
+  std::swap(question.method, question.against);
+  EXPECT_EQ(ask(question, 100).front().finding, Finding::worse);
+}
+
+// better by 0.1 on every draw is not better by 10 % of 2, nor by 0.15, but by 0.05
+TEST_F(QuestionTest, AMarginAsksForMore) {
+  add(
+      "hill", 1, 60, [](auto) { return 1.9; }, [](auto) { return 2.0; });
+  Question question = question_of(60);
+  question.margin = {0.1, true};
+  EXPECT_EQ(ask(question, 60).front().finding, Finding::worse);
+  question.margin = {0.15, false};
+  EXPECT_EQ(ask(question, 60).front().finding, Finding::worse);
+  question.margin = {0.05, false};
+  EXPECT_EQ(ask(question, 60).front().finding, Finding::better);
+}
+
+// a failed run is the worst, with a margin too; where both fail neither is better
+TEST_F(QuestionTest, FailuresRankAsTheWorst) {
+  const auto odd = [](std::uint64_t seed) { return seed % 2 == 1; };
+  add(
+      "hill", 1, 80, [&](auto seed) { return odd(seed) ? std::optional<double>() : std::optional<double>(5.0); },
+      [](auto) { return std::optional<double>(); });
+  Question question = question_of(80);
+  question.margin = {0.1, true};
+  const Answer answer = ask(question, 80).front();
+  EXPECT_EQ(answer.finding, Finding::better);
+  EXPECT_EQ(answer.worse, 0);
+  EXPECT_EQ(answer.better, static_cast<std::int64_t>(answer.seeds) / 2);
+}
+
+// each of two scenarios has half of the risk; one without an answer keeps the sweep going
+TEST_F(QuestionTest, EveryScenarioIsAsked) {
+  add(
+      "hill", 1, 100, [](auto) { return 1.0; }, [](auto) { return 2.0; });
+  add(
+      "cliff", 1, 100, [](auto seed) { return seed % 2 == 0 ? 1.0 : 3.0; }, [](auto) { return 2.0; });
+  Question question = question_of(100);
+  question.scenarios = {"hill", "cliff"};
+  const std::vector<Answer> both = ask(question, 100);
+  ASSERT_EQ(both.size(), 2u);
+  EXPECT_EQ(both[0].finding, Finding::better);
+  EXPECT_EQ(both[1].finding, Finding::undecided);
+  EXPECT_EQ(both[1].seeds, 100u);
+  EXPECT_FALSE(all_answered(both));
+  EXPECT_GE(both[0].seeds, ask(question_of(100), 100).front().seeds);
+}
+
+TEST_F(QuestionTest, IsClaimedBeforeTheDraws) {
+  {
+    Results results(path(), Results::Mode::create_or_append);
+    claim(results, question_of(100), path());
+  }
+  add(
+      "hill", 1, 1, [](auto) { return 1.0; }, [](auto) { return 2.0; });
+  Results results(path(), Results::Mode::create_or_append);
+  EXPECT_NO_THROW(claim(results, question_of(100), path())) << "resumed";
+  const auto refused = [&](const Question& question, const std::string& what) {
+    try {
+      claim(results, question, path());
+      ADD_FAILURE() << what;
+    } catch (const BadInput& error) {
+      EXPECT_THAT(error.what(), HasSubstr(what));
+    }
+  };
+  refused(question_of(200), "was asked");
+  results.set_note(kQuestionNote, "");
+  refused(question_of(100), "before the question was asked");
+}
+
+TEST_F(QuestionTest, OfNothingIsOpen) {
+  Results(path(), Results::Mode::create_or_append);
+  const Answer answer = ask(question_of(100), 100).front();
+  EXPECT_EQ(answer.finding, Finding::undecided);
+  EXPECT_EQ(answer.better + answer.worse, 0);
+}
+
+TEST(Question, RefusesWhatCannotBeAsked) {
+  const auto refused = [](const std::function<void(Question&)>& spoil, const std::string& what) {
+    Question question = question_of(100);
+    spoil(question);
+    try {
+      require_sound(question);
+      ADD_FAILURE() << what;
+    } catch (const BadInput& error) {
+      EXPECT_THAT(error.what(), HasSubstr(what));
+    }
+  };
+  EXPECT_NO_THROW(require_sound(question_of(1)));
+  refused([](Question& q) { q.method = "tumble"; }, "needs its kind");
+  refused([](Question& q) { q.against = "slam/icp"; }, "of two kinds");
+  refused([](Question& q) { q.against = q.method; }, "better than itself");
+  refused([](Question& q) { q.metric = "rate_error"; }, "not known");
+  refused([](Question& q) { q.metric = "estimate_cpu_s"; }, "no better side");
+  refused([](Question& q) { q.metric = "translation_error_end_m"; }, "is of kind");
+  refused([](Question& q) { q.margin.value = -0.1; }, "margin is -0.1");
+  refused([](Question& q) { q.margin.value = std::numeric_limits<double>::quiet_NaN(); }, "margin is nan");
+  refused([](Question& q) { q.risk = 1.0; }, "risk is 1");
+  refused([](Question& q) { q.looks = 0; }, "looks are 0");
+}
+
+}  // namespace
+}  // namespace tumble::scenarios

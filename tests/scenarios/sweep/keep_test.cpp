@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/sweep/keep.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <limits>
+#include <optional>
+
+#include "scenarios/draw/scenario.hpp"
+#include "scenarios/errors.hpp"
+#include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/recordings/recording_file.hpp"
+#include "scenarios/sweep/merge.hpp"
+#include "scenarios/sweep/small_catalogue.hpp"
+#include "scenarios/sweep/sweep.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+TEST(Keep, IsReadAndWritten) {
+  for (const char* text : {"none", "failed", "all", "worst:1", "worst:1000"})
+    EXPECT_EQ(to_string(parse_keep(text)), text);
+  for (const char* text :
+       {"", "some", "worst", "worst:", "worst:0", "worst:1001", "worst:-1", "worst:2x", "worst: 2"}) {
+    try {
+      parse_keep(text);
+      ADD_FAILURE() << text;
+    } catch (const BadInput& error) {
+      EXPECT_THAT(error.what(), HasSubstr("must be none, failed, all, or worst:N"));
+    }
+  }
+}
+
+class KeepTest : public testing::SmallCatalogue {
+ protected:
+  Suite suite(std::uint64_t first, std::uint64_t last) const {
+    Suite suite;
+    suite.name = "small";
+    suite.scenarios = {"roll"};
+    suite.first_seed = first;
+    suite.last_seed = last;
+    suite.methods = {"rate/raw", "position/rolling"};
+    suite.timeout_s = 60;
+    return suite;
+  }
+
+  SweepProgress run(const std::string& name, std::uint64_t first, std::uint64_t last, const std::string& keep,
+                    int jobs = 1) const {
+    SweepOptions options;
+    options.jobs = jobs;
+    options.keep = parse_keep(keep);
+    return sweep(data(), suite(first, last), folder_ / name, options);
+  }
+
+  /// Every file that is kept, with its bytes.
+  std::map<std::string, std::string> kept(const std::string& name) const {
+    std::map<std::string, std::string> out;
+    const std::filesystem::path root = folder_ / (name + ".files") / "kept";
+    if (!std::filesystem::exists(root)) return out;
+    for (const auto& each : std::filesystem::recursive_directory_iterator(root)) {
+      if (!each.is_regular_file()) continue;
+      std::ifstream file(each.path(), std::ios::binary);
+      out[each.path().lexically_relative(root).string()] =
+          std::string(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+    }
+    return out;
+  }
+
+  std::vector<std::uint64_t> seeds(const std::string& name) const {
+    std::vector<std::uint64_t> out;
+    for (const DrawName& draw : KeptDraws(folder_ / name).found()) out.push_back(draw.seed);
+    return out;
+  }
+};
+
+// rows of two methods by hand: what is kept follows from them alone
+TEST_F(KeepTest, WhichDrawsFollowsFromTheRows) {
+  const auto path = folder_ / "rows.db";
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  {
+    Results results(path, Results::Mode::create_or_append);
+    const auto add = [&](std::uint64_t seed, const char* method, std::optional<double> value) {
+      Outcome row{"roll", seed, Kind::position, method, OutcomeStatus::failed, "", {}, "", ""};
+      if (value) row.status = OutcomeStatus::ok;
+      if (value && value == value) row.scores = {{headline_metrics(Kind::position).front(), *value}};
+      results.store(row);
+    };
+    const std::optional<double> failed;
+    for (const auto& [seed, value] : std::initializer_list<std::pair<std::uint64_t, std::optional<double>>>{
+             {1, 0.1}, {2, 0.5}, {3, failed}, {4, 0.5}, {5, 0.2}, {6, nan}}) {
+      add(seed, "rolling", value);
+      add(seed, "oracle", 1.0 - value.value_or(0.0));  // is given the truth: says nothing of what to keep
+    }
+    add(7, "tumble", 0.3);
+  }
+  const Results results(path, Results::Mode::read_only);
+  const auto seeds_of = [&](const char* keep) {
+    std::vector<std::uint64_t> out;
+    for (const DrawName& draw : draws_to_keep(results, parse_keep(keep))) out.push_back(draw.seed);
+    return out;
+  };
+  EXPECT_THAT(seeds_of("none"), ElementsAre());
+  EXPECT_THAT(seeds_of("failed"), ElementsAre(3));
+  EXPECT_THAT(seeds_of("all"), ElementsAre(1, 2, 3, 4, 5, 6, 7));
+  EXPECT_THAT(seeds_of("worst:1"), ElementsAre(3, 7));
+  EXPECT_THAT(seeds_of("worst:2"), ElementsAre(2, 3, 7)) << "of two equal ones the lower seed";
+  EXPECT_THAT(seeds_of("worst:9"), ElementsAre(1, 2, 3, 4, 5, 7)) << "what has no value is not ranked";
+}
+
+TEST_F(KeepTest, AllAreReadableAndTheSameForAnyNumberOfJobs) {
+  const SweepProgress progress = run("one.db", 1, 3, "all");
+  EXPECT_EQ(progress.kept, 3u);
+  EXPECT_EQ(progress.to_keep, 3u);
+  EXPECT_EQ(progress.not_kept, "");
+  const auto one = kept("one.db");
+  EXPECT_THAT(seeds("one.db"), ElementsAre(1, 2, 3));
+  EXPECT_EQ(one.at("roll/2/command"),
+            "tumble run roll --seed 2 --method rate/raw --method position/rolling -o roll_2\n");
+
+  const Results results(folder_ / "one.db", Results::Mode::read_only);
+  const std::filesystem::path draw = KeptDraws(folder_ / "one.db").folder_of({"roll", 2});
+  for (const Outcome& row : results.outcomes_of("roll", 2)) {
+    EXPECT_EQ(read_info(draw / "recording.h5").digest, row.recording_digest);
+    Kind kind = Kind::slam;
+    std::string method;
+    const Estimate estimate = read_estimate(estimate_folder(draw, row.kind, row.method), kind, method, Frame::body);
+    EXPECT_EQ(kind, row.kind);
+    EXPECT_EQ(method, row.method);
+    EXPECT_TRUE(estimate.status.ok());
+  }
+
+  run("two.db", 1, 3, "all", 2);
+  EXPECT_EQ(kept("two.db"), one);
+}
+
+// bounded, and the same bits however the sweep was cut up
+TEST_F(KeepTest, TheWorstAreTheSameResumedAndInShards) {
+  run("whole.db", 1, 4, "worst:1");
+  const auto whole = kept("whole.db");
+  ASSERT_GE(whole.size(), 4u);
+  EXPECT_LE(seeds("whole.db").size(), 2u) << "one for each method";
+
+  run("parts.db", 1, 2, "worst:1");
+  EXPECT_LE(seeds("parts.db").size(), 2u);
+  run("parts.db", 1, 4, "worst:1");
+  EXPECT_EQ(kept("parts.db"), whole);
+
+  run("shard_1.db", 1, 2, "worst:1");
+  run("shard_2.db", 3, 4, "worst:1", 2);
+  const std::vector<std::filesystem::path> shards = {folder_ / "shard_1.db", folder_ / "shard_2.db"};
+  merge_results(folder_ / "merged.db", shards, false);
+  EXPECT_EQ(merge_kept(folder_ / "merged.db", shards), seeds("whole.db").size());
+  EXPECT_EQ(kept("merged.db"), whole);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "merged.db.files/kept/.unfinished"));
+}
+
+// what a kill left half done is not taken for a draw, and what is missing is made again
+TEST_F(KeepTest, WhatIsMissingIsMadeAgain) {
+  run("a.db", 1, 2, "all");
+  const auto before = kept("a.db");
+  const KeptDraws draws(folder_ / "a.db");
+  std::filesystem::remove_all(draws.folder_of({"roll", 1}) / "estimates" / "rate-raw");
+  std::filesystem::remove_all(draws.folder_of({"roll", 2}));
+  std::filesystem::create_directories(folder_ / "a.db.files/kept/.unfinished/roll-2");
+  EXPECT_FALSE(draws.holds({"roll", 2}, {}));
+  const SweepProgress progress = run("a.db", 1, 2, "all");
+  EXPECT_EQ(progress.outcomes, 0u) << "the rows stand";
+  EXPECT_EQ(progress.kept, 2u);
+  EXPECT_EQ(kept("a.db"), before);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a.db.files/kept/.unfinished"));
+
+  // another rule takes away what it does not want, and no rule leaves it
+  run("a.db", 1, 2, "none");
+  EXPECT_EQ(kept("a.db"), before);
+  EXPECT_EQ(run("a.db", 1, 2, "failed").to_keep, 0u);
+  EXPECT_TRUE(kept("a.db").empty());
+}
+
+TEST_F(KeepTest, ADiskThatRefusesCostsTheResultsNothing) {
+  write("a.db.files/kept", "a file where the folder would be");
+  const SweepProgress progress = run("a.db", 1, 1, "all");
+  EXPECT_EQ(progress.outcomes, 2u);
+  EXPECT_EQ(progress.not_ok(), 0u);
+  EXPECT_EQ(progress.kept, 0u);
+  EXPECT_EQ(progress.to_keep, 1u);
+  EXPECT_THAT(progress.not_kept, HasSubstr("kept"));
+}
+
+TEST_F(KeepTest, TwoRulesAreNotMerged) {
+  run("a.db", 1, 1, "all");
+  run("b.db", 2, 2, "failed");
+  const std::vector<std::filesystem::path> in = {folder_ / "a.db", folder_ / "b.db"};
+  merge_results(folder_ / "out.db", in, false);
+  EXPECT_EQ(merge_kept(folder_ / "out.db", in), 0u);
+  EXPECT_TRUE(kept("out.db").empty());
+}
+
+}  // namespace
+}  // namespace tumble::scenarios

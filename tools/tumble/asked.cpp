@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/tumble/asked.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "scenarios/draw/scenario.hpp"
+#include "scenarios/errors.hpp"
+#include "tools/tumble/arguments.hpp"
+
+namespace tumble::tools {
+
+using scenarios::BadInput;
+using scenarios::Question;
+
+scenarios::Margin parse_margin(const std::string& option, const std::string& text) {
+  const bool relative = text.ends_with('%');
+  double value = 0.0;
+  const std::string number = relative ? text.substr(0, text.size() - 1) : text;
+  if (!CLI::detail::lexical_cast(number, value) || !std::isfinite(value) || value < 0.0)
+    throw BadInput(option + " is '" + text + "', must be a number from 0 on, or such a number and %");
+  return {relative ? value / 100.0 : value, relative};
+}
+
+Question parse_question(const std::string& text, double risk, const scenarios::Suite& suite) {
+  std::vector<std::string> words;
+  std::stringstream stream(text + ":");  // what ends in a colon has an empty word behind it
+  for (std::string word; std::getline(stream, word, ':');) words.push_back(word);
+  if (words.size() < 3 || words.size() > 4 || std::find(words.begin(), words.end(), "") != words.end())
+    throw BadInput("--until is '" + text + "', must be A:B:METRIC or A:B:METRIC:MARGIN, as in rate/tumble:rate/raw:" +
+                   scenarios::headline_metrics(scenarios::Kind::rate).front() + ":10%");
+  std::vector<std::string> known;
+  for (const scenarios::MethodPointer& method : scenarios::find_methods(suite.methods))
+    known.push_back(std::string(to_string(method->info.kind)) + "/" + method->info.name);
+  for (const std::string& name : {words[0], words[1]}) require_known("method of the suite", name, known);
+  Question question;
+  question.method = words[0];
+  question.against = words[1];
+  question.metric = words[2];
+  if (words.size() == 4) question.margin = parse_margin("the margin of --until", words[3]);
+  question.risk = risk;
+  question.first_seed = suite.first_seed;
+  question.last_seed = suite.last_seed;
+  question.scenarios = suite.scenarios;
+  require_sound(question);
+  return question;
+}
+
+Table table_of(const std::vector<scenarios::Answer>& answers, const Question& question) {
+  Table table(fmt::format("is {} better than {} in {}{}? risk {:g} of an answer where neither is", question.method,
+                          question.against, question.metric,
+                          question.margin.value == 0.0 ? ""
+                          : question.margin.relative   ? fmt::format(" by {:g} %", 100.0 * question.margin.value)
+                                                       : fmt::format(" by {:g}", question.margin.value),
+                          question.risk),
+              {"scenario", "answer", "seeds looked at", "better : worse", "an answer from"});
+  table.align_right_from(2);
+  for (const scenarios::Answer& each : answers) {
+    table.add_row({each.scenario, to_string(each.finding), std::to_string(each.seeds),
+                   fmt::format("{} : {}", each.better, each.worse), std::to_string(each.needed)});
+  }
+  return table;
+}
+
+nlohmann::json json_of(const std::vector<scenarios::Answer>& answers, const Question& question) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const scenarios::Answer& each : answers) {
+    rows.push_back({{"scenario", each.scenario},
+                    {"finding", to_string(each.finding)},
+                    {"seeds", each.seeds},
+                    {"better", each.better},
+                    {"worse", each.worse},
+                    {"needed", each.needed}});
+  }
+  return {{"question", question.describe()}, {"answers", std::move(rows)}};
+}
+
+}  // namespace tumble::tools
