@@ -21,8 +21,8 @@ namespace nb = nanobind;
 ///
 /// evalio hands out a sweep when its first return was fired; it waits here for the samples that cover it, as a robot
 /// has it. Poses saved are each sweep's last word, some 0.3 s after its end. evalio has no call at the end of a run, so
-/// that what is younger then stays unsaid, unless somebody calls `finish`. What the estimator refuses (TumbleError) is
-/// left out with a warning of Python's, and the rest goes on.
+/// that what is younger then stays unsaid (half a second), unless somebody calls `finish`. What the estimator refuses
+/// (TumbleError) is left out with a warning of Python's, and the rest goes on.
 class Feed : public evalio::Pipeline {
  public:
   /// `sweep_length_ns`: from the first return's time to the end of the sweep.

@@ -27,8 +27,8 @@ def _coordinate(parameter: Any, axis: str) -> str:
 class Tumble(needed_bindings().Feed):
     """TumblingOdometry: a body that tumbles, with an IMU whose gyro may clip and a lidar whose sweeps are bent.
 
-    Poses are of the IMU, at its samples inside of sweeps: each sweep's last word, 0.3 s after its end. evalio has no call at the end
-    of a run, so what is younger then has no pose in `evalio run`; finish() gives it. The parameters are those of
+    Poses are of the IMU, at its samples inside of sweeps: each sweep's last word, 0.3 s after its end. `evalio run` ends when
+    it hands out the last sweep, so that the last half second has no pose; finish() gives it to who feeds the pipeline himself. The parameters are those of
     `tumble.TumblingOdometry.parameters()` that a data set does not state, and those that it cannot: lever arm from the centre of mass
     to the IMU (IMU axes), ranges of the IMU (0: not stated), the box of the robot's own returns (lidar axes; all 0: none).
     """
