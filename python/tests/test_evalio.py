@@ -14,7 +14,7 @@ import tumble
 evalio = pytest.importorskip("evalio", reason="PyPI's evalio")
 pytest.importorskip("tumble_evalio", reason="python/evalio")
 
-from tumble.evalio.recordings import ORIGIN_NS, Grid  # noqa: E402
+from tumble.evalio.clouds import ORIGIN_NS, Grid  # noqa: E402
 
 pytestmark = pytest.mark.program
 ROOT = pathlib.Path(__file__).parents[2]
@@ -128,7 +128,7 @@ def test_recordings_as_a_data_set(recordings, tmp_path):
         import numpy as np
         from evalio import datasets, types
         import tumble
-        from tumble.evalio.recordings import ORIGIN_NS
+        from tumble.evalio.clouds import ORIGIN_NS
         sequence = datasets.get_sequence("tumble/hill")
         recording = sequence.recording()
         sweeps = [each for each in sequence.lidar()]
@@ -167,6 +167,26 @@ def test_without_a_fixed_sequence_returns_stand_one_after_the_other():
     cells = grid.cells(ring, offset)
     assert cells.shape == (4, np.bincount(ring).max()) and sorted(cells[cells >= 0]) == list(range(200))
     assert all((np.diff(row[row >= 0]) > 0).all() and (ring[row[row >= 0]] == k).all() for k, row in enumerate(cells))
+
+
+def test_a_fixed_sequence_has_a_column_each():
+    ring, column = np.repeat(np.arange(3), 50), np.tile(np.arange(50), 3)
+    offset = column * 1000 + ring * 300
+    order = np.argsort(offset)
+    ring, offset, column = ring[order].astype(np.uint16), offset[order].astype(np.uint32), column[order]
+    lidar = tumble.Lidar(np.array([0]), np.array([0, 150], np.uint64), np.ones((150, 3), np.float32), offset, 50_000, ring=ring)
+    grid = Grid(lidar)
+    assert (grid.rows, grid.columns, grid.sequence_ns) == (3, 50, 1000)
+    assert np.array_equal(grid.cells(ring, offset)[ring, column], np.arange(150))
+    offset[ring == 1] //= 2  # of ring 1 two share a column: nobody is lost
+    assert sorted(cell for cell in Grid(lidar).cells(ring, offset).ravel() if cell >= 0) == list(range(150))
+
+
+def test_more_rings_than_evalio_holds():
+    lidar = tumble.Lidar(np.array([0]), np.array([0, 2], np.uint64), np.ones((2, 3), np.float32), np.arange(2, dtype=np.uint32), 10**8,
+                         ring=np.array([0, 256], np.uint16))
+    with pytest.raises(tumble.TumbleError, match="rings is 257"):
+        Grid(lidar)
 
 
 @pytest.mark.parametrize("name, value, word", [("TUMBLE_EVALIO_SEEDS", "1-8", "FIRST..LAST"), ("TUMBLE_EVALIO_SEEDS", "8..1", "FIRST..LAST"),

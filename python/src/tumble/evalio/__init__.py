@@ -7,6 +7,7 @@ Needs evalio 0.6.1 or newer and the compiled half: `pip install ./python ./pytho
 TumbleError `evalio` here: evalio itself passes over an ImportError and does not say why.
 """
 from .pipeline import Tumble
-from .recordings import Recordings, read_poses
+from .poses import read_poses
+from .recordings import Recordings
 
 __all__ = ["Recordings", "Tumble", "read_poses"]

@@ -52,7 +52,7 @@ class Tumble(needed_bindings().Feed):
 
     @staticmethod
     def url() -> str:
-        return "python/README.md"
+        return "-"
 
     @staticmethod
     def default_params() -> dict[str, bool | int | float | str]:

@@ -8,39 +8,22 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from .. import _tumble, sheets
 from ..errors import TumbleError
-from ..estimates import Trajectory, read_tum
-from ..placing import rotations
 from ..program import record
-from ..recordings import Imu, Lidar, Recording, Sweep, read
+from ..recordings import Recording, read
 from ..replay import RIG_BODY_L, sheet_of
+from .clouds import Grid, measurement, stamp
 from .needed import needed_evalio
+from .poses import pose
 
 needed_evalio()
 from evalio import types  # noqa: E402
-from evalio._cpp import helpers  # noqa: E402
 from evalio.datasets import Dataset, RawDataIter  # noqa: E402
 
-Array = npt.NDArray[Any]
-
-#: evalio's clock begins at 0 and has no sign: ours begins here.
-ORIGIN_NS = 1_000_000_000_000
 #: Scenarios of the rig, which has a lidar.
 SCENARIOS = ("hill", "scree", "forest", "stairs", "cliff", "bare", "throw", "drop", "twirl", "stroll", "hill_upright", "hill_consumer")
-
-_POINT = np.dtype([("x", "f4"), ("y", "f4"), ("z", "f4"), ("intensity", "f4"), ("t", "u4"), ("range", "u4"), ("ring", "u2")])
-_TYPES = {"f4": "FLOAT32", "u4": "UINT32", "u2": "UINT16"}
-
-
-def stamp(time_ns: int) -> types.Stamp:
-    return types.Stamp(sec=(ORIGIN_NS + time_ns) // 10**9, nsec=(ORIGIN_NS + time_ns) % 10**9)
-
-
-def pose(T: Array) -> types.SE3:
-    return types.SE3(types.SO3.from_mat(np.ascontiguousarray(T[:3, :3])), T[:3, 3])
 
 
 def seeds() -> range:
@@ -63,58 +46,6 @@ def files() -> dict[str, pathlib.Path]:
     return out
 
 
-class Grid:
-    """How the returns of a lidar lie in rows (rings) and columns. Where its rings fire in a fixed sequence a column is one sequence;
-    else the returns of a ring stand in its columns one after the other."""
-
-    def __init__(self, lidar: Lidar) -> None:
-        ring, offset = np.asarray(lidar.ring).astype(np.int64), lidar.offset_ns.astype(np.int64)
-        self.rows = int(ring.max(initial=0)) + 1
-        first = np.unique(offset[ring == 0])
-        step = int(np.gcd.reduce(np.diff(first))) if len(first) > 1 else 0
-        longest = max((int(np.bincount(sweep.ring).max(initial=0)) for sweep in lidar), default=0)
-        self.sequence_ns = step if step and lidar.sweep_period_ns // step <= 4 * max(longest, 1) else 0
-        self.columns = max(1, longest if not self.sequence_ns else int(offset.max()) // self.sequence_ns + 1)
-
-    def cells(self, ring: Array, offset_ns: Array) -> Array:
-        """(rows, columns): index of the return in each cell, -1 where there is none."""
-        if self.sequence_ns:
-            column = offset_ns.astype(np.int64) // self.sequence_ns
-        else:
-            order = np.argsort(ring, kind="stable")
-            begins = np.searchsorted(ring[order], ring[order], side="left")
-            column = np.empty(len(ring), np.int64)
-            column[order] = np.arange(len(ring)) - begins
-        out = np.full((self.rows, self.columns), -1)
-        out[ring, column] = np.arange(len(ring))
-        return out
-
-
-def measurement(sweep: Sweep, grid: Grid, own_body_L: Any = None) -> types.LidarMeasurement:
-    """A dense cloud, row by row as evalio has them; cells without a return are 0. Converted by evalio, from the bytes.
-    own_body_L (2, 3): returns inside are left out."""
-    kept = np.ones(len(sweep.position), bool)
-    if own_body_L is not None:
-        kept = ~np.all((sweep.position > np.float32(own_body_L[0])) & (sweep.position < np.float32(own_body_L[1])), axis=1)
-    position, offset, ring = sweep.position[kept], sweep.offset_ns[kept], sweep.ring[kept]
-    cells = grid.cells(ring, offset)
-    there = cells >= 0
-    k = cells[there]
-    out = np.zeros((grid.rows, grid.columns), _POINT)
-    out["ring"], out["t"] = np.arange(grid.rows)[:, None], np.arange(grid.columns)[None, :] * grid.sequence_ns
-    for axis, name in enumerate("xyz"):
-        out[name][there] = position[k, axis]
-    out["intensity"][there], out["t"][there] = sweep.intensity[kept][k], offset[k]
-    out["range"][there] = 1000.0 * np.linalg.norm(position[k], axis=1)
-    metadata = helpers.PointCloudMetadata(stamp=stamp(sweep.start_ns), width=grid.columns, height=grid.rows, point_step=_POINT.itemsize,
-                                          row_step=_POINT.itemsize * grid.columns, is_bigendian=0, is_dense=1)
-    fields = [helpers.Field(name=name, datatype=getattr(helpers.DataType, _TYPES[kind.str[1:]]), offset=at)
-              for name, (kind, at, *_) in (_POINT.fields or {}).items()]
-    cloud = helpers.pc2_to_evalio(metadata, fields, out.tobytes())
-    helpers.fill_col_row_major(cloud)
-    return cloud
-
-
 def _imu_params(sheet: _tumble.ImuSheet, gravity_m_s2: float, device: str) -> types.ImuParams:
     return types.ImuParams(gyro=sheet.gyro_noise_rad_s_sqrt_hz, accel=sheet.accel_noise_m_s2_sqrt_hz, rate=sheet.rate_hz,
                            gravity=np.array([0.0, 0.0, -gravity_m_s2]), brand="simulated", model=device or "-")
@@ -124,35 +55,6 @@ def _lidar_params(rows: int, columns: int, rate_hz: float, device: str) -> types
     sheet = getattr(sheets, device, _tumble.LidarSheet)()
     return types.LidarParams(num_rows=rows, num_columns=columns, min_range=sheet.range_min_m, max_range=sheet.range_max_m, rate=rate_hz,
                              brand="simulated", model=device or "-")
-
-
-def read_poses(path: str | os.PathLike[str], imu: Imu | None = None) -> Trajectory:
-    """Poses of the IMU from a file of `evalio run` on this data set, with times of the recording: what `write_tum` and `score` take.
-
-    imu: of the recording, at rest for its first second: the whole way is turned so that the first pose is level as its specific force
-    says, with the yaw that it has. For pipelines whose world is their first pose. Ours is level by itself.
-    """
-    out = read_tum(path, separator=",")
-    out.time_ns = out.time_ns - ORIGIN_NS
-    if imu is not None and len(out):
-        resting = imu.time_ns <= imu.time_ns[0] + 10**9
-        up = imu.accel[resting].mean(axis=0)
-        turn = _turning(rotations(out.quaternion[:1])[0] @ (up / np.linalg.norm(up)))
-        out.position = (out.position - out.position[0]) @ rotations(turn[None])[0].T
-        out.quaternion = _product(turn, out.quaternion)
-    return out
-
-
-def _turning(up: Array) -> Array:
-    """The smallest turn that takes a unit vector to z: a quaternion."""
-    half = np.array([up[1], -up[0], 0.0, 1.0 + up[2]])
-    return half / np.linalg.norm(half) if np.linalg.norm(half) > 1e-9 else np.array([1.0, 0.0, 0.0, 0.0])
-
-
-def _product(p: Array, q: Array) -> Array:
-    """Of a quaternion with each of (N, 4), x y z w."""
-    vector = p[3] * q[:, :3] + q[:, 3:] * p[:3] + np.cross(p[:3], q[:, :3])
-    return np.concatenate([vector, p[3] * q[:, 3:] - q[:, :3] @ p[:3, None]], axis=1)
 
 
 def _draws() -> dict[str, tuple[str, int]]:
@@ -168,7 +70,7 @@ class _Sequences(Dataset):
 
     @staticmethod
     def url() -> str:
-        return "python/README.md"
+        return "-"
 
     def environment(self) -> str:
         return "simulated"
