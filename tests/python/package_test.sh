@@ -10,8 +10,9 @@ pip() { "$environment/bin/python" -m pip install --quiet --disable-pip-version-c
 
 # the wheel out of the source distribution alone, and what it may be: small, of no shared library but those of every system
 "$tree/python/make_wheel" "$work/wheel"
-pip --force-reinstall --no-deps "$work"/wheel/dist/*.whl
-pip "tumble[test]"
+wheel=$(echo "$work"/wheel/dist/*.whl)
+pip --force-reinstall --no-deps "$wheel"
+pip "$wheel[test]"
 "$environment/bin/python" "$tree/tests/python/wheel_check.py" "$environment" "$work/wheel/dist"
 # the compiled half of tumble.evalio, with nanobind of evalio's ABI
 pip 'evalio>=0.6.1,<0.7' 'nanobind>=2.13,<2.15' 'scikit-build-core>=1.1,<2' ninja
