@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstring>
 #include <string_view>
 
 #include "arrays.hpp"
@@ -89,14 +88,6 @@ void Keywords::done() const {
     for (std::size_t k = 0; k < known_.size(); ++k) text += (k == 0 ? ": " : ", ") + known_[k];
     raise_input("unknown", "keyword", nb::str(name.c_str()), nb::str(text.c_str()));
   }
-}
-
-bool hidden_by(const std::vector<const char*>& patterns, const std::string& name) {
-  return std::any_of(patterns.begin(), patterns.end(), [&](const char* pattern) {
-    const std::size_t length = std::strlen(pattern);
-    if (length > 0 && pattern[length - 1] == '*') return name.compare(0, length - 1, pattern, length - 1) == 0;
-    return name == pattern;
-  });
 }
 
 nb::object as_object(const Eigen::Vector3d& value) {

@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "tumble/common/fields_by_name.hpp"
 #include "tumble/common/parameters.hpp"
 
 /// The numbers of a `Params` as keywords of Python: what its fields say (common/parameters.hpp) is all that reading,
@@ -47,38 +48,19 @@ class Keywords {
   std::vector<std::string> known_;
 };
 
-/// Whether a name is hidden by a pattern: equal, or begins with it where the pattern ends in '*'.
-bool hidden_by(const std::vector<const char*>& patterns, const std::string& name);
-
-/// Calls `each(name, value, field)` for each field of a `Params`, by its whole name, but for hidden ones: what follows
-/// from another number.
-template <class Each>
-class ByWholeName {
- public:
-  ByWholeName(const std::vector<const char*>& hidden, Each& each) : hidden_(hidden), each_(each) {}
-
-  template <class T>
-  void operator()(T& value, const Field& field) {
-    if (const std::string name = prefix_ + field.name; !hidden_by(hidden_, name)) each_(name, value, field);
-  }
-  template <class Params>
-  void group(const char* prefix, Params& params) {
-    const std::string outer = prefix_;
-    prefix_ += prefix;
-    std::remove_cv_t<Params>::fields(params, *this);
-    prefix_ = outer;
-  }
-
- private:
-  const std::vector<const char*>& hidden_;
-  Each& each_;
-  std::string prefix_;
-};
+/// Calls `each(name, value, field)` for each field of a `Params`, but for hidden ones (`is_among`): what follows from
+/// another number.
+template <class Params, class Each>
+void visit_shown(Params& params, const std::vector<const char*>& hidden, Each each) {
+  visit_by_name(params, [&](const std::string& name, auto& value, const Field& field) {
+    if (!is_among<const char*>(name, hidden)) each(name, value, field);
+  });
+}
 
 /// Reads all fields of `params` that are given.
 template <class Params>
 void read_fields(Keywords& keywords, Params& params, const std::vector<const char*>& hidden = {}) {
-  const auto each = [&](const std::string& name, auto& value, const Field& field) {
+  visit_shown(params, hidden, [&](const std::string& name, auto& value, const Field& field) {
     using Value = std::remove_cvref_t<decltype(value)>;
     if constexpr (std::is_same_v<Value, Eigen::Vector3d>) {
       keywords.read(name, field, value);
@@ -87,9 +69,7 @@ void read_fields(Keywords& keywords, Params& params, const std::vector<const cha
       keywords.read(name, field, !std::is_floating_point_v<Value>, number);
       value = static_cast<Value>(number);
     }
-  };
-  ByWholeName visitor(hidden, each);
-  Params::fields(params, visitor);
+  });
 }
 
 nb::object as_object(const Eigen::Vector3d& value);
@@ -98,7 +78,7 @@ nb::object as_object(const Eigen::Vector3d& value);
 template <class Params>
 std::vector<Parameter> list_fields(const Params& params, const std::vector<const char*>& hidden = {}) {
   std::vector<Parameter> out;
-  const auto each = [&](const std::string& name, const auto& value, const Field& field) {
+  visit_shown(params, hidden, [&](const std::string& name, const auto& value, const Field& field) {
     using Value = std::remove_cvref_t<decltype(value)>;
     nb::object number;
     if constexpr (std::is_same_v<Value, Eigen::Vector3d>) {
@@ -111,9 +91,7 @@ std::vector<Parameter> list_fields(const Params& params, const std::vector<const
       number = nb::int_(static_cast<long long>(value));
     }
     out.push_back({name, field.unit, number, field.low, field.high, field.meaning, field.rank == Rank::first});
-  };
-  ByWholeName visitor(hidden, each);
-  Params::fields(params, visitor);
+  });
   return out;
 }
 

@@ -34,31 +34,33 @@ void read_rig(Keywords& keywords, RateModelParams& model, RailDetector::Params& 
   read_ranges(keywords, rails);
 }
 
-RateSmoother::Params smoother_params(const nb::kwargs& given) {
-  Keywords keywords("RateSmoother", given);
-  RateSmoother::Params params;
-  read_rig(keywords, params.model, params.rails);
-  read_fields(keywords, params);
+/// Where the numbers of a class have the model and the rails.
+RateSmoother::Params& rate_part(RateSmoother::Params& params) {
+  return params;
+}
+RateStream::Params& rate_part(RateStream::Params& params) {
+  return params;
+}
+RateSmoother::Params& rate_part(RegimeSmoother::Params& params) {
+  return params.rate;
+}
+RateStream::Params& rate_part(RegimeStream::Params& params) {
+  return params.rate;
+}
+
+template <class Class>
+typename Class::Params params_of(const char* name, const nb::kwargs& given,
+                                 const std::vector<const char*>& hidden = {}) {
+  Keywords keywords(name, given);
+  typename Class::Params params;
+  read_rig(keywords, rate_part(params).model, rate_part(params).rails);
+  read_fields(keywords, params, hidden);
   keywords.done();
   return params;
 }
 
 RateStream::Params stream_params(const nb::kwargs& given) {
-  Keywords keywords("RateStream", given);
-  RateStream::Params params;
-  read_rig(keywords, params.model, params.rails);
-  read_fields(keywords, params);
-  keywords.done();
-  return params;
-}
-
-RegimeSmoother::Params joint_params(const nb::kwargs& given) {
-  Keywords keywords("RegimeSmoother", given);
-  RegimeSmoother::Params params;
-  read_rig(keywords, params.rate.model, params.rate.rails);
-  read_fields(keywords, params);
-  keywords.done();
-  return params;
+  return params_of<RateStream>("RateStream", given);
 }
 
 /// RegimeStream takes these from its RateStream, and the stream of the carried body iterates as it goes.
@@ -66,11 +68,7 @@ const std::vector<const char*> kOfTheRate = {"carried_period_s", "carried_lag_s"
                                              "carried_iterations_max"};
 
 RegimeStream::Params regime_params(const nb::kwargs& given) {
-  Keywords keywords("RegimeStream", given);
-  RegimeStream::Params params;
-  read_rig(keywords, params.rate.model, params.rate.rails);
-  read_fields(keywords, params, kOfTheRate);
-  keywords.done();
+  RegimeStream::Params params = params_of<RegimeStream>("RegimeStream", given, kOfTheRate);
   params.carried.body.gap_max_s = params.rate.gap_max_s;
   return params;
 }
@@ -142,7 +140,9 @@ void bind_batch(nb::module_& m) {
       "RegimeStream's or CarriedSmoother's, and tumble.rate() decides.")
       .def(
           "__init__",
-          [](RateSmoother* self, const nb::kwargs& options) { new (self) RateSmoother(smoother_params(options)); },
+          [](RateSmoother* self, const nb::kwargs& options) {
+            new (self) RateSmoother(params_of<RateSmoother>("RateSmoother", options));
+          },
           nb::arg("options"))
       .def("estimate", &smooth<RateSmoother, RateReport>, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
            nb::arg("clip_flags") = nb::none(), "One rate per sample, and what the run tells of itself.")
@@ -163,7 +163,9 @@ void bind_batch(nb::module_& m) {
                              "calibration=None, **options): as RateSmoother; options: parameters().")
       .def(
           "__init__",
-          [](RegimeSmoother* self, const nb::kwargs& options) { new (self) RegimeSmoother(joint_params(options)); },
+          [](RegimeSmoother* self, const nb::kwargs& options) {
+            new (self) RegimeSmoother(params_of<RegimeSmoother>("RegimeSmoother", options));
+          },
           nb::arg("options"))
       .def("estimate", &smooth<RegimeSmoother, Joint>, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
            nb::arg("clip_flags") = nb::none(), "One rate per sample, and what the run tells of itself.")

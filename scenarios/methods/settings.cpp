@@ -25,10 +25,7 @@ std::string suffix_of(std::string_view unit) {
 }
 
 bool is_among(const std::string& name, const std::vector<std::string>& patterns) {
-  return std::any_of(patterns.begin(), patterns.end(), [&](const std::string& pattern) {
-    if (!pattern.ends_with('*')) return name == pattern;
-    return name.starts_with(std::string_view(pattern).substr(0, pattern.size() - 1));
-  });
+  return tumble::is_among<std::string>(name, patterns);
 }
 
 }  // namespace

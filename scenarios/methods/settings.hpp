@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "sim/parameters.hpp"
+#include "tumble/common/fields_by_name.hpp"
 #include "tumble/common/parameters.hpp"
 
 /// The numbers of a library's `Params` as parameters of a method: what its fields say of them (common/parameters.hpp)
@@ -25,40 +26,18 @@ namespace detail {
 /// Names of a vector's coordinates: the axis stands before the unit, "lever_arm_x_m".
 std::array<std::string, 3> coordinate_names(const std::string& name, const Field& field);
 
-/// Calls `each(name, value, field, whole)` for each number of a `Params`, groups with their prefix.
-template <class Each>
-class ByName {
- public:
-  explicit ByName(Each& each) : each_(each) {}
-
-  template <Number T>
-  void operator()(T& value, const Field& field) {
-    using Value = std::remove_cv_t<T>;
-    each_(prefix_ + field.name, value, field, !std::is_floating_point_v<Value>);
-  }
-  template <class Vector>
-  requires std::is_same_v<std::remove_cv_t<Vector>, Eigen::Vector3d>
-  void operator()(Vector& value, const Field& field) {
-    const std::array<std::string, 3> names = coordinate_names(prefix_ + field.name, field);
-    for (int j = 0; j < 3; ++j) each_(names[static_cast<std::size_t>(j)], value[j], field, false);
-  }
-  template <class Params>
-  void group(const char* prefix, Params& params) {
-    const std::string outer = prefix_;
-    prefix_ += prefix;
-    std::remove_cv_t<Params>::fields(params, *this);
-    prefix_ = outer;
-  }
-
- private:
-  Each& each_;
-  std::string prefix_;
-};
-
+/// Calls `each(name, value, field, whole)` for each number of a `Params`, a vector being three of them.
 template <class Params, class Each>
-void visit_by_name(Params& params, Each each) {
-  ByName<Each> visitor(each);
-  std::remove_cv_t<Params>::fields(params, visitor);
+void visit_numbers(Params& params, Each each) {
+  visit_by_name(params, [&each](const std::string& name, auto& value, const Field& field) {
+    using Value = std::remove_cvref_t<decltype(value)>;
+    if constexpr (std::is_same_v<Value, Eigen::Vector3d>) {
+      const std::array<std::string, 3> names = coordinate_names(name, field);
+      for (int j = 0; j < 3; ++j) each(names[static_cast<std::size_t>(j)], value[j], field, false);
+    } else {
+      each(name, value, field, !std::is_floating_point_v<Value>);
+    }
+  });
 }
 
 }  // namespace detail
@@ -126,7 +105,7 @@ class Settings : public SettingsTable {
   /// `defaults` are the library's but for what the method states otherwise.
   explicit Settings(const Params& defaults, SettingsOptions options = {})
       : SettingsTable(std::move(options)), defaults_(defaults) {
-    detail::visit_by_name(defaults_, [this](const std::string& name, const auto& value, const Field& field,
+    detail::visit_numbers(defaults_, [this](const std::string& name, const auto& value, const Field& field,
                                             bool whole) { add(name, static_cast<double>(value), field, whole); });
     sort_rows();
   }
@@ -134,7 +113,7 @@ class Settings : public SettingsTable {
 
   /// Puts the values into `params`; what the recording states and nobody chose stays as it is.
   void apply(const sim::Values& values, Params& params) const {
-    detail::visit_by_name(params, [&](const std::string& field_name, auto& value, const Field&, bool) {
+    detail::visit_numbers(params, [&](const std::string& field_name, auto& value, const Field&, bool) {
       using Value = std::remove_cvref_t<decltype(value)>;
       std::string name;
       if (!applies(field_name, values, name)) return;
@@ -156,7 +135,7 @@ class Settings : public SettingsTable {
   std::map<std::string, double> numbers(const sim::Values& values) const override {
     std::map<std::string, double> out;
     const Params params = read(values);
-    detail::visit_by_name(params, [&](const std::string& name, const auto& value, const Field&, bool) {
+    detail::visit_numbers(params, [&](const std::string& name, const auto& value, const Field&, bool) {
       out[name] = static_cast<double>(value);
     });
     return out;

@@ -1,15 +1,22 @@
 #!/usr/bin/env bash
-# Builds the package of python/ as its users do and tests it in an environment of its own.
+# Builds the package of python/ as it is given away and tests it in an environment of its own.
 #   package_test.sh TREE BUILD    BUILD has bin/tumble; the environment and what is compiled stay in BUILD/python
 set -euo pipefail
 tree=$1 build=$2 work=$2/python
 environment=$work/environment
 mkdir -p "$work"
 [ -x "$environment/bin/python" ] || /usr/bin/python3 -m venv "$environment"
-"$environment/bin/python" -m pip install --quiet --disable-pip-version-check "$tree/python[test,tables,files]" --config-settings=build-dir="$work/compiled"
+pip() { "$environment/bin/python" -m pip install --quiet --disable-pip-version-check "$@"; }
 
-# what a wheel may be: itself alone, small, of no shared library but those of every system
-"$environment/bin/python" "$tree/tests/python/wheel_check.py" "$environment"
+# the wheel out of the source distribution alone, and what it may be: small, of no shared library but those of every system
+"$tree/python/make_wheel" "$work/wheel"
+wheel=$(echo "$work"/wheel/dist/*.whl)
+pip --force-reinstall --no-deps "$wheel"
+pip "$wheel[test]"
+"$environment/bin/python" "$tree/tests/python/wheel_check.py" "$environment" "$work/wheel/dist"
+# the compiled half of tumble.evalio, with nanobind of evalio's ABI
+pip 'evalio>=0.6.1,<0.7' 'nanobind>=2.13,<2.15' 'scikit-build-core>=1.1,<2' ninja
+pip --force-reinstall --no-deps --no-build-isolation "$tree/python/evalio" --config-settings=build-dir="$work/evalio"
 
 export TUMBLE_ROOT=$tree TUMBLE_PROGRAM=$build/bin/tumble TUMBLE_CACHE=$build/Testing/cache PATH=$environment/bin:$build/bin:$PATH
 hash -r

@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the installed package consists of: wheel_check.py ENVIRONMENT. Ends with 1 where it is more, or less, than it should be."""
+"""What the installed package consists of, and what python/make_wheel has left in a folder: wheel_check.py ENVIRONMENT FOLDER, by that
+environment's interpreter. Ends with 1 where it is more, or less, than it should be."""
 import importlib.metadata
 import pathlib
+import re
 import subprocess
 import sys
+import tarfile
 
 SYSTEM = {"libstdc++.so.6", "libm.so.6", "libgcc_s.so.1", "libc.so.6", "ld-linux-x86-64.so.2", "linux-vdso.so.1"}
 LARGEST_MB = 4.0
@@ -22,10 +25,24 @@ def problems_of(files: dict[str, float], libraries: set[str]) -> list[str]:
     return out
 
 
+def problems_of_what_is_given_away(names: list[str], sources: list[str]) -> list[str]:
+    """`names` of files in the folder; `sources`: paths in the source distribution, below its own folder."""
+    out = []
+    wheels = [name for name in names if name.endswith(".whl")]
+    if len(wheels) != 1 or not re.fullmatch(r"tumble-[\d.]+-(cp311-cp311|cp312-abi3)-(manylinux[\w.]+_x86_64)+\.whl", wheels[0]):
+        out.append(f"has wheels {wheels}, must be one that says the C library it runs with")
+    out += [f"has no {needed} among its sources" for needed in (
+        "pyproject.toml", "CMakeLists.txt", "LICENSE", "bindings/module.cpp", "estimator/CMakeLists.txt", "estimator/include/tumble/tumble.hpp",
+        "src/tumble/__init__.py") if needed not in sources]
+    out += [f"has {path} among its sources" for path in sources if re.match(r"build/|tests/|evalio/|estimator/tests/", path)]
+    return out
+
+
 def main() -> int:
     controls = [({}, set()), ({"tumble/py.typed": 0, "tumble/_tumble.pyi": 9, "tumble/__init__.py": 0}, set()),
                 ({"tumble/py.typed": 0, "tumble/_tumble.pyi": 0, "tumble/__init__.py": 0}, {"libpcl_common.so"})]
-    if not all(problems_of(*control) for control in controls):
+    given_away = [([], []), (["tumble-0.1.0-cp311-cp311-linux_x86_64.whl"], []), ([], ["build/x.o"])]
+    if not all(problems_of(*control) for control in controls) or not all(problems_of_what_is_given_away(*each) for each in given_away):
         print("a negative control passes")
         return 1
     files = {str(f): pathlib.Path(f.locate()).stat().st_size / 1e6 for f in importlib.metadata.files("tumble") or [] if "__pycache__" not in str(f)}
@@ -35,8 +52,18 @@ def main() -> int:
         return 1
     listed = subprocess.run(["ldd", str(module[0])], check=True, capture_output=True, text=True).stdout
     found = problems_of(files, {pathlib.Path(line.split()[0]).name for line in listed.splitlines() if line.strip()})
+    folder = pathlib.Path(sys.argv[2])
+    archives = list(folder.glob("*.tar.gz"))
+    if len(archives) != 1:
+        print(f"{folder} has {len(archives)} source distributions, must have one")
+        return 1
+    with tarfile.open(archives[0]) as archive:
+        sources = [name.partition("/")[2] for name in archive.getnames()]
+    found += problems_of_what_is_given_away([path.name for path in folder.iterdir()], sources)
     for problem in found:
         print(f"the package {problem}")
+    for path in sorted(folder.iterdir()):
+        print(f"{path.name}: {path.stat().st_size / 1e6:.2f} MB")
     print(f"package of {sum(files.values()):.2f} MB in {len(files)} files")
     return 1 if found else 0
 

@@ -11,6 +11,7 @@ Sphere          RollingSmoother
 Mapper          LidarInertialOdometry
 Recordings      read, write; rate, tumbling, rolling take them whole
 Estimates       read_tum, write_tum, read_estimate
+Figures         plot (Matplotlib); point_errors: where returns lie by poses, and how far from where they were
 The program     record, run, estimate, score, sweep, results; serve and describe_method make a function a method of it
 """
 from ._tumble import (
@@ -51,10 +52,11 @@ from ._tumble import (
     find_rails,
     rails_parameters,
 )
-from . import sheets
+from . import plot, sheets
 from .errors import TumbleError
 from .estimates import Estimate, RateTable, Trajectory, read_estimate, read_tum, write_tum
 from .method import describe_method, serve
+from .placing import point_errors
 from .program import ProgramError, call, estimate, program, record, results, run, score, score_rows, sweep
 from .recordings import Imu, Lidar, Recording, Truth, read, write
 from .replay import Tumble, rate, rolling, sheet_of, tumbling, tumbling_options
@@ -66,6 +68,6 @@ __all__ = [
     "RateStream", "RateTable", "Rates", "Recording", "RegimeReport", "RegimeSmoother", "RegimeStream", "RigCalibration", "RollingMode", "RollingOdometry",
     "RollingPoses", "RollingSmoother", "Saave", "Strapdown", "Sweep", "SweepCalibration", "SweepReport", "SweepVerdict", "Trajectory",
     "Truth", "Tumble", "TumbleAttitude", "TumbleError", "TumblingOdometry", "Vqf", "call", "describe_method", "estimate",
-    "find_rails", "program", "rails_parameters", "rate", "read", "read_estimate", "read_tum", "record", "results", "rolling", "run",
+    "find_rails", "plot", "point_errors", "program", "rails_parameters", "rate", "read", "read_estimate", "read_tum", "record", "results", "rolling", "run",
     "score", "score_rows", "serve", "sheet_of", "sheets", "sweep", "tumbling", "tumbling_options", "write", "write_tum",
 ]

@@ -56,15 +56,16 @@ def _nanoseconds(text: str) -> int:
     return sign * (nanoseconds + (1 if part[9:10] >= "5" else 0))
 
 
-def read_tum(path: str | os.PathLike[str]) -> Trajectory:
-    """Poses of a TUM file; lines that begin with # are left out. TumbleError `file` with the line that is wrong."""
+def read_tum(path: str | os.PathLike[str], separator: str | None = None) -> Trajectory:
+    """Poses of a TUM file; lines that begin with # are left out. separator: of the numbers, else blanks. TumbleError `file` with the
+    line that is wrong."""
     name = os.fspath(path)
     times, rows = [], []
     try:
         with open(name, encoding="utf-8") as file:
             for number, line in enumerate(file, start=1):
-                words = line.split()
-                if not words or words[0].startswith("#"):
+                words = line.strip().split(separator)
+                if not words or not words[0] or words[0].startswith("#"):
                     continue
                 try:
                     if len(words) != 8:

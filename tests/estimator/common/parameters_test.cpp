@@ -7,6 +7,10 @@
 #include <cstddef>
 #include <limits>
 #include <string>
+#include <type_traits>
+#include <vector>
+
+#include "tumble/common/fields_by_name.hpp"
 
 namespace tumble {
 namespace {
@@ -103,6 +107,30 @@ TEST(Fields, NaNIsOutOfAnyBounds) {
   params = {};
   params.arm_m.y() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(check_fields(params).ok());
+}
+
+TEST(Fields, AreVisitedByTheirWholeNamesAndSetThroughThem) {
+  Outer params;
+  std::vector<std::string> names;
+  visit_by_name(params, [&](const std::string& name, auto& value, const Field& field) {
+    names.push_back(name);
+    EXPECT_TRUE(name.ends_with(field.name));
+    if constexpr (std::is_same_v<decltype(value), int&>) value = name == "left_count" ? 1 : 4;
+  });
+  const std::vector<std::string> all = {"tau_s",      "least",      "on",          "kind",       "arm_m",
+                                        "left_share", "left_count", "right_share", "right_count"};
+  EXPECT_EQ(names, all);
+  EXPECT_EQ(params.left.count, 1);
+  EXPECT_EQ(params.right.count, 4);
+}
+
+TEST(Fields, ANameIsAmongPatternsWholeOrByItsBeginning) {
+  const std::vector<std::string> patterns = {"left_*", "tau_s"};
+  EXPECT_TRUE(is_among<std::string>("left_count", patterns));
+  EXPECT_TRUE(is_among<std::string>("tau_s", patterns));
+  EXPECT_FALSE(is_among<std::string>("tau_s_more", patterns));
+  EXPECT_FALSE(is_among<std::string>("right_left_count", patterns));
+  EXPECT_FALSE(is_among<std::string>("", patterns));
 }
 
 }  // namespace

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <evalio/types.h>
+#include <nanobind/nanobind.h>
+
+#include <cstdint>
+#include <vector>
+
+/// Between evalio's measurements and the arrays that tumble's classes take.
+namespace tumble::evalio_bindings {
+
+namespace nb = nanobind;
+
+/// The returns of a sweep in order of their time, by columns. Times are nanoseconds of evalio's clock.
+struct Sweep {
+  std::int64_t start_ns = 0, end_ns = 0;
+  std::int64_t last_ns = 0;         ///< of the latest return
+  std::vector<float> position_L_m;  ///< x y z each
+  std::vector<std::uint32_t> offset_ns;
+  std::vector<std::uint16_t> ring;
+  std::vector<float> intensity;
+};
+
+/// Throws std::invalid_argument, with value and bound, for a return whose time is before the sweep's or four seconds
+/// after it. Cells without a return (all three coordinates 0, or one not finite) are left out.
+Sweep sweep_of(const evalio::LidarMeasurement& given, std::int64_t length_ns);
+
+/// Samples of an IMU by columns.
+struct Samples {
+  std::vector<std::int64_t> time_ns;
+  std::vector<double> gyro_I_rad_s, accel_I_m_s2;  ///< x y z each
+
+  void push(const evalio::ImuMeasurement& given);
+  /// From sample `first` on.
+  Samples from(std::size_t first) const;
+};
+
+/// evalio's pose of position (3) and quaternion (4: x y z w).
+evalio::SE3 pose_of(const double* position, const double* quaternion);
+evalio::Stamp stamp_of(std::int64_t time_ns);
+std::int64_t nanoseconds_of(const evalio::Stamp& stamp);
+
+/// rows x `columns` numbers as an array of numpy that owns them; of one column (rows,).
+template <class Scalar>
+nb::object array_of(std::vector<Scalar> numbers, std::size_t columns = 1);
+
+}  // namespace tumble::evalio_bindings

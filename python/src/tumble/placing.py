@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Where the returns of a lidar lie in the world, by poses of an estimate or by the truth, and how far the two are apart."""
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .errors import TumbleError
+from .recordings import Recording
+
+Array = npt.NDArray[Any]
+
+
+def rotations(quaternion: Array) -> Array:
+    """(N, 3, 3) of (N, 4), x y z w, of any length but 0."""
+    x, y, z, w = (quaternion / np.linalg.norm(quaternion, axis=1, keepdims=True)).T
+    rows = [[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]]
+    return np.moveaxis(np.array(rows), 2, 0)
+
+
+def poses_at(time_ns: Array, poses: Any) -> tuple[Array, Array]:
+    """Positions (N, 3) and rotations (N, 3, 3) at times within those of `poses` (time_ns, position, quaternion): positions along the
+    chord, attitudes along the arc between two neighbours. Not a number outside."""
+    known = np.asarray(poses.time_ns)
+    if len(known) < 2:
+        raise TumbleError(f"poses is {len(known)} poses, must be 2 at least", "too_few", "poses", len(known), 2)
+    k = np.clip(np.searchsorted(known, time_ns, side="right") - 1, 0, len(known) - 2)
+    share = ((time_ns - known[k]) / (known[k + 1] - known[k]))[:, None]
+    share[(time_ns < known[0]) | (time_ns > known[-1])] = np.nan
+    position = (1 - share) * poses.position[k] + share * poses.position[k + 1]
+    q0, q1 = np.asarray(poses.quaternion)[k], np.asarray(poses.quaternion)[k + 1]
+    cosine = np.sum(q0 * q1, axis=1, keepdims=True)
+    q1, angle = np.where(cosine < 0, -q1, q1), np.arccos(np.clip(np.abs(cosine), 0.0, 1.0))
+    small = angle < 1e-6
+    sine = np.where(small, 1.0, np.sin(angle))
+    before = np.where(small, 1 - share, np.sin((1 - share) * angle) / sine)
+    after = np.where(small, share, np.sin(share * angle) / sine)
+    return position, rotations(before * q0 + after * q1)
+
+
+def point_errors(recording: Recording, poses: Any, every: int = 1) -> tuple[Array, Array]:
+    """Places the first lidar's returns by poses of the first IMU and says how far each is from where it truly was.
+
+    Returns positions (N, 3), m, in the estimate's world, and distances (N,), m, of those returns that lie within the poses and the
+    truth. The two worlds are laid over each other by position and yaw at the first of the poses, as the program's scores are
+    (`ate_m`). every: takes each so-manyth return. The estimate places a return by the calibration that the recording states, the truth
+    by its own mounting of the IMU: what the calibration is off by is part of the distance.
+    TumbleError `empty` without a truth or without returns.
+    """
+    truth = recording.truth
+    if truth is None:
+        raise TumbleError("truth is not there, must be in the recording", "empty", "truth", None, "a truth")
+    lidar = recording.sweeps
+    counts = np.diff(lidar.sweep_first.astype(np.int64))
+    time_ns = (np.repeat(lidar.sweep_start_ns, counts) + lidar.offset_ns)[::every]
+    returns_L = lidar.position[::every].astype(float)
+    returns_I = returns_L @ recording.T_IL[:3, :3].T + recording.T_IL[:3, 3]
+    returns_B = returns_L @ lidar.T_BL[:3, :3].T + lidar.T_BL[:3, 3]
+    position, R_WI = poses_at(time_ns, poses)
+    estimated = position + np.einsum("nij,nj->ni", R_WI, returns_I)
+    position, R_WB = poses_at(time_ns, truth)
+    true = position + np.einsum("nij,nj->ni", R_WB, returns_B)
+    inside = np.isfinite(estimated).all(axis=1) & np.isfinite(true).all(axis=1)
+    if not inside.any():
+        raise TumbleError("poses have no return of the lidar within their times, must have one at least", "empty", "poses", 0, 1)
+    estimated, true = estimated[inside], true[inside]
+    begin = np.asarray(poses.time_ns)[:1]
+    p_e, R_e = poses_at(begin, poses)
+    p_t, R_t = poses_at(begin, truth)
+    T_BI = truth.imu_T_BI[0]
+    p_t, R_t = p_t[0] + R_t[0] @ T_BI[:3, 3], R_t[0] @ T_BI[:3, :3]
+    turn = R_t @ R_e[0].T
+    yaw = np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1])
+    about_z = np.array([[np.cos(yaw), -np.sin(yaw), 0.0], [np.sin(yaw), np.cos(yaw), 0.0], [0.0, 0.0, 1.0]])
+    return estimated, np.linalg.norm((estimated - p_e[0]) @ about_z.T + p_t - true, axis=1)

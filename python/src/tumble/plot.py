@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Figures of Matplotlib: `pip install tumble[plots]`. Each function returns a Figure, which a notebook shows and `.savefig(path)` writes;
+none touches pyplot or what is open there."""
+from __future__ import annotations
+
+import importlib
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .errors import TumbleError
+from .files import optional
+from .placing import point_errors
+from .recordings import Imu, Recording
+
+Array = npt.NDArray[Any]
+
+_GYRO, _OURS, _TRUE = "tab:pink", "tab:blue", "black"
+
+
+def _figure(**options: Any) -> Any:
+    optional("matplotlib", "plots")
+    return importlib.import_module("matplotlib.figure").Figure(layout="constrained", **options)
+
+
+def rate(imu: Imu, rates: Any, truth: Array | None = None, axes: str = "xyz") -> Any:
+    """Angular velocity of a recording against time, a panel per axis of the IMU: the gyro, `rates` (Rates: tumble.rate) with three stated
+    deviations about it, the truth (N, 3) where it is given. Where the gyro clips on an axis its panel is shaded."""
+    if not axes or set(axes) - set("xyz"):
+        raise TumbleError(f"axes is '{axes}', must be of x, y, z", "unknown", "axes", axes, "xyz")
+    figure = _figure(figsize=(9.0, 1.0 + 2.0 * len(axes)))
+    t = (imu.time_ns - imu.time_ns[0]) * 1e-9
+    panels = figure.subplots(len(axes), 1, sharex=True, squeeze=False)[:, 0]
+    for panel, axis in zip(panels, axes, strict=True):
+        j = "xyz".index(axis)
+        clipped = (np.asarray(rates.clipped_axes) >> j & 1).astype(bool)
+        panel.fill_between(t, 0, 1, where=clipped, transform=panel.get_xaxis_transform(), color="0.85", step="mid", lw=0, label="clipped")
+        if truth is not None:
+            panel.plot(t, truth[:, j], color=_TRUE, lw=1.6, label="truth")
+        panel.plot(t, imu.gyro[:, j], color=_GYRO, lw=1.0, label="gyro")
+        sigma = np.sqrt(rates.covariance[:, j, j])
+        panel.plot(t, rates.rate[:, j], color=_OURS, lw=1.0, label="estimate")
+        shown = np.where(np.isfinite(sigma), np.minimum(3 * sigma, 4 * np.abs(rates.rate).max()), np.nan)
+        panel.fill_between(t, rates.rate[:, j] - shown, rates.rate[:, j] + shown, color=_OURS, alpha=0.25, lw=0, label="3 deviations")
+        panel.set_ylabel(f"rate {axis} [rad/s]")
+    panels[-1].set_xlabel("time [s]")
+    panels[0].legend(loc="upper left", ncols=5, fontsize="small")
+    return figure
+
+
+def trajectory(poses: Any, truth: Any = None) -> Any:
+    """A way from above and from the side. poses, truth: whatever has `position` (N, 3), m (Poses, Trajectory, Truth). The truth is moved
+    to where `poses` begin; it is not turned."""
+    figure = _figure(figsize=(9.0, 4.5))
+    for panel, (a, b) in zip(figure.subplots(1, 2), ((0, 1), (0, 2)), strict=True):
+        if truth is not None:
+            moved = truth.position - truth.position[0] + poses.position[0]
+            panel.plot(moved[:, a], moved[:, b], color=_TRUE, lw=2.0, label="truth")
+        panel.plot(poses.position[:, a], poses.position[:, b], color=_OURS, lw=1.2, label="estimate")
+        panel.plot(*poses.position[0, [a, b]], "o", color=_OURS, ms=5, label="start")
+        panel.set(xlabel=f"{'xyz'[a]} [m]", ylabel=f"{'xyz'[b]} [m]", title="from above" if b == 1 else "from the side")
+        panel.set_aspect("equal", adjustable="datalim")
+    figure.axes[0].legend(fontsize="small")
+    return figure
+
+
+def map_by_error(recording: Recording, poses: Any, every: int = 10, worst_m: float | None = None) -> Any:
+    """The lidar's returns where `poses` (of the first IMU) place them, from above and from the side, coloured by how far each is from
+    where it truly was (`point_errors`). every: each so-manyth return. worst_m: end of the scale of colours; else the 99 % quantile."""
+    points, error_m = point_errors(recording, poses, every)
+    figure = _figure(figsize=(10.0, 4.8))
+    order = np.argsort(error_m)  # the worst on top
+    top = float(np.quantile(error_m, 0.99)) if worst_m is None else worst_m
+    for panel, (a, b) in zip(figure.subplots(1, 2), ((0, 1), (0, 2)), strict=True):
+        dots = panel.scatter(points[order, a], points[order, b], c=error_m[order], s=0.6, lw=0, cmap="turbo", vmin=0.0, vmax=max(top, 1e-6))
+        panel.set(xlabel=f"{'xyz'[a]} [m]", ylabel=f"{'xyz'[b]} [m]", title="from above" if b == 1 else "from the side")
+        panel.set_aspect("equal", adjustable="datalim")
+    figure.colorbar(dots, ax=figure.axes, label="distance from the truth [m]", shrink=0.9)
+    return figure
+
+
+def scores(frame: Any, metric: str, unit: str = "") -> Any:
+    """One metric of a sweep's frame (`tumble.sweep`, `tumble.results`) by method, a dot per draw and a bar at the median, on a logarithmic
+    scale. A draw that a method did not end `ok`, or has no value of, is a cross at the top and counts as the worst in the median.
+    unit: of the axis; else what the metric's name ends in."""
+    rows = frame[frame.metric == metric]
+    if len(rows) == 0:
+        known = sorted(set(frame.metric.dropna()))
+        raise TumbleError(f"metric is '{metric}', must be one of {', '.join(known)}", "unknown", "metric", metric, known)
+    ended = frame[frame.kind.isin(set(rows.kind))].drop_duplicates(["scenario", "seed", "kind", "method"])
+    values = {method: _values(ended[ended.method == method], rows[rows.method == method]) for method in sorted(set(ended.method))}
+    finite = np.concatenate([each[np.isfinite(each)] for each in values.values()])
+    if len(finite) == 0 or finite.max() <= 0.0:
+        raise TumbleError(f"{metric} has no value above 0, must have one", "empty", metric, None, 0.0)
+    least, most = max(finite[finite > 0].min(), 1e-12), finite.max()
+    figure = _figure(figsize=(1.5 + 1.2 * len(values), 4.0))
+    panel = figure.subplots()
+    lost_at = 2.0 * most
+    for k, each in enumerate(values.values()):
+        spread = k + 0.3 * (np.arange(len(each)) / max(len(each) - 1, 1) - 0.5)
+        kept = np.isfinite(each)
+        panel.plot(spread[kept], np.maximum(each[kept], least), "o", ms=5, color=_OURS, alpha=0.7)
+        panel.plot(spread[~kept], np.full((~kept).sum(), lost_at), "x", ms=7, color="tab:red")
+        median = np.median(each)
+        panel.hlines(median if np.isfinite(median) else lost_at, k - 0.3, k + 0.3, color=_TRUE, lw=2)
+    panel.set_yscale("log")
+    panel.set_xticks(range(len(values)), list(values), rotation=20)
+    panel.set_ylabel(f"{metric.removesuffix('_rad_s').removesuffix('_rad').removesuffix('_m')} [{unit or _unit(metric)}]")
+    return figure
+
+
+def _values(ended: Any, rows: Any) -> Array:
+    """Per draw; infinite where there is none, or the method did not end ok."""
+    found = {(row.scenario, row.seed): row.value for row in rows.itertuples() if row.status == "ok" and row.value is not None}
+    out = np.array([found.get((row.scenario, row.seed), np.inf) for row in ended.itertuples()], float)
+    return np.where(np.isnan(out), np.inf, out)
+
+
+def _unit(metric: str) -> str:
+    units = {"_rad_s": "rad/s", "_m_s": "m/s", "_rad": "rad", "_m": "m", "_s": "s", "_mib": "MiB", "_share": "of the path"}
+    return next((unit for end, unit in units.items() if metric.endswith(end)), "1")
