@@ -55,10 +55,9 @@ std::int64_t bag_origin_ns(const BagWriting& writing);
 /// LZ4, indexed, every checksum there is). In all of them:
 ///
 /// - "/NAME" (sensor_msgs/Imu; without attitude; white noise of the data sheet as covariance), NAME the sensor's;
-/// - "/NAME/points" (sensor_msgs/PointCloud2, or the CustomMsg of Livox' drivers; stamped at the sweep's start, with
-/// the fields that drivers of Velodyne
+/// - "/NAME/points" (sensor_msgs/PointCloud2, stamped at the sweep's start, with the fields that drivers of Velodyne
 ///   give: x y z intensity ring time, the time float32 seconds after the stamp, to 4 ns within 0.1 s; and offset_ns,
-///   the same in whole nanoseconds; neither where points have no times; or as `sweeps` has it);
+///   the same in whole nanoseconds; neither where points have no times; or what `sweeps` says);
 /// - "/truth" (nav_msgs/Odometry of "body" in "world", every 5 ms at most), "/TRACK" and "/TRACK/points";
 /// - "/tf_static": each sensor in "body", by the calibration that an estimator is given; "/tf": "body" in "world" by
 /// the

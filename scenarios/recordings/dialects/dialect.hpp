@@ -50,7 +50,11 @@ std::span<const Dialect> all_dialects();
 
 /// Layouts that several share: x y z and an intensity of 0 to 255, all float32, ring uint16, and the time as float32
 /// seconds ("time", Velodyne's driver) or uint32 nanoseconds ("t", Ouster's), both since the sweep's start.
-SweepLayout velodyne_layout();
-SweepLayout ouster_layout();
+SweepLayout velodyne_layout(const SensorFacts&);
+SweepLayout ouster_layout(const SensorFacts&);
+
+/// Of FAST-LIO and what came of it: a Livox under its driver's topics as its CustomMsg, any other lidar as a Velodyne.
+ReaderNames fast_lio_names(const SensorFacts& facts);
+SweepLayout fast_lio_layout(const SensorFacts& facts);
 
 }  // namespace tumble::scenarios

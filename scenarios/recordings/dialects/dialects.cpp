@@ -22,12 +22,21 @@ SweepLayout layout_with(const PointColumn& times) {
 
 }  // namespace
 
-SweepLayout velodyne_layout() {
+SweepLayout velodyne_layout(const SensorFacts&) {
   return layout_with({"time", PointQuantity::time, NumberType::float32, 1e-9});
 }
 
-SweepLayout ouster_layout() {
+SweepLayout ouster_layout(const SensorFacts&) {
   return layout_with({"t", PointQuantity::time, NumberType::uint32});
+}
+
+ReaderNames fast_lio_names(const SensorFacts& facts) {
+  if (facts.lidar->livox) return {"/livox/imu", "imu", "/livox/lidar", "lidar", "base_link", ""};
+  return {"/imu/data", "imu", "/velodyne_points", "lidar", "base_link", ""};
+}
+
+SweepLayout fast_lio_layout(const SensorFacts& facts) {
+  return facts.lidar->livox ? livox_sweep_layout() : velodyne_layout(facts);
 }
 
 std::span<const Dialect> all_dialects() {

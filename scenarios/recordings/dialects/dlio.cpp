@@ -15,10 +15,6 @@ ReaderNames names(const SensorFacts&) {
   return {"/os_cloud_node/imu", "imu", "/os_cloud_node/points", "lidar", "base_link", ""};
 }
 
-SweepLayout sweeps(const SensorFacts&) {
-  return ouster_layout();
-}
-
 std::string sensors_file(const SensorFacts& facts) {
   return fmt::format(R"(# in the place of cfg/dlio.yaml; numbers without a remark are the authors'
 dlio:
@@ -116,7 +112,7 @@ Dialect dlio_dialect() {
   const char* repository = "vectr-ucla/direct_lidar_inertial_odometry";
   Dialect out{"dlio", "rosbag1", "recording.bag"};
   out.names = names;
-  out.sweeps = sweeps;
+  out.sweeps = ouster_layout;
   out.configuration = configuration;
   out.run = "roslaunch direct_lidar_inertial_odometry dlio.launch; rosbag play recording.bag";
   out.notes = {"it averages the IMU while it is still at the start; a recording that does not rest has no level"};

@@ -9,15 +9,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-ReaderNames names(const SensorFacts& facts) {
-  if (facts.lidar->livox) return {"/livox/imu", "imu", "/livox/lidar", "lidar", "base_link", ""};
-  return {"/imu/data", "imu", "/velodyne_points", "lidar", "base_link", ""};
-}
-
-SweepLayout sweeps(const SensorFacts& facts) {
-  return facts.lidar->livox ? livox_sweep_layout() : velodyne_layout();
-}
-
 std::vector<ConfigurationFile> configuration(const SensorFacts& facts, const ReaderNames& names) {
   const ImuFacts& imu = *facts.imu;
   const LidarFacts& lidar = *facts.lidar;
@@ -70,8 +61,8 @@ pcd_save:
 
 Dialect fast_lio_dialect() {
   Dialect out{"fast-lio", "rosbag1", "recording.bag"};
-  out.names = names;
-  out.sweeps = sweeps;
+  out.names = fast_lio_names;
+  out.sweeps = fast_lio_layout;
   out.configuration = configuration;
   out.run = "roslaunch fast_lio mapping_velodyne.launch (mapping_avia.launch of a Livox); rosbag play recording.bag";
   out.notes = {"it knows no rail: what the gyro clips is taken for a reading"};

@@ -12,10 +12,6 @@ ReaderNames names(const SensorFacts&) {
   return {"/os_cloud_node/imu", "imu", "/os_cloud_node/points", "lidar", "base_link", ""};
 }
 
-SweepLayout sweeps(const SensorFacts&) {
-  return ouster_layout();
-}
-
 /// The sheet's density, or the authors' number where none is stated.
 double density(double stated, double authors) {
   return stated > 0.0 ? stated : authors;
@@ -45,7 +41,7 @@ std::vector<ConfigurationFile> configuration(const SensorFacts& facts, const Rea
 Dialect glim_dialect() {
   Dialect out{"glim", "rosbag2", "bag"};
   out.names = names;
-  out.sweeps = sweeps;
+  out.sweeps = ouster_layout;
   out.configuration = configuration;
   out.run =
       "these two files over a copy of glim/config; ros2 run glim_ros glim_rosbag bag --ros-args -p config_path:=COPY";

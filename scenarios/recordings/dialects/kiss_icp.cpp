@@ -13,10 +13,6 @@ ReaderNames names(const SensorFacts&) {
   return {"/imu", "imu", "/lidar/points", "lidar", "base_link", ""};
 }
 
-SweepLayout sweeps(const SensorFacts&) {
-  return ouster_layout();
-}
-
 std::vector<ConfigurationFile> configuration(const SensorFacts& facts, const ReaderNames&) {
   const std::string text =
       fmt::format(R"(# what stands not here is as the authors have it
@@ -35,7 +31,7 @@ Dialect kiss_icp_dialect() {
   Dialect out{"kiss-icp", "mcap", "recording.mcap"};
   out.needs_imu = out.needs_times = false;
   out.names = names;
-  out.sweeps = sweeps;
+  out.sweeps = ouster_layout;
   out.configuration = configuration;
   out.run = "kiss_icp_pipeline --topic /lidar/points --config kiss_icp.yaml recording.mcap";
   out.notes = {"of the times it takes their share of the sweep; its poses belong to the sweep's last point"};

@@ -13,10 +13,6 @@ ReaderNames names(const SensorFacts&) {
   return {"/imu_raw", "imu", "/points_raw", "lidar", "base_link", ""};
 }
 
-SweepLayout sweeps(const SensorFacts&) {
-  return velodyne_layout();
-}
-
 /// The sheet's density, or the authors' where none is stated.
 std::string density(double stated, const char* authors) {
   return stated > 0.0 ? decimal(stated) : authors;
@@ -100,7 +96,7 @@ Dialect lio_sam_dialect() {
   Dialect out{"lio-sam", "rosbag1", "recording.bag"};
   out.needs_rings = true;
   out.names = names;
-  out.sweeps = sweeps;
+  out.sweeps = velodyne_layout;
   out.configuration = configuration;
   out.run = "roslaunch lio_sam run.launch; rosbag play recording.bag";
   out.notes = {

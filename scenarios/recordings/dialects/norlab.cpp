@@ -13,10 +13,6 @@ ReaderNames names(const SensorFacts&) {
   return {"/imu/data", "imu", "/points_in", "lidar", "base_link", "odom"};
 }
 
-SweepLayout sweeps(const SensorFacts&) {
-  return ouster_layout();
-}
-
 std::string node_file(const ReaderNames& names) {
   return fmt::format(R"(mapper_node:
   ros__parameters:
@@ -107,7 +103,7 @@ Dialect norlab_dialect() {
   Dialect out{"norlab", "rosbag2", "bag"};
   out.needs_imu = out.needs_times = false;
   out.names = names;
-  out.sweeps = sweeps;
+  out.sweeps = ouster_layout;
   out.configuration = configuration;
   out.run =
       "ros2 run norlab_icp_mapper_ros mapper_node --ros-args --params-file mapper_node.yaml; ros2 bag play --clock bag";

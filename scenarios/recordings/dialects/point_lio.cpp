@@ -11,15 +11,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-ReaderNames names(const SensorFacts& facts) {
-  if (facts.lidar->livox) return {"/livox/imu", "imu", "/livox/lidar", "lidar", "base_link", ""};
-  return {"/imu/data", "imu", "/velodyne_points", "lidar", "base_link", ""};
-}
-
-SweepLayout sweeps(const SensorFacts& facts) {
-  return facts.lidar->livox ? livox_sweep_layout() : velodyne_layout();
-}
-
 /// Where the peer takes an axis for clipped. Its sheet may state less than the device gives: then what was read holds.
 double rail(double stated, double largest) {
   return std::max(stated, largest);
@@ -101,8 +92,8 @@ pcd_save:
 Dialect point_lio_dialect() {
   const char* commit = "1eb182282229734cfd9c39508d5ab66fbf09ee66";
   Dialect out{"point-lio", "rosbag1", "recording.bag"};
-  out.names = names;
-  out.sweeps = sweeps;
+  out.names = fast_lio_names;
+  out.sweeps = fast_lio_layout;
   out.configuration = configuration;
   out.run = "roslaunch point_lio mapping_velody16.launch (mapping_avia.launch of a Livox); rosbag play recording.bag";
   out.notes = {

@@ -13,10 +13,6 @@ ReaderNames names(const SensorFacts&) {
   return {"/imu", "imu", "/lidar/points", "lidar", "base_link", ""};
 }
 
-SweepLayout sweeps(const SensorFacts&) {
-  return ouster_layout();
-}
-
 std::vector<ConfigurationFile> configuration(const SensorFacts& facts, const ReaderNames&) {
   const std::string text = fmt::format(R"(# what stands not here is as the authors have it
 deskew: true
@@ -39,7 +35,7 @@ extrinsic_lidar2base_quat_xyzw_xyz: {}
 Dialect rko_lio_dialect() {
   Dialect out{"rko-lio", "rosbag2", "bag"};
   out.names = names;
-  out.sweeps = sweeps;
+  out.sweeps = ouster_layout;
   out.configuration = configuration;
   out.run = "rko_lio -c rko_lio.yaml --imu /imu --lidar /lidar/points bag";
   out.notes = {"its noise is not asked for; its poses are those of base_link"};
