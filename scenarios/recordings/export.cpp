@@ -32,13 +32,17 @@ void write_bag(const path& recording, const path& out, const BesideSensors& besi
   if (beside.truth) truth = read_truth(recording);
   const sim::Sensors sensors = read_sensors(recording);
   BagWriting writing{read_info(recording).origin_ns, truth ? &*truth : nullptr};
+  writing.sweeps = beside.sweeps;
   if (beside.more) beside.more(sensors, writing);
   kExport(sensors, writing, out);
 }
 
-template <void (*kExport)(const sim::Truth&, const path&)>
-void write_truth(const path& recording, const path& out, const BesideSensors&) {
-  kExport(read_truth(recording), out);
+void write_tum(const path& recording, const path& out, const BesideSensors&) {
+  export_tum(read_truth(recording), out);
+}
+
+void write_kitti(const path& recording, const path& out, const BesideSensors&) {
+  export_kitti(read_truth(recording), out);
 }
 
 template <void (*kExport)(const sim::Sensors&, const path&)>
@@ -49,14 +53,14 @@ void write_sensors(const path& recording, const path& out, const BesideSensors&)
 /// Sorted by name.
 const std::array<Format, 9> kFormats = {{
     {"csv", write_csv},
-    {"kitti", write_truth<export_kitti>},
+    {"kitti", write_kitti},
     {"mcap", write_bag<export_mcap>},
     {"pcd", write_sensors<export_pcd>},
     {"ply", write_sensors<export_ply>},
     {"rosbag1", write_bag<export_ros1_bag>},
     {"rosbag2", write_bag<export_ros2_bag>},
     {"rosbag2_mcap", write_bag<export_ros2_mcap>},
-    {"tum", write_truth<export_tum>},
+    {"tum", write_tum},
 }};
 
 }  // namespace

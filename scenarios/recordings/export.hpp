@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -20,9 +21,10 @@ bool is_bag_format(const std::string& format);
 /// The format that the ending of a file tells (.mcap, .bag, .tum); empty for others.
 std::string format_of_ending(const std::filesystem::path& out);
 
-/// What a bag holds besides the sensors.
+/// What a bag holds besides the sensors, and how its sweeps are written.
 struct BesideSensors {
   bool truth = false;
+  SweepLayout sweeps = own_sweep_layout();
   /// Called with sensors and truth read, to add estimates (scenarios/exchange); may be empty.
   std::function<void(const sim::Sensors&, BagWriting&)> more = {};
 };
@@ -36,8 +38,8 @@ void export_recording(const std::filesystem::path& recording, const std::string&
                       const std::filesystem::path& out, const BesideSensors& beside = {});
 
 /// "t x y z qx qy qz qw" per physics sample: T_WB, seconds from the start with nine decimals, numbers that read back
-/// exactly. Without the instants that a reference does not know.
-void export_tum(const sim::Truth& truth, const std::filesystem::path& file);
+/// exactly; `origin_ns` is added to the times. Without the instants that a reference does not know.
+void export_tum(const sim::Truth& truth, const std::filesystem::path& file, std::int64_t origin_ns = 0);
 
 /// Upper three rows of T_WB, row by row, per physics sample; KITTI's format has no time: throws BadInput for a
 /// reference with gaps.

@@ -41,7 +41,7 @@ Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord&
 /// Where the sweeps of one lidar lie.
 struct SweepSource {
   std::filesystem::path folder;
-  std::string format;           ///< "ply", "pcd" or "kitti" (.bin)
+  std::string format;           ///< "ply", "pcd", "vtk" or "kitti" (.bin)
   std::string stem;             ///< of the files' names, before the number: "lidar"; "": all files must have the same
   std::filesystem::path times;  ///< a stamp per sweep; "": STEM_times.txt or times.txt in the folder, if it is there
   std::int64_t steady_ns = 0;   ///< sweeps follow each other by this, where nothing tells their times; 0: refused
@@ -58,7 +58,7 @@ Imported import_sweeps(const SweepSource& source);
 /// A pose file of somebody else.
 struct ReferenceSource {
   std::filesystem::path file;
-  std::string format;           ///< "tum" or "kitti"
+  std::string format;           ///< "tum", "kitti" or "odometry"
   bool of_body = false;         ///< poses of the body; else of the first lidar, by its T_BL
   bool sorted = false;          ///< lines may be in any order: read_tum_poses
   std::filesystem::path times;  ///< of a KITTI file without sweeps

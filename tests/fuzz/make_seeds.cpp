@@ -126,6 +126,10 @@ void write_recordings(const path& folder, const path& scratch) {
   write_recording(in(folder, "recording") / "small", fixture::info(), recording.sensors, &recording.truth);
   const sim::Recording longer = small_recording(40);
   export_ros1_bag(longer.sensors, {}, in(folder, "ros1_bag") / "small");
+  BagWriting livox;
+  livox.sweeps = livox_sweep_layout();
+  export_ros1_bag(longer.sensors, livox, in(folder, "ros1_bag") / "livox");
+  export_mcap(longer.sensors, livox, in(folder, "mcap") / "livox");
   export_ros2_bag(longer.sensors, {}, scratch / "bag");
   for (const auto& entry : std::filesystem::directory_iterator(scratch / "bag")) {
     if (entry.path().extension() == ".db3") std::filesystem::copy_file(entry.path(), in(folder, "ros2_bag") / "small");
@@ -161,6 +165,18 @@ void write_texts(const path& folder) {
   put_text(in(folder, "saved_states") / "rolling", edits('R', {1, 0x28, 0x23, 0, 0, 0}));
   put_text(in(folder, "saved_states") / "refused_of_other_parameters", edits('T', {2, 0, 0, 0, 0, 8}));
   put_text(in(folder, "saved_states") / "refused_cut", edits('R', {3, 0x20, 0x4e, 0, 0, 3}));
+  put_text(in(folder, "vtk_cloud") / "small",
+           "# vtk DataFile Version 3.0\nFile created by libpointmatcher\nASCII\nDATASET POLYDATA\nPOINTS 3 float\n"
+           "1 2 3\n4 5 6\n7 8 9\nVERTICES 3 6\n1 0\n1 1\n1 2\nPOINT_DATA 3\nSCALARS intensity float\n"
+           "LOOKUP_TABLE default\n36\n31\n4\nNORMALS normals float\n0 0 1\n0 0 1\n0 0 1\nSCALARS t float\n"
+           "LOOKUP_TABLE default\n0\n4.5e+07\n9.97e+07\n");
+  put_text(in(folder, "odometry") / "small",
+           "header.stamp.sec,header.stamp.nanosec,header.frame_id,pose.pose.position.x,pose.pose.position.y,"
+           "pose.pose.position.z,pose.pose.orientation.x,pose.pose.orientation.y,pose.pose.orientation.z,"
+           "pose.pose.orientation.w,pose.covariance\n"
+           "1690309709,285305600,map,0.85,-0.13,0.03,0,-0.6,0,0.8,[0. 0.]\n"
+           "1690309709,385259008,map,0.86,-0.13,0.03,0,-0.6,0,0.8,[0. 0.]\n"
+           "1690309709,485205504,map,0.87,-0.12,0.03,0,-0.6,0,0.8,[0. 0.]\n");
   const float points[8] = {1, 2, 3, 0.5f, 4, 5, 6, 1};
   put_text(in(folder, "kitti_cloud") / "small", std::string(reinterpret_cast<const char*>(points), sizeof points));
   std::string wand =

@@ -96,6 +96,9 @@ void ply_cloud(const path& file) {
 void pcd_cloud(const path& file) {
   cloud(file, "pcd");
 }
+void vtk_cloud(const path& file) {
+  cloud(file, "vtk");
+}
 void kitti_cloud(const path& file) {
   cloud(file, "kitti");
 }
@@ -110,6 +113,13 @@ void tum(const path& file) {
   ReferenceSource source;
   source.file = file;
   source.format = "tum";
+  import_trajectory(source);
+}
+void odometry(const path& file) {
+  pose_format(file);
+  ReferenceSource source;
+  source.file = file;
+  source.format = "odometry";
   import_trajectory(source);
 }
 void kitti(const path& file) {
@@ -190,10 +200,12 @@ constexpr std::array kReaders = {
     Reader{"mcap", "a.mcap", mcap},
     Reader{"ply_cloud", "lidar_000000.ply", ply_cloud},
     Reader{"pcd_cloud", "lidar_000000.pcd", pcd_cloud},
+    Reader{"vtk_cloud", "cloud_000000.vtk", vtk_cloud},
     Reader{"kitti_cloud", "lidar_000000.bin", kitti_cloud},
     Reader{"stamps", "times.txt", stamps},
     Reader{"tum", "a.tum", tum},
     Reader{"kitti", "a.txt", kitti},
+    Reader{"odometry", "a.csv", odometry},
     Reader{"scenario", "a.yaml", scenario},
     Reader{"situation", "a.yaml", situation},
     Reader{"suite", "a.yaml", suite},

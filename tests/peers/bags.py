@@ -35,8 +35,12 @@ def packages(work):
 
 def main(program, work):
     work.mkdir(parents=True, exist_ok=True)
-    checks = [sys.executable, str(HERE / "bags_checks.py"), program, str(work / "files")]
-    return subprocess.run(checks, env={**os.environ, "PYTHONPATH": str(packages(work))}).returncode
+    env = {**os.environ, "PYTHONPATH": str(packages(work))}
+    wrong = 0
+    for checks in ("bags", "dialects"):
+        words = [sys.executable, str(HERE / f"{checks}_checks.py"), program, str(work / f"files_{checks}")]
+        wrong |= subprocess.run(words, env=env).returncode
+    return wrong
 
 
 if __name__ == "__main__":

@@ -22,6 +22,7 @@ using Writer = void (*)(const fs::path&);
 const std::map<std::string, Writer>& writers() {
   static const std::map<std::string, Writer> all = {{"airbrakes", write_airbrakes},
                                                     {"broad", write_broad},
+                                                    {"norlab", write_norlab},
                                                     {"repoimu", write_repoimu},
                                                     {"sphere_log", write_sphere_log}};
   return all;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Geometry>
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <string>
@@ -18,8 +20,8 @@ struct DataFolder {
   bool real = false;
 };
 
-/// The folders of a source ("broad", "repoimu", "airbrakes", "sphere_log"): always the stand-in's, and the real one's
-/// after it where it is there. Nothing is written yet; `written` does it.
+/// The folders of a source ("broad", "norlab", "repoimu", "airbrakes", "sphere_log"): always the stand-in's, and the
+/// real one's after it where it is there. Nothing is written yet; `written` does it.
 std::vector<DataFolder> data_folders(const std::string& source);
 /// Names a test's parameter: "stand_in", "real".
 struct FolderName {
@@ -45,6 +47,11 @@ inline constexpr const char* kSphereLogFile = "orientation_all.csv";
 inline constexpr std::size_t kStandInSphereSamples = 3751;
 /// Between the first and the last place of the rolling sphere of the stand-in.
 inline constexpr double kStandInSphereNet_m = 3.0;
+
+/// Of norlab's sweeps: their number, half the room's sides, and the lidar's pose so long after the first one's start.
+inline constexpr int kNorlabSweeps = 6;
+inline constexpr std::array<double, 3> kNorlabRoom_m = {6.0, 4.0, 1.5};
+Eigen::Isometry3d norlab_pose(double t_s);
 
 /// The rail of the real wand: x = +-distance + offset + y_slope y + z_slope z.
 struct WandRail {

@@ -7,6 +7,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/exchange/estimate_in_bag.hpp"
+#include "scenarios/recordings/dialects/export_for.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/verbs.hpp"
 
@@ -16,7 +17,7 @@ namespace {
 
 struct Options {
   std::filesystem::path recording, out;
-  std::string format;
+  std::string format, peer, points;
   bool with_truth = false;
   std::vector<std::filesystem::path> estimates;
 };
@@ -30,6 +31,27 @@ std::string format_of(const Options& options) {
   return told;
 }
 
+/// Says what was written, and where.
+int said(const Session& session, const Options& options, const std::string& what, const std::string& name) {
+  Table table("", {"recording", what, "written to"});
+  table.add_row({options.recording.string(), name, options.out.string()});
+  session.print({table}, {{"recording", options.recording.string()}, {what, name}, {"output", options.out.string()}});
+  return kDone;
+}
+
+int export_for_peer(const Session& session, const Options& options) {
+  const auto refuse = [](bool given, const char* option) {
+    if (given) throw scenarios::BadInput(std::string(option) + ": --for says what is written");
+  };
+  refuse(!options.format.empty(), "--format");
+  refuse(!options.points.empty(), "--points");
+  refuse(!options.estimates.empty(), "--estimate");
+  prepare_output(options.out, std::vector<std::filesystem::path>{options.recording});
+  scenarios::export_for(options.recording, options.peer, options.out, options.with_truth);
+  session.note("manifest.json there says what lies in it; the peer is started by its 'run'");
+  return said(session, options, "for", options.peer);
+}
+
 int export_as(const Session& session, const Options& options) {
   const std::string format = format_of(options);
   const bool bag = scenarios::is_bag_format(format);
@@ -37,21 +59,22 @@ int export_as(const Session& session, const Options& options) {
     throw scenarios::BadInput("--with-truth is for bags; tum and kitti hold nothing else");
   if (!options.estimates.empty() && !bag)
     throw scenarios::BadInput("--estimate is for bags (mcap, rosbag1, rosbag2, rosbag2_mcap)");
+  if (!options.points.empty()) {
+    if (!bag) throw scenarios::BadInput("--points is for bags (mcap, rosbag1, rosbag2, rosbag2_mcap)");
+    require_known("kind of points", options.points, std::vector<std::string>{"livox", "pointcloud2"});
+  }
   std::vector<std::filesystem::path> inputs = options.estimates;
   inputs.push_back(options.recording);
   prepare_output(options.out, inputs);
   scenarios::BesideSensors beside{options.with_truth};
+  if (options.points == "livox") beside.sweeps = scenarios::livox_sweep_layout();
   if (!options.estimates.empty()) {
     beside.more = [&](const sim::Sensors& sensors, scenarios::BagWriting& writing) {
       scenarios::add_estimates(options.estimates, sensors, writing);
     };
   }
   scenarios::export_recording(options.recording, format, options.out, beside);
-  Table table("", {"recording", "format", "written to"});
-  table.add_row({options.recording.string(), format, options.out.string()});
-  session.print({table},
-                {{"recording", options.recording.string()}, {"format", format}, {"output", options.out.string()}});
-  return kDone;
+  return said(session, options, "format", format);
 }
 
 }  // namespace
@@ -62,16 +85,27 @@ Action declare_export(CLI::App& app, const Session& session) {
   for (const std::string& format : scenarios::export_formats()) known += " " + format;
   app.add_option("RECORDING", options->recording, "a recording, FILE.h5")->required();
   app.add_option("--format", options->format, "one of:" + known + " [by the output's ending: .mcap, .bag, .tum]");
+  std::string peers;
+  for (const std::string& name : scenarios::peer_dialects()) peers += " " + name;
+  app.add_option("--for", options->peer,
+                 "a published estimator, one of:" + peers +
+                     "; a folder with the bag that it reads, its own configuration with this recording's sensors, and "
+                     "manifest.json");
+  app.add_option("--points", options->points,
+                 "of a bag: pointcloud2, or livox for the CustomMsg of Livox' drivers [pointcloud2]");
   app.add_option("-o,--output", options->out,
                  "a file (kitti, tum: the true poses; mcap, rosbag1: the sensors) or a folder (csv, pcd, ply, rosbag2: "
-                 "the sensors)")
+                 "the sensors; with --for)")
       ->required();
-  app.add_flag("--with-truth", options->with_truth, "a bag also holds the true poses, under /truth and as the body's");
+  app.add_flag("--with-truth", options->with_truth,
+               "a bag also holds the true poses, under /truth and as the body's; with --for, as truth.tum beside it");
   app.add_option(
       "--estimate", options->estimates,
       "a bag also holds the poses of an estimate (a folder, or a TUM file of the IMU), and the returns of the "
       "lidar where it puts them; with the truth, laid onto it at the start, each with its error_m");
-  return [&session, options] { return export_as(session, *options); };
+  return [&session, options] {
+    return options->peer.empty() ? export_as(session, *options) : export_for_peer(session, *options);
+  };
 }
 
 }  // namespace tumble::tools

@@ -37,7 +37,7 @@ Imported import_format(const Session& session, const ImportOptions& options, con
   if (format == "rosbag1") return scenarios::import_ros1_bag(options.path, bag_reading(session, options));
   if (format == "rosbag2") return scenarios::import_ros2_bag(options.path, bag_reading(session, options));
   if (format == "mcap") return scenarios::import_mcap(options.path, bag_reading(session, options));
-  if (format == "tum" || (format == "kitti" && !std::filesystem::is_directory(options.path)))
+  if (format == "tum" || format == "odometry" || (format == "kitti" && !std::filesystem::is_directory(options.path)))
     return scenarios::import_trajectory(trajectory_source(options, format));
   return scenarios::import_sweeps(sweep_source(session, options, format));
 }
@@ -99,8 +99,10 @@ int import_from(const Session& session, const ImportOptions& options) {
     scenarios::attach_imus(imported, scenarios::import_imu_csv(options.imu, imu_sheet(session, options),
                                                                accel_unit(options), gyro_unit(options)));
   }
-  if (!options.reference.empty()) {
-    scenarios::attach_reference(imported, reference_source(options, !imported.sensors.lidars.empty()));
+  if (const std::filesystem::path file = reference_file(options, format); !file.empty()) {
+    scenarios::attach_reference(imported, reference_source(options, file, !imported.sensors.lidars.empty()));
+    if (options.reference.empty())
+      imported.notes.push_back("the reference is " + file.filename().string() + ", which lies beside the sweeps");
   }
   imported.sensors.robot = options.robot;
   imported.sensors.sphere_radius_m = options.radius_m;

@@ -8,6 +8,7 @@
 
 #include "scenarios/draw/data_sheet.hpp"
 #include "scenarios/errors.hpp"
+#include "scenarios/recordings/trajectories/reference.hpp"
 #include "tools/tumble/arguments.hpp"
 
 namespace tumble::tools {
@@ -16,12 +17,13 @@ namespace {
 
 using scenarios::BadInput;
 
-const std::vector<std::string> kFormats = {"airbrakes", "broad",   "csv",     "kitti",   "mcap", "pcd",
-                                           "ply",       "repoimu", "rosbag1", "rosbag2", "tum"};
+const std::vector<std::string> kFormats = {"airbrakes", "broad",   "csv",     "kitti",   "mcap", "pcd", "odometry",
+                                           "ply",       "repoimu", "rosbag1", "rosbag2", "tum",  "vtk"};
 
 /// What the files in a folder are.
 std::string format_of_folder(const std::filesystem::path& folder) {
-  const std::map<std::string, std::string> known = {{".ply", "ply"}, {".pcd", "pcd"}, {".bin", "kitti"}};
+  const std::map<std::string, std::string> known = {
+      {".ply", "ply"}, {".pcd", "pcd"}, {".bin", "kitti"}, {".vtk", "vtk"}};
   if (std::filesystem::exists(folder / "metadata.yaml")) return "rosbag2";
   std::string found;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -34,13 +36,14 @@ std::string format_of_folder(const std::filesystem::path& folder) {
     found = format->second;
   }
   if (found.empty())
-    throw BadInput(folder.string() + ": holds no .ply, .pcd or .bin file and no metadata.yaml of a bag");
+    throw BadInput(folder.string() + ": holds no .ply, .pcd, .vtk or .bin file and no metadata.yaml of a bag");
   return found;
 }
 
 /// By its first line.
 std::string format_of_csv(const std::filesystem::path& file) {
   if (scenarios::is_repoimu(file)) return "repoimu";
+  if (scenarios::is_odometry(file)) return "odometry";
   return scenarios::is_airbrakes(file) ? "airbrakes" : "csv";
 }
 
@@ -49,7 +52,7 @@ bool is_bag(const std::string& format) {
 }
 
 bool is_sweeps(const std::string& format) {
-  return format == "ply" || format == "pcd" || format == "kitti";
+  return format == "ply" || format == "pcd" || format == "vtk" || format == "kitti";
 }
 
 void require_numbers(const std::string& option, const std::vector<double>& numbers, double bound) {
@@ -129,9 +132,10 @@ void declare_lidar(CLI::App& app, ImportOptions& options) {
 }
 
 void declare_reference(CLI::App& app, ImportOptions& options) {
-  app.add_option(
-      "--reference", options.reference,
-      "poses that become the truth: a TUM file in the clock of the sweeps, or a KITTI file with a pose per sweep");
+  app.add_option("--reference", options.reference,
+                 "poses that become the truth: a TUM file or a table of nav_msgs/Odometry in the clock of the sweeps, "
+                 "or a KITTI file "
+                 "with a pose per sweep [trajectory.csv beside VTK sweeps]");
   app.add_option("--reference-frame", options.reference_frame,
                  "whose poses they are: lidar or body [of a file: the lidar, if there is one; of a topic: the body]");
   app.add_option("--reference-topic", options.reference_topic,
@@ -146,14 +150,15 @@ void declare_reference(CLI::App& app, ImportOptions& options) {
 
 void declare(CLI::App& app, ImportOptions& options) {
   app.add_option("PATH", options.path,
-                 "a folder of lidar sweeps (PLY, PCD, KITTI .bin); readings of an IMU: CSV with the columns of a "
+                 "a folder of lidar sweeps (PLY, PCD, VTK, KITTI .bin); readings of an IMU: CSV with the columns of a "
                  "sensor_msgs/Imu, a trial of BROAD (HDF5) or a recording of RepoIMU (CSV) with its optical reference, "
                  "a flight log "
                  "of AirbrakesV2 (CSV); a bag (ROS 1 file, ROS 2 folder, MCAP file); "
-                 "or poses (TUM, KITTI)")
+                 "or poses (TUM, KITTI, a table of nav_msgs/Odometry)")
       ->required();
   app.add_option("--format", options.format,
-                 "airbrakes, broad, csv, kitti, mcap, pcd, ply, repoimu, rosbag1, rosbag2 or tum [by the path's ending "
+                 "airbrakes, broad, csv, kitti, mcap, odometry, pcd, ply, repoimu, rosbag1, rosbag2, tum or vtk [by "
+                 "the path's ending "
                  "or content]");
   app.add_option("--device", options.device,
                  "the IMU's data sheet, for ranges and noise: see 'tumble list sensors' [unknown]");
@@ -278,10 +283,17 @@ scenarios::SweepSource sweep_source(const Session& session, const ImportOptions&
   return source;
 }
 
-scenarios::ReferenceSource reference_source(const ImportOptions& options, bool has_lidar) {
+std::filesystem::path reference_file(const ImportOptions& options, const std::string& format) {
+  const std::filesystem::path beside = options.path / "trajectory.csv";
+  const bool norlab = format == "vtk" && options.reference.empty() && scenarios::is_odometry(beside);
+  return norlab ? beside : options.reference;
+}
+
+scenarios::ReferenceSource reference_source(const ImportOptions& options, const std::filesystem::path& file,
+                                            bool has_lidar) {
   scenarios::ReferenceSource source;
-  source.file = options.reference;
-  source.format = scenarios::pose_format(options.reference);
+  source.file = file;
+  source.format = scenarios::pose_format(file);
   source.of_body = options.reference_frame.empty() ? !has_lidar : options.reference_frame == "body";
   source.sorted = options.sorted;
   return source;

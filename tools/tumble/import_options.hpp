@@ -55,8 +55,11 @@ scenarios::AccelUnit accel_unit(const ImportOptions& options);
 scenarios::GyroUnit gyro_unit(const ImportOptions& options);
 
 scenarios::SweepSource sweep_source(const Session& session, const ImportOptions& options, const std::string& format);
+/// The file of reference poses that is asked for, or lies beside sweeps as norlab's mapper writes them; "": none.
+std::filesystem::path reference_file(const ImportOptions& options, const std::string& format);
 /// Poses are of the lidar where the recording has one and nothing else is said.
-scenarios::ReferenceSource reference_source(const ImportOptions& options, bool has_lidar);
+scenarios::ReferenceSource reference_source(const ImportOptions& options, const std::filesystem::path& file,
+                                            bool has_lidar);
 scenarios::ReferenceSource trajectory_source(const ImportOptions& options, const std::string& format);
 
 scenarios::BagReading bag_reading(const Session& session, const ImportOptions& options);

@@ -5,9 +5,11 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "scenarios/recordings/bags/bag_layout.hpp"
 #include "scenarios/recordings/import.hpp"
 #include "sim/recording.hpp"
 
@@ -41,7 +43,12 @@ struct BagWriting {
   const sim::Truth* truth = nullptr;  ///< written only when given
   std::vector<BagTrack> tracks = {};  ///< estimates; names differ from each other, from the sensors' and from "truth"
   std::vector<BagCloud> clouds = {};
+  SweepLayout sweeps = own_sweep_layout();
+  std::optional<ReaderNames> names = {};  ///< given: the first IMU and the first lidar alone, under these
 };
+
+/// The stamp of time 0 in a bag, ns since 1970: `origin_ns`, or the default above where that is 0.
+std::int64_t bag_origin_ns(const BagWriting& writing);
 
 /// Writes a recording as a ROS 1 bag (version 2.0, by librosbag), as a ROS 2 bag: a folder with metadata.yaml (version
 /// 5) and a SQLite file of CDR messages, or as an MCAP file of profile ros2 (mcap.dev/spec: chunks of 1 MiB packed by
@@ -50,7 +57,7 @@ struct BagWriting {
 /// - "/NAME" (sensor_msgs/Imu; without attitude; white noise of the data sheet as covariance), NAME the sensor's;
 /// - "/NAME/points" (sensor_msgs/PointCloud2, stamped at the sweep's start, with the fields that drivers of Velodyne
 ///   give: x y z intensity ring time, the time float32 seconds after the stamp, to 4 ns within 0.1 s; and offset_ns,
-///   the same in whole nanoseconds; neither where points have no times);
+///   the same in whole nanoseconds; neither where points have no times; or what `sweeps` says);
 /// - "/truth" (nav_msgs/Odometry of "body" in "world", every 5 ms at most), "/TRACK" and "/TRACK/points";
 /// - "/tf_static": each sensor in "body", by the calibration that an estimator is given; "/tf": "body" in "world" by
 /// the
@@ -67,7 +74,7 @@ void export_ros2_mcap(const sim::Sensors& sensors, const BagWriting& writing, co
 /// What is taken from a bag.
 struct BagReading {
   std::vector<std::string> imu_topics;    ///< the first is the primary one; empty: all of type Imu, as they stand
-  std::vector<std::string> lidar_topics;  ///< empty: all of type PointCloud2
+  std::vector<std::string> lidar_topics;  ///< empty: all of type PointCloud2 or CustomMsg
   std::string reference_topic;            ///< Odometry or PoseStamped; "": none
   bool reference_of_body = true;          ///< else of the first lidar
   sim::ImuRecord imu;                     ///< what the messages do not state: device, ranges, noise, T_BI

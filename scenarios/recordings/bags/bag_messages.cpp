@@ -29,13 +29,13 @@ struct NamedType {
   ros::PointField::Type type;
 };
 
-/// A cloud of so many points with these fields behind each other, its data empty.
+/// A cloud of so many points with these fields of four bytes behind each other, its data empty.
 ros::PointCloud2 empty_cloud(std::initializer_list<NamedType> fields, std::size_t points, const ros::Header& header) {
   ros::PointCloud2 out;
   out.header = header;
   for (const NamedType& field : fields) {
     out.fields.push_back({field.name, out.point_step, field.type, 1});
-    out.point_step += field.type == ros::PointField::uint16 ? 2 : 4;
+    out.point_step += 4;
   }
   out.width = static_cast<std::uint32_t>(points);
   out.row_step = out.width * out.point_step;
@@ -71,30 +71,6 @@ ros::Imu imu_message(const sim::ImuRecord& imu, std::size_t i, const ros::Header
   out.angular_velocity_covariance = covariance_of(imu.gyro_noise_rad_s_sqrt_hz, imu.period_ns);
   out.linear_acceleration = array_of<3>(imu.accel_m_s2[i]);
   out.linear_acceleration_covariance = covariance_of(imu.accel_noise_m_s2_sqrt_hz, imu.period_ns);
-  return out;
-}
-
-ros::PointCloud2 sweep_message(const sim::LidarRecord& lidar, std::size_t sweep, const ros::Header& header) {
-  using Field = ros::PointField;
-  const std::size_t first = lidar.sweep_first[sweep], end = lidar.sweep_first[sweep + 1];
-  const bool timed = lidar.point_times == sim::PointTimes::measured;
-  const std::initializer_list<NamedType> plain = {{"x", Field::float32},
-                                                  {"y", Field::float32},
-                                                  {"z", Field::float32},
-                                                  {"intensity", Field::float32},
-                                                  {"ring", Field::uint16}};
-  const std::initializer_list<NamedType> with_times = {
-      {"x", Field::float32},   {"y", Field::float32},    {"z", Field::float32},       {"intensity", Field::float32},
-      {"ring", Field::uint16}, {"time", Field::float32}, {"offset_ns", Field::uint32}};
-  ros::PointCloud2 out = empty_cloud(timed ? with_times : plain, end - first, header);
-  for (std::size_t k = first; k < end; ++k) {
-    append(out, lidar.position_L_m[k]);
-    append(out, lidar.intensity[k]);
-    append(out, lidar.ring[k]);
-    if (!timed) continue;
-    append(out, static_cast<float>(lidar.offset_ns[k] * 1e-9));
-    append(out, lidar.offset_ns[k]);
-  }
   return out;
 }
 

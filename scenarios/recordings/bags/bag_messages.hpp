@@ -7,7 +7,8 @@
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/bags/ros_messages.hpp"
 
-/// Readings, poses and points as messages; bag.hpp says what each holds. Private to scenarios/recordings/bags.
+/// Readings, poses and points of estimates as messages; bag.hpp says what each holds, sweep_messages.hpp has the
+/// lidar's. Private to scenarios/recordings/bags.
 namespace tumble::scenarios {
 
 ros::Header header_of(std::int64_t stamp_ns, const std::string& frame);
@@ -16,8 +17,6 @@ ros::Clock clock_message(std::int64_t stamp_ns);
 /// Sample `i` of an IMU.
 ros::Imu imu_message(const sim::ImuRecord& imu, std::size_t i, const ros::Header& header);
 
-/// Sweep number `sweep` of a lidar, in the layout of Velodyne's driver.
-ros::PointCloud2 sweep_message(const sim::LidarRecord& lidar, std::size_t sweep, const ros::Header& header);
 ros::PointCloud2 cloud_message(const BagCloud& cloud, const ros::Header& header);
 
 ros::Odometry odometry_message(const BagTrack::Pose& pose, const std::string& child, const ros::Header& header);

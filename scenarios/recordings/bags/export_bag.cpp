@@ -7,6 +7,7 @@
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/bags/bag_messages.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
+#include "scenarios/recordings/bags/sweep_messages.hpp"
 #include "scenarios/recordings/export_folder.hpp"
 
 namespace tumble::scenarios {
@@ -39,14 +40,14 @@ struct Event {
   std::size_t of, index;  ///< of which sensor or track, and its reading
 };
 
-std::vector<Event> events_of(const sim::Sensors& sensors, const std::vector<BagTrack>& tracks,
-                             const std::vector<BagCloud>& clouds) {
+std::vector<Event> events_of(const sim::Sensors& sensors, std::size_t imus, std::size_t lidars,
+                             const std::vector<BagTrack>& tracks, const std::vector<BagCloud>& clouds) {
   std::vector<Event> events;
-  for (std::size_t s = 0; s < sensors.imus.size(); ++s) {
+  for (std::size_t s = 0; s < imus; ++s) {
     const std::vector<std::int64_t>& times = sensors.imus[s].time_ns;
     for (std::size_t i = 0; i < times.size(); ++i) events.push_back({times[i], Event::imu, s, i});
   }
-  for (std::size_t s = 0; s < sensors.lidars.size(); ++s) {
+  for (std::size_t s = 0; s < lidars; ++s) {
     const sim::LidarRecord& lidar = sensors.lidars[s];
     for (std::size_t i = 0; i < lidar.sweep_start_ns.size(); ++i) {
       events.push_back({lidar.sweep_start_ns[i] + lidar.sweep_period_ns, Event::sweep, s, i});
@@ -62,21 +63,49 @@ std::vector<Event> events_of(const sim::Sensors& sensors, const std::vector<BagT
   return events;
 }
 
+/// Under which names a sensor stands in a bag.
+struct Place {
+  std::string topic, frame;
+};
+
+std::vector<Place> imu_places(const sim::Sensors& sensors, const std::optional<ReaderNames>& names) {
+  std::vector<Place> out;
+  for (const sim::ImuRecord& imu : sensors.imus) {
+    const std::string name = file_stem(imu.name, "imu", out.size());
+    out.push_back({"/" + name, name});
+  }
+  if (names && !out.empty()) out = {{names->imu_topic, names->imu_frame}};
+  return out;
+}
+
+std::vector<Place> lidar_places(const sim::Sensors& sensors, const std::optional<ReaderNames>& names) {
+  std::vector<Place> out;
+  for (const sim::LidarRecord& lidar : sensors.lidars) {
+    const std::string name = file_stem(lidar.name, "lidar", out.size());
+    out.push_back({"/" + name + "/points", name});
+  }
+  if (names && !out.empty()) out = {{names->points_topic, names->lidar_frame}};
+  return out;
+}
+
 /// A recording on its way into a bag.
 class Export {
  public:
   Export(const sim::Sensors& sensors, const BagWriting& writing, BagWriter& bag)
       : sensors_(sensors),
-        clouds_(writing.clouds),
+        writing_(writing),
         bag_(bag),
-        origin_ns_(writing.origin_ns != 0 ? writing.origin_ns : kOrigin_ns) {
+        origin_ns_(bag_origin_ns(writing)),
+        imus_(imu_places(sensors, writing.names)),
+        lidars_(lidar_places(sensors, writing.names)),
+        body_(writing.names ? writing.names->body_frame : kBody) {
     if (origin_ns_ < 0) throw BadInput("the recording begins before 1970: a bag has no such stamps");
     if (writing.truth != nullptr) tracks_.push_back(track_of(*writing.truth));
     tracks_.insert(tracks_.end(), writing.tracks.begin(), writing.tracks.end());
   }
 
   void all() {
-    const std::vector<Event> events = events_of(sensors_, tracks_, clouds_);
+    const std::vector<Event> events = events_of(sensors_, imus_.size(), lidars_.size(), tracks_, writing_.clouds);
     if (!events.empty()) write_mountings(stamp_of(events.front().time_ns));
     for (const Event& event : events) {
       write_clock(event.time_ns);
@@ -90,20 +119,18 @@ class Export {
     if (origin_ns_ + time_ns < 0) throw BadInput("a reading lies before 1970: a bag has no such stamps");
     return origin_ns_ + time_ns;
   }
-  std::string name_of(const sim::ImuRecord& imu, std::size_t index) const { return file_stem(imu.name, "imu", index); }
-  std::string name_of(const sim::LidarRecord& lidar, std::size_t index) const {
-    return file_stem(lidar.name, "lidar", index);
-  }
 
   void write_mountings(std::int64_t stamp) {
     ros::TFMessage message;
     const auto add = [&](const Eigen::Isometry3d& T_BA, const std::string& frame) {
       const Eigen::Quaterniond q_BA = Eigen::Quaterniond(T_BA.linear()).normalized();
-      message.transforms.push_back(transform_message(T_BA.translation(), q_BA, frame, header_of(stamp, kBody)));
+      message.transforms.push_back(transform_message(T_BA.translation(), q_BA, frame, header_of(stamp, body_)));
     };
-    for (std::size_t s = 0; s < sensors_.imus.size(); ++s) add(sensors_.imus[s].T_BI, name_of(sensors_.imus[s], s));
-    for (std::size_t s = 0; s < sensors_.lidars.size(); ++s) {
-      add(sensors_.lidars[s].T_BL, name_of(sensors_.lidars[s], s));
+    for (std::size_t s = 0; s < imus_.size(); ++s) add(sensors_.imus[s].T_BI, imus_[s].frame);
+    for (std::size_t s = 0; s < lidars_.size(); ++s) add(sensors_.lidars[s].T_BL, lidars_[s].frame);
+    if (writing_.names && !writing_.names->fixed_frame.empty()) {
+      message.transforms.push_back(transform_message(Eigen::Vector3d::Zero(), Eigen::Quaterniond::Identity(), body_,
+                                                     header_of(stamp, writing_.names->fixed_frame)));
     }
     if (!message.transforms.empty()) bag_.write("/tf_static", stamp, message);
   }
@@ -117,34 +144,38 @@ class Export {
   void write(const Event& event, std::int64_t stamp) {
     switch (event.kind) {
       case Event::imu: {
-        const sim::ImuRecord& imu = sensors_.imus[event.of];
-        const std::string name = name_of(imu, event.of);
-        return bag_.write("/" + name, stamp, imu_message(imu, event.index, header_of(stamp, name)));
+        const Place& place = imus_[event.of];
+        return bag_.write(place.topic, stamp,
+                          imu_message(sensors_.imus[event.of], event.index, header_of(stamp, place.frame)));
       }
       case Event::sweep: {
         const sim::LidarRecord& lidar = sensors_.lidars[event.of];
-        const std::string name = name_of(lidar, event.of);
-        const ros::Header header = header_of(origin_ns_ + lidar.sweep_start_ns[event.index], name);
-        return bag_.write("/" + name + "/points", stamp, sweep_message(lidar, event.index, header));
+        const Place& place = lidars_[event.of];
+        const std::int64_t start_ns = stamp_of(lidar.sweep_start_ns[event.index]);
+        return bag_.write(
+            place.topic, stamp,
+            sweep_message(lidar, event.index, writing_.sweeps, start_ns, header_of(start_ns, place.frame)));
       }
       case Event::pose: {
         const BagTrack::Pose& pose = tracks_[event.of].poses[event.index];
-        const std::string &name = tracks_[event.of].name, child = event.of == 0 ? kBody : name;
+        const std::string &name = tracks_[event.of].name, child = event.of == 0 ? body_ : name;
         const ros::Header header = header_of(stamp, kWorld);
         bag_.write("/" + name, stamp, odometry_message(pose, child, header));
         return bag_.write("/tf", stamp, ros::TFMessage{{transform_message(pose.p_WB_m, pose.q_WB, child, header)}});
       }
       case Event::cloud: {
-        const BagCloud& cloud = clouds_[event.of];
+        const BagCloud& cloud = writing_.clouds[event.of];
         return bag_.write("/" + cloud.track + "/points", stamp, cloud_message(cloud, header_of(stamp, kWorld)));
       }
     }
   }
 
   const sim::Sensors& sensors_;
-  const std::vector<BagCloud>& clouds_;
+  const BagWriting& writing_;
   BagWriter& bag_;
   std::int64_t origin_ns_;
+  std::vector<Place> imus_, lidars_;     ///< of those sensors that are written, the first ones
+  std::string body_;                     ///< its frame
   std::optional<std::int64_t> tick_ns_;  ///< the clock's last one
   std::vector<BagTrack> tracks_;         ///< the first one moves the body
 };
@@ -154,6 +185,10 @@ void write_bag(const sim::Sensors& sensors, const BagWriting& writing, BagWriter
 }
 
 }  // namespace
+
+std::int64_t bag_origin_ns(const BagWriting& writing) {
+  return writing.origin_ns != 0 ? writing.origin_ns : kOrigin_ns;
+}
 
 void export_ros1_bag(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& file) {
   write_bag(sensors, writing, *make_ros1_writer(file));

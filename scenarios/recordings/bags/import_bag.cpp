@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <cstring>
+#include <cmath>
 #include <sstream>
+#include <type_traits>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/bags/bag.hpp"
+#include "scenarios/recordings/bags/bag_clouds.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
 #include "scenarios/recordings/bags/static_frames.hpp"
 #include "scenarios/recordings/clouds/sweep_stamps.hpp"
@@ -22,62 +24,18 @@ constexpr const char* kOdometry = "nav_msgs/Odometry";
 constexpr const char* kPose = "geometry_msgs/PoseStamped";
 constexpr const char *kTransforms = "tf2_msgs/TFMessage", *kOldTransforms = "tf/tfMessage";
 constexpr const char* kStaticTopic = "/tf_static";
+/// What the stamps of a message may differ by before it is said.
+constexpr double kClocksApart_s = 1e-3;
+
+bool is_imu_type(const std::string& type) {
+  return type == kImu;
+}
+bool is_cloud_type(const std::string& type) {
+  return type == kCloud || is_livox_type(type);
+}
 
 std::int64_t stamp_of(const ros::Header& header) {
   return std::int64_t{header.sec} * 1000000000 + header.nanosec;
-}
-
-template <class Number>
-void take_column(const ros::PointCloud2& cloud, std::size_t row_bytes, std::size_t offset, std::vector<double>& out) {
-  std::size_t point = 0;
-  for (std::uint32_t row = 0; row < cloud.height; ++row) {
-    for (std::uint32_t i = 0; i < cloud.width; ++i) {
-      Number value;
-      std::memcpy(&value, cloud.data.data() + row * row_bytes + std::size_t{i} * cloud.point_step + offset,
-                  sizeof(value));
-      out[point++] = static_cast<double>(value);
-    }
-  }
-}
-
-struct FieldType {
-  std::size_t bytes;
-  void (*take)(const ros::PointCloud2&, std::size_t, std::size_t, std::vector<double>&);
-};
-
-/// By the number of the type; of others nothing is known.
-const FieldType* type_of(std::uint8_t datatype) {
-  static const FieldType known[] = {{1, take_column<std::int8_t>},  {1, take_column<std::uint8_t>},
-                                    {2, take_column<std::int16_t>}, {2, take_column<std::uint16_t>},
-                                    {4, take_column<std::int32_t>}, {4, take_column<std::uint32_t>},
-                                    {4, take_column<float>},        {8, take_column<double>}};
-  return datatype >= ros::PointField::int8 && datatype <= ros::PointField::float64 ? &known[datatype - 1] : nullptr;
-}
-
-/// Columns of a message, whose layout is held against its data first.
-Cloud cloud_of(const ros::PointCloud2& message, const std::string& where) {
-  if (message.is_bigendian != 0) throw BadInput(where + ": big-endian points are not read");
-  const std::uint64_t tight = std::uint64_t{message.width} * message.point_step;
-  const std::uint64_t row_bytes = std::max<std::uint64_t>(message.row_step, tight);
-  Cloud out;
-  if (message.width == 0 || message.height == 0) return out;
-  if (message.point_step == 0 || row_bytes > message.data.size() / message.height) {
-    throw BadInput(where + ": " + std::to_string(message.height) + " x " + std::to_string(message.width) +
-                   " points of " + std::to_string(message.point_step) + " bytes do not fit its data of " +
-                   std::to_string(message.data.size()) + " bytes");
-  }
-  out.points = std::size_t{message.width} * message.height;
-  for (const ros::PointField& field : message.fields) {
-    const FieldType* type = type_of(field.datatype);
-    if (type == nullptr || field.count != 1) continue;
-    if (std::uint64_t{field.offset} + type->bytes > message.point_step) {
-      throw BadInput(where + ": field '" + field.name + "' at byte " + std::to_string(field.offset) +
-                     " lies outside of its point of " + std::to_string(message.point_step) + " bytes");
-    }
-    out.names.push_back(field.name);
-    type->take(message, row_bytes, field.offset, out.columns.emplace_back(out.points));
-  }
-  return out;
 }
 
 /// A bag, its place for messages, and its topics.
@@ -96,15 +54,16 @@ struct Bag {
     throw BadInput(place + ": no topic '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
   }
 
-  /// The topics named, which must be of this type; all of it when none is named.
-  std::vector<std::string> chosen(const std::vector<std::string>& names, const std::string& type) const {
+  /// The topics named, which must be of a type that fits; all of such when none is named.
+  std::vector<std::string> chosen(const std::vector<std::string>& names, bool (*fits)(const std::string& type),
+                                  const std::string& wanted) const {
     std::vector<std::string> out = names;
     for (const std::string& name : names) {
-      if (topic(name).type != type)
-        throw BadInput(place + ": topic '" + name + "' is of type " + topic(name).type + ", must be " + type);
+      if (!fits(topic(name).type))
+        throw BadInput(place + ": topic '" + name + "' is of type " + topic(name).type + ", must be " + wanted);
     }
     for (const BagTopic& each : topics) {
-      if (names.empty() && each.type == type) out.push_back(each.name);
+      if (names.empty() && fits(each.type)) out.push_back(each.name);
     }
     return out;
   }
@@ -197,9 +156,16 @@ struct CloudHeaders {
   bool in_world() const { return frame == "world" || frame == "map" || frame == "odom"; }
 };
 
+/// Calls `take(message, where)` for each cloud of the topic, of whichever type they are.
+template <class Take>
+void read_clouds(const Bag& bag, const std::string& topic, Take&& take) {
+  if (is_livox_type(bag.topic(topic).type)) return bag.read<ros::LivoxCustomMsg>(topic, take);
+  bag.read<ros::PointCloud2>(topic, take);
+}
+
 CloudHeaders read_headers(const Bag& bag, const std::string& topic) {
   CloudHeaders out;
-  bag.read<ros::PointCloud2>(topic, [&](const ros::PointCloud2& message, const std::string&) {
+  read_clouds(bag, topic, [&](const auto& message, const std::string&) {
     out.stamps.push_back(stamp_of(message.header));
     out.frame = message.header.frame_id;
   });
@@ -213,10 +179,19 @@ sim::LidarRecord read_lidar(const Bag& bag, const StaticFrames& frames, const st
   sweeps.device.name = sensor_name(topic);
   const std::int64_t given_ns = sweeps.device.sweep_period_ns;
   SweepBuilder builder(std::move(sweeps), given_ns > 0 ? given_ns : median_step_ns(headers.stamps));
-  bag.read<ros::PointCloud2>(topic, [&](const ros::PointCloud2& message, const std::string& where) {
+  double clocks_apart_s = 0.0;
+  read_clouds(bag, topic, [&]<class Message>(const Message& message, const std::string& where) {
+    if constexpr (std::is_same_v<Message, ros::LivoxCustomMsg>) {
+      const double apart_ns = static_cast<double>(message.timebase) - static_cast<double>(stamp_of(message.header));
+      clocks_apart_s = std::max(clocks_apart_s, 1e-9 * std::abs(apart_ns));
+    }
     builder.add(stamp_of(message.header), cloud_of(message, where), where);
   });
   sim::LidarRecord lidar = builder.finish(bag.place + ": topic " + topic, notes);
+  if (clocks_apart_s > kClocksApart_s) {
+    notes.push_back(topic + ": caution: the messages' timebase and the stamps of their headers are up to " +
+                    std::to_string(clocks_apart_s) + " s apart; the times of points count from the headers'");
+  }
   place_sensor(bag, frames, topic, headers.frame, lidar.T_BL, notes);
   return lidar;
 }
@@ -270,9 +245,9 @@ Imported import_bag(BagReader& reader, const std::filesystem::path& path, const 
   const Bag bag{reader, path.string(), reader.topics()};
   const StaticFrames frames = read_frames(bag);
   Imported out;
-  for (const std::string& topic : bag.chosen(reading.imu_topics, kImu))
+  for (const std::string& topic : bag.chosen(reading.imu_topics, is_imu_type, kImu))
     out.sensors.imus.push_back(read_imu(bag, frames, topic, reading, out.notes));
-  for (const std::string& topic : bag.chosen(reading.lidar_topics, kCloud)) {
+  for (const std::string& topic : bag.chosen(reading.lidar_topics, is_cloud_type, kCloud)) {
     const CloudHeaders headers = read_headers(bag, topic);
     if (reading.lidar_topics.empty() && headers.in_world()) {
       out.notes.push_back(topic + ": its points lie in '" + headers.frame + "', in no sensor's frame: left out");
@@ -281,7 +256,7 @@ Imported import_bag(BagReader& reader, const std::filesystem::path& path, const 
     out.sensors.lidars.push_back(read_lidar(bag, frames, topic, headers, reading, out.notes));
   }
   if (out.sensors.imus.empty() && out.sensors.lidars.empty()) {
-    throw BadInput(path.string() + ": holds no topic of type " + kImu + " or " + kCloud + " among " +
+    throw BadInput(path.string() + ": holds no topic of type " + kImu + ", " + kCloud + " or CustomMsg among " +
                    std::to_string(bag.topics.size()));
   }
   out.info.attribution = "imported from " + path.filename().string();

@@ -6,6 +6,7 @@
 #include <rosbag/view.h>
 #include <sensor_msgs/Imu.h>
 #include <sensor_msgs/PointCloud2.h>
+#include <std_msgs/Header.h>
 
 #include <algorithm>
 #include <boost/make_shared.hpp>
@@ -111,12 +112,22 @@ TypedBytes typed(const ros::PointCloud2& message) {
 TypedBytes typed(const ros::Odometry& message) {
   return typed_as<nav_msgs::Odometry>(message);
 }
-// the headers of these two are no part of what the tree is built with; the sums are those of their definitions
+// the headers of these three are no part of what the tree is built with; the sums are those of their definitions
 TypedBytes typed(const ros::TFMessage& message) {
   const std::string inner = ::ros::message_traits::Definition<geometry_msgs::TransformStamped>::value();
   return {ros::type_of(message), "94810edda583a504dfda3829e70d7eec",
           "geometry_msgs/TransformStamped[] transforms\n" + std::string(80, '=') +
               "\nMSG: geometry_msgs/TransformStamped\n" + inner,
+          ros::to_ros1(message)};
+}
+TypedBytes typed(const ros::LivoxCustomMsg& message) {
+  const std::string header = ::ros::message_traits::Definition<std_msgs::Header>::value();
+  const std::string bar = std::string(80, '=') + "\nMSG: ";
+  return {ros::kLivoxRos1, "e4d6829bdfe657cb6c21a746c86b21a6",
+          "Header header\nuint64 timebase\nuint32 point_num\nuint8 lidar_id\nuint8[3] rsvd\nCustomPoint[] points\n" +
+              bar + "std_msgs/Header\n" + header + bar +
+              "livox_ros_driver/CustomPoint\nuint32 offset_time\nfloat32 x\nfloat32 y\nfloat32 z\n"
+              "uint8 reflectivity\nuint8 tag\nuint8 line\n",
           ros::to_ros1(message)};
 }
 TypedBytes typed(const ros::Clock& message) {

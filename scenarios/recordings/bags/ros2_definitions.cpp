@@ -40,7 +40,13 @@ const std::map<std::string, std::string>& definitions() {
        "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/PoseWithCovariance pose\n"
        "geometry_msgs/TwistWithCovariance twist\n"},
       {"tf2_msgs/TFMessage", "geometry_msgs/TransformStamped[] transforms\n"},
-      {"rosgraph_msgs/Clock", "builtin_interfaces/Time clock\n"}};
+      {"rosgraph_msgs/Clock", "builtin_interfaces/Time clock\n"},
+      // github.com/Livox-SDK/livox_ros_driver2
+      {"livox_ros_driver2/CustomPoint",
+       "uint32 offset_time\nfloat32 x\nfloat32 y\nfloat32 z\nuint8 reflectivity\nuint8 tag\nuint8 line\n"},
+      {"livox_ros_driver2/CustomMsg",
+       "std_msgs/Header header\nuint64 timebase\nuint32 point_num\nuint8 lidar_id\nuint8[3] rsvd\n"
+       "livox_ros_driver2/CustomPoint[] points\n"}};
   return all;
 }
 

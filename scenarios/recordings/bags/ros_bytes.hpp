@@ -90,6 +90,8 @@ class CdrBound {
  public:
   void operator()(std::uint8_t) { bytes += 1; }
   void operator()(std::uint32_t) { bytes += 4 + kPadding; }
+  void operator()(std::uint64_t) { bytes += 8 + kPadding; }
+  void operator()(float) { bytes += 4 + kPadding; }
   void operator()(const std::string& text) { bytes += 4 + kPadding + text.size() + 1; }
   template <std::size_t kCount>
   void operator()(const std::array<double, kCount>&) {
@@ -118,6 +120,8 @@ class CdrWriter {
   }
   void operator()(std::uint8_t number) { cdr_ << number; }
   void operator()(std::uint32_t number) { cdr_ << number; }
+  void operator()(std::uint64_t number) { cdr_ << number; }
+  void operator()(float number) { cdr_ << number; }
   void operator()(const std::string& text) { cdr_ << text; }
   template <std::size_t kCount>
   void operator()(const std::array<double, kCount>& numbers) {
@@ -151,6 +155,8 @@ class CdrReader {
   }
   void operator()(std::uint8_t& number) { cdr_ >> number; }
   void operator()(std::uint32_t& number) { cdr_ >> number; }
+  void operator()(std::uint64_t& number) { cdr_ >> number; }
+  void operator()(float& number) { cdr_ >> number; }
   void operator()(std::string& text) { cdr_ >> text; }
   template <std::size_t kCount>
   void operator()(std::array<double, kCount>& numbers) {

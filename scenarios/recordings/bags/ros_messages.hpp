@@ -12,9 +12,9 @@
 /// ROS 1 and ROS 2 lay out the same fields differently: ros_bytes.hpp has the archives that visit them. Private to
 /// scenarios/recordings/bags.
 ///
-/// An archive has: operator()(uint8 | uint32 | text | array of doubles), ros1_only(uint32) for the field that ROS 2
-/// gave up, count(entries there are, least bytes of one) for the length before a list (a reader returns the length
-/// that it finds), and raw(first byte, bytes).
+/// An archive has: operator()(uint8 | uint32 | uint64 | float | text | array of doubles), ros1_only(uint32) for the
+/// field that ROS 2 gave up, count(entries there are, least bytes of one) for the length before a list (a reader
+/// returns the length that it finds), and raw(first byte, bytes).
 namespace tumble::scenarios::ros {
 
 struct Header {
@@ -82,8 +82,25 @@ struct Clock {
   std::uint32_t sec = 0, nanosec = 0;
 };
 
+/// A return of a Livox lidar (Livox-SDK/livox_ros_driver, README: "Livox pointcloud custom message").
+struct LivoxPoint {
+  std::uint32_t offset_time = 0;  ///< ns after the message's `timebase`
+  float x = 0, y = 0, z = 0;      ///< m
+  std::uint8_t reflectivity = 0, tag = 0, line = 0;
+};
+
+/// "CustomMsg" of the vendor's drivers.
+struct LivoxCustomMsg {
+  Header header;
+  std::uint64_t timebase = 0;  ///< ns, of the first point
+  std::uint32_t point_num = 0;
+  std::uint8_t lidar_id = 0;
+  std::array<std::uint8_t, 3> rsvd = {};
+  std::vector<LivoxPoint> points;
+};
+
 /// What a recording is written as. Types by ROS 1's names.
-using Message = std::variant<Imu, PointCloud2, Odometry, TFMessage, Clock>;
+using Message = std::variant<Imu, PointCloud2, Odometry, TFMessage, Clock, LivoxCustomMsg>;
 inline const char* type_of(const Imu&) {
   return "sensor_msgs/Imu";
 }
@@ -99,6 +116,11 @@ inline const char* type_of(const TFMessage&) {
 inline const char* type_of(const Clock&) {
   return "rosgraph_msgs/Clock";
 }
+/// As the driver for ROS 2 calls it; bags of ROS 1 have kLivoxRos1.
+inline const char* type_of(const LivoxCustomMsg&) {
+  return "livox_ros_driver2/CustomMsg";
+}
+inline constexpr const char* kLivoxRos1 = "livox_ros_driver/CustomMsg";
 inline std::string type_of(const Message& message) {
   return std::visit([](const auto& each) { return std::string(type_of(each)); }, message);
 }
@@ -187,6 +209,25 @@ template <class Archive>
 void fields(Archive& archive, Clock& clock) {
   archive(clock.sec);
   archive(clock.nanosec);
+}
+
+template <class Archive>
+void fields(Archive& archive, LivoxCustomMsg& message) {
+  header_fields(archive, message.header);
+  archive(message.timebase);
+  archive(message.point_num);
+  archive(message.lidar_id);
+  for (std::uint8_t& reserved : message.rsvd) archive(reserved);
+  constexpr std::size_t kPointBytes = 19;
+  list(archive, message.points, kPointBytes, [&](LivoxPoint& point) {
+    archive(point.offset_time);
+    archive(point.x);
+    archive(point.y);
+    archive(point.z);
+    archive(point.reflectivity);
+    archive(point.tag);
+    archive(point.line);
+  });
 }
 
 }  // namespace tumble::scenarios::ros

@@ -15,6 +15,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/clouds/quiet_pcl.hpp"
+#include "scenarios/recordings/clouds/vtk_file.hpp"
 
 namespace tumble::scenarios {
 
@@ -168,7 +169,8 @@ Cloud read_cloud(const std::filesystem::path& path) {
   if (ending == ".ply") return read_by_pcl<pcl::PLYReader>(path, read_ply_header(path), "PLY");
   if (ending == ".pcd") return read_by_pcl<pcl::PCDReader>(path, read_pcd_header(path), "PCD");
   if (ending == ".bin") return read_kitti(path);
-  throw BadInput(path.string() + ": must end in .ply, .pcd or .bin");
+  if (ending == ".vtk") return read_vtk(path);
+  throw BadInput(path.string() + ": must end in .ply, .pcd, .vtk or .bin");
 }
 
 }  // namespace tumble::scenarios

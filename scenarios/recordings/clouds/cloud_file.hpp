@@ -19,10 +19,10 @@ struct Cloud {
   const std::vector<double>* find(const std::string& name) const;
 };
 
-/// Reads the points of a PLY or PCD file of any encoding (by PCL), or of a KITTI .bin file (float32 x y z intensity);
-/// the file's ending tells which. A file without points is a cloud without points. What the header promises is held
-/// against the file's size before anything is allocated. Throws BadInput with file and place: absent, another format,
-/// a damaged header, truncated, more than 2^26 points.
+/// Reads the points of a PLY or PCD file of any encoding (by PCL), of a legacy VTK file written as text (vtk_file.hpp),
+/// or of a KITTI .bin file (float32 x y z intensity); the file's ending tells which. A file without points is a cloud
+/// without points. What the header promises is held against the file's size before anything is allocated. Throws
+/// BadInput with file and place: absent, another format, a damaged header, truncated, more than 2^26 points.
 Cloud read_cloud(const std::filesystem::path& path);
 
 /// What the header of a PLY or PCD file promises.

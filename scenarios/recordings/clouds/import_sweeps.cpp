@@ -13,9 +13,9 @@ namespace {
 using std::filesystem::path;
 
 std::string ending_of(const std::string& format) {
-  if (format == "ply" || format == "pcd") return "." + format;
+  if (format == "ply" || format == "pcd" || format == "vtk") return "." + format;
   if (format == "kitti") return ".bin";
-  throw BadInput("sweeps of format '" + format + "' are not read: ply, pcd or kitti");
+  throw BadInput("sweeps of format '" + format + "' are not read: ply, pcd, vtk or kitti");
 }
 
 /// The file of stamps that is asked for, or lies beside the sweeps; empty when there is none.

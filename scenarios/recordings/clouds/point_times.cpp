@@ -26,6 +26,8 @@ constexpr std::array<const char*, 8> kNames = {"t",          "time",        "tim
 constexpr double kSpanMin = 0.02, kSpanMax = 1.5;
 /// Stamps since 1973 in seconds are above this, whatever their unit then by its factor.
 constexpr double kEpochMin_s = 1e8;
+/// So many points in a sweep span it: fewer may lie in any short part of it, and say nothing against a stated unit.
+constexpr double kPointsThatSpan = 100.0;
 
 std::string lower(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
@@ -84,11 +86,33 @@ double middle(std::vector<double> values) {
   return *place;
 }
 
+bool fits(double span, const Unit& unit, double period_ns) {
+  return span * unit.ns > kSpanMin * period_ns && span * unit.ns <= kSpanMax * period_ns;
+}
+
+std::string share_of(double span, const Unit& unit, double period_ns) {
+  std::string text = std::string("in ") + unit.name + " that is ";
+  append_number(text, static_cast<float>(100.0 * span * unit.ns / period_ns));
+  return text + " % of the sweep period";
+}
+
+/// Refuses a unit that is stated, by a flag or by the field's name, where the numbers say another one.
+void require_no_other_unit(const Unit& stated, double span, double period_ns, const std::string& field,
+                           const std::string& where) {
+  if (!(period_ns > 0.0) || fits(span, stated, period_ns)) return;
+  const auto* read =
+      std::find_if(kUnits.begin(), kUnits.end(), [&](const Unit& each) { return fits(span, each, period_ns); });
+  if (read == kUnits.end()) return;
+  std::string line = where + ": the field '" + field + "' is stated to be in " + stated.name + " and spans ";
+  append_number(line, span);
+  throw BadInput(line + " in a sweep: " + share_of(span, stated, period_ns) + ", " + share_of(span, *read, period_ns) +
+                 "; which is it?");
+}
+
 /// The unit by the size of the numbers.
 double unit_by_size(double span, double largest, double period_ns, const std::string& field, const std::string& where) {
   for (const Unit& unit : kUnits) {
-    if (period_ns > 0.0 && span * unit.ns > kSpanMin * period_ns && span * unit.ns <= kSpanMax * period_ns)
-      return unit.ns;
+    if (period_ns > 0.0 && fits(span, unit, period_ns)) return unit.ns;
     // of stamps since the epoch the largest unit that makes them old enough
     if (!(period_ns > 0.0) && largest >= kEpochMin_s * 1e9 / unit.ns && largest < kEpochMin_s * 1e12 / unit.ns)
       return unit.ns;
@@ -108,7 +132,7 @@ PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t per
                                const std::string& where) {
   PointTimeRule rule;
   if (reading.not_skewed) return rule;
-  std::vector<double> spans;
+  std::vector<double> spans, points;
   double largest = 0.0;
   for (const Cloud& cloud : first) {
     if (cloud.points == 0) continue;
@@ -116,6 +140,7 @@ PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t per
     const auto [begin, end] = reach(cloud, rule.field);
     if (!(end >= begin)) continue;
     spans.push_back(end - begin);
+    points.push_back(static_cast<double>(cloud.points));
     largest = std::max({largest, std::abs(begin), std::abs(end)});
   }
   if (rule.field.empty() || spans.empty()) return {};
@@ -125,6 +150,8 @@ PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t per
   if (!unit.empty() && named == kUnits.end())
     throw BadInput("the unit of times is '" + unit + "', must be s, ms, us or ns");
   if (unit.empty()) named = unit_of_name(lower(rule.field));
+  if (named != nullptr && named != kUnits.end() && middle(points) >= kPointsThatSpan)
+    require_no_other_unit(*named, span, period, rule.field, where);
   rule.unit_ns =
       named != nullptr && named != kUnits.end() ? named->ns : unit_by_size(span, largest, period, rule.field, where);
   for (const Cloud& cloud : first) {

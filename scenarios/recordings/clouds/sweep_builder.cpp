@@ -56,6 +56,13 @@ std::string in_ns(std::int64_t time_ns) {
   return std::to_string(time_ns) + " ns";
 }
 
+/// How the times of points were read.
+std::string said(const PointTimeRule& rule) {
+  const char* unit = rule.unit_ns == 1e9 ? "s" : rule.unit_ns == 1e6 ? "ms" : rule.unit_ns == 1e3 ? "us" : "ns";
+  return "times of points: field '" + rule.field + "', in " + unit +
+         (rule.absolute ? " of the clock itself" : " from the stamp of the sweep");
+}
+
 /// The field's numbers as whole nanoseconds.
 std::vector<std::int64_t> whole_times(const std::vector<double>& numbers, const std::vector<std::size_t>& kept,
                                       double unit_ns, const std::string& where) {
@@ -205,6 +212,13 @@ sim::LidarRecord SweepBuilder::finish(const std::string& where, std::vector<std:
   record_.sweep_period_ns =
       reading_.device.sweep_period_ns > 0 ? reading_.device.sweep_period_ns : median_step_ns(record_.sweep_start_ns);
   if (record_.sweep_period_ns <= 0) throw BadInput(where + ": of a single sweep the period must be given");
+  if (rule_ && !rule_->field.empty()) notes.push_back(said(*rule_));
+  const std::int64_t longest = *std::max_element(record_.offset_ns.begin(), record_.offset_ns.end());
+  if (reading_.device.sweep_period_ns <= 0 && longest > record_.sweep_period_ns) {
+    notes.push_back("sweeps follow each other by " + in_ns(record_.sweep_period_ns) + " and last up to " +
+                    in_ns(longest) + ", which is taken for their period");
+    record_.sweep_period_ns = longest;
+  }
   if (misses_ > 0)
     notes.push_back(std::to_string(misses_) + " points are misses (not finite, beyond 1000 km, or at the origin)");
   if (skipped_ > 0) notes.push_back(std::to_string(skipped_) + " sweeps without a point and a time are left out");

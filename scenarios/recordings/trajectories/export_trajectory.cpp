@@ -17,11 +17,11 @@ bool known(const sim::Truth& truth, std::size_t i) {
 
 }  // namespace
 
-void export_tum(const sim::Truth& truth, const std::filesystem::path& file) {
+void export_tum(const sim::Truth& truth, const std::filesystem::path& file, std::int64_t origin_ns) {
   std::string text = "# t[s] x y z[m] qx qy qz qw: true pose of the body (centre of mass) in the world\n";
   for (std::size_t i = 0; i < truth.p_WB_m.size(); ++i) {
     if (!known(truth, i)) continue;
-    append_seconds(text, static_cast<std::int64_t>(i) * truth.period_ns);
+    append_seconds(text, origin_ns + static_cast<std::int64_t>(i) * truth.period_ns);
     for (const double x : truth.p_WB_m[i]) append_number(text += ' ', x);
     for (const double x : truth.q_WB[i].coeffs()) append_number(text += ' ', x);
     text += '\n';

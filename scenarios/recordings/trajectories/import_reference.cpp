@@ -23,7 +23,8 @@ std::vector<std::int64_t> own_times(const ReferenceSource& source) {
 std::vector<ReferencePose> poses_of(const ReferenceSource& source, const std::vector<std::int64_t>& sweeps_ns) {
   if (source.format == "tum") return read_tum_poses(source.file, source.sorted);
   if (source.format == "kitti") return read_kitti_poses(source.file, sweeps_ns.empty() ? own_times(source) : sweeps_ns);
-  throw BadInput("poses of format '" + source.format + "' are not read: tum or kitti");
+  if (source.format == "odometry") return read_odometry_poses(source.file);
+  throw BadInput("poses of format '" + source.format + "' are not read: tum, kitti or odometry");
 }
 
 /// From poses of A to poses of B.

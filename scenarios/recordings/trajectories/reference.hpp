@@ -24,7 +24,8 @@ struct ReferencePose {
 /// than a percent, a stamp that does not rise; "" when nothing is. A quaternion that passes is made of unit length.
 std::string problem_of(ReferencePose& pose, const ReferencePose* before);
 
-/// "tum" or "kitti", by the numbers in the first line that holds some (8 or 12). Throws BadInput.
+/// "tum" or "kitti", by the numbers in the first line that holds some (8 or 12), or "odometry" by its header. Throws
+/// BadInput.
 std::string pose_format(const std::filesystem::path& file);
 
 /// Poses of a TUM file: "t x y z qx qy qz qw" a line, seconds, '#' begins a remark. `sorted` puts the lines in the
@@ -36,6 +37,15 @@ std::vector<ReferencePose> read_tum_poses(const std::filesystem::path& file, boo
 /// not twelve finite numbers, no rotation (to 1e-3), another number of poses than of times.
 std::vector<ReferencePose> read_kitti_poses(const std::filesystem::path& file,
                                             const std::vector<std::int64_t>& times_ns);
+
+/// Whether a file's first line is the header of a table of nav_msgs/Odometry.
+bool is_odometry(const std::filesystem::path& file);
+
+/// Poses of a table of nav_msgs/Odometry, a line a message, as rosbag tools write it: comma separated, in the header
+/// the fields' names, of which header.stamp.sec, header.stamp.nanosec, pose.pose.position.x y z and
+/// pose.pose.orientation.x y z w are read. The same errors as of a TUM file; a name that is missing or stands twice, a
+/// nanosecond that is none.
+std::vector<ReferencePose> read_odometry_poses(const std::filesystem::path& file);
 
 /// Lines of a KITTI file that hold poses; the same errors but for the last.
 std::size_t count_kitti_poses(const std::filesystem::path& file);

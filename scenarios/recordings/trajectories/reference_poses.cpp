@@ -68,6 +68,7 @@ std::string problem_of(ReferencePose& pose, const ReferencePose* before) {
 std::string pose_format(const std::filesystem::path& file) {
   std::ifstream stream(file);
   if (!stream || !std::filesystem::is_regular_file(file)) throw BadInput(file.string() + ": no such file");
+  if (is_odometry(file)) return "odometry";
   std::string line;
   while (std::getline(stream, line) && (line.empty() || line.front() == '#' || line.front() == '\r')) {
   }
@@ -76,7 +77,8 @@ std::string pose_format(const std::filesystem::path& file) {
   if (count == 8) return "tum";
   if (count == 12) return "kitti";
   throw BadInput(file.string() + ": its first line has " + std::to_string(count) +
-                 " numbers, must be 8 (TUM: t x y z qx qy qz qw) or 12 (KITTI: rows of a matrix)");
+                 " numbers, must be 8 (TUM: t x y z qx qy qz qw) or 12 (KITTI: rows of a matrix); a table of odometry "
+                 "begins with header.stamp.sec");
 }
 
 std::vector<ReferencePose> read_tum_poses(const std::filesystem::path& file, bool sorted) {

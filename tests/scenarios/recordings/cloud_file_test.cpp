@@ -134,7 +134,8 @@ TEST_F(CloudFile, WhatAHeaderPromisesIsHeldAgainstTheFile) {
 
 TEST_F(CloudFile, DamageIsOneClearLine) {
   EXPECT_THAT(fixture::complaint([&] { read_cloud(folder_ / "none.ply"); }), HasSubstr("none.ply: no such file"));
-  EXPECT_THAT(fixture::complaint([&] { read_cloud(folder_ / "a.las"); }), HasSubstr("must end in .ply, .pcd or .bin"));
+  EXPECT_THAT(fixture::complaint([&] { read_cloud(folder_ / "a.las"); }),
+              HasSubstr("must end in .ply, .pcd, .vtk or .bin"));
   EXPECT_THAT(complaint_of("a.ply", ""), HasSubstr("a.ply:0: the header does not end"));
   EXPECT_THAT(complaint_of("a.ply", "plyy\n"), HasSubstr("a.ply:1: does not begin with 'ply'"));
   EXPECT_THAT(complaint_of("a.ply", "ply\nformat ascii 1.0\nelement vertex 1\n"),

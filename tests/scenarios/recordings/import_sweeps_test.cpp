@@ -218,6 +218,27 @@ TEST_F(ImportSweeps, AUnitThatCannotBeToldIsAskedFor) {
   EXPECT_THAT(complaint_of(), HasSubstr("no field 'tiem'; did you mean 'time'?"));
 }
 
+TEST_F(ImportSweeps, AUnitThatTheNumbersContradictIsRefusedWithBoth) {
+  put("times.txt", "1.0\n1.1\n");
+  std::vector<std::string> us;
+  for (int k = 0; k < 120; ++k) us.push_back(std::to_string(10000 + 500 * k));
+  for (const char* name : {"1.ply", "2.ply"}) put(name, sweep("float time", us));
+  import();
+  EXPECT_THAT(imported_.notes, testing::Contains("times of points: field 'time', in us from the stamp of the sweep"));
+  source_.reading.time_unit = "ns";
+  EXPECT_THAT(complaint_of(),
+              HasSubstr("1.ply: the field 'time' is stated to be in ns and spans 59500 in a sweep: in ns "
+                        "that is 0.0595 % of the sweep period, in us that is 59.5 % of the sweep period"));
+  // the field's name states it too
+  source_.reading.time_unit = "";
+  for (const char* name : {"1.ply", "2.ply"}) put(name, sweep("float t_ms", us));
+  EXPECT_THAT(complaint_of(), HasSubstr("the field 't_ms' is stated to be in ms and spans 59500"));
+  // a few points may lie close together in any unit
+  us.resize(90);
+  for (const char* name : {"1.ply", "2.ply"}) put(name, sweep("float t_ns", us));
+  EXPECT_EQ(complaint_of(), "");
+}
+
 TEST_F(ImportSweeps, NoPointAtAllIsRefused) {
   for (const char* name : {"1.ply", "2.ply"}) put(name, sweep("", {}));
   source_.steady_ns = 100000000;

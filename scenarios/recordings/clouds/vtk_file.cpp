@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/recordings/clouds/vtk_file.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <fstream>
+#include <iterator>
+#include <string_view>
+
+#include "scenarios/errors.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr std::uint64_t kPointsMax = std::uint64_t{1} << 26;
+
+/// The words of a text, and the lines on which they stand.
+class Words {
+ public:
+  explicit Words(const std::filesystem::path& path) : name_(path.string()) {
+    std::ifstream stream(path, std::ios::binary);
+    if (!stream || !std::filesystem::is_regular_file(path)) throw BadInput(name_ + ": no such file");
+    text_.assign(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
+  }
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw BadInput(name_ + ":" + std::to_string(line_) + ": " + what);
+  }
+
+  /// The rest of the line, which is passed.
+  std::string_view line() {
+    const std::size_t end = std::min(text_.find('\n', at_), text_.size());
+    std::string_view out = std::string_view(text_).substr(at_, end - at_);
+    if (out.ends_with('\r')) out.remove_suffix(1);
+    at_ = std::min(end + 1, text_.size());
+    ++line_;
+    return out;
+  }
+
+  /// The next word; empty at the end of the file.
+  std::string_view next() {
+    while (at_ < text_.size() && is_blank(text_[at_])) line_ += text_[at_++] == '\n';
+    const std::size_t begin = at_;
+    while (at_ < text_.size() && !is_blank(text_[at_])) ++at_;
+    return std::string_view(text_).substr(begin, at_ - begin);
+  }
+
+  /// The next word where one must stand.
+  std::string_view need(const char* what) {
+    const std::string_view word = next();
+    if (word.empty()) fail(std::string("ends before ") + what + ": truncated?");
+    return word;
+  }
+
+  std::uint64_t whole(const char* what) {
+    const std::string_view word = need(what);
+    std::uint64_t value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc() || end != word.data() + word.size())
+      fail(std::string(what) + " is '" + std::string(word) + "', no whole number");
+    return value;
+  }
+
+  /// "nan" and "inf" are numbers: a lidar writes them for what it did not see.
+  double number() {
+    std::string_view word = need("its numbers");
+    if (word.starts_with('+')) word.remove_prefix(1);
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc() || end != word.data() + word.size())
+      fail("'" + std::string(word.substr(0, 40)) + "' is no number that a double holds, decimals behind a point");
+    return value;
+  }
+
+  /// Bytes that are left; a number takes two of them, a digit and what parts it from the next.
+  std::uint64_t left() const { return text_.size() - at_; }
+
+ private:
+  static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+  std::string name_, text_;
+  std::size_t at_ = 0;
+  int line_ = 1;
+};
+
+/// Holds so many numbers against what is left of the file, before anything is allocated for them.
+void require_room(const Words& words, std::uint64_t count, std::uint64_t each) {
+  if (count > kPointsMax) {
+    words.fail("promises " + std::to_string(count) + " points, at most " + std::to_string(kPointsMax) +
+               " are read from a file");
+  }
+  if (count * each * 2 > words.left() + 1) {
+    words.fail("promises " + std::to_string(count) + " times " + std::to_string(each) + " numbers, but " +
+               std::to_string(words.left()) + " bytes follow: truncated?");
+  }
+}
+
+void read_points(Words& words, Cloud& cloud) {
+  if (!cloud.names.empty()) words.fail("POINTS stands twice");
+  cloud.points = words.whole("the number of points");
+  words.need("the points' type");
+  require_room(words, cloud.points, 3);
+  cloud.names = {"x", "y", "z"};
+  cloud.columns.assign(3, std::vector<double>(cloud.points));
+  for (std::size_t i = 0; i < cloud.points; ++i) {
+    for (std::vector<double>& column : cloud.columns) column[i] = words.number();
+  }
+}
+
+void pass_over(Words& words, std::uint64_t count, std::uint64_t each) {
+  require_room(words, count, each);
+  for (std::uint64_t i = 0; i < count * each; ++i) words.number();
+}
+
+/// VERTICES lines numbers: so many numbers follow.
+void pass_vertices(Words& words) {
+  words.whole("the number of vertices");
+  pass_over(words, words.whole("the numbers of the vertices"), 1);
+}
+
+/// SCALARS name type [numbers a point], LOOKUP_TABLE name, a line each; then the numbers.
+void read_scalars(Words& words, Cloud& cloud) {
+  const std::string name(words.need("the name of scalars"));
+  words.need("the scalars' type");
+  std::uint64_t each = 1;
+  std::string_view word = words.need("LOOKUP_TABLE");
+  if (word != "LOOKUP_TABLE") {
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), each);
+    if (error != std::errc() || end != word.data() + word.size() || each < 1 || each > 4)
+      words.fail("scalars '" + name + "' of '" + std::string(word) + "' numbers a point, must be 1 to 4");
+    word = words.need("LOOKUP_TABLE");
+  }
+  if (word != "LOOKUP_TABLE") words.fail("'" + std::string(word) + "' in the place of LOOKUP_TABLE");
+  words.need("the name of the lookup table");
+  if (each != 1) return pass_over(words, cloud.points, each);
+  if (cloud.find(name) != nullptr) words.fail("scalars '" + name + "' stand twice");
+  require_room(words, cloud.points, 1);
+  std::vector<double> column(cloud.points);
+  for (double& value : column) value = words.number();
+  cloud.names.push_back(name);
+  cloud.columns.push_back(std::move(column));
+}
+
+/// NORMALS, VECTORS, TENSORS name type, COLOR_SCALARS name numbers.
+void pass_data(Words& words, const Cloud& cloud, std::string_view section) {
+  words.need("a name");
+  if (section == "COLOR_SCALARS") {
+    const std::uint64_t each = words.whole("the numbers of a colour");
+    if (each < 1 || each > 4) words.fail("colours of " + std::to_string(each) + " numbers, must be 1 to 4");
+    return pass_over(words, cloud.points, each);
+  }
+  words.need("a type");
+  pass_over(words, cloud.points, section == "TENSORS" ? 9 : 3);
+}
+
+void read_header(Words& words) {
+  if (!words.line().starts_with("# vtk DataFile Version")) words.fail("begins as no VTK file does");
+  words.line();  // a title
+  const std::string_view encoding = words.need("ASCII");
+  if (encoding == "BINARY") words.fail("is binary: VTK files are read as text (ASCII) alone");
+  if (encoding != "ASCII") words.fail("'" + std::string(encoding.substr(0, 40)) + "' in the place of ASCII");
+  if (words.need("DATASET") != "DATASET" || words.need("POLYDATA") != "POLYDATA")
+    words.fail("holds no POLYDATA, which clouds are");
+}
+
+}  // namespace
+
+Cloud read_vtk(const std::filesystem::path& path) {
+  Words words(path);
+  read_header(words);
+  Cloud cloud;
+  bool of_points = false;
+  for (std::string_view section = words.next(); !section.empty(); section = words.next()) {
+    if (section == "POINTS") {
+      read_points(words, cloud);
+    } else if (section == "VERTICES") {
+      pass_vertices(words);
+    } else if (section == "POINT_DATA") {
+      const std::uint64_t points = words.whole("the number of point data");
+      if (points != cloud.points)
+        words.fail("POINT_DATA of " + std::to_string(points) + " points, POINTS has " + std::to_string(cloud.points));
+      of_points = true;
+    } else if (of_points && section == "SCALARS") {
+      read_scalars(words, cloud);
+    } else if (of_points &&
+               (section == "NORMALS" || section == "VECTORS" || section == "TENSORS" || section == "COLOR_SCALARS")) {
+      pass_data(words, cloud, section);
+    } else {
+      words.fail("section '" + std::string(section.substr(0, 40)) + "' is not read there");
+    }
+  }
+  if (cloud.names.empty()) words.fail("holds no POINTS");
+  return cloud;
+}
+
+}  // namespace tumble::scenarios

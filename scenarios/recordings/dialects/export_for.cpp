@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/recordings/dialects/export_for.hpp"
+
+#include <map>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/recordings/bags/bag.hpp"
+#include "scenarios/recordings/dialects/dialect.hpp"
+#include "scenarios/recordings/dialects/manifest.hpp"
+#include "scenarios/recordings/export.hpp"
+#include "scenarios/recordings/recording_file.hpp"
+#include "scenarios/recordings/replace_file.hpp"
+#include "sim/parameters.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+using std::filesystem::path;
+
+const Dialect& dialect_of(const std::string& peer) {
+  std::string known;
+  for (const Dialect& dialect : all_dialects()) {
+    if (dialect.name == peer) return dialect;
+    known += " " + dialect.name;
+  }
+  const std::string near = sim::nearest_name(peer, peer_dialects());
+  throw BadInput("unknown peer '" + peer + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") +
+                 " (known:" + known + ")");
+}
+
+void require_fitting(const Dialect& dialect, const sim::Sensors& sensors, const SensorFacts& facts) {
+  const auto refuse = [&](const std::string& what) { throw BadInput(what + ", which " + dialect.name + " reads"); };
+  if (!facts.lidar || facts.lidar->points == 0) refuse("the recording holds no return of a lidar");
+  if (dialect.needs_imu && (!facts.imu || facts.imu->samples == 0)) refuse("the recording holds no reading of an IMU");
+  if (dialect.needs_times && !facts.lidar->timed)
+    refuse("the points of '" + sensors.lidars.front().name + "' have no times of their own");
+  if (dialect.needs_rings && facts.lidar->livox)
+    refuse("the lidar '" + facts.lidar->device + "' does not scan in rings");
+}
+
+void write_bag(const Dialect& dialect, const sim::Sensors& sensors, const BagWriting& writing, const path& place) {
+  using Writer = void (*)(const sim::Sensors&, const BagWriting&, const path&);
+  static const std::map<std::string, Writer> writers = {
+      {"rosbag1", export_ros1_bag}, {"rosbag2", export_ros2_bag}, {"mcap", export_mcap}};
+  writers.at(dialect.bag_format)(sensors, writing, place);
+}
+
+}  // namespace
+
+std::vector<std::string> peer_dialects() {
+  std::vector<std::string> names;
+  for (const Dialect& dialect : all_dialects()) names.push_back(dialect.name);
+  return names;
+}
+
+void export_for(const path& recording, const std::string& peer, const path& folder, bool with_truth) {
+  const Dialect& dialect = dialect_of(peer);
+  const RecordingInfo info = read_info(recording);
+  const sim::Sensors sensors = read_sensors(recording);
+  const SensorFacts facts = facts_of(sensors);
+  require_fitting(dialect, sensors, facts);
+
+  OutputFolder output(folder);
+  BagWriting writing;
+  writing.origin_ns = info.origin_ns;
+  writing.names = dialect.names(facts);
+  writing.sweeps = dialect.sweeps(facts);
+  const std::int64_t origin_ns = bag_origin_ns(writing);
+  write_bag(dialect, sensors, writing, folder / dialect.bag_name);
+  if (with_truth) export_tum(read_truth(recording), folder / "truth.tum", origin_ns);
+  std::vector<std::string> configuration;
+  for (const ConfigurationFile& file : dialect.configuration(facts, *writing.names)) {
+    replace_file(folder / file.name, file.text);
+    configuration.push_back(file.name);
+  }
+  replace_file(folder / "manifest.json", manifest_of(dialect, facts, info, origin_ns, configuration, with_truth));
+  output.keep();
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// KISS-ICP (PRBonn/kiss-icp, MIT).
+#include <fmt/format.h>
+
+#include "scenarios/recordings/dialects/dialect.hpp"
+#include "scenarios/recordings/dialects/yaml_numbers.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+ReaderNames names(const SensorFacts&) {
+  return {"/imu", "imu", "/lidar/points", "lidar", "base_link", ""};
+}
+
+std::vector<ConfigurationFile> configuration(const SensorFacts& facts, const ReaderNames&) {
+  const std::string text =
+      fmt::format(R"(# what stands not here is as the authors have it
+data:
+  deskew: {}
+  max_range: {}   # m, farthest return; a hundredth of it is the voxel's size
+  min_range: {}   # m: the robot itself is nearer
+)",
+                  facts.lidar->timed, decimal(whole_metres(facts.lidar->farthest_m)), decimal(facts.lidar->own_body_m));
+  return {{"kiss_icp.yaml", text}};
+}
+
+}  // namespace
+
+Dialect kiss_icp_dialect() {
+  Dialect out{"kiss-icp", "mcap", "recording.mcap"};
+  out.needs_imu = out.needs_times = false;
+  out.names = names;
+  out.sweeps = ouster_layout;
+  out.configuration = configuration;
+  out.run = "kiss_icp_pipeline --topic /lidar/points --config kiss_icp.yaml recording.mcap";
+  out.notes = {"of the times it takes their share of the sweep; its poses belong to the sweep's last point"};
+  out.sources = {
+      {"PRBonn/kiss-icp", "python/kiss_icp/tools/point_cloud2.py", "f396813d0806980a08b701f6fab73bb63a8d65ce"},
+      {"PRBonn/kiss-icp", "python/kiss_icp/datasets/mcap.py", "02c2fce874aa90ff59a3d2a8f5162557912fac88"},
+      {"PRBonn/kiss-icp", "python/kiss_icp/config/config.py", "0a9b916b37a2d0345bd8071e1a4fa1342a892fa4"},
+      {"PRBonn/kiss-icp", "python/kiss_icp/config/parser.py", "072df9ca7b72dedefb1b89ab949735e3fd23004a"}};
+  return out;
+}
+
+}  // namespace tumble::scenarios

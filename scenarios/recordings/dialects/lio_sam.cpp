@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// LIO-SAM (TixiaoShan/LIO-SAM, BSD-3).
+#include <fmt/format.h>
+
+#include "scenarios/recordings/dialects/dialect.hpp"
+#include "scenarios/recordings/dialects/yaml_numbers.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+ReaderNames names(const SensorFacts&) {
+  return {"/imu_raw", "imu", "/points_raw", "lidar", "base_link", ""};
+}
+
+/// The sheet's density, or the authors' where none is stated.
+std::string density(double stated, const char* authors) {
+  return stated > 0.0 ? decimal(stated) : authors;
+}
+
+std::vector<ConfigurationFile> configuration(const SensorFacts& facts, const ReaderNames& names) {
+  const ImuFacts& imu = *facts.imu;
+  const LidarFacts& lidar = *facts.lidar;
+  const Eigen::Isometry3d T_LI = facts.T_IL().inverse(Eigen::Isometry);
+  const std::string R = rotation_of(T_LI);
+  const std::string text = fmt::format(
+      R"(# in the place of config/params.yaml; numbers without a remark are the authors'
+lio_sam:
+  pointCloudTopic: "{points}"
+  imuTopic: "{imu}"
+  odomTopic: "odometry/imu"
+  gpsTopic: "odometry/gpsz"
+  lidarFrame: "{frame}"          # poses are the lidar's
+  baselinkFrame: "{frame}"
+  odometryFrame: "odom"
+  mapFrame: "map"
+  useImuHeadingInitialization: false   # these readings have no attitude
+  useGpsElevation: false
+  gpsCovThreshold: 2.0
+  poseCovThreshold: 25.0
+  savePCD: false
+  savePCDDirectory: "/Downloads/LOAM/"
+  sensor: velodyne
+  N_SCAN: {rings}                  # rings of this lidar
+  Horizon_SCAN: {columns}            # firings of a ring in a sweep
+  downsampleRate: 1
+  lidarMinRange: {near}           # m: the robot itself is nearer
+  lidarMaxRange: {far}           # m, farthest return
+  imuAccNoise: {acc}   # m/s^2/sqrt(Hz), the sheet's density
+  imuGyrNoise: {gyr}   # rad/s/sqrt(Hz), the sheet's density
+  imuAccBiasN: 6.4356659353532566e-05
+  imuGyrBiasN: 3.5640318696367613e-05
+  imuGravity: {gravity}           # m/s^2, of this recording
+  imuRPYWeight: 0.0               # these readings have no attitude
+  extrinsicTrans: {T}   # place of the IMU in the lidar, m
+  extrinsicRot: {R}   # turns the IMU's axes to the lidar's
+  extrinsicRPY: {R}
+  edgeThreshold: 1.0
+  surfThreshold: 0.1
+  edgeFeatureMinValidNum: 10
+  surfFeatureMinValidNum: 100
+  odometrySurfLeafSize: 0.4
+  mappingCornerLeafSize: 0.2
+  mappingSurfLeafSize: 0.4
+  z_tollerance: 1000.0
+  rotation_tollerance: 1000.0
+  numberOfCores: 4
+  mappingProcessInterval: 0.15
+  surroundingkeyframeAddingDistThreshold: 1.0
+  surroundingkeyframeAddingAngleThreshold: 0.2
+  surroundingKeyframeDensity: 2.0
+  surroundingKeyframeSearchRadius: 50.0
+  loopClosureEnableFlag: true
+  loopClosureFrequency: 1.0
+  surroundingKeyframeSize: 50
+  historyKeyframeSearchRadius: 15.0
+  historyKeyframeSearchTimeDiff: 30.0
+  historyKeyframeSearchNum: 25
+  historyKeyframeFitnessScore: 0.3
+  globalMapVisualizationSearchRadius: 1000.0
+  globalMapVisualizationPoseDensity: 10.0
+  globalMapVisualizationLeafSize: 1.0
+)",
+      fmt::arg("points", names.points_topic), fmt::arg("imu", names.imu_topic), fmt::arg("frame", names.lidar_frame),
+      fmt::arg("rings", lidar.rings), fmt::arg("columns", lidar.columns), fmt::arg("near", decimal(lidar.own_body_m)),
+      fmt::arg("far", decimal(whole_metres(lidar.farthest_m))),
+      fmt::arg("acc", density(imu.accel_noise_m_s2_sqrt_hz, "3.9939570888238808e-03")),
+      fmt::arg("gyr", density(imu.gyro_noise_rad_s_sqrt_hz, "1.5636343949698187e-03")),
+      fmt::arg("gravity", decimal(facts.gravity_m_s2)), fmt::arg("T", translation_of(T_LI)), fmt::arg("R", R));
+  return {{"params.yaml", text}};
+}
+
+}  // namespace
+
+Dialect lio_sam_dialect() {
+  Dialect out{"lio-sam", "rosbag1", "recording.bag"};
+  out.needs_rings = true;
+  out.names = names;
+  out.sweeps = velodyne_layout;
+  out.configuration = configuration;
+  out.run = "roslaunch lio_sam run.launch; rosbag play recording.bag";
+  out.notes = {
+      "it is made for an IMU with an attitude; these readings have none (identity, covariance -1): it starts as if the "
+      "IMU stood level, and imuRPYWeight is 0"};
+  out.sources = {{"TixiaoShan/LIO-SAM", "src/imageProjection.cpp", "bfb271dcd13b708620269d06e5962a2e3e9a070f"},
+                 {"TixiaoShan/LIO-SAM", "src/imuPreintegration.cpp", "041f4e63d5bee3a54bb646b0cfb704cdb1bd7147"},
+                 {"TixiaoShan/LIO-SAM", "include/utility.h", "0d9d8f82c5297d36354255303cd9ea717e3eddeb"},
+                 {"TixiaoShan/LIO-SAM", "config/params.yaml", "3410cf53d1c6e3ca87edcab8584d8b0b5c3548c2"}};
+  return out;
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/recordings/table_file.hpp"
+#include "scenarios/recordings/trajectories/reference.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr const char* kFirst = "header.stamp.sec";
+constexpr std::int64_t kSecond_ns = 1000000000, kSecondsMax = 9000000000;
+
+/// The columns that are read, in this order.
+constexpr std::array<const char*, 9> kColumns = {
+    kFirst,
+    "header.stamp.nanosec",
+    "pose.pose.position.x",
+    "pose.pose.position.y",
+    "pose.pose.position.z",
+    "pose.pose.orientation.x",
+    "pose.pose.orientation.y",
+    "pose.pose.orientation.z",
+    "pose.pose.orientation.w",
+};
+
+std::string first_line(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string line;
+  if (std::filesystem::is_regular_file(file)) std::getline(stream, line);
+  if (line.ends_with('\r')) line.pop_back();
+  return line;
+}
+
+std::vector<std::string> names_in(const std::string& header) {
+  std::vector<std::string> names(1);
+  for (const char c : header) {
+    if (c == ',')
+      names.emplace_back();
+    else
+      names.back() += c;
+  }
+  return names;
+}
+
+/// Where each of kColumns stands.
+std::array<std::size_t, kColumns.size()> places_in(const std::filesystem::path& file,
+                                                   const std::vector<std::string>& names) {
+  std::array<std::size_t, kColumns.size()> places{};
+  for (std::size_t k = 0; k < kColumns.size(); ++k) {
+    const auto count = std::count(names.begin(), names.end(), kColumns[k]);
+    if (count != 1) {
+      throw BadInput(file.string() + ":1: column " + kColumns[k] + " stands " + std::to_string(count) +
+                     " times in the header, must once");
+    }
+    places[k] = static_cast<std::size_t>(std::find(names.begin(), names.end(), kColumns[k]) - names.begin());
+  }
+  return places;
+}
+
+}  // namespace
+
+bool is_odometry(const std::filesystem::path& file) {
+  return first_line(file).starts_with(std::string(kFirst) + ",");
+}
+
+std::vector<ReferencePose> read_odometry_poses(const std::filesystem::path& file) {
+  const std::string header = first_line(file);
+  const std::vector<std::string> names = names_in(header);
+  const auto places = places_in(file, names);
+  const Table table = Table::read(file, ',', header, names.size());
+  std::vector<ReferencePose> poses;
+  for (const Table::Row& row : table.rows) {
+    const auto fail = [&](const std::string& what) {
+      throw BadInput(file.string() + ":" + std::to_string(row.line) + ": " + what);
+    };
+    const std::int64_t seconds = table.integer(row, places[0]), rest_ns = table.integer(row, places[1]);
+    if (seconds < 0 || seconds > kSecondsMax || rest_ns < 0 || rest_ns >= kSecond_ns)
+      fail("the stamp " + std::to_string(seconds) + " s " + std::to_string(rest_ns) + " ns is none");
+    ReferencePose pose;
+    pose.time_ns = seconds * kSecond_ns + rest_ns;
+    for (int i = 0; i < 3; ++i) pose.p_WA_m[i] = table.number(row, places[static_cast<std::size_t>(2 + i)]);
+    for (int i = 0; i < 4; ++i) pose.q_WA.coeffs()[i] = table.number(row, places[static_cast<std::size_t>(5 + i)]);
+    if (const std::string problem = problem_of(pose, poses.empty() ? nullptr : &poses.back()); !problem.empty())
+      fail(problem);
+    poses.push_back(pose);
+  }
+  if (poses.size() < 2)
+    throw BadInput(file.string() + ": holds " + std::to_string(poses.size()) + " poses, needs 2 at least");
+  return poses;
+}
+
+}  // namespace tumble::scenarios

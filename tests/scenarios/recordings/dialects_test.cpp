@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What each peer is given, read back by our own readers and held to what the peer's sources say, which the table below
+// states once more. tests/peers reads the same files by other people's packages.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "scenarios/recordings/bags/bag.hpp"
+#include "scenarios/recordings/bags/bag_clouds.hpp"
+#include "scenarios/recordings/bags/bag_storage.hpp"
+#include "scenarios/recordings/dialects/dialect.hpp"
+#include "scenarios/recordings/dialects/export_for.hpp"
+#include "scenarios/recordings/fixture_recording.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+using testing::HasSubstr;
+
+/// What a peer reads of a spinning lidar.
+struct Wanted {
+  const char* peer;
+  const char* bag;  ///< in the folder
+  bool ros1;        ///< else ROS 2
+  const char *imu, *points;
+  const char* time;   ///< field of a point
+  std::uint8_t type;  ///< its number in PointField
+  double unit_ns;     ///< of it, since the header's stamp
+};
+
+constexpr Wanted kWanted[] = {
+    {"dlio", "recording.bag", true, "/os_cloud_node/imu", "/os_cloud_node/points", "t", 6, 1.0},
+    {"fast-lio", "recording.bag", true, "/imu/data", "/velodyne_points", "time", 7, 1e9},
+    {"glim", "bag", false, "/os_cloud_node/imu", "/os_cloud_node/points", "t", 6, 1.0},
+    {"kiss-icp", "recording.mcap", false, "/imu", "/lidar/points", "t", 6, 1.0},
+    {"lio-sam", "recording.bag", true, "/imu_raw", "/points_raw", "time", 7, 1e9},
+    {"norlab", "bag", false, "/imu/data", "/points_in", "t", 6, 1.0},
+    {"point-lio", "recording.bag", true, "/imu/data", "/velodyne_points", "time", 7, 1e9},
+    {"rko-lio", "bag", false, "/imu", "/lidar/points", "t", 6, 1.0},
+};
+
+std::unique_ptr<BagReader> open(const std::filesystem::path& path) {
+  if (path.extension() == ".bag") return open_ros1_bag(path);
+  if (path.extension() == ".mcap") return open_mcap({path});
+  return open_ros2_bag(path);
+}
+
+template <class Message>
+std::vector<Message> messages(BagReader& bag, const std::string& topic) {
+  std::vector<Message> out;
+  bag.read(topic, [&](ros::Bytes& bytes) {
+    out.push_back(bag.cdr(topic) ? ros::from_cdr<Message>(bytes) : ros::from_ros1<Message>(bytes));
+  });
+  return out;
+}
+
+/// A recording whose points stand in no order of time, with a lidar of that device.
+sim::Recording unordered(const std::string& device = "rs16") {
+  sim::Recording out = fixture::recording();
+  out.sensors.robot = "rig";
+  for (sim::ImuRecord& imu : out.sensors.imus) {
+    for (Eigen::Vector3d& force : imu.accel_m_s2) force *= 0.2;
+  }
+  sim::LidarRecord& lidar = out.sensors.lidars[0];
+  lidar.device = device;
+  for (std::size_t k = 0; k < lidar.offset_ns.size(); ++k) lidar.offset_ns[k] = (lidar.offset_ns[k] * 7 % 50) * 1900000;
+  return out;
+}
+
+/// What is wrong with the points of a bag, as that peer reads them; "" when nothing is.
+std::string problem_of(const Wanted& wanted, const std::filesystem::path& bag, const sim::LidarRecord& lidar) {
+  const auto reader = open(bag);
+  if (reader->cdr(wanted.points) == wanted.ros1) return "the other ROS";
+  const auto clouds = messages<ros::PointCloud2>(*reader, wanted.points);
+  if (clouds.size() != lidar.sweep_start_ns.size()) return "another number of sweeps";
+  for (std::size_t sweep = 0; sweep < clouds.size(); ++sweep) {
+    const std::vector<ros::PointField>& fields = clouds[sweep].fields;
+    const auto time = std::find_if(fields.begin(), fields.end(), [&](const auto& f) { return f.name == wanted.time; });
+    if (time == fields.end() || time->datatype != wanted.type) return "no such time";
+    const std::int64_t start = std::int64_t{clouds[sweep].header.sec} * 1000000000 + clouds[sweep].header.nanosec;
+    if (start != 1000000000000000000 + lidar.sweep_start_ns[sweep]) return "the stamp is not the sweep's start";
+    const Cloud cloud = cloud_of(clouds[sweep], "cloud");
+    double before = -1.0;
+    for (std::size_t i = 0; i < cloud.points; ++i) {
+      const double offset_ns = (*cloud.find(wanted.time))[i] * wanted.unit_ns;
+      if (offset_ns < before) return "not in the order of time";
+      before = offset_ns;
+      // the point is told by its place, which no two share
+      std::size_t k = lidar.sweep_first[sweep];
+      while (k < lidar.sweep_first[sweep + 1] && lidar.position_L_m[k].x() != (*cloud.find("x"))[i]) ++k;
+      if (k == lidar.sweep_first[sweep + 1]) return "a point that is none";
+      if (std::abs(offset_ns - lidar.offset_ns[k]) > 4.0) return "another time";
+      if ((*cloud.find("ring"))[i] != lidar.ring[k]) return "another ring";
+      if (std::abs((*cloud.find("intensity"))[i] - 255.0 * lidar.intensity[k]) > 1e-4) return "another intensity";
+    }
+  }
+  return "";
+}
+
+class Dialects : public fixture::Folder, public testing::WithParamInterface<Wanted> {
+ protected:
+  void write(const sim::Recording& recording) {
+    write_recording(folder_ / "a.h5", fixture::info(), recording.sensors, &recording.truth);
+  }
+  std::filesystem::path out() const { return folder_ / GetParam().peer; }
+  nlohmann::json manifest() const { return nlohmann::json::parse(fixture::bytes_of(out() / "manifest.json")); }
+  std::string complaint_of(const sim::Recording& recording) {
+    write(recording);
+    return fixture::complaint([&] { export_for(folder_ / "a.h5", GetParam().peer, folder_ / "refused", false); });
+  }
+};
+
+TEST_P(Dialects, TheBagIsAsThePeerReadsIt) {
+  const Wanted& wanted = GetParam();
+  const sim::Recording recording = unordered();
+  write(recording);
+  export_for(folder_ / "a.h5", wanted.peer, out(), true);
+  EXPECT_EQ(problem_of(wanted, out() / wanted.bag, recording.sensors.lidars[0]), "");
+
+  const auto bag = open(out() / wanted.bag);
+  const sim::ImuRecord& imu = recording.sensors.imus[0];
+  const auto readings = messages<ros::Imu>(*bag, wanted.imu);
+  ASSERT_EQ(readings.size(), imu.time_ns.size());
+  for (std::size_t k = 0; k < readings.size(); ++k) {
+    EXPECT_EQ(Eigen::Vector3d::Map(readings[k].angular_velocity.data()), imu.gyro_rad_s[k]);
+    EXPECT_EQ(Eigen::Vector3d::Map(readings[k].linear_acceleration.data()), imu.accel_m_s2[k]) << "m/s^2";
+  }
+  std::size_t of_a_type = 0;
+  for (const BagTopic& topic : bag->topics()) of_a_type += topic.type == "sensor_msgs/Imu";
+  EXPECT_EQ(of_a_type, 1u) << "a second IMU would have to be chosen among";
+}
+
+TEST_P(Dialects, AnotherUnitOfTimeIsNoticed) {
+  const Wanted& wanted = GetParam();
+  const sim::Recording recording = unordered();
+  const auto dialect = std::find_if(all_dialects().begin(), all_dialects().end(),
+                                    [&](const Dialect& each) { return each.name == wanted.peer; });
+  ASSERT_NE(dialect, all_dialects().end());
+  const SensorFacts facts = facts_of(recording.sensors);
+  BagWriting writing;
+  writing.names = dialect->names(facts);
+  writing.sweeps = dialect->sweeps(facts);
+  for (PointColumn& column : writing.sweeps.columns) {
+    if (column.quantity == PointQuantity::time) column.scale *= 1e-3;
+  }
+  const std::filesystem::path place = folder_ / wanted.bag;
+  (wanted.ros1                    ? export_ros1_bag
+   : place.extension() == ".mcap" ? export_mcap
+                                  : export_ros2_bag)(recording.sensors, writing, place);
+  EXPECT_EQ(problem_of(wanted, place, recording.sensors.lidars[0]), "another time");
+}
+
+TEST_P(Dialects, TheManifestSaysWhatIsThere) {
+  const Wanted& wanted = GetParam();
+  const sim::Recording recording = unordered();
+  write(recording);
+  export_for(folder_ / "a.h5", wanted.peer, out(), true);
+  const nlohmann::json said = manifest();
+  EXPECT_EQ(said["for"], wanted.peer);
+  EXPECT_EQ(said["bag"]["path"], wanted.bag);
+  EXPECT_EQ(said["lidar"]["topic"], wanted.points);
+  EXPECT_EQ(said["imu"]["topic"], wanted.imu);
+  EXPECT_EQ(said["imu"]["stated_gyro_range_rad_s"], recording.sensors.imus[0].stated_gyro_range_rad_s);
+  EXPECT_EQ(said["imu"]["gyro_noise_rad_s_sqrt_hz"], recording.sensors.imus[0].gyro_noise_rad_s_sqrt_hz);
+  EXPECT_FALSE(said["sources"].empty());
+  for (const auto& source : said["sources"]) EXPECT_EQ(source["commit"].get<std::string>().size(), 40u);
+  for (const auto& file : said["configuration"]) {
+    EXPECT_TRUE(std::filesystem::exists(out() / file.get<std::string>())) << file;
+    EXPECT_NO_THROW(YAML::LoadFile((out() / file.get<std::string>()).string())) << file;
+  }
+  const Eigen::Isometry3d T_IL = recording.sensors.imus[0].T_BI.inverse() * recording.sensors.lidars[0].T_BL;
+  const auto p = said["extrinsics"]["T_imu_lidar"]["p_m"].get<std::vector<double>>();
+  EXPECT_TRUE(Eigen::Vector3d::Map(p.data()).isApprox(T_IL.translation(), 1e-12));
+  // the truth in the bag's clock
+  EXPECT_THAT(fixture::bytes_of(out() / "truth.tum"), HasSubstr("\n1000000000.001000000 "));
+}
+
+TEST_P(Dialects, WhatThePeerCannotDoWithoutIsRefused) {
+  const std::string peer = GetParam().peer;
+  const bool lidar_alone = peer == "kiss-icp" || peer == "norlab";
+  sim::Recording recording = unordered();
+  recording.sensors.imus.clear();
+  recording.truth.imus.clear();
+  EXPECT_EQ(complaint_of(recording),
+            lidar_alone ? "" : "the recording holds no reading of an IMU, which " + peer + " reads");
+  std::filesystem::remove_all(folder_ / "refused");
+  recording = unordered();
+  recording.sensors.lidars[0].point_times = sim::PointTimes::unknown;
+  recording.sensors.lidars[0].offset_ns.assign(recording.sensors.lidars[0].offset_ns.size(), 0);
+  EXPECT_EQ(complaint_of(recording),
+            lidar_alone ? "" : "the points of 'lidar' have no times of their own, which " + peer + " reads");
+  std::filesystem::remove_all(folder_ / "refused");
+  recording = unordered();
+  recording.sensors.lidars.clear();
+  recording.truth.lidars.clear();
+  EXPECT_EQ(complaint_of(recording), "the recording holds no return of a lidar, which " + peer + " reads");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "refused"));
+}
+
+INSTANTIATE_TEST_SUITE_P(, Dialects, testing::ValuesIn(kWanted), [](const auto& of) {
+  std::string name = of.param.peer;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
+
+class Configuration : public fixture::Folder {
+ protected:
+  YAML::Node yaml(const std::string& peer, const std::string& file, const sim::Recording& recording) {
+    write_recording(folder_ / "a.h5", fixture::info(), recording.sensors, &recording.truth);
+    export_for(folder_ / "a.h5", peer, folder_ / peer, false);
+    return YAML::LoadFile((folder_ / peer / file).string());
+  }
+  static Eigen::Isometry3d pose(const YAML::Node& t, const YAML::Node& R) {
+    Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
+    for (int i = 0; i < 3; ++i) out.translation()[i] = t[static_cast<std::size_t>(i)].as<double>();
+    for (int i = 0; i < 9; ++i) out.linear()(i / 3, i % 3) = R[static_cast<std::size_t>(i)].as<double>();
+    return out;
+  }
+  sim::Recording recording_ = unordered();
+  Eigen::Isometry3d T_BI_ = recording_.sensors.imus[0].T_BI, T_BL_ = recording_.sensors.lidars[0].T_BL;
+};
+
+// each in its own sense: of these, a wrong one turns the map around
+TEST_F(Configuration, MountingsAreInThePeersSense) {
+  for (const auto& [peer, file] : {std::pair{"fast-lio", "velodyne.yaml"}, std::pair{"point-lio", "velody16.yaml"}}) {
+    const YAML::Node mapping = yaml(peer, file, recording_)["mapping"];
+    EXPECT_TRUE(pose(mapping["extrinsic_T"], mapping["extrinsic_R"]).isApprox(T_BI_.inverse() * T_BL_, 1e-9)) << peer;
+  }
+  const YAML::Node dlio = yaml("dlio", "dlio.yaml", recording_)["dlio"]["extrinsics"];
+  EXPECT_TRUE(pose(dlio["baselink2imu"]["t"], dlio["baselink2imu"]["R"]).isApprox(T_BI_, 1e-9));
+  EXPECT_TRUE(pose(dlio["baselink2lidar"]["t"], dlio["baselink2lidar"]["R"]).isApprox(T_BL_, 1e-9));
+  const YAML::Node lio_sam = yaml("lio-sam", "params.yaml", recording_)["lio_sam"];
+  EXPECT_TRUE(pose(lio_sam["extrinsicTrans"], lio_sam["extrinsicRot"]).isApprox(T_BL_.inverse() * T_BI_, 1e-9));
+  const YAML::Node glim = yaml("glim", "config_sensors.json", recording_)["sensors"]["T_lidar_imu"];
+  const YAML::Node rko = yaml("rko-lio", "rko_lio.yaml", recording_)["extrinsic_imu2base_quat_xyzw_xyz"];
+  const Eigen::Vector3d p_LI = (T_BL_.inverse() * T_BI_).translation();
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(glim[i].as<double>(), p_LI[static_cast<Eigen::Index>(i)], 1e-9) << "place first";
+    EXPECT_NEAR(rko[4 + i].as<double>(), T_BI_.translation()[static_cast<Eigen::Index>(i)], 1e-9) << "quaternion first";
+  }
+}
+
+TEST_F(Configuration, SensorsAreThisRecordings) {
+  const YAML::Node lio = yaml("point-lio", "velody16.yaml", recording_);
+  EXPECT_EQ(lio["preprocess"]["scan_line"].as<int>(), 16);
+  EXPECT_EQ(lio["preprocess"]["timestamp_unit"].as<int>(), 0);
+  EXPECT_NEAR(lio["mapping"]["imu_time_inte"].as<double>(), 0.0025, 1e-12);
+  // readings go beyond what the sheet states: the rail is not below them
+  const SensorFacts facts = facts_of(recording_.sensors);
+  EXPECT_GT(facts.imu->largest_gyro_rad_s, facts.imu->stated_gyro_range_rad_s);
+  EXPECT_EQ(lio["mapping"]["satu_gyro"].as<double>(), facts.imu->largest_gyro_rad_s);
+  EXPECT_EQ(lio["mapping"]["satu_acc"].as<double>(), 49.0);
+  const YAML::Node sam = yaml("lio-sam", "params.yaml", recording_)["lio_sam"];
+  EXPECT_EQ(sam["imuAccNoise"].as<double>(), 6e-4);
+  EXPECT_EQ(sam["imuRPYWeight"].as<double>(), 0.0);
+}
+
+TEST_F(Configuration, ALivoxComesAsItsDriversMessage) {
+  const sim::Recording recording = unordered("mid100");
+  for (const char* peer : {"fast-lio", "point-lio"}) {
+    const YAML::Node preprocess = yaml(peer, "avia.yaml", recording)["preprocess"];
+    EXPECT_EQ(preprocess["lidar_type"].as<int>(), 1);
+    const auto bag = open(folder_ / peer / "recording.bag");
+    const auto sweeps = messages<ros::LivoxCustomMsg>(*bag, "/livox/lidar");
+    ASSERT_EQ(sweeps.size(), 3u);
+    EXPECT_EQ(sweeps[1].points.size(), 50u);
+  }
+  EXPECT_THAT(fixture::complaint([&] { yaml("lio-sam", "params.yaml", recording); }),
+              HasSubstr("the lidar 'mid100' does not scan in rings, which lio-sam reads"));
+}
+
+TEST_F(Configuration, AnUnknownPeerIsRefusedWithTheNearest) {
+  EXPECT_THAT(fixture::complaint([&] { yaml("fast_lio", "", recording_); }),
+              HasSubstr("unknown peer 'fast_lio'; did you mean 'fast-lio'?"));
+  EXPECT_EQ(peer_dialects().size(), std::size(kWanted)) << "each has its line in the table above";
+}
+
+}  // namespace
+}  // namespace tumble::scenarios

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The CustomMsg of Livox' drivers, there and back, and as nobody should write it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "scenarios/recordings/bags/bag.hpp"
+#include "scenarios/recordings/bags/bag_clouds.hpp"
+#include "scenarios/recordings/bags/bag_storage.hpp"
+#include "scenarios/recordings/fixture_recording.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+using testing::HasSubstr;
+
+struct Kind {
+  const char* name;
+  void (*write)(const sim::Sensors&, const BagWriting&, const std::filesystem::path&);
+  Imported (*read)(const std::filesystem::path&, const BagReading&);
+  std::unique_ptr<BagWriter> (*writer)(const std::filesystem::path&);
+  const char* type;  ///< by ROS 1's name
+};
+
+class Livox : public fixture::Folder, public testing::WithParamInterface<Kind> {
+ protected:
+  Livox() {
+    recording_.sensors.imus.clear();
+    sim::LidarRecord& lidar = recording_.sensors.lidars[0];
+    for (std::uint32_t& offset : lidar.offset_ns) offset *= 600;
+    path_ = folder_ / "a.bag";
+  }
+  ros::LivoxCustomMsg message(std::int64_t stamp_ns) const {
+    ros::LivoxCustomMsg out;
+    out.header = {0, static_cast<std::uint32_t>(stamp_ns / 1000000000),
+                  static_cast<std::uint32_t>(stamp_ns % 1000000000), "livox_frame"};
+    out.timebase = static_cast<std::uint64_t>(stamp_ns);
+    for (std::uint32_t k = 0; k < 10; ++k) {
+      out.points.push_back(
+          {k * 9000000, 1.0f + static_cast<float>(k), 2.0f, 3.0f, 51, 0x10, static_cast<std::uint8_t>(k % 4)});
+    }
+    out.point_num = 10;
+    return out;
+  }
+  Imported written(const std::vector<ros::LivoxCustomMsg>& messages) {
+    const auto bag = GetParam().writer(path_);
+    for (const ros::LivoxCustomMsg& each : messages) {
+      bag->write("/livox/lidar", std::int64_t{each.header.sec} * 1000000000 + each.header.nanosec, each);
+    }
+    bag->finish();
+    return GetParam().read(path_, {});
+  }
+  sim::Recording recording_ = fixture::recording();
+  std::filesystem::path path_;
+};
+
+TEST_P(Livox, SweepsComeBackToTheMessagesPrecision) {
+  BagWriting writing;
+  writing.sweeps = livox_sweep_layout();
+  GetParam().write(recording_.sensors, writing, path_);
+  const Imported imported = GetParam().read(path_, {});
+  const sim::LidarRecord &lidar = imported.sensors.lidars.at(0), &given = recording_.sensors.lidars[0];
+  EXPECT_EQ(lidar.sweep_start_ns, given.sweep_start_ns);
+  EXPECT_EQ(lidar.position_L_m, given.position_L_m);
+  EXPECT_EQ(lidar.offset_ns, given.offset_ns);
+  EXPECT_EQ(lidar.ring, given.ring);
+  for (std::size_t k = 0; k < given.intensity.size(); ++k)
+    EXPECT_NEAR(lidar.intensity[k], given.intensity[k], 0.5 / 255.0);
+  EXPECT_TRUE(lidar.T_BL.isApprox(given.T_BL, 1e-12));
+}
+
+TEST_P(Livox, IsKnownByItsType) {
+  BagWriting writing;
+  writing.sweeps = livox_sweep_layout();
+  GetParam().write(recording_.sensors, writing, path_);
+  const auto reader = std::string(GetParam().name) == "Ros1"   ? open_ros1_bag(path_)
+                      : std::string(GetParam().name) == "Mcap" ? open_mcap({path_})
+                                                               : open_ros2_bag(path_);
+  std::string type;
+  for (const BagTopic& topic : reader->topics()) {
+    if (topic.name == "/lidar/points") type = topic.type;
+  }
+  EXPECT_EQ(type, GetParam().type);
+}
+
+TEST_P(Livox, ReadsWhatADriverWrites) {
+  const Imported imported = written({message(1690000000'000000000), message(1690000000'100000000)});
+  const sim::LidarRecord& lidar = imported.sensors.lidars.at(0);
+  EXPECT_EQ(lidar.sweep_period_ns, 100000000);
+  EXPECT_EQ(lidar.offset_ns[9], 81000000u) << "nanoseconds, by the message's definition";
+  EXPECT_EQ(lidar.ring[3], 3u);
+  EXPECT_NEAR(lidar.intensity[0], 0.2f, 1e-6);
+  EXPECT_EQ(lidar.position_L_m[2], Eigen::Vector3f(3.0f, 2.0f, 3.0f));
+  EXPECT_THAT(imported.notes, testing::Not(testing::Contains(HasSubstr("timebase"))));
+}
+
+TEST_P(Livox, TwoClocksAreSaid) {
+  ros::LivoxCustomMsg first = message(1690000000'000000000), second = message(1690000000'100000000);
+  first.timebase = 12'000000000;
+  second.timebase = 12'100000000;
+  EXPECT_THAT(written({first, second}).notes,
+              testing::Contains(HasSubstr("timebase and the stamps of their headers are up to 1689999988")));
+}
+
+TEST_P(Livox, ACountThatIsNoneIsRefused) {
+  ros::LivoxCustomMsg first = message(1690000000'000000000), second = message(1690000000'100000000);
+  second.point_num = 4000000000u;
+  EXPECT_THAT(fixture::complaint([&] {
+                written({first, second});
+              }),
+              HasSubstr("message 1 of /livox/lidar: states 4000000000 points and holds 10"));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, Livox,
+    testing::Values(Kind{"Ros1", export_ros1_bag, import_ros1_bag, make_ros1_writer, "livox_ros_driver/CustomMsg"},
+                    Kind{"Ros2", export_ros2_bag, import_ros2_bag, make_ros2_writer, "livox_ros_driver2/CustomMsg"},
+                    Kind{"Mcap", export_mcap, import_mcap, make_mcap_writer, "livox_ros_driver2/CustomMsg"}),
+    [](const auto& kind) { return std::string(kind.param.name); });
+
+TEST(LivoxMessage, ALengthThatItDoesNotHaveAllocatesNothing) {
+  ros::LivoxCustomMsg message;
+  message.points.resize(3);
+  for (const bool cdr : {false, true}) {
+    ros::Bytes bytes = cdr ? ros::to_cdr(message) : ros::to_ros1(message);
+    // the number of points stands before 3 points of 19 bytes, each padded to 20 in CDR but the last
+    const std::size_t at = bytes.size() - (cdr ? 59 : 57) - 4;
+    ASSERT_EQ(bytes[at], 3);
+    bytes[at + 3] = 0xff;
+    const auto read = [&] {
+      cdr ? ros::from_cdr<ros::LivoxCustomMsg>(bytes) : ros::from_ros1<ros::LivoxCustomMsg>(bytes);
+    };
+    EXPECT_THROW(read(), ros::BadMessage) << cdr;
+  }
+}
+
+TEST(LivoxMessage, MoreLinesThanAByteHasAreRefused) {
+  sim::Recording recording = fixture::recording();
+  recording.sensors.lidars[0].ring[7] = 256;
+  BagWriting writing;
+  writing.sweeps = livox_sweep_layout();
+  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "tumble_livox_lines.bag";
+  EXPECT_THAT(fixture::complaint([&] { export_ros1_bag(recording.sensors, writing, path); }),
+              HasSubstr("a point of 'lidar' is of ring 256: a CustomMsg has lines 0 to 255"));
+  EXPECT_FALSE(std::filesystem::exists(path));
+}
+
+}  // namespace
+}  // namespace tumble::scenarios

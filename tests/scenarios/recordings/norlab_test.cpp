@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Clouds of libpointmatcher (VTK) and tables of nav_msgs/Odometry, as norlab's mapper leaves them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scenarios/recordings/fixture_recording.hpp"
+#include "scenarios/recordings/import.hpp"
+#include "stand_ins/stand_ins.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+using testing::HasSubstr;
+
+class Norlab : public testing::TestWithParam<test::DataFolder> {
+ protected:
+  Imported import(const char* poses) const {
+    const std::filesystem::path folder = test::written(GetParam());
+    SweepSource source;
+    source.folder = folder;
+    source.format = "vtk";
+    source.reading.device.name = "lidar";
+    Imported out = import_sweeps(source);
+    ReferenceSource reference;
+    reference.file = folder / poses;
+    reference.format = pose_format(reference.file);
+    attach_reference(out, reference);
+    return out;
+  }
+};
+
+/// The lidar's pose at a time of the recording, between the truth's samples.
+Eigen::Isometry3d pose_at(const sim::Truth& truth, double time_ns) {
+  const double at = time_ns / static_cast<double>(truth.period_ns);
+  const auto i = std::min(static_cast<std::size_t>(at), truth.p_WB_m.size() - 2);
+  const double share = at - static_cast<double>(i);
+  Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
+  out.linear() = truth.q_WB[i].slerp(share, truth.q_WB[i + 1]).toRotationMatrix();
+  out.translation() = (1.0 - share) * truth.p_WB_m[i] + share * truth.p_WB_m[i + 1];
+  return out;
+}
+
+TEST_P(Norlab, TheFolderIsTakenAsItIs) {
+  const Imported imported = import("trajectory.csv");
+  const sim::LidarRecord& lidar = imported.sensors.lidars.at(0);
+  EXPECT_EQ(lidar.sweep_start_ns.size(), 6u);
+  EXPECT_NEAR(static_cast<double>(lidar.sweep_period_ns), 1e8, 6e5);
+  EXPECT_EQ(lidar.point_times, sim::PointTimes::measured);
+  EXPECT_EQ(imported.info.origin_ns, 1690309709'285305600);
+  const auto last = *std::max_element(lidar.offset_ns.begin(), lidar.offset_ns.end());
+  EXPECT_NEAR(last, 1e8, 1e6) << "t is in nanoseconds";
+  EXPECT_LE(last, lidar.sweep_period_ns) << "of the real one a sweep lasts longer than the median step";
+  EXPECT_LE(*std::max_element(lidar.intensity.begin(), lidar.intensity.end()), 1.0f);
+  if (GetParam().real) {
+    EXPECT_EQ(lidar.sweep_first[1], 41400u) << "POINTS of the first file";
+    EXPECT_EQ(lidar.position_L_m[0], Eigen::Vector3f(4.39017f, -0.830303f, -0.814437f)) << "its first line";
+  }
+}
+
+// the first and the fourth line of the table; the reference trembles by some mm on the real one
+TEST_P(Norlab, TheReferenceIsTheTables) {
+  const Imported imported = import("trajectory.csv");
+  ASSERT_TRUE(imported.reference.has_value());
+  const sim::Truth& truth = *imported.reference;
+  const Eigen::Isometry3d first = pose_at(truth, 0.0), fourth = pose_at(truth, 299852288.0);
+  if (GetParam().real) {
+    EXPECT_TRUE(first.translation().isApprox(Eigen::Vector3d(0.85824662, -0.13771612, 0.03212672), 1e-5));
+    EXPECT_TRUE(fourth.translation().isApprox(Eigen::Vector3d(0.85897767, -0.13214987, 0.03379368), 1e-2));
+  } else {
+    EXPECT_TRUE(first.isApprox(test::norlab_pose(0.0), 1e-9));
+    EXPECT_TRUE(fourth.isApprox(test::norlab_pose(0.299852288), 1e-9));
+  }
+}
+
+// each point, put where the reference has the lidar at the point's own time, lies on a wall of the room
+TEST(NorlabStandIn, PointsAndPosesBelongTogether) {
+  const std::filesystem::path folder = test::written(test::data_folders("norlab").front());
+  SweepSource source;
+  source.folder = folder;
+  source.format = "vtk";
+  source.reading.device.name = "lidar";
+  Imported imported = import_sweeps(source);
+  const auto worst_m = [&](const char* poses) {
+    ReferenceSource reference;
+    reference.file = folder / poses;
+    reference.format = "odometry";
+    attach_reference(imported, reference);
+    const sim::LidarRecord& lidar = imported.sensors.lidars.at(0);
+    double worst = 0.0;
+    for (std::size_t sweep = 0; sweep < 5; ++sweep) {
+      for (std::size_t k = lidar.sweep_first[sweep]; k < lidar.sweep_first[sweep + 1]; ++k) {
+        const double time_ns = static_cast<double>(lidar.sweep_start_ns[sweep]) + lidar.offset_ns[k];
+        const Eigen::Vector3d p = pose_at(*imported.reference, time_ns) * lidar.position_L_m[k].cast<double>();
+        double off = 1e9;
+        for (int axis = 0; axis < 3; ++axis)
+          off = std::min(off, std::abs(std::abs(p[axis]) - test::kNorlabRoom_m[static_cast<std::size_t>(axis)]));
+        worst = std::max(worst, off);
+      }
+    }
+    return worst;
+  };
+  EXPECT_LT(worst_m("trajectory.csv"), 1e-4) << "six digits of VTK";
+  EXPECT_GT(worst_m("icp_odom.csv"), 2e-3) << "the odometry errs by 5 mm";
+}
+
+INSTANTIATE_TEST_SUITE_P(, Norlab, testing::ValuesIn(test::data_folders("norlab")), test::FolderName());
+
+class Vtk : public fixture::Folder {
+ protected:
+  Cloud read(const std::string& text) {
+    fixture::put(folder_ / "a.vtk", text);
+    return read_cloud(folder_ / "a.vtk");
+  }
+  std::string complaint_of(const std::string& text) {
+    return fixture::complaint([&] { read(text); });
+  }
+  const std::string head_ = "# vtk DataFile Version 3.0\nby hand\nASCII\nDATASET POLYDATA\n";
+  const std::string points_ = "POINTS 2 float\n1 2 3\nnan -5e-1 6\n";
+};
+
+TEST_F(Vtk, ReadsPointsAndScalars) {
+  const Cloud cloud = read(head_ + points_ +
+                           "VERTICES 2 4\n1 0\n1 1\nPOINT_DATA 2\nNORMALS n float\n0 0 1\n0 0 1\n"
+                           "SCALARS two float 2\nLOOKUP_TABLE default\n1 2 3 4\nCOLOR_SCALARS c 3\n0 0 0 1 1 1\n"
+                           "SCALARS t float\nLOOKUP_TABLE default\n0\n9.97396e+07\n");
+  EXPECT_THAT(cloud.names, testing::ElementsAre("x", "y", "z", "t"));
+  EXPECT_EQ(cloud.points, 2u);
+  EXPECT_TRUE(std::isnan((*cloud.find("x"))[1]));
+  EXPECT_EQ((*cloud.find("y"))[1], -0.5);
+  EXPECT_EQ((*cloud.find("t"))[1], 99739600.0);
+}
+
+TEST_F(Vtk, WhatIsNoneIsRefusedWithItsLine) {
+  const std::string good = head_ + points_ + "POINT_DATA 2\nSCALARS t float\nLOOKUP_TABLE default\n0\n1\n";
+  ASSERT_EQ(complaint_of(good), "");
+  for (std::size_t size = 0; size + 2 < good.size(); ++size) {
+    const std::string complaint = complaint_of(good.substr(0, size));
+    const bool whole_without_scalars = size >= head_.size() + points_.size() - 1 && complaint.empty();
+    EXPECT_TRUE(whole_without_scalars || complaint.find("a.vtk:") != std::string::npos) << size << complaint;
+  }
+  EXPECT_THAT(complaint_of("ply\n"), HasSubstr("a.vtk:2: begins as no VTK file does"));
+  EXPECT_THAT(complaint_of("# vtk DataFile Version 3.0\nx\nBINARY\n"), HasSubstr("a.vtk:3: is binary"));
+  EXPECT_THAT(complaint_of(head_ + "POINTS 2 float\n1 2 3\n4 5,5 6\n"), HasSubstr("a.vtk:7: '5,5' is no number"));
+  EXPECT_THAT(complaint_of(head_ + "POINTS 4000000000 float\n1 2 3\n"),
+              HasSubstr("a.vtk:5: promises 4000000000 points"));
+  EXPECT_THAT(complaint_of(head_ + "POINTS 9 float\n1 2 3\n"), HasSubstr("a.vtk:5: promises 9 times 3 numbers, but 7"));
+  EXPECT_THAT(complaint_of(head_ + points_ + points_), HasSubstr("a.vtk:8: POINTS stands twice"));
+  EXPECT_THAT(complaint_of(head_ + points_ + "POINT_DATA 3\n"), HasSubstr("POINT_DATA of 3 points, POINTS has 2"));
+  EXPECT_THAT(complaint_of(head_ + points_ + "POLYGONS 1 4\n"), HasSubstr("section 'POLYGONS' is not read there"));
+  EXPECT_THAT(complaint_of(head_), HasSubstr("holds no POINTS"));
+}
+
+class OdometryTable : public fixture::Folder {
+ protected:
+  std::string complaint_of(const std::string& text) {
+    fixture::put(folder_ / "a.csv", text);
+    ReferenceSource source;
+    source.file = folder_ / "a.csv";
+    source.format = "odometry";
+    return fixture::complaint([&] { import_trajectory(source); });
+  }
+  const std::string head_ =
+      "header.stamp.sec,header.stamp.nanosec,pose.pose.position.x,pose.pose.position.y,pose.pose.position.z,"
+      "pose.pose.orientation.x,pose.pose.orientation.y,pose.pose.orientation.z,pose.pose.orientation.w\n";
+};
+
+TEST_F(OdometryTable, BadLinesAreRefusedWithTheirPlace) {
+  const std::string good = head_ + "10,0,1,2,3,0,0,0,1\n10,500000000,1,2,3,0,0,0.6,0.8\n";
+  EXPECT_EQ(complaint_of(good), "");
+  EXPECT_THAT(complaint_of(good + "10,500000000,1,2,3,0,0,0,1\n"),
+              HasSubstr("a.csv:4: stamp 10500000000 ns does not rise"));
+  EXPECT_THAT(complaint_of(good + "11,1000000000,1,2,3,0,0,0,1\n"),
+              HasSubstr("a.csv:4: the stamp 11 s 1000000000 ns is none"));
+  EXPECT_THAT(complaint_of(good + "11,0,1,2,3,0,0,0.6,0.9\n"), HasSubstr("a.csv:4: quaternion of norm"));
+  EXPECT_THAT(complaint_of(good + "11,0,nan,2,3,0,0,0,1\n"), HasSubstr("a.csv:4: the pose is not finite"));
+  EXPECT_THAT(complaint_of(good + "11,0,1\n"), HasSubstr("a.csv:4: 3 columns, must be 9"));
+  std::string doubled = good;
+  doubled.replace(doubled.find("position.y"), 10, "position.x");
+  EXPECT_THAT(complaint_of(doubled), HasSubstr("a.csv:1: column pose.pose.position.x stands 2 times in the header"));
+  EXPECT_THAT(complaint_of(head_ + "10,0,1,2,3,0,0,0,1\n"), HasSubstr("holds 1 poses, needs 2"));
+}
+
+// as `evo_traj --save_as_tum` and `--save_as_kitti` write them, with numpy's "%.18e"
+TEST(Evo, ItsFilesOfPosesAreRead) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "tumble_evo";
+  std::filesystem::create_directories(folder);
+  fixture::put(folder / "a.tum",
+               "1.690309709285305500e+09 1.000000000000000000e+00 2.000000000000000000e+00 3.000000000000000000e+00 "
+               "0.000000000000000000e+00 0.000000000000000000e+00 0.000000000000000000e+00 1.000000000000000000e+00\n"
+               "1.690309709385259150e+09 1.500000000000000000e+00 2.000000000000000000e+00 3.000000000000000000e+00 "
+               "0.000000000000000000e+00 0.000000000000000000e+00 0.000000000000000000e+00 1.000000000000000000e+00\n");
+  EXPECT_EQ(pose_format(folder / "a.tum"), "tum");
+  const std::vector<ReferencePose> poses = read_tum_poses(folder / "a.tum", false);
+  ASSERT_EQ(poses.size(), 2u);
+  // a double of such seconds is good to 0.24 us
+  EXPECT_NEAR(static_cast<double>(poses[0].time_ns - 1690309709'285305600), 0.0, 250.0);
+  EXPECT_EQ(poses[1].p_WA_m.x(), 1.5);
+  const std::string one = "1.000000000000000000e+00 ", none = "0.000000000000000000e+00 ";
+  fixture::put(folder / "a.kitti", one + none + none + one + none + one + none + none + none + none + one +
+                                       "2.5e+00\n" + one + none + none + none + none + one + none + none + none + none +
+                                       one + "3e+00\n");
+  EXPECT_EQ(pose_format(folder / "a.kitti"), "kitti");
+  EXPECT_EQ(read_kitti_poses(folder / "a.kitti", {0, 1})[0].p_WA_m, Eigen::Vector3d(1.0, 0.0, 2.5));
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace tumble::scenarios
