@@ -67,6 +67,7 @@ void add_moving(const Scene& scene, Example& example) {
   options.width = 400;
   options.height = 250;
   options.frames_per_s = 12.5;
+  options.quality = 45.0f;
   const Span span = liveliest_span(*scene.truth, kMoving_s);
   example.moving = moving_picture(scene, span, options);
   example.moving_caption = fmt::format("{:.1f} s of it at half speed, where it turns most",

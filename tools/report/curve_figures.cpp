@@ -37,10 +37,8 @@ std::string transparent(const char* hex) {
 
 /// What every trace of a method has in common: one entry of the legend switches all of them.
 json trace(const std::string& method, bool in_legend) {
-  return {{"type", "scatter"},
-          {"name", html::escaped(method)},
-          {"legendgroup", html::escaped(method)},
-          {"showlegend", in_legend}};
+  return {
+      {"type", "scatter"}, {"name", plot_text(method)}, {"legendgroup", plot_text(method)}, {"showlegend", in_legend}};
 }
 
 /// The band between the quartiles, a polygon for each run of places where both are finite.
@@ -128,7 +126,7 @@ json x_axis(const Curve& curve, const std::string& title) {
   axis["ticktext"] = json::array();
   for (const auto& [x, label] : labels) {
     axis["tickvals"].push_back(x);
-    axis["ticktext"].push_back(html::escaped(label));
+    axis["ticktext"].push_back(plot_text(label));
   }
   return axis;
 }

@@ -62,7 +62,7 @@ std::vector<Figure> distribution_figures(std::span<const Spread> spreads) {
     json x = json::array();
     for (const double value : at_most(spread.values, kBoxPoints)) x.push_back(rounded(value * spread.factor));
     figure.data.push_back({{"type", "histogram"},
-                           {"name", html::escaped(spread.scenario)},
+                           {"name", plot_text(spread.scenario)},
                            {"histnorm", "percent"},
                            {"opacity", 0.6},
                            {"nbinsx", 30},

@@ -12,7 +12,8 @@ namespace {
 using html::escaped;
 
 std::string swatch(const std::string& name, Colour colour) {
-  return "<span class=\"swatch\" style=\"background:" + std::string(colour.hex) + "\"></span>" + escaped(name);
+  return " <span class=\"entry\"><span class=\"swatch\" style=\"background:" + std::string(colour.hex) + "\"></span>" +
+         escaped(name) + "</span>";
 }
 
 std::string legend_html(const ExamplePicture& picture) {

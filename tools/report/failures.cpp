@@ -64,10 +64,10 @@ FailedDraws failed_draws(const Results& results, const Summary& summary) {
   std::vector<std::pair<std::size_t, const Draw*>> ranked;
   ranked.reserve(failures.size());
   for (const auto& [draw, count] : failures) ranked.emplace_back(count, &draw);
-  const auto shown = std::min(ranked.size(), kFailedDrawsShown);
-  std::partial_sort(
-      ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(shown), ranked.end(),
-      [](const auto& a, const auto& b) { return a.first != b.first ? a.first > b.first : *a.second < *b.second; });
+  std::sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) {
+    return a.first != b.first ? a.first > b.first : *a.second < *b.second;
+  });
+  const std::size_t shown = std::min(ranked.size(), kFailedDrawsShown);
   FailedDraws out{ranked.size(), {}};
   for (std::size_t i = 0; i < shown; ++i) {
     FailedDraw draw{ranked[i].second->first, ranked[i].second->second, {}, {}};

@@ -7,8 +7,6 @@
 #include <array>
 #include <cmath>
 
-#include "tools/html/html.hpp"
-
 namespace tumble::tools {
 
 namespace {
@@ -30,6 +28,7 @@ json density(const MotionMap& map) {
       each.push_back(five_digits(100.0 * map.share[row * MotionMap::kCells + i]));
     rows.push_back(std::move(each));
   }
+  // what lies below the first contour has the colour of half a step: none
   return {
       {"type", "contour"},
       {"name", "all draws"},
@@ -41,7 +40,7 @@ json density(const MotionMap& map) {
       {"zmin", 0.0},
       {"zmax", most},
       {"line", {{"width", 0}}},
-      {"colorscale", {{0.0, "rgba(110,130,150,0)"}, {0.1, "rgba(110,130,150,0.12)"}, {1.0, "rgba(110,130,150,0.75)"}}},
+      {"colorscale", {{0.0, "rgba(110,130,150,0)"}, {0.07, "rgba(110,130,150,0)"}, {1.0, "rgba(110,130,150,0.75)"}}},
       {"showscale", false},
       {"hoverinfo", "skip"}};
 }
@@ -54,7 +53,7 @@ json points(const MotionCloud& cloud, std::size_t index) {
   }
   return {{"type", "scatter"},
           {"mode", "markers"},
-          {"name", html::escaped(cloud.scenario)},
+          {"name", plot_text(cloud.scenario)},
           {"marker",
            {{"color", method_colour(index).hex},
             {"symbol", kSymbols[index % kSymbols.size()]},
@@ -79,7 +78,7 @@ json outline(const PublishedExtreme& extreme, const MotionMap& map, bool dotted)
   }
   return {{"type", "scatter"},
           {"mode", "lines"},
-          {"name", html::escaped("published: " + extreme.campaign)},
+          {"name", plot_text("published: " + extreme.campaign)},
           {"line", {{"color", "#888888"}, {"width", 2}, {"dash", dotted ? "dot" : "dash"}}},
           {"x", std::move(x)},
           {"y", std::move(y)}};

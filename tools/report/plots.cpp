@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "scenarios/scoring/cost.hpp"
-#include "tools/html/html.hpp"
 #include "tools/pictures/colours.hpp"
 
 namespace tumble::tools {
@@ -29,7 +28,7 @@ json axis(const std::string& title) {
 
 json box(const std::string& name, const char* colour) {
   return {{"type", "box"},
-          {"name", html::escaped(name)},
+          {"name", plot_text(name)},
           {"boxpoints", "all"},
           {"jitter", 0.5},
           {"pointpos", 0},
@@ -43,7 +42,7 @@ json box(const std::string& name, const char* colour) {
 
 void add_values(json& trace, const std::string& group, const MetricSummary& metric, double factor) {
   for (const double value : at_most(metric.values, kBoxPoints)) {
-    trace["x"].push_back(html::escaped(group));
+    trace["x"].push_back(plot_text(group));
     trace["y"].push_back(five_digits(value * factor));
   }
 }
@@ -83,7 +82,7 @@ class Boxes {
     for (auto& [name, trace] : traces_) figure.data.push_back(std::move(trace));
     figure.layout = {{"boxmode", "group"},
                      {"xaxis", {{"type", "category"}}},
-                     {"yaxis", axis(html::escaped(metric_) + (style_.unit.empty() ? "" : " [" + style_.unit + "]"))}};
+                     {"yaxis", axis(plot_text(metric_) + (style_.unit.empty() ? "" : " [" + style_.unit + "]"))}};
     if (wants_log(figure.data)) figure.layout["yaxis"]["type"] = "log";
   }
 
@@ -133,6 +132,12 @@ double five_digits(double value) {
   return std::round(value * scale) / scale;
 }
 
+std::string plot_text(const std::string& text) {
+  std::string out;
+  for (const char c : text) out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c);
+  return out;
+}
+
 std::vector<double> at_most(std::vector<double> values, std::size_t most) {
   if (values.size() <= most) return values;
   std::sort(values.begin(), values.end());
@@ -179,7 +184,7 @@ Figure figure_of(const Plot& plot, const std::string& id) {
     json trace = {
         {"type", "scatter"},
         {"mode", "lines"},
-        {"name", html::escaped(line.name)},
+        {"name", plot_text(line.name)},
         {"line",
          {{"color", colour_of(line.colour).hex}, {"width", line.width}, {"dash", line.dotted ? "dot" : "solid"}}},
         {"x", coordinates(line.x)},
@@ -187,7 +192,7 @@ Figure figure_of(const Plot& plot, const std::string& id) {
     if (line.hidden) trace["visible"] = "legendonly";
     figure.data.push_back(std::move(trace));
   }
-  figure.layout = {{"xaxis", axis(html::escaped(plot.x_title))}, {"yaxis", axis(html::escaped(plot.y_title))}};
+  figure.layout = {{"xaxis", axis(plot_text(plot.x_title))}, {"yaxis", axis(plot_text(plot.y_title))}};
   if (plot.equal_scales) figure.layout["yaxis"]["scaleanchor"] = "x";
   if (plot.from_zero) figure.layout["yaxis"]["rangemode"] = "tozero";
   if (plot.over_time) figure.layout["hovermode"] = "x unified";

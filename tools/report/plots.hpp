@@ -26,6 +26,9 @@ inline constexpr std::size_t kBoxPoints = 1000;
 /// Five significant digits are more than a plot can show, and keep the page small.
 double five_digits(double value);
 
+/// A text as Plotly shows it, which reads tags and three entities in it: & < > by their entities.
+std::string plot_text(const std::string& text);
+
 /// Of more than `most` (2 or more) values the smallest, the largest and those at equal steps of rank between, rising:
 /// their quantiles are nearly those of all. O(n log n).
 std::vector<double> at_most(std::vector<double> values, std::size_t most);

@@ -44,11 +44,19 @@ std::vector<Fact> versions(const scenarios::Results& results, const Summary& sum
   return out;
 }
 
+/// Whether a sweep by this build, over the data that are found here, would go on with them.
+bool are_of_here(const scenarios::Results& results, const ReportOptions& options) {
+  const std::string made_by = results.note("build"), made_of = results.note("data");
+  return (made_by.empty() || made_by == scenarios::build_id()) &&
+         (made_of.empty() || options.data.empty() || made_of == options.data);
+}
+
 std::vector<Fact> commands(const scenarios::Results& results, const ReportOptions& options) {
   const std::string database = scenarios::shell_word(options.database.string());
   std::vector<Fact> out;
   const std::string sweep = results.note(scenarios::kCommandNote);
-  if (!sweep.empty()) out.emplace_back("The results", "tumble sweep " + sweep + " --db " + database);
+  if (!sweep.empty() && are_of_here(results, options))
+    out.emplace_back("The results", "tumble sweep " + sweep + " --db " + database);
   if (!options.page.empty())
     out.emplace_back("This page", "tumble report " + database + " -o " + scenarios::shell_word(options.page.string()));
   out.emplace_back("Paired differences, every metric", "tumble compare " + database);
