@@ -48,6 +48,29 @@ std::vector<ExampleDraw> choose_examples(const Summary& summary, std::span<const
   return chosen;
 }
 
+std::vector<ExampleDraw> choose_failures(const Summary& summary, std::span<const ExampleCandidate> candidates,
+                                         std::size_t count) {
+  std::vector<std::pair<std::size_t, ExampleDraw>> ranked;
+  for (const ExampleCandidate& candidate : candidates) {
+    std::map<std::uint64_t, std::size_t> failures;
+    for (const Section& section : summary.sections) {
+      if (section.scenario != candidate.scenario) continue;
+      for (const MethodSummary& method : section.methods) {
+        for (const std::uint64_t seed : method.not_ok_seeds) failures[seed] += method.needs_truth ? 0 : 1;
+      }
+    }
+    const auto most = std::max_element(failures.begin(), failures.end(),
+                                       [](const auto& a, const auto& b) { return a.second < b.second; });
+    if (most != failures.end() && most->second > 0)
+      ranked.emplace_back(most->second, ExampleDraw{candidate.scenario, most->first});
+  }
+  std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  if (ranked.size() > count) ranked.resize(count);
+  std::vector<ExampleDraw> chosen;
+  for (auto& [failed, draw] : ranked) chosen.push_back(std::move(draw));
+  return chosen;
+}
+
 std::vector<Outcome> rows_to_show(const Results& results, const ExampleDraw& draw) {
   std::vector<Outcome> rows = results.outcomes_of(draw.scenario, draw.seed);
   std::erase_if(rows, [](const Outcome& row) { return !row.setting.is_plain() || !was_scored(row.status); });

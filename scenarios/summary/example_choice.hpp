@@ -32,6 +32,11 @@ bool typical_seed(const Summary& summary, const std::string& scenario, std::uint
 std::vector<ExampleDraw> choose_examples(const Summary& summary, std::span<const ExampleCandidate> candidates,
                                          std::size_t count);
 
+/// Of the candidates' scenarios the draw on which most methods that need no truth failed, the first of equals; at most
+/// `count` draws, those with most failures first. None where nothing failed.
+std::vector<ExampleDraw> choose_failures(const Summary& summary, std::span<const ExampleCandidate> candidates,
+                                         std::size_t count);
+
 /// The scored rows of a draw that an example shows: those without a variation.
 std::vector<Outcome> rows_to_show(const Results& results, const ExampleDraw& draw);
 

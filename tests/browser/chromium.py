@@ -104,10 +104,10 @@ class Page:
         return said + [one["entry"]["text"] for one in self.mine("Log.entryAdded")]
 
     def fetched(self) -> list[str]:
-        """Addresses that it asked for, but its own."""
+        """Addresses that it asked for, but its own and those that carry what they name."""
         own = self.address.split("#")[0]
         asked = [one["request"]["url"] for one in self.mine("Network.requestWillBeSent")]
-        return [url for url in asked if url.split("#")[0] not in (own, "about:blank")]
+        return [url for url in asked if url.split("#")[0] not in (own, "about:blank") and not url.startswith("data:")]
 
     def picture(self) -> bytes:
         return base64.b64decode(self.ask("Page.captureScreenshot", format="png")["data"])

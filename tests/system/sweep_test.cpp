@@ -170,10 +170,11 @@ TEST(Report, IsOnePageThatAsksTheNetworkNothing) {
   for (const char* outside : {"http:", "https:", "@import", "url(", "<link"})
     EXPECT_THAT(text, Not(HasSubstr(outside)));
   EXPECT_THAT(text, HasSubstr("data:image/png;base64,iVBORw0KGgo")) << "no picture";
+  EXPECT_THAT(text, HasSubstr("data:image/webp;base64,UklGR")) << "nothing moves";
   EXPECT_THAT(text, HasSubstr("rolling"));
-  EXPECT_THAT(text, HasSubstr("id=\"path-roll\""));
+  EXPECT_THAT(text, HasSubstr("id=\"path-roll-"));
   for (const char* part :
-       {"id=\"certificate\"", "free_flight_energy", "id=\"distributions\"", "distribution-motion_path_m"}) {
+       {"id=\"certificate\"", "free_flight_energy", "id=\"motions\"", "distribution-motion_path_m"}) {
     EXPECT_THAT(text, HasSubstr(part));
   }
   const json document = report_json(database);

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "scenarios/summary/comparison.hpp"
 #include "tools/report/plots.hpp"
 
 namespace tumble::tools {
@@ -25,11 +26,11 @@ MetricSummary metric(std::vector<double> values) {
   return out;
 }
 
-Summary summary_of(const std::string& scenario) {
+Summary summary_of(const std::string& scenario, const std::string& method = "saave") {
   MethodSummary raw, saave;
   raw.method = "raw";
   raw.metrics["rate_error_clipped_median_rad_s"] = metric({2.0, 3.0});
-  saave.method = "saave";
+  saave.method = method;
   saave.metrics["rate_error_clipped_median_rad_s"] = metric({0.1, 0.2});
   Section section;
   section.scenario = scenario;
@@ -61,23 +62,31 @@ TEST(Page, AsksTheNetworkNothing) {
   PageContent content;
   content.title = "title";
   content.summary = summary_of("hill");
-  content.figures = {box_figure(content.summary, Kind::rate, "rate_error_clipped_median_rad_s", "caption")};
+  content.errors = {box_figure(content.summary, Kind::rate, "rate_error_clipped_median_rad_s", "caption")};
   const std::string page = page_html(content, "/* bundle */");
   for (const char* outside : {"http:", "https:", "src=\"/", "@import", "url(", "<link"})
     EXPECT_THAT(page, Not(HasSubstr(outside)));
   EXPECT_THAT(page, HasSubstr("/* bundle */"));
   EXPECT_THAT(page, HasSubstr("prefers-color-scheme"));
+  EXPECT_THAT(page, HasSubstr("default-src 'none'")) << "nor may it";
 }
 
 TEST(Page, EscapesEveryTextItIsGiven) {
   const std::string evil = "</script><img src=x onerror=alert(1)>";
   PageContent content;
   content.title = evil;
-  content.facts = {{evil, evil}};
+  content.versions = {{evil, evil}};
+  content.commands = {{evil, evil}};
+  content.failed = {1, {{evil, 7, {{evil, evil, evil}}, evil}}};
+  content.sensitivity_note = evil;
+  content.sensitivity = {{evil, Kind::rate, evil, evil, 30, {{evil, {}, {}, 0.0, 1.0, 2.0}}}};
+  content.motion_map = scenarios::motion_map(std::vector<scenarios::DrawValues>{
+      {evil, 7, {{"motion_peak_rate_rad_s", 10.0}, {"motion_peak_accel_m_s2", 90.0}}}});
   content.warnings = {evil};
   content.examples = {evil_example(evil)};
-  content.summary = summary_of(evil);
-  content.figures = {box_figure(content.summary, Kind::rate, "rate_error_clipped_median_rad_s", evil)};
+  content.summary = summary_of(evil, evil);
+  content.errors = {box_figure(content.summary, Kind::rate, "rate_error_clipped_median_rad_s", evil)};
+  content.comparison = scenarios::compare(content.summary, {});
   const std::string page = page_html(content, "");
   EXPECT_THAT(page, Not(HasSubstr("<img src=x")));
   std::size_t scripts = 0;
@@ -101,7 +110,7 @@ TEST(Page, ShowsExamplesWithTheirPicturesAndPlots) {
   const std::string page = page_html(content, "");
   EXPECT_THAT(page, HasSubstr("One hill of <code>hill</code>, seed 7"));
   EXPECT_THAT(page, HasSubstr("src=\"data:image/png;base64,iVBORw==\""));
-  EXPECT_THAT(page, HasSubstr("id=\"hill-hill\""));
+  EXPECT_THAT(page, HasSubstr("id=\"hill-hill-7\""));
   EXPECT_THAT(page, HasSubstr("other results")) << "it is not of these";
   content.examples[0].of_these_results = true;
   EXPECT_THAT(page_html(content, ""), Not(HasSubstr("other results")));
@@ -112,7 +121,7 @@ TEST(Page, ShowsExamplesWithTheirPicturesAndPlots) {
 TEST(Page, LinksTheReplayOfAnExampleThatHasOne) {
   PageContent content;
   content.examples = {evil_example("hill")};
-  EXPECT_THAT(page_html(content, ""), Not(HasSubstr("<a href"))) << "it has none";
+  EXPECT_THAT(page_html(content, ""), Not(HasSubstr("Play it"))) << "it has none";
   content.examples[0].replay_address = "a.db.files/hill-7-replay.html";
   EXPECT_THAT(page_html(content, ""), HasSubstr("<a href=\"a.db.files/hill-7-replay.html\">"));
 }
@@ -127,6 +136,69 @@ TEST(Page, SetsNarrowPlotsTwoInARow) {
   const std::size_t open = page.find("<div class=\"pair\">");
   ASSERT_NE(open, std::string::npos);
   EXPECT_EQ(page.find("<div class=\"pair\">", open + 1), std::string::npos) << "one pair";
+}
+
+TEST(Page, HasItsPartsInOrderAndInTheListOfContents) {
+  PageContent content;
+  content.summary = summary_of("hill");
+  content.comparison = scenarios::compare(content.summary, {});
+  content.errors = {box_figure(content.summary, Kind::rate, "rate_error_clipped_median_rad_s", "")};
+  content.cost = content.errors.front();
+  content.cost.id = "cost-figure";
+  content.sensitivity_note = "too few";
+  content.versions = {{"build", "1"}};
+  content.commands = {{"This page", "tumble report"}};
+  const std::string page = page_html(content, "");
+  std::size_t at = page.find("<h1>");
+  ASSERT_NE(at, std::string::npos);
+  for (const char* part :
+       {"motions", "errors", "differences", "failures", "sensitivity", "cost", "certificate", "versions", "again"}) {
+    EXPECT_THAT(page, HasSubstr(std::string("<a href=\"#") + part + "\">"));
+    const std::size_t next = page.find(std::string("<section id=\"") + part + "\">");
+    ASSERT_NE(next, std::string::npos) << part;
+    EXPECT_GT(next, at) << part;
+    at = next;
+  }
+  EXPECT_THAT(page_html({}, ""), Not(HasSubstr("<a href=\"#errors\">"))) << "of nothing there is nothing to go to";
+}
+
+TEST(Page, MovesByItselfAndStandsStillForWhoeverAsks) {
+  PageContent content;
+  content.examples = {evil_example("hill")};
+  EXPECT_THAT(page_html(content, ""), Not(HasSubstr("image/webp"))) << "nothing moves in it";
+  content.examples[0].example.moving = {'R', 'I', 'F', 'F'};
+  content.examples[0].example.moving_caption = "2 s of <it>";
+  const std::string page = page_html(content, "");
+  EXPECT_THAT(page, HasSubstr("src=\"data:image/webp;base64,UklGRg==\""));
+  EXPECT_THAT(page, HasSubstr("<source media=\"(prefers-reduced-motion: reduce)\" srcset=\"data:image/png"));
+  EXPECT_THAT(page, HasSubstr("2 s of &lt;it&gt;"));
+}
+
+TEST(Page, LinksFailedDrawsThatHavePictures) {
+  PageContent content;
+  content.summary = summary_of("hill");
+  content.examples = {evil_example("hill")};
+  content.examples[0].replay_address = "a.db.files/hill-7-replay.html";
+  content.failed = {2,
+                    {{"hill", 7, {{"rate/saave", "diverged", "went away"}}, "tumble run hill --seed 7"},
+                     {"hill", 8, {{"rate/saave", "diverged", ""}}, ""}}};
+  const std::string page = page_html(content, "");
+  EXPECT_THAT(page, HasSubstr("<a href=\"#draw-hill-7\">pictures</a>"));
+  EXPECT_THAT(page, HasSubstr("<details id=\"draw-hill-7\""));
+  EXPECT_THAT(page, HasSubstr("<a href=\"a.db.files/hill-7-replay.html\">replay</a>"));
+  EXPECT_THAT(page, HasSubstr("<pre>tumble run hill --seed 7</pre>"));
+  EXPECT_THAT(page, Not(HasSubstr("#draw-hill-8"))) << "negative control: nothing is there to be seen";
+}
+
+TEST(AtMost, KeepsTheEndsAndTheQuartiles) {
+  std::vector<double> values;
+  for (int i = 1000; i >= 0; --i) values.push_back(i);
+  const std::vector<double> some = at_most(values, 101);
+  ASSERT_EQ(some.size(), 101u);
+  EXPECT_EQ(some.front(), 0.0);
+  EXPECT_EQ(some[25], 250.0);
+  EXPECT_EQ(some.back(), 1000.0);
+  EXPECT_EQ(at_most({3.0, 1.0, 2.0}, 3), (std::vector<double>{3.0, 1.0, 2.0})) << "few stay as they are";
 }
 
 }  // namespace

@@ -136,19 +136,6 @@ TEST_F(SummaryTest, OfAnEmptyDatabaseIsEmpty) {
   const Summary summary = summarize(results());
   EXPECT_TRUE(summary.sections.empty());
   EXPECT_TRUE(summary.scenarios.empty());
-  EXPECT_TRUE(headlines(summary).empty());
-}
-
-TEST_F(SummaryTest, HeadlineIsTheChangeOfTheMedian) {
-  for (std::uint64_t seed = 1; seed <= 9; ++seed) {
-    store(seed, Kind::rate, "raw", scenarios::OutcomeStatus::ok, {{kError, 2.0}});
-    store(seed, Kind::rate, "saave", scenarios::OutcomeStatus::ok, {{kError, 0.5}});
-    store(seed, Kind::rate, "oracle", scenarios::OutcomeStatus::ok, {{kError, 0.01}});
-  }
-  const std::vector<Headline> all = headlines(summarize(results()));
-  ASSERT_EQ(all.size(), 1u);
-  EXPECT_EQ(all[0].value, "−75.0 %") << "of saave: the oracle cannot be had";
-  EXPECT_THAT(all[0].detail, HasSubstr("better in 9 of 9"));
 }
 
 TEST_F(SummaryTest, TableEscapesWhatTheDatabaseHolds) {

@@ -52,6 +52,8 @@ struct Example {
   std::string made_of;  ///< digest of the rows of the results that it shows
   std::vector<ExamplePicture> pictures;
   std::vector<Plot> plots;
+  std::vector<std::uint8_t> moving;  ///< a WebP that plays a part of it; empty: there is none
+  std::string moving_caption;        ///< "2.5 s of it at half speed"
   std::string replay;       ///< name of the file of its replay, which stands beside the list; "": there is none
   std::string replay_page;  ///< what is in it; not read back
 };
@@ -62,8 +64,8 @@ std::filesystem::path examples_folder(const std::filesystem::path& database);
 /// One example as text, its pictures by the names of their files (README.md).
 std::string to_json(const Example& example);
 
-/// Writes the pictures of an example, SCENARIO-SEED-NAME.png, and its replay, SCENARIO-SEED-replay.html, where they
-/// wait for the list: FOLDER/.unfinished. Throws BadInput.
+/// Writes the pictures of an example, SCENARIO-SEED-NAME.png, what moves, SCENARIO-SEED-moving.webp, and its replay,
+/// SCENARIO-SEED-replay.html, where they wait for the list: FOLDER/.unfinished. Throws BadInput.
 void write_pictures(const std::filesystem::path& folder, const Example& example);
 
 /// Removes the pictures that no list came to name.

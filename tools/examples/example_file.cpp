@@ -107,6 +107,14 @@ std::string replay_name(const json& example) {
   return name.empty() ? name : file_name(name, ".html", "replay");
 }
 
+constexpr const char* kMovingEnding = "moving.webp";
+
+/// "" of an example that has none, as those of earlier versions.
+std::string moving_name(const json& example) {
+  if (!example.contains("moving")) return "";
+  return file_name(example.at("moving").at("file"), ".webp", "moving picture");
+}
+
 ExamplePicture read_picture(const fs::path& folder, const json& from, Pictures pictures) {
   ExamplePicture picture;
   picture.name = from.at("name");
@@ -129,6 +137,10 @@ Example read_example(const fs::path& folder, const json& from, Pictures pictures
   example.made_of = from.at("made_of");
   for (const json& picture : from.at("pictures")) example.pictures.push_back(read_picture(folder, picture, pictures));
   for (const json& plot : from.at("plots")) example.plots.push_back(plot.get<Plot>());
+  if (const std::string moving = moving_name(from); !moving.empty()) {
+    example.moving_caption = from.at("moving").at("caption");
+    if (pictures == Pictures::read) example.moving = read_bytes(folder / moving);
+  }
   example.replay = replay_name(from);
   std::error_code error;
   if (pictures == Pictures::read && !example.replay.empty() && !fs::is_regular_file(folder / example.replay, error))
@@ -167,7 +179,9 @@ std::set<std::string> files_of(const json& examples) {
   std::set<std::string> files;
   for (const json& example : examples) {
     for (const json& picture : example.at("pictures")) files.insert(file_name(picture));
-    if (const std::string replay = replay_name(example); !replay.empty()) files.insert(replay);
+    for (const std::string& name : {moving_name(example), replay_name(example)}) {
+      if (!name.empty()) files.insert(name);
+    }
   }
   return files;
 }
@@ -212,6 +226,8 @@ std::string to_json(const Example& example) {
                                {"legend", picture.legend}});
   }
   for (const Plot& plot : example.plots) out["plots"].push_back(plot);
+  if (!example.moving.empty())
+    out["moving"] = {{"file", file_of(example, kMovingEnding)}, {"caption", example.moving_caption}};
   if (!example.replay.empty()) out["replay"] = example.replay;
   return out.dump(-1, ' ', false, json::error_handler_t::replace);
 }
@@ -222,6 +238,9 @@ void write_pictures(const fs::path& folder, const Example& example) {
   if (error) throw BadInput(unfinished(folder).string() + ": " + error.message());
   for (const ExamplePicture& picture : example.pictures)
     scenarios::replace_file(unfinished(folder) / picture_file(example, picture), std::as_bytes(std::span(picture.png)));
+  if (!example.moving.empty())
+    scenarios::replace_file(unfinished(folder) / file_of(example, kMovingEnding),
+                            std::as_bytes(std::span(example.moving)));
   if (!example.replay.empty()) scenarios::replace_file(unfinished(folder) / example.replay, example.replay_page);
 }
 

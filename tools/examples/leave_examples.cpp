@@ -25,12 +25,16 @@ constexpr int kPollMs = 200;
 /// What simulating and drawing may take beyond the methods, in units of a method's time-out.
 constexpr double kOtherTimeouts = 3.0;
 constexpr const char* kTypical = "The draw whose score is the median one of its scenario";
+constexpr const char* kFailed = "The draw of its scenario on which most methods failed";
+/// Draws that failed, beside the typical ones.
+constexpr std::size_t kFailures = 1;
 
 /// One example in the making; `text` is what its process has said so far, or what was there.
 struct Making {
   scenarios::ExampleDraw draw;
   scenarios::Scenario scenario;
   std::vector<scenarios::MethodPointer> methods;
+  std::string choice;
   std::string made_of;
   std::string text;
   bool done = false;
@@ -61,13 +65,18 @@ std::vector<Making> plan(const scenarios::DataRoot& data, const scenarios::Suite
     all.push_back(scenarios::load_scenario(data, name));
     candidates.push_back({all.back().name, all.back().robot.type});
   }
+  const scenarios::Summary summary = scenarios::summarize(results);
   std::vector<Making> makings;
-  for (const scenarios::ExampleDraw& draw :
-       scenarios::choose_examples(scenarios::summarize(results), candidates, count)) {
+  const auto add = [&](const scenarios::ExampleDraw& draw, const char* choice) {
+    if (std::any_of(makings.begin(), makings.end(), [&](const Making& making) { return making.draw == draw; })) return;
     const std::vector<scenarios::Outcome> rows = scenarios::rows_to_show(results, draw);
     const auto scenario = std::find_if(all.begin(), all.end(), [&](const auto& s) { return s.name == draw.scenario; });
-    makings.push_back({draw, *scenario, methods_of(rows, suite), scenarios::digest_of_rows(results, draw), {}, false});
-  }
+    makings.push_back(
+        {draw, *scenario, methods_of(rows, suite), choice, scenarios::digest_of_rows(results, draw), {}, false});
+  };
+  for (const scenarios::ExampleDraw& draw : scenarios::choose_examples(summary, candidates, count)) add(draw, kTypical);
+  for (const scenarios::ExampleDraw& draw : scenarios::choose_failures(summary, candidates, kFailures))
+    add(draw, kFailed);
   return makings;
 }
 
@@ -108,7 +117,7 @@ void make(const scenarios::DataRoot& data, const fs::path& folder, const Making&
         scenarios::run_situation(data, making.scenario, making.draw.seed, making.methods, 1,
                                  lidars ? scenarios::Lidars::simulated : scenarios::Lidars::left_out);
     Example example = example_of(run);
-    example.choice = kTypical;
+    example.choice = making.choice;
     example.made_of = making.made_of;
     write_pictures(folder, example);
     scenarios::write_all(fd, to_json(example));

@@ -10,6 +10,7 @@
 #include "tools/examples/draw_plots.hpp"
 #include "tools/examples/sphere_plots.hpp"
 #include "tools/pictures/map_pictures.hpp"
+#include "tools/pictures/moving.hpp"
 #include "tools/pictures/pictures.hpp"
 #include "tools/replay/page.hpp"
 #include "tools/replay/run_replay.hpp"
@@ -58,6 +59,21 @@ void add_maps(const scenarios::RunResult& run, Example& example) {
                               sim::png_bytes(map_picture(maps, run.recording.truth, 640, 480))});
 }
 
+/// Of the example's moving picture: long enough to see the robot turn, and a few hundred kB.
+constexpr double kMoving_s = 2.0;
+
+void add_moving(const Scene& scene, Example& example) {
+  MovingOptions options;
+  options.width = 400;
+  options.height = 250;
+  options.frames_per_s = 12.5;
+  options.quality = 45.0f;
+  const Span span = liveliest_span(*scene.truth, kMoving_s);
+  example.moving = moving_picture(scene, span, options);
+  example.moving_caption = fmt::format("{:.1f} s of it at half speed, where it turns most",
+                                       1e-9 * static_cast<double>(span.end_ns - span.begin_ns));
+}
+
 void add_pictures(const scenarios::RunResult& run, const RunPaths& paths, Example& example) {
   const Scene scene{&run.built.value(), &run.recording.sensors, &run.recording.truth, paths.paths};
   ExamplePicture way{"scene",
@@ -74,6 +90,7 @@ void add_pictures(const scenarios::RunResult& run, const RunPaths& paths, Exampl
                               "The same motion close by, left to right and down.",
                               {},
                               sim::png_bytes(film_picture(scene, 8, 4, 400, 300))});
+  add_moving(scene, example);
   add_maps(run, example);
 }
 

@@ -79,6 +79,17 @@ std::string png_address(std::span<const std::uint8_t> png) {
   return "data:image/png;base64," + base64(png);
 }
 
+std::string webp_address(std::span<const std::uint8_t> webp) {
+  return "data:image/webp;base64," + base64(webp);
+}
+
+std::string table_head(const std::vector<std::string>& columns, std::size_t numbers_from) {
+  std::string out = "<div class=\"scroll\"><table><thead><tr>";
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    out += (i < numbers_from ? "<th>" : "<th class=\"number\">") + escaped(columns[i]) + "</th>";
+  return out + "</tr></thead><tbody>\n";
+}
+
 std::string cell(const std::string& text, const std::string& css_class) {
   return (css_class.empty() ? "<td>" : "<td class=\"" + escaped(css_class) + "\">") + escaped(text) + "</td>";
 }

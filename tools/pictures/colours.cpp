@@ -7,9 +7,11 @@ namespace tumble::tools {
 
 namespace {
 
-// chosen to stay apart for colour-blind readers (Okabe and Ito) on grass, stone and floor
-constexpr std::array<const char*, 6> kMethodColours = {"#e69f00", "#cc79a7", "#0072b2",
-                                                       "#d55e00", "#56b4e9", "#f0e442"};
+// Any two of these and the truth's lie at least 32 apart in CIELAB for normal, protan and deutan eyes, so that light
+// and dark tell apart what hue does not; none is so light or dark that it is lost on a light or a dark page. Found by
+// exchange, one colour at a time, over hues from amber to blue (palette_test.cpp holds the distances).
+constexpr std::array<const char*, kMethodColours> kColours = {"#ffbb22", "#7700ff", "#44ddff",
+                                                              "#bb0000", "#3355aa", "#cccc77"};
 constexpr const char* kTruthColour = "#009e73";
 
 }  // namespace
@@ -24,7 +26,7 @@ Colour truth_colour() {
   return {kTruthColour};
 }
 Colour method_colour(std::size_t index) {
-  return {kMethodColours[index % kMethodColours.size()]};
+  return {kColours[index % kColours.size()]};
 }
 
 }  // namespace tumble::tools

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 
+/// The one palette of plots, pictures and replays.
 namespace tumble::tools {
 
 /// A colour as "#rrggbb", the same in plots and pictures.
@@ -11,7 +12,11 @@ struct Colour {
   const char* hex;
   std::array<float, 4> rgba() const;
 };
-/// Of the truth, and of the index-th method of a picture.
+
+/// So many methods have a colour of their own; further ones begin anew.
+inline constexpr std::size_t kMethodColours = 6;
+
+/// Of the truth, and of the index-th method of a picture. They stay apart for colour-blind readers too.
 Colour truth_colour();
 Colour method_colour(std::size_t index);
 

@@ -35,17 +35,16 @@ std::string certificate_summary(const scenarios::Certificate& certificate) {
 
 std::string certificates_html(std::span<const scenarios::Certificate> certificates) {
   std::string out =
-      "<h2 id=\"certificate\">Certificate</h2>\n<p>How far the simulation behind these scores is from physics and "
+      "<p>How far the simulation behind these scores is from physics and "
       "from its data sheets, measured on the build that made them (<code>tumble certify</code>).</p>\n";
   if (certificates.empty()) out += "<p class=\"warning\">These results hold no certificate.</p>\n";
   for (const scenarios::Certificate& certificate : certificates) {
-    out += "<p>Build <code>" + escaped(certificate.build) + "</code>: " + escaped(certificate_summary(certificate)) +
-           ".</p>\n";
-    out +=
-        "<div class=\"scroll\"><table><thead><tr><th>figure</th><th>on</th><th class=\"number\">value</th>"
-        "<th class=\"number\">bound</th><th>unit</th><th>verdict</th><th>held to</th></tr></thead><tbody>\n";
+    out += "<details><summary>Build <code>" + escaped(certificate.build) +
+           "</code>: " + escaped(certificate_summary(certificate)) + "</summary>\n" +
+           "<div class=\"scroll\"><table><thead><tr><th>figure</th><th>on</th><th class=\"number\">value</th>"
+           "<th class=\"number\">bound</th><th>unit</th><th>verdict</th><th>held to</th></tr></thead><tbody>\n";
     for (const scenarios::CertificateEntry& entry : certificate.entries) out += row_html(entry);
-    out += "</tbody></table></div>\n";
+    out += "</tbody></table></div></details>\n";
   }
   return out;
 }

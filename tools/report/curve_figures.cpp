@@ -25,12 +25,9 @@ std::string with_unit(const std::string& name, const std::string& unit) {
   return unit.empty() ? name : name + " [" + unit + "]";
 }
 
-/// Five significant digits; null where there is no number, which leaves a gap.
+/// Null where there is no number, which leaves a gap.
 json shown(double value) {
-  if (!std::isfinite(value)) return json();
-  if (value == 0.0) return json(0.0);
-  const double scale = std::pow(10.0, 4 - static_cast<int>(std::floor(std::log10(std::abs(value)))));
-  return json(std::round(value * scale) / scale);
+  return std::isfinite(value) ? json(five_digits(value)) : json();
 }
 
 std::string transparent(const char* hex) {
@@ -40,7 +37,8 @@ std::string transparent(const char* hex) {
 
 /// What every trace of a method has in common: one entry of the legend switches all of them.
 json trace(const std::string& method, bool in_legend) {
-  return {{"type", "scatter"}, {"name", method}, {"legendgroup", method}, {"showlegend", in_legend}};
+  return {
+      {"type", "scatter"}, {"name", plot_text(method)}, {"legendgroup", plot_text(method)}, {"showlegend", in_legend}};
 }
 
 /// The band between the quartiles, a polygon for each run of places where both are finite.
@@ -128,7 +126,7 @@ json x_axis(const Curve& curve, const std::string& title) {
   axis["ticktext"] = json::array();
   for (const auto& [x, label] : labels) {
     axis["tickvals"].push_back(x);
-    axis["ticktext"].push_back(label);
+    axis["ticktext"].push_back(plot_text(label));
   }
   return axis;
 }
@@ -187,7 +185,7 @@ Figure curve_figure(const Curve& curve) {
 std::string curves_html(std::span<const Curve> curves, std::vector<Figure>& figures) {
   if (curves.empty()) return "";
   std::string out =
-      "<h2 id=\"curves\">Curves</h2>\n<p>Line: median over the draws; band: between the quartiles; dotted: the worst "
+      "<h3>Curves</h3>\n<p>Line: median over the draws; band: between the quartiles; dotted: the worst "
       "5 %. A run that failed ranks as the worst of all, so a line ends where half of the runs fail. Below: the share "
       "of runs that did not end <i>ok</i> or whose map failed, with its 95 % Clopper–Pearson interval.</p>\n"
       "<div class=\"pair\">";

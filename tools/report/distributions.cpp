@@ -60,9 +60,9 @@ std::vector<Figure> distribution_figures(std::span<const Spread> spreads) {
     quantity = spread.quantity;
     Figure& figure = figures.back();
     json x = json::array();
-    for (const double value : spread.values) x.push_back(rounded(value * spread.factor));
+    for (const double value : at_most(spread.values, kBoxPoints)) x.push_back(rounded(value * spread.factor));
     figure.data.push_back({{"type", "histogram"},
-                           {"name", spread.scenario},
+                           {"name", plot_text(spread.scenario)},
                            {"histnorm", "percent"},
                            {"opacity", 0.6},
                            {"nbinsx", 30},
@@ -75,10 +75,11 @@ std::vector<Figure> distribution_figures(std::span<const Spread> spreads) {
 std::string distributions_html(std::span<const Spread> spreads, std::span<const Figure> figures) {
   if (spreads.empty()) return "";
   std::string out =
-      "<h2 id=\"distributions\">Distributions</h2>\n<p>What the simulated motions were like, from the truth alone, "
+      "<p>What the simulated motions were like, from the truth alone, "
       "beside " +
       html::escaped(scenarios::kPublishedMotion) +
       ". In brackets the middle 90 % of the draws; of a share of draws or of all samples its 95 % interval.</p>\n"
+      "<details><summary>Table of the motions</summary>"
       "<div class=\"scroll\"><table><thead><tr><th>quantity</th><th>scenario</th><th class=\"number\">draws</th>"
       "<th class=\"number\">median</th><th>unit</th><th>published, for the rig</th></tr></thead><tbody>\n";
   for (const Spread& spread : spreads) {
@@ -89,12 +90,12 @@ std::string distributions_html(std::span<const Spread> spreads, std::span<const 
                       "number") +
            html::cell(spread.unit, "unit") + html::cell(spread.published) + "</tr>\n";
   }
-  out += "</tbody></table></div>\n<div class=\"pair\">";
+  out += "</tbody></table></div></details>\n<details><summary>Histograms</summary><div class=\"pair\">";
   for (const Figure& figure : figures) {
     out += "<figure><div class=\"plot\" id=\"" + html::escaped(figure.id) + "\"></div><figcaption>" +
            html::escaped(figure.caption) + "</figcaption></figure>\n";
   }
-  return out + "</div>\n";
+  return out + "</div></details>\n";
 }
 
 Table distribution_table(std::span<const Spread> spreads) {

@@ -1,16 +1,21 @@
-// Draws the figures of the page in the page's own colours, and again when the reader changes between light and dark.
+// Draws the figures of the page in the page's own colours as far as they are seen, and again when the reader changes between
+// light and dark, unfolds a part, or prints.
 (function () {
   'use strict';
-  const figures = JSON.parse(document.getElementById('figures').textContent);
+  const figures = new Map(JSON.parse(document.getElementById('figures').textContent).map((figure) => [figure.id, figure]));
   const dark = window.matchMedia('(prefers-color-scheme: dark)');
   const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  const drawn = new Set();
 
-  function themed(layout) {
+  function themed(layout, width) {
     const axis = { gridcolor: colour('--rule'), linecolor: colour('--rule'), zerolinecolor: colour('--rule'), automargin: true };
+    const narrow = width < 520;
     const base = {
-      paper_bgcolor: 'rgba(0,0,0,0)', plot_bgcolor: 'rgba(0,0,0,0)', margin: { l: 64, r: 20, t: 18, b: 48 },
-      font: { family: getComputedStyle(document.body).fontFamily, size: 13, color: colour('--ink') },
-      legend: { orientation: 'h', y: 1.0, yanchor: 'bottom', x: 0 },
+      paper_bgcolor: 'rgba(0,0,0,0)', plot_bgcolor: 'rgba(0,0,0,0)',
+      margin: narrow ? { l: 48, r: 8, t: 12, b: 40 } : { l: 64, r: 20, t: 18, b: 48 },
+      font: { family: getComputedStyle(document.body).fontFamily, size: narrow ? 11 : 13, color: colour('--ink') },
+      legend: narrow ? { orientation: 'h', y: -0.25, yanchor: 'top', x: 0 } : { orientation: 'h', y: 1.0, yanchor: 'bottom', x: 0 },
+      dragmode: narrow ? false : 'zoom',
     };
     const axes = { xaxis: {}, yaxis: {} };
     for (const name of Object.keys(layout)) if (/^[xy]axis/.test(name)) axes[name] = layout[name];
@@ -18,11 +23,47 @@
     return Object.assign(base, layout, axes);
   }
 
-  function draw() {
-    for (const figure of figures) {
-      Plotly.react(figure.id, figure.data, themed(figure.layout), { responsive: true, displaylogo: false, displayModeBar: false });
+  function draw(element) {
+    const figure = figures.get(element.id);
+    drawn.add(element);
+    const layout = Object.assign(themed(figure.layout, element.clientWidth), { width: element.clientWidth, height: element.clientHeight });
+    Plotly.react(element, figure.data, layout, { displaylogo: false, displayModeBar: false });
+    document.documentElement.dataset.drawn = String(drawn.size);
+  }
+
+  const plots = [...document.querySelectorAll('.plot')].filter((element) => figures.has(element.id));
+  const visible = (element) => element.clientWidth > 0;
+  const again = () => [...drawn].filter(visible).forEach(draw);
+
+  // a page of many figures is read from its top: each is drawn shortly before it is seen
+  const watcher = new IntersectionObserver((entries) => {
+    for (const entry of entries) if (entry.isIntersecting && !drawn.has(entry.target)) draw(entry.target);
+  }, { rootMargin: '600px' });
+  plots.forEach((element) => watcher.observe(element));
+  dark.addEventListener('change', again);
+  let waiting = 0;
+  window.addEventListener('resize', () => { clearTimeout(waiting); waiting = setTimeout(again, 120); });
+
+  // what an address leads into is unfolded, and what is folded cannot be read on paper
+  function unfold() {
+    let at = location.hash.length > 1 ? document.getElementById(decodeURIComponent(location.hash.slice(1))) : null;
+    for (const target = at; at; at = at.parentElement) {
+      if (at.tagName === 'DETAILS' && !at.open) { at.open = true; target.scrollIntoView(); }
     }
   }
-  draw();
-  dark.addEventListener('change', draw);
+  window.addEventListener('hashchange', unfold);
+  unfold();
+  let folded = [];
+  window.addEventListener('beforeprint', () => {
+    folded = [...document.querySelectorAll('details:not([open])')];
+    folded.forEach((part) => { part.open = true; });
+    document.documentElement.classList.add('paper');
+    plots.forEach(draw);
+  });
+  window.addEventListener('afterprint', () => {
+    folded.forEach((part) => { part.open = false; });
+    document.documentElement.classList.remove('paper');
+    again();
+  });
+  document.documentElement.dataset.state = 'drawn';
 })();

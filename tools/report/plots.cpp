@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/report/plots.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "tools/pictures/colours.hpp"
-
 #include "scenarios/scoring/cost.hpp"
+#include "tools/pictures/colours.hpp"
 
 namespace tumble::tools {
 
@@ -21,20 +22,13 @@ using scenarios::MetricSummary;
 using scenarios::Section;
 using scenarios::Summary;
 
-/// Five significant digits are more than a plot can show, and keep the page small.
-double rounded(double value) {
-  if (value == 0.0 || !std::isfinite(value)) return value;
-  const double scale = std::pow(10.0, 4 - static_cast<int>(std::floor(std::log10(std::abs(value)))));
-  return std::round(value * scale) / scale;
-}
-
 json axis(const std::string& title) {
   return {{"title", {{"text", title}}}};
 }
 
 json box(const std::string& name, const char* colour) {
   return {{"type", "box"},
-          {"name", name},
+          {"name", plot_text(name)},
           {"boxpoints", "all"},
           {"jitter", 0.5},
           {"pointpos", 0},
@@ -47,9 +41,9 @@ json box(const std::string& name, const char* colour) {
 }
 
 void add_values(json& trace, const std::string& group, const MetricSummary& metric, double factor) {
-  for (const double value : metric.values) {
-    trace["x"].push_back(group);
-    trace["y"].push_back(rounded(value * factor));
+  for (const double value : at_most(metric.values, kBoxPoints)) {
+    trace["x"].push_back(plot_text(group));
+    trace["y"].push_back(five_digits(value * factor));
   }
 }
 
@@ -88,7 +82,7 @@ class Boxes {
     for (auto& [name, trace] : traces_) figure.data.push_back(std::move(trace));
     figure.layout = {{"boxmode", "group"},
                      {"xaxis", {{"type", "category"}}},
-                     {"yaxis", axis(metric_ + (style_.unit.empty() ? "" : " [" + style_.unit + "]"))}};
+                     {"yaxis", axis(plot_text(metric_) + (style_.unit.empty() ? "" : " [" + style_.unit + "]"))}};
     if (wants_log(figure.data)) figure.layout["yaxis"]["type"] = "log";
   }
 
@@ -97,6 +91,17 @@ class Boxes {
   MetricStyle style_;
   std::vector<std::pair<std::string, json>> traces_;
 };
+
+bool holds_more_than_shown(const Summary& summary, Kind kind, const std::string& metric) {
+  for (const Section& section : summary.sections) {
+    if (section.kind != kind) continue;
+    for (const MethodSummary& method : section.methods) {
+      const MetricSummary* values = method.find(metric);
+      if (values != nullptr && values->values.size() > kBoxPoints) return true;
+    }
+  }
+  return false;
+}
 
 /// A span of x over the whole height, behind the lines.
 json shaded(double begin, double end) {
@@ -121,6 +126,26 @@ json coordinates(const std::vector<double>& values) {
 
 }  // namespace
 
+double five_digits(double value) {
+  if (value == 0.0 || !std::isfinite(value)) return value;
+  const double scale = std::pow(10.0, 4 - static_cast<int>(std::floor(std::log10(std::abs(value)))));
+  return std::round(value * scale) / scale;
+}
+
+std::string plot_text(const std::string& text) {
+  std::string out;
+  for (const char c : text) out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c);
+  return out;
+}
+
+std::vector<double> at_most(std::vector<double> values, std::size_t most) {
+  if (values.size() <= most) return values;
+  std::sort(values.begin(), values.end());
+  std::vector<double> out;
+  for (std::size_t i = 0; i < most; ++i) out.push_back(values[i * (values.size() - 1) / (most - 1)]);
+  return out;
+}
+
 Colour colour_of(int colour) {
   return colour < 0 ? truth_colour() : method_colour(static_cast<std::size_t>(colour));
 }
@@ -129,6 +154,8 @@ Figure box_figure(const Summary& summary, Kind kind, const std::string& metric, 
   Figure figure;
   figure.id = std::string(to_string(kind)) + "-" + metric;
   figure.caption = caption;
+  if (holds_more_than_shown(summary, kind, metric))
+    figure.caption += fmt::format(" Of a box with more draws {} points, at equal steps of their rank.", kBoxPoints);
   Boxes boxes(metric);
   for (const Section& section : summary.sections) {
     if (section.kind == kind) boxes.add(section, "");
@@ -141,7 +168,8 @@ Figure box_figure(const Summary& summary, Kind kind, const std::string& metric, 
 Figure cost_figure(const Summary& summary) {
   Figure figure;
   figure.id = "cost";
-  figure.caption = "CPU time of one estimate. One point per draw.";
+  figure.caption = "CPU time of one estimate. One point per draw, of a box with more than " +
+                   std::to_string(kBoxPoints) + " so many.";
   Boxes boxes(scenarios::estimate_cost().name);
   for (const Section& section : summary.sections) boxes.add(section, std::string(to_string(section.kind)) + "/");
   boxes.move_into(figure);
@@ -156,7 +184,7 @@ Figure figure_of(const Plot& plot, const std::string& id) {
     json trace = {
         {"type", "scatter"},
         {"mode", "lines"},
-        {"name", line.name},
+        {"name", plot_text(line.name)},
         {"line",
          {{"color", colour_of(line.colour).hex}, {"width", line.width}, {"dash", line.dotted ? "dot" : "solid"}}},
         {"x", coordinates(line.x)},
@@ -164,7 +192,7 @@ Figure figure_of(const Plot& plot, const std::string& id) {
     if (line.hidden) trace["visible"] = "legendonly";
     figure.data.push_back(std::move(trace));
   }
-  figure.layout = {{"xaxis", axis(plot.x_title)}, {"yaxis", axis(plot.y_title)}};
+  figure.layout = {{"xaxis", axis(plot_text(plot.x_title))}, {"yaxis", axis(plot_text(plot.y_title))}};
   if (plot.equal_scales) figure.layout["yaxis"]["scaleanchor"] = "x";
   if (plot.from_zero) figure.layout["yaxis"]["rangemode"] = "tozero";
   if (plot.over_time) figure.layout["hovermode"] = "x unified";

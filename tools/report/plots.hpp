@@ -20,8 +20,21 @@ struct Figure {
   bool empty() const { return data.empty(); }
 };
 
-/// Every draw as a point beside a box of quartiles: one box per method and scenario. Logarithmic where values are
-/// positive and span more than a decade.
+/// So many draws of a box are drawn as points, however many there are.
+inline constexpr std::size_t kBoxPoints = 1000;
+
+/// Five significant digits are more than a plot can show, and keep the page small.
+double five_digits(double value);
+
+/// A text as Plotly shows it, which reads tags and three entities in it: & < > by their entities.
+std::string plot_text(const std::string& text);
+
+/// Of more than `most` (2 or more) values the smallest, the largest and those at equal steps of rank between, rising:
+/// their quantiles are nearly those of all. O(n log n).
+std::vector<double> at_most(std::vector<double> values, std::size_t most);
+
+/// Every draw as a point beside a box of quartiles: one box per method and scenario, at most `kBoxPoints` in a box.
+/// Logarithmic where values are positive and span more than a decade.
 Figure box_figure(const scenarios::Summary& summary, scenarios::Kind kind, const std::string& metric,
                   const std::string& caption);
 

@@ -8,7 +8,9 @@
 #include <system_error>
 
 #include "scenarios/provenance/build_id.hpp"
+#include "scenarios/summary/comparison.hpp"
 #include "scenarios/summary/example_choice.hpp"
+#include "scenarios/summary/motion_map.hpp"
 #include "scenarios/sweep/sweep_notes.hpp"
 #include "tools/html/html.hpp"
 #include "tools/report/certificate_html.hpp"
@@ -20,11 +22,10 @@ namespace {
 using scenarios::Kind;
 using scenarios::Summary;
 
-std::vector<std::pair<std::string, std::string>> facts(const scenarios::Results& results, const Summary& summary,
-                                                       const ReportOptions& options) {
+std::vector<Fact> versions(const scenarios::Results& results, const Summary& summary, const ReportOptions& options) {
   std::int64_t draws = 0;
   for (const auto& [scenario, count] : summary.draws) draws += count;
-  std::vector<std::pair<std::string, std::string>> out;
+  std::vector<Fact> out;
   const auto add = [&](const std::string& name, const std::string& value) {
     if (!value.empty()) out.emplace_back(name, value);
   };
@@ -33,14 +34,38 @@ std::vector<std::pair<std::string, std::string>> facts(const scenarios::Results&
   add("suite", results.note("suite"));
   add("scenarios", names);
   add("draws", std::to_string(draws));
+  add("results of build", results.note("build"));
+  add("models and scenarios", results.note("data"));
+  for (const auto& [key, value] : results.notes()) {
+    if (scenarios::is_method_note(key)) add(key, value);
+  }
+  add("page by tumble", options.version + ", build " + scenarios::build_id());
   add("made at", options.made_at);
-  add("tumble", options.version);
-  add("build", results.note("build"));
   return out;
 }
 
-/// The headline metrics of each kind but verdicts, whose share is in the table; and what the estimates cost.
-std::vector<Figure> figures_of_all_draws(const Summary& summary) {
+/// Whether a sweep by this build, over the data that are found here, would go on with them.
+bool are_of_here(const scenarios::Results& results, const ReportOptions& options) {
+  const std::string made_by = results.note("build"), made_of = results.note("data");
+  return (made_by.empty() || made_by == scenarios::build_id()) &&
+         (made_of.empty() || options.data.empty() || made_of == options.data);
+}
+
+std::vector<Fact> commands(const scenarios::Results& results, const ReportOptions& options) {
+  const std::string database = scenarios::shell_word(options.database.string());
+  std::vector<Fact> out;
+  const std::string sweep = results.note(scenarios::kCommandNote);
+  if (!sweep.empty() && are_of_here(results, options))
+    out.emplace_back("The results", "tumble sweep " + sweep + " --db " + database);
+  if (!options.page.empty())
+    out.emplace_back("This page", "tumble report " + database + " -o " + scenarios::shell_word(options.page.string()));
+  out.emplace_back("Paired differences, every metric", "tumble compare " + database);
+  out.emplace_back("What breaks a method, every number", "tumble sensitivity " + database + " --all");
+  return out;
+}
+
+/// The headline metrics of each kind but verdicts, whose share is in the table.
+std::vector<Figure> errors_of_all_draws(const Summary& summary) {
   std::vector<Figure> figures;
   for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
     for (const std::string& name : scenarios::headline_metrics(kind)) {
@@ -49,7 +74,6 @@ std::vector<Figure> figures_of_all_draws(const Summary& summary) {
         figures.push_back(box_figure(summary, kind, name, fmt::format("{}: {}.", name, info.doc)));
     }
   }
-  figures.push_back(cost_figure(summary));
   std::erase_if(figures, [](const Figure& figure) { return figure.empty(); });
   return figures;
 }
@@ -116,23 +140,31 @@ void add_examples(const scenarios::Results& results, const ReportOptions& option
 
 }  // namespace
 
-PageContent report_content(const scenarios::Results& results, const Summary& summary, const ReportOptions& options) {
+PageContent report_content(ReportInput input, const ReportOptions& options) {
+  const scenarios::Results& results = *input.results;
+  const Summary& summary = *input.summary;
   PageContent content;
   const std::string suite = results.note("suite");
   content.title = suite.empty() ? "tumble: report" : "tumble: suite " + suite;
-  content.facts = facts(results, summary, options);
   content.summary = summary;
-  content.figures = figures_of_all_draws(summary);
-  const std::vector<scenarios::DrawValues> draws = results.draws();
-  content.motions = scenarios::motion_spreads(draws);
-  content.curves = scenarios::find_curves(results, draws);
+  content.comparison = scenarios::compare(summary, {});
+  content.motion_map = scenarios::motion_map(input.draws);
+  content.motions = std::move(input.motions);
+  content.errors = errors_of_all_draws(summary);
+  content.cost = cost_figure(summary);
+  content.curves = std::move(input.curves);
+  content.failed = failed_draws(results, summary);
   content.rejected = results.rejected();
+  content.sensitivity = std::move(input.sensitivity);
+  content.sensitivity_note = std::move(input.sensitivity_note);
+  content.versions = versions(results, summary, options);
+  content.commands = commands(results, options);
   content.certificates = results.certificates();
   const bool recorded = results.note("source") == scenarios::kRecordingsSource;
   if (content.certificates.empty() && !recorded)
     content.warnings.push_back("These results hold no certificate of their build.");
   for (const scenarios::Certificate& certificate : content.certificates) {
-    content.facts.emplace_back("certificate", certificate_summary(certificate));
+    content.versions.emplace_back("certificate", certificate_summary(certificate));
     if (!certificate.passes()) content.warnings.push_back("The certificate of build " + certificate.build + " fails.");
   }
   if (!recorded && !summary.sections.empty()) add_examples(results, options, content);

@@ -12,7 +12,6 @@ namespace tumble::tools {
 
 namespace {
 
-using scenarios::Kind;
 using scenarios::MethodSummary;
 using scenarios::metric_info;
 using scenarios::metric_style;
@@ -21,25 +20,25 @@ using scenarios::MetricStyle;
 using scenarios::MetricSummary;
 using scenarios::Section;
 using scenarios::Sense;
-using scenarios::Summary;
 
 std::string plain(double value) {
   if (std::isnan(value)) return "–";
   if (std::isinf(value)) return value > 0.0 ? "∞" : "−∞";
   // no exponents between a thousandth and a million: they are for people
+  if (value < 0.0) return "−" + plain(-value);
   if (value != 0.0 && (std::abs(value) < 1e-3 || std::abs(value) >= 1e6)) return fmt::format("{:.2e}", value);
   const int digits = value == 0.0 ? 0 : std::max(0, 2 - static_cast<int>(std::floor(std::log10(std::abs(value)))));
   return fmt::format("{:.{}f}", value, digits);
 }
 
 /// The best median among the methods that can be had on a real robot.
-const MethodSummary* best_method(const Section& section, const std::string& metric, bool with_baseline) {
+const MethodSummary* best_method(const Section& section, const std::string& metric) {
   const MethodSummary* best = nullptr;
   const MetricInfo& info = metric_info(metric);
   if (info.sense == Sense::none) return best;
   for (const MethodSummary& method : section.methods) {
     const MetricSummary* own = method.find(metric);
-    if (own == nullptr || method.needs_truth || (!with_baseline && method.method == section.baseline)) continue;
+    if (own == nullptr || method.needs_truth) continue;
     const double value = own->centre.value;
     if (best == nullptr || is_better(info, value, best->find(metric)->centre.value)) best = &method;
   }
@@ -76,37 +75,6 @@ std::string styled_interval(const std::string& metric, const scenarios::Interval
   return "[" + styled_value(metric, interval.low, false) + ", " + styled_value(metric, interval.high, false) + "]";
 }
 
-std::vector<Headline> headlines(const Summary& summary) {
-  std::vector<Headline> out;
-  for (const Section& section : summary.sections) {
-    const std::string metric = scenarios::headline_metrics(section.kind).front();
-    const MethodSummary* base = section.find(section.baseline);
-    const MetricSummary* from = base->find(metric);
-    if (section.kind == Kind::attitude || from == nullptr) continue;
-    Headline headline;
-    headline.place = section.scenario + " · " + to_string(section.kind);
-    const MethodSummary* best = best_method(section, metric, false);
-    if (best == nullptr) {
-      headline.value = styled_value(metric, from->centre.value, true);
-      headline.detail = fmt::format("{}: median of {} over {} draws", base->method, metric, from->values.size());
-    } else {
-      const MetricSummary& to = *best->find(metric);
-      // a median is infinite once half of the runs fail: there is no change to state then
-      const double change = 100.0 * (to.centre.value / from->centre.value - 1.0);
-      const bool comparable = std::isfinite(change) && std::isfinite(from->centre.value);
-      headline.value = comparable ? fmt::format("{}{} %", change < 0.0 ? "−" : "+", plain(std::abs(change)))
-                                  : styled_value(metric, to.centre.value, true);
-      headline.worse = is_better(metric_info(metric), from->centre.value, to.centre.value);
-      headline.detail =
-          fmt::format("{}: {} beside {} with {}; better in {} of {} draws ({})", best->method,
-                      styled_value(metric, to.centre.value, true), styled_value(metric, from->centre.value, true),
-                      base->method, to.wins.count, to.wins.pairs, metric);
-    }
-    out.push_back(std::move(headline));
-  }
-  return out;
-}
-
 std::string score_table_html(const Section& section) {
   std::string out = "<div class=\"scroll\"><table><thead><tr><th>metric</th><th>unit</th>";
   for (const MethodSummary& method : section.methods) {
@@ -119,7 +87,7 @@ std::string score_table_html(const Section& section) {
   }
   out += "</tr>";
   for (const std::string& name : section.metrics) {
-    const MethodSummary* best = best_method(section, name, true);
+    const MethodSummary* best = best_method(section, name);
     out += "<tr><td title=\"" + html::escaped(metric_info(name).doc) + "\"><code>" + html::escaped(name) +
            "</code></td>" + html::cell(metric_style(name).unit, "unit");
     for (const MethodSummary& method : section.methods) out += metric_cell(name, method.find(name), &method == best);

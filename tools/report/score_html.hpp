@@ -14,15 +14,6 @@ std::string styled_value(const std::string& metric, double value_si, bool with_u
 /// "0.42 [0.31, 0.60]"; "[-]" for an interval that too few draws leave open.
 std::string styled_interval(const std::string& metric, const scenarios::Interval& interval);
 
-/// One headline of a report: what the best method that can be had reaches beside the baseline.
-struct Headline {
-  std::string place;   ///< "hill, rate"
-  std::string value;   ///< "-83.4 %" or the value itself when there is nothing to compare with
-  bool worse = false;  ///< the method does worse than the baseline
-  std::string detail;  ///< one sentence with both values and the paired count
-};
-std::vector<Headline> headlines(const scenarios::Summary& summary);
-
 /// The table of one section: a row per metric, a column per method with median, interval and paired wins; failures
 /// first.
 std::string score_table_html(const scenarios::Section& section);

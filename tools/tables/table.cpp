@@ -59,6 +59,18 @@ std::string number_text(double value) {
   return std::isnan(value) ? "-" : fmt::format("{:.4g}", value);
 }
 
+std::string chance_text(double chance) {
+  if (std::isnan(chance)) return "-";
+  return chance < 1e-4 ? "< 0.0001" : fmt::format("{:.4f}", chance);
+}
+
+std::string more_draws_text(double needed, std::int64_t draws, bool open) {
+  if (!open) return "";
+  if (std::isinf(needed)) return "no number";
+  const double more = std::max(0.0, needed - static_cast<double>(draws));
+  return more < 1e9 ? fmt::format("{:.0f}", more) : "over 1e9";
+}
+
 std::size_t character_count(const std::string& text) {
   // continuation bytes of UTF-8 begin with the bits 10
   return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));

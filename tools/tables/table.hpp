@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,13 @@ class Table {
 
 /// A number with four significant digits; "-" for one that is not finite.
 std::string number_text(double value);
+
+/// The chance of a test with four decimals; "-" where there is none (NaN).
+std::string chance_text(double chance);
+
+/// Draws that a test wants beyond those there are, where it is still open: "" where not, "no number" where none would
+/// do.
+std::string more_draws_text(double needed, std::int64_t draws, bool open);
 
 /// Number of characters of a UTF-8 string (code points; combining marks are not accounted for).
 std::size_t character_count(const std::string& text);

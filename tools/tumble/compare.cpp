@@ -23,6 +23,7 @@ using scenarios::BadInput;
 using scenarios::Comparison;
 using scenarios::Contest;
 using scenarios::FailureComparison;
+using scenarios::Finding;
 using scenarios::MetricComparison;
 
 struct Options {
@@ -49,19 +50,6 @@ scenarios::ComparisonOptions read(const Options& options) {
   out.risk = options.risk;
   out.power = options.power;
   return out;
-}
-
-std::string chance_text(double chance) {
-  if (std::isnan(chance)) return "-";
-  return chance < 1e-4 ? "< 0.0001" : fmt::format("{:.4f}", chance);
-}
-
-/// Draws that are wanted beyond those there are.
-std::string more_text(double needed, std::int64_t pairs, scenarios::Finding finding) {
-  if (finding != scenarios::Finding::undecided) return "";
-  if (std::isinf(needed)) return "no number";
-  const double more = std::max(0.0, needed - static_cast<double>(pairs));
-  return more < 1e9 ? fmt::format("{:.0f}", more) : "over 1e9";
 }
 
 std::string interval_text(const scenarios::Interval& interval) {
@@ -102,7 +90,7 @@ std::vector<Table> metric_tables(const std::vector<MetricComparison>& rows, bool
                                       chance_text(row.rank_chance),
                                       chance_text(row.corrected),
                                       to_string(row.finding),
-                                      more_text(row.pairs_needed, row.pairs, row.finding)};
+                                      more_draws_text(row.pairs_needed, row.pairs, row.finding == Finding::undecided)};
     if (margin) {
       cells.push_back(chance_text(row.not_inferior_chance));
       cells.push_back(chance_text(row.not_inferior_corrected));
@@ -132,7 +120,8 @@ std::vector<Table> failure_tables(const std::vector<FailureComparison>& rows) {
     tables.back().add_row({row.what, row.contest.method, std::to_string(row.pairs), share_text(row.share),
                            share_text(row.against_share), std::to_string(row.only_method),
                            std::to_string(row.only_against), chance_text(row.chance), chance_text(row.corrected),
-                           to_string(row.finding), more_text(row.pairs_needed, row.pairs, row.finding)});
+                           to_string(row.finding),
+                           more_draws_text(row.pairs_needed, row.pairs, row.finding == Finding::undecided)});
   }
   return tables;
 }

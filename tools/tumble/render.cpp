@@ -5,12 +5,15 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/estimate_file.hpp"
 #include "scenarios/recordings/recording_file.hpp"
+#include "scenarios/recordings/replace_file.hpp"
 #include "tools/pictures/map_pictures.hpp"
+#include "tools/pictures/moving.hpp"
 #include "tools/pictures/pictures.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/recording_info.hpp"
@@ -25,9 +28,10 @@ using scenarios::BadInput;
 struct Options {
   std::string what, seed;
   std::vector<std::filesystem::path> estimates;
-  std::filesystem::path png;
+  std::filesystem::path output;
   int film = 0;
-  bool map = false;
+  bool map = false, video = false;
+  double fps = 20.0, speed = 0.5;
   int columns = 4;
   int robots = 8;
   int width = 1280, height = 720;
@@ -104,14 +108,53 @@ int render_maps(const Session& session, const Options& options, const scenarios:
     rows.push_back(
         {{"map", map.name}, {"points", map.points_W_m.size()}, {"within_0_10", fine}, {"within_0_25", coarse}});
   }
-  save_picture(options.png, map_picture(maps, content.truth, options.width, options.height));
-  session.print({table}, {{"picture", options.png.string()}, {"maps", rows}});
+  save_picture(options.output, map_picture(maps, content.truth, options.width, options.height));
+  session.print({table}, {{"picture", options.output.string()}, {"maps", rows}});
   return kDone;
+}
+
+/// Frames of a video: minutes of rendering, and of watching.
+constexpr std::size_t kFramesMax = 3000;
+
+std::vector<std::uint8_t> video_of(const Options& options, const Scene& scene) {
+  MovingOptions moving;
+  moving.width = options.width;
+  moving.height = options.height;
+  moving.frames_per_s = options.fps;
+  moving.speed = options.speed;
+  moving.strobe = options.robots;
+  const Span span = moving_span(*scene.truth, 0.3);
+  const std::size_t frames = frame_count(span, moving);
+  if (frames > kFramesMax)
+    throw BadInput(
+        fmt::format("the video would have {} frames, must be at most {}: take a higher --speed or a lower --fps",
+                    frames, kFramesMax));
+  return moving_picture(scene, span, moving);
+}
+
+void require_video(const Options& options) {
+  if (!is_recording(options.what))
+    throw BadInput("--video shows the way of a recording; '" + options.what + "' is a scenario");
+  if (options.film > 0 || options.map) throw BadInput("--video, --film and --map are three pictures: ask for one");
+  if (options.output.extension() != ".webp")
+    throw BadInput("--video writes a WebP: " + options.output.string() + " must end in .webp");
+}
+
+void write_picture(const Options& options, const Scene& scene) {
+  if (options.video) {
+    const std::vector<std::uint8_t> bytes = video_of(options, scene);
+    scenarios::replace_file(options.output, std::as_bytes(std::span(bytes)));
+  } else if (options.film > 0) {
+    save_picture(options.output, film_picture(scene, options.film, options.columns, options.width, options.height));
+  } else {
+    save_picture(options.output, scene_picture(scene, options.robots, options.width, options.height));
+  }
 }
 
 int render(const Session& session, const Options& options) {
   const scenarios::DataRoot data = session.data();
-  prepare_output(options.png, std::vector<std::filesystem::path>{options.what});
+  if (options.video) require_video(options);
+  prepare_output(options.output, std::vector<std::filesystem::path>{options.what});
   if (is_recording(options.what) && !options.seed.empty()) {
     throw BadInput("--seed is for a scenario; '" + options.what + "' is a recording, of one draw");
   }
@@ -123,12 +166,9 @@ int render(const Session& session, const Options& options) {
     load_draw(data, options, content);
   }
   content.scene.built = &content.built.value();
-  save_picture(options.png,
-               options.film > 0
-                   ? film_picture(content.scene, options.film, options.columns, options.width, options.height)
-                   : scene_picture(content.scene, options.robots, options.width, options.height));
+  write_picture(options, content.scene);
   Table legend("", {"path", "colour"});
-  nlohmann::json document = {{"picture", options.png.string()}, {"paths", nlohmann::json::array()}};
+  nlohmann::json document = {{"picture", options.output.string()}, {"paths", nlohmann::json::array()}};
   const auto add = [&](const std::string& name, Colour colour) {
     legend.add_row({name, colour.hex});
     document["paths"].push_back({{"path", name}, {"colour", colour.hex}});
@@ -146,9 +186,17 @@ Action declare_render(CLI::App& app, const Session& session) {
   app.add_option("WHAT", options->what, "a recording, FILE.h5, or a scenario (with --seed)")->required();
   app.add_option("ESTIMATE", options->estimates, "folders of estimates whose paths are drawn");
   app.add_option("--seed", options->seed, "which draw of the scenario");
-  app.add_option("-o,--output", options->png, "the picture, FILE.png")->required();
+  app.add_option("-o,--output", options->output, "the picture, FILE.png, or with --video FILE.webp")->required();
   app.add_option("--film", options->film, "a film strip of so many frames")->check(CLI::Range(1, 64));
   app.add_flag("--map", options->map, "the estimates' maps side by side, coloured by error from 0 (blue) to 1 m (red)");
+  app.add_flag("--video", options->video,
+               "the motion as a WebP that plays: the camera follows, robots stand along the way");
+  app.add_option("--fps", options->fps, "frames of a video in a second")
+      ->check(within(1.0, 60.0))
+      ->capture_default_str();
+  app.add_option("--speed", options->speed, "of a video: seconds of the motion in one that is watched")
+      ->check(within(0.01, 10.0))
+      ->capture_default_str();
   app.add_option("--columns", options->columns, "frames in a row of the film strip")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <fstream>
@@ -15,9 +16,12 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/provenance/data_digest.hpp"
 #include "scenarios/recordings/replace_file.hpp"
+#include "scenarios/summary/selection.hpp"
+#include "tools/report/badge.hpp"
 #include "tools/report/curves.hpp"
 #include "tools/report/distributions.hpp"
 #include "tools/tumble/arguments.hpp"
+#include "tools/tumble/numbers_of_draws.hpp"
 #include "tools/tumble/verbs.hpp"
 
 namespace tumble::tools {
@@ -33,7 +37,7 @@ using scenarios::Summary;
 using scenarios::Wins;
 
 struct Options {
-  std::filesystem::path database, page;
+  std::filesystem::path database, page, badge;
   bool all = false;
 };
 
@@ -129,9 +133,45 @@ std::string data_found(const Session& session) {
   }
 }
 
-void write_page(const Session& session, const Options& options, const scenarios::Results& results,
-                const Summary& summary) {
-  const std::string plotly = read_text(session.plotly());
+/// Draws of a scenario that a page tells what breaks a method from.
+constexpr std::size_t kSensitivityDraws = 2000;
+
+/// What breaks each method, by one score and by failures, over at most so many draws: what a table of all metrics and
+/// all draws costs is for `tumble sensitivity`.
+void add_sensitivity(const Session& session, const std::string& data_found, ReportInput& input) {
+  const Summary some = scenarios::at_most_draws(*input.summary, kSensitivityDraws);
+  NumbersByScenario numbers;
+  const std::string made_of = input.results->note("data");
+  if (!made_of.empty() && made_of == data_found) {
+    numbers = numbers_of_catalogue(session, session.data(), some);
+  } else {
+    numbers = numbers_of_motions(input.draws, some);
+    input.sensitivity_note =
+        "What the draws were cannot be told here: the results were made of other models and scenarios. Instead, "
+        "against "
+        "what the motions were like. ";
+  }
+  scenarios::SensitivityOptions options;
+  for (const Section& section : input.summary->sections) {
+    const std::vector<std::string> metrics = scenarios::headline_metrics(section.kind);
+    if (!metrics.empty() && std::count(options.metrics.begin(), options.metrics.end(), metrics.front()) == 0 &&
+        std::count(section.metrics.begin(), section.metrics.end(), metrics.front()) > 0)
+      options.metrics.push_back(metrics.front());
+  }
+  input.sensitivity = scenarios::sensitivities(some, numbers, options);
+  if (input.sensitivity.empty())
+    input.sensitivity_note =
+        fmt::format("It takes {} draws of a scenario, and a number in which they differ, to say what breaks a method.",
+                    scenarios::kSensitivityDrawsMin);
+  for (const auto& [scenario, draws] : input.summary->draws) {
+    if (draws <= static_cast<std::int64_t>(kSensitivityDraws)) continue;
+    input.sensitivity_note +=
+        fmt::format("Of a scenario with more draws {}, at equal steps of their seeds.", kSensitivityDraws);
+    break;
+  }
+}
+
+PageContent content_of(const Session& session, const Options& options, ReportInput input) {
   ReportOptions report;
   report.database = options.database;
   report.page = options.page;
@@ -139,17 +179,29 @@ void write_page(const Session& session, const Options& options, const scenarios:
   report.data = data_found(session);
   report.made_at = fmt::format("{:%Y-%m-%d %H:%M} UTC",
                                fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
-  const PageContent content = report_content(results, summary, report);
+  add_sensitivity(session, report.data, input);
+  return report_content(std::move(input), report);
+}
+
+void write_page(const Session& session, const Options& options, ReportInput input) {
+  const std::string plotly = options.page.empty() ? "" : read_text(session.plotly());
+  const PageContent content = content_of(session, options, std::move(input));
+  if (!options.badge.empty()) scenarios::replace_file(options.badge, badge_svg(badge_of(content)));
+  if (options.page.empty()) return;
   for (const std::string& warning : content.warnings) session.note(warning);
   scenarios::replace_file(options.page, page_html(content, plotly));
 }
 
 int report(const Session& session, const Options& options) {
-  if (!options.page.empty()) prepare_output(options.page, std::vector<std::filesystem::path>{options.database});
+  for (const std::filesystem::path& output : {options.page, options.badge}) {
+    if (!output.empty()) prepare_output(output, std::vector<std::filesystem::path>{options.database});
+  }
+  if (!options.badge.empty() && options.badge == options.page)
+    throw scenarios::BadInput("--badge and --output are one file, " + options.page.string());
   const scenarios::Results results(options.database, scenarios::Results::Mode::read_only);
   const Summary summary = scenarios::summarize(results);
   const std::vector<scenarios::DrawValues> draws = results.draws();
-  const std::vector<Curve> curves = scenarios::find_curves(results, draws);
+  std::vector<Curve> curves = scenarios::find_curves(results, draws);
   if (summary.scenarios.empty() && curves.empty())
     throw scenarios::BadInput(options.database.string() + ": holds no outcomes to report");
   std::vector<Table> tables;
@@ -160,7 +212,7 @@ int report(const Session& session, const Options& options) {
   for (const Curve& curve : curves) {
     if (options.all || curve.source == Curve::Source::set) tables.push_back(curve_table(curve));
   }
-  const std::vector<Spread> motions = scenarios::motion_spreads(draws);
+  std::vector<Spread> motions = scenarios::motion_spreads(draws);
   if (!motions.empty()) tables.push_back(distribution_table(motions));
   tables.push_back(draws_table(summary));
   json document = to_json(summary);
@@ -171,7 +223,8 @@ int report(const Session& session, const Options& options) {
     document["certificates"].push_back(json::parse(to_json(certificate)));
   }
   // the page first: that nobody reads standard output costs nobody the page
-  if (!options.page.empty()) write_page(session, options, results, summary);
+  if (!options.page.empty() || !options.badge.empty())
+    write_page(session, options, {&results, &summary, draws, std::move(curves), std::move(motions), {}, {}});
   session.print(tables, document);
   return kDone;
 }
@@ -182,6 +235,7 @@ Action declare_report(CLI::App& app, const Session& session) {
   auto options = std::make_shared<Options>();
   app.add_option("DATABASE", options->database, "a results database, FILE.db")->required();
   app.add_option("-o,--output", options->page, "the page, FILE.html [tables alone]");
+  app.add_option("--badge", options->badge, "a badge, FILE.svg: the suite and how many contests are won");
   app.add_flag("--all", options->all,
                "all metrics in the printed tables, not the headline ones alone, and the curves over bins");
   return [&session, options] { return report(session, *options); };

@@ -11,6 +11,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/provenance/data_digest.hpp"
+#include "tools/tumble/numbers_of_draws.hpp"
 #include "tools/tumble/verbs.hpp"
 
 namespace tumble::tools {
@@ -44,23 +45,10 @@ void require_same_data(const scenarios::Results& results, const scenarios::DataR
 std::map<std::string, scenarios::NumbersOfDraws> numbers_of(const Session& session, const Options& options,
                                                             const scenarios::Results& results,
                                                             const scenarios::Summary& summary) {
-  std::map<std::string, scenarios::NumbersOfDraws> out;
-  if (options.motion) {
-    const std::vector<scenarios::DrawValues> draws = results.draws();
-    for (const std::string& scenario : summary.scenarios) out[scenario] = scenarios::numbers_of_motion(draws, scenario);
-    return out;
-  }
+  if (options.motion) return numbers_of_motions(results.draws(), summary);
   const scenarios::DataRoot data = session.data();
   require_same_data(results, data, options.database);
-  const std::vector<std::string> known = scenarios::scenario_names(data);
-  for (const std::string& scenario : summary.scenarios) {
-    if (std::find(known.begin(), known.end(), scenario) == known.end()) {
-      session.note(scenario + ": no scenario of the catalogue; left out");
-      continue;
-    }
-    out[scenario] = scenarios::numbers_of_draws(summary, scenarios::load_scenario(data, scenario));
-  }
-  return out;
+  return numbers_of_catalogue(session, data, summary);
 }
 
 /// The strongest, and of these the ones that chance does not explain; all where asked for.
@@ -70,10 +58,6 @@ std::vector<Influence> shown(const Sensitivity& row, bool all) {
     if (all || (out.size() < kShown && each.corrected < kRisk)) out.push_back(each);
   }
   return out;
-}
-
-std::string chance_text(double chance) {
-  return chance < 1e-4 ? "< 0.0001" : fmt::format("{:.4f}", chance);
 }
 
 std::vector<Table> tables_of(const std::vector<Sensitivity>& rows, bool all) {

@@ -47,5 +47,36 @@ TEST(ExampleChoice, GoesRoundTheRobotsInTheOrderOfTheSuite) {
   EXPECT_TRUE(choose_examples(summary, suite, 0).empty());
 }
 
+/// A method that failed on these seeds.
+MethodSummary failing(const std::string& name, std::vector<std::uint64_t> seeds, bool needs_truth = false) {
+  MethodSummary method;
+  method.method = name;
+  method.needs_truth = needs_truth;
+  method.seeds = {1, 2, 3, 4};
+  method.not_ok_seeds = std::move(seeds);
+  return method;
+}
+
+TEST(FailureChoice, IsTheDrawOnWhichMostMethodsFailed) {
+  Summary summary;
+  Section hill = section_of("hill", Kind::slam, {1.0, 2.0}), scree = section_of("scree", Kind::slam, {1.0, 2.0});
+  hill.methods = {failing("a", {2, 3}), failing("b", {3})};
+  scree.methods = {failing("a", {1, 4}), failing("b", {4}), failing("c", {4}), failing("d", {1}, true)};
+  summary.sections = {hill, scree};
+  const std::vector<ExampleCandidate> suite = {{"hill", "rig"}, {"scree", "rig"}, {"roll", "sphere"}};
+  using Draws = std::vector<ExampleDraw>;
+  EXPECT_EQ(choose_failures(summary, suite, 2), (Draws{{"scree", 4}, {"hill", 3}})) << "three failed on the one";
+  EXPECT_EQ(choose_failures(summary, suite, 1), (Draws{{"scree", 4}}));
+  EXPECT_TRUE(choose_failures(summary, suite, 0).empty());
+}
+
+TEST(FailureChoice, IsNoneWhereNothingFailedOrOnlyWhatKnowsTheTruth) {
+  Summary summary;
+  Section hill = section_of("hill", Kind::slam, {1.0, 2.0});
+  hill.methods = {failing("a", {}), failing("oracle", {1, 2}, true)};
+  summary.sections = {hill};
+  EXPECT_TRUE(choose_failures(summary, std::vector<ExampleCandidate>{{"hill", "rig"}}, 3).empty());
+}
+
 }  // namespace
 }  // namespace tumble::scenarios

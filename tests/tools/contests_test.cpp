@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/report/contests.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tools/report/badge.hpp"
+
+namespace tumble::tools {
+namespace {
+
+using scenarios::Kind;
+using scenarios::MethodSummary;
+using scenarios::Section;
+using scenarios::Summary;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr const char* kError = "rate_error_clipped_median_rad_s";
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+/// Values by rising seed; infinite: the run failed.
+MethodSummary method(const std::string& name, const std::vector<double>& values, const char* metric = kError) {
+  MethodSummary out;
+  out.method = name;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    out.seeds.push_back(i + 1);
+    if (std::isinf(values[i])) {
+      out.not_ok_seeds.push_back(i + 1);
+      out.metrics[metric].failed.push_back(i + 1);
+    } else {
+      out.metrics[metric].seeds.push_back(i + 1);
+      out.metrics[metric].values.push_back(values[i]);
+    }
+  }
+  return out;
+}
+
+Summary summary_of(std::vector<MethodSummary> methods, Kind kind = Kind::rate, const char* metric = kError) {
+  Section section;
+  section.scenario = "hill";
+  section.kind = kind;
+  section.baseline = methods.front().method;
+  section.methods = std::move(methods);
+  section.metrics = {metric};
+  Summary summary;
+  summary.sections = {section};
+  return summary;
+}
+
+std::vector<ContestResult> contests_of(const Summary& summary) {
+  return contests(summary, scenarios::compare(summary, {}));
+}
+
+const std::vector<double> kTwo(9, 2.0), kHalf(9, 0.5);
+
+TEST(Contests, NameTheBestAndByHowMuch) {
+  const std::vector<ContestResult> all = contests_of(
+      summary_of({method("raw", kTwo), method("saave", kHalf), method("tumble", std::vector<double>(9, 0.2))}));
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_EQ(all[0].row.contest.method, "tumble");
+  EXPECT_NEAR(all[0].percent, -90.0, 1e-9) << "0.2 beside 2";
+  EXPECT_NEAR(all[0].percent_low, -90.0, 1e-9);
+  EXPECT_NEAR(all[0].percent_high, -90.0, 1e-9) << "all pairs differ alike";
+  // nine signs alike by chance: 2/512, twice that for two comparisons
+  EXPECT_EQ(all[0].certainty, Certainty::corrected);
+  EXPECT_TRUE(all[0].won());
+  EXPECT_EQ(tally_text(tally(all)), "tumble is better than the baseline in the one contest");
+  EXPECT_THAT(certainty_text(all[0], 2), HasSubstr("better, also after correction for 2"));
+}
+
+TEST(Contests, AreLostWhereTheBaselineIsBetter) {
+  const std::vector<ContestResult> all = contests_of(summary_of({method("raw", kHalf), method("saave", kTwo)}));
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_TRUE(all[0].lost());
+  EXPECT_NEAR(all[0].percent, 300.0, 1e-9);
+  EXPECT_EQ(tally_text(tally(all)), "The baseline is better in all of 1 contest");
+}
+
+TEST(Contests, AreOpenWhereChanceExplainsThem) {
+  const std::vector<ContestResult> all =
+      contests_of(summary_of({method("raw", {1, 2, 1, 2, 1, 2, 1, 2}), method("saave", {2, 1, 2, 1.1, 2, 1, 2.1, 1})}));
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_EQ(all[0].certainty, Certainty::open);
+  EXPECT_FALSE(all[0].won() || all[0].lost());
+  EXPECT_THAT(tally_text(tally(all)), HasSubstr("No method is shown to be better"));
+  EXPECT_THAT(certainty_text(all[0], 1), HasSubstr("not told apart"));
+}
+
+TEST(Contests, OfFewDrawsSayThatTheIntervalAloneSpeaks) {
+  // six pairs alike: chance 2/64, times two comparisons more than 5 %
+  const std::vector<double> two(6, 2.0), half(6, 0.5), third(6, 0.3);
+  const std::vector<ContestResult> all =
+      contests_of(summary_of({method("raw", two), method("saave", half), method("tumble", third)}));
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_EQ(all[0].certainty, Certainty::interval);
+  EXPECT_TRUE(all[0].won());
+  EXPECT_THAT(certainty_text(all[0], 2), HasSubstr("too few draws"));
+}
+
+TEST(Contests, SayNoShareWhereHalfOfTheBaselineFailed) {
+  std::vector<double> failing(9, kInfinite);
+  failing[0] = 1.0;
+  const std::vector<ContestResult> all = contests_of(summary_of({method("raw", failing), method("saave", kHalf)}));
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_TRUE(std::isnan(all[0].percent));
+  EXPECT_TRUE(all[0].won()) << "it ran where the other failed";
+}
+
+TEST(Contests, KnowThatMoreOverlapIsBetter) {
+  const char* overlap = "map_overlap";
+  const std::vector<double> low(9, 0.4), high(9, 0.8);
+  const Summary better =
+      summary_of({method("icp_raw", low, overlap), method("icp", high, overlap)}, Kind::slam, overlap);
+  const std::vector<ContestResult> all = contests(better, scenarios::compare(better, {{}, "", {overlap}, {}}));
+  for (const ContestResult& result : all) EXPECT_TRUE(result.won()) << result.row.metric;
+}
+
+TEST(Contests, AreNoneWithoutARival) {
+  EXPECT_TRUE(contests_of(summary_of({method("raw", kTwo)})).empty());
+  EXPECT_THAT(tally_text({}), HasSubstr("nothing to compare"));
+}
+
+PageContent content_of(std::vector<MethodSummary> methods) {
+  PageContent content;
+  content.title = "tumble: suite <b>&";
+  content.summary = summary_of(std::move(methods));
+  content.comparison = scenarios::compare(content.summary, {});
+  return content;
+}
+
+TEST(BadgeOfAReport, SaysHowManyContestsAreWon) {
+  const Badge won = badge_of(content_of({method("raw", kTwo), method("saave", kHalf)}));
+  EXPECT_EQ(won.message, "1 of 1 better than the baseline");
+  EXPECT_EQ(won.colour, Badge::Colour::good);
+  const Badge lost = badge_of(content_of({method("raw", kHalf), method("saave", kTwo)}));
+  EXPECT_THAT(lost.message, HasSubstr("1 worse"));
+  EXPECT_EQ(lost.colour, Badge::Colour::bad);
+  EXPECT_EQ(badge_of(content_of({method("raw", kTwo)})).colour, Badge::Colour::open);
+}
+
+TEST(BadgeOfAReport, IsBadWhereTheCertificateFails) {
+  PageContent content = content_of({method("raw", kTwo), method("saave", kHalf)});
+  scenarios::Certificate certificate;
+  scenarios::CertificateEntry entry;
+  entry.value = 2.0;
+  entry.low = 0.0;
+  entry.high = 1.0;
+  certificate.entries = {entry};
+  content.certificates = {certificate};
+  EXPECT_EQ(badge_of(content).message, "certificate fails");
+  EXPECT_EQ(badge_of(content).colour, Badge::Colour::bad);
+}
+
+TEST(BadgeOfAReport, EscapesItsTexts) {
+  const std::string svg = badge_svg(badge_of(content_of({method("raw", kTwo)})));
+  EXPECT_THAT(svg, HasSubstr("&lt;b&gt;&amp;"));
+  EXPECT_THAT(svg, Not(HasSubstr("<b>")));
+  EXPECT_THAT(svg, HasSubstr("role=\"img\""));
+}
+
+}  // namespace
+}  // namespace tumble::tools

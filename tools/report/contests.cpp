@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/report/contests.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace tumble::tools {
+
+namespace {
+
+using scenarios::Finding;
+using scenarios::Kind;
+using scenarios::metric_info;
+using scenarios::MetricComparison;
+using scenarios::MetricInfo;
+using scenarios::Section;
+using scenarios::Sense;
+using scenarios::Summary;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+bool is_of(const MetricComparison& row, const Section& section) {
+  return row.contest.scenario == section.scenario && row.contest.kind == section.kind;
+}
+
+/// The rows of a section by the first of its headline metrics that any of them has.
+std::vector<const MetricComparison*> rows_of(const Section& section, const scenarios::Comparison& comparison) {
+  std::vector<const MetricComparison*> rows;
+  for (const std::string& metric : scenarios::headline_metrics(section.kind)) {
+    if (metric_info(metric).sense == Sense::none) continue;
+    for (const MetricComparison& row : comparison.metrics) {
+      if (is_of(row, section) && row.metric == metric) rows.push_back(&row);
+    }
+    if (!rows.empty()) break;
+  }
+  return rows;
+}
+
+/// The difference of a metric where more is better is above 0 when it is better; of any other below.
+double badness(const MetricInfo& info, double difference) {
+  return info.sense == Sense::higher ? -difference : difference;
+}
+
+ContestResult result_of(const MetricComparison& row) {
+  const MetricInfo& info = metric_info(row.metric);
+  ContestResult out{row};
+  const double low = badness(info, row.difference.low), high = badness(info, row.difference.high);
+  if (row.finding != Finding::undecided) {
+    out.certainty = Certainty::corrected;
+    out.better = row.finding == Finding::better;
+  } else {
+    out.certainty = low * high > 0.0 ? Certainty::interval : Certainty::open;
+    out.better = badness(info, row.difference.value) < 0.0;
+  }
+  const double scale = info.sense == Sense::two_sided ? kNaN : 100.0 / std::abs(row.against_median);
+  const auto percent = [&](double value) { return std::isfinite(value * scale) ? value * scale : kNaN; };
+  // half of the baseline's runs have failed: a finite share of that is none
+  const bool known = std::isfinite(row.against_median) && row.against_median != 0.0;
+  out.percent = known ? percent(row.difference.value) : kNaN;
+  out.percent_low = known ? percent(row.difference.low) : kNaN;
+  out.percent_high = known ? percent(row.difference.high) : kNaN;
+  return out;
+}
+
+/// By the median; of equals the first.
+const MetricComparison* best_of(const std::vector<const MetricComparison*>& rows) {
+  const MetricComparison* best = nullptr;
+  for (const MetricComparison* row : rows) {
+    if (best == nullptr || scenarios::is_better(metric_info(row->metric), row->median, best->median)) best = row;
+  }
+  return best;
+}
+
+std::string contests_text(std::size_t count) {
+  return count == 1 ? "1 contest" : fmt::format("{} contests", count);
+}
+
+}  // namespace
+
+std::vector<ContestResult> contests(const Summary& summary, const scenarios::Comparison& comparison) {
+  std::vector<ContestResult> out, of_attitude;
+  for (const Section& section : summary.sections) {
+    const MetricComparison* best = best_of(rows_of(section, comparison));
+    if (best != nullptr) (section.kind == Kind::attitude ? of_attitude : out).push_back(result_of(*best));
+  }
+  return out.empty() ? of_attitude : out;
+}
+
+Tally tally(const std::vector<ContestResult>& results) {
+  Tally out;
+  out.contests = results.size();
+  std::map<std::string, std::size_t> won;
+  for (const ContestResult& result : results) {
+    out.won += result.won();
+    out.lost += result.lost();
+    out.open += result.certainty == Certainty::open;
+    if (result.won()) ++won[result.row.contest.method];
+  }
+  for (const ContestResult& result : results) {
+    const std::string& method = result.row.contest.method;
+    const auto count = won.find(method);
+    if (count == won.end() || count->second <= out.leader_won) continue;
+    out.leader = method;
+    out.leader_won = count->second;
+  }
+  return out;
+}
+
+std::string tally_text(const Tally& tally) {
+  if (tally.contests == 0) return "Scores of single methods: there is nothing to compare them with";
+  if (tally.leader.empty() && tally.lost == tally.contests)
+    return fmt::format("The baseline is better in all of {}", contests_text(tally.contests));
+  if (tally.leader.empty())
+    return fmt::format("No method is shown to be better than the baseline in {}", contests_text(tally.contests));
+  if (tally.leader_won == tally.contests)
+    return fmt::format("{} is better than the baseline in {}", tally.leader,
+                       tally.contests == 1 ? "the one contest" : fmt::format("all {} contests", tally.contests));
+  std::string out = fmt::format("{} is best, and better than the baseline, in {} of {}", tally.leader, tally.leader_won,
+                                contests_text(tally.contests));
+  if (tally.won > tally.leader_won) out += fmt::format("; others in {}", tally.won - tally.leader_won);
+  return out;
+}
+
+std::string certainty_text(const ContestResult& result, std::size_t comparisons) {
+  const std::string side = result.better ? "better" : "worse";
+  switch (result.certainty) {
+    case Certainty::corrected:
+      return fmt::format("{}, also after correction for {} comparisons", side, comparisons);
+    case Certainty::interval:
+      return fmt::format("{} by its own interval; too few draws to stand among {} comparisons", side, comparisons);
+    case Certainty::open:
+      break;
+  }
+  const double more = result.row.pairs_needed - static_cast<double>(result.row.pairs);
+  if (more >= 1.0 && more < 1e6) return fmt::format("not told apart; some {:.0f} more draws might", std::ceil(more));
+  return "not told apart";
+}
+
+}  // namespace tumble::tools

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "scenarios/summary/comparison.hpp"
+#include "scenarios/summary/summary.hpp"
+
+/// What a report says first: of each section of the results who does best, by how much, and how sure that is.
+namespace tumble::tools {
+
+/// How much of a difference the draws show.
+enum class Certainty {
+  corrected,  ///< the signed-rank test tells the two apart, corrected for all comparisons of the page
+  interval,   ///< the difference's own BCa interval leaves 0 out, the corrected test does not tell them apart
+  open        ///< neither
+};
+
+/// One section: its best method that needs no truth and is not the baseline, paired with the baseline by the first
+/// headline metric that both have.
+struct ContestResult {
+  scenarios::MetricComparison row;
+  Certainty certainty = Certainty::open;
+  bool better = false;  ///< the difference is on the better side; where `open` it may be chance
+  /// The difference over the size of the baseline's median, with its interval [%]; NaN where one of them is not finite
+  /// or the median is 0.
+  double percent = 0.0, percent_low = 0.0, percent_high = 0.0;
+  bool won() const { return better && certainty != Certainty::open; }
+  bool lost() const { return !better && certainty != Certainty::open; }
+};
+
+/// In the order of the summary's sections. Attitude, which says least about the motion, only where there is nothing
+/// else; a section that has the baseline alone has no contest.
+std::vector<ContestResult> contests(const scenarios::Summary& summary, const scenarios::Comparison& comparison);
+
+/// How the contests ended.
+struct Tally {
+  std::size_t contests = 0, won = 0, lost = 0, open = 0;
+  std::string leader;          ///< the method that wins most of them, the first of equals; "": none is won
+  std::size_t leader_won = 0;  ///< by it
+};
+Tally tally(const std::vector<ContestResult>& results);
+
+/// "tumble is better than the baseline in 3 of 4 contests": one sentence that is true of the tally.
+std::string tally_text(const Tally& tally);
+
+/// What `certainty` says of a contest, in words: which way, and what it takes where it is open.
+std::string certainty_text(const ContestResult& result, std::size_t comparisons);
+
+}  // namespace tumble::tools

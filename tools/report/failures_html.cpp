@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/report/failures_html.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "tools/html/html.hpp"
+#include "tools/report/differences_html.hpp"
+#include "tools/report/example_html.hpp"
+
+namespace tumble::tools {
+
+namespace {
+
+using html::escaped;
+
+/// So many failed draws stand open, the others are folded.
+constexpr std::size_t kOpenDraws = 8;
+
+std::string links_html(const PageContent& content, const FailedDraw& draw) {
+  const auto shown = std::find_if(content.examples.begin(), content.examples.end(), [&](const ShownExample& each) {
+    return each.example.scenario == draw.scenario && each.example.seed == draw.seed;
+  });
+  if (shown == content.examples.end()) return "";
+  std::string out =
+      " · <a href=\"#" + escaped(html::file_address(example_id(draw.scenario, draw.seed))) + "\">pictures</a>";
+  if (!shown->replay_address.empty()) out += " · <a href=\"" + escaped(shown->replay_address) + "\">replay</a>";
+  return out;
+}
+
+std::string draw_html(const PageContent& content, const FailedDraw& draw) {
+  std::string out = fmt::format("<li><b>{}</b>, seed {}{}<ul class=\"runs\">", escaped(draw.scenario), draw.seed,
+                                links_html(content, draw));
+  for (const FailedRun& run : draw.runs) {
+    out += "<li><code>" + escaped(run.method) + "</code> " + escaped(run.status) +
+           (run.message.empty() ? "" : ": " + escaped(run.message)) + "</li>";
+  }
+  out += "</ul>";
+  if (!draw.command.empty()) out += "<pre>" + escaped(draw.command) + "</pre>";
+  return out + "</li>\n";
+}
+
+std::string draws_html(const PageContent& content) {
+  const FailedDraws& failed = content.failed;
+  if (failed.draws == 0) return "<p>No run failed.</p>\n";
+  std::string open, folded;
+  for (std::size_t i = 0; i < failed.shown.size(); ++i)
+    (i < kOpenDraws ? open : folded) += draw_html(content, failed.shown[i]);
+  std::string out = fmt::format(
+      "<h3>Draws with failures</h3>\n<p>On {} draw{} a run did not end <i>ok</i>; {}those on which most methods failed "
+      "come first. The command leaves recording, estimates, pictures and a replay of the same draw.</p>\n",
+      failed.draws, failed.draws == 1 ? "" : "s",
+      failed.shown.size() < failed.draws ? fmt::format("{} are shown, ", failed.shown.size()) : "");
+  out += "<ul class=\"failed\">" + open + "</ul>\n";
+  if (!folded.empty())
+    out += fmt::format("<details><summary>{} more</summary><ul class=\"failed\">{}</ul></details>\n",
+                       failed.shown.size() - kOpenDraws, folded);
+  return out;
+}
+
+}  // namespace
+
+std::string failures_html(const PageContent& content) {
+  return paired_failures_html(content.comparison.failures) + draws_html(content);
+}
+
+}  // namespace tumble::tools

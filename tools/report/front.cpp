@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/report/front.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "tools/html/html.hpp"
+#include "tools/report/contests.hpp"
+#include "tools/report/example_html.hpp"
+#include "tools/report/score_html.hpp"
+
+namespace tumble::tools {
+
+namespace {
+
+using html::escaped;
+using scenarios::Interval;
+using scenarios::Section;
+using scenarios::Summary;
+
+/// So many contests stand open, the others are folded.
+constexpr std::size_t kShownContests = 6;
+/// So many scenarios are named in the first sentence.
+constexpr std::size_t kNamedScenarios = 4;
+
+/// "8 draws each of hill, roll and slip", or the number of scenarios where they are many.
+std::string draws_text(const Summary& summary) {
+  std::int64_t least = 0, most = 0;
+  for (const auto& [scenario, draws] : summary.draws) {
+    least = least == 0 ? draws : std::min(least, draws);
+    most = std::max(most, draws);
+  }
+  std::string names;
+  const std::size_t count = summary.scenarios.size();
+  for (std::size_t i = 0; i < count && count <= kNamedScenarios; ++i)
+    names += (i == 0 ? "" : i + 1 == count ? " and " : ", ") + summary.scenarios[i];
+  if (names.empty()) names = fmt::format("{} scenarios", count);
+  return least == most ? fmt::format("{} draw{} {}of {}", most, most == 1 ? "" : "s", count > 1 ? "each " : "", names)
+                       : fmt::format("{} to {} draws each of {}", least, most, names);
+}
+
+std::size_t method_count(const Summary& summary) {
+  std::set<std::pair<scenarios::Kind, std::string>> names;
+  for (const Section& section : summary.sections) {
+    for (const scenarios::MethodSummary& method : section.methods) names.emplace(section.kind, method.method);
+  }
+  return names.size();
+}
+
+/// The interval on an axis from -100 % to +100 %; what lies beyond ends at its border.
+std::string bar_html(const ContestResult& result) {
+  if (!std::isfinite(result.percent)) return "<span class=\"bar none\"></span>";
+  const auto at = [](double percent) { return 50.0 + 0.5 * std::clamp(percent, -100.0, 100.0); };
+  const bool known = std::isfinite(result.percent_low) && std::isfinite(result.percent_high);
+  const double low = known ? at(result.percent_low) : 0.0, high = known ? at(result.percent_high) : 100.0;
+  return fmt::format(
+      "<span class=\"bar\" aria-hidden=\"true\"><i class=\"zero\"></i><i class=\"span{}\" style=\"left:{:.1f}%;"
+      "width:{:.1f}%\"></i><i class=\"dot\" style=\"left:{:.1f}%\"></i></span>",
+      known ? "" : " unknown", low, std::max(high - low, 1.0), at(result.percent));
+}
+
+std::string difference_text(const ContestResult& result) {
+  const Interval& own = result.row.difference;
+  if (!std::isfinite(own.value)) return "half of the runs of one of the two failed, or more";
+  const std::string value = styled_value(result.row.metric, own.value, true);
+  return (own.value > 0.0 ? "+" + value : value) + " " + styled_interval(result.row.metric, own);
+}
+
+std::string contest_html(const ContestResult& result, std::size_t comparisons) {
+  const scenarios::MetricComparison& row = result.row;
+  const std::string& metric = row.metric;
+  const char* state = result.won() ? "won" : result.lost() ? "lost" : "open";
+  return fmt::format(
+      "<li class=\"contest {}\"><div><b>{} · {}</b><small>{}</small></div>"
+      "<div><b class=\"winner\">{}</b> {}<small>{} {}</small></div>{}"
+      "<div><b class=\"difference\">{}</b><small>better on {} of {} draws: {}</small></div></li>\n",
+      state, escaped(row.contest.scenario), to_string(row.contest.kind),
+      escaped(scenarios::metric_info(metric).doc.empty() ? metric : scenarios::metric_info(metric).doc),
+      escaped(row.contest.method), escaped(styled_value(metric, row.median, true)), escaped(row.contest.against),
+      escaped(styled_value(metric, row.against_median, true)), bar_html(result), escaped(difference_text(result)),
+      row.better, row.pairs, escaped(certainty_text(result, comparisons)));
+}
+
+std::string contests_html(const std::vector<ContestResult>& results, std::size_t comparisons) {
+  if (results.empty()) return "";
+  std::string shown, folded;
+  for (std::size_t i = 0; i < results.size(); ++i)
+    (i < kShownContests ? shown : folded) += contest_html(results[i], comparisons);
+  std::string out =
+      "<section class=\"contests\" id=\"contests\"><p class=\"key\">Of each contest the best method above the "
+      "baseline: medians over the draws, then the median difference of the pairs with its 95 % interval (BCa); the bar "
+      "is the same as a share of the baseline’s median, from −100 % to +100 %.</p>\n<ul>" +
+      shown + "</ul>\n";
+  if (!folded.empty())
+    out += fmt::format("<details><summary>{} more contests</summary><ul>{}</ul></details>\n",
+                       results.size() - kShownContests, folded);
+  return out + "</section>\n";
+}
+
+/// Of the draws of these results before others, and a picture that moves before one that stands.
+const ShownExample* example_to_show(const std::vector<ShownExample>& examples) {
+  const ShownExample* best = nullptr;
+  const auto rank = [](const ShownExample& shown) {
+    return 2 * static_cast<int>(!shown.example.moving.empty()) + static_cast<int>(shown.of_these_results);
+  };
+  for (const ShownExample& shown : examples) {
+    if (shown.example.moving.empty() && shown.example.pictures.empty()) continue;
+    if (best == nullptr || rank(shown) > rank(*best)) best = &shown;
+  }
+  return best;
+}
+
+}  // namespace
+
+std::string front_html(const PageContent& content) {
+  const std::vector<ContestResult> results = contests(content.summary, content.comparison);
+  const ShownExample* shown = example_to_show(content.examples);
+  std::string out =
+      "<header class=\"front\"><div class=\"say\"><p class=\"suite\">" + escaped(content.title) + "</p>\n";
+  if (!content.summary.sections.empty()) {
+    out += "<h1>" + escaped(tally_text(tally(results))) + "</h1>\n";
+    out += fmt::format(
+        "<p class=\"lead\">Compared: {} methods that tell from its sensors alone how a robot moved while it tumbles "
+        "or rolls. {}, simulated, so that the truth is known; each method was given the very same recordings. A "
+        "contest "
+        "is one task on one scenario.</p>\n",
+        method_count(content.summary), escaped(draws_text(content.summary)));
+  }
+  out += "</div>\n";
+  if (shown != nullptr) out += moving_html(*shown);
+  return out + "</header>\n" + contests_html(results, content.comparison.metrics.size());
+}
+
+}  // namespace tumble::tools

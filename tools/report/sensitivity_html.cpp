@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/report/sensitivity_html.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "tools/html/html.hpp"
+#include "tools/report/score_html.hpp"
+
+namespace tumble::tools {
+
+namespace {
+
+using html::cell;
+using html::escaped;
+using scenarios::Influence;
+using scenarios::Sensitivity;
+
+constexpr std::size_t kStrongest = 3;
+constexpr double kRisk = 0.05;
+constexpr const char* kFailure = "not ok";
+
+std::string median_text(const Sensitivity& row, double value) {
+  if (row.metric == kFailure) return value > 0.0 ? "failed" : "ok";
+  return styled_value(row.metric, value, true);
+}
+
+/// A bar from 0 to 1 beside the number.
+std::string strength_cell(double strength) {
+  return fmt::format("<td class=\"number\"><span class=\"strength\" style=\"width:{:.0f}px\"></span>{:.2f}</td>",
+                     60.0 * strength, strength);
+}
+
+std::string influence_cells(const Sensitivity& row, const Influence& each) {
+  return "<td><code>" + escaped(each.number) + "</code></td>" + strength_cell(each.strength()) +
+         cell(fmt::format("{:+.2f} [{:+.2f}, {:+.2f}]", each.correlation.rho, each.correlation.low,
+                          each.correlation.high),
+              "number") +
+         cell(median_text(row, each.median_low), "number") + cell(median_text(row, each.median_high), "number");
+}
+
+std::string row_html(const Sensitivity& row) {
+  std::string out;
+  std::size_t shown = 0;
+  for (const Influence& each : row.influences) {
+    if (shown == kStrongest) break;
+    if (!(each.corrected < kRisk)) continue;
+    out += "<tr>" + cell(shown == 0 ? row.method : "") + cell(shown == 0 ? row.metric : "") +
+           influence_cells(row, each) + "</tr>\n";
+    ++shown;
+  }
+  if (shown > 0) return out;
+  return "<tr>" + cell(row.method) + cell(row.metric) + "<td colspan=\"5\">none is told from chance</td></tr>\n";
+}
+
+}  // namespace
+
+std::string sensitivity_html(const std::vector<Sensitivity>& rows, const std::string& note) {
+  std::string out;
+  if (!note.empty()) out += "<p>" + escaped(note) + "</p>\n";
+  if (rows.empty()) return out;
+  out +=
+      "<p>What breaks a method: of the numbers that its draws differ in the three strongest that chance does not "
+      "explain (95 %, after Holm’s correction over all numbers of the row). The strength is the share of the variance "
+      "of the score’s ranks "
+      "that the number explains, of its first-order index and its squared rank correlation the larger; a correlation "
+      "above 0 says: the larger the number, the "
+      "worse the score. Then the median score over the quarter of the draws with the lowest and with the highest "
+      "numbers.</p>\n";
+  for (auto row = rows.begin(); row != rows.end();) {
+    const Sensitivity& first = *row;
+    out += fmt::format("<details{}><summary>{} · {}</summary>\n", row == rows.begin() ? " open" : "",
+                       escaped(first.scenario), to_string(first.kind)) +
+           html::table_head({"method", "score", "number", "strength", "rank correlation [95 %]", "lowest quarter",
+                             "highest quarter"},
+                            3);
+    for (; row != rows.end() && row->scenario == first.scenario && row->kind == first.kind; ++row)
+      out += row_html(*row);
+    out += "</tbody></table></div></details>\n";
+  }
+  return out;
+}
+
+}  // namespace tumble::tools
