@@ -102,8 +102,7 @@ class Sweep {
     claim_methods(results_, methods_);
     // a catalogue that cannot be drawn from is the caller's mistake, not an outcome
     for (const Planned& each : scenarios_) draw(data_, each.scenario, suite_.first_seed);
-    const std::uint64_t seeds = suite_.last_seed - suite_.first_seed + 1;
-    progress_.draws_total = recordings_.size() + seeds * scenarios_.size() * settings_.simulated.size();
+    progress_.draws_total = recordings_.size() + suite_.draw_count() * settings_.simulated.size();
     next_.at_end = scenarios_.empty();
     while (!stopped()) {
       while (!stopped() && static_cast<int>(workers_.size()) < options_.jobs && start_next()) {
@@ -176,6 +175,12 @@ class Sweep {
 
   bool nothing_left() const { return next_.recording == recordings_.size() && next_.at_end; }
 
+  /// Whether the draw that comes next is one of the suite's, where these are named one by one.
+  bool is_wanted() const {
+    return next_.recording < recordings_.size() ||
+           suite_.has_draw(scenarios_[next_.scenario].scenario.name, next_.seed);
+  }
+
   void advance() {
     if (next_.recording < recordings_.size()) {
       ++next_.recording;
@@ -226,6 +231,7 @@ class Sweep {
   // starts the next draw that has something to run; false when there is none, or no process can be made to run it in
   bool start_next() {
     for (; !nothing_left() && !stopped(); advance()) {
+      if (!is_wanted()) continue;
       DrawTask task = task_at_cursor();
       if (task.runs.empty()) {
         ++progress_.draws_done;
