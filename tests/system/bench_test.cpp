@@ -5,7 +5,6 @@
 #include <stdlib.h>
 
 #include <cstdlib>
-
 #include <fstream>
 #include <sstream>
 
