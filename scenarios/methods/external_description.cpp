@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kTimeMax_s = 1e6;
 constexpr double kMemoryMax_mib = 1e7;
+constexpr std::size_t kWordMax = 4096;  // std::regex goes a level deeper for each character
 
 const std::regex& placeholder() {
   static const std::regex pattern(R"(\{([a-z0-9_]+)\})");
@@ -48,6 +49,9 @@ std::vector<std::string> words_of(const YamlNode& node) {
   std::vector<std::string> words;
   for (const YamlNode& item : node.items()) {
     words.push_back(item.text());
+    if (words.back().size() > kWordMax)
+      item.fail("a word of " + std::to_string(words.back().size()) + " characters, must be at most " +
+                std::to_string(kWordMax));
     try {
       placeholders_in(words.back());
     } catch (const BadInput& error) {

@@ -133,6 +133,7 @@ TEST_F(ExternalMethod, DescriptionsAreCheckedBeforeAnythingRuns) {
   EXPECT_THAT(refused(describe("rate", "{output}", "timelimit: 3\n")), HasSubstr("timelimit"));
   EXPECT_THAT(refused(describe("rate", "{output}", "output: tum\n")), HasSubstr("output"));
   EXPECT_THAT(refused(describe("rate", "{output}", "version: [sh, -c, 'exit 1']\n")), HasSubstr("version"));
+  EXPECT_THAT(refused(describe("rate", "{output} {" + std::string(500'000, 'a') + "}")), HasSubstr("at most 4096"));
 }
 
 TEST_F(ExternalMethod, AVersionTellsProgramAndDescription) {
