@@ -19,7 +19,7 @@ import recording  # noqa: E402
 def version(adapter: str, package: str) -> str:
     """The package's version, and a digest of what stands between it and us."""
     digest = hashlib.sha256()
-    for file in ("adapt.py", "poses.py", "recording.py", f"adapters/{adapter}.py"):
+    for file in ("adapt.py", "frames.py", "poses.py", "recording.py", f"adapters/{adapter}.py"):
         digest.update((HERE / file).read_bytes())
     return f"{package} {importlib.metadata.version(package)}, adapter {digest.hexdigest()[:12]}"
 

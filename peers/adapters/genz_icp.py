@@ -5,10 +5,10 @@ Settings: the authors' pretuned file for `indoor` (of a room) or `outdoor` (of a
 have times."""
 import pathlib
 
-import numpy as np
 from genz_icp.config import load_config
 from genz_icp.genz_icp import GenZICP
 
+from frames import followed
 from poses import Track
 from recording import Recording
 
@@ -16,10 +16,4 @@ from recording import Recording
 def run(sensors: Recording, pretuned: str = "indoor") -> Track:
     config = load_config(pathlib.Path(pretuned))
     config.data.deskew = True
-    odometry = GenZICP(config)
-    track = Track([], [], "lidar")
-    for sweep in sensors.sweeps:
-        odometry.register_frame(sweep.points_L_m, sweep.offset_ns * 1e-9)
-        track.time_ns.append(sweep.start_ns + int(sweep.offset_ns.max()))
-        track.T_WA.append(np.array(odometry.last_pose))
-    return track
+    return followed(GenZICP(config), sensors)

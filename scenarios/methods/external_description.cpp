@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kTimeMax_s = 1e6;
 constexpr double kMemoryMax_mib = 1e7;
+constexpr std::size_t kWordMax = 4096;  // std::regex goes a level deeper for each character
 
 const std::regex& placeholder() {
   static const std::regex pattern(R"(\{([a-z0-9_]+)\})");
@@ -48,6 +49,9 @@ std::vector<std::string> words_of(const YamlNode& node) {
   std::vector<std::string> words;
   for (const YamlNode& item : node.items()) {
     words.push_back(item.text());
+    if (words.back().size() > kWordMax)
+      item.fail("a word of " + std::to_string(words.back().size()) + " characters, must be at most " +
+                std::to_string(kWordMax));
     try {
       placeholders_in(words.back());
     } catch (const BadInput& error) {
@@ -64,9 +68,71 @@ double limit(const YamlNode& node, double most) {
   return value;
 }
 
+std::string digest_of(const std::string& text) {
+  return fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
+}
+
+/// What a function of Python cannot have: it gives its answer back and leaves no file.
+constexpr std::array<const char*, 2> kOfCommands = {"version", "output"};
+constexpr std::array<const char*, 2> kOfPython = {"function", "interpreter"};
+
 bool names_output(const std::vector<std::string>& command) {
   return std::any_of(command.begin(), command.end(),
                      [](const std::string& word) { return word.find("{output}") != std::string::npos; });
+}
+
+void read_command(const std::map<std::string, YamlNode>& fields, ExternalDescription& out) {
+  for (const char* key : kOfPython)
+    if (fields.contains(key)) fields.at(key).fail("is of a function of Python, and this is a command");
+  out.command = words_of(fields.at("command"));
+  if (!names_output(out.command)) fields.at("command").fail("no word names {output}, where the result is looked for");
+  out.output = out.kind == Kind::rate ? ExternalDescription::Output::rates : ExternalDescription::Output::tum;
+  if (fields.contains("output")) out.output = output_named(fields.at("output"));
+  if ((out.output == ExternalDescription::Output::rates) != (out.kind == Kind::rate) &&
+      out.output != ExternalDescription::Output::estimate)
+    fields.at("output").fail("rates are the output of kind rate, and a TUM file is that of the others");
+  if (fields.contains("version")) out.version = words_of(fields.at("version"));
+}
+
+void read_python(const std::map<std::string, YamlNode>& fields, ExternalDescription& out) {
+  for (const char* key : kOfCommands)
+    if (fields.contains(key)) fields.at(key).fail("is of a command, and this is a function of Python");
+  out.python = out.file.parent_path() / fields.at("python").text();
+  if (!std::filesystem::is_regular_file(out.python))
+    fields.at("python").fail("'" + out.python.string() + "' is no file");
+  out.function = fields.contains("function") ? fields.at("function").text() : to_string(out.kind);
+  if (fields.contains("interpreter"))
+    for (const YamlNode& item : fields.at("interpreter").items()) out.interpreter.push_back(item.text());
+}
+
+/// The one kind after which a function of the text is named.
+Kind kind_of_function(const std::string& text, const std::string& file) {
+  static const std::regex pattern(R"((^|\n)def[ \t]{1,8}(rate|attitude|position|slam)[ \t]{0,8}\()");
+  std::vector<Kind> found;
+  for (std::sregex_iterator it(text.begin(), text.end(), pattern), end; it != end; ++it)
+    for (int k = 0; k <= static_cast<int>(Kind::slam); ++k)
+      if ((*it)[2] == to_string(static_cast<Kind>(k))) found.push_back(static_cast<Kind>(k));
+  if (found.size() != 1)
+    throw BadInput(file + ": defines " + std::to_string(found.size()) +
+                   " functions named rate, attitude, position or slam, must be one (a NAME.yaml can name another)");
+  return found.front();
+}
+
+ExternalDescription of_python_file(const std::filesystem::path& file) {
+  const std::string text = read_text_file(file);
+  ExternalDescription out;
+  out.file = std::filesystem::absolute(file);
+  out.digest = digest_of(text);
+  out.kind = kind_of_function(text, file.string());
+  const std::string stem = file.stem().string();
+  out.name = YamlNode::parse("name: " + stem, file.string())
+                 .fields(std::array<std::string, 1>{"name"})
+                 .at("name")
+                 .identifier();
+  out.source = file.filename().string();
+  out.python = out.file;
+  out.function = to_string(out.kind);
+  return out;
 }
 
 }  // namespace
@@ -99,32 +165,31 @@ std::string filled(const std::string& word, const std::map<std::string, std::str
 }
 
 ExternalDescription read_external(const std::filesystem::path& file) {
+  if (file.extension() == ".py") return of_python_file(file);
   const std::string text = read_text_file(file);
   const YamlNode root = YamlNode::parse(text, file.string());
-  const std::array<std::string, 3> required = {"name", "kind", "command"};
-  const std::array<std::string, 9> optional = {"doc",         "source", "robots",       "version",         "frame",
-                                               "environment", "output", "time_limit_s", "memory_limit_mib"};
+  const std::array<std::string, 2> required = {"name", "kind"};
+  const std::array<std::string, 13> optional = {
+      "command", "python", "function",    "interpreter", "doc",          "source",          "robots",
+      "version", "frame",  "environment", "output",      "time_limit_s", "memory_limit_mib"};
   const auto fields = root.fields(required, optional);
   const auto given = [&](const char* key) { return fields.contains(key); };
+  if (given("command") == given("python")) root.fail("must have one of the keys 'command' and 'python'");
 
   ExternalDescription out;
   out.file = std::filesystem::absolute(file);
-  out.digest = fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
+  out.digest = digest_of(text);
   out.name = fields.at("name").identifier();
   out.kind = named(fields.at("kind"), Kind::slam);
-  out.command = words_of(fields.at("command"));
-  if (!names_output(out.command)) fields.at("command").fail("no word names {output}, where the result is looked for");
-  out.output = out.kind == Kind::rate ? ExternalDescription::Output::rates : ExternalDescription::Output::tum;
-  if (given("output")) out.output = output_named(fields.at("output"));
-  if ((out.output == ExternalDescription::Output::rates) != (out.kind == Kind::rate) &&
-      out.output != ExternalDescription::Output::estimate)
-    fields.at("output").fail("rates are the output of kind rate, and a TUM file is that of the others");
+  if (given("command"))
+    read_command(fields, out);
+  else
+    read_python(fields, out);
   if (given("doc")) out.doc = fields.at("doc").text();
-  out.source = given("source") ? fields.at("source").text() : file.string();
+  out.source = given("source") ? fields.at("source").text() : file.filename().string();
   if (given("frame")) out.frame = named(fields.at("frame"), Frame::centre);
   if (given("robots"))
     for (const YamlNode& robot : fields.at("robots").items()) out.robots.push_back(robot.identifier());
-  if (given("version")) out.version = words_of(fields.at("version"));
   if (given("environment"))
     for (const auto& [name, value] : fields.at("environment").entries()) out.environment[name] = value.any_text();
   if (given("time_limit_s")) out.time_limit_s = limit(fields.at("time_limit_s"), kTimeMax_s);

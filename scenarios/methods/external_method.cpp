@@ -1,21 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/external_method.hpp"
 
-#include <fmt/format.h>
-#include <stdlib.h>
-#include <xxhash.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <functional>
 #include <set>
 #include <system_error>
 #include <utility>
 
-#include "scenarios/draw/strict_yaml.hpp"
 #include "scenarios/errors.hpp"
+#include "scenarios/methods/command_run.hpp"
 #include "scenarios/methods/external_description.hpp"
 #include "scenarios/methods/external_result.hpp"
+#include "scenarios/methods/python_method.hpp"
 #include "scenarios/methods/sensors_text.hpp"
 #include "scenarios/processes/command.hpp"
 #include "scenarios/recordings/bags/bag.hpp"
@@ -28,29 +24,6 @@ namespace tumble::scenarios {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double kVersionLimit_s = 30.0;
-constexpr std::size_t kFirstLineMax = 120;
-
-/// A folder for one run, gone with it.
-class Scratch {
- public:
-  Scratch() {
-    std::string name = (fs::temp_directory_path() / "tumble-method-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::system_error(errno, std::generic_category(), name);
-    folder_ = name;
-  }
-  ~Scratch() {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-  }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  const fs::path& folder() const { return folder_; }
-
- private:
-  fs::path folder_;
-};
 
 /// Sensor data in one format, written only when the command names it.
 struct Provision {
@@ -116,10 +89,6 @@ Command command_of(const ExternalDescription& description, const std::vector<std
   return command;
 }
 
-std::string with_last_words(const CommandEnd& end) {
-  return end.reason + (end.last_words.empty() ? "" : "; it said: " + end.last_words);
-}
-
 /// What the command's words name, written; then the command, to its end.
 CommandEnd provide_and_run(const ExternalDescription& description, const sim::Sensors& sensors,
                            const std::map<std::string, std::string>& values, const fs::path& scratch) {
@@ -129,33 +98,32 @@ CommandEnd provide_and_run(const ExternalDescription& description, const sim::Se
   return run_command(command_of(description, description.command, values, scratch));
 }
 
-Estimate run(const ExternalDescription& description, const sim::Sensors& sensors) {
-  const Scratch scratch;
-  const std::map<std::string, std::string> values = places(description, scratch.folder());
-  const CommandEnd end = provide_and_run(description, sensors, values, scratch.folder());
-  if (end.how == CommandEnd::How::out_of_time) throw NoAnswer(NoAnswer::Why::out_of_time, with_last_words(end));
-  if (end.how != CommandEnd::How::done) throw NoAnswer(NoAnswer::Why::crashed, with_last_words(end));
+Estimate run_its_command(const ExternalDescription& description, const sim::Sensors& sensors) {
+  const ScratchFolder scratch;
+  const std::map<std::string, std::string> values = places(description, scratch.path());
+  const CommandEnd end = provide_and_run(description, sensors, values, scratch.path());
+  require_done(end);
   try {
     return read_external_result(description, values.at("output"), values.at("map"), sensors);
   } catch (const BadInput& error) {
-    throw BadInput(std::string(error.what()) + (end.last_words.empty() ? "" : "; it said: " + end.last_words));
+    throw BadInput(with_last_words(error.what(), end));
   }
 }
 
-/// What tells this method from another of its name: what its version command prints, and the description's digest.
+Estimate run(const ExternalDescription& description, const sim::Sensors& sensors) {
+  return description.python.empty() ? run_its_command(description, sensors) : call_python(description, sensors);
+}
+
+/// What tells this method from another of its name: what its version command prints, the file of its function, and the
+/// description's digest.
 std::string version_of(const ExternalDescription& description) {
   const std::string own = "description " + description.digest;
+  if (!description.python.empty()) return python_version(description) + "; " + own;
   if (description.version.empty()) return own;
-  const Scratch scratch;
-  Command command =
-      command_of(description, description.version, places(description, scratch.folder()), scratch.folder());
-  command.time_limit_s = kVersionLimit_s;
-  const CommandEnd end = run_command(command);
-  if (end.how != CommandEnd::How::done)
-    throw BadInput(description.file.string() + ": its version command: " + with_last_words(end));
-  const std::string said = read_text_file(scratch.folder() / "transcript.txt");
-  return fmt::format("{}; said {:016x}; {}", said.substr(0, std::min(said.find('\n'), kFirstLineMax)),
-                     XXH3_64bits(said.data(), said.size()), own);
+  const ScratchFolder scratch;
+  const Command command =
+      command_of(description, description.version, places(description, scratch.path()), scratch.path());
+  return version_said(command, description.file.string() + ": its version command: ") + "; " + own;
 }
 
 }  // namespace

@@ -24,13 +24,16 @@ class NoAnswer : public std::runtime_error {
   Why why_;
 };
 
-/// The method that a file NAME.yaml describes (EXTERNAL.md): sensors are written into a folder of their own in the
-/// formats that its command names, the command runs with its limits in a process of its own, and what it leaves is read
-/// back. It never sees the truth. Its limit of time is the description's, at most `time_limit_s`. Throws BadInput when
-/// the description is wrong or its version command fails. Running it throws NoAnswer, and BadInput when what it left is
-/// not what it should be.
+/// The method that a file NAME.yaml or NAME.py describes (EXTERNAL.md). Of a command: sensors are written into a folder
+/// of their own in the formats that it names, it runs with its limits in a process of its own, and what it leaves is
+/// read back. Of a function of Python: the same through memory. It never sees the truth. Its limit of time is the
+/// description's, at most `time_limit_s`. Throws BadInput when the description is wrong or its version command fails.
+/// Running it throws NoAnswer, and BadInput when what it left is not what it should be.
 Method external_method(const std::filesystem::path& file,
                        double time_limit_s = std::numeric_limits<double>::infinity());
+
+/// Whether `name` is that of a file which describes a method: NAME.yaml, NAME.py.
+bool is_method_file(const std::string& name);
 
 /// find_methods (method.hpp) for a list, commands of somebody else's given at most `time_limit_s`.
 std::vector<MethodPointer> find_methods_within(std::span<const std::string> names, double time_limit_s);

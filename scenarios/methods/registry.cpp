@@ -86,7 +86,7 @@ MethodPointer method_of_file(const std::string& file, double time_limit_s) {
 }
 
 std::vector<MethodPointer> find_within(const std::string& name, double time_limit_s) {
-  if (name.ends_with(".yaml")) return {method_of_file(name, time_limit_s)};
+  if (is_method_file(name)) return {method_of_file(name, time_limit_s)};
   std::vector<MethodPointer> found;
   std::vector<std::string> known;
   for (const Method& method : methods()) {
@@ -141,6 +141,10 @@ MethodPointer unowned(const Method& method) {
   return {std::shared_ptr<void>(), &method};
 }
 
+bool is_method_file(const std::string& name) {
+  return name.ends_with(".yaml") || name.ends_with(".py");
+}
+
 std::vector<MethodPointer> find_methods(const std::string& name) {
   return find_within(name, std::numeric_limits<double>::infinity());
 }
@@ -157,7 +161,7 @@ std::vector<MethodPointer> find_methods_within(std::span<const std::string> name
       const auto [before, is_new] = asked.emplace(full_name(method->info), name);
       if (is_new) {
         found.push_back(std::move(method));
-      } else if (name.ends_with(".yaml") && before->second != name) {
+      } else if (is_method_file(name) && before->second != name) {
         throw BadInput("'" + before->second + "' and '" + name + "' are both " + full_name(method->info));
       }
     }

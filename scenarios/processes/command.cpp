@@ -42,6 +42,7 @@ void become(const Command& command, std::string& problem) {
     problem = command.transcript.string() + ": " + strerror(errno);
     return;
   }
+  for (const int descriptor : command.descriptors) fcntl(descriptor, F_SETFD, 0);  // open beyond exec
   for (const auto& [name, value] : command.environment) setenv(name.c_str(), value.c_str(), 1);
   limit(RLIMIT_DATA, command.memory_limit_mib * kMib);
   std::vector<char*> words;

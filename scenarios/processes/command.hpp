@@ -14,6 +14,7 @@ struct Command {
   std::filesystem::path folder;                    ///< it starts in
   std::map<std::string, std::string> environment;  ///< added to ours
   std::filesystem::path transcript;                ///< file for what it prints and complains, replaced
+  std::vector<int> descriptors = {};               ///< of ours that it is given, by their numbers
   double time_limit_s = 600.0;                     ///< of wall time
   double memory_limit_mib = 8192.0;                ///< of data of each of its processes (RLIMIT_DATA)
 };

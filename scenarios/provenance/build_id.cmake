@@ -1,7 +1,7 @@
 # Run at build time: writes OUTPUT from INPUT with the identity of the sources under ROOT. Touches nothing when unchanged.
 file(GLOB_RECURSE sources LIST_DIRECTORIES false RELATIVE ${ROOT}
   ${ROOT}/estimator/*.hpp ${ROOT}/estimator/*.cpp ${ROOT}/sim/*.hpp ${ROOT}/sim/*.cpp
-  ${ROOT}/scenarios/*.hpp ${ROOT}/scenarios/*.cpp ${ROOT}/tools/cmake/*.cmake
+  ${ROOT}/scenarios/*.hpp ${ROOT}/scenarios/*.cpp ${ROOT}/scenarios/*.py ${ROOT}/tools/cmake/*.cmake
   ${ROOT}/estimator/cmake/TumbleTarget.cmake)
 list(FILTER sources EXCLUDE REGEX "^estimator/tests/")
 list(SORT sources)

@@ -2,12 +2,15 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/draw/strict_yaml.hpp"
 #include "scenarios/draw/yaml_folder.hpp"
 #include "scenarios/errors.hpp"
+#include "scenarios/methods/external_method.hpp"
+#include "scenarios/scoring/score.hpp"
 #include "scenarios/sweep/sweep.hpp"
 
 namespace tumble::scenarios {
@@ -89,6 +92,43 @@ void read_scenarios(const DataRoot& data, const YamlNode& node, Suite& suite) {
   if (suite.scenarios.empty()) node.fail("no scenario");
 }
 
+/// `draws: {mild: {hill: [3, 8]}}`: scenarios, and seeds from the lowest to the highest, of which these are the
+/// suite's.
+void read_classes(const DataRoot& data, const YamlNode& node, Suite& suite) {
+  const std::vector<std::string> known = scenario_names(data);
+  std::set<std::pair<std::string, std::uint64_t>> seen;
+  for (const auto& [name, scenarios] : node.entries()) {
+    DrawClass each{name, {}};
+    for (const auto& [scenario, seeds] : scenarios.entries()) {
+      if (!std::binary_search(known.begin(), known.end(), scenario))
+        scenarios.fail("unknown scenario '" + scenario + "'" + suggestion(scenario, known));
+      for (const YamlNode& seed : seeds.items()) {
+        each.draws.emplace_back(scenario, seed.unsigned_integer());
+        if (!seen.insert(each.draws.back()).second) seed.fail("a draw stands twice");
+      }
+      if (std::find(suite.scenarios.begin(), suite.scenarios.end(), scenario) == suite.scenarios.end())
+        suite.scenarios.push_back(scenario);
+    }
+    if (each.draws.empty()) scenarios.fail("no draw");
+    suite.classes.push_back(std::move(each));
+  }
+  if (seen.empty()) node.fail("no draw");
+  const auto by_seed = [](const auto& a, const auto& b) { return a.second < b.second; };
+  suite.first_seed = std::min_element(seen.begin(), seen.end(), by_seed)->second;
+  suite.last_seed = std::max_element(seen.begin(), seen.end(), by_seed)->second;
+}
+
+void read_metrics(const YamlNode& node, Suite& suite) {
+  std::vector<std::string> known;
+  for (const Metric& metric : metrics()) known.push_back(metric.info.name);
+  for (const YamlNode& item : node.items()) {
+    const std::string name = item.text();
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      item.fail("unknown metric '" + name + "'" + suggestion(name, known));
+    suite.shown_metrics.push_back(name);
+  }
+}
+
 void read_recordings(const YamlNode& node, Suite& suite) {
   for (const YamlNode& item : node.items()) {
     if (item.text().empty()) item.fail("names no file");
@@ -97,14 +137,21 @@ void read_recordings(const YamlNode& node, Suite& suite) {
   if (suite.recordings.empty()) node.fail("no recording");
 }
 
-/// What a suite is of: recordings alone, or scenarios with their seeds.
+/// What a suite is of: recordings alone, draws that are named, or scenarios with their seeds.
 void read_draws(const DataRoot& data, const YamlNode& root, const std::map<std::string, YamlNode>& fields,
                 Suite& suite) {
   if (fields.contains("recordings")) {
-    for (const char* key : {"scenarios", "seeds", "vary"}) {
+    for (const char* key : {"scenarios", "seeds", "draws", "vary"}) {
       if (fields.contains(key)) fields.at(key).fail("a suite of recordings has none");
     }
     read_recordings(fields.at("recordings"), suite);
+    return;
+  }
+  if (fields.contains("draws")) {
+    for (const char* key : {"scenarios", "seeds"}) {
+      if (fields.contains(key)) fields.at(key).fail("a suite whose draws are named has none");
+    }
+    read_classes(data, fields.at("draws"), suite);
     return;
   }
   for (const char* key : {"scenarios", "seeds"}) {
@@ -116,20 +163,22 @@ void read_draws(const DataRoot& data, const YamlNode& root, const std::map<std::
 
 /// A description of somebody else's method stands beside the suite, unless its path is absolute.
 std::string method_name(const std::string& text, const std::filesystem::path& folder) {
-  return text.ends_with(".yaml") ? (folder / text).string() : text;
+  return is_method_file(text) ? (folder / text).string() : text;
 }
 
 // names are checked here, so that a suite with a slip of the pen does not begin
 Suite read_suite(const DataRoot& data, const std::filesystem::path& path) {
   const YamlNode root = YamlNode::parse(read_text_file(path), path.string());
   const std::array<std::string, 2> required = {"name", "doc"};
-  const std::array<std::string, 6> optional = {"scenarios", "seeds", "recordings", "methods", "timeout_s", "vary"};
+  const std::array<std::string, 8> optional = {"scenarios", "seeds",   "draws",     "recordings",
+                                               "methods",   "metrics", "timeout_s", "vary"};
   const auto fields = root.fields(required, optional);
   Suite suite;
   suite.name = fields.at("name").identifier();
   suite.doc = fields.at("doc").text();
   suite.recordings_folder = path.parent_path();
   read_draws(data, root, fields, suite);
+  if (fields.contains("metrics")) read_metrics(fields.at("metrics"), suite);
   if (fields.contains("methods")) {
     for (const YamlNode& item : fields.at("methods").items()) {
       suite.methods.push_back(method_name(item.text(), path.parent_path()));
@@ -154,6 +203,21 @@ Suite read_suite(const DataRoot& data, const std::filesystem::path& path) {
 }
 
 }  // namespace
+
+bool Suite::has_draw(const std::string& scenario, std::uint64_t seed) const {
+  const auto holds = [&](const DrawClass& each) {
+    return std::find(each.draws.begin(), each.draws.end(), std::pair(scenario, seed)) != each.draws.end();
+  };
+  return classes.empty() || std::any_of(classes.begin(), classes.end(), holds);
+}
+
+std::uint64_t Suite::draw_count() const {
+  if (classes.empty()) return scenarios.size() * (last_seed - first_seed + 1);
+  std::uint64_t count = 0;
+  for (const DrawClass& each : classes)
+    for (const auto& [scenario, seed] : each.draws) count += seed >= first_seed && seed <= last_seed ? 1 : 0;
+  return count;
+}
 
 std::vector<std::string> suite_names(const DataRoot& data) {
   return yaml_stems(data.suites());

@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scenarios/data_root.hpp"
@@ -20,6 +21,12 @@
 
 namespace tumble::scenarios {
 
+/// Draws of one sort ("mild"), each with its scenario and its seed.
+struct DrawClass {
+  std::string name;
+  std::vector<std::pair<std::string, std::uint64_t>> draws;
+};
+
 /// A suite file, scenarios/suites/NAME.yaml: scenarios x seeds x methods, and once more for each point of each curve;
 /// or recordings x methods, each recording standing for one draw (recorded_draw.hpp).
 struct Suite {
@@ -31,7 +38,13 @@ struct Suite {
   double timeout_s = 300;                   ///< for one method on one draw
   std::vector<std::string> recordings;      ///< patterns of files, instead of scenarios and seeds
   std::filesystem::path recordings_folder;  ///< that they are relative to: the suite file's, unless told
+  std::vector<DrawClass> classes;           ///< key `draws`: of scenarios x seeds these alone; empty: all of them
+  std::vector<std::string> shown_metrics;   ///< key `metrics`: what `bench` shows; empty: the headline ones
   std::vector<Variation> curves;            ///< key `vary`: {KEY: [values]}, keys that move together joined by "+"
+
+  bool has_draw(const std::string& scenario, std::uint64_t seed) const;
+  /// Of scenarios and seeds, those from `first_seed` to `last_seed`, which may be a shard's; curves not counted.
+  std::uint64_t draw_count() const;
 };
 
 std::vector<std::string> suite_names(const DataRoot& data);

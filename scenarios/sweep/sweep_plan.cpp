@@ -56,11 +56,11 @@ SweepPlan::SweepPlan(const DataRoot& data, const Suite& suite, const SweepOption
   for (const Planned& each : scenarios_) draw(data, each.scenario, suite.first_seed);
   next_.seed = suite.first_seed;
   next_.past_seeds = scenarios_.empty();
+  if (!at_end() && !is_wanted()) advance();
 }
 
 std::uint64_t SweepPlan::draws_total() const {
-  const std::uint64_t seeds = suite_.last_seed - suite_.first_seed + 1;
-  return recordings_.size() + seeds * scenarios_.size() * simulated_.size();
+  return recordings_.size() + suite_.draw_count() * simulated_.size();
 }
 
 void SweepPlan::require_same_recordings(const Results& results) const {
@@ -73,7 +73,17 @@ void SweepPlan::require_same_recordings(const Results& results) const {
   }
 }
 
+bool SweepPlan::is_wanted() const {
+  return next_.recording < recordings_.size() || suite_.has_draw(scenarios_[next_.scenario].scenario.name, next_.seed);
+}
+
 void SweepPlan::advance() {
+  do {
+    step();
+  } while (!at_end() && !is_wanted());
+}
+
+void SweepPlan::step() {
   if (next_.recording < recordings_.size()) {
     ++next_.recording;
     return;
@@ -129,7 +139,8 @@ DrawTask SweepPlan::of_scenario(const Results& results) const {
 }
 
 bool SweepPlan::has(const DrawName& draw) const {
-  return std::any_of(scenarios_.begin(), scenarios_.end(),
+  return suite_.has_draw(draw.scenario, draw.seed) &&
+         std::any_of(scenarios_.begin(), scenarios_.end(),
                      [&](const Planned& planned) { return planned.scenario.name == draw.scenario; });
 }
 

@@ -64,6 +64,9 @@ class SweepPlan {
     bool past_seeds = false;
   };
 
+  /// Whether the draw that comes next is one of the suite's, where these are named one by one.
+  bool is_wanted() const;
+  void step();
   void add_missing(const std::vector<MethodPointer>& methods, const std::vector<Outcome>& held, const Setting& setting,
                    DrawTask& task) const;
   DrawTask of_recording(const Results& results) const;

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/bench/bench_result.hpp"
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/methods/estimate_file.hpp"
 #include "scenarios/methods/map_file.hpp"
@@ -205,6 +206,15 @@ void write_documents(const path& folder, const path& scratch) {
   put_text(in(folder, "situation") / "roll", to_yaml(draw(data, load_scenario(data, "roll"), 1)));
   std::filesystem::copy_file(data.suites() / "rates_rig.yaml", in(folder, "suite") / "rates_rig");
   std::filesystem::copy_file(data.data_sheets() / "mid40.yaml", in(folder, "data_sheet") / "mid40");
+  put_text(in(folder, "suite") / "named_draws",
+           "name: a\ndoc: b\ndraws: {mild: {hill: [3, 8]}, wild: {roll: [3]}}\nmetrics: [ate_m]\nmethods: [raw]\n");
+  put_text(in(folder, "description") / "small",
+           "name: mine\nkind: slam\ncommand: [sh, \"{folder}/mine\", --bag, \"{rosbag2}\", --out, \"{output}\", "
+           "\"{map}\"]\nrobots: [rig]\nframe: lidar\nenvironment: {A: \"1\"}\ntime_limit_s: 60\n");
+  BenchResult bench{"small", "0123", Kind::rate, "raw", "", "ours", "0.1.0", "tumble bench rate/raw", "2026-01-31", {}};
+  bench.draws = {{"hill", 1, "mild", "ab", OutcomeStatus::ok, {{"ate_m", 0.5}}},
+                 {"hill", 2, "wild", "", OutcomeStatus::timeout, {}}};
+  put_text(in(folder, "bench_results") / "small", to_line(bench) + "\n");
   put_text(in(folder, "gate") / "small", "suite: gate\nrisk: 0.05\nmargin: 0.02\nshare_margin: 0.005\nworst: 2\n");
   put_text(in(folder, "gate_run") / "small",
            "scenario,kind,method,metric,1,2\nhill,slam,tumble,status,ok,failed\nhill,slam,tumble,map_overlap,0.75,\n");

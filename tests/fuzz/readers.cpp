@@ -4,6 +4,7 @@
 #include <array>
 #include <fstream>
 
+#include "scenarios/bench/bench_result.hpp"
 #include "scenarios/draw/data_sheet.hpp"
 #include "scenarios/draw/registry.hpp"
 #include "scenarios/draw/scenario.hpp"
@@ -11,6 +12,7 @@
 #include "scenarios/draw/strict_yaml.hpp"
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/methods/external_description.hpp"
 #include "scenarios/methods/map_file.hpp"
 #include "scenarios/methods/rig_calibration_file.hpp"
 #include "scenarios/recordings/bags/bag.hpp"
@@ -189,6 +191,13 @@ void estimate_json(const path& file) {
   estimate(file.parent_path());
 }
 
+void description(const path& file) {
+  read_external(file);
+}
+void bench_results(const path& file) {
+  read_bench_results(file);
+}
+
 constexpr std::array kReaders = {
     Reader{"recording", "a.h5", recording},
     Reader{"imu_csv", "a.csv", imu_csv},
@@ -219,6 +228,8 @@ constexpr std::array kReaders = {
     Reader{"estimate_rates", "rates.csv", estimate_rates},
     Reader{"estimate_json", "estimate.json", estimate_json},
     Reader{"saved_states", "edits", saved_states},
+    Reader{"description", "a.yaml", description},
+    Reader{"bench_results", "a.jsonl", bench_results},
 };
 
 }  // namespace

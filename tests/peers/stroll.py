@@ -53,15 +53,15 @@ def find(node, metric: str) -> list[float]:
 
 
 def mirrored(root: pathlib.Path, work: pathlib.Path) -> pathlib.Path:
-    """KISS-ICP behind an adapter that exchanges x and y."""
+    """KISS-ICP behind a loop that exchanges x and y."""
     folder = work / "mirrored"
     shutil.rmtree(folder, ignore_errors=True)
     shutil.copytree(root / "peers", folder)
-    adapter = folder / "adapters/kiss_icp.py"
-    text = adapter.read_text()
+    loop = folder / "frames.py"
+    text = loop.read_text()
     wrong = text.replace("register_frame(sweep.points_L_m,", "register_frame(sweep.points_L_m[:, [1, 0, 2]],")
     assert wrong != text
-    adapter.write_text(wrong)
+    loop.write_text(wrong)
     return folder / "kiss_icp.yaml"
 
 

@@ -31,8 +31,8 @@ TEST_P(EachVerb, RefusesAnUnknownOptionInOneLine) {
 
 INSTANTIATE_TEST_SUITE_P(Program, EachVerb,
                          testing::Values("list", "run", "record", "estimate", "score", "sweep", "merge", "report",
-                                         "compare", "sensitivity", "render", "replay", "certify", "gate", "triage",
-                                         "export", "import"));
+                                         "compare", "sensitivity", "render", "replay", "certify", "bench", "gate",
+                                         "triage", "export", "import"));
 
 struct Wrong {
   const char* what;

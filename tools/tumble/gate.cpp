@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/methods/external_method.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/sweep/certified_results.hpp"
 #include "tools/report/certificate_html.hpp"
@@ -71,7 +72,7 @@ bool is_of(const scenarios::MethodRun& run, const scenarios::MethodPointer& meth
 /// given is held from then on.
 std::vector<scenarios::MethodPointer> given_methods(const Options& options) {
   for (const std::string& name : options.methods) {
-    if (!options.accept && !name.ends_with(".yaml"))
+    if (!options.accept && !scenarios::is_method_file(name))
       throw scenarios::BadInput("--method " + name +
                                 ": must be a FILE.yaml that describes a method; of this build's, those that were "
                                 "accepted are held, and --accept takes in more");

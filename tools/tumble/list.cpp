@@ -213,7 +213,8 @@ Listing list_suites(const scenarios::DataRoot& data, const std::string& only) {
     }
     table.add_row(
         {name, joined(suite.recordings.empty() ? suite.scenarios : suite.recordings),
-         std::to_string(suite.first_seed) + ".." + std::to_string(suite.last_seed),
+         suite.classes.empty() ? std::to_string(suite.first_seed) + ".." + std::to_string(suite.last_seed)
+                               : std::to_string(suite.draw_count()) + " named",
          suite.methods.size() == all ? "all" : std::to_string(suite.methods.size()) + " of " + std::to_string(all),
          joined(varied), number_text(suite.timeout_s) + " s", suite.doc});
     out.document.push_back({{"name", name},

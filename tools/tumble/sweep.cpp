@@ -46,10 +46,12 @@ struct Options {
 /// The suite with what the command line changes of it. Returns false when this shard has no seed.
 bool select(const scenarios::DataRoot& data, const Options& options, scenarios::Suite& suite) {
   suite = scenarios::load_suite(data, options.suite);
-  if (!options.seeds.empty()) std::tie(suite.first_seed, suite.last_seed) = parse_seeds(options.seeds);
   const bool recorded = !suite.recordings.empty();
   if (recorded && (!options.seeds.empty() || !options.shard.empty()))
     throw scenarios::BadInput("--seeds, --shard: a suite of recordings has no seeds");
+  if (!suite.classes.empty() && !options.seeds.empty())
+    throw scenarios::BadInput("--seeds: suite '" + suite.name + "' names its draws");
+  if (!options.seeds.empty()) std::tie(suite.first_seed, suite.last_seed) = parse_seeds(options.seeds);
   if (!recorded && !options.recordings.empty())
     throw scenarios::BadInput("--data: suite '" + suite.name + "' has no recordings");
   if (!options.recordings.empty()) suite.recordings_folder = options.recordings;

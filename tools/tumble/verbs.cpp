@@ -17,6 +17,7 @@ std::span<const Verb> verbs() {
       {"sensitivity", "which of the drawn numbers a method's scores depend on", declare_sensitivity},
       {"render", "pictures of a recording or of a draw", declare_render},
       {"replay", "a page that plays a recording with its estimates, off line", declare_replay},
+      {"bench", "a method of anybody's on the standard draws of its kind, beside stored results", declare_bench},
       {"gate", "sweep a suite's fixed seeds and hold them to the accepted run, draw by draw", declare_gate},
       {"triage", "replace one input at a time by its truth and say which one cures a failure", declare_triage},
       {"export", "a recording in somebody else's format", declare_export},

@@ -38,6 +38,7 @@ Action declare_compare(CLI::App& options, const Session& session);
 Action declare_sensitivity(CLI::App& options, const Session& session);
 Action declare_render(CLI::App& options, const Session& session);
 Action declare_replay(CLI::App& options, const Session& session);
+Action declare_bench(CLI::App& options, const Session& session);
 Action declare_gate(CLI::App& options, const Session& session);
 Action declare_triage(CLI::App& options, const Session& session);
 Action declare_export(CLI::App& options, const Session& session);

@@ -13,8 +13,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/recording_file.hpp"
-#include "tests/scenarios/methods/synthetic_recording.hpp"
-#include "tests/scenarios/sweep/temporary_folder.hpp"
+#include "tests/scenarios/methods/external_runs.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -26,42 +25,18 @@ const std::string kRawByAwk =
     "awk -F, 'BEGIN { print \"time_ns,wx_rad_s,wy_rad_s,wz_rad_s\" } "
     "NR > 1 { printf \"%d%09d,%s,%s,%s\\n\", $1, $2, $9, $10, $11 }' {csv}/imu.csv > {output}";
 
-class ExternalMethod : public testing::TemporaryFolder {
+class ExternalMethod : public testing::ExternalRuns {
  protected:
   std::filesystem::path describe(const std::string& kind, const std::string& script, const std::string& more = "") {
     write("theirs.yaml",
           "name: theirs\nkind: " + kind + "\ncommand:\n  - sh\n  - -c\n  - >-\n    " + script + "\n" + more);
     return folder_ / "theirs.yaml";
   }
-  static Estimate run(const std::filesystem::path& file) {
-    static const sim::Recording recording = testing::synthetic_rig();
-    return external_method(file).run(recording.sensors, {}, {});
-  }
-  /// Why a run gave no answer, and what it said.
-  static std::pair<NoAnswer::Why, std::string> no_answer(const std::filesystem::path& file) {
-    try {
-      run(file);
-    } catch (const NoAnswer& error) {
-      return {error.why(), error.what()};
-    }
-    ADD_FAILURE() << "it answered";
-    return {};
-  }
-  static std::string refused(const std::filesystem::path& file) {
-    try {
-      run(file);
-    } catch (const BadInput& error) {
-      return error.what();
-    }
-    ADD_FAILURE() << "nothing was refused";
-    return {};
-  }
 };
 
 TEST_F(ExternalMethod, AnswersAsTheSameMethodOfOursDoes) {
   const Estimate theirs = run(describe("rate", kRawByAwk));
-  const sim::Recording recording = testing::synthetic_rig();
-  const Estimate ours = find_methods("rate/raw").front()->run(recording.sensors, {}, {});
+  const Estimate ours = find_methods("rate/raw").front()->run(recording().sensors, {}, {});
   ASSERT_EQ(theirs.rates.size(), ours.rates.size());
   ASSERT_FALSE(theirs.rates.empty());
   for (std::size_t k = 0; k < ours.rates.size(); ++k) {
@@ -158,6 +133,7 @@ TEST_F(ExternalMethod, DescriptionsAreCheckedBeforeAnythingRuns) {
   EXPECT_THAT(refused(describe("rate", "{output}", "timelimit: 3\n")), HasSubstr("timelimit"));
   EXPECT_THAT(refused(describe("rate", "{output}", "output: tum\n")), HasSubstr("output"));
   EXPECT_THAT(refused(describe("rate", "{output}", "version: [sh, -c, 'exit 1']\n")), HasSubstr("version"));
+  EXPECT_THAT(refused(describe("rate", "{output} {" + std::string(500'000, 'a') + "}")), HasSubstr("at most 4096"));
 }
 
 TEST_F(ExternalMethod, AVersionTellsProgramAndDescription) {

@@ -80,6 +80,32 @@ TEST_F(SuiteTest, ComplaintsNameFileLineAndNearestName) {
   }
 }
 
+TEST_F(SuiteTest, DrawsMayBeNamedInClasses) {
+  write("scenarios/suites/test.yaml",
+        "name: test\ndoc: d\ndraws:\n  mild: {hill: [7, 3], roll: [5]}\n  wild: {hill: [9]}\n"
+        "metrics: [ate_m]\n");
+  Suite suite = load_suite(data(), "test");
+  ASSERT_EQ(suite.classes.size(), 2u);
+  EXPECT_EQ(suite.classes[0].draws,
+            (std::vector<std::pair<std::string, std::uint64_t>>{{"hill", 7}, {"hill", 3}, {"roll", 5}}));
+  EXPECT_EQ(suite.first_seed, 3u);
+  EXPECT_EQ(suite.last_seed, 9u);
+  EXPECT_EQ(suite.draw_count(), 4u);
+  EXPECT_TRUE(suite.has_draw("hill", 9));
+  EXPECT_FALSE(suite.has_draw("roll", 9));
+  EXPECT_EQ(suite.shown_metrics, (std::vector<std::string>{"ate_m"}));
+  suite.last_seed = 5;  // a shard
+  EXPECT_EQ(suite.draw_count(), 2u);
+
+  const std::string head = "name: test\ndoc: d\n";
+  EXPECT_THAT(complaint(head + "draws: {mild: {hil: [1]}}\n"), ::testing::HasSubstr("did you mean 'hill'"));
+  EXPECT_THAT(complaint(head + "draws: {mild: {hill: [1]}, wild: {hill: [1]}}\n"), ::testing::HasSubstr("twice"));
+  EXPECT_THAT(complaint(head + "draws: {mild: {}}\n"), ::testing::HasSubstr("no draw"));
+  EXPECT_THAT(complaint(head + "draws: {}\n"), ::testing::HasSubstr("no draw"));
+  EXPECT_THAT(complaint(head + "draws: {mild: {hill: [1]}}\nscenarios: [hill]\n"), ::testing::HasSubstr("has none"));
+  EXPECT_THAT(complaint(head + "draws: {mild: {hill: [1]}}\nmetrics: [ate]\n"), ::testing::HasSubstr("ate_m"));
+}
+
 // the suites that are delivered, on the catalogue that is delivered
 TEST(Suites, OfTheTreeLoad) {
   const DataRoot data{test::source_dir()};

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/methods/command_run.hpp"
+
+#include <fmt/format.h>
+#include <stdlib.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <system_error>
+
+#include "scenarios/draw/strict_yaml.hpp"
+#include "scenarios/errors.hpp"
+#include "scenarios/methods/external_method.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr double kVersionLimit_s = 30.0;
+constexpr std::size_t kFirstLineMax = 120;
+
+}  // namespace
+
+ScratchFolder::ScratchFolder() {
+  std::string name = (std::filesystem::temp_directory_path() / "tumble-method-XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr) throw std::system_error(errno, std::generic_category(), name);
+  path_ = name;
+}
+
+ScratchFolder::~ScratchFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+std::string with_last_words(const std::string& what, const CommandEnd& end) {
+  return what + (end.last_words.empty() ? "" : "; it said: " + end.last_words);
+}
+
+void require_done(const CommandEnd& end) {
+  if (end.how == CommandEnd::How::done) return;
+  const bool late = end.how == CommandEnd::How::out_of_time;
+  throw NoAnswer(late ? NoAnswer::Why::out_of_time : NoAnswer::Why::crashed, with_last_words(end.reason, end));
+}
+
+std::string version_said(Command command, const std::string& place) {
+  command.time_limit_s = kVersionLimit_s;
+  const CommandEnd end = run_command(command);
+  if (end.how != CommandEnd::How::done) throw BadInput(place + with_last_words(end.reason, end));
+  const std::string said = read_text_file(command.transcript);
+  return fmt::format("{}; said {:016x}", said.substr(0, std::min(said.find('\n'), kFirstLineMax)),
+                     XXH3_64bits(said.data(), said.size()));
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Calls one function of a file with the sensors of a recording: runner FILE FUNCTION KIND SENSORS ANSWER.
+
+The program runs it for a method that is a function of Python (EXTERNAL.md, python_exchange.hpp). SENSORS and ANSWER are descriptors of
+shared memory: the length of a JSON text (8 bytes, little end first), the text, arrays from the next multiple of 64 on. It needs
+numpy alone.
+"""
+import importlib.util
+import json
+import mmap
+import os
+import struct
+import sys
+import traceback
+import types
+
+import numpy as np
+
+ALIGNMENT = 64
+TOLD_MAX = 1500  # characters of a traceback, the last ones
+UNIT_TOLERANCE = 1e-2  # as of a TUM file
+
+
+class Refused(Exception):
+    """What the function returned is not what it should be."""
+
+
+class Lidar(types.SimpleNamespace):
+    """Returns sweep after sweep. Its sweeps: len(lidar), lidar[k], `for sweep in lidar`."""
+
+    def __len__(self):
+        return len(self.sweep_start_ns)
+
+    def __getitem__(self, index):
+        if not -len(self) <= index < len(self):
+            raise IndexError(f"sweep {index} of {len(self)}")
+        index %= len(self)
+        start_ns, rows = int(self.sweep_start_ns[index]), slice(int(self.sweep_first[index]), int(self.sweep_first[index + 1]))
+        return types.SimpleNamespace(start_ns=start_ns, end_ns=start_ns + self.sweep_period_ns * (self.point_times == "measured"),
+                                     position=self.position[rows], offset_ns=self.offset_ns[rows], ring=self.ring[rows],
+                                     intensity=self.intensity[rows])
+
+
+def read_sensors(descriptor):
+    """The recording: imus, lidars, robot, sphere_radius_m, gravity_m_s2. Arrays are views of the memory, not to be written."""
+    memory = mmap.mmap(descriptor, 0, flags=mmap.MAP_PRIVATE, prot=mmap.PROT_READ)  # shared, a sealed one is refused by some kernels
+    (length,) = struct.unpack_from("<Q", memory)
+    data = -(-(8 + length) // ALIGNMENT) * ALIGNMENT
+
+    def made(node):
+        if isinstance(node, list):
+            return [made(each) for each in node]
+        if not isinstance(node, dict):
+            return node
+        if "offset" in node:
+            count = int(np.prod(node["shape"]))
+            return np.frombuffer(memory, node["dtype"], count, data + node["offset"]).reshape(node["shape"]) if count else (
+                np.zeros(node["shape"], node["dtype"]))
+        return {name: made(value) for name, value in node.items()}
+
+    told = made(json.loads(memory[8:8 + length]))
+    for imu in told["imus"]:
+        imu["earth_field_t"] = None if imu["earth_field_t"] is None else np.array(imu["earth_field_t"])
+    told["imus"] = [types.SimpleNamespace(**imu, lever_arm_m=imu["T_BI"][:3, :3].T @ imu["T_BI"][:3, 3]) for imu in told["imus"]]
+    told["lidars"] = [Lidar(**lidar) for lidar in told["lidars"]]
+    return types.SimpleNamespace(**told)
+
+
+def numbers(name, given, *shape):
+    """As float64 of that shape, all finite. A size of None may be any."""
+    try:
+        out = np.asarray(given, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise Refused(f"{name} is no array of numbers but {type(given).__name__}") from None
+    if out.ndim != len(shape) or any(wanted not in (None, size) for size, wanted in zip(out.shape, shape)):
+        bound = ", ".join("N" if size is None else str(size) for size in shape)
+        raise Refused(f"{name} has the shape {out.shape}, must be ({bound})")
+    bad = np.flatnonzero(~np.isfinite(out.reshape(len(out), -1)).all(axis=1))
+    if len(bad):
+        raise Refused(f"{name}[{bad[0]}] is {out[bad[0]].tolist()}, must be finite ({len(bad)} of {len(out)} rows are not)")
+    return out
+
+
+def instants(given):
+    out = np.asarray(given)
+    if out.ndim != 1 or out.dtype.kind not in "iu":
+        raise Refused(f"time_ns is {out.dtype} of the shape {out.shape}, must be integers of the shape (N,)")
+    if len(out) == 0:
+        raise Refused("time_ns is empty, must be at least one instant")
+    back = np.flatnonzero(np.diff(out.astype(np.int64)) <= 0)
+    if len(back):
+        raise Refused(f"time_ns[{back[0] + 1}] is {out[back[0] + 1]}, must be more than {out[back[0]]} before it")
+    return out.astype(np.int64)
+
+
+def parts(returned, names):
+    """What was returned, by name: attributes of those names, or a tuple in their order, whose last may be absent."""
+    if returned is None:
+        raise Refused(f"nothing was returned, must be {', '.join(names)}")
+    if hasattr(returned, names[0]):
+        return {name: getattr(returned, name) for name in names if getattr(returned, name, None) is not None}
+    given = returned if isinstance(returned, tuple) else (returned,)
+    if len(given) > len(names):
+        raise Refused(f"{len(given)} values were returned, must be at most {len(names)}: {', '.join(names)}")
+    return dict(zip(names, given))
+
+
+def rates(returned, count):
+    given = parts(returned, ("rate", "covariance"))
+    out = {"rate": numbers("rate", given.get("rate"), count, 3)}
+    if "covariance" in given:
+        out["covariance"] = numbers("covariance", given["covariance"], count, 3, 3)
+    return out
+
+
+def poses(returned, names):
+    given = parts(returned, names)
+    missing = [name for name in names[:names.index("quaternion") + 1] if name not in given]
+    if missing:
+        raise Refused(f"what was returned has no {missing[0]}, must be {', '.join(names)} (a tuple, or attributes of these names)")
+    out = {"time_ns": instants(given["time_ns"])}
+    count = len(out["time_ns"])
+    if "position" in names:
+        out["position"] = numbers("position", given["position"], count, 3)
+    out["quaternion"] = numbers("quaternion", given["quaternion"], count, 4)
+    norm = np.linalg.norm(out["quaternion"], axis=1)
+    wrong = np.flatnonzero(np.abs(norm - 1.0) > UNIT_TOLERANCE)
+    if len(wrong):
+        raise Refused(f"quaternion[{wrong[0]}] has the norm {norm[wrong[0]]:.6g}, must be 1 to {UNIT_TOLERANCE:g}")
+    if "map" in given:
+        out["map"] = numbers("map", given["map"], None, 3).astype(np.float32)
+    return out
+
+
+def arrays_of(kind, returned, recording):
+    if kind == "rate":
+        return rates(returned, len(recording.imus[0].time_ns) if recording.imus else 0)
+    return poses(returned, {"attitude": ("time_ns", "quaternion"), "position": ("time_ns", "position", "quaternion")}.get(
+        kind, ("time_ns", "position", "quaternion", "map")))
+
+
+def told(error):
+    """The traceback without the lines of this file."""
+    whole = traceback.TracebackException.from_exception(error)
+    for each in (whole, whole.__cause__, whole.__context__):
+        if each is not None:
+            each.stack = traceback.StackSummary.from_list([line for line in each.stack if line.filename != "<string>"
+                                                           and not line.filename.startswith("<frozen")])
+    return "".join(whole.format()).strip()[-TOLD_MAX:]
+
+
+def called(file, function, recording):
+    """What the function of the file returns. Its folder is the first of sys.path, as that of a script is."""
+    sys.path[0] = os.path.dirname(file)
+    spec = importlib.util.spec_from_file_location(os.path.splitext(os.path.basename(file))[0], file)
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module
+    spec.loader.exec_module(module)
+    if not callable(getattr(module, function, None)):
+        raise Refused(f"{os.path.basename(file)} has no function '{function}'")
+    return getattr(module, function)(recording)
+
+
+def answer(descriptor, text, arrays):
+    offset = 0
+    for name, array in arrays.items():
+        text.setdefault("arrays", {})[name] = {"dtype": array.dtype.str, "shape": array.shape, "offset": offset}
+        offset += -(-array.nbytes // ALIGNMENT) * ALIGNMENT
+    head = json.dumps(text).encode()
+    with open(descriptor, "wb", closefd=False) as out:
+        written = out.write(struct.pack("<Q", len(head)) + head)
+        out.write(bytes(-written % ALIGNMENT))
+        for array in arrays.values():
+            out.write(np.ascontiguousarray(array).tobytes())
+            out.write(bytes(-array.nbytes % ALIGNMENT))
+
+
+def main(file, function, kind, source, sink):
+    try:
+        recording = read_sensors(int(source))
+        arrays = arrays_of(kind, called(file, function, recording), recording)
+        answer(int(sink), {}, arrays)
+    except Refused as error:
+        answer(int(sink), {"refused": f"{function}: {error}"}, {})
+    except BaseException as error:  # sys.exit() of the function too
+        print(told(error), file=sys.stderr)
+        answer(int(sink), {"raised": told(error)}, {})
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A function of Python as a method: what it is given, what it may return, and every way in which it may fail.
+#include "scenarios/methods/python_method.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <fstream>
+#include <span>
+#include <string>
+
+#include "scenarios/methods/python_exchange.hpp"
+#include "tests/scenarios/methods/external_runs.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class PythonMethod : public testing::ExternalRuns {
+ protected:
+  // Debian's own, which tools/setup gives numpy; another may come first in PATH
+  static void SetUpTestSuite() { setenv("TUMBLE_PYTHON", "/usr/bin/python3", 0); }
+
+  std::filesystem::path function(const std::string& kind, const std::string& body, const std::string& more = "") const {
+    write("theirs.py", "import os, sys, time\nimport numpy as np\n\ndef " + kind + "(recording):\n    " + body + "\n");
+    write("theirs.yaml", "name: theirs\nkind: " + kind + "\npython: theirs.py\n" + more);
+    return folder_ / "theirs.yaml";
+  }
+  std::string wrong(const std::string& kind, const std::string& returned) const {
+    return refused(
+        function(kind, "imu = recording.imus[0]; n = len(imu.time_ns); t = imu.time_ns; return " + returned));
+  }
+};
+
+TEST_F(PythonMethod, AnswersAsTheSameMethodOfOursDoes) {
+  const Estimate theirs = run(function("rate", "return recording.imus[0].gyro"));
+  const Estimate ours = find_methods("rate/raw").front()->run(recording().sensors, {}, {});
+  ASSERT_EQ(theirs.rates.size(), ours.rates.size());
+  ASSERT_FALSE(theirs.rates.empty());
+  for (std::size_t k = 0; k < ours.rates.size(); ++k) {
+    EXPECT_EQ(theirs.rates[k].time_ns, ours.rates[k].time_ns);
+    EXPECT_EQ(theirs.rates[k].w_WI_I_rad_s, ours.rates[k].w_WI_I_rad_s);
+  }
+}
+
+TEST_F(PythonMethod, AFileAloneIsAMethodOfItsName) {
+  write("believer.py",
+        "def helper(x):\n    return x\n\ndef rate(recording):\n    return helper(recording.imus[0].gyro)\n");
+  const Method method = external_method(folder_ / "believer.py");
+  EXPECT_EQ(method.info.name, "believer");
+  EXPECT_EQ(method.info.kind, Kind::rate);
+  EXPECT_EQ(method.run(recording().sensors, {}, {}).rates.size(), recording().sensors.imus[0].time_ns.size());
+  write("two.py", "def rate(r):\n    pass\ndef slam(r):\n    pass\n");
+  EXPECT_THAT(refused(folder_ / "two.py"), HasSubstr("2 functions"));
+  write("none.py", "def rates(r):\n    pass\n");
+  EXPECT_THAT(refused(folder_ / "none.py"), HasSubstr("0 functions"));
+  write("My-Method.py", "def rate(r):\n    pass\n");
+  EXPECT_THAT(refused(folder_ / "My-Method.py"), HasSubstr("My-Method"));
+}
+
+TEST_F(PythonMethod, CovariancesComeAsATupleOrByName) {
+  const std::string covariance = "np.tile(np.diag([1.0, 2.0, 3.0]) + 0.5 * np.eye(3, k=1), (n, 1, 1))";
+  const std::string of = "imu = recording.imus[0]; n = len(imu.time_ns); ";
+  const Estimate tuple = run(function("rate", of + "return imu.gyro, " + covariance));
+  EXPECT_EQ(tuple.rates[7].covariance_rad2_s2, (Eigen::Matrix3d() << 1, 0.5, 0, 0, 2, 0.5, 0, 0, 3).finished());
+  const Estimate named = run(function(
+      "rate", of + "import types; return types.SimpleNamespace(rate=imu.gyro, covariance=" + covariance + ")"));
+  EXPECT_EQ(named.rates[7].covariance_rad2_s2, tuple.rates[7].covariance_rad2_s2);
+}
+
+TEST_F(PythonMethod, PosesAttitudesAndMaps) {
+  const std::string two = "t = np.array([100, 200]); q = np.array([[0, 0, 0, 1], [0, 0, 0.6, 0.8]]); ";
+  const Estimate attitudes = run(function("attitude", two + "return t, q"));
+  ASSERT_EQ(attitudes.attitudes.size(), 2u);
+  EXPECT_TRUE(attitudes.poses.empty());
+  EXPECT_NEAR(attitudes.attitudes[1].q_WA.z(), 0.6, 1e-15);
+  const Estimate poses = run(function("position", two + "return t, np.array([[1, 2, 3], [4, 5, 6]]), q"));
+  ASSERT_EQ(poses.poses.size(), 2u);
+  EXPECT_EQ(poses.poses[1].p_WA_m, Eigen::Vector3d(4, 5, 6));
+  const Estimate map =
+      run(function("slam", two + "return t, np.zeros((2, 3)), q, recording.lidars[0][3].position", "frame: lidar\n"));
+  EXPECT_EQ(map.frame, Frame::lidar);
+  const sim::LidarRecord& lidar = recording().sensors.lidars[0];
+  ASSERT_EQ(map.map.size(), lidar.sweep_first[4] - lidar.sweep_first[3]);
+  EXPECT_EQ(map.map[5].position_W_m, lidar.position_L_m[lidar.sweep_first[3] + 5]);
+}
+
+TEST_F(PythonMethod, SeesTheSensorsAloneAndCannotChangeThem) {
+  EXPECT_THAT(no_answer(function("rate", "raise ValueError(sorted(vars(recording)))")).second,
+              HasSubstr("['gravity_m_s2', 'imus', 'lidars', 'robot', 'sphere_radius_m']"));
+  EXPECT_THAT(no_answer(function("rate", "recording.imus[0].gyro[0] = 0")).second, HasSubstr("read-only"));
+  EXPECT_THAT(no_answer(function("rate", "os.pwrite(int(sys.argv[4]), b'x', 0)")).second, HasSubstr("PermissionError"));
+}
+
+TEST_F(PythonMethod, WhatItRaisesIsTheMessageWithPlace) {
+  const auto [why, what] = no_answer(function("rate", "return 1 / len(recording.robot[:0])"));
+  EXPECT_EQ(why, NoAnswer::Why::crashed);
+  EXPECT_THAT(what,
+              AllOf(HasSubstr("ZeroDivisionError"), HasSubstr("theirs.py\", line 5"), Not(HasSubstr("<string>"))));
+  EXPECT_THAT(no_answer(function("rate", "return (")).second, HasSubstr("SyntaxError"));
+  EXPECT_THAT(no_answer(function("rate", "sys.exit(3)")).second, HasSubstr("SystemExit: 3"));
+}
+
+TEST_F(PythonMethod, ACrashAHangAndALackOfMemoryAreNoAnswer) {
+  EXPECT_THAT(no_answer(function("rate", "os.kill(os.getpid(), 11)")).second, HasSubstr("signal 11"));
+  EXPECT_EQ(no_answer(function("rate", "time.sleep(600)", "time_limit_s: 1\n")).first, NoAnswer::Why::out_of_time);
+  const auto [why, what] = no_answer(function("rate", "return np.ones(10**9)", "memory_limit_mib: 1024\n"));
+  EXPECT_EQ(why, NoAnswer::Why::crashed);
+  EXPECT_THAT(what, HasSubstr("Unable to allocate"));
+}
+
+TEST_F(PythonMethod, WhatItReturnsIsRefusedWithPlaceValueAndBound) {
+  EXPECT_THAT(wrong("rate", "None"), HasSubstr("nothing was returned"));
+  EXPECT_THAT(wrong("rate", "'fast'"), HasSubstr("no array of numbers but str"));
+  EXPECT_THAT(wrong("rate", "imu.gyro[1:]"),
+              HasSubstr("must be (" + std::to_string(recording().sensors.imus[0].time_ns.size())));
+  EXPECT_THAT(wrong("rate", "imu.gyro[:, :2]"), HasSubstr("has the shape"));
+  EXPECT_THAT(wrong("rate", "np.where(np.arange(n)[:, None] == 17, np.nan, imu.gyro)"),
+              AllOf(HasSubstr("rate[17] is [nan, nan, nan]"), HasSubstr("1 of")));
+  EXPECT_THAT(wrong("rate", "imu.gyro, np.full((n, 3, 3), np.inf)"), HasSubstr("covariance[0]"));
+  EXPECT_THAT(wrong("rate", "imu.gyro, np.zeros((n, 3))"), HasSubstr("covariance has the shape"));
+  EXPECT_THAT(wrong("rate", "1, 2, 3"), HasSubstr("at most 2"));
+  EXPECT_THAT(wrong("attitude", "t"), HasSubstr("has no quaternion"));
+  EXPECT_THAT(wrong("attitude", "t * 1e-9, np.tile([0, 0, 0, 1], (n, 1))"), HasSubstr("must be integers"));
+  EXPECT_THAT(wrong("attitude", "t[:0], np.zeros((0, 4))"), HasSubstr("is empty"));
+  EXPECT_THAT(wrong("attitude", "np.minimum(t, t[9]), np.tile([0, 0, 0, 1], (n, 1))"), HasSubstr("time_ns[10]"));
+  EXPECT_THAT(wrong("attitude", "t, np.tile([0, 0, 0, 2], (n, 1))"), HasSubstr("norm 2"));
+  EXPECT_THAT(refused(function("rate", "os._exit(0)")), HasSubstr("left no answer"));
+  EXPECT_THAT(refused(function("rate", "os.write(int(sys.argv[5]), b'x' * 100); os._exit(0)")), HasSubstr("damaged"));
+  EXPECT_THAT(refused(function("rate", "pass", "function: rote\n")), HasSubstr("no function 'rote'"));
+}
+
+TEST_F(PythonMethod, DescriptionsAndInterpretersAreCheckedBeforeAnythingRuns) {
+  EXPECT_THAT(refused(function("rate", "pass", "command: [true, '{output}']\n")), HasSubstr("one of the keys"));
+  EXPECT_THAT(refused(function("rate", "pass", "output: rates\n")), HasSubstr("output"));
+  EXPECT_THAT(refused(function("rate", "pass", "interpreter: [/usr/bin/python3, -I, -S]\n")),
+              HasSubstr("has no numpy"));
+  EXPECT_THAT(refused(function("rate", "pass", "interpreter: [no_such_python]\n")), HasSubstr("no_such_python"));
+  write("gone.yaml", "name: gone\nkind: rate\npython: gone.py\n");
+  EXPECT_THAT(refused(folder_ / "gone.yaml"), HasSubstr("is no file"));
+  write("both.yaml", "name: both\nkind: rate\ncommand: [true, '{output}']\nfunction: rate\n");
+  EXPECT_THAT(refused(folder_ / "both.yaml"), HasSubstr("function"));
+}
+
+TEST_F(PythonMethod, AVersionTellsInterpreterAndFile) {
+  const std::string first = external_method(function("rate", "return 1")).info.version;
+  const std::string second = external_method(function("rate", "return 2")).info.version;
+  EXPECT_THAT(first, AllOf(HasSubstr("Python 3"), HasSubstr("numpy"), HasSubstr("theirs.py")));
+  EXPECT_NE(first, second);
+}
+
+/// A good answer, cut at any length and with any byte spoiled: taken or refused, and nothing else.
+TEST_F(PythonMethod, AnyAnswerInMemoryIsTakenOrRefused) {
+  sim::Sensors one;
+  one.imus.emplace_back();
+  one.imus[0].time_ns = {1};
+  std::string good = R"({"arrays":{"rate":{"dtype":"<f8","shape":[1,3],"offset":0}}})";
+  good.insert(0, std::string(1, static_cast<char>(good.size())) + std::string(7, '\0'));
+  good.resize(128, ' ');
+  good.resize(152, '\0');
+  const auto taken = [&](const std::string& bytes) {
+    SharedMemory memory("test");
+    memory.append(std::as_bytes(std::span(bytes)));
+    try {
+      return read_answer(memory, Kind::rate, Frame::imu, one).rates.size() == 1;
+    } catch (const BadInput&) {
+      return false;
+    }
+  };
+  EXPECT_TRUE(taken(good));
+  for (std::size_t size = 0; size < good.size(); ++size) EXPECT_FALSE(taken(good.substr(0, size))) << size;
+  for (std::size_t at = 0; at < good.size(); ++at)
+    for (const char byte : {'\0', '9', '{', '\xff'}) taken(std::string(good).replace(at, 1, 1, byte));
+}
+
+}  // namespace
+}  // namespace tumble::scenarios

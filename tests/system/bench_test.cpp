@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A stranger's function of Python and a program in C on a small bench: page, lines of JSON, what is refused.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include "system/program.hpp"
+#include "tests/tree.hpp"
+
+namespace tumble::system_test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+std::vector<json> lines_of(const std::string& text) {
+  std::vector<json> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);)
+    if (line.starts_with("{\"format\":\"tumble bench\"")) lines.push_back(json::parse(line));
+  return lines;
+}
+
+class Bench : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    setenv("TUMBLE_PYTHON", "/usr/bin/python3", 0);  // Debian's own, which tools/setup gives numpy
+    std::ofstream(folder_ / "small.yaml") << "name: small\ndoc: two draws\nmethods: [rate/raw]\ntimeout_s: 60\n"
+                                             "draws: {mild: {bare: [1001]}, wild: {hill: [1001]}}\n";
+    const fs::path examples = test::source_dir() / "examples" / "methods";
+    for (const char* name : {"doubtful.py", "doubtful.c", "doubtful.yaml"}) fs::copy(examples / name, folder_ / name);
+  }
+  Ended bench(const std::vector<std::string>& methods, const std::vector<std::string>& more) const {
+    std::vector<std::string> words = {"bench", "--suite", path("small.yaml"), "--db", path("bench.db")};
+    words.insert(words.end(), more.begin(), more.end());
+    for (const std::string& each : methods) words.push_back(each.find('.') == std::string::npos ? each : path(each));
+    return run_program(words);
+  }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  const fs::path folder_ = test_folder();
+};
+
+TEST_F(Bench, MethodsOfStrangersAreHeldBesideOurs) {
+  const std::string c = path("doubtful.c"), program = path("doubtful");
+  ASSERT_EQ(std::system(("cc -O2 -Wall -Wextra -o " + program + " " + c + " -lm").c_str()), 0);
+  std::ofstream(folder_ / "crashes.py") << "def rate(recording):\n    raise ValueError('out of luck')\n";
+
+  Ended ended = bench({"rate/raw", "doubtful.py", "doubtful.yaml", "crashes.py"}, {"-o", path("lines.jsonl")});
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("rate_error_clipped_median_rad_s"));
+  EXPECT_THAT(ended.out, HasSubstr("mild (1)"));
+  EXPECT_THAT(ended.out, HasSubstr("ValueError: out of luck"));
+  const std::vector<json> lines = lines_of(ended.out);
+  ASSERT_EQ(lines.size(), 4u);
+  EXPECT_EQ(lines_of(read_file(folder_ / "lines.jsonl")), lines);
+  EXPECT_EQ(lines[1]["method"], "doubtful");
+  EXPECT_EQ(lines[3]["draws"][0]["status"], "crashed");
+  const std::string metric = "rate_error_clipped_median_rad_s";
+  const auto value = [&](std::size_t line, const std::string& name) {
+    return lines[line]["draws"][1]["values"].at(name).get<double>();
+  };
+  EXPECT_EQ(value(1, metric), value(0, metric)) << "the gyro as it is";
+  EXPECT_EQ(value(2, metric), value(0, metric)) << "and in C";
+  EXPECT_EQ(value(2, "rate_coverage_3sigma"), value(1, "rate_coverage_3sigma"));
+  EXPECT_GT(value(1, "rate_coverage_3sigma"), value(0, "rate_coverage_3sigma") + 0.2) << "it said how doubtful it was";
+
+  // asked for again nothing runs anew, and the line is the same, costs included
+  ended = bench({"rate/raw", "doubtful.py"}, {"--json"});
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(lines_of(ended.out)[1]["draws"], lines[1]["draws"]);
+
+  // what others have published stands on the page, unless it is of another suite or simulation
+  const auto beside = [&](const std::string& was, const std::string& is) {
+    std::string text = read_file(folder_ / "lines.jsonl");
+    const std::size_t at = text.find(was);
+    std::ofstream(folder_ / "theirs.jsonl") << text.replace(at, was.size(), is);
+    return bench({"doubtful.py"}, {"--beside", path("theirs.jsonl")});
+  };
+  ended = beside("\"method\":\"raw\"", "\"method\":\"theirs\"");
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("theirs"));
+  EXPECT_THAT(ended.out, Not(HasSubstr("not compared")));
+  ended = beside("\"recording\":\"", "\"recording\":\"0");
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("not compared"));
+  ended = beside("\"suite_digest\":\"", "\"suite_digest\":\"0");
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_THAT(ended.err, HasSubstr("two suites"));
+}
+
+TEST_F(Bench, WrongUseIsRefusedBeforeAnythingRuns) {
+  EXPECT_THAT(bench({"rate/raw", "slam/tumble"}, {}).err, HasSubstr("two kinds"));
+  EXPECT_THAT(bench({"no_such.yaml"}, {}).err, HasSubstr("no_such.yaml"));
+  EXPECT_THAT(bench({"rate/raw"}, {"--beside", path("small.yaml")}).err, HasSubstr("small.yaml:1"));
+  EXPECT_THAT(run_program({"bench", "rate/raw", "--suite", "hill"}).err, HasSubstr("no classes"));
+  EXPECT_EQ(run_program({"bench"}).status, 2);
+}
+
+}  // namespace
+}  // namespace tumble::system_test

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/bench/bench.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/provenance/build_id.hpp"
+#include "scenarios/provenance/data_digest.hpp"
+#include "scenarios/provenance/text_digest.hpp"
+#include "scenarios/recordings/replace_file.hpp"
+#include "scenarios/sweep/sweep_notes.hpp"
+#include "tools/tumble/arguments.hpp"
+#include "tools/tumble/bench_page.hpp"
+#include "tools/tumble/interrupt.hpp"
+#include "tools/tumble/sweeping.hpp"
+#include "tools/tumble/verbs.hpp"
+
+namespace tumble::tools {
+
+namespace {
+
+namespace fs = std::filesystem;
+using scenarios::BadInput;
+using scenarios::BenchResult;
+
+constexpr std::size_t kDigestShown = 8;
+
+struct Options {
+  std::vector<std::string> methods;
+  std::string suite;
+  std::vector<fs::path> beside;
+  fs::path database, lines;
+  int jobs = available_processors();
+  bool store = false;
+};
+
+/// Methods of one kind, since a suite is of one.
+std::vector<scenarios::MethodPointer> methods_of(const Options& options) {
+  std::vector<scenarios::MethodPointer> methods = scenarios::find_methods(options.methods);
+  for (const scenarios::MethodPointer& each : methods)
+    if (each->info.kind != methods.front()->info.kind)
+      throw BadInput(fmt::format("{}/{} and {}/{} are of two kinds: a bench is of one", to_string(each->info.kind),
+                                 each->info.name, to_string(methods.front()->info.kind), methods.front()->info.name));
+  return methods;
+}
+
+scenarios::Suite suite_of(const scenarios::DataRoot& data, const Options& options, scenarios::Kind kind) {
+  scenarios::Suite suite =
+      scenarios::load_suite(data, options.suite.empty() ? scenarios::bench_suite_name(kind) : options.suite);
+  if (suite.classes.empty()) throw BadInput("suite " + suite.name + " has no classes of draws (key 'draws')");
+  suite.methods = options.methods;
+  return suite;
+}
+
+/// One name for what is to be run by this build: a run that was stopped goes on in it, and another method, or the same
+/// after a change, begins its own.
+fs::path database_of(const scenarios::DataRoot& data, const Options& options, const scenarios::Suite& suite,
+                     const std::vector<scenarios::MethodPointer>& methods) {
+  if (!options.database.empty()) return options.database;
+  std::vector<std::string> texts = {scenarios::build_id(), scenarios::data_digest(data),
+                                    scenarios::bench_suite_digest(suite)};
+  for (const scenarios::MethodPointer& each : methods) texts.push_back(each->info.name + " " + each->info.version);
+  const std::string whose =
+      methods.size() == 1 ? methods.front()->info.name : fmt::format("{}_methods", methods.size());
+  return fmt::format("{}_{}_{}.db", suite.name, whose, scenarios::digest_of_texts(texts).substr(0, kDigestShown));
+}
+
+/// Of the tree, and of files that were named, which are refused as a whole where they are of another suite.
+std::vector<BenchResult> stored_results(const scenarios::DataRoot& data, const Options& options,
+                                        const scenarios::Suite& suite) {
+  std::vector<BenchResult> all = scenarios::read_bench_results(scenarios::bench_results_file(data, suite.name));
+  for (const fs::path& file : options.beside) {
+    const std::vector<BenchResult> more = scenarios::read_bench_results(file);
+    if (more.empty()) throw BadInput(file.string() + ": holds no result of a bench");
+    all.insert(all.end(), more.begin(), more.end());
+  }
+  for (const BenchResult& each : all) scenarios::require_of_suite(each, suite);
+  return all;
+}
+
+/// As it was asked for, without the folders of whose machine it was.
+std::string command_of(const Options& options) {
+  std::string words = "tumble bench";
+  for (const std::string& method : options.methods) {
+    const fs::path path = method;
+    words += " " + scenarios::shell_word(path.is_absolute() ? path.filename().string() : method);
+  }
+  if (!options.suite.empty()) words += " --suite " + scenarios::shell_word(fs::path(options.suite).filename().string());
+  return words;
+}
+
+BenchPage page_of(const scenarios::Results& results, const scenarios::Suite& suite, const Options& options,
+                  const std::vector<scenarios::MethodPointer>& methods, std::vector<BenchResult> stored) {
+  BenchPage page;
+  for (const scenarios::MethodPointer& method : methods) {
+    page.ran.push_back(scenarios::collect_bench_result(results, suite, method->info));
+    page.ran.back().command = command_of(options);
+    page.ran.back().date =
+        fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
+  }
+  for (BenchResult& each : stored) {
+    const std::string draw = scenarios::other_recording(page.ran.front(), each);
+    if (draw.empty())
+      page.stored.push_back(std::move(each));
+    else
+      page.left_out.push_back(
+          fmt::format("{}: its recording of {} is another, of another simulation", each.method, draw));
+  }
+  return page;
+}
+
+/// The page, and under it a line of JSON for each method that ran; with --json these alone.
+void print(const Session& session, const std::vector<Table>& tables, const std::string& lines) {
+  if (!session.json) session.print(tables, {});
+  if (!session.json && session.format != TableFormat::text) return;
+  const std::string text = (session.json ? "" : "\n") + lines;
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+    throw BadInput(std::string("standard output: ") + std::strerror(errno));
+}
+
+int bench(const Session& session, const Options& options) {
+  const scenarios::DataRoot data = session.data();
+  const std::vector<scenarios::MethodPointer> methods = methods_of(options);
+  const scenarios::Suite suite = suite_of(data, options, methods.front()->info.kind);
+  std::vector<BenchResult> stored = stored_results(data, options, suite);
+  if (!options.lines.empty()) prepare_output(options.lines, {});
+  const fs::path database = database_of(data, options, suite, methods);
+  if (database.has_parent_path()) make_folder(database.parent_path());
+  session.note(fmt::format("{}, {} draws; results in {}, where a run that is stopped goes on", suite.name,
+                           suite.draw_count(), database.string()));
+  const scenarios::DatabaseOwner owner(database);
+  const InterruptFlag interrupt;
+  // what the machine ended says nothing of a method
+  const scenarios::SweepProgress final = sweep_with_progress(session, data, suite, owner, options.jobs,
+                                                             interrupt.raised(), {scenarios::OutcomeStatus::killed});
+  if (final.draws_done < final.draws_total) return say_stopped(final);
+
+  const scenarios::Results results(database, scenarios::Results::Mode::read_only);
+  const BenchPage page = page_of(results, suite, options, methods, std::move(stored));
+  std::string lines;
+  for (const BenchResult& each : page.ran) lines += to_line(each) + "\n";
+  if (!options.lines.empty()) scenarios::replace_file(options.lines, lines);
+  if (options.store) {
+    const fs::path file = scenarios::bench_results_file(data, suite.name);
+    make_folder(file.parent_path());
+    scenarios::store_bench_results(file, page.ran);
+  }
+  print(session, bench_tables(suite, page, results.outcomes()), lines);
+  session.note(fmt::format("next: tumble report {} -o report.html", database.string()));
+  return kDone;
+}
+
+}  // namespace
+
+Action declare_bench(CLI::App& app, const Session& session) {
+  auto options = std::make_shared<Options>();
+  app.add_option("METHOD", options->methods, "NAME.yaml or NAME.py of yours, or a name; several of one kind")
+      ->required();
+  app.add_option("--suite", options->suite, "another suite whose draws are named [the standard one of the kind]");
+  app.add_option("--beside", options->beside, "FILE.jsonl of results that others have published, compared too")
+      ->allow_extra_args(false);
+  app.add_option("--jobs", options->jobs, "processes at a time [the processors]")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  app.add_option("-o,--output", options->lines, "the lines of JSON besides, FILE.jsonl");
+  app.add_option("--db", options->database, "the results database [named after suite, method and its version, here]");
+  app.add_flag("--store", options->store, "keep the lines with the results that the tree holds");
+  return [&session, options] { return bench(session, *options); };
+}
+
+}  // namespace tumble::tools
