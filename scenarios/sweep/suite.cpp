@@ -75,10 +75,12 @@ void read_curves(const DataRoot& data, const YamlNode& node, Suite& suite) {
 }
 
 void read_scenarios(const DataRoot& data, const YamlNode& node, Suite& suite) {
-  const std::vector<std::string> known = scenario_names(data);
+  std::vector<std::string> known = scenario_names(data);
+  const std::vector<std::string> cases = case_names(data);
+  known.insert(known.end(), cases.begin(), cases.end());
   for (const YamlNode& item : node.items()) {
     const std::string name = item.text();
-    if (!std::binary_search(known.begin(), known.end(), name)) {
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
       item.fail("unknown scenario '" + name + "'" + suggestion(name, known));
     }
     if (std::find(suite.scenarios.begin(), suite.scenarios.end(), name) != suite.scenarios.end()) {
@@ -153,6 +155,18 @@ Suite read_suite(const DataRoot& data, const std::filesystem::path& path) {
   return suite;
 }
 
+/// Every method on one scenario, or on the one draw of a named case.
+Suite suite_of_scenario(const DataRoot& data, const std::string& name) {
+  Suite suite;
+  suite.name = name;
+  suite.doc = "every method on the scenario " + name;
+  suite.scenarios = {name};
+  suite.methods = every_method();
+  const Scenario scenario = load_scenario(data, name);
+  if (scenario.named_case) suite.first_seed = suite.last_seed = scenario.named_case->seed;
+  return suite;
+}
+
 }  // namespace
 
 std::vector<std::string> suite_names(const DataRoot& data) {
@@ -169,15 +183,10 @@ Suite load_suite(const DataRoot& data, const std::string& name) {
       throw BadInput(path.string() + ": name is '" + suite.name + "', must be the file's, '" + name + "'");
     return suite;
   }
-  const std::vector<std::string> scenarios = scenario_names(data);
-  if (std::binary_search(scenarios.begin(), scenarios.end(), name)) {
-    Suite suite;
-    suite.name = name;
-    suite.doc = "every method on the scenario " + name;
-    suite.scenarios = {name};
-    suite.methods = every_method();
-    return suite;
-  }
+  std::vector<std::string> scenarios = scenario_names(data);
+  const std::vector<std::string> cases = case_names(data);
+  scenarios.insert(scenarios.end(), cases.begin(), cases.end());
+  if (std::find(scenarios.begin(), scenarios.end(), name) != scenarios.end()) return suite_of_scenario(data, name);
   suites.insert(suites.end(), scenarios.begin(), scenarios.end());
   throw BadInput("unknown suite or scenario '" + name + "'" + suggestion(name, suites));
 }
