@@ -155,15 +155,13 @@ Suite read_suite(const DataRoot& data, const std::filesystem::path& path) {
   return suite;
 }
 
-/// Every method on one scenario, or on the one draw of a named case.
-Suite suite_of_scenario(const DataRoot& data, const std::string& name) {
+/// Every method on one scenario.
+Suite suite_of_scenario(const std::string& name) {
   Suite suite;
   suite.name = name;
   suite.doc = "every method on the scenario " + name;
   suite.scenarios = {name};
   suite.methods = every_method();
-  const Scenario scenario = load_scenario(data, name);
-  if (scenario.named_case) suite.first_seed = suite.last_seed = scenario.named_case->seed;
   return suite;
 }
 
@@ -183,10 +181,14 @@ Suite load_suite(const DataRoot& data, const std::string& name) {
       throw BadInput(path.string() + ": name is '" + suite.name + "', must be the file's, '" + name + "'");
     return suite;
   }
-  std::vector<std::string> scenarios = scenario_names(data);
-  const std::vector<std::string> cases = case_names(data);
-  scenarios.insert(scenarios.end(), cases.begin(), cases.end());
-  if (std::find(scenarios.begin(), scenarios.end(), name) != scenarios.end()) return suite_of_scenario(data, name);
+  const std::vector<std::string> scenarios = scenario_names(data), cases = case_names(data);
+  if (std::binary_search(scenarios.begin(), scenarios.end(), name)) return suite_of_scenario(name);
+  if (std::binary_search(cases.begin(), cases.end(), name)) {
+    Suite suite = suite_of_scenario(name);
+    suite.first_seed = suite.last_seed = load_scenario(data, name).named_case.value().seed;
+    return suite;
+  }
+  suites.insert(suites.end(), cases.begin(), cases.end());
   suites.insert(suites.end(), scenarios.begin(), scenarios.end());
   throw BadInput("unknown suite or scenario '" + name + "'" + suggestion(name, suites));
 }

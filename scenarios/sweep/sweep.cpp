@@ -9,11 +9,13 @@
 #include <system_error>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/methods/external_description.hpp"
 #include "scenarios/methods/external_method.hpp"
 #include "scenarios/provenance/data_digest.hpp"
 #include "scenarios/sweep/draw_process.hpp"
 #include "scenarios/sweep/message.hpp"
 #include "scenarios/sweep/results.hpp"
+#include "scenarios/sweep/run_again.hpp"
 
 namespace tumble::scenarios {
 
@@ -65,6 +67,16 @@ void claim(Results& results, const DataRoot& data, const Suite& suite, const std
   if (!suite.recordings.empty()) results.set_note("source", kRecordingsSource);
 }
 
+/// So that each run can be asked for once more (run_again.hpp), whatever folder it is asked from.
+void note_descriptions(Results& results, const Suite& suite) {
+  for (const std::string& name : suite.methods) {
+    if (!name.ends_with(".yaml")) continue;
+    const ExternalDescription description = read_external(name);
+    results.set_note(description_note(to_string(description.kind), description.name),
+                     std::filesystem::absolute(name).lexically_normal().string());
+  }
+}
+
 /// Rows of two versions of somebody else's method do not stand under one name.
 void claim_methods(Results& results, std::span<const MethodPointer> methods) {
   for (const MethodPointer& method : methods) {
@@ -100,6 +112,7 @@ class Sweep {
       throw BadInput("suite " + suite_.name + ": none of its methods applies to any of its scenarios");
     }
     claim_methods(results_, methods_);
+    note_descriptions(results_, suite_);
     // a catalogue that cannot be drawn from is the caller's mistake, not an outcome
     for (const Planned& each : scenarios_) draw(data_, each.scenario, suite_.first_seed);
     const std::uint64_t seeds = suite_.last_seed - suite_.first_seed + 1;
@@ -160,6 +173,8 @@ class Sweep {
   void add_recordings() {
     for (RecordedDraw& recording : find_recordings(suite_.recordings, suite_.recordings_folder)) {
       require_same_data(recording);
+      results_.set_note(recording_note(recording.name),
+                        std::filesystem::absolute(recording.path).lexically_normal().string());
       std::vector<MethodPointer> own = applicable(methods_, recording);
       recordings_.push_back({std::move(recording), std::move(own)});
     }

@@ -19,6 +19,7 @@ std::span<const Verb> verbs() {
       {"replay", "a page that plays a recording with its estimates, off line", declare_replay},
       {"gate", "sweep a suite's fixed seeds and hold them to the accepted run, draw by draw", declare_gate},
       {"triage", "replace one input at a time by its truth and say which one cures a failure", declare_triage},
+      {"shrink", "make a failing draw shorter and simpler until nothing more can go", declare_shrink},
       {"export", "a recording in somebody else's format", declare_export},
       {"import", "a recording from somebody else's format", declare_import},
       {"certify", "measure how far this build is from physics and its data sheets", declare_certify},
