@@ -29,13 +29,18 @@ std::optional<double> value_of(const Outcome& outcome, const std::string& metric
 /// What a reader wants to know of a shrunk draw, in a line.
 std::string doc_of(const Shrunk& shrunk, const std::string& method, const std::string& scenario, std::uint64_t seed) {
   std::string needed;
+  std::size_t not_tried = 0;
   for (const ShrinkLine& line : shrunk.lines) {
     if (line.what == "duration_s" || line.fate == Fate::removed) continue;
-    needed += (needed.empty() ? "" : ", ") + line.what;
+    if (line.fate == Fate::not_tried)
+      ++not_tried;
+    else
+      needed += (needed.empty() ? "" : ", ") + line.what;
   }
-  return method + ", " + shrunk.failure + ", on draw " + std::to_string(seed) + " of " + scenario +
-         " made simpler: " + (needed.empty() ? "nothing else of it is needed" : "what is left of it is " + needed) +
-         ".";
+  std::string doc = method + ", " + shrunk.failure + ", on draw " + std::to_string(seed) + " of " + scenario +
+                    " made simpler; it needs " + (needed.empty() ? "nothing that could be taken away alone" : needed);
+  if (not_tried > 0) doc += "; " + std::to_string(not_tried) + " more were not tried";
+  return doc + ".";
 }
 
 std::string how_it_fails(const CaseResult& result) {

@@ -109,7 +109,9 @@ TEST(Shrink, LeavesACaseThatTheGateHolds) {
 
   // negative control: of a bound that the case does not exceed it is cured
   std::string text = read_file(file);
-  text.replace(text.find("worse_than: 0.0001"), 18, "worse_than: 9999.0");
+  const std::string key = "worse_than: ";
+  const std::size_t bound = text.find(key) + key.size();
+  text.replace(bound, text.find(',', bound) - bound, "9999");
   std::ofstream(file) << text;
   const Ended cured = run_program(gate, in_own_data);
   EXPECT_EQ(cured.status, 1);

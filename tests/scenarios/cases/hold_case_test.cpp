@@ -89,14 +89,15 @@ TEST(HoldCase, AShrunkDrawBecomesACaseThatStillFails) {
   shrunk.left = outcome(OutcomeStatus::ok, 1.5, true);
   shrunk.lines = {{"duration_s", Fate::smaller, 9.0, 4.0},
                   {"world: rocks", Fate::removed, 30.0, {}},
-                  {"world: bumps", Fate::needed, {}, {}}};
+                  {"world: bumps", Fate::needed, {}, {}},
+                  {"motion: sway", Fate::not_tried, {}, {}}};
   const Scenario named = named_case_of(shrunk, "lost", "slam/tumble", {}, "0.1.0", "tumble shrink cliff");
   EXPECT_EQ(named.name, "lost");
   ASSERT_TRUE(named.named_case.has_value());
   EXPECT_EQ(named.named_case->scenario, "cliff");
   EXPECT_EQ(named.named_case->seed, 77u);
   EXPECT_THAT(named.doc,
-              HasSubstr("map_failed, on draw 77 of cliff made simpler: what is left of it is world: bumps."));
+              HasSubstr("map_failed, on draw 77 of cliff made simpler; it needs world: bumps; 1 more were not tried."));
   const Expectation& expected = named.named_case->expected.front();
   EXPECT_EQ(expected.drawn, 2.5);
   EXPECT_EQ(expected.value, 1.5);
