@@ -132,6 +132,12 @@ void require_whole(const Options& options) {
   if (options.worse_than && !std::isfinite(*options.worse_than)) throw BadInput("--worse-than is not a finite number");
 }
 
+std::string control_text(const Shrunk& shrunk, const scenarios::ShrinkOptions& options) {
+  if (!options.control) return "no control";
+  const std::string& name = options.control->info.name;
+  return shrunk.controlled ? name + " does not fail on it" : name + " fails on the draw too, and controls nothing";
+}
+
 int run_shrink(const Session& session, const Options& options) {
   require_whole(options);
   const std::string name = name_of(options.file);
@@ -163,7 +169,7 @@ int run_shrink(const Session& session, const Options& options) {
   session.note(fmt::format(
       "{}: {} runs, {}; {}; the case: {}", shrunk.failure, shrunk.runs,
       shrunk.complete ? "nothing single can be taken away any more" : "the budget is spent, more might go (--budget)",
-      shrunk.controlled ? shrinking.control->info.name + " does not fail on it" : "no control", options.file.string()));
+      control_text(shrunk, shrinking), options.file.string()));
   return kDone;
 }
 

@@ -15,6 +15,7 @@ namespace {
 TEST(NamedCases, AreCompleteAndExpectWhatThereIs) {
   const DataRoot data{test::source_dir()};
   const std::vector<std::string> scenarios = scenario_names(data), names = case_names(data);
+  EXPECT_FALSE(names.empty());
   for (const std::string& name : names) {
     EXPECT_FALSE(std::binary_search(scenarios.begin(), scenarios.end(), name)) << name << " is a scenario's name too";
     const Scenario scenario = load_scenario(data, name);
