@@ -14,14 +14,35 @@ std::vector<std::string> scenario_names(const DataRoot& data) {
   return yaml_stems(data.catalogue());
 }
 
+std::vector<std::string> case_names(const DataRoot& data) {
+  // who has kept none has no folder of them
+  return std::filesystem::is_directory(data.regressions()) ? yaml_stems(data.regressions())
+                                                           : std::vector<std::string>{};
+}
+
+namespace {
+
+/// Of the catalogue; an unknown name is told from the cases' too.
+std::filesystem::path find_scenario(const DataRoot& data, std::span<const std::string> cases, const std::string& name) {
+  std::vector<std::string> known = scenario_names(data);
+  if (std::binary_search(known.begin(), known.end(), name)) return data.catalogue() / (name + ".yaml");
+  known.insert(known.end(), cases.begin(), cases.end());
+  throw BadInput("unknown scenario '" + name + "'" + suggestion(name, known));
+}
+
+}  // namespace
+
 Scenario load_scenario(const DataRoot& data, const std::string& name) {
   const Registry registry = Registry::of_simulation();
   if (name.ends_with(".yaml")) return parse_scenario(read_text_file(name), name, registry);
-  const std::filesystem::path path = find_yaml(data.catalogue(), "scenario", name);
+  const std::vector<std::string> cases = case_names(data);
+  const bool is_case = std::binary_search(cases.begin(), cases.end(), name);
+  const std::filesystem::path path = is_case ? data.regressions() / (name + ".yaml") : find_scenario(data, cases, name);
   Scenario scenario = parse_scenario(read_text_file(path), path.string(), registry);
   if (scenario.name != name) {
     throw BadInput(path.string() + ": name is '" + scenario.name + "', must be the file's, '" + name + "'");
   }
+  if (is_case && !scenario.named_case) throw BadInput(path.string() + ": key 'case' is missing");
   return scenario;
 }
 

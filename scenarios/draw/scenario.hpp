@@ -4,11 +4,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "scenarios/data_root.hpp"
 #include "scenarios/draw/distribution.hpp"
+#include "scenarios/draw/named_case.hpp"
 #include "sim/situation.hpp"
 
 namespace tumble::scenarios {
@@ -32,13 +34,18 @@ struct Scenario {
   Distribution duration_s;
   Part world, robot, motion;
   std::vector<Sensor> sensors;
+  std::optional<NamedCase> named_case;  ///< of a file in scenarios/regressions, none of whose numbers is drawn
 };
 
 /// Names of the scenarios in the catalogue, sorted.
 std::vector<std::string> scenario_names(const DataRoot& data);
 
-/// Reads scenarios/catalogue/NAME.yaml, or a file when `name` ends in ".yaml". Throws BadInput with file and line; an
-/// unknown name or key names the nearest known one.
+/// Names of the named cases, scenarios/regressions/NAME.yaml, sorted. They stand wherever a scenario's may, and no
+/// scenario is called as one of them.
+std::vector<std::string> case_names(const DataRoot& data);
+
+/// Reads scenarios/catalogue/NAME.yaml, the named case scenarios/regressions/NAME.yaml, or a file when `name` ends in
+/// ".yaml". Throws BadInput with file and line; an unknown name or key names the nearest known one.
 Scenario load_scenario(const DataRoot& data, const std::string& name);
 
 /// Fixes every number: data sheet of each device, the scenario's changes, draws from streams named by the number's

@@ -5,6 +5,8 @@
 #include <array>
 #include <sstream>
 
+#include "scenarios/draw/case_text.hpp"
+#include "scenarios/draw/drawn_numbers.hpp"
 #include "scenarios/draw/strict_yaml.hpp"
 
 namespace tumble::scenarios {
@@ -131,7 +133,8 @@ const sim::Parameter& duration_parameter() {
 
 Scenario parse_scenario(const std::string& text, const std::string& file, const Registry& registry) {
   static const std::array<std::string, 7> kKeys = {"name", "doc", "duration_s", "world", "robot", "motion", "sensors"};
-  const auto fields = YamlNode::parse(text, file).fields(kKeys);
+  static const std::array<std::string, 1> kOptional = {"case"};
+  const auto fields = YamlNode::parse(text, file).fields(kKeys, kOptional);
   Scenario out;
   out.file = file;
   out.name = fields.at("name").identifier();
@@ -141,6 +144,11 @@ Scenario parse_scenario(const std::string& text, const std::string& file, const 
   out.robot = parse_part(fields.at("robot"), registry.robots);
   out.motion = parse_part(fields.at("motion"), registry.motions);
   out.sensors = parse_sensors(fields.at("sensors"), registry);
+  if (fields.contains("case")) {
+    out.named_case = case_from_yaml(fields.at("case"));
+    const std::vector<DrawnNumber> drawn = drawn_numbers(out);
+    if (!drawn.empty()) fields.at("case").fail("a case is one draw, but " + drawn.front().place + " is drawn");
+  }
   return out;
 }
 

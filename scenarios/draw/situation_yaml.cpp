@@ -1,68 +1,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
 #include <array>
-#include <cctype>
-#include <charconv>
-#include <cmath>
 
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/draw/strict_yaml.hpp"
-#include "scenarios/errors.hpp"
+#include "scenarios/draw/yaml_text.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
-/// Shortest text that reads back as the same double.
-std::string number_text(double value, const std::string& place) {
-  if (std::isnan(value)) throw BadInput(place + ": is not a number");
-  if (std::isinf(value)) return value > 0.0 ? ".inf" : "-.inf";
-  std::array<char, 32> text;
-  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
-  return std::string(text.data(), end);
-}
-
-/// Plain for identifiers, else in double quotes with YAML's escapes.
-std::string quoted(const std::string& text) {
-  const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
-  if (!text.empty() && std::isalpha(static_cast<unsigned char>(text[0])) != 0 &&
-      std::all_of(text.begin(), text.end(), plain)) {
-    return text;
-  }
-  constexpr char kDigits[] = "0123456789abcdef";
-  std::string out = "\"";
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') {
-      out += std::string("\\") + c;
-    } else if (byte < 0x20 || byte == 0x7f) {
-      out += std::string("\\x") + kDigits[byte >> 4] + kDigits[byte & 15];
-    } else {
-      out += c;
-    }
-  }
-  return out + "\"";
-}
-
 std::string values_text(const sim::Values& values, const std::string& indent, const std::string& place) {
   std::string out;
   for (const auto& [name, value] : values.all()) {
-    out += indent + quoted(name) + ": " + number_text(value, place + "." + name) + "\n";
+    out += indent + yaml_word(name) + ": " + yaml_number(value, place + "." + name) + "\n";
   }
   return out;
 }
 
 std::string component_text(const std::string& name, const sim::Component& component) {
   const std::string values = values_text(component.values, "    ", name);
-  return name + ":\n  type: " + quoted(component.type) + "\n  values:" + (values.empty() ? " {}\n" : "\n" + values);
+  return name + ":\n  type: " + yaml_word(component.type) + "\n  values:" + (values.empty() ? " {}\n" : "\n" + values);
 }
 
 std::string sensor_text(const sim::SensorSpec& sensor) {
   const std::string place = "sensors." + sensor.name;
   const std::string values = values_text(sensor.values, "      ", place);
   const std::string error = values_text(sensor.mount_error, "      ", place + ".mount_error");
-  return "  - name: " + quoted(sensor.name) + "\n    kind: " + quoted(sensor.kind) +
-         "\n    device: " + quoted(sensor.device) + "\n    site: " + quoted(sensor.site) +
+  return "  - name: " + yaml_word(sensor.name) + "\n    kind: " + yaml_word(sensor.kind) +
+         "\n    device: " + yaml_word(sensor.device) + "\n    site: " + yaml_word(sensor.site) +
          "\n    values:" + (values.empty() ? " {}\n" : "\n" + values) +
          "    mount_error:" + (error.empty() ? " {}\n" : "\n" + error);
 }
@@ -89,8 +54,8 @@ sim::SensorSpec sensor_from(const YamlNode& node) {
 }  // namespace
 
 std::string to_yaml(const sim::Situation& situation) {
-  std::string out = "scenario: " + quoted(situation.scenario) + "\nseed: " + std::to_string(situation.seed) +
-                    "\nduration_s: " + number_text(situation.duration_s, "duration_s") + "\n";
+  std::string out = "scenario: " + yaml_word(situation.scenario) + "\nseed: " + std::to_string(situation.seed) +
+                    "\nduration_s: " + yaml_number(situation.duration_s, "duration_s") + "\n";
   out += component_text("world", situation.world);
   out += component_text("robot", situation.robot);
   out += component_text("motion", situation.motion);

@@ -13,7 +13,7 @@ namespace tumble::scenarios {
 
 std::string data_digest(const DataRoot& data) {
   std::vector<std::filesystem::path> files;
-  for (const std::filesystem::path& folder : {data.models(), data.catalogue()}) {
+  for (const std::filesystem::path& folder : {data.models(), data.catalogue(), data.regressions()}) {
     std::error_code error;
     for (std::filesystem::recursive_directory_iterator entry(folder, error), end; !error && entry != end;
          entry.increment(error)) {

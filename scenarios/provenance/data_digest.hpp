@@ -7,8 +7,8 @@
 
 namespace tumble::scenarios {
 
-/// Digest of every file that a draw is made of, models and catalogue: outcomes of two catalogues do not mix in one
-/// database.
+/// Digest of every file that a draw is made of, models, catalogue and named cases: outcomes of two catalogues do not
+/// mix in one database.
 std::string data_digest(const DataRoot& data);
 
 }  // namespace tumble::scenarios

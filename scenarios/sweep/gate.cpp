@@ -87,9 +87,10 @@ double median_of(const std::vector<Pair>& pairs, double Pair::*member) {
   return quantile(values, 0.5);
 }
 
-/// Whether a draw is worse than any accepted one was, beyond the allowed; says which.
-std::string worst_draw(const MetricInfo& info, const std::vector<Pair>& pairs, const GatePolicy& policy) {
-  if (pairs.empty()) return "";
+/// Whether a draw is worse than any accepted one was, beyond the allowed; the fault says which.
+void hold_worst_draw(const MetricInfo& info, const std::vector<Pair>& pairs, const GatePolicy& policy,
+                     GateResult& result) {
+  if (pairs.empty()) return;
   const auto worse = [&](double Pair::*member) {
     return
         [&info, member](const Pair& a, const Pair& b) { return badness(info, a.*member) < badness(info, b.*member); };
@@ -97,9 +98,10 @@ std::string worst_draw(const MetricInfo& info, const std::vector<Pair>& pairs, c
   const Pair& before = *std::max_element(pairs.begin(), pairs.end(), worse(&Pair::before));
   const Pair& now = *std::max_element(pairs.begin(), pairs.end(), worse(&Pair::now));
   const double slack = by_difference(info) ? policy.share_margin : 0.0;
-  if (!(badness(info, now.now) > policy.worst * badness(info, before.before) + slack)) return "";
-  return "worst draw: " + text_of(now.now) + " at seed " + std::to_string(now.seed) + ", was " +
-         text_of(before.before) + " at most as bad";
+  if (!(badness(info, now.now) > policy.worst * badness(info, before.before) + slack)) return;
+  result.seed = now.seed;
+  result.fault = "worst draw: " + text_of(now.now) + " at seed " + std::to_string(now.seed) + ", was " +
+                 text_of(before.before) + " at most as bad";
 }
 
 /// Tests of a metric count once, two-sided ones too: they take twice the smaller chance.
@@ -128,6 +130,7 @@ GateResult hold_metric(const GateRun& all, const MethodRun& before, const Method
   result.better = corrected(better) < policy.risk;
 
   if (!lost.empty()) {
+    result.seed = lost.front();
     result.fault = "has no value any more: seed " + std::to_string(lost.front());
     if (lost.size() > 1) result.fault += " and " + std::to_string(lost.size() - 1) + " more";
   } else if (result.chance < policy.risk) {
@@ -135,7 +138,7 @@ GateResult hold_metric(const GateRun& all, const MethodRun& before, const Method
     result.fault = (info.sense == Sense::two_sided ? (rises < falls ? "higher in " : "lower in ") : "worse in ") +
                    std::to_string(count) + " of " + std::to_string(pairs.size());
   } else {
-    result.fault = worst_draw(info, pairs, policy);
+    hold_worst_draw(info, pairs, policy, result);
   }
   return result;
 }
@@ -167,7 +170,10 @@ GateResult hold_outcomes(const GateRun& all, const MethodRun& before, const Meth
     was += was_good ? 0 : 1;
     is += fault.empty() ? 0 : 1;
     // a draw that has gone is a fault also where it had failed
-    if (result.fault.empty() && !fault.empty() && (was_good || !now.status[k])) result.fault = fault + seed;
+    if (result.fault.empty() && !fault.empty() && (was_good || !now.status[k])) {
+      result.fault = fault + seed;
+      result.seed = all.seeds[k];
+    }
   }
   result.draws = all.seeds.size();
   result.accepted = static_cast<double>(was) / static_cast<double>(all.seeds.size());

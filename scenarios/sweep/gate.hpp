@@ -77,13 +77,14 @@ struct GateResult {
   std::string scenario;
   Kind kind = Kind::rate;
   std::string method, metric;
-  std::size_t draws = 0;   ///< pairs that count
-  double accepted = 0.0;   ///< median, or the share of draws that were not ok
-  double value = 0.0;      ///< the same now
-  double change = 0.0;     ///< median of the pairs': of ratios less one, or of differences of shares
-  double chance = 1.0;     ///< of pairs as bad, were the run no worse; times the number of tests
-  bool better = false;     ///< by the same test the other way: accept it, and it is held
-  std::string fault = {};  ///< what is wrong, with a seed; empty when nothing is
+  std::size_t draws = 0;                   ///< pairs that count
+  double accepted = 0.0;                   ///< median, or the share of draws that were not ok
+  double value = 0.0;                      ///< the same now
+  double change = 0.0;                     ///< median of the pairs': of ratios less one, or of differences of shares
+  double chance = 1.0;                     ///< of pairs as bad, were the run no worse; times the number of tests
+  bool better = false;                     ///< by the same test the other way: accept it, and it is held
+  std::string fault = {};                  ///< what is wrong, with a seed; empty when nothing is
+  std::optional<std::uint64_t> seed = {};  ///< that the fault names
   bool passes() const { return fault.empty(); }
 };
 

@@ -10,6 +10,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/sweep/database_owner.hpp"
+#include "scenarios/sweep/run_again.hpp"
 #include "scenarios/sweep/sweep_notes.hpp"
 
 namespace tumble::scenarios {
@@ -45,6 +46,13 @@ void join_method_notes(const Notes& shard, const fs::path& path, bool mixed, Res
       throw BadInput(path.string() + ": " + key + " is '" + theirs + "', elsewhere '" + known +
                      "'; --mixed-builds joins them all the same");
     into.set_note(key, known.empty() || known == theirs ? theirs : "mixed");
+  }
+}
+
+/// Where descriptions and recordings stand; of two places the first, which need not be there any more.
+void join_place_notes(const Notes& shard, Results& into) {
+  for (const auto& [key, place] : shard) {
+    if (is_place_note(key) && into.note(key).empty()) into.set_note(key, place);
   }
 }
 
@@ -93,6 +101,7 @@ MergeCounts merge_results(const fs::path& out, std::span<const fs::path> in, boo
         results.absorb(Results(in[i], Results::Mode::read_only), mixed, counts);
         join_method_notes(notes[i], in[i], mixed, results);
       }
+      for (const Notes& own : notes) join_place_notes(own, results);
       // the joined database says where its rows come from, not which program has joined them
       for (const char* key : {"suite", "build", "data", kCommandNote}) {
         std::string text;

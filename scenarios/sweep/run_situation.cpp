@@ -4,12 +4,20 @@
 #include <algorithm>
 
 #include "scenarios/provenance/text_digest.hpp"
+#include "scenarios/recordings/recording_file.hpp"
+#include "scenarios/sweep/variation.hpp"
 
 namespace tumble::scenarios {
 
 RunResult run_situation(const DataRoot& data, const Scenario& scenario, std::uint64_t seed,
-                        std::span<const MethodPointer> methods, int threads, Lidars lidars) {
-  SimulatedDraw draw = simulate_draw(data, scenario, seed, threads, lidars);
+                        std::span<const MethodPointer> methods, int threads, Lidars lidars, const Setting& setting) {
+  SimulatedDraw draw = simulate_draw(data, with_setting(scenario, setting), seed, threads, lidars);
+  std::optional<SimulatedDraw> original;  // where methods are given something else, what they are scored by
+  if (reach(setting) == Reach::input) {
+    SimulatedDraw given = with_setting(draw, setting);
+    original = scored_by(draw, given);
+    draw = std::move(given);
+  }
   RunResult result;
   result.methods = applicable(methods, scenario.robot.type);
   const bool maps = std::any_of(result.methods.begin(), result.methods.end(),
@@ -17,8 +25,9 @@ RunResult run_situation(const DataRoot& data, const Scenario& scenario, std::uin
   if (maps) result.surface = std::make_shared<const sim::Surface>(*draw.built);
   for (const MethodPointer& method : result.methods) {
     Outcome outcome;
-    Estimate estimate = run_method(*method, draw, outcome);
-    assess(*method, draw, result.surface.get(), estimate, outcome);
+    outcome.setting = setting;
+    Estimate estimate = run_method(with_setting(*method, setting), draw, outcome);
+    assess(*method, original ? *original : draw, result.surface.get(), estimate, outcome);
     result.estimates.push_back(std::move(estimate));
     result.outcomes.push_back(std::move(outcome));
   }
@@ -26,7 +35,8 @@ RunResult run_situation(const DataRoot& data, const Scenario& scenario, std::uin
   result.seed = draw.seed;
   result.built = std::move(draw.built);
   result.recording = std::move(draw.recording);
-  result.recording_digest = std::move(draw.recording_digest);
+  result.recording_digest =
+      original ? digest(result.recording.sensors, &result.recording.truth) : std::move(draw.recording_digest);
   result.simulate_cpu_s = draw.simulate_cpu_s;
   return result;
 }

@@ -31,9 +31,11 @@ struct RunResult {
 };
 
 /// Draws, simulates, estimates and scores one situation in this process. Methods that do not apply to the robot are
-/// left out. Throws BadInput, sim::InvalidSituation, sim::SimulationFailure.
+/// left out. With a `setting` the run is the point of a curve that a sweep makes of it (variation.hpp), the recording
+/// what the methods were given. Throws BadInput, sim::InvalidSituation, sim::SimulationFailure.
 RunResult run_situation(const DataRoot& data, const Scenario& scenario, std::uint64_t seed,
-                        std::span<const MethodPointer> methods, int threads, Lidars lidars = Lidars::simulated);
+                        std::span<const MethodPointer> methods, int threads, Lidars lidars = Lidars::simulated,
+                        const Setting& setting = {});
 
 /// Digest of a whole run: recording and every estimate.
 std::string run_digest(const RunResult& result);

@@ -78,10 +78,12 @@ void read_curves(const DataRoot& data, const YamlNode& node, Suite& suite) {
 }
 
 void read_scenarios(const DataRoot& data, const YamlNode& node, Suite& suite) {
-  const std::vector<std::string> known = scenario_names(data);
+  std::vector<std::string> known = scenario_names(data);
+  const std::vector<std::string> cases = case_names(data);
+  known.insert(known.end(), cases.begin(), cases.end());
   for (const YamlNode& item : node.items()) {
     const std::string name = item.text();
-    if (!std::binary_search(known.begin(), known.end(), name)) {
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
       item.fail("unknown scenario '" + name + "'" + suggestion(name, known));
     }
     if (std::find(suite.scenarios.begin(), suite.scenarios.end(), name) != suite.scenarios.end()) {
@@ -202,6 +204,16 @@ Suite read_suite(const DataRoot& data, const std::filesystem::path& path) {
   return suite;
 }
 
+/// Every method on one scenario.
+Suite suite_of_scenario(const std::string& name) {
+  Suite suite;
+  suite.name = name;
+  suite.doc = "every method on the scenario " + name;
+  suite.scenarios = {name};
+  suite.methods = every_method();
+  return suite;
+}
+
 }  // namespace
 
 bool Suite::has_draw(const std::string& scenario, std::uint64_t seed) const {
@@ -233,15 +245,14 @@ Suite load_suite(const DataRoot& data, const std::string& name) {
       throw BadInput(path.string() + ": name is '" + suite.name + "', must be the file's, '" + name + "'");
     return suite;
   }
-  const std::vector<std::string> scenarios = scenario_names(data);
-  if (std::binary_search(scenarios.begin(), scenarios.end(), name)) {
-    Suite suite;
-    suite.name = name;
-    suite.doc = "every method on the scenario " + name;
-    suite.scenarios = {name};
-    suite.methods = every_method();
+  const std::vector<std::string> scenarios = scenario_names(data), cases = case_names(data);
+  if (std::binary_search(scenarios.begin(), scenarios.end(), name)) return suite_of_scenario(name);
+  if (std::binary_search(cases.begin(), cases.end(), name)) {
+    Suite suite = suite_of_scenario(name);
+    suite.first_seed = suite.last_seed = load_scenario(data, name).named_case.value().seed;
     return suite;
   }
+  suites.insert(suites.end(), cases.begin(), cases.end());
   suites.insert(suites.end(), scenarios.begin(), scenarios.end());
   throw BadInput("unknown suite or scenario '" + name + "'" + suggestion(name, suites));
 }

@@ -9,9 +9,12 @@
 #include <system_error>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/methods/external_description.hpp"
+#include "scenarios/methods/external_method.hpp"
 #include "scenarios/provenance/data_digest.hpp"
 #include "scenarios/sweep/draw_worker.hpp"
 #include "scenarios/sweep/results.hpp"
+#include "scenarios/sweep/run_again.hpp"
 #include "scenarios/sweep/sweep_plan.hpp"
 
 namespace tumble::scenarios {
@@ -35,6 +38,16 @@ void claim(Results& results, const DataRoot& data, const Suite& suite, const std
   }
   results.set_note("suite", suite.name);
   if (!suite.recordings.empty()) results.set_note("source", kRecordingsSource);
+}
+
+/// So that each run can be asked for once more (run_again.hpp), whatever folder it is asked from.
+void note_descriptions(Results& results, const Suite& suite) {
+  for (const std::string& name : suite.methods) {
+    if (!is_method_file(name)) continue;
+    const ExternalDescription description = read_external(name);
+    results.set_note(description_note(to_string(description.kind), description.name),
+                     std::filesystem::absolute(name).lexically_normal().string());
+  }
 }
 
 /// Rows of two versions of somebody else's method do not stand under one name.
@@ -65,6 +78,8 @@ class Sweep {
   SweepProgress run() {
     plan_.require_same_recordings(results_);
     claim_methods(results_, plan_.methods());
+    note_descriptions(results_, suite_);
+    plan_.note_recordings(results_);
     progress_.draws_total = plan_.draws_total();
     work([&] { return next_draw(); });
     if (options_.keep.which != Keep::Which::none && !stopped()) settle_kept();

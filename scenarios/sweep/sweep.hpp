@@ -48,7 +48,8 @@ struct Suite {
 };
 
 std::vector<std::string> suite_names(const DataRoot& data);
-/// A suite by name, a suite file, or a scenario's name (a suite of that one with all methods). Throws BadInput.
+/// A suite by name, a suite file, or a scenario's name (a suite of that one with all methods; of a named case its own
+/// seed). Throws BadInput.
 Suite load_suite(const DataRoot& data, const std::string& name);
 
 struct SweepProgress {

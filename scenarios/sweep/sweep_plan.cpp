@@ -6,6 +6,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/external_method.hpp"
+#include "scenarios/sweep/run_again.hpp"
 
 namespace tumble::scenarios {
 
@@ -70,6 +71,13 @@ void SweepPlan::require_same_recordings(const Results& results) const {
       throw BadInput(each.recording.path.string() + ": has digest " + each.recording.digest +
                      ", the results were made of one with " + row.recording_digest + ": name another database");
     }
+  }
+}
+
+void SweepPlan::note_recordings(Results& results) const {
+  for (const Recorded& each : recordings_) {
+    results.set_note(recording_note(each.recording.name),
+                     std::filesystem::absolute(each.recording.path).lexically_normal().string());
   }
 }
 

@@ -30,6 +30,8 @@ class SweepPlan {
   const std::vector<MethodPointer>& methods() const { return methods_; }
   /// Rows of a recording that has been imported anew do not stand beside those of the old one: throws BadInput.
   void require_same_recordings(const Results& results) const;
+  /// Leaves where each recording lies, so that its runs can be asked for once more (run_again.hpp).
+  void note_recordings(Results& results) const;
 
   /// Recordings come first, then seeds, which are outermost, so that a sweep that is stopped has all scenarios and all
   /// points of the curves in it.

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "system/program.hpp"
+#include "tests/tree.hpp"
 
 namespace tumble::system_test {
 namespace {
@@ -74,6 +75,72 @@ TEST(Triage, NamesTheInputThatCures) {
   const json triage = json_of(ended);
   EXPECT_EQ(triage["fails"], true);
   EXPECT_THAT(triage["cures"].get<std::vector<std::string>>(), testing::Contains("gyro_unclipped"));
+}
+
+/// A case is made of a draw that fails, run by its name, held, found cured, and accepted.
+TEST(Shrink, LeavesACaseThatTheGateHolds) {
+  const fs::path folder = test_folder();
+  const auto in_own_data = [&] { setenv("TUMBLE_DATA", folder.c_str(), 1); };
+  fs::create_directories(folder / "scenarios" / "regressions");
+  fs::create_symlink(test::source_dir() / "models", folder / "models");
+  for (const char* name : {"catalogue", "suites", "gates"})
+    fs::create_symlink(test::source_dir() / "scenarios" / name, folder / "scenarios" / name);
+  const fs::path file = folder / "scenarios" / "regressions" / "raw_clips.yaml";
+  const Ended shrunk =
+      run_program({"shrink", "swing", "--seed", "1", "--method", "rate/raw", "--metric", "rate_error_free_median_rad_s",
+                   "--worse-than", "0.0001", "--budget", "6", "-o", file.string(), "--json"},
+                  in_own_data);
+  ASSERT_EQ(shrunk.status, 0) << shrunk.err;
+  EXPECT_THAT(shrunk.err, HasSubstr("6 of 6 at most: "));
+  const json document = json_of(shrunk);
+  EXPECT_EQ(document["runs"], 6);
+  EXPECT_GT(document["shrunk"]["value"], 0.0001);
+  EXPECT_EQ(document["lines"][0]["what"], "duration_s");
+  EXPECT_LT(document["lines"][0]["to"], document["lines"][0]["from"]);
+
+  EXPECT_THAT(run_program({"list", "scenarios"}, in_own_data).out, HasSubstr("raw_clips"));
+  const Ended run = run_program({"run", "raw_clips", "--method", "rate/raw", "--json", "--quiet"}, in_own_data);
+  EXPECT_EQ(json_of(run)["seed"], 1) << run.err;
+
+  const std::vector<std::string> gate = {"gate", "regressions", "--json", "--quiet"};
+  const Ended held = run_program(gate, in_own_data);
+  EXPECT_EQ(held.status, 0) << held.out;
+  EXPECT_EQ(json_of(held)["cases"][0]["expected"], "fails");
+
+  // negative control: of a bound that the case does not exceed it is cured
+  std::string text = read_file(file);
+  const std::string key = "worse_than: ";
+  const std::size_t bound = text.find(key) + key.size();
+  text.replace(bound, text.find(',', bound) - bound, "9999");
+  std::ofstream(file) << text;
+  const Ended cured = run_program(gate, in_own_data);
+  EXPECT_EQ(cured.status, 1);
+  EXPECT_THAT(json_of(cured)["cases"][0]["fault"].get<std::string>(), HasSubstr("cured"));
+  EXPECT_EQ(run_program({"gate", "raw_clips", "--accept", "--quiet"}, in_own_data).status, 0);
+  EXPECT_THAT(read_file(file), HasSubstr("run: holds"));
+  EXPECT_EQ(run_program(gate, in_own_data).status, 0);
+}
+
+TEST(Shrink, WhatDoesNotFailIsRefusedAndLeavesNothing) {
+  const fs::path file = test_folder() / "none.yaml";
+  const Ended ended = run_program({"shrink", "swing", "--seed", "1", "--method", "rate/raw", "-o", file.string()});
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_THAT(ended.err, HasSubstr("does not fail"));
+  EXPECT_FALSE(fs::exists(file));
+}
+
+TEST(Triage, OfASuiteSaysWhichInputMattersMost) {
+  const fs::path folder = test_folder();
+  std::ofstream(folder / "small.yaml")
+      << "name: small\ndoc: two draws\nscenarios: [swing]\nseeds: {first: 1, last: 2}\n";
+  const Ended ended = run_program({"triage", (folder / "small.yaml").string(), "--method", "rate/raw", "--metric",
+                                   "rate_error_free_median_rad_s", "--limit", "0.0001", "--jobs", "2", "--json"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ended.err, HasSubstr("gyro_exact"));
+  EXPECT_THAT(ended.err, HasSubstr("matters most: it cures 2 of 2 failures"));
+  const json triage = json_of(ended);
+  EXPECT_EQ(triage["draws"].size(), 2u);
+  EXPECT_EQ(triage["inputs"][0]["share_cured"]["value"], 1.0);
 }
 
 }  // namespace

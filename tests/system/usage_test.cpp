@@ -32,7 +32,7 @@ TEST_P(EachVerb, RefusesAnUnknownOptionInOneLine) {
 INSTANTIATE_TEST_SUITE_P(Program, EachVerb,
                          testing::Values("list", "run", "record", "estimate", "score", "sweep", "merge", "report",
                                          "compare", "sensitivity", "render", "replay", "certify", "bench", "gate",
-                                         "triage", "export", "import"));
+                                         "triage", "shrink", "export", "import"));
 
 struct Wrong {
   const char* what;
@@ -83,6 +83,19 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"import of nothing", {"import", "absent.csv", "-o", "x.h5"}, "absent.csv"},
         Wrong{"import without format", {"import", "absent.dat", "-o", "x.h5"}, "--format"},
         Wrong{"device of an import", {"import", "absent.csv", "--device", "mti3", "-o", "x.h5"}, "mti30"},
+        Wrong{"shrink without a name",
+              {"shrink", "hill", "--seed", "1", "--method", "rate/raw", "-o", "A b.yaml"},
+              "NAME.yaml"},
+        Wrong{"shrink by half a bound",
+              {"shrink", "hill", "--seed", "1", "--method", "rate/raw", "--worse-than", "1", "-o", "a.yaml"},
+              "go together"},
+        Wrong{"shrink without a seed", {"shrink", "hill", "--method", "rate/raw", "-o", "a.yaml"}, "--seed is missing"},
+        Wrong{"a point of no curve", {"run", "hill", "--seed", "1", "--vary", "world.rock_count"}, "KEY=NUMBER"},
+        Wrong{"a point beyond its bound", {"run", "hill", "--seed", "1", "--vary", "world.rock_count=-1"}, "within"},
+        Wrong{"triage of one draw by results",
+              {"triage", "hill", "--seed", "1", "--method", "rate/raw", "--db", "x.db"},
+              "one draw"},
+        Wrong{"a case's gate against another", {"gate", "regressions", "--against", "x.yaml"}, "says itself"},
         Wrong{"triage of many methods", {"triage", "hill", "--seed", "1", "--method", "tumble"}, "rate/tumble"},
         Wrong{"metric of a triage",
               {"triage", "hill", "--seed", "1", "--method", "rate/raw", "--metric", "rate_error", "--limit", "1"},

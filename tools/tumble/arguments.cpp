@@ -7,9 +7,10 @@
 #include <algorithm>
 #include <charconv>
 
-#include "scenarios/draw/scenario.hpp"
 #include "scenarios/errors.hpp"
+#include "scenarios/methods/external_method.hpp"
 #include "scenarios/recordings/replace_file.hpp"
+#include "scenarios/scoring/score.hpp"
 #include "scenarios/sweep/sweep.hpp"
 #include "sim/parameters.hpp"
 
@@ -85,6 +86,32 @@ std::vector<scenarios::MethodPointer> select_methods(const std::vector<std::stri
   std::vector<scenarios::MethodPointer> selected;
   for (const scenarios::Method& method : scenarios::methods()) selected.push_back(scenarios::unowned(method));
   return selected;
+}
+
+scenarios::MethodPointer one_method(const std::string& name, double time_limit_s) {
+  const std::vector<scenarios::MethodPointer> found =
+      scenarios::find_methods_within(std::vector<std::string>{name}, time_limit_s);
+  if (found.size() == 1) return found.front();
+  std::string line = "--method " + name + " names several methods; say which:";
+  for (const scenarios::MethodPointer& method : found)
+    line += std::string(" ") + to_string(method->info.kind) + "/" + method->info.name;
+  throw BadInput(line);
+}
+
+std::string metric_of(const scenarios::Method& method, const std::string& name) {
+  if (name.empty()) return scenarios::headline_metrics(method.info.kind).front();
+  std::vector<std::string> known;
+  for (const scenarios::Metric& metric : scenarios::metrics()) {
+    if (metric.kind == method.info.kind) known.push_back(metric.info.name);
+  }
+  require_known(std::string("metric of kind ") + to_string(method.info.kind), name, known);
+  return name;
+}
+
+std::uint64_t seed_of(const scenarios::Scenario& scenario, const std::string& text) {
+  if (!text.empty()) return parse_seed(text);
+  if (scenario.named_case) return scenario.named_case->seed;
+  throw BadInput("--seed is missing: which draw of scenario '" + scenario.name + "'");
 }
 
 CLI::Validator within(double low, double high) {

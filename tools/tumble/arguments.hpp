@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "scenarios/draw/scenario.hpp"
 #include "scenarios/methods/method.hpp"
 #include "tools/tumble/session.hpp"
 
@@ -34,6 +35,15 @@ void require_known(const std::string& what, const std::string& name, std::span<c
 
 /// The methods named, each once, in the order given; all of them when none is named.
 std::vector<scenarios::MethodPointer> select_methods(const std::vector<std::string>& names);
+
+/// The one method of that name; a command of somebody else's is given at most `time_limit_s`.
+scenarios::MethodPointer one_method(const std::string& name, double time_limit_s);
+
+/// The metric of the method's kind that is named, or the kind's first.
+std::string metric_of(const scenarios::Method& method, const std::string& name);
+
+/// The seed given; without one that of a named case. Of another scenario it has to be given.
+std::uint64_t seed_of(const scenarios::Scenario& scenario, const std::string& text);
 
 /// A number from `low` to `high`; what is no number is not within (CLI::Range lets it pass).
 CLI::Validator within(double low, double high);

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/gate.hpp"
 
-#include <unistd.h>
-
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -15,9 +14,12 @@
 #include "scenarios/methods/external_method.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/sweep/certified_results.hpp"
+#include "scenarios/sweep/run_again.hpp"
 #include "tools/report/certificate_html.hpp"
 #include "tools/tables/certificate_table.hpp"
 #include "tools/tumble/arguments.hpp"
+#include "tools/tumble/gate_cases.hpp"
+#include "tools/tumble/gate_database.hpp"
 #include "tools/tumble/interrupt.hpp"
 #include "tools/tumble/sweeping.hpp"
 #include "tools/tumble/verbs.hpp"
@@ -41,28 +43,6 @@ struct Options {
 fs::path gate_file(const scenarios::DataRoot& data, const Options& options, const std::string& suite) {
   return options.accepted.empty() ? data.gates() / (suite + ".yaml") : options.accepted;
 }
-
-/// A database of its own that is gone afterwards, unless the caller named one.
-class Database {
- public:
-  explicit Database(const fs::path& named) : path_(named), own_(named.empty()) {
-    if (own_)
-      path_ = fs::temp_directory_path() / fmt::format("tumble_gate_{}.db", getpid());
-    else if (path_.has_parent_path())
-      make_folder(path_.parent_path());
-  }
-  ~Database() {
-    std::error_code ignored;
-    if (own_) fs::remove(path_, ignored);
-  }
-  Database(const Database&) = delete;
-  Database& operator=(const Database&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-  bool own_;
-};
 
 bool is_of(const scenarios::MethodRun& run, const scenarios::MethodPointer& method) {
   return run.kind == method->info.kind && run.method == method->info.name;
@@ -140,6 +120,10 @@ Table result_table(const std::vector<GateResult>& results) {
   return table;
 }
 
+std::string command_again(const GateResult& result, const std::map<std::string, std::string>& notes) {
+  return scenarios::command_again({result.scenario, *result.seed, to_string(result.kind), result.method}, notes);
+}
+
 json to_json(const std::vector<GateResult>& results, bool passes) {
   const auto finite = [](double value) { return std::isfinite(value) ? json(value) : json(); };
   json rows = json::array();
@@ -191,8 +175,16 @@ std::string certificate_text(const Session& session, const scenarios::DataRoot& 
                      : "not measured of this build on this machine ('tumble certify' and 'tumble sweep' do)";
 }
 
+/// Cases say themselves what is held.
+int run_case_gate(const Session& session, const scenarios::DataRoot& data, const Options& options) {
+  if (!options.accepted.empty() || !options.methods.empty())
+    throw scenarios::BadInput("--against, --method: a named case says itself what is held");
+  return hold_cases(session, data, {options.suite, options.jobs, options.database, options.accept});
+}
+
 int run_gate(const Session& session, const Options& options) {
   const scenarios::DataRoot data = session.data();
+  if (names_cases(data, options.suite)) return run_case_gate(session, data, options);
   scenarios::Suite suite = scenarios::load_suite(data, options.suite);
   if (!suite.recordings.empty())
     throw scenarios::BadInput("suite '" + suite.name + "' is of recordings; a gate holds draws of scenarios");
@@ -206,7 +198,7 @@ int run_gate(const Session& session, const Options& options) {
   else
     suite.methods = options.methods.empty() ? std::vector<std::string>{"tumble"} : options.methods;
 
-  const Database database(options.database);
+  const GateDatabase database(options.database);
   const scenarios::DatabaseOwner owner(database.path());
   const InterruptFlag interrupt;
   scenarios::SweepOptions how;
@@ -230,6 +222,9 @@ int run_gate(const Session& session, const Options& options) {
   json document = to_json(held, passes);
   document["certificate"] = certificate;
   session.print({result_table(held)}, document);
+  for (const GateResult& result : held) {
+    if (result.seed) session.note("again: " + command_again(result, results.notes()));
+  }
   session.note("certificate: " + certificate);
   return passes ? kDone : kCheckFailed;
 }
@@ -238,9 +233,11 @@ int run_gate(const Session& session, const Options& options) {
 
 Action declare_gate(CLI::App& app, const Session& session) {
   auto options = std::make_shared<Options>();
-  app.add_option("SUITE", options->suite, "a suite, a suite file, or a scenario: its fixed seeds are swept")
+  app.add_option(
+         "SUITE", options->suite,
+         "a suite, a suite file, or a scenario: its fixed seeds are swept; 'regressions', or one of the named cases")
       ->required()
-      ->check(a_suite(session));
+      ->check(a_suite_or_cases(session));
   app.add_option("--against", options->accepted,
                  "the gate, FILE.yaml, with the accepted run beside it in FILE.csv [scenarios/gates/SUITE.yaml]");
   app.add_option(

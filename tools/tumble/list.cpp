@@ -96,10 +96,41 @@ void add_scenario_numbers(const scenarios::Scenario& s, Listing& out, json& entr
   entry["numbers"] = std::move(rows);
 }
 
+/// Named cases, apart from the catalogue: what they were, and what is expected on them.
+void add_cases(const scenarios::DataRoot& data, Listing& out) {
+  Table table("named cases", {"case", "of", "seed", "duration_s", "expected", "meaning"});
+  for (const std::string& name : scenarios::case_names(data)) {
+    const scenarios::Scenario s = scenarios::load_scenario(data, name);
+    std::string expected;
+    json expectations = json::array();
+    for (const scenarios::Expectation& each : s.named_case->expected) {
+      const std::string run = each.fails ? "fails" : "holds";
+      expected += (expected.empty() ? "" : ", ") + each.method + " " + run;
+      expectations.push_back({{"method", each.method}, {"run", run}});
+    }
+    table.add_row({name, s.named_case->scenario, std::to_string(s.named_case->seed), distribution_text(s.duration_s),
+                   expected, s.doc});
+    out.document.push_back({{"name", name},
+                            {"doc", s.doc},
+                            {"case_of", s.named_case->scenario},
+                            {"seed", s.named_case->seed},
+                            {"robot", s.robot.type},
+                            {"world", s.world.type},
+                            {"motion", s.motion.type},
+                            {"duration_s", distribution_text(s.duration_s)},
+                            {"expect", std::move(expectations)}});
+  }
+  if (!table.empty()) out.tables.push_back(std::move(table));
+}
+
 Listing list_scenarios(const scenarios::DataRoot& data, const std::string& only) {
   Listing out;
-  const std::vector<std::string> names = scenarios::scenario_names(data);
-  if (!only.empty()) require_known("scenario", only, names);
+  std::vector<std::string> names = scenarios::scenario_names(data);
+  const std::vector<std::string> cases = scenarios::case_names(data);
+  if (!only.empty()) {  // of a case all numbers, as of a scenario
+    names.insert(names.end(), cases.begin(), cases.end());
+    require_known("scenario", only, names);
+  }
   Table table("", {"scenario", "robot", "world", "motion", "sensors", "meaning"});
   json entries = json::array();
   for (const std::string& name : names) {
@@ -123,6 +154,7 @@ Listing list_scenarios(const scenarios::DataRoot& data, const std::string& only)
     out.document.push_back(std::move(entry));
   }
   out.tables.insert(out.tables.begin(), std::move(table));
+  if (only.empty()) add_cases(data, out);
   return out;
 }
 

@@ -35,9 +35,9 @@ Table contents(const sim::Sensors& sensors) {
 
 int record(const Session& session, const Options& options) {
   const scenarios::DataRoot data = session.data();
-  const std::uint64_t seed = parse_seed(options.seed);
-  const sim::ResolvedSituation situation =
-      scenarios::draw(data, scenarios::load_scenario(data, options.scenario), seed);
+  const scenarios::Scenario scenario = scenarios::load_scenario(data, options.scenario);
+  const std::uint64_t seed = seed_of(scenario, options.seed);
+  const sim::ResolvedSituation situation = scenarios::draw(data, scenario, seed);
   prepare_output(options.file, std::vector<std::filesystem::path>{options.scenario});
 
   const sim::Recording recording = sim::simulate(sim::BuiltSituation(situation, data.models()), options.threads);
@@ -59,7 +59,7 @@ Action declare_record(CLI::App& app, const Session& session) {
   app.add_option("SCENARIO", options->scenario, "a scenario of the catalogue, or a scenario file")
       ->required()
       ->check(a_scenario(session));
-  app.add_option("--seed", options->seed, "which draw of it")->required();
+  app.add_option("--seed", options->seed, "which draw of it [of a named case its own]");
   app.add_option("--threads", options->threads, "threads for the lidar; the result does not depend on them")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();

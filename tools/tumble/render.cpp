@@ -77,10 +77,9 @@ void load_recording(const scenarios::DataRoot& data, const Options& options, Con
 
 void load_draw(const scenarios::DataRoot& data, const Options& options, Content& content) {
   const scenarios::Scenario scenario = scenarios::load_scenario(data, options.what);
-  if (options.seed.empty()) throw BadInput("--seed is required to draw the scenario '" + options.what + "'");
   if (!options.estimates.empty()) throw BadInput("estimates are drawn into a recording, not into a scenario");
   if (options.film > 0) throw BadInput("--film shows the way of a recording; '" + options.what + "' is a scenario");
-  content.built.emplace(scenarios::draw(data, scenario, parse_seed(options.seed)), data.models());
+  content.built.emplace(scenarios::draw(data, scenario, seed_of(scenario, options.seed)), data.models());
 }
 
 /// Maps of the estimates side by side, coloured by error.
@@ -185,7 +184,7 @@ Action declare_render(CLI::App& app, const Session& session) {
   auto options = std::make_shared<Options>();
   app.add_option("WHAT", options->what, "a recording, FILE.h5, or a scenario (with --seed)")->required();
   app.add_option("ESTIMATE", options->estimates, "folders of estimates whose paths are drawn");
-  app.add_option("--seed", options->seed, "which draw of the scenario");
+  app.add_option("--seed", options->seed, "which draw of the scenario [of a named case its own]");
   app.add_option("-o,--output", options->output, "the picture, FILE.png, or with --video FILE.webp")->required();
   app.add_option("--film", options->film, "a film strip of so many frames")->check(CLI::Range(1, 64));
   app.add_flag("--map", options->map, "the estimates' maps side by side, coloured by error from 0 (blue) to 1 m (red)");

@@ -5,13 +5,16 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <sstream>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/estimate_file.hpp"
 #include "scenarios/methods/given_parameters.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"
+#include "scenarios/sweep/run_again.hpp"
 #include "scenarios/sweep/run_situation.hpp"
+#include "scenarios/sweep/variation.hpp"
 #include "tools/pictures/pictures.hpp"
 #include "tools/replay/page.hpp"
 #include "tools/replay/run_replay.hpp"
@@ -28,8 +31,9 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
-  std::string scenario, seed;  ///< an empty seed: 1
+  std::string scenario, seed;  ///< an empty seed: 1, or a named case's own
   std::vector<std::string> methods, parameters;
+  std::string vary;
   int threads = 1;
   fs::path folder;
   fs::path learnt;
@@ -38,7 +42,7 @@ struct Options {
 /// A scenario and nothing else: somebody looks what this is.
 bool is_bare(const Options& options) {
   return options.seed.empty() && options.methods.empty() && options.folder.empty() && options.learnt.empty() &&
-         options.parameters.empty();
+         options.parameters.empty() && options.vary.empty();
 }
 
 /// The scenario's name, or the first of NAME_2, NAME_3, ... that is not there.
@@ -114,12 +118,24 @@ std::vector<scenarios::MethodPointer> pointers(const std::vector<scenarios::Meth
   return out;
 }
 
+/// The point of a curve that is asked for, or none.
+scenarios::Setting setting_of(const scenarios::DataRoot& data, const Options& options, std::uint64_t seed) {
+  if (options.vary.empty()) return {};
+  const scenarios::Setting setting = scenarios::setting_from(options.vary);
+  scenarios::Variation variation{{}, {setting.value}};
+  std::stringstream keys(setting.key);
+  for (std::string key; std::getline(keys, key, '+');) variation.keys.push_back(key);
+  scenarios::check(variation, data, std::vector<std::string>{options.scenario}, seed);
+  return setting;
+}
+
 int run(const Session& session, const Options& given) {
   const scenarios::DataRoot data = session.data();
   const scenarios::Scenario scenario = scenarios::load_scenario(data, given.scenario);
   const bool first = is_bare(given);
   const Options options = first ? first_run(given, scenario) : given;
-  const std::uint64_t seed = options.seed.empty() ? 1 : parse_seed(options.seed);
+  const bool any_draw = options.seed.empty() && !scenario.named_case;
+  const std::uint64_t seed = any_draw ? 1 : seed_of(scenario, options.seed);
   const auto selected = select_methods(options.methods);
   LearntFile learnt(options.learnt);
   if (!options.learnt.empty() &&
@@ -138,7 +154,9 @@ int run(const Session& session, const Options& given) {
   std::optional<scenarios::OutputFolder> folder;
   if (!options.folder.empty()) folder.emplace(options.folder);
 
-  const scenarios::RunResult result = scenarios::run_situation(data, scenario, seed, methods, options.threads);
+  const scenarios::Setting setting = setting_of(data, options, seed);
+  const scenarios::RunResult result =
+      scenarios::run_situation(data, scenario, seed, methods, options.threads, scenarios::Lidars::simulated, setting);
   if (!options.folder.empty()) {
     leave_files(options.folder, result);
     leave_pictures(options.folder, result);
@@ -175,12 +193,14 @@ Action declare_run(CLI::App& app, const Session& session) {
   app.add_option("SCENARIO", options->scenario, "a scenario of the catalogue, or a scenario file")
       ->required()
       ->check(a_scenario(session));
-  app.add_option("--seed", options->seed, "which draw of it [1]");
+  app.add_option("--seed", options->seed, "which draw of it [1, of a named case its own]");
   app.add_option("--method", options->methods, "a method, as 'saave' or 'rate/saave'; repeat for more [all that apply]")
       ->allow_extra_args(false);  // the word after a method is not another one
   app.add_option("--set", options->parameters,
                  "METHOD.PARAMETER=NUMBER, as rate/tumble_lag.lag_s=0.5; repeat for more ('tumble list methods NAME')")
       ->allow_extra_args(false);
+  app.add_option("--vary", options->vary,
+                 "KEY=NUMBER, a point of a suite's curve: world.rock_count=10, given.lever_arm_error_m=0.03");
   app.add_option("--threads", options->threads, "threads for the lidar; the result does not depend on them")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();

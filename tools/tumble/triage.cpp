@@ -7,11 +7,14 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <tuple>
+#include <utility>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/external_method.hpp"
 #include "scenarios/scoring/metric.hpp"
 #include "tools/tumble/arguments.hpp"
+#include "tools/tumble/gate_cases.hpp"
+#include "tools/tumble/triage_suite.hpp"
 #include "tools/tumble/verbs.hpp"
 
 namespace tumble::tools {
@@ -23,30 +26,11 @@ using scenarios::BadInput;
 using scenarios::TriageRow;
 
 struct Options {
-  std::string scenario, seed, method, metric;
+  std::string what, seed, seeds, method, metric;
   std::optional<double> limit;
+  int jobs = available_processors();
+  std::filesystem::path database;
 };
-
-scenarios::MethodPointer choose(const std::string& name) {
-  const std::vector<scenarios::MethodPointer> found =
-      scenarios::find_methods_within(std::vector<std::string>{name}, 0.9 * scenarios::TriageOptions{}.timeout_s);
-  if (found.size() == 1) return found.front();
-  std::string line = "--method " + name + " names several methods; say which:";
-  for (const scenarios::MethodPointer& method : found)
-    line += std::string(" ") + to_string(method->info.kind) + "/" + method->info.name;
-  throw BadInput(line);
-}
-
-/// The metric named, of the method's kind, or the kind's first.
-std::string metric_of(const scenarios::Method& method, const Options& options) {
-  if (options.metric.empty()) return scenarios::headline_metrics(method.info.kind).front();
-  std::vector<std::string> known;
-  for (const scenarios::Metric& metric : scenarios::metrics()) {
-    if (metric.kind == method.info.kind) known.push_back(metric.info.name);
-  }
-  require_known(std::string("metric of kind ") + to_string(method.info.kind), options.metric, known);
-  return options.metric;
-}
 
 double value_of(const TriageRow& row, const std::string& metric) {
   for (const scenarios::Score& score : row.outcome.scores) {
@@ -100,17 +84,22 @@ std::string conclusion(const std::vector<TriageRow>& rows) {
   return cures.empty() ? "no input cures the failure: it lies in the method or in the scenario" : "cured by: " + cures;
 }
 
-int run_triage(const Session& session, const Options& options) {
-  const scenarios::DataRoot data = session.data();
-  const scenarios::Scenario scenario = scenarios::load_scenario(data, options.scenario);
-  const std::uint64_t seed = parse_seed(options.seed);
-  const scenarios::MethodPointer chosen = choose(options.method);
-  const scenarios::Method& method = *chosen;
-  const std::string metric = metric_of(method, options);
+scenarios::Failure failure_of(const Options& options, const std::string& metric) {
   if (!options.metric.empty() && !options.limit) throw BadInput("--metric needs --limit: from where on a run fails");
+  if (!options.limit) return {};
+  if (!std::isfinite(*options.limit)) throw BadInput("--limit is not a finite number");
+  return {metric, *options.limit};
+}
+
+int run_triage_of_draw(const Session& session, const Options& options) {
+  const scenarios::DataRoot data = session.data();
+  const scenarios::Scenario scenario = scenarios::load_scenario(data, options.what);
+  const std::uint64_t seed = seed_of(scenario, options.seed);
+  const scenarios::MethodPointer chosen = one_method(options.method, 0.9 * scenarios::TriageOptions{}.timeout_s);
+  const scenarios::Method& method = *chosen;
+  const std::string metric = metric_of(method, options.metric);
   scenarios::TriageOptions triage_options;
-  if (options.limit && !std::isfinite(*options.limit)) throw BadInput("--limit is not a finite number");
-  if (options.limit) triage_options.failure = {metric, *options.limit};
+  triage_options.failure = failure_of(options, metric);
   triage_options.on_run = [&](const std::string& input) {
     session.note(input == "none" ? "as it is" : "true: " + input);
   };
@@ -120,14 +109,55 @@ int run_triage(const Session& session, const Options& options) {
   return kDone;
 }
 
+/// Refuses a name that is neither a suite's nor a scenario's, before anything else is missing. What a file is of is
+/// seen when all options are known.
+CLI::Validator known_name(const Session& session) {
+  return CLI::Validator(
+      [&session](std::string& text) {
+        if (!text.ends_with(".yaml")) scenarios::load_suite(session.data(), text);
+        return std::string();
+      },
+      "");
+}
+
+/// A seed, or a named case, is one draw; what else stands there is a suite.
+bool is_one_draw(const Session& session, const Options& options) {
+  const bool named = !options.what.ends_with(".yaml") && names_cases(session.data(), options.what);
+  const bool one = !options.seed.empty() || (named && options.seeds.empty());
+  if (one && (!options.seeds.empty() || !options.database.empty()))
+    throw BadInput("--seeds, --db: are for a suite; one draw is asked for");
+  return one;
+}
+
+int run_triage(const Session& session, const Options& options) {
+  if (is_one_draw(session, options)) return run_triage_of_draw(session, options);
+  SuiteTriage asked;
+  asked.method = one_method(options.method, 0.9 * asked.options.triage.timeout_s);
+  asked.metric = metric_of(*asked.method, options.metric);
+  asked.options.triage.failure = failure_of(options, asked.metric);
+  asked.options.jobs = options.jobs;
+  asked.suite = scenarios::load_suite(session.data(), options.what);
+  if (!options.seeds.empty()) std::tie(asked.suite.first_seed, asked.suite.last_seed) = parse_seeds(options.seeds);
+  asked.database = options.database;
+  return run_suite_triage(session, std::move(asked));
+}
+
 }  // namespace
 
 Action declare_triage(CLI::App& app, const Session& session) {
   auto options = std::make_shared<Options>();
-  app.add_option("SCENARIO", options->scenario, "a scenario of the catalogue, or a scenario file")
+  app.add_option(
+         "SCENARIO", options->what,
+         "with --seed a scenario, a named case or a scenario file; without it a suite, a suite file or a scenario")
       ->required()
-      ->check(a_scenario(session));
-  app.add_option("--seed", options->seed, "which draw of it")->required();
+      ->check(known_name(session));
+  app.add_option("--seed", options->seed, "one draw [all of the suite's; of a named case its own]");
+  app.add_option("--seeds", options->seeds, "A..B, both included, of a suite [the suite's]");
+  app.add_option("--db", options->database,
+                 "results: of the suite's draws only those on which the method failed there");
+  app.add_option("--jobs", options->jobs, "processes at a time, of a suite [the processors]")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
   app.add_option("--method", options->method, "the method that fails")->required();
   app.add_option("--metric", options->metric,
                  "what is shown, and with --limit what fails [the first of the method's kind]");

@@ -20,6 +20,7 @@ std::span<const Verb> verbs() {
       {"bench", "a method of anybody's on the standard draws of its kind, beside stored results", declare_bench},
       {"gate", "sweep a suite's fixed seeds and hold them to the accepted run, draw by draw", declare_gate},
       {"triage", "replace one input at a time by its truth and say which one cures a failure", declare_triage},
+      {"shrink", "make a failing draw shorter and simpler until nothing more can go", declare_shrink},
       {"export", "a recording in somebody else's format", declare_export},
       {"import", "a recording from somebody else's format", declare_import},
       {"certify", "measure how far this build is from physics and its data sheets", declare_certify},

@@ -41,6 +41,7 @@ Action declare_replay(CLI::App& options, const Session& session);
 Action declare_bench(CLI::App& options, const Session& session);
 Action declare_gate(CLI::App& options, const Session& session);
 Action declare_triage(CLI::App& options, const Session& session);
+Action declare_shrink(CLI::App& options, const Session& session);
 Action declare_export(CLI::App& options, const Session& session);
 Action declare_import(CLI::App& options, const Session& session);
 Action declare_certify(CLI::App& options, const Session& session);

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/cases/hold_case.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "scenarios/errors.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+std::string text_of(double value) {
+  std::ostringstream text;
+  text.precision(4);
+  text << value;
+  return text.str();
+}
+
+/// A finite number of the metric; none, where there is not.
+std::optional<double> value_of(const Outcome& outcome, const std::string& metric) {
+  for (const Score& score : outcome.scores) {
+    if (score.metric == metric && std::isfinite(score.value)) return score.value;
+  }
+  return std::nullopt;
+}
+
+/// What a reader wants to know of a shrunk draw, in a line.
+std::string doc_of(const Shrunk& shrunk, const std::string& method, const std::string& scenario, std::uint64_t seed) {
+  std::string needed;
+  std::size_t not_tried = 0;
+  for (const ShrinkLine& line : shrunk.lines) {
+    if (line.what == "duration_s" || line.fate == Fate::removed) continue;
+    if (line.fate == Fate::not_tried)
+      ++not_tried;
+    else
+      needed += (needed.empty() ? "" : ", ") + line.what;
+  }
+  std::string doc = method + ", " + shrunk.failure + ", on draw " + std::to_string(seed) + " of " + scenario +
+                    " made simpler; it needs " + (needed.empty() ? "nothing that could be taken away alone" : needed);
+  if (not_tried > 0) doc += "; " + std::to_string(not_tried) + " more were not tried";
+  return doc + ".";
+}
+
+std::string how_it_fails(const CaseResult& result) {
+  std::string text = to_string(result.status);
+  if (result.value) text += ", " + result.expected.metric + " " + text_of(*result.value);
+  return text;
+}
+
+}  // namespace
+
+Scenario named_case_of(const Shrunk& shrunk, const std::string& name, const std::string& method, const Failure& failure,
+                       const std::string& version, const std::string& command) {
+  Scenario out = shrunk.scenario;
+  Expectation expected;
+  expected.method = method;
+  expected.fails = true;
+  expected.metric = failure.metric.empty() ? headline_metrics(shrunk.drawn.kind).front() : failure.metric;
+  if (!failure.metric.empty()) expected.worse_than = failure.limit;
+  expected.status = to_string(shrunk.left.status);
+  expected.drawn = value_of(shrunk.drawn, expected.metric);
+  expected.value = value_of(shrunk.left, expected.metric);
+  out.doc = doc_of(shrunk, method, out.name, shrunk.drawn.seed);
+  out.named_case = NamedCase{out.name, shrunk.drawn.seed, version, command, {expected}};
+  out.name = name;
+  return out;
+}
+
+Failure failure_of(const Expectation& expected) {
+  return expected.worse_than ? Failure{expected.metric, *expected.worse_than} : Failure{};
+}
+
+CaseResult hold_case(const std::string& name, const Expectation& expected, const Outcome& outcome) {
+  CaseResult result{name,  expected.method, expected, outcome.status, value_of(outcome, expected.metric),
+                    false, false,           ""};
+  result.fails = failure_of(expected).holds(outcome);
+  if (!expected.fails) {
+    if (result.fails) result.fault = "fails: " + how_it_fails(result);
+    return result;
+  }
+  const auto is_better = [&](const std::string& what) {
+    result.better = true;
+    result.fault = what + ": '--accept' holds it from now on";
+  };
+  if (!result.fails) {
+    is_better("cured: " + how_it_fails(result));
+  } else if (to_string(outcome.status) != expected.status) {
+    result.fault = std::string("fails by ") + to_string(outcome.status) + ", was " + expected.status;
+  } else if (expected.value.has_value() != result.value.has_value()) {
+    result.fault =
+        expected.metric + (result.value ? " has a value now: " + text_of(*result.value) : " has no value now");
+  } else if (result.value) {
+    const MetricInfo& info = metric_info(expected.metric);
+    const double was = *expected.value, is = *result.value;
+    const bool within = std::abs(is) <= kCaseFactor * std::abs(was) && std::abs(was) <= kCaseFactor * std::abs(is);
+    const std::string what = expected.metric + " is " + text_of(is) + ", was " + text_of(was);
+    if (!within && tumble::scenarios::is_better(info, is, was)) is_better("better: " + what);
+    if (!within && !result.better) result.fault = what;
+  }
+  return result;
+}
+
+Expectation accepted(const Expectation& expected, const Outcome& outcome) {
+  Expectation out = expected;
+  out.fails = failure_of(expected).holds(outcome);
+  out.status = to_string(outcome.status);
+  out.value = value_of(outcome, expected.metric);
+  return out;
+}
+
+void require_known(const Scenario& scenario) {
+  if (!scenario.named_case) throw BadInput(scenario.file + ": key 'case' is missing");
+  for (const Expectation& expected : scenario.named_case->expected) {
+    const std::string place = scenario.file + ": expect: ";
+    const std::vector<MethodPointer> found = find_methods(expected.method);
+    if (found.size() != 1)
+      throw BadInput(place + "'" + expected.method + "' names several methods; say which, as 'slam/NAME'");
+    if (!outcome_status_named(expected.status)) throw BadInput(place + "no status is called '" + expected.status + "'");
+    const auto known = metrics();
+    const auto is_it = [&](const Metric& metric) {
+      return metric.info.name == expected.metric && metric.kind == found.front()->info.kind;
+    };
+    if (!expected.metric.empty() && std::none_of(known.begin(), known.end(), is_it))
+      throw BadInput(place + "'" + expected.metric + "' is no metric of kind " + to_string(found.front()->info.kind));
+  }
+}
+
+}  // namespace tumble::scenarios

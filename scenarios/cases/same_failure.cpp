@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/cases/same_failure.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <sstream>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/scoring/metric.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+std::optional<double> value_of(const Outcome& outcome, const std::string& metric) {
+  for (const Score& score : outcome.scores) {
+    if (score.metric == metric) return score.value;
+  }
+  return std::nullopt;
+}
+
+/// Beyond a limit of a metric; NaN is not.
+bool is_beyond(const Outcome& outcome, const std::string& metric, double limit) {
+  const std::optional<double> value = value_of(outcome, metric);
+  if (!value) return false;
+  return metric_info(metric).sense == Sense::higher ? *value < limit : *value > limit;
+}
+
+}  // namespace
+
+SameFailure::SameFailure(const Failure& failure, const Outcome& outcome) : status_(outcome.status) {
+  if (status_ == OutcomeStatus::killed)
+    throw BadInput("the machine ended the run, which says nothing of the method: " + outcome.message);
+  if (status_ != OutcomeStatus::ok) return;
+  if (!failure.metric.empty() && is_beyond(outcome, failure.metric, failure.limit)) {
+    metric_ = failure.metric;
+    limit_ = failure.limit;
+    return;
+  }
+  const auto condemned = std::find_if(outcome.scores.begin(), outcome.scores.end(), [](const Score& score) {
+    return metric_info(score.metric).unit == Unit::verdict && score.value > 0.0;
+  });
+  if (condemned != outcome.scores.end()) {
+    metric_ = condemned->metric;  // 0 is good, 1 is bad
+    return;
+  }
+  std::ostringstream text;
+  text << "the run does not fail: its status is ok, no verdict is against it";
+  if (!failure.metric.empty()) {
+    const std::optional<double> value = value_of(outcome, failure.metric);
+    text << ", " << failure.metric << " is ";
+    if (value) {
+      text << *value << ", not worse than " << failure.limit;
+    } else {
+      text << "not there";
+    }
+  }
+  throw BadInput(text.str());
+}
+
+bool SameFailure::holds(const Outcome& outcome) const {
+  return outcome.status == status_ && (metric_.empty() || is_beyond(outcome, metric_, limit_));
+}
+
+std::string SameFailure::describe() const {
+  if (metric_.empty()) return to_string(status_);
+  if (metric_info(metric_).unit == Unit::verdict) return metric_;
+  std::ostringstream text;
+  text << metric_ << " worse than " << limit_;
+  return text.str();
+}
+
+}  // namespace tumble::scenarios

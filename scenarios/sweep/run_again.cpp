@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/sweep/run_again.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/sweep/sweep_notes.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr std::string_view kDescription = "description ";
+constexpr std::string_view kRecording = "recording ";
+
+std::string note_or(const std::map<std::string, std::string>& notes, const std::string& key,
+                    const std::string& otherwise) {
+  const auto found = notes.find(key);
+  return found == notes.end() || found->second.empty() ? otherwise : found->second;
+}
+
+/// The word after --method: of somebody else's the file. Whether it is of the build tells the note of its version.
+std::string method_word(const RunKey& run, const std::map<std::string, std::string>& notes) {
+  const std::string full = run.kind + "/" + run.method;
+  const bool own = !notes.contains("method " + full);
+  return own ? full : note_or(notes, description_note(run.kind, run.method), run.method + ".yaml");
+}
+
+}  // namespace
+
+RunKey key_of(const Outcome& outcome) {
+  return {outcome.scenario, outcome.seed, to_string(outcome.kind), outcome.method, outcome.setting};
+}
+
+std::string description_note(const std::string& kind, const std::string& method) {
+  return std::string(kDescription) + kind + "/" + method;
+}
+
+std::string recording_note(const std::string& name) {
+  return std::string(kRecording) + name;
+}
+
+bool is_place_note(const std::string& key) {
+  return key.starts_with(kDescription) || key.starts_with(kRecording);
+}
+
+std::string command_again(const RunKey& run, const std::map<std::string, std::string>& notes) {
+  const std::string method = run.method.empty() ? "" : " --method " + shell_word(method_word(run, notes));
+  if (note_or(notes, "source", "") == kRecordingsSource) {
+    const std::string file = note_or(notes, recording_note(run.scenario), "FOLDER/" + run.scenario + ".h5");
+    return "tumble estimate " + shell_word(file) + method + " -o " + shell_word(run.scenario);
+  }
+  std::string words = "tumble run " + shell_word(run.scenario) + " --seed " + std::to_string(run.seed) + method;
+  if (!run.setting.is_plain()) words += " --vary " + shell_word(to_text(run.setting));
+  return words;
+}
+
+Setting setting_from(const std::string& text) {
+  const std::size_t equals = text.rfind('=');
+  Setting setting;
+  if (equals != std::string::npos) setting.key = text.substr(0, equals);
+  std::erase(setting.key, ' ');
+  const char* const begin = text.data() + (equals == std::string::npos ? text.size() : equals + 1);
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(begin, end, setting.value);
+  if (setting.key.empty() || begin == end || error != std::errc() || stop != end || !std::isfinite(setting.value))
+    throw BadInput("'" + text + "': must be KEY=NUMBER, as world.rock_count=10, keys that move together joined by '+'");
+  return setting;
+}
+
+std::string to_text(const Setting& setting) {
+  std::array<char, 32> text;
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), setting.value);
+  return setting.key + "=" + std::string(text.data(), end);
+}
+
+}  // namespace tumble::scenarios

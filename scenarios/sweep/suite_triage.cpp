@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/sweep/suite_triage.hpp"
+
+#include <poll.h>
+
+#include <algorithm>
+#include <list>
+#include <map>
+
+#include "scenarios/processes/process.hpp"
+#include "scenarios/sweep/draw_process.hpp"
+#include "scenarios/sweep/message.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr int kPollMs = 200;
+constexpr char kBetween = '\t';  // the input's name and its outcome; no name holds one
+
+/// In the draw's own process: a line per row, then an empty one; or the reason why there is none.
+void tell_rows(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
+               const TriageOptions& options, int fd) {
+  try {
+    TriageOptions quiet = options;
+    quiet.on_run = nullptr;
+    for (const TriageRow& row : triage(data, scenario, seed, method, quiet)) {
+      if (!write_all(fd, row.input + kBetween + to_line({row.outcome, {}}))) return;
+    }
+    write_all(fd, "\n");
+  } catch (const std::exception& error) {
+    write_all(fd, std::string(1, kBetween) + one_line(error.what()) + "\n");
+  }
+}
+
+std::string doc_of(const std::string& input) {
+  for (const TrueInput& each : true_inputs()) {
+    if (each.name == input) return each.doc;
+  }
+  return "the recording as it is";
+}
+
+/// What a process has said. False when it did not come to its end.
+bool read_rows(const std::string& text, const Failure& failure, DrawTriage& out) {
+  std::size_t begin = 0;
+  for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
+    const std::string line = text.substr(begin, end - begin);
+    if (line.empty()) return true;
+    const std::size_t between = line.find(kBetween);
+    if (between == 0) {
+      out.trouble = line.substr(1);
+      return true;
+    }
+    if (between == std::string::npos) return false;
+    const std::optional<Message> message = from_line(line.substr(between + 1));
+    if (!message || !message->outcome) return false;
+    const std::string input = line.substr(0, between);
+    out.rows.push_back({input, doc_of(input), *message->outcome, failure.holds(*message->outcome)});
+  }
+  return false;
+}
+
+struct Worker {
+  std::size_t index;  ///< of the draw
+  Process process;
+  std::string said;
+};
+
+}  // namespace
+
+std::vector<DrawKey> draws_of(const DataRoot& data, const Suite& suite, const Method& method) {
+  std::vector<std::string> names;
+  for (const std::string& name : suite.scenarios) {
+    if (method.info.for_robot(load_scenario(data, name).robot.type)) names.push_back(name);
+  }
+  std::vector<DrawKey> out;
+  for (std::uint64_t seed = suite.first_seed; !names.empty(); ++seed) {
+    for (const std::string& name : names) out.push_back({name, seed});
+    if (seed == suite.last_seed) break;
+  }
+  return out;
+}
+
+std::set<DrawKey> failed_draws(const Results& results, const Method& method, const Failure& failure) {
+  std::set<DrawKey> out;
+  Names names;
+  results.each(Rows::plain, names, [&](const OutcomeView& row) {
+    if (row.kind != method.info.kind || row.method != method.info.name) return;
+    Outcome outcome;
+    outcome.status = row.status;
+    for (const OutcomeView::Value& score : row.scores) outcome.scores.push_back({*score.metric, score.value});
+    if (failure.holds(outcome)) out.insert({std::string(row.scenario), row.seed});
+  });
+  return out;
+}
+
+std::vector<DrawTriage> triage_draws(const DataRoot& data, std::span<const DrawKey> draws, const Method& method,
+                                     const SuiteTriageOptions& options) {
+  std::map<std::string, Scenario> scenarios;
+  for (const DrawKey& draw : draws) {
+    if (!scenarios.contains(draw.scenario)) scenarios.emplace(draw.scenario, load_scenario(data, draw.scenario));
+  }
+  const auto stopped = [&] { return options.stop != nullptr && options.stop->load(); };
+  std::vector<DrawTriage> all(draws.size());
+  std::vector<bool> done(draws.size(), false);
+  std::list<Worker> workers;
+  std::size_t next = 0;
+  while (!stopped() && (next < draws.size() || !workers.empty())) {
+    while (next < draws.size() && workers.size() < static_cast<std::size_t>(options.jobs)) {
+      const DrawKey& draw = draws[next];
+      const Scenario& scenario = scenarios.at(draw.scenario);
+      workers.push_back(
+          {next, Process([&](int fd) { tell_rows(data, scenario, draw.seed, method, options.triage, fd); }, true), {}});
+      all[next++].draw = draw;
+    }
+    std::vector<pollfd> waiting;
+    for (const Worker& worker : workers) waiting.push_back({worker.process.read_end(), POLLIN, 0});
+    poll(waiting.data(), waiting.size(), kPollMs);
+    for (auto worker = workers.begin(); worker != workers.end();) {
+      if (worker->process.read_available(worker->said)) {
+        ++worker;
+        continue;
+      }
+      DrawTriage& draw = all[worker->index];
+      const Process::End end = worker->process.wait();
+      if (!read_rows(worker->said, options.triage.failure, draw)) draw.trouble = "the draw's process " + end.describe();
+      done[worker->index] = true;
+      if (options.on_draw) options.on_draw(draw);
+      worker = workers.erase(worker);
+    }
+  }
+  std::vector<DrawTriage> out;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (done[i]) out.push_back(std::move(all[i]));
+  }
+  return out;
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/cases/complication.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "scenarios/draw/fixed_scenario.hpp"
+#include "tests/tree.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+DataRoot data() {
+  return DataRoot{test::source_dir()};
+}
+
+Scenario fixed(const std::string& name) {
+  const Scenario scenario = load_scenario(data(), name);
+  return fixed_as(scenario, draw(data(), scenario, 1));
+}
+
+/// Of every scenario: each can be taken away by itself, what is left can be drawn, and nothing is left to take of it.
+TEST(Complications, EachGoesAndTheDrawStays) {
+  const std::set<std::string> one_of_a_robot = {"hill_consumer", "slip", "swing"};  // all are many seconds
+  for (const std::string& name : scenario_names(data())) {
+    const Scenario scenario = fixed(name);
+    const std::vector<Complication> all = complications(scenario);
+    EXPECT_GT(all.size(), 5u) << name;
+    std::set<std::string> names;
+    Scenario simple = scenario;
+    for (const Complication& each : all) {
+      EXPECT_TRUE(names.insert(each.name).second) << each.name;
+      Scenario without = scenario;
+      take_away(each, without);
+      if (one_of_a_robot.contains(name)) {
+        EXPECT_NO_THROW(draw(data(), without, 1)) << name << ", " << each.name;
+      }
+      const std::vector<Complication> left = complications(without);
+      EXPECT_EQ(left.size(), all.size() - 1) << name << ", " << each.name;
+      EXPECT_TRUE(std::none_of(left.begin(), left.end(), [&](const Complication& l) { return l.name == each.name; }));
+      take_away(each, simple);
+    }
+    EXPECT_THAT(complications(simple), testing::IsEmpty()) << name;
+    EXPECT_NO_THROW(draw(data(), simple, 1)) << name;
+  }
+}
+
+/// A line whose numbers no type has would never be found by the test above.
+TEST(Complications, TheErrorsOfTheRigsSensorsAreThere) {
+  std::set<std::string> names;
+  for (const Complication& each : complications(fixed("hill_consumer"))) names.insert(each.name);
+  for (const Complication& each : complications(fixed("hill"))) names.insert(each.name);
+  for (const char* name :
+       {"world: rocks", "world: trunks", "world: relief", "robot: centre of mass off its place", "motion: spin forward",
+        "sensors.imu: rail of the gyro", "sensors.imu: tilt, scale and offset of the rails", "sensors.imu: white noise",
+        "sensors.imu: bias", "sensors.imu: delay and clock", "sensors.imu_reference: all of its errors",
+        "sensors.lidar: noise of ranges", "sensors.lidar: errors of its mounting"})
+    EXPECT_TRUE(names.contains(name)) << name;
+}
+
+TEST(Complications, CountsAndSizesHaveTheirAmount) {
+  const Scenario scenario = fixed("hill");
+  const std::vector<Complication> all = complications(scenario);
+  const auto named = [&](const std::string& name) {
+    return *std::find_if(all.begin(), all.end(), [&](const Complication& each) { return each.name == name; });
+  };
+  EXPECT_EQ(named("world: rocks").amount, scenario.world.numbers.at("rock_count").numbers.front());
+  EXPECT_TRUE(named("world: rocks").whole);
+  EXPECT_FALSE(named("world: relief").whole);
+  EXPECT_FALSE(named("sensors.imu: bias").amount.has_value());
+}
+
+}  // namespace
+}  // namespace tumble::scenarios

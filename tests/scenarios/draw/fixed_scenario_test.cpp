@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/draw/fixed_scenario.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "scenarios/draw/scenario_text.hpp"
+#include "scenarios/errors.hpp"
+#include "tests/tree.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+using ::testing::HasSubstr;
+
+DataRoot data() {
+  return DataRoot{test::source_dir()};
+}
+
+NamedCase some_case() {
+  Expectation fails{"slam/tumble", true, "translation_error_end_m", 0.5, "ok", 1.25, 1.0 / 3.0};
+  Expectation holds{"rate/tumble", false, "", {}, "ok", {}, {}};
+  return {"cliff", 18446744073709551615u, "0.1.0", "tumble shrink cliff --method 'it''s' \"x\"", {fails, holds}};
+}
+
+TEST(FixedScenario, DrawsTheSameOfEveryScenarioAlsoThroughItsText) {
+  for (const std::string& name : scenario_names(data())) {
+    const Scenario scenario = load_scenario(data(), name);
+    const sim::ResolvedSituation drawn = draw(data(), scenario, 7);
+    const Scenario fixed = fixed_as(scenario, drawn);
+    EXPECT_EQ(draw(data(), fixed, 7), drawn) << name;
+    const Scenario read = parse_scenario(to_yaml(fixed), name, Registry::of_simulation());
+    EXPECT_EQ(draw(data(), read, 7), drawn) << name;
+    EXPECT_EQ(to_yaml(read), to_yaml(fixed)) << name;
+    // of another seed the numbers are the same, what is random beyond them is not
+    sim::Situation other = draw(data(), fixed, 8);
+    other.seed = 7;
+    EXPECT_EQ(other, static_cast<const sim::Situation&>(drawn)) << name;
+  }
+}
+
+TEST(FixedScenario, ADrawnNumberIsNoText) {
+  EXPECT_THROW(to_yaml(load_scenario(data(), "hill")), BadInput);
+}
+
+TEST(NamedCase, ComesBackThroughItsText) {
+  Scenario scenario = load_scenario(data(), "cliff");
+  scenario = fixed_as(scenario, draw(data(), scenario, 7));
+  scenario.named_case = some_case();
+  const Scenario read = parse_scenario(to_yaml(scenario), "a.yaml", Registry::of_simulation());
+  ASSERT_TRUE(read.named_case.has_value());
+  EXPECT_EQ(*read.named_case, some_case());
+}
+
+std::string complaint_after(const std::string& from, const std::string& to) {
+  Scenario scenario = load_scenario(data(), "cliff");
+  scenario = fixed_as(scenario, draw(data(), scenario, 7));
+  scenario.named_case = some_case();
+  std::string text = to_yaml(scenario);
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  text.replace(at, from.size(), to);
+  try {
+    parse_scenario(text, "a.yaml", Registry::of_simulation());
+  } catch (const BadInput& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(NamedCase, WhatIsWrongIsNamedWithItsPlace) {
+  EXPECT_EQ(complaint_after("cliff", "cliff"), "");
+  EXPECT_THAT(complaint_after("run: fails", "run: perhaps"), HasSubstr("a.yaml:10: "));
+  EXPECT_THAT(complaint_after("run: fails", "run: perhaps"), HasSubstr("'perhaps', must be 'fails' or 'holds'"));
+  EXPECT_THAT(complaint_after("method: \"rate/tumble\"", "method: \"slam/tumble\""), HasSubstr("stands twice"));
+  EXPECT_THAT(complaint_after("worse_than: 0.5", "worse_then: 0.5"), HasSubstr("worse_than"));
+  EXPECT_THAT(complaint_after("worse_than: 0.5", "worse_than: .nan"), HasSubstr("worse_than"));
+  EXPECT_THAT(complaint_after("metric: translation_error_end_m, ", ""), HasSubstr("needs 'metric'"));
+  EXPECT_THAT(complaint_after("  seed: 18446744073709551615\n", ""), HasSubstr("seed"));
+  EXPECT_THAT(complaint_after("seed: 18446744073709551615", "seed: -1"), HasSubstr("seed"));
+  EXPECT_THAT(complaint_after("duration_s: 10", "duration_s: {uniform: [5, 6]}"), HasSubstr("duration_s is drawn"));
+}
+
+/// A tree of its own, with the models of this one.
+class CaseFiles : public testing::Test {
+ protected:
+  CaseFiles() : data_{std::filesystem::path(testing::TempDir()) / "scenarios_draw_cases"} {
+    std::filesystem::remove_all(data_.root);
+    std::filesystem::create_directories(data_.catalogue());
+    Scenario scenario = load_scenario(DataRoot{test::source_dir()}, "cliff");
+    scenario = fixed_as(scenario, draw(DataRoot{test::source_dir()}, scenario, 7));
+    scenario.name = "lost";
+    scenario.named_case = some_case();
+    case_ = to_yaml(scenario);
+    scenario.named_case.reset();
+    plain_ = to_yaml(scenario);
+  }
+  ~CaseFiles() override { std::filesystem::remove_all(data_.root); }
+  void put(const std::filesystem::path& folder, const std::string& text) {
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "lost.yaml") << text;
+  }
+  std::string complaint(const std::string& name) {
+    try {
+      load_scenario(data_, name);
+    } catch (const BadInput& error) {
+      return error.what();
+    }
+    return "";
+  }
+  DataRoot data_;
+  std::string case_, plain_;
+};
+
+TEST_F(CaseFiles, StandWhereAScenarioMay) {
+  EXPECT_THAT(case_names(data_), testing::IsEmpty()) << "no folder, no case";
+  EXPECT_THAT(complaint("lost"), HasSubstr("unknown scenario 'lost'"));
+  put(data_.regressions(), case_);
+  EXPECT_THAT(case_names(data_), testing::ElementsAre("lost"));
+  EXPECT_THAT(scenario_names(data_), testing::IsEmpty()) << "the catalogue is without";
+  EXPECT_TRUE(load_scenario(data_, "lost").named_case.has_value());
+  EXPECT_EQ(complaint("lots"), "unknown scenario 'lots'; did you mean 'lost'?");
+  put(data_.regressions(), plain_);
+  EXPECT_THAT(complaint("lost"), HasSubstr("key 'case' is missing"));
+}
+
+}  // namespace
+}  // namespace tumble::scenarios

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/sweep/suite_triage.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "scenarios/draw/fixed_number.hpp"
+#include "scenarios/draw/fixed_scenario.hpp"
+#include "scenarios/errors.hpp"
+#include "temporary_folder.hpp"
+#include "tests/tree.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+constexpr const char* kMetric = "rate_error_clipped_median_rad_s";
+
+DataRoot data() {
+  return DataRoot{test::source_dir()};
+}
+
+using SuiteTriage = testing::TemporaryFolder;
+
+/// One tumble that clips, as a file, without the lidar; seeds change the noise of its sensors.
+std::string clipping_tumble(const std::filesystem::path& folder) {
+  Scenario scenario = load_scenario(data(), "hill");
+  fix_number(scenario, "duration_s", 4.0);
+  std::erase_if(scenario.sensors, [](const Scenario::Sensor& sensor) { return sensor.name == "lidar"; });
+  const std::filesystem::path file = folder / "clipping.yaml";
+  std::ofstream(file) << to_yaml(fixed_as(scenario, draw(data(), scenario, 1)));
+  return file.string();
+}
+
+std::vector<std::string> said(const std::vector<DrawTriage>& all) {
+  std::vector<std::string> out;
+  for (const DrawTriage& draw : all) {
+    out.push_back(std::to_string(draw.draw.seed) + draw.trouble);
+    for (const TriageRow& row : draw.rows)
+      out.push_back(row.input + (row.fails ? "+" : "-") + row.outcome.estimate_digest + row.doc);
+  }
+  return out;
+}
+
+TEST_F(SuiteTriage, IsTheTriageOfEachDrawForAnyNumberOfJobs) {
+  const std::string scenario = clipping_tumble(folder_);
+  const std::vector<DrawKey> draws = {{scenario, 1}, {scenario, 2}};
+  const Method& raw = *find_methods("rate/raw").front();
+  SuiteTriageOptions options;
+  options.triage.failure = {kMetric, 0.1};
+  std::size_t told = 0;
+  options.on_draw = [&](const DrawTriage&) { ++told; };
+  const std::vector<DrawTriage> one = triage_draws(data(), draws, raw, options);
+  options.jobs = 2;
+  const std::vector<DrawTriage> two = triage_draws(data(), draws, raw, options);
+  EXPECT_EQ(told, 4u);
+  EXPECT_EQ(said(one), said(two));
+
+  TriageOptions alone;
+  alone.failure = options.triage.failure;
+  const DrawTriage same{{scenario, 2}, triage(data(), load_scenario(data(), scenario), 2, raw, alone), ""};
+  ASSERT_EQ(one.size(), 2u);
+  EXPECT_EQ(said({one[1]}), said({same}));
+  for (const DrawTriage& draw : one) {
+    EXPECT_TRUE(draw.rows.at(0).fails);
+    for (const TriageRow& row : draw.rows)
+      EXPECT_EQ(row.fails, !row.input.starts_with("gyro") && row.input != "all") << row.input;
+  }
+}
+
+TEST_F(SuiteTriage, ADrawThatCannotBeSimulatedSaysWhy) {
+  const std::vector<DrawKey> draws = {{clipping_tumble(folder_), 1}};
+  const std::vector<DrawTriage> all = triage_draws(data(), draws, *find_methods("position/rolling").front(), {});
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_TRUE(all[0].rows.empty());
+  EXPECT_THAT(all[0].trouble, ::testing::HasSubstr("does not apply to the robot"));
+  EXPECT_THROW(triage_draws(data(), std::vector<DrawKey>{{"hil", 1}}, *find_methods("rate/raw").front(), {}), BadInput);
+}
+
+TEST_F(SuiteTriage, OfASuiteTheDrawsOfTheMethodsRobotSeedsOutermost) {
+  Suite suite;
+  suite.scenarios = {"hill", "roll", "cliff"};
+  suite.first_seed = 3;
+  suite.last_seed = 4;
+  EXPECT_THAT(draws_of(data(), suite, *find_methods("slam/tumble").front()),
+              ::testing::ElementsAre(DrawKey{"hill", 3}, DrawKey{"cliff", 3}, DrawKey{"hill", 4}, DrawKey{"cliff", 4}));
+  suite.scenarios = {"roll"};
+  EXPECT_THAT(draws_of(data(), suite, *find_methods("slam/tumble").front()), ::testing::IsEmpty());
+}
+
+TEST_F(SuiteTriage, FailedAreThoseOfTheMethodThatFailedThere) {
+  Results results(folder_ / "a.db", Results::Mode::create_or_append);
+  const auto store = [&](std::uint64_t seed, const std::string& method, OutcomeStatus status, double value,
+                         const Setting& setting = {}) {
+    Outcome outcome;
+    outcome.scenario = "hill";
+    outcome.seed = seed;
+    outcome.kind = Kind::rate;
+    outcome.method = method;
+    outcome.status = status;
+    outcome.scores = {{kMetric, value}};
+    outcome.setting = setting;
+    results.store(outcome);
+  };
+  store(1, "raw", OutcomeStatus::ok, 0.5);
+  store(2, "raw", OutcomeStatus::ok, 0.05);
+  store(3, "raw", OutcomeStatus::crashed, 0.0);
+  store(4, "saave", OutcomeStatus::ok, 9.0);
+  store(5, "raw", OutcomeStatus::ok, 9.0, {"world.rock_count", 1.0});
+  const Method& raw = *find_methods("rate/raw").front();
+  EXPECT_THAT(failed_draws(results, raw, {kMetric, 0.1}),
+              ::testing::ElementsAre(DrawKey{"hill", 1}, DrawKey{"hill", 3}));
+  EXPECT_THAT(failed_draws(results, raw, {}), ::testing::ElementsAre(DrawKey{"hill", 3}));
+}
+
+}  // namespace
+}  // namespace tumble::scenarios

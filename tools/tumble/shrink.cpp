@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/cases/shrink.hpp"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "scenarios/cases/hold_case.hpp"
+#include "scenarios/draw/fixed_scenario.hpp"
+#include "scenarios/errors.hpp"
+#include "scenarios/recordings/replace_file.hpp"
+#include "scenarios/sweep/sweep_notes.hpp"
+#include "tools/tumble/arguments.hpp"
+#include "tools/tumble/verbs.hpp"
+
+namespace tumble::tools {
+
+namespace {
+
+using nlohmann::json;
+using scenarios::BadInput;
+using scenarios::Fate;
+using scenarios::ShrinkLine;
+using scenarios::Shrunk;
+
+struct Options {
+  std::string scenario, seed, method, metric, control;
+  std::optional<double> worse_than;
+  int budget = scenarios::ShrinkOptions{}.budget;
+  std::filesystem::path file;
+};
+
+/// The bound of the method's kind, where it applies to the robot: what even it cannot do is no case.
+scenarios::MethodPointer control_of(const Options& options, const scenarios::Method& method,
+                                    const scenarios::Scenario& scenario, double time_limit_s) {
+  if (options.control == "none") return nullptr;
+  if (!options.control.empty()) return one_method(options.control, time_limit_s);
+  for (const scenarios::Method& each : scenarios::methods()) {
+    const scenarios::MethodInfo& info = each.info;
+    const bool other = info.kind != method.info.kind || info.name != method.info.name;
+    if (other && info.kind == method.info.kind && info.name == "oracle" && info.for_robot(scenario.robot.type))
+      return scenarios::unowned(each);
+  }
+  return nullptr;
+}
+
+double value_of(const scenarios::Outcome& outcome, const std::string& metric) {
+  for (const scenarios::Score& score : outcome.scores) {
+    if (score.metric == metric) return score.value;
+  }
+  return std::nan("");
+}
+
+json number_json(double value) {
+  return std::isfinite(value) ? json(value) : json();
+}
+
+std::string amount_text(const std::optional<double>& value) {
+  return value ? number_text(*value) : "";
+}
+
+Table lines_table(const Shrunk& shrunk, const std::string& metric) {
+  Table table("", {"of the draw", "fate", "from", "to", "without it: status", metric});
+  for (const ShrinkLine& line : shrunk.lines) {
+    table.add_row({line.what, to_string(line.fate), amount_text(line.from), amount_text(line.to),
+                   line.without ? to_string(line.without->status) : "",
+                   line.without ? number_text(value_of(*line.without, metric)) : ""});
+  }
+  return table;
+}
+
+Table outcomes_table(const Shrunk& shrunk, const std::string& metric) {
+  Table table("", {"draw", "status", metric, "estimate took [s]"});
+  const auto add = [&](const char* name, const scenarios::Outcome& outcome) {
+    table.add_row({name, to_string(outcome.status), number_text(value_of(outcome, metric)),
+                   number_text(value_of(outcome, "estimate_cpu_s"))});
+  };
+  add("as drawn", shrunk.drawn);
+  add("shrunk", shrunk.left);
+  return table;
+}
+
+json to_json(const Shrunk& shrunk, const std::string& metric, const Options& options) {
+  json lines = json::array();
+  for (const ShrinkLine& line : shrunk.lines) {
+    json row = {{"what", line.what}, {"fate", to_string(line.fate)}};
+    if (line.from) row["from"] = *line.from;
+    if (line.to) row["to"] = *line.to;
+    if (line.without) {
+      row["without"] = {{"status", to_string(line.without->status)},
+                        {"value", number_json(value_of(*line.without, metric))}};
+    }
+    lines.push_back(std::move(row));
+  }
+  const auto side = [&](const scenarios::Outcome& outcome) {
+    return json{{"status", to_string(outcome.status)}, {"value", number_json(value_of(outcome, metric))}};
+  };
+  return {{"failure", shrunk.failure},       {"metric", metric},          {"drawn", side(shrunk.drawn)},
+          {"shrunk", side(shrunk.left)},     {"runs", shrunk.runs},       {"complete", shrunk.complete},
+          {"controlled", shrunk.controlled}, {"lines", std::move(lines)}, {"case", options.file.string()}};
+}
+
+/// The words that shrink the same draw once more.
+std::string command_of(const Options& options, std::uint64_t seed) {
+  using scenarios::shell_word;
+  std::string words = "tumble shrink " + shell_word(options.scenario) + " --seed " + std::to_string(seed) +
+                      " --method " + shell_word(options.method);
+  if (options.worse_than)
+    words += " --metric " + shell_word(options.metric) + fmt::format(" --worse-than {}", *options.worse_than);
+  if (!options.control.empty()) words += " --control " + shell_word(options.control);
+  return words + fmt::format(" --budget {} -o ", options.budget) + shell_word(options.file.filename().string());
+}
+
+/// The case is called as its file, which has to be a name.
+std::string name_of(const std::filesystem::path& file) {
+  const std::string name = file.stem().string();
+  const auto allowed = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
+  const bool good = file.extension() == ".yaml" && !name.empty() && name[0] >= 'a' && name[0] <= 'z' &&
+                    std::all_of(name.begin(), name.end(), allowed);
+  if (good) return name;
+  throw BadInput("-o " + file.string() +
+                 ": must be NAME.yaml, NAME a lower-case letter followed by letters, digits and underscores");
+}
+
+void require_whole(const Options& options) {
+  if (options.metric.empty() != !options.worse_than)
+    throw BadInput("--metric and --worse-than go together: which number, and from where on a run fails");
+  if (options.worse_than && !std::isfinite(*options.worse_than)) throw BadInput("--worse-than is not a finite number");
+}
+
+std::string control_text(const Shrunk& shrunk, const scenarios::ShrinkOptions& options) {
+  if (!options.control) return "no control";
+  const std::string& name = options.control->info.name;
+  return shrunk.controlled ? name + " does not fail on it" : name + " fails on the draw too, and controls nothing";
+}
+
+int run_shrink(const Session& session, const Options& options) {
+  require_whole(options);
+  const std::string name = name_of(options.file);
+  const scenarios::DataRoot data = session.data();
+  const scenarios::Scenario scenario = scenarios::load_scenario(data, options.scenario);
+  const std::uint64_t seed = seed_of(scenario, options.seed);
+  scenarios::ShrinkOptions shrinking;
+  const double time_limit_s = 0.9 * shrinking.timeout_s;
+  const scenarios::MethodPointer method = one_method(options.method, time_limit_s);
+  const std::string metric = metric_of(*method, options.metric);
+  prepare_output(options.file, std::vector<std::filesystem::path>{options.scenario, options.method});
+  if (options.worse_than) shrinking.failure = {metric, *options.worse_than};
+  shrinking.control = control_of(options, *method, scenario, time_limit_s);
+  shrinking.budget = options.budget;
+  shrinking.on_trial = [&](const scenarios::ShrinkTrial& trial) {
+    session.note(fmt::format("{:>3} of {} at most: {}: {}, {} {}{}", trial.run, options.budget, trial.what,
+                             trial.kept ? "fails" : "does not", to_string(trial.outcome.status),
+                             number_text(value_of(trial.outcome, metric)),
+                             trial.outcome.message.empty() ? "" : " (" + trial.outcome.message + ")"));
+  };
+  const Shrunk shrunk = scenarios::shrink(data, scenario, seed, *method, shrinking);
+
+  const bool own = method->info.version.empty();
+  const std::string full = std::string(to_string(method->info.kind)) + "/" + method->info.name;
+  const scenarios::Scenario made = scenarios::named_case_of(
+      shrunk, name, own ? full : options.method, shrinking.failure, program_version(), command_of(options, seed));
+  scenarios::replace_file(options.file, scenarios::to_yaml(made));
+  session.print({lines_table(shrunk, metric), outcomes_table(shrunk, metric)}, to_json(shrunk, metric, options));
+  session.note(fmt::format(
+      "{}: {} runs, {}; {}; the case: {}", shrunk.failure, shrunk.runs,
+      shrunk.complete ? "nothing single can be taken away any more" : "the budget is spent, more might go (--budget)",
+      control_text(shrunk, shrinking), options.file.string()));
+  return kDone;
+}
+
+}  // namespace
+
+Action declare_shrink(CLI::App& app, const Session& session) {
+  auto options = std::make_shared<Options>();
+  app.add_option("SCENARIO", options->scenario, "a scenario, a named case, or a scenario file")
+      ->required()
+      ->check(a_scenario(session));
+  app.add_option("--seed", options->seed, "the draw that fails [of a named case its own]");
+  app.add_option("--method", options->method, "the method that fails on it")->required();
+  app.add_option("--metric", options->metric, "what makes a run fail, with --worse-than [status and verdicts alone]");
+  app.add_option("--worse-than", options->worse_than, "a run fails where the metric is worse than this, SI");
+  app.add_option("--control", options->control,
+                 "a method that must not fail on what is kept, or 'none' [the oracle of the method's kind]");
+  app.add_option("--budget", options->budget, "draws simulated at most")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  app.add_option("-o,--output", options->file, "NAME.yaml: the case; in scenarios/regressions the gate holds it")
+      ->required();
+  return [&session, options] { return run_shrink(session, *options); };
+}
+
+}  // namespace tumble::tools

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/tumble/triage_suite.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/summary/input_worth.hpp"
+#include "tools/tumble/arguments.hpp"
+#include "tools/tumble/interrupt.hpp"
+
+namespace tumble::tools {
+
+namespace {
+
+using nlohmann::json;
+using scenarios::BadInput;
+using scenarios::DrawKey;
+using scenarios::DrawTriage;
+using scenarios::InputWorth;
+
+std::string full_name(const scenarios::MethodInfo& method) {
+  return std::string(to_string(method.kind)) + "/" + method.name;
+}
+
+std::string interval_text(const scenarios::Interval& interval) {
+  if (std::isnan(interval.value)) return "";
+  return fmt::format("[{}, {}]", number_text(interval.low), number_text(interval.high));
+}
+
+std::string value_text(double value) {
+  return std::isnan(value) ? "" : number_text(value);
+}
+
+Table table_of(const std::vector<InputWorth>& worths, const std::string& metric) {
+  Table table("by " + metric,
+              {"scenario", "replaced by its truth", "draws", "failed", "cured", "share cured", "95 % interval",
+               "broken", "median improvement", "95 % interval ", "better", "worse", "chance"});
+  for (const InputWorth& worth : worths) {
+    table.add_row({worth.scenario.empty() ? "all" : worth.scenario, worth.input, std::to_string(worth.draws),
+                   std::to_string(worth.failed), std::to_string(worth.cured), value_text(worth.cured_share.value),
+                   interval_text(worth.cured_share), std::to_string(worth.broken), value_text(worth.improvement.value),
+                   interval_text(worth.improvement), std::to_string(worth.better), std::to_string(worth.worse),
+                   fmt::format("{:.2g}", worth.corrected)});
+  }
+  return table;
+}
+
+json number_json(double value) {
+  if (std::isinf(value)) return value > 0.0 ? "inf" : "-inf";
+  return std::isnan(value) ? json() : json(value);
+}
+
+json interval_json(const scenarios::Interval& interval) {
+  return {
+      {"value", number_json(interval.value)}, {"low", number_json(interval.low)}, {"high", number_json(interval.high)}};
+}
+
+json draw_json(const DrawTriage& draw, const std::string& method) {
+  json runs = json::array();
+  for (const scenarios::TriageRow& row : draw.rows)
+    runs.push_back({{"input", row.input}, {"status", to_string(row.outcome.status)}, {"fails", row.fails}});
+  return {{"scenario", draw.draw.scenario},
+          {"seed", draw.draw.seed},
+          {"trouble", draw.trouble},
+          {"runs", runs},
+          {"again", fmt::format("tumble triage {} --seed {} --method {}", draw.draw.scenario, draw.draw.seed, method)}};
+}
+
+json to_json(const std::vector<InputWorth>& worths, const std::vector<DrawTriage>& draws, const SuiteTriage& asked) {
+  json rows = json::array(), all = json::array();
+  for (const InputWorth& worth : worths) {
+    rows.push_back({{"scenario", worth.scenario},
+                    {"input", worth.input},
+                    {"doc", worth.doc},
+                    {"draws", worth.draws},
+                    {"failed", worth.failed},
+                    {"cured", worth.cured},
+                    {"broken", worth.broken},
+                    {"share_cured", interval_json(worth.cured_share)},
+                    {"median_improvement", interval_json(worth.improvement)},
+                    {"better", worth.better},
+                    {"worse", worth.worse},
+                    {"chance", worth.chance},
+                    {"corrected", worth.corrected}});
+  }
+  for (const DrawTriage& draw : draws) all.push_back(draw_json(draw, full_name(asked.method->info)));
+  return {{"suite", asked.suite.name},
+          {"method", full_name(asked.method->info)},
+          {"metric", asked.metric},
+          {"inputs", std::move(rows)},
+          {"draws", std::move(all)}};
+}
+
+/// Of all draws together, what cures most; all inputs at once are a bound, no answer.
+std::string conclusion(const std::vector<InputWorth>& worths) {
+  if (worths.empty()) return "no draw could be run";
+  const std::string& whole = worths.back().scenario;  // of all, where there are several scenarios
+  const auto is_single = [&](const InputWorth& worth) { return worth.scenario == whole && worth.input != "all"; };
+  const auto first = std::find_if(worths.begin(), worths.end(), is_single);
+  if (first == worths.end()) return "no input could be replaced";
+  const std::string name = first->input + " (" + first->doc + ")";
+  if (first->cured > 0)
+    return fmt::format("{} matters most: it cures {} of {} failures", name, first->cured, first->failed);
+  const std::string failures =
+      first->failed == 0 ? "no run failed (see --metric and --limit); " : "no single input cures a failure; ";
+  if (first->better <= first->worse) return failures + "none makes most draws better";
+  return failures + fmt::format("{} makes {} of {} draws better", name, first->better, first->better + first->worse);
+}
+
+std::vector<DrawKey> chosen_draws(const Session& session, const SuiteTriage& asked) {
+  std::vector<DrawKey> draws = scenarios::draws_of(session.data(), asked.suite, *asked.method);
+  if (draws.empty())
+    throw BadInput("method '" + asked.method->info.name + "' applies to no scenario of suite '" + asked.suite.name +
+                   "'");
+  if (asked.database.empty()) return draws;
+  const scenarios::Results results(asked.database, scenarios::Results::Mode::read_only);
+  const auto failed = scenarios::failed_draws(results, *asked.method, asked.options.triage.failure);
+  std::erase_if(draws, [&](const DrawKey& draw) { return !failed.contains(draw); });
+  if (draws.empty())
+    throw BadInput(asked.database.string() + ": " + full_name(asked.method->info) +
+                   " failed on none of these draws there");
+  return draws;
+}
+
+std::string line_of(const DrawTriage& draw) {
+  const std::string name = fmt::format("{} {}: ", draw.draw.scenario, draw.draw.seed);
+  if (draw.rows.empty()) return name + draw.trouble;
+  if (!draw.rows.front().fails) return name + "does not fail";
+  std::string cures;
+  for (const scenarios::TriageRow& row : draw.rows) {
+    if (!row.fails) cures += (cures.empty() ? "" : ", ") + row.input;
+  }
+  return name + (cures.empty() ? "fails, cured by no input" : "fails, cured by " + cures);
+}
+
+}  // namespace
+
+int run_suite_triage(const Session& session, SuiteTriage asked) {
+  if (!asked.suite.recordings.empty())
+    throw BadInput("suite '" + asked.suite.name + "' is of recordings, whose inputs have no truth to be replaced by");
+  const std::vector<DrawKey> draws = chosen_draws(session, asked);
+  const InterruptFlag interrupt;
+  std::size_t done = 0, failed = 0;
+  asked.options.stop = &interrupt.raised();
+  asked.options.on_draw = [&](const DrawTriage& draw) {
+    ++done;
+    failed += !draw.rows.empty() && draw.rows.front().fails ? 1 : 0;
+    session.note(fmt::format("{} of {} draws, {} failing: {}", done, draws.size(), failed, line_of(draw)));
+  };
+  const std::vector<DrawTriage> triaged = scenarios::triage_draws(session.data(), draws, *asked.method, asked.options);
+  const std::vector<InputWorth> worths = scenarios::worth_of_inputs(triaged, asked.metric);
+  session.print({table_of(worths, asked.metric)}, to_json(worths, triaged, asked));
+  session.note(conclusion(worths));
+  if (triaged.size() == draws.size()) return kDone;
+  std::fprintf(stderr, "tumble: stopped: %zu of %zu draws, the table is of these\n", triaged.size(), draws.size());
+  return kCheckFailed;
+}
+
+}  // namespace tumble::tools
