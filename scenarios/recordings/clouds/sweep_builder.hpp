@@ -31,8 +31,9 @@ struct PointTimeRule {
 /// Finds the field of the times and its unit from the first clouds. Names, whatever their case: t time timestamp
 /// timestamps time_stamp offset_time time_offset offset_ns; a name that ends in _s _ms _us _ns tells the unit. Else the
 /// unit is the one in which the times of a sweep (median over the clouds) span 2 to 150 % of `period_ns`; where that is
-/// not known (0), stamps since the epoch tell it by their size. Times that begin more than two periods from 0 in any of
-/// the clouds are absolute. Of two fields the one whose name tells its unit is taken. Throws BadInput beginning with
+/// not known (0), stamps since the epoch tell it by their size. A stated unit that does not fit so, where another does
+/// and the sweeps hold 100 points or more, is refused with both. Times that begin more than two periods from 0 in any
+/// of the clouds are absolute. Of two fields the one whose name tells its unit is taken. Throws BadInput beginning with
 /// `where`: a field that is not there, two of them, no unit that fits.
 PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t period_ns, const SweepReading& reading,
                                const std::string& where);
@@ -52,8 +53,9 @@ class SweepBuilder {
   /// two sweep periods, a ring that is none.
   void add(std::optional<std::int64_t> stamp_ns, Cloud cloud, std::string where);
 
-  /// The record, in the clock of the stamps, and remarks for the user. Throws BadInput beginning with `where`: no point
-  /// in any sweep, a single sweep of unknown length.
+  /// The record, in the clock of the stamps, and remarks for the user: how the times of points were read among them. A
+  /// period that is not given is the median step, or the latest offset where that is more. Throws BadInput beginning
+  /// with `where`: no point in any sweep, a single sweep of unknown length.
   sim::LidarRecord finish(const std::string& where, std::vector<std::string>& notes);
 
  private:
