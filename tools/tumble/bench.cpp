@@ -139,9 +139,11 @@ int bench(const Session& session, const Options& options) {
                            suite.draw_count(), database.string()));
   const scenarios::DatabaseOwner owner(database);
   const InterruptFlag interrupt;
-  // what the machine ended says nothing of a method
-  const scenarios::SweepProgress final = sweep_with_progress(session, data, suite, owner, options.jobs,
-                                                             interrupt.raised(), {scenarios::OutcomeStatus::killed});
+  scenarios::SweepOptions how;
+  how.jobs = options.jobs;
+  how.stop = &interrupt.raised();
+  how.again = {scenarios::OutcomeStatus::killed};  // what the machine ended says nothing of a method
+  const scenarios::SweepProgress final = sweep_with_progress(session, data, suite, owner, how);
   if (final.draws_done < final.draws_total) return say_stopped(final);
 
   const scenarios::Results results(database, scenarios::Results::Mode::read_only);

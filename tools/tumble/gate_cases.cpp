@@ -135,10 +135,12 @@ int hold_cases(const Session& session, const scenarios::DataRoot& data, const Ca
   const GateDatabase database(gate.database);
   const scenarios::DatabaseOwner owner(database.path());
   const InterruptFlag interrupt;
+  scenarios::SweepOptions how;
+  how.jobs = gate.jobs;
+  how.stop = &interrupt.raised();
   for (const scenarios::Scenario& named : cases) {
     session.note(named.name + ": " + named.doc);
-    const scenarios::SweepProgress progress =
-        sweep_with_progress(session, data, suite_of(named), owner, gate.jobs, interrupt.raised());
+    const scenarios::SweepProgress progress = sweep_with_progress(session, data, suite_of(named), owner, how);
     if (progress.draws_done < progress.draws_total) return say_stopped(progress);
   }
   const scenarios::Results results(database.path(), scenarios::Results::Mode::read_only);
