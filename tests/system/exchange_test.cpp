@@ -286,7 +286,7 @@ TEST(Exchange, HostileSweepsAreOneLine) {
   std::ofstream(folder / "cut" / "1.ply") << "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\n"
                                              "property float x\nproperty float y\nproperty float z\nend_header\n";
   for (const auto& [path, complaint] :
-       {std::pair{"empty", "holds no .ply, .pcd or .bin file"}, {"cut", "1.ply:7: promises 4000000000 points"}}) {
+       {std::pair{"empty", "holds no .ply, .pcd, .vtk or .bin file"}, {"cut", "1.ply:7: promises 4000000000 points"}}) {
     const Ended ended = run_program({"import", (folder / path).string(), "-o", (folder / "x.h5").string()});
     EXPECT_EQ(ended.status, 2);
     EXPECT_EQ(line_count(ended.err), 1u) << ended.err;
