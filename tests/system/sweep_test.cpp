@@ -254,6 +254,9 @@ TEST(Sweep, OfAnotherSuiteKeepsTheExamplesThatStandThere) {
     fs::copy_file(list.parent_path() / picture["file"].get<std::string>(), list.parent_path() / name);
     picture["file"] = name;
   }
+  json& moving = left["examples"][0]["moving"];
+  fs::copy_file(list.parent_path() / moving["file"].get<std::string>(), list.parent_path() / "elsewhere-1-moving.webp");
+  moving["file"] = "elsewhere-1-moving.webp";
   std::ofstream(list) << left.dump();
   ASSERT_EQ(run_program(arguments).status, 0);
   const json both = json::parse(read_file(list));
