@@ -10,7 +10,8 @@ struct Renderer::Impl {
   SceneRenderer scene;
 };
 
-Renderer::Renderer(const BuiltSituation& built) : impl_(new Impl{SceneRenderer(engine::copy_of(built.world()))}) {}
+Renderer::Renderer(const BuiltSituation& built, int shadow_pixels)
+    : impl_(new Impl{SceneRenderer(engine::copy_of(built.world()), shadow_pixels)}) {}
 
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;

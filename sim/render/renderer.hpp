@@ -53,8 +53,9 @@ struct View {
 /// Pictures of a situation's world without a display (OSMesa).
 class Renderer {
  public:
-  /// Dresses a copy of the world. Throws std::runtime_error when no OSMesa context can be made.
-  explicit Renderer(const BuiltSituation& built);
+  /// Dresses a copy of the world; its shadows are sharp to one of `shadow_pixels` along each side of what is seen, and
+  /// cost their square. Throws std::runtime_error when no OSMesa context can be made.
+  explicit Renderer(const BuiltSituation& built, int shadow_pixels = 4096);
   ~Renderer();
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;

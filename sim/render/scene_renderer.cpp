@@ -82,8 +82,8 @@ Picture averaged(const std::vector<std::uint8_t>& large, int width, int height) 
   return picture;
 }
 
-void set_look(mjModel& model) {
-  model.vis.quality.shadowsize = 4096;
+void set_look(mjModel& model, int shadow_pixels) {
+  model.vis.quality.shadowsize = shadow_pixels;
   model.vis.quality.offsamples = 0;
   model.vis.quality.numslices = 24;
   model.vis.quality.numstacks = 14;
@@ -134,10 +134,10 @@ SceneRenderer::Impl::~Impl() {
   OSMesaMakeCurrent(nullptr, nullptr, GL_UNSIGNED_BYTE, 0, 0);
 }
 
-SceneRenderer::SceneRenderer(engine::World world) : impl_(std::make_unique<Impl>()) {
+SceneRenderer::SceneRenderer(engine::World world, int shadow_pixels) : impl_(std::make_unique<Impl>()) {
   impl_->world = std::move(world);
   mjModel& model = *impl_->world.model;
-  set_look(model);
+  set_look(model, shadow_pixels);
   impl_->data.reset(mj_makeData(&model));
   impl_->context.reset(OSMesaCreateContextExt(OSMESA_RGBA, 24, 8, 8, nullptr));
   const Current current(impl_->context.get());

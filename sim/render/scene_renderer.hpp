@@ -16,7 +16,7 @@ namespace tumble::sim {
 class SceneRenderer {
  public:
   /// Takes over the world; changes its colours of sky, light and shadow settings, which nothing else sees.
-  explicit SceneRenderer(engine::World world);
+  SceneRenderer(engine::World world, int shadow_pixels);
   ~SceneRenderer();
   SceneRenderer(const SceneRenderer&) = delete;
   SceneRenderer& operator=(const SceneRenderer&) = delete;

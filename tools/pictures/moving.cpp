@@ -65,7 +65,8 @@ std::vector<std::uint8_t> moving_picture(const Scene& scene, const Span& span, c
   const scenarios::TruthTrack track(*scene.truth, scenarios::Frame::body);
   const std::vector<std::int64_t> stands =
       options.strobe > 0 ? instants_along(*scene.truth, options.strobe) : std::vector<std::int64_t>{};
-  sim::Renderer renderer(*scene.built);
+  // frames of a few hundred pixels: finer shadows are not seen, and are most of what one costs
+  sim::Renderer renderer(*scene.built, 1024);
   sim::View view;
   view.width = options.width;
   view.height = options.height;
