@@ -77,7 +77,7 @@ TEST(Page, EscapesEveryTextItIsGiven) {
   content.title = evil;
   content.versions = {{evil, evil}};
   content.commands = {{evil, evil}};
-  content.failed = {1, {{evil, 7, {{evil, evil, evil}}, evil}}};
+  content.failed = {1, {{evil, 7, {{evil, evil, evil, evil}}}}};
   content.sensitivity_note = evil;
   content.sensitivity = {{evil, Kind::rate, evil, evil, 30, {{evil, {}, {}, 0.0, 1.0, 2.0}}}};
   content.motion_map = scenarios::motion_map(std::vector<scenarios::DrawValues>{
@@ -180,8 +180,8 @@ TEST(Page, LinksFailedDrawsThatHavePictures) {
   content.examples = {evil_example("hill")};
   content.examples[0].replay_address = "a.db.files/hill-7-replay.html";
   content.failed = {2,
-                    {{"hill", 7, {{"rate/saave", "diverged", "went away"}}, "tumble run hill --seed 7"},
-                     {"hill", 8, {{"rate/saave", "diverged", ""}}, ""}}};
+                    {{"hill", 7, {{"rate/saave", "diverged", "went away", "tumble run hill --seed 7"}}},
+                     {"hill", 8, {{"rate/saave", "diverged", "", "tumble run hill --seed 8"}}}}};
   const std::string page = page_html(content, "");
   EXPECT_THAT(page, HasSubstr("<a href=\"#draw-hill-7\">pictures</a>"));
   EXPECT_THAT(page, HasSubstr("<details id=\"draw-hill-7\""));
