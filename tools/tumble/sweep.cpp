@@ -240,9 +240,10 @@ Action declare_sweep(CLI::App& app, const Session& session) {
   app.add_option("--again", options->again, "run rows of these statuses once more: crashed,timeout,killed")
       ->delimiter(',')
       ->allow_extra_args(false);
-  app.add_option("--examples", options->examples,
-                 "draws run again at the end, their pictures and plots left in FILE.db.files for 'report'; not of a "
-                 "shard [one for each 8 draws of the sweep, 3 at most]")
+  app.add_option(
+         "--examples", options->examples,
+         "draws run again at the end, and the one on which most methods failed, their pictures and plots left in "
+         "FILE.db.files for 'report'; not of a shard [one for each 8 draws of the sweep, 3 at most]")
       ->check(CLI::Range(0, 64));
   app.add_option("--memory", options->memory_mib,
                  "MiB of data that a worker, and each method that it runs, may hold; one that needs more is 'killed'")
