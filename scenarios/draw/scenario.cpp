@@ -37,6 +37,8 @@ Scenario load_scenario(const DataRoot& data, const std::string& name) {
   if (name.ends_with(".yaml")) return parse_scenario(read_text_file(name), name, registry);
   const std::vector<std::string> cases = case_names(data);
   const bool is_case = std::binary_search(cases.begin(), cases.end(), name);
+  if (is_case && std::filesystem::exists(data.catalogue() / (name + ".yaml")))
+    throw BadInput("'" + name + "' is a scenario and a named case; call one of them otherwise");
   const std::filesystem::path path = is_case ? data.regressions() / (name + ".yaml") : find_scenario(data, cases, name);
   Scenario scenario = parse_scenario(read_text_file(path), path.string(), registry);
   if (scenario.name != name) {

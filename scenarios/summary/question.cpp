@@ -158,6 +158,11 @@ std::vector<Answer> answers(const Results& results, const Question& question, st
   return out;
 }
 
+const char* finding_text(const Answer& answer, const Question& question) {
+  return answer.finding == Finding::worse && question.margin.value > 0.0 ? "not by the margin"
+                                                                         : to_string(answer.finding);
+}
+
 bool all_answered(const std::vector<Answer>& answers) {
   return std::all_of(answers.begin(), answers.end(),
                      [](const Answer& each) { return each.finding != Finding::undecided; });

@@ -35,9 +35,9 @@ struct Question {
 /// What the looks have said of one scenario.
 struct Answer {
   std::string scenario;
-  Finding finding = Finding::undecided;  ///< better or worse by the margin
+  Finding finding = Finding::undecided;  ///< better by more than the margin; with a margin `worse` is: not so
   std::uint64_t seeds = 0;               ///< that had been seen at the look that answered, or at the last one
-  std::int64_t better = 0, worse = 0;    ///< pairs, at that look; equal ones are neither
+  std::int64_t better = 0, worse = 0;    ///< pairs that say so, at that look; equal ones are neither
   std::int64_t needed = 0;               ///< as many better, or worse, ones were an answer then
 };
 
@@ -52,6 +52,10 @@ void claim(Results& results, const Question& question, const std::filesystem::pa
 /// The answers of the looks until `last_seed`, of which all draws up to it have been run: a function of the results of
 /// these looks' seeds alone. In the order of the question's scenarios. A failed run ranks as the worst.
 std::vector<Answer> answers(const Results& results, const Question& question, std::uint64_t last_seed);
+
+/// Of an answer in words: "not by the margin" where there is one, and the method is not better by more than it, be it
+/// worse or not.
+const char* finding_text(const Answer& answer, const Question& question);
 
 bool all_answered(const std::vector<Answer>& answers);
 

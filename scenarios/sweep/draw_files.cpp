@@ -2,6 +2,7 @@
 #include "scenarios/sweep/draw_files.hpp"
 
 #include "scenarios/draw/scenario.hpp"
+#include "scenarios/methods/estimate_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 
 namespace tumble::scenarios {
@@ -15,12 +16,32 @@ DrawFiles::DrawFiles(const Keeping& keeping) : keeping_(keeping) {
   }
 }
 
-std::filesystem::path DrawFiles::estimate(const MethodInfo& method) const {
-  return folder_ ? estimate_folder(folder_->path(), method.kind, method.name) : std::filesystem::path();
+std::filesystem::path DrawFiles::estimate(const MethodInfo& method) {
+  if (!folder_) return {};
+  std::filesystem::path place = estimate_folder(folder_->path(), method.kind, method.name);
+  asked_.insert(place.filename());
+  return place;
+}
+
+/// An estimate of a sweep with other methods, which the new folder is not to cost.
+void DrawFiles::take_over(const sim::Sensors& sensors) const {
+  const std::filesystem::path theirs = keeping_.folder / "estimates", own = folder_->path() / "estimates";
+  if (!std::filesystem::exists(theirs)) return;
+  const std::string made_from = digest(sensors, nullptr);
+  for (const std::filesystem::directory_entry& each : std::filesystem::directory_iterator(theirs)) {
+    const std::filesystem::path name = each.path().filename();
+    if (asked_.contains(name) || estimated_sensors(each.path()) != made_from) continue;
+    std::filesystem::create_directories(own);
+    std::filesystem::rename(each.path(), own / name);
+  }
 }
 
 void DrawFiles::finish(const SimulatedDraw& draw, bool failed) {
-  if (!folder_ || !(failed || keeping_.when == Keeping::When::always)) return folder_.reset();
+  if (!folder_) return;
+  if (!failed && keeping_.when != Keeping::When::always) {
+    trouble_.clear();
+    return folder_.reset();
+  }
   try {
     RecordingInfo info = keeping_.versions;
     info.scenario = draw.scenario;
@@ -28,6 +49,7 @@ void DrawFiles::finish(const SimulatedDraw& draw, bool failed) {
     info.situation_yaml = to_yaml(draw.built->situation());
     write_recording(folder_->path() / "recording.h5", info, draw.recording.sensors, &draw.recording.truth);
     replace_file(folder_->path() / kDrawCommand, keeping_.command + "\n");
+    take_over(draw.recording.sensors);
     folder_->move_into_place();
   } catch (const std::exception& error) {
     trouble_ = one_line(error.what());

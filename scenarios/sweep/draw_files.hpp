@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "scenarios/recordings/recording_file.hpp"
@@ -23,6 +24,7 @@ struct Keeping {
   std::filesystem::path folder;  ///< of the draw: FOLDER/SCENARIO/SEED
   std::string command;           ///< that makes it again
   RecordingInfo versions;        ///< of the program and the engine: what a recording says of itself beyond its draw
+  bool lidars = false;           ///< whether a method of the draw reads lidars, be it run with this task or not
 };
 
 /// A draw that is kept, in the making. What it cannot write is trouble of the keeping alone: the draw goes on.
@@ -31,15 +33,21 @@ class DrawFiles {
   explicit DrawFiles(const Keeping& keeping);
 
   /// Where a method is to leave its estimate; empty where it need not.
-  std::filesystem::path estimate(const MethodInfo& method) const;
-  /// Writes the recording and moves all of it to its place, or removes it.
+  std::filesystem::path estimate(const MethodInfo& method);
+  /// Writes the recording and moves all of it to its place, or removes it. What other methods have left there of the
+  /// same sensors stays.
   void finish(const SimulatedDraw& draw, bool failed);
+  /// An estimate could not be written.
+  void miss(const std::string& why) { trouble_ = why; }
   /// What went wrong, one line; empty where nothing did.
   const std::string& trouble() const { return trouble_; }
 
  private:
+  void take_over(const sim::Sensors& sensors) const;
+
   const Keeping& keeping_;
   std::optional<UnfinishedFolder> folder_;
+  std::set<std::filesystem::path> asked_;  ///< names of the folders of estimates that are to be made
   std::string trouble_;
 };
 

@@ -43,16 +43,19 @@ double peak_mib() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-/// What cannot be written costs the outcome nothing; that it is missing is seen (KeptDraws::holds).
-void leave_estimate(const Method& method, const SimulatedDraw& draw, const Estimate& estimate,
-                    const std::filesystem::path& folder) {
-  if (folder.empty()) return;
+/// What cannot be written costs the outcome nothing; that it is missing is seen (KeptDraws::holds). The reason, or
+/// nothing.
+std::string leave_estimate(const Method& method, const SimulatedDraw& draw, const Estimate& estimate,
+                           const std::filesystem::path& folder) {
+  if (folder.empty()) return {};
   try {
     std::filesystem::create_directories(folder);
     write_estimate(folder, method.info.name, method.info.kind, estimate, digest(draw.recording.sensors, nullptr));
-  } catch (const std::exception&) {
+    return {};
+  } catch (const std::exception& error) {
     std::error_code ignored;
     std::filesystem::remove_all(folder, ignored);
+    return one_line(error.what());
   }
 }
 
@@ -65,7 +68,8 @@ void run_method_child(const Method& method, const SimulatedDraw& draw, const Sim
   const bool own = method.info.version.empty();
   if (own) outcome.scores.push_back({"estimate_peak_mib", std::max(0.0, peak_mib() - before_mib)});
   assess(method, scored, surface, estimate, outcome);
-  leave_estimate(method, draw, estimate, folder);
+  const std::string not_kept = leave_estimate(method, draw, estimate, folder);
+  if (!not_kept.empty()) write_all(fd, to_line({{}, {}, {}, not_kept}));
   write_all(fd, to_line({outcome, {}}));
 }
 
@@ -80,11 +84,12 @@ bool read_until(Process& process, double deadline_s, std::string& buffer) {
   }
 }
 
-/// Methods of kind `rate` read no lidar.
+/// Methods of kind `rate` read no lidar. What is kept has them as the draw's methods read them, whichever are run now.
 Lidars lidars_for(const DrawTask& task) {
-  const bool read = std::any_of(task.runs.begin(), task.runs.end(), [](const DrawTask::Run& run) {
-    return run.method->info.kind != Kind::rate || needs_lidar(run.setting);
-  });
+  const bool kept = task.keeping.when != Keeping::When::never && task.keeping.lidars;
+  const bool read = kept || std::any_of(task.runs.begin(), task.runs.end(), [](const DrawTask::Run& run) {
+                      return run.method->info.kind != Kind::rate || needs_lidar(run.setting);
+                    });
   return read ? Lidars::simulated : Lidars::left_out;
 }
 
@@ -122,7 +127,6 @@ void reject(const DrawTask& task, const std::exception& error, int fd) {
 /// Nothing is known of the draw: each of its runs gets `status`.
 void give_up(const DrawTask& task, OutcomeStatus status, const std::string& message, int fd) {
   for (const Outcome& outcome : without_answer(task, status, message)) write_all(fd, to_line({outcome, {}}));
-  write_all(fd, to_line({}));
 }
 
 }  // namespace
@@ -132,16 +136,18 @@ OutcomeStatus ended_as(const Process::End& end) {
 }
 
 Outcome run_isolated(const Method& method, const SimulatedDraw& draw, const SimulatedDraw& scored,
-                     const sim::Surface* surface, double timeout_s, const std::filesystem::path& folder) {
+                     const sim::Surface* surface, double timeout_s, const std::filesystem::path& folder,
+                     std::string* not_kept) {
   const double before_mib = resident_mib();
   Process process([&](int fd) { run_method_child(method, draw, scored, surface, folder, fd); }, false);
   std::string text;
   const bool in_time = read_until(process, now_s() + timeout_s, text);
   if (!in_time) process.kill();
   const Process::End end = process.wait();
-  if (!text.empty() && text.back() == '\n') {
-    text.pop_back();
-    const std::optional<Message> message = from_line(text);
+  std::size_t begin = 0;
+  for (std::size_t newline; (newline = text.find('\n', begin)) != std::string::npos; begin = newline + 1) {
+    const std::optional<Message> message = from_line(text.substr(begin, newline - begin));
+    if (message && message->not_kept && not_kept != nullptr) *not_kept = *message->not_kept;
     if (message && message->outcome) return *message->outcome;
   }
 
@@ -199,11 +205,14 @@ void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int 
   Given given;
   for (const DrawTask::Run& run : task.runs) {
     Outcome outcome;
+    std::string not_kept;
     try {
       if (run.setting != given.setting) given = changed(*draw, run.setting);
-      outcome = run_isolated(with_setting(*run.method, run.setting), given.draw ? *given.draw : *draw,
-                             given.scored ? *given.scored : *draw, surface ? &*surface : nullptr, timeout_s,
-                             run.setting.is_plain() ? files.estimate(run.method->info) : std::filesystem::path());
+      outcome =
+          run_isolated(with_setting(*run.method, run.setting), given.draw ? *given.draw : *draw,
+                       given.scored ? *given.scored : *draw, surface ? &*surface : nullptr, timeout_s,
+                       run.setting.is_plain() ? files.estimate(run.method->info) : std::filesystem::path(), &not_kept);
+      if (!not_kept.empty()) files.miss(not_kept);
     } catch (const std::bad_alloc&) {
       outcome = unanswered(task, run, OutcomeStatus::killed, "no memory was left for it");
     } catch (const std::system_error& error) {
@@ -215,7 +224,6 @@ void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int 
   }
   files.finish(*draw, failed);
   if (!files.trouble().empty()) write_all(fd, to_line({{}, {}, {}, files.trouble()}));
-  write_all(fd, to_line({}));
 }
 
 }  // namespace tumble::scenarios

@@ -34,15 +34,17 @@ OutcomeStatus ended_as(const Process::End& end);
 std::vector<Outcome> without_answer(const DrawTask& task, OutcomeStatus status, const std::string& message);
 
 /// Simulates one draw, without lidars where no method reads them, and tells `fd` what came of it, one message a line: a
-/// rejection when it cannot be drawn or simulated, or an outcome per run as each ends, and an empty message at the end.
-/// Runs in a worker.
+/// rejection when it cannot be drawn or simulated, or an outcome per run as each ends. The last word, an empty message,
+/// is its caller's. Runs in a worker.
 void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int fd);
 
 /// Runs one method in a process of its own for at most `timeout_s` of wall time. A crash, a time-out or an exception is
 /// an outcome. Cost: CPU and peak memory of the estimate alone, memory above what the draw's process held. The estimate
 /// is scored against the sensors and the truth of `scored`, which is `draw` unless its sensors have been changed
-/// (triage). It is left in `folder` (estimate_file.hpp) unless that is empty; one that cannot be written is not there.
+/// (triage). It is left in `folder` (estimate_file.hpp) unless that is empty; one that cannot be written is not there,
+/// and `not_kept` says why.
 Outcome run_isolated(const Method& method, const SimulatedDraw& draw, const SimulatedDraw& scored,
-                     const sim::Surface* surface, double timeout_s, const std::filesystem::path& folder = {});
+                     const sim::Surface* surface, double timeout_s, const std::filesystem::path& folder = {},
+                     std::string* not_kept = nullptr);
 
 }  // namespace tumble::scenarios

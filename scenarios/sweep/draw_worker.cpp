@@ -19,7 +19,7 @@ void limit_memory(double mib) {
   rlimit both{};
   getrlimit(RLIMIT_DATA, &both);
   // never above what whoever started the sweep allows
-  both.rlim_cur = std::min(both.rlim_max, static_cast<rlim_t>(mib * kMib));
+  both.rlim_cur = std::min({both.rlim_cur, both.rlim_max, static_cast<rlim_t>(mib * kMib)});
   setrlimit(RLIMIT_DATA, &both);
 }
 
@@ -46,6 +46,8 @@ void serve(const WorkerTerms& terms, int tasks, int fd) {
     if (line->empty()) return;
     run_draw(terms.data, terms.plan.from_line(*line), terms.timeout_s, fd);
     malloc_trim(0);  // an idle worker holds nothing of its last draw
+    // the last word: whatever ends the process before it, the draw's own destructors too, is of this draw
+    write_all(fd, to_line({}));
   }
 }
 
@@ -84,6 +86,8 @@ void DrawWorker::take_up(const Message& message) {
       return info.kind == message.outcome->kind && info.name == message.outcome->method &&
              run.setting == message.outcome->setting;
     });
+  } else if (message.rejected) {
+    draw_.runs.clear();  // none of them is owed an answer
   } else if (message.is_last()) {
     busy_ = false;
   }

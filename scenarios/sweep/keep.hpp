@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "scenarios/methods/method.hpp"
+#include "scenarios/sweep/database_owner.hpp"
 #include "scenarios/sweep/results.hpp"
 
 /// Recordings and estimates of a sweep's draws, kept beside its database (README.md, "What is kept").
@@ -36,6 +37,7 @@ std::string to_string(const Keep& keep);
 struct DrawName {
   std::string scenario;
   std::uint64_t seed = 0;
+  // NOLINTNEXTLINE(modernize-use-nullptr): Clang 14 takes the zero that a defaulted <=> compares with for a pointer
   auto operator<=>(const DrawName&) const = default;
 };
 
@@ -68,8 +70,9 @@ class KeptDraws {
 /// The folder of a method's estimate in a draw's.
 std::filesystem::path estimate_folder(const std::filesystem::path& draw, Kind kind, const std::string& method);
 
-/// Joins what is kept beside the databases of a merge (merge.hpp): where all were kept by one rule, `out` is as if it
-/// had been swept at once. Returns how many draws `out` now has. Where they differ, or none keeps, nothing is done.
-std::size_t merge_kept(const std::filesystem::path& out, std::span<const std::filesystem::path> in);
+/// Joins what is kept beside the databases of a merge, after their rows (merge.hpp): where all of them and `out` keep
+/// by one rule, `out` is as if it had been swept at once. Returns how many draws `out` now has. Where rules differ, or
+/// none keeps, nothing is done, and what `out` had kept stays.
+std::size_t merge_kept(const DatabaseOwner& out, std::span<const std::filesystem::path> in);
 
 }  // namespace tumble::scenarios

@@ -126,13 +126,12 @@ bool KeptDraws::take(const DrawName& draw, const KeptDraws& from) const {
   });
 }
 
-std::size_t merge_kept(const fs::path& out, std::span<const fs::path> in) {
-  const std::string rule = in.empty() ? "" : rule_of(in.front());
+std::size_t merge_kept(const DatabaseOwner& owner, std::span<const fs::path> in) {
+  const fs::path& out = owner.database();
+  const std::string rule = rule_of(out);
   if (rule.empty() || !std::all_of(in.begin(), in.end(), [&](const fs::path& each) { return rule_of(each) == rule; }))
     return 0;
-  Results results(out, Results::Mode::create_or_append);
-  results.set_note(kKeepNote, rule);
-  const std::set<DrawName> wanted = draws_to_keep(results, parse_keep(rule));
+  const std::set<DrawName> wanted = draws_to_keep(Results(out, Results::Mode::read_only), parse_keep(rule));
   const KeptDraws kept(out);
   kept.discard_unfinished();
   for (const DrawName& draw : kept.found()) {

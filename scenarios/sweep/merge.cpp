@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/merge.hpp"
 
+#include <algorithm>
 #include <map>
 #include <string>
 #include <string_view>
@@ -9,7 +10,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/replace_file.hpp"
-#include "scenarios/sweep/database_owner.hpp"
+#include "scenarios/sweep/keep.hpp"
 #include "scenarios/sweep/run_again.hpp"
 #include "scenarios/sweep/sweep_notes.hpp"
 
@@ -66,6 +67,20 @@ std::vector<Notes> checked_notes(std::span<const fs::path> in, bool mixed) {
   return notes;
 }
 
+/// By which the draws of all inputs were kept; empty where they differ.
+std::string common_rule(const std::vector<Notes>& notes) {
+  const std::string rule = text_of(notes.front(), kKeepNote);
+  const auto is_it = [&](const Notes& each) { return text_of(each, kKeepNote) == rule; };
+  return std::all_of(notes.begin(), notes.end(), is_it) ? rule : std::string();
+}
+
+bool has_rows(const Results& results) {
+  bool any = false;
+  Names names;
+  results.each(Rows::all, names, [&](const OutcomeView&) { any = true; });
+  return any;
+}
+
 /// A database that was made for a merge which failed goes again.
 class Made {
  public:
@@ -86,10 +101,10 @@ class Made {
 
 }  // namespace
 
-MergeCounts merge_results(const fs::path& out, std::span<const fs::path> in, bool mixed) {
+MergeCounts merge_results(const DatabaseOwner& owner, std::span<const fs::path> in, bool mixed) {
+  const fs::path& out = owner.database();
   require_not_an_input(out, in);
   const std::vector<Notes> notes = checked_notes(in, mixed);
-  const DatabaseOwner owner(out);
   Made made(out);
   MergeCounts counts;
   {
@@ -97,6 +112,7 @@ MergeCounts merge_results(const fs::path& out, std::span<const fs::path> in, boo
     results.in_one_transaction([&] {
       if (!made.is_new() && !mixed && !notes.empty() && !results.note("data").empty())
         require_same_origin(notes.front(), results.notes(), out);
+      if (!mixed && !notes.empty() && !has_rows(results)) results.set_note(kKeepNote, common_rule(notes));
       for (std::size_t i = 0; i < in.size(); ++i) {
         results.absorb(Results(in[i], Results::Mode::read_only), mixed, counts);
         join_method_notes(notes[i], in[i], mixed, results);
@@ -112,6 +128,11 @@ MergeCounts merge_results(const fs::path& out, std::span<const fs::path> in, boo
   }
   made.keep();
   return counts;
+}
+
+MergeCounts merge_results(const fs::path& out, std::span<const fs::path> in, bool mixed) {
+  require_not_an_input(out, in);
+  return merge_results(DatabaseOwner(out), in, mixed);
 }
 
 }  // namespace tumble::scenarios

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <span>
 
+#include "scenarios/sweep/database_owner.hpp"
 #include "scenarios/sweep/results.hpp"
 
 namespace tumble::scenarios {
@@ -13,7 +14,10 @@ namespace tumble::scenarios {
 /// when two rows that were scored differ in status or digest (a build gives one answer), when the inputs are of
 /// different builds, models or scenarios, when `out` is an input, and when another process writes to it
 /// (database_owner.hpp); with `mixed` rows of different builds are joined,
-/// and of two that differ the first stays.
+/// and of two that differ the first stays. An `out` without rows takes over the rule by which the inputs keep their
+/// draws, where all have the same one (merge_kept).
+MergeCounts merge_results(const DatabaseOwner& out, std::span<const std::filesystem::path> in, bool mixed);
+/// The same as the owner of `out` for as long as it takes.
 MergeCounts merge_results(const std::filesystem::path& out, std::span<const std::filesystem::path> in, bool mixed);
 
 }  // namespace tumble::scenarios

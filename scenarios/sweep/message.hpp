@@ -16,7 +16,7 @@ struct Message {
   std::optional<DrawValues> draw = std::nullopt;
   std::optional<std::string> not_kept = std::nullopt;  ///< why the draw's files could not be kept
   /// Whether it is the last of its draw.
-  bool is_last() const { return !outcome && !draw && !not_kept; }
+  bool is_last() const { return !outcome && !rejected && !draw && !not_kept; }
 };
 
 /// With the newline. Numbers come back to the bit; what is not finite comes back as NaN.

@@ -143,6 +143,7 @@ DrawTask SweepPlan::of_scenario(const Results& results) const {
   const Keep::Which which = options_.keep.which;
   if (which == Keep::Which::all) task.keeping = keeping(planned, task, Keeping::When::always);
   if (which == Keep::Which::failed) task.keeping = keeping(planned, task, Keeping::When::if_failed);
+  task.keeping.lidars = read_lidars(planned, held);
   return task;
 }
 
@@ -157,15 +158,27 @@ DrawTask SweepPlan::again(const DrawName& draw, const Results& results) const {
   for (const Planned& planned : scenarios_) {
     if (planned.scenario.name != draw.scenario) continue;
     task.scenario = &planned.scenario;
-    for (const Outcome& row : results.outcomes_of(draw.scenario, draw.seed)) {
+    const std::vector<Outcome> held = results.outcomes_of(draw.scenario, draw.seed);
+    for (const Outcome& row : held) {
       if (!row.setting.is_plain() || !was_scored(row.status)) continue;
       for (const MethodPointer& method : planned.methods) {
         if (method->info.kind == row.kind && method->info.name == row.method) task.runs.push_back({method.get(), {}});
       }
     }
     task.keeping = keeping(planned, task, Keeping::When::always);
+    task.keeping.lidars = read_lidars(planned, held);
   }
   return task;
+}
+
+/// Whether one of the methods of a draw reads lidars, of this sweep or of one before: neither what is left to run nor
+/// what came to an answer says what a recording holds.
+bool SweepPlan::read_lidars(const Planned& planned, const std::vector<Outcome>& held) const {
+  const auto reads = [](Kind kind) { return kind != Kind::rate; };
+  return std::any_of(planned.methods.begin(), planned.methods.end(),
+                     [&](const MethodPointer& method) { return reads(method->info.kind); }) ||
+         std::any_of(held.begin(), held.end(), [&](const Outcome& row) { return reads(row.kind); }) ||
+         std::any_of(shared_.begin(), shared_.end(), [](const Setting& setting) { return needs_lidar(setting); });
 }
 
 Keeping SweepPlan::keeping(const Planned& planned, const DrawTask& task, Keeping::When when) const {
@@ -192,6 +205,7 @@ std::string SweepPlan::to_line(const DrawTask& task) const {
               {"seed", task.seed},
               {"setting", to_json(task.setting)},
               {"keep", static_cast<int>(task.keeping.when)},
+              {"keep_lidars", task.keeping.lidars},
               {"runs", std::move(runs)}}
              .dump() +
          "\n";
@@ -213,6 +227,7 @@ DrawTask SweepPlan::from_line(const std::string& line) const {
   task.scenario = &planned.scenario;
   task.name = planned.scenario.name;
   task.keeping = keeping(planned, task, static_cast<Keeping::When>(object.at("keep").get<int>()));
+  task.keeping.lidars = object.at("keep_lidars").get<bool>();
   return task;
 }
 

@@ -74,6 +74,7 @@ class SweepPlan {
   DrawTask of_recording(const Results& results) const;
   DrawTask of_scenario(const Results& results) const;
   Keeping keeping(const Planned& planned, const DrawTask& task, Keeping::When when) const;
+  bool read_lidars(const Planned& planned, const std::vector<Outcome>& held) const;
 
   const Suite& suite_;
   const SweepOptions& options_;

@@ -77,6 +77,16 @@ TEST(DistributionFigures, AreHistogramsBesideThePublishedRange) {
   EXPECT_EQ(figures[1].data[0]["x"], nlohmann::json({20.0, 30.0, 40.0, 50.0})) << "shares in per cent";
 }
 
+TEST(DistributionFigures, SayWhereTheyAreThinned) {
+  std::vector<scenarios::DrawValues> many;
+  for (std::uint64_t seed = 1; seed <= kBoxPoints; ++seed)
+    many.push_back({"hill", seed, {{"motion_peak_rate_rad_s", 10.0}}});
+  EXPECT_THAT(distribution_figures(motion_spreads(many)).at(0).caption, Not(HasSubstr("more draws")));
+  many.push_back({"hill", kBoxPoints + 1, {{"motion_peak_rate_rad_s", 10.0}}});
+  EXPECT_THAT(distribution_figures(motion_spreads(many)).at(0).caption,
+              HasSubstr("Of a scenario with more draws 1000"));
+}
+
 TEST(DistributionsHtml, ShowsThePublishedFiguresAndIsEmptyWithoutDraws) {
   const std::vector<Spread> spreads = motion_spreads(draws());
   const std::string html = distributions_html(spreads, distribution_figures(spreads));

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "scenarios/sweep/run_again.hpp"
 #include "scenarios/sweep/sweep_notes.hpp"
 #include "tests/scenarios/sweep/temporary_folder.hpp"
 
@@ -13,6 +14,7 @@ namespace {
 using scenarios::Kind;
 using scenarios::OutcomeStatus;
 using scenarios::Results;
+using ::testing::UnorderedElementsAre;
 
 class FailedDrawsTest : public scenarios::testing::TemporaryFolder {
  protected:
@@ -31,6 +33,13 @@ class FailedDrawsTest : public scenarios::testing::TemporaryFolder {
     results_->store(outcome);
   }
   FailedDraws found() const { return failed_draws(*results_, scenarios::summarize(*results_)); }
+  /// Of the first draw.
+  std::vector<std::string> commands() const {
+    const FailedDraws failed = found();
+    std::vector<std::string> out;
+    for (const FailedRun& run : failed.shown.at(0).runs) out.push_back(run.command);
+    return out;
+  }
   Results& results() { return *results_; }
 
  private:
@@ -53,16 +62,34 @@ TEST_F(FailedDrawsTest, StandInTheOrderOfHowManyMethodsFailed) {
   EXPECT_EQ(failed.shown[1].runs[0].method, "rate/raw");
   EXPECT_EQ(failed.shown[1].runs[0].status, "diverged");
   EXPECT_EQ(failed.shown[1].runs[0].message, "left the truth");
-  EXPECT_EQ(failed.shown[1].command, "tumble run hill --seed 2 --method rate/raw -o failed-hill-2");
+  EXPECT_EQ(failed.shown[1].runs[0].command, "tumble run hill --seed 2 --method rate/raw");
 }
 
-TEST_F(FailedDrawsTest, AreNotMadeAgainByMethodsOutOfFilesNorOfRecordings) {
+TEST_F(FailedDrawsTest, AreMadeAgainByMethodsOutOfFilesAndOfRecordings) {
   store(1, "raw", OutcomeStatus::failed);
   store(1, "theirs", OutcomeStatus::failed);
   results().set_note(scenarios::method_note(Kind::rate, "theirs"), "1.0");
-  EXPECT_EQ(found().shown.at(0).command, "tumble run hill --seed 1 --method rate/raw -o failed-hill-1");
+  results().set_note(scenarios::description_note("rate", "theirs"), "their folder/theirs.yaml");
+  EXPECT_THAT(commands(), UnorderedElementsAre("tumble run hill --seed 1 --method rate/raw",
+                                               "tumble run hill --seed 1 --method 'their folder/theirs.yaml'"));
   results().set_note("source", scenarios::kRecordingsSource);
-  EXPECT_EQ(found().shown.at(0).command, "");
+  results().set_note(scenarios::recording_note("hill"), "drives/hill.h5");
+  EXPECT_THAT(commands(),
+              UnorderedElementsAre("tumble estimate drives/hill.h5 --method rate/raw -o hill",
+                                   "tumble estimate drives/hill.h5 --method 'their folder/theirs.yaml' -o hill"));
+}
+
+TEST_F(FailedDrawsTest, OfMethodsThatNeedTheTruthComeLast) {
+  store(1, "oracle", OutcomeStatus::failed);
+  store(1, "oracle_clipped", OutcomeStatus::failed);
+  store(2, "raw", OutcomeStatus::failed);
+  scenarios::Summary summary = scenarios::summarize(results());
+  for (scenarios::MethodSummary& method : summary.sections.at(0).methods)
+    method.needs_truth = method.method.starts_with("oracle");
+  const FailedDraws failed = failed_draws(results(), summary);
+  ASSERT_EQ(failed.shown.size(), 2u) << "listed all the same";
+  EXPECT_EQ(failed.shown[0].seed, 2u);
+  EXPECT_EQ(failed.shown[1].runs.size(), 2u);
 }
 
 TEST_F(FailedDrawsTest, AreBounded) {

@@ -77,7 +77,7 @@ TEST(Page, EscapesEveryTextItIsGiven) {
   content.title = evil;
   content.versions = {{evil, evil}};
   content.commands = {{evil, evil}};
-  content.failed = {1, {{evil, 7, {{evil, evil, evil}}, evil}}};
+  content.failed = {1, {{evil, 7, {{evil, evil, evil, evil}}}}};
   content.sensitivity_note = evil;
   content.sensitivity = {{evil, Kind::rate, evil, evil, 30, {{evil, {}, {}, 0.0, 1.0, 2.0}}}};
   content.motion_map = scenarios::motion_map(std::vector<scenarios::DrawValues>{
@@ -126,6 +126,39 @@ TEST(Page, LinksTheReplayOfAnExampleThatHasOne) {
   EXPECT_THAT(page_html(content, ""), HasSubstr("<a href=\"a.db.files/hill-7-replay.html\">"));
 }
 
+TEST(Page, SaysWhatItsRecordingsAre) {
+  PageContent content;
+  content.summary = summary_of("hill");
+  EXPECT_THAT(page_html(content, ""), HasSubstr("2 draws of hill, simulated, so that the truth is known"));
+  content.recorded = true;
+  EXPECT_THAT(page_html(content, ""), HasSubstr("the very same recordings (hill), and is judged by the truth"));
+  EXPECT_THAT(page_html(content, ""), Not(HasSubstr("simulated, so")));
+}
+
+TEST(Page, CountsMethodsThatNeedNoTruth) {
+  PageContent content;
+  content.summary = summary_of("hill");
+  EXPECT_THAT(page_html(content, ""), HasSubstr("Compared: 2 methods"));
+  content.summary.sections[0].methods[1].needs_truth = true;
+  EXPECT_THAT(page_html(content, ""), HasSubstr("Compared: 1 method that tells"));
+}
+
+TEST(Page, ShowsADrawOfTheseResultsBeforeOneThatMoves) {
+  PageContent content;
+  content.examples = {evil_example("hill"), evil_example("roll")};
+  content.examples[0].example.moving = {'R', 'I', 'F', 'F'};
+  const auto front = [&] {
+    const std::string page = page_html(content, "");
+    const std::size_t at = page.find("<figure class=\"moving\">");
+    return page.substr(at, page.find("</figure>", at) - at);
+  };
+  EXPECT_THAT(front(), HasSubstr("One hill"));
+  EXPECT_THAT(front(), HasSubstr("made of other results than these"));
+  content.examples[1].of_these_results = true;
+  EXPECT_THAT(front(), HasSubstr("One roll"));
+  EXPECT_THAT(front(), Not(HasSubstr("other results")));
+}
+
 TEST(Page, SetsNarrowPlotsTwoInARow) {
   PageContent content;
   content.examples = {evil_example("hill")};
@@ -170,7 +203,7 @@ TEST(Page, MovesByItselfAndStandsStillForWhoeverAsks) {
   content.examples[0].example.moving_caption = "2 s of <it>";
   const std::string page = page_html(content, "");
   EXPECT_THAT(page, HasSubstr("src=\"data:image/webp;base64,UklGRg==\""));
-  EXPECT_THAT(page, HasSubstr("<source media=\"(prefers-reduced-motion: reduce)\" srcset=\"data:image/png"));
+  EXPECT_THAT(page, HasSubstr("<source media=\"print, (prefers-reduced-motion: reduce)\" srcset=\"data:image/png"));
   EXPECT_THAT(page, HasSubstr("2 s of &lt;it&gt;"));
 }
 
@@ -180,8 +213,8 @@ TEST(Page, LinksFailedDrawsThatHavePictures) {
   content.examples = {evil_example("hill")};
   content.examples[0].replay_address = "a.db.files/hill-7-replay.html";
   content.failed = {2,
-                    {{"hill", 7, {{"rate/saave", "diverged", "went away"}}, "tumble run hill --seed 7"},
-                     {"hill", 8, {{"rate/saave", "diverged", ""}}, ""}}};
+                    {{"hill", 7, {{"rate/saave", "diverged", "went away", "tumble run hill --seed 7"}}},
+                     {"hill", 8, {{"rate/saave", "diverged", "", "tumble run hill --seed 8"}}}}};
   const std::string page = page_html(content, "");
   EXPECT_THAT(page, HasSubstr("<a href=\"#draw-hill-7\">pictures</a>"));
   EXPECT_THAT(page, HasSubstr("<details id=\"draw-hill-7\""));

@@ -97,7 +97,7 @@ Tally tally(const std::vector<ContestResult>& results) {
   for (const ContestResult& result : results) {
     out.won += result.won();
     out.lost += result.lost();
-    out.open += result.certainty == Certainty::open;
+    out.open += !result.won() && !result.lost();
     if (result.won()) ++won[result.row.contest.method];
   }
   for (const ContestResult& result : results) {

@@ -27,8 +27,9 @@ struct ContestResult {
   /// The difference over the size of the baseline's median, with its interval [%]; NaN where one of them is not finite
   /// or the median is 0.
   double percent = 0.0, percent_low = 0.0, percent_high = 0.0;
-  bool won() const { return better && certainty != Certainty::open; }
-  bool lost() const { return !better && certainty != Certainty::open; }
+  /// The interval alone decides nothing: it is that of the best of several methods, chosen by the same draws.
+  bool won() const { return better && certainty == Certainty::corrected; }
+  bool lost() const { return !better && certainty == Certainty::corrected; }
 };
 
 /// In the order of the summary's sections. Attitude, which says least about the motion, only where there is nothing
@@ -37,7 +38,7 @@ std::vector<ContestResult> contests(const scenarios::Summary& summary, const sce
 
 /// How the contests ended.
 struct Tally {
-  std::size_t contests = 0, won = 0, lost = 0, open = 0;
+  std::size_t contests = 0, won = 0, lost = 0, open = 0;  ///< open: neither won nor lost
   std::string leader;          ///< the method that wins most of them, the first of equals; "": none is won
   std::size_t leader_won = 0;  ///< by it
 };

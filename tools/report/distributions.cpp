@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/report/distributions.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -12,6 +13,15 @@ namespace tumble::tools {
 namespace {
 
 using nlohmann::json;
+
+/// What a histogram leaves out; "" where it leaves out nothing.
+std::string thinned_text(std::span<const Spread> spreads, const std::string& quantity) {
+  const auto is_thinned = [&](const Spread& spread) {
+    return spread.of_draws && spread.quantity == quantity && spread.values.size() > kBoxPoints;
+  };
+  if (std::none_of(spreads.begin(), spreads.end(), is_thinned)) return "";
+  return " Of a scenario with more draws " + std::to_string(kBoxPoints) + ", at equal steps of their rank.";
+}
 
 json shaded(const Spread& spread) {
   const bool is_line = spread.published_low == spread.published_high;
@@ -56,7 +66,10 @@ std::vector<Figure> distribution_figures(std::span<const Spread> spreads) {
   std::string quantity;
   for (const Spread& spread : spreads) {
     if (!spread.of_draws) continue;
-    if (spread.quantity != quantity) figures.push_back(empty_figure(spread));
+    if (spread.quantity != quantity) {
+      figures.push_back(empty_figure(spread));
+      figures.back().caption += thinned_text(spreads, spread.quantity);
+    }
     quantity = spread.quantity;
     Figure& figure = figures.back();
     json x = json::array();

@@ -76,15 +76,14 @@ std::string moving_html(const ShownExample& shown) {
   std::string out = "<figure class=\"moving\"><picture>";
   // the browser's own choice, without a script; where there is nothing that stands, nothing is shown in its place
   if (!example.moving.empty() && has_picture) {
-    out += "<source media=\"print\" srcset=\"" + still +
-           "\"><source media=\"(prefers-reduced-motion: reduce)\" srcset=\"" + still + "\">";
+    out += "<source media=\"print, (prefers-reduced-motion: reduce)\" srcset=\"" + still + "\">";
   }
   out += "<img alt=\"" + escaped(has_picture ? example.pictures.front().alternative : example.motion) + "\" src=\"" +
          (example.moving.empty() ? still : html::webp_address(example.moving)) + "\"></picture><figcaption>" +
          fmt::format("One {} of <code>{}</code>, seed {}", escaped(example.motion), escaped(example.scenario),
                      example.seed);
   if (!example.moving.empty()) out += ", " + escaped(example.moving_caption);
-  out += ". ";
+  out += shown.of_these_results ? ". " : ". It was made of other results than these. ";
   if (has_picture) out += legend_html(example.pictures.front());
   if (!shown.replay_address.empty()) out += "<br>" + play_html(shown);
   return out + "</figcaption></figure>\n";

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <map>
 
-#include "scenarios/sweep/sweep_notes.hpp"
+#include "scenarios/sweep/run_again.hpp"
 
 namespace tumble::tools {
 
@@ -18,12 +18,12 @@ using scenarios::Summary;
 
 using Draw = std::pair<std::string, std::uint64_t>;
 
-/// How many runs failed on each draw.
+/// How many methods failed on each draw that need no truth; 0 where only others failed.
 std::map<Draw, std::size_t> failures_of(const Summary& summary) {
   std::map<Draw, std::size_t> out;
   for (const Section& section : summary.sections) {
     for (const scenarios::MethodSummary& method : section.methods) {
-      for (const std::uint64_t seed : method.not_ok_seeds) ++out[{section.scenario, seed}];
+      for (const std::uint64_t seed : method.not_ok_seeds) out[{section.scenario, seed}] += method.needs_truth ? 0 : 1;
     }
   }
   return out;
@@ -33,28 +33,14 @@ std::string named(Kind kind, const std::string& method) {
   return std::string(to_string(kind)) + "/" + method;
 }
 
-std::vector<FailedRun> failed_runs(const std::vector<Outcome>& rows) {
+std::vector<FailedRun> failed_runs(const std::vector<Outcome>& rows, const std::map<std::string, std::string>& notes) {
   std::vector<FailedRun> runs;
   for (const Outcome& row : rows) {
     if (row.setting.is_plain() && row.status != scenarios::OutcomeStatus::ok)
-      runs.push_back({named(row.kind, row.method), to_string(row.status), row.message});
+      runs.push_back({named(row.kind, row.method), to_string(row.status), row.message,
+                      scenarios::command_again(scenarios::key_of(row), notes)});
   }
   return runs;
-}
-
-/// Of the methods of this program alone: what a file describes is not found by its name.
-std::string command_for(const Results& results, const FailedDraw& draw, const std::vector<Outcome>& rows) {
-  if (results.note("source") == scenarios::kRecordingsSource) return "";
-  std::string methods;
-  for (const Outcome& row : rows) {
-    if (!row.setting.is_plain() || row.status == scenarios::OutcomeStatus::ok) continue;
-    if (!results.note(scenarios::method_note(row.kind, row.method)).empty()) continue;
-    methods += " --method " + scenarios::shell_word(named(row.kind, row.method));
-  }
-  if (methods.empty()) return "";
-  const std::string seed = std::to_string(draw.seed);
-  return "tumble run " + scenarios::shell_word(draw.scenario) + " --seed " + seed + methods + " -o " +
-         scenarios::shell_word("failed-" + draw.scenario + "-" + seed);
 }
 
 }  // namespace
@@ -68,12 +54,11 @@ FailedDraws failed_draws(const Results& results, const Summary& summary) {
     return a.first != b.first ? a.first > b.first : *a.second < *b.second;
   });
   const std::size_t shown = std::min(ranked.size(), kFailedDrawsShown);
+  const auto notes = results.notes();
   FailedDraws out{ranked.size(), {}};
   for (std::size_t i = 0; i < shown; ++i) {
-    FailedDraw draw{ranked[i].second->first, ranked[i].second->second, {}, {}};
-    const std::vector<Outcome> rows = results.outcomes_of(draw.scenario, draw.seed);
-    draw.runs = failed_runs(rows);
-    draw.command = command_for(results, draw, rows);
+    FailedDraw draw{ranked[i].second->first, ranked[i].second->second, {}};
+    draw.runs = failed_runs(results.outcomes_of(draw.scenario, draw.seed), notes);
     out.shown.push_back(std::move(draw));
   }
   return out;

@@ -19,6 +19,7 @@ struct FailedRun {
   std::string method;   ///< kind/name
   std::string status;   ///< "diverged"
   std::string message;  ///< one line; may be empty
+  std::string command;  ///< runs it again (run_again.hpp)
 };
 
 /// A draw with what failed on it.
@@ -26,7 +27,6 @@ struct FailedDraw {
   std::string scenario;
   std::uint64_t seed = 0;
   std::vector<FailedRun> runs;
-  std::string command;  ///< makes it again; empty: it cannot be made again by this build or was no draw
 };
 
 struct FailedDraws {

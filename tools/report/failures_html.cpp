@@ -34,11 +34,9 @@ std::string draw_html(const PageContent& content, const FailedDraw& draw) {
                                 links_html(content, draw));
   for (const FailedRun& run : draw.runs) {
     out += "<li><code>" + escaped(run.method) + "</code> " + escaped(run.status) +
-           (run.message.empty() ? "" : ": " + escaped(run.message)) + "</li>";
+           (run.message.empty() ? "" : ": " + escaped(run.message)) + "<pre>" + escaped(run.command) + "</pre></li>";
   }
-  out += "</ul>";
-  if (!draw.command.empty()) out += "<pre>" + escaped(draw.command) + "</pre>";
-  return out + "</li>\n";
+  return out + "</ul></li>\n";
 }
 
 std::string draws_html(const PageContent& content) {
@@ -49,7 +47,8 @@ std::string draws_html(const PageContent& content) {
     (i < kOpenDraws ? open : folded) += draw_html(content, failed.shown[i]);
   std::string out = fmt::format(
       "<h3>Draws with failures</h3>\n<p>On {} draw{} a run did not end <i>ok</i>; {}those on which most methods failed "
-      "come first. The command leaves recording, estimates, pictures and a replay of the same draw.</p>\n",
+      "come first. The command under a run makes it again; <code>tumble run</code> with <code>-o FOLDER</code> also "
+      "leaves recording, estimates, pictures and a replay.</p>\n",
       failed.draws, failed.draws == 1 ? "" : "s",
       failed.shown.size() < failed.draws ? fmt::format("{} are shown, ", failed.shown.size()) : "");
   out += "<ul class=\"failed\">" + open + "</ul>\n";

@@ -26,26 +26,43 @@ constexpr std::size_t kShownContests = 6;
 /// So many scenarios are named in the first sentence.
 constexpr std::size_t kNamedScenarios = 4;
 
-/// "8 draws each of hill, roll and slip", or the number of scenarios where they are many.
+/// "hill, roll and slip", or their number where they are many.
+std::string names_text(const std::vector<std::string>& all, const char* many) {
+  if (all.size() > kNamedScenarios) return fmt::format("{} {}", all.size(), many);
+  std::string names;
+  for (std::size_t i = 0; i < all.size(); ++i) names += (i == 0 ? "" : i + 1 == all.size() ? " and " : ", ") + all[i];
+  return names;
+}
+
+/// "8 draws each of hill, roll and slip".
 std::string draws_text(const Summary& summary) {
   std::int64_t least = 0, most = 0;
   for (const auto& [scenario, draws] : summary.draws) {
     least = least == 0 ? draws : std::min(least, draws);
     most = std::max(most, draws);
   }
-  std::string names;
-  const std::size_t count = summary.scenarios.size();
-  for (std::size_t i = 0; i < count && count <= kNamedScenarios; ++i)
-    names += (i == 0 ? "" : i + 1 == count ? " and " : ", ") + summary.scenarios[i];
-  if (names.empty()) names = fmt::format("{} scenarios", count);
-  return least == most ? fmt::format("{} draw{} {}of {}", most, most == 1 ? "" : "s", count > 1 ? "each " : "", names)
+  const std::string names = names_text(summary.scenarios, "scenarios");
+  const char* each = summary.scenarios.size() > 1 ? "each " : "";
+  return least == most ? fmt::format("{} draw{} {}of {}", most, most == 1 ? "" : "s", each, names)
                        : fmt::format("{} to {} draws each of {}", least, most, names);
 }
 
+/// What the methods were given, and what is taken for the truth.
+std::string data_text(const PageContent& content) {
+  if (!content.recorded)
+    return draws_text(content.summary) +
+           ", simulated, so that the truth is known; each method was given the very same recordings.";
+  return "Each was given the very same recordings (" + names_text(content.summary.scenarios, "of them") +
+         "), and is judged by the truth or the reference that a recording holds.";
+}
+
+/// Of those that need no truth.
 std::size_t method_count(const Summary& summary) {
   std::set<std::pair<scenarios::Kind, std::string>> names;
   for (const Section& section : summary.sections) {
-    for (const scenarios::MethodSummary& method : section.methods) names.emplace(section.kind, method.method);
+    for (const scenarios::MethodSummary& method : section.methods) {
+      if (!method.needs_truth) names.emplace(section.kind, method.method);
+    }
   }
   return names.size();
 }
@@ -100,11 +117,11 @@ std::string contests_html(const std::vector<ContestResult>& results, std::size_t
   return out + "</section>\n";
 }
 
-/// Of the draws of these results before others, and a picture that moves before one that stands.
+/// A draw of these results before others; then a picture that moves before one that stands.
 const ShownExample* example_to_show(const std::vector<ShownExample>& examples) {
   const ShownExample* best = nullptr;
   const auto rank = [](const ShownExample& shown) {
-    return 2 * static_cast<int>(!shown.example.moving.empty()) + static_cast<int>(shown.of_these_results);
+    return 2 * static_cast<int>(shown.of_these_results) + static_cast<int>(!shown.example.moving.empty());
   };
   for (const ShownExample& shown : examples) {
     if (shown.example.moving.empty() && shown.example.pictures.empty()) continue;
@@ -122,12 +139,12 @@ std::string front_html(const PageContent& content) {
       "<header class=\"front\"><div class=\"say\"><p class=\"suite\">" + escaped(content.title) + "</p>\n";
   if (!content.summary.sections.empty()) {
     out += "<h1>" + escaped(tally_text(tally(results))) + "</h1>\n";
+    const std::size_t methods = method_count(content.summary);
     out += fmt::format(
-        "<p class=\"lead\">Compared: {} methods that tell from its sensors alone how a robot moved while it tumbles "
-        "or rolls. {}, simulated, so that the truth is known; each method was given the very same recordings. A "
-        "contest "
-        "is one task on one scenario.</p>\n",
-        method_count(content.summary), escaped(draws_text(content.summary)));
+        "<p class=\"lead\">Compared: {} from its sensors alone how a robot moved while it tumbles or rolls. {} A "
+        "contest is one task on one {}.</p>\n",
+        methods == 1 ? "1 method that tells" : fmt::format("{} methods that tell", methods),
+        escaped(data_text(content)), content.recorded ? "recording" : "scenario");
   }
   out += "</div>\n";
   if (shown != nullptr) out += moving_html(*shown);

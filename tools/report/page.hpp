@@ -31,6 +31,7 @@ using Fact = std::pair<std::string, std::string>;
 /// What a report page says; `page_html` adds nothing to it.
 struct PageContent {
   std::string title;
+  bool recorded = false;  ///< results of recordings, not of draws
   scenarios::Summary summary;
   scenarios::Comparison comparison;    ///< with the baselines, by the headline metrics
   std::vector<ShownExample> examples;  ///< single draws, with pictures and plots

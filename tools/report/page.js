@@ -33,7 +33,8 @@
 
   const plots = [...document.querySelectorAll('.plot')].filter((element) => figures.has(element.id));
   const visible = (element) => element.clientWidth > 0;
-  const again = () => [...drawn].filter(visible).forEach(draw);
+  // what is folded is drawn anew where the watcher sees it next
+  const again = () => [...drawn].forEach((element) => visible(element) ? draw(element) : drawn.delete(element));
 
   // a page of many figures is read from its top: each is drawn shortly before it is seen
   const watcher = new IntersectionObserver((entries) => {

@@ -59,7 +59,7 @@ std::vector<Fact> commands(const scenarios::Results& results, const ReportOption
     out.emplace_back("The results", "tumble sweep " + sweep + " --db " + database);
   if (!options.page.empty())
     out.emplace_back("This page", "tumble report " + database + " -o " + scenarios::shell_word(options.page.string()));
-  out.emplace_back("Paired differences, every metric", "tumble compare " + database);
+  out.emplace_back("Paired differences, as tables (`--metric` for others)", "tumble compare " + database);
   out.emplace_back("What breaks a method, every number", "tumble sensitivity " + database + " --all");
   return out;
 }
@@ -145,6 +145,7 @@ PageContent report_content(ReportInput input, const ReportOptions& options) {
   const Summary& summary = *input.summary;
   PageContent content;
   const std::string suite = results.note("suite");
+  content.recorded = results.note("source") == scenarios::kRecordingsSource;
   content.title = suite.empty() ? "tumble: report" : "tumble: suite " + suite;
   content.summary = summary;
   content.comparison = scenarios::compare(summary, {});
@@ -160,14 +161,13 @@ PageContent report_content(ReportInput input, const ReportOptions& options) {
   content.versions = versions(results, summary, options);
   content.commands = commands(results, options);
   content.certificates = results.certificates();
-  const bool recorded = results.note("source") == scenarios::kRecordingsSource;
-  if (content.certificates.empty() && !recorded)
+  if (content.certificates.empty() && !content.recorded)
     content.warnings.push_back("These results hold no certificate of their build.");
   for (const scenarios::Certificate& certificate : content.certificates) {
     content.versions.emplace_back("certificate", certificate_summary(certificate));
     if (!certificate.passes()) content.warnings.push_back("The certificate of build " + certificate.build + " fails.");
   }
-  if (!recorded && !summary.sections.empty()) add_examples(results, options, content);
+  if (!content.recorded && !summary.sections.empty()) add_examples(results, options, content);
   return content;
 }
 

@@ -58,10 +58,11 @@ Table table_of(const std::vector<scenarios::Answer>& answers, const Question& qu
                           : question.margin.relative   ? fmt::format(" by {:g} %", 100.0 * question.margin.value)
                                                        : fmt::format(" by {:g}", question.margin.value),
                           question.risk),
-              {"scenario", "answer", "seeds looked at", "better : worse", "an answer from"});
+              {"scenario", "answer", "seeds looked at",
+               question.margin.value > 0.0 ? "better by it : not" : "better : worse", "an answer from"});
   table.align_right_from(2);
   for (const scenarios::Answer& each : answers) {
-    table.add_row({each.scenario, to_string(each.finding), std::to_string(each.seeds),
+    table.add_row({each.scenario, finding_text(each, question), std::to_string(each.seeds),
                    fmt::format("{} : {}", each.better, each.worse), std::to_string(each.needed)});
   }
   return table;
@@ -71,7 +72,7 @@ nlohmann::json json_of(const std::vector<scenarios::Answer>& answers, const Ques
   nlohmann::json rows = nlohmann::json::array();
   for (const scenarios::Answer& each : answers) {
     rows.push_back({{"scenario", each.scenario},
-                    {"finding", to_string(each.finding)},
+                    {"finding", finding_text(each, question)},
                     {"seeds", each.seeds},
                     {"better", each.better},
                     {"worse", each.worse},

@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/sweep/keep.hpp"
 #include "tools/tumble/verbs.hpp"
 
@@ -19,8 +20,10 @@ struct Options {
 };
 
 int merge(const Session& session, const Options& options) {
-  const scenarios::MergeCounts counts = scenarios::merge_results(options.out, options.in, options.mixed);
-  const std::size_t kept = options.mixed ? 0 : scenarios::merge_kept(options.out, options.in);
+  scenarios::require_not_an_input(options.out, options.in);
+  const scenarios::DatabaseOwner owner(options.out);
+  const scenarios::MergeCounts counts = scenarios::merge_results(owner, options.in, options.mixed);
+  const std::size_t kept = options.mixed ? 0 : scenarios::merge_kept(owner, options.in);
   Table table("", {"database", "databases joined", "rows added", "replaced worse ones", "held already",
                    "draws rejected", "draws kept"});
   table.align_right_from(1);

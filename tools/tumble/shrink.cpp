@@ -13,6 +13,7 @@
 #include "scenarios/draw/fixed_scenario.hpp"
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/replace_file.hpp"
+#include "scenarios/sweep/sweep.hpp"
 #include "scenarios/sweep/sweep_notes.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/verbs.hpp"
@@ -126,6 +127,14 @@ std::string name_of(const std::filesystem::path& file) {
                  ": must be NAME.yaml, NAME a lower-case letter followed by letters, digits and underscores");
 }
 
+/// A case stands wherever a scenario or a suite may.
+void require_own_name(const scenarios::DataRoot& data, const std::string& name) {
+  for (const std::vector<std::string>& known : {scenarios::scenario_names(data), scenarios::suite_names(data)}) {
+    if (std::find(known.begin(), known.end(), name) != known.end())
+      throw BadInput("-o " + name + ".yaml: a scenario or a suite is called so already; name it otherwise");
+  }
+}
+
 void require_whole(const Options& options) {
   if (options.metric.empty() != !options.worse_than)
     throw BadInput("--metric and --worse-than go together: which number, and from where on a run fails");
@@ -142,6 +151,7 @@ int run_shrink(const Session& session, const Options& options) {
   require_whole(options);
   const std::string name = name_of(options.file);
   const scenarios::DataRoot data = session.data();
+  require_own_name(data, name);
   const scenarios::Scenario scenario = scenarios::load_scenario(data, options.scenario);
   const std::uint64_t seed = seed_of(scenario, options.seed);
   scenarios::ShrinkOptions shrinking;

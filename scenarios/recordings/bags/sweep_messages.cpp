@@ -127,6 +127,11 @@ ros::PointCloud2 cloud_of(const sim::LidarRecord& lidar, const std::vector<std::
 ros::LivoxCustomMsg livox_of(const sim::LidarRecord& lidar, const std::vector<std::size_t>& points,
                              std::int64_t start_ns, const ros::Header& header) {
   constexpr double kFull = 255.0;
+  if (!timed(lidar)) {
+    throw BadInput("the points of '" + lidar.name +
+                   "' have no times of their own: a CustomMsg has one for each, and a made-up one would pass for "
+                   "measured");
+  }
   ros::LivoxCustomMsg out;
   out.header = header;
   out.timebase = static_cast<std::uint64_t>(start_ns);
@@ -138,6 +143,10 @@ ros::LivoxCustomMsg livox_of(const sim::LidarRecord& lidar, const std::vector<st
                      ": a CustomMsg has lines 0 to 255");
     }
     const Eigen::Vector3f& p = lidar.position_L_m[k];
+    if (!p.allFinite() || !std::isfinite(lidar.intensity[k])) {
+      throw BadInput("point " + std::to_string(k) + " of '" + lidar.name +
+                     "' is not finite: a CustomMsg has no word for a return that is none");
+    }
     // tag 0: a single return, in which the device has full confidence
     out.points.push_back({lidar.offset_ns[k], p.x(), p.y(), p.z(), as<std::uint8_t>(lidar.intensity[k] * kFull), 0,
                           static_cast<std::uint8_t>(lidar.ring[k])});

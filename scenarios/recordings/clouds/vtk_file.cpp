@@ -16,6 +16,11 @@ namespace {
 
 constexpr std::uint64_t kPointsMax = std::uint64_t{1} << 26;
 
+/// As much of a word as a message has room for.
+std::string shortened(std::string_view word) {
+  return std::string(word.substr(0, 40));
+}
+
 /// The words of a text, and the lines on which they stand.
 class Words {
  public:
@@ -59,7 +64,7 @@ class Words {
     std::uint64_t value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error != std::errc() || end != word.data() + word.size())
-      fail(std::string(what) + " is '" + std::string(word) + "', no whole number");
+      fail(std::string(what) + " is '" + shortened(word) + "', no whole number");
     return value;
   }
 
@@ -70,7 +75,7 @@ class Words {
     double value = 0.0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error != std::errc() || end != word.data() + word.size())
-      fail("'" + std::string(word.substr(0, 40)) + "' is no number that a double holds, decimals behind a point");
+      fail("'" + shortened(word) + "' is no number that a double holds, decimals behind a point");
     return value;
   }
 
@@ -128,13 +133,13 @@ void read_scalars(Words& words, Cloud& cloud) {
   if (word != "LOOKUP_TABLE") {
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), each);
     if (error != std::errc() || end != word.data() + word.size() || each < 1 || each > 4)
-      words.fail("scalars '" + name + "' of '" + std::string(word) + "' numbers a point, must be 1 to 4");
+      words.fail("scalars '" + shortened(name) + "' of '" + shortened(word) + "' numbers a point, must be 1 to 4");
     word = words.need("LOOKUP_TABLE");
   }
-  if (word != "LOOKUP_TABLE") words.fail("'" + std::string(word) + "' in the place of LOOKUP_TABLE");
+  if (word != "LOOKUP_TABLE") words.fail("'" + shortened(word) + "' in the place of LOOKUP_TABLE");
   words.need("the name of the lookup table");
   if (each != 1) return pass_over(words, cloud.points, each);
-  if (cloud.find(name) != nullptr) words.fail("scalars '" + name + "' stand twice");
+  if (cloud.find(name) != nullptr) words.fail("scalars '" + shortened(name) + "' stand twice");
   require_room(words, cloud.points, 1);
   std::vector<double> column(cloud.points);
   for (double& value : column) value = words.number();
@@ -159,7 +164,7 @@ void read_header(Words& words) {
   words.line();  // a title
   const std::string_view encoding = words.need("ASCII");
   if (encoding == "BINARY") words.fail("is binary: VTK files are read as text (ASCII) alone");
-  if (encoding != "ASCII") words.fail("'" + std::string(encoding.substr(0, 40)) + "' in the place of ASCII");
+  if (encoding != "ASCII") words.fail("'" + shortened(encoding) + "' in the place of ASCII");
   if (words.need("DATASET") != "DATASET" || words.need("POLYDATA") != "POLYDATA")
     words.fail("holds no POLYDATA, which clouds are");
 }
@@ -187,7 +192,7 @@ Cloud read_vtk(const std::filesystem::path& path) {
                (section == "NORMALS" || section == "VECTORS" || section == "TENSORS" || section == "COLOR_SCALARS")) {
       pass_data(words, cloud, section);
     } else {
-      words.fail("section '" + std::string(section.substr(0, 40)) + "' is not read there");
+      words.fail("section '" + shortened(section) + "' is not read there");
     }
   }
   if (cloud.names.empty()) words.fail("holds no POINTS");

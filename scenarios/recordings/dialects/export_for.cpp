@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/dialects/export_for.hpp"
 
+#include <cmath>
 #include <map>
 
 #include "scenarios/errors.hpp"
@@ -29,6 +30,16 @@ const Dialect& dialect_of(const std::string& peer) {
                  " (known:" + known + ")");
 }
 
+/// Where a lidar's range comes from numbers that are none, so does a configuration.
+void require_finite(const sim::LidarRecord& lidar) {
+  for (std::size_t k = 0; k < lidar.range_m.size(); ++k) {
+    if (lidar.position_L_m[k].allFinite() && std::isfinite(lidar.range_m[k]) && std::isfinite(lidar.intensity[k]))
+      continue;
+    throw BadInput("point " + std::to_string(k) + " of '" + lidar.name +
+                   "' is not finite in place, range or intensity");
+  }
+}
+
 void require_fitting(const Dialect& dialect, const sim::Sensors& sensors, const SensorFacts& facts) {
   const auto refuse = [&](const std::string& what) { throw BadInput(what + ", which " + dialect.name + " reads"); };
   if (!facts.lidar || facts.lidar->points == 0) refuse("the recording holds no return of a lidar");
@@ -37,6 +48,7 @@ void require_fitting(const Dialect& dialect, const sim::Sensors& sensors, const 
     refuse("the points of '" + sensors.lidars.front().name + "' have no times of their own");
   if (dialect.needs_rings && facts.lidar->livox)
     refuse("the lidar '" + facts.lidar->device + "' does not scan in rings");
+  require_finite(sensors.lidars.front());
 }
 
 void write_bag(const Dialect& dialect, const sim::Sensors& sensors, const BagWriting& writing, const path& place) {

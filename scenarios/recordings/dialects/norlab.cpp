@@ -105,8 +105,7 @@ Dialect norlab_dialect() {
   out.names = names;
   out.sweeps = ouster_layout;
   out.configuration = configuration;
-  out.run =
-      "ros2 run norlab_icp_mapper_ros mapper_node --ros-args --params-file mapper_node.yaml; ros2 bag play --clock bag";
+  out.run = "ros2 run norlab_icp_mapper_ros mapper_node --ros-args --params-file mapper_node.yaml; ros2 bag play bag";
   out.notes = {
       "it asks for the lidar in odom at each cloud: base_link stands still there in /tf_static, so that the last pose "
       "is "

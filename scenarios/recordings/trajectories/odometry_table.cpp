@@ -14,6 +14,8 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr const char* kFirst = "header.stamp.sec";
+/// A header of all columns that drivers write has some 2 kB.
+constexpr std::size_t kHeaderMax_bytes = 64 * 1024;
 constexpr std::int64_t kSecond_ns = 1000000000, kSecondsMax = 9000000000;
 
 /// The columns that are read, in this order.
@@ -29,10 +31,12 @@ constexpr std::array<const char*, 9> kColumns = {
     "pose.pose.orientation.w",
 };
 
+/// Of a longer line one byte more than a header may have: a file without line ends is not read whole for it.
 std::string first_line(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
-  std::string line;
-  if (std::filesystem::is_regular_file(file)) std::getline(stream, line);
+  std::string line(kHeaderMax_bytes + 2, '\0');
+  if (std::filesystem::is_regular_file(file)) stream.getline(line.data(), static_cast<std::streamsize>(line.size()));
+  line.resize(std::min(line.find('\0'), line.size()));
   if (line.ends_with('\r')) line.pop_back();
   return line;
 }
@@ -71,6 +75,9 @@ bool is_odometry(const std::filesystem::path& file) {
 
 std::vector<ReferencePose> read_odometry_poses(const std::filesystem::path& file) {
   const std::string header = first_line(file);
+  if (header.size() > kHeaderMax_bytes) {
+    throw BadInput(file.string() + ":1: the header has more than " + std::to_string(kHeaderMax_bytes) + " bytes");
+  }
   const std::vector<std::string> names = names_in(header);
   const auto places = places_in(file, names);
   const Table table = Table::read(file, ',', header, names.size());

@@ -125,6 +125,8 @@ TEST_F(CaseFiles, StandWhereAScenarioMay) {
   EXPECT_EQ(complaint("lots"), "unknown scenario 'lots'; did you mean 'lost'?");
   put(data_.regressions(), plain_);
   EXPECT_THAT(complaint("lost"), HasSubstr("key 'case' is missing"));
+  put(data_.catalogue(), plain_);
+  EXPECT_THAT(complaint("lost"), HasSubstr("a scenario and a named case"));
 }
 
 }  // namespace

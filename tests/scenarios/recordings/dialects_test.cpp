@@ -194,6 +194,10 @@ TEST_P(Dialects, WhatThePeerCannotDoWithoutIsRefused) {
             lidar_alone ? "" : "the points of 'lidar' have no times of their own, which " + peer + " reads");
   std::filesystem::remove_all(folder_ / "refused");
   recording = unordered();
+  recording.sensors.lidars[0].range_m[7] = std::nanf("");
+  EXPECT_THAT(complaint_of(recording), HasSubstr("point 7 of 'lidar' is not finite in place, range or intensity"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "refused"));
+  recording = unordered();
   recording.sensors.lidars.clear();
   recording.truth.lidars.clear();
   EXPECT_EQ(complaint_of(recording), "the recording holds no return of a lidar, which " + peer + " reads");

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/bags/bag_clouds.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
@@ -142,6 +145,35 @@ TEST(LivoxMessage, MoreLinesThanAByteHasAreRefused) {
   EXPECT_THAT(fixture::complaint([&] { export_ros1_bag(recording.sensors, writing, path); }),
               HasSubstr("a point of 'lidar' is of ring 256: a CustomMsg has lines 0 to 255"));
   EXPECT_FALSE(std::filesystem::exists(path));
+}
+
+TEST(LivoxMessage, NumbersThatAreNoneAreRefused) {
+  for (const bool of_place : {true, false}) {
+    sim::Recording recording = fixture::recording();
+    sim::LidarRecord& lidar = recording.sensors.lidars[0];
+    (of_place ? lidar.position_L_m[7].x() : lidar.intensity[7]) = std::nanf("");
+    BagWriting writing;
+    writing.sweeps = livox_sweep_layout();
+    const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "tumble_livox_finite.bag";
+    EXPECT_THAT(fixture::complaint([&] { export_ros1_bag(recording.sensors, writing, path); }),
+                HasSubstr("point 7 of 'lidar' is not finite"));
+    EXPECT_FALSE(std::filesystem::exists(path));
+  }
+}
+
+TEST(LivoxMessage, PointsWithoutTimesAreRefused) {
+  for (const sim::PointTimes times : {sim::PointTimes::unknown, sim::PointTimes::not_skewed}) {
+    sim::Recording recording = fixture::recording();
+    sim::LidarRecord& lidar = recording.sensors.lidars[0];
+    lidar.point_times = times;
+    std::fill(lidar.offset_ns.begin(), lidar.offset_ns.end(), 0u);
+    BagWriting writing;
+    writing.sweeps = livox_sweep_layout();
+    const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "tumble_livox_times.bag";
+    EXPECT_THAT(fixture::complaint([&] { export_ros1_bag(recording.sensors, writing, path); }),
+                HasSubstr("the points of 'lidar' have no times of their own: a CustomMsg has one for each"));
+    EXPECT_FALSE(std::filesystem::exists(path));
+  }
 }
 
 }  // namespace

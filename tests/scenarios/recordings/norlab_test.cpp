@@ -167,6 +167,11 @@ class OdometryTable : public fixture::Folder {
       "pose.pose.orientation.x,pose.pose.orientation.y,pose.pose.orientation.z,pose.pose.orientation.w\n";
 };
 
+TEST_F(OdometryTable, AHeaderWithoutEndIsRefused) {
+  EXPECT_THAT(complaint_of("header.stamp.sec," + std::string(70000, 'a') + "\n1\n"),
+              HasSubstr("a.csv:1: the header has more than 65536 bytes"));
+}
+
 TEST_F(OdometryTable, BadLinesAreRefusedWithTheirPlace) {
   const std::string good = head_ + "10,0,1,2,3,0,0,0,1\n10,500000000,1,2,3,0,0,0.6,0.8\n";
   EXPECT_EQ(complaint_of(good), "");

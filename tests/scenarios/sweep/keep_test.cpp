@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "scenarios/draw/scenario.hpp"
+#include "scenarios/draw/strict_yaml.hpp"
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/estimate_file.hpp"
 #include "scenarios/recordings/recording_file.hpp"
@@ -154,7 +155,7 @@ TEST_F(KeepTest, TheWorstAreTheSameResumedAndInShards) {
   run("shard_2.db", 3, 4, "worst:1", 2);
   const std::vector<std::filesystem::path> shards = {folder_ / "shard_1.db", folder_ / "shard_2.db"};
   merge_results(folder_ / "merged.db", shards, false);
-  EXPECT_EQ(merge_kept(folder_ / "merged.db", shards), seeds("whole.db").size());
+  EXPECT_EQ(merge_kept(DatabaseOwner(folder_ / "merged.db"), shards), seeds("whole.db").size());
   EXPECT_EQ(kept("merged.db"), whole);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "merged.db.files/kept/.unfinished"));
 }
@@ -196,8 +197,71 @@ TEST_F(KeepTest, TwoRulesAreNotMerged) {
   run("b.db", 2, 2, "failed");
   const std::vector<std::filesystem::path> in = {folder_ / "a.db", folder_ / "b.db"};
   merge_results(folder_ / "out.db", in, false);
-  EXPECT_EQ(merge_kept(folder_ / "out.db", in), 0u);
+  EXPECT_EQ(merge_kept(DatabaseOwner(folder_ / "out.db"), in), 0u);
   EXPECT_TRUE(kept("out.db").empty());
+}
+
+// what a database had kept before others are merged into it is not theirs to judge
+TEST_F(KeepTest, AMergeIntoRowsOfAnotherRuleLeavesWhatIsKept) {
+  run("all.db", 1, 2, "all");
+  run("failed.db", 3, 3, "failed");
+  run("none.db", 4, 4, "none");
+  const auto before = kept("all.db");
+  const auto merged = [&](const char* out, const char* in) {
+    const DatabaseOwner owner(folder_ / out);
+    const std::vector<std::filesystem::path> inputs = {folder_ / in};
+    merge_results(owner, inputs, false);
+    return merge_kept(owner, inputs);
+  };
+  EXPECT_EQ(merged("all.db", "failed.db"), 0u);
+  EXPECT_EQ(kept("all.db"), before);
+  EXPECT_EQ(merged("none.db", "all.db"), 0u);
+  EXPECT_TRUE(kept("none.db").empty());
+  run("more.db", 5, 5, "all");
+  EXPECT_EQ(merged("more.db", "all.db"), 3u) << "of all.db those that stand; its other row has none";
+}
+
+TEST_F(KeepTest, OtherMethodsAddTheirEstimates) {
+  SweepOptions options;
+  options.keep = parse_keep("all");
+  for (const char* method : {"rate/raw", "position/rolling"}) {
+    Suite one = suite(1, 1);
+    one.methods = {method};
+    EXPECT_EQ(sweep(data(), one, folder_ / "a.db", options).kept, 1u);
+  }
+  const auto both = kept("a.db");
+  EXPECT_TRUE(both.contains("roll/1/estimates/rate-raw/estimate.json"));
+  EXPECT_TRUE(both.contains("roll/1/estimates/position-rolling/estimate.json"));
+  EXPECT_EQ(run("a.db", 1, 1, "all").kept, 1u);
+  EXPECT_EQ(kept("a.db").size(), both.size());
+}
+
+// a draw that is kept because a method died has what that method would have read
+TEST_F(KeepTest, ACrashCostsTheRecordingNoLidar) {
+  std::string text = read_text_file(test::source_dir() / "scenarios/catalogue/hill.yaml");
+  for (const auto& [from, to] : {std::pair{"name: hill", "name: ride"}, {"duration_s: 10", "duration_s: 3"}}) {
+    const std::size_t at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    text.replace(at, std::string(from).size(), to);
+  }
+  write("scenarios/catalogue/ride.yaml", text);
+  Suite ride = suite(1, 1);
+  ride.scenarios = {"ride"};
+  ride.methods = {"rate/raw", "slam/tumble"};
+  SweepOptions options;
+  options.keep = parse_keep("worst:1");
+  {
+    Results results = open_results(data(), ride, folder_ / "a.db");
+    Outcome row{"ride", 1, Kind::rate, "raw", OutcomeStatus::ok, "", {}, "", ""};
+    row.scores = {{headline_metrics(Kind::rate).front(), 1.0}};
+    results.store(row);
+    results.store(Outcome{"ride", 1, Kind::slam, "tumble", OutcomeStatus::crashed, "", {}, "", ""});
+  }
+  const SweepProgress progress = sweep(data(), ride, folder_ / "a.db", options);
+  EXPECT_EQ(progress.outcomes, 0u) << "the rows stand";
+  ASSERT_EQ(progress.kept, 1u) << progress.not_kept;
+  const std::filesystem::path draw = KeptDraws(folder_ / "a.db").folder_of({"ride", 1});
+  EXPECT_EQ(read_sensors(draw / "recording.h5").lidars.size(), 1u);
 }
 
 }  // namespace
