@@ -66,9 +66,13 @@ inline std::vector<std::byte> read_bytes(const std::string& file) {
   return {bytes, bytes + text.size()};
 }
 
-inline void write_bytes(const std::vector<std::byte>& bytes, const std::string& file) {
-  std::ofstream(file, std::ios::binary)
-      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+/// All of it or nothing: beside the file, then in its place. False where that fails; the file is then as it was.
+inline bool write_bytes(const std::vector<std::byte>& bytes, const std::string& file) {
+  const std::string beside = file + ".new";
+  std::ofstream out(beside, std::ios::binary);
+  out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  out.close();
+  return out && std::rename(beside.c_str(), file.c_str()) == 0;
 }
 
 /// "TIME_NS x y z qx qy qz qw sigma_m", a line.

@@ -11,13 +11,17 @@
 int main(int count, char** arguments) {
   const std::string file = count > 1 ? arguments[1] : "odometry.state";
   tumble::TumblingOdometry odometry(rig());  // of the same parameters
+  bool ours = true;
   if (const auto state = driver::read_bytes(file); !state.empty()) {
     const tumble::Status status = odometry.load(state);
-    if (!status.ok()) std::fprintf(stderr, "begins anew: %s\n", status.message().c_str());
+    ours = status.ok();
+    if (!ours) std::fprintf(stderr, "begins anew: %s\n", status.message().c_str());
   }
   while (const auto message = driver::next(std::cin)) {
     driver::add(*message, odometry);
     while (const auto done = odometry.take()) driver::print(*done);
   }
-  driver::write_bytes(odometry.save(), file);
+  if (ours && driver::write_bytes(odometry.save(), file)) return 0;
+  std::fprintf(stderr, "%s is left as it was\n", file.c_str());
+  return 1;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The gyro as it is, with a statement of how sure that is: doubtful READINGS.csv RATES.csv.
- * cc -O2 -o doubtful doubtful.c; doubtful.yaml makes it a method. */
+ * cc -O2 -o doubtful doubtful.c -lm; doubtful.yaml makes it a method. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

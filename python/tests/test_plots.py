@@ -77,6 +77,14 @@ def test_worlds_are_laid_over_each_other_at_the_start():
     assert np.allclose(error_m, 0.05e-9 * at, atol=1e-5) and error_m.max() > 0.05
 
 
+def test_poses_may_begin_before_the_truth():
+    recording, _, poses = carousel()
+    time_ns = np.insert(poses.time_ns, 0, -50_000_000)
+    position, quaternion = (np.insert(all, 0, all[0], axis=0) for all in (poses.position, poses.quaternion))
+    error_m = tumble.point_errors(recording, tumble.Trajectory(time_ns, position, quaternion))[1]
+    assert len(error_m) == len(recording.lidars[0].position) and error_m.max() < 1e-5
+
+
 def test_returns_need_a_truth_and_poses():
     recording, _, poses = carousel()
     late = tumble.Trajectory(poses.time_ns + 10**10, poses.position, poses.quaternion)

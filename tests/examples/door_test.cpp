@@ -128,6 +128,12 @@ TEST(Door, TheRollingExampleFollowsARoll) {
   EXPECT_NEAR(lines.back().p_m.norm(), way, 0.02 * std::max(1.0, way));
 }
 
+std::string text_of(const fs::path& file) {
+  std::ostringstream out;
+  out << std::ifstream(file).rdbuf();
+  return out.str();
+}
+
 TEST(Door, TheRebootExampleGoesOnWhereItWas) {
   const Recorded throw_1 = record("throw");
   const fs::path folder = throw_1.file.parent_path();
@@ -158,17 +164,15 @@ TEST(Door, TheRebootExampleGoesOnWhereItWas) {
   std::ostringstream errors;
   errors << std::ifstream(folder / "errors.txt").rdbuf();
   EXPECT_NE(errors.str().find("begins anew: too_few"), std::string::npos);
+  EXPECT_NE(errors.str().find("damaged is left as it was"), std::string::npos);
+  EXPECT_EQ(text_of(folder / "damaged"), "no state");
+  EXPECT_FALSE(fs::exists(folder / "parts.new"));
 }
 
 /// What stands in a file between its first include and its end.
 std::string code_of(const std::string& text) {
   const std::size_t at = text.find("#include");
   return at == std::string::npos ? "" : text.substr(at);
-}
-std::string text_of(const fs::path& file) {
-  std::ostringstream out;
-  out << std::ifstream(file).rdbuf();
-  return out.str();
 }
 
 TEST(Door, ReadmeAndTutorialShowTheProgramsThatAreTested) {

@@ -358,8 +358,9 @@ bool RateStream::equal(const State& a, const State& b) {
          a.extremes == b.extremes && a.least == b.least && a.entry_rad_s == b.entry_rad_s &&
          a.entry_samples == b.entry_samples && a.left == b.left && a.left_ns == b.left_ns &&
          a.prior_knot == b.prior_knot && a.prior_rig == b.prior_rig && a.samples == b.samples &&
-         a.held_steps == b.held_steps && a.rig_resets == b.rig_resets && a.flight_run == b.flight_run &&
-         a.waiting == b.waiting && a.learnt_from == b.learnt_from && a.failures == b.failures;
+         a.held_steps == b.held_steps && a.rig_resets == b.rig_resets && a.rig_drops == b.rig_drops &&
+         a.flight_run == b.flight_run && a.waiting == b.waiting && a.learnt_from == b.learnt_from &&
+         a.failures == b.failures;
 }
 
 }  // namespace tumble

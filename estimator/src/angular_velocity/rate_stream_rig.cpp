@@ -62,6 +62,7 @@ void RateStream::hold_or_forget_rig(State& state) const {
   ++state.held_steps;
   const double most = kHeldShare * static_cast<double>(capacity_) / static_cast<double>(every_);
   if (static_cast<double>(state.held_steps) <= most && hold_rig(state)) return;
+  ++state.rig_drops;
   state.rig = state.prior_rig = model_.prior_constants();
   state.rig_covariance = model_.prior_covariance();
   state.prior = {};

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "carried_problem.hpp"
@@ -61,21 +62,40 @@ Status CarriedStream::check_state(const State& state) const {
     return {Trouble::out_of_range, "carried.window", size_of(state.window), double(nodes_max_)};
   if (state.readings.size() > readings_max_)
     return {Trouble::out_of_range, "carried.readings", size_of(state.readings), double(readings_max_)};
-  if (state.samples == 0) return {};
+  if (state.samples == 0) {
+    if (state.window.empty() && state.readings.empty() && state.first_node == 0) return {};
+    return {Trouble::out_of_range, "carried.samples", 0.0, 1.0};
+  }
   if (state.window.empty() || state.readings.empty()) return {Trouble::empty, "carried.window", 0.0, 1.0};
-  const std::int64_t end = state.first_node + static_cast<std::int64_t>(state.window.size());
   for (std::size_t k = 0; k < state.readings.size(); ++k) {
-    const Reading& reading = state.readings[k];
-    if (state.first_node < 0 || reading.node >= end)
-      return {Trouble::out_of_range, "reading.node", double(reading.node), double(end)};
-    if (reading.end_s != seconds(reading.sample.time_ns - state.start_ns) + 0.5 * params_.period_s)
-      return {Trouble::out_of_range, "reading.end_s", reading.end_s, seconds(reading.sample.time_ns)};
-    if (k == 0) continue;
-    const TimeNs before_ns = state.readings[k - 1].sample.time_ns;
-    const Status status = check_follows(reading.sample.time_ns, before_ns, params_.body.gap_max_s);
+    const Reading* const before = k > 0 ? &state.readings[k - 1] : nullptr;
+    if (const Status status = check_reading(state.readings[k], before, state.start_ns); !status.ok()) return status;
+  }
+  const std::int64_t last = state.readings.back().node, held = static_cast<std::int64_t>(state.window.size());
+  if (state.first_node >= 0 && state.first_node <= last && last - state.first_node + 1 == held) return {};
+  return {Trouble::out_of_range, "carried.first_node", double(state.first_node), double(last + 1 - held)};
+}
+
+Status CarriedStream::check_reading(const Reading& reading, const Reading* before, TimeNs start_ns) const {
+  const TimeNs time_ns = reading.sample.time_ns;
+  if (before != nullptr) {
+    const Status status = check_follows(time_ns, before->sample.time_ns, params_.body.gap_max_s);
     if (!status.ok()) return status;
   }
-  return {};
+  // unsigned: the difference of two 64-bit stamps may not fit into a signed one
+  const std::uint64_t since_ns = static_cast<std::uint64_t>(time_ns) - static_cast<std::uint64_t>(start_ns);
+  if (time_ns < start_ns || since_ns > static_cast<std::uint64_t>(std::numeric_limits<TimeNs>::max()))
+    return {Trouble::time_order, "carried.start_ns", double(start_ns), double(time_ns)};
+  if (reading.end_s != seconds(static_cast<TimeNs>(since_ns)) + 0.5 * params_.period_s)
+    return {Trouble::out_of_range, "reading.end_s", reading.end_s, seconds(time_ns)};
+  if (!(reading.centre_s <= reading.end_s && reading.centre_s >= reading.end_s - params_.period_s))
+    return {Trouble::out_of_range, "reading.centre_s", reading.centre_s, reading.end_s};
+  const std::int64_t nearest = std::llround(reading.centre_s / params_.body.node_s);
+  const bool falls = before != nullptr && reading.node < before->node;
+  const bool stays = before != nullptr && reading.node == before->node;
+  const bool near = reading.node >= nearest - 1 && reading.node <= nearest + 1;
+  if (reading.node >= 0 && !falls && (stays || near)) return {};
+  return {Trouble::out_of_range, "reading.node", double(reading.node), double(nearest)};
 }
 
 CarriedStream::State CarriedStream::start() const {

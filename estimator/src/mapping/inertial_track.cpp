@@ -15,6 +15,7 @@ using Params = LidarInertialOdometry::Params;
 
 constexpr std::uint8_t kAllAxes = 7;
 constexpr TimeNs kArcStep_ns = 5'000'000;
+constexpr TimeNs kArcMost_ns = 10'000'000'000;  // no flight lasts so long
 
 TimeNs middle_of(const MotionSample& sample) {
   return sample.from_ns + (sample.time_ns - sample.from_ns) / 2;
@@ -73,7 +74,7 @@ void InertialTrack::take(const Params& params, const ImuSample& sample, const Ra
   const bool in_flight = params.body && !samples_.empty() && settle_force(params, next);
   before_newest_ = newest_;
   newest_ = {next.w_WI_I_rad_s, middle_of(next)};
-  if (in_flight && next.bridges_gap) {
+  if (in_flight && next.bridges_gap && next.time_ns - next.from_ns <= kArcMost_ns) {
     const std::size_t before = samples_.size();
     const Eigen::Vector3d w_rad_s = samples_.back().w_WI_I_rad_s;
     if (flight_arc(*params.body, w_rad_s, next.from_ns, next.time_ns, kArcStep_ns, samples_).ok()) {

@@ -24,6 +24,8 @@ class InertialTrack {
 
   /// From the window that holds the last sweep's end on.
   std::span<const MotionSample> samples() const { return samples_; }
+  /// The newest of them, or the last sweep's end.
+  std::optional<TimeNs> last_ns() const;
   /// Whether the IMU has nothing to say but gravity up to `end_ns`.
   bool rests_until(TimeNs end_ns) const;
   /// Forgets what ended by then, the end of a sweep.
@@ -51,7 +53,6 @@ class InertialTrack {
     static void members(Self& s, Visitor& visit);
   };
 
-  std::optional<TimeNs> last_ns() const;
   void listen_for_rest(const Params& params, const ImuSample& sample, const RateState& rate, MotionSample& next);
   void take_back_rest(std::optional<TimeNs> rests_since_ns);
   bool settle_force(const Params& params, const MotionSample& next);

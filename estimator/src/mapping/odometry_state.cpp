@@ -9,6 +9,9 @@ namespace tumble {
 
 namespace {
 
+// Twice a stamp's difference from another fits into 64 bits: 2067, by a clock that counts from 1970.
+constexpr TimeNs kStamp_ns = 3'070'000'000'000'000'000;
+
 /// Parameters that another run may have taught: SecondPass.
 template <StateOf<LidarInertialOdometry::Params> Self, class Visitor>
 void visit_taught(Self& p, Visitor& visit) {
@@ -36,7 +39,12 @@ Status LidarInertialOdometry::Impl::check_state() const {
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (samples[k].from_ns > samples[k].time_ns || (k > 0 && samples[k].time_ns <= samples[k - 1].time_ns))
       return {Trouble::time_order, "motion.time_ns", double(samples[k].time_ns), double(samples[k].from_ns)};
+    if (samples[k].from_ns < -kStamp_ns || samples[k].time_ns > kStamp_ns)
+      return {Trouble::out_of_range, "motion.time_ns", double(samples[k].time_ns), double(kStamp_ns)};
   }
+  const std::optional<TimeNs> last_ns = track.last_ns();
+  if (last_ns && (*last_ns < -kStamp_ns || *last_ns > kStamp_ns))
+    return {Trouble::out_of_range, "track.border_ns", double(*last_ns), double(kStamp_ns)};
   return {};
 }
 

@@ -6,18 +6,17 @@
 #include <limits>
 
 #include "tumble/common/status.hpp"
+#include "voxel_cube.hpp"
 
 namespace tumble {
+
+using mapping::cube_of;
 
 namespace {
 
 // coordinates of an empty place: so far that no search radius reaches it
 constexpr float kFar = 1e18f;
 constexpr int kReachMax = 8;  // cells searched to each side
-
-Eigen::Vector3i cube_of(const Eigen::Vector3f& p, float cubes_per_m) {
-  return (p * cubes_per_m).array().floor().cast<int>();
-}
 
 /// Inserts a candidate into the k best so far, nearest first.
 inline void keep(float distance2, std::uint32_t index, int k, Neighbours& best) {

@@ -2,16 +2,11 @@
 // A map as bytes: what finds its points again is built from them.
 #include "tumble/common/state_bytes.hpp"
 #include "tumble/mapping/voxel_map.hpp"
+#include "voxel_cube.hpp"
 
 namespace tumble {
 
-namespace {
-
-Eigen::Vector3i cell_of(const Eigen::Vector3f& p, float cells_per_m) {
-  return (p * cells_per_m).array().floor().cast<int>();
-}
-
-}  // namespace
+using mapping::cube_of;
 
 void VoxelMap::save(StateWriter& out) const {
   out.length("map.chunks", chunks_.size());
@@ -63,7 +58,7 @@ void VoxelMap::load_chunk(StateReader& in) {
     in.require("map.position_W_m", has_room_for(position_W_m), position_W_m.cwiseAbs().maxCoeff(),
                (SpatialHash::kLimit - 2) / double(cubes_per_m_));
     if (!in.going()) return;
-    const Eigen::Vector3i its_cell = cell_of(position_W_m, cells_per_m_);
+    const Eigen::Vector3i its_cell = cube_of(position_W_m, cells_per_m_);
     if (k == 0) {
       cell = its_cell;
       std::uint32_t& first = first_of(cell);
@@ -85,8 +80,17 @@ void VoxelMap::load_chunk(StateReader& in) {
 }
 
 void VoxelMap::describe(StateLayout& out) {
+  const std::uint8_t count = 0;
   const Eigen::Vector3f position_W_m = Eigen::Vector3f::Zero();
+  const float sigma_m = 0.0f;
+  const std::uint32_t sweep = 0, line = 0;
+  const std::vector<std::uint64_t> taken;
+  out("map.chunk.count", count);
   out("map.position_W_m", position_W_m);
+  out("map.sigma_m", sigma_m);
+  out("map.sweep", sweep);
+  out("map.line", line);
+  out("map.taken", taken);
 }
 
 }  // namespace tumble

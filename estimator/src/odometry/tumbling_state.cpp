@@ -17,14 +17,21 @@ Status OdometryPass::check_state() const {
   if (const Status status = rates_.check_state(rate_state_); !status.ok()) return status;
   const auto& window = rate_state_.rate.window;
   if (window.empty()) return {};
-  if (unsettled_.all().empty()) return missing("pass.unsettled");
-  const TimeNs newest_ns = window.back().observation.sample.time_ns, heard_ns = unsettled_.all().back().time_ns;
+  const TimeNs newest_ns = window.back().observation.sample.time_ns;
+  if (told_ns_ && *told_ns_ > newest_ns)
+    return {Trouble::out_of_range, "pass.told_ns", double(*told_ns_), double(newest_ns)};
+  if (unsettled_.all().empty()) {  // all were settled, as at the end of the second pass's samples
+    const bool settled = settled_ && settled_->time_ns == newest_ns && told_ns_ == newest_ns;
+    return settled ? Status{} : missing("pass.unsettled");
+  }
+  const TimeNs heard_ns = unsettled_.all().back().time_ns;
   if (heard_ns == newest_ns) return {};
   return {Trouble::out_of_range, "pass.unsettled", double(heard_ns), double(newest_ns)};
 }
 
 Status SecondPass::check_state(const OdometryPass& first) const {
   if (!pass_) return {};
+  if (!moves_ns_) return missing("again.moves_ns");
   if (sweeps_.empty()) return missing("again.sweeps");
   if (!first.settled()) return missing("pass.settled");
   return pass_->check_state();

@@ -161,6 +161,9 @@ Status RollingSmoother::check_state(const State& state) const {
   const RollingParams& filter = params_.filter;
   if (state.live.started && state.live.count < 1)
     return {Trouble::out_of_range, "live.count", double(state.live.count), 1.0};
+  const std::size_t most = lag_nodes_ + block_nodes_;
+  if (params_.lag_s < kWholeRun && state.steps.size() > most)
+    return {Trouble::out_of_range, "rolling.steps", double(state.steps.size()), double(most)};
   const Committed& committed = state.committed;
   for (std::size_t k = committed.started ? 0 : 1; k < state.samples.size(); ++k) {
     const TimeNs before_ns = k > 0 ? state.samples[k - 1].time_ns : committed.last_time_ns;
@@ -291,6 +294,7 @@ void RollingSmoother::run_window(const Path& path, std::size_t emitted, State& s
     state.samples.erase(state.samples.begin(), state.samples.begin() + static_cast<std::ptrdiff_t>(place.next));
     state.steps.erase(state.steps.begin(), state.steps.begin() + static_cast<std::ptrdiff_t>(emitted));
   } else {
+    state.committed.gap_piece = 0;  // no gap is left to go on within
     state.samples.clear();
     state.steps.clear();
   }

@@ -46,8 +46,8 @@ def point_errors(recording: Recording, poses: Any, every: int = 1) -> tuple[Arra
     """Places the first lidar's returns by poses of the first IMU and says how far each is from where it truly was.
 
     Returns positions (N, 3), m, in the estimate's world, and distances (N,), m, of those returns that lie within the poses and the
-    truth. The two worlds are laid over each other by position and yaw at the first of the poses, as the program's scores are
-    (`ate_m`). every: takes each so-manyth return. The estimate places a return by the calibration that the recording states, the truth
+    truth. The two worlds are laid over each other by position and yaw at the first of the poses within the truth's times, as
+    the program's scores are (`ate_m`). every: takes each so-manyth return. The estimate places a return by the calibration that the recording states, the truth
     by its own mounting of the IMU: what the calibration is off by is part of the distance.
     TumbleError `empty` without a truth or without returns.
     """
@@ -68,7 +68,10 @@ def point_errors(recording: Recording, poses: Any, every: int = 1) -> tuple[Arra
     if not inside.any():
         raise TumbleError("poses have no return of the lidar within their times, must have one at least", "empty", "poses", 0, 1)
     estimated, true = estimated[inside], true[inside]
-    begin = np.asarray(poses.time_ns)[:1]
+    known = np.asarray(poses.time_ns)
+    begin = known[(known >= truth.time_ns[0]) & (known <= truth.time_ns[-1])][:1]
+    if len(begin) == 0:
+        raise TumbleError("poses are not within the times of the truth, must have one there at least", "empty", "poses", 0, 1)
     p_e, R_e = poses_at(begin, poses)
     p_t, R_t = poses_at(begin, truth)
     T_BI = truth.imu_T_BI[0]

@@ -142,7 +142,8 @@ class RateStream {
     std::size_t learnt_from = 0;     ///< samples of flight that left the window and told of the rig
     std::size_t flight_run = 0;      ///< samples of flight in a row that left the window last
     std::size_t held_steps = 0;      ///< steps with the rig held, less those since that agreed with it
-    std::size_t rig_resets = 0;      ///< steps that would have made another rig of it
+    std::size_t rig_resets = 0;      ///< steps that would have made another rig of it: held or dropped
+    std::size_t rig_drops = 0;       ///< of these, those that dropped it
     std::size_t failures = 0;        ///< steps whose system was not positive definite and was skipped
     std::vector<arrow::Block> work;  ///< scratch space, no part of the state proper
   };

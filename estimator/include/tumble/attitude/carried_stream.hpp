@@ -101,6 +101,7 @@ class CarriedStream {
   Status check_state(const State& state) const;
 
  private:
+  Status check_reading(const Reading& reading, const Reading* before, TimeNs start_ns) const;
   void append(const ImuSample& sample, State& state) const;
   bool read_again(const ClippedElements& known, State& state) const;
   void rebuild(State& state) const;

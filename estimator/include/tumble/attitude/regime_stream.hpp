@@ -55,8 +55,8 @@ class RegimeStream {
     std::size_t given = 0;             ///< samples given out
     std::size_t joined = 0;            ///< of these, joined with CarriedStream's
     std::size_t starts = 0;            ///< times that CarriedStream was started
-    std::size_t rig_resets = 0;        ///< of RateStream, as seen last
-    double resets = 0.0;               ///< times that RateStream dropped its rig, forgotten with a memory
+    std::size_t rig_drops = 0;         ///< of RateStream, as seen last
+    double drops = 0.0;                ///< times that RateStream dropped its rig, forgotten with a memory
     bool carrying = false;             ///< CarriedStream runs
     double least = 1.0;                ///< share of the carried body since the stretch of clipped samples began
     TimeNs given_ns = 0;               ///< of the last sample given out
