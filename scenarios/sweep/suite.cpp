@@ -17,6 +17,7 @@ namespace tumble::scenarios {
 
 namespace {
 
+constexpr std::uint64_t kSeedsMax = 10'000'000;
 constexpr double kTimeoutMaxS = 1e6;
 
 std::vector<std::string> every_method() {
@@ -229,6 +230,12 @@ std::uint64_t Suite::draw_count() const {
   for (const DrawClass& each : classes)
     for (const auto& [scenario, seed] : each.draws) count += seed >= first_seed && seed <= last_seed ? 1 : 0;
   return count;
+}
+
+void require_seeds(const Suite& suite) {
+  if (suite.last_seed < suite.first_seed) throw BadInput("suite " + suite.name + ": last seed is below the first");
+  if (suite.last_seed - suite.first_seed >= kSeedsMax)
+    throw BadInput("suite " + suite.name + ": more than " + std::to_string(kSeedsMax) + " seeds; take them in parts");
 }
 
 std::vector<std::string> suite_names(const DataRoot& data) {

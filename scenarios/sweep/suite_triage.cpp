@@ -68,21 +68,24 @@ struct Worker {
 
 }  // namespace
 
-std::vector<DrawKey> draws_of(const DataRoot& data, const Suite& suite, const Method& method) {
+std::vector<DrawName> draws_of(const DataRoot& data, const Suite& suite, const Method& method) {
   std::vector<std::string> names;
   for (const std::string& name : suite.scenarios) {
     if (method.info.for_robot(load_scenario(data, name).robot.type)) names.push_back(name);
   }
-  std::vector<DrawKey> out;
+  require_seeds(suite);
+  std::vector<DrawName> out;
   for (std::uint64_t seed = suite.first_seed; !names.empty(); ++seed) {
-    for (const std::string& name : names) out.push_back({name, seed});
+    for (const std::string& name : names) {
+      if (suite.has_draw(name, seed)) out.push_back({name, seed});
+    }
     if (seed == suite.last_seed) break;
   }
   return out;
 }
 
-std::set<DrawKey> failed_draws(const Results& results, const Method& method, const Failure& failure) {
-  std::set<DrawKey> out;
+std::set<DrawName> failed_draws(const Results& results, const Method& method, const Failure& failure) {
+  std::set<DrawName> out;
   Names names;
   results.each(Rows::plain, names, [&](const OutcomeView& row) {
     if (row.kind != method.info.kind || row.method != method.info.name) return;
@@ -94,10 +97,10 @@ std::set<DrawKey> failed_draws(const Results& results, const Method& method, con
   return out;
 }
 
-std::vector<DrawTriage> triage_draws(const DataRoot& data, std::span<const DrawKey> draws, const Method& method,
+std::vector<DrawTriage> triage_draws(const DataRoot& data, std::span<const DrawName> draws, const Method& method,
                                      const SuiteTriageOptions& options) {
   std::map<std::string, Scenario> scenarios;
-  for (const DrawKey& draw : draws) {
+  for (const DrawName& draw : draws) {
     if (!scenarios.contains(draw.scenario)) scenarios.emplace(draw.scenario, load_scenario(data, draw.scenario));
   }
   const auto stopped = [&] { return options.stop != nullptr && options.stop->load(); };
@@ -107,7 +110,7 @@ std::vector<DrawTriage> triage_draws(const DataRoot& data, std::span<const DrawK
   std::size_t next = 0;
   while (!stopped() && (next < draws.size() || !workers.empty())) {
     while (next < draws.size() && workers.size() < static_cast<std::size_t>(options.jobs)) {
-      const DrawKey& draw = draws[next];
+      const DrawName& draw = draws[next];
       const Scenario& scenario = scenarios.at(draw.scenario);
       workers.push_back(
           {next, Process([&](int fd) { tell_rows(data, scenario, draw.seed, method, options.triage, fd); }, true), {}});

@@ -2,14 +2,13 @@
 #pragma once
 
 #include <atomic>
-#include <compare>
-#include <cstdint>
 #include <functional>
 #include <set>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "scenarios/sweep/keep.hpp"
 #include "scenarios/sweep/results.hpp"
 #include "scenarios/sweep/sweep.hpp"
 #include "scenarios/sweep/triage.hpp"
@@ -17,25 +16,19 @@
 /// Triage of many draws: which input's truth matters most over a suite.
 namespace tumble::scenarios {
 
-struct DrawKey {
-  std::string scenario;
-  std::uint64_t seed = 0;
-  // NOLINTNEXTLINE(modernize-use-nullptr): Clang 14 takes the zero that a defaulted <=> compares with for a pointer
-  auto operator<=>(const DrawKey&) const = default;
-};
-
 /// A draw as triage left it.
 struct DrawTriage {
-  DrawKey draw;
+  DrawName draw;
   std::vector<TriageRow> rows;  ///< as of triage(); the first is the draw as it is
   std::string trouble;          ///< why there are none, or not all: it cannot be simulated, its process died
 };
 
-/// The draws of the suite whose robots the method is made for, seeds outermost, as a sweep has them.
-std::vector<DrawKey> draws_of(const DataRoot& data, const Suite& suite, const Method& method);
+/// The draws of the suite whose robots the method is made for, seeds outermost, as a sweep has them. Throws
+/// BadInput where a sweep would not take the suite's seeds.
+std::vector<DrawName> draws_of(const DataRoot& data, const Suite& suite, const Method& method);
 
 /// The draws on which results have the method failing, plain ones alone.
-std::set<DrawKey> failed_draws(const Results& results, const Method& method, const Failure& failure);
+std::set<DrawName> failed_draws(const Results& results, const Method& method, const Failure& failure);
 
 struct SuiteTriageOptions {
   TriageOptions triage;  ///< its `on_run` is not called
@@ -46,7 +39,7 @@ struct SuiteTriageOptions {
 
 /// Triage of each draw in a process of its own. In the order of `draws`, whatever the number of jobs; shorter when
 /// stopped. Throws BadInput where a scenario cannot be read.
-std::vector<DrawTriage> triage_draws(const DataRoot& data, std::span<const DrawKey> draws, const Method& method,
+std::vector<DrawTriage> triage_draws(const DataRoot& data, std::span<const DrawName> draws, const Method& method,
                                      const SuiteTriageOptions& options);
 
 }  // namespace tumble::scenarios

@@ -23,7 +23,6 @@ namespace {
 
 constexpr int kPollMs = 200;
 constexpr int kJobsMax = 4096;
-constexpr std::uint64_t kSeedsMax = 10'000'000;
 // what the simulation of a draw may take beyond its methods, in units of a method's time-out
 constexpr double kSimulateTimeouts = 2.0;
 constexpr double kMemoryMinMib = 64.0, kMemoryMaxMib = 1e7;
@@ -221,15 +220,16 @@ class Sweep {
   void settle_kept() {
     settling_ = true;
     const std::set<DrawName> wanted = draws_to_keep(results_, options_.keep);
-    std::vector<DrawTask> missing;
+    std::vector<DrawTask> asked, missing;
     for (const DrawName& draw : wanted) {
-      if (!plan_.has(draw)) continue;
-      ++progress_.to_keep;
-      DrawTask task = plan_.again(draw, results_);
-      if (!stands(task)) missing.push_back(std::move(task));
+      if (plan_.has(draw)) asked.push_back(plan_.again(draw, results_));
     }
-    progress_.kept = progress_.to_keep - missing.size();
+    progress_.to_keep = asked.size();
     try {
+      for (DrawTask& task : asked) {
+        if (!stands(task)) missing.push_back(std::move(task));
+      }
+      progress_.kept = progress_.to_keep - missing.size();
       kept_.discard_unfinished();
       for (const DrawName& draw : kept_.found()) {
         if (!wanted.contains(draw) && plan_.has(draw)) kept_.remove(draw);
@@ -308,10 +308,7 @@ SweepProgress sweep(const DataRoot& data, const Suite& suite, const DatabaseOwne
     throw BadInput("jobs is " + std::to_string(options.jobs) + ", must be within [1, " + std::to_string(kJobsMax) +
                    "]");
   }
-  if (suite.last_seed < suite.first_seed) throw BadInput("suite " + suite.name + ": last seed is below the first");
-  if (suite.last_seed - suite.first_seed >= kSeedsMax) {
-    throw BadInput("suite " + suite.name + ": more than " + std::to_string(kSeedsMax) + " seeds; sweep them in parts");
-  }
+  require_seeds(suite);
   for (const OutcomeStatus status : options.again) {
     if (!may_run_again(status)) {
       throw BadInput(std::string("'") + to_string(status) + "' is not run again; what may be: crashed timeout killed");

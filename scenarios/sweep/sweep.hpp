@@ -47,6 +47,9 @@ struct Suite {
   std::uint64_t draw_count() const;
 };
 
+/// Throws BadInput: the last seed is below the first, or there are more of them than one sweep takes.
+void require_seeds(const Suite& suite);
+
 std::vector<std::string> suite_names(const DataRoot& data);
 /// A suite by name, a suite file, or a scenario's name (a suite of that one with all methods; of a named case its own
 /// seed). Throws BadInput.

@@ -135,6 +135,38 @@ TEST(Sweep, KeepsDrawsThatOtherVerbsRead) {
   EXPECT_EQ(scored.status, 0) << scored.err;
 }
 
+// a part without a draw does not keep the merge from keeping what the others have
+TEST(Sweep, AShardWithoutSeedsKeepsByTheRuleOfTheOthers) {
+  const fs::path folder = test_folder();
+  std::vector<std::string> merge = {"merge", "--json", (folder / "merged.db").string()};
+  for (const char* shard : {"1/2", "2/2"}) {
+    merge.push_back((folder / (std::string(1, shard[0]) + ".db")).string());
+    std::vector<std::string> arguments = sweep_arguments(merge.back(), "1");
+    arguments.insert(arguments.end(), {"--shard", shard, "--keep", "all"});
+    ASSERT_EQ(run_program(arguments).status, 0);
+  }
+  const Ended merged = run_program(merge);
+  ASSERT_EQ(merged.status, 0) << merged.err;
+  EXPECT_EQ(json_of(merged)["kept"], 1);
+}
+
+// seeds in a row are asked for where a suite has but some of them
+TEST(Sweep, NamedDrawsAreNoSeedsInARow) {
+  const fs::path folder = test_folder(), suite = folder / "named.yaml";
+  std::ofstream(suite) << "name: named\ndoc: d\nmethods: [rate/raw, rate/saave]\ndraws: {mild: {roll: [3, 8]}}\n";
+  const auto refused = [&](const std::vector<std::string>& arguments, const std::string& what) {
+    const Ended ended = run_program(arguments);
+    EXPECT_EQ(ended.status, 2) << what;
+    EXPECT_THAT(ended.err, HasSubstr(what));
+    EXPECT_THAT(ended.err, HasSubstr("names its draws"));
+  };
+  const std::string database = (folder / "x.db").string();
+  refused({"sweep", suite.string(), "--db", database, "--until", "rate/raw:rate/saave:rate_error_clipped_median_rad_s"},
+          "--until");
+  refused({"triage", suite.string(), "--method", "rate/raw", "--seeds", "1..2"}, "--seeds");
+  refused({"gate", suite.string(), "--against", (folder / "g.yaml").string(), "--accept"}, "a gate holds");
+}
+
 TEST(Sweep, RefusesWhatItCannotKeepOrAsk) {
   const fs::path database = test_folder() / "x.db";
   const auto refused = [&](const std::vector<std::string>& more, const std::string& what) {

@@ -188,6 +188,8 @@ int run_gate(const Session& session, const Options& options) {
   scenarios::Suite suite = scenarios::load_suite(data, options.suite);
   if (!suite.recordings.empty())
     throw scenarios::BadInput("suite '" + suite.name + "' is of recordings; a gate holds draws of scenarios");
+  if (!suite.classes.empty())
+    throw scenarios::BadInput("suite '" + suite.name + "' names its draws; a gate holds seeds in a row");
   if (!options.accepted.empty() && options.accepted.extension() != ".yaml")
     throw scenarios::BadInput("--against " + options.accepted.string() + ": must be a FILE.yaml");
   suite.curves.clear();  // held are the scenarios as they are

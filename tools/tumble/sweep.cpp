@@ -159,6 +159,8 @@ std::optional<scenarios::Question> ask(const Options& options, const scenarios::
   if (!options.shard.empty()) throw scenarios::BadInput("--until: a shard has no looks at all of the draws");
   if (!suite.recordings.empty() || !suite.curves.empty())
     throw scenarios::BadInput("--until: suite '" + suite.name + "' is of recordings, or has curves; ask it of draws");
+  if (!suite.classes.empty())
+    throw scenarios::BadInput("--until: suite '" + suite.name + "' names its draws; ask it of seeds in a row");
   const scenarios::Question question = parse_question(options.until, options.risk, suite);
   scenarios::Results results = scenarios::open_results(data, suite, options.database);
   scenarios::claim(results, question, options.database);
@@ -183,8 +185,9 @@ int run_sweep(const Session& session, const Options& options) {
   if (options.database.has_parent_path()) make_folder(options.database.parent_path());
   const scenarios::DatabaseOwner owner(options.database);
   if (!any) {
-    // an empty database, so that all shards can be merged
-    scenarios::open_results(data, suite, options.database);
+    // an empty database, so that all shards can be merged, with what they keep
+    scenarios::Results results = scenarios::open_results(data, suite, options.database);
+    if (options.keep != "none") results.set_note(scenarios::kKeepNote, options.keep);
     session.note("shard " + options.shard + " has no seeds: nothing to do");
     session.print({to_table({}, options.database.string())}, to_json({}, options.database.string()));
     return kDone;

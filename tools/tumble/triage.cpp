@@ -12,6 +12,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/scoring/metric.hpp"
+#include "scenarios/sweep/sweep_notes.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/gate_cases.hpp"
 #include "tools/tumble/triage_suite.hpp"
@@ -129,14 +130,25 @@ bool is_one_draw(const Session& session, const Options& options) {
   return one;
 }
 
+/// What one draw of a suite is asked with.
+std::string words_of(const Options& options) {
+  std::string words = " --method " + scenarios::shell_word(options.method);
+  if (!options.metric.empty()) words += " --metric " + scenarios::shell_word(options.metric);
+  if (options.limit) words += fmt::format(" --limit {}", *options.limit);
+  return words;
+}
+
 int run_triage(const Session& session, const Options& options) {
   if (is_one_draw(session, options)) return run_triage_of_draw(session, options);
   SuiteTriage asked;
   asked.method = one_method(options.method, 0.9 * asked.options.triage.timeout_s);
   asked.metric = metric_of(*asked.method, options.metric);
   asked.options.triage.failure = failure_of(options, asked.metric);
+  asked.words = words_of(options);
   asked.options.jobs = options.jobs;
   asked.suite = scenarios::load_suite(session.data(), options.what);
+  if (!asked.suite.classes.empty() && !options.seeds.empty())
+    throw BadInput("--seeds: suite '" + asked.suite.name + "' names its draws");
   if (!options.seeds.empty()) std::tie(asked.suite.first_seed, asked.suite.last_seed) = parse_seeds(options.seeds);
   asked.database = options.database;
   return run_suite_triage(session, std::move(asked));

@@ -10,6 +10,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/summary/input_worth.hpp"
+#include "scenarios/sweep/sweep_notes.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/interrupt.hpp"
 
@@ -19,7 +20,7 @@ namespace {
 
 using nlohmann::json;
 using scenarios::BadInput;
-using scenarios::DrawKey;
+using scenarios::DrawName;
 using scenarios::DrawTriage;
 using scenarios::InputWorth;
 
@@ -60,7 +61,7 @@ json interval_json(const scenarios::Interval& interval) {
       {"value", number_json(interval.value)}, {"low", number_json(interval.low)}, {"high", number_json(interval.high)}};
 }
 
-json draw_json(const DrawTriage& draw, const std::string& method) {
+json draw_json(const DrawTriage& draw, const std::string& words) {
   json runs = json::array();
   for (const scenarios::TriageRow& row : draw.rows)
     runs.push_back({{"input", row.input}, {"status", to_string(row.outcome.status)}, {"fails", row.fails}});
@@ -68,7 +69,8 @@ json draw_json(const DrawTriage& draw, const std::string& method) {
           {"seed", draw.draw.seed},
           {"trouble", draw.trouble},
           {"runs", runs},
-          {"again", fmt::format("tumble triage {} --seed {} --method {}", draw.draw.scenario, draw.draw.seed, method)}};
+          {"again", fmt::format("tumble triage {} --seed {}{}", scenarios::shell_word(draw.draw.scenario),
+                                draw.draw.seed, words)}};
 }
 
 json to_json(const std::vector<InputWorth>& worths, const std::vector<DrawTriage>& draws, const SuiteTriage& asked) {
@@ -88,7 +90,7 @@ json to_json(const std::vector<InputWorth>& worths, const std::vector<DrawTriage
                     {"chance", worth.chance},
                     {"corrected", worth.corrected}});
   }
-  for (const DrawTriage& draw : draws) all.push_back(draw_json(draw, full_name(asked.method->info)));
+  for (const DrawTriage& draw : draws) all.push_back(draw_json(draw, asked.words));
   return {{"suite", asked.suite.name},
           {"method", full_name(asked.method->info)},
           {"metric", asked.metric},
@@ -112,15 +114,15 @@ std::string conclusion(const std::vector<InputWorth>& worths) {
   return failures + fmt::format("{} makes {} of {} draws better", name, first->better, first->better + first->worse);
 }
 
-std::vector<DrawKey> chosen_draws(const Session& session, const SuiteTriage& asked) {
-  std::vector<DrawKey> draws = scenarios::draws_of(session.data(), asked.suite, *asked.method);
+std::vector<DrawName> chosen_draws(const Session& session, const SuiteTriage& asked) {
+  std::vector<DrawName> draws = scenarios::draws_of(session.data(), asked.suite, *asked.method);
   if (draws.empty())
     throw BadInput("method '" + asked.method->info.name + "' applies to no scenario of suite '" + asked.suite.name +
                    "'");
   if (asked.database.empty()) return draws;
   const scenarios::Results results(asked.database, scenarios::Results::Mode::read_only);
   const auto failed = scenarios::failed_draws(results, *asked.method, asked.options.triage.failure);
-  std::erase_if(draws, [&](const DrawKey& draw) { return !failed.contains(draw); });
+  std::erase_if(draws, [&](const DrawName& draw) { return !failed.contains(draw); });
   if (draws.empty())
     throw BadInput(asked.database.string() + ": " + full_name(asked.method->info) +
                    " failed on none of these draws there");
@@ -143,7 +145,7 @@ std::string line_of(const DrawTriage& draw) {
 int run_suite_triage(const Session& session, SuiteTriage asked) {
   if (!asked.suite.recordings.empty())
     throw BadInput("suite '" + asked.suite.name + "' is of recordings, whose inputs have no truth to be replaced by");
-  const std::vector<DrawKey> draws = chosen_draws(session, asked);
+  const std::vector<DrawName> draws = chosen_draws(session, asked);
   const InterruptFlag interrupt;
   std::size_t done = 0, failed = 0;
   asked.options.stop = &interrupt.raised();

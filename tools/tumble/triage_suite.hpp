@@ -14,6 +14,7 @@ struct SuiteTriage {
   scenarios::Suite suite;
   scenarios::MethodPointer method;
   std::string metric;  ///< of the method's kind: what inputs are compared by
+  std::string words;   ///< that ask for the method and for what fails, of one draw's command
   scenarios::SuiteTriageOptions options;
   std::filesystem::path database;  ///< not empty: only the draws on which the method failed there
 };

@@ -46,7 +46,7 @@ std::vector<std::string> said(const std::vector<DrawTriage>& all) {
 
 TEST_F(SuiteTriage, IsTheTriageOfEachDrawForAnyNumberOfJobs) {
   const std::string scenario = clipping_tumble(folder_);
-  const std::vector<DrawKey> draws = {{scenario, 1}, {scenario, 2}};
+  const std::vector<DrawName> draws = {{scenario, 1}, {scenario, 2}};
   const Method& raw = *find_methods("rate/raw").front();
   SuiteTriageOptions options;
   options.triage.failure = {kMetric, 0.1};
@@ -71,12 +71,13 @@ TEST_F(SuiteTriage, IsTheTriageOfEachDrawForAnyNumberOfJobs) {
 }
 
 TEST_F(SuiteTriage, ADrawThatCannotBeSimulatedSaysWhy) {
-  const std::vector<DrawKey> draws = {{clipping_tumble(folder_), 1}};
+  const std::vector<DrawName> draws = {{clipping_tumble(folder_), 1}};
   const std::vector<DrawTriage> all = triage_draws(data(), draws, *find_methods("position/rolling").front(), {});
   ASSERT_EQ(all.size(), 1u);
   EXPECT_TRUE(all[0].rows.empty());
   EXPECT_THAT(all[0].trouble, ::testing::HasSubstr("does not apply to the robot"));
-  EXPECT_THROW(triage_draws(data(), std::vector<DrawKey>{{"hil", 1}}, *find_methods("rate/raw").front(), {}), BadInput);
+  EXPECT_THROW(triage_draws(data(), std::vector<DrawName>{{"hil", 1}}, *find_methods("rate/raw").front(), {}),
+               BadInput);
 }
 
 TEST_F(SuiteTriage, OfASuiteTheDrawsOfTheMethodsRobotSeedsOutermost) {
@@ -84,8 +85,16 @@ TEST_F(SuiteTriage, OfASuiteTheDrawsOfTheMethodsRobotSeedsOutermost) {
   suite.scenarios = {"hill", "roll", "cliff"};
   suite.first_seed = 3;
   suite.last_seed = 4;
+  EXPECT_THAT(
+      draws_of(data(), suite, *find_methods("slam/tumble").front()),
+      ::testing::ElementsAre(DrawName{"hill", 3}, DrawName{"cliff", 3}, DrawName{"hill", 4}, DrawName{"cliff", 4}));
+  suite.classes = {{"mild", {{"hill", 4}}}, {"wild", {{"cliff", 3}, {"roll", 3}}}};
   EXPECT_THAT(draws_of(data(), suite, *find_methods("slam/tumble").front()),
-              ::testing::ElementsAre(DrawKey{"hill", 3}, DrawKey{"cliff", 3}, DrawKey{"hill", 4}, DrawKey{"cliff", 4}));
+              ::testing::ElementsAre(DrawName{"cliff", 3}, DrawName{"hill", 4}));
+  suite.classes.clear();
+  suite.last_seed = 20'000'000;
+  EXPECT_THROW(draws_of(data(), suite, *find_methods("slam/tumble").front()), BadInput);
+  suite.last_seed = 4;
   suite.scenarios = {"roll"};
   EXPECT_THAT(draws_of(data(), suite, *find_methods("slam/tumble").front()), ::testing::IsEmpty());
 }
@@ -111,8 +120,8 @@ TEST_F(SuiteTriage, FailedAreThoseOfTheMethodThatFailedThere) {
   store(5, "raw", OutcomeStatus::ok, 9.0, {"world.rock_count", 1.0});
   const Method& raw = *find_methods("rate/raw").front();
   EXPECT_THAT(failed_draws(results, raw, {kMetric, 0.1}),
-              ::testing::ElementsAre(DrawKey{"hill", 1}, DrawKey{"hill", 3}));
-  EXPECT_THAT(failed_draws(results, raw, {}), ::testing::ElementsAre(DrawKey{"hill", 3}));
+              ::testing::ElementsAre(DrawName{"hill", 1}, DrawName{"hill", 3}));
+  EXPECT_THAT(failed_draws(results, raw, {}), ::testing::ElementsAre(DrawName{"hill", 3}));
 }
 
 }  // namespace
