@@ -138,7 +138,7 @@ TEST(Sweep, KeepsDrawsThatOtherVerbsRead) {
 // a part without a draw does not keep the merge from keeping what the others have
 TEST(Sweep, AShardWithoutSeedsKeepsByTheRuleOfTheOthers) {
   const fs::path folder = test_folder();
-  std::vector<std::string> merge = {"merge", (folder / "merged.db").string()};
+  std::vector<std::string> merge = {"merge", "--json", (folder / "merged.db").string()};
   for (const char* shard : {"1/2", "2/2"}) {
     merge.push_back((folder / (std::string(1, shard[0]) + ".db")).string());
     std::vector<std::string> arguments = sweep_arguments(merge.back(), "1");
