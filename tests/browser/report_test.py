@@ -187,6 +187,29 @@ class ReportPage(unittest.TestCase):
         self.assertEqual(page.value(folded), before, "and is as it was afterwards")
         self.assertEqual(page.console(), [])
 
+    def test_after_paper_in_the_dark(self):
+        self.assertEqual(self.in_other_colours(self.page), [])
+        again = self.broken("visible(element) ? draw(element) : drawn.delete(element)", "visible(element) && draw(element)")
+        self.assertNotEqual(self.in_other_colours(again), [], "negative control")
+
+    def in_other_colours(self, path: pathlib.Path) -> list[str]:
+        """Plots that do not bear the page's ink when they are unfolded after a print."""
+        page = self.open(path, dark=True)
+        self.assertTrue(page.wait_for(f"{STATE} === 'drawn'"))
+        # as other browsers fold: what is folded has no width
+        page.value("document.head.insertAdjacentHTML('beforeend',"
+                   "'<style>details:not([open]) > :not(summary) { display: none }</style>')")
+        page.value("dispatchEvent(new Event('beforeprint')); dispatchEvent(new Event('afterprint'));")
+        page.value("document.querySelectorAll('details').forEach((part) => { part.open = true; })")
+        ink = "getComputedStyle(document.documentElement).getPropertyValue('--ink').trim()"
+        found = []
+        for place in range(page.value("document.querySelectorAll('.plot').length")):
+            plot = f"document.querySelectorAll('.plot')[{place}]"
+            page.value(f"{plot}.scrollIntoView()")
+            if not page.wait_for(f"{plot}.layout !== undefined && {plot}.layout.font.color === {ink}", 2.0):
+                found.append(page.value(f"{plot}.id"))
+        return found
+
     def test_hostile_names_are_text(self):
         page = self.drawn(self.hostile)
         self.assertEqual(page.value("document.querySelectorAll('img[src=\"x\"], [onerror]').length"), 0)
