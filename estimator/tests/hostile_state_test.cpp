@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "rolled_sphere.hpp"
@@ -181,6 +182,43 @@ TYPED_TEST(HostileState, MadeUpNumbersNeverHurt) {
   }
   EXPECT_GT(refused, 40u);
   EXPECT_GT(taken, 40u);
+}
+
+/// A second pass that is under way in a run that has not moved: what it counts from is not there.
+TEST(HostileSecondPass, WithoutAMotionIsRefused) {
+  test::ThrownBody body;
+  TumblingOdometry::Params params;
+  params.imu.rate_hz = body.imu_hz;
+  params.lever_arm_I_m = body.lever_arm_I_m;
+  params.expert.again.after_s = 0.9;
+  TumblingOdometry door(params);
+  const std::vector<ImuSample> imu = body.imu();
+  const std::vector<test::ThrownBody::Sweep> sweeps = body.sweeps();
+  std::size_t next = 0;
+  for (std::size_t k = 0; k < 255; ++k) {
+    ASSERT_TRUE(door.add_imu(imu[k]).ok());
+    for (; next < sweeps.size() && sweeps[next].end_ns <= imu[k].time_ns; ++next)
+      ASSERT_TRUE(door.add_sweep(sweeps[next].start_ns, sweeps[next].end_ns, sweeps[next].points).ok());
+    while (door.take()) continue;
+  }
+  ASSERT_FALSE(door.passed_again());
+  const Bytes saved = door.save();
+  std::size_t refused = 0;
+  for (std::size_t k = 115; k < 140; ++k) {
+    Bytes moved(16);  // the optional stamp of a sample at about the first motion, wherever it stands
+    put_number(1, 0, moved);
+    put_number(static_cast<std::uint64_t>(imu[k].time_ns), 8, moved);
+    for (auto at = saved.begin();; ++at) {
+      at = std::search(at, saved.end(), moved.begin(), moved.end());
+      if (at == saved.end()) break;
+      Bytes made_up(saved.begin(), at);
+      made_up.resize(made_up.size() + 8);
+      made_up.insert(made_up.end(), at + 16, saved.end());
+      reseal(made_up);
+      refused += std::string(TumblingOdometry(params).load(made_up).field) == "again.moves_ns";
+    }
+  }
+  EXPECT_EQ(refused, 1u);
 }
 
 }  // namespace

@@ -117,8 +117,8 @@ void members(Self& s, Visitor& visit) {
   visit("regime.given", s.given);
   visit("regime.joined", s.joined);
   visit("regime.starts", s.starts);
-  visit("regime.rig_drops", s.rig_drops);
-  visit("regime.drops", s.drops);
+  visit("regime.rig_resets", s.rig_resets);
+  visit("regime.resets", s.resets);
   visit("regime.carrying", s.carrying);
   visit("regime.least", s.least);
   visit("regime.given_ns", s.given_ns);
