@@ -32,6 +32,21 @@ void hold_to_bounds(const RateObservation& o, Vector3d& rate) {
   }
 }
 
+// The prior at another point than the one about which it stands: rate_stream.md (R91).
+void add_prior(const RateStream::State& state, const RateModel& model, const RateKnot& knot, arrow::Block& block,
+               arrow::Corner& corner) {
+  Eigen::Matrix<double, 6, 1> moved;
+  moved << knot.rate_rad_s - state.prior_knot.rate_rad_s,
+      knot.acceleration_rad_s2 - state.prior_knot.acceleration_rad_s2;
+  const arrow::StateVector x = model.scaled(moved);
+  const arrow::BorderVector c = state.rig.vector() - state.prior_rig.vector();
+  block.diagonal += state.prior.diagonal;
+  block.border += state.prior.border;
+  block.gradient += state.prior.gradient - state.prior.diagonal * x - state.prior.border * c;
+  corner.matrix += state.prior_corner.matrix;
+  corner.gradient += state.prior_corner.gradient - state.prior_corner.matrix * c - state.prior.border.transpose() * x;
+}
+
 }  // namespace
 
 RateStream::RateStream(const Params& params)
@@ -108,7 +123,7 @@ void RateStream::marginalise(std::size_t first, State& state) const {
   const Knot& next = state.window[first + 1];
   arrow::Block block, after;
   arrow::Corner corner;
-  add_prior(state, oldest.estimate.knot, block, corner);
+  add_prior(state, model_, oldest.estimate.knot, block, corner);
   // what leaves can never be weighed again: it must be flight of the rig as it is known now, not of one as it might be
   const double after_it = model_.jump(oldest.estimate.knot, next.estimate.knot, seconds_between(oldest, next));
   const double jump = std::min(jump_before(oldest, state), after_it);
@@ -138,6 +153,16 @@ void RateStream::marginalise(std::size_t first, State& state) const {
   state.left_ns = oldest.observation.sample.time_ns;
   state.prior_knot = next.estimate.knot;
   state.prior_rig = state.rig;
+  if (model_.calibration_mahalanobis(state.rig) > params_.calibration_mahalanobis_max) {
+    // contact was taken for flight of another rig: drop what was learnt of the rig and of the motion with it
+    state.rig = state.prior_rig = model_.prior_constants();
+    state.rig_covariance = model_.prior_covariance();
+    state.prior = {};
+    state.prior_corner = {};
+    model_.add_rig_prior(state.rig, state.prior_corner);
+    state.learnt_from = 0;
+    ++state.rig_resets;
+  }
 }
 
 // From the sample that left last to the oldest that is there.
@@ -230,13 +255,13 @@ void RateStream::weigh(State& state) const {
   }
 }
 
-// The system of rate_smoother.md (R28) over the window, eliminated.
-bool RateStream::factorise(State& state, arrow::Corner& corner) const {
+// rate_smoother.md (R28) to (R34) over the window.
+bool RateStream::step(State& state) const {
   const std::size_t count = state.window.size();
   std::vector<arrow::Block>& blocks = state.work;
-  corner = {};
+  arrow::Corner corner;
   blocks[0] = {};
-  add_prior(state, state.window[0].estimate.knot, blocks[0], corner);
+  add_prior(state, model_, state.window[0].estimate.knot, blocks[0], corner);
   add_rails(state, corner);
   for (std::size_t k = 0; k < count; ++k) {
     const Knot& knot = state.window[k];
@@ -249,30 +274,9 @@ bool RateStream::factorise(State& state, arrow::Corner& corner) const {
     }
     if (!arrow::eliminate(blocks[k], last ? nullptr : &blocks[k + 1], corner)) return false;
   }
-  return true;
-}
-
-// rate_smoother.md (R28) to (R34) over the window.
-bool RateStream::step(State& state) const {
-  const std::size_t count = state.window.size();
-  const std::vector<arrow::Block>& blocks = state.work;
-  arrow::Corner corner;
   arrow::BorderVector rig_step;
   arrow::BorderMatrix rig_covariance;
-  if (!factorise(state, corner) || !arrow::solve_corner(corner, rig_step, rig_covariance)) return false;
-  RigConstants moved = state.rig;
-  moved.add(rig_step);
-  if (is_another_rig(moved)) {
-    // contact in the window is taken for flight of another rig, or a reading at a rail that nobody has found yet for
-    // one below it: the window is fitted with the rig as it was known before. rate_stream.md (R98)
-    hold_or_forget_rig(state);
-    weigh(state);
-    if (!factorise(state, corner)) return false;
-    rig_step.setZero();
-    rig_covariance = state.rig_covariance;
-  } else if (state.held_steps > 0) {
-    --state.held_steps;
-  }
+  if (!arrow::solve_corner(corner, rig_step, rig_covariance)) return false;
   state.rig_covariance = rig_covariance;
   state.rig.add(rig_step);
   const arrow::BorderMatrix doubted = widened(state);
@@ -295,6 +299,36 @@ bool RateStream::step(State& state) const {
     ++knot.age;
   }
   return true;
+}
+
+// rate_stream.md (R93)
+RigConstants::Matrix RateStream::widened(const State& state) const {
+  if (params_.model.calibration) return state.rig_covariance;
+  const double samples = static_cast<double>(state.learnt_from) / params_.rig_doubt_samples;
+  const double largest = std::sqrt(1.0 + params_.rig_doubt / (1.0 + samples));
+  RigConstants::Vector factor;
+  for (int i = 0; i < RigConstants::kSize; ++i) {
+    // nothing is known less than beforehand; the gyro's bias is told by rest, not by flight
+    const bool of_gyro = i >= 3 && i < 6;
+    const double before = std::sqrt(model_.prior_covariance()(i, i) / state.rig_covariance(i, i));
+    factor[i] = of_gyro ? 1.0 : std::clamp(before, 1.0, largest);
+  }
+  return factor.asDiagonal() * state.rig_covariance * factor.asDiagonal();
+}
+
+// rate_stream.md (R96)
+Eigen::Matrix3d RateStream::doubted(const Knot& knot, const State& state) const {
+  Eigen::Matrix3d out = knot.covariance_rad2_s2;
+  if (params_.model.calibration || knot.estimate.flight_weight >= 0.5) return out;
+  const double samples = static_cast<double>(state.learnt_from) / params_.rig_doubt_samples;
+  const double share = params_.contact_doubt / (1.0 + samples);
+  for (int j = 0; j < 3; ++j) {
+    if ((knot.observation.unseen() & knot.observation.clipping.gyro & 1u << j) == 0) continue;
+    const double read = std::abs(knot.observation.sample.angular_velocity_rad_s[j]);
+    const double least = share * std::max(0.0, std::abs(knot.estimate.knot.rate_rad_s[j]) - read);
+    out(j, j) = std::max(out(j, j), least * least);
+  }
+  return out;
 }
 
 RateState RateStream::to_state(const Knot& knot, const State& state) const {
@@ -358,9 +392,8 @@ bool RateStream::equal(const State& a, const State& b) {
          a.extremes == b.extremes && a.least == b.least && a.entry_rad_s == b.entry_rad_s &&
          a.entry_samples == b.entry_samples && a.left == b.left && a.left_ns == b.left_ns &&
          a.prior_knot == b.prior_knot && a.prior_rig == b.prior_rig && a.samples == b.samples &&
-         a.held_steps == b.held_steps && a.rig_resets == b.rig_resets && a.rig_drops == b.rig_drops &&
-         a.flight_run == b.flight_run && a.waiting == b.waiting && a.learnt_from == b.learnt_from &&
-         a.failures == b.failures;
+         a.rig_resets == b.rig_resets && a.flight_run == b.flight_run && a.waiting == b.waiting &&
+         a.learnt_from == b.learnt_from && a.failures == b.failures;
 }
 
 }  // namespace tumble

@@ -9,7 +9,7 @@ namespace tumble {
 namespace {
 
 constexpr double kTurn_s = 0.01;       // the rates' derivative is taken over so long: model_error_s of the rates' model
-constexpr double kResets_s = 2.0;      // memory of how often a rig was held or dropped
+constexpr double kResets_s = 2.0;      // memory of how often a rig was dropped
 constexpr double kDoubtResets = 10.0;  // within that
 
 CarriedStream::Params joined(const RegimeStream::Params& params) {
@@ -135,7 +135,7 @@ std::size_t RegimeStream::index_of(const RateState& rate, const State& state) co
   return k;
 }
 
-// Whether RateStream holds or drops its rig again and again: then there is none that these would be flights of.
+// Whether RateStream drops one rig after another: then there is none that these would be flights of.
 bool RegimeStream::doubts(const State& state) const {
   return state.resets > kDoubtResets;
 }
@@ -145,9 +145,9 @@ void RegimeStream::judge(const RateState& rate, State& state) const {
   const double dt_s = state.given == 0 ? params_.evidence.memory_s : seconds(rate.time_ns - state.given_ns);
   state.shares =
       next(state.shares, dt_s, state.rate.window, index_of(rate, state), rate_.calibration(state.rate), doubts(state));
-  const auto surprised = static_cast<double>(state.rate.rig_resets - state.rig_resets);
+  const auto dropped = static_cast<double>(state.rate.rig_resets - state.rig_resets);
   state.rig_resets = state.rate.rig_resets;
-  state.resets = std::exp(-dt_s / kResets_s) * state.resets + surprised;
+  state.resets = std::exp(-dt_s / kResets_s) * state.resets + dropped;
   state.given_ns = rate.time_ns;
   ++state.given;
   state.sum.flight += state.shares.flight;

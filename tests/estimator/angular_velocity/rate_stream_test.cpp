@@ -95,38 +95,6 @@ TEST(RateStream, RecoversTumblesNearlyAsWellAsTheBatch) {
   EXPECT_LT(*std::max_element(of_batch.begin(), of_batch.end()), 0.05);
 }
 
-// What is taken for flight in a push, or in contact later, makes a rig of it that is none. What rest and flight have
-// told before is not lost with it: a rest that will not come again has told the gyro's bias.
-TEST(RateStream, WhatWasLearntOutlivesASurprise) {
-  int surprised = 0;
-  for (const std::uint64_t seed : {1, 2, 4}) {
-    TumbleOptions options = options_of(seed);
-    options.gyro_bias_rad_s = {0.006, -0.007, 0.005};
-    const RateStream method(wrong_lever(seed));
-    RateStream::State state = method.start();
-    std::optional<RateState> one;
-    for (const ImuSample& sample : make_tumble(options).samples) {
-      ASSERT_TRUE(method.push(sample, state, one).ok());
-      if (state.rig_resets > 0) break;
-    }
-    surprised += state.rig_resets > 0;
-    EXPECT_LT((state.rig.gyro_bias_rad_s - options.gyro_bias_rad_s).norm(), 0.004) << seed;
-  }
-  EXPECT_EQ(surprised, 3) << "else this test asks nothing";
-}
-
-// Negative control: where all that has left the window tells of a rig that is none, it is dropped.
-TEST(RateStream, WhatTellsOfNoRigIsDropped) {
-  TumbleOptions options = options_of(3);
-  options.lever_arm_m += Vector3d(0.12, -0.05, -0.15);
-  RateStream::Params params = wrong_lever(3);
-  const RateStream method(params);
-  RateStream::State state = method.start();
-  (void)stream(method, make_tumble(options).samples, state);
-  EXPECT_GT(state.rig_drops, 0u);
-  EXPECT_LT((method.calibration(state).constants.lever_arm_m - params.model.nominal.lever_arm_m).norm(), 0.03);
-}
-
 TEST(RateStream, WithACalibratedRigItComesCloseToTheBatch) {
   double batch_sum = 0.0, stream_sum = 0.0;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {

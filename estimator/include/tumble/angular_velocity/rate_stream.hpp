@@ -40,8 +40,8 @@ namespace tumble {
 /// small: the lever arm was off by five of its deviations after 10 samples of flight, by three after 40. The covariance
 /// of the rig is therefore widened while few samples have been learnt from (`rig_doubt`), and that of the rates
 /// contains it so. Tried and no help: linearising 3 s of the past anew whenever the constants had moved; keeping young
-/// or short flights in the window from telling of the rig; of the gyro's elements: keeping contact from telling of
-/// them. What it does not model: see RateSmoother.
+/// or short flights in the window from telling of the rig; of the gyro's elements: keeping what was learnt of them when
+/// the rest of the rig is dropped, and keeping contact from telling of them. What it does not model: see RateSmoother.
 class RateStream {
  public:
   struct Params {
@@ -61,14 +61,14 @@ class RateStream {
     int flight_run_min = 6;        ///< a flight of fewer samples in a row says nothing of the rig
     /// Of a rig without calibration: its covariance, but for the gyro's bias and never beyond that beforehand, counts 1
     /// + rig_doubt / (1 + n / rig_doubt_samples) times, n being the samples of flight that have been learnt from.
-    double rig_doubt = 60.0;
-    double rig_doubt_samples = 30.0;
+    double rig_doubt = 30.0;
+    double rig_doubt_samples = 10.0;
     /// What contact tells of a rate beyond the rail rests on a rig that flight has to tell: of a rig without
     /// calibration its deviation is at least this share of what lies beyond the rail, over 1 + n / rig_doubt_samples.
     double contact_doubt = 0.5;
     double bound_damping = 0.5;                ///< share of a new bound taken over in each step
     double recovered_sigma_rad_s = 0.5;        ///< as in RateSmoother
-    double calibration_mahalanobis_max = 1.5;  ///< a step beyond this is taken with the rig held
+    double calibration_mahalanobis_max = 1.5;  ///< beyond this what was learnt of the rig is dropped
     double gap_max_s = 1.0;                    ///< longest time between samples
     double step_s = 0.005;                     ///< least time between Gauss-Newton steps; 0: with each sample
 
@@ -141,9 +141,7 @@ class RateStream {
     std::size_t waiting = 0;         ///< samples since the last step
     std::size_t learnt_from = 0;     ///< samples of flight that left the window and told of the rig
     std::size_t flight_run = 0;      ///< samples of flight in a row that left the window last
-    std::size_t held_steps = 0;      ///< steps with the rig held, less those since that agreed with it
-    std::size_t rig_resets = 0;      ///< steps that would have made another rig of it: held or dropped
-    std::size_t rig_drops = 0;       ///< of these, those that dropped it
+    std::size_t rig_resets = 0;      ///< times that what was learnt of the rig was dropped
     std::size_t failures = 0;        ///< steps whose system was not positive definite and was skipped
     std::vector<arrow::Block> work;  ///< scratch space, no part of the state proper
   };
@@ -182,11 +180,6 @@ class RateStream {
  private:
   void forget_oldest(State& state) const;
   void marginalise(std::size_t first, State& state) const;
-  void add_prior(const State& state, const RateKnot& knot, arrow::Block& block, arrow::Corner& corner) const;
-  bool is_another_rig(const RigConstants& rig) const;
-  bool hold_rig(State& state) const;
-  void hold_or_forget_rig(State& state) const;
-  bool factorise(State& state, arrow::Corner& corner) const;
   void predict_covariance(State& state) const;
   double jump_before(const Knot& oldest, const State& state) const;
   void append(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state) const;

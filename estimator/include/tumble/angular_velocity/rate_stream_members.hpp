@@ -105,9 +105,7 @@ void members(Self& s, Visitor& visit) {
   visit("rate.waiting", s.waiting);
   visit("rate.learnt_from", s.learnt_from);
   visit("rate.flight_run", s.flight_run);
-  visit("rate.held_steps", s.held_steps);
   visit("rate.rig_resets", s.rig_resets);
-  visit("rate.rig_drops", s.rig_drops);
   visit("rate.failures", s.failures);
   visit.scratch(s.work);
 }
