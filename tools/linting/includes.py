@@ -18,7 +18,7 @@ _STREAMS = "ostream istream fstream sstream iostream".split()
 _HEADERS = {
     "algorithm": """adjacent_find all_of any_of binary_search clamp copy_if count count_if equal_range find find_if
         find_if_not includes is_sorted iter_swap lower_bound max_element min_element minmax_element none_of nth_element replace replace_if
-        reverse reverse_copy rotate set_difference set_union sort stable_partition stable_sort transform unique upper_bound ranges""",
+        reverse reverse_copy rotate search set_difference set_union sort stable_partition stable_sort transform unique upper_bound ranges""",
     "atomic": "atomic",
     "bit": "bit_cast bit_ceil countr_zero endian popcount",
     "cctype": "isalnum isalpha isdigit tolower",
@@ -31,7 +31,7 @@ _HEADERS = {
     "concepts": "same_as unsigned_integral",
     "csignal": "signal",
     "cstdint": "int8_t int16_t int32_t int64_t uint8_t uint16_t uint32_t uint64_t uintmax_t",
-    "cstdio": "fflush fgets fprintf fputs fread freopen fwrite printf setvbuf snprintf",
+    "cstdio": "fflush fgets fprintf fputs fread freopen fwrite printf rename setvbuf snprintf",
     "cstdlib": "_Exit abort atof atoi exit free getenv llabs malloc realloc strtod strtol strtoull system",
     "cstring": "memcmp memcpy strerror strlen",
     "ctime": "clock clock_t strftime time time_t tm",
