@@ -98,6 +98,7 @@ Tally tally(const std::vector<ContestResult>& results) {
     out.won += result.won();
     out.lost += result.lost();
     out.open += !result.won() && !result.lost();
+    out.ahead += result.better && result.certainty == Certainty::interval;
     if (result.won()) ++won[result.row.contest.method];
   }
   for (const ContestResult& result : results) {
@@ -114,6 +115,9 @@ std::string tally_text(const Tally& tally) {
   if (tally.contests == 0) return "Scores of single methods: there is nothing to compare them with";
   if (tally.leader.empty() && tally.lost == tally.contests)
     return fmt::format("The baseline is better in all of {}", contests_text(tally.contests));
+  if (tally.leader.empty() && tally.ahead > 0)
+    return fmt::format("Ahead of the baseline in {} of {}, on too few draws to be sure", tally.ahead,
+                       contests_text(tally.contests));
   if (tally.leader.empty())
     return fmt::format("No method is shown to be better than the baseline in {}", contests_text(tally.contests));
   if (tally.leader_won == tally.contests)
