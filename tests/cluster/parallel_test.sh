@@ -16,9 +16,9 @@ finish() {
   rm -rf "$folder"
 }
 trap finish EXIT
-export TUMBLE_CACHE=${TUMBLE_CACHE:-$folder/cache} PARALLEL_HOME=$folder/home
-mkdir -p "$folder/home" "$folder/shards"
-touch "$folder/home/will-cite"
+export TUMBLE_CACHE=${TUMBLE_CACHE:-$folder/cache} PARALLEL_HOME=$folder/settings
+mkdir -p "$folder/settings" "$folder/shards"
+touch "$folder/settings/will-cite"
 same() { python3 "$root/tests/cluster/same_results.py" "$folder/whole.db" "$1" 18; }
 
 # draws of a sphere: a second each
