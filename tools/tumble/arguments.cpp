@@ -114,34 +114,13 @@ std::uint64_t seed_of(const scenarios::Scenario& scenario, const std::string& te
   throw BadInput("--seed is missing: which draw of scenario '" + scenario.name + "'");
 }
 
-CLI::Validator within(double low, double high) {
-  const std::string range = fmt::format("{:g} to {:g}", low, high);
-  return CLI::Validator(
-      [low, high, range](std::string& text) {
-        double value = 0.0;
-        const bool read = CLI::detail::lexical_cast(text, value);
-        return read && value >= low && value <= high ? std::string() : text + " is not within " + range;
-      },
-      range);
+// BadInput passes through CLI11 with its one line
+std::function<void(const std::string&)> a_scenario(const Session& session) {
+  return [&session](const std::string& text) { scenarios::load_scenario(session.data(), text); };
 }
 
-// a check runs before CLI11 looks for what is missing; BadInput passes through it with its one line
-CLI::Validator a_scenario(const Session& session) {
-  return CLI::Validator(
-      [&session](std::string& text) {
-        scenarios::load_scenario(session.data(), text);
-        return std::string();
-      },
-      "");
-}
-
-CLI::Validator a_suite(const Session& session) {
-  return CLI::Validator(
-      [&session](std::string& text) {
-        scenarios::load_suite(session.data(), text);
-        return std::string();
-      },
-      "");
+std::function<void(const std::string&)> a_suite(const Session& session) {
+  return [&session](const std::string& text) { scenarios::load_suite(session.data(), text); };
 }
 
 int available_processors() {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <utility>
@@ -45,13 +45,10 @@ std::string metric_of(const scenarios::Method& method, const std::string& name);
 /// The seed given; without one that of a named case. Of another scenario it has to be given.
 std::uint64_t seed_of(const scenarios::Scenario& scenario, const std::string& text);
 
-/// A number from `low` to `high`; what is no number is not within (CLI::Range lets it pass).
-CLI::Validator within(double low, double high);
-
 /// Refuses what is neither a scenario of the catalogue nor a scenario file, before anything else is missing.
-CLI::Validator a_scenario(const Session& session);
+std::function<void(const std::string&)> a_scenario(const Session& session);
 /// The same of a suite, a suite file or a scenario.
-CLI::Validator a_suite(const Session& session);
+std::function<void(const std::string&)> a_suite(const Session& session);
 
 /// The processors that this process may use.
 int available_processors();

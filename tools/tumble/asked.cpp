@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -21,8 +21,9 @@ using scenarios::Question;
 scenarios::Margin parse_margin(const std::string& option, const std::string& text) {
   const bool relative = text.ends_with('%');
   double value = 0.0;
-  const std::string number = relative ? text.substr(0, text.size() - 1) : text;
-  if (!CLI::detail::lexical_cast(number, value) || !std::isfinite(value) || value < 0.0)
+  const char* const end = text.data() + text.size() - (relative ? 1 : 0);
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || stop != end || !std::isfinite(value) || value < 0.0)
     throw BadInput(option + " is '" + text + "', must be a number from 0 on, or such a number and %");
   return {relative ? value / 100.0 : value, relative};
 }

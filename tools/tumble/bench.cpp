@@ -4,7 +4,6 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
@@ -163,19 +162,16 @@ int bench(const Session& session, const Options& options) {
 
 }  // namespace
 
-Action declare_bench(CLI::App& app, const Session& session) {
+Action declare_bench(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<Options>();
-  app.add_option("METHOD", options->methods, "NAME.yaml or NAME.py of yours, or a name; several of one kind")
-      ->required();
-  app.add_option("--suite", options->suite, "another suite whose draws are named [the standard one of the kind]");
-  app.add_option("--beside", options->beside, "FILE.jsonl of results that others have published, compared too")
-      ->allow_extra_args(false);
-  app.add_option("--jobs", options->jobs, "processes at a time [the processors]")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
-  app.add_option("-o,--output", options->lines, "the lines of JSON besides, FILE.jsonl");
-  app.add_option("--db", options->database, "the results database [named after suite, method and its version, here]");
-  app.add_flag("--store", options->store, "keep the lines with the results that the tree holds");
+  verb.add("METHOD", options->methods, "NAME.yaml or NAME.py of yours, or a name; several of one kind").required();
+  verb.add("--suite", options->suite, "another suite whose draws are named [the standard one of the kind]");
+  verb.add("--beside", options->beside, "FILE.jsonl of results that others have published, compared too")
+      .one_at_a_time();
+  verb.add("--jobs", options->jobs, "processes at a time [the processors]").whole(1, 1024).shows_default();
+  verb.add("-o,--output", options->lines, "the lines of JSON besides, FILE.jsonl");
+  verb.add("--db", options->database, "the results database [named after suite, method and its version, here]");
+  verb.add_flag("--store", options->store, "keep the lines with the results that the tree holds");
   return [&session, options] { return bench(session, *options); };
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -35,11 +34,11 @@ int certify(const Session& session, const std::vector<std::string>& rows) {
 
 }  // namespace
 
-Action declare_certify(CLI::App& app, const Session& session) {
+Action declare_certify(VerbOptions& verb, const Session& session) {
   auto rows = std::make_shared<std::vector<std::string>>();
   std::string known;
   for (const scenarios::CertificateRow& row : scenarios::certificate_rows()) known += " " + row.name;
-  app.add_option("--row", *rows, "measure this row alone; repeat for more:" + known)->allow_extra_args(false);
+  verb.add("--row", *rows, "measure this row alone; repeat for more:" + known).one_at_a_time();
   return [&session, rows] { return certify(session, *rows); };
 }
 

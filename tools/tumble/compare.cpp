@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -199,23 +198,18 @@ int compare(const Session& session, const Options& options) {
 
 }  // namespace
 
-Action declare_compare(CLI::App& app, const Session& session) {
+Action declare_compare(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<Options>();
-  app.add_option("DATABASE", options->database, "a results database, FILE.db")->required();
-  app.add_option("--method", options->methods,
-                 "the method to compare; of several each with the last [all that need no truth, with the baseline]")
-      ->allow_extra_args(false);
-  app.add_option("--against", options->against, "what it is paired with [the last --method, or the baseline]");
-  app.add_option("--metric", options->metrics, "a metric; repeat for more [the headline ones of the kind]")
-      ->allow_extra_args(false);
-  app.add_option("--margin", options->margin,
-                 "how much worse still counts as no worse: in the metric's unit, or as 10% of the other's value");
-  app.add_option("--risk", options->risk, "of any false finding of the table")
-      ->check(within(1e-6, 0.5))
-      ->capture_default_str();
-  app.add_option("--power", options->power, "that the draws wanted are to have")
-      ->check(within(0.5, 0.999))
-      ->capture_default_str();
+  verb.add("DATABASE", options->database, "a results database, FILE.db").required();
+  verb.add("--method", options->methods,
+           "the method to compare; of several each with the last [all that need no truth, with the baseline]")
+      .one_at_a_time();
+  verb.add("--against", options->against, "what it is paired with [the last --method, or the baseline]");
+  verb.add("--metric", options->metrics, "a metric; repeat for more [the headline ones of the kind]").one_at_a_time();
+  verb.add("--margin", options->margin,
+           "how much worse still counts as no worse: in the metric's unit, or as 10% of the other's value");
+  verb.add("--risk", options->risk, "of any false finding of the table").within(1e-6, 0.5).shows_default();
+  verb.add("--power", options->power, "that the draws wanted are to have").within(0.5, 0.999).shows_default();
   return [&session, options] { return compare(session, *options); };
 }
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -121,17 +120,17 @@ int run_estimate(const Session& session, const Options& options) {
 
 }  // namespace
 
-Action declare_estimate(CLI::App& app, const Session& session) {
+Action declare_estimate(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<Options>();
-  app.add_option("RECORDING", options->recording, "a recording, FILE.h5")->required();
-  app.add_option("--method", options->method, "a method, as 'saave' or 'rate/saave'")->required();
-  app.add_option("--set", options->parameters,
-                 "METHOD.PARAMETER=NUMBER, as rate/tumble_lag.lag_s=0.5; repeat for more ('tumble list methods NAME')")
-      ->allow_extra_args(false);
-  app.add_option("-o,--output", options->folder, "folder for the estimate")->required();
-  app.add_option("--learnt", options->learnt,
-                 "FILE.json: what an earlier run of 'rate/tumble' or 'rate/tumble_lag' has learnt of the rig, if it "
-                 "exists; written anew");
+  verb.add("RECORDING", options->recording, "a recording, FILE.h5").required();
+  verb.add("--method", options->method, "a method, as 'saave' or 'rate/saave'").required();
+  verb.add("--set", options->parameters,
+           "METHOD.PARAMETER=NUMBER, as rate/tumble_lag.lag_s=0.5; repeat for more ('tumble list methods NAME')")
+      .one_at_a_time();
+  verb.add("-o,--output", options->folder, "folder for the estimate").required();
+  verb.add("--learnt", options->learnt,
+           "FILE.json: what an earlier run of 'rate/tumble' or 'rate/tumble_lag' has learnt of the rig, if it "
+           "exists; written anew");
   return [&session, options] { return run_estimate(session, *options); };
 }
 

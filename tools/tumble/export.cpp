@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/export.hpp"
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -79,30 +78,29 @@ int export_as(const Session& session, const Options& options) {
 
 }  // namespace
 
-Action declare_export(CLI::App& app, const Session& session) {
+Action declare_export(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<Options>();
   std::string known;
   for (const std::string& format : scenarios::export_formats()) known += " " + format;
-  app.add_option("RECORDING", options->recording, "a recording, FILE.h5")->required();
-  app.add_option("--format", options->format, "one of:" + known + " [by the output's ending: .mcap, .bag, .tum]");
+  verb.add("RECORDING", options->recording, "a recording, FILE.h5").required();
+  verb.add("--format", options->format, "one of:" + known + " [by the output's ending: .mcap, .bag, .tum]");
   std::string peers;
   for (const std::string& name : scenarios::peer_dialects()) peers += " " + name;
-  app.add_option("--for", options->peer,
-                 "a published estimator, one of:" + peers +
-                     "; a folder with the bag that it reads, its own configuration with this recording's sensors, and "
-                     "manifest.json");
-  app.add_option("--points", options->points,
-                 "of a bag: pointcloud2, or livox for the CustomMsg of Livox' drivers [pointcloud2]");
-  app.add_option("-o,--output", options->out,
-                 "a file (kitti, tum: the true poses; mcap, rosbag1: the sensors) or a folder (csv, pcd, ply, rosbag2: "
-                 "the sensors; with --for)")
-      ->required();
-  app.add_flag("--with-truth", options->with_truth,
-               "a bag also holds the true poses, under /truth and as the body's; with --for, as truth.tum beside it");
-  app.add_option(
-      "--estimate", options->estimates,
-      "a bag also holds the poses of an estimate (a folder, or a TUM file of the IMU), and the returns of the "
-      "lidar where it puts them; with the truth, laid onto it at the start, each with its error_m");
+  verb.add("--for", options->peer,
+           "a published estimator, one of:" + peers +
+               "; a folder with the bag that it reads, its own configuration with this recording's sensors, and "
+               "manifest.json");
+  verb.add("--points", options->points,
+           "of a bag: pointcloud2, or livox for the CustomMsg of Livox' drivers [pointcloud2]");
+  verb.add("-o,--output", options->out,
+           "a file (kitti, tum: the true poses; mcap, rosbag1: the sensors) or a folder (csv, pcd, ply, rosbag2: "
+           "the sensors; with --for)")
+      .required();
+  verb.add_flag("--with-truth", options->with_truth,
+                "a bag also holds the true poses, under /truth and as the body's; with --for, as truth.tum beside it");
+  verb.add("--estimate", options->estimates,
+           "a bag also holds the poses of an estimate (a folder, or a TUM file of the IMU), and the returns of the "
+           "lidar where it puts them; with the truth, laid onto it at the start, each with its error_m");
   return [&session, options] {
     return options->peer.empty() ? export_as(session, *options) : export_for_peer(session, *options);
   };

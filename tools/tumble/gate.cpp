@@ -2,7 +2,6 @@
 #include "scenarios/sweep/gate.hpp"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -233,26 +232,21 @@ int run_gate(const Session& session, const Options& options) {
 
 }  // namespace
 
-Action declare_gate(CLI::App& app, const Session& session) {
+Action declare_gate(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<Options>();
-  app.add_option(
-         "SUITE", options->suite,
-         "a suite, a suite file, or a scenario: its fixed seeds are swept; 'regressions', or one of the named cases")
-      ->required()
-      ->check(a_suite_or_cases(session));
-  app.add_option("--against", options->accepted,
-                 "the gate, FILE.yaml, with the accepted run beside it in FILE.csv [scenarios/gates/SUITE.yaml]");
-  app.add_option(
-         "--method", options->methods,
-         "FILE.yaml: the method that it describes is held too, or accepted; with --accept also one of this build, "
-         "held from then on; repeat for more")
-      ->allow_extra_args(false);
-  app.add_option("--jobs", options->jobs, "processes at a time [the processors]")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
-  app.add_option("--db", options->database,
-                 "keep the results here, and do not run again what it holds [a temporary file]");
-  app.add_flag("--accept", options->accept, "write this run as the accepted one instead of being held to it");
+  verb.add("SUITE", options->suite,
+           "a suite, a suite file, or a scenario: its fixed seeds are swept; 'regressions', or one of the named cases")
+      .required()
+      .check(a_suite_or_cases(session));
+  verb.add("--against", options->accepted,
+           "the gate, FILE.yaml, with the accepted run beside it in FILE.csv [scenarios/gates/SUITE.yaml]");
+  verb.add("--method", options->methods,
+           "FILE.yaml: the method that it describes is held too, or accepted; with --accept also one of this build, "
+           "held from then on; repeat for more")
+      .one_at_a_time();
+  verb.add("--jobs", options->jobs, "processes at a time [the processors]").whole(1, 1024).shows_default();
+  verb.add("--db", options->database, "keep the results here, and do not run again what it holds [a temporary file]");
+  verb.add_flag("--accept", options->accept, "write this run as the accepted one instead of being held to it");
   return [&session, options] { return run_gate(session, *options); };
 }
 

@@ -121,13 +121,10 @@ bool names_cases(const scenarios::DataRoot& data, const std::string& word) {
   return word == kAllCases || std::binary_search(names.begin(), names.end(), word);
 }
 
-CLI::Validator a_suite_or_cases(const Session& session) {
-  return CLI::Validator(
-      [&session](std::string& text) {
-        if (!names_cases(session.data(), text)) scenarios::load_suite(session.data(), text);
-        return std::string();
-      },
-      "");
+std::function<void(const std::string&)> a_suite_or_cases(const Session& session) {
+  return [&session](const std::string& text) {
+    if (!names_cases(session.data(), text)) scenarios::load_suite(session.data(), text);
+  };
 }
 
 int hold_cases(const Session& session, const scenarios::DataRoot& data, const CaseGate& gate) {

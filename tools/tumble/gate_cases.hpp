@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
+#include <functional>
 #include <string>
 
 #include "scenarios/data_root.hpp"
@@ -18,7 +18,7 @@ inline constexpr const char* kAllCases = "regressions";
 bool names_cases(const scenarios::DataRoot& data, const std::string& word);
 
 /// Refuses what is neither that, nor a suite, a suite file or a scenario.
-CLI::Validator a_suite_or_cases(const Session& session);
+std::function<void(const std::string&)> a_suite_or_cases(const Session& session);
 
 struct CaseGate {
   std::string word;  ///< `kAllCases`, or the name of one

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/import.hpp"
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -120,9 +119,9 @@ int import_from(const Session& session, const ImportOptions& options) {
 
 }  // namespace
 
-Action declare_import(CLI::App& app, const Session& session) {
+Action declare_import(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<ImportOptions>();
-  declare(app, *options);
+  declare(verb, *options);
   return [&session, options] { return import_from(session, *options); };
 }
 

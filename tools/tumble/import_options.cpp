@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/tumble/import_options.hpp"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -112,68 +111,65 @@ scenarios::SweepReading sweep_reading(const Session& session, const ImportOption
   return reading;
 }
 
-void declare_lidar(CLI::App& app, ImportOptions& options) {
-  app.add_option("--lidar", options.lidar, "of sweeps: the lidar's data sheet [unknown]");
-  app.add_option("--T-body-lidar", options.T_body_lidar,
-                 "X Y Z QX QY QZ QW: pose of the lidar in the body, m [the body is the lidar]")
-      ->expected(7);
-  app.add_option("--stem", options.stem, "of the files' names, before their number, when there are several");
-  app.add_option("--times", options.times,
-                 "a stamp per sweep or pose, a line each, s [STEM_times.txt or times.txt beside the sweeps, else the "
-                 "files' names, else the points' times]");
-  app.add_option("--sweep-period", options.sweep_period_s,
-                 "length of a sweep, s; where nothing tells their times, also their distance [median step]")
-      ->check(within(1e-4, 1000.0));
-  app.add_option("--time-field", options.time_field,
-                 "that holds the points' times [t, time, timestamp, offset_time ...]");
-  app.add_option("--time-unit", options.time_unit, "of that field: s, ms, us or ns [by its size]");
-  app.add_flag("--not-skewed", options.not_skewed, "the sweeps are deskewed: their points belong to one instant");
-  app.add_option("--imu", options.imu, "FILE.csv: readings of an IMU in the same clock, beside the sweeps");
+void declare_lidar(VerbOptions& verb, ImportOptions& options) {
+  verb.add("--lidar", options.lidar, "of sweeps: the lidar's data sheet [unknown]");
+  verb.add("--T-body-lidar", options.T_body_lidar,
+           "X Y Z QX QY QZ QW: pose of the lidar in the body, m [the body is the lidar]")
+      .words(7);
+  verb.add("--stem", options.stem, "of the files' names, before their number, when there are several");
+  verb.add("--times", options.times,
+           "a stamp per sweep or pose, a line each, s [STEM_times.txt or times.txt beside the sweeps, else the "
+           "files' names, else the points' times]");
+  verb.add("--sweep-period", options.sweep_period_s,
+           "length of a sweep, s; where nothing tells their times, also their distance [median step]")
+      .within(1e-4, 1000.0);
+  verb.add("--time-field", options.time_field, "that holds the points' times [t, time, timestamp, offset_time ...]");
+  verb.add("--time-unit", options.time_unit, "of that field: s, ms, us or ns [by its size]");
+  verb.add_flag("--not-skewed", options.not_skewed, "the sweeps are deskewed: their points belong to one instant");
+  verb.add("--imu", options.imu, "FILE.csv: readings of an IMU in the same clock, beside the sweeps");
 }
 
-void declare_reference(CLI::App& app, ImportOptions& options) {
-  app.add_option("--reference", options.reference,
-                 "poses that become the truth: a TUM file or a table of nav_msgs/Odometry in the clock of the sweeps, "
-                 "or a KITTI file "
-                 "with a pose per sweep [trajectory.csv beside VTK sweeps]");
-  app.add_option("--reference-frame", options.reference_frame,
-                 "whose poses they are: lidar or body [of a file: the lidar, if there is one; of a topic: the body]");
-  app.add_option("--reference-topic", options.reference_topic,
-                 "of a bag: nav_msgs/Odometry or geometry_msgs/PoseStamped, poses that become the truth [none]");
-  app.add_flag(
+void declare_reference(VerbOptions& verb, ImportOptions& options) {
+  verb.add("--reference", options.reference,
+           "poses that become the truth: a TUM file or a table of nav_msgs/Odometry in the clock of the sweeps, "
+           "or a KITTI file "
+           "with a pose per sweep [trajectory.csv beside VTK sweeps]");
+  verb.add("--reference-frame", options.reference_frame,
+           "whose poses they are: lidar or body [of a file: the lidar, if there is one; of a topic: the body]");
+  verb.add("--reference-topic", options.reference_topic,
+           "of a bag: nav_msgs/Odometry or geometry_msgs/PoseStamped, poses that become the truth [none]");
+  verb.add_flag(
       "--align-reference", options.align_reference,
       "of repoimu: take the reference's delay, rotation and tilt, estimated from the motion, out of it [said alone]");
-  app.add_flag("--sort", options.sorted, "a TUM file's lines may be in any order; of equal stamps the first counts");
+  verb.add_flag("--sort", options.sorted, "a TUM file's lines may be in any order; of equal stamps the first counts");
 }
 
 }  // namespace
 
-void declare(CLI::App& app, ImportOptions& options) {
-  app.add_option("PATH", options.path,
-                 "a folder of lidar sweeps (PLY, PCD, VTK, KITTI .bin); readings of an IMU: CSV with the columns of a "
-                 "sensor_msgs/Imu, a trial of BROAD (HDF5) or a recording of RepoIMU (CSV) with its optical reference, "
-                 "a flight log "
-                 "of AirbrakesV2 (CSV); a bag (ROS 1 file, ROS 2 folder, MCAP file); "
-                 "or poses (TUM, KITTI, a table of nav_msgs/Odometry)")
-      ->required();
-  app.add_option("--format", options.format,
-                 "airbrakes, broad, csv, kitti, mcap, odometry, pcd, ply, repoimu, rosbag1, rosbag2, tum or vtk [by "
-                 "the path's ending "
-                 "or content]");
-  app.add_option("--device", options.device,
-                 "the IMU's data sheet, for ranges and noise: see 'tumble list sensors' [unknown]");
-  app.add_option("--accel-unit", options.accel_unit, "of a CSV: m/s^2 or g [m/s^2]");
-  app.add_option("--gyro-unit", options.gyro_unit, "of a CSV: rad/s or deg/s [rad/s]");
-  app.add_option("--lever-arm", options.lever_arm_m, "X Y Z: from the robot's centre of mass to the IMU, m [0 0 0]")
-      ->expected(3);
-  app.add_option("--robot", options.robot, "rig, sphere or pendulum, for methods that ask [unknown]");
-  app.add_option("--radius", options.radius_m, "of the sphere, m, for methods of position [unknown]")
-      ->check(within(1e-3, 10.0));
-  app.add_option("--imu-topic", options.imu_topics, "of a bag: sensor_msgs/Imu; the first is the primary one [all]");
-  app.add_option("--lidar-topic", options.lidar_topics, "of a bag: sensor_msgs/PointCloud2 [all]");
-  declare_lidar(app, options);
-  declare_reference(app, options);
-  app.add_option("-o,--output", options.out, "the recording, FILE.h5")->required();
+void declare(VerbOptions& verb, ImportOptions& options) {
+  verb.add("PATH", options.path,
+           "a folder of lidar sweeps (PLY, PCD, VTK, KITTI .bin); readings of an IMU: CSV with the columns of a "
+           "sensor_msgs/Imu, a trial of BROAD (HDF5) or a recording of RepoIMU (CSV) with its optical reference, "
+           "a flight log "
+           "of AirbrakesV2 (CSV); a bag (ROS 1 file, ROS 2 folder, MCAP file); "
+           "or poses (TUM, KITTI, a table of nav_msgs/Odometry)")
+      .required();
+  verb.add("--format", options.format,
+           "airbrakes, broad, csv, kitti, mcap, odometry, pcd, ply, repoimu, rosbag1, rosbag2, tum or vtk [by "
+           "the path's ending "
+           "or content]");
+  verb.add("--device", options.device,
+           "the IMU's data sheet, for ranges and noise: see 'tumble list sensors' [unknown]");
+  verb.add("--accel-unit", options.accel_unit, "of a CSV: m/s^2 or g [m/s^2]");
+  verb.add("--gyro-unit", options.gyro_unit, "of a CSV: rad/s or deg/s [rad/s]");
+  verb.add("--lever-arm", options.lever_arm_m, "X Y Z: from the robot's centre of mass to the IMU, m [0 0 0]").words(3);
+  verb.add("--robot", options.robot, "rig, sphere or pendulum, for methods that ask [unknown]");
+  verb.add("--radius", options.radius_m, "of the sphere, m, for methods of position [unknown]").within(1e-3, 10.0);
+  verb.add("--imu-topic", options.imu_topics, "of a bag: sensor_msgs/Imu; the first is the primary one [all]");
+  verb.add("--lidar-topic", options.lidar_topics, "of a bag: sensor_msgs/PointCloud2 [all]");
+  declare_lidar(verb, options);
+  declare_reference(verb, options);
+  verb.add("-o,--output", options.out, "the recording, FILE.h5").required();
 }
 
 std::string format_of(const ImportOptions& options) {

@@ -8,10 +8,7 @@
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/import.hpp"
 #include "tools/tumble/session.hpp"
-
-namespace CLI {
-class App;
-}
+#include "tools/tumble/verb_options.hpp"
 
 /// The options of `tumble import`, and what they mean to the library. All throw BadInput with one clear line.
 namespace tumble::tools {
@@ -39,7 +36,7 @@ struct ImportOptions {
   std::string reference_topic;
 };
 
-void declare(CLI::App& app, ImportOptions& options);
+void declare(VerbOptions& verb, ImportOptions& options);
 
 /// The format that is asked for, or that the path's ending or content tells.
 std::string format_of(const ImportOptions& options);

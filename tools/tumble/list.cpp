@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -274,11 +273,11 @@ Listing listing(const Session& session, const std::string& what, const std::stri
 
 }  // namespace
 
-Action declare_list(CLI::App& options, const Session& session) {
+Action declare_list(VerbOptions& verb, const Session& session) {
   auto what = std::make_shared<std::string>();
   auto only = std::make_shared<std::string>();
-  options.add_option("WHAT", *what, "scenarios, methods, sensors or suites")->required();
-  options.add_option("NAME", *only, "one of them, with all of its numbers");
+  verb.add("WHAT", *what, "scenarios, methods, sensors or suites").required();
+  verb.add("NAME", *only, "one of them, with all of its numbers");
   return [&session, what, only] {
     const Listing out = listing(session, *what, *only);
     session.print(out.tables, out.document);

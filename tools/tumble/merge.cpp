@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/merge.hpp"
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -42,11 +41,11 @@ int merge(const Session& session, const Options& options) {
 
 }  // namespace
 
-Action declare_merge(CLI::App& app, const Session& session) {
+Action declare_merge(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<Options>();
-  app.add_option("OUT", options->out, "the database to make, or to add to")->required();
-  app.add_option("IN", options->in, "databases to join")->required();
-  app.add_flag("--mixed-builds", options->mixed, "join rows of different builds");
+  verb.add("OUT", options->out, "the database to make, or to add to").required();
+  verb.add("IN", options->in, "databases to join").required();
+  verb.add_flag("--mixed-builds", options->mixed, "join rows of different builds");
   return [&session, options] { return merge(session, *options); };
 }
 

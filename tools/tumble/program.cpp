@@ -110,7 +110,8 @@ int dispatch(int argc, const char* const* argv) {
     CLI::App* options = app.add_subcommand(verb.name, verb.doc);
     options->add_flag("--json", session.json, "tables as JSON on standard output");
     options->add_flag("--quiet", session.quiet, "no notes and no progress on standard error");
-    options->callback([action = verb.declare(*options, session), &chosen] { chosen = action; });
+    VerbOptions declared(*options);
+    options->callback([action = verb.declare(declared, session), &chosen] { chosen = action; });
     // of some verbs it is the format of a recording
     if (options->get_option_no_throw("--format") == nullptr) add_table_format(*options, session);
   }

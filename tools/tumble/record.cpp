@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -54,16 +53,16 @@ int record(const Session& session, const Options& options) {
 
 }  // namespace
 
-Action declare_record(CLI::App& app, const Session& session) {
+Action declare_record(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<Options>();
-  app.add_option("SCENARIO", options->scenario, "a scenario of the catalogue, or a scenario file")
-      ->required()
-      ->check(a_scenario(session));
-  app.add_option("--seed", options->seed, "which draw of it [of a named case its own]");
-  app.add_option("--threads", options->threads, "threads for the lidar; the result does not depend on them")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
-  app.add_option("-o,--output", options->file, "the recording, FILE.h5")->required();
+  verb.add("SCENARIO", options->scenario, "a scenario of the catalogue, or a scenario file")
+      .required()
+      .check(a_scenario(session));
+  verb.add("--seed", options->seed, "which draw of it [of a named case its own]");
+  verb.add("--threads", options->threads, "threads for the lidar; the result does not depend on them")
+      .whole(1, 1024)
+      .shows_default();
+  verb.add("-o,--output", options->file, "the recording, FILE.h5").required();
   return [&session, options] { return record(session, *options); };
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -180,34 +179,25 @@ int render(const Session& session, const Options& options) {
 
 }  // namespace
 
-Action declare_render(CLI::App& app, const Session& session) {
+Action declare_render(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<Options>();
-  app.add_option("WHAT", options->what, "a recording, FILE.h5, or a scenario (with --seed)")->required();
-  app.add_option("ESTIMATE", options->estimates, "folders of estimates whose paths are drawn");
-  app.add_option("--seed", options->seed, "which draw of the scenario [of a named case its own]");
-  app.add_option("-o,--output", options->output, "the picture, FILE.png, or with --video FILE.webp")->required();
-  app.add_option("--film", options->film, "a film strip of so many frames")->check(CLI::Range(1, 64));
-  app.add_flag("--map", options->map, "the estimates' maps side by side, coloured by error from 0 (blue) to 1 m (red)");
-  app.add_flag("--video", options->video,
-               "the motion as a WebP that plays: the camera follows, robots stand along the way");
-  app.add_option("--fps", options->fps, "frames of a video in a second")
-      ->check(within(1.0, 60.0))
-      ->capture_default_str();
-  app.add_option("--speed", options->speed, "of a video: seconds of the motion in one that is watched")
-      ->check(within(0.01, 10.0))
-      ->capture_default_str();
-  app.add_option("--columns", options->columns, "frames in a row of the film strip")
-      ->check(CLI::Range(1, 64))
-      ->capture_default_str();
-  app.add_option("--robots", options->robots, "how often the robot is drawn along its way")
-      ->check(CLI::Range(1, 64))
-      ->capture_default_str();
-  app.add_option("--width", options->width, "of a picture or frame, pixels")
-      ->check(CLI::Range(64, 4096))
-      ->capture_default_str();
-  app.add_option("--height", options->height, "of a picture or frame, pixels")
-      ->check(CLI::Range(64, 4096))
-      ->capture_default_str();
+  verb.add("WHAT", options->what, "a recording, FILE.h5, or a scenario (with --seed)").required();
+  verb.add("ESTIMATE", options->estimates, "folders of estimates whose paths are drawn");
+  verb.add("--seed", options->seed, "which draw of the scenario [of a named case its own]");
+  verb.add("-o,--output", options->output, "the picture, FILE.png, or with --video FILE.webp").required();
+  verb.add("--film", options->film, "a film strip of so many frames").whole(1, 64);
+  verb.add_flag("--map", options->map,
+                "the estimates' maps side by side, coloured by error from 0 (blue) to 1 m (red)");
+  verb.add_flag("--video", options->video,
+                "the motion as a WebP that plays: the camera follows, robots stand along the way");
+  verb.add("--fps", options->fps, "frames of a video in a second").within(1.0, 60.0).shows_default();
+  verb.add("--speed", options->speed, "of a video: seconds of the motion in one that is watched")
+      .within(0.01, 10.0)
+      .shows_default();
+  verb.add("--columns", options->columns, "frames in a row of the film strip").whole(1, 64).shows_default();
+  verb.add("--robots", options->robots, "how often the robot is drawn along its way").whole(1, 64).shows_default();
+  verb.add("--width", options->width, "of a picture or frame, pixels").whole(64, 4096).shows_default();
+  verb.add("--height", options->height, "of a picture or frame, pixels").whole(64, 4096).shows_default();
   return [&session, options] { return render(session, *options); };
 }
 

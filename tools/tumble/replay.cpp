@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <list>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -110,16 +109,16 @@ int make_replay(const Session& session, const Options& options) {
 
 }  // namespace
 
-Action declare_replay(CLI::App& app, const Session& session) {
+Action declare_replay(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<Options>();
-  app.add_option("RECORDING", options->recording, "the recording, FILE.h5, with or without truth")->required();
-  app.add_option("ESTIMATE", options->estimates, "folders of estimates, or TUM files (t x y z qx qy qz qw)");
-  app.add_option("-o,--output", options->page, "the page, FILE.html")->required();
-  app.add_option("--frame", options->frame,
-                 "whose poses a TUM file holds: imu, lidar, body or centre [imu; body where the recording has none]");
-  app.add_option("--points", options->points, "of the lidar, at most; the page's 3 MB may leave fewer")
-      ->check(CLI::Range(0, 200000))
-      ->capture_default_str();
+  verb.add("RECORDING", options->recording, "the recording, FILE.h5, with or without truth").required();
+  verb.add("ESTIMATE", options->estimates, "folders of estimates, or TUM files (t x y z qx qy qz qw)");
+  verb.add("-o,--output", options->page, "the page, FILE.html").required();
+  verb.add("--frame", options->frame,
+           "whose poses a TUM file holds: imu, lidar, body or centre [imu; body where the recording has none]");
+  verb.add("--points", options->points, "of the lidar, at most; the page's 3 MB may leave fewer")
+      .whole(0, 200000)
+      .shows_default();
   return [&session, options] { return make_replay(session, *options); };
 }
 

@@ -4,7 +4,6 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -231,13 +230,13 @@ int report(const Session& session, const Options& options) {
 
 }  // namespace
 
-Action declare_report(CLI::App& app, const Session& session) {
+Action declare_report(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<Options>();
-  app.add_option("DATABASE", options->database, "a results database, FILE.db")->required();
-  app.add_option("-o,--output", options->page, "the page, FILE.html [tables alone]");
-  app.add_option("--badge", options->badge, "a badge, FILE.svg: the suite and how many contests are won");
-  app.add_flag("--all", options->all,
-               "all metrics in the printed tables, not the headline ones alone, and the curves over bins");
+  verb.add("DATABASE", options->database, "a results database, FILE.db").required();
+  verb.add("-o,--output", options->page, "the page, FILE.html [tables alone]");
+  verb.add("--badge", options->badge, "a badge, FILE.svg: the suite and how many contests are won");
+  verb.add_flag("--all", options->all,
+                "all metrics in the printed tables, not the headline ones alone, and the curves over bins");
   return [&session, options] { return report(session, *options); };
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -188,28 +187,27 @@ int run(const Session& session, const Options& given) {
 
 }  // namespace
 
-Action declare_run(CLI::App& app, const Session& session) {
+Action declare_run(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<Options>();
-  app.add_option("SCENARIO", options->scenario, "a scenario of the catalogue, or a scenario file")
-      ->required()
-      ->check(a_scenario(session));
-  app.add_option("--seed", options->seed, "which draw of it [1, of a named case its own]");
-  app.add_option("--method", options->methods, "a method, as 'saave' or 'rate/saave'; repeat for more [all that apply]")
-      ->allow_extra_args(false);  // the word after a method is not another one
-  app.add_option("--set", options->parameters,
-                 "METHOD.PARAMETER=NUMBER, as rate/tumble_lag.lag_s=0.5; repeat for more ('tumble list methods NAME')")
-      ->allow_extra_args(false);
-  app.add_option("--vary", options->vary,
-                 "KEY=NUMBER, a point of a suite's curve: world.rock_count=10, given.lever_arm_error_m=0.03");
-  app.add_option("--threads", options->threads, "threads for the lidar; the result does not depend on them")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
-  app.add_option("-o,--output", options->folder,
-                 "folder for recording, estimates, pictures and replay [none are left]");
-  app.add_option("--learnt", options->learnt,
-                 "FILE.json: what 'rate/tumble' and 'rate/tumble_lag' start from, if it exists; written anew with what "
-                 "the run has learnt of the rig");
-  app.footer("The scenario alone runs ours beside the baseline and leaves everything in a folder named after it.");
+  verb.add("SCENARIO", options->scenario, "a scenario of the catalogue, or a scenario file")
+      .required()
+      .check(a_scenario(session));
+  verb.add("--seed", options->seed, "which draw of it [1, of a named case its own]");
+  verb.add("--method", options->methods, "a method, as 'saave' or 'rate/saave'; repeat for more [all that apply]")
+      .one_at_a_time();  // the word after a method is not another one
+  verb.add("--set", options->parameters,
+           "METHOD.PARAMETER=NUMBER, as rate/tumble_lag.lag_s=0.5; repeat for more ('tumble list methods NAME')")
+      .one_at_a_time();
+  verb.add("--vary", options->vary,
+           "KEY=NUMBER, a point of a suite's curve: world.rock_count=10, given.lever_arm_error_m=0.03");
+  verb.add("--threads", options->threads, "threads for the lidar; the result does not depend on them")
+      .whole(1, 1024)
+      .shows_default();
+  verb.add("-o,--output", options->folder, "folder for recording, estimates, pictures and replay [none are left]");
+  verb.add("--learnt", options->learnt,
+           "FILE.json: what 'rate/tumble' and 'rate/tumble_lag' start from, if it exists; written anew with what "
+           "the run has learnt of the rig");
+  verb.footer("The scenario alone runs ours beside the baseline and leaves everything in a folder named after it.");
   return [&session, options] { return run(session, *options); };
 }
 

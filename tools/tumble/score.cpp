@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdlib>
 #include <memory>
@@ -176,16 +175,15 @@ int score_estimate(const Session& session, const Options& options) {
 
 }  // namespace
 
-Action declare_score(CLI::App& app, const Session& session) {
+Action declare_score(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<Options>();
-  app.add_option("ESTIMATE", options->estimate, "folder of an estimate, or a TUM file (t x y z qx qy qz qw)")
-      ->required();
-  app.add_option("RECORDING", options->recording, "the recording with its truth, FILE.h5")->required();
-  app.add_option("--frame", options->frame,
-                 "whose poses a TUM file holds: imu, lidar, body or centre [imu; body where the recording has none]");
-  app.add_option("--kind", options->kind,
-                 "what a TUM file is scored as: position or slam, which adds the rotation at the end [slam where the "
-                 "recording has a lidar and no rolling sphere]");
+  verb.add("ESTIMATE", options->estimate, "folder of an estimate, or a TUM file (t x y z qx qy qz qw)").required();
+  verb.add("RECORDING", options->recording, "the recording with its truth, FILE.h5").required();
+  verb.add("--frame", options->frame,
+           "whose poses a TUM file holds: imu, lidar, body or centre [imu; body where the recording has none]");
+  verb.add("--kind", options->kind,
+           "what a TUM file is scored as: position or slam, which adds the rotation at the end [slam where the "
+           "recording has a lidar and no rolling sphere]");
   return [&session, options] { return score_estimate(session, *options); };
 }
 

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -172,17 +171,15 @@ int sensitivity(const Session& session, const Options& options) {
 
 }  // namespace
 
-Action declare_sensitivity(CLI::App& app, const Session& session) {
+Action declare_sensitivity(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<Options>();
-  app.add_option("DATABASE", options->database, "a results database, FILE.db")->required();
-  app.add_option("--method", options->methods, "a method; repeat for more [all that need no truth]")
-      ->allow_extra_args(false);
-  app.add_option("--metric", options->metrics, "a metric; repeat for more [the headline ones of the kind]")
-      ->allow_extra_args(false);
-  app.add_flag("--motion", options->motion, "against what the motions were like, not against what was drawn");
-  app.add_flag("--all", options->all, "every number, not the three strongest that chance does not explain");
-  app.add_flag("--dependence", options->dependence,
-               "also the score over classes of each number that is shown, with intervals");
+  verb.add("DATABASE", options->database, "a results database, FILE.db").required();
+  verb.add("--method", options->methods, "a method; repeat for more [all that need no truth]").one_at_a_time();
+  verb.add("--metric", options->metrics, "a metric; repeat for more [the headline ones of the kind]").one_at_a_time();
+  verb.add_flag("--motion", options->motion, "against what the motions were like, not against what was drawn");
+  verb.add_flag("--all", options->all, "every number, not the three strongest that chance does not explain");
+  verb.add_flag("--dependence", options->dependence,
+                "also the score over classes of each number that is shown, with intervals");
   return [&session, options] { return sensitivity(session, *options); };
 }
 

@@ -2,7 +2,6 @@
 #include "scenarios/cases/shrink.hpp"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -185,22 +184,19 @@ int run_shrink(const Session& session, const Options& options) {
 
 }  // namespace
 
-Action declare_shrink(CLI::App& app, const Session& session) {
+Action declare_shrink(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<Options>();
-  app.add_option("SCENARIO", options->scenario, "a scenario, a named case, or a scenario file")
-      ->required()
-      ->check(a_scenario(session));
-  app.add_option("--seed", options->seed, "the draw that fails [of a named case its own]");
-  app.add_option("--method", options->method, "the method that fails on it")->required();
-  app.add_option("--metric", options->metric, "what makes a run fail, with --worse-than [status and verdicts alone]");
-  app.add_option("--worse-than", options->worse_than, "a run fails where the metric is worse than this, SI");
-  app.add_option("--control", options->control,
-                 "a method that must not fail on what is kept, or 'none' [the oracle of the method's kind]");
-  app.add_option("--budget", options->budget, "draws simulated at most")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str();
-  app.add_option("-o,--output", options->file, "NAME.yaml: the case; in scenarios/regressions the gate holds it")
-      ->required();
+  verb.add("SCENARIO", options->scenario, "a scenario, a named case, or a scenario file")
+      .required()
+      .check(a_scenario(session));
+  verb.add("--seed", options->seed, "the draw that fails [of a named case its own]");
+  verb.add("--method", options->method, "the method that fails on it").required();
+  verb.add("--metric", options->metric, "what makes a run fail, with --worse-than [status and verdicts alone]");
+  verb.add("--worse-than", options->worse_than, "a run fails where the metric is worse than this, SI");
+  verb.add("--control", options->control,
+           "a method that must not fail on what is kept, or 'none' [the oracle of the method's kind]");
+  verb.add("--budget", options->budget, "draws simulated at most").whole(1, 100000).shows_default();
+  verb.add("-o,--output", options->file, "NAME.yaml: the case; in scenarios/regressions the gate holds it").required();
   return [&session, options] { return run_shrink(session, *options); };
 }
 

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -227,44 +226,39 @@ int run_sweep(const Session& session, const Options& options) {
 
 }  // namespace
 
-Action declare_sweep(CLI::App& app, const Session& session) {
+Action declare_sweep(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<Options>();
-  app.add_option("SUITE", options->suite, "a suite, a suite file, or a scenario")->required()->check(a_suite(session));
-  // an empty word would mean all of them
-  const CLI::Validator filled([](std::string& text) { return text.empty() ? std::string("is empty") : std::string(); },
-                              "");
-  app.add_option("--seeds", options->seeds, "A..B, both included [the suite's]")->check(filled);
-  app.add_option("--method", options->methods, "a method; repeat for more [the suite's]")
-      ->allow_extra_args(false);  // the word after a method is not another one
-  app.add_option("--jobs", options->jobs, "processes at a time [the processors]")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
-  app.add_option("--shard", options->shard, "i/n: the i-th of n parts of the seeds")->check(filled);
-  app.add_option("--again", options->again, "run rows of these statuses once more: crashed,timeout,killed")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  app.add_option(
-         "--examples", options->examples,
-         "draws run again at the end, and the one on which most methods failed, their pictures and plots left in "
-         "FILE.db.files for 'report'; not of a shard [one for each 8 draws of the sweep, 3 at most]")
-      ->check(CLI::Range(0, 64));
-  app.add_option("--memory", options->memory_mib,
-                 "MiB of data that a worker, and each method that it runs, may hold; one that needs more is 'killed'")
-      ->check(within(64.0, 1e7))
-      ->capture_default_str();
-  app.add_option("--keep", options->keep,
-                 "draws whose recording and estimates are left in FILE.db.files/kept: none, failed, worst:N of each "
-                 "scenario and method, all")
-      ->capture_default_str();
-  app.add_option("--until", options->until,
-                 "A:B:METRIC[:MARGIN]: stop when it is answered whether method A is better than B, by more than the "
-                 "margin (in the metric's unit, or as 10% of B's value); looked at 20 times")
-      ->check(filled);
-  app.add_option("--risk", options->risk, "of any answer to --until where neither is better")
-      ->check(within(1e-6, 0.5))
-      ->capture_default_str();
-  app.add_option("--data", options->recordings, "folder of a suite's recordings [the suite file's]");
-  app.add_option("--db", options->database, "the results database; what it holds already is not run again")->required();
+  verb.add("SUITE", options->suite, "a suite, a suite file, or a scenario").required().check(a_suite(session));
+  verb.add("--seeds", options->seeds, "A..B, both included [the suite's]")
+      .filled();  // an empty word would mean all of them
+  verb.add("--method", options->methods, "a method; repeat for more [the suite's]")
+      .one_at_a_time();  // the word after a method is not another one
+  verb.add("--jobs", options->jobs, "processes at a time [the processors]").whole(1, 1024).shows_default();
+  verb.add("--shard", options->shard, "i/n: the i-th of n parts of the seeds").filled();
+  verb.add("--again", options->again, "run rows of these statuses once more: crashed,timeout,killed")
+      .separated_by(',')
+      .one_at_a_time();
+  verb.add("--examples", options->examples,
+           "draws run again at the end, and the one on which most methods failed, their pictures and plots left in "
+           "FILE.db.files for 'report'; not of a shard [one for each 8 draws of the sweep, 3 at most]")
+      .whole(0, 64);
+  verb.add("--memory", options->memory_mib,
+           "MiB of data that a worker, and each method that it runs, may hold; one that needs more is 'killed'")
+      .within(64.0, 1e7)
+      .shows_default();
+  verb.add("--keep", options->keep,
+           "draws whose recording and estimates are left in FILE.db.files/kept: none, failed, worst:N of each "
+           "scenario and method, all")
+      .shows_default();
+  verb.add("--until", options->until,
+           "A:B:METRIC[:MARGIN]: stop when it is answered whether method A is better than B, by more than the "
+           "margin (in the metric's unit, or as 10% of B's value); looked at 20 times")
+      .filled();
+  verb.add("--risk", options->risk, "of any answer to --until where neither is better")
+      .within(1e-6, 0.5)
+      .shows_default();
+  verb.add("--data", options->recordings, "folder of a suite's recordings [the suite file's]");
+  verb.add("--db", options->database, "the results database; what it holds already is not run again").required();
   return [&session, options] { return run_sweep(session, *options); };
 }
 

@@ -2,8 +2,8 @@
 #include "scenarios/sweep/triage.hpp"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -112,13 +112,10 @@ int run_triage_of_draw(const Session& session, const Options& options) {
 
 /// Refuses a name that is neither a suite's nor a scenario's, before anything else is missing. What a file is of is
 /// seen when all options are known.
-CLI::Validator known_name(const Session& session) {
-  return CLI::Validator(
-      [&session](std::string& text) {
-        if (!text.ends_with(".yaml")) scenarios::load_suite(session.data(), text);
-        return std::string();
-      },
-      "");
+std::function<void(const std::string&)> known_name(const Session& session) {
+  return [&session](const std::string& text) {
+    if (!text.ends_with(".yaml")) scenarios::load_suite(session.data(), text);
+  };
 }
 
 /// A seed, or a named case, is one draw; what else stands there is a suite.
@@ -156,24 +153,19 @@ int run_triage(const Session& session, const Options& options) {
 
 }  // namespace
 
-Action declare_triage(CLI::App& app, const Session& session) {
+Action declare_triage(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<Options>();
-  app.add_option(
-         "SCENARIO", options->what,
-         "with --seed a scenario, a named case or a scenario file; without it a suite, a suite file or a scenario")
-      ->required()
-      ->check(known_name(session));
-  app.add_option("--seed", options->seed, "one draw [all of the suite's; of a named case its own]");
-  app.add_option("--seeds", options->seeds, "A..B, both included, of a suite [the suite's]");
-  app.add_option("--db", options->database,
-                 "results: of the suite's draws only those on which the method failed there");
-  app.add_option("--jobs", options->jobs, "processes at a time, of a suite [the processors]")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
-  app.add_option("--method", options->method, "the method that fails")->required();
-  app.add_option("--metric", options->metric,
-                 "what is shown, and with --limit what fails [the first of the method's kind]");
-  app.add_option("--limit", options->limit, "a run fails beyond this value, SI [on status and map_failed alone]");
+  verb.add("SCENARIO", options->what,
+           "with --seed a scenario, a named case or a scenario file; without it a suite, a suite file or a scenario")
+      .required()
+      .check(known_name(session));
+  verb.add("--seed", options->seed, "one draw [all of the suite's; of a named case its own]");
+  verb.add("--seeds", options->seeds, "A..B, both included, of a suite [the suite's]");
+  verb.add("--db", options->database, "results: of the suite's draws only those on which the method failed there");
+  verb.add("--jobs", options->jobs, "processes at a time, of a suite [the processors]").whole(1, 1024).shows_default();
+  verb.add("--method", options->method, "the method that fails").required();
+  verb.add("--metric", options->metric, "what is shown, and with --limit what fails [the first of the method's kind]");
+  verb.add("--limit", options->limit, "a run fails beyond this value, SI [on status and map_failed alone]");
   return [&session, options] { return run_triage(session, *options); };
 }
 

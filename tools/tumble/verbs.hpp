@@ -5,45 +5,42 @@
 #include <span>
 
 #include "tools/tumble/session.hpp"
-
-namespace CLI {
-class App;
-}
+#include "tools/tumble/verb_options.hpp"
 
 namespace tumble::tools {
 
 /// What a verb does once its options are read; returns the exit status.
 using Action = std::function<int()>;
 
-/// One verb of the program: declares its options on `options` and returns its action. The session outlives the action.
+/// One verb of the program: declares its options on `verb` and returns its action. The session outlives the action.
 struct Verb {
   const char* name;
   const char* doc;
-  Action (*declare)(CLI::App& options, const Session& session);
+  Action (*declare)(VerbOptions& verb, const Session& session);
 };
 
 /// All verbs, in the order of the data.
 std::span<const Verb> verbs();
 
 // One file each.
-Action declare_list(CLI::App& options, const Session& session);
-Action declare_run(CLI::App& options, const Session& session);
-Action declare_record(CLI::App& options, const Session& session);
-Action declare_estimate(CLI::App& options, const Session& session);
-Action declare_score(CLI::App& options, const Session& session);
-Action declare_sweep(CLI::App& options, const Session& session);
-Action declare_merge(CLI::App& options, const Session& session);
-Action declare_report(CLI::App& options, const Session& session);
-Action declare_compare(CLI::App& options, const Session& session);
-Action declare_sensitivity(CLI::App& options, const Session& session);
-Action declare_render(CLI::App& options, const Session& session);
-Action declare_replay(CLI::App& options, const Session& session);
-Action declare_bench(CLI::App& options, const Session& session);
-Action declare_gate(CLI::App& options, const Session& session);
-Action declare_triage(CLI::App& options, const Session& session);
-Action declare_shrink(CLI::App& options, const Session& session);
-Action declare_export(CLI::App& options, const Session& session);
-Action declare_import(CLI::App& options, const Session& session);
-Action declare_certify(CLI::App& options, const Session& session);
+Action declare_list(VerbOptions& verb, const Session& session);
+Action declare_run(VerbOptions& verb, const Session& session);
+Action declare_record(VerbOptions& verb, const Session& session);
+Action declare_estimate(VerbOptions& verb, const Session& session);
+Action declare_score(VerbOptions& verb, const Session& session);
+Action declare_sweep(VerbOptions& verb, const Session& session);
+Action declare_merge(VerbOptions& verb, const Session& session);
+Action declare_report(VerbOptions& verb, const Session& session);
+Action declare_compare(VerbOptions& verb, const Session& session);
+Action declare_sensitivity(VerbOptions& verb, const Session& session);
+Action declare_render(VerbOptions& verb, const Session& session);
+Action declare_replay(VerbOptions& verb, const Session& session);
+Action declare_bench(VerbOptions& verb, const Session& session);
+Action declare_gate(VerbOptions& verb, const Session& session);
+Action declare_triage(VerbOptions& verb, const Session& session);
+Action declare_shrink(VerbOptions& verb, const Session& session);
+Action declare_export(VerbOptions& verb, const Session& session);
+Action declare_import(VerbOptions& verb, const Session& session);
+Action declare_certify(VerbOptions& verb, const Session& session);
 
 }  // namespace tumble::tools
