@@ -201,7 +201,7 @@ std::vector<PoseState> read_poses(const Answer& answer) {
   for (std::size_t k = 0; k < poses.size(); ++k) {
     poses[k].time_ns = times_ns[k];
     poses[k].p_WA_m = row_of(positions, k);
-    const Eigen::Quaterniond q(Eigen::Map<const Eigen::Vector4d>(&quaternions[4 * k]));
+    const Eigen::Quaterniond q{Eigen::Map<const Eigen::Vector4d>(&quaternions[4 * k])};
     if (!(std::abs(q.norm() - 1.0) <= kNormTolerance) || (k > 0 && times_ns[k] <= times_ns[k - 1]))
       throw BadInput("pose " + std::to_string(k) + " of the answer has no attitude, or a time that does not rise");
     poses[k].q_WA = q.normalized();

@@ -159,7 +159,7 @@ TEST(SequentialSignTest, AnswersOnceAndRefusesWhatCannotBe) {
   EXPECT_EQ(test.look(0.5, 0, 40), Verdict::positive);
   EXPECT_EQ(test.look(1.0, 60, 40), Verdict::positive);
   EXPECT_THROW(SequentialSignTest(0.0), BadInput);
-  EXPECT_THROW(SequentialSignTest(std::numeric_limits<double>::quiet_NaN()), BadInput);
+  EXPECT_THROW(SequentialSignTest{std::numeric_limits<double>::quiet_NaN()}, BadInput);
   SequentialSignTest other(0.05);
   EXPECT_THROW(other.look(0.0, 1, 1), BadInput);
   EXPECT_THROW(other.look(1.5, 1, 1), BadInput);

@@ -163,7 +163,7 @@ TEST_F(QuestionTest, IsClaimedBeforeTheDraws) {
 }
 
 TEST_F(QuestionTest, OfNothingIsOpen) {
-  Results(path(), Results::Mode::create_or_append);
+  { const Results made(path(), Results::Mode::create_or_append); }
   const Answer answer = ask(question_of(100), 100).front();
   EXPECT_EQ(answer.finding, Finding::undecided);
   EXPECT_EQ(answer.better + answer.worse, 0);
