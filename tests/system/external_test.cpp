@@ -50,13 +50,14 @@ TEST(External, ExampleScoresAsOursDoes) {
 
 TEST(External, WhatGoesWrongIsAnOutcomeOfTheSweep) {
   const fs::path folder = test_folder();
-  const std::vector<std::string> sweep = {"sweep",    "hill",
-                                          "--seeds",  "1..1",
-                                          "--method", "rate/raw",
-                                          "--method", describe(folder, "crashes", "kill -SEGV $$"),
-                                          "--method", describe(folder, "hangs", "sleep 600", "time_limit_s: 1\n"),
-                                          "--method", describe(folder, "silent", "true"),
-                                          "--db",     (folder / "out.db").string()};
+  const std::vector<std::string> sweep = {"sweep",      shared_scenario("hill"),
+                                          "--seeds",    "1..1",
+                                          "--method",   "rate/raw",
+                                          "--method",   describe(folder, "crashes", "kill -SEGV $$"),
+                                          "--method",   describe(folder, "hangs", "sleep 600", "time_limit_s: 1\n"),
+                                          "--method",   describe(folder, "silent", "true"),
+                                          "--examples", "0",
+                                          "--db",       (folder / "out.db").string()};
   const Ended ended = run_program(sweep);
   ASSERT_EQ(ended.status, 0) << ended.err;
   std::map<std::string, std::string> status;

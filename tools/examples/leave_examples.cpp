@@ -29,13 +29,15 @@ constexpr const char* kFailed = "The draw of its scenario on which most methods 
 /// Draws that failed, beside the typical ones.
 constexpr std::size_t kFailures = 1;
 
-/// One example in the making; `text` is what its process has said so far, or what was there.
+/// One example in the making; the first has the moving picture, of which a report shows one. `text` is what its process
+/// has said so far, or what was there.
 struct Making {
   scenarios::ExampleDraw draw;
   scenarios::Scenario scenario;
   std::vector<scenarios::MethodPointer> methods;
   std::string choice;
   std::string made_of;
+  Moving moving;
   std::string text;
   bool done = false;
 };
@@ -71,8 +73,14 @@ std::vector<Making> plan(const scenarios::DataRoot& data, const scenarios::Suite
     if (std::any_of(makings.begin(), makings.end(), [&](const Making& making) { return making.draw == draw; })) return;
     const std::vector<scenarios::Outcome> rows = scenarios::rows_to_show(results, draw);
     const auto scenario = std::find_if(all.begin(), all.end(), [&](const auto& s) { return s.name == draw.scenario; });
-    makings.push_back(
-        {draw, *scenario, methods_of(rows, suite), choice, scenarios::digest_of_rows(results, draw), {}, false});
+    makings.push_back({draw,
+                       *scenario,
+                       methods_of(rows, suite),
+                       choice,
+                       scenarios::digest_of_rows(results, draw),
+                       makings.empty() ? Moving::drawn : Moving::left_out,
+                       {},
+                       false});
   };
   for (const scenarios::ExampleDraw& draw : scenarios::choose_examples(summary, candidates, count)) add(draw, kTypical);
   for (const scenarios::ExampleDraw& draw : scenarios::choose_failures(summary, candidates, kFailures))
@@ -94,6 +102,7 @@ std::vector<std::string> keep_known(const scenarios::DataRoot& data, const fs::p
     for (Making& making : makings) {
       if (known.made_of != making.made_of || known.scenario != making.draw.scenario || known.seed != making.draw.seed)
         continue;
+      if (making.moving == Moving::drawn && known.moving.empty()) continue;
       making.text = to_json(known);
       making.done = true;
     }
@@ -116,7 +125,7 @@ void make(const scenarios::DataRoot& data, const fs::path& folder, const Making&
     const scenarios::RunResult run =
         scenarios::run_situation(data, making.scenario, making.draw.seed, making.methods, 1,
                                  lidars ? scenarios::Lidars::simulated : scenarios::Lidars::left_out);
-    Example example = example_of(run);
+    Example example = example_of(run, making.moving);
     example.choice = making.choice;
     example.made_of = making.made_of;
     write_pictures(folder, example);

@@ -74,7 +74,7 @@ void add_moving(const Scene& scene, Example& example) {
                                        1e-9 * static_cast<double>(span.end_ns - span.begin_ns));
 }
 
-void add_pictures(const scenarios::RunResult& run, const RunPaths& paths, Example& example) {
+void add_pictures(const scenarios::RunResult& run, const RunPaths& paths, Moving moving, Example& example) {
   const Scene scene{&run.built.value(), &run.recording.sensors, &run.recording.truth, paths.paths};
   ExamplePicture way{"scene",
                      "the robot along its way, with true and estimated paths",
@@ -90,7 +90,7 @@ void add_pictures(const scenarios::RunResult& run, const RunPaths& paths, Exampl
                               "The same motion close by, left to right and down.",
                               {},
                               sim::png_bytes(film_picture(scene, 8, 4, 400, 300))});
-  add_moving(scene, example);
+  if (moving == Moving::drawn) add_moving(scene, example);
   add_maps(run, example);
 }
 
@@ -100,7 +100,7 @@ void add_plot(Plot plot, Example& example) {
 
 }  // namespace
 
-Example example_of(const scenarios::RunResult& run) {
+Example example_of(const scenarios::RunResult& run, Moving moving) {
   Example example;
   example.scenario = run.scenario;
   example.seed = run.seed;
@@ -108,7 +108,7 @@ Example example_of(const scenarios::RunResult& run) {
   example.recording_digest = run.recording_digest;
   example.digest_without_lidars = scenarios::digest_without_lidars(run.recording);
   const RunPaths paths = paths_of(run);
-  add_pictures(run, paths, example);
+  add_pictures(run, paths, moving, example);
   example.replay_page = replay_page(replay_of_run(run));
   example.replay = replay_file(example);
   add_plot(rate_plot(run), example);
