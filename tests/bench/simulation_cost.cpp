@@ -37,8 +37,8 @@ int run(const Request& request) {
     const auto whole = scenarios::simulate_draw(data, scenario, seed, 1);
     bare_s.push_back(bare.simulate_cpu_s);
     whole_s.push_back(whole.simulate_cpu_s);
-    std::printf("%6llu %7.3f s %7.3f s  %s  %s\n", static_cast<unsigned long long>(seed), bare_s.back(),
-                whole_s.back(), bare.recording_digest.c_str(), whole.recording_digest.c_str());
+    std::printf("%6llu %7.3f s %7.3f s  %s  %s\n", static_cast<unsigned long long>(seed), bare_s.back(), whole_s.back(),
+                bare.recording_digest.c_str(), whole.recording_digest.c_str());
     std::fflush(stdout);
   });
   if (bare_s.empty()) return 1;
