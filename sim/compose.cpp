@@ -5,7 +5,7 @@
 #include <new>
 #include <string_view>
 
-#include "sim/engine/field_clearance.hpp"
+#include "sim/engine/field_contact.hpp"
 #include "sim/robot/robot_type.hpp"
 #include "sim/simulate.hpp"
 #include "sim/world/world_type.hpp"
@@ -78,7 +78,7 @@ World compose(const ResolvedSituation& situation, const std::filesystem::path& m
   const RobotType& robot_type = find_robot_type(situation->robot.type);
 
   install_handlers();
-  ask_for_clearance_first();
+  find_field_contacts_by_geometry();
   World world;
   const SpecPtr spec = parse(models / robot_type.file);
   spec->option.timestep = kStep_s;
