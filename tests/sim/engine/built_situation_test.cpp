@@ -95,5 +95,43 @@ TEST(BuiltSituation, NothingThatIsMadeFromItComposesAgain) {
   EXPECT_EQ(compare_rays(only, {100}).rays, 100);
 }
 
+/// Where a robot is after half a second's fall onto its ground, and how fast.
+BodyState fallen(engine::World world) {
+  engine::Physics physics(world);
+  BodyState state = physics.state();
+  if (world.free) {
+    state.p_WB_m = world.start_W_m + Eigen::Vector3d(0.3, 0.1, 0.4);
+    state.w_WB_B_rad_s = {2.0, 9.0, -3.0};
+    physics.set_state(state);
+  }
+  Wrench push;
+  push.torque_W_nm = {0.02, 0.05, 0.0};
+  for (int k = 0; k < 1000; ++k) physics.step(push);
+  return physics.state();
+}
+
+bool same_bits(const BodyState& a, const BodyState& b) {
+  return a.p_WB_m == b.p_WB_m && a.q_WB.coeffs() == b.q_WB.coeffs() && a.v_WB_m_s == b.v_WB_m_s &&
+         a.w_WB_B_rad_s == b.w_WB_B_rad_s;
+}
+
+TEST(BuiltSituation, WhatTheEngineIsSparedChangesNoBit) {
+  Situation swinging = roll_along(1.0);
+  swinging.robot.type = "pendulum";
+  swinging.motion = {"swing", {}};
+  for (const Situation& situation : {tumble_down(1.0, 100.0), roll_along(1.0), swinging}) {
+    SCOPED_TRACE(situation.robot.type);
+    const BuiltSituation spared = built(situation);
+    engine::World whole = engine::copy_of(spared.world());
+    ASSERT_NE(whole.model->opt.enableflags | whole.model->opt.disableflags, 0);
+    whole.model->opt.enableflags = whole.model->opt.disableflags = 0;
+    engine::World other = engine::copy_of(whole);
+    other.model->opt.gravity[2] *= 1.0 + 1e-9;
+    const BodyState expected = fallen(std::move(whole));
+    EXPECT_TRUE(same_bits(fallen(engine::copy_of(spared.world())), expected));
+    EXPECT_FALSE(same_bits(fallen(std::move(other)), expected));  // and a bit would be seen
+  }
+}
+
 }  // namespace
 }  // namespace tumble::sim

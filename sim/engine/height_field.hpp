@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <mujoco/mujoco.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+/// A height field of the engine and a strut above it, in the axes of the field's geom, which are those of the world.
+namespace tumble::sim::engine {
+
+/// Heights over a regular grid; a column leads along x.
+struct Field {
+  const float* heights;
+  int rows, columns;
+  double half_x_m, half_y_m, scale_m, base_m, cell_x_m, cell_y_m;
+
+  Field(const mjModel& model, int geom) {
+    const int id = model.geom_dataid[geom];
+    const mjtNum* size = model.hfield_size + 4 * id;
+    heights = model.hfield_data + model.hfield_adr[id];
+    rows = model.hfield_nrow[id];
+    columns = model.hfield_ncol[id];
+    half_x_m = size[0];
+    half_y_m = size[1];
+    scale_m = size[2];
+    base_m = size[3];
+    cell_x_m = 2.0 * half_x_m / (columns - 1);
+    cell_y_m = 2.0 * half_y_m / (rows - 1);
+  }
+  double x_m(int column) const { return cell_x_m * column - half_x_m; }
+  double y_m(int row) const { return cell_y_m * row - half_y_m; }
+  double height_m(int row, int column) const { return scale_m * heights[row * columns + column]; }
+};
+
+/// A capsule: its axis from one end to the other, its radius, and how far from its axis it is asked for.
+struct Strut {
+  Eigen::Vector3d from_m, along_m;
+  double radius_m, reach_m;
+
+  Strut(const mjModel& model, const mjData& data, int field, int capsule) {
+    using Map = Eigen::Map<const Eigen::Vector3d>;
+    const mjtNum* turn = data.geom_xmat + 9 * capsule;
+    const Eigen::Vector3d middle_m = Map(data.geom_xpos + 3 * capsule) - Map(data.geom_xpos + 3 * field);
+    const Eigen::Vector3d half_m = model.geom_size[3 * capsule + 1] * Eigen::Vector3d(turn[2], turn[5], turn[8]);
+    from_m = middle_m - half_m;
+    along_m = 2.0 * half_m;
+    radius_m = model.geom_size[3 * capsule];
+    constexpr double kSlack_m = 1e-6;  // more than all rounding here
+    reach_m = radius_m + kSlack_m;
+  }
+  bool finite() const { return from_m.allFinite() && along_m.allFinite(); }
+  Eigen::Vector3d at_m(double share) const { return from_m + share * along_m; }
+  double lowest_m(int axis) const { return from_m[axis] + std::min(0.0, along_m[axis]) - reach_m; }
+  double highest_m(int axis) const { return from_m[axis] + std::max(0.0, along_m[axis]) + reach_m; }
+};
+
+/// Shares of the axis from the first to the last; none when they are the wrong way round.
+struct Part {
+  double first = 0.0, last = 1.0;
+  bool none() const { return first > last; }
+
+  /// The share of it whose coordinate lies between the two, the reach added to both sides.
+  Part within(const Strut& strut, int axis, double low_m, double high_m) const {
+    const double from_m = strut.from_m[axis], along_m = strut.along_m[axis];
+    low_m -= strut.reach_m;
+    high_m += strut.reach_m;
+    if (std::abs(along_m) < 1e-12) return from_m < low_m || from_m > high_m ? Part{1.0, 0.0} : *this;
+    const double a = (low_m - from_m) / along_m, b = (high_m - from_m) / along_m;
+    return {std::max(first, std::min(a, b)), std::min(last, std::max(a, b))};
+  }
+};
+
+/// First and last cell, in one direction, that a strut's box overlaps; none when they are the wrong way round.
+struct Cells {
+  int first, last;
+  Cells(double low_m, double high_m, double half_m, double cell_m, int count)
+      : first(static_cast<int>(std::clamp(std::floor((low_m + half_m) / cell_m), 0.0, static_cast<double>(count)))),
+        last(static_cast<int>(std::clamp(std::floor((high_m + half_m) / cell_m), -1.0, count - 1.0))) {}
+};
+
+}  // namespace tumble::sim::engine
