@@ -67,11 +67,9 @@ bool error_in_bin(const Estimate& estimate, const ScoringInput& input, double& v
     if (!(own >= edges<kAxis>()[kBin] && own < edges<kAxis>()[kBin + 1])) continue;
     if (const auto sample = truth.at(rate.time_ns)) norms.push_back((rate.w_WI_I_rad_s - sample->rate_rad_s).norm());
   }
-  if (norms.empty()) return false;
-  // one NaN spoils the figure instead of leaving it
-  const bool finite = std::all_of(norms.begin(), norms.end(), [](double v) { return std::isfinite(v); });
-  value = finite ? quantile(norms, kPercent / 100.0) : std::numeric_limits<double>::quiet_NaN();
-  return true;
+  const std::optional<double> found = quantile_of_all(norms, kPercent / 100.0);
+  if (found) value = *found;
+  return found.has_value();
 }
 
 template <Axis kAxis, std::size_t kBin>

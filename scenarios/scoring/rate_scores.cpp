@@ -26,12 +26,10 @@ std::vector<double> error_norms_rad_s(const Estimate& estimate, const ScoringInp
   return norms;
 }
 
-// one NaN spoils the figure instead of leaving it
 bool quantile_of(const std::vector<double>& values, double share, double& value) {
-  if (values.empty()) return false;
-  const bool finite = std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
-  value = finite ? quantile(values, share) : std::numeric_limits<double>::quiet_NaN();
-  return true;
+  const std::optional<double> found = quantile_of_all(values, share);
+  if (found) value = *found;
+  return found.has_value();
 }
 
 bool clipped_median(const Estimate& estimate, const ScoringInput& input, double& value) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenarios/recordings/upper_median.hpp"
+
 namespace tumble::scenarios {
 
 namespace {
@@ -27,13 +29,6 @@ Side side_of(std::size_t i) {
 
 double plane_at(const ReferenceRail& rail, const Side& side, const Eigen::Vector3d& y) {
   return rail.rail_rad_s + rail.slopes[0] * y[side.first] + rail.slopes[1] * y[side.second];
-}
-
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// s y_j = r + c . y, slopes held to zero by their prior.
@@ -60,7 +55,7 @@ ReferenceRail find_rail(const Side& side, std::span<const Eigen::Vector3d> readi
     extreme = std::max(extreme, side.sign * reading[k][side.axis]);
     if (reference[k].allFinite()) errors.push_back(std::abs(reading[k][side.axis] - reference[k][side.axis]));
   }
-  const double beyond = std::max(kBeyondShare * extreme, kBeyondErrors * median_of(std::move(errors)));
+  const double beyond = std::max(kBeyondShare * extreme, kBeyondErrors * upper_median(std::move(errors)));
   std::vector<Eigen::Vector3d> held;
   std::size_t near = 0;
   for (std::size_t k = 0; k < reading.size(); ++k) {

@@ -33,10 +33,9 @@ double error_axis(const Eigen::Vector3d& estimate, const Eigen::Vector3d& refere
 using ErrorOf = double (*)(const Eigen::Vector3d&, const Eigen::Vector3d&);
 
 bool quantile_of(const std::vector<double>& values, double share, double& value) {
-  if (values.empty()) return false;
-  const bool finite = std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
-  value = finite ? quantile(values, share) : std::numeric_limits<double>::quiet_NaN();
-  return true;
+  const std::optional<double> found = quantile_of_all(values, share);
+  if (found) value = *found;
+  return found.has_value();
 }
 
 /// Of the estimate at clipped samples; of one axis, at the samples at which that axis clips.

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/recordings/upper_median.hpp"
 #include "scenarios/scoring/families.hpp"
 #include "scenarios/scoring/truth_track.hpp"
 
@@ -158,9 +159,7 @@ bool delay(const Estimate& estimate, const ScoringInput& input, double& value) {
     delays_s.push_back(1e-9 * static_cast<double>(std::max<std::int64_t>(first->begin_ns - event.begin_ns, 0)));
   }
   if (delays_s.empty()) return false;
-  const auto middle = delays_s.begin() + static_cast<std::ptrdiff_t>(delays_s.size() / 2);
-  std::nth_element(delays_s.begin(), middle, delays_s.end());
-  value = *middle;
+  value = upper_median(std::move(delays_s));
   return true;
 }
 

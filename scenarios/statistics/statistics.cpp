@@ -43,6 +43,12 @@ double quantile(std::span<const double> values, double share) {
   return quantile_of_sorted(sorted_numbers(values), share);
 }
 
+std::optional<double> quantile_of_all(std::span<const double> values, double share) {
+  if (values.empty()) return std::nullopt;
+  const bool finite = std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+  return finite ? quantile(values, share) : kNaN;
+}
+
 Interval median_interval(std::span<const double> values) {
   const std::vector<double> sorted = sorted_numbers(values);
   const auto n = static_cast<double>(sorted.size());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,6 +17,17 @@ struct Interval {
 /// An infinite value ranks as what it is (a failure counts as the worst of all), so a quantile may be infinite. `share`
 /// in [0, 1].
 double quantile(std::span<const double> values, double share);
+/// The same of values all of which count: one that is not finite spoils the figure instead of leaving it, NaN. Nothing
+/// when there are none.
+std::optional<double> quantile_of_all(std::span<const double> values, double share);
+
+/// Median of one number of each row; as `quantile`.
+template <class Row>
+double median_of(const std::vector<Row>& rows, double Row::*member) {
+  std::vector<double> values;
+  for (const Row& row : rows) values.push_back(row.*member);
+  return quantile(values, 0.5);
+}
 
 /// Median with its distribution-free interval from order statistics (binomial); infinite ends when too few values.
 Interval median_interval(std::span<const double> values);

@@ -52,12 +52,6 @@ std::vector<Pair> pairs_of(const MetricSummary& own, const MetricSummary& other,
   return pairs;
 }
 
-double median(const std::vector<Pair>& pairs, double Pair::*member) {
-  std::vector<double> values;
-  for (const Pair& pair : pairs) values.push_back(pair.*member);
-  return quantile(values, 0.5);
-}
-
 /// Less the other; nothing where both failed.
 double less(double own, double other) {
   return own == other ? 0.0 : own - other;
@@ -116,8 +110,8 @@ class Comparing {
     if (pairs.empty()) return;
     MetricComparison row{contest, name};
     row.pairs = static_cast<std::int64_t>(pairs.size());
-    row.median = median(pairs, &Pair::own);
-    row.against_median = median(pairs, &Pair::other);
+    row.median = median_of(pairs, &Pair::own);
+    row.against_median = median_of(pairs, &Pair::other);
     std::vector<double> raw, worse_by;
     for (const Pair& pair : pairs) {
       worse_by.push_back(less(how_bad(info, pair.own), how_bad(info, pair.other)));

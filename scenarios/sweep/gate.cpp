@@ -81,12 +81,6 @@ double chance_beyond(std::vector<double> differences, double margin) {
   return signed_rank_chance(differences);
 }
 
-double median_of(const std::vector<Pair>& pairs, double Pair::*member) {
-  std::vector<double> values;
-  for (const Pair& pair : pairs) values.push_back(pair.*member);
-  return quantile(values, 0.5);
-}
-
 /// Whether a draw is worse than any accepted one was, beyond the allowed; the fault says which.
 void hold_worst_draw(const MetricInfo& info, const std::vector<Pair>& pairs, const GatePolicy& policy,
                      GateResult& result) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Sources cite the equations of docs/maths as "mapping.md (R5)" or "mapping.md (R5), (R7)": every such equation stands
-// there, under its number, at the end of a line; every note is cited by the code that it derives.
+// there once, under its number, at the end of an indented line; every note is cited by the code that it derives. The
+// files that CONTRIBUTING names are there.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -31,13 +32,28 @@ std::string text_of(const fs::path& file) {
   return out.str();
 }
 
-std::set<std::string> defined_in(const std::string& text) {
-  static const std::regex number(R"(\(([A-Z]{1,2}[0-9]+)\)\s*$)");
-  std::set<std::string> out;
+/// Lines of prose that end in a number mention an equation; those of the note's equations are indented.
+std::multiset<std::string> definitions_in(const std::string& text) {
+  static const std::regex number(R"(^    .*\(([A-Z]{1,2}[0-9]+)\)\s*$)");
+  std::multiset<std::string> out;
   std::istringstream lines(text);
   std::smatch match;
   for (std::string line; std::getline(lines, line);)
     if (std::regex_search(line, match, number)) out.insert(match[1]);
+  return out;
+}
+
+std::set<std::string> defined_in(const std::string& text) {
+  const std::multiset<std::string> all = definitions_in(text);
+  return {all.begin(), all.end()};
+}
+
+/// Numbers that stand under two equations.
+std::set<std::string> defined_twice(const std::string& text) {
+  const std::multiset<std::string> all = definitions_in(text);
+  std::set<std::string> out;
+  for (const std::string& number : all)
+    if (all.count(number) > 1) out.insert(number);
   return out;
 }
 
@@ -66,8 +82,12 @@ std::string complaint(const Citation& citation, const Notes& notes) {
 
 Notes notes_of_the_tree() {
   Notes out;
-  for (const auto& entry : fs::directory_iterator(tumble::test::source_dir() / "docs" / "maths"))
-    if (entry.path().extension() == ".md") out[entry.path().filename()] = defined_in(text_of(entry.path()));
+  for (const auto& entry : fs::directory_iterator(tumble::test::source_dir() / "docs" / "maths")) {
+    if (entry.path().extension() != ".md") continue;
+    const std::string text = text_of(entry.path());
+    EXPECT_EQ(defined_twice(text), std::set<std::string>()) << entry.path();
+    out[entry.path().filename()] = defined_in(text);
+  }
   return out;
 }
 
@@ -95,8 +115,34 @@ TEST(Citations, EveryCitedEquationIsThereAndEveryNoteIsCited) {
   }
 }
 
+/// Files with a folder before them that a text names in backticks and the tree does not have.
+std::vector<std::string> absent_files(const std::string& text) {
+  static const std::regex named(R"(`([A-Za-z0-9_.]+/[A-Za-z0-9_./]+\.(cpp|hpp|md|yaml|txt|py|csv|sh)(:[0-9]+)?)`)");
+  static const std::regex placeholder(R"(\b[A-Z]{2,}\b(?)");
+  const fs::path root = tumble::test::source_dir();
+  std::vector<std::string> out;
+  for (std::sregex_iterator it(text.begin(), text.end(), named), end; it != end; ++it) {
+    const std::string name = (*it)[1];
+    // a header of the library is named as it is included, a module of the package as it is imported
+    if (!std::regex_search(name, placeholder) && !fs::exists(root / name) &&
+        !fs::exists(root / "estimator" / "include" / name) && !fs::exists(root / "python" / "src" / name))
+      out.push_back(name);
+  }
+  return out;
+}
+
+TEST(Citations, FilesThatContributingNamesAreThere) {
+  const std::string text = text_of(tumble::test::source_dir() / "CONTRIBUTING.md");
+  ASSERT_FALSE(text.empty());
+  EXPECT_EQ(absent_files(text), std::vector<std::string>());
+  EXPECT_EQ(absent_files("in `docs/design.md`, `scenarios/absent.cpp` and `tests/tree.hpp:12`"),
+            (std::vector<std::string>{"scenarios/absent.cpp", "tests/tree.hpp:12"}))
+      << "lines move, names stay";
+}
+
 TEST(Citations, CheckerFindsWhatIsMissing) {
-  const Notes notes = {{"mapping.md", defined_in("p = 1   (R1)\nsee (R2) here\nq = 2 (R3)  \n")}};
+  const Notes notes = {{"mapping.md", defined_in("    p = 1   (R1)\nsee (R2) here, or\n(R2)\n    q = 2 (R3)  \n")}};
+  EXPECT_EQ(defined_twice("    p = 1 (R1)\n    q = 2 (R2)\nas (R2)\n    r = 3 (R1)\n"), std::set<std::string>{"R1"});
   EXPECT_EQ(notes.at("mapping.md"), (std::set<std::string>{"R1", "R3"}));
   const auto found = cited_in("/// By mapping.md (R1),\n  /// (R3) and (R2); rolling.md (R1).");
   ASSERT_EQ(found.size(), 4u);

@@ -13,8 +13,8 @@ enum class Moving { drawn, left_out };
 
 /// Pictures and plots of a draw that has been run: the robot along its way, a film strip, the maps of the baseline and
 /// of the method of our own that comes first, coloured by error, its replay, and the plots that its robot and methods
-/// give something to; and, when asked for, a moving picture, which costs more than all else. `choice` and `made_of` stay
-/// empty. Throws BadInput or std::runtime_error where nothing can be drawn.
+/// give something to; and, when asked for, a moving picture, which costs more than all else. `choice` and `made_of`
+/// stay empty. Throws BadInput or std::runtime_error where nothing can be drawn.
 Example example_of(const scenarios::RunResult& run, Moving moving);
 
 }  // namespace tumble::tools

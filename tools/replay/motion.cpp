@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "scenarios/recordings/upper_median.hpp"
 #include "scenarios/scoring/truth_track.hpp"
 #include "tools/pictures/paths.hpp"
 
@@ -74,11 +75,7 @@ Motion::Motion(const std::vector<std::int64_t>& time_ns, const std::vector<Isome
     p_WB_m_.push_back(T_WB[i].translation());
     q_WB_.emplace_back(T_WB[i].linear());
   }
-  if (!steps_ns.empty()) {
-    const auto middle = steps_ns.begin() + static_cast<std::ptrdiff_t>(steps_ns.size() / 2);
-    std::nth_element(steps_ns.begin(), middle, steps_ns.end());
-    gap_ns_ = std::max(kGap_ns, 4 * *middle);
-  }
+  if (!steps_ns.empty()) gap_ns_ = std::max(kGap_ns, 4 * scenarios::upper_median(std::move(steps_ns)));
 }
 
 std::optional<Isometry3d> Motion::at(std::int64_t time_ns) const {

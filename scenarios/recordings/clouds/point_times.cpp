@@ -8,6 +8,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/clouds/sweep_builder.hpp"
 #include "scenarios/recordings/number_text.hpp"
+#include "scenarios/recordings/upper_median.hpp"
 #include "sim/parameters.hpp"
 
 namespace tumble::scenarios {
@@ -80,12 +81,6 @@ std::pair<double, double> reach(const Cloud& cloud, const std::string& field) {
   return out;
 }
 
-double middle(std::vector<double> values) {
-  const auto place = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), place, values.end());
-  return *place;
-}
-
 bool fits(double span, const Unit& unit, double period_ns) {
   return span * unit.ns > kSpanMin * period_ns && span * unit.ns <= kSpanMax * period_ns;
 }
@@ -146,11 +141,11 @@ PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t per
   if (rule.field.empty() || spans.empty()) return {};
   const std::string unit = reading.time_unit;
   const auto* named = std::find_if(kUnits.begin(), kUnits.end(), [&](const Unit& each) { return unit == each.name; });
-  const double span = middle(spans), period = static_cast<double>(period_ns);
+  const double span = upper_median(spans), period = static_cast<double>(period_ns);
   if (!unit.empty() && named == kUnits.end())
     throw BadInput("the unit of times is '" + unit + "', must be s, ms, us or ns");
   if (unit.empty()) named = unit_of_name(lower(rule.field));
-  if (named != nullptr && named != kUnits.end() && middle(points) >= kPointsThatSpan)
+  if (named != nullptr && named != kUnits.end() && upper_median(points) >= kPointsThatSpan)
     require_no_other_unit(*named, span, period, rule.field, where);
   rule.unit_ns =
       named != nullptr && named != kUnits.end() ? named->ns : unit_by_size(span, largest, period, rule.field, where);

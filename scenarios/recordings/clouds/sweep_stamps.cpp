@@ -10,6 +10,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/table_file.hpp"
+#include "scenarios/recordings/upper_median.hpp"
 
 namespace tumble::scenarios {
 
@@ -160,9 +161,7 @@ std::int64_t median_step_ns(const std::vector<std::int64_t>& times_ns) {
   if (times_ns.size() < 2) return 0;
   std::vector<std::int64_t> steps;
   for (std::size_t i = 1; i < times_ns.size(); ++i) steps.push_back(times_ns[i] - times_ns[i - 1]);
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return upper_median(std::move(steps));
 }
 
 }  // namespace tumble::scenarios

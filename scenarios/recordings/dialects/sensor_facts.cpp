@@ -7,6 +7,8 @@
 #include <map>
 #include <vector>
 
+#include "scenarios/recordings/upper_median.hpp"
+
 namespace tumble::scenarios {
 
 namespace {
@@ -52,9 +54,7 @@ int columns_of(const sim::LidarRecord& lidar) {
     }
   }
   if (steps.empty()) return 1;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return std::max(1, static_cast<int>(std::lround(static_cast<double>(lidar.sweep_period_ns) / *middle)));
+  return std::max(1, static_cast<int>(std::lround(static_cast<double>(lidar.sweep_period_ns) / upper_median(steps))));
 }
 
 LidarFacts facts_of(const sim::LidarRecord& lidar, const std::string& robot) {

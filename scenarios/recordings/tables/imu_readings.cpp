@@ -8,6 +8,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/clouds/sweep_stamps.hpp"
+#include "scenarios/recordings/upper_median.hpp"
 
 namespace tumble::scenarios {
 
@@ -20,11 +21,10 @@ constexpr double kLeastMedian_m_s2 = 3.0, kLargestMedian_m_s2 = 30.0;
 void require_plausible_force(const std::string& where, const sim::ImuRecord& imu, AccelUnit unit) {
   std::vector<double> norms;
   for (const Eigen::Vector3d& force : imu.accel_m_s2) norms.push_back(force.norm());
-  const auto middle = norms.begin() + static_cast<std::ptrdiff_t>(norms.size() / 2);
-  std::nth_element(norms.begin(), middle, norms.end());
-  if (*middle >= kLeastMedian_m_s2 && *middle <= kLargestMedian_m_s2) return;
+  const double middle = upper_median(std::move(norms));
+  if (middle >= kLeastMedian_m_s2 && middle <= kLargestMedian_m_s2) return;
   const char* read_as = unit == AccelUnit::g ? "g" : "m/s^2";
-  throw BadInput(where + ": read in " + read_as + " the median specific force is " + std::to_string(*middle) +
+  throw BadInput(where + ": read in " + read_as + " the median specific force is " + std::to_string(middle) +
                  " m/s^2, must be within 3 and 30: is the file in " + (unit == AccelUnit::g ? "m/s^2" : "g") + "?");
 }
 

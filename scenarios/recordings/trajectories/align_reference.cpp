@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "scenarios/recordings/trajectories/reference_rate.hpp"
+#include "scenarios/recordings/upper_median.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble::scenarios {
@@ -77,13 +78,6 @@ double correlation(const std::vector<Pair>& pairs, const std::vector<double>& sp
   return spread > 0.0 ? (n * ab - a * b) / std::sqrt(spread) : -1.0;
 }
 
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// One Gauss-Newton step of the delay on |w| of the samples [first, end); speeds a little earlier and later give
 /// the slope.
 double delay_step(const std::vector<Pair>& pairs, const std::array<std::vector<double>, 3>& speeds, std::size_t first,
@@ -93,7 +87,7 @@ double delay_step(const std::vector<Pair>& pairs, const std::array<std::vector<d
     const double error = pairs[k].speed_rad_s - speeds[1][k];
     if (std::isfinite(error)) sizes.push_back(std::abs(error));
   }
-  const double bound = 3.0 * median_of(std::move(sizes));
+  const double bound = 3.0 * upper_median(std::move(sizes));
   double gg = 0.0, ge = 0.0;
   for (std::size_t k = first; k < end; ++k) {
     const double slope = (speeds[2][k] - speeds[0][k]) / (2.0 * kSlopeStep_s),
