@@ -127,7 +127,8 @@ TEST(BuiltSituation, WhatTheEngineIsSparedChangesNoBit) {
     ASSERT_NE(whole.model->opt.enableflags | whole.model->opt.disableflags, 0);
     whole.model->opt.enableflags = whole.model->opt.disableflags = 0;
     for (int i = 0; i < whole.model->ngeom; ++i) {  // a box as the compiler gives one
-      if (whole.model->geom_type[i] == mjGEOM_HFIELD) std::fill_n(whole.model->geom_aabb + 6 * i + 3, 3, 30.0);
+      if (whole.model->geom_type[i] == mjGEOM_HFIELD)
+        std::fill(whole.model->geom_aabb + 6 * i + 3, whole.model->geom_aabb + 6 * i + 6, 30.0);
     }
     engine::World other = engine::copy_of(whole);
     other.model->opt.gravity[2] *= 1.0 + 1e-9;
