@@ -48,6 +48,11 @@ void spare_work(mjModel& model) {
   model.opt.enableflags |= mjENBL_SLEEP;
   std::fill(model.tree_sleep_policy, model.tree_sleep_policy + model.ntree, static_cast<int>(mjSLEEP_NEVER));
   model.opt.disableflags |= mjDSBL_ISLAND;  // one robot is one island
+  // a height field is under every strut: its box is not asked for, as that of a plane is not
+  for (int i = 0; i < model.ngeom; ++i) {
+    if (model.geom_type[i] == mjGEOM_HFIELD)
+      std::fill(model.geom_aabb + 6 * i + 3, model.geom_aabb + 6 * i + 6, mjMAXVAL);
+  }
   const auto touching = [&](bool moves) {
     int count = 0;
     for (int i = 0; i < model.ngeom; ++i) {
