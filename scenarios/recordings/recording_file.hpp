@@ -54,6 +54,9 @@ void write_recording(const std::filesystem::path& path, const RecordingInfo& inf
 /// their digest.
 RecordingInfo read_info(const std::filesystem::path& path);
 sim::Sensors read_sensors(const std::filesystem::path& path);
+/// The same with the points set aside in `scratch`, a store for each lidar, whose records then hold none.
+sim::Sensors read_sensors(const std::filesystem::path& path, const std::filesystem::path& scratch,
+                          std::vector<PointStore>& points);
 sim::Truth read_truth(const std::filesystem::path& path);
 
 }  // namespace tumble::scenarios

@@ -44,6 +44,8 @@ struct BagWriting {
   std::vector<BagTrack> tracks = {};  ///< estimates; names differ from each other, from the sensors' and from "truth"
   std::vector<BagCloud> clouds = {};
   SweepLayout sweeps = own_sweep_layout();
+  /// Of each lidar, where its points are set aside; null: they are in the records.
+  const std::vector<PointStore>* points = nullptr;
   std::optional<ReaderNames> names = {};  ///< given: the first IMU and the first lidar alone, under these
 };
 

@@ -10,6 +10,7 @@
 #include "scenarios/recordings/bags/bag_messages.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
 #include "scenarios/recordings/bags/sweep_messages.hpp"
+#include "scenarios/recordings/export.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"
 
 namespace tumble::scenarios {
@@ -24,7 +25,7 @@ constexpr double kMore_mib = 120.0 * kPoints * 26.0 / (1 << 20);
 constexpr double kGrowth_mib = kMore_mib / 10.0;
 
 struct Kind {
-  const char* name;
+  const char *name, *format;
   std::unique_ptr<BagWriter> (*writer)(const std::filesystem::path&);
   Imported (*read)(const std::filesystem::path&, const BagReading&);
 };
@@ -72,6 +73,7 @@ double peak_mib(const std::function<void()>& work) {
 class BoundedMemory : public fixture::Folder, public testing::WithParamInterface<Kind> {
  protected:
   std::filesystem::path bag(int sweeps) const { return folder_ / ("bag" + std::to_string(sweeps)); }
+  std::filesystem::path recording(int sweeps) const { return folder_ / (std::to_string(sweeps) + ".h5"); }
   double import_mib(int sweeps, bool aside) {
     return peak_mib([&] {
       BagReading reading;
@@ -93,10 +95,27 @@ TEST_P(BoundedMemory, AnImportDoesNotGrowWithTheBag) {
   EXPECT_GT(import_mib(kLong, false) - import_mib(kShort, false), kMore_mib);
 }
 
+TEST_P(BoundedMemory, AnExportDoesNotGrowWithTheRecording) {
+  for (const int sweeps : {kShort, kLong}) {
+    write_bag(*GetParam().writer(bag(sweeps)), sweeps);
+    ASSERT_GT(import_mib(sweeps, true), 0.0);
+    std::filesystem::rename(folder_ / "out.h5", recording(sweeps));
+  }
+  const auto export_mib = [&](int sweeps, bool whole) {
+    BesideSensors beside;
+    if (whole) beside.more = [](const sim::Sensors&, BagWriting&) {};  // wants the points
+    const std::filesystem::path out = folder_ / (whole ? "whole" : "out");
+    std::filesystem::remove_all(out);
+    return peak_mib([&] { export_recording(recording(sweeps), GetParam().format, out, beside); });
+  };
+  EXPECT_LT(export_mib(kLong, false) - export_mib(kShort, false), kGrowth_mib);
+  EXPECT_GT(export_mib(kLong, true) - export_mib(kShort, true), kMore_mib / 2.0);
+}
+
 INSTANTIATE_TEST_SUITE_P(Kinds, BoundedMemory,
-                         testing::Values(Kind{"Ros1", make_ros1_writer, import_ros1_bag},
-                                         Kind{"Ros2", make_ros2_writer, import_ros2_bag},
-                                         Kind{"Mcap", make_mcap_writer, import_mcap}),
+                         testing::Values(Kind{"Ros1", "rosbag1", make_ros1_writer, import_ros1_bag},
+                                         Kind{"Ros2", "rosbag2", make_ros2_writer, import_ros2_bag},
+                                         Kind{"Mcap", "mcap", make_mcap_writer, import_mcap}),
                          [](const auto& kind) { return std::string(kind.param.name); });
 
 }  // namespace

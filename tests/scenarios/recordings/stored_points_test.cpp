@@ -6,6 +6,7 @@
 #include <csignal>
 
 #include "scenarios/recordings/bags/bag.hpp"
+#include "scenarios/recordings/export.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 
@@ -54,6 +55,30 @@ TEST_F(StoredPoints, GiveTheSameFile) {
   changed.points[1].ring.change([](std::uint16_t& ring) { ring ^= 1; });
   write_recording(folder_ / "stored.h5", changed.info, changed.sensors, changed.points, nullptr);
   EXPECT_NE(read_info(folder_ / "stored.h5").digest, read_info(folder_ / "held.h5").digest);
+}
+
+TEST_F(StoredPoints, AreReadFromARecordingAndGiveTheSameBag) {
+  const Imported held = read("");
+  write_recording(folder_ / "a.h5", held.info, held.sensors, nullptr);
+  std::vector<PointStore> points;
+  const sim::Sensors sensors = read_sensors(folder_ / "a.h5", folder_, points);
+  EXPECT_EQ(sensors.lidars.at(0).range_m.size(), 0u);
+  EXPECT_EQ(points.at(0).range_m.rows(0, points[0].size()), held.sensors.lidars[0].range_m);
+  EXPECT_EQ(digest(sensors, points, nullptr), digest(held.sensors, nullptr));
+  export_mcap(held.sensors, {held.info.origin_ns}, folder_ / "held.mcap");
+  export_recording(folder_ / "a.h5", "mcap", folder_ / "stored.mcap");
+  EXPECT_TRUE(fixture::bytes_of(folder_ / "stored.mcap") == fixture::bytes_of(folder_ / "held.mcap"));
+  export_recording(folder_ / "a.h5", "rosbag2", folder_ / "new/folders/bag");
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "new/folders/bag/metadata.yaml"));
+  // damage is found on this way too
+  std::string bytes = fixture::bytes_of(folder_ / "a.h5");
+  const float first = held.sensors.lidars[0].range_m[1000];
+  const std::size_t at = bytes.find(std::string(reinterpret_cast<const char*>(&first), sizeof(first)));
+  ASSERT_NE(at, std::string::npos);
+  bytes[at] = static_cast<char>(bytes[at] ^ 1);
+  fixture::put(folder_ / "a.h5", bytes);
+  EXPECT_THAT(fixture::complaint([&] { read_sensors(folder_ / "a.h5", folder_, points); }),
+              HasSubstr("damaged or changed"));
 }
 
 TEST_F(StoredPoints, AreHeldAgainstTheirSweeps) {
