@@ -218,6 +218,9 @@ void DiskFile::close() {
     throw BadInput(name_ + ": cannot be composed");
   std::filesystem::resize_file(path_, stated_length(head.data()), error);
   if (error) throw BadInput(name_ + ": cannot be written: " + error.message());
+  // a close that failed half-way says nothing: superblock and length agree only of a whole file
+  if (!Handle(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose).valid())
+    throw BadInput(name_ + ": cannot be composed" + last_error());
 }
 
 }  // namespace tumble::scenarios::hdf5

@@ -2,7 +2,9 @@
 #include "scenarios/recordings/bags/bag_stamps.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
+#include <limits>
 
 #include "scenarios/errors.hpp"
 
@@ -17,26 +19,26 @@ constexpr std::int64_t kAhead_ns = 10'000'000;
 constexpr std::int64_t kSteady_ns = 500'000'000;
 
 std::string seconds(std::int64_t time_ns) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.6g s", 1e-9 * static_cast<double>(time_ns));
-  return text;
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.6g s", 1e-9 * static_cast<double>(time_ns));
+  return text.data();
 }
 
 /// The last that a header can state.
 constexpr std::int64_t kLast_ns = 4294967295 * kSecond_ns;
 
-/// What a stamp does after the one before.
-std::string course(std::int64_t before_ns, std::int64_t now_ns) {
-  if (now_ns > before_ns) return "rises by " + seconds(now_ns - before_ns);
-  if (now_ns < before_ns) return "goes back by " + seconds(before_ns - now_ns);
-  return now_ns == 0 ? "is 0, as the one before" : "stands still";
+/// From one stamp to another; those of hostile messages lie anywhere.
+std::int64_t between(std::int64_t from_ns, std::int64_t to_ns) {
+  std::int64_t step_ns = 0;
+  if (!__builtin_sub_overflow(to_ns, from_ns, &step_ns)) return step_ns;
+  return to_ns > from_ns ? std::numeric_limits<std::int64_t>::max() : std::numeric_limits<std::int64_t>::min();
 }
 
-/// Stamps of hostile messages lie anywhere.
-std::int64_t lag_of(std::int64_t header_ns, std::int64_t record_ns) {
-  std::int64_t lag = 0;
-  if (!__builtin_sub_overflow(record_ns, header_ns, &lag)) return lag;
-  return record_ns > header_ns ? INT64_MAX : INT64_MIN;
+/// What a stamp does after the one before.
+std::string course(std::int64_t before_ns, std::int64_t now_ns) {
+  if (now_ns > before_ns) return "rises by " + seconds(between(before_ns, now_ns));
+  if (now_ns < before_ns) return "goes back by " + seconds(between(now_ns, before_ns));
+  return now_ns == 0 ? "is 0, as the one before" : "stands still";
 }
 
 }  // namespace
@@ -60,7 +62,7 @@ std::int64_t BagStamps::take(std::int64_t header_ns, std::int64_t record_ns, con
                     : by_header  ? " ('--stamps record' takes those)"
                                  : " ('--stamps header' takes those)"));
   }
-  const std::int64_t lag_ns = lag_of(header_ns, record_ns);
+  const std::int64_t lag_ns = between(header_ns, record_ns);
   least_lag_ns_ = header_ns_ ? std::min(least_lag_ns_, lag_ns) : lag_ns;
   most_lag_ns_ = header_ns_ ? std::max(most_lag_ns_, lag_ns) : lag_ns;
   header_ns_ = header_ns, record_ns_ = record_ns;
@@ -70,7 +72,7 @@ std::int64_t BagStamps::take(std::int64_t header_ns, std::int64_t record_ns, con
 std::string BagStamps::remark() const {
   if (!header_ns_ || (least_lag_ns_ > -kSaid_ns && most_lag_ns_ < kSaid_ns)) return "";
   const bool other_clock = least_lag_ns_ < -kAhead_ns || most_lag_ns_ >= kSecond_ns;
-  const bool changes = lag_of(least_lag_ns_, most_lag_ns_) > kSteady_ns;
+  const bool changes = between(least_lag_ns_, most_lag_ns_) > kSteady_ns;
   const std::string taken = source_ == StampSource::header ? "headers" : "records";
   return std::string(other_clock || changes ? "caution: " : "") + "the bag recorded its messages " +
          seconds(least_lag_ns_) + " to " + seconds(most_lag_ns_) + " after the stamps of their headers" +
