@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstring>
 #include <functional>
 
 #include "scenarios/recordings/bags/bag.hpp"
@@ -59,7 +60,7 @@ double peak_mib(const std::function<void()>& work) {
       work();
       _exit(0);
     } catch (const std::exception& error) {
-      static_cast<void>(!write(STDERR_FILENO, error.what(), std::char_traits<char>::length(error.what())));
+      static_cast<void>(!write(STDERR_FILENO, error.what(), std::strlen(error.what())));
       _exit(1);
     }
   }

@@ -4,6 +4,8 @@
 #include <sys/resource.h>
 
 #include <csignal>
+#include <cstdlib>
+#include <iostream>
 
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/export.hpp"
