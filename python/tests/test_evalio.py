@@ -231,6 +231,28 @@ def test_what_is_refused_is_left_out_aloud():
     assert any("time_order" in text for text in texts) and any("non_finite" in text for text in texts), texts
 
 
+def test_sweeps_do_not_wait_for_an_imu_without_end():
+    from tumble.evalio import Tumble
+
+    pipeline, types = Tumble(), evalio.types
+    pipeline.set_imu_params(types.ImuParams(gyro=1e-3, accel=1e-3, gravity=np.array([0, 0, -9.8]), rate=100.0))
+    pipeline.set_lidar_params(types.LidarParams(num_rows=1, num_columns=2, min_range=0.3, max_range=100.0))
+    pipeline.initialize()
+    sweep = lambda k: types.LidarMeasurement(types.Stamp(sec=k // 10, nsec=k % 10 * 100_000_000), [types.Point(x=1.0, y=2.0)])
+    for k in range(10, 110):
+        pipeline.add_lidar(sweep(k))
+    with pytest.raises(RuntimeError, match="100 sweeps wait for samples .* from 1.0.* s to 11.0.* s, .*: there was none yet"):
+        pipeline.add_lidar(sweep(110))
+    # an IMU of another clock is told from none
+    pipeline.add_imu(types.ImuMeasurement(types.Stamp(sec=0, nsec=500_000_000), np.zeros(3), np.array([0.0, 0.0, 9.8])))
+    with pytest.raises(RuntimeError, match="the last one is at 0.5"):
+        pipeline.add_lidar(sweep(110))
+    # and with one that covers them they are given
+    for k in range(100, 1200):
+        pipeline.add_imu(types.ImuMeasurement(types.Stamp(sec=k // 100, nsec=k % 100 * 10_000_000), np.zeros(3), np.array([0.0, 0.0, 9.8])))
+    pipeline.add_lidar(sweep(120))
+
+
 def test_another_abi_or_none_is_said(monkeypatch):
     from tumble.evalio.needed import needed_bindings, needed_evalio
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <span>
+
 #include "scenarios/provenance/hasher.hpp"
 #include "scenarios/recordings/recording_fields.hpp"
 #include "scenarios/recordings/recording_file.hpp"
@@ -33,6 +35,14 @@ class FieldHasher : public Hasher {
     text(name);
     count(rows.size());
     bytes(rows.data(), rows.size() * sizeof(Row));
+  }
+  template <class Row>
+  void rows(const char* name, const ColumnFile<Row>& rows, const char*, const char*, Storage) {
+    constexpr std::size_t kLength = (std::size_t{1} << 20) / sizeof(Row);
+    text(name);
+    count(rows.size());
+    rows.for_stretches(kLength,
+                       [&](std::size_t, std::span<const Row> stretch) { bytes(stretch.data(), stretch.size_bytes()); });
   }
   template <class Row>
   void optional_rows(const char* name, const std::vector<Row>& given, const char* unit, const char* columns,
@@ -75,6 +85,15 @@ std::string digest(const sim::Sensors& sensors, const sim::Truth* truth) {
   FieldHasher hasher;
   hasher.text("sensors");
   sensors_fields(hasher, sensors);
+  if (truth != nullptr) hash_truth(hasher, *truth);
+  return hasher.hex();
+}
+
+std::string digest(const sim::Sensors& sensors, const std::vector<PointStore>& points, const sim::Truth* truth) {
+  const std::vector<StoredLidarView> lidars = views_of(sensors, points);
+  FieldHasher hasher;
+  hasher.text("sensors");
+  sensors_fields(hasher, sensors, lidars);
   if (truth != nullptr) hash_truth(hasher, *truth);
   return hasher.hex();
 }

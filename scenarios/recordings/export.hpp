@@ -33,7 +33,8 @@ struct BesideSensors {
 /// `mcap` and `rosbag1` write one file, the sensors; `csv`, `pcd`, `ply`, `rosbag2` and `rosbag2_mcap` write into a
 /// folder, which is made when absent. Of bags (bag.hpp has their topics) `beside` says what else is in them. Files are
 /// replaced whole. Throws BadInput: unknown format (nearest named), a recording without what the format needs, a place
-/// that cannot be written.
+/// that cannot be written. A bag is written sweep by sweep, its points set aside beside it; in memory are the samples
+/// of the IMUs, some bytes a message, what `beside` adds, and with it the points, and of a truth all that it has.
 void export_recording(const std::filesystem::path& recording, const std::string& format,
                       const std::filesystem::path& out, const BesideSensors& beside = {});
 

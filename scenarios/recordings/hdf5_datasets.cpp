@@ -8,8 +8,6 @@ namespace tumble::scenarios::hdf5 {
 
 namespace {
 
-constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
-
 /// Deflate cannot do better than 1032 to 1. A dataset that claims more than that was never written: the library would
 /// hand out zeros for it.
 constexpr std::uint64_t kBestDeflation = 1100;
@@ -36,12 +34,24 @@ Handle creation_properties(std::size_t rows, std::size_t columns, std::size_t ro
   Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_obj_track_times(properties.get(), false);
   if (!compressed || rows == 0) return properties;
-  const std::array<hsize_t, 2> chunk = {std::min<hsize_t>(rows, std::max<std::size_t>(kChunkBytes / row_bytes, 1)),
-                                        columns};
+  const std::array<hsize_t, 2> chunk = {std::min<hsize_t>(rows, rows_in_chunk(row_bytes)), columns};
   H5Pset_chunk(properties.get(), columns == 1 ? 1 : 2, chunk.data());
   H5Pset_shuffle(properties.get());
   H5Pset_deflate(properties.get(), 1);
   return properties;
+}
+
+Handle space_of(std::size_t rows, std::size_t columns) {
+  const std::array<hsize_t, 2> extent = {rows, columns};
+  return Handle(H5Screate_simple(columns == 1 ? 1 : 2, extent.data(), nullptr), H5Sclose);
+}
+
+/// Rows from `first` on of what the dataset has in the file.
+Handle stretch_of(const Handle& dataset, std::size_t first, std::size_t rows, std::size_t columns) {
+  Handle space(H5Dget_space(dataset.get()), H5Sclose);
+  const std::array<hsize_t, 2> start = {first, 0}, count = {rows, columns};
+  H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
+  return space;
 }
 
 }  // namespace
@@ -68,22 +78,48 @@ hid_t memory_type(Scalar scalar) {
   return -1;
 }
 
-void Group::write_rows(const std::string& name, const void* data, std::size_t rows, std::size_t columns, Scalar scalar,
-                       const std::string& unit, const std::string& column_names, bool compressed) const {
-  const std::array<hsize_t, 2> extent = {rows, columns};
-  const Handle space(H5Screate_simple(columns == 1 ? 1 : 2, extent.data(), nullptr), H5Sclose);
+Handle Group::create_rows(const std::string& name, std::size_t rows, std::size_t columns, Scalar scalar,
+                          bool compressed) const {
+  const Handle space = space_of(rows, columns);
   const Handle properties = creation_properties(rows, columns, columns * size_of(scalar), compressed);
-  const hid_t type = memory_type(scalar);
-  Handle dataset(H5Dcreate2(group_.get(), name.c_str(), type, space.get(), H5P_DEFAULT, properties.get(), H5P_DEFAULT),
+  Handle dataset(H5Dcreate2(group_.get(), name.c_str(), memory_type(scalar), space.get(), H5P_DEFAULT, properties.get(),
+                            H5P_DEFAULT),
                  H5Dclose);
   if (!dataset.valid()) fail(name, "cannot be created" + last_error());
-  if (rows > 0 && H5Dwrite(dataset.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) {
-    fail(name, "cannot be written" + last_error());
-  }
+  return dataset;
+}
+
+void Group::describe_rows(Handle dataset, const std::string& name, const std::string& unit,
+                          const std::string& column_names) const {
   // attributes of a dataset are written as those of a group: both are objects of the file
   const Group object(std::move(dataset), file_, place_ + "/" + name);
   object.write_attribute("unit", unit);
   if (!column_names.empty()) object.write_attribute("columns", column_names);
+}
+
+void Group::write_rows(const std::string& name, const void* data, std::size_t rows, std::size_t columns, Scalar scalar,
+                       const std::string& unit, const std::string& column_names, bool compressed) const {
+  Handle dataset = create_rows(name, rows, columns, scalar, compressed);
+  if (rows > 0 && H5Dwrite(dataset.get(), memory_type(scalar), H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) {
+    fail(name, "cannot be written" + last_error());
+  }
+  describe_rows(std::move(dataset), name, unit, column_names);
+}
+
+void Group::write_stretch(const Handle& dataset, const std::string& name, std::size_t first, const void* data,
+                          std::size_t rows, std::size_t columns, Scalar scalar) const {
+  const Handle memory = space_of(rows, columns), space = stretch_of(dataset, first, rows, columns);
+  if (H5Dwrite(dataset.get(), memory_type(scalar), memory.get(), space.get(), H5P_DEFAULT, data) < 0) {
+    fail(name, "cannot be written" + last_error());
+  }
+}
+
+void Group::read_stretch(const Handle& dataset, const std::string& name, std::size_t first, void* data,
+                         std::size_t rows, std::size_t columns, Scalar scalar) const {
+  const Handle memory = space_of(rows, columns), space = stretch_of(dataset, first, rows, columns);
+  if (H5Dread(dataset.get(), memory_type(scalar), memory.get(), space.get(), H5P_DEFAULT, data) < 0) {
+    fail(name, "cannot be read" + last_error());
+  }
 }
 
 Handle Group::open_dataset(const std::string& name) const {

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/hdf5_file.hpp"
 
+#include <fcntl.h>
+
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <system_error>
 #include <utility>
 
@@ -13,6 +17,8 @@
 namespace tumble::scenarios::hdf5 {
 
 namespace {
+
+constexpr std::size_t kSuperblockBytes = 48;
 
 Handle open_file(const std::filesystem::path& path) {
   std::error_code error;
@@ -60,22 +66,41 @@ std::uint64_t stated_length(const void* image) {
   return length;
 }
 
-Handle create_in_memory(const std::string& name, void** image) {
-  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  constexpr std::size_t kGrowth = std::size_t{16} << 20;
+/// A new file under `label`, by the driver that `access` names.
+Handle create_file(const std::string& name, const std::string& label, const Handle& access) {
   // from 1.10 on every piece of metadata carries a checksum, so that flipped bytes are found by the library itself
-  H5FD_file_image_callbacks_t calls = keep_image_in(image);
-  if (H5Pset_fapl_core(access.get(), kGrowth, false) < 0 || H5Pset_file_image_callbacks(access.get(), &calls) < 0 ||
-      H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG) < 0 ||
+  if (H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG) < 0 ||
       H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_V110) < 0) {
     throw BadInput(name + ": cannot be prepared" + last_error());
   }
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_obj_track_times(creation.get(), false);  // equal recordings give equal files
-  // a name that is no file's: the library would read that file into memory first
-  const std::string label = name + " in memory";
   Handle file(H5Fcreate(label.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose);
   if (!file.valid()) throw BadInput(name + ": cannot be prepared" + last_error());
+  return file;
+}
+
+Handle create_in_memory(const std::string& name, void** image) {
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  constexpr std::size_t kGrowth = std::size_t{16} << 20;
+  H5FD_file_image_callbacks_t calls = keep_image_in(image);
+  if (H5Pset_fapl_core(access.get(), kGrowth, false) < 0 || H5Pset_file_image_callbacks(access.get(), &calls) < 0) {
+    throw BadInput(name + ": cannot be prepared" + last_error());
+  }
+  // a name that is no file's: the library would read that file into memory first
+  return create_file(name, name + " in memory", access);
+}
+
+Handle create_on_disk(const std::string& name, const std::filesystem::path& path, std::uint64_t most_bytes) {
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  if (H5Pset_fapl_sec2(access.get()) < 0) throw BadInput(name + ": cannot be prepared" + last_error());
+  Handle file = create_file(name, path.string(), access);
+  // only now: creating cuts the file to nothing
+  void* descriptor = nullptr;
+  if (H5Fget_vfd_handle(file.get(), H5P_DEFAULT, &descriptor) < 0)
+    throw BadInput(name + ": cannot be prepared" + last_error());
+  const int error = posix_fallocate(*static_cast<int*>(descriptor), 0, static_cast<off_t>(most_bytes));
+  if (error != 0) throw BadInput(name + ": cannot be written: " + std::generic_category().message(error));
   return file;
 }
 
@@ -174,6 +199,28 @@ std::span<const std::byte> MemoryFile::close() {
   file_ = Handle();
   if (image_ == nullptr) throw BadInput(name_ + ": cannot be composed");
   return {static_cast<const std::byte*>(image_), stated_length(image_)};
+}
+
+DiskFile::DiskFile(const std::string& name, const std::filesystem::path& path, std::uint64_t most_bytes)
+    : name_(name), path_(path), file_(create_on_disk(name, path, most_bytes)), root_(root_of(file_, name)) {}
+
+DiskFile::~DiskFile() {
+  root_ = Group();
+  file_ = Handle();
+}
+
+void DiskFile::close() {
+  root_ = Group();
+  file_ = Handle();
+  std::array<char, kSuperblockBytes> head{};
+  std::error_code error;
+  if (!std::ifstream(path_, std::ios::binary).read(head.data(), head.size()))
+    throw BadInput(name_ + ": cannot be composed");
+  std::filesystem::resize_file(path_, stated_length(head.data()), error);
+  if (error) throw BadInput(name_ + ": cannot be written: " + error.message());
+  // a close that failed half-way says nothing: superblock and length agree only of a whole file
+  if (!Handle(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose).valid())
+    throw BadInput(name_ + ": cannot be composed" + last_error());
 }
 
 }  // namespace tumble::scenarios::hdf5

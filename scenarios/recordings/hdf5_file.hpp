@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -12,6 +13,8 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "scenarios/recordings/scratch_file.hpp"
 
 /// The HDF5 C library behind handles that close themselves. Every failure is BadInput "FILE: PLACE: what"; the
 /// library's own error stack is never printed. Private to scenarios/recordings.
@@ -83,6 +86,12 @@ template <>
 struct RowLayout<Eigen::Quaterniond> : Layout<Scalar::float64, 4> {};
 static_assert(sizeof(Eigen::Vector3d) == 24 && sizeof(Eigen::Vector3f) == 12 && sizeof(Eigen::Quaterniond) == 32);
 
+/// Of a deflated dataset.
+inline constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
+constexpr std::size_t rows_in_chunk(std::size_t row_bytes) {
+  return std::max<std::size_t>(kChunkBytes / row_bytes, 1);
+}
+
 /// The library's type for a scalar in memory.
 hid_t memory_type(Scalar scalar);
 
@@ -119,6 +128,17 @@ class Group {
     write_rows(name, rows.data(), rows.size(), RowLayout<Row>::columns, RowLayout<Row>::scalar, unit, columns,
                compressed);
   }
+  /// The same of rows on the disk, chunk after chunk.
+  template <class Row>
+  void write(const std::string& name, const ColumnFile<Row>& rows, const std::string& unit, const std::string& columns,
+             bool compressed) const {
+    Handle dataset = create_rows(name, rows.size(), RowLayout<Row>::columns, RowLayout<Row>::scalar, compressed);
+    rows.for_stretches(rows_in_chunk(sizeof(Row)), [&](std::size_t first, std::span<const Row> stretch) {
+      write_stretch(dataset, name, first, stretch.data(), stretch.size(), RowLayout<Row>::columns,
+                    RowLayout<Row>::scalar);
+    });
+    describe_rows(std::move(dataset), name, unit, columns);
+  }
   /// The rows of a dataset of exactly this type of number and these columns.
   template <class Row>
   void read(const std::string& name, std::vector<Row>& rows) const {
@@ -126,12 +146,33 @@ class Group {
     rows.resize(count_rows(dataset, name, RowLayout<Row>::columns, RowLayout<Row>::scalar));
     read_rows(dataset, name, rows.data(), rows.size(), RowLayout<Row>::scalar);
   }
+  /// The same onto the disk, chunk after chunk: `rows` is empty and has a folder.
+  template <class Row>
+  void read(const std::string& name, ColumnFile<Row>& rows) const {
+    const Handle dataset = open_dataset(name);
+    const std::size_t count = count_rows(dataset, name, RowLayout<Row>::columns, RowLayout<Row>::scalar);
+    std::vector<Row> stretch;
+    for (std::size_t first = 0; first < count; first += stretch.size()) {
+      stretch.resize(std::min(rows_in_chunk(sizeof(Row)), count - first));
+      read_stretch(dataset, name, first, stretch.data(), stretch.size(), RowLayout<Row>::columns,
+                   RowLayout<Row>::scalar);
+      rows.append(std::span(std::as_const(stretch)));
+    }
+  }
   void write_texts(const std::string& name, const std::vector<std::string>& texts) const;
   std::vector<std::string> read_texts(const std::string& name) const;
 
  private:
   void write_rows(const std::string& name, const void* data, std::size_t rows, std::size_t columns, Scalar scalar,
                   const std::string& unit, const std::string& column_names, bool compressed) const;
+  Handle create_rows(const std::string& name, std::size_t rows, std::size_t columns, Scalar scalar,
+                     bool compressed) const;
+  void describe_rows(Handle dataset, const std::string& name, const std::string& unit,
+                     const std::string& column_names) const;
+  void write_stretch(const Handle& dataset, const std::string& name, std::size_t first, const void* data,
+                     std::size_t rows, std::size_t columns, Scalar scalar) const;
+  void read_stretch(const Handle& dataset, const std::string& name, std::size_t first, void* data, std::size_t rows,
+                    std::size_t columns, Scalar scalar) const;
   Handle open_dataset(const std::string& name) const;
   std::size_t count_rows(const Handle& dataset, const std::string& name, std::size_t columns, Scalar scalar) const;
   void read_rows(const Handle& dataset, const std::string& name, void* data, std::size_t rows, Scalar scalar) const;
@@ -173,6 +214,28 @@ class MemoryFile {
   Silence silence_;
   std::string name_;
   void* image_ = nullptr;  ///< set by the library's driver when the file closes
+  Handle file_;
+  Group root_;
+};
+
+/// A file composed on the disk, in the place of an empty one. The room that it will need at most is taken first, so
+/// that the library does not meet a full disk here either.
+class DiskFile {
+ public:
+  /// `name` begins the messages. Throws BadInput: no room.
+  DiskFile(const std::string& name, const std::filesystem::path& path, std::uint64_t most_bytes);
+  ~DiskFile();
+  DiskFile(const DiskFile&) = delete;
+  DiskFile& operator=(const DiskFile&) = delete;
+
+  const Group& root() const { return root_; }
+  /// Closes the file with all that is open in it and gives back the room that it did not need.
+  void close();
+
+ private:
+  Silence silence_;
+  std::string name_;
+  std::filesystem::path path_;
   Handle file_;
   Group root_;
 };

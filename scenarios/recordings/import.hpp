@@ -17,6 +17,7 @@ namespace tumble::scenarios {
 struct Imported {
   RecordingInfo info;  ///< without scenario; `attribution` says where it comes from, `origin_ns` what time 0 is
   sim::Sensors sensors;
+  std::vector<PointStore> points;       ///< of each lidar, when they were set aside (SweepReading::scratch); else empty
   std::optional<sim::Truth> reference;  ///< what another instrument saw of the motion: FORMAT.md, "References"
   std::vector<std::string> notes;       ///< remarks for the user: what was left out or assumed
 };

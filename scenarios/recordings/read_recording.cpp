@@ -13,7 +13,9 @@ namespace {
 /// Archive that reads every field out of a group.
 class Reader {
  public:
-  explicit Reader(hdf5::Group group) : group_(std::move(group)) {}
+  /// `scratch`: where columns are set aside that are not kept in memory.
+  explicit Reader(hdf5::Group group, std::filesystem::path scratch = {})
+      : group_(std::move(group)), scratch_(std::move(scratch)) {}
 
   void value(const char* name, std::string& value) { value = group_.text_attribute(name); }
   void value(const char* name, double& value) { value = group_.double_attribute(name); }
@@ -37,6 +39,11 @@ class Reader {
     group_.read(name, rows);
   }
   template <class Row>
+  void rows(const char* name, ColumnFile<Row>& rows, const char*, const char*, Storage) {
+    rows = ColumnFile<Row>(scratch_);
+    group_.read(name, rows);
+  }
+  template <class Row>
   void optional_rows(const char* name, std::vector<Row>& rows, const char*, const char*, Storage) {
     if (group_.has(name)) group_.read(name, rows);
   }
@@ -53,7 +60,7 @@ class Reader {
   void texts(const char* name, std::vector<std::string>& texts) { texts = group_.read_texts(name); }
   template <class Record, class Fields>
   void group(const char* name, Record& record, Fields&& fields) {
-    Reader inner(group_.open(name));
+    Reader inner(group_.open(name), scratch_);
     fields(inner, record);
   }
   template <class Record, class Fields>
@@ -61,7 +68,7 @@ class Reader {
     const hdf5::Group all = group_.open(name);
     const std::size_t count = all.count();
     for (std::size_t i = 0; i < count; ++i) {
-      Reader inner(all.open(std::to_string(i)));
+      Reader inner(all.open(std::to_string(i)), scratch_);
       fields(inner, records.emplace_back());
     }
   }
@@ -71,6 +78,7 @@ class Reader {
 
  private:
   hdf5::Group group_;
+  std::filesystem::path scratch_;
 };
 
 std::vector<sim::ContactTruth> from_columns(const ContactColumns& columns, const std::string& file) {
@@ -146,6 +154,24 @@ sim::Sensors read_sensors(const std::filesystem::path& path) {
   sim::Sensors sensors;
   sensors_fields(reader, sensors);
   require_sound(path.string(), find_problem(sensors), reader.digest_or_empty(), digest(sensors, nullptr));
+  return sensors;
+}
+
+sim::Sensors read_sensors(const std::filesystem::path& path, const std::filesystem::path& scratch,
+                          std::vector<PointStore>& points) {
+  const hdf5::InputFile file(path);
+  require_format(file.root());
+  Reader reader(file.root().open("sensors"), scratch);
+  sim::Sensors sensors;
+  std::vector<StoredLidar> lidars;
+  sensors_fields(reader, sensors, lidars);
+  points.clear();
+  for (StoredLidar& each : lidars) {
+    sensors.lidars.push_back(std::move(each.sweeps));
+    points.push_back(std::move(each.points));
+  }
+  require_sound(path.string(), find_problem(sensors, points), reader.digest_or_empty(),
+                digest(sensors, points, nullptr));
   return sensors;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <span>
 #include <utility>
 
 namespace tumble::scenarios {
@@ -100,9 +101,8 @@ std::string imu_problem(const sim::ImuRecord& imu) {
        imu.earth_field_W_t.allFinite() ? "" : "earth_field_W_t is not finite"});
 }
 
-std::string sweep_problem(const sim::LidarRecord& lidar) {
+std::string sweep_problem(const sim::LidarRecord& lidar, std::size_t points) {
   const std::size_t sweeps = lidar.sweep_start_ns.size();
-  const std::size_t points = lidar.position_L_m.size();
   if (sweeps == 0 && points == 0 && lidar.sweep_first.empty()) return "";
   if (lidar.sweep_first.size() != sweeps + 1) {
     return "sweep_first has " + std::to_string(lidar.sweep_first.size()) +
@@ -118,26 +118,44 @@ std::string sweep_problem(const sim::LidarRecord& lidar) {
   return "";
 }
 
-std::string point_times_problem(const sim::LidarRecord& lidar) {
-  if (lidar.point_times > sim::PointTimes::unknown) return "point_times is none of measured, not_skewed, unknown";
-  if (lidar.point_times == sim::PointTimes::measured) return "";
-  const auto& offsets = lidar.offset_ns;
+/// The first offset that is not 0, of points from `first` on.
+std::string offset_problem(std::size_t first, std::span<const std::uint32_t> offsets) {
   const auto own = std::find_if(offsets.begin(), offsets.end(), [](std::uint32_t offset) { return offset != 0; });
   if (own == offsets.end()) return "";
-  return "offset_ns is " + std::to_string(*own) + " at point " + std::to_string(own - offsets.begin()) +
+  return "offset_ns is " + std::to_string(*own) + " at point " +
+         std::to_string(first + static_cast<std::size_t>(own - offsets.begin())) +
          ", must be 0 where points have no times of their own";
 }
+std::string offset_problem(const std::vector<std::uint32_t>& offsets) {
+  return offset_problem(0, offsets);
+}
+std::string offset_problem(const ColumnFile<std::uint32_t>& offsets) {
+  constexpr std::size_t kLength = std::size_t{1} << 18;
+  std::string problem;
+  offsets.for_stretches(kLength, [&](std::size_t first, std::span<const std::uint32_t> stretch) {
+    if (problem.empty()) problem = offset_problem(first, stretch);
+  });
+  return problem;
+}
 
-std::string lidar_problem(const sim::LidarRecord& lidar) {
+template <class Offsets>
+std::string point_times_problem(const sim::LidarRecord& lidar, const Offsets& offsets) {
+  if (lidar.point_times > sim::PointTimes::unknown) return "point_times is none of measured, not_skewed, unknown";
+  return lidar.point_times == sim::PointTimes::measured ? "" : offset_problem(offsets);
+}
+
+/// `points`: the record itself, or where its points are set aside.
+template <class Points>
+std::string lidar_problem(const sim::LidarRecord& lidar, const Points& points) {
   return first_of({text_problem("name", lidar.name), text_problem("device", lidar.device),
                    times_problem("sweep_start_ns", lidar.sweep_start_ns),
                    positive("sweep_period_ns", lidar.sweep_period_ns), pose_problem("T_BL", lidar.T_BL),
-                   length_problem({{"position_L_m", lidar.position_L_m.size()},
-                                   {"range_m", lidar.range_m.size()},
-                                   {"intensity", lidar.intensity.size()},
-                                   {"offset_ns", lidar.offset_ns.size()},
-                                   {"ring", lidar.ring.size()}}),
-                   sweep_problem(lidar), point_times_problem(lidar)});
+                   length_problem({{"position_L_m", points.position_L_m.size()},
+                                   {"range_m", points.range_m.size()},
+                                   {"intensity", points.intensity.size()},
+                                   {"offset_ns", points.offset_ns.size()},
+                                   {"ring", points.ring.size()}}),
+                   sweep_problem(lidar, points.position_L_m.size()), point_times_problem(lidar, points.offset_ns)});
 }
 
 std::string imu_truth_problem(const sim::ImuTruth& imu) {
@@ -199,7 +217,7 @@ std::string state_problem(const sim::Truth& truth) {
 
 }  // namespace
 
-std::string find_problem(const sim::Sensors& sensors) {
+std::string find_problem(const sim::Sensors& sensors, const std::vector<PointStore>& points) {
   std::string problem = in("sensors", first_of({text_problem("robot", sensors.robot),
                                                 at_least("sphere_radius_m", sensors.sphere_radius_m, 0.0),
                                                 at_least("gravity_m_s2", sensors.gravity_m_s2, 0.0)}));
@@ -207,7 +225,9 @@ std::string find_problem(const sim::Sensors& sensors) {
     problem = in("sensors/imus/" + std::to_string(i), imu_problem(sensors.imus[i]));
   }
   for (std::size_t i = 0; i < sensors.lidars.size() && problem.empty(); ++i) {
-    problem = in("sensors/lidars/" + std::to_string(i), lidar_problem(sensors.lidars[i]));
+    const sim::LidarRecord& lidar = sensors.lidars[i];
+    problem = in("sensors/lidars/" + std::to_string(i),
+                 points.empty() ? lidar_problem(lidar, lidar) : lidar_problem(lidar, points.at(i)));
   }
   return problem;
 }
@@ -245,8 +265,11 @@ std::string find_mismatch(const sim::Sensors& sensors, const sim::Truth& truth) 
                                              imu.magnetic_field_t.size())}));
   }
   for (std::size_t i = 0; i < truth.lidars.size() && problem.empty(); ++i) {
-    problem = in("lidars/" + std::to_string(i), optional_length_problem("truth hit_W_m", truth.lidars[i].hit_W_m.size(),
-                                                                        sensors.lidars[i].position_L_m.size()));
+    // as find_problem holds it, the number of points, wherever they are
+    const std::vector<std::uint64_t>& first = sensors.lidars[i].sweep_first;
+    problem = in("lidars/" + std::to_string(i),
+                 optional_length_problem("truth hit_W_m", truth.lidars[i].hit_W_m.size(),
+                                         first.empty() ? 0 : static_cast<std::size_t>(first.back())));
   }
   return problem;
 }

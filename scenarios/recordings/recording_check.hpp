@@ -2,7 +2,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "scenarios/recordings/point_store.hpp"
 #include "sim/recording.hpp"
 
 namespace tumble::scenarios {
@@ -10,7 +12,8 @@ namespace tumble::scenarios {
 /// What is inconsistent in it, as "sensors/imus/0: gyro has 5 rows, time_ns 6"; empty when all is well. Checks lengths,
 /// periods, calibrations (rotations), the order of sweeps, labels and surface ids. Does not judge readings: their NaN,
 /// gaps and time order are expected trouble that an estimator reports.
-std::string find_problem(const sim::Sensors& sensors);
+/// `points`: of each lidar, where they are set aside; else empty.
+std::string find_problem(const sim::Sensors& sensors, const std::vector<PointStore>& points = {});
 std::string find_problem(const sim::Truth& truth);
 
 /// Where the truth does not run parallel to the sensors; empty when it does.

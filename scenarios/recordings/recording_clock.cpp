@@ -49,6 +49,11 @@ void start_clock(Imported& recording) {
   shift(recording.sensors, -recording.info.origin_ns);
 }
 
+void add_lidar(Imported& recording, BuiltSweeps built) {
+  recording.sensors.lidars.push_back(std::move(built.lidar));
+  if (built.points) recording.points.push_back(std::move(*built.points));
+}
+
 void attach_imus(Imported& recording, Imported imu) {
   const std::int64_t origin_ns = std::min(recording.info.origin_ns, imu.info.origin_ns);
   const auto [first, last] = span_of(recording.sensors);

@@ -21,6 +21,9 @@ std::int64_t origin_of(std::int64_t first_ns);
 /// Moves the sensors, stamped in the clock of their source, to the clock of a recording, and notes its origin.
 void start_clock(Imported& recording);
 
+/// Puts a lidar beside the others, its points with theirs.
+void add_lidar(Imported& recording, BuiltSweeps built);
+
 /// Makes poses of the body, or of the first lidar, the truth of a recording; stamps are of its source's clock. Messages
 /// begin with `where`. Throws BadInput.
 void attach_poses(Imported& recording, std::vector<ReferencePose> poses, bool of_body, const std::string& where);

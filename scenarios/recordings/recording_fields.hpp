@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scenarios/recordings/hdf5_file.hpp"
+#include "scenarios/recordings/point_store.hpp"
 #include "sim/recording.hpp"
 
 /// The one list of what a recording holds: names, units and columns of FORMAT.md. The writer, the reader and the digest
@@ -14,7 +15,8 @@
 /// An archive has: value(name, text | double | int64), pose(name, isometry), point(name, vector, unit),
 /// rows(name, vector, unit, columns, storage), texts(name, strings), list(name, records, fields), group(name, record,
 /// fields). optional_rows, optional_point and point_times are for what came after the first files: absent when empty,
-/// zero or measured, and then not hashed either, so that older files keep their digests.
+/// zero or measured, and then not hashed either, so that older files keep their digests. rows are a std::vector, or a
+/// ColumnFile of the same rows where points are set aside on the disk.
 namespace tumble::scenarios {
 
 namespace hdf5 {
@@ -24,6 +26,18 @@ struct RowLayout<sim::ContactLabel> : Layout<Scalar::uint8, 1> {};
 
 /// How rows are stored: deflated where measured to pay, plain for the noise-like floats of a lidar (FORMAT.md).
 enum class Storage { plain, deflated };
+
+/// A lidar and its points that are set aside, as the lists below take them. Views have references to const.
+struct StoredLidar {
+  sim::LidarRecord sweeps;
+  PointStore points;
+};
+struct StoredLidarView {
+  const sim::LidarRecord& sweeps;
+  const PointStore& points;
+};
+/// Of the lidars of `sensors` and what is set aside of them, in the same order.
+std::vector<StoredLidarView> views_of(const sim::Sensors& sensors, const std::vector<PointStore>& points);
 
 /// Contacts by column.
 struct ContactColumns {
@@ -57,7 +71,7 @@ void imu_fields(Archive& archive, Imu& imu) {
 }
 
 template <class Archive, class Lidar>
-void lidar_fields(Archive& archive, Lidar& lidar) {
+void sweep_fields(Archive& archive, Lidar& lidar) {
   archive.value("name", lidar.name);
   archive.value("device", lidar.device);
   archive.value("sweep_period_ns", lidar.sweep_period_ns);
@@ -65,20 +79,42 @@ void lidar_fields(Archive& archive, Lidar& lidar) {
   archive.pose("T_BL", lidar.T_BL);
   archive.rows("sweep_start_ns", lidar.sweep_start_ns, "ns", "", Storage::deflated);
   archive.rows("sweep_first", lidar.sweep_first, "1", "", Storage::deflated);
-  archive.rows("position_L_m", lidar.position_L_m, "m", kXyz, Storage::plain);
-  archive.rows("range_m", lidar.range_m, "m", "", Storage::plain);
-  archive.rows("intensity", lidar.intensity, "1", "", Storage::plain);
-  archive.rows("offset_ns", lidar.offset_ns, "ns", "", Storage::deflated);
-  archive.rows("ring", lidar.ring, "1", "", Storage::deflated);
 }
 
-template <class Archive, class Sensors>
-void sensors_fields(Archive& archive, Sensors& sensors) {
+template <class Archive, class Points>
+void point_fields(Archive& archive, Points& points) {
+  archive.rows("position_L_m", points.position_L_m, "m", kXyz, Storage::plain);
+  archive.rows("range_m", points.range_m, "m", "", Storage::plain);
+  archive.rows("intensity", points.intensity, "1", "", Storage::plain);
+  archive.rows("offset_ns", points.offset_ns, "ns", "", Storage::deflated);
+  archive.rows("ring", points.ring, "1", "", Storage::deflated);
+}
+
+/// Of a record with its points, or of one whose points are set aside: `lidar.sweeps` and `lidar.points`.
+template <class Archive, class Lidar>
+void lidar_fields(Archive& archive, Lidar& lidar) {
+  if constexpr (requires { lidar.sweeps; }) {
+    sweep_fields(archive, lidar.sweeps);
+    point_fields(archive, lidar.points);
+  } else {
+    sweep_fields(archive, lidar);
+    point_fields(archive, lidar);
+  }
+}
+
+/// `lidars`: sensors.lidars, or what stands for them.
+template <class Archive, class Sensors, class Lidars>
+void sensors_fields(Archive& archive, Sensors& sensors, Lidars& lidars) {
   archive.value("robot", sensors.robot);
   archive.value("sphere_radius_m", sensors.sphere_radius_m);
   archive.value("gravity_m_s2", sensors.gravity_m_s2);
   archive.list("imus", sensors.imus, [](auto& inner, auto& imu) { imu_fields(inner, imu); });
-  archive.list("lidars", sensors.lidars, [](auto& inner, auto& lidar) { lidar_fields(inner, lidar); });
+  archive.list("lidars", lidars, [](auto& inner, auto& lidar) { lidar_fields(inner, lidar); });
+}
+
+template <class Archive, class Sensors>
+void sensors_fields(Archive& archive, Sensors& sensors) {
+  sensors_fields(archive, sensors, sensors.lidars);
 }
 
 template <class Archive, class Contacts>

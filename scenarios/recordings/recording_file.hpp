@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
+#include "scenarios/recordings/point_store.hpp"
 #include "sim/recording.hpp"
 
 namespace tumble::scenarios {
@@ -29,6 +31,8 @@ struct RecordingInfo {
 
 /// XXH3 (128 bit) over every field of sensors and truth in a fixed order: equal data, equal digest.
 std::string digest(const sim::Sensors& sensors, const sim::Truth* truth);
+/// The same of sensors whose points are set aside, a store for each lidar.
+std::string digest(const sim::Sensors& sensors, const std::vector<PointStore>& points, const sim::Truth* truth);
 /// The same over the truth alone.
 std::string digest(const sim::Truth& truth);
 
@@ -40,11 +44,19 @@ std::string digest(const sim::Truth& truth);
 void write_recording(const std::filesystem::path& path, const RecordingInfo& info, const sim::Sensors& sensors,
                      const sim::Truth* truth);
 
+/// The same of sensors whose points are set aside: the same bytes. The file grows on the disk beside its place, and the
+/// room that it needs at most is taken there first; in memory are the sensors without points, the truth and some MiB.
+void write_recording(const std::filesystem::path& path, const RecordingInfo& info, const sim::Sensors& sensors,
+                     const std::vector<PointStore>& points, const sim::Truth* truth);
+
 /// Each reader opens only its own group. All throw BadInput with path and reason: absent, not HDF5, truncated, a
 /// missing or mis-shaped dataset, another format version, lengths that contradict each other, data that do not fit
 /// their digest.
 RecordingInfo read_info(const std::filesystem::path& path);
 sim::Sensors read_sensors(const std::filesystem::path& path);
+/// The same with the points set aside in `scratch`, a store for each lidar, whose records then hold none.
+sim::Sensors read_sensors(const std::filesystem::path& path, const std::filesystem::path& scratch,
+                          std::vector<PointStore>& points);
 sim::Truth read_truth(const std::filesystem::path& path);
 
 }  // namespace tumble::scenarios

@@ -4,6 +4,7 @@
 #include "scenarios/recordings/recording_check.hpp"
 #include "scenarios/recordings/recording_fields.hpp"
 #include "scenarios/recordings/recording_file.hpp"
+#include "scenarios/recordings/recording_size.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 
 namespace tumble::scenarios {
@@ -30,6 +31,10 @@ class Writer {
   }
   template <class Row>
   void rows(const char* name, const std::vector<Row>& rows, const char* unit, const char* columns, Storage storage) {
+    group_.write(name, rows, unit, columns, storage == Storage::deflated);
+  }
+  template <class Row>
+  void rows(const char* name, const ColumnFile<Row>& rows, const char* unit, const char* columns, Storage storage) {
     group_.write(name, rows, unit, columns, storage == Storage::deflated);
   }
   template <class Row>
@@ -62,8 +67,8 @@ class Writer {
   hdf5::Group group_;
 };
 
-void require_consistent(const sim::Sensors& sensors, const sim::Truth* truth) {
-  std::string problem = find_problem(sensors);
+void require_consistent(const sim::Sensors& sensors, const std::vector<PointStore>& points, const sim::Truth* truth) {
+  std::string problem = find_problem(sensors, points);
   if (truth != nullptr && problem.empty()) problem = find_problem(*truth);
   if (truth != nullptr && problem.empty()) problem = find_mismatch(sensors, *truth);
   if (!problem.empty()) throw std::invalid_argument("recording: " + problem);
@@ -83,11 +88,25 @@ void write_info(const hdf5::Group& root, const RecordingInfo& info, const std::s
   root.write_attribute("has_truth", std::int64_t{has_truth});
 }
 
+void write_truth(const hdf5::Group& root, const sim::Truth* truth) {
+  if (truth == nullptr) return;
+  Writer writer(root.create("truth"));
+  writer.value("digest", digest(*truth));
+  const ContactColumns contacts = to_columns(truth->contacts);
+  truth_fields(writer, *truth, contacts);
+}
+
 }  // namespace
+
+std::vector<StoredLidarView> views_of(const sim::Sensors& sensors, const std::vector<PointStore>& points) {
+  std::vector<StoredLidarView> lidars;
+  for (std::size_t i = 0; i < sensors.lidars.size(); ++i) lidars.push_back({sensors.lidars[i], points.at(i)});
+  return lidars;
+}
 
 void write_recording(const std::filesystem::path& path, const RecordingInfo& info, const sim::Sensors& sensors,
                      const sim::Truth* truth) {
-  require_consistent(sensors, truth);
+  require_consistent(sensors, {}, truth);
   hdf5::MemoryFile file(path.string());
   write_info(file.root(), info, digest(sensors, truth), truth != nullptr);
   {
@@ -95,13 +114,25 @@ void write_recording(const std::filesystem::path& path, const RecordingInfo& inf
     writer.value("digest", digest(sensors, nullptr));
     sensors_fields(writer, sensors);
   }
-  if (truth != nullptr) {
-    Writer writer(file.root().create("truth"));
-    writer.value("digest", digest(*truth));
-    const ContactColumns contacts = to_columns(truth->contacts);
-    truth_fields(writer, *truth, contacts);
-  }
+  write_truth(file.root(), truth);
   replace_file(path, file.close());
+}
+
+void write_recording(const std::filesystem::path& path, const RecordingInfo& info, const sim::Sensors& sensors,
+                     const std::vector<PointStore>& points, const sim::Truth* truth) {
+  require_consistent(sensors, points, truth);
+  OutputFile output(path);
+  hdf5::DiskFile file(path.string(), output.unfinished(), size_bound(info, sensors, points, truth));
+  write_info(file.root(), info, digest(sensors, points, truth), truth != nullptr);
+  {
+    Writer writer(file.root().create("sensors"));
+    writer.value("digest", digest(sensors, points, nullptr));
+    const std::vector<StoredLidarView> lidars = views_of(sensors, points);
+    sensors_fields(writer, sensors, lidars);
+  }
+  write_truth(file.root(), truth);
+  file.close();
+  output.move_into_place();
 }
 
 }  // namespace tumble::scenarios

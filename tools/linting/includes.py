@@ -53,7 +53,7 @@ _HEADERS = {
     "random": "mt19937 mt19937_64 normal_distribution uniform_real_distribution",
     "regex": "regex regex_replace regex_search smatch sregex_iterator",
     "set": "multiset set",
-    "span": "as_bytes span",
+    "span": "as_bytes as_writable_bytes span",
     "sstream": "istringstream ostringstream stringstream",
     "stdexcept": "invalid_argument logic_error out_of_range runtime_error",
     "thread": "this_thread thread",
@@ -61,7 +61,7 @@ _HEADERS = {
     "unordered_map": "unordered_map",
     "unordered_set": "unordered_set",
     "variant": "get_if holds_alternative variant variant_alternative_t variant_size_v visit",
-    "utility": "as_const declval",
+    "utility": "as_const declval in_place",
     "vector": "vector",
 }
 _ANY_OF = {

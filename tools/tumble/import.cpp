@@ -56,7 +56,7 @@ nlohmann::json document_of(const ImportOptions& options, const std::string& form
   if (!imported.sensors.lidars.empty()) {
     const sim::LidarRecord& lidar = imported.sensors.lidars.front();
     document["sweeps"] = lidar.sweep_start_ns.size();
-    document["points"] = lidar.position_L_m.size();
+    document["points"] = lidar.sweep_first.back();
     document["sweep_period_ns"] = lidar.sweep_period_ns;
     document["point_times"] = point_times_word(lidar.point_times);
   }
@@ -74,10 +74,9 @@ Table table_of(const Imported& imported) {
     table.add_row({"imu", imu.name, std::to_string(imu.time_ns.size()), ms(imu.period_ns), span(imu.time_ns), ""});
   }
   for (const sim::LidarRecord& lidar : imported.sensors.lidars) {
-    table.add_row(
-        {"lidar", lidar.name, std::to_string(lidar.sweep_start_ns.size()), ms(lidar.sweep_period_ns),
-         span(lidar.sweep_start_ns),
-         std::to_string(lidar.position_L_m.size()) + " points, times " + point_times_word(lidar.point_times)});
+    table.add_row({"lidar", lidar.name, std::to_string(lidar.sweep_start_ns.size()), ms(lidar.sweep_period_ns),
+                   span(lidar.sweep_start_ns),
+                   std::to_string(lidar.sweep_first.back()) + " points, times " + point_times_word(lidar.point_times)});
   }
   if (imported.reference) {
     const sim::Truth& truth = *imported.reference;
@@ -107,7 +106,7 @@ int import_from(const Session& session, const ImportOptions& options) {
   imported.sensors.sphere_radius_m = options.radius_m;
   imported.info.tumble_version = program_version();
   try {
-    scenarios::write_recording(options.out, imported.info, imported.sensors,
+    scenarios::write_recording(options.out, imported.info, imported.sensors, imported.points,
                                imported.reference ? &*imported.reference : nullptr);
   } catch (const std::invalid_argument& error) {  // what the file holds makes no sound recording
     throw BadInput(options.path.string() + ": " + error.what());

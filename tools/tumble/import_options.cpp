@@ -108,6 +108,7 @@ scenarios::SweepReading sweep_reading(const Session& session, const ImportOption
   reading.time_field = options.time_field;
   reading.time_unit = options.time_unit;
   reading.not_skewed = options.not_skewed;
+  reading.scratch = options.out.parent_path().empty() ? "." : options.out.parent_path();
   return reading;
 }
 
@@ -160,13 +161,16 @@ void declare(VerbOptions& verb, ImportOptions& options) {
            "or content]");
   verb.add("--device", options.device,
            "the IMU's data sheet, for ranges and noise: see 'tumble list sensors' [unknown]");
-  verb.add("--accel-unit", options.accel_unit, "of a CSV: m/s^2 or g [m/s^2]");
-  verb.add("--gyro-unit", options.gyro_unit, "of a CSV: rad/s or deg/s [rad/s]");
+  verb.add("--accel-unit", options.accel_unit, "of a CSV or bag: m/s^2 or g [m/s^2]");
+  verb.add("--gyro-unit", options.gyro_unit, "of a CSV or bag: rad/s or deg/s [rad/s]");
   verb.add("--lever-arm", options.lever_arm_m, "X Y Z: from the robot's centre of mass to the IMU, m [0 0 0]").words(3);
   verb.add("--robot", options.robot, "rig, sphere or pendulum, for methods that ask [unknown]");
   verb.add("--radius", options.radius_m, "of the sphere, m, for methods of position [unknown]").within(1e-3, 10.0);
   verb.add("--imu-topic", options.imu_topics, "of a bag: sensor_msgs/Imu; the first is the primary one [all]");
   verb.add("--lidar-topic", options.lidar_topics, "of a bag: sensor_msgs/PointCloud2 [all]");
+  verb.add("--stamps", options.stamps,
+           "of a bag: header, the messages' own; or record, when the bag took them, for headers without usable stamps; "
+           "a sweep then starts a period before [header]");
   declare_lidar(verb, options);
   declare_reference(verb, options);
   verb.add("-o,--output", options.out, "the recording, FILE.h5").required();
@@ -198,7 +202,9 @@ void require_fitting(const ImportOptions& options, const std::string& format) {
   };
   refuse(!options.accel_unit.empty() && !csv && !bag, "--accel-unit",
          "is of the readings of an IMU in a CSV file or bag");
-  refuse(!options.gyro_unit.empty() && !csv, "--gyro-unit", "is of the readings of an IMU in a CSV file");
+  refuse(!options.gyro_unit.empty() && !csv && !bag, "--gyro-unit",
+         "is of the readings of an IMU in a CSV file or bag");
+  refuse(!options.stamps.empty() && !bag, "--stamps", "is for a bag");
   refuse(options.align_reference && format != "repoimu", "--align-reference", "is for a recording of RepoIMU");
   refuse(!options.reference.empty() && log, "--reference",
          format == "repoimu" ? "a recording of RepoIMU has its own" : "is not for a flight log");
@@ -314,6 +320,11 @@ scenarios::BagReading bag_reading(const Session& session, const ImportOptions& o
   reading.reference_of_body = options.reference_frame != "lidar";
   reading.imu = imu_sheet(session, options);
   reading.accel_unit = accel_unit(options);
+  reading.gyro_unit = gyro_unit(options);
+  if (!options.stamps.empty()) {
+    require_known("stamps", options.stamps, std::vector<std::string>{"header", "record"});
+    if (options.stamps == "record") reading.stamps = scenarios::StampSource::record;
+  }
   reading.sweeps = sweep_reading(session, options);
   return reading;
 }

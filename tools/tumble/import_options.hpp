@@ -33,7 +33,7 @@ struct ImportOptions {
   bool sorted = false, align_reference = false;
   // of a bag
   std::vector<std::string> imu_topics, lidar_topics;
-  std::string reference_topic;
+  std::string reference_topic, stamps;
 };
 
 void declare(VerbOptions& verb, ImportOptions& options);

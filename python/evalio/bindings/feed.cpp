@@ -14,6 +14,13 @@ namespace tumble::evalio_bindings {
 namespace {
 
 constexpr std::size_t kSamplesMax = 256;  ///< that wait for a sweep
+/// Sweeps that wait for samples: ten seconds of most lidars. Data whose IMU is later than that, or has none, would fill
+/// the memory.
+constexpr std::size_t kSweepsMax = 100;
+
+std::string seconds(std::int64_t time_ns) {
+  return std::to_string(1e-9 * static_cast<double>(time_ns)) + " s";
+}
 
 template <class Scalar, nb::ssize_t... Shape>
 using Shown = nb::ndarray<const Scalar, nb::shape<Shape...>, nb::c_contig, nb::device::cpu>;
@@ -42,6 +49,7 @@ void Feed::begin(nb::object odometry, std::int64_t sweep_length_ns) {
   odometry_ = std::move(odometry);
   sweep_length_ns_ = sweep_length_ns;
   samples_ = {};
+  last_sample_ns_.reset();
   waiting_.clear();
 }
 
@@ -57,6 +65,7 @@ void Feed::add_imu(evalio::ImuMeasurement given) {
   odometry();
   samples_.push(given);
   const std::int64_t now_ns = samples_.time_ns.back();
+  last_sample_ns_ = now_ns;
   const bool covers = !waiting_.empty() && waiting_.front().end_ns <= now_ns;
   if (!covers && samples_.time_ns.size() < kSamplesMax) return;
   give_samples();
@@ -67,6 +76,7 @@ void Feed::add_imu(evalio::ImuMeasurement given) {
 
 void Feed::add_lidar(evalio::LidarMeasurement given) {
   odometry();
+  require_room();
   try {
     Sweep sweep = sweep_of(given, sweep_length_ns_);
     // where stamps jitter a sweep ends when the next one begins
@@ -78,6 +88,15 @@ void Feed::add_lidar(evalio::LidarMeasurement given) {
     return;
   }
   save(given.stamp, "sweep", given.points);
+}
+
+void Feed::require_room() const {
+  if (waiting_.size() < kSweepsMax) return;
+  const std::string last = last_sample_ns_ ? "the last one is at " + seconds(*last_sample_ns_) : "there was none yet";
+  throw std::runtime_error(
+      std::to_string(waiting_.size()) + " sweeps wait for samples of the IMU that cover them, from " +
+      seconds(waiting_.front().start_ns) + " to " + seconds(waiting_.back().end_ns) + ", must be less than " +
+      std::to_string(kSweepsMax) + ": " + last + "; does the data set have an IMU, in the lidar's clock?");
 }
 
 const evalio::Map<> Feed::map() {

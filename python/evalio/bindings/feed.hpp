@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <deque>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,8 @@ namespace nb = nanobind;
 /// evalio hands out a sweep when its first return was fired; it waits here for the samples that cover it, as a robot
 /// has it. Poses saved are each sweep's last word, some 0.3 s after its end. evalio has no call at the end of a run, so
 /// that what is younger then stays unsaid (half a second), unless somebody calls `finish`. What the estimator refuses
-/// (TumbleError) is left out with a warning of Python's, and the rest goes on.
+/// (TumbleError) is left out with a warning of Python's, and the rest goes on. A hundred sweeps that wait are an error:
+/// the data have no IMU, or one of another clock.
 class Feed : public evalio::Pipeline {
  public:
   /// `sweep_length_ns`: from the first return's time to the end of the sweep.
@@ -46,6 +48,7 @@ class Feed : public evalio::Pipeline {
 
  private:
   nb::handle odometry() const;
+  void require_room() const;
   void give_samples();
   void give_sweep(Sweep sweep);
   void save_words();
@@ -53,7 +56,8 @@ class Feed : public evalio::Pipeline {
 
   nb::object odometry_;
   std::int64_t sweep_length_ns_ = 0;
-  Samples samples_;            ///< not given yet
+  Samples samples_;  ///< not given yet
+  std::optional<std::int64_t> last_sample_ns_;
   std::deque<Sweep> waiting_;  ///< for samples that cover them
 };
 

@@ -44,6 +44,8 @@ struct BagWriting {
   std::vector<BagTrack> tracks = {};  ///< estimates; names differ from each other, from the sensors' and from "truth"
   std::vector<BagCloud> clouds = {};
   SweepLayout sweeps = own_sweep_layout();
+  /// Of each lidar, where its points are set aside; null: they are in the records.
+  const std::vector<PointStore>* points = nullptr;
   std::optional<ReaderNames> names = {};  ///< given: the first IMU and the first lidar alone, under these
 };
 
@@ -71,20 +73,28 @@ void export_mcap(const sim::Sensors& sensors, const BagWriting& writing, const s
 /// The same MCAP file in a folder with metadata.yaml, as ROS 2 itself has them since Iron.
 void export_ros2_mcap(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& folder);
 
+/// Which stamp of a message counts: its header's, of whoever measured; or the record's, of when the bag took it, for
+/// headers without usable stamps. A sweep is recorded when it is over: then it starts a period before.
+enum class StampSource { header, record };
+
 /// What is taken from a bag.
 struct BagReading {
-  std::vector<std::string> imu_topics;    ///< the first is the primary one; empty: all of type Imu, as they stand
-  std::vector<std::string> lidar_topics;  ///< empty: all of type PointCloud2 or CustomMsg
-  std::string reference_topic;            ///< Odometry or PoseStamped; "": none
-  bool reference_of_body = true;          ///< else of the first lidar
-  sim::ImuRecord imu;                     ///< what the messages do not state: device, ranges, noise, T_BI
-  AccelUnit accel_unit = AccelUnit::m_s2;
+  std::vector<std::string> imu_topics;     ///< the first is the primary one; empty: all of type Imu, as they stand
+  std::vector<std::string> lidar_topics;   ///< empty: all of type PointCloud2 or CustomMsg
+  std::string reference_topic;             ///< Odometry or PoseStamped; "": none
+  bool reference_of_body = true;           ///< else of the first lidar
+  sim::ImuRecord imu;                      ///< what the messages do not state: device, ranges, noise, T_BI
+  AccelUnit accel_unit = AccelUnit::m_s2;  ///< of messages whose driver does not keep to sensor_msgs/Imu
+  GyroUnit gyro_unit = GyroUnit::rad_s;
+  StampSource stamps = StampSource::header;
   SweepReading sweeps;
 };
 
 /// Reads a ROS 1 bag (not encrypted), a ROS 2 bag: its folder (SQLite or MCAP), or its SQLite file, or an MCAP file
 /// with messages of ROS 2 (cdr) or ROS 1 in chunks that are plain or packed by LZ4 or Zstandard; indexed or not. Times
-/// are those of the messages' headers. Sensors bear the name of their topic. Points as import_sweeps takes them;
+/// are those of `stamps`; how headers and records differ is said in the notes. Units are held against gravity as of a
+/// CSV. With `sweeps.scratch` in memory are a sweep at a time, what the IMUs said (57 bytes a sample) and some bytes a
+/// message; without it all. Sensors bear the name of their topic. Points as import_sweeps takes them;
 /// without a choice of topics a cloud in "world", "map" or "odom" is left out, since no sensor's points lie there.
 /// Where /tf_static places a sensor in "body" or "base_link" and nothing else was given, that is its pose. Throws
 /// BadInput with file and place: damaged, truncated, a topic that is not there or of another type, a message whose

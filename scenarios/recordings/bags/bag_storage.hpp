@@ -32,8 +32,10 @@ class BagReader {
  public:
   virtual ~BagReader() = default;
   virtual std::vector<BagTopic> topics() = 0;
-  /// Calls `take(bytes)` for each message of the topic in order of time. Throws BadInput.
-  virtual void read(const std::string& topic, const std::function<void(ros::Bytes&)>& take) = 0;
+  /// Takes a message and when it was recorded, ns since 1970.
+  using Take = std::function<void(ros::Bytes&, std::int64_t record_ns)>;
+  /// Calls `take` for each message of the topic in the order in which they were recorded. Throws BadInput.
+  virtual void read(const std::string& topic, const Take& take) = 0;
   /// The topic's messages are CDR, else ROS 1's layout.
   virtual bool cdr(const std::string& topic) const = 0;
 };

@@ -152,9 +152,11 @@ class Export {
         const sim::LidarRecord& lidar = sensors_.lidars[event.of];
         const Place& place = lidars_[event.of];
         const std::int64_t start_ns = stamp_of(lidar.sweep_start_ns[event.index]);
-        return bag_.write(
-            place.topic, stamp,
-            sweep_message(lidar, event.index, writing_.sweeps, start_ns, header_of(start_ns, place.frame)));
+        const ros::Header header = header_of(start_ns, place.frame);
+        if (writing_.points == nullptr)
+          return bag_.write(place.topic, stamp, sweep_message(lidar, event.index, writing_.sweeps, start_ns, header));
+        const sim::LidarRecord alone = writing_.points->at(event.of).sweep(lidar, event.index);
+        return bag_.write(place.topic, stamp, sweep_message(alone, 0, writing_.sweeps, start_ns, header));
       }
       case Event::pose: {
         const BagTrack::Pose& pose = tracks_[event.of].poses[event.index];

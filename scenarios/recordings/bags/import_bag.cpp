@@ -7,6 +7,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/bags/bag_clouds.hpp"
+#include "scenarios/recordings/bags/bag_stamps.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
 #include "scenarios/recordings/bags/static_frames.hpp"
 #include "scenarios/recordings/clouds/sweep_stamps.hpp"
@@ -34,9 +35,11 @@ bool is_cloud_type(const std::string& type) {
   return type == kCloud || is_livox_type(type);
 }
 
-std::int64_t stamp_of(const ros::Header& header) {
-  return std::int64_t{header.sec} * 1000000000 + header.nanosec;
-}
+/// Where a message stands in a bag: its name for messages, and when it was recorded.
+struct Origin {
+  std::string where;
+  std::int64_t record_ns;
+};
 
 /// A bag, its place for messages, and its topics.
 struct Bag {
@@ -68,11 +71,11 @@ struct Bag {
     return out;
   }
 
-  /// Calls `take(message, where)` for each message of the topic.
+  /// Calls `take(message, origin)` for each message of the topic.
   template <class Message, class Take>
   void read(const std::string& name, Take&& take) const {
     std::size_t number = 0;
-    reader.read(name, [&](ros::Bytes& bytes) {
+    reader.read(name, [&](ros::Bytes& bytes, std::int64_t record_ns) {
       const std::string where = place + ": message " + std::to_string(number++) + " of " + name;
       Message message;
       try {
@@ -80,7 +83,7 @@ struct Bag {
       } catch (const ros::BadMessage& error) {
         throw BadInput(where + ": " + error.what());
       }
-      take(message, where);
+      take(message, Origin{where, record_ns});
     });
   }
 };
@@ -97,8 +100,8 @@ StaticFrames read_frames(const Bag& bag) {
   StaticFrames frames;
   for (const BagTopic& topic : bag.topics) {
     if (topic.name != kStaticTopic || (topic.type != kTransforms && topic.type != kOldTransforms)) continue;
-    bag.read<ros::TFMessage>(topic.name, [&](const ros::TFMessage& message, const std::string& where) {
-      for (const ros::TransformStamped& each : message.transforms) frames.add(each, where);
+    bag.read<ros::TFMessage>(topic.name, [&](const ros::TFMessage& message, const Origin& origin) {
+      for (const ros::TransformStamped& each : message.transforms) frames.add(each, origin.where);
     });
   }
   return frames;
@@ -134,85 +137,108 @@ sim::ImuRecord read_imu(const Bag& bag, const StaticFrames& frames, const std::s
   sim::ImuRecord imu = without_readings(reading.imu);
   imu.name = sensor_name(topic);
   std::string frame;
-  bag.read<ros::Imu>(topic, [&](const ros::Imu& message, const std::string& where) {
-    add_reading(where, stamp_of(message.header), Eigen::Vector3d::Map(message.angular_velocity.data()),
+  BagStamps stamps(reading.stamps);
+  bag.read<ros::Imu>(topic, [&](const ros::Imu& message, const Origin& origin) {
+    add_reading(origin.where, stamps.take(stamp_of(message.header), origin.record_ns, origin.where),
+                scale_of(reading.gyro_unit) * Eigen::Vector3d::Map(message.angular_velocity.data()),
                 scale_of(reading.accel_unit) * Eigen::Vector3d::Map(message.linear_acceleration.data()), imu);
     frame = message.header.frame_id;
   });
   const std::string where = bag.place + ": topic " + topic;
   finish_readings(where, reading.accel_unit, imu);
   // messages are in rad/s by their definition, and not every driver keeps to it
-  const std::string units = require_gravity_turns(where, imu, GyroUnit::rad_s);
-  if (!units.empty()) notes.push_back(topic + ": " + units);
+  const std::string units = require_gravity_turns(where, imu, reading.gyro_unit);
+  for (const std::string& remark : {units, stamps.remark()}) {
+    if (!remark.empty()) notes.push_back(topic + ": " + remark);
+  }
   place_sensor(bag, frames, topic, frame, imu.T_BI, notes);
   return imu;
 }
 
-/// What the headers of a topic's clouds say.
+/// What is known of a topic's clouds before their points are read.
 struct CloudHeaders {
-  std::vector<std::int64_t> stamps;
+  std::vector<std::int64_t> stamps;  ///< of the starts of the sweeps
+  std::int64_t period_ns = 0;        ///< given, or the median step of the stamps
+  std::string remark;
   std::string frame;
-  /// A map, or points that somebody has moved there.
-  bool in_world() const { return frame == "world" || frame == "map" || frame == "odom"; }
+  /// Nobody named the topic, and its points lie in no sensor's frame: a map, or points that somebody has moved there.
+  bool left_out(const BagReading& reading) const {
+    return reading.lidar_topics.empty() && (frame == "world" || frame == "map" || frame == "odom");
+  }
 };
 
-/// Calls `take(message, where)` for each cloud of the topic, of whichever type they are.
+/// Calls `take(message, origin)` for each cloud of the topic, of whichever type they are.
 template <class Take>
 void read_clouds(const Bag& bag, const std::string& topic, Take&& take) {
   if (is_livox_type(bag.topic(topic).type)) return bag.read<ros::LivoxCustomMsg>(topic, take);
   bag.read<ros::PointCloud2>(topic, take);
 }
 
-CloudHeaders read_headers(const Bag& bag, const std::string& topic) {
+CloudHeaders read_headers(const Bag& bag, const std::string& topic, const BagReading& reading) {
   CloudHeaders out;
-  read_clouds(bag, topic, [&](const auto& message, const std::string&) {
-    out.stamps.push_back(stamp_of(message.header));
+  BagStamps stamps(reading.stamps);
+  read_clouds(bag, topic, [&](const auto& message, const Origin& origin) {
     out.frame = message.header.frame_id;
+    if (out.frame.starts_with('/')) out.frame.erase(0, 1);
+    if (out.left_out(reading)) return;  // a map may well stand still
+    out.stamps.push_back(stamps.take(stamp_of(message.header), origin.record_ns, origin.where));
   });
-  if (out.frame.starts_with('/')) out.frame.erase(0, 1);
+  const std::int64_t given_ns = reading.sweeps.device.sweep_period_ns;
+  out.period_ns = given_ns > 0 ? given_ns : median_step_ns(out.stamps);
+  out.remark = stamps.remark();
+  if (reading.stamps == StampSource::record) {
+    for (std::int64_t& stamp : out.stamps) stamp -= out.period_ns;
+    out.remark += (out.remark.empty() ? "" : "; ") + std::string("a sweep is taken to start ") +
+                  std::to_string(1e-9 * static_cast<double>(out.period_ns)) + " s before it was recorded";
+  }
   return out;
 }
 
-sim::LidarRecord read_lidar(const Bag& bag, const StaticFrames& frames, const std::string& topic,
-                            const CloudHeaders& headers, const BagReading& reading, std::vector<std::string>& notes) {
+BuiltSweeps read_lidar(const Bag& bag, const StaticFrames& frames, const std::string& topic,
+                       const CloudHeaders& headers, const BagReading& reading, std::vector<std::string>& notes) {
   SweepReading sweeps = reading.sweeps;
   sweeps.device.name = sensor_name(topic);
-  const std::int64_t given_ns = sweeps.device.sweep_period_ns;
-  SweepBuilder builder(std::move(sweeps), given_ns > 0 ? given_ns : median_step_ns(headers.stamps));
+  SweepBuilder builder(std::move(sweeps), headers.period_ns);
   double clocks_apart_s = 0.0;
-  read_clouds(bag, topic, [&]<class Message>(const Message& message, const std::string& where) {
+  std::size_t number = 0;
+  read_clouds(bag, topic, [&]<class Message>(const Message& message, const Origin& origin) {
     if constexpr (std::is_same_v<Message, ros::LivoxCustomMsg>) {
       const double apart_ns = static_cast<double>(message.timebase) - static_cast<double>(stamp_of(message.header));
       clocks_apart_s = std::max(clocks_apart_s, 1e-9 * std::abs(apart_ns));
     }
-    builder.add(stamp_of(message.header), cloud_of(message, where), where);
+    if (number == headers.stamps.size()) throw BadInput(origin.where + ": lies in another frame than the last one");
+    builder.add(headers.stamps[number++], cloud_of(message, origin.where), origin.where);
   });
-  sim::LidarRecord lidar = builder.finish(bag.place + ": topic " + topic, notes);
+  BuiltSweeps built = builder.finish(bag.place + ": topic " + topic, notes);
+  if (!headers.remark.empty()) notes.push_back(topic + ": " + headers.remark);
   if (clocks_apart_s > kClocksApart_s) {
     notes.push_back(topic + ": caution: the messages' timebase and the stamps of their headers are up to " +
                     std::to_string(clocks_apart_s) + " s apart; the times of points count from the headers'");
   }
-  place_sensor(bag, frames, topic, headers.frame, lidar.T_BL, notes);
-  return lidar;
+  place_sensor(bag, frames, topic, headers.frame, built.lidar.T_BL, notes);
+  return built;
 }
 
 template <class Message>
-std::vector<ReferencePose> read_poses(const Bag& bag, const std::string& topic) {
+std::vector<ReferencePose> read_poses(const Bag& bag, const std::string& topic, StampSource source) {
   std::vector<ReferencePose> poses;
-  bag.read<Message>(topic, [&](const Message& message, const std::string& where) {
-    ReferencePose pose{stamp_of(message.header), Eigen::Vector3d::Map(message.position.data()), {}};
+  BagStamps stamps(source);
+  bag.read<Message>(topic, [&](const Message& message, const Origin& origin) {
+    ReferencePose pose{stamps.take(stamp_of(message.header), origin.record_ns, origin.where),
+                       Eigen::Vector3d::Map(message.position.data()),
+                       {}};
     pose.q_WA.coeffs() = Eigen::Vector4d::Map(message.orientation_xyzw.data());
     if (std::string problem = problem_of(pose, poses.empty() ? nullptr : &poses.back()); !problem.empty())
-      throw BadInput(where + ": " + problem);
+      throw BadInput(origin.where + ": " + problem);
     poses.push_back(pose);
   });
   return poses;
 }
 
-std::vector<ReferencePose> reference_poses(const Bag& bag, const std::string& topic) {
+std::vector<ReferencePose> reference_poses(const Bag& bag, const std::string& topic, StampSource source) {
   const std::string type = bag.topic(topic).type;
-  if (type == kOdometry) return read_poses<ros::Odometry>(bag, topic);
-  if (type == kPose) return read_poses<ros::PoseStamped>(bag, topic);
+  if (type == kOdometry) return read_poses<ros::Odometry>(bag, topic, source);
+  if (type == kPose) return read_poses<ros::PoseStamped>(bag, topic, source);
   throw BadInput(bag.place + ": topic '" + topic + "' is of type " + type + ", must be " + kOdometry + " or " + kPose);
 }
 
@@ -248,12 +274,12 @@ Imported import_bag(BagReader& reader, const std::filesystem::path& path, const 
   for (const std::string& topic : bag.chosen(reading.imu_topics, is_imu_type, kImu))
     out.sensors.imus.push_back(read_imu(bag, frames, topic, reading, out.notes));
   for (const std::string& topic : bag.chosen(reading.lidar_topics, is_cloud_type, kCloud)) {
-    const CloudHeaders headers = read_headers(bag, topic);
-    if (reading.lidar_topics.empty() && headers.in_world()) {
+    const CloudHeaders headers = read_headers(bag, topic, reading);
+    if (headers.left_out(reading)) {
       out.notes.push_back(topic + ": its points lie in '" + headers.frame + "', in no sensor's frame: left out");
       continue;
     }
-    out.sensors.lidars.push_back(read_lidar(bag, frames, topic, headers, reading, out.notes));
+    add_lidar(out, read_lidar(bag, frames, topic, headers, reading, out.notes));
   }
   if (out.sensors.imus.empty() && out.sensors.lidars.empty()) {
     throw BadInput(path.string() + ": holds no topic of type " + kImu + ", " + kCloud + " or CustomMsg among " +
@@ -263,7 +289,7 @@ Imported import_bag(BagReader& reader, const std::filesystem::path& path, const 
   require_one_clock(out.sensors, path);
   start_clock(out);
   if (!reading.reference_topic.empty()) {
-    attach_poses(out, reference_poses(bag, reading.reference_topic), reading.reference_of_body,
+    attach_poses(out, reference_poses(bag, reading.reference_topic, reading.stamps), reading.reference_of_body,
                  path.string() + ": topic " + reading.reference_topic);
   }
   return out;

@@ -28,7 +28,7 @@ bool is_ros1(const Channel& channel, const Schema& schema) {
 /// Messages of one topic of one file in order of time, a chunk in memory and what overlaps it.
 class TopicWalk {
  public:
-  TopicWalk(File& file, std::set<std::uint16_t> channels, const std::function<void(ros::Bytes&)>& take)
+  TopicWalk(File& file, std::set<std::uint16_t> channels, const BagReader::Take& take)
       : file_(file), channels_(std::move(channels)), take_(take) {}
 
   void all() {
@@ -102,15 +102,17 @@ class TopicWalk {
     while (!waiting_.empty() && waiting_.begin()->first < time_ns) give_first();
   }
   void give_first() {
+    // a time beyond int64 is none of ROS': it is as late as can be
+    const std::uint64_t time_ns = std::min<std::uint64_t>(waiting_.begin()->first, INT64_MAX);
     ros::Bytes bytes = std::move(waiting_.begin()->second);
     waiting_bytes_ -= bytes.size();
     waiting_.erase(waiting_.begin());
-    take_(bytes);
+    take_(bytes, static_cast<std::int64_t>(time_ns));
   }
 
   File& file_;
   std::set<std::uint16_t> channels_;
-  const std::function<void(ros::Bytes&)>& take_;
+  const BagReader::Take& take_;
   std::multimap<std::uint64_t, ros::Bytes> waiting_;  ///< of equal times in the order of the file
   std::uint64_t waiting_bytes_ = 0;
   std::map<std::uint16_t, std::uint64_t> counts_;
@@ -139,7 +141,7 @@ class McapReader : public BagReader {
     return topics;
   }
 
-  void read(const std::string& topic, const std::function<void(ros::Bytes&)>& take) override {
+  void read(const std::string& topic, const Take& take) override {
     for (const auto& file : files_) {
       std::set<std::uint16_t> channels;
       for (const auto& [id, channel] : file->channels()) {

@@ -215,7 +215,7 @@ class Ros1BagReader : public BagReader {
     });
   }
 
-  void read(const std::string& topic, const std::function<void(ros::Bytes&)>& take) override {
+  void read(const std::string& topic, const Take& take) override {
     guarded(file_, kUnreadable, [&] {
       rosbag::View view(bag_, rosbag::TopicQuery(topic));
       ros::Bytes bytes;
@@ -223,7 +223,7 @@ class Ros1BagReader : public BagReader {
         bytes.resize(message.size());
         ::ros::serialization::OStream stream(bytes.data(), message.size());
         message.write(stream);
-        take(bytes);
+        take(bytes, static_cast<std::int64_t>(message.getTime().toNSec()));
       }
     });
   }

@@ -171,11 +171,11 @@ class Ros2BagReader : public BagReader {
     return topics;
   }
 
-  void read(const std::string& topic, const std::function<void(ros::Bytes&)>& take) override {
+  void read(const std::string& topic, const Take& take) override {
     for_files([&](const path&, SQLite::Database& database) {
       SQLite::Statement query(
           database,
-          "SELECT data FROM messages WHERE topic_id IN (SELECT id FROM topics WHERE name = ?) ORDER "
+          "SELECT data, timestamp FROM messages WHERE topic_id IN (SELECT id FROM topics WHERE name = ?) ORDER "
           "BY timestamp, id");
       query.bind(1, topic);
       ros::Bytes bytes;
@@ -183,7 +183,7 @@ class Ros2BagReader : public BagReader {
         const SQLite::Column blob = query.getColumn(0);
         const auto* first = static_cast<const std::uint8_t*>(blob.getBlob());
         bytes.assign(first, first + blob.getBytes());
-        take(bytes);
+        take(bytes, query.getColumn(1).getInt64());
       }
     });
   }

@@ -63,7 +63,7 @@ Imported import_sweeps(const SweepSource& source) {
     const std::optional<std::int64_t> stamp = stamps.empty() ? std::nullopt : std::optional(stamps[k]);
     builder.add(stamp, read_cloud(files[k]), files[k].string());
   }
-  out.sensors.lidars.push_back(builder.finish(source.folder.string(), out.notes));
+  add_lidar(out, builder.finish(source.folder.string(), out.notes));
   out.info.attribution = "imported from " + source.folder.filename().string() + ", " + std::to_string(files.size()) +
                          " sweeps of format " + source.format;
   start_clock(out);

@@ -119,9 +119,10 @@ void SweepBuilder::take(Waiting& sweep) {
                    in_ns(starts.back()));
   }
   starts.push_back(start_ns);
-  record_.sweep_first.push_back(record_.position_L_m.size());
+  record_.sweep_first.push_back(points());
   take_points(sweep, kept);
   take_rings(sweep, kept);
+  if (store_) store_->take(record_);
 }
 
 /// The start of the sweep; the points' offsets from it are stored.
@@ -155,6 +156,7 @@ std::int64_t SweepBuilder::take_times(const Waiting& sweep, const std::vector<st
                      " after the sweep's start, must be at most " + in_ns(bound));
     }
     record_.offset_ns.push_back(static_cast<std::uint32_t>(offset));
+    longest_ns_ = std::max(longest_ns_, offset);
   }
   return start;
 }
@@ -170,6 +172,7 @@ void SweepBuilder::take_points(const Waiting& sweep, const std::vector<std::size
     record_.range_m.push_back(record_.position_L_m.back().norm());
     const bool lit = intensity != nullptr && std::isfinite((*intensity)[i]) && (*intensity)[i] >= 0.0;
     record_.intensity.push_back(lit ? static_cast<float>((*intensity)[i]) : 0.0f);
+    brightest_ = std::max(brightest_, record_.intensity.back());
     if (!lit) ++dark_;
   }
   const std::set<std::string> used = {"x", "y", "z", rule_->field};
@@ -195,17 +198,18 @@ void SweepBuilder::take_rings(const Waiting& sweep, const std::vector<std::size_
 }
 
 void SweepBuilder::scale_intensity(std::vector<std::string>& notes) {
-  const auto largest = std::max_element(record_.intensity.begin(), record_.intensity.end());
-  if (largest == record_.intensity.end() || *largest <= 1.0f) return;
-  const double full = *largest <= kByte ? kByte : static_cast<double>(*largest);
-  for (float& each : record_.intensity) each = static_cast<float>(each / full);
+  if (brightest_ <= 1.0f) return;
+  const double full = brightest_ <= kByte ? kByte : static_cast<double>(brightest_);
+  const auto scale = [&](float& each) { each = static_cast<float>(each / full); };
+  if (store_) store_->intensity.change(scale);
+  std::for_each(record_.intensity.begin(), record_.intensity.end(), scale);
   notes.push_back("intensities go beyond 1: divided by " + std::to_string(full));
 }
 
-sim::LidarRecord SweepBuilder::finish(const std::string& where, std::vector<std::string>& notes) {
+BuiltSweeps SweepBuilder::finish(const std::string& where, std::vector<std::string>& notes) {
   if (!rule_ && !waiting_.empty()) settle();
-  if (record_.position_L_m.empty()) throw BadInput(where + ": no sweep holds a point");
-  record_.sweep_first.push_back(record_.position_L_m.size());
+  if (points() == 0) throw BadInput(where + ": no sweep holds a point");
+  record_.sweep_first.push_back(points());
   record_.name = reading_.device.name;
   record_.device = reading_.device.device;
   record_.T_BL = reading_.device.T_BL;
@@ -213,11 +217,10 @@ sim::LidarRecord SweepBuilder::finish(const std::string& where, std::vector<std:
       reading_.device.sweep_period_ns > 0 ? reading_.device.sweep_period_ns : median_step_ns(record_.sweep_start_ns);
   if (record_.sweep_period_ns <= 0) throw BadInput(where + ": of a single sweep the period must be given");
   if (rule_ && !rule_->field.empty()) notes.push_back(said(*rule_));
-  const std::int64_t longest = *std::max_element(record_.offset_ns.begin(), record_.offset_ns.end());
-  if (reading_.device.sweep_period_ns <= 0 && longest > record_.sweep_period_ns) {
+  if (reading_.device.sweep_period_ns <= 0 && longest_ns_ > record_.sweep_period_ns) {
     notes.push_back("sweeps follow each other by " + in_ns(record_.sweep_period_ns) + " and last up to " +
-                    in_ns(longest) + ", which is taken for their period");
-    record_.sweep_period_ns = longest;
+                    in_ns(longest_ns_) + ", which is taken for their period");
+    record_.sweep_period_ns = longest_ns_;
   }
   if (misses_ > 0)
     notes.push_back(std::to_string(misses_) + " points are misses (not finite, beyond 1000 km, or at the origin)");
@@ -229,7 +232,7 @@ sim::LidarRecord SweepBuilder::finish(const std::string& where, std::vector<std:
   for (const auto& [name, sweeps] : ignored_) names += " " + name;
   if (!names.empty()) notes.push_back("fields that are not read:" + names);
   scale_intensity(notes);
-  return std::move(record_);
+  return {std::move(record_), std::move(store_)};
 }
 
 }  // namespace tumble::scenarios

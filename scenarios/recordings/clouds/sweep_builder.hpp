@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "scenarios/recordings/clouds/cloud_file.hpp"
+#include "scenarios/recordings/point_store.hpp"
 #include "sim/recording.hpp"
 
 namespace tumble::scenarios {
@@ -19,6 +21,8 @@ struct SweepReading {
   std::string time_unit;    ///< s ms us ns; "": told by the field's name ("offset_ns") or its size
   bool not_skewed = false;  ///< the points were deskewed, or fired at once: their times mean nothing
   bool assumed = false;     ///< the stamps are a guess: absolute times of points replace them
+  /// Where the points are set aside as they come; "": they stay in the record, which then takes memory with each sweep.
+  std::filesystem::path scratch;
 };
 
 /// Unit and name of the points' times in a sequence of clouds.
@@ -38,7 +42,14 @@ struct PointTimeRule {
 PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t period_ns, const SweepReading& reading,
                                const std::string& where);
 
-/// Makes the record of a lidar from clouds in the order of time.
+/// A lidar, and its points where they were set aside: then the record has none.
+struct BuiltSweeps {
+  sim::LidarRecord lidar;
+  std::optional<PointStore> points;
+};
+
+/// Makes the record of a lidar from clouds in the order of time. In memory are the first ten clouds, then one at a time
+/// where the points are set aside.
 ///
 /// A point that is not finite, farther than 1000 km or at the origin is a miss. Intensity ("intensity", "reflectivity")
 /// up to 1 stays as it is; up to 255 it is divided by that, else by the largest. Ring ("ring", "line", "channel") is a
@@ -47,7 +58,9 @@ PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t per
 class SweepBuilder {
  public:
   /// `period_ns` is what find_point_times is given: of the device, or the median step of the stamps.
-  SweepBuilder(SweepReading reading, std::int64_t period_ns) : reading_(std::move(reading)), period_ns_(period_ns) {}
+  SweepBuilder(SweepReading reading, std::int64_t period_ns) : reading_(std::move(reading)), period_ns_(period_ns) {
+    if (!reading_.scratch.empty()) store_.emplace(reading_.scratch);
+  }
 
   /// One sweep; `where` begins the messages. Throws BadInput: no x, y or z, a stamp that does not rise, a time outside
   /// two sweep periods, a ring that is none.
@@ -56,7 +69,7 @@ class SweepBuilder {
   /// The record, in the clock of the stamps, and remarks for the user: how the times of points were read among them. A
   /// period that is not given is the median step, or the latest offset where that is more. Throws BadInput beginning
   /// with `where`: no point in any sweep, a single sweep of unknown length.
-  sim::LidarRecord finish(const std::string& where, std::vector<std::string>& notes);
+  BuiltSweeps finish(const std::string& where, std::vector<std::string>& notes);
 
  private:
   struct Waiting {
@@ -70,12 +83,16 @@ class SweepBuilder {
   void take_points(const Waiting& sweep, const std::vector<std::size_t>& kept);
   void take_rings(const Waiting& sweep, const std::vector<std::size_t>& kept);
   void scale_intensity(std::vector<std::string>& notes);
+  std::size_t points() const { return store_ ? store_->size() : record_.position_L_m.size(); }
 
   SweepReading reading_;
   std::int64_t period_ns_;
   std::optional<PointTimeRule> rule_;
   std::vector<Waiting> waiting_;
   sim::LidarRecord record_;
+  std::optional<PointStore> store_;
+  float brightest_ = 0.0f;
+  std::int64_t longest_ns_ = 0;  ///< offset of a point
   std::size_t misses_ = 0, dark_ = 0, skipped_ = 0;
   std::map<std::string, std::size_t> ignored_;  ///< columns that mean nothing here, and in how many sweeps they were
 };

@@ -150,6 +150,14 @@ TEST_P(Bag, RatesInDegreesAreNoticedByGravity) {
   EXPECT_THAT(read().notes, testing::Contains(HasSubstr("units and axes agree")));
   turning(57.29578, 1.0);
   EXPECT_THAT(complaint_of(), HasSubstr("are the rates in deg/s?"));
+  reading_.gyro_unit = GyroUnit::deg_s;
+  const Imported in_degrees = read();
+  EXPECT_THAT(in_degrees.notes, testing::Contains(HasSubstr("units and axes agree")));
+  EXPECT_TRUE(in_degrees.sensors.imus[0].gyro_rad_s[0].isApprox(Eigen::Vector3d(1.0, 0.0, 0.0), 1e-7));
+  turning(1.0, 1.0);
+  EXPECT_THAT(complaint_of(), HasSubstr("read in deg/s, gravity turns in the accelerometer"));
+  EXPECT_THAT(complaint_of(), HasSubstr("are the rates in rad/s?"));
+  reading_.gyro_unit = GyroUnit::rad_s;
   turning(1.0, -1.0);
   EXPECT_THAT(read().notes, testing::Contains(HasSubstr("caution: gravity turns")));
 }

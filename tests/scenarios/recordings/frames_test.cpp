@@ -41,7 +41,7 @@ class Frames : public fixture::Folder, public testing::WithParamInterface<Kind> 
   std::vector<Message> messages(const std::string& topic) {
     const auto reader = GetParam().open(path_);
     std::vector<Message> out;
-    reader->read(topic, [&](ros::Bytes& bytes) {
+    reader->read(topic, [&](ros::Bytes& bytes, std::int64_t) {
       out.push_back(reader->cdr(topic) ? ros::from_cdr<Message>(bytes) : ros::from_ros1<Message>(bytes));
     });
     return out;

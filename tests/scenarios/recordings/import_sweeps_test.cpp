@@ -260,7 +260,7 @@ TEST_F(ImportSweeps, AnImuInTheSameClockJoinsAndInAnotherDoesNot) {
   EXPECT_EQ(both.sensors.lidars[0].sweep_start_ns, recording.sensors.lidars[0].sweep_start_ns);
   Imported elsewhere = import_imu_csv(folder_ / "imu_reference.csv", given);
   elsewhere.info.origin_ns += 3600000000000;
-  EXPECT_THAT(fixture::complaint([&] { attach_imus(both, elsewhere); }), HasSubstr("another clock?"));
+  EXPECT_THAT(fixture::complaint([&] { attach_imus(both, std::move(elsewhere)); }), HasSubstr("another clock?"));
 }
 
 }  // namespace

@@ -32,8 +32,9 @@ class Mcap : public fixture::Folder {
   std::vector<double> rates(const std::string& bytes) {
     fixture::put(file(), bytes);
     std::vector<double> out;
-    open_mcap({file()})->read(
-        "/imu", [&](ros::Bytes& message) { out.push_back(ros::from_cdr<ros::Imu>(message).angular_velocity[0]); });
+    open_mcap({file()})->read("/imu", [&](ros::Bytes& message, std::int64_t) {
+      out.push_back(ros::from_cdr<ros::Imu>(message).angular_velocity[0]);
+    });
     return out;
   }
   std::vector<fixture::Logged> messages_ = fixture::imu_messages(50);

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "scenarios/recordings/recording_file.hpp"
+
+/// Private to scenarios/recordings.
+namespace tumble::scenarios {
+
+/// What the file of a recording takes at most, bytes: every number plain, chunks full, and generous heads.
+std::uint64_t size_bound(const RecordingInfo& info, const sim::Sensors& sensors, const std::vector<PointStore>& points,
+                         const sim::Truth* truth);
+
+}  // namespace tumble::scenarios

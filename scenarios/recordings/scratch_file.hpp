@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+/// What does not fit into memory, set aside on the disk while a recording is made or read.
+namespace tumble::scenarios {
+
+/// A file without a name: gone with the object, however the process ends. It grows at its end. Throws BadInput with the
+/// folder and the system's reason (no such folder, no permission, disk full).
+class ScratchFile {
+ public:
+  explicit ScratchFile(std::filesystem::path folder);
+  ~ScratchFile();
+  ScratchFile(ScratchFile&& other) noexcept
+      : folder_(std::move(other.folder_)),
+        descriptor_(std::exchange(other.descriptor_, -1)),
+        bytes_(std::exchange(other.bytes_, 0)) {}
+  ScratchFile& operator=(ScratchFile&& other) noexcept {
+    std::swap(folder_, other.folder_), std::swap(descriptor_, other.descriptor_), std::swap(bytes_, other.bytes_);
+    return *this;
+  }
+
+  std::uint64_t bytes() const { return bytes_; }
+  void append(std::span<const std::byte> bytes) { write(bytes_, bytes); }
+  /// At a place within what is there, or at its end.
+  void write(std::uint64_t at, std::span<const std::byte> bytes);
+  void read(std::uint64_t at, std::span<std::byte> bytes) const;
+
+ private:
+  std::filesystem::path folder_;
+  int descriptor_ = -1;
+  std::uint64_t bytes_ = 0;
+};
+
+/// A column of a recording in a ScratchFile: as a std::vector<Row>, by stretches. Without a folder it is empty and
+/// stays so.
+template <class Row>
+class ColumnFile {
+ public:
+  ColumnFile() = default;
+  explicit ColumnFile(const std::filesystem::path& folder) : file_(std::in_place, folder) {}
+
+  std::size_t size() const { return file_ ? file_->bytes() / sizeof(Row) : 0; }
+  void append(std::span<const Row> rows) { file_->append(std::as_bytes(rows)); }
+  void read(std::size_t first, std::span<Row> rows) const {
+    if (!rows.empty()) file_->read(first * sizeof(Row), std::as_writable_bytes(rows));
+  }
+  /// Rows [first, last).
+  std::vector<Row> rows(std::size_t first, std::size_t last) const {
+    std::vector<Row> out(last - first);
+    read(first, out);
+    return out;
+  }
+  /// Calls `take(first, rows)` for stretches of `length` rows, the last of which may be shorter.
+  template <class Take>
+  void for_stretches(std::size_t length, Take&& take) const {
+    std::vector<Row> rows;
+    for (std::size_t first = 0; first < size(); first += rows.size()) {
+      rows.resize(std::min(length, size() - first));
+      read(first, rows);
+      take(first, std::span<const Row>(rows));
+    }
+  }
+  /// Calls `change(row)` for each row, which stays so.
+  template <class Change>
+  void change(Change&& change) {
+    constexpr std::size_t kLength = (std::size_t{1} << 20) / sizeof(Row);
+    for_stretches(kLength, [&](std::size_t first, std::span<const Row> rows) {
+      std::vector<Row> changed(rows.begin(), rows.end());
+      for (Row& row : changed) change(row);
+      file_->write(first * sizeof(Row), std::as_bytes(std::span(changed)));
+    });
+  }
+
+ private:
+  std::optional<ScratchFile> file_;
+};
+
+}  // namespace tumble::scenarios

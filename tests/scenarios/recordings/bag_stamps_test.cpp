@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "scenarios/recordings/bags/bag.hpp"
+#include "scenarios/recordings/bags/bag_messages.hpp"
+#include "scenarios/recordings/bags/bag_storage.hpp"
+#include "scenarios/recordings/bags/sweep_messages.hpp"
+#include "scenarios/recordings/fixture_recording.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr std::int64_t kOrigin_ns = 1'700'000'000'000'000'000, kMs_ns = 1'000'000;
+
+struct Kind {
+  const char* name;
+  std::unique_ptr<BagWriter> (*writer)(const std::filesystem::path&);
+  Imported (*read)(const std::filesystem::path&, const BagReading&);
+};
+
+/// A bag of an IMU and a lidar whose headers state what each test has them state.
+class Stamps : public fixture::Folder, public testing::WithParamInterface<Kind> {
+ protected:
+  using HeaderOf = std::int64_t (*)(std::int64_t record_ns);
+
+  Imported written(HeaderOf imu, HeaderOf lidar, StampSource source = StampSource::header) {
+    const std::filesystem::path path = folder_ / ("bag" + std::to_string(count_++));
+    const auto bag = GetParam().writer(path);
+    sim::Recording recording = fixture::recording();
+    sim::ImuRecord& readings = recording.sensors.imus[0];
+    readings.accel_m_s2.assign(readings.accel_m_s2.size(), Eigen::Vector3d(0.0, 0.0, 9.8));
+    for (int k = 1; k <= 60; ++k) {
+      const std::int64_t record_ns = kOrigin_ns + 5 * kMs_ns * k;
+      bag->write("/imu", record_ns,
+                 imu_message(readings, static_cast<std::size_t>(k), header_of(imu(record_ns), "imu")));
+      if (k % 20 == 0) {
+        bag->write("/points", record_ns,
+                   sweep_message(recording.sensors.lidars[0], static_cast<std::size_t>(k / 20 - 1), own_sweep_layout(),
+                                 lidar(record_ns), header_of(lidar(record_ns), "lidar")));
+      }
+    }
+    bag->finish();
+    BagReading reading;
+    reading.stamps = source;
+    return GetParam().read(path, reading);
+  }
+  std::string complaint_of(HeaderOf imu, HeaderOf lidar, StampSource source = StampSource::header) {
+    return fixture::complaint([&] { written(imu, lidar, source); });
+  }
+  static std::int64_t same(std::int64_t record_ns) { return record_ns; }
+  static std::int64_t sweep_before(std::int64_t record_ns) { return record_ns - 100 * kMs_ns; }
+  static std::int64_t zero(std::int64_t) { return 0; }
+  static std::int64_t constant(std::int64_t) { return kOrigin_ns; }
+  static std::int64_t back(std::int64_t record_ns) { return 2 * kOrigin_ns - record_ns; }
+  static std::int64_t since_boot(std::int64_t record_ns) { return record_ns - kOrigin_ns + 1'000'000'000; }
+
+ private:
+  int count_ = 0;
+};
+
+TEST_P(Stamps, HeadersCountAndTheirDistanceToTheRecordsIsSaid) {
+  const Imported read = written(same, sweep_before);
+  EXPECT_EQ(read.sensors.imus[0].time_ns.front() + read.info.origin_ns, kOrigin_ns + 5 * kMs_ns);
+  EXPECT_EQ(read.sensors.lidars[0].sweep_start_ns.front() + read.info.origin_ns, kOrigin_ns);
+  EXPECT_THAT(read.notes, Contains(AllOf(HasSubstr("/points: the bag recorded its messages 0.1 s to 0.1 s after"),
+                                         HasSubstr("taken are the headers'"))));
+  EXPECT_THAT(read.notes, Not(Contains(HasSubstr("/imu: the bag recorded")))) << "nothing is said of what agrees";
+}
+
+TEST_P(Stamps, AnotherClockIsACaution) {
+  EXPECT_THAT(written(since_boot, since_boot).notes,
+              Contains(AllOf(HasSubstr("/imu: caution: the bag recorded"), HasSubstr("another clock?"))));
+  const auto ahead = [](std::int64_t record_ns) { return record_ns + 20 * kMs_ns; };
+  EXPECT_THAT(written(ahead, sweep_before).notes,
+              Contains(HasSubstr("/imu: caution: the bag recorded its messages -0.02 s")));
+  const auto drifting = [](std::int64_t record_ns) {
+    return kOrigin_ns - 700 * kMs_ns + 10 * (record_ns - kOrigin_ns) / 3;
+  };
+  EXPECT_THAT(written(drifting, sweep_before).notes,
+              Contains(AllOf(HasSubstr("/imu: caution: the bag recorded"), HasSubstr("do the clocks drift?"))));
+  EXPECT_THAT(written(same, same).notes, Not(Contains(HasSubstr("caution"))));
+}
+
+TEST_P(Stamps, BrokenHeadersAreRefusedWithTheWayOut) {
+  EXPECT_THAT(complaint_of(zero, sweep_before),
+              AllOf(HasSubstr("message 1 of /imu: stamp does not rise: the header's is 0, as the one before"),
+                    HasSubstr("the record's rises by 0.005 s ('--stamps record' takes those)")));
+  EXPECT_THAT(complaint_of(constant, sweep_before), HasSubstr("the header's stands still"));
+  EXPECT_THAT(complaint_of(back, sweep_before), HasSubstr("the header's goes back by 0.005 s"));
+  EXPECT_THAT(complaint_of(same, constant), HasSubstr("message 1 of /points: stamp does not rise"));
+}
+
+TEST_P(Stamps, RecordsAreTakenInstead) {
+  for (const HeaderOf broken : {zero, constant, back}) {
+    const Imported read = written(broken, broken, StampSource::record);
+    ASSERT_EQ(read.sensors.imus[0].time_ns.size(), 60u);
+    EXPECT_EQ(read.sensors.imus[0].period_ns, 5 * kMs_ns);
+    EXPECT_EQ(read.sensors.imus[0].time_ns.back() + read.info.origin_ns, kOrigin_ns + 300 * kMs_ns);
+    ASSERT_EQ(read.sensors.lidars[0].sweep_start_ns.size(), 3u);
+    EXPECT_EQ(read.sensors.lidars[0].sweep_start_ns.back() + read.info.origin_ns, kOrigin_ns + 200 * kMs_ns)
+        << "recorded when it was over";
+    EXPECT_THAT(read.notes, Contains(AllOf(HasSubstr("/points: "), HasSubstr("taken are the records'"),
+                                           HasSubstr("a sweep is taken to start 0.100000 s before it was recorded"))));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, Stamps,
+                         testing::Values(Kind{"Ros1", make_ros1_writer, import_ros1_bag},
+                                         Kind{"Ros2", make_ros2_writer, import_ros2_bag},
+                                         Kind{"Mcap", make_mcap_writer, import_mcap}),
+                         [](const auto& kind) { return std::string(kind.param.name); });
+
+}  // namespace
+}  // namespace tumble::scenarios

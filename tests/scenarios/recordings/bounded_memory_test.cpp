@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <functional>
+
+#include "scenarios/recordings/bags/bag.hpp"
+#include "scenarios/recordings/bags/bag_messages.hpp"
+#include "scenarios/recordings/bags/bag_storage.hpp"
+#include "scenarios/recordings/bags/sweep_messages.hpp"
+#include "scenarios/recordings/export.hpp"
+#include "scenarios/recordings/fixture_recording.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+constexpr int kShort = 40, kLong = 160;  // sweeps
+constexpr int kPoints = 20000;           // of a sweep: 26 bytes each in a record
+/// What the 120 sweeps that the long bag has more would take in a record, at least.
+constexpr double kMore_mib = 120.0 * kPoints * 26.0 / (1 << 20);
+/// What an import of the long bag may take more than one of the short: a tenth of it. Samples and indices are some 100
+/// bytes for each of 1400 messages more; the rest is how the allocator keeps pages.
+constexpr double kGrowth_mib = kMore_mib / 10.0;
+
+struct Kind {
+  const char *name, *format;
+  std::unique_ptr<BagWriter> (*writer)(const std::filesystem::path&);
+  Imported (*read)(const std::filesystem::path&, const BagReading&);
+};
+
+/// A bag of a lidar and an IMU, written sweep by sweep.
+void write_bag(BagWriter& bag, int sweeps) {
+  constexpr std::int64_t kOrigin_ns = 1'700'000'000'000'000'000, kPeriod_ns = 100'000'000, kImu_ns = 10'000'000;
+  fixture::Numbers numbers;
+  sim::Recording recording;
+  fixture::add_lidar(numbers, recording, "lidar", 1, kPoints);
+  sim::ImuRecord imu = fixture::imu_record(numbers, "imu", 1);
+  imu.accel_m_s2 = {Eigen::Vector3d(0.0, 0.0, 9.8)};
+  for (int k = 0; k < sweeps; ++k) {
+    const std::int64_t start_ns = kOrigin_ns + k * kPeriod_ns;
+    for (int i = 1; i <= 10; ++i) {
+      const std::int64_t time_ns = start_ns + i * kImu_ns;
+      bag.write("/imu", time_ns, imu_message(imu, 0, header_of(time_ns, "imu")));
+    }
+    bag.write(
+        "/points", start_ns + kPeriod_ns,
+        sweep_message(recording.sensors.lidars[0], 0, own_sweep_layout(), start_ns, header_of(start_ns, "lidar")));
+  }
+  bag.finish();
+}
+
+/// The largest resident set of a process of its own that does it, MiB.
+double peak_mib(const std::function<void()>& work) {
+  const pid_t child = fork();
+  if (child == 0) {
+    try {
+      work();
+      _exit(0);
+    } catch (const std::exception& error) {
+      static_cast<void>(!write(STDERR_FILENO, error.what(), std::strlen(error.what())));
+      _exit(1);
+    }
+  }
+  int status = 0;
+  rusage usage{};
+  EXPECT_EQ(wait4(child, &status, 0, &usage), child);
+  EXPECT_EQ(status, 0);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+class BoundedMemory : public fixture::Folder, public testing::WithParamInterface<Kind> {
+ protected:
+  std::filesystem::path bag(int sweeps) const { return folder_ / ("bag" + std::to_string(sweeps)); }
+  std::filesystem::path recording(int sweeps) const { return folder_ / (std::to_string(sweeps) + ".h5"); }
+  double import_mib(int sweeps, bool aside) {
+    return peak_mib([&] {
+      BagReading reading;
+      if (aside) reading.sweeps.scratch = folder_;
+      const Imported read = GetParam().read(bag(sweeps), reading);
+      const std::filesystem::path out = folder_ / "out.h5";
+      if (aside)
+        write_recording(out, read.info, read.sensors, read.points, nullptr);
+      else
+        write_recording(out, read.info, read.sensors, nullptr);
+    });
+  }
+};
+
+TEST_P(BoundedMemory, AnImportDoesNotGrowWithTheBag) {
+  for (const int sweeps : {kShort, kLong}) write_bag(*GetParam().writer(bag(sweeps)), sweeps);
+  EXPECT_LT(import_mib(kLong, true) - import_mib(kShort, true), kGrowth_mib);
+  // the points in the record: the measure sees what grows
+  EXPECT_GT(import_mib(kLong, false) - import_mib(kShort, false), kMore_mib);
+}
+
+TEST_P(BoundedMemory, AnExportDoesNotGrowWithTheRecording) {
+  for (const int sweeps : {kShort, kLong}) {
+    write_bag(*GetParam().writer(bag(sweeps)), sweeps);
+    ASSERT_GT(import_mib(sweeps, true), 0.0);
+    std::filesystem::rename(folder_ / "out.h5", recording(sweeps));
+  }
+  const auto export_mib = [&](int sweeps, bool whole) {
+    BesideSensors beside;
+    if (whole) beside.more = [](const sim::Sensors&, BagWriting&) {};  // wants the points
+    const std::filesystem::path out = folder_ / (whole ? "whole" : "out");
+    std::filesystem::remove_all(out);
+    return peak_mib([&] { export_recording(recording(sweeps), GetParam().format, out, beside); });
+  };
+  EXPECT_LT(export_mib(kLong, false) - export_mib(kShort, false), kGrowth_mib);
+  EXPECT_GT(export_mib(kLong, true) - export_mib(kShort, true), kMore_mib / 2.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, BoundedMemory,
+                         testing::Values(Kind{"Ros1", "rosbag1", make_ros1_writer, import_ros1_bag},
+                                         Kind{"Ros2", "rosbag2", make_ros2_writer, import_ros2_bag},
+                                         Kind{"Mcap", "mcap", make_mcap_writer, import_mcap}),
+                         [](const auto& kind) { return std::string(kind.param.name); });
+
+}  // namespace
+}  // namespace tumble::scenarios
