@@ -412,8 +412,8 @@ double share_in_flight(std::uint64_t seed, double dropped) {
   return state.shares.carried;
 }
 
-/// A hand that throws bends the rig, which is dropped in step after step: 20 times in a lag at most. That says nothing of
-/// the flight that follows: the doubt is gone before the lag is over. The control is a doubt that lasts.
+/// A hand that throws bends the rig, which is dropped in step after step: 20 times in a lag at most. That says nothing
+/// of the flight that follows: the doubt is gone before the lag is over. The control is a doubt that lasts.
 TEST(RegimeStream, AFlightIsSeenThoughThePushBeforeItBentTheRig) {
   for (const std::uint64_t seed : {5, 7}) {
     EXPECT_LT(share_in_flight(seed, 20.0), 0.02) << seed;
