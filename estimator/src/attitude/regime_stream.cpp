@@ -8,9 +8,8 @@ namespace tumble {
 
 namespace {
 
-constexpr double kTurn_s = 0.01;       // the rates' derivative is taken over so long: model_error_s of the rates' model
-constexpr double kResets_s = 2.0;      // memory of how often a rig was dropped
-constexpr double kDoubtResets = 10.0;  // within that
+constexpr double kTurn_s = 0.01;     // the rates' derivative is taken over so long: model_error_s of the rates' model
+constexpr double kDoubtShare = 0.5;  // of the steps of a lag, those that dropped the rig
 
 CarriedStream::Params joined(const RegimeStream::Params& params) {
   CarriedStream::Params out = params.carried;
@@ -135,9 +134,11 @@ std::size_t RegimeStream::index_of(const RateState& rate, const State& state) co
   return k;
 }
 
-// Whether RateStream drops one rig after another: then there is none that these would be flights of.
+// Whether RateStream drops one rig after another: then there is none that these would be flights of. Over its lag, as a
+// rate that is given out was fitted by the rigs of those steps: what was dropped before says nothing of it.
 bool RegimeStream::doubts(const State& state) const {
-  return state.resets > kDoubtResets;
+  const RateStream::Params& rate = params_.rate;
+  return state.resets > kDoubtShare * rate.lag_s / std::max(rate.period_s, rate.step_s);
 }
 
 // The evidence of the sample that is given out, by its own rate: the forward half of carried.md (C28).
@@ -147,7 +148,7 @@ void RegimeStream::judge(const RateState& rate, State& state) const {
       next(state.shares, dt_s, state.rate.window, index_of(rate, state), rate_.calibration(state.rate), doubts(state));
   const auto dropped = static_cast<double>(state.rate.rig_resets - state.rig_resets);
   state.rig_resets = state.rate.rig_resets;
-  state.resets = std::exp(-dt_s / kResets_s) * state.resets + dropped;
+  state.resets = std::exp(-dt_s / params_.rate.lag_s) * state.resets + dropped;
   state.given_ns = rate.time_ns;
   ++state.given;
   state.sum.flight += state.shares.flight;

@@ -61,8 +61,8 @@ class RateStream {
     int flight_run_min = 6;        ///< a flight of fewer samples in a row says nothing of the rig
     /// Of a rig without calibration: its covariance, but for the gyro's bias and never beyond that beforehand, counts 1
     /// + rig_doubt / (1 + n / rig_doubt_samples) times, n being the samples of flight that have been learnt from.
-    double rig_doubt = 30.0;
-    double rig_doubt_samples = 10.0;
+    double rig_doubt = 60.0;
+    double rig_doubt_samples = 30.0;
     /// What contact tells of a rate beyond the rail rests on a rig that flight has to tell: of a rig without
     /// calibration its deviation is at least this share of what lies beyond the rail, over 1 + n / rig_doubt_samples.
     double contact_doubt = 0.5;

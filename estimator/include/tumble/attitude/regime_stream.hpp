@@ -18,10 +18,10 @@ namespace tumble {
 ///
 /// The evidence is a filter over the samples as they are given out, so that each is judged by all of the past and, by
 /// its rate, by the lag ahead. The share with which CarriedStream is believed is the least over the stretch of clipped
-/// samples, as in the batch, as far as the window shows it. While RateStream drops one rig after another (ten times in
-/// two seconds), clipped samples tell nothing. CarriedStream's work is spared while the evidence says that no hand
-/// holds the body (share below `carried_min`); it starts anew after that. Estimates are those of RateStream where
-/// nothing clips.
+/// samples, as in the batch, as far as the window shows it. While RateStream drops one rig after another (in more than
+/// half of the steps of its lag), clipped samples tell nothing. CarriedStream's work is spared while the evidence says
+/// that no hand holds the body (share below `carried_min`); it starts anew after that. Estimates are those of
+/// RateStream where nothing clips.
 ///
 /// Clipped rates were fitted to the very force by which they are judged, and so was the angular acceleration of
 /// RateStream, also where the gyro reads the rate: where the IMU sits far from the centre of mass, gravity in a gentle
@@ -56,7 +56,7 @@ class RegimeStream {
     std::size_t joined = 0;            ///< of these, joined with CarriedStream's
     std::size_t starts = 0;            ///< times that CarriedStream was started
     std::size_t rig_resets = 0;        ///< of RateStream, as seen last
-    double resets = 0.0;               ///< times that RateStream dropped its rig, forgotten with a memory
+    double resets = 0.0;               ///< times that RateStream dropped its rig, forgotten over its lag
     bool carrying = false;             ///< CarriedStream runs
     double least = 1.0;                ///< share of the carried body since the stretch of clipped samples began
     TimeNs given_ns = 0;               ///< of the last sample given out
