@@ -110,7 +110,9 @@ TEST(StateMembers, AllOfATumblingOdometry) {
   Marks marks;
   TumblingOdometry::members(door, marks);
   EXPECT_LT(marks.longest_hole(&door, sizeof door), padding_below<TumblingOdometry>);
-  expect_whole(OdometryPass({}, TumblingOdometry::Params::Expert::mapping_defaults()), "pass");
+  RegimeStream::Params rate;
+  rate.rate.model.nominal = {};
+  expect_whole(OdometryPass(rate, TumblingOdometry::Params::Expert::mapping_defaults()), "pass");
   expect_whole(TumblingOdometry::Sweep{}, "done");
   expect_whole(RateStream::Knot{}, "rate.window");
   expect_whole(CarriedStream::Reading{}, "carried.readings");

@@ -10,8 +10,14 @@ namespace {
 constexpr std::size_t kRecoveringUnits = 3;  // so many IMUs tell a rate beyond the range
 constexpr double kRecoveredSigma_rad_s = 1.0;
 
-ImuMerge::Params merge_params(const RollingOdometry::Params& params) {
+// Of the radius the door's own counts; the smoother's has no default.
+void require_stated(RollingOdometry::Params params) {
+  params.expert.rolling.filter.radius_m = params.radius_m;
   require_fields(params);
+}
+
+ImuMerge::Params merge_params(const RollingOdometry::Params& params) {
+  require_stated(params);
   require_within("units", static_cast<double>(params.units.size()), 1.0, ImuMerge::kImus);
   ImuMerge::Params out = params.expert.merge;
   out.count = static_cast<int>(params.units.size());

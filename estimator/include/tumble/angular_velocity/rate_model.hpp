@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -22,8 +23,9 @@ namespace tumble {
 
 /// What is assumed of the sensors, of the body and of its motion; shared by the batch and the streaming smoother.
 struct RateModelParams {
-  /// What is known of the rig beforehand; the shape of the inertia counts about the centre of mass, in IMU axes.
-  RigConstants nominal = {.lever_arm_m = {-0.022, -0.085, 0.055}};
+  /// What is known of the rig beforehand; the shape of the inertia counts about the centre of mass, in IMU axes. The
+  /// lever arm has no default: it is refused until it is stated, unless there is a `calibration`.
+  RigConstants nominal = {.lever_arm_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN())};
   /// Standard deviations of `nominal`.
   double lever_arm_sigma_m = 0.01;
   double gyro_bias_sigma_rad_s = 0.01;
@@ -37,9 +39,9 @@ struct RateModelParams {
   /// Other IMUs on the body, at most kAuxiliaryImusMax; their readings come with each sample.
   std::vector<AuxiliaryImu> auxiliary_imus = {};
 
-  /// Noise density of the gyro [rad/s/sqrt(Hz)] (MTi-30: 0.03 deg/s/sqrt(Hz)).
+  /// Noise density of the gyro [rad/s/sqrt(Hz)]; of an industrial MEMS gyro, 0.03 deg/s/sqrt(Hz).
   double gyro_noise_density = 5.236e-4;
-  /// Noise density of the accelerometer [m/s^2/sqrt(Hz)] (MTi-30: 60 ug/sqrt(Hz)).
+  /// Noise density of the accelerometer [m/s^2/sqrt(Hz)]; of an industrial MEMS accelerometer, 60 ug/sqrt(Hz).
   double accel_noise_density = 5.9e-4;
   /// What the flight model misses of the specific force (drag, bias in motion), besides noise [m/s^2].
   double flight_sigma_m_s2 = 0.02;
