@@ -130,6 +130,14 @@ bool RailWatch::observe(const ImuSample& sample, State& state) const {
   return changed;
 }
 
+Clipping RailWatch::judge(const ImuSample* before, const ImuSample& sample, const State& state) const {
+  RailDetector::State walls = state.known.walls;
+  Clipping out = walls_.classify(sample, walls);
+  for (const Triad triad : {Triad::gyro, Triad::accelerometer})
+    out = clip_by_planes(state.known.planes_in_use(triad), triad, out, before, sample, nullptr);
+  return out;
+}
+
 bool RailWatch::has_room_for(const State& state) const {
   return std::all_of(state.memory.begin(), state.memory.end(),
                      [&](const Memory& memory) { return memory.readings.size() <= readings_max_; });

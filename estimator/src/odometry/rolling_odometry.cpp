@@ -47,6 +47,12 @@ RollingSmoother::Params rolling_params(const RollingOdometry::Params& params, co
   return out;
 }
 
+std::vector<ImuSheet> sheets_of(const RollingOdometry::Params& params) {
+  std::vector<ImuSheet> out;
+  for (const RollingOdometry::Unit& unit : params.units) out.push_back(unit.sheet);
+  return out;
+}
+
 RollingOdometry::Pose as_pose(const RollingEstimate& estimate) {
   RollingOdometry::Pose out;
   out.pose = {estimate.time_ns, estimate.p_WG_m, estimate.q_WI, estimate.v_WG_m_s, estimate.covariance};
@@ -77,16 +83,20 @@ RollingOdometry::RollingOdometry(const Params& params, const ImuMerge::Params& m
     : params_(params),
       merge_(merged),
       smoother_(rolling_params(params, merged, merge_)),
+      rails_(sheets_of(params)),
       merge_state_(std::make_unique<ImuMerge::State>()),
       state_(std::make_unique<RollingSmoother::State>()),
+      rails_state_(rails_.start()),
       live_(params.lag_s <= 0.0) {}
 
 RollingOdometry::RollingOdometry(const RollingOdometry& other)
     : params_(other.params_),
       merge_(other.merge_),
       smoother_(other.smoother_),
+      rails_(other.rails_),
       merge_state_(std::make_unique<ImuMerge::State>(*other.merge_state_)),
       state_(std::make_unique<RollingSmoother::State>(*other.state_)),
+      rails_state_(other.rails_state_),
       done_(other.done_),
       taken_(other.taken_),
       live_(other.live_),
@@ -99,12 +109,18 @@ RollingOdometry& RollingOdometry::operator=(const RollingOdometry& other) {
 Status RollingOdometry::add_imus(std::span<const ImuSample> samples) {
   if (finished_) return {Trouble::out_of_range, "samples after finish()", 1.0, 0.0};
   std::optional<ImuSample> merged;
-  ImuMerge::State next = *merge_state_;  // both take the sample, or none
-  if (Status status = merge_.step(samples, next, merged); !status.ok()) return status;
+  if (samples.size() != params_.units.size())
+    return {Trouble::too_few, "samples", double(samples.size()), double(params_.units.size())};
+  UnitRails::Samples flagged;
+  rails_.flag(samples, rails_state_, flagged);
+  ImuMerge::State next = *merge_state_;  // all take the sample, or none
+  const std::span<const ImuSample> judged = std::span(flagged).first(samples.size());
+  if (Status status = merge_.step(judged, next, merged); !status.ok()) return status;
   if (merged) {
     if (Status status = take_in(*merged); !status.ok()) return status;
   }
   *merge_state_ = next;
+  rails_.observe(samples, rails_state_);
   return {};
 }
 
@@ -131,6 +147,7 @@ void RollingOdometry::finish() {
 void RollingOdometry::reset() {
   *merge_state_ = {};
   *state_ = {};
+  rails_state_ = rails_.start();
   finished_ = false;
 }
 

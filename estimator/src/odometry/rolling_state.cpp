@@ -7,6 +7,12 @@
 
 namespace tumble {
 
+template <StateOf<UnitRails::Unit> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("unit.rails", s.rails);
+  visit("unit.before", s.before);
+}
+
 template <StateOf<RollingOdometry::Unit> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit_params(s.sheet, visit);
@@ -22,11 +28,13 @@ void others(Self& p, Visitor& visit) {
 
 template <class Self, class Visitor>
 void RollingOdometry::members(Self& s, Visitor& visit) {
-  visit.scratch(s.params_);  // held to those that are saved; these two are made of them
+  visit.scratch(s.params_);  // held to those that are saved; these three are made of them
   visit.scratch(s.merge_);
   visit.scratch(s.smoother_);
+  visit.scratch(s.rails_);
   visit("merge", *s.merge_state_);
   visit("rolling", *s.state_);
+  visit("rails", s.rails_state_);
   if constexpr (std::is_const_v<Self>) {
     const std::vector<RollingEstimate> waiting(s.done_.begin() + static_cast<std::ptrdiff_t>(s.taken_), s.done_.end());
     visit("done", waiting);
@@ -46,6 +54,7 @@ Status RollingOdometry::load(std::span<const std::byte> bytes) {
   RollingOdometry fresh(params_);
   if (Status status = odometry::load(odometry::SavedKind::rolling, bytes, params_, fresh); !status.ok()) return status;
   if (Status status = fresh.smoother_.check_state(*fresh.state_); !status.ok()) return status;
+  if (Status status = fresh.rails_.check_state(fresh.rails_state_); !status.ok()) return status;
   *this = std::move(fresh);
   return {};
 }
