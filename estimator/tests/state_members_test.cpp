@@ -6,12 +6,14 @@
 #include <functional>
 #include <vector>
 
+#include "../src/attitude/imu_merge_members.hpp"
+#include "../src/common/state_bytes.hpp"
+#include "../src/common/state_layout.hpp"
+#include "../src/common/state_params.hpp"
 #include "../src/mapping/mapping_members.hpp"
 #include "../src/odometry/odometry_members.hpp"
+#include "../src/rolling/rolling_members.hpp"
 #include "rolled_sphere.hpp"
-#include "tumble/attitude/imu_merge_members.hpp"
-#include "tumble/common/state_bytes.hpp"
-#include "tumble/rolling/rolling_members.hpp"
 
 namespace tumble {
 namespace {

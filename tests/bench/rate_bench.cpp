@@ -11,7 +11,7 @@
 
 #include "estimator/angular_velocity/tumble_recording.hpp"
 #include "oracles/gaussian.hpp"
-#include "tumble/angular_velocity/arrow_solver.hpp"
+#include "tumble/angular_velocity/detail/arrow_solver.hpp"
 #include "tumble/angular_velocity/rate_smoother.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
 

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "element_clipping.hpp"
-#include "tumble/angular_velocity/sample_hold.hpp"
+#include "sample_hold.hpp"
 
 namespace tumble {
 

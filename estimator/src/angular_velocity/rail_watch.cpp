@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/rail_watch.hpp"
+#include "tumble/angular_velocity/detail/rail_watch.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/rate_model.hpp"
+#include "tumble/angular_velocity/detail/rate_model.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tumble/angular_velocity/rate_model_fields.hpp"
+#include "tumble/angular_velocity/rate_model_params_fields.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // RollingOdometry as bytes.
+#include "../attitude/imu_merge_members.hpp"
+#include "../common/state_params.hpp"
+#include "../rolling/rolling_members.hpp"
 #include "saved_state.hpp"
-#include "tumble/attitude/imu_merge_members.hpp"
 #include "tumble/odometry/rolling_odometry.hpp"
-#include "tumble/rolling/rolling_members.hpp"
 
 namespace tumble {
 

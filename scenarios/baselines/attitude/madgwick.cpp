@@ -5,7 +5,7 @@
 
 #include "scenarios/baselines/attitude/madgwick_step.hpp"
 #include "tumble/attitude/strapdown.hpp"
-#include "tumble/attitude/timing.hpp"
+#include "tumble/attitude/detail/timing.hpp"
 
 namespace tumble::baselines {
 

@@ -2,7 +2,7 @@
 #include "scenarios/baselines/attitude/mahony.hpp"
 
 #include "tumble/attitude/strapdown.hpp"
-#include "tumble/attitude/timing.hpp"
+#include "tumble/attitude/detail/timing.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble::baselines {

@@ -12,7 +12,7 @@
 #include "tumble/mapping/deskew.hpp"
 #include "tumble/mapping/lidar.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
-#include "tumble/mapping/map_drawing.hpp"
+#include "tumble/mapping/detail/map_drawing.hpp"
 #include "tumble/mapping/voxel_map.hpp"
 
 namespace tumble::baselines {

@@ -15,7 +15,7 @@
 #include "scenarios/baselines/angular_velocity/clipped_baseline.hpp"
 #include "tumble/angular_velocity/auxiliary_imu.hpp"
 #include "tumble/angular_velocity/clipping_finder.hpp"
-#include "tumble/angular_velocity/rail_watch.hpp"
+#include "tumble/angular_velocity/detail/rail_watch.hpp"
 #include "tumble/angular_velocity/rate_smoother.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
 

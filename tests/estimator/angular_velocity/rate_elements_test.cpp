@@ -10,6 +10,7 @@
 #include "estimator/angular_velocity/drawn_elements.hpp"
 #include "estimator/angular_velocity/tumble_recording.hpp"
 #include "estimator/src/angular_velocity/unseen_rails.hpp"
+#include "tumble/angular_velocity/detail/rate_model.hpp"
 #include "tumble/angular_velocity/rate_smoother.hpp"
 
 namespace tumble {

@@ -9,6 +9,7 @@
 
 #include "estimator/angular_velocity/tumble_recording.hpp"
 #include "estimator/src/angular_velocity/rate_descent.hpp"
+#include "tumble/angular_velocity/detail/rate_model.hpp"
 
 namespace tumble {
 namespace {

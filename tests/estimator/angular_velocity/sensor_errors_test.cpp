@@ -7,10 +7,11 @@
 #include <cmath>
 #include <vector>
 
+#include "estimator/src/angular_velocity/sample_hold.hpp"
+#include "estimator/src/angular_velocity/triad_delay.hpp"
 #include "oracles/gaussian.hpp"
+#include "tumble/angular_velocity/detail/rate_model.hpp"
 #include "tumble/angular_velocity/rate_smoother.hpp"
-#include "tumble/angular_velocity/sample_hold.hpp"
-#include "tumble/angular_velocity/triad_delay.hpp"
 #include "tumble_recording.hpp"
 
 namespace tumble {

@@ -10,8 +10,8 @@
 
 #include "tumble/attitude/imu_merge.hpp"
 #include "tumble/common/pose.hpp"
+#include "tumble/odometry/detail/unit_rails.hpp"
 #include "tumble/odometry/imu_sheet.hpp"
-#include "tumble/odometry/unit_rails.hpp"
 #include "tumble/rolling/rolling_smoother.hpp"
 
 namespace tumble {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "tumble/angular_velocity/rate_model.hpp"
+#include "tumble/angular_velocity/rate_model_params.hpp"
 #include "tumble/common/parameters.hpp"
 
 namespace tumble {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "tumble/angular_velocity/rail_watch.hpp"
+#include "tumble/angular_velocity/detail/rail_watch.hpp"
 #include "tumble/attitude/imu_merge.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
