@@ -8,8 +8,8 @@
 
 #include "tumble/common/detail/scalar_update.hpp"
 #include "tumble/common/so3.hpp"
-#include "tumble/mapping/plane_fit.hpp"
 #include "tumble/mapping/detail/sweep_check.hpp"
+#include "tumble/mapping/plane_fit.hpp"
 
 namespace tumble::baselines {
 
