@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -110,9 +109,9 @@ TEST(RollingOdometry, ARailThatNoFlagTellsIsSeenByTheReadings) {
     const Ended seen = end_of_clipped(count, 9.0);
     // negative control: stated far above, equal readings are no rail, and what they hide is believed
     const Ended believed = end_of_clipped(count, 30.0);
-    std::printf("%zu: off by %.3f m, sigma %.3f; believed: %.3f, %.3f\n", count, seen.off_m, seen.sigma_m,
-                believed.off_m, believed.sigma_m);
+    // measured: 0.454 m off, sigma 0.290, and 5.170, 0.021; with three 0.218, 0.099, and 4.105, 0.067
     EXPECT_LT(seen.off_m, 3.0 * seen.sigma_m) << count;
+    EXPECT_LT(seen.off_m, 0.15 * believed.off_m) << count;
     EXPECT_GT(believed.off_m, 3.0 * believed.sigma_m) << count;
   }
 }
