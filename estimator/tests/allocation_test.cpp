@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <new>
 
+#include "rolled_sphere.hpp"
 #include "thrown_body.hpp"
 #include "tumble/tumble.hpp"
 
@@ -51,6 +52,22 @@ TEST(Allocation, NoneForASampleOfATumblingBodyOnceItHasBegun) {
     }
   }
   EXPECT_EQ(without_a_sweep, 0u);
+  EXPECT_GT(in_all, 0u) << "negative control: the counter counts";
+}
+
+TEST(Allocation, NoneForASampleOfARollingSphereOnceItHasBegun) {
+  RollingOdometry::Params params = test::params_of({test::kPlaces[0]});
+  params.lag_s = 0.0;
+  RollingOdometry odometry(params);
+  std::size_t later = 0, in_all = 0;
+  for (const ImuSample& sample : test::unit_at(test::kPlaces[0])) {
+    const std::size_t before = g_allocations;
+    ASSERT_TRUE(odometry.add_imu(sample).ok());
+    while (odometry.take()) continue;
+    in_all += g_allocations - before;
+    if (sample.time_ns > 100'000'000) later += g_allocations - before;
+  }
+  EXPECT_EQ(later, 0u);
   EXPECT_GT(in_all, 0u) << "negative control: the counter counts";
 }
 

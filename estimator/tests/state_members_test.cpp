@@ -6,12 +6,14 @@
 #include <functional>
 #include <vector>
 
+#include "../src/attitude/imu_merge_members.hpp"
+#include "../src/common/state_bytes.hpp"
+#include "../src/common/state_layout.hpp"
+#include "../src/common/state_params.hpp"
 #include "../src/mapping/mapping_members.hpp"
 #include "../src/odometry/odometry_members.hpp"
+#include "../src/rolling/rolling_members.hpp"
 #include "rolled_sphere.hpp"
-#include "tumble/attitude/imu_merge_members.hpp"
-#include "tumble/common/state_bytes.hpp"
-#include "tumble/rolling/rolling_members.hpp"
 
 namespace tumble {
 namespace {
@@ -110,7 +112,9 @@ TEST(StateMembers, AllOfATumblingOdometry) {
   Marks marks;
   TumblingOdometry::members(door, marks);
   EXPECT_LT(marks.longest_hole(&door, sizeof door), padding_below<TumblingOdometry>);
-  expect_whole(OdometryPass({}, TumblingOdometry::Params::Expert::mapping_defaults()), "pass");
+  RegimeStream::Params rate;
+  rate.rate.model.nominal = {};
+  expect_whole(OdometryPass(rate, TumblingOdometry::Params::Expert::mapping_defaults()), "pass");
   expect_whole(TumblingOdometry::Sweep{}, "done");
   expect_whole(RateStream::Knot{}, "rate.window");
   expect_whole(CarriedStream::Reading{}, "carried.readings");

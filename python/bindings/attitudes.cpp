@@ -13,7 +13,7 @@
 #include "rails.hpp"
 #include "results.hpp"
 #include "streams.hpp"
-#include "tumble/angular_velocity/recording_check.hpp"
+#include "tumble/angular_velocity/detail/recording_check.hpp"
 #include "tumble/attitude/carried_elements.hpp"
 #include "tumble/attitude/carried_smoother.hpp"
 #include "tumble/attitude/strapdown.hpp"

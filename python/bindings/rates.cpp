@@ -173,11 +173,15 @@ void bind_batch(nb::module_& m) {
   nb::class_<Saave>(
       m, "Saave",
       "The published recovery of one clipped axis (Deschenes et al., ICRA 2024), then its smoother, over a\n"
-      "whole recording. Saave(**options): parameters().")
+      "whole recording. Saave(lever_arm_m=(x, y, z), saturation_point_rad_s=..., **options): lever_arm_m from the "
+      "centre of\n"
+      "mass to the IMU, IMU axes; a reading beyond saturation_point_rad_s is clipped; options: parameters().")
       .def(
           "__init__",
           [](Saave* self, const nb::kwargs& options) {
             Keywords keywords("Saave", options);
+            keywords.need("lever_arm_m");
+            keywords.need("saturation_point_rad_s");
             Saave::Params params;
             read_fields(keywords, params);
             keywords.done();

@@ -21,7 +21,7 @@ STREAMS = {
 BATCHES = {
     "smoother": lambda *s: tumble.RateSmoother(lever_arm_m=LEVER).estimate(*s),
     "regimes": lambda *s: tumble.RegimeSmoother(lever_arm_m=LEVER).estimate(*s),
-    "saave": lambda *s: tumble.Saave().estimate(*s),
+    "saave": lambda *s: tumble.Saave(lever_arm_m=LEVER, saturation_point_rad_s=10.0).estimate(*s),
     "carried": lambda *s: tumble.CarriedSmoother().estimate(*s),
     "rails": lambda *s: tumble.find_rails(*s),
 }

@@ -12,7 +12,8 @@ NEEDED = {
     "RegimeSmoother": {"lever_arm_m": (0.0, 0.0, 0.0)},
     "RateStream": {"lever_arm_m": (0.0, 0.0, 0.0)},
     "RegimeStream": {"lever_arm_m": (0.0, 0.0, 0.0)},
-    "CarriedSmoother": {}, "Saave": {}, "Vqf": {}, "TumbleAttitude": {}, "Strapdown": {}, "ImuSheet": {}, "LidarSheet": {},
+    "Saave": {"lever_arm_m": (0.0, 0.0, 0.0), "saturation_point_rad_s": 10.0},
+    "CarriedSmoother": {}, "Vqf": {}, "TumbleAttitude": {}, "Strapdown": {}, "ImuSheet": {}, "LidarSheet": {},
     "RollingSmoother": {"radius_m": 0.145},
     "RollingOdometry": {"units": [(tumble.sheets.phidget1044(), np.eye(4))], "radius_m": 0.145},
     "LidarInertialOdometry": {"T_IL": np.eye(4)},
@@ -38,7 +39,7 @@ def test_bounds_of(name, parameter):
     vector = isinstance(parameter.default, tuple)
     wrap = (lambda x: (0.0 if parameter.low <= 0 else parameter.default[0], x, 0.0)) if vector else (lambda x: x)
     coordinates = parameter.default if vector else (parameter.default,)
-    if name != "RollingOdometry" or parameter.name != "radius_m":  # has no default
+    if parameter.name not in NEEDED[name]:  # has a default
         assert all(parameter.low <= x <= parameter.high for x in coordinates)
     beyond = [math.nan] if parameter.high > 1e300 else [parameter.high * 1.01 + 1.0, math.nan]
     whole = isinstance(parameter.default, (bool, int)) and not isinstance(parameter.default, float)

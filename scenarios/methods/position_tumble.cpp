@@ -5,6 +5,7 @@
 #include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/position_tumble.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/robot_presets.hpp"
 #include "scenarios/methods/sphere_attitude.hpp"
 
 namespace tumble::scenarios {
@@ -22,10 +23,11 @@ constexpr double kUnknownGyroBiasRadS = 5e-3, kUnknownAccelBiasMS2 = 0.4, kUnkno
                  kUnknownPlaceM = 0.05;
 constexpr double kUnknownInclinePerS = 1e-9;  // its bias passes for a slope: the floor is taken for level
 
-/// The library's defaults but for the prior of the lever arm: the centre of mass, which it is given from, is not the
-/// sphere's centre.
+/// The library's defaults, for the sphere of the models, but for the prior of the lever arm: the centre of mass, which
+/// it is given from, is not the sphere's centre.
 RollingSmoother::Params defaults(double lag_s = RollingSmoother::kWholeRun) {
   RollingSmoother::Params params;
+  params.filter.radius_m = presets::kSphereRadius_m;
   params.filter.lever_arm_sigma_m = kCentreSigmaM;
   params.lag_s = lag_s;
   return params;

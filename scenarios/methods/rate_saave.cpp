@@ -2,6 +2,7 @@
 #include "scenarios/methods/rate_saave.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/robot_presets.hpp"
 #include "tumble/angular_velocity/saave.hpp"
 
 namespace tumble::scenarios {
@@ -24,10 +25,10 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
 
 }  // namespace
 
-// slightly below the plateau of 10.5 rad/s seen on the MTi-30, which a reading has to exceed
 Saave::Params saave_defaults() {
   Saave::Params params;
-  params.saturation_point_rad_s = 10.45;
+  params.lever_arm_m = presets::rig_lever_arm_m();
+  params.saturation_point_rad_s = presets::kRigSaturationPoint_rad_s;
   return params;
 }
 

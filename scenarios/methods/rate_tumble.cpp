@@ -13,6 +13,7 @@
 #include "scenarios/methods/rate_baseline.hpp"
 #include "scenarios/methods/rate_regimes.hpp"
 #include "scenarios/methods/rate_tumble.hpp"
+#include "tumble/angular_velocity/detail/rate_model.hpp"
 
 namespace tumble::scenarios {
 

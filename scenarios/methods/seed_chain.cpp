@@ -10,8 +10,8 @@
 #include "scenarios/baselines/mapping/trimmed_icp.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
-#include "tumble/mapping/map_drawing.hpp"
-#include "tumble/mapping/spatial_hash.hpp"
+#include "tumble/mapping/detail/map_drawing.hpp"
+#include "tumble/mapping/detail/spatial_hash.hpp"
 
 namespace tumble::scenarios {
 

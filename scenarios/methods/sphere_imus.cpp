@@ -18,10 +18,9 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kSilentMaxS = 0.05;    // without readings for longer, a unit is absent
-constexpr double kEdgeShare = 0.9;      // of a sample, by which the readings at either end are carried on
-constexpr double kSilentToldS = 0.5;    // and for so long, told
-constexpr double kRailShareMin = 0.85;  // of the stated range, as the search for planes has it
+constexpr double kSilentMaxS = 0.05;  // without readings for longer, a unit is absent
+constexpr double kEdgeShare = 0.9;    // of a sample, by which the readings at either end are carried on
+constexpr double kSilentToldS = 0.5;  // and for so long, told
 // Of an element whose rail was not seen the row is taken to be upright, without doubt: doubted by 0.03 as noise of each
 // reading, three units tell too little of the rate while they clip (slip_long, draws 4, 30 and 42).
 constexpr double kUnknownSlope = 0.0;
@@ -47,33 +46,18 @@ std::vector<ImuSample> readings_of(const sim::ImuRecord& record, Status& status)
   return samples;
 }
 
-/// Sets the flags of what a unit's readings are judged to be, and tells along what its elements sense. Equal readings
-/// alone are no rail: flat tops of a slow motion far below a stated range are not heard, nor what repeats where none is
-/// stated, since the unit may have frozen. Planes are, which know neither.
+/// Sets the flags of what a unit's readings are judged to be, and tells along what its elements sense. The unit may
+/// have frozen.
 void judge(const sim::ImuRecord& record, std::vector<ImuSample>& samples, ElementRows& gyro, ElementRows& accel) {
   ClippingFinder::Params params;
   params.walls = stated_rails(record);
   const ClippingFinder::Found found = ClippingFinder(params).find(samples);
-  const auto heard = [](double reading, double range, const std::optional<RailPlane>& plane) {
-    return range > 0.0 ? std::abs(reading) >= kRailShareMin * range : plane.has_value();
-  };
-  const RailPlanes of_gyro = found.rails.planes_in_use(), of_accel = found.rails.planes_in_use(Triad::accelerometer);
-  for (std::size_t k = 0; k < samples.size(); ++k) {
-    ImuSample& sample = samples[k];
-    const unsigned judged = clip_flags(found.clippings[k]);
-    unsigned out = sample.device_clip_flags;
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto j = static_cast<std::size_t>(axis);
-      const double rate = sample.angular_velocity_rad_s[axis], force = sample.specific_force_m_s2[axis];
-      if (heard(rate, record.stated_gyro_range_rad_s, of_gyro.element[j])) {
-        out |= judged & static_cast<unsigned>(kClipGyroX << axis);
-      }
-      if (heard(force, record.stated_accel_range_m_s2, of_accel.element[j])) {
-        out |= judged & static_cast<unsigned>(kClipAccelX << axis);
-      }
-    }
-    sample.device_clip_flags = static_cast<std::uint8_t>(out);
-  }
+  const HeardRails heard{.gyro = found.rails.planes_in_use(),
+                         .accel = found.rails.planes_in_use(Triad::accelerometer),
+                         .gyro_range_rad_s = record.stated_gyro_range_rad_s,
+                         .accel_range_m_s2 = record.stated_accel_range_m_s2};
+  for (std::size_t k = 0; k < samples.size(); ++k)
+    samples[k].device_clip_flags = heard.flags(samples[k], found.clippings[k]);
   gyro = found.rails.rows(Triad::gyro, kUnknownSlope);
   accel = found.rails.rows(Triad::accelerometer, kUnknownSlope);
 }

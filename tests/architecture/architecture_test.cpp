@@ -41,12 +41,12 @@ const std::vector<Rule>& rules() {
       {"estimator/include/tumble/rolling", {"^pcl/", "^tumble/(mapping|odometry|pcl)/"}},
       {"estimator/include/tumble/mapping", {"^pcl/", "^tumble/(odometry|pcl)/"}},
       {"estimator/include/tumble/odometry", {"^pcl/", "^tumble/pcl/"}},
-      {"estimator/src/common", {"^pcl/", "^tumble/(angular_velocity|attitude|rolling|mapping|odometry|pcl)/"}},
-      {"estimator/src/angular_velocity", {"^pcl/", "^tumble/(attitude|rolling|mapping|odometry|pcl)/"}},
-      {"estimator/src/attitude", {"^pcl/", "^tumble/(rolling|mapping|odometry|pcl)/"}},
-      {"estimator/src/rolling", {"^pcl/", "^tumble/(mapping|odometry|pcl)/"}},
-      {"estimator/src/mapping", {"^pcl/", "^tumble/(odometry|pcl)/"}},
-      {"estimator/src/odometry", {"^pcl/", "^tumble/pcl/"}},
+      {"estimator/src/common", {"^pcl/", "^(tumble|\\.\\.)/(angular_velocity|attitude|rolling|mapping|odometry|pcl)/"}},
+      {"estimator/src/angular_velocity", {"^pcl/", "^(tumble|\\.\\.)/(attitude|rolling|mapping|odometry|pcl)/"}},
+      {"estimator/src/attitude", {"^pcl/", "^(tumble|\\.\\.)/(rolling|mapping|odometry|pcl)/"}},
+      {"estimator/src/rolling", {"^pcl/", "^(tumble|\\.\\.)/(mapping|odometry|pcl)/"}},
+      {"estimator/src/mapping", {"^pcl/", "^(tumble|\\.\\.)/(odometry|pcl)/"}},
+      {"estimator/src/odometry", {"^pcl/", "^(tumble|\\.\\.)/pcl/"}},
       {"sim",
        {"^tumble/", "^estimator/", "^scenarios/", "^tools/", "^hdf5", "^yaml-cpp", "^sqlite", "^SQLiteCpp", "^nlohmann",
         "^pcl/"}},
@@ -175,6 +175,8 @@ TEST(Architecture, CheckerRefusesForbiddenIncludes) {
   EXPECT_EQ(broken_rule("scenarios/methods/x.cpp", "tumble/common/imu.hpp"), "");
   EXPECT_NE(broken_rule("estimator/src/mapping/x.cpp", "pcl/point_types.h"), "");
   EXPECT_NE(broken_rule("estimator/src/mapping/x.cpp", "tumble/odometry/tumbling_odometry.hpp"), "");
+  EXPECT_NE(broken_rule("estimator/src/attitude/x.cpp", "../mapping/tracking.hpp"), "");
+  EXPECT_EQ(broken_rule("estimator/src/attitude/x.cpp", "../common/state_bytes.hpp"), "");
   EXPECT_EQ(broken_rule("estimator/src/pcl/x.cpp", "pcl/point_types.h"), "");
 }
 
@@ -281,12 +283,18 @@ std::string folder_of(const std::string& path) {
   return std::regex_replace(folder, std::regex("^estimator/(include/tumble|src)"), "estimator");
 }
 
+/// The header that an include of this file means, in the tree.
+std::string header_of(const fs::path& file, const std::string& include) {
+  if (include.starts_with("../")) return path_in_tree((file.parent_path() / include).lexically_normal());
+  return include.starts_with("tumble/") ? "estimator/include/" + include : include;
+}
+
 /// (folder, folder that one of its files includes from), of this tree.
 std::vector<std::pair<std::string, std::string>> folder_uses() {
   std::vector<std::pair<std::string, std::string>> uses;
   for (const fs::path& file : sources()) {
     for (const std::string& include : includes_of(file)) {
-      const std::string header = include.starts_with("tumble/") ? "estimator/include/" + include : include;
+      const std::string header = header_of(file, include);
       if (!fs::exists(tumble::test::source_dir() / header)) continue;
       const std::string from = folder_of(path_in_tree(file)), to = folder_of(header);
       if (from != to) uses.emplace_back(from, to);

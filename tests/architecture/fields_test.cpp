@@ -82,7 +82,7 @@ std::vector<std::string> forgotten(const std::string& body, const std::string& v
 
 std::vector<fs::path> headers() {
   std::vector<fs::path> out;
-  for (const char* folder : {"estimator/include", "scenarios/baselines"})
+  for (const char* folder : {"estimator/include", "estimator/src", "scenarios/baselines"})
     for (const auto& entry : fs::recursive_directory_iterator(tumble::test::source_dir() / folder))
       if (entry.path().extension() == ".hpp") out.push_back(entry.path());
   return out;

@@ -11,9 +11,9 @@
 #include <ctime>
 #include <vector>
 
+#include "estimator/src/common/state_bytes.hpp"
 #include "tests/estimator/mapping/endless_corridor.hpp"
 #include "tests/estimator/mapping/synthetic_room.hpp"
-#include "tumble/common/state_bytes.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/mapping/plane_fit.hpp"
 #include "tumble/mapping/voxel_map.hpp"

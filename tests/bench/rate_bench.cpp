@@ -11,7 +11,7 @@
 
 #include "estimator/angular_velocity/tumble_recording.hpp"
 #include "oracles/gaussian.hpp"
-#include "tumble/angular_velocity/arrow_solver.hpp"
+#include "tumble/angular_velocity/detail/arrow_solver.hpp"
 #include "tumble/angular_velocity/rate_smoother.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
 
@@ -28,7 +28,7 @@ tumble::TumbleRecording recording(int flights) {
 
 void batch(benchmark::State& state) {
   const tumble::TumbleRecording tumbling = recording(static_cast<int>(state.range(0)));
-  const tumble::RateSmoother smoother({});
+  const tumble::RateSmoother smoother(tumble::with_lever_arm<tumble::RateSmoother::Params>());
   std::vector<tumble::RateState> out;
   tumble::RateReport report;
   double iterations = 0.0;
@@ -46,7 +46,7 @@ BENCHMARK(batch)->Arg(8)->Arg(80)->Arg(800)->Unit(benchmark::kMillisecond);
 
 void streaming(benchmark::State& state) {
   const tumble::TumbleRecording tumbling = recording(8);
-  tumble::RateStream::Params params;
+  auto params = tumble::with_lever_arm<tumble::RateStream::Params>();
   params.rails.stated_gyro_rad_s = 10.5;
   const tumble::RateStream stream(params);
   std::optional<tumble::RateState> out;

@@ -67,7 +67,7 @@ void rolling_odometry(benchmark::State& state) {
 BENCHMARK(rolling_odometry);
 
 void live_filter(benchmark::State& state) {
-  const tumble::RollingFilter filter{tumble::RollingParams{}};
+  const tumble::RollingFilter filter{tumble::RollingParams{.radius_m = tumble::testing::kRadius_m}};
   std::size_t asked = 0;
   for (auto _ : state) {
     const auto s = std::make_unique<tumble::RollingFilter::State>();
@@ -91,7 +91,7 @@ void online_example(benchmark::State& state) {
   std::size_t asked = 0, bytes = 0;
   for (auto _ : state) {
     const std::size_t held_before = held;
-    online::Online program{tumble::RollingParams{}};
+    online::Online program{tumble::RollingParams{.radius_m = tumble::testing::kRadius_m}};
     bytes = held - held_before + sizeof program;
     const std::size_t before = allocations;
     for (const std::string& line : lines) benchmark::DoNotOptimize(program.take(line));
@@ -103,6 +103,7 @@ BENCHMARK(online_example)->Unit(benchmark::kMillisecond);
 
 void smoother_with_lag(benchmark::State& state) {
   tumble::RollingSmoother::Params params;
+  params.filter.radius_m = tumble::testing::kRadius_m;
   params.lag_s = 1.0;
   const tumble::RollingSmoother smoother(params);
   std::vector<tumble::RollingEstimate> out;

@@ -67,6 +67,7 @@ std::vector<std::string> lines() {
 
 RollingParams params() {
   RollingParams out;
+  out.radius_m = testing::kRadius_m;
   out.lever_arm_m = kLeverArm;
   return out;
 }

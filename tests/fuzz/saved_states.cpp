@@ -7,9 +7,9 @@
 #include <iterator>
 #include <stdexcept>
 #include <string>
-#include <tumble/common/state_bytes.hpp>
 #include <tumble/tumble.hpp>
 #include <vector>
+#include "estimator/src/common/state_bytes.hpp"
 
 #include "scenarios/errors.hpp"
 

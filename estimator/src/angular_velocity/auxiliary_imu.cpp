@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tumble/angular_velocity/recording_check.hpp"
+#include "tumble/angular_velocity/detail/recording_check.hpp"
 
 namespace tumble {
 

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/angular_velocity/clipping_finder.hpp"
 
+#include <cmath>
+#include <cstddef>
+#include <optional>
+
 #include "element_clipping.hpp"
-#include "tumble/angular_velocity/sample_hold.hpp"
+#include "sample_hold.hpp"
 
 namespace tumble {
 
@@ -26,6 +30,22 @@ ElementReading element_reading(const ImuSample& sample, const Clipping& clipping
 std::uint8_t clip_flags(const Clipping& clipping) {
   constexpr int kAccelFirst = 3;
   return static_cast<std::uint8_t>(clipping.gyro | clipping.void_gyro | clipping.accel << kAccelFirst);
+}
+
+std::uint8_t HeardRails::flags(const ImuSample& sample, const Clipping& judged) const {
+  constexpr double kRailShareMin = 0.85;  // of the stated range, as the search for planes has it
+  const auto heard = [](double reading, double range, const std::optional<RailPlane>& plane) {
+    return range > 0.0 ? std::abs(reading) >= kRailShareMin * range : plane.has_value();
+  };
+  const unsigned clipped = clip_flags(judged);
+  unsigned out = sample.device_clip_flags;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto j = static_cast<std::size_t>(axis);
+    const double rate = sample.angular_velocity_rad_s[axis], force = sample.specific_force_m_s2[axis];
+    if (heard(rate, gyro_range_rad_s, gyro.element[j])) out |= clipped & static_cast<unsigned>(kClipGyroX << axis);
+    if (heard(force, accel_range_m_s2, accel.element[j])) out |= clipped & static_cast<unsigned>(kClipAccelX << axis);
+  }
+  return static_cast<std::uint8_t>(out);
 }
 
 ClippingFinder::ClippingFinder(const Params& params)

@@ -8,9 +8,9 @@
 #include <span>
 
 #include "tumble/angular_velocity/clipping_finder.hpp"
+#include "tumble/angular_velocity/detail/rate_model.hpp"
 #include "tumble/angular_velocity/rail_detector.hpp"
 #include "tumble/angular_velocity/rail_planes.hpp"
-#include "tumble/angular_velocity/rate_model.hpp"
 
 namespace tumble {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/near_rails.hpp"
+#include "near_rails.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/partial_clipping.hpp"
+#include "tumble/angular_velocity/detail/partial_clipping.hpp"
 
 #include <algorithm>
 #include <cmath>

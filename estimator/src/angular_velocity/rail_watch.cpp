@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/rail_watch.hpp"
+#include "tumble/angular_velocity/detail/rail_watch.hpp"
 
 #include <algorithm>
 #include <array>
@@ -128,6 +128,14 @@ bool RailWatch::observe(const ImuSample& sample, State& state) const {
     if (observe(reading_of(sample, triad), triad, state)) changed = true;
   }
   return changed;
+}
+
+Clipping RailWatch::judge(const ImuSample* before, const ImuSample& sample, const State& state) const {
+  RailDetector::State walls = state.known.walls;
+  Clipping out = walls_.classify(sample, walls);
+  for (const Triad triad : {Triad::gyro, Triad::accelerometer})
+    out = clip_by_planes(state.known.planes_in_use(triad), triad, out, before, sample, nullptr);
+  return out;
 }
 
 bool RailWatch::has_room_for(const State& state) const {

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "tumble/angular_velocity/detail/rate_model.hpp"
 #include "tumble/angular_velocity/rate_smoother.hpp"
 
 namespace tumble {

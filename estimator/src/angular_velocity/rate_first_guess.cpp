@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "tumble/angular_velocity/saave.hpp"
-#include "tumble/angular_velocity/wnoj_smoother.hpp"
+#include "wnoj_smoother.hpp"
 
 namespace tumble {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "tumble/angular_velocity/rate_model.hpp"
+#include "tumble/angular_velocity/detail/rate_model.hpp"
 
 namespace tumble {
 

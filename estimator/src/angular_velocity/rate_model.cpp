@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/rate_model.hpp"
+#include "tumble/angular_velocity/detail/rate_model.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tumble/angular_velocity/rate_model_fields.hpp"
+#include "tumble/angular_velocity/rate_model_params_fields.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble {
@@ -32,8 +32,9 @@ void check(const RateModelParams& p) {
   for (const double value : p.errors.vector()) require_within("sensor errors", value, -0.2, 0.2);
   require_within("auxiliary_imus", p.auxiliary_imus.size(), 0, kAuxiliaryImusMax);
   for (const AuxiliaryImu& auxiliary_imu : p.auxiliary_imus) check(auxiliary_imu);
-  const RigConstants::Vector nominal = p.calibration ? p.calibration->constants.vector() : p.nominal.vector();
-  for (double value : nominal) require_within("rig constants", value, -10.0, 10.0);
+  const RigConstants& nominal = p.calibration ? p.calibration->constants : p.nominal;
+  for (const double value : nominal.lever_arm_m) require_within("lever_arm_m", value, -10.0, 10.0);
+  for (const double value : nominal.vector()) require_within("rig constants", value, -10.0, 10.0);
 }
 
 RigConstants::Matrix covariance_of(const RateModelParams& p) {

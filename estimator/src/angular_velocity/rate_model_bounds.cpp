@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tumble/angular_velocity/rate_model.hpp"
-#include "tumble/angular_velocity/truncated_normal.hpp"
+#include "tumble/angular_velocity/detail/rate_model.hpp"
+#include "tumble/angular_velocity/detail/truncated_normal.hpp"
 
 namespace tumble {
 

@@ -2,7 +2,7 @@
 // Gyro and accelerometer while an element of them clips: the part of RateModel that reads them element by element.
 #include <cmath>
 
-#include "tumble/angular_velocity/rate_model.hpp"
+#include "tumble/angular_velocity/detail/rate_model.hpp"
 
 namespace tumble {
 

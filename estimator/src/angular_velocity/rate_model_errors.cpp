@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What cannot be told from a sample alone: the part of RateModel that keeps contact from the rig's constants, and
 // corrects for and gathers what the device makes of the motion; what is reported of it all.
-#include "tumble/angular_velocity/rate_model.hpp"
+#include "tumble/angular_velocity/detail/rate_model.hpp"
 
 namespace tumble {
 

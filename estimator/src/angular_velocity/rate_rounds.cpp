@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "tumble/angular_velocity/recording_check.hpp"
-#include "tumble/angular_velocity/triad_delay.hpp"
+#include "triad_delay.hpp"
+#include "tumble/angular_velocity/detail/recording_check.hpp"
 
 namespace tumble {
 

@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "element_clipping.hpp"
+#include "near_rails.hpp"
 #include "rate_rounds.hpp"
-#include "tumble/angular_velocity/near_rails.hpp"
-#include "tumble/angular_velocity/recording_check.hpp"
-#include "tumble/angular_velocity/sample_hold.hpp"
+#include "sample_hold.hpp"
+#include "tumble/angular_velocity/detail/recording_check.hpp"
 #include "unseen_rails.hpp"
 
 namespace tumble {

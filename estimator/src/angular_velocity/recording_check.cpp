@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/recording_check.hpp"
+#include "tumble/angular_velocity/detail/recording_check.hpp"
 
 #include <algorithm>
 #include <vector>

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tumble/angular_velocity/wnoj_smoother.hpp"
+#include "wnoj_smoother.hpp"
 
 namespace tumble {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/sample_hold.hpp"
+#include "sample_hold.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 
-#include "tumble/angular_velocity/recording_check.hpp"
+#include "tumble/angular_velocity/detail/recording_check.hpp"
 
 namespace tumble {
 

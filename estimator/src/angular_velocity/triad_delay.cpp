@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/triad_delay.hpp"
+#include "triad_delay.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "tumble/angular_velocity/recording_check.hpp"
-#include "tumble/angular_velocity/sample_hold.hpp"
+#include "sample_hold.hpp"
+#include "tumble/angular_velocity/detail/recording_check.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble {

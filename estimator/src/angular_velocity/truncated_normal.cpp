@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/truncated_normal.hpp"
+#include "tumble/angular_velocity/detail/truncated_normal.hpp"
 
 #include <algorithm>
 #include <cmath>

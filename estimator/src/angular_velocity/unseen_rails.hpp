@@ -4,9 +4,9 @@
 
 #include <span>
 
-#include "tumble/angular_velocity/least_rails.hpp"
+#include "tumble/angular_velocity/detail/least_rails.hpp"
+#include "tumble/angular_velocity/detail/rate_model.hpp"
 #include "tumble/angular_velocity/rail_planes.hpp"
-#include "tumble/angular_velocity/rate_model.hpp"
 
 namespace tumble {
 

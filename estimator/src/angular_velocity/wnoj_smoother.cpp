@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/wnoj_smoother.hpp"
+#include "wnoj_smoother.hpp"
 
 #include <cmath>
 #include <limits>

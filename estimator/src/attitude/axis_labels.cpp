@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/attitude/axis_labels.hpp"
+#include "tumble/attitude/detail/axis_labels.hpp"
 
 #include <cstddef>
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "tumble/angular_velocity/near_rails.hpp"
+#include "../angular_velocity/near_rails.hpp"
 
 namespace tumble {
 

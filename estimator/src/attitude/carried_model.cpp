@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/attitude/carried_model.hpp"
+#include "tumble/attitude/detail/carried_model.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>

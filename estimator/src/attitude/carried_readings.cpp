@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "../angular_velocity/sample_hold.hpp"
 #include "carried_problem.hpp"
 #include "tumble/angular_velocity/clipping_finder.hpp"
-#include "tumble/angular_velocity/partial_clipping.hpp"
-#include "tumble/angular_velocity/sample_hold.hpp"
+#include "tumble/angular_velocity/detail/partial_clipping.hpp"
 #include "tumble/attitude/vqf.hpp"
 
 namespace tumble {

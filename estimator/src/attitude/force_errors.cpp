@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/attitude/force_errors.hpp"
+#include "tumble/attitude/detail/force_errors.hpp"
 
 #include <algorithm>
 

@@ -6,8 +6,8 @@
 #include <limits>
 #include <utility>
 
-#include "tumble/attitude/timing.hpp"
-#include "tumble/common/scalar_update.hpp"
+#include "tumble/attitude/detail/timing.hpp"
+#include "tumble/common/detail/scalar_update.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tumble/attitude/timing.hpp"
+#include "tumble/attitude/detail/timing.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble {

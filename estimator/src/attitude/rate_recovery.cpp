@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/attitude/rate_recovery.hpp"
+#include "tumble/attitude/detail/rate_recovery.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "tumble/common/scalar_update.hpp"
+#include "tumble/common/detail/scalar_update.hpp"
 #include "tumble/common/so3.hpp"
 #include "tumble/common/status.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "tumble/attitude/timing.hpp"
+#include "tumble/attitude/detail/timing.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble {

@@ -4,9 +4,9 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "tumble/attitude/detail/tilt.hpp"
+#include "tumble/attitude/detail/timing.hpp"
 #include "tumble/attitude/strapdown.hpp"
-#include "tumble/attitude/tilt.hpp"
-#include "tumble/attitude/timing.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble {

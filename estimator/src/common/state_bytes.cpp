@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/common/state_bytes.hpp"
+#include "state_bytes.hpp"
+#include "state_layout.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tumble/mapping/mapper_rest.hpp"
+#include "mapper_rest.hpp"
 
 namespace tumble::mapping {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "tumble/mapping/deskew.hpp"
+#include "tumble/mapping/detail/map_drawing.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
-#include "tumble/mapping/map_drawing.hpp"
 #include "tumble/mapping/registration.hpp"
 #include "tumble/mapping/voxel_map.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/mapping/lone_returns.hpp"
+#include "lone_returns.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/mapping/map_drawing.hpp"
+#include "tumble/mapping/detail/map_drawing.hpp"
 
 #include "tumble/mapping/plane_fit.hpp"
 

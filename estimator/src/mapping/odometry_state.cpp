@@ -2,8 +2,9 @@
 // The mapper as bytes.
 #include <utility>
 
+#include "../common/state_bytes.hpp"
+#include "../common/state_layout.hpp"
 #include "mapping_members.hpp"
-#include "tumble/common/state_bytes.hpp"
 
 namespace tumble {
 

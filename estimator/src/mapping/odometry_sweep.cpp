@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "odometry_impl.hpp"
-#include "tumble/mapping/sweep_check.hpp"
+#include "tumble/mapping/detail/sweep_check.hpp"
 #include "unknowns.hpp"
 
 namespace tumble {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/mapping/spatial_hash.hpp"
+#include "tumble/mapping/detail/spatial_hash.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/mapping/sweep_check.hpp"
+#include "tumble/mapping/detail/sweep_check.hpp"
 
 #include <algorithm>
 #include <limits>

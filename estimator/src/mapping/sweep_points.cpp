@@ -2,7 +2,7 @@
 #include "sweep_points.hpp"
 
 #include "aligner.hpp"
-#include "tumble/mapping/sweep_check.hpp"
+#include "tumble/mapping/detail/sweep_check.hpp"
 
 namespace tumble::mapping {
 

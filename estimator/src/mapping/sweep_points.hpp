@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
+#include "lone_returns.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/mapping/deskew.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
-#include "tumble/mapping/lone_returns.hpp"
 
 namespace tumble::mapping {
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A map as bytes: what finds its points again is built from them.
-#include "tumble/common/state_bytes.hpp"
+#include "../common/state_bytes.hpp"
+#include "../common/state_layout.hpp"
 #include "tumble/mapping/voxel_map.hpp"
 #include "voxel_cube.hpp"
 

@@ -10,8 +10,14 @@ namespace {
 constexpr std::size_t kRecoveringUnits = 3;  // so many IMUs tell a rate beyond the range
 constexpr double kRecoveredSigma_rad_s = 1.0;
 
-ImuMerge::Params merge_params(const RollingOdometry::Params& params) {
+// Of the radius the door's own counts; the smoother's has no default.
+void require_stated(RollingOdometry::Params params) {
+  params.expert.rolling.filter.radius_m = params.radius_m;
   require_fields(params);
+}
+
+ImuMerge::Params merge_params(const RollingOdometry::Params& params) {
+  require_stated(params);
   require_within("units", static_cast<double>(params.units.size()), 1.0, ImuMerge::kImus);
   ImuMerge::Params out = params.expert.merge;
   out.count = static_cast<int>(params.units.size());
@@ -38,6 +44,12 @@ RollingSmoother::Params rolling_params(const RollingOdometry::Params& params, co
   if (params.units.size() >= kRecoveringUnits) out.filter.recovered_rate_sigma_rad_s = kRecoveredSigma_rad_s;
   out.lag_s = std::max(params.lag_s, out.filter.node_s);
   out.rate_max_hz = std::max(out.rate_max_hz, 1.1 * params.units.front().sheet.rate_hz);
+  return out;
+}
+
+std::vector<ImuSheet> sheets_of(const RollingOdometry::Params& params) {
+  std::vector<ImuSheet> out;
+  for (const RollingOdometry::Unit& unit : params.units) out.push_back(unit.sheet);
   return out;
 }
 
@@ -71,16 +83,20 @@ RollingOdometry::RollingOdometry(const Params& params, const ImuMerge::Params& m
     : params_(params),
       merge_(merged),
       smoother_(rolling_params(params, merged, merge_)),
+      rails_(sheets_of(params)),
       merge_state_(std::make_unique<ImuMerge::State>()),
       state_(std::make_unique<RollingSmoother::State>()),
+      rails_state_(rails_.start()),
       live_(params.lag_s <= 0.0) {}
 
 RollingOdometry::RollingOdometry(const RollingOdometry& other)
     : params_(other.params_),
       merge_(other.merge_),
       smoother_(other.smoother_),
+      rails_(other.rails_),
       merge_state_(std::make_unique<ImuMerge::State>(*other.merge_state_)),
       state_(std::make_unique<RollingSmoother::State>(*other.state_)),
+      rails_state_(other.rails_state_),
       done_(other.done_),
       taken_(other.taken_),
       live_(other.live_),
@@ -93,12 +109,18 @@ RollingOdometry& RollingOdometry::operator=(const RollingOdometry& other) {
 Status RollingOdometry::add_imus(std::span<const ImuSample> samples) {
   if (finished_) return {Trouble::out_of_range, "samples after finish()", 1.0, 0.0};
   std::optional<ImuSample> merged;
-  ImuMerge::State next = *merge_state_;  // both take the sample, or none
-  if (Status status = merge_.step(samples, next, merged); !status.ok()) return status;
+  if (samples.size() != params_.units.size())
+    return {Trouble::too_few, "samples", double(samples.size()), double(params_.units.size())};
+  UnitRails::Samples flagged;
+  rails_.flag(samples, rails_state_, flagged);
+  ImuMerge::State next = *merge_state_;  // all take the sample, or none
+  const std::span<const ImuSample> judged = std::span(flagged).first(samples.size());
+  if (Status status = merge_.step(judged, next, merged); !status.ok()) return status;
   if (merged) {
     if (Status status = take_in(*merged); !status.ok()) return status;
   }
   *merge_state_ = next;
+  rails_.observe(samples, rails_state_);
   return {};
 }
 
@@ -125,6 +147,7 @@ void RollingOdometry::finish() {
 void RollingOdometry::reset() {
   *merge_state_ = {};
   *state_ = {};
+  rails_state_ = rails_.start();
   finished_ = false;
 }
 

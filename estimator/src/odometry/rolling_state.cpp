@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // RollingOdometry as bytes.
+#include "../attitude/imu_merge_members.hpp"
+#include "../common/state_params.hpp"
+#include "../rolling/rolling_members.hpp"
 #include "saved_state.hpp"
-#include "tumble/attitude/imu_merge_members.hpp"
 #include "tumble/odometry/rolling_odometry.hpp"
-#include "tumble/rolling/rolling_members.hpp"
 
 namespace tumble {
+
+template <StateOf<UnitRails::Unit> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("unit.rails", s.rails);
+  visit("unit.before", s.before);
+}
 
 template <StateOf<RollingOdometry::Unit> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
@@ -22,11 +29,13 @@ void others(Self& p, Visitor& visit) {
 
 template <class Self, class Visitor>
 void RollingOdometry::members(Self& s, Visitor& visit) {
-  visit.scratch(s.params_);  // held to those that are saved; these two are made of them
+  visit.scratch(s.params_);  // held to those that are saved; these three are made of them
   visit.scratch(s.merge_);
   visit.scratch(s.smoother_);
+  visit.scratch(s.rails_);
   visit("merge", *s.merge_state_);
   visit("rolling", *s.state_);
+  visit("rails", s.rails_state_);
   if constexpr (std::is_const_v<Self>) {
     const std::vector<RollingEstimate> waiting(s.done_.begin() + static_cast<std::ptrdiff_t>(s.taken_), s.done_.end());
     visit("done", waiting);
@@ -46,6 +55,7 @@ Status RollingOdometry::load(std::span<const std::byte> bytes) {
   RollingOdometry fresh(params_);
   if (Status status = odometry::load(odometry::SavedKind::rolling, bytes, params_, fresh); !status.ok()) return status;
   if (Status status = fresh.smoother_.check_state(*fresh.state_); !status.ok()) return status;
+  if (Status status = fresh.rails_.check_state(fresh.rails_state_); !status.ok()) return status;
   *this = std::move(fresh);
   return {};
 }

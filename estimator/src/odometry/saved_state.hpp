@@ -7,7 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "tumble/common/state_bytes.hpp"
+#include "../common/state_bytes.hpp"
+#include "../common/state_layout.hpp"
+#include "../common/state_params.hpp"
 
 /// States of the door's classes as bytes that somebody keeps. Numbers are little-endian.
 ///

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "tumble/mapping/mapper_rest.hpp"
+#include "../mapping/mapper_rest.hpp"
 
 namespace tumble {
 

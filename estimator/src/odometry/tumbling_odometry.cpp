@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "tumble/mapping/sweep_check.hpp"
+#include "tumble/mapping/detail/sweep_check.hpp"
 #include "tumble/odometry/tumbling_odometry_fields.hpp"
 
 namespace tumble {

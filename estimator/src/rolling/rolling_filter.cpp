@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "rolling_node.hpp"
+#include "tumble/attitude/detail/timing.hpp"
 #include "tumble/attitude/strapdown.hpp"
-#include "tumble/attitude/timing.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tumble/common/scalar_update.hpp"
+#include "tumble/common/detail/scalar_update.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble::rolling {

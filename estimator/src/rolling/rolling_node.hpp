@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "tumble/common/imu_average.hpp"
+#include "tumble/common/detail/imu_average.hpp"
 #include "tumble/rolling/rolling_model.hpp"
 
 namespace tumble::rolling {

@@ -12,6 +12,8 @@ namespace tumble {
 
 namespace {
 
+constexpr std::size_t kBeyondStorage = 4;  // samples that a run may have, by those that storage is set aside for
+
 RollingParams quieter(RollingParams params, double share) {
   params.grip_sigma_m_s *= share;
   params.grip_sigma_share *= share;
@@ -157,6 +159,10 @@ RollingSmoother::RollingSmoother(const Params& p) : params_(p), filter_(p.filter
   block_nodes_ = static_cast<std::size_t>(std::ceil(p.block_s / p.filter.node_s - 1e-9));
 }
 
+std::size_t RollingSmoother::samples_set_aside() const {
+  return static_cast<std::size_t>(std::ceil((params_.lag_s + params_.block_s + 1.0) * params_.rate_max_hz));
+}
+
 Status RollingSmoother::check_state(const State& state) const {
   const RollingParams& filter = params_.filter;
   if (state.live.started && state.live.count < 1)
@@ -164,6 +170,9 @@ Status RollingSmoother::check_state(const State& state) const {
   const std::size_t most = lag_nodes_ + block_nodes_;
   if (params_.lag_s < kWholeRun && state.steps.size() > most)
     return {Trouble::out_of_range, "rolling.steps", double(state.steps.size()), double(most)};
+  const std::size_t samples_most = kBeyondStorage * samples_set_aside();
+  if (params_.lag_s < kWholeRun && state.samples.size() > samples_most)
+    return {Trouble::out_of_range, "rolling.samples", double(state.samples.size()), double(samples_most)};
   const Committed& committed = state.committed;
   for (std::size_t k = committed.started ? 0 : 1; k < state.samples.size(); ++k) {
     const TimeNs before_ns = k > 0 ? state.samples[k - 1].time_ns : committed.last_time_ns;
@@ -183,8 +192,7 @@ Status RollingSmoother::check_state(const State& state) const {
 Status RollingSmoother::step(const ImuSample& sample, State& state, std::vector<RollingEstimate>& out) const {
   if (!state.live.started && params_.lag_s < kWholeRun) {
     state.steps.reserve(lag_nodes_ + block_nodes_ + 1);
-    state.samples.reserve(
-        static_cast<std::size_t>(std::ceil((params_.lag_s + params_.block_s + 1.0) * params_.rate_max_hz)));
+    state.samples.reserve(samples_set_aside());
   }
   const auto closed = [&steps = state.steps](const RollingFilter::State& live) {
     Step step;

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tumble/angular_velocity/rate_factors.hpp"
-#include "tumble/angular_velocity/recording_check.hpp"
-#include "tumble/common/scalar_update.hpp"
+#include "tumble/angular_velocity/detail/rate_factors.hpp"
+#include "tumble/angular_velocity/detail/recording_check.hpp"
+#include "tumble/common/detail/scalar_update.hpp"
 
 namespace tumble::baselines {
 

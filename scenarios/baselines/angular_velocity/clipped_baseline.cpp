@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tumble/angular_velocity/recording_check.hpp"
-#include "tumble/angular_velocity/truncated_normal.hpp"
-#include "tumble/common/scalar_update.hpp"
+#include "tumble/angular_velocity/detail/recording_check.hpp"
+#include "tumble/angular_velocity/detail/truncated_normal.hpp"
+#include "tumble/common/detail/scalar_update.hpp"
 
 namespace tumble::baselines {
 

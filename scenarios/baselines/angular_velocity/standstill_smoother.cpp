@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tumble/angular_velocity/recording_check.hpp"
-#include "tumble/common/scalar_update.hpp"
+#include "tumble/angular_velocity/detail/recording_check.hpp"
+#include "tumble/common/detail/scalar_update.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble::baselines {

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
+#include "tumble/attitude/detail/tilt.hpp"
+#include "tumble/attitude/detail/timing.hpp"
 #include "tumble/attitude/strapdown.hpp"
-#include "tumble/attitude/tilt.hpp"
-#include "tumble/attitude/timing.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble::baselines {

@@ -4,8 +4,8 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "tumble/attitude/detail/timing.hpp"
 #include "tumble/attitude/strapdown.hpp"
-#include "tumble/attitude/timing.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble::baselines {

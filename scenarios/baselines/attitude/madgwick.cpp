@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "scenarios/baselines/attitude/madgwick_step.hpp"
+#include "tumble/attitude/detail/timing.hpp"
 #include "tumble/attitude/strapdown.hpp"
-#include "tumble/attitude/timing.hpp"
 
 namespace tumble::baselines {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/baselines/attitude/mahony.hpp"
 
+#include "tumble/attitude/detail/timing.hpp"
 #include "tumble/attitude/strapdown.hpp"
-#include "tumble/attitude/timing.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble::baselines {

@@ -6,10 +6,10 @@
 #include <limits>
 #include <numeric>
 
-#include "tumble/common/scalar_update.hpp"
+#include "tumble/common/detail/scalar_update.hpp"
 #include "tumble/common/so3.hpp"
+#include "tumble/mapping/detail/sweep_check.hpp"
 #include "tumble/mapping/plane_fit.hpp"
-#include "tumble/mapping/sweep_check.hpp"
 
 namespace tumble::baselines {
 

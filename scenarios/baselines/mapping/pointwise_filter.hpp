@@ -10,9 +10,9 @@
 #include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/mapping/deskew.hpp"
+#include "tumble/mapping/detail/map_drawing.hpp"
 #include "tumble/mapping/lidar.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
-#include "tumble/mapping/map_drawing.hpp"
 #include "tumble/mapping/voxel_map.hpp"
 
 namespace tumble::baselines {

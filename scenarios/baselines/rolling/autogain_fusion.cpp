@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "scenarios/baselines/rolling/attitude_check.hpp"
-#include "tumble/attitude/timing.hpp"
+#include "tumble/attitude/detail/timing.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble::baselines {

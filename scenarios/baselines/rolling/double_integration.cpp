@@ -2,7 +2,7 @@
 #include "scenarios/baselines/rolling/double_integration.hpp"
 
 #include "scenarios/baselines/rolling/attitude_check.hpp"
-#include "tumble/attitude/timing.hpp"
+#include "tumble/attitude/detail/timing.hpp"
 
 namespace tumble::baselines {
 

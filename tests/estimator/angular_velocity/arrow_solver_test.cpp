@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/arrow_solver.hpp"
+#include "tumble/angular_velocity/detail/arrow_solver.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Readings that are free, but whose windows may have met the rail.
-#include "tumble/angular_velocity/near_rails.hpp"
+#include "estimator/src/angular_velocity/near_rails.hpp"
 
 #include <gtest/gtest.h>
 

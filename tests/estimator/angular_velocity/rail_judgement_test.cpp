@@ -15,7 +15,7 @@
 #include "scenarios/baselines/angular_velocity/clipped_baseline.hpp"
 #include "tumble/angular_velocity/auxiliary_imu.hpp"
 #include "tumble/angular_velocity/clipping_finder.hpp"
-#include "tumble/angular_velocity/rail_watch.hpp"
+#include "tumble/angular_velocity/detail/rail_watch.hpp"
 #include "tumble/angular_velocity/rate_smoother.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
 
@@ -151,9 +151,9 @@ Errors smooth(Params params, double distance_min) {
 }
 
 TEST(RailJudgement, ASaturatedForceIsABoundAlongItsElement) {
-  Errors ours = smooth(RateSmoother::Params{}, 15.0);
+  Errors ours = smooth(with_lever_arm<RateSmoother::Params>(), 15.0);
   // negative control: the same smoother that knows no planes believes forces that are none
-  Errors blind = smooth(RateSmoother::Params{}, 1000.0);
+  Errors blind = smooth(with_lever_arm<RateSmoother::Params>(), 1000.0);
   ASSERT_GT(ours.all.size(), 200u);
   // measured: mean 0.095 and 0.236 rad/s, 90 % 0.13 and 0.81, within 0.990 and 0.938
   EXPECT_LT(ours.mean(), 0.6 * blind.mean());
@@ -163,7 +163,8 @@ TEST(RailJudgement, ASaturatedForceIsABoundAlongItsElement) {
 }
 
 TEST(RailJudgement, TheStreamReadsItAlike) {
-  Errors ours = smooth(RateStream::Params{}, 15.0), blind = smooth(RateStream::Params{}, 1000.0);
+  Errors ours = smooth(with_lever_arm<RateStream::Params>(), 15.0),
+         blind = smooth(with_lever_arm<RateStream::Params>(), 1000.0);
   ASSERT_GT(ours.all.size(), 200u);
   EXPECT_LT(ours.median(), 0.7 * blind.median());
   EXPECT_GT(ours.within, 0.95 * ours.axes);

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
+#include "estimator/src/angular_velocity/sample_hold.hpp"
 #include "oracles/gaussian.hpp"
 #include "tumble/angular_velocity/rail_planes.hpp"
-#include "tumble/angular_velocity/sample_hold.hpp"
 
 namespace tumble {
 namespace {

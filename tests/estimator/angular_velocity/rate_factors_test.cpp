@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/rate_factors.hpp"
+#include "tumble/angular_velocity/detail/rate_factors.hpp"
 
 #include <gtest/gtest.h>
 

@@ -23,7 +23,7 @@ TumbleRecording short_tumble() {
 
 std::vector<RateState> estimate(const std::vector<ImuSample>& samples, RateReport& report) {
   std::vector<RateState> out;
-  const Status status = RateSmoother({}).estimate(samples, out, report);
+  const Status status = RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(samples, out, report);
   EXPECT_TRUE(status.ok()) << status.message();
   EXPECT_EQ(out.size(), samples.size());
   for (const RateState& state : out) {
@@ -37,7 +37,7 @@ std::vector<RateState> estimate(const std::vector<ImuSample>& samples, RateRepor
 }
 
 TEST(RateSmootherInput, TroubleNamesFieldValueAndBoundAndWritesNothing) {
-  const RateSmoother smoother({});
+  const RateSmoother smoother(with_lever_arm<RateSmoother::Params>());
   std::vector<RateState> out(2);
   RateReport report;
   report.iterations = 77;
@@ -129,7 +129,7 @@ TEST(RateSmootherInput, TellsWhenTheStatedRangeIsWrongAndWhenForcesLookLikeG) {
   TumbleOptions options;
   options.seed = 13;
   TumbleRecording tumble = make_tumble(options);
-  RateSmoother::Params params;
+  auto params = with_lever_arm<RateSmoother::Params>();
   params.rails.stated_gyro_rad_s = 7.854;  // the data sheet of a device that clips at 10.5
   std::vector<RateState> out;
   RateReport report;
@@ -144,10 +144,11 @@ TEST(RateSmootherInput, TellsWhenTheStatedRangeIsWrongAndWhenForcesLookLikeG) {
 
 TEST(RateSmootherInput, RefusesParametersOutsideOfTheirBounds) {
   const auto refused = [](auto change) {
-    RateSmoother::Params params;
+    auto params = with_lever_arm<RateSmoother::Params>();
     change(params);
     EXPECT_THROW(RateSmoother{params}, InvalidParams);
   };
+  EXPECT_THROW(RateSmoother{{}}, InvalidParams) << "the lever arm has no default";
   refused([](RateSmoother::Params& p) { p.iterations_max = 0; });
   refused([](RateSmoother::Params& p) { p.tolerance_rad_s = 0.0; });
   refused([](RateSmoother::Params& p) { p.widen_first = 0.5; });

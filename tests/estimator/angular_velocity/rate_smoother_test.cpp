@@ -36,7 +36,7 @@ Outcome estimate(const TumbleOptions& options, const RateSmoother::Params& param
 }
 
 RateSmoother::Params wrong_lever(double error_m, std::uint64_t seed) {
-  RateSmoother::Params params;
+  auto params = with_lever_arm<RateSmoother::Params>();
   const double s = static_cast<double>(seed);
   params.model.nominal.lever_arm_m +=
       error_m * Vector3d(std::sin(s), std::cos(2.0 * s), std::sin(3.0 * s)).normalized();
@@ -175,7 +175,7 @@ TEST(RateSmoother, ScaleAndMisalignmentAreInTheCovariance) {
 TEST(RateSmoother, ARunWithoutClippingReturnsTheGyro) {
   TumbleOptions options;
   options.gyro_rail_rad_s = 1000.0;
-  const Outcome run = estimate(options, {});
+  const Outcome run = estimate(options, with_lever_arm<RateSmoother::Params>());
   double gyro = 0.0, ours = 0.0;
   for (std::size_t k = 0; k < run.states.size(); ++k) {
     const Vector3d reading = run.recording.samples[k].angular_velocity_rad_s;
@@ -197,7 +197,7 @@ TEST(RateSmoother, IsEquivariantToARotatedMounting) {
     sample.angular_velocity_rad_s = R * sample.angular_velocity_rad_s;
     sample.specific_force_m_s2 = R * sample.specific_force_m_s2;
   }
-  RateSmoother::Params params;
+  auto params = with_lever_arm<RateSmoother::Params>();
   params.tolerance_rad_s = 1e-8;
   params.iterations_max = 60;
   const Outcome run = estimate(options, params);

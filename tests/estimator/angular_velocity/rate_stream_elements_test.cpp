@@ -71,7 +71,7 @@ double quantile(std::vector<double> values, double share) {
   return values.at(static_cast<std::size_t>(share * static_cast<double>(values.size() - 1)));
 }
 
-Pool run(double tilt, const RateStream::Params& params) {
+Pool run(double tilt, const RateStream::Params& params = with_lever_arm<RateStream::Params>()) {
   Pool pool;
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     const TumbleRecording tumble = tumble_of(seed, tilt);
@@ -84,7 +84,7 @@ Pool run(double tilt, const RateStream::Params& params) {
 }
 
 TEST(RateStreamElements, ATiltedRailIsReadAsAnUprightOne) {
-  const Pool upright = run(0.0, {}), tilted = run(0.02, {}), steep = run(0.05, {});
+  const Pool upright = run(0.0), tilted = run(0.02), steep = run(0.05);
   ASSERT_GT(tilted.ours.size(), 800u);
   for (const Pool* pool : {&tilted, &steep}) {
     EXPECT_LT(quantile(pool->ours, 0.5), 0.05 * quantile(pool->raw, 0.5));
@@ -98,7 +98,7 @@ TEST(RateStreamElements, ATiltedRailIsReadAsAnUprightOne) {
 
 // Negative control: with rails that are not looked for as planes the stream believes the readings.
 TEST(RateStreamElements, WithoutPlanesItWouldBeSilentlyWrong) {
-  RateStream::Params params;
+  auto params = with_lever_arm<RateStream::Params>();
   params.planes.distance_min_rad_s = 1000.0;
   const Pool pool = run(0.02, params);
   EXPECT_GT(quantile(pool.ours, 0.5), 0.3 * quantile(pool.raw, 0.5));
@@ -109,13 +109,13 @@ TEST(RateStreamElements, WithALongLagItIsTheBatch) {
   for (const double tilt : {0.0, 0.03}) {
     for (std::uint64_t seed = 3; seed <= 4; ++seed) {
       const TumbleRecording tumble = tumble_of(seed, tilt);
-      RateStream::Params params;
+      auto params = with_lever_arm<RateStream::Params>();
       params.lag_s = 9.0;  // nothing leaves the window
       params.rig_doubt = 0.0;
       const RateStream method(params);
       RateStream::State state = method.start();
       const std::vector<RateState> live = stream(method, tumble.samples, state);
-      RateSmoother::Params batch_params;
+      auto batch_params = with_lever_arm<RateSmoother::Params>();
       batch_params.model = params.model;
       std::vector<RateState> batch;
       RateReport report;
@@ -141,7 +141,7 @@ TEST(RateStreamElements, WithALongLagItIsTheBatch) {
 
 TEST(RateStreamElements, SplittingAnywhereChangesNothing) {
   const std::vector<ImuSample> samples = tumble_of(5, 0.03).samples;
-  const RateStream method({});
+  const RateStream method(with_lever_arm<RateStream::Params>());
   RateStream::State whole = method.start();
   const std::vector<RateState> want = stream(method, samples, whole);
   ASSERT_TRUE(whole.rails.known.planes.any());
@@ -151,7 +151,7 @@ TEST(RateStreamElements, SplittingAnywhereChangesNothing) {
     std::optional<RateState> one;
     for (std::size_t k = 0; k < samples.size(); ++k) {
       if (k == split) state = RateStream::State(state);
-      const RateStream second({});
+      const RateStream second(with_lever_arm<RateStream::Params>());
       ASSERT_TRUE((k < split ? method : second).push(samples[k], state, one).ok());
       if (one) got.push_back(*one);
     }
@@ -174,7 +174,7 @@ TEST(RateStreamElements, NothingIsCalledClippedWhereNothingClips) {
     options.seed = seed;
     options.gyro_rail_rad_s = 1e3;
     const TumbleRecording tumble = make_tumble(options);
-    const RateStream method({});
+    const RateStream method(with_lever_arm<RateStream::Params>());
     RateStream::State state = method.start();
     for (const RateState& rate : stream(method, tumble.samples, state)) EXPECT_EQ(rate.clipped_axes, 0) << seed;
   }
@@ -231,7 +231,7 @@ Believed believed(const RateStream::Params& params) {
 
 // A rail is seen some samples after it was first met, and the lag is over before: until then it is doubted.
 TEST(RateStreamElements, NothingAtARailGoesOutAsMeasuredBeforeTheRailIsKnown) {
-  RateStream::Params params;
+  auto params = with_lever_arm<RateStream::Params>();
   params.lag_s = 0.06;
   const Believed doubted = believed(params);
   // negative control: axes that turn slower than this are believed
@@ -257,7 +257,7 @@ TEST(RateStreamElements, ADoubtThatALargerReadingRefutesIsTakenBack) {
       // equal readings would be a wall
       samples[kTop - 4 + i].angular_velocity_rad_s.y() = steps[i] + 0.002 * std::sin(37.0 * static_cast<double>(i));
     }
-    const RateStream method({});
+    const RateStream method(with_lever_arm<RateStream::Params>());
     RateStream::State state = method.start();
     std::optional<RateState> rate;
     std::vector<RateState> out;
@@ -287,7 +287,7 @@ TEST(RateStreamElements, ADoubtStaysUntilItIsGivenOut) {
       samples[kTop - 4 + i].angular_velocity_rad_s.y() = steps[i] + 0.002 * std::sin(37.0 * static_cast<double>(i));
     }
     samples.resize(402);
-    const RateStream method({});
+    const RateStream method(with_lever_arm<RateStream::Params>());
     RateStream::State state = method.start();
     const std::vector<RateState> out = stream(method, samples, state);
     for (std::size_t k = kTop; k < kTop + 3; ++k) {
@@ -317,7 +317,7 @@ TEST(RateStreamElements, SpinsAndTopsAreNoRails) {
         sample.specific_force_m_s2 = Vector3d(0.0, 0.0, 9.81) + 0.01 * noise.vector();
         samples.push_back(sample);
       }
-      const RateStream method({});
+      const RateStream method(with_lever_arm<RateStream::Params>());
       RateStream::State state = method.start();
       int called = 0;
       for (const RateState& out : stream(method, samples, state)) called += out.clipped_axes != 0;

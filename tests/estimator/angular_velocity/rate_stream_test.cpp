@@ -58,7 +58,7 @@ TumbleOptions options_of(std::uint64_t seed) {
 }
 
 RateStream::Params wrong_lever(std::uint64_t seed) {
-  RateStream::Params params;
+  auto params = with_lever_arm<RateStream::Params>();
   const double s = static_cast<double>(seed);
   params.model.nominal.lever_arm_m += 0.02 * Vector3d(std::sin(s), std::cos(2.0 * s), std::sin(3.0 * s)).normalized();
   params.rails.stated_gyro_rad_s = 10.5;
@@ -81,7 +81,7 @@ TEST(RateStream, RecoversTumblesNearlyAsWellAsTheBatch) {
     EXPECT_EQ(state.failures, 0u);
     for (std::size_t k = 0; k < out.size(); ++k) ASSERT_EQ(out[k].time_ns, recording.samples[k].time_ns);
 
-    RateSmoother::Params batch_params;
+    auto batch_params = with_lever_arm<RateSmoother::Params>();
     batch_params.model = wrong_lever(seed).model;
     std::vector<RateState> batch;
     RateReport report;
@@ -99,7 +99,7 @@ TEST(RateStream, WithACalibratedRigItComesCloseToTheBatch) {
   double batch_sum = 0.0, stream_sum = 0.0;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     const TumbleRecording recording = make_tumble(options_of(seed));
-    RateSmoother::Params batch_params;
+    auto batch_params = with_lever_arm<RateSmoother::Params>();
     batch_params.model = wrong_lever(seed).model;
     std::vector<RateState> batch;
     RateReport report;
@@ -118,7 +118,7 @@ TEST(RateStream, WithACalibratedRigItComesCloseToTheBatch) {
 }
 
 TEST(RateStream, TheShapeOfABoxIsExpectedAndThatOfARodIsNot) {
-  const RateStream::Params params;
+  const auto params = with_lever_arm<RateStream::Params>();
   const RateModel model(params.model, params.period_s);
   const auto surprise = [&](const Vector3d& moments) {
     RigConstants rig = model.prior_constants();
@@ -313,10 +313,11 @@ TEST(RateStream, AllAxesClippedForSecondsStaysBounded) {
 
 TEST(RateStream, RefusesParametersOutsideOfTheirBounds) {
   const auto refused = [](auto change) {
-    RateStream::Params params;
+    auto params = with_lever_arm<RateStream::Params>();
     change(params);
     EXPECT_THROW(RateStream{params}, InvalidParams);
   };
+  EXPECT_THROW(RateStream{{}}, InvalidParams) << "the lever arm has no default";
   refused([](RateStream::Params& p) { p.period_s = 0.0; });
   refused([](RateStream::Params& p) { p.lag_s = 0.01; });
   refused([](RateStream::Params& p) { p.lag_s = 11.0; });

@@ -169,7 +169,7 @@ TEST(RestDetector, RefusesParametersOutOfBounds) {
 TEST(RateSmoother, StandstillTellsTheBias) {
   std::vector<RateState> out;
   RateReport report;
-  ASSERT_TRUE(RateSmoother({}).estimate(standing(300, 5), out, report).ok());
+  ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(standing(300, 5), out, report).ok());
   // 300 samples of noise 0.0052 and of tremble 0.01: a deviation of 0.0007, and 0.4 % of the way to the prior
   for (int j = 0; j < 3; ++j) EXPECT_NEAR(report.calibration.constants.gyro_bias_rad_s[j], 0.01 * (j - 1), 0.002) << j;
 }
@@ -180,15 +180,15 @@ TEST(RateSmoother, TellsWhenUnitsLookWrong) {
   std::vector<RateState> out;
   RateReport report;
   const TumbleRecording right = make_tumble(options);
-  ASSERT_TRUE(RateSmoother({}).estimate(right.samples, out, report).ok());
+  ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(right.samples, out, report).ok());
   EXPECT_FALSE(report.rate_unit_suspect);
   EXPECT_FALSE(report.force_unit_suspect);
   std::vector<ImuSample> degrees = right.samples, gravities = standing(300, 7);
   for (ImuSample& sample : degrees) sample.angular_velocity_rad_s *= 57.29578;
   for (ImuSample& sample : gravities) sample.specific_force_m_s2 /= 9.80665;
-  ASSERT_TRUE(RateSmoother({}).estimate(degrees, out, report).ok());
+  ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(degrees, out, report).ok());
   EXPECT_TRUE(report.rate_unit_suspect) << "degrees per second";
-  ASSERT_TRUE(RateSmoother({}).estimate(gravities, out, report).ok());
+  ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(gravities, out, report).ok());
   EXPECT_TRUE(report.force_unit_suspect) << "in g";
 }
 

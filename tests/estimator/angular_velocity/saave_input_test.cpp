@@ -17,9 +17,16 @@ using Eigen::Vector3d;
 
 constexpr TimeNs kPeriod = 10'000'000;
 
+Saave::Params stated() {
+  Saave::Params params;
+  params.lever_arm_m = {-0.022, -0.085, 0.055};
+  params.saturation_point_rad_s = 10.5;
+  return params;
+}
+
 std::vector<ImuSample> tumbling_run(std::size_t count) {
   std::vector<ImuSample> run(count);
-  const Vector3d lever = Saave::Params{}.lever_arm_m;
+  const Vector3d lever = stated().lever_arm_m;
   for (std::size_t k = 0; k < count; ++k) {
     const Vector3d w(9.0 + 4.0 * std::sin(0.05 * k), std::cos(0.03 * k), 0.4);
     run[k].time_ns = static_cast<TimeNs>(k) * kPeriod;
@@ -30,7 +37,7 @@ std::vector<ImuSample> tumbling_run(std::size_t count) {
 }
 
 TEST(SaaveInput, SplittingTheRecursionAnywhereChangesNothing) {
-  const Saave saave({});
+  const Saave saave(stated());
   const std::vector<ImuSample> run = tumbling_run(120);
   std::vector<Saave::Recovered> whole(run.size());
   Saave::State state;
@@ -44,7 +51,7 @@ TEST(SaaveInput, SplittingTheRecursionAnywhereChangesNothing) {
     Saave::State carried;
     Saave::Recovered got;
     for (std::size_t k = 0; k < split; ++k) ASSERT_TRUE(saave.step(run[k], carried, got).ok());
-    const Saave second({});
+    const Saave second(stated());
     for (std::size_t k = split; k < run.size(); ++k) {
       ASSERT_TRUE(second.step(run[k], carried, got).ok());
       ASSERT_EQ(got.rate_rad_s, whole[k].rate_rad_s);  // bit for bit
@@ -55,7 +62,7 @@ TEST(SaaveInput, SplittingTheRecursionAnywhereChangesNothing) {
 }
 
 TEST(SaaveInput, TroubleNamesFieldValueAndBoundAndWritesNothing) {
-  const Saave saave({});
+  const Saave saave(stated());
   std::vector<RateState> out(2);
   out[1].clipped_axes = 5;
   const auto expect = [&](const std::vector<ImuSample>& run, Trouble trouble, const std::string& field) {
@@ -94,7 +101,7 @@ TEST(SaaveInput, TroubleNamesFieldValueAndBoundAndWritesNothing) {
 }
 
 TEST(SaaveInput, AFailedStepLeavesTheStateUsable) {
-  const Saave saave({});
+  const Saave saave(stated());
   const std::vector<ImuSample> run = tumbling_run(60);
   Saave::State state, clean;
   Saave::Recovered got, want;
@@ -112,17 +119,20 @@ TEST(SaaveInput, AFailedStepLeavesTheStateUsable) {
 
 TEST(SaaveInput, ASingleSampleIsReturnedAsItIs) {
   std::vector<RateState> out;
-  ASSERT_TRUE(Saave({}).estimate(std::vector<ImuSample>(1), out).ok());
+  ASSERT_TRUE(Saave(stated()).estimate(std::vector<ImuSample>(1), out).ok());
   ASSERT_EQ(out.size(), 1u);
   EXPECT_EQ(out[0].w_WI_I_rad_s, Vector3d::Zero());
 }
 
 TEST(SaaveInput, RefusesParametersOutsideOfTheirBounds) {
   const auto refused = [](auto change) {
-    Saave::Params params;
+    Saave::Params params = stated();
     change(params);
     EXPECT_THROW(Saave{params}, InvalidParams);
   };
+  EXPECT_NO_THROW(Saave{stated()});
+  refused([](Saave::Params& p) { p.lever_arm_m = Saave::Params{}.lever_arm_m; });  // neither has a default
+  refused([](Saave::Params& p) { p.saturation_point_rad_s = Saave::Params{}.saturation_point_rad_s; });
   refused([](Saave::Params& p) { p.lever_arm_m.y() = std::nan(""); });
   refused([](Saave::Params& p) { p.lever_arm_m.x() = 11.0; });
   refused([](Saave::Params& p) { p.saturation_point_rad_s = 0.0; });

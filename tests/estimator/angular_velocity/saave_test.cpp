@@ -23,6 +23,7 @@ const Vector3d kLever = {-0.022, -0.085, 0.055};
 // the plateau of the published device, a hair above the threshold given to the method
 Saave::Params params_below_rail() {
   Saave::Params params;
+  params.lever_arm_m = kLever;
   params.saturation_point_rad_s = 0.999 * kRail;
   return params;
 }
@@ -97,7 +98,7 @@ TEST(Saave, ZeroRadicandIsRejectedToo) {
 }
 
 TEST(Saave, TheThresholdIsStrictSoARailExactlyOnItIsNeverSeen) {
-  Saave::Params params;
+  Saave::Params params = params_below_rail();
   params.saturation_point_rad_s = kRail;
   const Vector3d w = 15.0 * Vector3d::UnitX();
   const ImuSample at_rail = sample_at(1, kRail * Vector3d::UnitX(), w.cross(w.cross(kLever)));
@@ -293,7 +294,7 @@ TEST(SaaveAccuracy, UnclippedRunsComeBackUnchanged) {
     run.push_back(sample_at(k, motion.rate(t), motion.specific_force(t, kLever)));
   }
   std::vector<RateState> out;
-  ASSERT_TRUE(Saave({}).estimate(run, out).ok());
+  ASSERT_TRUE(Saave(params_below_rail()).estimate(run, out).ok());
   for (std::size_t k = 0; k < run.size(); ++k) {
     EXPECT_LE((out[k].w_WI_I_rad_s - run[k].angular_velocity_rad_s).norm(), 1e-4) << k;
     EXPECT_EQ(out[k].source, RateSource::measured);

@@ -9,6 +9,7 @@
 
 #include "estimator/angular_velocity/tumble_recording.hpp"
 #include "estimator/src/angular_velocity/rate_descent.hpp"
+#include "tumble/angular_velocity/detail/rate_model.hpp"
 
 namespace tumble {
 namespace {
@@ -28,7 +29,7 @@ ScaleInformation scale_information(std::uint64_t seed, const Vector3d& moments) 
   options.moments = moments;
   options.gyro_rail_rad_s = options.accel_rail_m_s2 = 1e4;
   const TumbleRecording recording = make_tumble(options);
-  RateSmoother::Params params;
+  auto params = with_lever_arm<RateSmoother::Params>();
   params.model.lever_arm_sigma_m = 1.0;
   params.model.inertia_sigma = 3.0;
   const RateModel model(params.model, 0.01);
@@ -92,7 +93,7 @@ TEST(ScaleBound, TheErrorIsThatOfTheBound) {
       options.gyro_error = scale * Vector3d(1.0, -0.8, 1.2).asDiagonal();
       options.accel_error = scale * Vector3d(-1.1, 0.9, 1.0).asDiagonal();
       const TumbleRecording recording = make_tumble(options);
-      RateSmoother::Params params;
+      auto params = with_lever_arm<RateSmoother::Params>();
       params.model.error_sizes.gyro = params.model.error_sizes.gyro_unknown = std::max(5e-4, scale);
       params.model.error_sizes.accel = params.model.error_sizes.accel_unknown = std::max(5e-4, scale);
       std::vector<RateState> states;

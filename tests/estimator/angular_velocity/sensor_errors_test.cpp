@@ -7,10 +7,11 @@
 #include <cmath>
 #include <vector>
 
+#include "estimator/src/angular_velocity/sample_hold.hpp"
+#include "estimator/src/angular_velocity/triad_delay.hpp"
 #include "oracles/gaussian.hpp"
+#include "tumble/angular_velocity/detail/rate_model.hpp"
 #include "tumble/angular_velocity/rate_smoother.hpp"
-#include "tumble/angular_velocity/sample_hold.hpp"
-#include "tumble/angular_velocity/triad_delay.hpp"
 #include "tumble_recording.hpp"
 
 namespace tumble {
@@ -96,7 +97,7 @@ TEST(SensorErrors, MoveTheGradientAsTheModelHasIt) {
   for (const double age_s : {0.0, 0.004}) {
     o.gyro_age_s = age_s;
     o.sample.angular_velocity_rad_s = estimate.knot.rate_rad_s - age_s * estimate.knot.acceleration_rad_s2;
-    const RateModel model({}, 0.01);
+    const RateModel model({.nominal = rig}, 0.01);
     arrow::ErrorMatrix block = arrow::ErrorMatrix::Zero();
     arrow::BorderErrors border = arrow::BorderErrors::Zero();
     SensorErrorEvidence evidence;
@@ -108,6 +109,7 @@ TEST(SensorErrors, MoveTheGradientAsTheModelHasIt) {
       arrow::Corner corners[2];
       for (int side = 0; side < 2; ++side) {
         RateModelParams params;
+        params.nominal = rig;
         params.errors = SensorErrors::from((side == 0 ? kStep : -kStep) * SensorErrors::Vector::Unit(i));
         RateModel(params, 0.01).add_sample(o, estimate, rig, blocks[side], corners[side]);
       }
@@ -182,17 +184,17 @@ TEST(RateSmootherDevices, ALateAccelerometerIsFound) {
     const TumbleRecording late = late_tumble(seed, 1), clean = late_tumble(seed, 0);
     std::vector<RateState> states;
     RateReport report;
-    ASSERT_TRUE(RateSmoother({}).estimate(late.samples, states, report).ok());
+    ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(late.samples, states, report).ok());
     EXPECT_NEAR(report.sensor_errors.errors.accel_delay_s, 0.01, 1e-3);
     EXPECT_LT(report.together, 0.05);
     late_sum += clipped_errors(late, rates_of(states), 10.49).median;
     count(late, states, found);
-    ASSERT_TRUE(RateSmoother({}).estimate(clean.samples, states, report).ok());
+    ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(clean.samples, states, report).ok());
     EXPECT_GT(report.together, 0.05);
     EXPECT_LT(std::abs(report.sensor_errors.errors.accel_delay_s), 2e-4);
     count(clean, states, in_time);
     clean_sum += clipped_errors(clean, rates_of(states), 10.49).median;
-    RateSmoother::Params believing;
+    auto believing = with_lever_arm<RateSmoother::Params>();
     believing.error_rounds_max = 1;
     ASSERT_TRUE(RateSmoother(believing).estimate(late.samples, states, report).ok());
     taken_sum += clipped_errors(late, rates_of(states), 10.49).median;
@@ -214,7 +216,7 @@ TEST(RateSmootherDevices, ADelayThatIsNotFoundIsNotSilent) {
     const TumbleRecording late = late_tumble(seed, 1);
     std::vector<RateState> states;
     RateReport report;
-    ASSERT_TRUE(RateSmoother({}).estimate(late.samples, states, report).ok());
+    ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(late.samples, states, report).ok());
     EXPECT_TRUE(report.rig_held || std::abs(report.sensor_errors.errors.accel_delay_s - 0.01) < 1e-3) << seed;
     EXPECT_GT(report.calibration_mahalanobis, 1.0) << seed;
   }
@@ -223,7 +225,7 @@ TEST(RateSmootherDevices, ADelayThatIsNotFoundIsNotSilent) {
 // An error that a caller knows is assumed about: the readings are corrected for it, and it is not estimated away.
 TEST(RateSmootherDevices, GivenErrorsAreKept) {
   TumbleRecording recording = late_tumble(3, 0);
-  RateSmoother::Params params;
+  auto params = with_lever_arm<RateSmoother::Params>();
   params.model.errors.gyro = Eigen::Vector3d(0.01, -0.008, 0.006).asDiagonal();
   for (ImuSample& sample : recording.samples) {
     const Vector3d more = params.model.errors.gyro * sample.angular_velocity_rad_s;
@@ -235,7 +237,7 @@ TEST(RateSmootherDevices, GivenErrorsAreKept) {
   RateReport report;
   ASSERT_TRUE(RateSmoother(params).estimate(recording.samples, states, report).ok());
   EXPECT_LT((report.sensor_errors.errors.gyro - params.model.errors.gyro).cwiseAbs().maxCoeff(), 1e-12);
-  ASSERT_TRUE(RateSmoother({}).estimate(recording.samples, without, report).ok());
+  ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(recording.samples, without, report).ok());
   double given_sum = 0.0, without_sum = 0.0;
   for (std::size_t k = 0; k < states.size(); ++k) {
     if (states[k].clipped_axes != 0) continue;
@@ -250,7 +252,7 @@ TEST(RateSmootherDevices, GivenErrorsAreKept) {
 // stated have less.
 TEST(RateSmootherDevices, AStatedDelayFarFromZeroIsBelieved) {
   const TumbleRecording late = late_tumble(3, 3);
-  RateSmoother::Params params;
+  auto params = with_lever_arm<RateSmoother::Params>();
   params.model.errors.accel_delay_s = 0.03;
   params.model.error_sizes.delay_s = 2e-4;
   params.model.error_sizes.delay_unknown_s = 4e-3;
@@ -269,9 +271,9 @@ TEST(RateSmootherDevices, WhatARunLearnsOfTheDeviceHelpsTheNext) {
   const TumbleRecording first = late_tumble(3, 1), second = late_tumble(5, 1);
   std::vector<RateState> states;
   RateReport of_first, fresh, informed;
-  ASSERT_TRUE(RateSmoother({}).estimate(first.samples, states, of_first).ok());
-  ASSERT_TRUE(RateSmoother({}).estimate(second.samples, states, fresh).ok());
-  RateSmoother::Params params;
+  ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(first.samples, states, of_first).ok());
+  ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(second.samples, states, fresh).ok());
+  auto params = with_lever_arm<RateSmoother::Params>();
   params.learnt_errors = of_first.sensor_errors;
   ASSERT_TRUE(RateSmoother(params).estimate(second.samples, states, informed).ok());
   EXPECT_NEAR(informed.sensor_errors.errors.accel_delay_s, 0.01, 5e-4);
@@ -288,8 +290,8 @@ TEST(RateSmootherDevices, WhatWasLearntOfAnotherDeviceGivesWayToTheReadings) {
   const TumbleRecording first = late_tumble(3, 1), second = late_tumble(5, 0);
   std::vector<RateState> states;
   RateReport report;
-  ASSERT_TRUE(RateSmoother({}).estimate(first.samples, states, report).ok());
-  RateSmoother::Params params;
+  ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(first.samples, states, report).ok());
+  auto params = with_lever_arm<RateSmoother::Params>();
   params.learnt_errors = report.sensor_errors;
   ASSERT_TRUE(RateSmoother(params).estimate(second.samples, states, report).ok());
   EXPECT_LT(std::abs(report.sensor_errors.errors.accel_delay_s), 5e-4);

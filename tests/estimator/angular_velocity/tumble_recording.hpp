@@ -49,6 +49,14 @@ struct TumbleRecording {
 /// rolling, rest. Readings are means over the window of a sample, with noise, clipped after averaging.
 TumbleRecording make_tumble(const TumbleOptions& options);
 
+/// Parameters of a RateSmoother or a RateStream that know the lever arm, which has no default.
+template <class Params>
+Params with_lever_arm(const Eigen::Vector3d& lever_arm_m = TumbleOptions{}.lever_arm_m) {
+  Params out;
+  out.model.nominal.lever_arm_m = lever_arm_m;
+  return out;
+}
+
 /// Quantiles of the error norm over the samples in which at least one gyro axis was clipped.
 struct ClippedErrors {
   std::size_t count = 0;

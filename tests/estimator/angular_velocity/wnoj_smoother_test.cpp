@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/wnoj_smoother.hpp"
+#include "estimator/src/angular_velocity/wnoj_smoother.hpp"
 
 #include <gtest/gtest.h>
 

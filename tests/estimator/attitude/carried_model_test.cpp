@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Each factor of the carried body against its own cost: the gradient that it adds is the numerical one, its curvature
 // that of the squared residuals.
-#include "tumble/attitude/carried_model.hpp"
+#include "tumble/attitude/detail/carried_model.hpp"
 
 #include <gtest/gtest.h>
 

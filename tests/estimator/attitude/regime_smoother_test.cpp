@@ -75,15 +75,15 @@ TEST(RegimeSmoother, ASpinInFlightIsNot) {
 }
 
 TEST(RegimeSmoother, RefusesWhatItsPartsRefuse) {
-  RegimeSmoother::Params params;
+  RegimeSmoother::Params params = params_of({});
   params.carried_min = 1.5;
   EXPECT_THROW(RegimeSmoother{params}, InvalidParams);
-  params = {};
+  params = params_of({});
   params.carried.node_s = 0.0;
   EXPECT_THROW(RegimeSmoother{params}, InvalidParams);
   std::vector<RateState> rates(3);
   RegimeSmoother::Report report;
-  EXPECT_EQ(RegimeSmoother({}).estimate({}, rates, report).trouble, Trouble::empty);
+  EXPECT_EQ(RegimeSmoother(params_of({})).estimate({}, rates, report).trouble, Trouble::empty);
   EXPECT_TRUE(rates.empty());
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/common/scalar_update.hpp"
+#include "tumble/common/detail/scalar_update.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/common/state_bytes.hpp"
+#include "estimator/src/common/state_bytes.hpp"
+
+#include "estimator/src/common/state_layout.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "tumble/common/imu_members.hpp"
+#include "estimator/src/common/imu_members.hpp"
 
 namespace tumble {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/mapping/lone_returns.hpp"
+#include "estimator/src/mapping/lone_returns.hpp"
 
 #include <gtest/gtest.h>
 

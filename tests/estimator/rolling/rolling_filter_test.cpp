@@ -142,7 +142,8 @@ TEST(RollingFilter, PerfectSensorsLeaveLittle) {
   for (const Case& c : cases()) {
     const RollingTruth truth = truth_of(c.velocity, c.contact);
     EXPECT_GE(rolling_error(truth), c.rolling_at_least_m) << c.name;
-    EXPECT_LT(run(truth, c.contact, {.lever_arm_m = kLeverArm}).end_error_m, 0.004) << c.name;  // measured 0 to 2.4 mm
+    EXPECT_LT(run(truth, c.contact, {.radius_m = testing::kRadius_m, .lever_arm_m = kLeverArm}).end_error_m, 0.004)
+        << c.name;  // measured 0 to 2.4 mm
   }
 }
 
@@ -150,7 +151,7 @@ TEST(RollingFilter, StandsStillWhereTheSphereDoes) {
   const Contact slip = event(2.8, 0.8, {-0.6, 0.1, 0.0});
   RollingTruth truth = truth_of(l_shape, slip);
   add_errors(1001, truth);
-  const RollingFilter filter({.lever_arm_m = kLeverArm});
+  const RollingFilter filter({.radius_m = testing::kRadius_m, .lever_arm_m = kLeverArm});
   const auto state = std::make_unique<RollingFilter::State>();
   double drift_m = 0.0;
   int still = 0;
@@ -171,7 +172,7 @@ TEST(RollingFilter, ProbabilityOfSlipIsThatOfAllHypotheses) {
   const Contact slip = event(2.8, 0.8, {-0.6, 0.1, 0.0});
   RollingTruth truth = truth_of(l_shape, slip);
   add_errors(1002, truth);
-  const RollingFilter filter({.lever_arm_m = kLeverArm});
+  const RollingFilter filter({.radius_m = testing::kRadius_m, .lever_arm_m = kLeverArm});
   const auto state = std::make_unique<RollingFilter::State>();
   double deepest = 0.0, before = 0.0;
   for (std::size_t k = 0; k < truth.samples.size(); ++k) {
@@ -192,7 +193,7 @@ TEST(RollingFilter, CallsAnEventUncertainByHowMuchItsSigmaGrows) {
   const auto called = [&](const Contact& contact, double uncertain_m) {
     RollingTruth truth = truth_of(l_shape, contact);
     add_errors(1003, truth);
-    const RollingFilter filter({.lever_arm_m = kLeverArm, .uncertain_m = uncertain_m});
+    const RollingFilter filter({.radius_m = testing::kRadius_m, .lever_arm_m = kLeverArm, .uncertain_m = uncertain_m});
     const auto state = std::make_unique<RollingFilter::State>();
     int inside = 0, outside = 0;
     for (std::size_t k = 0; k < truth.samples.size(); ++k) {
@@ -213,7 +214,7 @@ TEST(RollingFilter, FindsItsWayThroughSlipAndSlide) {
     for (const std::uint64_t seed : {1001, 1002, 1003}) {  // others than those of development
       RollingTruth truth = truth_of(c.velocity, c.contact);
       add_errors(seed, truth);
-      const Result r = run(truth, c.contact, {.lever_arm_m = kLeverArm});
+      const Result r = run(truth, c.contact, {.radius_m = testing::kRadius_m, .lever_arm_m = kLeverArm});
       std::printf("%-18s seed %d: end %.4f m, sigma %.4f, recall %.2f, precision %.2f, delay %.3f s\n", c.name,
                   static_cast<int>(seed), r.end_error_m, r.end_sigma_m, r.recall, r.precision, r.delay_s);
       EXPECT_LT(r.end_error_m, 0.02) << c.name << " " << seed;  // 1 % of the path; measured up to 0.5 %
@@ -239,7 +240,7 @@ TEST(RollingFilter, AHeldSpinIsNotTakenForGrip) {
     const Contact contact = [=](double t) { return along(held * rise((t - 4.0) / 0.1) * rise((6.0 - t) / 0.1)); };
     RollingTruth truth = truth_of(velocity, contact);
     add_errors(seed, truth);
-    const Result r = run(truth, contact, {.lever_arm_m = kLeverArm});
+    const Result r = run(truth, contact, {.radius_m = testing::kRadius_m, .lever_arm_m = kLeverArm});
     std::printf("held spin %.2f m/s: end %.4f m, sigma %.4f, recall %.2f\n", held, r.end_error_m, r.end_sigma_m,
                 r.recall);
     EXPECT_LT(r.end_error_m, 0.03) << held;  // of 2.5 m
@@ -253,7 +254,7 @@ TEST(RollingFilter, KnowsThatALongSpinIsLessCertain) {
     const Contact contact = event(2.8, k == 0 ? 0.3 : 2.0, {-0.6, 0.1, 0.0});
     RollingTruth truth = truth_of(l_shape, contact);
     add_errors(1006, truth);
-    const Result r = run(truth, contact, {.lever_arm_m = kLeverArm});
+    const Result r = run(truth, contact, {.radius_m = testing::kRadius_m, .lever_arm_m = kLeverArm});
     EXPECT_LT(r.end_error_m, 4.0 * r.end_sigma_m) << k;
     sigma[k] = r.end_sigma_m;
   }
@@ -266,8 +267,10 @@ TEST(RollingFilter, LateAccelerometerIsFoundOut) {
   for (std::size_t k = truth.samples.size() - 1; k > 1; --k) {  // 8 ms
     truth.samples[k].specific_force_m_s2 = truth.samples[k - 2].specific_force_m_s2;
   }
-  const double with = run(truth, slip.contact, {.lever_arm_m = kLeverArm}).end_error_m;
-  const double without = run(truth, slip.contact, {.lever_arm_m = kLeverArm, .accel_delay_sigma_s = 0.0}).end_error_m;
+  const double with = run(truth, slip.contact, {.radius_m = testing::kRadius_m, .lever_arm_m = kLeverArm}).end_error_m;
+  const double without =
+      run(truth, slip.contact, {.radius_m = testing::kRadius_m, .lever_arm_m = kLeverArm, .accel_delay_sigma_s = 0.0})
+          .end_error_m;
   EXPECT_LT(with, 0.02);
   EXPECT_GT(without, 2.0 * with);
 }
@@ -275,7 +278,7 @@ TEST(RollingFilter, LateAccelerometerIsFoundOut) {
 TEST(RollingFilter, StandsStill) {
   RollingTruth truth = truth_of(no_slip, no_slip, 30.0);
   add_errors(1004, truth);
-  const RollingFilter filter({.lever_arm_m = kLeverArm});
+  const RollingFilter filter({.radius_m = testing::kRadius_m, .lever_arm_m = kLeverArm});
   const auto state = std::make_unique<RollingFilter::State>();
   Eigen::Vector3d early = Eigen::Vector3d::Zero();
   for (std::size_t k = 0; k < truth.samples.size(); ++k) {
@@ -291,7 +294,7 @@ TEST(RollingFilter, SplitRunsEqual) {
   const Case slip = cases()[1];
   RollingTruth truth = truth_of(slip.velocity, slip.contact, 4.0);
   add_errors(1005, truth);
-  const RollingFilter filter({.lever_arm_m = kLeverArm});
+  const RollingFilter filter({.radius_m = testing::kRadius_m, .lever_arm_m = kLeverArm});
   const auto feed = [&](std::size_t from, std::size_t to, RollingFilter::State& state) {
     for (std::size_t k = from; k < to; ++k) ASSERT_TRUE(filter.step(truth.samples[k], state).ok());
   };
@@ -310,7 +313,7 @@ TEST(RollingFilter, SplitRunsEqual) {
 
 TEST(RollingFilter, RefusesBadInputAndKeepsItsState) {
   const RollingTruth truth = truth_of(l_shape, no_slip, 3.0);
-  const RollingFilter filter({.lever_arm_m = kLeverArm});
+  const RollingFilter filter({.radius_m = testing::kRadius_m, .lever_arm_m = kLeverArm});
   const auto state = std::make_unique<RollingFilter::State>();
   ImuSample falling = truth.samples[0];
   falling.specific_force_m_s2.setZero();
@@ -330,10 +333,13 @@ TEST(RollingFilter, RefusesBadInputAndKeepsItsState) {
 }
 
 TEST(RollingFilter, RefusesBadParams) {
-  EXPECT_THROW(RollingFilter({.radius_m = 0.0}), InvalidParams);
-  EXPECT_THROW(RollingFilter({.lever_arm_m = {0, 0, 11}}), InvalidParams);
-  EXPECT_THROW(RollingFilter({.grip_sigma_m_s = -1.0}), InvalidParams);
-  EXPECT_THROW(RollingFilter({.slip_begins_per_s = std::numeric_limits<double>::quiet_NaN()}), InvalidParams);
+  constexpr double r = testing::kRadius_m;
+  EXPECT_NO_THROW(RollingFilter({.radius_m = r}));
+  EXPECT_THROW(RollingFilter({}), InvalidParams) << "the radius has no default";
+  EXPECT_THROW(RollingFilter({.radius_m = r, .lever_arm_m = {0, 0, 11}}), InvalidParams);
+  EXPECT_THROW(RollingFilter({.radius_m = r, .grip_sigma_m_s = -1.0}), InvalidParams);
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(RollingFilter({.radius_m = r, .slip_begins_per_s = kNan}), InvalidParams);
 }
 
 }  // namespace

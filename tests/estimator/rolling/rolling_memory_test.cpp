@@ -54,6 +54,7 @@ struct Held {
 Held held_by(double duration_s) {
   const testing::RollingTruth truth = way(duration_s);
   RollingSmoother::Params params;
+  params.filter.radius_m = testing::kRadius_m;
   params.filter.lever_arm_m = kLeverArm;
   const RollingSmoother smoother(params);
   std::vector<RollingEstimate> none;
@@ -89,6 +90,7 @@ TEST(RollingMemory, AWholeRunHoldsLittleForEachNode) {
 std::vector<double> told(std::span<const ImuSample> samples, std::span<const rolling::PathNode> path,
                          std::optional<rolling::LastPass::Distance> distance, std::size_t stretch) {
   RollingParams params;
+  params.radius_m = testing::kRadius_m;
   params.lever_arm_m = kLeverArm;
   params.radius_sigma_m = 1e-3;
   rolling::LastPass pass(params, samples, path, distance, stretch);

@@ -40,6 +40,7 @@ testing::RollingTruth slipping(TimeNs period_ns) {
 
 RollingSmoother::Params params(double lag_s) {
   RollingSmoother::Params out;
+  out.filter.radius_m = testing::kRadius_m;
   out.filter.lever_arm_m = kLeverArm;
   out.lag_s = lag_s;
   return out;

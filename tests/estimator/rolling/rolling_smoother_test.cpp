@@ -40,6 +40,7 @@ testing::RollingTruth slipping() {
 
 RollingSmoother::Params params(double lag_s) {
   RollingSmoother::Params out;
+  out.filter.radius_m = testing::kRadius_m;
   out.filter.lever_arm_m = kLeverArm;
   out.lag_s = lag_s;
   return out;
@@ -217,6 +218,22 @@ TEST(RollingSmoother, SplitRunsEqual) {
   ASSERT_EQ(out_split.size(), out_whole.size());
   ASSERT_FALSE(out_whole.empty());
   for (std::size_t k = 0; k < out_whole.size(); ++k) ASSERT_EQ(out_split[k].p_WG_m, out_whole[k].p_WG_m) << k;
+}
+
+TEST(RollingSmoother, AStateOfMoreSamplesThanALagHoldsIsRefused) {
+  const RollingSmoother smoother(params(1.0));
+  const auto state = std::make_unique<RollingSmoother::State>();
+  std::vector<RollingEstimate> out;
+  const testing::RollingTruth truth = slipping();
+  for (std::size_t k = 0; k < 10; ++k) ASSERT_TRUE(smoother.step(truth.samples[k], *state, out).ok());
+  ASSERT_TRUE(smoother.check_state(*state).ok()) << "negative control";
+  for (int k = 0; k < 5000; ++k) {  // 2.2 s at 500 Hz, four times over, are 4400
+    state->samples.push_back(state->samples.back());
+    state->samples.back().time_ns += 1000;
+  }
+  const Status status = smoother.check_state(*state);
+  EXPECT_EQ(status.trouble, Trouble::out_of_range);
+  EXPECT_STREQ(status.field, "rolling.samples");
 }
 
 TEST(RollingSmoother, RefusesBadParamsAndBadSamples) {

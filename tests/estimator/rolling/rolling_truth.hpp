@@ -19,11 +19,13 @@ struct RollingTruth {
   std::vector<bool> gripping;  ///< contact velocity below 1 mm/s
 };
 
+inline constexpr double kRadius_m = 0.145;  ///< of the spheres of these tests, unless they say otherwise
+
 struct RollingMotion {
   std::function<Eigen::Vector3d(double)> velocity_m_s;          ///< of the centre, horizontal
   std::function<Eigen::Vector3d(double)> contact_velocity_m_s;  ///< of the contact point; zero while it grips
   double duration_s = 10.0;
-  double radius_m = 0.145;
+  double radius_m = kRadius_m;
   Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< from centre to IMU, sensor axes
   Eigen::Quaterniond q_start = Eigen::Quaterniond::Identity();
   TimeNs period_ns = 4'000'000;

@@ -15,7 +15,7 @@
 #include "scenarios/baselines/angular_velocity/clipped_baseline.hpp"
 #include "scenarios/baselines/angular_velocity/magnetometer_rate.hpp"
 #include "scenarios/baselines/angular_velocity/standstill_smoother.hpp"
-#include "tumble/angular_velocity/partial_clipping.hpp"
+#include "tumble/angular_velocity/detail/partial_clipping.hpp"
 
 namespace tumble::baselines {
 namespace {

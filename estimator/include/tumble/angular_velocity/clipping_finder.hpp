@@ -42,6 +42,16 @@ ElementReading element_reading(const ImuSample& sample, const Clipping& clipping
 /// Flags of a judged sample, ClipFlag bits: what readings the device itself should have flagged.
 std::uint8_t clip_flags(const Clipping& clipping);
 
+/// The rails of a unit that may freeze, as those beside it have to hear of them. Equal readings alone are no rail: flat
+/// tops of a slow motion far below a stated range are not heard, nor what repeats where none is stated. Planes are,
+/// which know neither.
+struct HeardRails {
+  RailPlanes gyro, accel;                                 ///< in use
+  double gyro_range_rad_s = 0.0, accel_range_m_s2 = 0.0;  ///< stated; 0: not
+  /// Of a judged sample, beside the flags of its own.
+  std::uint8_t flags(const ImuSample& sample, const Clipping& judged) const;
+};
+
 /// Finds which readings of a recording are clipped: the one judgement for all that reads recordings, from what the
 /// device flags, levels of equal readings (RailDetector) and tilted planes (RailPlaneFinder), of gyro and
 /// accelerometer. RateStream judges its window by the same rails and rules (RailWatch).

@@ -21,7 +21,7 @@ struct Clipping {
 };
 
 /// Finds the rails of an IMU in its readings: the level that a channel keeps while it is clipped, which differs from
-/// unit to unit and from the data sheet (an MTi-30 specified for 7.85 rad/s was seen to stay at 10.5).
+/// unit to unit and from the data sheet (one specified for 450 deg/s was seen to stay at 600).
 ///
 /// A plateau is a run of readings of one sign that lie closer together than noise allows, at the largest magnitude
 /// seen so far on that axis. Low ones must be longer and be entered or left by a jump of many digits of the device: the

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "tumble/angular_velocity/triad.hpp"
+#include "tumble/angular_velocity/detail/triad.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/parameters.hpp"
 

@@ -9,7 +9,7 @@
 
 #include "tumble/angular_velocity/clipping_finder.hpp"
 #include "tumble/angular_velocity/rail_planes.hpp"
-#include "tumble/angular_velocity/rate_model_fields.hpp"
+#include "tumble/angular_velocity/rate_model_params_fields.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/angular_velocity/rest_detector.hpp"
 #include "tumble/common/imu.hpp"

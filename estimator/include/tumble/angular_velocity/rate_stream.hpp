@@ -8,10 +8,11 @@
 #include <span>
 #include <vector>
 
-#include "tumble/angular_velocity/arrow_solver.hpp"
-#include "tumble/angular_velocity/least_rails.hpp"
-#include "tumble/angular_velocity/rail_watch.hpp"
-#include "tumble/angular_velocity/rate_model_fields.hpp"
+#include "tumble/angular_velocity/detail/arrow_solver.hpp"
+#include "tumble/angular_velocity/detail/least_rails.hpp"
+#include "tumble/angular_velocity/detail/rail_watch.hpp"
+#include "tumble/angular_velocity/detail/rate_model.hpp"
+#include "tumble/angular_velocity/rate_model_params_fields.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/angular_velocity/rest_detector.hpp"
 #include "tumble/common/imu.hpp"

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -27,11 +28,13 @@ namespace tumble {
 class Saave {
  public:
   struct Params {
-    /// t: from the centre of mass to the IMU, IMU axes [m]; bound |t_j| <= 10. Needed to about a millimetre.
-    Eigen::Vector3d lever_arm_m = {-0.022, -0.085, 0.055};
+    /// t: from the centre of mass to the IMU, IMU axes [m]; bound |t_j| <= 10. Needed to about a millimetre; has no
+    /// default.
+    Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
     /// A reading strictly beyond this counts as clipped [rad/s]. Trap, kept as published: a device
-    /// whose plateau is exactly this value never exceeds it and nothing is recovered; pass a value slightly below.
-    double saturation_point_rad_s = 10.5;
+    /// whose plateau is exactly this value never exceeds it and nothing is recovered; pass a value slightly below. Has
+    /// no default.
+    double saturation_point_rad_s = 0.0;
     /// Variance of an unclipped reading [(rad/s)^2]; (0.03 deg/s/sqrt(Hz) * sqrt(100 Hz))^2.
     double variance_measured_rad2_s2 = 2.741e-5;
     /// Variance of an accepted estimate [(rad/s)^2]: 0.2741 as in the authors' code, 3.648 as printed in the paper.
@@ -48,11 +51,9 @@ class Saave {
     static void fields(Self& p, Visitor& visit) {
       visit(p.lever_arm_m, {"lever_arm_m", "m", -10.0, 10.0,
                             "from the centre of mass to the IMU, IMU axes; needed to about a millimetre"});
-      visit(
-          p.saturation_point_rad_s,
-          {"saturation_point_rad_s", "rad/s", 0.01, 1000.0,
-           "a reading strictly beyond counts as clipped: to be slightly below the plateau, of 10.5 rad/s on the MTi-30",
-           Rank::first});
+      visit(p.saturation_point_rad_s,
+            {"saturation_point_rad_s", "rad/s", 0.01, 1000.0,
+             "a reading strictly beyond counts as clipped: to be slightly below the plateau of the gyro", Rank::first});
       visit(p.variance_measured_rad2_s2,
             {"variance_measured_rad2_s2", "rad^2/s^2", 1e-12, 1e12, "variance of an unclipped reading"});
       visit(

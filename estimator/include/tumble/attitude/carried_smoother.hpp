@@ -10,7 +10,7 @@
 #include "tumble/angular_velocity/rail_detector.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/angular_velocity/rest_detector.hpp"
-#include "tumble/attitude/carried_model.hpp"
+#include "tumble/attitude/detail/carried_model.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/parameters.hpp"
 #include "tumble/common/pose.hpp"

@@ -7,10 +7,10 @@
 #include <optional>
 #include <span>
 
-#include "tumble/attitude/force_errors.hpp"
-#include "tumble/attitude/rate_recovery.hpp"
+#include "tumble/attitude/detail/force_errors.hpp"
+#include "tumble/attitude/detail/rate_recovery.hpp"
+#include "tumble/common/detail/imu_average.hpp"
 #include "tumble/common/imu.hpp"
-#include "tumble/common/imu_average.hpp"
 #include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 

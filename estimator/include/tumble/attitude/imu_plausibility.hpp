@@ -6,9 +6,9 @@
 #include <array>
 #include <optional>
 
-#include "tumble/attitude/axis_labels.hpp"
+#include "tumble/attitude/detail/axis_labels.hpp"
+#include "tumble/common/detail/imu_average.hpp"
 #include "tumble/common/imu.hpp"
-#include "tumble/common/imu_average.hpp"
 #include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 

@@ -4,8 +4,8 @@
 #include <Eigen/Geometry>
 
 #include "tumble/angular_velocity/rest_detector.hpp"
+#include "tumble/common/detail/imu_average.hpp"
 #include "tumble/common/imu.hpp"
-#include "tumble/common/imu_average.hpp"
 #include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <Eigen/Geometry>
 
-#include "tumble/attitude/low_pass.hpp"
+#include "tumble/attitude/detail/low_pass.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "tumble/mapping/calibration.hpp"
+#include "tumble/mapping/detail/spatial_hash.hpp"
 #include "tumble/mapping/lidar.hpp"
-#include "tumble/mapping/spatial_hash.hpp"
 #include "tumble/mapping/sweep_trajectory.hpp"
 
 namespace tumble {

@@ -82,7 +82,7 @@ struct RelocalizationParams {
 
 /// What parts the map from the world: docs/maths/mapping.md, section 8.
 struct WorldCovarianceParams {
-  double tilt_sigma_rad = 0.002;  ///< of a levelled start: an accelerometer's turn-on bias of 2 mg (MTi-30)
+  double tilt_sigma_rad = 0.002;  ///< of a levelled start: an accelerometer's turn-on bias of 2 mg
   /// Of the weakest direction's standard deviation, per sweep, where the surfaces do not hold it: measured.
   double drift_share = 0.1;
   double drift_sigma_max_m = 3.0;  ///< a direction held less surely counts as this

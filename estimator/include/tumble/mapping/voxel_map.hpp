@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tumble/common/parameters.hpp"
-#include "tumble/mapping/spatial_hash.hpp"
+#include "tumble/mapping/detail/spatial_hash.hpp"
 
 namespace tumble {
 

@@ -10,18 +10,20 @@
 
 #include "tumble/attitude/imu_merge.hpp"
 #include "tumble/common/pose.hpp"
+#include "tumble/odometry/detail/unit_rails.hpp"
 #include "tumble/odometry/imu_sheet.hpp"
 #include "tumble/rolling/rolling_smoother.hpp"
 
 namespace tumble {
 
 /// Pose of a rolling sphere from one to four IMUs, through grip, slip, bumps and slopes: live, and smoothed with what
-/// follows within `lag_s`. ImuMerge makes the IMUs one, RollingSmoother (with its RollingFilter) does the rest.
+/// follows within `lag_s`. UnitRails flags what a device clips without saying so, ImuMerge makes the IMUs one,
+/// RollingSmoother (with its RollingFilter) does the rest.
 ///
 /// World: z up, origin at the sphere's centre at the first sample, yaw 0 there. Begin with a second of rest. State of
-/// half a megabyte, and 11 KiB for each 0.02 s of lag; a sample that ends no block (RollingSmoother::Params::block_s)
-/// allocates nothing once the first have come, but for poses that nobody takes. No threads, no files, no printing.
-/// Copies carry all state. Not modelled: see the classes named.
+/// half a megabyte, 0.1 for each IMU, and 11 KiB for each 0.02 s of lag; a sample that ends no block
+/// (RollingSmoother::Params::block_s) allocates nothing once the first have come, but for poses that nobody takes. No
+/// threads, no files, no printing. Copies carry all state. Not modelled: see the classes named.
 class RollingOdometry {
  public:
   /// One IMU of the sphere.
@@ -94,7 +96,7 @@ class RollingOdometry {
   /// What the IMUs say of each other: frozen, disagreeing, late ones.
   const ImuMerge::State& units() const { return *merge_state_; }
 
-  /// As TumblingOdometry::save and load: a state of half a megabyte, less at rest, and what the lag holds.
+  /// As TumblingOdometry::save and load: a state of up to a megabyte, less at rest, and what the lag holds.
   std::vector<std::byte> save() const;
   Status load(std::span<const std::byte> bytes);
 
@@ -110,8 +112,10 @@ class RollingOdometry {
   Params params_;
   ImuMerge merge_;
   RollingSmoother smoother_;
+  UnitRails rails_;
   std::unique_ptr<ImuMerge::State> merge_state_;
   std::unique_ptr<RollingSmoother::State> state_;
+  UnitRails::State rails_state_;
   std::vector<RollingEstimate> done_;
   std::size_t taken_ = 0;
   bool live_ = true, finished_ = false;

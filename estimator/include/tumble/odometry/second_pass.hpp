@@ -10,7 +10,7 @@
 
 #include "tumble/angular_velocity/rest_detector.hpp"
 #include "tumble/common/parameters.hpp"
-#include "tumble/odometry/odometry_pass.hpp"
+#include "tumble/odometry/detail/odometry_pass.hpp"
 
 namespace tumble {
 

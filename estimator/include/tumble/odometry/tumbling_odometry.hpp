@@ -10,9 +10,9 @@
 
 #include "tumble/attitude/regime_stream.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
+#include "tumble/odometry/detail/odometry_pass.hpp"
 #include "tumble/odometry/imu_sheet.hpp"
 #include "tumble/odometry/lidar_sheet.hpp"
-#include "tumble/odometry/odometry_pass.hpp"
 #include "tumble/odometry/second_pass.hpp"
 
 namespace tumble {

@@ -5,8 +5,8 @@
 #include <array>
 #include <cstdint>
 
+#include "tumble/common/detail/imu_average.hpp"
 #include "tumble/common/imu.hpp"
-#include "tumble/common/imu_average.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/rolling/rolling_model.hpp"
 

@@ -28,7 +28,7 @@ inline bool slips(RollingMode mode) {
 
 /// What the sphere, its IMU and the floor are like; shared by the live filter and the smoother.
 struct RollingParams {
-  double radius_m = 0.145;
+  double radius_m = 0.0;  ///< has no default
   double gravity_m_s2 = 9.80665;
   Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< from centre to IMU, sensor axes; length up to 10
   std::optional<Eigen::Quaterniond> q_WI_start = {};      ///< attitude at the first sample; levelled when not given

@@ -132,12 +132,15 @@ class RollingSmoother {
   void finish(std::span<const RollingMode> known, State& state, const Take& take) const;
   void finish(std::span<const RollingMode> known, State& state, std::vector<RollingEstimate>& out) const;
 
-  /// What holds of every state that step() left, for one that comes from elsewhere; the first that does not.
+  /// What holds of every state that step() left, for one that comes from elsewhere; the first that does not. A state
+  /// with a lag of samples that came more than four times as fast as rate_max_hz is refused.
   Status check_state(const State& state) const;
 
  private:
   struct Path;
 
+  /// Samples that the lag has storage for.
+  std::size_t samples_set_aside() const;
   Path best_path(const State& state) const;
   void run_window(const Path& path, std::size_t emitted, State& state, const Take& take) const;
 

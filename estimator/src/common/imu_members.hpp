@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "state_visitor.hpp"
+#include "tumble/common/detail/imu_average.hpp"
 #include "tumble/common/imu.hpp"
-#include "tumble/common/imu_average.hpp"
 #include "tumble/common/pose.hpp"
-#include "tumble/common/state_visitor.hpp"
 
 /// Members of what states are made of everywhere: state_visitor.hpp.
 namespace tumble {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "tumble/angular_velocity/rate_model.hpp"
+#include "tumble/angular_velocity/rate_model_params.hpp"
 #include "tumble/common/parameters.hpp"
 
 namespace tumble {
@@ -21,9 +21,9 @@ void RateModelParams::fields(Self& p, Visitor& visit) {
          "prior of each slope of a gyro element's rail: cross-axis sensitivity before the device compensates it",
          Rank::first});
   visit(p.gyro_noise_density,
-        {"gyro_noise_density", "rad/s/sqrt(Hz)", 1e-9, 1.0, "noise density of the gyro (MTi-30: 0.03 deg/s/sqrt(Hz))"});
-  visit(p.accel_noise_density, {"accel_noise_density", "m/s^2/sqrt(Hz)", 1e-9, 10.0,
-                                "noise density of the accelerometer (MTi-30: 60 ug/sqrt(Hz))"});
+        {"gyro_noise_density", "rad/s/sqrt(Hz)", 1e-9, 1.0, "noise density of the gyro (0.03 deg/s/sqrt(Hz))"});
+  visit(p.accel_noise_density,
+        {"accel_noise_density", "m/s^2/sqrt(Hz)", 1e-9, 10.0, "noise density of the accelerometer (60 ug/sqrt(Hz))"});
   visit(p.flight_sigma_m_s2,
         {"flight_sigma_m_s2", "m/s^2", 1e-6, 100.0, "what the flight model misses of the force", Rank::first});
   visit(p.model_error_s,

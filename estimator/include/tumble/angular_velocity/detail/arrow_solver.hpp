@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "tumble/common/arrow_system.hpp"
+#include "tumble/common/detail/arrow_system.hpp"
 
 namespace tumble {
 

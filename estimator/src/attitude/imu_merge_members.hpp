@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "tumble/angular_velocity/rails_members.hpp"
+#include "../angular_velocity/rails_members.hpp"
 #include "tumble/attitude/imu_merge.hpp"
 
 /// Members of an ImuMerge's state and of what its Params hold beside Fields: state_visitor.hpp.

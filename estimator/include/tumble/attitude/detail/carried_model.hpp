@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <array>
 
-#include "tumble/common/arrow_system.hpp"
+#include "tumble/common/detail/arrow_system.hpp"
 
 namespace tumble {
 

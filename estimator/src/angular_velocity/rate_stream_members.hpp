@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "tumble/angular_velocity/rails_members.hpp"
+#include "rails_members.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
 
 /// Members of a RateStream's state and of what its Params hold beside Fields: state_visitor.hpp.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "tumble/angular_velocity/rails_members.hpp"
+#include "../angular_velocity/rails_members.hpp"
 #include "tumble/rolling/rolling_smoother.hpp"
 
 /// Members of the states of RollingFilter and RollingSmoother: state_visitor.hpp.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "tumble/angular_velocity/rate_stream_members.hpp"
+#include "../angular_velocity/rate_stream_members.hpp"
 #include "tumble/attitude/regime_stream.hpp"
 
 /// Members of a RegimeStream's state, and of the CarriedStream's within: state_visitor.hpp.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "tumble/common/imu_members.hpp"
+#include "../common/imu_members.hpp"
 #include "tumble/mapping/lidar_inertial_odometry_fields.hpp"
 
 /// Members of sweeps and reports, and what the mapper's Params hold beside Fields: state_visitor.hpp.

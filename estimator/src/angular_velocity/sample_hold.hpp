@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "tumble/angular_velocity/triad.hpp"
+#include "tumble/angular_velocity/detail/triad.hpp"
 #include "tumble/common/imu.hpp"
 
 namespace tumble {

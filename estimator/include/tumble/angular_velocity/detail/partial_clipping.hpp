@@ -19,7 +19,7 @@ struct PartialLoss {
 /// closed form. Not partial when the reading stands at the rail, when it is within its noise of the neighbour, or when
 /// more than kShareMax of the window is hidden.
 /// `neighbour_rad_s`: the smaller of the neighbours' readings, signed so that the rail is positive. What it does not
-/// model: a slope that changes within the two windows; sigma allows for it (measured on impacts of the tumbling rig).
+/// model: a slope that changes within the two windows; sigma allows for it (measured on impacts of tumbling bodies).
 PartialLoss partial_loss(double reading_rad_s, double neighbour_rad_s, double rail_rad_s, double noise_rad_s);
 
 }  // namespace tumble

@@ -2,16 +2,11 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <array>
 #include <concepts>
 #include <cstddef>
-#include <cstdint>
-#include <deque>
-#include <optional>
 #include <type_traits>
-#include <vector>
 
-#include "tumble/common/parameters.hpp"
+#include "state_kinds.hpp"
 
 /// What evolves in an estimator, stated once, member by member: saving, loading and comparing are visitors of it.
 ///
@@ -22,36 +17,6 @@
 /// Self may be const. A `Params` that is part of a state is visited by `visit_params`: its Fields, and what is none by
 /// `others(Self& p, Visitor& visit)`.
 namespace tumble {
-
-/// Constrains the first argument of `members` and `others`: `Of` or const `Of`.
-template <class T, class Of>
-concept StateOf = std::same_as<std::remove_const_t<T>, Of>;
-
-namespace detail {
-
-template <class T>
-inline constexpr bool is_fixed_matrix = false;
-template <class S, int R, int C, int O, int MR, int MC>
-inline constexpr bool is_fixed_matrix<Eigen::Matrix<S, R, C, O, MR, MC>> = R > 0 && C > 0;
-
-template <class T>
-inline constexpr bool is_sequence = false;
-template <class T, class A>
-inline constexpr bool is_sequence<std::vector<T, A>> = true;
-template <class T, class A>
-inline constexpr bool is_sequence<std::deque<T, A>> = true;
-
-template <class T>
-inline constexpr bool is_array = false;
-template <class T, std::size_t N>
-inline constexpr bool is_array<std::array<T, N>> = true;
-
-template <class T>
-inline constexpr bool is_optional = false;
-template <class T>
-inline constexpr bool is_optional<std::optional<T>> = true;
-
-}  // namespace detail
 
 /// Takes states apart. `Derived` has
 /// - numbers(name, data, count): numbers that lie in a row
@@ -172,40 +137,5 @@ class StateVisitor {
 
   bool nan_allowed_ = false;
 };
-
-namespace detail {
-
-/// Takes the Fields of a `Params` to a StateVisitor.
-template <class Visitor>
-class FieldsAsMembers {
- public:
-  explicit FieldsAsMembers(Visitor& visit) : visit_(visit) {}
-  template <class T>
-  void operator()(T& value, const Field& field) {
-    using V = std::remove_const_t<T>;
-    if constexpr (std::is_enum_v<V>) {
-      visit_(field.name, value, static_cast<V>(static_cast<int>(field.high)));
-    } else {
-      visit_(field.name, value);
-    }
-  }
-  template <class Params>
-  void group(const char* /*prefix*/, Params& params) {
-    std::remove_const_t<Params>::fields(params, *this);
-  }
-
- private:
-  Visitor& visit_;
-};
-
-}  // namespace detail
-
-/// All of a `Params`: its Fields, and what is none.
-template <class Params, class Visitor>
-void visit_params(Params& params, Visitor& visit) {
-  detail::FieldsAsMembers<Visitor> fields(visit);
-  std::remove_const_t<Params>::fields(params, fields);
-  if constexpr (requires { others(params, visit); }) others(params, visit);
-}
 
 }  // namespace tumble

@@ -55,6 +55,10 @@ class RailWatch {
   /// Learns from one finite sample; true when what is known of the rails has changed. O(1), and a search now and then.
   bool observe(const ImuSample& sample, State& state) const;
 
+  /// What a finite sample says by the rails that those observed before it showed; flags of the device count. `before`:
+  /// the one before it, null where there is none. O(1).
+  Clipping judge(const ImuSample* before, const ImuSample& sample, const State& state) const;
+
   const RailDetector& walls() const { return walls_; }
 
   /// Whether two states will behave alike for ever, bit for bit.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "tumble/angular_velocity/rail_watch.hpp"
+#include "../common/imu_members.hpp"
+#include "tumble/angular_velocity/detail/rail_watch.hpp"
 #include "tumble/angular_velocity/rest_detector.hpp"
-#include "tumble/common/imu_members.hpp"
 
 /// Members of what is known of rails and rest: state_visitor.hpp.
 namespace tumble {

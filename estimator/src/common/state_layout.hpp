@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string_view>
+#include <type_traits>
+
+#include "state_bytes.hpp"
+#include "state_visitor.hpp"
+#include "tumble/common/status.hpp"
+
+/// Whether bytes are of these parameters and of this layout.
+namespace tumble {
+
+/// Holds what is visited to bytes: `out_of_range` with the name of the first number that differs, the one of the bytes
+/// and the one visited; `too_few` where they end.
+class StateMatcher : public StateVisitor<StateMatcher> {
+ public:
+  static constexpr bool kReads = false;
+  static constexpr bool kDescribes = false;
+
+  explicit StateMatcher(std::span<const std::byte> bytes) : left_(bytes) {}
+
+  template <class N>
+  void numbers(const char* name, const N* data, std::size_t count) {
+    for (std::size_t k = 0; k < count && going(); ++k) match(name, data[k]);
+  }
+  std::size_t length(const char* name, std::size_t count) {
+    match(name, static_cast<std::uint64_t>(count));
+    return going() ? count : 0;
+  }
+  void bounded(const char*, double, double, double) {}
+  bool going() const { return status_.ok(); }
+
+  std::span<const std::byte> left() const { return left_; }
+  const Status& status() const { return status_; }
+
+ private:
+  template <class N>
+  void match(const char* name, N own) {
+    using Saved = std::conditional_t<std::is_same_v<N, bool>, std::uint8_t, N>;
+    Saved saved{};
+    if (left_.size() < sizeof(N)) {
+      status_ = {Trouble::too_few, name, static_cast<double>(left_.size()), static_cast<double>(sizeof(N))};
+      return;
+    }
+    detail::copy_little_endian(left_.data(), reinterpret_cast<std::byte*>(&saved), 1, sizeof(N));
+    left_ = left_.subspan(sizeof(N));
+    if (std::memcmp(&saved, &own, sizeof(N)) != 0)
+      status_ = {Trouble::out_of_range, name, static_cast<double>(saved), static_cast<double>(own)};
+  }
+
+  std::span<const std::byte> left_;
+  Status status_;
+};
+
+/// 64 bits that change with the names, widths and order of what is visited: bytes of another layout are refused by it.
+class StateLayout : public StateVisitor<StateLayout> {
+ public:
+  static constexpr bool kReads = false;
+  static constexpr bool kDescribes = true;
+
+  template <class N>
+  void numbers(const char* name, const N* /*data*/, std::size_t count) {
+    mix(name, sizeof(N) + (std::is_floating_point_v<N> ? 16 : 0), count);
+  }
+  std::size_t length(const char* name, std::size_t /*count*/) {
+    mix(name, 0, 0);
+    return 1;
+  }
+  void bounded(const char*, double, double, double) {}
+  static constexpr bool going() { return true; }
+  template <class T>
+  requires requires(const T& value, StateLayout& out) { value.describe(out); }
+  void whole(const char* name, const T& value) {
+    mix(name, 0, 0);
+    value.describe(*this);
+  }
+
+  std::uint64_t digest() const { return digest_; }
+
+ private:
+  void mix(std::string_view name, std::uint64_t kind, std::uint64_t count);
+
+  std::uint64_t digest_ = 0xcbf29ce484222325u;
+};
+
+}  // namespace tumble

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <type_traits>
+
+#include "state_visitor.hpp"
+#include "tumble/common/parameters.hpp"
+
+/// A `Params` that is part of a state: state_visitor.hpp.
+namespace tumble {
+
+namespace detail {
+
+/// Takes the Fields of a `Params` to a StateVisitor.
+template <class Visitor>
+class FieldsAsMembers {
+ public:
+  explicit FieldsAsMembers(Visitor& visit) : visit_(visit) {}
+  template <class T>
+  void operator()(T& value, const Field& field) {
+    using V = std::remove_const_t<T>;
+    if constexpr (std::is_enum_v<V>) {
+      visit_(field.name, value, static_cast<V>(static_cast<int>(field.high)));
+    } else {
+      visit_(field.name, value);
+    }
+  }
+  template <class Params>
+  void group(const char* /*prefix*/, Params& params) {
+    std::remove_const_t<Params>::fields(params, *this);
+  }
+
+ private:
+  Visitor& visit_;
+};
+
+}  // namespace detail
+
+/// All of a `Params`: its Fields, and what is none.
+template <class Params, class Visitor>
+void visit_params(Params& params, Visitor& visit) {
+  detail::FieldsAsMembers<Visitor> fields(visit);
+  std::remove_const_t<Params>::fields(params, fields);
+  if constexpr (requires { others(params, visit); }) others(params, visit);
+}
+
+}  // namespace tumble

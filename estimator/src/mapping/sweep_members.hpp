@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "../angular_velocity/rails_members.hpp"
+#include "odometry_impl.hpp"
+#include "odometry_members.hpp"
+
+/// Members of what the parts of the odometry hold of sweeps and of readings: state_visitor.hpp.
+namespace tumble {
+
+template <StateOf<MotionSample> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("motion.from_ns", s.from_ns);
+  visit("motion.time_ns", s.time_ns);
+  visit("motion.w_WI_I_rad_s", s.w_WI_I_rad_s);
+  visit("motion.f_I_m_s2", s.f_I_m_s2);
+  visit("motion.rate_sigma_rad_s", s.rate_sigma_rad_s);
+  visit("motion.clipped_axes", s.clipped_axes);
+  visit("motion.railed_axes", s.railed_axes);
+  visit("motion.at_rest", s.at_rest);
+  visit("motion.rests_since_ns", s.rests_since_ns);
+  visit("motion.in_flight", s.in_flight);
+  visit("motion.bridges_gap", s.bridges_gap);
+}
+
+template <StateOf<MotionState> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("state.time_ns", s.time_ns);
+  visit("state.p_WI_m", s.p_WI_m);
+  visit("state.q_WI", s.q_WI);
+  visit("state.v_WI_m_s", s.v_WI_m_s);
+  visit("state.covariance", s.covariance);
+}
+
+template <StateOf<SweepCalibration> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("calibration.T_IL", s.T_IL);
+  visit("calibration.time_offset_s", s.time_offset_s);
+  visit("calibration.gravity_W_m_s2", s.gravity_W_m_s2);
+}
+
+template <StateOf<Registration::Estimate> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("unknowns.state", s.state);
+  visit("unknowns.calibration", s.calibration);
+  visit("unknowns.excess_rad_s", s.excess_rad_s);
+}
+
+template <StateOf<SweepPoint> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("point.x_I_m", s.x_I_m);
+  visit("point.x_L_m", s.x_L_m);
+  visit("point.t_s", s.t_s);
+  visit("point.sweep_t_s", s.sweep_t_s);
+  visit("point.range_m", s.range_m);
+  visit("point.ring", s.ring);
+}
+
+namespace mapping {
+
+template <StateOf<Belief> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("belief.mean", s.mean);
+  visit("belief.weight", s.weight);
+  visit("belief.error", s.error);
+}
+
+template <StateOf<Border> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("border.belief", s.belief);
+  visit("border.end_by_start", s.end_by_start);
+  visit("border.excess_share", s.excess_share);
+  visit("border.railed_velocity_m2_s2", s.railed_velocity_m2_s2);
+  visit("border.held", s.held);
+}
+
+template <StateOf<WaitingForStart> Self, class Visitor>
+void members(Self&, Visitor&) {}
+
+template <StateOf<Tracking> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("tracking.failed_searches", s.failed_searches, 0.0, 1e9);
+}
+
+template <StateOf<Lost> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("lost.sweeps", s.sweeps, 0.0, 1e9);
+  visit("lost.failed_searches", s.failed_searches, 0.0, 1e9);
+}
+
+template <StateOf<FoundAgain> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("found_again.after_sweeps", s.after_sweeps, 0.0, 1e9);
+}
+
+template <StateOf<InertialPrior> Self, class Visitor>
+void members(Self&, Visitor&) {}
+
+template <StateOf<KnownVelocity> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("known.v_WI_I_m_s", s.v_WI_I_m_s);
+  visit("known.sigma_m_s", s.sigma_m_s);
+}
+
+template <StateOf<DrawnPoint> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("drawn.index", s.index);
+  visit("drawn.point", s.point);
+}
+
+template <StateOf<Estimated> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("estimated.mean", s.mean);
+  visit("estimated.errors", s.errors);
+}
+
+template <StateOf<WindowSweep> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("sweep.predicted", s.predicted);
+  visit("sweep.by_before", s.by_before);
+  visit("sweep.filtered", s.filtered);
+  visit("sweep.smoothed", s.smoothed);
+  visit("sweep.samples", s.samples);
+  visit("sweep.end_ns", s.end_ns);
+  visit("sweep.drawn", s.drawn);
+}
+
+}  // namespace mapping
+
+}  // namespace tumble

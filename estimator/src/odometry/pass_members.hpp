@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <type_traits>
+#include <vector>
+
+#include "../attitude/regime_stream_members.hpp"
+#include "../mapping/odometry_members.hpp"
+#include "tumble/odometry/detail/odometry_pass.hpp"
+#include "tumble/odometry/second_pass.hpp"
+
+/// Members of the two passes of TumblingOdometry: state_visitor.hpp.
+namespace tumble {
+
+namespace odometry {
+
+/// Parameters of the rates that a run itself may have taught.
+template <StateOf<RegimeStream::Params> Self, class Visitor>
+void visit_taught(Self& p, Visitor& visit) {
+  visit("calibration", p.rate.model.calibration);
+  visit("known rails", p.rate.planes.known);
+  visit("known rails of the accelerometer", p.rate.accel_planes.known);
+}
+
+}  // namespace odometry
+
+/// Those that still count.
+template <class Self, class Visitor>
+void OdometryPass::Queue::members(Self& s, Visitor& visit) {
+  if constexpr (std::is_const_v<Self>) {
+    const std::vector<ImuSample> waiting(s.all().begin(), s.all().end());
+    visit("queue.samples", waiting);
+  } else {
+    visit("queue.samples", s.samples);
+    s.head = 0;
+  }
+  visit.scratch(s.samples);
+  visit.scratch(s.head);
+}
+
+template <class Self, class Visitor>
+void OdometryPass::members(Self& s, Visitor& visit) {
+  RegimeStream::Params rate = s.rates_.params();
+  odometry::visit_taught(rate, visit);
+  visit.scratch(s.rates_);
+  if constexpr (!std::is_const_v<Self>) {
+    if (!visit.going()) return;
+    try {
+      s.begin_rates(rate);
+    } catch (const InvalidParams&) {
+      visit.refuse({Trouble::out_of_range, "calibration", 0.0, 0.0});
+    }
+  }
+  visit("pass.rates", s.rate_state_);
+  visit("pass.mapper", s.mapper_);
+  visit.scratch(s.rate_sigma_max_rad_s_);                    // of the parameters
+  visit("pass.time_offset_s", s.time_offset_s_, -1.0, 1.0);  // as the mapper's parameter
+  visit("pass.unsettled", s.unsettled_);
+  visit("pass.settled", s.settled_);
+  visit("pass.told_ns", s.told_ns_);
+  visit("pass.refused_samples", s.refused_samples_);
+}
+
+template <class Self, class Visitor>
+void SecondPass::Sweep::members(Self& s, Visitor& visit) {
+  visit("remembered.start_ns", s.start_ns);
+  visit("remembered.end_ns", s.end_ns);
+  visit("remembered.points", s.points);
+  visit("remembered.verdict", s.verdict, SweepVerdict::rejected);
+}
+
+template <class Self, class Visitor>
+void SecondPass::members(Self& s, Visitor& visit) {
+  visit.scratch(s.params_);  // these three are of the parameters
+  visit.scratch(s.rate_);
+  visit.scratch(s.mapping_);
+  visit("again.wanted", s.wanted_);
+  visit("again.taken", s.taken_);
+  visit.scratch(s.rests_);
+  visit("again.rest", s.rest_);
+  visit("again.moves_ns", s.moves_ns_);
+  visit("again.samples", s.samples_);
+  visit("again.sweeps", s.sweeps_);
+  bool under_way = s.pass_.has_value();
+  visit("again.under_way", under_way);
+  if constexpr (!std::is_const_v<Self>) {
+    s.pass_.reset();
+    if (under_way && visit.going()) s.pass_.emplace(s.lagging_rate(), s.mapping_);
+  }
+  // of the same members as the first, which stand in the layout by that
+  if (s.pass_ && !Visitor::kDescribes) visit("again.pass", *s.pass_);
+  visit.scratch(s.pass_);
+  visit("again.next_sample", s.next_sample_, 0.0, double(s.samples_.all().size()));
+  visit("again.next_sweep", s.next_sweep_, 0.0, double(s.sweeps_.size()));
+  visit("again.rejected_by_first", s.rejected_by_first_);
+  visit("again.rejected", s.rejected_);
+  visit("again.lost", s.lost_);
+}
+
+}  // namespace tumble

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/odometry/detail/unit_rails.hpp"
+
+#include <cstddef>
+
+namespace tumble {
+
+namespace {
+
+constexpr int kReadings = 512;               // that are kept of each triad: some seconds at the extremes
+constexpr double kStatedMax_rad_s = 1000.0;  // beyond it a range is none, to RailDetector
+
+RailWatch::Params watch_params(const ImuSheet& sheet) {
+  RailWatch::Params out;
+  out.readings_max = kReadings;
+  if (sheet.gyro_range_rad_s > 0.0 && sheet.gyro_range_rad_s <= kStatedMax_rad_s)
+    out.clipping.walls.stated_gyro_rad_s = sheet.gyro_range_rad_s;
+  if (sheet.accel_range_m_s2 > 0.0) out.clipping.walls.stated_accel_m_s2 = sheet.accel_range_m_s2;
+  return out;
+}
+
+}  // namespace
+
+UnitRails::UnitRails(std::span<const ImuSheet> sheets) {
+  for (const ImuSheet& sheet : sheets) units_.push_back({RailWatch(watch_params(sheet)), sheet});
+}
+
+UnitRails::State UnitRails::start() const {
+  State out;
+  for (std::size_t k = 0; k < units_.size(); ++k) out[k].rails = units_[k].watch.start();
+  return out;
+}
+
+void UnitRails::flag(std::span<const ImuSample> samples, const State& state, Samples& out) const {
+  for (std::size_t k = 0; k < units_.size() && k < samples.size(); ++k) {
+    out[k] = samples[k];
+    if (!check_sample(samples[k]).ok()) continue;
+    const RailWatch::State& rails = state[k].rails;
+    const Clipping judged = units_[k].watch.judge(state[k].before ? &*state[k].before : nullptr, samples[k], rails);
+    const HeardRails heard{.gyro = rails.known.planes_in_use(),
+                           .accel = rails.known.planes_in_use(Triad::accelerometer),
+                           .gyro_range_rad_s = units_[k].sheet.gyro_range_rad_s,
+                           .accel_range_m_s2 = units_[k].sheet.accel_range_m_s2};
+    out[k].device_clip_flags = heard.flags(samples[k], judged);
+  }
+}
+
+void UnitRails::observe(std::span<const ImuSample> samples, State& state) const {
+  for (std::size_t k = 0; k < units_.size() && k < samples.size(); ++k) {
+    if (!check_sample(samples[k]).ok()) continue;
+    RailWatch::State& rails = state[k].rails;
+    units_[k].watch.observe(samples[k], rails);
+    units_[k].watch.walls().classify(samples[k], rails.known.walls);  // carries what is clipped just now
+    state[k].before = samples[k];
+  }
+}
+
+Status UnitRails::check_state(const State& state) const {
+  for (std::size_t k = 0; k < state.size(); ++k) {
+    const bool room = k < units_.size() ? units_[k].watch.has_room_for(state[k].rails)
+                                        : RailWatch::equal(state[k].rails, {}) && !state[k].before;
+    if (!room) return {Trouble::out_of_range, "rails.readings", 1.0, 0.0};
+  }
+  return {};
+}
+
+}  // namespace tumble
