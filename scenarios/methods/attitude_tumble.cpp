@@ -44,7 +44,7 @@ Estimate run_sphere(const sim::Sensors& sensors, const sim::Values& parameters) 
   for (const ImuSample& sample : imus.samples) {
     estimate.status = filter.step(sample, state);
     if (!estimate.status.ok()) return estimate;
-    estimate.attitudes.push_back({sample.time_ns, state.q_WI, Eigen::Matrix3d::Zero()});
+    estimate.attitudes.push_back({sample.time_ns, state.q_WI, TumbleAttitude::attitude_covariance_rad2(state)});
     if (state.slipping) estimate.health["samples_slip"] += 1.0;
   }
   return estimate;
@@ -52,16 +52,18 @@ Estimate run_sphere(const sim::Sensors& sensors, const sim::Values& parameters) 
 
 /// Puts what a smoother of the rate says in place of readings that the rail made wrong, all three axes of them: while
 /// one clips, a tilted rail spoils those beside it too. The gyro's bias stays in, the filter takes it off. Where no
-/// reading clips, or the smoother has no answer, the samples stay as they are.
-void recover_clipped(const sim::Sensors& sensors, std::vector<ImuSample>& samples,
-                     std::map<std::string, double>& health) {
+/// reading clips, or the smoother has no answer, the samples stay as they are. Returns the covariance of each rate,
+/// zero of those that are as read, in motion.
+std::vector<Eigen::Matrix3d> recover_clipped(const sim::Sensors& sensors, std::vector<ImuSample>& samples,
+                                             std::map<std::string, double>& health) {
+  std::vector<Eigen::Matrix3d> covariances(samples.size(), Eigen::Matrix3d::Zero());
   const std::vector<ClipSigns> signs = find_clipped(sensors.imus.front(), samples).signs;
   const auto clips = [](const ClipSigns& sign) { return sign.gyro != std::array<std::int8_t, 3>{}; };
-  if (std::none_of(signs.begin(), signs.end(), clips)) return;
+  if (std::none_of(signs.begin(), signs.end(), clips)) return covariances;
   const RateSmoother::Params params = stated_params(sensors.imus.front(), rate_tumble_settings().defaults());
   std::vector<RateState> rates;
   std::map<std::string, double> of_rates;
-  if (!tumble_rates(sensors, samples, params, rates, of_rates).ok()) return;
+  if (!tumble_rates(sensors, samples, params, rates, of_rates).ok()) return covariances;
   double free = 0.0, recovered = 0.0;
   Eigen::Vector3d bias = Eigen::Vector3d::Zero();  // the smoother's rates are without
   for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -72,9 +74,11 @@ void recover_clipped(const sim::Sensors& sensors, std::vector<ImuSample>& sample
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (rates[k].clipped_axes == 0) continue;
     samples[k].angular_velocity_rad_s = rates[k].w_WI_I_rad_s + bias;
+    covariances[k] = rates[k].covariance_rad2_s2;
     recovered += 1.0;
   }
   health["samples_recovered"] = recovered;
+  return covariances;
 }
 
 /// The primary IMU, in its axes.
@@ -84,17 +88,16 @@ Estimate run_rig(const sim::Sensors& sensors, const sim::Values& parameters) {
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
   (void)check_imu(sensors, samples, estimate);  // a warning: a body that is pushed about all the time may look so
-  recover_clipped(sensors, samples, estimate.health);
+  const std::vector<Eigen::Matrix3d> covariances = recover_clipped(sensors, samples, estimate.health);
   TumbleAttitude::Params params = stated(sensors);
   attitude_tumble_settings().apply(parameters, params);
   const TumbleAttitude filter(params);
   TumbleAttitude::State state;
   estimate.attitudes.reserve(samples.size());
-  for (const ImuSample& sample : samples) {
-    estimate.status = filter.step(sample, state);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    estimate.status = filter.step(samples[k], covariances[k], state);
     if (!estimate.status.ok()) return estimate;
-    // the filter's covariance is that of the tilt alone, at its last node: no covariance of a whole attitude to report
-    estimate.attitudes.push_back({sample.time_ns, state.q_WI, Eigen::Matrix3d::Zero()});
+    estimate.attitudes.push_back({samples[k].time_ns, state.q_WI, TumbleAttitude::attitude_covariance_rad2(state)});
   }
   return estimate;
 }
