@@ -17,19 +17,21 @@ namespace {
 /// motion tell more than the recovered rates, which know nothing of them.
 constexpr double kCarried = 0.5;
 
-/// Of a body that nobody held while its gyro clipped: the rates that flight and contact tell stand for readings.
+/// Of a body that nobody held while its gyro clipped: the rates that flight and contact tell, those of `recovered`,
+/// stand for readings.
 Status run_thrown(const sim::Sensors& sensors, const sim::Values& parameters, const std::vector<ImuSample>& samples,
-                  const RecoveredRates& recovered, Estimate& estimate) {
+                  const std::vector<ImuSample>& recovered, const std::vector<Eigen::Matrix3d>& covariances,
+                  Estimate& estimate) {
   CarriedElements known = find_clipped(sensors.imus.front(), samples);
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (!recovered.covariances_rad2_s2[k].isZero(0.0)) known.signs[k].gyro = {};
+    if (!covariances[k].isZero(0.0)) known.signs[k].gyro = {};
   }
   ClippedElements clipped = known.clipped();
-  clipped.recovered_rad2_s2 = recovered.covariances_rad2_s2;
+  clipped.recovered_rad2_s2 = covariances;
   std::vector<RateState> rates;
   CarriedSmoother::Report report;
   const Status status = CarriedSmoother(carried_params(sensors, parameters))
-                            .estimate(samples, clipped, rates, estimate.attitudes, report);
+                            .estimate(recovered, clipped, rates, estimate.attitudes, report);
   if (status.ok()) report_carried(report, estimate.health);
   return status;
 }
@@ -40,10 +42,11 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
   (void)check_imu(sensors, samples, estimate);  // a warning, as for the filters
-  RecoveredRates recovered;
-  if (sensors.sphere_radius_m <= 0.0) recovered = recover_clipped(sensors, samples, estimate.health);
-  if (estimate.health.contains("samples_recovered") && recovered.carried < kCarried) {
-    estimate.status = run_thrown(sensors, parameters, samples, recovered, estimate);
+  std::vector<ImuSample> recovered = samples;
+  RecoveredRates told;
+  if (sensors.sphere_radius_m <= 0.0) told = recover_clipped(sensors, recovered, estimate.health);
+  if (estimate.health.contains("samples_recovered") && told.carried < kCarried) {
+    estimate.status = run_thrown(sensors, parameters, samples, recovered, told.covariances_rad2_s2, estimate);
   } else {
     std::vector<RateState> rates;
     estimate.status = run_carried(sensors, parameters, rates, estimate.attitudes, estimate.health);

@@ -115,7 +115,7 @@ TEST(CarriedSmoother, ARecoveredRateIsBelievedAsFarAsItIsTold) {
     EXPECT_EQ(out.rates[510].clipped_axes, 1);
     return inclination_rms_rad(recording, out);
   };
-  EXPECT_LT(error(told), 0.04);  // 0.032
+  EXPECT_LT(error(told), 0.04);                 // 0.032
   EXPECT_GT(error(untold), 3.0 * error(told));  // negative control
 }
 
