@@ -128,8 +128,7 @@ bool clips(const sim::Recording& recording) {
 void add(const sim::Recording& recording, const Request& request, Pool& pool) {
   const scenarios::Method& method = *scenarios::find_methods("attitude/" + pool.name).front();
   const auto given = request.values.find(pool.name);
-  const sim::Values values =
-      sim::resolve(pool.name, given == request.values.end() ? sim::Values{} : given->second, method.info.parameters);
+  const sim::Values values = given == request.values.end() ? sim::Values{} : given->second;
   const scenarios::Estimate estimate =
       method.run(recording.sensors, values, {method.info.needs_truth ? &recording.truth : nullptr});
   Run run;
