@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
-#include <array>
-#include <cstdint>
-#include <map>
-#include <string>
+#include <cstddef>
 #include <vector>
 
 #include "scenarios/methods/attitude_tumble.hpp"
 #include "scenarios/methods/bridge.hpp"
-#include "scenarios/methods/carried.hpp"
 #include "scenarios/methods/imu_check.hpp"
-#include "scenarios/methods/rate_tumble.hpp"
+#include "scenarios/methods/recovered_rates.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/sphere_imus.hpp"
 #include "tumble/attitude/tumble_attitude.hpp"
@@ -44,37 +39,10 @@ Estimate run_sphere(const sim::Sensors& sensors, const sim::Values& parameters) 
   for (const ImuSample& sample : imus.samples) {
     estimate.status = filter.step(sample, state);
     if (!estimate.status.ok()) return estimate;
-    estimate.attitudes.push_back({sample.time_ns, state.q_WI, Eigen::Matrix3d::Zero()});
+    estimate.attitudes.push_back({sample.time_ns, state.q_WI, TumbleAttitude::attitude_covariance_rad2(state)});
     if (state.slipping) estimate.health["samples_slip"] += 1.0;
   }
   return estimate;
-}
-
-/// Puts what a smoother of the rate says in place of readings that the rail made wrong, all three axes of them: while
-/// one clips, a tilted rail spoils those beside it too. The gyro's bias stays in, the filter takes it off. Where no
-/// reading clips, or the smoother has no answer, the samples stay as they are.
-void recover_clipped(const sim::Sensors& sensors, std::vector<ImuSample>& samples,
-                     std::map<std::string, double>& health) {
-  const std::vector<ClipSigns> signs = find_clipped(sensors.imus.front(), samples).signs;
-  const auto clips = [](const ClipSigns& sign) { return sign.gyro != std::array<std::int8_t, 3>{}; };
-  if (std::none_of(signs.begin(), signs.end(), clips)) return;
-  const RateSmoother::Params params = stated_params(sensors.imus.front(), rate_tumble_settings().defaults());
-  std::vector<RateState> rates;
-  std::map<std::string, double> of_rates;
-  if (!tumble_rates(sensors, samples, params, rates, of_rates).ok()) return;
-  double free = 0.0, recovered = 0.0;
-  Eigen::Vector3d bias = Eigen::Vector3d::Zero();  // the smoother's rates are without
-  for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (rates[k].clipped_axes != 0) continue;
-    free += 1.0;
-    bias += (samples[k].angular_velocity_rad_s - rates[k].w_WI_I_rad_s - bias) / free;
-  }
-  for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (rates[k].clipped_axes == 0) continue;
-    samples[k].angular_velocity_rad_s = rates[k].w_WI_I_rad_s + bias;
-    recovered += 1.0;
-  }
-  health["samples_recovered"] = recovered;
 }
 
 /// The primary IMU, in its axes.
@@ -84,17 +52,17 @@ Estimate run_rig(const sim::Sensors& sensors, const sim::Values& parameters) {
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
   (void)check_imu(sensors, samples, estimate);  // a warning: a body that is pushed about all the time may look so
-  recover_clipped(sensors, samples, estimate.health);
+  const std::vector<Eigen::Matrix3d> covariances =
+      recover_clipped(sensors, samples, estimate.health).covariances_rad2_s2;
   TumbleAttitude::Params params = stated(sensors);
   attitude_tumble_settings().apply(parameters, params);
   const TumbleAttitude filter(params);
   TumbleAttitude::State state;
   estimate.attitudes.reserve(samples.size());
-  for (const ImuSample& sample : samples) {
-    estimate.status = filter.step(sample, state);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    estimate.status = filter.step(samples[k], covariances[k], state);
     if (!estimate.status.ok()) return estimate;
-    // the filter's covariance is that of the tilt alone, at its last node: no covariance of a whole attitude to report
-    estimate.attitudes.push_back({sample.time_ns, state.q_WI, Eigen::Matrix3d::Zero()});
+    estimate.attitudes.push_back({samples[k].time_ns, state.q_WI, TumbleAttitude::attitude_covariance_rad2(state)});
   }
   return estimate;
 }

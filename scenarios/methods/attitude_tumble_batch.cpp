@@ -1,15 +1,40 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cstddef>
 #include <vector>
 
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/carried.hpp"
 #include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/method.hpp"
+#include "scenarios/methods/recovered_rates.hpp"
 #include "scenarios/methods/registry.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
+
+/// Whether a hand held the body wherever its gyro clipped is likelier than not from here on; then its bounds on the
+/// motion tell more than the recovered rates, which know nothing of them.
+constexpr double kCarried = 0.5;
+
+/// Of a body that nobody held while its gyro clipped: the rates that flight and contact tell, those of `recovered`,
+/// stand for readings.
+Status run_thrown(const sim::Sensors& sensors, const sim::Values& parameters, const std::vector<ImuSample>& samples,
+                  const std::vector<ImuSample>& recovered, const std::vector<Eigen::Matrix3d>& covariances,
+                  Estimate& estimate) {
+  CarriedElements known = find_clipped(sensors.imus.front(), samples);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (!covariances[k].isZero(0.0)) known.signs[k].gyro = {};
+  }
+  ClippedElements clipped = known.clipped();
+  clipped.recovered_rad2_s2 = covariances;
+  std::vector<RateState> rates;
+  CarriedSmoother::Report report;
+  const Status status = CarriedSmoother(carried_params(sensors, parameters))
+                            .estimate(recovered, clipped, rates, estimate.attitudes, report);
+  if (status.ok()) report_carried(report, estimate.health);
+  return status;
+}
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
@@ -17,8 +42,15 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
   (void)check_imu(sensors, samples, estimate);  // a warning, as for the filters
-  std::vector<RateState> rates;
-  estimate.status = run_carried(sensors, parameters, rates, estimate.attitudes, estimate.health);
+  std::vector<ImuSample> recovered = samples;
+  RecoveredRates told;
+  if (sensors.sphere_radius_m <= 0.0) told = recover_clipped(sensors, recovered, estimate.health);
+  if (estimate.health.contains("samples_recovered") && told.carried < kCarried) {
+    estimate.status = run_thrown(sensors, parameters, samples, recovered, told.covariances_rad2_s2, estimate);
+  } else {
+    std::vector<RateState> rates;
+    estimate.status = run_carried(sensors, parameters, rates, estimate.attitudes, estimate.health);
+  }
   return estimate;
 }
 
@@ -30,7 +62,7 @@ Method attitude_tumble_batch() {
   info.kind = Kind::attitude;
   info.doc =
       "A smoother over the whole recording of a body that is carried: bounded acceleration, velocity and place, rest, "
-      "clipped gyro axes as bounds.";
+      "clipped gyro axes as bounds, or with the rates of rate/tumble where nobody held the body meanwhile.";
   info.source = "ours";
   info.settings = {&carried_settings()};
   return make_method(std::move(info), run);

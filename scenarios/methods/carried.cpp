@@ -18,13 +18,18 @@ CarriedElements find_clipped(const sim::ImuRecord& record, std::span<const ImuSa
   return carried_elements(samples, ClippingFinder(params).find(samples));
 }
 
+CarriedSmoother::Params carried_params(const sim::Sensors& sensors, const sim::Values& parameters) {
+  CarriedSmoother::Params params;
+  params.gravity_m_s2 = sensors.gravity_m_s2;
+  carried_settings().apply(parameters, params);
+  return params;
+}
+
 Status run_carried(const sim::Sensors& sensors, const sim::Values& parameters, std::vector<RateState>& rates,
                    std::vector<AttitudeState>& attitudes, std::map<std::string, double>& health) {
   std::vector<ImuSample> samples;
   if (const Status status = bridge::primary_imu_samples(sensors, samples); !status.ok()) return status;
-  CarriedSmoother::Params params;
-  params.gravity_m_s2 = sensors.gravity_m_s2;
-  carried_settings().apply(parameters, params);
+  const CarriedSmoother::Params params = carried_params(sensors, parameters);
   const CarriedElements known = find_clipped(sensors.imus.front(), samples);
   CarriedSmoother::Report report;
   const Status status = CarriedSmoother(params).estimate(samples, known.clipped(), rates, attitudes, report);

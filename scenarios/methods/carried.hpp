@@ -22,6 +22,9 @@ const Settings<CarriedSmoother::Params>& carried_settings();
 /// Which elements of each sample stand at a rail, by what the record states of its ranges and what readings show.
 CarriedElements find_clipped(const sim::ImuRecord& record, std::span<const ImuSample> samples);
 
+/// Parameters of a run, by what the recording states and `parameters` say.
+CarriedSmoother::Params carried_params(const sim::Sensors& sensors, const sim::Values& parameters);
+
 /// Runs the smoother over the primary IMU. Trouble: that of the record and of the smoother; the outputs are then empty.
 Status run_carried(const sim::Sensors& sensors, const sim::Values& parameters, std::vector<RateState>& rates,
                    std::vector<AttitudeState>& attitudes, std::map<std::string, double>& health);

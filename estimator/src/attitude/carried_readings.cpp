@@ -194,6 +194,16 @@ void whole_windows(double noise_rad_s, const Eigen::Matrix3d& rows, GyroReadings
   for (std::size_t k = 0; k < count; ++k) rates.samples[k].angular_velocity_rad_s += inverse * lost[k];
 }
 
+// carried.md (C40): errors that have a memory, as readings whose errors have none
+void recovered_readings(const CarriedSmoother::Params& params, const ClippedElements& clipped, GyroReadings& rates) {
+  const double nodes = std::sqrt(2.0 * params.recovered_tau_s / params.node_s);
+  for (std::size_t k = 0; k < clipped.recovered_rad2_s2.size(); ++k) {
+    const Eigen::Matrix3d along = clipped.rows * clipped.recovered_rad2_s2[k] * clipped.rows.transpose();
+    Vector3d& open_rad_s = rates.open_rad_s[rates.of_sample[k]];
+    open_rad_s = open_rad_s.cwiseMax(nodes * along.diagonal().cwiseMax(0.0).cwiseSqrt());
+  }
+}
+
 OwnReadings own_readings(std::span<const ImuSample> samples, const ClippedElements& clipped, Triad triad,
                          TimeNs origin_ns, double period_s) {
   std::optional<HeldReadings> held = find_held(samples, triad);
@@ -264,6 +274,7 @@ Collected collect(const CarriedSmoother::Params& params, std::span<const ImuSamp
   out.rates.open_rad_s.assign(out.rates.samples.size(), Vector3d::Zero());
   const double noise_rad_s = params.gyro_noise_density / std::sqrt(out.rates.windows.period_s);
   if (out.rates.windows.period_s > kLongWindow * params.node_s) whole_windows(noise_rad_s, clipped.rows, out.rates);
+  recovered_readings(params, clipped, out.rates);
   out.jerk = seen_jerk(out.rates, clipped.rows, noise_rad_s, params.node_s, out.nodes.size());
   OwnReadings forces = own_readings(samples, clipped, Triad::accelerometer, origin_ns, period_s);
   const std::vector<double> open_m_s2 = open_forces(forces, period_s);

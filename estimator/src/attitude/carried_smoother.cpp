@@ -24,6 +24,14 @@ Status check(const CarriedSmoother::Params& params, std::span<const ImuSample> s
   const double count = static_cast<double>(samples.size());
   if (!clipped.signs.empty() && clipped.signs.size() != samples.size())
     return {Trouble::out_of_range, "signs", static_cast<double>(clipped.signs.size()), count};
+  const auto& recovered = clipped.recovered_rad2_s2;
+  if (!recovered.empty() && recovered.size() != samples.size())
+    return {Trouble::out_of_range, "recovered rates", static_cast<double>(recovered.size()), count};
+  for (const Eigen::Matrix3d& covariance : recovered) {
+    const double least = covariance.diagonal().minCoeff();
+    if (!covariance.allFinite() || least < 0.0)
+      return {Trouble::out_of_range, "covariance of a recovered rate", least, 0.0};
+  }
   const double determinant = std::abs(clipped.rows.determinant());
   if (!(determinant > kRowsMin)) return {Trouble::degenerate, "rows", determinant, kRowsMin};
   for (std::size_t k = 0; k < samples.size(); ++k) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/attitude/tumble_attitude.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "tumble/attitude/detail/timing.hpp"
@@ -15,21 +17,28 @@ namespace {
 constexpr double kTiltSigmaStart_rad = 0.01;
 constexpr double kVelocitySigmaStart_m_s = 0.1;
 constexpr double kDisplacementSigmaStart_m = 0.1;
-constexpr int kTilt = 0, kBias = 2, kVelocity = 5, kDisplacement = 7;
+constexpr int kTilt = 0, kBias = 2, kVelocity = 5, kDisplacement = 7, kHeading = 9;
 
 double squared(double x) {
   return x * x;
 }
 
 /// Kalman update by one scalar measurement of state `index` of attitude.md (A4): `innovation` is measurement minus
-/// estimate.
+/// estimate. What is known of the heading stays: attitude.md (A8b).
 void update(int index, double innovation, double variance, TumbleAttitude::State& state) {
+  const double heading = state.covariance(kHeading, kHeading);
   const Eigen::Matrix<double, TumbleAttitude::kStates, 1> correction =
       component_update(index, innovation, variance, state.covariance);
   state.q_WI = (so3::exp({correction[kTilt], correction[kTilt + 1], 0.0}) * state.q_WI).normalized();
   state.bias_rad_s += correction.segment<3>(kBias);
   state.v_W_m_s += correction.segment<2>(kVelocity);
   state.d_W_m += correction.segment<2>(kDisplacement);
+  state.covariance(kHeading, kHeading) = heading;
+}
+
+Status check_covariance(const Eigen::Matrix3d& covariance_rad2_s2) {
+  if (covariance_rad2_s2.allFinite() && covariance_rad2_s2.diagonal().minCoeff() >= 0.0) return {};
+  return {Trouble::out_of_range, "rate_covariance_rad2_s2", covariance_rad2_s2.diagonal().minCoeff(), 0.0};
 }
 
 }  // namespace
@@ -39,8 +48,10 @@ TumbleAttitude::TumbleAttitude(const Params& p) : params_(p), rests_(p.rest) {
   require_within("lever_arm_m", p.lever_arm_m.norm(), 0.0, 10.0);
 }
 
-Status TumbleAttitude::step(const ImuSample& sample, State& state) const {
+Status TumbleAttitude::step(const ImuSample& sample, const Eigen::Matrix3d& rate_covariance_rad2_s2,
+                            State& state) const {
   if (const Status bad = check(sample); !bad.ok()) return bad;
+  if (const Status bad = check_covariance(rate_covariance_rad2_s2); !bad.ok()) return bad;
   if (!state.started) {
     if (const Status bad = level(sample.specific_force_m_s2, state.q_WI); !bad.ok()) return bad;
     start(state);
@@ -54,6 +65,7 @@ Status TumbleAttitude::step(const ImuSample& sample, State& state) const {
       state.q_WI = state.q_taken_WI;
     }
     state.average.add(sample, dt_s);
+    state.recovered_rad2_s2 += dt_s / state.average.length_s * (rate_covariance_rad2_s2 - state.recovered_rad2_s2);
     if (state.average.full(params_.reading_s, dt_s)) {
       take_average(state);
     } else {
@@ -65,6 +77,11 @@ Status TumbleAttitude::step(const ImuSample& sample, State& state) const {
   return {};
 }
 
+Eigen::Matrix3d TumbleAttitude::attitude_covariance_rad2(const State& state) {
+  constexpr std::array kAttitude = {kTilt, kTilt + 1, kHeading};
+  return state.covariance(kAttitude, kAttitude);
+}
+
 void TumbleAttitude::take_average(State& state) const {
   const ImuSample reading = state.average.mean;
   const double length_s = state.average.length_s;
@@ -72,6 +89,7 @@ void TumbleAttitude::take_average(State& state) const {
   state.q_taken_WI.setIdentity();
   state.at_rest = rests_.observe(reading, state.rest, state.bias_rad_s) && turns_by_bias_alone(state);
   integrate(reading, length_s, state);
+  add_recovered(length_s, state);
   if (state.node_s >= params_.node_s - 0.5 * length_s) {
     predict_node(state);
     correct_node(state);
@@ -109,7 +127,22 @@ void TumbleAttitude::integrate(const ImuSample& sample, double dt_s, State& stat
   state.node_s += dt_s;
 }
 
-/// attitude.md (A6), (A7), (A8).
+/// attitude.md (A8a).
+void TumbleAttitude::add_recovered(double dt_s, State& state) const {
+  if (state.at_rest || state.recovered_rad2_s2.isZero(0.0)) {
+    state.recovered_rad.setZero();
+  } else {
+    const Eigen::Matrix3d R = state.q_WI.toRotationMatrix();
+    const Eigen::Vector3d variance = (R * state.recovered_rad2_s2 * R.transpose()).diagonal().cwiseMax(0.0);
+    const Eigen::Vector2d step_rad =
+        dt_s * Eigen::Vector2d(std::sqrt(variance.head<2>().mean()), std::sqrt(variance.z()));
+    state.recovered_rad2 += step_rad.cwiseProduct(2.0 * state.recovered_rad + step_rad);
+    state.recovered_rad = std::exp(-dt_s / params_.recovered_tau_s) * state.recovered_rad + step_rad;
+  }
+  state.recovered_rad2_s2.setZero();
+}
+
+/// attitude.md (A6), (A7), (A8), (A8b).
 void TumbleAttitude::predict_node(State& state) const {
   const double h = state.node_s;
   const double keep = std::exp(-h / params_.displacement_tau_s);
@@ -118,7 +151,10 @@ void TumbleAttitude::predict_node(State& state) const {
   state.v_W_m_s += gained;
 
   Covariance F = Covariance::Identity();
-  if (!state.at_rest) F.block<2, 3>(kTilt, kBias) = -state.R_WI_s.topRows<2>();
+  if (!state.at_rest) {
+    F.block<2, 3>(kTilt, kBias) = -state.R_WI_s.topRows<2>();
+    F.block<1, 3>(kHeading, kBias) = -state.R_WI_s.row(2);
+  }
   // horizontal part of phi x f; a heading error would turn accelerations, but the velocity is no reference for heading
   F(kVelocity, kTilt + 1) = state.f_W_m_s.z();
   F(kVelocity + 1, kTilt) = -state.f_W_m_s.z();
@@ -126,9 +162,10 @@ void TumbleAttitude::predict_node(State& state) const {
   F.block<2, 2>(kDisplacement, kDisplacement) = keep * Eigen::Matrix2d::Identity();
   state.covariance = (F * state.covariance * F.transpose()).eval();
 
-  const double tilt =
+  const double turn =
       squared(params_.gyro_noise_rad_sqrts) * h + squared(params_.rate_error_sqrts) * state.turned_rad2_s;
-  state.covariance.diagonal().segment<2>(kTilt).array() += tilt;
+  state.covariance.diagonal().segment<2>(kTilt).array() += turn + state.recovered_rad2[0];
+  state.covariance(kHeading, kHeading) += state.at_rest ? 0.0 : turn + state.recovered_rad2[1];
   state.covariance.diagonal().segment<3>(kBias).array() += squared(params_.bias_walk_rad_s_sqrts) * h;
   state.covariance.diagonal().segment<2>(kVelocity).array() += squared(params_.acceleration_noise_m_s_sqrts) * h;
 }
@@ -151,7 +188,34 @@ bool TumbleAttitude::watch_slip(const Eigen::Vector2d& misfit_m_s, State& state)
   return state.slipping;
 }
 
-/// attitude.md (A9), (A10).
+/// attitude.md (A10a): variance of a body's own velocity or displacement, one axis. `power` is what was
+/// believed before.
+double TumbleAttitude::own_motion(const Eigen::Vector2d& misfit, int index, double sigma_sqrts, double power,
+                                  State& state) const {
+  const double seen = 0.5 * (misfit.squaredNorm() - state.covariance.block<2, 2>(index, index).trace());
+  const double remembered = std::exp(-state.node_s / params_.motion_tau_s) * power;
+  return std::max({squared(sigma_sqrts) / params_.motion_tau_s, seen, remembered});
+}
+
+/// A body that is no sphere: velocity, while it moves, and displacement about zero. attitude.md (A10), (A10b).
+void TumbleAttitude::correct_body(const Eigen::Vector2d& turned_m_s, State& state) const {
+  const double memories = params_.motion_tau_s / state.node_s;
+  if (!state.at_rest) {
+    const Eigen::Vector2d misfit = turned_m_s - state.v_W_m_s;
+    double& power = state.velocity_power_m2_s2;
+    power = own_motion(misfit, kVelocity, params_.velocity_m_sqrts, power, state);
+    for (int axis = 0; axis < 2; ++axis) {
+      update(kVelocity + axis, turned_m_s[axis] - state.v_W_m_s[axis], power * memories, state);
+    }
+  }
+  double& power = state.displacement_power_m2;
+  power = own_motion(-state.d_W_m, kDisplacement, params_.displacement_m_sqrts, power, state);
+  for (int axis = 0; axis < 2; ++axis) {
+    update(kDisplacement + axis, -state.d_W_m[axis], power * memories, state);
+  }
+}
+
+/// The velocity of a sphere or of a body at rest, and the bias at rest. attitude.md (A9), (A10).
 void TumbleAttitude::correct_node(State& state) const {
   const double h = state.node_s;
   // velocity of the IMU by the turning of the body: about the centre, and of the centre that rolls
@@ -164,20 +228,12 @@ void TumbleAttitude::correct_node(State& state) const {
     for (int axis = 0; axis < 2; ++axis) {
       update(kVelocity + axis, -state.v_W_m_s[axis], squared(params_.rest_velocity_sigma_m_s), state);
     }
-  } else if (!rolls) {
-    for (int axis = 0; axis < 2; ++axis) {
-      update(kVelocity + axis, turned[axis] - state.v_W_m_s[axis], squared(params_.velocity_m_sqrts) / h, state);
-    }
-  } else if (!watch_slip(turned - state.v_W_m_s, state)) {
+  } else if (rolls && !watch_slip(turned - state.v_W_m_s, state)) {
     for (int axis = 0; axis < 2; ++axis) {
       update(kVelocity + axis, turned[axis] - state.v_W_m_s[axis], squared(params_.rolling_velocity_sigma_m_s), state);
     }
   }
-  if (!rolls) {
-    for (int axis = 0; axis < 2; ++axis) {
-      update(kDisplacement + axis, -state.d_W_m[axis], squared(params_.displacement_m_sqrts) / h, state);
-    }
-  }
+  if (!rolls) correct_body(turned, state);
   if (state.at_rest) {
     const Eigen::Vector3d mean_rate_rad_s = state.rest.mean_rate_rad_s();
     for (int axis = 0; axis < 3; ++axis) {
@@ -189,6 +245,7 @@ void TumbleAttitude::correct_node(State& state) const {
   state.R_WI_s.setZero();
   state.f_W_m_s.setZero();
   state.turned_rad2_s = 0.0;
+  state.recovered_rad2.setZero();
   state.node_s = 0.0;
 }
 

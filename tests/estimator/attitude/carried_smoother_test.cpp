@@ -95,6 +95,48 @@ TEST(CarriedSmoother, ReadingsThatWrapSayNothing) {
   EXPECT_GT(free, 5.0 * all);
 }
 
+/// Rates about x that somebody recovered, 2 rad/s too large for a third of a second: carried.md (C40)
+TEST(CarriedSmoother, ARecoveredRateIsBelievedAsFarAsItIsTold) {
+  CarriedRecording recording = testing::record({.spin_rad = 1.0}, 100.0, 12.0, 0.0);
+  std::vector<Eigen::Matrix3d> told(recording.samples.size(), Eigen::Matrix3d::Zero()), untold = told;
+  for (std::size_t k = 500; k < 533; ++k) {
+    recording.samples[k].angular_velocity_rad_s.x() += 2.0;
+    told[k](0, 0) = 4.0;
+    untold[k](0, 0) = 1e-12;
+  }
+  const auto error = [&](const std::vector<Eigen::Matrix3d>& covariances) {
+    Result out;
+    ClippedElements clipped;
+    clipped.signs = recording.signs;
+    clipped.recovered_rad2_s2 = covariances;
+    const Status status =
+        CarriedSmoother({}).estimate(recording.samples, clipped, out.rates, out.attitudes, out.report);
+    EXPECT_TRUE(status.ok()) << status.message();
+    EXPECT_EQ(out.rates[510].clipped_axes, 1);
+    return inclination_rms_rad(recording, out);
+  };
+  EXPECT_LT(error(told), 0.04);                 // 0.032
+  EXPECT_GT(error(untold), 3.0 * error(told));  // negative control
+}
+
+TEST(CarriedSmoother, RefusesRecoveredRatesThatAreNone) {
+  const CarriedRecording recording = testing::record({}, 100.0, 1.0, 0.0);
+  std::vector<Eigen::Matrix3d> covariances(recording.samples.size() - 1, Eigen::Matrix3d::Zero());
+  Result out;
+  const auto trouble = [&] {
+    ClippedElements clipped;
+    clipped.recovered_rad2_s2 = covariances;
+    return CarriedSmoother({}).estimate(recording.samples, clipped, out.rates, out.attitudes, out.report).trouble;
+  };
+  EXPECT_EQ(trouble(), Trouble::out_of_range);
+  covariances.emplace_back(Eigen::Matrix3d::Zero());
+  EXPECT_EQ(trouble(), Trouble::none);
+  covariances[3](1, 1) = -1.0;
+  EXPECT_EQ(trouble(), Trouble::out_of_range);
+  covariances[3](1, 1) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(trouble(), Trouble::out_of_range);
+}
+
 TEST(CarriedSmoother, AJudgedSampleHasASignForEachElement) {
   ImuSample sample;
   sample.angular_velocity_rad_s = {7.0, -7.0, -7.0};

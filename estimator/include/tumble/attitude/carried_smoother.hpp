@@ -32,6 +32,9 @@ ClipSigns clip_signs(const ImuSample& sample, const Clipping& clipping);
 struct ClippedElements {
   Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
   std::span<const ClipSigns> signs;  ///< one per sample; empty: nothing clips
+  /// One per sample: covariance of a rate that no gyro read but somebody recovered from what this smoother does not
+  /// know (flight), sensor axes; zero: as read. Empty: all are. No element of a recovered sample is called clipped.
+  std::span<const Eigen::Matrix3d> recovered_rad2_s2 = {};
 };
 
 /// Attitude and angular velocity of a body that is carried (held, swung, twirled), from one IMU, also where its gyro
@@ -76,6 +79,7 @@ class CarriedSmoother {
     double hand_follow = 0.8;            ///< how far the hand's density follows its power about that time
     double hand_window_s = 2.0;          ///< over which that power is taken
     double hand_floor = 1.0;             ///< least share of the assumed density
+    double recovered_tau_s = 0.005;      ///< memory of the error of a rate that was recovered
     double rest_sigma_rad_s = 0.01;      ///< of the rate at rest, one node
     double rest_sigma_m_s = 0.02;        ///< of the velocity at rest
     double rest_sigma_m_s2 = 0.1;        ///< of the acceleration at rest
@@ -124,6 +128,7 @@ class CarriedSmoother {
             {"hand_follow", "1", 0.0, 1.0, "how far the hand's density follows the motion's own power", Rank::first});
       visit(p.hand_window_s, {"hand_window_s", "s", 0.01, 1e3, "over which that power is taken"});
       visit(p.hand_floor, {"hand_floor", "1", 1e-3, 1e3, "least share of the hand's assumed density"});
+      visit(p.recovered_tau_s, {"recovered_tau_s", "s", 1e-4, 1e4, "memory of the error of a rate that was recovered"});
       visit(p.rest_sigma_rad_s, {"rest_sigma_rad_s", "rad/s", 1e-6, 10.0, "of the rate at rest, one node"});
       visit(p.rest_sigma_m_s, {"rest_sigma_m_s", "m/s", 1e-6, 10.0, "of the velocity at rest"});
       visit(p.rest_sigma_m_s2, {"rest_sigma_m_s2", "m/s^2", 1e-6, 10.0, "of the acceleration at rest"});
@@ -154,8 +159,9 @@ class CarriedSmoother {
   explicit CarriedSmoother(const Params& params);
 
   /// One rate and one attitude per sample (sensor axes to world, heading 0 at the start). Trouble: `empty`,
-  /// `non_finite`, `time_order`, `gap` as for a filter; `out_of_range` for signs that are not one per sample;
-  /// `diverged` when the equations lose their definiteness. The outputs are then empty.
+  /// `non_finite`, `time_order`, `gap` as for a filter; `out_of_range` for signs or recovered rates that are not one
+  /// per sample, or for a covariance of these that is none; `diverged` when the equations lose their definiteness. The
+  /// outputs are then empty.
   Status estimate(std::span<const ImuSample> samples, const ClippedElements& clipped, std::vector<RateState>& rates,
                   std::vector<AttitudeState>& attitudes, Report& report) const;
 

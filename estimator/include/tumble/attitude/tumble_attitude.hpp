@@ -20,6 +20,10 @@ namespace tumble {
 /// with the corner that the sensor's errors ask for at each time. At rest the velocity and the rate are zero to within
 /// noise: the bias is measured and the attitude held, so that noise moves neither tilt nor heading.
 ///
+/// How far a body moves is not known beforehand: a hand's breadth, or down a hill. A velocity or displacement that is
+/// larger than was believed and that the present tilt's variance does not explain is the body's own, and widens the
+/// belief for `motion_tau_s`.
+///
 /// A rolling sphere (radius_m > 0) tells more: its velocity is r w x n, and that of the IMU w x (R rho) more, so the
 /// specific force is explained by rolling but for tilt and bias, without a derivative of the rate. A velocity that
 /// does not fit opens a slip: corrections are frozen until it fits again, for slip_timeout_s at the most.
@@ -30,7 +34,7 @@ namespace tumble {
 /// Not modelled: accelerometer bias and scale (they are the tilt error that is left at rest), heading reference.
 class TumbleAttitude {
  public:
-  static constexpr int kStates = 9;
+  static constexpr int kStates = 10;
   using Covariance = Eigen::Matrix<double, kStates, kStates>;
 
   struct Params {
@@ -43,7 +47,9 @@ class TumbleAttitude {
     double velocity_m_sqrts = 1.0;               ///< sigma of the mean velocity over 1 s of motion
     double displacement_m_sqrts = 0.3;           ///< sigma of the mean displacement over 1 s
     double displacement_tau_s = 10.0;            ///< in which a displacement is forgotten
-    double node_s = 0.04;                        ///< time between two corrections
+    double motion_tau_s = 3.0;      ///< memory of a body's own velocity and displacement, and of their size
+    double recovered_tau_s = 0.05;  ///< memory of the error of a rate that was recovered
+    double node_s = 0.04;           ///< time between two corrections
     /// Readings are averaged to this length, at which all thresholds here are meant; zero: taken as they come.
     double reading_s = 4e-3;
     /// 2 deg/s about the mean, and it about the bias: room for cheap sensors, which only the bias' estimate pays for.
@@ -87,6 +93,9 @@ class TumbleAttitude {
             {"displacement_m_sqrts", "m sqrt(s)", 1e-12, 1e3, "sigma of the mean displacement over 1 s", Rank::first});
       visit(p.displacement_tau_s,
             {"displacement_tau_s", "s", 0.1, 1e4, "in which a displacement is forgotten", Rank::first});
+      visit(p.motion_tau_s, {"motion_tau_s", "s", 1e-3, 1e4,
+                             "memory of a body's own velocity and displacement, and of their size", Rank::first});
+      visit(p.recovered_tau_s, {"recovered_tau_s", "s", 1e-4, 1e4, "memory of the error of a rate that was recovered"});
       visit(p.node_s, {"node_s", "s", 1e-4, 1.0, "time between two corrections"});
       visit(p.reading_s, {"reading_s", "s", 0.0, 0.1, "readings are averaged to this length; 0: taken as they come"});
       visit.group("rest_", p.rest);
@@ -112,15 +121,21 @@ class TumbleAttitude {
     Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();
     Eigen::Vector2d v_W_m_s = Eigen::Vector2d::Zero();
     Eigen::Vector2d d_W_m = Eigen::Vector2d::Zero();
-    /// Of (tilt error phi_x, phi_y in W with q_true = Exp(phi) q_WI; bias in I; velocity; displacement).
+    /// Of (tilt error phi_x, phi_y in W with q_true = Exp(phi) q_WI; bias in I; velocity; displacement; heading error
+    /// phi_z, which nothing corrects).
     Covariance covariance = Covariance::Zero();
-    ImuAverage average;  ///< of the readings since the last one that was taken
+    ImuAverage average;                                           ///< of the readings since the last one that was taken
+    Eigen::Matrix3d recovered_rad2_s2 = Eigen::Matrix3d::Zero();  ///< mean covariance of their rates, as told
     Eigen::Quaterniond q_taken_WI = Eigen::Quaterniond::Identity();  ///< and the attitude there
     // integrals since the last node
     Eigen::Matrix3d R_WI_s = Eigen::Matrix3d::Zero();
     Eigen::Vector3d f_W_m_s = Eigen::Vector3d::Zero();
     double turned_rad2_s = 0.0;
+    Eigen::Vector2d recovered_rad2 = Eigen::Vector2d::Zero();  ///< variance of tilt and heading by recovered rates
     double node_s = 0.0;
+    Eigen::Vector2d recovered_rad = Eigen::Vector2d::Zero();  ///< deviations that a run of them has gathered
+    double velocity_power_m2_s2 = 0.0;                        ///< variance of the body's own, one axis
+    double displacement_power_m2 = 0.0;
     RestDetector::State rest;
     bool at_rest = false;
     // rolling
@@ -136,15 +151,25 @@ class TumbleAttitude {
 
   /// The first sample levels the attitude (yaw 0); each later one integrates, and one per `node_s` corrects.
   /// On trouble the state is unchanged. O(1), no allocation.
-  Status step(const ImuSample& sample, State& state) const;
+  Status step(const ImuSample& sample, State& state) const { return step(sample, Eigen::Matrix3d::Zero(), state); }
+  /// The same of a sample whose rate no gyro read (its rail hid it) but somebody recovered, with the covariance of its
+  /// error, sensor axes; zero: read. The error has the memory `recovered_tau_s`. `out_of_range` for a
+  /// covariance that is not finite or has a variance below zero.
+  Status step(const ImuSample& sample, const Eigen::Matrix3d& rate_covariance_rad2_s2, State& state) const;
+
+  /// Covariance of the attitude's error as AttitudeState has it, at the last node.
+  static Eigen::Matrix3d attitude_covariance_rad2(const State& state);
 
  private:
   void start(State& state) const;
   void take_average(State& state) const;
   bool turns_by_bias_alone(const State& state) const;
   void integrate(const ImuSample& sample, double dt_s, State& state) const;
+  void add_recovered(double dt_s, State& state) const;
   void predict_node(State& state) const;
   void correct_node(State& state) const;
+  void correct_body(const Eigen::Vector2d& turned_m_s, State& state) const;
+  double own_motion(const Eigen::Vector2d& misfit, int index, double sigma_sqrts, double power, State& state) const;
   bool watch_slip(const Eigen::Vector2d& misfit_m_s, State& state) const;
 
   Params params_;

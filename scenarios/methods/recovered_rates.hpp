@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "sim/recording.hpp"
+#include "tumble/common/imu.hpp"
+
+/// Rates that a rail hid and a smoother of the rate recovered, for methods that take them as readings.
+namespace tumble::scenarios {
+
+struct RecoveredRates {
+  std::vector<Eigen::Matrix3d> covariances_rad2_s2;  ///< one per sample, sensor axes; zero of those that are as read
+  /// Largest probability that a hand held the body throughout a stretch of clipped samples; 0 where nothing was asked.
+  double carried = 0.0;
+};
+
+/// Puts what rate/tumble says in place of readings that the rail made wrong, all three axes of them: while one clips, a
+/// tilted rail spoils those beside it too. The gyro's bias stays in: it is the mean difference where nothing clips.
+/// Where no reading clips, or the smoother has no answer, the samples stay as they are. `samples`: those of the primary
+/// IMU.
+RecoveredRates recover_clipped(const sim::Sensors& sensors, std::vector<ImuSample>& samples,
+                               std::map<std::string, double>& health);
+
+}  // namespace tumble::scenarios
