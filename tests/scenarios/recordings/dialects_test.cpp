@@ -51,7 +51,7 @@ std::unique_ptr<BagReader> open(const std::filesystem::path& path) {
 template <class Message>
 std::vector<Message> messages(BagReader& bag, const std::string& topic) {
   std::vector<Message> out;
-  bag.read(topic, [&](ros::Bytes& bytes) {
+  bag.read(topic, [&](ros::Bytes& bytes, std::int64_t) {
     out.push_back(bag.cdr(topic) ? ros::from_cdr<Message>(bytes) : ros::from_ros1<Message>(bytes));
   });
   return out;
