@@ -97,7 +97,7 @@ BenchResult collect_bench_result(const Results& results, const Suite& suite, con
 
 void require_of_suite(const BenchResult& result, const Suite& suite) {
   const std::string digest = bench_suite_digest(suite);
-  const std::string whose = std::string(to_string(result.kind)) + "/" + result.method;
+  const std::string whose = full_name(result.kind, result.method);
   if (result.suite != suite.name || result.suite_digest != digest)
     throw BadInput(whose + " is of suite " + result.suite + " " + result.suite_digest + ", must be of " + suite.name +
                    " " + digest + ": results of two suites are not compared");

@@ -31,10 +31,6 @@ GivenParameter parsed(const std::string& text) {
   return out;
 }
 
-std::string full_name(const MethodInfo& info) {
-  return std::string(to_string(info.kind)) + "/" + info.name;
-}
-
 Method with(const Method& method, const sim::Values& chosen) {
   Method out = method;
   out.run = [run = method.run, chosen](const sim::Sensors& sensors, const sim::Values& given,

@@ -17,6 +17,10 @@ const char* to_string(Kind kind) {
   return "unknown";
 }
 
+std::string full_name(Kind kind, const std::string& method) {
+  return std::string(to_string(kind)) + "/" + method;
+}
+
 const char* to_string(Frame frame) {
   switch (frame) {
     case Frame::imu:

@@ -21,6 +21,8 @@ namespace tumble::scenarios {
 
 enum class Kind { rate, attitude, position, slam };
 const char* to_string(Kind kind);
+/// "rate/tumble".
+std::string full_name(Kind kind, const std::string& method);
 
 /// Frame that an estimate's poses belong to: the primary IMU, the lidar, the body, or the sphere's centre.
 enum class Frame { imu, lidar, body, centre };
@@ -71,9 +73,13 @@ struct MethodInfo {
   /// Does nothing about the problem, so that the others of its kind are paired with it: of rates the clipped gyro as it
   /// is, of slam the chain on top of it. A kind may have none.
   bool baseline = false;
+  /// Can begin from what an earlier run has learnt of the device, and tells what it has learnt (rate_tumble.hpp).
+  bool learns_rig = false;
   bool ours() const { return source == "ours"; }  ///< made here
   std::string version;  ///< of a method that is not of this build: what tells it from another of its name
 };
+
+std::string full_name(const MethodInfo& info);
 
 /// Runs a method over a recording. Pure: the same input gives the same bits.
 using RunMethod = std::function<Estimate(const sim::Sensors&, const sim::Values& parameters, const OracleInput&)>;

@@ -146,7 +146,7 @@ const LearntRig* Learning::found() const {
 }
 
 Method learning_method(const Method& method, Learning& learning) {
-  const std::string name = std::string(to_string(method.info.kind)) + "/" + method.info.name;
+  const std::string name = full_name(method.info);
   const bool batch = name == "rate/tumble";
   if (!batch && name != "rate/tumble_lag") {
     throw BadInput("'" + name + "' learns nothing of the rig; 'rate/tumble' and 'rate/tumble_lag' do");
@@ -221,6 +221,7 @@ Method rate_tumble() {
   info.source = "ours, from Deschenes et al., Saturation-Aware Angular Velocity Estimation, ICRA 2024";
   info.settings = {&rate_tumble_settings()};
   info.robots = {"rig", "pendulum"};
+  info.learns_rig = true;
   return make_method(std::move(info), run);
 }
 

@@ -133,6 +133,7 @@ Method rate_tumble_lag() {
   info.source = "ours";
   info.settings = {&settings()};
   info.robots = {"rig", "pendulum"};
+  info.learns_rig = true;
   return make_method(std::move(info), run);
 }
 

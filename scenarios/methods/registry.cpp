@@ -15,10 +15,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-std::string full_name(const MethodInfo& info) {
-  return std::string(to_string(info.kind)) + "/" + info.name;
-}
-
 std::vector<Method> all_methods() {
   std::vector<Method> all = {
       rate_raw(),
@@ -96,12 +92,17 @@ std::vector<MethodPointer> find_within(const std::string& name, double time_limi
   }
   if (found.empty()) {
     const std::string near = sim::nearest_name(name, known);
-    throw BadInput("unknown method '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+    throw BadInput("unknown method '" + name + "'; " +
+                   (near.empty() ? "see 'tumble list methods'" : "did you mean '" + near + "'?"));
   }
   return found;
 }
 
 }  // namespace
+
+std::string full_name(const MethodInfo& info) {
+  return full_name(info.kind, info.name);
+}
 
 bool MethodInfo::for_robot(const std::string& robot) const {
   return robots.empty() || std::find(robots.begin(), robots.end(), robot) != robots.end();

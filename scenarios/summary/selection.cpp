@@ -52,7 +52,7 @@ void keep(const std::vector<std::uint64_t>& kept, MethodSummary& method) {
 }  // namespace
 
 bool is_named(const std::string& name, Kind kind, const std::string& method) {
-  return name == method || name == std::string(to_string(kind)) + "/" + method;
+  return name == method || name == full_name(kind, method);
 }
 
 bool is_selected(std::span<const std::string> names, Kind kind, const MethodSummary& method) {
@@ -67,7 +67,7 @@ void require_held(const Summary& summary, std::span<const std::string> methods, 
     known_metrics.insert(section.metrics.begin(), section.metrics.end());
     for (const MethodSummary& method : section.methods) {
       known_methods.insert(method.method);
-      known_methods.insert(std::string(to_string(section.kind)) + "/" + method.method);
+      known_methods.insert(full_name(section.kind, method.method));
     }
   }
   require_known("method", methods, known_methods);

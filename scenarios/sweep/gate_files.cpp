@@ -83,7 +83,7 @@ void require_method(const Line& line, const MethodRun& run, std::span<const Meth
       }))
     return;
   try {
-    find_methods(std::string(to_string(run.kind)) + "/" + run.method);
+    find_methods(full_name(run.kind, run.method));
   } catch (const BadInput& error) {
     line.fail(std::string(error.what()) + " (a method that a file describes is known by its file: --method FILE.yaml)");
   }

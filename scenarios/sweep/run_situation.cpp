@@ -44,7 +44,7 @@ RunResult run_situation(const DataRoot& data, const Scenario& scenario, std::uin
 std::string run_digest(const RunResult& result) {
   std::vector<std::string> parts = {result.recording_digest};
   for (std::size_t k = 0; k < result.methods.size(); ++k) {
-    parts.push_back(std::string(to_string(result.methods[k]->info.kind)) + "/" + result.methods[k]->info.name);
+    parts.push_back(full_name(result.methods[k]->info));
     parts.push_back(digest(result.estimates[k]));
   }
   return digest_of_texts(parts);

@@ -22,8 +22,7 @@ constexpr double kTimeoutMaxS = 1e6;
 
 std::vector<std::string> every_method() {
   std::vector<std::string> names;
-  for (const Method& method : methods())
-    names.push_back(std::string(to_string(method.info.kind)) + "/" + method.info.name);
+  for (const Method& method : methods()) names.push_back(full_name(method.info));
   return names;
 }
 

@@ -60,10 +60,6 @@ std::pair<std::string, std::string> method_and_parameter(const std::string& key)
   return {key.substr(0, dot), dot == std::string::npos ? "" : key.substr(dot + 1)};
 }
 
-std::string full_name(const MethodInfo& method) {
-  return std::string(to_string(method.kind)) + "/" + method.name;
-}
-
 void require_within(const std::string& key, const sim::Parameter& parameter, double value) {
   if (value >= parameter.low && value <= parameter.high) return;
   std::ostringstream text;

@@ -88,7 +88,7 @@ RunPaths paths_of(const scenarios::RunResult& run) {
     if (info.needs_truth) continue;
     Path path = estimated_path(run.estimates[i], run.recording.sensors, run.recording.truth);
     if (path.empty()) continue;
-    found.methods.push_back(std::string(to_string(info.kind)) + "/" + info.name);
+    found.methods.push_back(full_name(info));
     found.paths.push_back(std::move(path));
   }
   return found;

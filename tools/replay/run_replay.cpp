@@ -43,7 +43,7 @@ Replay replay_of_run(const scenarios::RunResult& run) {
   input.surface = run.surface ? run.surface.get() : own ? &*own : nullptr;
   for (const std::size_t i : shown_methods(run)) {
     const scenarios::MethodInfo& info = run.methods[i]->info;
-    input.estimates.push_back({std::string(to_string(info.kind)) + "/" + info.name, &run.estimates[i]});
+    input.estimates.push_back({full_name(info), &run.estimates[i]});
   }
   return replay_of(input);
 }

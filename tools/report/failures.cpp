@@ -30,7 +30,7 @@ std::map<Draw, std::size_t> failures_of(const Summary& summary) {
 }
 
 std::string named(Kind kind, const std::string& method) {
-  return std::string(to_string(kind)) + "/" + method;
+  return full_name(kind, method);
 }
 
 std::vector<FailedRun> failed_runs(const std::vector<Outcome>& rows, const std::map<std::string, std::string>& notes) {

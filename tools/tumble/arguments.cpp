@@ -123,6 +123,11 @@ std::function<void(const std::string&)> a_suite(const Session& session) {
   return [&session](const std::string& text) { scenarios::load_suite(session.data(), text); };
 }
 
+void a_recording(const std::string& file) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) throw BadInput(file + ": no such file");
+}
+
 int available_processors() {
   cpu_set_t set;
   CPU_ZERO(&set);

@@ -50,6 +50,9 @@ std::function<void(const std::string&)> a_scenario(const Session& session);
 /// The same of a suite, a suite file or a scenario.
 std::function<void(const std::string&)> a_suite(const Session& session);
 
+/// Refuses a recording's file that is not there, likewise.
+void a_recording(const std::string& file);
+
 /// The processors that this process may use.
 int available_processors();
 

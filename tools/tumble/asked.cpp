@@ -37,7 +37,7 @@ Question parse_question(const std::string& text, double risk, const scenarios::S
                    scenarios::headline_metrics(scenarios::Kind::rate).front() + ":10%");
   std::vector<std::string> known;
   for (const scenarios::MethodPointer& method : scenarios::find_methods(suite.methods))
-    known.push_back(std::string(to_string(method->info.kind)) + "/" + method->info.name);
+    known.push_back(full_name(method->info));
   for (const std::string& name : {words[0], words[1]}) require_known("method of the suite", name, known);
   Question question;
   question.method = words[0];

@@ -27,10 +27,6 @@ struct Options {
   std::filesystem::path learnt;
 };
 
-std::string full_name(const scenarios::Method& method) {
-  return std::string(to_string(method.info.kind)) + "/" + method.info.name;
-}
-
 /// Why a run failed; a sensor that the recording does not have is called by its name.
 std::string reason(const Status& status) {
   const std::string field = status.field;
@@ -45,9 +41,10 @@ scenarios::MethodPointer choose(const std::string& name, const std::string& robo
   std::string refused;
   for (const scenarios::MethodPointer& method : scenarios::find_methods(name)) {
     if (method->info.needs_truth) {
-      refused = "method '" + full_name(*method) + "' needs the truth, which this verb never opens; use 'tumble run'";
+      refused =
+          "method '" + full_name(method->info) + "' needs the truth, which this verb never opens; use 'tumble run'";
     } else if (!robot.empty() && !method->info.for_robot(robot)) {
-      refused = "method '" + full_name(*method) + "' does not apply to the robot '" + robot + "'";
+      refused = "method '" + full_name(method->info) + "' does not apply to the robot '" + robot + "'";
     } else {
       fitting.push_back(method);
     }
@@ -55,7 +52,7 @@ scenarios::MethodPointer choose(const std::string& name, const std::string& robo
   if (fitting.empty()) throw BadInput(refused);
   if (fitting.size() > 1) {
     std::string line = "--method " + name + " names several methods; say which:";
-    for (const scenarios::MethodPointer& method : fitting) line += " " + full_name(*method);
+    for (const scenarios::MethodPointer& method : fitting) line += " " + full_name(method->info);
     throw BadInput(line);
   }
   return fitting.front();
@@ -66,7 +63,7 @@ scenarios::Estimate run_of(const scenarios::Method& method, const sim::Sensors& 
   try {
     return method.run(sensors, {}, {});
   } catch (const scenarios::NoAnswer& error) {
-    throw BadInput(full_name(method) + ": " + error.what());
+    throw BadInput(full_name(method.info) + ": " + error.what());
   }
 }
 
@@ -91,8 +88,8 @@ int run_estimate(const Session& session, const Options& options) {
   const sim::Sensors sensors = scenarios::read_sensors(options.recording);
   const scenarios::MethodPointer chosen = choose(options.method, sensors.robot);
   const scenarios::Method& method = *chosen;
-  if (!options.learnt.empty() && !LearntFile::learns(method)) {
-    throw BadInput("--learnt is for 'rate/tumble' and 'rate/tumble_lag'; '" + full_name(method) +
+  if (!options.learnt.empty() && !method.info.learns_rig) {
+    throw BadInput("--learnt is for " + LearntFile::learning_methods() + "; '" + full_name(method.info) +
                    "' learns nothing of the rig");
   }
   LearntFile learnt(options.learnt);
@@ -115,14 +112,14 @@ int run_estimate(const Session& session, const Options& options) {
   session.print({summary(estimate)}, document);
   if (estimate.status.ok()) return kDone;
   // the estimate is left for inspection, and its trouble lies in the recording
-  throw BadInput(options.recording.string() + ": " + full_name(method) + " failed: " + reason(estimate.status));
+  throw BadInput(options.recording.string() + ": " + full_name(method.info) + " failed: " + reason(estimate.status));
 }
 
 }  // namespace
 
 Action declare_estimate(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<Options>();
-  verb.add("RECORDING", options->recording, "a recording, FILE.h5").required();
+  verb.add("RECORDING", options->recording, "a recording, FILE.h5").required().check(a_recording);
   verb.add("--method", options->method, "a method, as 'saave' or 'rate/saave'").required();
   verb.add("--set", options->parameters,
            "METHOD.PARAMETER=NUMBER, as rate/tumble_lag.lag_s=0.5; repeat for more ('tumble list methods NAME')")

@@ -82,7 +82,7 @@ Action declare_export(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<Options>();
   std::string known;
   for (const std::string& format : scenarios::export_formats()) known += " " + format;
-  verb.add("RECORDING", options->recording, "a recording, FILE.h5").required();
+  verb.add("RECORDING", options->recording, "a recording, FILE.h5").required().check(a_recording);
   verb.add("--format", options->format, "one of:" + known + " [by the output's ending: .mcap, .bag, .tum]");
   std::string peers;
   for (const std::string& name : scenarios::peer_dialects()) peers += " " + name;

@@ -69,16 +69,14 @@ void keep_accepted(const scenarios::Gate& gate, const Options& options,
   const std::vector<scenarios::MethodRun>& accepted = gate.accepted.methods;
   for (const scenarios::MethodRun& run : accepted) {
     const auto is_it = [&](const scenarios::MethodPointer& method) { return is_of(run, method); };
-    if (std::none_of(given.begin(), given.end(), is_it))
-      add(methods, std::string(to_string(run.kind)) + "/" + run.method);
+    if (std::none_of(given.begin(), given.end(), is_it)) add(methods, full_name(run.kind, run.method));
     add(names, run.scenario);
   }
   suite.methods = methods;
   if (options.accept) return;  // a scenario that the suite has gained is accepted with the others
   for (const scenarios::MethodPointer& method : given) {
     if (std::none_of(accepted.begin(), accepted.end(), [&](const auto& run) { return is_of(run, method); }))
-      throw scenarios::BadInput(std::string(to_string(method->info.kind)) + "/" + method->info.name +
-                                ": the gate of suite " + suite.name +
+      throw scenarios::BadInput(full_name(method->info) + ": the gate of suite " + suite.name +
                                 " has no accepted run of it; --accept takes it in");
   }
   for (const std::string& name : names) require_known("scenario of suite " + suite.name, name, suite.scenarios);
@@ -111,7 +109,7 @@ std::string verdict_text(const GateResult& result) {
 Table result_table(const std::vector<GateResult>& results) {
   Table table("", {"scenario", "method", "held", "draws", "accepted", "now", "pairs", "chance", "verdict"});
   for (const GateResult& result : results) {
-    table.add_row({result.scenario, std::string(to_string(result.kind)) + "/" + result.method,
+    table.add_row({result.scenario, full_name(result.kind, result.method),
                    result.metric.empty() ? "outcomes" : result.metric, std::to_string(result.draws),
                    number_text(result.accepted), number_text(result.value), change_text(result),
                    result.metric.empty() ? "" : fmt::format("{:.2g}", result.chance), verdict_text(result)});

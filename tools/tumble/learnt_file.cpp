@@ -13,13 +13,16 @@ LearntFile::LearntFile(std::filesystem::path path) : path_(std::move(path)) {
   learning_.given = scenarios::read_learnt_rig(path_);
 }
 
-bool LearntFile::learns(const scenarios::Method& method) {
-  return method.info.kind == scenarios::Kind::rate &&
-         (method.info.name == "tumble" || method.info.name == "tumble_lag");
+std::string LearntFile::learning_methods() {
+  std::string names;
+  for (const scenarios::Method& method : scenarios::methods()) {
+    if (method.info.learns_rig) names += (names.empty() ? "'" : ", '") + full_name(method.info) + "'";
+  }
+  return names;
 }
 
 scenarios::Method LearntFile::wrap(const scenarios::Method& method) {
-  return path_.empty() || !learns(method) ? method : scenarios::learning_method(method, learning_);
+  return path_.empty() || !method.info.learns_rig ? method : scenarios::learning_method(method, learning_);
 }
 
 void LearntFile::keep() const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "scenarios/methods/rate_tumble.hpp"
 
@@ -14,8 +15,8 @@ class LearntFile {
   /// that cannot be read.
   explicit LearntFile(std::filesystem::path path);
 
-  /// Whether a method learns of the rig.
-  static bool learns(const scenarios::Method& method);
+  /// Full names of the methods that learn of the rig, for the user.
+  static std::string learning_methods();
 
   /// `method` as one that starts from the file; itself where it learns nothing and without a file. It refers to this
   /// object.

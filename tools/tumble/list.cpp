@@ -166,7 +166,7 @@ Listing list_methods(const std::string& only) {
   Table parameters("parameters", columns), further("further parameters", columns);
   for (const scenarios::MethodPointer& method : selected) {
     const scenarios::MethodInfo& info = method->info;
-    const std::string name = std::string(to_string(info.kind)) + "/" + info.name;
+    const std::string name = full_name(info);
     std::string robots;
     for (const std::string& robot : info.robots) robots += (robots.empty() ? "" : " ") + robot;
     table.add_row({name, robots.empty() ? "all" : robots, info.needs_truth ? "yes" : "no", info.source, info.doc});

@@ -97,7 +97,7 @@ int render_maps(const Session& session, const Options& options, const scenarios:
     scenarios::Kind kind;
     std::string method;
     const scenarios::Estimate estimate = scenarios::read_estimate(folder, kind, method, scenarios::Frame::imu);
-    maps.push_back(map_by_error(std::string(to_string(kind)) + "/" + method, estimate, content.truth, surface));
+    maps.push_back(map_by_error(full_name(kind, method), estimate, content.truth, surface));
     const ErrorMap& map = maps.back();
     if (map.points_W_m.empty()) throw BadInput(folder.string() + ": holds no map to draw");
     const double fine = map.share_within(0.1f), coarse = map.share_within(0.25f);
@@ -181,7 +181,12 @@ int render(const Session& session, const Options& options) {
 
 Action declare_render(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<Options>();
-  verb.add("WHAT", options->what, "a recording, FILE.h5, or a scenario (with --seed)").required();
+  verb.add("WHAT", options->what, "a recording, FILE.h5, or a scenario (with --seed)")
+      .required()
+      .check([&session](const std::string& text) {
+        if (is_recording(text)) return a_recording(text);
+        scenarios::load_scenario(session.data(), text);
+      });
   verb.add("ESTIMATE", options->estimates, "folders of estimates whose paths are drawn");
   verb.add("--seed", options->seed, "which draw of the scenario [of a named case its own]");
   verb.add("-o,--output", options->output, "the picture, FILE.png, or with --video FILE.webp").required();

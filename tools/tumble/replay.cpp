@@ -60,7 +60,7 @@ void load_estimates(const Session& session, const Options& options, Content& con
       continue;
     }
     content.estimates.push_back(std::move(estimate));
-    const std::string name = std::filesystem::is_directory(path) ? std::string(to_string(kind)) + "/" + method : method;
+    const std::string name = std::filesystem::is_directory(path) ? full_name(kind, method) : method;
     input.estimates.push_back({name, &content.estimates.back()});
   }
 }
@@ -111,7 +111,9 @@ int make_replay(const Session& session, const Options& options) {
 
 Action declare_replay(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<Options>();
-  verb.add("RECORDING", options->recording, "the recording, FILE.h5, with or without truth").required();
+  verb.add("RECORDING", options->recording, "the recording, FILE.h5, with or without truth")
+      .required()
+      .check(a_recording);
   verb.add("ESTIMATE", options->estimates, "folders of estimates, or TUM files (t x y z qx qy qz qw)");
   verb.add("-o,--output", options->page, "the page, FILE.html").required();
   verb.add("--frame", options->frame,

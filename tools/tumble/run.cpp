@@ -138,8 +138,8 @@ int run(const Session& session, const Options& given) {
   const auto selected = select_methods(options.methods);
   LearntFile learnt(options.learnt);
   if (!options.learnt.empty() &&
-      std::none_of(selected.begin(), selected.end(), [](const auto& method) { return LearntFile::learns(*method); })) {
-    throw scenarios::BadInput("--learnt is for 'rate/tumble' and 'rate/tumble_lag', of which none is to run");
+      std::none_of(selected.begin(), selected.end(), [](const auto& method) { return method->info.learns_rig; })) {
+    throw scenarios::BadInput("--learnt is for " + LearntFile::learning_methods() + ", of which none is to run");
   }
   if (!options.methods.empty() && std::none_of(selected.begin(), selected.end(), [&](const auto& method) {
         return method->info.for_robot(scenario.robot.type);

@@ -97,8 +97,8 @@ Table dependence_table(const std::vector<Sensitivity>& rows, bool all) {
       bool first = true;
       for (const scenarios::DependenceClass& part : each.dependence) {
         const auto once = [&](const std::string& text) { return first ? text : std::string(); };
-        table.add_row({once(row.scenario), once(std::string(to_string(row.kind)) + "/" + row.method), once(row.metric),
-                       once(each.number), number_text(part.low), number_text(part.high), std::to_string(part.draws),
+        table.add_row({once(row.scenario), once(full_name(row.kind, row.method)), once(row.metric), once(each.number),
+                       number_text(part.low), number_text(part.high), std::to_string(part.draws),
                        number_text(part.centre.value),
                        "[" + number_text(part.centre.low) + ", " + number_text(part.centre.high) + "]"});
         first = false;

@@ -170,7 +170,7 @@ int run_shrink(const Session& session, const Options& options) {
   const Shrunk shrunk = scenarios::shrink(data, scenario, seed, *method, shrinking);
 
   const bool own = method->info.version.empty();
-  const std::string full = std::string(to_string(method->info.kind)) + "/" + method->info.name;
+  const std::string full = full_name(method->info);
   const scenarios::Scenario made = scenarios::named_case_of(
       shrunk, name, own ? full : options.method, shrinking.failure, program_version(), command_of(options, seed));
   scenarios::replace_file(options.file, scenarios::to_yaml(made));

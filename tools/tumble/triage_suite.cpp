@@ -24,10 +24,6 @@ using scenarios::DrawName;
 using scenarios::DrawTriage;
 using scenarios::InputWorth;
 
-std::string full_name(const scenarios::MethodInfo& method) {
-  return std::string(to_string(method.kind)) + "/" + method.name;
-}
-
 std::string interval_text(const scenarios::Interval& interval) {
   if (std::isnan(interval.value)) return "";
   return fmt::format("[{}, {}]", number_text(interval.low), number_text(interval.high));

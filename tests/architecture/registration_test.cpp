@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is added by a file and a line of registration: the line that was forgotten. Each function that a header of such
+// a list declares is called where the list is made.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/tree.hpp"
+
+namespace {
+
+struct Registry {
+  std::string header, returns;  ///< functions of this result
+  std::string list;             ///< the source that has to name each of them
+  std::size_t least;            ///< so many there are at least, or they are not found
+};
+
+std::string text_of(const std::string& file) {
+  std::ostringstream out;
+  out << std::ifstream(tumble::test::source_dir() / file).rdbuf();
+  return out.str();
+}
+
+std::vector<std::string> declared(const std::string& text, const std::string& returns) {
+  const std::regex function("(?:^|\n)" + returns + R"( ([a-z0-9_]+)\([^;{]*\);)");
+  std::vector<std::string> out;
+  for (std::sregex_iterator it(text.begin(), text.end(), function), end; it != end; ++it) out.push_back((*it)[1]);
+  return out;
+}
+
+std::vector<std::string> left_out(const std::vector<std::string>& names, const std::string& list) {
+  std::vector<std::string> out;
+  for (const std::string& name : names) {
+    if (!std::regex_search(list, std::regex("\\b" + name + "\\b"))) out.push_back(name);
+  }
+  return out;
+}
+
+TEST(Registration, NothingThatIsDeclaredIsLeftOut) {
+  const std::vector<Registry> registries = {
+      {"scenarios/methods/registry.hpp", "Method", "scenarios/methods/registry.cpp", 30},
+      {"scenarios/methods/slam_registry.hpp", "Method", "scenarios/methods/registry.cpp", 8},
+      {"scenarios/scoring/families.hpp", "std::vector<Metric>", "scenarios/scoring/score.cpp", 9},
+      {"sim/world/world_type.hpp", "const WorldType&", "sim/world/world_type.cpp", 7},
+      {"sim/robot/robot_type.hpp", "const RobotType&", "sim/robot/robot_type.cpp", 3},
+      {"sim/motion/motion_type.hpp", "const MotionType&", "sim/motion/motion_type.cpp", 7},
+      {"tools/tumble/verbs.hpp", "Action", "tools/tumble/verbs.cpp", 15},
+  };
+  for (const Registry& registry : registries) {
+    std::vector<std::string> names = declared(text_of(registry.header), registry.returns);
+    std::erase_if(names, [](const std::string& name) { return name.starts_with("find_"); });
+    EXPECT_GE(names.size(), registry.least) << registry.header;
+    EXPECT_EQ(left_out(names, text_of(registry.list)), std::vector<std::string>())
+        << registry.header << " declares what " << registry.list << " does not name";
+  }
+}
+
+TEST(Registration, CheckerFindsTheForgottenLine) {
+  const std::vector<std::string> names =
+      declared("/// One.\nMethod rate_one();\nMethod rate_two(int n);  // two\nint other();\n", "Method");
+  EXPECT_EQ(names, (std::vector<std::string>{"rate_one", "rate_two"}));
+  EXPECT_EQ(left_out(names, "all = { rate_one(), rate_two_more() }"), std::vector<std::string>{"rate_two"});
+}
+
+}  // namespace
