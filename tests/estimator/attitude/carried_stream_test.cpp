@@ -401,7 +401,9 @@ double share_in_flight(std::uint64_t seed, double dropped) {
   options.gyro_rail_rad_s = 7.0;
   const TumbleRecording tumble = make_tumble(options);
   const auto begin = std::find(tumble.phase.begin(), tumble.phase.end(), Phase::flight) - tumble.phase.begin();
-  const RegimeStream stream(RegimeStream::Params{});
+  RegimeStream::Params params;
+  params.rate.model.nominal.lever_arm_m = options.lever_arm_m;
+  const RegimeStream stream(params);
   RegimeStream::State state = stream.start();
   std::optional<RateState> rate;
   for (const ImuSample& sample : tumble.samples) {
