@@ -3,12 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
-#include <iomanip>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "scenarios/recordings/number_text.hpp"
 #include "system/program.hpp"
 
 namespace tumble::system_test {
@@ -43,7 +44,9 @@ class GivenTrajectory : public testing::Test {
         std::string rest;
         words >> stamp_s;
         std::getline(words, rest);
-        file << std::fixed << std::setprecision(9) << stamp_s * factor << rest << '\n';
+        std::string stamp;
+        scenarios::append_seconds(stamp, std::lround(1e9 * stamp_s * factor));
+        file << stamp << rest << '\n';
       }
     }
     std::vector<std::string> arguments = {"score", tum.string(), recording_, "--frame", "body"};
