@@ -49,7 +49,7 @@ void export_kitti(const sim::Truth& truth, const std::filesystem::path& file);
 /// NAME.csv per IMU in the columns of a sensor_msgs/Imu (stamp s, stamp ns, frame, attitude x y z w, its covariance,
 /// rate, its covariance, specific force, its covariance; covariances in brackets, space separated; rad/s, m/s^2;
 /// attitude is unknown: covariance -1 first, as ROS has it). With a truth also truth.csv: time, T_WB, v_WB_W, w_WB_B,
-/// f_B, label.
+/// f_B, label. Throws BadInput for an IMU whose file would be another's or the truth's.
 void export_csv(const sim::Sensors& sensors, const sim::Truth* truth, const std::filesystem::path& folder);
 
 /// NAME_000000.ply (or .pcd) per sweep, binary, not deskewed, in L: x y z intensity ring, and offset_ns where points

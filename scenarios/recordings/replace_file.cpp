@@ -73,6 +73,21 @@ void require_replaceable(const fs::path& given, const fs::path& place) {
   if (access(place.c_str(), W_OK) != 0) fail(given, errno);
 }
 
+/// A folder that is read keeps what it holds: none of its files is written over, at any depth.
+void require_outside(const fs::path& output, std::span<const fs::path> inputs) {
+  std::error_code error;
+  const fs::path place = fs::canonical(output, error);
+  if (error) return;  // nothing stands there
+  for (const fs::path& input : inputs) {
+    if (!fs::is_directory(input, error)) continue;
+    const fs::path folder = fs::canonical(input, error);
+    if (error) continue;
+    const bool within = std::mismatch(folder.begin(), folder.end(), place.begin(), place.end()).first == folder.end();
+    if (within && place != folder)
+      fail(output, "it is a file of " + input.string() + ", which is read; name another output");
+  }
+}
+
 }  // namespace
 
 OutputFile::OutputFile(const fs::path& path) : given_(path), place_(behind_links(path)) {
@@ -160,6 +175,7 @@ void replace_file(const fs::path& path, std::string_view text) {
 }
 
 void require_not_an_input(const fs::path& output, std::span<const fs::path> inputs) {
+  require_outside(output, inputs);
   const std::optional<struct stat> own = status_of(output);
   if (!own) return;
   if (!S_ISREG(own->st_mode) && !S_ISDIR(own->st_mode)) require_replaceable(output, output);

@@ -51,7 +51,8 @@ class OutputFolder {
 void replace_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
 void replace_file(const std::filesystem::path& path, std::string_view text);
 
-/// Refuses an output that is one of the inputs, by whatever name (the same device and inode). Throws BadInput.
+/// Refuses an output that is one of the inputs, by whatever name (the same device and inode), or that stands already in
+/// a folder that is one. Throws BadInput.
 void require_not_an_input(const std::filesystem::path& output, std::span<const std::filesystem::path> inputs);
 
 }  // namespace tumble::scenarios

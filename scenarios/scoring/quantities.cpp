@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
 #include "scenarios/scoring/cost.hpp"
 #include "scenarios/scoring/families.hpp"
 
@@ -16,6 +18,11 @@ std::vector<MetricInfo> cost_quantities() {
 const MetricInfo& estimate_cost() {
   static const MetricInfo cost = cost_quantities().front();
   return cost;
+}
+
+bool is_cost(std::string_view name) {
+  static const std::vector<MetricInfo> costs = cost_quantities();
+  return std::any_of(costs.begin(), costs.end(), [&](const MetricInfo& cost) { return cost.name == name; });
 }
 
 std::vector<MetricInfo> motion_quantities() {

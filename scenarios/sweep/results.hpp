@@ -68,8 +68,9 @@ bool is_method_note(const std::string& key);
 class Results {
  public:
   enum class Mode { create_or_append, read_only };
-  /// Throws BadInput: absent (read_only), not a results database, written by another build (create_or_append; note
-  /// "build"), no room. So do all members, with the path in the message.
+  /// Throws BadInput: absent (read_only), not a results database, without a table, column or view of the schema,
+  /// written by another build (create_or_append; note "build"), no room. So do all members, with the path in the
+  /// message, also where a value that they read is no number (text, a blob).
   Results(const std::filesystem::path& path, Mode mode);
   ~Results();
   Results(Results&&) noexcept;
@@ -87,7 +88,8 @@ class Results {
   std::string note(const std::string& key) const;
   std::map<std::string, std::string> notes() const;
   /// All rows of another database but its notes, by the rule of merge.hpp, row by row: memory does not grow with their
-  /// number. Throws BadInput when two rows that were scored differ in status or digest, unless `mixed`.
+  /// number. Throws BadInput when two rows that were scored differ in status, digest or a score that is no cost, unless
+  /// `mixed`.
   void absorb(const Results& shard, bool mixed, MergeCounts& counts);
   /// All that `work` stores, or, when it throws, nothing of it. Throws what it throws.
   void in_one_transaction(const std::function<void()>& work);

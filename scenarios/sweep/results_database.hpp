@@ -89,6 +89,8 @@ struct Results::Impl {
       throw BadInput(path.string() + ": schema version " + std::to_string(number("user_version")) + ", must be " +
                      std::to_string(kSchemaVersion));
     }
+    const std::string missing = missing_of_schema(database);
+    if (!missing.empty()) throw BadInput(path.string() + ": not a usable results database: it has no " + missing);
     const std::string build = read_note("build");
     if (mode == Mode::create_or_append && build != build_id()) {
       throw BadInput(path.string() + ": written by build '" + build + "', this is '" + build_id() +

@@ -2,10 +2,15 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 
 #include <array>
+#include <cmath>
+#include <map>
 #include <string>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/recordings/number_text.hpp"
+#include "scenarios/scoring/cost.hpp"
 #include "scenarios/sweep/results_database.hpp"
+#include "scenarios/sweep/stored_value.hpp"
 
 namespace tumble::scenarios {
 
@@ -34,7 +39,7 @@ class Joining {
     while (next(outcomes_)) {
       const ShardRow row = read(outcomes_);
       std::int64_t id = 0;
-      if (take(row, id)) copy_scores(row.id, id);
+      if (take(row, id)) copy_scores(row, id);
     }
   }
 
@@ -45,7 +50,11 @@ class Joining {
       insert.bindNoCopy(1, select.getColumn(0).getText());
       insert.bind(2, select.getColumn(1).getInt64());
       insert.bindNoCopy(3, select.getColumn(2).getText());
-      bind_number(select, 3, insert, 4);
+      const auto whose = [&] {
+        return select.getColumn(0).getString() + ", seed " + std::to_string(read_seed(select.getColumn(1).getInt64())) +
+               ", " + select.getColumn(2).getString();
+      };
+      bind_number(stored_value(select.getColumn(3), path_, whose), insert, 4);
       insert.bindNoCopy(5, select.getColumn(4).getText());
       insert.bind(6, select.getColumn(5).getDouble());
       run(insert);
@@ -88,12 +97,17 @@ class Joining {
             select.getColumn(10).getDouble()};
   }
 
-  static void bind_number(const SQLite::Statement& from, int column, SQLite::Statement& to, int index) {
-    const SQLite::Column value = const_cast<SQLite::Statement&>(from).getColumn(column);
-    if (value.isNull())
+  // SQLite has no NaN: a number that is none is null
+  static void bind_number(double value, SQLite::Statement& to, int index) {
+    if (std::isnan(value))
       to.bind(index);
     else
-      to.bind(index, value.getDouble());
+      to.bind(index, value);
+  }
+
+  static std::string words(const ShardRow& row) {
+    return std::string(row.scenario) + ", seed " + std::to_string(read_seed(row.seed)) + ", " + row.kind + "/" +
+           row.method;
   }
 
   static void bind_draw(SQLite::Statement& statement, const ShardRow& row) {
@@ -186,30 +200,74 @@ class Joining {
       run(remove_);
       return true;
     }
-    if (!outranks(known, own) && !mixed_ && was_scored(known) &&
-        (own != known || estimate != row.estimate_digest ||
-         // recordings are simulated without lidars where only rates are asked for: their digest is no part of the
-         // answer
-         (std::string(to_string(Kind::rate)) != row.kind && recording != row.recording_digest)))
+    if (outranks(known, own) || mixed_ || !was_scored(known)) return false;
+    if (own != known || estimate != row.estimate_digest ||
+        // recordings are simulated without lidars where only rates are asked for: their digest is no part of the
+        // answer
+        (std::string(to_string(Kind::rate)) != row.kind && recording != row.recording_digest))
       complain(row, status_text, estimate);
+    require_same_scores(row, id);
     return false;
   }
 
   [[noreturn]] void complain(const ShardRow& row, const std::string& known, const std::string& digest) const {
-    throw BadInput(path_.string() + ": " + row.scenario + ", seed " + std::to_string(read_seed(row.seed)) + ", " +
-                   row.kind + "/" + row.method + ": is " + row.status + " with digest '" + row.estimate_digest +
+    throw BadInput(path_.string() + ": " + words(row) + ": is " + row.status + " with digest '" + row.estimate_digest +
                    "', elsewhere " + known + " with digest '" + digest + "'; one build gives one answer");
   }
 
-  void copy_scores(std::int64_t from, std::int64_t to) {
-    while (more_scores_ && scores_.getColumn(0).getInt64() < from) more_scores_ = next(scores_);
-    while (more_scores_ && scores_.getColumn(0).getInt64() == from) {
-      score_.bind(1, to);
-      score_.bindNoCopy(2, scores_.getColumn(1).getText());
-      bind_number(scores_, 2, score_, 3);
-      run(score_);
-      more_scores_ = next(scores_);
+  /// Of two rows with one digest the scores are the same bits too, but for what the runs cost.
+  void require_same_scores(const ShardRow& row, std::int64_t held) {
+    std::map<std::string, double> known;
+    held_scores_.bind(1, held);
+    while (held_scores_.executeStep()) {
+      const std::string metric = held_scores_.getColumn(0).getString();
+      if (is_cost(metric)) continue;
+      known[metric] =
+          stored_value(held_scores_.getColumn(1), into_.getFilename(), [&] { return words(row) + ", " + metric; });
     }
+    held_scores_.reset();
+    each_score(row, [&](const char* metric, double value) {
+      if (is_cost(metric)) return;
+      const auto found = known.find(metric);
+      if (found == known.end()) differ(row, metric, value_text(value), "none");
+      if (value != found->second && !(std::isnan(value) && std::isnan(found->second)))
+        differ(row, metric, value_text(value), value_text(found->second));
+      known.erase(found);
+    });
+    if (!known.empty()) differ(row, known.begin()->first, "none", value_text(known.begin()->second));
+  }
+
+  static std::string value_text(double value) {
+    std::string text;
+    append_number(text, value);
+    return text;
+  }
+
+  [[noreturn]] void differ(const ShardRow& row, const std::string& metric, const std::string& here,
+                           const std::string& elsewhere) const {
+    throw BadInput(path_.string() + ": " + words(row) + ": " + metric + " is " + here + ", elsewhere " + elsewhere +
+                   "; one build gives one answer");
+  }
+
+  /// The scores of a row of the shard, by name; rows are asked for in their order.
+  template <typename Visit>
+  void each_score(const ShardRow& row, const Visit& visit) {
+    while (more_scores_ && scores_.getColumn(0).getInt64() < row.id) more_scores_ = next(scores_);
+    for (; more_scores_ && scores_.getColumn(0).getInt64() == row.id; more_scores_ = next(scores_)) {
+      const SQLite::Column metric = scores_.getColumn(1);
+      const double value =
+          stored_value(scores_.getColumn(2), path_, [&] { return words(row) + ", " + metric.getString(); });
+      visit(metric.getText(), value);
+    }
+  }
+
+  void copy_scores(const ShardRow& row, std::int64_t to) {
+    each_score(row, [&](const char* metric, double value) {
+      score_.bind(1, to);
+      score_.bindNoCopy(2, metric);
+      bind_number(value, score_, 3);
+      run(score_);
+    });
   }
 
   SQLite::Database& into_;
@@ -229,6 +287,7 @@ class Joining {
   SQLite::Statement held_{into_,
                           "SELECT id, status, recording_digest, estimate_digest FROM outcomes WHERE scenario = ? AND "
                           "seed = ? AND kind = ? AND method = ? AND varied = ? AND setting = ?"};
+  SQLite::Statement held_scores_{into_, "SELECT metric, value FROM score_values WHERE outcome = ?"};
   SQLite::Statement remove_{into_, "DELETE FROM outcomes WHERE id = ?"};
   SQLite::Statement forget_{into_, std::string("DELETE FROM outcomes") + kDraw + "= ''"};
   SQLite::Statement score_{into_, "INSERT OR REPLACE INTO score_values VALUES (?, ?, ?)"};

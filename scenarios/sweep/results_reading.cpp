@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <SQLiteCpp/SQLiteCpp.h>
 
-#include <limits>
+#include <cstdint>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/sweep/results_database.hpp"
+#include "scenarios/sweep/stored_value.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
-double read_value(const SQLite::Column& column) {
-  return column.isNull() ? std::numeric_limits<double>::quiet_NaN() : column.getDouble();
+std::string draw_text(const std::string& scenario, std::uint64_t seed) {
+  return scenario + ", seed " + std::to_string(seed);
 }
 
 Kind kind_named(const std::string& name, const std::filesystem::path& path) {
@@ -110,14 +112,18 @@ std::vector<ScoreRow> Results::scores(Rows rows) const {
                                  picked(rows) +
                                  " ORDER BY o.varied, o.setting, o.scenario, o.seed, o.kind, o.method, s.metric");
     while (select.executeStep()) {
-      found.push_back({select.getColumn(0).getString(),
-                       read_seed(select.getColumn(1).getInt64()),
-                       select.getColumn(2).getString(),
-                       select.getColumn(3).getString(),
-                       status_named(select.getColumn(4).getString(), impl_->path),
-                       select.getColumn(5).isNull() ? std::string() : select.getColumn(5).getString(),
-                       read_value(select.getColumn(6)),
-                       {select.getColumn(7).getString(), select.getColumn(8).getDouble()}});
+      ScoreRow row = {select.getColumn(0).getString(),
+                      read_seed(select.getColumn(1).getInt64()),
+                      select.getColumn(2).getString(),
+                      select.getColumn(3).getString(),
+                      status_named(select.getColumn(4).getString(), impl_->path),
+                      select.getColumn(5).isNull() ? std::string() : select.getColumn(5).getString(),
+                      0.0,
+                      {select.getColumn(7).getString(), select.getColumn(8).getDouble()}};
+      row.value = stored_value(select.getColumn(6), impl_->path, [&] {
+        return draw_text(row.scenario, row.seed) + ", " + row.kind + "/" + row.method + ", " + row.metric;
+      });
+      found.push_back(std::move(row));
     }
     return found;
   });
@@ -144,7 +150,11 @@ void Results::each(Rows rows, Names& names, const std::function<void(const Outco
         const std::string_view metric = text(scores, 1);
         auto name = names.find(metric);
         if (name == names.end()) name = names.emplace(metric).first;
-        values.push_back({&*name, read_value(scores.getColumn(2))});
+        values.push_back(
+            {&*name, stored_value(scores.getColumn(2), impl_->path, [&] {
+               return draw_text(outcomes.getColumn(1).getString(), read_seed(outcomes.getColumn(2).getInt64())) + ", " +
+                      outcomes.getColumn(3).getString() + "/" + outcomes.getColumn(4).getString() + ", " + *name;
+             })});
       }
       visit({text(outcomes, 1), read_seed(outcomes.getColumn(2).getInt64()),
              kind_named(outcomes.getColumn(3).getString(), impl_->path), text(outcomes, 4),
@@ -203,7 +213,9 @@ std::vector<DrawValues> Results::draws(Rows rows) const {
           draws.back().setting != setting) {
         draws.push_back({scenario, seed, {}, setting});
       }
-      draws.back().values.push_back({select.getColumn(2).getString(), read_value(select.getColumn(3))});
+      const std::string metric = select.getColumn(2).getString();
+      draws.back().values.push_back({metric, stored_value(select.getColumn(3), impl_->path,
+                                                          [&] { return draw_text(scenario, seed) + ", " + metric; })});
     }
     return draws;
   });
@@ -228,9 +240,11 @@ std::vector<Certificate> Results::certificates() const {
       const std::string build = select.getColumn(0).getString();
       if (certificates.empty() || certificates.back().build != build) certificates.push_back({build, {}});
       const auto text = [&](int column) { return select.getColumn(column).getString(); };
-      certificates.back().entries.push_back({text(1), text(2), text(3), text(4), read_value(select.getColumn(5)),
-                                             read_value(select.getColumn(6)), read_value(select.getColumn(7)),
-                                             text(8)});
+      const auto value = [&](int column) {
+        return stored_value(select.getColumn(column), impl_->path, [&] { return "certificate, " + text(1); });
+      };
+      certificates.back().entries.push_back(
+          {text(1), text(2), text(3), text(4), value(5), value(6), value(7), text(8)});
     }
     return certificates;
   });

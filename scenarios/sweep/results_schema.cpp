@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/results_schema.hpp"
 
+#include <SQLiteCpp/SQLiteCpp.h>
+
+#include <set>
+
 namespace tumble::scenarios {
 
 // seeds are 64 bit unsigned, kept as the signed number of the same bits. A rejected draw is an outcome with kind and
@@ -67,5 +71,36 @@ CREATE TABLE certificates (
   PRIMARY KEY (build, number)
 ) WITHOUT ROWID;
 )sql";
+
+namespace {
+
+/// "table outcomes", "column seed of table outcomes", "view scores". Of views the names alone: what they have follows
+/// from the tables.
+std::set<std::string> parts_of(const SQLite::Database& database) {
+  std::set<std::string> parts;
+  SQLite::Statement objects(database, "SELECT type || ' ' || name FROM sqlite_master WHERE type IN ('table', 'view')");
+  while (objects.executeStep()) parts.insert(objects.getColumn(0).getString());
+  SQLite::Statement columns(database,
+                            "SELECT 'column ' || c.name || ' of table ' || m.name FROM sqlite_master AS m "
+                            "JOIN pragma_table_info(m.name) AS c WHERE m.type = 'table'");
+  while (columns.executeStep()) parts.insert(columns.getColumn(0).getString());
+  return parts;
+}
+
+}  // namespace
+
+std::string missing_of_schema(const SQLite::Database& database) {
+  SQLite::Database model(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+  model.exec(kSchema);
+  const std::set<std::string> found = parts_of(database);
+  // a table that is not there is told as such, before its columns and the views on it
+  std::string missing;
+  for (const std::string& part : parts_of(model)) {
+    if (found.contains(part)) continue;
+    if (part.starts_with("table")) return part;
+    if (missing.empty()) missing = part;
+  }
+  return missing;
+}
 
 }  // namespace tumble::scenarios

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/tumble/import_options.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -57,7 +59,8 @@ bool is_sweeps(const std::string& format) {
 void require_numbers(const std::string& option, const std::vector<double>& numbers, double bound) {
   for (const double x : numbers) {
     if (!(std::abs(x) <= bound)) {
-      throw BadInput(option + ": " + number_text(x) + " must be within +-" + number_text(bound));
+      // a number that is none is told as such: in tables it is a dash
+      throw BadInput(fmt::format("{}: {:g} must be within +-{:g}", option, x, bound));
     }
   }
 }
@@ -69,7 +72,7 @@ Eigen::Isometry3d pose_of(const std::string& option, const std::vector<double>& 
   require_numbers(option, numbers, 100.0);
   const Eigen::Quaterniond q(numbers[6], numbers[3], numbers[4], numbers[5]);
   if (!(std::abs(q.norm() - 1.0) <= 1e-2)) {
-    throw BadInput(option + ": the quaternion (qx qy qz qw) has norm " + number_text(q.norm()) + ", must be 1");
+    throw BadInput(fmt::format("{}: the quaternion (qx qy qz qw) has norm {:g}, must be 1", option, q.norm()));
   }
   pose.linear() = q.normalized().toRotationMatrix();
   pose.translation() = Eigen::Vector3d(numbers[0], numbers[1], numbers[2]);

@@ -152,7 +152,9 @@ void write_picture(const Options& options, const Scene& scene) {
 int render(const Session& session, const Options& options) {
   const scenarios::DataRoot data = session.data();
   if (options.video) require_video(options);
-  prepare_output(options.output, std::vector<std::filesystem::path>{options.what});
+  std::vector<std::filesystem::path> inputs = options.estimates;
+  inputs.emplace_back(options.what);
+  prepare_output(options.output, inputs);
   if (is_recording(options.what) && !options.seed.empty()) {
     throw BadInput("--seed is for a scenario; '" + options.what + "' is a recording, of one draw");
   }

@@ -6,12 +6,15 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/estimate_file.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/scoring/score.hpp"
 #include "scenarios/scoring/truth_track.hpp"
+#include "tools/tables/table.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/given_estimate.hpp"
 #include "tools/tumble/recording_info.hpp"
@@ -50,12 +53,17 @@ void require_common_time(const Options& options, const scenarios::Estimate& esti
 }
 
 constexpr double kHoleShare = 0.2;  // of the recording; a longer one is a divergence (scenarios::verdict)
+// below these nothing is compared but the pose at which the two are aligned, or hardly more
+constexpr std::size_t kComparedMin = 2;
+constexpr double kSpannedShareMin = 0.01;
 
 /// How a trajectory of somebody else stands to the truth, beside its scores.
 struct Standing {
   double first_s = 0, last_s = 0, end_s = 0;  ///< of its poses that the truth knows; of the truth
+  std::size_t compared = 0, poses = 0;        ///< poses that the truth knows, of how many
   double covered_s = 0;                       ///< without what is longer than a fifth of the truth and has no pose
   scenarios::Alignment alignment;
+  double spanned() const { return end_s > 0.0 ? (last_s - first_s) / end_s : 1.0; }  ///< share, holes included
   double share() const { return end_s > 0.0 ? covered_s / end_s : 1.0; }
 };
 
@@ -65,6 +73,8 @@ Standing standing_of(const scenarios::Estimate& estimate, const sim::Truth& trut
   Standing out;
   out.end_s = 1e-9 * static_cast<double>(track.last_ns());
   out.alignment = paired.alignment;
+  out.compared = paired.poses.size();
+  out.poses = estimate.poses.size();
   if (paired.poses.empty()) return out;
   out.first_s = 1e-9 * static_cast<double>(paired.poses.front().time_ns);
   out.last_s = 1e-9 * static_cast<double>(paired.poses.back().time_ns);
@@ -73,6 +83,16 @@ Standing standing_of(const scenarios::Estimate& estimate, const sim::Truth& trut
     if (step_s <= kHoleShare * out.end_s) out.covered_s += step_s;
   }
   return out;
+}
+
+/// A trajectory that shares next to nothing with the recording has no score: all of its errors would be zero.
+void require_compared(const Options& options, const Standing& standing) {
+  if (standing.compared >= kComparedMin && standing.spanned() >= kSpannedShareMin) return;
+  throw scenarios::BadInput(
+      fmt::format("{}: {} of its {} poses lie within {}, and cover {:.1f} % of its {:.3f} s; must be at least {} poses "
+                  "and {:.0f} %: another unit of time, or another clock?",
+                  options.estimate.string(), standing.compared, standing.poses, options.recording.string(),
+                  100.0 * standing.spanned(), standing.end_s, kComparedMin, 100.0 * kSpannedShareMin));
 }
 
 std::string alignment_text(const Standing& standing) {
@@ -84,8 +104,9 @@ std::string alignment_text(const Standing& standing) {
 }
 
 std::string cover_text(const Standing& standing) {
-  return fmt::format("{:.1f} % of the recording's time, {:.3f} s to {:.3f} s of {:.3f} s", 100.0 * standing.share(),
-                     standing.first_s, standing.last_s, standing.end_s);
+  return fmt::format("{:.1f} % of the recording's time, {:.3f} s to {:.3f} s of {:.3f} s, with {} of {} poses",
+                     100.0 * standing.share(), standing.first_s, standing.last_s, standing.end_s, standing.compared,
+                     standing.poses);
 }
 
 /// A trajectory of somebody else is judged over what it answers, and how much that is is said: "partial" for one that
@@ -105,12 +126,23 @@ std::string judge_trajectory(const Session& session, const Standing& standing, c
 
 nlohmann::json to_json(const Standing& standing) {
   const Eigen::Vector3d& t = standing.alignment.translation_m;
-  return {{"covered", {{"first_s", standing.first_s}, {"last_s", standing.last_s}, {"share", standing.share()}}},
+  return {{"covered",
+           {{"first_s", standing.first_s},
+            {"last_s", standing.last_s},
+            {"share", standing.share()},
+            {"compared", standing.compared},
+            {"poses", standing.poses}}},
           {"alignment",
            {{"of", "position and yaw"},
             {"at_s", standing.first_s},
             {"yaw_rad", standing.alignment.yaw_rad},
             {"translation_m", {t.x(), t.y(), t.z()}}}}};
+}
+
+/// Below the scores: over how much of the recording they hold.
+void add_cover(const Standing& standing, Table& table) {
+  table.add_row({"covered_share", number_text(standing.share())});
+  table.add_row({"poses_compared", fmt::format("{} of {}", standing.compared, standing.poses)});
 }
 
 /// Of a TUM file: as named, else position of a rolling sphere and of what has no lidar, else slam.
@@ -149,6 +181,11 @@ int score_estimate(const Session& session, const Options& options) {
   if (outcome.kind == scenarios::Kind::slam && !foreign && !info.situation_yaml.empty()) {
     surface.emplace(built_from(info, options.recording.string(), session.data()));
   }
+  std::optional<Standing> standing;
+  if (foreign) {
+    standing = standing_of(estimate, truth);
+    require_compared(options, *standing);
+  }
   const scenarios::ScoringInput input{&sensors, &truth, surface ? &*surface : nullptr};
   outcome.scenario = info.scenario;
   outcome.seed = info.seed;
@@ -156,20 +193,20 @@ int score_estimate(const Session& session, const Options& options) {
       estimate.status.ok() ? scenarios::verdict(outcome.kind, estimate, input) : scenarios::OutcomeStatus::failed;
   outcome.message = estimate.status.ok() ? "" : estimate.status.message();
   outcome.scores = scenarios::score(outcome.kind, estimate, input);
-  std::optional<Standing> standing;
   std::string status = to_string(outcome.status);
-  if (foreign) {
-    standing = standing_of(estimate, truth);
-    status = judge_trajectory(session, *standing, estimate, input, outcome);
-  }
+  if (standing) status = judge_trajectory(session, *standing, estimate, input, outcome);
 
   const std::vector<scenarios::Outcome> outcomes = {outcome};
   nlohmann::json document = {{"kind", to_string(outcome.kind)},
                              {"method", outcome.method},
                              {"status", status},
                              {"scores", score_rows(outcomes)}};
-  if (standing) document.update(to_json(*standing));
-  session.print(score_tables(options.estimate.string(), outcomes), document);
+  std::vector<Table> tables = score_tables(options.estimate.string(), outcomes);
+  if (standing) {
+    document.update(to_json(*standing));
+    add_cover(*standing, tables.front());
+  }
+  session.print(tables, document);
   return kDone;
 }
 

@@ -70,6 +70,20 @@ TEST_F(Export, CsvHasAFilePerImuAndOneOfTheTruth) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "real/truth.csv"));
 }
 
+TEST_F(Export, NoFileOfAnImuIsWrittenOverAnother) {
+  const auto complaint = [&](const sim::Truth* truth) {
+    return fixture::complaint([&] { export_csv(recording_.sensors, truth, folder_ / "csv"); });
+  };
+  recording_.sensors.imus[0].name = "truth";
+  EXPECT_THAT(complaint(&recording_.truth), HasSubstr("IMU 0, named 'truth', would go into truth.csv"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "csv"));
+  EXPECT_EQ(complaint(nullptr), "") << "without a truth the name is free";
+  std::filesystem::remove_all(folder_ / "csv");
+  recording_.sensors.imus[0].name = "imu_1";
+  recording_.sensors.imus[1].name = "no name of a file";
+  EXPECT_THAT(complaint(nullptr), HasSubstr("IMU 1, named 'no name of a file', would go into imu_1.csv"));
+}
+
 TEST_F(Export, ANameCannotLeadOutOfTheFolder) {
   recording_.sensors.imus[0].name = "../outside";
   export_csv(recording_.sensors, nullptr, folder_ / "csv");

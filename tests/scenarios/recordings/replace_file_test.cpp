@@ -134,6 +134,25 @@ TEST_F(ReplaceFile, AnInputIsKnownUnderAnyName) {
   EXPECT_NO_THROW(require_not_an_input(folder_ / "absent", inputs));
 }
 
+TEST_F(ReplaceFile, AFileOfAFolderThatIsReadIsNotWrittenOver) {
+  std::filesystem::create_directories(folder_ / "in/deep");
+  replace_file(folder_ / "in/a", "x");
+  replace_file(folder_ / "in/deep/b", "x");
+  replace_file(folder_ / "inside", "x");
+  std::filesystem::create_directory_symlink("in", folder_ / "link");
+  std::filesystem::create_symlink("in/a", folder_ / "to_a");
+  for (const char* input : {"in", "link", "in/"}) {
+    const std::vector<std::filesystem::path> inputs = {"", folder_ / "none", folder_ / input};
+    for (const char* output : {"in/a", "link/a", "in/deep/b", "in/deep/../a", "to_a"}) {
+      EXPECT_THAT(fixture::complaint([&] { require_not_an_input(folder_ / output, inputs); }),
+                  HasSubstr("which is read"))
+          << output;
+    }
+    EXPECT_NO_THROW(require_not_an_input(folder_ / "inside", inputs)) << "a name that begins alike";
+    EXPECT_NO_THROW(require_not_an_input(folder_ / "in/new", inputs)) << "nothing is written over";
+  }
+}
+
 TEST_F(ReplaceFile, AFolderIsFreshOrRefusedAndGoesWithoutBeingKept) {
   const std::filesystem::path made = folder_ / "a/b";
   {

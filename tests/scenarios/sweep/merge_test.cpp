@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/merge.hpp"
 
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scenarios/errors.hpp"
@@ -110,6 +112,42 @@ TEST_F(MergeTest, TwoAnswersOfOneBuildAreRefusedAndNothingIsLeft) {
   // asked for, the first stays
   EXPECT_EQ(complaint({a, b}, true), "");
   EXPECT_EQ(merged()[0].estimate_digest, "one");
+}
+
+// the digest is of the estimate: what was scored of it is compared too, but for costs, which no two runs have alike
+TEST_F(MergeTest, OneEstimateHasOneScore) {
+  const auto scored = [](std::vector<Score> scores) {
+    Outcome outcome = row(1, OutcomeStatus::ok);
+    outcome.scores = std::move(scores);
+    return outcome;
+  };
+  const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
+  const auto a = make("a.db", {row(0, OutcomeStatus::ok), scored({{"ate_m", 0.5}, {"estimate_cpu_s", 1.0}})});
+  const auto same = make("same.db", {scored({{"ate_m", 0.5}, {"estimate_cpu_s", 2.0}}), row(2, OutcomeStatus::ok)});
+  EXPECT_EQ(complaint({a, same}), "");
+  for (const auto& [values, says] : {std::pair{std::vector<Score>{{"ate_m", 0.25}}, "ate_m is 0.25, elsewhere 0.5"},
+                                     {{{"ate_m", nan}}, "ate_m is nan, elsewhere 0.5"},
+                                     {{{"ate_m", inf}}, "ate_m is inf, elsewhere 0.5"},
+                                     {{}, "ate_m is none, elsewhere 0.5"},
+                                     {{{"ate_m", 0.5}, {"rpe_1m_m", 1.0}}, "rpe_1m_m is 1, elsewhere none"}}) {
+    std::filesystem::remove(folder_ / "b.db");
+    std::filesystem::remove(out_);
+    const auto b = make("b.db", {scored(values), row(2, OutcomeStatus::ok)});
+    EXPECT_THAT(complaint({a, b}), HasSubstr(std::string("b.db: hill, seed 1, slam/icp: ") + says));
+    EXPECT_FALSE(std::filesystem::exists(out_));
+    EXPECT_EQ(complaint({a, b}, true), "") << "asked for, the first stays";
+    EXPECT_EQ(Results(out_, Results::Mode::read_only).scores().size(), 4u);
+  }
+  const auto unknown = make("unknown.db", {scored({{"ate_m", nan}})});
+  std::filesystem::remove(out_);
+  EXPECT_EQ(complaint({unknown, unknown}), "") << "what is unknown twice does not differ";
+}
+
+TEST_F(MergeTest, AScoreThatIsNoNumberIsNoZero) {
+  const auto a = make("a.db", {row(1, OutcomeStatus::ok)});
+  SQLite::Database(a.string(), SQLite::OPEN_READWRITE).exec("UPDATE score_values SET value = 'good'");
+  EXPECT_THAT(complaint({a}), HasSubstr("a.db: hill, seed 1, slam/icp, ate_m: is text, must be a number or null"));
+  EXPECT_FALSE(std::filesystem::exists(out_));
 }
 
 TEST_F(MergeTest, ARejectionGivesWayToAnOutcome) {

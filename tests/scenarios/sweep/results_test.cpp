@@ -9,7 +9,11 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <limits>
+#include <string>
+#include <utility>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/provenance/build_id.hpp"
@@ -35,6 +39,10 @@ class ResultsTest : public testing::TemporaryFolder {
  protected:
   std::filesystem::path path() const { return folder_ / "results.db"; }
 
+  std::string bytes_of(const std::string& name) const {
+    std::ifstream file(folder_ / name, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
   std::string complaint(Results::Mode mode) const {
     try {
       Results results(path(), mode);
@@ -138,6 +146,65 @@ TEST_F(ResultsTest, NaNAndInfinityAreKept) {
   ASSERT_EQ(results.scores().size(), 2u);
   EXPECT_TRUE(std::isnan(results.scores()[0].value));
   EXPECT_EQ(results.scores()[1].value, std::numeric_limits<double>::infinity());
+}
+
+// a column of SQLite takes what is no number, and gives it as 0
+TEST_F(ResultsTest, AValueThatIsNoNumberIsNamed) {
+  {
+    Results results(path(), Results::Mode::create_or_append);
+    results.store(sample_outcome(1));
+    results.store(DrawValues{"hill", 1, {{"motion_path_m", 2.0}}, {}});
+    results.store(Certificate{"b", {{"drop", "ball", "law", "m", 1.0, 0.0, 2.0, ""}}});
+  }
+  const auto reading = [&](const char* change, const auto& read) -> std::string {
+    SQLite::Database(path().string(), SQLite::OPEN_READWRITE).exec(change);
+    try {
+      read(Results(path(), Results::Mode::read_only));
+    } catch (const BadInput& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const auto scores = [](const Results& results) { results.scores(); };
+  const auto each = [](const Results& results) {
+    Names names;
+    results.each(Rows::all, names, [](const OutcomeView&) {});
+  };
+  const auto draws = [](const Results& results) { results.draws(); };
+  const auto certificates = [](const Results& results) { results.certificates(); };
+  const std::string at = path().string() + ": hill, seed 1, slam/icp, ate_m: ";
+  for (const auto& [value, is] : {std::pair{"'good'", "is text"}, {"x'00ff'", "is a blob"}, {"''", "is text"}}) {
+    const std::string change = std::string("UPDATE score_values SET value = ") + value + " WHERE metric = 'ate_m'";
+    EXPECT_EQ(reading(change.c_str(), scores), at + is + ", must be a number or null");
+    EXPECT_EQ(reading(change.c_str(), each), at + is + ", must be a number or null");
+  }
+  EXPECT_EQ(reading("UPDATE score_values SET value = '3'", each), "") << "SQLite makes a number of it";
+  EXPECT_EQ(reading("UPDATE score_values SET value = NULL", each), "");
+  EXPECT_EQ(reading("UPDATE draw_values SET value = 'far'", draws),
+            path().string() + ": hill, seed 1, motion_path_m: is text, must be a number or null");
+  EXPECT_EQ(reading("UPDATE certificates SET high = 'high'", certificates),
+            path().string() + ": certificate, drop: is text, must be a number or null");
+}
+
+TEST_F(ResultsTest, WhatTheSchemaHasIsThereOrNamed) {
+  { Results(path(), Results::Mode::create_or_append).store(sample_outcome(1)); }
+  const std::string whole = bytes_of("results.db");
+  for (const auto& [change, missing] :
+       {std::pair{"DROP TABLE score_values", "table score_values"},
+        {"DROP TABLE notes", "table notes"},
+        {"DROP VIEW curves", "view curves"},
+        {"DROP VIEW scores; DROP VIEW curves; ALTER TABLE outcomes DROP COLUMN message",
+         "column message of table outcomes"},
+        {"ALTER TABLE draw_values RENAME COLUMN metric TO name", "column metric of table draw_values"}}) {
+    write("results.db", whole);
+    SQLite::Database(path().string(), SQLite::OPEN_READWRITE)
+        .exec(std::string("PRAGMA legacy_alter_table = ON;") + change);
+    const std::string says = path().string() + ": not a usable results database: it has no " + missing;
+    EXPECT_EQ(complaint(Results::Mode::read_only), says);
+    EXPECT_EQ(complaint(Results::Mode::create_or_append), says);
+  }
+  write("results.db", whole);
+  EXPECT_EQ(complaint(Results::Mode::read_only), "");
 }
 
 TEST_F(ResultsTest, AnotherBuildMayReadButNotAppend) {

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A TUM file of somebody else's that shares little or nothing with the recording.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "scenarios/recordings/number_text.hpp"
+#include "system/program.hpp"
+
+namespace tumble::system_test {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class GivenTrajectory : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = test_folder();
+    recording_ = (shared_run("roll") / "recording.h5").string();
+    const std::string tum = (folder_ / "truth.tum").string();
+    ASSERT_EQ(run_program({"export", recording_, "--format", "tum", "-o", tum, "--quiet"}).status, 0);
+    std::ifstream file(tum);
+    for (std::string line; std::getline(file, line);) {
+      if (!line.starts_with('#')) lines_.push_back(line);
+    }
+    ASSERT_GT(lines_.size(), 1000u);
+  }
+
+  /// The first `count` true poses, their stamps times `factor`.
+  Ended score(std::size_t count, double factor, bool as_json = false) const {
+    const fs::path tum = folder_ / "theirs.tum";
+    {
+      std::ofstream file(tum);
+      for (std::size_t k = 0; k < count; ++k) {
+        std::istringstream words(lines_[k]);
+        double stamp_s = 0.0;
+        std::string rest;
+        words >> stamp_s;
+        std::getline(words, rest);
+        std::string stamp;
+        scenarios::append_seconds(stamp, std::lround(1e9 * stamp_s * factor));
+        file << stamp << rest << '\n';
+      }
+    }
+    std::vector<std::string> arguments = {"score", tum.string(), recording_, "--frame", "body"};
+    if (as_json) arguments.emplace_back("--json");
+    return run_program(arguments);
+  }
+
+  fs::path folder_;
+  std::string recording_;
+  std::vector<std::string> lines_;
+};
+
+TEST_F(GivenTrajectory, WhatWasNotComparedIsNotPerfect) {
+  const auto refused = [](const Ended& ended) {
+    EXPECT_EQ(ended.status, 2) << ended.out;
+    EXPECT_EQ(ended.out, "");
+    EXPECT_EQ(line_count(ended.err), 1u) << ended.err;
+    EXPECT_THAT(ended.err, HasSubstr("another unit of time"));
+    return ended.err;
+  };
+  EXPECT_THAT(refused(score(1, 1.0)), HasSubstr("1 of its 1 poses"));
+  // the first two of 0.5 ms each, of some seconds
+  EXPECT_THAT(refused(score(2, 1.0)), HasSubstr("cover 0.0 %"));
+  // stamps in microseconds: the second pose lies beyond the end
+  EXPECT_THAT(refused(score(lines_.size(), 1e6)), HasSubstr("1 of its " + std::to_string(lines_.size()) + " poses"));
+  // stamps in kiloseconds: all lie in the first thousandth
+  EXPECT_THAT(refused(score(lines_.size(), 1e-3)), HasSubstr("must be at least 2 poses and 1 %"));
+}
+
+TEST_F(GivenTrajectory, HowMuchWasComparedStandsInTheTable) {
+  const std::size_t half = lines_.size() / 2;
+  const Ended table = score(half, 1.0);
+  EXPECT_EQ(table.status, 0) << table.err;
+  EXPECT_THAT(table.out, HasSubstr("covered_share"));
+  EXPECT_THAT(table.out, HasSubstr(std::to_string(half) + " of " + std::to_string(half)));
+  const nlohmann::json document = json_of(score(half, 1.0, true));
+  EXPECT_NEAR(document["covered"]["share"].get<double>(), 0.5, 0.05);
+  EXPECT_EQ(document["covered"]["compared"], half);
+  EXPECT_EQ(document["covered"]["poses"], half);
+  // stamps in milliseconds, a pose every 0.5 ms: some thirty lie within, each at a wrong time, which the scores show
+  const nlohmann::json wrong = json_of(score(lines_.size(), 1e3, true));
+  EXPECT_LT(wrong["covered"]["compared"].get<double>(), 0.01 * wrong["covered"]["poses"].get<double>());
+  // an estimate in a folder says what it is, and has no such rows
+  const Ended own =
+      run_program({"score", (shared_run("roll") / "estimates" / "position-rolling").string(), recording_});
+  EXPECT_EQ(own.status, 0) << own.err;
+  EXPECT_THAT(own.out, Not(HasSubstr("covered_share")));
+}
+
+TEST_F(GivenTrajectory, AFileOfAnEstimateIsNotWrittenOver) {
+  const fs::path estimate = folder_ / "e";
+  fs::copy(shared_run("roll") / "estimates" / "position-rolling", estimate);
+  const std::string target = (estimate / "estimate.json").string(), whole = read_file(target);
+  ASSERT_NE(whole, "");
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"replay", recording_, estimate.string(), "-o", target},
+        {"render", recording_, estimate.string(), "-o", target},
+        {"export", recording_, "--format", "mcap", "--estimate", estimate.string(), "-o", target}}) {
+    const Ended ended = run_program(arguments);
+    EXPECT_EQ(ended.status, 2) << arguments.front();
+    EXPECT_THAT(ended.err, HasSubstr("which is read; name another output")) << arguments.front();
+    EXPECT_EQ(read_file(target), whole) << arguments.front();
+  }
+}
+
+}  // namespace
+}  // namespace tumble::system_test
