@@ -26,9 +26,9 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
-/// A number of things is named so, and there are no halves of them.
-bool is_count(std::string_view name) {
-  return name.ends_with("_count");
+/// A number of things and the number of a shape in a list are named so, and there are no halves of them.
+bool is_whole(std::string_view name) {
+  return name.ends_with("_count") || name == "shape";
 }
 
 }  // namespace
@@ -73,7 +73,7 @@ Values resolve(const std::string& place, const Values& given, std::span<const Pa
            << parameter->low << ", " << parameter->high << "]";
       throw InvalidSituation(text.str());
     }
-    if (is_count(name) && value != std::floor(value)) {
+    if (is_whole(name) && value != std::floor(value)) {
       std::ostringstream text;
       text << place << "." << name << " is " << value << ", must be a whole number";
       throw InvalidSituation(text.str());

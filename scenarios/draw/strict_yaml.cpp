@@ -21,6 +21,8 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::uintmax_t kLargestFile = 4u << 20;
+/// Identifiers name files, whose name has 255 bytes at most, a seed and an ending included.
+constexpr std::size_t kIdentifierMax = 100;
 
 /// Counts what the parser finds. Each thing in a text takes a byte at least, empty ones the sign that stands for them:
 /// a parser that finds many more turns in a circle, which it does on some texts that are no YAML, for ever.
@@ -129,6 +131,9 @@ std::string YamlNode::identifier() const {
   const auto allowed = [&](char c) { return lower(c) || (c >= '0' && c <= '9') || c == '_'; };
   if (!lower(name[0]) || !std::all_of(name.begin(), name.end(), allowed)) {
     fail("'" + name + "' must be a lower-case letter followed by letters, digits and underscores");
+  }
+  if (name.size() > kIdentifierMax) {
+    fail("has " + std::to_string(name.size()) + " characters, must be at most " + std::to_string(kIdentifierMax));
   }
   return name;
 }

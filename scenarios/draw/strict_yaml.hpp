@@ -34,7 +34,7 @@ class YamlNode {
   std::string text() const;
   /// A scalar as text, perhaps empty.
   std::string any_text() const;
-  /// A scalar that is a lower-case identifier: a letter, then letters, digits and underscores.
+  /// A scalar that is a lower-case identifier: a letter, then letters, digits and underscores, 100 at most.
   std::string identifier() const;
   /// A finite number, not quoted.
   double number() const;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/estimate_file.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -19,9 +21,6 @@ namespace {
 using nlohmann::json;
 
 constexpr int kFormatVersion = 1;
-constexpr const char* kFiles[] = {"estimate.json",   "rates.csv",    "attitude.tum",
-                                  "trajectory.tum",  "contacts.csv", "sweeps.csv",
-                                  "sweep_poses.csv", "map.ply",      "position_covariance.csv"};
 const std::string kRatesHeader = "time_ns,wx_rad_s,wy_rad_s,wz_rad_s,cxx,cxy,cxz,cyy,cyz,czz,clipped_axes,source";
 const std::string kPose = "px_m,py_m,pz_m,qx,qy,qz,qw,vx_m_s,vy_m_s,vz_m_s";
 const std::string kContactsHeader = "time_ns,label";
@@ -45,15 +44,14 @@ Eigen::Vector3d read_vector(const Table& table, const Table::Row& row, std::size
   return {table.number(row, first), table.number(row, first + 1), table.number(row, first + 2)};
 }
 
-// x y z w, as it stands in the file; a zero or non-finite one is refused, since it is no attitude
+// x y z w, as it stands in the file; one of another norm than 1 is refused, since it is no attitude. NaN is what a
+// method of ours leaves that broke down.
 Eigen::Quaterniond read_quaternion(const Table& table, const Table::Row& row, std::size_t first, bool normalise) {
   Eigen::Quaterniond q(table.number(row, first + 3), table.number(row, first), table.number(row, first + 1),
                        table.number(row, first + 2));
-  const double norm = q.norm();
-  if (std::isfinite(norm) && std::abs(norm - 1.0) > 1e-2) {
-    throw BadInput(table.path.string() + ":" + std::to_string(row.line) + ": quaternion of norm " +
-                   std::to_string(norm) + ", must be 1");
-  }
+  const double norm = q.coeffs().stableNorm();
+  if (std::abs(norm - 1.0) > 1e-2)
+    throw BadInput(fmt::format("{}:{}: quaternion of norm {:g}, must be 1", table.path.string(), row.line, norm));
   return normalise ? q.normalized() : q;
 }
 
@@ -249,16 +247,18 @@ void read_sweeps(const std::filesystem::path& folder, Estimate& estimate) {
   }
 }
 
-void read_tum(const std::filesystem::path& path, std::vector<PoseState>& poses) {
+/// `all_finite`: what is not is refused, as `import` does.
+void read_tum(const std::filesystem::path& path, std::vector<PoseState>& poses, bool all_finite = false) {
   const Table table = Table::read(path, ' ', "", 8);
   for (const Table::Row& row : table.rows) {
     PoseState pose;
     pose.time_ns = table.time_ns(row, 0);
     pose.p_WA_m = read_vector(table, row, 1);
     pose.q_WA = read_quaternion(table, row, 4, true);
-    if (!poses.empty() && pose.time_ns <= poses.back().time_ns) {
+    if (all_finite && !(pose.p_WA_m.allFinite() && pose.q_WA.coeffs().allFinite()))
+      throw BadInput(path.string() + ":" + std::to_string(row.line) + ": the pose is not finite");
+    if (!poses.empty() && pose.time_ns <= poses.back().time_ns)
       throw BadInput(path.string() + ":" + std::to_string(row.line) + ": time stamps must rise");
-    }
     poses.push_back(pose);
   }
 }
@@ -318,7 +318,7 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
   std::filesystem::create_directories(folder, error);
   if (error) throw BadInput(folder.string() + ": cannot be made: " + error.message());
   // what an earlier estimate left would be read back with this one
-  for (const char* name : kFiles) std::filesystem::remove(folder / name, error);
+  for (const char* name : kEstimateFiles) std::filesystem::remove(folder / name, error);
   if (!estimate.rates.empty()) write_rates(folder / "rates.csv", estimate.rates);
   if (!estimate.attitudes.empty()) {
     TableWriter table(folder / "attitude.tum", ' ', "");
@@ -376,7 +376,7 @@ Estimate read_estimate(const std::filesystem::path& path, Kind& kind, std::strin
     kind = Kind::position;
     method = path.stem().string();
     estimate.frame = tum_frame;
-    read_tum(path, estimate.poses);
+    read_tum(path, estimate.poses, true);
     if (estimate.poses.empty()) throw BadInput(path.string() + ": no pose in it");
     return estimate;
   }

@@ -8,6 +8,11 @@
 
 namespace tumble::scenarios {
 
+/// What the folder of an estimate may hold.
+inline constexpr const char* kEstimateFiles[] = {"estimate.json",   "rates.csv",    "attitude.tum",
+                                                 "trajectory.tum",  "contacts.csv", "sweeps.csv",
+                                                 "sweep_poses.csv", "map.ply",      "position_covariance.csv"};
+
 /// Leaves an estimate in a folder: estimate.json (method, kind, frame, status, health, digest of the sensors that it
 /// was made from), rates.csv, attitude.tum, trajectory.tum (t x y z qx qy qz qw), position_covariance.csv,
 /// contacts.csv, sweeps.csv, sweep_poses.csv, map.ply; only the files that apply, estimate.json last. Everything that
@@ -22,7 +27,8 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
 std::string estimated_sensors(const std::filesystem::path& path);
 
 /// Reads such a folder back, or a single TUM file of somebody else's (kind position, poses of `tum_frame`, named after
-/// the file). Throws BadInput with path, line and reason.
+/// the file; of a file each number must be finite, in a folder NaN is what a method left that broke down). Throws
+/// BadInput with path, line and reason.
 Estimate read_estimate(const std::filesystem::path& path, Kind& kind, std::string& method, Frame tum_frame);
 
 }  // namespace tumble::scenarios

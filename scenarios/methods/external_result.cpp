@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/methods/answer_bounds.hpp"
 #include "scenarios/methods/estimate_file.hpp"
 #include "scenarios/methods/map_file.hpp"
 #include "scenarios/recordings/table_file.hpp"
@@ -89,10 +90,46 @@ Estimate read_folder(const ExternalDescription& description, const std::filesyst
   return estimate;
 }
 
+void require_sizes(const AnswerBounds& bounds, ExternalDescription::Output output, const std::filesystem::path& path) {
+  if (output != ExternalDescription::Output::estimate) {
+    if (std::filesystem::exists(path)) bounds.require_size(path, bounds.table_bytes());
+    return;
+  }
+  for (const std::string name : kEstimateFiles) {
+    if (!std::filesystem::exists(path / name)) continue;
+    bounds.require_size(path / name, name == "map.ply" ? bounds.map_bytes() : bounds.table_bytes());
+  }
+}
+
+/// Row k of a table by its line: that is looked for in the file only when something has to be said about it.
+AnswerBounds::Place rows_of(const std::filesystem::path& file, bool headed) {
+  return [file, headed](std::size_t row) {
+    std::ifstream stream(file);
+    std::size_t line_number = 0, rows = headed ? row + 2 : row + 1;
+    std::string line;
+    while (rows > 0 && std::getline(stream, line)) {
+      ++line_number;
+      if (!line.empty() && line.front() != '#' && line != "\r") --rows;
+    }
+    return file.filename().string() + ":" + std::to_string(line_number);
+  };
+}
+
+void require_sense(const AnswerBounds& bounds, const Estimate& estimate, ExternalDescription::Output output,
+                   const std::filesystem::path& path) {
+  const bool folder = output == ExternalDescription::Output::estimate;
+  bounds.require_rates(estimate.rates, rows_of(folder ? path / "rates.csv" : path, true));
+  bounds.require_attitudes(estimate.attitudes, rows_of(folder ? path / "attitude.tum" : path, false));
+  bounds.require_poses(estimate.poses, rows_of(folder ? path / "trajectory.tum" : path, false));
+  bounds.require_slam(estimate);
+}
+
 }  // namespace
 
 Estimate read_external_result(const ExternalDescription& description, const std::filesystem::path& output,
                               const std::filesystem::path& map, const sim::Sensors& sensors) {
+  const AnswerBounds bounds(sensors);
+  require_sizes(bounds, description.output, output);
   Estimate estimate;
   switch (description.output) {
     case ExternalDescription::Output::rates:
@@ -105,7 +142,11 @@ Estimate read_external_result(const ExternalDescription& description, const std:
       estimate = read_folder(description, output);
       break;
   }
-  if (description.kind == Kind::slam && std::filesystem::exists(map)) estimate.map = read_map(map);
+  if (description.kind == Kind::slam && std::filesystem::exists(map)) {
+    bounds.require_size(map, bounds.map_bytes());
+    estimate.map = read_map(map);
+  }
+  require_sense(bounds, estimate, description.output, output);
   return estimate;
 }
 

@@ -10,6 +10,7 @@
 #include <span>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/methods/answer_bounds.hpp"
 #include "scenarios/methods/external_method.hpp"
 
 namespace tumble::scenarios {
@@ -121,7 +122,13 @@ json of_lidar(const sim::LidarRecord& lidar, Arrays& arrays) {
 /// The memory of an answer: its text, and arrays that are where the text says.
 class Answer {
  public:
-  explicit Answer(const SharedMemory& memory) : bytes_(memory.contents()) {
+  Answer(const SharedMemory& memory, const AnswerBounds& bounds) {
+    // a function can make the memory larger than what it was asked for
+    const std::uintmax_t most = bounds.table_bytes() + bounds.map_bytes();
+    if (memory.size() > most)
+      throw BadInput("the answer has " + std::to_string(memory.size()) + " bytes, must be at most " +
+                     std::to_string(most) + " for this recording");
+    bytes_ = memory.contents();
     if (bytes_.empty()) throw BadInput("the function ended the interpreter and left no answer");
     std::uint64_t length = 0;
     if (bytes_.size() >= sizeof(length)) std::memcpy(&length, bytes_.data(), sizeof(length));
@@ -202,7 +209,7 @@ std::vector<PoseState> read_poses(const Answer& answer) {
     poses[k].time_ns = times_ns[k];
     poses[k].p_WA_m = row_of(positions, k);
     const Eigen::Quaterniond q{Eigen::Map<const Eigen::Vector4d>(&quaternions[4 * k])};
-    if (!(std::abs(q.norm() - 1.0) <= kNormTolerance) || (k > 0 && times_ns[k] <= times_ns[k - 1]))
+    if (!(std::abs(q.coeffs().stableNorm() - 1.0) <= kNormTolerance) || (k > 0 && times_ns[k] <= times_ns[k - 1]))
       throw BadInput("pose " + std::to_string(k) + " of the answer has no attitude, or a time that does not rise");
     poses[k].q_WA = q.normalized();
   }
@@ -232,21 +239,25 @@ void write_sensors(const sim::Sensors& sensors, SharedMemory& memory) {
 }
 
 Estimate read_answer(const SharedMemory& memory, Kind kind, Frame frame, const sim::Sensors& sensors) {
-  const Answer answer(memory);
+  const AnswerBounds bounds(sensors);
+  const Answer answer(memory, bounds);
   if (const auto raised = answer.told("raised")) throw NoAnswer(NoAnswer::Why::crashed, *raised);
   if (const auto refused = answer.told("refused")) throw BadInput(*refused);
   Estimate estimate;
   estimate.frame = frame;
   if (kind == Kind::rate) {
     read_rates(answer, sensors, estimate);
+    bounds.require_rates(estimate.rates, [](std::size_t k) { return "rate[" + std::to_string(k) + "]"; });
     return estimate;
   }
   estimate.poses = read_poses(answer);
+  bounds.require_poses(estimate.poses, [](std::size_t k) { return "pose " + std::to_string(k) + " of the answer"; });
   if (kind == Kind::attitude) {
     for (const PoseState& pose : std::exchange(estimate.poses, {}))
       estimate.attitudes.push_back({pose.time_ns, pose.q_WA, Eigen::Matrix3d::Zero()});
   }
   if (kind == Kind::slam && answer.has("map")) read_map(answer, estimate);
+  bounds.require_slam(estimate);
   return estimate;
 }
 

@@ -16,7 +16,7 @@ void write_sensors(const sim::Sensors& sensors, SharedMemory& memory);
 
 /// What the function returned as an estimate of that kind; rates by the samples of the first IMU. Throws NoAnswer with
 /// the traceback when it raised, and BadInput with the reason when its answer is none: another shape, a number that is
-/// not finite, times that do not rise, memory that holds something else.
+/// not finite, times that do not rise, memory that holds something else, what AnswerBounds refuses.
 Estimate read_answer(const SharedMemory& memory, Kind kind, Frame frame, const sim::Sensors& sensors);
 
 }  // namespace tumble::scenarios

@@ -47,7 +47,7 @@ constexpr std::string_view kWindowDoc =
     "samples; 0: it integrates from output to output, or from one reading of its own rate to the next";
 constexpr std::string_view kUpdateDoc =
     "sample and hold: the device's own readings per second, not in step with the outputs, which say the last one once "
-    "more until there is a new one; 0: a new one for each output";
+    "more until there is a new one; 0: a new one for each output; else at least 0.1";
 constexpr std::string_view kHandoverDoc =
     "an axis is read by the precise part up to here (back below 0.9 of it) and by the coarse one beyond; 0: coarse "
     "always";
@@ -140,6 +140,8 @@ constexpr std::array kParameters = {
     Parameter{"magnetic_source_farthest_m", 1.5, 0.05, 100.0, "m", "farthest from the place that it stands beside"},
 };
 
+constexpr double kSlowestUpdate_hz = 0.1;
+
 /// One triad's rail.
 void check_rail(const Values& values, const std::string& place, const std::string& prefix, const std::string& unit) {
   const std::string rail_name = prefix + "_rail_" + unit;
@@ -170,6 +172,16 @@ void check_rail(const Values& values, const std::string& place, const std::strin
   }
 }
 
+/// The readings of a triad's every update are held until the next one: a rate that is hardly any would fill the memory.
+void check_update(const Values& values, const std::string& place, const std::string& prefix) {
+  const std::string name = prefix + "_update_hz";
+  const double update_hz = values.at(name);
+  if (update_hz == 0.0 || update_hz >= kSlowestUpdate_hz) return;
+  std::ostringstream text;
+  text << place << "." << name << " is " << update_hz << " Hz, must be 0 (off) or at least " << kSlowestUpdate_hz;
+  throw InvalidSituation(text.str());
+}
+
 }  // namespace
 
 std::span<const Parameter> imu_parameters() {
@@ -179,6 +191,8 @@ std::span<const Parameter> imu_parameters() {
 void check_imu_values(const Values& values, const std::string& place) {
   check_rail(values, place, "gyro", "rad_s");
   check_rail(values, place, "accel", "m_s2");
+  check_update(values, place, "gyro");
+  check_update(values, place, "accel");
   if (values.at("magnetic_source_farthest_m") < values.at("magnetic_source_nearest_m")) {
     throw InvalidSituation(place + ".magnetic_source_farthest_m must be at least magnetic_source_nearest_m");
   }

@@ -171,6 +171,15 @@ TEST(Run, WhatIsLearntOfTheRigIsCarriedOn) {
   EXPECT_EQ(run_program({"run", "hill", "--seed", "1", "--method", "rate/saave", "--learnt", file.string()}).status, 2);
 }
 
+TEST(Run, WhereNothingIsLearntOfTheRigItIsSaid) {
+  const fs::path file = test_folder() / "rig.json";
+  const Ended ended =
+      run_program({"run", "stroll", "--seed", "1", "--method", "rate/tumble_lag", "--learnt", file.string()});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_FALSE(fs::exists(file));
+  EXPECT_THAT(ended.err, HasSubstr("rig.json: not written: nothing was learnt of the rig"));
+}
+
 TEST(Render, WritesAPictureOfARecordingWithItsEstimates) {
   const fs::path run = shared_run("roll");
   const fs::path png = test_folder() / "roll.png";

@@ -101,7 +101,7 @@ int run_estimate(const Session& session, const Options& options) {
   scenarios::write_estimate(options.folder, method.info.name, method.info.kind, estimate,
                             scenarios::digest(sensors, nullptr));
   folder.keep();
-  learnt.keep();
+  learnt.keep(session);
 
   const nlohmann::json document = {{"method", method.info.name},
                                    {"kind", to_string(method.info.kind)},

@@ -108,6 +108,10 @@ sim::LidarRecord lidar_sheet(const Session& session, const ImportOptions& option
 scenarios::SweepReading sweep_reading(const Session& session, const ImportOptions& options) {
   scenarios::SweepReading reading;
   reading.device = lidar_sheet(session, options);
+  if (!options.lidar.empty()) {
+    const sim::Values values = sheet_of(session, "--lidar", options.lidar, "lidar").values();
+    if (values.has("range_max_m")) reading.range_max_m = values.at("range_max_m");
+  }
   reading.time_field = options.time_field;
   reading.time_unit = options.time_unit;
   reading.not_skewed = options.not_skewed;

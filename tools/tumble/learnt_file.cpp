@@ -25,8 +25,12 @@ scenarios::Method LearntFile::wrap(const scenarios::Method& method) {
   return path_.empty() || !method.info.learns_rig ? method : scenarios::learning_method(method, learning_);
 }
 
-void LearntFile::keep() const {
-  if (!path_.empty() && learning_.found() != nullptr) scenarios::write_learnt_rig(path_, *learning_.found());
+void LearntFile::keep(const Session& session) const {
+  if (path_.empty()) return;
+  if (learning_.found() != nullptr) return scenarios::write_learnt_rig(path_, *learning_.found());
+  session.note(path_.string() + (std::filesystem::exists(path_) ? ": stays as it is" : ": not written") +
+               ": nothing was learnt of the rig, which was held to what was known before: no free flight or contact "
+               "told more of it, or the run failed");
 }
 
 }  // namespace tumble::tools

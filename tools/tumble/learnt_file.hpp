@@ -5,6 +5,7 @@
 #include <string>
 
 #include "scenarios/methods/rate_tumble.hpp"
+#include "tools/tumble/session.hpp"
 
 namespace tumble::tools {
 
@@ -22,8 +23,9 @@ class LearntFile {
   /// object.
   scenarios::Method wrap(const scenarios::Method& method);
 
-  /// Writes what was learnt; leaves the file as it is where nothing was. Throws BadInput when it cannot write.
-  void keep() const;
+  /// Writes what was learnt. Where nothing was, the file stays as it is, and a note says so and why. Throws BadInput
+  /// when it cannot write.
+  void keep(const Session& session) const;
 
  private:
   std::filesystem::path path_;

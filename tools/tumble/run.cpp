@@ -161,7 +161,7 @@ int run(const Session& session, const Options& given) {
     leave_pictures(options.folder, result);
     folder->keep();
   }
-  learnt.keep();
+  learnt.keep(session);
 
   const std::string digest = scenarios::run_digest(result);
   const nlohmann::json document = {{"scenario", result.scenario},

@@ -89,8 +89,8 @@ bool is_number(std::string_view word) {
   return error != std::errc::invalid_argument && end == word.data() + word.size();
 }
 
-/// The library reads a word up to where it stops being a number, and 0 where it is none: the words of an ASCII PCD are
-/// held to be numbers, as many in a line as the header says.
+/// The library reads a word up to where it stops being a number, and 0 or NaN where it is none: the words of a file
+/// written as text are held to be numbers, as many in a line as the header says.
 void require_numbers(const std::filesystem::path& path, const CloudHeader& header) {
   std::ifstream stream(path, std::ios::binary);
   std::string text(static_cast<std::size_t>(header.header_bytes), '\0');
@@ -121,7 +121,7 @@ void require_numbers(const std::filesystem::path& path, const CloudHeader& heade
 template <class Reader>
 Cloud read_by_pcl(const std::filesystem::path& path, const CloudHeader& header, const char* format) {
   if (header.points == 0) return {};
-  if (header.ascii_pcd) require_numbers(path, header);
+  if (header.ascii) require_numbers(path, header);
   const QuietPcl quiet;
   pcl::PCLPointCloud2 cloud;
   int status = -1;
@@ -134,7 +134,9 @@ Cloud read_by_pcl(const std::filesystem::path& path, const CloudHeader& header, 
     throw BadInput(path.string() + ": cannot be read as " + format + " after its header of " +
                    std::to_string(header.header_bytes) + " bytes: damaged or truncated");
   }
-  return to_columns(cloud, found);
+  Cloud out = to_columns(cloud, found);
+  out.viewpoint = header.viewpoint;
+  return out;
 }
 
 Cloud read_kitti(const std::filesystem::path& path) {

@@ -14,6 +14,7 @@ struct Cloud {
   std::vector<std::string> names;            ///< as written, but for a prefix "scalar_", which CloudCompare adds
   std::vector<std::vector<double>> columns;  ///< parallel to `names`, one number per point
   std::size_t points = 0;
+  std::string viewpoint;  ///< of a PCD that states another pose than the sensor's own, as written: not applied
 
   /// The column of that name; null when there is none.
   const std::vector<double>* find(const std::string& name) const;
@@ -31,8 +32,9 @@ struct CloudHeader {
   std::uint64_t point_bytes = 0;  ///< 0 when written as text
   std::uint64_t header_bytes = 0;
   std::size_t fields = 0;
-  std::uint64_t numbers = 0;  ///< per point, of all fields, in a PCD
-  bool ascii_pcd = false;
+  std::uint64_t numbers = 0;  ///< per point, of all fields
+  bool ascii = false;
+  std::string viewpoint;  ///< of a PCD: x y z qw qx qy qz, as written; "" for the sensor's own
 };
 
 /// Reads and checks a header alone; the same errors.

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <fstream>
 #include <map>
 #include <span>
@@ -165,6 +166,23 @@ std::uint64_t single(const HeaderLines& lines, const std::string& name, const Wo
   return value;
 }
 
+/// Of a VIEWPOINT, x y z qw qx qy qz: as written, or "" where it says nothing.
+std::string viewpoint_of(const HeaderLines& lines, const Words& words) {
+  if (words.size() != 7) lines.fail("VIEWPOINT has " + std::to_string(words.size()) + " numbers, must have 7");
+  constexpr std::array<double, 7> kOwn = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0};
+  std::string written;
+  bool own = true;
+  for (std::size_t i = 0; i < kOwn.size(); ++i) {
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(words[i].data(), words[i].data() + words[i].size(), value);
+    if (error != std::errc() || end != words[i].data() + words[i].size() || !std::isfinite(value))
+      lines.fail("VIEWPOINT's number " + std::to_string(i + 1) + " is '" + words[i] + "', must be finite");
+    own = own && value == kOwn[i];
+    written += (i > 0 ? " " : "") + words[i];
+  }
+  return own ? "" : written;
+}
+
 }  // namespace
 
 CloudHeader read_ply_header(const std::filesystem::path& path) {
@@ -191,6 +209,8 @@ CloudHeader read_ply_header(const std::filesystem::path& path) {
   }
   if (header.fields == 0) lines.fail("no 'element vertex' with properties: there are no points");
   if (text) header.point_bytes = 0;
+  header.ascii = text;
+  header.numbers = header.fields;
   header.header_bytes = lines.bytes();
   lines.require_room(header);
   return header;
@@ -229,11 +249,12 @@ CloudHeader read_pcd_header(const std::filesystem::path& path) {
   if (found.contains("POINTS") && single(lines, "POINTS", found["POINTS"]) != header.points) {
     lines.fail("POINTS is " + found["POINTS"].front() + ", WIDTH times HEIGHT " + std::to_string(header.points));
   }
+  if (found.contains("VIEWPOINT")) header.viewpoint = viewpoint_of(lines, found["VIEWPOINT"]);
   const std::string encoding = found["DATA"].empty() ? "" : found["DATA"].front();
   header.header_bytes = lines.bytes();
   if (encoding == "ascii") {
     header.point_bytes = 0;
-    header.ascii_pcd = true;
+    header.ascii = true;
   } else if (encoding != "binary" && encoding != "binary_compressed") {
     lines.fail("DATA is '" + encoding + "', must be ascii, binary or binary_compressed");
   }

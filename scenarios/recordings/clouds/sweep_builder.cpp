@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/clouds/sweep_builder.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,6 +20,7 @@ namespace {
 constexpr std::ptrdiff_t kProbe = 10;
 constexpr double kByte = 255.0;
 constexpr double kFar_m = 1e6;
+constexpr double kBeyond = 2.0;  // ranges of the data sheet
 /// The longest offset that a sweep may hold where its period is not known yet.
 constexpr std::int64_t kOffsetMax_ns = 1000000000;
 
@@ -108,6 +111,8 @@ void SweepBuilder::take(Waiting& sweep) {
   const std::vector<std::size_t> kept =
       sweep.cloud.points > 0 ? hits(sweep.cloud, sweep.where) : std::vector<std::size_t>{};
   misses_ += sweep.cloud.points - kept.size();
+  if (!sweep.cloud.viewpoint.empty() && viewpoints_++ == 0)
+    first_viewpoint_ = sweep.where + ": " + sweep.cloud.viewpoint;
   if (kept.empty() && !sweep.stamp_ns) {
     ++skipped_;
     return;
@@ -170,6 +175,7 @@ void SweepBuilder::take_points(const Waiting& sweep, const std::vector<std::size
     const Eigen::Vector3d position(x[i], y[i], z[i]);
     record_.position_L_m.push_back(position.cast<float>());
     record_.range_m.push_back(record_.position_L_m.back().norm());
+    if (record_.range_m.back() > kBeyond * reading_.range_max_m) ++beyond_;
     const bool lit = intensity != nullptr && std::isfinite((*intensity)[i]) && (*intensity)[i] >= 0.0;
     record_.intensity.push_back(lit ? static_cast<float>((*intensity)[i]) : 0.0f);
     brightest_ = std::max(brightest_, record_.intensity.back());
@@ -206,9 +212,34 @@ void SweepBuilder::scale_intensity(std::vector<std::string>& notes) {
   notes.push_back("intensities go beyond 1: divided by " + std::to_string(full));
 }
 
+/// Points in mm look so; a real one beyond the range that its sheet states is a lucky one.
+void SweepBuilder::require_range(const std::string& where) const {
+  if (reading_.range_max_m <= 0.0 || 2 * beyond_ <= points()) return;
+  throw BadInput(
+      fmt::format("{}: {} of {} points lie farther than {:g} m, twice the range of the data sheet, must be "
+                  "half of them at most: are x y z in metres?",
+                  where, beyond_, points(), kBeyond * reading_.range_max_m));
+}
+
+void SweepBuilder::note_what_was_left(std::vector<std::string>& notes) const {
+  if (misses_ > 0)
+    notes.push_back(std::to_string(misses_) + " points are misses (not finite, beyond 1000 km, or at the origin)");
+  if (skipped_ > 0) notes.push_back(std::to_string(skipped_) + " sweeps without a point and a time are left out");
+  if (dark_ > 0) notes.push_back(std::to_string(dark_) + " points have no intensity: stored as 0");
+  if (viewpoints_ > 0)
+    notes.push_back(std::to_string(viewpoints_) + " sweeps state a VIEWPOINT, which is not applied: points are taken " +
+                    "in the lidar's axes as they stand (first: " + first_viewpoint_ + ")");
+  if (record_.point_times == sim::PointTimes::unknown)
+    notes.push_back("the points have no times: sweeps cannot be deskewed");
+  std::string names;
+  for (const auto& [name, sweeps] : ignored_) names += " " + name;
+  if (!names.empty()) notes.push_back("fields that are not read:" + names);
+}
+
 BuiltSweeps SweepBuilder::finish(const std::string& where, std::vector<std::string>& notes) {
   if (!rule_ && !waiting_.empty()) settle();
   if (points() == 0) throw BadInput(where + ": no sweep holds a point");
+  require_range(where);
   record_.sweep_first.push_back(points());
   record_.name = reading_.device.name;
   record_.device = reading_.device.device;
@@ -222,15 +253,7 @@ BuiltSweeps SweepBuilder::finish(const std::string& where, std::vector<std::stri
                     in_ns(longest_ns_) + ", which is taken for their period");
     record_.sweep_period_ns = longest_ns_;
   }
-  if (misses_ > 0)
-    notes.push_back(std::to_string(misses_) + " points are misses (not finite, beyond 1000 km, or at the origin)");
-  if (skipped_ > 0) notes.push_back(std::to_string(skipped_) + " sweeps without a point and a time are left out");
-  if (dark_ > 0) notes.push_back(std::to_string(dark_) + " points have no intensity: stored as 0");
-  if (record_.point_times == sim::PointTimes::unknown)
-    notes.push_back("the points have no times: sweeps cannot be deskewed");
-  std::string names;
-  for (const auto& [name, sweeps] : ignored_) names += " " + name;
-  if (!names.empty()) notes.push_back("fields that are not read:" + names);
+  note_what_was_left(notes);
   scale_intensity(notes);
   return {std::move(record_), std::move(store_)};
 }

@@ -16,11 +16,12 @@ namespace tumble::scenarios {
 
 /// How the points of a sweep are to be read, where the file does not say.
 struct SweepReading {
-  sim::LidarRecord device;  ///< name, device, T_BL; sweep_period_ns, 0: the median step of the sweeps' starts
-  std::string time_field;   ///< "": the one that is called as one of them usually is
-  std::string time_unit;    ///< s ms us ns; "": told by the field's name ("offset_ns") or its size
-  bool not_skewed = false;  ///< the points were deskewed, or fired at once: their times mean nothing
-  bool assumed = false;     ///< the stamps are a guess: absolute times of points replace them
+  sim::LidarRecord device;   ///< name, device, T_BL; sweep_period_ns, 0: the median step of the sweeps' starts
+  std::string time_field;    ///< "": the one that is called as one of them usually is
+  std::string time_unit;     ///< s ms us ns; "": told by the field's name ("offset_ns") or its size
+  bool not_skewed = false;   ///< the points were deskewed, or fired at once: their times mean nothing
+  double range_max_m = 0.0;  ///< by the data sheet; 0: not known
+  bool assumed = false;      ///< the stamps are a guess: absolute times of points replace them
   /// Where the points are set aside as they come; "": they stay in the record, which then takes memory with each sweep.
   std::filesystem::path scratch;
 };
@@ -68,7 +69,8 @@ class SweepBuilder {
 
   /// The record, in the clock of the stamps, and remarks for the user: how the times of points were read among them. A
   /// period that is not given is the median step, or the latest offset where that is more. Throws BadInput beginning
-  /// with `where`: no point in any sweep, a single sweep of unknown length.
+  /// with `where`: no point in any sweep, most of them beyond twice the range of the data sheet, a single sweep of
+  /// unknown length.
   BuiltSweeps finish(const std::string& where, std::vector<std::string>& notes);
 
  private:
@@ -83,6 +85,8 @@ class SweepBuilder {
   void take_points(const Waiting& sweep, const std::vector<std::size_t>& kept);
   void take_rings(const Waiting& sweep, const std::vector<std::size_t>& kept);
   void scale_intensity(std::vector<std::string>& notes);
+  void require_range(const std::string& where) const;
+  void note_what_was_left(std::vector<std::string>& notes) const;
   std::size_t points() const { return store_ ? store_->size() : record_.position_L_m.size(); }
 
   SweepReading reading_;
@@ -93,7 +97,9 @@ class SweepBuilder {
   std::optional<PointStore> store_;
   float brightest_ = 0.0f;
   std::int64_t longest_ns_ = 0;  ///< offset of a point
-  std::size_t misses_ = 0, dark_ = 0, skipped_ = 0;
+  std::size_t misses_ = 0, dark_ = 0, skipped_ = 0, beyond_ = 0;
+  std::size_t viewpoints_ = 0;                  ///< sweeps that state one
+  std::string first_viewpoint_;                 ///< with its file
   std::map<std::string, std::size_t> ignored_;  ///< columns that mean nothing here, and in how many sweeps they were
 };
 

@@ -108,6 +108,9 @@ TEST(ScenarioText, RefusesWhatIsNotOneMap) {
   EXPECT_EQ(complaint_of(""), "hill.yaml: is empty");
   EXPECT_EQ(complaint_of("# only a comment\n"), "hill.yaml: is empty");
   EXPECT_THAT(complaint_of("- 1\n- 2\n"), HasSubstr("must be a map"));
+  const std::string long_name = "name: " + std::string(5000, 'a');
+  EXPECT_THAT(complaint_of(with(kScenario, "name: hill", long_name.c_str())),
+              testing::AllOf(StartsWith("hill.yaml:1: name: "), HasSubstr("has 5000 characters, must be at most 100")));
   EXPECT_THAT(complaint_of(kScenario + "---\nname: b\n"), HasSubstr("more than one document"));
   EXPECT_THAT(complaint_of("? [a, b]\n: 1\n"), HasSubstr("must be text, is a list"));
   EXPECT_THAT(complaint_of(with(kScenario, "sensors:", "sensors: []\nx:")), HasSubstr("unknown key 'x'"));

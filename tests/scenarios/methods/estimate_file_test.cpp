@@ -109,6 +109,11 @@ TEST_F(EstimateFile, ComplaintsNameFileAndLine) {
   EXPECT_NE(complaint(write("a.tum", "0 1 2 3 0 0 0 1\n0.1 1 2 3 0 0 0\n")).find("a.tum:2: 7 columns, must be 8"),
             std::string::npos);
   EXPECT_NE(complaint(write("b.tum", "0 1 2 x 0 0 0 1\n")).find("b.tum:1: 'x' is not a number"), std::string::npos);
+  EXPECT_NE(
+      complaint(write("nan.tum", "0 1 2 3 0 0 0 1\n1 nan 2 3 0 0 0 1\n")).find("nan.tum:2: the pose is not finite"),
+      std::string::npos);
+  EXPECT_NE(complaint(write("d.tum", "0 1 2 3 0 0 0 1e200\n")).find("d.tum:1: quaternion of norm 1e+200"),
+            std::string::npos);
   EXPECT_NE(complaint(write("c.tum", "0 1 2 3 0 0 0 0\n")).find("c.tum:1: quaternion of norm"), std::string::npos);
   EXPECT_NE(complaint(write("d.tum", "1 1 2 3 0 0 0 1\n1 1 2 3 0 0 0 1\n")).find("d.tum:2: time stamps must rise"),
             std::string::npos);

@@ -125,6 +125,38 @@ TEST_F(ExternalMethod, WhatItLeavesIsRefusedWithItsPlace) {
               HasSubstr("must rise"));
 }
 
+TEST_F(ExternalMethod, WhatItLeavesIsBoundedBeforeItIsRead) {
+  EXPECT_THAT(refused(describe("slam", "truncate -s 100000000000 {output}")),
+              HasSubstr("poses.tum: 100000000000 bytes, must be at most"));
+  EXPECT_THAT(refused(describe("rate", "truncate -s 100000000000 {output}")), HasSubstr("rates.csv: 100000000000"));
+  EXPECT_THAT(refused(describe("position", "mkdir {output}; truncate -s 100000000000 {output}/estimate.json",
+                               "output: estimate\n")),
+              HasSubstr("estimate.json: 100000000000"));
+  const std::string pose = "printf '0.1 1 2 3 0 0 0 1\\n' > {output}; ";
+  EXPECT_THAT(refused(describe("slam", pose + "truncate -s 100000000000 {map}")), HasSubstr("map.ply: 100000000000"));
+  EXPECT_THAT(refused(describe("slam", "mkfifo {output}")), HasSubstr("no regular file"));
+  EXPECT_THAT(refused(describe("slam", "ln -s /dev/zero {output}")), HasSubstr("no regular file"));
+}
+
+TEST_F(ExternalMethod, NonsenseIsRefusedWithLineValueAndBound) {
+  const auto left = [&](const std::string& row, const std::string& kind = "slam") {
+    return refused(describe(kind, "printf '# a word\\n0.1 0 0 0 0 0 0 1\\n" + row + "\\n' > {output}"));
+  };
+  EXPECT_THAT(left("0.2 nan 0 0 0 0 0 1"), HasSubstr("poses.tum:3: the pose is not finite"));
+  EXPECT_THAT(left("0.2 0 0 0 nan 0 0 1"), HasSubstr("poses.tum:3: the pose is not finite"));
+  EXPECT_THAT(left("0.2 0 0 0 0 0 0 1e200"), HasSubstr("poses.tum:3: quaternion of norm 1e+200, must be 1"));
+  EXPECT_THAT(left("0.2 0 0 0 0 0 0 1e200", "attitude"), HasSubstr("poses.tum:3: quaternion of norm 1e+200"));
+  EXPECT_THAT(left("0.2 1e300 0 0 0 0 0 1"),
+              HasSubstr("poses.tum:3: position (1e+300, 0, 0) m, must be finite and within 1e+07 m"));
+  EXPECT_THAT(left("1000000 0 0 0 0 0 0 1"), HasSubstr("poses.tum:3: stamp 1000000 s, must be within -10 to"));
+  EXPECT_THAT(left("1000000 0 0 0 0 0 0 1", "attitude"), HasSubstr("poses.tum:3: stamp 1000000 s"));
+  EXPECT_THAT(refused(describe("position", "printf '%s\\n' '-1000000000 0 0 0 0 0 0 1' > {output}")),
+              HasSubstr("poses.tum:1: stamp -1e+09 s"));
+  EXPECT_THAT(refused(describe("rate", kRawByAwk + "; sed -i '7s/,[^,]*/,nan/' {output}")),
+              HasSubstr("rates.csv:7: rate (nan,"));
+  EXPECT_THAT(refused(describe("rate", kRawByAwk + "; sed -i '7s/,[^,]*/,1e7/' {output}")), HasSubstr("1e+06 rad/s"));
+}
+
 TEST_F(ExternalMethod, DescriptionsAreCheckedBeforeAnythingRuns) {
   EXPECT_THAT(refused(describe("rate", "{csw} {output}")), HasSubstr("did you mean 'csv'"));
   EXPECT_THAT(refused(describe("rate", "true")), HasSubstr("{output}"));

@@ -129,6 +129,14 @@ TEST_F(PythonMethod, WhatItReturnsIsRefusedWithPlaceValueAndBound) {
   EXPECT_THAT(wrong("attitude", "t[:0], np.zeros((0, 4))"), HasSubstr("is empty"));
   EXPECT_THAT(wrong("attitude", "np.minimum(t, t[9]), np.tile([0, 0, 0, 1], (n, 1))"), HasSubstr("time_ns[10]"));
   EXPECT_THAT(wrong("attitude", "t, np.tile([0, 0, 0, 2], (n, 1))"), HasSubstr("norm 2"));
+  EXPECT_THAT(wrong("position", "t, np.full((n, 3), 1e300), np.tile([0, 0, 0, 1], (n, 1))"),
+              AllOf(HasSubstr("pose 0 of the answer"), HasSubstr("within 1e+07 m")));
+  EXPECT_THAT(wrong("attitude", "t + 10**15, np.tile([0, 0, 0, 1], (n, 1))"), HasSubstr("stamp 1000000"));
+  EXPECT_THAT(wrong("slam", "t, np.zeros((n, 3)), np.tile([0, 0, 0, 1], (n, 1)), np.full((1, 3), 1e300)"),
+              HasSubstr("map: point 0"));
+  EXPECT_THAT(wrong("rate", "imu.gyro + 1e7"), HasSubstr("rate[0]: rate"));
+  EXPECT_THAT(refused(function("rate", "os.ftruncate(int(sys.argv[5]), 10**11); os._exit(0)")),
+              HasSubstr("100000000000 bytes, must be at most"));
   EXPECT_THAT(refused(function("rate", "os._exit(0)")), HasSubstr("left no answer"));
   EXPECT_THAT(refused(function("rate", "os.write(int(sys.argv[5]), b'x' * 100); os._exit(0)")), HasSubstr("damaged"));
   EXPECT_THAT(refused(function("rate", "pass", "function: rote\n")), HasSubstr("no function 'rote'"));

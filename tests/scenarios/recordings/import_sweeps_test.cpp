@@ -84,6 +84,27 @@ TEST_F(ImportSweeps, WithoutPointTimesTheyAreUnknownOrNotSkewed) {
   EXPECT_THAT(fixture::bytes_of(folder_ / "again/lidar_000000.ply"), testing::Not(HasSubstr("offset_ns")));
 }
 
+TEST_F(ImportSweeps, PointsFarBeyondTheSheetAreRefused) {
+  put("1.ply", sweep());
+  put("2.ply", sweep());
+  source_.steady_ns = 100000000;
+  source_.reading.range_max_m = 1.0;  // of points 3.7 m away
+  EXPECT_THAT(complaint_of(), HasSubstr("6 of 6 points lie farther than 2 m, twice the range of the data sheet"));
+  source_.reading.range_max_m = 2.0;
+  EXPECT_EQ(import().position_L_m.size(), 6u);
+}
+
+TEST_F(ImportSweeps, AViewpointIsTold) {
+  const std::string pcd = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1\nHEIGHT 1\n";
+  put("1.pcd", pcd + "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 1\nDATA ascii\n1 2 3\n");
+  put("2.pcd", pcd + "VIEWPOINT 5 0 0 1 0 0 0\nPOINTS 1\nDATA ascii\n1 2 3\n");
+  source_.format = "pcd";
+  source_.steady_ns = 100000000;
+  import();
+  EXPECT_THAT(imported_.notes, testing::Contains(testing::AllOf(HasSubstr("1 sweeps state a VIEWPOINT"),
+                                                                HasSubstr("2.pcd: 5 0 0 1 0 0 0"))));
+}
+
 TEST_F(ImportSweeps, FilesStandInNaturalOrder) {
   for (const char* name : {"scan_10.ply", "scan_9.ply", "scan_011.ply"}) put(name, sweep());
   std::vector<std::string> names;

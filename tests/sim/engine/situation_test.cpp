@@ -80,6 +80,16 @@ TEST(Resolve, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(complaint([](Situation& s) { s.world.values.set("rock_count", 4.5); }),
               HasSubstr("rock_count is 4.5, must be a whole number"));
   EXPECT_EQ(complaint([](Situation& s) { s.world.values.set("rock_count", 4.0); }), "accepted");
+  const auto shape = [](double value) {
+    return [value](Situation& s) { s.motion = {"hand_path", {}}, s.motion.values.set("shape", value); };
+  };
+  EXPECT_THAT(complaint(shape(1.5)), HasSubstr("motion.hand_path.shape is 1.5, must be a whole number"));
+  EXPECT_EQ(complaint(shape(2.0)), "accepted");
+  for (const std::string name : {"gyro_update_hz", "accel_update_hz"}) {
+    EXPECT_THAT(complaint([&](Situation& s) { s.sensors[0].values.set(name, 1e-6); }),
+                HasSubstr(name + " is 1e-06 Hz, must be 0 (off) or at least 0.1"));
+    EXPECT_EQ(complaint([&](Situation& s) { s.sensors[0].values.set(name, 0.1); }), "accepted");
+  }
   EXPECT_THAT(complaint([](Situation& s) { s.world.values.set("slope_rd", 0.5); }),
               AllOf(HasSubstr("world.hill"), HasSubstr("'slope_rad'")));
   EXPECT_THAT(complaint([](Situation& s) { s.world.values.set("slope_rad", 5); }),

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/methods/answer_bounds.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <system_error>
+
+#include "scenarios/errors.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr std::uintmax_t kBase = 10'000;       // rows or points of an answer to the shortest recording
+constexpr std::uintmax_t kPerReading = 4;      // as many for each that it was given
+constexpr std::uintmax_t kBytesPerRow = 1024;  // a sweep's row of 37 numbers with all their digits
+constexpr std::uintmax_t kBytesPerPoint = 32;  // x y z nx ny nz sigma, and a header
+constexpr std::int64_t kMargin_ns = 10'000'000'000;
+constexpr double kPositionMax_m = 1e7;
+constexpr double kRateMax_rad_s = 1e6;
+constexpr double kNormTolerance = 1e-2;
+
+template <typename Vector>
+std::string text_of(const Vector& v) {
+  return fmt::format("({:g}, {:g}, {:g})", v.x(), v.y(), v.z());
+}
+
+void require_position(const Eigen::Vector3d& p_m, const std::string& where) {
+  if (p_m.allFinite() && p_m.cwiseAbs().maxCoeff() <= kPositionMax_m) return;
+  throw BadInput(
+      fmt::format("{}: position {} m, must be finite and within {:g} m", where, text_of(p_m), kPositionMax_m));
+}
+
+void require_attitude(const Eigen::Quaterniond& q, const std::string& where) {
+  const double norm = q.coeffs().stableNorm();
+  if (std::abs(norm - 1.0) <= kNormTolerance) return;
+  throw BadInput(fmt::format("{}: quaternion of norm {:g}, must be 1 within {:g}", where, norm, kNormTolerance));
+}
+
+}  // namespace
+
+AnswerBounds::AnswerBounds(const sim::Sensors& sensors) : rows_(kBase), points_(kBase) {
+  std::int64_t first_ns = std::numeric_limits<std::int64_t>::max();
+  const auto span = [&](const std::vector<std::int64_t>& stamps, std::int64_t length_ns) {
+    rows_ += kPerReading * stamps.size();
+    if (stamps.empty()) return;
+    first_ns = std::min(first_ns, stamps.front());
+    last_ns_ = std::max(last_ns_, stamps.back() + length_ns);
+  };
+  for (const sim::ImuRecord& imu : sensors.imus) span(imu.time_ns, 0);
+  for (const sim::LidarRecord& lidar : sensors.lidars) {
+    span(lidar.sweep_start_ns, lidar.sweep_period_ns);
+    points_ += kPerReading * lidar.position_L_m.size();
+  }
+  first_ns_ = std::min<std::int64_t>(first_ns, 0);  // a recording starts at 0, its first sample may be later
+}
+
+std::uintmax_t AnswerBounds::table_bytes() const {
+  return rows_ * kBytesPerRow;
+}
+
+std::uintmax_t AnswerBounds::map_bytes() const {
+  return points_ * kBytesPerPoint;
+}
+
+void AnswerBounds::require_size(const std::filesystem::path& file, std::uintmax_t bytes) const {
+  const std::string name = file.filename().string();
+  if (!std::filesystem::is_regular_file(file)) throw BadInput(name + ": is no regular file");
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  if (error) throw BadInput(name + ": " + error.message());
+  if (size > bytes)
+    throw BadInput(fmt::format("{}: {} bytes, must be at most {} for this recording", name, size, bytes));
+}
+
+void AnswerBounds::require_time(std::int64_t time_ns, const std::string& where) const {
+  if (time_ns >= first_ns_ - kMargin_ns && time_ns <= last_ns_ + kMargin_ns) return;
+  const auto seconds = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-9; };
+  throw BadInput(fmt::format("{}: stamp {:.9g} s, must be within {:.9g} to {:.9g} s: the recording and 10 s", where,
+                             seconds(time_ns), seconds(first_ns_ - kMargin_ns), seconds(last_ns_ + kMargin_ns)));
+}
+
+void AnswerBounds::require_pose(const PoseState& pose, const std::string& where) const {
+  require_time(pose.time_ns, where);
+  require_position(pose.p_WA_m, where);
+  require_attitude(pose.q_WA, where);
+}
+
+void AnswerBounds::require_rates(const std::vector<RateState>& rates, const Place& place) const {
+  for (std::size_t k = 0; k < rates.size(); ++k) {
+    const Eigen::Vector3d& rate_rad_s = rates[k].w_WI_I_rad_s;
+    if (!rate_rad_s.allFinite() || rate_rad_s.cwiseAbs().maxCoeff() > kRateMax_rad_s)
+      throw BadInput(fmt::format("{}: rate {} rad/s, must be finite and within {:g} rad/s", place(k),
+                                 text_of(rate_rad_s), kRateMax_rad_s));
+    if (!rates[k].covariance_rad2_s2.allFinite())
+      throw BadInput(place(k) + ": a covariance that is not finite, must be");
+    require_time(rates[k].time_ns, place(k));
+  }
+}
+
+void AnswerBounds::require_poses(const std::vector<PoseState>& poses, const Place& place) const {
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    require_pose(poses[k], place(k));
+    if (!poses[k].covariance.allFinite()) throw BadInput(place(k) + ": a covariance that is not finite, must be");
+  }
+}
+
+void AnswerBounds::require_attitudes(const std::vector<AttitudeState>& attitudes, const Place& place) const {
+  for (std::size_t k = 0; k < attitudes.size(); ++k) {
+    require_time(attitudes[k].time_ns, place(k));
+    require_attitude(attitudes[k].q_WA, place(k));
+  }
+}
+
+void AnswerBounds::require_slam(const Estimate& estimate) const {
+  for (std::size_t k = 0; k < estimate.sweeps.size(); ++k) {
+    const std::string sweep = "sweep " + std::to_string(k);
+    require_pose(estimate.sweeps[k].pose, sweep);
+    const std::vector<PoseState>& trajectory = estimate.sweeps[k].trajectory;
+    for (std::size_t j = 0; j < trajectory.size(); ++j)
+      require_pose(trajectory[j], sweep + ", pose " + std::to_string(j));
+  }
+  for (std::size_t k = 0; k < estimate.map.size(); ++k)
+    require_position(estimate.map[k].position_W_m.cast<double>(), "map: point " + std::to_string(k));
+}
+
+}  // namespace tumble::scenarios
