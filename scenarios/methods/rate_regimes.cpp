@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/carried.hpp"
 #include "scenarios/methods/rate_baseline.hpp"
 #include "tumble/attitude/regime_smoother.hpp"
@@ -12,6 +13,7 @@ namespace tumble::scenarios {
 void join_regimes(const sim::Sensors& sensors, std::span<const ImuSample> samples, const RateReport& report,
                   std::vector<RateState>& rates, std::map<std::string, double>& health) {
   RegimeSmoother::Params params;
+  params.rate.model.nominal.lever_arm_m = bridge::lever_arm_I_m(sensors.imus.front());
   params.rate.rails = stated_rails(sensors.imus.front());
   params.evidence.gravity_m_s2 = params.carried.gravity_m_s2 = sensors.gravity_m_s2;
   RegimeSmoother::Report told;
