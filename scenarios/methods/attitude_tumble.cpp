@@ -26,9 +26,10 @@ Estimate run_sphere(const sim::Sensors& sensors, const sim::Values& parameters) 
   estimate.frame = Frame::body;
   MergedImus imus;
   estimate.status = merge_imus(sensors, imus);
+  for (const MergedImus::LeftOut& unit : imus.out) estimate.health[to_string(unit)] = unit.since_s;
   if (!estimate.status.ok()) return estimate;
   (void)check_imus(sensors, imus, estimate);
-  for (const MergedImus::LeftOut& unit : imus.out) estimate.health[to_string(unit)] = unit.since_s;
+  if (imus.beyond_range > 0.0) estimate.health["imu_readings_beyond_range"] = imus.beyond_range;
   TumbleAttitude::Params params = stated(sensors);
   params.radius_m = sensors.sphere_radius_m;
   params.lever_arm_m = imus.lever_arm_m;
@@ -52,6 +53,7 @@ Estimate run_rig(const sim::Sensors& sensors, const sim::Values& parameters) {
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
   (void)check_imu(sensors, samples, estimate);  // a warning: a body that is pushed about all the time may look so
+  tell_frozen_axes(sensors, samples, estimate);
   const std::vector<Eigen::Matrix3d> covariances =
       recover_clipped(sensors, samples, estimate.health).covariances_rad2_s2;
   TumbleAttitude::Params params = stated(sensors);

@@ -30,8 +30,8 @@ void require_length(const std::string& place, const char* field, std::size_t fou
                  std::to_string(expected));
 }
 
-// what every method may rely on: finite, rising, without holes
-Status check_stream(std::span<const ImuSample> samples) {
+// what every method may rely on: finite, of what its device can read, rising, without holes
+Status check_stream(const sim::ImuRecord& record, std::span<const ImuSample> samples) {
   if (samples.empty()) return {Trouble::empty, "imu.time_ns", 0.0, 1.0};
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const ImuSample& sample = samples[k];
@@ -41,6 +41,8 @@ Status check_stream(std::span<const ImuSample> samples) {
     if (!sample.specific_force_m_s2.allFinite()) {
       return {Trouble::non_finite, "imu.accel_m_s2", sample.specific_force_m_s2.sum(), 0.0};
     }
+    const Status in_range = check_range(record, sample.angular_velocity_rad_s, sample.specific_force_m_s2);
+    if (!in_range.ok()) return in_range;
     if (k == 0) continue;
     const TimeNs previous = samples[k - 1].time_ns;
     Status follows = check_follows(sample.time_ns, previous, kGapMaxS);
@@ -51,6 +53,18 @@ Status check_stream(std::span<const ImuSample> samples) {
 }
 
 }  // namespace
+
+Status check_range(const sim::ImuRecord& record, const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& accel_m_s2) {
+  const auto beyond = [](const Eigen::Vector3d& reading, double stated, const char* field) -> Status {
+    const double bound = kStatedRangesMax * stated;
+    if (!(bound > 0.0) || reading.cwiseAbs().maxCoeff() <= bound) return {};
+    return {Trouble::out_of_range, field, reading.cwiseAbs().maxCoeff(), bound};
+  };
+  const Status gyro =
+      beyond(gyro_rad_s, record.stated_gyro_range_rad_s, "imu.gyro_rad_s, held to twice its stated range,");
+  if (!gyro.ok()) return gyro;
+  return beyond(accel_m_s2, record.stated_accel_range_m_s2, "imu.accel_m_s2, held to twice its stated range,");
+}
 
 Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out) {
   out.clear();
@@ -66,7 +80,7 @@ Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out) {
     samples[k].specific_force_m_s2 = record.accel_m_s2[k];
     samples[k].device_clip_flags = record.clip_flags.empty() ? std::uint8_t{0} : clip_flags(record.clip_flags[k]);
   }
-  const Status status = check_stream(samples);
+  const Status status = check_stream(record, samples);
   if (status.ok()) out = std::move(samples);
   return status;
 }
@@ -85,6 +99,7 @@ Status unclipped_samples(const sim::ImuRecord& record, const sim::ImuTruth& trut
   twin.gyro_rad_s = truth.gyro_unclipped_rad_s;
   twin.accel_m_s2 = truth.accel_unclipped_m_s2;
   twin.clip_flags.clear();
+  twin.stated_gyro_range_rad_s = twin.stated_accel_range_m_s2 = 0.0;  // without a rail there is no range
   return imu_samples(twin, out);
 }
 

@@ -29,8 +29,16 @@ namespace tumble::scenarios::bridge {
 /// Longest time between two IMU samples that a recording may have [s].
 inline constexpr double kGapMaxS = 1.0;
 
-/// Samples of an IMU, in order. Trouble: `empty`, `non_finite`, `time_order`, `gap` (more than kGapMaxS); then `out` is
-/// empty. Throws BadInput when the record's arrays differ in length. O(N).
+/// Readings up to so many stated ranges are taken for measurements: rails lie beyond what a sheet states (of the MTi-30
+/// at 1.4 times), and tilted ones in each axis anew. What reads further was never measured.
+inline constexpr double kStatedRangesMax = 2.0;
+
+/// `out_of_range` for the first axis of a reading, in its own axes, beyond kStatedRangesMax times the range that the
+/// record states, with value and bound; a stated range of 0 says nothing.
+Status check_range(const sim::ImuRecord& record, const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& accel_m_s2);
+
+/// Samples of an IMU, in order. Trouble: `empty`, `non_finite`, `time_order`, `gap` (more than kGapMaxS),
+/// `out_of_range` (check_range); then `out` is empty. Throws BadInput when the record's arrays differ in length. O(N).
 Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out);
 
 /// The primary IMU's samples; `empty` when the recording has no IMU.

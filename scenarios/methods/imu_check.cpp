@@ -2,7 +2,9 @@
 #include "scenarios/methods/imu_check.hpp"
 
 #include <cmath>
+#include <string>
 
+#include "scenarios/methods/frozen_axes.hpp"
 #include "tumble/attitude/imu_plausibility.hpp"
 
 namespace tumble::scenarios {
@@ -48,6 +50,14 @@ Status check_imus(const sim::Sensors& sensors, const MergedImus& imus, Estimate&
       {Trouble::out_of_range, "differences of the IMUs' forces as a share of what the turning makes of their places",
        *imus.arm_share, kArmShareMin},
       estimate);
+}
+
+void tell_frozen_axes(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate) {
+  for (const FrozenAxis& frozen : find_frozen_axes(sensors.imus.front(), samples)) {
+    const std::string key = sensors.imus.front().name + "_" + to_string(frozen) + "_frozen_since_s";
+    estimate.health.try_emplace(key, seconds(frozen.from_ns - samples.front().time_ns));
+    estimate.health["imu_implausible"] = 1.0;
+  }
 }
 
 }  // namespace tumble::scenarios

@@ -18,4 +18,8 @@ Status check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples
 /// The same of several IMUs as one, whose differences tell a flipped sign besides (`imu_arm_share`).
 Status check_imus(const sim::Sensors& sensors, const MergedImus& imus, Estimate& estimate);
 
+/// Single axes of the primary IMU that froze, whose samples these are: `imu_implausible`, and since when, as
+/// `imu_gyro_z_frozen_since_s`. O(N).
+void tell_frozen_axes(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate);
+
 }  // namespace tumble::scenarios

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/frozen_axes.hpp"
 #include "scenarios/methods/rate_baseline.hpp"
 #include "tumble/angular_velocity/clipping_finder.hpp"
 #include "tumble/attitude/imu_merge.hpp"
@@ -32,14 +33,19 @@ ImuSample absent(TimeNs time_ns) {
   return sample;
 }
 
-/// What there is of a unit: readings that are finite and in order. Throws BadInput when its arrays differ in length.
-std::vector<ImuSample> readings_of(const sim::ImuRecord& record, Status& status) {
+/// What there is of a unit: readings that are finite, in order and within its device's range. Throws BadInput when its
+/// arrays differ in length.
+std::vector<ImuSample> readings_of(const sim::ImuRecord& record, Status& status, int& beyond_range) {
   std::vector<ImuSample> samples;
   status = bridge::imu_samples(record, samples);
   if (status.ok()) return samples;
   for (std::size_t k = 0; k < record.time_ns.size(); ++k) {
     const TimeNs time_ns = record.time_ns[k];
     if (!record.gyro_rad_s[k].allFinite() || !record.accel_m_s2[k].allFinite()) continue;
+    if (!bridge::check_range(record, record.gyro_rad_s[k], record.accel_m_s2[k]).ok()) {
+      ++beyond_range;
+      continue;
+    }
     if (!samples.empty() && time_ns <= samples.back().time_ns) continue;
     samples.push_back({time_ns, record.gyro_rad_s[k], record.accel_m_s2[k], 0});
   }
@@ -108,7 +114,8 @@ struct Units {
   std::vector<Eigen::Isometry3d> T_BI;
   std::vector<std::vector<ImuSample>> samples;
   std::vector<ElementRows> gyro_elements, accel_elements;
-  int resampled = 0;
+  std::vector<std::vector<FrozenAxis>> frozen;
+  int resampled = 0, beyond_range = 0;
 };
 
 Status units_of(const sim::Sensors& sensors, Units& units) {
@@ -121,7 +128,7 @@ Status units_of(const sim::Sensors& sensors, Units& units) {
     if (&record != &sensors.imus.front() && record.name == "imu_reference") continue;
     if (records.size() == ImuMerge::kImus) break;
     Status status;
-    std::vector<ImuSample> samples = readings_of(record, status);
+    std::vector<ImuSample> samples = readings_of(record, status, units.beyond_range);
     if (&record == &sensors.imus.front()) primary_status = status;
     if (samples.empty()) continue;
     if (status.ok() && !base) base = records.size();
@@ -136,6 +143,7 @@ Status units_of(const sim::Sensors& sensors, Units& units) {
     const bool same = records[k]->time_ns == records[*base]->time_ns && samples.size() == records[k]->time_ns.size();
     units.names.push_back(records[k]->name);
     units.T_BI.push_back(records[k]->T_BI);
+    units.frozen.push_back(find_frozen_axes(*records[k], samples));
     if (!same) {
       samples = at_times_of(times, samples);
       ++units.resampled;
@@ -165,9 +173,9 @@ Status run(const ImuMerge& merge, const Units& units, ImuMerge::State& state, st
 }
 
 /// Takes the readings of `unit` away from `from_ns` on.
-void silence(std::vector<ImuSample>& unit, TimeNs from_ns) {
+void silence(std::vector<ImuSample>& unit, TimeNs from_ns, TimeNs to_ns = std::numeric_limits<TimeNs>::max()) {
   for (ImuSample& sample : unit) {
-    if (sample.time_ns >= from_ns) sample = absent(sample.time_ns);
+    if (sample.time_ns >= from_ns && sample.time_ns <= to_ns) sample = absent(sample.time_ns);
   }
 }
 
@@ -184,12 +192,45 @@ std::optional<TimeNs> silent_since(const std::vector<ImuSample>& unit) {
   return std::nullopt;
 }
 
+Status frozen_in_all(const FrozenAxis& axis) {
+  constexpr const char* kFields[2][3] = {
+      {"seconds for which gyro x repeats one reading, and no IMU is without the like,",
+       "seconds for which gyro y repeats one reading, and no IMU is without the like,",
+       "seconds for which gyro z repeats one reading, and no IMU is without the like,"},
+      {"seconds for which accel x repeats one reading, and no IMU is without the like,",
+       "seconds for which accel y repeats one reading, and no IMU is without the like,",
+       "seconds for which accel z repeats one reading, and no IMU is without the like,"}};
+  const char* field = kFields[axis.triad == Triad::gyro ? 0 : 1][axis.axis];
+  return {Trouble::out_of_range, field, seconds(axis.to_ns - axis.from_ns), kAxisFrozen_s};
+}
+
+/// Takes away what units read while one of their axes was frozen, and tells of it; trouble where that leaves nothing.
+Status leave_out_frozen(Units& units, std::vector<MergedImus::LeftOut>& out) {
+  const TimeNs start_ns = units.samples[0].front().time_ns;
+  std::optional<FrozenAxis> any;
+  for (std::size_t unit = 0; unit < units.names.size(); ++unit) {
+    for (const FrozenAxis& axis : units.frozen[unit]) {
+      silence(units.samples[unit], axis.from_ns, axis.to_ns);
+      out.push_back(
+          {units.names[unit], MergedImus::LeftOut::Why::frozen, seconds(axis.from_ns - start_ns), to_string(axis)});
+      any = axis;
+    }
+  }
+  if (!any) return {};
+  for (std::size_t k = 0; k < units.samples[0].size(); ++k) {
+    const bool heard = std::any_of(units.samples.begin(), units.samples.end(),
+                                   [&](const std::vector<ImuSample>& unit) { return is_finite(unit[k]); });
+    if (!heard) return frozen_in_all(*any);
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string to_string(const MergedImus::LeftOut& unit) {
   switch (unit.why) {
     case MergedImus::LeftOut::Why::frozen:
-      return unit.name + "_frozen_since_s";
+      return unit.name + (unit.axis.empty() ? "" : "_" + unit.axis) + "_frozen_since_s";
     case MergedImus::LeftOut::Why::disagrees:
       return unit.name + "_disagrees_since_s";
     case MergedImus::LeftOut::Why::silent:
@@ -203,6 +244,7 @@ Status merge_imus(const sim::Sensors& sensors, MergedImus& out) {
   Units units;
   if (Status status = units_of(sensors, units); !status.ok()) return status;
   out.resampled = units.resampled;
+  out.beyond_range = units.beyond_range;
   const sim::ImuRecord& primary = sensors.imus.front();
   if (primary.stated_gyro_range_rad_s > 0.0) out.gyro_range_rad_s = sure_range(primary.stated_gyro_range_rad_s);
   if (primary.stated_accel_range_m_s2 > 0.0) out.accel_range_m_s2 = sure_range(primary.stated_accel_range_m_s2);
@@ -214,8 +256,10 @@ Status merge_imus(const sim::Sensors& sensors, MergedImus& out) {
   const TimeNs start_ns = units.samples[0].front().time_ns;
   for (std::size_t k = 0; k < units.names.size(); ++k) {
     const std::optional<TimeNs> since_ns = silent_since(units.samples[k]);
-    if (since_ns) out.out.push_back({units.names[k], MergedImus::LeftOut::Why::silent, seconds(*since_ns - start_ns)});
+    if (!since_ns) continue;
+    out.out.push_back({units.names[k], MergedImus::LeftOut::Why::silent, seconds(*since_ns - start_ns), {}});
   }
+  if (Status status = leave_out_frozen(units, out.out); !status.ok()) return status;
   auto state = std::make_unique<ImuMerge::State>();
   if (Status status = run(ImuMerge(params), units, *state, out.samples); !status.ok()) return status;
 
@@ -226,11 +270,12 @@ Status merge_imus(const sim::Sensors& sensors, MergedImus& out) {
     if (unit.frozen) {
       anew = true;
       silence(units.samples[k], unit.frozen_since_ns);
-      out.out.push_back({units.names[k], MergedImus::LeftOut::Why::frozen, seconds(unit.frozen_since_ns - start_ns)});
+      out.out.push_back(
+          {units.names[k], MergedImus::LeftOut::Why::frozen, seconds(unit.frozen_since_ns - start_ns), {}});
     } else if (unit.disagrees) {
       anew = true;
       out.out.push_back(
-          {units.names[k], MergedImus::LeftOut::Why::disagrees, seconds(unit.disagrees_since_ns - start_ns)});
+          {units.names[k], MergedImus::LeftOut::Why::disagrees, seconds(unit.disagrees_since_ns - start_ns), {}});
       const auto at = static_cast<std::ptrdiff_t>(k);
       units.names.erase(units.names.begin() + at);
       units.T_BI.erase(units.T_BI.begin() + at);

@@ -26,6 +26,7 @@ struct MergedImus {
     std::string name;
     enum class Why { frozen, disagrees, silent } why = Why::frozen;
     double since_s = 0.0;  ///< from the first sample
+    std::string axis;      ///< "gyro_z" where that one froze; empty: a triad or all of it
   };
 
   std::vector<ImuSample> samples;                         ///< body axes
@@ -33,6 +34,7 @@ struct MergedImus {
   double gyro_range_rad_s = 1e3, accel_range_m_s2 = 1e5;  ///< readings from here on are taken to be at the rail
   int units = 0;
   double left_out = 0.0;            ///< readings
+  double beyond_range = 0.0;        ///< readings that their device cannot have measured, which are no part of it either
   int resampled = 0;                ///< units whose stamps differ from the primary one's
   double offset_max_s = 0.0;        ///< largest time offset of a unit about the mean
   std::vector<Unit> each;           ///< those in use
@@ -40,13 +42,15 @@ struct MergedImus {
   std::vector<LeftOut> out;         ///< those that froze, went silent (NaN, no readings), or are off from the others
 };
 
-/// "imu_2_frozen_since_s" and the like, as a row of an estimate's health.
+/// "imu_2_frozen_since_s", "imu_2_gyro_z_frozen_since_s" and the like, as a row of an estimate's health.
 std::string to_string(const MergedImus::LeftOut& unit);
 
 /// Merges the primary IMU with the others; `imu_reference` is not one of them. The stamps are those of the first unit
 /// whose own are without trouble; readings with other stamps are interpolated at them. A unit that is silent for a
 /// while (NaN, no readings) is left out for so long. Twice: who froze or disagrees is known after the first time, and
-/// left out from the beginning of it. Trouble: that of the primary one's samples, when no unit is without. O(N).
+/// left out from the beginning of it. So is a unit while one of its axes is frozen (find_frozen_axes). Trouble: that of
+/// the primary one's samples, when no unit is without; `out_of_range` naming the axis where that leaves no unit, when
+/// `out.out` says which froze. O(N).
 Status merge_imus(const sim::Sensors& sensors, MergedImus& out);
 
 }  // namespace tumble::scenarios

@@ -93,6 +93,10 @@ void ImuPlausibility::compare(const Eigen::Vector3d& force_m_s2, State& state) c
   const double by_gyro = (state.turned.conjugate() * from - from).squaredNorm();
   state.force_sum_m_s2 += force_m_s2.norm();
   state.windows += 1.0;
+  const auto near_gravity = [&](const Eigen::Vector3d& force) {
+    return std::abs(force.norm() - params_.gravity_m_s2) <= params_.near_share * params_.gravity_m_s2;
+  };
+  if (!near_gravity(state.force_start_m_s2) || !near_gravity(force_m_s2)) return;
   if (std::max(by_force, by_gyro) < params_.turn_least_rad * params_.turn_least_rad) return;
   state.by_force_rad2 += by_force;
   state.by_gyro_rad2 += by_gyro;

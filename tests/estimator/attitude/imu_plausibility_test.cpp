@@ -136,6 +136,30 @@ TEST(ImuPlausibility, OfABodyAtRestOrReadingsThatAreNoneNothingIsSaid) {
   EXPECT_THROW(ImuPlausibility({.gravity_m_s2 = 0.0}), InvalidParams);
 }
 
+// At rest, then in the air and spinning: the sensor feels w x (w x r), which is steady and turns with it.
+ImuPlausibility::State of_a_throw(double spin_rad_s, double arm_m) {
+  const ImuPlausibility plausibility({});
+  ImuPlausibility::State state;
+  ImuSample sample;
+  for (int k = 0; k < 300; ++k) {
+    sample.time_ns = TimeNs{k} * 10'000'000;
+    const Eigen::Vector3d rate(0.0, k < 100 ? 0.0 : spin_rad_s, 0.0), arm(arm_m, 0.0, 0.0);
+    sample.angular_velocity_rad_s = rate;
+    sample.specific_force_m_s2 = k < 100 ? Eigen::Vector3d(0.0, 0.0, 9.80665) : rate.cross(rate.cross(arm));
+    plausibility.step(sample, state);
+  }
+  return state;
+}
+
+TEST(ImuPlausibility, OfABodyThatFliesAndSpinsTheTurningIsNotAsked) {
+  const ImuPlausibility plausibility({});
+  const Status thrown = plausibility.verdict(of_a_throw(12.0, 0.1));  // 14 m/s^2
+  EXPECT_TRUE(thrown.ok()) << thrown.message();
+  EXPECT_EQ(plausibility.unexplained_share(of_a_throw(12.0, 0.1)), 0.0);
+  // nothing tells a steady force of gravity's own size from gravity
+  EXPECT_FALSE(plausibility.verdict(of_a_throw(10.0, 0.0980665)).ok());
+}
+
 // Standing, with noise; from `from_s` on a triad repeats its reading for `for_s`.
 ImuPlausibility::State with_a_hold(bool gyro, double from_s, double for_s, double before_s = 0.0) {
   const ImuPlausibility plausibility({});

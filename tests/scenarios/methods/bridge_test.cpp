@@ -52,6 +52,25 @@ TEST(Bridge, EachClipBitBecomesItsOwnFlag) {
   }
 }
 
+TEST(Bridge, WhatNoDeviceOfThatRangeMeasuresIsRefusedWithItsValue) {
+  sim::Recording recording = testing::synthetic_rig();
+  sim::ImuRecord& record = recording.sensors.imus.front();
+  std::vector<ImuSample> samples;
+  record.gyro_rad_s[40].y() = -1.4 * record.stated_gyro_range_rad_s;  // a rail beyond what is stated
+  EXPECT_TRUE(bridge::imu_samples(record, samples).ok());
+  record.gyro_rad_s[40].y() = -3e5;
+  const Status gyro = bridge::imu_samples(record, samples);
+  EXPECT_EQ(gyro.trouble, Trouble::out_of_range);
+  EXPECT_EQ(gyro.value, 3e5);
+  EXPECT_EQ(gyro.bound, 2.0 * record.stated_gyro_range_rad_s);
+  EXPECT_TRUE(samples.empty());
+  record.gyro_rad_s[40].y() = 0.0;
+  record.accel_m_s2[7].x() = 1e6;
+  EXPECT_EQ(bridge::imu_samples(record, samples).value, 1e6);
+  record.stated_accel_range_m_s2 = 0.0;  // nothing is stated
+  EXPECT_TRUE(bridge::imu_samples(record, samples).ok());
+}
+
 // the lever arm's frame and sign together: a body that turns at a steady rate about its centre of mass, weightless,
 // shows the force w x (w x t) at the IMU, which points from the IMU to the axis
 TEST(Bridge, LeverArmGivesTheCentripetalForceInImuAxes) {

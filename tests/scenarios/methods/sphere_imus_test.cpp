@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "tumble/common/so3.hpp"
@@ -138,6 +139,53 @@ TEST(SphereImus, AUnitOfOtherUnitsIsLeftOutAndNamed) {
   EXPECT_EQ(to_string(merged.out[0]), "imu_2_disagrees_since_s");
   EXPECT_EQ(merged.units, 2);
   EXPECT_NEAR(merged.samples[100].specific_force_m_s2.z(), 9.80665, 1e-9);
+}
+
+/// Of a gyro of 5 rad/s, whose axis z repeats its reading from a third of the run on.
+sim::ImuRecord frozen_z(sim::ImuRecord record) {
+  record.stated_gyro_range_rad_s = 5.0;
+  for (std::size_t k = kSamples / 3; k < kSamples; ++k) record.gyro_rad_s[k].z() = record.gyro_rad_s[kSamples / 3].z();
+  return record;
+}
+
+TEST(SphereImus, AUnitOfWhichOneAxisFreezesIsLeftOutAndTheAxisNamed) {
+  const sim::Sensors sensors = three(frozen_z(unit("imu_2", 0, 0.0)), unit("imu_3", 0, 0.0));
+  MergedImus merged;
+  ASSERT_TRUE(merge_imus(sensors, merged).ok());
+  ASSERT_EQ(merged.out.size(), 1U);
+  EXPECT_EQ(to_string(merged.out[0]), "imu_2_gyro_z_frozen_since_s");
+  EXPECT_NEAR(merged.out[0].since_s, 1e-9 * kPeriod_ns * (kSamples / 3), 1e-9);
+  EXPECT_LT(worst_rate_error(merged), 1e-6);
+}
+
+TEST(SphereImus, WhereOneAxisFreezesInAllUnitsTheRunIsRefused) {
+  sim::Sensors sensors = three(frozen_z(unit("imu_2", 0, 0.0)), frozen_z(unit("imu_3", 0, 0.0)));
+  sensors.imus[0] = frozen_z(sensors.imus[0]);
+  MergedImus merged;
+  const Status status = merge_imus(sensors, merged);
+  EXPECT_EQ(status.trouble, Trouble::out_of_range);
+  EXPECT_NE(std::string(status.field).find("gyro z"), std::string::npos) << status.message();
+  EXPECT_EQ(merged.out.size(), 3U);
+}
+
+TEST(SphereImus, AnAxisAtItsRailOrThatIsReadMoreSlowlyIsNotFrozen) {
+  sim::ImuRecord clips = unit("imu_2", 0, 0.0), slow = unit("imu_3", 0, 0.0);
+  clips.stated_gyro_range_rad_s = 0.5;  // up to a second at a time
+  for (Eigen::Vector3d& rate : clips.gyro_rad_s) rate.z() = std::clamp(rate.z(), -0.5, 0.5);
+  for (std::size_t k = 0; k < kSamples; ++k) slow.gyro_rad_s[k].z() = slow.gyro_rad_s[k - k % 20].z();
+  MergedImus merged;
+  ASSERT_TRUE(merge_imus(three(clips, slow), merged).ok());
+  for (const MergedImus::LeftOut& unit : merged.out) EXPECT_TRUE(unit.axis.empty()) << to_string(unit);
+}
+
+TEST(SphereImus, ReadingsOfOneUnitBeyondItsRangeAreLeftOutAndCounted) {
+  sim::ImuRecord spikes = unit("imu_2", 0, 0.0);
+  spikes.stated_gyro_range_rad_s = 5.0;
+  for (std::size_t k = 100; k < kSamples; k += 301) spikes.gyro_rad_s[k].x() = 3e5;
+  MergedImus merged;
+  ASSERT_TRUE(merge_imus(three(spikes, unit("imu_3", 0, 0.0)), merged).ok());
+  EXPECT_EQ(merged.beyond_range, 8.0);
+  EXPECT_LT(worst_rate_error(merged), 1e-3);
 }
 
 }  // namespace

@@ -17,7 +17,9 @@ namespace tumble {
 /// Whether an IMU's readings can be what they claim to be: units, axes, signs, and alive.
 ///
 /// Where the force is steady in size over a fifth of a second it is nearly gravity: its size must be g, and the gyro
-/// must explain how its direction turns, u(t + T) = R^T u(t). Three sums over such windows tell: what the gyro leaves
+/// must explain how its direction turns, u(t + T) = R^T u(t). A steady force of another size is no gravity: of a body
+/// that flies and spins it is what its turning makes of the sensor's place, and stands still in the sensor's axes. Of
+/// that its direction is not asked. Three sums over such windows tell: what the gyro leaves
 /// unexplained, what turned by the force, and what turned by the gyro. An accelerometer in g, a gyro in deg/s, axes
 /// that are swapped or of which one is flipped, and a force that stands still while the body turns leave most
 /// unexplained. A body that turns about the one axis which a wrong naming leaves alone (a sphere that rolls along x = y
@@ -28,7 +30,8 @@ namespace tumble {
 /// at rest, a simulation without noise) is not told from that.
 ///
 /// Not seen: an accelerometer with all three axes flipped, which is the mirrored world (ImuMerge::arm_share() tells it,
-/// with several IMUs), errors of some per cent, a body that does not turn, or that is pushed about all the time.
+/// with several IMUs), errors of some per cent, a body that does not turn, or that is pushed about all the time. Taken
+/// for wrong: a free pendulum, whose force points along its rod however it turns.
 class ImuPlausibility {
  public:
   struct Params {
@@ -36,6 +39,7 @@ class ImuPlausibility {
     double window_s = 0.2;
     double reading_s = 0.02;     ///< readings are averaged to this length
     double steady_share = 0.12;  ///< by which the force's size may change within a window
+    double near_share = 0.25;    ///< by which it may differ from gravity for its direction to be compared
     double force_share_min = 0.5,
            force_share_max = 2.0;        ///< of gravity, mean of steady windows
     double unexplained_max = 0.2;        ///< share of the turning; good rolls of a sphere leave 0.001 to 0.03
@@ -56,6 +60,8 @@ class ImuPlausibility {
       visit(p.window_s, {"window_s", "s", 0.02, 10.0, "over which force and turning are compared"});
       visit(p.reading_s, {"reading_s", "s", 1e-3, 1.0, "readings are averaged to this length"});
       visit(p.steady_share, {"steady_share", "1", 1e-12, 1.0, "by which the force's size may change within a window"});
+      visit(p.near_share, {"near_share", "1", 1e-12, 1e6,
+                           "by which the force's size may differ from gravity for its turning to be compared"});
       visit(p.force_share_min, {"force_share_min", "1", 0.0, 1.0, "of gravity, least mean of steady windows"});
       visit(p.force_share_max, {"force_share_max", "1", 1.0, 1e6, "of gravity, largest mean of steady windows"});
       visit(p.unexplained_max,
