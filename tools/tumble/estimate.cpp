@@ -12,6 +12,7 @@
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/learnt_file.hpp"
 #include "tools/tumble/verbs.hpp"
+#include "tools/tumble/verdict_lines.hpp"
 
 namespace tumble::tools {
 
@@ -110,7 +111,10 @@ int run_estimate(const Session& session, const Options& options) {
                                    {"digest", scenarios::digest(estimate)},
                                    {"health", estimate.health}};
   session.print({summary(estimate)}, document);
-  if (estimate.status.ok()) return kDone;
+  if (estimate.status.ok()) {
+    for (const std::string& line : verdict_lines(estimate)) session.note(full_name(method) + ": " + line);
+    return kDone;
+  }
   // the estimate is left for inspection, and its trouble lies in the recording
   throw BadInput(options.recording.string() + ": " + full_name(method.info) + " failed: " + reason(estimate.status));
 }

@@ -22,6 +22,7 @@
 #include "tools/tumble/recording_info.hpp"
 #include "tools/tumble/score_tables.hpp"
 #include "tools/tumble/verbs.hpp"
+#include "tools/tumble/verdict_lines.hpp"
 
 namespace tumble::tools {
 
@@ -128,6 +129,18 @@ scenarios::Setting setting_of(const scenarios::DataRoot& data, const Options& op
   return setting;
 }
 
+/// Which methods failed, and what those that did not say against themselves.
+void say_troubles(const Session& session, const scenarios::RunResult& result) {
+  for (std::size_t i = 0; i < result.outcomes.size(); ++i) {
+    const scenarios::Outcome& outcome = result.outcomes[i];
+    const std::string name = fmt::format("{}/{}: ", to_string(outcome.kind), outcome.method);
+    if (outcome.status != scenarios::OutcomeStatus::ok)
+      session.note(fmt::format("{}{}: {}", name, to_string(outcome.status), outcome.message));
+    if (outcome.status == scenarios::OutcomeStatus::failed) continue;
+    for (const std::string& line : verdict_lines(result.estimates[i])) session.note(name + line);
+  }
+}
+
 int run(const Session& session, const Options& given) {
   const scenarios::DataRoot data = session.data();
   const scenarios::Scenario scenario = scenarios::load_scenario(data, given.scenario);
@@ -176,11 +189,7 @@ int run(const Session& session, const Options& given) {
   closing.add_row({"digest of the recording", result.recording_digest});
   tables.push_back(std::move(closing));
   session.print(tables, document);
-  for (const scenarios::Outcome& outcome : result.outcomes) {
-    if (outcome.status != scenarios::OutcomeStatus::ok)
-      session.note(fmt::format("{}/{}: {}: {}", to_string(outcome.kind), outcome.method, to_string(outcome.status),
-                               outcome.message));
-  }
+  say_troubles(session, result);
   if (first) say_what_next(session, options);
   return kDone;
 }
