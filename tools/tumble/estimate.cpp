@@ -112,7 +112,7 @@ int run_estimate(const Session& session, const Options& options) {
                                    {"health", estimate.health}};
   session.print({summary(estimate)}, document);
   if (estimate.status.ok()) {
-    for (const std::string& line : verdict_lines(estimate)) session.note(full_name(method) + ": " + line);
+    for (const std::string& line : verdict_lines(estimate)) session.note(full_name(method.info) + ": " + line);
     return kDone;
   }
   // the estimate is left for inspection, and its trouble lies in the recording
