@@ -129,7 +129,7 @@ TEST(Exchange, SweepsAloneAreMappedAndScored) {
   ASSERT_EQ(run_program({"export", recording, "--format", "ply", "-o", (folder / "all").string(), "--quiet"}).status,
             0);
   ASSERT_EQ(run_program({"export", recording, "--format", "tum", "-o", truth, "--quiet"}).status, 0);
-  copy_sweeps(folder / "all", folder / "some", 48, 12);  // the rig has come down and rocks
+  copy_sweeps(folder / "all", folder / "some", 60, 12);  // the rig has come down and rocks
   const std::string back = (folder / "back.h5").string(), estimate = (folder / "e").string();
   const Ended imported = run_program({"import", (folder / "some").string(), "--lidar", "rs16", "--robot", "rig",
                                       "--reference", truth, "--reference-frame", "body", "-o", back, "--json"});
@@ -140,13 +140,14 @@ TEST(Exchange, SweepsAloneAreMappedAndScored) {
   const Ended estimated =
       run_program({"estimate", back, "--method", "slam/constant_velocity", "-o", estimate, "--json"});
   ASSERT_EQ(estimated.status, 0) << estimated.err;
-  // of 11; without IMU, in a rig that rocks, one may be refused: measured 10
+  // of 11, measured 11. From sweep 48 on, where it still tumbles, one or two are refused without an IMU, and the last
+  // bits of the motion decide which: 0.14 or 0.33 m
   EXPECT_GE(json_of(estimated)["health"]["sweeps_registered"], 10.0);
   const Ended scored = run_program({"score", estimate, back, "--json"});
   ASSERT_EQ(scored.status, 0) << scored.err;
   EXPECT_EQ(json_of(scored)["status"], "ok");
-  EXPECT_LT(metric(json_of(scored), "ate_m"), 0.3);  // measured 0.14, without IMU in a rocking rig
-  EXPECT_LT(metric(json_of(scored), "rotation_error_end_rad"), 0.05);
+  EXPECT_LT(metric(json_of(scored), "ate_m"), 0.15);                   // measured 0.052, without IMU in a rocking rig
+  EXPECT_LT(metric(json_of(scored), "rotation_error_end_rad"), 0.03);  // measured 0.0098
   // a method that needs an IMU says so
   const Ended refused = run_program({"estimate", back, "--method", "slam/tumble", "-o", (folder / "x").string()});
   EXPECT_EQ(refused.status, 2);

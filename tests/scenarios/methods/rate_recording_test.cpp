@@ -123,6 +123,9 @@ TEST(RateRecording, UnitsThatLookWrongAreTold) {
   sim::Recording degrees = recording, in_g = recording;
   for (Eigen::Vector3d& rate : degrees.sensors.imus.front().gyro_rad_s) rate *= 57.29578;
   for (Eigen::Vector3d& force : in_g.sensors.imus.front().accel_m_s2) force /= 9.80665;
+  const Status refused = find_methods("rate/tumble").front()->run(degrees.sensors, {}, {&degrees.truth}).status;
+  EXPECT_FALSE(refused.ok()) << "beyond twice the range that is stated";
+  degrees.sensors.imus.front().stated_gyro_range_rad_s = 0.0;
   EXPECT_EQ(run("tumble", degrees).health.at("rate_unit_suspect"), 1.0);
   EXPECT_EQ(run("tumble", in_g).health.at("force_unit_suspect"), 1.0);
 }
