@@ -50,7 +50,7 @@ TEST(External, ExampleScoresAsOursDoes) {
 
 TEST(External, WhatGoesWrongIsAnOutcomeOfTheSweep) {
   const fs::path folder = test_folder();
-  const std::vector<std::string> sweep = {"sweep",      shared_scenario("hill"),
+  const std::vector<std::string> sweep = {"sweep",      "hill",
                                           "--seeds",    "1..1",
                                           "--method",   "rate/raw",
                                           "--method",   describe(folder, "crashes", "kill -SEGV $$"),

@@ -81,7 +81,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"row of the certificate", {"certify", "--row", "free_fal"}, "'free_fall'"},
         Wrong{"suite of a gate", {"gate", "gaet"}, "gate"},
         Wrong{"margin of a gate", {"gate", "gate", "--accept", "--margin", "-1"}, "--margin"},
-        Wrong{"format of an export", {"export", "absent.h5", "--format", "tmu", "-o", "x"}, "'tum'"},
+        Wrong{"format of an export", {"export", "/dev/null", "--format", "tmu", "-o", "x"}, "'tum'"},
         Wrong{"export of nothing", {"export", "absent.h5", "--format", "tum", "-o", "x"}, "absent.h5"},
         Wrong{"import of nothing", {"import", "absent.csv", "-o", "x.h5"}, "absent.csv"},
         Wrong{"import without format", {"import", "absent.dat", "-o", "x.h5"}, "--format"},

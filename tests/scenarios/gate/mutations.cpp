@@ -103,7 +103,6 @@ std::span<const Mutation> mutations() {
       Mutation{"covariance_doubled_rate", "hill", "rate/tumble", nullptr, double_covariances},
       Mutation{"covariance_doubled_slam", "hill", "slam/tumble", nullptr, double_covariances},
       Mutation{"covariance_doubled_position", "bump", "position/tumble", nullptr, double_covariances},
-      Mutation{"covariance_halved_rate_live", "hill", "rate/tumble_lag", nullptr, halve_covariances},
       Mutation{"lost_bump", "bump", "position/tumble", nullptr, lose_a_bump},
       Mutation{"shift_1_ms", "hill", "rate/tumble", nullptr, shift_by_1_ms},
       Mutation{"map_twice", "hill", "slam/tumble", nullptr, draw_map_twice},
