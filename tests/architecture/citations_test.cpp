@@ -118,13 +118,13 @@ TEST(Citations, EveryCitedEquationIsThereAndEveryNoteIsCited) {
 /// Files with a folder before them that a text names in backticks and the tree does not have.
 std::vector<std::string> absent_files(const std::string& text) {
   static const std::regex named(R"(`([A-Za-z0-9_.]+/[A-Za-z0-9_./]+\.(cpp|hpp|md|yaml|txt|py|csv|sh)(:[0-9]+)?)`)");
-  static const std::regex placeholder(R"([A-Z]{4,})");  // NAME, KIND, DEVICE
+  static const std::regex stands_for_a_name(R"([A-Z]{4,})");  // NAME, KIND, DEVICE
   const fs::path root = tumble::test::source_dir();
   std::vector<std::string> out;
   for (std::sregex_iterator it(text.begin(), text.end(), named), end; it != end; ++it) {
     const std::string name = (*it)[1];
     // a header of the library is named as it is included, a module of the package as it is imported
-    if (!std::regex_search(name, placeholder) && !fs::exists(root / name) &&
+    if (!std::regex_search(name, stands_for_a_name) && !fs::exists(root / name) &&
         !fs::exists(root / "estimator" / "include" / name) && !fs::exists(root / "python" / "src" / name))
       out.push_back(name);
   }

@@ -15,6 +15,7 @@
 #include <sstream>
 
 #include "estimator/attitude/broad_trial.hpp"
+#include "estimator/attitude/carried_errors.hpp"
 #include "stand_ins/stand_ins.hpp"
 #include "tumble/attitude/carried_smoother.hpp"
 #include "tumble/common/so3.hpp"
@@ -22,13 +23,7 @@
 namespace tumble {
 namespace {
 
-double quantile(std::vector<double> values, double share) {
-  EXPECT_FALSE(values.empty());
-  if (values.empty()) return std::numeric_limits<double>::infinity();
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
+using testing::quantile;
 
 class CarriedBroad : public ::testing::TestWithParam<std::string> {};
 

@@ -10,6 +10,7 @@
 #include <limits>
 #include <numeric>
 
+#include "estimator/attitude/carried_errors.hpp"
 #include "estimator/attitude/carried_motion.hpp"
 #include "oracles/gaussian.hpp"
 
@@ -18,6 +19,7 @@ namespace {
 
 using testing::CarriedMotion;
 using testing::CarriedRecording;
+using testing::quantile;
 
 struct Result {
   std::vector<RateState> rates;
@@ -56,14 +58,6 @@ RateErrors rate_errors(const CarriedRecording& recording, const Result& result) 
     out.raw.push_back((recording.samples[k].angular_velocity_rad_s - recording.rate_rad_s[k]).norm());
   }
   return out;
-}
-
-double quantile(std::vector<double> values, double share) {
-  EXPECT_FALSE(values.empty());
-  if (values.empty()) return std::numeric_limits<double>::infinity();
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
 }
 
 double inclination_rms_rad(const CarriedRecording& recording, const Result& result) {
