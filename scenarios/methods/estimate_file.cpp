@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/methods/covariance_file.hpp"
 #include "scenarios/methods/map_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/recordings/table_file.hpp"
@@ -25,7 +26,6 @@ const std::string kRatesHeader = "time_ns,wx_rad_s,wy_rad_s,wz_rad_s,cxx,cxy,cxz
 const std::string kPose = "px_m,py_m,pz_m,qx,qy,qz,qw,vx_m_s,vy_m_s,vz_m_s";
 const std::string kContactsHeader = "time_ns,label";
 const std::string kFlaggedContactsHeader = kContactsHeader + ",uncertain";
-const std::string kPositionCovarianceHeader = "time_ns,cxx,cxy,cxz,cyy,cyz,czz";
 constexpr std::size_t kCovarianceColumn = 16;  // of a sweep's pose: upper triangle by rows, position before attitude
 const std::string kSweepsHeader =
     "end_ns,verdict,iterations,inlier_share,conditioning,pose_time_ns," + kPose +
@@ -120,42 +120,24 @@ void write_contacts(const std::filesystem::path& path, const Estimate& estimate)
   table.close();
 }
 
-void require_row_per_pose(const Table& table, const std::vector<PoseState>& poses) {
-  if (table.rows.size() != poses.size()) {
-    throw BadInput(table.path.string() + ": " + std::to_string(table.rows.size()) + " rows, must be " +
-                   std::to_string(poses.size()) + " as there are poses");
-  }
-  for (std::size_t k = 0; k < table.rows.size(); ++k) {
-    if (table.integer(table.rows[k], 0) != poses[k].time_ns) {
-      throw BadInput(table.path.string() + ":" + std::to_string(table.rows[k].line) +
-                     ": not the time of the pose of the same row");
-    }
-  }
+template <typename State>
+std::vector<std::int64_t> stamps_ns(const std::vector<State>& states) {
+  std::vector<std::int64_t> stamps;
+  stamps.reserve(states.size());
+  for (const State& state : states) stamps.push_back(state.time_ns);
+  return stamps;
 }
 
-void write_covariances(const std::filesystem::path& path, const std::vector<PoseState>& poses) {
-  TableWriter table(path, ',', kPositionCovarianceHeader);
-  for (const PoseState& pose : poses) {
-    table.integer(pose.time_ns);
-    for (int i = 0; i < 3; ++i) {
-      for (int j = i; j < 3; ++j) table.number(pose.covariance(i, j));
-    }
-    table.end_row();
-  }
-  table.close();
+void write_position_covariances(const std::filesystem::path& path, const std::vector<PoseState>& poses) {
+  std::vector<Eigen::Matrix3d> covariances_m2;
+  covariances_m2.reserve(poses.size());
+  for (const PoseState& pose : poses) covariances_m2.push_back(pose.covariance.topLeftCorner<3, 3>());
+  write_covariances(path, stamps_ns(poses), covariances_m2);
 }
 
-void read_covariances(const std::filesystem::path& path, std::vector<PoseState>& poses) {
-  const Table table = Table::read(path, ',', kPositionCovarianceHeader, 7);
-  require_row_per_pose(table, poses);
-  for (std::size_t k = 0; k < poses.size(); ++k) {
-    std::size_t column = 1;
-    for (int i = 0; i < 3; ++i) {
-      for (int j = i; j < 3; ++j) {
-        poses[k].covariance(i, j) = poses[k].covariance(j, i) = table.number(table.rows[k], column++);
-      }
-    }
-  }
+void read_position_covariances(const std::filesystem::path& path, std::vector<PoseState>& poses) {
+  const std::vector<Eigen::Matrix3d> covariances_m2 = read_covariances(path, stamps_ns(poses));
+  for (std::size_t k = 0; k < poses.size(); ++k) poses[k].covariance.topLeftCorner<3, 3>() = covariances_m2[k];
 }
 
 bool begins_with(const std::filesystem::path& path, const std::string& header) {
@@ -170,7 +152,7 @@ void read_contacts(const std::filesystem::path& path, Estimate& estimate) {
   const bool flagged = begins_with(path, kFlaggedContactsHeader);
   const Table table =
       flagged ? Table::read(path, ',', kFlaggedContactsHeader, 3) : Table::read(path, ',', kContactsHeader, 2);
-  require_row_per_pose(table, estimate.poses);
+  require_stamps(table, stamps_ns(estimate.poses));
   for (const Table::Row& row : table.rows) {
     const std::int64_t label = table.integer(row, 1);
     if (label < 0 || label > static_cast<int>(sim::ContactLabel::slide)) {
@@ -263,6 +245,31 @@ void read_tum(const std::filesystem::path& path, std::vector<PoseState>& poses, 
   }
 }
 
+void write_attitudes(const std::filesystem::path& folder, const std::vector<AttitudeState>& attitudes) {
+  TableWriter table(folder / "attitude.tum", ' ', "");
+  for (const AttitudeState& attitude : attitudes) {
+    table.time_s(attitude.time_ns);
+    write_vector(table, Eigen::Vector3d::Zero());
+    write_quaternion(table, attitude.q_WA);
+    table.end_row();
+  }
+  table.close();
+  std::vector<Eigen::Matrix3d> covariances_rad2;
+  covariances_rad2.reserve(attitudes.size());
+  for (const AttitudeState& attitude : attitudes) covariances_rad2.push_back(attitude.covariance_rad2);
+  write_covariances(folder / "attitude_covariance.csv", stamps_ns(attitudes), covariances_rad2);
+}
+
+void read_attitudes(const std::filesystem::path& folder, std::vector<AttitudeState>& attitudes) {
+  std::vector<PoseState> poses;
+  read_tum(folder / "attitude.tum", poses);
+  for (const PoseState& pose : poses) attitudes.push_back({pose.time_ns, pose.q_WA, Eigen::Matrix3d::Zero()});
+  const std::filesystem::path path = folder / "attitude_covariance.csv";
+  if (!std::filesystem::exists(path)) return;
+  const std::vector<Eigen::Matrix3d> covariances_rad2 = read_covariances(path, stamps_ns(attitudes));
+  for (std::size_t k = 0; k < attitudes.size(); ++k) attitudes[k].covariance_rad2 = covariances_rad2[k];
+}
+
 json header_of(const std::string& method, Kind kind, const Estimate& estimate, const std::string& sensors_digest) {
   json health = json::object();
   for (const auto& [name, value] : estimate.health) health[name] = value;
@@ -320,16 +327,7 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
   // what an earlier estimate left would be read back with this one
   for (const char* name : kEstimateFiles) std::filesystem::remove(folder / name, error);
   if (!estimate.rates.empty()) write_rates(folder / "rates.csv", estimate.rates);
-  if (!estimate.attitudes.empty()) {
-    TableWriter table(folder / "attitude.tum", ' ', "");
-    for (const AttitudeState& attitude : estimate.attitudes) {
-      table.time_s(attitude.time_ns);
-      write_vector(table, Eigen::Vector3d::Zero());
-      write_quaternion(table, attitude.q_WA);
-      table.end_row();
-    }
-    table.close();
-  }
+  if (!estimate.attitudes.empty()) write_attitudes(folder, estimate.attitudes);
   if (!estimate.poses.empty()) {
     TableWriter table(folder / "trajectory.tum", ' ', "");
     for (const PoseState& pose : estimate.poses) {
@@ -340,10 +338,7 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
     }
     table.close();
   }
-  const bool stated = std::any_of(estimate.poses.begin(), estimate.poses.end(), [](const PoseState& pose) {
-    return !pose.covariance.topLeftCorner<3, 3>().isZero(0.0);
-  });
-  if (stated) write_covariances(folder / "position_covariance.csv", estimate.poses);
+  write_position_covariances(folder / "position_covariance.csv", estimate.poses);
   if (!estimate.uncertain.empty() && estimate.uncertain.size() != estimate.contacts.size()) {
     throw std::invalid_argument("an estimate has " + std::to_string(estimate.uncertain.size()) +
                                 " flags of uncertainty for " + std::to_string(estimate.contacts.size()) + " contacts");
@@ -384,14 +379,9 @@ Estimate read_estimate(const std::filesystem::path& path, Kind& kind, std::strin
   const auto there = [&](const char* name) { return std::filesystem::exists(path / name); };
   if (there("rates.csv")) read_rates(path / "rates.csv", estimate.rates);
   if (there("trajectory.tum")) read_tum(path / "trajectory.tum", estimate.poses);
-  if (there("position_covariance.csv")) read_covariances(path / "position_covariance.csv", estimate.poses);
+  if (there("position_covariance.csv")) read_position_covariances(path / "position_covariance.csv", estimate.poses);
   if (there("contacts.csv")) read_contacts(path / "contacts.csv", estimate);
-  if (there("attitude.tum")) {
-    std::vector<PoseState> poses;
-    read_tum(path / "attitude.tum", poses);
-    for (const PoseState& pose : poses)
-      estimate.attitudes.push_back({pose.time_ns, pose.q_WA, Eigen::Matrix3d::Zero()});
-  }
+  if (there("attitude.tum")) read_attitudes(path, estimate.attitudes);
   if (there("sweeps.csv")) read_sweeps(path, estimate);
   if (there("map.ply")) estimate.map = read_map(path / "map.ply");
   return estimate;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
 
+#include "scenarios/scoring/consistency.hpp"
 #include "scenarios/scoring/families.hpp"
 #include "scenarios/scoring/truth_track.hpp"
 
@@ -47,6 +48,28 @@ bool rmse(const Estimate& estimate, const ScoringInput& input, double& value) {
   return true;
 }
 
+/// Squared errors of the tilt over their stated variances, in motion.
+std::vector<double> normalised_tilt_errors(const Estimate& estimate, const ScoringInput& input) {
+  const TruthTrack truth(*input.truth, estimate.frame);
+  std::vector<double> normalised;
+  for (const AttitudeState& attitude : estimate.attitudes) {
+    const Eigen::Vector2d variance = attitude.covariance_rad2.diagonal().head<2>();
+    if (!truth.covers_attitude(attitude.time_ns) || truth.at_rest(attitude.time_ns)) continue;
+    if (!(variance.maxCoeff() > 0.0)) continue;
+    const Eigen::Vector2d error = tilt_error_rad(attitude.q_WA, truth.pose(attitude.time_ns).q_WA);
+    for (int axis = 0; axis < 2; ++axis) normalised.push_back(squared_over(error[axis], variance[axis]));
+  }
+  return normalised;
+}
+
+bool tilt_coverage(const Estimate& estimate, const ScoringInput& input, double& value) {
+  return share_within_3sigma(normalised_tilt_errors(estimate, input), value);
+}
+
+bool tilt_nees_median(const Estimate& estimate, const ScoringInput& input, double& value) {
+  return normalised_median(normalised_tilt_errors(estimate, input), value);
+}
+
 bool step_rest_rms(const Estimate& estimate, const ScoringInput& input, double& value) {
   const TruthTrack truth(*input.truth, estimate.frame);
   std::vector<double> steps;
@@ -73,6 +96,16 @@ std::vector<Metric> attitude_metrics() {
         Place::held},
        Kind::attitude,
        rmse<&AttitudeError::heading_rad, false>},
+      {{"inclination_coverage_3sigma", Unit::share,
+        "share of the errors of the tilt per horizontal axis, in motion, within three stated standard deviations",
+        Sense::two_sided, Place::held, kNormal3Sigma},
+       Kind::attitude,
+       tilt_coverage},
+      {{"inclination_nees_median", Unit::number,
+        "median of the same errors squared over their stated variances, as a multiple of a normal variable's",
+        Sense::two_sided, Place::held, 1.0},
+       Kind::attitude,
+       tilt_nees_median},
       {{"attitude_rmse_rad", Unit::rad, "rms angle of the whole attitude error, in motion", Sense::lower},
        Kind::attitude,
        rmse<&AttitudeError::total_rad, false>},

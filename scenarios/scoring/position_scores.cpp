@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "scenarios/scoring/consistency.hpp"
 #include "scenarios/scoring/families.hpp"
 #include "scenarios/scoring/truth_track.hpp"
-#include "scenarios/statistics/statistics.hpp"
 
 namespace tumble::scenarios {
 
@@ -13,8 +12,7 @@ namespace {
 
 // a share of less than this path says nothing
 constexpr double kPathMinM = 0.05;
-constexpr double kNormalSquareMedian = 0.454936;  // of the square of a standard normal variable
-constexpr double kUnmovedM = 0.02;                // before, nothing can be wrong
+constexpr double kUnmovedM = 0.02;  // before, nothing can be wrong
 
 std::vector<PairedPose> paired(const Estimate& estimate, const ScoringInput& input) {
   return pair_poses(estimate, TruthTrack(*input.truth, estimate.frame)).poses;
@@ -83,30 +81,17 @@ std::vector<double> normalised_errors(const Estimate& estimate, const ScoringInp
     const Eigen::Vector3d variance = estimate.poses[own].covariance.topLeftCorner<3, 3>().diagonal();
     if (!(variance.maxCoeff() > 0.0)) continue;
     const Eigen::Vector3d error = R_estimate_W * (pose.estimate.p_WA_m - pose.truth.p_WA_m);
-    // no error is within any variance, also within none; an error is within no variance that is none
-    for (int axis = 0; axis < 3; ++axis) {
-      const double square = error[axis] * error[axis];
-      const double beyond = square > 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
-      normalised.push_back(variance[axis] > 0.0 ? square / variance[axis] : beyond);
-    }
+    for (int axis = 0; axis < 3; ++axis) normalised.push_back(squared_over(error[axis], variance[axis]));
   }
   return normalised;
 }
 
 bool coverage_3sigma(const Estimate& estimate, const ScoringInput& input, double& value) {
-  const std::vector<double> normalised = normalised_errors(estimate, input);
-  if (normalised.empty()) return false;
-  const auto inside = std::count_if(normalised.begin(), normalised.end(), [](double z) { return z <= 9.0; });
-  value = static_cast<double>(inside) / static_cast<double>(normalised.size());
-  return true;
+  return share_within_3sigma(normalised_errors(estimate, input), value);
 }
 
-/// The middle of them: the mean is that of the one axis whose variance is smallest.
 bool nees_median(const Estimate& estimate, const ScoringInput& input, double& value) {
-  const std::vector<double> normalised = normalised_errors(estimate, input);
-  if (normalised.empty()) return false;
-  value = quantile(normalised, 0.5) / kNormalSquareMedian;
-  return true;
+  return normalised_median(normalised_errors(estimate, input), value);
 }
 
 }  // namespace

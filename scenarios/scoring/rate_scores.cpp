@@ -6,6 +6,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/scoring/clipping.hpp"
+#include "scenarios/scoring/consistency.hpp"
 #include "scenarios/scoring/families.hpp"
 #include "scenarios/statistics/statistics.hpp"
 
@@ -97,19 +98,10 @@ std::vector<double> normalised_errors(const Estimate& estimate, const ScoringInp
     for (int j = 0; j < 3; ++j) {
       if (!(sample->clipped_axes & (1u << j))) continue;
       const double error = rate.w_WI_I_rad_s[j] - sample->rate_rad_s[j];
-      // no error is within any variance, also within none
-      normalised.push_back(error == 0.0 ? 0.0 : error * error / rate.covariance_rad2_s2(j, j));
+      normalised.push_back(squared_over(error, rate.covariance_rad2_s2(j, j)));
     }
   }
   return normalised;
-}
-
-// NaN (an error or a variance that is none) counts as outside
-bool share_within_3sigma(const std::vector<double>& normalised, double& value) {
-  if (normalised.empty()) return false;
-  const auto within = std::count_if(normalised.begin(), normalised.end(), [](double z) { return z <= 9.0; });
-  value = static_cast<double>(within) / static_cast<double>(normalised.size());
-  return true;
 }
 
 bool coverage_3sigma(const Estimate& estimate, const ScoringInput& input, double& value) {

@@ -21,6 +21,16 @@ bool ate(const Estimate& estimate, const ScoringInput& input, double& value) {
   return true;
 }
 
+bool ate_rotation(const Estimate& estimate, const ScoringInput& input, double& value) {
+  const PairedTrack track = pair_poses(estimate, TruthTrack(*input.truth, estimate.frame));
+  if (track.poses.empty()) return false;
+  std::vector<double> errors;
+  for (const PairedPose& pose : track.poses)
+    errors.push_back(rotation_angle_rad(pose.truth.q_WA.conjugate() * pose.estimate.q_WA));
+  value = rms(errors);
+  return true;
+}
+
 struct SegmentErrors {
   std::vector<double> translation_m;
   std::vector<double> rotation_rad;
@@ -72,6 +82,10 @@ std::vector<Metric> trajectory_metrics(Kind kind) {
       {{"ate_m", Unit::m, "rms position error, position and yaw aligned at the start only", Sense::lower, Place::held},
        kind,
        ate},
+      {{"ate_rad", Unit::rad, "the same: rotation, up to pi; a body that turns shows here what its stamps are late by",
+        Sense::lower, Place::held},
+       kind,
+       ate_rotation},
       {{"rpe_1m_m", Unit::m, "rms error of the relative motion over 1 m of true path: translation", Sense::lower,
         Place::held},
        kind,

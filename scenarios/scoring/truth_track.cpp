@@ -156,6 +156,13 @@ PoseState Alignment::apply(const PoseState& pose) const {
   return aligned;
 }
 
+Eigen::Vector2d tilt_error_rad(const Eigen::Quaterniond& q_estimate, const Eigen::Quaterniond& q_true) {
+  const Eigen::Vector3d up = q_estimate * (q_true.conjugate() * Eigen::Vector3d::UnitZ());
+  const double sine = std::hypot(up.x(), up.y());
+  const double scale = sine > 1e-12 ? std::atan2(sine, up.z()) / sine : 1.0;
+  return scale * Eigen::Vector2d(up.y(), -up.x());
+}
+
 PairedTrack pair_poses(const Estimate& estimate, const TruthTrack& truth) {
   PairedTrack track;
   for (const PoseState& pose : estimate.poses) {

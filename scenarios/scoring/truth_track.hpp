@@ -80,6 +80,10 @@ double twist_about_z_rad(const Eigen::Quaterniond& q);
 /// Angle of a rotation in [0, pi], exact for small angles and near a half turn.
 double rotation_angle_rad(const Eigen::Quaterniond& q);
 
+/// Error phi of an estimated attitude about the horizontal axes of the estimate's own world, where q_true = Exp(phi) q
+/// but for the heading, which does not count.
+Eigen::Vector2d tilt_error_rad(const Eigen::Quaterniond& q_estimate, const Eigen::Quaterniond& q_true);
+
 /// Poses of an estimate beside the truth, aligned at the first one that the truth covers. Empty when none is.
 struct PairedTrack {
   Alignment alignment;

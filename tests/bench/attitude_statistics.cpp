@@ -92,14 +92,6 @@ struct Pool {
   int samples = 0, within_one = 0, within_three = 0;
 };
 
-/// Tilt error phi of q_true = Exp(phi) q, in the estimate's own world, whatever the heading.
-Eigen::Vector2d tilt_error_rad(const Eigen::Quaterniond& q_WI, const Eigen::Quaterniond& q_true) {
-  const Eigen::Vector3d up = q_WI * (q_true.conjugate() * Eigen::Vector3d::UnitZ());
-  const double sine = std::hypot(up.x(), up.y());
-  const double scale = sine > 1e-12 ? std::atan2(sine, up.z()) / sine : 1.0;
-  return scale * Eigen::Vector2d(up.y(), -up.x());
-}
-
 void add_consistency(const scenarios::Estimate& estimate, const sim::Truth& truth, Pool& pool) {
   const scenarios::TruthTrack track(truth, estimate.frame);
   for (const tumble::AttitudeState& attitude : estimate.attitudes) {
@@ -107,7 +99,7 @@ void add_consistency(const scenarios::Estimate& estimate, const sim::Truth& trut
     if (!track.covers_attitude(attitude.time_ns) || track.at_rest(attitude.time_ns) || !(covariance.trace() > 0.0)) {
       continue;
     }
-    const Eigen::Vector2d error = tilt_error_rad(attitude.q_WA, track.pose(attitude.time_ns).q_WA);
+    const Eigen::Vector2d error = scenarios::tilt_error_rad(attitude.q_WA, track.pose(attitude.time_ns).q_WA);
     const double square = error.dot(covariance.inverse() * error);
     pool.nees += 0.5 * square;
     ++pool.samples;

@@ -30,12 +30,14 @@ void flip_lever_arm_of_poses(const sim::Recording& recording, Estimate& estimate
 
 void halve_covariances(const sim::Recording&, Estimate& estimate) {
   for (RateState& rate : estimate.rates) rate.covariance_rad2_s2 *= 0.5;
+  for (AttitudeState& attitude : estimate.attitudes) attitude.covariance_rad2 *= 0.5;
   for (PoseState& pose : estimate.poses) pose.covariance *= 0.5;
   for (auto& sweep : estimate.sweeps) sweep.pose.covariance *= 0.5;
 }
 
 void double_covariances(const sim::Recording&, Estimate& estimate) {
   for (RateState& rate : estimate.rates) rate.covariance_rad2_s2 *= 2.0;
+  for (AttitudeState& attitude : estimate.attitudes) attitude.covariance_rad2 *= 2.0;
   for (PoseState& pose : estimate.poses) pose.covariance *= 2.0;
   for (auto& sweep : estimate.sweeps) sweep.pose.covariance *= 2.0;
 }
@@ -64,12 +66,36 @@ void lose_a_bump(const sim::Recording& recording, Estimate& estimate) {
   }
 }
 
+/// How far towards the state before lies what was true one millisecond ago.
+template <typename State>
+double share_of_shift(const State& before, const State& now) {
+  return std::min(1.0, kShift_ns / static_cast<double>(now.time_ns - before.time_ns));
+}
+
+void shift_poses(std::vector<PoseState>& poses) {
+  for (std::size_t k = poses.size(); k-- > 1;) {
+    const double share = share_of_shift(poses[k - 1], poses[k]);
+    poses[k].p_WA_m += share * (poses[k - 1].p_WA_m - poses[k].p_WA_m);
+    poses[k].q_WA = poses[k].q_WA.slerp(share, poses[k - 1].q_WA);
+  }
+}
+
 /// What was true one millisecond before, under the stamps of now: linear between states.
 void shift_by_1_ms(const sim::Recording&, Estimate& estimate) {
   for (std::size_t k = estimate.rates.size(); k-- > 1;) {
     RateState &now = estimate.rates[k], &before = estimate.rates[k - 1];
-    const double share = std::min(1.0, kShift_ns / static_cast<double>(now.time_ns - before.time_ns));
-    now.w_WI_I_rad_s += share * (before.w_WI_I_rad_s - now.w_WI_I_rad_s);
+    now.w_WI_I_rad_s += share_of_shift(before, now) * (before.w_WI_I_rad_s - now.w_WI_I_rad_s);
+  }
+  for (std::size_t k = estimate.attitudes.size(); k-- > 1;) {
+    AttitudeState &now = estimate.attitudes[k], &before = estimate.attitudes[k - 1];
+    now.q_WA = now.q_WA.slerp(share_of_shift(before, now), before.q_WA);
+  }
+  shift_poses(estimate.poses);
+  for (auto& sweep : estimate.sweeps) {
+    if (sweep.trajectory.size() < 2) continue;
+    shift_poses(sweep.trajectory);
+    sweep.pose.p_WA_m = sweep.trajectory.back().p_WA_m;
+    sweep.pose.q_WA = sweep.trajectory.back().q_WA;
   }
 }
 
@@ -105,6 +131,22 @@ std::span<const Mutation> mutations() {
       Mutation{"covariance_doubled_position", "bump", "position/tumble", nullptr, double_covariances},
       Mutation{"lost_bump", "bump", "position/tumble", nullptr, lose_a_bump},
       Mutation{"shift_1_ms", "hill", "rate/tumble", nullptr, shift_by_1_ms},
+      Mutation{"shift_1_ms_live", "hill", "rate/tumble_lag", nullptr, shift_by_1_ms},
+      Mutation{"lever_arm_sign_given_live", "hill", "rate/tumble_lag", flip_lever_arms, nullptr},
+      Mutation{"covariance_halved_live", "hill", "rate/tumble_lag", nullptr, halve_covariances},
+      Mutation{"covariance_doubled_live", "hill", "rate/tumble_lag", nullptr, double_covariances},
+      Mutation{"shift_1_ms_slam", "hill", "slam/tumble", nullptr, shift_by_1_ms},
+      Mutation{"shift_1_ms_position", "bump", "position/tumble", nullptr, shift_by_1_ms},
+      Mutation{"shift_1_ms_position_live", "bump", "position/tumble_live", nullptr, shift_by_1_ms},
+      Mutation{"covariance_halved_position_live", "bump", "position/tumble_live", nullptr, halve_covariances},
+      Mutation{"lost_bump_live", "bump", "position/tumble_live", nullptr, lose_a_bump},
+      Mutation{"covariance_halved_sphere_attitude", "bump", "attitude/tumble", nullptr, halve_covariances},
+      Mutation{"shift_1_ms_carried", "swing", "rate/tumble", nullptr, shift_by_1_ms},
+      Mutation{"covariance_halved_carried", "swing", "rate/tumble", nullptr, halve_covariances},
+      Mutation{"covariance_doubled_carried", "swing", "rate/tumble", nullptr, double_covariances},
+      Mutation{"shift_1_ms_attitude", "swing", "attitude/tumble", nullptr, shift_by_1_ms},
+      Mutation{"covariance_halved_attitude", "swing", "attitude/tumble", nullptr, halve_covariances},
+      Mutation{"covariance_doubled_attitude", "swing", "attitude/tumble", nullptr, double_covariances},
       Mutation{"map_twice", "hill", "slam/tumble", nullptr, draw_map_twice},
       Mutation{"map_twice_turned", "hill", "slam/tumble", nullptr, draw_map_twice_turned},
   };

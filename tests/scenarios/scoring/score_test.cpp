@@ -227,6 +227,24 @@ TEST(PositionScores, TheNormalisedErrorSeesACovarianceThatIsHalved) {
   }
 }
 
+TEST(AttitudeScores, TheTiltIsHeldToItsCovarianceWhateverTheHeading) {
+  constexpr double kTilt = 0.02;
+  Estimate estimate = perfect_estimate(rig());
+  EXPECT_FALSE(scores(Kind::attitude, estimate, rig()).contains("inclination_nees_median")) << "nothing is stated";
+  for (AttitudeState& attitude : estimate.attitudes) {
+    // q_true = Exp(phi) q with phi about x and y of the estimate's own world, which is turned about the vertical
+    const Eigen::Quaterniond tilt(Eigen::AngleAxisd(kTilt, Eigen::Vector3d(1.0, 1.0, 0.0).normalized()));
+    attitude.q_WA = tilt.conjugate() * Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitZ()) * attitude.q_WA;
+  }
+  const double square = kTilt * kTilt / 2.0;
+  for (const double variance : {4.0 * square, 2.0 * square, square / 8.0, square / 10.0}) {
+    for (AttitudeState& attitude : estimate.attitudes) attitude.covariance_rad2.diagonal().setConstant(variance);
+    const auto values = scores(Kind::attitude, estimate, rig());
+    EXPECT_NEAR(values.at("inclination_nees_median"), square / variance / 0.454936, 1e-6);
+    EXPECT_EQ(values.at("inclination_coverage_3sigma"), square <= 9.0 * variance ? 1.0 : 0.0);
+  }
+}
+
 TEST(PositionScores, DriftAtStandstillIsWithinOneSpell) {
   Estimate estimate = perfect_estimate(rig(), Frame::body);
   for (PoseState& pose : estimate.poses) {
@@ -243,6 +261,16 @@ TEST(TrajectoryScores, AteIsTheRmsOfAConstantShift) {
   for (std::size_t k = 1; k < estimate.poses.size(); ++k) estimate.poses[k].p_WA_m += Eigen::Vector3d(0.3, 0.4, 0.0);
   const double n = static_cast<double>(estimate.poses.size());
   EXPECT_NEAR(scores(Kind::slam, estimate, rig()).at("ate_m"), 0.5 * std::sqrt((n - 1.0) / n), 1e-9);
+}
+
+TEST(TrajectoryScores, AteOfTheRotationIsTheRmsOfAConstantTurn) {
+  Estimate estimate = perfect_estimate(rig());
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.2, Eigen::Vector3d(1, 2, 2) / 3.0));
+  for (std::size_t k = 1; k < estimate.poses.size(); ++k) estimate.poses[k].q_WA = estimate.poses[k].q_WA * turn;
+  const double n = static_cast<double>(estimate.poses.size());
+  const auto values = scores(Kind::slam, estimate, rig());
+  EXPECT_NEAR(values.at("ate_rad"), 0.2 * std::sqrt((n - 1.0) / n), 1e-9);
+  EXPECT_NEAR(values.at("ate_m"), 0.0, 1e-9);
 }
 
 TEST(TrajectoryScores, ATiltedStartIsAnError) {
