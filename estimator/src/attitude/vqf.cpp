@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/attitude/vqf.hpp"
 
-#include <Eigen/LU>
 #include <cmath>
 
 #include "tumble/attitude/detail/tilt.hpp"
 #include "tumble/attitude/detail/timing.hpp"
 #include "tumble/attitude/strapdown.hpp"
+#include "tumble/common/detail/scalar_update.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble {
@@ -108,10 +108,8 @@ void Vqf::estimate_bias(const Eigen::Vector3d& up_W, double dt_s, State& state) 
   }
   const double clip = params_.bias_clip_rad_s;
   innovation = innovation.cwiseMax(-clip).cwiseMin(clip);
-  const Eigen::Matrix3d S = H * P * H.transpose() + Eigen::Matrix3d(noise.asDiagonal());
-  const Eigen::Matrix3d K = P * H.transpose() * S.inverse();
-  state.bias_rad_s = (b + K * innovation).cwiseMax(-clip).cwiseMin(clip);
-  P -= (K * H * P).eval();
+  const Eigen::Vector3d correction = vector_update<3, 3>(H, innovation, noise.asDiagonal(), P);
+  state.bias_rad_s = (b + correction).cwiseMax(-clip).cwiseMin(clip);
 }
 
 }  // namespace tumble
