@@ -6,6 +6,7 @@
 
 #include "tumble/angular_velocity/detail/recording_check.hpp"
 #include "tumble/common/detail/imu_interpolation.hpp"
+#include "tumble/common/detail/sample_check.hpp"
 
 namespace tumble {
 
@@ -47,12 +48,9 @@ bool AuxiliaryReading::same(const AuxiliaryReading& other) const {
 
 Status align(const AuxiliaryImu& auxiliary_imu, std::span<const ImuSample> samples, std::span<const Clipping> clippings,
              std::span<const ImuSample> primary, double gap_max_s, std::vector<AuxiliaryReading>& out) {
-  for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (Status status = check_sample(samples[k]); !status.ok()) return status;
-    if (k == 0) continue;
-    Status status = check_follows(samples[k].time_ns, samples[k - 1].time_ns, std::numeric_limits<double>::max());
-    if (!status.ok()) return status;
-  }
+  // where it is silent for long it says nothing, and that is no trouble
+  const Status status = check_samples(samples, std::numeric_limits<double>::infinity());
+  if (!status.ok()) return status;
   if (clippings.size() != samples.size()) {
     return {Trouble::too_few, "clippings", static_cast<double>(clippings.size()), static_cast<double>(samples.size())};
   }

@@ -30,7 +30,7 @@ Vqf::Vqf(const Params& p) : params_(p) {
 }
 
 Status Vqf::step(const ImuSample& sample, State& state) const {
-  if (const Status bad = check(sample); !bad.ok()) return bad;
+  if (const Status bad = check_sample(sample); !bad.ok()) return bad;
   double dt_s = 0.0;
   if (state.started) {
     if (const Status bad = elapsed(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s); !bad.ok()) return bad;
