@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "scenarios/errors.hpp"
-#include "tests/scenarios/sweep/temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 #include "tools/examples/draw_plots.hpp"
 #include "tools/report/plots.hpp"
 
