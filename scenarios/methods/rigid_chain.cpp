@@ -130,8 +130,7 @@ void run_rigid_chain(const sim::Sensors& sensors, std::span<const ImuSample> sam
     last_end_ns = sweep.end_ns;
     return status;
   };
-  run_over_sweeps(lidar, {covers, add}, estimate);
-  estimate.map = odometry.map();
+  if (run_over_sweeps(lidar, {covers, add}, estimate)) estimate.map = odometry.map();
 }
 
 const Settings<baselines::RigidOdometry::Params>& rigid_settings() {

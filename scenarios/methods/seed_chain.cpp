@@ -299,8 +299,7 @@ void run_seed_chain(const sim::Sensors& sensors, std::span<const ImuSample> samp
     if (registered) feed_back(sweep.start_ns, mapper.T_map_odom(), params.late_velocity, last, odometry);
     return trouble;
   };
-  run_over_sweeps(lidar, {covers, add}, estimate);
-  estimate.map = mapper.map();
+  if (run_over_sweeps(lidar, {covers, add}, estimate)) estimate.map = mapper.map();
 }
 
 const Settings<SeedParams>& seed_settings() {

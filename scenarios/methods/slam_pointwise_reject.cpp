@@ -43,8 +43,7 @@ void run_filter(const sim::Sensors& sensors, std::span<const ImuSample> samples,
   const auto add = [&](const bridge::Sweep& sweep, SweepReport& report) {
     return filter.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, report);
   };
-  run_over_sweeps(lidar, {covers, add}, estimate);
-  estimate.map = filter.map();
+  if (run_over_sweeps(lidar, {covers, add}, estimate)) estimate.map = filter.map();
 }
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {

@@ -33,24 +33,25 @@ void leave_out_unfinished(Estimate& estimate) {
   estimate.health["sweeps_unfinished"] += 1.0;
 }
 
-void run_over_sweeps(const sim::LidarRecord& lidar, const SweepMapper& mapper, Estimate& estimate) {
+bool run_over_sweeps(const sim::LidarRecord& lidar, const SweepMapper& mapper, Estimate& estimate) {
   const std::size_t sweeps = bridge::sweep_count(lidar);
   for (std::size_t k = 0; k < sweeps; ++k) {
     const bridge::Sweep sweep = bridge::sweep(lidar, k);
     const bool covered = mapper.covers(sweep);
-    if (!estimate.status.ok()) return;
+    if (!estimate.status.ok()) return false;
     if (!covered) {
       leave_out_unfinished(estimate);
       continue;
     }
     SweepReport report;
     const Status status = mapper.add(sweep, report);
-    if (!append_sweep(status, sweep.end_ns, std::move(report), estimate)) return;
+    if (!append_sweep(status, sweep.end_ns, std::move(report), estimate)) return false;
     append_poses(estimate.sweeps.back().trajectory, estimate);
   }
   const bool any = std::any_of(estimate.sweeps.begin(), estimate.sweeps.end(),
                                [](const SweepReport& sweep) { return sweep.verdict != SweepVerdict::rejected; });
   if (!any) estimate.status = {Trouble::too_few, "lidar.sweeps_registered", 0.0, 1.0};
+  return true;
 }
 
 }  // namespace tumble::scenarios

@@ -32,7 +32,8 @@ struct SweepMapper {
   std::function<Status(const bridge::Sweep&, SweepReport&)> add;
 };
 
-/// Gives each sweep to the mapper, in order, and gathers their poses; `too_few` where none was registered.
-void run_over_sweeps(const sim::LidarRecord& lidar, const SweepMapper& mapper, Estimate& estimate);
+/// Gives each sweep to the mapper, in order, and gathers their poses; `too_few` where none was registered. False where
+/// trouble ended the run before the last.
+bool run_over_sweeps(const sim::LidarRecord& lidar, const SweepMapper& mapper, Estimate& estimate);
 
 }  // namespace tumble::scenarios
