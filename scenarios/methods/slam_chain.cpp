@@ -257,6 +257,7 @@ Method rig_slam(RigSlam what, RunCore run) {
   info.name = std::move(what.name);
   info.kind = Kind::slam;
   info.doc = std::move(what.doc);
+  info.ours = what.ours;
   info.source = std::move(what.source);
   info.settings = std::move(what.settings);
   info.needs_truth = what.needs_truth;

@@ -120,12 +120,9 @@ Estimate run_poses_tumble(const sim::Sensors& sensors, const sim::Values& parame
   return map_from_poses(tumble(), sensors, parameters);
 }
 
-Method posed(const char* name, const char* doc, const char* source, const Method& position, RunCore run) {
-  MethodInfo info;
-  info.name = name;
+/// A map from the poses of `position`.
+Method posed(MethodInfo info, const Method& position, RunCore run) {
   info.kind = Kind::slam;
-  info.doc = doc;
-  info.source = source;
   info.settings = stages_after({&map_settings()}, position);
   info.robots = {"sphere"};
   return make_method(std::move(info), run);
@@ -134,19 +131,27 @@ Method posed(const char* name, const char* doc, const char* source, const Method
 }  // namespace
 
 Method slam_poses_rolling() {
-  return posed("poses_rolling", "A map from the poses of rolling; nothing is registered.",
-               "textbook rolling constraint", rolling(), run_poses_rolling);
+  MethodInfo info;
+  info.name = "poses_rolling";
+  info.doc = "A map from the poses of rolling; nothing is registered.";
+  info.source = "textbook rolling constraint";
+  return posed(std::move(info), rolling(), run_poses_rolling);
 }
 
 Method slam_poses_autogain_fusion() {
-  return posed("poses_autogain_fusion", "A map from the poses of autogain_fusion, as published; nothing is registered.",
-               "Zevering et al., IMU-based pose-estimation for spherical robots, IEEE MFI 2021", autogain_fusion(),
-               run_poses_autogain_fusion);
+  MethodInfo info;
+  info.name = "poses_autogain_fusion";
+  info.doc = "A map from the poses of autogain_fusion, as published; nothing is registered.";
+  info.source = "Zevering et al., IMU-based pose-estimation for spherical robots, IEEE MFI 2021";
+  return posed(std::move(info), autogain_fusion(), run_poses_autogain_fusion);
 }
 
 Method slam_poses_tumble() {
-  return posed("poses_tumble", "A map from the poses of our position method; nothing is registered.", "ours", tumble(),
-               run_poses_tumble);
+  MethodInfo info;
+  info.name = "poses_tumble";
+  info.doc = "A map from the poses of our position method; nothing is registered.";
+  info.ours = true;
+  return posed(std::move(info), tumble(), run_poses_tumble);
 }
 
 }  // namespace tumble::scenarios

@@ -254,7 +254,7 @@ Method slam_rolling_prior() {
   info.name = "rolling_prior";
   info.kind = Kind::slam;
   info.doc = "The registration of the rig, with the poses of our position method as its prior between two sweeps.";
-  info.source = "ours";
+  info.ours = true;
   info.settings = stages_after({&prior_settings(), &along_settings()}, rolling());
   info.robots = {"sphere"};
   return make_method(std::move(info), run_rolling_prior);

@@ -159,7 +159,7 @@ Method slam_tumble_lag() {
   return rig_slam(
       {.name = "tumble_lag",
        .doc = "TumblingOdometry, the library's door: one causal pass, each sweep's last word 0.3 s after it.",
-       .source = "ours",
+       .ours = true,
        .settings = {&settings()}},
       [](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
         return run(sensors, parameters, Word::last);
@@ -169,7 +169,7 @@ Method slam_tumble_lag() {
 Method slam_tumble_live() {
   return rig_slam({.name = "tumble_live",
                    .doc = "The same pass, live: the pose at each sample of the IMU by what came before it alone.",
-                   .source = "ours",
+                   .ours = true,
                    .settings = {&settings()}},
                   [](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
                     return run(sensors, parameters, Word::live);
