@@ -51,7 +51,7 @@ Method attitude_oracle() {
   info.name = "oracle";
   info.kind = Kind::attitude;
   info.doc = "attitude/tumble given gyros without their rails: noise, bias and bandwidth as read. The bound.";
-  info.source = "ours";
+  info.ours = true;
   info.settings = {&attitude_tumble_settings()};
   info.needs_truth = true;
   return make_method(std::move(info), run);

@@ -97,7 +97,7 @@ Method attitude_tumble() {
   info.doc =
       "Tilt and gyro bias from the velocity being bounded, that of rolling on a sphere, and zero at rest; rates that a "
       "rail hid are those of rate/tumble.";
-  info.source = "ours";
+  info.ours = true;
   info.settings = {&attitude_tumble_settings()};
   return make_method(std::move(info), run);
 }

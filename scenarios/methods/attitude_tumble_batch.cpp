@@ -64,7 +64,7 @@ Method attitude_tumble_batch() {
   info.doc =
       "A smoother over the whole recording of a body that is carried: bounded acceleration, velocity and place, rest, "
       "clipped gyro axes as bounds, or with the rates of rate/tumble where nobody held the body meanwhile.";
-  info.source = "ours";
+  info.ours = true;
   info.settings = {&carried_settings()};
   return make_method(std::move(info), run);
 }

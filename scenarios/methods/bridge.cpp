@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "scenarios/errors.hpp"
+#include "tumble/common/detail/sample_check.hpp"
 
 namespace tumble::scenarios::bridge {
 
@@ -32,22 +33,11 @@ void require_length(const std::string& place, const char* field, std::size_t fou
 
 // what every method may rely on: finite, of what its device can read, rising, without holes
 Status check_stream(const sim::ImuRecord& record, std::span<const ImuSample> samples) {
-  if (samples.empty()) return {Trouble::empty, "imu.time_ns", 0.0, 1.0};
-  for (std::size_t k = 0; k < samples.size(); ++k) {
-    const ImuSample& sample = samples[k];
-    if (!sample.angular_velocity_rad_s.allFinite()) {
-      return {Trouble::non_finite, "imu.gyro_rad_s", sample.angular_velocity_rad_s.sum(), 0.0};
-    }
-    if (!sample.specific_force_m_s2.allFinite()) {
-      return {Trouble::non_finite, "imu.accel_m_s2", sample.specific_force_m_s2.sum(), 0.0};
-    }
-    const Status in_range = check_range(record, sample.angular_velocity_rad_s, sample.specific_force_m_s2);
-    if (!in_range.ok()) return in_range;
-    if (k == 0) continue;
-    const TimeNs previous = samples[k - 1].time_ns;
-    Status follows = check_follows(sample.time_ns, previous, kGapMaxS);
-    if (follows.trouble == Trouble::time_order) follows.field = "imu.time_ns";
-    if (!follows.ok()) return follows;
+  if (samples.empty()) return {Trouble::empty, "time_ns", 0.0, 1.0};
+  if (const Status status = check_samples(samples, kGapMaxS); !status.ok()) return status;
+  for (const ImuSample& sample : samples) {
+    const Status status = check_range(record, sample.angular_velocity_rad_s, sample.specific_force_m_s2);
+    if (!status.ok()) return status;
   }
   return {};
 }
@@ -61,9 +51,9 @@ Status check_range(const sim::ImuRecord& record, const Eigen::Vector3d& gyro_rad
     return {Trouble::out_of_range, field, reading.cwiseAbs().maxCoeff(), bound};
   };
   const Status gyro =
-      beyond(gyro_rad_s, record.stated_gyro_range_rad_s, "imu.gyro_rad_s, held to twice its stated range,");
+      beyond(gyro_rad_s, record.stated_gyro_range_rad_s, "angular_velocity_rad_s, held to twice its stated range,");
   if (!gyro.ok()) return gyro;
-  return beyond(accel_m_s2, record.stated_accel_range_m_s2, "imu.accel_m_s2, held to twice its stated range,");
+  return beyond(accel_m_s2, record.stated_accel_range_m_s2, "specific_force_m_s2, held to twice its stated range,");
 }
 
 Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out) {

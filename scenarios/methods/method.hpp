@@ -63,7 +63,8 @@ struct MethodInfo {
   std::string name;
   Kind kind = Kind::rate;
   std::string doc;                             ///< one sentence: what it is
-  std::string source;                          ///< paper or "ours"
+  bool ours = false;                           ///< made here, for this project
+  std::string source;                          ///< paper; of one of ours "ours"
   std::vector<const SettingsTable*> settings;  ///< of its stages, whose names differ; what `parameters` are made of
   std::span<const sim::Parameter> parameters;
   std::size_t parameters_first = 0;  ///< so many of them, the first, are what a user sets before others
@@ -75,7 +76,6 @@ struct MethodInfo {
   bool baseline = false;
   /// Can begin from what an earlier run has learnt of the device, and tells what it has learnt (rate_tumble.hpp).
   bool learns_rig = false;
-  bool ours() const { return source == "ours"; }  ///< made here
   std::string version;  ///< of a method that is not of this build: what tells it from another of its name
 };
 

@@ -122,7 +122,7 @@ Method position_oracle() {
   info.name = "oracle";
   info.kind = Kind::position;
   info.doc = "Our smoother given the exact attitude at all times: what the other sensors and the contact leave.";
-  info.source = "ours";
+  info.ours = true;
   info.settings = {&settings_with_attitude()};
   info.needs_truth = true;
   info.robots = {"sphere"};
@@ -134,7 +134,7 @@ Method position_oracle_contact() {
   info.name = "oracle_contact";
   info.kind = Kind::position;
   info.doc = "Our smoother told at each instant whether the contact grips, slips or is lost: what the sensors leave.";
-  info.source = "ours";
+  info.ours = true;
   info.settings = {&settings_with_contact()};
   info.needs_truth = true;
   info.robots = {"sphere"};

@@ -284,7 +284,7 @@ Method position_tumble() {
   info.doc =
       "Rolling as a velocity measurement in an inertial filter, grip, slip, bump and slope as hypotheses; smoothed "
       "over the run.";
-  info.source = "ours";
+  info.ours = true;
   info.settings = {&position_settings()};
   info.robots = {"sphere"};
   return make_method(std::move(info), run_whole);
@@ -295,7 +295,7 @@ Method position_tumble_lag() {
   info.name = "tumble_lag";
   info.kind = Kind::position;
   info.doc = "The same, each pose smoothed with what follows within a fixed lag.";
-  info.source = "ours";
+  info.ours = true;
   info.settings = {&lag_settings()};
   info.robots = {"sphere"};
   return make_method(std::move(info), run_lag);
@@ -306,7 +306,7 @@ Method position_tumble_live() {
   info.name = "tumble_live";
   info.kind = Kind::position;
   info.doc = "The same, live: each pose with what came before it alone.";
-  info.source = "ours";
+  info.ours = true;
   info.settings = {&live_settings()};
   info.robots = {"sphere"};
   return make_method(std::move(info), run_live);

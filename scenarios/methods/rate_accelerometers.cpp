@@ -6,6 +6,7 @@
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/rate_baseline.hpp"
 #include "scenarios/methods/settings.hpp"
+#include "tumble/common/detail/imu_interpolation.hpp"
 #include "tumble/odometry/imu_sheet.hpp"
 
 namespace tumble::scenarios {
@@ -28,19 +29,14 @@ Status auxiliary_imu(const sim::ImuRecord& primary, const sim::ImuRecord& other,
   out.specific_force_m_s2.assign(primary.time_ns.size(),
                                  Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
   const double rail = sure_range(other.stated_accel_range_m_s2);
-  std::size_t after = 1;
+  if (there.size() < 2) return {};
+  ImuInterpolation interpolation(there);
   for (std::size_t k = 0; k < primary.time_ns.size(); ++k) {
-    const std::int64_t time_ns = primary.time_ns[k];
-    while (after + 1 < there.size() && there[after].time_ns < time_ns) ++after;
-    if (after >= there.size()) break;
-    const ImuSample &a = there[after - 1], &b = there[after];
-    if (time_ns < a.time_ns || time_ns > b.time_ns) continue;
-    const double share = static_cast<double>(time_ns - a.time_ns) / static_cast<double>(b.time_ns - a.time_ns);
-    const Eigen::Vector3d force = (1.0 - share) * a.specific_force_m_s2 + share * b.specific_force_m_s2;
-    if (std::max(a.specific_force_m_s2.cwiseAbs().maxCoeff(), b.specific_force_m_s2.cwiseAbs().maxCoeff()) >= rail) {
-      continue;
-    }
-    out.specific_force_m_s2[k] = T_IO.linear() * force;
+    const ImuNeighbours near = interpolation.around(primary.time_ns[k]);
+    const double largest = std::max(there[near.before].specific_force_m_s2.cwiseAbs().maxCoeff(),
+                                    there[near.after].specific_force_m_s2.cwiseAbs().maxCoeff());
+    if (!near.between() || largest >= rail) continue;
+    out.specific_force_m_s2[k] = T_IO.linear() * interpolation.at(primary.time_ns[k], near).specific_force_m_s2;
   }
   return {};
 }

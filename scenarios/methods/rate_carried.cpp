@@ -24,7 +24,7 @@ Method rate_carried() {
   info.doc =
       "A smoother over the recording of a body that is carried, not in flight: gravity turning in the sensor tells the "
       "rate that a clipped gyro lost.";
-  info.source = "ours";
+  info.ours = true;
   info.settings = {&carried_settings()};
   return make_method(std::move(info), run);
 }

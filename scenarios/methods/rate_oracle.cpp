@@ -33,7 +33,7 @@ Method rate_oracle() {
   info.name = "oracle";
   info.kind = Kind::rate;
   info.doc = "The same gyro without its rail: noise, bias and bandwidth as read, nothing clipped. The bound.";
-  info.source = "ours";
+  info.ours = true;
   info.needs_truth = true;
   return make_method(std::move(info), run);
 }

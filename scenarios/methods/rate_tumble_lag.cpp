@@ -130,7 +130,7 @@ Method rate_tumble_lag() {
   info.kind = Kind::rate;
   info.doc =
       "The smoother `tumble` as a stream: the same factors in a sliding window, estimates given out at a fixed age.";
-  info.source = "ours";
+  info.ours = true;
   info.settings = {&settings()};
   info.robots = {"rig", "pendulum"};
   info.learns_rig = true;

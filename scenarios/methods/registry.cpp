@@ -109,6 +109,7 @@ bool MethodInfo::for_robot(const std::string& robot) const {
 }
 
 Method make_method(MethodInfo info, RunCore run) {
+  if (info.ours) info.source = "ours";
   const std::string name = full_name(info);
   const std::vector<const SettingsTable*> settings = info.settings;
   const auto parameters =

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/slam_registry.hpp"
+#include "scenarios/methods/sweep_log.hpp"
 #include "tumble/angular_velocity/rest_detector.hpp"
 #include "tumble/attitude/strapdown.hpp"
 
@@ -110,43 +112,25 @@ void run_rigid_chain(const sim::Sensors& sensors, std::span<const ImuSample> sam
     return;
   }
   const sim::LidarRecord& lidar = sensors.lidars.front();
-  const std::size_t sweeps = bridge::sweep_count(lidar);
-  if (sweeps == 0) {
+  if (bridge::sweep_count(lidar) == 0) {
     estimate.status = {Trouble::empty, "lidar.sweep_start_ns", 0.0, 1.0};
     return;
   }
   baselines::RigidOdometry odometry(params);
-  bool started = false, any = false;
-  TimeNs from_ns = 0;
-  for (std::size_t k = 0; k < sweeps; ++k) {
-    const bridge::Sweep sweep = bridge::sweep(lidar, k);
-    if (!started) from_ns = sweep.start_ns;
-    if (samples.back().time_ns < sweep.end_ns || window_start(samples, 0) > sweep.start_ns ||
-        sweep.start_ns < from_ns) {
-      estimate.health["sweeps_unfinished"] += 1.0;
-      continue;
-    }
-    LidarInertialOdometry::SweepReport report;
-    const Status status =
-        odometry.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, model.expect(from_ns, sweep.end_ns), report);
-    if (!status.ok() && report.trajectory.empty()) {
-      estimate.status = status;
-      return;
-    }
-    if (!status.ok()) estimate.health[std::string("sweeps_") + to_string(status.trouble)] += 1.0;
-    estimate.health[std::string("sweeps_") + to_string(report.verdict)] += 1.0;
-    any = any || report.verdict != SweepVerdict::rejected;
+  std::optional<TimeNs> last_end_ns;
+  const auto covers = [&](const bridge::Sweep& sweep) {
+    return samples.back().time_ns >= sweep.end_ns && window_start(samples, 0) <= sweep.start_ns &&
+           sweep.start_ns >= last_end_ns.value_or(sweep.start_ns);
+  };
+  const auto add = [&](const bridge::Sweep& sweep, SweepReport& report) {
+    const auto motion = model.expect(last_end_ns.value_or(sweep.start_ns), sweep.end_ns);
+    const Status status = odometry.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, motion, report);
+    if (!status.ok() && report.trajectory.empty()) return status;
     model.learn(odometry, report);
-    started = true;
-    from_ns = sweep.end_ns;
-    for (const PoseState& pose : report.trajectory) {
-      if (estimate.poses.empty() || pose.time_ns > estimate.poses.back().time_ns) estimate.poses.push_back(pose);
-    }
-    estimate.sweep_end_ns.push_back(sweep.end_ns);
-    estimate.sweeps.push_back(std::move(report));
-  }
-  estimate.map = odometry.map();
-  if (!any) estimate.status = {Trouble::too_few, "lidar.sweeps_registered", 0.0, 1.0};
+    last_end_ns = sweep.end_ns;
+    return status;
+  };
+  if (run_over_sweeps(lidar, {covers, add}, estimate)) estimate.map = odometry.map();
 }
 
 const Settings<baselines::RigidOdometry::Params>& rigid_settings() {

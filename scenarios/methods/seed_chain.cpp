@@ -4,20 +4,20 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <unordered_map>
 
 #include "scenarios/baselines/attitude/madgwick.hpp"
 #include "scenarios/baselines/mapping/trimmed_icp.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/sweep_log.hpp"
 #include "tumble/mapping/detail/map_drawing.hpp"
 #include "tumble/mapping/detail/spatial_hash.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
-
-using SweepReport = LidarInertialOdometry::SweepReport;
 
 constexpr double kMadgwickGain = 0.01;
 constexpr TimeNs kBucketNs = 50000;  // times of points are rounded down to this before the look-up
@@ -235,6 +235,37 @@ Status sweep_trouble(const bridge::Sweep& sweep, std::size_t prepared) {
   return {};
 }
 
+/// Poses of a sweep, in the map's frame.
+void tell_poses(const bridge::Sweep& sweep, std::span<const ImuSample> samples, ImuOdometry& odometry,
+                const Eigen::Isometry3d& T_map_odom, SweepReport& report) {
+  const auto at = [&](TimeNs time_ns) {
+    return pose_state(T_map_odom * odometry.pose(time_ns), T_map_odom.linear() * odometry.velocity_m_s(time_ns),
+                      time_ns);
+  };
+  for (const ImuSample& sample : samples) {
+    if (sample.time_ns > sweep.start_ns && sample.time_ns <= sweep.end_ns)
+      report.trajectory.push_back(at(sample.time_ns));
+  }
+  report.pose = at(sweep.end_ns);
+  if (report.trajectory.empty()) report.trajectory.push_back(report.pose);
+}
+
+/// Where the last registered sweep began.
+struct Return {
+  std::optional<TimeNs> time_ns;
+  Eigen::Vector3d p_m = Eigen::Vector3d::Zero();
+};
+
+/// The mean velocity since the last registered sweep goes back to the odometry.
+void feed_back(TimeNs start_ns, const Eigen::Isometry3d& T_map_odom, bool late, Return& last, ImuOdometry& odometry) {
+  const Eigen::Vector3d here_m = (T_map_odom * odometry.pose(start_ns)).translation();
+  if (last.time_ns) {
+    const Eigen::Vector3d mean = (here_m - last.p_m) / seconds(start_ns - *last.time_ns);
+    odometry.feed_back(T_map_odom.linear().transpose() * mean, late ? start_ns : (start_ns + *last.time_ns) / 2);
+  }
+  last = {start_ns, here_m};
+}
+
 }  // namespace
 
 void run_seed_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples, const sim::Values& parameters,
@@ -246,64 +277,29 @@ void run_seed_chain(const sim::Sensors& sensors, std::span<const ImuSample> samp
     return;
   }
   const sim::LidarRecord& lidar = sensors.lidars.front();
-  const std::size_t sweeps = bridge::sweep_count(lidar);
   const Eigen::Isometry3d T_IL = bridge::T_IL(sensors.imus.front(), lidar);
   const SeedParams params = seed_settings().read(parameters);
   ImuOdometry odometry(samples, estimate.rates);
   SeedMapper mapper(params, T_IL, odometry);
-  bool any = false, has_last = false;
-  TimeNs last_ns = 0;
-  Eigen::Vector3d last_m = Eigen::Vector3d::Zero();
-  for (std::size_t k = 0; k < sweeps; ++k) {
-    const bridge::Sweep sweep = bridge::sweep(lidar, k);
-    if (samples.back().time_ns < sweep.end_ns || samples.front().time_ns > sweep.end_ns) {
-      estimate.health["sweeps_unfinished"] += 1.0;
-      continue;
-    }
+  Return last;
+  const auto covers = [&](const bridge::Sweep& sweep) {
+    return samples.back().time_ns >= sweep.end_ns && samples.front().time_ns <= sweep.end_ns;
+  };
+  const auto add = [&](const bridge::Sweep& sweep, SweepReport& report) {
     for (const LidarPoint& point : sweep.points) {
       if (point.offset_ns <= sweep.end_ns - sweep.start_ns) continue;
-      estimate.status = {Trouble::out_of_range, "offset_ns", double(point.offset_ns),
-                         double(sweep.end_ns - sweep.start_ns)};
-      return;
+      return Status{Trouble::out_of_range, "offset_ns", double(point.offset_ns), double(sweep.end_ns - sweep.start_ns)};
     }
     odometry.advance(sweep.end_ns);
-    SweepReport report;
     std::vector<baselines::TrimmedIcp::Point> points = prepare(sweep, odometry, T_IL, params);
     const Status trouble = sweep_trouble(sweep, points.size());
-    if (!trouble.ok()) {
-      estimate.health[std::string("sweeps_") + to_string(trouble.trouble)] += 1.0;
-      points.clear();
-    }
+    if (!trouble.ok()) points.clear();
     const bool registered = mapper.add(sweep, points, report);
-    any = any || registered;
-    estimate.health[std::string("sweeps_") + to_string(report.verdict)] += 1.0;
-
-    const Eigen::Isometry3d& T = mapper.T_map_odom();
-    for (const ImuSample& sample : samples) {
-      if (sample.time_ns <= sweep.start_ns || sample.time_ns > sweep.end_ns) continue;
-      report.trajectory.push_back(pose_state(T * odometry.pose(sample.time_ns),
-                                             T.linear() * odometry.velocity_m_s(sample.time_ns), sample.time_ns));
-    }
-    report.pose =
-        pose_state(T * odometry.pose(sweep.end_ns), T.linear() * odometry.velocity_m_s(sweep.end_ns), sweep.end_ns);
-    if (report.trajectory.empty()) report.trajectory.push_back(report.pose);
-    for (const PoseState& pose : report.trajectory) estimate.poses.push_back(pose);
-    estimate.sweep_end_ns.push_back(sweep.end_ns);
-    estimate.sweeps.push_back(std::move(report));
-
-    if (!registered) continue;
-    const Eigen::Vector3d here_m = (T * odometry.pose(sweep.start_ns)).translation();
-    if (has_last) {
-      const Eigen::Vector3d mean = (here_m - last_m) / seconds(sweep.start_ns - last_ns);
-      const TimeNs valid_ns = params.late_velocity ? sweep.start_ns : (sweep.start_ns + last_ns) / 2;
-      odometry.feed_back(T.linear().transpose() * mean, valid_ns);
-    }
-    has_last = true;
-    last_ns = sweep.start_ns;
-    last_m = here_m;
-  }
-  estimate.map = mapper.map();
-  if (!any) estimate.status = {Trouble::too_few, "lidar.sweeps_registered", 0.0, 1.0};
+    tell_poses(sweep, samples, odometry, mapper.T_map_odom(), report);
+    if (registered) feed_back(sweep.start_ns, mapper.T_map_odom(), params.late_velocity, last, odometry);
+    return trouble;
+  };
+  if (run_over_sweeps(lidar, {covers, add}, estimate)) estimate.map = mapper.map();
 }
 
 const Settings<SeedParams>& seed_settings() {

@@ -7,6 +7,7 @@
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/slam_registry.hpp"
 #include "scenarios/methods/slam_settings.hpp"
+#include "scenarios/methods/sweep_log.hpp"
 #include "tumble/angular_velocity/clipping_finder.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
@@ -42,13 +43,8 @@ LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const
   return odometry;
 }
 
-// sweeps share the IMU time at their border: the later sweep's pose of it is left out
 void gather_poses(Estimate& estimate) {
-  for (const auto& sweep : estimate.sweeps) {
-    for (const PoseState& pose : sweep.trajectory) {
-      if (estimate.poses.empty() || pose.time_ns > estimate.poses.back().time_ns) estimate.poses.push_back(pose);
-    }
-  }
+  for (const SweepReport& sweep : estimate.sweeps) append_poses(sweep.trajectory, estimate);
 }
 
 /// Cuts a sweep where the IMU ends, if that leaves most of it: clocks that disagree must not cost the last sweep.
@@ -90,7 +86,7 @@ void run_sweeps(const sim::LidarRecord& lidar, std::span<const ImuSample> sample
       ++next;
     }
     if (!shorten(samples.back().time_ns - offset_ns, sweep)) {
-      estimate.health["sweeps_unfinished"] += 1.0;
+      leave_out_unfinished(estimate);
       continue;
     }
     if (along && !estimate.sweeps.empty()) {
@@ -98,24 +94,17 @@ void run_sweeps(const sim::LidarRecord& lidar, std::span<const ImuSample> sample
       estimate.status = odometry.add_velocity(velocity.v_WI_I_m_s, velocity.sigma_m_s);
       if (!estimate.status.ok()) return;
     }
-    LidarInertialOdometry::SweepReport report;
+    SweepReport report;
     const Status status = odometry.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, report);
-    if (!status.ok() && report.trajectory.empty()) {
-      // the IMU begins after the sweep: nothing to place it by
-      if (status.trouble == Trouble::too_few) {
-        estimate.health["sweeps_unfinished"] += 1.0;
-        continue;
-      }
-      estimate.status = status;
-      return;
+    // the IMU begins after the sweep: nothing to place it by
+    if (status.trouble == Trouble::too_few && report.trajectory.empty()) {
+      leave_out_unfinished(estimate);
+      continue;
     }
-    // a covered lidar is a fact of life: the chain goes on by inertia
-    if (!status.ok()) estimate.health[std::string("sweeps_") + to_string(status.trouble)] += 1.0;
-    estimate.health[std::string("sweeps_") + to_string(report.verdict)] += 1.0;
-    estimate.sweep_end_ns.push_back(report.pose.time_ns);
     const bool left_the_window = !report.smoothed.empty();
     std::vector<PoseState> last_word = std::move(report.smoothed);
-    estimate.sweeps.push_back(std::move(report));
+    const TimeNs end_ns = report.pose.time_ns;
+    if (!append_sweep(status, end_ns, std::move(report), estimate)) return;
     if (left_the_window) settle(std::move(last_word), estimate.sweeps[settled++]);
   }
   for (std::vector<PoseState>& open : odometry.open_trajectories()) {
@@ -138,7 +127,7 @@ double report_innovations(Estimate& estimate) {
 }
 
 /// A sweep in which the rig stands: a lidar draws rings then, that hold it no worse for being degenerate.
-bool rests(const LidarInertialOdometry::SweepReport& sweep) {
+bool rests(const SweepReport& sweep) {
   if (sweep.trajectory.size() < 2) return false;
   const PoseState &first = sweep.trajectory.front(), &last = sweep.trajectory.back();
   return (last.p_WA_m - first.p_WA_m).norm() < kRests_m && first.q_WA.angularDistance(last.q_WA) < kRests_rad;
@@ -268,6 +257,7 @@ Method rig_slam(RigSlam what, RunCore run) {
   info.name = std::move(what.name);
   info.kind = Kind::slam;
   info.doc = std::move(what.doc);
+  info.ours = what.ours;
   info.source = std::move(what.source);
   info.settings = std::move(what.settings);
   info.needs_truth = what.needs_truth;
@@ -339,7 +329,7 @@ void run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samp
   draw_map(odometry, estimate);
 }
 
-void settle(std::vector<PoseState> last_word, LidarInertialOdometry::SweepReport& sweep) {
+void settle(std::vector<PoseState> last_word, SweepReport& sweep) {
   if (last_word.empty()) return;
   sweep.trajectory = std::move(last_word);
   sweep.pose = sweep.trajectory.back();

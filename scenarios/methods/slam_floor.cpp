@@ -81,7 +81,7 @@ Method slam_floor() {
       {.name = "floor",
        .doc = "Registration with the true motion inside of each sweep and the true mounting: what is left is the "
               "registration's own error and the map's.",
-       .source = "ours",
+       .ours = true,
        .settings = {&rigid_settings()},
        .needs_truth = true},
       run);

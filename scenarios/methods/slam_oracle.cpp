@@ -27,7 +27,7 @@ Method slam_oracle() {
   return rig_slam(
       {.name = "oracle",
        .doc = "The chain of tumble with the gyro's unclipped twin; the accelerometer stays as read. The bound.",
-       .source = "ours",
+       .ours = true,
        .settings = {&settings()},
        .needs_truth = true},
       run);

@@ -7,6 +7,7 @@
 #include "scenarios/methods/rigid_chain.hpp"
 #include "scenarios/methods/settings.hpp"
 #include "scenarios/methods/slam_registry.hpp"
+#include "scenarios/methods/sweep_log.hpp"
 #include "tumble/odometry/imu_sheet.hpp"
 
 namespace tumble::scenarios {
@@ -23,10 +24,9 @@ void run_filter(const sim::Sensors& sensors, std::span<const ImuSample> samples,
                 Estimate& estimate) {
   const sim::LidarRecord& lidar = sensors.lidars.front();
   const double rail = sure_range(sensors.imus.front().stated_accel_range_m_s2);
-  bool any = false;
   std::size_t next = 0;
-  for (std::size_t k = 0; k < bridge::sweep_count(lidar); ++k) {
-    const bridge::Sweep sweep = bridge::sweep(lidar, k);
+  // the IMU up to the first sample at or after the sweep's end
+  const auto covers = [&](const bridge::Sweep& sweep) {
     while (next < samples.size() && (next == 0 || samples[next - 1].time_ns < sweep.end_ns)) {
       unsigned clipped = estimate.rates[next].clipped_axes;
       for (int axis = 0; axis < 3; ++axis) {
@@ -35,28 +35,15 @@ void run_filter(const sim::Sensors& sensors, std::span<const ImuSample> samples,
       ImuSample sample = samples[next];
       sample.angular_velocity_rad_s = estimate.rates[next].w_WI_I_rad_s;
       estimate.status = filter.add_imu(sample, clipped);
-      if (!estimate.status.ok()) return;
+      if (!estimate.status.ok()) return false;
       ++next;
     }
-    if (samples.back().time_ns < sweep.end_ns || samples.front().time_ns > sweep.end_ns) {
-      estimate.health["sweeps_unfinished"] += 1.0;
-      continue;
-    }
-    LidarInertialOdometry::SweepReport report;
-    const Status status = filter.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, report);
-    if (!status.ok() && report.trajectory.empty()) {
-      estimate.status = status;
-      return;
-    }
-    if (!status.ok()) estimate.health[std::string("sweeps_") + to_string(status.trouble)] += 1.0;
-    estimate.health[std::string("sweeps_") + to_string(report.verdict)] += 1.0;
-    any = any || report.verdict != SweepVerdict::rejected;
-    estimate.poses.insert(estimate.poses.end(), report.trajectory.begin(), report.trajectory.end());
-    estimate.sweep_end_ns.push_back(sweep.end_ns);
-    estimate.sweeps.push_back(std::move(report));
-  }
-  estimate.map = filter.map();
-  if (!any) estimate.status = {Trouble::too_few, "lidar.sweeps_registered", 0.0, 1.0};
+    return samples.back().time_ns >= sweep.end_ns && samples.front().time_ns <= sweep.end_ns;
+  };
+  const auto add = [&](const bridge::Sweep& sweep, SweepReport& report) {
+    return filter.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, report);
+  };
+  if (run_over_sweeps(lidar, {covers, add}, estimate)) estimate.map = filter.map();
 }
 
 Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {

@@ -26,7 +26,9 @@ Method slam_tumble_live();
 
 /// What tells one slam method of the rig from another.
 struct RigSlam {
-  std::string name, doc, source;
+  std::string name, doc;
+  bool ours = false;
+  std::string source = {};  ///< unless ours
   std::vector<const SettingsTable*> settings;
   bool needs_truth = false;
   bool baseline = false;

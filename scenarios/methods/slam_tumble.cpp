@@ -38,7 +38,7 @@ Method slam_tumble() {
       {.name = "tumble",
        .doc =
            "The chain of icp with the rates of rate/tumble, the excess of clipped axes estimated in the registration.",
-       .source = "ours",
+       .ours = true,
        .settings = {&chain_settings(), &rate_settings()}},
       run);
 }

@@ -43,7 +43,7 @@ Method slam_tumble_gyro_only() {
       {.name = "tumble_gyro_only",
        .doc =
            "The chain of tumble with the clipped gyro: the excess of clipped axes comes from the registration alone.",
-       .source = "ours",
+       .ours = true,
        .settings = {&settings()}},
       run);
 }

@@ -10,6 +10,7 @@
 #include "scenarios/methods/settings.hpp"
 #include "scenarios/methods/slam_registry.hpp"
 #include "scenarios/methods/slam_settings.hpp"
+#include "scenarios/methods/sweep_log.hpp"
 #include "tumble/odometry/tumbling_odometry_fields.hpp"
 
 namespace tumble::scenarios {
@@ -65,12 +66,13 @@ class Listener {
   }
   void take(TumblingOdometry& odometry) {
     while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) {
-      if (!sweep->status.ok()) estimate_.health[std::string("sweeps_") + to_string(sweep->status.trouble)] += 1.0;
-      if (sweep->report.trajectory.empty()) continue;  // the IMU begins after it
-      estimate_.health[std::string("sweeps_") + to_string(sweep->report.verdict)] += 1.0;
-      estimate_.sweep_end_ns.push_back(sweep->report.pose.time_ns);
+      if (sweep->report.trajectory.empty()) {  // the IMU begins after it
+        count_trouble(sweep->status, estimate_);
+        continue;
+      }
       std::vector<PoseState> last_word = std::move(sweep->report.smoothed);
-      estimate_.sweeps.push_back(std::move(sweep->report));
+      const TimeNs end_ns = sweep->report.pose.time_ns;
+      append_sweep(sweep->status, end_ns, std::move(sweep->report), estimate_);
       settle_next(std::move(last_word));
     }
   }
@@ -91,7 +93,7 @@ class Listener {
   /// before the first live pose, at rest some 0.3 s after the start, stays as it is.
   void speak_live() {
     auto next = live_.begin();
-    for (LidarInertialOdometry::SweepReport& sweep : estimate_.sweeps) {
+    for (SweepReport& sweep : estimate_.sweeps) {
       const TimeNs end_ns = sweep.pose.time_ns;
       const auto after = std::find_if(next, live_.end(), [&](const PoseState& pose) { return pose.time_ns > end_ns; });
       if (after == next) continue;
@@ -157,7 +159,7 @@ Method slam_tumble_lag() {
   return rig_slam(
       {.name = "tumble_lag",
        .doc = "TumblingOdometry, the library's door: one causal pass, each sweep's last word 0.3 s after it.",
-       .source = "ours",
+       .ours = true,
        .settings = {&settings()}},
       [](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
         return run(sensors, parameters, Word::last);
@@ -167,7 +169,7 @@ Method slam_tumble_lag() {
 Method slam_tumble_live() {
   return rig_slam({.name = "tumble_live",
                    .doc = "The same pass, live: the pose at each sample of the IMU by what came before it alone.",
-                   .source = "ours",
+                   .ours = true,
                    .settings = {&settings()}},
                   [](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
                     return run(sensors, parameters, Word::live);

@@ -13,6 +13,7 @@
 #include "scenarios/methods/rate_baseline.hpp"
 #include "tumble/angular_velocity/clipping_finder.hpp"
 #include "tumble/attitude/imu_merge.hpp"
+#include "tumble/common/detail/imu_interpolation.hpp"
 #include "tumble/odometry/imu_sheet.hpp"
 
 namespace tumble::scenarios {
@@ -68,42 +69,26 @@ void judge(const sim::ImuRecord& record, std::vector<ImuSample>& samples, Elemen
   accel = found.rails.rows(Triad::accelerometer, kUnknownSlope);
 }
 
-/// Readings of a unit at the times of another, linearly between two: stamps are ends of windows, so both are means over
-/// a window that ends there. Absent where the nearest reading is further off than kSilentMaxS, and a sample's length
-/// before the first and after the last.
+/// Readings of a unit at the times of another. Absent where the nearest reading is further off than kSilentMaxS, and a
+/// sample's length before the first and after the last.
 std::vector<ImuSample> at_times_of(const std::vector<ImuSample>& primary, const std::vector<ImuSample>& own) {
-  std::vector<ImuSample> out(primary.size());
-  const std::size_t last = own.size() - 1;
-  const double edge_s = last > 0 ? kEdgeShare * seconds(own[last].time_ns - own[last - 1].time_ns) : 0.0;
-  std::size_t next = 0;
-  for (std::size_t k = 0; k < primary.size(); ++k) {
-    const TimeNs time_ns = primary[k].time_ns;
-    while (next < own.size() && own[next].time_ns < time_ns) ++next;
-    if (last == 0 || own[std::min(next, last)].time_ns == time_ns) {
-      out[k] = own[std::min(next, last)].time_ns == time_ns ? own[std::min(next, last)] : absent(time_ns);
-      continue;
-    }
-    // at either end the line through the two readings there goes on
-    const std::size_t second = std::clamp<std::size_t>(next, 1, last);
-    const ImuSample &before = own[second - 1], &after = own[second];
-    const auto far = [&](TimeNs other_ns) {
-      return std::abs(static_cast<double>(other_ns) - static_cast<double>(time_ns)) > kSilentMaxS * 1e9;
-    };
-    const bool outside = time_ns > own.back().time_ns || time_ns < own.front().time_ns;
-    const double beyond_s = std::max(seconds(time_ns - own.back().time_ns), seconds(own.front().time_ns - time_ns));
-    if ((outside && beyond_s >= edge_s) || far(before.time_ns) || far(after.time_ns)) {
-      out[k] = absent(time_ns);
-      continue;
-    }
-    const double length_s = seconds(after.time_ns - before.time_ns);
-    const double share = seconds(time_ns - before.time_ns) / length_s;
-    out[k] = after;
-    out[k].time_ns = time_ns;
-    out[k].angular_velocity_rad_s =
-        before.angular_velocity_rad_s + share * (after.angular_velocity_rad_s - before.angular_velocity_rad_s);
-    out[k].specific_force_m_s2 =
-        before.specific_force_m_s2 + share * (after.specific_force_m_s2 - before.specific_force_m_s2);
-    out[k].device_clip_flags = static_cast<std::uint8_t>(before.device_clip_flags | after.device_clip_flags);
+  std::vector<ImuSample> out;
+  out.reserve(primary.size());
+  if (own.size() < 2) {
+    for (const ImuSample& sample : primary)
+      out.push_back(own.front().time_ns == sample.time_ns ? own.front() : absent(sample.time_ns));
+    return out;
+  }
+  const double edge_s = kEdgeShare * seconds(own.back().time_ns - own[own.size() - 2].time_ns);
+  ImuInterpolation unit(own);
+  for (const ImuSample& sample : primary) {
+    const ImuNeighbours near = unit.around(sample.time_ns);
+    const double before_s = seconds(sample.time_ns - own[near.before].time_ns);
+    const double after_s = seconds(own[near.after].time_ns - sample.time_ns);
+    const bool read_here = before_s == 0.0 || after_s == 0.0;
+    const bool told = read_here || (std::max(std::abs(before_s), std::abs(after_s)) <= kSilentMaxS &&
+                                    (near.between() || std::min(std::abs(before_s), std::abs(after_s)) < edge_s));
+    out.push_back(told ? unit.at(sample.time_ns, near) : absent(sample.time_ns));
   }
   return out;
 }

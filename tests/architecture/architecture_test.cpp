@@ -107,9 +107,9 @@ std::string broken_rule(const std::string& path, const std::string& include) {
   return "";
 }
 
-std::vector<fs::path> sources() {
+std::vector<fs::path> sources_below(const std::vector<std::string>& folders) {
   std::vector<fs::path> out;
-  for (const char* folder : {"estimator", "sim", "scenarios", "tools", "python/bindings", "python/evalio/bindings"}) {
+  for (const std::string& folder : folders) {
     for (const auto& entry : fs::recursive_directory_iterator(tumble::test::source_dir() / folder)) {
       const std::string extension = entry.path().extension().string();
       if (extension == ".hpp" || extension == ".cpp") out.push_back(entry.path());
@@ -117,6 +117,10 @@ std::vector<fs::path> sources() {
   }
   std::sort(out.begin(), out.end());
   return out;
+}
+
+std::vector<fs::path> sources() {
+  return sources_below({"estimator", "sim", "scenarios", "tools", "python/bindings", "python/evalio/bindings"});
 }
 
 std::string path_in_tree(const fs::path& path) {
@@ -283,16 +287,22 @@ std::string folder_of(const std::string& path) {
   return std::regex_replace(folder, std::regex("^estimator/(include/tumble|src)"), "estimator");
 }
 
-/// The header that an include of this file means, in the tree.
+/// The header that an include of this file means, in the tree; of a test it may be named from its folder or from tests.
 std::string header_of(const fs::path& file, const std::string& include) {
   if (include.starts_with("../")) return path_in_tree((file.parent_path() / include).lexically_normal());
-  return include.starts_with("tumble/") ? "estimator/include/" + include : include;
+  if (include.starts_with("tumble/")) return "estimator/include/" + include;
+  if (!is_below(path_in_tree(file), "tests")) return include;
+  const std::string beside = path_in_tree(file.parent_path() / include);
+  for (const std::string& meant : {beside, include}) {
+    if (fs::exists(tumble::test::source_dir() / meant)) return meant;
+  }
+  return "tests/" + include;
 }
 
-/// (folder, folder that one of its files includes from), of this tree.
-std::vector<std::pair<std::string, std::string>> folder_uses() {
+/// (folder, folder that one of its files includes from), of these files.
+std::vector<std::pair<std::string, std::string>> folder_uses(const std::vector<fs::path>& files) {
   std::vector<std::pair<std::string, std::string>> uses;
-  for (const fs::path& file : sources()) {
+  for (const fs::path& file : files) {
     for (const std::string& include : includes_of(file)) {
       const std::string header = header_of(file, include);
       if (!fs::exists(tumble::test::source_dir() / header)) continue;
@@ -303,8 +313,24 @@ std::vector<std::pair<std::string, std::string>> folder_uses() {
   return uses;
 }
 
+/// (folder of tests, folder of tests whose source one of its executables compiles as well).
+std::vector<std::pair<std::string, std::string>> borrowed_sources() {
+  std::vector<std::pair<std::string, std::string>> uses;
+  for (const auto& entry : fs::recursive_directory_iterator(tumble::test::source_dir() / "tests")) {
+    if (entry.path().filename() != "CMakeLists.txt") continue;
+    std::ifstream stream(entry.path());
+    const std::string text(std::istreambuf_iterator<char>(stream), {});
+    const std::regex borrowed(R"((\.\./[\w./]+)\.cpp)");
+    for (std::sregex_iterator found(text.begin(), text.end(), borrowed), end; found != end; ++found) {
+      const fs::path source = (entry.path().parent_path() / (*found)[1].str()).lexically_normal();
+      uses.emplace_back(folder_of(path_in_tree(entry.path())), folder_of(path_in_tree(source)));
+    }
+  }
+  return uses;
+}
+
 TEST(Architecture, NoFoldersUseEachOther) {
-  const auto uses = folder_uses();
+  const auto uses = folder_uses(sources());
   ASSERT_GT(uses.size(), 200u) << "the scan found too little to mean anything";
   EXPECT_EQ(mutual_folders(uses), std::set<std::string>{});
   // negative controls
@@ -312,6 +338,20 @@ TEST(Architecture, NoFoldersUseEachOther) {
   EXPECT_EQ(mutual_folders({{"a", "b"}, {"b", "c"}, {"c", "a"}}), (std::set<std::string>{"a b", "a c", "b c"}))
       << "by way of a third";
   EXPECT_TRUE(mutual_folders({{"a", "a/b"}, {"a/b", "a"}}).empty());
+}
+
+TEST(Architecture, NoFoldersOfTestsUseEachOther) {
+  auto uses = folder_uses(sources_below({"tests"}));
+  ASSERT_GT(uses.size(), 200u) << "the scan found too little to mean anything";
+  const auto borrowed = borrowed_sources();
+  ASSERT_FALSE(borrowed.empty());
+  uses.insert(uses.end(), borrowed.begin(), borrowed.end());
+  EXPECT_EQ(mutual_folders(uses), std::set<std::string>{});
+  // negative control: what is found is enough to see a fault, however its header is named
+  const std::string shared = "tests/scenarios/methods", user = "tests/scenarios/sweep";
+  ASSERT_TRUE(std::count(uses.begin(), uses.end(), std::pair(user, shared)) > 0);
+  uses.emplace_back(shared, user);
+  EXPECT_EQ(mutual_folders(uses), std::set<std::string>{shared + " " + user});
 }
 
 TEST(Architecture, FilesStayBelowTheirCeilings) {

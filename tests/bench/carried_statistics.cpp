@@ -13,11 +13,11 @@
 #include <string>
 #include <vector>
 
-#include "estimator/attitude/broad_trial.hpp"
 #include "scenarios/methods/method.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/scoring/score.hpp"
 #include "scenarios/sweep/evaluate.hpp"
+#include "stand_ins/broad_trial.hpp"
 #include "tests/bench/program.hpp"
 
 namespace {

@@ -7,7 +7,7 @@
 #include <map>
 #include <stdexcept>
 
-#include "scenarios/recordings/synthetic_repoimu.hpp"
+#include "stand_ins/synthetic_repoimu.hpp"
 #include "stand_ins/writers.hpp"
 #include "tests/tree.hpp"
 

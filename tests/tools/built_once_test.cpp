@@ -10,7 +10,7 @@
 
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/sweep/run_situation.hpp"
-#include "tests/scenarios/sweep/temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 #include "tests/tree.hpp"
 #include "tools/examples/make_example.hpp"
 

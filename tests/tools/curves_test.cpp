@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "tools/report/page.hpp"
@@ -108,7 +109,7 @@ TEST_F(CurvesTest, AFailureRanksAsTheWorstAndAFailedMapCountsAsOne) {
   // the figure leaves a gap there and shows the share of failures below
   const Figure figure = curve_figure(*curve);
   bool gap = false, failures = false;
-  for (const nlohmann::json& trace : figure.data) {
+  for (const nlohmann::json& trace : nlohmann::json::parse(figure.traces)) {
     if (trace["name"] != "icp_raw") continue;
     if (trace.value("yaxis", "y") == "y2") {
       failures = true;
@@ -143,7 +144,7 @@ TEST_F(CurvesTest, OfBinnedMetricsStandAtTheBinsAndInNoTable) {
   }
   EXPECT_THAT(labels, ElementsAre("0.025 – 0.055", "0.105 – 0.205", "over 0.405"));
   EXPECT_THAT(medians, ElementsAre(1.0, 2.0, 4.0));
-  EXPECT_EQ(curve_figure(*curve).layout["xaxis"]["ticktext"], nlohmann::json(labels));
+  EXPECT_EQ(nlohmann::json::parse(curve_figure(*curve).layout)["xaxis"]["ticktext"], nlohmann::json(labels));
   EXPECT_THAT(summarize(results()).sections.front().metrics, ElementsAre(kMedian));
 }
 

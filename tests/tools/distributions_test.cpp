@@ -70,11 +70,12 @@ TEST(MotionSpreads, PoolsTheClippedSamplesOfAllDraws) {
 TEST(DistributionFigures, AreHistogramsBesideThePublishedRange) {
   const std::vector<Figure> figures = distribution_figures(motion_spreads(draws()));
   ASSERT_EQ(figures.size(), 2u);
-  EXPECT_EQ(figures[0].data.size(), 2u) << "hill and roll";
-  EXPECT_EQ(figures[0].data[0]["type"], "histogram");
-  EXPECT_EQ(figures[0].data[0]["x"], nlohmann::json({11.0, 12.0, 13.0, 14.0, 15.0}));
-  EXPECT_EQ(figures[0].layout["shapes"][0]["x1"], 25.0);
-  EXPECT_EQ(figures[1].data[0]["x"], nlohmann::json({20.0, 30.0, 40.0, 50.0})) << "shares in per cent";
+  EXPECT_EQ(nlohmann::json::parse(figures[0].traces).size(), 2u) << "hill and roll";
+  EXPECT_EQ(nlohmann::json::parse(figures[0].traces)[0]["type"], "histogram");
+  EXPECT_EQ(nlohmann::json::parse(figures[0].traces)[0]["x"], nlohmann::json({11.0, 12.0, 13.0, 14.0, 15.0}));
+  EXPECT_EQ(nlohmann::json::parse(figures[0].layout)["shapes"][0]["x1"], 25.0);
+  EXPECT_EQ(nlohmann::json::parse(figures[1].traces)[0]["x"], nlohmann::json({20.0, 30.0, 40.0, 50.0}))
+      << "shares in per cent";
 }
 
 TEST(DistributionFigures, SayWhereTheyAreThinned) {

@@ -8,9 +8,10 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "scenarios/errors.hpp"
-#include "tests/scenarios/sweep/temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 #include "tools/examples/draw_plots.hpp"
 #include "tools/report/plots.hpp"
 
@@ -67,8 +68,8 @@ TEST(PathPlot, HasEqualScales) {
   ASSERT_EQ(plot.lines.size(), 1u);
   EXPECT_THAT(plot.lines[0].x, ElementsAre(0.0, 1.0, 2.0, 3.0));
   const Figure figure = figure_of(plot, "path-hill");
-  EXPECT_EQ(figure.data[0]["x"], nlohmann::json({0.0, 1.0, 2.0, 3.0}));
-  EXPECT_EQ(figure.layout["yaxis"]["scaleanchor"], "x");
+  EXPECT_EQ(nlohmann::json::parse(figure.traces)[0]["x"], nlohmann::json({0.0, 1.0, 2.0, 3.0}));
+  EXPECT_EQ(nlohmann::json::parse(figure.layout)["yaxis"]["scaleanchor"], "x");
 }
 
 TEST(Figure, OfAPlotKeepsGapsSpansAndWhatIsHidden) {
@@ -80,11 +81,11 @@ TEST(Figure, OfAPlotKeepsGapsSpansAndWhatIsHidden) {
   line.hidden = line.dotted = true;
   plot.lines = {line};
   const Figure figure = figure_of(plot, "id");
-  EXPECT_TRUE(figure.data[0]["y"][0].is_null());
-  EXPECT_EQ(figure.data[0]["visible"], "legendonly");
-  EXPECT_EQ(figure.data[0]["line"]["dash"], "dot");
-  ASSERT_EQ(figure.layout["shapes"].size(), 1u);
-  EXPECT_EQ(figure.layout["shapes"][0]["x1"], 2.0);
+  EXPECT_TRUE(nlohmann::json::parse(figure.traces)[0]["y"][0].is_null());
+  EXPECT_EQ(nlohmann::json::parse(figure.traces)[0]["visible"], "legendonly");
+  EXPECT_EQ(nlohmann::json::parse(figure.traces)[0]["line"]["dash"], "dot");
+  ASSERT_EQ(nlohmann::json::parse(figure.layout)["shapes"].size(), 1u);
+  EXPECT_EQ(nlohmann::json::parse(figure.layout)["shapes"][0]["x1"], 2.0);
 }
 
 bool nothing_stands_in(const std::filesystem::path& folder) {

@@ -6,7 +6,7 @@
 
 #include "scenarios/sweep/run_again.hpp"
 #include "scenarios/sweep/sweep_notes.hpp"
-#include "tests/scenarios/sweep/temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace tumble::tools {
 namespace {

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "scenarios/summary/comparison.hpp"
 #include "tools/report/plots.hpp"
 
@@ -96,11 +98,11 @@ TEST(Page, EscapesEveryTextItIsGiven) {
 
 TEST(BoxFigure, HasATracePerMethodWithEveryDraw) {
   const Figure figure = box_figure(summary_of("hill"), Kind::rate, "rate_error_clipped_median_rad_s", "");
-  ASSERT_EQ(figure.data.size(), 2u);
-  EXPECT_EQ(figure.data[0]["name"], "raw");
-  EXPECT_EQ(figure.data[1]["y"], nlohmann::json({0.1, 0.2}));
-  EXPECT_EQ(figure.data[1]["x"], nlohmann::json({"hill", "hill"}));
-  EXPECT_EQ(figure.layout["yaxis"]["type"], "log") << "0.1 to 3 is more than a decade";
+  ASSERT_EQ(nlohmann::json::parse(figure.traces).size(), 2u);
+  EXPECT_EQ(nlohmann::json::parse(figure.traces)[0]["name"], "raw");
+  EXPECT_EQ(nlohmann::json::parse(figure.traces)[1]["y"], nlohmann::json({0.1, 0.2}));
+  EXPECT_EQ(nlohmann::json::parse(figure.traces)[1]["x"], nlohmann::json({"hill", "hill"}));
+  EXPECT_EQ(nlohmann::json::parse(figure.layout)["yaxis"]["type"], "log") << "0.1 to 3 is more than a decade";
   EXPECT_TRUE(box_figure(summary_of("hill"), Kind::slam, "map_overlap", "").empty());
 }
 

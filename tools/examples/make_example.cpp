@@ -43,7 +43,7 @@ void add_maps(const scenarios::RunResult& run, Example& example) {
   add_map(
       run, *run.surface, [](const scenarios::MethodInfo& info) { return info.baseline; }, maps);
   add_map(
-      run, *run.surface, [](const scenarios::MethodInfo& info) { return info.ours(); }, maps);
+      run, *run.surface, [](const scenarios::MethodInfo& info) { return info.ours; }, maps);
   if (maps.empty()) return;
   std::string names;
   for (const ErrorMap& map : maps) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "scenarios/summary/summary.hpp"
 #include "tools/html/html.hpp"
@@ -153,11 +154,11 @@ Figure curve_figure(const Curve& curve) {
   const MetricStyle x_style = metric_style(curve.axis), y_style = metric_style(curve.metric);
   // bins stand at their ranks, labelled in the unit
   const double x_factor = curve.source == Curve::Source::samples ? 1.0 : x_style.factor;
-  json lines = json::array();
+  json data = json::array(), lines = json::array();
   for (std::size_t i = 0; i < curve.lines.size(); ++i) {
     const CurveLine& line = curve.lines[i];
     const char* colour = method_colour(i).hex;
-    add_bands(line, x_factor, y_style.factor, colour, figure.data);
+    add_bands(line, x_factor, y_style.factor, colour, data);
     json median = line_trace(line, x_factor, y_style.factor, &CurvePoint::median, true);
     median.update({{"mode", "lines+markers"},
                    {"line", {{"color", colour}, {"width", 2.2}}},
@@ -168,17 +169,18 @@ Figure curve_figure(const Curve& curve) {
     lines.push_back(std::move(worst));
     lines.push_back(failures_trace(line, x_factor, colour));
   }
-  for (json& each : lines) figure.data.push_back(std::move(each));
-  figure.layout = {
+  for (json& each : lines) data.push_back(std::move(each));
+  json layout = {
       {"xaxis", x_axis(curve, with_unit(curve.axis, x_style.unit))},
       {"yaxis",
        {{"title", {{"text", y_style.unit.empty() ? curve.metric : y_style.unit}}},
         {"domain", {kMetricDomainLow, 1.0}}}},
       {"yaxis2", {{"title", {{"text", "failed [%]"}}}, {"domain", {0.0, kFailureDomainHigh}}, {"range", {-4, 104}}}}};
   if (wants_log(curve))
-    figure.layout["yaxis"]["type"] = "log";
+    layout["yaxis"]["type"] = "log";
   else
-    figure.layout["yaxis"]["rangemode"] = "tozero";
+    layout["yaxis"]["rangemode"] = "tozero";
+  set_plot(data, layout, figure);
   return figure;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "tools/html/html.hpp"
 #include "tools/pictures/colours.hpp"
@@ -15,10 +16,8 @@ namespace {
 using nlohmann::json;
 
 /// What a histogram leaves out; "" where it leaves out nothing.
-std::string thinned_text(std::span<const Spread> spreads, const std::string& quantity) {
-  const auto is_thinned = [&](const Spread& spread) {
-    return spread.of_draws && spread.quantity == quantity && spread.values.size() > kBoxPoints;
-  };
+std::string thinned_text(std::span<const Spread> spreads) {
+  const auto is_thinned = [](const Spread& spread) { return spread.of_draws && spread.values.size() > kBoxPoints; };
   if (std::none_of(spreads.begin(), spreads.end(), is_thinned)) return "";
   return " Of a scenario with more draws " + std::to_string(kBoxPoints) + ", at equal steps of their rank.";
 }
@@ -38,17 +37,20 @@ json shaded(const Spread& spread) {
 }
 
 /// The axes of a quantity, its published range shaded.
-Figure empty_figure(const Spread& spread) {
-  Figure figure;
-  figure.id = "distribution-" + spread.metric;
-  figure.caption = "Over the draws: " + spread.quantity + ".";
-  if (!spread.published.empty())
-    figure.caption += " Published for the rig: " + spread.published + " " + spread.unit + ".";
-  figure.layout = {{"barmode", "overlay"},
-                   {"xaxis", {{"title", {{"text", spread.quantity + " [" + spread.unit + "]"}}}}},
-                   {"yaxis", {{"title", {{"text", "share of the draws [%]"}}}}}};
-  if (!std::isnan(spread.published_low)) figure.layout["shapes"] = json::array({shaded(spread)});
-  return figure;
+json layout_of(const Spread& spread) {
+  json layout = {{"barmode", "overlay"},
+                 {"xaxis", {{"title", {{"text", spread.quantity + " [" + spread.unit + "]"}}}}},
+                 {"yaxis", {{"title", {{"text", "share of the draws [%]"}}}}}};
+  if (!std::isnan(spread.published_low)) layout["shapes"] = json::array({shaded(spread)});
+  return layout;
+}
+
+/// Of the spreads of one quantity.
+std::string caption_of(std::span<const Spread> spreads) {
+  const Spread& spread = spreads.front();
+  std::string out = "Over the draws: " + spread.quantity + ".";
+  if (!spread.published.empty()) out += " Published for the rig: " + spread.published + " " + spread.unit + ".";
+  return out + thinned_text(spreads);
 }
 
 double rounded(double value) {
@@ -59,28 +61,39 @@ std::string text(const Spread& spread, double value) {
   return number_text(value * spread.factor);
 }
 
+/// Of one quantity, a histogram per scenario.
+Figure histograms(std::span<const Spread> spreads) {
+  Figure figure;
+  json traces = json::array();
+  for (const Spread& spread : spreads) {
+    if (!spread.of_draws) continue;
+    json x = json::array();
+    for (const double value : at_most(spread.values, kBoxPoints)) x.push_back(rounded(value * spread.factor));
+    traces.push_back({{"type", "histogram"},
+                      {"name", plot_text(spread.scenario)},
+                      {"histnorm", "percent"},
+                      {"opacity", 0.6},
+                      {"nbinsx", 30},
+                      {"marker", {{"color", method_colour(traces.size()).hex}}},
+                      {"x", std::move(x)}});
+  }
+  figure.id = "distribution-" + spreads.front().metric;
+  figure.caption = caption_of(spreads);
+  set_plot(traces, layout_of(spreads.front()), figure);
+  return figure;
+}
+
 }  // namespace
 
 std::vector<Figure> distribution_figures(std::span<const Spread> spreads) {
   std::vector<Figure> figures;
-  std::string quantity;
-  for (const Spread& spread : spreads) {
-    if (!spread.of_draws) continue;
-    if (spread.quantity != quantity) {
-      figures.push_back(empty_figure(spread));
-      figures.back().caption += thinned_text(spreads, spread.quantity);
-    }
-    quantity = spread.quantity;
-    Figure& figure = figures.back();
-    json x = json::array();
-    for (const double value : at_most(spread.values, kBoxPoints)) x.push_back(rounded(value * spread.factor));
-    figure.data.push_back({{"type", "histogram"},
-                           {"name", plot_text(spread.scenario)},
-                           {"histnorm", "percent"},
-                           {"opacity", 0.6},
-                           {"nbinsx", 30},
-                           {"marker", {{"color", method_colour(figure.data.size()).hex}}},
-                           {"x", std::move(x)}});
+  const auto differs = [](const Spread& a, const Spread& b) { return a.quantity != b.quantity; };
+  for (auto first = spreads.begin(); first != spreads.end();) {
+    const auto last = std::adjacent_find(first, spreads.end(), differs);
+    const auto end = last == spreads.end() ? last : last + 1;
+    Figure figure = histograms({first, end});
+    if (!figure.empty()) figures.push_back(std::move(figure));
+    first = end;
   }
   return figures;
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 namespace tumble::tools {
 
@@ -108,11 +109,12 @@ Figure motion_figure(const MotionMap& map) {
   if (map.clouds.empty()) return figure;
   figure.id = "motion-map";
   figure.caption = caption_of(map);
-  figure.data.push_back(density(map));
-  for (std::size_t i = 0; i < map.clouds.size(); ++i) figure.data.push_back(points(map.clouds[i], i));
-  for (std::size_t i = 0; i < map.extremes.size(); ++i) figure.data.push_back(outline(map.extremes[i], map, i > 0));
-  figure.layout = {{"xaxis", {{"title", {{"text", "largest rate [rad/s]"}}}, {"type", "log"}}},
-                   {"yaxis", {{"title", {{"text", "largest specific force [m/s²]"}}}, {"type", "log"}}}};
+  json data = json::array({density(map)});
+  for (std::size_t i = 0; i < map.clouds.size(); ++i) data.push_back(points(map.clouds[i], i));
+  for (std::size_t i = 0; i < map.extremes.size(); ++i) data.push_back(outline(map.extremes[i], map, i > 0));
+  const json layout = {{"xaxis", {{"title", {{"text", "largest rate [rad/s]"}}}, {"type", "log"}}},
+                       {"yaxis", {{"title", {{"text", "largest specific force [m/s²]"}}}, {"type", "log"}}}};
+  set_plot(data, layout, figure);
   return figure;
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "report/embedded.hpp"
 #include "tools/html/html.hpp"
@@ -144,10 +145,13 @@ std::string contents_html(const std::vector<Part>& parts) {
 }
 
 std::string figures_json(const std::vector<Figure>& figures) {
-  nlohmann::json all = nlohmann::json::array();
-  for (const Figure& figure : figures)
-    all.push_back({{"id", figure.id}, {"data", figure.data}, {"layout", figure.layout}});
-  return html::script_json(all.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  std::string all;
+  for (const Figure& figure : figures) {
+    const std::string id = nlohmann::json(figure.id).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    all += fmt::format("{}{{\"data\":{},\"id\":{},\"layout\":{}}}", all.empty() ? "" : ",", figure.traces, id,
+                       figure.layout);
+  }
+  return html::script_json("[" + all + "]");
 }
 
 /// Nothing but what the page carries: scripts and styles within it, pictures as data.

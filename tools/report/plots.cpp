@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "scenarios/scoring/cost.hpp"
 #include "tools/pictures/colours.hpp"
@@ -77,13 +78,18 @@ class Boxes {
     }
   }
 
-  /// Logarithmic where values are positive and span more than a decade.
-  void move_into(Figure& figure) {
-    for (auto& [name, trace] : traces_) figure.data.push_back(std::move(trace));
-    figure.layout = {{"boxmode", "group"},
-                     {"xaxis", {{"type", "category"}}},
-                     {"yaxis", axis(plot_text(metric_) + (style_.unit.empty() ? "" : " [" + style_.unit + "]"))}};
-    if (wants_log(figure.data)) figure.layout["yaxis"]["type"] = "log";
+  /// Logarithmic where values are positive and span more than a decade; else `from_zero`, or from the least value.
+  void put_into(Figure& figure, bool from_zero) const {
+    json data = json::array();
+    for (const auto& [name, trace] : traces_) data.push_back(trace);
+    json layout = {{"boxmode", "group"},
+                   {"xaxis", {{"type", "category"}}},
+                   {"yaxis", axis(plot_text(metric_) + (style_.unit.empty() ? "" : " [" + style_.unit + "]"))}};
+    if (wants_log(data))
+      layout["yaxis"]["type"] = "log";
+    else if (from_zero)
+      layout["yaxis"]["rangemode"] = "tozero";
+    set_plot(data, layout, figure);
   }
 
  private:
@@ -126,6 +132,12 @@ json coordinates(const std::vector<double>& values) {
 
 }  // namespace
 
+void set_plot(const json& traces, const json& layout, Figure& figure) {
+  const auto text = [](const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); };
+  figure.traces = traces.empty() ? "" : text(traces);
+  figure.layout = text(layout);
+}
+
 double five_digits(double value) {
   if (value == 0.0 || !std::isfinite(value)) return value;
   const double scale = std::pow(10.0, 4 - static_cast<int>(std::floor(std::log10(std::abs(value)))));
@@ -160,8 +172,7 @@ Figure box_figure(const Summary& summary, Kind kind, const std::string& metric, 
   for (const Section& section : summary.sections) {
     if (section.kind == kind) boxes.add(section, "");
   }
-  boxes.move_into(figure);
-  if (!figure.layout["yaxis"].contains("type")) figure.layout["yaxis"]["rangemode"] = "tozero";
+  boxes.put_into(figure, true);
   return figure;
 }
 
@@ -172,7 +183,7 @@ Figure cost_figure(const Summary& summary) {
                    std::to_string(kBoxPoints) + " so many.";
   Boxes boxes(scenarios::estimate_cost().name);
   for (const Section& section : summary.sections) boxes.add(section, std::string(to_string(section.kind)) + "/");
-  boxes.move_into(figure);
+  boxes.put_into(figure, false);
   return figure;
 }
 
@@ -180,6 +191,7 @@ Figure figure_of(const Plot& plot, const std::string& id) {
   Figure figure;
   figure.id = id;
   figure.caption = plot.caption;
+  json data = json::array();
   for (const PlotLine& line : plot.lines) {
     json trace = {
         {"type", "scatter"},
@@ -190,13 +202,14 @@ Figure figure_of(const Plot& plot, const std::string& id) {
         {"x", coordinates(line.x)},
         {"y", coordinates(line.y)}};
     if (line.hidden) trace["visible"] = "legendonly";
-    figure.data.push_back(std::move(trace));
+    data.push_back(std::move(trace));
   }
-  figure.layout = {{"xaxis", axis(plot_text(plot.x_title))}, {"yaxis", axis(plot_text(plot.y_title))}};
-  if (plot.equal_scales) figure.layout["yaxis"]["scaleanchor"] = "x";
-  if (plot.from_zero) figure.layout["yaxis"]["rangemode"] = "tozero";
-  if (plot.over_time) figure.layout["hovermode"] = "x unified";
-  for (const auto& [begin, end] : plot.shaded) figure.layout["shapes"].push_back(shaded(begin, end));
+  json layout = {{"xaxis", axis(plot_text(plot.x_title))}, {"yaxis", axis(plot_text(plot.y_title))}};
+  if (plot.equal_scales) layout["yaxis"]["scaleanchor"] = "x";
+  if (plot.from_zero) layout["yaxis"]["rangemode"] = "tozero";
+  if (plot.over_time) layout["hovermode"] = "x unified";
+  for (const auto& [begin, end] : plot.shaded) layout["shapes"].push_back(shaded(begin, end));
+  set_plot(data, layout, figure);
   return figure;
 }
 

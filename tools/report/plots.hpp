@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -15,10 +15,13 @@ namespace tumble::tools {
 struct Figure {
   std::string id;       ///< of its element, unique in the page
   std::string caption;  ///< one or two sentences
-  nlohmann::json data = nlohmann::json::array();
-  nlohmann::json layout = nlohmann::json::object();
-  bool empty() const { return data.empty(); }
+  std::string traces;   ///< JSON, an array; empty when there is nothing to draw
+  std::string layout;   ///< JSON, an object
+  bool empty() const { return traces.empty(); }
 };
+
+/// What Plotly draws, of which no traces are nothing. What is no UTF-8 in a text is replaced.
+void set_plot(const nlohmann::json& traces, const nlohmann::json& layout, Figure& figure);
 
 /// So many draws of a box are drawn as points, however many there are.
 inline constexpr std::size_t kBoxPoints = 1000;

@@ -5,6 +5,8 @@
 #include <limits>
 
 #include "tumble/angular_velocity/detail/recording_check.hpp"
+#include "tumble/common/detail/imu_interpolation.hpp"
+#include "tumble/common/detail/sample_check.hpp"
 
 namespace tumble {
 
@@ -21,17 +23,13 @@ struct Between {
   Vector3d value, sigma;
 };
 
-Between between(const Vector3d& a, const Vector3d& b, double share, double dt_s, double noise, double error,
+Between between(const Vector3d& value, const Vector3d& change, const ImuNeighbours& near, double noise, double error,
                 const AuxiliaryImu& auxiliary_imu) {
-  const Vector3d change = (b - a).cwiseAbs();
   // the chord misses a curve by up to a share (1 - share) of the change, and the clocks differ
-  const double crooked = share * (1.0 - share) + auxiliary_imu.clock_error_s / dt_s;
-  Between out;
-  out.value = (1.0 - share) * a + share * b;
-  const double scaled = auxiliary_imu.share_error * out.value.norm();
-  out.sigma = (Vector3d::Constant(noise * noise + error * error + scaled * scaled) + (crooked * change).cwiseAbs2())
-                  .cwiseSqrt();
-  return out;
+  const double crooked = near.share * (1.0 - near.share) + auxiliary_imu.clock_error_s / near.length_s;
+  const double scaled = auxiliary_imu.share_error * value.norm();
+  return {value, (Vector3d::Constant(noise * noise + error * error + scaled * scaled) + (crooked * change).cwiseAbs2())
+                     .cwiseSqrt()};
 }
 
 }  // namespace
@@ -50,35 +48,30 @@ bool AuxiliaryReading::same(const AuxiliaryReading& other) const {
 
 Status align(const AuxiliaryImu& auxiliary_imu, std::span<const ImuSample> samples, std::span<const Clipping> clippings,
              std::span<const ImuSample> primary, double gap_max_s, std::vector<AuxiliaryReading>& out) {
-  for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (Status status = check_sample(samples[k]); !status.ok()) return status;
-    if (k == 0) continue;
-    Status status = check_follows(samples[k].time_ns, samples[k - 1].time_ns, std::numeric_limits<double>::max());
-    if (!status.ok()) return status;
-  }
+  // where it is silent for long it says nothing, and that is no trouble
+  const Status status = check_samples(samples, std::numeric_limits<double>::infinity());
+  if (!status.ok()) return status;
   if (clippings.size() != samples.size()) {
     return {Trouble::too_few, "clippings", static_cast<double>(clippings.size()), static_cast<double>(samples.size())};
   }
   out.assign(primary.size(), {});
   if (samples.size() < 2) return {};
   const double root_rate = 1.0 / std::sqrt(median_period_s(samples));
-  std::size_t after = 1;
+  ImuInterpolation interpolation(samples);
   for (std::size_t k = 0; k < primary.size(); ++k) {
-    const TimeNs time_ns = primary[k].time_ns;
-    while (after + 1 < samples.size() && samples[after].time_ns < time_ns) ++after;
-    const ImuSample &a = samples[after - 1], &b = samples[after];
-    const double dt_s = seconds(b.time_ns - a.time_ns);
-    if (time_ns < a.time_ns || time_ns > b.time_ns || dt_s > gap_max_s) continue;
-    const double share = seconds(time_ns - a.time_ns) / dt_s;
+    const ImuNeighbours near = interpolation.around(primary[k].time_ns);
+    if (!near.between() || near.length_s > gap_max_s) continue;
+    const ImuSample here = interpolation.at(primary[k].time_ns, near);
+    const ImuSample &a = samples[near.before], &b = samples[near.after];
     const Between rate =
-        between(a.angular_velocity_rad_s, b.angular_velocity_rad_s, share, dt_s,
+        between(here.angular_velocity_rad_s, b.angular_velocity_rad_s - a.angular_velocity_rad_s, near,
                 auxiliary_imu.gyro_noise_density * root_rate, auxiliary_imu.gyro_error_rad_s, auxiliary_imu);
     const Between force =
-        between(a.specific_force_m_s2, b.specific_force_m_s2, share, dt_s,
+        between(here.specific_force_m_s2, b.specific_force_m_s2 - a.specific_force_m_s2, near,
                 auxiliary_imu.accel_noise_density * root_rate, auxiliary_imu.accel_error_m_s2, auxiliary_imu);
-    const Clipping &c = clippings[after - 1], &d = clippings[after];
+    const Clipping &c = clippings[near.before], &d = clippings[near.after];
     // a reading on which the other has no part says nothing of it
-    const bool left = share<1.0, right = share> 0.0;
+    const bool left = near.share<1.0, right = near.share> 0.0;
     const unsigned gyro = (left ? c.gyro | c.void_gyro : 0u) | (right ? d.gyro | d.void_gyro : 0u);
     const unsigned accel = (left ? c.accel : 0u) | (right ? d.accel : 0u);
     out[k].rate_by_elements = gyro != 0;

@@ -7,6 +7,7 @@
 
 #include "element_clipping.hpp"
 #include "sample_hold.hpp"
+#include "tumble/angular_velocity/detail/rail_shares.hpp"
 
 namespace tumble {
 
@@ -33,9 +34,8 @@ std::uint8_t clip_flags(const Clipping& clipping) {
 }
 
 std::uint8_t HeardRails::flags(const ImuSample& sample, const Clipping& judged) const {
-  constexpr double kRailShareMin = 0.85;  // of the stated range, as the search for planes has it
   const auto heard = [](double reading, double range, const std::optional<RailPlane>& plane) {
-    return range > 0.0 ? std::abs(reading) >= kRailShareMin * range : plane.has_value();
+    return range > 0.0 ? std::abs(reading) >= kStatedRailMin * range : plane.has_value();
   };
   const unsigned clipped = clip_flags(judged);
   unsigned out = sample.device_clip_flags;

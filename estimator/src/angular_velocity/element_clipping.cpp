@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tumble/angular_velocity/detail/rail_shares.hpp"
+
 namespace tumble {
 
 namespace {
@@ -14,8 +16,8 @@ constexpr double kTold = 2e-3, kNil = 3e-3;
 constexpr double kEqualShare = 2e-5;
 // What is left of a tilt where rails are upright; the least deviation of a slope (misalignment left by the device).
 constexpr double kUprightSigma = 1e-5, kSlopeSigmaMin = 3e-4;
-// Samples beside a clipped one that may have met the rail: largest depth, as a share of it; and of the step before.
-constexpr double kEdgeShare = 0.02, kEdgeOfStep = 0.5;
+// Samples beside a clipped one that may have met the rail: largest depth, as a share of the step before.
+constexpr double kEdgeOfStep = 0.5;
 
 // The sign of the rail that element j is at.
 int side(const ImuSample& sample, Triad triad, std::size_t j) {
@@ -33,7 +35,7 @@ bool at_rail(const ImuSample& sample, Triad triad, const RailPlane& rail, std::s
 // window; depths are those of rails.md (R54).
 bool meets(const RailPlane& rail, Triad triad, const ImuSample& now, const ImuSample* outside, int sign) {
   const double depth = rail.short_of(reading_of(now, triad), sign);
-  if (depth > kEdgeShare * rail.distance_rad_s) return false;
+  if (depth > kBesideRail * rail.distance_rad_s) return false;
   if (outside == nullptr) return true;
   const double before = rail.short_of(reading_of(*outside, triad), sign);
   return depth < kEdgeOfStep * (before - depth);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "rail_evidence.hpp"
+#include "tumble/angular_velocity/detail/rail_shares.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble {
@@ -36,8 +37,6 @@ constexpr double kNearSibling = 5.0, kNearStated = 3.0, kOtherSignAgrees = 5.0, 
 constexpr double kNearKnown = 6.0, kKnownShare = 0.003, kFarFromKnown = -3.0;
 // What the slopes may change from run to run.
 constexpr double kKnownSlopeSigma = 2e-3;
-// A rail is not found below this share of the stated range.
-constexpr double kStatedShareMin = 0.85;
 
 // Readings that belong to a facet: along `row` not below `from`, and near the extreme for slopes up to `steepest`.
 struct Gate {
@@ -241,7 +240,7 @@ double level_log_odds(const RailPlaneFinder::Params& params, const DistinctReadi
   }
   if (params.stated_rad_s) {
     const double ratio = level / *params.stated_rad_s;
-    odds += ratio < kStatedShareMin ? kImpossible : ratio < 1.05 && ratio > 0.95 ? kNearStated : 0.0;
+    odds += ratio < kStatedRailMin ? kImpossible : ratio < 1.05 && ratio > 0.95 ? kNearStated : 0.0;
   }
   return odds;
 }

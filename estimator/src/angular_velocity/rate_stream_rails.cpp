@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "element_clipping.hpp"
+#include "tumble/angular_velocity/detail/rail_shares.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
 #include "unseen_rails.hpp"
 
@@ -14,10 +15,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Deviations of a plane. Of the largest reading of an axis: so near to it so many readings may be at one rail, tilted
-// as rails are. A round top of n readings is (n/(n - 1))^2 <= 2.25 times as high as what its readings show; one that is
+// Deviations of a plane. So many readings within kBesideRail of the largest of an axis may be at one rail, tilted as
+// rails are. A round top of n readings is (n/(n - 1))^2 <= 2.25 times as high as what its readings show; one that is
 // cut off more than kKink times, and more than so many deviations of the noise.
-constexpr double kOpen = 3.0, kPossibleShare = 0.02, kKink = 4.0, kPossibleNoise = 5.0;
+constexpr double kOpen = 3.0, kKink = 4.0, kPossibleNoise = 5.0;
 constexpr std::size_t kPossibleMin = 3;
 
 // Elements' rails lie within this share of each other (3 % on the wand of RepoIMU).
@@ -85,7 +86,7 @@ bool RateStream::may_clip(const ImuSample& sample, int axis, int sign, const Sta
   }
   const double extreme = std::abs(state.extremes[sign > 0 ? 1 : 0][axis]);
   const bool high = extreme >= params_.planes.distance_min_rad_s && may_be_rail(planes, extreme);
-  return high && std::abs(y[axis]) >= (1.0 - kPossibleShare) * extreme;
+  return high && std::abs(y[axis]) >= (1.0 - kBesideRail) * extreme;
 }
 
 // What a sample of the window may hide by itself, at a rail near those of the other elements.

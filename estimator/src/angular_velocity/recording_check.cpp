@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "tumble/common/detail/sample_check.hpp"
+
 namespace tumble {
 
 Status check_recording(std::span<const ImuSample> samples, std::size_t count_min, double gap_max_s) {
@@ -11,13 +13,7 @@ Status check_recording(std::span<const ImuSample> samples, std::size_t count_min
   if (samples.size() < count_min) {
     return {Trouble::too_few, "samples", static_cast<double>(samples.size()), static_cast<double>(count_min)};
   }
-  for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (Status status = check_sample(samples[k]); !status.ok()) return status;
-    if (k == 0) continue;
-    Status status = check_follows(samples[k].time_ns, samples[k - 1].time_ns, gap_max_s);
-    if (!status.ok()) return status;
-  }
-  return {};
+  return check_samples(samples, gap_max_s);
 }
 
 double median_period_s(std::span<const ImuSample> samples) {

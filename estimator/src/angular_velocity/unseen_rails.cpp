@@ -4,13 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tumble/angular_velocity/detail/rail_shares.hpp"
+
 namespace tumble {
 
 namespace {
 
-// Rails of other elements lie within this share and tilt of those seen; a few samples at one hide about this share of
-// the step to the sample beside them.
-constexpr double kUnseenShare = 0.02, kUnseenTilt = 0.06, kUnseenOfStep = 0.5;
+// Rails of other elements lie within this tilt of those seen (and within kBesideRail); a few samples at one hide about
+// this share of the step to the sample beside them.
+constexpr double kUnseenTilt = 0.06, kUnseenOfStep = 0.5;
 
 // Readings within this share below the largest of a stretch are at its top: what a tilt of 0.06 (kUnseenTilt) makes of
 // motion beside of a sixth of the rail. Elements differ by no more than so many deviations.
@@ -49,7 +51,7 @@ void LeastRails::add(const Eigen::Vector3d& rate_rad_s) {
 
 bool LeastRails::refute(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) const {
   const double least = rad_s_[rate_rad_s[axis] < 0.0 ? 0 : 1][axis];
-  return std::abs(rate_rad_s[axis]) + kUnseenTilt * beside_of(rate_rad_s, axis) < (1.0 - kUnseenShare) * least;
+  return std::abs(rate_rad_s[axis]) + kUnseenTilt * beside_of(rate_rad_s, axis) < (1.0 - kBesideRail) * least;
 }
 
 void doubt_unseen_rails(const RailPlanes& planes, const LeastRails& least, double noise_rad_s, const ImuSample* before,
@@ -64,7 +66,7 @@ void doubt_unseen_rails(const RailPlanes& planes, const LeastRails& least, doubl
     const unsigned told = now.clipping.gyro | now.clipping.void_gyro | now.partial;
     if ((own && own->seen(sign)) || (told >> j & 1u) != 0) continue;
     const double beside = beside_of(reading, j);
-    if (std::abs(reading[j]) < (1.0 - kUnseenShare) * rail - kUnseenTilt * beside) continue;
+    if (std::abs(reading[j]) < (1.0 - kBesideRail) * rail - kUnseenTilt * beside) continue;
     if (least.refute(reading, j)) continue;
     double step = 0.0;
     for (const ImuSample* neighbour : {before, after}) {

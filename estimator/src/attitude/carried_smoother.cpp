@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "carried_problem.hpp"
+#include "tumble/common/detail/sample_check.hpp"
 #include "tumble/common/so3.hpp"
 #include "turn_hypotheses.hpp"
 
@@ -34,13 +35,7 @@ Status check(const CarriedSmoother::Params& params, std::span<const ImuSample> s
   }
   const double determinant = std::abs(clipped.rows.determinant());
   if (!(determinant > kRowsMin)) return {Trouble::degenerate, "rows", determinant, kRowsMin};
-  for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (const Status status = check_sample(samples[k]); !status.ok()) return status;
-    if (k == 0) continue;
-    const Status status = check_follows(samples[k].time_ns, samples[k - 1].time_ns, params.gap_max_s);
-    if (!status.ok()) return status;
-  }
-  return {};
+  return check_samples(samples, params.gap_max_s);
 }
 
 // Elements at the rail, in the whole window of the reading or in a part of it.

@@ -71,8 +71,9 @@ Status ImuMerge::step(std::span<const ImuSample> samples, State& state, std::opt
   if (samples.size() != static_cast<std::size_t>(params_.count)) {
     return {Trouble::too_few, "samples", static_cast<double>(samples.size()), static_cast<double>(params_.count)};
   }
-  const bool heard = std::any_of(samples.begin(), samples.end(), [](const ImuSample& s) { return check(s).ok(); });
-  if (!heard) return check(samples[0]);
+  const bool heard =
+      std::any_of(samples.begin(), samples.end(), [](const ImuSample& s) { return check_sample(s).ok(); });
+  if (!heard) return check_sample(samples[0]);
   double dt_s = 0.0;
   if (state.samples > 0) {
     const Status bad = elapsed(samples[0].time_ns, state.last_time_ns, params_.gap_max_s, dt_s);
@@ -97,7 +98,7 @@ void ImuMerge::gather(std::span<const ImuSample> samples, double dt_s, State& st
   const double weight_s = state.samples > 0 ? dt_s : params_.window_s;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     Unit& unit = state.units[k];
-    if (!check(samples[k]).ok()) {
+    if (!check_sample(samples[k]).ok()) {
       if (unit.absent++ == 0) unit.absent_since_ns = samples[0].time_ns;
       continue;
     }

@@ -24,7 +24,7 @@ ImuPlausibility::ImuPlausibility(const Params& p) : params_(p) {
 }
 
 void ImuPlausibility::step(const ImuSample& sample, State& state) const {
-  if (!check(sample).ok()) return;
+  if (!check_sample(sample).ok()) return;
   double dt_s = 0.0;
   if (state.started) {
     const Status follows = elapsed(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s);

@@ -17,7 +17,7 @@ Strapdown::Strapdown(const Params& params) : params_(params) {
 }
 
 Status Strapdown::step(const ImuSample& sample, State& state) const {
-  if (const Status bad = check(sample); !bad.ok()) return bad;
+  if (const Status bad = check_sample(sample); !bad.ok()) return bad;
   Eigen::Quaterniond q_WI;
   if (state.started) {
     double dt_s = 0.0;

@@ -50,7 +50,7 @@ TumbleAttitude::TumbleAttitude(const Params& p) : params_(p), rests_(p.rest) {
 
 Status TumbleAttitude::step(const ImuSample& sample, const Eigen::Matrix3d& rate_covariance_rad2_s2,
                             State& state) const {
-  if (const Status bad = check(sample); !bad.ok()) return bad;
+  if (const Status bad = check_sample(sample); !bad.ok()) return bad;
   if (const Status bad = check_covariance(rate_covariance_rad2_s2); !bad.ok()) return bad;
   if (!state.started) {
     if (const Status bad = level(sample.specific_force_m_s2, state.q_WI); !bad.ok()) return bad;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/attitude/vqf.hpp"
 
-#include <Eigen/LU>
 #include <cmath>
 
 #include "tumble/attitude/detail/tilt.hpp"
 #include "tumble/attitude/detail/timing.hpp"
 #include "tumble/attitude/strapdown.hpp"
+#include "tumble/common/detail/scalar_update.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble {
@@ -30,7 +30,7 @@ Vqf::Vqf(const Params& p) : params_(p) {
 }
 
 Status Vqf::step(const ImuSample& sample, State& state) const {
-  if (const Status bad = check(sample); !bad.ok()) return bad;
+  if (const Status bad = check_sample(sample); !bad.ok()) return bad;
   double dt_s = 0.0;
   if (state.started) {
     if (const Status bad = elapsed(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s); !bad.ok()) return bad;
@@ -108,10 +108,8 @@ void Vqf::estimate_bias(const Eigen::Vector3d& up_W, double dt_s, State& state) 
   }
   const double clip = params_.bias_clip_rad_s;
   innovation = innovation.cwiseMax(-clip).cwiseMin(clip);
-  const Eigen::Matrix3d S = H * P * H.transpose() + Eigen::Matrix3d(noise.asDiagonal());
-  const Eigen::Matrix3d K = P * H.transpose() * S.inverse();
-  state.bias_rad_s = (b + K * innovation).cwiseMax(-clip).cwiseMin(clip);
-  P -= (K * H * P).eval();
+  const Eigen::Vector3d correction = vector_update<3, 3>(H, innovation, noise.asDiagonal(), P);
+  state.bias_rad_s = (b + correction).cwiseMax(-clip).cwiseMin(clip);
 }
 
 }  // namespace tumble

@@ -2,31 +2,28 @@
 #include "tumble/common/imu.hpp"
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
-#include <limits>
+
+#include "tumble/common/detail/sample_check.hpp"
 
 namespace tumble {
 
 namespace {
 
-double first_non_finite(const Eigen::Vector3d& v) {
-  for (int j = 0; j < 2; ++j) {
-    if (!std::isfinite(v[j])) return v[j];
+Status check_reading(const Eigen::Vector3d& reading, const char* field) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!std::isfinite(reading[axis])) return {Trouble::non_finite, field, reading[axis], kReadingMax};
+    if (std::abs(reading[axis]) > kReadingMax) return {Trouble::out_of_range, field, reading[axis], kReadingMax};
   }
-  return v[2];
+  return {};
 }
 
 }  // namespace
 
 Status check_sample(const ImuSample& sample) {
-  constexpr double kLargest = std::numeric_limits<double>::max();
-  if (!sample.angular_velocity_rad_s.allFinite()) {
-    return {Trouble::non_finite, "angular_velocity_rad_s", first_non_finite(sample.angular_velocity_rad_s), kLargest};
-  }
-  if (!sample.specific_force_m_s2.allFinite()) {
-    return {Trouble::non_finite, "specific_force_m_s2", first_non_finite(sample.specific_force_m_s2), kLargest};
-  }
-  return {};
+  const Status rate = check_reading(sample.angular_velocity_rad_s, "angular_velocity_rad_s");
+  return rate.ok() ? check_reading(sample.specific_force_m_s2, "specific_force_m_s2") : rate;
 }
 
 Status check_follows(TimeNs time_ns, TimeNs previous_ns, double gap_max_s) {
@@ -37,6 +34,16 @@ Status check_follows(TimeNs time_ns, TimeNs previous_ns, double gap_max_s) {
   const std::uint64_t gap_ns = static_cast<std::uint64_t>(time_ns) - static_cast<std::uint64_t>(previous_ns);
   const double gap_s = static_cast<double>(gap_ns) * 1e-9;
   if (gap_s > gap_max_s) return {Trouble::gap, "time_s since the last sample", gap_s, gap_max_s};
+  return {};
+}
+
+Status check_samples(std::span<const ImuSample> samples, double gap_max_s) {
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (const Status status = check_sample(samples[k]); !status.ok()) return status;
+    if (k == 0) continue;
+    const Status status = check_follows(samples[k].time_ns, samples[k - 1].time_ns, gap_max_s);
+    if (!status.ok()) return status;
+  }
   return {};
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 /// Of a sample and its rate by themselves.
 Status check(const ImuSample& sample, const RateState& rate) {
-  if (!is_finite(sample)) return {Trouble::non_finite, "imu sample", std::numeric_limits<double>::quiet_NaN(), 0.0};
+  if (const Status status = check_sample(sample); !status.ok()) return status;
   if (!rate.w_WI_I_rad_s.allFinite() || !rate.covariance_rad2_s2.allFinite()) {
     return {Trouble::non_finite, "rate", std::numeric_limits<double>::quiet_NaN(), 0.0};
   }

@@ -3,11 +3,12 @@
 
 #include <limits>
 
+#include "tumble/angular_velocity/detail/rail_shares.hpp"
+
 namespace tumble {
 
 double sure_range(double stated_range) {
-  constexpr double kSureShare = 0.98;
-  return stated_range > 0.0 ? kSureShare * stated_range : std::numeric_limits<double>::infinity();
+  return stated_range > 0.0 ? (1.0 - kBesideRail) * stated_range : std::numeric_limits<double>::infinity();
 }
 
 namespace sheets {

@@ -25,7 +25,7 @@ RollingFilter::RollingFilter(const Params& p) : params_(p), rests_(p.rest) {
 }
 
 Status RollingFilter::step_with(const ImuSample& sample, State& state, Listener listener) const {
-  if (const Status bad = check(sample); !bad.ok()) return bad;
+  if (const Status bad = check_sample(sample); !bad.ok()) return bad;
   if (state.started) {
     double dt_s = 0.0;
     if (const Status bad = elapsed(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s); !bad.ok()) return bad;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/baselines/angular_velocity/accelerometer_rate.hpp"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
@@ -40,17 +40,14 @@ struct Filter {
   void measure_difference(const Vector3d& p_I_m, const Vector3d& difference, double variance) {
     const RigConstants place{.lever_arm_m = p_I_m};
     const State before = x;
-    Eigen::Matrix<double, 6, 3> gain;
-    Eigen::Matrix<double, 3, 6> H;
+    Covariance after = P;
     for (int i = 0; i < kIterations; ++i) {
       const RateFactor f = flight_factor({x.head<3>(), x.tail<3>()}, place, difference);
-      H = f.by_knot;
-      const Eigen::Matrix3d S = H * P * H.transpose() + variance * Eigen::Matrix3d::Identity();
-      gain = S.ldlt().solve(H * P).transpose();
-      x = before - gain * (f.residual + H * (before - x));
+      const Vector3d innovation = -(f.residual + f.by_knot * (before - x));
+      after = P;
+      x = before + vector_update<3, 6>(f.by_knot, innovation, variance * Eigen::Matrix3d::Identity(), after);
     }
-    P = (P - gain * H * P).eval();
-    P = (0.5 * (P + P.transpose())).eval();
+    P = 0.5 * (after + after.transpose());
   }
 };
 

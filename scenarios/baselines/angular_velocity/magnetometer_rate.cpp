@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/baselines/angular_velocity/magnetometer_rate.hpp"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -53,12 +53,11 @@ struct Filter {
   void measure_axis(int j, double reading, double variance) { x += component_update(j, reading - x[j], variance, P); }
 
   void measure_field(const Vector3d& reading, double variance) {
-    const Eigen::Matrix<double, 3, kSize> HP = P.middleRows<3>(kField) + P.middleRows<3>(kIron);
-    Matrix3d S = HP.middleCols<3>(kField) + HP.middleCols<3>(kIron);
-    S.diagonal().array() += variance;
-    const Eigen::Matrix<double, kSize, 3> gain = S.ldlt().solve(HP).transpose();
-    x += gain * (reading - x.segment<3>(kField) - x.segment<3>(kIron));
-    P -= gain * HP;
+    Eigen::Matrix<double, 3, kSize> H = Eigen::Matrix<double, 3, kSize>::Zero();
+    H.middleCols<3>(kField).setIdentity();
+    H.middleCols<3>(kIron).setIdentity();
+    const Vector3d innovation = reading - x.segment<3>(kField) - x.segment<3>(kIron);
+    x += vector_update<3, kSize>(H, innovation, variance * Matrix3d::Identity(), P);
     P = (0.5 * (P + P.transpose())).eval();
   }
 };

@@ -75,7 +75,7 @@ AutogainGains Autogain::gains(const Eigen::Vector3d& w_I_rad_s, double dt_s) con
 }
 
 Status Autogain::step(const ImuSample& sample, State& state) const {
-  if (const Status bad = check(sample); !bad.ok()) return bad;
+  if (const Status bad = check_sample(sample); !bad.ok()) return bad;
   Eigen::Quaterniond q;
   if (state.started) {
     double dt_s = 0.0;

@@ -19,7 +19,7 @@ Complementary::Complementary(const Params& params) : params_(params) {
 }
 
 Status Complementary::step(const ImuSample& sample, State& state) const {
-  if (const Status bad = check(sample); !bad.ok()) return bad;
+  if (const Status bad = check_sample(sample); !bad.ok()) return bad;
   Eigen::Quaterniond q_WI;
   if (state.started) {
     double dt_s = 0.0;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/baselines/attitude/eskf.hpp"
 
-#include <Eigen/LU>
 #include <cmath>
 
 #include "tumble/attitude/detail/timing.hpp"
 #include "tumble/attitude/strapdown.hpp"
+#include "tumble/common/detail/scalar_update.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble::baselines {
@@ -19,7 +19,7 @@ Eskf::Eskf(const Params& p) : params_(p) {
 }
 
 Status Eskf::step(const ImuSample& sample, State& state) const {
-  if (const Status bad = check(sample); !bad.ok()) return bad;
+  if (const Status bad = check_sample(sample); !bad.ok()) return bad;
   if (state.started) {
     double dt_s = 0.0;
     if (const Status bad = elapsed(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s); !bad.ok()) return bad;
@@ -60,11 +60,9 @@ void Eskf::correct(const Eigen::Vector3d& f_I_m_s2, double dt_s, State& state) c
   const Eigen::Vector3d up_W = state.q_WI * f_I_m_s2 / params_.gravity_m_s2;
   const Eigen::Vector2d innovation(up_W.y(), -up_W.x());
   const double sigma = params_.acceleration_noise_m_s2_sqrts / params_.gravity_m_s2;
-  Eigen::Matrix2d S = state.covariance.topLeftCorner<2, 2>();
-  S.diagonal().array() += sigma * sigma / dt_s;
-  const Eigen::Matrix<double, 6, 2> K = state.covariance.leftCols<2>() * S.inverse();
-  const Eigen::Matrix<double, 6, 1> correction = K * innovation;
-  state.covariance -= (K * S * K.transpose()).eval();
+  const Eigen::Matrix<double, 2, 6> H = Eigen::Matrix<double, 2, 6>::Identity();
+  const Eigen::Matrix2d noise = sigma * sigma / dt_s * Eigen::Matrix2d::Identity();
+  const Eigen::Matrix<double, 6, 1> correction = vector_update<2, 6>(H, innovation, noise, state.covariance);
   state.covariance = (0.5 * (state.covariance + state.covariance.transpose())).eval();
   state.q_WI = (so3::exp(correction.head<3>()) * state.q_WI).normalized();
   state.bias_rad_s += correction.tail<3>();

@@ -53,7 +53,7 @@ Madgwick::Madgwick(const Params& params) : params_(params) {
 }
 
 Status Madgwick::step(const ImuSample& sample, State& state) const {
-  if (const Status bad = check(sample); !bad.ok()) return bad;
+  if (const Status bad = check_sample(sample); !bad.ok()) return bad;
   Eigen::Quaterniond q_WI;
   if (state.started) {
     double dt_s = 0.0;

@@ -16,7 +16,7 @@ Mahony::Mahony(const Params& params) : params_(params) {
 }
 
 Status Mahony::step(const ImuSample& sample, State& state) const {
-  if (const Status bad = check(sample); !bad.ok()) return bad;
+  if (const Status bad = check_sample(sample); !bad.ok()) return bad;
   if (!state.started) {
     if (const Status bad = level(sample.specific_force_m_s2, state.q_WI); !bad.ok()) return bad;
     state.last_time_ns = sample.time_ns;

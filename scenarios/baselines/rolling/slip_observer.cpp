@@ -53,7 +53,7 @@ SlipObserver::SlipObserver(const Params& p) : params_(p) {
 }
 
 Status SlipObserver::step(const ImuSample& sample, const Eigen::Quaterniond& q_WI, State& state) const {
-  if (const Status bad = check(sample); !bad.ok()) return bad;
+  if (const Status bad = check_sample(sample); !bad.ok()) return bad;
   if (const Status bad = check_attitude(q_WI); !bad.ok()) return bad;
   if (state.started) {
     double dt_s = 0.0;

@@ -12,7 +12,7 @@
 #include <tuple>
 #include <vector>
 
-#include "estimator/attitude/broad_trial.hpp"
+#include "stand_ins/broad_trial.hpp"
 #include "tumble/angular_velocity/rate_smoother.hpp"
 #include "tumble/angular_velocity/saave.hpp"
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "estimator/attitude/broad_trial.hpp"
+#include "stand_ins/broad_trial.hpp"
 #include "stand_ins/stand_ins.hpp"
 #include "tumble/angular_velocity/rail_planes.hpp"
 

@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "estimator/attitude/broad_trial.hpp"
 #include "scenarios/baselines/attitude/autogain.hpp"
 #include "scenarios/baselines/attitude/complementary.hpp"
 #include "scenarios/baselines/attitude/eskf.hpp"
 #include "scenarios/baselines/attitude/madgwick.hpp"
 #include "scenarios/baselines/attitude/mahony.hpp"
+#include "stand_ins/broad_trial.hpp"
 #include "stand_ins/stand_ins.hpp"
 #include "tumble/attitude/tumble_attitude.hpp"
 #include "tumble/attitude/vqf.hpp"

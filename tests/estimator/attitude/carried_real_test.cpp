@@ -14,8 +14,8 @@
 #include <map>
 #include <sstream>
 
-#include "estimator/attitude/broad_trial.hpp"
 #include "estimator/attitude/carried_errors.hpp"
+#include "stand_ins/broad_trial.hpp"
 #include "stand_ins/stand_ins.hpp"
 #include "tumble/attitude/carried_smoother.hpp"
 #include "tumble/common/so3.hpp"

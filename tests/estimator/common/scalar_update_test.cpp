@@ -54,5 +54,36 @@ TEST(ScalarUpdate, CheckTellsAnotherVariance) {
             1e-3);
 }
 
+/// Bayes' rule for several numbers: the inverse covariance gains H^T noise^-1 H.
+TEST(VectorUpdate, IsBayesRuleForCorrelatedNoise) {
+  Eigen::Matrix<double, 2, 4> H;
+  H << 0.3, -1.1, 0.0, 2.0, 1.0, 0.4, -0.2, 0.0;
+  Eigen::Matrix2d noise;
+  noise << 0.05, 0.02, 0.02, 0.03;
+  const Eigen::Vector2d innovation(0.7, -0.4);
+  Matrix4 P = kPrior;
+  const Vector4 correction = vector_update<2, 4>(H, innovation, noise, P);
+  const Matrix4 expected = (kPrior.inverse() + H.transpose() * noise.inverse() * H).inverse();
+  EXPECT_LT((P - expected).norm(), 1e-12);
+  EXPECT_LT((correction - expected * H.transpose() * noise.inverse() * innovation).norm(), 1e-12);
+}
+
+TEST(VectorUpdate, OfIndependentNoiseIsScalarsOneAfterAnother) {
+  Eigen::Matrix<double, 2, 4> H;
+  H << 0.3, -1.1, 0.0, 2.0, 1.0, 0.4, -0.2, 0.0;
+  const Eigen::Vector2d innovation(0.7, -0.4), variances(0.05, 0.03);
+  Matrix4 once = kPrior, twice = kPrior;
+  const Vector4 at_once = vector_update<2, 4>(H, innovation, variances.asDiagonal(), once);
+  Vector4 in_turn = scalar_update(H.row(0), innovation[0], variances[0], twice);
+  in_turn += scalar_update(H.row(1), innovation[1] - H.row(1).dot(in_turn), variances[1], twice);
+  EXPECT_LT((once - twice).norm(), 1e-12);
+  EXPECT_LT((at_once - in_turn).norm(), 1e-12);
+  // of correlated noise it is not
+  Eigen::Matrix2d noise = variances.asDiagonal();
+  noise(0, 1) = noise(1, 0) = 0.02;
+  Matrix4 correlated = kPrior;
+  EXPECT_GT((vector_update<2, 4>(H, innovation, noise, correlated) - in_turn).norm(), 1e-3);
+}
+
 }  // namespace
 }  // namespace tumble

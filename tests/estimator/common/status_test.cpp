@@ -7,7 +7,9 @@
 #include <limits>
 #include <set>
 #include <string>
+#include <vector>
 
+#include "tumble/common/detail/sample_check.hpp"
 #include "tumble/common/imu.hpp"
 
 namespace tumble {
@@ -61,6 +63,32 @@ TEST(CheckSample, NamesTheFieldThatIsNotFinite) {
   sample.angular_velocity_rad_s.y() = std::nan("");
   EXPECT_STREQ(check_sample(sample).field, "angular_velocity_rad_s");
   EXPECT_TRUE(std::isnan(check_sample(sample).value));
+}
+
+TEST(CheckSample, RefusesWhatNoSensorSays) {
+  ImuSample sample;
+  sample.angular_velocity_rad_s.y() = kReadingMax;
+  sample.specific_force_m_s2.x() = -kReadingMax;
+  EXPECT_TRUE(check_sample(sample).ok());
+  sample.specific_force_m_s2.x() = std::nextafter(-kReadingMax, -2.0 * kReadingMax);
+  EXPECT_EQ(check_sample(sample).trouble, Trouble::out_of_range);
+  EXPECT_STREQ(check_sample(sample).field, "specific_force_m_s2");
+  EXPECT_EQ(check_sample(sample).value, sample.specific_force_m_s2.x());
+  EXPECT_EQ(check_sample(sample).bound, kReadingMax);
+}
+
+TEST(CheckSamples, TellsTheFirstTroubleOfASequence) {
+  std::vector<ImuSample> samples(4);
+  for (std::size_t k = 0; k < samples.size(); ++k) samples[k].time_ns = static_cast<TimeNs>(k) * 10'000'000;
+  EXPECT_TRUE(check_samples(samples, 0.01).ok());
+  EXPECT_TRUE(check_samples({}, 0.01).ok());
+  EXPECT_EQ(check_samples(samples, 0.009).trouble, Trouble::gap);
+  samples[3].angular_velocity_rad_s.z() = std::nan("");
+  EXPECT_EQ(check_samples(samples, 0.01).trouble, Trouble::non_finite);
+  samples[2].time_ns = samples[1].time_ns;  // comes before
+  const Status stuck = check_samples(samples, 0.01);
+  EXPECT_EQ(stuck.trouble, Trouble::time_order);
+  EXPECT_EQ(stuck.value, 10'000'000.0);
 }
 
 TEST(CheckFollows, RefusesEqualFallingAndDistantStamps) {

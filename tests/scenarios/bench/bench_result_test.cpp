@@ -9,7 +9,7 @@
 
 #include "scenarios/errors.hpp"
 #include "tests/scenarios/bench/some_result.hpp"
-#include "tests/scenarios/sweep/temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace tumble::scenarios {
 namespace {

@@ -10,7 +10,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/provenance/build_id.hpp"
 #include "scenarios/sweep/certified_results.hpp"
-#include "tests/scenarios/sweep/temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 #include "tests/tree.hpp"
 
 namespace tumble::scenarios {

@@ -9,7 +9,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/external_method.hpp"
 #include "tests/scenarios/methods/synthetic_recording.hpp"
-#include "tests/scenarios/sweep/temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace tumble::scenarios::testing {
 

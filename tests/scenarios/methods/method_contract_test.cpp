@@ -48,6 +48,7 @@ TEST_P(MethodContract, DescribesItself) {
   EXPECT_NE(info.name, "");
   EXPECT_NE(info.doc, "");
   EXPECT_NE(info.source, "");
+  EXPECT_EQ(info.ours, info.source == "ours") << "whose it is, told twice";
   for (const sim::Parameter& parameter : info.parameters) {
     EXPECT_NE(parameter.doc, "") << parameter.name;
     EXPECT_LE(parameter.low, parameter.default_value) << parameter.name;

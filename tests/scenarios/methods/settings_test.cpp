@@ -177,6 +177,24 @@ TEST(Settings, AStageBesideAnotherBearsItsPrefixWhereNamesMeet) {
   EXPECT_EQ(rates.read(values).count, 5);
 }
 
+/// Whether the method called `name` has every parameter of `stage`, by its name, bounds and default.
+bool has_all_of(const std::string& name, const std::string& stage) {
+  const MethodInfo &whole = find_methods(name).front()->info, &part = find_methods(stage).front()->info;
+  return std::all_of(part.parameters.begin(), part.parameters.end(), [&](const sim::Parameter& p) {
+    return std::any_of(whole.parameters.begin(), whole.parameters.end(), [&](const sim::Parameter& q) {
+      return q.name == p.name && q.default_value == p.default_value && q.low == p.low && q.high == p.high;
+    });
+  });
+}
+
+TEST(Settings, AMapOfTheSphereHasTheNumbersOfThePositionMethodBeneath) {
+  EXPECT_TRUE(has_all_of("slam/poses_rolling", "position/rolling"));
+  EXPECT_TRUE(has_all_of("slam/poses_autogain_fusion", "position/autogain_fusion"));
+  EXPECT_TRUE(has_all_of("slam/poses_tumble", "position/tumble"));
+  EXPECT_TRUE(has_all_of("slam/rolling_prior", "position/tumble"));
+  EXPECT_FALSE(has_all_of("slam/poses_rolling", "position/tumble")) << "negative control";
+}
+
 TEST(GivenParameters, ReachTheMethodThatTheyName) {
   const Settings<Numbers> table(Numbers{});
   Method method;

@@ -8,10 +8,10 @@
 
 #include "scenarios/recordings/fixture_recording.hpp"
 #include "scenarios/recordings/import.hpp"
-#include "scenarios/recordings/synthetic_repoimu.hpp"
 #include "scenarios/recordings/trajectories/align_reference.hpp"
 #include "scenarios/recordings/trajectories/reference_glitches.hpp"
 #include "stand_ins/stand_ins.hpp"
+#include "stand_ins/synthetic_repoimu.hpp"
 
 namespace tumble::scenarios {
 namespace {

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/sweep/temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace tumble::scenarios {
 namespace {

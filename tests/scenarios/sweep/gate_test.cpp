@@ -9,7 +9,7 @@
 #include <functional>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/sweep/temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace tumble::scenarios {
 namespace {

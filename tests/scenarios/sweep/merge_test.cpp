@@ -16,7 +16,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/sweep/database_owner.hpp"
 #include "scenarios/sweep/results.hpp"
-#include "scenarios/sweep/temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace tumble::scenarios {
 namespace {

@@ -8,10 +8,10 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/import.hpp"
-#include "scenarios/recordings/synthetic_repoimu.hpp"
 #include "scenarios/sweep/results.hpp"
 #include "scenarios/sweep/sweep.hpp"
-#include "scenarios/sweep/temporary_folder.hpp"
+#include "stand_ins/synthetic_repoimu.hpp"
+#include "tests/temporary_folder.hpp"
 #include "tests/tree.hpp"
 
 namespace tumble::scenarios {

@@ -17,7 +17,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/provenance/build_id.hpp"
-#include "scenarios/sweep/temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace tumble::scenarios {
 namespace {

@@ -13,7 +13,7 @@
 #include "scenarios/sweep/run_situation.hpp"
 #include "scenarios/sweep/sweep.hpp"
 #include "scenarios/sweep/variation.hpp"
-#include "temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 #include "tests/tree.hpp"
 
 namespace tumble::scenarios {

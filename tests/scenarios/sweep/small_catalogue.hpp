@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "scenarios/data_root.hpp"
-#include "scenarios/sweep/temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 #include "tests/tree.hpp"
 
 namespace tumble::scenarios::testing {

@@ -6,7 +6,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/method.hpp"
 #include "scenarios/sweep/sweep.hpp"
-#include "scenarios/sweep/temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 #include "tests/tree.hpp"
 
 namespace tumble::scenarios {

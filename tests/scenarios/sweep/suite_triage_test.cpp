@@ -10,7 +10,7 @@
 #include "scenarios/draw/fixed_number.hpp"
 #include "scenarios/draw/fixed_scenario.hpp"
 #include "scenarios/errors.hpp"
-#include "temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 #include "tests/tree.hpp"
 
 namespace tumble::scenarios {

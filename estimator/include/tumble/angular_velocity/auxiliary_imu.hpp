@@ -49,8 +49,8 @@ struct AuxiliaryReading {
 
 /// Readings of an auxiliary IMU at the stamps of the primary, by linear interpolation between neighbours no further
 /// apart than `gap_max_s`; clipped elements are left out (what does not know: the bound that they are), as `clippings`
-/// has them, one per sample (ClippingFinder). Trouble of its samples (`non_finite`, `time_order`; `too_few` clippings):
-/// nothing is written. No samples: no reading says anything. O(N).
+/// has them, one per sample (ClippingFinder). Trouble of its samples (check_samples(), but for gaps; `too_few`
+/// clippings): nothing is written. No samples: no reading says anything. O(N).
 Status align(const AuxiliaryImu& auxiliary_imu, std::span<const ImuSample> samples, std::span<const Clipping> clippings,
              std::span<const ImuSample> primary, double gap_max_s, std::vector<AuxiliaryReading>& out);
 

@@ -11,8 +11,4 @@ namespace tumble {
 /// untouched. Safe for any pair of stamps; gap_max_s up to 1e9.
 Status elapsed(TimeNs time_ns, TimeNs last_time_ns, double gap_max_s, double& dt_s);
 
-/// `non_finite` on NaN or infinity in the rates or forces, `out_of_range` on a component beyond 1e6 (rad/s, m/s^2):
-/// no sensor says that, and the square of it may no longer be finite.
-Status check(const ImuSample& sample);
-
 }  // namespace tumble

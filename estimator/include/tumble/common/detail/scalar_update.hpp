@@ -2,14 +2,16 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/LU>
 
 namespace tumble {
 
-// The measurement update of a Kalman filter by one scalar, the only one in the library: several scalars with
-// independent noise are taken one after another, which needs no inverse. Both return what is to be added to the state
-// of N numbers and take the measurement into its covariance P (N x N, kept symmetric to rounding); O(N^2), no
-// allocation for fixed N. P must be positive semidefinite and `variance` positive (R. E. Kalman, J. Basic Eng. 82,
-// 1960; Joseph's form is not needed where P is well conditioned, and is not used).
+// The measurement update of a Kalman filter, the only one in the library: by one scalar (several with independent noise
+// are taken one after another, which needs no inverse), or by a few numbers at once, as published filters have it. All
+// return what is to be added to the state of N numbers and take the measurement into its covariance P (N x N, kept
+// symmetric to rounding); O(N^2) for each number, no allocation for fixed N. P must be positive semidefinite and the
+// variance of the noise positive (R. E. Kalman, J. Basic Eng. 82, 1960; Joseph's form is not needed where P is well
+// conditioned, and is not used).
 
 /// By a measurement with the derivative `row` (N): `innovation` is what was measured minus what was expected.
 template <typename Row, int N>
@@ -32,6 +34,19 @@ Eigen::Matrix<double, N, 1> component_update(Eigen::Index index, double innovati
   const double s = column[index] + variance;
   P -= column * (column / s).transpose();
   return column * (innovation / s);
+}
+
+/// By M numbers with the derivative `H` (M x N) and noise of the covariance `noise` (M x M, may be correlated); M up to
+/// 4, beyond which an inverse is not the way.
+template <int M, int N>
+Eigen::Matrix<double, N, 1> vector_update(const Eigen::Matrix<double, M, N>& H,
+                                          const Eigen::Matrix<double, M, 1>& innovation,
+                                          const Eigen::Matrix<double, M, M>& noise, Eigen::Matrix<double, N, N>& P) {
+  static_assert(M >= 1 && M <= 4);
+  const Eigen::Matrix<double, M, M> S = H * P * H.transpose() + noise;
+  const Eigen::Matrix<double, N, M> K = P * H.transpose() * S.inverse();
+  P -= (K * H * P).eval();
+  return K * innovation;
 }
 
 }  // namespace tumble

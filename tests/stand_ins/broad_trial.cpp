@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "estimator/attitude/broad_trial.hpp"
+#include "stand_ins/broad_trial.hpp"
 
 #include <hdf5.h>
 

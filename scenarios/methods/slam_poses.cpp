@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/position_stage.hpp"
+#include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/sweep_log.hpp"
+#include "tumble/mapping/voxel_map.hpp"
+
+/// Maps of the rolling sphere from the poses of a position method, as published: nothing is registered.
+namespace tumble::scenarios {
+
+namespace {
+
+/// The map's numbers as those of a registration are called.
+struct MapParams {
+  VoxelMap::Params map;
+  double nearest_m = 0.3;
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit.group("map_", p.map);
+    visit(p.nearest_m, {"nearest_m", "m", 0.0, 100.0, "nearer returns are the sphere's own"});
+  }
+};
+
+const Settings<MapParams>& map_settings() {
+  static const Settings<MapParams> all(MapParams{}, {.first = {"map_voxel_m", "map_spacing_m"}});
+  return all;
+}
+
+const Method& rolling() {
+  static const Method method = position_rolling();
+  return method;
+}
+const Method& autogain_fusion() {
+  static const Method method = position_autogain_fusion();
+  return method;
+}
+const Method& tumble() {
+  static const Method method = position_tumble();
+  return method;
+}
+
+/// Poses of the body in time order, asked for in time order too.
+class Track {
+ public:
+  Track(const std::vector<PoseState>& poses, const Eigen::Vector3d& centre_B_m)
+      : poses_(poses), centre_B_m_(centre_B_m) {}
+  bool covers(std::int64_t time_ns) const {
+    return !poses_.empty() && time_ns >= poses_.front().time_ns && time_ns <= poses_.back().time_ns;
+  }
+  /// Interpolated; O(1) for times near the last one asked for.
+  Eigen::Isometry3d at(std::int64_t time_ns) {
+    while (next_ > 1 && poses_[next_ - 1].time_ns > time_ns) --next_;
+    while (next_ + 1 < poses_.size() && poses_[next_].time_ns < time_ns) ++next_;
+    const PoseState &a = poses_[next_ - 1], &b = poses_[next_];
+    const double share = seconds(time_ns - a.time_ns) / std::max(seconds(b.time_ns - a.time_ns), 1e-9);
+    const Eigen::Vector3d p = a.p_WA_m + share * (b.p_WA_m - a.p_WA_m);
+    return Eigen::Translation3d(p) * a.q_WA.slerp(share, b.q_WA) * Eigen::Translation3d(-centre_B_m_);
+  }
+
+ private:
+  const std::vector<PoseState>& poses_;
+  Eigen::Vector3d centre_B_m_;
+  std::size_t next_ = 1;
+};
+
+// the lidar's place is known from the centre of mass, some mm from the centre; methods that do not say where take them
+// for one
+Estimate map_from_poses(const Method& position, const sim::Sensors& sensors, const sim::Values& parameters) {
+  Estimate estimate = position.run(sensors, values_of(position, parameters), {});
+  estimate.contacts.clear();
+  estimate.uncertain.clear();
+  if (!estimate.status.ok()) return estimate;
+  if (sensors.lidars.empty() || estimate.poses.size() < 2) {
+    estimate.status = {Trouble::empty, "lidars", 0.0, 1.0};
+    return estimate;
+  }
+  const sim::LidarRecord& lidar = sensors.lidars.front();
+  const MapParams params = map_settings().read(parameters);
+  VoxelMap map(params.map);
+  Track track(estimate.poses, estimate.centre_B_m);
+  std::size_t first_pose = 0;
+  for (std::size_t k = 0; k < bridge::sweep_count(lidar); ++k) {
+    const bridge::Sweep sweep = bridge::sweep(lidar, k);
+    if (!track.covers(sweep.start_ns) || !track.covers(sweep.end_ns)) {
+      leave_out_unfinished(estimate);
+      continue;
+    }
+    LidarInertialOdometry::SweepReport report;
+    report.verdict = estimate.sweeps.empty() ? SweepVerdict::first : SweepVerdict::registered;
+    for (const LidarPoint& point : sweep.points) {
+      if (!point.position_L_m.allFinite() || point.position_L_m.norm() < params.nearest_m) continue;
+      const Eigen::Isometry3d T_WL = track.at(sweep.start_ns + point.offset_ns) * lidar.T_BL;
+      report.map_points_added +=
+          map.insert((T_WL * point.position_L_m.cast<double>()).cast<float>(), 0.0f, static_cast<std::uint32_t>(k));
+      ++report.points_used;
+    }
+    while (first_pose < estimate.poses.size() && estimate.poses[first_pose].time_ns < sweep.start_ns) ++first_pose;
+    for (std::size_t j = first_pose; j < estimate.poses.size() && estimate.poses[j].time_ns <= sweep.end_ns; ++j) {
+      report.trajectory.push_back(estimate.poses[j]);
+    }
+    report.pose = report.trajectory.empty() ? estimate.poses[first_pose] : report.trajectory.back();
+    estimate.sweeps.push_back(std::move(report));
+    estimate.sweep_end_ns.push_back(sweep.end_ns);
+  }
+  for (std::uint32_t index = 0; index < map.index_end(); ++index) {
+    if (map.exists(index))
+      estimate.map.push_back({map.position_W_m(index), Eigen::Vector3f::Zero(), map.sigma_m(index)});
+  }
+  return estimate;
+}
+
+Estimate run_poses_rolling(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  return map_from_poses(rolling(), sensors, parameters);
+}
+Estimate run_poses_autogain_fusion(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  return map_from_poses(autogain_fusion(), sensors, parameters);
+}
+Estimate run_poses_tumble(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  return map_from_poses(tumble(), sensors, parameters);
+}
+
+/// A map from the poses of `position`.
+Method posed(MethodInfo info, const Method& position, RunCore run) {
+  info.kind = Kind::slam;
+  info.settings = stages_after({&map_settings()}, position);
+  info.robots = {"sphere"};
+  return make_method(std::move(info), run);
+}
+
+}  // namespace
+
+Method slam_poses_rolling() {
+  MethodInfo info;
+  info.name = "poses_rolling";
+  info.doc = "A map from the poses of rolling; nothing is registered.";
+  info.source = "textbook rolling constraint";
+  return posed(std::move(info), rolling(), run_poses_rolling);
+}
+
+Method slam_poses_autogain_fusion() {
+  MethodInfo info;
+  info.name = "poses_autogain_fusion";
+  info.doc = "A map from the poses of autogain_fusion, as published; nothing is registered.";
+  info.source = "Zevering et al., IMU-based pose-estimation for spherical robots, IEEE MFI 2021";
+  return posed(std::move(info), autogain_fusion(), run_poses_autogain_fusion);
+}
+
+Method slam_poses_tumble() {
+  MethodInfo info;
+  info.name = "poses_tumble";
+  info.doc = "A map from the poses of our position method; nothing is registered.";
+  info.ours = true;
+  return posed(std::move(info), tumble(), run_poses_tumble);
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/methods/sweep_log.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace tumble::scenarios {
+
+void count_trouble(const Status& status, Estimate& estimate) {
+  if (!status.ok()) estimate.health[std::string("sweeps_") + to_string(status.trouble)] += 1.0;
+}
+
+bool append_sweep(const Status& status, TimeNs end_ns, SweepReport report, Estimate& estimate) {
+  if (!status.ok() && report.trajectory.empty()) {
+    estimate.status = status;
+    return false;
+  }
+  count_trouble(status, estimate);
+  estimate.health[std::string("sweeps_") + to_string(report.verdict)] += 1.0;
+  estimate.sweep_end_ns.push_back(end_ns);
+  estimate.sweeps.push_back(std::move(report));
+  return true;
+}
+
+void append_poses(std::span<const PoseState> trajectory, Estimate& estimate) {
+  for (const PoseState& pose : trajectory) {
+    if (estimate.poses.empty() || pose.time_ns > estimate.poses.back().time_ns) estimate.poses.push_back(pose);
+  }
+}
+
+void leave_out_unfinished(Estimate& estimate) {
+  estimate.health["sweeps_unfinished"] += 1.0;
+}
+
+bool run_over_sweeps(const sim::LidarRecord& lidar, const SweepMapper& mapper, Estimate& estimate) {
+  const std::size_t sweeps = bridge::sweep_count(lidar);
+  for (std::size_t k = 0; k < sweeps; ++k) {
+    const bridge::Sweep sweep = bridge::sweep(lidar, k);
+    const bool covered = mapper.covers(sweep);
+    if (!estimate.status.ok()) return false;
+    if (!covered) {
+      leave_out_unfinished(estimate);
+      continue;
+    }
+    SweepReport report;
+    const Status status = mapper.add(sweep, report);
+    if (!append_sweep(status, sweep.end_ns, std::move(report), estimate)) return false;
+    append_poses(estimate.sweeps.back().trajectory, estimate);
+  }
+  const bool any = std::any_of(estimate.sweeps.begin(), estimate.sweeps.end(),
+                               [](const SweepReport& sweep) { return sweep.verdict != SweepVerdict::rejected; });
+  if (!any) estimate.status = {Trouble::too_few, "lidar.sweeps_registered", 0.0, 1.0};
+  return true;
+}
+
+}  // namespace tumble::scenarios
