@@ -42,6 +42,14 @@ namespace {
 
 }  // namespace
 
+void limit_memory(double mib) {
+  constexpr double kMib = 1024.0 * 1024.0;
+  rlimit both{};
+  getrlimit(RLIMIT_DATA, &both);
+  both.rlim_cur = std::min({both.rlim_cur, both.rlim_max, static_cast<rlim_t>(mib * kMib)});
+  setrlimit(RLIMIT_DATA, &both);
+}
+
 std::string Process::End::describe() const {
   if (signal != 0) return "ended by signal " + std::to_string(signal) + " (" + strsignal(signal) + ")";
   return "ended with exit status " + std::to_string(exit_code);

@@ -52,6 +52,10 @@ class Process {
   bool own_group_ = false;
 };
 
+/// Of this process and of those that it makes: at most so much data (RLIMIT_DATA) each, and never more than whoever
+/// started it allows. What needs more is refused: std::bad_alloc, or no process.
+void limit_memory(double mib);
+
 /// Writes all of `text`; false when the reader is gone.
 bool write_all(int fd, const std::string& text);
 

@@ -2,26 +2,14 @@
 #include "scenarios/sweep/draw_worker.hpp"
 
 #include <malloc.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <optional>
 
 namespace tumble::scenarios {
 
 namespace {
-
-constexpr double kMib = 1024.0 * 1024.0;
-
-void limit_memory(double mib) {
-  rlimit both{};
-  getrlimit(RLIMIT_DATA, &both);
-  // never above what whoever started the sweep allows
-  both.rlim_cur = std::min({both.rlim_cur, both.rlim_max, static_cast<rlim_t>(mib * kMib)});
-  setrlimit(RLIMIT_DATA, &both);
-}
 
 /// The next line that comes, without its end; nothing when there is nobody who would send another.
 std::optional<std::string> next_line(int fd, std::string& buffer) {

@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <list>
 #include <map>
+#include <new>
+#include <system_error>
 
+#include "scenarios/errors.hpp"
 #include "scenarios/processes/process.hpp"
 #include "scenarios/sweep/draw_process.hpp"
 #include "scenarios/sweep/message.hpp"
@@ -16,20 +19,28 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr int kPollMs = 200;
+// what the simulation of a draw may take beyond its runs, in units of a run's time-out
+constexpr double kSimulateTimeouts = 2.0;
+constexpr double kMemoryMinMib = 64.0, kMemoryMaxMib = 1e7;
 constexpr char kBetween = '\t';  // the input's name and its outcome; no name holds one
 
-/// In the draw's own process: a line per row, then an empty one; or the reason why there is none.
+/// In the draw's own process: a line per row as it comes, then an empty one; or the reason why there are no more.
 void tell_rows(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
-               const TriageOptions& options, int fd) {
+               const SuiteTriageOptions& options, int fd) {
+  const auto tell_trouble = [&](const std::string& why) {
+    write_all(fd, std::string(1, kBetween) + one_line(why) + "\n");
+  };
+  limit_memory(options.memory_mib);
+  TriageOptions telling = options.triage;
+  telling.on_run = nullptr;
+  telling.on_row = [&](const TriageRow& row) { write_all(fd, row.input + kBetween + to_line({row.outcome, {}})); };
   try {
-    TriageOptions quiet = options;
-    quiet.on_run = nullptr;
-    for (const TriageRow& row : triage(data, scenario, seed, method, quiet)) {
-      if (!write_all(fd, row.input + kBetween + to_line({row.outcome, {}}))) return;
-    }
+    triage(data, scenario, seed, method, telling);
     write_all(fd, "\n");
+  } catch (const std::bad_alloc&) {
+    tell_trouble("no memory was left for it");
   } catch (const std::exception& error) {
-    write_all(fd, std::string(1, kBetween) + one_line(error.what()) + "\n");
+    tell_trouble(error.what());
   }
 }
 
@@ -62,9 +73,29 @@ bool read_rows(const std::string& text, const Failure& failure, DrawTriage& out)
 
 struct Worker {
   std::size_t index;  ///< of the draw
+  double deadline_s;  ///< of now_s()
   Process process;
   std::string said;
 };
+
+/// The draw as its process leaves it, which has ended or is too late.
+void conclude(Worker& worker, bool late, const Failure& failure, DrawTriage& draw) {
+  if (late) worker.process.kill();
+  const Process::End end = worker.process.wait();
+  if (read_rows(worker.said, failure, draw)) return;
+  draw.trouble = late ? "the draw did not end in time" : "the draw's process " + end.describe();
+}
+
+/// Makes the process of a draw. False when there can be none before another has ended.
+bool begin(std::list<Worker>& workers, std::size_t index, double deadline_s, const std::function<void(int)>& work) {
+  try {
+    workers.push_back({index, deadline_s, Process(work, true), {}});
+    return true;
+  } catch (const std::system_error& error) {
+    if (workers.empty()) throw BadInput(std::string("no process can be made: ") + error.what());
+    return false;
+  }
+}
 
 }  // namespace
 
@@ -99,10 +130,14 @@ std::set<DrawName> failed_draws(const Results& results, const Method& method, co
 
 std::vector<DrawTriage> triage_draws(const DataRoot& data, std::span<const DrawName> draws, const Method& method,
                                      const SuiteTriageOptions& options) {
+  if (!(options.memory_mib >= kMemoryMinMib && options.memory_mib <= kMemoryMaxMib))
+    throw BadInput("memory is " + std::to_string(options.memory_mib) + " MiB, must be within [64, 1e7]");
   std::map<std::string, Scenario> scenarios;
   for (const DrawName& draw : draws) {
     if (!scenarios.contains(draw.scenario)) scenarios.emplace(draw.scenario, load_scenario(data, draw.scenario));
   }
+  const double draw_s =
+      options.triage.timeout_s * (static_cast<double>(true_inputs().size()) + 1.0 + kSimulateTimeouts);
   const auto stopped = [&] { return options.stop != nullptr && options.stop->load(); };
   std::vector<DrawTriage> all(draws.size());
   std::vector<bool> done(draws.size(), false);
@@ -112,21 +147,22 @@ std::vector<DrawTriage> triage_draws(const DataRoot& data, std::span<const DrawN
     while (next < draws.size() && workers.size() < static_cast<std::size_t>(options.jobs)) {
       const DrawName& draw = draws[next];
       const Scenario& scenario = scenarios.at(draw.scenario);
-      workers.push_back(
-          {next, Process([&](int fd) { tell_rows(data, scenario, draw.seed, method, options.triage, fd); }, true), {}});
+      const auto work = [&](int fd) { tell_rows(data, scenario, draw.seed, method, options, fd); };
+      if (!begin(workers, next, now_s() + draw_s, work)) break;
       all[next++].draw = draw;
     }
     std::vector<pollfd> waiting;
     for (const Worker& worker : workers) waiting.push_back({worker.process.read_end(), POLLIN, 0});
     poll(waiting.data(), waiting.size(), kPollMs);
     for (auto worker = workers.begin(); worker != workers.end();) {
-      if (worker->process.read_available(worker->said)) {
+      const bool open = worker->process.read_available(worker->said);
+      const bool late = open && now_s() > worker->deadline_s;
+      if (open && !late) {
         ++worker;
         continue;
       }
       DrawTriage& draw = all[worker->index];
-      const Process::End end = worker->process.wait();
-      if (!read_rows(worker->said, options.triage.failure, draw)) draw.trouble = "the draw's process " + end.describe();
+      conclude(*worker, late, options.triage.failure, draw);
       done[worker->index] = true;
       if (options.on_draw) options.on_draw(draw);
       worker = workers.erase(worker);

@@ -20,7 +20,7 @@ namespace tumble::scenarios {
 struct DrawTriage {
   DrawName draw;
   std::vector<TriageRow> rows;  ///< as of triage(); the first is the draw as it is
-  std::string trouble;          ///< why there are none, or not all: it cannot be simulated, its process died
+  std::string trouble;          ///< why there are none, or not all: it cannot be simulated, its process died, was late
 };
 
 /// The draws of the suite whose robots the method is made for, seeds outermost, as a sweep has them. Throws
@@ -31,14 +31,17 @@ std::vector<DrawName> draws_of(const DataRoot& data, const Suite& suite, const M
 std::set<DrawName> failed_draws(const Results& results, const Method& method, const Failure& failure);
 
 struct SuiteTriageOptions {
-  TriageOptions triage;  ///< its `on_run` is not called
-  int jobs = 1;          ///< processes
+  TriageOptions triage;                  ///< its `on_run` and `on_row` are not called
+  int jobs = 1;                          ///< processes
+  double memory_mib = kWorkerMemoryMib;  ///< of data (RLIMIT_DATA), of a draw's process and of each of its runs
   const std::atomic<bool>* stop = nullptr;
   std::function<void(const DrawTriage&)> on_draw;  ///< as each ends
 };
 
-/// Triage of each draw in a process of its own. In the order of `draws`, whatever the number of jobs; shorter when
-/// stopped. Throws BadInput where a scenario cannot be read.
+/// Triage of each draw in a process of its own, which may hold `memory_mib` and take as long as its runs may and two
+/// more: one that dies or is late leaves the rows that it has told, and why there are no more. In the order of `draws`,
+/// whatever the number of jobs; shorter when stopped. Throws BadInput where a scenario cannot be read, where the memory
+/// is no amount, and where not even one process can be made.
 std::vector<DrawTriage> triage_draws(const DataRoot& data, std::span<const DrawName> draws, const Method& method,
                                      const SuiteTriageOptions& options);
 

@@ -51,17 +51,20 @@ std::vector<TriageRow> triage(const DataRoot& data, const Scenario& scenario, st
   if (method.info.kind == Kind::slam) surface.emplace(*draw.built);
   const sim::Surface* true_surface = surface ? &*surface : nullptr;
 
+  std::vector<TriageRow> rows;
+  const auto add = [&](TriageRow row) {
+    if (options.on_row) options.on_row(row);
+    rows.push_back(std::move(row));
+  };
   if (options.on_run) options.on_run("none");
-  std::vector<TriageRow> rows = {row_of("none", "the recording as it is",
-                                        run_isolated(method, draw, draw, true_surface, options.timeout_s),
-                                        options.failure)};
+  add(row_of("none", "the recording as it is", run_isolated(method, draw, draw, true_surface, options.timeout_s),
+             options.failure));
   for (const TrueInput& input : true_inputs()) {
     SimulatedDraw cured = draw;
     if (!input.replace(cured.recording.sensors, draw.recording.truth)) continue;
     if (options.on_run) options.on_run(input.name);
-    rows.push_back(row_of(input.name, input.doc,
-                          run_isolated(method, cured, scored_by(draw, cured), true_surface, options.timeout_s),
-                          options.failure));
+    add(row_of(input.name, input.doc,
+               run_isolated(method, cured, scored_by(draw, cured), true_surface, options.timeout_s), options.failure));
   }
   return rows;
 }

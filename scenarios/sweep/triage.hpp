@@ -41,6 +41,7 @@ struct TriageOptions {
   Failure failure;
   double timeout_s = 300.0;  ///< for one run of the method
   std::function<void(const std::string& input)> on_run;
+  std::function<void(const TriageRow&)> on_row;  ///< as each ends
 };
 
 /// Runs a method on a draw as it is, then with one input after the other replaced by its truth, each in a process of

@@ -85,7 +85,7 @@ for _ in $(seq 100); do [ "$(sinfo -h -t idle -o %D 2>/dev/null || true)" = 3 ] 
 [ "$(sinfo -h -t idle -o %D)" = 3 ] || { say "the three nodes do not come up"; exit 1; }
 
 # draws of a sphere: a second each
-words=(--seeds 1..18 --method rate/raw --method rolling)
+words=(--seeds 1..18 --method rate/raw --method rolling --keep worst:2)
 export TUMBLE_CACHE=${TUMBLE_CACHE:-$folder/cache} TUMBLE_SLURM_EVERY_S=1
 say "one sweep, undisturbed"
 "$program" sweep roll "${words[@]}" --jobs 2 --examples 0 --quiet --db "$folder/whole.db" >/dev/null
@@ -113,3 +113,10 @@ grep -q "shard $task: done" "$folder/out.db.shards/logs/shard_$task.log" || { sa
 [ -s "$folder/out.html" ] || { say "there is no report"; exit 1; }
 
 python3 "$root/tests/cluster/same_results.py" "$folder/whole.db" "$folder/out.db" 18
+diff -r "$folder/whole.db.files/kept" "$folder/out.db.files/kept"
+[ "$(find "$folder/whole.db.files/kept" -name recording.h5 | wc -l)" -ge 2 ] || { say "nothing was kept"; exit 1; }
+say "and the same recordings kept"
+
+say "what a shard cannot do is refused"
+if "$root/tools/slurm/submit" roll --db "$folder/no.db" --program "$program" -- --until a:b:c 2> "$folder/refused"; then exit 1; fi
+grep -q "needs every draw before it" "$folder/refused"

@@ -103,6 +103,21 @@ TEST(Contests, OfFewDrawsSayThatTheIntervalAloneSpeaks) {
   EXPECT_THAT(certainty_text(all[0], 2), HasSubstr("too few draws"));
 }
 
+// so few that there is no interval: what they all say is said, and that they are few
+TEST(Contests, OfThreeDrawsThatAllSayTheSameIsAheadAndUnsure) {
+  const std::vector<ContestResult> all =
+      contests_of(summary_of({method("raw", {2, 3, 4}), method("saave", {1, 1, 1})}));
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_EQ(all[0].certainty, Certainty::open);
+  EXPECT_EQ(tally_text(tally(all)), "Ahead of the baseline in 1 of 1 contest, on too few draws to be sure");
+  const std::vector<ContestResult> worse =
+      contests_of(summary_of({method("raw", {1, 1, 1}), method("saave", {2, 3, 4})}));
+  EXPECT_THAT(tally_text(tally(worse)), HasSubstr("No method is shown to be better"));
+  const std::vector<ContestResult> mixed =
+      contests_of(summary_of({method("raw", {2, 3, 4}), method("saave", {1, 1, 5})}));
+  EXPECT_THAT(tally_text(tally(mixed)), HasSubstr("No method is shown to be better"));
+}
+
 TEST(Contests, SayNoShareWhereHalfOfTheBaselineFailed) {
   std::vector<double> failing(9, kInfinite);
   failing[0] = 1.0;

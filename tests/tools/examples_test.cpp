@@ -9,6 +9,7 @@
 #include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "scenarios/errors.hpp"
 #include "tests/temporary_folder.hpp"
@@ -55,6 +56,13 @@ TEST(RatePlot, ShowsTheAxisThatClips) {
   EXPECT_EQ(plot.lines[0].colour, kTruthColour);
   EXPECT_THAT(plot.lines[1].y, ElementsAre(10.5, 10.5, 10.5, 10.5));
   EXPECT_THAT(plot.caption, HasSubstr("y axis"));
+}
+
+TEST(DrawnOf, HasAColourForEachAndBeginsWithTheFirst) {
+  EXPECT_THAT(drawn_of({}), ElementsAre());
+  EXPECT_THAT(drawn_of({false, true, false}), ElementsAre(0, 1, 2));
+  EXPECT_THAT(drawn_of({false, false, true, true, true, true, true}), ElementsAre(0, 2, 3, 4, 5, 6));
+  EXPECT_THAT(drawn_of(std::vector<bool>(9, true)), ElementsAre(0, 1, 2, 3, 4, 5));
 }
 
 TEST(RatePlot, IsEmptyWhenNothingClips) {

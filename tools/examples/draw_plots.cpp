@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "tools/pictures/colours.hpp"
+
 namespace tumble::tools {
 
 namespace {
@@ -81,8 +83,24 @@ double significant(double value) {
   return std::round(value * scale) / scale;
 }
 
+std::vector<std::size_t> drawn_of(const std::vector<bool>& first) {
+  std::vector<std::size_t> drawn;
+  for (const bool turn : {true, false}) {
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      if (first[i] == turn && drawn.size() < kMethodColours) drawn.push_back(i);
+    }
+  }
+  std::sort(drawn.begin(), drawn.end());
+  return drawn;
+}
+
+std::string RunPaths::left_out_text() const {
+  return left_out == 0 ? "" : " Not drawn, for want of colours: " + std::to_string(left_out) + " more.";
+}
+
 RunPaths paths_of(const scenarios::RunResult& run) {
   RunPaths found;
+  std::vector<bool> first;
   for (std::size_t i = 0; i < run.estimates.size(); ++i) {
     const scenarios::MethodInfo& info = run.methods[i]->info;
     if (info.needs_truth) continue;
@@ -90,8 +108,16 @@ RunPaths paths_of(const scenarios::RunResult& run) {
     if (path.empty()) continue;
     found.methods.push_back(full_name(info));
     found.paths.push_back(std::move(path));
+    first.push_back(info.baseline || info.ours());
   }
-  return found;
+  const std::vector<std::size_t> drawn = drawn_of(first);
+  RunPaths out;
+  out.left_out = found.paths.size() - drawn.size();
+  for (const std::size_t i : drawn) {
+    out.methods.push_back(std::move(found.methods[i]));
+    out.paths.push_back(std::move(found.paths[i]));
+  }
+  return out;
 }
 
 Plot rate_plot(const scenarios::RunResult& run) {
@@ -128,7 +154,8 @@ Plot path_plot(const scenarios::RunResult& run, const RunPaths& paths) {
     cut = cut || shown.points_W_m.size() < paths.paths[i].points_W_m.size();
     plot.lines.push_back(path_line(paths.methods[i], static_cast<int>(i), 1.8, shown));
   }
-  plot.caption = "The way seen from above, at equal scales. Estimates start where the truth does.";
+  plot.caption =
+      "The way seen from above, at equal scales. Estimates start where the truth does." + paths.left_out_text();
   if (cut) plot.caption += " A path that runs away from the truth ends where it leaves the picture.";
   plot.x_title = "x [m]";
   plot.y_title = "y [m]";

@@ -78,7 +78,7 @@ void add_pictures(const scenarios::RunResult& run, const RunPaths& paths, Moving
   const Scene scene{&run.built.value(), &run.recording.sensors, &run.recording.truth, paths.paths};
   ExamplePicture way{"scene",
                      "the robot along its way, with true and estimated paths",
-                     "The robot at instants equally far apart along its way.",
+                     "The robot at instants equally far apart along its way." + paths.left_out_text(),
                      {{"truth", kTruthColour}},
                      {}};
   for (std::size_t i = 0; i < paths.methods.size(); ++i) way.legend.emplace_back(paths.methods[i], static_cast<int>(i));

@@ -98,7 +98,9 @@ Tally tally(const std::vector<ContestResult>& results) {
     out.won += result.won();
     out.lost += result.lost();
     out.open += !result.won() && !result.lost();
-    out.ahead += result.better && result.certainty == Certainty::interval;
+    // of a few draws there is no interval; all of them alike say more than none
+    const bool on_every_draw = result.certainty == Certainty::open && result.row.better == result.row.pairs;
+    out.ahead += result.better && (on_every_draw || result.certainty == Certainty::interval);
     if (result.won()) ++won[result.row.contest.method];
   }
   for (const ContestResult& result : results) {

@@ -39,7 +39,7 @@ std::vector<ContestResult> contests(const scenarios::Summary& summary, const sce
 /// How the contests ended.
 struct Tally {
   std::size_t contests = 0, won = 0, lost = 0, open = 0;  ///< open: neither won nor lost
-  std::size_t ahead = 0;                                  ///< of the open ones: better by their own interval alone
+  std::size_t ahead = 0;       ///< of the open ones: better by their own interval alone, or on every draw
   std::string leader;          ///< the method that wins most of them, the first of equals; "": none is won
   std::size_t leader_won = 0;  ///< by it
 };

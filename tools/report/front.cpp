@@ -83,7 +83,10 @@ std::string difference_text(const ContestResult& result) {
   const Interval& own = result.row.difference;
   if (!std::isfinite(own.value)) return "half of the runs of one of the two failed, or more";
   const std::string value = styled_value(result.row.metric, own.value, true);
-  return (own.value > 0.0 ? "+" + value : value) + " " + styled_interval(result.row.metric, own);
+  const std::string sign = own.value > 0.0 ? "+" : "";
+  // an empty bracket tells a reader nothing
+  if (!std::isfinite(own.low) && !std::isfinite(own.high)) return sign + value;
+  return sign + value + " " + styled_interval(result.row.metric, own);
 }
 
 std::string contest_html(const ContestResult& result, std::size_t comparisons) {

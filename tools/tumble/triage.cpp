@@ -30,6 +30,7 @@ struct Options {
   std::string what, seed, seeds, method, metric;
   std::optional<double> limit;
   int jobs = available_processors();
+  double memory_mib = scenarios::kWorkerMemoryMib;
   std::filesystem::path database;
 };
 
@@ -143,6 +144,7 @@ int run_triage(const Session& session, const Options& options) {
   asked.options.triage.failure = failure_of(options, asked.metric);
   asked.words = words_of(options);
   asked.options.jobs = options.jobs;
+  asked.options.memory_mib = options.memory_mib;
   asked.suite = scenarios::load_suite(session.data(), options.what);
   if (!asked.suite.classes.empty() && !options.seeds.empty())
     throw BadInput("--seeds: suite '" + asked.suite.name + "' names its draws");
@@ -163,6 +165,11 @@ Action declare_triage(VerbOptions& verb, const Session& session) {
   verb.add("--seeds", options->seeds, "A..B, both included, of a suite [the suite's]");
   verb.add("--db", options->database, "results: of the suite's draws only those on which the method failed there");
   verb.add("--jobs", options->jobs, "processes at a time, of a suite [the processors]").whole(1, 1024).shows_default();
+  verb.add("--memory", options->memory_mib,
+           "MiB of data that a draw's process, and each of its runs, may hold, of a suite; one that needs more is a "
+           "draw without an answer")
+      .within(64.0, 1e7)
+      .shows_default();
   verb.add("--method", options->method, "the method that fails").required();
   verb.add("--metric", options->metric, "what is shown, and with --limit what fails [the first of the method's kind]");
   verb.add("--limit", options->limit, "a run fails beyond this value, SI [on status and map_failed alone]");

@@ -128,12 +128,19 @@ std::vector<DrawName> chosen_draws(const Session& session, const SuiteTriage& as
 std::string line_of(const DrawTriage& draw) {
   const std::string name = fmt::format("{} {}: ", draw.draw.scenario, draw.draw.seed);
   if (draw.rows.empty()) return name + draw.trouble;
+  if (!draw.trouble.empty()) return name + "not all inputs: " + draw.trouble;
   if (!draw.rows.front().fails) return name + "does not fail";
   std::string cures;
   for (const scenarios::TriageRow& row : draw.rows) {
     if (!row.fails) cures += (cures.empty() ? "" : ", ") + row.input;
   }
   return name + (cures.empty() ? "fails, cured by no input" : "fails, cured by " + cures);
+}
+
+std::string first_trouble(const std::vector<DrawTriage>& draws) {
+  const auto first =
+      std::find_if(draws.begin(), draws.end(), [](const DrawTriage& draw) { return !draw.trouble.empty(); });
+  return first == draws.end() ? "" : line_of(*first);
 }
 
 }  // namespace
@@ -154,6 +161,11 @@ int run_suite_triage(const Session& session, SuiteTriage asked) {
   const std::vector<InputWorth> worths = scenarios::worth_of_inputs(triaged, asked.metric);
   session.print({table_of(worths, asked.metric)}, to_json(worths, triaged, asked));
   session.note(conclusion(worths));
+  const auto troubled =
+      std::count_if(triaged.begin(), triaged.end(), [](const DrawTriage& draw) { return !draw.trouble.empty(); });
+  if (troubled > 0)
+    std::fprintf(stderr, "tumble: %td of %zu draws have no answer, or not all of it; the first: %s\n", troubled,
+                 triaged.size(), first_trouble(triaged).c_str());
   if (triaged.size() == draws.size()) return kDone;
   std::fprintf(stderr, "tumble: stopped: %zu of %zu draws, the table is of these\n", triaged.size(), draws.size());
   return kCheckFailed;

@@ -3,9 +3,14 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <vector>
 
 #include "scenarios/draw/fixed_number.hpp"
 #include "scenarios/draw/fixed_scenario.hpp"
@@ -78,6 +83,62 @@ TEST_F(SuiteTriage, ADrawThatCannotBeSimulatedSaysWhy) {
   EXPECT_THAT(all[0].trouble, ::testing::HasSubstr("does not apply to the robot"));
   EXPECT_THROW(triage_draws(data(), std::vector<DrawName>{{"hil", 1}}, *find_methods("rate/raw").front(), {}),
                BadInput);
+}
+
+/// The method, but that its n-th run of all does something else first. Runs are counted in a file: each is a process.
+Method disturbed(const std::filesystem::path& folder, std::uintmax_t n, const std::function<void()>& disturbance) {
+  Method method = *find_methods("rate/raw").front();
+  const std::filesystem::path count = folder / "count";
+  method.run = [run = method.run, count, n, disturbance](const sim::Sensors& sensors, const sim::Values& parameters,
+                                                         const OracleInput& oracle) {
+    std::ofstream(count, std::ios::app) << '.' << std::flush;
+    if (std::filesystem::file_size(count) == n) disturbance();
+    return run(sensors, parameters, oracle);
+  };
+  return method;
+}
+
+TEST_F(SuiteTriage, AProcessThatDiesCostsTheRestOfItsDrawAlone) {
+  const std::string scenario = clipping_tumble(folder_);
+  const std::vector<DrawName> draws = {{scenario, 1}, {scenario, 2}};
+  const Method dies = disturbed(folder_, 3, [] { kill(getppid(), SIGKILL); });
+  const std::vector<DrawTriage> all = triage_draws(data(), draws, dies, {});
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_THAT(all[0].trouble, ::testing::HasSubstr("ended by signal 9"));
+  EXPECT_EQ(all[0].rows.size(), 2u) << "what it had told stands";
+  EXPECT_EQ(all[1].trouble, "");
+  EXPECT_GT(all[1].rows.size(), 3u);
+}
+
+TEST_F(SuiteTriage, AProcessThatHangsIsLate) {
+  SuiteTriageOptions options;
+  options.triage.timeout_s = 0.2;
+  const Method hangs = disturbed(folder_, 1, [] { kill(getppid(), SIGSTOP); });
+  const std::vector<DrawTriage> all =
+      triage_draws(data(), std::vector<DrawName>{{clipping_tumble(folder_), 1}}, hangs, options);
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_EQ(all[0].trouble, "the draw did not end in time");
+}
+
+TEST_F(SuiteTriage, MemoryIsLimited) {
+  const std::vector<DrawName> draws = {{clipping_tumble(folder_), 1}};
+  const auto statuses_of = [](const std::vector<DrawTriage>& all) {
+    std::vector<OutcomeStatus> out;
+    for (const TriageRow& row : all.at(0).rows) out.push_back(row.outcome.status);
+    return out;
+  };
+  const auto takes = [&](std::size_t mib) {
+    return disturbed(folder_, 1, [mib] { std::vector<char>(mib << 20, '1').back() = '2'; });
+  };
+  SuiteTriageOptions options;
+  options.memory_mib = 1024.0;
+  EXPECT_THAT(statuses_of(triage_draws(data(), draws, takes(16), options)), ::testing::Each(OutcomeStatus::ok));
+  std::filesystem::remove(folder_ / "count");
+  EXPECT_EQ(statuses_of(triage_draws(data(), draws, takes(2048), options)).at(0), OutcomeStatus::killed);
+  for (const double none : {0.0, 63.0, 1e9, std::nan("")}) {
+    options.memory_mib = none;
+    EXPECT_THROW(triage_draws(data(), draws, takes(1), options), BadInput) << none;
+  }
 }
 
 TEST_F(SuiteTriage, OfASuiteTheDrawsOfTheMethodsRobotSeedsOutermost) {
