@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/rate_baseline.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/slam_registry.hpp"
@@ -281,7 +282,9 @@ Estimate begin_with_rates(const sim::Sensors& sensors, std::vector<ImuSample>& s
   Estimate estimate;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (estimate.status.ok()) estimate.status = rates(estimate);
-  if (estimate.status.ok()) flag_railed_forces(sensors.imus.front(), samples);
+  if (!estimate.status.ok()) return estimate;
+  tell_frozen_axes(sensors, samples, estimate);
+  flag_railed_forces(sensors.imus.front(), samples);
   return estimate;
 }
 
