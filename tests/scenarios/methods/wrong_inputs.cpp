@@ -29,7 +29,7 @@ void freeze(std::vector<Eigen::Vector3d>& readings) {
 
 /// From within the motion on.
 void freeze_axis(std::vector<Eigen::Vector3d>& readings, int axis) {
-  const std::size_t from = readings.size() / 4;
+  const std::size_t from = readings.size() / 5;
   for (std::size_t k = from; k < readings.size(); ++k) readings[k][axis] = readings[from][axis];
 }
 
