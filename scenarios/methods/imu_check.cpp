@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/imu_check.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "scenarios/methods/frozen_axes.hpp"
 #include "tumble/attitude/imu_plausibility.hpp"
+#include "tumble/attitude/rest_gravity.hpp"
+#include "tumble/odometry/imu_sheet.hpp"
 
 namespace tumble::scenarios {
 
@@ -21,23 +24,68 @@ Status told(Status status, Estimate& estimate) {
   return status;
 }
 
+double fastest_rad_s(std::span<const ImuSample> samples) {
+  double fastest = 0.0;
+  for (const ImuSample& sample : samples) fastest = std::max(fastest, sample.angular_velocity_rad_s.norm());
+  return fastest;
+}
+
+void widen_frozen(const FrozenAxis& frozen, double sigma_rad_s, std::vector<RateState>& rates) {
+  for (RateState& rate : rates) {
+    if (rate.time_ns < frozen.from_ns || rate.time_ns > frozen.to_ns) continue;
+    rate.covariance_rad2_s2(frozen.axis, frozen.axis) += sigma_rad_s * sigma_rad_s;
+  }
+}
+
+RestGravity rest_gravity(const sim::Sensors& sensors) {
+  RestGravity::Params params;
+  params.gravity_m_s2 = sensors.gravity_m_s2;
+  return RestGravity(params);
+}
+
+Status check_rest_force(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate) {
+  const RestGravity gravity = rest_gravity(sensors);
+  RestGravity::State state;
+  for (const ImuSample& sample : samples) gravity.step(sample, {}, state);
+  estimate.health["imu_rest_force_share"] = gravity.size_share(state);
+  return told(gravity.size_verdict(state), estimate);
+}
+
+Status check_turning_between_rests(const sim::Sensors& sensors, std::span<const ImuSample> samples,
+                                   Estimate& estimate) {
+  const RestGravity gravity = rest_gravity(sensors);
+  RestGravity::State state;
+  for (std::size_t k = 0; k < std::min(samples.size(), estimate.rates.size()); ++k) {
+    gravity.step(samples[k], estimate.rates[k], state);
+  }
+  estimate.health["rest_gravity_missed_rad"] = state.miss_rad;
+  estimate.health["rest_gravity_missed_sigma_rad"] = state.miss_sigma_rad;
+  return told(gravity.verdict(state), estimate);
+}
+
 }  // namespace
 
 Status check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate) {
+  const Status of_rest = check_rest_force(sensors, samples, estimate);
   ImuPlausibility::Params params;
   params.gravity_m_s2 = sensors.gravity_m_s2;
+  // a sphere's units are merged, with rates beyond any range told
+  const double range_rad_s = sensors.imus.front().stated_gyro_range_rad_s;
+  if (sensors.sphere_radius_m <= 0.0 && range_rad_s > 0.0) params.gyro_range_rad_s = sure_range(range_rad_s);
   const ImuPlausibility plausibility(params);
   ImuPlausibility::State state;
   for (const ImuSample& sample : samples) plausibility.step(sample, state);
   estimate.health["imu_force_share"] = plausibility.force_share(state);
   estimate.health["imu_turning_unexplained"] = plausibility.unexplained_share(state);
+  estimate.health["imu_turning_slope"] = plausibility.turning_slope(state);
   if (plausibility.frozen_s(state) > 0.0) estimate.health["imu_frozen_s"] = plausibility.frozen_s(state);
   if (const auto labels = plausibility.other_labels(state)) {
     constexpr const char* kKeys[] = {"imu_accel_x_is", "imu_accel_y_is", "imu_accel_z_is"};
     for (std::size_t j = 0; j < 3; ++j) estimate.health[kKeys[labels->axis[j]]] = labels->sign[j] * (1.0 + double(j));
     if (labels->gyro_flipped) estimate.health["imu_gyro_flipped"] = 1.0;
   }
-  return told(plausibility.verdict(state), estimate);
+  const Status said = told(plausibility.verdict(state), estimate);
+  return said.ok() ? of_rest : said;
 }
 
 Status check_imus(const sim::Sensors& sensors, const MergedImus& imus, Estimate& estimate) {
@@ -52,11 +100,22 @@ Status check_imus(const sim::Sensors& sensors, const MergedImus& imus, Estimate&
       estimate);
 }
 
+void check_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate) {
+  const Status of_readings = check_imu(sensors, samples, estimate);
+  const Status of_rates = check_turning_between_rests(sensors, samples, estimate);
+  if (of_readings.ok() && of_rates.ok()) return;
+  // of such rates the size alone is known: one of the other sense is off by twice itself, one of half the scale by half
+  for (RateState& rate : estimate.rates) {
+    rate.covariance_rad2_s2 += rate.w_WI_I_rad_s.squaredNorm() * Eigen::Matrix3d::Identity();
+  }
+}
+
 void tell_frozen_axes(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate) {
   for (const FrozenAxis& frozen : find_frozen_axes(sensors.imus.front(), samples)) {
     const std::string key = sensors.imus.front().name + "_" + to_string(frozen) + "_frozen_since_s";
     estimate.health.try_emplace(key, seconds(frozen.from_ns - samples.front().time_ns));
     estimate.health["imu_implausible"] = 1.0;
+    if (frozen.triad == Triad::gyro) widen_frozen(frozen, fastest_rad_s(samples), estimate.rates);
   }
 }
 

@@ -10,16 +10,22 @@
 /// Whether readings can be what they claim to be: units, axes, signs, alive, by physics alone.
 namespace tumble::scenarios {
 
-/// Puts what was found into the estimate's health (`imu_force_share`, `imu_turning_unexplained`, `imu_frozen_s`,
-/// `imu_implausible`) and
-/// returns the verdict: `out_of_range` with what was seen, where the readings contradict each other or gravity. O(N).
+/// Puts what was found into the estimate's health (`imu_force_share`, `imu_rest_force_share`,
+/// `imu_turning_unexplained`, `imu_turning_slope`, `imu_frozen_s`, `imu_implausible`) and returns the verdict:
+/// `out_of_range` with what was seen, where the readings contradict each other or gravity. O(N).
 Status check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate);
 
 /// The same of several IMUs as one, whose differences tell a flipped sign besides (`imu_arm_share`).
 Status check_imus(const sim::Sensors& sensors, const MergedImus& imus, Estimate& estimate);
 
+/// The same of a rig's primary IMU whose rates the estimate holds, one for each sample, and what gravity at its rests
+/// says of them (RestGravity: `rest_gravity_missed_rad` with its deviation). Where either speaks
+/// against the readings, the covariance of every rate grows by the square of the rate. O(N).
+void check_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate);
+
 /// Single axes of the primary IMU that froze, whose samples these are: `imu_implausible`, and since when, as
-/// `imu_gyro_z_frozen_since_s`. O(N).
+/// `imu_gyro_z_frozen_since_s`. Of a gyro's axis nothing is known meanwhile but that it turns no faster than any
+/// reading of the run: so much is added to the variance of the rates that the estimate holds. O(N).
 void tell_frozen_axes(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate);
 
 }  // namespace tumble::scenarios

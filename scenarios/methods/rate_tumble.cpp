@@ -10,6 +10,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/rate_baseline.hpp"
 #include "scenarios/methods/rate_regimes.hpp"
 #include "scenarios/methods/rate_tumble.hpp"
@@ -188,6 +189,8 @@ Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& paramet
       report_health(report, estimate.health);
       // further IMUs tell the rate whoever holds the body; the other smoother does not know them
       if (auxiliary_imus.empty()) join_regimes(sensors, samples, report, estimate.rates, estimate.health);
+      check_rates(sensors, samples, estimate);
+      tell_frozen_axes(sensors, samples, estimate);
     }
     estimate.health["imus"] = 1.0 + static_cast<double>(auxiliary_imus.size());
     if (estimate.status.ok() && !report.rig_held && found != nullptr) *found = learnt(report);

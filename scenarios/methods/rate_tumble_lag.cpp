@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/rate_tumble.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
@@ -119,6 +120,10 @@ Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& par
   if (estimate.status.ok() && !held && found != nullptr) {
     *found = learnt_by(stream, params.rate, state);
     if (given != nullptr) (*found)->device_errors = given->device_errors;  // the stream does not estimate them
+  }
+  if (estimate.status.ok()) {
+    check_rates(sensors, samples, estimate);
+    tell_frozen_axes(sensors, samples, estimate);
   }
   count_sources(estimate.rates, estimate.health);
   return estimate;

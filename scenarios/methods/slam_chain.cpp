@@ -3,11 +3,13 @@
 #include <cmath>
 
 #include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/rate_baseline.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/slam_registry.hpp"
 #include "scenarios/methods/slam_settings.hpp"
 #include "scenarios/methods/sweep_log.hpp"
+#include "scenarios/methods/sweep_scale.hpp"
 #include "tumble/angular_velocity/clipping_finder.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
@@ -157,6 +159,18 @@ void report_end(const CalibrationVerdict& calibration, double innovation_90, Est
   estimate.health["localised"] = share >= kLocalisedShare && !contradicted ? 1.0 : 0.0;
 }
 
+/// Ranges that the motion contradicts make a map of another size, however well its sweeps agree.
+void report_scale(std::span<const ImuSample> samples, double gravity_m_s2, Estimate& estimate) {
+  const SweepScale scale = find_sweep_scale(samples, estimate.sweeps, gravity_m_s2);
+  estimate.health["lidar_scale_changes"] = static_cast<double>(scale.changes);
+  if (!std::isfinite(scale.sigma)) return;
+  estimate.health["lidar_scale"] = scale.scale;
+  estimate.health["lidar_scale_sigma"] = scale.sigma;
+  if (!scale.is_off()) return;
+  estimate.health["lidar_scale_implausible"] = 1.0;
+  estimate.health["localised"] = 0.0;
+}
+
 void draw_map(const LidarInertialOdometry& odometry, Estimate& estimate) {
   estimate.map = odometry.map();
   const bool any = std::any_of(estimate.sweeps.begin(), estimate.sweeps.end(),
@@ -271,7 +285,9 @@ Estimate begin_with_rates(const sim::Sensors& sensors, std::vector<ImuSample>& s
   Estimate estimate;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (estimate.status.ok()) estimate.status = rates(estimate);
-  if (estimate.status.ok()) flag_railed_forces(sensors.imus.front(), samples);
+  if (!estimate.status.ok()) return estimate;
+  tell_frozen_axes(sensors, samples, estimate);
+  flag_railed_forces(sensors.imus.front(), samples);
   return estimate;
 }
 
@@ -326,6 +342,7 @@ void run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samp
   if (!estimate.status.ok()) return;
   if (chain.calibration) report_calibration(odometry, sensors, estimate.health);
   report_end(calibration, report_innovations(estimate), estimate);
+  if (chain.calibration) report_scale(samples, sensors.gravity_m_s2, estimate);
   draw_map(odometry, estimate);
 }
 

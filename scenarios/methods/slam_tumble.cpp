@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/rate_tumble.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/slam_registry.hpp"
@@ -24,7 +25,9 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   std::vector<ImuSample> samples;
   Estimate estimate = begin_with_rates(sensors, samples, [&](Estimate& out) {
     const RateSmoother::Params params = smoother_params(sensors.imus.front(), rate_settings(), parameters);
-    return tumble_rates(sensors, samples, params, out.rates, out.health);
+    const Status status = tumble_rates(sensors, samples, params, out.rates, out.health);
+    if (status.ok()) check_rates(sensors, samples, out);
+    return status;
   });
   if (estimate.status.ok())
     run_slam_chain(sensors, samples, {chain_settings(), parameters}, {.calibration = true}, estimate);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/settings.hpp"
 #include "scenarios/methods/slam_registry.hpp"
@@ -143,6 +144,8 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, Word wo
     estimate.status = {Trouble::empty, "lidars", 0.0, 1.0};
     return estimate;
   }
+  (void)check_imu(sensors, samples, estimate);  // a warning, as for attitudes
+  tell_frozen_axes(sensors, samples, estimate);
   TumblingOdometry odometry(stated_params(sensors, parameters));
   Listener listener(word, estimate);
   estimate.status = live_through(sensors, samples, odometry, listener);

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// verdicts SCENARIO FIRST LAST METHOD [HARM]...: runs a method of kind `slam` or `position` on draws as they are and on
-// the same with wrong inputs (units, axes, signs, clocks, mountings, sensors that die, dust, people), and holds what it
-// says of itself against what is true. Wrong: ends further off than five of its standard deviations (slam: pose NEES
-// beyond 25). Told: the status, `localised`, or a key of its health that says so. Prints a line per run and the two
-// rates of a classifier: wrong runs that say so, good ones that cry wolf. Not a test: a minute a draw for `slam`,
-// seconds for `position`.
+// verdicts SCENARIO FIRST LAST METHOD [HARM]...: runs a method of kind `slam`, `position` or `rate` on draws as they
+// are and on the same with wrong inputs (units, axes, signs, clocks, mountings, sensors that die, dust, people), and
+// holds what it says of itself against what is true. Wrong: ends further off than five of its standard deviations
+// (slam: pose NEES beyond 25; rate: a tenth of the samples that turn are off by more than five, or half of them by a
+// fifth of their rate). Told: the status, `localised`, or a key of its health that says so. Prints a line per run and
+// the two rates of a classifier: wrong runs that say so, good ones that cry wolf. Not a test: a minute a draw for
+// `slam`, seconds for `position`.
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -34,6 +36,7 @@ using scenarios::testing::is_of_kind;
 using scenarios::testing::wrong_inputs;
 
 constexpr double kWrongDeviations = 5.0;
+constexpr double kWrongShare = 0.2;
 constexpr std::string_view kPeople = "people";  // about the start: what they hide depends on the truth
 
 double value_of(const std::vector<scenarios::Score>& scores, const std::string& metric) {
@@ -49,6 +52,28 @@ bool told(const scenarios::Outcome& outcome, const scenarios::Estimate& estimate
     return found == estimate.health.end() ? otherwise : found->second;
   };
   return says("localised", 1.0) == 0.0 || says("imu_implausible", 0.0) != 0.0;
+}
+
+// Of the samples in which the body turns: the deviations that a tenth exceeds, and the median of the error as a share
+// of the rate.
+struct RateErrors {
+  double deviations = 0.0, share = 0.0;
+};
+
+RateErrors rate_errors(const sim::Recording& recording, const scenarios::Estimate& estimate) {
+  constexpr double kTurns_rad_s = 1.0;
+  const std::vector<Eigen::Vector3d>& truth = recording.truth.imus.front().rate_rad_s;
+  std::vector<double> deviations, shares;
+  for (std::size_t k = 0; k < std::min(truth.size(), estimate.rates.size()); ++k) {
+    if (truth[k].norm() < kTurns_rad_s) continue;
+    const Eigen::Vector3d error = estimate.rates[k].w_WI_I_rad_s - truth[k];
+    deviations.push_back(std::sqrt(error.dot(estimate.rates[k].covariance_rad2_s2.ldlt().solve(error))));
+    shares.push_back(error.norm() / truth[k].norm());
+  }
+  if (shares.empty()) return {};
+  std::sort(deviations.begin(), deviations.end());
+  std::sort(shares.begin(), shares.end());
+  return {deviations[deviations.size() * 9 / 10], shares[shares.size() / 2]};
 }
 
 struct Tally {
@@ -77,7 +102,12 @@ void judge(const scenarios::Method& method, const scenarios::SimulatedDraw& draw
     if (std::isnan(error)) error = value_of(outcome.scores, "ate_m");
     deviations = std::isnan(nees) ? error / sigma_m : std::sqrt(nees);
   }
-  const bool wrong = !(deviations <= kWrongDeviations) && answered;
+  bool wrong = !(deviations <= kWrongDeviations) && answered;
+  if (answered && method.info.kind == scenarios::Kind::rate) {
+    const RateErrors of_rate = rate_errors(draw.recording, estimate);
+    error = of_rate.share, deviations = of_rate.deviations;
+    wrong = !(deviations <= kWrongDeviations && error <= kWrongShare);
+  }
   if (wrong) {
     ++tally.wrong, tally.wrong_told += says;
   } else if (outcome.status == scenarios::OutcomeStatus::ok || harm == "none") {
@@ -89,11 +119,12 @@ void judge(const scenarios::Method& method, const scenarios::SimulatedDraw& draw
   };
   std::printf(
       "%-10s %6llu %-22s %-9s error %9.4f deviations %8.2f %-5s %-5s surprise %7.3g innovation %7.3g %7.3g rig %7.3g "
-      "held %5.2f map %6.4f covers %6.4f%s\n",
+      "held %5.2f map %6.4f covers %6.4f scale %6.3f +- %6.3f slope %5.2f rest %5.3f missed %5.2f of %5.2f%s\n",
       draw.scenario.c_str(), static_cast<unsigned long long>(draw.seed), harm.c_str(), to_string(outcome.status), error,
       deviations, wrong ? "wrong" : "good", says ? "told" : "-", health("calibration_surprise"),
       health("innovation_median"), health("innovation_90"), health("calibration_mahalanobis"), health("held_share"),
-      overlap, coverage,
+      overlap, coverage, health("lidar_scale"), health("lidar_scale_sigma"), health("imu_turning_slope"),
+      health("imu_rest_force_share"), health("rest_gravity_missed_rad"), health("rest_gravity_missed_sigma_rad"),
       wrong && !says
           ? "  <- silently wrong"
           : (!wrong && says && (outcome.status == scenarios::OutcomeStatus::ok || harm == "none") ? "  <- cries wolf"

@@ -21,6 +21,7 @@ constexpr Verdict kVerdicts[] = {
     {"rate_unit_suspect", false, "the gyro's readings look as if they were of another unit"},
     {"force_unit_suspect", false, "the accelerometer's readings look as if they were of another unit"},
     {"localised", true, "where it is on its map is not known; the estimate is not to be trusted"},
+    {"lidar_scale_implausible", false, "the lidar's ranges are of another scale than the motion that the IMU felt"},
     {"imu_readings_beyond_range", false, "readings that the device cannot have measured are left out"},
     {"_frozen_since_s", false, "repeats one reading from then on"},
     {"_disagrees_since_s", false, "is off from the others from then on, and left out"},

@@ -11,7 +11,8 @@ namespace tumble {
 
 namespace {
 
-constexpr double kWeightless = 0.05;  // of gravity in m/s^2, in whatever unit it comes: no direction below it
+constexpr double kStandstillRad2 = 1e-6;  // of a gyro beside a force that turned by `turned_min_rad2`
+constexpr double kWeightless = 0.05;      // of gravity in m/s^2, in whatever unit it comes: no direction below it
 
 auto least_unexplained(const ImuPlausibility::State& state) {
   return std::min_element(state.unexplained_rad2.begin(), state.unexplained_rad2.end());
@@ -36,7 +37,9 @@ void ImuPlausibility::step(const ImuSample& sample, State& state) const {
     if (!follows.ok()) {
       state.open = false;
       state.average = {};
+      state.in_range = true;
     } else {
+      state.in_range = state.in_range && sample.angular_velocity_rad_s.cwiseAbs().maxCoeff() < params_.gyro_range_rad_s;
       state.average.add(sample, dt_s);
       if (state.average.full(params_.reading_s, dt_s)) take(state);
     }
@@ -73,7 +76,11 @@ void ImuPlausibility::take(State& state) const {
     const double start = state.force_start_m_s2.norm();
     state.steady = state.steady && std::abs(force.norm() - start) <= params_.steady_share * start;
     if (state.length_s >= params_.window_s - 0.5 * length_s) {
-      if (state.steady) compare(force, state);
+      if (state.steady) {
+        state.force_sum_m_s2 += force.norm();
+        state.windows += 1.0;
+        if (state.in_range) compare(force, state);
+      }
       state.open = false;
     }
   }
@@ -82,22 +89,25 @@ void ImuPlausibility::take(State& state) const {
     state.turned.setIdentity();
     state.length_s = 0.0;
     state.open = true;
+    state.in_range = true;
     state.steady = force.norm() >= kWeightless;
   }
 }
 
 /// The sums of a steady window. imu_merge.md (I16), (I18).
 void ImuPlausibility::compare(const Eigen::Vector3d& force_m_s2, State& state) const {
-  const Eigen::Vector3d from = state.force_start_m_s2.normalized(), to = force_m_s2.normalized();
-  const double by_force = (to - from).squaredNorm();
-  const double by_gyro = (state.turned.conjugate() * from - from).squaredNorm();
-  state.force_sum_m_s2 += force_m_s2.norm();
-  state.windows += 1.0;
   const auto near_gravity = [&](const Eigen::Vector3d& force) {
     return std::abs(force.norm() - params_.gravity_m_s2) <= params_.near_share * params_.gravity_m_s2;
   };
   if (!near_gravity(state.force_start_m_s2) || !near_gravity(force_m_s2)) return;
-  if (std::max(by_force, by_gyro) < params_.turn_least_rad * params_.turn_least_rad) return;
+  const Eigen::Vector3d from = state.force_start_m_s2.normalized(), to = force_m_s2.normalized();
+  const double by_force = (to - from).squaredNorm();
+  const double by_gyro = (state.turned.conjugate() * from - from).squaredNorm();
+  const double least = params_.turn_least_rad * params_.turn_least_rad;
+  if (std::max(by_force, by_gyro) < least) return;
+  state.all_force_rad2 += by_force;
+  state.all_gyro_rad2 += by_gyro;
+  if (by_force < least) return;
   state.by_force_rad2 += by_force;
   state.by_gyro_rad2 += by_gyro;
   const Eigen::Matrix3d back = state.turned.conjugate().toRotationMatrix(), forth = back.transpose();
@@ -114,10 +124,21 @@ double ImuPlausibility::force_share(const State& state) const {
   return state.force_sum_m_s2 / state.windows / params_.gravity_m_s2;
 }
 
-/// imu_merge.md (I17).
 double ImuPlausibility::unexplained_share(const State& state) const {
   const double turned = std::max(state.by_force_rad2, state.by_gyro_rad2);
   return turned < params_.turned_min_rad2 ? 0.0 : state.unexplained_rad2.front() / turned;
+}
+
+/// imu_merge.md (I17).
+double ImuPlausibility::turning_slope(const State& state) const {
+  if (state.by_force_rad2 < params_.turned_min_rad2) return 1.0;
+  // |a - b|^2 = |a|^2 + |b|^2 - 2 a b
+  const double together = 0.5 * (state.by_force_rad2 + state.by_gyro_rad2 - state.unexplained_rad2.front());
+  return together / std::max(state.by_gyro_rad2, kStandstillRad2);
+}
+
+double ImuPlausibility::force_turned_share(const State& state) const {
+  return state.all_gyro_rad2 < params_.turned_min_rad2 ? 1.0 : state.all_force_rad2 / state.all_gyro_rad2;
 }
 
 /// imu_merge.md (I18).
@@ -146,10 +167,13 @@ Status ImuPlausibility::verdict(const State& state) const {
         "turning that the gyro leaves unexplained with axes or signs named otherwise, as a share of that with these",
         least / state.unexplained_rad2.front(), params_.relabelled_share_max};
   }
-  const double unexplained = unexplained_share(state);
-  if (unexplained > params_.unexplained_max) {
-    return {Trouble::out_of_range, "share of gravity's turning that the gyro does not explain", unexplained,
-            params_.unexplained_max};
+  if (const double still = force_turned_share(state); still < params_.still_share) {
+    return {Trouble::out_of_range, "turning of a steady force as a share of the gyro's", still, params_.still_share};
+  }
+  const double slope = turning_slope(state);
+  if (slope < params_.turning_min || slope > params_.turning_max) {
+    return {Trouble::out_of_range, "turning of gravity over that of the gyro", slope,
+            slope < params_.turning_min ? params_.turning_min : params_.turning_max};
   }
   return {};
 }

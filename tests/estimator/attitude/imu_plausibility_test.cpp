@@ -47,7 +47,8 @@ TEST(ImuPlausibility, ARollOfASphereIsPlausibleAtEveryRate) {
 TEST(ImuPlausibility, WrongUnitsAndAxesAreNot) {
   const auto says = [](const std::function<void(ImuSample&)>& harm) { return std::string(verdict_of(harm).field); };
   const std::string size = "steady specific force as a share of gravity",
-                    turning = "share of gravity's turning that the gyro does not explain",
+                    turning = "turning of gravity over that of the gyro",
+                    still = "turning of a steady force as a share of the gyro's",
                     naming =
                         "turning that the gyro leaves unexplained with axes or signs named otherwise, as a share of "
                         "that with these";
@@ -58,7 +59,9 @@ TEST(ImuPlausibility, WrongUnitsAndAxesAreNot) {
   EXPECT_EQ(says([](ImuSample& sample) { sample.angular_velocity_rad_s *= -1.0; }), naming);
   EXPECT_EQ(says([](ImuSample& sample) { std::swap(sample.specific_force_m_s2.x(), sample.specific_force_m_s2.y()); }),
             naming);
-  EXPECT_EQ(says([](ImuSample& sample) { sample.specific_force_m_s2 = {0.5, 1.0, 9.7}; }), turning);
+  EXPECT_EQ(says([](ImuSample& sample) { sample.angular_velocity_rad_s *= 2.0; }), turning);
+  EXPECT_EQ(says([](ImuSample& sample) { sample.angular_velocity_rad_s *= 0.5; }), turning);
+  EXPECT_EQ(says([](ImuSample& sample) { sample.specific_force_m_s2 = {0.5, 1.0, 9.7}; }), still);
 }
 
 ImuPlausibility::State state_of(const testing::RollingTruth& truth, const AxisLabels& named) {
@@ -109,7 +112,7 @@ TEST(ImuPlausibility, SwappedAxesShowThoughTheBodyRollsNearlyAlongBoth) {
   const ImuPlausibility plausibility({});
   const AxisLabels swapped = {{1, 0, 2}, {1.0, 1.0, 1.0}, false};
   const ImuPlausibility::State state = state_of(swayed(0.15), swapped);
-  EXPECT_LT(plausibility.unexplained_share(state), 0.2) << "the share alone would let it pass";
+  EXPECT_LT(plausibility.unexplained_share(state), 0.2) << "the slope alone would let it pass";
   EXPECT_FALSE(plausibility.verdict(state).ok());
   EXPECT_TRUE(plausibility.verdict(state_of(swayed(0.15), {})).ok());
   // of a straight way both namings say the same, and neither is called wrong
@@ -158,6 +161,58 @@ TEST(ImuPlausibility, OfABodyThatFliesAndSpinsTheTurningIsNotAsked) {
   EXPECT_EQ(plausibility.unexplained_share(of_a_throw(12.0, 0.1)), 0.0);
   // nothing tells a steady force of gravity's own size from gravity
   EXPECT_FALSE(plausibility.verdict(of_a_throw(10.0, 0.0980665)).ok());
+}
+
+// Twice taken far aside by hand and back, then a little aside, and let go: the force of a free pendulum points along
+// its rod however it turns.
+ImuPlausibility::State of_a_pendulum(double gyro_scale) {
+  constexpr double kGravity = 9.80665, kLength_m = 0.5, kPi = 3.141592653589793, kDt_s = 0.01;
+  constexpr double kFar_rad = 1.2, kLittle_rad = 0.35, kLift_s = 0.7, kBack_s = 2.8, kLet_go_s = 3.5;
+  const auto lifted = [](double to_rad, double t_s) { return 0.5 * to_rad * (1.0 - std::cos(kPi * t_s / kLift_s)); };
+  const ImuPlausibility plausibility({});
+  ImuPlausibility::State state;
+  ImuSample sample;
+  double angle = 0.0, rate = 0.0;
+  for (int k = 0; k < 800; ++k) {
+    const double t_s = kDt_s * k, before = angle;
+    const bool held = t_s < kLet_go_s;
+    if (held) {
+      angle = t_s < kBack_s ? lifted(kFar_rad, t_s) : lifted(kLittle_rad, t_s - kBack_s);
+    } else {
+      rate -= kDt_s * kGravity / kLength_m * std::sin(angle);
+      angle += kDt_s * rate;
+    }
+    sample.time_ns = TimeNs{k} * 10'000'000;
+    sample.angular_velocity_rad_s = {0.0, gyro_scale * (angle - before) / kDt_s, 0.0};
+    sample.specific_force_m_s2 = held ? kGravity * Eigen::Vector3d(-std::sin(angle), 0.0, std::cos(angle))
+                                      : Eigen::Vector3d(0.0, 0.0, kGravity * std::cos(angle) + kLength_m * rate * rate);
+    plausibility.step(sample, state);
+  }
+  return state;
+}
+
+TEST(ImuPlausibility, APendulumIsHeldToItsLiftNotToItsSwing) {
+  const ImuPlausibility plausibility({});
+  const ImuPlausibility::State good = of_a_pendulum(1.0);
+  EXPECT_TRUE(plausibility.verdict(good).ok()) << plausibility.verdict(good).message();
+  EXPECT_LT(plausibility.force_turned_share(good), 0.8) << "it does swing";
+  EXPECT_NEAR(plausibility.turning_slope(good), 1.0, 0.1);
+  for (const double scale : {-1.0, 0.5, 2.0}) {
+    const ImuPlausibility::State wrong = of_a_pendulum(scale);
+    EXPECT_FALSE(plausibility.verdict(wrong).ok()) << scale;
+    EXPECT_NEAR(plausibility.turning_slope(wrong), 1.0 / scale, 0.1) << scale;
+  }
+}
+
+TEST(ImuPlausibility, WhereTheGyroIsAtItsRailNothingIsCompared) {
+  const testing::RollingTruth truth = l_roll();
+  const ImuPlausibility plausibility({.gyro_range_rad_s = 1.0});
+  ImuPlausibility::State state;
+  for (ImuSample sample : truth.samples) {
+    sample.angular_velocity_rad_s = sample.angular_velocity_rad_s.cwiseMax(-1.0).cwiseMin(1.0);
+    plausibility.step(sample, state);
+  }
+  EXPECT_TRUE(plausibility.verdict(state).ok()) << plausibility.verdict(state).message();
 }
 
 // Standing, with noise; from `from_s` on a triad repeats its reading for `for_s`.

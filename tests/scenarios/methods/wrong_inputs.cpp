@@ -27,6 +27,19 @@ void freeze(std::vector<Eigen::Vector3d>& readings) {
   for (std::size_t k = readings.size() / 3; k < readings.size(); ++k) readings[k] = readings[readings.size() / 3];
 }
 
+/// From within the motion on.
+void freeze_axis(std::vector<Eigen::Vector3d>& readings, int axis) {
+  const std::size_t from = readings.size() / 5;
+  for (std::size_t k = from; k < readings.size(); ++k) readings[k][axis] = readings[from][axis];
+}
+
+void stretch_ranges(sim::Sensors& sensors, float by) {
+  for (sim::LidarRecord& lidar : sensors.lidars) {
+    for (Eigen::Vector3f& position : lidar.position_L_m) position *= by;
+    for (float& range : lidar.range_m) range *= by;
+  }
+}
+
 void turn_lidar(sim::Sensors& sensors, double rad, double m) {
   for (sim::LidarRecord& lidar : sensors.lidars) {
     lidar.T_BL.translate(Eigen::Vector3d::Constant(m));
@@ -64,6 +77,11 @@ const std::map<std::string, std::function<void(sim::Sensors&)>>& wrong_inputs() 
       {"gyro_flipped", [](sim::Sensors& s) { each_reading(s, [](Vector& w, Vector&) { w = -w; }); }},
       {"gyro_x_y_swapped",
        [](sim::Sensors& s) { each_reading(s, [](Vector& w, Vector&) { std::swap(w.x(), w.y()); }); }},
+      {"gyro_x_flipped", [](sim::Sensors& s) { each_reading(s, [](Vector& w, Vector&) { w.x() = -w.x(); }); }},
+      {"gyro_z_flipped", [](sim::Sensors& s) { each_reading(s, [](Vector& w, Vector&) { w.z() = -w.z(); }); }},
+      {"gyro_halved", [](sim::Sensors& s) { each_reading(s, [](Vector& w, Vector&) { w *= 0.5; }); }},
+      {"gyro_doubled", [](sim::Sensors& s) { each_reading(s, [](Vector& w, Vector&) { w *= 2.0; }); }},
+      {"accel_halved", [](sim::Sensors& s) { each_reading(s, [](Vector&, Vector& f) { f *= 0.5; }); }},
       {"gyro_scale_5_percent", [](sim::Sensors& s) { each_reading(s, [](Vector& w, Vector&) { w *= 1.05; }); }},
       {"all_accels_frozen",
        [](sim::Sensors& s) {
@@ -73,6 +91,14 @@ const std::map<std::string, std::function<void(sim::Sensors&)>>& wrong_inputs() 
        [](sim::Sensors& s) {
          for (sim::ImuRecord& imu : s.imus) freeze(imu.gyro_rad_s);
        }},
+      {"gyro_z_frozen",
+       [](sim::Sensors& s) {
+         for (sim::ImuRecord& imu : s.imus) freeze_axis(imu.gyro_rad_s, 2);
+       }},
+      {"accel_x_frozen",
+       [](sim::Sensors& s) {
+         for (sim::ImuRecord& imu : s.imus) freeze_axis(imu.accel_m_s2, 0);
+       }},
       {"first_frozen", [](sim::Sensors& s) { freeze(s.imus.front().accel_m_s2), freeze(s.imus.front().gyro_rad_s); }},
       {"stamps_in_us",
        [](sim::Sensors& s) {
@@ -81,6 +107,8 @@ const std::map<std::string, std::function<void(sim::Sensors&)>>& wrong_inputs() 
        }},
       {"lidar_20_ms", [](sim::Sensors& s) { shift_lidar(s, 20'000'000); }},
       {"lidar_100_ms", [](sim::Sensors& s) { shift_lidar(s, 100'000'000); }},
+      {"lidar_ranges_long", [](sim::Sensors& s) { stretch_ranges(s, 1.1F); }},
+      {"lidar_ranges_short", [](sim::Sensors& s) { stretch_ranges(s, 0.9F); }},
       {"mounting_2_deg", [](sim::Sensors& s) { turn_lidar(s, 0.03, 0.015); }},
       {"mounting_10_deg", [](sim::Sensors& s) { turn_lidar(s, 0.1, 0.05); }},
       {"mounting_90_deg",

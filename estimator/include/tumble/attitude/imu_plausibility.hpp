@@ -17,21 +17,22 @@ namespace tumble {
 /// Whether an IMU's readings can be what they claim to be: units, axes, signs, and alive.
 ///
 /// Where the force is steady in size over a fifth of a second it is nearly gravity: its size must be g, and the gyro
-/// must explain how its direction turns, u(t + T) = R^T u(t). A steady force of another size is no gravity: of a body
+/// must say how its direction turns, u(t + T) = R^T u(t). A steady force of another size is no gravity: of a body
 /// that flies and spins it is what its turning makes of the sensor's place, and stands still in the sensor's axes. Of
-/// that its direction is not asked. Three sums over such windows tell: what the gyro leaves
-/// unexplained, what turned by the force, and what turned by the gyro. An accelerometer in g, a gyro in deg/s, axes
-/// that are swapped or of which one is flipped, and a force that stands still while the body turns leave most
-/// unexplained. A body that turns about the one axis which a wrong naming leaves alone (a sphere that rolls along x = y
-/// with x and y swapped) leaves little; but the right naming leaves less, so every naming is asked.
+/// that its direction is not asked, nor of a window in which the gyro is at its rail. Where the force turned, it must
+/// have turned as the gyro says: the slope of one over the other is 1 of a sound IMU, 2 of a gyro of half the scale, -1
+/// of one of the other sense, and about 0 of axes that are swapped. Pushes and a rod that a force points along spread
+/// about that slope and do not move it far. A body that turns about the one axis which a wrong naming leaves alone (a
+/// sphere that rolls along x = y with x and y swapped) keeps it; but the right naming leaves less unexplained, so every
+/// naming is asked. A force that does not turn at all while the body does is told apart from that.
 ///
 /// A gyro or an accelerometer that repeats one reading to the last bit, for a second and ten times as long as ever
 /// before, is frozen: it has shown that its readings move. One that held its readings as long before (a coarse quantum
 /// at rest, a simulation without noise) is not told from that.
 ///
 /// Not seen: an accelerometer with all three axes flipped, which is the mirrored world (ImuMerge::arm_share() tells it,
-/// with several IMUs), errors of some per cent, a body that does not turn, or that is pushed about all the time. Taken
-/// for wrong: a free pendulum, whose force points along its rod however it turns.
+/// with several IMUs), errors of some per cent, axes about which the body does not turn, or a body that is pushed about
+/// all the time.
 class ImuPlausibility {
  public:
   struct Params {
@@ -41,14 +42,17 @@ class ImuPlausibility {
     double steady_share = 0.12;  ///< by which the force's size may change within a window
     double near_share = 0.25;    ///< by which it may differ from gravity for its direction to be compared
     double force_share_min = 0.5,
-           force_share_max = 2.0;        ///< of gravity, mean of steady windows
-    double unexplained_max = 0.2;        ///< share of the turning; good rolls of a sphere leave 0.001 to 0.03
+           force_share_max = 2.0;  ///< of gravity, mean of steady windows
+    double turning_min = 0.65,
+           turning_max = 1.5;  ///< of gravity's turning over the gyro's; pendulums and wands leave 0.75 to 1.21
     double relabelled_share_max = 0.33;  ///< of what the naming at hand leaves unexplained, by a better one
     double relabelled_least = 0.01;      ///< unexplained share from which on namings are compared
     double turned_min_rad2 = 0.5;        ///< sum of squares below which nothing is said of it
     double turn_least_rad = 0.15;        ///< of a window, to count as turning
+    double still_share = 1e-6;           ///< of the gyro's turning; a spin in flight leaves 0.006 and less
     int windows_min = 5;                 ///< steady ones, to say something of the force's size
     double gap_max_s = 0.1;              ///< after a longer one a window begins anew
+    double gyro_range_rad_s = 1e6;       ///< a window with an axis beyond it is not compared
     double frozen_s = 1.0;  ///< a reading that repeats for so long may be frozen, after as long of moving ones;
 
     double frozen_share = 10.0;  ///< and lasts so many times longer than any did before
@@ -64,8 +68,8 @@ class ImuPlausibility {
                            "by which the force's size may differ from gravity for its turning to be compared"});
       visit(p.force_share_min, {"force_share_min", "1", 0.0, 1.0, "of gravity, least mean of steady windows"});
       visit(p.force_share_max, {"force_share_max", "1", 1.0, 1e6, "of gravity, largest mean of steady windows"});
-      visit(p.unexplained_max,
-            {"unexplained_max", "1", 1e-12, 10.0, "share of the turning; good rolls of a sphere leave 0.001 to 0.03"});
+      visit(p.turning_min, {"turning_min", "1", 0.0, 1.0, "least slope of gravity's turning over the gyro's"});
+      visit(p.turning_max, {"turning_max", "1", 1.0, 1e6, "largest slope of gravity's turning over the gyro's"});
       visit(p.relabelled_share_max,
             {"relabelled_share_max", "1", 0.0, 1.0,
              "of what axes as they are named leave unexplained: axes named otherwise leave less"});
@@ -74,6 +78,9 @@ class ImuPlausibility {
       visit(p.turned_min_rad2,
             {"turned_min_rad2", "rad^2", 1e-12, 1e6, "sum of squares below which nothing is said of it"});
       visit(p.turn_least_rad, {"turn_least_rad", "rad", 1e-12, 3.0, "of a window, to count as turning"});
+      visit(p.still_share, {"still_share", "1", 0.0, 1.0, "of the gyro's turning, by which a force stands still"});
+      visit(p.gyro_range_rad_s,
+            {"gyro_range_rad_s", "rad/s", 1e-3, 1e6, "a window with an axis beyond it is not compared"});
       visit(p.windows_min, {"windows_min", "1", 1, 1e6, "steady ones, to say something of the force's size"});
       visit(p.gap_max_s, {"gap_max_s", "s", 1e-12, 1e4, "longest time between two samples before the run is refused"});
       visit(p.frozen_s, {"frozen_s", "s", 1e-12, 1e4,
@@ -95,9 +102,11 @@ class ImuPlausibility {
     Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  ///< within the window, by the gyro
     double length_s = 0.0;
     bool open = false, steady = false;
+    bool in_range = true;  ///< of all samples of the window and of the average that is open
     double force_sum_m_s2 = 0.0, windows = 0.0;
     std::array<double, kAxisLabels> unexplained_rad2{};  ///< by how axes are named; the first: as they are
-    double by_force_rad2 = 0.0, by_gyro_rad2 = 0.0;
+    double by_force_rad2 = 0.0, by_gyro_rad2 = 0.0;      ///< where the force turned
+    double all_force_rad2 = 0.0, all_gyro_rad2 = 0.0;    ///< where either did
     TimeNs last_time_ns = 0;
     bool started = false;
     bool operator==(const State&) const = default;
@@ -111,8 +120,12 @@ class ImuPlausibility {
 
   /// Mean size of a steady force as a share of gravity; 1 while nothing is known.
   double force_share(const State& state) const;
-  /// Share of the turning that the gyro does not explain; 0 while nothing is known.
+  /// Share of the force's turning that the gyro does not explain; 0 while nothing is known.
   double unexplained_share(const State& state) const;
+  /// Slope of the force's turning over the gyro's (I17); 1 while nothing is known.
+  double turning_slope(const State& state) const;
+  /// The force's turning as a share of the gyro's, also where the force did not turn; 1 while nothing is known.
+  double force_turned_share(const State& state) const;
   /// How axes are named where gravity turns with the gyro, when they clearly are not as they say (I18).
   std::optional<AxisLabels> other_labels(const State& state) const;
   /// Longest time for which the gyro or the accelerometer was frozen [s]; 0: never.

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+
+#include "tumble/angular_velocity/rate_state.hpp"
+#include "tumble/angular_velocity/rest_detector.hpp"
+#include "tumble/common/imu.hpp"
+#include "tumble/common/parameters.hpp"
+#include "tumble/common/status.hpp"
+
+namespace tumble {
+
+/// Whether rates can be believed, by what gravity says wherever the body rests: its size must be g, and the rates
+/// between one rest and the next must turn its direction there into that here, u_1 = R^T u_0, whatever happened in
+/// between, flight, impacts and clipped axes. A gyro of another sense, scale or naming of the axes than it says misses
+/// by any angle, after a tumble of several turns by less than `miss_least_rad` in one of fifty; an accelerometer of
+/// another unit shows in the size. The rates are those of an estimate, whose covariance makes the bound wider.
+///
+/// The equations are imu_merge.md (I19), (I20). Not seen: a body that comes to rest as it lay (a pendulum), turns about
+/// the vertical, an accelerometer with all three axes flipped, a run with less than two rests.
+class RestGravity {
+ public:
+  struct Params {
+    double gravity_m_s2 = 9.80665;
+    /// In whatever unit the force comes; a gyro's bias is no motion.
+    RestDetector::Params rests = {.rate_max_rad_s = 0.15, .force_min_m_s2 = 0.3};
+    double size_share_max = 0.15;   ///< by which a force at rest may differ from gravity: 80 mg of bias, 3 % of scale
+    double miss_deviations = 5.0;   ///< allowed, of what the rates' covariance makes of the way; a chord, and
+    double miss_least_rad = 0.3;    ///< at least so much: a bias, pushes at rest
+    double miss_most_rad = 0.6;     ///< at most: rates that may be off by more tell nothing of the way
+    double correlation_s = 0.1;     ///< for which errors of a rate last
+    double turned_least_rad = 1.0;  ///< of the way between two rests, to count
+    double gap_max_s = 1.0;         ///< a longer gap parts the rests
+
+    /// Every number of it, stated once.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
+      visit.group("rests_", p.rests);
+      visit(p.size_share_max,
+            {"size_share_max", "1", 1e-3, 1.0, "by which the size of a force at rest may differ from gravity"});
+      visit(p.miss_deviations, {"miss_deviations", "1", 0.1, 1e6,
+                                "of what rates state, by which they may miss gravity's direction at the next rest"});
+      visit(p.miss_least_rad, {"miss_least_rad", "rad", 1e-3, 2.0, "and at least so much"});
+      visit(p.miss_most_rad, {"miss_most_rad", "rad", 1e-3, 2.0, "and at most"});
+      visit(p.correlation_s, {"correlation_s", "s", 1e-4, 1e3, "for which errors of a rate last"});
+      visit(p.turned_least_rad, {"turned_least_rad", "rad", 0.0, 1e3, "of the way between two rests, to be compared"});
+      visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0, "a longer time between two samples parts the rests"});
+    }
+  };
+  struct State {
+    RestDetector::State rest;
+    Eigen::Vector3d from = Eigen::Vector3d::Zero();  ///< unit, gravity's at the last rest in the sensor's axes; 0: none
+    Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  ///< since then
+    double way_rad = 0.0, variance_rad2 = 0.0;                   ///< likewise
+    double rest_s = 0.0, force_sum_m = 0.0;                      ///< of all rests, and of force by time
+    double miss_rad = 0.0, miss_sigma_rad = 0.0;                 ///< of the worst of the ways between two rests
+    std::size_t ways = 0;                                        ///< that were compared
+    TimeNs last_time_ns = 0;
+    bool started = false, rests = false;
+  };
+
+  /// Throws InvalidParams when a parameter is outside of its bound.
+  explicit RestGravity(const Params& params);
+
+  /// Takes a sample, in order of time, and the rate that an estimate gives for it. O(1), no allocation.
+  void step(const ImuSample& sample, const RateState& rate, State& state) const;
+
+  /// Mean size of the force at rest as a share of gravity; 1 where nothing rested for a second.
+  double size_share(const State& state) const;
+  /// `out_of_range` where that is not 1.
+  Status size_verdict(const State& state) const;
+  /// The same, and where the rates of the worst way between two rests miss gravity by more than they may.
+  Status verdict(const State& state) const;
+
+ private:
+  void arrive(State& state) const;
+  double allowed_rad(double sigma_rad) const;
+
+  Params params_;
+  RestDetector detector_;
+};
+
+}  // namespace tumble

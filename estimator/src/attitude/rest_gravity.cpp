@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/attitude/rest_gravity.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tumble/common/so3.hpp"
+
+namespace tumble {
+
+namespace {
+
+constexpr double kRested_s = 1.0;  // in all, for its size to be asked
+
+}  // namespace
+
+RestGravity::RestGravity(const Params& params) : params_(params), detector_(params.rests) {
+  require_fields(params);
+}
+
+void RestGravity::step(const ImuSample& sample, const RateState& rate, State& state) const {
+  const double dt_s = state.started ? seconds(sample.time_ns - state.last_time_ns) : 0.0;
+  state.started = true;
+  state.last_time_ns = sample.time_ns;
+  if (dt_s > params_.gap_max_s) {
+    state.rest = {};
+    state.from.setZero();
+    state.rests = false;
+  }
+  const bool rested = state.rests;
+  state.rests = detector_.observe(sample, state.rest);
+  if (!state.rests) {
+    state.turned = (state.turned * so3::exp(dt_s * rate.w_WI_I_rad_s)).normalized();
+    state.way_rad += dt_s * rate.w_WI_I_rad_s.norm();
+    state.variance_rad2 += dt_s * params_.correlation_s * rate.covariance_rad2_s2.trace();
+    return;
+  }
+  if (!rested) arrive(state);
+  state.rest_s += dt_s;
+  state.force_sum_m += dt_s * sample.specific_force_m_s2.norm();
+  state.from = state.rest.mean_force_m_s2().normalized();
+  state.turned.setIdentity();
+  state.way_rad = state.variance_rad2 = 0.0;
+}
+
+/// imu_merge.md (I19).
+void RestGravity::arrive(State& state) const {
+  if (state.from.isZero(0.0) || state.way_rad < params_.turned_least_rad) return;
+  const Eigen::Vector3d here = state.rest.mean_force_m_s2().normalized();
+  const double miss_rad = (state.turned.conjugate() * state.from - here).norm();
+  const double sigma_rad = std::sqrt(state.variance_rad2);
+  ++state.ways;
+  if (miss_rad / allowed_rad(sigma_rad) < state.miss_rad / allowed_rad(state.miss_sigma_rad)) return;
+  state.miss_rad = miss_rad;
+  state.miss_sigma_rad = sigma_rad;
+}
+
+/// imu_merge.md (I20).
+double RestGravity::allowed_rad(double sigma_rad) const {
+  return std::min(params_.miss_most_rad, std::max(params_.miss_least_rad, params_.miss_deviations * sigma_rad));
+}
+
+double RestGravity::size_share(const State& state) const {
+  return state.rest_s < kRested_s ? 1.0 : state.force_sum_m / state.rest_s / params_.gravity_m_s2;
+}
+
+Status RestGravity::size_verdict(const State& state) const {
+  const double size = size_share(state);
+  if (std::abs(size - 1.0) > params_.size_share_max) {
+    return {Trouble::out_of_range, "specific force at rest as a share of gravity", size,
+            1.0 + std::copysign(params_.size_share_max, size - 1.0)};
+  }
+  return {};
+}
+
+Status RestGravity::verdict(const State& state) const {
+  if (const Status size = size_verdict(state); !size.ok()) return size;
+  const double allowed = allowed_rad(state.miss_sigma_rad);
+  if (state.miss_rad > allowed) {
+    return {Trouble::out_of_range, "angle by which the rates miss gravity's direction from one rest to the next",
+            state.miss_rad, allowed};
+  }
+  return {};
+}
+
+}  // namespace tumble

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/methods/sweep_scale.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "tumble/common/time.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr double kLeast = 0.02, kDeviations = 5.0;
+// The mapper's prior is that of the IMU: over 0.1 s ranges that are 10 % long come out as 1.02 to 1.03, over 0.4 s as
+// 1.08, and good ones as 0.998 to 1.006 (hill, 62001 to 62006).
+constexpr double kSpan_s = 0.4;
+constexpr double kChange_m_s = 0.5;  // a change of velocity that is smaller tells less than its noise
+constexpr std::size_t kChangesMin = 5;
+constexpr int kIterations = 10;
+constexpr double kHuber = 1.5, kPerMedian = 1.4826;  // deviations; of a normal distribution by its median deviation
+constexpr unsigned kAccelFlags = kClipAccelX | kClipAccelY | kClipAccelZ;
+
+/// A change of velocity from one span to the next.
+struct Change {
+  Eigen::Vector3d by_imu_m_s, by_sweeps_m_s;
+};
+
+/// Sums of the IMU along the run's attitudes.
+class FeltMotion {
+ public:
+  FeltMotion(std::span<const ImuSample> samples, std::span<const LidarInertialOdometry::SweepReport> sweeps,
+             double gravity_m_s2)
+      : samples_(samples), gravity_W_m_s2_(0.0, 0.0, -gravity_m_s2) {
+    for (const auto& sweep : sweeps)
+      attitudes_.insert(attitudes_.end(), sweep.trajectory.begin(), sweep.trajectory.end());
+  }
+
+  /// Mean velocity from `middle_ns` to `to_ns` less that from `from_ns` to `middle_ns`; none where a force was hidden.
+  std::optional<Eigen::Vector3d> change(TimeNs from_ns, TimeNs middle_ns, TimeNs to_ns) const {
+    const auto later = [](const ImuSample& sample, TimeNs time_ns) { return sample.time_ns <= time_ns; };
+    auto next = std::lower_bound(samples_.begin(), samples_.end(), from_ns, later);
+    Eigen::Vector3d velocity = Eigen::Vector3d::Zero(), place = velocity, at_middle = velocity;
+    for (TimeNs now = from_ns; now < to_ns;) {
+      if (next == samples_.end() || (next->device_clip_flags & kAccelFlags) != 0) return std::nullopt;
+      const TimeNs until = std::min({next->time_ns, to_ns, now < middle_ns ? middle_ns : to_ns});
+      const double dt_s = seconds(until - now);
+      const Eigen::Vector3d a = attitude(now + (until - now) / 2) * next->specific_force_m_s2 + gravity_W_m_s2_;
+      place += dt_s * velocity + 0.5 * dt_s * dt_s * a;
+      velocity += dt_s * a;
+      if (until == middle_ns) at_middle = place;
+      if (until == next->time_ns) ++next;
+      now = until;
+    }
+    return (place - at_middle) / seconds(to_ns - middle_ns) - at_middle / seconds(middle_ns - from_ns);
+  }
+
+ private:
+  Eigen::Quaterniond attitude(TimeNs time_ns) const {
+    const auto earlier = [](const PoseState& pose, TimeNs time) { return pose.time_ns < time; };
+    const auto after = std::lower_bound(attitudes_.begin(), attitudes_.end(), time_ns, earlier);
+    if (after == attitudes_.end()) return attitudes_.back().q_WA;
+    if (after == attitudes_.begin()) return after->q_WA;
+    const PoseState &a = *(after - 1), &b = *after;
+    return a.q_WA.slerp(seconds(time_ns - a.time_ns) / seconds(b.time_ns - a.time_ns), b.q_WA);
+  }
+
+  std::span<const ImuSample> samples_;
+  Eigen::Vector3d gravity_W_m_s2_;
+  std::vector<PoseState> attitudes_;
+};
+
+/// Whether surfaces say where a sweep was, in some directions at least.
+bool is_placed(const LidarInertialOdometry::SweepReport& sweep) {
+  return sweep.verdict == SweepVerdict::registered || sweep.verdict == SweepVerdict::degenerate;
+}
+
+std::size_t sweeps_in(double span_s, std::span<const LidarInertialOdometry::SweepReport> sweeps) {
+  if (sweeps.size() < 2) return 1;
+  const double all_s = seconds(sweeps.back().pose.time_ns - sweeps.front().pose.time_ns);
+  const double count = span_s * static_cast<double>(sweeps.size() - 1) / std::max(all_s, 1e-9);
+  return static_cast<std::size_t>(std::clamp(std::round(count), 1.0, static_cast<double>(sweeps.size())));
+}
+
+std::vector<Change> changes_of(std::span<const ImuSample> samples,
+                               std::span<const LidarInertialOdometry::SweepReport> sweeps, double gravity_m_s2) {
+  std::vector<Change> out;
+  const FeltMotion felt(samples, sweeps, gravity_m_s2);
+  const std::size_t span = sweeps_in(kSpan_s, sweeps);
+  for (std::size_t k = 2 * span; k < sweeps.size(); ++k) {
+    const auto held = sweeps.subspan(k - 2 * span, 2 * span + 1);
+    if (!std::all_of(held.begin(), held.end(), is_placed)) continue;
+    const PoseState &from = held.front().pose, &middle = held[span].pose, &to = held.back().pose;
+    if (!(from.time_ns < middle.time_ns && middle.time_ns < to.time_ns)) continue;
+    const auto by_imu = felt.change(from.time_ns, middle.time_ns, to.time_ns);
+    if (!by_imu || by_imu->norm() < kChange_m_s) continue;
+    out.push_back({*by_imu, (to.p_WA_m - middle.p_WA_m) / seconds(to.time_ns - middle.time_ns) -
+                                (middle.p_WA_m - from.p_WA_m) / seconds(middle.time_ns - from.time_ns)});
+  }
+  return out;
+}
+
+}  // namespace
+
+bool SweepScale::is_off() const {
+  return std::abs(scale - 1.0) > std::max(kLeast, kDeviations * sigma);
+}
+
+SweepScale find_sweep_scale(std::span<const ImuSample> samples,
+                            std::span<const LidarInertialOdometry::SweepReport> sweeps, double gravity_m_s2) {
+  SweepScale out;
+  const std::vector<Change> changes = changes_of(samples, sweeps, gravity_m_s2);
+  out.changes = changes.size();
+  if (changes.size() < kChangesMin) return out;
+  std::vector<double> off(changes.size());
+  for (int i = 0; i < kIterations; ++i) {
+    std::transform(changes.begin(), changes.end(), off.begin(),
+                   [&](const Change& c) { return (c.by_sweeps_m_s - out.scale * c.by_imu_m_s).norm(); });
+    std::vector<double> sorted = off;
+    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
+    const double deviation = std::max(1e-6, kPerMedian * sorted[sorted.size() / 2]);
+    double together = 0.0, squared = 0.0, residual = 0.0;
+    for (std::size_t k = 0; k < changes.size(); ++k) {
+      const double weight = std::min(1.0, kHuber * deviation / std::max(off[k], 1e-12));
+      together += weight * changes[k].by_imu_m_s.dot(changes[k].by_sweeps_m_s);
+      squared += weight * changes[k].by_imu_m_s.squaredNorm();
+      residual += weight * weight * off[k] * off[k] * changes[k].by_imu_m_s.squaredNorm() / 3.0;
+    }
+    out.scale = together / squared;
+    out.sigma = std::sqrt(residual) / squared;  // as the residuals are spread, whatever their size: White, 1980
+  }
+  return out;
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/attitude/rest_gravity.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <string>
+#include <utility>
+
+#include "oracles/gaussian.hpp"
+#include "tumble/common/so3.hpp"
+
+namespace tumble {
+namespace {
+
+using Harm = std::function<void(ImuSample&)>;
+
+struct Way {
+  Eigen::Vector3d rate_rad_s = {1.5, 2.0, -0.7};
+  double turns_s = 3.0, rate_sigma_rad_s = 0.01;
+};
+
+// At rest, turning at a constant rate with forces of any kind, and at rest again: R is known in closed form.
+RestGravity::State after(const Way& way, const Harm& harm, double scale_of_estimate = 1.0) {
+  const RestGravity gravity({});
+  RestGravity::State state;
+  oracles::Gaussian noise(3);
+  const Eigen::Vector3d up = Eigen::Vector3d(0.3, -0.2, 1.0).normalized();
+  for (int k = 0; k < 700; ++k) {
+    const double t_s = 0.01 * k, turned_s = std::clamp(t_s - 2.0, 0.0, way.turns_s);
+    const bool turns = turned_s > 0.0 && turned_s < way.turns_s;
+    ImuSample sample;
+    sample.time_ns = TimeNs{k} * 10'000'000;
+    if (turns || turned_s == way.turns_s)
+      sample.angular_velocity_rad_s = turns ? way.rate_rad_s : Eigen::Vector3d(0, 0, 0);
+    sample.specific_force_m_s2 = 9.80665 * (so3::exp(turned_s * way.rate_rad_s).conjugate() * up);
+    if (turns) sample.specific_force_m_s2 = {20.0 * noise(), 20.0 * noise(), 20.0 * noise()};
+    for (int j = 0; j < 3; ++j) sample.specific_force_m_s2[j] += 0.01 * noise();
+    harm(sample);
+    RateState rate;
+    rate.time_ns = sample.time_ns;
+    rate.w_WI_I_rad_s = scale_of_estimate * sample.angular_velocity_rad_s;
+    rate.covariance_rad2_s2 = way.rate_sigma_rad_s * way.rate_sigma_rad_s * Eigen::Matrix3d::Identity();
+    gravity.step(sample, rate, state);
+  }
+  return state;
+}
+
+const Harm kNone = [](ImuSample&) {};
+
+TEST(RestGravity, RatesCarryGravityFromOneRestToTheNext) {
+  const RestGravity gravity({});
+  const RestGravity::State good = after({}, kNone);
+  EXPECT_TRUE(gravity.verdict(good).ok()) << gravity.verdict(good).message();
+  EXPECT_EQ(good.ways, 1u);
+  EXPECT_LT(good.miss_rad, 0.04) << "a sample of the turn, at most";
+  EXPECT_NEAR(gravity.size_share(good), 1.0, 1e-3);
+}
+
+TEST(RestGravity, AGyroOfAnotherSenseNamingOrScaleMisses) {
+  const RestGravity gravity({});
+  const std::string miss = "angle by which the rates miss gravity's direction from one rest to the next";
+  const auto says = [&](const Harm& harm) { return std::string(gravity.verdict(after({}, harm)).field); };
+  EXPECT_EQ(says([](ImuSample& s) { s.angular_velocity_rad_s *= -1.0; }), miss);
+  EXPECT_EQ(says([](ImuSample& s) { s.angular_velocity_rad_s.x() *= -1.0; }), miss);
+  EXPECT_EQ(says([](ImuSample& s) { std::swap(s.angular_velocity_rad_s.x(), s.angular_velocity_rad_s.y()); }), miss);
+  EXPECT_EQ(says([](ImuSample& s) { s.angular_velocity_rad_s *= 0.5; }), miss);
+  EXPECT_EQ(says([](ImuSample& s) { s.angular_velocity_rad_s *= 2.0; }), miss);
+}
+
+TEST(RestGravity, AnAccelerometerOfAnotherUnitShowsInTheSize) {
+  const RestGravity gravity({});
+  for (const double scale : {0.5, 2.0, 1.0 / 9.80665}) {
+    const RestGravity::State wrong = after({}, [=](ImuSample& s) { s.specific_force_m_s2 *= scale; });
+    EXPECT_STREQ(gravity.verdict(wrong).field, "specific force at rest as a share of gravity") << scale;
+    EXPECT_NEAR(gravity.verdict(wrong).value, scale, 0.01);
+  }
+  EXPECT_TRUE(gravity.verdict(after({}, [](ImuSample& s) { s.specific_force_m_s2 *= 1.05; })).ok());
+}
+
+TEST(RestGravity, WhatTheRatesStateIsAllowed) {
+  const RestGravity gravity({});
+  // 5 % of 7.8 rad: 0.3 to 0.4 rad
+  const RestGravity::State sure = after({}, kNone, 1.05), unsure = after({.rate_sigma_rad_s = 0.12}, kNone, 1.05);
+  EXPECT_GT(sure.miss_rad, 0.3);
+  EXPECT_FALSE(gravity.verdict(sure).ok());
+  EXPECT_TRUE(gravity.verdict(unsure).ok()) << gravity.verdict(unsure).message();
+  EXPECT_FALSE(gravity.verdict(after({.rate_sigma_rad_s = 5.0}, kNone, 0.5)).ok()) << "not of rates that say nothing";
+}
+
+TEST(RestGravity, OfOneRestOrATurnAboutTheVerticalNothingIsSaid) {
+  const RestGravity gravity({});
+  EXPECT_TRUE(gravity.verdict({}).ok());
+  EXPECT_EQ(after({.turns_s = 10.0}, kNone, -1.0).ways, 0u);
+  const Eigen::Vector3d about_up = 2.0 * Eigen::Vector3d(0.3, -0.2, 1.0).normalized();
+  EXPECT_TRUE(gravity.verdict(after({.rate_rad_s = about_up}, kNone, -1.0)).ok());
+  EXPECT_THROW(RestGravity({.gravity_m_s2 = 0.0}), InvalidParams);
+}
+
+}  // namespace
+}  // namespace tumble

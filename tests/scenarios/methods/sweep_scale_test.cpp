@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/methods/sweep_scale.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "oracles/gaussian.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+constexpr double kGravity = 9.80665;
+
+struct Flight {
+  std::vector<ImuSample> samples;
+  std::vector<LidarInertialOdometry::SweepReport> sweeps;
+};
+
+// Hops of 0.8 s, spinning about the vertical: a parabola each, p known in closed form; sweeps of 0.1 s.
+Flight hops(double scale, double noise_m) {
+  constexpr double kDt_s = 0.01, kSpin_rad_s = 4.0, kUp_m_s = 0.5 * kGravity * 0.8;
+  constexpr int kHop = 80;
+  oracles::Gaussian noise(11);
+  Flight out;
+  LidarInertialOdometry::SweepReport sweep;
+  for (int k = 0; k <= 400; ++k) {
+    const double t_s = kDt_s * k, in_hop_s = kDt_s * (k % kHop);
+    ImuSample sample;
+    sample.time_ns = TimeNs{k} * 10'000'000;
+    // the ground's blow, about the instant in which a hop begins
+    if (k >= kHop && k % kHop < 2) sample.specific_force_m_s2.z() = kUp_m_s / kDt_s;
+    out.samples.push_back(sample);
+    PoseState pose;
+    pose.time_ns = sample.time_ns;
+    pose.q_WA = Eigen::AngleAxisd(kSpin_rad_s * t_s, Eigen::Vector3d::UnitZ());
+    pose.p_WA_m = {1.5 * t_s, 0.0, kUp_m_s * in_hop_s - 0.5 * kGravity * in_hop_s * in_hop_s};
+    for (int j = 0; j < 3; ++j) pose.p_WA_m[j] = scale * pose.p_WA_m[j] + noise_m * noise();
+    sweep.trajectory.push_back(pose);
+    if (k == 0 || k % 10 != 0) continue;
+    sweep.pose = pose;
+    sweep.verdict = SweepVerdict::registered;
+    out.sweeps.push_back(sweep);
+    sweep.trajectory.clear();
+  }
+  return out;
+}
+
+TEST(SweepScale, IsThatOfTheRanges) {
+  for (const double scale : {0.9, 1.0, 1.1}) {
+    const Flight flight = hops(scale, 0.005);
+    const SweepScale found = find_sweep_scale(flight.samples, flight.sweeps, kGravity);
+    EXPECT_GT(found.changes, 20u);
+    EXPECT_NEAR(found.scale, scale, 5.0 * found.sigma + 0.01) << scale;
+    EXPECT_LT(found.sigma, 0.01);
+    EXPECT_EQ(found.is_off(), scale != 1.0) << found.scale << " +- " << found.sigma;
+  }
+}
+
+TEST(SweepScale, NothingIsSaidWhereNothingTells) {
+  const Flight flight = hops(1.1, 0.005);
+  EXPECT_FALSE(find_sweep_scale({}, {}, kGravity).is_off());
+  EXPECT_FALSE(find_sweep_scale(flight.samples, {}, kGravity).is_off());
+  EXPECT_FALSE(find_sweep_scale({}, flight.sweeps, kGravity).is_off());
+  Flight lost = flight;
+  for (auto& sweep : lost.sweeps) sweep.verdict = SweepVerdict::rejected;
+  EXPECT_EQ(find_sweep_scale(lost.samples, lost.sweeps, kGravity).changes, 0u);
+  Flight railed = flight;
+  for (ImuSample& sample : railed.samples) sample.device_clip_flags = kClipAccelZ;
+  EXPECT_EQ(find_sweep_scale(railed.samples, railed.sweeps, kGravity).changes, 0u);
+  // at rest whatever size the map has: gravity and the ground's force are felt and cancel
+  Flight rest = flight;
+  for (ImuSample& sample : rest.samples) sample.specific_force_m_s2 = {0.0, 0.0, kGravity};
+  EXPECT_EQ(find_sweep_scale(rest.samples, rest.sweeps, kGravity).changes, 0u);
+}
+
+TEST(SweepScale, PlacesAsUncertainAsTheScaleAreNotTakenForOne) {
+  const Flight flight = hops(1.03, 0.2);
+  const SweepScale found = find_sweep_scale(flight.samples, flight.sweeps, kGravity);
+  EXPECT_GT(found.sigma, 0.01);
+  EXPECT_FALSE(found.is_off()) << found.scale << " +- " << found.sigma;
+}
+
+}  // namespace
+}  // namespace tumble::scenarios
