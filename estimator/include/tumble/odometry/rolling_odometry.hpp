@@ -62,7 +62,7 @@ class RollingOdometry {
     PoseState pose;  ///< of the sphere's centre, in axes of the sphere; of a live one the attitude has no covariance
     RollingMode mode = RollingMode::grip;
     bool at_rest = false;
-    bool uncertain = false;  ///< in an event that made the position uncertain (RollingParams::uncertain_m)
+    bool uncertain = false;  ///< in an event that made the position uncertain (RollingModeParams::uncertain_m)
   };
 
   /// Throws InvalidParams on a parameter outside of its bound.
