@@ -13,6 +13,7 @@ void check_params(const LidarInertialOdometry::Params& params) {
   const double orthogonality =
       (params.T_IL.linear() * params.T_IL.linear().transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   require_within("T_IL rotation's distance from orthogonal", orthogonality, 0.0, 1e-6);
+  require_within("T_IL rotation's determinant", params.T_IL.linear().determinant(), 0.999, 1.001);
   require_within("T_IL translation", params.T_IL.translation().norm(), 0.0, 1e3);
 }
 

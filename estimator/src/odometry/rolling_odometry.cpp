@@ -24,6 +24,7 @@ ImuMerge::Params merge_params(const RollingOdometry::Params& params) {
   for (std::size_t k = 0; k < params.units.size(); ++k) {
     const RollingOdometry::Unit& unit = params.units[k];
     require_fields(unit.sheet);
+    require_within("T_BI translation", unit.T_BI.translation().norm(), 0.0, params.radius_m);
     out.T_CI[k] = unit.T_BI;
     const ImuSheet& sheet = unit.sheet;
     out.gyro_range_rad_s = std::min(out.gyro_range_rad_s, sure_range(sheet.gyro_range_rad_s));

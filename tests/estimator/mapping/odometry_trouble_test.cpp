@@ -155,6 +155,9 @@ TEST(LidarInertialOdometry, ThrowsOnBadParams) {
   params.T_IL.linear() *= 1.1;
   EXPECT_THROW(Odometry{params}, InvalidParams);
   params = {};
+  params.T_IL.linear().col(0) *= -1.0;
+  EXPECT_THROW(Odometry{params}, InvalidParams) << "mirrored axes";
+  params = {};
   params.expert.prior.sigma_rad = 0.0;
   EXPECT_THROW(Odometry{params}, InvalidParams);
 }

@@ -30,6 +30,7 @@ class RollingOdometry {
   struct Unit {
     ImuSheet sheet;
     /// The unit in axes of the sphere, from its centre: a point in axes of the sphere is T_BI times one of the unit's.
+    /// It lies within the sphere.
     Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
   };
   struct Params {
