@@ -148,6 +148,11 @@ TEST(RollingOdometry, RefusesParametersOutOfTheirBounds) {
   params = params_of(kPlaces);
   params.lag_s = -1.0;
   EXPECT_THROW(RollingOdometry{params}, InvalidParams);
+  params = params_of(kPlaces);
+  params.units[0].T_BI.translation() = Eigen::Vector3d(0.0, 0.0, 1.01 * params.radius_m);
+  EXPECT_THROW(RollingOdometry{params}, InvalidParams) << "an IMU outside of the sphere";
+  params.units[0].T_BI.translation().z() = 0.99 * params.radius_m;
+  EXPECT_NO_THROW(RollingOdometry{params});
 }
 
 }  // namespace

@@ -237,10 +237,10 @@ TEST(SavedTumblingOdometry, OtherParametersAreNamed) {
   other.T_IL.translation().y() = 0.1;
   EXPECT_EQ(refusal(other), "T_IL");
   other = params;
-  other.expert.mapping.neighbours = 11;
+  other.expert.mapping.expert.matching.neighbours = 11;
   EXPECT_EQ(refusal(other), "neighbours");
   other = params;
-  other.expert.mapping.body = FlyingBody{};
+  other.expert.mapping.expert.flight.body = FlyingBody{};
   EXPECT_EQ(refusal(other), "body");
   other = params;
   other.expert.rate.rate.model.calibration = RigCalibration{};

@@ -260,7 +260,7 @@ TEST(TumblingOdometry, ALidarThatFallsSilentIsMadeUpForByInertia) {
 TEST(TumblingOdometry, SweepsThatNobodyTakesAreDropped) {
   const ThrownBody body;
   TumblingOdometry::Params params = params_of(body);
-  params.sweeps_max = 4;
+  params.expert.sweeps_max = 4;
   TumblingOdometry odometry(params);
   const std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
   std::size_t next = 0;
@@ -300,7 +300,7 @@ TEST(TumblingOdometry, TroubleIsAValueAndChangesNothing) {
 TEST(TumblingOdometry, SweepsThatWaitAreBounded) {
   const ThrownBody body;
   TumblingOdometry::Params params = params_of(body);
-  params.sweeps_max = 3;
+  params.expert.sweeps_max = 3;
   TumblingOdometry odometry(params);
   const int most = 3 + 4;  // and those that a lag of 0.2 s may hold back
   for (int k = 0; k < most; ++k) EXPECT_TRUE(odometry.add_sweep(k * kSweep_ns, (k + 1) * kSweep_ns, {}).ok());
@@ -317,7 +317,7 @@ TEST(TumblingOdometry, RefusesParametersOutOfTheirBounds) {
   params.imu.rate_hz = 0.0;
   EXPECT_THROW(TumblingOdometry{params}, InvalidParams);
   params = {};
-  params.expert.mapping.neighbours = 1;
+  params.expert.mapping.expert.matching.neighbours = 1;
   EXPECT_THROW(TumblingOdometry{params}, InvalidParams);
 }
 

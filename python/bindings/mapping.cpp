@@ -13,7 +13,6 @@
 #include "parameters.hpp"
 #include "results.hpp"
 #include "streams.hpp"
-#include "tumble/mapping/lidar_inertial_odometry_fields.hpp"
 
 namespace tumble::python {
 

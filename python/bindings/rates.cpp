@@ -69,7 +69,7 @@ const std::vector<const char*> kOfTheRate = {"carried_period_s", "carried_lag_s"
 
 RegimeStream::Params regime_params(const nb::kwargs& given) {
   RegimeStream::Params params = params_of<RegimeStream>("RegimeStream", given, kOfTheRate);
-  params.carried.body.gap_max_s = params.rate.gap_max_s;
+  params.carried.body.expert.gap_max_s = params.rate.gap_max_s;
   return params;
 }
 

@@ -15,7 +15,6 @@
 #include "results.hpp"
 #include "rig.hpp"
 #include "streams.hpp"
-#include "tumble/odometry/tumbling_odometry_fields.hpp"
 
 namespace tumble::python {
 

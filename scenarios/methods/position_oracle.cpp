@@ -60,12 +60,12 @@ Estimate run_exact_attitude(const sim::Sensors& sensors, const sim::Values& para
   params.filter.q_WI_start =
       truth.q_WB[physics_index(truth, imus.samples.front().time_ns, truth.q_WB.size())].normalized();
   params.filter.gyro_range_rad_s = 1e3;
-  params.filter.tilt_sigma_rad = 0.0;
-  params.filter.gyro_bias_sigma_rad_s = 0.0;
-  params.filter.gyro_scale_sigma = 0.0;
-  params.filter.attitude_walk_rad_sqrts = 1e-9;
-  params.filter.rate_error_sqrts = 1e-9;
-  params.filter.gyro_bias_walk_rad_s_sqrts = 1e-9;
+  params.filter.expert.prior.tilt_sigma_rad = 0.0;
+  params.filter.expert.prior.gyro_bias_sigma_rad_s = 0.0;
+  params.filter.expert.prior.gyro_scale_sigma = 0.0;
+  params.filter.expert.noise.attitude_walk_rad_sqrts = 1e-9;
+  params.filter.expert.noise.rate_error_sqrts = 1e-9;
+  params.filter.expert.noise.gyro_bias_walk_rad_s_sqrts = 1e-9;
   smooth(params, imus, {}, estimate);
   return estimate;
 }

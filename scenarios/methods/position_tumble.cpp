@@ -74,14 +74,15 @@ const Settings<RollingSmoother::Params>& lag_settings() {
 /// What a device may have that nobody has described.
 void widen_unknown(const sim::Sensors& sensors, RollingParams& params) {
   if (!sensors.imus.front().device.empty()) return;
-  params.gyro_bias_sigma_rad_s = std::max(params.gyro_bias_sigma_rad_s, kUnknownGyroBiasRadS);
-  params.accel_bias_sigma_m_s2 = std::max(params.accel_bias_sigma_m_s2, kUnknownAccelBiasMS2);
-  params.tilt_sigma_rad = std::max(params.tilt_sigma_rad, kUnknownAccelBiasMS2 / params.gravity_m_s2);
-  params.accel_scale_sigma = std::max(params.accel_scale_sigma, kUnknownScale);
-  params.gyro_scale_sigma = std::max(params.gyro_scale_sigma, kUnknownScale);
-  params.accel_delay_sigma_s = std::max(params.accel_delay_sigma_s, kUnknownDelayS);
+  params.expert.prior.gyro_bias_sigma_rad_s = std::max(params.expert.prior.gyro_bias_sigma_rad_s, kUnknownGyroBiasRadS);
+  params.expert.prior.accel_bias_sigma_m_s2 = std::max(params.expert.prior.accel_bias_sigma_m_s2, kUnknownAccelBiasMS2);
+  params.expert.prior.tilt_sigma_rad =
+      std::max(params.expert.prior.tilt_sigma_rad, kUnknownAccelBiasMS2 / params.gravity_m_s2);
+  params.expert.prior.accel_scale_sigma = std::max(params.expert.prior.accel_scale_sigma, kUnknownScale);
+  params.expert.prior.gyro_scale_sigma = std::max(params.expert.prior.gyro_scale_sigma, kUnknownScale);
+  params.expert.prior.accel_delay_sigma_s = std::max(params.expert.prior.accel_delay_sigma_s, kUnknownDelayS);
   params.lever_arm_sigma_m = std::max(params.lever_arm_sigma_m, kUnknownPlaceM);
-  params.incline_begins_per_s = std::min(params.incline_begins_per_s, kUnknownInclinePerS);
+  params.expert.modes.incline_begins_per_s = std::min(params.expert.modes.incline_begins_per_s, kUnknownInclinePerS);
 }
 
 /// What the sensors are like. The lever arm is from the centre of mass, which the calibration refers to; what lies
@@ -92,7 +93,7 @@ void set_stated(const sim::Sensors& sensors, const MergedImus& imus, RollingPara
   params.lever_arm_m = imus.lever_arm_m;
   params.gyro_range_rad_s = imus.gyro_range_rad_s;
   params.accel_range_m_s2 = imus.accel_range_m_s2;
-  if (imus.units >= kRecoveringUnits) params.recovered_rate_sigma_rad_s = kRecoveredSigmaRadS;
+  if (imus.units >= kRecoveringUnits) params.expert.rails.recovered_rate_sigma_rad_s = kRecoveredSigmaRadS;
   widen_unknown(sensors, params);
 }
 

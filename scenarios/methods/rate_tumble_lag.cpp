@@ -40,7 +40,7 @@ RegimeStream::Params stream_params(const sim::Sensors& sensors, const sim::Value
   params.evidence.gravity_m_s2 = params.carried.body.gravity_m_s2 = sensors.gravity_m_s2;
   settings().apply(parameters, params);
   rate.lag_s = std::max(rate.lag_s, 2.0 * rate.period_s);
-  params.carried.body.gap_max_s = rate.gap_max_s;
+  params.carried.body.expert.gap_max_s = rate.gap_max_s;
   if (given == nullptr) return params;
 
   batch.model = rate.model;

@@ -147,8 +147,8 @@ baselines::RigidOdometry::Params rigid_params(const sim::Sensors& sensors, const
   baselines::RigidOdometry::Params params = rigid_settings().read(parameters);
   if (!sensors.lidars.empty() && !sensors.imus.empty())
     params.T_IL = bridge::T_IL(sensors.imus.front(), sensors.lidars.front());
-  params.registration.plane.neighbours_min =
-      std::min(params.registration.plane.neighbours_min, params.registration.neighbours);
+  params.registration.expert.plane.neighbours_min =
+      std::min(params.registration.expert.plane.neighbours_min, params.registration.neighbours);
   return params;
 }
 

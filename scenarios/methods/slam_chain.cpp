@@ -32,16 +32,16 @@ LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const
   SlamParams params = stage.settings.defaults();
   LidarInertialOdometry::Params& odometry = params.odometry;
   odometry.T_IL = bridge::T_IL(sensors.imus.front(), sensors.lidars.front());
-  odometry.gravity_m_s2 = sensors.gravity_m_s2;
+  odometry.expert.gravity_m_s2 = sensors.gravity_m_s2;
   const double accel_range_m_s2 = sensors.imus.front().stated_accel_range_m_s2;
-  if (accel_range_m_s2 > 0.0) odometry.accel_rail_m_s2 = sure_range(accel_range_m_s2);
+  if (accel_range_m_s2 > 0.0) odometry.expert.rails.accel_m_s2 = sure_range(accel_range_m_s2);
   if (chain.along) {
-    odometry.gravity_m_s2 = chain.along->gravity_m_s2;
-    odometry.correction_max_m = chain.along->correction_max_m;
-    odometry.correction_max_rad = chain.along->correction_max_rad;
+    odometry.expert.gravity_m_s2 = chain.along->gravity_m_s2;
+    odometry.expert.matching.correction_max_m = chain.along->correction_max_m;
+    odometry.expert.matching.correction_max_rad = chain.along->correction_max_rad;
   }
   stage.settings.apply(stage.parameters, params);
-  if (params.flight_arc) odometry.body.emplace().p_IB_I_m = -bridge::lever_arm_I_m(sensors.imus.front());
+  if (params.flight_arc) odometry.expert.flight.body.emplace().p_IB_I_m = -bridge::lever_arm_I_m(sensors.imus.front());
   return odometry;
 }
 
@@ -307,12 +307,12 @@ SlamParams with_calibration(SlamParams params) {
   params.odometry.mount_sigma_rad = door.mount_sigma_rad;
   params.odometry.mount_sigma_m = door.mount_sigma_m;
   params.odometry.time_offset_sigma_s = door.time_offset_sigma_s;
-  params.odometry.gravity_sigma_m_s2 = door.expert.mapping.gravity_sigma_m_s2;
+  params.odometry.expert.gravity_sigma_m_s2 = door.expert.mapping.expert.gravity_sigma_m_s2;
   return params;
 }
 
 SlamParams with_saturation_deficit(SlamParams params) {
-  params.odometry.estimate_saturation_deficit = true;
+  params.odometry.expert.rails.estimate_deficit = true;
   return params;
 }
 

@@ -23,10 +23,10 @@ constexpr double kPriorSigmaM = 1e-4, kPriorSigmaRad = 2e-5, kPriorSigmaMS = 1e-
 const Settings<SlamParams>& prior_settings() {
   static const Settings<SlamParams> all = [] {
     SlamParams params;
-    params.odometry.prior_sigma_m = kPriorSigmaM;
-    params.odometry.prior_sigma_rad = kPriorSigmaRad;
-    params.odometry.prior_sigma_m_s = kPriorSigmaMS;
-    params.odometry.force_sigma_share = kForceSigmaShare;
+    params.odometry.expert.prior.sigma_m = kPriorSigmaM;
+    params.odometry.expert.prior.sigma_rad = kPriorSigmaRad;
+    params.odometry.expert.prior.sigma_m_s = kPriorSigmaMS;
+    params.odometry.expert.prior.force_share = kForceSigmaShare;
     // of the samples that were made along the poses
     return slam_settings(params, {"gravity_m_s2", "correction_max_m", "correction_max_rad"});
   }();

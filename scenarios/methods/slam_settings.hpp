@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "scenarios/methods/settings.hpp"
-#include "tumble/mapping/lidar_inertial_odometry_fields.hpp"
+#include "tumble/mapping/lidar_inertial_odometry.hpp"
 
 /// Parameters of the lidar-inertial chain (run_slam_chain).
 namespace tumble::scenarios {

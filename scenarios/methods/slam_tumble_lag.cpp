@@ -12,7 +12,7 @@
 #include "scenarios/methods/slam_registry.hpp"
 #include "scenarios/methods/slam_settings.hpp"
 #include "scenarios/methods/sweep_log.hpp"
-#include "tumble/odometry/tumbling_odometry_fields.hpp"
+#include "tumble/odometry/tumbling_odometry.hpp"
 
 namespace tumble::scenarios {
 
@@ -44,7 +44,7 @@ TumblingOdometry::Params stated_params(const sim::Sensors& sensors, const sim::V
   params.lever_arm_I_m = bridge::lever_arm_I_m(imu);
   params.T_IL = bridge::T_IL(imu, sensors.lidars.front());
   params.own_body_L = rig_body_L();
-  params.gravity_m_s2 = sensors.gravity_m_s2;
+  params.expert.gravity_m_s2 = sensors.gravity_m_s2;
   settings().apply(parameters, params);
   return params;
 }

@@ -120,6 +120,28 @@ TEST(Fields, EveryParamsHasThem) {
   EXPECT_EQ(without, kDerived);
 }
 
+/// Whether more than ten numbers stand beside `expert`, where the others belong.
+bool crowded(const std::string& body) {
+  return std::regex_search(body, std::regex(R"(\bExpert expert\b)")) && numbers_in(body).size() > 10;
+}
+
+TEST(Fields, BesideExpertStandTenAtMost) {
+  std::size_t with_expert = 0;
+  for (const fs::path& header : headers()) {
+    for (const std::string& body : params_in(text_of(header))) {
+      EXPECT_FALSE(crowded(body)) << header;
+      with_expert += body.find("Expert expert") != std::string::npos ? 1 : 0;
+    }
+  }
+  EXPECT_GE(with_expert, 5u);
+  // negative control
+  std::string body;
+  for (const char* name : {"a", "b", "c", "d", "e", "f", "g", "h", "i", "j"})
+    body += std::string("  double ") + name + "_m = 0.0;\n";
+  EXPECT_FALSE(crowded(body + "  Expert expert = {};\n"));
+  EXPECT_TRUE(crowded(body + "  double k_m = 0.0;\n  Expert expert = {};\n"));
+}
+
 TEST(Fields, OneThatIsForgottenIsFound) {
   const std::string header = R"(struct Params {
     double tau_s = 1.0;

@@ -112,11 +112,11 @@ double median(std::vector<double> values) {
 /// The method's own setting: saturation deficits of clipped axes and the calibration are unknowns too.
 LidarInertialOdometry::Params all_unknowns() {
   LidarInertialOdometry::Params params;
-  params.estimate_saturation_deficit = true;
+  params.expert.rails.estimate_deficit = true;
   params.mount_sigma_rad = 0.01;
   params.mount_sigma_m = 0.006;
   params.time_offset_sigma_s = 0.003;
-  params.gravity_sigma_m_s2 = 0.03;
+  params.expert.gravity_sigma_m_s2 = 0.03;
   return params;
 }
 

@@ -24,12 +24,12 @@ constexpr Trouble kLost = Trouble::diverged;
 
 Motion::Params motion_params(const CarriedSmoother::Params& p, double jerk) {
   Motion::Params out;
-  out.step_s = p.node_s;
+  out.step_s = p.expert.node_s;
   out.jerk_rad_s3_sqrts = jerk * p.jerk_rad_s3_sqrts;
-  out.turn_error_sqrts = p.turn_error_sqrts;
-  out.hand_m_s2 = p.hand_m_s2, out.hand_tau_s = p.hand_tau_s;
-  out.velocity_m_s = p.velocity_m_s, out.velocity_tau_s = p.velocity_tau_s;
-  out.place_m = p.place_m, out.place_tau_s = p.place_tau_s, out.place_leak_s = p.place_leak_s;
+  out.turn_error_sqrts = p.expert.readings.turn_error_sqrts;
+  out.hand_m_s2 = p.hand_m_s2, out.hand_tau_s = p.expert.hand.hand_tau_s;
+  out.velocity_m_s = p.velocity_m_s, out.velocity_tau_s = p.expert.hand.velocity_tau_s;
+  out.place_m = p.place_m, out.place_tau_s = p.expert.hand.place_tau_s, out.place_leak_s = p.expert.hand.place_leak_s;
   return out;
 }
 
@@ -37,13 +37,13 @@ ReadingNoise reading_noise(const CarriedSmoother::Params& p, double period_s) {
   const double root_rate = 1.0 / std::sqrt(period_s);
   ReadingNoise out;
   out.gyro_rad_s = p.gyro_noise_density * root_rate;
-  out.tilt_share = p.tilt_share;
-  out.rail_rad_s = p.rail_sigma_rad_s;
+  out.tilt_share = p.expert.readings.tilt_share;
+  out.rail_rad_s = p.expert.readings.rail_sigma_rad_s;
   out.accel_m_s2 = p.accel_noise_density * root_rate;
-  out.accel_share = p.accel_error_share;
-  out.rest_rad_s = p.rest_sigma_rad_s;
-  out.rest_m_s = p.rest_sigma_m_s;
-  out.rest_m_s2 = p.rest_sigma_m_s2;
+  out.accel_share = p.expert.readings.accel_error_share;
+  out.rest_rad_s = p.expert.still.rest_sigma_rad_s;
+  out.rest_m_s = p.expert.still.rest_sigma_m_s;
+  out.rest_m_s2 = p.expert.still.rest_sigma_m_s2;
   return out;
 }
 
@@ -171,11 +171,11 @@ void Problem::follow_hand() {
   const double assumed = 3.0 * params_.hand_m_s2 * params_.hand_m_s2;
   for (std::size_t i = 0; i < count; ++i)
     hand_power_[i + 1] = hand_power_[i] + nodes_[i].a_W_m_s2.squaredNorm() / assumed;
-  const auto half = static_cast<std::size_t>(0.5 * params_.hand_window_s / params_.node_s);
+  const auto half = static_cast<std::size_t>(0.5 * params_.expert.hand.hand_window_s / params_.expert.node_s);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t a = i > half ? i - half : 0, b = std::min(count, i + half + 1);
     const double local = (hand_power_[b] - hand_power_[a]) / static_cast<double>(b - a);
-    hand_[i] = std::max(params_.hand_floor, 1.0 + params_.hand_follow * (local - 1.0));
+    hand_[i] = std::max(params_.expert.hand.hand_floor, 1.0 + params_.expert.hand.hand_follow * (local - 1.0));
   }
 }
 
@@ -191,8 +191,8 @@ void Problem::restore(Answer answer) {
 Status Problem::solve(CarriedSmoother::Report& report) {
   std::optional<Place> before;  // the last step
   report.converged = false;
-  for (int k = 0; k < params_.iterations_max; ++k) {
-    if (k >= kFollowFirst && k <= kFollowLast && params_.hand_follow > 0.0) {
+  for (int k = 0; k < params_.expert.iterations_max; ++k) {
+    if (k >= kFollowFirst && k <= kFollowLast && params_.expert.hand.hand_follow > 0.0) {
       follow_hand();
       before.reset();  // a cost of another hand
     }
@@ -235,7 +235,7 @@ bool Problem::descend_from(const Place& before, double& cost) {
 // carried.md (C17), (C18), of the jerk of (C19) and with bounds that tell nothing of how far beyond them a rate lies
 Status Problem::covariances(CarriedSmoother::Report& report) {
   for (std::size_t i = 0; i < jerk_.size(); ++i)
-    jerk_[i] = std::max(params_.jerk_doubt, jerk_seen_[i] / params_.jerk_rad_s3_sqrts);
+    jerk_[i] = std::max(params_.expert.jerk_doubt, jerk_seen_[i] / params_.jerk_rad_s3_sqrts);
   const ReadingNoise assumed = std::exchange(noise_, stated_noise(params_, noise_, period_s_));
   (void)linearise();
   noise_ = assumed;
@@ -258,8 +258,9 @@ Status Problem::covariances(CarriedSmoother::Report& report) {
 // carried.md (C20): the mean over a window T of a process of deviation s and memory tau has the variance
 // s^2 2 tau/T (1 - tau/T (1 - exp(-T/tau)))
 double Problem::hand_surprise() const {
-  const auto window = static_cast<std::size_t>(std::max(1.0, kSurpriseS / params_.node_s));
-  const double span = static_cast<double>(window) * params_.node_s, ratio = params_.hand_tau_s / span;
+  const auto window = static_cast<std::size_t>(std::max(1.0, kSurpriseS / params_.expert.node_s));
+  const double span = static_cast<double>(window) * params_.expert.node_s,
+               ratio = params_.expert.hand.hand_tau_s / span;
   const double variance =
       params_.hand_m_s2 * params_.hand_m_s2 * 2.0 * ratio * (1.0 - ratio * (1.0 - std::exp(-1.0 / ratio)));
   double largest = 0.0;

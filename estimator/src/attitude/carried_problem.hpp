@@ -135,7 +135,7 @@ class Problem {
   Eigen::Vector3d gyro_rad_s(std::size_t node) const { return nodes_[node].w_WI_I_rad_s + constants_.gyro_bias_rad_s; }
   double rail_sigma_rad_s() const { return noise_.rail_rad_s; }
   double jerk_rad_s3_sqrts() const { return params_.jerk_rad_s3_sqrts; }
-  double node_s() const { return params_.node_s; }
+  double node_s() const { return params_.expert.node_s; }
   const Eigen::Vector3d& gravity_W_m_s2() const { return g_W_m_s2_; }
   const NodeReadings& readings(std::size_t node) const { return readings_[node]; }
   std::span<const Node> nodes() const { return nodes_; }

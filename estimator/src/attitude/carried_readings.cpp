@@ -196,7 +196,7 @@ void whole_windows(double noise_rad_s, const Eigen::Matrix3d& rows, GyroReadings
 
 // carried.md (C40): errors that have a memory, as readings whose errors have none
 void recovered_readings(const CarriedSmoother::Params& params, const ClippedElements& clipped, GyroReadings& rates) {
-  const double nodes = std::sqrt(2.0 * params.recovered_tau_s / params.node_s);
+  const double nodes = std::sqrt(2.0 * params.expert.readings.recovered_tau_s / params.expert.node_s);
   for (std::size_t k = 0; k < clipped.recovered_rad2_s2.size(); ++k) {
     const Eigen::Matrix3d along = clipped.rows * clipped.recovered_rad2_s2[k] * clipped.rows.transpose();
     Vector3d& open_rad_s = rates.open_rad_s[rates.of_sample[k]];
@@ -263,24 +263,25 @@ void add_reading(const ImuSample& sample, const Eigen::Matrix3d& rows, const Cli
 Collected collect(const CarriedSmoother::Params& params, std::span<const ImuSample> samples,
                   const ClippedElements& clipped) {
   Collected out;
-  const double period_s = median_period_s(samples, params.node_s);
+  const double period_s = median_period_s(samples, params.expert.node_s);
   const TimeNs origin_ns = samples.front().time_ns - nanoseconds(0.5 * period_s);
   out.samples = windows_of(samples, origin_ns, period_s);
-  out.nodes.resize(static_cast<std::size_t>(std::llround(out.samples.centre_s.back() / params.node_s)) + 1);
-  place(params.node_s, out.nodes.size(), out.samples);
+  out.nodes.resize(static_cast<std::size_t>(std::llround(out.samples.centre_s.back() / params.expert.node_s)) + 1);
+  place(params.expert.node_s, out.nodes.size(), out.samples);
 
   out.rates = {own_readings(samples, clipped, Triad::gyro, origin_ns, period_s), {}};
-  place(params.node_s, out.nodes.size(), out.rates.windows);
+  place(params.expert.node_s, out.nodes.size(), out.rates.windows);
   out.rates.open_rad_s.assign(out.rates.samples.size(), Vector3d::Zero());
   const double noise_rad_s = params.gyro_noise_density / std::sqrt(out.rates.windows.period_s);
-  if (out.rates.windows.period_s > kLongWindow * params.node_s) whole_windows(noise_rad_s, clipped.rows, out.rates);
+  if (out.rates.windows.period_s > kLongWindow * params.expert.node_s)
+    whole_windows(noise_rad_s, clipped.rows, out.rates);
   recovered_readings(params, clipped, out.rates);
-  out.jerk = seen_jerk(out.rates, clipped.rows, noise_rad_s, params.node_s, out.nodes.size());
+  out.jerk = seen_jerk(out.rates, clipped.rows, noise_rad_s, params.expert.node_s, out.nodes.size());
   OwnReadings forces = own_readings(samples, clipped, Triad::accelerometer, origin_ns, period_s);
   const std::vector<double> open_m_s2 = open_forces(forces, period_s);
-  place(params.node_s, out.nodes.size(), forces.windows);
+  place(params.expert.node_s, out.nodes.size(), forces.windows);
   const auto from_node = [&](const Windows& windows, std::size_t k) {
-    return windows.centre_s[k] - static_cast<double>(windows.node_of[k]) * params.node_s;
+    return windows.centre_s[k] - static_cast<double>(windows.node_of[k]) * params.expert.node_s;
   };
   for (std::size_t k = 0; k < out.rates.samples.size(); ++k) {
     const Windows& windows = out.rates.windows;
@@ -292,7 +293,7 @@ Collected collect(const CarriedSmoother::Params& params, std::span<const ImuSamp
     add_force(forces.samples[k], forces.signs[k], from_node(forces.windows, k), node);
     node.force_open_m_s2 = std::max(node.force_open_m_s2, open_m_s2[k]);
   }
-  const std::vector<bool> rest = RestDetector(params.rest).find(samples);
+  const std::vector<bool> rest = RestDetector(params.expert.rest).find(samples);
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (rest[k]) out.nodes[out.samples.node_of[k]].rest = true;
   }
@@ -325,7 +326,7 @@ Status start_nodes(const CarriedSmoother::Params& params, const Eigen::Matrix3d&
   const std::span<const ImuSample> samples = collected.rates.samples;
   const Windows& windows = collected.rates.windows;
   const std::vector<Vector3d> rates = filled_rates(samples, {rows, collected.rates.signs});
-  const Vqf filter(Vqf::Params{.gap_max_s = params.gap_max_s});
+  const Vqf filter(Vqf::Params{.gap_max_s = params.expert.gap_max_s});
   Vqf::State state;
   const std::size_t count = collected.nodes.size();
   nodes.assign(count, {});
@@ -337,7 +338,7 @@ Status start_nodes(const CarriedSmoother::Params& params, const Eigen::Matrix3d&
     const std::size_t i = windows.node_of[k];
     readings[i] += 1.0;
     nodes[i].w_WI_I_rad_s += (rates[k] - nodes[i].w_WI_I_rad_s) / readings[i];
-    const double off = std::abs(windows.centre_s[k] - static_cast<double>(i) * params.node_s);
+    const double off = std::abs(windows.centre_s[k] - static_cast<double>(i) * params.expert.node_s);
     if (off < nearest[i]) nearest[i] = off, nodes[i].q_WI = state.q_WI;
   }
   // those without a reading lie between two that have one, or beyond the last
@@ -357,7 +358,7 @@ Status start_nodes(const CarriedSmoother::Params& params, const Eigen::Matrix3d&
     const std::size_t a = i == 0 ? 0 : i - 1, b = std::min(i + 1, count - 1);
     if (b > a) {
       nodes[i].angular_acceleration_rad_s2 =
-          (nodes[b].w_WI_I_rad_s - nodes[a].w_WI_I_rad_s) / (static_cast<double>(b - a) * params.node_s);
+          (nodes[b].w_WI_I_rad_s - nodes[a].w_WI_I_rad_s) / (static_cast<double>(b - a) * params.expert.node_s);
     }
     if (collected.nodes[i].force_n > 0.0) nodes[i].a_W_m_s2 = nodes[i].q_WI * collected.nodes[i].force_m_s2 + g_W;
   }

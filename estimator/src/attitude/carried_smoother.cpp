@@ -35,7 +35,7 @@ Status check(const CarriedSmoother::Params& params, std::span<const ImuSample> s
   }
   const double determinant = std::abs(clipped.rows.determinant());
   if (!(determinant > kRowsMin)) return {Trouble::degenerate, "rows", determinant, kRowsMin};
-  return check_samples(samples, params.gap_max_s);
+  return check_samples(samples, params.expert.gap_max_s);
 }
 
 // Elements at the rail, in the whole window of the reading or in a part of it.
@@ -59,7 +59,7 @@ RateSource source(const RateState& rate, double recovered_sigma) {
 
 CarriedSmoother::CarriedSmoother(const Params& params) : params_(params) {
   require_fields(params);
-  RestDetector{params.rest};
+  RestDetector{params.expert.rest};
 }
 
 Status CarriedSmoother::estimate(std::span<const ImuSample> samples, const ClippedElements& clipped,
@@ -85,14 +85,14 @@ Status CarriedSmoother::estimate(std::span<const ImuSample> samples, const Clipp
     const std::size_t i = collected.samples.node_of[k];
     const Node& node = problem.nodes()[i];
     const Eigen::Matrix<double, 9, 9>& covariance = problem.covariance(i);
-    const double at = static_cast<double>(i) * params_.node_s;
+    const double at = static_cast<double>(i) * params_.expert.node_s;
     const double centre = collected.samples.centre_s[k] - at, end = collected.samples.end_s[k] - at;
     rates[k].time_ns = attitudes[k].time_ns = samples[k].time_ns;
     // a reading is the mean over its window, so the rate is that at the window's centre; the attitude is at the stamp
     rates[k].w_WI_I_rad_s = node.w_WI_I_rad_s + centre * node.angular_acceleration_rad_s2;
     rates[k].covariance_rad2_s2 = covariance.block<3, 3>(carried::kRate, carried::kRate);
     rates[k].clipped_axes = clipped_axes(collected.rates, k);
-    rates[k].source = source(rates[k], params_.recovered_sigma_rad_s);
+    rates[k].source = source(rates[k], params_.expert.readings.recovered_sigma_rad_s);
     const Eigen::Vector3d turn = end * node.w_WI_I_rad_s + 0.5 * end * end * node.angular_acceleration_rad_s2;
     attitudes[k].q_WA = node.q_WI * so3::exp(turn);
     const Eigen::Matrix3d R = node.q_WI.toRotationMatrix();

@@ -42,15 +42,15 @@ bool same(const ClipSigns& a, const ClipSigns& b) {
 
 CarriedStream::CarriedStream(const Params& params)
     : params_((CarriedSmoother(params.body), params)),
-      rests_(params.body.rest),
+      rests_(params.body.expert.rest),
       motion_(carried::motion_params(params.body)),
-      doubted_(carried::motion_params(params.body, params.body.jerk_doubt)),
+      doubted_(carried::motion_params(params.body, params.body.expert.jerk_doubt)),
       noise_(carried::reading_noise(params.body, params.period_s)),
       g_W_m_s2_(0.0, 0.0, -params.body.gravity_m_s2) {
   require_fields(params);
   require_within("lag_s", params.lag_s, 2.0 * params.period_s, 10.0);
-  require_within("window_s", params.window_s, params.lag_s + 4.0 * params.body.node_s, 20.0);
-  nodes_max_ = static_cast<std::size_t>(std::lround(params.window_s / params.body.node_s)) + 1;
+  require_within("window_s", params.window_s, params.lag_s + 4.0 * params.body.expert.node_s, 20.0);
+  nodes_max_ = static_cast<std::size_t>(std::lround(params.window_s / params.body.expert.node_s)) + 1;
   delay_ = static_cast<std::size_t>(std::lround(params.lag_s / params.period_s));
   // samples may come denser than is said; beyond twice as dense the oldest go
   readings_max_ = 2 * static_cast<std::size_t>(std::ceil(params.window_s / params.period_s)) + 4;
@@ -79,7 +79,7 @@ Status CarriedStream::check_state(const State& state) const {
 Status CarriedStream::check_reading(const Reading& reading, const Reading* before, TimeNs start_ns) const {
   const TimeNs time_ns = reading.sample.time_ns;
   if (before != nullptr) {
-    const Status status = check_follows(time_ns, before->sample.time_ns, params_.body.gap_max_s);
+    const Status status = check_follows(time_ns, before->sample.time_ns, params_.body.expert.gap_max_s);
     if (!status.ok()) return status;
   }
   // unsigned: the difference of two 64-bit stamps may not fit into a signed one
@@ -90,7 +90,7 @@ Status CarriedStream::check_reading(const Reading& reading, const Reading* befor
     return {Trouble::out_of_range, "reading.end_s", reading.end_s, seconds(time_ns)};
   if (!(reading.centre_s <= reading.end_s && reading.centre_s >= reading.end_s - params_.period_s))
     return {Trouble::out_of_range, "reading.centre_s", reading.centre_s, reading.end_s};
-  const std::int64_t nearest = std::llround(reading.centre_s / params_.body.node_s);
+  const std::int64_t nearest = std::llround(reading.centre_s / params_.body.expert.node_s);
   const bool falls = before != nullptr && reading.node < before->node;
   const bool stays = before != nullptr && reading.node == before->node;
   const bool near = reading.node >= nearest - 1 && reading.node <= nearest + 1;
@@ -122,7 +122,7 @@ Status CarriedStream::push(const ImuSample& sample, const ClippedElements& known
   if (const Status status = check_sample(sample); !status.ok()) return status;
   if (state.samples > 0) {
     const TimeNs before_ns = state.readings.back().sample.time_ns;
-    const Status status = check_follows(sample.time_ns, before_ns, params_.body.gap_max_s);
+    const Status status = check_follows(sample.time_ns, before_ns, params_.body.expert.gap_max_s);
     if (!status.ok()) return status;
   }
   if (known.signs.empty()) return {Trouble::out_of_range, "signs", 0.0, 1.0};
@@ -132,7 +132,7 @@ Status CarriedStream::push(const ImuSample& sample, const ClippedElements& known
   append(sample, state);
   if (read_again(known, state)) rebuild(state);
   const Reading& latest = state.readings.back();
-  const double t = latest.centre_s - static_cast<double>(latest.node) * params_.body.node_s;
+  const double t = latest.centre_s - static_cast<double>(latest.node) * params_.body.expert.node_s;
   const auto end = [&] { return state.first_node + static_cast<std::int64_t>(state.window.size()); };
   const bool begun = latest.node >= end();
   while (latest.node > end()) extend({}, state);  // nodes that no sample is near to
@@ -178,7 +178,7 @@ void CarriedStream::append(const ImuSample& sample, State& state) const {
   const double since_s = state.samples == 0 ? period_s : seconds(sample.time_ns - state.readings.back().sample.time_ns);
   reading.end_s = seconds(sample.time_ns - state.start_ns) + 0.5 * period_s;
   reading.centre_s = reading.end_s - 0.5 * std::min(since_s, 1.5 * period_s);
-  const std::int64_t nearest = std::llround(reading.centre_s / params_.body.node_s);
+  const std::int64_t nearest = std::llround(reading.centre_s / params_.body.expert.node_s);
   reading.node = std::max(nearest, state.samples == 0 ? 0 : state.readings.back().node);
   reading.rest = rests_.observe(sample, state.rests);
   if (state.readings.size() == readings_max_) state.readings.erase(state.readings.begin());
@@ -207,7 +207,7 @@ void CarriedStream::rebuild(State& state) const {
     const std::int64_t at = reading.node - state.first_node;
     if (at < 0 || at >= static_cast<std::int64_t>(state.window.size())) continue;
     carried::NodeReadings& node = state.window[static_cast<std::size_t>(at)].readings;
-    const double t = reading.centre_s - static_cast<double>(reading.node) * params_.body.node_s;
+    const double t = reading.centre_s - static_cast<double>(reading.node) * params_.body.expert.node_s;
     carried::add_reading(reading.sample, state.rows, reading.signs, t, node);
     node.rest = node.rest || reading.rest;
   }
@@ -224,7 +224,7 @@ Node CarriedStream::begin(const State& state) const {
 
 // A new node from the one before it: turned on, its rate as read where elements are free, beyond the rail where not.
 void CarriedStream::predict(const Node& before, const Eigen::Matrix3d& rows, Knot& knot) const {
-  const double h = params_.body.node_s;
+  const double h = params_.body.expert.node_s;
   Node& node = knot.node;
   node = before;
   Vector3d elements = rows * (before.w_WI_I_rad_s + h * before.angular_acceleration_rad_s2);
@@ -246,7 +246,8 @@ void CarriedStream::predict(const Node& before, const Eigen::Matrix3d& rows, Kno
 
 // carried.md (C32)
 double CarriedStream::hand(const State& state) const {
-  return std::max(params_.body.hand_floor, 1.0 + params_.body.hand_follow * (state.hand_power - 1.0));
+  return std::max(params_.body.expert.hand.hand_floor,
+                  1.0 + params_.body.expert.hand.hand_follow * (state.hand_power - 1.0));
 }
 
 // As rate_stream.md (R91).
@@ -290,7 +291,7 @@ void CarriedStream::marginalise_oldest(State& state) const {
   state.prior_node = next;
   state.prior_constants = state.constants;
   const double assumed = 3.0 * params_.body.hand_m_s2 * params_.body.hand_m_s2;
-  const double share = std::min(1.0, 2.0 * params_.body.node_s / params_.body.hand_window_s);
+  const double share = std::min(1.0, 2.0 * params_.body.expert.node_s / params_.body.expert.hand.hand_window_s);
   state.hand_power += share * (oldest.node.a_W_m_s2.squaredNorm() / assumed - state.hand_power);
   ++state.first_node;
   state.window.erase(state.window.begin());

@@ -61,13 +61,14 @@ RateState CarriedStream::to_rate(const Reading& reading, const State& state, con
   const Node& node = state.window[at].node;
   RateState out;
   out.time_ns = reading.sample.time_ns;
-  const double t = reading.centre_s - static_cast<double>(reading.node) * params_.body.node_s;
+  const double t = reading.centre_s - static_cast<double>(reading.node) * params_.body.expert.node_s;
   out.w_WI_I_rad_s = node.w_WI_I_rad_s + t * node.angular_acceleration_rad_s2;
   out.covariance_rad2_s2 = covariance;
   out.clipped_axes = clipped_axes(reading.signs);
   if (out.clipped_axes == 0) return out;
   const double variance = covariance.selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff();
-  const double recovered = params_.body.recovered_sigma_rad_s * params_.body.recovered_sigma_rad_s;
+  const double recovered =
+      params_.body.expert.readings.recovered_sigma_rad_s * params_.body.expert.readings.recovered_sigma_rad_s;
   out.source = variance < recovered ? RateSource::recovered_contact : RateSource::bounded_only;
   return out;
 }
@@ -79,7 +80,7 @@ void CarriedStream::publish(std::size_t first, std::size_t last, bool factorised
   const auto of = [&](std::size_t k) {
     return static_cast<std::size_t>(std::max<std::int64_t>(0, state.readings[k].node - state.first_node));
   };
-  const auto near = static_cast<std::size_t>(std::lround(kNear_s / params_.body.node_s));
+  const auto near = static_cast<std::size_t>(std::lround(kNear_s / params_.body.expert.node_s));
   const std::size_t from = of(first) > near ? of(first) - near : 0;
   const std::size_t to = std::min(state.window.size(), of(last) + near + 1);
   bool clipped = false;

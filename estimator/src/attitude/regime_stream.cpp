@@ -15,9 +15,9 @@ CarriedStream::Params joined(const RegimeStream::Params& params) {
   CarriedStream::Params out = params.carried;
   out.period_s = params.rate.period_s;
   out.lag_s = params.rate.lag_s;
-  out.window_s = std::max(out.window_s, out.lag_s + 4.0 * out.body.node_s);
+  out.window_s = std::max(out.window_s, out.lag_s + 4.0 * out.body.expert.node_s);
   // over a longer gap samples would leave the window before they are given out: the body is begun anew
-  out.body.gap_max_s = std::min(out.body.gap_max_s, out.window_s - out.lag_s);
+  out.body.expert.gap_max_s = std::min(out.body.expert.gap_max_s, out.window_s - out.lag_s);
   return out;
 }
 

@@ -9,21 +9,21 @@ namespace {
 
 Registration::Params brief_params(const LidarInertialOdometry::Params& params) {
   Registration::Params out = registration_params(params);
-  out.iterations_max = std::min(params.iterations_max, params.effort.brief_iterations);
+  out.iterations_max = std::min(params.expert.matching.iterations_max, params.expert.effort.brief_iterations);
   return out;
 }
 
 /// Wider in every respect: finds the neighbourhood of the answer, not the answer.
 Registration::Params coarse_params(const LidarInertialOdometry::Params& params) {
   Registration::Params out = registration_params(params);
-  out.match_distance_m = std::min(2.0 * params.match_distance_m, 10.0);
-  out.iterations_max = std::min(params.iterations_max, params.effort.coarse_iterations);
-  out.kernel_min_m = 0.5;
-  out.rematch_m = 0.2;
-  out.step_m = 5e-3;
-  out.step_rad = 2e-3;
-  out.matches_min = std::min<std::size_t>(params.matches_min, params.effort.coarse_matches_min);
-  out.fitting_share_min = 0.2;
+  out.match_distance_m = std::min(2.0 * params.expert.matching.distance_m, 10.0);
+  out.iterations_max = std::min(params.expert.matching.iterations_max, params.expert.effort.coarse_iterations);
+  out.expert.kernel_min_m = 0.5;
+  out.expert.rematch_m = 0.2;
+  out.expert.step_m = 5e-3;
+  out.expert.step_rad = 2e-3;
+  out.matches_min = std::min<std::size_t>(params.expert.matching.least, params.expert.effort.coarse_matches_min);
+  out.expert.fitting_share_min = 0.2;
   return out;
 }
 
@@ -55,8 +55,8 @@ Aligner::Aligner(const LidarInertialOdometry::Params& params)
     : brief_(brief_params(params)),
       patient_(registration_params(params)),
       coarse_(coarse_params(params)),
-      patient_points_(params.effort.patient_points),
-      coarse_points_(params.effort.coarse_points) {}
+      patient_points_(params.expert.effort.patient_points),
+      coarse_points_(params.expert.effort.coarse_points) {}
 
 void Aligner::in_full(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
                       Registration::Result& found) {
@@ -86,14 +86,14 @@ void Aligner::from_afar(const Registration::Prior& start, const Registration::Pr
 
 Registration::Params registration_params(const LidarInertialOdometry::Params& params) {
   Registration::Params out;
-  out.neighbours = params.neighbours;
-  out.plane.neighbours_min = std::min(out.plane.neighbours_min, params.neighbours);
-  out.match_distance_m = params.match_distance_m;
-  out.iterations_max = params.iterations_max;
-  out.skew_sigma_m_s = params.skew_sigma_m_s;
-  out.correction_max_m = params.correction_max_m;
-  out.correction_max_rad = params.correction_max_rad;
-  out.matches_min = params.matches_min;
+  out.neighbours = params.expert.matching.neighbours;
+  out.expert.plane.neighbours_min = std::min(out.expert.plane.neighbours_min, params.expert.matching.neighbours);
+  out.match_distance_m = params.expert.matching.distance_m;
+  out.iterations_max = params.expert.matching.iterations_max;
+  out.skew_sigma_m_s = params.expert.matching.skew_sigma_m_s;
+  out.correction_max_m = params.expert.matching.correction_max_m;
+  out.correction_max_rad = params.expert.matching.correction_max_rad;
+  out.matches_min = params.expert.matching.least;
   out.parallel_for = params.parallel_for;
   return out;
 }

@@ -16,7 +16,7 @@ Belief belief_at_start(const LidarInertialOdometry::Params& params, const Motion
   SweepCalibration& calibration = belief.mean.calibration;
   calibration.T_IL = params.T_IL;
   calibration.time_offset_s = 0.0;  // the given offset is applied to the stamps
-  calibration.gravity_W_m_s2 = Eigen::Vector3d(0.0, 0.0, -params.gravity_m_s2);
+  calibration.gravity_W_m_s2 = Eigen::Vector3d(0.0, 0.0, -params.expert.gravity_m_s2);
   Matrix& P = belief.weight;
   u::variances(P, u::mounting_rotation).setConstant(params.mount_sigma_rad * params.mount_sigma_rad);
   u::variances(P, u::mounting_translation).setConstant(params.mount_sigma_m * params.mount_sigma_m);
@@ -27,13 +27,13 @@ Belief belief_at_start(const LidarInertialOdometry::Params& params, const Motion
   const Eigen::Matrix<double, 6, 6> mounting = u::block(P, u::mounting);
   u::block(P, u::motion) = levelled.covariance + by_mounting * mounting * by_mounting.transpose();
   u::block(P, u::motion, u::mounting) = by_mounting * mounting;
-  if (params.gravity_sigma_m_s2 > 0.0) {
+  if (params.expert.gravity_sigma_m_s2 > 0.0) {
     Eigen::Matrix<double, 3, 6> gravity_by_mounting = Eigen::Matrix<double, 3, 6>::Zero();
     gravity_by_mounting.leftCols<3>() = so3::hat(calibration.gravity_W_m_s2) * levelled.q_WI.toRotationMatrix();
     u::block(P, u::gravity, u::mounting) = gravity_by_mounting * mounting;
     u::block(P, u::mounting, u::gravity) = u::block(P, u::gravity, u::mounting).transpose();
     u::block(P, u::gravity) = gravity_by_mounting * mounting * gravity_by_mounting.transpose();
-    const double sigma2 = params.gravity_sigma_m_s2 * params.gravity_sigma_m_s2;
+    const double sigma2 = params.expert.gravity_sigma_m_s2 * params.expert.gravity_sigma_m_s2;
     // the magnitude is known much better than the direction
     u::variances(P, u::gravity) += Eigen::Vector3d(sigma2, sigma2, 0.01 * sigma2);
     u::block(P, u::motion, u::gravity) = by_mounting * mounting * gravity_by_mounting.transpose();
@@ -78,7 +78,7 @@ Eigen::Matrix<double, 6, 6> pose_by_mounting(const Eigen::Quaterniond& q_WI, con
 
 Matrix invertible(const Matrix& covariance) {
   Matrix out = covariance;
-  out.diagonal().array() += kLeastVariance;
+  out.diagonal().array() += unknowns::kLeastVariance;
   return out;
 }
 

@@ -33,7 +33,6 @@ Eigen::Matrix<double, 6, 6> pose_by_mounting(const Eigen::Quaterniond& q_WI, con
 
 /// The matrix with what can be inverted in the place of variances of 0.
 Registration::Matrix invertible(const Registration::Matrix& covariance);
-inline constexpr double kLeastVariance = 1e-12;
 
 /// (P + P^T) / 2, against what rounding adds from product to product.
 template <class Matrix>

@@ -8,20 +8,14 @@
 
 namespace tumble::mapping {
 
-namespace {
-
-constexpr double kReferenceSpan_s = 0.1;  // the prior's standard deviations are stated for this
-
-}  // namespace
-
 /// mapping.md (R31), (R32), (R33).
 Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& params,
                                            const SweepTrajectory& trajectory, std::span<const MotionSample> samples,
                                            unsigned excess_axes) {
-  const double span = trajectory.duration_s() / kReferenceSpan_s;
+  const double span = trajectory.duration_s() / InertialNoiseParams::kSpan_s;
   Eigen::Matrix<double, 9, 9> noise = Eigen::Matrix<double, 9, 9>::Zero();
-  noise.diagonal().segment<3>(0).setConstant(std::pow(params.prior_sigma_m * span, 2));
-  noise.diagonal().segment<3>(3).setConstant(std::pow(params.prior_sigma_rad * span, 2));
+  noise.diagonal().segment<3>(0).setConstant(std::pow(params.expert.prior.sigma_m * span, 2));
+  noise.diagonal().segment<3>(3).setConstant(std::pow(params.expert.prior.sigma_rad * span, 2));
 
   const TimeNs start_ns = trajectory.start_ns();
   std::size_t hint = 0;
@@ -37,25 +31,26 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
       if (excess_axes >> axis & sample.clipped_axes >> axis & 1) variance[axis] = 0.0;
     }
     if (sample.bridges_gap) {
-      gap_m += gap_m_s * (to - from) + 0.5 * params.gap_force_m_s2 * (to - from) * (to - from);
-      gap_m_s += params.gap_force_m_s2 * (to - from);
+      gap_m += gap_m_s * (to - from) + 0.5 * params.expert.prior.gap_force_m_s2 * (to - from) * (to - from);
+      gap_m_s += params.expert.prior.gap_force_m_s2 * (to - from);
     } else {
       pushed_m_s += (to - from) * sample.f_I_m_s2.norm();
     }
     turned_rad += (to - from) * sample.w_WI_I_rad_s.norm();
     turned += (to - from) * R * variance.asDiagonal() * R.transpose();
   }
-  noise.diagonal().segment<3>(6).setConstant(std::pow(params.prior_sigma_m_s * span, 2) +
-                                             std::pow(params.force_sigma_share * pushed_m_s, 2) + gap_m_s * gap_m_s);
+  noise.diagonal().segment<3>(6).setConstant(std::pow(params.expert.prior.sigma_m_s * span, 2) +
+                                             std::pow(params.expert.prior.force_share * pushed_m_s, 2) +
+                                             gap_m_s * gap_m_s);
   noise.diagonal().segment<3>(0).array() += gap_m * gap_m;
   // held still: velocity is zero, and what it would have moved by does not count
   const auto rests = [&](const MotionSample& sample) {
     return sample.at_rest || seconds(sample.from_ns - start_ns) >= trajectory.duration_s();
   };
   if (std::all_of(samples.begin(), samples.end(), rests))
-    return params.standstill.noise_share * params.standstill.noise_share * noise;
+    return params.expert.standstill.noise_share * params.expert.standstill.noise_share * noise;
   noise.block<3, 3>(3, 3) += trajectory.duration_s() * turned;  // mapping.md (R34)
-  noise.diagonal().segment<3>(3).array() += std::pow(params.turn_sigma_share * turned_rad, 2);
+  noise.diagonal().segment<3>(3).array() += std::pow(params.expert.prior.turn_share * turned_rad, 2);
   return noise;
 }
 
@@ -73,7 +68,7 @@ Eigen::Matrix3d railed_velocity_variance(const LidarInertialOdometry::Params& pa
       if (sample.railed_axes >> axis & 1) lasted.col(axis) += (to - from) * R.col(axis);
     }
   }
-  return params.railed_force_m_s2 * params.railed_force_m_s2 * lasted * lasted.transpose();
+  return params.expert.rails.force_sigma_m_s2 * params.expert.rails.force_sigma_m_s2 * lasted * lasted.transpose();
 }
 
 Status start_at_rest(const LidarInertialOdometry::Params& params, std::span<const MotionSample> samples,
@@ -82,7 +77,7 @@ Status start_at_rest(const LidarInertialOdometry::Params& params, std::span<cons
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   double count = 0.0;
   for (const MotionSample& sample : samples) {
-    if (seconds(sample.time_ns - samples.front().from_ns) > params.rest_s && count > 0.0) break;
+    if (seconds(sample.time_ns - samples.front().from_ns) > params.expert.rest.levels_s && count > 0.0) break;
     force += sample.f_I_m_s2;
     count += 1.0;
   }
@@ -92,8 +87,10 @@ Status start_at_rest(const LidarInertialOdometry::Params& params, std::span<cons
   state = MotionState{};
   state.time_ns = samples.front().from_ns;
   if (Status status = level(force, state.q_WI); !status.ok()) return status;
-  state.covariance.diagonal().segment<2>(3).setConstant(params.start.level_sigma_rad * params.start.level_sigma_rad);
-  state.covariance.diagonal().tail<3>().setConstant(params.start.speed_sigma_m_s * params.start.speed_sigma_m_s);
+  state.covariance.diagonal().segment<2>(3).setConstant(params.expert.start.level_sigma_rad *
+                                                        params.expert.start.level_sigma_rad);
+  state.covariance.diagonal().tail<3>().setConstant(params.expert.start.speed_sigma_m_s *
+                                                    params.expert.start.speed_sigma_m_s);
   return {};
 }
 
@@ -102,10 +99,11 @@ Eigen::Vector3d believed_rate_sigma(const LidarInertialOdometry::Params& params,
   Eigen::Vector3d sigma = rate.covariance_rad2_s2.diagonal().cwiseMax(0.0).cwiseSqrt();
   const bool recovered = rate.source == RateSource::recovered_flight || rate.source == RateSource::recovered_contact;
   for (int axis = 0; axis < 3; ++axis) {
-    if (rate.clipped_axes >> axis & 1 && !recovered) sigma[axis] = std::max(sigma[axis], params.clipped_sigma_rad_s);
-    if (window_ns > kGap_ns) sigma[axis] = params.rate_sigma_max_rad_s;
+    if (rate.clipped_axes >> axis & 1 && !recovered)
+      sigma[axis] = std::max(sigma[axis], params.expert.rails.rate_sigma_rad_s);
+    if (window_ns > kGap_ns) sigma[axis] = params.expert.prior.rate_sigma_max_rad_s;
   }
-  return sigma.cwiseMin(params.rate_sigma_max_rad_s);
+  return sigma.cwiseMin(params.expert.prior.rate_sigma_max_rad_s);
 }
 
 }  // namespace tumble::mapping

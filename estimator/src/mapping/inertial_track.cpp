@@ -24,7 +24,7 @@ TimeNs middle_of(const MotionSample& sample) {
 std::uint8_t railed_axes(const Params& params, const ImuSample& sample) {
   std::uint8_t axes = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    const bool railed = std::abs(sample.specific_force_m_s2[axis]) >= params.accel_rail_m_s2 ||
+    const bool railed = std::abs(sample.specific_force_m_s2[axis]) >= params.expert.rails.accel_m_s2 ||
                         (sample.device_clip_flags & (kClipAccelX << axis)) != 0;
     if (railed) axes |= static_cast<std::uint8_t>(1 << axis);
   }
@@ -35,11 +35,11 @@ std::uint8_t railed_axes(const Params& params, const ImuSample& sample) {
 
 RestDetector::Params mapper_rest(const LidarInertialOdometry::Params& params) {
   // what it turns by before it is heard is lost: each axis has its part of the bound
-  return {.rate_max_rad_s = params.rest_rate_rad_s,
-          .rate_spread_rad_s = params.rest_rate_rad_s / std::numbers::sqrt3,
-          .force_min_m_s2 = std::max(params.gravity_m_s2 - params.rest_force_m_s2, 0.0),
-          .force_max_m_s2 = params.gravity_m_s2 + params.rest_force_m_s2,
-          .force_spread_m_s2 = params.rest_force_m_s2,
+  return {.rate_max_rad_s = params.expert.rest.rate_rad_s,
+          .rate_spread_rad_s = params.expert.rest.rate_rad_s / std::numbers::sqrt3,
+          .force_min_m_s2 = std::max(params.expert.gravity_m_s2 - params.expert.rest.force_m_s2, 0.0),
+          .force_max_m_s2 = params.expert.gravity_m_s2 + params.expert.rest.force_m_s2,
+          .force_spread_m_s2 = params.expert.rest.force_m_s2,
           .rest_s = 0.0};
 }
 
@@ -71,13 +71,13 @@ void InertialTrack::take(const Params& params, const ImuSample& sample, const Ra
   next.clipped_axes = static_cast<std::uint8_t>(rate.clipped_axes & kAllAxes);
   next.railed_axes = railed_axes(params, sample);
   next.bridges_gap = next.time_ns - next.from_ns > kGap_ns;
-  const bool in_flight = params.body && !samples_.empty() && settle_force(params, next);
+  const bool in_flight = params.expert.flight.body && !samples_.empty() && settle_force(params, next);
   before_newest_ = newest_;
   newest_ = {next.w_WI_I_rad_s, middle_of(next)};
   if (in_flight && next.bridges_gap && next.time_ns - next.from_ns <= kArcMost_ns) {
     const std::size_t before = samples_.size();
     const Eigen::Vector3d w_rad_s = samples_.back().w_WI_I_rad_s;
-    if (flight_arc(*params.body, w_rad_s, next.from_ns, next.time_ns, kArcStep_ns, samples_).ok()) {
+    if (flight_arc(*params.expert.flight.body, w_rad_s, next.from_ns, next.time_ns, kArcStep_ns, samples_).ok()) {
       for (MotionSample& part : std::span(samples_).subspan(before)) {
         part.rate_sigma_rad_s = next.rate_sigma_rad_s;
         part.in_flight = true;
@@ -97,10 +97,10 @@ bool InertialTrack::settle_force(const Params& params, const MotionSample& next)
   const double span_s = seconds(middle_of(next) - before_newest_->middle_ns);
   if (span_s <= 0.0) return false;
   const Eigen::Vector3d acceleration = next.bridges_gap
-                                           ? torque_free_acceleration(*params.body, now.w_WI_I_rad_s)
+                                           ? torque_free_acceleration(*params.expert.flight.body, now.w_WI_I_rad_s)
                                            : Eigen::Vector3d((next.w_WI_I_rad_s - before_newest_->rate_rad_s) / span_s);
-  const Eigen::Vector3d force = flight_force(*params.body, now.w_WI_I_rad_s, acceleration);
-  if ((now.f_I_m_s2 - force).norm() > params.flight_force_m_s2) return false;
+  const Eigen::Vector3d force = flight_force(*params.expert.flight.body, now.w_WI_I_rad_s, acceleration);
+  if ((now.f_I_m_s2 - force).norm() > params.expert.flight.force_m_s2) return false;
   now.f_I_m_s2 = force;
   now.in_flight = true;
   return true;
@@ -118,10 +118,10 @@ void InertialTrack::listen_for_rest(const Params& params, const ImuSample& sampl
   if (initial_.lasts) {
     if (!initial_.first_ns) initial_.first_ns = initial_.run_ns = sample.time_ns;
     // the mean of a run that has just begun is as noisy as its readings, and noise may begin it anew
-    if (next.rests_since_ns && seconds(*next.rests_since_ns - *initial_.first_ns) < params.start.bias_rest_s)
+    if (next.rests_since_ns && seconds(*next.rests_since_ns - *initial_.first_ns) < params.expert.start.bias_rest_s)
       initial_.run_ns = next.rests_since_ns;
     initial_.lasts = next.rests_since_ns == initial_.run_ns;
-    if (initial_.lasts && seconds(rest_.quiet_ns) >= params.start.bias_rest_s)
+    if (initial_.lasts && seconds(rest_.quiet_ns) >= params.expert.start.bias_rest_s)
       initial_.gyro_bias_rad_s = rest_.mean_rate_rad_s();
   }
   next.at_rest = initial_.lasts;

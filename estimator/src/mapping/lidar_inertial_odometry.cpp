@@ -27,7 +27,7 @@ Status check(const ImuSample& sample, const RateState& rate) {
 LidarInertialOdometry::Impl::Impl(const Params& given)
     : params((mapping::check_params(given), given)),
       track(given),
-      window(given.window_sweeps),
+      window(given.expert.window_sweeps),
       map(given),
       points(given),
       aligner(given) {

@@ -10,8 +10,6 @@ namespace tumble::mapping {
 
 namespace {
 
-constexpr double kPruneShare = 0.1;  // of the map's radius: moved so far, the sensor drops what is out of reach
-
 /// What the trajectory is uncertain by inside of a stretch, as seen at a point: between its start and its end. Its part
 /// of mapping.md (R53).
 class PoseVariance {
@@ -54,12 +52,12 @@ std::size_t LocalMap::draw(const Params& params, const SweepTrajectory& trajecto
     const Eigen::Vector3f position = levers_W_m_[i] + trajectory.base_m(points[i].t_s).cast<float>();
     // mapping.md (R53)
     const double sigma_m = std::sqrt(noise.point_variance_m2(points[i]) + of_pose.at_m2(points[i]));
-    if (sigma_m > params.map_sigma_max_m) continue;
+    if (sigma_m > params.expert.map.sigma_max_m) continue;
     const std::uint32_t index =
         map_.add(position, static_cast<float>(sigma_m), sweep, ScanLines::line(line, points[i].ring));
     if (index == VoxelMap::kNoPoint) continue;
     ++added;
-    if (params.window_sweeps > 1) drawn.push_back({index, points[i]});
+    if (params.expert.window_sweeps > 1) drawn.push_back({index, points[i]});
   }
   seen_from_W_m_.push_back(middle.p_WI_m.cast<float>());
   return added;
@@ -80,9 +78,9 @@ void LocalMap::redraw(const SweepTrajectory& trajectory, const Eigen::Isometry3d
 bool LocalMap::prune(const Params& params, const Eigen::Vector3d& p_WI_m) {
   const Eigen::Vector3f here = p_WI_m.cast<float>();
   const float moved = (here - pruned_at_W_m_).norm();
-  if (moved < static_cast<float>(kPruneShare * params.map_radius_m)) return false;
+  if (moved < static_cast<float>(LocalMapParams::kPruneShare * params.expert.map.radius_m)) return false;
   pruned_at_W_m_ = here;
-  const std::vector<std::uint32_t> kept = map_.keep_within(here, static_cast<float>(params.map_radius_m));
+  const std::vector<std::uint32_t> kept = map_.keep_within(here, static_cast<float>(params.expert.map.radius_m));
   std::vector<Eigen::Vector3f> from(kept.size());
   for (std::size_t i = 0; i < kept.size(); ++i) from[i] = seen_from_W_m_[kept[i]];
   seen_from_W_m_.swap(from);
@@ -97,7 +95,8 @@ bool LocalMap::knows_its_sweeps() const {
 }
 
 std::vector<MapPoint> LocalMap::with_normals(const Params& params) const {
-  return mapping::with_normals(map_, seen_from_W_m_, params.neighbours, params.match_distance_m);
+  return mapping::with_normals(map_, seen_from_W_m_, params.expert.matching.neighbours,
+                               params.expert.matching.distance_m);
 }
 
 }  // namespace tumble::mapping

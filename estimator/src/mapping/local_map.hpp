@@ -23,7 +23,7 @@ class LocalMap {
  public:
   using Params = LidarInertialOdometry::Params;
 
-  explicit LocalMap(const Params& params) : map_({params.map_voxel_m, params.map_spacing_m}) {}
+  explicit LocalMap(const Params& params) : map_({params.expert.map.voxel_m, params.expert.map.spacing_m}) {}
 
   const VoxelMap& voxels() const { return map_; }
   bool empty() const { return map_.size() == 0; }

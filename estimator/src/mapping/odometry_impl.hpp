@@ -34,8 +34,8 @@ struct LidarInertialOdometry::Impl {
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns, SweepReport& report);
 
   Status check_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns) const;
-  /// Levels the IMU where nothing has been seen yet.
-  Status begin();
+  /// Where nothing has been seen yet: the belief at the start, by the IMU at rest.
+  Status level_at_first();
   bool rests(const mapping::InertialTrack& heard, const SweepTrajectory& motion, TimeNs end_ns) const;
   mapping::Placed place(const mapping::Prediction& prediction, const mapping::MotionWindow& motion,
                         SweepReport& report);
@@ -47,6 +47,8 @@ struct LidarInertialOdometry::Impl {
                 std::vector<mapping::DrawnPoint> drawn, SweepReport& report);
   void enter_window(const mapping::SettledSweep& sweep, const mapping::MotionWindow& motion,
                     std::vector<mapping::DrawnPoint> drawn, bool aligned);
+  void part_from_world(const mapping::Belief& start, const SweepReport& report);
+  void forget_until(TimeNs end_ns);
 
   PoseState pose_along(const SweepTrajectory& motion, double t_s, const Registration::Matrix& errors) const;
   /// At the ends of the IMU's windows, and at `end_ns` for the last; `errors` are those of the unknowns at the start.

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "../common/imu_members.hpp"
-#include "tumble/mapping/lidar_inertial_odometry_fields.hpp"
+#include "tumble/mapping/lidar_inertial_odometry.hpp"
 
 /// Members of sweeps and reports, and what the mapper's Params hold beside Fields: state_visitor.hpp.
 namespace tumble {
@@ -44,7 +44,7 @@ void members(Self& s, Visitor& visit) {
 template <StateOf<LidarInertialOdometry::Params> Self, class Visitor>
 void others(Self& p, Visitor& visit) {
   visit("T_IL", p.T_IL);
-  visit("body", p.body);
+  visit("body", p.expert.flight.body);
   visit.scratch(p.parallel_for);  // the caller's
 }
 

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "odometry_impl.hpp"
-#include "tumble/mapping/lidar_inertial_odometry_fields.hpp"
+#include "tumble/mapping/lidar_inertial_odometry.hpp"
 
 namespace tumble::mapping {
 
 void check_params(const LidarInertialOdometry::Params& params) {
   require_fields(params);
   require_within("range_max_m", params.range_max_m, params.range_min_m, 1e4);
-  require_within("map_spacing_m", params.map_spacing_m, 0.0, params.map_voxel_m);
-  if (params.body) require_within("body.p_IB_I_m", params.body->p_IB_I_m.norm(), 0.0, 1e3);
-  require_within("map_radius_m", params.map_radius_m, params.range_max_m / 10.0, 1e5);
+  require_within("map_spacing_m", params.expert.map.spacing_m, 0.0, params.expert.map.voxel_m);
+  if (params.expert.flight.body) require_within("body.p_IB_I_m", params.expert.flight.body->p_IB_I_m.norm(), 0.0, 1e3);
+  require_within("map_radius_m", params.expert.map.radius_m, params.range_max_m / 10.0, 1e5);
   const double orthogonality =
       (params.T_IL.linear() * params.T_IL.linear().transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   require_within("T_IL rotation's distance from orthogonal", orthogonality, 0.0, 1e-6);
+  require_within("T_IL rotation's determinant", params.T_IL.linear().determinant(), 0.999, 1.001);
   require_within("T_IL translation", params.T_IL.translation().norm(), 0.0, 1e3);
 }
 

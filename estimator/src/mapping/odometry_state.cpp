@@ -26,7 +26,7 @@ void visit_taught(Self& p, Visitor& visit) {
 }  // namespace
 
 Status LidarInertialOdometry::Impl::check_state() const {
-  const auto most = static_cast<std::size_t>(params.window_sweeps);
+  const auto most = static_cast<std::size_t>(params.expert.window_sweeps);
   if (window.sweeps().size() > most)
     return {Trouble::out_of_range, "window.sweeps", double(window.sweeps().size()), double(most)};
   for (const mapping::WindowSweep& sweep : window.sweeps()) {

@@ -14,7 +14,9 @@ using mapping::SettledSweep, mapping::WindowSweep;
 Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns,
                                               SweepReport& report) {
   if (Status status = check_sweep(start_ns, end_ns, returns); !status.ok()) return status;
-  if (Status status = begin(); !status.ok()) return status;
+  if (Status status = level_at_first(); !status.ok()) return status;
+
+  // where the IMU leads from the border on; `trajectory` is this motion until what stands takes its place
   const auto& [state, calibration, excess] = border.belief.mean;
   if (Status status = trajectory.build(state, track.samples(), end_ns, calibration.gravity_W_m_s2); !status.ok())
     return status;
@@ -22,14 +24,16 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   const MotionWindow motion{track.samples(), end_ns, resting_sweeps};
   Prediction prediction = mapping::predict(params, border, motion, trajectory, known);
 
+  // where the lidar finds itself in the map; a sweep of which no return is of use is placed by inertia
   mapping::SweepPoints::Counts counts;
-  const Status useless =
+  const Status points_status =
       points.select(params, returns, end_ns - start_ns, calibration, seconds(start_ns - border.time_ns()), counts);
   report.points_used = counts.used;
   report.points_alone = counts.alone;
-  const Placed placed = useless.ok() ? place(prediction, motion, report) : Placed{};
+  const Placed placed = points_status.ok() ? place(prediction, motion, report) : Placed{};
   report.verdict = placed.verdict;
 
+  // what stands, what it adds to the map, and what the next sweep begins from
   SettledSweep sweep;
   if (Status status = settle(std::move(prediction), placed, motion, sweep); !status.ok()) return status;
   // where the map had nothing to say the prior draws on: points that it leaves too uncertain stay out by themselves
@@ -37,7 +41,7 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   if (placed.verdict != SweepVerdict::rejected || placed.map_says_nothing)
     drawn = draw(sweep.start, counts.rings_differ, report);
   carry_on(sweep, placed, motion, std::move(drawn), report);
-  return useless;
+  return points_status;
 }
 
 Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
@@ -60,12 +64,12 @@ Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
   return mapping::check_offsets(end_ns - start_ns, returns);
 }
 
-Status LidarInertialOdometry::Impl::begin() {
+Status LidarInertialOdometry::Impl::level_at_first() {
   if (mapping::has_started(tracking)) return {};
   MotionState levelled;
   if (Status status = mapping::start_at_rest(params, track.samples(), levelled); !status.ok()) return status;
   border.belief = mapping::belief_at_start(params, levelled);
-  world = mapping::WorldCovariance(params.world, levelled.q_WI, params.T_IL.translation());
+  world = mapping::WorldCovariance(params.expert.world, levelled.q_WI, params.T_IL.translation());
   return {};
 }
 
@@ -74,14 +78,14 @@ bool LidarInertialOdometry::Impl::rests(const mapping::InertialTrack& heard, con
                                         TimeNs end_ns) const {
   if (!heard.rests_until(end_ns)) return false;
   const Eigen::Vector3d gained_m_s = motion.state(motion.duration_s()).v_WI_m_s - border.belief.mean.state.v_WI_m_s;
-  return !(gained_m_s.norm() > params.rest_force_m_s2 * motion.duration_s());
+  return !(gained_m_s.norm() > params.expert.rest.force_m_s2 * motion.duration_s());
 }
 
 Placed LidarInertialOdometry::Impl::place(const Prediction& prediction, const MotionWindow& motion,
                                           SweepReport& report) {
   if (map.empty()) {
     Placed first;
-    if (points.all().size() >= params.matches_min) first.verdict = SweepVerdict::first;
+    if (points.all().size() >= params.expert.matching.least) first.verdict = SweepVerdict::first;
     return first;
   }
   const bool prior_trusted = mapping::prior_is_trusted(params, border, motion, trajectory);
@@ -135,27 +139,33 @@ std::vector<DrawnPoint> LidarInertialOdometry::Impl::draw(const Belief& start, b
 /// What the sweep leaves behind.
 void LidarInertialOdometry::Impl::carry_on(const SettledSweep& sweep, const Placed& placed, const MotionWindow& motion,
                                            std::vector<DrawnPoint> drawn, SweepReport& report) {
-  const bool aligned = placed.alignment.has_value();
+  const Registration::Result* aligned = placed.alignment ? &*placed.alignment : nullptr;
   tracking = mapping::after_sweep(tracking, placed.placement, placed.verdict);
   report.lost_sweeps = mapping::lost_sweeps(tracking);
   if (aligned && placed.verdict == SweepVerdict::degenerate && motion.resting_sweeps == 0)
     world.add_drift(report.weakest_sigma_m, report.weakest_direction);
   report.trajectory = poses_along(trajectory, motion.end_ns, sweep.start.error);
-  enter_window(sweep, motion, std::move(drawn), aligned);
+  enter_window(sweep, motion, std::move(drawn), aligned != nullptr);
   // no later sweep refines it: it leaves with the next one
   if (window.is_full()) report.smoothed = poses_of(window.sweeps().front());
-
-  border = mapping::border_after(params, sweep.start, motion, trajectory, aligned ? &*placed.alignment : nullptr);
-  // what the sweep adds to the map is off by what the pose was: by so much of it the map moves where the robot is
-  const double drawn_share =
-      report.points_used == 0 ? 0.0 : double(report.map_points_added) / double(report.points_used);
-  if (placed.verdict != SweepVerdict::first)
-    world.add_drawing(drawn_share, trajectory, sweep.start.error, border.belief.mean.calibration.T_IL.translation());
+  border = mapping::border_after(params, sweep.start, motion, trajectory, aligned);
   report.pose = border.belief.mean.state.pose();
   report.pose.covariance = report.trajectory.back().covariance;
+  if (placed.verdict != SweepVerdict::first) part_from_world(sweep.start, report);
+  forget_until(motion.end_ns);
+}
 
+/// What the sweep adds to the map is off by what the pose was: by so much of it the map moves where the robot is.
+void LidarInertialOdometry::Impl::part_from_world(const Belief& start, const SweepReport& report) {
+  const double drawn_share =
+      report.points_used == 0 ? 0.0 : double(report.map_points_added) / double(report.points_used);
+  world.add_drawing(drawn_share, trajectory, start.error, border.belief.mean.calibration.T_IL.translation());
+}
+
+/// All that was told of the time up to the border has been used.
+void LidarInertialOdometry::Impl::forget_until(TimeNs end_ns) {
   known = mapping::InertialPrior{};
-  track.forget_until(motion.end_ns);
+  track.forget_until(end_ns);
   if (map.prune(params, border.belief.mean.state.p_WI_m)) window.forget_drawn();
 }
 

@@ -21,12 +21,13 @@ using Params = LidarInertialOdometry::Params;
 void carry_excess(const Params& params, const Border& border, const SweepTrajectory& trajectory, Prediction& next) {
   constexpr int kLast = SweepTrajectory::kKnots - 1;
   u::rows(next.by_last, u::excess).setZero();
-  if (!params.estimate_saturation_deficit) return;
+  if (!params.expert.rails.estimate_deficit) return;
   const Eigen::Vector3d share_at_start = trajectory.excess_share_at_start();
   const double rho = knot_correlation(params, trajectory);
   for (int axis = 0; axis < 3; ++axis) {
     if (!(share_at_start[axis] > 0.0 && border.excess_share[axis] > 0.0)) continue;
-    double remains = std::clamp(border.excess_share[axis] / share_at_start[axis], 0.0, params.excess_carry_max);
+    double remains =
+        std::clamp(border.excess_share[axis] / share_at_start[axis], 0.0, params.expert.rails.excess_carry_max);
     for (int knot = 0; knot <= kLast; ++knot) {
       next.prior.mean.excess_rad_s(axis, knot) = remains * border.belief.mean.excess_rad_s(axis, kLast);
       next.by_last(u::excess_at(axis, knot), u::excess_at(axis, kLast)) = remains;
@@ -38,7 +39,7 @@ void carry_excess(const Params& params, const Border& border, const SweepTraject
 /// Largest standard deviation that the rate method reports of the axis while clipped inside of the stretch, at least
 /// the parameter's.
 double excess_sigma(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory, int axis) {
-  double sigma = params.excess_sigma_min_rad_s;
+  double sigma = params.expert.rails.excess_sigma_min_rad_s;
   for (const MotionSample& sample : window.samples) {
     // those after the stretch wait for the next one
     if (seconds(sample.from_ns - trajectory.start_ns()) >= trajectory.duration_s()) break;
@@ -51,7 +52,7 @@ double excess_sigma(const Params& params, const MotionWindow& window, const Swee
 /// mapping.md (R36), (R37), (R39): the last where the first knot is carried.
 void add_excess_noise(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory,
                       Prediction& next) {
-  if (!params.estimate_saturation_deficit) return;
+  if (!params.expert.rails.estimate_deficit) return;
   const double rho = knot_correlation(params, trajectory);
   for (int axis = 0; axis < 3; ++axis) {
     if (!(trajectory.clipped_axes() >> axis & 1)) continue;
@@ -64,7 +65,7 @@ void add_excess_noise(const Params& params, const MotionWindow& window, const Sw
             sigma * sigma * (std::pow(rho, std::abs(a - b)) - known);
       }
       next.noise(u::excess_at(axis, a), u::excess_at(axis, a)) +=
-          params.excess_knot_share * params.excess_knot_share * sigma * sigma;
+          params.expert.rails.excess_knot_share * params.expert.rails.excess_knot_share * sigma * sigma;
     }
   }
 }
@@ -72,7 +73,7 @@ void add_excess_noise(const Params& params, const MotionWindow& window, const Sw
 }  // namespace
 
 double knot_correlation(const Params& params, const SweepTrajectory& trajectory) {
-  return std::exp(-trajectory.duration_s() / (SweepTrajectory::kKnots - 1) / params.excess_time_s);
+  return std::exp(-trajectory.duration_s() / (SweepTrajectory::kKnots - 1) / params.expert.rails.excess_time_s);
 }
 
 /// mapping.md (R29).
@@ -105,13 +106,13 @@ Prediction predict(const Params& params, const Border& border, const MotionWindo
   next.prior.mean.state = border.belief.mean.state;
   next.prior.mean.calibration = border.belief.mean.calibration;
   carry_excess(params, border, trajectory, next);
-  if (window.samples.front().at_rest) next.hold_still(params.standstill.start_sigma_m_s);
+  if (window.samples.front().at_rest) next.hold_still(params.expert.standstill.start_sigma_m_s);
   // surfaces that hold the sensor tell a slow drive from a rest by themselves
-  const bool creeps = border.belief.mean.state.v_WI_m_s.norm() < params.standstill.creep_max_m_s;
-  if (window.resting_sweeps >= params.standstill.sweeps_min && !border.held && creeps)
-    next.hold_still(params.standstill.sigma_m_s);
+  const bool creeps = border.belief.mean.state.v_WI_m_s.norm() < params.expert.standstill.creep_max_m_s;
+  if (window.resting_sweeps >= params.expert.standstill.sweeps_min && !border.held && creeps)
+    next.hold_still(params.expert.standstill.sigma_m_s);
   impose(known, next);
-  const std::uint8_t axes = params.estimate_saturation_deficit ? trajectory.clipped_axes() : 0;
+  const std::uint8_t axes = params.expert.rails.estimate_deficit ? trajectory.clipped_axes() : 0;
   u::block(next.noise, u::motion) += inertial_noise(params, trajectory, window.samples, axes);
   // a force that comes late in a stretch is not in the velocity that the stretch is fitted with: the next one hears of
   // it as well
@@ -124,7 +125,7 @@ Prediction predict(const Params& params, const Border& border, const MotionWindo
 }
 
 Prediction predict_rest(const Params& params, const Border& border, Prediction prediction) {
-  prediction.hold_still(params.standstill.sigma_m_s);
+  prediction.hold_still(params.expert.standstill.sigma_m_s);
   prediction.compose(border.belief);
   return prediction;
 }
@@ -133,8 +134,10 @@ bool prior_is_trusted(const Params& params, const Border& border, const MotionWi
                       const SweepTrajectory& trajectory) {
   const Eigen::Matrix<double, 9, 9> P =
       border.belief.mean.state.covariance + inertial_noise(params, trajectory, window.samples, 0);
-  return u::variances(P, u::position).maxCoeff() <= params.trusted_prior_m * params.trusted_prior_m &&
-         u::variances(P, u::attitude).maxCoeff() <= params.trusted_prior_rad * params.trusted_prior_rad;
+  return u::variances(P, u::position).maxCoeff() <=
+             params.expert.tracking.trusted_m * params.expert.tracking.trusted_m &&
+         u::variances(P, u::attitude).maxCoeff() <=
+             params.expert.tracking.trusted_rad * params.expert.tracking.trusted_rad;
 }
 
 Belief settle(const Prediction& prediction) {
@@ -160,7 +163,7 @@ double innovation(const Prediction& prediction, const Registration::Estimate& al
   constexpr int kMotion = Registration::kMotion;
   const auto moved = aligned.minus(prediction.prior.mean).head<kMotion>().eval();
   Eigen::Matrix<double, kMotion, kMotion> P = u::block(prediction.errors, u::motion);
-  P.diagonal().array() += kLeastVariance;
+  P.diagonal().array() += unknowns::kLeastVariance;
   return std::sqrt(std::max(0.0, moved.dot(P.ldlt().solve(moved))) / kMotion);
 }
 
@@ -172,7 +175,7 @@ Border border_after(const Params& params, const Belief& start, const MotionWindo
   border.railed_velocity_m2_s2 = railed_velocity_variance(params, trajectory, window.samples);
   if (alignment != nullptr) {
     border.excess_share = trajectory.excess_share_at_end();
-    border.held = alignment->weakest_sigma_m <= params.degenerate_sigma_m;
+    border.held = alignment->weakest_sigma_m <= params.expert.matching.degenerate_sigma_m;
   }
   return border;
 }

@@ -9,6 +9,7 @@
 
 #include "registration_sums.hpp"
 #include "tumble/common/so3.hpp"
+#include "unknowns.hpp"
 
 namespace tumble {
 
@@ -17,12 +18,9 @@ namespace {
 using Vector = Registration::Vector;
 using Matrix = Registration::Matrix;
 
-// variance given to an unknown whose prior claims none, so that the prior can be inverted
-constexpr double kLeastVariance = 1e-12;
-
 Matrix information_of(const Matrix& covariance) {
   Matrix positive = covariance;
-  positive.diagonal().array() += kLeastVariance;
+  positive.diagonal().array() += mapping::unknowns::kLeastVariance;
   return positive.llt().solve(Matrix::Identity());
 }
 
@@ -39,19 +37,19 @@ void add_prior(const Registration::Prior& prior, const Matrix& information, cons
 
 bool is_small(const Vector& step, double span_s, const Registration::Params& params) {
   constexpr int kCal = Registration::kCalibration;
-  const bool lengths = step.segment<3>(0).norm() < params.step_m &&
-                       step.segment<3>(6).norm() * span_s < params.step_m &&
-                       step.segment<3>(kCal + 3).norm() < params.step_m &&
-                       step.segment<3>(kCal + 7).norm() * span_s * span_s < params.step_m;
-  return lengths && step.segment<3>(3).norm() < params.step_rad &&
+  const bool lengths = step.segment<3>(0).norm() < params.expert.step_m &&
+                       step.segment<3>(6).norm() * span_s < params.expert.step_m &&
+                       step.segment<3>(kCal + 3).norm() < params.expert.step_m &&
+                       step.segment<3>(kCal + 7).norm() * span_s * span_s < params.expert.step_m;
+  return lengths && step.segment<3>(3).norm() < params.expert.step_rad &&
          step.segment<SweepTrajectory::kExcess>(Registration::kExcess).cwiseAbs().maxCoeff() * span_s <
-             params.step_rad &&
-         step.segment<3>(kCal).norm() < params.step_rad && std::abs(step[kCal + 6]) < 1e-5;
+             params.expert.step_rad &&
+         step.segment<3>(kCal).norm() < params.expert.step_rad && std::abs(step[kCal + 6]) < 1e-5;
 }
 
 }  // namespace
 
-void Registration::Estimate::add(const Vector& error) {
+void SweepUnknowns::Estimate::add(const Vector& error) {
   state.p_WI_m += error.segment<3>(0);
   state.q_WI = (so3::exp(error.segment<3>(3)) * state.q_WI).normalized();
   state.v_WI_m_s += error.segment<3>(6);
@@ -59,7 +57,7 @@ void Registration::Estimate::add(const Vector& error) {
   calibration.add(error.tail<SweepCalibration::kErrors>());
 }
 
-Vector Registration::Estimate::minus(const Estimate& other) const {
+Vector SweepUnknowns::Estimate::minus(const Estimate& other) const {
   Vector error;
   error << state.p_WI_m - other.state.p_WI_m, so3::log(state.q_WI * other.state.q_WI.conjugate()),
       state.v_WI_m_s - other.state.v_WI_m_s, (excess_rad_s - other.excess_rad_s).reshaped(),
@@ -69,7 +67,7 @@ Vector Registration::Estimate::minus(const Estimate& other) const {
 
 Registration::Registration(const Params& params) : params_(params) {
   require_fields(params);
-  require_within("plane_neighbours_min", params.plane.neighbours_min, 3, params.neighbours);
+  require_within("plane_neighbours_min", params.expert.plane.neighbours_min, 3, params.neighbours);
 }
 
 Status Registration::align(const Prior& prior, std::span<const MotionSample> samples, TimeNs end_ns,
@@ -91,11 +89,12 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
 
   std::span<const SweepPoint> points = given;
   matches_.assign(points.size(), Match{});
-  const std::size_t matches_needed = std::max(
-      params_.matches_min, static_cast<std::size_t>(params_.matched_share_min * static_cast<double>(points.size())));
+  const std::size_t matches_needed =
+      std::max(params_.matches_min,
+               static_cast<std::size_t>(params_.expert.matched_share_min * static_cast<double>(points.size())));
   Sums sum;
   Matrix H = Matrix::Zero();
-  double kernel_m = params_.kernel_min_m;
+  double kernel_m = params_.expert.kernel_min_m;
   const auto refuse = [&](RegistrationVerdict verdict) {
     result.verdict = verdict;
     return build(prior.mean);
@@ -131,7 +130,8 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
     }
   }
   // a false minimum: most matches lie off their planes
-  const bool fits = static_cast<double>(sum.inliers) >= params_.fitting_share_min * static_cast<double>(sum.matches);
+  const bool fits =
+      static_cast<double>(sum.inliers) >= params_.expert.fitting_share_min * static_cast<double>(sum.matches);
   if (!settled || !fits) return refuse(RegistrationVerdict::diverged);
 
   const Matrix posterior = H.ldlt().solve(Matrix::Identity());  // mapping.md (R22)

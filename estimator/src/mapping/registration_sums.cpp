@@ -151,12 +151,12 @@ Registration::Matrix Registration::errors_in_variables_information(const SweepTr
 
 void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours& found) {
   Match& match = matches_[point];
-  const float rematch2 = static_cast<float>(params_.rematch_m * params_.rematch_m);
+  const float rematch2 = static_cast<float>(params_.expert.rematch_m * params_.expert.rematch_m);
   if (match.searched && (positions_[point] - match.searched_at_W_m).squaredNorm() <= rematch2) return;
   match.searched = true;
   match.searched_at_W_m = positions_[point];
   map.nearest(positions_[point], params_.neighbours, static_cast<float>(params_.match_distance_m), found);
-  match.plane = fit_plane(map, found, params_.plane);
+  match.plane = fit_plane(map, found, params_.expert.plane);
   if (match.plane.verdict != PlaneVerdict::plane) return;
   float variance = 0.0f;
   for (int k = 0; k < found.count; ++k) {
@@ -173,7 +173,7 @@ Registration::Weight Registration::weigh(const SweepPoint& point, const Match& m
   const double variance = point_variance_m2(point) + match.map_variance_m2;
   const double soft = 1.0 + distance_m * distance_m / (kernel_m * kernel_m);
   const double robust = 1.0 / (soft * soft);
-  return {variance, robust, robust * params_.correlation_discount / variance};
+  return {variance, robust, robust * params_.expert.correlation_discount / variance};
 }
 
 /// Where the points lie in the world by this trajectory, the planes that they belong to, and how far they are from
@@ -202,11 +202,11 @@ double Registration::kernel_width_m() {
   for (std::size_t i = 0; i < matches_.size(); ++i) {
     if (matches_[i].plane.verdict == PlaneVerdict::plane) sorted_.push_back(std::abs(distances_[i]));
   }
-  if (sorted_.empty()) return params_.kernel_min_m;
+  if (sorted_.empty()) return params_.expert.kernel_min_m;
   const auto middle = sorted_.begin() + static_cast<std::ptrdiff_t>(sorted_.size() / 2);
   std::nth_element(sorted_.begin(), middle, sorted_.end());
   // three standard deviations of a normal distribution with this median of the absolute value
-  return std::max(params_.kernel_min_m, 3.0 * 1.4826 * static_cast<double>(*middle));
+  return std::max(params_.expert.kernel_min_m, 3.0 * 1.4826 * static_cast<double>(*middle));
 }
 
 /// Sums over the points of mapping.md (R21).
@@ -268,7 +268,7 @@ Registration::Matrix Registration::score_covariance(std::span<const SweepPoint> 
                                                     double kernel_m) {
   cluster_of_.clear();
   pulls_.clear();
-  const float cubes_per_m = static_cast<float>(1.0 / params_.cluster_m);
+  const float cubes_per_m = static_cast<float>(1.0 / params_.expert.cluster_m);
   std::size_t hint = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Match& match = matches_[i];

@@ -29,15 +29,15 @@ void track(const Params& params, const Registration::Prior& prior, const Scene& 
   aligner.in_full(prior, scene, trajectory, found);
   int iterations = found.iterations, tries = 0;
   // one that ran beyond its bound would do so again
-  const bool out_of_bounds =
-      found.correction_m > params.correction_max_m || found.correction_rad > params.correction_max_rad;
+  const bool out_of_bounds = found.correction_m > params.expert.matching.correction_max_m ||
+                             found.correction_rad > params.expert.matching.correction_max_rad;
   if (found.verdict == RegistrationVerdict::diverged && !out_of_bounds) {
     aligner.to_convergence(prior, scene, trajectory, found);
     iterations += found.iterations;
   }
   for (const double more : kExcessTries_rad_s) {
     for (int axis = 0; axis < 3; ++axis) {
-      if (converged(found) || tries == params.search.excess_tries_max) break;
+      if (converged(found) || tries == params.expert.search.excess_tries_max) break;
       const int first = unknowns::excess_at(axis, 0);
       if (std::sqrt(prior.covariance(first, first)) < more / 5.0) continue;
       Registration::Prior start = prior;
@@ -87,7 +87,7 @@ Attempt attempt(const Params& params, const TrackingState& tracking, const Regis
   Registration::Result found;
   found.points = scene.points.size();
   if (is_lost(tracking)) {
-    search(params.search, prior, scene, failed_searches(tracking), aligner, trajectory, found);
+    search(params.expert.search, prior, scene, failed_searches(tracking), aligner, trajectory, found);
   } else {
     track(params, prior, scene, aligner, trajectory, found);
   }
@@ -103,14 +103,14 @@ Placed judge(const Params& params, const TrackingState& before, std::size_t poin
              Attempt attempt) {
   Placed out;
   if (attempt.alignment) {
-    const bool holds = attempt.alignment->weakest_sigma_m <= params.degenerate_sigma_m;
+    const bool holds = attempt.alignment->weakest_sigma_m <= params.expert.matching.degenerate_sigma_m;
     out.verdict = holds ? SweepVerdict::registered : SweepVerdict::degenerate;
     out.placement = Placement::found;
     out.alignment = std::move(attempt.alignment);
     return out;
   }
-  const bool enough = points >= params.matches_min;
-  const bool given_up = failed_searches(before) + 1 >= params.lost_sweeps_max;
+  const bool enough = points >= params.expert.matching.least;
+  const bool given_up = failed_searches(before) + 1 >= params.expert.tracking.lost_sweeps_max;
   out.placement = Placement::failed;
   out.map_says_nothing = enough && attempt.too_few_matches;
   if (enough && ((attempt.too_few_matches && prior_trusted) || given_up)) out.verdict = SweepVerdict::degenerate;

@@ -24,6 +24,9 @@ inline constexpr Block<Registration::kCalibration + 3, 3> mounting_translation;
 inline constexpr Block<Registration::kCalibration + 6, 1> clock;
 inline constexpr Block<Registration::kCalibration + 7, 3> gravity;
 
+/// Variance given to an unknown whose prior claims none, so that the prior can be inverted.
+inline constexpr double kLeastVariance = 1e-12;
+
 /// Place of an axis of the saturation deficit at a knot.
 constexpr int excess_at(int axis, int knot) {
   return Registration::kExcess + 3 * knot + axis;

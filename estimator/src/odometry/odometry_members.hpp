@@ -7,7 +7,6 @@
 #include "../common/state_params.hpp"
 #include "pass_members.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
-#include "tumble/odometry/tumbling_odometry_fields.hpp"
 
 /// Members of TumblingOdometry: state_visitor.hpp.
 namespace tumble {

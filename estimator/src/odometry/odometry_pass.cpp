@@ -67,7 +67,7 @@ OdometryPass::OdometryPass(const RegimeStream::Params& rate, const LidarInertial
     : rates_(rate),
       rate_state_(rates_.start()),
       mapper_(mapping),
-      rate_sigma_max_rad_s_(mapping.rate_sigma_max_rad_s),
+      rate_sigma_max_rad_s_(mapping.expert.prior.rate_sigma_max_rad_s),
       time_offset_s_(mapping.time_offset_s) {
   const double room = std::max(rate.rate.lag_s, kRoom_s) / rate.rate.period_s;
   unsettled_.samples.reserve(static_cast<std::size_t>(std::ceil(room)) + 16);

@@ -24,6 +24,7 @@ ImuMerge::Params merge_params(const RollingOdometry::Params& params) {
   for (std::size_t k = 0; k < params.units.size(); ++k) {
     const RollingOdometry::Unit& unit = params.units[k];
     require_fields(unit.sheet);
+    require_within("T_BI translation", unit.T_BI.translation().norm(), 0.0, params.radius_m);
     out.T_CI[k] = unit.T_BI;
     const ImuSheet& sheet = unit.sheet;
     out.gyro_range_rad_s = std::min(out.gyro_range_rad_s, sure_range(sheet.gyro_range_rad_s));
@@ -41,8 +42,9 @@ RollingSmoother::Params rolling_params(const RollingOdometry::Params& params, co
   out.filter.lever_arm_sigma_m = params.centre_sigma_m;
   out.filter.gyro_range_rad_s = merged.gyro_range_rad_s;
   out.filter.accel_range_m_s2 = merged.accel_range_m_s2;
-  if (params.units.size() >= kRecoveringUnits) out.filter.recovered_rate_sigma_rad_s = kRecoveredSigma_rad_s;
-  out.lag_s = std::max(params.lag_s, out.filter.node_s);
+  if (params.units.size() >= kRecoveringUnits)
+    out.filter.expert.rails.recovered_rate_sigma_rad_s = kRecoveredSigma_rad_s;
+  out.lag_s = std::max(params.lag_s, out.filter.expert.node_s);
   out.rate_max_hz = std::max(out.rate_max_hz, 1.1 * params.units.front().sheet.rate_hz);
   return out;
 }

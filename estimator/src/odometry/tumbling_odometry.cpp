@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "tumble/mapping/detail/sweep_check.hpp"
-#include "tumble/odometry/tumbling_odometry_fields.hpp"
 
 namespace tumble {
 
@@ -27,8 +26,8 @@ RegimeStream::Params rate_params(const TumblingOdometry::Params& params) {
   if (params.imu.accel_range_m_s2 > 0.0) out.rate.rails.stated_accel_m_s2 = params.imu.accel_range_m_s2;
   out.rate.period_s = 1.0 / params.imu.rate_hz;
   out.rate.lag_s = std::max(params.lag_s, 2.0 * out.rate.period_s);
-  out.evidence.gravity_m_s2 = out.carried.body.gravity_m_s2 = params.gravity_m_s2;
-  out.carried.body.gap_max_s = out.rate.gap_max_s;
+  out.evidence.gravity_m_s2 = out.carried.body.gravity_m_s2 = params.expert.gravity_m_s2;
+  out.carried.body.expert.gap_max_s = out.rate.gap_max_s;
   return out;
 }
 
@@ -38,11 +37,11 @@ LidarInertialOdometry::Params mapper_params(const TumblingOdometry::Params& para
   out.mount_sigma_rad = params.mount_sigma_rad;
   out.mount_sigma_m = params.mount_sigma_m;
   out.time_offset_sigma_s = params.time_offset_sigma_s;
-  out.gravity_m_s2 = params.gravity_m_s2;
+  out.expert.gravity_m_s2 = params.expert.gravity_m_s2;
   out.range_min_m = params.lidar.range_min_m;
   out.range_max_m = params.lidar.range_max_m;
   out.own_body_L = params.own_body_L;
-  if (params.imu.accel_range_m_s2 > 0.0) out.accel_rail_m_s2 = sure_range(params.imu.accel_range_m_s2);
+  if (params.imu.accel_range_m_s2 > 0.0) out.expert.rails.accel_m_s2 = sure_range(params.imu.accel_range_m_s2);
   return out;
 }
 
@@ -52,10 +51,10 @@ constexpr double kSweepsMax_hz = 20.0;  // of the lidars that there are: so many
 
 }  // namespace
 
-LidarInertialOdometry::Params TumblingOdometry::Params::Expert::mapping_defaults() {
+OdometryParams TumblingExpertParams::mapping_defaults() {
   LidarInertialOdometry::Params out;
-  out.gravity_sigma_m_s2 = kGravitySigma_m_s2;
-  out.estimate_saturation_deficit = true;
+  out.expert.gravity_sigma_m_s2 = kGravitySigma_m_s2;
+  out.expert.rails.estimate_deficit = true;
   return out;
 }
 
@@ -97,7 +96,7 @@ Status TumblingOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<con
     return {Trouble::time_order, "start_ns", double(start_ns), double(*sweep_end_ns_)};
   const TimeNs latest_ns = newest_ns_.value_or(end_ns) + static_cast<TimeNs>(1e9 * kAhead_s);
   if (end_ns > latest_ns) return {Trouble::out_of_range, "end_ns", double(end_ns), double(latest_ns)};
-  const std::size_t most = params_.sweeps_max + static_cast<std::size_t>(kSweepsMax_hz * params_.lag_s);
+  const std::size_t most = params_.expert.sweeps_max + static_cast<std::size_t>(kSweepsMax_hz * params_.lag_s);
   if (waiting_.size() >= most)
     return {Trouble::out_of_range, "sweeps waiting", double(waiting_.size() + 1), double(most)};
   if (const Status status = mapping::check_offsets(end_ns - start_ns, points); !status.ok()) return status;
@@ -126,7 +125,7 @@ void TumblingOdometry::finish() {
 }
 
 void TumblingOdometry::register_sweep(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points) {
-  if (done_.size() >= params_.sweeps_max) {
+  if (done_.size() >= params_.expert.sweeps_max) {
     done_.pop_front();
     ++dropped_sweeps_;
   }

@@ -51,7 +51,8 @@ LastPass::Place LastPass::forward(std::size_t stretch, const Place& from) {
   while (readings.next(reading)) {
     const ImuAverage& average = reading.average;
     const Eigen::Vector3d& rate = average.mean.angular_velocity_rad_s;
-    if (reading.whole && sums.node_s >= params_.node_s - 0.5 * average.length_s && first + records_.size() < end) {
+    if (reading.whole && sums.node_s >= params_.expert.node_s - 0.5 * average.length_s &&
+        first + records_.size() < end) {
       const PathNode& decided = path_[first + records_.size()];
       records_.push_back(close_node(params_, sums, 0.5 * (place.last_rate_rad_s + rate), decided, filter));
       records_.back().time_ns = place.time_ns;

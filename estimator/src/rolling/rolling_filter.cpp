@@ -20,7 +20,7 @@ static_assert(RollingFilter::kStates == rolling::kStates);
 
 }  // namespace
 
-RollingFilter::RollingFilter(const Params& p) : params_(p), rests_(p.rest) {
+RollingFilter::RollingFilter(const Params& p) : params_(p), rests_(p.expert.rest) {
   require_valid(p);
 }
 
@@ -28,12 +28,13 @@ Status RollingFilter::step_with(const ImuSample& sample, State& state, Listener 
   if (const Status bad = check_sample(sample); !bad.ok()) return bad;
   if (state.started) {
     double dt_s = 0.0;
-    if (const Status bad = elapsed(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s); !bad.ok()) return bad;
-    if (dt_s > params_.gap_from_s) {
+    if (const Status bad = elapsed(sample.time_ns, state.last_time_ns, params_.expert.gap.gap_max_s, dt_s); !bad.ok())
+      return bad;
+    if (dt_s > params_.expert.gap.gap_from_s) {
       bridge(sample, dt_s, state, listener);
     } else {
       state.average.add(sample, dt_s);
-      if (state.average.full(params_.reading_s, dt_s)) take_average(state, listener);
+      if (state.average.full(params_.expert.reading_s, dt_s)) take_average(state, listener);
     }
   } else {
     Eigen::Quaterniond q_WI = params_.q_WI_start.value_or(Eigen::Quaterniond::Identity());
@@ -61,7 +62,7 @@ void RollingFilter::take_average(State& state, Listener listener) const {
   const ImuAverage reading = state.average;
   state.average = {};
   // a node closes one reading late, because the rate at its end lies between two readings
-  if (state.sums.node_s >= params_.node_s - 0.5 * reading.length_s) {
+  if (state.sums.node_s >= params_.expert.node_s - 0.5 * reading.length_s) {
     close_node(reading.mean.angular_velocity_rad_s, state);
     listener.call(listener.to, state);
   }
@@ -78,7 +79,7 @@ void RollingFilter::bridge(const ImuSample& sample, double gap_s, State& state, 
     rolling::GapDoubt doubt;
     const ImuAverage piece = rolling::gap_piece(params_, before, sample, gap_s, k, doubt);
     const Eigen::Vector3d& rate = piece.mean.angular_velocity_rad_s;
-    if (state.sums.node_s >= params_.node_s - 0.5 * piece.length_s) {
+    if (state.sums.node_s >= params_.expert.node_s - 0.5 * piece.length_s) {
       close_node(rate, state);
       listener.call(listener.to, state);
     }
@@ -141,10 +142,10 @@ void RollingFilter::detect_rest(State& state) const {
 /// Whether a sphere that stands still turns about its contact: so slowly that only what is known of the bias tells.
 /// rolling.md (R28).
 bool RollingFilter::spins_in_place(const State& state) const {
-  const double averaged = params_.node_s / (2.0 * kSlowRateTau_s);
+  const double averaged = params_.expert.node_s / (2.0 * kSlowRateTau_s);
   const Hypothesis& best = state.hypotheses[0];
   const Eigen::Array3d variance = best.P.diagonal().segment<3>(rolling::kGyroBias).array() +
-                                  rolling::squared(params_.rest_rate_sigma_rad_s) * averaged;
+                                  rolling::squared(params_.expert.contact.rest_rate_sigma_rad_s) * averaged;
   const Eigen::Array3d off =
       (state.slow_rate_rad_s - state.nominal.gyro_bias_rad_s - best.x.segment<3>(rolling::kGyroBias)).array();
   return (off.square() > kPivots * kPivots * variance).any();
@@ -170,7 +171,7 @@ void RollingFilter::call_uncertain(State& state) const {
   const double variance_m2 = state.position_covariance_m2(0, 0) + state.position_covariance_m2(1, 1);
   const bool event = slips(state.hypotheses[0].mode);
   if (!event) state.before_event_m2 = variance_m2;
-  state.uncertain = event && variance_m2 - state.before_event_m2 > rolling::squared(params_.uncertain_m);
+  state.uncertain = event && variance_m2 - state.before_event_m2 > rolling::squared(params_.expert.modes.uncertain_m);
 }
 
 /// Probabilities of slip and bump over all hypotheses.
@@ -189,7 +190,7 @@ void RollingFilter::weigh_events(State& state) {
 
 /// Whether the position that is given out stands still until the next node.
 void RollingFilter::hold(State& state) const {
-  const bool quiet = seconds(state.rest.quiet_ns) >= std::min(rolling::kHeldAfter_s, params_.rest.rest_s) &&
+  const bool quiet = seconds(state.rest.quiet_ns) >= std::min(rolling::kHeldAfter_s, params_.expert.rest.rest_s) &&
                      !slips(state.hypotheses[0].mode);
   const bool revised = state.hypotheses[0].parent != 0;
   const bool stands = quiet && !revised && state.v_WG_m_s.norm() < rolling::kHeldSpeed_m_s;

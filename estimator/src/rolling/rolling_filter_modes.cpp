@@ -68,7 +68,7 @@ double log_still(const rolling::Contact& c, const RollingFilter::Hypothesis& h, 
   Eigen::Matrix3d S = H * h.P * H.transpose();
   if (anew && mode == RollingMode::incline) {
     const Eigen::Matrix<double, 3, 2> by_slope = c.H.middleCols<2>(rolling::kSlope);
-    S += squared(params.slope_sigma) * by_slope * by_slope.transpose();
+    S += squared(params.expert.contact.slope_sigma) * by_slope * by_slope.transpose();
   }
   const auto log_det_with = [&](const Eigen::Vector3d& variance, Eigen::LLT<Eigen::Matrix3d>& factor) {
     factor.compute(S + Eigen::Matrix3d(variance.asDiagonal()));
@@ -93,7 +93,7 @@ double log_moving(const rolling::Contact& c, const RollingFilter::Hypothesis& h,
   const Eigen::Vector3d change = u - h.u_W_m_s;
   const double horizontal = log_change(change.head<2>().squaredNorm());
   if (mode == RollingMode::bump) return horizontal + log_rise(change.z());
-  const double vertical = c.H.row(2) * h.P * c.H.row(2).transpose() + squared(params.vertical_sigma_m_s);
+  const double vertical = c.H.row(2) * h.P * c.H.row(2).transpose() + squared(params.expert.contact.vertical_sigma_m_s);
   return horizontal + log_normal(u.z(), vertical);
 }
 
@@ -128,14 +128,16 @@ struct RollingFilter::Candidate {
 double RollingFilter::log_transition(RollingMode from, RollingMode to, double h_s) const {
   const auto rate = [this](RollingMode a, RollingMode b) {
     if (b == RollingMode::incline) {
-      return params_.incline_begins_per_s * (a == RollingMode::bump ? kInclineAfterBump : 1.0);
+      return params_.expert.modes.incline_begins_per_s * (a == RollingMode::bump ? kInclineAfterBump : 1.0);
     }
-    if (b == RollingMode::rough) return params_.rough_begins_per_s;
-    if (b == RollingMode::slip) return a == RollingMode::bump ? params_.slip_bump_per_s : params_.slip_begins_per_s;
-    if (b == RollingMode::bump) return a == RollingMode::slip ? params_.slip_bump_per_s : params_.bump_begins_per_s;
-    if (a == RollingMode::incline) return params_.incline_ends_per_s;
-    if (a == RollingMode::rough) return params_.rough_ends_per_s;
-    return a == RollingMode::slip ? params_.slip_ends_per_s : params_.bump_ends_per_s;
+    if (b == RollingMode::rough) return params_.expert.modes.rough_begins_per_s;
+    if (b == RollingMode::slip)
+      return a == RollingMode::bump ? params_.expert.modes.slip_bump_per_s : params_.expert.modes.slip_begins_per_s;
+    if (b == RollingMode::bump)
+      return a == RollingMode::slip ? params_.expert.modes.slip_bump_per_s : params_.expert.modes.bump_begins_per_s;
+    if (a == RollingMode::incline) return params_.expert.modes.incline_ends_per_s;
+    if (a == RollingMode::rough) return params_.expert.modes.rough_ends_per_s;
+    return a == RollingMode::slip ? params_.expert.modes.slip_ends_per_s : params_.expert.modes.bump_ends_per_s;
   };
   if (from != to) return std::log(rate(from, to) * h_s);
   double leaving = 0.0;
@@ -151,7 +153,7 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, State& sta
   const bool too_fast = c.rolling_speed_m_s > params_.speed_max_m_s;
   std::array<Candidate, kRollingModes * kHypotheses> candidates;
   std::size_t total = 0;
-  const auto shortest = static_cast<std::int64_t>(std::ceil(params_.event_shortest_s / node_s - 1e-9));
+  const auto shortest = static_cast<std::int64_t>(std::ceil(params_.expert.modes.event_shortest_s / node_s - 1e-9));
   for (int parent = 0; parent < state.count; ++parent) {
     const Hypothesis& h = state.hypotheses[static_cast<std::size_t>(parent)];
     const Eigen::Vector3d u = c.velocity(h.x);
@@ -161,8 +163,9 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, State& sta
       if (too_fast && !slips(mode)) continue;
       double likelihood = 0.0;  // a gap speaks for no mode
       if (!in_gap) likelihood = slips(mode) ? log_moving(c, h, mode, u, params_) : log_still(c, h, mode, params_);
-      const double blow =
-          mode == RollingMode::bump ? 0.0 : state.sums.unexplained_impact_m_s / params_.unexplained_impact_m_s;
+      const double blow = mode == RollingMode::bump
+                              ? 0.0
+                              : state.sums.unexplained_impact_m_s / params_.expert.contact.unexplained_impact_m_s;
       candidates[total++] = {h.log_weight + log_transition(h.mode, mode, node_s) + likelihood - blow, parent, mode,
                              mode == h.mode ? h.switched_node : state.node};
     }
@@ -217,14 +220,14 @@ void RollingFilter::correct_at_rest(State& state) const {
     Hypothesis& h = state.hypotheses[static_cast<std::size_t>(k)];
     double likelihood = 0.0;
     for (int axis = 0; axis < 3; ++axis) {
-      const double variance = squared(params_.rest_velocity_sigma_m_s);
+      const double variance = squared(params_.expert.contact.rest_velocity_sigma_m_s);
       const int velocity = rolling::kVelocity + axis;
       const double v = state.nominal.v_WI_m_s[axis] + h.x[velocity];
       likelihood += log_normal(v, h.P(velocity, velocity) + variance);
       rolling::update(velocity, -state.nominal.v_WI_m_s[axis], variance, h.x, h.P);
       if (state.spins_in_place) continue;
       const double bias = state.sums.w_I_rad[axis] / state.sums.node_s;  // already without the nominal bias
-      rolling::update(rolling::kGyroBias + axis, bias, squared(params_.rest_rate_sigma_rad_s), h.x, h.P);
+      rolling::update(rolling::kGyroBias + axis, bias, squared(params_.expert.contact.rest_rate_sigma_rad_s), h.x, h.P);
     }
     h.log_weight += std::max(likelihood, kRestFloor);
     h.parent = k;

@@ -46,8 +46,9 @@ constexpr std::uint8_t kGyroFlags = kClipGyroX | kClipGyroY | kClipGyroZ,
 
 /// rolling.md (R17), (R18).
 Eigen::Vector3d contact_variance(const RollingParams& params, const Contact& c, RollingMode mode) {
-  const double rough = mode == RollingMode::rough ? squared(params.rough_share * c.rolling_speed_m_s) : 0.0;
-  return {c.grip_variance, c.grip_variance, squared(params.vertical_sigma_m_s) + rough + c.gap_variance};
+  const double rough =
+      mode == RollingMode::rough ? squared(params.expert.contact.rough_share * c.rolling_speed_m_s) : 0.0;
+  return {c.grip_variance, c.grip_variance, squared(params.expert.contact.vertical_sigma_m_s) + rough + c.gap_variance};
 }
 
 /// rolling.md (R16).
@@ -58,7 +59,7 @@ Eigen::Vector3d Contact::velocity(const Vector& x) const {
 }
 
 bool starts_in_motion(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s) {
-  return rate_I_rad_s.norm() > params.start_rate_rad_s;
+  return rate_I_rad_s.norm() > params.expert.prior.start_rate_rad_s;
 }
 
 RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaterniond& q_WI,
@@ -82,13 +83,13 @@ Covariance prior_covariance(const RollingParams& params, const Eigen::Vector3d& 
   const bool moves = starts_in_motion(params, rate_I_rad_s);
   const double tilt = moves ? kStartTilt_rad : 0.0, velocity = moves ? params.radius_m * rate_I_rad_s.norm() : 0.0;
   // the heading defines the world's x axis
-  prior.segment<2>(kAttitude).setConstant(squared(params.tilt_sigma_rad) + squared(tilt));
-  prior.segment<3>(kVelocity).setConstant(squared(params.velocity_sigma_m_s) + squared(velocity));
-  prior.segment<3>(kGyroBias).setConstant(squared(params.gyro_bias_sigma_rad_s));
-  prior.segment<3>(kAccelBias).setConstant(squared(params.accel_bias_sigma_m_s2));
-  prior.segment<9>(kAccelScale).setConstant(squared(params.accel_scale_sigma));
-  prior.segment<9>(kGyroScale).setConstant(squared(params.gyro_scale_sigma));
-  prior[kDelay] = squared(params.accel_delay_sigma_s);
+  prior.segment<2>(kAttitude).setConstant(squared(params.expert.prior.tilt_sigma_rad) + squared(tilt));
+  prior.segment<3>(kVelocity).setConstant(squared(params.expert.prior.velocity_sigma_m_s) + squared(velocity));
+  prior.segment<3>(kGyroBias).setConstant(squared(params.expert.prior.gyro_bias_sigma_rad_s));
+  prior.segment<3>(kAccelBias).setConstant(squared(params.expert.prior.accel_bias_sigma_m_s2));
+  prior.segment<9>(kAccelScale).setConstant(squared(params.expert.prior.accel_scale_sigma));
+  prior.segment<9>(kGyroScale).setConstant(squared(params.expert.prior.gyro_scale_sigma));
+  prior[kDelay] = squared(params.expert.prior.accel_delay_sigma_s);
   prior.segment<3>(kLeverArm).setConstant(squared(params.lever_arm_sigma_m));
   prior.segment<2>(kSlope).setConstant(squared(kLevelSlopeSigma));
   prior[kRadius] = squared(params.radius_sigma_m);
@@ -113,8 +114,8 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   nominal.q_WI = (q_mid * half).normalized();
   const double gravity = params.gravity_m_s2;
   const bool beyond = reading.rate_peak_rad_s >= params.gyro_range_rad_s;
-  const bool lost =
-      (sample.device_clip_flags & kGyroFlags) != 0 || (beyond && !(params.recovered_rate_sigma_rad_s > 0.0));
+  const bool lost = (sample.device_clip_flags & kGyroFlags) != 0 ||
+                    (beyond && !(params.expert.rails.recovered_rate_sigma_rad_s > 0.0));
   const bool clipped = lost || beyond || (sample.device_clip_flags & kAccelFlags) != 0 ||
                        reading.force_peak_m_s2 >= params.accel_range_m_s2;
   // a force that is clipped, or turned by a rate that is, says nothing: the velocity of the centre is kept,
@@ -143,7 +144,7 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   const double peak = f_raw.cwiseAbs().maxCoeff() / params.accel_range_m_s2;
   const double hidden = std::clamp((peak - kHiddenFrom) / (kHiddenTo - kHiddenFrom), 0.0, 1.0);
   if (!clipped && hidden > 0.0)
-    sums.subsample_saturation_W_m_s += params.subsample_saturation_share * hidden * (R_T * f);
+    sums.subsample_saturation_W_m_s += params.expert.rails.subsample_saturation_share * hidden * (R_T * f);
   if (clipped) sums.force_clipped_s += dt_s;
   if (lost) sums.rate_clipped_s += dt_s;
   if (beyond && !lost) sums.recovered_s += dt_s;
@@ -159,7 +160,7 @@ RollingNominal carried_on(const RollingParams& params, const ImuAverage& reading
 }
 
 int gap_pieces(const RollingParams& params, double gap_s) {
-  return std::max(1, static_cast<int>(std::lround(gap_s / params.node_s)));
+  return std::max(1, static_cast<int>(std::lround(gap_s / params.expert.node_s)));
 }
 
 ImuAverage gap_piece(const RollingParams& params, const ImuSample& before, const ImuSample& after, double gap_s, int k,
@@ -172,7 +173,7 @@ ImuAverage gap_piece(const RollingParams& params, const ImuSample& before, const
   sample.device_clip_flags = kAccelFlags;  // of the force nothing is known
   const double turning = std::max(before.angular_velocity_rad_s.norm(), after.angular_velocity_rad_s.norm());
   const double acceleration =
-      kGapStill_rad_s2 + params.gap_acceleration_rad_s2 * std::min(1.0, turning / kGapTurning_rad_s);
+      kGapStill_rad_s2 + params.expert.gap.gap_acceleration_rad_s2 * std::min(1.0, turning / kGapTurning_rad_s);
   // a parabola between two known rates encloses a T^3 / 12: rolling.md (R30)
   const double off_rad = acceleration * gap_s * gap_s * gap_s / 12.0 + kGapStep * change.norm() * gap_s;
   doubt.rad2 = off_rad * off_rad / pieces;
@@ -212,20 +213,22 @@ void predict(const RollingParams& params, const RollingSums& sums, const Moving&
   P.topRows<9>() += (B * P).eval();
   P.leftCols<9>() += (P * B.transpose()).eval();
   P = (0.5 * (P + P.transpose())).eval();
-  const double attitude = squared(params.attitude_walk_rad_sqrts) * h +
-                          squared(params.rate_error_sqrts) * sums.turned_rad2_s + sums.gap_rad2 +
-                          squared(params.clipped_rate_sigma_rad_s * sums.rate_clipped_s) +
-                          squared(params.recovered_rate_sigma_rad_s) * 2.0 * kRecoveredTau_s * sums.recovered_s;
-  const double velocity = squared(params.velocity_walk_m_s_sqrts) * h + squared(params.impact_share * sums.impact_m_s) +
-                          squared(params.spin_force_sqrts * sums.turned_rad2_s) / h +
-                          squared(params.clipped_force_sigma_m_s2 * sums.force_clipped_s);
+  const double attitude =
+      squared(params.expert.noise.attitude_walk_rad_sqrts) * h +
+      squared(params.expert.noise.rate_error_sqrts) * sums.turned_rad2_s + sums.gap_rad2 +
+      squared(params.expert.rails.clipped_rate_sigma_rad_s * sums.rate_clipped_s) +
+      squared(params.expert.rails.recovered_rate_sigma_rad_s) * 2.0 * kRecoveredTau_s * sums.recovered_s;
+  const double velocity = squared(params.expert.noise.velocity_walk_m_s_sqrts) * h +
+                          squared(params.expert.contact.impact_share * sums.impact_m_s) +
+                          squared(params.expert.noise.spin_force_sqrts * sums.turned_rad2_s) / h +
+                          squared(params.expert.rails.clipped_force_sigma_m_s2 * sums.force_clipped_s);
   P.block<3, 3>(kVelocity, kVelocity) += sums.subsample_saturation_W_m_s * sums.subsample_saturation_W_m_s.transpose();
   auto diagonal = P.diagonal();
   diagonal.segment<3>(kAttitude).array() += attitude;
   diagonal.segment<3>(kVelocity).array() += velocity;
   diagonal.segment<3>(kPosition).array() += velocity * h * h / 3.0;
-  diagonal.segment<3>(kGyroBias).array() += squared(params.gyro_bias_walk_rad_s_sqrts) * h;
-  diagonal.segment<3>(kAccelBias).array() += squared(params.accel_bias_walk_m_s2_sqrts) * h;
+  diagonal.segment<3>(kGyroBias).array() += squared(params.expert.noise.gyro_bias_walk_rad_s_sqrts) * h;
+  diagonal.segment<3>(kAccelBias).array() += squared(params.expert.noise.accel_bias_walk_m_s2_sqrts) * h;
 }
 
 /// rolling.md (R14), (R15), and the variance of (R17).
@@ -255,14 +258,15 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
   out.H.middleCols<2>(kSlope) = by_normal.leftCols<2>() - out.lift_W * nominal.slope.transpose() / n.z();
   out.H.col(kRadius) = -w_W.cross(n);
   out.rolling_speed_m_s = r * w_W.cross(n).norm();
-  out.grip_variance = squared(params.grip_sigma_m_s) + squared(params.grip_sigma_share * r * w_W.norm());
+  out.grip_variance =
+      squared(params.expert.contact.grip_sigma_m_s) + squared(params.expert.contact.grip_sigma_share * r * w_W.norm());
   // a flag counts whatever the rate reads: a rail may lie below the range
   const bool beyond = rate_I_rad_s.cwiseAbs().maxCoeff() >= params.gyro_range_rad_s || sums.recovered_s > 0.0;
-  const bool recovered = params.recovered_rate_sigma_rad_s > 0.0;
+  const bool recovered = params.expert.rails.recovered_rate_sigma_rad_s > 0.0;
   if (sums.rate_clipped_s > 0.0 || (beyond && !recovered)) {
-    out.grip_variance += squared(r * params.clipped_rate_sigma_rad_s);
+    out.grip_variance += squared(r * params.expert.rails.clipped_rate_sigma_rad_s);
   } else if (beyond) {
-    out.grip_variance += squared(r * params.recovered_rate_sigma_rad_s);
+    out.grip_variance += squared(r * params.expert.rails.recovered_rate_sigma_rad_s);
   }
   if (sums.gap_s > 0.0) {
     out.gap_variance = squared(r) * sums.gap_rate_rad2_s / sums.node_s;  // rolling.md (R31)
@@ -274,7 +278,7 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
 /// rolling.md (R19).
 std::optional<double> lost_velocity_variance(const RollingParams& params, double node_s, const Covariance& P) {
   if (P(kVelocity, kVelocity) + P(kVelocity + 1, kVelocity + 1) < squared(kUnsureSpeed_m_s)) return std::nullopt;
-  return squared(params.speed_sigma_m_s) * kSpeedWindow_s / node_s;
+  return squared(params.expert.contact.speed_sigma_m_s) * kSpeedWindow_s / node_s;
 }
 
 bool forgets_slope(RollingMode from, RollingMode to) {
@@ -285,14 +289,14 @@ bool forgets_slope(RollingMode from, RollingMode to) {
 void change_floor(const RollingParams& params, RollingMode from, RollingMode to, double h_s,
                   const RollingNominal& nominal, Vector& x, Covariance& P) {
   if (from == RollingMode::incline && to == from) {
-    P.diagonal().segment<2>(kSlope).array() += squared(params.slope_walk_sqrts) * h_s;
+    P.diagonal().segment<2>(kSlope).array() += squared(params.expert.contact.slope_walk_sqrts) * h_s;
   }
   // what rolls over ups and downs goes less far than it turns, by as much as they are steep
-  if (to == RollingMode::rough) P(kRadius, kRadius) += squared(params.rough_radius_walk_m_sqrts) * h_s;
+  if (to == RollingMode::rough) P(kRadius, kRadius) += squared(params.expert.contact.rough_radius_walk_m_sqrts) * h_s;
   if (!forgets_slope(from, to)) return;
   P.middleRows<2>(kSlope).setZero();
   P.middleCols<2>(kSlope).setZero();
-  const double sigma = to == RollingMode::incline ? params.slope_sigma : kLevelSlopeSigma;
+  const double sigma = to == RollingMode::incline ? params.expert.contact.slope_sigma : kLevelSlopeSigma;
   P.diagonal().segment<2>(kSlope).setConstant(squared(sigma));
   x.segment<2>(kSlope) = -nominal.slope;
 }
@@ -313,10 +317,11 @@ bool reset_tilt(const RollingParams& params, const RollingSums& sums, bool at_re
   nominal.v_WI_m_s.setZero();
   P.topRows<6>().setZero();
   P.leftCols<6>().setZero();
-  const double tilt_sigma_rad = at_rest ? std::max(params.tilt_sigma_rad, kRestTilt_rad) : kForceTilt_rad;
+  const double tilt_sigma_rad = at_rest ? std::max(params.expert.prior.tilt_sigma_rad, kRestTilt_rad) : kForceTilt_rad;
   P.diagonal().segment<2>(kAttitude).setConstant(squared(tilt_sigma_rad));
   P(kAttitude + 2, kAttitude + 2) = squared(kLostSpeed_m_s);  // as good as unknown, and small enough to be linear in
-  P.diagonal().segment<3>(kVelocity).setConstant(squared(at_rest ? params.rest_velocity_sigma_m_s : kLostSpeed_m_s));
+  P.diagonal().segment<3>(kVelocity).setConstant(
+      squared(at_rest ? params.expert.contact.rest_velocity_sigma_m_s : kLostSpeed_m_s));
   return true;
 }
 

@@ -6,6 +6,7 @@
 
 #include "tumble/common/detail/imu_average.hpp"
 #include "tumble/rolling/rolling_model.hpp"
+#include "tumble/rolling/rolling_params.hpp"
 
 namespace tumble::rolling {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/rolling/rolling_params.hpp"
 #include "tumble/common/parameters.hpp"
-#include "tumble/rolling/rolling_model.hpp"
 
 namespace tumble {
 

@@ -15,10 +15,10 @@ namespace {
 constexpr std::size_t kBeyondStorage = 4;  // samples that a run may have, by those that storage is set aside for
 
 RollingParams quieter(RollingParams params, double share) {
-  params.grip_sigma_m_s *= share;
-  params.grip_sigma_share *= share;
-  params.velocity_walk_m_s_sqrts *= share;
-  params.rate_error_sqrts *= share;
+  params.expert.contact.grip_sigma_m_s *= share;
+  params.expert.contact.grip_sigma_share *= share;
+  params.expert.noise.velocity_walk_m_s_sqrts *= share;
+  params.expert.noise.rate_error_sqrts *= share;
   return params;
 }
 
@@ -114,7 +114,8 @@ Events find_events(const RollingSmoother::Params& params, std::span<const rollin
       ++b;
     }
     const double after_m2 = stated(params) * horizontal_m2[std::min(b, count - 1)];
-    const bool grew = after_m2 - before_m2 > params.filter.uncertain_m * params.filter.uncertain_m;
+    const bool grew =
+        after_m2 - before_m2 > params.filter.expert.modes.uncertain_m * params.filter.expert.modes.uncertain_m;
     for (std::size_t n = a; n < b; ++n) out.uncertain[n] = grew;
     a = b;
   }
@@ -152,11 +153,11 @@ bool RollingSmoother::State::operator==(const State& other) const {
 
 RollingSmoother::RollingSmoother(const Params& p) : params_(p), filter_(p.filter) {
   require_fields(p);
-  require_within("lag_s", p.lag_s, p.filter.node_s, kWholeRun);
-  require_within("block_s", p.block_s, p.filter.node_s, 1e3);
+  require_within("lag_s", p.lag_s, p.filter.expert.node_s, kWholeRun);
+  require_within("block_s", p.block_s, p.filter.expert.node_s, 1e3);
   path_params_ = quieter(p.filter, p.path_noise);
-  lag_nodes_ = static_cast<std::size_t>(std::ceil(p.lag_s / p.filter.node_s - 1e-9));
-  block_nodes_ = static_cast<std::size_t>(std::ceil(p.block_s / p.filter.node_s - 1e-9));
+  lag_nodes_ = static_cast<std::size_t>(std::ceil(p.lag_s / p.filter.expert.node_s - 1e-9));
+  block_nodes_ = static_cast<std::size_t>(std::ceil(p.block_s / p.filter.expert.node_s - 1e-9));
 }
 
 std::size_t RollingSmoother::samples_set_aside() const {
@@ -178,7 +179,7 @@ Status RollingSmoother::check_state(const State& state) const {
     const TimeNs before_ns = k > 0 ? state.samples[k - 1].time_ns : committed.last_time_ns;
     // a node may lie within a gap: the sample after it comes later than that
     const TimeNs from_ns = k == 0 && committed.gap_piece > 0 ? committed.gap_start_ns : before_ns;
-    const Status status = check_follows(state.samples[k].time_ns, from_ns, filter.gap_max_s);
+    const Status status = check_follows(state.samples[k].time_ns, from_ns, filter.expert.gap.gap_max_s);
     if (!status.ok()) return status;
   }
   if (committed.gap_piece == 0) return {};
@@ -240,7 +241,7 @@ void RollingSmoother::finish(std::span<const RollingMode> known, State& state, c
   rolling::Readings readings(params_.filter, state.samples, start_place(state.samples.front()));
   rolling::Reading reading;
   while (readings.next(reading) && reading.whole && n < path.nodes.size()) {
-    if (node_s >= params_.filter.node_s - 0.5 * reading.average.length_s) {
+    if (node_s >= params_.filter.expert.node_s - 0.5 * reading.average.length_s) {
       path.nodes[n++].mode = looser(mode, known[std::min(reading.first, known.size() - 1)]);
       mode = RollingMode::grip;
       node_s = 0.0;
@@ -255,7 +256,7 @@ void RollingSmoother::finish(std::span<const RollingMode> known, State& state, c
 RollingSmoother::Path RollingSmoother::best_path(const State& state) const {
   Path path;
   path.nodes.resize(state.steps.size());
-  const double stands_after_s = std::min(rolling::kHeldAfter_s, params_.filter.rest.rest_s);
+  const double stands_after_s = std::min(rolling::kHeldAfter_s, params_.filter.expert.rest.rest_s);
   std::size_t which = 0;
   double lasts_s = 0.0;  // of the quiet that a node lies in
   for (std::size_t n = path.nodes.size(); n-- > 0;) {

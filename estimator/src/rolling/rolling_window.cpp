@@ -30,9 +30,9 @@ void measure_rest(const RollingParams& params, const RollingSums& sums, const Ro
                   NodeRecord& record, Vector& x, Covariance& P) {
   for (int axis = 0; axis < 3; ++axis) {
     const Row velocity = Vector::Unit(kVelocity + axis).transpose(), bias = Vector::Unit(kGyroBias + axis).transpose();
-    measure(velocity, -nominal.v_WI_m_s[axis], squared(params.rest_velocity_sigma_m_s), record, x, P);
+    measure(velocity, -nominal.v_WI_m_s[axis], squared(params.expert.contact.rest_velocity_sigma_m_s), record, x, P);
     if (record.path.spins_in_place) continue;
-    measure(bias, sums.w_I_rad[axis] / sums.node_s, squared(params.rest_rate_sigma_rad_s), record, x, P);
+    measure(bias, sums.w_I_rad[axis] / sums.node_s, squared(params.expert.contact.rest_rate_sigma_rad_s), record, x, P);
   }
 }
 
@@ -91,7 +91,7 @@ bool Readings::next(Reading& out) {
   for (; out.end < samples_.size(); ++out.end) {
     const ImuSample& sample = samples_[out.end];
     const double dt_s = seconds(sample.time_ns - last_ns);
-    if (dt_s > params_.gap_from_s) {
+    if (dt_s > params_.expert.gap.gap_from_s) {
       if (out.average.readings > 0) break;
       place_.gap_rate_rad_s = place_.last_rate_rad_s;
       place_.gap_start_ns = last_ns;
@@ -99,8 +99,8 @@ bool Readings::next(Reading& out) {
     }
     out.average.add(sample, dt_s);
     last_ns = sample.time_ns;
-    out.whole = out.average.full(params_.reading_s, dt_s) || out.end + 1 < samples_.size();
-    if (out.average.full(params_.reading_s, dt_s)) {
+    out.whole = out.average.full(params_.expert.reading_s, dt_s) || out.end + 1 < samples_.size();
+    if (out.average.full(params_.expert.reading_s, dt_s)) {
       ++out.end;
       break;
     }

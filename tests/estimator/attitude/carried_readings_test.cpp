@@ -172,7 +172,8 @@ TEST(CarriedReadings, TheJerkOfAHiddenStretchIsThatOfTheSlopesAtItsEnds) {
   const double change = 2.0 * kAmplitude_rad_s * kTurn_rad_s * std::cos(phase);
   const double hidden_s = (3.141592653589793 - 2.0 * phase) / kTurn_rad_s;
   const double expected = change / std::sqrt(hidden_s);
-  const std::size_t top = static_cast<std::size_t>(std::lround(0.5 * 3.141592653589793 / kTurn_rad_s / params.node_s));
+  const std::size_t top =
+      static_cast<std::size_t>(std::lround(0.5 * 3.141592653589793 / kTurn_rad_s / params.expert.node_s));
   std::printf("hidden for %.3f s: root density %.0f, by the ends %.0f; taken for free %.0f\n", hidden_s,
               collected.jerk[top], expected, free[top]);
   // the slopes are read a window outside of the stretch, which is that much longer

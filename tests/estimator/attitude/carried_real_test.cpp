@@ -168,7 +168,7 @@ TEST_P(CarriedBroadAttitude, IsBetterThanTheFilterOnATrial) {
   std::vector<RateState> rates;
   std::vector<AttitudeState> attitudes;
   CarriedSmoother::Report report;
-  const CarriedSmoother smoother({.node_s = 0.02});  // half the time
+  const CarriedSmoother smoother({.expert = {.node_s = 0.02}});  // half the time
   ASSERT_TRUE(smoother.estimate(trial.samples, {}, rates, attitudes, report).ok());
   std::vector<Eigen::Quaterniond> q_WI;
   for (const AttitudeState& attitude : attitudes) q_WI.push_back(attitude.q_WA);

@@ -247,7 +247,7 @@ TEST(CarriedSmoother, RefusesBadInput) {
   clipped = {};
   clipped.rows.setZero();
   EXPECT_EQ(trouble(good, clipped), Trouble::degenerate);
-  EXPECT_THROW(CarriedSmoother({.node_s = 0.0}), InvalidParams);
+  EXPECT_THROW(CarriedSmoother({.expert = {.node_s = 0.0}}), InvalidParams);
   EXPECT_THROW(CarriedSmoother({.hand_m_s2 = std::numeric_limits<double>::quiet_NaN()}), InvalidParams);
 }
 

@@ -79,7 +79,7 @@ TEST(RegimeSmoother, RefusesWhatItsPartsRefuse) {
   params.carried_min = 1.5;
   EXPECT_THROW(RegimeSmoother{params}, InvalidParams);
   params = params_of({});
-  params.carried.node_s = 0.0;
+  params.carried.expert.node_s = 0.0;
   EXPECT_THROW(RegimeSmoother{params}, InvalidParams);
   std::vector<RateState> rates(3);
   RegimeSmoother::Report report;

@@ -44,8 +44,8 @@ CarriedSmoother::Params params() {
   CarriedSmoother::Params out;
   out.hand_m_s2 = 1.0;
   out.gyro_bias_sigma_rad_s = 1e-3;
-  out.jerk_doubt = 1.0;
-  out.iterations_max = 100;  // a filter that was fed with blind readings is no good start
+  out.expert.jerk_doubt = 1.0;
+  out.expert.iterations_max = 100;  // a filter that was fed with blind readings is no good start
   return out;
 }
 
@@ -216,7 +216,7 @@ TEST(CarriedDescent, DoesNotClimb) {
     CarriedSmoother::Params some = params();
     double least = 1e300;
     for (int count = 10; count <= 15; ++count) {
-      some.iterations_max = count;
+      some.expert.iterations_max = count;
       const double cost = Solved(spin, some).report.cost;
       EXPECT_LT(cost, least + 0.3) << spin.more_rad_s << " " << spin.lasts_s << " " << count;
       least = std::min(least, cost);

@@ -126,7 +126,7 @@ TEST(Belief, AtTheStartHangsOnTheLidar) {
   params.mount_sigma_rad = 0.02;
   params.mount_sigma_m = 0.01;
   params.time_offset_sigma_s = 0.003;
-  params.gravity_sigma_m_s2 = 0.05;
+  params.expert.gravity_sigma_m_s2 = 0.05;
   MotionState levelled;
   levelled.q_WI = so3::exp({0.2, -0.5, 0.0});
   levelled.covariance.diagonal().setConstant(0.001);

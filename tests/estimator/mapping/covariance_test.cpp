@@ -26,7 +26,9 @@ class BelievedImu {
   BelievedImu(const Odometry::Params& params, std::uint64_t seed) : params_(params), noise_(seed) {}
 
   /// That of the whole run, which tilts the start by as much as is believed of it.
-  Eigen::Vector3d accel_bias_m_s2() { return params_.gravity_m_s2 * params_.world.tilt_sigma_rad * noise_.vector(); }
+  Eigen::Vector3d accel_bias_m_s2() {
+    return params_.expert.gravity_m_s2 * params_.expert.world.tilt_sigma_rad * noise_.vector();
+  }
 
   /// Adds the errors of a sweep to its samples.
   void err(std::span<ImuSample> sweep) {
@@ -37,9 +39,9 @@ class BelievedImu {
       turned_rad += span_s / static_cast<double>(sweep.size()) * sample.angular_velocity_rad_s.norm();
     }
     const Eigen::Vector3d velocity_m_s =
-        std::hypot(params_.prior_sigma_m_s, params_.force_sigma_share * pushed_m_s) * noise_.vector();
+        std::hypot(params_.expert.prior.sigma_m_s, params_.expert.prior.force_share * pushed_m_s) * noise_.vector();
     const Eigen::Vector3d turn_rad =
-        std::hypot(params_.prior_sigma_rad, params_.turn_sigma_share * turned_rad) * noise_.vector();
+        std::hypot(params_.expert.prior.sigma_rad, params_.expert.prior.turn_share * turned_rad) * noise_.vector();
     for (ImuSample& sample : sweep) {
       sample.specific_force_m_s2 += velocity_m_s / span_s;
       sample.angular_velocity_rad_s += turn_rad / span_s;

@@ -59,7 +59,7 @@ LidarInertialOdometry::Params corridor_params() {
   LidarInertialOdometry::Params params;
   params.own_body_L.setEmpty();
   params.range_max_m = 15.0;
-  params.map_radius_m = 20.0;
+  params.expert.map.radius_m = 20.0;
   return params;
 }
 

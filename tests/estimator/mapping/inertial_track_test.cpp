@@ -45,7 +45,7 @@ struct Listener {
 /// Of a gyro of 6.5 mrad/s a reading, the first two 35 mrad/s apart: rare, and no motion.
 Listener noisy_at_first(double bias_rest_s) {
   Listener listener;
-  listener.params.start.bias_rest_s = bias_rest_s;
+  listener.params.expert.start.bias_rest_s = bias_rest_s;
   const Eigen::Vector3d off_rad_s(0.0175, 0.0, 0.0);
   listener.hear(1, kBias_rad_s + off_rad_s);
   listener.hear(1, kBias_rad_s - off_rad_s);

@@ -69,7 +69,7 @@ TEST(LidarInertialOdometry, IsLostWithAClippedRate) {
 
 TEST(LidarInertialOdometry, FindsTheExcessOfClippedAxesByItself) {
   Odometry::Params params = rig_params();
-  params.estimate_saturation_deficit = true;
+  params.expert.rails.estimate_deficit = true;
   Odometry odometry(params);
   const auto reports = run(odometry, 0, 26, 8.0);
   const test::PoseError end = error_of(reports.back().pose);
@@ -154,7 +154,7 @@ TEST(LidarInertialOdometry, AnExactlyDegenerateAlignmentCounts) {
       ImuSample sample;
       sample.time_ns = (k + 1) * test::kSweep_ns / kSamplesPerSweep;
       sample.angular_velocity_rad_s = {0.0, 0.0, sweep == 0 ? 0.0 : 0.5};  // no rest, about the plane's normal
-      sample.specific_force_m_s2 = {0.0, 0.0, params.gravity_m_s2};
+      sample.specific_force_m_s2 = {0.0, 0.0, params.expert.gravity_m_s2};
       ASSERT_TRUE(odometry.add_imu(sample, test::believe(sample)).ok());
     }
     // the second sweep sees the plane 5 mm nearer than inertia has it

@@ -39,14 +39,14 @@ TEST(LocalMapSoak, StaysFlatOverTenMinutes) {
   EXPECT_LT(static_cast<double>(odometry.map().size()), 1.3 * static_cast<double>(points_early));
   EXPECT_LT(static_cast<double>(bytes_late), 2.1 * static_cast<double>(bytes_early));
   for (const MapPoint& point : odometry.map()) {
-    ASSERT_LT((point.position_W_m.cast<double>() - report.pose.p_WA_m).norm(), 1.2 * params.map_radius_m);
+    ASSERT_LT((point.position_W_m.cast<double>() - report.pose.p_WA_m).norm(), 1.2 * params.expert.map.radius_m);
   }
 }
 
 // negative control: with a map that reaches farther than the way, memory grows with it
 TEST(LocalMapSoak, GrowsWhereItForgetsNothing) {
   LidarInertialOdometry::Params params = test::corridor_params();
-  params.map_radius_m = 1e4;
+  params.expert.map.radius_m = 1e4;
   LidarInertialOdometry odometry(params);
   test::EndlessCorridor corridor(400);
   LidarInertialOdometry::SweepReport report;

@@ -149,13 +149,16 @@ TEST(LidarInertialOdometry, MissingImuIsATroubleNotAGuess) {
 
 TEST(LidarInertialOdometry, ThrowsOnBadParams) {
   Odometry::Params params;
-  params.neighbours = 100;
+  params.expert.matching.neighbours = 100;
   EXPECT_THROW(Odometry{params}, InvalidParams);
   params = {};
   params.T_IL.linear() *= 1.1;
   EXPECT_THROW(Odometry{params}, InvalidParams);
   params = {};
-  params.prior_sigma_rad = 0.0;
+  params.T_IL.linear().col(0) *= -1.0;
+  EXPECT_THROW(Odometry{params}, InvalidParams) << "mirrored axes";
+  params = {};
+  params.expert.prior.sigma_rad = 0.0;
   EXPECT_THROW(Odometry{params}, InvalidParams);
 }
 

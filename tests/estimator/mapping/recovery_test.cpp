@@ -110,7 +110,7 @@ TEST(Calibration, FindsMountingAndClock) {
   params.mount_sigma_rad = 0.01;
   params.mount_sigma_m = 0.006;
   params.time_offset_sigma_s = 0.003;
-  params.gravity_sigma_m_s2 = 0.03;
+  params.expert.gravity_sigma_m_s2 = 0.03;
   Odometry odometry(params);
   run_miscalibrated(odometry, turning(), 40);
   // the first map was drawn while the calibration was wrong: what it taught starts a second one
@@ -258,7 +258,7 @@ TEST(Recovery, ASweepOfUnknownGroundExtendsTheMap) {
 
 TEST(Recovery, ASweepOfUnknownGroundExtendsTheMapWhereThePriorIsNotTrusted) {
   Odometry::Params params = true_params();
-  params.trusted_prior_m = 0.0;
+  params.expert.tracking.trusted_m = 0.0;
   Rig rig(params);
   see_the_other_side(rig, SweepVerdict::rejected);
 }

@@ -82,7 +82,7 @@ TEST(Registration, DerivativesMatchDifferences) {
   start.time_ns = 1'000'000'000;
   start.q_WI = so3::exp({0.3, -0.2, 0.9});
   start.v_WI_m_s = Eigen::Vector3d(2, -1, 0.5);
-  Registration::Excess excess;
+  SweepUnknowns::Excess excess;
   excess << 0.4, 0.9, -0.3, 0.0, 0.0, 0.0, -0.2, 0.1, 0.5;
   SweepPoint measured;
   measured.x_L_m = Eigen::Vector3f(7.0f, -3.0f, 2.0f);
@@ -103,7 +103,7 @@ TEST(Registration, DerivativesMatchDifferences) {
     // in doubles: the floats of a SweepPoint would hide steps this small
     const Eigen::Vector3d x_I = calibration.T_IL * measured.x_L_m.cast<double>();
     SweepTrajectory trajectory;
-    const Registration::Excess moved_excess =
+    const SweepUnknowns::Excess moved_excess =
         excess + d.segment<9>(Registration::kExcess).reshaped(3, SweepTrajectory::kKnots);
     EXPECT_TRUE(trajectory.build(moved, samples, 1'100'000'000, calibration.gravity_W_m_s2, moved_excess).ok());
     std::size_t hint = 0;
@@ -352,7 +352,7 @@ TEST_F(MovingSweep, FindsTheExcessOfClippedAxes) {
   ASSERT_EQ(result_.verdict, RegistrationVerdict::converged);
   ASSERT_GT(deficit_, 1.0);         // one axis, 2 to 4 rad/s above the rail
   EXPECT_LT(end_error_rad_, 0.02);  // measured 0.011; without the excess see below
-  const Registration::Excess& excess = result_.mean.excess_rad_s;
+  const SweepUnknowns::Excess& excess = result_.mean.excess_rad_s;
   EXPECT_NEAR(excess.sum() / SweepTrajectory::kKnots, deficit_, 0.2);
   // what the sweep as a whole lacks is held by the surfaces, whatever the single knots are
   const int axis = excess.rowwise().sum().cwiseAbs().maxCoeff() == std::abs(excess.row(0).sum()) ? 0 : 2;

@@ -83,9 +83,9 @@ Attempt failed_with(bool too_few) {
 
 TEST(Tracking, VerdictsAreWhatTheAttemptAndThePriorAllow) {
   LidarInertialOdometry::Params params;
-  params.matches_min = 100;
-  params.lost_sweeps_max = 30;
-  params.degenerate_sigma_m = 0.15;
+  params.expert.matching.least = 100;
+  params.expert.tracking.lost_sweeps_max = 30;
+  params.expert.matching.degenerate_sigma_m = 0.15;
   const auto verdict = [&](const TrackingState& before, std::size_t points, bool trusted, Attempt attempt) {
     return judge(params, before, points, trusted, std::move(attempt)).verdict;
   };

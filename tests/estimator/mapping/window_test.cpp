@@ -21,7 +21,7 @@ Odometry::Params given() {
   Odometry::Params params;
   params.T_IL.translation() = Eigen::Vector3d(0.02, 0.087, 0.04);
   params.T_IL.linear() = so3::exp({0.0, 0.0, -1.5707963267948966}).toRotationMatrix();
-  params.estimate_saturation_deficit = true;
+  params.expert.rails.estimate_deficit = true;
   return params;
 }
 
@@ -75,7 +75,7 @@ struct Drive {
 
 TEST(Window, TheSweepsAfterItPlaceASweepThatSawNothing) {
   Odometry::Params params = given();
-  params.window_sweeps = 3;
+  params.expert.window_sweeps = 3;
   Drive run(params);
   run.sweeps(0, 15);
   run.sweeps(15, 18, 15, 16);  // nothing but a gyro on its rail
@@ -90,7 +90,7 @@ TEST(Window, TheSweepsAfterItPlaceASweepThatSawNothing) {
 
 TEST(Window, OfOneLeavesASweepAsItWas) {
   Odometry::Params params = given();
-  params.window_sweeps = 1;
+  params.expert.window_sweeps = 1;
   Drive run(params);
   run.sweeps(0, 12);
   for (std::size_t k = 0; k < run.reports.size(); ++k) {
@@ -106,7 +106,7 @@ TEST(Window, OfOneLeavesASweepAsItWas) {
 
 TEST(Window, SettledAndOpenSweepsAreTheWholeTrajectory) {
   Odometry::Params params = given();
-  params.window_sweeps = 4;
+  params.expert.window_sweeps = 4;
   Drive run(params);
   run.sweeps(0, 12);
   std::vector<PoseState> all;
@@ -161,7 +161,7 @@ TEST(Window, APoseAheadIsTheInertialPriorAndChangesNothing) {
 
 TEST(Window, PosesCanBeAskedAtAnyTimeWithin) {
   Odometry::Params params = given();
-  params.window_sweeps = 3;
+  params.expert.window_sweeps = 3;
   Drive run(params);
   PoseState pose;
   EXPECT_EQ(run.odometry.pose_at(0, pose).trouble, Trouble::empty);

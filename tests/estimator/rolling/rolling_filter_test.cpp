@@ -193,7 +193,8 @@ TEST(RollingFilter, CallsAnEventUncertainByHowMuchItsSigmaGrows) {
   const auto called = [&](const Contact& contact, double uncertain_m) {
     RollingTruth truth = truth_of(l_shape, contact);
     add_errors(1003, truth);
-    const RollingFilter filter({.radius_m = testing::kRadius_m, .lever_arm_m = kLeverArm, .uncertain_m = uncertain_m});
+    const RollingFilter filter(
+        {.radius_m = testing::kRadius_m, .lever_arm_m = kLeverArm, .expert = {.modes = {.uncertain_m = uncertain_m}}});
     const auto state = std::make_unique<RollingFilter::State>();
     int inside = 0, outside = 0;
     for (std::size_t k = 0; k < truth.samples.size(); ++k) {
@@ -269,7 +270,8 @@ TEST(RollingFilter, LateAccelerometerIsFoundOut) {
   }
   const double with = run(truth, slip.contact, {.radius_m = testing::kRadius_m, .lever_arm_m = kLeverArm}).end_error_m;
   const double without =
-      run(truth, slip.contact, {.radius_m = testing::kRadius_m, .lever_arm_m = kLeverArm, .accel_delay_sigma_s = 0.0})
+      run(truth, slip.contact,
+          {.radius_m = testing::kRadius_m, .lever_arm_m = kLeverArm, .expert = {.prior = {.accel_delay_sigma_s = 0.0}}})
           .end_error_m;
   EXPECT_LT(with, 0.02);
   EXPECT_GT(without, 2.0 * with);
@@ -337,9 +339,9 @@ TEST(RollingFilter, RefusesBadParams) {
   EXPECT_NO_THROW(RollingFilter({.radius_m = r}));
   EXPECT_THROW(RollingFilter({}), InvalidParams) << "the radius has no default";
   EXPECT_THROW(RollingFilter({.radius_m = r, .lever_arm_m = {0, 0, 11}}), InvalidParams);
-  EXPECT_THROW(RollingFilter({.radius_m = r, .grip_sigma_m_s = -1.0}), InvalidParams);
+  EXPECT_THROW(RollingFilter({.radius_m = r, .expert = {.contact = {.grip_sigma_m_s = -1.0}}}), InvalidParams);
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(RollingFilter({.radius_m = r, .slip_begins_per_s = kNan}), InvalidParams);
+  EXPECT_THROW(RollingFilter({.radius_m = r, .expert = {.modes = {.slip_begins_per_s = kNan}}}), InvalidParams);
 }
 
 }  // namespace

@@ -84,7 +84,7 @@ TEST(RollingRates, TheSameAnswerFrom50HzTo8kHz) {
 TEST(RollingRates, ReadingsAsLongAsTheWindowAreTakenAsTheyAre) {
   const testing::RollingTruth truth = slipping(4'000'000);
   RollingSmoother::Params one_by_one = params(RollingSmoother::kWholeRun);
-  one_by_one.filter.reading_s = 0.0;
+  one_by_one.filter.expert.reading_s = 0.0;
   const Smoothed averaged = run(truth.samples, params(RollingSmoother::kWholeRun)),
                  plain = run(truth.samples, one_by_one);
   EXPECT_TRUE(averaged.out.back().p_WG_m == plain.out.back().p_WG_m);

@@ -92,11 +92,11 @@ testing::RollingTruth drawn_way(std::uint64_t seed, const RollingParams& believe
   const Eigen::Vector3d slip_m(-normal.uniform(0.1, 0.4), 0.02 * normal(), 0.0);
   testing::RollingTruth truth =
       seen_exactly(believed.lever_arm_m + believed.lever_arm_sigma_m * normal.vector(), slip_m);
-  const Eigen::Vector3d gyro_bias = believed.gyro_bias_sigma_rad_s * normal.vector();
-  const Eigen::Vector3d accel_bias = believed.accel_bias_sigma_m_s2 * normal.vector();
+  const Eigen::Vector3d gyro_bias = believed.expert.prior.gyro_bias_sigma_rad_s * normal.vector();
+  const Eigen::Vector3d accel_bias = believed.expert.prior.accel_bias_sigma_m_s2 * normal.vector();
   Eigen::Matrix3d gyro = Eigen::Matrix3d::Identity(), accel = Eigen::Matrix3d::Identity();
-  for (double& entry : gyro.reshaped()) entry += believed.gyro_scale_sigma * normal();
-  for (double& entry : accel.reshaped()) entry += believed.accel_scale_sigma * normal();
+  for (double& entry : gyro.reshaped()) entry += believed.expert.prior.gyro_scale_sigma * normal();
+  for (double& entry : accel.reshaped()) entry += believed.expert.prior.accel_scale_sigma * normal();
   for (ImuSample& sample : truth.samples) {
     sample.angular_velocity_rad_s = gyro * sample.angular_velocity_rad_s + gyro_bias;
     sample.specific_force_m_s2 = accel * sample.specific_force_m_s2 + accel_bias;

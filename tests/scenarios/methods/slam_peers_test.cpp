@@ -72,10 +72,10 @@ TEST(SlamParameters, AreBoundAsTheLibraryBindsThem) {
   for (const sim::Parameter& parameter : find_methods("slam/icp").at(0)->info.parameters) {
     if (parameter.name != "map_voxel_m") continue;
     LidarInertialOdometry::Params params;
-    params.map_spacing_m = 0.0;
-    params.map_voxel_m = parameter.low;
+    params.expert.map.spacing_m = 0.0;
+    params.expert.map.voxel_m = parameter.low;
     EXPECT_NO_THROW(LidarInertialOdometry{params});
-    params.map_voxel_m = 0.99 * parameter.low;
+    params.expert.map.voxel_m = 0.99 * parameter.low;
     EXPECT_THROW(LidarInertialOdometry{params}, InvalidParams);
     return;
   }

@@ -30,6 +30,7 @@ class RollingOdometry {
   struct Unit {
     ImuSheet sheet;
     /// The unit in axes of the sphere, from its centre: a point in axes of the sphere is T_BI times one of the unit's.
+    /// It lies within the sphere.
     Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
   };
   struct Params {
@@ -62,7 +63,7 @@ class RollingOdometry {
     PoseState pose;  ///< of the sphere's centre, in axes of the sphere; of a live one the attitude has no covariance
     RollingMode mode = RollingMode::grip;
     bool at_rest = false;
-    bool uncertain = false;  ///< in an event that made the position uncertain (RollingParams::uncertain_m)
+    bool uncertain = false;  ///< in an event that made the position uncertain (RollingModeParams::uncertain_m)
   };
 
   /// Throws InvalidParams on a parameter outside of its bound.

@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Geometry>
 #include <cstddef>
 #include <deque>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "tumble/attitude/regime_stream.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/odometry/detail/odometry_pass.hpp"
-#include "tumble/odometry/imu_sheet.hpp"
-#include "tumble/odometry/lidar_sheet.hpp"
 #include "tumble/odometry/second_pass.hpp"
+#include "tumble/odometry/tumbling_params.hpp"
 
 namespace tumble {
 
@@ -37,40 +34,7 @@ namespace tumble {
 /// modelled: see the two classes above.
 class TumblingOdometry {
  public:
-  struct Params {
-    ImuSheet imu;
-    /// From the body's centre of mass to the IMU, in IMU axes: what turns rates into forces; and how well it is known
-    /// (standard deviation per axis). It is estimated.
-    Eigen::Vector3d lever_arm_I_m = Eigen::Vector3d::Zero();
-    double lever_arm_sigma_m = 0.01;
-    Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< lidar in IMU axes
-    /// Of T_IL and of the lidar's clock: standard deviations, both are estimated; 0: exact.
-    double mount_sigma_rad = 0.01;
-    double mount_sigma_m = 0.006;
-    double time_offset_sigma_s = 0.003;
-    LidarSheet lidar;
-    Eigen::AlignedBox3d own_body_L;  ///< returns inside are the robot's own; empty: none are
-    double gravity_m_s2 = 9.80665;
-    double lag_s = 0.2;  ///< how old a sample is when its rate is settled
-
-    /// Sweeps that may wait for the IMU, beside those that the lag holds back; and for take(), the oldest being
-    /// dropped.
-    std::size_t sweeps_max = 16;
-
-    /// What few need. Of the same numbers as above those above count.
-    struct Expert {
-      RegimeStream::Params rate;
-      /// With gravity's direction and what the rails hid of the rate among the unknowns.
-      LidarInertialOdometry::Params mapping = mapping_defaults();
-      /// The second pass over the first seconds of motion, with what they told of rig and calibration.
-      SecondPass::Params again;
-      static LidarInertialOdometry::Params mapping_defaults();
-    } expert;
-
-    /// Every number of it, stated once: `tumbling_odometry_fields.hpp`.
-    template <class Self, class Visitor>
-    static void fields(Self& p, Visitor& visit);
-  };
+  using Params = TumblingParams;
 
   /// What became of a sweep.
   struct Sweep {

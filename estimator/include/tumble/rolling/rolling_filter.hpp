@@ -9,6 +9,7 @@
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/rolling/rolling_model.hpp"
+#include "tumble/rolling/rolling_params.hpp"
 
 namespace tumble {
 
@@ -21,7 +22,7 @@ namespace tumble {
 /// (RollingSmoother does that). While it stands still the position that is given out does too: what rest teaches of the
 /// way before is taken up when the motion goes on, or at once where another hypothesis becomes the best.
 ///
-/// Readings count by their time: those of a fast IMU are averaged to RollingParams::reading_s before anything is
+/// Readings count by their time: those of a fast IMU are averaged to RollingExpertParams::reading_s before anything is
 /// decided by them, and the estimate between two averages is the last one, carried on. Over a gap of up to gap_max_s
 /// the rate is interpolated and the force unknown, which the covariance shows. A start in motion is told and believed
 /// less.

@@ -15,19 +15,6 @@
 
 namespace tumble {
 
-/// Pose of a rolling sphere's centre G at one sample, with what is known of the contact.
-struct RollingEstimate {
-  TimeNs time_ns = 0;
-  Eigen::Vector3d p_WG_m = Eigen::Vector3d::Zero();
-  Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
-  Eigen::Vector3d v_WG_m_s = Eigen::Vector3d::Zero();
-  /// Of (position error [m], attitude error [rad]), W, at the node that follows.
-  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
-  RollingMode mode = RollingMode::grip;
-  bool at_rest = false;
-  bool uncertain = false;  ///< in an event that the position's sigma grew by more than RollingParams::uncertain_m in
-};
-
 /// RollingFilter with what came after taken into account: with a fixed lag, or over the whole run.
 ///
 /// The modes are those of the live filter's best hypothesis at the time of smoothing; with them frozen, one Kalman

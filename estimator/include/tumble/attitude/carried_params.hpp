@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "tumble/angular_velocity/rest_detector.hpp"
+#include "tumble/common/parameters.hpp"
+
+namespace tumble {
+
+/// What a hand does, in time.
+struct CarriedHandParams {
+  double hand_tau_s = 0.1;      ///< its memory
+  double velocity_tau_s = 0.3;  ///< and memory
+  double place_tau_s = 1.0;     ///< and memory of that
+  double place_leak_s = 10.0;   ///< in which a place is forgotten
+  double hand_follow = 0.8;     ///< how far the hand's density follows its power about that time
+  double hand_window_s = 2.0;   ///< over which that power is taken
+  double hand_floor = 1.0;      ///< least share of the assumed density
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.hand_tau_s, {"hand_tau_s", "s", 1e-3, 10.0, "memory of the carried point's acceleration", Rank::first});
+    visit(p.velocity_tau_s, {"velocity_tau_s", "s", 1e-3, 1e3, "memory of the carried point's velocity"});
+    visit(p.place_tau_s, {"place_tau_s", "s", 1e-3, 1e3, "memory of the carried point's place"});
+    visit(p.place_leak_s, {"place_leak_s", "s", 0.1, 1e4, "in which a place is forgotten"});
+    visit(p.hand_follow,
+          {"hand_follow", "1", 0.0, 1.0, "how far the hand's density follows the motion's own power", Rank::first});
+    visit(p.hand_window_s, {"hand_window_s", "s", 0.01, 1e3, "over which that power is taken"});
+    visit(p.hand_floor, {"hand_floor", "1", 1e-3, 1e3, "least share of the hand's assumed density"});
+  }
+};
+
+/// What readings are off by beside their noise, clipped and recovered ones among them.
+struct CarriedReadingParams {
+  double tilt_share = 0.02;            ///< error of a free element per excess of a clipped one
+  double rail_sigma_rad_s = 0.01;      ///< how sharp a rail is
+  double accel_error_share = 0.02;     ///< more, per m/s^2 away from gravity
+  double turn_error_sqrts = 1e-3;      ///< random walk of the attitude per rad/s turned
+  double recovered_sigma_rad_s = 1.0;  ///< a clipped rate known better is recovered
+  double recovered_tau_s = 0.005;      ///< memory of the error of a rate that was recovered
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.tilt_share,
+          {"tilt_share", "1", 0.0, 1.0, "error of a free element per excess of a clipped one", Rank::first});
+    visit(p.rail_sigma_rad_s, {"rail_sigma_rad_s", "rad/s", 1e-4, 1.0, "how sharp a rail is"});
+    visit(p.accel_error_share,
+          {"accel_error_share", "1", 0.0, 1.0, "noise of the specific force more, per m/s^2 away from gravity"});
+    visit(p.turn_error_sqrts,
+          {"turn_error_sqrts", "sqrt(s)", 0.0, 1.0, "angle random walk per rad/s turned: scale", Rank::first});
+    visit(p.recovered_sigma_rad_s,
+          {"recovered_sigma_rad_s", "rad/s", 0.0, 1e4,
+           "a clipped rate known better than this is recovered, not only bounded", Rank::first});
+    visit(p.recovered_tau_s, {"recovered_tau_s", "s", 1e-4, 1e4, "memory of the error of a rate that was recovered"});
+  }
+};
+
+/// A node that rests.
+struct CarriedStillParams {
+  double rest_sigma_rad_s = 0.01;  ///< of the rate at rest, one node
+  double rest_sigma_m_s = 0.02;    ///< of the velocity at rest
+  double rest_sigma_m_s2 = 0.1;    ///< of the acceleration at rest
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.rest_sigma_rad_s, {"rest_sigma_rad_s", "rad/s", 1e-6, 10.0, "of the rate at rest, one node"});
+    visit(p.rest_sigma_m_s, {"rest_sigma_m_s", "m/s", 1e-6, 10.0, "of the velocity at rest"});
+    visit(p.rest_sigma_m_s2, {"rest_sigma_m_s2", "m/s^2", 1e-6, 10.0, "of the acceleration at rest"});
+  }
+};
+
+/// What few need of CarriedParams, by meaning. Fields bear the names that they have in tables and on command lines.
+struct CarriedExpertParams {
+  double node_s = 0.01;  ///< between two nodes
+  int iterations_max = 15;
+  double gap_max_s = 1.0;
+  /// What motions of a kind differ in their jerk is not known beforehand: covariances are those of a root density so
+  /// many times larger.
+  double jerk_doubt = 4.0;
+  RestDetector::Params rest = {};
+  CarriedHandParams hand = {};
+  CarriedReadingParams readings = {};
+  CarriedStillParams still = {};
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.node_s, {"node_s", "s", 1e-3, 0.1, "between two nodes of the smoother", Rank::first});
+    visit(p.iterations_max, {"iterations_max", "1", 1, 1000, "most steps of Gauss-Newton", Rank::first});
+    visit(p.gap_max_s, {"gap_max_s", "s", 1e-300, 1e4, "longest time between two samples before the run is refused"});
+    visit(p.jerk_doubt, {"jerk_doubt", "1", 1.0, 100.0,
+                         "covariances are those of a root density of the jerk so many times larger", Rank::first});
+    visit.group("rest_", p.rest);
+    visit.group("", p.hand);
+    visit.group("", p.readings);
+    visit.group("", p.still);
+  }
+};
+
+/// Of CarriedSmoother and CarriedStream: the IMU, and how a hand moves it.
+struct CarriedParams {
+  double gravity_m_s2 = 9.80665;
+  double gyro_noise_density = 5e-4;   ///< rad/s/sqrt(Hz)
+  double accel_noise_density = 0.01;  ///< m/s^2/sqrt(Hz)
+  double gyro_bias_sigma_rad_s = 0.02;
+  double accel_bias_sigma_m_s2 = 0.02;
+  double lever_arm_sigma_m = 0.03;
+  double jerk_rad_s3_sqrts = 200.0;  ///< root density of the angular jerk
+  double hand_m_s2 = 5.0;            ///< deviation of the carried point's acceleration
+  double velocity_m_s = 1.0;         ///< deviation of the carried point's velocity
+  double place_m = 1.0;              ///< deviation of its place
+
+  using Expert = CarriedExpertParams;
+  Expert expert = {};  ///< what few need
+
+  /// Every number of it, stated once.
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-300, 100.0, "strength of gravity"});
+    visit(p.gyro_noise_density, {"gyro_noise_density", "rad/s/sqrt(Hz)", 1e-6, 1.0, "noise density of the gyro"});
+    visit(p.accel_noise_density, {"accel_noise_m_s2_sqrt_hz", "m/s^2/sqrt(Hz)", 1e-5, 10.0,
+                                  "noise density of the specific force, unmodelled errors included", Rank::first});
+    visit(p.gyro_bias_sigma_rad_s,
+          {"gyro_bias_sigma_rad_s", "rad/s", 1e-6, 10.0, "prior of the gyro's bias", Rank::first});
+    visit(p.accel_bias_sigma_m_s2,
+          {"accel_bias_sigma_m_s2", "m/s^2", 1e-6, 10.0, "prior of the accelerometer's bias", Rank::first});
+    visit(p.lever_arm_sigma_m,
+          {"lever_arm_sigma_m", "m", 1e-6, 10.0, "prior of the way from the carried point", Rank::first});
+    visit(p.jerk_rad_s3_sqrts,
+          {"jerk_rad_s3_sqrts", "rad/s^3 sqrt(s)", 1e-2, 1e6, "root density of the angular jerk", Rank::first});
+    visit(p.hand_m_s2, {"hand_m_s2", "m/s^2", 1e-3, 1e3, "deviation of the carried point's acceleration", Rank::first});
+    visit(p.velocity_m_s, {"velocity_m_s", "m/s", 1e-3, 1e3, "deviation of the carried point's velocity", Rank::first});
+    visit(p.place_m, {"place_m", "m", 1e-3, 1e3, "deviation of the carried point's place", Rank::first});
+    visit.group("", p.expert);
+  }
+};
+
+}  // namespace tumble

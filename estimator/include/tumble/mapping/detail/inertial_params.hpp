@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include "tumble/common/parameters.hpp"
+#include "tumble/mapping/flight_arc.hpp"
+
+/// Groups of LidarInertialOdometry::Params::Expert: what the mapper asks of the IMU.
+namespace tumble {
+
+/// At rest (`mapper_rest.hpp`) the rate stays within rate_rad_s of the bias and of its mean, and the specific force
+/// within force_m_s2 of gravity and of its mean. During the rest at the start the robot is held still, and the mean
+/// rate becomes the gyro's bias.
+struct RestBoundsParams {
+  double levels_s = 0.5;  ///< at most this much of the start is used to level the attitude
+  double rate_rad_s = 0.05;
+  double force_m_s2 = 0.5;
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.levels_s,
+          {"rest_s", "s", 1e-9, 60.0, "at most this much of the rest at the start levels the attitude", Rank::first});
+    visit(p.rate_rad_s, {"rest_rate_rad_s", "rad/s", 1e-6, 10.0,
+                         "at rest the rate is within this of the bias and of its mean, per axis"});
+    visit(p.force_m_s2,
+          {"rest_force_m_s2", "m/s^2", 1e-6, 10.0, "and the specific force within this of gravity and of its mean"});
+  }
+};
+
+/// The start: an IMU levelled at rest, and how far the first sweeps may correct it.
+struct OdometryStartParams {
+  /// A weight and no error: five times the tilt that WorldCovarianceParams reports, for a rest that was none.
+  double level_sigma_rad = 0.01;
+  double speed_sigma_m_s = 0.05;  ///< within what passes for rest
+  double bias_rest_s = 0.1;       ///< a shorter rest teaches no bias of the gyro
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.level_sigma_rad, {"level_sigma_rad", "rad", 1e-9, 1.0, "correction of the levelled tilt that is allowed"});
+    visit(p.speed_sigma_m_s, {"speed_sigma_m_s", "m/s", 1e-9, 100.0, "speed that passes for rest"});
+    visit(p.bias_rest_s, {"bias_rest_s", "s", 0.0, 60.0, "a shorter rest at the start teaches no bias of the gyro"});
+  }
+};
+
+/// A robot that is known not to move, be it at the start or by an IMU that says nothing but gravity.
+struct StandstillParams {
+  double start_sigma_m_s = 0.01;  ///< of the velocity, during the rest at the start
+  double sigma_m_s = 0.05;        ///< of the velocity, where the IMU says nothing but gravity
+  /// Believed slower than this such an IMU rests, where no surface holds it: a world that holds nothing lets it creep.
+  double creep_max_m_s = 0.5;
+  int sweeps_min = 3;         ///< in a row before that is believed
+  double noise_share = 0.02;  ///< of the inertial prior's standard deviations in motion
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.start_sigma_m_s, {"start_sigma_m_s", "m/s", 1e-9, 100.0, "velocity during the rest at the start"});
+    visit(p.sigma_m_s, {"sigma_m_s", "m/s", 1e-9, 100.0, "velocity of an IMU that says nothing but gravity"});
+    visit(p.creep_max_m_s, {"creep_max_m_s", "m/s", 0.0, 100.0,
+                            "such an IMU rests where it is believed slower than this and no surface holds it"});
+    visit(p.sweeps_min, {"sweeps_min", "1", 1, 1e6, "in a row before that is believed"});
+    visit(p.noise_share, {"noise_share", "1", 1e-9, 1.0, "of the inertial prior's standard deviations in motion"});
+  }
+};
+
+/// What the inertial side may be wrong by after kSpan_s, beside what RateState reports: standard deviations that grow
+/// in proportion to time. Loose in doubt; tight holds a world with few features.
+struct InertialNoiseParams {
+  static constexpr double kSpan_s = 0.1;  ///< between two sweeps of most lidars
+  double sigma_m = 0.003;
+  double sigma_rad = 0.002;
+  double sigma_m_s = 0.01;
+  /// Of the angle turned, as a share of it: scale, misalignment, and a rate that changes within a sample.
+  double turn_share = 0.001;
+  /// Of the specific force, as a share of its magnitude: velocity is uncertain by this times the integral of the force,
+  /// which counts at impacts.
+  double force_share = 0.03;
+  double gap_force_m_s2 = 5.0;        ///< what the force of a gap may be off by: the velocity goes on through it
+  double rate_sigma_max_rad_s = 5.0;  ///< what RateState reports is believed up to this
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.sigma_m, {"prior_sigma_m", "m", 1e-9, 1e3, "inertial prior over 0.1 s: position", Rank::first});
+    visit(p.sigma_rad, {"prior_sigma_rad", "rad", 1e-9, 1e3, "inertial prior over 0.1 s: attitude", Rank::first});
+    visit(p.sigma_m_s, {"prior_sigma_m_s", "m/s", 1e-9, 1e3, "inertial prior over 0.1 s: velocity", Rank::first});
+    visit(p.turn_share, {"turn_sigma_share", "1", 0.0, 1.0, "inertial prior: of the angle turned", Rank::first});
+    visit(p.force_share, {"force_sigma_share", "1", 0.0, 1.0, "inertial prior: of the force's integral", Rank::first});
+    visit(p.gap_force_m_s2,
+          {"gap_force_m_s2", "m/s^2", 0.0, 1e3, "of a gap of the IMU, over which the velocity goes on"});
+    visit(p.rate_sigma_max_rad_s,
+          {"rate_sigma_max_rad_s", "rad/s", 0.0, 100.0, "what RateState reports is believed up to this"});
+  }
+};
+
+/// An IMU at its rails. Readings of the accelerometer from accel_m_s2 on, or flagged by the device, are at its rail:
+/// there the force may be larger by force_sigma_m_s2 (standard deviation), for as long as the rail lasts.
+///
+/// With estimate_deficit, the excess of the rate on clipped axes is estimated in the registration, at
+/// SweepTrajectory::kKnots knots a sweep; it acts on clipped samples only, there in proportion to the rate's reported
+/// uncertainty. Its prior is that uncertainty, at least excess_sigma_min_rad_s, correlated over excess_time_s; on a
+/// rail that lasts over the border of two sweeps it goes on from where it was.
+struct RailedImuParams {
+  double accel_m_s2 = 1e5;
+  double force_sigma_m_s2 = 50.0;
+  double rate_sigma_rad_s = 3.0;  ///< assumed for a rate on a clipped axis that the rate method did not recover
+  bool estimate_deficit = false;
+  double excess_sigma_min_rad_s = 1.0;
+  double excess_time_s = 0.3;
+  double excess_carry_max = 3.0;    ///< over a border it grows by no more where less is known after it
+  double excess_knot_share = 0.05;  ///< of its standard deviation, by which a knot may differ from its neighbours
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.accel_m_s2,
+          {"accel_rail_m_s2", "m/s^2", 1e-9, 1e5, "readings of the accelerometer from here on are at its rail"});
+    visit(p.force_sigma_m_s2, {"railed_force_m_s2", "m/s^2", 0.0, 1e4, "how much larger the force may be there"});
+    visit(p.rate_sigma_rad_s, {"clipped_sigma_rad_s", "rad/s", 0.0, 100.0,
+                               "assumed of a clipped axis that the rate method did not recover", Rank::first});
+    visit(p.estimate_deficit, on_off("estimate_saturation_deficit",
+                                     "1: by how much clipped axes are short is estimated in the registration"));
+    visit(p.excess_sigma_min_rad_s,
+          {"excess_sigma_min_rad_s", "rad/s", 1e-9, 100.0,
+           "least prior of the saturation deficit of a clipped axis, whatever the rate method claims", Rank::first});
+    visit(p.excess_time_s,
+          {"excess_time_s", "s", 1e-3, 1e3, "over which the saturation deficit forgets what it was", Rank::first});
+    visit(p.excess_carry_max,
+          {"excess_carry_max", "1", 0.0, 1e3, "over the border of two sweeps the saturation deficit grows by no more"});
+    visit(p.excess_knot_share, {"excess_knot_share", "1", 1e-6, 1.0,
+                                "of the deficit's standard deviation, by which a knot may differ from its neighbours"});
+  }
+};
+
+/// A body whose flight is told by the ballistic arc: where the specific force at the centre of mass is below
+/// force_m_s2, the accelerometer's reading gives way to what flight makes it, and a gap of the IMU that begins in
+/// flight is bridged by the arc.
+struct FlightParams {
+  std::optional<FlyingBody> body;  ///< empty: the accelerometer throughout
+  double force_m_s2 = 4.0;
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.force_m_s2, {"flight_force_m_s2", "m/s^2", 0.0, 100.0,
+                         "with flight_arc: force at the centre of mass below which the body flies"});
+  }
+};
+
+}  // namespace tumble

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+
+#include "tumble/common/parameters.hpp"
+
+/// Groups of LidarInertialOdometry::Params::Expert: how a sweep finds its place in the map, and what becomes of the
+/// map.
+namespace tumble {
+
+/// What is kept of the world.
+struct LocalMapParams {
+  static constexpr double kPruneShare = 0.1;  ///< of radius_m: moved so far, the sensor drops what is out of reach
+  double voxel_m = 0.5;                       ///< cell of the map's hash
+  double spacing_m = 0.1;                     ///< at most one map point per cube of this edge
+  double radius_m = 100.0;                    ///< it is kept within this of the sensor, to a tenth of it
+  double sigma_max_m = 0.25;                  ///< points that the trajectory places less surely than this are kept out
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.voxel_m, {"map_voxel_m", "m", 0.01, 10.0, "cell of the map's hash", Rank::first});
+    visit(p.spacing_m, {"map_spacing_m", "m", 0.0, 10.0, "edge of the cube that holds one map point", Rank::first});
+    visit(p.radius_m, {"map_radius_m", "m", 0.0, 1e5, "the map is kept within this of the sensor, to a tenth of it"});
+    visit(p.sigma_max_m, {"map_sigma_max_m", "m", 1e-6, 1e3,
+                          "points that the trajectory places less surely than this are kept out of the map"});
+  }
+};
+
+/// A sweep against the map.
+struct MatchingParams {
+  int neighbours = 12;      ///< k of the plane fit
+  double distance_m = 1.0;  ///< farther map points are no match
+  std::size_t least = 100;  ///< fewer matched points reject a sweep
+  /// Of a registration; one with all points has at most eight, what has not settled goes on with a thousand of them.
+  int iterations_max = 30;
+  double correction_max_m = 15.0;   ///< a larger correction of the prior is rejected
+  double correction_max_rad = 1.1;  ///< a larger correction of the prior is rejected
+  /// A point's uncertainty grows over the sweep by this and weighs it down (the published time weighting).
+  double skew_sigma_m_s = 0.25;
+  /// A sweep that its surfaces alone hold less surely than this in some direction is `degenerate` (standard
+  /// deviation, attitude counted at the rms lever).
+  double degenerate_sigma_m = 0.15;
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.neighbours, {"neighbours", "1", 3, 32, "map points per plane fit", Rank::first});
+    visit(p.distance_m, {"match_distance_m", "m", 1e-3, 10.0, "farther map points are no match", Rank::first});
+    visit(p.least, {"matches_min", "1", 0, 1e9, "fewer matches are too few"});
+    visit(p.iterations_max,
+          {"iterations_max", "1", 1, 200, "most iterations of a registration; one with all points has at most eight"});
+    visit(p.correction_max_m, {"correction_max_m", "m", 0.0, 1e6, "a larger correction of the prior is refused"});
+    visit(p.correction_max_rad,
+          {"correction_max_rad", "rad", 0.0, 3.15, "a larger correction of the prior is refused"});
+    visit(p.skew_sigma_m_s, {"skew_sigma_m_s", "m/s", 0.0, 1e3,
+                             "growth of a point's uncertainty over the sweep (time weighting); 0: none"});
+    visit(p.degenerate_sigma_m, {"degenerate_sigma_m", "m", 1e-6, 1e3,
+                                 "a sweep that its surfaces hold less surely in some direction is degenerate"});
+  }
+};
+
+/// How much is spent on a registration, in steps: brief with all points; patient with some; coarse with few.
+struct RegistrationEffortParams {
+  int brief_iterations = 8;             ///< what has not settled by then is cheaper settled with some of the points
+  std::size_t patient_points = 1000;    ///< tell whether a start leads somewhere
+  int coarse_iterations = 15;           ///< of a start that may be far off
+  std::size_t coarse_points = 300;      ///< serve one
+  std::size_t coarse_matches_min = 50;  ///< fewer reject one
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.brief_iterations, {"brief_iterations", "1", 1, 200, "most iterations with all points"});
+    visit(p.patient_points,
+          {"patient_points", "1", 1, 1e9, "most points of a registration that runs to its convergence"});
+    visit(p.coarse_iterations, {"coarse_iterations", "1", 1, 200, "most iterations from a start that may be far off"});
+    visit(p.coarse_points, {"coarse_points", "1", 1, 1e9, "most points from such a start"});
+    visit(p.coarse_matches_min, {"coarse_matches_min", "1", 0, 1e9, "fewer matches reject such a start"});
+  }
+};
+
+/// A sensor that has lost its place, or has not.
+struct TrackingParams {
+  /// A sweep with too few matches still extends the map, as `degenerate`, while the inertial prior is this certain
+  /// (standard deviations): at rest a lidar draws rings only, which give no planes until it turns. Points that the
+  /// attitude leaves too uncertain at their range stay out by LocalMapParams::sigma_max_m.
+  double trusted_m = 0.1;
+  double trusted_rad = 0.1;
+  /// Sweeps in a row with points but no place in the map, after which it goes on `degenerate` by inertia.
+  int lost_sweeps_max = 30;
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.trusted_m, {"trusted_prior_m", "m", 0.0, 1e3,
+                        "a sweep with too few matches extends the map while the prior is this certain"});
+    visit(p.trusted_rad, {"trusted_prior_rad", "rad", 0.0, 1e3, "and this certain of the attitude"});
+    visit(p.lost_sweeps_max, {"lost_sweeps_max", "1", 1, 1e6,
+                              "sweeps in a row without a place in the map, after which it goes on by inertia"});
+  }
+};
+
+/// Where a sweep is tried from that its prior did not place: docs/maths/mapping.md, sections 5 and 10.
+struct RelocalizationParams {
+  int excess_tries_max = 5;  ///< larger saturation deficits tried for one sweep, all axes together
+  int starts_per_sweep = 3;  ///< of a lost sensor, the prior among them
+  double shift_m = 1.0;      ///< such starts reach so far at first
+  double turn_rad = 0.3;     ///< likewise in attitude
+  int rounds = 3;            ///< each reaches that much further than the last
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.excess_tries_max, {"excess_tries_max", "1", 0, 12, "larger saturation deficits tried for one sweep"});
+    visit(p.starts_per_sweep, {"starts_per_sweep", "1", 1, 100, "starts of a lost sensor, the prior among them"});
+    visit(p.shift_m, {"shift_m", "m", 0.3, 100.0, "reach of such starts, first round"});
+    visit(p.turn_rad, {"turn_rad", "rad", 0.1, 3.15, "reach of such starts in attitude, first round"});
+    visit(p.rounds, {"rounds", "1", 1, 100, "of starts, each of which reaches that much further than the last"});
+  }
+};
+
+/// What parts the map from the world: docs/maths/mapping.md, section 8.
+struct WorldCovarianceParams {
+  double tilt_sigma_rad = 0.002;  ///< of a levelled start: an accelerometer's turn-on bias of 2 mg
+  /// Of the weakest direction's standard deviation, per sweep, where the surfaces do not hold it: measured.
+  double drift_share = 0.1;
+  double drift_sigma_max_m = 3.0;  ///< a direction held less surely counts as this
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.tilt_sigma_rad, {"tilt_sigma_rad", "rad", 0.0, 1.0, "tilt of a levelled start, as reported"});
+    visit(p.drift_share, {"drift_share", "1", 0.0, 1.0, "of the weakest direction's standard deviation per sweep"});
+    visit(p.drift_sigma_max_m, {"drift_sigma_max_m", "m", 0.0, 1e3, "a direction held less surely counts as this"});
+  }
+};
+
+}  // namespace tumble

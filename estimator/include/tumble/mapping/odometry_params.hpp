@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "tumble/common/parameters.hpp"
+#include "tumble/mapping/detail/inertial_params.hpp"
+#include "tumble/mapping/detail/placing_params.hpp"
+#include "tumble/mapping/executor.hpp"
+
+namespace tumble {
+
+/// What few need of OdometryParams, by meaning. Fields bear the names that they have in tables and on command lines.
+struct OdometryExpertParams {
+  double gravity_m_s2 = 9.80665;
+  /// Standard deviation of gravity's horizontal part; 0: exact, not estimated.
+  double gravity_sigma_m_s2 = 0.0;
+  /// Sweeps that are refined together: the newest, and so many less one before it by what it teaches (see
+  /// SweepReport::smoothed). 1: none is refined later.
+  int window_sweeps = 2;
+  RestBoundsParams rest = {};
+  OdometryStartParams start = {};
+  StandstillParams standstill = {};
+  InertialNoiseParams prior = {};
+  RailedImuParams rails = {};
+  FlightParams flight = {};
+  LocalMapParams map = {};
+  MatchingParams matching = {};
+  RegistrationEffortParams effort = {};
+  TrackingParams tracking = {};
+  RelocalizationParams search = {};
+  WorldCovarianceParams world = {};
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.0, 100.0, "strength of gravity"});
+    visit(p.gravity_sigma_m_s2, {"gravity_sigma_m_s2", "m/s^2", 0.0, 10.0,
+                                 "gravity's direction as levelled at the start; 0: exact", Rank::first});
+    visit.group("", p.rest);
+    visit.group("", p.map);
+    visit.group("", p.matching);
+    visit.group("", p.prior);
+    visit.group("", p.rails);
+    visit(p.window_sweeps, {"window_sweeps", "1", 1, 8,
+                            "sweeps refined together: so many less one by what comes after them", Rank::first});
+    visit.group("", p.flight);
+    visit.group("", p.tracking);
+    visit.group("start_", p.start);
+    visit.group("standstill_", p.standstill);
+    visit.group("effort_", p.effort);
+    visit.group("search_", p.search);
+    visit.group("world_", p.world);
+  }
+};
+
+/// Of LidarInertialOdometry.
+struct OdometryParams {
+  Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< lidar in IMU axes
+  double time_offset_s = 0.0;                              ///< the IMU's clock minus the lidar's
+  /// Standard deviations of T_IL and of the time offset; 0: exact, not estimated.
+  double mount_sigma_rad = 0.0;
+  double mount_sigma_m = 0.0;
+  double time_offset_sigma_s = 0.0;
+  double range_min_m = 0.3;        ///< nearer returns are dropped
+  double range_max_m = 100.0;      ///< farther returns are dropped
+  Eigen::AlignedBox3d own_body_L;  ///< returns inside are the robot's own; an empty box, as here, keeps all
+  double sweep_voxel_m = 0.25;     ///< one point per voxel of a sweep is registered
+  /// Threads, if any, that the registration may use; results do not depend on it.
+  ParallelFor parallel_for;
+
+  using Expert = OdometryExpertParams;
+  Expert expert;  ///< what few need
+
+  /// Every number of it, stated once.
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.time_offset_s, {"time_offset_s", "s", -1.0, 1.0, "the IMU's clock minus the lidar's"});
+    visit(p.mount_sigma_rad,
+          {"mount_sigma_rad", "rad", 0.0, 1.0, "the lidar's attitude on the IMU as given; 0: exact", Rank::first});
+    visit(p.mount_sigma_m,
+          {"mount_sigma_m", "m", 0.0, 1.0, "the lidar's position on the IMU as given; 0: exact", Rank::first});
+    visit(p.time_offset_sigma_s,
+          {"time_offset_sigma_s", "s", 0.0, 0.02, "offset between the clocks of lidar and IMU; 0: none", Rank::first});
+    visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "nearer returns are dropped"});
+    visit(p.range_max_m, {"range_max_m", "m", 0.0, 1e4, "farther returns are dropped"});
+    visit(p.own_body_L.min(), {"own_body_min_m", "m", -kUnbounded, kUnbounded,
+                               "least corner of the box that holds the robot's own returns, lidar axes"});
+    visit(p.own_body_L.max(), {"own_body_max_m", "m", -kUnbounded, kUnbounded, "and its largest corner"});
+    visit(p.sweep_voxel_m,
+          {"sweep_voxel_m", "m", 0.01, 10.0, "one point per voxel of a sweep is registered", Rank::first});
+    visit.group("", p.expert);
+  }
+};
+
+}  // namespace tumble

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+
+#include "tumble/common/parameters.hpp"
+#include "tumble/mapping/executor.hpp"
+#include "tumble/mapping/plane_fit.hpp"
+
+namespace tumble {
+
+/// What few need of RegistrationParams. Fields bear the names that they have in tables and on command lines.
+struct RegistrationExpertParams {
+  double step_m = 5e-4;  ///< converged when a step is below this and below step_rad
+  double step_rad = 1e-4;
+  double rematch_m = 0.05;    ///< a point's plane is searched anew once the point has moved by this
+  double kernel_min_m = 0.1;  ///< least width of the robust kernel (Geman-McClure)
+  /// Weight of a point's information: neighbouring returns share the errors of the map and are not independent.
+  double correlation_discount = 0.1;
+  double cluster_m = 1.0;          ///< points of one cube of this edge are not independent
+  double matched_share_min = 0.1;  ///< of the points
+  /// Of the matches within three standard deviations; below it the result is refused.
+  double fitting_share_min = 0.6;
+  PlaneBounds plane;
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.step_m, {"step_m", "m", 1e-12, 1.0, "converged when a step is below this and its turn below step_rad"});
+    visit(p.step_rad, {"step_rad", "rad", 1e-12, 1.0, "converged when a step turns by less"});
+    visit(p.rematch_m,
+          {"rematch_m", "m", 0.0, 10.0, "a point's plane is searched anew once the point has moved by this"});
+    visit(p.kernel_min_m, {"kernel_min_m", "m", 1e-6, 1e3, "least width of the robust kernel (Geman-McClure)"});
+    visit(p.correlation_discount, {"correlation_discount", "1", 1e-6, 1.0,
+                                   "weight of a point's information: neighbouring returns are not independent"});
+    visit(p.cluster_m, {"cluster_m", "m", 0.01, 100.0, "points of one cube of this edge are not independent"});
+    visit(p.matched_share_min, {"matched_share_min", "1", 0.0, 1.0, "fewer of the points matched refuse the result"});
+    visit(p.fitting_share_min, {"fitting_share_min", "1", 0.0, 1.0,
+                                "fewer of the matches within three standard deviations refuse the result"});
+    visit.group("plane_", p.plane);
+  }
+};
+
+/// Of Registration.
+struct RegistrationParams {
+  int neighbours = 8;             ///< k of the plane fit
+  double match_distance_m = 1.0;  ///< farther map points are no match
+  int iterations_max = 30;
+  double range_sigma_m = 0.02;  ///< of a return, at least; grows as range_sigma_share of the range
+  double range_sigma_share = 0.0015;
+  double skew_sigma_m_s = 0.25;   ///< growth of a point's uncertainty over the sweep (time weighting); 0: none
+  std::size_t matches_min = 100;  ///< fewer matches are too few
+  double correction_max_m = 15.0;
+  double correction_max_rad = 1.1;
+  ParallelFor parallel_for;  ///< for the search of neighbours and the sums; empty: the calling thread
+
+  using Expert = RegistrationExpertParams;
+  Expert expert = {};  ///< what few need
+
+  /// Every number of it, stated once.
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.neighbours, {"neighbours", "1", 3, 32, "map points per plane fit", Rank::first});
+    visit(p.match_distance_m, {"match_distance_m", "m", 1e-3, 10.0, "farther map points are no match", Rank::first});
+    visit(p.iterations_max, {"iterations_max", "1", 1, 200, "most iterations"});
+    visit(p.range_sigma_m, {"range_sigma_m", "m", 1e-6, 10.0, "of a return, at least"});
+    visit(p.range_sigma_share, {"range_sigma_share", "1", 0.0, 1.0, "of a return, as a share of its range"});
+    visit(p.skew_sigma_m_s, {"skew_sigma_m_s", "m/s", 0.0, 1e3,
+                             "growth of a point's uncertainty over the sweep (time weighting); 0: none"});
+    visit(p.matches_min, {"matches_min", "1", 0, 1e9, "fewer matches are too few"});
+    visit(p.correction_max_m, {"correction_max_m", "m", 0.0, 1e6, "a larger correction of the prior is refused"});
+    visit(p.correction_max_rad,
+          {"correction_max_rad", "rad", 0.0, 3.15, "a larger correction of the prior is refused"});
+    visit.group("", p.expert);
+  }
+};
+
+}  // namespace tumble

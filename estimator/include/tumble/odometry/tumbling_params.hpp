@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+
+#include "tumble/attitude/regime_stream.hpp"
+#include "tumble/common/parameters.hpp"
+#include "tumble/mapping/odometry_params.hpp"
+#include "tumble/odometry/imu_sheet.hpp"
+#include "tumble/odometry/lidar_sheet.hpp"
+#include "tumble/odometry/second_pass.hpp"
+
+namespace tumble {
+
+/// What few need of TumblingParams. Of the same numbers those of TumblingParams count, and gravity_m_s2 for all parts.
+struct TumblingExpertParams {
+  double gravity_m_s2 = 9.80665;
+  /// Sweeps that may wait for the IMU, beside those that the lag holds back; and for take(), the oldest being
+  /// dropped.
+  std::size_t sweeps_max = 16;
+  RegimeStream::Params rate;
+  /// With gravity's direction and what the rails hid of the rate among the unknowns.
+  OdometryParams mapping = mapping_defaults();
+  /// The second pass over the first seconds of motion, with what they told of rig and calibration.
+  SecondPass::Params again;
+  static OdometryParams mapping_defaults();
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.0, 100.0, "strength of gravity", Rank::first});
+    visit(p.sweeps_max, {"sweeps_max", "1", 1, 1e6, "sweeps that may wait for the IMU"});
+    visit.group("rate_", p.rate);
+    visit.group("mapping_", p.mapping);
+    visit.group("again_", p.again);
+  }
+};
+
+/// Of TumblingOdometry.
+struct TumblingParams {
+  ImuSheet imu;
+  /// From the body's centre of mass to the IMU, in IMU axes: what turns rates into forces; and how well it is known
+  /// (standard deviation per axis). It is estimated.
+  Eigen::Vector3d lever_arm_I_m = Eigen::Vector3d::Zero();
+  double lever_arm_sigma_m = 0.01;
+  Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< lidar in IMU axes
+  /// Of T_IL and of the lidar's clock: standard deviations, both are estimated; 0: exact.
+  double mount_sigma_rad = 0.01;
+  double mount_sigma_m = 0.006;
+  double time_offset_sigma_s = 0.003;
+  LidarSheet lidar;
+  Eigen::AlignedBox3d own_body_L;  ///< returns inside are the robot's own; empty: none are
+  double lag_s = 0.2;              ///< how old a sample is when its rate is settled
+
+  using Expert = TumblingExpertParams;
+  Expert expert;  ///< what few need
+
+  /// Every number of it, stated once.
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit.group("imu_", p.imu);
+    visit(p.lever_arm_I_m,
+          {"lever_arm_m", "m", -10.0, 10.0, "from the centre of mass to the IMU, IMU axes", Rank::first});
+    visit(p.lever_arm_sigma_m, {"lever_arm_sigma_m", "m", 1e-9, 10.0, "what the lever arm may be off by", Rank::first});
+    visit(p.mount_sigma_rad,
+          {"mount_sigma_rad", "rad", 0.0, 1.0, "the lidar's attitude on the IMU as given; 0: exact", Rank::first});
+    visit(p.mount_sigma_m,
+          {"mount_sigma_m", "m", 0.0, 1.0, "the lidar's position on the IMU as given; 0: exact", Rank::first});
+    visit(p.time_offset_sigma_s,
+          {"time_offset_sigma_s", "s", 0.0, 0.02, "offset between the clocks of lidar and IMU; 0: none", Rank::first});
+    visit.group("", p.lidar);
+    visit(p.lag_s, {"lag_s", "s", 0.0, 10.0, "how old a sample is when its rate is settled", Rank::first});
+    visit.group("", p.expert);
+  }
+};
+
+}  // namespace tumble
