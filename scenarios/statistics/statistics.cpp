@@ -18,29 +18,41 @@ constexpr double kTail = 0.025;  // of either side of a 95 % interval
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-std::vector<double> sorted_numbers(std::span<const double> values) {
-  std::vector<double> sorted;
-  std::copy_if(values.begin(), values.end(), std::back_inserter(sorted), [](double v) { return !std::isnan(v); });
-  std::sort(sorted.begin(), sorted.end());
-  return sorted;
+std::vector<double> numbers_of(std::span<const double> values) {
+  std::vector<double> numbers;
+  std::copy_if(values.begin(), values.end(), std::back_inserter(numbers), [](double v) { return !std::isnan(v); });
+  return numbers;
 }
 
-double quantile_of_sorted(const std::vector<double>& sorted, double share) {
-  if (sorted.empty()) return kNaN;
-  const double place = share * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  // an infinity is not interpolated: what lies above minus infinity, or at a place itself, is that value
-  if (place == static_cast<double>(below) || std::isinf(sorted[below])) return sorted[below];
-  return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
-}
+/// Where a share of so many ranked values lies: between two neighbours, or at one.
+struct Place {
+  Place(double share, std::size_t count) {
+    const double place = share * static_cast<double>(count - 1);
+    below = static_cast<std::size_t>(place);
+    above = std::min(below + 1, count - 1);
+    part = place - static_cast<double>(below);
+  }
+  double between(double low, double high) const {
+    // an infinity is not interpolated: what lies above minus infinity, or at a place itself, is that value
+    return part == 0.0 || std::isinf(low) ? low : low + part * (high - low);
+  }
+  std::size_t below, above;
+  double part;
+};
 
 }  // namespace
 
 double quantile(std::span<const double> values, double share) {
   if (!(share >= 0.0 && share <= 1.0))
     throw BadInput("quantile: share is " + std::to_string(share) + ", must be within [0, 1]");
-  return quantile_of_sorted(sorted_numbers(values), share);
+  std::vector<double> numbers = numbers_of(values);
+  if (numbers.empty()) return kNaN;
+  // two ranks are all that is asked: a report asks it of millions of values
+  const Place place(share, numbers.size());
+  const auto below = numbers.begin() + static_cast<std::ptrdiff_t>(place.below);
+  std::nth_element(numbers.begin(), below, numbers.end());
+  const double above = place.above == place.below ? *below : *std::min_element(below + 1, numbers.end());
+  return place.between(*below, above);
 }
 
 std::optional<double> quantile_of_all(std::span<const double> values, double share) {
@@ -50,9 +62,13 @@ std::optional<double> quantile_of_all(std::span<const double> values, double sha
 }
 
 Interval median_interval(std::span<const double> values) {
-  const std::vector<double> sorted = sorted_numbers(values);
+  std::vector<double> sorted = numbers_of(values);
+  std::sort(sorted.begin(), sorted.end());
   const auto n = static_cast<double>(sorted.size());
-  Interval interval{quantile_of_sorted(sorted, 0.5), -kInfinity, kInfinity};
+  Interval interval{kNaN, -kInfinity, kInfinity};
+  if (sorted.empty()) return interval;
+  const Place middle(0.5, sorted.size());
+  interval.value = middle.between(sorted[middle.below], sorted[middle.above]);
   // largest rank r (from 1) with P(fewer than r of n lie below the median) <= 2.5 %
   std::size_t rank = 0;
   double cumulative = 0.0;

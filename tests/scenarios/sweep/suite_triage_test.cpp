@@ -91,7 +91,7 @@ Method disturbed(const std::filesystem::path& folder, std::uintmax_t n, const st
   const std::filesystem::path count = folder / "count";
   method.run = [run = method.run, count, n, disturbance](const sim::Sensors& sensors, const sim::Values& parameters,
                                                          const OracleInput& oracle) {
-    std::ofstream(count, std::ios::app) << '.' << std::flush;
+    std::ofstream(count, std::ios::app) << '.';
     if (std::filesystem::file_size(count) == n) disturbance();
     return run(sensors, parameters, oracle);
   };
