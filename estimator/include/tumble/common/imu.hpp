@@ -34,7 +34,7 @@ inline bool is_finite(const ImuSample& sample) {
   return sample.angular_velocity_rad_s.allFinite() && sample.specific_force_m_s2.allFinite();
 }
 
-/// `non_finite` naming the field of the first reading that is not finite; ok otherwise.
+/// `non_finite`, or `out_of_range` beyond 1e6 (no sensor says that), of the first component that is so; ok otherwise.
 Status check_sample(const ImuSample& sample);
 
 /// `time_order` unless time_ns > previous_ns (value: time_ns, bound: previous_ns), `gap` when more than gap_max_s lies

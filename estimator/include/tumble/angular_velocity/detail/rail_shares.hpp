@@ -6,7 +6,8 @@ namespace tumble {
 /// Shares of a range or of a rail by which a reading is taken to be at a rail, or to be free of it. Heuristic.
 
 /// Of the range that a device states: below it no rail is looked for, and none is heard. rails.md (R67). A rail lies at
-/// what is stated or beyond (of one at hand at 1.4 times); so much less is left to a device that does not keep its word.
+/// what is stated or beyond (of one at hand at 1.4 times); so much less is left to a device that does not keep its
+/// word.
 inline constexpr double kStatedRailMin = 0.85;
 
 /// Of a rail, below it: what a calibration (its scale), a tilted element's neighbours in time and motion beside make of
