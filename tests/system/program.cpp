@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "system/program.hpp"
-#include "tests/tree.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -12,6 +11,9 @@
 #include <cstdlib>
 #include <fstream>
 #include <map>
+
+#include "stand_ins/short_scenario.hpp"
+#include "tests/tree.hpp"
 
 namespace tumble::system_test {
 
@@ -28,6 +30,17 @@ fs::path fresh_folder(const std::string& name) {
   const fs::path folder = fs::path(testing::TempDir()) / ("tumble_" + std::to_string(getpid())) / name;
   fs::remove_all(folder);
   fs::create_directories(folder);
+  return folder;
+}
+
+/// Models and scenarios as files of their own, for links would make their digest one of where they lie.
+fs::path data_with_short_catalogue() {
+  const fs::path folder = fresh_folder("data");
+  fs::copy(test::source_dir() / "models", folder / "models", fs::copy_options::recursive);
+  fs::create_directory(folder / "scenarios");
+  for (const char* name : {"catalogue", "suites", "gates", "regressions"})
+    fs::copy(test::source_dir() / "scenarios" / name, folder / "scenarios" / name, fs::copy_options::recursive);
+  for (const char* name : {"hill", "roll"}) test::write_short_scenario(name, folder / "scenarios" / "catalogue");
   return folder;
 }
 
@@ -90,19 +103,15 @@ fs::path test_folder() {
 }
 
 std::string shared_scenario(const std::string& name) {
-  if (name != "hill") return name;
-  static fs::path file;
-  if (!file.empty()) return file.string();
-  std::string text = read_file(test::source_dir() / "scenarios" / "catalogue" / (name + ".yaml"));
-  for (const auto& [from, to] : {std::pair<std::string, std::string>{"duration_s: 10\n", "duration_s: 5\n"},
-                                 {"rest_s: {uniform: [1.5, 2.0]}", "rest_s: 0.8"}}) {
-    const std::size_t at = text.find(from);
-    EXPECT_NE(at, std::string::npos) << from;
-    if (at != std::string::npos) text.replace(at, from.size(), to);
-  }
-  file = fresh_folder("scenario") / (name + ".yaml");
-  std::ofstream(file) << text;
-  return file.string();
+  static std::map<std::string, std::string> made;
+  std::string& file = made[name];
+  if (file.empty()) file = test::write_short_scenario(name, fresh_folder("scenario_" + name)).string();
+  return file;
+}
+
+std::function<void()> in_short_catalogue() {
+  static const fs::path folder = data_with_short_catalogue();
+  return [] { setenv("TUMBLE_DATA", folder.c_str(), 1); };
 }
 
 fs::path shared_run(const std::string& scenario) {
