@@ -48,4 +48,15 @@ std::filesystem::path write_short_scenario(const std::string& name, const std::f
   return file;
 }
 
+// as files of their own: links would make their digest one of where they lie
+std::filesystem::path write_short_data(const std::filesystem::path& folder) {
+  constexpr auto kAll = std::filesystem::copy_options::recursive;
+  std::filesystem::copy(source_dir() / "models", folder / "models", kAll);
+  std::filesystem::create_directory(folder / "scenarios");
+  for (const char* name : {"catalogue", "suites", "gates", "regressions"})
+    std::filesystem::copy(source_dir() / "scenarios" / name, folder / "scenarios" / name, kAll);
+  for (const char* name : {"hill", "roll"}) write_short_scenario(name, folder / "scenarios" / "catalogue");
+  return folder;
+}
+
 }  // namespace tumble::test

@@ -12,4 +12,8 @@ namespace tumble::test {
 /// such scenario, or does not say any more what is replaced.
 std::filesystem::path write_short_scenario(const std::string& name, const std::filesystem::path& folder);
 
+/// The tree's models and scenarios below `folder`, which is returned, `hill` and `roll` short under their own names.
+/// With the same files whenever and wherever, so that a certificate measured over one serves the others.
+std::filesystem::path write_short_data(const std::filesystem::path& folder);
+
 }  // namespace tumble::test

@@ -33,17 +33,6 @@ fs::path fresh_folder(const std::string& name) {
   return folder;
 }
 
-/// Models and scenarios as files of their own, for links would make their digest one of where they lie.
-fs::path data_with_short_catalogue() {
-  const fs::path folder = fresh_folder("data");
-  fs::copy(test::source_dir() / "models", folder / "models", fs::copy_options::recursive);
-  fs::create_directory(folder / "scenarios");
-  for (const char* name : {"catalogue", "suites", "gates", "regressions"})
-    fs::copy(test::source_dir() / "scenarios" / name, folder / "scenarios" / name, fs::copy_options::recursive);
-  for (const char* name : {"hill", "roll"}) test::write_short_scenario(name, folder / "scenarios" / "catalogue");
-  return folder;
-}
-
 int exit_status(int raw) {
   return WIFEXITED(raw) ? WEXITSTATUS(raw) : 128 + WTERMSIG(raw);
 }
@@ -59,7 +48,7 @@ Running::Running(const std::vector<std::string>& arguments, const std::function<
   redirect(folder_ / "out", STDOUT_FILENO);
   redirect(folder_ / "err", STDERR_FILENO);
   // a certificate measured by one test serves the others, and nothing is left in the home of whoever runs them
-  setenv("TUMBLE_CACHE", (test::program().parent_path().parent_path() / "Testing" / "cache").c_str(), 1);
+  setenv("TUMBLE_CACHE", test::certificates().c_str(), 1);
   if (prepare) prepare();
   const std::string program = test::program();
   std::vector<char*> words = {const_cast<char*>(program.c_str())};
@@ -110,7 +99,7 @@ std::string shared_scenario(const std::string& name) {
 }
 
 std::function<void()> in_short_catalogue() {
-  static const fs::path folder = data_with_short_catalogue();
+  static const fs::path folder = test::write_short_data(fresh_folder("data"));
   return [] { setenv("TUMBLE_DATA", folder.c_str(), 1); };
 }
 
