@@ -13,6 +13,10 @@ std::filesystem::path program() {
   return TUMBLE_PROGRAM;
 }
 
+std::filesystem::path certificates() {
+  return program().parent_path().parent_path() / "Testing" / "cache";
+}
+
 std::filesystem::path shared_data() {
   const char* named = std::getenv("TUMBLE_SHARED_DATA");
   return named != nullptr ? named : TUMBLE_SHARED_DATA;

@@ -11,6 +11,8 @@ namespace tumble::test {
 std::filesystem::path source_dir();
 /// The program `tumble` of this build.
 std::filesystem::path program();
+/// Where tests keep certificates of this build, so that what one has measured serves the others.
+std::filesystem::path certificates();
 /// Folder of the real recordings: the environment's TUMBLE_SHARED_DATA, else the one beside the checkout. It need not
 /// be there.
 std::filesystem::path shared_data();

@@ -47,7 +47,7 @@ function(tumble_target target)
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=524288>)
   if(TUMBLE_WARNINGS_AS_ERRORS)
     # but where GCC takes Eigen's storage, which begins as it is, for a value that is read
-    target_compile_options(${target} PRIVATE -Werror -Wno-error=maybe-uninitialized)
+    target_compile_options(${target} PRIVATE -Werror $<$<CXX_COMPILER_ID:GNU>:-Wno-error=maybe-uninitialized>)
   endif()
   if(TUMBLE_EIGEN_NAN)
     target_compile_definitions(${target} PUBLIC EIGEN_INITIALIZE_MATRICES_BY_NAN)

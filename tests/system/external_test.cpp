@@ -58,7 +58,7 @@ TEST(External, WhatGoesWrongIsAnOutcomeOfTheSweep) {
                                           "--method",   describe(folder, "silent", "true"),
                                           "--examples", "0",
                                           "--db",       (folder / "out.db").string()};
-  const Ended ended = run_program(sweep);
+  const Ended ended = run_program(sweep, in_short_catalogue());
   ASSERT_EQ(ended.status, 0) << ended.err;
   std::map<std::string, std::string> status;
   {
@@ -70,7 +70,7 @@ TEST(External, WhatGoesWrongIsAnOutcomeOfTheSweep) {
 
   // another method under the name of one that the database has rows of
   describe(folder, "silent", "false");
-  const Ended other = run_program(sweep);
+  const Ended other = run_program(sweep, in_short_catalogue());
   EXPECT_EQ(other.status, 2);
   EXPECT_THAT(other.err, HasSubstr("rate/silent"));
 }
@@ -83,7 +83,7 @@ TEST(External, AGateHoldsItToItsAcceptedRun) {
   const auto run = [&](const std::vector<std::string>& more) {
     std::vector<std::string> arguments = gate;
     arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_program(arguments);
+    return run_program(arguments, in_short_catalogue());
   };
   Ended ended = run({"--method", example(), "--accept"});
   ASSERT_EQ(ended.status, 0) << ended.err;

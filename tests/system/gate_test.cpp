@@ -29,8 +29,8 @@ TEST(Gate, HoldsARunToTheAcceptedOne) {
                                         "--db", database,       "--json",    "--quiet"};
   std::vector<std::string> accept = arguments;
   accept.emplace_back("--accept");
-  EXPECT_EQ(run_program(accept).status, 0);
-  const Ended same = run_program(arguments);
+  EXPECT_EQ(run_program(accept, in_short_catalogue()).status, 0);
+  const Ended same = run_program(arguments, in_short_catalogue());
   EXPECT_EQ(same.status, 0) << same.err;
   EXPECT_EQ(same.err, "");
   const json held = json_of(same);
@@ -46,7 +46,7 @@ TEST(Gate, HoldsARunToTheAcceptedOne) {
   ASSERT_NE(begin, std::string::npos) << table;
   table.replace(begin, table.find('\n', begin) - begin, key + ",1e-9,1e-9");
   std::ofstream(folder / "accepted.csv") << table;
-  const Ended worse = run_program(arguments);
+  const Ended worse = run_program(arguments, in_short_catalogue());
   EXPECT_EQ(worse.status, 1);
   EXPECT_EQ(json::parse(worse.out)["verdict"], "fail");
 
@@ -54,7 +54,7 @@ TEST(Gate, HoldsARunToTheAcceptedOne) {
   std::string policy = read_file(against);
   policy.replace(policy.find("suite: small"), 12, "suite: other");
   std::ofstream(against) << policy;
-  const Ended other = run_program(arguments);
+  const Ended other = run_program(arguments, in_short_catalogue());
   EXPECT_EQ(other.status, 2);
   EXPECT_THAT(other.err, HasSubstr("'other'"));
 }
@@ -68,7 +68,7 @@ TEST(Gate, WithoutAnAcceptedRunSaysHowToMakeIt) {
 }
 
 TEST(Triage, NamesTheInputThatCures) {
-  const Ended ended = run_program({"triage", "hill", "--seed", "1", "--method", "rate/raw", "--metric",
+  const Ended ended = run_program({"triage", shared_scenario("hill"), "--seed", "1", "--method", "rate/raw", "--metric",
                                    "rate_error_clipped_median_rad_s", "--limit", "0.1", "--json"});
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.err, HasSubstr("cured by: "));

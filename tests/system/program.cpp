@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "system/program.hpp"
-#include "tests/tree.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -12,6 +11,9 @@
 #include <cstdlib>
 #include <fstream>
 #include <map>
+
+#include "stand_ins/short_scenario.hpp"
+#include "tests/tree.hpp"
 
 namespace tumble::system_test {
 
@@ -46,7 +48,7 @@ Running::Running(const std::vector<std::string>& arguments, const std::function<
   redirect(folder_ / "out", STDOUT_FILENO);
   redirect(folder_ / "err", STDERR_FILENO);
   // a certificate measured by one test serves the others, and nothing is left in the home of whoever runs them
-  setenv("TUMBLE_CACHE", (test::program().parent_path().parent_path() / "Testing" / "cache").c_str(), 1);
+  setenv("TUMBLE_CACHE", test::certificates().c_str(), 1);
   if (prepare) prepare();
   const std::string program = test::program();
   std::vector<char*> words = {const_cast<char*>(program.c_str())};
@@ -90,19 +92,15 @@ fs::path test_folder() {
 }
 
 std::string shared_scenario(const std::string& name) {
-  if (name != "hill") return name;
-  static fs::path file;
-  if (!file.empty()) return file.string();
-  std::string text = read_file(test::source_dir() / "scenarios" / "catalogue" / (name + ".yaml"));
-  for (const auto& [from, to] : {std::pair<std::string, std::string>{"duration_s: 10\n", "duration_s: 5\n"},
-                                 {"rest_s: {uniform: [1.5, 2.0]}", "rest_s: 0.8"}}) {
-    const std::size_t at = text.find(from);
-    EXPECT_NE(at, std::string::npos) << from;
-    if (at != std::string::npos) text.replace(at, from.size(), to);
-  }
-  file = fresh_folder("scenario") / (name + ".yaml");
-  std::ofstream(file) << text;
-  return file.string();
+  static std::map<std::string, std::string> made;
+  std::string& file = made[name];
+  if (file.empty()) file = test::write_short_scenario(name, fresh_folder("scenario_" + name)).string();
+  return file;
+}
+
+std::function<void()> in_short_catalogue() {
+  static const fs::path folder = test::write_short_data(fresh_folder("data"));
+  return [] { setenv("TUMBLE_DATA", folder.c_str(), 1); };
 }
 
 fs::path shared_run(const std::string& scenario) {

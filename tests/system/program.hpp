@@ -40,9 +40,12 @@ class Running {
 
 /// An empty folder of the test that runs.
 std::filesystem::path test_folder();
-/// What `tumble run` takes for the scenario of that name where every method is to run: itself, or for `hill` a file
-/// with a tumble of 5 s instead of 10, made once per process.
+/// What `tumble` takes for the scenario of that name where how well methods do is not asked: a file with less of it
+/// (`stand_ins/short_scenario.hpp`), made once per process.
 std::string shared_scenario(const std::string& name);
+/// To prepare a child with: its data are this tree's, but `hill` and `roll` are the shared scenarios. In a folder of
+/// the process, with the same files in each, so that a certificate measured over one serves the others.
+std::function<void()> in_short_catalogue();
 /// The folder of `tumble run SHARED_SCENARIO --seed 1 -o ...`, made once per process. Not to be changed.
 std::filesystem::path shared_run(const std::string& scenario);
 

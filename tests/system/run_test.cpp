@@ -236,7 +236,12 @@ TEST(Replay, RefusesWhatItCannotShow) {
 // the scenario alone: seed 1, ours beside the baseline, a folder named after it, and what to do next
 TEST(FirstRun, AScenarioAloneDoesSomethingGood) {
   const fs::path folder = test_folder();
-  const auto run = [&] { return run_program({"run", "roll", "--json"}, [&] { fs::current_path(folder); }); };
+  const auto run = [&] {
+    return run_program({"run", "roll", "--json"}, [&, short_catalogue = in_short_catalogue()] {
+      short_catalogue();
+      fs::current_path(folder);
+    });
+  };
   const Ended ended = run();
   ASSERT_EQ(ended.status, 0) << ended.err;
   const json said = json_of(ended);

@@ -21,11 +21,15 @@ using nlohmann::json;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// The sweep that these tests share: fast draws of the sphere.
+Ended run(const std::vector<std::string>& arguments) {
+  return run_program(arguments, in_short_catalogue());
+}
+
+/// The sweep that these tests share: short draws of the sphere.
 std::vector<std::string> sweep_arguments(const fs::path& database, const std::string& seeds,
                                          const std::string& examples = "0") {
-  return {"sweep",   "roll", "--seeds",         seeds,        "--method", "rate/raw", "--method",
-          "rolling", "--db", database.string(), "--examples", examples,   "--json"};
+  return {"sweep",   "roll", "--seeds", seeds,        "--method", "rate/raw", "--method",
+          "rolling", "--db", database,  "--examples", examples,   "--json"};
 }
 
 /// A page up to the Plotly bundle, which holds pictures and addresses of its own.
@@ -35,7 +39,7 @@ std::string own_part(const fs::path& page) {
 }
 
 json report_json(const fs::path& database) {
-  return json_of(run_program({"report", database.string(), "--json"}));
+  return json_of(run({"report", database.string(), "--json"}));
 }
 
 /// The scores of a report without what they cost.
@@ -52,13 +56,13 @@ TEST(Sweep, InterruptedKeepsWhatIsDoneAndGoesOn) {
   // far more draws than end before the signal
   std::vector<std::string> arguments = sweep_arguments(database, "1..500");
   arguments.insert(arguments.end(), {"--jobs", "1"});
-  Running running(arguments);
+  Running running(arguments, in_short_catalogue());
   // one draw at a time: outcomes of a second draw say that the first is complete; they give the signal, however fast
   // the machine is
   for (int i = 0; i < 1200 && !running.has_ended(); ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     if (!fs::exists(database)) continue;
-    const Ended report = run_program({"report", database.string(), "--json"});
+    const Ended report = run({"report", database.string(), "--json"});
     if (report.status == 0 && json_of(report)["draws"]["roll"] >= 2) break;
   }
   ASSERT_FALSE(running.has_ended()) << running.wait().err;
@@ -75,14 +79,14 @@ TEST(Sweep, InterruptedKeepsWhatIsDoneAndGoesOn) {
   // going on over the seeds that are there is no work, and changes nothing
   const std::int64_t done = json_of(stopped)["draws_done"];
   ASSERT_GE(done, 1);
-  const Ended resumed = run_program(sweep_arguments(database, "1.." + std::to_string(done + 1)));
+  const Ended resumed = run(sweep_arguments(database, "1.." + std::to_string(done + 1)));
   EXPECT_EQ(resumed.status, 0) << resumed.err;
   EXPECT_EQ(json_of(resumed)["draws_done"], done + 1);
   EXPECT_LE(json_of(resumed)["outcomes"], 4) << "what was stored is not run again";
 
   // the same seeds in one go give the same scores
   const fs::path whole = folder / "whole.db";
-  ASSERT_EQ(run_program(sweep_arguments(whole, "1.." + std::to_string(done + 1))).status, 0);
+  ASSERT_EQ(run(sweep_arguments(whole, "1.." + std::to_string(done + 1))).status, 0);
   EXPECT_EQ(comparable(report_json(database)), comparable(report_json(whole)));
 }
 
@@ -93,26 +97,26 @@ TEST(Sweep, ShardsMergeToTheWhole) {
     const fs::path database = folder / (std::string(1, shard[0]) + ".db");
     std::vector<std::string> arguments = sweep_arguments(database, "1..3");
     arguments.insert(arguments.end(), {"--shard", shard});
-    ASSERT_EQ(run_program(arguments).status, 0);
+    ASSERT_EQ(run(arguments).status, 0);
     merge.push_back(database.string());
   }
-  const Ended merged = run_program(merge);
+  const Ended merged = run(merge);
   ASSERT_EQ(merged.status, 0) << merged.err;
-  ASSERT_EQ(run_program(sweep_arguments(folder / "whole.db", "1..3")).status, 0);
+  ASSERT_EQ(run(sweep_arguments(folder / "whole.db", "1..3")).status, 0);
   const json report = comparable(report_json(folder / "merged.db"));
   EXPECT_EQ(report["draws"]["roll"], 3);
   EXPECT_EQ(report, comparable(report_json(folder / "whole.db")));
 }
 
 TEST(Sweep, OffATerminalWritesNoControlCharacters) {
-  const Ended ended = run_program(sweep_arguments(test_folder() / "x.db", "1"));
+  const Ended ended = run(sweep_arguments(test_folder() / "x.db", "1"));
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.err, Not(HasSubstr("\r")));
   EXPECT_THAT(ended.err, Not(HasSubstr("\x1b")));
   EXPECT_THAT(ended.err, HasSubstr("1/1 draws"));
   std::vector<std::string> quiet = sweep_arguments(test_folder() / "x.db", "1");
   quiet.push_back("--quiet");
-  EXPECT_EQ(run_program(quiet).err, "");
+  EXPECT_EQ(run(quiet).err, "");
 }
 
 // what is kept is what `tumble run` leaves: other verbs read it
@@ -120,7 +124,7 @@ TEST(Sweep, KeepsDrawsThatOtherVerbsRead) {
   const fs::path folder = test_folder();
   std::vector<std::string> arguments = sweep_arguments(folder / "k.db", "1..2");
   arguments.insert(arguments.end(), {"--keep", "worst:1"});
-  const Ended ended = run_program(arguments);
+  const Ended ended = run(arguments);
   ASSERT_EQ(ended.status, 0) << ended.err;
   const json swept = json_of(ended);
   EXPECT_GE(swept["kept"], 1);
@@ -130,8 +134,8 @@ TEST(Sweep, KeepsDrawsThatOtherVerbsRead) {
   const fs::path kept = folder / "k.db.files" / "kept" / "roll";
   const fs::path draw = fs::directory_iterator(kept)->path();
   EXPECT_THAT(read_file(draw / "command"), HasSubstr("tumble run roll --seed " + draw.filename().string()));
-  const Ended scored = run_program(
-      {"score", (draw / "estimates" / "position-rolling").string(), (draw / "recording.h5").string(), "--json"});
+  const Ended scored =
+      run({"score", (draw / "estimates" / "position-rolling").string(), (draw / "recording.h5").string(), "--json"});
   EXPECT_EQ(scored.status, 0) << scored.err;
 }
 
@@ -143,9 +147,9 @@ TEST(Sweep, AShardWithoutSeedsKeepsByTheRuleOfTheOthers) {
     merge.push_back((folder / (std::string(1, shard[0]) + ".db")).string());
     std::vector<std::string> arguments = sweep_arguments(merge.back(), "1");
     arguments.insert(arguments.end(), {"--shard", shard, "--keep", "all"});
-    ASSERT_EQ(run_program(arguments).status, 0);
+    ASSERT_EQ(run(arguments).status, 0);
   }
-  const Ended merged = run_program(merge);
+  const Ended merged = run(merge);
   ASSERT_EQ(merged.status, 0) << merged.err;
   EXPECT_EQ(json_of(merged)["kept"], 1);
 }
@@ -155,7 +159,7 @@ TEST(Sweep, NamedDrawsAreNoSeedsInARow) {
   const fs::path folder = test_folder(), suite = folder / "named.yaml";
   std::ofstream(suite) << "name: named\ndoc: d\nmethods: [rate/raw, rate/saave]\ndraws: {mild: {roll: [3, 8]}}\n";
   const auto refused = [&](const std::vector<std::string>& arguments, const std::string& what) {
-    const Ended ended = run_program(arguments);
+    const Ended ended = run(arguments);
     EXPECT_EQ(ended.status, 2) << what;
     EXPECT_THAT(ended.err, HasSubstr(what));
     EXPECT_THAT(ended.err, HasSubstr("names its draws"));
@@ -172,7 +176,7 @@ TEST(Sweep, RefusesWhatItCannotKeepOrAsk) {
   const auto refused = [&](const std::vector<std::string>& more, const std::string& what) {
     std::vector<std::string> arguments = sweep_arguments(database, "1");
     arguments.insert(arguments.end(), more.begin(), more.end());
-    const Ended ended = run_program(arguments);
+    const Ended ended = run(arguments);
     EXPECT_EQ(ended.status, 2) << what;
     EXPECT_THAT(ended.err, HasSubstr(what));
   };
@@ -187,8 +191,8 @@ TEST(Sweep, RefusesWhatItCannotKeepOrAsk) {
 TEST(Report, IsOnePageThatAsksTheNetworkNothing) {
   const fs::path folder = test_folder();
   const fs::path database = folder / "r.db", page = folder / "report.html";
-  ASSERT_EQ(run_program(sweep_arguments(database, "1..2", "1")).status, 0);
-  const Ended ended = run_program({"report", database.string(), "-o", page.string()});
+  ASSERT_EQ(run(sweep_arguments(database, "1..2", "1")).status, 0);
+  const Ended ended = run({"report", database.string(), "-o", page.string()});
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("position_end_error_share"));
 
@@ -219,14 +223,14 @@ TEST(Report, IsAFunctionOfWhatASweepHasLeft) {
   const fs::path folder = test_folder();
   const fs::path database = folder / "r.db", page = folder / "report.html";
   const fs::path list = folder / "r.db.files" / "examples.json";
-  ASSERT_EQ(run_program(sweep_arguments(database, "1..2")).status, 0);
+  ASSERT_EQ(run(sweep_arguments(database, "1..2")).status, 0);
   EXPECT_FALSE(fs::exists(list)) << "none were asked for";
   std::vector<std::string> untold = sweep_arguments(database, "1..2");
   untold.erase(std::find(untold.begin(), untold.end(), "--examples"), untold.end() - 1);
-  ASSERT_EQ(run_program(untold).status, 0);
+  ASSERT_EQ(run(untold).status, 0);
   EXPECT_FALSE(fs::exists(list)) << "two draws do not pay for an example";
   const std::vector<std::string> report = {"report", database.string(), "-o", page.string()};
-  Ended ended = run_program(report);
+  Ended ended = run(report);
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(own_part(page), Not(HasSubstr("data:image/png;base64,iVBORw0KGgo")));
   EXPECT_THAT(own_part(page), HasSubstr("tumble sweep roll --seeds 1..2 --method rate/raw --method rolling --db "))
@@ -240,7 +244,7 @@ TEST(Report, IsAFunctionOfWhatASweepHasLeft) {
     const auto page_where = [&](const std::string& key, const std::string& text) {
       const std::string as_it_was = results.note(key);
       results.set_note(key, text);
-      EXPECT_EQ(run_program(report).status, 0);
+      EXPECT_EQ(run(report).status, 0);
       results.set_note(key, as_it_was);
       return own_part(page);
     };
@@ -255,19 +259,19 @@ TEST(Report, IsAFunctionOfWhatASweepHasLeft) {
   }
 
   // they are made of what is there: nothing runs again but the draw that is shown
-  ended = run_program(sweep_arguments(database, "1..2", "1"));
+  ended = run(sweep_arguments(database, "1..2", "1"));
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(json_of(ended)["outcomes"], 0);
   EXPECT_THAT(ended.err, HasSubstr("running it again for its pictures"));
   const std::string left = read_file(list);
-  ended = run_program(sweep_arguments(database, "1..2", "1"));
+  ended = run(sweep_arguments(database, "1..2", "1"));
   EXPECT_THAT(ended.err, Not(HasSubstr("running it again"))) << "they are there already";
   EXPECT_EQ(read_file(list), left);
 
-  ASSERT_EQ(run_program(report).status, 0);
+  ASSERT_EQ(run(report).status, 0);
   EXPECT_THAT(own_part(page), HasSubstr("the same digest as in the results"));
   std::ofstream(list) << "damaged";
-  ended = run_program(report);
+  ended = run(report);
   EXPECT_EQ(ended.status, 0) << "the scores are there all the same";
   EXPECT_THAT(own_part(page), HasSubstr("examples.json"));
 }
@@ -276,7 +280,7 @@ TEST(Sweep, OfAnotherSuiteKeepsTheExamplesThatStandThere) {
   const fs::path folder = test_folder();
   const fs::path database = folder / "s.db", list = folder / "s.db.files" / "examples.json";
   std::vector<std::string> arguments = sweep_arguments(database, "1..2", "1");
-  ASSERT_EQ(run_program(arguments).status, 0);
+  ASSERT_EQ(run(arguments).status, 0);
   json left = json::parse(read_file(list));
   ASSERT_EQ(left["examples"].size(), 1u);
   // as a suite of another scenario would have left it
@@ -290,7 +294,7 @@ TEST(Sweep, OfAnotherSuiteKeepsTheExamplesThatStandThere) {
   fs::copy_file(list.parent_path() / moving["file"].get<std::string>(), list.parent_path() / "elsewhere-1-moving.webp");
   moving["file"] = "elsewhere-1-moving.webp";
   std::ofstream(list) << left.dump();
-  ASSERT_EQ(run_program(arguments).status, 0);
+  ASSERT_EQ(run(arguments).status, 0);
   const json both = json::parse(read_file(list));
   ASSERT_EQ(both["examples"].size(), 2u);
   EXPECT_EQ(both["examples"][0]["scenario"], "elsewhere");
@@ -301,7 +305,7 @@ TEST(Sweep, OfAnotherSuiteKeepsTheExamplesThatStandThere) {
   left["examples"].push_back(left["examples"][0]);
   left["examples"][2].erase("motion");
   std::ofstream(list) << left.dump();
-  const Ended ended = run_program(arguments);
+  const Ended ended = run(arguments);
   EXPECT_THAT(ended.err, HasSubstr("an example that stood there is left out"));
   EXPECT_THAT(ended.err, HasSubstr("example 3"));
   EXPECT_EQ(json::parse(read_file(list)), both);
@@ -311,7 +315,7 @@ TEST(Sweep, OfAnotherSuiteKeepsTheExamplesThatStandThere) {
 TEST(Sweep, StoppedAtItsPicturesSaysSoAndLeavesNone) {
   const fs::path folder = test_folder();
   const fs::path database = folder / "s.db", files = folder / "s.db.files";
-  Running running(sweep_arguments(database, "1..2", "1"));
+  Running running(sweep_arguments(database, "1..2", "1"), in_short_catalogue());
   // the folder is made just before the draw runs again
   for (int i = 0; i < 12000 && !running.has_ended() && !fs::exists(files); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -328,7 +332,7 @@ TEST(Sweep, KeepsItsTableWhenPicturesCannotBeLeft) {
   const fs::path folder = test_folder();
   const fs::path database = folder / "s.db";
   std::ofstream(folder / "s.db.files") << "a file where the folder would stand";
-  const Ended ended = run_program(sweep_arguments(database, "1..2", "1"));
+  const Ended ended = run(sweep_arguments(database, "1..2", "1"));
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(json_of(ended)["draws_done"], 2);
   EXPECT_THAT(ended.err, HasSubstr("tumble: no pictures of single draws: "));
@@ -336,7 +340,7 @@ TEST(Sweep, KeepsItsTableWhenPicturesCannotBeLeft) {
 
 TEST(Report, OfAnAbsentDatabaseMakesNone) {
   const fs::path database = test_folder() / "absent.db";
-  const Ended absent = run_program({"report", database.string()});
+  const Ended absent = run({"report", database.string()});
   EXPECT_EQ(absent.status, 2);
   EXPECT_EQ(line_count(absent.err), 1u) << absent.err;
   EXPECT_FALSE(fs::exists(database));

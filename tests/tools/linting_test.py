@@ -4,7 +4,10 @@
 
     linting_test.py TOOLS_FOLDER
 """
+import importlib.machinery
+import importlib.util
 import pathlib
+import shutil
 import sys
 import tempfile
 import unittest
@@ -93,6 +96,22 @@ class Groups(Case):
     def test_a_group_is_bounded(self):
         many = [self.source(f"s{index}.cpp", "int a;") for index in range(groups.MOST_SOURCES + 1)]
         self.assertEqual([len(group) for group in groups.grouped(many)], [groups.MOST_SOURCES, 1])
+
+
+class WarningsOfClang(Case):
+    def complaint(self, *lines: str) -> str:
+        loader = importlib.machinery.SourceFileLoader("lint", str(TOOLS / "lint"))
+        lint = importlib.util.module_from_spec(importlib.util.spec_from_loader("lint", loader))
+        loader.exec_module(lint)
+        lint.BUILD = self.root
+        shutil.copy(TOOLS.parent / ".clang-tidy", self.root)
+        return lint.complaint(self.root / self.write("a.cpp", *lines), ["-Wall"], lint.WARNINGS_ALONE)
+
+    def test_a_warning_is_a_complaint(self):
+        self.assertIn("unused-variable", self.complaint("int f() {", "  int never_read;", "  return 1;", "}"))
+
+    def test_what_only_a_check_finds_is_none(self):
+        self.assertEqual(self.complaint("#define TWICE(x) x + x", "int f(int given) {", "  return TWICE(1);", "}"), "")
 
 
 class CleanSources(Case):
