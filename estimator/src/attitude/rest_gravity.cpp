@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tumble/attitude/detail/timing.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble {
@@ -19,10 +20,14 @@ RestGravity::RestGravity(const Params& params) : params_(params), detector_(para
 }
 
 void RestGravity::step(const ImuSample& sample, const RateState& rate, State& state) const {
-  const double dt_s = state.started ? seconds(sample.time_ns - state.last_time_ns) : 0.0;
+  if (!check(sample).ok()) return;
+  double dt_s = 0.0;
+  const Status follows =
+      state.started ? elapsed(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s) : Status{};
+  if (follows.trouble == Trouble::time_order) return;
   state.started = true;
   state.last_time_ns = sample.time_ns;
-  if (dt_s > params_.gap_max_s) {
+  if (!follows.ok()) {
     state.rest = {};
     state.from.setZero();
     state.rests = false;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -96,6 +97,26 @@ TEST(RestGravity, OfOneRestOrATurnAboutTheVerticalNothingIsSaid) {
   const Eigen::Vector3d about_up = 2.0 * Eigen::Vector3d(0.3, -0.2, 1.0).normalized();
   EXPECT_TRUE(gravity.verdict(after({.rate_rad_s = about_up}, kNone, -1.0)).ok());
   EXPECT_THROW(RestGravity({.gravity_m_s2 = 0.0}), InvalidParams);
+}
+
+TEST(RestGravity, ReadingsThatAreNoneAndStampsOutOfOrderArePassedOver) {
+  const RestGravity gravity({});
+  RestGravity::State state;
+  ImuSample sample;
+  sample.time_ns = std::numeric_limits<TimeNs>::min();
+  sample.specific_force_m_s2 = {0.0, 0.0, 9.80665};
+  gravity.step(sample, {}, state);
+  for (int k = 0; k < 300; ++k) {
+    sample.time_ns = TimeNs{k} * 10'000'000;
+    gravity.step(sample, {}, state);
+    ImuSample none = sample;
+    none.specific_force_m_s2.setConstant(std::numeric_limits<double>::quiet_NaN());
+    gravity.step(none, {}, state);
+    none = sample;
+    none.time_ns = 0;
+    gravity.step(none, {}, state);
+  }
+  EXPECT_NEAR(gravity.size_share(state), 1.0, 1e-9);
 }
 
 }  // namespace

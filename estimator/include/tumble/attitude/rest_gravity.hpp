@@ -65,7 +65,8 @@ class RestGravity {
   /// Throws InvalidParams when a parameter is outside of its bound.
   explicit RestGravity(const Params& params);
 
-  /// Takes a sample, in order of time, and the rate that an estimate gives for it. O(1), no allocation.
+  /// Takes a sample and the rate that an estimate gives for it; a sample that is not finite or out of order is passed
+  /// over. O(1), no allocation.
   void step(const ImuSample& sample, const RateState& rate, State& state) const;
 
   /// Mean size of the force at rest as a share of gravity; 1 where nothing rested for a second.
