@@ -20,7 +20,7 @@ RestGravity::RestGravity(const Params& params) : params_(params), detector_(para
 }
 
 void RestGravity::step(const ImuSample& sample, const RateState& rate, State& state) const {
-  if (!check(sample).ok()) return;
+  if (!check_sample(sample).ok()) return;
   double dt_s = 0.0;
   const Status follows =
       state.started ? elapsed(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s) : Status{};
