@@ -9,6 +9,7 @@
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/processes/process.hpp"
 #include "scenarios/recordings/recording_file.hpp"
+#include "scenarios/recordings/unfinished.hpp"
 #include "sim/simulate.hpp"
 
 namespace tumble::scenarios {
@@ -24,6 +25,7 @@ std::string digest_of(const CertificateInput& input, const sim::Situation& situa
 std::string digest_after_restart(const CertificateInput& input, const std::string& scenario, std::uint64_t seed) {
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / ("tumble_certify_" + std::to_string(getpid()) + ".h5");
+  const Unfinished gone_on_signals(file, Unfinished::Kind::file);
   const std::string root = "TUMBLE_DATA=" + input.data.root.string();
   Process process(
       [&](int fd) {

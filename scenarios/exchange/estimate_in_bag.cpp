@@ -19,7 +19,7 @@ namespace {
 constexpr std::int64_t kHole_ns = 200000000;
 
 /// Pose of the estimate's frame in the body.
-Eigen::Isometry3d mounting_of(const Estimate& estimate, const sim::Sensors& sensors, const sim::Truth* truth) {
+Eigen::Isometry3d mounting_of(const Estimate& estimate, const sim::Sensors& sensors, const StoredTruth* truth) {
   Eigen::Isometry3d T_BA = Eigen::Isometry3d::Identity();
   switch (estimate.frame) {
     case Frame::body:
@@ -38,12 +38,18 @@ Eigen::Isometry3d mounting_of(const Estimate& estimate, const sim::Sensors& sens
 }
 
 /// The move by which the scores lay an estimate onto the truth.
-Alignment alignment_of(const Estimate& estimate, const sim::Truth* truth) {
+Alignment alignment_of(const Estimate& estimate, const StoredTruth* truth) {
   if (truth == nullptr) return {};
-  const TruthTrack track(*truth, estimate.frame);
-  const PairedTrack paired = pair_poses(estimate, track);
-  if (paired.poses.empty()) throw BadInput("the truth knows the place at none of its poses: another clock?");
-  return paired.alignment;
+  for (const PoseState& pose : estimate.poses) {
+    const std::size_t before = static_cast<std::size_t>(std::max<std::int64_t>(pose.time_ns, 0) / truth->period_ns);
+    if (pose.time_ns < 0 || before >= truth->size()) continue;
+    // the two states around it are enough
+    const sim::Truth around = truth->states(before, std::min(before + 2, truth->size()));
+    const TruthTrack track(around, estimate.frame);
+    const std::int64_t after_ns = pose.time_ns % truth->period_ns;
+    if (track.covers(after_ns)) return Alignment::at(pose, track.pose(after_ns));
+  }
+  throw BadInput("the truth knows the place at none of its poses: another clock?");
 }
 
 Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
@@ -98,27 +104,41 @@ class BodyAt {
   const std::vector<BagTrack::Pose>& poses_;
 };
 
-std::vector<BagCloud> clouds_of(const BagTrack& track, const sim::LidarRecord& lidar, const sim::LidarTruth* truth) {
+/// The returns of one sweep where the track puts them. `hit_W_m`: parallel to them, or empty.
+BagCloud cloud_of(const BagTrack& track, const sim::LidarRecord& sweep, const std::vector<Eigen::Vector3f>& hit_W_m) {
   const BodyAt body_at(track.poses);
-  const bool hits = truth != nullptr && truth->hit_W_m.size() == lidar.position_L_m.size();
-  std::vector<BagCloud> out;
-  for (std::size_t sweep = 0; sweep < lidar.sweep_start_ns.size(); ++sweep) {
-    BagCloud cloud{track.name, lidar.sweep_start_ns[sweep] + lidar.sweep_period_ns, {}, {}};
-    for (std::size_t k = lidar.sweep_first[sweep]; k < lidar.sweep_first[sweep + 1]; ++k) {
-      Eigen::Isometry3d T_WB;
-      if (!body_at(lidar.sweep_start_ns[sweep] + lidar.offset_ns[k], T_WB)) continue;
-      const Eigen::Vector3d place_W_m = T_WB * (lidar.T_BL * lidar.position_L_m[k].cast<double>());
-      cloud.position_W_m.push_back(place_W_m.cast<float>());
-      if (hits) cloud.error_m.push_back(static_cast<float>((place_W_m - truth->hit_W_m[k].cast<double>()).norm()));
-    }
-    if (!cloud.position_W_m.empty()) out.push_back(std::move(cloud));
+  BagCloud cloud;
+  for (std::size_t k = 0; k < sweep.position_L_m.size(); ++k) {
+    Eigen::Isometry3d T_WB;
+    if (!body_at(sweep.sweep_start_ns[0] + sweep.offset_ns[k], T_WB)) continue;
+    const Eigen::Vector3d place_W_m = T_WB * (sweep.T_BL * sweep.position_L_m[k].cast<double>());
+    cloud.position_W_m.push_back(place_W_m.cast<float>());
+    if (!hit_W_m.empty()) cloud.error_m.push_back(static_cast<float>((place_W_m - hit_W_m[k].cast<double>()).norm()));
   }
-  return out;
+  return cloud;
+}
+
+/// The clouds of the first lidar, one per sweep, made from what `sensors`, `points` and `truth` hold by then.
+void add_clouds(const sim::Sensors& sensors, const std::vector<PointStore>* points, const StoredTruth* truth,
+                BagTrack& track) {
+  if (sensors.lidars.empty()) return;
+  const sim::LidarRecord& lidar = sensors.lidars.front();
+  const PointStore* aside = points != nullptr ? &points->front() : nullptr;
+  const std::uint64_t count = lidar.sweep_first.empty() ? 0 : lidar.sweep_first.back();
+  const bool known = truth != nullptr && !truth->lidars.empty() && truth->lidars.front().hit_W_m.size() == count;
+  for (const std::int64_t start_ns : lidar.sweep_start_ns)
+    track.cloud_time_ns.push_back(start_ns + lidar.sweep_period_ns);
+  track.cloud = [&lidar, aside, hits = known ? &truth->lidars.front().hit_W_m : nullptr](const BagTrack& own,
+                                                                                         std::size_t sweep) {
+    const std::uint64_t first = lidar.sweep_first[sweep], last = lidar.sweep_first[sweep + 1];
+    return cloud_of(own, sweep_alone(lidar, aside, sweep),
+                    hits != nullptr ? hits->rows(first, last) : std::vector<Eigen::Vector3f>());
+  };
 }
 
 /// An estimate says which sensors it was made from.
-void require_own(const std::filesystem::path& path, const sim::Sensors& sensors) {
-  const std::string made_from = estimated_sensors(path), own = digest(sensors, nullptr);
+void require_own(const std::filesystem::path& path, const std::string& own) {
+  const std::string made_from = estimated_sensors(path);
   if (made_from.empty() || made_from == own) return;
   throw BadInput("was made from another recording (its sensors have the digest " + made_from + ", these " + own + ")");
 }
@@ -135,21 +155,18 @@ std::string free_name(const std::string& method, std::set<std::string>& taken) {
 
 }  // namespace
 
-EstimateInBag in_bag(const std::string& name, const Estimate& estimate, const sim::Sensors& sensors,
-                     const sim::Truth* truth) {
+BagTrack in_bag(const std::string& name, const Estimate& estimate, const sim::Sensors& sensors,
+                const std::vector<PointStore>* points, const StoredTruth* truth) {
   if (estimate.poses.empty()) throw BadInput("holds no poses: a rate or an attitude alone has no place in a bag");
   const Eigen::Isometry3d T_AB = mounting_of(estimate, sensors, truth).inverse();
   const Alignment alignment = alignment_of(estimate, truth);
-  EstimateInBag out;
-  out.track.name = name;
+  BagTrack out;
+  out.name = name;
   for (const PoseState& pose : estimate.poses) {
     if (!pose.p_WA_m.allFinite() || !pose.q_WA.coeffs().allFinite()) continue;
-    out.track.poses.push_back(body_pose(moved_by(alignment, pose), T_AB));
+    out.poses.push_back(body_pose(moved_by(alignment, pose), T_AB));
   }
-  const bool truth_of_lidar = truth != nullptr && !truth->lidars.empty();
-  if (!sensors.lidars.empty()) {
-    out.clouds = clouds_of(out.track, sensors.lidars.front(), truth_of_lidar ? &truth->lidars.front() : nullptr);
-  }
+  add_clouds(sensors, points, truth, out);
   return out;
 }
 
@@ -157,6 +174,8 @@ void add_estimates(std::span<const std::filesystem::path> paths, const sim::Sens
   std::set<std::string> taken = {"truth", "body", "world", "tf", "tf_static", "clock"};
   for (std::size_t s = 0; s < sensors.imus.size(); ++s) taken.insert(file_stem(sensors.imus[s].name, "imu", s));
   for (std::size_t s = 0; s < sensors.lidars.size(); ++s) taken.insert(file_stem(sensors.lidars[s].name, "lidar", s));
+  const std::string own =
+      writing.points != nullptr ? digest(sensors, *writing.points, nullptr) : digest(sensors, nullptr);
   for (const std::filesystem::path& path : paths) {
     Kind kind{};
     std::string method;
@@ -166,12 +185,10 @@ void add_estimates(std::span<const std::filesystem::path> paths, const sim::Sens
       for (PoseState& pose : estimate.poses) pose.time_ns -= writing.origin_ns;
     }
     try {
-      require_own(path, sensors);
+      require_own(path, own);
       const bool of_file = !std::filesystem::is_directory(path);
-      EstimateInBag added = in_bag(free_name((of_file ? "" : std::string(to_string(kind)) + "_") + method, taken),
-                                   estimate, sensors, writing.truth);
-      writing.tracks.push_back(std::move(added.track));
-      for (BagCloud& cloud : added.clouds) writing.clouds.push_back(std::move(cloud));
+      writing.tracks.push_back(in_bag(free_name((of_file ? "" : std::string(to_string(kind)) + "_") + method, taken),
+                                      estimate, sensors, writing.points, writing.truth));
     } catch (const BadInput& error) {
       throw BadInput(path.string() + ": " + error.what());
     }

@@ -23,9 +23,11 @@ constexpr std::size_t kFirstLineMax = 120;
 }  // namespace
 
 ScratchFolder::ScratchFolder() {
+  const SignalsWait until_listed;
   std::string name = (std::filesystem::temp_directory_path() / "tumble-method-XXXXXX").string();
   if (mkdtemp(name.data()) == nullptr) throw std::system_error(errno, std::generic_category(), name);
   path_ = name;
+  on_signal_.emplace(path_, Unfinished::Kind::folder);
 }
 
 ScratchFolder::~ScratchFolder() {

@@ -2,14 +2,17 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "scenarios/processes/command.hpp"
+#include "scenarios/recordings/unfinished.hpp"
 
 /// What runs of somebody else's program share, a command or a function of Python.
 namespace tumble::scenarios {
 
-/// A folder for one run, gone with it. Throws std::system_error when there is no room.
+/// A folder for one run, gone with it, also when a signal ends the program. Throws std::system_error when there is no
+/// room.
 class ScratchFolder {
  public:
   ScratchFolder();
@@ -20,6 +23,7 @@ class ScratchFolder {
 
  private:
   std::filesystem::path path_;
+  std::optional<Unfinished> on_signal_;
 };
 
 /// `what`, and the end of what the program said.

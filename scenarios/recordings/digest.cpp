@@ -49,6 +49,11 @@ class FieldHasher : public Hasher {
                      Storage storage) {
     if (!given.empty()) rows(name, given, unit, columns, storage);
   }
+  template <class Row>
+  void optional_rows(const char* name, const ColumnFile<Row>& given, const char* unit, const char* columns,
+                     Storage storage) {
+    if (given.size() > 0) rows(name, given, unit, columns, storage);
+  }
   void optional_point(const char* name, const Eigen::Vector3d& given, const char* unit) {
     if (!given.isZero(0.0)) point(name, given, unit);
   }
@@ -80,6 +85,13 @@ void hash_truth(FieldHasher& hasher, const sim::Truth& truth) {
 }
 
 }  // namespace
+
+std::string digest(const StoredTruth& truth) {
+  FieldHasher hasher;
+  hasher.text("truth");
+  truth_fields(hasher, truth, truth.contacts);
+  return hasher.hex();
+}
 
 std::string digest(const sim::Sensors& sensors, const sim::Truth* truth) {
   FieldHasher hasher;

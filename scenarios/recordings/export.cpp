@@ -26,29 +26,22 @@ void write_csv(const path& recording, const path& out, const BesideSensors&) {
   export_csv(sensors, &truth, out);
 }
 
-/// The nearest folder of an output that is there already: what is set aside lies on the same disk.
-path folder_of(const path& out) {
-  path folder = std::filesystem::absolute(out).parent_path();
-  while (folder.has_relative_path() && !std::filesystem::is_directory(folder)) folder = folder.parent_path();
-  return folder;
-}
-
 template <void (*kExport)(const sim::Sensors&, const BagWriting&, const path&)>
 void write_bag(const path& recording, const path& out, const BesideSensors& beside) {
-  std::optional<sim::Truth> truth;
-  if (beside.truth) truth = read_truth(recording);
+  const path scratch = scratch_folder_of(out);
+  std::optional<StoredTruth> truth;
+  if (beside.truth) truth = read_truth(recording, scratch);
   std::vector<PointStore> points;
-  // estimates put the points where they lie in the world: they are wanted whole
-  const sim::Sensors sensors = beside.more ? read_sensors(recording) : read_sensors(recording, folder_of(out), points);
+  const sim::Sensors sensors = read_sensors(recording, scratch, points);
   BagWriting writing{read_info(recording).origin_ns, truth ? &*truth : nullptr};
   writing.sweeps = beside.sweeps;
-  if (!beside.more) writing.points = &points;
+  writing.points = &points;
   if (beside.more) beside.more(sensors, writing);
   kExport(sensors, writing, out);
 }
 
 void write_tum(const path& recording, const path& out, const BesideSensors&) {
-  export_tum(read_truth(recording), out);
+  export_tum(read_truth(recording, scratch_folder_of(out)), out);
 }
 
 void write_kitti(const path& recording, const path& out, const BesideSensors&) {

@@ -25,7 +25,7 @@ std::string format_of_ending(const std::filesystem::path& out);
 struct BesideSensors {
   bool truth = false;
   SweepLayout sweeps = own_sweep_layout();
-  /// Called with sensors and truth read, to add estimates (scenarios/exchange); may be empty.
+  /// Called with sensors read, points and truth set aside, to add estimates (scenarios/exchange); may be empty.
   std::function<void(const sim::Sensors&, BagWriting&)> more = {};
 };
 
@@ -33,14 +33,16 @@ struct BesideSensors {
 /// `mcap` and `rosbag1` write one file, the sensors; `csv`, `pcd`, `ply`, `rosbag2` and `rosbag2_mcap` write into a
 /// folder, which is made when absent. Of bags (bag.hpp has their topics) `beside` says what else is in them. Files are
 /// replaced whole. Throws BadInput: unknown format (nearest named), a recording without what the format needs, a place
-/// that cannot be written. A bag is written sweep by sweep, its points set aside beside it; in memory are the samples
-/// of the IMUs, some bytes a message, what `beside` adds, and with it the points, and of a truth all that it has.
+/// that cannot be written. A bag is written sweep by sweep, its points and its truth set aside beside it; in memory are
+/// the samples of the IMUs, 32 bytes a message, and the poses that `beside` adds.
 void export_recording(const std::filesystem::path& recording, const std::string& format,
                       const std::filesystem::path& out, const BesideSensors& beside = {});
 
 /// "t x y z qx qy qz qw" per physics sample: T_WB, seconds from the start with nine decimals, numbers that read back
 /// exactly; `origin_ns` is added to the times. Without the instants that a reference does not know.
 void export_tum(const sim::Truth& truth, const std::filesystem::path& file, std::int64_t origin_ns = 0);
+/// The same a stretch at a time.
+void export_tum(const StoredTruth& truth, const std::filesystem::path& file, std::int64_t origin_ns = 0);
 
 /// Upper three rows of T_WB, row by row, per physics sample; KITTI's format has no time: throws BadInput for a
 /// reference with gaps.

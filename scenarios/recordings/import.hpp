@@ -35,7 +35,8 @@ enum class GyroUnit { rad_s, deg_s };
 /// period is the median step. Units are held against gravity: its size, and how it turns (a note says so where the
 /// motion tells). Throws BadInput with file and line: unknown, doubled or missing columns, differing numbers of them,
 /// not a number, not finite, a stamp that does not rise, a last line without its end; fewer than two samples; a median
-/// specific force outside 3 to 30 m/s^2, or gravity that turns 57 times too fast or too slow for the rates.
+/// specific force outside 3 to 30 m/s^2, a period outside 20 us to 2 s, more than 1 % of the rates beyond twice the
+/// device's range (100 rad/s where none is stated), or gravity that turns 57 times too fast or too slow for the rates.
 Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord& device,
                         AccelUnit unit = AccelUnit::m_s2, GyroUnit gyro_unit = GyroUnit::rad_s);
 

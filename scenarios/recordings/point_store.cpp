@@ -15,7 +15,32 @@ void PointStore::take(sim::LidarRecord& record) {
   move(record.ring, ring);
 }
 
-sim::LidarRecord PointStore::sweep(const sim::LidarRecord& lidar, std::size_t sweep) const {
+namespace {
+
+template <class Row>
+std::vector<Row> stretch(const std::vector<Row>& rows, std::size_t first, std::size_t last) {
+  const auto begin = rows.begin() + static_cast<std::ptrdiff_t>(first);
+  return {begin, begin + static_cast<std::ptrdiff_t>(last - first)};
+}
+
+template <class Row>
+std::vector<Row> stretch(const ColumnFile<Row>& rows, std::size_t first, std::size_t last) {
+  return rows.rows(first, last);
+}
+
+/// `points`: a PointStore, or the record itself.
+template <class Points>
+void take_points(const Points& points, std::size_t first, std::size_t last, sim::LidarRecord& out) {
+  out.position_L_m = stretch(points.position_L_m, first, last);
+  out.range_m = stretch(points.range_m, first, last);
+  out.intensity = stretch(points.intensity, first, last);
+  out.offset_ns = stretch(points.offset_ns, first, last);
+  out.ring = stretch(points.ring, first, last);
+}
+
+}  // namespace
+
+sim::LidarRecord sweep_alone(const sim::LidarRecord& lidar, const PointStore* aside, std::size_t sweep) {
   const std::uint64_t first = lidar.sweep_first[sweep], last = lidar.sweep_first[sweep + 1];
   sim::LidarRecord out;
   out.name = lidar.name;
@@ -25,11 +50,10 @@ sim::LidarRecord PointStore::sweep(const sim::LidarRecord& lidar, std::size_t sw
   out.point_times = lidar.point_times;
   out.sweep_start_ns = {lidar.sweep_start_ns[sweep]};
   out.sweep_first = {0, last - first};
-  out.position_L_m = position_L_m.rows(first, last);
-  out.range_m = range_m.rows(first, last);
-  out.intensity = intensity.rows(first, last);
-  out.offset_ns = offset_ns.rows(first, last);
-  out.ring = ring.rows(first, last);
+  if (aside != nullptr)
+    take_points(*aside, first, last, out);
+  else
+    take_points(lidar, first, last, out);
   return out;
 }
 

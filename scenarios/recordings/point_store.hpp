@@ -20,13 +20,14 @@ struct PointStore {
   std::size_t size() const { return position_L_m.size(); }
   /// Appends the points of `record`, which holds none afterwards. Throws BadInput as ScratchFile does.
   void take(sim::LidarRecord& record);
-  /// One sweep of `lidar`, whose points these are, as a record of that sweep alone.
-  sim::LidarRecord sweep(const sim::LidarRecord& lidar, std::size_t sweep) const;
 
   ColumnFile<Eigen::Vector3f> position_L_m;
   ColumnFile<float> range_m, intensity;
   ColumnFile<std::uint32_t> offset_ns;
   ColumnFile<std::uint16_t> ring;
 };
+
+/// One sweep as a record of that sweep alone: its points are those of `lidar`, or in `aside` where that is given.
+sim::LidarRecord sweep_alone(const sim::LidarRecord& lidar, const PointStore* aside, std::size_t sweep);
 
 }  // namespace tumble::scenarios

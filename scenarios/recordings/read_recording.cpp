@@ -47,6 +47,10 @@ class Reader {
   void optional_rows(const char* name, std::vector<Row>& rows, const char*, const char*, Storage) {
     if (group_.has(name)) group_.read(name, rows);
   }
+  template <class Row>
+  void optional_rows(const char* name, ColumnFile<Row>& given, const char* unit, const char* columns, Storage storage) {
+    if (group_.has(name)) rows(name, given, unit, columns, storage);
+  }
   void optional_point(const char* name, Eigen::Vector3d& given, const char* unit) {
     if (group_.has(name)) point(name, given, unit);
   }
@@ -81,12 +85,18 @@ class Reader {
   std::filesystem::path scratch_;
 };
 
-std::vector<sim::ContactTruth> from_columns(const ContactColumns& columns, const std::string& file) {
-  const std::size_t count = columns.time_ns.size();
+/// ContactColumns or StoredContacts.
+template <class Columns>
+void require_one_length(const Columns& columns, const std::string& file) {
   for (const std::size_t other : {columns.point_W_m.size(), columns.normal_W.size(), columns.slip_velocity_W_m_s.size(),
                                   columns.normal_force_n.size(), columns.surface_id.size()}) {
-    if (other != count) throw BadInput(file + ": truth/contacts: datasets differ in length");
+    if (other != columns.time_ns.size()) throw BadInput(file + ": truth/contacts: datasets differ in length");
   }
+}
+
+std::vector<sim::ContactTruth> from_columns(const ContactColumns& columns, const std::string& file) {
+  require_one_length(columns, file);
+  const std::size_t count = columns.time_ns.size();
   std::vector<sim::ContactTruth> contacts(count);
   for (std::size_t i = 0; i < count; ++i) {
     contacts[i] = {columns.time_ns[i],        columns.point_W_m[i], columns.normal_W[i], columns.slip_velocity_W_m_s[i],
@@ -104,6 +114,12 @@ void require_format(const hdf5::Group& root) {
     root.fail("format_version",
               "is " + std::to_string(version) + ", this build reads " + std::to_string(kRecordingVersion));
   }
+}
+
+hdf5::Group truth_group(const hdf5::InputFile& file, const std::filesystem::path& path) {
+  require_format(file.root());
+  if (!file.root().has("truth")) throw BadInput(path.string() + ": holds no truth (a real recording?)");
+  return file.root().open("truth");
 }
 
 void require_sound(const std::string& file, const std::string& problem, const std::string& stored,
@@ -175,15 +191,29 @@ sim::Sensors read_sensors(const std::filesystem::path& path, const std::filesyst
   return sensors;
 }
 
-sim::Truth read_truth(const std::filesystem::path& path) {
+bool states_digest(const std::filesystem::path& path) {
   const hdf5::InputFile file(path);
   require_format(file.root());
-  if (!file.root().has("truth")) throw BadInput(path.string() + ": holds no truth (a real recording?)");
-  Reader reader(file.root().open("truth"));
+  return file.root().open("sensors").has_attribute("digest");
+}
+
+sim::Truth read_truth(const std::filesystem::path& path) {
+  const hdf5::InputFile file(path);
+  Reader reader(truth_group(file, path));
   sim::Truth truth;
   ContactColumns contacts;
   truth_fields(reader, truth, contacts);
   truth.contacts = from_columns(contacts, path.string());
+  require_sound(path.string(), find_problem(truth), reader.digest_or_empty(), digest(truth));
+  return truth;
+}
+
+StoredTruth read_truth(const std::filesystem::path& path, const std::filesystem::path& scratch) {
+  const hdf5::InputFile file(path);
+  Reader reader(truth_group(file, path), scratch);
+  StoredTruth truth;
+  truth_fields(reader, truth, truth.contacts);
+  require_one_length(truth.contacts, path.string());
   require_sound(path.string(), find_problem(truth), reader.digest_or_empty(), digest(truth));
   return truth;
 }

@@ -118,24 +118,34 @@ std::string sweep_problem(const sim::LidarRecord& lidar, std::size_t points) {
   return "";
 }
 
-/// The first offset that is not 0, of points from `first` on.
-std::string offset_problem(std::size_t first, std::span<const std::uint32_t> offsets) {
-  const auto own = std::find_if(offsets.begin(), offsets.end(), [](std::uint32_t offset) { return offset != 0; });
-  if (own == offsets.end()) return "";
-  return "offset_ns is " + std::to_string(*own) + " at point " +
-         std::to_string(first + static_cast<std::size_t>(own - offsets.begin())) +
-         ", must be 0 where points have no times of their own";
-}
-std::string offset_problem(const std::vector<std::uint32_t>& offsets) {
-  return offset_problem(0, offsets);
-}
-std::string offset_problem(const ColumnFile<std::uint32_t>& offsets) {
-  constexpr std::size_t kLength = std::size_t{1} << 18;
+/// What `judge(row, index)` says of the first row that it finds wrong.
+template <class Row, class Judge>
+std::string first_wrong(std::span<const Row> rows, const Judge& judge, std::size_t first = 0) {
   std::string problem;
-  offsets.for_stretches(kLength, [&](std::size_t first, std::span<const std::uint32_t> stretch) {
-    if (problem.empty()) problem = offset_problem(first, stretch);
+  for (std::size_t i = 0; i < rows.size() && problem.empty(); ++i) problem = judge(rows[i], first + i);
+  return problem;
+}
+template <class Row, class Judge>
+std::string first_wrong(const std::vector<Row>& rows, const Judge& judge) {
+  return first_wrong(std::span<const Row>(rows), judge);
+}
+template <class Row, class Judge>
+std::string first_wrong(const ColumnFile<Row>& rows, const Judge& judge) {
+  constexpr std::size_t kLength = (std::size_t{1} << 20) / sizeof(Row);
+  std::string problem;
+  rows.for_stretches(kLength, [&](std::size_t first, std::span<const Row> stretch) {
+    if (problem.empty()) problem = first_wrong(stretch, judge, first);
   });
   return problem;
+}
+
+template <class Offsets>
+std::string offset_problem(const Offsets& offsets) {
+  return first_wrong(offsets, [](std::uint32_t offset, std::size_t i) -> std::string {
+    if (offset == 0) return "";
+    return "offset_ns is " + std::to_string(offset) + " at point " + std::to_string(i) +
+           ", must be 0 where points have no times of their own";
+  });
 }
 
 template <class Offsets>
@@ -158,7 +168,9 @@ std::string lidar_problem(const sim::LidarRecord& lidar, const Points& points) {
                    sweep_problem(lidar, points.position_L_m.size()), point_times_problem(lidar, points.offset_ns)});
 }
 
-std::string imu_truth_problem(const sim::ImuTruth& imu) {
+/// `imu`: a sim::ImuTruth, or one whose rows are set aside; so with the other truths.
+template <class Imu>
+std::string imu_truth_problem(const Imu& imu) {
   return first_of(
       {pose_problem("T_BI", imu.T_BI),
        // a reference knows poses alone, or rates beside them
@@ -181,38 +193,78 @@ std::string surface_problem(std::int32_t id, std::size_t surfaces) {
   return "surface_id " + std::to_string(id) + " has no name in surfaces (" + std::to_string(surfaces) + ")";
 }
 
-std::string lidar_truth_problem(const sim::LidarTruth& lidar, std::size_t surfaces) {
-  std::string problem =
-      first_of({pose_problem("T_BL", lidar.T_BL),
-                length_problem({{"hit_W_m", lidar.hit_W_m.size()}, {"surface_id", lidar.surface_id.size()}})});
-  for (std::size_t i = 0; i < lidar.surface_id.size() && problem.empty(); ++i) {
-    problem = surface_problem(lidar.surface_id[i], surfaces);
-  }
-  return problem;
+template <class Lidar>
+std::string lidar_truth_problem(const Lidar& lidar, std::size_t surfaces) {
+  return first_of(
+      {pose_problem("T_BL", lidar.T_BL),
+       length_problem({{"hit_W_m", lidar.hit_W_m.size()}, {"surface_id", lidar.surface_id.size()}}),
+       first_wrong(lidar.surface_id, [&](std::int32_t id, std::size_t) { return surface_problem(id, surfaces); })});
 }
 
-std::string contacts_problem(const sim::Truth& truth) {
-  std::int64_t before = 0;
-  for (const sim::ContactTruth& contact : truth.contacts) {
-    if (contact.time_ns < before) return "contacts/time_ns: falls or is negative";
-    before = contact.time_ns;
-    if (std::string problem = surface_problem(contact.surface_id, truth.surfaces.size()); !problem.empty()) {
+/// Of times that must not fall.
+class RisingTimes {
+ public:
+  std::string operator()(std::int64_t time_ns, std::size_t) {
+    if (time_ns < before_) return "time_ns: falls or is negative";
+    before_ = time_ns;
+    return "";
+  }
+
+ private:
+  std::int64_t before_ = 0;
+};
+
+std::string contacts_problem(const std::vector<sim::ContactTruth>& contacts, std::size_t surfaces) {
+  RisingTimes times;
+  for (const sim::ContactTruth& contact : contacts) {
+    if (std::string problem = times(contact.time_ns, 0); !problem.empty()) return "contacts/" + problem;
+    if (std::string problem = surface_problem(contact.surface_id, surfaces); !problem.empty()) {
       return "contacts: " + problem;
     }
   }
   return "";
 }
 
-std::string state_problem(const sim::Truth& truth) {
-  for (const Eigen::Quaterniond& q : truth.q_WB) {
-    const bool unknown = q.coeffs().array().isNaN().all();  // of a reference, where it saw nothing
-    if (!unknown && !(std::abs(q.squaredNorm() - 1.0) <= kUnitTolerance)) return "q_WB is not of unit length";
+std::string contacts_problem(const StoredContacts& contacts, std::size_t surfaces) {
+  RisingTimes times;
+  const std::string falling =
+      first_wrong(contacts.time_ns, [&](std::int64_t time_ns, std::size_t i) { return times(time_ns, i); });
+  if (!falling.empty()) return "contacts/" + falling;
+  return in("contacts", first_wrong(contacts.surface_id,
+                                    [&](std::int32_t id, std::size_t) { return surface_problem(id, surfaces); }));
+}
+
+std::string attitude_problem(const Eigen::Quaterniond& q_WB, std::size_t) {
+  const bool unknown = q_WB.coeffs().array().isNaN().all();  // of a reference, where it saw nothing
+  if (unknown || std::abs(q_WB.squaredNorm() - 1.0) <= kUnitTolerance) return "";
+  return "q_WB is not of unit length";
+}
+
+std::string label_problem(sim::ContactLabel label, std::size_t) {
+  if (label <= sim::ContactLabel::slide) return "";
+  return "label " + std::to_string(static_cast<int>(label)) + " is unknown, the largest is 3";
+}
+
+template <class Truth>
+std::string truth_problem(const Truth& truth) {
+  std::string problem =
+      in("truth", first_of({positive("period_ns", truth.period_ns),
+                            length_problem({{"p_WB_m", truth.p_WB_m.size()},
+                                            {"q_WB", truth.q_WB.size()},
+                                            {"v_WB_m_s", truth.v_WB_m_s.size()},
+                                            {"w_WB_B_rad_s", truth.w_WB_B_rad_s.size()}}),
+                            optional_length_problem("f_B_m_s2", truth.f_B_m_s2.size(), truth.p_WB_m.size()),
+                            optional_length_problem("label", truth.label.size(), truth.p_WB_m.size()),
+                            first_wrong(truth.q_WB, attitude_problem), first_wrong(truth.label, label_problem),
+                            truth.p_BG_m.allFinite() ? "" : "p_BG_m is not finite",
+                            contacts_problem(truth.contacts, truth.surfaces.size())}));
+  for (std::size_t i = 0; i < truth.imus.size() && problem.empty(); ++i) {
+    problem = in("truth/imus/" + std::to_string(i), imu_truth_problem(truth.imus[i]));
   }
-  for (const sim::ContactLabel label : truth.label) {
-    if (label > sim::ContactLabel::slide)
-      return "label " + std::to_string(static_cast<int>(label)) + " is unknown, the largest is 3";
+  for (std::size_t i = 0; i < truth.lidars.size() && problem.empty(); ++i) {
+    problem = in("truth/lidars/" + std::to_string(i), lidar_truth_problem(truth.lidars[i], truth.surfaces.size()));
   }
-  return truth.p_BG_m.allFinite() ? "" : "p_BG_m is not finite";
+  return problem;
 }
 
 }  // namespace
@@ -233,22 +285,11 @@ std::string find_problem(const sim::Sensors& sensors, const std::vector<PointSto
 }
 
 std::string find_problem(const sim::Truth& truth) {
-  std::string problem =
-      in("truth", first_of({positive("period_ns", truth.period_ns),
-                            length_problem({{"p_WB_m", truth.p_WB_m.size()},
-                                            {"q_WB", truth.q_WB.size()},
-                                            {"v_WB_m_s", truth.v_WB_m_s.size()},
-                                            {"w_WB_B_rad_s", truth.w_WB_B_rad_s.size()}}),
-                            optional_length_problem("f_B_m_s2", truth.f_B_m_s2.size(), truth.p_WB_m.size()),
-                            optional_length_problem("label", truth.label.size(), truth.p_WB_m.size()),
-                            state_problem(truth), contacts_problem(truth)}));
-  for (std::size_t i = 0; i < truth.imus.size() && problem.empty(); ++i) {
-    problem = in("truth/imus/" + std::to_string(i), imu_truth_problem(truth.imus[i]));
-  }
-  for (std::size_t i = 0; i < truth.lidars.size() && problem.empty(); ++i) {
-    problem = in("truth/lidars/" + std::to_string(i), lidar_truth_problem(truth.lidars[i], truth.surfaces.size()));
-  }
-  return problem;
+  return truth_problem(truth);
+}
+
+std::string find_problem(const StoredTruth& truth) {
+  return truth_problem(truth);
 }
 
 std::string find_mismatch(const sim::Sensors& sensors, const sim::Truth& truth) {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "scenarios/recordings/point_store.hpp"
+#include "scenarios/recordings/stored_truth.hpp"
 #include "sim/recording.hpp"
 
 namespace tumble::scenarios {
@@ -15,6 +17,11 @@ namespace tumble::scenarios {
 /// `points`: of each lidar, where they are set aside; else empty.
 std::string find_problem(const sim::Sensors& sensors, const std::vector<PointStore>& points = {});
 std::string find_problem(const sim::Truth& truth);
+std::string find_problem(const StoredTruth& truth);
+
+/// Whether a file states a digest of its sensors' data, by which damage would show; files that others wrote need not.
+/// Throws BadInput as readers do.
+bool states_digest(const std::filesystem::path& path);
 
 /// Where the truth does not run parallel to the sensors; empty when it does.
 std::string find_mismatch(const sim::Sensors& sensors, const sim::Truth& truth);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scenarios/recordings/point_store.hpp"
+#include "scenarios/recordings/stored_truth.hpp"
 #include "sim/recording.hpp"
 
 namespace tumble::scenarios {
@@ -35,6 +36,7 @@ std::string digest(const sim::Sensors& sensors, const sim::Truth* truth);
 std::string digest(const sim::Sensors& sensors, const std::vector<PointStore>& points, const sim::Truth* truth);
 /// The same over the truth alone.
 std::string digest(const sim::Truth& truth);
+std::string digest(const StoredTruth& truth);
 
 /// Writes recording as HDF5 (scenarios/recordings/FORMAT.md) under a temporary name in the same folder, then renames.
 /// `truth` may be null. format_version, digest and has_truth of `info` are the writer's own. The file is composed in
@@ -58,5 +60,7 @@ sim::Sensors read_sensors(const std::filesystem::path& path);
 sim::Sensors read_sensors(const std::filesystem::path& path, const std::filesystem::path& scratch,
                           std::vector<PointStore>& points);
 sim::Truth read_truth(const std::filesystem::path& path);
+/// The same with its rows set aside in `scratch`: a MiB at a time is in memory.
+StoredTruth read_truth(const std::filesystem::path& path, const std::filesystem::path& scratch);
 
 }  // namespace tumble::scenarios

@@ -92,12 +92,16 @@ void require_outside(const fs::path& output, std::span<const fs::path> inputs) {
 
 OutputFile::OutputFile(const fs::path& path) : given_(path), place_(behind_links(path)) {
   require_replaceable(given_, place_);
+  const SignalsWait until_listed;
   std::string stem(".");
   stem.append(place_.filename().string()).append(".").append(std::to_string(getpid())).append(".");
   for (int attempt = 0; attempt < 1000; ++attempt) {
     unfinished_ = place_.parent_path() / (stem + std::to_string(attempt) + ".tmp");
     const Descriptor file(open(unfinished_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-    if (file.get() >= 0) return;
+    if (file.get() >= 0) {
+      on_signal_.emplace(unfinished_, Unfinished::Kind::file);
+      return;
+    }
     if (errno != EEXIST) fail(given_, errno);
   }
   fail(given_, EEXIST);
@@ -137,9 +141,11 @@ void OutputFile::move_into_place() {
   if (fsync(file.get()) != 0 || !file.close()) fail(given_, errno);
   if (rename(unfinished_.c_str(), place_.c_str()) != 0) fail(given_, errno);
   moved_ = true;
+  on_signal_.reset();
 }
 
 OutputFolder::OutputFolder(const fs::path& folder) : folder_(folder) {
+  const SignalsWait until_listed;
   std::error_code error;
   made_ = fs::create_directories(folder, error);
   if (!error && !fs::is_directory(folder)) error = std::make_error_code(std::errc::not_a_directory);
@@ -150,6 +156,7 @@ OutputFolder::OutputFolder(const fs::path& folder) : folder_(folder) {
     throw BadInput(folder.string() +
                    ": holds files already, which would be taken for this run's; name a new folder or empty this one");
   }
+  on_signal_.emplace(folder, made_ ? Unfinished::Kind::folder : Unfinished::Kind::contents);
 }
 
 OutputFolder::~OutputFolder() {

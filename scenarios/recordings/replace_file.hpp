@@ -3,13 +3,17 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string_view>
+
+#include "scenarios/recordings/unfinished.hpp"
 
 /// Everything that is written goes through here: beside its place and then renamed, only over regular files.
 namespace tumble::scenarios {
 
-/// A file in the making: a new one beside its place, removed again unless it was moved there. A symbolic link is
+/// A file in the making: a new one beside its place, removed again unless it was moved there, also when a signal ends
+/// the program (unfinished.hpp). A symbolic link is
 /// followed. What stands there already must be a regular file that may be written; its mode and owner are kept. Throws
 /// BadInput with the path and the system's reason (no such folder, no permission, disk full, a device, a pipe).
 class OutputFile {
@@ -27,12 +31,13 @@ class OutputFile {
 
  private:
   std::filesystem::path given_, place_, unfinished_;
+  std::optional<Unfinished> on_signal_;
   bool moved_ = false;
 };
 
 /// A folder of outputs: absent, or empty. Throws BadInput when it holds anything: what an earlier run left would be
 /// taken for this one's. Unless it is kept, what came into it is removed again, and the folder itself where it was made
-/// here.
+/// here; so also when a signal ends the program.
 class OutputFolder {
  public:
   explicit OutputFolder(const std::filesystem::path& folder);
@@ -40,10 +45,14 @@ class OutputFolder {
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
   const std::filesystem::path& path() const { return folder_; }
-  void keep() { kept_ = true; }
+  void keep() {
+    kept_ = true;
+    on_signal_.reset();
+  }
 
  private:
   std::filesystem::path folder_;
+  std::optional<Unfinished> on_signal_;
   bool made_ = false, kept_ = false;
 };
 

@@ -21,8 +21,17 @@ namespace {
 
 }  // namespace
 
+std::filesystem::path scratch_folder_of(const std::filesystem::path& output) {
+  std::filesystem::path folder = std::filesystem::absolute(output).parent_path();
+  while (folder.has_relative_path() && !std::filesystem::is_directory(folder)) folder = folder.parent_path();
+  return folder;
+}
+
 ScratchFile::ScratchFile(std::filesystem::path folder) : folder_(std::move(folder)) {
   if (folder_.empty()) folder_ = ".";
+  // without a name from the start, where the file system has that
+  descriptor_ = open(folder_.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+  if (descriptor_ >= 0) return;
   std::string name = (folder_ / ".tumble_scratch.XXXXXX").string();
   descriptor_ = mkostemp(name.data(), O_CLOEXEC);
   if (descriptor_ < 0) fail(folder_, "no scratch file can be made there", errno);

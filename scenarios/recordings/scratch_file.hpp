@@ -13,6 +13,9 @@
 /// What does not fit into memory, set aside on the disk while a recording is made or read.
 namespace tumble::scenarios {
 
+/// The nearest folder of an output that is there already: what is set aside for it lies on the same disk.
+std::filesystem::path scratch_folder_of(const std::filesystem::path& output);
+
 /// A file without a name: gone with the object, however the process ends. It grows at its end. Throws BadInput with the
 /// folder and the system's reason (no such folder, no permission, disk full).
 class ScratchFile {

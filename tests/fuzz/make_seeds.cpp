@@ -106,7 +106,8 @@ void write_broad(const path& file) {
 
 /// Ours, and as others write them: without checksums, which would stop a fuzzer at the door.
 void write_mcaps(const path& folder, const sim::Recording& recording) {
-  export_mcap(recording.sensors, {0, &recording.truth}, folder / "small");
+  const StoredTruth truth = fixture::stored_truth(recording, folder);
+  export_mcap(recording.sensors, {0, &truth}, folder / "small");
   fixture::McapShape shape;
   const std::vector<fixture::Logged> messages = fixture::imu_messages(12);
   shape.chunks = {{messages.begin(), messages.begin() + 6}, {messages.begin() + 6, messages.end()}};

@@ -6,6 +6,7 @@
 #include "scenarios/methods/estimate_file.hpp"
 #include "scenarios/methods/external_method.hpp"
 #include "scenarios/methods/given_parameters.hpp"
+#include "scenarios/recordings/recording_check.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/sweep/outcome.hpp"
@@ -98,7 +99,8 @@ int run_estimate(const Session& session, const Options& options) {
   const scenarios::MethodPointer told[] = {scenarios::unowned(learning)};
   const std::vector<scenarios::Method> methods = scenarios::with_parameters(told, options.parameters);
   scenarios::OutputFolder folder(options.folder);
-  const scenarios::Estimate estimate = run_of(methods.front(), sensors);
+  scenarios::Estimate estimate = run_of(methods.front(), sensors);
+  if (!scenarios::states_digest(options.recording)) estimate.health["recording_without_digest"] = 1.0;
   scenarios::write_estimate(options.folder, method.info.name, method.info.kind, estimate,
                             scenarios::digest(sensors, nullptr));
   folder.keep();

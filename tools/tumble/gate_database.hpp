@@ -5,9 +5,11 @@
 
 #include <fmt/format.h>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <system_error>
 
+#include "scenarios/recordings/unfinished.hpp"
 #include "tools/tumble/arguments.hpp"
 
 namespace tumble::tools {
@@ -16,10 +18,12 @@ namespace tumble::tools {
 class GateDatabase {
  public:
   explicit GateDatabase(const std::filesystem::path& named) : path_(named), own_(named.empty()) {
-    if (own_)
+    if (own_) {
       path_ = std::filesystem::temp_directory_path() / fmt::format("tumble_gate_{}.db", getpid());
-    else if (path_.has_parent_path())
+      on_signal_.emplace(path_, scenarios::Unfinished::Kind::file);
+    } else if (path_.has_parent_path()) {
       make_folder(path_.parent_path());
+    }
   }
   ~GateDatabase() {
     std::error_code ignored;
@@ -32,6 +36,7 @@ class GateDatabase {
  private:
   std::filesystem::path path_;
   bool own_;
+  std::optional<scenarios::Unfinished> on_signal_;
 };
 
 }  // namespace tumble::tools

@@ -11,8 +11,13 @@ namespace {
 std::atomic<bool> raised_by_signal{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not lock");
 
-extern "C" void raise_flag(int) {
+// what the signals did before
+struct sigaction interrupt_before = {}, terminate_before = {};
+
+/// The second one has its usual effect.
+extern "C" void raise_flag(int number) {
   raised_by_signal.store(true);
+  sigaction(number, number == SIGINT ? &interrupt_before : &terminate_before, nullptr);
 }
 
 }  // namespace
@@ -21,15 +26,16 @@ InterruptFlag::InterruptFlag() {
   raised_by_signal.store(false);
   struct sigaction action = {};
   action.sa_handler = raise_flag;
-  action.sa_flags = SA_RESETHAND;  // the second one has its usual effect
   sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, nullptr, &interrupt_before);
+  sigaction(SIGTERM, nullptr, &terminate_before);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
 }
 
 InterruptFlag::~InterruptFlag() {
-  std::signal(SIGINT, SIG_DFL);
-  std::signal(SIGTERM, SIG_DFL);
+  sigaction(SIGINT, &interrupt_before, nullptr);
+  sigaction(SIGTERM, &terminate_before, nullptr);
 }
 
 const std::atomic<bool>& InterruptFlag::raised() const {

@@ -11,6 +11,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/recordings/recording_check.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/scoring/score.hpp"
 #include "scenarios/scoring/truth_track.hpp"
@@ -159,6 +160,8 @@ int score_estimate(const Session& session, const Options& options) {
   const scenarios::RecordingInfo info = scenarios::read_info(options.recording);
   if (!info.has_truth) throw scenarios::BadInput(options.recording.string() + ": holds no truth to score against");
   const sim::Sensors sensors = scenarios::read_sensors(options.recording);
+  if (!scenarios::states_digest(options.recording))
+    session.note(options.recording.string() + ": states no digest of its data, so that damage would not show");
   const sim::Truth truth = scenarios::read_truth(options.recording);
   scenarios::Outcome outcome;
   scenarios::Estimate estimate = scenarios::read_estimate(options.estimate, outcome.kind, outcome.method,

@@ -23,6 +23,7 @@ constexpr Verdict kVerdicts[] = {
     {"localised", true, "where it is on its map is not known; the estimate is not to be trusted"},
     {"lidar_scale_implausible", false, "the lidar's ranges are of another scale than the motion that the IMU felt"},
     {"imu_readings_beyond_range", false, "readings that the device cannot have measured are left out"},
+    {"recording_without_digest", false, "the recording states no digest of its data, so that damage would not show"},
     {"_frozen_since_s", false, "repeats one reading from then on"},
     {"_disagrees_since_s", false, "is off from the others from then on, and left out"},
     {"_silent_since_s", false, "without readings from then on"},

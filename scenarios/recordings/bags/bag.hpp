@@ -5,15 +5,23 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "scenarios/recordings/bags/bag_layout.hpp"
 #include "scenarios/recordings/import.hpp"
+#include "scenarios/recordings/stored_truth.hpp"
 #include "sim/recording.hpp"
 
 namespace tumble::scenarios {
+
+/// Points in W, as "/TRACK/points" (sensor_msgs/PointCloud2: x y z, and error_m where it is known).
+struct BagCloud {
+  std::vector<Eigen::Vector3f> position_W_m;
+  std::vector<float> error_m;  ///< parallel, or empty
+};
 
 /// Somebody's poses of the body in W, as they stand in a bag: "/NAME" (nav_msgs/Odometry) and /tf.
 struct BagTrack {
@@ -27,22 +35,17 @@ struct BagTrack {
   };
   std::string name;  ///< letters, digits and _
   std::vector<Pose> poses;
-};
-
-/// Points in W, as "/TRACK/points" (sensor_msgs/PointCloud2: x y z, and error_m where it is known).
-struct BagCloud {
-  std::string track;
-  std::int64_t time_ns = 0;
-  std::vector<Eigen::Vector3f> position_W_m;
-  std::vector<float> error_m;  ///< parallel, or empty
+  std::vector<std::int64_t> cloud_time_ns = {};  ///< of clouds along it
+  /// Makes the cloud of a number when its turn has come, so that one at a time is in memory; without points it is left
+  /// out of the bag.
+  std::function<BagCloud(const BagTrack&, std::size_t)> cloud = {};
 };
 
 /// How a recording is written as a bag.
 struct BagWriting {
-  std::int64_t origin_ns = 0;         ///< stamp of time 0; 0: 1 000 000 000 s after 1970, since ROS takes 0 for no time
-  const sim::Truth* truth = nullptr;  ///< written only when given
-  std::vector<BagTrack> tracks = {};  ///< estimates; names differ from each other, from the sensors' and from "truth"
-  std::vector<BagCloud> clouds = {};
+  std::int64_t origin_ns = 0;  ///< stamp of time 0; 0: 1 000 000 000 s after 1970, since ROS takes 0 for no time
+  const StoredTruth* truth = nullptr;  ///< written only when given
+  std::vector<BagTrack> tracks = {};   ///< estimates; names differ from each other, from the sensors' and from "truth"
   SweepLayout sweeps = own_sweep_layout();
   /// Of each lidar, where its points are set aside; null: they are in the records.
   const std::vector<PointStore>* points = nullptr;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "scenarios/errors.hpp"
@@ -18,30 +19,37 @@ constexpr std::int64_t kOrigin_ns = 1000000000ll * 1000000000ll;
 constexpr std::int64_t kTruthStep_ns = 5000000, kClockStep_ns = 10000000;
 constexpr const char *kWorld = "world", *kBody = "body";
 
-/// The truth as one more track, thinned, without the instants that a reference does not know.
-BagTrack track_of(const sim::Truth& truth) {
-  BagTrack track{"truth", {}};
-  const auto step = static_cast<std::size_t>(std::max<std::int64_t>(kTruthStep_ns / truth.period_ns, 1));
-  for (std::size_t i = 0; i < truth.p_WB_m.size(); i += step) {
-    if (!truth.p_WB_m[i].allFinite() || !truth.q_WB[i].coeffs().allFinite()) continue;
-    BagTrack::Pose pose{static_cast<std::int64_t>(i) * truth.period_ns, truth.p_WB_m[i], truth.q_WB[i]};
-    pose.v_WB_B_m_s = truth.q_WB[i].conjugate() * truth.v_WB_m_s[i];
-    pose.w_WB_B_rad_s = truth.w_WB_B_rad_s[i];
-    track.poses.push_back(pose);
-  }
-  return track;
-}
-
 /// What is to be written, and when a listener would have it: a sweep when it is over.
 struct Event {
-  enum Kind { imu, sweep, pose, cloud };
+  enum Kind { imu, sweep, truth, pose, cloud };
   std::int64_t time_ns;
   Kind kind;
   std::size_t of, index;  ///< of which sensor or track, and its reading
 };
 
+/// The truth thinned, without the instants that a reference does not know.
+void add_truth(const StoredTruth& truth, std::vector<Event>& events) {
+  constexpr std::size_t kStretch = 16384;
+  const auto step = static_cast<std::size_t>(std::max<std::int64_t>(kTruthStep_ns / truth.period_ns, 1));
+  truth.p_WB_m.for_stretches(kStretch, [&](std::size_t first, std::span<const Eigen::Vector3d> p_WB_m) {
+    const std::vector<Eigen::Quaterniond> q_WB = truth.q_WB.rows(first, first + p_WB_m.size());
+    for (std::size_t i = (first + step - 1) / step * step; i < first + p_WB_m.size(); i += step) {
+      if (!p_WB_m[i - first].allFinite() || !q_WB[i - first].coeffs().allFinite()) continue;
+      events.push_back({static_cast<std::int64_t>(i) * truth.period_ns, Event::truth, 0, i});
+    }
+  });
+}
+
+BagTrack::Pose pose_of(const StoredTruth& truth, std::size_t i) {
+  const sim::Truth state = truth.states(i, i + 1);
+  BagTrack::Pose pose{static_cast<std::int64_t>(i) * truth.period_ns, state.p_WB_m[0], state.q_WB[0]};
+  pose.v_WB_B_m_s = state.q_WB[0].conjugate() * state.v_WB_m_s[0];
+  pose.w_WB_B_rad_s = state.w_WB_B_rad_s[0];
+  return pose;
+}
+
 std::vector<Event> events_of(const sim::Sensors& sensors, std::size_t imus, std::size_t lidars,
-                             const std::vector<BagTrack>& tracks, const std::vector<BagCloud>& clouds) {
+                             const BagWriting& writing) {
   std::vector<Event> events;
   for (std::size_t s = 0; s < imus; ++s) {
     const std::vector<std::int64_t>& times = sensors.imus[s].time_ns;
@@ -53,11 +61,16 @@ std::vector<Event> events_of(const sim::Sensors& sensors, std::size_t imus, std:
       events.push_back({lidar.sweep_start_ns[i] + lidar.sweep_period_ns, Event::sweep, s, i});
     }
   }
+  if (writing.truth != nullptr) add_truth(*writing.truth, events);
+  const std::vector<BagTrack>& tracks = writing.tracks;
   for (std::size_t t = 0; t < tracks.size(); ++t) {
     for (std::size_t i = 0; i < tracks[t].poses.size(); ++i)
       events.push_back({tracks[t].poses[i].time_ns, Event::pose, t, i});
   }
-  for (std::size_t c = 0; c < clouds.size(); ++c) events.push_back({clouds[c].time_ns, Event::cloud, c, 0});
+  for (std::size_t t = 0; t < tracks.size(); ++t) {
+    for (std::size_t i = 0; i < tracks[t].cloud_time_ns.size(); ++i)
+      events.push_back({tracks[t].cloud_time_ns[i], Event::cloud, t, i});
+  }
   const auto earlier = [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; };
   std::stable_sort(events.begin(), events.end(), earlier);
   return events;
@@ -100,14 +113,16 @@ class Export {
         lidars_(lidar_places(sensors, writing.names)),
         body_(writing.names ? writing.names->body_frame : kBody) {
     if (origin_ns_ < 0) throw BadInput("the recording begins before 1970: a bag has no such stamps");
-    if (writing.truth != nullptr) tracks_.push_back(track_of(*writing.truth));
-    tracks_.insert(tracks_.end(), writing.tracks.begin(), writing.tracks.end());
   }
 
   void all() {
-    const std::vector<Event> events = events_of(sensors_, imus_.size(), lidars_.size(), tracks_, writing_.clouds);
+    const std::vector<Event> events = events_of(sensors_, imus_.size(), lidars_.size(), writing_);
     if (!events.empty()) write_mountings(stamp_of(events.front().time_ns));
     for (const Event& event : events) {
+      if (event.kind == Event::cloud) {
+        write_cloud(event);
+        continue;
+      }
       write_clock(event.time_ns);
       write(event, stamp_of(event.time_ns));
     }
@@ -155,21 +170,36 @@ class Export {
         const ros::Header header = header_of(start_ns, place.frame);
         if (writing_.points == nullptr)
           return bag_.write(place.topic, stamp, sweep_message(lidar, event.index, writing_.sweeps, start_ns, header));
-        const sim::LidarRecord alone = writing_.points->at(event.of).sweep(lidar, event.index);
+        const sim::LidarRecord alone = sweep_alone(lidar, &writing_.points->at(event.of), event.index);
         return bag_.write(place.topic, stamp, sweep_message(alone, 0, writing_.sweeps, start_ns, header));
       }
+      case Event::truth:
+        return write_pose(pose_of(*writing_.truth, event.index), "truth", body_, stamp);
       case Event::pose: {
-        const BagTrack::Pose& pose = tracks_[event.of].poses[event.index];
-        const std::string &name = tracks_[event.of].name, child = event.of == 0 ? body_ : name;
-        const ros::Header header = header_of(stamp, kWorld);
-        bag_.write("/" + name, stamp, odometry_message(pose, child, header));
-        return bag_.write("/tf", stamp, ros::TFMessage{{transform_message(pose.p_WB_m, pose.q_WB, child, header)}});
+        const BagTrack& track = writing_.tracks[event.of];
+        // the truth moves the body, without it the first track
+        const bool body = event.of == 0 && writing_.truth == nullptr;
+        return write_pose(track.poses[event.index], track.name, body ? body_ : track.name, stamp);
       }
-      case Event::cloud: {
-        const BagCloud& cloud = writing_.clouds[event.of];
-        return bag_.write("/" + cloud.track + "/points", stamp, cloud_message(cloud, header_of(stamp, kWorld)));
-      }
+      case Event::cloud:
+        break;
     }
+  }
+
+  void write_pose(const BagTrack::Pose& pose, const std::string& name, const std::string& child, std::int64_t stamp) {
+    const ros::Header header = header_of(stamp, kWorld);
+    bag_.write("/" + name, stamp, odometry_message(pose, child, header));
+    bag_.write("/tf", stamp, ros::TFMessage{{transform_message(pose.p_WB_m, pose.q_WB, child, header)}});
+  }
+
+  /// Whether there is one shows when it is made.
+  void write_cloud(const Event& event) {
+    const BagTrack& track = writing_.tracks[event.of];
+    const BagCloud cloud = track.cloud(track, event.index);
+    if (cloud.position_W_m.empty()) return;
+    write_clock(event.time_ns);
+    const std::int64_t stamp = stamp_of(event.time_ns);
+    bag_.write("/" + track.name + "/points", stamp, cloud_message(cloud, header_of(stamp, kWorld)));
   }
 
   const sim::Sensors& sensors_;
@@ -179,7 +209,6 @@ class Export {
   std::vector<Place> imus_, lidars_;     ///< of those sensors that are written, the first ones
   std::string body_;                     ///< its frame
   std::optional<std::int64_t> tick_ns_;  ///< the clock's last one
-  std::vector<BagTrack> tracks_;         ///< the first one moves the body
 };
 
 void write_bag(const sim::Sensors& sensors, const BagWriting& writing, BagWriter& bag) {

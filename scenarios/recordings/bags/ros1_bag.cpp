@@ -232,8 +232,10 @@ class Ros1BagReader : public BagReader {
 
  private:
   void open_unpacked() {
-    // unlinked as soon as it is open: gone with the reader, however that ends
-    const OutputFile unpacked(std::filesystem::temp_directory_path() / "tumble_unpacked.bag");
+    const std::filesystem::path folder = std::filesystem::temp_directory_path();
+    require_room(folder);
+    // unlinked as soon as it is open: gone with the reader, however that ends, and before that with the program
+    const OutputFile unpacked(folder / "tumble_unpacked.bag");
     copy_ros1_bag(file_, unpacked.unfinished(), [](Ros1Chunk& chunk) {
       if (chunk.compression == "lz4") unpack_lz4(chunk);
     });
@@ -244,6 +246,14 @@ class Ros1BagReader : public BagReader {
                      ": unpacked: " + std::string(error.what()).substr(unpacked.unfinished().string().size() + 2));
     }
     open(unpacked.unfinished());
+  }
+
+  /// A disk that fills up is everybody's trouble: it is looked at first.
+  void require_room(const std::filesystem::path& folder) const {
+    const std::uint64_t needed = bytes_unpacked(file_), free = std::filesystem::space(folder).available;
+    if (needed <= free) return;
+    throw BadInput(file_.string() + ": its LZ4 chunks unpack to a bag of " + std::to_string(needed) + " bytes, and " +
+                   folder.string() + " has " + std::to_string(free) + " free; TMPDIR names another folder");
   }
 
   void open(const std::filesystem::path& file) {

@@ -163,6 +163,16 @@ bool has_lz4_chunks(const std::filesystem::path& file) {
   return false;
 }
 
+std::uint64_t bytes_unpacked(const std::filesystem::path& file) {
+  Records records(file);
+  std::uint64_t bytes = std::filesystem::file_size(file);
+  for (Record record; records.next(record); records.skip()) {
+    if (record.op() != kChunk || record.text("compression") != "lz4") continue;
+    bytes = bytes - record.data_bytes + record.number<std::uint32_t>("size");
+  }
+  return bytes;
+}
+
 void copy_ros1_bag(const std::filesystem::path& from, const std::filesystem::path& to,
                    const std::function<void(Ros1Chunk&)>& change) {
   Records records(from);

@@ -19,6 +19,10 @@ struct Ros1Chunk {
 /// Whether a chunk of the bag is packed with LZ4. The bag must have passed `check_ros1_bag`.
 bool has_lz4_chunks(const std::filesystem::path& file);
 
+/// What the chunks of the bag that are packed with LZ4 state to hold once unpacked, and the rest of it as it stands,
+/// bytes. As for `has_lz4_chunks`.
+std::uint64_t bytes_unpacked(const std::filesystem::path& file);
+
 /// Copies a bag that has passed `check_ros1_bag`, each chunk as `change` leaves it; positions that name chunks and the
 /// index are made to fit. O(bytes), a chunk in memory. Throws BadInput with the offset in `from`.
 void copy_ros1_bag(const std::filesystem::path& from, const std::filesystem::path& to,

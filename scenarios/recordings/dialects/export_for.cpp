@@ -31,16 +31,20 @@ const Dialect& dialect_of(const std::string& peer) {
 }
 
 /// Where a lidar's range comes from numbers that are none, so does a configuration.
-void require_finite(const sim::LidarRecord& lidar) {
-  for (std::size_t k = 0; k < lidar.range_m.size(); ++k) {
-    if (lidar.position_L_m[k].allFinite() && std::isfinite(lidar.range_m[k]) && std::isfinite(lidar.intensity[k]))
-      continue;
-    throw BadInput("point " + std::to_string(k) + " of '" + lidar.name +
-                   "' is not finite in place, range or intensity");
+void require_finite(const sim::LidarRecord& lidar, const PointStore& aside) {
+  for (std::size_t number = 0; number < lidar.sweep_start_ns.size(); ++number) {
+    const sim::LidarRecord sweep = sweep_alone(lidar, &aside, number);
+    for (std::size_t k = 0; k < sweep.range_m.size(); ++k) {
+      if (sweep.position_L_m[k].allFinite() && std::isfinite(sweep.range_m[k]) && std::isfinite(sweep.intensity[k]))
+        continue;
+      throw BadInput("point " + std::to_string(lidar.sweep_first[number] + k) + " of '" + lidar.name +
+                     "' is not finite in place, range or intensity");
+    }
   }
 }
 
-void require_fitting(const Dialect& dialect, const sim::Sensors& sensors, const SensorFacts& facts) {
+void require_fitting(const Dialect& dialect, const sim::Sensors& sensors, const std::vector<PointStore>& points,
+                     const SensorFacts& facts) {
   const auto refuse = [&](const std::string& what) { throw BadInput(what + ", which " + dialect.name + " reads"); };
   if (!facts.lidar || facts.lidar->points == 0) refuse("the recording holds no return of a lidar");
   if (dialect.needs_imu && (!facts.imu || facts.imu->samples == 0)) refuse("the recording holds no reading of an IMU");
@@ -48,7 +52,7 @@ void require_fitting(const Dialect& dialect, const sim::Sensors& sensors, const 
     refuse("the points of '" + sensors.lidars.front().name + "' have no times of their own");
   if (dialect.needs_rings && facts.lidar->livox)
     refuse("the lidar '" + facts.lidar->device + "' does not scan in rings");
-  require_finite(sensors.lidars.front());
+  require_finite(sensors.lidars.front(), points.front());
 }
 
 void write_bag(const Dialect& dialect, const sim::Sensors& sensors, const BagWriting& writing, const path& place) {
@@ -69,18 +73,21 @@ std::vector<std::string> peer_dialects() {
 void export_for(const path& recording, const std::string& peer, const path& folder, bool with_truth) {
   const Dialect& dialect = dialect_of(peer);
   const RecordingInfo info = read_info(recording);
-  const sim::Sensors sensors = read_sensors(recording);
-  const SensorFacts facts = facts_of(sensors);
-  require_fitting(dialect, sensors, facts);
+  const path scratch = scratch_folder_of(folder);
+  std::vector<PointStore> points;
+  const sim::Sensors sensors = read_sensors(recording, scratch, points);
+  const SensorFacts facts = facts_of(sensors, &points);
+  require_fitting(dialect, sensors, points, facts);
 
   OutputFolder output(folder);
   BagWriting writing;
   writing.origin_ns = info.origin_ns;
+  writing.points = &points;
   writing.names = dialect.names(facts);
   writing.sweeps = dialect.sweeps(facts);
   const std::int64_t origin_ns = bag_origin_ns(writing);
   write_bag(dialect, sensors, writing, folder / dialect.bag_name);
-  if (with_truth) export_tum(read_truth(recording), folder / "truth.tum", origin_ns);
+  if (with_truth) export_tum(read_truth(recording, scratch), folder / "truth.tum", origin_ns);
   std::vector<std::string> configuration;
   for (const ConfigurationFile& file : dialect.configuration(facts, *writing.names)) {
     replace_file(folder / file.name, file.text);

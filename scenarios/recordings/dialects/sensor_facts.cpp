@@ -7,8 +7,6 @@
 #include <map>
 #include <vector>
 
-#include "scenarios/recordings/upper_median.hpp"
-
 namespace tumble::scenarios {
 
 namespace {
@@ -42,43 +40,79 @@ ImuFacts facts_of(const sim::ImuRecord& imu, double gravity_m_s2) {
   return out;
 }
 
-/// Firings of a ring in a sweep: its period over the median step between returns of one ring.
-int columns_of(const sim::LidarRecord& lidar) {
-  std::vector<std::uint32_t> steps;
-  for (std::size_t sweep = 0; sweep < lidar.sweep_start_ns.size(); ++sweep) {
-    std::map<std::uint16_t, std::uint32_t> last;
-    for (std::size_t k = lidar.sweep_first[sweep]; k < lidar.sweep_first[sweep + 1]; ++k) {
-      const auto [before, first] = last.try_emplace(lidar.ring[k], lidar.offset_ns[k]);
-      if (!first && lidar.offset_ns[k] > before->second) steps.push_back(lidar.offset_ns[k] - before->second);
-      before->second = lidar.offset_ns[k];
-    }
+/// A lidar, and where its points are.
+struct Sweeps {
+  const sim::LidarRecord& lidar;
+  const PointStore* aside;
+
+  template <class Take>
+  void for_each(Take&& take) const {
+    for (std::size_t k = 0; k < lidar.sweep_start_ns.size(); ++k) take(sweep_alone(lidar, aside, k));
   }
-  if (steps.empty()) return 1;
-  return std::max(1, static_cast<int>(std::lround(static_cast<double>(lidar.sweep_period_ns) / upper_median(steps))));
+};
+
+/// Calls `take(step)` with each time between returns of one ring in a sweep, ns.
+template <class Take>
+void for_steps(const Sweeps& sweeps, Take&& take) {
+  sweeps.for_each([&](const sim::LidarRecord& sweep) {
+    std::map<std::uint16_t, std::uint32_t> last;
+    for (std::size_t k = 0; k < sweep.ring.size(); ++k) {
+      const auto [before, first] = last.try_emplace(sweep.ring[k], sweep.offset_ns[k]);
+      if (!first && sweep.offset_ns[k] > before->second) take(sweep.offset_ns[k] - before->second);
+      before->second = sweep.offset_ns[k];
+    }
+  });
 }
 
-LidarFacts facts_of(const sim::LidarRecord& lidar, const std::string& robot) {
+/// The value of 16 bits that stands in the middle by its counts, as upper_median has it once `below` are passed.
+std::uint32_t middle_of(const std::vector<std::uint64_t>& counts, std::uint64_t place, std::uint64_t& below) {
+  std::uint32_t value = 0;
+  for (; value + 1 < counts.size() && below + counts[value] <= place; ++value) below += counts[value];
+  return value;
+}
+
+/// Firings of a ring in a sweep: its period over the (upper) median step between returns of one ring. The steps are
+/// counted by their upper halves and then, of the half that the median has, by their lower ones: they are as many as
+/// the points.
+int columns_of(const Sweeps& sweeps) {
+  constexpr std::uint32_t kHalf_bits = 16, kLower = 0xffff;
+  std::vector<std::uint64_t> counts(std::size_t{1} << kHalf_bits, 0);
+  std::uint64_t steps = 0, below = 0;
+  for_steps(sweeps, [&](std::uint32_t step) { ++counts[step >> kHalf_bits], ++steps; });
+  if (steps == 0) return 1;
+  const std::uint32_t upper = middle_of(counts, steps / 2, below);
+  counts.assign(counts.size(), 0);
+  for_steps(sweeps, [&](std::uint32_t step) {
+    if (step >> kHalf_bits == upper) ++counts[step & kLower];
+  });
+  const std::uint32_t median = upper << kHalf_bits | middle_of(counts, steps / 2, below);
+  return std::max(1, static_cast<int>(std::lround(static_cast<double>(sweeps.lidar.sweep_period_ns) / median)));
+}
+
+LidarFacts facts_of(const Sweeps& sweeps, const std::string& robot) {
+  const sim::LidarRecord& lidar = sweeps.lidar;
   LidarFacts out;
   out.device = lidar.device;
   out.livox = is_livox(lidar.device);
   out.timed = lidar.point_times == sim::PointTimes::measured;
   out.sweeps = lidar.sweep_start_ns.size();
-  out.points = lidar.range_m.size();
   out.period_s = static_cast<double>(lidar.sweep_period_ns) * 1e-9;
-  if (out.points > 0) {
-    out.rings = 1 + *std::max_element(lidar.ring.begin(), lidar.ring.end());
-    const auto [nearest, farthest] = std::minmax_element(lidar.range_m.begin(), lidar.range_m.end());
-    out.nearest_m = *nearest;
-    out.farthest_m = *farthest;
-  }
-  if (out.timed) out.columns = columns_of(lidar);
+  sweeps.for_each([&](const sim::LidarRecord& sweep) {
+    if (sweep.range_m.empty()) return;
+    const auto [nearest, farthest] = std::minmax_element(sweep.range_m.begin(), sweep.range_m.end());
+    out.nearest_m = out.points == 0 ? *nearest : std::min<double>(out.nearest_m, *nearest);
+    out.farthest_m = out.points == 0 ? *farthest : std::max<double>(out.farthest_m, *farthest);
+    out.rings = std::max(out.rings, 1 + *std::max_element(sweep.ring.begin(), sweep.ring.end()));
+    out.points += sweep.range_m.size();
+  });
+  if (out.timed) out.columns = columns_of(sweeps);
   out.own_body_m = robot == "rig" ? kRigCage_m : std::floor(10.0 * out.nearest_m) / 10.0;
   return out;
 }
 
 }  // namespace
 
-SensorFacts facts_of(const sim::Sensors& sensors) {
+SensorFacts facts_of(const sim::Sensors& sensors, const std::vector<PointStore>* points) {
   SensorFacts out;
   out.gravity_m_s2 = sensors.gravity_m_s2;
   if (!sensors.imus.empty()) {
@@ -86,7 +120,7 @@ SensorFacts facts_of(const sim::Sensors& sensors) {
     out.T_BI = sensors.imus.front().T_BI;
   }
   if (!sensors.lidars.empty()) {
-    out.lidar = facts_of(sensors.lidars.front(), sensors.robot);
+    out.lidar = facts_of(Sweeps{sensors.lidars.front(), points != nullptr ? &points->front() : nullptr}, sensors.robot);
     out.T_BL = sensors.lidars.front().T_BL;
   }
   return out;

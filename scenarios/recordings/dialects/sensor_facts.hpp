@@ -4,7 +4,9 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "scenarios/recordings/point_store.hpp"
 #include "sim/recording.hpp"
 
 namespace tumble::scenarios {
@@ -45,6 +47,7 @@ struct SensorFacts {
   Eigen::Isometry3d T_IL() const { return T_BI.inverse(Eigen::Isometry) * T_BL; }
 };
 
-SensorFacts facts_of(const sim::Sensors& sensors);
+/// `points`: of each lidar, where they are set aside; null: in the records. A sweep at a time is in memory.
+SensorFacts facts_of(const sim::Sensors& sensors, const std::vector<PointStore>* points = nullptr);
 
 }  // namespace tumble::scenarios

@@ -119,7 +119,7 @@ Imported import_airbrakes(const std::filesystem::path& path) {
   for (std::int64_t& time : imu.time_ns) time -= first_ns;
   if (doubled > 0) out.notes.push_back(fmt::format("{} rows repeat a stamp: left out", doubled));
   for (const std::string& note :
-       {require_gravity_turns(path.string(), imu, GyroUnit::deg_s), accel_rail_text(imu.accel_m_s2)}) {
+       {require_plausible_rates(path.string(), imu, GyroUnit::deg_s), accel_rail_text(imu.accel_m_s2)}) {
     if (!note.empty()) out.notes.push_back(note);
   }
   out.info.attribution = kAttribution + path.filename().string();

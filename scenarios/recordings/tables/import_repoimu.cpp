@@ -306,7 +306,7 @@ Imported import_repoimu(const std::filesystem::path& path, bool align) {
   if (!hold.text().empty()) out.notes.push_back(hold.text());
   finish_readings(path.string(), AccelUnit::m_s2, imu);
   for (const std::string& note :
-       {require_gravity_turns(path.string(), imu, GyroUnit::rad_s), accel_rail_text(log.readings.accel_m_s2)}) {
+       {require_plausible_rates(path.string(), imu, GyroUnit::rad_s), accel_rail_text(log.readings.accel_m_s2)}) {
     if (!note.empty()) out.notes.push_back(note);
   }
   if (log.decimal_commas > 0)

@@ -18,6 +18,25 @@ constexpr double kG_m_s2 = 9.80665;
 /// At rest and while rolling or carried the median is near g; in g, mg or raw counts it is not.
 constexpr double kLeastMedian_m_s2 = 3.0, kLargestMedian_m_s2 = 30.0;
 
+std::string rounded(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", value);
+  return text.data();
+}
+
+bool near_factor(double ratio, double factor) {
+  return ratio > factor / 2.0 && ratio < factor * 2.0;
+}
+
+/// The unit that would make the median gravity's size; of counts nobody knows the scale.
+const char* likely_force_unit(double median, AccelUnit read_as) {
+  constexpr double kThousand = 1000.0;
+  const double numbers = read_as == AccelUnit::g ? median / kG_m_s2 : median;
+  if (near_factor(numbers, kG_m_s2)) return "m/s^2";
+  if (near_factor(numbers, 1.0)) return "g";
+  return near_factor(numbers, kThousand) ? "mg" : "raw counts of the sensor";
+}
+
 void require_plausible_force(const std::string& where, const sim::ImuRecord& imu, AccelUnit unit) {
   std::vector<double> norms;
   for (const Eigen::Vector3d& force : imu.accel_m_s2) norms.push_back(force.norm());
@@ -25,28 +44,57 @@ void require_plausible_force(const std::string& where, const sim::ImuRecord& imu
   if (middle >= kLeastMedian_m_s2 && middle <= kLargestMedian_m_s2) return;
   const char* read_as = unit == AccelUnit::g ? "g" : "m/s^2";
   throw BadInput(where + ": read in " + read_as + " the median specific force is " + std::to_string(middle) +
-                 " m/s^2, must be within 3 and 30: is the file in " + (unit == AccelUnit::g ? "m/s^2" : "g") + "?");
+                 " m/s^2, must be within 3 and 30: is the file in " + likely_force_unit(middle, unit) + "?");
+}
+
+/// From 0.5 Hz to 50 kHz: what an IMU gives at all.
+constexpr double kLeastPeriod_s = 2e-5, kLargestPeriod_s = 2.0;
+
+void require_plausible_period(const std::string& where, const sim::ImuRecord& imu) {
+  const double period_s = static_cast<double>(imu.period_ns) * 1e-9;
+  if (period_s >= kLeastPeriod_s && period_s <= kLargestPeriod_s) return;
+  throw BadInput(where + ": the median step of the stamps is " + rounded(period_s) + " s, must be within " +
+                 rounded(kLeastPeriod_s) + " and " + rounded(kLargestPeriod_s) + ": are the stamps in another unit" +
+                 (period_s > kLargestPeriod_s ? ", in ms or us?" : " than s and ns?"));
+}
+
+/// Of a device whose sheet is not known: none that a robot bears reads more.
+constexpr double kLargestRate_rad_s = 100.0;
+/// Of the samples; single ones are glitches.
+constexpr double kBeyondShare = 0.01, kBeyondRange = 2.0;
+constexpr double kDegreesPerRadian = 57.29577951308232;
+
+/// Of samples whose largest axis, times `factor`, lies beyond the bound.
+double beyond_share(const sim::ImuRecord& imu, double bound_rad_s, double factor) {
+  const auto beyond = std::count_if(imu.gyro_rad_s.begin(), imu.gyro_rad_s.end(), [&](const Eigen::Vector3d& w) {
+    return factor * w.cwiseAbs().maxCoeff() > bound_rad_s;
+  });
+  return static_cast<double>(beyond) / static_cast<double>(imu.gyro_rad_s.size());
+}
+
+void require_rates_in_range(const std::string& where, const sim::ImuRecord& imu, GyroUnit unit) {
+  const bool stated = imu.stated_gyro_range_rad_s > 0.0;
+  const double bound = stated ? kBeyondRange * imu.stated_gyro_range_rad_s : kLargestRate_rad_s;
+  const double share = beyond_share(imu, bound, 1.0);
+  if (share <= kBeyondShare) return;
+  const bool as_rad = unit == GyroUnit::rad_s;
+  const bool degrees = as_rad && beyond_share(imu, bound, 1.0 / kDegreesPerRadian) <= kBeyondShare;
+  throw BadInput(where + ": read in " + (as_rad ? "rad/s " : "deg/s ") + rounded(100.0 * share) +
+                 " % of the rates lie beyond " + rounded(bound) + " rad/s, " +
+                 (stated ? "twice the range that the device's sheet states" : "more than any robot turns") +
+                 "; must be at most 1 %: are the rates in " + (degrees ? "deg/s" : "raw counts of the sensor") + "?");
 }
 
 constexpr double kTurnWindow_s = 0.2, kNearGravity = 0.1;
 constexpr double kLeastTurn = 0.0175, kMostTurn = 0.4;  // of the force, as shares of it: from one degree on
 constexpr int kLeastWindows = 10;
 constexpr double kLeastCorrelation = 0.8;
-constexpr double kDegreesPerRadian = 57.29577951308232;
-
-bool near_factor(double ratio, double factor) {
-  return ratio > factor / 2.0 && ratio < factor * 2.0;
-}
-
-std::string rounded(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", value);
-  return text.data();
-}
+/// Of gravity, at which a brisk window ends.
+constexpr double kBriskTurn = 0.25;
 
 }  // namespace
 
-GravityTurn gravity_turn(const sim::ImuRecord& imu) {
+GravityTurn gravity_turn(const sim::ImuRecord& imu, TurnWindows windows) {
   GravityTurn turn;
   double said2 = 0.0, seen2 = 0.0, both = 0.0;
   const std::size_t count = imu.time_ns.size();
@@ -54,14 +102,19 @@ GravityTurn gravity_turn(const sim::ImuRecord& imu) {
   for (std::size_t begin = 0; begin + 4 < count;) {
     std::size_t end = begin;
     Eigen::Vector3d angle = Eigen::Vector3d::Zero();
-    while (end + 1 < count && near(end) &&
+    const auto turned = [&] {
+      return windows == TurnWindows::brisk && end >= begin + 4 &&
+             (imu.accel_m_s2[end] - imu.accel_m_s2[begin]).norm() > kBriskTurn * kG_m_s2;
+    };
+    while (end + 1 < count && near(end) && !turned() &&
            1e-9 * static_cast<double>(imu.time_ns[end] - imu.time_ns[begin]) < kTurnWindow_s) {
       ++end;
       // a sample is the mean over what ends at its stamp
       angle += imu.gyro_rad_s[end] * (1e-9 * static_cast<double>(imu.time_ns[end] - imu.time_ns[end - 1]));
     }
     const double length_s = 1e-9 * static_cast<double>(imu.time_ns[end] - imu.time_ns[begin]);
-    const bool whole = near(end) && end >= begin + 4 && length_s >= kTurnWindow_s && length_s < 1.5 * kTurnWindow_s;
+    const bool whole =
+        near(end) && end >= begin + 4 && (length_s >= kTurnWindow_s || turned()) && length_s < 1.5 * kTurnWindow_s;
     if (whole) {
       // the ends' means over a quarter each, so that noise does not pass for turning
       const std::size_t quarter = std::max<std::size_t>(1, (end - begin) / 4);
@@ -85,9 +138,15 @@ GravityTurn gravity_turn(const sim::ImuRecord& imu) {
   return turn;
 }
 
-std::string require_gravity_turns(const std::string& where, const sim::ImuRecord& imu, GyroUnit unit) {
-  const GravityTurn turn = gravity_turn(imu);
-  if (turn.windows < kLeastWindows || std::abs(turn.correlation) < kLeastCorrelation) return "";
+std::string require_plausible_rates(const std::string& where, const sim::ImuRecord& imu, GyroUnit unit) {
+  require_rates_in_range(where, imu, unit);
+  const auto tells = [](const GravityTurn& found) {
+    return found.windows >= kLeastWindows && std::abs(found.correlation) >= kLeastCorrelation;
+  };
+  GravityTurn turn = gravity_turn(imu, TurnWindows::even);
+  // a sphere that rolls turns too far within them
+  if (!tells(turn)) turn = gravity_turn(imu, TurnWindows::brisk);
+  if (!tells(turn)) return "";
   const std::string seen = "gravity turns in the accelerometer " + rounded(turn.ratio) + " times as the gyro says (" +
                            std::to_string(turn.windows) + " windows, correlation " + rounded(turn.correlation) + ")";
   const bool as_deg = unit == GyroUnit::deg_s;
@@ -124,6 +183,7 @@ void finish_readings(const std::string& where, AccelUnit unit, sim::ImuRecord& i
     throw BadInput(where + ": holds " + std::to_string(imu.time_ns.size()) + " samples, needs 2");
   require_plausible_force(where, imu, unit);
   imu.period_ns = median_step_ns(imu.time_ns);
+  require_plausible_period(where, imu);
 }
 
 double scale_of(AccelUnit unit) {

@@ -16,23 +16,26 @@ void add_reading(const std::string& where, std::int64_t stamp_ns, const Eigen::V
                  const Eigen::Vector3d& force_m_s2, sim::ImuRecord& imu);
 
 /// Fills the period, the median step. Throws BadInput beginning with `where`: fewer than two readings, a median
-/// specific force outside 3 to 30 m/s^2, which says that the unit is another one.
+/// specific force outside 3 to 30 m/s^2 or a period outside 20 us to 2 s, which says that the unit is another one.
 void finish_readings(const std::string& where, AccelUnit unit, sim::ImuRecord& imu);
 
 /// How gravity turns in the accelerometer against what the gyro says: over windows of 0.2 s in which the specific force
 /// keeps the size of gravity within a tenth and turns by one to some twenty degrees, the change of the force is held
 /// against
 /// -(angle turned) x force. `ratio`: the factor between them, 1 when the units agree; `correlation`: of the two.
-/// O(N).
+/// Brisk windows end before, once the force has turned by a quarter of gravity: within 0.2 s a sphere that rolls turns
+/// too far. O(N).
+enum class TurnWindows { even, brisk };
 struct GravityTurn {
   int windows = 0;
   double ratio = 0.0, correlation = 0.0;
 };
-GravityTurn gravity_turn(const sim::ImuRecord& imu);
+GravityTurn gravity_turn(const sim::ImuRecord& imu, TurnWindows windows = TurnWindows::even);
 
-/// A remark on the units that gravity shows, or none where the motion does not tell. Throws BadInput beginning with
-/// `where` when the rates are in the other unit by it (a factor of 57.3).
-std::string require_gravity_turns(const std::string& where, const sim::ImuRecord& imu, GyroUnit unit);
+/// A remark on the units that gravity shows, in even windows or else in brisk ones, or none where the motion does not
+/// tell. Throws BadInput beginning with `where` when the rates are in the other unit by it (a factor of 57.3), or when
+/// more than 1 % of them lie beyond twice the stated range (100 rad/s where none is stated).
+std::string require_plausible_rates(const std::string& where, const sim::ImuRecord& imu, GyroUnit unit);
 
 /// m/s^2 and rad/s of one unit.
 double scale_of(AccelUnit unit);

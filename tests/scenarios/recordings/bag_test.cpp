@@ -91,7 +91,8 @@ TEST_P(Bag, TheTruthIsLeftOutUnlessAskedFor) {
   write();
   EXPECT_THAT(complaint_of(), HasSubstr("no topic '/truth'"));
   std::filesystem::remove_all(path_);
-  GetParam().write(recording_.sensors, {0, &recording_.truth}, path_);
+  const StoredTruth truth = fixture::stored_truth(recording_, folder_);
+  GetParam().write(recording_.sensors, {0, &truth}, path_);
   const Imported imported = read();
   ASSERT_TRUE(imported.reference.has_value());
   EXPECT_EQ(imported.reference->period_ns, 5000000);
@@ -213,6 +214,10 @@ class Lz4Bag : public fixture::Folder {
 TEST_F(Lz4Bag, IsReadLikeAPlainOne) {
   EXPECT_TRUE(has_lz4_chunks(folder_ / "lz4.bag"));
   EXPECT_FALSE(has_lz4_chunks(folder_ / "plain.bag"));
+  // what room is asked for: the chunks' own lengths differ by the headers' alone
+  EXPECT_NEAR(static_cast<double>(bytes_unpacked(folder_ / "lz4.bag")),
+              static_cast<double>(std::filesystem::file_size(folder_ / "plain.bag")), 16.0);
+  EXPECT_GT(bytes_unpacked(folder_ / "lz4.bag"), std::filesystem::file_size(folder_ / "lz4.bag"));
   const Imported plain = import_ros1_bag(folder_ / "plain.bag", {}), lz4 = import_ros1_bag(folder_ / "lz4.bag", {});
   EXPECT_EQ(digest(lz4.sensors, nullptr), digest(plain.sensors, nullptr));
   ASSERT_EQ(lz4.sensors.imus.size(), 1u);

@@ -5,12 +5,15 @@
 #include <unistd.h>
 
 #include <cstring>
+#include <fstream>
 #include <functional>
 
+#include "scenarios/exchange/estimate_in_bag.hpp"
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/bags/bag_messages.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
 #include "scenarios/recordings/bags/sweep_messages.hpp"
+#include "scenarios/recordings/dialects/export_for.hpp"
 #include "scenarios/recordings/export.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"
 
@@ -102,15 +105,75 @@ TEST_P(BoundedMemory, AnExportDoesNotGrowWithTheRecording) {
     ASSERT_GT(import_mib(sweeps, true), 0.0);
     std::filesystem::rename(folder_ / "out.h5", recording(sweeps));
   }
-  const auto export_mib = [&](int sweeps, bool whole) {
-    BesideSensors beside;
-    if (whole) beside.more = [](const sim::Sensors&, BagWriting&) {};  // wants the points
-    const std::filesystem::path out = folder_ / (whole ? "whole" : "out");
+  const auto export_mib = [&](int sweeps) {
+    const std::filesystem::path out = folder_ / "out";
     std::filesystem::remove_all(out);
-    return peak_mib([&] { export_recording(recording(sweeps), GetParam().format, out, beside); });
+    return peak_mib([&] { export_recording(recording(sweeps), GetParam().format, out); });
   };
-  EXPECT_LT(export_mib(kLong, false) - export_mib(kShort, false), kGrowth_mib);
-  EXPECT_GT(export_mib(kLong, true) - export_mib(kShort, true), kMore_mib / 2.0);
+  EXPECT_LT(export_mib(kLong) - export_mib(kShort), kGrowth_mib);
+  // the points in the record: the measure sees what grows
+  const auto whole_mib = [&](int sweeps) { return peak_mib([&] { read_sensors(recording(sweeps)); }); };
+  EXPECT_GT(whole_mib(kLong) - whole_mib(kShort), kMore_mib / 2.0);
+}
+
+/// A recording with the truth of its body, of an IMU and of where each ray ended, and the same poses as an estimate.
+void write_truthful(const std::filesystem::path& folder, int sweeps) {
+  constexpr int kStates = 200, kSamples = 40;  // of a sweep's 0.1 s
+  fixture::Numbers numbers;
+  sim::Recording recording;
+  sim::Truth& truth = recording.truth;
+  recording.sensors.robot = "rig";
+  recording.sensors.imus.push_back(fixture::imu_record(numbers, "imu", kSamples * sweeps));
+  truth.imus.push_back(fixture::imu_truth(numbers, "imu", kSamples * sweeps));
+  fixture::add_lidar(numbers, recording, "lidar", sweeps, kPoints);
+  truth.surfaces = {"terrain", "rock"};
+  for (int i = 0; i < kStates * sweeps; ++i) {
+    truth.p_WB_m.push_back(numbers.vector());
+    truth.q_WB.push_back(numbers.quaternion());
+    for (auto* rows : {&truth.v_WB_m_s, &truth.w_WB_B_rad_s, &truth.f_B_m_s2}) rows->push_back(numbers.vector());
+    truth.label.push_back(sim::ContactLabel::air);
+  }
+  write_recording(folder / (std::to_string(sweeps) + ".h5"), fixture::info(), recording.sensors, &truth);
+  std::ofstream poses(folder / (std::to_string(sweeps) + ".tum"));
+  for (int i = 0; i < 10 * sweeps; ++i) poses << 0.01 * i << " 1 2 3 0 0 0 1\n";
+}
+
+class BoundedExport : public fixture::Folder {
+ protected:
+  BoundedExport() {
+    for (const int sweeps : {kShort, kLong}) peak_mib([&] { write_truthful(folder_, sweeps); });
+  }
+  std::filesystem::path file(int sweeps, const char* ending) const {
+    return folder_ / (std::to_string(sweeps) + ending);
+  }
+  /// What the long recording takes more than the short one.
+  template <class Work>
+  double growth_mib(Work&& work) {
+    return peak_mib([&] { work(kLong); }) - peak_mib([&] { work(kShort); });
+  }
+};
+
+TEST_F(BoundedExport, DoesNotGrowWithTruthAndEstimates) {
+  for (const char* format : {"rosbag1", "rosbag2", "mcap"}) {
+    const double growth = growth_mib([&](int sweeps) {
+      const std::filesystem::path estimate[] = {file(sweeps, ".tum")};
+      const BesideSensors beside{true, own_sweep_layout(), [&](const sim::Sensors& sensors, BagWriting& writing) {
+                                   add_estimates(estimate, sensors, writing);
+                                 }};
+      export_recording(file(sweeps, ".h5"), format, folder_ / (format + std::to_string(sweeps)), beside);
+    });
+    EXPECT_LT(growth, kGrowth_mib) << format;
+  }
+  EXPECT_GT(growth_mib([&](int sweeps) { read_truth(file(sweeps, ".h5")); }), kGrowth_mib)
+      << "the measure sees what grows";
+}
+
+TEST_F(BoundedExport, DoesNotGrowForAPeer) {
+  for (const char* peer : {"kiss-icp", "point-lio"}) {
+    const double growth = growth_mib(
+        [&](int sweeps) { export_for(file(sweeps, ".h5"), peer, folder_ / (peer + std::to_string(sweeps)), true); });
+    EXPECT_LT(growth, kGrowth_mib) << peer;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, BoundedMemory,

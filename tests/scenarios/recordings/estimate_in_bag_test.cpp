@@ -29,6 +29,7 @@ class InBag : public fixture::Folder {
       truth.v_WB_m_s.emplace_back(2.0, 0, 0);
       truth.w_WB_B_rad_s.emplace_back(0, 0, 3.0);
     }
+    truth.surfaces = {"terrain", "rock"};
     fixture::add_lidar(numbers, recording_, "lidar", 3, 20);
     sim::LidarRecord& lidar = recording_.sensors.lidars[0];
     sim::LidarTruth& seen = truth.lidars[0];
@@ -59,6 +60,25 @@ class InBag : public fixture::Folder {
   Eigen::Isometry3d pose_of_lidar(std::int64_t time_ns) const {
     return pose_of_body(time_ns) * recording_.truth.lidars[0].T_BL;
   }
+  struct InBagWhole {
+    BagTrack track;
+    std::vector<BagCloud> clouds;
+  };
+  /// With all of its clouds made; points and truth are set aside where `with_truth`, else the points in the record.
+  InBagWhole placed(bool with_truth) {
+    StoredTruth truth;
+    std::vector<PointStore> points;
+    sim::Sensors sensors = recording_.sensors;
+    if (with_truth) {
+      truth = fixture::stored_truth(recording_, folder_);
+      points.emplace_back(folder_).take(sensors.lidars[0]);
+    }
+    InBagWhole out{in_bag("mine", estimate_, sensors, with_truth ? &points : nullptr, with_truth ? &truth : nullptr),
+                   {}};
+    for (std::size_t k = 0; k < out.track.cloud_time_ns.size(); ++k)
+      out.clouds.push_back(out.track.cloud(out.track, k));
+    return out;
+  }
   static constexpr std::int64_t kStep_ns = 1'000'000;
   static Eigen::Isometry3d turned() {
     Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
@@ -72,7 +92,7 @@ class InBag : public fixture::Folder {
 };
 
 TEST_F(InBag, TheTruthAsAnEstimateHasNoError) {
-  const EstimateInBag found = in_bag("mine", estimate_, recording_.sensors, &recording_.truth);
+  const InBagWhole found = placed(true);
   ASSERT_EQ(found.track.poses.size(), estimate_.poses.size());
   for (const BagTrack::Pose& pose : found.track.poses) {
     const Eigen::Isometry3d T = pose_of_body(pose.time_ns);
@@ -82,8 +102,7 @@ TEST_F(InBag, TheTruthAsAnEstimateHasNoError) {
   ASSERT_EQ(found.clouds.size(), 3u);
   std::size_t points = 0;
   for (std::size_t sweep = 0; sweep < 3; ++sweep) {
-    EXPECT_EQ(found.clouds[sweep].track, "mine");
-    EXPECT_EQ(found.clouds[sweep].time_ns, 100'000'000 * static_cast<std::int64_t>(sweep + 1));
+    EXPECT_EQ(found.track.cloud_time_ns[sweep], 100'000'000 * static_cast<std::int64_t>(sweep + 1));
     ASSERT_EQ(found.clouds[sweep].position_W_m.size(), 20u);
     for (std::size_t k = 0; k < 20; ++k, ++points) {
       const Eigen::Vector3f& hit = recording_.truth.lidars[0].hit_W_m[points];
@@ -98,7 +117,7 @@ TEST_F(InBag, AnErrorShowsWhereItIs) {
   for (PoseState& pose : estimate_.poses) {
     if (pose.time_ns >= 100'000'000) pose.p_WA_m += T_VW_.linear() * Eigen::Vector3d(0.3, 0, 0.4);
   }
-  const EstimateInBag found = in_bag("mine", estimate_, recording_.sensors, &recording_.truth);
+  const InBagWhole found = placed(true);
   EXPECT_LT(found.clouds[0].error_m[5], 1e-4f);
   for (const std::size_t sweep : {1, 2}) {
     for (const float error : found.clouds[sweep].error_m) EXPECT_NEAR(error, 0.5f, 1e-4f);
@@ -106,7 +125,7 @@ TEST_F(InBag, AnErrorShowsWhereItIs) {
 }
 
 TEST_F(InBag, WithoutATruthNothingIsMovedAndNoErrorKnown) {
-  const EstimateInBag found = in_bag("mine", estimate_, recording_.sensors, nullptr);
+  const InBagWhole found = placed(false);
   for (const BagTrack::Pose& pose : found.track.poses)
     EXPECT_LT((pose.p_WB_m - (T_VW_ * pose_of_body(pose.time_ns)).translation()).norm(), 1e-9);
   ASSERT_EQ(found.clouds.size(), 3u);
@@ -116,7 +135,7 @@ TEST_F(InBag, WithoutATruthNothingIsMovedAndNoErrorKnown) {
 // J C J^T by hand: the place's covariance gains that of the attitude over the lever, both turned into the truth's world
 TEST_F(InBag, TheCovarianceIsTheBodys) {
   const Eigen::Matrix3d R = T_VW_.linear().transpose();
-  const BagTrack::Pose pose = in_bag("mine", estimate_, recording_.sensors, &recording_.truth).track.poses[10];
+  const BagTrack::Pose pose = placed(true).track.poses[10];
   const Eigen::Isometry3d T_WL = pose_of_lidar(pose.time_ns);
   const Eigen::Vector3d lever = pose.p_WB_m - T_WL.translation();
   const Eigen::Matrix3d attitude = R * Eigen::Vector3d(0.01, 0.01, 0.04).asDiagonal() * R.transpose();
@@ -132,16 +151,14 @@ TEST_F(InBag, TheCovarianceIsTheBodys) {
 TEST_F(InBag, ReturnsInAHoleAreLeftOut) {
   std::erase_if(estimate_.poses,
                 [](const PoseState& pose) { return pose.time_ns > 20'000'000 && pose.time_ns < 260'000'000; });
-  const EstimateInBag found = in_bag("mine", estimate_, recording_.sensors, &recording_.truth);
+  const InBagWhole found = placed(true);
   std::size_t points = 0;
   for (const BagCloud& cloud : found.clouds) points += cloud.position_W_m.size();
   EXPECT_EQ(points, 5u + 8u) << "at 0 to 20 ms and at 260 to 295 ms";
 }
 
 TEST_F(InBag, WhatCannotBePlacedIsRefused) {
-  const auto complaint = [&] {
-    return fixture::complaint([&] { in_bag("mine", estimate_, recording_.sensors, &recording_.truth); });
-  };
+  const auto complaint = [&] { return fixture::complaint([&] { placed(true); }); };
   const Estimate good = estimate_;
   estimate_.frame = Frame::imu;
   EXPECT_NE(complaint(), "");
@@ -157,13 +174,14 @@ TEST_F(InBag, FilesAreNamedAfterTheirMethods) {
   recording_.sensors.imus.clear();
   write_estimate(folder_ / "a", "mine", Kind::slam, estimate_, digest(recording_.sensors, nullptr));
   write_estimate(folder_ / "b", "mine", Kind::slam, estimate_, "");
-  BagWriting writing{0, &recording_.truth};
+  const StoredTruth truth = fixture::stored_truth(recording_, folder_);
+  BagWriting writing{0, &truth};
   const std::filesystem::path paths[] = {folder_ / "a", folder_ / "b"};
   add_estimates(paths, recording_.sensors, writing);
   ASSERT_EQ(writing.tracks.size(), 2u);
   EXPECT_EQ(writing.tracks[0].name, "slam_mine");
   EXPECT_EQ(writing.tracks[1].name, "slam_mine_2");
-  EXPECT_EQ(writing.clouds.size(), 6u);
+  for (const BagTrack& track : writing.tracks) EXPECT_EQ(track.cloud_time_ns.size(), 3u);
   write_estimate(folder_ / "c", "mine", Kind::slam, estimate_, std::string(32, 'a'));
   const std::filesystem::path other[] = {folder_ / "c"};
   EXPECT_THAT(fixture::complaint([&] { add_estimates(other, recording_.sensors, writing); }),

@@ -169,4 +169,13 @@ std::string complaint(Call&& call) {
   return "";
 }
 
+/// The truth of `recording` as it comes back from a file, set aside in `folder`.
+inline StoredTruth stored_truth(const sim::Recording& recording, const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "with_truth.h5";
+  write_recording(file, {}, recording.sensors, &recording.truth);
+  StoredTruth truth = read_truth(file, folder);
+  std::filesystem::remove(file);
+  return truth;
+}
+
 }  // namespace tumble::scenarios::fixture

@@ -84,8 +84,9 @@ TEST_P(Frames, SensorsHangOnTheBody) {
 }
 
 TEST_P(Frames, TheTruthMovesTheBodyAndEstimatesFramesOfTheirOwn) {
+  const StoredTruth truth = fixture::stored_truth(recording_, folder_);
   const BagTrack track{"slam_mine", {{7'000'000, {1, 2, 3}, Eigen::Quaterniond(0.6, 0.8, 0, 0)}}};
-  GetParam().write(recording_.sensors, {0, &recording_.truth, {track}}, path_);
+  GetParam().write(recording_.sensors, {0, &truth, {track}}, path_);
   const std::vector<ros::TFMessage> found = messages<ros::TFMessage>("/tf");
   ASSERT_EQ(found.size(), 9u) << "40 ms in steps of 5, and one of the track";
   std::size_t truths = 0, tracks = 0;
@@ -146,8 +147,12 @@ TEST_P(Frames, AStatedPlaceHoldsAndAContradictionShowsBoth) {
 }
 
 TEST_P(Frames, CloudsInTheWorldAreNoSensors) {
-  const BagCloud cloud{"mine", 20'000'000, {{1, 2, 3}, {4, 5, 6}}, {0.5f, 0.25f}};
-  GetParam().write(recording_.sensors, {0, nullptr, {}, {cloud}}, path_);
+  BagTrack track{"mine", {}, {20'000'000, 30'000'000}};
+  track.cloud = [](const BagTrack&, std::size_t number) {
+    return number == 0 ? BagCloud{{{1, 2, 3}, {4, 5, 6}}, {0.5f, 0.25f}} : BagCloud{};
+  };
+  GetParam().write(recording_.sensors, {0, nullptr, {track}}, path_);
+  ASSERT_EQ(messages<ros::PointCloud2>("/mine/points").size(), 1u) << "one without points is left out";
   const ros::PointCloud2 written = messages<ros::PointCloud2>("/mine/points").at(0);
   ASSERT_EQ(written.fields.size(), 4u);
   EXPECT_EQ(written.fields[3].name, "error_m");

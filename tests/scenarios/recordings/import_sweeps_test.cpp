@@ -269,6 +269,7 @@ TEST_F(ImportSweeps, NoPointAtAllIsRefused) {
 TEST_F(ImportSweeps, AnImuInTheSameClockJoinsAndInAnotherDoesNot) {
   sim::Recording recording = fixture::recording();
   for (Eigen::Vector3d& force : recording.sensors.imus[1].accel_m_s2) force *= 0.2;  // to a plausible median
+  recording.sensors.imus[1].stated_gyro_range_rad_s = 80.0;                          // and the rates
   export_csv(recording.sensors, nullptr, folder_);
   export_ply(recording.sensors, folder_ / "sweeps");
   source_.folder = folder_ / "sweeps";
