@@ -108,7 +108,7 @@ RunPaths paths_of(const scenarios::RunResult& run) {
     if (path.empty()) continue;
     found.methods.push_back(full_name(info));
     found.paths.push_back(std::move(path));
-    first.push_back(info.baseline || info.ours());
+    first.push_back(info.baseline || info.ours);
   }
   const std::vector<std::size_t> drawn = drawn_of(first);
   RunPaths out;
