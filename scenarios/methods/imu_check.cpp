@@ -78,6 +78,7 @@ Status check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples
   estimate.health["imu_force_share"] = plausibility.force_share(state);
   estimate.health["imu_turning_unexplained"] = plausibility.unexplained_share(state);
   estimate.health["imu_turning_slope"] = plausibility.turning_slope(state);
+  estimate.health["imu_turning_agreement"] = plausibility.turning_agreement(state);
   if (plausibility.frozen_s(state) > 0.0) estimate.health["imu_frozen_s"] = plausibility.frozen_s(state);
   if (const auto labels = plausibility.other_labels(state)) {
     constexpr const char* kKeys[] = {"imu_accel_x_is", "imu_accel_y_is", "imu_accel_z_is"};

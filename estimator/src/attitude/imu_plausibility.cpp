@@ -18,6 +18,11 @@ auto least_unexplained(const ImuPlausibility::State& state) {
   return std::min_element(state.unexplained_rad2.begin(), state.unexplained_rad2.end());
 }
 
+// imu_merge.md (I17): |a - b|^2 = |a|^2 + |b|^2 - 2 a b.
+double together_rad2(const ImuPlausibility::State& state) {
+  return 0.5 * (state.by_force_rad2 + state.by_gyro_rad2 - state.unexplained_rad2.front());
+}
+
 }  // namespace
 
 ImuPlausibility::ImuPlausibility(const Params& p) : params_(p) {
@@ -132,9 +137,13 @@ double ImuPlausibility::unexplained_share(const State& state) const {
 /// imu_merge.md (I17).
 double ImuPlausibility::turning_slope(const State& state) const {
   if (state.by_force_rad2 < params_.turned_min_rad2) return 1.0;
-  // |a - b|^2 = |a|^2 + |b|^2 - 2 a b
-  const double together = 0.5 * (state.by_force_rad2 + state.by_gyro_rad2 - state.unexplained_rad2.front());
-  return together / std::max(state.by_gyro_rad2, kStandstillRad2);
+  return together_rad2(state) / std::max(state.by_gyro_rad2, kStandstillRad2);
+}
+
+/// imu_merge.md (I21).
+double ImuPlausibility::turning_agreement(const State& state) const {
+  if (state.by_force_rad2 < params_.turned_min_rad2) return 1.0;
+  return together_rad2(state) / std::sqrt(state.by_force_rad2 * std::max(state.by_gyro_rad2, kStandstillRad2));
 }
 
 double ImuPlausibility::force_turned_share(const State& state) const {
@@ -170,7 +179,12 @@ Status ImuPlausibility::verdict(const State& state) const {
   if (const double still = force_turned_share(state); still < params_.still_share) {
     return {Trouble::out_of_range, "turning of a steady force as a share of the gyro's", still, params_.still_share};
   }
-  const double slope = turning_slope(state);
+  const double slope = turning_slope(state), agreement = turning_agreement(state);
+  // as far as the gyro says, and partly along: its scale is right, and pushes are what hides its sense
+  const double as_far = std::abs(slope / agreement);
+  const bool unsure = agreement > params_.agreeing_min && agreement < params_.agreeing_max &&
+                      as_far > params_.turning_min && as_far < params_.turning_max;
+  if (unsure) return {};
   if (slope < params_.turning_min || slope > params_.turning_max) {
     return {Trouble::out_of_range, "turning of gravity over that of the gyro", slope,
             slope < params_.turning_min ? params_.turning_min : params_.turning_max};

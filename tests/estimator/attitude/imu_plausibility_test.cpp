@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -202,6 +203,25 @@ TEST(ImuPlausibility, APendulumIsHeldToItsLiftNotToItsSwing) {
     EXPECT_FALSE(plausibility.verdict(wrong).ok()) << scale;
     EXPECT_NEAR(plausibility.turning_slope(wrong), 1.0 / scale, 0.1) << scale;
   }
+}
+
+// pushes that turn the force as far as the gyro says, and partly along, hide its sense; not its scale
+TEST(ImuPlausibility, WherePushesAreMostOfTheTurningNothingIsSaidOfItsSense) {
+  const ImuPlausibility plausibility({});
+  const auto verdict_at = [&](double by_force_rad2, double correlation) {
+    ImuPlausibility::State state;
+    state.by_force_rad2 = by_force_rad2;
+    state.by_gyro_rad2 = 1.0;
+    const double unexplained = by_force_rad2 + 1.0 - 2.0 * correlation * std::sqrt(by_force_rad2);
+    std::fill(state.unexplained_rad2.begin(), state.unexplained_rad2.end(), unexplained);
+    EXPECT_NEAR(plausibility.turning_agreement(state), correlation, 1e-12);
+    return plausibility.verdict(state).ok();
+  };
+  EXPECT_TRUE(verdict_at(1.0, 0.4));
+  EXPECT_FALSE(verdict_at(1.0, 0.1)) << "swapped axes";
+  EXPECT_FALSE(verdict_at(1.0, -0.4)) << "another sense";
+  EXPECT_FALSE(verdict_at(4.0, 0.9)) << "half the scale";
+  EXPECT_FALSE(verdict_at(0.3 * 0.3, 0.4)) << "a multiple of it";
 }
 
 TEST(ImuPlausibility, WhereTheGyroIsAtItsRailNothingIsCompared) {

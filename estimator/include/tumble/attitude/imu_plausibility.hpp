@@ -45,6 +45,8 @@ class ImuPlausibility {
            force_share_max = 2.0;  ///< of gravity, mean of steady windows
     double turning_min = 0.65,
            turning_max = 1.5;  ///< of gravity's turning over the gyro's; pendulums and wands leave 0.75 to 1.21
+    double agreeing_min = 0.25,
+           agreeing_max = 0.7;  ///< correlation of the two between which a slope says nothing: pushes were too strong
     double relabelled_share_max = 0.33;  ///< of what the naming at hand leaves unexplained, by a better one
     double relabelled_least = 0.01;      ///< unexplained share from which on namings are compared
     double turned_min_rad2 = 0.5;        ///< sum of squares below which nothing is said of it
@@ -70,6 +72,10 @@ class ImuPlausibility {
       visit(p.force_share_max, {"force_share_max", "1", 1.0, 1e6, "of gravity, largest mean of steady windows"});
       visit(p.turning_min, {"turning_min", "1", 0.0, 1.0, "least slope of gravity's turning over the gyro's"});
       visit(p.turning_max, {"turning_max", "1", 1.0, 1e6, "largest slope of gravity's turning over the gyro's"});
+      visit(p.agreeing_min, {"agreeing_min", "1", -1.0, 1.0,
+                             "least correlation of the two turnings at which their slope says nothing"});
+      visit(p.agreeing_max, {"agreeing_max", "1", -1.0, 1.0,
+                             "largest correlation of the two turnings at which their slope says nothing"});
       visit(p.relabelled_share_max,
             {"relabelled_share_max", "1", 0.0, 1.0,
              "of what axes as they are named leave unexplained: axes named otherwise leave less"});
@@ -124,6 +130,9 @@ class ImuPlausibility {
   double unexplained_share(const State& state) const;
   /// Slope of the force's turning over the gyro's (I17); 1 while nothing is known.
   double turning_slope(const State& state) const;
+  /// Correlation of the two turnings, -1 to 1: 1 of a gyro of any scale, -1 of the other sense, about 0 of axes that
+  /// are swapped, between where pushes are taken for gravity. 1 while too little turned.
+  double turning_agreement(const State& state) const;
   /// The force's turning as a share of the gyro's, also where the force did not turn; 1 while nothing is known.
   double force_turned_share(const State& state) const;
   /// How axes are named where gravity turns with the gyro, when they clearly are not as they say (I18).
