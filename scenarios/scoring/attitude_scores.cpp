@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
 
+#include "scenarios/scoring/beside_truth.hpp"
 #include "scenarios/scoring/consistency.hpp"
 #include "scenarios/scoring/families.hpp"
-#include "scenarios/scoring/truth_track.hpp"
 
 namespace tumble::scenarios {
 
@@ -17,11 +17,11 @@ struct AttitudeError {
   bool rest;
 };
 
-std::vector<AttitudeError> attitude_errors(const Estimate& estimate, const ScoringInput& input) {
-  const TruthTrack truth(*input.truth, estimate.frame);
+std::vector<AttitudeError> attitude_errors(const ScoredEstimate& scored) {
+  const TruthTrack& truth = truth_track(scored);
   std::vector<AttitudeError> errors;
   Eigen::Quaterniond q_align = Eigen::Quaterniond::Identity();
-  for (const AttitudeState& attitude : estimate.attitudes) {
+  for (const AttitudeState& attitude : scored.estimate().attitudes) {
     if (!truth.covers_attitude(attitude.time_ns)) continue;
     const Eigen::Quaterniond q_true = truth.pose(attitude.time_ns).q_WA;
     if (errors.empty()) {
@@ -38,9 +38,9 @@ std::vector<AttitudeError> attitude_errors(const Estimate& estimate, const Scori
 }
 
 template <double AttitudeError::*Member, bool Rest>
-bool rmse(const Estimate& estimate, const ScoringInput& input, double& value) {
+bool rmse(const ScoredEstimate& scored, double& value) {
   std::vector<double> errors;
-  for (const AttitudeError& error : attitude_errors(estimate, input)) {
+  for (const AttitudeError& error : scored.once(attitude_errors)) {
     if (error.rest == Rest) errors.push_back(error.*Member);
   }
   if (errors.empty()) return false;
@@ -49,10 +49,10 @@ bool rmse(const Estimate& estimate, const ScoringInput& input, double& value) {
 }
 
 /// Squared errors of the tilt over their stated variances, in motion.
-std::vector<double> normalised_tilt_errors(const Estimate& estimate, const ScoringInput& input) {
-  const TruthTrack truth(*input.truth, estimate.frame);
+std::vector<double> normalised_tilt_errors(const ScoredEstimate& scored) {
+  const TruthTrack& truth = truth_track(scored);
   std::vector<double> normalised;
-  for (const AttitudeState& attitude : estimate.attitudes) {
+  for (const AttitudeState& attitude : scored.estimate().attitudes) {
     const Eigen::Vector2d variance = attitude.covariance_rad2.diagonal().head<2>();
     if (!truth.covers_attitude(attitude.time_ns) || truth.at_rest(attitude.time_ns)) continue;
     if (!(variance.maxCoeff() > 0.0)) continue;
@@ -62,19 +62,19 @@ std::vector<double> normalised_tilt_errors(const Estimate& estimate, const Scori
   return normalised;
 }
 
-bool tilt_coverage(const Estimate& estimate, const ScoringInput& input, double& value) {
-  return share_within_3sigma(normalised_tilt_errors(estimate, input), value);
+bool tilt_coverage(const ScoredEstimate& scored, double& value) {
+  return share_within_3sigma(scored.once(normalised_tilt_errors), value);
 }
 
-bool tilt_nees_median(const Estimate& estimate, const ScoringInput& input, double& value) {
-  return normalised_median(normalised_tilt_errors(estimate, input), value);
+bool tilt_nees_median(const ScoredEstimate& scored, double& value) {
+  return normalised_median(scored.once(normalised_tilt_errors), value);
 }
 
-bool step_rest_rms(const Estimate& estimate, const ScoringInput& input, double& value) {
-  const TruthTrack truth(*input.truth, estimate.frame);
+bool step_rest_rms(const ScoredEstimate& scored, double& value) {
+  const TruthTrack& truth = truth_track(scored);
   std::vector<double> steps;
   const AttitudeState* previous = nullptr;
-  for (const AttitudeState& attitude : estimate.attitudes) {
+  for (const AttitudeState& attitude : scored.estimate().attitudes) {
     const bool rest = truth.covers_attitude(attitude.time_ns) && truth.at_rest(attitude.time_ns);
     if (rest && previous) steps.push_back(rotation_angle_rad(previous->q_WA.conjugate() * attitude.q_WA));
     previous = rest ? &attitude : nullptr;

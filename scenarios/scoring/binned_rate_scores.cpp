@@ -6,8 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "scenarios/scoring/beside_truth.hpp"
 #include "scenarios/scoring/binned_metric.hpp"
-#include "scenarios/scoring/clipping.hpp"
 #include "scenarios/scoring/families.hpp"
 #include "scenarios/statistics/statistics.hpp"
 
@@ -32,7 +32,9 @@ constexpr const auto& edges() {
 }
 
 /// Of each sample: how long the stretch of clipped samples is that it belongs to; 0 where it is not clipped.
-std::vector<double> stretch_lengths_s(const ClippingTruth& truth, double period_s) {
+std::vector<double> stretch_lengths_s(const ScoredEstimate& scored) {
+  const ClippingTruth& truth = clipping_truth(scored);
+  const double period_s = 1e-9 * static_cast<double>(scored.sensors().imus.front().period_ns);
   std::vector<double> lengths(truth.size(), 0.0);
   for (std::size_t begin = 0; begin < lengths.size();) {
     std::size_t end = begin;
@@ -45,27 +47,21 @@ std::vector<double> stretch_lengths_s(const ClippingTruth& truth, double period_
   return lengths;
 }
 
-/// The measure by which the clipped sample `index` is sorted.
+/// The measure by which a rate at a clipped sample is sorted.
 template <Axis kAxis>
-double measure(const ClippingTruth& truth, const std::vector<double>& lengths_s, std::size_t index) {
-  if constexpr (kAxis == Axis::depth) return truth.depth_rad_s(index);
-  if constexpr (kAxis == Axis::length) return lengths_s[index];
-  if constexpr (kAxis == Axis::count) return static_cast<double>(std::popcount(truth.clipped_axes(index)));
+double measure(const ScoredEstimate& scored, const PairedRate& pair) {
+  if constexpr (kAxis == Axis::depth) return clipping_truth(scored).depth_rad_s(pair.sample);
+  if constexpr (kAxis == Axis::length) return scored.once(stretch_lengths_s)[pair.sample];
+  if constexpr (kAxis == Axis::count) return static_cast<double>(std::popcount(pair.clipped_axes()));
 }
 
 template <Axis kAxis, std::size_t kBin, int kPercent>
-bool error_in_bin(const Estimate& estimate, const ScoringInput& input, double& value) {
-  const ClippingTruth truth(*input.sensors, *input.truth);
-  const double period_s = 1e-9 * static_cast<double>(input.sensors->imus.front().period_ns);
-  const std::vector<double> lengths_s =
-      kAxis == Axis::length ? stretch_lengths_s(truth, period_s) : std::vector<double>();
+bool error_in_bin(const ScoredEstimate& scored, double& value) {
   std::vector<double> norms;
-  for (const RateState& rate : estimate.rates) {
-    const auto index = truth.index_at(rate.time_ns);
-    if (!index || truth.clipped_axes(*index) == 0) continue;
-    const double own = measure<kAxis>(truth, lengths_s, *index);
-    if (!(own >= edges<kAxis>()[kBin] && own < edges<kAxis>()[kBin + 1])) continue;
-    if (const auto sample = truth.at(rate.time_ns)) norms.push_back((rate.w_WI_I_rad_s - sample->rate_rad_s).norm());
+  for (const PairedRate& pair : paired_rates(scored)) {
+    if (pair.clipped_axes() == 0) continue;
+    const double own = measure<kAxis>(scored, pair);
+    if (own >= edges<kAxis>()[kBin] && own < edges<kAxis>()[kBin + 1]) norms.push_back(pair.error_rad_s().norm());
   }
   const std::optional<double> found = quantile_of_all(norms, kPercent / 100.0);
   if (found) value = *found;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <optional>
 
+#include "scenarios/scoring/beside_truth.hpp"
 #include "scenarios/scoring/families.hpp"
 #include "scenarios/scoring/registered_sweeps.hpp"
-#include "scenarios/scoring/truth_track.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble::scenarios {
@@ -12,16 +13,19 @@ namespace tumble::scenarios {
 namespace {
 
 // the last sweep that the truth reaches: clocks that are late stamp the end of a recording beyond it
-const LidarInertialOdometry::SweepReport* last_covered(const Estimate& estimate, const TruthTrack& truth) {
+const LidarInertialOdometry::SweepReport* last_covered(const ScoredEstimate& scored) {
+  const Estimate& estimate = scored.estimate();
+  const TruthTrack& truth = truth_track(scored);
   const auto covered = [&](const auto& sweep) { return truth.covers(sweep.pose.time_ns); };
   const auto last = std::find_if(estimate.sweeps.rbegin(), estimate.sweeps.rend(), covered);
   return last == estimate.sweeps.rend() ? nullptr : &*last;
 }
 
 // from where to where an end error is measured; false when there is no such motion
-bool ends_of(const Estimate& estimate, const TruthTrack& truth, PoseState& first, PoseState& last) {
+bool ends_of(const ScoredEstimate& scored, PoseState& first, PoseState& last) {
+  const Estimate& estimate = scored.estimate();
   if (estimate.sweeps.empty()) {  // a trajectory of somebody else
-    const PairedTrack track = pair_poses(estimate, truth);
+    const PairedTrack& track = paired_track(scored);
     if (track.poses.size() < 2) return false;
     const auto pose_at = [&](std::int64_t time_ns) {
       return *std::find_if(estimate.poses.begin(), estimate.poses.end(),
@@ -34,53 +38,55 @@ bool ends_of(const Estimate& estimate, const TruthTrack& truth, PoseState& first
   const std::vector<std::size_t> registered = registered_sweeps(estimate);
   if (registered.size() < kStartSweep || registered[kStartSweep - 1] + 1 >= estimate.sweeps.size()) return false;
   first = estimate.sweeps[registered[kStartSweep - 1]].pose;
-  const auto* last_sweep = last_covered(estimate, truth);
+  const auto* last_sweep = last_covered(scored);
   if (last_sweep == nullptr || last_sweep->pose.time_ns <= first.time_ns) return false;
   last = last_sweep->pose;
   return true;
 }
 
+struct EndError {
+  Eigen::Vector3d translation_m;
+  Eigen::Quaterniond rotation;
+};
+
 // estimated motion from the sixth registered sweep to the last sweep, seen from the true one
-bool end_error(const Estimate& estimate, const ScoringInput& input, Eigen::Vector3d& translation,
-               Eigen::Quaterniond& rotation) {
-  const TruthTrack truth(*input.truth, estimate.frame);
+std::optional<EndError> end_error(const ScoredEstimate& scored) {
+  const TruthTrack& truth = truth_track(scored);
   PoseState first, last;
-  if (!ends_of(estimate, truth, first, last)) return false;
+  if (!ends_of(scored, first, last)) return std::nullopt;
   const PoseState true_first = truth.pose(first.time_ns);
   const PoseState true_last = truth.pose(last.time_ns);
-  translation = first.q_WA.conjugate() * (last.p_WA_m - first.p_WA_m) -
-                true_first.q_WA.conjugate() * (true_last.p_WA_m - true_first.p_WA_m);
-  rotation = (true_first.q_WA.conjugate() * true_last.q_WA).conjugate() * (first.q_WA.conjugate() * last.q_WA);
+  EndError error;
+  error.translation_m = first.q_WA.conjugate() * (last.p_WA_m - first.p_WA_m) -
+                        true_first.q_WA.conjugate() * (true_last.p_WA_m - true_first.p_WA_m);
+  error.rotation = (true_first.q_WA.conjugate() * true_last.q_WA).conjugate() * (first.q_WA.conjugate() * last.q_WA);
+  return error;
+}
+
+bool translation_error_end(const ScoredEstimate& scored, double& value) {
+  const std::optional<EndError>& error = scored.once(end_error);
+  if (!error) return false;
+  value = error->translation_m.norm();
   return true;
 }
 
-bool translation_error_end(const Estimate& estimate, const ScoringInput& input, double& value) {
-  Eigen::Vector3d translation;
-  Eigen::Quaterniond rotation;
-  if (!end_error(estimate, input, translation, rotation)) return false;
-  value = translation.norm();
-  return true;
-}
-
-bool rotation_error_end(const Estimate& estimate, const ScoringInput& input, double& value) {
-  Eigen::Vector3d translation;
-  Eigen::Quaterniond rotation;
-  if (!end_error(estimate, input, translation, rotation)) return false;
-  value = rotation_angle_rad(rotation);
+bool rotation_error_end(const ScoredEstimate& scored, double& value) {
+  const std::optional<EndError>& error = scored.once(end_error);
+  if (!error) return false;
+  value = rotation_angle_rad(error->rotation);
   return true;
 }
 
 // of the last sweep's pose, aligned at the first pose, against its own reported covariance: mean 1 when that holds
-bool pose_nees(const Estimate& estimate, const ScoringInput& input, double& value) {
-  if (estimate.sweeps.empty() || estimate.poses.empty()) return false;
-  const TruthTrack truth(*input.truth, estimate.frame);
-  const auto* last_sweep = last_covered(estimate, truth);
+bool pose_nees(const ScoredEstimate& scored, double& value) {
+  if (scored.estimate().sweeps.empty() || scored.estimate().poses.empty()) return false;
+  const auto* last_sweep = last_covered(scored);
   if (last_sweep == nullptr) return false;
   const PoseState& last = last_sweep->pose;
   if (last.covariance.diagonal().minCoeff() <= 0.0) return false;  // none reported
-  const Alignment alignment = pair_poses(estimate, truth).alignment;
+  const Alignment& alignment = paired_track(scored).alignment;
   const PoseState aligned = alignment.apply(last);
-  const PoseState true_pose = truth.pose(last.time_ns);
+  const PoseState true_pose = truth_track(scored).pose(last.time_ns);
   Eigen::Matrix<double, 6, 1> error;
   error << true_pose.p_WA_m - aligned.p_WA_m, so3::log((true_pose.q_WA * aligned.q_WA.conjugate()).normalized());
   // the covariance is in the estimator's world: its error is turned there

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
+#include "scenarios/scoring/beside_truth.hpp"
 #include "scenarios/scoring/families.hpp"
 #include "scenarios/scoring/nearness.hpp"
-#include "scenarios/scoring/truth_track.hpp"
 
 namespace tumble::scenarios {
 
@@ -17,10 +17,12 @@ constexpr float kErrorLimitM = 0.5f;     // an outlier counts as this far, howev
 constexpr float kSamePointM = 1e-3f;     // points of one such cell were drawn twice
 constexpr double kSeenRangeM = 100.0;    // of the frame's start; farther hits nobody maps
 
+static_assert(kErrorLimitM > kToleranceM && kErrorLimitM > kFineToleranceM, "what lies at the limit is within none");
+
 // map points in W, by the alignment of position and yaw at the start
-std::vector<Eigen::Vector3f> map_in_world(const Estimate& estimate, const ScoringInput& input) {
-  const TruthTrack truth(*input.truth, estimate.frame);
-  const Eigen::Isometry3d to_world = pair_poses(estimate, truth).alignment.transform();
+std::vector<Eigen::Vector3f> map_in_world(const ScoredEstimate& scored) {
+  const Estimate& estimate = scored.estimate();
+  const Eigen::Isometry3d to_world = paired_track(scored).alignment.transform();
   std::vector<Eigen::Vector3f> points;
   points.reserve(estimate.map.size());
   for (const MapPoint& point : estimate.map) {
@@ -40,52 +42,55 @@ std::vector<Eigen::Vector3f> seen_surface(const sim::Truth& truth) {
   return one_per_cell(hits, kSurfaceCellM);
 }
 
-bool overlap_within(const Estimate& estimate, const ScoringInput& input, float tolerance_m, double& value) {
-  if (input.surface == nullptr || estimate.map.empty()) return false;
-  const std::vector<Eigen::Vector3f> all = map_in_world(estimate, input);
+// of the finite map points to the true surface, each at most kErrorLimitM; the scored estimate has a surface
+std::vector<float> map_distances_m(const ScoredEstimate& scored) {
   std::vector<Eigen::Vector3f> finite;
-  for (const Eigen::Vector3f& point : all) {
+  for (const Eigen::Vector3f& point : scored.once(map_in_world)) {
     if (point.allFinite()) finite.push_back(point);
   }
-  // the limit lies beyond the tolerance, so that "farther than the limit" is not "within"
-  const std::vector<float> distances = input.surface->distances(finite, 2.0f * tolerance_m);
+  return scored.surface()->distances(finite, kErrorLimitM);
+}
+
+bool overlap_within(const ScoredEstimate& scored, float tolerance_m, double& value) {
+  if (scored.surface() == nullptr || scored.estimate().map.empty()) return false;
+  const std::vector<float>& distances = scored.once(map_distances_m);
   const auto within = std::count_if(distances.begin(), distances.end(), [&](float d) { return d <= tolerance_m; });
-  value = static_cast<double>(within) / static_cast<double>(all.size());
+  value = static_cast<double>(within) / static_cast<double>(scored.estimate().map.size());
   return true;
 }
 
-bool overlap(const Estimate& estimate, const ScoringInput& input, double& value) {
-  return overlap_within(estimate, input, kToleranceM, value);
+bool overlap(const ScoredEstimate& scored, double& value) {
+  return overlap_within(scored, kToleranceM, value);
 }
 
-bool fine_overlap(const Estimate& estimate, const ScoringInput& input, double& value) {
-  return overlap_within(estimate, input, kFineToleranceM, value);
+bool fine_overlap(const ScoredEstimate& scored, double& value) {
+  return overlap_within(scored, kFineToleranceM, value);
 }
 
-bool mean_error(const Estimate& estimate, const ScoringInput& input, double& value) {
-  if (input.surface == nullptr || estimate.map.empty()) return false;
-  const std::vector<Eigen::Vector3f> points = map_in_world(estimate, input);
-  const bool finite = std::all_of(points.begin(), points.end(), [](const auto& point) { return point.allFinite(); });
-  const std::vector<float> distances = finite ? input.surface->distances(points, kErrorLimitM) : std::vector<float>();
+bool mean_error(const ScoredEstimate& scored, double& value) {
+  const std::vector<MapPoint>& map = scored.estimate().map;
+  if (scored.surface() == nullptr || map.empty()) return false;
+  const std::vector<float>& distances = scored.once(map_distances_m);
   double sum = 0.0;
   for (const float distance : distances) sum += std::min(distance, kErrorLimitM);
-  value = finite ? sum / static_cast<double>(points.size()) : kErrorLimitM;
+  const bool finite = distances.size() == map.size();
+  value = finite ? sum / static_cast<double>(map.size()) : kErrorLimitM;
   return true;
 }
 
-bool unique_share(const Estimate& estimate, const ScoringInput&, double& value) {
-  if (estimate.map.empty()) return false;
+bool unique_share(const ScoredEstimate& scored, double& value) {
+  if (scored.estimate().map.empty()) return false;
   std::vector<Eigen::Vector3f> points;
-  for (const MapPoint& point : estimate.map) points.push_back(point.position_W_m);
+  for (const MapPoint& point : scored.estimate().map) points.push_back(point.position_W_m);
   value = static_cast<double>(one_per_cell(points, kSamePointM).size()) / static_cast<double>(points.size());
   return true;
 }
 
-bool coverage(const Estimate& estimate, const ScoringInput& input, double& value) {
-  if (estimate.map.empty() || input.truth->lidars.empty()) return false;
-  const std::vector<Eigen::Vector3f> surface = seen_surface(*input.truth);
+bool coverage(const ScoredEstimate& scored, double& value) {
+  if (scored.estimate().map.empty() || scored.truth().lidars.empty()) return false;
+  const std::vector<Eigen::Vector3f> surface = seen_surface(scored.truth());
   if (surface.empty()) return false;
-  const Nearness map(map_in_world(estimate, input), kToleranceM);
+  const Nearness map(scored.once(map_in_world), kToleranceM);
   const auto covered =
       std::count_if(surface.begin(), surface.end(), [&](const Eigen::Vector3f& p) { return map.has_neighbour(p); });
   value = static_cast<double>(covered) / static_cast<double>(surface.size());
@@ -94,10 +99,11 @@ bool coverage(const Estimate& estimate, const ScoringInput& input, double& value
 
 // a method that leaves no map has failed to map
 // a trajectory alone, without sweeps, comes of a program that draws no map
-bool failed(const Estimate& estimate, const ScoringInput& input, double& value) {
-  if (input.surface == nullptr || (estimate.sweeps.empty() && estimate.map.empty())) return false;
+bool failed(const ScoredEstimate& scored, double& value) {
+  const Estimate& estimate = scored.estimate();
+  if (scored.surface() == nullptr || (estimate.sweeps.empty() && estimate.map.empty())) return false;
   double share = 0.0;
-  const bool has_map = overlap(estimate, input, share);
+  const bool has_map = overlap(scored, share);
   value = has_map && 1.0 - share <= kOutliersMax ? 0.0 : 1.0;
   return true;
 }

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenarios/scoring/beside_truth.hpp"
 #include "scenarios/scoring/consistency.hpp"
 #include "scenarios/scoring/families.hpp"
-#include "scenarios/scoring/truth_track.hpp"
 
 namespace tumble::scenarios {
 
@@ -14,19 +14,15 @@ namespace {
 constexpr double kPathMinM = 0.05;
 constexpr double kUnmovedM = 0.02;  // before, nothing can be wrong
 
-std::vector<PairedPose> paired(const Estimate& estimate, const ScoringInput& input) {
-  return pair_poses(estimate, TruthTrack(*input.truth, estimate.frame)).poses;
-}
-
-bool end_error(const Estimate& estimate, const ScoringInput& input, double& value) {
-  const std::vector<PairedPose> poses = paired(estimate, input);
+bool end_error(const ScoredEstimate& scored, double& value) {
+  const std::vector<PairedPose>& poses = paired_track(scored).poses;
   if (poses.empty()) return false;
   value = (poses.back().estimate.p_WA_m - poses.back().truth.p_WA_m).norm();
   return true;
 }
 
-bool end_error_share(const Estimate& estimate, const ScoringInput& input, double& value) {
-  const std::vector<PairedPose> poses = paired(estimate, input);
+bool end_error_share(const ScoredEstimate& scored, double& value) {
+  const std::vector<PairedPose>& poses = paired_track(scored).poses;
   if (poses.empty()) return false;
   const double path_m = poses.back().path_m - poses.front().path_m;
   if (path_m < kPathMinM) return false;
@@ -34,8 +30,8 @@ bool end_error_share(const Estimate& estimate, const ScoringInput& input, double
   return true;
 }
 
-bool height_error_max(const Estimate& estimate, const ScoringInput& input, double& value) {
-  const std::vector<PairedPose> poses = paired(estimate, input);
+bool height_error_max(const ScoredEstimate& scored, double& value) {
+  const std::vector<PairedPose>& poses = paired_track(scored).poses;
   if (poses.empty()) return false;
   value = 0.0;
   for (const PairedPose& pose : poses) {
@@ -47,12 +43,12 @@ bool height_error_max(const Estimate& estimate, const ScoringInput& input, doubl
   return true;
 }
 
-bool rest_drift(const Estimate& estimate, const ScoringInput& input, double& value) {
+bool rest_drift(const ScoredEstimate& scored, double& value) {
   value = 0.0;
   bool any = false;
   Eigen::Vector3d error_at_start;
   bool resting = false;
-  for (const PairedPose& pose : paired(estimate, input)) {
+  for (const PairedPose& pose : paired_track(scored).poses) {
     const Eigen::Vector3d error = pose.estimate.p_WA_m - pose.truth.p_WA_m;
     if (pose.rest && resting) {
       any = true;
@@ -69,8 +65,9 @@ bool rest_drift(const Estimate& estimate, const ScoringInput& input, double& val
 
 /// Squared errors over their stated variances, once it moves. In the axes that the covariance is stated in: those of
 /// the estimate's own world.
-std::vector<double> normalised_errors(const Estimate& estimate, const ScoringInput& input) {
-  const PairedTrack track = pair_poses(estimate, TruthTrack(*input.truth, estimate.frame));
+std::vector<double> normalised_errors(const ScoredEstimate& scored) {
+  const Estimate& estimate = scored.estimate();
+  const PairedTrack& track = paired_track(scored);
   const Eigen::Matrix3d R_estimate_W = track.alignment.transform().linear().transpose();
   std::vector<double> normalised;
   std::size_t own = 0;
@@ -86,12 +83,12 @@ std::vector<double> normalised_errors(const Estimate& estimate, const ScoringInp
   return normalised;
 }
 
-bool coverage_3sigma(const Estimate& estimate, const ScoringInput& input, double& value) {
-  return share_within_3sigma(normalised_errors(estimate, input), value);
+bool coverage_3sigma(const ScoredEstimate& scored, double& value) {
+  return share_within_3sigma(scored.once(normalised_errors), value);
 }
 
-bool nees_median(const Estimate& estimate, const ScoringInput& input, double& value) {
-  return normalised_median(normalised_errors(estimate, input), value);
+bool nees_median(const ScoredEstimate& scored, double& value) {
+  return normalised_median(scored.once(normalised_errors), value);
 }
 
 }  // namespace

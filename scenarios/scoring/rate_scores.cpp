@@ -4,8 +4,7 @@
 #include <limits>
 #include <numeric>
 
-#include "scenarios/errors.hpp"
-#include "scenarios/scoring/clipping.hpp"
+#include "scenarios/scoring/beside_truth.hpp"
 #include "scenarios/scoring/consistency.hpp"
 #include "scenarios/scoring/families.hpp"
 #include "scenarios/statistics/statistics.hpp"
@@ -14,15 +13,16 @@ namespace tumble::scenarios {
 
 namespace {
 
-// errors of the estimate at samples with (or without) a clipped axis
-std::vector<double> error_norms_rad_s(const Estimate& estimate, const ScoringInput& input, bool clipped) {
-  std::vector<double> norms;
-  const ClippingTruth truth(*input.sensors, *input.truth);
-  for (const RateState& rate : estimate.rates) {
-    const auto sample = truth.at(rate.time_ns);
-    if (sample && (sample->clipped_axes != 0) == clipped) {
-      norms.push_back((rate.w_WI_I_rad_s - sample->rate_rad_s).norm());
-    }
+// errors of the estimate at samples with and without a clipped axis
+struct ErrorNorms {
+  std::vector<double> clipped_rad_s, free_rad_s;
+};
+
+ErrorNorms error_norms(const ScoredEstimate& scored) {
+  ErrorNorms norms;
+  for (const PairedRate& pair : paired_rates(scored)) {
+    if (!pair.truth) continue;
+    (pair.clipped_axes() != 0 ? norms.clipped_rad_s : norms.free_rad_s).push_back(pair.error_rad_s().norm());
   }
   return norms;
 }
@@ -33,25 +33,24 @@ bool quantile_of(const std::vector<double>& values, double share, double& value)
   return found.has_value();
 }
 
-bool clipped_median(const Estimate& estimate, const ScoringInput& input, double& value) {
-  return quantile_of(error_norms_rad_s(estimate, input, true), 0.5, value);
+bool clipped_median(const ScoredEstimate& scored, double& value) {
+  return quantile_of(scored.once(error_norms).clipped_rad_s, 0.5, value);
 }
 
-bool clipped_p99(const Estimate& estimate, const ScoringInput& input, double& value) {
-  return quantile_of(error_norms_rad_s(estimate, input, true), 0.99, value);
+bool clipped_p99(const ScoredEstimate& scored, double& value) {
+  return quantile_of(scored.once(error_norms).clipped_rad_s, 0.99, value);
 }
 
-bool free_median(const Estimate& estimate, const ScoringInput& input, double& value) {
-  return quantile_of(error_norms_rad_s(estimate, input, false), 0.5, value);
+bool free_median(const ScoredEstimate& scored, double& value) {
+  return quantile_of(scored.once(error_norms).free_rad_s, 0.5, value);
 }
 
-bool clipped_max(const Estimate& estimate, const ScoringInput& input, double& value) {
-  return quantile_of(error_norms_rad_s(estimate, input, true), 1.0, value);
+bool clipped_max(const ScoredEstimate& scored, double& value) {
+  return quantile_of(scored.once(error_norms).clipped_rad_s, 1.0, value);
 }
 
 // A stretch: samples in a row with a clipped axis. Its error is the norm of the mean of its error vectors, an offset.
-bool stretch_max(const Estimate& estimate, const ScoringInput& input, double& value) {
-  const ClippingTruth truth(*input.sensors, *input.truth);
+bool stretch_max(const ScoredEstimate& scored, double& value) {
   std::vector<double> offsets;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double length = 0.0;
@@ -60,13 +59,12 @@ bool stretch_max(const Estimate& estimate, const ScoringInput& input, double& va
     sum.setZero();
     length = 0.0;
   };
-  for (const RateState& rate : estimate.rates) {
-    const auto sample = truth.at(rate.time_ns);
-    if (!sample || sample->clipped_axes == 0) {
+  for (const PairedRate& pair : paired_rates(scored)) {
+    if (pair.clipped_axes() == 0) {
       close();
       continue;
     }
-    sum += rate.w_WI_I_rad_s - sample->rate_rad_s;
+    sum += pair.error_rad_s();
     length += 1.0;
   }
   close();
@@ -74,46 +72,50 @@ bool stretch_max(const Estimate& estimate, const ScoringInput& input, double& va
 }
 
 // whether the robot touched anything while the sample that ends at time_ns was taken
-bool in_contact(const ScoringInput& input, std::int64_t time_ns) {
-  const sim::Truth& truth = *input.truth;
+bool in_contact(const ScoredEstimate& scored, std::int64_t time_ns) {
+  const sim::Truth& truth = scored.truth();
   if (truth.period_ns <= 0 || truth.label.empty()) return false;
   const auto last = static_cast<std::int64_t>(truth.label.size()) - 1;
   const std::int64_t end = std::min(last, time_ns / truth.period_ns);
   const std::int64_t begin =
-      std::max<std::int64_t>(0, (time_ns - input.sensors->imus.front().period_ns) / truth.period_ns);
+      std::max<std::int64_t>(0, (time_ns - scored.sensors().imus.front().period_ns) / truth.period_ns);
   for (std::int64_t k = begin; k <= end; ++k) {
     if (truth.label[static_cast<std::size_t>(k)] != sim::ContactLabel::air) return true;
   }
   return false;
 }
 
-// squared errors of clipped axes over their reported variances, of the samples in flight or of those in contact
-std::vector<double> normalised_errors(const Estimate& estimate, const ScoringInput& input, bool flight, bool impact) {
-  const ClippingTruth truth(*input.sensors, *input.truth);
-  std::vector<double> normalised;
-  for (const RateState& rate : estimate.rates) {
-    const auto sample = truth.at(rate.time_ns);
-    if (!sample || sample->clipped_axes == 0) continue;
-    if (!(in_contact(input, rate.time_ns) ? impact : flight)) continue;
+// squared errors of clipped axes over their reported variances: of all samples, of those in flight, of those in contact
+struct NormalisedErrors {
+  std::vector<double> all, flight, impact;
+};
+
+NormalisedErrors normalised_errors(const ScoredEstimate& scored) {
+  NormalisedErrors normalised;
+  for (const PairedRate& pair : paired_rates(scored)) {
+    if (pair.clipped_axes() == 0) continue;
+    const Eigen::Vector3d error = pair.error_rad_s();
+    std::vector<double>& part = in_contact(scored, pair.estimate->time_ns) ? normalised.impact : normalised.flight;
     for (int j = 0; j < 3; ++j) {
-      if (!(sample->clipped_axes & (1u << j))) continue;
-      const double error = rate.w_WI_I_rad_s[j] - sample->rate_rad_s[j];
-      normalised.push_back(squared_over(error, rate.covariance_rad2_s2(j, j)));
+      if (!(pair.clipped_axes() & (1u << j))) continue;
+      const double square = squared_over(error[j], pair.estimate->covariance_rad2_s2(j, j));
+      normalised.all.push_back(square);
+      part.push_back(square);
     }
   }
   return normalised;
 }
 
-bool coverage_3sigma(const Estimate& estimate, const ScoringInput& input, double& value) {
-  return share_within_3sigma(normalised_errors(estimate, input, true, true), value);
+bool coverage_3sigma(const ScoredEstimate& scored, double& value) {
+  return share_within_3sigma(scored.once(normalised_errors).all, value);
 }
 
-bool coverage_3sigma_flight(const Estimate& estimate, const ScoringInput& input, double& value) {
-  return share_within_3sigma(normalised_errors(estimate, input, true, false), value);
+bool coverage_3sigma_flight(const ScoredEstimate& scored, double& value) {
+  return share_within_3sigma(scored.once(normalised_errors).flight, value);
 }
 
-bool coverage_3sigma_impact(const Estimate& estimate, const ScoringInput& input, double& value) {
-  return share_within_3sigma(normalised_errors(estimate, input, false, true), value);
+bool coverage_3sigma_impact(const ScoredEstimate& scored, double& value) {
+  return share_within_3sigma(scored.once(normalised_errors).impact, value);
 }
 
 bool mean_of(const std::vector<double>& values, double& value) {
@@ -122,12 +124,12 @@ bool mean_of(const std::vector<double>& values, double& value) {
   return true;
 }
 
-bool nees_flight(const Estimate& estimate, const ScoringInput& input, double& value) {
-  return mean_of(normalised_errors(estimate, input, true, false), value);
+bool nees_flight(const ScoredEstimate& scored, double& value) {
+  return mean_of(scored.once(normalised_errors).flight, value);
 }
 
-bool nees_impact(const Estimate& estimate, const ScoringInput& input, double& value) {
-  return mean_of(normalised_errors(estimate, input, false, true), value);
+bool nees_impact(const ScoredEstimate& scored, double& value) {
+  return mean_of(scored.once(normalised_errors).impact, value);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <limits>
 #include <string>
 
-#include "scenarios/scoring/clipping.hpp"
+#include "scenarios/scoring/beside_truth.hpp"
 #include "scenarios/scoring/families.hpp"
 #include "scenarios/statistics/statistics.hpp"
 
@@ -40,43 +40,42 @@ bool quantile_of(const std::vector<double>& values, double share, double& value)
 
 /// Of the estimate at clipped samples; of one axis, at the samples at which that axis clips.
 template <ErrorOf kError, int kPercent, unsigned kAxes>
-bool clipped_error(const Estimate& estimate, const ScoringInput& input, double& value) {
-  const ClippingTruth truth(*input.sensors, *input.truth);
-  if (!truth.is_reference()) return false;
+bool clipped_error(const ScoredEstimate& scored, double& value) {
+  if (!clipping_truth(scored).is_reference()) return false;
   std::vector<double> errors;
-  for (const RateState& rate : estimate.rates) {
-    const auto sample = truth.at(rate.time_ns);
-    if (sample && (sample->clipped_axes & kAxes) != 0) errors.push_back(kError(rate.w_WI_I_rad_s, sample->rate_rad_s));
+  for (const PairedRate& pair : paired_rates(scored)) {
+    if ((pair.clipped_axes() & kAxes) != 0)
+      errors.push_back(kError(pair.estimate->w_WI_I_rad_s, pair.truth->rate_rad_s));
   }
   return quantile_of(errors, 0.01 * kPercent, value);
 }
 
 /// Of the reference against the gyro itself, where nothing clips and the body turns.
 template <ErrorOf kError, int kPercent>
-bool reference_error(const Estimate&, const ScoringInput& input, double& value) {
-  const ClippingTruth truth(*input.sensors, *input.truth);
+bool reference_error(const ScoredEstimate& scored, double& value) {
+  const ClippingTruth& truth = clipping_truth(scored);
   if (!truth.is_reference()) return false;
-  const auto& reading = input.sensors->imus.front().gyro_rad_s;
+  const auto& reading = scored.sensors().imus.front().gyro_rad_s;
   Eigen::Vector3d extreme = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& w : reading) extreme = extreme.cwiseMax(w.cwiseAbs());
   std::vector<double> errors;
   for (std::size_t k = 0; k < reading.size(); ++k) {
     const bool far = (reading[k].cwiseAbs().array() < kFarShare * extreme.array()).all();
     if (!far || !truth.known(k) || truth.clipped_axes(k) != 0 || reading[k].norm() < kTurning_rad_s) continue;
-    errors.push_back(kError(input.truth->imus.front().rate_rad_s[k], reading[k]));
+    errors.push_back(kError(scored.truth().imus.front().rate_rad_s[k], reading[k]));
   }
   return quantile_of(errors, 0.01 * kPercent, value);
 }
 
 /// Variances of the reference's axes, from the middle half of its differences to the free gyro (normal).
-Eigen::Vector3d reference_variance(const ScoringInput& input, const ClippingTruth& truth) {
-  const auto& reading = input.sensors->imus.front().gyro_rad_s;
+Eigen::Vector3d reference_variance(const ScoredEstimate& scored, const ClippingTruth& truth) {
+  const auto& reading = scored.sensors().imus.front().gyro_rad_s;
   Eigen::Vector3d variance = Eigen::Vector3d::Zero();
   for (int j = 0; j < 3; ++j) {
     std::vector<double> sizes;
     for (std::size_t k = 0; k < reading.size(); ++k) {
       if (truth.known(k) && truth.clipped_axes(k) == 0 && reading[k].norm() >= kTurning_rad_s)
-        sizes.push_back(std::abs(input.truth->imus.front().rate_rad_s[k][j] - reading[k][j]));
+        sizes.push_back(std::abs(scored.truth().imus.front().rate_rad_s[k][j] - reading[k][j]));
     }
     const double sigma = sizes.empty() ? 0.0 : 1.4826 * quantile(sizes, 0.5);
     variance[j] = sigma * sigma;
@@ -85,32 +84,30 @@ Eigen::Vector3d reference_variance(const ScoringInput& input, const ClippingTrut
 }
 
 /// With the reference's own error counted, unlike rate_coverage_3sigma.
-bool coverage(const Estimate& estimate, const ScoringInput& input, double& value) {
-  const ClippingTruth truth(*input.sensors, *input.truth);
+bool coverage(const ScoredEstimate& scored, double& value) {
+  const ClippingTruth& truth = clipping_truth(scored);
   if (!truth.is_reference()) return false;
-  const Eigen::Vector3d own = reference_variance(input, truth);
+  const Eigen::Vector3d own = reference_variance(scored, truth);
   double axes = 0.0, within = 0.0;
-  for (const RateState& rate : estimate.rates) {
-    const auto sample = truth.at(rate.time_ns);
-    for (int j = 0; sample && j < 3; ++j) {
-      if ((sample->clipped_axes & (1u << j)) == 0) continue;
-      const double error = rate.w_WI_I_rad_s[j] - sample->rate_rad_s[j];
+  for (const PairedRate& pair : paired_rates(scored)) {
+    for (int j = 0; j < 3; ++j) {
+      if ((pair.clipped_axes() & (1u << j)) == 0) continue;
+      const double error = pair.error_rad_s()[j];
       axes += 1.0;
-      within += error * error <= 9.0 * (rate.covariance_rad2_s2(j, j) + own[j]) ? 1.0 : 0.0;
+      within += error * error <= 9.0 * (pair.estimate->covariance_rad2_s2(j, j) + own[j]) ? 1.0 : 0.0;
     }
   }
   value = within / axes;
   return axes > 0.0;
 }
 
-bool called_measured(const Estimate& estimate, const ScoringInput& input, double& value) {
-  const ClippingTruth truth(*input.sensors, *input.truth);
-  if (!truth.is_reference()) return false;
+bool called_measured(const ScoredEstimate& scored, double& value) {
+  if (!clipping_truth(scored).is_reference()) return false;
   double axes = 0.0, missed = 0.0;
-  for (const RateState& rate : estimate.rates) {
-    const auto sample = truth.at(rate.time_ns);
-    for (unsigned j = 0; sample && j < 3; ++j) {
-      if ((sample->clipped_axes & (1u << j)) == 0) continue;
+  for (const PairedRate& pair : paired_rates(scored)) {
+    const RateState& rate = *pair.estimate;
+    for (unsigned j = 0; j < 3; ++j) {
+      if ((pair.clipped_axes() & (1u << j)) == 0) continue;
       axes += 1.0;
       // a sample that no axis of which was found at its rail may yet be doubted as a whole
       const bool doubted = rate.clipped_axes == 0 && rate.source != RateSource::measured;
@@ -121,16 +118,16 @@ bool called_measured(const Estimate& estimate, const ScoringInput& input, double
   return axes > 0.0;
 }
 
-bool clipped_samples(const Estimate&, const ScoringInput& input, double& value) {
-  const ClippingTruth truth(*input.sensors, *input.truth);
+bool clipped_samples(const ScoredEstimate& scored, double& value) {
+  const ClippingTruth& truth = clipping_truth(scored);
   if (!truth.is_reference()) return false;
   value = 0.0;
   for (std::size_t k = 0; k < truth.size(); ++k) value += truth.clipped_axes(k) != 0 ? 1.0 : 0.0;
   return true;
 }
 
-bool unknown_samples(const Estimate&, const ScoringInput& input, double& value) {
-  const ClippingTruth truth(*input.sensors, *input.truth);
+bool unknown_samples(const ScoredEstimate& scored, double& value) {
+  const ClippingTruth& truth = clipping_truth(scored);
   if (!truth.is_reference()) return false;
   value = static_cast<double>(truth.size() - truth.known_samples());
   return true;

@@ -6,10 +6,9 @@
 #include <limits>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/scoring/clipping.hpp"
+#include "scenarios/scoring/beside_truth.hpp"
 #include "scenarios/scoring/families.hpp"
 #include "scenarios/scoring/registered_sweeps.hpp"
-#include "scenarios/scoring/truth_track.hpp"
 
 namespace tumble::scenarios {
 
@@ -32,10 +31,6 @@ std::vector<Metric> all_metrics() {
   return all;
 }
 
-void require_complete(const ScoringInput& input) {
-  if (input.sensors == nullptr || input.truth == nullptr) throw BadInput("scoring needs the sensors and the truth");
-}
-
 // whether the states reach over the recording without a long hole
 template <typename State>
 bool reaches(const std::vector<State>& states, std::int64_t end_ns) {
@@ -48,65 +43,65 @@ bool reaches(const std::vector<State>& states, std::int64_t end_ns) {
   return !states.empty() && static_cast<double>(end_ns - previous) <= hole_max;
 }
 
-bool rates_hold(const Estimate& estimate, const ScoringInput& input) {
-  const ClippingTruth truth(*input.sensors, *input.truth);
-  std::size_t answered = 0;
-  for (const RateState& rate : estimate.rates) {
+bool rates_hold(const ScoredEstimate& scored) {
+  const std::vector<PairedRate>& pairs = paired_rates(scored);
+  for (const RateState& rate : scored.estimate().rates) {
     if (!rate.w_WI_I_rad_s.allFinite() || !rate.covariance_rad2_s2.allFinite()) return false;
-    if (truth.at(rate.time_ns)) ++answered;
   }
-  return static_cast<double>(answered) >= kAnsweredMin * static_cast<double>(truth.known_samples());
+  const auto answered =
+      std::count_if(pairs.begin(), pairs.end(), [](const PairedRate& pair) { return pair.truth.has_value(); });
+  return static_cast<double>(answered) >= kAnsweredMin * static_cast<double>(clipping_truth(scored).known_samples());
 }
 
-bool attitudes_hold(const Estimate& estimate, const ScoringInput& input) {
-  const TruthTrack truth(*input.truth, estimate.frame);
-  for (const AttitudeState& attitude : estimate.attitudes) {
+bool attitudes_hold(const ScoredEstimate& scored) {
+  const TruthTrack& truth = truth_track(scored);
+  for (const AttitudeState& attitude : scored.estimate().attitudes) {
     if (!attitude.q_WA.coeffs().allFinite()) return false;
   }
-  return reaches(estimate.attitudes, truth.last_ns());
+  return reaches(scored.estimate().attitudes, truth.last_ns());
 }
 
 /// No robot that rolls or tumbles comes so far from where it began: an estimate with one such pose is wrong.
 constexpr double kFarthest_m = 1e7;
 
-bool poses_hold(const Estimate& estimate, const TruthTrack& truth) {
-  for (const PoseState& pose : estimate.poses) {
+bool poses_hold(const ScoredEstimate& scored) {
+  for (const PoseState& pose : scored.estimate().poses) {
     if (!pose.p_WA_m.allFinite() || !pose.q_WA.coeffs().allFinite()) return false;
     if (pose.p_WA_m.cwiseAbs().maxCoeff() > kFarthest_m) return false;
   }
-  const PairedTrack track = pair_poses(estimate, truth);
+  const PairedTrack& track = paired_track(scored);
   if (track.poses.empty()) return false;
   const PairedPose& end = track.poses.back();
   const double path_m = end.path_m - track.poses.front().path_m;
   return (end.estimate.p_WA_m - end.truth.p_WA_m).norm() <= std::max(path_m, kEndErrorFloorM);
 }
 
-bool poses_reach_and_hold(const Estimate& estimate, const ScoringInput& input) {
-  const TruthTrack truth(*input.truth, estimate.frame);
-  return reaches(estimate.poses, truth.last_ns()) && poses_hold(estimate, truth);
+bool poses_reach_and_hold(const ScoredEstimate& scored) {
+  return reaches(scored.estimate().poses, truth_track(scored).last_ns()) && poses_hold(scored);
 }
 
 // a run long enough for the end error must have sweeps enough for it; a trajectory without any (somebody else's) is
 // judged by its poses alone
-bool sweeps_hold(const Estimate& estimate, const ScoringInput& input) {
+bool sweeps_hold(const ScoredEstimate& scored) {
+  const Estimate& estimate = scored.estimate();
   for (const auto& sweep : estimate.sweeps) {
     if (!sweep.pose.p_WA_m.allFinite() || !sweep.pose.q_WA.coeffs().allFinite()) return false;
   }
-  if (estimate.sweeps.empty() || input.sensors->lidars.empty()) return true;
-  const std::size_t given = input.sensors->lidars.front().sweep_start_ns.size();
+  if (estimate.sweeps.empty() || scored.sensors().lidars.empty()) return true;
+  const std::size_t given = scored.sensors().lidars.front().sweep_start_ns.size();
   return given <= kStartSweep || registered_sweeps(estimate).size() >= kStartSweep;
 }
 
-bool holds(Kind kind, const Estimate& estimate, const ScoringInput& input) {
+bool holds(Kind kind, const ScoredEstimate& scored) {
   switch (kind) {
     case Kind::rate:
-      return rates_hold(estimate, input);
+      return rates_hold(scored);
     case Kind::attitude:
-      return attitudes_hold(estimate, input);
+      return attitudes_hold(scored);
     case Kind::position:
-      return poses_reach_and_hold(estimate, input);
+      return poses_reach_and_hold(scored);
     case Kind::slam:
-      return poses_reach_and_hold(estimate, input) && sweeps_hold(estimate, input);
+      return poses_reach_and_hold(scored) && sweeps_hold(scored);
   }
   return false;
 }
@@ -125,24 +120,29 @@ std::span<const Metric> metrics() {
   return all;
 }
 
-std::vector<Score> score(Kind kind, const Estimate& estimate, const ScoringInput& input) {
-  require_complete(input);
+std::vector<Score> score(Kind kind, const ScoredEstimate& scored) {
   std::vector<Score> scores;
   for (const Metric& metric : metrics()) {
     double value = 0.0;
-    if (metric.kind == kind && metric.compute(estimate, input, value)) scores.push_back({metric.info.name, value});
+    if (metric.kind == kind && metric.compute(scored, value)) scores.push_back({metric.info.name, value});
   }
   return scores;
 }
 
-OutcomeStatus verdict(Kind kind, const Estimate& estimate, const ScoringInput& input) {
-  require_complete(input);
-  return holds(kind, estimate, input) ? OutcomeStatus::ok : OutcomeStatus::diverged;
+std::vector<Score> score(Kind kind, const Estimate& estimate, const ScoringInput& input) {
+  return score(kind, ScoredEstimate(estimate, input));
 }
 
-bool trajectory_holds(const Estimate& estimate, const ScoringInput& input) {
-  require_complete(input);
-  return poses_hold(estimate, TruthTrack(*input.truth, estimate.frame));
+OutcomeStatus verdict(Kind kind, const ScoredEstimate& scored) {
+  return holds(kind, scored) ? OutcomeStatus::ok : OutcomeStatus::diverged;
+}
+
+OutcomeStatus verdict(Kind kind, const Estimate& estimate, const ScoringInput& input) {
+  return verdict(kind, ScoredEstimate(estimate, input));
+}
+
+bool trajectory_holds(const ScoredEstimate& scored) {
+  return poses_hold(scored);
 }
 
 }  // namespace tumble::scenarios

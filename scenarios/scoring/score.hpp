@@ -8,8 +8,7 @@
 #include "scenarios/methods/method.hpp"
 #include "scenarios/scoring/metric.hpp"
 #include "scenarios/scoring/outcome_status.hpp"
-#include "sim/lidar/surface.hpp"
-#include "sim/recording.hpp"
+#include "scenarios/scoring/scored_estimate.hpp"
 
 namespace tumble::scenarios {
 
@@ -19,33 +18,29 @@ struct Score {
   double value;
 };
 
-/// What scoring needs of a recording. `surface` may be null: map scores are left out then.
-struct ScoringInput {
-  const sim::Sensors* sensors = nullptr;
-  const sim::Truth* truth = nullptr;
-  const sim::Surface* surface = nullptr;
-};
-
 /// A metric, self-describing; one line of registration each, in its family's file.
 struct Metric {
   MetricInfo info;
   Kind kind;
   /// False when the estimate or recording has nothing to score (no clipped sample, no map).
-  bool (*compute)(const Estimate& estimate, const ScoringInput& input, double& value);
+  bool (*compute)(const ScoredEstimate& scored, double& value);
 };
 
 std::span<const Metric> metrics();
 
-/// All metrics of a kind that apply, in order of registration.
+/// All metrics of a kind that apply, in order of registration. Who asks for the verdict too makes one ScoredEstimate
+/// for both.
+std::vector<Score> score(Kind kind, const ScoredEstimate& scored);
 std::vector<Score> score(Kind kind, const Estimate& estimate, const ScoringInput& input);
 
 /// `ok`, or `diverged`: an estimate that is not finite, that leaves more than a fifth of the recording in one piece
 /// (rates: more than a tenth of the samples) unanswered, that ends farther from the truth than the path is long (1 m at
 /// least), or that reports sweeps and registers fewer than six.
+OutcomeStatus verdict(Kind kind, const ScoredEstimate& scored);
 OutcomeStatus verdict(Kind kind, const Estimate& estimate, const ScoringInput& input);
 
 /// Whether a trajectory is finite and ends nearer to the truth than the path is long, over the stretch that it answers,
 /// however short that is: what `verdict` asks of poses but for the holes.
-bool trajectory_holds(const Estimate& estimate, const ScoringInput& input);
+bool trajectory_holds(const ScoredEstimate& scored);
 
 }  // namespace tumble::scenarios

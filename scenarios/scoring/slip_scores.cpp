@@ -5,8 +5,8 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/upper_median.hpp"
+#include "scenarios/scoring/beside_truth.hpp"
 #include "scenarios/scoring/families.hpp"
-#include "scenarios/scoring/truth_track.hpp"
 
 /// Events of slip and slide: what a position method claims against the contact labels of the truth.
 ///
@@ -115,23 +115,24 @@ struct Comparison {
   std::vector<Span> right;  ///< claimed ones that are right
 };
 
-std::optional<Comparison> compare(const Estimate& estimate, const ScoringInput& input) {
+std::optional<Comparison> compare(const ScoredEstimate& scored) {
+  const sim::Truth& truth = scored.truth();
   // a reference knows poses alone
-  if (estimate.contacts.empty() || input.truth->label.empty()) return std::nullopt;
-  const std::vector<Span> all = true_spans(*input.truth);
+  if (scored.estimate().contacts.empty() || truth.label.empty()) return std::nullopt;
+  const std::vector<Span> all = true_spans(truth);
   Comparison out;
   for (const Span& span : all) {
-    if (counts(span, *input.truth)) out.events.push_back(span);
+    if (counts(span, truth)) out.events.push_back(span);
   }
-  out.claimed = claimed_spans(estimate);
+  out.claimed = claimed_spans(scored.estimate());
   for (const Span& span : out.claimed) {
     if (half_covered(span, all, kMargin_ns)) out.right.push_back(span);
   }
   return out;
 }
 
-bool precision(const Estimate& estimate, const ScoringInput& input, double& value) {
-  const auto found = compare(estimate, input);
+bool precision(const ScoredEstimate& scored, double& value) {
+  const auto& found = scored.once(compare);
   if (!found) return false;
   value = found->claimed.empty()
               ? 1.0
@@ -139,8 +140,8 @@ bool precision(const Estimate& estimate, const ScoringInput& input, double& valu
   return true;
 }
 
-bool recall(const Estimate& estimate, const ScoringInput& input, double& value) {
-  const auto found = compare(estimate, input);
+bool recall(const ScoredEstimate& scored, double& value) {
+  const auto& found = scored.once(compare);
   if (!found || found->events.empty()) return false;
   const auto count = std::count_if(found->events.begin(), found->events.end(),
                                    [&](const Span& event) { return half_covered(event, found->right, 0); });
@@ -148,8 +149,8 @@ bool recall(const Estimate& estimate, const ScoringInput& input, double& value) 
   return true;
 }
 
-bool delay(const Estimate& estimate, const ScoringInput& input, double& value) {
-  const auto found = compare(estimate, input);
+bool delay(const ScoredEstimate& scored, double& value) {
+  const auto& found = scored.once(compare);
   if (!found) return false;
   std::vector<double> delays_s;
   for (const Span& event : found->events) {
@@ -169,10 +170,11 @@ struct Passed {
 };
 
 /// The true events that count and that the estimate covers; none when it states no covariance.
-std::vector<Passed> passed_events(const Estimate& estimate, const ScoringInput& input) {
+std::vector<Passed> passed_events(const ScoredEstimate& scored) {
+  const sim::Truth& truth = scored.truth();
   std::vector<Passed> out;
-  if (input.truth->label.empty()) return out;  // a reference knows poses alone
-  const std::vector<PairedPose> poses = pair_poses(estimate, TruthTrack(*input.truth, estimate.frame)).poses;
+  if (truth.label.empty()) return out;  // a reference knows poses alone
+  const std::vector<PairedPose>& poses = paired_track(scored).poses;
   const auto pose_at = [&](std::int64_t time_ns) {
     return std::lower_bound(poses.begin(), poses.end(), time_ns,
                             [](const PairedPose& one, std::int64_t at) { return one.time_ns < at; });
@@ -183,8 +185,8 @@ std::vector<Passed> passed_events(const Estimate& estimate, const ScoringInput& 
   const auto error_m = [](const PairedPose& pose) -> Eigen::Vector2d {
     return (pose.estimate.p_WA_m - pose.truth.p_WA_m).head<2>();
   };
-  for (const Span& span : true_spans(*input.truth)) {
-    if (!counts(span, *input.truth)) continue;
+  for (const Span& span : true_spans(truth)) {
+    if (!counts(span, truth)) continue;
     const auto before = pose_at(span.begin_ns - kMargin_ns), after = pose_at(span.end_ns + kMargin_ns);
     if (after == poses.end() || !(variance_m2(*after) > 0.0)) continue;
     Passed passed;
@@ -195,8 +197,8 @@ std::vector<Passed> passed_events(const Estimate& estimate, const ScoringInput& 
   return out;
 }
 
-bool flag_recall(const Estimate& estimate, const ScoringInput& input, double& value) {
-  const std::vector<Passed> events = passed_events(estimate, input);
+bool flag_recall(const ScoredEstimate& scored, double& value) {
+  const std::vector<Passed>& events = scored.once(passed_events);
   const auto lost = std::count_if(events.begin(), events.end(), [](const Passed& one) { return one.lost; });
   if (lost == 0) return false;
   const auto both =
@@ -205,8 +207,8 @@ bool flag_recall(const Estimate& estimate, const ScoringInput& input, double& va
   return true;
 }
 
-bool flagged_share(const Estimate& estimate, const ScoringInput& input, double& value) {
-  const std::vector<Passed> events = passed_events(estimate, input);
+bool flagged_share(const ScoredEstimate& scored, double& value) {
+  const std::vector<Passed>& events = scored.once(passed_events);
   if (events.empty()) return false;
   const auto flagged = std::count_if(events.begin(), events.end(), [](const Passed& one) { return one.flagged; });
   value = static_cast<double>(flagged) / static_cast<double>(events.size());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/scoring/beside_truth.hpp"
 #include "scenarios/scoring/families.hpp"
-#include "scenarios/scoring/truth_track.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble::scenarios {
@@ -18,10 +18,11 @@ struct Jumps {
 
 // at each border: how much more the estimate's velocity changes than the true one, from the last pose inside one sweep
 // to the first pose inside the next; rates are those of the first and last step inside the sweeps
-Jumps border_jumps(const Estimate& estimate, const ScoringInput& input) {
+Jumps border_jumps(const ScoredEstimate& scored) {
+  const Estimate& estimate = scored.estimate();
   Jumps jumps;
-  const TruthTrack truth(*input.truth, estimate.frame);
-  const Alignment alignment = pair_poses(estimate, truth).alignment;
+  const TruthTrack& truth = truth_track(scored);
+  const Alignment& alignment = paired_track(scored).alignment;
   for (std::size_t k = 1; k < estimate.sweeps.size(); ++k) {
     const auto& before = estimate.sweeps[k - 1].trajectory;
     const auto& after = estimate.sweeps[k].trajectory;
@@ -48,15 +49,15 @@ Jumps border_jumps(const Estimate& estimate, const ScoringInput& input) {
   return jumps;
 }
 
-bool jump_m_s(const Estimate& estimate, const ScoringInput& input, double& value) {
-  const Jumps jumps = border_jumps(estimate, input);
+bool jump_m_s(const ScoredEstimate& scored, double& value) {
+  const Jumps& jumps = scored.once(border_jumps);
   if (jumps.velocity_m_s.empty()) return false;
   value = rms(jumps.velocity_m_s);
   return true;
 }
 
-bool jump_rad_s(const Estimate& estimate, const ScoringInput& input, double& value) {
-  const Jumps jumps = border_jumps(estimate, input);
+bool jump_rad_s(const ScoredEstimate& scored, double& value) {
+  const Jumps& jumps = scored.once(border_jumps);
   if (jumps.rate_rad_s.empty()) return false;
   value = rms(jumps.rate_rad_s);
   return true;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
 
+#include "scenarios/scoring/beside_truth.hpp"
 #include "scenarios/scoring/families.hpp"
-#include "scenarios/scoring/truth_track.hpp"
 
 namespace tumble::scenarios {
 
@@ -12,8 +12,8 @@ constexpr double kSegmentM = 1.0;
 // segments begin at every such step of the path, so that standing still does not count many times
 constexpr double kSegmentStepM = 0.05;
 
-bool ate(const Estimate& estimate, const ScoringInput& input, double& value) {
-  const PairedTrack track = pair_poses(estimate, TruthTrack(*input.truth, estimate.frame));
+bool ate(const ScoredEstimate& scored, double& value) {
+  const PairedTrack& track = paired_track(scored);
   if (track.poses.empty()) return false;
   std::vector<double> errors;
   for (const PairedPose& pose : track.poses) errors.push_back((pose.estimate.p_WA_m - pose.truth.p_WA_m).norm());
@@ -21,8 +21,8 @@ bool ate(const Estimate& estimate, const ScoringInput& input, double& value) {
   return true;
 }
 
-bool ate_rotation(const Estimate& estimate, const ScoringInput& input, double& value) {
-  const PairedTrack track = pair_poses(estimate, TruthTrack(*input.truth, estimate.frame));
+bool ate_rotation(const ScoredEstimate& scored, double& value) {
+  const PairedTrack& track = paired_track(scored);
   if (track.poses.empty()) return false;
   std::vector<double> errors;
   for (const PairedPose& pose : track.poses)
@@ -42,8 +42,8 @@ Eigen::Isometry3d relative(const PoseState& a, const PoseState& b) {
   return Eigen::Translation3d(q_Wa_inverse * (b.p_WA_m - a.p_WA_m)) * (q_Wa_inverse * b.q_WA);
 }
 
-SegmentErrors segment_errors(const Estimate& estimate, const ScoringInput& input) {
-  const PairedTrack track = pair_poses(estimate, TruthTrack(*input.truth, estimate.frame));
+SegmentErrors segment_errors(const ScoredEstimate& scored) {
+  const PairedTrack& track = paired_track(scored);
   SegmentErrors errors;
   double next_start_m = -1.0;
   std::size_t j = 0;
@@ -61,15 +61,15 @@ SegmentErrors segment_errors(const Estimate& estimate, const ScoringInput& input
   return errors;
 }
 
-bool rpe_m(const Estimate& estimate, const ScoringInput& input, double& value) {
-  const SegmentErrors errors = segment_errors(estimate, input);
+bool rpe_m(const ScoredEstimate& scored, double& value) {
+  const SegmentErrors& errors = scored.once(segment_errors);
   if (errors.translation_m.empty()) return false;
   value = rms(errors.translation_m);
   return true;
 }
 
-bool rpe_rad(const Estimate& estimate, const ScoringInput& input, double& value) {
-  const SegmentErrors errors = segment_errors(estimate, input);
+bool rpe_rad(const ScoredEstimate& scored, double& value) {
+  const SegmentErrors& errors = scored.once(segment_errors);
   if (errors.rotation_rad.empty()) return false;
   value = rms(errors.rotation_rad);
   return true;

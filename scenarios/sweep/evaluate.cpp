@@ -101,11 +101,11 @@ void assess(const Method& method, const SimulatedDraw& draw, const sim::Surface*
   outcome.estimate_digest = digest(estimate);
   if (outcome.status != OutcomeStatus::ok || !draw.has_truth) return;
   try {
-    const ScoringInput input{&draw.recording.sensors, &draw.recording.truth, surface};
-    outcome.status = verdict(method.info.kind, estimate, input);
+    const ScoredEstimate scored(estimate, {&draw.recording.sensors, &draw.recording.truth, surface});
+    outcome.status = verdict(method.info.kind, scored);
     if (outcome.status == OutcomeStatus::diverged)
       outcome.message = "the estimate left the truth, the recording or the numbers";
-    for (Score& score : score(method.info.kind, estimate, input)) outcome.scores.push_back(std::move(score));
+    for (Score& score : score(method.info.kind, scored)) outcome.scores.push_back(std::move(score));
   } catch (const std::bad_alloc&) {
     outcome.status = OutcomeStatus::killed;
     outcome.message = "no memory was left to score it";

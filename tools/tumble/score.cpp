@@ -112,10 +112,10 @@ std::string cover_text(const Standing& standing) {
 
 /// A trajectory of somebody else is judged over what it answers, and how much that is is said: "partial" for one that
 /// holds there, but begins late or ends early.
-std::string judge_trajectory(const Session& session, const Standing& standing, const scenarios::Estimate& estimate,
-                             const scenarios::ScoringInput& input, scenarios::Outcome& outcome) {
+std::string judge_trajectory(const Session& session, const Standing& standing, const scenarios::ScoredEstimate& scored,
+                             scenarios::Outcome& outcome) {
   std::string status = to_string(outcome.status);
-  if (outcome.status == scenarios::OutcomeStatus::diverged && scenarios::trajectory_holds(estimate, input)) {
+  if (outcome.status == scenarios::OutcomeStatus::diverged && scenarios::trajectory_holds(scored)) {
     status = "partial";
     outcome.status = scenarios::OutcomeStatus::ok;
     outcome.message = "covers " + cover_text(standing);
@@ -189,15 +189,14 @@ int score_estimate(const Session& session, const Options& options) {
     standing = standing_of(estimate, truth);
     require_compared(options, *standing);
   }
-  const scenarios::ScoringInput input{&sensors, &truth, surface ? &*surface : nullptr};
+  const scenarios::ScoredEstimate scored(estimate, {&sensors, &truth, surface ? &*surface : nullptr});
   outcome.scenario = info.scenario;
   outcome.seed = info.seed;
-  outcome.status =
-      estimate.status.ok() ? scenarios::verdict(outcome.kind, estimate, input) : scenarios::OutcomeStatus::failed;
+  outcome.status = estimate.status.ok() ? scenarios::verdict(outcome.kind, scored) : scenarios::OutcomeStatus::failed;
   outcome.message = estimate.status.ok() ? "" : estimate.status.message();
-  outcome.scores = scenarios::score(outcome.kind, estimate, input);
+  outcome.scores = scenarios::score(outcome.kind, scored);
   std::string status = to_string(outcome.status);
-  if (standing) status = judge_trajectory(session, *standing, estimate, input, outcome);
+  if (standing) status = judge_trajectory(session, *standing, scored, outcome);
 
   const std::vector<scenarios::Outcome> outcomes = {outcome};
   nlohmann::json document = {{"kind", to_string(outcome.kind)},

@@ -68,6 +68,16 @@ TEST(MapScores, TheToleranceIsAQuarterMetre) {
   EXPECT_EQ(values.at("map_failed"), 1.0);
 }
 
+TEST(MapScores, TheFineToleranceIsTenCentimetres) {
+  Estimate estimate = perfect_estimate(rig());
+  for (const float height_m : {0.099f, 0.101f, 0.249f}) {
+    estimate.map = floor_points(height_m);
+    const auto values = scores(Kind::slam, estimate, rig(), &surface());
+    EXPECT_EQ(values.at("map_overlap_0_10"), height_m < 0.1f ? 1.0 : 0.0) << height_m;
+    EXPECT_EQ(values.at("map_overlap"), 1.0) << height_m;
+  }
+}
+
 // the overlaps are 1 for both
 TEST(MapScores, TheMeanErrorSeesWhatTheTolerancesDoNot) {
   Estimate estimate = perfect_estimate(rig());
@@ -108,6 +118,7 @@ TEST(MapScores, PointsThatAreNotNumbersLieOffTheSurface) {
   estimate.map.resize(100);
   for (std::size_t k = 0; k < 50; ++k) estimate.map[k].position_W_m.x() = std::nanf("");
   EXPECT_NEAR(scores(Kind::slam, estimate, rig(), &surface()).at("map_overlap"), 0.5, 1e-12);
+  EXPECT_EQ(scores(Kind::slam, estimate, rig(), &surface()).at("map_error_mean_m"), 0.5) << "no mean of a part";
 }
 
 TEST(MapScores, CoverageIsTheShareOfWhatWasSeen) {
