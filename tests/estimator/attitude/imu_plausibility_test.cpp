@@ -210,11 +210,12 @@ TEST(ImuPlausibility, WherePushesAreMostOfTheTurningNothingIsSaidOfItsSense) {
   const ImuPlausibility plausibility({});
   const auto verdict_at = [&](double by_force_rad2, double correlation) {
     ImuPlausibility::State state;
-    state.by_force_rad2 = by_force_rad2;
-    state.by_gyro_rad2 = 1.0;
-    const double unexplained = by_force_rad2 + 1.0 - 2.0 * correlation * std::sqrt(by_force_rad2);
+    constexpr double kTurned_rad2 = 10.0;  // by the gyro, well beyond what little is left out
+    state.by_force_rad2 = kTurned_rad2 * by_force_rad2;
+    state.by_gyro_rad2 = kTurned_rad2;
+    const double unexplained = kTurned_rad2 * (by_force_rad2 + 1.0 - 2.0 * correlation * std::sqrt(by_force_rad2));
     std::fill(state.unexplained_rad2.begin(), state.unexplained_rad2.end(), unexplained);
-    EXPECT_NEAR(plausibility.turning_agreement(state), correlation, 1e-12);
+    EXPECT_NEAR(plausibility.turning_agreement(state), correlation, 1e-9);
     return plausibility.verdict(state).ok();
   };
   EXPECT_TRUE(verdict_at(1.0, 0.4));

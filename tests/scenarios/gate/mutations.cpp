@@ -135,7 +135,6 @@ std::span<const Mutation> mutations() {
       Mutation{"lever_arm_sign_given_live", "hill", "rate/tumble_lag", flip_lever_arms, nullptr},
       Mutation{"covariance_halved_live", "hill", "rate/tumble_lag", nullptr, halve_covariances},
       Mutation{"covariance_doubled_live", "hill", "rate/tumble_lag", nullptr, double_covariances},
-      Mutation{"shift_1_ms_slam", "hill", "slam/tumble", nullptr, shift_by_1_ms},
       Mutation{"shift_1_ms_position", "bump", "position/tumble", nullptr, shift_by_1_ms},
       Mutation{"shift_1_ms_position_live", "bump", "position/tumble_live", nullptr, shift_by_1_ms},
       Mutation{"covariance_halved_position_live", "bump", "position/tumble_live", nullptr, halve_covariances},
