@@ -6,8 +6,8 @@
 #include <string>
 
 #include "scenarios/methods/frozen_axes.hpp"
+#include "tumble/attitude/detail/rest_gravity.hpp"
 #include "tumble/attitude/imu_plausibility.hpp"
-#include "tumble/attitude/rest_gravity.hpp"
 #include "tumble/odometry/imu_sheet.hpp"
 
 namespace tumble::scenarios {

@@ -33,7 +33,7 @@ _HEADERS = {
     "cstdint": "int8_t int16_t int32_t int64_t uint8_t uint16_t uint32_t uint64_t uintmax_t",
     "cstdio": "fflush fgets fprintf fputs fread freopen fwrite printf rename setvbuf snprintf",
     "cstdlib": "_Exit abort atof atoi exit free getenv llabs malloc realloc strtod strtol strtoull system",
-    "cstring": "memcmp memcpy strerror strlen",
+    "cstring": "memcmp memcpy strcmp strerror strlen",
     "ctime": "clock clock_t strftime time time_t tm",
     "deque": "deque",
     "exception": "exception_ptr rethrow_exception",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/attitude/rest_gravity.hpp"
+#include "tumble/attitude/detail/rest_gravity.hpp"
 
 #include <gtest/gtest.h>
 
