@@ -14,6 +14,7 @@
 #include <exception>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -86,7 +87,10 @@ void judge(const scenarios::Method& method, const scenarios::SimulatedDraw& draw
   if (harm == kPeople) {
     tumble::bench::let_people_walk(draw.recording.truth, given.recording.sensors);
   } else {
-    wrong_inputs().at(harm)(given.recording.sensors);
+    const auto found = wrong_inputs().find(harm);
+    if (found == wrong_inputs().end())
+      throw std::invalid_argument("no harm '" + harm + "'; without words all are listed");
+    found->second(given.recording.sensors);
   }
   scenarios::Outcome outcome;
   const scenarios::Estimate estimate = scenarios::run_method(method, given, outcome);
