@@ -2,6 +2,7 @@
 #pragma once
 
 #include "../common/imu_members.hpp"
+#include "tumble/angular_velocity/detail/hold_watch.hpp"
 #include "tumble/angular_velocity/detail/rail_watch.hpp"
 #include "tumble/angular_velocity/rest_detector.hpp"
 
@@ -24,6 +25,28 @@ void members(Self& s, Visitor& visit) {
   visit("rest.last_reading_ns", s.last_reading_ns);
   visit("rest.last_ns", s.last_ns);
   visit("rest.started", s.started);
+}
+
+template <StateOf<HeldReading> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("held.repeats", s.repeats);
+  visit("held.age_samples", s.age_samples);
+  visit("held.period_samples", s.period_samples);
+  visit("held.change", s.change);
+}
+
+template <StateOf<HoldWatch::Memory> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("hold.reading", s.reading);
+  visit("hold.said", s.said);
+  visit("hold.moving", s.moving);
+  visit("hold.repeated", s.repeated);
+  visit("hold.now", s.now);
+}
+
+template <StateOf<HoldWatch::State> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("holds.memory", s.memory);
 }
 
 template <StateOf<Clipping> Self, class Visitor>

@@ -173,10 +173,14 @@ double RateStream::jump_before(const Knot& oldest, const State& state) const {
 
 void RateStream::append(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state) const {
   const bool changed = rails_.observe(sample, state.rails);
+  holds_.observe(sample, state.holds);
   Knot knot;
   knot.by_walls = rails_.walls().classify(sample, state.rails.known.walls);
   knot.observation = {sample, knot.by_walls, rests_.observe(sample, state.rests)};
   std::copy(auxiliary_imus.begin(), auxiliary_imus.end(), knot.observation.auxiliary_imus.begin());
+  const HeldReading& held = state.holds.of(Triad::gyro);
+  knot.repeats = held.repeats && !knot.observation.at_rest;
+  if (!knot.observation.at_rest) knot.stale_rad_s = held.stale();
   knot.estimate.knot.rate_rad_s = sample.angular_velocity_rad_s;
   // until a step of the window says more
   knot.covariance_rad2_s2 = std::pow(params_.model.rate_max_rad_s, 2) * Eigen::Matrix3d::Identity();
@@ -186,7 +190,7 @@ void RateStream::append(const ImuSample& sample, std::span<const AuxiliaryReadin
   if (knot.by_walls.void_gyro == 0) state.least.add(sample.angular_velocity_rad_s);
   if (changed) classify_again(state);
   // a sample is judged by those beside it too
-  judge(changed ? 0 : state.window.size() - std::min<std::size_t>(2, state.window.size()), state);
+  judge(changed ? 0 : reading_before(state.window.size() - 1, state.window).value_or(0), state);
   state.extremes[0] = state.extremes[0].cwiseMin(sample.angular_velocity_rad_s);
   state.extremes[1] = state.extremes[1].cwiseMax(sample.angular_velocity_rad_s);
   doubt_possible_rails(state);
@@ -337,6 +341,7 @@ RateState RateStream::to_state(const Knot& knot, const State& state) const {
   out.time_ns = knot.observation.sample.time_ns;
   out.w_WI_I_rad_s = knot.estimate.knot.rate_rad_s;
   out.covariance_rad2_s2 = model_.reported(covariance, knot.observation, knot.estimate);
+  out.covariance_rad2_s2.diagonal() += knot.stale_rad_s.cwiseAbs2();
   out.clipped_axes = knot.observation.clipping.gyro | knot.observation.clipping.void_gyro;
   out.source = rate_source(knot.observation, knot.estimate, covariance, params_.recovered_sigma_rad_s);
   return out;
@@ -375,6 +380,7 @@ bool RateStream::equal(const State& a, const State& b) {
            x.observation.clipping == y.observation.clipping && x.by_walls == y.by_walls &&
            x.observation.at_rest == y.observation.at_rest && x.observation.partial == y.observation.partial &&
            x.observation.lone == y.observation.lone && x.observation.doubted == y.observation.doubted &&
+           x.repeats == y.repeats && x.stale_rad_s == y.stale_rad_s &&
            x.observation.lost_rad_s == y.observation.lost_rad_s &&
            x.observation.lost_sigma_rad_s == y.observation.lost_sigma_rad_s && e.knot == f.knot &&
            e.flight_weight == f.flight_weight && e.contact_m_s2 == f.contact_m_s2 &&
@@ -384,7 +390,7 @@ bool RateStream::equal(const State& a, const State& b) {
                       y.observation.auxiliary_imus.begin(),
                       [](const AuxiliaryReading& r, const AuxiliaryReading& s) { return r.same(s); });
   };
-  return RailWatch::equal(a.rails, b.rails) && a.rests == b.rests &&
+  return RailWatch::equal(a.rails, b.rails) && a.rests == b.rests && a.holds == b.holds &&
          std::equal(a.window.begin(), a.window.end(), b.window.begin(), b.window.end(), same) && a.rig == b.rig &&
          a.rig_covariance == b.rig_covariance && a.prior.diagonal == b.prior.diagonal &&
          a.prior.border == b.prior.border && a.prior.gradient == b.prior.gradient &&

@@ -82,12 +82,15 @@ void members(Self& s, Visitor& visit) {
   visit("knot.covariance_rad2_s2", s.covariance_rad2_s2);
   visit("knot.approach_rad_s", s.approach_rad_s);
   visit("knot.age", s.age);
+  visit("knot.repeats", s.repeats);
+  visit("knot.stale_rad_s", s.stale_rad_s);
 }
 
 template <StateOf<RateStream::State> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("rate.rails", s.rails);
   visit("rate.rests", s.rests);
+  visit("rate.holds", s.holds);
   visit("rate.window", s.window);
   visit("rate.rig", s.rig);
   visit("rate.rig_covariance", s.rig_covariance);

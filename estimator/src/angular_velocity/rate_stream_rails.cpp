@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 // rails are. A round top of n readings is (n/(n - 1))^2 <= 2.25 times as high as what its readings show; one that is
 // cut off more than kKink times, and more than so many deviations of the noise.
 constexpr double kOpen = 3.0, kKink = 4.0, kPossibleNoise = 5.0;
-constexpr std::size_t kPossibleMin = 3;
+constexpr std::ptrdiff_t kPossibleMin = 3;
 
 // Elements' rails lie within this share of each other (3 % on the wand of RepoIMU).
 constexpr double kApart = 0.05;
@@ -50,15 +50,19 @@ void RateStream::judge(std::size_t first, State& state) const {
   for (std::size_t k = first; k < state.window.size(); ++k) {
     Knot& knot = state.window[k];
     RateObservation& now = knot.observation;
-    const ImuSample* const before = k > 0 ? &state.window[k - 1].observation.sample : nullptr;
-    const ImuSample* const after = k + 1 < state.window.size() ? &state.window[k + 1].observation.sample : nullptr;
+    const Beside gyro = readings_beside(k, state);
+    const ImuSample *const before = gyro.before, *const after = gyro.after;
+    const ImuSample* const sample_before = k > 0 ? &state.window[k - 1].observation.sample : nullptr;
+    const ImuSample* const sample_after =
+        k + 1 < state.window.size() ? &state.window[k + 1].observation.sample : nullptr;
     const std::uint8_t read = now.unseen();
     Clipping by_walls = knot.by_walls;
-    if (after != nullptr) {
-      rails_.walls().add_edge(now.sample, *after, state.window[k + 1].by_walls, rails.walls, by_walls);
+    if (sample_after != nullptr) {
+      rails_.walls().add_edge(now.sample, *sample_after, state.window[k + 1].by_walls, rails.walls, by_walls);
     }
     now.clipping = clip_by_planes(planes, Triad::gyro, by_walls, before, now.sample, after);
-    now.clipping = clip_by_planes(accel_planes, Triad::accelerometer, now.clipping, before, now.sample, after);
+    now.clipping =
+        clip_by_planes(accel_planes, Triad::accelerometer, now.clipping, sample_before, now.sample, sample_after);
     now.accel_rows = accel_rows;
     mark_partial(planes, rails_.walls(), rails.walls, noise, before, now, after);
     doubt_unseen(k, state);
@@ -94,8 +98,7 @@ void RateStream::doubt_unseen(std::size_t k, State& state) const {
   RateObservation& now = state.window[k].observation;
   now.lone = 0;
   if (state.rails.known.upright) return;
-  const ImuSample* const before = k > 0 ? &state.window[k - 1].observation.sample : nullptr;
-  const ImuSample* const after = k + 1 < state.window.size() ? &state.window[k + 1].observation.sample : nullptr;
+  const auto [before, after] = readings_beside(k, state);
   doubt_unseen_rails(state.rails.known.planes_in_use(), state.least, model_.gyro_sigma_rad_s(), before, now, after);
 }
 
@@ -121,7 +124,10 @@ void RateStream::doubt_possible_rails(State& state) const {
       while (end < state.window.size() && may_clip(state.window[end].observation.sample, j, sign, state)) ++end;
       // what is left of a run that was doubted when it was whole
       const bool goes_on = k == 0 && end > k && (stood >> j & 1u) != 0;
-      if (goes_on || end >= k + kPossibleMin) doubt_run(j, k, end - 1, state);
+      const auto readings = std::count_if(state.window.begin() + static_cast<std::ptrdiff_t>(k),
+                                          state.window.begin() + static_cast<std::ptrdiff_t>(end),
+                                          [](const Knot& knot) { return !knot.repeats; });
+      if (goes_on || readings >= kPossibleMin) doubt_run(j, k, end - 1, state);
       k = std::max(end, k + 1);
     }
   }
@@ -139,8 +145,11 @@ void RateStream::doubt_run(int axis, std::size_t first, std::size_t last, State&
     lowest = std::min(lowest, size(k));
   }
   const double in = first > 0 ? state.window[first - 1].approach_rad_s[axis] : state.entry_rad_s[axis];
-  const bool left = last + 3 < state.window.size();
-  const double out = left ? std::min(size(last + 1) - size(last + 2), size(last + 2) - size(last + 3)) : 0.0;
+  const std::size_t one = reading_after(last, state.window), two = reading_after(one, state.window),
+                    three = reading_after(two, state.window);
+  const bool left = three < state.window.size();
+  const auto falls = [&](std::size_t a, std::size_t b) { return (size(a) - size(b)) / static_cast<double>(b - a); };
+  const double out = left ? std::min(falls(one, two), falls(two, three)) : 0.0;
   const double samples = static_cast<double>(last - first + 1) + (first > 0 ? 0.0 : state.entry_samples[axis]);
   const double cut = 0.25 * samples * std::max({in, out, 0.0});
   const double noise = model_.gyro_sigma_rad_s();
@@ -155,13 +164,46 @@ void RateStream::doubt_run(int axis, std::size_t first, std::size_t last, State&
   }
 }
 
-// Of the newest sample. Two steps: an impact is one, and a spin that it leaves behind is no rail.
+// The sample that first says the reading before that of sample k; none where the window does not show it.
+std::optional<std::size_t> RateStream::reading_before(std::size_t k, const std::vector<Knot>& window) {
+  while (k > 0 && window[k].repeats) --k;
+  if (k == 0) return std::nullopt;
+  --k;
+  while (k > 0 && window[k].repeats) --k;
+  return k;
+}
+
+// The sample that says the reading after that of sample k first; the window's size where there is none yet.
+std::size_t RateStream::reading_after(std::size_t k, const std::vector<Knot>& window) {
+  const std::size_t size = window.size();
+  if (k >= size) return size;
+  ++k;
+  while (k < size && window[k].repeats) ++k;
+  return k;
+}
+
+// Those of sample k by what the gyro says: a reading that is said again has the same neighbours.
+RateStream::Beside RateStream::readings_beside(std::size_t k, const State& state) {
+  const std::optional<std::size_t> before = reading_before(k, state.window);
+  const std::size_t after = reading_after(k, state.window);
+  Beside out;
+  if (before) out.before = &state.window[*before].observation.sample;
+  if (after < state.window.size()) out.after = &state.window[after].observation.sample;
+  return out;
+}
+
+// Of the newest sample. Two steps: an impact is one, and a spin that it leaves behind is no rail. Per sample of the
+// log.
 Vector3d RateStream::approach(const std::vector<Knot>& window) {
-  if (window.size() < 3) return Vector3d::Zero();
-  const auto size = [&](std::size_t back) {
-    return window[window.size() - 1 - back].observation.sample.angular_velocity_rad_s.cwiseAbs();
+  const std::optional<std::size_t> one = reading_before(window.size() - 1, window);
+  const std::optional<std::size_t> two = one ? reading_before(*one, window) : std::nullopt;
+  if (!two) return Vector3d::Zero();
+  const auto size = [&](std::size_t k) -> Vector3d {
+    return window[k].observation.sample.angular_velocity_rad_s.cwiseAbs();
   };
-  const Vector3d now = size(0) - size(1), before = size(1) - size(2);
+  const std::size_t newest = reading_after(*one, window);
+  const Vector3d now = (size(newest) - size(*one)) / static_cast<double>(newest - *one);
+  const Vector3d before = (size(*one) - size(*two)) / static_cast<double>(*one - *two);
   return now.cwiseMin(before).cwiseMax(0.0);
 }
 

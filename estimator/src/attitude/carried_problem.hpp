@@ -64,10 +64,11 @@ inline constexpr int kFreeNodes = 5;
 /// Whether an element of the gyro is not read, in a part of the node's time or in all of it.
 bool clips(const NodeReadings& readings);
 
-/// Adds one sample's readings, `t` seconds from the node: of both triads, of one; `open_rad_s`: more deviation of each
-/// element's.
-void add_reading(const ImuSample& sample, const Eigen::Matrix3d& rows, const ClipSigns& signs, double t,
-                 NodeReadings& node);
+/// Of the period of an accelerometer that may filter for all of it or read at once: deviation of a centre that lies
+/// evenly between the window's end and its middle, 1/(4 sqrt(3)).
+inline constexpr double kOpenShare = 0.144;
+
+/// Adds one triad's reading, `t` seconds from the node; `open_rad_s`: more deviation of each element's.
 void add_rate(const ImuSample& sample, const Eigen::Matrix3d& rows, const ClipSigns& signs, double t,
               const Eigen::Vector3d& open_rad_s, NodeReadings& node);
 void add_force(const ImuSample& sample, const ClipSigns& signs, double t, NodeReadings& node);

@@ -46,8 +46,6 @@ double since_s(std::span<const ImuSample> samples, std::size_t from, std::size_t
 
 constexpr double kSteady = 0.9;  // agreement of a steady clock from which on repeated readings are believed to be held
 constexpr double kSlowest = 10.0;  // steps of the log: what repeats itself longer stands still, is blind or frozen
-// Of the period: deviation of a centre that lies evenly between the window's end and its middle, 1/(4 sqrt(3)).
-constexpr double kOpenShare = 0.144;
 // Nodes: longer windows may have met the rail in a part. Measured: those of 20 ms of the pendulums did, of the wand's,
 // of 10 ms, none does that shows.
 constexpr double kLongWindow = 1.5;
@@ -252,12 +250,6 @@ void add_force(const ImuSample& sample, const ClipSigns& signs, double t, NodeRe
   node.force_n += 1.0;
   node.force_m_s2 += (sample.specific_force_m_s2 - node.force_m_s2) / node.force_n;
   node.force_t_s += (t - node.force_t_s) / node.force_n;
-}
-
-void add_reading(const ImuSample& sample, const Eigen::Matrix3d& rows, const ClipSigns& signs, double t,
-                 NodeReadings& node) {
-  add_rate(sample, rows, signs, t, Vector3d::Zero(), node);
-  add_force(sample, signs, t, node);
 }
 
 Collected collect(const CarriedSmoother::Params& params, std::span<const ImuSample> samples,

@@ -20,6 +20,8 @@ namespace {
 
 constexpr double kRowsMin = 0.1;  // determinant of the elements' rows, as in CarriedSmoother
 constexpr double kTurnMax = 0.8;  // largest step of an attitude
+// A reading that the log says again was taken at some time since the sample before: the deviation of that, samples.
+constexpr double kTaken = 0.29;
 constexpr int kFirstNodes = 100;  // but for the first, which still find their attitude
 
 System::BorderVector moved(const carried::Constants& from, const carried::Constants& to) {
@@ -117,7 +119,7 @@ void CarriedStream::restart(State& state) const {
 }
 
 Status CarriedStream::push(const ImuSample& sample, const ClippedElements& known, State& state,
-                           std::optional<RateState>& out, bool wanted) const {
+                           std::optional<RateState>& out, bool wanted, const HoldWatch::State& held) const {
   out.reset();
   if (const Status status = check_sample(sample); !status.ok()) return status;
   if (state.samples > 0) {
@@ -129,21 +131,18 @@ Status CarriedStream::push(const ImuSample& sample, const ClippedElements& known
   const double determinant = std::abs(known.rows.determinant());
   if (!(determinant > kRowsMin)) return {Trouble::degenerate, "rows", determinant, kRowsMin};
 
-  append(sample, state);
+  append(sample, held, state);
   if (read_again(known, state)) rebuild(state);
   const Reading& latest = state.readings.back();
-  const double t = latest.centre_s - static_cast<double>(latest.node) * params_.body.expert.node_s;
   const auto end = [&] { return state.first_node + static_cast<std::int64_t>(state.window.size()); };
   const bool begun = latest.node >= end();
-  while (latest.node > end()) extend({}, state);  // nodes that no sample is near to
-  carried::NodeReadings readings = begun ? carried::NodeReadings{} : state.window.back().readings;
-  carried::add_reading(sample, state.rows, latest.signs, t, readings);
-  readings.rest = readings.rest || latest.rest;
-  if (begun) {
-    extend(readings, state);
-  } else {
-    state.window.back().readings = readings;
+  while (latest.node > end()) {  // nodes that no sample is near to
+    extend(state);
+    predict_newest(state);
   }
+  if (begun) extend(state);
+  add(latest, state);
+  if (begun) predict_newest(state);
   // a free gyro takes nodes where they belong: steps now and then keep attitude and constants
   const bool due =
       begun && (latest.node % carried::kFreeNodes == 0 || latest.node < kFirstNodes || anything_clips(state));
@@ -155,21 +154,27 @@ Status CarriedStream::push(const ImuSample& sample, const ClippedElements& known
   return {};
 }
 
-void CarriedStream::extend(const carried::NodeReadings& readings, State& state) const {
+void CarriedStream::extend(State& state) const {
   if (state.window.size() == nodes_max_) marginalise_oldest(state);
-  Knot knot{{}, readings};
-  if (state.window.empty()) {
-    knot.node = begin(state);
+  state.window.emplace_back();
+}
+
+// The newest node, by its readings.
+void CarriedStream::predict_newest(State& state) const {
+  Knot& newest = state.window.back();
+  if (state.window.size() == 1) {
+    newest.node = begin(state);
   } else {
-    predict(state.window.back().node, state.rows, knot);
+    predict(state.window[state.window.size() - 2].node, state.rows, newest);
   }
-  state.window.push_back(knot);
 }
 
 // The next sample of the window. A window after a drop-out is as long as any other.
-void CarriedStream::append(const ImuSample& sample, State& state) const {
+void CarriedStream::append(const ImuSample& sample, const HoldWatch::State& held, State& state) const {
   Reading reading;
   reading.sample = sample;
+  reading.gyro = held.of(Triad::gyro);
+  reading.accel = held.of(Triad::accelerometer);
   const double period_s = params_.period_s;
   if (state.samples == 0) {
     state.start_ns = sample.time_ns;
@@ -203,14 +208,49 @@ bool CarriedStream::read_again(const ClippedElements& known, State& state) const
 // The newest reading is added by push().
 void CarriedStream::rebuild(State& state) const {
   for (Knot& knot : state.window) knot.readings = {};
-  for (const Reading& reading : std::span(state.readings).first(state.readings.size() - 1)) {
-    const std::int64_t at = reading.node - state.first_node;
-    if (at < 0 || at >= static_cast<std::int64_t>(state.window.size())) continue;
-    carried::NodeReadings& node = state.window[static_cast<std::size_t>(at)].readings;
-    const double t = reading.centre_s - static_cast<double>(reading.node) * params_.body.expert.node_s;
-    carried::add_reading(reading.sample, state.rows, reading.signs, t, node);
-    node.rest = node.rest || reading.rest;
+  for (const Reading& reading : std::span(state.readings).first(state.readings.size() - 1)) add(reading, state);
+}
+
+// To the nodes of the window where its parts belong. What the log says again belongs to none; a reading of a sensor
+// that is slower than the log is of a window of its own length, which ended at some time since the sample before, and
+// an accelerometer's may be of the end of that alone, as in carried.md (C36): rate_stream.md (R97).
+void CarriedStream::add(const Reading& reading, State& state) const {
+  const double node_s = params_.body.expert.node_s;
+  const auto readings_at = [&](std::int64_t node) -> carried::NodeReadings* {
+    const std::int64_t at = node - state.first_node;
+    const bool inside = at >= 0 && at < static_cast<std::int64_t>(state.window.size());
+    return inside ? &state.window[static_cast<std::size_t>(at)].readings : nullptr;
+  };
+  const auto centre = [&](const HeldReading& held, double share) {
+    const double back = held.age_samples + share * held.period_samples;
+    return held.held() ? reading.end_s - back * params_.period_s : reading.centre_s;
+  };
+  const auto node_of = [&](const HeldReading& held, double centre_s) {
+    return held.held() ? std::min(reading.node, std::int64_t{std::llround(centre_s / node_s)}) : reading.node;
+  };
+  const double rate_s = centre(reading.gyro, 0.5), force_s = centre(reading.accel, 0.25);
+  const std::int64_t rate_node = node_of(reading.gyro, rate_s), force_node = node_of(reading.accel, force_s);
+  carried::NodeReadings* const rates = reading.gyro.repeats ? nullptr : readings_at(rate_node);
+  carried::NodeReadings* const forces = reading.accel.repeats ? nullptr : readings_at(force_node);
+  if (rates != nullptr) {
+    const double share = reading.gyro.held() ? kTaken / reading.gyro.period_samples : 0.0;
+    const Vector3d open_rad_s = share * (state.rows * reading.gyro.change).cwiseAbs();
+    carried::add_rate(reading.sample, state.rows, reading.signs, rate_s - static_cast<double>(rate_node) * node_s,
+                      open_rad_s, *rates);
   }
+  if (forces != nullptr) {
+    const double share =
+        reading.accel.held() ? std::hypot(carried::kOpenShare, kTaken / reading.accel.period_samples) : 0.0;
+    carried::add_force(reading.sample, reading.signs, force_s - static_cast<double>(force_node) * node_s, *forces);
+    forces->force_open_m_s2 = std::max(forces->force_open_m_s2, share * reading.accel.change.norm());
+  }
+  if (carried::NodeReadings* const own = readings_at(reading.node)) own->rest = own->rest || reading.rest;
+}
+
+// Of readings as long as the gyro's own, where the log says them again.
+carried::ReadingNoise CarriedStream::noise_of(const State& state) const {
+  const HeldReading& gyro = state.readings.back().gyro;
+  return gyro.held() ? carried::reading_noise(params_.body, gyro.period_samples * params_.period_s) : noise_;
 }
 
 Node CarriedStream::begin(const State& state) const {
@@ -274,8 +314,8 @@ void CarriedStream::marginalise_oldest(State& state) const {
   System::Block block, after;
   System::Corner corner;
   add_prior(state, block, corner);
-  (void)carried::add_node(oldest.readings, state.rows, noise_, g_W_m_s2_, motion_, oldest.node, state.constants, block,
-                          corner);
+  (void)carried::add_node(oldest.readings, state.rows, noise_of(state), g_W_m_s2_, motion_, oldest.node,
+                          state.constants, block, corner);
   (void)motion_.add_step(oldest.node, next, hand(state), block, after);
   if (System::eliminate(block, &after, corner)) {
     state.prior = after;
@@ -310,6 +350,7 @@ void CarriedStream::forget_readings(State& state) const {
 bool CarriedStream::factorise(const carried::Motion& motion, State& state, System::BorderVector& step) const {
   const std::size_t count = state.window.size();
   const double lively = hand(state);
+  const carried::ReadingNoise noise = noise_of(state);
   System::Corner corner;
   state.work[0] = {};
   add_prior(state, state.work[0], corner);
@@ -317,7 +358,7 @@ bool CarriedStream::factorise(const carried::Motion& motion, State& state, Syste
     const Knot& knot = state.window[i];
     System::Block& block = state.work[i];
     const bool last = i + 1 == count;
-    (void)carried::add_node(knot.readings, state.rows, noise_, g_W_m_s2_, motion, knot.node, state.constants, block,
+    (void)carried::add_node(knot.readings, state.rows, noise, g_W_m_s2_, motion, knot.node, state.constants, block,
                             corner);
     if (!last) {
       state.work[i + 1] = {};

@@ -89,7 +89,7 @@ Status RegimeStream::push(const ImuSample& sample, std::span<const AuxiliaryRead
       ++state.starts;
     }
     const bool wanted = share > params_.carried_min;
-    state.carrying = carried_.push(sample, known_of(state), state.carried, carried, wanted).ok();
+    state.carrying = carried_.push(sample, known_of(state), state.carried, carried, wanted, state.rate.holds).ok();
   } else {
     state.carrying = false;
   }

@@ -69,6 +69,8 @@ void members(Self& s, Visitor& visit) {
   visit("reading.end_s", s.end_s);
   visit("reading.node", s.node);
   visit("reading.rest", s.rest);
+  visit("reading.gyro", s.gyro);
+  visit("reading.accel", s.accel);
   visit("reading.settled", s.settled);
 }
 

@@ -147,6 +147,42 @@ TEST(RegimeStream, AHandIsKnownByAnImuFarFromTheCentreOfMass) {
   EXPECT_GE(within / clipped, 0.97);
 }
 
+/// As a log of 240 Hz says what an IMU reads at 100: each reading two or three times, up to a reading's time late.
+CarriedRecording said_again(const CarriedRecording& own, const SlowlyBegun& motion) {
+  CarriedRecording out;
+  for (std::size_t k = 0, from = 0; from + 1 < own.samples.size(); ++k) {
+    const double t = static_cast<double>(k + 3) / 240.0;
+    while (from + 1 < own.samples.size() && seconds(own.samples[from + 1].time_ns) <= t) ++from;
+    out.samples.push_back(own.samples[from]);
+    out.samples.back().time_ns = static_cast<TimeNs>(std::llround(1e9 * t));
+    out.signs.push_back(own.signs[from]);
+    out.rate_rad_s.push_back(motion.rate(t));
+  }
+  return out;
+}
+
+/// Without knowing of it the stream is off by 0.37 rad/s on the median, and 56 % lie within three deviations.
+TEST(RegimeStream, ReadingsThatTheLogSaysAgainCountOnce) {
+  const SlowlyBegun motion;
+  const CarriedRecording recording = said_again(motion.record(100.0, 16.0, 7.3), motion);
+  RegimeStream::Params params = at_its_hand();
+  params.rate.period_s = 1.0 / 240.0;
+  const Joined found = joined(recording.samples, params);
+  const std::vector<double> errors = clipped_errors(recording, found.rates, 2.0);
+  double within = 0.0, count = 0.0;
+  for (std::size_t k = 0; k < found.rates.size(); ++k) {
+    if (seconds(found.rates[k].time_ns) < 2.0) continue;
+    count += 1.0;
+    const double error = found.rates[k].w_WI_I_rad_s.x() - recording.rate_rad_s[k].x();
+    within += error * error < 9.0 * found.rates[k].covariance_rad2_s2(0, 0) ? 1.0 : 0.0;
+  }
+  std::printf("said again: %.3f / %.3f rad/s, within 3 sigma %.4f\n", quantile(errors, 0.5), quantile(errors, 0.9),
+              within / count);
+  ASSERT_GT(errors.size(), 300u);
+  EXPECT_LT(quantile(errors, 0.5), 0.3);
+  EXPECT_GE(within / count, 0.98);
+}
+
 /// Thrown while it was believed carried, and caught again: the evidence follows within the lag, both ways.
 TEST(RegimeStream, ThrownAndCaughtAreSeen) {
   const SlowlyBegun motion;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/arrow_solver.hpp"
+#include "tumble/angular_velocity/detail/hold_watch.hpp"
 #include "tumble/angular_velocity/detail/least_rails.hpp"
 #include "tumble/angular_velocity/detail/rail_watch.hpp"
 #include "tumble/angular_velocity/detail/rate_model.hpp"
@@ -118,12 +119,15 @@ class RateStream {
     /// By how much the size of each axis has grown in each of the two steps up to this sample, the lesser; 0 or more.
     Eigen::Vector3d approach_rad_s = Eigen::Vector3d::Zero();
     int age = 0;
+    bool repeats = false;  ///< its gyro says the reading of the sample before again: HoldWatch
+    Eigen::Vector3d stale_rad_s = Eigen::Vector3d::Zero();  ///< HeldReading::stale of its gyro
   };
 
   /// All that evolves; made by start(). Copyable; equal() compares.
   struct State {
     RailWatch::State rails;
     RestDetector::State rests;
+    HoldWatch::State holds;    ///< readings that the log says twice
     std::vector<Knot> window;  ///< oldest first
     RigConstants rig;
     RigConstants::Matrix rig_covariance;
@@ -191,6 +195,13 @@ class RateStream {
   void doubt_possible_rails(State& state) const;
   bool may_clip(const ImuSample& sample, int axis, int sign, const State& state) const;
   void doubt_run(int axis, std::size_t first, std::size_t last, State& state) const;
+  /// Samples whose gyro reads the reading before and after that of a sample, null where there is none.
+  struct Beside {
+    const ImuSample *before = nullptr, *after = nullptr;
+  };
+  static Beside readings_beside(std::size_t k, const State& state);
+  static std::optional<std::size_t> reading_before(std::size_t k, const std::vector<Knot>& window);
+  static std::size_t reading_after(std::size_t k, const std::vector<Knot>& window);
   static Eigen::Vector3d approach(const std::vector<Knot>& window);
   static void remember_entry(const Knot& leaving, const Knot& next, State& state);
   void add_rails(const State& state, arrow::Corner& corner) const;
@@ -204,6 +215,7 @@ class RateStream {
   Params params_;
   RailWatch rails_;
   RestDetector rests_;
+  HoldWatch holds_;
   RateModel model_;
   std::size_t capacity_;
   std::size_t every_;  ///< samples from one step to the next

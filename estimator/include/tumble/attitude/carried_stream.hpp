@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "tumble/angular_velocity/detail/hold_watch.hpp"
 #include "tumble/attitude/carried_smoother.hpp"
 #include "tumble/common/parameters.hpp"
 
@@ -50,6 +51,7 @@ class CarriedStream {
     double centre_s = 0.0, end_s = 0.0;  ///< of its window, from the first sample's centre
     std::int64_t node = 0;               ///< nearest to the centre
     bool rest = false;
+    HeldReading gyro, accel;           ///< of a log that says readings again
     std::optional<RateState> settled;  ///< its rate, where its node has left and the rate has not been given out
   };
   struct Knot {
@@ -88,11 +90,12 @@ class CarriedStream {
 
   /// Takes one sample. `known.signs`: of the newest samples as they are known now, this one's last, at least this one;
   /// samples whose signs have changed are read again while they are in the window. `out`: rate of the sample that is
-  /// `lag_s` old, empty while the window fills and where it is not `wanted`, which spares most of the work. Trouble:
+  /// `lag_s` old, empty while the window fills and where it is not `wanted`, which spares most of the work. `held`:
+  /// which readings the log says again; they count once, about when they were taken (R97 of rate_stream.md). Trouble:
   /// `non_finite`, `time_order`, `gap`, `out_of_range` for no signs, `degenerate` for rows that do not span the axes;
   /// the state is then as it was and `out` empty.
   Status push(const ImuSample& sample, const ClippedElements& known, State& state, std::optional<RateState>& out,
-              bool wanted = true) const;
+              bool wanted = true, const HoldWatch::State& held = {}) const;
 
   /// Rates of the samples that push() has not given out, oldest first, appended to `out`.
   void flush(const State& state, std::vector<RateState>& out) const;
@@ -102,11 +105,14 @@ class CarriedStream {
 
  private:
   Status check_reading(const Reading& reading, const Reading* before, TimeNs start_ns) const;
-  void append(const ImuSample& sample, State& state) const;
+  void append(const ImuSample& sample, const HoldWatch::State& held, State& state) const;
+  void add(const Reading& reading, State& state) const;
   bool read_again(const ClippedElements& known, State& state) const;
   void rebuild(State& state) const;
   carried::Node begin(const State& state) const;
   void predict(const carried::Node& before, const Eigen::Matrix3d& rows, Knot& knot) const;
+  void predict_newest(State& state) const;
+  carried::ReadingNoise noise_of(const State& state) const;
   std::size_t first_not_given(const State& state) const;
   void settle_oldest(State& state) const;
   void forget_readings(State& state) const;
@@ -115,7 +121,7 @@ class CarriedStream {
   void add_prior(const State& state, carried::System::Block& block, carried::System::Corner& corner) const;
   bool factorise(const carried::Motion& motion, State& state, carried::System::BorderVector& step) const;
   bool step(State& state) const;
-  void extend(const carried::NodeReadings& readings, State& state) const;
+  void extend(State& state) const;
   RateState give(std::size_t at, bool due, bool factorised, State& state) const;
   void publish(std::size_t first, std::size_t last, bool factorised, State& state, std::span<RateState> out) const;
   RateState to_rate(const Reading& reading, const State& state, const Eigen::Matrix3d& covariance_rad2_s2) const;

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/angular_velocity/detail/hold_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tumble {
+
+namespace {
+
+// As find_held: samples in motion, how many of them are looked at before anything is said, the share that repeats, and
+// the steps of the log beyond which what repeats itself stands still, is blind or frozen.
+constexpr double kMoving_rad_s = 0.3, kMovingMin = 30.0, kRepeatsMin = 0.05, kSlowest = 10.0;
+constexpr double kMemory = 1000.0;  // samples in motion
+
+HeldReading held_reading(const HoldWatch::Memory& memory, const Eigen::Vector3d& reading) {
+  HeldReading out;
+  if (memory.moving < kMovingMin || memory.repeated < kRepeatsMin * memory.moving) return out;
+  out.period_samples = memory.moving / std::max(1.0, memory.moving - memory.repeated);
+  if (out.period_samples > kSlowest) return {};
+  out.repeats = memory.said > 1.0 && memory.said <= kSlowest;
+  out.age_samples = std::min(memory.said, kSlowest) - 0.5;
+  out.change = out.repeats ? memory.now.change : reading - memory.reading;
+  return out;
+}
+
+}  // namespace
+
+Eigen::Vector3d HeldReading::stale() const {
+  if (!held()) return Eigen::Vector3d::Zero();
+  const double behind = age_samples + 0.5 * (period_samples - 1.0);
+  return behind / period_samples * change;
+}
+
+bool HoldWatch::Memory::operator==(const Memory& o) const {
+  return reading == o.reading && said == o.said && moving == o.moving && repeated == o.repeated &&
+         now.repeats == o.now.repeats && now.age_samples == o.now.age_samples &&
+         now.period_samples == o.now.period_samples && now.change == o.now.change;
+}
+
+void HoldWatch::observe(const ImuSample& sample, State& state) const {
+  const bool moves = sample.angular_velocity_rad_s.norm() >= kMoving_rad_s;
+  for (const Triad triad : {Triad::gyro, Triad::accelerometer}) {
+    Memory& memory = state.memory[static_cast<std::size_t>(triad)];
+    const Eigen::Vector3d& reading = reading_of(sample, triad);
+    const bool again = memory.said > 0.0 && reading == memory.reading;
+    if (moves) {
+      const double kept = 1.0 - 1.0 / kMemory;
+      memory.moving = kept * memory.moving + 1.0;
+      memory.repeated = kept * memory.repeated + (again ? 1.0 : 0.0);
+    }
+    memory.said = again ? memory.said + 1.0 : 1.0;
+    memory.now = held_reading(memory, reading);
+    memory.reading = reading;
+  }
+}
+
+}  // namespace tumble
