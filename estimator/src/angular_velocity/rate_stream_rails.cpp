@@ -85,7 +85,7 @@ bool RateStream::may_clip(const ImuSample& sample, int axis, int sign, const Sta
     return plane->short_of(y, sign) <= plane->tolerance_rad_s + kOpen * open;
   }
   const double extreme = std::abs(state.extremes[sign > 0 ? 1 : 0][axis]);
-  const bool high = extreme >= params_.planes.distance_min_rad_s && may_be_rail(planes, extreme);
+  const bool high = extreme >= params_.expert.planes.distance_min_rad_s && may_be_rail(planes, extreme);
   return high && std::abs(y[axis]) >= (1.0 - kBesideRail) * extreme;
 }
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-#include "tumble/angular_velocity/rail_planes.hpp"
+#include "tumble/angular_velocity/rail_plane.hpp"
 #include "tumble/attitude/detail/force_errors.hpp"
 #include "tumble/attitude/detail/imu_merge_expert_params.hpp"
 #include "tumble/attitude/detail/imu_merge_state.hpp"
