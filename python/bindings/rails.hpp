@@ -7,7 +7,7 @@
 
 #include "parameters.hpp"
 #include "tumble/angular_velocity/clipping_finder.hpp"
-#include "tumble/angular_velocity/rail_planes.hpp"
+#include "tumble/angular_velocity/rail_plane.hpp"
 
 namespace tumble::python {
 

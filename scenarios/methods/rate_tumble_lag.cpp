@@ -45,13 +45,13 @@ RegimeStream::Params stream_params(const sim::Sensors& sensors, const sim::Value
 
   batch.model = rate.model;
   batch.rails = rate.rails;
-  batch.planes = rate.planes;
-  batch.accel_planes = rate.accel_planes;
+  batch.expert.planes = rate.expert.planes;
+  batch.expert.accel_planes = rate.expert.accel_planes;
   start_from_learnt(*given, batch);
   rate.model = batch.model;
   rate.rails = batch.rails;
-  rate.planes = batch.planes;
-  rate.accel_planes = batch.accel_planes;
+  rate.expert.planes = batch.expert.planes;
+  rate.expert.accel_planes = batch.expert.accel_planes;
   return params;
 }
 

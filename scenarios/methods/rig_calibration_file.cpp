@@ -197,9 +197,9 @@ void start_from(const LearntRig& rig, double trust, RateSmoother::Params& params
   if (!(trust >= 1.0)) throw std::invalid_argument("trust is " + std::to_string(trust) + ", bound [1, inf)");
   params.model.calibration = rig.calibration;
   params.model.calibration->covariance *= trust;
-  params.planes.known = rig.planes();
-  params.accel_planes.known = rig.planes(Triad::accelerometer);
-  for (RailPlanes* const known : {&params.planes.known, &params.accel_planes.known}) {
+  params.expert.planes.known = rig.planes();
+  params.expert.accel_planes.known = rig.planes(Triad::accelerometer);
+  for (RailPlanes* const known : {&params.expert.planes.known, &params.expert.accel_planes.known}) {
     for (std::optional<RailPlane>& plane : known->element) {
       if (plane) plane->covariance *= trust;
     }

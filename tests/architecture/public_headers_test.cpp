@@ -3,8 +3,11 @@
 // installed stands in folders called detail, and no program for a user includes it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -69,6 +72,23 @@ TEST(PublicHeaders, AreThoseThatTheReadmeLists) {
   // negative controls
   EXPECT_TRUE(listed("| `src/mapping/README.md` | a `detail` folder |").empty());
   EXPECT_EQ(listed("| `tumble.hpp` `common/imu.hpp` |"), (Names{"tumble.hpp", "common/imu.hpp"}));
+}
+
+/// Public headers that may be longer than kLinesMax, with the reason. There is none.
+const std::map<std::string, std::string> kLong = {};
+constexpr std::ptrdiff_t kLinesMax = 150;
+
+bool too_long(const std::string& header, const std::string& text) {
+  return !kLong.contains(header) && std::count(text.begin(), text.end(), '\n') > kLinesMax;
+}
+
+TEST(PublicHeaders, AreReadInOneGo) {
+  const fs::path folder = tumble::test::source_dir() / "estimator/include/tumble";
+  for (const std::string& header : open_headers()) EXPECT_FALSE(too_long(header, text_of(folder / header))) << header;
+  for (const auto& [header, reason] : kLong) EXPECT_TRUE(open_headers().contains(header)) << header << ": " << reason;
+  // negative control
+  EXPECT_FALSE(too_long("a.hpp", std::string(150, '\n')));
+  EXPECT_TRUE(too_long("a.hpp", std::string(151, '\n')));
 }
 
 TEST(PublicHeaders, IncludeNothingThatIsNotInstalled) {

@@ -35,7 +35,7 @@ void RailDetector::observe(const ImuSample& sample, State& state) const {
   for (int c = 0; c < 6; ++c) {
     Channel& channel = state.channels[static_cast<std::size_t>(c)];
     const double value = reading(sample, c), magnitude = std::abs(value);
-    const double spread = params_.plateau_spread_share * magnitude;
+    const double spread = params_.expert.plateau.spread_share * magnitude;
     const double change = std::abs(value - channel.before);
     const bool continues = channel.run_length > 0 && std::abs(value - channel.run_first) <= spread;
     if (channel.run_length > 0 && !continues) {
@@ -59,11 +59,12 @@ void RailDetector::observe(const ImuSample& sample, State& state) const {
 bool RailDetector::plateau(int c, const Channel& channel, double jump) const {
   const double magnitude = std::abs(channel.run_first);
   if (magnitude < channel.peak * (1.0 - params_.disagreement_share)) return false;
-  if (channel.run_length < params_.plateau_samples) return false;
-  if (c >= 3) return magnitude >= params_.plateau_accel_min_m_s2;
-  if (magnitude >= params_.plateau_gyro_low_rad_s) return true;
-  return magnitude >= params_.plateau_gyro_min_rad_s && channel.run_length >= 2 * params_.plateau_samples &&
-         jump > params_.plateau_jump_digits * channel.digit;
+  if (channel.run_length < params_.expert.plateau.samples) return false;
+  if (c >= 3) return magnitude >= params_.expert.plateau.accel_min_m_s2;
+  if (magnitude >= params_.expert.plateau.gyro_low_rad_s) return true;
+  return magnitude >= params_.expert.plateau.gyro_min_rad_s &&
+         channel.run_length >= 2 * params_.expert.plateau.samples &&
+         jump > params_.expert.plateau.jump_digits * channel.digit;
 }
 
 std::optional<double> RailDetector::rail(const State& state, int c) const {

@@ -49,29 +49,31 @@ bool descend(const RateSmoother::Params& params, const RateModel& model, std::sp
   int soft = 0;  // iterations with soft bounds
   health.iterations = 0;
   health.converged = false;
-  while (health.iterations < params.iterations_max) {
+  while (health.iterations < params.expert.descent.iterations_max) {
     weigh_all(model, observations, solution.rig, solution.rig_covariance, widen, estimates);
     if (!solution.iteration.factorise(model, estimates, solution.rig)) return false;
     solution.rig_covariance = solution.iteration.rig_covariance();
-    health.last_step_rad_s = solution.iteration.apply(model, params.step_max_rad_s, estimates, solution.rig);
+    health.last_step_rad_s =
+        solution.iteration.apply(model, params.expert.descent.step_max_rad_s, estimates, solution.rig);
     ++health.iterations;
 
-    const bool settled = widen == 1.0 && (health.last_step_rad_s < params.tolerance_rad_s ||
+    const bool settled = widen == 1.0 && (health.last_step_rad_s < params.expert.descent.tolerance_rad_s ||
                                           solution.iteration.decrement() < kStepDeviations * kStepDeviations);
     if (soft > 0) {
       solution.iteration.for_each_conditional([&](std::size_t k, const arrow::Conditional& conditional) {
-        model.update_bounds(observations[k], solution.rig, conditional, solution.rig_covariance, params.bound_damping,
-                            estimates[k]);
+        model.update_bounds(observations[k], solution.rig, conditional, solution.rig_covariance,
+                            params.expert.descent.bound_damping, estimates[k]);
       });
     }
-    if (soft > 0 || settled || health.iterations + params.bound_iterations >= params.iterations_max) {
+    if (soft > 0 || settled ||
+        health.iterations + params.expert.descent.bound_iterations >= params.expert.descent.iterations_max) {
       for (std::size_t k = 0; k < estimates.size() && soft == 0; ++k) {
         if (estimates[k].flight_weight >= 0.5) continue;
         model.seek_flight(observations[k], solution.rig, estimates[k]);
         model.start_bounds(observations[k], solution.rig, estimates[k]);
       }
       health.converged = settled || health.converged;
-      if (soft++ == params.bound_iterations) break;
+      if (soft++ == params.expert.descent.bound_iterations) break;
     }
     widen = std::max(1.0, 0.5 * widen);
   }
@@ -167,14 +169,14 @@ RateIteration::Moved RateIteration::moved_by_errors(const RateModel& model, std:
 
 bool solve(const RateSmoother::Params& params, const RateModel& model, std::span<const RateObservation> observations,
            RateSolution& solution, RateReport& health) {
-  if (!descend(params, model, observations, params.widen_first, solution, health)) return false;
+  if (!descend(params, model, observations, params.expert.descent.widen_first, solution, health)) return false;
   double share = 1.0;
   double best = explained(observations, solution.estimates, share);
   for (const double factor : kOtherStarts) {
     if (share >= kFlightShareExpected) break;
     RateSolution other{{}, {}, {}, RateIteration(observations)};
     RateReport other_health = health;
-    const double widen = std::max(1.0, factor * params.widen_first);
+    const double widen = std::max(1.0, factor * params.expert.descent.widen_first);
     if (!descend(params, model, observations, widen, other, other_health)) continue;
     double other_share = 0.0;
     const double found = explained(observations, other.estimates, other_share);

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tumble/angular_velocity/rate_model_params_fields.hpp"
+#include "tumble/angular_velocity/rate_model_params.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble {
@@ -138,8 +138,8 @@ RateModel::RateModel(const RateModelParams& params, double period_s) : params_(p
   const double bandwidth_hz = 1.0 / period_s;
   gyro_sigma_rad_s_ = params.gyro_noise_density * std::sqrt(bandwidth_hz);  // rate_smoother.md (R5)
   accel_noise_m_s2_ = params.accel_noise_density * std::sqrt(bandwidth_hz);
-  accel_sigma_m_s2_ = std::hypot(params.flight_sigma_m_s2, accel_noise_m_s2_);
-  share_ = std::min(1.0, period_s / params.model_error_s);
+  accel_sigma_m_s2_ = std::hypot(params.expert.flight.sigma_m_s2, accel_noise_m_s2_);
+  share_ = std::min(1.0, period_s / params.expert.model_error_s);
   exact_ = params.errors == SensorErrors{};
   prior_constants_ = params.calibration ? params.calibration->constants : params.nominal;
   prior_covariance_ = covariance_of(params);
@@ -157,8 +157,9 @@ void RateModel::weigh(const RateObservation& observation, const RigConstants& ri
   const Vector3d hidden = read_accel_elements(observation, flight);
   const RateFactor euler = euler_factor(estimate.knot, rig);
   const double r2 = normalised(flight, flight_spread(flight, rig_covariance), accel_sigma_m_s2(observation), hidden) +
-                    normalised(euler, euler_spread(euler, rig_covariance), params_.euler_sigma_rad_s2) + jump;
-  const double threshold = widen * params_.flight_threshold;
+                    normalised(euler, euler_spread(euler, rig_covariance), params_.expert.flight.euler_sigma_rad_s2) +
+                    jump;
+  const double threshold = widen * params_.expert.flight.threshold;
   // Geman-McClure, rate_smoother.md (R24): the pull of an outlier vanishes with the cube of its size
   const double ratio = 1.0 / (1.0 + r2 / (threshold * threshold));
   estimate.flight_weight = ratio * ratio;
@@ -167,7 +168,8 @@ void RateModel::weigh(const RateObservation& observation, const RigConstants& ri
 }
 
 double RateModel::accel_sigma_m_s2(const RateObservation& observation) const {
-  return std::hypot(accel_sigma_m_s2_, params_.accel_scale_error * observation.sample.specific_force_m_s2.norm());
+  return std::hypot(accel_sigma_m_s2_,
+                    params_.expert.readings.accel_scale_error * observation.sample.specific_force_m_s2.norm());
 }
 
 // The same as a variance with which samples may be added up: what lasts longer than a sample does not average out.
@@ -180,7 +182,7 @@ double RateModel::accel_variance_together(const RateObservation& observation) co
 double RateModel::jump(const RateKnot& from, const RateKnot& to, double dt_s) const {
   const Vector3d e0 = from.rate_rad_s + dt_s * from.acceleration_rad_s2 - to.rate_rad_s;
   const Vector3d e1 = dt_s * (from.acceleration_rad_s2 - to.acceleration_rad_s2);
-  const double scale = 1.0 / (params_.jerk_psd_flight * dt_s * dt_s * dt_s);
+  const double scale = 1.0 / (params_.expert.flight.jerk_psd_rad2_s5 * dt_s * dt_s * dt_s);
   return scale * (12.0 * e0.squaredNorm() - 12.0 * e0.dot(e1) + 4.0 * e1.squaredNorm());
 }
 
@@ -188,7 +190,7 @@ double RateModel::gyro_information(const RateObservation& observation, const Rat
   if (observation.gyro_repeats) return 0.0;
   if (observation.gyro_age_s > 0.0) {
     // what contact makes of the rate since the reading was taken: rate_smoother.md (R6)
-    const double change = params_.contact_gain_rad_m * estimate.contact_m_s2.norm() * observation.gyro_age_s;
+    const double change = params_.expert.contact.gain_rad_m * estimate.contact_m_s2.norm() * observation.gyro_age_s;
     const double lost = (observation.read_in_part() >> axis & 1u) != 0 ? observation.lost_sigma_rad_s[axis] : 0.0;
     return 1.0 / (gyro_sigma_rad_s_ * gyro_sigma_rad_s_ + change * change + lost * lost);
   }
@@ -202,7 +204,7 @@ double RateModel::gyro_information(const RateObservation& observation, const Rat
 RateModel::ForceFactor RateModel::force_factor(const RateObservation& observation, const RateEstimate& estimate,
                                                const RigConstants& rig) const {
   const double flight2 = accel_variance_together(observation);
-  const double share = observation.unseen() != 0 ? params_.contact_force_share : 0.0;
+  const double share = observation.unseen() != 0 ? params_.expert.contact.force_share : 0.0;
   const double contact2 = flight2 + share * share * estimate.contact_m_s2.squaredNorm() / share_;
   ForceFactor out;
   const double information =
@@ -260,7 +262,7 @@ void RateModel::add_sample(const RateObservation& observation, const RateEstimat
 
   add_auxiliary_imus(observation, estimate, rig, block);
 
-  const double rate_sigma = observation.at_rest ? params_.rest_sigma_rad_s : params_.rate_max_rad_s;
+  const double rate_sigma = observation.at_rest ? params_.expert.rest_sigma_rad_s : params_.rate_max_rad_s;
   const double rate_information = share_ / (rate_sigma * rate_sigma);
   const double largest = params_.acceleration_max_rad_s2 * time_scale_s_;
   const double acceleration_information = share_ / (largest * largest);
@@ -274,11 +276,11 @@ void RateModel::add_sample(const RateObservation& observation, const RateEstimat
 
 // A force through one point of the body has no torque about its own direction: rate_smoother.md (R19).
 Eigen::Matrix3d RateModel::euler_information(const RateEstimate& estimate) const {
-  const double flight = params_.euler_sigma_rad_s2 * params_.euler_sigma_rad_s2;
-  const double force = estimate.contact_m_s2.norm(), lever = params_.contact_lever_rad_m * force;
+  const double flight = params_.expert.flight.euler_sigma_rad_s2 * params_.expert.flight.euler_sigma_rad_s2;
+  const double force = estimate.contact_m_s2.norm(), lever = params_.expert.contact.lever_rad_m * force;
   const double across = share_ / (flight + lever * lever);
   if (!(force > 0.0)) return across * Eigen::Matrix3d::Identity();
-  const double twist = params_.contact_twist_share * lever;
+  const double twist = params_.expert.contact.twist_share * lever;
   const Vector3d n = estimate.contact_m_s2 / force;
   return across * Eigen::Matrix3d::Identity() + (share_ / (flight + twist * twist) - across) * n * n.transpose();
 }
@@ -288,8 +290,8 @@ void RateModel::add_step(const RateEstimate& from, const RateEstimate& to, doubl
   const double h = time_scale_s_, ratio = dt_s / h;
   // a contact may change the angular acceleration by gain * force within one step of model_error_s, and in shorter ones
   // by what adds up to that: rate_smoother.md (R21)
-  const double change = params_.contact_gain_rad_m * std::max(from.contact_m_s2.norm(), to.contact_m_s2.norm());
-  const double psd = params_.jerk_psd_flight + share_ * change * change / dt_s;
+  const double change = params_.expert.contact.gain_rad_m * std::max(from.contact_m_s2.norm(), to.contact_m_s2.norm());
+  const double psd = params_.expert.flight.jerk_psd_rad2_s5 + share_ * change * change / dt_s;
   // inverse of Q = psd [dt^3/3, dt^2 h/2; dt^2 h/2, dt h^2] of the scaled state: rate_smoother.md (R20)
   const double a = 12.0 / (psd * dt_s * dt_s * dt_s), b = -6.0 / (psd * dt_s * dt_s * h),
                c = 4.0 / (psd * dt_s * h * h);

@@ -115,17 +115,18 @@ void RateModel::add_errors(const RateObservation& observation, const RateEstimat
 // rate_smoother.md (R42)
 Eigen::Matrix3d RateModel::reported(const Eigen::Matrix3d& covariance, const RateObservation& observation,
                                     const RateEstimate& estimate) const {
-  const double factor = 1.0 + (params_.contact_sigma_factor - 1.0) * (1.0 - estimate.flight_weight);
+  const double factor = 1.0 + (params_.expert.contact.sigma_factor - 1.0) * (1.0 - estimate.flight_weight);
   Vector3d wider = Vector3d::Ones();
   for (int j = 0; j < 3; ++j) {
     if ((observation.clipping.gyro >> j & 1u) != 0 || (observation.clipping.void_gyro >> j & 1u) != 0)
       wider[j] = factor;
   }
-  const Vector3d late = params_.gyro_time_sigma_s * estimate.knot.acceleration_rad_s2;
+  const Vector3d late = params_.expert.readings.gyro_time_sigma_s * estimate.knot.acceleration_rad_s2;
   Eigen::Matrix3d timed = covariance + late * late.transpose();
   if (observation.by_elements()) {
     // within a window of contact the acceleration is what the force makes of it, on the axes that are read too
-    const double struck = params_.gyro_time_sigma_s * params_.contact_gain_rad_m * estimate.contact_m_s2.norm();
+    const double struck =
+        params_.expert.readings.gyro_time_sigma_s * params_.expert.contact.gain_rad_m * estimate.contact_m_s2.norm();
     timed.diagonal().array() += struck * struck;
   }
   return wider.asDiagonal() * timed * wider.asDiagonal();

@@ -78,7 +78,7 @@ double surprise_of(const RateModelParams& known, const RateModel& model, double 
   RateModelParams wider = known;
   wider.calibration = RigCalibration{model.prior_constants(), model.prior_covariance()};
   wider.calibration->covariance +=
-      moved * fit_sensor_errors({}, known.error_sizes).known.covariance * moved.transpose();
+      moved * fit_sensor_errors({}, known.expert.error_sizes).known.covariance * moved.transpose();
   return RateModel(wider, period_s).calibration_mahalanobis(solution.rig);
 }
 
@@ -164,18 +164,18 @@ SensorErrorFit fit_about(const SensorErrors& given, SensorErrorEvidence evidence
 Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& known, std::span<const ImuSample> samples,
                   std::span<const Clipping> clippings, std::span<RateObservation> observations, RateFit& fit,
                   RateReport& health) {
-  const bool estimated = params.error_rounds_max > 1;
+  const bool estimated = params.expert.error_rounds_max > 1;
   const double period_s = median_period_s(samples);
   const RigConstants rig = known.calibration ? known.calibration->constants : known.nominal;
   bool told_before = estimated && params.learnt_errors.has_value();
   SensorErrorEvidence learnt =
-      told_before ? learnt_about(known.errors, *params.learnt_errors, known.error_sizes) : SensorErrorEvidence{};
+      told_before ? learnt_about(known.errors, *params.learnt_errors, known.expert.error_sizes) : SensorErrorEvidence{};
   // triads with clocks of their own are not sampled as alike as a sheet may have it
   const bool own_clocks = health.gyro_update_s > 0.0 || health.accel_update_s > 0.0;
-  SensorErrorSizes sizes = known.error_sizes;
+  SensorErrorSizes sizes = known.expert.error_sizes;
   if (own_clocks) sizes.delay_s = std::max(sizes.delay_s, sizes.delay_unknown_s);
   TriadDelay guess;
-  if (estimated && known.error_sizes.delay_unknown_s > known.error_sizes.delay_s)
+  if (estimated && known.expert.error_sizes.delay_unknown_s > known.expert.error_sizes.delay_s)
     guess = guess_triad_delay(samples, clippings, rig.lever_arm_m);
   SensorErrors errors;
   double other_delay_s = 0.0;  // for where the descent from the first one has to hold the rig
@@ -229,15 +229,15 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
     fit.moved.evidence.about = errors;
     add_guess(guess, fit.moved.evidence);
     found = fit_about(known.errors, fit.moved.evidence, sizes, learnt);
-    believed = plausible(found.known.errors, known.errors, known.error_sizes);
-    if (health.rig_held || !believed || health.error_rounds >= params.error_rounds_max) break;
+    believed = plausible(found.known.errors, known.errors, known.expert.error_sizes);
+    if (health.rig_held || !believed || health.error_rounds >= params.expert.error_rounds_max) break;
     if (!far_apart(found.known.errors, errors)) break;
     errors = found.known.errors;
   }
   health.calibrated = found.calibrated;
   health.together = own_clocks ? 0.0 : found.together;
-  const bool open = estimated && known.error_sizes.delay_unknown_s > known.error_sizes.delay_s &&
-                    (off_sheet(found, known.error_sizes, own_clocks) ||
+  const bool open = estimated && known.expert.error_sizes.delay_unknown_s > known.expert.error_sizes.delay_s &&
+                    (off_sheet(found, known.expert.error_sizes, own_clocks) ||
                      health.calibration_mahalanobis > params.calibration_mahalanobis_max);
   if (open) {
     sizes = unstated(sizes);
@@ -249,7 +249,7 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
   }
   if (health.rig_held || !believed || !estimated) {
     // what a run without flight tells of the device is nothing, beyond what devices have it is wrong: all is left open
-    found = fit_sensor_errors({}, estimated ? sizes : as_stated(known.error_sizes));
+    found = fit_sensor_errors({}, estimated ? sizes : as_stated(known.expert.error_sizes));
     found.known.errors = errors;
   } else {
     const SensorErrors::Vector step = found.known.errors.vector() - errors.vector();
@@ -264,7 +264,7 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
   if (health.rig_held) return {};
   health.calibration.constants = fit.solution.rig;
   // the device's errors stay with the device: the next run meets them as this one did, and counts them anew
-  const SensorErrors::Matrix stated = fit_sensor_errors({}, as_stated(known.error_sizes)).known.covariance;
+  const SensorErrors::Matrix stated = fit_sensor_errors({}, as_stated(known.expert.error_sizes)).known.covariance;
   health.calibration.covariance += fit.moved.of_rig * stated * fit.moved.of_rig.transpose();
   return {};
 }

@@ -79,7 +79,8 @@ double change_rad_s2(const RateModelParams& params, std::span<const RateObservat
   const RateObservation &from = observations[k], &to = observations[k + 1];
   if (from.at_rest && to.at_rest) return 0.0;
   if (((from.clipping.gyro | from.may_hide()) | (to.clipping.gyro | to.may_hide())) != 0)
-    return params.contact_gain_rad_m * std::max(estimates[k].contact_m_s2.norm(), estimates[k + 1].contact_m_s2.norm());
+    return params.expert.contact.gain_rad_m *
+           std::max(estimates[k].contact_m_s2.norm(), estimates[k + 1].contact_m_s2.norm());
   const double dt_s = seconds(to.sample.time_ns - from.sample.time_ns);
   return (estimates[k + 1].knot.rate_rad_s - estimates[k].knot.rate_rad_s).norm() / dt_s;
 }
@@ -127,7 +128,9 @@ RateState state_later(std::span<const RateObservation> observations, std::span<c
 }  // namespace
 
 RateSmoother::RateSmoother(const Params& params)
-    : params_(params), rails_({params.rails, params.planes, params.accel_planes}), rests_(params.rests) {
+    : params_(params),
+      rails_({params.rails, params.expert.planes, params.expert.accel_planes}),
+      rests_(params.expert.rests) {
   require_fields(params);
   if (params.learnt_errors) {
     for (const double value : params.learnt_errors->errors.vector()) require_within("learnt errors", value, -0.2, 0.2);
@@ -189,7 +192,7 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
     doubt_unseen_rails(planes, least, model.gyro_sigma_rad_s(), before, observations[k], after);
   }
   if (!health.rails_upright) {
-    doubt_level_tops(planes, least, params_.planes.offset_share, model.gyro_sigma_rad_s(), observations);
+    doubt_level_tops(planes, least, params_.expert.planes.offset_share, model.gyro_sigma_rad_s(), observations);
   }
   mark_held(samples, observations, health);
   RateFit fit(observations, model);

@@ -51,8 +51,8 @@ void add_prior(const RateStream::State& state, const RateModel& model, const Rat
 
 RateStream::RateStream(const Params& params)
     : params_(params),
-      rails_({.clipping = {params.rails, params.planes, params.accel_planes}}),
-      rests_(params.rests),
+      rails_({.clipping = {params.rails, params.expert.planes, params.expert.accel_planes}}),
+      rests_(params.expert.rests),
       model_(params.model, params.period_s) {
   require_fields(params);
   require_within("lag_s", params.lag_s, 2.0 * params.period_s, std::min(10.0, 4096.0 * params.period_s));
@@ -130,7 +130,7 @@ void RateStream::marginalise(std::size_t first, State& state) const {
   model_.weigh(oldest.observation, state.rig, RigConstants::Matrix::Zero(), 1.0, jump, oldest.estimate);
   // 20 constants explain any short contact as a flight: what they say is believed after some more of it
   std::size_t run = state.flight_run;
-  const auto needed = static_cast<std::size_t>(params_.flight_run_min);
+  const auto needed = static_cast<std::size_t>(params_.expert.flight_run_min);
   const auto flies = [](const Knot& knot) { return knot.estimate.flight_weight >= 0.5; };
   for (std::size_t k = first; k < state.window.size() && run < needed && flies(state.window[k]); ++k) ++run;
   const bool short_flight = run < needed;
@@ -189,8 +189,7 @@ void RateStream::append(const ImuSample& sample, std::span<const AuxiliaryReadin
   ++state.samples;
   if (knot.by_walls.void_gyro == 0) state.least.add(sample.angular_velocity_rad_s);
   if (changed) classify_again(state);
-  // a sample is judged by those beside it too
-  judge(changed ? 0 : reading_before(state.window.size() - 1, state.window).value_or(0), state);
+  judge(changed, state);
   state.extremes[0] = state.extremes[0].cwiseMin(sample.angular_velocity_rad_s);
   state.extremes[1] = state.extremes[1].cwiseMax(sample.angular_velocity_rad_s);
   doubt_possible_rails(state);
@@ -248,9 +247,9 @@ void RateStream::weigh(State& state) const {
       after = model_.jump(knot.estimate.knot, next.estimate.knot, seconds_between(knot, next));
     }
     const bool clipped = clipped_axes(knot.observation) != 0;
-    const double widen = clipped ? std::max(1.0, std::ldexp(params_.widen_first, -knot.age)) : 1.0;
+    const double widen = clipped ? std::max(1.0, std::ldexp(params_.expert.widen_first, -knot.age)) : 1.0;
     model_.weigh(knot.observation, state.rig, state.rig_covariance, widen, std::min(before, after), knot.estimate);
-    const bool soften = knot.age >= params_.bound_age && knot.estimate.flight_weight < 0.5;
+    const bool soften = knot.age >= params_.expert.bound_age && knot.estimate.flight_weight < 0.5;
     if (soften && !knot.estimate.soft_bounds) {
       model_.seek_flight(knot.observation, state.rig, knot.estimate);
       model_.start_bounds(knot.observation, state.rig, knot.estimate);
@@ -292,12 +291,12 @@ bool RateStream::step(State& state) const {
     x = arrow::back_substitute(blocks[k], last ? nullptr : &x, rig_step);
     conditional = arrow::back_conditional(blocks[k], last ? nullptr : &conditional);
     const Eigen::Matrix<double, 6, 1> physical = model_.unscaled(x);
-    const double share = std::min(1.0, params_.step_max_rad_s / std::max(1e-300, physical.head<3>().norm()));
+    const double share = std::min(1.0, params_.expert.step_max_rad_s / std::max(1e-300, physical.head<3>().norm()));
     knot.estimate.knot.rate_rad_s += share * physical.head<3>();
     knot.estimate.knot.acceleration_rad_s2 += share * physical.tail<3>();
     knot.covariance_rad2_s2 = arrow::rate_covariance(conditional, doubted);
     if (knot.estimate.soft_bounds) {
-      model_.update_bounds(knot.observation, state.rig, conditional, rig_covariance, params_.bound_damping,
+      model_.update_bounds(knot.observation, state.rig, conditional, rig_covariance, params_.expert.bound_damping,
                            knot.estimate);
     }
     ++knot.age;
@@ -308,8 +307,8 @@ bool RateStream::step(State& state) const {
 // rate_stream.md (R93)
 RigConstants::Matrix RateStream::widened(const State& state) const {
   if (params_.model.calibration) return state.rig_covariance;
-  const double samples = static_cast<double>(state.learnt_from) / params_.rig_doubt_samples;
-  const double largest = std::sqrt(1.0 + params_.rig_doubt / (1.0 + samples));
+  const double samples = static_cast<double>(state.learnt_from) / params_.expert.doubt.samples;
+  const double largest = std::sqrt(1.0 + params_.expert.doubt.covariance / (1.0 + samples));
   RigConstants::Vector factor;
   for (int i = 0; i < RigConstants::kSize; ++i) {
     // nothing is known less than beforehand; the gyro's bias is told by rest, not by flight
@@ -324,8 +323,8 @@ RigConstants::Matrix RateStream::widened(const State& state) const {
 Eigen::Matrix3d RateStream::doubted(const Knot& knot, const State& state) const {
   Eigen::Matrix3d out = knot.covariance_rad2_s2;
   if (params_.model.calibration || knot.estimate.flight_weight >= 0.5) return out;
-  const double samples = static_cast<double>(state.learnt_from) / params_.rig_doubt_samples;
-  const double share = params_.contact_doubt / (1.0 + samples);
+  const double samples = static_cast<double>(state.learnt_from) / params_.expert.doubt.samples;
+  const double share = params_.expert.doubt.contact / (1.0 + samples);
   for (int j = 0; j < 3; ++j) {
     if ((knot.observation.unseen() & knot.observation.clipping.gyro & 1u << j) == 0) continue;
     const double read = std::abs(knot.observation.sample.angular_velocity_rad_s[j]);

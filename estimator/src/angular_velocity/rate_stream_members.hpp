@@ -148,8 +148,8 @@ template <StateOf<RateStream::Params> Self, class Visitor>
 void others(Self& p, Visitor& visit) {
   others(p.model, visit);
   others(p.rails, visit);
-  others(p.planes, visit);
-  others(p.accel_planes, visit);
+  others(p.expert.planes, visit);
+  others(p.expert.accel_planes, visit);
 }
 
 }  // namespace tumble

@@ -31,6 +31,39 @@ bool may_be_rail(const RailPlanes& planes, double peak_rad_s) {
   });
 }
 
+// The sample that first says the reading before that of sample k; none where the window does not show it.
+std::optional<std::size_t> reading_before(std::size_t k, const std::vector<RateStream::Knot>& window) {
+  while (k > 0 && window[k].repeats) --k;
+  if (k == 0) return std::nullopt;
+  --k;
+  while (k > 0 && window[k].repeats) --k;
+  return k;
+}
+
+// The sample that says the reading after that of sample k first; the window's size where there is none yet.
+std::size_t reading_after(std::size_t k, const std::vector<RateStream::Knot>& window) {
+  const std::size_t size = window.size();
+  if (k >= size) return size;
+  ++k;
+  while (k < size && window[k].repeats) ++k;
+  return k;
+}
+
+// Samples whose gyro reads the reading before and after that of a sample, null where there is none.
+struct Beside {
+  const ImuSample *before = nullptr, *after = nullptr;
+};
+
+// Those of sample k by what the gyro says: a reading that is said again has the same neighbours.
+Beside readings_beside(std::size_t k, const RateStream::State& state) {
+  const std::optional<std::size_t> before = reading_before(k, state.window);
+  const std::size_t after = reading_after(k, state.window);
+  Beside out;
+  if (before) out.before = &state.window[*before].observation.sample;
+  if (after < state.window.size()) out.after = &state.window[after].observation.sample;
+  return out;
+}
+
 }  // namespace
 
 // What walls say of the window now that more is known of them.
@@ -40,9 +73,10 @@ void RateStream::classify_again(State& state) const {
   for (Knot& knot : state.window) knot.by_walls = rails_.walls().classify(knot.observation.sample, walls);
 }
 
-// Reads the samples of the window from `first` on with the rails as they are known. One that turns out to be clipped
-// starts anew.
-void RateStream::judge(std::size_t first, State& state) const {
+// Reads samples of the window with the rails as they are known: `all`, or the newest and those that say the reading
+// before, which are judged by what lies beside them too. One that turns out to be clipped starts anew.
+void RateStream::judge(bool all, State& state) const {
+  const std::size_t first = all ? 0 : reading_before(state.window.size() - 1, state.window).value_or(0);
   const KnownRails& rails = state.rails.known;
   const RailPlanes planes = rails.planes_in_use(), accel_planes = rails.planes_in_use(Triad::accelerometer);
   const ElementRows accel_rows = rails.rows(Triad::accelerometer, params_.model.element_sigma);
@@ -89,7 +123,7 @@ bool RateStream::may_clip(const ImuSample& sample, int axis, int sign, const Sta
     return plane->short_of(y, sign) <= plane->tolerance_rad_s + kOpen * open;
   }
   const double extreme = std::abs(state.extremes[sign > 0 ? 1 : 0][axis]);
-  const bool high = extreme >= params_.planes.distance_min_rad_s && may_be_rail(planes, extreme);
+  const bool high = extreme >= params_.expert.planes.distance_min_rad_s && may_be_rail(planes, extreme);
   return high && std::abs(y[axis]) >= (1.0 - kBesideRail) * extreme;
 }
 
@@ -162,34 +196,6 @@ void RateStream::doubt_run(int axis, std::size_t first, std::size_t last, State&
     // all of the run are cut off together: what they say is one reading's word
     observation.lost_sigma_rad_s[axis] = std::hypot(noise, std::sqrt(samples) * cut);
   }
-}
-
-// The sample that first says the reading before that of sample k; none where the window does not show it.
-std::optional<std::size_t> RateStream::reading_before(std::size_t k, const std::vector<Knot>& window) {
-  while (k > 0 && window[k].repeats) --k;
-  if (k == 0) return std::nullopt;
-  --k;
-  while (k > 0 && window[k].repeats) --k;
-  return k;
-}
-
-// The sample that says the reading after that of sample k first; the window's size where there is none yet.
-std::size_t RateStream::reading_after(std::size_t k, const std::vector<Knot>& window) {
-  const std::size_t size = window.size();
-  if (k >= size) return size;
-  ++k;
-  while (k < size && window[k].repeats) ++k;
-  return k;
-}
-
-// Those of sample k by what the gyro says: a reading that is said again has the same neighbours.
-RateStream::Beside RateStream::readings_beside(std::size_t k, const State& state) {
-  const std::optional<std::size_t> before = reading_before(k, state.window);
-  const std::size_t after = reading_after(k, state.window);
-  Beside out;
-  if (before) out.before = &state.window[*before].observation.sample;
-  if (after < state.window.size()) out.after = &state.window[after].observation.sample;
-  return out;
 }
 
 // Of the newest sample. Two steps: an impact is one, and a spin that it leaves behind is no rail. Per sample of the

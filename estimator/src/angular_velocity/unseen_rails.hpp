@@ -6,7 +6,7 @@
 
 #include "tumble/angular_velocity/detail/least_rails.hpp"
 #include "tumble/angular_velocity/detail/rate_model.hpp"
-#include "tumble/angular_velocity/rail_planes.hpp"
+#include "tumble/angular_velocity/rail_plane.hpp"
 
 namespace tumble {
 

@@ -175,13 +175,14 @@ ImuMerge::Flags ImuMerge::choose(const Readings& readings, const Flags& present,
   // the places differ, so forces may by what the rate makes of it; the tolerance has to bear that
   const Eigen::Vector3d middle_rate = median(rates, present), middle_force = median(forces, present);
   const auto units = std::count(present.begin(), present.end(), true);
-  const double rate_tolerance = params_.rate_tolerance_rad_s + params_.rate_tolerance_share * middle_rate.norm();
+  const double rate_tolerance =
+      params_.expert.outliers.rate_rad_s + params_.expert.outliers.rate_share * middle_rate.norm();
   Flags used{};
   for (std::size_t i = 0; i < used.size(); ++i) {
     if (!present[i]) continue;
     const double turned = (params_.T_CI[i].translation() - p_C_m_).norm() * middle_rate.squaredNorm() * 2.0;
     const bool agrees = units < 3 || ((rates[i] - middle_rate).norm() < rate_tolerance &&
-                                      (forces[i] - middle_force).norm() < params_.force_tolerance_m_s2 + turned);
+                                      (forces[i] - middle_force).norm() < params_.expert.outliers.force_m_s2 + turned);
     // with three units and more a clipped gyro is a bound, and its accelerometer is needed
     const int clipping = units < kRecovering ? kClipAccel | kClipGyro : kClipAccel;
     used[i] = agrees && (readings[i].device_clip_flags & clipping) == 0;
@@ -277,12 +278,13 @@ void ImuMerge::leave_out_subsample_saturated(const Readings& samples, const Flag
     return params_.T_CI[k].translation() + ForceErrors::place_error_m(static_cast<int>(k), state.forces);
   };
   const auto agree = [&](std::size_t k, std::size_t j) {
-    if (std::max(peak(k), peak(j)) < params_.subsample_saturation_share * params_.accel_range_m_s2) return true;
+    if (std::max(peak(k), peak(j)) < params_.expert.outliers.subsample_saturation_share * params_.accel_range_m_s2)
+      return true;
     const Eigen::Vector3d d = place(k) - place(j);
     const Eigen::Vector3d misfit = forces[k] - forces[j] - acceleration.cross(d) - rate.cross(rate.cross(d));
     const double doubt = kAccelerationShare * (acceleration - before).norm() * d.norm();
-    return std::abs(misfit.dot(d)) <= params_.hidden_force_m_s2 * d.norm() &&
-           misfit.norm() <= params_.hidden_force_m_s2 + doubt;
+    return std::abs(misfit.dot(d)) <= params_.expert.outliers.hidden_force_m_s2 * d.norm() &&
+           misfit.norm() <= params_.expert.outliers.hidden_force_m_s2 + doubt;
   };
   std::size_t believed = 0;
   std::pair<int, double> most(-1, 0.0);

@@ -75,13 +75,13 @@ void ImuMerge::watch_holds(const Flags& present, const Vectors& rates, const Vec
     const bool force_same = watch(forces[k], middle_force, unit.force_hold);
     const bool railed = rates[k].cwiseAbs().maxCoeff() >= params_.gyro_range_rad_s ||
                         forces[k].cwiseAbs().maxCoeff() >= params_.accel_range_m_s2;
-    const bool rate_frozen = unit.rate_hold.held_s >= params_.frozen_after_s &&
-                             (middle_rate - unit.rate_hold.others).norm() > params_.frozen_rate_rad_s;
-    const bool force_frozen = unit.force_hold.held_s >= params_.frozen_after_s &&
-                              (middle_force - unit.force_hold.others).norm() > params_.frozen_force_m_s2;
+    const bool rate_frozen = unit.rate_hold.held_s >= params_.expert.frozen.after_s &&
+                             (middle_rate - unit.rate_hold.others).norm() > params_.expert.frozen.rate_rad_s;
+    const bool force_frozen = unit.force_hold.held_s >= params_.expert.frozen.after_s &&
+                              (middle_force - unit.force_hold.others).norm() > params_.expert.frozen.force_m_s2;
     unit.thawing_s = rate_same || force_same ? 0.0 : unit.thawing_s + dt_s;
     if (unit.frozen) {
-      unit.frozen = unit.thawing_s < params_.thawed_after_s;
+      unit.frozen = unit.thawing_s < params_.expert.frozen.thawed_after_s;
     } else if (!railed && (rate_frozen || force_frozen)) {
       unit.frozen = true;
       unit.frozen_since_ns = rate_frozen ? unit.rate_hold.since_ns : unit.force_hold.since_ns;
@@ -99,7 +99,7 @@ void ImuMerge::watch_misfits(const Flags& present, const Vectors& rates, const V
     const ImuAverage& window = state.units[k].window;
     if (!present[k] || window.readings == 0) continue;
     railed |= window.rate_peak_rad_s >= kUnharmed * params_.gyro_range_rad_s ||
-              window.force_peak_m_s2 >= params_.subsample_saturation_share * params_.accel_range_m_s2;
+              window.force_peak_m_s2 >= params_.expert.outliers.subsample_saturation_share * params_.accel_range_m_s2;
   }
   if (railed) return;
   const Eigen::Vector3d middle_rate = median(rates, present), middle_force = median(forces, present);
@@ -111,11 +111,13 @@ void ImuMerge::watch_misfits(const Flags& present, const Vectors& rates, const V
     const double force = std::max(0.0, (forces[k] - middle_force).norm() - turned);
     unit.misfit_rate_rad_s += share * ((rates[k] - middle_rate).norm() - unit.misfit_rate_rad_s);
     unit.misfit_force_m_s2 += share * (force - unit.misfit_force_m_s2);
-    const double rate_bound = params_.disagree_rate_rad_s + params_.disagree_rate_share * state.turning_rad_s;
-    const bool off = unit.misfit_rate_rad_s > rate_bound || unit.misfit_force_m_s2 > params_.disagree_force_m_s2;
+    const double rate_bound =
+        params_.expert.disagreeing.rate_rad_s + params_.expert.disagreeing.rate_share * state.turning_rad_s;
+    const bool off =
+        unit.misfit_rate_rad_s > rate_bound || unit.misfit_force_m_s2 > params_.expert.disagreeing.force_m_s2;
     if (off && unit.misfits_s == 0.0) unit.misfits_since_ns = time_ns;
     unit.misfits_s = off ? unit.misfits_s + h : 0.0;
-    if (unit.misfits_s < params_.disagrees_after_s) continue;
+    if (unit.misfits_s < params_.expert.disagreeing.after_s) continue;
     unit.disagrees = true;
     unit.disagrees_since_ns = unit.misfits_since_ns;
     break;  // the median is another one without it

@@ -62,8 +62,9 @@ void ImuPlausibility::hold(const Eigen::Vector3d& reading, double dt_s, Hold& ho
     return;
   }
   hold.held_s += dt_s;
-  const bool froze = hold.held_s >= params_.frozen_s && hold.moved_s >= params_.frozen_s &&
-                     hold.held_s >= params_.frozen_share * hold.longest_s;
+  const bool froze = hold.held_s >= params_.expert.frozen.repeats_s &&
+                     hold.moved_s >= params_.expert.frozen.repeats_s &&
+                     hold.held_s >= params_.expert.frozen.longest_share * hold.longest_s;
   if (froze) hold.frozen_s = std::max(hold.frozen_s, hold.held_s);
 }
 
@@ -108,7 +109,7 @@ void ImuPlausibility::compare(const Eigen::Vector3d& force_m_s2, State& state) c
   const Eigen::Vector3d from = state.force_start_m_s2.normalized(), to = force_m_s2.normalized();
   const double by_force = (to - from).squaredNorm();
   const double by_gyro = (state.turned.conjugate() * from - from).squaredNorm();
-  const double least = params_.turn_least_rad * params_.turn_least_rad;
+  const double least = params_.expert.turning.turn_least_rad * params_.expert.turning.turn_least_rad;
   if (std::max(by_force, by_gyro) < least) return;
   state.all_force_rad2 += by_force;
   state.all_gyro_rad2 += by_gyro;
@@ -125,69 +126,76 @@ void ImuPlausibility::compare(const Eigen::Vector3d& force_m_s2, State& state) c
 }
 
 double ImuPlausibility::force_share(const State& state) const {
-  if (state.windows < params_.windows_min) return 1.0;
+  if (state.windows < params_.expert.force.windows_min) return 1.0;
   return state.force_sum_m_s2 / state.windows / params_.gravity_m_s2;
 }
 
 double ImuPlausibility::unexplained_share(const State& state) const {
   const double turned = std::max(state.by_force_rad2, state.by_gyro_rad2);
-  return turned < params_.turned_min_rad2 ? 0.0 : state.unexplained_rad2.front() / turned;
+  return turned < params_.expert.turning.turned_min_rad2 ? 0.0 : state.unexplained_rad2.front() / turned;
 }
 
 /// imu_merge.md (I17).
 double ImuPlausibility::turning_slope(const State& state) const {
-  if (state.by_force_rad2 < params_.turned_min_rad2) return 1.0;
+  if (state.by_force_rad2 < params_.expert.turning.turned_min_rad2) return 1.0;
   return together_rad2(state) / std::max(state.by_gyro_rad2, kStandstillRad2);
 }
 
 /// imu_merge.md (I21).
 double ImuPlausibility::turning_agreement(const State& state) const {
-  if (state.by_force_rad2 < params_.turned_min_rad2) return 1.0;
+  if (state.by_force_rad2 < params_.expert.turning.turned_min_rad2) return 1.0;
   return together_rad2(state) / std::sqrt(state.by_force_rad2 * std::max(state.by_gyro_rad2, kStandstillRad2));
 }
 
 double ImuPlausibility::force_turned_share(const State& state) const {
-  return state.all_gyro_rad2 < params_.turned_min_rad2 ? 1.0 : state.all_force_rad2 / state.all_gyro_rad2;
+  return state.all_gyro_rad2 < params_.expert.turning.turned_min_rad2 ? 1.0
+                                                                      : state.all_force_rad2 / state.all_gyro_rad2;
 }
 
 /// imu_merge.md (I18).
 std::optional<AxisLabels> ImuPlausibility::other_labels(const State& state) const {
-  if (unexplained_share(state) < params_.relabelled_least) return std::nullopt;
+  if (unexplained_share(state) < params_.expert.naming.unexplained_least) return std::nullopt;
   const auto least = least_unexplained(state);
-  if (*least >= params_.relabelled_share_max * state.unexplained_rad2.front()) return std::nullopt;
+  if (*least >= params_.expert.naming.unexplained_share_max * state.unexplained_rad2.front()) return std::nullopt;
   return axis_labels()[static_cast<std::size_t>(least - state.unexplained_rad2.begin())];
 }
 
 Status ImuPlausibility::verdict(const State& state) const {
   const double force = force_share(state);
-  if (force < params_.force_share_min) {
-    return {Trouble::out_of_range, "steady specific force as a share of gravity", force, params_.force_share_min};
+  if (force < params_.expert.force.share_min) {
+    return {Trouble::out_of_range, "steady specific force as a share of gravity", force,
+            params_.expert.force.share_min};
   }
-  if (force > params_.force_share_max) {
-    return {Trouble::out_of_range, "steady specific force as a share of gravity", force, params_.force_share_max};
+  if (force > params_.expert.force.share_max) {
+    return {Trouble::out_of_range, "steady specific force as a share of gravity", force,
+            params_.expert.force.share_max};
   }
   if (const double frozen = frozen_s(state); frozen > 0.0) {
-    return {Trouble::out_of_range, "seconds for which a triad repeats one reading", frozen, params_.frozen_s};
+    return {Trouble::out_of_range, "seconds for which a triad repeats one reading", frozen,
+            params_.expert.frozen.repeats_s};
   }
   if (other_labels(state)) {
     const double least = *least_unexplained(state);
     return {
         Trouble::out_of_range,
         "turning that the gyro leaves unexplained with axes or signs named otherwise, as a share of that with these",
-        least / state.unexplained_rad2.front(), params_.relabelled_share_max};
+        least / state.unexplained_rad2.front(), params_.expert.naming.unexplained_share_max};
   }
-  if (const double still = force_turned_share(state); still < params_.still_share) {
-    return {Trouble::out_of_range, "turning of a steady force as a share of the gyro's", still, params_.still_share};
+  if (const double still = force_turned_share(state); still < params_.expert.turning.still_share) {
+    return {Trouble::out_of_range, "turning of a steady force as a share of the gyro's", still,
+            params_.expert.turning.still_share};
   }
   const double slope = turning_slope(state), agreement = turning_agreement(state);
   // as far as the gyro says, and partly along: its scale is right, and pushes are what hides its sense
   const double as_far = std::abs(slope / agreement);
-  const bool unsure = agreement > params_.agreeing_min && agreement < params_.agreeing_max &&
-                      as_far > params_.turning_min && as_far < params_.turning_max;
+  const bool unsure = agreement > params_.expert.turning.agreeing_min &&
+                      agreement < params_.expert.turning.agreeing_max && as_far > params_.expert.turning.slope_min &&
+                      as_far < params_.expert.turning.slope_max;
   if (unsure) return {};
-  if (slope < params_.turning_min || slope > params_.turning_max) {
-    return {Trouble::out_of_range, "turning of gravity over that of the gyro", slope,
-            slope < params_.turning_min ? params_.turning_min : params_.turning_max};
+  if (slope < params_.expert.turning.slope_min || slope > params_.expert.turning.slope_max) {
+    return {
+        Trouble::out_of_range, "turning of gravity over that of the gyro", slope,
+        slope < params_.expert.turning.slope_min ? params_.expert.turning.slope_min : params_.expert.turning.slope_max};
   }
   return {};
 }

@@ -73,10 +73,10 @@ RateRecovery::RateRecovery(const Params& p) : params_(p) {
   require_within("gyro_range_rad_s", p.gyro_range_rad_s, kSmallest, 1e3);
   require_within("accel_range_m_s2", p.accel_range_m_s2, kSmallest, 1e5);
   require_within("lever_arm_sigma_m", p.lever_arm_sigma_m, kSmallest, 10.0);
-  require_within("rate_noise_rad_s", p.rate_noise_rad_s, kSmallest, 10.0);
-  require_within("rate_noise_share", p.rate_noise_share, 0.0, 1.0);
-  require_within("force_noise_m_s2", p.force_noise_m_s2, kSmallest, 1e3);
-  require_within("force_noise_share", p.force_noise_share, 0.0, 1.0);
+  require_within("rate_noise_rad_s", p.noise.rate_rad_s, kSmallest, 10.0);
+  require_within("rate_noise_share", p.noise.rate_share, 0.0, 1.0);
+  require_within("force_noise_m_s2", p.noise.force_m_s2, kSmallest, 1e3);
+  require_within("force_noise_share", p.noise.force_share, 0.0, 1.0);
   require_within("acceleration_walk_rad_s2_sqrts", p.acceleration_walk_rad_s2_sqrts, kSmallest, 1e6);
   require_within("force_walk_m_s2_sqrts", p.force_walk_m_s2_sqrts, kSmallest, 1e6);
   require_within("recovered_sigma_rad_s", p.recovered_sigma_rad_s, kSmallest, 1e3);
@@ -187,7 +187,7 @@ void RateRecovery::measure_rates(std::span<const ImuSample> units, double dt_s, 
         continue;  // beyond the rail, as it may be
       Row row = Row::Zero();
       row.segment<3>(kRate) = seen.rows_C.row(axis);
-      const double sigma = params_.rate_noise_rad_s + params_.rate_noise_share * std::abs(reading);
+      const double sigma = params_.noise.rate_rad_s + params_.noise.rate_share * std::abs(reading);
       const double variance = seen.railed[static_cast<std::size_t>(axis)] ? squared(kRailSigma_rad_s) : squared(sigma);
       update(row, missing, shorter * variance + squared(seen.slope_sigma[axis] * hidden), state);
     }
@@ -217,7 +217,7 @@ void RateRecovery::measure_forces(std::span<const ImuSample> units, double dt_s,
       row.segment<3>(arm) = axis_C * by_place;
       const Eigen::Vector3d force = state.x.segment<3>(kForce) + by_place * place;
       const double hidden = seen.slope_sigma[axis] > 0.0 ? seen.hidden(seen.rows_C * force) : 0.0;
-      const double sigma = params_.force_noise_m_s2 + params_.force_noise_share * std::abs(reading);
+      const double sigma = params_.noise.force_m_s2 + params_.noise.force_share * std::abs(reading);
       update(row, reading - axis_C.dot(force), shorter * squared(sigma) + squared(seen.slope_sigma[axis] * hidden),
              state);
     }

@@ -43,7 +43,7 @@ Status check_covariance(const Eigen::Matrix3d& covariance_rad2_s2) {
 
 }  // namespace
 
-TumbleAttitude::TumbleAttitude(const Params& p) : params_(p), rests_(p.rest) {
+TumbleAttitude::TumbleAttitude(const Params& p) : params_(p), rests_(p.expert.rest) {
   require_fields(p);
   require_within("lever_arm_m", p.lever_arm_m.norm(), 0.0, 10.0);
 }
@@ -57,7 +57,8 @@ Status TumbleAttitude::step(const ImuSample& sample, const Eigen::Matrix3d& rate
     start(state);
   } else {
     double dt_s = 0.0;
-    if (const Status bad = elapsed(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s); !bad.ok()) return bad;
+    if (const Status bad = elapsed(sample.time_ns, state.last_time_ns, params_.expert.gap_max_s, dt_s); !bad.ok())
+      return bad;
     // of the average so far the attitude before it is turned on
     if (state.average.readings == 0) {
       state.q_taken_WI = state.q_WI;
@@ -66,7 +67,7 @@ Status TumbleAttitude::step(const ImuSample& sample, const Eigen::Matrix3d& rate
     }
     state.average.add(sample, dt_s);
     state.recovered_rad2_s2 += dt_s / state.average.length_s * (rate_covariance_rad2_s2 - state.recovered_rad2_s2);
-    if (state.average.full(params_.reading_s, dt_s)) {
+    if (state.average.full(params_.expert.reading_s, dt_s)) {
       take_average(state);
     } else {
       const Eigen::Vector3d rate = state.average.mean.angular_velocity_rad_s - state.bias_rad_s;
@@ -90,7 +91,7 @@ void TumbleAttitude::take_average(State& state) const {
   state.at_rest = rests_.observe(reading, state.rest, state.bias_rad_s) && turns_by_bias_alone(state);
   integrate(reading, length_s, state);
   add_recovered(length_s, state);
-  if (state.node_s >= params_.node_s - 0.5 * length_s) {
+  if (state.node_s >= params_.expert.node_s - 0.5 * length_s) {
     predict_node(state);
     correct_node(state);
   }
@@ -99,9 +100,9 @@ void TumbleAttitude::take_average(State& state) const {
 /// attitude.md (A11a): whether the mean rate of the run is the bias, as well as both are known.
 bool TumbleAttitude::turns_by_bias_alone(const State& state) const {
   const Eigen::Array3d off_rad_s = (state.rest.mean_rate_rad_s() - state.bias_rad_s).array();
-  const Eigen::Array3d variance =
-      state.covariance.diagonal().segment<3>(kBias).array() + squared(params_.rest_rate_sigma_rad_sqrts);  // of 1 s
-  return (off_rad_s.square() <= squared(params_.rest_rate_sigmas) * variance).all();
+  const Eigen::Array3d variance = state.covariance.diagonal().segment<3>(kBias).array() +
+                                  squared(params_.expert.at_rest.rate_sigma_rad_sqrts);  // of 1 s
+  return (off_rad_s.square() <= squared(params_.expert.at_rest.rate_sigmas) * variance).all();
 }
 
 void TumbleAttitude::start(State& state) const {
@@ -137,7 +138,7 @@ void TumbleAttitude::add_recovered(double dt_s, State& state) const {
     const Eigen::Vector2d step_rad =
         dt_s * Eigen::Vector2d(std::sqrt(variance.head<2>().mean()), std::sqrt(variance.z()));
     state.recovered_rad2 += step_rad.cwiseProduct(2.0 * state.recovered_rad + step_rad);
-    state.recovered_rad = std::exp(-dt_s / params_.recovered_tau_s) * state.recovered_rad + step_rad;
+    state.recovered_rad = std::exp(-dt_s / params_.expert.recovered_tau_s) * state.recovered_rad + step_rad;
   }
   state.recovered_rad2_s2.setZero();
 }
@@ -166,24 +167,24 @@ void TumbleAttitude::predict_node(State& state) const {
       squared(params_.gyro_noise_rad_sqrts) * h + squared(params_.rate_error_sqrts) * state.turned_rad2_s;
   state.covariance.diagonal().segment<2>(kTilt).array() += turn + state.recovered_rad2[0];
   state.covariance(kHeading, kHeading) += state.at_rest ? 0.0 : turn + state.recovered_rad2[1];
-  state.covariance.diagonal().segment<3>(kBias).array() += squared(params_.bias_walk_rad_s_sqrts) * h;
-  state.covariance.diagonal().segment<2>(kVelocity).array() += squared(params_.acceleration_noise_m_s_sqrts) * h;
+  state.covariance.diagonal().segment<3>(kBias).array() += squared(params_.expert.bias_walk_rad_s_sqrts) * h;
+  state.covariance.diagonal().segment<2>(kVelocity).array() += squared(params_.expert.acceleration_noise_m_s_sqrts) * h;
 }
 
 /// Whether rolling is not to be believed at this node.
 bool TumbleAttitude::watch_slip(const Eigen::Vector2d& misfit_m_s, State& state) const {
   const double misfit = misfit_m_s.norm();
   state.slip_s = state.slipping ? state.slip_s + state.node_s : 0.0;
-  state.fits_s = misfit < 0.5 * params_.slip_velocity_m_s ? state.fits_s + state.node_s : 0.0;
+  state.fits_s = misfit < 0.5 * params_.expert.rolling.slip_velocity_m_s ? state.fits_s + state.node_s : 0.0;
   if (state.slipping) {
-    state.slipping = !state.at_rest && state.fits_s <= params_.slip_quiet_s;
-    if (state.slip_s > params_.slip_timeout_s) {
+    state.slipping = !state.at_rest && state.fits_s <= params_.expert.rolling.slip_quiet_s;
+    if (state.slip_s > params_.expert.rolling.slip_timeout_s) {
       // what the integral says by now is worth less than rolling
       state.covariance.diagonal().segment<2>(kVelocity).array() += squared(misfit);
       state.slipping = false;
     }
   } else {
-    state.slipping = !state.at_rest && misfit > params_.slip_velocity_m_s;
+    state.slipping = !state.at_rest && misfit > params_.expert.rolling.slip_velocity_m_s;
   }
   return state.slipping;
 }
@@ -226,11 +227,12 @@ void TumbleAttitude::correct_node(State& state) const {
   if (state.at_rest) {
     if (rolls) watch_slip(turned - state.v_W_m_s, state);
     for (int axis = 0; axis < 2; ++axis) {
-      update(kVelocity + axis, -state.v_W_m_s[axis], squared(params_.rest_velocity_sigma_m_s), state);
+      update(kVelocity + axis, -state.v_W_m_s[axis], squared(params_.expert.at_rest.velocity_sigma_m_s), state);
     }
   } else if (rolls && !watch_slip(turned - state.v_W_m_s, state)) {
     for (int axis = 0; axis < 2; ++axis) {
-      update(kVelocity + axis, turned[axis] - state.v_W_m_s[axis], squared(params_.rolling_velocity_sigma_m_s), state);
+      update(kVelocity + axis, turned[axis] - state.v_W_m_s[axis], squared(params_.expert.rolling.velocity_sigma_m_s),
+             state);
     }
   }
   if (!rolls) correct_body(turned, state);
@@ -238,7 +240,7 @@ void TumbleAttitude::correct_node(State& state) const {
     const Eigen::Vector3d mean_rate_rad_s = state.rest.mean_rate_rad_s();
     for (int axis = 0; axis < 3; ++axis) {
       update(kBias + axis, mean_rate_rad_s[axis] - state.bias_rad_s[axis],
-             squared(params_.rest_rate_sigma_rad_sqrts) / h, state);
+             squared(params_.expert.at_rest.rate_sigma_rad_sqrts) / h, state);
     }
   }
   state.covariance = (0.5 * (state.covariance + state.covariance.transpose())).eval();

@@ -54,9 +54,9 @@ Status Vqf::step(const ImuSample& sample, State& state) const {
 }
 
 void Vqf::detect_rest(const ImuSample& sample, double dt_s, State& state) const {
-  const double warp = low_pass_warp(params_.rest_tau_s, dt_s);
-  state.rest_rate_rad_s.advance(sample.angular_velocity_rad_s, params_.rest_tau_s, dt_s, warp);
-  state.rest_force_m_s2.advance(sample.specific_force_m_s2, params_.rest_tau_s, dt_s, warp);
+  const double warp = low_pass_warp(params_.expert.rest_tau_s, dt_s);
+  state.rest_rate_rad_s.advance(sample.angular_velocity_rad_s, params_.expert.rest_tau_s, dt_s, warp);
+  state.rest_force_m_s2.advance(sample.specific_force_m_s2, params_.expert.rest_tau_s, dt_s, warp);
   const bool quiet = (sample.angular_velocity_rad_s - state.rest_rate_rad_s.value).norm() < params_.rest_rate_rad_s &&
                      (sample.specific_force_m_s2 - state.rest_force_m_s2.value).norm() < params_.rest_force_m_s2 &&
                      state.rest_rate_rad_s.value.cwiseAbs().maxCoeff() <= params_.bias_clip_rad_s;
@@ -94,15 +94,15 @@ void Vqf::estimate_bias(const Eigen::Vector3d& up_W, double dt_s, State& state) 
   Eigen::Vector3d innovation, noise;
   if (state.at_rest && params_.rest_bias_estimation) {
     innovation = state.rest_rate_rad_s.value - b;
-    noise.setConstant(steady_noise(params_.bias_sigma_rest_rad_s, growth));
+    noise.setConstant(steady_noise(params_.expert.bias_sigma_rest_rad_s, growth));
   } else if (params_.motion_bias_estimation) {
     H = Eigen::Map<const Eigen::Matrix3d>(state.R_WI.value.data());
     // the levelling's rate is what the bias still leaves, plus what the bias removed since the force entered the
     // low-pass
     const Eigen::Vector2d low_passed = state.bias_W_rad_s.value;
     innovation = Eigen::Vector3d(low_passed.x() - up_W.y() / dt_s, low_passed.y() + up_W.x() / dt_s, 0.0) - H * b;
-    const double motion = steady_noise(params_.bias_sigma_motion_rad_s, growth);
-    noise = {motion, motion, motion / params_.vertical_forgetting};
+    const double motion = steady_noise(params_.expert.bias_sigma_motion_rad_s, growth);
+    noise = {motion, motion, motion / params_.expert.vertical_forgetting};
   } else {
     return;
   }

@@ -18,8 +18,8 @@ namespace odometry {
 template <StateOf<RegimeStream::Params> Self, class Visitor>
 void visit_taught(Self& p, Visitor& visit) {
   visit("calibration", p.rate.model.calibration);
-  visit("known rails", p.rate.planes.known);
-  visit("known rails of the accelerometer", p.rate.accel_planes.known);
+  visit("known rails", p.rate.expert.planes.known);
+  visit("known rails of the accelerometer", p.rate.expert.accel_planes.known);
 }
 
 }  // namespace odometry

@@ -18,9 +18,9 @@ constexpr std::size_t kTellsShare = 5;  // a calibration learnt with more than o
 
 /// Rails as the stream has learnt them, doubted as much as the rest.
 void start_from_rails(const KnownRails& known, double doubt, RateStream::Params& params) {
-  params.planes.known = known.planes;
-  params.accel_planes.known = known.accel_planes;
-  for (RailPlanes* const planes : {&params.planes.known, &params.accel_planes.known}) {
+  params.expert.planes.known = known.planes;
+  params.expert.accel_planes.known = known.accel_planes;
+  for (RailPlanes* const planes : {&params.expert.planes.known, &params.expert.accel_planes.known}) {
     for (std::optional<RailPlane>& plane : planes->element) {
       if (plane) plane->covariance *= doubt;
     }

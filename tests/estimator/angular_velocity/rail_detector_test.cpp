@@ -167,8 +167,8 @@ TEST(RailDetector, RefusesParametersOutsideOfTheirBounds) {
   EXPECT_THROW(RailDetector({.stated_accel_m_s2 = std::nan("")}), InvalidParams);
   EXPECT_THROW(RailDetector({.enter_share = 0.2}), InvalidParams);
   EXPECT_THROW(RailDetector({.enter_share = 0.01, .leave_share = 0.005}), InvalidParams);
-  EXPECT_THROW(RailDetector({.plateau_samples = 1}), InvalidParams);
-  EXPECT_THROW(RailDetector({.plateau_spread_share = -1.0}), InvalidParams);
+  EXPECT_THROW(RailDetector({.expert = {.plateau = {.samples = 1}}}), InvalidParams);
+  EXPECT_THROW(RailDetector({.expert = {.plateau = {.spread_share = -1.0}}}), InvalidParams);
   EXPECT_THROW(RailDetector({.disagreement_share = 0.0}), InvalidParams);
 }
 

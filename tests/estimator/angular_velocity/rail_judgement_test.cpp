@@ -127,7 +127,7 @@ struct Errors {
 
 template <typename Params>
 Errors smooth(Params params, double distance_min) {
-  params.accel_planes.distance_min_rad_s = distance_min;
+  params.expert.accel_planes.distance_min_rad_s = distance_min;
   Errors out;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const Tumble tumble = tumble_of(seed, 0.03);

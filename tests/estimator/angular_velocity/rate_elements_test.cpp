@@ -83,7 +83,7 @@ TEST(RateElements, TheCovarianceHoldsTheErrorAndIsNotTooWide) {
 // Negative control: the same smoother without the planes and sure of upright rails believes the readings.
 TEST(RateElements, WithoutPlanesItWouldBeSilentlyWrong) {
   auto params = with_lever_arm<RateSmoother::Params>();
-  params.planes.distance_min_rad_s = 1000.0;
+  params.expert.planes.distance_min_rad_s = 1000.0;
   params.model.element_sigma = 1e-6;
   const Pool pool = run(0.02, params, 3);
   EXPECT_GT(quantile(pool.ours, 0.5), 0.5 * quantile(pool.raw, 0.5));

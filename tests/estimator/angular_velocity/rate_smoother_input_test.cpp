@@ -149,14 +149,14 @@ TEST(RateSmootherInput, RefusesParametersOutsideOfTheirBounds) {
     EXPECT_THROW(RateSmoother{params}, InvalidParams);
   };
   EXPECT_THROW(RateSmoother{{}}, InvalidParams) << "the lever arm has no default";
-  refused([](RateSmoother::Params& p) { p.iterations_max = 0; });
-  refused([](RateSmoother::Params& p) { p.tolerance_rad_s = 0.0; });
-  refused([](RateSmoother::Params& p) { p.widen_first = 0.5; });
+  refused([](RateSmoother::Params& p) { p.expert.descent.iterations_max = 0; });
+  refused([](RateSmoother::Params& p) { p.expert.descent.tolerance_rad_s = 0.0; });
+  refused([](RateSmoother::Params& p) { p.expert.descent.widen_first = 0.5; });
   refused([](RateSmoother::Params& p) { p.gap_max_s = -1.0; });
   refused([](RateSmoother::Params& p) { p.model.nominal.lever_arm_m.x() = std::nan(""); });
   refused([](RateSmoother::Params& p) { p.model.lever_arm_sigma_m = 0.0; });
-  refused([](RateSmoother::Params& p) { p.model.jerk_psd_flight = 0.0; });
-  refused([](RateSmoother::Params& p) { p.model.flight_threshold = 0.5; });
+  refused([](RateSmoother::Params& p) { p.model.expert.flight.jerk_psd_rad2_s5 = 0.0; });
+  refused([](RateSmoother::Params& p) { p.model.expert.flight.threshold = 0.5; });
   refused([](RateSmoother::Params& p) { p.rails.stated_gyro_rad_s = -1.0; });
   refused([](RateSmoother::Params& p) { p.model.calibration = RigCalibration{{}, -RigConstants::Matrix::Identity()}; });
 }

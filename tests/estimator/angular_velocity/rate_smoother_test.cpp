@@ -94,7 +94,7 @@ TEST(RateSmoother, CoverageInFlight) {
     options.mounting_seed = seed;
     options.roll = false;
     RateSmoother::Params params = wrong_lever(0.02, seed);
-    params.model.error_sizes.gyro = params.model.error_sizes.accel = 0.0;  // nor has the sensor any
+    params.model.expert.error_sizes.gyro = params.model.expert.error_sizes.accel = 0.0;  // nor has the sensor any
     const Outcome run = estimate(options, params);
     for (std::size_t k = 0; k < run.states.size(); ++k) {
       const Vector3d error = run.states[k].w_WI_I_rad_s - run.recording.truth[k];
@@ -138,8 +138,8 @@ Consistency consistency_with_matrices(double sigma, double stated) {
     for (double& entry : options.gyro_error.reshaped()) entry = sigma * noise();
     for (double& entry : options.accel_error.reshaped()) entry = sigma * noise();
     RateSmoother::Params params = wrong_lever(0.01, seed);
-    params.error_rounds_max = 1;
-    params.model.error_sizes.gyro = params.model.error_sizes.accel = stated;
+    params.expert.error_rounds_max = 1;
+    params.model.expert.error_sizes.gyro = params.model.expert.error_sizes.accel = stated;
     const Outcome run = estimate(options, params);
     for (std::size_t k = 0; k < run.states.size(); ++k) {
       if (run.recording.phase[k] != Phase::flight) continue;
@@ -198,8 +198,8 @@ TEST(RateSmoother, IsEquivariantToARotatedMounting) {
     sample.specific_force_m_s2 = R * sample.specific_force_m_s2;
   }
   auto params = with_lever_arm<RateSmoother::Params>();
-  params.tolerance_rad_s = 1e-8;
-  params.iterations_max = 60;
+  params.expert.descent.tolerance_rad_s = 1e-8;
+  params.expert.descent.iterations_max = 60;
   const Outcome run = estimate(options, params);
   params.model.nominal.lever_arm_m = R * params.model.nominal.lever_arm_m;
   std::vector<RateState> states;

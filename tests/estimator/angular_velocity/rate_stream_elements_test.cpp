@@ -99,7 +99,7 @@ TEST(RateStreamElements, ATiltedRailIsReadAsAnUprightOne) {
 // Negative control: with rails that are not looked for as planes the stream believes the readings.
 TEST(RateStreamElements, WithoutPlanesItWouldBeSilentlyWrong) {
   auto params = with_lever_arm<RateStream::Params>();
-  params.planes.distance_min_rad_s = 1000.0;
+  params.expert.planes.distance_min_rad_s = 1000.0;
   const Pool pool = run(0.02, params);
   EXPECT_GT(quantile(pool.ours, 0.5), 0.3 * quantile(pool.raw, 0.5));
   EXPECT_LT(pool.share_within(), 0.8);
@@ -111,7 +111,7 @@ TEST(RateStreamElements, WithALongLagItIsTheBatch) {
       const TumbleRecording tumble = tumble_of(seed, tilt);
       auto params = with_lever_arm<RateStream::Params>();
       params.lag_s = 9.0;  // nothing leaves the window
-      params.rig_doubt = 0.0;
+      params.expert.doubt.covariance = 0.0;
       const RateStream method(params);
       RateStream::State state = method.start();
       const std::vector<RateState> live = stream(method, tumble.samples, state);
@@ -235,7 +235,7 @@ TEST(RateStreamElements, NothingAtARailGoesOutAsMeasuredBeforeTheRailIsKnown) {
   params.lag_s = 0.06;
   const Believed doubted = believed(params);
   // negative control: axes that turn slower than this are believed
-  params.planes.distance_min_rad_s = 1000.0;
+  params.expert.planes.distance_min_rad_s = 1000.0;
   const Believed trusted = believed(params);
   std::printf("of %d within %d, measured %d; believed: within %d, measured %d\n", doubted.clipped, doubted.within,
               doubted.measured, trusted.within, trusted.measured);

@@ -195,7 +195,7 @@ TEST(RateSmootherDevices, ALateAccelerometerIsFound) {
     count(clean, states, in_time);
     clean_sum += clipped_errors(clean, rates_of(states), 10.49).median;
     auto believing = with_lever_arm<RateSmoother::Params>();
-    believing.error_rounds_max = 1;
+    believing.expert.error_rounds_max = 1;
     ASSERT_TRUE(RateSmoother(believing).estimate(late.samples, states, report).ok());
     taken_sum += clipped_errors(late, rates_of(states), 10.49).median;
     count(late, states, taken);
@@ -254,14 +254,14 @@ TEST(RateSmootherDevices, AStatedDelayFarFromZeroIsBelieved) {
   const TumbleRecording late = late_tumble(3, 3);
   auto params = with_lever_arm<RateSmoother::Params>();
   params.model.errors.accel_delay_s = 0.03;
-  params.model.error_sizes.delay_s = 2e-4;
-  params.model.error_sizes.delay_unknown_s = 4e-3;
+  params.model.expert.error_sizes.delay_s = 2e-4;
+  params.model.expert.error_sizes.delay_unknown_s = 4e-3;
   std::vector<RateState> states;
   RateReport report;
   ASSERT_TRUE(RateSmoother(params).estimate(late.samples, states, report).ok());
   EXPECT_NEAR(report.sensor_errors.errors.accel_delay_s, 0.03, 5e-4);
   constexpr int i = SensorErrors::kDelay;
-  EXPECT_LT(std::sqrt(report.sensor_errors.covariance(i, i)), 0.5 * params.model.error_sizes.delay_unknown_s);
+  EXPECT_LT(std::sqrt(report.sensor_errors.covariance(i, i)), 0.5 * params.model.expert.error_sizes.delay_unknown_s);
   EXPECT_GT(report.together, 0.5);
 }
 

@@ -35,7 +35,7 @@ TEST(TumbleAttitude, ContractOfEveryFilter) {
 TEST(TumbleAttitude, RefusesBadParams) {
   EXPECT_THROW(TumbleAttitude({.gravity_m_s2 = 0.0}), InvalidParams);
   EXPECT_THROW(TumbleAttitude({.gyro_noise_rad_sqrts = -1.0}), InvalidParams);
-  EXPECT_THROW(TumbleAttitude({.node_s = 2.0}), InvalidParams);
+  EXPECT_THROW(TumbleAttitude({.expert = {.node_s = 2.0}}), InvalidParams);
   EXPECT_THROW(TumbleAttitude({.velocity_m_sqrts = std::numeric_limits<double>::quiet_NaN()}), InvalidParams);
 }
 
@@ -88,7 +88,7 @@ TEST(TumbleAttitude, ACreepingTurnAfterTheBiasIsKnownIsNotRest) {
   EXPECT_FALSE(state.at_rest);
   EXPECT_NEAR(state.bias_rad_s.z(), 0.0, 1e-3);
   // negative control: what the detector says without asking how well the bias is known
-  const TumbleAttitude::State believed = after_creeping({.rest_rate_sigmas = 1e6});
+  const TumbleAttitude::State believed = after_creeping({.expert = {.at_rest = {.rate_sigmas = 1e6}}});
   EXPECT_TRUE(believed.at_rest);
   EXPECT_GT(believed.bias_rad_s.z(), 0.5 * kCreep);
 }
@@ -178,7 +178,7 @@ TEST(TumbleAttitude, ARecoveredRatesErrorGrowsAsThatOfItsMemory) {
                                 .bias_sigma_start_rad_s = 0.0,
                                 .velocity_m_sqrts = 1e3,
                                 .displacement_m_sqrts = 1e3,
-                                .recovered_tau_s = kMemory_s};
+                                .expert = {.recovered_tau_s = kMemory_s}};
   const TumbleAttitude filter(params);
   TumbleAttitude::State state, before;
   const auto step = [&](int k, const Eigen::Matrix3d& told) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "tumble/angular_velocity/rail_detector.hpp"
-#include "tumble/angular_velocity/rail_planes.hpp"
+#include "tumble/angular_velocity/rail_plane.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
 

@@ -20,6 +20,68 @@ struct Clipping {
   bool operator==(const Clipping&) const = default;
 };
 
+/// A plateau: readings in a row that lie closer together than noise allows.
+struct RailPlateauParams {
+  int samples = 4;  ///< readings in a row that make one
+  /// Largest spread as a share of its level. Below the noise of a free reading.
+  double spread_share = 2e-5;
+  /// One of the gyro below this is a low one, which needs twice as many readings and a jump.
+  double gyro_low_rad_s = 1.0;
+  double gyro_min_rad_s = 0.02;  ///< one below this is no rail
+  double accel_min_m_s2 = 15.0;  ///< likewise of the accelerometer; above gravity
+  /// Digits (smallest changes seen between two readings) of the jump with which a low one begins or ends.
+  double jump_digits = 8.0;
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.samples, {"plateau_samples", "1", 2, 1000, "readings in a row that make a plateau"});
+    visit(p.spread_share,
+          {"plateau_spread_share", "1", 0.0, 0.01, "largest spread of a plateau as a share of its level"});
+    visit(p.gyro_low_rad_s, {"plateau_gyro_low_rad_s", "rad/s", 1e-6, 1000.0,
+                             "a plateau of the gyro below this needs twice as many readings and a jump"});
+    visit(p.gyro_min_rad_s,
+          {"plateau_gyro_min_rad_s", "rad/s", 1e-6, 1000.0, "a plateau of the gyro below this is no rail"});
+    visit(p.accel_min_m_s2, {"plateau_accel_min_m_s2", "m/s^2", 1e-6, 1000.0,
+                             "a plateau of the accelerometer below this is no rail; above gravity"});
+    visit(p.jump_digits,
+          {"plateau_jump_digits", "1", 1.0, 1000.0, "digits of the jump with which a low plateau begins or ends"});
+  }
+};
+
+/// What few need of RailDetectorParams.
+struct RailDetectorExpertParams {
+  RailPlateauParams plateau = {};
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit.group("", p.plateau);
+  }
+};
+
+/// Of RailDetector.
+struct RailDetectorParams {
+  /// Range as stated by the data sheet or the user, if any: gyro [rad/s], (0, 1000]; accelerometer [m/s^2], (0, 1e5].
+  std::optional<double> stated_gyro_rad_s = std::nullopt;
+  std::optional<double> stated_accel_m_s2 = std::nullopt;
+  double enter_share = 0.003;        ///< a reading within this share of the rail starts clipping
+  double leave_share = 0.02;         ///< a neighbour of a clipped reading within this share of the rail is clipped too
+  double disagreement_share = 0.02;  ///< stated and found rail disagree beyond this share
+
+  using Expert = RailDetectorExpertParams;
+  Expert expert = {};  ///< what few need
+
+  /// Every number of it, stated once.
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.enter_share, {"enter_share", "1", 0.0, 0.1, "a reading within this share of the rail starts clipping"});
+    visit(p.leave_share, {"leave_share", "1", 0.0, 0.5,
+                          "a neighbour of a clipped reading within this share of the rail is clipped too"});
+    visit(p.disagreement_share,
+          {"disagreement_share", "1", 1e-6, 1.0, "stated and found rail disagree beyond this share"});
+    visit.group("", p.expert);
+  }
+};
+
 /// Finds the rails of an IMU in its readings: the level that a channel keeps while it is clipped, which differs from
 /// unit to unit and from the data sheet (one specified for 450 deg/s was seen to stay at 600).
 ///
@@ -31,50 +93,7 @@ struct Clipping {
 /// differ between the two signs of an axis, or that drift.
 class RailDetector {
  public:
-  struct Params {
-    /// Range as stated by the data sheet or the user, if any: gyro [rad/s], (0, 1000]; accelerometer [m/s^2], (0, 1e5].
-    std::optional<double> stated_gyro_rad_s = std::nullopt;
-    std::optional<double> stated_accel_m_s2 = std::nullopt;
-    /// A reading within this share of the rail starts clipping.
-    double enter_share = 0.003;
-    /// A neighbour of a clipped reading within this share of the rail is clipped too.
-    double leave_share = 0.02;
-    /// Readings in a row that make a plateau.
-    int plateau_samples = 4;
-    /// Largest spread of a plateau as a share of its level. Below the noise of a free reading.
-    double plateau_spread_share = 2e-5;
-    /// A plateau of the gyro below this is a low one, which needs twice as many readings and a jump [rad/s].
-    double plateau_gyro_low_rad_s = 1.0;
-    /// A plateau below this is no rail: gyro [rad/s] and accelerometer [m/s^2] (above gravity).
-    double plateau_gyro_min_rad_s = 0.02;
-    double plateau_accel_min_m_s2 = 15.0;
-    /// Digits (smallest changes seen between two readings) of the jump with which a low plateau begins or ends;
-    /// [1, 1000].
-    double plateau_jump_digits = 8.0;
-    /// Stated and found rail disagree beyond this share.
-    double disagreement_share = 0.02;
-
-    /// Every number of it, stated once.
-    template <class Self, class Visitor>
-    static void fields(Self& p, Visitor& visit) {
-      visit(p.enter_share, {"enter_share", "1", 0.0, 0.1, "a reading within this share of the rail starts clipping"});
-      visit(p.leave_share, {"leave_share", "1", 0.0, 0.5,
-                            "a neighbour of a clipped reading within this share of the rail is clipped too"});
-      visit(p.plateau_samples, {"plateau_samples", "1", 2, 1000, "readings in a row that make a plateau"});
-      visit(p.plateau_spread_share,
-            {"plateau_spread_share", "1", 0.0, 0.01, "largest spread of a plateau as a share of its level"});
-      visit(p.plateau_gyro_low_rad_s, {"plateau_gyro_low_rad_s", "rad/s", 1e-6, 1000.0,
-                                       "a plateau of the gyro below this needs twice as many readings and a jump"});
-      visit(p.plateau_gyro_min_rad_s,
-            {"plateau_gyro_min_rad_s", "rad/s", 1e-6, 1000.0, "a plateau of the gyro below this is no rail"});
-      visit(p.plateau_accel_min_m_s2, {"plateau_accel_min_m_s2", "m/s^2", 1e-6, 1000.0,
-                                       "a plateau of the accelerometer below this is no rail; above gravity"});
-      visit(p.plateau_jump_digits,
-            {"plateau_jump_digits", "1", 1.0, 1000.0, "digits of the jump with which a low plateau begins or ends"});
-      visit(p.disagreement_share,
-            {"disagreement_share", "1", 1e-6, 1.0, "stated and found rail disagree beyond this share"});
-    }
-  };
+  using Params = RailDetectorParams;
 
   /// One channel; gyro x, y, z then accelerometer x, y, z.
   struct Channel {

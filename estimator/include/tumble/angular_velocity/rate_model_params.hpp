@@ -8,8 +8,10 @@
 #include <vector>
 
 #include "tumble/angular_velocity/auxiliary_imu.hpp"
+#include "tumble/angular_velocity/detail/rate_model_expert_params.hpp"
 #include "tumble/angular_velocity/rig_constants.hpp"
 #include "tumble/angular_velocity/sensor_errors.hpp"
+#include "tumble/common/parameters.hpp"
 
 namespace tumble {
 
@@ -35,52 +37,40 @@ struct RateModelParams {
   double gyro_noise_density = 5.236e-4;
   /// Noise density of the accelerometer [m/s^2/sqrt(Hz)]; of an industrial MEMS accelerometer, 60 ug/sqrt(Hz).
   double accel_noise_density = 5.9e-4;
-  /// What the flight model misses of the specific force (drag, bias in motion), besides noise [m/s^2].
-  double flight_sigma_m_s2 = 0.02;
-  /// What the model misses of a force, a torque or a rate lasts so long: samples that come faster say it once between
-  /// them, and their noise alone averages out [s].
-  double model_error_s = 0.01;
-  /// Scale and misalignment of the accelerometer, as a share of the force.
-  double accel_scale_error = 1e-3;
   /// What the device makes of the motion, as far as it is known: readings are corrected for it.
   SensorErrors errors = {};
-  /// What is left open of it.
-  SensorErrorSizes error_sizes = {};
-  /// What a gyro's bandwidth and its clock leave open of the time of a reading (a first-order low-pass at 415 Hz is
-  /// 0.38 ms late): counted in the covariance, times the angular acceleration [s].
-  double gyro_time_sigma_s = 2.5e-4;
-  /// What Euler's equation without torque misses of the angular acceleration [rad/s^2].
-  double euler_sigma_rad_s2 = 0.3;
-  /// Density of the white angular jerk in flight [rad^2/s^5].
-  double jerk_psd_flight = 1e4;
-  /// In contact the jerk grows by what the force can do to the angular acceleration: rad/s^2 per m/s^2 of specific
-  /// force that the flight model cannot explain.
-  double contact_gain_rad_m = 4.0;
-  /// Impacts are no Gaussian noise: what a fit through one claims to know is widened by this factor.
-  double contact_sigma_factor = 1.3;
-  /// Euler's equation in contact: a force F turns the body across itself, by up to about this times |F| (mass times
-  /// distance of the contact over a third of the trace of the inertia) ....
-  double contact_lever_rad_m = 5.0;
-  /// ... and about its own direction by a share of that (several contacts, a contact that moves in a window).
-  double contact_twist_share = 0.3;
-  /// In contact the unknown force is taken for zero with a standard deviation of this times itself (a prior that is
-  /// flat in its logarithm has 0.58); 0: nothing is assumed of it.
-  double contact_force_share = 1.0;
-  /// A sample whose residuals of flight exceed this many standard deviations counts as contact.
-  double flight_threshold = 5.0;
-  /// Softness of the bound that a clipped reading is [rad/s].
-  double rail_sigma_rad_s = 0.05;
-  /// A body at rest still trembles, and rest may be found where there is none: deviation of its rate from zero, taken
-  /// anew with each sample [rad/s].
-  double rest_sigma_rad_s = 0.01;
   /// Rates and accelerations that no body of this kind has; they bound the answer where nothing else does. The first
   /// in [1, 1e4] rad/s, the second in [1, 1e7] rad/s^2.
   double rate_max_rad_s = 50.0;
   double acceleration_max_rad_s2 = 5000.0;
 
-  /// Every number of it, stated once: `rate_model_params_fields.hpp`.
+  using Expert = RateModelExpertParams;
+  Expert expert = {};  ///< what few need
+
+  /// Every number of it, stated once.
   template <class Self, class Visitor>
-  static void fields(Self& p, Visitor& visit);
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.lever_arm_sigma_m,
+          {"lever_arm_sigma_m", "m", 1e-9, 10.0, "what the calibrated lever arm may be off by", Rank::first});
+    visit(p.gyro_bias_sigma_rad_s,
+          {"gyro_bias_sigma_rad_s", "rad/s", 1e-9, 10.0, "prior of the gyro's bias", Rank::first});
+    visit(p.accel_bias_sigma_m_s2,
+          {"accel_bias_sigma_m_s2", "m/s^2", 1e-9, 10.0, "prior of the accelerometer's bias", Rank::first});
+    visit(p.inertia_sigma,
+          {"inertia_sigma", "1", 1e-9, 10.0, "prior of the inertia's shape about equal moments", Rank::first});
+    visit(p.element_sigma,
+          {"element_sigma", "1", 1e-9, 0.2,
+           "prior of each slope of a gyro element's rail: cross-axis sensitivity before the device compensates it",
+           Rank::first});
+    visit(p.gyro_noise_density,
+          {"gyro_noise_density", "rad/s/sqrt(Hz)", 1e-9, 1.0, "noise density of the gyro (0.03 deg/s/sqrt(Hz))"});
+    visit(p.accel_noise_density,
+          {"accel_noise_density", "m/s^2/sqrt(Hz)", 1e-9, 10.0, "noise density of the accelerometer (60 ug/sqrt(Hz))"});
+    visit(p.rate_max_rad_s, {"rate_max_rad_s", "rad/s", 1.0, 1e4, "a rate that no body of this kind has"});
+    visit(p.acceleration_max_rad_s2,
+          {"acceleration_max_rad_s2", "rad/s^2", 1.0, 1e7, "an angular acceleration that no body of this kind has"});
+    visit.group("", p.expert);
+  }
 };
 
 inline constexpr std::size_t kAuxiliaryImusMax = 2;

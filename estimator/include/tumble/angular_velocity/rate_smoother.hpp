@@ -8,15 +8,50 @@
 #include <vector>
 
 #include "tumble/angular_velocity/clipping_finder.hpp"
-#include "tumble/angular_velocity/rail_planes.hpp"
-#include "tumble/angular_velocity/rate_model_params_fields.hpp"
+#include "tumble/angular_velocity/detail/rate_smoother_expert_params.hpp"
+#include "tumble/angular_velocity/rail_detector.hpp"
+#include "tumble/angular_velocity/rail_plane.hpp"
+#include "tumble/angular_velocity/rate_model_params.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/angular_velocity/rest_detector.hpp"
+#include "tumble/angular_velocity/sensor_errors.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble {
+
+/// Of RateSmoother.
+struct RateSmootherParams {
+  RateModelParams model = {};
+  RailDetector::Params rails = {};
+  double recovered_sigma_rad_s = 0.5;  ///< a clipped axis known better than this is recovered, not only bounded
+  /// A run whose constants move further than this (RateReport::calibration_mahalanobis) is estimated again with the
+  /// constants held to what was known.
+  double calibration_mahalanobis_max = 1.5;
+  /// What an earlier run has told of the device's errors (RateReport::sensor_errors); of use where they are
+  /// estimated.
+  std::optional<KnownSensorErrors> learnt_errors = std::nullopt;
+  double gap_max_s = 1.0;  ///< longest time between samples before the run is refused
+
+  using Expert = RateSmootherExpertParams;
+  Expert expert = {};  ///< what few need
+
+  /// Every number of it, stated once.
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit.group("", p.model);
+    visit.group("rails_", p.rails);
+    visit(p.recovered_sigma_rad_s,
+          {"recovered_sigma_rad_s", "rad/s", 0.0, 1e4,
+           "a clipped axis known better than this is recovered, not only bounded", Rank::first});
+    visit(p.calibration_mahalanobis_max,
+          {"calibration_mahalanobis_max", "1", 0.1, 1e6,
+           "constants of the rig that move further from their prior are held to it", Rank::first});
+    visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0, "longest time between two samples before the run is refused"});
+    visit.group("", p.expert);
+  }
+};
 
 /// What a run tells about its own health.
 struct RateReport {
@@ -63,7 +98,7 @@ struct RateReport {
 ///
 /// Contact: the force at the centre of mass is what flight leaves of the reading, and a force through a point of the
 /// cage has no torque about its own direction: that row of Euler's equation stays in force, the two across it are as
-/// wide as the cage makes them (RateModelParams::contact_lever_rad_m). More is not to be had from a contact point:
+/// wide as the cage makes them (RateContactParams::lever_rad_m). More is not to be had from a contact point:
 /// of clipped samples in contact (tests/bench/rate_contact; docs/maths/rate_smoother.md) along the force lie 1.4 % of
 /// the torque (median), but the point that the sample before gives leaves 66 % of it, the best single point of a whole
 /// impact 48 %, and all of it in one sample of ten: a cage strikes with several bars, and within 10 ms it rolls on.
@@ -85,62 +120,7 @@ struct RateReport {
 /// which the gyro's readings stand: means over the window of the sample.
 class RateSmoother {
  public:
-  struct Params {
-    RateModelParams model;
-    RailDetector::Params rails;
-    RailPlaneFinder::Params planes;  ///< without a stated range of its own: that of `rails`
-    RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();  ///< likewise
-    RestDetector::Params rests;
-    int iterations_max = 15;
-    double tolerance_rad_s = 2e-3;  ///< stop when no rate changes by more
-    double step_max_rad_s = 10.0;   ///< longest step of a rate in one iteration
-    double widen_first = 8.0;       ///< threshold of contact in the first iteration, halved in each
-    /// Iterations after settling in which the bounds of samples in contact are those of a truncated distribution
-    /// instead of walls, which gives them an honest covariance.
-    int bound_iterations = 3;
-    double bound_damping = 0.5;          ///< share of a new bound taken over in each of them
-    double recovered_sigma_rad_s = 0.5;  ///< a clipped axis known better than this is recovered, not only bounded
-    /// A run whose constants move further than this (RateReport::calibration_mahalanobis) is estimated again with the
-    /// constants held to what was known.
-    double calibration_mahalanobis_max = 1.5;
-    /// Most descents, each with readings corrected for what the one before has told of the device; 1: the device's
-    /// errors are counted in the covariance and not estimated.
-    int error_rounds_max = 3;
-    /// What an earlier run has told of the device's errors (RateReport::sensor_errors); of use where they are
-    /// estimated.
-    std::optional<KnownSensorErrors> learnt_errors = std::nullopt;
-    double gap_max_s = 1.0;  ///< longest time between samples before the run is refused
-
-    /// Every number of it, stated once.
-    template <class Self, class Visitor>
-    static void fields(Self& p, Visitor& visit) {
-      visit.group("", p.model);
-      visit.group("rails_", p.rails);
-      visit.group("planes_", p.planes);
-      visit.group("accel_planes_", p.accel_planes);
-      visit.group("rests_", p.rests);
-      visit(p.iterations_max, {"iterations_max", "1", 1, 1000, "most iterations of a descent"});
-      visit(p.tolerance_rad_s, {"tolerance_rad_s", "rad/s", 1e-12, 1.0, "stop when no rate changes by more"});
-      visit(p.step_max_rad_s, {"step_max_rad_s", "rad/s", 1e-3, 1e4, "longest step of a rate in one iteration"});
-      visit(p.widen_first,
-            {"widen_first", "1", 1.0, 1000.0, "threshold of contact in the first iteration, halved in each"});
-      visit(p.bound_iterations,
-            {"bound_iterations", "1", 0, 1000,
-             "iterations after settling in which bounds in contact are truncated distributions, not walls"});
-      visit(p.bound_damping, {"bound_damping", "1", 0.01, 1.0, "share of a new bound taken over in each of them"});
-      visit(p.recovered_sigma_rad_s,
-            {"recovered_sigma_rad_s", "rad/s", 0.0, 1e4,
-             "a clipped axis known better than this is recovered, not only bounded", Rank::first});
-      visit(p.calibration_mahalanobis_max,
-            {"calibration_mahalanobis_max", "1", 0.1, 1e6,
-             "constants of the rig that move further from their prior are held to it", Rank::first});
-      visit(p.error_rounds_max,
-            {"error_rounds_max", "1", 1, 10,
-             "most descents with readings corrected for the device's errors; 1: none is corrected"});
-      visit(p.gap_max_s,
-            {"gap_max_s", "s", 1e-6, 3600.0, "longest time between two samples before the run is refused"});
-    }
-  };
+  using Params = RateSmootherParams;
 
   /// Throws InvalidParams on a parameter outside of its bound.
   explicit RateSmoother(const Params& params);

@@ -2,18 +2,18 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "tumble/angular_velocity/detail/arrow_solver.hpp"
-#include "tumble/angular_velocity/detail/hold_watch.hpp"
-#include "tumble/angular_velocity/detail/least_rails.hpp"
 #include "tumble/angular_velocity/detail/rail_watch.hpp"
 #include "tumble/angular_velocity/detail/rate_model.hpp"
-#include "tumble/angular_velocity/rate_model_params_fields.hpp"
+#include "tumble/angular_velocity/detail/rate_stream_expert_params.hpp"
+#include "tumble/angular_velocity/detail/rate_stream_state.hpp"
+#include "tumble/angular_velocity/rail_detector.hpp"
+#include "tumble/angular_velocity/rate_model_params.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/angular_velocity/rest_detector.hpp"
 #include "tumble/common/imu.hpp"
@@ -21,6 +21,42 @@
 #include "tumble/common/status.hpp"
 
 namespace tumble {
+
+/// Of RateStream.
+struct RateStreamParams {
+  /// Narrower than the default of RateModelParams in two priors, since a stream answers before the data outweigh
+  /// them: 2 mg of bias as after a factory calibration, and the inertia of a box rather than of any body (per
+  /// coordinate; sides of 3 : 2 : 2 lie at one deviation of the whole shape, a disc at 1.8, a rod at 3.6).
+  RateModelParams model = {.accel_bias_sigma_m_s2 = 0.02, .inertia_sigma = 0.15};
+  RailDetector::Params rails = {};
+  double period_s = 0.01;                    ///< nominal time between samples
+  double lag_s = 0.2;                        ///< length of the window; [2 period_s, 10], at most 4096 samples
+  double recovered_sigma_rad_s = 0.5;        ///< as in RateSmootherParams
+  double calibration_mahalanobis_max = 1.5;  ///< beyond this what was learnt of the rig is dropped
+  double gap_max_s = 1.0;                    ///< longest time between samples
+  double step_s = 0.005;                     ///< least time between Gauss-Newton steps; 0: with each sample
+
+  using Expert = RateStreamExpertParams;
+  Expert expert = {};  ///< what few need
+
+  /// Every number of it, stated once.
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit.group("", p.model);
+    visit.group("rails_", p.rails);
+    visit(p.period_s, {"period_s", "s", 1e-5, 1.0, "nominal time between samples"});
+    visit(p.lag_s, {"lag_s", "s", 2e-5, 10.0, "how old a sample is when its estimate is given out", Rank::first});
+    visit(p.recovered_sigma_rad_s,
+          {"recovered_sigma_rad_s", "rad/s", 0.0, 1e4,
+           "a clipped axis known better than this is recovered, not only bounded", Rank::first});
+    visit(p.calibration_mahalanobis_max,
+          {"calibration_mahalanobis_max", "1", 0.1, 1e6,
+           "constants of the rig that move further from their prior are held to it", Rank::first});
+    visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0, "longest time between two samples before the run is refused"});
+    visit(p.step_s, {"step_s", "s", 0.0, 0.1, "least time between Gauss-Newton steps; 0: with each sample"});
+    visit.group("", p.expert);
+  }
+};
 
 /// The streaming form of RateSmoother: the same factors over a window of fixed length, one Gauss-Newton step per
 /// sample, or every 5 ms where samples come faster; what leaves the window is marginalised into a Gaussian prior on the
@@ -41,115 +77,12 @@ namespace tumble {
 /// err together (its edges, an impact or a push that was taken for flight), so that their formal covariance is too
 /// small: the lever arm was off by five of its deviations after 10 samples of flight, by three after 40. The covariance
 /// of the rig is therefore widened while few samples have been learnt from (`rig_doubt`), and that of the rates
-/// contains it so. Tried and no help: linearising 3 s of the past anew whenever the constants had moved; keeping young
-/// or short flights in the window from telling of the rig; of the gyro's elements: keeping what was learnt of them when
-/// the rest of the rig is dropped, and keeping contact from telling of them. What it does not model: see RateSmoother.
+/// contains it so. What it does not model: see RateSmoother.
 class RateStream {
  public:
-  struct Params {
-    /// Narrower than the default of RateModelParams in two priors, since a stream answers before the data outweigh
-    /// them: 2 mg of bias as after a factory calibration, and the inertia of a box rather than of any body (per
-    /// coordinate; sides of 3 : 2 : 2 lie at one deviation of the whole shape, a disc at 1.8, a rod at 3.6).
-    RateModelParams model = {.accel_bias_sigma_m_s2 = 0.02, .inertia_sigma = 0.15};
-    RailDetector::Params rails;
-    RailPlaneFinder::Params planes;  ///< without a stated range of its own: that of `rails`
-    RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();  ///< likewise
-    RestDetector::Params rests;
-    double period_s = 0.01;        ///< nominal time between samples
-    double lag_s = 0.2;            ///< length of the window; [2 period_s, 10], at most 4096 samples
-    double widen_first = 8.0;      ///< threshold of contact for a new clipped sample, halved with each step
-    double step_max_rad_s = 10.0;  ///< longest step of a rate at one sample
-    int bound_age = 3;             ///< steps after which the bounds of a sample in contact are softened
-    int flight_run_min = 6;        ///< a flight of fewer samples in a row says nothing of the rig
-    /// Of a rig without calibration: its covariance, but for the gyro's bias and never beyond that beforehand, counts 1
-    /// + rig_doubt / (1 + n / rig_doubt_samples) times, n being the samples of flight that have been learnt from.
-    double rig_doubt = 60.0;
-    double rig_doubt_samples = 30.0;
-    /// What contact tells of a rate beyond the rail rests on a rig that flight has to tell: of a rig without
-    /// calibration its deviation is at least this share of what lies beyond the rail, over 1 + n / rig_doubt_samples.
-    double contact_doubt = 0.5;
-    double bound_damping = 0.5;                ///< share of a new bound taken over in each step
-    double recovered_sigma_rad_s = 0.5;        ///< as in RateSmoother
-    double calibration_mahalanobis_max = 1.5;  ///< beyond this what was learnt of the rig is dropped
-    double gap_max_s = 1.0;                    ///< longest time between samples
-    double step_s = 0.005;                     ///< least time between Gauss-Newton steps; 0: with each sample
-
-    /// Every number of it, stated once.
-    template <class Self, class Visitor>
-    static void fields(Self& p, Visitor& visit) {
-      visit.group("", p.model);
-      visit.group("rails_", p.rails);
-      visit.group("planes_", p.planes);
-      visit.group("accel_planes_", p.accel_planes);
-      visit.group("rests_", p.rests);
-      visit(p.period_s, {"period_s", "s", 1e-5, 1.0, "nominal time between samples"});
-      visit(p.lag_s, {"lag_s", "s", 2e-5, 10.0, "how old a sample is when its estimate is given out", Rank::first});
-      visit(p.widen_first,
-            {"widen_first", "1", 1.0, 1000.0, "threshold of contact for a new clipped sample, halved with each step"});
-      visit(p.step_max_rad_s, {"step_max_rad_s", "rad/s", 1e-3, 1e4, "longest step of a rate at one sample"});
-      visit(p.bound_age,
-            {"bound_age", "1", 0, 4096, "steps after which the bounds of a sample in contact are softened"});
-      visit(p.flight_run_min,
-            {"flight_run_min", "1", 0, 4096, "a flight of fewer samples in a row says nothing of the rig"});
-      visit(p.rig_doubt, {"rig_doubt", "1", 0.0, 1e3,
-                          "covariance of a rig without calibration counts 1 + this / (1 + n / rig_doubt_samples) "
-                          "times, n samples of flight learnt from"});
-      visit(p.rig_doubt_samples, {"rig_doubt_samples", "1", 1.0, 1e6, "see rig_doubt"});
-      visit(p.contact_doubt, {"contact_doubt", "1", 0.0, 10.0,
-                              "of a rig without calibration: deviation of a rate in contact, as a share of what lies "
-                              "beyond the rail, over 1 + n / rig_doubt_samples"});
-      visit(p.bound_damping, {"bound_damping", "1", 0.01, 1.0, "share of a new bound taken over in each step"});
-      visit(p.recovered_sigma_rad_s,
-            {"recovered_sigma_rad_s", "rad/s", 0.0, 1e4,
-             "a clipped axis known better than this is recovered, not only bounded", Rank::first});
-      visit(p.calibration_mahalanobis_max,
-            {"calibration_mahalanobis_max", "1", 0.1, 1e6,
-             "constants of the rig that move further from their prior are held to it", Rank::first});
-      visit(p.gap_max_s,
-            {"gap_max_s", "s", 1e-6, 3600.0, "longest time between two samples before the run is refused"});
-      visit(p.step_s, {"step_s", "s", 0.0, 0.1, "least time between Gauss-Newton steps; 0: with each sample"});
-    }
-  };
-
-  struct Knot {
-    RateObservation observation;
-    Clipping by_walls;  ///< what the device and upright rails say; the observation's knows planes too
-    RateEstimate estimate;
-    Eigen::Matrix3d covariance_rad2_s2 = Eigen::Matrix3d::Zero();
-    /// By how much the size of each axis has grown in each of the two steps up to this sample, the lesser; 0 or more.
-    Eigen::Vector3d approach_rad_s = Eigen::Vector3d::Zero();
-    int age = 0;
-    bool repeats = false;  ///< its gyro says the reading of the sample before again: HoldWatch
-    Eigen::Vector3d stale_rad_s = Eigen::Vector3d::Zero();  ///< HeldReading::stale of its gyro
-  };
-
-  /// All that evolves; made by start(). Copyable; equal() compares.
-  struct State {
-    RailWatch::State rails;
-    RestDetector::State rests;
-    HoldWatch::State holds;    ///< readings that the log says twice
-    std::vector<Knot> window;  ///< oldest first
-    RigConstants rig;
-    RigConstants::Matrix rig_covariance;
-    // what is known of the oldest sample and of the rig from all that left the window, about a point
-    arrow::Block prior;
-    arrow::Corner prior_corner;
-    std::array<Eigen::Vector3d, 2> extremes{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  ///< of readings so far
-    LeastRails least;  ///< by the readings so far
-    /// Of a run of readings at a possible rail that left in part: Knot::approach_rad_s before it, and how many left.
-    Eigen::Vector3d entry_rad_s = Eigen::Vector3d::Zero(), entry_samples = Eigen::Vector3d::Zero();
-    std::optional<RateKnot> left;  ///< the sample that left last, and when it was read
-    TimeNs left_ns = 0;
-    RateKnot prior_knot;
-    RigConstants prior_rig;
-    std::size_t samples = 0;
-    std::size_t waiting = 0;         ///< samples since the last step
-    std::size_t learnt_from = 0;     ///< samples of flight that left the window and told of the rig
-    std::size_t flight_run = 0;      ///< samples of flight in a row that left the window last
-    std::size_t rig_resets = 0;      ///< times that what was learnt of the rig was dropped
-    std::size_t failures = 0;        ///< steps whose system was not positive definite and was skipped
-    std::vector<arrow::Block> work;  ///< scratch space, no part of the state proper
-  };
+  using Params = RateStreamParams;
+  using Knot = RateStreamKnot;
+  using State = RateStreamState;
 
   /// Throws InvalidParams on a parameter outside of its bound.
   explicit RateStream(const Params& params);
@@ -189,19 +122,12 @@ class RateStream {
   double jump_before(const Knot& oldest, const State& state) const;
   void append(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state) const;
   void classify_again(State& state) const;
-  void judge(std::size_t first, State& state) const;
+  void judge(bool all, State& state) const;
   void doubt_unseen(std::size_t k, State& state) const;
   void forget_doubts(State& state) const;
   void doubt_possible_rails(State& state) const;
   bool may_clip(const ImuSample& sample, int axis, int sign, const State& state) const;
   void doubt_run(int axis, std::size_t first, std::size_t last, State& state) const;
-  /// Samples whose gyro reads the reading before and after that of a sample, null where there is none.
-  struct Beside {
-    const ImuSample *before = nullptr, *after = nullptr;
-  };
-  static Beside readings_beside(std::size_t k, const State& state);
-  static std::optional<std::size_t> reading_before(std::size_t k, const std::vector<Knot>& window);
-  static std::size_t reading_after(std::size_t k, const std::vector<Knot>& window);
   static Eigen::Vector3d approach(const std::vector<Knot>& window);
   static void remember_entry(const Knot& leaving, const Knot& next, State& state);
   void add_rails(const State& state, arrow::Corner& corner) const;

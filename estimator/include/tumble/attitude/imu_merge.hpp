@@ -7,14 +7,49 @@
 #include <optional>
 #include <span>
 
+#include "tumble/angular_velocity/rail_plane.hpp"
 #include "tumble/attitude/detail/force_errors.hpp"
+#include "tumble/attitude/detail/imu_merge_expert_params.hpp"
+#include "tumble/attitude/detail/imu_merge_state.hpp"
 #include "tumble/attitude/detail/rate_recovery.hpp"
-#include "tumble/common/detail/imu_average.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble {
+
+/// Of ImuMerge.
+struct ImuMergeParams {
+  static constexpr int kImus = ImuMergeState::kImus;
+  std::array<Eigen::Isometry3d, kImus> T_CI{};  ///< mountings; the first `count` are used
+  int count = 1;
+  double rate_noise_rad_s = 0.01;  ///< of the mean over a window
+  double window_s = 4e-3;          ///< over which readings are averaged beforehand
+  double offset_sigma_s = 3e-3;    ///< prior of a unit's time offset; zero: none
+  double gyro_range_rad_s = 1e3;   ///< readings from here on are at the rail
+  double accel_range_m_s2 = 1e5;
+  double gap_max_s = 1.0;
+  /// Along what the elements of each unit sense (RailPlaneFinder).
+  std::array<ElementRows, kImus> gyro_elements{}, accel_elements{};
+
+  using Expert = ImuMergeExpertParams;
+  Expert expert = {};  ///< what few need
+
+  /// Every number of it, stated once.
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.count, {"count", "1", 1, kImus, "IMUs in use"});
+    visit(p.rate_noise_rad_s, {"rate_noise_rad_s", "rad/s", 1e-12, 10.0, "of the mean rate over a window"});
+    visit(p.window_s, {"window_s", "s", 0.0, 0.1, "over which readings are averaged beforehand"});
+    visit(p.offset_sigma_s, {"offset_sigma_s", "s", 0.0, 0.1, "prior of a unit's time offset; zero: none"});
+    visit(p.gyro_range_rad_s,
+          {"gyro_range_rad_s", "rad/s", 1e-12, 1e3, "readings of the gyro from here on are at the rail"});
+    visit(p.accel_range_m_s2,
+          {"accel_range_m_s2", "m/s^2", 1e-12, 1e5, "readings of the accelerometer from here on are at the rail"});
+    visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "longest time between two samples before the run is refused"});
+    visit.group("", p.expert);
+  }
+};
 
 /// Several IMUs on one rigid body as one: in common axes C, at the mean of their places.
 ///
@@ -44,119 +79,15 @@ namespace tumble {
 /// Not modelled: clocks of different rates, an error that all units share.
 class ImuMerge {
  public:
-  static constexpr int kImus = 4;
-  static constexpr int kLearnFrom = 3;  ///< so many windows make an angular acceleration
-  static constexpr int kErrors = 13;    ///< of a unit's rate about the mean: bias, scale and misalignment, time offset
+  static constexpr int kImus = ImuMergeState::kImus;
+  static constexpr int kLearnFrom = ImuMergeState::kLearnFrom;
+  static constexpr int kErrors = ImuMergeUnit::kErrors;
 
-  struct Params {
-    std::array<Eigen::Isometry3d, kImus> T_CI{};  ///< mountings; the first `count` are used
-    int count = 1;
-    double rate_tolerance_rad_s = 0.15;  ///< from the median, for a unit to be left out
-    double rate_tolerance_share = 0.03;  ///< more, as a share of the rate
-    double force_tolerance_m_s2 = 3.0;
-    double rate_noise_rad_s = 0.01;  ///< of the mean over a window
-    double window_s = 4e-3;          ///< over which readings are averaged beforehand
-    double offset_sigma_s = 3e-3;    ///< prior of a unit's time offset; zero: none
-    double gyro_range_rad_s = 1e3;   ///< readings from here on are at the rail
-    double accel_range_m_s2 = 1e5;
-    /// A reading from this share of the range on may hide a rail met within its sample.
-    double subsample_saturation_share = 0.15;
-    double hidden_force_m_s2 = 3.0;  ///< by which it then may disagree with another
-    double gap_max_s = 1.0;
-    /// Along what the elements of each unit sense (RateRecovery).
-    std::array<ElementRows, kImus> gyro_elements{}, accel_elements{};
-    // Of units that are left out. A reading that lasts for frozen_after_s while the others move by more than this is
-    // frozen; sample and hold is shorter.
-    double frozen_after_s = 0.1;
-    double frozen_rate_rad_s = 0.03;
-    double frozen_force_m_s2 = 0.3;
-    double thawed_after_s = 0.5;  ///< of readings that change
-    // Off from the median, as a mean over half a second, for disagrees_after_s.
-    double disagree_rate_rad_s = 0.1;
-    double disagree_rate_share = 0.06;  ///< more, as a share of the rate
-    double disagree_force_m_s2 = 1.0;
-    double disagrees_after_s = 0.3;
+  using Params = ImuMergeParams;
 
-    /// Every number of it, stated once.
-    template <class Self, class Visitor>
-    static void fields(Self& p, Visitor& visit) {
-      visit(p.count, {"count", "1", 1, kImus, "IMUs in use"});
-      visit(p.rate_tolerance_rad_s,
-            {"rate_tolerance_rad_s", "rad/s", 1e-12, 1e3, "a rate this far from the median is left out"});
-      visit(p.rate_tolerance_share, {"rate_tolerance_share", "1", 0.0, 1.0, "and further, as a share of the rate"});
-      visit(p.force_tolerance_m_s2,
-            {"force_tolerance_m_s2", "m/s^2", 1e-12, 1e4, "a force this far from the median is left out"});
-      visit(p.rate_noise_rad_s, {"rate_noise_rad_s", "rad/s", 1e-12, 10.0, "of the mean rate over a window"});
-      visit(p.window_s, {"window_s", "s", 0.0, 0.1, "over which readings are averaged beforehand"});
-      visit(p.offset_sigma_s, {"offset_sigma_s", "s", 0.0, 0.1, "prior of a unit's time offset; zero: none"});
-      visit(p.gyro_range_rad_s,
-            {"gyro_range_rad_s", "rad/s", 1e-12, 1e3, "readings of the gyro from here on are at the rail"});
-      visit(p.accel_range_m_s2,
-            {"accel_range_m_s2", "m/s^2", 1e-12, 1e5, "readings of the accelerometer from here on are at the rail"});
-      visit(p.subsample_saturation_share,
-            {"subsample_saturation_share", "1", 1e-12, 1.0,
-             "a reading from this share of the range on may hide a rail met within its sample"});
-      visit(p.hidden_force_m_s2, {"hidden_force_m_s2", "m/s^2", 1e-12, 1e4,
-                                  "by which a force that may hide a rail may disagree with another"});
-      visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "longest time between two samples before the run is refused"});
-      visit(p.frozen_after_s,
-            {"frozen_after_s", "s", 1e-12, 1e3, "a reading that lasts so long while the others move is frozen"});
-      visit(p.frozen_rate_rad_s, {"frozen_rate_rad_s", "rad/s", 1e-12, 1e3, "the others move by more than this"});
-      visit(p.frozen_force_m_s2, {"frozen_force_m_s2", "m/s^2", 1e-12, 1e4, "or by more than this"});
-      visit(p.thawed_after_s,
-            {"thawed_after_s", "s", 1e-12, 1e3, "of readings that change, after which a unit is in use again"});
-      visit(p.disagree_rate_rad_s, {"disagree_rate_rad_s", "rad/s", 1e-12, 1e3,
-                                    "a mean rate over half a second this far from the median disagrees"});
-      visit(p.disagree_rate_share, {"disagree_rate_share", "1", 0.0, 1.0, "and further, as a share of the rate"});
-      visit(p.disagree_force_m_s2, {"disagree_force_m_s2", "m/s^2", 1e-12, 1e4,
-                                    "a mean force over half a second this far from the median disagrees"});
-      visit(p.disagrees_after_s, {"disagrees_after_s", "s", 1e-12, 1e3, "for so long, to be left out"});
-    }
-  };
-
-  /// How long a triad has given the same reading, and what the others gave when it began.
-  struct Hold {
-    Eigen::Vector3d reading = Eigen::Vector3d::Zero(), others = Eigen::Vector3d::Zero();
-    TimeNs since_ns = 0;
-    double held_s = 0.0;
-    bool operator==(const Hold&) const = default;
-  };
-
-  /// Errors of one unit's rate about the mean of all.
-  struct Unit {
-    Eigen::Matrix<double, kErrors, 1> x = Eigen::Matrix<double, kErrors, 1>::Zero();
-    Eigen::Matrix<double, kErrors, kErrors> P = Eigen::Matrix<double, kErrors, kErrors>::Zero();
-    ImuAverage window;  ///< of its readings, since the last one closed
-    /// Means over the last window.
-    Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero(), last_force_m_s2 = Eigen::Vector3d::Zero();
-    double suspect_s = 0.0;     ///< for so long it is still left out of the force
-    std::int64_t left_out = 0;  ///< windows
-    Hold rate_hold, force_hold;
-    double thawing_s = 0.0;
-    double misfit_rate_rad_s = 0.0, misfit_force_m_s2 = 0.0, misfits_s = 0.0;
-    TimeNs misfits_since_ns = 0;
-    bool frozen = false, disagrees = false;
-    std::int64_t absent = 0;  ///< samples that were not finite
-    TimeNs frozen_since_ns = 0, disagrees_since_ns = 0, absent_since_ns = 0;
-    bool left_out_for_long() const { return frozen || disagrees; }
-    double offset_s() const { return x[kErrors - 1]; }
-    bool operator==(const Unit&) const = default;
-  };
-  struct State {
-    std::array<Unit, kImus> units{};
-    ForceErrors::State forces;
-    RateRecovery::State recovery;
-    Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();         ///< merged, mean over the last window
-    Eigen::Vector3d rate_before_rad_s = Eigen::Vector3d::Zero();  ///< and over the one before
-    double turning_rad_s = 0.0;                                   ///< mean of the rate over half a second
-    double window_s = 0.0;                                        ///< length of the one that is open
-    double length_s = 0.0, length_before_s = 0.0;                 ///< of the last windows
-    double arm_product = 0.0, arm_square_m2_s3 = 0.0;             ///< of arm_share()
-    std::int64_t samples = 0, windows = 0;
-    int free_windows = kLearnFrom;  ///< since a gyro was clipped, at most kLearnFrom
-    TimeNs last_time_ns = 0;
-    bool operator==(const State&) const = default;
-  };
+  using Hold = ImuHold;
+  using Unit = ImuMergeUnit;
+  using State = ImuMergeState;
 
   explicit ImuMerge(const Params& params);
 

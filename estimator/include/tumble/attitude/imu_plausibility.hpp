@@ -7,12 +7,42 @@
 #include <optional>
 
 #include "tumble/attitude/detail/axis_labels.hpp"
+#include "tumble/attitude/detail/imu_plausibility_expert_params.hpp"
 #include "tumble/common/detail/imu_average.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble {
+
+/// Of ImuPlausibility.
+struct ImuPlausibilityParams {
+  double gravity_m_s2 = 9.80665;
+  double window_s = 0.2;          ///< over which force and turning are compared
+  double reading_s = 0.02;        ///< readings are averaged to this length
+  double steady_share = 0.12;     ///< by which the force's size may change within a window
+  double near_share = 0.25;       ///< by which it may differ from gravity for its direction to be compared
+  double gyro_range_rad_s = 1e6;  ///< a window with an axis beyond it is not compared
+  double gap_max_s = 0.1;         ///< after a longer one a window begins anew
+
+  using Expert = ImuPlausibilityExpertParams;
+  Expert expert = {};  ///< what few need
+
+  /// Every number of it, stated once.
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
+    visit(p.window_s, {"window_s", "s", 0.02, 10.0, "over which force and turning are compared"});
+    visit(p.reading_s, {"reading_s", "s", 1e-3, 1.0, "readings are averaged to this length"});
+    visit(p.steady_share, {"steady_share", "1", 1e-12, 1.0, "by which the force's size may change within a window"});
+    visit(p.near_share, {"near_share", "1", 1e-12, 1e6,
+                         "by which the force's size may differ from gravity for its turning to be compared"});
+    visit(p.gyro_range_rad_s,
+          {"gyro_range_rad_s", "rad/s", 1e-3, 1e6, "a window with an axis beyond it is not compared"});
+    visit(p.gap_max_s, {"gap_max_s", "s", 1e-12, 1e4, "after a longer one a window begins anew"});
+    visit.group("", p.expert);
+  }
+};
 
 /// Whether an IMU's readings can be what they claim to be: units, axes, signs, and alive.
 ///
@@ -35,65 +65,8 @@ namespace tumble {
 /// all the time.
 class ImuPlausibility {
  public:
-  struct Params {
-    double gravity_m_s2 = 9.80665;
-    double window_s = 0.2;
-    double reading_s = 0.02;     ///< readings are averaged to this length
-    double steady_share = 0.12;  ///< by which the force's size may change within a window
-    double near_share = 0.25;    ///< by which it may differ from gravity for its direction to be compared
-    double force_share_min = 0.5,
-           force_share_max = 2.0;  ///< of gravity, mean of steady windows
-    double turning_min = 0.65,
-           turning_max = 1.5;  ///< of gravity's turning over the gyro's; pendulums and wands leave 0.75 to 1.21
-    double agreeing_min = 0.25,
-           agreeing_max = 0.7;  ///< correlation of the two between which a slope says nothing: pushes were too strong
-    double relabelled_share_max = 0.33;  ///< of what the naming at hand leaves unexplained, by a better one
-    double relabelled_least = 0.01;      ///< unexplained share from which on namings are compared
-    double turned_min_rad2 = 0.5;        ///< sum of squares below which nothing is said of it
-    double turn_least_rad = 0.15;        ///< of a window, to count as turning
-    double still_share = 1e-6;           ///< of the gyro's turning; a spin in flight leaves 0.006 and less
-    int windows_min = 5;                 ///< steady ones, to say something of the force's size
-    double gap_max_s = 0.1;              ///< after a longer one a window begins anew
-    double gyro_range_rad_s = 1e6;       ///< a window with an axis beyond it is not compared
-    double frozen_s = 1.0;  ///< a reading that repeats for so long may be frozen, after as long of moving ones;
+  using Params = ImuPlausibilityParams;
 
-    double frozen_share = 10.0;  ///< and lasts so many times longer than any did before
-
-    /// Every number of it, stated once.
-    template <class Self, class Visitor>
-    static void fields(Self& p, Visitor& visit) {
-      visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
-      visit(p.window_s, {"window_s", "s", 0.02, 10.0, "over which force and turning are compared"});
-      visit(p.reading_s, {"reading_s", "s", 1e-3, 1.0, "readings are averaged to this length"});
-      visit(p.steady_share, {"steady_share", "1", 1e-12, 1.0, "by which the force's size may change within a window"});
-      visit(p.near_share, {"near_share", "1", 1e-12, 1e6,
-                           "by which the force's size may differ from gravity for its turning to be compared"});
-      visit(p.force_share_min, {"force_share_min", "1", 0.0, 1.0, "of gravity, least mean of steady windows"});
-      visit(p.force_share_max, {"force_share_max", "1", 1.0, 1e6, "of gravity, largest mean of steady windows"});
-      visit(p.turning_min, {"turning_min", "1", 0.0, 1.0, "least slope of gravity's turning over the gyro's"});
-      visit(p.turning_max, {"turning_max", "1", 1.0, 1e6, "largest slope of gravity's turning over the gyro's"});
-      visit(p.agreeing_min, {"agreeing_min", "1", -1.0, 1.0,
-                             "least correlation of the two turnings at which their slope says nothing"});
-      visit(p.agreeing_max, {"agreeing_max", "1", -1.0, 1.0,
-                             "largest correlation of the two turnings at which their slope says nothing"});
-      visit(p.relabelled_share_max,
-            {"relabelled_share_max", "1", 0.0, 1.0,
-             "of what axes as they are named leave unexplained: axes named otherwise leave less"});
-      visit(p.relabelled_least,
-            {"relabelled_least", "1", 0.0, 1.0, "unexplained share from which on namings of the axes are compared"});
-      visit(p.turned_min_rad2,
-            {"turned_min_rad2", "rad^2", 1e-12, 1e6, "sum of squares below which nothing is said of it"});
-      visit(p.turn_least_rad, {"turn_least_rad", "rad", 1e-12, 3.0, "of a window, to count as turning"});
-      visit(p.still_share, {"still_share", "1", 0.0, 1.0, "of the gyro's turning, by which a force stands still"});
-      visit(p.gyro_range_rad_s,
-            {"gyro_range_rad_s", "rad/s", 1e-3, 1e6, "a window with an axis beyond it is not compared"});
-      visit(p.windows_min, {"windows_min", "1", 1, 1e6, "steady ones, to say something of the force's size"});
-      visit(p.gap_max_s, {"gap_max_s", "s", 1e-12, 1e4, "longest time between two samples before the run is refused"});
-      visit(p.frozen_s, {"frozen_s", "s", 1e-12, 1e4,
-                         "a reading that repeats for so long may be frozen, after as long of moving ones"});
-      visit(p.frozen_share, {"frozen_share", "1", 1.0, 1e6, "and lasts so many times longer than any did before"});
-    }
-  };
   /// How long a triad has repeated its reading.
   struct Hold {
     Eigen::Vector3d reading = Eigen::Vector3d::Zero();

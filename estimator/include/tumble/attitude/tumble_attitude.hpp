@@ -4,12 +4,53 @@
 #include <Eigen/Geometry>
 
 #include "tumble/angular_velocity/rest_detector.hpp"
+#include "tumble/attitude/detail/tumble_attitude_expert_params.hpp"
 #include "tumble/common/detail/imu_average.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble {
+
+/// Of TumbleAttitude: the gyro, and how far the body moves.
+struct TumbleAttitudeParams {
+  double gravity_m_s2 = 9.80665;
+  double gyro_noise_rad_sqrts = 1e-3;         ///< angle random walk per sqrt(s), unmodelled errors included
+  double rate_error_sqrts = 4e-3;             ///< angle random walk per sqrt(s) and rad/s turned: scale, timing
+  double bias_sigma_start_rad_s = 8.7266e-3;  ///< 0.5 deg/s
+  double velocity_m_sqrts = 1.0;              ///< sigma of the mean velocity over 1 s of motion
+  double displacement_m_sqrts = 0.3;          ///< sigma of the mean displacement over 1 s
+  double displacement_tau_s = 10.0;           ///< in which a displacement is forgotten
+  double motion_tau_s = 3.0;                  ///< memory of a body's own velocity and displacement, and of their size
+  double radius_m = 0.0;                      ///< of a rolling sphere on a level floor; 0: no such thing
+  Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< centre to IMU, sensor axes; length up to 10
+
+  using Expert = TumbleAttitudeExpertParams;
+  Expert expert = {};  ///< what few need
+
+  /// Every number of it, stated once.
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
+    visit(p.gyro_noise_rad_sqrts, {"gyro_noise_rad_sqrts", "rad/sqrt(s)", 1e-12, 1.0,
+                                   "angle random walk, unmodelled errors included", Rank::first});
+    visit(p.rate_error_sqrts,
+          {"rate_error_sqrts", "sqrt(s)", 0.0, 1.0, "angle random walk per rad/s turned: scale, timing", Rank::first});
+    visit(p.bias_sigma_start_rad_s,
+          {"bias_sigma_start_rad_s", "rad/s", 0.0, 1.0, "prior of the gyro's bias", Rank::first});
+    visit(p.velocity_m_sqrts,
+          {"velocity_m_sqrts", "m/sqrt(s)", 1e-12, 1e3, "sigma of the mean velocity over 1 s of motion", Rank::first});
+    visit(p.displacement_m_sqrts,
+          {"displacement_m_sqrts", "m sqrt(s)", 1e-12, 1e3, "sigma of the mean displacement over 1 s", Rank::first});
+    visit(p.displacement_tau_s,
+          {"displacement_tau_s", "s", 0.1, 1e4, "in which a displacement is forgotten", Rank::first});
+    visit(p.motion_tau_s, {"motion_tau_s", "s", 1e-3, 1e4,
+                           "memory of a body's own velocity and displacement, and of their size", Rank::first});
+    visit(p.radius_m, {"radius_m", "m", 0.0, 10.0, "of the sphere"});
+    visit(p.lever_arm_m, {"lever_arm_m", "m", -10.0, 10.0, "from the centre to the IMU, sensor axes"});
+    visit.group("", p.expert);
+  }
+};
 
 /// Attitude from gyro and accelerometer by what a body cannot do: its velocity is bounded, and at rest it is zero.
 ///
@@ -37,85 +78,8 @@ class TumbleAttitude {
   static constexpr int kStates = 10;
   using Covariance = Eigen::Matrix<double, kStates, kStates>;
 
-  struct Params {
-    double gravity_m_s2 = 9.80665;
-    double gyro_noise_rad_sqrts = 1e-3;          ///< angle random walk per sqrt(s), unmodelled errors included
-    double rate_error_sqrts = 4e-3;              ///< angle random walk per sqrt(s) and rad/s turned: scale, timing
-    double bias_sigma_start_rad_s = 8.7266e-3;   ///< 0.5 deg/s
-    double bias_walk_rad_s_sqrts = 2e-6;         ///< per sqrt(s)
-    double acceleration_noise_m_s_sqrts = 0.01;  ///< velocity random walk
-    double velocity_m_sqrts = 1.0;               ///< sigma of the mean velocity over 1 s of motion
-    double displacement_m_sqrts = 0.3;           ///< sigma of the mean displacement over 1 s
-    double displacement_tau_s = 10.0;            ///< in which a displacement is forgotten
-    double motion_tau_s = 3.0;      ///< memory of a body's own velocity and displacement, and of their size
-    double recovered_tau_s = 0.05;  ///< memory of the error of a rate that was recovered
-    double node_s = 0.04;           ///< time between two corrections
-    /// Readings are averaged to this length, at which all thresholds here are meant; zero: taken as they come.
-    double reading_s = 4e-3;
-    /// 2 deg/s about the mean, and it about the bias: room for cheap sensors, which only the bias' estimate pays for.
-    /// As a mean that forgets in half a second is what the bias is measured by, rest is known after twice that.
-    RestDetector::Params rest = {.rate_max_rad_s = 3.4907e-2,
-                                 .rate_spread_rad_s = 3.4907e-2,
-                                 .force_spread_m_s2 = 0.5,
-                                 .rest_s = 1.0,
-                                 .reading_s = 0.0,  // averages come in
-                                 .memory_s = 1.0};
-    double rest_velocity_sigma_m_s = 0.005;   ///< per node at rest
-    double rest_rate_sigma_rad_sqrts = 2e-3;  ///< of the rate measured at rest, mean over 1 s
-    /// At rest the mean rate is the bias to within so many deviations of what is known of both: once a bias is
-    /// measured, a body that creeps round at 0.5 deg/s turns; before, so does one with a bias beyond 1.5 deg/s.
-    double rest_rate_sigmas = 3.0;
-    double radius_m = 0.0;                                  ///< of a rolling sphere on a level floor; 0: no such thing
-    Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< centre to IMU, sensor axes; length up to 10
-    double rolling_velocity_sigma_m_s = 0.03;               ///< per node while it grips
-    double slip_velocity_m_s = 0.12;                        ///< misfit that opens a slip, half of it closes it
-    double slip_quiet_s = 0.2;                              ///< and for so long
-    double slip_timeout_s = 3.0;                            ///< then rolling is believed again
-    double gap_max_s = 1.0;
+  using Params = TumbleAttitudeParams;
 
-    /// Every number of it, stated once.
-    template <class Self, class Visitor>
-    static void fields(Self& p, Visitor& visit) {
-      visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
-      visit(p.gyro_noise_rad_sqrts, {"gyro_noise_rad_sqrts", "rad/sqrt(s)", 1e-12, 1.0,
-                                     "angle random walk, unmodelled errors included", Rank::first});
-      visit(p.rate_error_sqrts, {"rate_error_sqrts", "sqrt(s)", 0.0, 1.0,
-                                 "angle random walk per rad/s turned: scale, timing", Rank::first});
-      visit(p.bias_sigma_start_rad_s,
-            {"bias_sigma_start_rad_s", "rad/s", 0.0, 1.0, "prior of the gyro's bias", Rank::first});
-      visit(p.bias_walk_rad_s_sqrts,
-            {"bias_walk_rad_s_sqrts", "rad/s/sqrt(s)", 0.0, 1.0, "random walk of the gyro's bias"});
-      visit(p.acceleration_noise_m_s_sqrts,
-            {"acceleration_noise_m_s_sqrts", "m/s/sqrt(s)", 1e-12, 100.0, "velocity random walk"});
-      visit(p.velocity_m_sqrts, {"velocity_m_sqrts", "m/sqrt(s)", 1e-12, 1e3,
-                                 "sigma of the mean velocity over 1 s of motion", Rank::first});
-      visit(p.displacement_m_sqrts,
-            {"displacement_m_sqrts", "m sqrt(s)", 1e-12, 1e3, "sigma of the mean displacement over 1 s", Rank::first});
-      visit(p.displacement_tau_s,
-            {"displacement_tau_s", "s", 0.1, 1e4, "in which a displacement is forgotten", Rank::first});
-      visit(p.motion_tau_s, {"motion_tau_s", "s", 1e-3, 1e4,
-                             "memory of a body's own velocity and displacement, and of their size", Rank::first});
-      visit(p.recovered_tau_s, {"recovered_tau_s", "s", 1e-4, 1e4, "memory of the error of a rate that was recovered"});
-      visit(p.node_s, {"node_s", "s", 1e-4, 1.0, "time between two corrections"});
-      visit(p.reading_s, {"reading_s", "s", 0.0, 0.1, "readings are averaged to this length; 0: taken as they come"});
-      visit.group("rest_", p.rest);
-      visit(p.rest_velocity_sigma_m_s,
-            {"rest_velocity_sigma_m_s", "m/s", 1e-12, 10.0, "of the velocity, per node at rest"});
-      visit(p.rest_rate_sigma_rad_sqrts,
-            {"rest_rate_sigma_rad_sqrts", "rad/sqrt(s)", 1e-12, 1.0, "of the rate measured at rest, mean over 1 s"});
-      visit(p.rest_rate_sigmas,
-            {"rest_rate_sigmas", "1", 1.0, 1e6, "of the mean rate about the bias, as far as that is known, at rest"});
-      visit(p.radius_m, {"radius_m", "m", 0.0, 10.0, "of the sphere"});
-      visit(p.lever_arm_m, {"lever_arm_m", "m", -10.0, 10.0, "from the centre to the IMU, sensor axes"});
-      visit(p.rolling_velocity_sigma_m_s,
-            {"rolling_velocity_sigma_m_s", "m/s", 1e-12, 10.0, "of the velocity by rolling, per node while it grips"});
-      visit(p.slip_velocity_m_s,
-            {"slip_velocity_m_s", "m/s", 1e-12, 10.0, "misfit that opens a slip, half of it closes it"});
-      visit(p.slip_quiet_s, {"slip_quiet_s", "s", 0.0, 10.0, "and stays closed after so long below it"});
-      visit(p.slip_timeout_s, {"slip_timeout_s", "s", 1e-12, 1e3, "then rolling is believed again"});
-      visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "longest time between two samples before the run is refused"});
-    }
-  };
   struct State {
     Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
     Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();

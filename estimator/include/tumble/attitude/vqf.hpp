@@ -10,6 +10,62 @@
 
 namespace tumble {
 
+/// The paper's parameters that its authors set once for all devices.
+struct VqfExpertParams {
+  double bias_sigma_motion_rad_s = 1.7453e-3;  ///< 0.1 deg/s: what the bias converges to in motion
+  double bias_sigma_rest_rad_s = 5.2360e-4;    ///< 0.03 deg/s: and at rest
+  double vertical_forgetting = 1e-4;           ///< pull of the unobservable vertical bias to zero
+  double rest_tau_s = 0.5;                     ///< of the rest detector's low-pass
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.bias_sigma_motion_rad_s,
+          {"bias_sigma_motion_rad_s", "rad/s", 1e-9, 1.0, "0.1 deg/s: what the bias converges to in motion"});
+    visit(p.bias_sigma_rest_rad_s,
+          {"bias_sigma_rest_rad_s", "rad/s", 1e-9, 1.0, "0.03 deg/s: what the bias converges to at rest"});
+    visit(p.vertical_forgetting,
+          {"vertical_forgetting", "1", 1e-9, 1.0, "pull of the unobservable vertical bias to zero"});
+    visit(p.rest_tau_s, {"rest_tau_s", "s", 1e-3, 1e4, "of the rest detector's low-pass"});
+  }
+};
+
+/// Of Vqf, the published method's.
+struct VqfParams {
+  double tau_s = 3.0;  ///< of the low-pass on the specific force
+  bool rest_bias_estimation = true;
+  bool motion_bias_estimation = true;         ///< both off: the basic filter, as its authors call it
+  double bias_sigma_start_rad_s = 8.7266e-3;  ///< 0.5 deg/s
+  double bias_forgetting_s = 100.0;           ///< in which the variance grows to (0.1 deg/s)^2
+  double bias_clip_rad_s = 3.4907e-2;         ///< 2 deg/s: largest bias that is believed
+  double rest_time_s = 1.5;
+  double rest_rate_rad_s = 3.4907e-2;  ///< 2 deg/s from the low-passed gyro
+  double rest_force_m_s2 = 0.5;        ///< from the low-passed force
+  double gap_max_s = 1.0;
+
+  using Expert = VqfExpertParams;
+  Expert expert = {};  ///< what few need
+
+  /// Every number of it, stated once.
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.tau_s,
+          {"tau_s", "s", 1e-3, 1e4, "of the low-pass on the specific force in the inertial frame", Rank::first});
+    visit(p.rest_bias_estimation, on_off("rest_bias_estimation", "1: gyro bias from rest", Rank::first));
+    visit(p.motion_bias_estimation, on_off("motion_bias_estimation", "1: gyro bias in motion too", Rank::first));
+    visit(p.bias_sigma_start_rad_s,
+          {"bias_sigma_start_rad_s", "rad/s", 1e-9, 1.0, "prior of the gyro's bias", Rank::first});
+    visit(p.bias_forgetting_s,
+          {"bias_forgetting_s", "s", 1e-9, 1e6, "the bias' variance grows to (0.1 deg/s)^2 in it", Rank::first});
+    visit(p.bias_clip_rad_s, {"bias_clip_rad_s", "rad/s", 1e-9, 1.0, "largest bias that is believed", Rank::first});
+    visit(p.rest_time_s, {"rest_time_s", "s", 0.0, 1e4, "quiet for so long is rest", Rank::first});
+    visit(p.rest_rate_rad_s, {"rest_rate_rad_s", "rad/s", 1e-9, 1.0, "quiet: from the low-passed gyro", Rank::first});
+    visit(p.rest_force_m_s2,
+          {"rest_force_m_s2", "m/s^2", 1e-9, 100.0, "quiet: from the low-passed force", Rank::first});
+    visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "longest time between two samples before the run is refused"});
+    visit.group("", p.expert);
+  }
+};
+
 /// The versatile quaternion filter, gyro and accelerometer (D. Laidig, T. Seel, Information Fusion 91, 2023, "VQF").
 /// The specific force is turned by the gyro alone into a nearly inertial frame N and low-passed there, where the
 /// acceleration of a bounded motion averages out; the result levels N in W by the smallest rotation. A Kalman filter of
@@ -17,48 +73,7 @@ namespace tumble {
 /// No heading reference, no bias about the vertical in motion, no adaptation to the strength of the acceleration.
 class Vqf {
  public:
-  struct Params {
-    double tau_s = 3.0;  ///< of the low-pass on the specific force
-    bool rest_bias_estimation = true;
-    bool motion_bias_estimation = true;          ///< both off: the basic filter, as its authors call it
-    double bias_sigma_start_rad_s = 8.7266e-3;   ///< 0.5 deg/s
-    double bias_sigma_motion_rad_s = 1.7453e-3;  ///< 0.1 deg/s: what the bias converges to in motion
-    double bias_sigma_rest_rad_s = 5.2360e-4;    ///< 0.03 deg/s: and at rest
-    double bias_forgetting_s = 100.0;            ///< in which the variance grows to (0.1 deg/s)^2
-    double bias_clip_rad_s = 3.4907e-2;          ///< 2 deg/s: largest bias that is believed
-    double vertical_forgetting = 1e-4;           ///< pull of the unobservable vertical bias to zero
-    double rest_tau_s = 0.5;                     ///< of the rest detector's low-pass
-    double rest_time_s = 1.5;
-    double rest_rate_rad_s = 3.4907e-2;  ///< 2 deg/s from the low-passed gyro
-    double rest_force_m_s2 = 0.5;        ///< from the low-passed force
-    double gap_max_s = 1.0;
-
-    /// Every number of it, stated once.
-    template <class Self, class Visitor>
-    static void fields(Self& p, Visitor& visit) {
-      visit(p.tau_s,
-            {"tau_s", "s", 1e-3, 1e4, "of the low-pass on the specific force in the inertial frame", Rank::first});
-      visit(p.rest_bias_estimation, on_off("rest_bias_estimation", "1: gyro bias from rest", Rank::first));
-      visit(p.motion_bias_estimation, on_off("motion_bias_estimation", "1: gyro bias in motion too", Rank::first));
-      visit(p.bias_sigma_start_rad_s,
-            {"bias_sigma_start_rad_s", "rad/s", 1e-9, 1.0, "prior of the gyro's bias", Rank::first});
-      visit(p.bias_sigma_motion_rad_s,
-            {"bias_sigma_motion_rad_s", "rad/s", 1e-9, 1.0, "0.1 deg/s: what the bias converges to in motion"});
-      visit(p.bias_sigma_rest_rad_s,
-            {"bias_sigma_rest_rad_s", "rad/s", 1e-9, 1.0, "0.03 deg/s: what the bias converges to at rest"});
-      visit(p.bias_forgetting_s,
-            {"bias_forgetting_s", "s", 1e-9, 1e6, "the bias' variance grows to (0.1 deg/s)^2 in it", Rank::first});
-      visit(p.bias_clip_rad_s, {"bias_clip_rad_s", "rad/s", 1e-9, 1.0, "largest bias that is believed", Rank::first});
-      visit(p.vertical_forgetting,
-            {"vertical_forgetting", "1", 1e-9, 1.0, "pull of the unobservable vertical bias to zero"});
-      visit(p.rest_tau_s, {"rest_tau_s", "s", 1e-3, 1e4, "of the rest detector's low-pass"});
-      visit(p.rest_time_s, {"rest_time_s", "s", 0.0, 1e4, "quiet for so long is rest", Rank::first});
-      visit(p.rest_rate_rad_s, {"rest_rate_rad_s", "rad/s", 1e-9, 1.0, "quiet: from the low-passed gyro", Rank::first});
-      visit(p.rest_force_m_s2,
-            {"rest_force_m_s2", "m/s^2", 1e-9, 100.0, "quiet: from the low-passed force", Rank::first});
-      visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "longest time between two samples before the run is refused"});
-    }
-  };
+  using Params = VqfParams;
   struct State {
     Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();  ///< the estimate, q_WN * q_NI
     Eigen::Quaterniond q_NI = Eigen::Quaterniond::Identity();  ///< gyro alone, bias removed

@@ -9,7 +9,7 @@
 #include "tumble/angular_velocity/detail/partial_clipping.hpp"
 #include "tumble/angular_velocity/detail/rate_factors.hpp"
 #include "tumble/angular_velocity/rail_detector.hpp"
-#include "tumble/angular_velocity/rail_planes.hpp"
+#include "tumble/angular_velocity/rail_plane.hpp"
 #include "tumble/angular_velocity/rate_model_params.hpp"
 #include "tumble/common/imu.hpp"
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "tumble/angular_velocity/rail_planes.hpp"
+#include "tumble/angular_velocity/rail_plane.hpp"
 #include "tumble/common/imu.hpp"
 
 namespace tumble {
@@ -32,19 +32,23 @@ class RateRecovery {
   using Vector = Eigen::Matrix<double, kStates, 1>;
   using Covariance = Eigen::Matrix<double, kStates, kStates>;
 
+  /// What readings over kReading_s are off by.
+  struct ReadingNoise {
+    double rate_rad_s = 0.03;    ///< bound (0, 10]
+    double rate_share = 0.003;   ///< more, as a share of the reading; bound [0, 1]
+    double force_m_s2 = 0.3;     ///< bound (0, 1e3]
+    double force_share = 0.004;  ///< more, as a share of the reading; bound [0, 1]
+  };
   struct Params {
     std::array<Eigen::Isometry3d, kUnits> T_CI{};   ///< mountings of the units, about their mean place
     int count = 1;                                  ///< bound [1, kUnits]
     double gyro_range_rad_s = 1e3;                  ///< from here on a reading is at its rail; bound (0, 1e3]
     double accel_range_m_s2 = 1e5;                  ///< bound (0, 1e5]
     double lever_arm_sigma_m = 1.5e-3;              ///< prior; bound (0, 10]
-    double rate_noise_rad_s = 0.03;                 ///< of a reading over kReading_s; bound (0, 10]
-    double rate_noise_share = 0.003;                ///< more, as a share of the reading; bound [0, 1]
-    double force_noise_m_s2 = 0.3;                  ///< of a reading over kReading_s; bound (0, 1e3]
-    double force_noise_share = 0.004;               ///< more, as a share of the reading; bound [0, 1]
     double acceleration_walk_rad_s2_sqrts = 200.0;  ///< of the angular acceleration; bound (0, 1e6]
     double force_walk_m_s2_sqrts = 25.0;            ///< of the common force; bound (0, 1e6]
     double recovered_sigma_rad_s = 1.0;             ///< a rate known no better than this stays clipped; bound (0, 1e3]
+    ReadingNoise noise;
     /// Along what the elements of the units sense: while one clips, the axes beside it are off by what it hides, and
     /// the free ones are read along their rows.
     std::array<ElementRows, kUnits> gyro_elements{}, accel_elements{};

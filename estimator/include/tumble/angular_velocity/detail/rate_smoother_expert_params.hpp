@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "tumble/angular_velocity/rail_planes.hpp"
+#include "tumble/angular_velocity/rest_detector.hpp"
+#include "tumble/common/parameters.hpp"
+
+/// Groups of RateSmoother::Params::Expert.
+namespace tumble {
+
+/// A descent to the most likely rates.
+struct RateDescentParams {
+  int iterations_max = 15;
+  double tolerance_rad_s = 2e-3;  ///< stop when no rate changes by more
+  double step_max_rad_s = 10.0;   ///< longest step of a rate in one iteration
+  double widen_first = 8.0;       ///< threshold of contact in the first iteration, halved in each
+  /// Iterations after settling in which the bounds of samples in contact are those of a truncated distribution
+  /// instead of walls, which gives them an honest covariance.
+  int bound_iterations = 3;
+  double bound_damping = 0.5;  ///< share of a new bound taken over in each of them
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.iterations_max, {"iterations_max", "1", 1, 1000, "most iterations of a descent"});
+    visit(p.tolerance_rad_s, {"tolerance_rad_s", "rad/s", 1e-12, 1.0, "stop when no rate changes by more"});
+    visit(p.step_max_rad_s, {"step_max_rad_s", "rad/s", 1e-3, 1e4, "longest step of a rate in one iteration"});
+    visit(p.widen_first,
+          {"widen_first", "1", 1.0, 1000.0, "threshold of contact in the first iteration, halved in each"});
+    visit(p.bound_iterations,
+          {"bound_iterations", "1", 0, 1000,
+           "iterations after settling in which bounds in contact are truncated distributions, not walls"});
+    visit(p.bound_damping, {"bound_damping", "1", 0.01, 1.0, "share of a new bound taken over in each of them"});
+  }
+};
+
+/// What few need of RateSmootherParams, by meaning. Fields bear the names that they have in tables and on command
+/// lines.
+struct RateSmootherExpertParams {
+  RailPlaneFinder::Params planes = {};  ///< without a stated range of its own: that of RateSmootherParams::rails
+  RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();  ///< likewise
+  RestDetector::Params rests = {};
+  RateDescentParams descent = {};
+  /// Most descents, each with readings corrected for what the one before has told of the device; 1: the device's
+  /// errors are counted in the covariance and not estimated.
+  int error_rounds_max = 3;
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit.group("planes_", p.planes);
+    visit.group("accel_planes_", p.accel_planes);
+    visit.group("rests_", p.rests);
+    visit.group("", p.descent);
+    visit(p.error_rounds_max, {"error_rounds_max", "1", 1, 10,
+                               "most descents with readings corrected for the device's errors; 1: none is corrected"});
+  }
+};
+
+}  // namespace tumble

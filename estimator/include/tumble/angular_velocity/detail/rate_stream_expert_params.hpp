@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "tumble/angular_velocity/rail_planes.hpp"
+#include "tumble/angular_velocity/rest_detector.hpp"
+#include "tumble/common/parameters.hpp"
+
+/// Groups of RateStream::Params::Expert.
+namespace tumble {
+
+/// How much less a rig without calibration counts while few samples of flight, n, have been learnt from.
+struct RigDoubtParams {
+  /// Its covariance, but for the gyro's bias and never beyond that beforehand, counts 1 + covariance / (1 + n /
+  /// samples) times.
+  double covariance = 60.0;
+  double samples = 30.0;
+  /// What contact tells of a rate beyond the rail rests on a rig that flight has to tell: its deviation is at least
+  /// this share of what lies beyond the rail, over 1 + n / samples.
+  double contact = 0.5;
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.covariance, {"rig_doubt", "1", 0.0, 1e3,
+                         "covariance of a rig without calibration counts 1 + this / (1 + n / rig_doubt_samples) "
+                         "times, n samples of flight learnt from"});
+    visit(p.samples, {"rig_doubt_samples", "1", 1.0, 1e6, "see rig_doubt"});
+    visit(p.contact, {"contact_doubt", "1", 0.0, 10.0,
+                      "of a rig without calibration: deviation of a rate in contact, as a share of what lies "
+                      "beyond the rail, over 1 + n / rig_doubt_samples"});
+  }
+};
+
+/// What few need of RateStreamParams, by meaning. Fields bear the names that they have in tables and on command lines.
+struct RateStreamExpertParams {
+  RailPlaneFinder::Params planes = {};  ///< without a stated range of its own: that of RateStreamParams::rails
+  RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();  ///< likewise
+  RestDetector::Params rests = {};
+  double widen_first = 8.0;      ///< threshold of contact for a new clipped sample, halved with each step
+  double step_max_rad_s = 10.0;  ///< longest step of a rate at one sample
+  int bound_age = 3;             ///< steps after which the bounds of a sample in contact are softened
+  double bound_damping = 0.5;    ///< share of a new bound taken over in each step
+  int flight_run_min = 6;        ///< a flight of fewer samples in a row says nothing of the rig
+  RigDoubtParams doubt = {};
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit.group("planes_", p.planes);
+    visit.group("accel_planes_", p.accel_planes);
+    visit.group("rests_", p.rests);
+    visit(p.widen_first,
+          {"widen_first", "1", 1.0, 1000.0, "threshold of contact for a new clipped sample, halved with each step"});
+    visit(p.step_max_rad_s, {"step_max_rad_s", "rad/s", 1e-3, 1e4, "longest step of a rate at one sample"});
+    visit(p.bound_age, {"bound_age", "1", 0, 4096, "steps after which the bounds of a sample in contact are softened"});
+    visit(p.flight_run_min,
+          {"flight_run_min", "1", 0, 4096, "a flight of fewer samples in a row says nothing of the rig"});
+    visit.group("", p.doubt);
+    visit(p.bound_damping, {"bound_damping", "1", 0.01, 1.0, "share of a new bound taken over in each step"});
+  }
+};
+
+}  // namespace tumble

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "tumble/angular_velocity/detail/arrow_solver.hpp"
+#include "tumble/angular_velocity/detail/hold_watch.hpp"
+#include "tumble/angular_velocity/detail/least_rails.hpp"
+#include "tumble/angular_velocity/detail/rail_watch.hpp"
+#include "tumble/angular_velocity/detail/rate_observation.hpp"
+#include "tumble/angular_velocity/rail_detector.hpp"
+#include "tumble/angular_velocity/rate_state.hpp"
+#include "tumble/angular_velocity/rest_detector.hpp"
+#include "tumble/angular_velocity/rig_constants.hpp"
+#include "tumble/common/time.hpp"
+
+/// State of RateStream.
+namespace tumble {
+
+/// A sample in the window.
+struct RateStreamKnot {
+  RateObservation observation;
+  Clipping by_walls;  ///< what the device and upright rails say; the observation's knows planes too
+  RateEstimate estimate;
+  Eigen::Matrix3d covariance_rad2_s2 = Eigen::Matrix3d::Zero();
+  /// By how much the size of each axis has grown in each of the two steps up to this sample, the lesser; 0 or more.
+  Eigen::Vector3d approach_rad_s = Eigen::Vector3d::Zero();
+  int age = 0;
+  bool repeats = false;  ///< its gyro says the reading of the sample before again: HoldWatch
+  Eigen::Vector3d stale_rad_s = Eigen::Vector3d::Zero();  ///< HeldReading::stale of its gyro
+};
+
+/// All that evolves; made by RateStream::start(). Copyable; RateStream::equal() compares.
+struct RateStreamState {
+  RailWatch::State rails;
+  RestDetector::State rests;
+  HoldWatch::State holds;
+  std::vector<RateStreamKnot> window;  ///< oldest first
+  RigConstants rig;
+  RigConstants::Matrix rig_covariance;
+  // what is known of the oldest sample and of the rig from all that left the window, about a point
+  arrow::Block prior;
+  arrow::Corner prior_corner;
+  std::array<Eigen::Vector3d, 2> extremes{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  ///< of readings so far
+  LeastRails least;  ///< by the readings so far
+  /// Of a run of readings at a possible rail that left in part: RateStreamKnot::approach_rad_s before it, and how many
+  /// left.
+  Eigen::Vector3d entry_rad_s = Eigen::Vector3d::Zero(), entry_samples = Eigen::Vector3d::Zero();
+  std::optional<RateKnot> left;  ///< the sample that left last, and when it was read
+  TimeNs left_ns = 0;
+  RateKnot prior_knot;
+  RigConstants prior_rig;
+  std::size_t samples = 0;
+  std::size_t waiting = 0;         ///< samples since the last step
+  std::size_t learnt_from = 0;     ///< samples of flight that left the window and told of the rig
+  std::size_t flight_run = 0;      ///< samples of flight in a row that left the window last
+  std::size_t rig_resets = 0;      ///< times that what was learnt of the rig was dropped
+  std::size_t failures = 0;        ///< steps whose system was not positive definite and was skipped
+  std::vector<arrow::Block> work;  ///< scratch space, no part of the state proper
+};
+
+}  // namespace tumble

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "tumble/common/parameters.hpp"
+
+/// Groups of ImuMerge::Params::Expert.
+namespace tumble {
+
+/// Where a reading is off from the others', and left out of its sample.
+struct ImuOutlierParams {
+  double rate_rad_s = 0.15;  ///< from the median
+  double rate_share = 0.03;  ///< more, as a share of the rate
+  double force_m_s2 = 3.0;   ///< from the median
+  /// A reading from this share of the range on may hide a rail met within its sample.
+  double subsample_saturation_share = 0.15;
+  double hidden_force_m_s2 = 3.0;  ///< by which it then may disagree with another
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.rate_rad_s, {"rate_tolerance_rad_s", "rad/s", 1e-12, 1e3, "a rate this far from the median is left out"});
+    visit(p.rate_share, {"rate_tolerance_share", "1", 0.0, 1.0, "and further, as a share of the rate"});
+    visit(p.force_m_s2, {"force_tolerance_m_s2", "m/s^2", 1e-12, 1e4, "a force this far from the median is left out"});
+    visit(p.subsample_saturation_share,
+          {"subsample_saturation_share", "1", 1e-12, 1.0,
+           "a reading from this share of the range on may hide a rail met within its sample"});
+    visit(p.hidden_force_m_s2, {"hidden_force_m_s2", "m/s^2", 1e-12, 1e4,
+                                "by which a force that may hide a rail may disagree with another"});
+  }
+};
+
+/// A unit that is frozen: a reading that lasts while the others move. Sample and hold is shorter.
+struct FrozenImuParams {
+  double after_s = 0.1;
+  double rate_rad_s = 0.03;  ///< by which the others move
+  double force_m_s2 = 0.3;
+  double thawed_after_s = 0.5;  ///< of readings that change
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.after_s,
+          {"frozen_after_s", "s", 1e-12, 1e3, "a reading that lasts so long while the others move is frozen"});
+    visit(p.rate_rad_s, {"frozen_rate_rad_s", "rad/s", 1e-12, 1e3, "the others move by more than this"});
+    visit(p.force_m_s2, {"frozen_force_m_s2", "m/s^2", 1e-12, 1e4, "or by more than this"});
+    visit(p.thawed_after_s,
+          {"thawed_after_s", "s", 1e-12, 1e3, "of readings that change, after which a unit is in use again"});
+  }
+};
+
+/// A unit that is off from the median, as a mean over half a second, for so long that it is left out for good.
+struct DisagreeingImuParams {
+  double rate_rad_s = 0.1;
+  double rate_share = 0.06;  ///< more, as a share of the rate
+  double force_m_s2 = 1.0;
+  double after_s = 0.3;
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.rate_rad_s, {"disagree_rate_rad_s", "rad/s", 1e-12, 1e3,
+                         "a mean rate over half a second this far from the median disagrees"});
+    visit(p.rate_share, {"disagree_rate_share", "1", 0.0, 1.0, "and further, as a share of the rate"});
+    visit(p.force_m_s2, {"disagree_force_m_s2", "m/s^2", 1e-12, 1e4,
+                         "a mean force over half a second this far from the median disagrees"});
+    visit(p.after_s, {"disagrees_after_s", "s", 1e-12, 1e3, "for so long, to be left out"});
+  }
+};
+
+/// What few need of ImuMergeParams, by meaning. Fields bear the names that they have in tables and on command lines.
+struct ImuMergeExpertParams {
+  ImuOutlierParams outliers = {};
+  FrozenImuParams frozen = {};
+  DisagreeingImuParams disagreeing = {};
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit.group("", p.outliers);
+    visit.group("", p.frozen);
+    visit.group("", p.disagreeing);
+  }
+};
+
+}  // namespace tumble

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+
+#include "tumble/attitude/detail/force_errors.hpp"
+#include "tumble/attitude/detail/rate_recovery.hpp"
+#include "tumble/common/detail/imu_average.hpp"
+#include "tumble/common/time.hpp"
+
+/// State of ImuMerge.
+namespace tumble {
+
+/// How long a triad has given the same reading, and what the others gave when it began.
+struct ImuHold {
+  Eigen::Vector3d reading = Eigen::Vector3d::Zero(), others = Eigen::Vector3d::Zero();
+  TimeNs since_ns = 0;
+  double held_s = 0.0;
+  bool operator==(const ImuHold&) const = default;
+};
+
+/// Errors of one unit's rate about the mean of all.
+struct ImuMergeUnit {
+  static constexpr int kErrors = 13;  ///< bias, scale and misalignment, time offset
+
+  Eigen::Matrix<double, kErrors, 1> x = Eigen::Matrix<double, kErrors, 1>::Zero();
+  Eigen::Matrix<double, kErrors, kErrors> P = Eigen::Matrix<double, kErrors, kErrors>::Zero();
+  ImuAverage window;  ///< of its readings, since the last one closed
+  /// Means over the last window.
+  Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero(), last_force_m_s2 = Eigen::Vector3d::Zero();
+  double suspect_s = 0.0;     ///< for so long it is still left out of the force
+  std::int64_t left_out = 0;  ///< windows
+  ImuHold rate_hold, force_hold;
+  double thawing_s = 0.0;
+  double misfit_rate_rad_s = 0.0, misfit_force_m_s2 = 0.0, misfits_s = 0.0;
+  TimeNs misfits_since_ns = 0;
+  bool frozen = false, disagrees = false;
+  std::int64_t absent = 0;  ///< samples that were not finite
+  TimeNs frozen_since_ns = 0, disagrees_since_ns = 0, absent_since_ns = 0;
+  bool left_out_for_long() const { return frozen || disagrees; }
+  double offset_s() const { return x[kErrors - 1]; }
+  bool operator==(const ImuMergeUnit&) const = default;
+};
+
+/// All that evolves.
+struct ImuMergeState {
+  static constexpr int kImus = 4;
+  static constexpr int kLearnFrom = 3;  ///< so many windows make an angular acceleration
+
+  std::array<ImuMergeUnit, kImus> units{};
+  ForceErrors::State forces;
+  RateRecovery::State recovery;
+  Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();         ///< merged, mean over the last window
+  Eigen::Vector3d rate_before_rad_s = Eigen::Vector3d::Zero();  ///< and over the one before
+  double turning_rad_s = 0.0;                                   ///< mean of the rate over half a second
+  double window_s = 0.0;                                        ///< length of the one that is open
+  double length_s = 0.0, length_before_s = 0.0;                 ///< of the last windows
+  double arm_product = 0.0, arm_square_m2_s3 = 0.0;             ///< of arm_share()
+  std::int64_t samples = 0, windows = 0;
+  int free_windows = kLearnFrom;  ///< since a gyro was clipped, at most kLearnFrom
+  TimeNs last_time_ns = 0;
+  bool operator==(const ImuMergeState&) const = default;
+};
+
+}  // namespace tumble

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "tumble/common/parameters.hpp"
+
+/// Groups of ImuPlausibility::Params::Expert.
+namespace tumble {
+
+/// Size of a steady force as a share of gravity.
+struct SteadyForceParams {
+  double share_min = 0.5, share_max = 2.0;  ///< mean of steady windows
+  int windows_min = 5;                      ///< steady ones, to say something of it
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.share_min, {"force_share_min", "1", 0.0, 1.0, "of gravity, least mean of steady windows"});
+    visit(p.share_max, {"force_share_max", "1", 1.0, 1e6, "of gravity, largest mean of steady windows"});
+    visit(p.windows_min, {"windows_min", "1", 1, 1e6, "steady ones, to say something of the force's size"});
+  }
+};
+
+/// How gravity's direction turns beside what the gyro says.
+struct GravityTurningParams {
+  /// Slope of gravity's turning over the gyro's; pendulums and wands leave 0.75 to 1.21.
+  double slope_min = 0.65, slope_max = 1.5;
+  /// Correlation of the two between which a slope says nothing: pushes were too strong.
+  double agreeing_min = 0.25, agreeing_max = 0.7;
+  double turned_min_rad2 = 0.5;  ///< sum of squares below which nothing is said of it
+  double turn_least_rad = 0.15;  ///< of a window, to count as turning
+  double still_share = 1e-6;     ///< of the gyro's turning; a spin in flight leaves 0.006 and less
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.slope_min, {"turning_min", "1", 0.0, 1.0, "least slope of gravity's turning over the gyro's"});
+    visit(p.slope_max, {"turning_max", "1", 1.0, 1e6, "largest slope of gravity's turning over the gyro's"});
+    visit(p.agreeing_min,
+          {"agreeing_min", "1", -1.0, 1.0, "least correlation of the two turnings at which their slope says nothing"});
+    visit(p.agreeing_max, {"agreeing_max", "1", -1.0, 1.0,
+                           "largest correlation of the two turnings at which their slope says nothing"});
+    visit(p.turned_min_rad2,
+          {"turned_min_rad2", "rad^2", 1e-12, 1e6, "sum of squares below which nothing is said of it"});
+    visit(p.turn_least_rad, {"turn_least_rad", "rad", 1e-12, 3.0, "of a window, to count as turning"});
+    visit(p.still_share, {"still_share", "1", 0.0, 1.0, "of the gyro's turning, by which a force stands still"});
+  }
+};
+
+/// When axes are named otherwise than they say.
+struct AxisNamingParams {
+  double unexplained_share_max = 0.33;  ///< of what the naming at hand leaves unexplained, by a better one
+  double unexplained_least = 0.01;      ///< unexplained share from which on namings are compared
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.unexplained_share_max,
+          {"relabelled_share_max", "1", 0.0, 1.0,
+           "of what axes as they are named leave unexplained: axes named otherwise leave less"});
+    visit(p.unexplained_least,
+          {"relabelled_least", "1", 0.0, 1.0, "unexplained share from which on namings of the axes are compared"});
+  }
+};
+
+/// A triad that repeats its reading.
+struct FrozenTriadParams {
+  double repeats_s = 1.0;       ///< for so long it may be frozen, after as long of moving ones
+  double longest_share = 10.0;  ///< and lasts so many times longer than any did before
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.repeats_s, {"frozen_s", "s", 1e-12, 1e4,
+                        "a reading that repeats for so long may be frozen, after as long of moving ones"});
+    visit(p.longest_share, {"frozen_share", "1", 1.0, 1e6, "and lasts so many times longer than any did before"});
+  }
+};
+
+/// What few need of ImuPlausibilityParams, by meaning.
+struct ImuPlausibilityExpertParams {
+  SteadyForceParams force = {};
+  GravityTurningParams turning = {};
+  AxisNamingParams naming = {};
+  FrozenTriadParams frozen = {};
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit.group("", p.force);
+    visit.group("", p.turning);
+    visit.group("", p.naming);
+    visit.group("", p.frozen);
+  }
+};
+
+}  // namespace tumble

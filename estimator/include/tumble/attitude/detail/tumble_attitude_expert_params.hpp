@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "tumble/angular_velocity/rest_detector.hpp"
+#include "tumble/common/parameters.hpp"
+
+/// Groups of TumbleAttitude::Params::Expert.
+namespace tumble {
+
+/// A body at rest: velocity and rate are zero to within these.
+struct AttitudeRestParams {
+  double velocity_sigma_m_s = 0.005;   ///< per node at rest
+  double rate_sigma_rad_sqrts = 2e-3;  ///< of the rate measured at rest, mean over 1 s
+  /// At rest the mean rate is the bias to within so many deviations of what is known of both: once a bias is
+  /// measured, a body that creeps round at 0.5 deg/s turns; before, so does one with a bias beyond 1.5 deg/s.
+  double rate_sigmas = 3.0;
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.velocity_sigma_m_s, {"rest_velocity_sigma_m_s", "m/s", 1e-12, 10.0, "of the velocity, per node at rest"});
+    visit(p.rate_sigma_rad_sqrts,
+          {"rest_rate_sigma_rad_sqrts", "rad/sqrt(s)", 1e-12, 1.0, "of the rate measured at rest, mean over 1 s"});
+    visit(p.rate_sigmas,
+          {"rest_rate_sigmas", "1", 1.0, 1e6, "of the mean rate about the bias, as far as that is known, at rest"});
+  }
+};
+
+/// A sphere that rolls: how well it grips, and when it slips.
+struct AttitudeRollingParams {
+  double velocity_sigma_m_s = 0.03;  ///< per node while it grips
+  double slip_velocity_m_s = 0.12;   ///< misfit that opens a slip, half of it closes it
+  double slip_quiet_s = 0.2;         ///< and for so long
+  double slip_timeout_s = 3.0;       ///< then rolling is believed again
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.velocity_sigma_m_s,
+          {"rolling_velocity_sigma_m_s", "m/s", 1e-12, 10.0, "of the velocity by rolling, per node while it grips"});
+    visit(p.slip_velocity_m_s,
+          {"slip_velocity_m_s", "m/s", 1e-12, 10.0, "misfit that opens a slip, half of it closes it"});
+    visit(p.slip_quiet_s, {"slip_quiet_s", "s", 0.0, 10.0, "and stays closed after so long below it"});
+    visit(p.slip_timeout_s, {"slip_timeout_s", "s", 1e-12, 1e3, "then rolling is believed again"});
+  }
+};
+
+/// What few need of TumbleAttitudeParams, by meaning. Fields bear the names that they have in tables and on command
+/// lines.
+struct TumbleAttitudeExpertParams {
+  double bias_walk_rad_s_sqrts = 2e-6;         ///< per sqrt(s)
+  double acceleration_noise_m_s_sqrts = 0.01;  ///< velocity random walk
+  double recovered_tau_s = 0.05;               ///< memory of the error of a rate that was recovered
+  double node_s = 0.04;                        ///< time between two corrections
+  /// Readings are averaged to this length, at which all thresholds here are meant; zero: taken as they come.
+  double reading_s = 4e-3;
+  double gap_max_s = 1.0;
+  /// 2 deg/s about the mean, and it about the bias: room for cheap sensors, which only the bias' estimate pays for.
+  /// As a mean that forgets in half a second is what the bias is measured by, rest is known after twice that.
+  RestDetector::Params rest = {.rate_max_rad_s = 3.4907e-2,
+                               .rate_spread_rad_s = 3.4907e-2,
+                               .force_spread_m_s2 = 0.5,
+                               .rest_s = 1.0,
+                               .reading_s = 0.0,  // averages come in
+                               .memory_s = 1.0};
+  AttitudeRestParams at_rest = {};
+  AttitudeRollingParams rolling = {};
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.bias_walk_rad_s_sqrts,
+          {"bias_walk_rad_s_sqrts", "rad/s/sqrt(s)", 0.0, 1.0, "random walk of the gyro's bias"});
+    visit(p.acceleration_noise_m_s_sqrts,
+          {"acceleration_noise_m_s_sqrts", "m/s/sqrt(s)", 1e-12, 100.0, "velocity random walk"});
+    visit(p.recovered_tau_s, {"recovered_tau_s", "s", 1e-4, 1e4, "memory of the error of a rate that was recovered"});
+    visit(p.node_s, {"node_s", "s", 1e-4, 1.0, "time between two corrections"});
+    visit(p.reading_s, {"reading_s", "s", 0.0, 0.1, "readings are averaged to this length; 0: taken as they come"});
+    visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "longest time between two samples before the run is refused"});
+    visit.group("rest_", p.rest);
+    visit.group("", p.at_rest);
+    visit.group("", p.rolling);
+  }
+};
+
+}  // namespace tumble
