@@ -2,7 +2,7 @@
 // The gate of this tree against methods with a fault built in: each has to fail it, the method as it is has to pass. Of
 // the gate are held the rows of the method alone on its first draws. The gate divides its risk by its rows, and a draw
 // less doubles the chance of pairs that all shift: ten rows on ten draws (2 * 10 * 2^-10, on both sides) see less than
-// all 124 rows on all 18 draws do (2 * 124 * 2^-18). A shift that is refused here the whole gate refuses.
+// all 143 rows on all 18 draws do (2 * 143 * 2^-18). A shift that is refused here the whole gate refuses.
 #include "scenarios/gate/mutations.hpp"
 
 #include <gtest/gtest.h>
